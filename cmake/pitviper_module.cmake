@@ -1,0 +1,47 @@
+# pitviper_module(name FOLDER dir DEPENDS targets... LIBRARIES third_party...)
+#   One static library per folder, made of every .cpp directly in it, with the house's warnings as errors.
+#   Headers are included from the repository root ("sim/radiometry/planck.hpp").
+#   .glsl files directly in it are compiled into the library as text: see sim/gl/shader_source.hpp.
+find_program(PITVIPER_CCACHE ccache)
+if(PITVIPER_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${PITVIPER_CCACHE})
+  set(CMAKE_C_COMPILER_LAUNCHER ${PITVIPER_CCACHE})
+endif()
+
+add_library(pitviper_options INTERFACE)
+target_include_directories(pitviper_options INTERFACE ${CMAKE_SOURCE_DIR})
+target_compile_options(pitviper_options INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  target_compile_options(pitviper_options INTERFACE -Wno-restrict)  # false alarms on std::string (GCC bug 105651)
+endif()
+if(PITVIPER_SANITIZE)
+  target_compile_options(pitviper_options INTERFACE
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(pitviper_options INTERFACE -fsanitize=address,undefined)
+endif()
+
+function(pitviper_module name)
+  cmake_parse_arguments(M "" "FOLDER" "DEPENDS;LIBRARIES" ${ARGN})
+  set(folder ${CMAKE_CURRENT_SOURCE_DIR})
+  if(M_FOLDER)
+    set(folder ${CMAKE_CURRENT_SOURCE_DIR}/${M_FOLDER})
+  endif()
+  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
+  file(GLOB shaders CONFIGURE_DEPENDS ${folder}/*.glsl ${folder}/glsl/*.glsl)
+  if(shaders)
+    set(embedded ${CMAKE_CURRENT_BINARY_DIR}/${name}_shaders.cpp)
+    add_custom_command(OUTPUT ${embedded}
+      COMMAND ${CMAKE_COMMAND} -DOUT=${embedded} -DROOT=${CMAKE_SOURCE_DIR} -DNAME=${name}
+              "-DFILES=${shaders}" -P ${CMAKE_SOURCE_DIR}/cmake/embed_shaders.cmake
+      DEPENDS ${shaders} ${CMAKE_SOURCE_DIR}/cmake/embed_shaders.cmake VERBATIM)
+    list(APPEND sources ${embedded})
+  endif()
+  if(NOT sources)
+    add_library(${name} INTERFACE)
+    target_link_libraries(${name} INTERFACE pitviper_options ${M_DEPENDS} ${M_LIBRARIES})
+    return()
+  endif()
+  add_library(${name} STATIC ${sources})
+  target_link_libraries(${name} PUBLIC pitviper_options ${M_DEPENDS} PRIVATE ${M_LIBRARIES})
+endfunction()

@@ -1,0 +1,76 @@
+#include <cmath>
+#include <cstdio>
+
+#include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/options.hpp"
+#include "sim/image/exr.hpp"
+#include "sim/parameters/error.hpp"
+
+namespace pitviper {
+namespace {
+
+std::string textOf(const Attribute& a) {
+  if (const auto* s = std::get_if<std::string>(&a.value)) return *s;
+  char buffer[64];
+  if (const auto* d = std::get_if<double>(&a.value)) return std::snprintf(buffer, sizeof buffer, "%.9g", *d), buffer;
+  if (const auto* i = std::get_if<int>(&a.value)) return std::to_string(*i);
+  std::string all;
+  for (double v : std::get<std::vector<double>>(a.value)) {
+    std::snprintf(buffer, sizeof buffer, "%.12g", v);
+    all += (all.empty() ? "" : " ") + std::string(buffer);
+  }
+  return all;
+}
+
+std::string unitOf(const ExrImage& image, const std::string& layer) {
+  const Attribute* a = image.findAttribute("unit." + layer);
+  return a ? textOf(*a) : "";
+}
+
+void printLayers(const ExrImage& image) {
+  std::printf("%-32s %-18s %14s %14s %14s\n", "layer", "unit", "min", "mean", "max");
+  for (const auto& layer : image.layers) {
+    double low = INFINITY, high = -INFINITY, sum = 0.0;
+    size_t bad = 0;
+    for (float v : layer.pixels) {
+      if (!std::isfinite(v)) {
+        ++bad;
+        continue;
+      }
+      low = std::min(low, static_cast<double>(v));
+      high = std::max(high, static_cast<double>(v));
+      sum += static_cast<double>(v);
+    }
+    std::printf("%-32s %-18s %14.6g %14.6g %14.6g", layer.name.c_str(), unitOf(image, layer.name).c_str(), low, sum / static_cast<double>(std::max<size_t>(1, layer.pixels.size() - bad)), high);
+    if (bad) std::printf("  (%zu not finite)", bad);
+    std::printf("\n");
+  }
+}
+
+}  // namespace
+
+int infoCommand(const Arguments& arguments) {
+  const Options o("info", arguments, {{"--at"}}, 1, 1);
+  const ExrImage image = readExr(o.words()[0]);
+  if (o.has("--at")) {
+    std::string text = o.value("--at");
+    if (const size_t comma = text.find(','); comma != std::string::npos) text[comma] = ':';
+    else text.clear();
+    if (text.empty()) throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "not a pixel", "column,row from the top left, from 0", "write --at 128,128");
+    const auto [x, y] = readRange(text, "--at");
+    if (x < 0 || y < 0 || x >= image.width || y >= image.height)
+      throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "outside the picture", "column 0 to " + std::to_string(image.width - 1) + ", row 0 to " + std::to_string(image.height - 1), "choose a pixel of it");
+    for (const auto& layer : image.layers)
+      std::printf("%-32s %.9g %s\n", layer.name.c_str(), static_cast<double>(layer.pixels[static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)]),
+                  unitOf(image, layer.name).c_str());
+    return 0;
+  }
+  std::printf("%s: %d x %d pixels\n\n", o.words()[0].c_str(), image.width, image.height);
+  printLayers(image);
+  std::printf("\n");
+  for (const auto& a : image.attributes)
+    if (a.name.rfind("unit.", 0) != 0) std::printf("%-44s %s\n", a.name.c_str(), textOf(a).c_str());
+  return 0;
+}
+
+}  // namespace pitviper

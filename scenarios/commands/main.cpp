@@ -1,0 +1,87 @@
+// The pitviper program: finds the command, turns errors into one line and an exit code.
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <map>
+
+#include "scenarios/commands/commands.hpp"
+#include "sim/gl/context.hpp"
+#include "sim/image/atomic_file.hpp"
+#include "sim/parameters/error.hpp"
+#include "sim/parameters/table.hpp"
+
+namespace {
+
+using namespace pitviper;
+
+struct Command {
+  int (*run)(const Arguments&);
+  const char* summary;
+  const char* help;
+};
+
+const std::map<std::string, Command>& commands() {
+  static const std::map<std::string, Command> all = {
+      {"run", {runCommand, "render a scenario to calibrated EXR frames",
+               "pitviper run SCENARIO.yaml [--out FOLDER] [--frames A:B] [--set path.to.key=value]... [--preview]\n\n"
+               "Renders the scenario's frames: one EXR per camera and frame in FOLDER (default 'out'), named <camera>_<frame>.exr,\n"
+               "with a float layer <channel>.<quantity> per output and truth.* layers; probes write <probe>.csv.\n\n"
+               "  --out FOLDER     where to write; created if missing\n"
+               "  --frames A:B     frames A to B only (or one: A); counted from 0\n"
+               "  --set PATH=VALUE replaces or adds a value: --set cameras.0.samples=2, --set cameras.seeker.exposure='1 ms',\n"
+               "                   --set entities.jet.temperature='300 K'; list items by number or by their name; repeatable\n"
+               "  --preview        also a PNG per frame: every channel with colour bar and unit\n"}},
+      {"check", {checkCommand, "validate a scenario, render nothing",
+                 "pitviper check SCENARIO.yaml [--set path.to.key=value]...\n\nReads everything the scenario names and reports the first mistake as file:line:col with the fix (exit code 2).\n"}},
+      {"info", {infoCommand, "what is in a frame",
+                "pitviper info FILE.exr [--at COLUMN,ROW]\n\nLayers with unit, minimum, mean and maximum, and all attributes.\n\n"
+                "  --at COLUMN,ROW  the values of one pixel with their units; (0,0) is the top left\n"}},
+      {"bench", {benchCommand, "speed of this machine beside a fixed yardstick",
+                 "pitviper bench [--frames N]\n\nTimes direct mode (16 channels, 16 wavelengths, one light, thermal emission, air on both legs, 256x256) and, in the same\n"
+                 "run, a bare loop over 16 wavelengths; prints both and their ratio.\n"}},
+      {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
+  };
+  return all;
+}
+
+void printHelp() {
+  std::printf("pitviper: infrared and optronic sensor scenes in calibrated units\n\nusage: pitviper COMMAND ...\n\n");
+  for (const auto& [name, c] : commands()) std::printf("  %-8s %s\n", name.c_str(), c.summary);
+  std::printf("  %-8s %s\n", "test", "build and run every test (the pitviper script)");
+  std::printf("\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input.\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Arguments arguments(argv + 1, argv + argc);
+  if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h" || arguments[0] == "help") {
+    printHelp();
+    return arguments.empty() ? 2 : 0;
+  }
+  const std::string name = arguments[0];
+  arguments.erase(arguments.begin());
+  try {
+    const auto found = commands().find(name);
+    if (found == commands().end()) {
+      std::vector<std::string> names;
+      for (const auto& [n, c] : commands()) names.push_back(n);
+      const std::string near = nearestWord(name, names);
+      throw UserError({"pitviper", 0, 0, -1}, "unknown command '" + name + "'", "one of those of pitviper --help", near.empty() ? "see pitviper --help" : "did you mean '" + near + "'?");
+    }
+    for (const auto& a : arguments)
+      if (a == "--help" || a == "-h") {
+        std::fputs(found->second.help, stdout);
+        return 0;
+      }
+    return found->second.run(arguments);
+  } catch (const UserError& e) {
+    std::fflush(stdout);
+    std::fprintf(stderr, "%s\n", e.what());
+    return 2;
+  } catch (const std::exception& e) {
+    std::fflush(stdout);
+    std::fprintf(stderr, "pitviper: %s\n", e.what());
+    return 1;
+  }
+}

@@ -1,0 +1,22 @@
+#include "scenarios/commands/commands.hpp"
+
+namespace pitviper {
+
+std::span<const ShaderText> pv_radiometry_shaders();
+std::span<const ShaderText> pv_render_shaders();
+std::span<const ShaderText> pv_materials_shaders();
+std::span<const ShaderText> pv_atmosphere_shaders();
+
+const ShaderLibrary& shaderLibrary() {
+  static const ShaderLibrary library = [] {
+    ShaderLibrary l;
+    l.add(pv_radiometry_shaders());
+    l.add(pv_render_shaders());
+    l.add(pv_materials_shaders());
+    l.add(pv_atmosphere_shaders());
+    return l;
+  }();
+  return library;
+}
+
+}  // namespace pitviper

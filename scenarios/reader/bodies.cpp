@@ -1,0 +1,232 @@
+// Entities, their shapes and surfaces, lights, and where all of them are.
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/assets/make_aircraft.hpp"
+#include "scenarios/reader/builder.hpp"
+#include "scenarios/reader/tables.hpp"
+#include "sim/radiometry/constants.hpp"
+#include "sim/scene/mesh_import.hpp"
+#include "sim/scene/mesh_tools.hpp"
+#include "sim/scene/primitives.hpp"
+
+namespace pitviper {
+
+glm::dvec3 Builder::readPosition(const Record& r, bool required) {
+  if (r.given("position") && r.given("geodetic"))
+    throw UserError(r.where("geodetic"), "a position and a geodetic position", "one of the two", "remove one");
+  if (r.given("geodetic")) {
+    const Record g(r.value("geodetic"), tables::geodetic());
+    return simulation_.frame.toLocal({g.number("latitude"), g.number("longitude"), g.number("height")});
+  }
+  if (r.given("position")) {
+    const glm::dvec3 p = r.vector("position");
+    if (glm::length(p) > 1e9) throw UserError(r.where("position"), "a position more than a million km away", "metres from the origin", "check the unit");
+    return p;
+  }
+  if (required) throw UserError(r.where(), "no position", "'position: [0 m, 0 m, 100 m]', 'geodetic' or 'motion'", "add it");
+  return glm::dvec3(0.0);
+}
+
+std::optional<Attitude> Builder::readAttitude(const Record& r, bool attached) {
+  if (!r.given("heading") && !r.given("pitch")) return std::nullopt;
+  Attitude a;
+  if (r.given("heading")) a.heading_rad = r.number("heading");
+  if (attached) a.heading_rad += 0.5 * kPi;  // clockwise from the carrier's forward axis instead of north
+  if (r.given("pitch")) a.pitch_rad = r.number("pitch");
+  if (r.given("roll")) a.roll_rad = r.number("roll");
+  return a;
+}
+
+Builder::Placement Builder::readPlacement(const Record& r, bool attitude) {
+  Placement p;
+  if (r.given("attached_to")) {
+    p.carrier = entityNamed(r.value("attached_to"));
+    if (r.given("geodetic")) throw UserError(r.where("geodetic"), "a geodetic position of something attached to a body", "'position' in the body's axes", "use 'position'");
+  }
+  if (r.given("motion")) {
+    if (r.given("position") || r.given("geodetic")) throw UserError(r.where("motion"), "a position and a motion", "one of the two", "remove one");
+    std::vector<Waypoint> waypoints;
+    for (const Value& v : r.value("motion").items) {
+      const Record w(v, tables::waypoint());
+      Waypoint point;
+      point.time_s = w.number("time");
+      point.position = readPosition(w, true);
+      point.attitude = readAttitude(w, p.carrier >= 0);
+      if (w.given("roll")) point.roll_rad = w.number("roll");
+      if (!waypoints.empty() && point.time_s <= waypoints.back().time_s)
+        throw UserError(w.where("time"), "the times of a motion do not rise", "each waypoint later than the one before", "sort the waypoints");
+      waypoints.push_back(point);
+    }
+    p.motion = Motion(std::move(waypoints), r.text("interpolation") == "linear" ? Motion::Interpolation::Linear : Motion::Interpolation::Smooth);
+    return p;
+  }
+  Pose fixed;
+  fixed.position = readPosition(r, false);
+  if (attitude) {
+    // Not turned: the body's x, y, z are east, north, up (or the carrier's own axes).
+    if (const auto given = readAttitude(r, p.carrier >= 0)) fixed.orientation = orientationFrom(*given);
+    else if (r.given("roll")) fixed.orientation = glm::angleAxis(r.number("roll"), glm::dvec3(1, 0, 0));
+  }
+  p.motion = Motion(fixed);
+  return p;
+}
+
+int Builder::entityNamed(const Value& asked) const {
+  const std::string name = readText(asked, "entity");
+  const auto found = entityIndex_.find(name);
+  if (found != entityIndex_.end()) return found->second;
+  std::vector<std::string> names;
+  std::string all;
+  for (const auto& [n, i] : entityIndex_) names.push_back(n), all += (all.empty() ? "" : ", ") + n;
+  const std::string near = nearestWord(name, names);
+  throw UserError(asked.where, "there is no entity '" + name.substr(0, 60) + "' (above this place)", all.empty() ? "an entity" : "one of " + all,
+                  near.empty() ? "add it under 'entities:', a carrier before what it carries" : "did you mean '" + near + "'?");
+}
+
+std::shared_ptr<const Mesh> Builder::readShape(const Value& value) {
+  const Record r(value, tables::shape());
+  const std::string model = r.text("model");
+  auto need = [&](const char* key) {
+    if (!r.given(key)) throw UserError(r.where(), "a " + model + " without '" + key + "'", tables::shape().find(key)->description, std::string("add '") + key + ":'");
+    return r.number(key);
+  };
+  const int segments = static_cast<int>(r.integer("segments"));
+  auto mesh = std::make_shared<Mesh>();
+  if (model == "plate") *mesh = makePlate(need("width"), need("height"));
+  else if (model == "disc") *mesh = makeDisc(need("radius"), segments);
+  else if (model == "sphere") *mesh = makeSphere(need("radius"), segments, r.text("fit") == "inscribed" ? SphereFit::Inscribed : SphereFit::EqualArea);
+  else if (model == "cylinder") *mesh = makeCylinder(need("radius"), need("length"), segments, r.boolean("capped"));
+  else if (model == "cone") *mesh = makeCone(need("radius"), r.given("top_radius") ? r.number("top_radius") : 0.0, need("length"), segments, r.boolean("capped"));
+  else if (model == "terrain") {
+    if (r.given("height_map")) {
+      const int texture = readTexture(r.value("height_map"), "m", "a height map", -1e4, 1e4);
+      const Texture t = std::move(simulation_.textures.back());
+      simulation_.textures.resize(static_cast<size_t>(texture));
+      if (t.width < 2 || t.height < 2 || t.width > 4096 || t.height > 4096)
+        throw UserError(r.where("height_map"), "a height map of " + std::to_string(t.width) + "x" + std::to_string(t.height), "2x2 to 4096x4096", "resize it");
+      *mesh = makeTerrain(need("size"), t.width - 1, t.height - 1, t.texels);
+    } else {
+      TerrainShape shape;
+      shape.size_m = need("size");
+      shape.relief_m = r.given("relief") ? r.number("relief") : 0.0;
+      shape.columns = static_cast<int>(r.integer("columns"));
+      shape.seed = static_cast<std::uint64_t>(r.integer("terrain_seed"));
+      *mesh = makeTerrain(shape);
+    }
+  } else if (model == "jet") *mesh = makeJet();
+  else if (model == "missile") *mesh = makeMissile();
+  else {
+    if (!r.given("file")) throw UserError(r.where(), "a mesh without 'file'", "'file: aircraft.obj'", "add it");
+    if (!r.given("unit")) throw UserError(r.where(), "a mesh without 'unit'", "the length of one unit of the file, such as 'unit: 1 m'", "add it");
+    std::filesystem::path path = r.text("file");
+    if (path.is_relative()) path = spectra_.files().base / path;
+    *mesh = importMesh(path, r.number("unit"), r.where("file"));
+    mesh->closed = isClosed(*mesh);
+  }
+  if (r.given("scale"))
+    for (auto& p : mesh->positions) p *= static_cast<float>(r.number("scale"));
+  validateMesh(*mesh, r.where());
+  return mesh;
+}
+
+void Builder::readSurfaces(const Record& r, Entity& entity) {
+  struct Given {
+    const Value* material = nullptr;
+    const Value* temperature = nullptr;
+  };
+  std::map<std::string, Given> parts;
+  std::vector<std::string> names;
+  for (const auto& p : entity.mesh->parts) names.push_back(p.name);
+  if (r.given("parts")) {
+    const Value& map = r.value("parts");
+    for (size_t i = 0; i < map.entries.size(); ++i) {
+      const auto& [name, value] = map.entries[i];
+      if (std::find(names.begin(), names.end(), name) == names.end()) {
+        std::string all;
+        for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
+        const std::string near = nearestWord(name, names);
+        throw UserError(map.keyPlaces[i], "this shape has no part '" + name.substr(0, 60) + "'", "one of " + all, near.empty() ? "remove it" : "did you mean '" + near + "'?");
+      }
+      const Record part(value, tables::part());
+      if (!parts.emplace(name, Given{part.find("material"), part.find("temperature")}).second)
+        throw UserError(map.keyPlaces[i], "a second entry for part '" + name + "'", "one", "remove one");
+    }
+  }
+  std::map<const Value*, int> materials, textures;  // one value gives one material, however many parts share it
+  for (size_t i = 0; i < entity.mesh->parts.size(); ++i) {
+    const Given own = parts.count(names[i]) ? parts[names[i]] : Given{};
+    const Value* material = own.material ? own.material : r.find("material");
+    const Value* temperature = own.temperature ? own.temperature : r.find("temperature");
+    if (!material || !temperature)
+      throw UserError(r.where(), "part '" + names[i] + "' of '" + entity.name + "' has no " + (material ? "temperature" : "material"), "one for the part or for the whole entity",
+                      material ? "add 'temperature: 300 K'" : "add 'material: <name>'");
+    Surface s;
+    s.meshPart = static_cast<std::uint32_t>(i);
+    if (!materials.count(material)) materials[material] = materialNamed(*material);
+    s.material = materials[material];
+    if (temperature->kind == Value::Kind::Map) {
+      if (!textures.count(temperature)) textures[temperature] = readTexture(*temperature, "K", "temperature", 0.0, 1e5);
+      s.temperatureTexture = textures[temperature];
+      const auto& texels = simulation_.textures[static_cast<size_t>(s.temperatureTexture)].texels;
+      double mean = 0.0;
+      for (float t : texels) mean += static_cast<double>(t);
+      s.temperature_K = mean / static_cast<double>(texels.size());
+    } else {
+      s.temperature_K = readNumber(*temperature, "K", "temperature");
+      if (s.temperature_K < 0.0 || s.temperature_K > 1e5)
+        throw UserError(temperature->where, "temperature is out of range (" + temperature->text + ")", "0 to 100000 K", "correct it");
+    }
+    entity.surfaces.push_back(s);
+  }
+}
+
+void Builder::readEntities(const Record& scenario) {
+  if (!scenario.given("entities")) return;
+  std::size_t triangles = 0;
+  for (const Value& v : scenario.value("entities").items) {
+    const Record r(v, tables::entity());
+    Entity e;
+    e.name = r.text("name");
+    checkUnique(r.value("name"), entityNames_, "entity");
+    e.mesh = readShape(r.value("shape"));
+    triangles += e.mesh->triangles.size();
+    if (triangles > 20000000) throw UserError(r.where(), "more than 20 million triangles in the scene", "fewer", "simplify meshes");
+    readSurfaces(r, e);
+    const Placement p = readPlacement(r, true);
+    e.motion = p.motion;
+    e.parent = p.carrier;
+    const BoundingSphere sphere = boundingSphere(*e.mesh);
+    e.boundingCentre = glm::vec3(sphere.center);
+    e.boundingRadius_m = static_cast<float>(sphere.radius_m);
+    entityIndex_[e.name] = static_cast<int>(simulation_.entities.size());
+    simulation_.entities.push_back(std::move(e));
+  }
+}
+
+void Builder::readLights(const Record& scenario) {
+  if (!scenario.given("lights")) return;
+  for (const Value& v : scenario.value("lights").items) {
+    const Record r(v, tables::light());
+    PointLight l;
+    l.name = r.text("name");
+    checkUnique(r.value("name"), lightNames_, "light");
+    l.intensity = bounded(r.value("intensity"), "W/(sr um)", "intensity", 0.0, INFINITY);
+    l.radius_m = r.number("radius");
+    l.visible = r.boolean("visible");
+    if (r.given("level"))
+      for (const Value& row : r.value("level").items) {
+        if (row.kind != Value::Kind::List || row.items.size() != 2) throw UserError(row.where, "not a row [time, factor]", "[0.5 s, 1]", "write two values");
+        const double t = readNumber(row.items[0], "s", "time"), f = readNumber(row.items[1], "", "factor");
+        if (f < 0.0 || (!l.level.empty() && t <= l.level.back().first))
+          throw UserError(row.where, "levels must not be negative and their times must rise", "rising times", "correct the row");
+        l.level.emplace_back(t, f);
+      }
+    const Placement p = readPlacement(r, false);
+    l.motion = p.motion;
+    l.parent = p.carrier;
+    simulation_.lights.push_back(std::move(l));
+  }
+}
+
+}  // namespace pitviper

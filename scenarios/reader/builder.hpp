@@ -1,0 +1,62 @@
+#pragma once
+// What the parts of the scenario reader share: the simulation being built, names seen so far, libraries.
+#include <map>
+#include <optional>
+#include <string>
+
+#include "scenarios/reader/scenario_reader.hpp"
+#include "sim/parameters/spectrum_value.hpp"
+#include "sim/parameters/table.hpp"
+
+namespace pitviper {
+
+class Builder {
+ public:
+  Builder(Simulation& simulation, std::filesystem::path base, Libraries libraries);
+
+  void readOrigin(const Record& scenario);
+  void readTime(const Record& scenario);
+  void readAtmosphere(const Record& scenario);
+  void readBackground(const Record& scenario);
+  void readSun(const Record& scenario);
+  void readAmbient(const Record& scenario);
+  void readMaterials(const Record& scenario);
+  void readEntities(const Record& scenario);
+  void readLights(const Record& scenario);
+  void readCameras(const Record& scenario);
+  void readProbes(const Record& scenario);
+
+ private:
+  // materials.cpp
+  int materialNamed(const Value& asked);
+  std::shared_ptr<const Material> readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra);
+  int readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest);
+  // scene.cpp
+  struct Placement {
+    Motion motion;
+    int carrier = -1;
+  };
+  Placement readPlacement(const Record& r, bool attitude);
+  glm::dvec3 readPosition(const Record& r, bool required);
+  std::optional<Attitude> readAttitude(const Record& r, bool attached);
+  std::shared_ptr<const Mesh> readShape(const Value& value);
+  void readSurfaces(const Record& r, Entity& entity);
+  int entityNamed(const Value& asked) const;
+  // cameras.cpp
+  std::vector<ChannelOutput> readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s);
+  SpectralSampling readSpectral(const Record& r);
+
+  void checkUnique(const Value& name, std::map<std::string, Location>& names, const char* what);
+  /// A spectrum whose values lie in [low, high] wherever it has data.
+  Spectrum bounded(const Value& value, std::string_view unit, std::string_view name, double low, double high, Outside outside = Outside::Error);
+
+  Simulation& simulation_;
+  Libraries libraries_;
+  SpectrumReader spectra_;
+  std::map<std::string, int> materialIndex_;
+  std::map<std::string, const Value*> materialValues_;
+  std::map<std::string, Location> entityNames_, lightNames_, cameraNames_;
+  std::map<std::string, int> entityIndex_;
+};
+
+}  // namespace pitviper

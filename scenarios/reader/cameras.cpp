@@ -1,0 +1,182 @@
+// Cameras, their channels, and probes.
+#include <algorithm>
+#include <cmath>
+
+#include "scenarios/reader/builder.hpp"
+#include "scenarios/reader/tables.hpp"
+#include "scenarios/reader/yaml_tree.hpp"
+#include "sensors/quantity.hpp"
+#include "sim/parameters/units.hpp"
+#include "sim/plan/plan.hpp"
+
+namespace pitviper {
+namespace {
+
+Gain readGain(const Value& v) {
+  const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
+  if (q) {
+    if (const auto g = convert(*q, "V/W")) return {*g, false};
+    if (const auto g = convert(*q, "V/(W/m2)")) return {*g, true};
+  }
+  throw UserError(v.where, "gain is not in volts per watt or per irradiance", "'2e6 V/W' or '40 V/(W/m2)'", "write it with its unit");
+}
+
+}  // namespace
+
+SpectralSampling Builder::readSpectral(const Record& owner) {
+  SpectralSampling s;
+  if (!owner.given("spectral")) return s;
+  const Record r(owner.value("spectral"), tables::spectral());
+  s.samples = static_cast<int>(r.integer("samples"));
+  const std::string spacing = r.text("spacing");
+  s.spacing = spacing == "even" ? Spacing::Even : spacing == "log" ? Spacing::Log : Spacing::Gauss;
+  s.shared = r.boolean("shared");
+  return s;
+}
+
+std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s) {
+  if (list.items.empty()) throw UserError(list.where, "no channel", "at least one channel with name and response", "add '- {name: mw, response: {band: [3 um, 5 um]}}'");
+  std::map<std::string, Location> names;
+  std::vector<ChannelOutput> outputs;
+  for (const Value& v : list.items) {
+    const Record r(v, tables::channel());
+    Detector d;
+    d.channel = r.text("name");
+    d.where = v.where;
+    checkUnique(r.value("name"), names, "channel");
+    d.response = bounded(r.value("response"), "", "response", 0.0, INFINITY, Outside::Zero);
+    if (!(d.response.supportHigh() < kLongestWavelength_um) || !(d.response.supportLow() > kShortestWavelength_um * 0.999))
+      if (d.response.supportHigh() >= kLongestWavelength_um)
+        throw UserError(r.where("response"), "the response of channel '" + d.channel + "' has no band", "a table, a library name, or {band: [3 um, 5 um]}", "give it edges");
+    if (optics) d.optics = *optics;
+    if (r.given("quantum_efficiency")) d.quantumEfficiency = bounded(r.value("quantum_efficiency"), "", "quantum efficiency", 0.0, 1.0, Outside::Zero);
+    if (r.given("gain")) d.gain = readGain(r.value("gain"));
+    std::vector<std::pair<std::string, Location>> wanted;
+    const auto allowed = pinhole ? quantityNames() : probeQuantityNames();
+    if (!r.given("output")) {
+      wanted.emplace_back(allowed.front(), v.where);
+    } else if (r.value("output").kind == Value::Kind::List) {
+      for (const Value& q : r.value("output").items) wanted.emplace_back(readText(q, "output"), q.where);
+    } else {
+      wanted.emplace_back(r.text("output"), r.where("output"));
+    }
+    for (const auto& [quantity, where] : wanted) {
+      if (std::find(allowed.begin(), allowed.end(), quantity) == allowed.end()) {
+        std::string all;
+        for (const auto& q : allowed) all += (all.empty() ? "" : ", ") + q;
+        const std::string near = nearestWord(quantity, allowed);
+        throw UserError(where, "there is no quantity '" + quantity.substr(0, 40) + "' here", "one of " + all, near.empty() ? "choose one" : "did you mean '" + near + "'?");
+      }
+      if (quantity == "luminance" || quantity == "illuminance" || quantity == "focal_illuminance") {
+        Value photopic;
+        photopic.kind = Value::Kind::Scalar;
+        photopic.where = where;
+        photopic.text = "cie_y";
+        d.photopic = spectra_.read(photopic, "", "V(lambda)", Outside::Zero);
+      }
+      d.where = where;
+      outputs.push_back(pinhole ? makeOutput(d, quantity, *pinhole, exposure_s) : makeProbeOutput(d, quantity));
+      for (size_t i = 0; i + 1 < outputs.size(); ++i)
+        if (outputs[i].layer() == outputs.back().layer()) throw UserError(where, "'" + quantity + "' twice in channel '" + d.channel + "'", "each quantity once", "remove one");
+    }
+  }
+  return outputs;
+}
+
+void Builder::readCameras(const Record& scenario) {
+  if (!scenario.given("cameras")) return;
+  for (const Value& v : scenario.value("cameras").items) {
+    const Record r(v, tables::camera());
+    Camera c;
+    c.name = r.text("name");
+    c.where = v.where;
+    checkUnique(r.value("name"), cameraNames_, "camera");
+
+    const Record film(r.value("film"), tables::film());
+    Pinhole& p = c.pinhole;
+    p.width = static_cast<int>(film.integer("width"));
+    p.height = static_cast<int>(film.integer("height"));
+    c.samples = static_cast<int>(r.integer("samples"));
+    if (p.width * c.samples > 16384 || p.height * c.samples > 16384 || static_cast<double>(p.width) * p.height * c.samples * c.samples > 16384.0 * 4096.0)
+      throw UserError(r.where("film"), "a picture of " + std::to_string(p.width) + "x" + std::to_string(p.height) + " pixels with " + std::to_string(c.samples) + "x" + std::to_string(c.samples) + " subpixels",
+                      "at most 67 million subpixels, 16384 on a side", "lower film or samples");
+    p.apertureDiameter_m = r.number("aperture");
+    const int ways = (r.given("focal_length") ? 1 : 0) + (r.given("field_of_view") ? 1 : 0) + (film.given("pitch") ? 1 : 0);
+    if (ways != 2 && !(ways == 1 && r.given("field_of_view")))
+      throw UserError(r.where(), ways == 3 ? "focal length, pitch and field of view together say too much" : "the projection is not determined",
+                      "focal_length and film.pitch; or field_of_view with one of them (or alone: 50 mm)", ways == 3 ? "remove one" : "add 'field_of_view: 5 deg' or 'focal_length' and 'pitch'");
+    const double tangent = r.given("field_of_view") ? 2.0 * std::tan(0.5 * r.number("field_of_view")) : 0.0;
+    if (film.given("pitch") && r.given("field_of_view")) {
+      p.pitchX_m = film.number("pitch");
+      p.focalLength_m = p.pitchX_m * p.width / tangent;
+    } else {
+      p.focalLength_m = r.given("focal_length") ? r.number("focal_length") : 0.05;
+      p.pitchX_m = film.given("pitch") ? film.number("pitch") : p.focalLength_m * tangent / p.width;
+    }
+    p.pitchY_m = film.given("pitch_y") ? film.number("pitch_y") : p.pitchX_m;
+    if (0.5 * p.width * p.pitchX_m / p.focalLength_m > 30.0 || 0.5 * p.height * p.pitchY_m / p.focalLength_m > 30.0)
+      throw UserError(r.where("film"), "the field of view is wider than a flat film can hold", "below 176 deg", "use a longer focal length, or several cameras");
+
+    if (r.given("exposure")) c.exposure_s = r.number("exposure");
+    c.near_m = r.number("near");
+    c.smallBody_px = r.number("small_bodies");
+    c.spectral = readSpectral(r);
+
+    const Placement place = readPlacement(r, true);
+    c.mount.motion = place.motion;
+    c.mount.carrier = place.carrier;
+    if (r.given("look_at")) {
+      const Value& target = r.value("look_at");
+      if (target.kind == Value::Kind::List || (target.kind == Value::Kind::Scalar && target.text.find(',') != std::string::npos)) {
+        c.mount.looksAtPoint = true;
+        c.mount.lookAtPoint = readVector(target, "m", "look_at");
+      } else {
+        c.mount.lookAtEntity = entityNamed(target);
+        if (c.mount.lookAtEntity == c.mount.carrier) throw UserError(target.where, "a camera looks at the body that carries it", "another body", "change look_at");
+      }
+    } else if (!r.given("heading") && !r.given("pitch") && !r.given("motion") && c.mount.carrier < 0) {
+      throw UserError(r.where(), "camera '" + c.name + "' looks nowhere", "'look_at', 'heading' and 'pitch', a motion, or 'attached_to'", "add 'look_at: <entity>'");
+    }
+
+    Spectrum optics(1.0);
+    if (r.given("optics")) optics = bounded(r.value("optics"), "", "optics transmission", 0.0, 1.0, Outside::Zero);
+    c.outputs = readChannels(r.value("channels"), &optics, &p, c.exposure_s);
+    if (r.given("truth"))
+      for (const Value& t : r.value("truth").items) {
+        static const std::vector<std::string> names{"range", "entity", "temperature", "normal", "area", "solid_angles"};
+        const std::string word = readText(t, "truth");
+        if (word == "range") c.truth.range = true;
+        else if (word == "entity") c.truth.entity = true;
+        else if (word == "temperature") c.truth.temperature = true;
+        else if (word == "normal") c.truth.normal = true;
+        else if (word == "area") c.truth.area = true;
+        else if (word == "solid_angles") c.truth.solidAngles = true;
+        else throw UserError(t.where, "there is no truth layer '" + word.substr(0, 40) + "'", "range, entity, temperature, normal, area, solid_angles",
+                             nearestWord(word, names).empty() ? "choose one" : "did you mean '" + nearestWord(word, names) + "'?");
+      }
+    makePlan(simulation_, c.outputs, c.spectral, c.where);  // its mistakes are the scenario's
+    simulation_.cameras.push_back(std::move(c));
+  }
+}
+
+void Builder::readProbes(const Record& scenario) {
+  if (!scenario.given("probes")) return;
+  std::map<std::string, Location> names;
+  for (const Value& v : scenario.value("probes").items) {
+    const Record r(v, tables::probe());
+    Probe p;
+    p.name = r.text("name");
+    p.where = v.where;
+    checkUnique(r.value("name"), names, "probe");
+    p.position = r.vector("position");
+    p.normal = r.vector("normal");
+    if (!(glm::length(p.normal) > 0.0)) throw UserError(r.where("normal"), "a normal of length 0", "a direction such as [0, 0, 1]", "correct it");
+    p.resolution = static_cast<int>(r.integer("resolution")) / 2 * 2;
+    p.spectral = readSpectral(r);
+    p.outputs = readChannels(r.value("channels"), nullptr, nullptr, 0.0);
+    makePlan(simulation_, p.outputs, p.spectral, p.where);
+    simulation_.probes.push_back(std::move(p));
+  }
+}
+
+}  // namespace pitviper

@@ -1,0 +1,201 @@
+// Materials, their components, and textures.
+#include <algorithm>
+#include <cmath>
+
+#include "materials/reflection.hpp"
+#include "scenarios/reader/builder.hpp"
+#include "scenarios/reader/tables.hpp"
+#include "scenarios/reader/yaml_tree.hpp"
+#include "sim/image/png.hpp"
+
+namespace pitviper {
+namespace {
+
+Angle angleNamed(const std::string& word) {
+  if (word == "incidence") return Angle::Incidence;
+  if (word == "view") return Angle::View;
+  if (word == "specular") return Angle::Specular;
+  if (word == "half") return Angle::Half;
+  return Angle::Difference;
+}
+
+/// values[angle 2][angle 1][wavelength], with a nesting level left out for each missing axis.
+void flatten(const Value& v, const std::vector<size_t>& extents, size_t level, std::vector<double>& into) {
+  if (level == extents.size()) {
+    const double x = readNumber(v, "", "BRDF table value");
+    if (x < 0.0) throw UserError(v.where, "a BRDF value is negative", "at least 0 per steradian", "correct the table");
+    into.push_back(x);
+    return;
+  }
+  if (v.kind != Value::Kind::List || v.items.size() != extents[level])
+    throw UserError(v.where, "a BRDF table level has " + std::to_string(v.kind == Value::Kind::List ? v.items.size() : 0) + " entries",
+                    std::to_string(extents[level]) + ", as its axis says", "fill the hole or change 'count'");
+  for (const Value& item : v.items) flatten(item, extents, level + 1, into);
+}
+
+std::shared_ptr<const ReflectionComponent> readTable(const Record& r) {
+  BrdfTable t;
+  for (const char* key : {"wavelength", "values"})
+    if (!r.given(key)) throw UserError(r.where(), std::string("a BRDF table without '") + key + "'", "'wavelength', 'angles' and 'values'", "add it");
+  for (const Value& w : r.value("wavelength").items) {
+    const double x = readNumber(w, "um", "wavelength");
+    if (x < kShortestWavelength_um || x > kLongestWavelength_um || (!t.wavelength_um.empty() && x <= t.wavelength_um.back()))
+      throw UserError(w.where, "the wavelengths of a BRDF table do not rise or leave the spectral axis", "rising, within 0.1 to 1000 um", "sort them");
+    t.wavelength_um.push_back(x);
+  }
+  std::vector<size_t> extents{t.wavelength_um.size()};
+  if (r.given("angles")) {
+    size_t k = 0;
+    for (const Value& a : r.value("angles").items) {
+      const Record axis(a, tables::tableAxis());
+      t.axes[k++] = {angleNamed(axis.text("angle")), static_cast<int>(axis.integer("count")), axis.number("last")};
+      extents.insert(extents.begin(), static_cast<size_t>(axis.integer("count")));
+    }
+    if (k == 2 && t.axes[0].angle == t.axes[1].angle) throw UserError(r.where("angles"), "both axes are the same angle", "two different angles", "change one");
+  }
+  size_t total = 1;
+  for (size_t e : extents) total *= e;
+  if (total > 4000000) throw UserError(r.where("values"), "a BRDF table of " + std::to_string(total) + " values", "at most 4000000", "thin it out");
+  flatten(r.value("values"), extents, 0, t.values);
+  return makeTabulated(std::move(t));
+}
+
+}  // namespace
+
+int Builder::readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest) {
+  const Record r(value, tables::texture());
+  if (r.given("file") == r.given("rows"))
+    throw UserError(r.where(), std::string("the texture of ") + std::string(name) + (r.given("file") ? " has a file and rows" : " has neither file nor rows"), "one of the two", "add or remove one");
+  Texture t;
+  auto quantity = [&](const char* key, double otherwise) { return r.given(key) ? readNumber(r.value(key), unit, key) : otherwise; };
+  if (r.given("file")) {
+    if (!unit.empty() && !(r.given("minimum") && r.given("maximum")))
+      throw UserError(r.where(), "a texture of " + std::string(name) + " without 'minimum' and 'maximum'", "what black and white stand for, in " + std::string(unit), "add both");
+    std::filesystem::path path = r.text("file");
+    if (path.is_relative()) path = spectra_.files().base / path;
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(path, ignored))
+      throw UserError(r.where("file"), "cannot read the file '" + path.string() + "'", "a grey PNG", "check the name; it is relative to the scenario's folder");
+    const GreyImage image = readPngGrey(path);
+    const double low = quantity("minimum", 0.0), high = quantity("maximum", 1.0);
+    t.name = path.string();
+    t.width = image.width;
+    t.height = image.height;
+    t.texels.resize(image.pixels.size());
+    for (int y = 0; y < t.height; ++y)
+      for (int x = 0; x < t.width; ++x)
+        t.texels[static_cast<size_t>(t.height - 1 - y) * static_cast<size_t>(t.width) + static_cast<size_t>(x)] =
+            static_cast<float>(low + (high - low) * static_cast<double>(image.pixels[static_cast<size_t>(y) * static_cast<size_t>(t.width) + static_cast<size_t>(x)]));
+  } else {
+    const auto& rows = r.value("rows").items;
+    t.height = static_cast<int>(rows.size());
+    for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
+      asList(*row, "texture row");
+      if (t.width == 0) t.width = static_cast<int>(row->items.size());
+      if (row->items.empty() || static_cast<int>(row->items.size()) != t.width || t.width > 16384)
+        throw UserError(row->where, "a texture row has " + std::to_string(row->items.size()) + " entries", "as many as the other rows (" + std::to_string(t.width) + "), at least 1", "make the rows equally long");
+      for (const Value& x : row->items) t.texels.push_back(static_cast<float>(readNumber(x, unit, "texture value")));
+    }
+  }
+  for (float x : t.texels)
+    if (!(static_cast<double>(x) >= lowest && static_cast<double>(x) <= highest))
+      throw UserError(r.where(), "the texture of " + std::string(name) + " holds " + std::to_string(x), std::to_string(lowest) + " to " + std::to_string(highest), "correct its range");
+  simulation_.textures.push_back(std::move(t));
+  return static_cast<int>(simulation_.textures.size()) - 1;
+}
+
+std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra) {
+  const Record r(value, tables::material());
+  auto m = std::make_shared<Material>();
+  m->name = name;
+  m->where = value.where;
+  if (r.given("source")) m->provenance = r.text("source");
+  auto fraction = [&](const Value& v, const char* what) {
+    const Spectrum s = spectra.read(v, "", what);
+    const double from = std::max(s.validLow(), s.supportLow()), to = std::min(s.validHigh(), s.supportHigh());
+    if (s.minimum(from, to) < 0.0 || s.maximum(from, to) > 1.0)
+      throw UserError(v.where, std::string(what) + " of material '" + name + "' leaves 0..1", "fractions", "correct its values");
+    return s;
+  };
+  if (r.given("components"))
+    for (const Value& c : r.value("components").items) {
+      const Record k(c, tables::component());
+      const std::string kind = k.text("reflection");
+      if (kind != "table" && !k.given("reflectance"))
+        throw UserError(k.where(), "a " + kind + " component without a reflectance", "'reflectance: 0.3' or a spectrum", "add it");
+      if (kind == "phong" && !k.given("exponent")) throw UserError(k.where(), "a phong component without an exponent", "'exponent: 50'", "add it");
+      if (kind == "table") m->reflections.push_back(readTable(k));
+      else if (kind == "phong") m->reflections.push_back(makePhong(fraction(k.value("reflectance"), "reflectance"), k.number("exponent")));
+      else m->reflections.push_back(makeLambertian(fraction(k.value("reflectance"), "reflectance")));
+      m->modifiers.push_back(k.given("modifier") ? readTexture(k.value("modifier"), "", "a modifier", 0.0, 1.0) : -1);
+    }
+  if (r.given("emission")) {
+    const Record e(r.value("emission"), tables::emission());
+    GivenEmissivity g;
+    g.emissivity = fraction(e.value("emissivity"), "emissivity");
+    if (e.given("angular"))
+      for (const Value& row : e.value("angular").items) {
+        if (row.kind != Value::Kind::List || row.items.size() != 2) throw UserError(row.where, "not a row [angle, factor]", "[60 deg, 0.9]", "write two values");
+        const double angle = readNumber(row.items[0], "rad", "view angle"), factor = readNumber(row.items[1], "", "factor");
+        if (angle < 0.0 || angle > 1.5709 || factor < 0.0 || (!g.viewAngle_rad.empty() && angle <= g.viewAngle_rad.back()))
+          throw UserError(row.where, "view angles must rise within 0 to 90 deg, factors must not be negative", "rising angles", "correct the row");
+        g.viewAngle_rad.push_back(angle);
+        g.factor.push_back(factor);
+      }
+    if (e.given("modifier")) g.modifier = readTexture(e.value("modifier"), "", "a modifier", 0.0, 1.0);
+    m->given = std::move(g);
+  }
+  // Energy: reflectance (and a given emissivity with it) must not exceed 1 anywhere, at any view angle.
+  const double low = std::max(m->validLow_um(), kShortestWavelength_um), high = std::min(m->validHigh_um(), kLongestWavelength_um);
+  for (int i = 0; i <= 64 && low <= high; ++i) {
+    const double w = low * std::pow(high / low, i / 64.0);
+    for (double angle : {0.0, 0.5, 1.0, 1.4}) {
+      const double rho = m->reflectance(w, angle), sum = rho + (m->given ? m->given->at(w, angle) : 0.0);
+      if (sum > 1.0 + 1e-6)
+        throw UserError(value.where, "material '" + name + "' " + (m->given ? "reflects and emits" : "reflects") + " more than it receives (" + std::to_string(sum) + " at " +
+                                         std::to_string(w) + " um, view angle " + std::to_string(angle * 57.2957795) + " deg)",
+                        m->given ? "reflectance + emissivity <= 1" : "the sum of its reflectances <= 1", "lower a component");
+    }
+  }
+  return m;
+}
+
+void Builder::readMaterials(const Record& scenario) {
+  if (!scenario.given("materials")) return;
+  const Value& map = scenario.value("materials");
+  for (size_t i = 0; i < map.entries.size(); ++i) {
+    const auto& [name, value] = map.entries[i];
+    if (!materialValues_.emplace(name, &value).second)
+      throw UserError(map.keyPlaces[i], "a second material is called '" + name.substr(0, 60) + "'", "unique names", "rename one");
+    // Built even where no entity uses it: its mistakes are mistakes all the same.
+    materialIndex_[name] = static_cast<int>(simulation_.materials.size());
+    simulation_.materials.push_back(readMaterial(value, name, spectra_));
+  }
+}
+
+int Builder::materialNamed(const Value& asked) {
+  if (asked.kind == Value::Kind::Map) {
+    simulation_.materials.push_back(readMaterial(asked, "at line " + std::to_string(asked.where.line), spectra_));
+    return static_cast<int>(simulation_.materials.size()) - 1;
+  }
+  const std::string name = readText(asked, "material");
+  if (const auto known = materialIndex_.find(name); known != materialIndex_.end()) return known->second;
+  const auto file = libraries_.materials / (name + ".yaml");
+  std::error_code ignored;
+  if (name.find('/') != std::string::npos || name.size() > 100 || !std::filesystem::is_regular_file(file, ignored)) {
+    std::vector<std::string> names;
+    for (const auto& [n, i] : materialIndex_) names.push_back(n);
+    for (const auto& entry : std::filesystem::directory_iterator(libraries_.materials, ignored))
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    const std::string near = nearestWord(name, names);
+    std::string all;
+    for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
+    throw UserError(asked.where, "there is no material '" + name.substr(0, 60) + "'", "one of " + all, near.empty() ? "define it under 'materials:'" : "did you mean '" + near + "'?");
+  }
+  const Value tree = loadYaml(file, asked.where);
+  simulation_.materials.push_back(readMaterial(tree, name, spectra_.in(libraries_.materials)));
+  return materialIndex_[name] = static_cast<int>(simulation_.materials.size()) - 1;
+}
+
+}  // namespace pitviper

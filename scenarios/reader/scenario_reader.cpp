@@ -1,0 +1,90 @@
+#include "scenarios/reader/scenario_reader.hpp"
+
+#include <openssl/sha.h>
+
+#include <cstdlib>
+
+#include "scenarios/reader/builder.hpp"
+#include "scenarios/reader/tables.hpp"
+#include "scenarios/reader/yaml_tree.hpp"
+#include "sensors/quantity.hpp"
+
+namespace pitviper {
+namespace {
+
+std::string sha256(const std::string& text) {
+  unsigned char digest[SHA256_DIGEST_LENGTH];
+  SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest);
+  std::string hex;
+  for (unsigned char byte : digest) {
+    hex += "0123456789abcdef"[byte >> 4];
+    hex += "0123456789abcdef"[byte & 15];
+  }
+  return hex;
+}
+
+}  // namespace
+
+Libraries findLibraries() {
+  std::vector<std::filesystem::path> tried;
+  if (const char* home = std::getenv("PITVIPER_HOME")) tried.emplace_back(home);
+  std::error_code ignored;
+  auto folder = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  for (int up = 0; up < 6 && !folder.empty(); ++up, folder = folder.parent_path()) tried.push_back(folder);
+  for (const auto& home : tried)
+    if (std::filesystem::is_directory(home / "materials/library", ignored) && std::filesystem::is_directory(home / "sensors/library", ignored))
+      return {home / "materials/library", home / "atmosphere/library", home / "sensors/library"};
+  throw UserError({"PITVIPER_HOME", 0, 0, -1}, "cannot find the folder with materials/library and sensors/library", "the folder pitviper was unpacked in",
+                  "set PITVIPER_HOME to it");
+}
+
+Simulation readScenarioText(const std::string& text, const std::string& fileName, const std::filesystem::path& base,
+                            const std::vector<std::string>& overrides, const Libraries& libraries) {
+  Value tree = parseYaml(text, fileName);
+  std::string identity = text;
+  for (const auto& o : overrides) {
+    applyOverride(tree, o);
+    identity += "\n--set " + o;
+  }
+  const Record r(tree, tables::scenario());
+  Simulation sim;
+  sim.file = fileName;
+  sim.name = r.given("name") ? r.text("name") : std::filesystem::path(fileName).stem().string();
+  sim.sha256 = sha256(identity);
+  sim.seed = r.integer("seed");
+  Builder b(sim, base, libraries);
+  try {
+    b.readOrigin(r);
+    b.readTime(r);
+    b.readAtmosphere(r);
+    b.readBackground(r);
+    b.readSun(r);
+    b.readAmbient(r);
+    b.readMaterials(r);
+    b.readEntities(r);
+    b.readLights(r);
+    b.readCameras(r);
+    b.readProbes(r);
+  } catch (const OutsideSpectrum& e) {
+    throw UserError(tree.where, e.what(), "spectra that cover what they are multiplied with", "extend the table or narrow the band");
+  }
+  if (sim.cameras.empty() && sim.probes.empty())
+    throw UserError(tree.where, "the scenario has neither a camera nor a probe", "at least one under 'cameras:'", "add a camera");
+  return sim;
+}
+
+Simulation readScenario(const std::filesystem::path& file, const std::vector<std::string>& overrides, const Libraries& libraries) {
+  std::string text;
+  loadYaml(file, {file.string(), 0, 0, -1}, &text);
+  return readScenarioText(text, file.string(), file.parent_path(), overrides, libraries);
+}
+
+std::string keyReference() {
+  std::string out;
+  for (const auto* table : tables::all()) out += describe(*table) + "\n";
+  out += "### Quantities\n\nWhat a channel's `output` can be. S is the response, L the radiance at the aperture.\n\n| quantity | unit | meaning | probe |\n|---|---|---|---|\n";
+  for (const auto& q : quantities()) out += "| `" + q.name + "` | " + q.unit + " | " + q.meaning + " | " + (q.probe ? "yes" : "") + " |\n";
+  return out;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,37 @@
+#pragma once
+// The parameter tables of a scenario: what the reader accepts is what the key reference says.
+#include <vector>
+
+#include "sim/parameters/table.hpp"
+
+namespace pitviper::tables {
+
+const ParameterTable& scenario();
+const ParameterTable& origin();
+const ParameterTable& time();
+const ParameterTable& atmosphere();
+const ParameterTable& airLibrary();
+const ParameterTable& background();
+const ParameterTable& sun();
+const ParameterTable& ambient();
+const ParameterTable& material();
+const ParameterTable& component();
+const ParameterTable& texture();
+const ParameterTable& emission();
+const ParameterTable& tableAxis();
+const ParameterTable& light();
+const ParameterTable& entity();
+const ParameterTable& part();
+const ParameterTable& shape();
+const ParameterTable& waypoint();
+const ParameterTable& geodetic();
+const ParameterTable& camera();
+const ParameterTable& film();
+const ParameterTable& channel();
+const ParameterTable& spectral();
+const ParameterTable& probe();
+
+/// All of them and the spectrum, in the order of the key reference.
+std::vector<const ParameterTable*> all();
+
+}  // namespace pitviper::tables

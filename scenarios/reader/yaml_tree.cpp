@@ -1,0 +1,217 @@
+#include "scenarios/reader/yaml_tree.hpp"
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/parser.h>
+
+#include <charconv>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+namespace pitviper {
+namespace {
+
+/// Builds the tree from the parser's events: no recursion of our own, every node with its place.
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(std::string file) : file_(std::move(file)) {}
+
+  Value take() { return std::move(root_); }
+  bool hasRoot() const { return done_; }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+  void OnAnchor(const YAML::Mark&, const std::string&) override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    Value v = make(Value::Kind::Null, mark);
+    add(std::move(v), anchor);
+  }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    const auto found = anchors_.find(anchor);
+    if (found == anchors_.end()) throw UserError(place(mark), "an alias to a node that is not finished", "an anchor written before", "write the value out");
+    count_ += size(found->second);
+    checkCount(mark);
+    Value copy = found->second;
+    copy.where = place(mark);
+    add(std::move(copy), 0);
+  }
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor, const std::string& text) override {
+    Value v = make(Value::Kind::Scalar, mark);
+    v.text = text;
+    v.quoted = tag == "!";
+    if (!v.quoted && (text == "~" || text == "null")) v.kind = Value::Kind::Null;
+    add(std::move(v), anchor);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    open(make(Value::Kind::List, mark), anchor);
+  }
+  void OnSequenceEnd() override { close(); }
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t anchor, YAML::EmitterStyle::value) override {
+    open(make(Value::Kind::Map, mark), anchor);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  struct Open {
+    Value value;
+    YAML::anchor_t anchor = 0;
+    bool haveKey = false;
+    std::string key;
+    Location keyPlace;
+  };
+
+  Location place(const YAML::Mark& mark) const { return {file_, mark.line + 1, mark.column + 1, -1}; }
+  Value make(Value::Kind kind, const YAML::Mark& mark) {
+    Value v;
+    v.kind = kind;
+    v.where = place(mark);
+    ++count_;
+    checkCount(mark);
+    return v;
+  }
+  void checkCount(const YAML::Mark& mark) const {
+    if (count_ > kMostYamlNodes)
+      throw UserError(place(mark), "more than " + std::to_string(kMostYamlNodes) + " values", "a smaller file", "put large tables into CSV files; expand fewer aliases");
+  }
+  static std::size_t size(const Value& v) {
+    std::size_t n = 1;
+    for (const auto& i : v.items) n += size(i);
+    for (const auto& [k, e] : v.entries) n += size(e);
+    return n;
+  }
+  void open(Value v, YAML::anchor_t anchor) {
+    if (stack_.size() >= kDeepestYaml)
+      throw UserError(v.where, "nested deeper than " + std::to_string(kDeepestYaml) + " levels", "a flatter file", "check the brackets");
+    stack_.push_back({std::move(v), anchor, false, "", {}});
+  }
+  void close() {
+    Open top = std::move(stack_.back());
+    stack_.pop_back();
+    add(std::move(top.value), top.anchor);
+  }
+  void add(Value v, YAML::anchor_t anchor) {
+    if (anchor != 0) anchors_[anchor] = v;
+    if (stack_.empty()) {
+      root_ = std::move(v);
+      done_ = true;
+      return;
+    }
+    Open& top = stack_.back();
+    if (top.value.kind == Value::Kind::List) {
+      top.value.items.push_back(std::move(v));
+    } else if (!top.haveKey) {
+      if (v.kind != Value::Kind::Scalar) throw UserError(v.where, std::string("a key is ") + v.kindName(), "a word before the colon", "write 'key: value'");
+      top.haveKey = true;
+      top.key = v.text;
+      top.keyPlace = v.where;
+    } else {
+      top.haveKey = false;
+      top.value.entries.emplace_back(top.key, std::move(v));
+      top.value.keyPlaces.push_back(top.keyPlace);
+    }
+  }
+
+  std::string file_;
+  std::vector<Open> stack_;
+  std::map<YAML::anchor_t, Value> anchors_;
+  std::size_t count_ = 0;
+  Value root_;
+  bool done_ = false;
+};
+
+/// yaml-cpp recurses per level: a quick look at the brackets keeps it from being driven deep before its events come.
+void refuseDeepFlow(const std::string& text, const std::string& file) {
+  int depth = 0;
+  Location at{file, 1, 0, -1};
+  for (char c : text) {
+    ++at.column;
+    if (c == '\n') ++at.line, at.column = 0;
+    if (c == '\0') throw UserError(at, "a zero byte", "a text file", "save it as plain UTF-8 text");
+    if (c == '[' || c == '{') ++depth;
+    if ((c == ']' || c == '}') && depth > 0) --depth;
+    if (depth > kDeepestYaml * 4)
+      throw UserError(at, "brackets nested deeper than " + std::to_string(kDeepestYaml) + " levels", "a flatter file", "check the brackets");
+  }
+}
+
+}  // namespace
+
+Value parseYaml(const std::string& text, const std::string& fileName) {
+  if (text.size() > kLargestYamlBytes)
+    throw UserError({fileName, 0, 0, -1}, "the file has " + std::to_string(text.size()) + " bytes", "at most 16 MB", "put large tables into CSV files");
+  refuseDeepFlow(text, fileName);
+  TreeBuilder builder(fileName);
+  try {
+    std::istringstream in(text);
+    YAML::Parser parser(in);
+    if (!parser.HandleNextDocument(builder) || !builder.hasRoot())
+      throw UserError({fileName, 1, 1, -1}, "the file holds nothing", "a YAML document", "write a scenario; see scenarios/README.md");
+    Value root = builder.take();
+    TreeBuilder rest(fileName);
+    if (parser.HandleNextDocument(rest) && rest.hasRoot())
+      throw UserError({fileName, 1, 1, -1}, "more than one document ('---')", "one document in a file", "keep one");
+    return root;
+  } catch (const YAML::Exception& e) {
+    throw UserError({fileName, e.mark.line + 1, e.mark.column + 1, -1}, "not well-formed YAML: " + e.msg, "YAML 1.2",
+                    "check indentation, quotes and brackets here and in the line above");
+  }
+}
+
+Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::string* textOut) {
+  std::error_code problem;
+  const auto size = std::filesystem::file_size(file, problem);
+  std::ifstream in(file, std::ios::binary);
+  if (problem || !in)
+    throw UserError(askedAt, "cannot read the file '" + file.string() + "'" + (problem ? " (" + problem.message() + ")" : ""), "a readable YAML file", "check the name");
+  if (size > kLargestYamlBytes) throw UserError({file.string(), 0, 0, -1}, "the file has " + std::to_string(size) + " bytes", "at most 16 MB", "put large tables into CSV files");
+  std::string text(static_cast<std::size_t>(size), '\0');
+  in.read(text.data(), static_cast<std::streamsize>(size));
+  text.resize(static_cast<std::size_t>(in.gcount()));
+  if (textOut) *textOut = text;
+  return parseYaml(text, file.string());
+}
+
+void applyOverride(Value& tree, const std::string& assignment) {
+  const Location here{"--set " + assignment, 0, 0, -1};
+  const size_t equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0)
+    throw UserError(here, "not an assignment", "path.to.key=value", "write --set cameras.0.samples=2");
+  Value value = parseYaml(assignment.substr(equals + 1) + "\n", "--set " + assignment);
+  value.where = here;
+  Value* at = &tree;
+  std::string path = assignment.substr(0, equals), walked;
+  while (!path.empty()) {
+    const size_t dot = path.find('.');
+    const std::string step = path.substr(0, dot);
+    path = dot == std::string::npos ? "" : path.substr(dot + 1);
+    Value* next = nullptr;
+    if (at->kind == Value::Kind::Map) {
+      next = at->find(step);
+      if (!next && path.empty()) {
+        at->entries.emplace_back(step, Value{});
+        at->keyPlaces.push_back(here);
+        next = &at->entries.back().second;
+      }
+    } else if (at->kind == Value::Kind::List) {
+      std::size_t index = 0;
+      const auto [end, error] = std::from_chars(step.data(), step.data() + step.size(), index);
+      if (error == std::errc() && end == step.data() + step.size()) {
+        if (index < at->items.size()) next = &at->items[index];
+      } else {
+        for (Value& item : at->items) {
+          const Value* name = item.kind == Value::Kind::Map ? item.find("name") : nullptr;
+          if (name && name->text == step) next = &item;
+        }
+      }
+    }
+    if (!next)
+      throw UserError(here, "there is no '" + step + "'" + (walked.empty() ? "" : " under '" + walked + "'"), "keys, list numbers from 0, or names, joined by dots",
+                      "check the path");
+    walked += (walked.empty() ? "" : ".") + step;
+    at = next;
+  }
+  *at = std::move(value);
+}
+
+}  // namespace pitviper

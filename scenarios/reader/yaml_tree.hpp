@@ -1,0 +1,27 @@
+#pragma once
+// YAML text to a tree that knows its places. The only user of yaml-cpp.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "sim/parameters/value.hpp"
+
+namespace pitviper {
+
+/// Limits on hostile input: larger files, deeper nesting and more nodes (aliases expanded) are refused.
+constexpr std::size_t kLargestYamlBytes = 16u << 20;
+constexpr int kDeepestYaml = 64;
+constexpr std::size_t kMostYamlNodes = 2000000;
+
+/// Reads one document. UserError with line and column for anything that is not well-formed YAML, not one document, or beyond
+/// the limits. Duplicate keys are kept: the tables refuse them with a better message.
+Value parseYaml(const std::string& text, const std::string& fileName);
+
+/// Reads a file; `askedAt` is where its name was written (for a missing file).
+Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::string* textOut = nullptr);
+
+/// "path.to.key=value" applied to a tree: list items by number (from 0) or by their `name`. The value is YAML.
+/// UserError where the path leads nowhere.
+void applyOverride(Value& tree, const std::string& assignment);
+
+}  // namespace pitviper

@@ -1,0 +1,146 @@
+#include "sim/frame/frame.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "sim/frame/version.hpp"
+#include "sim/image/png.hpp"
+#include "sim/image/preview.hpp"
+#include "sim/radiometry/constants.hpp"
+
+namespace pitviper {
+namespace {
+
+void addChannels(Frame& frame, const Camera& camera, const CameraImage& image, const std::vector<int>& slotOfOutput) {
+  for (size_t o = 0; o < camera.outputs.size(); ++o) {
+    const ChannelOutput& output = camera.outputs[o];
+    const auto& slot = image.slots[static_cast<size_t>(slotOfOutput[o])];
+    FrameLayer layer{output.layer(), output.unit, std::vector<float>(slot.size())};
+    for (size_t p = 0; p < slot.size(); ++p)
+      layer.pixels[p] = static_cast<float>(output.scale * slot[p] * (output.perEtendue ? image.projectedSolidAngle_sr[p] : 1.0));
+    frame.layers.push_back(std::move(layer));
+  }
+}
+
+void addTruth(Frame& frame, const Camera& camera, const CameraImage& image) {
+  if (image.truth.empty()) return;
+  auto add = [&](const char* name, const char* unit, auto value) {
+    FrameLayer layer{std::string("truth.") + name, unit, std::vector<float>(image.truth.size())};
+    for (size_t p = 0; p < image.truth.size(); ++p) layer.pixels[p] = value(image.truth[p]);
+    frame.layers.push_back(std::move(layer));
+  };
+  const TruthLayers& t = camera.truth;
+  if (t.range) add("range", "m", [](const TruthPixel& p) { return p.range_m; });
+  if (t.entity) {
+    add("entity", "1", [](const TruthPixel& p) { return p.entity; });
+    add("part", "1", [](const TruthPixel& p) { return p.part; });
+  }
+  if (t.temperature) add("temperature", "K", [](const TruthPixel& p) { return p.temperature_K; });
+  if (t.normal) {
+    add("normal_east", "1", [](const TruthPixel& p) { return p.normal[0]; });
+    add("normal_north", "1", [](const TruthPixel& p) { return p.normal[1]; });
+    add("normal_up", "1", [](const TruthPixel& p) { return p.normal[2]; });
+  }
+  if (t.area) add("area", "m2", [](const TruthPixel& p) { return p.area_m2; });
+  if (t.solidAngles) {
+    add("solid_angle_from_light", "sr", [](const TruthPixel& p) { return p.solidAngleFromLight_sr; });
+    add("solid_angle_of_aperture", "sr", [](const TruthPixel& p) { return p.solidAngleOfAperture_sr; });
+  }
+}
+
+void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, const WorldState& state) {
+  auto add = [&](std::string name, auto value) { frame.attributes.push_back({std::move(name), value}); };
+  add("pitviper.version", std::string(kVersion));
+  add("pitviper.scenario", sim.name);
+  add("pitviper.scenario_sha256", sim.sha256);
+  add("pitviper.seed", std::to_string(sim.seed));
+  add("pitviper.camera", camera.name);
+  add("pitviper.frame", frame.number);
+  add("pitviper.time_s", state.time_s);
+  const Pinhole& p = camera.pinhole;
+  add("pitviper.focal_length_m", p.focalLength_m);
+  add("pitviper.pitch_x_m", p.pitchX_m);
+  add("pitviper.pitch_y_m", p.pitchY_m);
+  add("pitviper.aperture_m", p.apertureDiameter_m);
+  add("pitviper.aperture_area_m2", p.apertureArea_m2());
+  add("pitviper.exposure_s", camera.exposure_s);
+  add("pitviper.samples", camera.samples);
+  const Pose pose = cameraPose(camera.mount, state);
+  const Geodetic g = sim.frame.toGeodetic(pose.position);
+  constexpr double kDegrees = 180.0 / kPi;
+  add("pitviper.pose_geodetic_deg_deg_m", std::vector<double>{g.latitude_rad * kDegrees, g.longitude_rad * kDegrees, g.height_m});
+  const glm::dvec3 ecef = sim.frame.toEcef(pose.position);
+  add("pitviper.pose_ecef_m", std::vector<double>{ecef.x, ecef.y, ecef.z});
+  add("pitviper.pose_local_m", std::vector<double>{pose.position.x, pose.position.y, pose.position.z});
+  const glm::dquat q = glm::normalize(glm::quat_cast(sim.frame.ecefFromLocal()) * pose.orientation);
+  add("pitviper.orientation_ecef_wxyz", std::vector<double>{q.w, q.x, q.y, q.z});
+  for (const auto& layer : frame.layers) add("unit." + layer.name, layer.unit);
+  for (const auto& o : camera.outputs) {
+    char band[64];
+    std::snprintf(band, sizeof band, "%.6g to %.6g", o.bandLow_um, o.bandHigh_um);
+    add("band_um." + o.layer(), std::string(band));
+  }
+  const glm::dmat3 cameraFromLocal = glm::transpose(localFromCamera(pose));
+  for (size_t e = 0; e < sim.entities.size(); ++e) {
+    const glm::dvec3 x = cameraFromLocal * (state.entities[e].position - pose.position);
+    std::vector<double> seen = {glm::length(x), NAN, NAN};  // behind the camera: no place in the picture
+    if (x.z < 0.0) {
+      seen[1] = 0.5 * p.width + x.x / -x.z * p.focalLength_m / p.pitchX_m;
+      seen[2] = 0.5 * p.height - x.y / -x.z * p.focalLength_m / p.pitchY_m;
+    }
+    add("entity." + std::to_string(e + 1) + ".name", sim.entities[e].name);
+    add("entity." + std::to_string(e + 1) + ".range_column_row", seen);
+  }
+}
+
+}  // namespace
+
+Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number) {
+  Frame frame;
+  frame.camera = camera.name;
+  frame.number = number;
+  frame.time_s = state.time_s;
+  frame.width = image.width;
+  frame.height = image.height;
+  addChannels(frame, camera, image, image.slotOfOutput);
+  addTruth(frame, camera, image);
+  addMetadata(frame, sim, camera, state);
+  return frame;
+}
+
+std::string frameFileStem(const Frame& frame) {
+  char number[16];
+  std::snprintf(number, sizeof number, "_%05d", frame.number);
+  return frame.camera + number;
+}
+
+void writeFrame(const std::filesystem::path& folder, const Frame& frame) {
+  ExrImage image;
+  image.width = frame.width;
+  image.height = frame.height;
+  for (const auto& l : frame.layers) image.layers.push_back({l.name, l.pixels});
+  image.attributes = frame.attributes;
+  writeExr(folder / (frameFileStem(frame) + ".exr"), image);
+}
+
+void writePreview(const std::filesystem::path& folder, const Frame& frame) {
+  std::vector<Rgb8Image> pictures;
+  char time[32];
+  std::snprintf(time, sizeof time, "t = %.3f s", frame.time_s);
+  for (const auto& l : frame.layers) {
+    if (l.name.rfind("truth.", 0) == 0) continue;
+    PreviewOptions options;
+    options.title = frame.camera + "  " + l.name + "  " + time;
+    options.unit = l.unit;
+    const std::string band = [&] {
+      for (const auto& a : frame.attributes)
+        if (a.name == "band_um." + l.name) return std::get<std::string>(a.value);
+      return std::string();
+    }();
+    options.colourMap = !band.empty() && std::stod(band) < 0.9 ? "grey" : "thermal";
+    pictures.push_back(makePreview(frame.width, frame.height, l.pixels, options));
+  }
+  writePng(folder / (frameFileStem(frame) + ".png"), placeSideBySide(pictures));
+}
+
+}  // namespace pitviper

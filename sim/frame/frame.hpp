@@ -1,0 +1,40 @@
+#pragma once
+// A calibrated frame: what leaves the renderer, with everything needed to use it without the scenario at hand.
+#include <string>
+#include <vector>
+
+#include "sim/image/exr.hpp"
+#include "sim/model/simulation.hpp"
+#include "sim/render/camera_renderer.hpp"
+
+namespace pitviper {
+
+/// One image in one unit: row-major, row 0 at the top.
+struct FrameLayer {
+  std::string name;  ///< "mw.radiance", "truth.range"
+  std::string unit;
+  std::vector<float> pixels;
+};
+
+struct Frame {
+  std::string camera;
+  int number = 0;
+  double time_s = 0.0;
+  int width = 0, height = 0;
+  std::vector<FrameLayer> layers;       ///< channels first, then truth
+  std::vector<Attribute> attributes;
+};
+
+/// Turns integrals into quantities: value = scale x integral [x projected solid angle]. Adds truth layers and metadata (pose, optics,
+/// bands, where each entity is in the picture).
+Frame makeFrame(const Simulation& simulation, const Camera& camera, const CameraImage& image, const WorldState& state, int number);
+
+/// "<camera>_00012": the name of a frame's files without extension.
+std::string frameFileStem(const Frame& frame);
+
+/// One EXR with a layer per channel quantity and truth layer. Errors: OutputError.
+void writeFrame(const std::filesystem::path& folder, const Frame& frame);
+/// One PNG per frame: channels side by side, each with colour bar and unit.
+void writePreview(const std::filesystem::path& folder, const Frame& frame);
+
+}  // namespace pitviper

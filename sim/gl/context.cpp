@@ -1,0 +1,123 @@
+#include "sim/gl/context.hpp"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+namespace pitviper {
+namespace {
+
+bool hasWord(const char* list, const char* word) {
+  if (!list) return false;
+  const size_t n = std::strlen(word);
+  for (const char* p = list; (p = std::strstr(p, word)); p += n)
+    if ((p == list || p[-1] == ' ') && (p[n] == ' ' || p[n] == '\0')) return true;
+  return false;
+}
+
+std::vector<EGLDeviceEXT> devices() {
+  EGLint count = 0;
+  if (!hasWord(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_device_enumeration") &&
+      !hasWord(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_device_base"))
+    return {};
+  if (!eglQueryDevicesEXT(0, nullptr, &count) || count <= 0) return {};
+  std::vector<EGLDeviceEXT> found(static_cast<size_t>(count));
+  eglQueryDevicesEXT(count, found.data(), &count);
+  found.resize(static_cast<size_t>(count));
+  return found;
+}
+
+EGLDisplay openDevice(EGLDeviceEXT device) { return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr); }
+
+EGLContext makeContext(EGLDisplay display) {
+  EGLint major = 0, minor = 0;
+  if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor)) return EGL_NO_CONTEXT;
+  if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
+  const EGLint configWanted[] = {EGL_SURFACE_TYPE, EGL_PBUFFER_BIT, EGL_RENDERABLE_TYPE, EGL_OPENGL_BIT, EGL_NONE};
+  EGLConfig config = nullptr;
+  EGLint configs = 0;
+  if (!eglChooseConfig(display, configWanted, &config, 1, &configs) || configs < 1) config = nullptr;
+  const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted);
+  if (context == EGL_NO_CONTEXT) return context;
+  if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
+    eglDestroyContext(display, context);
+    return EGL_NO_CONTEXT;
+  }
+  return context;
+}
+
+int integer(GLenum name) {
+  GLint v = 0;
+  glGetIntegerv(name, &v);
+  return v;
+}
+
+std::string string(GLenum name) {
+  const auto* s = reinterpret_cast<const char*>(glGetString(name));
+  return s ? s : "";
+}
+
+}  // namespace
+
+GlContext::GlContext(std::string device) {
+  if (const char* wish = std::getenv("PITVIPER_GL"); wish && *wish && device == "auto") device = wish;
+  EGLDisplay display = EGL_NO_DISPLAY;
+  EGLContext context = EGL_NO_CONTEXT;
+  auto tryDisplay = [&](EGLDisplay candidate) {
+    context = makeContext(candidate);
+    if (context != EGL_NO_CONTEXT) display = candidate;
+    return context != EGL_NO_CONTEXT;
+  };
+  if (device.rfind("device:", 0) == 0) {
+    const auto all = devices();
+    const size_t index = static_cast<size_t>(std::strtoul(device.c_str() + 7, nullptr, 10));
+    if (index >= all.size())
+      throw GlError("EGL offers " + std::to_string(all.size()) + " devices, there is no '" + device + "'; use PITVIPER_GL=surfaceless");
+    tryDisplay(openDevice(all[index]));
+  } else if (device == "auto" || device == "surfaceless") {
+    if (device == "auto") {
+      for (EGLDeviceEXT d : devices()) {
+        if (hasWord(eglQueryDeviceStringEXT(d, EGL_EXTENSIONS), "EGL_MESA_device_software")) continue;
+        if (tryDisplay(openDevice(d))) break;
+      }
+    }
+    if (context == EGL_NO_CONTEXT) tryDisplay(eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
+  } else {
+    throw GlError("PITVIPER_GL is '" + device + "'; it can be auto, surfaceless or device:N");
+  }
+  if (context == EGL_NO_CONTEXT)
+    throw GlError(
+        "no OpenGL 4.5 core context through EGL (tried " + device +
+        "); install Mesa's software renderer: apt-get install libegl1 libgl1-mesa-dri, or a GPU driver with EGL");
+  display_ = display;
+  context_ = context;
+  limits_.vendor = string(GL_VENDOR);
+  limits_.renderer = string(GL_RENDERER);
+  limits_.version = string(GL_VERSION);
+  limits_.drawBuffers = integer(GL_MAX_DRAW_BUFFERS);
+  limits_.textureSize = integer(GL_MAX_TEXTURE_SIZE);
+  limits_.uniformBlockBytes = integer(GL_MAX_UNIFORM_BLOCK_SIZE);
+  limits_.storageBlockBytes = integer(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
+  limits_.software = limits_.renderer.find("llvmpipe") != std::string::npos || limits_.renderer.find("softpipe") != std::string::npos;
+}
+
+GlContext::~GlContext() {
+  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  eglDestroyContext(display_, context_);
+}
+
+void checkGl(const char* doing) {
+  const GLenum error = glGetError();
+  if (error == GL_NO_ERROR) return;
+  std::string name = error == GL_OUT_OF_MEMORY ? "out of memory" : error == GL_INVALID_OPERATION ? "invalid operation"
+                     : error == GL_INVALID_VALUE ? "invalid value" : error == GL_INVALID_ENUM ? "invalid enum"
+                     : error == GL_INVALID_FRAMEBUFFER_OPERATION ? "incomplete framebuffer" : "error " + std::to_string(error);
+  throw GlError(std::string("OpenGL: ") + name + " while " + doing);
+}
+
+}  // namespace pitviper

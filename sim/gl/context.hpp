@@ -1,0 +1,45 @@
+#pragma once
+// An OpenGL 4.5 core context without a window, through EGL: Mesa's surfaceless platform, or an EGL device (NVIDIA).
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+namespace pitviper {
+
+/// No context, or the driver cannot do what is needed. The message says which limit and what will do.
+class GlError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+struct GlLimits {
+  std::string vendor, renderer, version;
+  int drawBuffers = 0;
+  int textureSize = 0;
+  int uniformBlockBytes = 0;
+  int storageBlockBytes = 0;
+  bool software = false;  ///< drawn by the CPU
+};
+
+/// Current on the thread that made it, until destroyed. Not copyable.
+class GlContext {
+ public:
+  /// `device`: "auto" takes the first hardware EGL device and falls back on surfaceless; "surfaceless"; or "device:N".
+  /// The environment variable PITVIPER_GL overrides "auto". Throws GlError.
+  explicit GlContext(std::string device = "auto");
+  ~GlContext();
+  GlContext(const GlContext&) = delete;
+  GlContext& operator=(const GlContext&) = delete;
+
+  const GlLimits& limits() const { return limits_; }
+
+ private:
+  void* display_ = nullptr;
+  void* context_ = nullptr;
+  GlLimits limits_;
+};
+
+/// Throws GlError where GL has recorded an error; `doing` says at what.
+void checkGl(const char* doing);
+
+}  // namespace pitviper

@@ -1,0 +1,161 @@
+#include "sim/gl/objects.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "sim/gl/context.hpp"
+
+namespace pitviper {
+
+void deleteProgram(unsigned n) { glDeleteProgram(n); }
+void deleteBuffer(unsigned n) { glDeleteBuffers(1, &n); }
+void deleteTexture(unsigned n) { glDeleteTextures(1, &n); }
+void deleteFramebuffer(unsigned n) { glDeleteFramebuffers(1, &n); }
+void deleteVertexArray(unsigned n) { glDeleteVertexArrays(1, &n); }
+void deleteQuery(unsigned n) { glDeleteQueries(1, &n); }
+
+VertexArray makeVertexArray() {
+  GLuint n = 0;
+  glCreateVertexArrays(1, &n);
+  return VertexArray(n);
+}
+
+namespace {
+
+GLuint compile(GLenum stage, const AssembledShader& shader) {
+  const GLuint s = glCreateShader(stage);
+  const char* text = shader.source.c_str();
+  glShaderSource(s, 1, &text, nullptr);
+  glCompileShader(s);
+  GLint ok = 0;
+  glGetShaderiv(s, GL_COMPILE_STATUS, &ok);
+  if (ok) return s;
+  GLint length = 0;
+  glGetShaderiv(s, GL_INFO_LOG_LENGTH, &length);
+  std::string log(static_cast<size_t>(std::max(length, 1)), '\0');
+  glGetShaderInfoLog(s, length, nullptr, log.data());
+  glDeleteShader(s);
+  throw GlError("shader does not compile:\n" + shader.mapLog(log.c_str()));
+}
+
+}  // namespace
+
+Program::Program(const AssembledShader& vertex, const AssembledShader& fragment) {
+  const GLuint vs = compile(GL_VERTEX_SHADER, vertex);
+  const GLuint fs = compile(GL_FRAGMENT_SHADER, fragment);
+  name_ = GlName<deleteProgram>(glCreateProgram());
+  glAttachShader(name_, vs);
+  glAttachShader(name_, fs);
+  glLinkProgram(name_);
+  glDeleteShader(vs);
+  glDeleteShader(fs);
+  GLint ok = 0;
+  glGetProgramiv(name_, GL_LINK_STATUS, &ok);
+  if (ok) return;
+  char log[4096] = "";
+  glGetProgramInfoLog(name_, sizeof log, nullptr, log);
+  throw GlError("shader program does not link:\n" + fragment.mapLog(log));
+}
+
+void Program::use() const { glUseProgram(name_); }
+int Program::uniform(const char* name) const { return glGetUniformLocation(name_, name); }
+
+void Buffer::upload(const void* data, std::size_t bytes) {
+  const std::size_t wanted = std::max<std::size_t>(bytes, 16);
+  if (name_ == 0u || wanted != bytes_) {
+    GLuint n = 0;
+    glCreateBuffers(1, &n);
+    name_ = GlName<deleteBuffer>(n);
+    glNamedBufferStorage(n, static_cast<GLsizeiptr>(wanted), nullptr, GL_DYNAMIC_STORAGE_BIT | GL_MAP_READ_BIT);
+    bytes_ = wanted;
+  }
+  if (bytes > 0 && data) glNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(bytes), data);
+}
+
+void Buffer::bindStorage(unsigned index) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, index, name_); }
+void Buffer::bindUniform(unsigned index) const { glBindBufferBase(GL_UNIFORM_BUFFER, index, name_); }
+void Buffer::bindPack() const { glBindBuffer(GL_PIXEL_PACK_BUFFER, name_); }
+void Buffer::download(void* into, std::size_t bytes) const { glGetNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(bytes), into); }
+void Buffer::bindElements() const { glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, name_); }
+
+Texture2D::Texture2D(int width, int height, PixelFormat format) {
+  GLuint n = 0;
+  glCreateTextures(GL_TEXTURE_2D, 1, &n);
+  name_ = GlName<deleteTexture>(n);
+  const GLenum internal = format == PixelFormat::Rgba32f ? GL_RGBA32F : format == PixelFormat::Rg32ui ? GL_RG32UI : GL_DEPTH_COMPONENT32F;
+  glTextureStorage2D(n, 1, internal, width, height);
+  glTextureParameteri(n, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(n, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+void Texture2D::bind(unsigned unit) const { glBindTextureUnit(unit, name_); }
+
+RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>& colours, bool depth) : width_(width), height_(height) {
+  GLuint n = 0;
+  glCreateFramebuffers(1, &n);
+  name_ = GlName<deleteFramebuffer>(n);
+  std::vector<GLenum> buffers;
+  for (size_t i = 0; i < colours.size(); ++i) {
+    colours_.emplace_back(width, height, colours[i]);
+    glNamedFramebufferTexture(n, GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i), colours_.back().name(), 0);
+    buffers.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+  }
+  if (depth) {
+    depth_.emplace(width, height, PixelFormat::Depth32f);
+    glNamedFramebufferTexture(n, GL_DEPTH_ATTACHMENT, depth_->name(), 0);
+  }
+  glNamedFramebufferDrawBuffers(n, static_cast<GLsizei>(buffers.size()), buffers.data());
+  if (glCheckNamedFramebufferStatus(n, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    throw GlError("the driver cannot draw into " + std::to_string(colours.size()) + " targets of " + std::to_string(width) + "x" +
+                  std::to_string(height) + " pixels in single precision; ask for fewer channels or truth layers");
+}
+
+void RenderTarget::bind() const {
+  glBindFramebuffer(GL_FRAMEBUFFER, name_);
+  glViewport(0, 0, width_, height_);
+}
+
+void Readback::start(const RenderTarget& target, std::size_t count, const RenderTarget* depthOf) {
+  const bool depth = depthOf != nullptr;
+  pixels_ = static_cast<size_t>(target.width()) * static_cast<size_t>(target.height());
+  colourCount_ = count;
+  depth_ = depth;
+  buffers_.resize(count + (depth ? 1 : 0));
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, target.name());
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  for (size_t i = 0; i < buffers_.size(); ++i) {
+    const bool isDepth = i == count;
+    if (isDepth) glBindFramebuffer(GL_READ_FRAMEBUFFER, depthOf->name());
+    const size_t bytes = pixels_ * (isDepth ? 1 : 4) * sizeof(float);
+    if (buffers_[i].bytes() != bytes) buffers_[i].upload(nullptr, bytes);
+    buffers_[i].bindPack();
+    if (!isDepth) glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+    glReadPixels(0, 0, target.width(), target.height(), isDepth ? GL_DEPTH_COMPONENT : GL_RGBA, GL_FLOAT, nullptr);
+    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+  }
+  fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  glFlush();
+}
+
+Readback::Pixels Readback::wait() {
+  if (fence_) {
+    const auto sync = static_cast<GLsync>(fence_);
+    while (glClientWaitSync(sync, GL_SYNC_FLUSH_COMMANDS_BIT, 1000000000) == GL_TIMEOUT_EXPIRED) {
+    }
+    glDeleteSync(sync);
+    fence_ = nullptr;
+  }
+  Pixels out;
+  for (size_t i = 0; i < buffers_.size(); ++i) {
+    std::vector<float> data(pixels_ * (i == colourCount_ ? 1 : 4));
+    buffers_[i].download(data.data(), data.size() * sizeof(float));
+    if (i == colourCount_) out.depth = std::move(data);
+    else out.colours.push_back(std::move(data));
+  }
+  checkGl("reading back a frame");
+  return out;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,135 @@
+#pragma once
+// Owners of GL objects: program, buffer, texture, framebuffer, timer, readback. All need a current GlContext.
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/gl/shader_assembler.hpp"
+
+namespace pitviper {
+
+/// Moves, never copies; `Deleter` frees the name.
+template <void (*Deleter)(unsigned)>
+class GlName {
+ public:
+  GlName() = default;
+  explicit GlName(unsigned name) : name_(name) {}
+  GlName(GlName&& o) noexcept : name_(o.name_) { o.name_ = 0; }
+  GlName& operator=(GlName&& o) noexcept {
+    std::swap(name_, o.name_);
+    return *this;
+  }
+  ~GlName() {
+    if (name_) Deleter(name_);
+  }
+  operator unsigned() const { return name_; }
+
+ private:
+  unsigned name_ = 0;
+};
+
+void deleteProgram(unsigned);
+void deleteBuffer(unsigned);
+void deleteTexture(unsigned);
+void deleteFramebuffer(unsigned);
+void deleteVertexArray(unsigned);
+void deleteQuery(unsigned);
+
+using VertexArray = GlName<deleteVertexArray>;
+VertexArray makeVertexArray();
+
+/// A linked program. Compile and link errors are GlError with file:line of the project's shader files.
+class Program {
+ public:
+  Program() = default;
+  Program(const AssembledShader& vertex, const AssembledShader& fragment);
+  void use() const;
+  int uniform(const char* name) const;
+
+ private:
+  GlName<deleteProgram> name_;
+};
+
+class Buffer {
+ public:
+  /// Replaces the contents; storage is kept where the size is unchanged. A buffer is never empty (16 bytes at least).
+  void upload(const void* data, std::size_t bytes);
+  template <class T>
+  void upload(const std::vector<T>& data) {
+    upload(data.data(), data.size() * sizeof(T));
+  }
+  void bindStorage(unsigned index) const;
+  void bindUniform(unsigned index) const;
+  void bindElements() const;
+  void bindPack() const;
+  void download(void* into, std::size_t bytes) const;
+  std::size_t bytes() const { return bytes_; }
+  explicit operator bool() const { return name_ != 0u; }
+
+ private:
+  GlName<deleteBuffer> name_;
+  std::size_t bytes_ = 0;
+};
+
+enum class PixelFormat { Rgba32f, Rg32ui, Depth32f };
+
+class Texture2D {
+ public:
+  Texture2D() = default;
+  Texture2D(int width, int height, PixelFormat format);
+  void bind(unsigned unit) const;
+  unsigned name() const { return name_; }
+
+ private:
+  GlName<deleteTexture> name_;
+};
+
+/// A set of colour textures and, if asked for, a depth texture, all of one size.
+class RenderTarget {
+ public:
+  RenderTarget() = default;
+  RenderTarget(int width, int height, const std::vector<PixelFormat>& colours, bool depth);
+  void bind() const;
+  const Texture2D& colour(std::size_t i) const { return colours_[i]; }
+  const Texture2D& depth() const { return *depth_; }
+  std::size_t colourCount() const { return colours_.size(); }
+  int width() const { return width_; }
+  int height() const { return height_; }
+  unsigned name() const { return name_; }
+
+ private:
+  GlName<deleteFramebuffer> name_;
+  std::vector<Texture2D> colours_;
+  std::optional<Texture2D> depth_;
+  int width_ = 0, height_ = 0;
+};
+
+/// Copies targets to pixel buffers without waiting; wait() gives the floats. Row 0 is the bottom row, as GL has it.
+class Readback {
+ public:
+  /// Begins copying colour attachments [0, count) as RGBA floats, and the depth of another target of the same size.
+  void start(const RenderTarget& target, std::size_t count, const RenderTarget* depthOf = nullptr);
+  bool pending() const { return fence_ != nullptr; }
+  struct Pixels {
+    std::vector<std::vector<float>> colours;  ///< each width * height * 4
+    std::vector<float> depth;                 ///< width * height, or empty
+  };
+  /// Blocks until the copy is done.
+  Pixels wait();
+  Readback() = default;
+  Readback(Readback&&) = default;
+  Readback& operator=(Readback&&) = default;
+
+ private:
+  std::vector<Buffer> buffers_;
+  std::size_t colourCount_ = 0;
+  bool depth_ = false;
+  std::size_t pixels_ = 0;
+  void* fence_ = nullptr;
+};
+
+}  // namespace pitviper

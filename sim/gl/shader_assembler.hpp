@@ -1,0 +1,44 @@
+#pragma once
+// Puts a program's source together from files: one file per slot, each used file once, and knows where every line came from.
+//
+// In a .glsl file:   //@use path        the file's text is inserted here, once per program
+//                    //@slot name       the file chosen for that slot is inserted here
+//                    //@constants       the structural constants of the plan are inserted here
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sim/radiometry/shader_text.hpp"
+
+namespace pitviper {
+
+/// All shader files of the program, by path.
+class ShaderLibrary {
+ public:
+  void add(std::span<const ShaderText> texts);
+  /// Throws std::logic_error for a path that is not there: a mistake in the program, not of the user.
+  std::string_view text(const std::string& path) const;
+
+ private:
+  std::map<std::string, std::string_view, std::less<>> texts_;
+};
+
+struct AssembledShader {
+  std::string source;
+  /// Where line i + 1 of the source came from: "path:line".
+  std::vector<std::string> origin;
+
+  /// A compiler's log with its line numbers replaced by file:line. Understands Mesa's "0:12(3):" and NVIDIA's "0(12) :".
+  std::string mapLog(const std::string& log) const;
+};
+
+struct ShaderSlots {
+  std::map<std::string, std::string> files;      ///< slot -> path
+  std::map<std::string, std::string> generated;  ///< slot -> text written by the plan
+  std::map<std::string, long long> constants;    ///< structural counts: const int NAME = value
+};
+
+AssembledShader assembleShader(const ShaderLibrary& library, const std::string& mainPath, const ShaderSlots& slots);
+
+}  // namespace pitviper

@@ -1,0 +1,51 @@
+#pragma once
+// Float images with metadata as OpenEXR files. The only place that knows OpenEXR.
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace pitviper {
+
+/// Row-major, row 0 at the top: width * height values. A dot in the name makes a layer in EXR viewers ("mw.radiance").
+struct FloatLayer {
+  std::string name;  ///< 1 to 255 bytes, unique in the image
+  std::vector<float> pixels;
+};
+
+/// Stored as EXR string, double, int and v3d (a list of 3). EXR has no list of doubles of other lengths; such a list is a
+/// string of numbers separated by spaces, exact to the last bit, and comes back as that string: see numbersOf.
+struct Attribute {
+  std::string name;  ///< 1 to 255 bytes, unique, none of EXR's own names
+  std::variant<std::string, double, int, std::vector<double>> value;
+};
+
+struct ExrImage {
+  int width = 0;
+  int height = 0;
+  std::vector<FloatLayer> layers;
+  std::vector<Attribute> attributes;
+
+  /// The layer of that name, or null.
+  const FloatLayer* find(std::string_view name) const;
+  /// The attribute of that name, or null.
+  const Attribute* findAttribute(std::string_view name) const;
+};
+
+/// The numbers in an attribute however it was stored: a list, a single number, or a string of them. Nothing if it is other text.
+std::optional<std::vector<double>> numbersOf(const Attribute& attribute);
+
+/// Scan-line file, 32-bit float channels, ZIP compression; the same image gives the same bytes. Written atomically.
+/// Errors: OutputError if it cannot be stored; std::invalid_argument if the image breaks the shapes and names above, is empty, is
+/// over 32768 on a side or has more than 1024 layers (a caller's bug, not a user's).
+void writeExr(const std::filesystem::path& path, const ExrImage& image);
+
+/// Reads a single-part scan-line file of any compression; half and integer channels become float. The data window is the image.
+/// Layers and attributes come sorted by name. Attributes of types string, double, float, int, v3d and v3f are returned, others and
+/// EXR's own are left out.
+/// Errors: UserError with the file name if it is missing, damaged, truncated, tiled, multi-part, deep, subsampled or over the limits above.
+ExrImage readExr(const std::filesystem::path& path);
+
+}  // namespace pitviper

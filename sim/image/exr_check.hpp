@@ -1,0 +1,12 @@
+#pragma once
+// A strict walk over an EXR header before OpenEXR sees it. The library trusts sizes in the file and allocates by them.
+#include <string>
+
+namespace pitviper::exr {
+
+/// Checks magic, version, attribute sizes, channel list and data window against the limits, and the size of the pixels against that of
+/// the file. Attributes of types we do not return are made opaque in `bytes`, so that the library skips them unparsed.
+/// Errors: UserError naming `file`.
+void checkHeader(std::string& bytes, const std::string& file);
+
+}  // namespace pitviper::exr

@@ -1,0 +1,228 @@
+#include "sim/image/png.hpp"
+
+#include <png.h>
+
+#include <array>
+#include <csetjmp>
+#include <cstddef>
+#include <cstring>
+#include <new>
+#include <stdexcept>
+#include <string>
+
+#include "sim/image/atomic_file.hpp"
+#include "sim/image/read_file.hpp"
+#include "sim/parameters/error.hpp"
+
+namespace pitviper {
+namespace {
+
+constexpr png_uint_32 maxSide = 16384;
+constexpr std::size_t maxChunkBytes = std::size_t{16} << 20;  // of text, profiles and the like; pixels are not counted
+constexpr std::size_t maxDeflateFactor = 1032;                // zlib, "Maximum Compression Factor"
+
+// libpng leaves on an error by longjmp, which must not pass objects with destructors. So all objects live in Job, outside the functions
+// that call setjmp, and those functions hold plain values only. Callbacks into C code may not throw either.
+struct Job {
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  std::string bytes;  // of the file
+  std::size_t at = 0;
+  std::array<char, 200> message = {};
+  std::vector<png_byte> pixels;
+  std::vector<png_bytep> rows;
+  png_uint_32 width = 0, height = 0;
+  int bits = 0, colour = 0;
+};
+
+[[noreturn]] void onError(png_structp png, png_const_charp message) {
+  Job& job = *static_cast<Job*>(png_get_error_ptr(png));
+  std::strncpy(job.message.data(), message, job.message.size() - 1);
+  png_longjmp(png, 1);
+}
+
+void onWarning(png_structp, png_const_charp) {}  // harmless oddities of ancillary chunks
+
+void onRead(png_structp png, png_bytep to, std::size_t count) {
+  Job& job = *static_cast<Job*>(png_get_io_ptr(png));
+  if (count > job.bytes.size() - job.at) png_error(png, "the file ends early");
+  std::memcpy(to, job.bytes.data() + job.at, count);
+  job.at += count;
+}
+
+void onWrite(png_structp png, png_bytep from, std::size_t count) {
+  Job& job = *static_cast<Job*>(png_get_io_ptr(png));
+  bool stored = true;
+  try {
+    job.bytes.append(reinterpret_cast<const char*>(from), count);
+  } catch (...) {
+    stored = false;
+  }
+  if (!stored) png_error(png, "out of memory");
+}
+
+void onFlush(png_structp) {}
+
+void setRows(Job& job, std::size_t rowBytes) {
+  job.rows.resize(job.height);
+  for (std::size_t y = 0; y < job.rows.size(); ++y) job.rows[y] = job.pixels.data() + y * rowBytes;
+}
+
+class Reader {
+ public:
+  explicit Reader(const std::filesystem::path& path) : where_{.file = path.string()} {
+    job_.bytes = readWholeFile(path);
+    job_.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job_, onError, onWarning);
+    if (job_.png != nullptr) job_.info = png_create_info_struct(job_.png);
+    if (job_.info == nullptr) {
+      release();
+      throw std::bad_alloc();
+    }
+  }
+  Reader(const Reader&) = delete;
+  Reader& operator=(const Reader&) = delete;
+  ~Reader() { release(); }
+
+  const Job& job() const { return job_; }
+  const Location& where() const { return where_; }
+
+  void header() {
+    if (!readHeader(job_)) fail();
+    if (job_.width > maxSide || job_.height > maxSide)
+      throw UserError(where_, "the picture is " + std::to_string(job_.width) + " x " + std::to_string(job_.height) + " pixels",
+                      "at most 16384 on a side", "make a smaller picture");
+  }
+
+  /// `rgb`: convert everything to 8-bit RGB; else keep grey codes, unpacked to 8 or 16 bits.
+  void pixels(bool rgb) {
+    std::size_t rowBytes = 0;
+    if (!setTransforms(job_, rgb, rowBytes)) fail();
+    const std::size_t total = rowBytes * job_.height;
+    // Packed codes of 1 bit grow up to 24 times; beyond that the pixels cannot be in the file, and need no memory.
+    if (total / (24 * maxDeflateFactor) > job_.bytes.size())
+      throw UserError(where_, "is far too short for its pixels; it is truncated or damaged", "", "copy the file again");
+    try {
+      job_.pixels.resize(total);
+      setRows(job_, rowBytes);
+    } catch (const std::bad_alloc&) {
+      throw UserError(where_, "the picture is too large for this machine's memory");
+    }
+    if (!readPixels(job_)) fail();
+  }
+
+ private:
+  [[noreturn]] void fail() const {
+    throw UserError(where_, std::string("cannot read the PNG picture: ") + job_.message.data(), "a whole PNG file",
+                    "copy or convert the file again");
+  }
+
+  void release() { png_destroy_read_struct(&job_.png, &job_.info, nullptr); }
+
+  static bool readHeader(Job& job) {
+    if (setjmp(png_jmpbuf(job.png)) != 0) return false;
+    png_set_read_fn(job.png, &job, onRead);
+    png_set_user_limits(job.png, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // ours is checked after, with a clearer message
+    png_set_chunk_malloc_max(job.png, maxChunkBytes);
+    png_read_info(job.png, job.info);
+    png_get_IHDR(job.png, job.info, &job.width, &job.height, &job.bits, &job.colour, nullptr, nullptr, nullptr);
+    return true;
+  }
+
+  static bool setTransforms(Job& job, bool rgb, std::size_t& rowBytes) {
+    if (setjmp(png_jmpbuf(job.png)) != 0) return false;
+    if (rgb) {
+      png_set_expand(job.png);
+      png_set_scale_16(job.png);
+      png_set_strip_alpha(job.png);
+      png_set_gray_to_rgb(job.png);
+    } else if (job.bits < 8) {
+      png_set_expand_gray_1_2_4_to_8(job.png);
+    }
+    png_set_interlace_handling(job.png);
+    png_read_update_info(job.png, job.info);
+    rowBytes = png_get_rowbytes(job.png, job.info);
+    return true;
+  }
+
+  static bool readPixels(Job& job) {
+    if (setjmp(png_jmpbuf(job.png)) != 0) return false;
+    png_read_image(job.png, job.rows.data());
+    png_read_end(job.png, nullptr);
+    return true;
+  }
+
+  Location where_;
+  Job job_;
+};
+
+bool encode(Job& job) {
+  if (setjmp(png_jmpbuf(job.png)) != 0) return false;
+  png_set_write_fn(job.png, &job, onWrite, onFlush);
+  png_set_compression_level(job.png, 6);
+  png_set_filter(job.png, PNG_FILTER_TYPE_BASE, PNG_ALL_FILTERS);
+  png_set_IHDR(job.png, job.info, job.width, job.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
+  png_set_sRGB(job.png, job.info, PNG_sRGB_INTENT_RELATIVE);
+  png_write_info(job.png, job.info);
+  png_write_image(job.png, job.rows.data());
+  png_write_end(job.png, nullptr);
+  return true;
+}
+
+}  // namespace
+
+void writePng(const std::filesystem::path& path, const Rgb8Image& picture) {
+  const int limit = static_cast<int>(maxSide);
+  if (picture.width < 1 || picture.height < 1 || picture.width > limit || picture.height > limit)
+    throw std::invalid_argument("writePng: a side is not in 1..16384");
+  const std::size_t rowBytes = 3 * static_cast<std::size_t>(picture.width);
+  if (picture.rgb.size() != rowBytes * static_cast<std::size_t>(picture.height))
+    throw std::invalid_argument("writePng: rgb is not 3 * width * height");
+  Job job;
+  job.width = static_cast<png_uint_32>(picture.width);
+  job.height = static_cast<png_uint_32>(picture.height);
+  job.pixels = picture.rgb;
+  setRows(job, rowBytes);
+  job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, onError, onWarning);
+  if (job.png != nullptr) job.info = png_create_info_struct(job.png);
+  const bool whole = job.info != nullptr && encode(job);
+  png_destroy_write_struct(&job.png, &job.info);
+  if (!whole)
+    throw OutputError(path, std::string("cannot encode the picture: ") + job.message.data(), 0, "free memory or make a smaller picture");
+  writeFileAtomically(path, job.bytes);
+}
+
+Rgb8Image readPng(const std::filesystem::path& path) {
+  Reader reader(path);
+  reader.header();
+  reader.pixels(true);
+  Rgb8Image picture;
+  picture.width = static_cast<int>(reader.job().width);
+  picture.height = static_cast<int>(reader.job().height);
+  picture.rgb = reader.job().pixels;
+  return picture;
+}
+
+GreyImage readPngGrey(const std::filesystem::path& path) {
+  Reader reader(path);
+  reader.header();
+  const Job& job = reader.job();
+  if (job.colour != PNG_COLOR_TYPE_GRAY)
+    throw UserError(reader.where(), "the picture has colour, a palette or alpha", "a grey PNG of 8 or 16 bits",
+                    "convert it, for example: convert in.png -alpha off -colorspace Gray out.png");
+  reader.pixels(false);
+  GreyImage image;
+  image.width = static_cast<int>(job.width);
+  image.height = static_cast<int>(job.height);
+  image.bits = job.bits;
+  image.pixels.resize(static_cast<std::size_t>(job.width) * job.height);
+  if (job.bits == 16) {
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+      image.pixels[i] = static_cast<float>(job.pixels[2 * i] << 8 | job.pixels[2 * i + 1]) / 65535.0f;
+  } else {
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(job.pixels[i]) / 255.0f;
+  }
+  return image;
+}
+
+}  // namespace pitviper

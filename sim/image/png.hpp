@@ -1,0 +1,30 @@
+#pragma once
+// PNG files: pictures for people, and grey maps as textures.
+#include <filesystem>
+#include <vector>
+
+#include "sim/image/picture.hpp"
+
+namespace pitviper {
+
+/// Row-major, row 0 at the top. A pixel is its code divided by the largest code, 0 to 1; no gamma is applied, so the values are linear
+/// in the codes whatever colour space the file claims.
+struct GreyImage {
+  int width = 0;
+  int height = 0;
+  int bits = 8;  ///< of the file's codes: 1, 2, 4, 8 or 16
+  std::vector<float> pixels;
+};
+
+/// 8-bit RGB; the same picture gives the same bytes. Written atomically.
+/// Errors: OutputError if it cannot be stored; std::invalid_argument if `rgb` is not 3 * width * height or a side is not in 1..16384.
+void writePng(const std::filesystem::path& path, const Rgb8Image& picture);
+
+/// Any PNG as 8-bit RGB; alpha is dropped, 16-bit codes are rounded to 8.
+/// Errors: UserError with the file name if it is missing, damaged, truncated or over 16384 on a side.
+Rgb8Image readPng(const std::filesystem::path& path);
+
+/// A grey PNG of 1 to 16 bits. Errors: as readPng; and a colour, palette or alpha PNG, where the value to take would be a guess.
+GreyImage readPngGrey(const std::filesystem::path& path);
+
+}  // namespace pitviper

@@ -1,0 +1,31 @@
+#pragma once
+// A float image as a picture with title, colour bar and unit.
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "sim/image/picture.hpp"
+
+namespace pitviper {
+
+struct PreviewOptions {
+  std::string title;                                ///< UTF-8, one line; shortened if it does not fit
+  std::string unit;                                 ///< UTF-8, above the colour bar
+  std::string colourMap = "thermal";                ///< a name of colour_map.hpp
+  std::optional<std::pair<double, double>> range;   ///< values of the bar's ends; none: chosen by automaticRange
+};
+
+/// The 0.5 and 99.8 percentile of the finite pixels; smallest to largest where these coincide; never empty.
+std::pair<double, double> automaticRange(const std::vector<float>& pixels);
+
+/// `pixels` is row-major, row 0 at the top. Each becomes a square of whole size so that the longer side has at least 512 picture pixels.
+/// NaN and infinity are magenta. Values beyond the range take the colour of its end; then the bar ends in an arrow with the
+/// true extreme beside it.
+/// Errors: std::invalid_argument for wrong sizes (a side is 1..8192), an unknown colour map, or a range that is not finite or falls.
+Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, const PreviewOptions& options);
+
+/// Pictures in one row from left to right, tops aligned, the previews' background between; empty for none.
+Rgb8Image placeSideBySide(const std::vector<Rgb8Image>& pictures);
+
+}  // namespace pitviper

@@ -1,0 +1,24 @@
+#pragma once
+// The contract of a sensor channel's output: a spectral kernel and the factor that turns its integral into a quantity.
+#include <string>
+
+#include "sim/parameters/error.hpp"
+#include "sim/radiometry/spectrum.hpp"
+
+namespace pitviper {
+
+/// pixel value = scale x integral of kernel(lambda) L(lambda) dlambda [x projected solid angle of the pixel, where perEtendue].
+/// The kernel holds response and calibration k(lambda) (and optics and quantum efficiency where the quantity has them).
+struct ChannelOutput {
+  std::string channel;   ///< "mw"
+  std::string quantity;  ///< "radiance"
+  std::string unit;      ///< "W/(m2 sr)"
+  Location where;
+  Spectrum kernel;
+  double scale = 1.0;
+  bool perEtendue = false;
+  double bandLow_um = 0.0, bandHigh_um = 0.0;
+  std::string layer() const { return channel + "." + quantity; }
+};
+
+}  // namespace pitviper

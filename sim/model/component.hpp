@@ -1,0 +1,46 @@
+#pragma once
+// The contract of a reflection component: BRDF(lambda, l, v) = column(lambda; up to two angles) x lobe(l, v), times the
+// modifier texture of the surface. Source: Duvenhage 2006, sections 4.2 and 5.2.
+#include <array>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+
+namespace pitviper {
+
+/// Angles a table can run over [rad]: incidence and view from the normal, specular between view and mirrored light direction, half
+/// between normal and half vector, difference between light and half vector.
+enum class Angle { None = 0, Incidence = 1, View = 2, Specular = 3, Half = 4, Difference = 5 };
+
+/// Unit vectors towards the light and the viewer in a frame whose z is the normal, and the angle of a kind between them.
+double angleBetween(Angle kind, const glm::dvec3& light, const glm::dvec3& view);
+
+/// `count` entries equally spaced from 0 to `last_rad`; count is 1 for Angle::None.
+struct AngleAxis {
+  Angle angle = Angle::None;
+  int count = 1;
+  double last_rad = 0.0;
+};
+
+class ReflectionComponent {
+ public:
+  virtual ~ReflectionComponent() = default;
+  /// The table part [1/sr where the lobe is 1].
+  virtual double column(double wavelength_um, double angle1_rad, double angle2_rad) const = 0;
+  virtual std::array<AngleAxis, 2> axes() const { return {}; }
+  /// Exponent of the angular lobe; 0 where there is none (lobe = 1).
+  virtual double lobeExponent() const { return 0.0; }
+  virtual double lobe(const glm::dvec3& light, const glm::dvec3& view) const;
+  /// Shader file with the lobe's body, or empty.
+  virtual std::string lobeFile() const { return ""; }
+  /// Directional-hemispherical reflectance for a view angle: integral of BRDF cos(theta_l) over the hemisphere.
+  virtual double hemispherical(double wavelength_um, double viewAngle_rad) const;
+  /// The whole BRDF [1/sr].
+  double brdf(double wavelength_um, const glm::dvec3& light, const glm::dvec3& view) const;
+  /// True where hemispherical() changes with the view angle.
+  virtual bool hemisphericalVaries() const = 0;
+  virtual double validLow_um() const = 0;
+  virtual double validHigh_um() const = 0;
+};
+
+}  // namespace pitviper

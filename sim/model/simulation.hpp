@@ -1,0 +1,81 @@
+#pragma once
+// A whole scenario, typed and in SI, as the kernel sees it: nothing here knows where it was read from.
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/model/channel.hpp"
+#include "sim/model/material.hpp"
+#include "sim/model/path.hpp"
+#include "sim/radiometry/spectral_rule.hpp"
+#include "sim/scene/camera.hpp"
+#include "sim/scene/scene.hpp"
+
+namespace pitviper {
+
+/// How a camera's channels are sampled over wavelength.
+struct SpectralSampling {
+  int samples = 16;
+  Spacing spacing = Spacing::Gauss;
+  bool shared = false;  ///< one set of nodes for all channels, over the union of their bands
+};
+
+/// Extra layers a camera can be asked for.
+struct TruthLayers {
+  bool range = false, entity = false, normal = false, temperature = false, area = false, solidAngles = false;
+  bool any() const { return range || entity || normal || temperature || area || solidAngles; }
+};
+
+struct Camera {
+  std::string name;
+  Location where;
+  Pinhole pinhole;
+  Mount mount;
+  double exposure_s = 0.0;
+  double near_m = 0.1;
+  int samples = 1;                 ///< n: n x n subpixels
+  double smallBody_px = 3.0;       ///< bodies smaller than this are drawn by their own zoomed view
+  SpectralSampling spectral;
+  std::vector<ChannelOutput> outputs;
+  TruthLayers truth;
+};
+
+/// Irradiance on a plane at a point: layers as a camera's outputs with kernels for irradiance.
+struct Probe {
+  std::string name;
+  Location where;
+  glm::dvec3 position{0.0};
+  glm::dvec3 normal{0.0, 0.0, 1.0};
+  int resolution = 128;
+  SpectralSampling spectral;
+  std::vector<ChannelOutput> outputs;
+};
+
+struct TimeAxis {
+  double start_s = 0.0;
+  double step_s = 1.0;
+  int frames = 1;
+  double at(int frame) const { return start_s + step_s * frame; }
+};
+
+struct Simulation {
+  std::string name;
+  std::string file;
+  std::string sha256;
+  long long seed = 0;
+  LocalFrame frame;
+  TimeAxis time;
+  std::vector<Texture> textures;
+  std::vector<std::shared_ptr<const Material>> materials;
+  std::vector<Entity> entities;
+  std::vector<PointLight> lights;
+  std::optional<Sun> sun;
+  std::optional<Spectrum> ambient;  ///< radiance of a uniform dome [W/(m2 sr um)]
+  Spectrum background;              ///< radiance behind everything [W/(m2 sr um)]
+  std::shared_ptr<const Path> path;
+  std::vector<Camera> cameras;
+  std::vector<Probe> probes;
+};
+
+}  // namespace pitviper

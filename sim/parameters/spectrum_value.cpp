@@ -1,0 +1,263 @@
+#include "sim/parameters/spectrum_value.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+
+#include "sim/parameters/units.hpp"
+#include "sim/radiometry/constants.hpp"
+
+namespace pitviper {
+namespace {
+
+constexpr int kDeepest = 12;
+
+/// One row of a table as written, before conversion.
+struct Row {
+  double x = 0.0, y = 0.0;
+  Location where;
+};
+
+enum class Axis { Wavelength, Wavenumber };
+
+Outside outsideOf(const Value& map, Outside otherwise) {
+  const Value* v = map.find("outside");
+  if (!v) return otherwise;
+  if (v->text == "zero") return Outside::Zero;
+  if (v->text == "hold") return Outside::Hold;
+  return Outside::Error;
+}
+
+Spectrum fromRows(std::vector<Row> rows, const std::string& axisUnit, const Location& axisWhere, const std::string& valueUnit, const Location& unitWhere,
+                  std::string_view canonical, Outside outside, std::string_view name, const Location& where) {
+  Axis axis = Axis::Wavelength;
+  if (!convert({1.0, axisUnit}, "um")) {
+    if (!convert({1.0, axisUnit}, "1/cm"))
+      throw UserError(axisWhere, "the spectral axis of " + std::string(name) + " has the unit '" + axisUnit + "'", "a wavelength (um, nm) or a wavenumber (1/cm)",
+                      "write 'wavelength: um' or 'wavelength: 1/cm'");
+    axis = Axis::Wavenumber;
+  }
+  if (!convert({1.0, valueUnit}, canonical))
+    throw UserError(unitWhere, "the values of " + std::string(name) + " have the unit '" + valueUnit + "'",
+                    canonical.empty() ? "plain numbers" : std::string(canonical), "write 'unit: " + (canonical.empty() ? "\"1\"" : std::string(canonical)) + "'");
+  if (rows.empty()) throw UserError(where, "the table of " + std::string(name) + " is empty", "at least one row", "add rows [wavelength, value]");
+  const bool falls = rows.size() > 1 && rows[1].x < rows[0].x;
+  if (falls && axis == Axis::Wavelength)
+    throw UserError(rows[1].where, "the wavelengths of " + std::string(name) + " do not rise", "each wavelength above the one before", "sort the table");
+  Spectrum::Table t;
+  t.outside = outside;
+  t.name = where.text();
+  const double perCm = axis == Axis::Wavenumber ? *convert({1.0, axisUnit}, "1/cm") : 0.0;
+  for (size_t i = 0; i < rows.size(); ++i) {
+    const Row& r = rows[i];
+    if (i > 0 && (falls ? r.x >= rows[i - 1].x : r.x <= rows[i - 1].x))
+      throw UserError(r.where, std::string("the ") + (axis == Axis::Wavenumber ? "wavenumbers" : "wavelengths") + " of " + std::string(name) + " do not rise",
+                      "each above the one before", "sort the table and remove duplicates");
+    const double w = axis == Axis::Wavenumber ? 1e4 / (r.x * perCm) : *convert({r.x, axisUnit}, "um");
+    if (!(w >= kShortestWavelength_um * (1 - 1e-9) && w <= kLongestWavelength_um * (1 + 1e-9)))
+      throw UserError(r.where, "a wavelength of " + std::string(name) + " is outside the spectral axis", "0.1 to 1000 um (10 to 100000 1/cm)", "check the unit of the first column");
+    t.wavelength_um.push_back(w);
+    t.value.push_back(*convert({r.y, valueUnit}, canonical));
+  }
+  if (t.wavelength_um.size() > 1 && t.wavelength_um[1] < t.wavelength_um[0]) {
+    std::reverse(t.wavelength_um.begin(), t.wavelength_um.end());
+    std::reverse(t.value.begin(), t.value.end());
+  }
+  return Spectrum(std::move(t));
+}
+
+double plainNumber(const Value& v, std::string_view name) {
+  const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
+  if (!q || !q->unit.empty())
+    throw UserError(v.where, "a table entry of " + std::string(name) + " is not a plain finite number", "two numbers [wavelength, value], units given once above", "write numbers only");
+  return q->value;
+}
+
+}  // namespace
+
+const ParameterTable& spectrumTable() {
+  static const ParameterTable table{
+      "spectrum",
+      "Where a key takes a spectrum, write a quantity (`0.2 /km`: the same at all wavelengths), the name of a library spectrum "
+      "(`insb_mwir`), or a map with one of `values`, `file`, `library`, `band`, `blackbody`, `product`.",
+      {list("values", "rows [wavelength, value], rising; piecewise linear", 1, 1000000),
+       text("wavelength", "unit of the first column: um, nm, or 1/cm for wavenumbers (vacuum)"),
+       text("unit", "unit of the values"),
+       choice("outside", {"zero", "hold", "error"}, "what it is outside its table (a response: zero; others: error)"),
+       text("file", "CSV with two columns and a header that names their units: `wavelength [um], value [1]`"),
+       text("library", "name of a library spectrum"),
+       list("band", "[from, to]: `value` between these wavelengths, 0 elsewhere", 2, 2),
+       any("value", "height of the band (default 1)"),
+       above(number("blackbody", "K", "Planck radiance at this temperature; with `area` an intensity, with `solid_angle` an irradiance"), 0.0),
+       above(number("area", "m2", "radiating area of a black body light"), 0.0),
+       above(number("solid_angle", "sr", "solid angle of a black body sun"), 0.0),
+       list("product", "spectra to be multiplied (all but the first dimensionless)", 1, 32),
+       any("power", "of an intensity: spectral power distribution; intensity = power / (4 pi)"),
+       number("scale", "", "factor"),
+       text("source", "where the figures come from")}};
+  return table;
+}
+
+SpectrumReader SpectrumReader::in(const std::filesystem::path& base) const {
+  SpectrumFiles files = files_;
+  files.base = base;
+  return SpectrumReader(files);
+}
+
+Spectrum SpectrumReader::read(const Value& value, std::string_view unit, std::string_view name, Outside outside) const {
+  return readAny(value, unit, name, outside, 0);
+}
+
+Spectrum SpectrumReader::readAny(const Value& value, std::string_view unit, std::string_view name, Outside outside, int depth) const {
+  if (depth > kDeepest) throw UserError(value.where, std::string(name) + " refers to itself", "a spectrum that ends", "break the circle of library names");
+  if (value.kind == Value::Kind::Map) return readMap(value, unit, name, outside, depth);
+  if (value.kind == Value::Kind::Scalar && !splitQuantity(value.text)) {
+    const std::string low = value.text.substr(0, 8);
+    if (low == "nan" || low == ".nan" || low == ".inf" || low == "inf" || low == "-.inf" || low == ".NaN" || low == "NaN")
+      throw UserError(value.where, std::string(name) + " is not a finite number", unitExample(unit), "write a finite value");
+    return readLibrary(value.text, value.where, unit, name, outside, depth);
+  }
+  return Spectrum(readNumber(value, unit, name));
+}
+
+Spectrum SpectrumReader::readLibrary(const std::string& word, const Location& where, std::string_view unit, std::string_view name, Outside outside, int depth) const {
+  std::vector<std::string> names;
+  const bool plain = !word.empty() && word.size() < 100 && std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+  for (const auto& folder : files_.library) {
+    const auto path = folder / (word + ".yaml");
+    std::error_code ignored;
+    if (plain && std::filesystem::is_regular_file(path, ignored)) {
+      const Value tree = files_.loadYaml(path, where);
+      const Value* s = tree.find("spectrum");
+      if (!s) throw UserError(tree.where, "a library spectrum without the key 'spectrum'", "a map with description, source and spectrum", "add 'spectrum:'");
+      Spectrum spectrum = in(folder).readAny(*s, unit, name, outside, depth + 1);
+      spectrum.setProvenance(word);
+      return spectrum;
+    }
+    for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+      if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  const std::string near = nearestWord(word, names);
+  std::string all;
+  for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
+  throw UserError(where, std::string(name) + " is neither a quantity nor a library spectrum ('" + word.substr(0, 60) + "')",
+                  unitExample(unit) + ", or one of " + all, near.empty() ? "write a number with its unit, a table or a library name" : "did you mean '" + near + "'?");
+}
+
+Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std::string_view name, Outside outside, int depth) const {
+  const Record r(value, spectrumTable());
+  static const char* const kinds[] = {"values", "file", "library", "band", "blackbody", "product", "power"};
+  std::vector<std::string> given;
+  for (const char* k : kinds)
+    if (r.given(k)) given.emplace_back(k);
+  if (given.size() != 1)
+    throw UserError(value.where, std::string(name) + (given.empty() ? " says nothing of its values" : " is given in " + std::to_string(given.size()) + " ways at once"),
+                    "one of values, file, library, band, blackbody, product, power", given.empty() ? "add one of them" : "keep one of them");
+  const std::string& kind = given.front();
+  const Outside beyond = outsideOf(value, outside);
+  const double scale = r.given("scale") ? r.number("scale") : 1.0;
+  Spectrum s;
+  if (kind == "values") {
+    for (const char* key : {"wavelength"})
+      if (!r.given(key)) throw UserError(value.where, "the table of " + std::string(name) + " has no unit for its first column", "'wavelength: um', 'nm' or '1/cm'", "add 'wavelength: um'");
+    if (!r.given("unit")) throw UserError(value.where, "the table of " + std::string(name) + " has no unit for its values", unit.empty() ? "'unit: \"1\"'" : "'unit: " + std::string(unit) + "'", "add it");
+    std::vector<Row> rows;
+    for (const Value& row : r.value("values").items) {
+      if (row.kind != Value::Kind::List || row.items.size() != 2)
+        throw UserError(row.where, "a table row of " + std::string(name) + " is " + (row.kind == Value::Kind::List ? "a list of " + std::to_string(row.items.size()) : row.kindName()),
+                        "two numbers [wavelength, value]", "write [3.5, 0.82]");
+      rows.push_back({plainNumber(row.items[0], name), plainNumber(row.items[1], name), row.where});
+    }
+    s = fromRows(std::move(rows), r.text("wavelength"), r.where("wavelength"), r.text("unit"), r.where("unit"), unit, beyond, name, value.where);
+  } else if (kind == "file") {
+    std::filesystem::path path = r.text("file");
+    if (path.is_relative()) path = files_.base / path;
+    s = readSpectrumCsv(path, unit, beyond, r.where("file"));
+  } else if (kind == "library") {
+    s = readLibrary(r.text("library"), r.where("library"), unit, name, beyond, depth + 1);
+  } else if (kind == "band") {
+    const auto& b = r.value("band").items;
+    const double low = readNumber(b[0], "um", "band edge"), high = readNumber(b[1], "um", "band edge");
+    if (!(low >= kShortestWavelength_um && high <= kLongestWavelength_um && low < high))
+      throw UserError(r.where("band"), "the band of " + std::string(name) + " is empty or outside the spectral axis", "rising edges within 0.1 to 1000 um", "write [3 um, 5 um]");
+    s = Spectrum::band(low, high, r.given("value") ? readNumber(r.value("value"), unit, "band value") : convert({1.0, ""}, unit).value_or(1.0));
+  } else if (kind == "blackbody") {
+    const double t = r.number("blackbody");
+    double factor = 1.0;
+    std::string dimension = "W/(m2 sr um)";
+    if (r.given("area")) factor = r.number("area"), dimension = "W/(sr um)";
+    if (r.given("solid_angle")) factor *= r.number("solid_angle"), dimension = r.given("area") ? "W/um" : "W/(m2 um)";
+    const auto converted = convert({factor, dimension}, unit);
+    if (!converted)
+      throw UserError(value.where, "a black body here is in " + dimension + " but " + std::string(name) + " is in " + std::string(unit.empty() ? "plain numbers" : unit),
+                      "for an intensity 'area', for an irradiance 'solid_angle', for a radiance neither", "add or remove 'area' or 'solid_angle'");
+    s = Spectrum(Spectrum::BlackBody{t, *converted});
+  } else if (kind == "product") {
+    bool first = true;
+    for (const Value& factor : r.value("product").items) {
+      const Spectrum f = readAny(factor, first ? unit : "", name, outside, depth + 1);
+      s = first ? f : s * f;
+      first = false;
+    }
+  } else {
+    if (!convert({1.0, "W/(sr um)"}, unit))
+      throw UserError(value.where, "'power' gives an intensity, but " + std::string(name) + " is in " + std::string(unit), unitExample(unit), "use 'values'");
+    s = readAny(r.value("power"), "W/um", name, outside, depth + 1) * (*convert({1.0, "W/(sr um)"}, unit) / (4.0 * kPi));
+  }
+  if (scale != 1.0) s = s * scale;
+  if (r.given("source")) s.setProvenance(r.text("source"));
+  return s;
+}
+
+Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view unit, Outside outside, const Location& askedAt) {
+  std::ifstream in(file);
+  std::error_code ignored;
+  if (!in || !std::filesystem::is_regular_file(file, ignored))
+    throw UserError(askedAt, "cannot read the file '" + file.string() + "'", "a CSV file with a spectrum", "check the name; it is relative to the scenario's folder");
+  std::string line, axisUnit, valueUnit;
+  Location where{file.string(), 0, 1, -1};
+  Location header;
+  std::vector<Row> rows;
+  bool haveHeader = false;
+  while (std::getline(in, line)) {
+    ++where.line;
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    if (line.empty() || line[0] == '#') continue;
+    const size_t comma = line.find(',');
+    if (comma == std::string::npos || line.find(',', comma + 1) != std::string::npos)
+      throw UserError(where, "not two columns", "two columns separated by one comma", "keep wavelength and value only");
+    const std::string cell[2] = {line.substr(0, comma), line.substr(comma + 1)};
+    if (!haveHeader) {
+      std::string* units[2] = {&axisUnit, &valueUnit};
+      for (int c = 0; c < 2; ++c) {
+        const size_t open = cell[c].find('['), close = cell[c].rfind(']');
+        if (open == std::string::npos || close == std::string::npos || close < open)
+          throw UserError(where, "the header names no unit in column " + std::to_string(c + 1), "a header such as 'wavelength [um], transmittance [1]'", "write the units in brackets");
+        *units[c] = cell[c].substr(open + 1, close - open - 1);
+      }
+      haveHeader = true;
+      header = where;
+      continue;
+    }
+    Row row;
+    row.where = where;
+    double* into[2] = {&row.x, &row.y};
+    for (int c = 0; c < 2; ++c) {
+      const auto q = splitQuantity(cell[c]);
+      if (!q || !q->unit.empty()) {
+        Location at = where;
+        at.column = c == 0 ? 1 : static_cast<int>(comma) + 2;
+        throw UserError(at, "not a finite number: '" + cell[c].substr(0, 40) + "'", "a number", "correct or remove the line");
+      }
+      *into[c] = q->value;
+    }
+    rows.push_back(row);
+    if (rows.size() > 1000000) throw UserError(where, "more than a million rows", "at most 1000000", "thin the table out");
+  }
+  if (!haveHeader) throw UserError(where, "the file is empty", "a header and rows", "write 'wavelength [um], value [1]' and rows under it");
+  Location whole{file.string(), 0, 0, -1};
+  return fromRows(std::move(rows), axisUnit, header, valueUnit, header, unit, outside, "this table", whole);
+}
+
+}  // namespace pitviper

@@ -1,0 +1,101 @@
+#pragma once
+// Each model declares the parameters it takes in one table; the reader fills and checks them from it, and the key
+// reference in scenarios/README.md is printed from the same table.
+#include <glm/glm.hpp>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sim/parameters/value.hpp"
+
+namespace pitviper {
+
+enum class ParameterType { Number, Integer, Boolean, Text, Choice, Vector, List, Map, Spectrum, Any };
+
+struct Parameter {
+  std::string key;
+  ParameterType type = ParameterType::Number;
+  std::string unit;          ///< canonical unit of numbers, vectors and spectra; "" is dimensionless
+  std::string description;
+  bool required = false;
+  std::string defaultText;   ///< as a user would write it; empty: absent unless given
+  double minimum = -std::numeric_limits<double>::infinity();
+  double maximum = std::numeric_limits<double>::infinity();
+  bool exclusiveMinimum = false;
+  std::vector<std::string> choices;
+  size_t minimumItems = 0;
+  size_t maximumItems = 4096;
+};
+
+/// Short ways to write a table.
+Parameter number(std::string key, std::string unit, std::string description);
+Parameter integer(std::string key, std::string description, long long minimum, long long maximum);
+Parameter boolean(std::string key, std::string description);
+Parameter text(std::string key, std::string description);
+Parameter choice(std::string key, std::vector<std::string> choices, std::string description);
+Parameter vector3(std::string key, std::string unit, std::string description);
+Parameter list(std::string key, std::string description, size_t minimumItems = 0, size_t maximumItems = 4096);
+Parameter map(std::string key, std::string description);
+Parameter spectrum(std::string key, std::string unit, std::string description);
+Parameter any(std::string key, std::string description);
+
+Parameter required(Parameter p);
+Parameter withDefault(Parameter p, std::string text);
+Parameter within(Parameter p, double minimum, double maximum);
+Parameter above(Parameter p, double minimum);
+Parameter atLeast(Parameter p, double minimum);
+
+struct ParameterTable {
+  std::string title;        ///< as in the key reference: "camera"
+  std::string description;
+  std::vector<Parameter> parameters;
+
+  const Parameter* find(std::string_view key) const;
+};
+
+/// A map of a user's file read by a table: unknown and duplicate keys, missing required keys, wrong kinds, wrong units and
+/// values out of range have been refused (UserError) by the time one exists.
+class Record {
+ public:
+  Record(const Value& value, const ParameterTable& table);
+
+  bool has(std::string_view key) const;                    ///< given, or has a default
+  bool given(std::string_view key) const;                  ///< written by the user
+  double number(std::string_view key) const;               ///< in the table's unit
+  std::optional<double> optionalNumber(std::string_view key) const;
+  long long integer(std::string_view key) const;
+  bool boolean(std::string_view key) const;
+  std::string text(std::string_view key) const;
+  glm::dvec3 vector(std::string_view key) const;
+  const Value& value(std::string_view key) const;          ///< the raw node; UserError if absent
+  const Value* find(std::string_view key) const;
+  Location where(std::string_view key) const;              ///< of the value, or of the record where absent
+  const Location& where() const { return value_->where; }
+  const Value& whole() const { return *value_; }
+
+ private:
+  const Parameter& parameter(std::string_view key) const;
+  const Value* value_;
+  const ParameterTable* table_;
+  std::map<std::string, Value, std::less<>> defaults_;
+};
+
+/// A number in `unit` read from one node; `name` is for messages.
+double readNumber(const Value& value, std::string_view unit, std::string_view name);
+/// Three numbers: a list of three quantities, or one scalar "x, y, z unit".
+glm::dvec3 readVector(const Value& value, std::string_view unit, std::string_view name);
+/// Refuses anything that is not a map / a list.
+const Value& asMap(const Value& value, std::string_view name);
+const Value& asList(const Value& value, std::string_view name);
+std::string readText(const Value& value, std::string_view name);
+
+/// The nearest of `candidates` to `word`, or empty where none is near.
+std::string nearestWord(std::string_view word, const std::vector<std::string>& candidates);
+
+/// The table as Markdown rows.
+std::string describe(const ParameterTable& table);
+
+}  // namespace pitviper

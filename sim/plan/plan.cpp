@@ -1,0 +1,132 @@
+#include "sim/plan/plan.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace pitviper {
+namespace {
+
+bool sameKernel(const Spectrum& a, const Spectrum& b) {
+  if (a.factors().size() != b.factors().size()) return false;
+  for (size_t i = 0; i < a.factors().size(); ++i) {
+    const auto &x = a.factors()[i], &y = b.factors()[i];
+    if (x.index() != y.index()) return false;
+    if (const auto* t = std::get_if<Spectrum::Table>(&x)) {
+      const auto& u = std::get<Spectrum::Table>(y);
+      if (t->wavelength_um != u.wavelength_um || t->value != u.value || t->outside != u.outside) return false;
+    } else if (const auto* c = std::get_if<Spectrum::Constant>(&x)) {
+      if (c->value != std::get<Spectrum::Constant>(y).value) return false;
+    } else {
+      const auto &b1 = std::get<Spectrum::BlackBody>(x), &b2 = std::get<Spectrum::BlackBody>(y);
+      if (b1.temperature_K != b2.temperature_K || b1.scale != b2.scale) return false;
+    }
+  }
+  return true;
+}
+
+std::string micrometres(double v) {
+  char s[32];
+  std::snprintf(s, sizeof s, "%.4g um", v);
+  return s;
+}
+
+/// Every spectrum the scene can be asked for, over the bands of the channels.
+class CoverageCheck {
+ public:
+  CoverageCheck(double low, double high, const ChannelOutput& starved) : low_(low), high_(high), starved_(starved) {}
+
+  void operator()(const std::string& what, const Location& where, double validLow, double validHigh) const {
+    if (validLow <= low_ * (1 + 1e-12) && validHigh >= high_ * (1 - 1e-12)) return;
+    throw UserError(where, what + " has no data for channel '" + starved_.channel + "' (" + micrometres(low_) + " to " + micrometres(high_) + ")",
+                    "a spectrum that covers the channel's band; this one covers " + micrometres(validLow) + " to " + micrometres(validHigh),
+                    "extend its table, narrow the channel, or declare 'outside: hold' or 'outside: zero' if that is true");
+  }
+  void operator()(const std::string& what, const Location& where, const Spectrum& s) const { (*this)(what, where, s.validLow(), s.validHigh()); }
+
+ private:
+  double low_, high_;
+  const ChannelOutput& starved_;
+};
+
+void checkCoverage(const Simulation& sim, const ChannelOutput& output) {
+  const CoverageCheck check(output.kernel.supportLow(), output.kernel.supportHigh(), output);
+  for (const auto& m : sim.materials) check("material '" + m->name + "'", m->where, m->validLow_um(), m->validHigh_um());
+  if (sim.path) check("the atmosphere", output.where, sim.path->validLow_um(), sim.path->validHigh_um());
+  for (const auto& l : sim.lights) check("light '" + l.name + "'", output.where, l.intensity);
+  if (sim.sun) check("the sun", output.where, sim.sun->irradiance);
+  if (sim.ambient) check("ambient", output.where, *sim.ambient);
+  check("the background", output.where, sim.background);
+}
+
+Terms termsOf(const Simulation& sim) {
+  Terms t;
+  t.air = sim.path && !sim.path->isNone();
+  t.lights = !sim.lights.empty() || sim.sun;
+  t.ambient = sim.ambient && !sim.ambient->isZero();
+  for (const auto& m : sim.materials) {
+    t.angular |= m->needsAngles();
+    t.modifiers |= m->hasModifiers();
+    for (const auto& r : m->reflections)
+      if (!r->lobeFile().empty()) t.lobeFile = r->lobeFile();
+  }
+  for (const auto& e : sim.entities)
+    for (const auto& s : e.surfaces) t.temperatureTextures |= s.temperatureTexture >= 0;
+  return t;
+}
+
+}  // namespace
+
+Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where) {
+  Plan plan;
+  plan.terms = termsOf(sim);
+  plan.lightCount = static_cast<int>(sim.lights.size()) + (sim.sun ? 1 : 0);
+
+  std::vector<const ChannelOutput*> slots;
+  double low = kLongestWavelength_um, high = kShortestWavelength_um;
+  for (const auto& output : outputs) {
+    checkCoverage(sim, output);
+    auto same = std::find_if(slots.begin(), slots.end(), [&](const auto* s) { return sameKernel(s->kernel, output.kernel); });
+    plan.slotOfOutput.push_back(static_cast<int>(same - slots.begin()));
+    if (same == slots.end()) slots.push_back(&output);
+    low = std::min(low, output.kernel.supportLow());
+    high = std::max(high, output.kernel.supportHigh());
+  }
+  plan.slotCount = static_cast<int>(slots.size());
+  if (plan.slotCount > kMostSlots)
+    throw UserError(where, "needs " + std::to_string(plan.slotCount) + " different spectral kernels in one pass", "at most 16",
+                    "split the channels over two cameras on the same mount, or ask for fewer quantities");
+
+  std::vector<std::vector<QuadratureNode>> rules;
+  for (const auto* slot : slots) {
+    try {
+      rules.push_back(sampling.shared ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, low, high)
+                                      : spectralRule(slot->kernel, sampling.samples, sampling.spacing));
+    } catch (const std::invalid_argument& e) {
+      throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(), "a response above zero somewhere", "check its band or table");
+    } catch (const OutsideSpectrum& e) {
+      throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(), "factors of a response that cover its band", "extend the table");
+    }
+  }
+  plan.weight.assign(slots.size(), {});
+  for (size_t s = 0; s < slots.size(); ++s) {
+    auto sameNodes = [&](const NodeBlock& b) {
+      if (static_cast<size_t>(b.count) != rules[s].size()) return false;
+      for (int i = 0; i < b.count; ++i)
+        if (plan.node_um[static_cast<size_t>(b.first + i)] != rules[s][static_cast<size_t>(i)].x) return false;
+      return true;
+    };
+    auto block = std::find_if(plan.blocks.begin(), plan.blocks.end(), sameNodes);
+    if (block == plan.blocks.end()) {
+      plan.blocks.push_back({plan.nodeCount(), static_cast<int>(rules[s].size()), {}});
+      for (const auto& n : rules[s]) plan.node_um.push_back(n.x);
+      block = plan.blocks.end() - 1;
+    }
+    block->slots.push_back(static_cast<int>(s));
+    for (auto& w : plan.weight) w.resize(plan.node_um.size(), 0.0);
+    for (int i = 0; i < block->count; ++i) plan.weight[s][static_cast<size_t>(block->first + i)] = rules[s][static_cast<size_t>(i)].weight;
+  }
+  for (auto& w : plan.weight) w.resize(plan.node_um.size(), 0.0);
+  return plan;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,51 @@
+#pragma once
+// What a set of sensor outputs requires of a scene: which terms exist, at which wavelengths they are evaluated and with which
+// weights they become channels. Here the nodes follow the user's `spectral` setting; a planner that chooses them for the
+// scene and an accuracy replaces makePlan() and nothing else.
+#include <string>
+#include <vector>
+
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+/// Nodes that feed the same slots.
+struct NodeBlock {
+  int first = 0;
+  int count = 0;
+  std::vector<int> slots;
+};
+
+/// Terms of the radiance equation that this scene has.
+struct Terms {
+  bool air = false;              ///< extinction and path radiance
+  bool lights = false;           ///< point lights or the sun
+  bool ambient = false;
+  bool angular = false;          ///< tables over angles, or emissivity that changes with view angle
+  bool modifiers = false;
+  bool temperatureTextures = false;
+  std::string lobeFile;          ///< shader file of the angular lobes, or empty
+};
+
+struct Plan {
+  std::vector<double> node_um;
+  std::vector<NodeBlock> blocks;
+  int slotCount = 0;
+  std::vector<int> slotOfOutput;            ///< one per output
+  std::vector<std::vector<double>> weight;  ///< [slot][node]
+  Terms terms;
+  int lightCount = 0;                       ///< point lights and, last, the sun
+
+  int nodeCount() const { return static_cast<int>(node_um.size()); }
+  int groupCount() const { return (slotCount + 3) / 4; }  ///< vec4 targets
+};
+
+/// Slots of one pass: four RGBA targets.
+constexpr int kMostSlots = 16;
+
+/// Outputs with the same kernel share a slot. Throws UserError where there are more than 16 kernels, a response is zero, or
+/// the spectrum of a material, light, air or background does not cover a channel's band (naming both).
+Plan makePlan(const Simulation& simulation, const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling,
+              const Location& where);
+
+}  // namespace pitviper

@@ -1,0 +1,39 @@
+#pragma once
+// Draws one camera of a simulation at a time: everything between a world state and an image of integrals.
+#include <memory>
+
+#include "sim/render/direct_pass.hpp"
+#include "sim/render/subpixels.hpp"
+
+namespace pitviper {
+
+class CameraRenderer {
+ public:
+  /// The simulation, camera and library must outlive it. Needs a current GlContext.
+  CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene);
+  CameraRenderer(const CameraRenderer&) = delete;
+  CameraRenderer& operator=(const CameraRenderer&) = delete;
+
+  /// Draws and begins reading back; the caller may do other work before finish().
+  void begin(const WorldState& state);
+  CameraImage finish();
+  CameraImage render(const WorldState& state) {
+    begin(state);
+    return finish();
+  }
+  const Plan& plan() const { return plan_; }
+  const AssembledShader& fragmentSource() const { return pass_.fragmentSource(); }
+  /// Entities of the last frame that were drawn by their zoomed views.
+  const std::vector<char>& smallBodies() const { return small_; }
+
+ private:
+  const Simulation& simulation_;
+  const Camera& camera_;
+  Plan plan_;
+  DirectPass pass_;
+  WorldState state_;
+  View view_;
+  std::vector<char> small_;
+};
+
+}  // namespace pitviper

@@ -1,0 +1,17 @@
+// What a shader knows of a material.
+struct MaterialShape {
+  uvec4 counts;     // entries along angle 1, angle 2, view angle; first column entry
+  uvec4 kinds;      // angle 1, angle 2; 1 where the emissivity follows Kirchhoff; first hemispherical entry
+  vec4 scale;       // entries per radian along angle 1, angle 2, view angle
+  vec4 exponent;    // lobe exponents of R1, R2, R3; 0 has none
+  ivec4 modifier;   // textures of R1, R2, R3, E or -1
+};
+layout(std430, binding = 6) readonly buffer Materials { MaterialShape materials[]; };
+Vec3 exponents_;
+
+// Angular lobes of the three components for a light.
+Vec3 lobes(Vec3 toLight) {
+  return Vec3(exponents_.x > 0.0 ? lobe(exponents_.x, normal_, toLight, toViewer_) : 1.0,
+              exponents_.y > 0.0 ? lobe(exponents_.y, normal_, toLight, toViewer_) : 1.0,
+              exponents_.z > 0.0 ? lobe(exponents_.z, normal_, toLight, toViewer_) : 1.0);
+}

@@ -1,0 +1,2 @@
+// No truth layers.
+void writeTruth(float cosPsi) {}

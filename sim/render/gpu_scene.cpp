@@ -1,0 +1,48 @@
+#include "sim/render/gpu_scene.hpp"
+
+#include <epoxy/gl.h>
+
+#include <map>
+
+namespace pitviper {
+
+GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
+  std::vector<glm::vec4> vertices;
+  std::vector<std::uint32_t> indices;
+  std::map<const Mesh*, std::uint32_t> placed;
+  for (const auto& entity : sim.entities) {
+    const Mesh& mesh = *entity.mesh;
+    const auto [at, fresh] = placed.try_emplace(&mesh, static_cast<std::uint32_t>(indices.size() / 3));
+    firstTriangle_.push_back(at->second);
+    if (!fresh) continue;
+    const auto base = static_cast<std::uint32_t>(vertices.size() / 2);
+    for (size_t i = 0; i < mesh.positions.size(); ++i) {
+      vertices.emplace_back(mesh.positions[i], mesh.uv[i].x);
+      vertices.emplace_back(mesh.normals[i], mesh.uv[i].y);
+    }
+    for (const auto& t : mesh.triangles)
+      for (int k = 0; k < 3; ++k) indices.push_back(base + t[k]);
+  }
+  vertices_.upload(vertices);
+  indices_.upload(indices);
+
+  std::vector<glm::uvec4> shapes;
+  std::vector<float> texels;
+  for (const auto& t : sim.textures) {
+    shapes.emplace_back(static_cast<std::uint32_t>(texels.size()), static_cast<std::uint32_t>(t.width), static_cast<std::uint32_t>(t.height), 0u);
+    texels.insert(texels.end(), t.texels.begin(), t.texels.end());
+  }
+  textureShapes_.upload(shapes);
+  texels_.upload(texels);
+}
+
+void GpuScene::bind() const {
+  glBindVertexArray(vertexArray_);
+  vertices_.bindStorage(0);
+  indices_.bindStorage(1);
+  indices_.bindElements();
+  textureShapes_.bindStorage(8);
+  texels_.bindStorage(9);
+}
+
+}  // namespace pitviper

@@ -1,0 +1,104 @@
+#include "sim/render/probe.hpp"
+
+#include <cmath>
+
+#include "sim/radiometry/physics.hpp"
+#include "sim/render/subpixels.hpp"
+#include "sim/render/visible_lights.hpp"
+
+namespace pitviper {
+namespace {
+
+/// The five views of the upper hemisphere's cube: the top face, and the upper half of each side face.
+std::vector<View> hemisphere(const Probe& probe) {
+  constexpr double kTurn_rad = 0.3926;
+  const glm::dvec3 up = glm::normalize(probe.normal);
+  const glm::dvec3 helper = std::abs(up.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 a0 = glm::normalize(glm::cross(helper, up)), b0 = glm::cross(up, a0);
+  const glm::dvec3 a = std::cos(kTurn_rad) * a0 + std::sin(kTurn_rad) * b0, b = glm::cross(up, a);
+  std::vector<View> views;
+  for (int face = 0; face < 5; ++face) {
+    View v;
+    const glm::dvec3 forward = face == 0 ? up : face == 1 ? a : face == 2 ? -a : face == 3 ? b : -b;
+    const glm::dvec3 top = face == 0 ? a : up;
+    v.localFromCamera = glm::dmat3(glm::cross(forward, top), top, -forward);
+    v.width = probe.resolution;
+    v.height = face == 0 ? probe.resolution : probe.resolution / 2;
+    v.tanPerPixelX = v.tanPerPixelY = 2.0 / probe.resolution;
+    v.axisX = 0.5 * probe.resolution;
+    v.axisY = face == 0 ? 0.5 * probe.resolution : 0.0;  // a side face begins at the horizon
+    v.position = probe.position;
+    v.near_m = 1e-3;
+    views.push_back(v);
+  }
+  return views;
+}
+
+/// True where nothing in the view stands between the probe and a direction at a distance.
+bool isFree(const Subpixels& image, const glm::dvec3& direction, double distance_m, bool& inView) {
+  const View& v = image.view();
+  const glm::dvec3 p = glm::transpose(v.localFromCamera) * direction;
+  inView = false;
+  if (p.z >= 0.0) return false;
+  const glm::dvec2 at = filmPosition(v, p);
+  if (at.x < 0.0 || at.y < 0.0 || at.x >= v.width || at.y >= v.height) return false;
+  inView = true;
+  return -p.z * distance_m <= image.axialDepth_m(image.index(static_cast<int>(at.x), static_cast<int>(at.y)));
+}
+
+}  // namespace
+
+std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
+                                 const WorldState& state) {
+  const Plan plan = makePlan(sim, probe.outputs, probe.spectral, probe.where);
+  DirectPass pass(sim, plan, library, scene, false, 1.0);
+  pass.setState(state);
+  const std::vector<char> all(sim.entities.size(), 1);
+  const glm::dvec3 normal = glm::normalize(probe.normal);
+  std::vector<double> sums(static_cast<size_t>(plan.slotCount), 0.0);
+  std::vector<char> lightDone(sim.lights.size(), 0);
+  bool sunDone = false;
+  for (const View& v : hemisphere(probe)) {
+    pass.draw(v, state, all);
+    pass.startReadback(true);
+    Subpixels image(plan, v, pass.finishReadback());
+    for (int y = 0; y < v.height; ++y)
+      for (int x = 0; x < v.width; ++x) {
+        const glm::dvec3 ray = v.ray(x + 0.5, y + 0.5);
+        const double l2 = glm::dot(ray, ray);
+        const double cosine = glm::dot(v.localFromCamera * ray, normal) / std::sqrt(l2);
+        if (cosine <= 0.0) continue;
+        const double weight = cosine * v.tanPerPixelX * v.tanPerPixelY / (l2 * std::sqrt(l2));
+        for (size_t s = 0; s < sums.size(); ++s) sums[s] += weight * image.slot(s, image.index(x, y));
+      }
+    for (size_t l = 0; l < sim.lights.size(); ++l) {
+      const glm::dvec3 line = state.lights[l] - probe.position;
+      const double d = glm::length(line);
+      bool inView = false;
+      if (lightDone[l] || d <= 0.0 || state.lightLevels[l] <= 0.0) continue;
+      const bool free = isFree(image, line / d, d, inView);
+      if (!inView) continue;
+      lightDone[l] = 1;
+      const double factor = free ? physics::pointIrradianceFactor(glm::dot(line, normal) / d, d * d, sim.lights[l].radius_m) : 0.0;
+      const auto intensity = apparentIntensity(sim, plan, state, l, probe.position);
+      for (size_t s = 0; s < sums.size(); ++s) sums[s] += factor * intensity[s];
+    }
+    bool inView = false;
+    if (sim.sun && !sunDone && isFree(image, sim.sun->toSun, physics::kFar, inView) && inView) {
+      const double cosine = std::max(0.0, glm::dot(sim.sun->toSun, normal));
+      const bool layered = plan.terms.air && sim.path->top_m() < physics::kFar;
+      const double air = layered ? sim.path->airLength_m(sim.frame.height(probe.position), sim.sun->toSun.z, physics::kFar, sim.frame.earthRadius_m()) : 0.0;
+      for (size_t i = 0; i < plan.node_um.size(); ++i) {
+        const double e = cosine * sim.sun->irradiance(plan.node_um[i]) * (layered ? sim.path->transmittance(plan.node_um[i], air) : 1.0);
+        for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * e;
+      }
+    }
+    sunDone |= inView;
+  }
+  std::vector<double> values;
+  for (size_t o = 0; o < probe.outputs.size(); ++o)
+    values.push_back(probe.outputs[o].scale * sums[static_cast<size_t>(plan.slotOfOutput[o])]);
+  return values;
+}
+
+}  // namespace pitviper

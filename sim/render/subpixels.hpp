@@ -1,0 +1,58 @@
+#pragma once
+// The image of a camera at subpixel resolution, in double precision, while bodies and lights smaller than a pixel are added; then
+// resolved into pixels.
+#include <vector>
+
+#include "sim/plan/plan.hpp"
+#include "sim/render/direct_pass.hpp"
+
+namespace pitviper {
+
+/// Truth of a pixel: see sim/render/glsl/truth_layers.glsl for the order.
+struct TruthPixel {
+  float area_m2 = 0, solidAngleFromLight_sr = 0, solidAngleOfAperture_sr = 0, range_m = 0;
+  float normal[3] = {0, 0, 0};
+  float temperature_K = 0;
+  float entity = 0, part = 0, cosView = 0;
+};
+
+/// What leaves the renderer: integrals of kernel x radiance per slot and pixel, row 0 at the top.
+struct CameraImage {
+  int width = 0, height = 0;
+  std::vector<std::vector<double>> slots;      ///< [slot][pixel], kernel unit x W/(m2 sr)
+  std::vector<double> projectedSolidAngle_sr;  ///< per pixel
+  std::vector<double> solidAngle_sr;           ///< per pixel
+  std::vector<TruthPixel> truth;               ///< per pixel, or empty
+  std::vector<int> slotOfOutput;               ///< from the plan
+};
+
+class Subpixels {
+ public:
+  /// Takes what a pass drew for `view` (the camera's own view, samples x samples subpixels).
+  Subpixels(const Plan& plan, const View& view, RawImage raw);
+
+  const View& view() const { return view_; }
+  int width() const { return view_.width; }
+  int height() const { return view_.height; }
+  size_t index(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(view_.width) + static_cast<size_t>(x); }
+  size_t slotCount() const { return slots_.size(); }
+  double& slot(size_t s, size_t pixel) { return slots_[s][pixel]; }
+  /// Distance along the axis of what stands there [m]; infinite for the background.
+  double axialDepth_m(size_t pixel) const;
+  /// Integral of cos(psi) dOmega over a subpixel [sr].
+  double projectedSolidAngle_sr(int x, int y) const;
+  TruthPixel* truth(size_t pixel) { return truth_.empty() ? nullptr : &truth_[pixel]; }
+
+  /// Mean over samples x samples subpixels, weighted by projected solid angle (flux adds up); truth from the middle one.
+  CameraImage resolve(const Pinhole& pinhole, int samples) const;
+
+ private:
+  View view_;
+  std::vector<std::vector<double>> slots_;
+  std::vector<float> depth_;
+  std::vector<TruthPixel> truth_;
+};
+
+TruthPixel truthAt(const RawImage& raw, size_t pixel);
+
+}  // namespace pitviper

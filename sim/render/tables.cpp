@@ -1,0 +1,184 @@
+#include "sim/render/tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+namespace {
+
+/// The three reflection columns of a material at a node, or 0 where it has fewer components.
+glm::dvec3 columnsAt(const Material& m, double w, double angle1, double angle2, const std::array<AngleAxis, 2>& axes) {
+  glm::dvec3 r(0.0);
+  for (size_t k = 0; k < m.reflections.size(); ++k) {
+    // A component's own axes, in the order of the material's.
+    const auto own = m.reflections[k]->axes();
+    auto pick = [&](Angle a) { return a == Angle::None ? 0.0 : a == axes[0].angle ? angle1 : angle2; };
+    r[static_cast<int>(k)] = m.reflections[k]->column(w, pick(own[0].angle), pick(own[1].angle));
+  }
+  return r;
+}
+
+/// The angles a material's tables run over: at most two, shared by its components.
+std::array<AngleAxis, 2> materialAxes(const Material& m) {
+  std::array<AngleAxis, 2> axes;
+  for (const auto& r : m.reflections)
+    for (const auto& axis : r->axes()) {
+      if (axis.angle == Angle::None) continue;
+      size_t k = 0;
+      while (k < 2 && axes[k].angle != Angle::None && axes[k].angle != axis.angle) ++k;
+      if (k == 2)
+        throw UserError(m.where, "the tables of material '" + m.name + "' run over more than two angles together",
+                        "at most two different angles in one material", "bring its components to the same two angles");
+      if (axes[k].angle == axis.angle && axes[k].count >= axis.count) continue;
+      axes[k] = axis;
+    }
+  return axes;
+}
+
+void appendMaterial(RenderTables& t, const Material& m, const Plan& plan) {
+  GpuMaterial g{};
+  const auto axes = materialAxes(m);
+  bool varies = m.given && !m.given->viewAngle_rad.empty();
+  for (const auto& r : m.reflections) varies |= r->hemisphericalVaries();
+  const int views = varies ? kViewAngles : 1;
+  g.counts[0] = static_cast<std::uint32_t>(axes[0].count);
+  g.counts[1] = static_cast<std::uint32_t>(axes[1].count);
+  g.counts[2] = static_cast<std::uint32_t>(views);
+  g.counts[3] = static_cast<std::uint32_t>(t.columns.size() / 4);
+  g.kinds[0] = static_cast<std::uint32_t>(axes[0].angle);
+  g.kinds[1] = static_cast<std::uint32_t>(axes[1].angle);
+  g.kinds[2] = m.given ? 0 : 1;
+  g.kinds[3] = static_cast<std::uint32_t>(t.hemispherical.size() / 4);
+  for (int k = 0; k < 2; ++k)
+    g.scale[k] = axes[static_cast<size_t>(k)].count > 1 ? static_cast<float>((axes[static_cast<size_t>(k)].count - 1) / axes[static_cast<size_t>(k)].last_rad) : 0.0f;
+  g.scale[2] = views > 1 ? static_cast<float>((views - 1) / (0.5 * kPi)) : 0.0f;
+  for (int k = 0; k < 4; ++k) g.modifier[k] = -1;
+  for (size_t k = 0; k < m.reflections.size(); ++k) {
+    g.exponent[k] = static_cast<float>(m.reflections[k]->lobeExponent());
+    g.modifier[k] = m.modifiers[k];
+  }
+  if (m.given) g.modifier[3] = m.given->modifier;
+  t.materials.push_back(g);
+  if (!t.general) return;
+
+  auto step = [](const AngleAxis& a, int j) { return a.count > 1 ? a.last_rad * j / (a.count - 1) : 0.0; };
+  for (int j2 = 0; j2 < axes[1].count; ++j2)
+    for (int j1 = 0; j1 < axes[0].count; ++j1)
+      for (double w : plan.node_um) {
+        const glm::dvec3 r = columnsAt(m, w, step(axes[0], j1), step(axes[1], j2), axes);
+        for (int k = 0; k < 3; ++k) t.columns.push_back(static_cast<float>(r[k]));
+        t.columns.push_back(0.0f);
+      }
+  for (int j = 0; j < views; ++j) {
+    const double angle = views > 1 ? 0.5 * kPi * j / (views - 1) : 0.0;
+    for (double w : plan.node_um) {
+      for (size_t k = 0; k < 3; ++k)
+        t.hemispherical.push_back(k < m.reflections.size() ? static_cast<float>(m.reflections[k]->hemispherical(w, angle)) : 0.0f);
+      t.hemispherical.push_back(m.given ? static_cast<float>(m.given->at(w, angle)) : 0.0f);
+    }
+  }
+}
+
+void appendRow(RenderTables& t, const Simulation& sim, const Plan& plan, const Surface* surface) {
+  t.rowOfDraw.push_back(static_cast<std::uint32_t>(t.general ? t.rows.size() : t.rows.size() / 4));
+  for (double w : plan.node_um) {
+    if (!surface) {  // the background shines by itself
+      if (!t.general) t.rows.insert(t.rows.end(), 3, 0.0f);
+      t.rows.push_back(static_cast<float>(sim.background(w)));
+      continue;
+    }
+    const double planck = physics::planckRadiance(w, surface->temperature_K);
+    if (t.general) {
+      t.rows.push_back(static_cast<float>(planck));
+      continue;
+    }
+    const Material& m = *sim.materials[static_cast<size_t>(surface->material)];
+    const glm::dvec3 r = columnsAt(m, w, 0.0, 0.0, {});
+    const double ambient = plan.terms.ambient ? (*sim.ambient)(w) : 0.0;
+    const double self = m.emissivity(w, 0.0) * planck + (ambient > 0.0 ? m.reflectance(w, 0.0) * ambient : 0.0);
+    for (int k = 0; k < 3; ++k) t.rows.push_back(static_cast<float>(r[k]));
+    t.rows.push_back(static_cast<float>(self));
+  }
+}
+
+void writeIntegral(RenderTables& t, const Plan& plan) {
+  std::ostringstream targets, text;
+  for (int g = 0; g < plan.groupCount(); ++g) targets << "layout(location = " << g << ") out vec4 channels" << g << ";\n";
+  targets << "void clearTargets() {\n";
+  for (int g = 0; g < plan.groupCount(); ++g) targets << "  channels" << g << " = vec4(0.0);\n";
+  targets << "}\n";
+  text << "void integrate() {\n";
+  size_t at = 0;
+  for (const auto& block : plan.blocks) {
+    std::vector<int> groups;
+    for (int s : block.slots)
+      if (std::find(groups.begin(), groups.end(), s / 4) == groups.end()) groups.push_back(s / 4);
+    text << "  for (int i = 0; i < " << block.count << "; ++i) {\n    Real radiance = nodeRadiance(" << block.first << " + i);\n";
+    for (size_t k = 0; k < groups.size(); ++k)
+      text << "    channels" << groups[k] << " += weights.weight[" << at << " + i * " << groups.size() << " + " << k << "] * radiance;\n";
+    text << "  }\n";
+    for (int i = 0; i < block.count; ++i)
+      for (int g : groups)
+        for (int k = 0; k < 4; ++k) {
+          const size_t slot = static_cast<size_t>(4 * g + k);
+          t.weights.push_back(slot < plan.weight.size() ? static_cast<float>(plan.weight[slot][static_cast<size_t>(block.first + i)]) : 0.0f);
+        }
+    at += static_cast<size_t>(block.count) * groups.size();
+  }
+  text << "}\n";
+  t.targetsText = targets.str();
+  t.integrateText = text.str();
+}
+
+}  // namespace
+
+int lightGroups(const Plan& plan) { return std::max(1, (plan.lightCount + 3) / 4); }
+
+std::vector<float> lightTable(const Simulation& sim, const Plan& plan, const WorldState& state) {
+  const size_t groups = static_cast<size_t>(lightGroups(plan));
+  std::vector<float> table(plan.node_um.size() * groups * 4, 0.0f);
+  for (size_t i = 0; i < plan.node_um.size(); ++i) {
+    const double w = plan.node_um[i];
+    for (size_t l = 0; l < sim.lights.size(); ++l)
+      table[i * groups * 4 + l] = static_cast<float>(state.lightLevels[l] > 0.0 ? state.lightLevels[l] * sim.lights[l].intensity(w) : 0.0);
+    if (sim.sun) table[i * groups * 4 + sim.lights.size()] = static_cast<float>(sim.sun->irradiance(w));
+  }
+  return table;
+}
+
+RenderTables makeTables(const Simulation& sim, const Plan& plan) {
+  RenderTables t;
+  t.general = plan.terms.angular || plan.terms.modifiers || plan.terms.temperatureTextures;
+  for (const auto& m : sim.materials) appendMaterial(t, *m, plan);
+  Material background;  // black: its row is its radiance
+  appendMaterial(t, background, plan);
+
+  t.draws.push_back({});
+  t.materialOfDraw.push_back(static_cast<std::uint32_t>(sim.materials.size()));
+  appendRow(t, sim, plan, nullptr);
+  for (size_t e = 0; e < sim.entities.size(); ++e)
+    for (size_t s = 0; s < sim.entities[e].surfaces.size(); ++s) {
+      const Surface& surface = sim.entities[e].surfaces[s];
+      t.draws.push_back({static_cast<int>(e), static_cast<int>(s)});
+      t.materialOfDraw.push_back(static_cast<std::uint32_t>(surface.material));
+      appendRow(t, sim, plan, &surface);
+    }
+
+  for (double w : plan.node_um) {
+    const PathNode air = sim.path ? sim.path->node(w) : PathNode{};
+    t.node.push_back(static_cast<float>(air.extinction_per_m));
+    t.node.push_back(static_cast<float>(air.sourceRadiance));
+    t.node.push_back(static_cast<float>(14387.76877 / w));
+    t.node.push_back(static_cast<float>(1.191042972e8 / std::pow(w, 5)));
+    t.ambient.push_back(plan.terms.ambient ? static_cast<float>((*sim.ambient)(w)) : 0.0f);
+    t.ambient.insert(t.ambient.end(), 3, 0.0f);
+  }
+  writeIntegral(t, plan);
+  return t;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,52 @@
+#pragma once
+// The tables a plan's program reads, made in double precision: node constants, weights, material and temperature rows.
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "sim/plan/plan.hpp"
+
+namespace pitviper {
+
+/// Mirrors MaterialShape of sim/render/glsl/materials.glsl (std430).
+struct GpuMaterial {
+  std::uint32_t counts[4];
+  std::uint32_t kinds[4];
+  float scale[4];
+  float exponent[4];
+  std::int32_t modifier[4];
+};
+static_assert(sizeof(GpuMaterial) == 80);
+
+/// A drawn part: entity and surface; the background is the first draw and has entity -1.
+struct DrawItem {
+  int entity = -1;
+  int surface = -1;
+};
+
+struct RenderTables {
+  bool general = false;                        ///< angular tables, modifiers or temperature textures in the scene
+  std::vector<DrawItem> draws;
+  std::vector<std::uint32_t> rowOfDraw;        ///< first entry of a draw's row
+  std::vector<std::uint32_t> materialOfDraw;
+  std::vector<float> rows;                     ///< simple: vec4 (R1, R2, R3, S) per node; general: Planck radiance per node
+  std::vector<float> hemispherical;            ///< vec4 (D1, D2, D3, given emissivity) per view angle and node
+  std::vector<float> columns;                  ///< vec4 (R1, R2, R3, 0) per angle 2, angle 1 and node
+  std::vector<GpuMaterial> materials;          ///< the background's last
+  std::vector<float> node;                     ///< vec4 per node: extinction, source radiance, c2 / lambda, c1L / lambda^5
+  std::vector<float> ambient;                  ///< vec4 per node
+  std::vector<float> weights;                  ///< vec4s in the order of the integration text
+  std::string integrateText;                   ///< body of the spectral integral
+  std::string targetsText;                     ///< declarations of the channel targets
+};
+
+/// Light intensities at the nodes, vec4 per group of four lights: changes with the lights' levels.
+std::vector<float> lightTable(const Simulation& simulation, const Plan& plan, const WorldState& state);
+int lightGroups(const Plan& plan);
+
+RenderTables makeTables(const Simulation& simulation, const Plan& plan);
+
+/// What the GPU does to a table entry, for the double precision reference: the same angle grids.
+constexpr int kViewAngles = 181;
+
+}  // namespace pitviper

@@ -1,0 +1,35 @@
+#pragma once
+// A rectangle of film seen from a point: a camera's image, or the zoomed view of a small body.
+#include <glm/glm.hpp>
+
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+/// Camera axes: x right, y up, looking along -z. Film positions in tangents from the axis; pixel (0, 0) is the lower left, as
+/// GL has it.
+struct View {
+  int width = 0, height = 0;                 ///< pixels (of the target, subpixels counted)
+  double tanPerPixelX = 0.0, tanPerPixelY = 0.0;
+  double axisX = 0.0, axisY = 0.0;           ///< film position of the axis [pixels from the lower left corner]
+  glm::dvec3 position{0.0};                  ///< local frame
+  glm::dmat3 localFromCamera{1.0};
+  double near_m = 0.1;
+  bool linearDepth = false;                  ///< depth linear over [centre - radius, centre + radius], relative to an entity's origin
+  double depthCentre_m = 0.0, depthRadius_m = 1.0;
+  bool background = true;                    ///< shade what meets nothing
+  int onlyEntity = -1;                       ///< draw one entity only, or all (-1)
+
+  /// Direction of a film position in camera axes, z = -1.
+  glm::dvec3 ray(double x, double y) const { return {(x - axisX) * tanPerPixelX, (y - axisY) * tanPerPixelY, -1.0}; }
+};
+
+/// The whole image of a camera at n x n subpixels.
+View cameraView(const Pinhole& pinhole, const Pose& pose, double near_m, int samples);
+
+/// The film position [pixels from the lower left] of a point in camera axes (z < 0).
+inline glm::dvec2 filmPosition(const View& v, const glm::dvec3& p) {
+  return {v.axisX + p.x / -p.z / v.tanPerPixelX, v.axisY + p.y / -p.z / v.tanPerPixelY};
+}
+
+}  // namespace pitviper

@@ -1,0 +1,13 @@
+#pragma once
+// A point light in view adds its own flux, I tau A_ap cos(psi) / R^2, to the subpixel it falls into, unless something stands in
+// front of it.
+#include "sim/render/subpixels.hpp"
+
+namespace pitviper {
+
+void addVisibleLights(Subpixels& image, const Simulation& simulation, const Plan& plan, const WorldState& state);
+
+/// Integral of kernel x I x tau over a slot's nodes [kernel unit x W/sr] for a light seen from a place.
+std::vector<double> apparentIntensity(const Simulation& simulation, const Plan& plan, const WorldState& state, size_t light, const glm::dvec3& from);
+
+}  // namespace pitviper

@@ -1,0 +1,28 @@
+#pragma once
+// The loop: advance, render, frame, hand over.
+#include <functional>
+
+#include "sim/frame/frame.hpp"
+
+namespace pitviper {
+
+struct RunRange {
+  int first = 0, last = 0;  ///< frame numbers, both included
+};
+
+/// Called for every frame in order: camera by camera, then tick by tick.
+using FrameSink = std::function<void(const Frame&)>;
+struct ProbeReading {
+  const Probe& probe;
+  int frame;
+  double time_s;
+  std::vector<double> values;
+};
+using ProbeSink = std::function<void(const ProbeReading&)>;
+
+/// Renders the frames of all cameras. While one frame is handed to the sink on a thread of its own, the next is drawn; frames
+/// arrive in order, one at a time. An exception of the sink ends the run and is thrown here.
+void runFrames(const Simulation& simulation, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames,
+               const ProbeSink& probes = {});
+
+}  // namespace pitviper

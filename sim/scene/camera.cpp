@@ -1,0 +1,46 @@
+#include "sim/scene/camera.hpp"
+
+#include <cmath>
+
+#include "sim/radiometry/constants.hpp"
+#include "sim/scene/scene.hpp"
+
+namespace pitviper {
+
+double Pinhole::apertureArea_m2() const { return 0.25 * kPi * apertureDiameter_m * apertureDiameter_m; }
+
+double Pinhole::integral(int column, int row, int power) const {
+  // dOmega = cos^3(psi) dx dy on a film at unit distance; 3-point Gauss-Legendre in each direction.
+  static const double at[3] = {0.5 - 0.3872983346207417, 0.5, 0.5 + 0.3872983346207417};
+  static const double weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
+  double sum = 0.0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      const double x = tanX(column + at[i]), y = tanY(row + at[j]);
+      sum += weight[i] * weight[j] * std::pow(1.0 + x * x + y * y, -0.5 * power);
+    }
+  return sum * (pitchX_m / focalLength_m) * (pitchY_m / focalLength_m);
+}
+
+double Pinhole::solidAngle_sr(int column, int row) const { return integral(column, row, 3); }
+double Pinhole::projectedSolidAngle_sr(int column, int row) const { return integral(column, row, 4); }
+
+Pose cameraPose(const Mount& mount, const WorldState& state) {
+  Pose pose = mount.motion.at(state.time_s);
+  if (mount.carrier >= 0) pose = composed(state.entities[static_cast<size_t>(mount.carrier)], pose);
+  if (mount.lookAtEntity >= 0 || mount.looksAtPoint) {
+    const glm::dvec3 target = mount.looksAtPoint ? mount.lookAtPoint : state.entities[static_cast<size_t>(mount.lookAtEntity)].position;
+    const glm::dvec3 line = target - pose.position;
+    if (glm::dot(line, line) > 0.0) pose.orientation = orientationAlong(line);
+  }
+  return pose;
+}
+
+glm::dmat3 localFromCamera(const Pose& pose) {
+  const glm::dvec3 x = pose.orientation * glm::dvec3(1, 0, 0);
+  const glm::dvec3 y = pose.orientation * glm::dvec3(0, 1, 0);
+  const glm::dvec3 z = pose.orientation * glm::dvec3(0, 0, 1);
+  return {-y, z, -x};
+}
+
+}  // namespace pitviper

@@ -1,0 +1,44 @@
+#pragma once
+// Pinhole projection with a real aperture and a flat film.
+#include <string>
+
+#include "sim/scene/motion.hpp"
+
+namespace pitviper {
+
+/// Camera axes: x right, y up, looking along -z. Row 0 of an image is the top.
+struct Pinhole {
+  int width = 0, height = 0;
+  double focalLength_m = 0.0;
+  double pitchX_m = 0.0, pitchY_m = 0.0;
+  double apertureDiameter_m = 0.0;
+
+  double apertureArea_m2() const;
+  /// Tangents of the angles of a film position (pixels from the top left corner) from the axis: right, up.
+  double tanX(double column) const { return (column - 0.5 * width) * pitchX_m / focalLength_m; }
+  double tanY(double row) const { return (0.5 * height - row) * pitchY_m / focalLength_m; }
+  /// Solid angle of a pixel [sr], integral of dOmega; relative error below 1e-9 for pixels under 3 degrees.
+  double solidAngle_sr(int column, int row) const;
+  /// Projected solid angle [sr], integral of cos(psi) dOmega: radiance times this is irradiance on the aperture.
+  double projectedSolidAngle_sr(int column, int row) const;
+
+ private:
+  double integral(int column, int row, int power) const;
+};
+
+/// How a camera is carried and where it looks.
+struct Mount {
+  Motion motion;                   ///< in the local frame, or in the carrier's body frame
+  int carrier = -1;                ///< entity index, or -1
+  int lookAtEntity = -1;           ///< entity index, or -1: along the motion's own x axis
+  bool looksAtPoint = false;
+  glm::dvec3 lookAtPoint{0.0};
+};
+
+struct WorldState;
+/// Camera pose in the local frame (body axes: x is the line of sight, y left, z up).
+Pose cameraPose(const Mount& mount, const WorldState& state);
+/// Columns: camera x (right), y (up), z (backward) in the local frame.
+glm::dmat3 localFromCamera(const Pose& pose);
+
+}  // namespace pitviper

@@ -1,0 +1,27 @@
+#pragma once
+// Checks of whole files before a VTK reader sees them. The readers trust what they read (fixed buffers, unchecked
+// counts and indices), so the simple formats are parsed here in full and VTK gets a canonical copy that holds only what
+// was checked. All throw ImportFailure with line and column, or byte.
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pitviper {
+
+struct CheckedFile {
+  std::string bytes;                      ///< canonical copy for the reader; empty: the file itself is fit
+  std::vector<std::uint32_t> partOfFace;  ///< per face in file order, index into partNames; empty: one part
+  std::vector<std::string> partNames;     ///< of glTF: the names of all nodes
+};
+
+/// Largest number of corners of one face: beyond any modeller's, and short enough for the readers' line buffers.
+inline constexpr long long kMostCorners = 1024;
+
+CheckedFile checkObj(const std::string& file, std::string_view text);
+CheckedFile checkStl(const std::string& file, std::string_view bytes);
+CheckedFile checkPly(const std::string& file, std::string_view bytes);
+CheckedFile checkVtp(const std::string& file, std::string_view bytes);
+CheckedFile checkGltf(const std::string& file, std::string_view bytes);  ///< .gltf and .glb
+
+}  // namespace pitviper

@@ -1,0 +1,169 @@
+#pragma once
+// Runs the import module in a child process, so that a reader that crashes, hangs or eats memory costs one UserError.
+// Included by sim/scene/mesh_import.cpp only. Not for Windows.
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "sim/scene/import/import_reply.hpp"
+#include "sim/scene/mesh_cache.hpp"
+
+#if defined(__SANITIZE_ADDRESS__)
+#define PITVIPER_IMPORT_SANITIZED \
+  1  // the sanitizer's shadow needs terabytes of address space, and its reports are wanted
+#else
+#define PITVIPER_IMPORT_SANITIZED 0
+#endif
+
+namespace pitviper {
+
+/// A reply over the pipe: 'M' and a serialized mesh, or 'E' and seven fields, each ended by a zero byte.
+inline std::string encodeReply(const ImportReply& reply) {
+  if (!reply.failed) return "M" + serializeMesh(reply.mesh);
+  std::string out = "E";
+  for (const std::string& field :
+       {reply.where.file, std::to_string(reply.where.line), std::to_string(reply.where.column),
+        std::to_string(reply.where.byte), reply.wrong, reply.expected, reply.fix}) {
+    for (char c : field) out += c == '\0' ? ' ' : c;
+    out += '\0';
+  }
+  return out;
+}
+
+/// Address space beyond what the process has now: 1 GiB and sixteen times the file, which the densest format (binary
+/// STL, 50 bytes a triangle, points merged) stays below.
+inline void limitMemory(std::size_t fileBytes) {
+  if (PITVIPER_IMPORT_SANITIZED) return;
+  unsigned long long pages = 0;
+  std::ifstream("/proc/self/statm") >> pages;
+  const rlim_t bytes =
+      pages * static_cast<unsigned long long>(sysconf(_SC_PAGESIZE)) + (1ull << 30) + 16ull * fileBytes;
+  const rlimit limit{bytes, bytes};
+  setrlimit(RLIMIT_AS, &limit);
+}
+
+inline ImportReply runModule(const std::filesystem::path& module, const std::filesystem::path& file,
+                             std::size_t fileBytes, const Location& askedAt) {
+  ImportReply reply;
+  void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* symbol = handle == nullptr ? nullptr : dlsym(handle, kImportFunction);
+  if (symbol == nullptr) {
+    const char* reason = dlerror();
+    reply.failed = true;
+    reply.where = askedAt;
+    reply.wrong =
+        std::string("the mesh import module cannot be loaded (") + (reason != nullptr ? reason : "unknown") + ")";
+    reply.fix = "install the package libvtk9.1 (to build: libvtk9-dev)";
+    return reply;
+  }
+  limitMemory(fileBytes);
+  reinterpret_cast<ImportFunction>(symbol)(file.c_str(), &reply);
+  return reply;
+}
+
+[[noreturn]] inline void childMain(int pipeEnd, pid_t parent, const std::filesystem::path& module,
+                                   const std::filesystem::path& file, std::size_t fileBytes, const Location& askedAt) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != parent) _exit(1);
+  const rlimit none{0, 0};
+  setrlimit(RLIMIT_CORE, &none);
+  if (!PITVIPER_IMPORT_SANITIZED) {
+    for (int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT}) std::signal(signal, SIG_DFL);
+    if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0) {  // a library's last words are not for the user
+      dup2(nowhere, STDOUT_FILENO);
+      dup2(nowhere, STDERR_FILENO);
+    }
+  }
+  try {
+    const std::string bytes = encodeReply(runModule(module, file, fileBytes, askedAt));
+    for (std::size_t sent = 0; sent < bytes.size();) {
+      const ssize_t count = write(pipeEnd, bytes.data() + sent, bytes.size() - sent);
+      if (count < 0 && errno != EINTR) _exit(1);
+      if (count > 0) sent += static_cast<std::size_t>(count);
+    }
+  } catch (...) {
+    _exit(1);
+  }
+  _exit(0);
+}
+
+/// Everything the child sends before the deadline; sets `late` if it is not done by then.
+inline std::string readUntil(int pipeEnd, std::chrono::steady_clock::time_point deadline, bool& late) {
+  std::string bytes;
+  std::vector<char> block(1 << 16);  // the size of a pipe
+  while (true) {
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    pollfd waited{pipeEnd, POLLIN, 0};
+    const int ready = left.count() <= 0 ? 0 : poll(&waited, 1, static_cast<int>(left.count()));
+    if (ready < 0 && errno == EINTR) continue;
+    late = ready == 0;
+    if (ready <= 0) return bytes;
+    const ssize_t count = read(pipeEnd, block.data(), block.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return bytes;
+    bytes.append(block.data(), static_cast<std::size_t>(count));
+  }
+}
+
+inline Mesh decodeReply(const std::string& bytes, const std::filesystem::path& file, const std::string& failure) {
+  if (bytes.starts_with('M'))
+    if (std::optional<Mesh> mesh = deserializeMesh(std::string_view(bytes).substr(1))) return std::move(*mesh);
+  if (bytes.starts_with('E')) {
+    std::vector<std::string> fields;
+    for (std::size_t at = 1, end; (end = bytes.find('\0', at)) != std::string::npos; at = end + 1)
+      fields.push_back(bytes.substr(at, end - at));
+    if (fields.size() == 7)
+      throw UserError(Location{fields[0], std::atoi(fields[1].c_str()), std::atoi(fields[2].c_str()),
+                               std::atoll(fields[3].c_str())},
+                      fields[4], fields[5], fields[6]);
+  }
+  throw UserError(Location{file.string()}, "the reader failed on this file (" + failure + ")", "a sound file",
+                  "open and save it again in a mesh editor");
+}
+
+/// The mesh as the module read it: unchecked. Throws UserError.
+inline Mesh importInChild(const std::filesystem::path& module, const std::filesystem::path& file, std::size_t fileBytes,
+                          const Location& askedAt) {
+  // OBJ text was read at 20 MB/s on one slow core: a minute and a second per MB is ample.
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60 + (fileBytes >> 20));
+  int ends[2];
+  const pid_t parent = getpid();
+  if (pipe2(ends, O_CLOEXEC) != 0) throw UserError(askedAt, "no pipe to the mesh import could be made");
+  const pid_t child = fork();
+  if (child < 0) {
+    close(ends[0]);
+    close(ends[1]);
+    throw UserError(askedAt, "no process for the mesh import could be started");
+  }
+  if (child == 0) childMain(ends[1], parent, module, file, fileBytes, askedAt);
+  close(ends[1]);
+  bool late = false;
+  const std::string bytes = readUntil(ends[0], deadline, late);
+  close(ends[0]);
+  if (late) kill(child, SIGKILL);
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  std::string failure = "it ended without an answer";
+  if (late)
+    failure = "it took too long";
+  else if (WIFSIGNALED(status))
+    failure = "it was ended by signal " + std::to_string(WTERMSIG(status));
+  return decodeReply(late ? std::string() : bytes, file, failure);
+}
+
+}  // namespace pitviper

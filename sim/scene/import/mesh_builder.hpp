@@ -1,0 +1,41 @@
+#pragma once
+// Gathers VTK's polygons into one Mesh: cuts them into triangles, sorts them by part, checks every index.
+#include <map>
+#include <string>
+#include <vector>
+
+#include "sim/scene/import/checks.hpp"
+#include "sim/scene/mesh.hpp"
+
+class vtkPolyData;
+
+namespace pitviper {
+
+class MeshBuilder {
+ public:
+  explicit MeshBuilder(std::string file) : file_(std::move(file)) {}
+
+  /// Polygons and strips; lines and points are left out. Parts by `checked` if it has any, else all become `partName`.
+  /// Throws ImportFailure for indices out of range and for too many triangles.
+  void add(vtkPolyData* data, const CheckedFile& checked, const std::string& partName);
+
+  /// From glTF's axes (z forward, x left, y up) to ours.
+  void turnFromGltf();
+
+  /// Triangles ordered by part. Normals and uv only if all that was added had them.
+  Mesh take();
+
+ private:
+  void addTriangle(long long a, long long b, long long c, std::uint32_t part);
+  std::uint32_t partNumber(const std::string& name);
+
+  std::string file_;
+  Mesh mesh_;
+  std::vector<std::uint32_t> partOfTriangle_;
+  std::vector<std::string> partNames_;
+  std::map<std::string, std::uint32_t> partNumbers_;
+  std::size_t firstVertex_ = 0;
+  bool allNormals_ = true, allUv_ = true;
+};
+
+}  // namespace pitviper

@@ -1,0 +1,63 @@
+// The module's border: one C function, no exceptions out.
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <new>
+
+#include "sim/scene/import/checks.hpp"
+#include "sim/scene/import/import_failure.hpp"
+#include "sim/scene/import/import_reply.hpp"
+#include "sim/scene/import/vtk_readers.hpp"
+
+namespace pitviper {
+namespace {
+
+Mesh import(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  CheckedFile checked;
+  {
+    std::ifstream in(file, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (bytes.empty()) throw ImportFailure{{file}, "the file is empty or cannot be read", "a mesh", ""};
+    if (extension == ".obj")
+      checked = checkObj(file, bytes);
+    else if (extension == ".stl")
+      checked = checkStl(file, bytes);
+    else if (extension == ".ply")
+      checked = checkPly(file, bytes);
+    else if (extension == ".vtp")
+      checked = checkVtp(file, bytes);
+    else
+      checked = checkGltf(file, bytes);
+  }
+  Mesh mesh = readWithVtk(file, extension, checked);
+  if (mesh.triangles.empty()) throw ImportFailure{{file}, "the file has no triangles", "at least one", ""};
+  return mesh;
+}
+
+}  // namespace
+}  // namespace pitviper
+
+extern "C" __attribute__((visibility("default"))) void pitviperImportMesh(const char* file,
+                                                                          pitviper::ImportReply* reply) {
+  const auto failed = [&](const pitviper::Location& where, const std::string& wrong, const std::string& expected,
+                          const std::string& fix) {
+    reply->mesh = {};
+    reply->failed = true;
+    reply->where = where;
+    reply->wrong = wrong;
+    reply->expected = expected;
+    reply->fix = fix;
+  };
+  try {
+    reply->mesh = pitviper::import(file);
+  } catch (const pitviper::ImportFailure& failure) {
+    failed(failure.where, failure.wrong, failure.expected, failure.fix);
+  } catch (const std::bad_alloc&) {
+    failed({file}, "reading this file takes too much memory", "at most 1 GiB and sixteen times its size",
+           "simplify the mesh");
+  } catch (const std::exception& problem) {
+    failed({file}, std::string("the reader failed on this file (") + problem.what() + ")", "a sound file", "");
+  }
+}

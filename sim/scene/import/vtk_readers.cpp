@@ -1,0 +1,143 @@
+#include "sim/scene/import/vtk_readers.hpp"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <charconv>
+#include <cstdio>
+#include <string_view>
+
+#include <vtkCellArray.h>
+#include <vtkCompositeDataSet.h>
+#include <vtkDataObjectTreeIterator.h>
+#include <vtkGLTFReader.h>
+#include <vtkInformation.h>
+#include <vtkLogger.h>
+#include <vtkMultiBlockDataSet.h>
+#include <vtkNew.h>
+#include <vtkOBJReader.h>
+#include <vtkOutputWindow.h>
+#include <vtkPLYReader.h>
+#include <vtkPointData.h>
+#include <vtkPolyData.h>
+#include <vtkSTLReader.h>
+#include <vtkXMLPolyDataReader.h>
+
+#include "sim/scene/import/import_failure.hpp"
+#include "sim/scene/import/mesh_builder.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Takes what VTK would print. Observing ErrorEvent on a reader would miss the objects it uses inside.
+class Complaints : public vtkOutputWindow {
+ public:
+  static Complaints* New();
+  vtkTypeMacro(Complaints, vtkOutputWindow) void DisplayText(const char* text) override { note(text); }
+  void DisplayErrorText(const char* text) override { note(text); }
+  void DisplayWarningText(const char* text) override { note(text); }
+  void DisplayGenericWarningText(const char* text) override { note(text); }
+  void DisplayDebugText(const char*) override {}
+
+  std::string first;
+
+ private:
+  /// Keeps what follows the source's file name and the object's address: "ERROR: In F, line N\nvtkX (0x..): what".
+  void note(const char* text) {
+    if (!first.empty() || text == nullptr) return;
+    first = text;
+    if (const std::size_t object = first.find("): "); object != first.npos) first.erase(0, object + 3);
+    while (!first.empty() && static_cast<unsigned char>(first.back()) <= 32) first.pop_back();
+    if (first.empty()) first = "unknown error";
+  }
+};
+vtkStandardNewMacro(Complaints)
+
+    /// A file in memory under a name that a reader can open.
+    class MemoryFile {
+ public:
+  explicit MemoryFile(const std::string& bytes) : handle_(memfd_create("mesh", MFD_CLOEXEC)) {
+    for (std::size_t sent = 0; sent < bytes.size();) {
+      const ssize_t count = write(handle_, bytes.data() + sent, bytes.size() - sent);
+      if (count <= 0) throw std::bad_alloc();
+      sent += static_cast<std::size_t>(count);
+    }
+  }
+  ~MemoryFile() { close(handle_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+  std::string name() const { return "/proc/self/fd/" + std::to_string(handle_); }
+
+ private:
+  int handle_;
+};
+
+template <class Reader>
+void readOne(const std::string& name, const CheckedFile& checked, MeshBuilder& builder) {
+  vtkNew<Reader> reader;
+  reader->SetFileName(name.c_str());
+  reader->Update();
+  builder.add(reader->GetOutput(), checked, "");
+}
+
+void readGltf(const std::string& name, const CheckedFile& checked, MeshBuilder& builder) {
+  vtkNew<vtkGLTFReader> reader;
+  reader->SetFileName(name.c_str());
+  reader->SetApplyDeformationsToGeometry(true);  // node transforms and morph targets
+  reader->Update();
+  auto* tree = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
+  if (tree == nullptr) return;
+  vtkNew<vtkDataObjectTreeIterator> at;
+  at->SetDataSet(tree);
+  at->VisitOnlyLeavesOff();
+  at->TraverseSubTreeOn();
+  std::string node;
+  for (at->InitTraversal(); !at->IsDoneWithTraversal(); at->GoToNextItem()) {
+    // The reader calls blocks "Node_7" by the number in the file, below them "Mesh_0", and leaves the primitives
+    // unnamed.
+    vtkInformation* about = at->HasCurrentMetaData() ? at->GetCurrentMetaData() : nullptr;
+    const std::string_view block =
+        about != nullptr && about->Has(vtkCompositeDataSet::NAME()) ? about->Get(vtkCompositeDataSet::NAME()) : "";
+    std::size_t number = 0;
+    if (block.starts_with("Node_") &&
+        std::from_chars(block.data() + 5, block.data() + block.size(), number).ec == std::errc{} &&
+        number < checked.partNames.size())
+      node = checked.partNames[number];
+    if (auto* leaf = vtkPolyData::SafeDownCast(at->GetCurrentDataObject())) builder.add(leaf, {}, node);
+  }
+  builder.turnFromGltf();
+}
+
+/// Where the XML parser stopped, if that is what is said: "Error parsing XML in stream at line 7, column 3, ...".
+Location placeIn(const std::string& file, const std::string& complaint) {
+  int line = 0, column = -1;
+  if (std::sscanf(complaint.c_str(), "Error parsing XML in stream at line %d, column %d", &line, &column) != 2)
+    return {file};
+  return {file, line, column + 1};
+}
+
+}  // namespace
+
+Mesh readWithVtk(const std::string& file, const std::string& extension, const CheckedFile& checked) {
+  vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
+  vtkNew<Complaints> complaints;
+  vtkOutputWindow::SetInstance(complaints);
+  MeshBuilder builder(file);
+  const MemoryFile copy(checked.bytes);
+  const std::string name = checked.bytes.empty() ? file : copy.name();
+  if (extension == ".obj")
+    readOne<vtkOBJReader>(name, checked, builder);
+  else if (extension == ".stl")
+    readOne<vtkSTLReader>(name, checked, builder);
+  else if (extension == ".ply")
+    readOne<vtkPLYReader>(name, checked, builder);
+  else if (extension == ".vtp")
+    readOne<vtkXMLPolyDataReader>(name, checked, builder);
+  else
+    readGltf(name, checked, builder);
+  if (!complaints->first.empty())
+    throw ImportFailure{placeIn(file, complaints->first), "the reader says: " + complaints->first, "a sound file", ""};
+  return builder.take();
+}
+
+}  // namespace pitviper

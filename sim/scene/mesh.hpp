@@ -1,0 +1,28 @@
+#pragma once
+// Triangle mesh in body coordinates: x forward, y left, z up, metres.
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace pitviper {
+
+/// A named range of triangles of a mesh that can carry its own material and temperature ("nozzle", "skin").
+struct MeshPart {
+  std::string name;
+  std::uint32_t firstTriangle = 0;
+  std::uint32_t triangleCount = 0;
+};
+
+/// positions, normals (unit, outward) and uv have the same length; triangles are counter-clockwise seen from outside.
+/// parts cover all triangles in order, without gaps; a mesh without named parts has one, "all".
+struct Mesh {
+  std::vector<glm::vec3> positions;
+  std::vector<glm::vec3> normals;
+  std::vector<glm::vec2> uv;
+  std::vector<glm::uvec3> triangles;
+  std::vector<MeshPart> parts;
+  bool closed = false;  ///< every edge shared by exactly two triangles: back faces can't be seen from outside
+};
+
+}  // namespace pitviper

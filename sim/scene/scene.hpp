@@ -1,0 +1,71 @@
+#pragma once
+// What stands in a scene: textures, entities with their parts, point lights, the sun; and where all of it is at a time.
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sim/radiometry/spectrum.hpp"
+#include "sim/scene/geodesy.hpp"
+#include "sim/scene/mesh.hpp"
+#include "sim/scene/motion.hpp"
+
+namespace pitviper {
+
+/// One channel of floats, row 0 at v = 0 (bottom), repeated beyond 0..1, read bilinearly.
+struct Texture {
+  std::string name;
+  int width = 0, height = 0;
+  std::vector<float> texels;
+};
+
+/// A part of a mesh as it is in a scenario.
+struct Surface {
+  std::uint32_t meshPart = 0;
+  int material = 0;             ///< index into Simulation::materials
+  double temperature_K = 0.0;
+  int temperatureTexture = -1;  ///< index into Simulation::textures (K), or -1
+};
+
+struct Entity {
+  std::string name;
+  std::shared_ptr<const Mesh> mesh;
+  std::vector<Surface> surfaces;
+  Motion motion;
+  int parent = -1;  ///< motion is then in that entity's body frame
+  glm::vec3 boundingCentre{0.0f};
+  float boundingRadius_m = 0.0f;
+};
+
+/// Point light: intensity(lambda) x level(t) [W/(sr um)].
+struct PointLight {
+  std::string name;
+  Spectrum intensity;
+  double radius_m = 0.05;  ///< distances to it are bounded below by this
+  bool visible = true;     ///< adds its own flux to the pixel it is seen in
+  Motion motion;
+  int parent = -1;
+  std::vector<std::pair<double, double>> level;  ///< (time_s, factor), linear between, 0 outside; empty: 1 always
+  double levelAt(double time_s) const;
+};
+
+/// Directional light. toSun is a unit vector in the local frame; irradiance on a plane facing it [W/(m2 um)].
+struct Sun {
+  glm::dvec3 toSun{0.0, 0.0, 1.0};
+  Spectrum irradiance;
+};
+
+/// Poses at one time, in the local frame.
+struct WorldState {
+  double time_s = 0.0;
+  std::vector<Pose> entities;
+  std::vector<glm::dvec3> lights;
+  std::vector<double> lightLevels;
+};
+
+WorldState advance(const std::vector<Entity>& entities, const std::vector<PointLight>& lights, double time_s);
+
+/// Pose of a child given in its parent's body frame.
+Pose composed(const Pose& parent, const Pose& child);
+
+}  // namespace pitviper
