@@ -17,7 +17,7 @@ void addChannels(Frame& frame, const Camera& camera, const CameraImage& image, c
     const auto& slot = image.slots[static_cast<size_t>(slotOfOutput[o])];
     FrameLayer layer{output.layer(), output.unit, std::vector<float>(slot.size())};
     for (size_t p = 0; p < slot.size(); ++p)
-      layer.pixels[p] = static_cast<float>(output.scale * slot[p] * (output.perEtendue ? image.projectedSolidAngle_sr[p] : 1.0));
+      layer.pixels[p] = static_cast<float>(output.scale * slot[p] * (output.perEtendue ? image.solidAngles->projected_sr[p] : 1.0));
     frame.layers.push_back(std::move(layer));
   }
 }

@@ -11,7 +11,8 @@ namespace pitviper {
 
 CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene)
     : simulation_(simulation), camera_(camera), plan_(makePlan(simulation, camera.outputs, camera.spectral, camera.where)),
-      pass_(simulation, plan_, library, std::move(scene), camera.truth.any(), camera.pinhole.apertureArea_m2()) {}
+      pass_(simulation, plan_, library, std::move(scene), camera.truth.any(), camera.pinhole.apertureArea_m2()),
+      solidAngles_(std::make_shared<const Pinhole::SolidAngles>(camera.pinhole.solidAngles())) {}
 
 void CameraRenderer::begin(const WorldState& state) {
   state_ = state;
@@ -50,6 +51,7 @@ CameraImage CameraRenderer::finish() {
   addVisibleLights(image, simulation_, plan_, state_);
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
   resolved.slotOfOutput = plan_.slotOfOutput;
+  resolved.solidAngles = solidAngles_;
   return resolved;
 }
 

@@ -34,6 +34,7 @@ class CameraRenderer {
   WorldState state_;
   View view_;
   std::vector<char> small_;
+  std::shared_ptr<const Pinhole::SolidAngles> solidAngles_;
 };
 
 }  // namespace pitviper

@@ -37,28 +37,29 @@ CameraImage Subpixels::resolve(const Pinhole& pinhole, int samples) const {
   image.height = pinhole.height;
   const size_t pixels = static_cast<size_t>(pinhole.width) * static_cast<size_t>(pinhole.height);
   image.slots.assign(slots_.size(), std::vector<double>(pixels, 0.0));
-  image.projectedSolidAngle_sr.resize(pixels);
-  image.solidAngle_sr.resize(pixels);
   if (!truth_.empty()) image.truth.resize(pixels);
+  std::vector<double> weights(samples > 1 ? pixels * static_cast<size_t>(samples * samples) : 0);
+  std::vector<size_t> first(pixels);
   for (int row = 0; row < pinhole.height; ++row)
     for (int column = 0; column < pinhole.width; ++column) {
       const size_t p = static_cast<size_t>(row) * static_cast<size_t>(pinhole.width) + static_cast<size_t>(column);
-      image.projectedSolidAngle_sr[p] = pinhole.projectedSolidAngle_sr(column, row);
-      image.solidAngle_sr[p] = pinhole.solidAngle_sr(column, row);
       const int x0 = column * samples, y0 = (pinhole.height - 1 - row) * samples;
-      if (samples == 1) {
-        for (size_t s = 0; s < slots_.size(); ++s) image.slots[s][p] = slots_[s][index(x0, y0)];
-      } else {
-        double total = 0.0;
-        for (int j = 0; j < samples; ++j)
-          for (int i = 0; i < samples; ++i) {
-            const double weight = projectedSolidAngle_sr(x0 + i, y0 + j);
-            total += weight;
-            for (size_t s = 0; s < slots_.size(); ++s) image.slots[s][p] += weight * slots_[s][index(x0 + i, y0 + j)];
-          }
-        for (size_t s = 0; s < slots_.size(); ++s) image.slots[s][p] /= total;
-      }
+      first[p] = index(x0, y0);
       if (!truth_.empty()) image.truth[p] = truth_[index(x0 + samples / 2, y0 + samples / 2)];
+      double total = 0.0;
+      double* w = samples > 1 ? &weights[p * static_cast<size_t>(samples * samples)] : nullptr;
+      for (int k = 0; w && k < samples * samples; ++k) total += w[k] = projectedSolidAngle_sr(x0 + k % samples, y0 + k / samples);
+      for (int k = 0; w && k < samples * samples; ++k) w[k] /= total;
+    }
+  for (size_t s = 0; s < slots_.size(); ++s)
+    for (size_t p = 0; p < pixels; ++p) {
+      if (samples == 1) {
+        image.slots[s][p] = slots_[s][first[p]];
+        continue;
+      }
+      const double* w = &weights[p * static_cast<size_t>(samples * samples)];
+      for (int j = 0; j < samples; ++j)
+        for (int i = 0; i < samples; ++i) image.slots[s][p] += *w++ * slots_[s][first[p] + static_cast<size_t>(j) * static_cast<size_t>(view_.width) + static_cast<size_t>(i)];
     }
   return image;
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The image of a camera at subpixel resolution, in double precision, while bodies and lights smaller than a pixel are added; then
 // resolved into pixels.
+#include <memory>
 #include <vector>
 
 #include "sim/plan/plan.hpp"
@@ -20,8 +21,7 @@ struct TruthPixel {
 struct CameraImage {
   int width = 0, height = 0;
   std::vector<std::vector<double>> slots;      ///< [slot][pixel], kernel unit x W/(m2 sr)
-  std::vector<double> projectedSolidAngle_sr;  ///< per pixel
-  std::vector<double> solidAngle_sr;           ///< per pixel
+  std::shared_ptr<const Pinhole::SolidAngles> solidAngles;
   std::vector<TruthPixel> truth;               ///< per pixel, or empty
   std::vector<int> slotOfOutput;               ///< from the plan
 };

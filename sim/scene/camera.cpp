@@ -25,6 +25,16 @@ double Pinhole::integral(int column, int row, int power) const {
 double Pinhole::solidAngle_sr(int column, int row) const { return integral(column, row, 3); }
 double Pinhole::projectedSolidAngle_sr(int column, int row) const { return integral(column, row, 4); }
 
+Pinhole::SolidAngles Pinhole::solidAngles() const {
+  SolidAngles all;
+  for (int row = 0; row < height; ++row)
+    for (int column = 0; column < width; ++column) {
+      all.plain_sr.push_back(solidAngle_sr(column, row));
+      all.projected_sr.push_back(projectedSolidAngle_sr(column, row));
+    }
+  return all;
+}
+
 Pose cameraPose(const Mount& mount, const WorldState& state) {
   Pose pose = mount.motion.at(state.time_s);
   if (mount.carrier >= 0) pose = composed(state.entities[static_cast<size_t>(mount.carrier)], pose);

@@ -1,6 +1,7 @@
 #pragma once
 // Pinhole projection with a real aperture and a flat film.
 #include <string>
+#include <vector>
 
 #include "sim/scene/motion.hpp"
 
@@ -19,6 +20,11 @@ struct Pinhole {
   double tanY(double row) const { return (0.5 * height - row) * pitchY_m / focalLength_m; }
   /// Solid angle of a pixel [sr], integral of dOmega; relative error below 1e-9 for pixels under 3 degrees.
   double solidAngle_sr(int column, int row) const;
+  /// Both for every pixel, row by row from the top.
+  struct SolidAngles {
+    std::vector<double> plain_sr, projected_sr;
+  };
+  SolidAngles solidAngles() const;
   /// Projected solid angle [sr], integral of cos(psi) dOmega: radiance times this is irradiance on the aperture.
   double projectedSolidAngle_sr(int column, int row) const;
 
