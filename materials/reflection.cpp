@@ -33,27 +33,45 @@ class Lambertian final : public ReflectionComponent {
 /// Directional-hemispherical reflectance of the unit Phong lobe:
 ///   A(theta) = (n + 2) / (n + 1) / (2 pi) integral_0^1 dt integral dphi max(0, cos theta cos alpha + sin theta sin alpha cos phi),
 /// t = cos^(n+1) alpha; the azimuth integral in closed form.
-double phongAlbedo(double n, double theta) {
+class PhongAlbedo {
+ public:
+  explicit PhongAlbedo(double n) : factor_((n + 2.0) / (n + 1.0) / (2.0 * kPi)) {
+    static const double edges[] = {0.0, 1e-6, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0};
+    for (const auto& node : fineNodes(0.0, 1.0, edges, 512)) {
+      const double ca = std::pow(node.x, 1.0 / (n + 1.0));
+      rings_.push_back({ca, std::sqrt(std::max(0.0, 1.0 - ca * ca)), node.weight});
+    }
+  }
+  double at(double theta) const;
+
+ private:
+  struct Ring {
+    double cosine, sine, weight;
+  };
+  double factor_;
+  std::vector<Ring> rings_;
+};
+
+double PhongAlbedo::at(double theta) const {
   const double ct = std::cos(theta), st = std::sin(theta);
   double sum = 0.0;
-  static const double edges[] = {0.0, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0};
-  for (const auto& node : fineNodes(0.0, 1.0, edges, 512)) {
-    const double ca = std::pow(node.x, 1.0 / (n + 1.0)), sa = std::sqrt(std::max(0.0, 1.0 - ca * ca));
-    const double a = ct * ca, b = st * sa;
+  for (const Ring& r : rings_) {
+    const double a = ct * r.cosine, b = st * r.sine;
     double ring = 2.0 * kPi * a;
     if (b > a) {
       const double phi = std::acos(std::clamp(-a / b, -1.0, 1.0));
       ring = 2.0 * (phi * a + b * std::sin(phi));
     }
-    sum += node.weight * ring;
+    sum += r.weight * ring;
   }
-  return (n + 2.0) / (n + 1.0) / (2.0 * kPi) * sum;
+  return factor_ * sum;
 }
 
 class Phong final : public ReflectionComponent {
  public:
   Phong(Spectrum reflectance, double exponent) : reflectance_(std::move(reflectance)), exponent_(exponent) {
-    for (int i = 0; i <= kAngles; ++i) albedo_.push_back(phongAlbedo(exponent, 0.5 * kPi * i / kAngles));
+    const PhongAlbedo albedo(exponent);
+    for (int i = 0; i <= kAngles; ++i) albedo_.push_back(albedo.at(0.5 * kPi * i / kAngles));
   }
   double column(double w, double, double) const override { return reflectance_(w); }
   double lobeExponent() const override { return exponent_; }
@@ -78,8 +96,7 @@ class Phong final : public ReflectionComponent {
 class Tabulated final : public ReflectionComponent {
  public:
   explicit Tabulated(BrdfTable table) : table_(std::move(table)) {
-    for (int i = 0; i <= kAngles; ++i)
-      for (double w : table_.wavelength_um) albedo_.push_back(ReflectionComponent::hemispherical(w, 0.5 * kPi * i / kAngles));
+    for (int i = 0; i <= kAngles; ++i) addAlbedo(0.5 * kPi * i / kAngles);
   }
   std::array<AngleAxis, 2> axes() const override { return table_.axes; }
   double column(double w, double angle1, double angle2) const override {
@@ -107,6 +124,31 @@ class Tabulated final : public ReflectionComponent {
  private:
   static constexpr int kAngles = 90;
 
+  /// The rule of ReflectionComponent::hemispherical() for all wavelengths at once: the angles cost more than the table. A table does not
+  /// tell one side of the plane of view from the other, so half the azimuths do.
+  void addAlbedo(double viewAngle) {
+    static const auto polar = gaussLegendre(48, 0.0, 1.0);
+    constexpr int azimuths = 64;
+    const size_t wavelengths = table_.wavelength_um.size(), first = albedo_.size();
+    albedo_.resize(first + wavelengths, 0.0);
+    const glm::dvec3 view(std::sin(viewAngle), 0.0, std::cos(viewAngle));
+    for (const auto& p : polar) {
+      const double c = std::sqrt(p.x), s = std::sqrt(1.0 - p.x);
+      for (int i = 0; i < azimuths / 2; ++i) {
+        const double phi = 2.0 * kPi * (i + 0.5) / azimuths;
+        const glm::dvec3 light(s * std::cos(phi), s * std::sin(phi), c);
+        const auto [i1, f1] = anglePlace(table_.axes[0], angleBetween(table_.axes[0].angle, light, view));
+        const auto [i2, f2] = anglePlace(table_.axes[1], angleBetween(table_.axes[1].angle, light, view));
+        for (int corner = 0; corner < 4; ++corner) {
+          const double weight = 2.0 * kPi / azimuths * p.weight * ((corner & 1) ? f1 : 1 - f1) * ((corner & 2) ? f2 : 1 - f2);
+          if (weight == 0.0) continue;
+          const double* row = &table_.values[rowAt(i1 + (corner & 1), i2 + ((corner >> 1) & 1))];
+          for (size_t w = 0; w < wavelengths; ++w) albedo_[first + w] += weight * row[w];
+        }
+      }
+    }
+  }
+
   std::pair<size_t, double> wavelengthPlace(double w) const {
     const auto& x = table_.wavelength_um;
     if (w < x.front() || w > x.back()) throw OutsideSpectrum("a BRDF table has no data at " + std::to_string(w) + " um");
@@ -120,11 +162,14 @@ class Tabulated final : public ReflectionComponent {
     const size_t i = std::min(static_cast<size_t>(x), static_cast<size_t>(axis.count - 2));
     return {i, x - static_cast<double>(i)};
   }
-  double at(size_t w, size_t a1, size_t a2) const {
-    w = std::min(w, table_.wavelength_um.size() - 1);
+  /// Where the wavelengths of two angles begin.
+  size_t rowAt(size_t a1, size_t a2) const {
     a1 = std::min(a1, static_cast<size_t>(table_.axes[0].count - 1));
     a2 = std::min(a2, static_cast<size_t>(table_.axes[1].count - 1));
-    return table_.values[(a2 * static_cast<size_t>(table_.axes[0].count) + a1) * table_.wavelength_um.size() + w];
+    return (a2 * static_cast<size_t>(table_.axes[0].count) + a1) * table_.wavelength_um.size();
+  }
+  double at(size_t w, size_t a1, size_t a2) const {
+    return table_.values[rowAt(a1, a2) + std::min(w, table_.wavelength_um.size() - 1)];
   }
 
   BrdfTable table_;

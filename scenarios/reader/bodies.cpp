@@ -12,6 +12,11 @@
 
 namespace pitviper {
 
+namespace {
+/// About 300 MB of vertices and indices.
+constexpr std::size_t kMostSceneTriangles = 10000000;
+}  // namespace
+
 glm::dvec3 Builder::readPosition(const Record& r, bool required) {
   if (r.given("position") && r.given("geodetic"))
     throw UserError(r.where("geodetic"), "a position and a geodetic position", "one of the two", "remove one");
@@ -20,9 +25,7 @@ glm::dvec3 Builder::readPosition(const Record& r, bool required) {
     return simulation_.frame.toLocal({g.number("latitude"), g.number("longitude"), g.number("height")});
   }
   if (r.given("position")) {
-    const glm::dvec3 p = r.vector("position");
-    if (glm::length(p) > 1e9) throw UserError(r.where("position"), "a position more than a million km away", "metres from the origin", "check the unit");
-    return p;
+    return r.vector("position");
   }
   if (required) throw UserError(r.where(), "no position", "'position: [0 m, 0 m, 100 m]', 'geodetic' or 'motion'", "add it");
   return glm::dvec3(0.0);
@@ -54,7 +57,8 @@ Builder::Placement Builder::readPlacement(const Record& r, bool attitude) {
       point.position = readPosition(w, true);
       point.attitude = readAttitude(w, p.carrier >= 0);
       if (w.given("roll")) point.roll_rad = w.number("roll");
-      if (!waypoints.empty() && point.time_s <= waypoints.back().time_s)
+      // 1 ns: velocities stay finite however far apart the positions are.
+      if (!waypoints.empty() && point.time_s < waypoints.back().time_s + 1e-9)
         throw UserError(w.where("time"), "the times of a motion do not rise", "each waypoint later than the one before", "sort the waypoints");
       waypoints.push_back(point);
     }
@@ -103,8 +107,8 @@ std::shared_ptr<const Mesh> Builder::readShape(const Value& value) {
       const int texture = readTexture(r.value("height_map"), "m", "a height map", -1e4, 1e4);
       const Texture t = std::move(simulation_.textures.back());
       simulation_.textures.resize(static_cast<size_t>(texture));
-      if (t.width < 2 || t.height < 2 || t.width > 4096 || t.height > 4096)
-        throw UserError(r.where("height_map"), "a height map of " + std::to_string(t.width) + "x" + std::to_string(t.height), "2x2 to 4096x4096", "resize it");
+      if (t.width < 2 || t.height < 2 || t.width > 2048 || t.height > 2048)
+        throw UserError(r.where("height_map"), "a height map of " + std::to_string(t.width) + "x" + std::to_string(t.height), "2x2 to 2048x2048", "resize it");
       *mesh = makeTerrain(need("size"), t.width - 1, t.height - 1, t.texels);
     } else {
       TerrainShape shape;
@@ -175,7 +179,7 @@ void Builder::readSurfaces(const Record& r, Entity& entity) {
     } else {
       s.temperature_K = readNumber(*temperature, "K", "temperature");
       if (s.temperature_K < 0.0 || s.temperature_K > 1e5)
-        throw UserError(temperature->where, "temperature is out of range (" + temperature->text + ")", "0 to 100000 K", "correct it");
+        throw UserError(temperature->where, "temperature is out of range (" + temperature->text.substr(0, 40) + ")", "0 to 100000 K", "correct it");
     }
     entity.surfaces.push_back(s);
   }
@@ -191,7 +195,8 @@ void Builder::readEntities(const Record& scenario) {
     checkUnique(r.value("name"), entityNames_, "entity");
     e.mesh = readShape(r.value("shape"));
     triangles += e.mesh->triangles.size();
-    if (triangles > 20000000) throw UserError(r.where(), "more than 20 million triangles in the scene", "fewer", "simplify meshes");
+    if (triangles > kMostSceneTriangles)
+      throw UserError(r.where("shape"), "the scene has more than " + std::to_string(kMostSceneTriangles) + " triangles with this body", "fewer", "simplify meshes, or lower 'segments' and 'columns'");
     readSurfaces(r, e);
     const Placement p = readPlacement(r, true);
     e.motion = p.motion;
@@ -211,15 +216,15 @@ void Builder::readLights(const Record& scenario) {
     PointLight l;
     l.name = r.text("name");
     checkUnique(r.value("name"), lightNames_, "light");
-    l.intensity = bounded(r.value("intensity"), "W/(sr um)", "intensity", 0.0, INFINITY);
+    l.intensity = bounded(spectra_, r.value("intensity"), "W/(sr um)", "intensity", 0.0, INFINITY);
     l.radius_m = r.number("radius");
     l.visible = r.boolean("visible");
     if (r.given("level"))
       for (const Value& row : r.value("level").items) {
         if (row.kind != Value::Kind::List || row.items.size() != 2) throw UserError(row.where, "not a row [time, factor]", "[0.5 s, 1]", "write two values");
         const double t = readNumber(row.items[0], "s", "time"), f = readNumber(row.items[1], "", "factor");
-        if (f < 0.0 || (!l.level.empty() && t <= l.level.back().first))
-          throw UserError(row.where, "levels must not be negative and their times must rise", "rising times", "correct the row");
+        if (!(f >= 0.0 && f <= 1e6)) throw UserError(row.items[1].where, "a factor of a light's level is out of range (" + row.items[1].text.substr(0, 40) + ")", "0 to 1e6", "correct the row");
+        if (!l.level.empty() && t <= l.level.back().first) throw UserError(row.items[0].where, "the times of a light's level do not rise", "each row later than the one before", "sort the rows");
         l.level.emplace_back(t, f);
       }
     const Placement p = readPlacement(r, false);

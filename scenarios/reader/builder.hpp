@@ -1,5 +1,6 @@
 #pragma once
 // What the parts of the scenario reader share: the simulation being built, names seen so far, libraries.
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,6 +31,7 @@ class Builder {
   // materials.cpp
   int materialNamed(const Value& asked);
   std::shared_ptr<const Material> readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra);
+  void countTable(const Record& component);
   int readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest);
   // scene.cpp
   struct Placement {
@@ -44,15 +46,21 @@ class Builder {
   int entityNamed(const Value& asked) const;
   // cameras.cpp
   std::vector<ChannelOutput> readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s);
+  Spectrum readResponse(const Record& channel) const;
+  void keepOutput(std::vector<ChannelOutput>& outputs, const std::function<ChannelOutput()>& make, const Location& where) const;
+  void planned(const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where) const;
   SpectralSampling readSpectral(const Record& r);
 
   void checkUnique(const Value& name, std::map<std::string, Location>& names, const char* what);
-  /// A spectrum whose values lie in [low, high] wherever it has data.
-  Spectrum bounded(const Value& value, std::string_view unit, std::string_view name, double low, double high, Outside outside = Outside::Error);
+  /// A spectrum whose values are finite and lie in [low, high] wherever it has data.
+  static Spectrum bounded(const SpectrumReader& spectra, const Value& value, std::string_view unit, std::string_view name, double low, double high,
+                          Outside outside = Outside::Error);
+  Spectrum blackOrGiven(const Record& r, const char* what) const;
 
   Simulation& simulation_;
   Libraries libraries_;
   SpectrumReader spectra_;
+  std::size_t brdfTables_ = 0, brdfWavelengths_ = 0;
   std::map<std::string, int> materialIndex_;
   std::map<std::string, const Value*> materialValues_;
   std::map<std::string, Location> entityNames_, lightNames_, cameraNames_;

@@ -12,6 +12,9 @@
 namespace pitviper {
 namespace {
 
+/// Each is about 16 nodes of a quadrature: a second in all.
+constexpr std::size_t kMostPlanSteps = 4000000;
+
 Gain readGain(const Value& v) {
   const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
   if (q) {
@@ -34,6 +37,39 @@ SpectralSampling Builder::readSpectral(const Record& owner) {
   return s;
 }
 
+Spectrum Builder::readResponse(const Record& channel) const {
+  const Location where = channel.where("response");
+  const std::string name = "the response of channel '" + channel.text("name") + "'";
+  Spectrum s = bounded(spectra_, channel.value("response"), "", name, 0.0, INFINITY, Outside::Zero);
+  if (s.supportHigh() >= kLongestWavelength_um)
+    throw UserError(where, name + " has no band", "a table, a library name, or {band: [3 um, 5 um]}", "give it edges");
+  const double low = std::max(s.supportLow(), s.validLow()), high = std::min(s.supportHigh(), s.validHigh());
+  // 1e-30: what is left of a product of responses that hardly overlap; its quadrature would be one of rounding errors.
+  if (!(low < high) || s.maximum(low, high) < 1e-30)
+    throw UserError(where, name + " is zero everywhere", "a response above zero somewhere", "check its band or table, and whether its factors overlap");
+  return s;
+}
+
+void Builder::keepOutput(std::vector<ChannelOutput>& outputs, const std::function<ChannelOutput()>& make, const Location& where) const {
+  try {
+    outputs.push_back(make());
+  } catch (const OutsideSpectrum& e) {
+    throw UserError(where, "channel: " + std::string(e.what()), "factors of a response that cover its band", "extend the table or declare 'outside: zero'");
+  }
+  const ChannelOutput& output = outputs.back();
+  spectra_.count(output.kernel, where);
+  if (!(std::isfinite(output.scale) && std::abs(output.scale) < 1e30))
+    throw UserError(where, "the factor of '" + output.layer() + "' is larger than any that can be drawn", "a pixel of usual size", "check film, focal length, aperture, exposure and gain");
+}
+
+void Builder::planned(const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where) const {
+  for (const ChannelOutput& output : outputs)
+    if (output.kernel.knots().size() * static_cast<std::size_t>(sampling.samples) > kMostPlanSteps)
+      throw UserError(output.where, "the spectra of channel '" + output.channel + "' have too many rows for " + std::to_string(sampling.samples) + " wavelengths", "rows x wavelengths of at most " + std::to_string(kMostPlanSteps),
+                      "thin the tables out, or lower 'spectral.samples'");
+  makePlan(simulation_, outputs, sampling, where);  // its mistakes are the scenario's
+}
+
 std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s) {
   if (list.items.empty()) throw UserError(list.where, "no channel", "at least one channel with name and response", "add '- {name: mw, response: {band: [3 um, 5 um]}}'");
   std::map<std::string, Location> names;
@@ -44,15 +80,14 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
     d.channel = r.text("name");
     d.where = v.where;
     checkUnique(r.value("name"), names, "channel");
-    d.response = bounded(r.value("response"), "", "response", 0.0, INFINITY, Outside::Zero);
-    if (!(d.response.supportHigh() < kLongestWavelength_um) || !(d.response.supportLow() > kShortestWavelength_um * 0.999))
-      if (d.response.supportHigh() >= kLongestWavelength_um)
-        throw UserError(r.where("response"), "the response of channel '" + d.channel + "' has no band", "a table, a library name, or {band: [3 um, 5 um]}", "give it edges");
+    d.response = readResponse(r);
     if (optics) d.optics = *optics;
-    if (r.given("quantum_efficiency")) d.quantumEfficiency = bounded(r.value("quantum_efficiency"), "", "quantum efficiency", 0.0, 1.0, Outside::Zero);
+    if (r.given("quantum_efficiency")) d.quantumEfficiency = bounded(spectra_, r.value("quantum_efficiency"), "", "quantum efficiency", 0.0, 1.0, Outside::Zero);
     if (r.given("gain")) d.gain = readGain(r.value("gain"));
     std::vector<std::pair<std::string, Location>> wanted;
     const auto allowed = pinhole ? quantityNames() : probeQuantityNames();
+    if (r.given("output") && r.value("output").kind == Value::Kind::List && r.value("output").items.empty())
+      throw UserError(r.where("output"), "output is an empty list", "at least one quantity", "write 'output: radiance'");
     if (!r.given("output")) {
       wanted.emplace_back(allowed.front(), v.where);
     } else if (r.value("output").kind == Value::Kind::List) {
@@ -75,7 +110,7 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
         d.photopic = spectra_.read(photopic, "", "V(lambda)", Outside::Zero);
       }
       d.where = where;
-      outputs.push_back(pinhole ? makeOutput(d, quantity, *pinhole, exposure_s) : makeProbeOutput(d, quantity));
+      keepOutput(outputs, [&] { return pinhole ? makeOutput(d, quantity, *pinhole, exposure_s) : makeProbeOutput(d, quantity); }, where);
       for (size_t i = 0; i + 1 < outputs.size(); ++i)
         if (outputs[i].layer() == outputs.back().layer()) throw UserError(where, "'" + quantity + "' twice in channel '" + d.channel + "'", "each quantity once", "remove one");
     }
@@ -130,6 +165,7 @@ void Builder::readCameras(const Record& scenario) {
       if (target.kind == Value::Kind::List || (target.kind == Value::Kind::Scalar && target.text.find(',') != std::string::npos)) {
         c.mount.looksAtPoint = true;
         c.mount.lookAtPoint = readVector(target, "m", "look_at");
+        if (!(glm::length(c.mount.lookAtPoint) <= 1e9)) throw UserError(target.where, "look_at is more than a million km away", "metres from the origin", "check the unit");
       } else {
         c.mount.lookAtEntity = entityNamed(target);
         if (c.mount.lookAtEntity == c.mount.carrier) throw UserError(target.where, "a camera looks at the body that carries it", "another body", "change look_at");
@@ -139,7 +175,7 @@ void Builder::readCameras(const Record& scenario) {
     }
 
     Spectrum optics(1.0);
-    if (r.given("optics")) optics = bounded(r.value("optics"), "", "optics transmission", 0.0, 1.0, Outside::Zero);
+    if (r.given("optics")) optics = bounded(spectra_, r.value("optics"), "", "optics transmission", 0.0, 1.0, Outside::Zero);
     c.outputs = readChannels(r.value("channels"), &optics, &p, c.exposure_s);
     if (r.given("truth"))
       for (const Value& t : r.value("truth").items) {
@@ -154,7 +190,7 @@ void Builder::readCameras(const Record& scenario) {
         else throw UserError(t.where, "there is no truth layer '" + word.substr(0, 40) + "'", "range, entity, temperature, normal, area, solid_angles",
                              nearestWord(word, names).empty() ? "choose one" : "did you mean '" + nearestWord(word, names) + "'?");
       }
-    makePlan(simulation_, c.outputs, c.spectral, c.where);  // its mistakes are the scenario's
+    planned(c.outputs, c.spectral, c.where);
     simulation_.cameras.push_back(std::move(c));
   }
 }
@@ -174,7 +210,7 @@ void Builder::readProbes(const Record& scenario) {
     p.resolution = static_cast<int>(r.integer("resolution")) / 2 * 2;
     p.spectral = readSpectral(r);
     p.outputs = readChannels(r.value("channels"), nullptr, nullptr, 0.0);
-    makePlan(simulation_, p.outputs, p.spectral, p.where);
+    planned(p.outputs, p.spectral, p.where);
     simulation_.probes.push_back(std::move(p));
   }
 }

@@ -11,6 +11,15 @@
 namespace pitviper {
 namespace {
 
+/// As many as one YAML file can hold.
+constexpr std::size_t kMostTableValues = 400000;
+/// Each table takes about 20 ms to integrate over the hemisphere, and 1 ms more for each wavelength.
+constexpr std::size_t kMostTables = 64, kMostTableWavelengths = 1024;
+/// Each Phong lobe takes about 10 ms to integrate.
+constexpr std::size_t kMostMaterials = 256;
+/// 160 MB of texels.
+constexpr std::size_t kMostTexels = 40000000;
+
 Angle angleNamed(const std::string& word) {
   if (word == "incidence") return Angle::Incidence;
   if (word == "view") return Angle::View;
@@ -55,7 +64,8 @@ std::shared_ptr<const ReflectionComponent> readTable(const Record& r) {
   }
   size_t total = 1;
   for (size_t e : extents) total *= e;
-  if (total > 4000000) throw UserError(r.where("values"), "a BRDF table of " + std::to_string(total) + " values", "at most 4000000", "thin it out");
+  if (total > kMostTableValues)
+    throw UserError(r.where("values"), "a BRDF table of " + std::to_string(total) + " values", "at most " + std::to_string(kMostTableValues), "thin it out");
   flatten(r.value("values"), extents, 0, t.values);
   return makeTabulated(std::move(t));
 }
@@ -100,22 +110,31 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
   for (float x : t.texels)
     if (!(static_cast<double>(x) >= lowest && static_cast<double>(x) <= highest))
       throw UserError(r.where(), "the texture of " + std::string(name) + " holds " + std::to_string(x), std::to_string(lowest) + " to " + std::to_string(highest), "correct its range");
+  std::size_t texels = t.texels.size();
+  for (const Texture& other : simulation_.textures) texels += other.texels.size();
+  if (texels > kMostTexels)
+    throw UserError(r.where(), "the textures of this scenario have more than " + std::to_string(kMostTexels) + " pixels together", "fewer", "make them smaller");
   simulation_.textures.push_back(std::move(t));
   return static_cast<int>(simulation_.textures.size()) - 1;
 }
 
+void Builder::countTable(const Record& component) {
+  brdfWavelengths_ += component.value("wavelength").items.size();
+  if (++brdfTables_ > kMostTables || brdfWavelengths_ > kMostTableWavelengths)
+    throw UserError(component.where(), "more than " + std::to_string(kMostTables) + " BRDF tables, or " + std::to_string(kMostTableWavelengths) + " wavelengths in them together", "fewer",
+                    "share materials, or thin the tables out");
+}
+
 std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra) {
   const Record r(value, tables::material());
+  if (simulation_.materials.size() >= kMostMaterials)
+    throw UserError(value.where, "more than " + std::to_string(kMostMaterials) + " materials", "fewer", "give alike materials a name under 'materials:' and use it more than once");
   auto m = std::make_shared<Material>();
   m->name = name;
   m->where = value.where;
   if (r.given("source")) m->provenance = r.text("source");
   auto fraction = [&](const Value& v, const char* what) {
-    const Spectrum s = spectra.read(v, "", what);
-    const double from = std::max(s.validLow(), s.supportLow()), to = std::min(s.validHigh(), s.supportHigh());
-    if (s.minimum(from, to) < 0.0 || s.maximum(from, to) > 1.0)
-      throw UserError(v.where, std::string(what) + " of material '" + name + "' leaves 0..1", "fractions", "correct its values");
-    return s;
+    return bounded(spectra, v, "", std::string(what) + " of material '" + name.substr(0, 60) + "'", 0.0, 1.0);
   };
   if (r.given("components"))
     for (const Value& c : r.value("components").items) {
@@ -124,7 +143,10 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
       if (kind != "table" && !k.given("reflectance"))
         throw UserError(k.where(), "a " + kind + " component without a reflectance", "'reflectance: 0.3' or a spectrum", "add it");
       if (kind == "phong" && !k.given("exponent")) throw UserError(k.where(), "a phong component without an exponent", "'exponent: 50'", "add it");
-      if (kind == "table") m->reflections.push_back(readTable(k));
+      if (kind == "table") {
+        m->reflections.push_back(readTable(k));
+        countTable(k);
+      }
       else if (kind == "phong") m->reflections.push_back(makePhong(fraction(k.value("reflectance"), "reflectance"), k.number("exponent")));
       else m->reflections.push_back(makeLambertian(fraction(k.value("reflectance"), "reflectance")));
       m->modifiers.push_back(k.given("modifier") ? readTexture(k.value("modifier"), "", "a modifier", 0.0, 1.0) : -1);
@@ -148,7 +170,7 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
   // Energy: reflectance (and a given emissivity with it) must not exceed 1 anywhere, at any view angle.
   const double low = std::max(m->validLow_um(), kShortestWavelength_um), high = std::min(m->validHigh_um(), kLongestWavelength_um);
   for (int i = 0; i <= 64 && low <= high; ++i) {
-    const double w = low * std::pow(high / low, i / 64.0);
+    const double w = std::clamp(low * std::pow(high / low, i / 64.0), low, high);  // rounding must not lead out of the data
     for (double angle : {0.0, 0.5, 1.0, 1.4}) {
       const double rho = m->reflectance(w, angle), sum = rho + (m->given ? m->given->at(w, angle) : 0.0);
       if (sum > 1.0 + 1e-6)

@@ -1,5 +1,7 @@
 // Origin, time, air, background, sun and ambient light.
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "atmosphere/homogeneous.hpp"
 #include "scenarios/reader/builder.hpp"
@@ -8,6 +10,15 @@
 
 namespace pitviper {
 namespace {
+
+/// Far below the end of a float, 3.4e38.
+constexpr double kLargestFloatValue = 1e30;
+
+std::string shortNumber(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", v);
+  return text;
+}
 
 std::string libraryNames(const std::filesystem::path& folder, const std::string& word, std::string& nearest) {
   std::vector<std::string> names;
@@ -42,12 +53,15 @@ void Builder::checkUnique(const Value& name, std::map<std::string, Location>& na
   if (name.text.size() > 64) throw UserError(name.where, std::string("the name of a ") + what + " is too long", "at most 64 characters", "shorten it");
 }
 
-Spectrum Builder::bounded(const Value& value, std::string_view unit, std::string_view name, double low, double high, Outside outside) {
-  const Spectrum s = spectra_.read(value, unit, name, outside);
+Spectrum Builder::bounded(const SpectrumReader& spectra, const Value& value, std::string_view unit, std::string_view name, double low, double high, Outside outside) {
+  Spectrum s = spectra.read(value, unit, name, outside);
   const double from = std::max(s.validLow(), s.supportLow()), to = std::min(s.validHigh(), s.supportHigh());
-  if (from <= to && (s.minimum(from, to) < low || s.maximum(from, to) > high))
-    throw UserError(value.where, std::string(name) + " leaves its range (" + std::to_string(s.minimum(from, to)) + " to " + std::to_string(s.maximum(from, to)) + ")",
-                    std::isfinite(high) ? "values from " + std::to_string(low) + " to " + std::to_string(high) : "values of at least 0", "correct its values");
+  if (from > to) return s;  // no wavelength at which it says anything: whoever asks it for a band is told so
+  const double least = s.minimum(from, to), most = s.maximum(from, to);
+  // Products of allowed factors can still be beyond a float; such a maximum is infinite or, from 0 x infinity, none at all.
+  if (!(least >= low && most <= std::min(high, kLargestFloatValue) && std::isfinite(least) && std::isfinite(most)))
+    throw UserError(value.where, std::string(name) + " leaves its range: it goes from " + shortNumber(least) + " to " + shortNumber(most),
+                    std::isfinite(high) ? "values from " + shortNumber(low) + " to " + shortNumber(high) : "values of at least 0, at most 1e30", "correct its values");
   return s;
 }
 
@@ -83,14 +97,11 @@ void Builder::readAtmosphere(const Record& scenario) {
   bool have = false;
   auto take = [&](const Record& from, const SpectrumReader& spectra) {
     if (from.given("extinction")) {
-      air.extinction_per_m = spectra.read(from.value("extinction"), "1/m", "extinction");
-      const Spectrum& s = air.extinction_per_m;
-      if (s.minimum(std::max(s.validLow(), s.supportLow()), std::min(s.validHigh(), s.supportHigh())) < 0.0)
-        throw UserError(from.where("extinction"), "extinction is negative somewhere", "at least 0 /km", "correct its values");
+      air.extinction_per_m = bounded(spectra, from.value("extinction"), "1/m", "extinction", 0.0, INFINITY);
       have = true;
     }
     if (from.given("temperature")) air.temperature_K = from.number("temperature");
-    if (from.given("radiance")) air.radiance = spectra.read(from.value("radiance"), "W/(m2 sr um)", "air radiance");
+    if (from.given("radiance")) air.radiance = bounded(spectra, from.value("radiance"), "W/(m2 sr um)", "air radiance", 0.0, INFINITY);
   };
   if (r.given("library")) {
     const std::string name = r.text("library");
@@ -110,25 +121,23 @@ void Builder::readAtmosphere(const Record& scenario) {
   simulation_.path = makeHomogeneousAir(std::move(air));
 }
 
-namespace {
 /// A map with either temperature or radiance.
-Spectrum blackOrGiven(const Record& r, const SpectrumReader& spectra, const char* what) {
+Spectrum Builder::blackOrGiven(const Record& r, const char* what) const {
   if (r.given("temperature") == r.given("radiance"))
     throw UserError(r.where(), std::string(what) + (r.given("radiance") ? " has a temperature and a radiance" : " has neither temperature nor radiance"), "one of the two",
                     r.given("radiance") ? "remove one" : "add 'temperature: 280 K'");
   if (r.given("temperature")) return Spectrum(Spectrum::BlackBody{r.number("temperature"), 1.0});
-  return spectra.read(r.value("radiance"), "W/(m2 sr um)", what);
+  return bounded(spectra_, r.value("radiance"), "W/(m2 sr um)", what, 0.0, INFINITY);
 }
-}  // namespace
 
 void Builder::readBackground(const Record& scenario) {
   if (!scenario.given("background")) return;
-  simulation_.background = blackOrGiven(Record(scenario.value("background"), tables::background()), spectra_, "background");
+  simulation_.background = blackOrGiven(Record(scenario.value("background"), tables::background()), "background");
 }
 
 void Builder::readAmbient(const Record& scenario) {
   if (!scenario.given("ambient")) return;
-  simulation_.ambient = blackOrGiven(Record(scenario.value("ambient"), tables::ambient()), spectra_, "ambient");
+  simulation_.ambient = blackOrGiven(Record(scenario.value("ambient"), tables::ambient()), "ambient");
 }
 
 void Builder::readSun(const Record& scenario) {
@@ -141,7 +150,7 @@ void Builder::readSun(const Record& scenario) {
   const double a = r.number("azimuth"), e = r.number("elevation");
   sun.toSun = {std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e)};
   sun.irradiance = r.given("temperature") ? Spectrum(Spectrum::BlackBody{r.number("temperature"), r.number("solid_angle")})
-                                          : spectra_.read(r.value("irradiance"), "W/(m2 um)", "sun irradiance");
+                                          : bounded(spectra_, r.value("irradiance"), "W/(m2 um)", "sun irradiance", 0.0, INFINITY);
   simulation_.sun = std::move(sun);
 }
 

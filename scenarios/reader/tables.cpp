@@ -7,10 +7,16 @@ namespace pitviper::tables {
 namespace {
 
 constexpr double kHalfTurn = 3.14159265358979324;
+/// 32 years: a double still tells 0.1 us apart there.
+constexpr double kLongestTime_s = 1e9;
+/// More than twice the way to the moon.
+constexpr double kFarthest_m = 1e9;
+/// Beyond any fireball; spectral radiance is then far from the end of a float.
+constexpr double kHottest_K = 1e5;
 
 /// Where something is: shared by entities, lights and cameras.
 void addPlacement(std::vector<Parameter>& p, bool attitude) {
-  p.push_back(vector3("position", "m", "east, north, up from the origin (or in the carrier's body axes: forward, left, up)"));
+  p.push_back(within(vector3("position", "m", "east, north, up from the origin (or in the carrier's body axes: forward, left, up)"), -kFarthest_m, kFarthest_m));
   p.push_back(map("geodetic", "position as latitude, longitude, height instead"));
   if (attitude) {
     p.push_back(within(number("heading", "rad", "clockwise from north"), -2 * kHalfTurn, 2 * kHalfTurn));
@@ -58,8 +64,8 @@ const ParameterTable& geodetic() {
 
 const ParameterTable& time() {
   static const ParameterTable t{"time", "",
-                                {withDefault(number("start", "s", "time of frame 0"), "0 s"),
-                                 withDefault(above(number("rate", "Hz", "frames per second"), 0), "30 Hz"),
+                                {withDefault(within(number("start", "s", "time of frame 0"), -kLongestTime_s, kLongestTime_s), "0 s"),
+                                 withDefault(within(number("rate", "Hz", "frames per second"), 1e-6, 1e9), "30 Hz"),
                                  withDefault(integer("frames", "number of frames", 1, 10000000), "1")}};
   return t;
 }
@@ -69,7 +75,7 @@ const ParameterTable& atmosphere() {
                                 {withDefault(choice("model", {"none", "homogeneous"}, "which path model"), "homogeneous"),
                                  text("library", "named air: its extinction and temperature, which the keys below replace"),
                                  spectrum("extinction", "1/m", "extinction coefficient"),
-                                 atLeast(number("temperature", "K", "the air emits as a black body of this temperature"), 0),
+                                 within(number("temperature", "K", "the air emits as a black body of this temperature"), 0, kHottest_K),
                                  spectrum("radiance", "W/(m2 sr um)", "further source radiance at great depth, for instance scattered sunlight"),
                                  within(number("top", "m", "height of the air's top above the ellipsoid; without it the air never ends and the sun's irradiance is that at the scene"), -500, 1e7)}};
   return t;
@@ -78,14 +84,14 @@ const ParameterTable& atmosphere() {
 const ParameterTable& airLibrary() {
   static const ParameterTable t{"air (library file)", "atmosphere/library/<name>.yaml",
                                 {text("description", "what air it is"), text("source", "where the figures come from"),
-                                 required(spectrum("extinction", "1/m", "extinction coefficient")), atLeast(number("temperature", "K", "air temperature"), 0),
+                                 required(spectrum("extinction", "1/m", "extinction coefficient")), within(number("temperature", "K", "air temperature"), 0, kHottest_K),
                                  spectrum("radiance", "W/(m2 sr um)", "further source radiance")}};
   return t;
 }
 
 const ParameterTable& background() {
   static const ParameterTable t{"background", "One of the two.",
-                                {atLeast(number("temperature", "K", "black body"), 0), spectrum("radiance", "W/(m2 sr um)", "radiance")}};
+                                {within(number("temperature", "K", "black body"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance")}};
   return t;
 }
 
@@ -94,14 +100,14 @@ const ParameterTable& sun() {
                                 {required(within(number("azimuth", "rad", "clockwise from north"), -2 * kHalfTurn, 2 * kHalfTurn)),
                                  required(within(number("elevation", "rad", "above the horizon"), -kHalfTurn / 2, kHalfTurn / 2)),
                                  spectrum("irradiance", "W/(m2 um)", "on a plane facing the sun, above the air (at the scene where the air has no top)"),
-                                 within(number("temperature", "K", "black body sun; 5772 K with the default solid angle gives 1361 W/m2"), 1, 1e5),
-                                 withDefault(above(number("solid_angle", "sr", "of the black body sun"), 0), "6.7943e-5 sr")}};
+                                 within(number("temperature", "K", "black body sun; 5772 K with the default solid angle gives 1361 W/m2"), 1, kHottest_K),
+                                 withDefault(within(above(number("solid_angle", "sr", "of the black body sun"), 0), 0, 2 * kHalfTurn), "6.7943e-5 sr")}};
   return t;
 }
 
 const ParameterTable& ambient() {
   static const ParameterTable t{"ambient", "One of the two.",
-                                {atLeast(number("temperature", "K", "black dome"), 0), spectrum("radiance", "W/(m2 sr um)", "radiance")}};
+                                {within(number("temperature", "K", "black dome"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance")}};
   return t;
 }
 
@@ -119,7 +125,7 @@ const ParameterTable& component() {
                                  spectrum("reflectance", "", "0..1; of a Phong lobe: at normal view"),
                                  within(number("exponent", "", "of the Phong lobe"), 0, 1e7),
                                  map("modifier", "texture that multiplies it, 0..1"),
-                                 list("wavelength", "of a table: rising wavelengths", 1, 4096),
+                                 list("wavelength", "of a table: rising wavelengths", 1, 1024),
                                  list("angles", "of a table: up to two axes", 0, 2),
                                  list("values", "of a table: BRDF [1/sr], nested as values[angle 2][angle 1][wavelength]", 1, 4096)}};
   return t;
@@ -192,13 +198,13 @@ const ParameterTable& shape() {
        within(number("size", "m", "terrain: side of the square"), 1e-3, 1e6), within(number("relief", "m", "terrain: height range"), 0, 1e4),
        withDefault(integer("columns", "terrain: cells along a side", 1, 1024), "128"), withDefault(integer("terrain_seed", "terrain", 0, 1000000000), "1"),
        map("height_map", "terrain: a texture of heights instead of noise"), text("file", "mesh: .obj .stl .ply .vtp .gltf .glb"),
-       above(number("unit", "m", "mesh: length of one unit of the file"), 0), above(number("scale", "", "factor on all lengths"), 0)}};
+       within(number("unit", "m", "mesh: length of one unit of the file"), 1e-9, 1e9), within(number("scale", "", "factor on all lengths"), 1e-9, 1e9)}};
   return t;
 }
 
 const ParameterTable& waypoint() {
   static const ParameterTable t = [] {
-    ParameterTable x{"waypoint", "", {required(number("time", "s", "rising"))}};
+    ParameterTable x{"waypoint", "", {required(within(number("time", "s", "rising"), -kLongestTime_s, kLongestTime_s))}};
     addPlacement(x.parameters, true);
     std::erase_if(x.parameters, [](const Parameter& p) { return p.key == "motion" || p.key == "interpolation" || p.key == "attached_to"; });
     return x;
@@ -216,7 +222,7 @@ const ParameterTable& camera() {
                       spectrum("optics", "", "transmission of the optics, 0..1"), within(number("exposure", "s", "exposure time"), 1e-12, 1e6),
                       withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
                       withDefault(integer("samples", "n: n x n subpixels per pixel", 1, 16), "1"),
-                      withDefault(within(number("small_bodies", "", "bodies spanning fewer pixels keep their intensity exactly (0: draw all as they fall on pixels)"), 0, 64), "3"),
+                      withDefault(within(number("small_bodies", "", "bodies spanning fewer pixels are drawn by a zoomed view of their own and keep their intensity at any range (0: draw all as they fall on pixels)"), 0, 256), "16"),
                       map("spectral", "wavelength sampling"), required(list("channels", "spectral channels", 1, 64)),
                       list("truth", "extra layers: range, entity, temperature, normal, area, solid_angles", 0, 6),
                       any("look_at", "name of an entity, or a position [x, y, z]")}};
@@ -253,8 +259,8 @@ const ParameterTable& spectral() {
 
 const ParameterTable& probe() {
   static const ParameterTable t{"probe", "Irradiance on a plane at a point, whole hemisphere.",
-                                {required(text("name", "unique name")), required(vector3("position", "m", "east, north, up")),
-                                 withDefault(vector3("normal", "", "direction the plane faces"), "0, 0, 1"),
+                                {required(text("name", "unique name")), required(within(vector3("position", "m", "east, north, up"), -kFarthest_m, kFarthest_m)),
+                                 withDefault(within(vector3("normal", "", "direction the plane faces"), -1e6, 1e6), "0, 0, 1"),
                                  withDefault(integer("resolution", "rays across a quarter turn", 16, 2048), "512"), map("spectral", "wavelength sampling"),
                                  required(list("channels", "as a camera's; output irradiance, photon_irradiance or illuminance", 1, 16))}};
   return t;

@@ -4,7 +4,9 @@
 #include <yaml-cpp/exceptions.h>
 #include <yaml-cpp/parser.h>
 
+#include <algorithm>
 #include <charconv>
+#include <cstdio>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -12,12 +14,15 @@
 namespace pitviper {
 namespace {
 
+constexpr const char* kLargestText = "at most 4 MB";
+
 /// Builds the tree from the parser's events: no recursion of our own, every node with its place.
 class TreeBuilder final : public YAML::EventHandler {
  public:
-  explicit TreeBuilder(std::string file) : file_(std::move(file)) {}
+  explicit TreeBuilder(std::string file) : file_(std::move(file)), most_(std::min(kMostYamlNodes, kMostPlaceBytes / (file_.size() + 1))) {}
 
   Value take() { return std::move(root_); }
+  const Location& where() const { return root_.where; }
   bool hasRoot() const { return done_; }
 
   void OnDocumentStart(const YAML::Mark&) override {}
@@ -70,9 +75,11 @@ class TreeBuilder final : public YAML::EventHandler {
     checkCount(mark);
     return v;
   }
-  void checkCount(const YAML::Mark& mark) const {
-    if (count_ > kMostYamlNodes)
-      throw UserError(place(mark), "more than " + std::to_string(kMostYamlNodes) + " values", "a smaller file", "put large tables into CSV files; expand fewer aliases");
+  void checkCount(const YAML::Mark& mark) const { checkCount(place(mark)); }
+  void checkCount(const Location& where) const {
+    if (count_ > most_)
+      throw UserError(where, "the file holds more than " + std::to_string(most_) + " values, aliases written out", "fewer values",
+                      "put large tables into CSV files and use fewer aliases");
   }
   static std::size_t size(const Value& v) {
     std::size_t n = 1;
@@ -91,7 +98,11 @@ class TreeBuilder final : public YAML::EventHandler {
     add(std::move(top.value), top.anchor);
   }
   void add(Value v, YAML::anchor_t anchor) {
-    if (anchor != 0) anchors_[anchor] = v;
+    if (anchor != 0) {
+      count_ += size(v);  // anchors within anchors are kept once for each level
+      checkCount(v.where);
+      anchors_[anchor] = v;
+    }
     if (stack_.empty()) {
       root_ = std::move(v);
       done_ = true;
@@ -112,13 +123,49 @@ class TreeBuilder final : public YAML::EventHandler {
     }
   }
 
+  /// Every node's place holds the file's name: a name of 4000 characters allows fewer nodes.
+  static constexpr std::size_t kMostPlaceBytes = 256u << 20;
+
   std::string file_;
+  std::size_t most_;
   std::vector<Open> stack_;
   std::map<YAML::anchor_t, Value> anchors_;
   std::size_t count_ = 0;
   Value root_;
   bool done_ = false;
 };
+
+/// Length of the UTF-8 character at the front; 0 where there is none. Overlong forms, surrogates and values above U+10FFFF are none.
+std::size_t utf8Length(std::string_view t) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(t[i]); };
+  const unsigned char first = byte(0);
+  if (first < 0x80) return 1;
+  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
+  if (first < 0xc2 || first > 0xf4 || t.size() < length) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+  const bool overlong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90);
+  const bool beyond = (first == 0xed && byte(1) > 0x9f) || (first == 0xf4 && byte(1) > 0x8f);
+  return overlong || beyond ? 0 : length;
+}
+
+/// A file of another encoding, or no text at all, would be read as something nobody wrote.
+void refuseOtherThanText(std::string_view text, const std::string& file) {
+  Location at{file, 1, 1, -1};
+  for (std::size_t i = 0; i < text.size();) {
+    const std::size_t length = utf8Length(text.substr(i));
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (length == 0 || (c < 32 && c != '\n' && c != '\r' && c != '\t') || c == 127) {
+      char code[8];
+      std::snprintf(code, sizeof code, "0x%02x", c);
+      throw UserError(at, length == 0 ? std::string("the byte ") + code + " is not UTF-8" : std::string("the control character ") + code, "a text file in UTF-8",
+                      "save the file as UTF-8 text, or remove the byte");
+    }
+    i += length;
+    ++at.column;
+    if (c == '\n') ++at.line, at.column = 1;
+  }
+}
 
 /// yaml-cpp recurses per level: a quick look at the brackets keeps it from being driven deep before its events come.
 void refuseDeepFlow(const std::string& text, const std::string& file) {
@@ -127,7 +174,6 @@ void refuseDeepFlow(const std::string& text, const std::string& file) {
   for (char c : text) {
     ++at.column;
     if (c == '\n') ++at.line, at.column = 0;
-    if (c == '\0') throw UserError(at, "a zero byte", "a text file", "save it as plain UTF-8 text");
     if (c == '[' || c == '{') ++depth;
     if ((c == ']' || c == '}') && depth > 0) --depth;
     if (depth > kDeepestYaml * 4)
@@ -139,7 +185,8 @@ void refuseDeepFlow(const std::string& text, const std::string& file) {
 
 Value parseYaml(const std::string& text, const std::string& fileName) {
   if (text.size() > kLargestYamlBytes)
-    throw UserError({fileName, 0, 0, -1}, "the file has " + std::to_string(text.size()) + " bytes", "at most 16 MB", "put large tables into CSV files");
+    throw UserError({fileName, 1, 1, -1}, "the file has " + std::to_string(text.size()) + " bytes", kLargestText, "put large tables into CSV files");
+  refuseOtherThanText(text, fileName);
   refuseDeepFlow(text, fileName);
   TreeBuilder builder(fileName);
   try {
@@ -150,7 +197,7 @@ Value parseYaml(const std::string& text, const std::string& fileName) {
     Value root = builder.take();
     TreeBuilder rest(fileName);
     if (parser.HandleNextDocument(rest) && rest.hasRoot())
-      throw UserError({fileName, 1, 1, -1}, "more than one document ('---')", "one document in a file", "keep one");
+      throw UserError(rest.where(), "a second document begins here (after '---')", "one document in a file", "remove it, or put it into a file of its own");
     return root;
   } catch (const YAML::Exception& e) {
     throw UserError({fileName, e.mark.line + 1, e.mark.column + 1, -1}, "not well-formed YAML: " + e.msg, "YAML 1.2",
@@ -164,7 +211,7 @@ Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::
   std::ifstream in(file, std::ios::binary);
   if (problem || !in)
     throw UserError(askedAt, "cannot read the file '" + file.string() + "'" + (problem ? " (" + problem.message() + ")" : ""), "a readable YAML file", "check the name");
-  if (size > kLargestYamlBytes) throw UserError({file.string(), 0, 0, -1}, "the file has " + std::to_string(size) + " bytes", "at most 16 MB", "put large tables into CSV files");
+  if (size > kLargestYamlBytes) throw UserError({file.string(), 1, 1, -1}, "the file has " + std::to_string(size) + " bytes", kLargestText, "put large tables into CSV files");
   std::string text(static_cast<std::size_t>(size), '\0');
   in.read(text.data(), static_cast<std::streamsize>(size));
   text.resize(static_cast<std::size_t>(in.gcount()));
@@ -173,11 +220,11 @@ Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::
 }
 
 void applyOverride(Value& tree, const std::string& assignment) {
-  const Location here{"--set " + assignment, 0, 0, -1};
+  const Location here{"--set " + (assignment.size() > 100 ? assignment.substr(0, 100) + "..." : assignment), 0, 0, -1};
   const size_t equals = assignment.find('=');
   if (equals == std::string::npos || equals == 0)
     throw UserError(here, "not an assignment", "path.to.key=value", "write --set cameras.0.samples=2");
-  Value value = parseYaml(assignment.substr(equals + 1) + "\n", "--set " + assignment);
+  Value value = parseYaml(assignment.substr(equals + 1) + "\n", here.file);
   value.where = here;
   Value* at = &tree;
   std::string path = assignment.substr(0, equals), walked;

@@ -8,10 +8,11 @@
 
 namespace pitviper {
 
-/// Limits on hostile input: larger files, deeper nesting and more nodes (aliases expanded) are refused.
-constexpr std::size_t kLargestYamlBytes = 16u << 20;
+/// Limits on hostile input: larger files, deeper nesting and more nodes (aliases expanded) are refused. The parser holds a whole
+/// flow list as tokens of about 130 bytes before it tells of the first, so that 4 MB of "1," already take half a gigabyte.
+constexpr std::size_t kLargestYamlBytes = 4u << 20;
 constexpr int kDeepestYaml = 64;
-constexpr std::size_t kMostYamlNodes = 2000000;
+constexpr std::size_t kMostYamlNodes = 500000;
 
 /// Reads one document. UserError with line and column for anything that is not well-formed YAML, not one document, or beyond
 /// the limits. Duplicate keys are kept: the tables refuse them with a better message.

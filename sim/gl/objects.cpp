@@ -117,6 +117,19 @@ void RenderTarget::bind() const {
   glViewport(0, 0, width_, height_);
 }
 
+void drawFullScreen(const RenderTarget& target, const Program& program, const std::vector<std::pair<const char*, float>>& uniforms) {
+  const VertexArray empty = makeVertexArray();
+  target.bind();
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glBindVertexArray(empty);
+  program.use();
+  for (const auto& [name, value] : uniforms) glUniform1f(program.uniform(name), value);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  checkGl("drawing a full screen");
+}
+
 void Readback::start(const RenderTarget& target, std::size_t count, const RenderTarget* depthOf) {
   const bool depth = depthOf != nullptr;
   pixels_ = static_cast<size_t>(target.width()) * static_cast<size_t>(target.height());

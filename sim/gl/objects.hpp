@@ -108,6 +108,9 @@ class RenderTarget {
   int width_ = 0, height_ = 0;
 };
 
+/// Runs a fragment program once per pixel of a target, with float uniforms by name. The vertex stage is the caller's.
+void drawFullScreen(const RenderTarget& target, const Program& program, const std::vector<std::pair<const char*, float>>& uniforms);
+
 /// Copies targets to pixel buffers without waiting; wait() gives the floats. Row 0 is the bottom row, as GL has it.
 class Readback {
  public:

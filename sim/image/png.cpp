@@ -18,6 +18,7 @@ namespace pitviper {
 namespace {
 
 constexpr png_uint_32 maxSide = 16384;
+constexpr std::size_t maxGreyPixels = std::size_t{8192} * 4096;      // a small file can claim 16384 x 16384: over 1 GB as floats
 constexpr std::size_t maxChunkBytes = std::size_t{16} << 20;  // of text, profiles and the like; pixels are not counted
 constexpr std::size_t maxDeflateFactor = 1032;                // zlib, "Maximum Compression Factor"
 
@@ -101,6 +102,9 @@ class Reader {
     // Packed codes of 1 bit grow up to 24 times; beyond that the pixels cannot be in the file, and need no memory.
     if (total / (24 * maxDeflateFactor) > job_.bytes.size())
       throw UserError(where_, "is far too short for its pixels; it is truncated or damaged", "", "copy the file again");
+    if (!rgb && std::size_t{job_.width} * job_.height > maxGreyPixels)
+      throw UserError(where_, "the picture is " + std::to_string(job_.width) + " x " + std::to_string(job_.height) + " pixels",
+                      "at most 33 million pixels in a texture, such as 8192 x 4096", "make a smaller picture");
     try {
       job_.pixels.resize(total);
       setRows(job_, rowBytes);

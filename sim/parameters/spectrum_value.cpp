@@ -11,6 +11,17 @@ namespace pitviper {
 namespace {
 
 constexpr int kDeepest = 12;
+constexpr std::uintmax_t kLargestCsvBytes = 16u << 20;
+
+/// Far below the end of a float (3.4e38), far above any radiance: a black body of 1e5 K has 1e10 W/(m2 sr um).
+constexpr double kLargestValue = 1e30;
+
+std::size_t rowsOf(const Spectrum& s) {
+  std::size_t rows = 0;
+  for (const auto& factor : s.factors())
+    if (const auto* t = std::get_if<Spectrum::Table>(&factor)) rows += t->value.size();
+  return rows;
+}
 
 /// One row of a table as written, before conversion.
 struct Row {
@@ -39,7 +50,7 @@ Spectrum fromRows(std::vector<Row> rows, const std::string& axisUnit, const Loca
   }
   if (!convert({1.0, valueUnit}, canonical))
     throw UserError(unitWhere, "the values of " + std::string(name) + " have the unit '" + valueUnit + "'",
-                    canonical.empty() ? "plain numbers" : std::string(canonical), "write 'unit: " + (canonical.empty() ? "\"1\"" : std::string(canonical)) + "'");
+                    canonical.empty() ? "plain numbers (unit 1)" : "a unit of the dimension of " + std::string(canonical), "write 'unit: " + (canonical.empty() ? "\"1\"" : std::string(canonical)) + "'");
   if (rows.empty()) throw UserError(where, "the table of " + std::string(name) + " is empty", "at least one row", "add rows [wavelength, value]");
   const bool falls = rows.size() > 1 && rows[1].x < rows[0].x;
   if (falls && axis == Axis::Wavelength)
@@ -56,8 +67,14 @@ Spectrum fromRows(std::vector<Row> rows, const std::string& axisUnit, const Loca
     const double w = axis == Axis::Wavenumber ? 1e4 / (r.x * perCm) : *convert({r.x, axisUnit}, "um");
     if (!(w >= kShortestWavelength_um * (1 - 1e-9) && w <= kLongestWavelength_um * (1 + 1e-9)))
       throw UserError(r.where, "a wavelength of " + std::string(name) + " is outside the spectral axis", "0.1 to 1000 um (10 to 100000 1/cm)", "check the unit of the first column");
+    const double value = *convert({r.y, valueUnit}, canonical);
+    if (!(std::abs(value) <= kLargestValue))
+      throw UserError(r.where, "a value of " + std::string(name) + " is larger than any that can be drawn", "at most 1e30 " + std::string(canonical), "correct it or its unit");
+    // Neighbours a last digit apart can become one by the change of unit.
+    if (!t.wavelength_um.empty() && w == t.wavelength_um.back())
+      throw UserError(r.where, "two wavelengths of " + std::string(name) + " are the same", "each above the one before", "remove one of the rows");
     t.wavelength_um.push_back(w);
-    t.value.push_back(*convert({r.y, valueUnit}, canonical));
+    t.value.push_back(value);
   }
   if (t.wavelength_um.size() > 1 && t.wavelength_um[1] < t.wavelength_um[0]) {
     std::reverse(t.wavelength_um.begin(), t.wavelength_um.end());
@@ -66,10 +83,16 @@ Spectrum fromRows(std::vector<Row> rows, const std::string& axisUnit, const Loca
   return Spectrum(std::move(t));
 }
 
+double bandValue(const Value& v, std::string_view unit) {
+  const double x = readNumber(v, unit, "band value");
+  if (!(std::abs(x) <= kLargestValue)) throw UserError(v.where, "the band value is larger than any that can be drawn", "at most 1e30 " + std::string(unit), "correct it or its unit");
+  return x;
+}
+
 double plainNumber(const Value& v, std::string_view name) {
   const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
   if (!q || !q->unit.empty())
-    throw UserError(v.where, "a table entry of " + std::string(name) + " is not a plain finite number", "two numbers [wavelength, value], units given once above", "write numbers only");
+    throw UserError(v.where, "a table entry of " + std::string(name) + " is not a plain finite number" + (v.kind == Value::Kind::Scalar ? " ('" + v.text.substr(0, 40) + "')" : std::string()), "two numbers [wavelength, value], units given once above", "write numbers only");
   return q->value;
 }
 
@@ -80,7 +103,7 @@ const ParameterTable& spectrumTable() {
       "spectrum",
       "Where a key takes a spectrum, write a quantity (`0.2 /km`: the same at all wavelengths), the name of a library spectrum "
       "(`insb_mwir`), or a map with one of `values`, `file`, `library`, `band`, `blackbody`, `product`.",
-      {list("values", "rows [wavelength, value], rising; piecewise linear", 1, 1000000),
+      {list("values", "rows [wavelength, value], rising; piecewise linear", 1, kMostSpectrumRows),
        text("wavelength", "unit of the first column: um, nm, or 1/cm for wavenumbers (vacuum)"),
        text("unit", "unit of the values"),
        choice("outside", {"zero", "hold", "error"}, "what it is outside its table (a response: zero; others: error)"),
@@ -88,12 +111,12 @@ const ParameterTable& spectrumTable() {
        text("library", "name of a library spectrum"),
        list("band", "[from, to]: `value` between these wavelengths, 0 elsewhere", 2, 2),
        any("value", "height of the band (default 1)"),
-       above(number("blackbody", "K", "Planck radiance at this temperature; with `area` an intensity, with `solid_angle` an irradiance"), 0.0),
-       above(number("area", "m2", "radiating area of a black body light"), 0.0),
-       above(number("solid_angle", "sr", "solid angle of a black body sun"), 0.0),
+       within(above(number("blackbody", "K", "Planck radiance at this temperature; with `area` an intensity, with `solid_angle` an irradiance"), 0.0), 0.0, 1e5),
+       within(above(number("area", "m2", "radiating area of a black body light"), 0.0), 0.0, 1e12),
+       within(above(number("solid_angle", "sr", "solid angle of a black body sun"), 0.0), 0.0, 2.0 * kPi),
        list("product", "spectra to be multiplied (all but the first dimensionless)", 1, 32),
        any("power", "of an intensity: spectral power distribution; intensity = power / (4 pi)"),
-       number("scale", "", "factor"),
+       within(number("scale", "", "factor"), -kLargestValue, kLargestValue),
        text("source", "where the figures come from")}};
   return table;
 }
@@ -105,7 +128,16 @@ SpectrumReader SpectrumReader::in(const std::filesystem::path& base) const {
 }
 
 Spectrum SpectrumReader::read(const Value& value, std::string_view unit, std::string_view name, Outside outside) const {
-  return readAny(value, unit, name, outside, 0);
+  Spectrum spectrum = readAny(value, unit, name, outside, 0);
+  count(spectrum, value.where);
+  return spectrum;
+}
+
+void SpectrumReader::count(const Spectrum& spectrum, const Location& where) const {
+  *files_.rowsRead += rowsOf(spectrum);
+  if (*files_.rowsRead > kMostRowsTogether)
+    throw UserError(where, "the spectra of this scenario have more than " + std::to_string(kMostRowsTogether) + " rows together", "fewer rows",
+                    "thin the tables out, or use fewer of them");
 }
 
 Spectrum SpectrumReader::readAny(const Value& value, std::string_view unit, std::string_view name, Outside outside, int depth) const {
@@ -117,7 +149,10 @@ Spectrum SpectrumReader::readAny(const Value& value, std::string_view unit, std:
       throw UserError(value.where, std::string(name) + " is not a finite number", unitExample(unit), "write a finite value");
     return readLibrary(value.text, value.where, unit, name, outside, depth);
   }
-  return Spectrum(readNumber(value, unit, name));
+  const double constant = readNumber(value, unit, name);
+  if (!(std::abs(constant) <= kLargestValue))
+    throw UserError(value.where, std::string(name) + " is larger than any that can be drawn", "at most 1e30 " + std::string(unit), "correct it or its unit");
+  return Spectrum(constant);
 }
 
 Spectrum SpectrumReader::readLibrary(const std::string& word, const Location& where, std::string_view unit, std::string_view name, Outside outside, int depth) const {
@@ -181,7 +216,7 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
     const double low = readNumber(b[0], "um", "band edge"), high = readNumber(b[1], "um", "band edge");
     if (!(low >= kShortestWavelength_um && high <= kLongestWavelength_um && low < high))
       throw UserError(r.where("band"), "the band of " + std::string(name) + " is empty or outside the spectral axis", "rising edges within 0.1 to 1000 um", "write [3 um, 5 um]");
-    s = Spectrum::band(low, high, r.given("value") ? readNumber(r.value("value"), unit, "band value") : convert({1.0, ""}, unit).value_or(1.0));
+    s = Spectrum::band(low, high, r.given("value") ? bandValue(r.value("value"), unit) : convert({1.0, ""}, unit).value_or(1.0));
   } else if (kind == "blackbody") {
     const double t = r.number("blackbody");
     double factor = 1.0;
@@ -199,6 +234,8 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
       const Spectrum f = readAny(factor, first ? unit : "", name, outside, depth + 1);
       s = first ? f : s * f;
       first = false;
+      if (rowsOf(s) > kMostSpectrumRows)
+        throw UserError(factor.where, "the factors of " + std::string(name) + " have more than " + std::to_string(kMostSpectrumRows) + " rows together", "fewer rows", "thin the tables out");
     }
   } else {
     if (!convert({1.0, "W/(sr um)"}, unit))
@@ -215,9 +252,11 @@ Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view uni
   std::error_code ignored;
   if (!in || !std::filesystem::is_regular_file(file, ignored))
     throw UserError(askedAt, "cannot read the file '" + file.string() + "'", "a CSV file with a spectrum", "check the name; it is relative to the scenario's folder");
+  if (std::filesystem::file_size(file, ignored) > kLargestCsvBytes)
+    throw UserError({file.string(), 1, 1, -1}, "the file is larger than 16 MB", "a table of at most " + std::to_string(kMostSpectrumRows) + " rows", "thin the table out");
   std::string line, axisUnit, valueUnit;
   Location where{file.string(), 0, 1, -1};
-  Location header;
+  Location unitPlace[2];
   std::vector<Row> rows;
   bool haveHeader = false;
   while (std::getline(in, line)) {
@@ -226,18 +265,19 @@ Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view uni
     if (line.empty() || line[0] == '#') continue;
     const size_t comma = line.find(',');
     if (comma == std::string::npos || line.find(',', comma + 1) != std::string::npos)
-      throw UserError(where, "not two columns", "two columns separated by one comma", "keep wavelength and value only");
+      throw UserError(where, comma == std::string::npos ? "a row of one column" : "a row of more than two columns", "two columns separated by one comma", "keep wavelength and value only");
     const std::string cell[2] = {line.substr(0, comma), line.substr(comma + 1)};
     if (!haveHeader) {
       std::string* units[2] = {&axisUnit, &valueUnit};
       for (int c = 0; c < 2; ++c) {
         const size_t open = cell[c].find('['), close = cell[c].rfind(']');
+        unitPlace[c] = where;
+        unitPlace[c].column = static_cast<int>((c == 0 ? 0 : comma + 1) + (open == std::string::npos ? 0 : open)) + 1;
         if (open == std::string::npos || close == std::string::npos || close < open)
-          throw UserError(where, "the header names no unit in column " + std::to_string(c + 1), "a header such as 'wavelength [um], transmittance [1]'", "write the units in brackets");
+          throw UserError(unitPlace[c], "the header names no unit in column " + std::to_string(c + 1), "a header such as 'wavelength [um], transmittance [1]'", "write the units in brackets");
         *units[c] = cell[c].substr(open + 1, close - open - 1);
       }
       haveHeader = true;
-      header = where;
       continue;
     }
     Row row;
@@ -253,11 +293,12 @@ Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view uni
       *into[c] = q->value;
     }
     rows.push_back(row);
-    if (rows.size() > 1000000) throw UserError(where, "more than a million rows", "at most 1000000", "thin the table out");
+    if (rows.size() > kMostSpectrumRows)
+      throw UserError(where, "the table goes on after " + std::to_string(kMostSpectrumRows) + " rows", "at most that many", "thin the table out");
   }
-  if (!haveHeader) throw UserError(where, "the file is empty", "a header and rows", "write 'wavelength [um], value [1]' and rows under it");
-  Location whole{file.string(), 0, 0, -1};
-  return fromRows(std::move(rows), axisUnit, header, valueUnit, header, unit, outside, "this table", whole);
+  if (!haveHeader) throw UserError(Location{file.string(), 1, 1, -1}, "the file is empty", "a header and rows", "write 'wavelength [um], value [1]' and rows under it");
+  const Location whole{file.string(), 1, 1, -1};
+  return fromRows(std::move(rows), axisUnit, unitPlace[0], valueUnit, unitPlace[1], unit, outside, "this table", whole);
 }
 
 }  // namespace pitviper

@@ -2,6 +2,7 @@
 // Spectra as users write them: a number with unit, a table, a file, a library name, a band, a black body, or a product of these.
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <string>
 
 #include "sim/parameters/table.hpp"
@@ -9,11 +10,18 @@
 
 namespace pitviper {
 
+/// Rows of one table, and of all tables of a scenario together. Every row between two knots costs 16 quadrature nodes a channel:
+/// 100 000 are half a second of planning.
+constexpr std::size_t kMostSpectrumRows = 100000;
+constexpr std::size_t kMostRowsTogether = 4000000;
+
 /// Where spectra are looked for. loadYaml reads a file into a tree (UserError where it can't).
 struct SpectrumFiles {
   std::filesystem::path base;                  ///< folder of the scenario: relative file names start here
   std::vector<std::filesystem::path> library;  ///< folders of named spectra (<name>.yaml with a key `spectrum`)
   std::function<Value(const std::filesystem::path&, const Location& askedAt)> loadYaml;
+  /// Shared by all readers of a scenario, so that many names of one large table cannot fill the memory.
+  std::shared_ptr<std::size_t> rowsRead = std::make_shared<std::size_t>(0);
 };
 
 /// How a spectrum may be written; for the key reference.
@@ -27,6 +35,8 @@ class SpectrumReader {
   /// UserError for anything that cannot be such a spectrum.
   Spectrum read(const Value& value, std::string_view unit, std::string_view name, Outside outside = Outside::Error) const;
   const SpectrumFiles& files() const { return files_; }
+  /// Counts the rows of a spectrum that is kept once more; UserError at `where` beyond kMostRowsTogether.
+  void count(const Spectrum& spectrum, const Location& where) const;
   /// The same reader with file names relative to another folder.
   SpectrumReader in(const std::filesystem::path& base) const;
 
@@ -38,7 +48,7 @@ class SpectrumReader {
 };
 
 /// Two columns of numbers with a header that names their units in brackets: "wavelength [um], transmittance [1]".
-/// Lines that begin with # are comments. At most 1e6 lines.
+/// Lines that begin with # are comments. At most kMostSpectrumRows rows.
 Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view unit, Outside outside, const Location& askedAt);
 
 }  // namespace pitviper

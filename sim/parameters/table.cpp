@@ -32,6 +32,8 @@ std::string shortNumber(double v) {
   return std::string(buffer, end);
 }
 
+constexpr std::size_t kLongestText = 4000;
+
 std::string quotedShort(std::string_view text) {
   std::string s(text.substr(0, 60));
   if (text.size() > 60) s += "...";
@@ -41,6 +43,7 @@ std::string quotedShort(std::string_view text) {
 std::string rangeText(const Parameter& p) {
   const bool low = std::isfinite(p.minimum), high = std::isfinite(p.maximum);
   const std::string unit = p.unit.empty() ? "" : " " + p.unit;
+  if (low && high && p.exclusiveMinimum) return "above " + shortNumber(p.minimum) + ", at most " + shortNumber(p.maximum) + unit;
   if (low && high) return shortNumber(p.minimum) + " to " + shortNumber(p.maximum) + unit;
   if (low) return (p.exclusiveMinimum ? "above " : "at least ") + shortNumber(p.minimum) + unit;
   if (high) return "at most " + shortNumber(p.maximum) + unit;
@@ -59,7 +62,7 @@ long long readInteger(const Value& value, std::string_view name) {
   const std::string& t = value.text;
   const auto [end, error] = std::from_chars(t.data(), t.data() + t.size(), v);
   if (value.kind != Value::Kind::Scalar || error != std::errc() || end != t.data() + t.size())
-    throw UserError(value.where, std::string(name) + " is not a whole number", "a whole number such as 16",
+    throw UserError(value.where, std::string(name) + " is " + (value.kind == Value::Kind::Scalar ? "not a whole number (" + quotedShort(t) + ")" : value.kindName()), "a whole number such as 16",
                     "write '" + std::string(name) + ": 16'");
   return v;
 }
@@ -69,7 +72,7 @@ bool readBoolean(const Value& value, std::string_view name) {
     if (value.text == "true" || value.text == "yes" || value.text == "on") return true;
     if (value.text == "false" || value.text == "no" || value.text == "off") return false;
   }
-  throw UserError(value.where, std::string(name) + " is neither true nor false", "true or false",
+  throw UserError(value.where, std::string(name) + " is " + (value.kind == Value::Kind::Scalar ? "neither true nor false (" + quotedShort(value.text) + ")" : value.kindName()), "true or false",
                   "write '" + std::string(name) + ": true'");
 }
 
@@ -236,7 +239,7 @@ double readNumber(const Value& value, std::string_view unit, std::string_view na
   if (!converted || !std::isfinite(*converted)) {
     if (written->unit.empty())
       throw UserError(value.where, what + " has no unit (" + quotedShort(value.text) + ")", unitExample(unit),
-                      "write '" + value.text + " " + std::string(unit) + "' if that is meant");
+                      "write " + quotedShort(value.text + " " + std::string(unit)) + " if that is meant");
     throw UserError(value.where, what + " has the wrong unit " + quotedShort(written->unit), unitExample(unit),
                     "write it in " + (unit.empty() ? std::string("plain numbers") : std::string(unit)));
   }
@@ -283,7 +286,7 @@ glm::dvec3 readVector(const Value& value, std::string_view unit, std::string_vie
 const Value& asMap(const Value& value, std::string_view name) {
   if (value.kind != Value::Kind::Map)
     throw UserError(value.where, std::string(name) + " is " + value.kindName(), "a map of keys ('key: value' lines)",
-                    "indent its keys under '" + std::string(name) + ":'");
+                    "write its keys as 'key: value' lines, indented below it");
   return value;
 }
 
@@ -298,6 +301,10 @@ std::string readText(const Value& value, std::string_view name) {
   if (value.kind != Value::Kind::Scalar || value.text.empty())
     throw UserError(value.where, std::string(name) + " is " + (value.kind == Value::Kind::Scalar ? "empty" : value.kindName()),
                     "a word or a name", "write one name");
+  // A file name that stops at a zero byte, or that no file system takes, would be another than the one written.
+  if (value.text.size() > kLongestText || std::any_of(value.text.begin(), value.text.end(), [](unsigned char c) { return c < 32 && c != '\n' && c != '\t'; }))
+    throw UserError(value.where, std::string(name) + (value.text.size() > kLongestText ? " is longer than " + std::to_string(kLongestText) + " bytes" : " holds a control character"),
+                    "plain text", "shorten or correct it");
   return value.text;
 }
 

@@ -42,8 +42,9 @@ CameraImage CameraRenderer::finish() {
   }
   std::sort(order.begin(), order.end());
   for (const auto& [distance, e] : order) {
-    // 256 across its bounding sphere: the area of a silhouette is sampled to about 0.1 %.
-    const View zoomed = zoomedView(simulation_, state_, view_, e, 256);
+    // 256 across its bounding sphere, or 8 a subpixel: the area of a silhouette is sampled to about 0.1 %.
+    const double extent = smallBodyExtent(simulation_, state_, view_, e);
+    const View zoomed = zoomedView(simulation_, state_, view_, e, extent <= 32.0 ? 256 : extent <= 64.0 ? 512 : 1024);
     pass_.draw(zoomed, state_, {});
     pass_.startReadback(true);
     addSmallBody(image, zoomed, pass_.finishReadback(), state_, e);

@@ -14,17 +14,16 @@ glm::dvec3 centreOf(const Simulation& sim, const WorldState& state, int entity) 
 
 }  // namespace
 
+double smallBodyExtent(const Simulation& sim, const WorldState& state, const View& v, int entity) {
+  const glm::dvec3 p = glm::transpose(v.localFromCamera) * (centreOf(sim, state, entity) - v.position);
+  const double radius = sim.entities[static_cast<size_t>(entity)].boundingRadius_m, depth = -p.z;
+  if (depth <= 4.0 * radius + v.near_m || radius <= 0.0) return INFINITY;
+  return 2.0 * radius / depth / std::min(v.tanPerPixelX, v.tanPerPixelY);
+}
+
 std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state, const View& v, double limit) {
   std::vector<char> small(sim.entities.size(), 0);
-  const double finest = std::min(v.tanPerPixelX, v.tanPerPixelY);
-  for (size_t e = 0; e < sim.entities.size(); ++e) {
-    const glm::dvec3 p = glm::transpose(v.localFromCamera) * (centreOf(sim, state, static_cast<int>(e)) - v.position);
-    const double radius = sim.entities[e].boundingRadius_m, depth = -p.z;
-    if (depth <= 4.0 * radius + v.near_m || radius <= 0.0) continue;
-    const double extent = 2.0 * radius / depth / finest;
-    if (extent >= limit) continue;
-    small[e] = 1;
-  }
+  for (size_t e = 0; e < sim.entities.size(); ++e) small[e] = smallBodyExtent(sim, state, v, static_cast<int>(e)) < limit;
   return small;
 }
 

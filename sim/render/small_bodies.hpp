@@ -11,6 +11,9 @@ namespace pitviper {
 /// One flag per entity: true where it spans fewer than limit_px pixels and stands in front of the camera.
 std::vector<char> findSmallBodies(const Simulation& simulation, const WorldState& state, const View& view, double limit_subpixels);
 
+/// Diameter of an entity's bounding sphere [subpixels of the view]; infinite where it reaches the camera.
+double smallBodyExtent(const Simulation& simulation, const WorldState& state, const View& view, int entity);
+
 /// The zoomed view of an entity from the same place: turned so that its bounding sphere fills the picture, and rolled by an angle
 /// that no edge of a scene shares, so that silhouettes are sampled evenly (an edge along the pixel grid would be off by up to a
 /// whole row).

@@ -172,8 +172,8 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
     const PathNode air = sim.path ? sim.path->node(w) : PathNode{};
     t.node.push_back(static_cast<float>(air.extinction_per_m));
     t.node.push_back(static_cast<float>(air.sourceRadiance));
-    t.node.push_back(static_cast<float>(14387.76877 / w));
-    t.node.push_back(static_cast<float>(1.191042972e8 / std::pow(w, 5)));
+    t.node.push_back(static_cast<float>(kSecondRadiation_umK / w));
+    t.node.push_back(static_cast<float>(kFirstRadianceConstant / std::pow(w, 5)));
     t.ambient.push_back(plan.terms.ambient ? static_cast<float>((*sim.ambient)(w)) : 0.0f);
     t.ambient.insert(t.ambient.end(), 3, 0.0f);
   }

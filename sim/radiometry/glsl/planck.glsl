@@ -15,5 +15,5 @@ PHYSICS Real planckFromConstants(Real c2OverWavelength_K, Real c1OverWavelength5
 // The same from the wavelength itself [um].
 PHYSICS Real planckRadiance(Real wavelength_um, Real temperature_K) {
   Real l2 = wavelength_um * wavelength_um;
-  return planckFromConstants(14387.76877 / wavelength_um, 1.191042972e8 / (l2 * l2 * wavelength_um), temperature_K);
+  return planckFromConstants(14387.768775039337 / wavelength_um, 1.1910429723971884e8 / (l2 * l2 * wavelength_um), temperature_K);
 }

@@ -1,0 +1,73 @@
+#include "tests/support/scene_builder.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "scenarios/commands/commands.hpp"
+#include "scenarios/reader/scenario_reader.hpp"
+#include "sim/gl/context.hpp"
+#include "sim/render/probe.hpp"
+
+namespace pitviper::test {
+namespace {
+const GlContext& context() {
+  static const GlContext one;
+  return one;
+}
+}  // namespace
+
+void needContext() { context(); }
+bool onSoftware() { return context().limits().software; }
+
+Simulation scene(const std::string& yaml) {
+  const std::filesystem::path home = PITVIPER_SOURCE_DIR;
+  return readScenarioText(yaml, "test.yaml", home / "scenarios", {}, {home / "materials/library", home / "atmosphere/library", home / "sensors/library"});
+}
+
+CameraImage renderImage(const Simulation& sim, int frame) {
+  needContext();
+  auto gpu = std::make_shared<const GpuScene>(sim);
+  CameraRenderer renderer(sim, sim.cameras.at(0), shaderLibrary(), gpu);
+  return renderer.render(advance(sim.entities, sim.lights, sim.time.at(frame)));
+}
+
+Frame renderFrame(const Simulation& sim, int frame) {
+  return makeFrame(sim, sim.cameras.at(0), renderImage(sim, frame), advance(sim.entities, sim.lights, sim.time.at(frame)), frame);
+}
+
+const FrameLayer& layer(const Frame& frame, const std::string& name) {
+  for (const auto& l : frame.layers)
+    if (l.name == name) return l;
+  throw std::runtime_error("no layer " + name);
+}
+
+double at(const FrameLayer& l, const Frame& f, int column, int row) { return static_cast<double>(l.pixels[static_cast<size_t>(row * f.width + column)]); }
+
+double sum(const FrameLayer& l) {
+  double s = 0.0;
+  for (float v : l.pixels) s += static_cast<double>(v);
+  return s;
+}
+
+std::vector<double> probeReading(const Simulation& sim) {
+  needContext();
+  auto gpu = std::make_shared<const GpuScene>(sim);
+  return measureProbe(sim, sim.probes.at(0), shaderLibrary(), gpu, advance(sim.entities, sim.lights, sim.time.at(0)));
+}
+
+double blackBodyBand(double low_um, double high_um, double temperature_K) {
+  const double h = 6.62607015e-34, c = 299792458.0, k = 1.380649e-23;
+  auto below = [&](double lambda_um) {
+    const double x = h * c / (lambda_um * 1e-6 * k * temperature_K);
+    double s = 0.0;
+    for (int n = 1; n <= 400; ++n) {
+      const double term = std::exp(-n * x) * (x * x * x / n + 3 * x * x / n / n + 6 * x / std::pow(n, 3) + 6 / std::pow(n, 4));
+      s += term;
+      if (term < 1e-18 * s) break;
+    }
+    return 2.0 * std::pow(k * temperature_K, 4) / (h * h * h * c * c) * s;
+  };
+  return below(high_um) - below(low_um);
+}
+
+}  // namespace pitviper::test

@@ -1,0 +1,317 @@
+// Deliberately broken input to the real program: exit code 2 (1 where disk or folder are at fault), one line on stderr that begins
+// with the very place and names what was expected and the fix, and no output left behind.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Stands in a text where the message must point to; removed before the file is written.
+constexpr std::string_view kHere = "@@";
+
+const std::string kPlate = "entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: {}, temperature: 300 K}]\n";
+const std::string kCameraRest = "film: {width: 8, height: 8, pitch: 20 um}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m]";
+const std::string kChannels = "channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}}]";
+const std::string kCamera = "cameras: [{name: c, " + kCameraRest + ", " + kChannels + "}]\n";
+
+std::string entity(const std::string& rest) { return "entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, " + rest + "}]\n" + kCamera; }
+std::string shape(const std::string& text) { return "entities: [{name: p, material: {}, temperature: 300 K, shape: " + text + "}]\n" + kCamera; }
+std::string channel(const std::string& text) { return kPlate + "cameras:\n- {name: c, " + kCameraRest + ",\n   channels: [" + text + "]}\n"; }
+std::string response(const std::string& text) { return channel("{name: mw, response: " + text + "}"); }
+
+std::string film(const std::string& text, const std::string& samples = "1") {
+  return kPlate + "cameras: [{name: c, film: " + text + ", samples: " + samples + ", field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m], " + kChannels + "}]\n";
+}
+
+std::string repeated(const std::string& text, int times) {
+  std::string all;
+  for (int i = 0; i < times; ++i) all += text;
+  return all;
+}
+
+/// A list of channels c0, c1, ... with bands side by side: as many different kernels.
+std::string manyChannels(int count) {
+  std::string all;
+  for (int i = 0; i < count; ++i)
+    all += std::string(i == 0 ? "" : ", ") + "{name: c" + std::to_string(i) + ", response: {band: [" + std::to_string(300 + 10 * i) + "0 nm, " + std::to_string(300 + 10 * i) + "9 nm]}}";
+  return all;
+}
+
+/// Nine levels of nine aliases: 9^9 values.
+std::string billionLaughs() {
+  std::string text = "a0: &a0 [lol, lol, lol, lol, lol, lol, lol, lol, lol]\n";
+  for (int level = 1; level < 9; ++level) {
+    const std::string below = "*a" + std::to_string(level - 1), own = "a" + std::to_string(level);
+    text += own + ": &" + own + " [" + below + repeated(", " + below, 8) + "]\n";
+  }
+  return text;
+}
+
+struct Result {
+  int code = -1;
+  std::string out, err;
+};
+
+std::string quoted(const std::string& text) {
+  std::string q = "'";
+  for (char c : text) q += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return q + "'";
+}
+
+std::string readAll(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+void write(const fs::path& file, std::string_view bytes) {
+  std::ofstream(file, std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+}
+
+/// The messages of all cases, told at the end by their names.
+std::map<std::string, std::string>& messages() {
+  static std::map<std::string, std::string> all;
+  return all;
+}
+
+/// A folder of its own, and the program run in it.
+class Workplace {
+ public:
+  Workplace() : folder_(fs::temp_directory_path() / ("pitviper_bad_" + std::to_string(getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  Workplace(const Workplace&) = delete;
+  Workplace& operator=(const Workplace&) = delete;
+  ~Workplace() { fs::remove_all(folder_); }
+
+  const fs::path& folder() const { return folder_; }
+
+  Result run(const std::vector<std::string>& arguments, const std::string& before = "") const {
+    std::string command = "cd " + quoted(folder_.string()) + " && " + before + " PITVIPER_HOME=" + quoted(PITVIPER_SOURCE_DIR) + " timeout 60 " + quoted(PITVIPER_PROGRAM);
+    for (const auto& a : arguments) command += " " + quoted(a);
+    const int status = std::system((command + " >.stdout 2>.stderr").c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readAll(folder_ / ".stdout"), readAll(folder_ / ".stderr")};
+  }
+
+  /// Writes a file and returns "name:line:column" of the marked place, or nothing where none is marked.
+  std::string put(const std::string& name, std::string text) const {
+    std::string place;
+    if (const std::size_t at = text.find(kHere); at != std::string::npos) {
+      text.erase(at, kHere.size());
+      std::size_t line = 1, column = 1;
+      for (std::size_t i = 0; i < at; ++i) text[i] == '\n' ? (++line, column = 1) : ++column;
+      place = name + ":" + std::to_string(line) + ":" + std::to_string(column) + ": ";
+    }
+    write(folder_ / name, text);
+    return place;
+  }
+
+ private:
+  fs::path folder_;
+};
+
+void expectOneLine(const Result& r, int code, const std::string& begin, const std::vector<std::string>& words) {
+  EXPECT_EQ(r.code, code) << r.err;
+  ASSERT_FALSE(r.err.empty());
+  EXPECT_EQ(r.err.find('\n'), r.err.size() - 1) << r.err;
+  EXPECT_EQ(r.err.substr(0, begin.size()), begin) << r.err;
+  EXPECT_NE(r.err.find("; fix: "), std::string::npos) << r.err;
+  if (code == 2) EXPECT_NE(r.err.find("; expected "), std::string::npos) << r.err;
+  for (const auto& word : words) EXPECT_NE(r.err.find(word), std::string::npos) << "'" << word << "' in: " << r.err;
+  EXPECT_LT(r.err.size(), 2000u);
+}
+
+// --- scenarios -----------------------------------------------------------------------------------------------------------------
+
+struct Bad {
+  const char* name;
+  std::string yaml;
+  std::vector<std::string> words;
+  std::map<std::string, std::string> files = {};  ///< beside the scenario; the marked place may be in one of them
+  std::string place = "";                         ///< where no place can be marked: how the message begins
+};
+
+const char kTexture4x4Colour[] =
+    "\x89PNG\r\n\x1a\n\0\0\0\rIHDR\0\0\0\x04\0\0\0\x04\x08\x02\0\0\0\x26\x93\x09\x29\0\0\0\x0eIDATx\x9c\x63\x60\x18\x05\xa4\x02\0\x01\x30\0\x01\0\0\0\0IEND\xae\x42\x60\x82";
+
+std::vector<Bad> badScenarios() {
+  const std::string csvResponse = kPlate + "cameras: [{name: c, " + kCameraRest + ", channels: [{name: mw, response: {file: table.csv}}]}]\n";
+  const std::string meshScene = shape("{model: mesh, file: body.obj, unit: 1 m}");
+  const std::string missing = "cannot read the file";
+  return {
+      // Not YAML, or not text.
+      {"RandomBytes", "@@\x93\xfa\x01\x88Q{{\xc3(", {"not UTF-8"}},
+      {"NotUtf8", "name: caf@@\xe9\n" + kPlate + kCamera, {"0xe9", "UTF-8"}},
+      {"ZeroByte", std::string("name: a@@\0b\n", 12), {"0x00"}},
+      {"Utf16", std::string("@@\xff\xfen\0a\0m\0e\0", 12), {"UTF-8"}},
+      {"TwentyThousandBrackets", repeated("[", 256) + "@@" + repeated("[", 20000), {"brackets nested deeper"}},
+      {"Tabs", "name: x\ntime:\n@@\tframes: 3\n", {"not well-formed YAML"}},
+      {"UnclosedQuote", "name: \"never closed\n" + kPlate + "@@", {"not well-formed YAML"}},
+      {"Empty", "@@# nothing but a comment\n", {"the file holds nothing"}},
+      {"TwoDocuments", "name: a\n---\n@@name: b\n", {"a second document"}},
+      {"BillionLaughs", billionLaughs(), {"more than", "aliases"}, {}, "bad.yaml:6:"},
+      // Keys and kinds.
+      {"ListForMap", "@@- name: x\n- seed: 3\n", {"scenario is a list", "a map of keys"}},
+      {"UnknownKey", "name: x\n@@atmosfere: none\n", {"unknown key 'atmosfere'", "did you mean 'atmosphere'?"}},
+      {"DuplicateKey", "seed: 1\nname: x\n@@seed: 2\n", {"duplicate key 'seed'"}},
+      {"MissingUnit", entity("material: {}, temperature: @@300"), {"temperature has no unit", "write '300 K'"}},
+      {"WrongDimension", entity("material: {}, temperature: @@300 m"), {"wrong unit 'm'", "'300 K'"}},
+      {"NotANumber", "background: {temperature: @@.nan}\n", {"not a finite number"}},
+      {"OutOfRange", "background: {temperature: @@-3 K}\n", {"out of range (-3 K)", "0 to 1e+05 K"}},
+      {"ZeroFrames", "time: {frames: @@0}\n", {"frames is out of range (0)"}},
+      {"NegativeFilm", film("{width: @@-640, height: 8, pitch: 20 um}"), {"width is out of range (-640)", "1 to 16384"}},
+      {"FilmOfABillion", film("{width: 8, height: @@1000000000, pitch: 20 um}"), {"height is out of range (1e+09)"}},
+      {"ABillionSamples", film("{width: 8, height: 8, pitch: 20 um}", "@@1000000000"), {"samples is out of range (1e+09)", "1 to 16"}},
+      {"CountBeyondAnyInteger", film("{width: 8, height: 8, pitch: 20 um}", "@@99999999999999999999"), {"not a whole number"}},
+      {"TooManySubpixels", film("@@{width: 16384, height: 16384, pitch: 20 um}"), {"67 million"}},
+      {"HostileSegments", shape("{model: sphere, radius: 1 m, segments: @@1000000}"), {"segments is out of range", "8 to 2048"}},
+      // Names.
+      {"UnknownMaterial", entity("material: @@gras_green, temperature: 300 K"), {"no material 'gras_green'", "green_grass"}},
+      {"UnknownLibrarySpectrum", response("@@insb_mwr"), {"did you mean 'insb_mwir'?"}},
+      {"UnknownAir", "atmosphere: @@hazy_us67\n", {"did you mean 'hazy_us76'?"}},
+      {"CarriedByItself", entity("material: {}, temperature: 300 K, attached_to: @@p"), {"no entity 'p' (above this place)"}},
+      // Materials.
+      {"ReflectsMoreThanItReceives", "materials:\n  shiny: @@{components: [{reflection: lambertian, reflectance: 0.7}, {reflection: lambertian, reflectance: 0.6}]}\n", {"reflects more than it receives"}},
+      {"ReflectsAndEmitsTooMuch", "materials:\n  warm: @@{components: [{reflection: lambertian, reflectance: 0.3}], emission: {emissivity: 0.8}}\n", {"reflects and emits more"}},
+      {"ReflectanceBeyondOne", "materials: {m: {components: [{reflection: lambertian, reflectance: @@1.2}]}}\n", {"leaves its range", "0 to 1"}},
+      {"MaterialDoesNotCoverTheBand",
+       "materials:\n  paint: @@{components: [{reflection: lambertian, reflectance: {wavelength: um, unit: \"1\", values: [[0.4, 0.1], [2.5, 0.2]]}}]}\n" + entity("material: paint, temperature: 300 K"),
+       {"material 'paint'", "channel 'mw'", "3.6 um to 4.9 um", "0.4 um to 2.5 um"}},
+      // Channels.
+      {"CameraWithoutChannel", kPlate + "cameras: [{name: c, " + kCameraRest + ", channels: @@[]}]\n", {"channels has 0 entries"}},
+      {"SeventeenChannels", kPlate + "cameras: [@@{name: c, " + kCameraRest + ", channels: [" + manyChannels(17) + "]}]\n", {"17 different spectral kernels", "at most 16"}},
+      {"ThousandChannels", kPlate + "cameras: [{name: c, " + kCameraRest + ", channels: @@[" + manyChannels(1000) + "]}]\n", {"channels has 1000 entries", "1 to 64"}},
+      {"ResponseZeroEverywhere", response("@@{wavelength: um, unit: \"1\", values: [[3, 0], [5, 0]]}"), {"channel 'mw' is zero everywhere"}},
+      {"ResponseTableFalls", response("{wavelength: um, unit: \"1\", values: [[3, 0], [4, 1], @@[3.5, 1]]}"), {"do not rise"}},
+      {"ResponseTableWithHole", response("{wavelength: um, unit: \"1\", values: [[3, 0], @@[4], [5, 0]]}"), {"a list of 1", "[wavelength, value]"}},
+      {"ResponseTableWithNan", response("{wavelength: um, unit: \"1\", values: [[3, 0], [4, @@nan], [5, 0]]}"), {"not a plain finite number ('nan')"}},
+      {"BandUpsideDown", response("{band: @@[5 um, 3 um]}"), {"rising edges"}},
+      // Files.
+      {"CsvMissing", kPlate + "cameras: [{name: c, " + kCameraRest + ", channels: [{name: mw, response: {file: @@nothing.csv}}]}]\n", {missing, "nothing.csv"}},
+      {"CsvWithoutUnit", csvResponse, {"names no unit in column 2"}, {{"table.csv", "wavelength [um],@@response\n3,0\n4,1\n"}}},
+      {"CsvDoesNotRise", csvResponse, {"do not rise"}, {{"table.csv", "# made by hand\nwavelength [um],response [1]\n3,0\n4,1\n@@3.9,1\n"}}},
+      {"CsvWithNan", csvResponse, {"not a finite number: 'nan'"}, {{"table.csv", "wavelength [um],response [1]\n3,0\n4,@@nan\n"}}},
+      {"CsvOfThreeColumns", csvResponse, {"more than two columns"}, {{"table.csv", "wavelength [um],response [1]\n@@3,0,0\n"}}},
+      {"MeshMissing", shape("{model: mesh, file: @@nothing.obj, unit: 1 m}"), {"nothing.obj", "does not exist"}},
+      {"MeshWithNan", meshScene, {"body.obj"}, {{"body.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n"}}, "body.obj"},
+      {"TextureRowsUneven", entity("material: {}, temperature: {rows: [[300 K, 310 K], @@[300 K]]}"), {"a texture row has 1 entries"}},
+      {"TextureInColour", entity("material: {}, temperature: {file: colour.png, minimum: 0 K, maximum: 400 K}"), {"grey PNG"},
+       {{"colour.png", std::string(kTexture4x4Colour, sizeof kTexture4x4Colour - 1)}}, "colour.png: "},
+      {"HeightMapTooSmall", shape("{model: terrain, size: 1 km, height_map: @@{rows: [[1 m, 2 m]]}}"), {"a height map of 2x1", "2x2 to 2048x2048"}},
+  };
+}
+
+class BadScenario : public testing::TestWithParam<Bad> {};
+
+TEST_P(BadScenario, IsRefusedAtItsPlace) {
+  const Bad& bad = GetParam();
+  const Workplace place;
+  std::string begin = place.put("bad.yaml", bad.yaml);
+  for (const auto& [name, text] : bad.files)
+    if (const std::string marked = place.put(name, text); !marked.empty()) begin = marked;
+  if (begin.empty()) begin = bad.place;
+  ASSERT_FALSE(begin.empty());
+  const Result r = place.run({"check", "bad.yaml"});
+  expectOneLine(r, 2, begin, bad.words);
+  EXPECT_EQ(r.out, "");
+  messages()[bad.name] = r.err;
+  // The same through the command that writes: nothing may be left.
+  if (std::string(bad.name) == "MissingUnit") {
+    EXPECT_EQ(place.run({"run", "bad.yaml", "--out", "frames"}).code, 2);
+    EXPECT_FALSE(fs::exists(place.folder() / "frames"));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BadScenario, testing::ValuesIn(badScenarios()), [](const auto& info) { return std::string(info.param.name); });
+
+TEST(GoodScenario, MinimalAndWithAliases) {
+  const Workplace place;
+  place.put("plain.yaml", kPlate + kCamera);
+  EXPECT_EQ(place.run({"check", "plain.yaml"}).code, 0) << place.run({"check", "plain.yaml"}).err;
+  place.put("alias.yaml", "materials: {grey: &grey {emission: {emissivity: 0.9}}, again: *grey}\n"
+                          "entities:\n- &plate {name: p, shape: &square {model: plate, width: 1 m, height: 1 m}, material: grey, temperature: 300 K}\n"
+                          "- {name: q, shape: *square, material: again, temperature: 310 K}\n" + kCamera);
+  EXPECT_EQ(place.run({"check", "alias.yaml"}).code, 0) << place.run({"check", "alias.yaml"}).err;
+}
+
+// --- the command line ----------------------------------------------------------------------------------------------------------
+
+struct BadCommand {
+  const char* name;
+  std::vector<std::string> arguments;
+  std::string begin;
+  std::vector<std::string> words;
+};
+
+std::vector<BadCommand> badCommands() {
+  return {
+      {"UnknownCommand", {"chek", "good.yaml"}, "pitviper: ", {"did you mean 'check'?"}},
+      {"UnknownOption", {"run", "good.yaml", "--frame", "0"}, "pitviper run: ", {"did you mean '--frames'?"}},
+      {"NoFile", {"check"}, "pitviper check: ", {"too few arguments"}},
+      {"ScenarioMissing", {"check", "nothing.yaml"}, "nothing.yaml: ", {"cannot read the file", "No such file"}},
+      {"ScenarioIsAFolder", {"check", "."}, ".: ", {"cannot read the file"}},
+      {"SetLeadsNowhere", {"check", "good.yaml", "--set", "cameras.0.cameras.0.samples=2"}, "--set cameras.0.cameras.0.samples=2: ", {"there is no 'cameras' under 'cameras.0'"}},
+      {"SetOfAnUnknownKey", {"check", "good.yaml", "--set", "cameras.c.sampels=2"}, "--set cameras.c.sampels=2: ", {"did you mean 'samples'?"}},
+      {"SetWithoutValue", {"check", "good.yaml", "--set", "cameras.c.samples"}, "--set cameras.c.samples: ", {"not an assignment"}},
+      {"SetOutOfRange", {"check", "good.yaml", "--set", "cameras.0.samples=99"}, "--set cameras.0.samples=99: ", {"samples is out of range (99)"}},
+      {"SetOfBrokenYaml", {"check", "good.yaml", "--set", "name=[a"}, "--set name=[a:", {"not well-formed YAML"}},
+      {"FramesOutOfRange", {"run", "good.yaml", "--frames", "0:7"}, "--frames 0:7: ", {"within 0:0"}},
+      {"FramesNoNumber", {"run", "good.yaml", "--frames", "all"}, "--frames: ", {"'all' is not a range"}},
+      {"FramesBackwards", {"run", "good.yaml", "--frames", "0:-1"}, "--frames 0:-1: ", {"no such range"}},
+      {"ExrMissing", {"info", "nothing.exr"}, "nothing.exr: ", {"cannot open the file"}},
+      {"ExrDamaged", {"info", "damaged.exr"}, "damaged.exr: ", {}},
+      {"ExrIsText", {"info", "good.yaml"}, "good.yaml: ", {}},
+  };
+}
+
+class BadCommandLine : public testing::TestWithParam<BadCommand> {};
+
+TEST_P(BadCommandLine, IsRefused) {
+  const Workplace place;
+  place.put("good.yaml", kPlate + kCamera);
+  // The magic number and version of an EXR file, then nothing that is true.
+  write(place.folder() / "damaged.exr", std::string("\x76\x2f\x31\x01\x02\0\0\0channels\0chlist\0\xff\xff\xff\x7f", 28) + repeated("R", 400));
+  const Result r = place.run(GetParam().arguments);
+  expectOneLine(r, 2, GetParam().begin, GetParam().words);
+  messages()[GetParam().name] = r.err;
+  EXPECT_FALSE(fs::exists(place.folder() / "out")) << "output of a run that was refused";
+}
+
+INSTANTIATE_TEST_SUITE_P(All, BadCommandLine, testing::ValuesIn(badCommands()), [](const auto& info) { return std::string(info.param.name); });
+
+TEST(Disk, OutputFolderThatCannotBe) {
+  const Workplace place;
+  place.put("good.yaml", kPlate + kCamera);
+  place.put("taken", "a file in the way\n");
+  for (const char* folder : {"taken", "taken/deeper", "/proc/nothing"}) {
+    const Result r = place.run({"run", "good.yaml", "--out", folder});
+    expectOneLine(r, 1, "", {folder});
+    messages()[std::string("OutputFolder ") + folder] = r.err;
+  }
+  EXPECT_EQ(readAll(place.folder() / "taken"), "a file in the way\n");
+}
+
+/// Ten messages as a user sees them.
+class Showcase : public testing::Environment {
+ public:
+  void TearDown() override {
+    std::printf("\nTen messages:\n");
+    for (const char* name : {"UnknownKey", "MissingUnit", "WrongDimension", "FilmOfABillion", "MaterialDoesNotCoverTheBand", "ReflectsAndEmitsTooMuch", "SeventeenChannels",
+                             "CsvDoesNotRise", "NotUtf8", "SetOfAnUnknownKey"})
+      if (const auto found = messages().find(name); found != messages().end()) std::printf("  %s", found->second.c_str());
+  }
+};
+
+[[maybe_unused]] const auto* const kShowcase = testing::AddGlobalTestEnvironment(new Showcase);
+
+}  // namespace

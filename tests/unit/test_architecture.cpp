@@ -1,0 +1,85 @@
+// Includes follow the arrows of the house: scenarios -> materials, atmosphere, sensors -> sim, and within sim later may use earlier.
+// Shader files count ("//@use"). Third-party libraries stay in the one place that may know them.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+
+namespace {
+
+const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image", "sim/gl", "sim/scene", "sim/model", "sim/plan",
+                                         "sim/render", "sim/frame", "sim/stream", "sim/run"};
+
+int levelOf(const std::string& path) {
+  for (size_t i = 0; i < kOrder.size(); ++i)
+    if (path.rfind(kOrder[i] + "/", 0) == 0) return static_cast<int>(i);
+  for (const char* m : {"materials/", "atmosphere/", "sensors/"})
+    if (path.rfind(m, 0) == 0) return 100;
+  if (path.rfind("scenarios/", 0) == 0) return 200;
+  return -1;
+}
+
+std::string topOf(const std::string& path) { return path.substr(0, path.find('/')); }
+
+struct Use {
+  std::string file, included;
+  bool system;
+};
+
+std::vector<Use> allUses() {
+  const std::filesystem::path root = PITVIPER_SOURCE_DIR;
+  static const std::regex include(R"re(^\s*(?:#include\s+([<"])([^>"]+)[>"]|//@use\s+(\S+)))re");
+  std::vector<Use> uses;
+  for (const char* top : {"sim", "materials", "atmosphere", "sensors", "scenarios"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / top)) {
+      const std::string ext = entry.path().extension().string();
+      if (ext != ".cpp" && ext != ".hpp" && ext != ".glsl") continue;
+      std::ifstream in(entry.path());
+      std::string line;
+      while (std::getline(in, line)) {
+        std::smatch m;
+        if (!std::regex_search(line, m, include)) continue;
+        uses.push_back({std::filesystem::relative(entry.path(), root).string(), m[3].matched ? m[3].str() : m[2].str(), m[1].matched && m[1].str() == "<"});
+      }
+    }
+  return uses;
+}
+
+std::string violation(const Use& use) {
+  if (use.system) {
+    static const std::map<std::string, std::vector<std::string>> homes = {
+        {"yaml-cpp/", {"scenarios/reader/"}}, {"GeographicLib/", {"sim/scene/"}}, {"OpenEXR/", {"sim/image/"}}, {"Imf", {"sim/image/"}},
+        {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}}, {"epoxy/", {"sim/gl/", "sim/render/", "scenarios/commands/bench"}}};
+    for (const auto& [library, allowed] : homes) {
+      if (use.included.rfind(library, 0) != 0) continue;
+      for (const auto& home : allowed)
+        if (use.file.rfind(home, 0) == 0) return "";
+      return use.file + " may not know " + use.included;
+    }
+    return "";
+  }
+  const int user = levelOf(use.file), used = levelOf(use.included);
+  if (used < 0) return use.file + ": include '" + use.included + "' is not written from the root";
+  if (used > user) return use.file + " may not use " + use.included;
+  if (user == 100 && used == 100 && topOf(use.file) != topOf(use.included)) return use.file + " may not use its neighbour " + use.included;
+  return "";
+}
+
+TEST(Architecture, IncludesFollowTheArrows) {
+  const auto uses = allUses();
+  EXPECT_GT(uses.size(), 200u);
+  for (const auto& use : uses) EXPECT_EQ(violation(use), "");
+}
+
+TEST(Architecture, TheTestItselfFindsViolations) {
+  EXPECT_NE(violation({"sim/radiometry/planck.hpp", "sim/gl/context.hpp", false}), "");
+  EXPECT_NE(violation({"sim/render/glsl/shade.frag.glsl", "materials/phong.glsl", false}), "");
+  EXPECT_NE(violation({"materials/x.cpp", "atmosphere/homogeneous.hpp", false}), "");
+  EXPECT_NE(violation({"sim/run/run.cpp", "yaml-cpp/yaml.h", true}), "");
+  EXPECT_EQ(violation({"scenarios/reader/x.cpp", "materials/reflection.hpp", false}), "");
+}
+
+}  // namespace

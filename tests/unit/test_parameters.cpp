@@ -1,0 +1,115 @@
+// Units, values and tables.
+#include <gtest/gtest.h>
+
+#include "scenarios/reader/scenario_reader.hpp"
+#include "scenarios/reader/yaml_tree.hpp"
+#include "sim/parameters/spectrum_value.hpp"
+#include "sim/parameters/units.hpp"
+#include "tests/support/scene_builder.hpp"
+
+#include <fstream>
+#include <sstream>
+
+namespace pitviper::test {
+namespace {
+
+double in(const char* text, const char* unit) { return convert(*splitQuantity(text), unit).value(); }
+
+TEST(Units, Conversions) {
+  EXPECT_DOUBLE_EQ(in("3.5 um", "um"), 3.5);
+  EXPECT_DOUBLE_EQ(in("3500 nm", "um"), 3.5);
+  EXPECT_DOUBLE_EQ(in("62 degC", "K"), 335.15);
+  EXPECT_NEAR(in("212 degF", "K"), 373.15, 1e-9);
+  EXPECT_DOUBLE_EQ(in("0.2 /km", "1/m"), 2e-4);
+  EXPECT_DOUBLE_EQ(in("2 W/(cm2 sr um)", "W/(m2 sr um)"), 2e4);
+  EXPECT_DOUBLE_EQ(in("2 W m-2 sr-1 um-1", "W/(m2 sr um)"), 2.0);
+  EXPECT_DOUBLE_EQ(in("12 kW/sr", "W/sr"), 12000.0);
+  EXPECT_NEAR(in("90 deg", "rad"), 1.5707963267948966, 1e-15);
+  EXPECT_DOUBLE_EQ(in("36 km/h", "m/s"), 10.0);
+  EXPECT_DOUBLE_EQ(in("5 %", ""), 0.05);
+  EXPECT_DOUBLE_EQ(in("3 lx", "lm/m2"), 3.0);
+  EXPECT_DOUBLE_EQ(in("2e6 V/W", "V/W"), 2e6);
+}
+
+TEST(Units, RefusesWhatIsNot) {
+  EXPECT_FALSE(parseUnit("furlong"));
+  EXPECT_FALSE(parseUnit("W/(m2"));
+  EXPECT_FALSE(parseUnit("m//s"));
+  EXPECT_FALSE(splitQuantity("nan K"));
+  EXPECT_FALSE(splitQuantity("1e999 K"));
+  EXPECT_FALSE(splitQuantity("warm"));
+  EXPECT_FALSE(convert(*splitQuantity("3 K"), "um"));
+  EXPECT_FALSE(convert(*splitQuantity("3"), "um"));
+}
+
+std::string errorOf(const std::string& yaml) {
+  try {
+    scene(yaml);
+  } catch (const UserError& e) {
+    return e.what();
+  }
+  return "no error";
+}
+
+const std::string kCamera = "cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 2 deg, aperture: 20 mm, heading: 0 deg, channels: [{name: a, response: {band: [3 um, 5 um]}}]}]\n";
+
+TEST(Reader, PlacesAndFixes) {
+  EXPECT_EQ(errorOf("sede: 3\n" + kCamera).rfind("test.yaml:1:1: unknown key 'sede'", 0), 0u);
+  EXPECT_NE(errorOf("sede: 3\n" + kCamera).find("did you mean 'seed'"), std::string::npos);
+  EXPECT_EQ(errorOf("seed: 3\nseed: 4\n" + kCamera).rfind("test.yaml:2:1: duplicate key", 0), 0u);
+  EXPECT_EQ(errorOf("background: {temperature: 300}\n" + kCamera).rfind("test.yaml:1:27: temperature has no unit", 0), 0u);
+  EXPECT_EQ(errorOf("background: {temperature: 300 m}\n" + kCamera).rfind("test.yaml:1:27: temperature has the wrong unit", 0), 0u);
+  EXPECT_NE(errorOf("lights: []\n").find("neither a camera nor a probe"), std::string::npos);
+}
+
+TEST(Reader, WavenumberTablesAreTurnedRound) {
+  const auto sim = scene("background: {radiance: {wavelength: 1/cm, unit: W/(m2 sr um), values: [[1000, 1], [2000, 2], [5000, 5]]}}\n" + kCamera);
+  EXPECT_NEAR(sim.background(10.0), 1.0, 1e-12);
+  EXPECT_NEAR(sim.background(5.0), 2.0, 1e-12);
+  EXPECT_NEAR(sim.background(2.0), 5.0, 1e-12);
+}
+
+TEST(Reader, OverridesReachListsByNameAndNumber) {
+  Value tree = parseYaml("cameras: [{name: c, samples: 1}]\n", "x");
+  applyOverride(tree, "cameras.c.samples=2");
+  EXPECT_EQ(tree.entries[0].second.items[0].find("samples")->text, "2");
+  applyOverride(tree, "cameras.0.exposure=3 ms");
+  EXPECT_EQ(tree.entries[0].second.items[0].find("exposure")->text, "3 ms");
+  EXPECT_THROW(applyOverride(tree, "cameras.9.samples=2"), UserError);
+  EXPECT_THROW(applyOverride(tree, "samples"), UserError);
+}
+
+TEST(Reader, EveryLibraryFileIsGood) {
+  const std::filesystem::path home = PITVIPER_SOURCE_DIR;
+  int count = 0;
+  auto names = [](const std::filesystem::path& folder) {
+    std::vector<std::string> all;
+    for (const auto& e : std::filesystem::directory_iterator(folder))
+      if (e.path().extension() == ".yaml") all.push_back(e.path().stem().string());
+    return all;
+  };
+  for (const auto& n : names(home / "materials/library")) {
+    EXPECT_NO_THROW(scene("entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: " + n + ", temperature: 300 K}]\n" + kCamera)) << n;
+    ++count;
+  }
+  for (const auto& n : names(home / "atmosphere/library")) {
+    EXPECT_NO_THROW(scene("atmosphere: " + n + "\n" + kCamera)) << n;
+    ++count;
+  }
+  EXPECT_GT(count, 20);
+}
+
+// The key reference in scenarios/README.md is what the reader accepts.
+TEST(Reader, KeyReferenceIsCurrent) {
+  std::ifstream in(std::string(PITVIPER_SOURCE_DIR) + "/scenarios/README.md");
+  std::stringstream text;
+  text << in.rdbuf();
+  const std::string readme = text.str();
+  const size_t begin = readme.find("<!-- keys -->\n"), end = readme.find("<!-- end of keys -->");
+  ASSERT_NE(begin, std::string::npos);
+  ASSERT_NE(end, std::string::npos);
+  EXPECT_TRUE(readme.substr(begin + 14, end - begin - 14) == keyReference()) << "run: pitviper keys, and put its output between the marks in scenarios/README.md";
+}
+
+}  // namespace
+}  // namespace pitviper::test
