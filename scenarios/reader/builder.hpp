@@ -11,6 +11,9 @@
 
 namespace pitviper {
 
+/// A number for a message: six digits at most.
+std::string briefNumber(double v);
+
 class Builder {
  public:
   Builder(Simulation& simulation, std::filesystem::path base, Libraries libraries);

@@ -1,12 +1,14 @@
 // Materials, their components, and textures.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "materials/reflection.hpp"
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/image/png.hpp"
+#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
@@ -26,6 +28,12 @@ Angle angleNamed(const std::string& word) {
   if (word == "specular") return Angle::Specular;
   if (word == "half") return Angle::Half;
   return Angle::Difference;
+}
+
+std::string percentAt(double sum, double wavelength_um, double angle_rad) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%.4g %% at %.4g um and %.0f deg from the normal", 100.0 * sum, wavelength_um, angle_rad * 180.0 / kPi);
+  return text;
 }
 
 /// values[angle 2][angle 1][wavelength], with a nesting level left out for each missing axis.
@@ -99,17 +107,17 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
   } else {
     const auto& rows = r.value("rows").items;
     t.height = static_cast<int>(rows.size());
+    t.width = rows.front().kind == Value::Kind::List ? static_cast<int>(rows.front().items.size()) : 0;
     for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
       asList(*row, "texture row");
-      if (t.width == 0) t.width = static_cast<int>(row->items.size());
       if (row->items.empty() || static_cast<int>(row->items.size()) != t.width || t.width > 16384)
-        throw UserError(row->where, "a texture row has " + std::to_string(row->items.size()) + " entries", "as many as the other rows (" + std::to_string(t.width) + "), at least 1", "make the rows equally long");
+        throw UserError(row->where, "a texture row has " + std::to_string(row->items.size()) + " entries", "as many as the first row (" + std::to_string(t.width) + "), 1 to 16384", "make the rows equally long");
       for (const Value& x : row->items) t.texels.push_back(static_cast<float>(readNumber(x, unit, "texture value")));
     }
   }
   for (float x : t.texels)
     if (!(static_cast<double>(x) >= lowest && static_cast<double>(x) <= highest))
-      throw UserError(r.where(), "the texture of " + std::string(name) + " holds " + std::to_string(x), std::to_string(lowest) + " to " + std::to_string(highest), "correct its range");
+      throw UserError(r.where(), "the texture of " + std::string(name) + " holds " + briefNumber(static_cast<double>(x)), briefNumber(lowest) + " to " + briefNumber(highest) + (unit.empty() ? "" : " " + std::string(unit)), "correct its values, or 'minimum' and 'maximum'");
   std::size_t texels = t.texels.size();
   for (const Texture& other : simulation_.textures) texels += other.texels.size();
   if (texels > kMostTexels)
@@ -174,8 +182,7 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
     for (double angle : {0.0, 0.5, 1.0, 1.4}) {
       const double rho = m->reflectance(w, angle), sum = rho + (m->given ? m->given->at(w, angle) : 0.0);
       if (sum > 1.0 + 1e-6)
-        throw UserError(value.where, "material '" + name + "' " + (m->given ? "reflects and emits" : "reflects") + " more than it receives (" + std::to_string(sum) + " at " +
-                                         std::to_string(w) + " um, view angle " + std::to_string(angle * 57.2957795) + " deg)",
+        throw UserError(value.where, "material '" + name + "' " + (m->given ? "reflects and emits" : "reflects") + " more than it receives (" + percentAt(sum, w, angle) + ")",
                         m->given ? "reflectance + emissivity <= 1" : "the sum of its reflectances <= 1", "lower a component");
     }
   }

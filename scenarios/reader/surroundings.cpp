@@ -14,12 +14,6 @@ namespace {
 /// Far below the end of a float, 3.4e38.
 constexpr double kLargestFloatValue = 1e30;
 
-std::string shortNumber(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
-
 std::string libraryNames(const std::filesystem::path& folder, const std::string& word, std::string& nearest) {
   std::vector<std::string> names;
   std::error_code ignored;
@@ -33,6 +27,12 @@ std::string libraryNames(const std::filesystem::path& folder, const std::string&
 }
 
 }  // namespace
+
+std::string briefNumber(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", v);
+  return text;
+}
 
 Builder::Builder(Simulation& simulation, std::filesystem::path base, Libraries libraries)
     : simulation_(simulation), libraries_(libraries), spectra_([&] {
@@ -60,8 +60,8 @@ Spectrum Builder::bounded(const SpectrumReader& spectra, const Value& value, std
   const double least = s.minimum(from, to), most = s.maximum(from, to);
   // Products of allowed factors can still be beyond a float; such a maximum is infinite or, from 0 x infinity, none at all.
   if (!(least >= low && most <= std::min(high, kLargestFloatValue) && std::isfinite(least) && std::isfinite(most)))
-    throw UserError(value.where, std::string(name) + " leaves its range: it goes from " + shortNumber(least) + " to " + shortNumber(most),
-                    std::isfinite(high) ? "values from " + shortNumber(low) + " to " + shortNumber(high) : "values of at least 0, at most 1e30", "correct its values");
+    throw UserError(value.where, std::string(name) + " leaves its range: it goes from " + briefNumber(least) + " to " + briefNumber(most),
+                    std::isfinite(high) ? "values from " + briefNumber(low) + " to " + briefNumber(high) : "values of at least 0, at most 1e30", "correct its values");
   return s;
 }
 

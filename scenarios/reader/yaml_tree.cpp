@@ -19,7 +19,7 @@ constexpr const char* kLargestText = "at most 4 MB";
 /// Builds the tree from the parser's events: no recursion of our own, every node with its place.
 class TreeBuilder final : public YAML::EventHandler {
  public:
-  explicit TreeBuilder(std::string file) : file_(std::move(file)), most_(std::min(kMostYamlNodes, kMostPlaceBytes / (file_.size() + 1))) {}
+  TreeBuilder(std::string_view text, std::string file) : text_(text), file_(std::move(file)), most_(std::min(kMostYamlNodes, kMostPlaceBytes / (file_.size() + 1))) {}
 
   Value take() { return std::move(root_); }
   const Location& where() const { return root_.where; }
@@ -45,6 +45,7 @@ class TreeBuilder final : public YAML::EventHandler {
     Value v = make(Value::Kind::Scalar, mark);
     v.text = text;
     v.quoted = tag == "!";
+    if (v.quoted) refuseOpenQuote(mark);
     if (!v.quoted && (text == "~" || text == "null")) v.kind = Value::Kind::Null;
     add(std::move(v), anchor);
   }
@@ -87,6 +88,17 @@ class TreeBuilder final : public YAML::EventHandler {
     for (const auto& [k, e] : v.entries) n += size(e);
     return n;
   }
+  /// yaml-cpp takes a quote that is never closed for one that closes at the end of the file.
+  void refuseOpenQuote(const YAML::Mark& mark) const {
+    std::size_t at = mark.pos < 0 ? text_.size() : static_cast<std::size_t>(mark.pos);
+    if (at >= text_.size() || (text_[at] != '"' && text_[at] != '\'')) return;  // begins with a tag or an anchor
+    const char quote = text_[at];
+    for (++at; at < text_.size(); ++at) {
+      if (text_[at] == quote && !(quote == '\'' && at + 1 < text_.size() && text_[at + 1] == quote)) return;
+      if (text_[at] == quote || (text_[at] == '\\' && quote == '"')) ++at;
+    }
+    throw UserError(place(mark), "the quote that opens here is never closed", "a quote at the end of the text", "close it");
+  }
   void open(Value v, YAML::anchor_t anchor) {
     if (stack_.size() >= kDeepestYaml)
       throw UserError(v.where, "nested deeper than " + std::to_string(kDeepestYaml) + " levels", "a flatter file", "check the brackets");
@@ -126,6 +138,7 @@ class TreeBuilder final : public YAML::EventHandler {
   /// Every node's place holds the file's name: a name of 4000 characters allows fewer nodes.
   static constexpr std::size_t kMostPlaceBytes = 256u << 20;
 
+  std::string_view text_;
   std::string file_;
   std::size_t most_;
   std::vector<Open> stack_;
@@ -188,14 +201,14 @@ Value parseYaml(const std::string& text, const std::string& fileName) {
     throw UserError({fileName, 1, 1, -1}, "the file has " + std::to_string(text.size()) + " bytes", kLargestText, "put large tables into CSV files");
   refuseOtherThanText(text, fileName);
   refuseDeepFlow(text, fileName);
-  TreeBuilder builder(fileName);
+  TreeBuilder builder(text, fileName);
   try {
     std::istringstream in(text);
     YAML::Parser parser(in);
     if (!parser.HandleNextDocument(builder) || !builder.hasRoot())
       throw UserError({fileName, 1, 1, -1}, "the file holds nothing", "a YAML document", "write a scenario; see scenarios/README.md");
     Value root = builder.take();
-    TreeBuilder rest(fileName);
+    TreeBuilder rest(text, fileName);
     if (parser.HandleNextDocument(rest) && rest.hasRoot())
       throw UserError(rest.where(), "a second document begins here (after '---')", "one document in a file", "remove it, or put it into a file of its own");
     return root;

@@ -70,12 +70,28 @@ void Buffer::upload(const void* data, std::size_t bytes) {
     name_ = GlName<deleteBuffer>(n);
     glNamedBufferStorage(n, static_cast<GLsizeiptr>(wanted), nullptr, GL_DYNAMIC_STORAGE_BIT | GL_MAP_READ_BIT);
     bytes_ = wanted;
+    texture_ = GlName<deleteTexture>();
   }
   if (bytes > 0 && data) glNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(bytes), data);
 }
 
 void Buffer::bindStorage(unsigned index) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, index, name_); }
 void Buffer::bindUniform(unsigned index) const { glBindBufferBase(GL_UNIFORM_BUFFER, index, name_); }
+void Buffer::bindTexture(unsigned unit, int floatsPerTexel) const {
+  if (texture_ == 0u) {
+    GLint limit = 0;
+    glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
+    const std::size_t texels = bytes_ / sizeof(float) / static_cast<std::size_t>(floatsPerTexel);
+    if (texels > static_cast<std::size_t>(limit))
+      throw GlError("a table of " + std::to_string(texels) + " entries is asked for, this driver's buffer textures hold " + std::to_string(limit) +
+                    "; use fewer spectral samples or smaller material tables");
+    GLuint n = 0;
+    glCreateTextures(GL_TEXTURE_BUFFER, 1, &n);
+    texture_ = GlName<deleteTexture>(n);
+    glTextureBuffer(n, floatsPerTexel == 4 ? GL_RGBA32F : GL_R32F, name_);
+  }
+  glBindTextureUnit(unit, texture_);
+}
 void Buffer::bindPack() const { glBindBuffer(GL_PIXEL_PACK_BUFFER, name_); }
 void Buffer::download(void* into, std::size_t bytes) const { glGetNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(bytes), into); }
 void Buffer::bindElements() const { glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, name_); }

@@ -65,6 +65,8 @@ class Buffer {
   void bindStorage(unsigned index) const;
   void bindUniform(unsigned index) const;
   void bindElements() const;
+  /// As a texture of floats, one or four to a texel, read by texelFetch.
+  void bindTexture(unsigned unit, int floatsPerTexel) const;
   void bindPack() const;
   void download(void* into, std::size_t bytes) const;
   std::size_t bytes() const { return bytes_; }
@@ -72,6 +74,7 @@ class Buffer {
 
  private:
   GlName<deleteBuffer> name_;
+  mutable GlName<deleteTexture> texture_;  ///< view of the storage, made when first bound
   std::size_t bytes_ = 0;
 };
 

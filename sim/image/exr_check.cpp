@@ -58,7 +58,7 @@ class Walk {
 
  private:
   [[noreturn]] void fail(const std::string& wrong, const std::string& expected = "") const {
-    throw UserError(Location{.file = file_, .byte = static_cast<long long>(at_)}, wrong, expected,
+    throw UserError(Location{.file = file_, .byte = static_cast<long long>(at_)}, wrong, expected.empty() ? "a whole EXR file" : expected,
                     expected.empty() ? "copy or render the file again" : "convert the file");
   }
 

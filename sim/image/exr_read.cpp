@@ -129,9 +129,9 @@ ExrImage readExr(const std::filesystem::path& path) {
   try {
     return decode(bytes);
   } catch (const std::bad_alloc&) {
-    throw UserError(where, "the image is too large for this machine's memory");
+    throw UserError(where, "the image is too large for this machine's memory", "a smaller image", "use a machine with more memory");
   } catch (const std::exception& failure) {
-    throw UserError(where, std::string("cannot read the EXR image: ") + failure.what(), "", "copy or render the file again");
+    throw UserError(where, std::string("cannot read the EXR image: ") + failure.what(), "a whole EXR file", "copy or render the file again");
   }
 }
 

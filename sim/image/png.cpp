@@ -101,7 +101,7 @@ class Reader {
     const std::size_t total = rowBytes * job_.height;
     // Packed codes of 1 bit grow up to 24 times; beyond that the pixels cannot be in the file, and need no memory.
     if (total / (24 * maxDeflateFactor) > job_.bytes.size())
-      throw UserError(where_, "is far too short for its pixels; it is truncated or damaged", "", "copy the file again");
+      throw UserError(where_, "is far too short for its pixels; it is truncated or damaged", "a whole PNG file", "copy the file again");
     if (!rgb && std::size_t{job_.width} * job_.height > maxGreyPixels)
       throw UserError(where_, "the picture is " + std::to_string(job_.width) + " x " + std::to_string(job_.height) + " pixels",
                       "at most 33 million pixels in a texture, such as 8192 x 4096", "make a smaller picture");
@@ -109,7 +109,7 @@ class Reader {
       job_.pixels.resize(total);
       setRows(job_, rowBytes);
     } catch (const std::bad_alloc&) {
-      throw UserError(where_, "the picture is too large for this machine's memory");
+      throw UserError(where_, "the picture is too large for this machine's memory", "a smaller picture", "scale it down");
     }
     if (!readPixels(job_)) fail();
   }

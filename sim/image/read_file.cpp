@@ -39,7 +39,7 @@ std::string readWholeFile(const std::filesystem::path& path) {
   if (file.number() < 0)
     throw UserError(where, "cannot open the file: " + reason(errno), "a readable file", "check the path and its permissions");
   struct stat about = {};
-  if (::fstat(file.number(), &about) != 0) throw UserError(where, "cannot read the file: " + reason(errno));
+  if (::fstat(file.number(), &about) != 0) throw UserError(where, "cannot read the file: " + reason(errno), "a readable file", "check the file and its disk");
   if (!S_ISREG(about.st_mode)) throw UserError(where, "is not a regular file", "an image file", "give the path of a file");
   try {
     std::string bytes(static_cast<std::size_t>(about.st_size), '\0');
@@ -47,16 +47,16 @@ std::string readWholeFile(const std::filesystem::path& path) {
     while (done < bytes.size()) {
       const ssize_t count = ::read(file.number(), bytes.data() + done, bytes.size() - done);
       if (count < 0 && errno == EINTR) continue;
-      if (count < 0) throw UserError(where, "cannot read the file: " + reason(errno));
+      if (count < 0) throw UserError(where, "cannot read the file: " + reason(errno), "a readable file", "check the file and its disk");
       if (count == 0) break;  // it was shortened meanwhile; the format's own check tells
       done += static_cast<std::size_t>(count);
     }
     bytes.resize(done);
     return bytes;
   } catch (const std::bad_alloc&) {
-    throw UserError(where, "is too large for this machine's memory");
+    throw UserError(where, "is too large for this machine's memory", "a smaller file", "use a machine with more memory");
   } catch (const std::length_error&) {
-    throw UserError(where, "is too large for this machine's memory");
+    throw UserError(where, "is too large for this machine's memory", "a smaller file", "use a machine with more memory");
   }
 }
 

@@ -50,10 +50,11 @@ std::string rangeText(const Parameter& p) {
   return "";
 }
 
-void checkRange(const Parameter& p, double v, const Location& where) {
+/// `written` is shown as the user wrote it.
+void checkRange(const Parameter& p, double v, const Value& written) {
   const bool low = p.exclusiveMinimum ? v <= p.minimum : v < p.minimum;
   if (low || v > p.maximum)
-    throw UserError(where, p.key + " is out of range (" + shortNumber(v) + (p.unit.empty() ? "" : " " + p.unit) + ")",
+    throw UserError(written.where, p.key + " is out of range (" + (written.kind == Value::Kind::Scalar ? written.text.substr(0, 60) : shortNumber(v) + (p.unit.empty() ? "" : " " + p.unit)) + ")",
                     rangeText(p), "change the value of '" + p.key + "'");
 }
 
@@ -78,8 +79,8 @@ bool readBoolean(const Value& value, std::string_view name) {
 
 void check(const Parameter& p, const Value& v) {
   switch (p.type) {
-    case ParameterType::Number: checkRange(p, readNumber(v, p.unit, p.key), v.where); break;
-    case ParameterType::Integer: checkRange(p, static_cast<double>(readInteger(v, p.key)), v.where); break;
+    case ParameterType::Number: checkRange(p, readNumber(v, p.unit, p.key), v); break;
+    case ParameterType::Integer: checkRange(p, static_cast<double>(readInteger(v, p.key)), v); break;
     case ParameterType::Boolean: readBoolean(v, p.key); break;
     case ParameterType::Text: readText(v, p.key); break;
     case ParameterType::Choice:
@@ -91,7 +92,7 @@ void check(const Parameter& p, const Value& v) {
       break;
     case ParameterType::Vector: {
       const glm::dvec3 x = readVector(v, p.unit, p.key);
-      for (int i = 0; i < 3; ++i) checkRange(p, x[i], v.where);
+      for (int i = 0; i < 3; ++i) checkRange(p, x[i], v.kind == Value::Kind::List ? v.items[static_cast<size_t>(i)] : v);
       break;
     }
     case ParameterType::List: {

@@ -29,6 +29,7 @@ ShaderSlots slotsFor(const Simulation& sim, const Plan& plan, const RenderTables
   slots.files["lobes"] = plan.terms.lobeFile.empty() ? "sim/render/glsl/lobes_none.glsl" : plan.terms.lobeFile;
   slots.files["lights"] = plan.lightCount > 0 ? "sim/render/glsl/lights_point.glsl" : "sim/render/glsl/lights_none.glsl";
   slots.files["surface"] = tables.general ? "sim/render/glsl/surface_general.glsl" : "sim/render/glsl/surface_simple.glsl";
+  slots.files["columns"] = tables.tabulated ? "sim/render/glsl/columns_tabulated.glsl" : "sim/render/glsl/columns_plain.glsl";
   slots.files["temperature"] = plan.terms.temperatureTextures ? "sim/render/glsl/temperature_textured.glsl" : "sim/render/glsl/temperature_uniform.glsl";
   slots.files["truth"] = truth ? "sim/render/glsl/truth_layers.glsl" : "sim/render/glsl/truth_none.glsl";
   slots.generated["targets"] = tables.targetsText;
@@ -138,11 +139,13 @@ void DirectPass::draw(const View& v, const WorldState& state, const std::vector<
   uploadDraws(v, state);
   scene_->bind();
   draws_.bindStorage(2);
-  rows_.bindStorage(3);
-  hemispherical_.bindStorage(4);
+  rows_.bindTexture(1, tables_.general ? 1 : 4);
+  if (tables_.general) {
+    hemispherical_.bindTexture(2, 4);
+    columns_.bindTexture(3, 4);
+  }
   lights_.bindStorage(5);
   materials_.bindStorage(6);
-  columns_.bindStorage(7);
   view_.bindUniform(0);
   nodes_.bindUniform(1);
   weights_.bindUniform(2);

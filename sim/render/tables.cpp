@@ -45,6 +45,7 @@ void appendMaterial(RenderTables& t, const Material& m, const Plan& plan) {
   bool varies = m.given && !m.given->viewAngle_rad.empty();
   for (const auto& r : m.reflections) varies |= r->hemisphericalVaries();
   const int views = varies ? kViewAngles : 1;
+  t.tabulated |= axes[0].count > 1;
   g.counts[0] = static_cast<std::uint32_t>(axes[0].count);
   g.counts[1] = static_cast<std::uint32_t>(axes[1].count);
   g.counts[2] = static_cast<std::uint32_t>(views);

@@ -26,6 +26,7 @@ struct DrawItem {
 
 struct RenderTables {
   bool general = false;                        ///< angular tables, modifiers or temperature textures in the scene
+  bool tabulated = false;                      ///< some reflection component is a table over angles
   std::vector<DrawItem> draws;
   std::vector<std::uint32_t> rowOfDraw;        ///< first entry of a draw's row
   std::vector<std::uint32_t> materialOfDraw;

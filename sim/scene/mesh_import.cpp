@@ -45,9 +45,10 @@ std::string readAll(const std::filesystem::path& file, const Location& askedAt) 
   std::error_code failure;
   const std::filesystem::file_status status = std::filesystem::status(file, failure);
   if (!std::filesystem::exists(status))
-    throw UserError(askedAt, "the mesh file '" + file.string() + "' does not exist", "", "check the path");
+    throw UserError(askedAt, "the mesh file '" + file.string() + "' does not exist", "a mesh file",
+                    "check the name; it is relative to the scenario's folder");
   if (!std::filesystem::is_regular_file(status))
-    throw UserError(askedAt, "the mesh file '" + file.string() + "' is not a plain file");
+    throw UserError(askedAt, "the mesh file '" + file.string() + "' is not a plain file", "a mesh file", "give the path of a file");
   const std::uintmax_t size = std::filesystem::file_size(file, failure);
   if (failure || size > kMostBytes)
     throw UserError(askedAt, "the mesh file '" + file.string() + "' is too large", "at most 2 GiB",
@@ -55,7 +56,8 @@ std::string readAll(const std::filesystem::path& file, const Location& askedAt) 
   std::ifstream in(file, std::ios::binary);
   std::string bytes(size, '\0');
   if (!in.read(bytes.data(), static_cast<std::streamsize>(size)))
-    throw UserError(askedAt, "the mesh file '" + file.string() + "' cannot be read");
+    throw UserError(askedAt, "the mesh file '" + file.string() + "' cannot be read", "a readable file",
+                    "check its permissions");
   return bytes;
 }
 
@@ -94,7 +96,8 @@ void scale(Mesh& mesh, double metresPerUnit, const Location& askedAt) {
   for (glm::vec3& p : mesh.positions) {
     p = glm::vec3(glm::dvec3(p) * metresPerUnit);
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      throw UserError(askedAt, "the mesh is too large at this number of metres per unit", "positions below 3e38 m");
+      throw UserError(askedAt, "the mesh is too large at this number of metres per unit", "positions below 3e38 m",
+                      "check 'unit'");
   }
 }
 
@@ -105,7 +108,7 @@ void setMeshImportFolder(const std::filesystem::path& folder) { importFolder() =
 Mesh importMesh(const std::filesystem::path& file, double metresPerUnit, const Location& askedAt) {
   if (!std::isfinite(metresPerUnit) || metresPerUnit <= 0.0)
     throw UserError(askedAt, "metres per unit of the mesh is " + std::to_string(metresPerUnit),
-                    "a finite positive number");
+                    "a finite positive number", "correct 'unit'");
   const std::string extension = lowerExtension(file);
   constexpr const char* kKnown[] = {".obj", ".stl", ".ply", ".vtp", ".gltf", ".glb"};
   if (std::find(std::begin(kKnown), std::end(kKnown), extension) == std::end(kKnown))
@@ -118,7 +121,7 @@ Mesh importMesh(const std::filesystem::path& file, double metresPerUnit, const L
   if (!mesh) {
     const std::filesystem::path module = modulePath();
     if (std::error_code ignored; !std::filesystem::exists(module, ignored))
-      throw UserError(askedAt, "the mesh import module " + module.string() + " is missing", "",
+      throw UserError(askedAt, "the mesh import module " + module.string() + " is missing", "a build with VTK",
                       "install the package libvtk9-dev and build again");
     mesh = importInChild(module, file, bytes.size(), askedAt);
     finish(*mesh, Location{file.string()});

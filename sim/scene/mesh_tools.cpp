@@ -228,7 +228,8 @@ std::size_t validateMesh(Mesh& mesh, const Location& where) {
       if (!std::isfinite(v[k])) return false;
     return true;
   };
-  if (mesh.triangles.empty()) throw UserError(where, "the mesh has no triangles", "at least one triangle");
+  if (mesh.triangles.empty()) throw UserError(where, "the mesh has no triangles", "at least one triangle",
+                                               "export the surface as triangles");
   if (mesh.triangles.size() > kMostTriangles)
     throw UserError(where, "the mesh has " + std::to_string(mesh.triangles.size()) + " triangles",
                     "at most " + std::to_string(kMostTriangles), "simplify the mesh");
@@ -237,21 +238,21 @@ std::size_t validateMesh(Mesh& mesh, const Location& where) {
                     "the mesh has " + std::to_string(mesh.positions.size()) + " positions, " +
                         std::to_string(mesh.normals.size()) + " normals and " + std::to_string(mesh.uv.size()) +
                         " texture coordinates",
-                    "as many of each");
+                    "as many of each", "export the mesh again");
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     if (!finite(mesh.positions[i]) || !finite(mesh.normals[i]) || !finite(mesh.uv[i]))
       throw UserError(where, "vertex " + std::to_string(i + 1) + " is not finite",
-                      "finite numbers in single precision");
+                      "finite numbers in single precision", "correct the mesh, its unit or its scale");
   for (const glm::uvec3& t : mesh.triangles)
     if (std::max({t.x, t.y, t.z}) >= mesh.positions.size())
       throw UserError(where, "a triangle uses vertex " + std::to_string(std::max({t.x, t.y, t.z}) + 1ull),
-                      "at most " + std::to_string(mesh.positions.size()));
+                      "at most " + std::to_string(mesh.positions.size()), "export the mesh again");
   std::size_t covered = 0;
   for (const MeshPart& part : mesh.parts) {
-    if (part.firstTriangle != covered) throw UserError(where, "the part '" + part.name + "' leaves a gap or overlaps");
+    if (part.firstTriangle != covered) throw UserError(where, "the part '" + part.name + "' leaves a gap or overlaps", "parts one after the other", "export the mesh again");
     covered += part.triangleCount;
   }
-  if (covered != mesh.triangles.size()) throw UserError(where, "the mesh's parts don't cover its triangles");
+  if (covered != mesh.triangles.size()) throw UserError(where, "the mesh's parts don't cover its triangles", "every triangle in one part", "export the mesh again");
 
   std::size_t kept = 0;
   for (MeshPart& part : mesh.parts) {
@@ -263,7 +264,8 @@ std::size_t validateMesh(Mesh& mesh, const Location& where) {
   const std::size_t removed = mesh.triangles.size() - kept;
   mesh.triangles.resize(kept);
   std::erase_if(mesh.parts, [](const MeshPart& part) { return part.triangleCount == 0; });
-  if (kept == 0) throw UserError(where, "every triangle of the mesh has zero area");
+  if (kept == 0) throw UserError(where, "every triangle of the mesh has zero area", "a surface",
+                                  "check the mesh, its unit and its scale");
   return removed;
 }
 

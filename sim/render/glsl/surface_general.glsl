@@ -1,12 +1,12 @@
 // Materials with tables over angles, modifier textures or temperature textures: components are put together per fragment.
 //@use sim/render/glsl/materials.glsl
 //@use sim/render/glsl/textures.glsl
-layout(std430, binding = 3) readonly buffer Rows { float rows[]; };                  // Planck radiance per temperature and node
-layout(std430, binding = 4) readonly buffer Hemispherical { vec4 hemispherical[]; };  // (D1, D2, D3, given emissivity) by view angle and node
-layout(std430, binding = 7) readonly buffer Columns { vec4 columns[]; };              // (R1, R2, R3) by angle 2, angle 1 and node
+layout(binding = 1) uniform samplerBuffer rows;           // Planck radiance per temperature and node
+layout(binding = 2) uniform samplerBuffer hemispherical;  // (D1, D2, D3, given emissivity) by view angle and node
+layout(binding = 3) uniform samplerBuffer columns;        // (R1, R2, R3) by angle 2, angle 1 and node
 MaterialShape material_;
 vec4 modifier_;
-uint view0_, view1_;
+int view0_, view1_;
 float viewMix_;
 float temperature_;
 
@@ -22,15 +22,6 @@ float arcTangent(float t) {
 // The angle between unit vectors from chord and sum: keeps its digits near 0 and near pi.
 float angleFromChord(vec3 a, vec3 b) { return 2.0 * arcTangent(length(a - b) / max(length(a + b), 1.0e-20)); }
 
-float angleOf(uint kind, Vec3 l) {
-  if (kind == 1u) return angleFromChord(normal_, l);
-  if (kind == 2u) return angleFromChord(normal_, toViewer_);
-  if (kind == 3u) return angleFromChord(reflect(-l, normal_), toViewer_);
-  if (kind == 4u) return angleFromChord(normal_, normalize(l + toViewer_));
-  if (kind == 5u) return angleFromChord(l, normalize(l + toViewer_));
-  return 0.0;
-}
-
 float modifierAt(int texture) { return texture < 0 ? 1.0 : textureValue(texture, uv_); }
 
 void prepareSurface() {
@@ -38,31 +29,19 @@ void prepareSurface() {
   exponents_ = material_.exponent.xyz;
   modifier_ = vec4(modifierAt(material_.modifier.x), modifierAt(material_.modifier.y), modifierAt(material_.modifier.z), modifierAt(material_.modifier.w));
   viewMix_ = clamp(angleFromChord(normal_, toViewer_) * material_.scale.z, 0.0, float(material_.counts.z - 1u));
-  uint j = min(uint(viewMix_), max(material_.counts.z, 2u) - 2u);
+  int j = int(min(uint(viewMix_), max(material_.counts.z, 2u) - 2u));
   viewMix_ -= float(j);
-  view0_ = material_.kinds.w + j * uint(NODES);
-  view1_ = material_.counts.z > 1u ? view0_ + uint(NODES) : view0_;
+  view0_ = int(material_.kinds.w) + j * NODES;
+  view1_ = material_.counts.z > 1u ? view0_ + NODES : view0_;
   temperature_ = draw_.table.z > 0u ? textureValue(int(draw_.table.z) - 1, uv_) : draw_.state.x;
 }
 
-Vec3 reflectionColumns(int i, int l) {
-  float x = 0.0, y = 0.0;
-  if (material_.kinds.x != 0u) x = clamp(angleOf(material_.kinds.x, toLight(l)) * material_.scale.x, 0.0, float(material_.counts.x - 1u));
-  if (material_.kinds.y != 0u) y = clamp(angleOf(material_.kinds.y, toLight(l)) * material_.scale.y, 0.0, float(material_.counts.y - 1u));
-  uint jx = min(uint(x), max(material_.counts.x, 2u) - 2u), jy = min(uint(y), max(material_.counts.y, 2u) - 2u);
-  float fx = x - float(jx), fy = y - float(jy);
-  uint sx = material_.counts.x > 1u ? uint(NODES) : 0u;
-  uint sy = material_.counts.y > 1u ? material_.counts.x * uint(NODES) : 0u;
-  uint at = material_.counts.w + (jy * material_.counts.x + jx) * uint(NODES) + uint(i);
-  vec3 low = mix(columns[at].xyz, columns[at + sx].xyz, fx);
-  vec3 high = mix(columns[at + sy].xyz, columns[at + sx + sy].xyz, fx);
-  return mix(low, high, fy) * modifier_.xyz;
-}
+//@slot columns
 
 //@slot temperature
 
 Real selfRadiance(int i) {
-  vec4 d = mix(hemispherical[view0_ + uint(i)], hemispherical[view1_ + uint(i)], viewMix_);
+  vec4 d = mix(texelFetch(hemispherical, view0_ + i), texelFetch(hemispherical, view1_ + i), viewMix_);
   float reflectance = dot(d.xyz, modifier_.xyz);
   float emissivity = material_.kinds.z == 1u ? 1.0 - reflectance : d.w * modifier_.w;
   return isSurface_ * reflectance * nodes.nodeAmbient[i].x + emissivity * sourceRadiance(i);

@@ -1,9 +1,9 @@
 // Materials without angular tables and modifiers: reflection columns and self radiance (emission and reflected ambient) of a part
 // are one row, made in double precision: (R1, R2, R3, S).
 //@use sim/render/glsl/materials.glsl
-layout(std430, binding = 3) readonly buffer Rows { vec4 rows[]; };
+layout(binding = 1) uniform samplerBuffer rows;
 
 void prepareSurface() { exponents_ = materials[draw_.table.y].exponent.xyz; }
-Vec3 reflectionColumns(int i, int l) { return rows[draw_.table.x + uint(i)].xyz; }
-Real selfRadiance(int i) { return rows[draw_.table.x + uint(i)].w; }
+Vec3 reflectionColumns(int i, int l) { return texelFetch(rows, int(draw_.table.x) + i).xyz; }
+Real selfRadiance(int i) { return texelFetch(rows, int(draw_.table.x) + i).w; }
 float truthTemperature() { return draw_.state.x; }

@@ -1,2 +1,2 @@
 // Each part has one temperature: its Planck radiance was made in double precision.
-Real sourceRadiance(int i) { return rows[draw_.table.x + uint(i)]; }
+Real sourceRadiance(int i) { return texelFetch(rows, int(draw_.table.x) + i).x; }

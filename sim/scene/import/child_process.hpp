@@ -129,7 +129,8 @@ inline Mesh decodeReply(const std::string& bytes, const std::filesystem::path& f
     if (fields.size() == 7)
       throw UserError(Location{fields[0], std::atoi(fields[1].c_str()), std::atoi(fields[2].c_str()),
                                std::atoll(fields[3].c_str())},
-                      fields[4], fields[5], fields[6]);
+                      fields[4], fields[5].empty() ? "a sound mesh file" : fields[5],
+                      fields[6].empty() ? "correct this place of the file, or export it again" : fields[6]);
   }
   throw UserError(Location{file.string()}, "the reader failed on this file (" + failure + ")", "a sound file",
                   "open and save it again in a mesh editor");

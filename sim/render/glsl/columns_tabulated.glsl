@@ -1,0 +1,23 @@
+// Some reflection component is a table over one or two angles: linear between its entries, for each light.
+float angleOf(uint kind, Vec3 l) {
+  if (kind == 1u) return angleFromChord(normal_, l);
+  if (kind == 2u) return angleFromChord(normal_, toViewer_);
+  if (kind == 3u) return angleFromChord(reflect(-l, normal_), toViewer_);
+  if (kind == 4u) return angleFromChord(normal_, normalize(l + toViewer_));
+  if (kind == 5u) return angleFromChord(l, normalize(l + toViewer_));
+  return 0.0;
+}
+
+Vec3 reflectionColumns(int i, int l) {
+  float x = 0.0, y = 0.0;
+  if (material_.kinds.x != 0u) x = clamp(angleOf(material_.kinds.x, toLight(l)) * material_.scale.x, 0.0, float(material_.counts.x - 1u));
+  if (material_.kinds.y != 0u) y = clamp(angleOf(material_.kinds.y, toLight(l)) * material_.scale.y, 0.0, float(material_.counts.y - 1u));
+  int nx = int(material_.counts.x), ny = int(material_.counts.y);
+  int jx = min(int(x), max(nx, 2) - 2), jy = min(int(y), max(ny, 2) - 2);
+  float fx = x - float(jx), fy = y - float(jy);
+  int sx = nx > 1 ? NODES : 0, sy = ny > 1 ? nx * NODES : 0;
+  int at = int(material_.counts.w) + (jy * nx + jx) * NODES + i;
+  vec3 low = mix(texelFetch(columns, at).xyz, texelFetch(columns, at + sx).xyz, fx);
+  vec3 high = mix(texelFetch(columns, at + sy).xyz, texelFetch(columns, at + sx + sy).xyz, fx);
+  return mix(low, high, fy) * modifier_.xyz;
+}
