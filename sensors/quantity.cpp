@@ -82,26 +82,28 @@ ChannelOutput makeOutput(const Detector& d, const std::string& quantity, const P
     o = makeProbeOutput(d, quantity);
   } else {
     o.perEtendue = true;
-    o.scale = aperture;
-    o.kernel = d.response * d.optics;
+    // A constant transmission is a factor, not a kernel: flux and radiance then share their spectral integral.
+    const double grey = d.optics.isConstant() ? d.optics(1.0) : 1.0;
+    o.scale = aperture * grey;
+    o.kernel = d.optics.isConstant() ? d.response : d.response * d.optics;
     if (quantity == "focal_irradiance") {
-      o.scale = aperture / pixel;
+      o.scale /= pixel;
     } else if (quantity == "focal_illuminance") {
-      o.scale = aperture / pixel;
-      o.kernel = photometric(d) * d.optics;
+      o.scale /= pixel;
+      o.kernel = d.optics.isConstant() ? photometric(d) : photometric(d) * d.optics;
     } else if (quantity == "exposure") {
-      o.scale = aperture * exposureOf(d, quantity, exposure_s);
+      o.scale *= exposureOf(d, quantity, exposure_s);
     } else if (quantity == "photons") {
-      o.scale = aperture * exposureOf(d, quantity, exposure_s);
+      o.scale *= exposureOf(d, quantity, exposure_s);
       o.kernel = o.kernel * photonsPerJoule();
     } else if (quantity == "electrons") {
       if (!d.quantumEfficiency)
         throw UserError(d.where, "'electrons' needs a quantum efficiency", "'quantum_efficiency' of the channel, a number or a spectrum", "add 'quantum_efficiency: 0.8'");
-      o.scale = aperture * exposureOf(d, quantity, exposure_s);
+      o.scale *= exposureOf(d, quantity, exposure_s);
       o.kernel = o.kernel * *d.quantumEfficiency * photonsPerJoule();
     } else if (quantity == "volts") {
       if (!d.gain) throw UserError(d.where, "'volts' needs a gain", "'gain' of the channel in V/W or V/(W/m2)", "add 'gain: 2e6 V/W'");
-      o.scale = d.gain->volts * (d.gain->perIrradiance ? aperture / pixel : aperture);
+      o.scale *= d.gain->volts / (d.gain->perIrradiance ? pixel : 1.0);
     }
   }
   return o;

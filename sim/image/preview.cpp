@@ -180,7 +180,10 @@ std::pair<double, double> automaticRange(const std::vector<float>& pixels) {
     std::nth_element(finite.begin(), finite.begin() + i, finite.end());
     return static_cast<double>(finite[static_cast<std::size_t>(i)]);
   };
-  const double low = percentile(0.005), high = percentile(0.998);
+  const double low = percentile(0.005), most998 = percentile(0.998), p10 = percentile(0.1), p90 = percentile(0.9);
+  // A few very bright things (a nozzle, a flare) must not turn the rest of the picture black: the bar ends four spreads above the
+  // bulk of the picture, and an arrow with the true maximum stands on it.
+  const double high = isEmpty(p10, p90) ? most998 : std::min(most998, p90 + 4.0 * (p90 - p10));
   if (!isEmpty(low, high)) return {low, high};
   // A small hot target on an even background lies wholly outside the percentiles, and is what matters.
   const auto [least, most] = std::minmax_element(finite.begin(), finite.end());
