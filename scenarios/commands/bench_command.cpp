@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <sstream>
 
+#include "scenarios/commands/accuracy_bench.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
@@ -96,7 +97,8 @@ double median(std::vector<double> v) {
 }  // namespace
 
 int benchCommand(const Arguments& arguments) {
-  const Options o("bench", arguments, {{"--frames"}}, 0, 0);
+  const Options o("bench", arguments, {{"--frames"}, {"--accuracy"}}, 0, 0);
+  if (o.has("--accuracy")) return accuracyBench(o.value("--accuracy"));
   const int frames = static_cast<int>(std::clamp(readRange(o.value("--frames", "200"), "--frames").first, 10LL, 100000LL));
   const Simulation sim = readScenarioText(benchScenario(), "bench", ".", {}, findLibraries());
   const GlContext context;

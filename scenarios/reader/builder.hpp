@@ -63,7 +63,7 @@ class Builder {
   Simulation& simulation_;
   Libraries libraries_;
   SpectrumReader spectra_;
-  std::size_t brdfTables_ = 0, brdfWavelengths_ = 0;
+  std::size_t brdfTables_ = 0, brdfWavelengths_ = 0, phongLobes_ = 0;
   std::map<std::string, int> materialIndex_;
   std::map<std::string, const Value*> materialValues_;
   std::map<std::string, Location> entityNames_, lightNames_, cameraNames_;

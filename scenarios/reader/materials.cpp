@@ -17,8 +17,9 @@ namespace {
 constexpr std::size_t kMostTableValues = 400000;
 /// Each table takes about 20 ms to integrate over the hemisphere, and 1 ms more for each wavelength.
 constexpr std::size_t kMostTables = 64, kMostTableWavelengths = 1024;
-/// Each Phong lobe takes about 10 ms to integrate.
-constexpr std::size_t kMostMaterials = 256;
+/// Each Phong lobe takes about 10 ms to integrate over the hemisphere.
+constexpr std::size_t kMostLobes = 256;
+constexpr std::size_t kMostMaterials = 4096;
 /// 160 MB of texels.
 constexpr std::size_t kMostTexels = 40000000;
 
@@ -155,6 +156,8 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
         m->reflections.push_back(readTable(k));
         countTable(k);
       }
+      else if (kind == "phong" && ++phongLobes_ > kMostLobes)
+        throw UserError(k.where(), "more than " + std::to_string(kMostLobes) + " Phong lobes in the scenario", "fewer", "give alike materials one name under 'materials:'");
       else if (kind == "phong") m->reflections.push_back(makePhong(fraction(k.value("reflectance"), "reflectance"), k.number("exponent")));
       else m->reflections.push_back(makeLambertian(fraction(k.value("reflectance"), "reflectance")));
       m->modifiers.push_back(k.given("modifier") ? readTexture(k.value("modifier"), "", "a modifier", 0.0, 1.0) : -1);

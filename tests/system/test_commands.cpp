@@ -1,0 +1,125 @@
+// The program as a user runs it: commands, exit codes, files.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "sim/image/exr.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+  int code = -1;
+  std::string output;
+};
+
+/// Runs a shell command line, both streams together.
+Result run(const std::string& line) {
+  Result r;
+  FILE* pipe = popen((line + " 2>&1").c_str(), "r");
+  std::array<char, 4096> buffer{};
+  while (size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) r.output.append(buffer.data(), n);
+  const int status = pclose(pipe);
+  r.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
+  return r;
+}
+
+Result pitviper(const std::string& arguments) { return run(std::string("PITVIPER_HOME=") + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM + " " + arguments); }
+
+std::string bytes(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::stringstream s;
+  s << in.rdbuf();
+  return s.str();
+}
+
+class Commands : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("pitviper_commands_" + std::to_string(getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string scenario(const char* name) const { return std::string(PITVIPER_SOURCE_DIR) + "/scenarios/" + name; }
+  fs::path folder_;
+};
+
+TEST_F(Commands, HelpOfEveryCommand) {
+  const Result all = pitviper("--help");
+  EXPECT_EQ(all.code, 0);
+  for (const char* command : {"run", "check", "info", "bench", "keys"}) {
+    EXPECT_NE(all.output.find(command), std::string::npos);
+    const Result one = pitviper(std::string(command) + " --help");
+    EXPECT_EQ(one.code, 0);
+    EXPECT_NE(one.output.find("pitviper " + std::string(command)), std::string::npos);
+  }
+  EXPECT_EQ(pitviper("rnu x.yaml").code, 2);
+}
+
+// Rationale: frames feed hardware and regression comparisons. Expected: the same scenario, seed and driver give the same bytes.
+TEST_F(Commands, TheSameBytesTwice) {
+  const std::string line = "run " + scenario("first_light.yaml") + " --frames 20:21 --set cameras.0.samples=1 --out " + folder_.string();
+  ASSERT_EQ(pitviper(line + "/a").code, 0);
+  ASSERT_EQ(pitviper(line + "/b").code, 0);
+  int compared = 0;
+  for (const auto& entry : fs::directory_iterator(folder_ / "a")) {
+    EXPECT_EQ(bytes(entry.path()), bytes(folder_ / "b" / entry.path().filename())) << entry.path();
+    ++compared;
+  }
+  EXPECT_EQ(compared, 2);
+}
+
+TEST_F(Commands, FramesCarryUnitsAndPose) {
+  const Result r = pitviper("run " + scenario("first_light.yaml") + " --frames 3 --preview --set 'cameras.0.truth=[range, entity, temperature, normal, area, solid_angles]' --out " + folder_.string());
+  ASSERT_EQ(r.code, 0) << r.output;
+  const auto image = pitviper::readExr(folder_ / "seeker_00003.exr");
+  EXPECT_TRUE(fs::exists(folder_ / "seeker_00003.png"));
+  for (const char* name : {"mw.radiance", "lw.radiance", "vis.radiance", "truth.range", "truth.entity", "truth.temperature", "truth.area", "truth.normal_up", "truth.solid_angle_of_aperture"})
+    EXPECT_NE(image.find(name), nullptr) << name;
+  for (const char* name : {"unit.mw.radiance", "band_um.mw.radiance", "pitviper.exposure_s", "pitviper.aperture_m", "pitviper.focal_length_m", "pitviper.pose_geodetic_deg_deg_m",
+                           "pitviper.pose_ecef_m", "pitviper.orientation_ecef_wxyz", "pitviper.time_s", "pitviper.frame", "pitviper.scenario", "pitviper.scenario_sha256", "pitviper.seed", "pitviper.version"})
+    EXPECT_NE(image.findAttribute(name), nullptr) << name;
+  const Result at = pitviper("info " + (folder_ / "seeker_00003.exr").string() + " --at 128,128");
+  EXPECT_EQ(at.code, 0);
+  EXPECT_NE(at.output.find("W/(m2 sr)"), std::string::npos);
+  const Result info = pitviper("info " + (folder_ / "seeker_00003.exr").string());
+  EXPECT_NE(info.output.find("pitviper.scenario_sha256"), std::string::npos);
+}
+
+// Stock tools read what is written.
+TEST_F(Commands, ExrinfoReadsAFrame) {
+  if (run("command -v exrinfo").code != 0) GTEST_SKIP() << "exrinfo (Debian package openexr) is not installed";
+  ASSERT_EQ(pitviper("run " + scenario("far_jet.yaml") + " --frames 0 --out " + folder_.string()).code, 0);
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const Result r = run("exrinfo -v " + entry.path().string());
+    EXPECT_EQ(r.code, 0) << r.output;
+    EXPECT_NE(r.output.find("radiance"), std::string::npos);
+  }
+}
+
+TEST_F(Commands, EveryShippedScenarioIsGood) {
+  for (const auto& entry : fs::directory_iterator(std::string(PITVIPER_SOURCE_DIR) + "/scenarios"))
+    if (entry.path().extension() == ".yaml") {
+      const Result r = pitviper("check " + entry.path().string());
+      EXPECT_EQ(r.code, 0) << r.output;
+    }
+}
+
+TEST_F(Commands, ProbesWriteTables) {
+  ASSERT_EQ(pitviper("run " + scenario("lamp_on_plane.yaml") + " --out " + folder_.string()).code, 0);
+  int tables = 0;
+  for (const auto& entry : fs::directory_iterator(folder_))
+    if (entry.path().extension() == ".csv") {
+      ++tables;
+      EXPECT_NE(bytes(entry.path()).find("[W/m2]"), std::string::npos);
+    }
+  EXPECT_GT(tables, 0);
+}
+
+}  // namespace
