@@ -51,7 +51,7 @@ class Builder {
   std::vector<ChannelOutput> readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s);
   Spectrum readResponse(const Record& channel) const;
   void keepOutput(std::vector<ChannelOutput>& outputs, const std::function<ChannelOutput()>& make, const Location& where) const;
-  void planned(const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where) const;
+  void planned(const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where);
   SpectralSampling readSpectral(const Record& r);
 
   void checkUnique(const Value& name, std::map<std::string, Location>& names, const char* what);
@@ -63,7 +63,7 @@ class Builder {
   Simulation& simulation_;
   Libraries libraries_;
   SpectrumReader spectra_;
-  std::size_t brdfTables_ = 0, brdfWavelengths_ = 0, phongLobes_ = 0;
+  std::size_t brdfTables_ = 0, brdfWavelengths_ = 0, phongLobes_ = 0, planSteps_ = 0;
   std::map<std::string, int> materialIndex_;
   std::map<std::string, const Value*> materialValues_;
   std::map<std::string, Location> entityNames_, lightNames_, cameraNames_;

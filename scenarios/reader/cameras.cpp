@@ -12,8 +12,10 @@
 namespace pitviper {
 namespace {
 
-/// Each is about 16 nodes of a quadrature: a second in all.
-constexpr std::size_t kMostPlanSteps = 4000000;
+/// Rows of one channel's spectra; each makes 16 nodes of 56 bytes in the quadrature: 230 MB.
+constexpr std::size_t kMostKnots = 250000;
+/// Wavelengths x nodes of all quadrature rules of a scenario, at about 6 ns each: 3 s.
+constexpr std::size_t kMostPlanSteps = 500000000;
 
 Gain readGain(const Value& v) {
   const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
@@ -62,11 +64,17 @@ void Builder::keepOutput(std::vector<ChannelOutput>& outputs, const std::functio
     throw UserError(where, "the factor of '" + output.layer() + "' is larger than any that can be drawn", "a pixel of usual size", "check film, focal length, aperture, exposure and gain");
 }
 
-void Builder::planned(const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where) const {
-  for (const ChannelOutput& output : outputs)
-    if (output.kernel.knots().size() * static_cast<std::size_t>(sampling.samples) > kMostPlanSteps)
-      throw UserError(output.where, "the spectra of channel '" + output.channel + "' have too many rows for " + std::to_string(sampling.samples) + " wavelengths", "rows x wavelengths of at most " + std::to_string(kMostPlanSteps),
-                      "thin the tables out, or lower 'spectral.samples'");
+void Builder::planned(const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where) {
+  const auto samples = static_cast<std::size_t>(sampling.samples);
+  for (const ChannelOutput& output : outputs) {
+    const std::size_t knots = output.kernel.knots().size();
+    if (knots > kMostKnots)
+      throw UserError(output.where, "the spectra of channel '" + output.channel + "' have " + std::to_string(knots) + " rows together", "at most " + std::to_string(kMostKnots), "thin the tables out");
+    planSteps_ += samples * (16 * knots + 32 * samples);
+    if (planSteps_ > kMostPlanSteps)
+      throw UserError(output.where, "the channels of this scenario take too long to plan with " + std::to_string(samples) + " wavelengths",
+                      "fewer or smaller tables, or fewer wavelengths", "lower 'samples' under 'spectral:', or thin the tables out");
+  }
   makePlan(simulation_, outputs, sampling, where);  // its mistakes are the scenario's
 }
 

@@ -86,16 +86,14 @@ void addSmallBody(Subpixels& image, const View& z, const RawImage& zoomed, const
       share.coverage += fraction;
       for (size_t s = 0; s < slots; ++s) share.sum[s] += fraction * static_cast<double>(zoomed.groups[s / 4][4 * q + s % 4]);
     }
-  const size_t planned = image.slotCount();
   for (auto& [p, share] : shares) {
-    for (size_t s = 0; s < planned; ++s) image.slot(s, p) += share.sum[s] - share.coverage * image.slot(s, p);
-    if (TruthPixel* truth = image.truth(p); truth && share.coverage >= 0.5) {
-      const TruthPixel seen = truthAt(zoomed, share.sample);
-      const double pixel = v.tanPerPixelX * v.tanPerPixelY / (z.tanPerPixelX * z.tanPerPixelY);
-      *truth = seen;
-      truth->area_m2 = static_cast<float>(seen.area_m2 * pixel);
-      truth->solidAngleFromLight_sr = static_cast<float>(seen.solidAngleFromLight_sr * pixel);
-    }
+    for (size_t s = 0; s < image.slotCount(); ++s) image.add(s, p, share.sum[s] - share.coverage * image.slot(s, p));
+    if (!image.hasTruth() || share.coverage < 0.5) continue;
+    TruthPixel truth = truthAt(zoomed, share.sample);
+    const double subpixels = v.tanPerPixelX * v.tanPerPixelY / (z.tanPerPixelX * z.tanPerPixelY);
+    truth.area_m2 = static_cast<float>(truth.area_m2 * subpixels);
+    truth.solidAngleFromLight_sr = static_cast<float>(truth.solidAngleFromLight_sr * subpixels);
+    image.setTruth(p, truth);
   }
 }
 

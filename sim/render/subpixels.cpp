@@ -10,19 +10,24 @@ TruthPixel truthAt(const RawImage& raw, size_t p) {
   return {g[0], g[1], g[2], g[3], {n[0], n[1], n[2]}, n[3], i[0], i[1], i[2]};
 }
 
-Subpixels::Subpixels(const Plan& plan, const View& view, RawImage raw) : view_(view), depth_(std::move(raw.depth)) {
-  const size_t pixels = static_cast<size_t>(raw.width) * static_cast<size_t>(raw.height);
-  slots_.assign(static_cast<size_t>(plan.slotCount), std::vector<double>(pixels));
-  for (size_t s = 0; s < slots_.size(); ++s)
-    for (size_t p = 0; p < pixels; ++p) slots_[s][p] = static_cast<double>(raw.groups[s / 4][4 * p + s % 4]);
-  if (raw.truth.empty()) return;
-  truth_.reserve(pixels);
-  for (size_t p = 0; p < pixels; ++p) truth_.push_back(truthAt(raw, p));
+Subpixels::Subpixels(const Plan& plan, const View& view, RawImage raw)
+    : view_(view), slotCount_(static_cast<size_t>(plan.slotCount)), raw_(std::move(raw)) {}
+
+double Subpixels::slot(size_t s, size_t p) const {
+  const double drawn = static_cast<double>(raw_.groups[s / 4][4 * p + s % 4]);
+  const auto more = added_.find(p);
+  return more == added_.end() ? drawn : drawn + more->second[s];
+}
+
+void Subpixels::add(size_t s, size_t p, double value) {
+  auto& sums = added_[p];
+  sums.resize(slotCount_, 0.0);
+  sums[s] += value;
 }
 
 double Subpixels::axialDepth_m(size_t p) const {
-  if (depth_.empty() || depth_[p] <= 0.0f) return std::numeric_limits<double>::infinity();
-  return view_.near_m / static_cast<double>(depth_[p]);
+  if (raw_.depth.empty() || raw_.depth[p] <= 0.0f) return std::numeric_limits<double>::infinity();
+  return view_.near_m / static_cast<double>(raw_.depth[p]);
 }
 
 double Subpixels::projectedSolidAngle_sr(int x, int y) const {
@@ -35,31 +40,34 @@ CameraImage Subpixels::resolve(const Pinhole& pinhole, int samples) const {
   CameraImage image;
   image.width = pinhole.width;
   image.height = pinhole.height;
-  const size_t pixels = static_cast<size_t>(pinhole.width) * static_cast<size_t>(pinhole.height);
-  image.slots.assign(slots_.size(), std::vector<double>(pixels, 0.0));
-  if (!truth_.empty()) image.truth.resize(pixels);
-  std::vector<double> weights(samples > 1 ? pixels * static_cast<size_t>(samples * samples) : 0);
-  std::vector<size_t> first(pixels);
+  const size_t width = static_cast<size_t>(pinhole.width), pixels = width * static_cast<size_t>(pinhole.height);
+  image.slots.assign(slotCount_, std::vector<double>(pixels, 0.0));
+  std::vector<double> total(pixels, 0.0);
+  auto pixelOf = [&](int x, int y) {
+    return static_cast<size_t>(pinhole.height - 1 - y / samples) * width + static_cast<size_t>(x / samples);
+  };
+  for (int y = 0; y < view_.height; ++y)
+    for (int x = 0; x < view_.width; ++x) {
+      const size_t from = 4 * index(x, y), to = pixelOf(x, y);
+      const double weight = samples == 1 ? 1.0 : projectedSolidAngle_sr(x, y);
+      total[to] += weight;
+      for (size_t s = 0; s < slotCount_; ++s) image.slots[s][to] += weight * static_cast<double>(raw_.groups[s / 4][from + s % 4]);
+    }
+  for (const auto& [p, sums] : added_) {
+    const int x = static_cast<int>(p % static_cast<size_t>(view_.width)), y = static_cast<int>(p / static_cast<size_t>(view_.width));
+    const double weight = samples == 1 ? 1.0 : projectedSolidAngle_sr(x, y);
+    for (size_t s = 0; s < slotCount_; ++s) image.slots[s][pixelOf(x, y)] += weight * sums[s];
+  }
+  if (samples > 1)
+    for (auto& slot : image.slots)
+      for (size_t p = 0; p < pixels; ++p) slot[p] /= total[p];
+  if (!hasTruth()) return image;
+  image.truth.resize(pixels);
   for (int row = 0; row < pinhole.height; ++row)
     for (int column = 0; column < pinhole.width; ++column) {
-      const size_t p = static_cast<size_t>(row) * static_cast<size_t>(pinhole.width) + static_cast<size_t>(column);
-      const int x0 = column * samples, y0 = (pinhole.height - 1 - row) * samples;
-      first[p] = index(x0, y0);
-      if (!truth_.empty()) image.truth[p] = truth_[index(x0 + samples / 2, y0 + samples / 2)];
-      double total = 0.0;
-      double* w = samples > 1 ? &weights[p * static_cast<size_t>(samples * samples)] : nullptr;
-      for (int k = 0; w && k < samples * samples; ++k) total += w[k] = projectedSolidAngle_sr(x0 + k % samples, y0 + k / samples);
-      for (int k = 0; w && k < samples * samples; ++k) w[k] /= total;
-    }
-  for (size_t s = 0; s < slots_.size(); ++s)
-    for (size_t p = 0; p < pixels; ++p) {
-      if (samples == 1) {
-        image.slots[s][p] = slots_[s][first[p]];
-        continue;
-      }
-      const double* w = &weights[p * static_cast<size_t>(samples * samples)];
-      for (int j = 0; j < samples; ++j)
-        for (int i = 0; i < samples; ++i) image.slots[s][p] += *w++ * slots_[s][first[p] + static_cast<size_t>(j) * static_cast<size_t>(view_.width) + static_cast<size_t>(i)];
+      const size_t p = index(column * samples + samples / 2, (pinhole.height - 1 - row) * samples + samples / 2);
+      const auto replaced = truth_.find(p);
+      image.truth[static_cast<size_t>(row) * width + static_cast<size_t>(column)] = replaced == truth_.end() ? truthAt(raw_, p) : replaced->second;
     }
   return image;
 }

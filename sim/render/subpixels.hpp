@@ -1,6 +1,7 @@
 #pragma once
 // The image of a camera at subpixel resolution, in double precision, while bodies and lights smaller than a pixel are added; then
 // resolved into pixels.
+#include <map>
 #include <memory>
 #include <vector>
 
@@ -32,25 +33,27 @@ class Subpixels {
   Subpixels(const Plan& plan, const View& view, RawImage raw);
 
   const View& view() const { return view_; }
-  int width() const { return view_.width; }
-  int height() const { return view_.height; }
   size_t index(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(view_.width) + static_cast<size_t>(x); }
-  size_t slotCount() const { return slots_.size(); }
-  double& slot(size_t s, size_t pixel) { return slots_[s][pixel]; }
+  size_t slotCount() const { return slotCount_; }
+  double slot(size_t s, size_t pixel) const;
+  /// Adds to a subpixel's integrals, in double precision: a faint target must not drown in the rounding of its background.
+  void add(size_t s, size_t pixel, double value);
   /// Distance along the axis of what stands there [m]; infinite for the background.
   double axialDepth_m(size_t pixel) const;
   /// Integral of cos(psi) dOmega over a subpixel [sr].
   double projectedSolidAngle_sr(int x, int y) const;
-  TruthPixel* truth(size_t pixel) { return truth_.empty() ? nullptr : &truth_[pixel]; }
+  bool hasTruth() const { return !raw_.truth.empty(); }
+  void setTruth(size_t pixel, const TruthPixel& truth) { truth_[pixel] = truth; }
 
   /// Mean over samples x samples subpixels, weighted by projected solid angle (flux adds up); truth from the middle one.
   CameraImage resolve(const Pinhole& pinhole, int samples) const;
 
  private:
   View view_;
-  std::vector<std::vector<double>> slots_;
-  std::vector<float> depth_;
-  std::vector<TruthPixel> truth_;
+  size_t slotCount_;
+  RawImage raw_;
+  std::map<size_t, std::vector<double>> added_;  ///< subpixels that got something, by slot
+  std::map<size_t, TruthPixel> truth_;           ///< truth that replaces the pass's own
 };
 
 TruthPixel truthAt(const RawImage& raw, size_t pixel);

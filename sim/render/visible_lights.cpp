@@ -36,7 +36,7 @@ void addVisibleLights(Subpixels& image, const Simulation& sim, const Plan& plan,
     // As radiance: the flux divided by the aperture and the subpixel's projected solid angle.
     const double r2 = glm::dot(p, p), cosPsi = -p.z / std::sqrt(r2);
     const auto sums = apparentIntensity(sim, plan, state, l, v.position);
-    for (size_t s = 0; s < sums.size(); ++s) image.slot(s, pixel) += sums[s] * cosPsi / r2 / image.projectedSolidAngle_sr(x, y);
+    for (size_t s = 0; s < sums.size(); ++s) image.add(s, pixel, sums[s] * cosPsi / r2 / image.projectedSolidAngle_sr(x, y));
   }
 }
 
