@@ -17,7 +17,8 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_L
 endif()
 if(PITVIPER_SANITIZE)
   target_compile_options(pitviper_options INTERFACE
-    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    -fsanitize=address,undefined -fno-sanitize-recover=all -fno-omit-frame-pointer
+    -Wno-maybe-uninitialized)  # false alarms in the standard library under sanitizers (GCC bug 105562)
   target_link_options(pitviper_options INTERFACE -fsanitize=address,undefined)
 endif()
 
