@@ -12,6 +12,6 @@ PHYSICS Real layerLength(Real height_m, Real sinElevation, Real range_m, Real to
   root = sqrt(root);
   // The stable form of -b + root on either sign of b.
   Real leave = b >= 0.0 ? q2 / max(b + root, 1.0e-30) : root - b;
-  Real enter = q2 >= 0.0 ? 0.0 : max(b >= 0.0 ? -b - root : q2 / (root - b), 0.0);
+  Real enter = q2 >= 0.0 ? 0.0 : max(b >= 0.0 ? -b - root : -q2 / (root - b), 0.0);
   return max(min(range_m, leave) - enter, 0.0);
 }

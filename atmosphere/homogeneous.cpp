@@ -25,10 +25,6 @@ class NoAir final : public Path {
   double radiance(double, double) const override { return 0.0; }
   double validLow_um() const override { return kShortestWavelength_um; }
   double validHigh_um() const override { return kLongestWavelength_um; }
-  const std::string& describe() const override {
-    static const std::string text = "none";
-    return text;
-  }
 };
 
 class Homogeneous final : public Path {
@@ -49,10 +45,6 @@ class Homogeneous final : public Path {
   }
   double validHigh_um() const override {
     return std::min(air_.extinction_per_m.validHigh(), air_.radiance ? air_.radiance->validHigh() : kLongestWavelength_um);
-  }
-  const std::string& describe() const override {
-    static const std::string text = "homogeneous";
-    return text;
   }
 
  private:

@@ -6,7 +6,7 @@ Real airLength(Real height_m, Real sinElevation, Real range_m) {
   return layerLength(height_m, sinElevation, range_m, view.earth.y, view.earth.x);
 }
 
-Real sunAirLength(Real height_m) { return view.earth.y >= kFar ? 0.0 : airLength(height_m, view.earth.z, kFar); }
+Real sunAirLength(Real height_m) { return view.earth.y >= kFar ? 0.0 : airLength(height_m, sunElevation_, kFar); }
 
 Real pathTransmittance(int i, Real length_m) { return exp(-nodes.node[i].x * length_m); }
 

@@ -51,12 +51,6 @@ EGLContext makeContext(EGLDisplay display) {
   return context;
 }
 
-int integer(GLenum name) {
-  GLint v = 0;
-  glGetIntegerv(name, &v);
-  return v;
-}
-
 std::string string(GLenum name) {
   const auto* s = reinterpret_cast<const char*>(glGetString(name));
   return s ? s : "";
@@ -99,10 +93,6 @@ GlContext::GlContext(std::string device) {
   limits_.vendor = string(GL_VENDOR);
   limits_.renderer = string(GL_RENDERER);
   limits_.version = string(GL_VERSION);
-  limits_.drawBuffers = integer(GL_MAX_DRAW_BUFFERS);
-  limits_.textureSize = integer(GL_MAX_TEXTURE_SIZE);
-  limits_.uniformBlockBytes = integer(GL_MAX_UNIFORM_BLOCK_SIZE);
-  limits_.storageBlockBytes = integer(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
   limits_.software = limits_.renderer.find("llvmpipe") != std::string::npos || limits_.renderer.find("softpipe") != std::string::npos;
 }
 

@@ -14,10 +14,6 @@ class GlError : public std::runtime_error {
 
 struct GlLimits {
   std::string vendor, renderer, version;
-  int drawBuffers = 0;
-  int textureSize = 0;
-  int uniformBlockBytes = 0;
-  int storageBlockBytes = 0;
   bool software = false;  ///< drawn by the CPU
 };
 

@@ -146,24 +146,24 @@ void drawFullScreen(const RenderTarget& target, const Program& program, const st
   checkGl("drawing a full screen");
 }
 
-void Readback::start(const RenderTarget& target, std::size_t count, const RenderTarget* depthOf) {
-  const bool depth = depthOf != nullptr;
+void Readback::copy(Buffer& into, const RenderTarget& from, unsigned attachment, unsigned format, unsigned type, std::size_t bytes) {
+  if (into.bytes() != bytes) into.upload(nullptr, bytes);
+  glBindFramebuffer(GL_READ_FRAMEBUFFER, from.name());
+  glReadBuffer(attachment);
+  into.bindPack();
+  glReadPixels(0, 0, from.width(), from.height(), format, type, nullptr);
+  glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
+}
+
+void Readback::start(const RenderTarget& target, std::size_t count, const RenderTarget* depthOf, const RenderTarget* identityOf) {
   pixels_ = static_cast<size_t>(target.width()) * static_cast<size_t>(target.height());
-  colourCount_ = count;
-  depth_ = depth;
-  buffers_.resize(count + (depth ? 1 : 0));
-  glBindFramebuffer(GL_READ_FRAMEBUFFER, target.name());
+  hasDepth_ = depthOf != nullptr;
+  hasIdentity_ = identityOf != nullptr;
+  colours_.resize(count);
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  for (size_t i = 0; i < buffers_.size(); ++i) {
-    const bool isDepth = i == count;
-    if (isDepth) glBindFramebuffer(GL_READ_FRAMEBUFFER, depthOf->name());
-    const size_t bytes = pixels_ * (isDepth ? 1 : 4) * sizeof(float);
-    if (buffers_[i].bytes() != bytes) buffers_[i].upload(nullptr, bytes);
-    buffers_[i].bindPack();
-    if (!isDepth) glReadBuffer(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
-    glReadPixels(0, 0, target.width(), target.height(), isDepth ? GL_DEPTH_COMPONENT : GL_RGBA, GL_FLOAT, nullptr);
-    glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
-  }
+  for (size_t i = 0; i < count; ++i) copy(colours_[i], target, GL_COLOR_ATTACHMENT0 + static_cast<unsigned>(i), GL_RGBA, GL_FLOAT, pixels_ * 16);
+  if (depthOf) copy(depth_, *depthOf, GL_COLOR_ATTACHMENT0, GL_DEPTH_COMPONENT, GL_FLOAT, pixels_ * 4);
+  if (identityOf) copy(identity_, *identityOf, GL_COLOR_ATTACHMENT0, GL_RG_INTEGER, GL_UNSIGNED_INT, pixels_ * 8);
   fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   glFlush();
 }
@@ -177,11 +177,17 @@ Readback::Pixels Readback::wait() {
     fence_ = nullptr;
   }
   Pixels out;
-  for (size_t i = 0; i < buffers_.size(); ++i) {
-    std::vector<float> data(pixels_ * (i == colourCount_ ? 1 : 4));
-    buffers_[i].download(data.data(), data.size() * sizeof(float));
-    if (i == colourCount_) out.depth = std::move(data);
-    else out.colours.push_back(std::move(data));
+  for (auto& buffer : colours_) {
+    out.colours.emplace_back(pixels_ * 4);
+    buffer.download(out.colours.back().data(), pixels_ * 16);
+  }
+  if (hasDepth_) {
+    out.depth.resize(pixels_);
+    depth_.download(out.depth.data(), pixels_ * 4);
+  }
+  if (hasIdentity_) {
+    out.identity.resize(pixels_ * 2);
+    identity_.download(out.identity.data(), pixels_ * 8);
   }
   checkGl("reading back a frame");
   return out;

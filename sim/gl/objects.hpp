@@ -117,12 +117,13 @@ void drawFullScreen(const RenderTarget& target, const Program& program, const st
 /// Copies targets to pixel buffers without waiting; wait() gives the floats. Row 0 is the bottom row, as GL has it.
 class Readback {
  public:
-  /// Begins copying colour attachments [0, count) as RGBA floats, and the depth of another target of the same size.
-  void start(const RenderTarget& target, std::size_t count, const RenderTarget* depthOf = nullptr);
-  bool pending() const { return fence_ != nullptr; }
+  /// Begins copying colour attachments [0, count) as RGBA floats; of other targets of the same size, if given, the depth and the
+  /// first colour as pairs of whole numbers.
+  void start(const RenderTarget& target, std::size_t count, const RenderTarget* depthOf = nullptr, const RenderTarget* identityOf = nullptr);
   struct Pixels {
     std::vector<std::vector<float>> colours;  ///< each width * height * 4
     std::vector<float> depth;                 ///< width * height, or empty
+    std::vector<std::uint32_t> identity;      ///< width * height * 2, or empty
   };
   /// Blocks until the copy is done.
   Pixels wait();
@@ -131,9 +132,10 @@ class Readback {
   Readback& operator=(Readback&&) = default;
 
  private:
-  std::vector<Buffer> buffers_;
-  std::size_t colourCount_ = 0;
-  bool depth_ = false;
+  void copy(Buffer& into, const RenderTarget& from, unsigned attachment, unsigned format, unsigned type, std::size_t bytes);
+  std::vector<Buffer> colours_;
+  Buffer depth_, identity_;
+  bool hasDepth_ = false, hasIdentity_ = false;
   std::size_t pixels_ = 0;
   void* fence_ = nullptr;
 };

@@ -17,7 +17,7 @@ class Path {
   virtual std::string slotFile() const = 0;
   virtual bool isNone() const { return false; }
   virtual PathNode node(double wavelength_um) const = 0;
-  /// Height of the air's top above the ellipsoid [m]; infinite where it has none.
+  /// Height of the air's top above the sphere that stands for the earth [m]; infinite where it has none.
   virtual double top_m() const = 0;
   /// Length of air [m] on a ray from a height, with the sine of its elevation there, as far as a range (may be infinite).
   virtual double airLength_m(double height_m, double sinElevation, double range_m, double earthRadius_m) const = 0;
@@ -27,7 +27,6 @@ class Path {
   virtual double radiance(double wavelength_um, double airLength_m) const = 0;
   virtual double validLow_um() const = 0;
   virtual double validHigh_um() const = 0;
-  virtual const std::string& describe() const = 0;
 };
 
 }  // namespace pitviper

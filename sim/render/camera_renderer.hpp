@@ -33,7 +33,7 @@ class CameraRenderer {
   DirectPass pass_;
   WorldState state_;
   View view_;
-  std::vector<char> small_;
+  std::vector<char> small_, present_;
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles_;
 };
 

@@ -20,7 +20,7 @@ static_assert(sizeof(GpuDraw) == 80);
 
 /// Mirrors ViewBlock of sim/render/glsl/shade.frag.glsl (std140).
 struct GpuView {
-  glm::vec4 pixel, up, earth, aperture, east, north;
+  glm::vec4 pixel, up, earth, sun, aperture, east, north;
 };
 
 ShaderSlots slotsFor(const Simulation& sim, const Plan& plan, const RenderTables& tables, bool truth) {
@@ -81,17 +81,12 @@ void DirectPass::setState(const WorldState& state) {
 
 void DirectPass::uploadView(const View& v) {
   const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
-  const double height = simulation_.frame.height(v.position);
-  const double radius = simulation_.frame.earthRadius_m();
-  // Up at the camera: the ellipsoid's normal there, not the scenario origin's.
-  const glm::dvec3 above = v.position + glm::dvec3(0, 0, radius);
-  const glm::dvec3 up = cameraFromLocal * glm::normalize(above);
   GpuView g;
   g.pixel = {v.tanPerPixelX, v.tanPerPixelY, v.axisX, v.axisY};
-  g.up = glm::vec4(up, height);
-  g.earth = {radius, simulation_.path ? simulation_.path->top_m() : physics::kFar, simulation_.sun ? simulation_.sun->toSun.z : 0.0,
-             v.background ? 1.0f : 0.0f};
-  g.aperture = {apertureArea_m2_, v.tanPerPixelX * v.tanPerPixelY, 0.0, 0.0};
+  g.up = glm::vec4(cameraFromLocal * simulation_.frame.up(v.position), simulation_.frame.height(v.position));
+  g.earth = {simulation_.frame.earthRadius_m(), simulation_.path ? simulation_.path->top_m() : physics::kFar, v.onlyEntity + 1, 0.0};
+  g.sun = glm::vec4(simulation_.sun ? cameraFromLocal * simulation_.sun->toSun : glm::dvec3(0.0), 0.0);
+  g.aperture = {apertureArea_m2_, v.pixelTan2, 0.0, 0.0};
   g.east = glm::vec4(cameraFromLocal * glm::dvec3(1, 0, 0), 0.0);
   g.north = glm::vec4(cameraFromLocal * glm::dvec3(0, 1, 0), 0.0);
   view_.upload(&g, sizeof g);
@@ -113,7 +108,8 @@ void DirectPass::uploadDraws(const View& v, const WorldState& state) {
     const Surface* s = item.entity < 0 ? nullptr : &simulation_.entities[static_cast<size_t>(item.entity)].surfaces[static_cast<size_t>(item.surface)];
     g.table = {tables_.rowOfDraw[d], tables_.materialOfDraw[d], s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u, static_cast<unsigned>(item.entity + 1)};
     const size_t lightRow = static_cast<size_t>(item.entity + 1);
-    g.state = {s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), 0.0};
+    const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
+    g.state = {s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
     for (size_t l = 0; l < simulation_.lights.size(); ++l)
       lights[lightRow * lightCount + l] = glm::vec4(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m);
     if (simulation_.sun) lights[lightRow * lightCount + simulation_.lights.size()] = glm::vec4(bodyFromLocal * simulation_.sun->toSun, 0.0);
@@ -164,16 +160,19 @@ void DirectPass::draw(const View& v, const WorldState& state, const std::vector<
   const double halfX = 0.5 * v.width * v.tanPerPixelX, halfY = 0.5 * v.height * v.tanPerPixelY;
   glUniform4f(visibility_.uniform("film"), static_cast<float>(1.0 / halfX), static_cast<float>(1.0 / halfY),
               static_cast<float>((v.axisX - 0.5 * v.width) / (0.5 * v.width)), static_cast<float>((v.axisY - 0.5 * v.height) / (0.5 * v.height)));
-  glUniform4f(visibility_.uniform("depthRule"), static_cast<float>(v.near_m), v.linearDepth ? 1.0f : 0.0f, static_cast<float>(v.depthCentre_m),
-              static_cast<float>(0.5 / v.depthRadius_m));
+  const double centreRange = glm::length(v.depthCentre - v.position);
+  glUniform3f(visibility_.uniform("depthRule"), static_cast<float>(v.near_m), v.onlyEntity >= 0 ? static_cast<float>(0.5 * centreRange / v.depthRadius_m) : 0.0f, 0.0f);
+  glEnable(GL_CLIP_DISTANCE0);
+  if (v.onlyEntity >= 0) glEnable(GL_DEPTH_CLAMP);
   const int drawIndex = visibility_.uniform("drawIndex"), firstTriangle = visibility_.uniform("firstTriangle");
   for (size_t d = 1; d < tables_.draws.size(); ++d) {
     const DrawItem& item = tables_.draws[d];
     const auto e = static_cast<size_t>(item.entity);
-    if (v.onlyEntity >= 0 ? v.onlyEntity != item.entity : !drawn[e]) continue;
+    if (!drawn[e]) continue;
     const Entity& entity = simulation_.entities[e];
     const MeshPart& part = entity.mesh->parts[entity.surfaces[static_cast<size_t>(item.surface)].meshPart];
     const glm::dvec3 centre = state.entities[e].position + state.entities[e].orientation * glm::dvec3(entity.boundingCentre);
+    if (!mayShow(v, centre, entity.boundingRadius_m)) continue;
     const bool outside = glm::length(centre - v.position) > entity.boundingRadius_m * 1.0001 + v.near_m;
     if (entity.mesh->closed && outside) glEnable(GL_CULL_FACE);
     else glDisable(GL_CULL_FACE);
@@ -184,10 +183,12 @@ void DirectPass::draw(const View& v, const WorldState& state, const std::vector<
                    reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * 12));
   }
 
+  glDisable(GL_CLIP_DISTANCE0);
+  glDisable(GL_DEPTH_CLAMP);
   t.shading.bind();
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
-  if (!v.background) {
+  if (v.onlyEntity >= 0) {
     const GLfloat zero[4] = {0, 0, 0, 0};
     for (size_t i = 0; i < t.shading.colourCount(); ++i) glClearBufferfv(GL_COLOR, static_cast<GLint>(i), zero);
   }
@@ -197,8 +198,8 @@ void DirectPass::draw(const View& v, const WorldState& state, const std::vector<
   checkGl("drawing a frame");
 }
 
-void DirectPass::startReadback(bool depth) {
-  readback_.start(current_->shading, current_->shading.colourCount(), depth ? &current_->visibility : nullptr);
+void DirectPass::startReadback(bool depth, bool identity) {
+  readback_.start(current_->shading, current_->shading.colourCount(), depth ? &current_->visibility : nullptr, identity ? &current_->visibility : nullptr);
 }
 
 RawImage DirectPass::finishReadback() {
@@ -207,6 +208,7 @@ RawImage DirectPass::finishReadback() {
   image.width = current_->shading.width();
   image.height = current_->shading.height();
   image.depth = std::move(pixels.depth);
+  for (size_t i = 0; i < pixels.identity.size(); i += 2) image.entity.push_back(tables_.draws[pixels.identity[i]].entity);
   for (size_t i = 0; i < pixels.colours.size(); ++i)
     (i < static_cast<size_t>(plan_.groupCount()) ? image.groups : image.truth).push_back(std::move(pixels.colours[i]));
   return image;

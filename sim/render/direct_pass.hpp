@@ -16,6 +16,7 @@ struct RawImage {
   std::vector<std::vector<float>> groups;  ///< four slots each, RGBA
   std::vector<std::vector<float>> truth;   ///< three layers of RGBA where asked for
   std::vector<float> depth;                ///< reversed: near / z; 0 where nothing was met. Empty unless asked for
+  std::vector<int> entity;                 ///< what each pixel sees, -1 the background. Empty unless asked for
 };
 
 class DirectPass {
@@ -25,10 +26,10 @@ class DirectPass {
 
   /// Uploads what changes with time: light levels.
   void setState(const WorldState& state);
-  /// Entities drawn by this pass; the others are left out (small bodies have views of their own). One flag per entity.
+  /// `drawn`: one flag per entity; the others are left out (small bodies have views of their own).
   void draw(const View& view, const WorldState& state, const std::vector<char>& drawn);
   /// Starts copying the last drawn image.
-  void startReadback(bool depth);
+  void startReadback(bool depth, bool identity = false);
   RawImage finishReadback();
   const AssembledShader& fragmentSource() const { return fragmentSource_; }
 

@@ -3,11 +3,13 @@
 #include <cmath>
 
 #include "sim/radiometry/physics.hpp"
-#include "sim/render/subpixels.hpp"
+#include "sim/render/small_bodies.hpp"
 #include "sim/render/visible_lights.hpp"
 
 namespace pitviper {
 namespace {
+
+constexpr double kNear_m = 1e-3;
 
 /// The five views of the upper hemisphere's cube: the top face, and the upper half of each side face.
 std::vector<View> hemisphere(const Probe& probe) {
@@ -28,22 +30,10 @@ std::vector<View> hemisphere(const Probe& probe) {
     v.axisX = 0.5 * probe.resolution;
     v.axisY = face == 0 ? 0.5 * probe.resolution : 0.0;  // a side face begins at the horizon
     v.position = probe.position;
-    v.near_m = 1e-3;
+    v.near_m = kNear_m;
     views.push_back(v);
   }
   return views;
-}
-
-/// True where nothing in the view stands between the probe and a direction at a distance.
-bool isFree(const Subpixels& image, const glm::dvec3& direction, double distance_m, bool& inView) {
-  const View& v = image.view();
-  const glm::dvec3 p = glm::transpose(v.localFromCamera) * direction;
-  inView = false;
-  if (p.z >= 0.0) return false;
-  const glm::dvec2 at = filmPosition(v, p);
-  if (at.x < 0.0 || at.y < 0.0 || at.x >= v.width || at.y >= v.height) return false;
-  inView = true;
-  return -p.z * distance_m <= image.axialDepth_m(image.index(static_cast<int>(at.x), static_cast<int>(at.y)));
 }
 
 }  // namespace
@@ -56,12 +46,14 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
   const std::vector<char> all(sim.entities.size(), 1);
   const glm::dvec3 normal = glm::normalize(probe.normal);
   std::vector<double> sums(static_cast<size_t>(plan.slotCount), 0.0);
-  std::vector<char> lightDone(sim.lights.size(), 0);
-  bool sunDone = false;
   for (const View& v : hemisphere(probe)) {
-    pass.draw(v, state, all);
-    pass.startReadback(true);
+    const auto small = findSmallBodies(sim, state, v, 16.0);  // as a camera's default: a far body falls between rays otherwise
+    std::vector<char> drawn(all);
+    for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = !small[e];
+    pass.draw(v, state, drawn);
+    pass.startReadback(false);
     Subpixels image(plan, v, pass.finishReadback());
+    addSmallBodies(image, pass, sim, state, small, all);
     for (int y = 0; y < v.height; ++y)
       for (int x = 0; x < v.width; ++x) {
         const glm::dvec3 ray = v.ray(x + 0.5, y + 0.5);
@@ -71,29 +63,24 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
         const double weight = cosine * v.tanPerPixelX * v.tanPerPixelY / (l2 * std::sqrt(l2));
         for (size_t s = 0; s < sums.size(); ++s) sums[s] += weight * image.slot(s, image.index(x, y));
       }
-    for (size_t l = 0; l < sim.lights.size(); ++l) {
-      const glm::dvec3 line = state.lights[l] - probe.position;
-      const double d = glm::length(line);
-      bool inView = false;
-      if (lightDone[l] || d <= 0.0 || state.lightLevels[l] <= 0.0) continue;
-      const bool free = isFree(image, line / d, d, inView);
-      if (!inView) continue;
-      lightDone[l] = 1;
-      const double factor = free ? physics::pointIrradianceFactor(glm::dot(line, normal) / d, d * d, sim.lights[l].radius_m) : 0.0;
-      const auto intensity = apparentIntensity(sim, plan, state, l, probe.position);
-      for (size_t s = 0; s < sums.size(); ++s) sums[s] += factor * intensity[s];
+  }
+  for (size_t l = 0; l < sim.lights.size(); ++l) {
+    const glm::dvec3 line = state.lights[l] - probe.position;
+    const double d = glm::length(line), cosine = d > 0.0 ? glm::dot(line, normal) / d : 0.0;
+    if (cosine <= 0.0 || state.lightLevels[l] <= 0.0 || !isFree(pass, state, all, probe.position, line / d, d, kNear_m)) continue;
+    const double factor = physics::pointIrradianceFactor(cosine, d * d, sim.lights[l].radius_m);
+    const auto intensity = apparentIntensity(sim, plan, state, l, probe.position);
+    for (size_t s = 0; s < sums.size(); ++s) sums[s] += factor * intensity[s];
+  }
+  if (sim.sun && glm::dot(sim.sun->toSun, normal) > 0.0 && isFree(pass, state, all, probe.position, sim.sun->toSun, physics::kFar, kNear_m)) {
+    const bool layered = plan.terms.air && sim.path->top_m() < physics::kFar;
+    const double sinElevation = glm::dot(sim.frame.up(probe.position), sim.sun->toSun);
+    const double air = layered ? sim.path->airLength_m(sim.frame.height(probe.position), sinElevation, physics::kFar, sim.frame.earthRadius_m()) : 0.0;
+    for (size_t i = 0; i < plan.node_um.size(); ++i) {
+      const double w = plan.node_um[i];
+      const double e = glm::dot(sim.sun->toSun, normal) * sim.sun->irradiance(w) * (layered ? sim.path->transmittance(w, air) : 1.0);
+      for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * e;
     }
-    bool inView = false;
-    if (sim.sun && !sunDone && isFree(image, sim.sun->toSun, physics::kFar, inView) && inView) {
-      const double cosine = std::max(0.0, glm::dot(sim.sun->toSun, normal));
-      const bool layered = plan.terms.air && sim.path->top_m() < physics::kFar;
-      const double air = layered ? sim.path->airLength_m(sim.frame.height(probe.position), sim.sun->toSun.z, physics::kFar, sim.frame.earthRadius_m()) : 0.0;
-      for (size_t i = 0; i < plan.node_um.size(); ++i) {
-        const double e = cosine * sim.sun->irradiance(plan.node_um[i]) * (layered ? sim.path->transmittance(plan.node_um[i], air) : 1.0);
-        for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * e;
-      }
-    }
-    sunDone |= inView;
   }
   std::vector<double> values;
   for (size_t o = 0; o < probe.outputs.size(); ++o)

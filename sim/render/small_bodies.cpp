@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
+#include <map>
 
 namespace pitviper {
 namespace {
@@ -12,89 +12,122 @@ glm::dvec3 centreOf(const Simulation& sim, const WorldState& state, int entity) 
   return state.entities[e].position + state.entities[e].orientation * glm::dvec3(sim.entities[e].boundingCentre);
 }
 
-}  // namespace
-
-double smallBodyExtent(const Simulation& sim, const WorldState& state, const View& v, int entity) {
+/// Diameter of an entity's bounding sphere [subpixels of the view]; infinite where it comes near the camera's plane.
+double extentOf(const Simulation& sim, const WorldState& state, const View& v, int entity) {
   const glm::dvec3 p = glm::transpose(v.localFromCamera) * (centreOf(sim, state, entity) - v.position);
   const double radius = sim.entities[static_cast<size_t>(entity)].boundingRadius_m, depth = -p.z;
   if (depth <= 4.0 * radius + v.near_m || radius <= 0.0) return INFINITY;
   return 2.0 * radius / depth / std::min(v.tanPerPixelX, v.tanPerPixelY);
 }
 
-std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state, const View& v, double limit) {
-  std::vector<char> small(sim.entities.size(), 0);
-  for (size_t e = 0; e < sim.entities.size(); ++e) small[e] = smallBodyExtent(sim, state, v, static_cast<int>(e)) < limit;
-  return small;
-}
-
+/// From the same place, turned so that the entity's bounding sphere fills the picture, and rolled by an angle that no edge of a scene
+/// shares, so that silhouettes are sampled evenly (an edge along the grid would be off by up to a whole row).
 View zoomedView(const Simulation& sim, const WorldState& state, const View& v, int entity, int size) {
   constexpr double kRoll_rad = 0.3926;
-  const auto e = static_cast<size_t>(entity);
-  const double radius = sim.entities[e].boundingRadius_m;
-  const glm::dvec3 line = centreOf(sim, state, entity) - v.position;
+  const double radius = sim.entities[static_cast<size_t>(entity)].boundingRadius_m;
+  const glm::dvec3 centre = centreOf(sim, state, entity), line = centre - v.position;
   const double distance = glm::length(line);
-  View z;
+  View z = v;
   z.width = z.height = size;
-  z.position = v.position;
   z.localFromCamera = localFromCamera({v.position, orientationAlong(line, kRoll_rad)});
-  const double halfTan = 1.02 * radius / std::sqrt(distance * distance - radius * radius);
-  z.tanPerPixelX = z.tanPerPixelY = 2.0 * halfTan / size;
+  z.tanPerPixelX = z.tanPerPixelY = 2.04 * radius / std::sqrt(distance * distance - radius * radius) / size;
   z.axisX = z.axisY = 0.5 * size;
-  z.near_m = v.near_m;
-  z.linearDepth = true;
-  const glm::dvec3 centre = state.entities[e].orientation * glm::dvec3(sim.entities[e].boundingCentre);
-  z.depthCentre_m = (glm::transpose(z.localFromCamera) * centre).z;
-  z.depthRadius_m = 1.02 * radius;
-  z.background = false;
   z.onlyEntity = entity;
+  z.depthCentre = centre;
+  z.depthRadius_m = 1.02 * radius;
   return z;
 }
 
-void addSmallBody(Subpixels& image, const View& z, const RawImage& zoomed, const WorldState& state, int entity) {
+/// What falls into one subpixel of the image.
+struct Share {
+  double looked = 0.0;   ///< projected solid angle of all zoomed samples in it [sr]
+  double covered = 0.0;  ///< of those that see the body
+  std::vector<double> sum;
+  size_t sample = 0;
+  double cosPsi = 1.0;
+};
+
+/// True where a subpixel lies wholly inside the zoomed picture: its samples then make up the whole of it.
+bool isInside(const View& main, const View& zoomed, const glm::dmat3& zoomFromMain, int x, int y) {
+  for (int corner = 0; corner < 4; ++corner) {
+    const glm::dvec3 p = zoomFromMain * main.ray(x + (corner & 1), y + (corner >> 1));
+    if (p.z >= 0.0) return false;
+    const glm::dvec2 at = filmPosition(zoomed, p);
+    if (at.x < 0.0 || at.y < 0.0 || at.x > zoomed.width || at.y > zoomed.height) return false;
+  }
+  return true;
+}
+
+std::map<size_t, Share> sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed) {
   const View& v = image.view();
   const glm::dmat3 mainFromZoom = glm::transpose(v.localFromCamera) * z.localFromCamera;
-  const double originZ = (glm::transpose(z.localFromCamera) * (state.entities[static_cast<size_t>(entity)].position - z.position)).z;
-  const size_t slots = zoomed.groups.size() * 4;
-  struct Share {
-    double coverage = 0.0;
-    std::vector<double> sum;
-    size_t sample = 0;
-  };
-  std::unordered_map<size_t, Share> shares;
+  std::map<size_t, Share> shares;
   for (int j = 0; j < z.height; ++j)
     for (int i = 0; i < z.width; ++i) {
-      const size_t q = static_cast<size_t>(j) * static_cast<size_t>(z.width) + static_cast<size_t>(i);
-      if (zoomed.depth[q] <= 0.0f) continue;
-      const glm::dvec3 ray = z.ray(i + 0.5, j + 0.5);
-      const glm::dvec3 seen = mainFromZoom * ray;
+      const glm::dvec3 ray = z.ray(i + 0.5, j + 0.5), seen = mainFromZoom * ray;
       if (seen.z >= 0.0) continue;
       const glm::dvec2 at = filmPosition(v, seen);
-      const int x = static_cast<int>(std::floor(at.x)), y = static_cast<int>(std::floor(at.y));
-      if (x < 0 || y < 0 || x >= v.width || y >= v.height) continue;
-      const size_t p = image.index(x, y);
-      // Distance of the sample along the main camera's axis against what stands there.
-      const double turned = z.depthCentre_m + (static_cast<double>(zoomed.depth[q]) - 0.5) * 2.0 * z.depthRadius_m;
-      const double scale = -(originZ + turned);
-      if (-seen.z * scale > image.axialDepth_m(p)) continue;
-      const double l2 = glm::dot(ray, ray);
-      const double cosMain = -seen.z / std::sqrt(l2);
-      const double etendue = z.tanPerPixelX * z.tanPerPixelY / (l2 * std::sqrt(l2)) * cosMain;
-      Share& share = shares[p];
-      share.sum.resize(slots, 0.0);
+      if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height)) continue;
+      const size_t q = static_cast<size_t>(j) * static_cast<size_t>(z.width) + static_cast<size_t>(i);
+      const double l2 = glm::dot(ray, ray), cosPsi = -seen.z / std::sqrt(l2);
+      const double etendue = z.tanPerPixelX * z.tanPerPixelY / (l2 * std::sqrt(l2)) * cosPsi;
+      Share& share = shares[image.index(static_cast<int>(at.x), static_cast<int>(at.y))];
+      share.looked += etendue;
+      if (zoomed.entity[q] != z.onlyEntity) continue;
+      share.covered += etendue;
       share.sample = q;
-      const double fraction = etendue / image.projectedSolidAngle_sr(x, y);
-      share.coverage += fraction;
-      for (size_t s = 0; s < slots; ++s) share.sum[s] += fraction * static_cast<double>(zoomed.groups[s / 4][4 * q + s % 4]);
+      share.cosPsi = cosPsi;
+      share.sum.resize(image.slotCount(), 0.0);
+      for (size_t s = 0; s < image.slotCount(); ++s) share.sum[s] += etendue * static_cast<double>(zoomed.groups[s / 4][4 * q + s % 4]);
     }
-  for (auto& [p, share] : shares) {
-    for (size_t s = 0; s < image.slotCount(); ++s) image.add(s, p, share.sum[s] - share.coverage * image.slot(s, p));
-    if (!image.hasTruth() || share.coverage < 0.5) continue;
-    TruthPixel truth = truthAt(zoomed, share.sample);
-    const double subpixels = v.tanPerPixelX * v.tanPerPixelY / (z.tanPerPixelX * z.tanPerPixelY);
-    truth.area_m2 = static_cast<float>(truth.area_m2 * subpixels);
-    truth.solidAngleFromLight_sr = static_cast<float>(truth.solidAngleFromLight_sr * subpixels);
-    image.setTruth(p, truth);
+  return shares;
+}
+
+struct Delta {
+  size_t pixel;
+  std::vector<double> slots;
+};
+
+}  // namespace
+
+std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state, const View& v, double limit) {
+  std::vector<char> small(sim.entities.size(), 0);
+  for (size_t e = 0; e < sim.entities.size(); ++e) small[e] = extentOf(sim, state, v, static_cast<int>(e)) < limit;
+  return small;
+}
+
+void addSmallBodies(Subpixels& image, DirectPass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small,
+                    const std::vector<char>& present) {
+  const View& v = image.view();
+  std::vector<Delta> deltas;
+  for (size_t e = 0; e < small.size(); ++e) {
+    if (!small[e] || !present[e] || !mayShow(v, centreOf(sim, state, static_cast<int>(e)), sim.entities[e].boundingRadius_m)) continue;
+    // 256 across the bounding sphere, or at least 8 a subpixel: the area of a silhouette is sampled to about 0.1 %.
+    const double extent = extentOf(sim, state, v, static_cast<int>(e));
+    int size = 256;
+    while (size < 8.0 * extent && size < 4096) size *= 2;
+    const View z = zoomedView(sim, state, v, static_cast<int>(e), size);
+    pass.draw(z, state, present);
+    pass.startReadback(false, true);
+    const RawImage zoomed = pass.finishReadback();
+    const glm::dmat3 zoomFromMain = glm::transpose(z.localFromCamera) * v.localFromCamera;
+    for (auto& [p, share] : sharesOf(image, z, zoomed)) {
+      if (share.covered <= 0.0) continue;
+      const int x = static_cast<int>(p % static_cast<size_t>(v.width)), y = static_cast<int>(p / static_cast<size_t>(v.width));
+      const double whole = isInside(v, z, zoomFromMain, x, y) ? share.looked : image.projectedSolidAngle_sr(x, y);
+      Delta d{p, std::vector<double>(image.slotCount())};
+      for (size_t s = 0; s < d.slots.size(); ++s) d.slots[s] = (share.sum[s] - share.covered * image.slot(s, p)) / whole;
+      deltas.push_back(std::move(d));
+      if (!image.hasTruth() || share.covered < 0.5 * whole) continue;
+      TruthPixel truth = truthAt(zoomed, share.sample);  // the zoomed view's axis points at the body: put the angle off the real one in
+      truth.area_m2 = static_cast<float>(truth.area_m2 * std::pow(share.cosPsi, 3));
+      truth.solidAngleFromLight_sr = static_cast<float>(truth.solidAngleFromLight_sr * std::pow(share.cosPsi, 3));
+      truth.solidAngleOfAperture_sr = static_cast<float>(truth.solidAngleOfAperture_sr * share.cosPsi);
+      image.setTruth(p, truth);
+    }
   }
+  for (const auto& d : deltas)
+    for (size_t s = 0; s < d.slots.size(); ++s) image.add(s, d.pixel, d.slots[s]);
 }
 
 }  // namespace pitviper

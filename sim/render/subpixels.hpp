@@ -38,8 +38,6 @@ class Subpixels {
   double slot(size_t s, size_t pixel) const;
   /// Adds to a subpixel's integrals, in double precision: a faint target must not drown in the rounding of its background.
   void add(size_t s, size_t pixel, double value);
-  /// Distance along the axis of what stands there [m]; infinite for the background.
-  double axialDepth_m(size_t pixel) const;
   /// Integral of cos(psi) dOmega over a subpixel [sr].
   double projectedSolidAngle_sr(int x, int y) const;
   bool hasTruth() const { return !raw_.truth.empty(); }

@@ -15,10 +15,10 @@ struct View {
   glm::dvec3 position{0.0};                  ///< local frame
   glm::dmat3 localFromCamera{1.0};
   double near_m = 0.1;
-  bool linearDepth = false;                  ///< depth linear over [centre - radius, centre + radius], relative to an entity's origin
-  double depthCentre_m = 0.0, depthRadius_m = 1.0;
-  bool background = true;                    ///< shade what meets nothing
-  int onlyEntity = -1;                       ///< draw one entity only, or all (-1)
+  int onlyEntity = -1;                       ///< shade this entity alone, behind whatever hides it; -1: everything
+  glm::dvec3 depthCentre{0.0};               ///< with onlyEntity: depth has its digits around this place (local frame) ...
+  double depthRadius_m = 1.0;                ///< ... within this distance
+  double pixelTan2 = 0.0;                    ///< (tangent per whole pixel)^2, for the truth layer of the fragment's area
 
   /// Direction of a film position in camera axes, z = -1.
   glm::dvec3 ray(double x, double y) const { return {(x - axisX) * tanPerPixelX, (y - axisY) * tanPerPixelY, -1.0}; }
@@ -26,6 +26,9 @@ struct View {
 
 /// The whole image of a camera at n x n subpixels.
 View cameraView(const Pinhole& pinhole, const Pose& pose, double near_m, int samples);
+
+/// False where a sphere lies wholly outside the four sides of a view, or behind it.
+bool mayShow(const View& view, const glm::dvec3& centre, double radius_m);
 
 /// The film position [pixels from the lower left] of a point in camera axes (z < 0).
 inline glm::dvec2 filmPosition(const View& v, const glm::dvec3& p) {

@@ -10,7 +10,7 @@ std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, c
   double air = 0.0;
   if (plan.terms.air) {
     const double radius = sim.frame.earthRadius_m();
-    const double sinElevation = range > 0.0 ? glm::dot(line, glm::normalize(from + glm::dvec3(0, 0, radius))) / range : 0.0;
+    const double sinElevation = range > 0.0 ? glm::dot(line, sim.frame.up(from)) / range : 0.0;
     air = sim.path->airLength_m(sim.frame.height(from), sinElevation, range, radius);
   }
   std::vector<double> sums(static_cast<size_t>(plan.slotCount), 0.0);
@@ -22,21 +22,36 @@ std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, c
   return sums;
 }
 
-void addVisibleLights(Subpixels& image, const Simulation& sim, const Plan& plan, const WorldState& state) {
+bool isFree(DirectPass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction,
+            double distance_m, double near_m) {
+  // One pixel, turned so that its centre looks along the very line.
+  View v;
+  v.width = v.height = 1;
+  v.tanPerPixelX = v.tanPerPixelY = 1e-4;
+  v.axisX = v.axisY = 0.5;
+  v.position = from;
+  v.localFromCamera = localFromCamera({from, orientationAlong(direction)});
+  v.near_m = near_m;
+  pass.draw(v, state, present);
+  pass.startReadback(true);
+  const float depth = pass.finishReadback().depth[0];
+  return depth <= 0.0f || near_m / static_cast<double>(depth) >= distance_m * (1.0 - 1e-6);
+}
+
+void addVisibleLights(Subpixels& image, DirectPass& pass, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present) {
   const View& v = image.view();
   for (size_t l = 0; l < sim.lights.size(); ++l) {
     if (!sim.lights[l].visible || state.lightLevels[l] <= 0.0) continue;
-    const glm::dvec3 p = glm::transpose(v.localFromCamera) * (state.lights[l] - v.position);
+    const glm::dvec3 line = state.lights[l] - v.position, p = glm::transpose(v.localFromCamera) * line;
     if (-p.z < v.near_m) continue;
     const glm::dvec2 at = filmPosition(v, p);
-    if (at.x < 0.0 || at.y < 0.0 || at.x >= v.width || at.y >= v.height) continue;
+    if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height)) continue;
+    const double range = glm::length(line);
+    if (!isFree(pass, state, present, v.position, line / range, range, v.near_m)) continue;
     const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
-    const size_t pixel = image.index(x, y);
-    if (-p.z > image.axialDepth_m(pixel)) continue;
     // As radiance: the flux divided by the aperture and the subpixel's projected solid angle.
-    const double r2 = glm::dot(p, p), cosPsi = -p.z / std::sqrt(r2);
     const auto sums = apparentIntensity(sim, plan, state, l, v.position);
-    for (size_t s = 0; s < sums.size(); ++s) image.add(s, pixel, sums[s] * cosPsi / r2 / image.projectedSolidAngle_sr(x, y));
+    for (size_t s = 0; s < sums.size(); ++s) image.add(s, image.index(x, y), sums[s] * (-p.z / range) / (range * range) / image.projectedSolidAngle_sr(x, y));
   }
 }
 

@@ -21,12 +21,15 @@ class LocalFrame {
   /// Rotation that takes local directions to earth-centred, earth-fixed ones.
   const glm::dmat3& ecefFromLocal() const { return ecefFromLocal_; }
   const Geodetic& origin() const { return origin_; }
-  /// Height above the ellipsoid [m] of a local position.
-  double height(const glm::dvec3& local) const { return toGeodetic(local).height_m; }
-  /// Gaussian radius of curvature at the origin [m]: the sphere that stands for the earth in path lengths.
+  /// Radius of the sphere that stands for the earth in path lengths: the Gaussian radius of curvature at the origin [m]. It touches the
+  /// ellipsoid below the origin; 100 km away they differ by less than 3 m in height.
   double earthRadius_m() const { return earthRadius_m_; }
+  /// Height above that sphere [m], and the unit vector away from its centre.
+  double height(const glm::dvec3& local) const { return glm::length(fromCentre(local)) - earthRadius_m_; }
+  glm::dvec3 up(const glm::dvec3& local) const { return glm::normalize(fromCentre(local)); }
 
  private:
+  glm::dvec3 fromCentre(const glm::dvec3& local) const { return local + glm::dvec3(0.0, 0.0, earthRadius_m_ + origin_.height_m); }
   Geodetic origin_;
   glm::dmat3 ecefFromLocal_{1.0};
   glm::dvec3 originEcef_{0.0};

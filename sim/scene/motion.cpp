@@ -36,6 +36,14 @@ glm::dvec3 Motion::tangent(size_t i) const {
   return (slope(i - 1) * after + slope(i) * before) / (before + after);
 }
 
+glm::dvec3 Motion::standingDirection(size_t leg) const {
+  for (size_t j = leg + 1; j-- > 0;)
+    if (const glm::dvec3 d = waypoints_[j + 1].position - waypoints_[j].position; glm::length(d) > 0.0) return d;
+  for (size_t j = leg + 1; j + 1 < waypoints_.size(); ++j)
+    if (const glm::dvec3 d = waypoints_[j + 1].position - waypoints_[j].position; glm::length(d) > 0.0) return d;
+  return glm::dvec3(0.0);
+}
+
 Pose Motion::at(double t) const {
   if (waypoints_.empty()) return fixed_;
   const auto& first = waypoints_.front();
@@ -55,6 +63,7 @@ Pose Motion::at(double t) const {
     position = (2 * s3 - 3 * s2 + 1) * a.position + (s3 - 2 * s2 + s) * m0 + (-2 * s3 + 3 * s2) * b.position + (s3 - s2) * m1;
     velocity = (6 * s2 - 6 * s) * a.position + (3 * s2 - 4 * s + 1) * m0 + (-6 * s2 + 6 * s) * b.position + (3 * s2 - 2 * s) * m1;
   }
+  if (!(glm::length(velocity) > 0.0)) velocity = standingDirection(i);
   auto along = [&](const Waypoint& w) {
     if (w.attitude) return orientationFrom(*w.attitude);
     const double roll = a.roll_rad + s * (b.roll_rad - a.roll_rad);

@@ -41,6 +41,8 @@ class Motion {
 
  private:
   glm::dvec3 tangent(size_t i) const;
+  /// Direction of the last leg that moved up to this one, else of the next that moves: a body that stands keeps its heading.
+  glm::dvec3 standingDirection(size_t leg) const;
   Pose fixed_;
   std::vector<Waypoint> waypoints_;
   Interpolation interpolation_ = Interpolation::Smooth;

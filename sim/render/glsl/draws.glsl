@@ -4,6 +4,6 @@ struct Draw {
   vec4 row1;
   vec4 row2;
   uvec4 table;  // self or temperature row, material, temperature texture + 1, entity + 1
-  vec4 state;   // temperature [K], part
+  vec4 state;   // temperature [K], part, row of its lights, z of its origin from the depth centre [m]
 };
 layout(std430, binding = 2) readonly buffer Draws { Draw draws[]; };

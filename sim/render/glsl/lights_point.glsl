@@ -11,6 +11,8 @@ Vec3 lobes(Vec3 toLight);
 Vec3 toLight(int l) { return toLight_[l]; }
 
 void prepareLights() {
+  lightCos_ = 0.0;
+  lightDistance2_ = 1.0;
   int row = int(draw_.state.z) * LIGHTS;
   for (int l = 0; l < LIGHTS; ++l) {
     vec4 light = lights[row + l];
@@ -20,7 +22,7 @@ void prepareLights() {
     float d = sqrt(d2);
     toLight_[l] = d > 0.0 ? line / d : normal_;
     float cosLight = dot(normal_, toLight_[l]);
-    if (l == 0) {
+    if (l == 0 && !sun) {
       lightCos_ = cosLight;
       lightDistance2_ = d2;
     }

@@ -11,8 +11,9 @@ layout(std430, binding = 1) readonly buffer Indices { uint indices[]; };
 layout(std140, binding = 0) uniform ViewBlock {
   vec4 pixel;     // tangent per pixel x, y; film position of the axis (pixels from the lower left)
   vec4 up;        // local up in the camera frame; height of the camera [m]
-  vec4 earth;     // earth radius, top of the air [m]; sine of the sun's elevation; draw background (1) or leave it out (0)
-  vec4 aperture;  // aperture area [m2], (pitch / focal length)^2
+  vec4 earth;     // earth radius, top of the air [m]; the entity + 1 to be shaded alone, or 0: all and the background
+  vec4 sun;       // direction of the sun in the camera frame
+  vec4 aperture;  // aperture area [m2], (pitch / focal length)^2 of a whole pixel
   vec4 east;      // local east and north in the camera frame (for truth normals)
   vec4 north;
 } view;
@@ -29,12 +30,13 @@ Draw draw_;
 vec3 normal_;     // unit, body frame, towards the viewer
 vec3 toViewer_;   // unit, body frame
 vec3 point_;      // body frame [m]
-vec3 up_;         // local up, body frame
+vec3 up_;         // up at the point, body frame
 vec2 uv_;
 float cosView_;
 float range_;
 float airLength_; // of the camera leg [m]
 float height_;    // of the point [m]
+float sunElevation_; // sine of it at the point
 float isSurface_; // 0 for the background
 float lightCos_, lightDistance2_;  // of the first light (truth)
 
@@ -50,12 +52,11 @@ Real nodeRadiance(int i) { return pathSeen(i, selfRadiance(i)) + reflectedLight(
 
 void main() {
   uvec2 id = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).xy;
-  if (id.x == 0u && view.earth.w == 0.0) discard;
   draw_ = draws[id.x];  // draw 0 is the background
+  if (view.earth.z > 0.0 && float(draw_.table.w) != view.earth.z) discard;
   vec2 film = (gl_FragCoord.xy - view.pixel.zw) * view.pixel.xy;
   vec3 ray = vec3(film, -1.0);
   float rayLength = length(ray);
-  up_ = vec3(dot(draw_.row0.xyz, view.up.xyz), dot(draw_.row1.xyz, view.up.xyz), dot(draw_.row2.xyz, view.up.xyz));
   float sinElevation = dot(ray, view.up.xyz) / rayLength;
   vec3 d = vec3(dot(draw_.row0.xyz, ray), dot(draw_.row1.xyz, ray), dot(draw_.row2.xyz, ray));
   isSurface_ = id.x == 0u ? 0.0 : 1.0;
@@ -93,9 +94,14 @@ void main() {
     normal_ = normalize(n);
     cosView_ = max(dot(normal_, toViewer_), 1.0e-6);
   }
-  float cosElevation2 = max(1.0 - sinElevation * sinElevation, 0.0);
-  float near = min(range_, 1.0e7);  // of the background no height is asked for; its square must stay finite
-  height_ = view.up.w + near * sinElevation + near * near * cosElevation2 / (2.0 * view.earth.x);
+  // Height and up at the point, over the sphere: exact at any range. Of the background neither is asked for; squares stay finite.
+  float far = min(range_, 1.0e9), radius = view.earth.x + view.up.w;
+  float grown = far * (2.0 * radius * sinElevation + far);
+  float distance = sqrt(max(radius * radius + grown, 1.0));
+  height_ = view.up.w + grown / (distance + radius);
+  vec3 upThere = (view.up.xyz * radius + ray * (far / rayLength)) / distance;
+  up_ = vec3(dot(draw_.row0.xyz, upThere), dot(draw_.row1.xyz, upThere), dot(draw_.row2.xyz, upThere));
+  sunElevation_ = dot(upThere, view.sun.xyz);
   airLength_ = airLength(view.up.w, sinElevation, range_);
   prepareSurface();
   prepareLights();

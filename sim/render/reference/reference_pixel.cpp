@@ -78,11 +78,11 @@ ReferencePixel referencePixel(const Simulation& sim, const Plan& plan, const Vie
   pixel.range_m = found ? hit.distance : physics::kFar;
 
   const double radius = sim.frame.earthRadius_m();
-  const glm::dvec3 up = glm::normalize(view.position + glm::dvec3(0, 0, radius));
+  const glm::dvec3 up = sim.frame.up(view.position);
   const double cameraHeight = sim.frame.height(view.position), sinElevation = glm::dot(direction, up);
   const double air = plan.terms.air ? sim.path->airLength_m(cameraHeight, sinElevation, pixel.range_m, radius) : 0.0;
-  const double near = std::min(pixel.range_m, 1e7);
-  const double height = cameraHeight + near * sinElevation + near * near * (1.0 - sinElevation * sinElevation) / (2.0 * radius);
+  const double height = found ? sim.frame.height(hit.point) : 0.0;
+  const glm::dvec3 upThere = found ? sim.frame.up(hit.point) : up;
 
   const glm::dvec3 toViewer = -direction;
   const Surface* surface = nullptr;
@@ -116,8 +116,8 @@ ReferencePixel referencePixel(const Simulation& sim, const Plan& plan, const Vie
     leg.factor = sun ? std::max(leg.light.z, 0.0) : physics::pointIrradianceFactor(leg.light.z, d2, radius_m);
     if (plan.terms.air) {
       const bool endless = sim.path->top_m() >= physics::kFar;
-      leg.air = air + (sun ? (endless ? 0.0 : sim.path->airLength_m(height, sim.sun->toSun.z, physics::kFar, radius))
-                           : sim.path->airLength_m(height, glm::dot(up, to), d, radius));
+      leg.air = air + (sun ? (endless ? 0.0 : sim.path->airLength_m(height, glm::dot(upThere, sim.sun->toSun), physics::kFar, radius))
+                           : sim.path->airLength_m(height, glm::dot(upThere, to), d, radius));
     }
     legs.push_back(leg);
   };
