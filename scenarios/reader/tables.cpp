@@ -253,7 +253,7 @@ const ParameterTable& spectral() {
                                 {withDefault(integer("samples", "wavelengths per channel", 1, 512), "16"),
                                  withDefault(choice("spacing", {"gauss", "even", "log"},
                                                     "gauss: Gauss points of the response, error below 0.1 % with 16 for spectra smooth over the band; even, log: equal cells"), "gauss"),
-                                 withDefault(boolean("shared", "one set of wavelengths for all channels, over the union of their bands"), "false")}};
+                                 withDefault(boolean("shared", "one set of wavelengths for all channels, over the union of their bands (split at every band edge)"), "false")}};
   return t;
 }
 

@@ -82,27 +82,28 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   plan.lightCount = static_cast<int>(sim.lights.size()) + (sim.sun ? 1 : 0);
 
   std::vector<const ChannelOutput*> slots;
-  double low = kLongestWavelength_um, high = kShortestWavelength_um;
   for (const auto& output : outputs) {
     checkCoverage(sim, output);
     auto same = std::find_if(slots.begin(), slots.end(), [&](const auto* s) { return sameKernel(s->kernel, output.kernel); });
     plan.slotOfOutput.push_back(static_cast<int>(same - slots.begin()));
     if (same == slots.end()) slots.push_back(&output);
-    low = std::min(low, output.kernel.supportLow());
-    high = std::max(high, output.kernel.supportHigh());
   }
   plan.slotCount = static_cast<int>(slots.size());
   if (plan.slotCount > kMostSlots)
-    throw UserError(where, "needs " + std::to_string(plan.slotCount) + " different spectral kernels in one pass", "at most 16",
+    throw UserError(where, "this camera or probe needs " + std::to_string(plan.slotCount) + " different spectral kernels in one pass", "at most 16",
                     "split the channels over two cameras on the same mount, or ask for fewer quantities");
 
+  std::vector<const Spectrum*> kernels;
+  for (const auto* slot : slots) kernels.push_back(&slot->kernel);
+  const auto pieces = commonPieces(kernels);
   std::vector<std::vector<QuadratureNode>> rules;
   for (const auto* slot : slots) {
     try {
-      rules.push_back(sampling.shared ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, low, high)
+      rules.push_back(sampling.shared ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, pieces)
                                       : spectralRule(slot->kernel, sampling.samples, sampling.spacing));
     } catch (const std::invalid_argument& e) {
-      throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(), "a response above zero somewhere", "check its band or table");
+      throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(), sampling.shared ? "a response that these samples integrate to 0.1 %" : "a response above zero somewhere",
+                      sampling.shared ? "raise 'samples', use 'spacing: even', or leave out 'shared'" : "check its band or table");
     } catch (const OutsideSpectrum& e) {
       throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(), "factors of a response that cover its band", "extend the table");
     }

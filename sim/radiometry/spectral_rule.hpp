@@ -16,7 +16,17 @@ enum class Spacing { Even, Log, Gauss };
 /// Throws std::invalid_argument where the kernel is zero or the band empty.
 std::vector<QuadratureNode> spectralRule(const Spectrum& kernel, int samples, Spacing spacing);
 
-/// The same on cells over [low, high] shared with other channels (Gauss: Legendre points over that range, kernel sampled at them).
-std::vector<QuadratureNode> sharedRule(const Spectrum& kernel, int samples, Spacing spacing, double low_um, double high_um);
+/// An interval of wavelength [um].
+struct SpectralPiece {
+  double low_um, high_um;
+};
+
+/// The pieces of the axis between all band edges of several kernels, those in which every kernel is zero left out.
+std::vector<SpectralPiece> commonPieces(const std::vector<const Spectrum*>& kernels);
+
+/// Nodes in common with other channels: about `samples` over all pieces, shared out by their widths, at least two in each. Even, Log: cells,
+/// weighted by the kernel's integral over each. Gauss: Legendre points, weighted by the kernel there.
+/// Throws std::invalid_argument where these weights miss the kernel's integral by more than 1e-3.
+std::vector<QuadratureNode> sharedRule(const Spectrum& kernel, int samples, Spacing spacing, const std::vector<SpectralPiece>& pieces);
 
 }  // namespace pitviper

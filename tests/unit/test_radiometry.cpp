@@ -93,6 +93,22 @@ TEST(SpectralRule, BandEdgesAreExact) {
   }
 }
 
+// Channels that share their wavelengths: every band is still integrated from edge to edge.
+TEST(SpectralRule, SharedNodesKeepEveryBand) {
+  const Spectrum wide = Spectrum::band(3.6, 4.9), narrow = Spectrum::band(4.4, 4.6), far = Spectrum::band(8.0, 12.0);
+  const auto pieces = commonPieces({&wide, &narrow, &far});
+  ASSERT_EQ(pieces.size(), 4u) << "3.6-4.4, 4.4-4.6, 4.6-4.9, 8-12: nothing between the bands";
+  for (Spacing spacing : {Spacing::Gauss, Spacing::Even, Spacing::Log})
+    for (const auto* band : {&wide, &narrow, &far}) {
+      double got = 0.0;
+      for (const auto& p : sharedRule(*band, 32, spacing, pieces)) got += p.weight * physics::planckRadiance(p.x, 300.0);
+      const double exact = blackBodyBand(band->supportLow(), band->supportHigh(), 300.0);
+      EXPECT_NEAR(got / exact, 1.0, spacing == Spacing::Gauss ? 1e-4 : 1e-2) << band->supportLow();
+    }
+  const Spectrum spike(Spectrum::Table{{4.50, 4.501, 4.502}, {0, 1, 0}, Outside::Zero, ""});
+  EXPECT_THROW(sharedRule(spike, 4, Spacing::Gauss, commonPieces({&wide})), std::invalid_argument);
+}
+
 // The default, 16 Gauss points: error over black bodies of 200 to 6000 K behind smooth emissivities and smooth air. This is the
 // figure stated for `spectral`.
 TEST(SpectralRule, DefaultErrorIsBelowAThousandth) {

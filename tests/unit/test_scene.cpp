@@ -44,6 +44,11 @@ TEST(Motion, SmoothPathsPassTheirPointsWithContinuousVelocity) {
   EXPECT_LT(glm::length(m.at(9.0).position - glm::dvec3(300, -40, 20)), 1e-12);
 }
 
+TEST(Motion, ABodyThatStandsKeepsItsHeading) {
+  const Motion m({{0.0, {0, 0, 0}, {}, 0}, {4.0, {0, 400, 0}, {}, 0}, {8.0, {0, 400, 0}, {}, 0}, {12.0, {0, 800, 0}, {}, 0}}, Motion::Interpolation::Linear);
+  for (double t : {1.0, 5.0, 7.0, 9.0, 99.0}) EXPECT_LT(glm::length(m.at(t).orientation * glm::dvec3(1, 0, 0) - glm::dvec3(0, 1, 0)), 1e-9) << t;
+}
+
 TEST(Camera, PixelSolidAnglesAreTheRectangles) {
   Pinhole p{4, 4, 1.0, 1.0, 1.0, 0.1};  // 127 degrees in 4 pixels: as coarse as it gets
   double total = 0.0;
