@@ -248,8 +248,11 @@ void applyOverride(Value& tree, const std::string& assignment) {
     Value* next = nullptr;
     if (at->kind == Value::Kind::Map) {
       next = at->find(step);
-      if (!next && path.empty()) {
-        at->entries.emplace_back(step, Value{});
+      if (!next) {  // a key the scenario leaves to its default, or a map of such keys: a wrong one is refused when the scenario is read
+        Value fresh;
+        fresh.kind = path.empty() ? Value::Kind::Null : Value::Kind::Map;
+        fresh.where = here;
+        at->entries.emplace_back(step, std::move(fresh));
         at->keyPlaces.push_back(here);
         next = &at->entries.back().second;
       }

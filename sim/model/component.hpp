@@ -2,9 +2,11 @@
 // The contract of a reflection component: BRDF(lambda, l, v) = column(lambda; up to two angles) x lobe(l, v), times the
 // modifier texture of the surface. Source: Duvenhage 2006, sections 4.2 and 5.2.
 #include <array>
+#include <functional>
 #include <glm/glm.hpp>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace pitviper {
 
@@ -20,7 +22,21 @@ struct AngleAxis {
   Angle angle = Angle::None;
   int count = 1;
   double last_rad = 0.0;
+  double at(int entry) const { return count > 1 ? last_rad * entry / (count - 1) : 0.0; }
 };
+
+/// A direction of light, its angles on the axes asked for, and its share of an integral over the hemisphere.
+struct LightSample {
+  glm::dvec3 light;
+  double weight;
+  std::array<double, 2> angle;
+};
+
+/// integral f(l) cos(theta_l) dw_l over the hemisphere = sum of weight f(light) over the visited samples, for an f that is smooth between
+/// the entries of the axes and the same on both sides of the plane of view (x z; the viewer at sin, 0, cos of the view angle).
+/// Polar coordinates about the direction that an axis is measured from, Gauss points between all entries of both axes and the horizon: a
+/// lobe as narrow as its table counts in full. Relative error below 1e-5 for one axis, 1e-3 for two.
+void integrateHemisphere(const std::array<AngleAxis, 2>& axes, double viewAngle_rad, const std::function<void(const LightSample&)>& visit);
 
 class ReflectionComponent {
  public:
@@ -39,6 +55,8 @@ class ReflectionComponent {
   double brdf(double wavelength_um, const glm::dvec3& light, const glm::dvec3& view) const;
   /// True where hemispherical() changes with the view angle.
   virtual bool hemisphericalVaries() const = 0;
+  /// Wavelengths at which it bends or jumps, rising [um].
+  virtual std::vector<double> knots_um() const = 0;
   virtual double validLow_um() const = 0;
   virtual double validHigh_um() const = 0;
 };

@@ -133,6 +133,14 @@ TEST(ClosedForms, PointLightInView) {
   figure("point light, flux [W]", sum(layer(f, "mw.flux")), 900.0 * 2.0 * std::exp(-0.5e-3 * std::sqrt(r2)) * kPi * 1e-4 * cosPsi / r2, 1e-5, "I tau A cos/R2");
 }
 
+// The same where pixels are as coarse as they get: 9 over 120 degrees.
+TEST(ClosedForms, PointLightInCoarsePixels) {
+  const auto sim = scene("lights: [{name: flare, intensity: 900 W/(sr um), position: [-1000 m, 0 m, 700 m]}]\n"
+                         "cameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 120 deg, aperture: 20 mm, position: [0 m, 0 m, 0 m], heading: 270 deg, channels: [{name: mw, response: {band: [3 um, 5 um]}, output: irradiance}]}]\n");
+  const double r2 = 1.49e6;
+  figure("point light in pixels of 13 deg, irradiance [W/m2]", sum(layer(renderFrame(sim), "mw.irradiance")), 1800.0 / r2 * 1000.0 / std::sqrt(r2), 1e-6, "I cos/R2");
+}
+
 // Everything at one temperature: whatever the materials, the picture is a black body's.
 TEST(ClosedForms, IsothermalEnclosure) {
   const auto sim = scene("ambient: {temperature: 350 K}\natmosphere: {extinction: 2 /km, temperature: 350 K}\n"

@@ -36,6 +36,17 @@ TEST(Probe, SunAndLamp) {
   figure("probe, sun at 30 deg and a lamp [W/m2]", probeReading(sim)[0], 4.0 * (10.0 * 0.5 + 8.0 * 0.8 / 25.0), 1e-6, "E sin(elevation) + I cos/d2");
 }
 
+// A body far smaller than the probe's rays keeps its irradiance, wherever it stands.
+TEST(Probe, FarSphere) {
+  double worst = 0.0;
+  for (int i = 0; i < 5; ++i) {
+    const auto sim = scene("entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: blackbody, temperature: 1000 K, position: [" + std::to_string(600 + i) + " m, 30 m, 608 m]}]\n" + kProbe);
+    const double r2 = (600.0 + i) * (600.0 + i) + 900.0 + 608.0 * 608.0;
+    worst = std::max(worst, std::abs(probeReading(sim)[0] / (kPi * blackBodyBand(8, 12, 1000) / r2 * 608.0 / std::sqrt(r2)) - 1.0));
+  }
+  bound("probe, sphere of 1 m at 855 m, five places, worst error", worst, 5e-3, "pi L r2/R2 cos; zoomed view, the cosine of its ray's middle");
+}
+
 // The sun behind a plate does not reach the probe, the plate itself does.
 TEST(Probe, ShadowedSun) {
   const auto sim = scene("sun: {azimuth: 180 deg, elevation: 90 deg, irradiance: 10 W/(m2 um)}\n"

@@ -274,7 +274,7 @@ std::vector<BadCommand> badCommands() {
       {"NoFile", {"check"}, "pitviper check: ", {"too few arguments"}},
       {"ScenarioMissing", {"check", "nothing.yaml"}, "nothing.yaml: ", {"cannot read the file", "No such file"}},
       {"ScenarioIsAFolder", {"check", "."}, ".: ", {"cannot read the file"}},
-      {"SetLeadsNowhere", {"check", "good.yaml", "--set", "cameras.0.cameras.0.samples=2"}, "--set cameras.0.cameras.0.samples=2: ", {"there is no 'cameras' under 'cameras.0'"}},
+      {"SetLeadsNowhere", {"check", "good.yaml", "--set", "cameras.0.cameras.0.samples=2"}, "--set cameras.0.cameras.0.samples=2: ", {"unknown key 'cameras' in camera"}},
       {"SetOfAnUnknownKey", {"check", "good.yaml", "--set", "cameras.c.sampels=2"}, "--set cameras.c.sampels=2: ", {"did you mean 'samples'?"}},
       {"SetWithoutValue", {"check", "good.yaml", "--set", "cameras.c.samples"}, "--set cameras.c.samples: ", {"not an assignment"}},
       {"SetOutOfRange", {"check", "good.yaml", "--set", "cameras.0.samples=99"}, "--set cameras.0.samples=99: ", {"samples is out of range (99)"}},

@@ -75,6 +75,8 @@ TEST(Reader, OverridesReachListsByNameAndNumber) {
   EXPECT_EQ(tree.entries[0].second.items[0].find("samples")->text, "2");
   applyOverride(tree, "cameras.0.exposure=3 ms");
   EXPECT_EQ(tree.entries[0].second.items[0].find("exposure")->text, "3 ms");
+  applyOverride(tree, "cameras.c.spectral.samples=8");
+  EXPECT_EQ(tree.entries[0].second.items[0].find("spectral")->find("samples")->text, "8");
   EXPECT_THROW(applyOverride(tree, "cameras.9.samples=2"), UserError);
   EXPECT_THROW(applyOverride(tree, "samples"), UserError);
 }
