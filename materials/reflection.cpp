@@ -23,6 +23,7 @@ class Lambertian final : public ReflectionComponent {
   double column(double w, double, double) const override { return reflectance_(w) / kPi; }
   double hemispherical(double w, double) const override { return reflectance_(w); }
   bool hemisphericalVaries() const override { return false; }
+  std::vector<double> knots_um() const override { return reflectance_.knots(); }
   double validLow_um() const override { return reflectance_.validLow(); }
   double validHigh_um() const override { return reflectance_.validHigh(); }
 
@@ -83,6 +84,7 @@ class Phong final : public ReflectionComponent {
     return reflectance_(w) * (albedo_[i] + (x - static_cast<double>(i)) * (albedo_[i + 1] - albedo_[i]));
   }
   bool hemisphericalVaries() const override { return true; }
+  std::vector<double> knots_um() const override { return reflectance_.knots(); }
   double validLow_um() const override { return reflectance_.validLow(); }
   double validHigh_um() const override { return reflectance_.validHigh(); }
 
@@ -96,7 +98,20 @@ class Phong final : public ReflectionComponent {
 class Tabulated final : public ReflectionComponent {
  public:
   explicit Tabulated(BrdfTable table) : table_(std::move(table)) {
-    for (int i = 0; i <= kAngles; ++i) addAlbedo(0.5 * kPi * i / kAngles);
+    // As fine as the renderer's own grid of view angles where that costs little; a table of thousands of angles gets fewer.
+    size_t samples = 0;
+    integrateHemisphere(table_.axes, 0.25 * kPi, [&](const LightSample&) { ++samples; });
+    int steps = 180;
+    for (int fewer : {90, 60, 45, 30})
+      if (samples * static_cast<size_t>(steps) > kMostSamples) steps = fewer;
+    for (int i = 0; i <= steps; ++i) viewAngle_.push_back(0.5 * kPi * i / steps);
+    for (const AngleAxis& axis : table_.axes)
+      if (axis.angle == Angle::View)
+        for (int j = 0; j < axis.count; ++j)
+          if (axis.at(j) < 0.5 * kPi) viewAngle_.push_back(axis.at(j));
+    std::sort(viewAngle_.begin(), viewAngle_.end());
+    viewAngle_.erase(std::unique(viewAngle_.begin(), viewAngle_.end(), [](double a, double b) { return b - a < 1e-9; }), viewAngle_.end());
+    for (double angle : viewAngle_) addAlbedo(angle);
   }
   std::array<AngleAxis, 2> axes() const override { return table_.axes; }
   double column(double w, double angle1, double angle2) const override {
@@ -112,40 +127,39 @@ class Tabulated final : public ReflectionComponent {
   }
   double hemispherical(double w, double angle) const override {
     const auto [iw, fw] = wavelengthPlace(w);
-    const auto [ia, fa] = anglePlace({Angle::View, kAngles + 1, 0.5 * kPi}, angle);
     const size_t n = table_.wavelength_um.size();
-    auto albedo = [&](size_t a, size_t i) { return albedo_[std::min(a, static_cast<size_t>(kAngles)) * n + std::min(i, n - 1)]; };
+    const auto above = std::upper_bound(viewAngle_.begin() + 1, viewAngle_.end() - 1, angle);
+    const size_t ia = static_cast<size_t>(above - viewAngle_.begin()) - 1;
+    const double fa = std::clamp((angle - viewAngle_[ia]) / (viewAngle_[ia + 1] - viewAngle_[ia]), 0.0, 1.0);
+    auto albedo = [&](size_t a, size_t i) { return albedo_[a * n + std::min(i, n - 1)]; };
     return (1 - fa) * ((1 - fw) * albedo(ia, iw) + fw * albedo(ia, iw + 1)) + fa * ((1 - fw) * albedo(ia + 1, iw) + fw * albedo(ia + 1, iw + 1));
   }
   bool hemisphericalVaries() const override { return true; }
+  std::vector<double> knots_um() const override { return table_.wavelength_um; }
   double validLow_um() const override { return table_.wavelength_um.front(); }
   double validHigh_um() const override { return table_.wavelength_um.back(); }
 
  private:
-  static constexpr int kAngles = 90;
+  /// About half a second.
+  static constexpr size_t kMostSamples = 10000000;
 
-  /// The rule of ReflectionComponent::hemispherical() for all wavelengths at once: the angles cost more than the table. A table does not
-  /// tell one side of the plane of view from the other, so half the azimuths do.
+  /// The angles cost more than the wavelengths: each cell's share of the hemisphere first, then its values at all wavelengths.
   void addAlbedo(double viewAngle) {
-    static const auto polar = gaussLegendre(48, 0.0, 1.0);
-    constexpr int azimuths = 64;
+    std::vector<double> share(static_cast<size_t>(table_.axes[0].count) * static_cast<size_t>(table_.axes[1].count), 0.0);
+    const size_t columns = static_cast<size_t>(table_.axes[0].count);
+    integrateHemisphere(table_.axes, viewAngle, [&](const LightSample& s) {
+      const auto [i1, f1] = anglePlace(table_.axes[0], s.angle[0]);
+      const auto [i2, f2] = anglePlace(table_.axes[1], s.angle[1]);
+      for (int corner = 0; corner < 4; ++corner) {
+        const double weight = s.weight * ((corner & 1) ? f1 : 1 - f1) * ((corner & 2) ? f2 : 1 - f2);
+        if (weight > 0.0) share[(i2 + static_cast<size_t>(corner >> 1)) * columns + i1 + static_cast<size_t>(corner & 1)] += weight;
+      }
+    });
     const size_t wavelengths = table_.wavelength_um.size(), first = albedo_.size();
     albedo_.resize(first + wavelengths, 0.0);
-    const glm::dvec3 view(std::sin(viewAngle), 0.0, std::cos(viewAngle));
-    for (const auto& p : polar) {
-      const double c = std::sqrt(p.x), s = std::sqrt(1.0 - p.x);
-      for (int i = 0; i < azimuths / 2; ++i) {
-        const double phi = 2.0 * kPi * (i + 0.5) / azimuths;
-        const glm::dvec3 light(s * std::cos(phi), s * std::sin(phi), c);
-        const auto [i1, f1] = anglePlace(table_.axes[0], angleBetween(table_.axes[0].angle, light, view));
-        const auto [i2, f2] = anglePlace(table_.axes[1], angleBetween(table_.axes[1].angle, light, view));
-        for (int corner = 0; corner < 4; ++corner) {
-          const double weight = 2.0 * kPi / azimuths * p.weight * ((corner & 1) ? f1 : 1 - f1) * ((corner & 2) ? f2 : 1 - f2);
-          if (weight == 0.0) continue;
-          const double* row = &table_.values[rowAt(i1 + (corner & 1), i2 + ((corner >> 1) & 1))];
-          for (size_t w = 0; w < wavelengths; ++w) albedo_[first + w] += weight * row[w];
-        }
-      }
+    for (size_t cell = 0; cell < share.size(); ++cell) {
+      if (share[cell] == 0.0) continue;
+      for (size_t w = 0; w < wavelengths; ++w) albedo_[first + w] += share[cell] * table_.values[cell * wavelengths + w];
     }
   }
 
@@ -173,7 +187,7 @@ class Tabulated final : public ReflectionComponent {
   }
 
   BrdfTable table_;
-  std::vector<double> albedo_;  ///< by view angle and wavelength
+  std::vector<double> viewAngle_, albedo_;  ///< albedo by view angle and wavelength
 };
 
 }  // namespace

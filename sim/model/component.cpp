@@ -162,7 +162,7 @@ class Rings {
       const size_t points = !crossed_ ? 10 : width < 0.05 ? 1 : 2 + static_cast<size_t>(width / 0.3);
       for (const auto& u : unitRule(points)) {
         const double phi = cuts_[i] + width * u.x, cosPhi = std::cos(phi), sinPhi = std::sqrt(std::max(0.0, 1.0 - cosPhi * cosPhi));
-        double jacobian = sineOfTurn / twice_;
+        double jacobian = sineOfTurn;
         if (polar_.angle == Angle::Half) {
           const glm::dvec3 h(sine * cosPhi, sine * sinPhi, cosine);
           const double vh = glm::dot(view_, h);
