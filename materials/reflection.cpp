@@ -141,7 +141,7 @@ class Tabulated final : public ReflectionComponent {
 
  private:
   /// About half a second.
-  static constexpr size_t kMostSamples = 10000000;
+  static constexpr size_t kMostSamples = 8000000;
 
   /// The angles cost more than the wavelengths: each cell's share of the hemisphere first, then its values at all wavelengths.
   void addAlbedo(double viewAngle) {

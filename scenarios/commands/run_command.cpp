@@ -8,6 +8,8 @@
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
+#include "sim/parameters/table.hpp"
+#include "sim/parameters/units.hpp"
 #include "sim/run/run.hpp"
 
 namespace pitviper {
@@ -21,6 +23,30 @@ RunRange framesWanted(const Options& o, const Simulation& sim) {
     throw UserError({"--frames " + o.value("--frames"), 0, 0, -1}, "there is no such range of frames", "within 0:" + std::to_string(sim.time.frames - 1) + ", rising",
                     "choose frames of the scenario's 'time.frames'");
   return {static_cast<int>(a), static_cast<int>(b)};
+}
+
+/// "layer=a:b" in the layer's unit.
+PreviewRanges previewRanges(const Options& o, const Simulation& sim) {
+  PreviewRanges ranges;
+  for (const auto& text : o.values("--preview-range")) {
+    const Location where{"--preview-range " + text, 0, 0, -1};
+    const size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
+    if (equals == std::string::npos || colon == std::string::npos) throw UserError(where, "not a range", "layer=low:high", "write --preview-range lw.radiance=28:45");
+    const std::string layer = text.substr(0, equals);
+    std::vector<std::string> layers;
+    for (const auto& c : sim.cameras)
+      for (const auto& out : c.outputs) layers.push_back(out.layer());
+    if (std::find(layers.begin(), layers.end(), layer) == layers.end())
+      throw UserError(where, "there is no layer '" + layer + "'", "a channel and quantity of the scenario", nearestWord(layer, layers).empty() ? "see pitviper check" : "did you mean '" + nearestWord(layer, layers) + "'?");
+    auto number = [&](const std::string& t) {
+      const auto q = splitQuantity(t);
+      if (!q || !q->unit.empty()) throw UserError(where, "'" + t + "' is not a number", "numbers in the layer's own unit", "write --preview-range " + layer + "=28:45");
+      return q->value;
+    };
+    ranges[layer] = {number(text.substr(equals + 1, colon - equals - 1)), number(text.substr(colon + 1))};
+    if (!(ranges[layer].first < ranges[layer].second)) throw UserError(where, "the range does not rise", "low:high", "swap its ends");
+  }
+  return ranges;
 }
 
 /// Probe readings as CSV, one file a probe.
@@ -53,9 +79,10 @@ class ProbeTables {
 }  // namespace
 
 int runCommand(const Arguments& arguments) {
-  const Options o("run", arguments, {{"--out"}, {"--frames"}, {"--set", true, true}, {"--preview", false}}, 1, 1);
+  const Options o("run", arguments, {{"--out"}, {"--frames"}, {"--set", true, true}, {"--preview", false}, {"--preview-range", true, true}}, 1, 1);
   const Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
   const RunRange range = framesWanted(o, sim);
+  const PreviewRanges ranges = previewRanges(o, sim);
   const std::filesystem::path out = o.value("--out", "out");
   ensureWritableFolder(out);
   const GlContext context;
@@ -65,14 +92,17 @@ int runCommand(const Arguments& arguments) {
   runFrames(sim, shaderLibrary(), range,
             [&](const Frame& f) {
               writeFrame(out, f);
-              if (o.has("--preview")) writePreview(out, f);
+              if (o.has("--preview") || !ranges.empty()) writePreview(out, f, ranges);
               progress.step();
             },
             sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) { probes.add(r); });
   probes.write(out);
   progress.finish();
-  std::printf("%d frame%s of %zu camera%s in %s (%s)\n", frames, frames == 1 ? "" : "s", sim.cameras.size(), sim.cameras.size() == 1 ? "" : "s",
-              out.string().c_str(), context.limits().renderer.c_str());
+  auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
+  std::string done;
+  if (!sim.cameras.empty()) done = count(static_cast<size_t>(frames), "frame") + " of " + count(sim.cameras.size(), "camera");
+  if (!sim.probes.empty()) done += (done.empty() ? "" : " and ") + count(sim.probes.size(), "probe table");
+  std::printf("%s in %s (%s)\n", done.c_str(), out.string().c_str(), context.limits().renderer.c_str());
   return 0;
 }
 

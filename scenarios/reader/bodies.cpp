@@ -32,9 +32,9 @@ glm::dvec3 Builder::readPosition(const Record& r, bool required) {
 }
 
 std::optional<Attitude> Builder::readAttitude(const Record& r, bool attached) {
-  if (!r.given("heading") && !r.given("pitch")) return std::nullopt;
+  if (!r.given("heading") && !r.given("pitch") && !r.given("roll")) return std::nullopt;
   Attitude a;
-  if (r.given("heading")) a.heading_rad = r.number("heading");
+  a.heading_rad = r.given("heading") ? r.number("heading") : attached ? 0.0 : 0.5 * kPi;  // as a body that is not turned
   if (attached) a.heading_rad += 0.5 * kPi;  // clockwise from the carrier's forward axis instead of north
   if (r.given("pitch")) a.pitch_rad = r.number("pitch");
   if (r.given("roll")) a.roll_rad = r.number("roll");
@@ -49,13 +49,18 @@ Builder::Placement Builder::readPlacement(const Record& r, bool attitude) {
   }
   if (r.given("motion")) {
     if (r.given("position") || r.given("geodetic")) throw UserError(r.where("motion"), "a position and a motion", "one of the two", "remove one");
+    for (const char* key : {"heading", "pitch", "roll"})
+      if (attitude && r.given(key))
+        throw UserError(r.where(key), std::string("a ") + key + " and a motion", "the attitude in the waypoints, or along the path", std::string("move '") + key + "' into the waypoints");
     std::vector<Waypoint> waypoints;
     for (const Value& v : r.value("motion").items) {
       const Record w(v, tables::waypoint());
       Waypoint point;
       point.time_s = w.number("time");
       point.position = readPosition(w, true);
-      point.attitude = readAttitude(w, p.carrier >= 0);
+      if (w.given("pitch") && !w.given("heading"))
+        throw UserError(w.where("pitch"), "a waypoint with a pitch but no heading", "both, or neither (then it follows the path)", "add 'heading:'");
+      if (w.given("heading")) point.attitude = readAttitude(w, p.carrier >= 0);
       if (w.given("roll")) point.roll_rad = w.number("roll");
       // 1 ns: velocities stay finite however far apart the positions are.
       if (!waypoints.empty() && point.time_s < waypoints.back().time_s + 1e-9)
@@ -70,7 +75,6 @@ Builder::Placement Builder::readPlacement(const Record& r, bool attitude) {
   if (attitude) {
     // Not turned: the body's x, y, z are east, north, up (or the carrier's own axes).
     if (const auto given = readAttitude(r, p.carrier >= 0)) fixed.orientation = orientationFrom(*given);
-    else if (r.given("roll")) fixed.orientation = glm::angleAxis(r.number("roll"), glm::dvec3(1, 0, 0));
   }
   p.motion = Motion(fixed);
   return p;
@@ -88,6 +92,28 @@ int Builder::entityNamed(const Value& asked) const {
                   near.empty() ? "add it under 'entities:', a carrier before what it carries" : "did you mean '" + near + "'?");
 }
 
+namespace {
+
+/// The keys that a shape takes: a key of another shape would be ignored without a word.
+void refuseForeignKeys(const Record& r, const std::string& model) {
+  static const std::map<std::string, std::vector<std::string>> keys = {
+      {"plate", {"width", "height"}}, {"box", {"length", "width", "height"}}, {"disc", {"radius", "segments"}}, {"sphere", {"radius", "segments", "fit"}},
+      {"cylinder", {"radius", "length", "segments", "capped"}}, {"cone", {"radius", "top_radius", "length", "segments", "capped"}},
+      {"terrain", {"size", "relief", "columns", "terrain_seed", "height_map"}}, {"jet", {}}, {"missile", {}}, {"mesh", {"file", "unit"}}};
+  std::vector<std::string> own = keys.at(model);
+  own.emplace_back("scale");
+  for (size_t i = 0; i < r.whole().entries.size(); ++i) {
+    const std::string& key = r.whole().entries[i].first;
+    if (key == "model" || std::find(own.begin(), own.end(), key) != own.end()) continue;
+    std::string all;
+    for (const auto& k : own) all += (all.empty() ? "" : ", ") + k;
+    const std::string near = nearestWord(key, own);
+    throw UserError(r.whole().keyPlaces[i], "a " + model + " has no '" + key + "'", all, near.empty() ? "remove it" : "did you mean '" + near + "'?");
+  }
+}
+
+}  // namespace
+
 std::shared_ptr<const Mesh> Builder::readShape(const Value& value) {
   const Record r(value, tables::shape());
   const std::string model = r.text("model");
@@ -95,9 +121,11 @@ std::shared_ptr<const Mesh> Builder::readShape(const Value& value) {
     if (!r.given(key)) throw UserError(r.where(), "a " + model + " without '" + key + "'", tables::shape().find(key)->description, std::string("add '") + key + ":'");
     return r.number(key);
   };
+  refuseForeignKeys(r, model);
   const int segments = static_cast<int>(r.integer("segments"));
   auto mesh = std::make_shared<Mesh>();
   if (model == "plate") *mesh = makePlate(need("width"), need("height"));
+  else if (model == "box") *mesh = makeBox(need("length"), need("width"), need("height"));
   else if (model == "disc") *mesh = makeDisc(need("radius"), segments);
   else if (model == "sphere") *mesh = makeSphere(need("radius"), segments, r.text("fit") == "inscribed" ? SphereFit::Inscribed : SphereFit::EqualArea);
   else if (model == "cylinder") *mesh = makeCylinder(need("radius"), need("length"), segments, r.boolean("capped"));

@@ -169,6 +169,8 @@ void Builder::readCameras(const Record& scenario) {
     c.mount.motion = place.motion;
     c.mount.carrier = place.carrier;
     if (r.given("look_at")) {
+      for (const char* key : {"heading", "pitch", "roll"})
+        if (r.given(key)) throw UserError(r.where(key), std::string("a ") + key + " and a look_at", "one of the two", "remove one");
       const Value& target = r.value("look_at");
       if (target.kind == Value::Kind::List || (target.kind == Value::Kind::Scalar && target.text.find(',') != std::string::npos)) {
         c.mount.looksAtPoint = true;

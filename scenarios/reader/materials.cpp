@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "materials/energy.hpp"
 #include "materials/reflection.hpp"
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
@@ -15,7 +16,9 @@ namespace {
 
 /// As many as one YAML file can hold.
 constexpr std::size_t kMostTableValues = 400000;
-/// Each table takes about 20 ms to integrate over the hemisphere, and 1 ms more for each wavelength.
+/// Two angles that both depend on the light: up to 1.4 s to integrate over the hemisphere. Others take 3 ms and, with the most entries,
+/// half a second.
+constexpr std::size_t kMostAnglePairs = 65536;
 constexpr std::size_t kMostTables = 64, kMostTableWavelengths = 1024;
 /// Each Phong lobe takes about 10 ms to integrate over the hemisphere.
 constexpr std::size_t kMostLobes = 256;
@@ -37,46 +40,86 @@ std::string percentAt(double sum, double wavelength_um, double angle_rad) {
   return text;
 }
 
+/// What a table holds, for its messages.
+struct TableKind {
+  const char* name;
+  const char* range;
+  double most;
+};
+constexpr TableKind kBrdf{"a BRDF", "at least 0 per steradian", INFINITY}, kEmissivity{"an emissivity", "0 to 1", 1.0};
+std::string aTable(const TableKind& kind) { return std::string(kind.name) + " table"; }
+
 /// values[angle 2][angle 1][wavelength], with a nesting level left out for each missing axis.
-void flatten(const Value& v, const std::vector<size_t>& extents, size_t level, std::vector<double>& into) {
+void flatten(const Value& v, const TableKind& kind, const std::vector<size_t>& extents, size_t level, std::vector<double>& into) {
   if (level == extents.size()) {
-    const double x = readNumber(v, "", "BRDF table value");
-    if (x < 0.0) throw UserError(v.where, "a BRDF value is negative", "at least 0 per steradian", "correct the table");
+    const double x = readNumber(v, "", "a value of " + aTable(kind));
+    if (!(x >= 0.0 && x <= kind.most)) throw UserError(v.where, std::string(kind.name) + " value is " + (x < 0.0 ? "negative" : "above 1"), kind.range, "correct the table");
     into.push_back(x);
     return;
   }
   if (v.kind != Value::Kind::List || v.items.size() != extents[level])
-    throw UserError(v.where, "a BRDF table level has " + std::to_string(v.kind == Value::Kind::List ? v.items.size() : 0) + " entries",
+    throw UserError(v.where, "a level of " + aTable(kind) + " has " + std::to_string(v.kind == Value::Kind::List ? v.items.size() : 0) + " entries",
                     std::to_string(extents[level]) + ", as its axis says", "fill the hole or change 'count'");
-  for (const Value& item : v.items) flatten(item, extents, level + 1, into);
+  for (const Value& item : v.items) flatten(item, kind, extents, level + 1, into);
+}
+
+/// Rising wavelengths [um] of a table.
+std::vector<double> readWavelengths(const Value& list, const TableKind& kind) {
+  std::vector<double> all;
+  for (const Value& w : list.items) {
+    const double x = readNumber(w, "um", "wavelength");
+    if (x < kShortestWavelength_um || x > kLongestWavelength_um || (!all.empty() && x <= all.back()))
+      throw UserError(w.where, "the wavelengths of " + aTable(kind) + " do not rise or leave the spectral axis", "rising, within 0.1 to 1000 um", "sort them");
+    all.push_back(x);
+  }
+  return all;
+}
+
+AngleAxis readAxis(const Value& value) {
+  const Record axis(value, tables::tableAxis());
+  return {angleNamed(axis.text("angle")), static_cast<int>(axis.integer("count")), axis.number("last")};
+}
+
+std::vector<double> readValues(const Record& r, const TableKind& kind, const std::vector<size_t>& extents) {
+  size_t total = 1;
+  for (size_t e : extents) total *= e;
+  if (total > kMostTableValues)
+    throw UserError(r.where("values"), aTable(kind) + " of " + std::to_string(total) + " values", "at most " + std::to_string(kMostTableValues), "thin it out");
+  std::vector<double> values;
+  flatten(r.value("values"), kind, extents, 0, values);
+  return values;
 }
 
 std::shared_ptr<const ReflectionComponent> readTable(const Record& r) {
   BrdfTable t;
   for (const char* key : {"wavelength", "values"})
     if (!r.given(key)) throw UserError(r.where(), std::string("a BRDF table without '") + key + "'", "'wavelength', 'angles' and 'values'", "add it");
-  for (const Value& w : r.value("wavelength").items) {
-    const double x = readNumber(w, "um", "wavelength");
-    if (x < kShortestWavelength_um || x > kLongestWavelength_um || (!t.wavelength_um.empty() && x <= t.wavelength_um.back()))
-      throw UserError(w.where, "the wavelengths of a BRDF table do not rise or leave the spectral axis", "rising, within 0.1 to 1000 um", "sort them");
-    t.wavelength_um.push_back(x);
-  }
+  t.wavelength_um = readWavelengths(r.value("wavelength"), kBrdf);
   std::vector<size_t> extents{t.wavelength_um.size()};
   if (r.given("angles")) {
     size_t k = 0;
     for (const Value& a : r.value("angles").items) {
-      const Record axis(a, tables::tableAxis());
-      t.axes[k++] = {angleNamed(axis.text("angle")), static_cast<int>(axis.integer("count")), axis.number("last")};
-      extents.insert(extents.begin(), static_cast<size_t>(axis.integer("count")));
+      t.axes[k] = readAxis(a);
+      extents.insert(extents.begin(), static_cast<size_t>(t.axes[k++].count));
     }
     if (k == 2 && t.axes[0].angle == t.axes[1].angle) throw UserError(r.where("angles"), "both axes are the same angle", "two different angles", "change one");
   }
-  size_t total = 1;
-  for (size_t e : extents) total *= e;
-  if (total > kMostTableValues)
-    throw UserError(r.where("values"), "a BRDF table of " + std::to_string(total) + " values", "at most " + std::to_string(kMostTableValues), "thin it out");
-  flatten(r.value("values"), extents, 0, t.values);
+  const auto ofLight = [](const AngleAxis& a) { return a.angle != Angle::None && a.angle != Angle::View; };
+  const auto pairs = static_cast<std::size_t>(t.axes[0].count) * static_cast<std::size_t>(t.axes[1].count);
+  if (ofLight(t.axes[0]) && ofLight(t.axes[1]) && pairs > kMostAnglePairs)
+    throw UserError(r.where("angles"), "a BRDF table over " + std::to_string(pairs) + " pairs of angles", "at most " + std::to_string(kMostAnglePairs), "thin it out");
+  t.values = readValues(r, kBrdf, extents);
   return makeTabulated(std::move(t));
+}
+
+EmissivityTable readEmissivityTable(const Record& r) {
+  EmissivityTable t;
+  t.wavelength_um = readWavelengths(r.value("wavelength"), kEmissivity);
+  t.view = readAxis(r.value("angles").items.front());
+  if (t.view.angle != Angle::View)
+    throw UserError(r.where("angles"), "an emissivity table over an angle that is not the view angle", "'angles: [{angle: view, count: 3, last: 90 deg}]'", "emission has no light: only 'view' is left");
+  t.values = readValues(r, kEmissivity, {static_cast<size_t>(t.view.count), t.wavelength_um.size()});
+  return t;
 }
 
 }  // namespace
@@ -86,6 +129,9 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
   if (r.given("file") == r.given("rows"))
     throw UserError(r.where(), std::string("the texture of ") + std::string(name) + (r.given("file") ? " has a file and rows" : " has neither file nor rows"), "one of the two", "add or remove one");
   Texture t;
+  t.repeats = r.text("edges") == "repeat";
+  for (const char* key : {"minimum", "maximum"})
+    if (r.given("rows") && r.given(key)) throw UserError(r.where(key), std::string("a '") + key + "' beside rows", "rows carry their own values", "remove it");
   auto quantity = [&](const char* key, double otherwise) { return r.given(key) ? readNumber(r.value(key), unit, key) : otherwise; };
   if (r.given("file")) {
     if (!unit.empty() && !(r.given("minimum") && r.given("maximum")))
@@ -165,7 +211,19 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
   if (r.given("emission")) {
     const Record e(r.value("emission"), tables::emission());
     GivenEmissivity g;
-    g.emissivity = fraction(e.value("emissivity"), "emissivity");
+    const bool table = e.given("wavelength") || e.given("angles") || e.given("values");
+    if (table == (e.given("emissivity") || e.given("angular")))
+      throw UserError(e.where(), table ? "an emission that is both a spectrum and a table" : "an emission without an emissivity",
+                      "'emissivity' (and 'angular'), or 'wavelength', 'angles' and 'values'", table ? "keep one of the two" : "add 'emissivity: 0.9', a spectrum, or a table");
+    if (table) {
+      for (const char* key : {"wavelength", "angles", "values"})
+        if (!e.given(key)) throw UserError(e.where(), std::string("an emissivity table without '") + key + "'", "'wavelength', 'angles' and 'values'", "add it");
+      g.table = readEmissivityTable(e);
+    } else if (!e.given("emissivity")) {
+      throw UserError(e.where(), "an emission with 'angular' but without 'emissivity'", "both", "add 'emissivity: 0.9' or a spectrum");
+    } else {
+      g.emissivity = fraction(e.value("emissivity"), "emissivity");
+    }
     if (e.given("angular"))
       for (const Value& row : e.value("angular").items) {
         if (row.kind != Value::Kind::List || row.items.size() != 2) throw UserError(row.where, "not a row [angle, factor]", "[60 deg, 0.9]", "write two values");
@@ -178,17 +236,9 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
     if (e.given("modifier")) g.modifier = readTexture(e.value("modifier"), "", "a modifier", 0.0, 1.0);
     m->given = std::move(g);
   }
-  // Energy: reflectance (and a given emissivity with it) must not exceed 1 anywhere, at any view angle.
-  const double low = std::max(m->validLow_um(), kShortestWavelength_um), high = std::min(m->validHigh_um(), kLongestWavelength_um);
-  for (int i = 0; i <= 64 && low <= high; ++i) {
-    const double w = std::clamp(low * std::pow(high / low, i / 64.0), low, high);  // rounding must not lead out of the data
-    for (double angle : {0.0, 0.5, 1.0, 1.4}) {
-      const double rho = m->reflectance(w, angle), sum = rho + (m->given ? m->given->at(w, angle) : 0.0);
-      if (sum > 1.0 + 1e-6)
-        throw UserError(value.where, "material '" + name + "' " + (m->given ? "reflects and emits" : "reflects") + " more than it receives (" + percentAt(sum, w, angle) + ")",
-                        m->given ? "reflectance + emissivity <= 1" : "the sum of its reflectances <= 1", "lower a component");
-    }
-  }
+  if (const auto excess = energyExcess(*m, simulation_.textures))
+    throw UserError(value.where, "material '" + name + "' " + (m->given ? "reflects and emits" : "reflects") + " more than it receives (" + percentAt(excess->sum, excess->wavelength_um, excess->viewAngle_rad) + ")",
+                    m->given ? "reflectance + emissivity <= 1, at every wavelength, view angle and texel" : "the sum of its reflectances <= 1, at every wavelength, view angle and texel", "lower a component");
   return m;
 }
 

@@ -54,6 +54,7 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
   sim.seed = r.integer("seed");
   Builder b(sim, base, libraries);
   try {
+    if (r.given("render") && Record(r.value("render"), tables::render()).text("mode") == "buffered") sim.mode = RenderMode::Buffered;
     b.readOrigin(r);
     b.readTime(r);
     b.readAtmosphere(r);

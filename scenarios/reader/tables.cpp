@@ -19,9 +19,9 @@ void addPlacement(std::vector<Parameter>& p, bool attitude) {
   p.push_back(within(vector3("position", "m", "east, north, up from the origin (or in the carrier's body axes: forward, left, up)"), -kFarthest_m, kFarthest_m));
   p.push_back(map("geodetic", "position as latitude, longitude, height instead"));
   if (attitude) {
-    p.push_back(within(number("heading", "rad", "clockwise from north"), -2 * kHalfTurn, 2 * kHalfTurn));
-    p.push_back(within(number("pitch", "rad", "nose up"), -kHalfTurn, kHalfTurn));
-    p.push_back(within(number("roll", "rad", "right wing down"), -2 * kHalfTurn, 2 * kHalfTurn));
+    p.push_back(within(number("heading", "rad", "of the x axis, clockwise from north (on a carrier: from its forward axis); 90 deg unless given: x east, y north"), -2 * kHalfTurn, 2 * kHalfTurn));
+    p.push_back(within(number("pitch", "rad", "nose up; 0 unless given"), -kHalfTurn, kHalfTurn));
+    p.push_back(within(number("roll", "rad", "right wing down; 0 unless given"), -2 * kHalfTurn, 2 * kHalfTurn));
   }
   p.push_back(list("motion", "waypoints; orientation follows the path unless a waypoint gives one", 1, 100000));
   p.push_back(withDefault(choice("interpolation", {"smooth", "linear"}, "between waypoints: cubic with continuous velocity, or straight"), "smooth"));
@@ -37,6 +37,7 @@ const ParameterTable& scenario() {
                                  withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL), "1"),
                                  map("origin", "where the local east-north-up frame stands on the earth"),
                                  map("time", "first frame, rate and number of frames"),
+                                 map("render", "how it is drawn"),
                                  any("atmosphere", "the air: `none`, the name of a library air, or a map"),
                                  map("background", "what is behind everything (0 K unless given), seen through the air"),
                                  map("sun", "direction and irradiance"),
@@ -46,6 +47,13 @@ const ParameterTable& scenario() {
                                  list("entities", "bodies", 0, 4096),
                                  list("cameras", "sensors", 0, 64),
                                  list("probes", "irradiance meters", 0, 256)}};
+  return t;
+}
+
+const ParameterTable& render() {
+  static const ParameterTable t{"render", "Pictures are the same in either mode, to rounding.",
+                                {withDefault(choice("mode", {"auto", "direct", "buffered"},
+                                                    "direct: shading integrates straight into the channels; buffered: through a spectral image; auto: direct"), "auto")}};
   return t;
 }
 
@@ -141,16 +149,21 @@ const ParameterTable& tableAxis() {
 }
 
 const ParameterTable& texture() {
-  static const ParameterTable t{"texture", "A grey PNG (8 or 16 bit, read linearly) or inline rows, bottom row last; minimum..maximum is black..white.",
+  static const ParameterTable t{"texture", "A grey PNG (8 or 16 bit, read linearly) or inline rows, bottom row last, stretched over u and v from 0 to 1; bilinear between pixel centres.",
                                 {text("file", "PNG file"), list("rows", "rows of numbers from top to bottom", 1, 4096),
-                                 any("minimum", "value of black (a quantity in the texture's unit)"), any("maximum", "value of white")}};
+                                 any("minimum", "of a file: value of black (a quantity in the texture's unit)"), any("maximum", "of a file: value of white"),
+                                 withDefault(choice("edges", {"hold", "repeat"}, "beyond its edges; repeat where it goes round a sphere or cylinder (u runs round, v from end to end)"), "hold")}};
   return t;
 }
 
 const ParameterTable& emission() {
-  static const ParameterTable t{"emission", "",
-                                {required(spectrum("emissivity", "", "at normal view, 0..1")),
+  static const ParameterTable t{"emission", "A spectrum and a factor over view angle, or a table over both. Pictures hold view angles every 0.5 deg, or finer (to 0.0625 deg) where that hits all the "
+                                            "angles given, and are linear between; a bend that no such step hits is cut off by a quarter of step x change of slope.",
+                                {spectrum("emissivity", "", "at normal view, 0..1"),
                                  list("angular", "rows [angle, factor]: emissivity over view angle divided by that at normal", 1, 1024),
+                                 list("wavelength", "of a table instead: rising wavelengths", 1, 1024),
+                                 list("angles", "of a table: one axis, `{angle: view, count: 3, last: 90 deg}`; held beyond its last", 1, 1),
+                                 list("values", "of a table: emissivity 0..1, nested as values[angle][wavelength]", 2, 1024),
                                  map("modifier", "texture that multiplies it, 0..1")}};
   return t;
 }
@@ -188,10 +201,10 @@ const ParameterTable& part() {
 const ParameterTable& shape() {
   static const ParameterTable t{
       "shape", "",
-      {required(choice("model", {"plate", "disc", "sphere", "cylinder", "cone", "terrain", "jet", "missile", "mesh"}, "kind; body axes x forward, y left, z up")),
-       within(number("width", "m", "plate: along y"), 1e-6, 1e7), within(number("height", "m", "plate: along z"), 1e-6, 1e7),
-       within(number("radius", "m", "disc, sphere, cylinder, cone (base)"), 1e-6, 1e7), within(number("top_radius", "m", "cone"), 0, 1e7),
-       within(number("length", "m", "cylinder, cone: along x"), 1e-6, 1e7),
+      {required(choice("model", {"plate", "box", "disc", "sphere", "cylinder", "cone", "terrain", "jet", "missile", "mesh"}, "kind; body axes x forward, y left, z up; see the table of shapes")),
+       within(number("width", "m", "plate, box: along y"), 1e-6, 1e7), within(number("height", "m", "plate, box: along z"), 1e-6, 1e7),
+       within(number("radius", "m", "disc, sphere, cylinder, cone (base)"), 1e-6, 1e7), within(number("top_radius", "m", "cone: at its +x end, 0 unless given"), 0, 1e7),
+       within(number("length", "m", "cylinder, cone, box: along x"), 1e-6, 1e7),
        withDefault(integer("segments", "disc, sphere, cylinder, cone: around", 8, 2048), "64"),
        withDefault(boolean("capped", "cylinder, cone"), "true"),
        withDefault(choice("fit", {"inscribed", "equal_area"}, "sphere: vertices on it, or the same projected area"), "equal_area"),
@@ -267,7 +280,7 @@ const ParameterTable& probe() {
 }
 
 std::vector<const ParameterTable*> all() {
-  return {&scenario(), &origin(), &time(), &atmosphere(), &airLibrary(), &background(), &sun(), &ambient(), &spectrumTable(), &material(), &component(),
+  return {&scenario(), &render(), &origin(), &time(), &atmosphere(), &airLibrary(), &background(), &sun(), &ambient(), &spectrumTable(), &material(), &component(),
           &tableAxis(), &texture(), &emission(), &light(), &entity(), &part(), &shape(), &waypoint(), &geodetic(), &camera(), &film(), &channel(), &spectral(), &probe()};
 }
 

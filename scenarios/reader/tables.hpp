@@ -7,6 +7,7 @@
 namespace pitviper::tables {
 
 const ParameterTable& scenario();
+const ParameterTable& render();
 const ParameterTable& origin();
 const ParameterTable& time();
 const ParameterTable& atmosphere();

@@ -123,7 +123,7 @@ void writeFrame(const std::filesystem::path& folder, const Frame& frame) {
   writeExr(folder / (frameFileStem(frame) + ".exr"), image);
 }
 
-void writePreview(const std::filesystem::path& folder, const Frame& frame) {
+void writePreview(const std::filesystem::path& folder, const Frame& frame, const PreviewRanges& ranges) {
   std::vector<Rgb8Image> pictures;
   char time[32];
   std::snprintf(time, sizeof time, "t = %.3f s", frame.time_s);
@@ -132,6 +132,7 @@ void writePreview(const std::filesystem::path& folder, const Frame& frame) {
     PreviewOptions options;
     options.title = frame.camera + "  " + l.name + "  " + time;
     options.unit = l.unit;
+    if (const auto range = ranges.find(l.name); range != ranges.end()) options.range = range->second;
     const std::string band = [&] {
       for (const auto& a : frame.attributes)
         if (a.name == "band_um." + l.name) return std::get<std::string>(a.value);

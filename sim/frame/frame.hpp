@@ -1,5 +1,6 @@
 #pragma once
 // A calibrated frame: what leaves the renderer, with everything needed to use it without the scenario at hand.
+#include <map>
 #include <string>
 #include <vector>
 
@@ -34,7 +35,9 @@ std::string frameFileStem(const Frame& frame);
 
 /// One EXR with a layer per channel quantity and truth layer. Errors: OutputError.
 void writeFrame(const std::filesystem::path& folder, const Frame& frame);
+/// Ends of the colour bar by layer name, in the layer's unit; layers without choose their own.
+using PreviewRanges = std::map<std::string, std::pair<double, double>>;
 /// One PNG per frame: channels side by side, each with colour bar and unit.
-void writePreview(const std::filesystem::path& folder, const Frame& frame);
+void writePreview(const std::filesystem::path& folder, const Frame& frame, const PreviewRanges& ranges = {});
 
 }  // namespace pitviper

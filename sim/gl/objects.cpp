@@ -37,7 +37,7 @@ GLuint compile(GLenum stage, const AssembledShader& shader) {
   std::string log(static_cast<size_t>(std::max(length, 1)), '\0');
   glGetShaderInfoLog(s, length, nullptr, log.data());
   glDeleteShader(s);
-  throw GlError("shader does not compile:\n" + shader.mapLog(log.c_str()));
+  throw GlError("shader does not compile:\n" + shader.mapLog(log.data()));
 }
 
 }  // namespace
@@ -126,6 +126,12 @@ RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>
   if (glCheckNamedFramebufferStatus(n, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
     throw GlError("the driver cannot draw into " + std::to_string(colours.size()) + " targets of " + std::to_string(width) + "x" +
                   std::to_string(height) + " pixels in single precision; ask for fewer channels or truth layers");
+}
+
+void RenderTarget::select(std::size_t first, std::size_t count) {
+  std::vector<GLenum> buffers(first, GL_NONE);
+  for (std::size_t i = first; i < first + count; ++i) buffers.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
+  glNamedFramebufferDrawBuffers(name_, static_cast<GLsizei>(buffers.size()), buffers.data());
 }
 
 void RenderTarget::bind() const {

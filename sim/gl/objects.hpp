@@ -97,6 +97,8 @@ class RenderTarget {
   RenderTarget() = default;
   RenderTarget(int width, int height, const std::vector<PixelFormat>& colours, bool depth);
   void bind() const;
+  /// Draws into colours [first, first + count) only; output locations stay as they are.
+  void select(std::size_t first, std::size_t count);
   const Texture2D& colour(std::size_t i) const { return colours_[i]; }
   const Texture2D& depth() const { return *depth_; }
   std::size_t colourCount() const { return colours_.size(); }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
@@ -62,15 +63,57 @@ std::string shortened(const Font& font, std::string text, int size_px, int room)
   return text + "…";
 }
 
+/// Where a value stands on the colour bar, 0 at the bottom to 1. Linear; or, where a few very bright or dark things would leave the bulk
+/// of a picture in one colour, asinh: linear over the bulk, logarithmic far from it.
+class Scale {
+ public:
+  Scale(double low, double high) : low_(low), high_(high) {}
+  Scale(double low, double high, double centre, double spread)
+      : low_(low), high_(high), centre_(centre), spread_(spread), bottom_(std::asinh((low - centre) / spread)), top_(std::asinh((high - centre) / spread)) {}
+
+  double position(double value) const {
+    if (spread_ <= 0.0) return (value - low_) / (high_ - low_);
+    return (std::asinh((value - centre_) / spread_) - bottom_) / (top_ - bottom_);
+  }
+  double value(double position) const {
+    if (spread_ <= 0.0) return low_ + position * (high_ - low_);
+    return centre_ + spread_ * std::sinh(bottom_ + position * (top_ - bottom_));
+  }
+  bool isLinear() const { return spread_ <= 0.0; }
+  double low() const { return low_; }
+  double high() const { return high_; }
+
+ private:
+  double low_, high_, centre_ = 0.0, spread_ = 0.0, bottom_ = 0.0, top_ = 1.0;
+};
+
+/// Values to three digits at even places of a bent scale, each apart from its neighbours.
+Ticks bentTicks(const Scale& scale) {
+  Ticks ticks;
+  for (double position : {0.04, 0.2, 0.36, 0.52, 0.68, 0.84, 0.97}) {
+    const double exact = scale.value(position), step = std::abs(scale.value(position + 0.03) - scale.value(position - 0.03));
+    const double unit = std::pow(10.0, std::floor(std::log10(std::max(step, 1e-300))));
+    const double rounded = std::round(exact / unit) * unit;
+    const double at = scale.position(rounded);
+    if (!std::isfinite(at) || at < 0.0 || at > 1.0 || (!ticks.values.empty() && rounded <= ticks.values.back())) continue;
+    ticks.values.push_back(rounded);
+    char text[40];
+    std::snprintf(text, sizeof text, "%.*f", std::clamp(static_cast<int>(-std::floor(std::log10(unit))), 0, 9), rounded);
+    ticks.labels.push_back(std::abs(rounded) >= 1e5 || (rounded != 0.0 && std::abs(rounded) < 1e-3) ? shortNumber(rounded) : text);
+  }
+  return ticks;
+}
+
 /// What stands in the column of the colour bar.
 struct BarText {
   std::string unit, mostNote, leastNote;
   Ticks ticks;
 };
 
-BarText barText(const PreviewOptions& options, const Extent& extent, double low, double high) {
+BarText barText(const PreviewOptions& options, const Extent& extent, const Scale& scale) {
   BarText text;
-  text.ticks = chooseTicks(low, high);
+  const double low = scale.low(), high = scale.high();
+  text.ticks = scale.isLinear() ? chooseTicks(low, high) : bentTicks(scale);
   text.unit = powerText(text.ticks.power);
   if (!text.unit.empty() && !options.unit.empty()) text.unit += ' ';
   text.unit += options.unit;
@@ -101,13 +144,12 @@ void drawFrame(Rgb8Image& canvas, int x0, int y0, int x1, int y1) {
 }
 
 void drawPixels(Rgb8Image& canvas, int x0, int y0, int factor, int width, int height, const std::vector<float>& pixels,
-                const ColourMap& map, double low, double high) {
-  const double scale = 1.0 / (high - low);
+                const ColourMap& map, const Scale& scale) {
   std::size_t i = 0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const float value = pixels[i++];
-      const Rgb8 colour = std::isfinite(value) ? map(static_cast<float>((value - low) * scale)) : notFinite;
+      const Rgb8 colour = std::isfinite(value) ? map(static_cast<float>(scale.position(value))) : notFinite;
       const int left = x0 + x * factor, top = y0 + y * factor;
       canvas.fill(left, top, left + factor, top + factor, colour);
     }
@@ -122,8 +164,8 @@ void drawArrow(Rgb8Image& canvas, int x0, int width, int base, int height, bool 
   }
 }
 
-void drawBar(Rgb8Image& canvas, int x0, int top, int bottom, const BarText& text, const Measures& measure, const ColourMap& map, double low,
-             double high) {
+void drawBar(Rgb8Image& canvas, int x0, int top, int bottom, const BarText& text, const Measures& measure, const ColourMap& map,
+             const Scale& scale) {
   const Font& font = plainFont();
   const int labelsAt = x0 + measure.bar + measure.tick + measure.text / 3;
   const int rise = measure.text * 36 / 100;  // half the height of digits in DejaVu Sans
@@ -153,7 +195,7 @@ void drawBar(Rgb8Image& canvas, int x0, int top, int bottom, const BarText& text
   const double highest = text.mostNote.empty() ? top - measure.text : top + measure.text * 0.6;
   const double lowest = text.leastNote.empty() ? bottom + measure.text : bottom - measure.text * 0.6;
   for (std::size_t i = 0; i < text.ticks.values.size(); ++i) {
-    const double part = std::clamp((text.ticks.values[i] - low) / (high - low), 0.0, 1.0);
+    const double part = std::clamp(scale.position(text.ticks.values[i]), 0.0, 1.0);
     const int y = top + static_cast<int>(std::lround((1.0 - part) * (rows - 1)));
     canvas.fill(x0 + measure.bar + 1, y, x0 + measure.bar + 1 + measure.tick, y + 1, plainText);
     if (y >= highest && y <= lowest) font.draw(canvas, labelsAt, y + rise, text.ticks.labels[i], measure.text, plainText);
@@ -170,24 +212,50 @@ int columnWidth(const BarText& text, const Measures& measure) {
 
 }  // namespace
 
-std::pair<double, double> automaticRange(const std::vector<float>& pixels) {
+namespace {
+
+/// Percentiles of the finite pixels.
+struct Spread {
+  double low = 0.0, p10 = 0.0, p50 = 0.0, p90 = 0.0, high = 1.0;
+  bool isEven = true;  ///< low and high coincide
+};
+
+Spread spreadOf(const std::vector<float>& pixels) {
   std::vector<float> finite;
   finite.reserve(pixels.size());
   std::copy_if(pixels.begin(), pixels.end(), std::back_inserter(finite), [](float v) { return std::isfinite(v); });
-  if (finite.empty()) return {0, 1};
+  if (finite.empty()) return {};
   const auto percentile = [&](double part) {
     const auto i = static_cast<std::ptrdiff_t>(std::lround(part * static_cast<double>(finite.size() - 1)));
     std::nth_element(finite.begin(), finite.begin() + i, finite.end());
     return static_cast<double>(finite[static_cast<std::size_t>(i)]);
   };
-  const double low = percentile(0.005), most998 = percentile(0.998), p10 = percentile(0.1), p90 = percentile(0.9);
-  // A few very bright things (a nozzle, a flare) must not turn the rest of the picture black: the bar ends four spreads above the
-  // bulk of the picture, and an arrow with the true maximum stands on it.
-  const double high = isEmpty(p10, p90) ? most998 : std::min(most998, p90 + 4.0 * (p90 - p10));
-  if (!isEmpty(low, high)) return {low, high};
+  Spread s{percentile(0.005), percentile(0.1), percentile(0.5), percentile(0.9), percentile(0.998), false};
+  if (!isEmpty(s.low, s.high)) return s;
   // A small hot target on an even background lies wholly outside the percentiles, and is what matters.
   const auto [least, most] = std::minmax_element(finite.begin(), finite.end());
-  return widened(*least, *most);
+  std::tie(s.low, s.high) = widened(*least, *most);
+  s.isEven = true;
+  return s;
+}
+
+Scale scaleFor(const std::vector<float>& pixels, const PreviewOptions& options) {
+  if (options.range) {
+    const auto [low, high] = widened(options.range->first, options.range->second);
+    return {low, high};
+  }
+  const Spread s = spreadOf(pixels);
+  const double bulk = 0.5 * (s.p90 - s.p10);
+  // Linear would give the middle four fifths of the pixels less than an eighth of the bar.
+  if (s.isEven || isEmpty(s.p10, s.p90) || s.high - s.low < 16.0 * bulk) return {s.low, s.high};
+  return {s.low, s.high, s.p50, 2.0 * bulk};
+}
+
+}  // namespace
+
+std::pair<double, double> automaticRange(const std::vector<float>& pixels) {
+  const Spread s = spreadOf(pixels);
+  return {s.low, s.high};
 }
 
 Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, const PreviewOptions& options) {
@@ -196,16 +264,18 @@ Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, c
   if (pixels.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
     throw std::invalid_argument("makePreview: pixels are not width * height");
   const ColourMap& map = colourMap(options.colourMap);
-  auto [low, high] = options.range ? *options.range : automaticRange(pixels);
-  if (!std::isfinite(low) || !std::isfinite(high) || low > high || !std::isfinite(high - low))
-    throw std::invalid_argument("makePreview: the range is not finite or falls");
-  std::tie(low, high) = widened(low, high);
+  if (options.range) {
+    const auto [low, high] = *options.range;
+    if (!std::isfinite(low) || !std::isfinite(high) || low > high || !std::isfinite(high - low))
+      throw std::invalid_argument("makePreview: the range is not finite or falls");
+  }
+  const Scale scale = scaleFor(pixels, options);
 
   const int longer = std::max(width, height);
   const int factor = (minLongerSide + longer - 1) / longer;
   const int pictureWidth = width * factor, pictureHeight = height * factor;
   const Measures measure(std::max(pictureWidth, pictureHeight));
-  const BarText text = barText(options, extentOf(pixels), low, high);
+  const BarText text = barText(options, extentOf(pixels), scale);
   const int column = columnWidth(text, measure);
   const int titleHeight = options.title.empty() ? 0 : measure.title + measure.text;
   const int bodyHeight = std::max(pictureHeight, std::max(minBarHeight, 14 * measure.text));
@@ -219,9 +289,9 @@ Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, c
                     shortened(boldFont(), options.title, measure.title, room), measure.title, strongText);
   }
   const int pictureTop = bodyTop + (bodyHeight - pictureHeight) / 2;
-  drawPixels(canvas, measure.margin, pictureTop, factor, width, height, pixels, map, low, high);
+  drawPixels(canvas, measure.margin, pictureTop, factor, width, height, pixels, map, scale);
   drawFrame(canvas, measure.margin, pictureTop, measure.margin + pictureWidth, pictureTop + pictureHeight);
-  drawBar(canvas, measure.margin + pictureWidth + measure.gap, bodyTop, bodyTop + bodyHeight, text, measure, map, low, high);
+  drawBar(canvas, measure.margin + pictureWidth + measure.gap, bodyTop, bodyTop + bodyHeight, text, measure, map, scale);
   return canvas;
 }
 

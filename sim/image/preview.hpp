@@ -16,8 +16,8 @@ struct PreviewOptions {
   std::optional<std::pair<double, double>> range;   ///< values of the bar's ends; none: chosen by automaticRange
 };
 
-/// The 0.5 and 99.8 percentile of the finite pixels, the upper one at most four spreads (10 to 90 %) above the 90 % one; smallest to
-/// largest where these coincide; never empty.
+/// The 0.5 and 99.8 percentile of the finite pixels; smallest to largest where these coincide; never empty. Where that would leave the
+/// middle four fifths of the pixels less than an eighth of the bar, the bar is bent (asinh): its ticks say how.
 std::pair<double, double> automaticRange(const std::vector<float>& pixels);
 
 /// `pixels` is row-major, row 0 at the top. Each becomes a square of whole size so that the longer side has at least 512 picture pixels.

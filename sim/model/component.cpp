@@ -27,7 +27,7 @@ const std::vector<QuadratureNode>& unitRule(size_t n) {
 ///   cos(theta_l) = cos(turn) cos(tilt) + sin(turn) sin(tilt) cos(phi),   tilt: angle between pole and normal (half vectors: the view
 /// angle), so that the horizon is a circle in closed form. The same law gives where a ring crosses an entry of the other axis; written
 /// with haversines it keeps its digits for lobes of any width:
-///   sin^2(phi/2) = sin((k - turn + tilt)/2) sin((k + turn - tilt)/2) / (sin(turn) sin(tilt)).
+///   sin^2(k/2) = sin^2((turn - tilt)/2) + sin(turn) sin(tilt) sin^2(phi/2).
 /// dw_l = sin(turn) dturn dphi; of half vectors 4 (v.h) dw_h. Source: Walter et al. 2007 (Jacobian of the half vector).
 class Rings {
  public:
@@ -42,6 +42,11 @@ class Rings {
     twice_ = polar_.angle == Angle::Half || polar_.angle == Angle::Difference ? 2.0 : 1.0;
     tilt_ = polar_.angle == Angle::Incidence ? 0.0 : viewAngle;
     const double s = view_.x, c = view_.z;
+    if (other_.angle == Angle::Difference && polar_.angle != Angle::Half) otherScale_ = 2.0;
+    if (polar_.angle == Angle::Half && other_.angle == Angle::Difference) turnScale_ = 0.5;
+    otherTilt_ = polar_.angle == Angle::Specular && other_.angle == Angle::Difference ? 2.0 * viewAngle : viewAngle;
+    if (crossed_)
+      for (int j = 0; j < other_.count; ++j) sineOfHalfEntry_.push_back(std::sin(0.5 * otherScale_ * std::min(other_.at(j), kPi / otherScale_)));
     if (polar_.angle == Angle::Specular) pole_ = {-s, 0, c}, side_ = {c, 0, s};
     if (polar_.angle == Angle::Difference) pole_ = {s, 0, c}, side_ = {-c, 0, s};
   }
@@ -88,70 +93,70 @@ class Rings {
     return 0;
   }
 
+  /// Rings of half vectors cut by the specular angle follow a law of their own.
+  bool ofHalf() const { return other_.angle == Angle::Specular; }
   void addEdge(double turn, bool root) { edges_.push_back({turn, root}); }
-
-  /// The ring's turn, the tilt and the entry as the law above takes them for the other axis.
-  struct Triangle {
-    double turn, tilt, entry;
-  };
-  Triangle triangle(double turn, double entry) const {
-    if (other_.angle == Angle::Incidence) return {turn, viewAngle_, entry};
-    if (polar_.angle == Angle::Half) return {0.5 * turn, viewAngle_, entry};
-    return {turn, polar_.angle == Angle::Specular ? 2.0 * viewAngle_ : viewAngle_, 2.0 * entry};
-  }
 
   /// Turns at which a ring touches an entry of the other axis.
   void addTangents(double entry) {
-    if (other_.angle == Angle::Specular) {  // of half vectors
+    if (ofHalf()) {
       addEdge(entry, true);
       const double s = std::sin(0.5 * entry) / std::max(view_.z, 1e-9);
       if (s < 1.0) addEdge(2.0 * std::asin(s), true);
       return;
     }
-    const auto [t, tilt, k] = triangle(1.0, entry);
-    addEdge((tilt + k) / t, true);
-    addEdge(std::abs(tilt - k) / t, true);
+    addEdge((otherTilt_ + otherScale_ * entry) / turnScale_, true);
+    addEdge(std::abs(otherTilt_ - otherScale_ * entry) / turnScale_, true);
   }
 
-  /// sin^2(phi/2) of the crossing; outside 0..1 there is none.
-  static double crossing(const Triangle& x) {
-    const double below = std::sin(x.turn) * std::sin(x.tilt);
-    const double above = std::sin(0.5 * (x.entry - x.turn + x.tilt)) * std::sin(0.5 * (x.entry + x.turn - x.tilt));
-    return below > 0.0 ? above / below : 2.0;
+  /// The law for the other axis on one ring; of half vectors with the specular angle
+  ///   sin^2(alpha/2) = sin^2(theta_h) (cos^2(theta_v) + sin^2(theta_v) cos^2(phi)).
+  struct Law {
+    double constant, factor;
+  };
+  Law lawAt(double turn) const {
+    if (ofHalf()) {
+      const double h = std::sin(0.5 * turn);
+      return {view_.z * h, view_.x * h * view_.x * h};
+    }
+    const double t = turnScale_ * turn;
+    return {std::sin(0.5 * (t - otherTilt_)), std::sin(t) * std::sin(otherTilt_)};
+  }
+  double otherAngle(const Law& law, double sine2OfHalfPhi) const {
+    const double c = 1.0 - 2.0 * sine2OfHalfPhi, x = law.constant * law.constant + law.factor * (ofHalf() ? c * c : sine2OfHalfPhi);
+    return 2.0 * std::asin(std::sqrt(std::clamp(x, 0.0, 1.0))) / otherScale_;
   }
 
-  void addCrossings(double turn, double last) {
+  void addCrossings(const Law& law, double last) {
+    if (law.factor <= 0.0) return;
     auto add = [&](double sine2) {
-      if (!(sine2 > 0.0 && sine2 < 1.0)) return;
       const double phi = 2.0 * std::asin(std::sqrt(sine2));
       if (phi < last) cuts_.push_back(phi);
     };
-    for (int j = 0; j < other_.count; ++j) {
-      const double entry = other_.at(j);
-      if (other_.angle != Angle::Specular) {
-        add(crossing(triangle(turn, entry)));
+    for (double k : sineOfHalfEntry_) {
+      const double x = (k - law.constant) * (k + law.constant) / law.factor;
+      if (!(x > 0.0 && x < 1.0)) continue;
+      if (!ofHalf()) {
+        add(x);
         continue;
       }
-      // Of half vectors: sin^2(alpha/2) = sin^2(theta_h) (cos^2(theta_v) + sin^2(theta_v) cos^2(phi)), once on either side.
-      const double h = std::sin(0.5 * turn), k = std::sin(0.5 * entry), below = view_.x * h;
-      const double c2 = below > 0.0 ? (k - view_.z * h) * (k + view_.z * h) / (below * below) : 2.0;
-      if (c2 < 0.0 || c2 > 1.0) continue;
-      add(0.5 * (1.0 - std::sqrt(c2)));
-      add(0.5 * (1.0 + std::sqrt(c2)));
+      add(0.5 * (1.0 - std::sqrt(x)));  // once on either side
+      add(0.5 * (1.0 + std::sqrt(x)));
     }
   }
 
   void ring(double turn, double weight) {
     double last = kPi;
     if (turn > 0.5 * kPi - tilt_) {
-      const double sine2 = crossing({turn, tilt_, 0.5 * kPi});
+      const double d = std::sin(0.5 * (turn - tilt_)), below = std::sin(turn) * std::sin(tilt_), sine2 = below > 0.0 ? (0.5 - d * d) / below : 0.0;
       last = sine2 <= 0.0 ? 0.0 : sine2 >= 1.0 ? kPi : 2.0 * std::asin(std::sqrt(sine2));
     }
     cuts_.assign(1, 0.0);
-    if (crossed_) addCrossings(turn, last);
+    const Law law = crossed_ ? lawAt(turn) : Law{0.0, 0.0};
+    if (crossed_) addCrossings(law, last);
     cuts_.push_back(last);
     std::sort(cuts_.begin(), cuts_.end());
-    const double own = turn / twice_, sine = std::sin(own), cosine = std::cos(own), sineOfTurn = std::sin(turn);
+    const double own = turn / twice_, sine = std::sin(own), cosine = std::cos(own), sineOfTurn = std::sin(turn), cosineOfTurn = std::cos(turn);
     LightSample sample;
     sample.angle = {viewAxis_[0] ? viewAngle_ : 0.0, viewAxis_[1] ? viewAngle_ : 0.0};
     if (!viewAxis_[first_]) sample.angle[first_] = own;
@@ -161,7 +166,7 @@ class Rings {
       // Without another axis the azimuth is a polynomial of second degree in cos(phi); with one, narrow pieces are all but linear.
       const size_t points = !crossed_ ? 10 : width < 0.05 ? 1 : 2 + static_cast<size_t>(width / 0.3);
       for (const auto& u : unitRule(points)) {
-        const double phi = cuts_[i] + width * u.x, cosPhi = std::cos(phi), sinPhi = std::sqrt(std::max(0.0, 1.0 - cosPhi * cosPhi));
+        const double half = std::sin(0.5 * (cuts_[i] + width * u.x)), cosPhi = 1.0 - 2.0 * half * half, sinPhi = 2.0 * half * std::sqrt(1.0 - half * half);
         double jacobian = sineOfTurn;
         if (polar_.angle == Angle::Half) {
           const glm::dvec3 h(sine * cosPhi, sine * sinPhi, cosine);
@@ -169,11 +174,10 @@ class Rings {
           sample.light = 2.0 * vh * h - view_;
           jacobian = 4.0 * vh * sine / twice_;
         } else {
-          const double c = std::cos(turn);
-          sample.light = c * pole_ + sineOfTurn * (cosPhi * side_ + glm::dvec3(0.0, sinPhi, 0.0));
+          sample.light = cosineOfTurn * pole_ + sineOfTurn * (cosPhi * side_ + glm::dvec3(0.0, sinPhi, 0.0));
         }
         if (sample.light.z <= 0.0) continue;
-        if (crossed_) sample.angle[1 - first_] = angleBetween(other_.angle, sample.light, view_);
+        if (crossed_) sample.angle[1 - first_] = otherAngle(law, half * half);
         sample.weight = 2.0 * weight * u.weight * width * jacobian * sample.light.z;
         visit_(sample);
       }
@@ -188,6 +192,9 @@ class Rings {
   bool crossed_ = false;
   std::array<bool, 2> viewAxis_{};
   double twice_ = 1.0, tilt_ = 0.0;
+  /// The law for the other axis: k = otherScale x entry, of turnScale x turn, from a direction at otherTilt from the pole.
+  double otherScale_ = 1.0, turnScale_ = 1.0, otherTilt_ = 0.0;
+  std::vector<double> sineOfHalfEntry_;
   std::vector<Edge> edges_;
   std::vector<double> cuts_;
 };
@@ -222,7 +229,7 @@ double ReflectionComponent::brdf(double wavelength_um, const glm::dvec3& l, cons
 double ReflectionComponent::hemispherical(double wavelength_um, double viewAngle_rad) const {
   auto grid = axes();
   // A lobe counts as an axis about the mirrored direction, in steps of its width; cos^n is below 1e-17 at 9 / sqrt(n).
-  if (!lobeFile().empty()) grid = {AngleAxis{Angle::Specular, 25, std::min(0.5 * kPi, 9.0 / std::sqrt(lobeExponent() + 1.0))}, grid[0]};
+  if (!lobeFile().empty()) grid = {AngleAxis{Angle::Specular, 49, std::min(0.5 * kPi, 9.0 / std::sqrt(lobeExponent() + 1.0))}, grid[0]};
   const glm::dvec3 view(std::sin(viewAngle_rad), 0.0, std::cos(viewAngle_rad));
   double sum = 0.0;
   integrateHemisphere(grid, viewAngle_rad, [&](const LightSample& s) { sum += s.weight * brdf(wavelength_um, s.light, view); });

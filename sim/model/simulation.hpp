@@ -59,11 +59,15 @@ struct TimeAxis {
   double at(int frame) const { return start_s + step_s * frame; }
 };
 
+/// Direct: shading integrates into the channels. Buffered: it leaves a spectral image, which a further pass integrates.
+enum class RenderMode { Direct, Buffered };
+
 struct Simulation {
   std::string name;
   std::string file;
   std::string sha256;
   long long seed = 0;
+  RenderMode mode = RenderMode::Direct;
   LocalFrame frame;
   TimeAxis time;
   std::vector<Texture> textures;

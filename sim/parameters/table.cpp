@@ -40,9 +40,16 @@ std::string quotedShort(std::string_view text) {
   return "'" + s + "'";
 }
 
-std::string rangeText(const Parameter& p) {
+/// The unit people write: degrees for angles, Celsius is theirs to choose.
+std::string writtenUnit(std::string_view unit) { return unit == "rad" ? "deg" : std::string(unit); }
+
+std::string rangeText(Parameter p) {
   const bool low = std::isfinite(p.minimum), high = std::isfinite(p.maximum);
-  const std::string unit = p.unit.empty() ? "" : " " + p.unit;
+  const std::string unit = p.unit.empty() ? "" : " " + writtenUnit(p.unit);
+  if (p.unit == "rad") {
+    p.minimum *= 57.29577951308232;
+    p.maximum *= 57.29577951308232;
+  }
   if (low && high && p.exclusiveMinimum) return "above " + shortNumber(p.minimum) + ", at most " + shortNumber(p.maximum) + unit;
   if (low && high) return shortNumber(p.minimum) + " to " + shortNumber(p.maximum) + unit;
   if (low) return (p.exclusiveMinimum ? "above " : "at least ") + shortNumber(p.minimum) + unit;
@@ -120,7 +127,7 @@ const char* typeName(const Parameter& p) {
     case ParameterType::List: return "list";
     case ParameterType::Map: return "map";
     case ParameterType::Spectrum: return "spectrum";
-    case ParameterType::Any: return "see text";
+    case ParameterType::Any: return "any of";
   }
   return "";
 }
@@ -240,9 +247,9 @@ double readNumber(const Value& value, std::string_view unit, std::string_view na
   if (!converted || !std::isfinite(*converted)) {
     if (written->unit.empty())
       throw UserError(value.where, what + " has no unit (" + quotedShort(value.text) + ")", unitExample(unit),
-                      "write " + quotedShort(value.text + " " + std::string(unit)) + " if that is meant");
+                      "write " + quotedShort(value.text + " " + writtenUnit(unit)) + " if that is meant");
     throw UserError(value.where, what + " has the wrong unit " + quotedShort(written->unit), unitExample(unit),
-                    "write it in " + (unit.empty() ? std::string("plain numbers") : std::string(unit)));
+                    "write it in " + (unit.empty() ? std::string("plain numbers") : unit == "K" ? std::string("K or degC") : writtenUnit(unit)));
   }
   return *converted;
 }
@@ -313,6 +320,9 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& c
   size_t best = word.size() / 2 + 1;
   std::string nearest;
   if (word.size() > 60) return nearest;
+  // A part of a longer name ("grass" of "green_grass") is nearer than a word of other letters ("glass").
+  for (const auto& c : candidates)
+    if (word.size() >= 3 && c.size() > word.size() && (c.find("_" + std::string(word)) != std::string::npos || c.rfind(std::string(word) + "_", 0) == 0)) return c;
   for (const auto& c : candidates) {
     std::vector<size_t> row(c.size() + 1);
     std::iota(row.begin(), row.end(), size_t{0});
@@ -342,7 +352,7 @@ std::string describe(const ParameterTable& table) {
                         : p.type == ParameterType::List && p.minimumItems > 0
                             ? std::to_string(p.minimumItems) + " to " + std::to_string(p.maximumItems) + " entries"
                             : rangeText(p);
-    out += "| `" + p.key + "` | " + typeName(p) + " | " + p.unit + " | " +
+    out += "| `" + p.key + "` | " + typeName(p) + " | " + writtenUnit(p.unit) + " | " +
            (p.required ? "required" : (p.defaultText.empty() ? "-" : p.defaultText)) + " | " + range + " | " + p.description + " |\n";
   }
   return out;

@@ -64,6 +64,9 @@ const std::map<std::string, Unit, std::less<>>& namedUnits() {
     m["cd"] = base({{LM, 1}, {SR, -1}});
     m["lx"] = base({{LM, 1}, {M, -2}});
     m["%"] = base({}, 0.01);
+    for (const char* name : {"\xC2\xB0" "C", "deg C", "celsius", "Celsius"}) m[name] = m["degC"];
+    for (const char* name : {"\xC2\xB0", "degree", "degrees"}) m[name] = m["deg"];
+    for (const char* name : {"\xC2\xB5m", "\xCE\xBCm", "micron", "microns"}) m[name] = m["um"];
     m["1"] = base({});
     return m;
   }();

@@ -7,7 +7,7 @@ namespace pitviper {
 
 CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene)
     : simulation_(simulation), camera_(camera), plan_(makePlan(simulation, camera.outputs, camera.spectral, camera.where)),
-      pass_(simulation, plan_, library, std::move(scene), camera.truth.any(), camera.pinhole.apertureArea_m2()),
+      pass_(makeScenePass(simulation, plan_, library, std::move(scene), camera.truth.any(), camera.pinhole.apertureArea_m2())),
       solidAngles_(std::make_shared<const Pinhole::SolidAngles>(camera.pinhole.solidAngles())) {}
 
 void CameraRenderer::begin(const WorldState& state) {
@@ -19,15 +19,15 @@ void CameraRenderer::begin(const WorldState& state) {
   small_ = findSmallBodies(simulation_, state_, view_, camera_.smallBody_px * camera_.samples);
   std::vector<char> drawn(present_);
   for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = present_[e] && !small_[e];
-  pass_.setState(state_);
-  pass_.draw(view_, state_, drawn);
-  pass_.startReadback(false);
+  pass_->setState(state_);
+  pass_->draw(view_, state_, drawn);
+  pass_->startReadback(false);
 }
 
 CameraImage CameraRenderer::finish() {
-  Subpixels image(plan_, view_, pass_.finishReadback());
-  addSmallBodies(image, pass_, simulation_, state_, small_, present_);
-  addVisibleLights(image, pass_, simulation_, plan_, state_, present_);
+  Subpixels image(plan_, view_, pass_->finishReadback());
+  addSmallBodies(image, *pass_, simulation_, state_, small_, present_);
+  addVisibleLights(image, *pass_, simulation_, plan_, state_, present_);
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
   resolved.slotOfOutput = plan_.slotOfOutput;
   resolved.solidAngles = solidAngles_;

@@ -2,7 +2,7 @@
 // Draws one camera of a simulation at a time: everything between a world state and an image of integrals.
 #include <memory>
 
-#include "sim/render/direct_pass.hpp"
+#include "sim/render/scene_pass.hpp"
 #include "sim/render/subpixels.hpp"
 
 namespace pitviper {
@@ -22,7 +22,7 @@ class CameraRenderer {
     return finish();
   }
   const Plan& plan() const { return plan_; }
-  const AssembledShader& fragmentSource() const { return pass_.fragmentSource(); }
+  const AssembledShader& fragmentSource() const { return pass_->fragmentSource(); }
   /// Entities of the last frame that were drawn by their zoomed views.
   const std::vector<char>& smallBodies() const { return small_; }
 
@@ -30,7 +30,7 @@ class CameraRenderer {
   const Simulation& simulation_;
   const Camera& camera_;
   Plan plan_;
-  DirectPass pass_;
+  std::unique_ptr<ScenePass> pass_;
   WorldState state_;
   View view_;
   std::vector<char> small_, present_;

@@ -41,7 +41,8 @@ std::vector<View> hemisphere(const Probe& probe) {
 std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
                                  const WorldState& state) {
   const Plan plan = makePlan(sim, probe.outputs, probe.spectral, probe.where);
-  DirectPass pass(sim, plan, library, scene, false, 1.0);
+  const auto owned = makeScenePass(sim, plan, library, scene, false, 1.0);
+  ScenePass& pass = *owned;
   pass.setState(state);
   const std::vector<char> all(sim.entities.size(), 1);
   const glm::dvec3 normal = glm::normalize(probe.normal);

@@ -1,7 +1,7 @@
 #pragma once
 // Irradiance on a plane at a point: the whole hemisphere in five wide views, summed by projected solid angle, and the point lights
 // and the sun that reach it.
-#include "sim/render/direct_pass.hpp"
+#include "sim/render/scene_pass.hpp"
 
 namespace pitviper {
 

@@ -96,7 +96,7 @@ std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state
   return small;
 }
 
-void addSmallBodies(Subpixels& image, DirectPass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small,
+void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small,
                     const std::vector<char>& present) {
   const View& v = image.view();
   std::vector<Delta> deltas;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "sim/plan/plan.hpp"
-#include "sim/render/direct_pass.hpp"
+#include "sim/render/scene_pass.hpp"
 
 namespace pitviper {
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 
 #include "sim/radiometry/constants.hpp"
@@ -22,29 +23,73 @@ glm::dvec3 columnsAt(const Material& m, double w, double angle1, double angle2, 
   return r;
 }
 
+constexpr const char* kAngleNames[] = {"none", "incidence", "view", "specular", "half", "difference"};
+/// Cells of an axis that several components share, and entries of the two axes together: 1024 x 1024 of 16 wavelengths are 256 MB.
+constexpr int kMostCells = 1024;
+constexpr long long kMostEntries = 1025LL * 1025LL;
+
+/// The coarsest grid that has all entries of the axes (of one angle) on its own, so that linear between its entries is what each component
+/// is by itself. Beyond its own last entry a component is held.
+AngleAxis commonAxis(const Material& m, const std::vector<AngleAxis>& axes) {
+  AngleAxis longest = axes.front();
+  for (const AngleAxis& a : axes)
+    if (a.last_rad > longest.last_rad) longest = a;
+  for (int cells = longest.count - 1; cells <= kMostCells; cells += longest.count - 1) {
+    const bool fits = std::all_of(axes.begin(), axes.end(), [&](const AngleAxis& a) {
+      const double perStep = a.at(1) * cells / longest.last_rad;  // grid cells in one step of this axis
+      return perStep > 0.5 && std::abs(perStep - std::round(perStep)) * (a.count - 1) < 1e-6;
+    });
+    if (fits) return {longest.angle, cells + 1, longest.last_rad};
+  }
+  std::string all;
+  for (const AngleAxis& a : axes) {
+    char text[80];
+    std::snprintf(text, sizeof text, "%s%d entries to %.6g deg", all.empty() ? "" : " and ", a.count, a.last_rad * 180.0 / kPi);
+    all += text;
+  }
+  throw UserError(m.where, "the tables of material '" + m.name + "' run over the angle '" + kAngleNames[static_cast<int>(longest.angle)] + "' in steps that do not fit each other (" + all + ")",
+                  "steps of which all are multiples of one step, 1/1024 of the longest axis or more", "give their axes the same 'count' and 'last'");
+}
+
 /// The angles a material's tables run over: at most two, shared by its components.
 std::array<AngleAxis, 2> materialAxes(const Material& m) {
-  std::array<AngleAxis, 2> axes;
+  std::array<std::vector<AngleAxis>, 2> found;
   for (const auto& r : m.reflections)
     for (const auto& axis : r->axes()) {
       if (axis.angle == Angle::None) continue;
       size_t k = 0;
-      while (k < 2 && axes[k].angle != Angle::None && axes[k].angle != axis.angle) ++k;
+      while (k < 2 && !found[k].empty() && found[k].front().angle != axis.angle) ++k;
       if (k == 2)
         throw UserError(m.where, "the tables of material '" + m.name + "' run over more than two angles together",
                         "at most two different angles in one material", "bring its components to the same two angles");
-      if (axes[k].angle == axis.angle && axes[k].count >= axis.count) continue;
-      axes[k] = axis;
+      found[k].push_back(axis);
     }
+  std::array<AngleAxis, 2> axes;
+  for (size_t k = 0; k < 2; ++k)
+    if (!found[k].empty()) axes[k] = commonAxis(m, found[k]);
+  if (static_cast<long long>(axes[0].count) * axes[1].count > kMostEntries)
+    throw UserError(m.where, "the tables of material '" + m.name + "' have " + std::to_string(static_cast<long long>(axes[0].count) * axes[1].count) + " pairs of angles together", "at most " + std::to_string(kMostEntries),
+                    "give them fewer entries");
   return axes;
+}
+
+/// Entries of the grid of view angles: the fewest from kViewAngles on that have all angles at which the material bends among them.
+int viewAngles(const Material& m) {
+  const auto knots = m.viewKnots_rad();
+  for (int cells = kViewAngles - 1; cells <= kMostViewAngles - 1; ++cells) {
+    const bool fits = std::all_of(knots.begin(), knots.end(), [&](double a) {
+      const double x = a / (0.5 * kPi) * cells;
+      return std::abs(x - std::round(x)) < 1e-6;
+    });
+    if (fits) return cells + 1;
+  }
+  return kMostViewAngles;
 }
 
 void appendMaterial(RenderTables& t, const Material& m, const Plan& plan) {
   GpuMaterial g{};
   const auto axes = materialAxes(m);
-  bool varies = m.given && !m.given->viewAngle_rad.empty();
-  for (const auto& r : m.reflections) varies |= r->hemisphericalVaries();
-  const int views = varies ? kViewAngles : 1;
+  const int views = m.hemisphericalVaries() ? viewAngles(m) : 1;
   t.tabulated |= axes[0].count > 1;
   g.counts[0] = static_cast<std::uint32_t>(axes[0].count);
   g.counts[1] = static_cast<std::uint32_t>(axes[1].count);
@@ -66,11 +111,10 @@ void appendMaterial(RenderTables& t, const Material& m, const Plan& plan) {
   t.materials.push_back(g);
   if (!t.general) return;
 
-  auto step = [](const AngleAxis& a, int j) { return a.count > 1 ? a.last_rad * j / (a.count - 1) : 0.0; };
   for (int j2 = 0; j2 < axes[1].count; ++j2)
     for (int j1 = 0; j1 < axes[0].count; ++j1)
       for (double w : plan.node_um) {
-        const glm::dvec3 r = columnsAt(m, w, step(axes[0], j1), step(axes[1], j2), axes);
+        const glm::dvec3 r = columnsAt(m, w, axes[0].at(j1), axes[1].at(j2), axes);
         for (int k = 0; k < 3; ++k) t.columns.push_back(static_cast<float>(r[k]));
         t.columns.push_back(0.0f);
       }

@@ -47,7 +47,9 @@ int lightGroups(const Plan& plan);
 
 RenderTables makeTables(const Simulation& simulation, const Plan& plan);
 
-/// What the GPU does to a table entry, for the double precision reference: the same angle grids.
-constexpr int kViewAngles = 181;
+/// Entries of a material's grid of view angles from 0 to 90 deg, linear between: 181 (every 0.5 deg), or as many more, up to 1441 (every
+/// 0.0625 deg), as it takes to have all bends of an emissivity or table on the grid. Where no such grid exists, a bend between two entries
+/// is cut off by at most a quarter of step times change of slope.
+constexpr int kViewAngles = 181, kMostViewAngles = 1441;
 
 }  // namespace pitviper

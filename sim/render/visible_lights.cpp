@@ -22,7 +22,7 @@ std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, c
   return sums;
 }
 
-bool isFree(DirectPass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction,
+bool isFree(ScenePass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction,
             double distance_m, double near_m) {
   // One pixel, turned so that its centre looks along the very line.
   View v;
@@ -38,7 +38,7 @@ bool isFree(DirectPass& pass, const WorldState& state, const std::vector<char>& 
   return depth <= 0.0f || near_m / static_cast<double>(depth) >= distance_m * (1.0 - 1e-6);
 }
 
-void addVisibleLights(Subpixels& image, DirectPass& pass, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present) {
+void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present) {
   const View& v = image.view();
   for (size_t l = 0; l < sim.lights.size(); ++l) {
     if (!sim.lights[l].visible || state.lightLevels[l] <= 0.0) continue;

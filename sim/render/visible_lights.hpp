@@ -5,11 +5,11 @@
 
 namespace pitviper {
 
-void addVisibleLights(Subpixels& image, DirectPass& pass, const Simulation& simulation, const Plan& plan, const WorldState& state,
+void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& simulation, const Plan& plan, const WorldState& state,
                       const std::vector<char>& present);
 
 /// True where nothing present stands between a place and a direction (unit) up to a distance.
-bool isFree(DirectPass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction,
+bool isFree(ScenePass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction,
             double distance_m, double near_m);
 
 /// Integral of kernel x I x tau over a slot's nodes [kernel unit x W/sr] for a light seen from a place.

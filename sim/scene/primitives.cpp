@@ -115,6 +115,26 @@ Mesh makePlate(double width_m, double height_m, int columns, int rows) {
   return finished(std::move(mesh), false);
 }
 
+Mesh makeBox(double length_m, double width_m, double height_m) {
+  requireLength(length_m, "a box's length must be positive");
+  requireLength(width_m, "a box's width must be positive");
+  requireLength(height_m, "a box's height must be positive");
+  Mesh box;
+  // Where a plate's normal (x), right (y) and up (z) go; whole numbers, so that edges meet exactly.
+  auto side = [&](const char* name, const Mesh& plate, glm::vec3 normal, glm::vec3 right, glm::vec3 up, double distance) {
+    appendPart(box, plate, name, glm::mat4(glm::vec4(normal, 0), glm::vec4(right, 0), glm::vec4(up, 0), glm::vec4(normal * static_cast<float>(0.5 * distance), 1)));
+  };
+  const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
+  side("front", makePlate(width_m, height_m), x, y, z, length_m);
+  side("back", makePlate(width_m, height_m), -x, -y, z, length_m);
+  side("left", makePlate(length_m, height_m), y, -x, z, width_m);
+  side("right", makePlate(length_m, height_m), -y, x, z, width_m);
+  side("top", makePlate(width_m, length_m), z, y, -x, height_m);
+  side("bottom", makePlate(width_m, length_m), -z, y, x, height_m);
+  box.closed = true;
+  return box;
+}
+
 Mesh makeDisc(double radius_m, int segments) {
   requireLength(radius_m, "a disc's radius must be positive");
   require(segments >= 3, "a disc needs at least 3 segments");

@@ -23,6 +23,9 @@ enum class SphereFit {
 /// (upright seen from the front). Not closed.
 Mesh makePlate(double width_m, double height_m, int columns = 1, int rows = 1);
 
+/// Box around the origin with parts front (+x), back, left (+y), right, top (+z), bottom; each side has its own uv 0..1, v up. Closed.
+Mesh makeBox(double length_m, double width_m, double height_m);
+
 /// Disc in the y-z plane around the origin, normal +x, inscribed in the circle. At least 3 segments. Not closed.
 Mesh makeDisc(double radius_m, int segments = 64);
 

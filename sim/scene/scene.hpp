@@ -12,11 +12,12 @@
 
 namespace pitviper {
 
-/// One channel of floats, row 0 at v = 0 (bottom), repeated beyond 0..1, read bilinearly.
+/// One channel of floats, row 0 at v = 0 (bottom), read bilinearly; beyond its edges held, or repeated.
 struct Texture {
   std::string name;
   int width = 0, height = 0;
   std::vector<float> texels;
+  bool repeats = false;
 };
 
 /// A part of a mesh as it is in a scenario.

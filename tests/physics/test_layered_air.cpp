@@ -35,6 +35,12 @@ std::string place(const glm::dvec3& p) {
   return text;
 }
 
+std::string label(const glm::dvec3& p) {
+  char text[80];
+  std::snprintf(text, sizeof text, "(%g, %g, %g) km", p.x / 1000.0, p.y / 1000.0, p.z / 1000.0);
+  return text;
+}
+
 /// A level plate at the origin seen from `eye`, a black body of 300 K or lit by what `light` says.
 double seen(const glm::dvec3& eye, const std::string& plate, const std::string& light) {
   const double size = glm::length(eye) * 0.2;
@@ -50,7 +56,7 @@ const glm::dvec3 kEyes[] = {{0, 0, 1000}, {0, 0, 2001}, {0, 0, 10000}, {3000, 0,
 TEST(LayeredAir, EmissionFromInsideAndAbove) {
   const LocalFrame frame;
   for (const auto& eye : kEyes)
-    figure("plate through 2 km of air, camera " + place(eye), seen(eye, "material: blackbody, temperature: 300 K", ""), blackBodyBand(8, 12, 300) * std::exp(-kGamma * chord(frame, eye, glm::dvec3(0.0))), eye.z > 1e6 ? 2e-3 : 3e-5,
+    figure("plate through 2 km of air, camera at " + label(eye), seen(eye, "material: blackbody, temperature: 300 K", ""), blackBodyBand(8, 12, 300) * std::exp(-kGamma * chord(frame, eye, glm::dvec3(0.0))), eye.z > 1e6 ? 2e-3 : 3e-5,
            "chord with the sphere, exp(-gamma s); a range of 20000 km has 2 m of rounding");
 }
 
@@ -60,7 +66,7 @@ TEST(LayeredAir, SunlitFromInsideAndAbove) {
   const glm::dvec3 sun(0.0, -std::cos(e), std::sin(e));
   for (const auto& eye : kEyes) {
     const double legs = chord(frame, eye, glm::dvec3(0.0)) + chord(frame, glm::dvec3(0.0), sun * 1e8);
-    figure("sunlit plate through 2 km of air, camera " + place(eye),
+    figure("sunlit plate through 2 km of air, camera at " + label(eye),
            seen(eye, "material: {components: [{reflection: lambertian, reflectance: 0.5}]}, temperature: 0 K", "sun: {azimuth: 180 deg, elevation: 30 deg, irradiance: 100 W/(m2 um)}\n"),
            0.5 / kPi * 100.0 * 4.0 * std::sin(e) * std::exp(-kGamma * legs), eye.z > 1e6 ? 2e-3 : 1e-4, "both legs; a height of 0 found from 20000 km has 2 m of rounding");
   }
@@ -71,7 +77,7 @@ TEST(LayeredAir, LampAboveTheLayer) {
   for (const auto& eye : {glm::dvec3(3000, 0, 1500), glm::dvec3(100000, 0, 20000)}) {
     const glm::dvec3 lamp(2000, 1000, 6000);
     const double d2 = glm::dot(lamp, lamp), legs = chord(frame, eye, glm::dvec3(0.0)) + chord(frame, glm::dvec3(0.0), lamp);
-    figure("lamp 6 km up on a plate, camera " + place(eye),
+    figure("lamp 6 km up on a plate, camera at " + label(eye),
            seen(eye, "material: {components: [{reflection: lambertian, reflectance: 0.5}]}, temperature: 0 K", "lights: [{name: l, intensity: 1e7 W/(sr um), visible: false, position: " + place(lamp) + "}]\n"),
            0.5 / kPi * 1e7 * 4.0 * lamp.z / std::pow(d2, 1.5) * std::exp(-kGamma * legs), 1e-4, "both legs");
   }

@@ -1,9 +1,8 @@
-// Geodesy, motion, cameras and materials' energy.
+// Geodesy, motion, cameras and lights.
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "materials/reflection.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/scene/camera.hpp"
 #include "sim/scene/scene.hpp"
@@ -68,33 +67,6 @@ TEST(Light, LevelsAreDarkOutside) {
   EXPECT_EQ(l.levelAt(0.9), 0.0);
   EXPECT_EQ(l.levelAt(1.5), 2.0);
   EXPECT_EQ(l.levelAt(2.1), 0.0);
-}
-
-TEST(Materials, PhongKeepsItsEnergyAndReciprocity) {
-  for (double n : {0.0, 1.0, 30.0, 1000.0, 1e7}) {
-    const auto phong = makePhong(Spectrum(0.6), n);
-    figure("Phong, n = " + std::to_string(static_cast<long>(n)) + ", reflectance at normal view", phong->hemispherical(5.0, 0.0), 0.6, 1e-6, "(n + 2)/(2 pi) lobe integrates to 1");
-    double last = 1.0;
-    for (double a : {0.0, 0.4, 0.8, 1.2, 1.5}) {
-      EXPECT_LE(phong->hemispherical(5.0, a), last + 1e-9);
-      last = phong->hemispherical(5.0, a);
-    }
-    const glm::dvec3 l = glm::normalize(glm::dvec3(0.3, 0.1, 0.8)), v = glm::normalize(glm::dvec3(-0.2, -0.1, 0.7));
-    EXPECT_NEAR(phong->brdf(5.0, l, v), phong->brdf(5.0, v, l), 1e-9 * (1.0 + phong->brdf(5.0, l, v)));
-  }
-  // The closed azimuth integral against plain integration over the hemisphere.
-  const auto phong = makePhong(Spectrum(0.6), 12.0);
-  for (double a : {0.0, 0.7, 1.3})
-    figure("Phong, n = 12, reflectance at " + std::to_string(a).substr(0, 3) + " rad", phong->hemispherical(5.0, a), phong->ReflectionComponent::hemispherical(5.0, a), 2e-3,
-           "direct integration over the hemisphere (48 x 64 points)");
-}
-
-TEST(Materials, TabulatedLambertianIsLambertian) {
-  BrdfTable t{{3.0, 5.0}, {AngleAxis{Angle::View, 3, 0.5 * kPi}, AngleAxis{}}, std::vector<double>(6, 0.3 / kPi)};
-  const auto table = makeTabulated(t);
-  EXPECT_NEAR(table->hemispherical(4.0, 0.5), 0.3, 1e-9);
-  EXPECT_NEAR(table->brdf(4.2, {0, 0, 1}, glm::normalize(glm::dvec3(1, 0, 1))), 0.3 / kPi, 1e-12);
-  EXPECT_THROW(table->column(6.0, 0, 0), OutsideSpectrum);
 }
 
 }  // namespace

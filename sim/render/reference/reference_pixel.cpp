@@ -52,7 +52,7 @@ double textureValue(const Texture& t, glm::dvec2 uv) {
   const double x = uv.x * t.width - 0.5, y = uv.y * t.height - 0.5;
   const double cx = std::floor(x), cy = std::floor(y), fx = x - cx, fy = y - cy;
   auto at = [&](double i, double j) {
-    auto wrap = [](double k, int n) { return static_cast<size_t>(k - std::floor(k / n) * n); };
+    auto wrap = [&t](double k, int n) { return static_cast<size_t>(t.repeats ? k - std::floor(k / n) * n : std::clamp(k, 0.0, n - 1.0)); };
     return static_cast<double>(t.texels[wrap(j, t.height) * static_cast<size_t>(t.width) + wrap(i, t.width)]);
   };
   return (1 - fy) * ((1 - fx) * at(cx, cy) + fx * at(cx + 1, cy)) + fy * ((1 - fx) * at(cx, cy + 1) + fx * at(cx + 1, cy + 1));

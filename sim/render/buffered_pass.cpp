@@ -1,0 +1,124 @@
+#include "sim/render/buffered_pass.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <sstream>
+
+namespace pitviper {
+namespace {
+
+constexpr int kMostTargets = 8;  // RGBA draw buffers that OpenGL 4.5 promises
+
+/// The spectral image of a batch of nodes: declarations, and the body that fills it. Which batch is a uniform, so that one program
+/// serves all; nodes beyond the last repeat it and are not integrated.
+void writeSpectrum(ShaderSlots& slots, int targets) {
+  std::ostringstream declared, body;
+  for (int t = 0; t < targets; ++t) declared << "layout(location = " << t << ") out vec4 spectrum" << t << ";\n";
+  declared << "uniform int firstNode;\nvoid clearTargets() {}\n";
+  body << "void integrate() {\n  float radiance[" << 4 * targets << "];\n  for (int i = 0; i < " << 4 * targets
+       << "; ++i) radiance[i] = nodeRadiance(min(firstNode + i, NODES - 1));\n";
+  for (int t = 0; t < targets; ++t)
+    body << "  spectrum" << t << " = vec4(radiance[" << 4 * t << "], radiance[" << 4 * t + 1 << "], radiance[" << 4 * t + 2 << "], radiance[" << 4 * t + 3 << "]);\n";
+  body << "}\n";
+  slots.generated["targets"] = declared.str();
+  slots.generated["integrate"] = body.str();
+}
+
+/// The integral over the same nodes: a multiply-add per node and group of channels that the node feeds; weights in that order.
+ShaderSlots integration(const Plan& plan, int first, int count, std::vector<float>& weights) {
+  ShaderSlots slots;
+  std::ostringstream declared, body;
+  for (int g = 0; g < plan.groupCount(); ++g) {
+    declared << "layout(location = " << g << ") out vec4 channels" << g << ";\n";
+    body << "  channels" << g << " = vec4(0.0);\n";
+  }
+  for (int t = 0; t < (count + 3) / 4; ++t) {
+    declared << "layout(binding = " << 8 + t << ") uniform sampler2D spectrum" << t << ";\n";
+    body << "  vec4 s" << t << " = texelFetch(spectrum" << t << ", ivec2(gl_FragCoord.xy), 0);\n";
+  }
+  for (int i = 0; i < count; ++i)
+    for (int g = 0; g < plan.groupCount(); ++g) {
+      float w[4];
+      for (int k = 0; k < 4; ++k) {
+        const size_t slot = static_cast<size_t>(4 * g + k);
+        w[k] = slot < plan.weight.size() ? static_cast<float>(plan.weight[slot][static_cast<size_t>(first + i)]) : 0.0f;
+      }
+      if (std::all_of(w, w + 4, [](float x) { return x == 0.0f; })) continue;
+      body << "  channels" << g << " += weight[" << weights.size() / 4 << "] * s" << i / 4 << "[" << i % 4 << "];\n";
+      weights.insert(weights.end(), w, w + 4);
+    }
+  slots.generated["targets"] = declared.str();
+  slots.generated["integrate"] = body.str();
+  slots.constants["WEIGHTS"] = static_cast<long long>(weights.size() / 4);
+  return slots;
+}
+
+}  // namespace
+
+BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
+                           double apertureArea_m2)
+    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2) {
+  const int perBatch = std::min(4 * kMostTargets, plan.nodeCount());
+  targets_ = (perBatch + 3) / 4;
+  ShaderSlots slots = shadingSlots();
+  slots.constants["WEIGHTS"] = 1;  // shading itself integrates nothing
+  slots.files["truth"] = "sim/render/glsl/truth_none.glsl";
+  writeSpectrum(slots, targets_);
+  shade_ = shadingProgram(library, slots);
+  for (int first = 0; first < plan.nodeCount(); first += perBatch) {
+    const int count = std::min(perBatch, plan.nodeCount() - first);
+    Batch batch;
+    batch.firstNode = first;
+    std::vector<float> weights;
+    const ShaderSlots integral = integration(plan, first, count, weights);
+    checkUniformSize(weights.size() * sizeof(float), "the channels' spectral weights");
+    batch.integrate = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", integral),
+                              assembleShader(library, "sim/render/glsl/integrate.frag.glsl", integral));
+    batch.weights.upload(weights);
+    batches_.push_back(std::move(batch));
+  }
+  if (!truth) return;
+  slots.files["truth"] = "sim/render/glsl/truth_layers.glsl";
+  slots.generated["targets"] = "void clearTargets() {}\n";
+  slots.generated["integrate"] = "void integrate() {}\n";
+  truth_ = shadingProgram(library, slots);
+}
+
+RenderTarget& BufferedPass::spectrumFor(int width, int height) {
+  for (auto& t : spectra_)
+    if (t.width() == width && t.height() == height) return t;
+  return spectra_.emplace_back(width, height, std::vector<PixelFormat>(static_cast<size_t>(targets_), PixelFormat::Rgba32f), false);
+}
+
+void BufferedPass::shade(RenderTarget& into) {
+  RenderTarget& spectrum = spectrumFor(into.width(), into.height());
+  const size_t groups = static_cast<size_t>(plan().groupCount());
+  for (size_t b = 0; b < batches_.size(); ++b) {
+    spectrum.bind();
+    const GLfloat zero[4] = {0, 0, 0, 0};  // what a zoomed view leaves out must not keep the last picture's spectrum
+    for (size_t t = 0; t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), zero);
+    shade_.use();
+    glUniform1i(shade_.uniform("firstNode"), batches_[b].firstNode);
+    fillScreen(shade_);
+
+    into.select(0, groups);
+    into.bind();
+    for (size_t t = 0; t < spectrum.colourCount(); ++t) spectrum.colour(t).bind(static_cast<unsigned>(8 + t));
+    batches_[b].weights.bindUniform(2);
+    if (b > 0) {
+      glEnable(GL_BLEND);
+      glBlendFunc(GL_ONE, GL_ONE);
+    }
+    fillScreen(batches_[b].integrate);
+    glDisable(GL_BLEND);
+  }
+  if (hasTruth()) {
+    into.select(groups, into.colourCount() - groups);
+    into.bind();
+    fillScreen(truth_);
+  }
+  into.select(0, into.colourCount());
+}
+
+}  // namespace pitviper

@@ -1,0 +1,220 @@
+#include "sim/render/scene_pass.hpp"
+
+#include <epoxy/gl.h>
+
+#include <cmath>
+
+#include "sim/gl/context.hpp"
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Mirrors Draw of sim/render/glsl/draws.glsl (std430).
+struct GpuDraw {
+  glm::vec4 row[3];
+  glm::uvec4 table;
+  glm::vec4 state;
+};
+static_assert(sizeof(GpuDraw) == 80);
+
+/// Mirrors ViewBlock of sim/render/glsl/shade.frag.glsl (std140).
+struct GpuView {
+  glm::vec4 pixel, up, earth, sun, aperture, east, north;
+};
+
+}  // namespace
+
+void checkUniformSize(std::size_t bytes, const char* what) {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &limit);
+  if (bytes > static_cast<std::size_t>(limit))
+    throw GlError(std::string(what) + " take " + std::to_string(bytes) + " bytes, this driver's uniform blocks hold " + std::to_string(limit) +
+                  "; use fewer spectral samples, channels or lights");
+}
+
+ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
+                     double apertureArea_m2)
+    : simulation_(simulation), plan_(plan), scene_(std::move(scene)), truth_(truth), apertureArea_m2_(apertureArea_m2), tables_(makeTables(simulation, plan)),
+      visibility_(assembleShader(library, "sim/render/glsl/visibility.vert.glsl", {}), assembleShader(library, "sim/render/glsl/visibility.frag.glsl", {})) {
+  checkUniformSize((tables_.node.size() * 2 + plan.node_um.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
+  rows_.upload(tables_.rows);
+  hemispherical_.upload(tables_.hemispherical);
+  columns_.upload(tables_.columns);
+  materials_.upload(tables_.materials);
+}
+
+ShaderSlots ScenePass::shadingSlots() const {
+  ShaderSlots slots;
+  slots.files["path"] = simulation_.path ? simulation_.path->slotFile() : "sim/render/glsl/path_none.glsl";
+  slots.files["lobes"] = plan_.terms.lobeFile.empty() ? "sim/render/glsl/lobes_none.glsl" : plan_.terms.lobeFile;
+  slots.files["lights"] = plan_.lightCount > 0 ? "sim/render/glsl/lights_point.glsl" : "sim/render/glsl/lights_none.glsl";
+  slots.files["surface"] = tables_.general ? "sim/render/glsl/surface_general.glsl" : "sim/render/glsl/surface_simple.glsl";
+  slots.files["columns"] = tables_.tabulated ? "sim/render/glsl/columns_tabulated.glsl" : "sim/render/glsl/columns_plain.glsl";
+  slots.files["temperature"] = plan_.terms.temperatureTextures ? "sim/render/glsl/temperature_textured.glsl" : "sim/render/glsl/temperature_uniform.glsl";
+  slots.constants["NODES"] = plan_.nodeCount();
+  slots.constants["GROUPS"] = plan_.groupCount();
+  slots.constants["LIGHTS"] = plan_.lightCount;
+  slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
+  slots.constants["SUN"] = simulation_.sun ? 1 : 0;
+  return slots;
+}
+
+Program ScenePass::shadingProgram(const ShaderLibrary& library, const ShaderSlots& slots) {
+  fragmentSource_ = assembleShader(library, "sim/render/glsl/shade.frag.glsl", slots);
+  return Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), fragmentSource_);
+}
+
+void ScenePass::fillScreen(const Program& program) {
+  program.use();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void ScenePass::setState(const WorldState& state) {
+  std::vector<float> block = tables_.node;
+  const auto lights = lightTable(simulation_, plan_, state);
+  block.insert(block.end(), lights.begin(), lights.end());
+  block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
+  nodes_.upload(block);
+}
+
+void ScenePass::uploadView(const View& v) {
+  const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
+  GpuView g;
+  g.pixel = {v.tanPerPixelX, v.tanPerPixelY, v.axisX, v.axisY};
+  g.up = glm::vec4(cameraFromLocal * simulation_.frame.up(v.position), simulation_.frame.height(v.position));
+  g.earth = {simulation_.frame.earthRadius_m(), simulation_.path ? simulation_.path->top_m() : physics::kFar, v.onlyEntity + 1, 0.0};
+  g.sun = glm::vec4(simulation_.sun ? cameraFromLocal * simulation_.sun->toSun : glm::dvec3(0.0), 0.0);
+  g.aperture = {apertureArea_m2_, v.pixelTan2, 0.0, 0.0};
+  g.east = glm::vec4(cameraFromLocal * glm::dvec3(1, 0, 0), 0.0);
+  g.north = glm::vec4(cameraFromLocal * glm::dvec3(0, 1, 0), 0.0);
+  view_.upload(&g, sizeof g);
+}
+
+void ScenePass::uploadDraws(const View& v, const WorldState& state) {
+  const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
+  const size_t lightCount = static_cast<size_t>(plan_.lightCount);
+  std::vector<GpuDraw> draws;
+  std::vector<glm::vec4> lights(std::max<size_t>(1, (state.entities.size() + 1) * lightCount));
+  for (size_t d = 0; d < tables_.draws.size(); ++d) {
+    const DrawItem& item = tables_.draws[d];
+    GpuDraw g{};
+    const Pose pose = item.entity < 0 ? Pose{v.position, {1, 0, 0, 0}} : state.entities[static_cast<size_t>(item.entity)];
+    const glm::dmat3 bodyFromLocal = glm::transpose(glm::mat3_cast(pose.orientation));
+    const glm::dmat3 bodyFromCamera = bodyFromLocal * v.localFromCamera;
+    const glm::dvec3 origin = cameraFromLocal * (pose.position - v.position);
+    for (int r = 0; r < 3; ++r) g.row[r] = glm::vec4(bodyFromCamera[0][r], bodyFromCamera[1][r], bodyFromCamera[2][r], origin[r]);
+    const Surface* s = item.entity < 0 ? nullptr : &simulation_.entities[static_cast<size_t>(item.entity)].surfaces[static_cast<size_t>(item.surface)];
+    g.table = {tables_.rowOfDraw[d], tables_.materialOfDraw[d], s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u, static_cast<unsigned>(item.entity + 1)};
+    const size_t lightRow = static_cast<size_t>(item.entity + 1);
+    const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
+    g.state = {s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
+    for (size_t l = 0; l < simulation_.lights.size(); ++l)
+      lights[lightRow * lightCount + l] = glm::vec4(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m);
+    if (simulation_.sun) lights[lightRow * lightCount + simulation_.lights.size()] = glm::vec4(bodyFromLocal * simulation_.sun->toSun, 0.0);
+    draws.push_back(g);
+  }
+  draws_.upload(draws);
+  lights_.upload(lights);
+}
+
+ScenePass::Targets& ScenePass::targetsFor(int width, int height) {
+  for (auto& [size, t] : targets_)
+    if (size == std::pair(width, height)) return t;
+  std::vector<PixelFormat> colours(static_cast<size_t>(plan_.groupCount() + (truth_ ? 3 : 0)), PixelFormat::Rgba32f);
+  targets_.emplace_back(std::pair(width, height),
+                        Targets{RenderTarget(width, height, {PixelFormat::Rg32ui}, true), RenderTarget(width, height, colours, false)});
+  return targets_.back().second;
+}
+
+void ScenePass::bindBuffers() const {
+  scene_->bind();
+  draws_.bindStorage(2);
+  rows_.bindTexture(1, tables_.general ? 1 : 4);
+  if (tables_.general) {
+    hemispherical_.bindTexture(2, 4);
+    columns_.bindTexture(3, 4);
+  }
+  lights_.bindStorage(5);
+  materials_.bindStorage(6);
+  view_.bindUniform(0);
+  nodes_.bindUniform(1);
+}
+
+void ScenePass::drawVisibility(const View& v, const WorldState& state, const std::vector<char>& drawn) {
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  current_->visibility.bind();
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_GREATER);
+  const GLuint nothing[4] = {0, 0, 0, 0};
+  const GLfloat farthest = 0.0f;
+  glClearBufferuiv(GL_COLOR, 0, nothing);
+  glClearBufferfv(GL_DEPTH, 0, &farthest);
+  visibility_.use();
+  const double halfX = 0.5 * v.width * v.tanPerPixelX, halfY = 0.5 * v.height * v.tanPerPixelY;
+  glUniform4f(visibility_.uniform("film"), static_cast<float>(1.0 / halfX), static_cast<float>(1.0 / halfY),
+              static_cast<float>((v.axisX - 0.5 * v.width) / (0.5 * v.width)), static_cast<float>((v.axisY - 0.5 * v.height) / (0.5 * v.height)));
+  const double centreRange = glm::length(v.depthCentre - v.position);
+  glUniform3f(visibility_.uniform("depthRule"), static_cast<float>(v.near_m), v.onlyEntity >= 0 ? static_cast<float>(0.5 * centreRange / v.depthRadius_m) : 0.0f, 0.0f);
+  glEnable(GL_CLIP_DISTANCE0);
+  if (v.onlyEntity >= 0) glEnable(GL_DEPTH_CLAMP);
+  const int drawIndex = visibility_.uniform("drawIndex"), firstTriangle = visibility_.uniform("firstTriangle");
+  for (size_t d = 1; d < tables_.draws.size(); ++d) {
+    const DrawItem& item = tables_.draws[d];
+    const auto e = static_cast<size_t>(item.entity);
+    if (!drawn[e]) continue;
+    const Entity& entity = simulation_.entities[e];
+    const MeshPart& part = entity.mesh->parts[entity.surfaces[static_cast<size_t>(item.surface)].meshPart];
+    const glm::dvec3 centre = state.entities[e].position + state.entities[e].orientation * glm::dvec3(entity.boundingCentre);
+    if (!mayShow(v, centre, entity.boundingRadius_m)) continue;
+    const bool outside = glm::length(centre - v.position) > entity.boundingRadius_m * 1.0001 + v.near_m;
+    if (entity.mesh->closed && outside) glEnable(GL_CULL_FACE);
+    else glDisable(GL_CULL_FACE);
+    const std::uint32_t first = scene_->firstTriangle(item.entity) + part.firstTriangle;
+    glUniform1i(drawIndex, static_cast<int>(d));
+    glUniform1i(firstTriangle, static_cast<int>(first));
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.triangleCount * 3), GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * 12));
+  }
+
+  glDisable(GL_CLIP_DISTANCE0);
+  glDisable(GL_DEPTH_CLAMP);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+}
+
+void ScenePass::draw(const View& v, const WorldState& state, const std::vector<char>& drawn) {
+  current_ = &targetsFor(v.width, v.height);
+  uploadView(v);
+  uploadDraws(v, state);
+  bindBuffers();
+  drawVisibility(v, state, drawn);
+  current_->visibility.colour(0).bind(0);
+  if (v.onlyEntity >= 0) {
+    current_->shading.bind();
+    const GLfloat zero[4] = {0, 0, 0, 0};
+    for (size_t i = 0; i < current_->shading.colourCount(); ++i) glClearBufferfv(GL_COLOR, static_cast<GLint>(i), zero);
+  }
+  shade(current_->shading);
+  checkGl("drawing a frame");
+}
+
+void ScenePass::startReadback(bool depth, bool identity) {
+  readback_.start(current_->shading, current_->shading.colourCount(), depth ? &current_->visibility : nullptr, identity ? &current_->visibility : nullptr);
+}
+
+RawImage ScenePass::finishReadback() {
+  auto pixels = readback_.wait();
+  RawImage image;
+  image.width = current_->shading.width();
+  image.height = current_->shading.height();
+  image.depth = std::move(pixels.depth);
+  for (size_t i = 0; i < pixels.identity.size(); i += 2) image.entity.push_back(tables_.draws[pixels.identity[i]].entity);
+  for (size_t i = 0; i < pixels.colours.size(); ++i)
+    (i < static_cast<size_t>(plan_.groupCount()) ? image.groups : image.truth).push_back(std::move(pixels.colours[i]));
+  return image;
+}
+
+}  // namespace pitviper

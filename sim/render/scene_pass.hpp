@@ -1,0 +1,86 @@
+#pragma once
+// What every mode of drawing shares: a visibility pass (which triangle each pixel sees), then spectral shading once per visible pixel.
+// Speed does not depend on how much is hidden. Direct mode and buffered mode differ in what shading leaves behind.
+#include <deque>
+#include <memory>
+
+#include "sim/render/gpu_scene.hpp"
+#include "sim/render/tables.hpp"
+#include "sim/render/view.hpp"
+
+namespace pitviper {
+
+/// Integrals of kernel x radiance per subpixel, as read back. Row 0 is the bottom.
+struct RawImage {
+  int width = 0, height = 0;
+  std::vector<std::vector<float>> groups;  ///< four slots each, RGBA
+  std::vector<std::vector<float>> truth;   ///< three layers of RGBA where asked for
+  std::vector<float> depth;                ///< reversed: near / z; 0 where nothing was met. Empty unless asked for
+  std::vector<int> entity;                 ///< what each pixel sees, -1 the background. Empty unless asked for
+};
+
+class ScenePass {
+ public:
+  virtual ~ScenePass() = default;
+  ScenePass(const ScenePass&) = delete;
+  ScenePass& operator=(const ScenePass&) = delete;
+
+  /// Uploads what changes with time: light levels.
+  void setState(const WorldState& state);
+  /// `drawn`: one flag per entity; the others are left out (small bodies have views of their own).
+  void draw(const View& view, const WorldState& state, const std::vector<char>& drawn);
+  /// Starts copying the last drawn image.
+  void startReadback(bool depth, bool identity = false);
+  RawImage finishReadback();
+  /// The main shading program's source.
+  const AssembledShader& fragmentSource() const { return fragmentSource_; }
+
+ protected:
+  /// The simulation and the plan must outlive it.
+  ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
+            double apertureArea_m2);
+  /// Shades what `visibility` shows into `into`: channel groups first, then truth. Buffers, textures and state are bound;
+  /// the target is not. Where only one entity is shaded the target has been cleared.
+  virtual void shade(RenderTarget& into) = 0;
+
+  const Plan& plan() const { return plan_; }
+  const RenderTables& tables() const { return tables_; }
+  bool hasTruth() const { return truth_; }
+  /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
+  ShaderSlots shadingSlots() const;
+  /// Compiles a shading program; its source is kept as fragmentSource().
+  Program shadingProgram(const ShaderLibrary& library, const ShaderSlots& slots);
+  static void fillScreen(const Program& program);
+
+ private:
+  struct Targets {
+    RenderTarget visibility, shading;
+  };
+  Targets& targetsFor(int width, int height);
+  void uploadView(const View& view);
+  void uploadDraws(const View& view, const WorldState& state);
+  void bindBuffers() const;
+  void drawVisibility(const View& view, const WorldState& state, const std::vector<char>& drawn);
+
+  const Simulation& simulation_;
+  const Plan& plan_;
+  std::shared_ptr<const GpuScene> scene_;
+  bool truth_;
+  double apertureArea_m2_;
+  RenderTables tables_;
+  AssembledShader fragmentSource_;
+  Program visibility_;
+  Buffer rows_, hemispherical_, columns_, materials_, nodes_, draws_, lights_, view_;
+  std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
+  Targets* current_ = nullptr;
+  Readback readback_;
+};
+
+/// A pass in the mode the scenario asks for.
+std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library,
+                                         std::shared_ptr<const GpuScene> scene, bool truth, double apertureArea_m2);
+
+/// Throws GlError where a uniform block would be larger than the driver's; says what takes the room.
+void checkUniformSize(std::size_t bytes, const char* what);
+
+}  // namespace pitviper

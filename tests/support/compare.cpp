@@ -1,0 +1,43 @@
+#include "tests/support/compare.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scenarios/commands/commands.hpp"
+#include "sim/render/direct_pass.hpp"
+#include "sim/render/reference/reference_pixel.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+
+Worst compare(const Simulation& sim, int stride) {
+  needContext();
+  const Camera& camera = sim.cameras[0];
+  const Plan plan = makePlan(sim, camera.outputs, camera.spectral, camera.where);
+  const WorldState state = advance(sim.entities, sim.lights, 0.0);
+  const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, 1);
+  auto gpu = std::make_shared<const GpuScene>(sim);
+  DirectPass pass(sim, plan, shaderLibrary(), gpu, true, camera.pinhole.apertureArea_m2());
+  pass.setState(state);
+  pass.draw(view, state, std::vector<char>(sim.entities.size(), 1));
+  pass.startReadback(true);
+  const RawImage raw = pass.finishReadback();
+  Worst worst;
+  for (int y = 0; y < view.height; y += stride)
+    for (int x = 0; x < view.width; x += stride) {
+      const size_t p = static_cast<size_t>(y * view.width + x);
+      const ReferencePixel reference = referencePixel(sim, plan, view, state, x, y);
+      const TruthPixel truth = truthAt(raw, p);
+      if (static_cast<int>(truth.entity) != reference.entity + 1 || static_cast<int>(truth.part) != reference.surface + 1) continue;
+      ++worst.covered;
+      for (size_t s = 0; s < reference.slots.size(); ++s) {
+        const double got = static_cast<double>(raw.groups[s / 4][4 * p + s % 4]), want = reference.slots[s];
+        EXPECT_TRUE(std::isfinite(got));
+        if (want > 1e-37) worst.error = std::max(worst.error, std::abs(got - want) / want);
+      }
+    }
+  return worst;
+}
+
+}  // namespace pitviper::test

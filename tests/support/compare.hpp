@@ -1,0 +1,16 @@
+#pragma once
+// The GPU's picture against the double precision reference of the same pixels.
+#include "sim/model/simulation.hpp"
+
+namespace pitviper::test {
+
+struct Worst {
+  double error = 0.0;
+  double covered = 0;
+};
+
+/// Worst relative error of camera 0 at time 0 over every `stride`th pixel that sees the same surface on both sides (a silhouette may fall
+/// either way).
+Worst compare(const Simulation& simulation, int stride);
+
+}  // namespace pitviper::test
