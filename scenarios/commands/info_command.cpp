@@ -31,17 +31,23 @@ void printLayers(const ExrImage& image) {
   std::printf("%-32s %-18s %14s %14s %14s\n", "layer", "unit", "min", "mean", "max");
   for (const auto& layer : image.layers) {
     double low = INFINITY, high = -INFINITY, sum = 0.0;
-    size_t bad = 0;
+    size_t bad = 0, unseen = 0;
+    const bool truth = layer.name.rfind("truth.", 0) == 0;
     for (float v : layer.pixels) {
       if (!std::isfinite(v)) {
         ++bad;
+        continue;
+      }
+      if (truth && v == 0.0f) {  // nothing is seen there
+        ++unseen;
         continue;
       }
       low = std::min(low, static_cast<double>(v));
       high = std::max(high, static_cast<double>(v));
       sum += static_cast<double>(v);
     }
-    std::printf("%-32s %-18s %14.6g %14.6g %14.6g", layer.name.c_str(), unitOf(image, layer.name).c_str(), low, sum / static_cast<double>(std::max<size_t>(1, layer.pixels.size() - bad)), high);
+    std::printf("%-32s %-18s %14.6g %14.6g %14.6g", layer.name.c_str(), unitOf(image, layer.name).c_str(), low, sum / static_cast<double>(std::max<size_t>(1, layer.pixels.size() - bad - unseen)), high);
+    if (unseen) std::printf("  (%zu pixels see nothing)", unseen);
     if (bad) std::printf("  (%zu not finite)", bad);
     std::printf("\n");
   }
@@ -69,7 +75,14 @@ int infoCommand(const Arguments& arguments) {
   printLayers(image);
   std::printf("\n");
   for (const auto& a : image.attributes)
-    if (a.name.rfind("unit.", 0) != 0) std::printf("%-44s %s\n", a.name.c_str(), textOf(a).c_str());
+    if (a.name.rfind("unit.", 0) != 0 && a.name.rfind("entity.", 0) != 0) std::printf("%-44s %s\n", a.name.c_str(), textOf(a).c_str());
+  for (int e = 1;; ++e) {  // in their own order; attributes come sorted by name
+    const std::string entity = "entity." + std::to_string(e);
+    const Attribute* name = image.findAttribute(entity + ".name");
+    if (!name) break;
+    const Attribute* place = image.findAttribute(entity + ".range_column_row");
+    std::printf("%-44s %s: range [m], column, row %s\n", entity.c_str(), textOf(*name).c_str(), place ? textOf(*place).c_str() : "");
+  }
   return 0;
 }
 

@@ -14,7 +14,7 @@ Location commandLine(const std::string& command) { return {"pitviper " + command
 Options::Options(const std::string& command, const Arguments& arguments, const std::vector<OptionSpec>& specs, size_t least, size_t most) {
   for (size_t i = 0; i < arguments.size(); ++i) {
     std::string a = arguments[i];
-    if (a.size() < 2 || a.rfind("--", 0) != 0) {
+    if (a.size() < 2 || a[0] != '-' || std::isdigit(static_cast<unsigned char>(a[1]))) {
       words_.push_back(a);
       continue;
     }

@@ -10,6 +10,7 @@
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/table.hpp"
 #include "sim/parameters/units.hpp"
+#include "sim/render/tables.hpp"
 #include "sim/run/run.hpp"
 
 namespace pitviper {
@@ -111,12 +112,15 @@ int checkCommand(const Arguments& arguments) {
   const Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
   size_t triangles = 0;
   for (const auto& e : sim.entities) triangles += e.mesh->triangles.size();
-  std::printf("%s: good. %d frames, %zu cameras, %zu entities (%zu triangles), %zu lights, %zu materials, %zu probes\n", o.words()[0].c_str(), sim.time.frames,
-              sim.cameras.size(), sim.entities.size(), triangles, sim.lights.size(), sim.materials.size(), sim.probes.size());
+  auto count = [](size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); };
+  std::printf("%s: good. %s, %s, %s (%s), %s, %s, %s\n", o.words()[0].c_str(), count(static_cast<size_t>(sim.time.frames), "frame", "frames").c_str(),
+              count(sim.cameras.size(), "camera", "cameras").c_str(), count(sim.entities.size(), "entity", "entities").c_str(), count(triangles, "triangle", "triangles").c_str(),
+              count(sim.lights.size(), "light", "lights").c_str(), count(sim.materials.size(), "material", "materials").c_str(), count(sim.probes.size(), "probe", "probes").c_str());
   for (const auto& c : sim.cameras) {
     const Plan plan = makePlan(sim, c.outputs, c.spectral, c.where);
-    std::printf("  camera %s: %dx%d, %zu layers from %d spectral kernels, %d wavelengths\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, c.outputs.size(),
-                plan.slotCount, plan.nodeCount());
+    makeTables(sim, plan);  // what only the tables can find wrong
+    std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
+                count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(), count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths").c_str());
   }
   return 0;
 }

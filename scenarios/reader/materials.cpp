@@ -270,6 +270,7 @@ int Builder::materialNamed(const Value& asked) {
     for (const auto& entry : std::filesystem::directory_iterator(libraries_.materials, ignored))
       if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
     std::sort(names.begin(), names.end());
+    names.erase(std::unique(names.begin(), names.end()), names.end());
     const std::string near = nearestWord(name, names);
     std::string all;
     for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;

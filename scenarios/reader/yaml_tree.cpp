@@ -214,7 +214,7 @@ Value parseYaml(const std::string& text, const std::string& fileName) {
     return root;
   } catch (const YAML::Exception& e) {
     throw UserError({fileName, e.mark.line + 1, e.mark.column + 1, -1}, "not well-formed YAML: " + e.msg, "YAML 1.2",
-                    "check indentation, quotes and brackets here and in the line above");
+                    "check indentation (by blanks, never tabs), quotes and brackets here and in the line above");
   }
 }
 

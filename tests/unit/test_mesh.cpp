@@ -82,6 +82,20 @@ TEST(Primitives, PlateAndDisc) {
   EXPECT_NEAR(surfaceArea(disc), polygonArea(2.0, 50), 1e-5);
 }
 
+TEST(Primitives, Box) {
+  const Mesh box = makeBox(2.0, 3.0, 5.0);
+  expectSound(box, true);
+  EXPECT_TRUE(isClosed(box));
+  EXPECT_NEAR(surfaceArea(box), 2.0 * (6.0 + 10.0 + 15.0), 1e-5);
+  EXPECT_NEAR(signedVolume(box), 30.0, 1e-5);
+  ASSERT_EQ(box.parts.size(), 6u);
+  const std::pair<const char*, glm::vec3> sides[] = {{"front", {1, 0, 0}}, {"back", {-1, 0, 0}}, {"left", {0, 1, 0}}, {"right", {0, -1, 0}}, {"top", {0, 0, 1}}, {"bottom", {0, 0, -1}}};
+  for (size_t i = 0; i < 6; ++i) {
+    EXPECT_EQ(box.parts[i].name, sides[i].first);
+    EXPECT_EQ(box.normals[box.triangles[box.parts[i].firstTriangle].x], sides[i].second);
+  }
+}
+
 TEST(Primitives, SphereErrorIsAsDocumented) {
   for (const int n : {4, 5, 17, 64}) expectSound(makeSphere(3.0, n), true);
   for (const int n : {32, 64, 128}) {

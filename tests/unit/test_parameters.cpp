@@ -62,6 +62,26 @@ TEST(Reader, PlacesAndFixes) {
   EXPECT_NE(errorOf("lights: []\n").find("neither a camera nor a probe"), std::string::npos);
 }
 
+// What would be ignored is refused, and what people mean is suggested.
+TEST(Reader, NothingIsIgnoredSilently) {
+  const std::string head = "entities: [{name: p, material: blackbody, temperature: 300 K, shape: {model: ";
+  EXPECT_NE(errorOf(head + "cylinder, radius: 1 m, height: 2 m}}]\n" + kCamera).find("a cylinder has no 'height'"), std::string::npos);
+  EXPECT_NE(errorOf(head + "plate, width: 1 m, height: 1 m}, heading: 3 deg, motion: [{time: 0 s, position: [0 m, 0 m, 0 m]}]}]\n" + kCamera).find("a heading and a motion"), std::string::npos);
+  EXPECT_NE(errorOf("cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 2 deg, aperture: 20 mm, heading: 0 deg, look_at: [1 m, 0 m, 0 m], channels: [{name: a, response: {band: [3 um, 5 um]}}]}]\n")
+                .find("a heading and a look_at"), std::string::npos);
+  EXPECT_NE(errorOf("entities: [{name: p, material: grass, temperature: 300 K, shape: {model: plate, width: 1 m, height: 1 m}}]\n" + kCamera).find("'dry_grass'"), std::string::npos);
+  EXPECT_NE(errorOf("background: {temperature: 14 C}\n" + kCamera).find("write it in K or degC"), std::string::npos);
+}
+
+// A zero angle is no angle.
+TEST(Reader, WritingAZeroAngleTurnsNothing) {
+  const std::string head = "entities: [{name: p, material: blackbody, temperature: 300 K, shape: {model: plate, width: 1 m, height: 1 m}";
+  for (const char* angle : {"", ", pitch: 0 deg", ", roll: 0 deg", ", heading: 90 deg"}) {
+    const glm::dvec3 x = scene(head + angle + "}]\n" + kCamera).entities[0].motion.at(0.0).orientation * glm::dvec3(1, 0, 0);
+    EXPECT_LT(glm::length(x - glm::dvec3(1, 0, 0)), 1e-12) << angle;
+  }
+}
+
 TEST(Reader, WavenumberTablesAreTurnedRound) {
   const auto sim = scene("background: {radiance: {wavelength: 1/cm, unit: W/(m2 sr um), values: [[1000, 1], [2000, 2], [5000, 5]]}}\n" + kCamera);
   EXPECT_NEAR(sim.background(10.0), 1.0, 1e-12);
