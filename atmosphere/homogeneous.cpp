@@ -37,12 +37,8 @@ class Homogeneous final : public Path {
     return physics::layerLength(h, sinElevation, std::min(range, physics::kFar), top_m(), radius);
   }
   double transmittance(double w, double length) const override { return std::exp(-air_.extinction_per_m(w) * length); }
-  double radiance(double w, double length) const override {
-    return source(w) * physics::oneMinusExp(air_.extinction_per_m(w) * length);
-  }
-  double validLow_um() const override {
-    return std::max(air_.extinction_per_m.validLow(), air_.radiance ? air_.radiance->validLow() : kShortestWavelength_um);
-  }
+  double radiance(double w, double length) const override { return source(w) * physics::oneMinusExp(air_.extinction_per_m(w) * length); }
+  double validLow_um() const override { return std::max(air_.extinction_per_m.validLow(), air_.radiance ? air_.radiance->validLow() : kShortestWavelength_um); }
   double validHigh_um() const override {
     return std::min(air_.extinction_per_m.validHigh(), air_.radiance ? air_.radiance->validHigh() : kLongestWavelength_um);
   }

@@ -11,8 +11,8 @@ namespace pitviper {
 
 struct HomogeneousAir {
   Spectrum extinction_per_m;
-  std::optional<double> temperature_K;    ///< the air emits as a black body of it does
-  std::optional<Spectrum> radiance;       ///< further source radiance, scattered sunlight for instance [W/(m2 sr um)]
+  std::optional<double> temperature_K;                     ///< the air emits as a black body of it does
+  std::optional<Spectrum> radiance;                        ///< further source radiance, scattered sunlight for instance [W/(m2 sr um)]
   double top_m = std::numeric_limits<double>::infinity();  ///< height of its top above the ellipsoid
 };
 

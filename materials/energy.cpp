@@ -158,7 +158,8 @@ class Modifiers {
   Parts at(size_t point) const {
     Parts parts = greatest_;
     for (size_t k = 0; k < 4; ++k)
-      if (textures_[k]) parts[k] = sameSize_ ? static_cast<double>(textures_[k]->texels[point]) : valueAt(*textures_[k], x_[point % x_.size()], y_[point / x_.size()]);
+      if (textures_[k])
+        parts[k] = sameSize_ ? static_cast<double>(textures_[k]->texels[point]) : valueAt(*textures_[k], x_[point % x_.size()], y_[point / x_.size()]);
     return parts;
   }
 

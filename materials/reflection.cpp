@@ -182,9 +182,7 @@ class Tabulated final : public ReflectionComponent {
     a2 = std::min(a2, static_cast<size_t>(table_.axes[1].count - 1));
     return (a2 * static_cast<size_t>(table_.axes[0].count) + a1) * table_.wavelength_um.size();
   }
-  double at(size_t w, size_t a1, size_t a2) const {
-    return table_.values[rowAt(a1, a2) + std::min(w, table_.wavelength_um.size() - 1)];
-  }
+  double at(size_t w, size_t a1, size_t a2) const { return table_.values[rowAt(a1, a2) + std::min(w, table_.wavelength_um.size() - 1)]; }
 
   BrdfTable table_;
   std::vector<double> viewAngle_, albedo_;  ///< albedo by view angle and wavelength

@@ -23,28 +23,35 @@ struct Command {
 
 const std::map<std::string, Command>& commands() {
   static const std::map<std::string, Command> all = {
-      {"run", {runCommand, "render a scenario to calibrated EXR frames",
-               "pitviper run SCENARIO.yaml [--out FOLDER] [--frames A:B] [--set path.to.key=value]... [--preview]\n             [--preview-range LAYER=LOW:HIGH]...\n\n"
-               "Renders the scenario's frames: one EXR per camera and frame in FOLDER (default 'out'), named <camera>_<frame>.exr,\n"
-               "with a float layer <channel>.<quantity> per output and truth.* layers; probes write <probe>.csv.\n\n"
-               "  --out FOLDER     where to write; created if missing\n"
-               "  --frames A:B     frames A to B only (or one: A); counted from 0\n"
-               "  --set PATH=VALUE replaces or adds a value: --set cameras.0.samples=2, --set cameras.seeker.exposure='1 ms',\n"
-               "                   --set entities.jet.temperature='300 K'; list items by number or by their name; repeatable\n"
-               "  --preview        also a PNG per frame: every channel with colour bar and unit\n"
-               "  --preview-range LAYER=LOW:HIGH  ends of a layer's colour bar, in its unit (implies --preview); repeatable. Without it the bar\n"
-               "                   runs from the 0.5 to the 99.8 percentile, and is bent where a few bright things would hide the rest\n\n"
-               "Files of the same names are replaced; others in FOLDER are left as they are.\n"}},
-      {"check", {checkCommand, "validate a scenario, render nothing",
-                 "pitviper check SCENARIO.yaml [--set path.to.key=value]...\n\nReads everything the scenario names and reports the first mistake as file:line:col with the fix (exit code 2).\n"}},
-      {"info", {infoCommand, "what is in a frame",
-                "pitviper info FILE.exr [--at COLUMN,ROW]\n\nLayers with unit, minimum, mean and maximum, and all attributes.\n\n"
-                "  --at COLUMN,ROW  the values of one pixel with their units; (0,0) is the top left\n"}},
-      {"bench", {benchCommand, "speed of this machine beside a fixed yardstick",
-                 "pitviper bench [--frames N] [--accuracy SCENARIO.yaml]\n\nTimes direct and buffered mode (16 channels, 16 wavelengths, one light, thermal emission, air on both legs, 256x256) and, in the same\n"
-                 "run, a bare loop over 16 wavelengths; prints both and their ratio.\n\n"
-                 "  --frames N           frames to time (default 200)\n"
-                 "  --accuracy SCENARIO  instead: the scenario's middle frame at 4 to 64 spectral samples, frames a second and error against 192\n"}},
+      {"run",
+       {runCommand, "render a scenario to calibrated EXR frames",
+        "pitviper run SCENARIO.yaml [--out FOLDER] [--frames A:B] [--set path.to.key=value]... [--preview]\n             [--preview-range "
+        "LAYER=LOW:HIGH]...\n\n"
+        "Renders the scenario's frames: one EXR per camera and frame in FOLDER (default 'out'), named <camera>_<frame>.exr,\n"
+        "with a float layer <channel>.<quantity> per output and truth.* layers; probes write <probe>.csv.\n\n"
+        "  --out FOLDER     where to write; created if missing\n"
+        "  --frames A:B     frames A to B only (or one: A); counted from 0\n"
+        "  --set PATH=VALUE replaces or adds a value: --set cameras.0.samples=2, --set cameras.seeker.exposure='1 ms',\n"
+        "                   --set entities.jet.temperature='300 K'; list items by number or by their name; repeatable\n"
+        "  --preview        also a PNG per frame: every channel with colour bar and unit\n"
+        "  --preview-range LAYER=LOW:HIGH  ends of a layer's colour bar, in its unit (implies --preview); repeatable. Without it the bar\n"
+        "                   runs from the 0.5 to the 99.8 percentile, and is bent where a few bright things would hide the rest\n\n"
+        "Files of the same names are replaced; others in FOLDER are left as they are.\n"}},
+      {"check",
+       {checkCommand, "validate a scenario, render nothing",
+        "pitviper check SCENARIO.yaml [--set path.to.key=value]...\n\nReads everything the scenario names and reports the first mistake as file:line:col with "
+        "the fix (exit code 2).\n"}},
+      {"info",
+       {infoCommand, "what is in a frame",
+        "pitviper info FILE.exr [--at COLUMN,ROW]\n\nLayers with unit, minimum, mean and maximum, and all attributes.\n\n"
+        "  --at COLUMN,ROW  the values of one pixel with their units; (0,0) is the top left\n"}},
+      {"bench",
+       {benchCommand, "speed of this machine beside a fixed yardstick",
+        "pitviper bench [--frames N] [--accuracy SCENARIO.yaml]\n\nTimes direct and buffered mode (16 channels, 16 wavelengths, one light, thermal emission, "
+        "air on both legs, 256x256) and, in the same\n"
+        "run, a bare loop over 16 wavelengths; prints both and their ratio.\n\n"
+        "  --frames N           frames to time (default 200)\n"
+        "  --accuracy SCENARIO  instead: the scenario's middle frame at 4 to 64 spectral samples, frames a second and error against 192\n"}},
       {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
   };
   return all;
@@ -78,7 +85,8 @@ int main(int argc, char** argv) {
       std::vector<std::string> names;
       for (const auto& [n, c] : commands()) names.push_back(n);
       const std::string near = nearestWord(name, names);
-      throw UserError({"pitviper", 0, 0, -1}, "unknown command '" + name + "'", "one of those of pitviper --help", near.empty() ? "see pitviper --help" : "did you mean '" + near + "'?");
+      throw UserError({"pitviper", 0, 0, -1}, "unknown command '" + name + "'", "one of those of pitviper --help",
+                      near.empty() ? "see pitviper --help" : "did you mean '" + near + "'?");
     }
     for (const auto& a : arguments)
       if (a == "--help" || a == "-h") {

@@ -9,7 +9,8 @@ namespace {
 Spectrum photonsPerJoule() {
   return Spectrum(Spectrum::Table{{kShortestWavelength_um, kLongestWavelength_um},
                                   {kPhotonsPerJoulePerUm * kShortestWavelength_um, kPhotonsPerJoulePerUm * kLongestWavelength_um},
-                                  Outside::Error, "photons per joule"});
+                                  Outside::Error,
+                                  "photons per joule"});
 }
 
 ChannelOutput start(const Detector& d, const std::string& quantity) {
@@ -98,7 +99,8 @@ ChannelOutput makeOutput(const Detector& d, const std::string& quantity, const P
       o.kernel = o.kernel * photonsPerJoule();
     } else if (quantity == "electrons") {
       if (!d.quantumEfficiency)
-        throw UserError(d.where, "'electrons' needs a quantum efficiency", "'quantum_efficiency' of the channel, a number or a spectrum", "add 'quantum_efficiency: 0.8'");
+        throw UserError(d.where, "'electrons' needs a quantum efficiency", "'quantum_efficiency' of the channel, a number or a spectrum",
+                        "add 'quantum_efficiency: 0.8'");
       o.scale *= exposureOf(d, quantity, exposure_s);
       o.kernel = o.kernel * *d.quantumEfficiency * photonsPerJoule();
     } else if (quantity == "volts") {

@@ -23,7 +23,7 @@ struct Detector {
   Spectrum optics{1.0};                       ///< transmission of the camera's optics
   std::optional<Spectrum> quantumEfficiency;  ///< photoelectrons per photon
   std::optional<Gain> gain;
-  Spectrum photopic;                          ///< V(lambda)
+  Spectrum photopic;  ///< V(lambda)
 };
 
 struct QuantityInfo {

@@ -196,8 +196,7 @@ Mesh makeJet() {
   // Lip and duct: the intake shows a dark hole.
   const auto intakeSection = [&](double x, double wall) { return Section{x, 0.98, -0.16, 0.366 - wall, 0.466 - wall, 7.0, rake}; };
   std::vector<Ring> intake;
-  for (const auto& [x, wall] :
-       {std::pair{2.15, 0.004}, {2.40, 0.0}, {2.44, 0.008}, {2.46, 0.02}, {2.44, 0.032}, {2.2, 0.05}, {1.8, 0.06}, {1.3, 0.07}})
+  for (const auto& [x, wall] : {std::pair{2.15, 0.004}, {2.40, 0.0}, {2.44, 0.008}, {2.46, 0.02}, {2.44, 0.032}, {2.2, 0.05}, {1.8, 0.06}, {1.3, 0.07}})
     intake.push_back(ringOf(intakeSection(x, wall), around));
   // The nacelle's own front must not close the hole: it begins as the duct's outside.
   std::vector<Ring> nacelleRings;
@@ -205,8 +204,8 @@ Mesh makeJet() {
   for (Ring& ring : ringsAlong(nacelle, around, 4)) nacelleRings.push_back(std::move(ring));
 
   const glm::dvec2 axis(0.84, 0.0);
-  const std::vector<glm::dvec2> pipe{{-5.9, 0.50}, {-5.95, 0.55}, {-6.2, 0.565}, {-6.6, 0.545}, {-7.1, 0.485}, {-7.45, 0.43},
-                                     {-7.46, 0.41}, {-7.2, 0.42}, {-6.8, 0.44}, {-6.2, 0.46}, {-6.0, 0.46}};
+  const std::vector<glm::dvec2> pipe{{-5.9, 0.50},  {-5.95, 0.55}, {-6.2, 0.565}, {-6.6, 0.545}, {-7.1, 0.485}, {-7.45, 0.43},
+                                     {-7.46, 0.41}, {-7.2, 0.42},  {-6.8, 0.44},  {-6.2, 0.46},  {-6.0, 0.46}};
   const Mesh tailpipe = revolve(pipe, around, axis);
   const Mesh liner = revolve({{-6.1, 0.455}, {-7.0, 0.425}, {-7.3, 0.4165}, {-7.3, 0.406}, {-7.0, 0.408}, {-6.1, 0.435}}, around, axis, true);
   const Mesh holder = revolve({{-5.98, 0.45}, {-6.06, 0.45}, {-6.07, 0.25}, {-6.15, 0.24}, {-6.35, 0.17}, {-6.6, 0.07}, {-6.68, 0.0}}, around, axis);
@@ -222,7 +221,7 @@ Mesh makeJet() {
   appendPart(skin, loft(std::move(nacelleRings)), "skin", glm::mat4(1.0f));
 
   const std::vector<Section> glass{{4.95, 0, 0.46, 0.03, 0.02}, {4.7, 0, 0.47, 0.19, 0.15}, {4.2, 0, 0.50, 0.34, 0.34}, {3.4, 0, 0.55, 0.42, 0.52},
-                                   {2.6, 0, 0.55, 0.40, 0.46}, {1.6, 0, 0.55, 0.28, 0.28}, {0.8, 0, 0.55, 0.10, 0.10}};
+                                   {2.6, 0, 0.55, 0.40, 0.46},  {1.6, 0, 0.55, 0.28, 0.28}, {0.8, 0, 0.55, 0.10, 0.10}};
   const Mesh canopy = loft(ringsAlong(glass, 28, 3));
 
   Mesh jet;
@@ -250,9 +249,9 @@ Mesh makeMissile() {
     dome.emplace_back(1.40 + domeRadius * std::sin(angle), domeRadius * std::cos(angle));
   }
   appendPart(missile, revolve(dome, around), "dome", glm::mat4(1.0f));
-  const std::vector<glm::dvec2> tube{{1.402, 0.040}, {1.402, 0.0455}, {1.39, 0.0465}, {1.30, 0.0545}, {1.20, 0.0605}, {1.10, r}, {0.6, r},
-                                     {0.598, r + 0.0015}, {0.582, r + 0.0015}, {0.58, r}, {0.0, r}, {-0.7, r}, {-1.40, r}, {-1.44, 0.058},
-                                     {-1.45, 0.052}, {-1.43, 0.046}, {-1.36, 0.032}, {-1.34, 0.030}};
+  const std::vector<glm::dvec2> tube{{1.402, 0.040}, {1.402, 0.0455},     {1.39, 0.0465},      {1.30, 0.0545}, {1.20, 0.0605}, {1.10, r},
+                                     {0.6, r},       {0.598, r + 0.0015}, {0.582, r + 0.0015}, {0.58, r},      {0.0, r},       {-0.7, r},
+                                     {-1.40, r},     {-1.44, 0.058},      {-1.45, 0.052},      {-1.43, 0.046}, {-1.36, 0.032}, {-1.34, 0.030}};
   const Mesh body = revolve(tube, around);
   appendPart(missile, body, "body", glm::mat4(1.0f));
   const auto finSet = [&](const Wing& fin) {

@@ -11,8 +11,8 @@
 #include "scenarios/commands/options.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/gl/context.hpp"
-#include "sim/render/camera_renderer.hpp"
 #include "sim/render/buffered_pass.hpp"
+#include "sim/render/camera_renderer.hpp"
 #include "sim/render/direct_pass.hpp"
 
 namespace pitviper {
@@ -32,7 +32,8 @@ std::string benchScenario() {
     << "lights: [{name: lamp, intensity: {blackbody: 2000 K, area: 0.1 m2}, visible: false, position: [40 m, 20 m, 10 m]}]\n"
     << "entities: [{name: wall, shape: {model: plate, width: 400 m, height: 400 m}, material: wall, temperature: 300 K}]\n"
     << "cameras:\n  - name: c\n    film: {width: " << kSize << ", height: " << kSize << "}\n    field_of_view: 20 deg\n    aperture: 50 mm\n"
-    << "    position: [300 m, 0 m, 0 m]\n    look_at: wall\n    spectral: {samples: 16, spacing: even, shared: true}\n" << "    channels:\n";
+    << "    position: [300 m, 0 m, 0 m]\n    look_at: wall\n    spectral: {samples: 16, spacing: even, shared: true}\n"
+    << "    channels:\n";
   for (int c = 0; c < 16; ++c)
     y << "      - {name: c" << c << ", response: {wavelength: um, unit: \"1\", values: [[3, " << 0.2 + 0.05 * c << "], [5, " << 1.0 - 0.05 * c << "]]}}\n";
   return y.str();
@@ -41,11 +42,15 @@ std::string benchScenario() {
 /// The bare loop, set up once, drawn as often as asked.
 class Yardstick {
  public:
-  Yardstick() : vertexArray_(makeVertexArray()), target_(kSize, kSize, std::vector<PixelFormat>(4, PixelFormat::Rgba32f), false), constants_(16, 5, PixelFormat::Rgba32f) {
+  Yardstick()
+      : vertexArray_(makeVertexArray()),
+        target_(kSize, kSize, std::vector<PixelFormat>(4, PixelFormat::Rgba32f), false),
+        constants_(16, 5, PixelFormat::Rgba32f) {
     ShaderLibrary library;
     library.add(pv_commands_shaders());
     ShaderSlots none;
-    program_ = Program(assembleShader(shaderLibrary(), "sim/render/glsl/full_screen.vert.glsl", none), assembleShader(library, "scenarios/commands/glsl/yardstick.glsl", none));
+    program_ = Program(assembleShader(shaderLibrary(), "sim/render/glsl/full_screen.vert.glsl", none),
+                       assembleShader(library, "scenarios/commands/glsl/yardstick.glsl", none));
     std::vector<float> table(16 * 32 * 32 * 4);
     for (size_t i = 0; i < table.size(); ++i) table[i] = 0.1f + 0.001f * static_cast<float>(i % 97);
     GLuint name = 0;
@@ -130,16 +135,18 @@ int benchCommand(const Arguments& arguments) {
     for (double s : timed(std::max(1, frames / kRounds / 4), [&] { renderer.render(state); })) whole.push_back(s);
   }
   const double pixels = kSize * kSize, b = median(bare), d = median(direct), q = median(spectral), w = median(whole);
-  std::printf("%s\n%dx%d pixels, 16 channels, 16 wavelengths, one light, thermal emission, air on both legs; median of %zu\n\n", context.limits().renderer.c_str(), kSize, kSize, direct.size());
+  std::printf("%s\n%dx%d pixels, 16 channels, 16 wavelengths, one light, thermal emission, air on both legs; median of %zu\n\n",
+              context.limits().renderer.c_str(), kSize, kSize, direct.size());
   std::printf("%-44s %12s %12s %12s\n", "", "ms", "Mpixel/s", "frames/s");
   auto row = [&](const char* what, double s) { std::printf("%-44s %12.2f %12.2f %12.1f\n", what, s * 1e3, pixels / s * 1e-6, 1.0 / s); };
   row("yardstick: bare 16-wavelength loop", b);
   row("direct mode", d);
   row("buffered mode", q);
   row("direct mode, read back, in double", w);
-  std::printf("\ndirect mode / yardstick: %.2f, buffered mode / yardstick: %.2f (wanted: at least 0.55)\n"
-              "Duvenhage 2006, GeForce 6600GT: direct 5.2, buffered 4.6 Mpixel/s; here %.2f and %.2f times that\n",
-              b / d, b / q, pixels / d * 1e-6 / 5.2, pixels / q * 1e-6 / 4.6);
+  std::printf(
+      "\ndirect mode / yardstick: %.2f, buffered mode / yardstick: %.2f (wanted: at least 0.55)\n"
+      "Duvenhage 2006, GeForce 6600GT: direct 5.2, buffered 4.6 Mpixel/s; here %.2f and %.2f times that\n",
+      b / d, b / q, pixels / d * 1e-6 / 5.2, pixels / q * 1e-6 / 4.6);
   return 0;
 }
 

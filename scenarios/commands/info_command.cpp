@@ -46,7 +46,8 @@ void printLayers(const ExrImage& image) {
       high = std::max(high, static_cast<double>(v));
       sum += static_cast<double>(v);
     }
-    std::printf("%-32s %-18s %14.6g %14.6g %14.6g", layer.name.c_str(), unitOf(image, layer.name).c_str(), low, sum / static_cast<double>(std::max<size_t>(1, layer.pixels.size() - bad - unseen)), high);
+    std::printf("%-32s %-18s %14.6g %14.6g %14.6g", layer.name.c_str(), unitOf(image, layer.name).c_str(), low,
+                sum / static_cast<double>(std::max<size_t>(1, layer.pixels.size() - bad - unseen)), high);
     if (unseen) std::printf("  (%zu pixels see nothing)", unseen);
     if (bad) std::printf("  (%zu not finite)", bad);
     std::printf("\n");
@@ -65,9 +66,11 @@ int infoCommand(const Arguments& arguments) {
     if (text.empty()) throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "not a pixel", "column,row from the top left, from 0", "write --at 128,128");
     const auto [x, y] = readRange(text, "--at");
     if (x < 0 || y < 0 || x >= image.width || y >= image.height)
-      throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "outside the picture", "column 0 to " + std::to_string(image.width - 1) + ", row 0 to " + std::to_string(image.height - 1), "choose a pixel of it");
+      throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "outside the picture",
+                      "column 0 to " + std::to_string(image.width - 1) + ", row 0 to " + std::to_string(image.height - 1), "choose a pixel of it");
     for (const auto& layer : image.layers)
-      std::printf("%-32s %.9g %s\n", layer.name.c_str(), static_cast<double>(layer.pixels[static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)]),
+      std::printf("%-32s %.9g %s\n", layer.name.c_str(),
+                  static_cast<double>(layer.pixels[static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)]),
                   unitOf(image, layer.name).c_str());
     return 0;
   }

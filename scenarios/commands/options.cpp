@@ -30,7 +30,8 @@ Options::Options(const std::string& command, const Arguments& arguments, const s
       std::vector<std::string> names;
       for (const auto& s : specs) names.push_back(s.name);
       const std::string near = nearestWord(a, names);
-      throw UserError(commandLine(command), "unknown option '" + a + "'", "an option of pitviper " + command + " --help", near.empty() ? "remove it" : "did you mean '" + near + "'?");
+      throw UserError(commandLine(command), "unknown option '" + a + "'", "an option of pitviper " + command + " --help",
+                      near.empty() ? "remove it" : "did you mean '" + near + "'?");
     }
     std::string value;
     if (spec->value) {
@@ -44,8 +45,8 @@ Options::Options(const std::string& command, const Arguments& arguments, const s
     values_[a].push_back(value);
   }
   if (words_.size() < least || words_.size() > most)
-    throw UserError(commandLine(command), words_.size() < least ? "too few arguments" : "too many arguments ('" + words_[most] + "')", std::to_string(least) + (most > least ? " to " + std::to_string(most) : ""),
-                    "see pitviper " + command + " --help");
+    throw UserError(commandLine(command), words_.size() < least ? "too few arguments" : "too many arguments ('" + words_[most] + "')",
+                    std::to_string(least) + (most > least ? " to " + std::to_string(most) : ""), "see pitviper " + command + " --help");
 }
 
 std::string Options::value(const std::string& name, const std::string& otherwise) const {

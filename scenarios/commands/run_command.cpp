@@ -21,8 +21,8 @@ RunRange framesWanted(const Options& o, const Simulation& sim) {
   if (!o.has("--frames")) return range;
   const auto [a, b] = readRange(o.value("--frames"), "--frames");
   if (a < 0 || b < a || b >= sim.time.frames)
-    throw UserError({"--frames " + o.value("--frames"), 0, 0, -1}, "there is no such range of frames", "within 0:" + std::to_string(sim.time.frames - 1) + ", rising",
-                    "choose frames of the scenario's 'time.frames'");
+    throw UserError({"--frames " + o.value("--frames"), 0, 0, -1}, "there is no such range of frames",
+                    "within 0:" + std::to_string(sim.time.frames - 1) + ", rising", "choose frames of the scenario's 'time.frames'");
   return {static_cast<int>(a), static_cast<int>(b)};
 }
 
@@ -32,16 +32,19 @@ PreviewRanges previewRanges(const Options& o, const Simulation& sim) {
   for (const auto& text : o.values("--preview-range")) {
     const Location where{"--preview-range " + text, 0, 0, -1};
     const size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
-    if (equals == std::string::npos || colon == std::string::npos) throw UserError(where, "not a range", "layer=low:high", "write --preview-range lw.radiance=28:45");
+    if (equals == std::string::npos || colon == std::string::npos)
+      throw UserError(where, "not a range", "layer=low:high", "write --preview-range lw.radiance=28:45");
     const std::string layer = text.substr(0, equals);
     std::vector<std::string> layers;
     for (const auto& c : sim.cameras)
       for (const auto& out : c.outputs) layers.push_back(out.layer());
     if (std::find(layers.begin(), layers.end(), layer) == layers.end())
-      throw UserError(where, "there is no layer '" + layer + "'", "a channel and quantity of the scenario", nearestWord(layer, layers).empty() ? "see pitviper check" : "did you mean '" + nearestWord(layer, layers) + "'?");
+      throw UserError(where, "there is no layer '" + layer + "'", "a channel and quantity of the scenario",
+                      nearestWord(layer, layers).empty() ? "see pitviper check" : "did you mean '" + nearestWord(layer, layers) + "'?");
     auto number = [&](const std::string& t) {
       const auto q = splitQuantity(t);
-      if (!q || !q->unit.empty()) throw UserError(where, "'" + t + "' is not a number", "numbers in the layer's own unit", "write --preview-range " + layer + "=28:45");
+      if (!q || !q->unit.empty())
+        throw UserError(where, "'" + t + "' is not a number", "numbers in the layer's own unit", "write --preview-range " + layer + "=28:45");
       return q->value;
     };
     ranges[layer] = {number(text.substr(equals + 1, colon - equals - 1)), number(text.substr(colon + 1))};
@@ -90,13 +93,14 @@ int runCommand(const Arguments& arguments) {
   const int frames = range.last - range.first + 1;
   Progress progress(sim.name, frames * static_cast<int>(std::max<size_t>(1, sim.cameras.size())));
   ProbeTables probes;
-  runFrames(sim, shaderLibrary(), range,
-            [&](const Frame& f) {
-              writeFrame(out, f);
-              if (o.has("--preview") || !ranges.empty()) writePreview(out, f, ranges);
-              progress.step();
-            },
-            sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) { probes.add(r); });
+  runFrames(
+      sim, shaderLibrary(), range,
+      [&](const Frame& f) {
+        writeFrame(out, f);
+        if (o.has("--preview") || !ranges.empty()) writePreview(out, f, ranges);
+        progress.step();
+      },
+      sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) { probes.add(r); });
   probes.write(out);
   progress.finish();
   auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
@@ -114,13 +118,15 @@ int checkCommand(const Arguments& arguments) {
   for (const auto& e : sim.entities) triangles += e.mesh->triangles.size();
   auto count = [](size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); };
   std::printf("%s: good. %s, %s, %s (%s), %s, %s, %s\n", o.words()[0].c_str(), count(static_cast<size_t>(sim.time.frames), "frame", "frames").c_str(),
-              count(sim.cameras.size(), "camera", "cameras").c_str(), count(sim.entities.size(), "entity", "entities").c_str(), count(triangles, "triangle", "triangles").c_str(),
-              count(sim.lights.size(), "light", "lights").c_str(), count(sim.materials.size(), "material", "materials").c_str(), count(sim.probes.size(), "probe", "probes").c_str());
+              count(sim.cameras.size(), "camera", "cameras").c_str(), count(sim.entities.size(), "entity", "entities").c_str(),
+              count(triangles, "triangle", "triangles").c_str(), count(sim.lights.size(), "light", "lights").c_str(),
+              count(sim.materials.size(), "material", "materials").c_str(), count(sim.probes.size(), "probe", "probes").c_str());
   for (const auto& c : sim.cameras) {
     const Plan plan = makePlan(sim, c.outputs, c.spectral, c.where);
     makeTables(sim, plan);  // what only the tables can find wrong
     std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
-                count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(), count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths").c_str());
+                count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),
+                count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths").c_str());
   }
   return 0;
 }

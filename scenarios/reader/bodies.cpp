@@ -18,8 +18,7 @@ constexpr std::size_t kMostSceneTriangles = 10000000;
 }  // namespace
 
 glm::dvec3 Builder::readPosition(const Record& r, bool required) {
-  if (r.given("position") && r.given("geodetic"))
-    throw UserError(r.where("geodetic"), "a position and a geodetic position", "one of the two", "remove one");
+  if (r.given("position") && r.given("geodetic")) throw UserError(r.where("geodetic"), "a position and a geodetic position", "one of the two", "remove one");
   if (r.given("geodetic")) {
     const Record g(r.value("geodetic"), tables::geodetic());
     return simulation_.frame.toLocal({g.number("latitude"), g.number("longitude"), g.number("height")});
@@ -35,7 +34,7 @@ std::optional<Attitude> Builder::readAttitude(const Record& r, bool attached) {
   if (!r.given("heading") && !r.given("pitch") && !r.given("roll")) return std::nullopt;
   Attitude a;
   a.heading_rad = r.given("heading") ? r.number("heading") : attached ? 0.0 : 0.5 * kPi;  // as a body that is not turned
-  if (attached) a.heading_rad += 0.5 * kPi;  // clockwise from the carrier's forward axis instead of north
+  if (attached) a.heading_rad += 0.5 * kPi;                                               // clockwise from the carrier's forward axis instead of north
   if (r.given("pitch")) a.pitch_rad = r.number("pitch");
   if (r.given("roll")) a.roll_rad = r.number("roll");
   return a;
@@ -45,13 +44,15 @@ Builder::Placement Builder::readPlacement(const Record& r, bool attitude) {
   Placement p;
   if (r.given("attached_to")) {
     p.carrier = entityNamed(r.value("attached_to"));
-    if (r.given("geodetic")) throw UserError(r.where("geodetic"), "a geodetic position of something attached to a body", "'position' in the body's axes", "use 'position'");
+    if (r.given("geodetic"))
+      throw UserError(r.where("geodetic"), "a geodetic position of something attached to a body", "'position' in the body's axes", "use 'position'");
   }
   if (r.given("motion")) {
     if (r.given("position") || r.given("geodetic")) throw UserError(r.where("motion"), "a position and a motion", "one of the two", "remove one");
     for (const char* key : {"heading", "pitch", "roll"})
       if (attitude && r.given(key))
-        throw UserError(r.where(key), std::string("a ") + key + " and a motion", "the attitude in the waypoints, or along the path", std::string("move '") + key + "' into the waypoints");
+        throw UserError(r.where(key), std::string("a ") + key + " and a motion", "the attitude in the waypoints, or along the path",
+                        std::string("move '") + key + "' into the waypoints");
     std::vector<Waypoint> waypoints;
     for (const Value& v : r.value("motion").items) {
       const Record w(v, tables::waypoint());
@@ -96,10 +97,16 @@ namespace {
 
 /// The keys that a shape takes: a key of another shape would be ignored without a word.
 void refuseForeignKeys(const Record& r, const std::string& model) {
-  static const std::map<std::string, std::vector<std::string>> keys = {
-      {"plate", {"width", "height"}}, {"box", {"length", "width", "height"}}, {"disc", {"radius", "segments"}}, {"sphere", {"radius", "segments", "fit"}},
-      {"cylinder", {"radius", "length", "segments", "capped"}}, {"cone", {"radius", "top_radius", "length", "segments", "capped"}},
-      {"terrain", {"size", "relief", "columns", "terrain_seed", "height_map"}}, {"jet", {}}, {"missile", {}}, {"mesh", {"file", "unit"}}};
+  static const std::map<std::string, std::vector<std::string>> keys = {{"plate", {"width", "height"}},
+                                                                       {"box", {"length", "width", "height"}},
+                                                                       {"disc", {"radius", "segments"}},
+                                                                       {"sphere", {"radius", "segments", "fit"}},
+                                                                       {"cylinder", {"radius", "length", "segments", "capped"}},
+                                                                       {"cone", {"radius", "top_radius", "length", "segments", "capped"}},
+                                                                       {"terrain", {"size", "relief", "columns", "terrain_seed", "height_map"}},
+                                                                       {"jet", {}},
+                                                                       {"missile", {}},
+                                                                       {"mesh", {"file", "unit"}}};
   std::vector<std::string> own = keys.at(model);
   own.emplace_back("scale");
   for (size_t i = 0; i < r.whole().entries.size(); ++i) {
@@ -118,7 +125,8 @@ std::shared_ptr<const Mesh> Builder::readShape(const Value& value) {
   const Record r(value, tables::shape());
   const std::string model = r.text("model");
   auto need = [&](const char* key) {
-    if (!r.given(key)) throw UserError(r.where(), "a " + model + " without '" + key + "'", tables::shape().find(key)->description, std::string("add '") + key + ":'");
+    if (!r.given(key))
+      throw UserError(r.where(), "a " + model + " without '" + key + "'", tables::shape().find(key)->description, std::string("add '") + key + ":'");
     return r.number(key);
   };
   refuseForeignKeys(r, model);
@@ -129,7 +137,8 @@ std::shared_ptr<const Mesh> Builder::readShape(const Value& value) {
   else if (model == "disc") *mesh = makeDisc(need("radius"), segments);
   else if (model == "sphere") *mesh = makeSphere(need("radius"), segments, r.text("fit") == "inscribed" ? SphereFit::Inscribed : SphereFit::EqualArea);
   else if (model == "cylinder") *mesh = makeCylinder(need("radius"), need("length"), segments, r.boolean("capped"));
-  else if (model == "cone") *mesh = makeCone(need("radius"), r.given("top_radius") ? r.number("top_radius") : 0.0, need("length"), segments, r.boolean("capped"));
+  else if (model == "cone")
+    *mesh = makeCone(need("radius"), r.given("top_radius") ? r.number("top_radius") : 0.0, need("length"), segments, r.boolean("capped"));
   else if (model == "terrain") {
     if (r.given("height_map")) {
       const int texture = readTexture(r.value("height_map"), "m", "a height map", -1e4, 1e4);
@@ -178,7 +187,8 @@ void Builder::readSurfaces(const Record& r, Entity& entity) {
         std::string all;
         for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
         const std::string near = nearestWord(name, names);
-        throw UserError(map.keyPlaces[i], "this shape has no part '" + name.substr(0, 60) + "'", "one of " + all, near.empty() ? "remove it" : "did you mean '" + near + "'?");
+        throw UserError(map.keyPlaces[i], "this shape has no part '" + name.substr(0, 60) + "'", "one of " + all,
+                        near.empty() ? "remove it" : "did you mean '" + near + "'?");
       }
       const Record part(value, tables::part());
       if (!parts.emplace(name, Given{part.find("material"), part.find("temperature")}).second)
@@ -191,8 +201,8 @@ void Builder::readSurfaces(const Record& r, Entity& entity) {
     const Value* material = own.material ? own.material : r.find("material");
     const Value* temperature = own.temperature ? own.temperature : r.find("temperature");
     if (!material || !temperature)
-      throw UserError(r.where(), "part '" + names[i] + "' of '" + entity.name + "' has no " + (material ? "temperature" : "material"), "one for the part or for the whole entity",
-                      material ? "add 'temperature: 300 K'" : "add 'material: <name>'");
+      throw UserError(r.where(), "part '" + names[i] + "' of '" + entity.name + "' has no " + (material ? "temperature" : "material"),
+                      "one for the part or for the whole entity", material ? "add 'temperature: 300 K'" : "add 'material: <name>'");
     Surface s;
     s.meshPart = static_cast<std::uint32_t>(i);
     if (!materials.count(material)) materials[material] = materialNamed(*material);
@@ -224,7 +234,8 @@ void Builder::readEntities(const Record& scenario) {
     e.mesh = readShape(r.value("shape"));
     triangles += e.mesh->triangles.size();
     if (triangles > kMostSceneTriangles)
-      throw UserError(r.where("shape"), "the scene has more than " + std::to_string(kMostSceneTriangles) + " triangles with this body", "fewer", "simplify meshes, or lower 'segments' and 'columns'");
+      throw UserError(r.where("shape"), "the scene has more than " + std::to_string(kMostSceneTriangles) + " triangles with this body", "fewer",
+                      "simplify meshes, or lower 'segments' and 'columns'");
     readSurfaces(r, e);
     const Placement p = readPlacement(r, true);
     e.motion = p.motion;
@@ -251,8 +262,11 @@ void Builder::readLights(const Record& scenario) {
       for (const Value& row : r.value("level").items) {
         if (row.kind != Value::Kind::List || row.items.size() != 2) throw UserError(row.where, "not a row [time, factor]", "[0.5 s, 1]", "write two values");
         const double t = readNumber(row.items[0], "s", "time"), f = readNumber(row.items[1], "", "factor");
-        if (!(f >= 0.0 && f <= 1e6)) throw UserError(row.items[1].where, "a factor of a light's level is out of range (" + row.items[1].text.substr(0, 40) + ")", "0 to 1e6", "correct the row");
-        if (!l.level.empty() && t <= l.level.back().first) throw UserError(row.items[0].where, "the times of a light's level do not rise", "each row later than the one before", "sort the rows");
+        if (!(f >= 0.0 && f <= 1e6))
+          throw UserError(row.items[1].where, "a factor of a light's level is out of range (" + row.items[1].text.substr(0, 40) + ")", "0 to 1e6",
+                          "correct the row");
+        if (!l.level.empty() && t <= l.level.back().first)
+          throw UserError(row.items[0].where, "the times of a light's level do not rise", "each row later than the one before", "sort the rows");
         l.level.emplace_back(t, f);
       }
     const Placement p = readPlacement(r, false);

@@ -61,7 +61,8 @@ void Builder::keepOutput(std::vector<ChannelOutput>& outputs, const std::functio
   const ChannelOutput& output = outputs.back();
   spectra_.count(output.kernel, where);
   if (!(std::isfinite(output.scale) && std::abs(output.scale) < 1e30))
-    throw UserError(where, "the factor of '" + output.layer() + "' is larger than any that can be drawn", "a pixel of usual size", "check film, focal length, aperture, exposure and gain");
+    throw UserError(where, "the factor of '" + output.layer() + "' is larger than any that can be drawn", "a pixel of usual size",
+                    "check film, focal length, aperture, exposure and gain");
 }
 
 void Builder::planned(const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where) {
@@ -69,7 +70,8 @@ void Builder::planned(const std::vector<ChannelOutput>& outputs, const SpectralS
   for (const ChannelOutput& output : outputs) {
     const std::size_t knots = output.kernel.knots().size();
     if (knots > kMostKnots)
-      throw UserError(output.where, "the spectra of channel '" + output.channel + "' have " + std::to_string(knots) + " rows together", "at most " + std::to_string(kMostKnots), "thin the tables out");
+      throw UserError(output.where, "the spectra of channel '" + output.channel + "' have " + std::to_string(knots) + " rows together",
+                      "at most " + std::to_string(kMostKnots), "thin the tables out");
     planSteps_ += samples * (16 * knots + 32 * samples);
     if (planSteps_ > kMostPlanSteps)
       throw UserError(output.where, "the channels of this scenario take too long to plan with " + std::to_string(samples) + " wavelengths",
@@ -79,7 +81,8 @@ void Builder::planned(const std::vector<ChannelOutput>& outputs, const SpectralS
 }
 
 std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s) {
-  if (list.items.empty()) throw UserError(list.where, "no channel", "at least one channel with name and response", "add '- {name: mw, response: {band: [3 um, 5 um]}}'");
+  if (list.items.empty())
+    throw UserError(list.where, "no channel", "at least one channel with name and response", "add '- {name: mw, response: {band: [3 um, 5 um]}}'");
   std::map<std::string, Location> names;
   std::vector<ChannelOutput> outputs;
   for (const Value& v : list.items) {
@@ -90,7 +93,8 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
     checkUnique(r.value("name"), names, "channel");
     d.response = readResponse(r);
     if (optics) d.optics = *optics;
-    if (r.given("quantum_efficiency")) d.quantumEfficiency = bounded(spectra_, r.value("quantum_efficiency"), "", "quantum efficiency", 0.0, 1.0, Outside::Zero);
+    if (r.given("quantum_efficiency"))
+      d.quantumEfficiency = bounded(spectra_, r.value("quantum_efficiency"), "", "quantum efficiency", 0.0, 1.0, Outside::Zero);
     if (r.given("gain")) d.gain = readGain(r.value("gain"));
     std::vector<std::pair<std::string, Location>> wanted;
     const auto allowed = pinhole ? quantityNames() : probeQuantityNames();
@@ -108,7 +112,8 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
         std::string all;
         for (const auto& q : allowed) all += (all.empty() ? "" : ", ") + q;
         const std::string near = nearestWord(quantity, allowed);
-        throw UserError(where, "there is no quantity '" + quantity.substr(0, 40) + "' here", "one of " + all, near.empty() ? "choose one" : "did you mean '" + near + "'?");
+        throw UserError(where, "there is no quantity '" + quantity.substr(0, 40) + "' here", "one of " + all,
+                        near.empty() ? "choose one" : "did you mean '" + near + "'?");
       }
       if (quantity == "luminance" || quantity == "illuminance" || quantity == "focal_illuminance") {
         Value photopic;
@@ -118,9 +123,11 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
         d.photopic = spectra_.read(photopic, "", "V(lambda)", Outside::Zero);
       }
       d.where = where;
-      keepOutput(outputs, [&] { return pinhole ? makeOutput(d, quantity, *pinhole, exposure_s) : makeProbeOutput(d, quantity); }, where);
+      keepOutput(
+          outputs, [&] { return pinhole ? makeOutput(d, quantity, *pinhole, exposure_s) : makeProbeOutput(d, quantity); }, where);
       for (size_t i = 0; i + 1 < outputs.size(); ++i)
-        if (outputs[i].layer() == outputs.back().layer()) throw UserError(where, "'" + quantity + "' twice in channel '" + d.channel + "'", "each quantity once", "remove one");
+        if (outputs[i].layer() == outputs.back().layer())
+          throw UserError(where, "'" + quantity + "' twice in channel '" + d.channel + "'", "each quantity once", "remove one");
     }
   }
   return outputs;
@@ -141,13 +148,16 @@ void Builder::readCameras(const Record& scenario) {
     p.height = static_cast<int>(film.integer("height"));
     c.samples = static_cast<int>(r.integer("samples"));
     if (p.width * c.samples > 16384 || p.height * c.samples > 16384 || static_cast<double>(p.width) * p.height * c.samples * c.samples > 16384.0 * 4096.0)
-      throw UserError(r.where("film"), "a picture of " + std::to_string(p.width) + "x" + std::to_string(p.height) + " pixels with " + std::to_string(c.samples) + "x" + std::to_string(c.samples) + " subpixels",
+      throw UserError(r.where("film"),
+                      "a picture of " + std::to_string(p.width) + "x" + std::to_string(p.height) + " pixels with " + std::to_string(c.samples) + "x" +
+                          std::to_string(c.samples) + " subpixels",
                       "at most 67 million subpixels, 16384 on a side", "lower film or samples");
     p.apertureDiameter_m = r.number("aperture");
     const int ways = (r.given("focal_length") ? 1 : 0) + (r.given("field_of_view") ? 1 : 0) + (film.given("pitch") ? 1 : 0);
     if (ways != 2 && !(ways == 1 && r.given("field_of_view")))
       throw UserError(r.where(), ways == 3 ? "focal length, pitch and field of view together say too much" : "the projection is not determined",
-                      "focal_length and film.pitch; or field_of_view with one of them (or alone: 50 mm)", ways == 3 ? "remove one" : "add 'field_of_view: 5 deg' or 'focal_length' and 'pitch'");
+                      "focal_length and film.pitch; or field_of_view with one of them (or alone: 50 mm)",
+                      ways == 3 ? "remove one" : "add 'field_of_view: 5 deg' or 'focal_length' and 'pitch'");
     const double tangent = r.given("field_of_view") ? 2.0 * std::tan(0.5 * r.number("field_of_view")) : 0.0;
     if (film.given("pitch") && r.given("field_of_view")) {
       p.pitchX_m = film.number("pitch");
@@ -158,7 +168,8 @@ void Builder::readCameras(const Record& scenario) {
     }
     p.pitchY_m = film.given("pitch_y") ? film.number("pitch_y") : p.pitchX_m;
     if (0.5 * p.width * p.pitchX_m / p.focalLength_m > 30.0 || 0.5 * p.height * p.pitchY_m / p.focalLength_m > 30.0)
-      throw UserError(r.where("film"), "the field of view is wider than a flat film can hold", "below 176 deg", "use a longer focal length, or several cameras");
+      throw UserError(r.where("film"), "the field of view is wider than a flat film can hold", "below 176 deg",
+                      "use a longer focal length, or several cameras");
 
     if (r.given("exposure")) c.exposure_s = r.number("exposure");
     c.near_m = r.number("near");
@@ -175,13 +186,16 @@ void Builder::readCameras(const Record& scenario) {
       if (target.kind == Value::Kind::List || (target.kind == Value::Kind::Scalar && target.text.find(',') != std::string::npos)) {
         c.mount.looksAtPoint = true;
         c.mount.lookAtPoint = readVector(target, "m", "look_at");
-        if (!(glm::length(c.mount.lookAtPoint) <= 1e9)) throw UserError(target.where, "look_at is more than a million km away", "metres from the origin", "check the unit");
+        if (!(glm::length(c.mount.lookAtPoint) <= 1e9))
+          throw UserError(target.where, "look_at is more than a million km away", "metres from the origin", "check the unit");
       } else {
         c.mount.lookAtEntity = entityNamed(target);
-        if (c.mount.lookAtEntity == c.mount.carrier) throw UserError(target.where, "a camera looks at the body that carries it", "another body", "change look_at");
+        if (c.mount.lookAtEntity == c.mount.carrier)
+          throw UserError(target.where, "a camera looks at the body that carries it", "another body", "change look_at");
       }
     } else if (!r.given("heading") && !r.given("pitch") && !r.given("motion") && c.mount.carrier < 0) {
-      throw UserError(r.where(), "camera '" + c.name + "' looks nowhere", "'look_at', 'heading' and 'pitch', a motion, or 'attached_to'", "add 'look_at: <entity>'");
+      throw UserError(r.where(), "camera '" + c.name + "' looks nowhere", "'look_at', 'heading' and 'pitch', a motion, or 'attached_to'",
+                      "add 'look_at: <entity>'");
     }
 
     Spectrum optics(1.0);
@@ -197,8 +211,9 @@ void Builder::readCameras(const Record& scenario) {
         else if (word == "normal") c.truth.normal = true;
         else if (word == "area") c.truth.area = true;
         else if (word == "solid_angles") c.truth.solidAngles = true;
-        else throw UserError(t.where, "there is no truth layer '" + word.substr(0, 40) + "'", "range, entity, temperature, normal, area, solid_angles",
-                             nearestWord(word, names).empty() ? "choose one" : "did you mean '" + nearestWord(word, names) + "'?");
+        else
+          throw UserError(t.where, "there is no truth layer '" + word.substr(0, 40) + "'", "range, entity, temperature, normal, area, solid_angles",
+                          nearestWord(word, names).empty() ? "choose one" : "did you mean '" + nearestWord(word, names) + "'?");
       }
     planned(c.outputs, c.spectral, c.where);
     simulation_.cameras.push_back(std::move(c));

@@ -53,7 +53,8 @@ std::string aTable(const TableKind& kind) { return std::string(kind.name) + " ta
 void flatten(const Value& v, const TableKind& kind, const std::vector<size_t>& extents, size_t level, std::vector<double>& into) {
   if (level == extents.size()) {
     const double x = readNumber(v, "", "a value of " + aTable(kind));
-    if (!(x >= 0.0 && x <= kind.most)) throw UserError(v.where, std::string(kind.name) + " value is " + (x < 0.0 ? "negative" : "above 1"), kind.range, "correct the table");
+    if (!(x >= 0.0 && x <= kind.most))
+      throw UserError(v.where, std::string(kind.name) + " value is " + (x < 0.0 ? "negative" : "above 1"), kind.range, "correct the table");
     into.push_back(x);
     return;
   }
@@ -107,7 +108,8 @@ std::shared_ptr<const ReflectionComponent> readTable(const Record& r) {
   const auto ofLight = [](const AngleAxis& a) { return a.angle != Angle::None && a.angle != Angle::View; };
   const auto pairs = static_cast<std::size_t>(t.axes[0].count) * static_cast<std::size_t>(t.axes[1].count);
   if (ofLight(t.axes[0]) && ofLight(t.axes[1]) && pairs > kMostAnglePairs)
-    throw UserError(r.where("angles"), "a BRDF table over " + std::to_string(pairs) + " pairs of angles", "at most " + std::to_string(kMostAnglePairs), "thin it out");
+    throw UserError(r.where("angles"), "a BRDF table over " + std::to_string(pairs) + " pairs of angles", "at most " + std::to_string(kMostAnglePairs),
+                    "thin it out");
   t.values = readValues(r, kBrdf, extents);
   return makeTabulated(std::move(t));
 }
@@ -117,7 +119,8 @@ EmissivityTable readEmissivityTable(const Record& r) {
   t.wavelength_um = readWavelengths(r.value("wavelength"), kEmissivity);
   t.view = readAxis(r.value("angles").items.front());
   if (t.view.angle != Angle::View)
-    throw UserError(r.where("angles"), "an emissivity table over an angle that is not the view angle", "'angles: [{angle: view, count: 3, last: 90 deg}]'", "emission has no light: only 'view' is left");
+    throw UserError(r.where("angles"), "an emissivity table over an angle that is not the view angle", "'angles: [{angle: view, count: 3, last: 90 deg}]'",
+                    "emission has no light: only 'view' is left");
   t.values = readValues(r, kEmissivity, {static_cast<size_t>(t.view.count), t.wavelength_um.size()});
   return t;
 }
@@ -127,7 +130,8 @@ EmissivityTable readEmissivityTable(const Record& r) {
 int Builder::readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest) {
   const Record r(value, tables::texture());
   if (r.given("file") == r.given("rows"))
-    throw UserError(r.where(), std::string("the texture of ") + std::string(name) + (r.given("file") ? " has a file and rows" : " has neither file nor rows"), "one of the two", "add or remove one");
+    throw UserError(r.where(), std::string("the texture of ") + std::string(name) + (r.given("file") ? " has a file and rows" : " has neither file nor rows"),
+                    "one of the two", "add or remove one");
   Texture t;
   t.repeats = r.text("edges") == "repeat";
   for (const char* key : {"minimum", "maximum"})
@@ -135,7 +139,8 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
   auto quantity = [&](const char* key, double otherwise) { return r.given(key) ? readNumber(r.value(key), unit, key) : otherwise; };
   if (r.given("file")) {
     if (!unit.empty() && !(r.given("minimum") && r.given("maximum")))
-      throw UserError(r.where(), "a texture of " + std::string(name) + " without 'minimum' and 'maximum'", "what black and white stand for, in " + std::string(unit), "add both");
+      throw UserError(r.where(), "a texture of " + std::string(name) + " without 'minimum' and 'maximum'",
+                      "what black and white stand for, in " + std::string(unit), "add both");
     std::filesystem::path path = r.text("file");
     if (path.is_relative()) path = spectra_.files().base / path;
     std::error_code ignored;
@@ -149,8 +154,8 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
     t.texels.resize(image.pixels.size());
     for (int y = 0; y < t.height; ++y)
       for (int x = 0; x < t.width; ++x)
-        t.texels[static_cast<size_t>(t.height - 1 - y) * static_cast<size_t>(t.width) + static_cast<size_t>(x)] =
-            static_cast<float>(low + (high - low) * static_cast<double>(image.pixels[static_cast<size_t>(y) * static_cast<size_t>(t.width) + static_cast<size_t>(x)]));
+        t.texels[static_cast<size_t>(t.height - 1 - y) * static_cast<size_t>(t.width) + static_cast<size_t>(x)] = static_cast<float>(
+            low + (high - low) * static_cast<double>(image.pixels[static_cast<size_t>(y) * static_cast<size_t>(t.width) + static_cast<size_t>(x)]));
   } else {
     const auto& rows = r.value("rows").items;
     t.height = static_cast<int>(rows.size());
@@ -158,17 +163,21 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
     for (auto row = rows.rbegin(); row != rows.rend(); ++row) {
       asList(*row, "texture row");
       if (row->items.empty() || static_cast<int>(row->items.size()) != t.width || t.width > 16384)
-        throw UserError(row->where, "a texture row has " + std::to_string(row->items.size()) + " entries", "as many as the first row (" + std::to_string(t.width) + "), 1 to 16384", "make the rows equally long");
+        throw UserError(row->where, "a texture row has " + std::to_string(row->items.size()) + " entries",
+                        "as many as the first row (" + std::to_string(t.width) + "), 1 to 16384", "make the rows equally long");
       for (const Value& x : row->items) t.texels.push_back(static_cast<float>(readNumber(x, unit, "texture value")));
     }
   }
   for (float x : t.texels)
     if (!(static_cast<double>(x) >= lowest && static_cast<double>(x) <= highest))
-      throw UserError(r.where(), "the texture of " + std::string(name) + " holds " + briefNumber(static_cast<double>(x)), briefNumber(lowest) + " to " + briefNumber(highest) + (unit.empty() ? "" : " " + std::string(unit)), "correct its values, or 'minimum' and 'maximum'");
+      throw UserError(r.where(), "the texture of " + std::string(name) + " holds " + briefNumber(static_cast<double>(x)),
+                      briefNumber(lowest) + " to " + briefNumber(highest) + (unit.empty() ? "" : " " + std::string(unit)),
+                      "correct its values, or 'minimum' and 'maximum'");
   std::size_t texels = t.texels.size();
   for (const Texture& other : simulation_.textures) texels += other.texels.size();
   if (texels > kMostTexels)
-    throw UserError(r.where(), "the textures of this scenario have more than " + std::to_string(kMostTexels) + " pixels together", "fewer", "make them smaller");
+    throw UserError(r.where(), "the textures of this scenario have more than " + std::to_string(kMostTexels) + " pixels together", "fewer",
+                    "make them smaller");
   simulation_.textures.push_back(std::move(t));
   return static_cast<int>(simulation_.textures.size()) - 1;
 }
@@ -176,14 +185,16 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
 void Builder::countTable(const Record& component) {
   brdfWavelengths_ += component.value("wavelength").items.size();
   if (++brdfTables_ > kMostTables || brdfWavelengths_ > kMostTableWavelengths)
-    throw UserError(component.where(), "more than " + std::to_string(kMostTables) + " BRDF tables, or " + std::to_string(kMostTableWavelengths) + " wavelengths in them together", "fewer",
-                    "share materials, or thin the tables out");
+    throw UserError(component.where(),
+                    "more than " + std::to_string(kMostTables) + " BRDF tables, or " + std::to_string(kMostTableWavelengths) + " wavelengths in them together",
+                    "fewer", "share materials, or thin the tables out");
 }
 
 std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra) {
   const Record r(value, tables::material());
   if (simulation_.materials.size() >= kMostMaterials)
-    throw UserError(value.where, "more than " + std::to_string(kMostMaterials) + " materials", "fewer", "give alike materials a name under 'materials:' and use it more than once");
+    throw UserError(value.where, "more than " + std::to_string(kMostMaterials) + " materials", "fewer",
+                    "give alike materials a name under 'materials:' and use it more than once");
   auto m = std::make_shared<Material>();
   m->name = name;
   m->where = value.where;
@@ -201,9 +212,9 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
       if (kind == "table") {
         m->reflections.push_back(readTable(k));
         countTable(k);
-      }
-      else if (kind == "phong" && ++phongLobes_ > kMostLobes)
-        throw UserError(k.where(), "more than " + std::to_string(kMostLobes) + " Phong lobes in the scenario", "fewer", "give alike materials one name under 'materials:'");
+      } else if (kind == "phong" && ++phongLobes_ > kMostLobes)
+        throw UserError(k.where(), "more than " + std::to_string(kMostLobes) + " Phong lobes in the scenario", "fewer",
+                        "give alike materials one name under 'materials:'");
       else if (kind == "phong") m->reflections.push_back(makePhong(fraction(k.value("reflectance"), "reflectance"), k.number("exponent")));
       else m->reflections.push_back(makeLambertian(fraction(k.value("reflectance"), "reflectance")));
       m->modifiers.push_back(k.given("modifier") ? readTexture(k.value("modifier"), "", "a modifier", 0.0, 1.0) : -1);
@@ -214,10 +225,12 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
     const bool table = e.given("wavelength") || e.given("angles") || e.given("values");
     if (table == (e.given("emissivity") || e.given("angular")))
       throw UserError(e.where(), table ? "an emission that is both a spectrum and a table" : "an emission without an emissivity",
-                      "'emissivity' (and 'angular'), or 'wavelength', 'angles' and 'values'", table ? "keep one of the two" : "add 'emissivity: 0.9', a spectrum, or a table");
+                      "'emissivity' (and 'angular'), or 'wavelength', 'angles' and 'values'",
+                      table ? "keep one of the two" : "add 'emissivity: 0.9', a spectrum, or a table");
     if (table) {
       for (const char* key : {"wavelength", "angles", "values"})
-        if (!e.given(key)) throw UserError(e.where(), std::string("an emissivity table without '") + key + "'", "'wavelength', 'angles' and 'values'", "add it");
+        if (!e.given(key))
+          throw UserError(e.where(), std::string("an emissivity table without '") + key + "'", "'wavelength', 'angles' and 'values'", "add it");
       g.table = readEmissivityTable(e);
     } else if (!e.given("emissivity")) {
       throw UserError(e.where(), "an emission with 'angular' but without 'emissivity'", "both", "add 'emissivity: 0.9' or a spectrum");
@@ -226,7 +239,8 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
     }
     if (e.given("angular"))
       for (const Value& row : e.value("angular").items) {
-        if (row.kind != Value::Kind::List || row.items.size() != 2) throw UserError(row.where, "not a row [angle, factor]", "[60 deg, 0.9]", "write two values");
+        if (row.kind != Value::Kind::List || row.items.size() != 2)
+          throw UserError(row.where, "not a row [angle, factor]", "[60 deg, 0.9]", "write two values");
         const double angle = readNumber(row.items[0], "rad", "view angle"), factor = readNumber(row.items[1], "", "factor");
         if (angle < 0.0 || angle > 1.5709 || factor < 0.0 || (!g.viewAngle_rad.empty() && angle <= g.viewAngle_rad.back()))
           throw UserError(row.where, "view angles must rise within 0 to 90 deg, factors must not be negative", "rising angles", "correct the row");
@@ -237,8 +251,12 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
     m->given = std::move(g);
   }
   if (const auto excess = energyExcess(*m, simulation_.textures))
-    throw UserError(value.where, "material '" + name + "' " + (m->given ? "reflects and emits" : "reflects") + " more than it receives (" + percentAt(excess->sum, excess->wavelength_um, excess->viewAngle_rad) + ")",
-                    m->given ? "reflectance + emissivity <= 1, at every wavelength, view angle and texel" : "the sum of its reflectances <= 1, at every wavelength, view angle and texel", "lower a component");
+    throw UserError(value.where,
+                    "material '" + name + "' " + (m->given ? "reflects and emits" : "reflects") + " more than it receives (" +
+                        percentAt(excess->sum, excess->wavelength_um, excess->viewAngle_rad) + ")",
+                    m->given ? "reflectance + emissivity <= 1, at every wavelength, view angle and texel"
+                             : "the sum of its reflectances <= 1, at every wavelength, view angle and texel",
+                    "lower a component");
   return m;
 }
 
@@ -274,7 +292,8 @@ int Builder::materialNamed(const Value& asked) {
     const std::string near = nearestWord(name, names);
     std::string all;
     for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
-    throw UserError(asked.where, "there is no material '" + name.substr(0, 60) + "'", "one of " + all, near.empty() ? "define it under 'materials:'" : "did you mean '" + near + "'?");
+    throw UserError(asked.where, "there is no material '" + name.substr(0, 60) + "'", "one of " + all,
+                    near.empty() ? "define it under 'materials:'" : "did you mean '" + near + "'?");
   }
   const Value tree = loadYaml(file, asked.where);
   simulation_.materials.push_back(readMaterial(tree, name, spectra_.in(libraries_.materials)));

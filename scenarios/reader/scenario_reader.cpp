@@ -38,8 +38,8 @@ Libraries findLibraries() {
                   "set PITVIPER_HOME to it");
 }
 
-Simulation readScenarioText(const std::string& text, const std::string& fileName, const std::filesystem::path& base,
-                            const std::vector<std::string>& overrides, const Libraries& libraries) {
+Simulation readScenarioText(const std::string& text, const std::string& fileName, const std::filesystem::path& base, const std::vector<std::string>& overrides,
+                            const Libraries& libraries) {
   Value tree = parseYaml(text, fileName);
   std::string identity = text;
   for (const auto& o : overrides) {
@@ -83,7 +83,9 @@ Simulation readScenario(const std::filesystem::path& file, const std::vector<std
 std::string keyReference() {
   std::string out;
   for (const auto* table : tables::all()) out += describe(*table) + "\n";
-  out += "### Quantities\n\nWhat a channel's `output` can be. S is the response, L the radiance at the aperture.\n\n| quantity | unit | meaning | probe |\n|---|---|---|---|\n";
+  out +=
+      "### Quantities\n\nWhat a channel's `output` can be. S is the response, L the radiance at the aperture.\n\n| quantity | unit | meaning | probe "
+      "|\n|---|---|---|---|\n";
   for (const auto& q : quantities()) out += "| `" + q.name + "` | " + q.unit + " | " + q.meaning + " | " + (q.probe ? "yes" : "") + " |\n";
   return out;
 }

@@ -18,8 +18,8 @@ Libraries findLibraries();
 Simulation readScenario(const std::filesystem::path& file, const std::vector<std::string>& overrides, const Libraries& libraries);
 
 /// The same from text in memory; relative files are looked for in `base`.
-Simulation readScenarioText(const std::string& text, const std::string& fileName, const std::filesystem::path& base,
-                            const std::vector<std::string>& overrides, const Libraries& libraries);
+Simulation readScenarioText(const std::string& text, const std::string& fileName, const std::filesystem::path& base, const std::vector<std::string>& overrides,
+                            const Libraries& libraries);
 
 /// scenarios/README.md's key reference.
 std::string keyReference();

@@ -46,14 +46,16 @@ Builder::Builder(Simulation& simulation, std::filesystem::path base, Libraries l
 void Builder::checkUnique(const Value& name, std::map<std::string, Location>& names, const char* what) {
   const auto [at, fresh] = names.emplace(name.text, name.where);
   if (!fresh)
-    throw UserError(name.where, std::string("a second ") + what + " is called '" + name.text.substr(0, 60) + "'", "unique names (the first is at line " + std::to_string(at->second.line) + ")", "rename one");
+    throw UserError(name.where, std::string("a second ") + what + " is called '" + name.text.substr(0, 60) + "'",
+                    "unique names (the first is at line " + std::to_string(at->second.line) + ")", "rename one");
   for (char c : name.text)
     if (!(std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-'))
       throw UserError(name.where, std::string("the name of a ") + what + " holds the character '" + c + "'", "letters, digits, '_' and '-'", "rename it");
   if (name.text.size() > 64) throw UserError(name.where, std::string("the name of a ") + what + " is too long", "at most 64 characters", "shorten it");
 }
 
-Spectrum Builder::bounded(const SpectrumReader& spectra, const Value& value, std::string_view unit, std::string_view name, double low, double high, Outside outside) {
+Spectrum Builder::bounded(const SpectrumReader& spectra, const Value& value, std::string_view unit, std::string_view name, double low, double high,
+                          Outside outside) {
   Spectrum s = spectra.read(value, unit, name, outside);
   const double from = std::max(s.validLow(), s.supportLow()), to = std::min(s.validHigh(), s.supportHigh());
   if (from > to) return s;  // no wavelength at which it says anything: whoever asks it for a band is told so
@@ -61,7 +63,8 @@ Spectrum Builder::bounded(const SpectrumReader& spectra, const Value& value, std
   // Products of allowed factors can still be beyond a float; such a maximum is infinite or, from 0 x infinity, none at all.
   if (!(least >= low && most <= std::min(high, kLargestFloatValue) && std::isfinite(least) && std::isfinite(most)))
     throw UserError(value.where, std::string(name) + " leaves its range: it goes from " + briefNumber(least) + " to " + briefNumber(most),
-                    std::isfinite(high) ? "values from " + briefNumber(low) + " to " + briefNumber(high) : "values of at least 0, at most 1e30", "correct its values");
+                    std::isfinite(high) ? "values from " + briefNumber(low) + " to " + briefNumber(high) : "values of at least 0, at most 1e30",
+                    "correct its values");
   return s;
 }
 
@@ -110,13 +113,15 @@ void Builder::readAtmosphere(const Record& scenario) {
     if (name.find('/') != std::string::npos || name.size() > 100 || !std::filesystem::is_regular_file(file, ignored)) {
       std::string near;
       const std::string all = libraryNames(libraries_.atmosphere, name, near);
-      throw UserError(r.where("library"), "there is no library air '" + name.substr(0, 60) + "'", "one of " + all, near.empty() ? "choose one" : "did you mean '" + near + "'?");
+      throw UserError(r.where("library"), "there is no library air '" + name.substr(0, 60) + "'", "one of " + all,
+                      near.empty() ? "choose one" : "did you mean '" + near + "'?");
     }
     const Value tree = loadYaml(file, r.where("library"));
     take(Record(tree, tables::airLibrary()), spectra_.in(libraries_.atmosphere));
   }
   take(r, spectra_);
-  if (!have) throw UserError(r.where(), "homogeneous air without an extinction", "'extinction' or 'library'", "add 'extinction: 0.2 /km' or 'library: hazy_us76'");
+  if (!have)
+    throw UserError(r.where(), "homogeneous air without an extinction", "'extinction' or 'library'", "add 'extinction: 0.2 /km' or 'library: hazy_us76'");
   if (r.given("top")) air.top_m = r.number("top");
   simulation_.path = makeHomogeneousAir(std::move(air));
 }
@@ -124,8 +129,8 @@ void Builder::readAtmosphere(const Record& scenario) {
 /// A map with either temperature or radiance.
 Spectrum Builder::blackOrGiven(const Record& r, const char* what) const {
   if (r.given("temperature") == r.given("radiance"))
-    throw UserError(r.where(), std::string(what) + (r.given("radiance") ? " has a temperature and a radiance" : " has neither temperature nor radiance"), "one of the two",
-                    r.given("radiance") ? "remove one" : "add 'temperature: 280 K'");
+    throw UserError(r.where(), std::string(what) + (r.given("radiance") ? " has a temperature and a radiance" : " has neither temperature nor radiance"),
+                    "one of the two", r.given("radiance") ? "remove one" : "add 'temperature: 280 K'");
   if (r.given("temperature")) return Spectrum(Spectrum::BlackBody{r.number("temperature"), 1.0});
   return bounded(spectra_, r.value("radiance"), "W/(m2 sr um)", what, 0.0, INFINITY);
 }
@@ -144,8 +149,8 @@ void Builder::readSun(const Record& scenario) {
   if (!scenario.given("sun")) return;
   const Record r(scenario.value("sun"), tables::sun());
   if (r.given("irradiance") == r.given("temperature"))
-    throw UserError(r.where(), r.given("irradiance") ? "the sun has an irradiance and a temperature" : "the sun has neither irradiance nor temperature", "one of the two",
-                    r.given("irradiance") ? "remove one" : "add 'temperature: 5772 K'");
+    throw UserError(r.where(), r.given("irradiance") ? "the sun has an irradiance and a temperature" : "the sun has neither irradiance nor temperature",
+                    "one of the two", r.given("irradiance") ? "remove one" : "add 'temperature: 5772 K'");
   Sun sun;
   const double a = r.number("azimuth"), e = r.number("elevation");
   sun.toSun = {std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e)};

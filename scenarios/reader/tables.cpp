@@ -16,10 +16,13 @@ constexpr double kHottest_K = 1e5;
 
 /// Where something is: shared by entities, lights and cameras.
 void addPlacement(std::vector<Parameter>& p, bool attitude) {
-  p.push_back(within(vector3("position", "m", "east, north, up from the origin (or in the carrier's body axes: forward, left, up)"), -kFarthest_m, kFarthest_m));
+  p.push_back(
+      within(vector3("position", "m", "east, north, up from the origin (or in the carrier's body axes: forward, left, up)"), -kFarthest_m, kFarthest_m));
   p.push_back(map("geodetic", "position as latitude, longitude, height instead"));
   if (attitude) {
-    p.push_back(within(number("heading", "rad", "of the x axis, clockwise from north (on a carrier: from its forward axis); 90 deg unless given: x east, y north"), -2 * kHalfTurn, 2 * kHalfTurn));
+    p.push_back(
+        within(number("heading", "rad", "of the x axis, clockwise from north (on a carrier: from its forward axis); 90 deg unless given: x east, y north"),
+               -2 * kHalfTurn, 2 * kHalfTurn));
     p.push_back(within(number("pitch", "rad", "nose up; 0 unless given"), -kHalfTurn, kHalfTurn));
     p.push_back(within(number("roll", "rad", "right wing down; 0 unless given"), -2 * kHalfTurn, 2 * kHalfTurn));
   }
@@ -31,34 +34,32 @@ void addPlacement(std::vector<Parameter>& p, bool attitude) {
 }  // namespace
 
 const ParameterTable& scenario() {
-  static const ParameterTable t{"scenario", "The file itself.",
-                                {text("name", "short name, written into every frame (default: the file's name)"),
-                                 text("description", "one or two sentences"),
-                                 withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL), "1"),
-                                 map("origin", "where the local east-north-up frame stands on the earth"),
-                                 map("time", "first frame, rate and number of frames"),
-                                 map("render", "how it is drawn"),
-                                 any("atmosphere", "the air: `none`, the name of a library air, or a map"),
-                                 map("background", "what is behind everything (0 K unless given), seen through the air"),
-                                 map("sun", "direction and irradiance"),
-                                 map("ambient", "radiance of a uniform dome that lights all surfaces"),
-                                 map("materials", "name: material; library materials need not be listed"),
-                                 list("lights", "spectral point lights", 0, 1024),
-                                 list("entities", "bodies", 0, 4096),
-                                 list("cameras", "sensors", 0, 64),
-                                 list("probes", "irradiance meters", 0, 256)}};
+  static const ParameterTable t{
+      "scenario",
+      "The file itself.",
+      {text("name", "short name, written into every frame (default: the file's name)"), text("description", "one or two sentences"),
+       withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL), "1"),
+       map("origin", "where the local east-north-up frame stands on the earth"), map("time", "first frame, rate and number of frames"),
+       map("render", "how it is drawn"), any("atmosphere", "the air: `none`, the name of a library air, or a map"),
+       map("background", "what is behind everything (0 K unless given), seen through the air"), map("sun", "direction and irradiance"),
+       map("ambient", "radiance of a uniform dome that lights all surfaces"), map("materials", "name: material; library materials need not be listed"),
+       list("lights", "spectral point lights", 0, 1024), list("entities", "bodies", 0, 4096), list("cameras", "sensors", 0, 64),
+       list("probes", "irradiance meters", 0, 256)}};
   return t;
 }
 
 const ParameterTable& render() {
-  static const ParameterTable t{"render", "Pictures are the same in either mode, to rounding.",
+  static const ParameterTable t{"render",
+                                "Pictures are the same in either mode, to rounding.",
                                 {withDefault(choice("mode", {"auto", "direct", "buffered"},
-                                                    "direct: shading integrates straight into the channels; buffered: through a spectral image; auto: direct"), "auto")}};
+                                                    "direct: shading integrates straight into the channels; buffered: through a spectral image; auto: direct"),
+                                             "auto")}};
   return t;
 }
 
 const ParameterTable& origin() {
-  static const ParameterTable t{"origin", "",
+  static const ParameterTable t{"origin",
+                                "",
                                 {required(within(number("latitude", "rad", "geodetic, WGS 84"), -kHalfTurn / 2, kHalfTurn / 2)),
                                  required(within(number("longitude", "rad", "east positive"), -kHalfTurn, 2 * kHalfTurn)),
                                  withDefault(within(number("height", "m", "above the ellipsoid"), -20000, 1e8), "0 m")}};
@@ -71,7 +72,8 @@ const ParameterTable& geodetic() {
 }
 
 const ParameterTable& time() {
-  static const ParameterTable t{"time", "",
+  static const ParameterTable t{"time",
+                                "",
                                 {withDefault(within(number("start", "s", "time of frame 0"), -kLongestTime_s, kLongestTime_s), "0 s"),
                                  withDefault(within(number("rate", "Hz", "frames per second"), 1e-6, 1e9), "30 Hz"),
                                  withDefault(integer("frames", "number of frames", 1, 10000000), "1")}};
@@ -79,32 +81,36 @@ const ParameterTable& time() {
 }
 
 const ParameterTable& atmosphere() {
-  static const ParameterTable t{"atmosphere", "Homogeneous air, or none.",
-                                {withDefault(choice("model", {"none", "homogeneous"}, "which path model"), "homogeneous"),
-                                 text("library", "named air: its extinction and temperature, which the keys below replace"),
-                                 spectrum("extinction", "1/m", "extinction coefficient"),
-                                 within(number("temperature", "K", "the air emits as a black body of this temperature"), 0, kHottest_K),
-                                 spectrum("radiance", "W/(m2 sr um)", "further source radiance at great depth, for instance scattered sunlight"),
-                                 within(number("top", "m", "height of the air's top above the ellipsoid; without it the air never ends and the sun's irradiance is that at the scene"), -500, 1e7)}};
+  static const ParameterTable t{
+      "atmosphere",
+      "Homogeneous air, or none.",
+      {withDefault(choice("model", {"none", "homogeneous"}, "which path model"), "homogeneous"),
+       text("library", "named air: its extinction and temperature, which the keys below replace"), spectrum("extinction", "1/m", "extinction coefficient"),
+       within(number("temperature", "K", "the air emits as a black body of this temperature"), 0, kHottest_K),
+       spectrum("radiance", "W/(m2 sr um)", "further source radiance at great depth, for instance scattered sunlight"),
+       within(number("top", "m", "height of the air's top above the ellipsoid; without it the air never ends and the sun's irradiance is that at the scene"),
+              -500, 1e7)}};
   return t;
 }
 
 const ParameterTable& airLibrary() {
-  static const ParameterTable t{"air (library file)", "atmosphere/library/<name>.yaml",
-                                {text("description", "what air it is"), text("source", "where the figures come from"),
-                                 required(spectrum("extinction", "1/m", "extinction coefficient")), within(number("temperature", "K", "air temperature"), 0, kHottest_K),
-                                 spectrum("radiance", "W/(m2 sr um)", "further source radiance")}};
+  static const ParameterTable t{
+      "air (library file)",
+      "atmosphere/library/<name>.yaml",
+      {text("description", "what air it is"), text("source", "where the figures come from"), required(spectrum("extinction", "1/m", "extinction coefficient")),
+       within(number("temperature", "K", "air temperature"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "further source radiance")}};
   return t;
 }
 
 const ParameterTable& background() {
-  static const ParameterTable t{"background", "One of the two.",
-                                {within(number("temperature", "K", "black body"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance")}};
+  static const ParameterTable t{
+      "background", "One of the two.", {within(number("temperature", "K", "black body"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance")}};
   return t;
 }
 
 const ParameterTable& sun() {
-  static const ParameterTable t{"sun", "A directional light: irradiance, or a black body's temperature and solid angle.",
+  static const ParameterTable t{"sun",
+                                "A directional light: irradiance, or a black body's temperature and solid angle.",
                                 {required(within(number("azimuth", "rad", "clockwise from north"), -2 * kHalfTurn, 2 * kHalfTurn)),
                                  required(within(number("elevation", "rad", "above the horizon"), -kHalfTurn / 2, kHalfTurn / 2)),
                                  spectrum("irradiance", "W/(m2 um)", "on a plane facing the sun, above the air (at the scene where the air has no top)"),
@@ -114,63 +120,70 @@ const ParameterTable& sun() {
 }
 
 const ParameterTable& ambient() {
-  static const ParameterTable t{"ambient", "One of the two.",
-                                {within(number("temperature", "K", "black dome"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance")}};
+  static const ParameterTable t{
+      "ambient", "One of the two.", {within(number("temperature", "K", "black dome"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance")}};
   return t;
 }
 
 const ParameterTable& material() {
-  static const ParameterTable t{"material", "Up to three reflection components and an emission. Also the form of materials/library/<name>.yaml.",
-                                {text("description", "what it is"), text("source", "where the figures come from"),
-                                 list("components", "reflection components; none: black", 0, 3),
-                                 map("emission", "given emissivity; without it 1 - reflectance (Kirchhoff)")}};
+  static const ParameterTable t{
+      "material",
+      "Up to three reflection components and an emission. Also the form of materials/library/<name>.yaml.",
+      {text("description", "what it is"), text("source", "where the figures come from"), list("components", "reflection components; none: black", 0, 3),
+       map("emission", "given emissivity; without it 1 - reflectance (Kirchhoff)")}};
   return t;
 }
 
 const ParameterTable& component() {
-  static const ParameterTable t{"component", "One reflection component: BRDF = table(lambda; angles) x lobe x modifier.",
-                                {required(choice("reflection", {"lambertian", "phong", "table"}, "kind")),
-                                 spectrum("reflectance", "", "0..1; of a Phong lobe: at normal view"),
-                                 within(number("exponent", "", "of the Phong lobe"), 0, 1e7),
-                                 map("modifier", "texture that multiplies it, 0..1"),
-                                 list("wavelength", "of a table: rising wavelengths", 1, 1024),
-                                 list("angles", "of a table: up to two axes", 0, 2),
-                                 list("values", "of a table: BRDF [1/sr], nested as values[angle 2][angle 1][wavelength]", 1, 4096)}};
+  static const ParameterTable t{
+      "component",
+      "One reflection component: BRDF = table(lambda; angles) x lobe x modifier.",
+      {required(choice("reflection", {"lambertian", "phong", "table"}, "kind")), spectrum("reflectance", "", "0..1; of a Phong lobe: at normal view"),
+       within(number("exponent", "", "of the Phong lobe"), 0, 1e7), map("modifier", "texture that multiplies it, 0..1"),
+       list("wavelength", "of a table: rising wavelengths", 1, 1024), list("angles", "of a table: up to two axes", 0, 2),
+       list("values", "of a table: BRDF [1/sr], nested as values[angle 2][angle 1][wavelength]", 1, 4096)}};
   return t;
 }
 
 const ParameterTable& tableAxis() {
-  static const ParameterTable t{"angle axis", "Equally spaced angles from 0 of a BRDF table.",
-                                {required(choice("angle", {"incidence", "view", "specular", "half", "difference"},
-                                                 "from the normal to the light or viewer; between viewer and mirrored light; of the half vector to normal or light")),
-                                 required(integer("count", "entries", 2, 1024)),
-                                 required(within(number("last", "rad", "angle of the last entry"), 1e-6, kHalfTurn))}};
+  static const ParameterTable t{
+      "angle axis",
+      "Equally spaced angles from 0 of a BRDF table.",
+      {required(choice("angle", {"incidence", "view", "specular", "half", "difference"},
+                       "from the normal to the light or viewer; between viewer and mirrored light; of the half vector to normal or light")),
+       required(integer("count", "entries", 2, 1024)), required(within(number("last", "rad", "angle of the last entry"), 1e-6, kHalfTurn))}};
   return t;
 }
 
 const ParameterTable& texture() {
-  static const ParameterTable t{"texture", "A grey PNG (8 or 16 bit, read linearly) or inline rows, bottom row last, stretched over u and v from 0 to 1; bilinear between pixel centres.",
-                                {text("file", "PNG file"), list("rows", "rows of numbers from top to bottom", 1, 4096),
-                                 any("minimum", "of a file: value of black (a quantity in the texture's unit)"), any("maximum", "of a file: value of white"),
-                                 withDefault(choice("edges", {"hold", "repeat"}, "beyond its edges; repeat where it goes round a sphere or cylinder (u runs round, v from end to end)"), "hold")}};
+  static const ParameterTable t{
+      "texture",
+      "A grey PNG (8 or 16 bit, read linearly) or inline rows, bottom row last, stretched over u and v from 0 to 1; bilinear between pixel centres.",
+      {text("file", "PNG file"), list("rows", "rows of numbers from top to bottom", 1, 4096),
+       any("minimum", "of a file: value of black (a quantity in the texture's unit)"), any("maximum", "of a file: value of white"),
+       withDefault(choice("edges", {"hold", "repeat"}, "beyond its edges; repeat where it goes round a sphere or cylinder (u runs round, v from end to end)"),
+                   "hold")}};
   return t;
 }
 
 const ParameterTable& emission() {
-  static const ParameterTable t{"emission", "A spectrum and a factor over view angle, or a table over both. Pictures hold view angles every 0.5 deg, or finer (to 0.0625 deg) where that hits all the "
-                                            "angles given, and are linear between; a bend that no such step hits is cut off by a quarter of step x change of slope.",
-                                {spectrum("emissivity", "", "at normal view, 0..1"),
-                                 list("angular", "rows [angle, factor]: emissivity over view angle divided by that at normal", 1, 1024),
-                                 list("wavelength", "of a table instead: rising wavelengths", 1, 1024),
-                                 list("angles", "of a table: one axis, `{angle: view, count: 3, last: 90 deg}`; held beyond its last", 1, 1),
-                                 list("values", "of a table: emissivity 0..1, nested as values[angle][wavelength]", 2, 1024),
-                                 map("modifier", "texture that multiplies it, 0..1")}};
+  static const ParameterTable t{
+      "emission",
+      "A spectrum and a factor over view angle, or a table over both. Pictures hold view angles every 0.5 deg, or finer (to 0.0625 deg) where that hits all "
+      "the "
+      "angles given, and are linear between; a bend that no such step hits is cut off by a quarter of step x change of slope.",
+      {spectrum("emissivity", "", "at normal view, 0..1"),
+       list("angular", "rows [angle, factor]: emissivity over view angle divided by that at normal", 1, 1024),
+       list("wavelength", "of a table instead: rising wavelengths", 1, 1024),
+       list("angles", "of a table: one axis, `{angle: view, count: 3, last: 90 deg}`; held beyond its last", 1, 1),
+       list("values", "of a table: emissivity 0..1, nested as values[angle][wavelength]", 2, 1024), map("modifier", "texture that multiplies it, 0..1")}};
   return t;
 }
 
 const ParameterTable& light() {
   static const ParameterTable t = [] {
-    ParameterTable x{"light", "A point light (flare, beacon, lamp).",
+    ParameterTable x{"light",
+                     "A point light (flare, beacon, lamp).",
                      {required(text("name", "unique name")), required(spectrum("intensity", "W/(sr um)", "spectral radiant intensity")),
                       withDefault(within(number("radius", "m", "distances to it are bounded below by this"), 1e-6, 1e6), "0.05 m"),
                       withDefault(boolean("visible", "adds its own flux to the pixel it is seen in"), "true"),
@@ -183,7 +196,8 @@ const ParameterTable& light() {
 
 const ParameterTable& entity() {
   static const ParameterTable t = [] {
-    ParameterTable x{"entity", "A body: shape, surface, place.",
+    ParameterTable x{"entity",
+                     "A body: shape, surface, place.",
                      {required(text("name", "unique name")), required(map("shape", "what it looks like")),
                       any("material", "of all parts without one of their own: a name, or a material written out"),
                       any("temperature", "of all parts without one of their own: a number or a texture"), map("parts", "part name: material and temperature")}};
@@ -194,19 +208,22 @@ const ParameterTable& entity() {
 }
 
 const ParameterTable& part() {
-  static const ParameterTable t{"part", "", {any("material", "name of a material, or one written out"), any("temperature", "a temperature, or a texture in K")}};
+  static const ParameterTable t{
+      "part", "", {any("material", "name of a material, or one written out"), any("temperature", "a temperature, or a texture in K")}};
   return t;
 }
 
 const ParameterTable& shape() {
   static const ParameterTable t{
-      "shape", "",
-      {required(choice("model", {"plate", "box", "disc", "sphere", "cylinder", "cone", "terrain", "jet", "missile", "mesh"}, "kind; body axes x forward, y left, z up; see the table of shapes")),
+      "shape",
+      "",
+      {required(choice("model", {"plate", "box", "disc", "sphere", "cylinder", "cone", "terrain", "jet", "missile", "mesh"},
+                       "kind; body axes x forward, y left, z up; see the table of shapes")),
        within(number("width", "m", "plate, box: along y"), 1e-6, 1e7), within(number("height", "m", "plate, box: along z"), 1e-6, 1e7),
-       within(number("radius", "m", "disc, sphere, cylinder, cone (base)"), 1e-6, 1e7), within(number("top_radius", "m", "cone: at its +x end, 0 unless given"), 0, 1e7),
+       within(number("radius", "m", "disc, sphere, cylinder, cone (base)"), 1e-6, 1e7),
+       within(number("top_radius", "m", "cone: at its +x end, 0 unless given"), 0, 1e7),
        within(number("length", "m", "cylinder, cone, box: along x"), 1e-6, 1e7),
-       withDefault(integer("segments", "disc, sphere, cylinder, cone: around", 8, 2048), "64"),
-       withDefault(boolean("capped", "cylinder, cone"), "true"),
+       withDefault(integer("segments", "disc, sphere, cylinder, cone: around", 8, 2048), "64"), withDefault(boolean("capped", "cylinder, cone"), "true"),
        withDefault(choice("fit", {"inscribed", "equal_area"}, "sphere: vertices on it, or the same projected area"), "equal_area"),
        within(number("size", "m", "terrain: side of the square"), 1e-3, 1e6), within(number("relief", "m", "terrain: height range"), 0, 1e4),
        withDefault(integer("columns", "terrain: cells along a side", 1, 1024), "128"), withDefault(integer("terrain_seed", "terrain", 0, 1000000000), "1"),
@@ -227,18 +244,23 @@ const ParameterTable& waypoint() {
 
 const ParameterTable& camera() {
   static const ParameterTable t = [] {
-    ParameterTable x{"camera", "A pinhole projection with a real aperture; up to 16 channels.",
-                     {required(text("name", "unique name; begins the file names")), required(map("film", "pixels")),
-                      within(number("focal_length", "m", "with `pitch` of the film"), 1e-6, 1e4),
-                      within(number("field_of_view", "rad", "horizontal, instead of focal length (then 50 mm) or of pitch"), 1e-9, 3.1),
-                      required(within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3)),
-                      spectrum("optics", "", "transmission of the optics, 0..1"), within(number("exposure", "s", "exposure time"), 1e-12, 1e6),
-                      withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
-                      withDefault(integer("samples", "n: n x n subpixels per pixel", 1, 16), "1"),
-                      withDefault(within(number("small_bodies", "", "bodies spanning fewer pixels are drawn by a zoomed view of their own and keep their intensity at any range (0: draw all as they fall on pixels)"), 0, 256), "16"),
-                      map("spectral", "wavelength sampling"), required(list("channels", "spectral channels", 1, 64)),
-                      list("truth", "extra layers: range, entity, temperature, normal, area, solid_angles", 0, 6),
-                      any("look_at", "name of an entity, or a position [x, y, z]")}};
+    ParameterTable x{
+        "camera",
+        "A pinhole projection with a real aperture; up to 16 channels.",
+        {required(text("name", "unique name; begins the file names")), required(map("film", "pixels")),
+         within(number("focal_length", "m", "with `pitch` of the film"), 1e-6, 1e4),
+         within(number("field_of_view", "rad", "horizontal, instead of focal length (then 50 mm) or of pitch"), 1e-9, 3.1),
+         required(within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3)), spectrum("optics", "", "transmission of the optics, 0..1"),
+         within(number("exposure", "s", "exposure time"), 1e-12, 1e6), withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
+         withDefault(integer("samples", "n: n x n subpixels per pixel", 1, 16), "1"),
+         withDefault(within(number("small_bodies", "",
+                                   "bodies spanning fewer pixels are drawn by a zoomed view of their own and keep their intensity at any range (0: draw all as "
+                                   "they fall on pixels)"),
+                            0, 256),
+                     "16"),
+         map("spectral", "wavelength sampling"), required(list("channels", "spectral channels", 1, 64)),
+         list("truth", "extra layers: range, entity, temperature, normal, area, solid_angles", 0, 6),
+         any("look_at", "name of an entity, or a position [x, y, z]")}};
     addPlacement(x.parameters, true);
     return x;
   }();
@@ -246,14 +268,17 @@ const ParameterTable& camera() {
 }
 
 const ParameterTable& film() {
-  static const ParameterTable t{"film", "",
-                                {required(integer("width", "pixels", 1, 16384)), required(integer("height", "pixels", 1, 16384)),
-                                 within(number("pitch", "m", "pixel pitch"), 1e-9, 1), within(number("pitch_y", "m", "vertical pitch where different"), 1e-9, 1)}};
+  static const ParameterTable t{
+      "film",
+      "",
+      {required(integer("width", "pixels", 1, 16384)), required(integer("height", "pixels", 1, 16384)), within(number("pitch", "m", "pixel pitch"), 1e-9, 1),
+       within(number("pitch_y", "m", "vertical pitch where different"), 1e-9, 1)}};
   return t;
 }
 
 const ParameterTable& channel() {
-  static const ParameterTable t{"channel", "Response: a spectrum (`band`, table, file, library name) or `product` of several; zero outside its table.",
+  static const ParameterTable t{"channel",
+                                "Response: a spectrum (`band`, table, file, library name) or `product` of several; zero outside its table.",
                                 {required(text("name", "unique in the camera")), required(spectrum("response", "", "spectral response S(lambda)")),
                                  spectrum("quantum_efficiency", "", "photoelectrons per photon, for `electrons`"),
                                  any("gain", "for `volts`: in V/W of pixel flux or V/(W/m2) of focal-plane irradiance"),
@@ -262,26 +287,32 @@ const ParameterTable& channel() {
 }
 
 const ParameterTable& spectral() {
-  static const ParameterTable t{"spectral", "Sampling of each channel over wavelength, from band edge to band edge exactly.",
-                                {withDefault(integer("samples", "wavelengths per channel", 1, 512), "16"),
-                                 withDefault(choice("spacing", {"gauss", "even", "log"},
-                                                    "gauss: Gauss points of the response, error below 0.1 % with 16 for spectra smooth over the band; even, log: equal cells"), "gauss"),
-                                 withDefault(boolean("shared", "one set of wavelengths for all channels, over the union of their bands (split at every band edge)"), "false")}};
+  static const ParameterTable t{
+      "spectral",
+      "Sampling of each channel over wavelength, from band edge to band edge exactly.",
+      {withDefault(integer("samples", "wavelengths per channel", 1, 512), "16"),
+       withDefault(choice("spacing", {"gauss", "even", "log"},
+                          "gauss: Gauss points of the response, error below 0.1 % with 16 for spectra smooth over the band; even, log: equal cells"),
+                   "gauss"),
+       withDefault(boolean("shared", "one set of wavelengths for all channels, over the union of their bands (split at every band edge)"), "false")}};
   return t;
 }
 
 const ParameterTable& probe() {
-  static const ParameterTable t{"probe", "Irradiance on a plane at a point, whole hemisphere.",
-                                {required(text("name", "unique name")), required(within(vector3("position", "m", "east, north, up"), -kFarthest_m, kFarthest_m)),
-                                 withDefault(within(vector3("normal", "", "direction the plane faces"), -1e6, 1e6), "0, 0, 1"),
-                                 withDefault(integer("resolution", "rays across a quarter turn", 16, 2048), "512"), map("spectral", "wavelength sampling"),
-                                 required(list("channels", "as a camera's; output irradiance, photon_irradiance or illuminance", 1, 16))}};
+  static const ParameterTable t{
+      "probe",
+      "Irradiance on a plane at a point, whole hemisphere.",
+      {required(text("name", "unique name")), required(within(vector3("position", "m", "east, north, up"), -kFarthest_m, kFarthest_m)),
+       withDefault(within(vector3("normal", "", "direction the plane faces"), -1e6, 1e6), "0, 0, 1"),
+       withDefault(integer("resolution", "rays across a quarter turn", 16, 2048), "512"), map("spectral", "wavelength sampling"),
+       required(list("channels", "as a camera's; output irradiance, photon_irradiance or illuminance", 1, 16))}};
   return t;
 }
 
 std::vector<const ParameterTable*> all() {
-  return {&scenario(), &render(), &origin(), &time(), &atmosphere(), &airLibrary(), &background(), &sun(), &ambient(), &spectrumTable(), &material(), &component(),
-          &tableAxis(), &texture(), &emission(), &light(), &entity(), &part(), &shape(), &waypoint(), &geodetic(), &camera(), &film(), &channel(), &spectral(), &probe()};
+  return {&scenario(),      &render(),   &origin(),    &time(),      &atmosphere(), &airLibrary(), &background(), &sun(),    &ambient(),
+          &spectrumTable(), &material(), &component(), &tableAxis(), &texture(),    &emission(),   &light(),      &entity(), &part(),
+          &shape(),         &waypoint(), &geodetic(),  &camera(),    &film(),       &channel(),    &spectral(),   &probe()};
 }
 
 }  // namespace pitviper::tables

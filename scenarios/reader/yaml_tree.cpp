@@ -19,7 +19,8 @@ constexpr const char* kLargestText = "at most 4 MB";
 /// Builds the tree from the parser's events: no recursion of our own, every node with its place.
 class TreeBuilder final : public YAML::EventHandler {
  public:
-  TreeBuilder(std::string_view text, std::string file) : text_(text), file_(std::move(file)), most_(std::min(kMostYamlNodes, kMostPlaceBytes / (file_.size() + 1))) {}
+  TreeBuilder(std::string_view text, std::string file)
+      : text_(text), file_(std::move(file)), most_(std::min(kMostYamlNodes, kMostPlaceBytes / (file_.size() + 1))) {}
 
   Value take() { return std::move(root_); }
   const Location& where() const { return root_.where; }
@@ -171,8 +172,8 @@ void refuseOtherThanText(std::string_view text, const std::string& file) {
     if (length == 0 || (c < 32 && c != '\n' && c != '\r' && c != '\t') || c == 127) {
       char code[8];
       std::snprintf(code, sizeof code, "0x%02x", c);
-      throw UserError(at, length == 0 ? std::string("the byte ") + code + " is not UTF-8" : std::string("the control character ") + code, "a text file in UTF-8",
-                      "save the file as UTF-8 text, or remove the byte");
+      throw UserError(at, length == 0 ? std::string("the byte ") + code + " is not UTF-8" : std::string("the control character ") + code,
+                      "a text file in UTF-8", "save the file as UTF-8 text, or remove the byte");
     }
     i += length;
     ++at.column;
@@ -223,8 +224,10 @@ Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::
   const auto size = std::filesystem::file_size(file, problem);
   std::ifstream in(file, std::ios::binary);
   if (problem || !in)
-    throw UserError(askedAt, "cannot read the file '" + file.string() + "'" + (problem ? " (" + problem.message() + ")" : ""), "a readable YAML file", "check the name");
-  if (size > kLargestYamlBytes) throw UserError({file.string(), 1, 1, -1}, "the file has " + std::to_string(size) + " bytes", kLargestText, "put large tables into CSV files");
+    throw UserError(askedAt, "cannot read the file '" + file.string() + "'" + (problem ? " (" + problem.message() + ")" : ""), "a readable YAML file",
+                    "check the name");
+  if (size > kLargestYamlBytes)
+    throw UserError({file.string(), 1, 1, -1}, "the file has " + std::to_string(size) + " bytes", kLargestText, "put large tables into CSV files");
   std::string text(static_cast<std::size_t>(size), '\0');
   in.read(text.data(), static_cast<std::streamsize>(size));
   text.resize(static_cast<std::size_t>(in.gcount()));
@@ -235,8 +238,7 @@ Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::
 void applyOverride(Value& tree, const std::string& assignment) {
   const Location here{"--set " + (assignment.size() > 100 ? assignment.substr(0, 100) + "..." : assignment), 0, 0, -1};
   const size_t equals = assignment.find('=');
-  if (equals == std::string::npos || equals == 0)
-    throw UserError(here, "not an assignment", "path.to.key=value", "write --set cameras.0.samples=2");
+  if (equals == std::string::npos || equals == 0) throw UserError(here, "not an assignment", "path.to.key=value", "write --set cameras.0.samples=2");
   Value value = parseYaml(assignment.substr(equals + 1) + "\n", here.file);
   value.where = here;
   Value* at = &tree;
@@ -269,8 +271,8 @@ void applyOverride(Value& tree, const std::string& assignment) {
       }
     }
     if (!next)
-      throw UserError(here, "there is no '" + step + "'" + (walked.empty() ? "" : " under '" + walked + "'"), "keys, list numbers from 0, or names, joined by dots",
-                      "check the path");
+      throw UserError(here, "there is no '" + step + "'" + (walked.empty() ? "" : " under '" + walked + "'"),
+                      "keys, list numbers from 0, or names, joined by dots", "check the path");
     walked += (walked.empty() ? "" : ".") + step;
     at = next;
   }

@@ -22,7 +22,7 @@ struct Frame {
   int number = 0;
   double time_s = 0.0;
   int width = 0, height = 0;
-  std::vector<FrameLayer> layers;       ///< channels first, then truth
+  std::vector<FrameLayer> layers;  ///< channels first, then truth
   std::vector<Attribute> attributes;
 };
 

@@ -40,8 +40,8 @@ EGLContext makeContext(EGLDisplay display) {
   EGLConfig config = nullptr;
   EGLint configs = 0;
   if (!eglChooseConfig(display, configWanted, &config, 1, &configs) || configs < 1) config = nullptr;
-  const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                           EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
+  const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                           EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
   EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted);
   if (context == EGL_NO_CONTEXT) return context;
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
@@ -70,8 +70,7 @@ GlContext::GlContext(std::string device) {
   if (device.rfind("device:", 0) == 0) {
     const auto all = devices();
     const size_t index = static_cast<size_t>(std::strtoul(device.c_str() + 7, nullptr, 10));
-    if (index >= all.size())
-      throw GlError("EGL offers " + std::to_string(all.size()) + " devices, there is no '" + device + "'; use PITVIPER_GL=surfaceless");
+    if (index >= all.size()) throw GlError("EGL offers " + std::to_string(all.size()) + " devices, there is no '" + device + "'; use PITVIPER_GL=surfaceless");
     tryDisplay(openDevice(all[index]));
   } else if (device == "auto" || device == "surfaceless") {
     if (device == "auto") {
@@ -85,9 +84,8 @@ GlContext::GlContext(std::string device) {
     throw GlError("PITVIPER_GL is '" + device + "'; it can be auto, surfaceless or device:N");
   }
   if (context == EGL_NO_CONTEXT)
-    throw GlError(
-        "no OpenGL 4.5 core context through EGL (tried " + device +
-        "); install Mesa's software renderer: apt-get install libegl1 libgl1-mesa-dri, or a GPU driver with EGL");
+    throw GlError("no OpenGL 4.5 core context through EGL (tried " + device +
+                  "); install Mesa's software renderer: apt-get install libegl1 libgl1-mesa-dri, or a GPU driver with EGL");
   display_ = display;
   context_ = context;
   limits_.vendor = string(GL_VENDOR);
@@ -104,9 +102,12 @@ GlContext::~GlContext() {
 void checkGl(const char* doing) {
   const GLenum error = glGetError();
   if (error == GL_NO_ERROR) return;
-  std::string name = error == GL_OUT_OF_MEMORY ? "out of memory" : error == GL_INVALID_OPERATION ? "invalid operation"
-                     : error == GL_INVALID_VALUE ? "invalid value" : error == GL_INVALID_ENUM ? "invalid enum"
-                     : error == GL_INVALID_FRAMEBUFFER_OPERATION ? "incomplete framebuffer" : "error " + std::to_string(error);
+  std::string name = error == GL_OUT_OF_MEMORY                   ? "out of memory"
+                     : error == GL_INVALID_OPERATION             ? "invalid operation"
+                     : error == GL_INVALID_VALUE                 ? "invalid value"
+                     : error == GL_INVALID_ENUM                  ? "invalid enum"
+                     : error == GL_INVALID_FRAMEBUFFER_OPERATION ? "incomplete framebuffer"
+                                                                 : "error " + std::to_string(error);
   throw GlError(std::string("OpenGL: ") + name + " while " + doing);
 }
 

@@ -124,8 +124,8 @@ RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>
   }
   glNamedFramebufferDrawBuffers(n, static_cast<GLsizei>(buffers.size()), buffers.data());
   if (glCheckNamedFramebufferStatus(n, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw GlError("the driver cannot draw into " + std::to_string(colours.size()) + " targets of " + std::to_string(width) + "x" +
-                  std::to_string(height) + " pixels in single precision; ask for fewer channels or truth layers");
+    throw GlError("the driver cannot draw into " + std::to_string(colours.size()) + " targets of " + std::to_string(width) + "x" + std::to_string(height) +
+                  " pixels in single precision; ask for fewer channels or truth layers");
 }
 
 void RenderTarget::select(std::size_t first, std::size_t count) {

@@ -49,8 +49,7 @@ class Assembler {
         if (chosen == slots_.files.end()) throw std::logic_error(path + ": no file chosen for shader slot '" + slot + "'");
         file(chosen->second);
       } else if (current == "//@constants") {
-        for (const auto& [name, value] : slots_.constants)
-          line("const int " + name + " = " + std::to_string(value) + ";", "plan constant " + name);
+        for (const auto& [name, value] : slots_.constants) line("const int " + name + " = " + std::to_string(value) + ";", "plan constant " + name);
       } else {
         line(current, path + ":" + std::to_string(number));
       }

@@ -15,25 +15,30 @@ namespace {
 std::string adviceFor(int errorNumber) {
   switch (errorNumber) {
     case ENOSPC:
-    case EDQUOT: return "free space on that disk or choose another output folder";
-    case ENOENT: return "create the folder first";
+    case EDQUOT:
+      return "free space on that disk or choose another output folder";
+    case ENOENT:
+      return "create the folder first";
     case EACCES:
     case EPERM:
-    case EROFS: return "choose an output folder you may write to";
-    case ENOTDIR: return "choose another output folder; a file is in the way";
-    case ENAMETOOLONG: return "choose a shorter name";
-    case EFBIG: return "raise the file size limit (ulimit -f)";
-    default: return "check the folder and its disk";
+    case EROFS:
+      return "choose an output folder you may write to";
+    case ENOTDIR:
+      return "choose another output folder; a file is in the way";
+    case ENAMETOOLONG:
+      return "choose a shorter name";
+    case EFBIG:
+      return "raise the file size limit (ulimit -f)";
+    default:
+      return "check the folder and its disk";
   }
 }
 
 std::string compose(const std::filesystem::path& path, const std::string& what, int errorNumber, const std::string& fix) {
   std::string message = path.string() + ": " + what;
   if (errorNumber != 0) message += ": " + std::generic_category().message(errorNumber);
-  if (!fix.empty())
-    message += "; fix: " + fix;
-  else if (errorNumber != 0)
-    message += "; fix: " + adviceFor(errorNumber);
+  if (!fix.empty()) message += "; fix: " + fix;
+  else if (errorNumber != 0) message += "; fix: " + adviceFor(errorNumber);
   for (char& c : message)
     if (static_cast<unsigned char>(c) < 32) c = ' ';  // one line, whatever the path held
   return message;
@@ -93,12 +98,10 @@ void writeAll(int descriptor, std::string_view bytes, const std::filesystem::pat
 }
 
 void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes) {
-  if (path.filename().empty() || path.filename() == "." || path.filename() == "..")
-    throw OutputError(path, "is not a file name", 0, "give a file name");
+  if (path.filename().empty() || path.filename() == "." || path.filename() == "..") throw OutputError(path, "is not a file name", 0, "give a file name");
   // A rename over a device, a pipe or a folder would destroy it.
   struct stat existing = {};
-  if (::stat(path.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode))
-    throw OutputError(path, "exists and is not a regular file", 0, "choose another name");
+  if (::stat(path.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) throw OutputError(path, "exists and is not a regular file", 0, "choose another name");
   std::filesystem::path name = ".";
   name += path.filename();
   name += ".partial";

@@ -33,14 +33,10 @@ char32_t nextCodePoint(std::string_view& text) {
   const unsigned char first = byte(0);
   std::size_t length = 1;
   char32_t code = first, least = 0;
-  if (first >= 0xf0 && first < 0xf8)
-    length = 4, code = first & 0x07, least = 0x10000;
-  else if (first >= 0xe0 && first < 0xf0)
-    length = 3, code = first & 0x0f, least = 0x800;
-  else if (first >= 0xc0 && first < 0xe0)
-    length = 2, code = first & 0x1f, least = 0x80;
-  else if (first >= 0x80)
-    code = replacement;
+  if (first >= 0xf0 && first < 0xf8) length = 4, code = first & 0x07, least = 0x10000;
+  else if (first >= 0xe0 && first < 0xf0) length = 3, code = first & 0x0f, least = 0x800;
+  else if (first >= 0xc0 && first < 0xe0) length = 2, code = first & 0x1f, least = 0x80;
+  else if (first >= 0x80) code = replacement;
   for (std::size_t i = 1; i < length; ++i) {
     if (i >= text.size() || (byte(i) & 0xc0) != 0x80) {
       text.remove_prefix(i);
@@ -90,8 +86,7 @@ int layOut(FT_Face face, std::string_view utf8, int size_px, FT_Int32 loadFlags,
 
 std::filesystem::path findFont(const char* name) {
   // Debian and Ubuntu, Fedora, Arch.
-  constexpr std::array<const char*, 3> folders = {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/dejavu-sans-fonts",
-                                                  "/usr/share/fonts/TTF"};
+  constexpr std::array<const char*, 3> folders = {"/usr/share/fonts/truetype/dejavu", "/usr/share/fonts/dejavu-sans-fonts", "/usr/share/fonts/TTF"};
   for (const char* folder : folders) {
     std::error_code ignored;
     const std::filesystem::path file = std::filesystem::path(folder) / name;
@@ -120,9 +115,8 @@ int Font::width(std::string_view utf8, int size_px) const {
 void Font::draw(Rgb8Image& picture, int x, int y, std::string_view utf8, int size_px, Rgb8 colour) const {
   if (!available()) return;
   const std::lock_guard lock(state_->mutex);
-  layOut(state_->face, utf8, size_px, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT, [&](FT_GlyphSlot slot, int pen) {
-    drawGlyph(picture, slot->bitmap, x + pen + slot->bitmap_left, y - slot->bitmap_top, colour);
-  });
+  layOut(state_->face, utf8, size_px, FT_LOAD_RENDER | FT_LOAD_TARGET_LIGHT,
+         [&](FT_GlyphSlot slot, int pen) { drawGlyph(picture, slot->bitmap, x + pen + slot->bitmap_left, y - slot->bitmap_top, colour); });
 }
 
 const Font& plainFont() {

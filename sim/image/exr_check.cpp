@@ -138,8 +138,7 @@ class Walk {
   void dataWindow() {
     const std::int64_t x0 = i32(), y0 = i32(), x1 = i32(), y1 = i32();
     if (x1 < x0 || y1 < y0 || x1 - x0 >= maxSide || y1 - y0 >= maxSide)
-      fail("the data window is " + std::to_string(x1 - x0 + 1) + " x " + std::to_string(y1 - y0 + 1) + " pixels",
-           "1 to 32768 on a side");
+      fail("the data window is " + std::to_string(x1 - x0 + 1) + " x " + std::to_string(y1 - y0 + 1) + " pixels", "1 to 32768 on a side");
     // Addresses are formed relative to the window's corner; nobody needs one farther out.
     constexpr std::int64_t farthest = std::int64_t{1} << 24;
     if (std::max(std::max(-x0, x0), std::max(-y0, y0)) > farthest) fail("the data window lies absurdly far out", "a corner within 2^24");

@@ -13,10 +13,22 @@ constexpr std::size_t maxNameBytes = 255;  // the long-names flag of the file fo
 
 /// Attributes with a meaning of their own in EXR (OpenEXR file layout, "Predefined attributes"): not for metadata.
 inline bool isReserved(std::string_view name) {
-  constexpr std::array<std::string_view, 16> names = {
-      "channels",   "chunkCount", "compression",    "dataWindow",       "displayWindow",     "dwaCompressionLevel",
-      "lineOrder",  "name",       "maxSamplesPerPixel", "pixelAspectRatio", "screenWindowCenter", "screenWindowWidth",
-      "tiles",      "type",       "version",        "view"};
+  constexpr std::array<std::string_view, 16> names = {"channels",
+                                                      "chunkCount",
+                                                      "compression",
+                                                      "dataWindow",
+                                                      "displayWindow",
+                                                      "dwaCompressionLevel",
+                                                      "lineOrder",
+                                                      "name",
+                                                      "maxSamplesPerPixel",
+                                                      "pixelAspectRatio",
+                                                      "screenWindowCenter",
+                                                      "screenWindowWidth",
+                                                      "tiles",
+                                                      "type",
+                                                      "version",
+                                                      "view"};
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 

@@ -55,18 +55,12 @@ std::vector<Attribute> readAttributes(const Imf::Header& header) {
     const std::string name = i.name();
     if (exr::isReserved(name)) continue;
     const Imf::Attribute& stored = i.attribute();
-    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&stored))
-      found.push_back({name, text->value()});
-    else if (const auto* real = dynamic_cast<const Imf::DoubleAttribute*>(&stored))
-      found.push_back({name, real->value()});
-    else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&stored))
-      found.push_back({name, static_cast<double>(single->value())});
-    else if (const auto* whole = dynamic_cast<const Imf::IntAttribute*>(&stored))
-      found.push_back({name, whole->value()});
-    else if (const auto* v3d = dynamic_cast<const Imf::V3dAttribute*>(&stored))
-      found.push_back({name, listOf(v3d->value())});
-    else if (const auto* v3f = dynamic_cast<const Imf::V3fAttribute*>(&stored))
-      found.push_back({name, listOf(v3f->value())});
+    if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&stored)) found.push_back({name, text->value()});
+    else if (const auto* real = dynamic_cast<const Imf::DoubleAttribute*>(&stored)) found.push_back({name, real->value()});
+    else if (const auto* single = dynamic_cast<const Imf::FloatAttribute*>(&stored)) found.push_back({name, static_cast<double>(single->value())});
+    else if (const auto* whole = dynamic_cast<const Imf::IntAttribute*>(&stored)) found.push_back({name, whole->value()});
+    else if (const auto* v3d = dynamic_cast<const Imf::V3dAttribute*>(&stored)) found.push_back({name, listOf(v3d->value())});
+    else if (const auto* v3f = dynamic_cast<const Imf::V3fAttribute*>(&stored)) found.push_back({name, listOf(v3f->value())});
   }
   return found;
 }
@@ -82,8 +76,7 @@ ExrImage decode(const std::string& bytes) {
   image.attributes = readAttributes(header);
   const std::size_t width = static_cast<std::size_t>(image.width);
   const std::size_t count = width * static_cast<std::size_t>(image.height);
-  for (auto i = header.channels().begin(); i != header.channels().end(); ++i)
-    image.layers.push_back({i.name(), std::vector<float>(count)});
+  for (auto i = header.channels().begin(); i != header.channels().end(); ++i) image.layers.push_back({i.name(), std::vector<float>(count)});
   Imf::FrameBuffer frame;
   for (FloatLayer& layer : image.layers)
     frame.insert(layer.name, Imf::Slice::Make(Imf::FLOAT, layer.pixels.data(), window, sizeof(float), sizeof(float) * width));

@@ -80,16 +80,12 @@ std::string joinNumbers(const std::vector<double>& numbers) {
 
 void insert(Imf::Header& header, const Attribute& attribute) {
   const char* name = attribute.name.c_str();
-  if (const auto* text = std::get_if<std::string>(&attribute.value))
-    header.insert(name, Imf::StringAttribute(*text));
-  else if (const auto* number = std::get_if<double>(&attribute.value))
-    header.insert(name, Imf::DoubleAttribute(*number));
-  else if (const auto* whole = std::get_if<int>(&attribute.value))
-    header.insert(name, Imf::IntAttribute(*whole));
+  if (const auto* text = std::get_if<std::string>(&attribute.value)) header.insert(name, Imf::StringAttribute(*text));
+  else if (const auto* number = std::get_if<double>(&attribute.value)) header.insert(name, Imf::DoubleAttribute(*number));
+  else if (const auto* whole = std::get_if<int>(&attribute.value)) header.insert(name, Imf::IntAttribute(*whole));
   else if (const auto& list = std::get<std::vector<double>>(attribute.value); list.size() == 3)
     header.insert(name, Imf::V3dAttribute(Imath::V3d(list[0], list[1], list[2])));
-  else
-    header.insert(name, Imf::StringAttribute(joinNumbers(list)));
+  else header.insert(name, Imf::StringAttribute(joinNumbers(list)));
 }
 
 std::string encode(const ExrImage& image) {

@@ -26,9 +26,7 @@ struct Rgb8Image {
 
   bool holds(int x, int y) const { return x >= 0 && y >= 0 && x < width && y < height; }
   /// Index of the red byte; x and y must be inside.
-  std::size_t offset(int x, int y) const {
-    return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x));
-  }
+  std::size_t offset(int x, int y) const { return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)); }
   Rgb8 at(int x, int y) const {
     const std::size_t i = offset(x, y);
     return {rgb[i], rgb[i + 1], rgb[i + 2]};

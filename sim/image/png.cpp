@@ -18,9 +18,9 @@ namespace pitviper {
 namespace {
 
 constexpr png_uint_32 maxSide = 16384;
-constexpr std::size_t maxGreyPixels = std::size_t{8192} * 4096;      // a small file can claim 16384 x 16384: over 1 GB as floats
-constexpr std::size_t maxChunkBytes = std::size_t{16} << 20;  // of text, profiles and the like; pixels are not counted
-constexpr std::size_t maxDeflateFactor = 1032;                // zlib, "Maximum Compression Factor"
+constexpr std::size_t maxGreyPixels = std::size_t{8192} * 4096;  // a small file can claim 16384 x 16384: over 1 GB as floats
+constexpr std::size_t maxChunkBytes = std::size_t{16} << 20;     // of text, profiles and the like; pixels are not counted
+constexpr std::size_t maxDeflateFactor = 1032;                   // zlib, "Maximum Compression Factor"
 
 // libpng leaves on an error by longjmp, which must not pass objects with destructors. So all objects live in Job, outside the functions
 // that call setjmp, and those functions hold plain values only. Callbacks into C code may not throw either.
@@ -90,8 +90,8 @@ class Reader {
   void header() {
     if (!readHeader(job_)) fail();
     if (job_.width > maxSide || job_.height > maxSide)
-      throw UserError(where_, "the picture is " + std::to_string(job_.width) + " x " + std::to_string(job_.height) + " pixels",
-                      "at most 16384 on a side", "make a smaller picture");
+      throw UserError(where_, "the picture is " + std::to_string(job_.width) + " x " + std::to_string(job_.height) + " pixels", "at most 16384 on a side",
+                      "make a smaller picture");
   }
 
   /// `rgb`: convert everything to 8-bit RGB; else keep grey codes, unpacked to 8 or 16 bits.
@@ -116,8 +116,7 @@ class Reader {
 
  private:
   [[noreturn]] void fail() const {
-    throw UserError(where_, std::string("cannot read the PNG picture: ") + job_.message.data(), "a whole PNG file",
-                    "copy or convert the file again");
+    throw UserError(where_, std::string("cannot read the PNG picture: ") + job_.message.data(), "a whole PNG file", "copy or convert the file again");
   }
 
   void release() { png_destroy_read_struct(&job_.png, &job_.info, nullptr); }
@@ -164,8 +163,7 @@ bool encode(Job& job) {
   png_set_write_fn(job.png, &job, onWrite, onFlush);
   png_set_compression_level(job.png, 6);
   png_set_filter(job.png, PNG_FILTER_TYPE_BASE, PNG_ALL_FILTERS);
-  png_set_IHDR(job.png, job.info, job.width, job.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(job.png, job.info, job.width, job.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(job.png, job.info, PNG_sRGB_INTENT_RELATIVE);
   png_write_info(job.png, job.info);
   png_write_image(job.png, job.rows.data());
@@ -180,8 +178,7 @@ void writePng(const std::filesystem::path& path, const Rgb8Image& picture) {
   if (picture.width < 1 || picture.height < 1 || picture.width > limit || picture.height > limit)
     throw std::invalid_argument("writePng: a side is not in 1..16384");
   const std::size_t rowBytes = 3 * static_cast<std::size_t>(picture.width);
-  if (picture.rgb.size() != rowBytes * static_cast<std::size_t>(picture.height))
-    throw std::invalid_argument("writePng: rgb is not 3 * width * height");
+  if (picture.rgb.size() != rowBytes * static_cast<std::size_t>(picture.height)) throw std::invalid_argument("writePng: rgb is not 3 * width * height");
   Job job;
   job.width = static_cast<png_uint_32>(picture.width);
   job.height = static_cast<png_uint_32>(picture.height);
@@ -191,8 +188,7 @@ void writePng(const std::filesystem::path& path, const Rgb8Image& picture) {
   if (job.png != nullptr) job.info = png_create_info_struct(job.png);
   const bool whole = job.info != nullptr && encode(job);
   png_destroy_write_struct(&job.png, &job.info);
-  if (!whole)
-    throw OutputError(path, std::string("cannot encode the picture: ") + job.message.data(), 0, "free memory or make a smaller picture");
+  if (!whole) throw OutputError(path, std::string("cannot encode the picture: ") + job.message.data(), 0, "free memory or make a smaller picture");
   writeFileAtomically(path, job.bytes);
 }
 
@@ -221,8 +217,7 @@ GreyImage readPngGrey(const std::filesystem::path& path) {
   image.bits = job.bits;
   image.pixels.resize(static_cast<std::size_t>(job.width) * job.height);
   if (job.bits == 16) {
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-      image.pixels[i] = static_cast<float>(job.pixels[2 * i] << 8 | job.pixels[2 * i + 1]) / 65535.0f;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(job.pixels[2 * i] << 8 | job.pixels[2 * i + 1]) / 65535.0f;
   } else {
     for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i] = static_cast<float>(job.pixels[i]) / 255.0f;
   }

@@ -143,8 +143,8 @@ void drawFrame(Rgb8Image& canvas, int x0, int y0, int x1, int y1) {
   canvas.fill(x1, y0, x1 + 1, y1, frameColour);
 }
 
-void drawPixels(Rgb8Image& canvas, int x0, int y0, int factor, int width, int height, const std::vector<float>& pixels,
-                const ColourMap& map, const Scale& scale) {
+void drawPixels(Rgb8Image& canvas, int x0, int y0, int factor, int width, int height, const std::vector<float>& pixels, const ColourMap& map,
+                const Scale& scale) {
   std::size_t i = 0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
@@ -164,8 +164,7 @@ void drawArrow(Rgb8Image& canvas, int x0, int width, int base, int height, bool 
   }
 }
 
-void drawBar(Rgb8Image& canvas, int x0, int top, int bottom, const BarText& text, const Measures& measure, const ColourMap& map,
-             const Scale& scale) {
+void drawBar(Rgb8Image& canvas, int x0, int top, int bottom, const BarText& text, const Measures& measure, const ColourMap& map, const Scale& scale) {
   const Font& font = plainFont();
   const int labelsAt = x0 + measure.bar + measure.tick + measure.text / 3;
   const int rise = measure.text * 36 / 100;  // half the height of digits in DejaVu Sans
@@ -173,9 +172,7 @@ void drawBar(Rgb8Image& canvas, int x0, int top, int bottom, const BarText& text
     font.draw(canvas, x0, top + measure.text * 3 / 4, text.unit, measure.text, strongText);
     top += measure.text + measure.text;
   }
-  const auto note = [&](const std::string& words, int middle) {
-    font.draw(canvas, labelsAt, middle + rise, words, measure.text, strongText);
-  };
+  const auto note = [&](const std::string& words, int middle) { font.draw(canvas, labelsAt, middle + rise, words, measure.text, strongText); };
   if (!text.mostNote.empty()) {
     top += measure.arrow + 2;
     drawArrow(canvas, x0, measure.bar, top - 2, measure.arrow, true, map(1.0f));
@@ -259,8 +256,7 @@ std::pair<double, double> automaticRange(const std::vector<float>& pixels) {
 }
 
 Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, const PreviewOptions& options) {
-  if (width < 1 || height < 1 || width > maxSide || height > maxSide)
-    throw std::invalid_argument("makePreview: a side is not in 1..8192");
+  if (width < 1 || height < 1 || width > maxSide || height > maxSide) throw std::invalid_argument("makePreview: a side is not in 1..8192");
   if (pixels.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
     throw std::invalid_argument("makePreview: pixels are not width * height");
   const ColourMap& map = colourMap(options.colourMap);
@@ -280,13 +276,13 @@ Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, c
   const int titleHeight = options.title.empty() ? 0 : measure.title + measure.text;
   const int bodyHeight = std::max(pictureHeight, std::max(minBarHeight, 14 * measure.text));
 
-  Rgb8Image canvas(measure.margin + pictureWidth + measure.gap + column + measure.margin,
-                   measure.margin + titleHeight + bodyHeight + measure.margin, background);
+  Rgb8Image canvas(measure.margin + pictureWidth + measure.gap + column + measure.margin, measure.margin + titleHeight + bodyHeight + measure.margin,
+                   background);
   const int bodyTop = measure.margin + titleHeight;
   if (!options.title.empty()) {
     const int room = canvas.width - 2 * measure.margin;
-    boldFont().draw(canvas, measure.margin, measure.margin + measure.title * 8 / 10,
-                    shortened(boldFont(), options.title, measure.title, room), measure.title, strongText);
+    boldFont().draw(canvas, measure.margin, measure.margin + measure.title * 8 / 10, shortened(boldFont(), options.title, measure.title, room), measure.title,
+                    strongText);
   }
   const int pictureTop = bodyTop + (bodyHeight - pictureHeight) / 2;
   drawPixels(canvas, measure.margin, pictureTop, factor, width, height, pixels, map, scale);

@@ -10,10 +10,10 @@
 namespace pitviper {
 
 struct PreviewOptions {
-  std::string title;                                ///< UTF-8, one line; shortened if it does not fit
-  std::string unit;                                 ///< UTF-8, above the colour bar
-  std::string colourMap = "thermal";                ///< a name of colour_map.hpp
-  std::optional<std::pair<double, double>> range;   ///< values of the bar's ends; none: chosen by automaticRange
+  std::string title;                               ///< UTF-8, one line; shortened if it does not fit
+  std::string unit;                                ///< UTF-8, above the colour bar
+  std::string colourMap = "thermal";               ///< a name of colour_map.hpp
+  std::optional<std::pair<double, double>> range;  ///< values of the bar's ends; none: chosen by automaticRange
 };
 
 /// The 0.5 and 99.8 percentile of the finite pixels; smallest to largest where these coincide; never empty. Where that would leave the

@@ -36,8 +36,7 @@ std::string readWholeFile(const std::filesystem::path& path) {
   const auto reason = [](int number) { return std::generic_category().message(number); };
   // Without O_NONBLOCK a named pipe would wait for a writer before it can be refused.
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
-  if (file.number() < 0)
-    throw UserError(where, "cannot open the file: " + reason(errno), "a readable file", "check the path and its permissions");
+  if (file.number() < 0) throw UserError(where, "cannot open the file: " + reason(errno), "a readable file", "check the path and its permissions");
   struct stat about = {};
   if (::fstat(file.number(), &about) != 0) throw UserError(where, "cannot read the file: " + reason(errno), "a readable file", "check the file and its disk");
   if (!S_ISREG(about.st_mode)) throw UserError(where, "is not a regular file", "an image file", "give the path of a file");

@@ -40,8 +40,7 @@ Multiples multiples(double low, double high, double step) {
 }  // namespace
 
 Ticks chooseTicks(double low, double high) {
-  if (!std::isfinite(low) || !std::isfinite(high) || !(low < high) || !std::isfinite(high - low))
-    throw std::invalid_argument("chooseTicks: no range");
+  if (!std::isfinite(low) || !std::isfinite(high) || !(low < high) || !std::isfinite(high - low)) throw std::invalid_argument("chooseTicks: no range");
   const int decade = static_cast<int>(std::floor(std::log10(high - low)));
   double best = 0, bestDistance = std::numeric_limits<double>::infinity();
   int bestDecade = 0;

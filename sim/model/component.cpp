@@ -84,11 +84,16 @@ class Rings {
   static int rank(Angle a) {
     switch (a) {
       case Angle::None:
-      case Angle::View: return 0;
-      case Angle::Incidence: return 1;
-      case Angle::Difference: return 2;
-      case Angle::Specular: return 3;
-      case Angle::Half: return 4;
+      case Angle::View:
+        return 0;
+      case Angle::Incidence:
+        return 1;
+      case Angle::Difference:
+        return 2;
+      case Angle::Specular:
+        return 3;
+      case Angle::Half:
+        return 4;
     }
     return 0;
   }
@@ -205,12 +210,18 @@ double angleBetween(Angle kind, const glm::dvec3& l, const glm::dvec3& v) {
   auto between = [](const glm::dvec3& a, const glm::dvec3& b) { return 2.0 * std::asin(std::min(1.0, 0.5 * glm::length(a - b))); };
   const glm::dvec3 n(0, 0, 1);
   switch (kind) {
-    case Angle::None: return 0.0;
-    case Angle::Incidence: return between(n, l);
-    case Angle::View: return between(n, v);
-    case Angle::Specular: return between(glm::dvec3(-l.x, -l.y, l.z), v);
-    case Angle::Half: return between(n, glm::normalize(l + v));
-    case Angle::Difference: return between(l, glm::normalize(l + v));
+    case Angle::None:
+      return 0.0;
+    case Angle::Incidence:
+      return between(n, l);
+    case Angle::View:
+      return between(n, v);
+    case Angle::Specular:
+      return between(glm::dvec3(-l.x, -l.y, l.z), v);
+    case Angle::Half:
+      return between(n, glm::normalize(l + v));
+    case Angle::Difference:
+      return between(l, glm::normalize(l + v));
   }
   return 0.0;
 }

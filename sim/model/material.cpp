@@ -9,7 +9,8 @@ namespace pitviper {
 double GivenEmissivity::at(double wavelength_um, double angle) const {
   if (tabulated()) {
     const auto& x = table.wavelength_um;
-    if (wavelength_um < x.front() || wavelength_um > x.back()) throw OutsideSpectrum("an emissivity table has no data at " + std::to_string(wavelength_um) + " um");
+    if (wavelength_um < x.front() || wavelength_um > x.back())
+      throw OutsideSpectrum("an emissivity table has no data at " + std::to_string(wavelength_um) + " um");
     const size_t n = x.size();
     const size_t i = n < 2 ? 0 : std::min(static_cast<size_t>(std::upper_bound(x.begin(), x.end(), wavelength_um) - x.begin()) - 1, n - 2);
     const double f = n < 2 ? 0.0 : (wavelength_um - x[i]) / (x[i + 1] - x[i]);

@@ -24,7 +24,7 @@ struct GivenEmissivity {
   Spectrum emissivity;
   std::vector<double> viewAngle_rad;  ///< rising from 0, or empty: no dependence
   std::vector<double> factor;
-  EmissivityTable table;              ///< instead of the three above, where it has wavelengths
+  EmissivityTable table;  ///< instead of the three above, where it has wavelengths
   int modifier = -1;
   /// Throws OutsideSpectrum where the table or the spectrum has no data.
   double at(double wavelength_um, double viewAngle_rad) const;
@@ -42,8 +42,8 @@ struct Material {
   std::string provenance;
   Location where;
   std::vector<std::shared_ptr<const ReflectionComponent>> reflections;  ///< at most three
-  std::vector<int> modifiers;                                          ///< texture index or -1, one per reflection
-  std::optional<GivenEmissivity> given;                                ///< absent: Kirchhoff, 1 - reflectance
+  std::vector<int> modifiers;                                           ///< texture index or -1, one per reflection
+  std::optional<GivenEmissivity> given;                                 ///< absent: Kirchhoff, 1 - reflectance
 
   /// Sum of the components' directional-hemispherical reflectances, modifiers at 1.
   double reflectance(double wavelength_um, double viewAngle_rad) const;
@@ -51,7 +51,7 @@ struct Material {
   /// View angles at which an emissivity or a table over the view angle bends, rising, below 90 deg.
   std::vector<double> viewKnots_rad() const;
   bool hemisphericalVaries() const;  ///< reflectance or given emissivity with view angle
-  bool needsAngles() const;     ///< a table over angles, or an emissivity that changes with view
+  bool needsAngles() const;          ///< a table over angles, or an emissivity that changes with view
   bool hasModifiers() const;
   double validLow_um() const;
   double validHigh_um() const;

@@ -34,8 +34,8 @@ struct Camera {
   Mount mount;
   double exposure_s = 0.0;
   double near_m = 0.1;
-  int samples = 1;                 ///< n: n x n subpixels
-  double smallBody_px = 16.0;      ///< bodies smaller than this are drawn by their own zoomed view
+  int samples = 1;             ///< n: n x n subpixels
+  double smallBody_px = 16.0;  ///< bodies smaller than this are drawn by their own zoomed view
   SpectralSampling spectral;
   std::vector<ChannelOutput> outputs;
   TruthLayers truth;

@@ -28,8 +28,7 @@ class UserError : public std::runtime_error {
       : std::runtime_error(compose(where, wrong, expected, fix)) {}
 
  private:
-  static std::string compose(const Location& where, const std::string& wrong, const std::string& expected,
-                             const std::string& fix) {
+  static std::string compose(const Location& where, const std::string& wrong, const std::string& expected, const std::string& fix) {
     std::string message = where.text() + ": " + wrong;
     if (!expected.empty()) message += "; expected " + expected;
     if (!fix.empty()) message += "; fix: " + fix;

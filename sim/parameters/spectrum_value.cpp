@@ -44,13 +44,14 @@ Spectrum fromRows(std::vector<Row> rows, const std::string& axisUnit, const Loca
   Axis axis = Axis::Wavelength;
   if (!convert({1.0, axisUnit}, "um")) {
     if (!convert({1.0, axisUnit}, "1/cm"))
-      throw UserError(axisWhere, "the spectral axis of " + std::string(name) + " has the unit '" + axisUnit + "'", "a wavelength (um, nm) or a wavenumber (1/cm)",
-                      "write 'wavelength: um' or 'wavelength: 1/cm'");
+      throw UserError(axisWhere, "the spectral axis of " + std::string(name) + " has the unit '" + axisUnit + "'",
+                      "a wavelength (um, nm) or a wavenumber (1/cm)", "write 'wavelength: um' or 'wavelength: 1/cm'");
     axis = Axis::Wavenumber;
   }
   if (!convert({1.0, valueUnit}, canonical))
     throw UserError(unitWhere, "the values of " + std::string(name) + " have the unit '" + valueUnit + "'",
-                    canonical.empty() ? "plain numbers (unit 1)" : "a unit of the dimension of " + std::string(canonical), "write 'unit: " + (canonical.empty() ? "\"1\"" : std::string(canonical)) + "'");
+                    canonical.empty() ? "plain numbers (unit 1)" : "a unit of the dimension of " + std::string(canonical),
+                    "write 'unit: " + (canonical.empty() ? "\"1\"" : std::string(canonical)) + "'");
   if (rows.empty()) throw UserError(where, "the table of " + std::string(name) + " is empty", "at least one row", "add rows [wavelength, value]");
   const bool falls = rows.size() > 1 && rows[1].x < rows[0].x;
   if (falls && axis == Axis::Wavelength)
@@ -66,10 +67,12 @@ Spectrum fromRows(std::vector<Row> rows, const std::string& axisUnit, const Loca
                       "each above the one before", "sort the table and remove duplicates");
     const double w = axis == Axis::Wavenumber ? 1e4 / (r.x * perCm) : *convert({r.x, axisUnit}, "um");
     if (!(w >= kShortestWavelength_um * (1 - 1e-9) && w <= kLongestWavelength_um * (1 + 1e-9)))
-      throw UserError(r.where, "a wavelength of " + std::string(name) + " is outside the spectral axis", "0.1 to 1000 um (10 to 100000 1/cm)", "check the unit of the first column");
+      throw UserError(r.where, "a wavelength of " + std::string(name) + " is outside the spectral axis", "0.1 to 1000 um (10 to 100000 1/cm)",
+                      "check the unit of the first column");
     const double value = *convert({r.y, valueUnit}, canonical);
     if (!(std::abs(value) <= kLargestValue))
-      throw UserError(r.where, "a value of " + std::string(name) + " is larger than any that can be drawn", "at most 1e30 " + std::string(canonical), "correct it or its unit");
+      throw UserError(r.where, "a value of " + std::string(name) + " is larger than any that can be drawn", "at most 1e30 " + std::string(canonical),
+                      "correct it or its unit");
     // Neighbours a last digit apart can become one by the change of unit.
     if (!t.wavelength_um.empty() && w == t.wavelength_um.back())
       throw UserError(r.where, "two wavelengths of " + std::string(name) + " are the same", "each above the one before", "remove one of the rows");
@@ -85,14 +88,18 @@ Spectrum fromRows(std::vector<Row> rows, const std::string& axisUnit, const Loca
 
 double bandValue(const Value& v, std::string_view unit) {
   const double x = readNumber(v, unit, "band value");
-  if (!(std::abs(x) <= kLargestValue)) throw UserError(v.where, "the band value is larger than any that can be drawn", "at most 1e30 " + std::string(unit), "correct it or its unit");
+  if (!(std::abs(x) <= kLargestValue))
+    throw UserError(v.where, "the band value is larger than any that can be drawn", "at most 1e30 " + std::string(unit), "correct it or its unit");
   return x;
 }
 
 double plainNumber(const Value& v, std::string_view name) {
   const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
   if (!q || !q->unit.empty())
-    throw UserError(v.where, "a table entry of " + std::string(name) + " is not a plain finite number" + (v.kind == Value::Kind::Scalar ? " ('" + v.text.substr(0, 40) + "')" : std::string()), "two numbers [wavelength, value], units given once above", "write numbers only");
+    throw UserError(v.where,
+                    "a table entry of " + std::string(name) + " is not a plain finite number" +
+                        (v.kind == Value::Kind::Scalar ? " ('" + v.text.substr(0, 40) + "')" : std::string()),
+                    "two numbers [wavelength, value], units given once above", "write numbers only");
   return q->value;
 }
 
@@ -104,20 +111,17 @@ const ParameterTable& spectrumTable() {
       "Where a key takes a spectrum, write a quantity (`0.2 /km`: the same at all wavelengths), the name of a library spectrum "
       "(`insb_mwir`), or a map with one of `values`, `file`, `library`, `band`, `blackbody`, `product`.",
       {list("values", "rows [wavelength, value], rising; piecewise linear", 1, kMostSpectrumRows),
-       text("wavelength", "unit of the first column: um, nm, or 1/cm for wavenumbers (vacuum)"),
-       text("unit", "unit of the values"),
+       text("wavelength", "unit of the first column: um, nm, or 1/cm for wavenumbers (vacuum)"), text("unit", "unit of the values"),
        choice("outside", {"zero", "hold", "error"}, "what it is outside its table (a response: zero; others: error)"),
-       text("file", "CSV with two columns and a header that names their units: `wavelength [um], value [1]`"),
-       text("library", "name of a library spectrum"),
-       list("band", "[from, to]: `value` between these wavelengths, 0 elsewhere", 2, 2),
-       any("value", "height of the band (default 1)"),
-       within(above(number("blackbody", "K", "Planck radiance at this temperature; with `area` an intensity, with `solid_angle` an irradiance"), 0.0), 0.0, 1e5),
+       text("file", "CSV with two columns and a header that names their units: `wavelength [um], value [1]`"), text("library", "name of a library spectrum"),
+       list("band", "[from, to]: `value` between these wavelengths, 0 elsewhere", 2, 2), any("value", "height of the band (default 1)"),
+       within(above(number("blackbody", "K", "Planck radiance at this temperature; with `area` an intensity, with `solid_angle` an irradiance"), 0.0), 0.0,
+              1e5),
        within(above(number("area", "m2", "radiating area of a black body light"), 0.0), 0.0, 1e12),
        within(above(number("solid_angle", "sr", "solid angle of a black body sun"), 0.0), 0.0, 2.0 * kPi),
        list("product", "spectra to be multiplied (all but the first dimensionless)", 1, 32),
        any("power", "of an intensity: spectral power distribution; intensity = power / (4 pi)"),
-       within(number("scale", "", "factor"), -kLargestValue, kLargestValue),
-       text("source", "where the figures come from")}};
+       within(number("scale", "", "factor"), -kLargestValue, kLargestValue), text("source", "where the figures come from")}};
   return table;
 }
 
@@ -155,9 +159,11 @@ Spectrum SpectrumReader::readAny(const Value& value, std::string_view unit, std:
   return Spectrum(constant);
 }
 
-Spectrum SpectrumReader::readLibrary(const std::string& word, const Location& where, std::string_view unit, std::string_view name, Outside outside, int depth) const {
+Spectrum SpectrumReader::readLibrary(const std::string& word, const Location& where, std::string_view unit, std::string_view name, Outside outside,
+                                     int depth) const {
   std::vector<std::string> names;
-  const bool plain = !word.empty() && word.size() < 100 && std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
+  const bool plain =
+      !word.empty() && word.size() < 100 && std::all_of(word.begin(), word.end(), [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-'; });
   for (const auto& folder : files_.library) {
     const auto path = folder / (word + ".yaml");
     std::error_code ignored;
@@ -177,7 +183,8 @@ Spectrum SpectrumReader::readLibrary(const std::string& word, const Location& wh
   std::string all;
   for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
   throw UserError(where, std::string(name) + " is neither a quantity nor a library spectrum ('" + word.substr(0, 60) + "')",
-                  unitExample(unit) + ", or one of " + all, near.empty() ? "write a number with its unit, a table or a library name" : "did you mean '" + near + "'?");
+                  unitExample(unit) + ", or one of " + all,
+                  near.empty() ? "write a number with its unit, a table or a library name" : "did you mean '" + near + "'?");
 }
 
 Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std::string_view name, Outside outside, int depth) const {
@@ -187,7 +194,8 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
   for (const char* k : kinds)
     if (r.given(k)) given.emplace_back(k);
   if (given.size() != 1)
-    throw UserError(value.where, std::string(name) + (given.empty() ? " says nothing of its values" : " is given in " + std::to_string(given.size()) + " ways at once"),
+    throw UserError(value.where,
+                    std::string(name) + (given.empty() ? " says nothing of its values" : " is given in " + std::to_string(given.size()) + " ways at once"),
                     "one of values, file, library, band, blackbody, product, power", given.empty() ? "add one of them" : "keep one of them");
   const std::string& kind = given.front();
   const Outside beyond = outsideOf(value, outside);
@@ -195,13 +203,19 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
   Spectrum s;
   if (kind == "values") {
     for (const char* key : {"wavelength"})
-      if (!r.given(key)) throw UserError(value.where, "the table of " + std::string(name) + " has no unit for its first column", "'wavelength: um', 'nm' or '1/cm'", "add 'wavelength: um'");
-    if (!r.given("unit")) throw UserError(value.where, "the table of " + std::string(name) + " has no unit for its values", unit.empty() ? "'unit: \"1\"'" : "'unit: " + std::string(unit) + "'", "add it");
+      if (!r.given(key))
+        throw UserError(value.where, "the table of " + std::string(name) + " has no unit for its first column", "'wavelength: um', 'nm' or '1/cm'",
+                        "add 'wavelength: um'");
+    if (!r.given("unit"))
+      throw UserError(value.where, "the table of " + std::string(name) + " has no unit for its values",
+                      unit.empty() ? "'unit: \"1\"'" : "'unit: " + std::string(unit) + "'", "add it");
     std::vector<Row> rows;
     for (const Value& row : r.value("values").items) {
       if (row.kind != Value::Kind::List || row.items.size() != 2)
-        throw UserError(row.where, "a table row of " + std::string(name) + " is " + (row.kind == Value::Kind::List ? "a list of " + std::to_string(row.items.size()) : row.kindName()),
-                        "two numbers [wavelength, value]", "write [3.5, 0.82]");
+        throw UserError(
+            row.where,
+            "a table row of " + std::string(name) + " is " + (row.kind == Value::Kind::List ? "a list of " + std::to_string(row.items.size()) : row.kindName()),
+            "two numbers [wavelength, value]", "write [3.5, 0.82]");
       rows.push_back({plainNumber(row.items[0], name), plainNumber(row.items[1], name), row.where});
     }
     s = fromRows(std::move(rows), r.text("wavelength"), r.where("wavelength"), r.text("unit"), r.where("unit"), unit, beyond, name, value.where);
@@ -215,7 +229,8 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
     const auto& b = r.value("band").items;
     const double low = readNumber(b[0], "um", "band edge"), high = readNumber(b[1], "um", "band edge");
     if (!(low >= kShortestWavelength_um && high <= kLongestWavelength_um && low < high))
-      throw UserError(r.where("band"), "the band of " + std::string(name) + " is empty or outside the spectral axis", "rising edges within 0.1 to 1000 um", "write [3 um, 5 um]");
+      throw UserError(r.where("band"), "the band of " + std::string(name) + " is empty or outside the spectral axis", "rising edges within 0.1 to 1000 um",
+                      "write [3 um, 5 um]");
     s = Spectrum::band(low, high, r.given("value") ? bandValue(r.value("value"), unit) : convert({1.0, ""}, unit).value_or(1.0));
   } else if (kind == "blackbody") {
     const double t = r.number("blackbody");
@@ -225,7 +240,8 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
     if (r.given("solid_angle")) factor *= r.number("solid_angle"), dimension = r.given("area") ? "W/um" : "W/(m2 um)";
     const auto converted = convert({factor, dimension}, unit);
     if (!converted)
-      throw UserError(value.where, "a black body here is in " + dimension + " but " + std::string(name) + " is in " + std::string(unit.empty() ? "plain numbers" : unit),
+      throw UserError(value.where,
+                      "a black body here is in " + dimension + " but " + std::string(name) + " is in " + std::string(unit.empty() ? "plain numbers" : unit),
                       "for an intensity 'area', for an irradiance 'solid_angle', for a radiance neither", "add or remove 'area' or 'solid_angle'");
     s = Spectrum(Spectrum::BlackBody{t, *converted});
   } else if (kind == "product") {
@@ -235,7 +251,8 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
       s = first ? f : s * f;
       first = false;
       if (rowsOf(s) > kMostSpectrumRows)
-        throw UserError(factor.where, "the factors of " + std::string(name) + " have more than " + std::to_string(kMostSpectrumRows) + " rows together", "fewer rows", "thin the tables out");
+        throw UserError(factor.where, "the factors of " + std::string(name) + " have more than " + std::to_string(kMostSpectrumRows) + " rows together",
+                        "fewer rows", "thin the tables out");
     }
   } else {
     if (!convert({1.0, "W/(sr um)"}, unit))
@@ -251,9 +268,11 @@ Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view uni
   std::ifstream in(file);
   std::error_code ignored;
   if (!in || !std::filesystem::is_regular_file(file, ignored))
-    throw UserError(askedAt, "cannot read the file '" + file.string() + "'", "a CSV file with a spectrum", "check the name; it is relative to the scenario's folder");
+    throw UserError(askedAt, "cannot read the file '" + file.string() + "'", "a CSV file with a spectrum",
+                    "check the name; it is relative to the scenario's folder");
   if (std::filesystem::file_size(file, ignored) > kLargestCsvBytes)
-    throw UserError({file.string(), 1, 1, -1}, "the file is larger than 16 MB", "a table of at most " + std::to_string(kMostSpectrumRows) + " rows", "thin the table out");
+    throw UserError({file.string(), 1, 1, -1}, "the file is larger than 16 MB", "a table of at most " + std::to_string(kMostSpectrumRows) + " rows",
+                    "thin the table out");
   std::string line, axisUnit, valueUnit;
   Location where{file.string(), 0, 1, -1};
   Location unitPlace[2];
@@ -265,7 +284,8 @@ Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view uni
     if (line.empty() || line[0] == '#') continue;
     const size_t comma = line.find(',');
     if (comma == std::string::npos || line.find(',', comma + 1) != std::string::npos)
-      throw UserError(where, comma == std::string::npos ? "a row of one column" : "a row of more than two columns", "two columns separated by one comma", "keep wavelength and value only");
+      throw UserError(where, comma == std::string::npos ? "a row of one column" : "a row of more than two columns", "two columns separated by one comma",
+                      "keep wavelength and value only");
     const std::string cell[2] = {line.substr(0, comma), line.substr(comma + 1)};
     if (!haveHeader) {
       std::string* units[2] = {&axisUnit, &valueUnit};
@@ -274,7 +294,8 @@ Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view uni
         unitPlace[c] = where;
         unitPlace[c].column = static_cast<int>((c == 0 ? 0 : comma + 1) + (open == std::string::npos ? 0 : open)) + 1;
         if (open == std::string::npos || close == std::string::npos || close < open)
-          throw UserError(unitPlace[c], "the header names no unit in column " + std::to_string(c + 1), "a header such as 'wavelength [um], transmittance [1]'", "write the units in brackets");
+          throw UserError(unitPlace[c], "the header names no unit in column " + std::to_string(c + 1), "a header such as 'wavelength [um], transmittance [1]'",
+                          "write the units in brackets");
         *units[c] = cell[c].substr(open + 1, close - open - 1);
       }
       haveHeader = true;
@@ -296,7 +317,8 @@ Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view uni
     if (rows.size() > kMostSpectrumRows)
       throw UserError(where, "the table goes on after " + std::to_string(kMostSpectrumRows) + " rows", "at most that many", "thin the table out");
   }
-  if (!haveHeader) throw UserError(Location{file.string(), 1, 1, -1}, "the file is empty", "a header and rows", "write 'wavelength [um], value [1]' and rows under it");
+  if (!haveHeader)
+    throw UserError(Location{file.string(), 1, 1, -1}, "the file is empty", "a header and rows", "write 'wavelength [um], value [1]' and rows under it");
   const Location whole{file.string(), 1, 1, -1};
   return fromRows(std::move(rows), axisUnit, unitPlace[0], valueUnit, unitPlace[1], unit, outside, "this table", whole);
 }

@@ -61,7 +61,9 @@ std::string rangeText(Parameter p) {
 void checkRange(const Parameter& p, double v, const Value& written) {
   const bool low = p.exclusiveMinimum ? v <= p.minimum : v < p.minimum;
   if (low || v > p.maximum)
-    throw UserError(written.where, p.key + " is out of range (" + (written.kind == Value::Kind::Scalar ? written.text.substr(0, 60) : shortNumber(v) + (p.unit.empty() ? "" : " " + p.unit)) + ")",
+    throw UserError(written.where,
+                    p.key + " is out of range (" +
+                        (written.kind == Value::Kind::Scalar ? written.text.substr(0, 60) : shortNumber(v) + (p.unit.empty() ? "" : " " + p.unit)) + ")",
                     rangeText(p), "change the value of '" + p.key + "'");
 }
 
@@ -70,8 +72,9 @@ long long readInteger(const Value& value, std::string_view name) {
   const std::string& t = value.text;
   const auto [end, error] = std::from_chars(t.data(), t.data() + t.size(), v);
   if (value.kind != Value::Kind::Scalar || error != std::errc() || end != t.data() + t.size())
-    throw UserError(value.where, std::string(name) + " is " + (value.kind == Value::Kind::Scalar ? "not a whole number (" + quotedShort(t) + ")" : value.kindName()), "a whole number such as 16",
-                    "write '" + std::string(name) + ": 16'");
+    throw UserError(value.where,
+                    std::string(name) + " is " + (value.kind == Value::Kind::Scalar ? "not a whole number (" + quotedShort(t) + ")" : value.kindName()),
+                    "a whole number such as 16", "write '" + std::string(name) + ": 16'");
   return v;
 }
 
@@ -80,21 +83,31 @@ bool readBoolean(const Value& value, std::string_view name) {
     if (value.text == "true" || value.text == "yes" || value.text == "on") return true;
     if (value.text == "false" || value.text == "no" || value.text == "off") return false;
   }
-  throw UserError(value.where, std::string(name) + " is " + (value.kind == Value::Kind::Scalar ? "neither true nor false (" + quotedShort(value.text) + ")" : value.kindName()), "true or false",
-                  "write '" + std::string(name) + ": true'");
+  throw UserError(
+      value.where,
+      std::string(name) + " is " + (value.kind == Value::Kind::Scalar ? "neither true nor false (" + quotedShort(value.text) + ")" : value.kindName()),
+      "true or false", "write '" + std::string(name) + ": true'");
 }
 
 void check(const Parameter& p, const Value& v) {
   switch (p.type) {
-    case ParameterType::Number: checkRange(p, readNumber(v, p.unit, p.key), v); break;
-    case ParameterType::Integer: checkRange(p, static_cast<double>(readInteger(v, p.key)), v); break;
-    case ParameterType::Boolean: readBoolean(v, p.key); break;
-    case ParameterType::Text: readText(v, p.key); break;
+    case ParameterType::Number:
+      checkRange(p, readNumber(v, p.unit, p.key), v);
+      break;
+    case ParameterType::Integer:
+      checkRange(p, static_cast<double>(readInteger(v, p.key)), v);
+      break;
+    case ParameterType::Boolean:
+      readBoolean(v, p.key);
+      break;
+    case ParameterType::Text:
+      readText(v, p.key);
+      break;
     case ParameterType::Choice:
       if (v.kind != Value::Kind::Scalar || std::find(p.choices.begin(), p.choices.end(), v.text) == p.choices.end()) {
         const std::string near = nearestWord(v.text, p.choices);
-        throw UserError(v.where, p.key + " cannot be " + (v.kind == Value::Kind::Scalar ? quotedShort(v.text) : v.kindName()),
-                        "one of " + joined(p.choices), near.empty() ? "choose one of these" : "write '" + near + "'");
+        throw UserError(v.where, p.key + " cannot be " + (v.kind == Value::Kind::Scalar ? quotedShort(v.text) : v.kindName()), "one of " + joined(p.choices),
+                        near.empty() ? "choose one of these" : "write '" + near + "'");
       }
       break;
     case ParameterType::Vector: {
@@ -110,24 +123,37 @@ void check(const Parameter& p, const Value& v) {
                         v.items.size() < p.minimumItems ? "add entries" : "remove entries");
       break;
     }
-    case ParameterType::Map: asMap(v, p.key); break;
+    case ParameterType::Map:
+      asMap(v, p.key);
+      break;
     case ParameterType::Spectrum:
-    case ParameterType::Any: break;
+    case ParameterType::Any:
+      break;
   }
 }
 
 const char* typeName(const Parameter& p) {
   switch (p.type) {
-    case ParameterType::Number: return "number";
-    case ParameterType::Integer: return "integer";
-    case ParameterType::Boolean: return "true/false";
-    case ParameterType::Text: return "text";
-    case ParameterType::Choice: return "choice";
-    case ParameterType::Vector: return "vector";
-    case ParameterType::List: return "list";
-    case ParameterType::Map: return "map";
-    case ParameterType::Spectrum: return "spectrum";
-    case ParameterType::Any: return "any of";
+    case ParameterType::Number:
+      return "number";
+    case ParameterType::Integer:
+      return "integer";
+    case ParameterType::Boolean:
+      return "true/false";
+    case ParameterType::Text:
+      return "text";
+    case ParameterType::Choice:
+      return "choice";
+    case ParameterType::Vector:
+      return "vector";
+    case ParameterType::List:
+      return "list";
+    case ParameterType::Map:
+      return "map";
+    case ParameterType::Spectrum:
+      return "spectrum";
+    case ParameterType::Any:
+      return "any of";
   }
   return "";
 }
@@ -156,11 +182,28 @@ Parameter map(std::string k, std::string d) { return make(std::move(k), Paramete
 Parameter spectrum(std::string k, std::string u, std::string d) { return make(std::move(k), ParameterType::Spectrum, std::move(u), std::move(d)); }
 Parameter any(std::string k, std::string d) { return make(std::move(k), ParameterType::Any, "", std::move(d)); }
 
-Parameter required(Parameter p) { p.required = true; return p; }
-Parameter withDefault(Parameter p, std::string t) { p.defaultText = std::move(t); return p; }
-Parameter within(Parameter p, double lo, double hi) { p.minimum = lo; p.maximum = hi; return p; }
-Parameter above(Parameter p, double lo) { p.minimum = lo; p.exclusiveMinimum = true; return p; }
-Parameter atLeast(Parameter p, double lo) { p.minimum = lo; return p; }
+Parameter required(Parameter p) {
+  p.required = true;
+  return p;
+}
+Parameter withDefault(Parameter p, std::string t) {
+  p.defaultText = std::move(t);
+  return p;
+}
+Parameter within(Parameter p, double lo, double hi) {
+  p.minimum = lo;
+  p.maximum = hi;
+  return p;
+}
+Parameter above(Parameter p, double lo) {
+  p.minimum = lo;
+  p.exclusiveMinimum = true;
+  return p;
+}
+Parameter atLeast(Parameter p, double lo) {
+  p.minimum = lo;
+  return p;
+}
 
 const Parameter* ParameterTable::find(std::string_view key) const {
   for (const auto& p : parameters)
@@ -182,15 +225,12 @@ Record::Record(const Value& value, const ParameterTable& table) : value_(&value)
       throw UserError(at, "unknown key " + quotedShort(key) + " in " + table.title, "one of " + joined(names),
                       near.empty() ? "remove it" : "did you mean '" + near + "'?");
     }
-    if (!seen.insert(key).second)
-      throw UserError(at, "duplicate key " + quotedShort(key) + " in " + table.title, "each key once", "remove one of the two");
+    if (!seen.insert(key).second) throw UserError(at, "duplicate key " + quotedShort(key) + " in " + table.title, "each key once", "remove one of the two");
     check(*p, node);
   }
   for (const auto& p : table.parameters) {
     if (seen.count(p.key)) continue;
-    if (p.required)
-      throw UserError(value.where, "missing key '" + p.key + "' in " + table.title, p.description,
-                      "add '" + p.key + ":' here");
+    if (p.required) throw UserError(value.where, "missing key '" + p.key + "' in " + table.title, p.description, "add '" + p.key + ":' here");
     if (!p.defaultText.empty()) {
       Value d;
       d.kind = Value::Kind::Scalar;
@@ -237,8 +277,7 @@ glm::dvec3 Record::vector(std::string_view key) const { return readVector(value(
 
 double readNumber(const Value& value, std::string_view unit, std::string_view name) {
   const std::string what(name);
-  if (value.kind != Value::Kind::Scalar)
-    throw UserError(value.where, what + " is " + value.kindName(), unitExample(unit), "write one value with its unit");
+  if (value.kind != Value::Kind::Scalar) throw UserError(value.where, what + " is " + value.kindName(), unitExample(unit), "write one value with its unit");
   const auto written = splitQuantity(value.text);
   if (!written)
     throw UserError(value.where, what + " is not a finite number (" + quotedShort(value.text) + ")", unitExample(unit),
@@ -249,16 +288,18 @@ double readNumber(const Value& value, std::string_view unit, std::string_view na
       throw UserError(value.where, what + " has no unit (" + quotedShort(value.text) + ")", unitExample(unit),
                       "write " + quotedShort(value.text + " " + writtenUnit(unit)) + " if that is meant");
     throw UserError(value.where, what + " has the wrong unit " + quotedShort(written->unit), unitExample(unit),
-                    "write it in " + (unit.empty() ? std::string("plain numbers") : unit == "K" ? std::string("K or degC") : writtenUnit(unit)));
+                    "write it in " + (unit.empty()  ? std::string("plain numbers")
+                                      : unit == "K" ? std::string("K or degC")
+                                                    : writtenUnit(unit)));
   }
   return *converted;
 }
 
 glm::dvec3 readVector(const Value& value, std::string_view unit, std::string_view name) {
   glm::dvec3 v(0.0);
-  const std::string shape = unit.empty() || unit == "1" ? "three numbers: [x, y, z]"
-                                                        : "three numbers with their unit: [x " + std::string(unit) + ", y " +
-                                                              std::string(unit) + ", z " + std::string(unit) + "]";
+  const std::string shape = unit.empty() || unit == "1"
+                                ? "three numbers: [x, y, z]"
+                                : "three numbers with their unit: [x " + std::string(unit) + ", y " + std::string(unit) + ", z " + std::string(unit) + "]";
   if (value.kind == Value::Kind::List && value.items.size() == 3) {
     for (int i = 0; i < 3; ++i) v[i] = readNumber(value.items[static_cast<size_t>(i)], unit, name);
     return v;
@@ -300,19 +341,20 @@ const Value& asMap(const Value& value, std::string_view name) {
 
 const Value& asList(const Value& value, std::string_view name) {
   if (value.kind != Value::Kind::List)
-    throw UserError(value.where, std::string(name) + " is " + value.kindName(), "a list ('- item' lines, or [a, b])",
-                    "write it as a list");
+    throw UserError(value.where, std::string(name) + " is " + value.kindName(), "a list ('- item' lines, or [a, b])", "write it as a list");
   return value;
 }
 
 std::string readText(const Value& value, std::string_view name) {
   if (value.kind != Value::Kind::Scalar || value.text.empty())
-    throw UserError(value.where, std::string(name) + " is " + (value.kind == Value::Kind::Scalar ? "empty" : value.kindName()),
-                    "a word or a name", "write one name");
+    throw UserError(value.where, std::string(name) + " is " + (value.kind == Value::Kind::Scalar ? "empty" : value.kindName()), "a word or a name",
+                    "write one name");
   // A file name that stops at a zero byte, or that no file system takes, would be another than the one written.
   if (value.text.size() > kLongestText || std::any_of(value.text.begin(), value.text.end(), [](unsigned char c) { return c < 32 && c != '\n' && c != '\t'; }))
-    throw UserError(value.where, std::string(name) + (value.text.size() > kLongestText ? " is longer than " + std::to_string(kLongestText) + " bytes" : " holds a control character"),
-                    "plain text", "shorten or correct it");
+    throw UserError(
+        value.where,
+        std::string(name) + (value.text.size() > kLongestText ? " is longer than " + std::to_string(kLongestText) + " bytes" : " holds a control character"),
+        "plain text", "shorten or correct it");
   return value.text;
 }
 
@@ -322,7 +364,8 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& c
   if (word.size() > 60) return nearest;
   // A part of a longer name ("grass" of "green_grass") is nearer than a word of other letters ("glass").
   for (const auto& c : candidates)
-    if (word.size() >= 3 && c.size() > word.size() && (c.find("_" + std::string(word)) != std::string::npos || c.rfind(std::string(word) + "_", 0) == 0)) return c;
+    if (word.size() >= 3 && c.size() > word.size() && (c.find("_" + std::string(word)) != std::string::npos || c.rfind(std::string(word) + "_", 0) == 0))
+      return c;
   for (const auto& c : candidates) {
     std::vector<size_t> row(c.size() + 1);
     std::iota(row.begin(), row.end(), size_t{0});

@@ -18,10 +18,10 @@ enum class ParameterType { Number, Integer, Boolean, Text, Choice, Vector, List,
 struct Parameter {
   std::string key;
   ParameterType type = ParameterType::Number;
-  std::string unit;          ///< canonical unit of numbers, vectors and spectra; "" is dimensionless
+  std::string unit;  ///< canonical unit of numbers, vectors and spectra; "" is dimensionless
   std::string description;
   bool required = false;
-  std::string defaultText;   ///< as a user would write it; empty: absent unless given
+  std::string defaultText;  ///< as a user would write it; empty: absent unless given
   double minimum = -std::numeric_limits<double>::infinity();
   double maximum = std::numeric_limits<double>::infinity();
   bool exclusiveMinimum = false;
@@ -49,7 +49,7 @@ Parameter above(Parameter p, double minimum);
 Parameter atLeast(Parameter p, double minimum);
 
 struct ParameterTable {
-  std::string title;        ///< as in the key reference: "camera"
+  std::string title;  ///< as in the key reference: "camera"
   std::string description;
   std::vector<Parameter> parameters;
 
@@ -62,17 +62,17 @@ class Record {
  public:
   Record(const Value& value, const ParameterTable& table);
 
-  bool has(std::string_view key) const;                    ///< given, or has a default
-  bool given(std::string_view key) const;                  ///< written by the user
-  double number(std::string_view key) const;               ///< in the table's unit
+  bool has(std::string_view key) const;       ///< given, or has a default
+  bool given(std::string_view key) const;     ///< written by the user
+  double number(std::string_view key) const;  ///< in the table's unit
   std::optional<double> optionalNumber(std::string_view key) const;
   long long integer(std::string_view key) const;
   bool boolean(std::string_view key) const;
   std::string text(std::string_view key) const;
   glm::dvec3 vector(std::string_view key) const;
-  const Value& value(std::string_view key) const;          ///< the raw node; UserError if absent
+  const Value& value(std::string_view key) const;  ///< the raw node; UserError if absent
   const Value* find(std::string_view key) const;
-  Location where(std::string_view key) const;              ///< of the value, or of the record where absent
+  Location where(std::string_view key) const;  ///< of the value, or of the record where absent
   const Location& where() const { return value_->where; }
   const Value& whole() const { return *value_; }
 

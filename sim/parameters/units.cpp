@@ -64,7 +64,10 @@ const std::map<std::string, Unit, std::less<>>& namedUnits() {
     m["cd"] = base({{LM, 1}, {SR, -1}});
     m["lx"] = base({{LM, 1}, {M, -2}});
     m["%"] = base({}, 0.01);
-    for (const char* name : {"\xC2\xB0" "C", "deg C", "celsius", "Celsius"}) m[name] = m["degC"];
+    for (const char* name : {"\xC2\xB0"
+                             "C",
+                             "deg C", "celsius", "Celsius"})
+      m[name] = m["degC"];
     for (const char* name : {"\xC2\xB0", "degree", "degrees"}) m[name] = m["deg"];
     for (const char* name : {"\xC2\xB5m", "\xCE\xBCm", "micron", "microns"}) m[name] = m["um"];
     m["1"] = base({});
@@ -188,19 +191,18 @@ std::optional<double> convert(const WrittenQuantity& quantity, std::string_view 
 }
 
 std::string unitExample(std::string_view canonical) {
-  static const std::map<std::string, std::string, std::less<>> examples = {
-      {"", "a plain number such as 0.92"},
-      {"1", "a plain number such as 0.92"},
-      {"m", "a length such as '120 m' or '2.5 km'"},
-      {"um", "a wavelength such as '3.5 um'"},
-      {"K", "a temperature such as '300 K' or '27 degC'"},
-      {"rad", "an angle such as '12 deg' or '3 mrad'"},
-      {"s", "a time such as '2 ms'"},
-      {"1/m", "an extinction such as '0.2 /km'"},
-      {"Hz", "a rate such as '60 Hz'"},
-      {"sr", "a solid angle such as '6.79e-5 sr'"},
-      {"m/s", "a speed such as '240 m/s'"},
-      {"W/m2", "an irradiance such as '1361 W/m2'"}};
+  static const std::map<std::string, std::string, std::less<>> examples = {{"", "a plain number such as 0.92"},
+                                                                           {"1", "a plain number such as 0.92"},
+                                                                           {"m", "a length such as '120 m' or '2.5 km'"},
+                                                                           {"um", "a wavelength such as '3.5 um'"},
+                                                                           {"K", "a temperature such as '300 K' or '27 degC'"},
+                                                                           {"rad", "an angle such as '12 deg' or '3 mrad'"},
+                                                                           {"s", "a time such as '2 ms'"},
+                                                                           {"1/m", "an extinction such as '0.2 /km'"},
+                                                                           {"Hz", "a rate such as '60 Hz'"},
+                                                                           {"sr", "a solid angle such as '6.79e-5 sr'"},
+                                                                           {"m/s", "a speed such as '240 m/s'"},
+                                                                           {"W/m2", "an irradiance such as '1361 W/m2'"}};
   const auto found = examples.find(canonical);
   if (found != examples.end()) return found->second;
   return "a quantity in " + std::string(canonical);

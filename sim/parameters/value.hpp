@@ -14,11 +14,11 @@ struct Value {
 
   Kind kind = Kind::Null;
   Location where;
-  bool quoted = false;                                ///< a scalar in quotes
-  std::string text;                                   ///< Scalar
-  std::vector<Value> items;                           ///< List
-  std::vector<std::pair<std::string, Value>> entries; ///< Map, in the order written
-  std::vector<Location> keyPlaces;                    ///< Map, one per entry
+  bool quoted = false;                                 ///< a scalar in quotes
+  std::string text;                                    ///< Scalar
+  std::vector<Value> items;                            ///< List
+  std::vector<std::pair<std::string, Value>> entries;  ///< Map, in the order written
+  std::vector<Location> keyPlaces;                     ///< Map, one per entry
 
   const Value* find(std::string_view key) const {
     for (const auto& [name, value] : entries)
@@ -30,10 +30,14 @@ struct Value {
   /// What it is, in a user's words.
   const char* kindName() const {
     switch (kind) {
-      case Kind::Null: return "nothing";
-      case Kind::Scalar: return "a single value";
-      case Kind::List: return "a list";
-      case Kind::Map: return "a map of keys";
+      case Kind::Null:
+        return "nothing";
+      case Kind::Scalar:
+        return "a single value";
+      case Kind::List:
+        return "a list";
+      case Kind::Map:
+        return "a map of keys";
     }
     return "";
   }

@@ -102,7 +102,8 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
       rules.push_back(sampling.shared ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, pieces)
                                       : spectralRule(slot->kernel, sampling.samples, sampling.spacing));
     } catch (const std::invalid_argument& e) {
-      throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(), sampling.shared ? "a response that these samples integrate to 0.1 %" : "a response above zero somewhere",
+      throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(),
+                      sampling.shared ? "a response that these samples integrate to 0.1 %" : "a response above zero somewhere",
                       sampling.shared ? "raise 'samples', use 'spacing: even', or leave out 'shared'" : "check its band or table");
     } catch (const OutsideSpectrum& e) {
       throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(), "factors of a response that cover its band", "extend the table");

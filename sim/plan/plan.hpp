@@ -18,13 +18,13 @@ struct NodeBlock {
 
 /// Terms of the radiance equation that this scene has.
 struct Terms {
-  bool air = false;              ///< extinction and path radiance
-  bool lights = false;           ///< point lights or the sun
+  bool air = false;     ///< extinction and path radiance
+  bool lights = false;  ///< point lights or the sun
   bool ambient = false;
-  bool angular = false;          ///< tables over angles, or emissivity that changes with view angle
+  bool angular = false;  ///< tables over angles, or emissivity that changes with view angle
   bool modifiers = false;
   bool temperatureTextures = false;
-  std::string lobeFile;          ///< shader file of the angular lobes, or empty
+  std::string lobeFile;  ///< shader file of the angular lobes, or empty
 };
 
 struct Plan {
@@ -34,7 +34,7 @@ struct Plan {
   std::vector<int> slotOfOutput;            ///< one per output
   std::vector<std::vector<double>> weight;  ///< [slot][node]
   Terms terms;
-  int lightCount = 0;                       ///< point lights and, last, the sun
+  int lightCount = 0;  ///< point lights and, last, the sun
 
   int nodeCount() const { return static_cast<int>(node_um.size()); }
   int groupCount() const { return (slotCount + 3) / 4; }  ///< vec4 targets
@@ -45,7 +45,6 @@ constexpr int kMostSlots = 16;
 
 /// Outputs with the same kernel share a slot. Throws UserError where there are more than 16 kernels, a response is zero, or
 /// the spectrum of a material, light, air or background does not cover a channel's band (naming both).
-Plan makePlan(const Simulation& simulation, const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling,
-              const Location& where);
+Plan makePlan(const Simulation& simulation, const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where);
 
 }  // namespace pitviper

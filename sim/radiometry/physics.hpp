@@ -22,7 +22,7 @@ constexpr Real kFar = 1e30;
 
 #define PHYSICS inline
 #include "sim/radiometry/glsl/exponential.glsl"
-#include "sim/radiometry/glsl/planck.glsl"
 #include "sim/radiometry/glsl/geometry.glsl"
+#include "sim/radiometry/glsl/planck.glsl"
 #undef PHYSICS
 }  // namespace pitviper::physics

@@ -20,11 +20,13 @@ double tableValue(const Spectrum::Table& t, double w) {
   const auto& x = t.wavelength_um;
   if (w < x.front() || w > x.back()) {
     switch (t.outside) {
-      case Outside::Zero: return 0.0;
-      case Outside::Hold: return w < x.front() ? t.value.front() : t.value.back();
+      case Outside::Zero:
+        return 0.0;
+      case Outside::Hold:
+        return w < x.front() ? t.value.front() : t.value.back();
       case Outside::Error:
-        throw OutsideSpectrum((t.name.empty() ? std::string("a spectrum") : t.name) + " has no data at " + shortNumber(w) +
-                              " um (it covers " + shortNumber(x.front()) + " to " + shortNumber(x.back()) + " um)");
+        throw OutsideSpectrum((t.name.empty() ? std::string("a spectrum") : t.name) + " has no data at " + shortNumber(w) + " um (it covers " +
+                              shortNumber(x.front()) + " to " + shortNumber(x.back()) + " um)");
     }
   }
   // The last knot at or below w: at a step the later value holds.
@@ -54,9 +56,7 @@ Spectrum::Spectrum(Table table) {
   factors_.emplace_back(std::move(table));
 }
 
-Spectrum Spectrum::band(double low_um, double high_um, double value) {
-  return Spectrum(Table{{low_um, high_um}, {value, value}, Outside::Zero, ""});
-}
+Spectrum Spectrum::band(double low_um, double high_um, double value) { return Spectrum(Table{{low_um, high_um}, {value, value}, Outside::Zero, ""}); }
 
 double Spectrum::operator()(double w) const {
   double v = 1.0;

@@ -19,7 +19,8 @@ void writeSpectrum(ShaderSlots& slots, int targets) {
   body << "void integrate() {\n  float radiance[" << 4 * targets << "];\n  for (int i = 0; i < " << 4 * targets
        << "; ++i) radiance[i] = nodeRadiance(min(firstNode + i, NODES - 1));\n";
   for (int t = 0; t < targets; ++t)
-    body << "  spectrum" << t << " = vec4(radiance[" << 4 * t << "], radiance[" << 4 * t + 1 << "], radiance[" << 4 * t + 2 << "], radiance[" << 4 * t + 3 << "]);\n";
+    body << "  spectrum" << t << " = vec4(radiance[" << 4 * t << "], radiance[" << 4 * t + 1 << "], radiance[" << 4 * t + 2 << "], radiance[" << 4 * t + 3
+         << "]);\n";
   body << "}\n";
   slots.generated["targets"] = declared.str();
   slots.generated["integrate"] = body.str();

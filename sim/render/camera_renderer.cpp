@@ -6,7 +6,9 @@
 namespace pitviper {
 
 CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene)
-    : simulation_(simulation), camera_(camera), plan_(makePlan(simulation, camera.outputs, camera.spectral, camera.where)),
+    : simulation_(simulation),
+      camera_(camera),
+      plan_(makePlan(simulation, camera.outputs, camera.spectral, camera.where)),
       pass_(makeScenePass(simulation, plan_, library, std::move(scene), camera.truth.any(), camera.pinhole.apertureArea_m2())),
       solidAngles_(std::make_shared<const Pinhole::SolidAngles>(camera.pinhole.solidAngles())) {}
 

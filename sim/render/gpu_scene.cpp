@@ -29,7 +29,8 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
   std::vector<glm::uvec4> shapes;
   std::vector<float> texels;
   for (const auto& t : sim.textures) {
-    shapes.emplace_back(static_cast<std::uint32_t>(texels.size()), static_cast<std::uint32_t>(t.width), static_cast<std::uint32_t>(t.height), t.repeats ? 1u : 0u);
+    shapes.emplace_back(static_cast<std::uint32_t>(texels.size()), static_cast<std::uint32_t>(t.width), static_cast<std::uint32_t>(t.height),
+                        t.repeats ? 1u : 0u);
     texels.insert(texels.end(), t.texels.begin(), t.texels.end());
   }
   textureShapes_.upload(shapes);

@@ -84,8 +84,7 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
     }
   }
   std::vector<double> values;
-  for (size_t o = 0; o < probe.outputs.size(); ++o)
-    values.push_back(probe.outputs[o].scale * sums[static_cast<size_t>(plan.slotOfOutput[o])]);
+  for (size_t o = 0; o < probe.outputs.size(); ++o) values.push_back(probe.outputs[o].scale * sums[static_cast<size_t>(plan.slotOfOutput[o])]);
   return values;
 }
 

@@ -35,7 +35,12 @@ void checkUniformSize(std::size_t bytes, const char* what) {
 
 ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                      double apertureArea_m2)
-    : simulation_(simulation), plan_(plan), scene_(std::move(scene)), truth_(truth), apertureArea_m2_(apertureArea_m2), tables_(makeTables(simulation, plan)),
+    : simulation_(simulation),
+      plan_(plan),
+      scene_(std::move(scene)),
+      truth_(truth),
+      apertureArea_m2_(apertureArea_m2),
+      tables_(makeTables(simulation, plan)),
       visibility_(assembleShader(library, "sim/render/glsl/visibility.vert.glsl", {}), assembleShader(library, "sim/render/glsl/visibility.frag.glsl", {})) {
   checkUniformSize((tables_.node.size() * 2 + plan.node_um.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
   rows_.upload(tables_.rows);
@@ -105,7 +110,8 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
     const glm::dvec3 origin = cameraFromLocal * (pose.position - v.position);
     for (int r = 0; r < 3; ++r) g.row[r] = glm::vec4(bodyFromCamera[0][r], bodyFromCamera[1][r], bodyFromCamera[2][r], origin[r]);
     const Surface* s = item.entity < 0 ? nullptr : &simulation_.entities[static_cast<size_t>(item.entity)].surfaces[static_cast<size_t>(item.surface)];
-    g.table = {tables_.rowOfDraw[d], tables_.materialOfDraw[d], s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u, static_cast<unsigned>(item.entity + 1)};
+    g.table = {tables_.rowOfDraw[d], tables_.materialOfDraw[d], s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u,
+               static_cast<unsigned>(item.entity + 1)};
     const size_t lightRow = static_cast<size_t>(item.entity + 1);
     const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
     g.state = {s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
@@ -157,7 +163,8 @@ void ScenePass::drawVisibility(const View& v, const WorldState& state, const std
   glUniform4f(visibility_.uniform("film"), static_cast<float>(1.0 / halfX), static_cast<float>(1.0 / halfY),
               static_cast<float>((v.axisX - 0.5 * v.width) / (0.5 * v.width)), static_cast<float>((v.axisY - 0.5 * v.height) / (0.5 * v.height)));
   const double centreRange = glm::length(v.depthCentre - v.position);
-  glUniform3f(visibility_.uniform("depthRule"), static_cast<float>(v.near_m), v.onlyEntity >= 0 ? static_cast<float>(0.5 * centreRange / v.depthRadius_m) : 0.0f, 0.0f);
+  glUniform3f(visibility_.uniform("depthRule"), static_cast<float>(v.near_m),
+              v.onlyEntity >= 0 ? static_cast<float>(0.5 * centreRange / v.depthRadius_m) : 0.0f, 0.0f);
   glEnable(GL_CLIP_DISTANCE0);
   if (v.onlyEntity >= 0) glEnable(GL_DEPTH_CLAMP);
   const int drawIndex = visibility_.uniform("drawIndex"), firstTriangle = visibility_.uniform("firstTriangle");

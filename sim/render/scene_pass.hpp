@@ -77,8 +77,8 @@ class ScenePass {
 };
 
 /// A pass in the mode the scenario asks for.
-std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library,
-                                         std::shared_ptr<const GpuScene> scene, bool truth, double apertureArea_m2);
+std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
+                                         bool truth, double apertureArea_m2);
 
 /// Throws GlError where a uniform block would be larger than the driver's; says what takes the room.
 void checkUniformSize(std::size_t bytes, const char* what);

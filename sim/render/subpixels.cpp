@@ -1,6 +1,5 @@
 #include "sim/render/subpixels.hpp"
 
-
 namespace pitviper {
 
 TruthPixel truthAt(const RawImage& raw, size_t p) {
@@ -8,8 +7,7 @@ TruthPixel truthAt(const RawImage& raw, size_t p) {
   return {g[0], g[1], g[2], g[3], {n[0], n[1], n[2]}, n[3], i[0], i[1], i[2]};
 }
 
-Subpixels::Subpixels(const Plan& plan, const View& view, RawImage raw)
-    : view_(view), slotCount_(static_cast<size_t>(plan.slotCount)), raw_(std::move(raw)) {}
+Subpixels::Subpixels(const Plan& plan, const View& view, RawImage raw) : view_(view), slotCount_(static_cast<size_t>(plan.slotCount)), raw_(std::move(raw)) {}
 
 double Subpixels::slot(size_t s, size_t p) const {
   const double drawn = static_cast<double>(raw_.groups[s / 4][4 * p + s % 4]);
@@ -43,9 +41,7 @@ CameraImage Subpixels::resolve(const Pinhole& pinhole, int samples) const {
   const size_t width = static_cast<size_t>(pinhole.width), pixels = width * static_cast<size_t>(pinhole.height);
   image.slots.assign(slotCount_, std::vector<double>(pixels, 0.0));
   std::vector<double> total(pixels, 0.0);
-  auto pixelOf = [&](int x, int y) {
-    return static_cast<size_t>(pinhole.height - 1 - y / samples) * width + static_cast<size_t>(x / samples);
-  };
+  auto pixelOf = [&](int x, int y) { return static_cast<size_t>(pinhole.height - 1 - y / samples) * width + static_cast<size_t>(x / samples); };
   for (int y = 0; y < view_.height; ++y)
     for (int x = 0; x < view_.width; ++x) {
       const size_t from = 4 * index(x, y), to = pixelOf(x, y);

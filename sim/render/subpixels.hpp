@@ -21,10 +21,10 @@ struct TruthPixel {
 /// What leaves the renderer: integrals of kernel x radiance per slot and pixel, row 0 at the top.
 struct CameraImage {
   int width = 0, height = 0;
-  std::vector<std::vector<double>> slots;      ///< [slot][pixel], kernel unit x W/(m2 sr)
+  std::vector<std::vector<double>> slots;  ///< [slot][pixel], kernel unit x W/(m2 sr)
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles;
-  std::vector<TruthPixel> truth;               ///< per pixel, or empty
-  std::vector<int> slotOfOutput;               ///< from the plan
+  std::vector<TruthPixel> truth;  ///< per pixel, or empty
+  std::vector<int> slotOfOutput;  ///< from the plan
 };
 
 class Subpixels {

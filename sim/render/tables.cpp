@@ -47,7 +47,9 @@ AngleAxis commonAxis(const Material& m, const std::vector<AngleAxis>& axes) {
     std::snprintf(text, sizeof text, "%s%d entries to %.6g deg", all.empty() ? "" : " and ", a.count, a.last_rad * 180.0 / kPi);
     all += text;
   }
-  throw UserError(m.where, "the tables of material '" + m.name + "' run over the angle '" + kAngleNames[static_cast<int>(longest.angle)] + "' in steps that do not fit each other (" + all + ")",
+  throw UserError(m.where,
+                  "the tables of material '" + m.name + "' run over the angle '" + kAngleNames[static_cast<int>(longest.angle)] +
+                      "' in steps that do not fit each other (" + all + ")",
                   "steps of which all are multiples of one step, 1/1024 of the longest axis or more", "give their axes the same 'count' and 'last'");
 }
 
@@ -68,8 +70,10 @@ std::array<AngleAxis, 2> materialAxes(const Material& m) {
   for (size_t k = 0; k < 2; ++k)
     if (!found[k].empty()) axes[k] = commonAxis(m, found[k]);
   if (static_cast<long long>(axes[0].count) * axes[1].count > kMostEntries)
-    throw UserError(m.where, "the tables of material '" + m.name + "' have " + std::to_string(static_cast<long long>(axes[0].count) * axes[1].count) + " pairs of angles together", "at most " + std::to_string(kMostEntries),
-                    "give them fewer entries");
+    throw UserError(
+        m.where,
+        "the tables of material '" + m.name + "' have " + std::to_string(static_cast<long long>(axes[0].count) * axes[1].count) + " pairs of angles together",
+        "at most " + std::to_string(kMostEntries), "give them fewer entries");
   return axes;
 }
 
@@ -100,7 +104,8 @@ void appendMaterial(RenderTables& t, const Material& m, const Plan& plan) {
   g.kinds[2] = m.given ? 0 : 1;
   g.kinds[3] = static_cast<std::uint32_t>(t.hemispherical.size() / 4);
   for (int k = 0; k < 2; ++k)
-    g.scale[k] = axes[static_cast<size_t>(k)].count > 1 ? static_cast<float>((axes[static_cast<size_t>(k)].count - 1) / axes[static_cast<size_t>(k)].last_rad) : 0.0f;
+    g.scale[k] =
+        axes[static_cast<size_t>(k)].count > 1 ? static_cast<float>((axes[static_cast<size_t>(k)].count - 1) / axes[static_cast<size_t>(k)].last_rad) : 0.0f;
   g.scale[2] = views > 1 ? static_cast<float>((views - 1) / (0.5 * kPi)) : 0.0f;
   for (int k = 0; k < 4; ++k) g.modifier[k] = -1;
   for (size_t k = 0; k < m.reflections.size(); ++k) {
@@ -121,8 +126,7 @@ void appendMaterial(RenderTables& t, const Material& m, const Plan& plan) {
   for (int j = 0; j < views; ++j) {
     const double angle = views > 1 ? 0.5 * kPi * j / (views - 1) : 0.0;
     for (double w : plan.node_um) {
-      for (size_t k = 0; k < 3; ++k)
-        t.hemispherical.push_back(k < m.reflections.size() ? static_cast<float>(m.reflections[k]->hemispherical(w, angle)) : 0.0f);
+      for (size_t k = 0; k < 3; ++k) t.hemispherical.push_back(k < m.reflections.size() ? static_cast<float>(m.reflections[k]->hemispherical(w, angle)) : 0.0f);
       t.hemispherical.push_back(m.given ? static_cast<float>(m.given->at(w, angle)) : 0.0f);
     }
   }

@@ -25,20 +25,20 @@ struct DrawItem {
 };
 
 struct RenderTables {
-  bool general = false;                        ///< angular tables, modifiers or temperature textures in the scene
-  bool tabulated = false;                      ///< some reflection component is a table over angles
+  bool general = false;    ///< angular tables, modifiers or temperature textures in the scene
+  bool tabulated = false;  ///< some reflection component is a table over angles
   std::vector<DrawItem> draws;
-  std::vector<std::uint32_t> rowOfDraw;        ///< first entry of a draw's row
+  std::vector<std::uint32_t> rowOfDraw;  ///< first entry of a draw's row
   std::vector<std::uint32_t> materialOfDraw;
-  std::vector<float> rows;                     ///< simple: vec4 (R1, R2, R3, S) per node; general: Planck radiance per node
-  std::vector<float> hemispherical;            ///< vec4 (D1, D2, D3, given emissivity) per view angle and node
-  std::vector<float> columns;                  ///< vec4 (R1, R2, R3, 0) per angle 2, angle 1 and node
-  std::vector<GpuMaterial> materials;          ///< the background's last
-  std::vector<float> node;                     ///< vec4 per node: extinction, source radiance, c2 / lambda, c1L / lambda^5
-  std::vector<float> ambient;                  ///< vec4 per node
-  std::vector<float> weights;                  ///< vec4s in the order of the integration text
-  std::string integrateText;                   ///< body of the spectral integral
-  std::string targetsText;                     ///< declarations of the channel targets
+  std::vector<float> rows;             ///< simple: vec4 (R1, R2, R3, S) per node; general: Planck radiance per node
+  std::vector<float> hemispherical;    ///< vec4 (D1, D2, D3, given emissivity) per view angle and node
+  std::vector<float> columns;          ///< vec4 (R1, R2, R3, 0) per angle 2, angle 1 and node
+  std::vector<GpuMaterial> materials;  ///< the background's last
+  std::vector<float> node;             ///< vec4 per node: extinction, source radiance, c2 / lambda, c1L / lambda^5
+  std::vector<float> ambient;          ///< vec4 per node
+  std::vector<float> weights;          ///< vec4s in the order of the integration text
+  std::string integrateText;           ///< body of the spectral integral
+  std::string targetsText;             ///< declarations of the channel targets
 };
 
 /// Light intensities at the nodes, vec4 per group of four lights: changes with the lights' levels.

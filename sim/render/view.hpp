@@ -9,16 +9,16 @@ namespace pitviper {
 /// Camera axes: x right, y up, looking along -z. Film positions in tangents from the axis; pixel (0, 0) is the lower left, as
 /// GL has it.
 struct View {
-  int width = 0, height = 0;                 ///< pixels (of the target, subpixels counted)
+  int width = 0, height = 0;  ///< pixels (of the target, subpixels counted)
   double tanPerPixelX = 0.0, tanPerPixelY = 0.0;
-  double axisX = 0.0, axisY = 0.0;           ///< film position of the axis [pixels from the lower left corner]
-  glm::dvec3 position{0.0};                  ///< local frame
+  double axisX = 0.0, axisY = 0.0;  ///< film position of the axis [pixels from the lower left corner]
+  glm::dvec3 position{0.0};         ///< local frame
   glm::dmat3 localFromCamera{1.0};
   double near_m = 0.1;
-  int onlyEntity = -1;                       ///< shade this entity alone, behind whatever hides it; -1: everything
-  glm::dvec3 depthCentre{0.0};               ///< with onlyEntity: depth has its digits around this place (local frame) ...
-  double depthRadius_m = 1.0;                ///< ... within this distance
-  double pixelTan2 = 0.0;                    ///< (tangent per whole pixel)^2, for the truth layer of the fragment's area
+  int onlyEntity = -1;          ///< shade this entity alone, behind whatever hides it; -1: everything
+  glm::dvec3 depthCentre{0.0};  ///< with onlyEntity: depth has its digits around this place (local frame) ...
+  double depthRadius_m = 1.0;   ///< ... within this distance
+  double pixelTan2 = 0.0;       ///< (tangent per whole pixel)^2, for the truth layer of the fragment's area
 
   /// Direction of a film position in camera axes, z = -1.
   glm::dvec3 ray(double x, double y) const { return {(x - axisX) * tanPerPixelX, (y - axisY) * tanPerPixelY, -1.0}; }
@@ -31,8 +31,6 @@ View cameraView(const Pinhole& pinhole, const Pose& pose, double near_m, int sam
 bool mayShow(const View& view, const glm::dvec3& centre, double radius_m);
 
 /// The film position [pixels from the lower left] of a point in camera axes (z < 0).
-inline glm::dvec2 filmPosition(const View& v, const glm::dvec3& p) {
-  return {v.axisX + p.x / -p.z / v.tanPerPixelX, v.axisY + p.y / -p.z / v.tanPerPixelY};
-}
+inline glm::dvec2 filmPosition(const View& v, const glm::dvec3& p) { return {v.axisX + p.x / -p.z / v.tanPerPixelX, v.axisY + p.y / -p.z / v.tanPerPixelY}; }
 
 }  // namespace pitviper

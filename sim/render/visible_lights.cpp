@@ -22,8 +22,8 @@ std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, c
   return sums;
 }
 
-bool isFree(ScenePass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction,
-            double distance_m, double near_m) {
+bool isFree(ScenePass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction, double distance_m,
+            double near_m) {
   // One pixel, turned so that its centre looks along the very line.
   View v;
   v.width = v.height = 1;

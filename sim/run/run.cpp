@@ -23,8 +23,7 @@ void runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRan
       handing = std::async(std::launch::async, [&frames, frame] { frames(*frame); });
     }
     if (probes)
-      for (const auto& probe : sim.probes)
-        probes({probe, number, state.time_s, measureProbe(sim, probe, library, scene, state)});
+      for (const auto& probe : sim.probes) probes({probe, number, state.time_s, measureProbe(sim, probe, library, scene, state)});
   }
   wait();
 }

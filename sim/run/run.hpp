@@ -22,7 +22,6 @@ using ProbeSink = std::function<void(const ProbeReading&)>;
 
 /// Renders the frames of all cameras. While one frame is handed to the sink on a thread of its own, the next is drawn; frames
 /// arrive in order, one at a time. An exception of the sink ends the run and is thrown here.
-void runFrames(const Simulation& simulation, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames,
-               const ProbeSink& probes = {});
+void runFrames(const Simulation& simulation, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes = {});
 
 }  // namespace pitviper

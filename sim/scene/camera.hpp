@@ -34,9 +34,9 @@ struct Pinhole {
 
 /// How a camera is carried and where it looks.
 struct Mount {
-  Motion motion;                   ///< in the local frame, or in the carrier's body frame
-  int carrier = -1;                ///< entity index, or -1
-  int lookAtEntity = -1;           ///< entity index, or -1: along the motion's own x axis
+  Motion motion;          ///< in the local frame, or in the carrier's body frame
+  int carrier = -1;       ///< entity index, or -1
+  int lookAtEntity = -1;  ///< entity index, or -1: along the motion's own x axis
   bool looksAtPoint = false;
   glm::dvec3 lookAtPoint{0.0};
 };

@@ -11,8 +11,8 @@ constexpr double kDegrees = 57.29577951308232;
 
 LocalFrame::LocalFrame(const Geodetic& origin) : origin_(origin) {
   std::vector<double> m(9);
-  GeographicLib::Geocentric::WGS84().Forward(origin.latitude_rad * kDegrees, origin.longitude_rad * kDegrees, origin.height_m,
-                                             originEcef_.x, originEcef_.y, originEcef_.z, m);
+  GeographicLib::Geocentric::WGS84().Forward(origin.latitude_rad * kDegrees, origin.longitude_rad * kDegrees, origin.height_m, originEcef_.x, originEcef_.y,
+                                             originEcef_.z, m);
   // GeographicLib gives the rotation row by row: columns are east, north and up in ECEF.
   for (int row = 0; row < 3; ++row)
     for (int column = 0; column < 3; ++column) ecefFromLocal_[column][row] = m[static_cast<size_t>(3 * row + column)];

@@ -64,8 +64,7 @@ std::filesystem::path cacheFile(const ContentKey& key) {
   const std::filesystem::path folder = meshCacheFolder();
   if (folder.empty()) return {};
   char name[64];
-  std::snprintf(name, sizeof name, "mesh-%016llx%016llx.bin", static_cast<unsigned long long>(key[0]),
-                static_cast<unsigned long long>(key[1]));
+  std::snprintf(name, sizeof name, "mesh-%016llx%016llx.bin", static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
   return folder / name;
 }
 
@@ -119,8 +118,7 @@ std::optional<Mesh> deserializeMesh(std::string_view bytes) {
   const std::uint64_t size = in.word();
   const ContentKey sum{in.word(), in.word()};
   if (!in.ok || size != in.left.size() || contentKey(in.left) != sum) return std::nullopt;
-  const std::uint64_t positions = in.word(), normals = in.word(), uv = in.word(), triangles = in.word(),
-                      parts = in.word();
+  const std::uint64_t positions = in.word(), normals = in.word(), uv = in.word(), triangles = in.word(), parts = in.word();
   Mesh mesh;
   mesh.closed = in.word() != 0;
   in.array(mesh.positions, positions);
@@ -140,10 +138,8 @@ std::optional<Mesh> deserializeMesh(std::string_view bytes) {
 
 std::filesystem::path meshCacheFolder() {
   // XDG Base Directory Specification: a path that is not absolute is to be ignored.
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && cache[0] == '/')
-    return std::filesystem::path(cache) / "pitviper";
-  if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/')
-    return std::filesystem::path(home) / ".cache" / "pitviper";
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && cache[0] == '/') return std::filesystem::path(cache) / "pitviper";
+  if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/') return std::filesystem::path(home) / ".cache" / "pitviper";
   return {};
 }
 

@@ -45,19 +45,15 @@ std::string readAll(const std::filesystem::path& file, const Location& askedAt) 
   std::error_code failure;
   const std::filesystem::file_status status = std::filesystem::status(file, failure);
   if (!std::filesystem::exists(status))
-    throw UserError(askedAt, "the mesh file '" + file.string() + "' does not exist", "a mesh file",
-                    "check the name; it is relative to the scenario's folder");
+    throw UserError(askedAt, "the mesh file '" + file.string() + "' does not exist", "a mesh file", "check the name; it is relative to the scenario's folder");
   if (!std::filesystem::is_regular_file(status))
     throw UserError(askedAt, "the mesh file '" + file.string() + "' is not a plain file", "a mesh file", "give the path of a file");
   const std::uintmax_t size = std::filesystem::file_size(file, failure);
-  if (failure || size > kMostBytes)
-    throw UserError(askedAt, "the mesh file '" + file.string() + "' is too large", "at most 2 GiB",
-                    "simplify the mesh");
+  if (failure || size > kMostBytes) throw UserError(askedAt, "the mesh file '" + file.string() + "' is too large", "at most 2 GiB", "simplify the mesh");
   std::ifstream in(file, std::ios::binary);
   std::string bytes(size, '\0');
   if (!in.read(bytes.data(), static_cast<std::streamsize>(size)))
-    throw UserError(askedAt, "the mesh file '" + file.string() + "' cannot be read", "a readable file",
-                    "check its permissions");
+    throw UserError(askedAt, "the mesh file '" + file.string() + "' cannot be read", "a readable file", "check its permissions");
   return bytes;
 }
 
@@ -78,11 +74,8 @@ ContentKey keyOf(const std::filesystem::path& file, const std::string& extension
 
 /// Fills in what the file did not have and checks everything: what comes from the child is not trusted.
 void finish(Mesh& mesh, const Location& where) {
-  const auto bad = [](const glm::vec3& n) {
-    return !(std::abs(glm::dot(n, n)) > 1e-12f && std::isfinite(glm::dot(n, n)));
-  };
-  const bool hasNormals =
-      mesh.normals.size() == mesh.positions.size() && std::none_of(mesh.normals.begin(), mesh.normals.end(), bad);
+  const auto bad = [](const glm::vec3& n) { return !(std::abs(glm::dot(n, n)) > 1e-12f && std::isfinite(glm::dot(n, n))); };
+  const bool hasNormals = mesh.normals.size() == mesh.positions.size() && std::none_of(mesh.normals.begin(), mesh.normals.end(), bad);
   if (!hasNormals) mesh.normals.assign(mesh.positions.size(), glm::vec3(0.0f, 0.0f, 1.0f));
   for (glm::vec3& n : mesh.normals) n = glm::normalize(n);
   if (mesh.uv.size() != mesh.positions.size()) mesh.uv.assign(mesh.positions.size(), glm::vec2(0.0f));
@@ -96,8 +89,7 @@ void scale(Mesh& mesh, double metresPerUnit, const Location& askedAt) {
   for (glm::vec3& p : mesh.positions) {
     p = glm::vec3(glm::dvec3(p) * metresPerUnit);
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-      throw UserError(askedAt, "the mesh is too large at this number of metres per unit", "positions below 3e38 m",
-                      "check 'unit'");
+      throw UserError(askedAt, "the mesh is too large at this number of metres per unit", "positions below 3e38 m", "check 'unit'");
   }
 }
 
@@ -107,13 +99,11 @@ void setMeshImportFolder(const std::filesystem::path& folder) { importFolder() =
 
 Mesh importMesh(const std::filesystem::path& file, double metresPerUnit, const Location& askedAt) {
   if (!std::isfinite(metresPerUnit) || metresPerUnit <= 0.0)
-    throw UserError(askedAt, "metres per unit of the mesh is " + std::to_string(metresPerUnit),
-                    "a finite positive number", "correct 'unit'");
+    throw UserError(askedAt, "metres per unit of the mesh is " + std::to_string(metresPerUnit), "a finite positive number", "correct 'unit'");
   const std::string extension = lowerExtension(file);
   constexpr const char* kKnown[] = {".obj", ".stl", ".ply", ".vtp", ".gltf", ".glb"};
   if (std::find(std::begin(kKnown), std::end(kKnown), extension) == std::end(kKnown))
-    throw UserError(askedAt, "the mesh file '" + file.string() + "' has an unknown extension",
-                    "one of .obj .stl .ply .vtp .gltf .glb",
+    throw UserError(askedAt, "the mesh file '" + file.string() + "' has an unknown extension", "one of .obj .stl .ply .vtp .gltf .glb",
                     "convert the file, or give it the extension of its format");
   const std::string bytes = readAll(file, askedAt);
   const ContentKey key = keyOf(file, extension, bytes);

@@ -54,9 +54,7 @@ struct Edge {
   std::uint32_t triangle;
   std::uint8_t corner;  ///< where the edge starts
   bool forward;         ///< runs from the smaller place to the larger
-  friend bool operator<(const Edge& a, const Edge& b) {
-    return a.places != b.places ? a.places < b.places : a.triangle < b.triangle;
-  }
+  friend bool operator<(const Edge& a, const Edge& b) { return a.places != b.places ? a.places < b.places : a.triangle < b.triangle; }
 };
 
 std::vector<Edge> sortedEdges(const Mesh& mesh, const std::vector<std::uint32_t>& place) {
@@ -78,8 +76,8 @@ std::uint32_t rootOf(std::vector<std::uint32_t>& parent, std::uint32_t i) {
 
 /// Corners (3 t + k) of triangles that meet at a place and are joined by edges bent less than the crease: one root
 /// each.
-std::vector<std::uint32_t> smoothingGroups(const Mesh& mesh, const std::vector<std::uint32_t>& place,
-                                           const std::vector<glm::dvec3>& faceNormals, double leastCosine) {
+std::vector<std::uint32_t> smoothingGroups(const Mesh& mesh, const std::vector<std::uint32_t>& place, const std::vector<glm::dvec3>& faceNormals,
+                                           double leastCosine) {
   std::vector<std::uint32_t> parent(mesh.triangles.size() * 3);
   std::iota(parent.begin(), parent.end(), 0u);
   const std::vector<Edge> edges = sortedEdges(mesh, place);
@@ -89,9 +87,7 @@ std::vector<std::uint32_t> smoothingGroups(const Mesh& mesh, const std::vector<s
     if (i > 0 && edges[i - 1].places == a.places) continue;  // more than two triangles: a crease
     if (i + 2 < edges.size() && edges[i + 2].places == a.places) continue;
     if (glm::dot(faceNormals[a.triangle], faceNormals[b.triangle]) < leastCosine) continue;
-    const auto join = [&](std::uint32_t ka, std::uint32_t kb) {
-      parent[rootOf(parent, a.triangle * 3 + ka % 3)] = rootOf(parent, b.triangle * 3 + kb % 3);
-    };
+    const auto join = [&](std::uint32_t ka, std::uint32_t kb) { parent[rootOf(parent, a.triangle * 3 + ka % 3)] = rootOf(parent, b.triangle * 3 + kb % 3); };
     join(a.corner, b.corner + 1u);
     join(a.corner + 1u, b.corner);
   }
@@ -111,8 +107,7 @@ double signedVolume(const Mesh& mesh) {
   if (mesh.triangles.empty()) return 0.0;
   const glm::dvec3 origin(mesh.positions[mesh.triangles[0].x]);  // near the mesh: no cancellation
   double sum = 0.0;
-  for (const glm::uvec3& t : mesh.triangles)
-    sum += glm::dot(areaVector(mesh, t), glm::dvec3(mesh.positions[t.x]) - origin) / 6.0;
+  for (const glm::uvec3& t : mesh.triangles) sum += glm::dot(areaVector(mesh, t), glm::dvec3(mesh.positions[t.x]) - origin) / 6.0;
   return sum;
 }
 
@@ -184,8 +179,7 @@ void computeNormals(Mesh& mesh, double creaseAngle_rad) {
     for (int k = 0; k < 3; ++k) {
       const std::uint32_t i = mesh.triangles[t][k], root = group[3 * t + k];
       const glm::vec2 uv = hasUv ? mesh.uv[i] : glm::vec2(0.0f);
-      const auto [entry, isNew] =
-          known.try_emplace(Key{root, bitsOf(uv.x), bitsOf(uv.y)}, static_cast<std::uint32_t>(out.positions.size()));
+      const auto [entry, isNew] = known.try_emplace(Key{root, bitsOf(uv.x), bitsOf(uv.y)}, static_cast<std::uint32_t>(out.positions.size()));
       if (isNew) {
         out.positions.push_back(mesh.positions[i]);
         out.normals.push_back(glm::vec3(unitOr(sums[root], faceNormals[t])));
@@ -204,8 +198,7 @@ void appendPart(Mesh& into, const Mesh& part, const std::string& name, const glm
   const glm::dmat3 linear(glm::dmat4{placement});
   const double turn = glm::determinant(linear) < 0.0 ? -1.0 : 1.0;
   // The cofactor matrix takes normals to normals without a division; its sign is wrong for a mirror.
-  const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]),
-                            glm::cross(linear[0], linear[1]));
+  const glm::dmat3 cofactor(glm::cross(linear[1], linear[2]), glm::cross(linear[2], linear[0]), glm::cross(linear[0], linear[1]));
   into.closed = part.closed && (into.triangles.empty() || into.closed);
   for (std::size_t i = 0; i < part.positions.size(); ++i) {
     into.positions.push_back(glm::vec3(placement * glm::vec4(part.positions[i], 1.0f)));
@@ -213,13 +206,10 @@ void appendPart(Mesh& into, const Mesh& part, const std::string& name, const glm
     into.normals.push_back(glm::vec3(unitOr(turn * (cofactor * normal), normal)));
     into.uv.push_back(part.uv[i]);
   }
-  for (const glm::uvec3& t : part.triangles)
-    into.triangles.push_back(firstVertex + (turn < 0.0 ? glm::uvec3(t.x, t.z, t.y) : t));
+  for (const glm::uvec3& t : part.triangles) into.triangles.push_back(firstVertex + (turn < 0.0 ? glm::uvec3(t.x, t.z, t.y) : t));
   const auto count = static_cast<std::uint32_t>(part.triangles.size());
-  if (!into.parts.empty() && into.parts.back().name == name)
-    into.parts.back().triangleCount += count;
-  else
-    into.parts.push_back({name, firstTriangle, count});
+  if (!into.parts.empty() && into.parts.back().name == name) into.parts.back().triangleCount += count;
+  else into.parts.push_back({name, firstTriangle, count});
 }
 
 std::size_t validateMesh(Mesh& mesh, const Location& where) {
@@ -228,31 +218,31 @@ std::size_t validateMesh(Mesh& mesh, const Location& where) {
       if (!std::isfinite(v[k])) return false;
     return true;
   };
-  if (mesh.triangles.empty()) throw UserError(where, "the mesh has no triangles", "at least one triangle",
-                                               "export the surface as triangles");
+  if (mesh.triangles.empty()) throw UserError(where, "the mesh has no triangles", "at least one triangle", "export the surface as triangles");
   if (mesh.triangles.size() > kMostTriangles)
-    throw UserError(where, "the mesh has " + std::to_string(mesh.triangles.size()) + " triangles",
-                    "at most " + std::to_string(kMostTriangles), "simplify the mesh");
+    throw UserError(where, "the mesh has " + std::to_string(mesh.triangles.size()) + " triangles", "at most " + std::to_string(kMostTriangles),
+                    "simplify the mesh");
   if (mesh.normals.size() != mesh.positions.size() || mesh.uv.size() != mesh.positions.size())
     throw UserError(where,
-                    "the mesh has " + std::to_string(mesh.positions.size()) + " positions, " +
-                        std::to_string(mesh.normals.size()) + " normals and " + std::to_string(mesh.uv.size()) +
-                        " texture coordinates",
+                    "the mesh has " + std::to_string(mesh.positions.size()) + " positions, " + std::to_string(mesh.normals.size()) + " normals and " +
+                        std::to_string(mesh.uv.size()) + " texture coordinates",
                     "as many of each", "export the mesh again");
   for (std::size_t i = 0; i < mesh.positions.size(); ++i)
     if (!finite(mesh.positions[i]) || !finite(mesh.normals[i]) || !finite(mesh.uv[i]))
-      throw UserError(where, "vertex " + std::to_string(i + 1) + " is not finite",
-                      "finite numbers in single precision", "correct the mesh, its unit or its scale");
+      throw UserError(where, "vertex " + std::to_string(i + 1) + " is not finite", "finite numbers in single precision",
+                      "correct the mesh, its unit or its scale");
   for (const glm::uvec3& t : mesh.triangles)
     if (std::max({t.x, t.y, t.z}) >= mesh.positions.size())
-      throw UserError(where, "a triangle uses vertex " + std::to_string(std::max({t.x, t.y, t.z}) + 1ull),
-                      "at most " + std::to_string(mesh.positions.size()), "export the mesh again");
+      throw UserError(where, "a triangle uses vertex " + std::to_string(std::max({t.x, t.y, t.z}) + 1ull), "at most " + std::to_string(mesh.positions.size()),
+                      "export the mesh again");
   std::size_t covered = 0;
   for (const MeshPart& part : mesh.parts) {
-    if (part.firstTriangle != covered) throw UserError(where, "the part '" + part.name + "' leaves a gap or overlaps", "parts one after the other", "export the mesh again");
+    if (part.firstTriangle != covered)
+      throw UserError(where, "the part '" + part.name + "' leaves a gap or overlaps", "parts one after the other", "export the mesh again");
     covered += part.triangleCount;
   }
-  if (covered != mesh.triangles.size()) throw UserError(where, "the mesh's parts don't cover its triangles", "every triangle in one part", "export the mesh again");
+  if (covered != mesh.triangles.size())
+    throw UserError(where, "the mesh's parts don't cover its triangles", "every triangle in one part", "export the mesh again");
 
   std::size_t kept = 0;
   for (MeshPart& part : mesh.parts) {
@@ -264,8 +254,7 @@ std::size_t validateMesh(Mesh& mesh, const Location& where) {
   const std::size_t removed = mesh.triangles.size() - kept;
   mesh.triangles.resize(kept);
   std::erase_if(mesh.parts, [](const MeshPart& part) { return part.triangleCount == 0; });
-  if (kept == 0) throw UserError(where, "every triangle of the mesh has zero area", "a surface",
-                                  "check the mesh, its unit and its scale");
+  if (kept == 0) throw UserError(where, "every triangle of the mesh has zero area", "a surface", "check the mesh, its unit and its scale");
   return removed;
 }
 

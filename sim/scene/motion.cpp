@@ -22,14 +22,11 @@ glm::dquat orientationAlong(const glm::dvec3& forward, double roll_rad) {
   return glm::normalize(q * glm::angleAxis(roll_rad, glm::dvec3(1, 0, 0)));
 }
 
-Motion::Motion(std::vector<Waypoint> waypoints, Interpolation interpolation)
-    : waypoints_(std::move(waypoints)), interpolation_(interpolation) {}
+Motion::Motion(std::vector<Waypoint> waypoints, Interpolation interpolation) : waypoints_(std::move(waypoints)), interpolation_(interpolation) {}
 
 glm::dvec3 Motion::tangent(size_t i) const {
   const size_t last = waypoints_.size() - 1;
-  auto slope = [this](size_t j) {
-    return (waypoints_[j + 1].position - waypoints_[j].position) / (waypoints_[j + 1].time_s - waypoints_[j].time_s);
-  };
+  auto slope = [this](size_t j) { return (waypoints_[j + 1].position - waypoints_[j].position) / (waypoints_[j + 1].time_s - waypoints_[j].time_s); };
   if (i == 0) return slope(0);
   if (i == last) return slope(last - 1);
   const double before = waypoints_[i].time_s - waypoints_[i - 1].time_s, after = waypoints_[i + 1].time_s - waypoints_[i].time_s;

@@ -21,8 +21,7 @@ void requireLength(double value, const char* what) { require(std::isfinite(value
 /// The bound of mesh_tools.hpp; segments up to 4096 keep a sphere within it.
 void requireGrid(long long columns, long long rows) {
   require(columns >= 1 && rows >= 1, "a mesh needs at least one cell");
-  require(columns <= 1'000'000 && rows <= 1'000'000 && 2 * columns * rows <= static_cast<long long>(kMostTriangles),
-          "too many cells for one mesh");
+  require(columns <= 1'000'000 && rows <= 1'000'000 && 2 * columns * rows <= static_cast<long long>(kMostTriangles), "too many cells for one mesh");
 }
 
 void addVertex(Mesh& mesh, const glm::dvec3& position, const glm::dvec3& normal, double u, double v) {
@@ -61,8 +60,7 @@ void addCap(Mesh& mesh, double radius_m, double x_m, int segments, double facing
   addVertex(mesh, {x_m, 0.0, 0.0}, {facing, 0.0, 0.0}, 0.5, 0.5);
   for (int i = 0; i < segments; ++i) {
     const glm::dvec3 d = around(i, segments);
-    addVertex(mesh, glm::dvec3(x_m, 0.0, 0.0) + radius_m * d, {facing, 0.0, 0.0}, 0.5 + 0.5 * facing * d.y,
-              0.5 + 0.5 * d.z);
+    addVertex(mesh, glm::dvec3(x_m, 0.0, 0.0) + radius_m * d, {facing, 0.0, 0.0}, 0.5 + 0.5 * facing * d.y, 0.5 + 0.5 * d.z);
   }
   for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(segments); ++i) {
     const std::uint32_t a = centre + 1 + i, b = centre + 1 + (i + 1) % static_cast<std::uint32_t>(segments);
@@ -73,8 +71,7 @@ void addCap(Mesh& mesh, double radius_m, double x_m, int segments, double facing
 /// Hash of (seed, octave, lattice point): the SplitMix64 finaliser (Steele, Lea, Flood 2014) over the counters.
 std::uint64_t latticeHash(std::uint64_t seed, int octave, long long i, long long j) {
   std::uint64_t h = seed;
-  for (const std::uint64_t counter :
-       {static_cast<std::uint64_t>(octave), static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)}) {
+  for (const std::uint64_t counter : {static_cast<std::uint64_t>(octave), static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)}) {
     h += counter + 0x9e3779b97f4a7c15u;
     h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
     h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
@@ -87,15 +84,13 @@ std::uint64_t latticeHash(std::uint64_t seed, int octave, long long i, long long
 double gradientNoise(std::uint64_t seed, int octave, double x, double y) {
   const double fx = std::floor(x), fy = std::floor(y);
   const auto towards = [&](int dx, int dy) {
-    const std::uint64_t hash =
-        latticeHash(seed, octave, static_cast<long long>(fx) + dx, static_cast<long long>(fy) + dy);
+    const std::uint64_t hash = latticeHash(seed, octave, static_cast<long long>(fx) + dx, static_cast<long long>(fy) + dy);
     const double angle = static_cast<double>(hash >> 11) * (2.0 * kPi / 9007199254740992.0);  // 53 bits to 0..2 pi
     return std::cos(angle) * (x - fx - dx) + std::sin(angle) * (y - fy - dy);
   };
   const auto fade = [](double t) { return t * t * t * (t * (6.0 * t - 15.0) + 10.0); };  // second derivative continuous
   const double u = fade(x - fx), v = fade(y - fy);
-  return std::numbers::sqrt2 *
-         std::lerp(std::lerp(towards(0, 0), towards(1, 0), u), std::lerp(towards(0, 1), towards(1, 1), u), v);
+  return std::numbers::sqrt2 * std::lerp(std::lerp(towards(0, 0), towards(1, 0), u), std::lerp(towards(0, 1), towards(1, 1), u), v);
 }
 
 }  // namespace
@@ -122,7 +117,8 @@ Mesh makeBox(double length_m, double width_m, double height_m) {
   Mesh box;
   // Where a plate's normal (x), right (y) and up (z) go; whole numbers, so that edges meet exactly.
   auto side = [&](const char* name, const Mesh& plate, glm::vec3 normal, glm::vec3 right, glm::vec3 up, double distance) {
-    appendPart(box, plate, name, glm::mat4(glm::vec4(normal, 0), glm::vec4(right, 0), glm::vec4(up, 0), glm::vec4(normal * static_cast<float>(0.5 * distance), 1)));
+    appendPart(box, plate, name,
+               glm::mat4(glm::vec4(normal, 0), glm::vec4(right, 0), glm::vec4(up, 0), glm::vec4(normal * static_cast<float>(0.5 * distance), 1)));
   };
   const glm::vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
   side("front", makePlate(width_m, height_m), x, y, z, length_m);
@@ -175,13 +171,10 @@ Mesh makeSphere(double radius_m, int segments, SphereFit fit) {
   return finished(std::move(mesh), true);
 }
 
-Mesh makeCylinder(double radius_m, double length_m, int segments, bool capped) {
-  return makeCone(radius_m, radius_m, length_m, segments, capped);
-}
+Mesh makeCylinder(double radius_m, double length_m, int segments, bool capped) { return makeCone(radius_m, radius_m, length_m, segments, capped); }
 
 Mesh makeCone(double baseRadius_m, double topRadius_m, double length_m, int segments, bool capped) {
-  require(std::isfinite(baseRadius_m) && std::isfinite(topRadius_m) && std::min(baseRadius_m, topRadius_m) >= 0.0 &&
-              std::max(baseRadius_m, topRadius_m) > 0.0,
+  require(std::isfinite(baseRadius_m) && std::isfinite(topRadius_m) && std::min(baseRadius_m, topRadius_m) >= 0.0 && std::max(baseRadius_m, topRadius_m) > 0.0,
           "a cone's radii must be 0 or more, and one positive");
   requireLength(length_m, "a cone's length must be positive");
   require(segments >= 3, "a cone needs at least 3 segments");
@@ -196,8 +189,7 @@ Mesh makeCone(double baseRadius_m, double topRadius_m, double length_m, int segm
       const glm::dvec3 d = around(i, segments);
       const glm::dvec3 out = tip ? glm::dvec3(0.0, std::cos(middle), std::sin(middle)) : d;
       const glm::dvec3 normal = (glm::dvec3(baseRadius_m - topRadius_m, 0.0, 0.0) + length_m * out) / slant;
-      addVertex(mesh, glm::dvec3((end - 0.5) * length_m, 0.0, 0.0) + (tip ? 0.0 : radius) * d, normal,
-                std::min((i + (tip ? 0.5 : 0.0)) / segments, 1.0), end);
+      addVertex(mesh, glm::dvec3((end - 0.5) * length_m, 0.0, 0.0) + (tip ? 0.0 : radius) * d, normal, std::min((i + (tip ? 0.5 : 0.0)) / segments, 1.0), end);
     }
   const auto stride = static_cast<std::uint32_t>(segments) + 1;
   for (std::uint32_t i = 0; i + 1 < stride; ++i) {
@@ -217,8 +209,7 @@ Mesh makeTerrain(const TerrainShape& shape) {
   require(shape.roughness >= 0.0 && shape.roughness <= 1.0, "a terrain's roughness must be in 0..1");
   require(shape.octaves >= 1 && shape.octaves <= 16, "a terrain has 1..16 octaves");
   require(std::isfinite(shape.largest_m) && shape.largest_m >= 0.0, "a terrain's largest wavelength must be 0 or more");
-  const double largest = shape.largest_m > 0.0 ? shape.largest_m : 0.5 * shape.size_m,
-               cell = shape.size_m / shape.columns;
+  const double largest = shape.largest_m > 0.0 ? shape.largest_m : 0.5 * shape.size_m, cell = shape.size_m / shape.columns;
   require(shape.size_m / largest < 1e9, "a terrain's largest wavelength is too small for its size");
   double total = 0.0;
   for (int octave = 0; octave < shape.octaves; ++octave) total += std::pow(shape.roughness, octave);
@@ -227,8 +218,7 @@ Mesh makeTerrain(const TerrainShape& shape) {
     for (int i = 0; i <= shape.columns; ++i) {
       double sum = 0.0, amplitude = 0.5 * shape.relief_m / total, wavelength = largest;
       for (int octave = 0; octave < shape.octaves && (octave == 0 || wavelength >= 2.0 * cell); ++octave) {
-        sum += amplitude * gradientNoise(shape.seed, octave, (i * cell - 0.5 * shape.size_m) / wavelength,
-                                         (j * cell - 0.5 * shape.size_m) / wavelength);
+        sum += amplitude * gradientNoise(shape.seed, octave, (i * cell - 0.5 * shape.size_m) / wavelength, (j * cell - 0.5 * shape.size_m) / wavelength);
         amplitude *= shape.roughness;
         wavelength *= 0.5;
       }
@@ -241,26 +231,20 @@ Mesh makeTerrain(double size_m, int columns, int rows, const std::vector<float>&
   requireLength(size_m, "a terrain's size must be positive");
   requireGrid(columns, rows);
   const std::size_t stride = static_cast<std::size_t>(columns) + 1;
-  require(heights_m.size() == stride * (static_cast<std::size_t>(rows) + 1),
-          "a height map has (columns+1) x (rows+1) heights");
-  require(std::all_of(heights_m.begin(), heights_m.end(), [](float h) { return std::isfinite(h); }),
-          "heights must be finite");
+  require(heights_m.size() == stride * (static_cast<std::size_t>(rows) + 1), "a height map has (columns+1) x (rows+1) heights");
+  require(std::all_of(heights_m.begin(), heights_m.end(), [](float h) { return std::isfinite(h); }), "heights must be finite");
   const double cell = size_m / columns;
-  const auto height = [&](int i, int j) {
-    return static_cast<double>(heights_m[static_cast<std::size_t>(j) * stride + static_cast<std::size_t>(i)]);
-  };
+  const auto height = [&](int i, int j) { return static_cast<double>(heights_m[static_cast<std::size_t>(j) * stride + static_cast<std::size_t>(i)]); };
   // Central differences inside, one-sided ones at the rim.
   const auto slope = [&](int i, int j, int di, int dj) {
-    const int i0 = std::max(i - di, 0), i1 = std::min(i + di, columns), j0 = std::max(j - dj, 0),
-              j1 = std::min(j + dj, rows);
+    const int i0 = std::max(i - di, 0), i1 = std::min(i + di, columns), j0 = std::max(j - dj, 0), j1 = std::min(j + dj, rows);
     return (height(i1, j1) - height(i0, j0)) / (cell * (i1 - i0 + j1 - j0));
   };
   Mesh mesh;
   for (int j = 0; j <= rows; ++j)
     for (int i = 0; i <= columns; ++i)
       addVertex(mesh, {(i - 0.5 * columns) * cell, (j - 0.5 * rows) * cell, height(i, j)},
-                glm::normalize(glm::dvec3(-slope(i, j, 1, 0), -slope(i, j, 0, 1), 1.0)),
-                static_cast<double>(i) / columns, static_cast<double>(j) / rows);
+                glm::normalize(glm::dvec3(-slope(i, j, 1, 0), -slope(i, j, 0, 1), 1.0)), static_cast<double>(i) / columns, static_cast<double>(j) / rows);
   addGrid(mesh, 0, columns, rows);
   return finished(std::move(mesh), false);
 }

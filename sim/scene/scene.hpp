@@ -23,7 +23,7 @@ struct Texture {
 /// A part of a mesh as it is in a scenario.
 struct Surface {
   std::uint32_t meshPart = 0;
-  int material = 0;             ///< index into Simulation::materials
+  int material = 0;  ///< index into Simulation::materials
   double temperature_K = 0.0;
   int temperatureTexture = -1;  ///< index into Simulation::textures (K), or -1
 };

@@ -40,8 +40,8 @@ std::string asciiStl() {
     text += "  facet normal 0 0 0\n    outer loop\n";
     for (std::uint32_t k : face) {
       char line[80];
-      std::snprintf(line, sizeof line, "      vertex %g %g %e\n", static_cast<double>(kCorners[k][0]),
-                    static_cast<double>(kCorners[k][1]), static_cast<double>(kCorners[k][2]));
+      std::snprintf(line, sizeof line, "      vertex %g %g %e\n", static_cast<double>(kCorners[k][0]), static_cast<double>(kCorners[k][1]),
+                    static_cast<double>(kCorners[k][2]));
       text += line;
     }
     text += "    endloop\n  endfacet\n";
@@ -63,24 +63,18 @@ std::string binaryStl() {
 }
 
 std::string plyText(bool ascii) {
-  std::string out =
-      std::string("ply\nformat ") + (ascii ? "ascii" : "binary_little_endian") +
-      " 1.0\ncomment a tetrahedron\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
-      "property uchar red\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
+  std::string out = std::string("ply\nformat ") + (ascii ? "ascii" : "binary_little_endian") +
+                    " 1.0\ncomment a tetrahedron\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                    "property uchar red\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n";
   for (const auto& c : kCorners) {
     char line[80];
-    std::snprintf(line, sizeof line, "%g %g %g 255\n", static_cast<double>(c[0]), static_cast<double>(c[1]),
-                  static_cast<double>(c[2]));
-    if (ascii)
-      out += line;
-    else
-      put(out, c[0]), put(out, c[1]), put(out, c[2]), put(out, std::uint8_t{255});
+    std::snprintf(line, sizeof line, "%g %g %g 255\n", static_cast<double>(c[0]), static_cast<double>(c[1]), static_cast<double>(c[2]));
+    if (ascii) out += line;
+    else put(out, c[0]), put(out, c[1]), put(out, c[2]), put(out, std::uint8_t{255});
   }
   for (const auto& f : kFaces) {
-    if (ascii)
-      out += "3 " + std::to_string(f[0]) + " " + std::to_string(f[1]) + " " + std::to_string(f[2]) + "\n";
-    else
-      put(out, std::uint8_t{3}), put(out, f[0]), put(out, f[1]), put(out, f[2]);
+    if (ascii) out += "3 " + std::to_string(f[0]) + " " + std::to_string(f[1]) + " " + std::to_string(f[2]) + "\n";
+    else put(out, std::uint8_t{3}), put(out, f[0]), put(out, f[1]), put(out, f[2]);
   }
   return out;
 }
@@ -170,9 +164,8 @@ void damage(std::string& bytes, std::mt19937_64& random) {
     case 2:
     case 3:
     case 4: {  // a number becomes another one
-      constexpr const char* kNumbers[] = {
-          "nan", "-inf", "1e308", "-1",   "0",     "4294967295", "99999999999999999999", "1e-320", "2147483647",
-          "3.5", "",     "-",     "0x10", "65536", "1000000000"};
+      constexpr const char* kNumbers[] = {"nan", "-inf", "1e308", "-1",   "0",     "4294967295", "99999999999999999999", "1e-320", "2147483647",
+                                          "3.5", "",     "-",     "0x10", "65536", "1000000000"};
       std::size_t first = at;
       while (first < bytes.size() && std::isdigit(static_cast<unsigned char>(bytes[first])) == 0) ++first;
       std::size_t end = first;
@@ -184,15 +177,12 @@ void damage(std::string& bytes, std::mt19937_64& random) {
       const std::size_t first = bytes.rfind('\n', at) == std::string::npos ? 0 : bytes.rfind('\n', at) + 1;
       const std::size_t end = bytes.find('\n', first);
       if (end == std::string::npos) break;
-      if (below(2) == 0)
-        bytes.insert(first, bytes.substr(first, end + 1 - first));
-      else
-        bytes.erase(first, end + 1 - first);
+      if (below(2) == 0) bytes.insert(first, bytes.substr(first, end + 1 - first));
+      else bytes.erase(first, end + 1 - first);
       break;
     }
     case 6:
-      for (std::size_t k = at; k < std::min(at + 4, bytes.size()); ++k)
-        bytes[k] = static_cast<char>(below(2) == 0 ? 0xff : random());
+      for (std::size_t k = at; k < std::min(at + 4, bytes.size()); ++k) bytes[k] = static_cast<char>(below(2) == 0 ? 0xff : random());
       break;
     default:
       bytes.insert(at, std::string(1 + below(40), static_cast<char>(random())));
@@ -204,15 +194,14 @@ void damage(std::string& bytes, std::mt19937_64& random) {
 
 std::vector<std::filesystem::path> writeSoundMeshes(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  const std::pair<const char*, std::string> files[] = {
-      {"a.obj", objText()},
-      {"a.stl", asciiStl()},
-      {"b.stl", binaryStl()},
-      {"a.ply", plyText(true)},
-      {"b.ply", plyText(false)},
-      {"a.vtp", vtpText()},
-      {"a.gltf", gltfText(", \"uri\": \"data:application/octet-stream;base64," + base64(gltfBuffer()) + "\"")},
-      {"a.glb", glbBytes()}};
+  const std::pair<const char*, std::string> files[] = {{"a.obj", objText()},
+                                                       {"a.stl", asciiStl()},
+                                                       {"b.stl", binaryStl()},
+                                                       {"a.ply", plyText(true)},
+                                                       {"b.ply", plyText(false)},
+                                                       {"a.vtp", vtpText()},
+                                                       {"a.gltf", gltfText(", \"uri\": \"data:application/octet-stream;base64," + base64(gltfBuffer()) + "\"")},
+                                                       {"a.glb", glbBytes()}};
   std::vector<std::filesystem::path> paths;
   for (const auto& [name, bytes] : files) {
     paths.push_back(folder / name);
@@ -249,8 +238,7 @@ int fuzzMeshes(std::uint64_t seed, int iterations, const std::filesystem::path& 
       continue;
     }
     ++failures;
-    std::fprintf(stderr, "fuzz_mesh: seed %llu: %s: %s\n",
-                 static_cast<unsigned long long>(seed + static_cast<std::uint64_t>(i)), file.c_str(), wrong.c_str());
+    std::fprintf(stderr, "fuzz_mesh: seed %llu: %s: %s\n", static_cast<unsigned long long>(seed + static_cast<std::uint64_t>(i)), file.c_str(), wrong.c_str());
   }
   return failures;
 }

@@ -47,17 +47,28 @@ class Mutator {
 
   void damage(std::string& text) {
     switch (below(12)) {
-      case 0: return flipBit(text);
-      case 1: return eraseBytes(text);
-      case 2: return insertBytes(text);
-      case 3: return repeatLine(text);
-      case 4: return swapLines(text);
-      case 5: return dropLine(text);
-      case 6: return splice(text);
-      case 7: return text.resize(below(text.size() + 1));
-      case 8: return changeDigit(text);
-      case 9: return replaceToken(text);
-      default: return replaceValue(text);
+      case 0:
+        return flipBit(text);
+      case 1:
+        return eraseBytes(text);
+      case 2:
+        return insertBytes(text);
+      case 3:
+        return repeatLine(text);
+      case 4:
+        return swapLines(text);
+      case 5:
+        return dropLine(text);
+      case 6:
+        return splice(text);
+      case 7:
+        return text.resize(below(text.size() + 1));
+      case 8:
+        return changeDigit(text);
+      case 9:
+        return replaceToken(text);
+      default:
+        return replaceValue(text);
     }
   }
 
@@ -128,16 +139,105 @@ class Mutator {
   }
 
   std::string hostileValue() {
-    static constexpr std::array kValues = {
-        "nan", ".nan", "nan K", ".inf", "-.inf", "inf m", "1e308", "1e308 m", "-1e308", "1e400 K", "1e-320", "1e-320 s", "1e-320 Hz", "-1", "-1 m", "-1 K", "0",
-        "0 m", "0 s", "0 Hz", "0 K", "0 deg", "0 um", "1", "2", "2047", "1e30 m", "1e9 m", "1e-9 m", "1e5 K", "1e6 K", "1e6 km", "360 deg", "180 deg", "90 deg",
-        "16384", "65536", "4294967296", "2147483647", "2147483648", "9223372036854775807", "99999999999999999999", "-9223372036854775808", "1000000000", "0x10", "1_000",
-        "[]", "{}", "[[]]", "~", "null", "true", "''", "\"\\0\"", "\"\\x7f\\u2028\"", "|", ">", "*a", "&a 1", "!!binary aGk=", "[1, 2, 3]", "[nan m, 1 m, 2 m]", "{band: [3 um, 5 um]}",
-        "{band: [5 um, 3 um]}", "{band: [0.1 um, 1000 um]}", "{blackbody: 300 K}", "{product: [0.5, 1e30, 1e30, 1e30]}", "{values: [[1, 0], [2, 0]], wavelength: um, unit: \"1\"}",
-        "{values: [[1, 1], [1, 2]], wavelength: um, unit: \"1\"}", "{file: nothing.csv}", "{file: /dev/zero}", "{file: .}", "{library: cie_y}", "cie_y", "insb_mwir", "grass", "../../etc/passwd",
-        "10 %", "3 furlong", "3 W/(m2 sr um)", "1 W/(m2", "m", "-", "- -", "? x", "<<", "{<<: {a: 1}}", "[0 m, 0 m, 0 m]", "[1e9 m, -1e9 m, 1e9 m]", "electrons", "[radiance, flux, electrons, volts, luminance]",
-        "{width: 1, height: 1, pitch: 1 m}", "{width: 16384, height: 16384, pitch: 1 um}", "{model: sphere, radius: 1 m, segments: 512}", "{model: terrain, size: 1 m, columns: 256, relief: 10 km}",
-        "{model: mesh, file: nothing.obj, unit: 1 m}", "jet", "terrain", "seeker"};
+    static constexpr std::array kValues = {"nan",
+                                           ".nan",
+                                           "nan K",
+                                           ".inf",
+                                           "-.inf",
+                                           "inf m",
+                                           "1e308",
+                                           "1e308 m",
+                                           "-1e308",
+                                           "1e400 K",
+                                           "1e-320",
+                                           "1e-320 s",
+                                           "1e-320 Hz",
+                                           "-1",
+                                           "-1 m",
+                                           "-1 K",
+                                           "0",
+                                           "0 m",
+                                           "0 s",
+                                           "0 Hz",
+                                           "0 K",
+                                           "0 deg",
+                                           "0 um",
+                                           "1",
+                                           "2",
+                                           "2047",
+                                           "1e30 m",
+                                           "1e9 m",
+                                           "1e-9 m",
+                                           "1e5 K",
+                                           "1e6 K",
+                                           "1e6 km",
+                                           "360 deg",
+                                           "180 deg",
+                                           "90 deg",
+                                           "16384",
+                                           "65536",
+                                           "4294967296",
+                                           "2147483647",
+                                           "2147483648",
+                                           "9223372036854775807",
+                                           "99999999999999999999",
+                                           "-9223372036854775808",
+                                           "1000000000",
+                                           "0x10",
+                                           "1_000",
+                                           "[]",
+                                           "{}",
+                                           "[[]]",
+                                           "~",
+                                           "null",
+                                           "true",
+                                           "''",
+                                           "\"\\0\"",
+                                           "\"\\x7f\\u2028\"",
+                                           "|",
+                                           ">",
+                                           "*a",
+                                           "&a 1",
+                                           "!!binary aGk=",
+                                           "[1, 2, 3]",
+                                           "[nan m, 1 m, 2 m]",
+                                           "{band: [3 um, 5 um]}",
+                                           "{band: [5 um, 3 um]}",
+                                           "{band: [0.1 um, 1000 um]}",
+                                           "{blackbody: 300 K}",
+                                           "{product: [0.5, 1e30, 1e30, 1e30]}",
+                                           "{values: [[1, 0], [2, 0]], wavelength: um, unit: \"1\"}",
+                                           "{values: [[1, 1], [1, 2]], wavelength: um, unit: \"1\"}",
+                                           "{file: nothing.csv}",
+                                           "{file: /dev/zero}",
+                                           "{file: .}",
+                                           "{library: cie_y}",
+                                           "cie_y",
+                                           "insb_mwir",
+                                           "grass",
+                                           "../../etc/passwd",
+                                           "10 %",
+                                           "3 furlong",
+                                           "3 W/(m2 sr um)",
+                                           "1 W/(m2",
+                                           "m",
+                                           "-",
+                                           "- -",
+                                           "? x",
+                                           "<<",
+                                           "{<<: {a: 1}}",
+                                           "[0 m, 0 m, 0 m]",
+                                           "[1e9 m, -1e9 m, 1e9 m]",
+                                           "electrons",
+                                           "[radiance, flux, electrons, volts, luminance]",
+                                           "{width: 1, height: 1, pitch: 1 m}",
+                                           "{width: 16384, height: 16384, pitch: 1 um}",
+                                           "{model: sphere, radius: 1 m, segments: 512}",
+                                           "{model: terrain, size: 1 m, columns: 256, relief: 10 km}",
+                                           "{model: mesh, file: nothing.obj, unit: 1 m}",
+                                           "jet",
+                                           "terrain",
+                                           "seeker"};
     if (below(24) == 0) return std::string(1 + below(50000), "a1[{-\" "[below(7)]);
     return kValues[below(kValues.size())];
   }
@@ -161,11 +261,13 @@ Role roleOf(const fs::path& file) {
 /// The smallest scenario that reads the library file called "mutant".
 std::string userOf(Role role) {
   const char* response = role == Role::Response ? "mutant" : "{band: [2.5 um, 2.6 um]}";
-  const char* first = role == Role::Air ? "atmosphere: mutant\n" : role == Role::Light ? "lights: [{name: l, intensity: mutant}]\n"
-                      : role == Role::Sun ? "sun: {azimuth: 0 deg, elevation: 40 deg, irradiance: mutant}\n" : "";
-  return std::string(first) + "entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: " +
-         (role == Role::Material ? "mutant" : "{}") +
-         ", temperature: 300 K}]\ncameras: [{name: c, film: {width: 8, height: 8, pitch: 20 um}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m], "
+  const char* first = role == Role::Air     ? "atmosphere: mutant\n"
+                      : role == Role::Light ? "lights: [{name: l, intensity: mutant}]\n"
+                      : role == Role::Sun   ? "sun: {azimuth: 0 deg, elevation: 40 deg, irradiance: mutant}\n"
+                                            : "";
+  return std::string(first) + "entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: " + (role == Role::Material ? "mutant" : "{}") +
+         ", temperature: 300 K}]\ncameras: [{name: c, film: {width: 8, height: 8, pitch: 20 um}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: "
+         "[9 m, 0 m, 0 m], "
          "channels: [{name: b, response: " +
          response + "}]}]\n";
 }
@@ -203,7 +305,8 @@ long peakMemory_kB() {
 
 class Run {
  public:
-  Run(const std::vector<fs::path>& files, const fs::path& root, const fs::path& folder) : files_(files), folder_(folder), libraries_(copyLibraries(root, folder)) {
+  Run(const std::vector<fs::path>& files, const fs::path& root, const fs::path& folder)
+      : files_(files), folder_(folder), libraries_(copyLibraries(root, folder)) {
     static const std::regex columns("columns: *[0-9]+");
     for (const fs::path& file : files) {
       corpus_.push_back(std::regex_replace(readAll(file), columns, "columns: 8"));
@@ -237,12 +340,16 @@ class Run {
 
   fs::path fileOf(Role role) const {
     switch (role) {
-      case Role::Material: return libraries_.materials / "mutant.yaml";
-      case Role::Air: return libraries_.atmosphere / "mutant.yaml";
+      case Role::Material:
+        return libraries_.materials / "mutant.yaml";
+      case Role::Air:
+        return libraries_.atmosphere / "mutant.yaml";
       case Role::Response:
       case Role::Light:
-      case Role::Sun: return libraries_.sensors / "mutant.yaml";
-      case Role::Scenario: break;
+      case Role::Sun:
+        return libraries_.sensors / "mutant.yaml";
+      case Role::Scenario:
+        break;
     }
     return folder_ / "case.yaml";
   }

@@ -35,9 +35,9 @@ TEST_F(Fuzz, DamagedScenariosAreReadOrRefused) {
   const auto files = shippedFiles(PITVIPER_SOURCE_DIR);
   ASSERT_GT(files.size(), 20u);
   const FuzzReport report = fuzzScenarios(kSeed, kScenarios, files, PITVIPER_SOURCE_DIR, folder_);
-  std::printf("%d damaged scenarios and library files from seed %llu: %d accepted, %d refused, %d failed; slowest %.2f s (seed %llu), peak memory %ld MB\n", kScenarios,
-              static_cast<unsigned long long>(kSeed), report.accepted, report.refused, report.failed, report.slowest_s, static_cast<unsigned long long>(report.slowestSeed),
-              report.peakMemory_kB / 1024);
+  std::printf("%d damaged scenarios and library files from seed %llu: %d accepted, %d refused, %d failed; slowest %.2f s (seed %llu), peak memory %ld MB\n",
+              kScenarios, static_cast<unsigned long long>(kSeed), report.accepted, report.refused, report.failed, report.slowest_s,
+              static_cast<unsigned long long>(report.slowestSeed), report.peakMemory_kB / 1024);
   EXPECT_EQ(report.failed, 0) << "seeds above, inputs in " << folder_;
   EXPECT_GT(report.refused, kScenarios / 4) << "the damage does not damage";
 }

@@ -24,20 +24,24 @@ double worstDifference(const std::string& yaml) {
 }
 
 std::string body(const std::string& spectral, int channels) {
-  std::string y = "atmosphere: {extinction: 0.4 /km, temperature: 285 K}\nambient: {temperature: 260 K}\nsun: {azimuth: 60 deg, elevation: 35 deg, temperature: 5772 K}\n"
-                  "lights: [{name: l, intensity: 40 W/(sr um), position: [5 m, 2 m, 4 m]}]\n"
-                  "entities:\n  - {name: a, shape: {model: sphere, radius: 1 m}, material: black_gloss_paint, temperature: 310 K}\n"
-                  "  - {name: far, shape: {model: sphere, radius: 0.1 m}, material: sand, temperature: 400 K, position: [-40 m, 8 m, 1 m]}\n"
-                  "cameras:\n  - name: c\n    film: {width: 48, height: 40}\n    field_of_view: 30 deg\n    aperture: 5 mm\n    position: [9 m, 0 m, 1 m]\n    look_at: a\n"
-                  "    truth: [range, entity, normal, temperature, area, solid_angles]\n    spectral: " + spectral + "\n    channels:\n";
-  for (int c = 0; c < channels; ++c) y += "      - {name: c" + std::to_string(c) + ", response: {band: [" + std::to_string(3.0 + 0.1 * c) + " um, " + std::to_string(5.0 + 0.2 * c) + " um]}}\n";
+  std::string y =
+      "atmosphere: {extinction: 0.4 /km, temperature: 285 K}\nambient: {temperature: 260 K}\nsun: {azimuth: 60 deg, elevation: 35 deg, temperature: 5772 K}\n"
+      "lights: [{name: l, intensity: 40 W/(sr um), position: [5 m, 2 m, 4 m]}]\n"
+      "entities:\n  - {name: a, shape: {model: sphere, radius: 1 m}, material: black_gloss_paint, temperature: 310 K}\n"
+      "  - {name: far, shape: {model: sphere, radius: 0.1 m}, material: sand, temperature: 400 K, position: [-40 m, 8 m, 1 m]}\n"
+      "cameras:\n  - name: c\n    film: {width: 48, height: 40}\n    field_of_view: 30 deg\n    aperture: 5 mm\n    position: [9 m, 0 m, 1 m]\n    look_at: a\n"
+      "    truth: [range, entity, normal, temperature, area, solid_angles]\n    spectral: " +
+      spectral + "\n    channels:\n";
+  for (int c = 0; c < channels; ++c)
+    y += "      - {name: c" + std::to_string(c) + ", response: {band: [" + std::to_string(3.0 + 0.1 * c) + " um, " + std::to_string(5.0 + 0.2 * c) + " um]}}\n";
   return y;
 }
 
 TEST(Buffered, EqualsDirect) {
   bound("buffered against direct, 1 channel, 16 nodes", worstDifference(body("{samples: 16}", 1)), 1e-5, "same nodes; order of sums");
   bound("buffered against direct, 16 channels, 256 nodes in 8 batches", worstDifference(body("{samples: 16}", 16)), 1e-5, "same nodes; order of sums");
-  bound("buffered against direct, 5 channels, 33 nodes shared", worstDifference(body("{samples: 33, spacing: even, shared: true}", 5)), 1e-5, "same nodes; order of sums");
+  bound("buffered against direct, 5 channels, 33 nodes shared", worstDifference(body("{samples: 33, spacing: even, shared: true}", 5)), 1e-5,
+        "same nodes; order of sums");
 }
 
 }  // namespace

@@ -33,12 +33,18 @@ TEST(FloatAgainstDouble, EmissionLightAndAirOverTheRange) {
         const double depth = std::uniform_real_distribution<>(0.01, 20.0)(random);
         const double size = range * 0.3;
         const std::string r = std::to_string(range), s = std::to_string(size);
-        const auto sim = scene("atmosphere: {extinction: " + std::to_string(depth * 1e9 / range) + "e-6 /km, temperature: 280 K}\n"
+        const auto sim = scene("atmosphere: {extinction: " + std::to_string(depth * 1e9 / range) +
+                               "e-6 /km, temperature: 280 K}\n"
                                "ambient: {temperature: 250 K}\n"
                                "materials: {m: {components: [{reflection: lambertian, reflectance: 0.35}]}}\n"
-                               "lights: [{name: l, intensity: {blackbody: 2500 K, area: 1 m2}, position: [" + std::to_string(0.2 * size) + " m, " + s + " m, " + s + " m]}]\n"
-                               "entities: [{name: p, shape: {model: plate, width: " + s + " m, height: " + s + " m}, material: m, temperature: " + std::to_string(t) + " K, heading: 70 deg, pitch: 20 deg}]\n"
-                               "cameras: [{name: c, film: {width: 24, height: 24}, field_of_view: 20 deg, aperture: 5 mm, position: [" + r + " m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], near: " + std::to_string(0.01 * range) + " m, " + channels(low, high) + "}]\n");
+                               "lights: [{name: l, intensity: {blackbody: 2500 K, area: 1 m2}, position: [" +
+                               std::to_string(0.2 * size) + " m, " + s + " m, " + s +
+                               " m]}]\n"
+                               "entities: [{name: p, shape: {model: plate, width: " +
+                               s + " m, height: " + s + " m}, material: m, temperature: " + std::to_string(t) +
+                               " K, heading: 70 deg, pitch: 20 deg}]\n"
+                               "cameras: [{name: c, film: {width: 24, height: 24}, field_of_view: 20 deg, aperture: 5 mm, position: [" +
+                               r + " m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], near: " + std::to_string(0.01 * range) + " m, " + channels(low, high) + "}]\n");
         const Worst w = compare(sim, 5);
         worst = std::max(worst, w.error);
         pixels += static_cast<int>(w.covered);
@@ -53,9 +59,12 @@ TEST(FloatAgainstDouble, PlanckInTheShader) {
   for (const auto& [low, high, coldest] : {std::tuple{0.5, 0.7, 500.0}, {3.0, 5.0, 200.0}, {8.0, 14.0, 200.0}})
     for (double t : {coldest, 1.7 * coldest, 3000.0}) {
       const std::string k = std::to_string(t);
-      const auto sim = scene("entities: [{name: p, shape: {model: plate, width: 4 m, height: 4 m}, material: flat_black_paint, temperature: {rows: [[" + k + " K, " + std::to_string(t * 1.05) + " K], [" +
-                             std::to_string(t * 1.1) + " K, " + k + " K]]}}]\n"
-                             "cameras: [{name: c, film: {width: 16, height: 16}, field_of_view: 10 deg, aperture: 5 mm, position: [9 m, 1 m, 0 m], look_at: [0 m, 0 m, 0 m], " + channels(low, high) + "}]\n");
+      const auto sim = scene(
+          "entities: [{name: p, shape: {model: plate, width: 4 m, height: 4 m}, material: flat_black_paint, temperature: {rows: [[" + k + " K, " +
+          std::to_string(t * 1.05) + " K], [" + std::to_string(t * 1.1) + " K, " + k +
+          " K]]}}]\n"
+          "cameras: [{name: c, film: {width: 16, height: 16}, field_of_view: 10 deg, aperture: 5 mm, position: [9 m, 1 m, 0 m], look_at: [0 m, 0 m, 0 m], " +
+          channels(low, high) + "}]\n");
       worst = std::max(worst, compare(sim, 3).error);
     }
   // Interpolating T in single precision is worth dL/L = c2/(lambda T) dT/T: 60 x 1e-7 at the edge.
@@ -64,19 +73,26 @@ TEST(FloatAgainstDouble, PlanckInTheShader) {
 
 // Angular tables, modifiers, several components: the tables' angle grids are part of the error.
 TEST(FloatAgainstDouble, GeneralMaterials) {
-  const auto sim = scene("sun: {azimuth: 60 deg, elevation: 35 deg, temperature: 5772 K}\nambient: {temperature: 270 K}\n"
-                         "atmosphere: {extinction: 0.3 /km, temperature: 285 K, top: 4 km}\n"
-                         "materials:\n"
-                         "  gloss: {components: [{reflection: lambertian, reflectance: 0.3, modifier: {rows: [[0.2, 1], [1, 0.6]]}}, {reflection: phong, reflectance: 0.3, exponent: 25}]}\n"
-                         "  table: {components: [{reflection: table, wavelength: [3 um, 5 um], angles: [{angle: incidence, count: 3, last: 90 deg}, {angle: specular, count: 4, last: 180 deg}],"
-                         " values: [[[0.20, 0.22], [0.18, 0.2], [0.1, 0.12]], [[0.10, 0.12], [0.1, 0.11], [0.09, 0.1]], [[0.08, 0.09], [0.07, 0.08], [0.06, 0.07]], [[0.05, 0.05], [0.05, 0.05], [0.05, 0.05]]]}]}\n"
-                         "  film: {emission: {emissivity: 0.7, angular: [[0 deg, 1], [60 deg, 0.95], [90 deg, 0.3]], modifier: {rows: [[1, 0.5]]}}, components: [{reflection: lambertian, reflectance: 0.2}]}\n"
-                         "lights: [{name: l, intensity: 40 W/(sr um), position: [3 m, 2 m, 4 m]}]\n"
-                         "entities:\n"
-                         "  - {name: a, shape: {model: sphere, radius: 1 m}, material: gloss, temperature: 310 K, position: [0 m, -2 m, 0 m]}\n"
-                         "  - {name: b, shape: {model: sphere, radius: 1 m}, material: table, temperature: 290 K}\n"
-                         "  - {name: c, shape: {model: cylinder, radius: 1 m, length: 2 m}, material: film, temperature: {rows: [[300 K, 340 K]]}, position: [0 m, 2.2 m, 0 m], heading: 30 deg}\n"
-                         "cameras: [{name: c, film: {width: 60, height: 30}, field_of_view: 30 deg, aperture: 5 mm, position: [12 m, 0 m, 1 m], look_at: [0 m, 0 m, 0 m], " + channels(3.2, 4.8) + "}]\n");
+  const auto sim = scene(
+      "sun: {azimuth: 60 deg, elevation: 35 deg, temperature: 5772 K}\nambient: {temperature: 270 K}\n"
+      "atmosphere: {extinction: 0.3 /km, temperature: 285 K, top: 4 km}\n"
+      "materials:\n"
+      "  gloss: {components: [{reflection: lambertian, reflectance: 0.3, modifier: {rows: [[0.2, 1], [1, 0.6]]}}, {reflection: phong, reflectance: 0.3, "
+      "exponent: 25}]}\n"
+      "  table: {components: [{reflection: table, wavelength: [3 um, 5 um], angles: [{angle: incidence, count: 3, last: 90 deg}, {angle: specular, count: 4, "
+      "last: 180 deg}],"
+      " values: [[[0.20, 0.22], [0.18, 0.2], [0.1, 0.12]], [[0.10, 0.12], [0.1, 0.11], [0.09, 0.1]], [[0.08, 0.09], [0.07, 0.08], [0.06, 0.07]], [[0.05, "
+      "0.05], [0.05, 0.05], [0.05, 0.05]]]}]}\n"
+      "  film: {emission: {emissivity: 0.7, angular: [[0 deg, 1], [60 deg, 0.95], [90 deg, 0.3]], modifier: {rows: [[1, 0.5]]}}, components: [{reflection: "
+      "lambertian, reflectance: 0.2}]}\n"
+      "lights: [{name: l, intensity: 40 W/(sr um), position: [3 m, 2 m, 4 m]}]\n"
+      "entities:\n"
+      "  - {name: a, shape: {model: sphere, radius: 1 m}, material: gloss, temperature: 310 K, position: [0 m, -2 m, 0 m]}\n"
+      "  - {name: b, shape: {model: sphere, radius: 1 m}, material: table, temperature: 290 K}\n"
+      "  - {name: c, shape: {model: cylinder, radius: 1 m, length: 2 m}, material: film, temperature: {rows: [[300 K, 340 K]]}, position: [0 m, 2.2 m, 0 m], "
+      "heading: 30 deg}\n"
+      "cameras: [{name: c, film: {width: 60, height: 30}, field_of_view: 30 deg, aperture: 5 mm, position: [12 m, 0 m, 1 m], look_at: [0 m, 0 m, 0 m], " +
+      channels(3.2, 4.8) + "}]\n");
   const Worst w = compare(sim, 2);
   EXPECT_GT(w.covered, 300);
   bound("GPU general materials against CPU double", w.error, 1e-4, "hemispherical reflectance on a grid of 0.5 deg, linear between");
@@ -89,11 +105,14 @@ TEST(FloatAgainstDouble, DepthHoldsFromATenthOfAMetreToTwoThousandKilometres) {
   int i = 0;
   for (double r : ranges) {  // each plate beside the axis hides the one behind it over its own strip
     const double size = 0.2 * r;
-    entities += "  - {name: p" + std::to_string(i) + ", shape: {model: plate, width: " + std::to_string(size) + " m, height: " + std::to_string(size) + " m}, material: blackbody, temperature: " +
-                std::to_string(250 + 10 * i) + " K, position: [" + std::to_string(-r) + " m, 0 m, " + std::to_string(size * 0.04 * i) + " m]}\n";
+    entities += "  - {name: p" + std::to_string(i) + ", shape: {model: plate, width: " + std::to_string(size) + " m, height: " + std::to_string(size) +
+                " m}, material: blackbody, temperature: " + std::to_string(250 + 10 * i) + " K, position: [" + std::to_string(-r) + " m, 0 m, " +
+                std::to_string(size * 0.04 * i) + " m]}\n";
     ++i;
   }
-  const auto sim = scene(entities + "cameras: [{name: c, film: {width: 64, height: 64}, field_of_view: 16 deg, aperture: 5 mm, position: [0 m, 0 m, 0 m], heading: 270 deg, " + channels(8, 12) + "}]\n");
+  const auto sim = scene(
+      entities + "cameras: [{name: c, film: {width: 64, height: 64}, field_of_view: 16 deg, aperture: 5 mm, position: [0 m, 0 m, 0 m], heading: 270 deg, " +
+      channels(8, 12) + "}]\n");
   const Worst w = compare(sim, 3);
   EXPECT_GT(w.covered, 400) << "of 484: pixels on an edge may fall either way";
   bound("0.12 m to 2000 km in one frame, worst error", w.error, 1e-5, "reversed floating-point depth");
@@ -101,7 +120,8 @@ TEST(FloatAgainstDouble, DepthHoldsFromATenthOfAMetreToTwoThousandKilometres) {
 
 TEST(Shaders, CompilerMessagesNameTheFile) {
   needContext();
-  static const ShaderText broken[] = {{"test/a.glsl", "//@use test/b.glsl\nout vec4 c;\nvoid main() { c = vec4(f()); }\n"}, {"test/b.glsl", "// fine\nfloat f() { return undefinedName; }\n"}};
+  static const ShaderText broken[] = {{"test/a.glsl", "//@use test/b.glsl\nout vec4 c;\nvoid main() { c = vec4(f()); }\n"},
+                                      {"test/b.glsl", "// fine\nfloat f() { return undefinedName; }\n"}};
   ShaderLibrary library;
   library.add(broken);
   const auto fragment = assembleShader(library, "test/a.glsl", {});
@@ -116,10 +136,11 @@ TEST(Shaders, CompilerMessagesNameTheFile) {
 // The shared bodies, argument by argument: float on the GPU against double, through a program of their own.
 TEST(SharedBodies, PlanckAndExponentials) {
   needContext();
-  static const ShaderText text[] = {{"test/bodies.glsl",
-                                     "//@use sim/radiometry/glsl/planck.glsl\nuniform float base;\nuniform float ratio;\nlayout(location = 0) out vec4 c;\n"
-                                     "void main() { float x = base * pow(ratio, gl_FragCoord.x - 0.5); float t = 2.0 + 12.0 * (gl_FragCoord.y - 0.5) * (gl_FragCoord.y - 0.5);\n"
-                                     "c = vec4(x, oneMinusExp(x), decay(x), planckRadiance(0.3 + 0.1 * (gl_FragCoord.x - 0.5), t)); }\n"}};
+  static const ShaderText text[] = {
+      {"test/bodies.glsl",
+       "//@use sim/radiometry/glsl/planck.glsl\nuniform float base;\nuniform float ratio;\nlayout(location = 0) out vec4 c;\n"
+       "void main() { float x = base * pow(ratio, gl_FragCoord.x - 0.5); float t = 2.0 + 12.0 * (gl_FragCoord.y - 0.5) * (gl_FragCoord.y - 0.5);\n"
+       "c = vec4(x, oneMinusExp(x), decay(x), planckRadiance(0.3 + 0.1 * (gl_FragCoord.x - 0.5), t)); }\n"}};
   ShaderLibrary library = shaderLibrary();
   library.add(text);
   Program program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", {}), assembleShader(library, "test/bodies.glsl", {}));
@@ -148,7 +169,8 @@ TEST(SharedBodies, PlanckAndExponentials) {
         EXPECT_GT(14387.77 / static_cast<double>(wavelength * t), 80.0);
       } else {
         const double error = std::abs(got / want - 1.0);
-        (14387.77 / static_cast<double>(wavelength * t) <= 60.0 ? planck : faint) = std::max(14387.77 / static_cast<double>(wavelength * t) <= 60.0 ? planck : faint, error);
+        (14387.77 / static_cast<double>(wavelength * t) <= 60.0 ? planck : faint) =
+            std::max(14387.77 / static_cast<double>(wavelength * t) <= 60.0 ? planck : faint, error);
       }
     }
   EXPECT_GT(zeros, 10);

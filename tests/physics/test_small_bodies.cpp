@@ -18,11 +18,14 @@ struct Contrast {
 /// A square of 2 m at `pixels` of a pixel (by side), over a background, in air, placed off the middle of a pixel.
 Contrast squareOf(double pixels, double shift, int samples) {
   const double ifov = 2.0 * std::tan(kPi / 180.0) / 33.0, range = 2.0 / (pixels * ifov), g = 1.0 / range;
-  const auto sim = scene("background: {temperature: 260 K}\natmosphere: {extinction: " + std::to_string(g * 1e3 * 1e6) + "e-6 /km, temperature: 250 K}\n"
+  const auto sim = scene("background: {temperature: 260 K}\natmosphere: {extinction: " + std::to_string(g * 1e3 * 1e6) +
+                         "e-6 /km, temperature: 250 K}\n"
                          "entities: [{name: p, shape: {model: plate, width: 2 m, height: 2 m}, material: blackbody, temperature: 600 K, position: [0 m, " +
-                         std::to_string(shift * ifov * range) + " m, " + std::to_string(0.61 * shift * ifov * range) + " m]}]\n"
-                         "cameras:\n  - {name: c, film: {width: 33, height: 33}, field_of_view: 2 deg, aperture: 20 mm, position: [" + std::to_string(range) +
-                         " m, 0 m, 0 m], heading: 270 deg, samples: " + std::to_string(samples) + ", channels: [{name: mw, response: {band: [3 um, 5 um]}}]}\n");
+                         std::to_string(shift * ifov * range) + " m, " + std::to_string(0.61 * shift * ifov * range) +
+                         " m]}]\n"
+                         "cameras:\n  - {name: c, film: {width: 33, height: 33}, field_of_view: 2 deg, aperture: 20 mm, position: [" +
+                         std::to_string(range) + " m, 0 m, 0 m], heading: 270 deg, samples: " + std::to_string(samples) +
+                         ", channels: [{name: mw, response: {band: [3 um, 5 um]}}]}\n");
   const CameraImage image = renderImage(sim);
   // Behind the target the air goes on for ever: the background is the air's own radiance. The picture's own background pixel is taken
   // away, so that its rounding, summed over all pixels, does not pass for contrast.
@@ -74,9 +77,14 @@ TEST(SmallBodies, ResolvedBodiesAreAsGoodAsTheirSubpixels) {
 }
 
 TEST(SmallBodies, HiddenBehindAnother) {
-  const std::string head = "background: {temperature: 0 K}\nentities:\n  - {name: far, shape: {model: sphere, radius: 1 m}, material: blackbody, temperature: 600 K, position: [-9000 m, 0 m, 0 m]}\n";
-  const std::string wall = "  - {name: wall, shape: {model: plate, width: 900 m, height: 900 m}, material: blackbody, temperature: 0 K, position: [-5000 m, 0 m, 0 m]}\n";
-  const std::string cam = "cameras:\n  - {name: c, film: {width: 33, height: 33}, field_of_view: 2 deg, aperture: 20 mm, position: [0 m, 0 m, 0 m], heading: 270 deg, channels: [{name: mw, response: {band: [3 um, 5 um]}}]}\n";
+  const std::string head =
+      "background: {temperature: 0 K}\nentities:\n  - {name: far, shape: {model: sphere, radius: 1 m}, material: blackbody, temperature: 600 K, position: "
+      "[-9000 m, 0 m, 0 m]}\n";
+  const std::string wall =
+      "  - {name: wall, shape: {model: plate, width: 900 m, height: 900 m}, material: blackbody, temperature: 0 K, position: [-5000 m, 0 m, 0 m]}\n";
+  const std::string cam =
+      "cameras:\n  - {name: c, film: {width: 33, height: 33}, field_of_view: 2 deg, aperture: 20 mm, position: [0 m, 0 m, 0 m], heading: 270 deg, channels: "
+      "[{name: mw, response: {band: [3 um, 5 um]}}]}\n";
   EXPECT_GT(sum(layer(renderFrame(scene(head + cam)), "mw.radiance")), 0.0);
   EXPECT_EQ(sum(layer(renderFrame(scene(head + wall + cam)), "mw.radiance")), 0.0);
 }

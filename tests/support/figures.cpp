@@ -28,7 +28,9 @@ class Table : public ::testing::Environment {
     for (const auto& r : rows()) {
       char line[1024];
       if (r.isBound) std::snprintf(line, sizeof line, "| %s | %.3g | at most %.3g | | | %s |\n", r.what.c_str(), r.measured, r.expected, r.source.c_str());
-      else std::snprintf(line, sizeof line, "| %s | %.7g | %.7g | %.2e | %.0e | %s |\n", r.what.c_str(), r.measured, r.expected, r.error, r.tolerance, r.source.c_str());
+      else
+        std::snprintf(line, sizeof line, "| %s | %.7g | %.7g | %.2e | %.0e | %s |\n", r.what.c_str(), r.measured, r.expected, r.error, r.tolerance,
+                      r.source.c_str());
       text += line;
     }
     std::printf("\n%s\n", text.c_str());

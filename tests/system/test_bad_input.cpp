@@ -32,7 +32,8 @@ std::string channel(const std::string& text) { return kPlate + "cameras:\n- {nam
 std::string response(const std::string& text) { return channel("{name: mw, response: " + text + "}"); }
 
 std::string film(const std::string& text, const std::string& samples = "1") {
-  return kPlate + "cameras: [{name: c, film: " + text + ", samples: " + samples + ", field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m], " + kChannels + "}]\n";
+  return kPlate + "cameras: [{name: c, film: " + text + ", samples: " + samples +
+         ", field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m], " + kChannels + "}]\n";
 }
 
 std::string repeated(const std::string& text, int times) {
@@ -45,7 +46,8 @@ std::string repeated(const std::string& text, int times) {
 std::string manyChannels(int count) {
   std::string all;
   for (int i = 0; i < count; ++i)
-    all += std::string(i == 0 ? "" : ", ") + "{name: c" + std::to_string(i) + ", response: {band: [" + std::to_string(300 + 10 * i) + "0 nm, " + std::to_string(300 + 10 * i) + "9 nm]}}";
+    all += std::string(i == 0 ? "" : ", ") + "{name: c" + std::to_string(i) + ", response: {band: [" + std::to_string(300 + 10 * i) + "0 nm, " +
+           std::to_string(300 + 10 * i) + "9 nm]}}";
   return all;
 }
 
@@ -99,7 +101,8 @@ class Workplace {
   const fs::path& folder() const { return folder_; }
 
   Result run(const std::vector<std::string>& arguments, const std::string& before = "") const {
-    std::string command = "cd " + quoted(folder_.string()) + " && " + before + " PITVIPER_HOME=" + quoted(PITVIPER_SOURCE_DIR) + " timeout 60 " + quoted(PITVIPER_PROGRAM);
+    std::string command =
+        "cd " + quoted(folder_.string()) + " && " + before + " PITVIPER_HOME=" + quoted(PITVIPER_SOURCE_DIR) + " timeout 60 " + quoted(PITVIPER_PROGRAM);
     for (const auto& a : arguments) command += " " + quoted(a);
     const int status = std::system((command + " >.stdout 2>.stderr").c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readAll(folder_ / ".stdout"), readAll(folder_ / ".stderr")};
@@ -193,16 +196,25 @@ std::vector<Bad> badScenarios() {
       {"UnknownAir", "atmosphere: @@hazy_us67\n", {"did you mean 'hazy_us76'?"}},
       {"CarriedByItself", entity("material: {}, temperature: 300 K, attached_to: @@p"), {"no entity 'p' (above this place)"}},
       // Materials.
-      {"ReflectsMoreThanItReceives", "materials:\n  shiny: @@{components: [{reflection: lambertian, reflectance: 0.7}, {reflection: lambertian, reflectance: 0.6}]}\n", {"reflects more than it receives"}},
-      {"ReflectsAndEmitsTooMuch", "materials:\n  warm: @@{components: [{reflection: lambertian, reflectance: 0.3}], emission: {emissivity: 0.8}}\n", {"reflects and emits more"}},
+      {"ReflectsMoreThanItReceives",
+       "materials:\n  shiny: @@{components: [{reflection: lambertian, reflectance: 0.7}, {reflection: lambertian, reflectance: 0.6}]}\n",
+       {"reflects more than it receives"}},
+      {"ReflectsAndEmitsTooMuch",
+       "materials:\n  warm: @@{components: [{reflection: lambertian, reflectance: 0.3}], emission: {emissivity: 0.8}}\n",
+       {"reflects and emits more"}},
       {"ReflectanceBeyondOne", "materials: {m: {components: [{reflection: lambertian, reflectance: @@1.2}]}}\n", {"leaves its range", "0 to 1"}},
       {"MaterialDoesNotCoverTheBand",
-       "materials:\n  paint: @@{components: [{reflection: lambertian, reflectance: {wavelength: um, unit: \"1\", values: [[0.4, 0.1], [2.5, 0.2]]}}]}\n" + entity("material: paint, temperature: 300 K"),
+       "materials:\n  paint: @@{components: [{reflection: lambertian, reflectance: {wavelength: um, unit: \"1\", values: [[0.4, 0.1], [2.5, 0.2]]}}]}\n" +
+           entity("material: paint, temperature: 300 K"),
        {"material 'paint'", "channel 'mw'", "3.6 um to 4.9 um", "0.4 um to 2.5 um"}},
       // Channels.
       {"CameraWithoutChannel", kPlate + "cameras: [{name: c, " + kCameraRest + ", channels: @@[]}]\n", {"channels has 0 entries"}},
-      {"SeventeenChannels", kPlate + "cameras: [@@{name: c, " + kCameraRest + ", channels: [" + manyChannels(17) + "]}]\n", {"17 different spectral kernels", "at most 16"}},
-      {"ThousandChannels", kPlate + "cameras: [{name: c, " + kCameraRest + ", channels: @@[" + manyChannels(1000) + "]}]\n", {"channels has 1000 entries", "1 to 64"}},
+      {"SeventeenChannels",
+       kPlate + "cameras: [@@{name: c, " + kCameraRest + ", channels: [" + manyChannels(17) + "]}]\n",
+       {"17 different spectral kernels", "at most 16"}},
+      {"ThousandChannels",
+       kPlate + "cameras: [{name: c, " + kCameraRest + ", channels: @@[" + manyChannels(1000) + "]}]\n",
+       {"channels has 1000 entries", "1 to 64"}},
       {"ResponseZeroEverywhere", response("@@{wavelength: um, unit: \"1\", values: [[3, 0], [5, 0]]}"), {"channel 'mw' is zero everywhere"}},
       {"ResponseTableFalls", response("{wavelength: um, unit: \"1\", values: [[3, 0], [4, 1], @@[3.5, 1]]}"), {"do not rise"}},
       {"ResponseTableWithHole", response("{wavelength: um, unit: \"1\", values: [[3, 0], @@[4], [5, 0]]}"), {"a list of 1", "[wavelength, value]"}},
@@ -217,8 +229,11 @@ std::vector<Bad> badScenarios() {
       {"MeshMissing", shape("{model: mesh, file: @@nothing.obj, unit: 1 m}"), {"nothing.obj", "does not exist"}},
       {"MeshWithNan", meshScene, {"'nan' is not a finite number"}, {{"body.obj", "v 0 0 0\nv 1 @@nan 0\nv 0 1 0\nf 1 2 3\n"}}},
       {"TextureRowsUneven", entity("material: {}, temperature: {rows: [[300 K, 310 K], @@[300 K]]}"), {"a texture row has 1 entries"}},
-      {"TextureInColour", entity("material: {}, temperature: {file: colour.png, minimum: 0 K, maximum: 400 K}"), {"grey PNG"},
-       {{"colour.png", colourPng()}}, "colour.png: "},
+      {"TextureInColour",
+       entity("material: {}, temperature: {file: colour.png, minimum: 0 K, maximum: 400 K}"),
+       {"grey PNG"},
+       {{"colour.png", colourPng()}},
+       "colour.png: "},
       {"HeightMapTooSmall", shape("{model: terrain, size: 1 km, height_map: @@{rows: [[1 m, 2 m]]}}"), {"a height map of 2x1", "2x2 to 2048x2048"}},
   };
 }
@@ -250,9 +265,11 @@ TEST(GoodScenario, MinimalAndWithAliases) {
   const Workplace place;
   place.put("plain.yaml", kPlate + kCamera);
   EXPECT_EQ(place.run({"check", "plain.yaml"}).code, 0) << place.run({"check", "plain.yaml"}).err;
-  place.put("alias.yaml", "materials: {grey: &grey {emission: {emissivity: 0.9}}, again: *grey}\n"
-                          "entities:\n- &plate {name: p, shape: &square {model: plate, width: 1 m, height: 1 m}, material: grey, temperature: 300 K}\n"
-                          "- {name: q, shape: *square, material: again, temperature: 310 K}\n" + kCamera);
+  place.put("alias.yaml",
+            "materials: {grey: &grey {emission: {emissivity: 0.9}}, again: *grey}\n"
+            "entities:\n- &plate {name: p, shape: &square {model: plate, width: 1 m, height: 1 m}, material: grey, temperature: 300 K}\n"
+            "- {name: q, shape: *square, material: again, temperature: 310 K}\n" +
+                kCamera);
   EXPECT_EQ(place.run({"check", "alias.yaml"}).code, 0) << place.run({"check", "alias.yaml"}).err;
 }
 
@@ -274,7 +291,10 @@ std::vector<BadCommand> badCommands() {
       {"NoFile", {"check"}, "pitviper check: ", {"too few arguments"}},
       {"ScenarioMissing", {"check", "nothing.yaml"}, "nothing.yaml: ", {"cannot read the file", "No such file"}},
       {"ScenarioIsAFolder", {"check", "."}, ".: ", {"cannot read the file"}},
-      {"SetLeadsNowhere", {"check", "good.yaml", "--set", "cameras.0.cameras.0.samples=2"}, "--set cameras.0.cameras.0.samples=2: ", {"unknown key 'cameras' in camera"}},
+      {"SetLeadsNowhere",
+       {"check", "good.yaml", "--set", "cameras.0.cameras.0.samples=2"},
+       "--set cameras.0.cameras.0.samples=2: ",
+       {"unknown key 'cameras' in camera"}},
       {"SetOfAnUnknownKey", {"check", "good.yaml", "--set", "cameras.c.sampels=2"}, "--set cameras.c.sampels=2: ", {"did you mean 'samples'?"}},
       {"SetWithoutValue", {"check", "good.yaml", "--set", "cameras.c.samples"}, "--set cameras.c.samples: ", {"not an assignment"}},
       {"SetOutOfRange", {"check", "good.yaml", "--set", "cameras.0.samples=99"}, "--set cameras.0.samples=99: ", {"samples is out of range (99)"}},
@@ -321,8 +341,8 @@ class Showcase : public testing::Environment {
   void SetUp() override { ASSERT_TRUE(fs::exists(PITVIPER_PROGRAM)) << PITVIPER_PROGRAM; }
   void TearDown() override {
     std::printf("\nTen messages:\n");
-    for (const char* name : {"UnknownKey", "MissingUnit", "WrongDimension", "FilmOfABillion", "MaterialDoesNotCoverTheBand", "ReflectsAndEmitsTooMuch", "SeventeenChannels",
-                             "CsvDoesNotRise", "NotUtf8", "SetOfAnUnknownKey"})
+    for (const char* name : {"UnknownKey", "MissingUnit", "WrongDimension", "FilmOfABillion", "MaterialDoesNotCoverTheBand", "ReflectsAndEmitsTooMuch",
+                             "SeventeenChannels", "CsvDoesNotRise", "NotUtf8", "SetOfAnUnknownKey"})
       if (const auto found = messages().find(name); found != messages().end()) std::printf("  %s", found->second.c_str());
   }
 };

@@ -76,14 +76,17 @@ TEST_F(Commands, TheSameBytesTwice) {
 }
 
 TEST_F(Commands, FramesCarryUnitsAndPose) {
-  const Result r = pitviper("run " + scenario("first_light.yaml") + " --frames 3 --preview --set 'cameras.0.truth=[range, entity, temperature, normal, area, solid_angles]' --out " + folder_.string());
+  const Result r = pitviper("run " + scenario("first_light.yaml") +
+                            " --frames 3 --preview --set 'cameras.0.truth=[range, entity, temperature, normal, area, solid_angles]' --out " + folder_.string());
   ASSERT_EQ(r.code, 0) << r.output;
   const auto image = pitviper::readExr(folder_ / "seeker_00003.exr");
   EXPECT_TRUE(fs::exists(folder_ / "seeker_00003.png"));
-  for (const char* name : {"mw.radiance", "lw.radiance", "vis.radiance", "truth.range", "truth.entity", "truth.temperature", "truth.area", "truth.normal_up", "truth.solid_angle_of_aperture"})
+  for (const char* name : {"mw.radiance", "lw.radiance", "vis.radiance", "truth.range", "truth.entity", "truth.temperature", "truth.area", "truth.normal_up",
+                           "truth.solid_angle_of_aperture"})
     EXPECT_NE(image.find(name), nullptr) << name;
-  for (const char* name : {"unit.mw.radiance", "band_um.mw.radiance", "pitviper.exposure_s", "pitviper.aperture_m", "pitviper.focal_length_m", "pitviper.pose_geodetic_deg_deg_m",
-                           "pitviper.pose_ecef_m", "pitviper.orientation_ecef_wxyz", "pitviper.time_s", "pitviper.frame", "pitviper.scenario", "pitviper.scenario_sha256", "pitviper.seed", "pitviper.version"})
+  for (const char* name : {"unit.mw.radiance", "band_um.mw.radiance", "pitviper.exposure_s", "pitviper.aperture_m", "pitviper.focal_length_m",
+                           "pitviper.pose_geodetic_deg_deg_m", "pitviper.pose_ecef_m", "pitviper.orientation_ecef_wxyz", "pitviper.time_s", "pitviper.frame",
+                           "pitviper.scenario", "pitviper.scenario_sha256", "pitviper.seed", "pitviper.version"})
     EXPECT_NE(image.findAttribute(name), nullptr) << name;
   const Result at = pitviper("info " + (folder_ / "seeker_00003.exr").string() + " --at 128,128");
   EXPECT_EQ(at.code, 0);

@@ -10,8 +10,8 @@
 
 namespace {
 
-const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image", "sim/gl", "sim/scene", "sim/model", "sim/plan",
-                                         "sim/render", "sim/frame", "sim/stream", "sim/run"};
+const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image", "sim/gl",     "sim/scene", "sim/model",
+                                         "sim/plan",       "sim/render",     "sim/frame", "sim/stream", "sim/run"};
 
 int levelOf(const std::string& path) {
   for (size_t i = 0; i < kOrder.size(); ++i)
@@ -50,9 +50,12 @@ std::vector<Use> allUses() {
 
 std::string violation(const Use& use) {
   if (use.system) {
-    static const std::map<std::string, std::vector<std::string>> homes = {
-        {"yaml-cpp/", {"scenarios/reader/"}}, {"GeographicLib/", {"sim/scene/"}}, {"OpenEXR/", {"sim/image/"}}, {"Imf", {"sim/image/"}},
-        {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}}, {"epoxy/", {"sim/gl/", "sim/render/", "scenarios/commands/bench"}}};
+    static const std::map<std::string, std::vector<std::string>> homes = {{"yaml-cpp/", {"scenarios/reader/"}},
+                                                                          {"GeographicLib/", {"sim/scene/"}},
+                                                                          {"OpenEXR/", {"sim/image/"}},
+                                                                          {"Imf", {"sim/image/"}},
+                                                                          {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}},
+                                                                          {"epoxy/", {"sim/gl/", "sim/render/", "scenarios/commands/bench"}}};
     for (const auto& [library, allowed] : homes) {
       if (use.included.rfind(library, 0) != 0) continue;
       for (const auto& home : allowed)

@@ -62,9 +62,7 @@ class ImageTest : public testing::Test {
     fs::permissions(folder_, fs::perms::owner_all, ignored);
     fs::remove_all(folder_, ignored);
   }
-  std::size_t filesLeft() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
-  }
+  std::size_t filesLeft() const { return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator())); }
 
   fs::path folder_;
 };
@@ -126,10 +124,8 @@ TEST_F(ExrFile, AttributesComeBack) {
   for (const Attribute& attribute : out.attributes) {
     const Attribute* back = in.findAttribute(attribute.name);
     ASSERT_NE(back, nullptr) << attribute.name;
-    if (const auto* list = std::get_if<std::vector<double>>(&attribute.value))
-      EXPECT_EQ(numbersOf(*back), *list) << attribute.name;
-    else
-      EXPECT_EQ(back->value, attribute.value) << attribute.name;
+    if (const auto* list = std::get_if<std::vector<double>>(&attribute.value)) EXPECT_EQ(numbersOf(*back), *list) << attribute.name;
+    else EXPECT_EQ(back->value, attribute.value) << attribute.name;
   }
   EXPECT_TRUE(std::holds_alternative<std::vector<double>>(in.findAttribute("position_m")->value));
   EXPECT_EQ(numbersOf(*in.findAttribute("pitviper.scenario")), std::nullopt);
@@ -164,8 +160,7 @@ bool readsOrExplains(const fs::path& path, std::string_view bytes) {
   spill(path, bytes);
   try {
     const ExrImage image = readExr(path);
-    for (const FloatLayer& layer : image.layers)
-      EXPECT_EQ(layer.pixels.size(), static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
+    for (const FloatLayer& layer : image.layers) EXPECT_EQ(layer.pixels.size(), static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height));
     return true;
   } catch (const UserError& e) {
     EXPECT_NE(std::string(e.what()).find(path.string()), std::string::npos) << e.what();
@@ -339,8 +334,7 @@ TEST_F(AtomicFile, AReadOnlyFolderIsAnOutputError) {
 Rgb8Image samplePicture() {
   Rgb8Image picture(13, 7, {1, 2, 3});
   for (int y = 0; y < 7; ++y)
-    for (int x = 0; x < 13; ++x)
-      picture.set(x, y, {static_cast<std::uint8_t>(19 * x), static_cast<std::uint8_t>(36 * y), static_cast<std::uint8_t>(x * y)});
+    for (int x = 0; x < 13; ++x) picture.set(x, y, {static_cast<std::uint8_t>(19 * x), static_cast<std::uint8_t>(36 * y), static_cast<std::uint8_t>(x * y)});
   return picture;
 }
 
@@ -528,8 +522,7 @@ TEST(Text, IsDrawnOrSilentlyAbsent) {
 
 TEST(Preview, RangeIsNeverEmpty) {
   const float nan = std::nanf("");
-  const std::vector<std::vector<float>> images = {{},   {nan, nan},         {0, 0, 0},      {300, 300},
-                                                  {-5}, {300, 300.00003f}, {3e38f, -3e38f}, {1e-45f}};
+  const std::vector<std::vector<float>> images = {{}, {nan, nan}, {0, 0, 0}, {300, 300}, {-5}, {300, 300.00003f}, {3e38f, -3e38f}, {1e-45f}};
   for (const std::vector<float>& pixels : images) {
     const auto [low, high] = automaticRange(pixels);
     EXPECT_LT(low, high);

@@ -34,7 +34,8 @@ double byEqualSteps(const ReflectionComponent& r, double viewAngle, double pole,
 TEST(Materials, PhongKeepsItsEnergyAndReciprocity) {
   for (double n : {0.0, 1.0, 30.0, 1000.0, 1e7}) {
     const auto phong = makePhong(Spectrum(0.6), n);
-    figure("Phong, n = " + std::to_string(static_cast<long>(n)) + ", reflectance at normal view", phong->hemispherical(5.0, 0.0), 0.6, 1e-6, "(n + 2)/(2 pi) lobe integrates to 1");
+    figure("Phong, n = " + std::to_string(static_cast<long>(n)) + ", reflectance at normal view", phong->hemispherical(5.0, 0.0), 0.6, 1e-6,
+           "(n + 2)/(2 pi) lobe integrates to 1");
     double last = 1.0;
     for (double a : {0.0, 0.4, 0.8, 1.2, 1.5}) {
       EXPECT_LE(phong->hemispherical(5.0, a), last + 1e-9);
@@ -47,8 +48,8 @@ TEST(Materials, PhongKeepsItsEnergyAndReciprocity) {
   for (double n : {0.0, 12.0, 3000.0, 1e7})
     for (double a : {0.0, 0.7, 1.3}) {
       const auto phong = makePhong(Spectrum(0.6), n);
-      figure("Phong, n = " + std::to_string(static_cast<long>(n)) + ", reflectance at " + std::to_string(a).substr(0, 3) + " rad", phong->hemispherical(5.0, a), phong->ReflectionComponent::hemispherical(5.0, a), 1e-5,
-             "integration about the mirrored view; grid of 0.25 deg in the closed form");
+      figure("Phong, n = " + std::to_string(static_cast<long>(n)) + ", reflectance at " + std::to_string(a).substr(0, 3) + " rad", phong->hemispherical(5.0, a),
+             phong->ReflectionComponent::hemispherical(5.0, a), 1e-5, "integration about the mirrored view; grid of 0.25 deg in the closed form");
     }
 }
 
@@ -88,8 +89,8 @@ TEST(Materials, NarrowSpecularDiscKeepsItsEnergy) {
   }
   EXPECT_NEAR(normal, 0.95, 0.01);
   for (double angle : {0.0, 20.0, 20.3, 45.0, 80.0, 88.5})
-    figure("specular disc of 1 deg seen at " + std::to_string(angle).substr(0, 4) + " deg, reflectance", table->hemispherical(4.0, angle * kDegree), normal * std::cos(angle * kDegree), 2e-5,
-           "2 pi int f cos sin cos(theta_v); 0.5 deg grid of view angles");
+    figure("specular disc of 1 deg seen at " + std::to_string(angle).substr(0, 4) + " deg, reflectance", table->hemispherical(4.0, angle * kDegree),
+           normal * std::cos(angle * kDegree), 2e-5, "2 pi int f cos sin cos(theta_v); 0.5 deg grid of view angles");
   EXPECT_GT(table->hemispherical(4.0, 0.5 * kPi), 0.0) << "half of the disc is above the horizon at grazing view";
 }
 
@@ -100,21 +101,23 @@ TEST(Materials, HalfVectorLobeAgainstEqualSteps) {
     for (int i = 0; i <= 12; ++i) values.push_back(0.3 / std::pow(width * kDegree, 2) * std::pow(1.0 - i / 12.0, 2));
     const auto table = makeTabulated({{4.0}, {AngleAxis{Angle::Half, 13, width * kDegree}, AngleAxis{}}, values});
     for (double angle : {0.0, 40.0, 75.0})
-      figure("half-vector lobe of " + std::to_string(width).substr(0, 2) + " deg seen at " + std::to_string(angle).substr(0, 2) + " deg, reflectance", table->hemispherical(4.0, angle * kDegree),
-             byEqualSteps(*table, angle * kDegree, -angle * kDegree, 6000, 300), 1e-3, "equal steps, 6000 x 300");
+      figure("half-vector lobe of " + std::to_string(width).substr(0, 2) + " deg seen at " + std::to_string(angle).substr(0, 2) + " deg, reflectance",
+             table->hemispherical(4.0, angle * kDegree), byEqualSteps(*table, angle * kDegree, -angle * kDegree, 6000, 300), 1e-3, "equal steps, 6000 x 300");
   }
 }
 
 TEST(Materials, TablesOverTwoAnglesAgainstEqualSteps) {
-  const std::pair<Angle, Angle> pairs[] = {{Angle::Half, Angle::Difference}, {Angle::Incidence, Angle::Specular}, {Angle::Specular, Angle::Half}, {Angle::Difference, Angle::Specular},
-                                           {Angle::Half, Angle::Incidence}, {Angle::Incidence, Angle::Difference}, {Angle::Specular, Angle::View}};
+  const std::pair<Angle, Angle> pairs[] = {{Angle::Half, Angle::Difference},     {Angle::Incidence, Angle::Specular}, {Angle::Specular, Angle::Half},
+                                           {Angle::Difference, Angle::Specular}, {Angle::Half, Angle::Incidence},     {Angle::Incidence, Angle::Difference},
+                                           {Angle::Specular, Angle::View}};
   double worst = 0.0;
   for (const auto& [a, b] : pairs) {
     BrdfTable t{{4.0}, {AngleAxis{a, 6, 50.0 * kDegree}, AngleAxis{b, 4, 80.0 * kDegree}}, {}};
     for (int j = 0; j < 4; ++j)
       for (int i = 0; i < 6; ++i) t.values.push_back(0.02 + 0.3 * ((5 - i) * (5 - i) % 7) / 7.0 + 0.1 * (j * j % 3));
     const auto table = makeTabulated(t);
-    for (double angle : {0.0, 35.0, 80.0}) worst = std::max(worst, std::abs(table->hemispherical(4.0, angle * kDegree) / byEqualSteps(*table, angle * kDegree, 0.0, 1000, 500) - 1.0));
+    for (double angle : {0.0, 35.0, 80.0})
+      worst = std::max(worst, std::abs(table->hemispherical(4.0, angle * kDegree) / byEqualSteps(*table, angle * kDegree, 0.0, 1000, 500) - 1.0));
   }
   bound("rugged tables over two angles against equal steps, worst error", worst, 1e-3, "equal steps, 1000 x 500");
 }
@@ -130,7 +133,8 @@ TEST(Materials, NarrowFeatureOverTheViewAngle) {
 }
 
 const std::string kCamera =
-    "cameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [9 m, 0 m, 0 m], heading: 270 deg, channels: [{name: a, response: {band: [3 um, 5 um]}}]}]\n";
+    "cameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [9 m, 0 m, 0 m], heading: 270 deg, channels: [{name: a, "
+    "response: {band: [3 um, 5 um]}}]}]\n";
 
 RenderTables tablesOf(const Simulation& sim) { return makeTables(sim, makePlan(sim, sim.cameras[0].outputs, sim.cameras[0].spectral, sim.cameras[0].where)); }
 
@@ -151,31 +155,42 @@ TEST(MaterialEnergy, IsCheckedWhereverASpectrumBends) {
   EXPECT_NE(refusal("  m: {components: [" + peak + ", " + peak + "]}\n").find(kTooMuch), std::string::npos);
   EXPECT_EQ(refusal("  m: {components: [" + peak + "]}\n"), "");
   // Each linear between its rows, their product of factors greatest in the middle.
-  const std::string hill = "{product: [{wavelength: um, unit: \"1\", outside: hold, values: [[3, 0], [5, 1]]}, {wavelength: um, unit: \"1\", outside: hold, values: [[3, 1], [5, 0]]}], scale: 4}";
+  const std::string hill =
+      "{product: [{wavelength: um, unit: \"1\", outside: hold, values: [[3, 0], [5, 1]]}, {wavelength: um, unit: \"1\", outside: hold, values: [[3, 1], [5, "
+      "0]]}], scale: 4}";
   EXPECT_NE(refusal("  m: {components: [{reflection: lambertian, reflectance: " + hill + "}, {reflection: lambertian, reflectance: 0.2}]}\n"), "");
   // Kirchhoff's emissivity of a table that reflects more than it receives at 62.5 deg only.
-  EXPECT_NE(refusal("  m: {components: [{reflection: table, wavelength: [3 um, 5 um], angles: [{angle: view, count: 37, last: 90 deg}], values: [" + [] {
-              std::string rows;
-              for (int i = 0; i < 37; ++i) rows += std::string(i ? ", " : "") + (i == 25 ? "[0.5, 0.5]" : "[0.1, 0.1]");
-              return rows;
-            }() + "]}]}\n").find(kTooMuch), std::string::npos);
+  EXPECT_NE(refusal("  m: {components: [{reflection: table, wavelength: [3 um, 5 um], angles: [{angle: view, count: 37, last: 90 deg}], values: [" +
+                    [] {
+                      std::string rows;
+                      for (int i = 0; i < 37; ++i) rows += std::string(i ? ", " : "") + (i == 25 ? "[0.5, 0.5]" : "[0.1, 0.1]");
+                      return rows;
+                    }() +
+                    "]}]}\n")
+                .find(kTooMuch),
+            std::string::npos);
 }
 
 TEST(MaterialEnergy, ModifiersAreTakenTexelByTexel) {
-  const std::string grass = "{reflection: lambertian, reflectance: 0.7, modifier: {rows: ", soil = "{reflection: lambertian, reflectance: 0.6, modifier: {rows: ";
+  const std::string grass = "{reflection: lambertian, reflectance: 0.7, modifier: {rows: ",
+                    soil = "{reflection: lambertian, reflectance: 0.6, modifier: {rows: ";
   const std::string mask = "[[1, 0, 0.25], [0.5, 1, 0]]", rest = "[[0, 1, 0.75], [0.5, 0, 1]]";
   EXPECT_EQ(refusal("  m: {components: [" + grass + mask + "}}, " + soil + rest + "}}]}\n"), "") << "a mixture of two surfaces";
-  EXPECT_NE(refusal("  m: {components: [" + grass + mask + "}}, " + soil + "[[0, 1, 0.75], [0.5, 0.6, 1]]}}]}\n").find(kTooMuch), std::string::npos) << "0.7 + 0.36 in one texel";
-  EXPECT_NE(refusal("  m: {components: [" + grass + mask + "}}, {reflection: lambertian, reflectance: 0.6}]}\n").find(kTooMuch), std::string::npos) << "0.7 + 0.6 where the mask is 1";
+  EXPECT_NE(refusal("  m: {components: [" + grass + mask + "}}, " + soil + "[[0, 1, 0.75], [0.5, 0.6, 1]]}}]}\n").find(kTooMuch), std::string::npos)
+      << "0.7 + 0.36 in one texel";
+  EXPECT_NE(refusal("  m: {components: [" + grass + mask + "}}, {reflection: lambertian, reflectance: 0.6}]}\n").find(kTooMuch), std::string::npos)
+      << "0.7 + 0.6 where the mask is 1";
   // Textures of other sizes are bilinear between the same lines.
-  EXPECT_EQ(refusal("  m: {components: [" + grass + "[[1, 0]]}}, " + soil + "[[0, 0.5]]}}], emission: {emissivity: 0.3, modifier: {rows: [[1], [0.5]]}}}\n"), "");
+  EXPECT_EQ(refusal("  m: {components: [" + grass + "[[1, 0]]}}, " + soil + "[[0, 0.5]]}}], emission: {emissivity: 0.3, modifier: {rows: [[1], [0.5]]}}}\n"),
+            "");
   EXPECT_NE(refusal("  m: {components: [" + grass + "[[1, 0]]}}, " + soil + "[[1, 0, 0, 0]]}}]}\n").find(kTooMuch), std::string::npos);
   EXPECT_EQ(refusal("  m: {components: [" + grass + "[[1, 0]]}}, " + soil + "[[0, 0, 0, 1]]}}]}\n"), "");
 }
 
 // The lines of all texels against a fine search, textures of three sizes.
 TEST(MaterialEnergy, TexturesOfSeveralSizesAgainstAFineSearch) {
-  std::vector<Texture> textures{{"a", 3, 2, {0.1f, 0.9f, 0.3f, 0.8f, 0.2f, 0.6f}}, {"b", 2, 2, {0.9f, 0.1f, 0.4f, 0.7f}}, {"c", 1, 5, {0.2f, 0.9f, 0.1f, 0.5f, 0.3f}}};
+  std::vector<Texture> textures{
+      {"a", 3, 2, {0.1f, 0.9f, 0.3f, 0.8f, 0.2f, 0.6f}}, {"b", 2, 2, {0.9f, 0.1f, 0.4f, 0.7f}}, {"c", 1, 5, {0.2f, 0.9f, 0.1f, 0.5f, 0.3f}}};
   auto valueAt = [](const Texture& t, double u, double v) {
     const double x = u * t.width - 0.5 + t.width, y = v * t.height - 0.5 + t.height;
     const int i = static_cast<int>(x), j = static_cast<int>(y);
@@ -195,7 +210,8 @@ TEST(MaterialEnergy, TexturesOfSeveralSizesAgainstAFineSearch) {
   ASSERT_GT(greatest, 1.0);
   const auto excess = energyExcess(m, textures);
   ASSERT_TRUE(excess.has_value());
-  figure("greatest sum of three modified components, textures of three sizes", excess->sum, greatest, 1e-6, "search on 600 x 600 points that include all texels");
+  figure("greatest sum of three modified components, textures of three sizes", excess->sum, greatest, 1e-6,
+         "search on 600 x 600 points that include all texels");
 }
 
 // Thousands of wavelengths of which none is the worst for all mixtures.
@@ -226,7 +242,8 @@ TEST(MaterialTables, ComponentsOnOneAngleKeepTheirOwnSteps) {
   auto component = [](int count, double last_deg, double scale) {
     std::string rows;
     for (int i = 0; i < count; ++i) rows += (i ? ", [" : "[") + std::to_string(scale * (1 + i % 3)) + ", " + std::to_string(scale * (1 + i % 2)) + "]";
-    return "{reflection: table, wavelength: [3 um, 5 um], angles: [{angle: specular, count: " + std::to_string(count) + ", last: " + std::to_string(last_deg) + " deg}], values: [" + rows + "]}";
+    return "{reflection: table, wavelength: [3 um, 5 um], angles: [{angle: specular, count: " + std::to_string(count) + ", last: " + std::to_string(last_deg) +
+           " deg}], values: [" + rows + "]}";
   };
   for (const auto& [n1, last1, n2, last2, cells] : {std::tuple{3, 90.0, 7, 90.0, 6}, {5, 90.0, 4, 90.0, 12}, {4, 30.0, 10, 90.0, 9}, {5, 20.0, 10, 90.0, 18}}) {
     const auto sim = scene("materials: {m: {components: [" + component(n1, last1, 0.05) + ", " + component(n2, last2, 0.02) + "]}}\n" + kCamera);
@@ -254,7 +271,10 @@ TEST(MaterialTables, ComponentsOnOneAngleKeepTheirOwnSteps) {
 }
 
 TEST(MaterialTables, EmissivityOverWavelengthAndViewAngle) {
-  const auto sim = scene("materials: {m: {emission: {wavelength: [3 um, 5 um], angles: [{angle: view, count: 3, last: 90 deg}], values: [[0.9, 0.7], [0.8, 0.6], [0.1, 0.3]]}}}\n" + kCamera);
+  const auto sim = scene(
+      "materials: {m: {emission: {wavelength: [3 um, 5 um], angles: [{angle: view, count: 3, last: 90 deg}], values: [[0.9, 0.7], [0.8, 0.6], [0.1, "
+      "0.3]]}}}\n" +
+      kCamera);
   const Material& m = *sim.materials[0];
   EXPECT_TRUE(m.needsAngles());
   EXPECT_EQ(m.validLow_um(), 3.0);
@@ -278,7 +298,9 @@ TEST(MaterialTables, EmissionIsASpectrumOrATable) {
   EXPECT_NE(emission("wavelength: [3 um, 5 um], angles: [{angle: half, count: 2, last: 90 deg}], " + values).find("view"), std::string::npos);
   EXPECT_NE(emission("wavelength: [3 um, 5 um], " + angles + ", values: [[0.9, 0.9], [1.5, 0.9]]").find("an emissivity value is above 1"), std::string::npos);
   EXPECT_NE(emission("wavelength: [3 um, 5 um], " + angles + ", values: [[0.9, 0.9]]").find("values"), std::string::npos);
-  EXPECT_NE(refusal("  m: {components: [{reflection: lambertian, reflectance: 0.3}], emission: {wavelength: [3 um, 4 um, 5 um], " + angles + ", values: [[0.6, 0.75, 0.6], [0.6, 0.6, 0.6]]}}\n").find(kTooMuch),
+  EXPECT_NE(refusal("  m: {components: [{reflection: lambertian, reflectance: 0.3}], emission: {wavelength: [3 um, 4 um, 5 um], " + angles +
+                    ", values: [[0.6, 0.75, 0.6], [0.6, 0.6, 0.6]]}}\n")
+                .find(kTooMuch),
             std::string::npos);
 }
 
@@ -287,7 +309,8 @@ TEST(MaterialTables, GridOfViewAnglesHasTheBends) {
   for (const auto& [count, last, entries] : {std::tuple{3, "90 deg", 181u}, {7, "85 deg", 217u}, {4, "10 deg", 190u}, {8, "1 rad", 1441u}}) {
     std::string rows;
     for (int i = 0; i < count; ++i) rows += i ? ", [0.5, 0.5]" : "[0.9, 0.9]";
-    const auto sim = scene("materials: {m: {emission: {wavelength: [3 um, 5 um], angles: [{angle: view, count: " + std::to_string(count) + ", last: " + last + "}], values: [" + rows + "]}}}\n" + kCamera);
+    const auto sim = scene("materials: {m: {emission: {wavelength: [3 um, 5 um], angles: [{angle: view, count: " + std::to_string(count) + ", last: " + last +
+                           "}], values: [" + rows + "]}}}\n" + kCamera);
     EXPECT_EQ(tablesOf(sim).materials[0].counts[2], entries) << last;
   }
 }

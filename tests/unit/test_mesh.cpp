@@ -89,7 +89,8 @@ TEST(Primitives, Box) {
   EXPECT_NEAR(surfaceArea(box), 2.0 * (6.0 + 10.0 + 15.0), 1e-5);
   EXPECT_NEAR(signedVolume(box), 30.0, 1e-5);
   ASSERT_EQ(box.parts.size(), 6u);
-  const std::pair<const char*, glm::vec3> sides[] = {{"front", {1, 0, 0}}, {"back", {-1, 0, 0}}, {"left", {0, 1, 0}}, {"right", {0, -1, 0}}, {"top", {0, 0, 1}}, {"bottom", {0, 0, -1}}};
+  const std::pair<const char*, glm::vec3> sides[] = {{"front", {1, 0, 0}},  {"back", {-1, 0, 0}}, {"left", {0, 1, 0}},
+                                                     {"right", {0, -1, 0}}, {"top", {0, 0, 1}},   {"bottom", {0, 0, -1}}};
   for (size_t i = 0; i < 6; ++i) {
     EXPECT_EQ(box.parts[i].name, sides[i].first);
     EXPECT_EQ(box.normals[box.triangles[box.parts[i].firstTriangle].x], sides[i].second);
@@ -155,8 +156,7 @@ TEST(Primitives, Terrain) {
   EXPECT_NE(makeTerrain(shape).positions, fine.positions);
   // A slanted plane: exact normals everywhere.
   const Mesh plane = makeTerrain(2.0, 2, 1, {0, 1, 2, 0, 1, 2});
-  for (const glm::vec3& n : plane.normals)
-    EXPECT_NEAR(glm::distance(n, glm::normalize(glm::vec3(-1, 0, 1))), 0.0f, 1e-6f);
+  for (const glm::vec3& n : plane.normals) EXPECT_NEAR(glm::distance(n, glm::normalize(glm::vec3(-1, 0, 1))), 0.0f, 1e-6f);
 }
 
 TEST(Primitives, RefuseImpossibleArguments) {
@@ -194,12 +194,10 @@ TEST(MeshTools, AppendMovesAndMirrors) {
   ASSERT_EQ(both.parts.size(), 2u);
   EXPECT_EQ(both.parts[1].name, "b");
   EXPECT_EQ(both.parts[0].triangleCount + both.parts[1].triangleCount, both.triangles.size());
-  EXPECT_NEAR(signedVolume(both), 3.0 * signedVolume(makeCone(1.0, 0.5, 2.0, 24)) + signedVolume(makeSphere(0.1, 8)),
-              1e-4);
+  EXPECT_NEAR(signedVolume(both), 3.0 * signedVolume(makeCone(1.0, 0.5, 2.0, 24)) + signedVolume(makeSphere(0.1, 8)), 1e-4);
   EXPECT_NEAR(boundingRadius(both), 9.1, 1e-3);
   const BoundingSphere sphere = boundingSphere(both);
-  for (const glm::vec3& p : both.positions)
-    EXPECT_LE(glm::distance(glm::dvec3(p), sphere.center), sphere.radius_m * (1 + 1e-12));
+  for (const glm::vec3& p : both.positions) EXPECT_LE(glm::distance(glm::dvec3(p), sphere.center), sphere.radius_m * (1 + 1e-12));
   EXPECT_LT(sphere.radius_m, 1.2 * 5.8);
   appendPart(both, makePlate(1, 1), "open", glm::mat4(1.0f));
   EXPECT_FALSE(both.closed);
@@ -245,8 +243,7 @@ TEST(Aircraft, AreClosedAndHaveTheirSize) {
   EXPECT_NEAR(extent(missile, 0), 2.9f, 0.02f);
   std::vector<std::string> names;
   for (const MeshPart& part : jet.parts) names.push_back(part.name);
-  EXPECT_EQ(names,
-            (std::vector<std::string>{"skin", "wing_edges", "radome", "canopy", "intake", "tailpipe", "nozzle"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"skin", "wing_edges", "radome", "canopy", "intake", "tailpipe", "nozzle"}));
   EXPECT_EQ(missile.parts.size(), 4u);
 }
 
@@ -305,22 +302,17 @@ TEST_F(Import, ObjGroupsPolygonsAndGaps) {
   EXPECT_EQ(mesh.parts[1].name, "sides");
   EXPECT_EQ(mesh.parts[1].triangleCount, 5u);  // three and a quad on a joined line
   // A concave polygon (an arrow head of area 1) is cut by ears, not by a fan; many corners on one line are no trouble.
-  EXPECT_NEAR(
-      surfaceArea(importMesh(write("arrow.obj", "v 1 0 0\nv 0 2 0\nv 0.5 0 0\nv 0 -2 0\nf 1 2 3 4\n"), 1.0, {})), 1.0,
-      1e-6);
+  EXPECT_NEAR(surfaceArea(importMesh(write("arrow.obj", "v 1 0 0\nv 0 2 0\nv 0.5 0 0\nv 0 -2 0\nf 1 2 3 4\n"), 1.0, {})), 1.0, 1e-6);
   std::string ring, face = "f";
   for (int i = 0; i < 1024; ++i) {
-    ring += "v " + std::to_string(std::cos(2 * kPi * i / 1024)) + " " + std::to_string(std::sin(2 * kPi * i / 1024)) +
-            " 0\n";
+    ring += "v " + std::to_string(std::cos(2 * kPi * i / 1024)) + " " + std::to_string(std::sin(2 * kPi * i / 1024)) + " 0\n";
     face += " " + std::to_string(i + 1);
   }
   EXPECT_NEAR(surfaceArea(importMesh(write("ring.obj", ring + face + "\n"), 1.0, {})), polygonArea(1.0, 1024), 1e-4);
 }
 
 TEST_F(Import, MistakesAreNamedWithTheirPlace) {
-  const auto starts = [&](const std::string& text, const std::string& start) {
-    EXPECT_TRUE(text.starts_with(start)) << text;
-  };
+  const auto starts = [&](const std::string& text, const std::string& start) { EXPECT_TRUE(text.starts_with(start)) << text; };
   const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   auto file = write("nan.obj", "v 0 0 0\nv 1 nan 0\nv 0 1 0\nf 1 2 3\n");
   starts(complaint(file), file.string() + ":2:5: 'nan' is not a finite number");
@@ -390,8 +382,7 @@ TEST_F(Import, ACachedMeshIsWholeOrNothing) {
   EXPECT_EQ(back->positions, mesh.positions);
   EXPECT_EQ(back->parts[0].name, "all");
   EXPECT_TRUE(back->closed);
-  for (std::size_t size = 0; size < bytes.size(); size += 7)
-    EXPECT_FALSE(deserializeMesh(std::string_view(bytes).substr(0, size)));
+  for (std::size_t size = 0; size < bytes.size(); size += 7) EXPECT_FALSE(deserializeMesh(std::string_view(bytes).substr(0, size)));
   for (std::size_t i = 0; i < bytes.size(); i += 11) {
     std::string damaged = bytes;
     damaged[i] = static_cast<char>(damaged[i] ^ 4);

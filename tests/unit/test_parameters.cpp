@@ -1,14 +1,14 @@
 // Units, values and tables.
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <sstream>
+
 #include "scenarios/reader/scenario_reader.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/parameters/spectrum_value.hpp"
 #include "sim/parameters/units.hpp"
 #include "tests/support/scene_builder.hpp"
-
-#include <fstream>
-#include <sstream>
 
 namespace pitviper::test {
 namespace {
@@ -51,7 +51,9 @@ std::string errorOf(const std::string& yaml) {
   return "no error";
 }
 
-const std::string kCamera = "cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 2 deg, aperture: 20 mm, heading: 0 deg, channels: [{name: a, response: {band: [3 um, 5 um]}}]}]\n";
+const std::string kCamera =
+    "cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 2 deg, aperture: 20 mm, heading: 0 deg, channels: [{name: a, response: {band: [3 um, 5 "
+    "um]}}]}]\n";
 
 TEST(Reader, PlacesAndFixes) {
   EXPECT_EQ(errorOf("sede: 3\n" + kCamera).rfind("test.yaml:1:1: unknown key 'sede'", 0), 0u);
@@ -66,10 +68,16 @@ TEST(Reader, PlacesAndFixes) {
 TEST(Reader, NothingIsIgnoredSilently) {
   const std::string head = "entities: [{name: p, material: blackbody, temperature: 300 K, shape: {model: ";
   EXPECT_NE(errorOf(head + "cylinder, radius: 1 m, height: 2 m}}]\n" + kCamera).find("a cylinder has no 'height'"), std::string::npos);
-  EXPECT_NE(errorOf(head + "plate, width: 1 m, height: 1 m}, heading: 3 deg, motion: [{time: 0 s, position: [0 m, 0 m, 0 m]}]}]\n" + kCamera).find("a heading and a motion"), std::string::npos);
-  EXPECT_NE(errorOf("cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 2 deg, aperture: 20 mm, heading: 0 deg, look_at: [1 m, 0 m, 0 m], channels: [{name: a, response: {band: [3 um, 5 um]}}]}]\n")
-                .find("a heading and a look_at"), std::string::npos);
-  EXPECT_NE(errorOf("entities: [{name: p, material: grass, temperature: 300 K, shape: {model: plate, width: 1 m, height: 1 m}}]\n" + kCamera).find("'dry_grass'"), std::string::npos);
+  EXPECT_NE(errorOf(head + "plate, width: 1 m, height: 1 m}, heading: 3 deg, motion: [{time: 0 s, position: [0 m, 0 m, 0 m]}]}]\n" + kCamera)
+                .find("a heading and a motion"),
+            std::string::npos);
+  EXPECT_NE(errorOf("cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 2 deg, aperture: 20 mm, heading: 0 deg, look_at: [1 m, 0 m, 0 m], "
+                    "channels: [{name: a, response: {band: [3 um, 5 um]}}]}]\n")
+                .find("a heading and a look_at"),
+            std::string::npos);
+  EXPECT_NE(
+      errorOf("entities: [{name: p, material: grass, temperature: 300 K, shape: {model: plate, width: 1 m, height: 1 m}}]\n" + kCamera).find("'dry_grass'"),
+      std::string::npos);
   EXPECT_NE(errorOf("background: {temperature: 14 C}\n" + kCamera).find("write it in K or degC"), std::string::npos);
 }
 
@@ -130,7 +138,8 @@ TEST(Reader, KeyReferenceIsCurrent) {
   const size_t begin = readme.find("<!-- keys -->\n"), end = readme.find("<!-- end of keys -->");
   ASSERT_NE(begin, std::string::npos);
   ASSERT_NE(end, std::string::npos);
-  EXPECT_TRUE(readme.substr(begin + 14, end - begin - 14) == keyReference()) << "run: pitviper keys, and put its output between the marks in scenarios/README.md";
+  EXPECT_TRUE(readme.substr(begin + 14, end - begin - 14) == keyReference())
+      << "run: pitviper keys, and put its output between the marks in scenarios/README.md";
 }
 
 }  // namespace

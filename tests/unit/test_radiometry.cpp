@@ -19,17 +19,18 @@ TEST(Planck, PublishedValues) {
     if (const double b = physics::planckRadiance(w, 300.0); b > best) best = b, peak = w;
   figure("peak of Planck's law at 300 K [um]", peak, 2897.771955 / 300.0, 2e-5, "Wien displacement, CODATA 2018; search step");
   // Peak radiance: 4.0957e-6 W/(m2 sr um K^5) T^5 (Howell, Siegel: pi B_max = 1.2867e-11 W/(m2 um K^5) T^5 ... as exitance).
-  figure("peak exitance / T^5 [W/(m2 um K5)]", kPi * best / std::pow(300.0, 5), 1.2867e-11, 1e-4, "Howell and Siegel, Thermal radiation heat transfer, table of constants");
+  figure("peak exitance / T^5 [W/(m2 um K5)]", kPi * best / std::pow(300.0, 5), 1.2867e-11, 1e-4,
+         "Howell and Siegel, Thermal radiation heat transfer, table of constants");
   // Stefan-Boltzmann.
   const Spectrum body(Spectrum::BlackBody{400.0, 1.0});
-  figure("exitance at 400 K [W/m2]", kPi * body.integral(0.5, 1000.0), kStefanBoltzmann * std::pow(400.0, 4), 2e-5, "sigma T^4; 2e-6 of it lies beyond 1000 um");
+  figure("exitance at 400 K [W/m2]", kPi * body.integral(0.5, 1000.0), kStefanBoltzmann * std::pow(400.0, 4), 2e-5,
+         "sigma T^4; 2e-6 of it lies beyond 1000 um");
   // A sun of 5772 K and 6.7943e-5 sr: 1361 W/m2 (IAU 2015 nominal total solar irradiance).
   figure("black body sun [W/m2]", Spectrum(Spectrum::BlackBody{5772.0, 6.7943e-5}).integral(0.1, 1000.0), 1361.0, 1e-3, "IAU 2015 nominal solar irradiance");
 }
 
 TEST(Planck, SeriesOfTheTestsAgreesWithTheIntegral) {
-  for (double t : {200.0, 300.0, 3000.0})
-    EXPECT_NEAR(Spectrum(Spectrum::BlackBody{t, 1.0}).integral(3, 5) / blackBodyBand(3, 5, t), 1.0, 1e-9) << t;
+  for (double t : {200.0, 300.0, 3000.0}) EXPECT_NEAR(Spectrum(Spectrum::BlackBody{t, 1.0}).integral(3, 5) / blackBodyBand(3, 5, t), 1.0, 1e-9) << t;
 }
 
 TEST(Planck, ExtremesAreZeroOrRight) {

@@ -40,7 +40,11 @@ Hit castRay(const Simulation& sim, const WorldState& state, const glm::dvec3& or
         const double u = 1.0 - v - w;
         glm::dvec3 n = u * glm::dvec3(mesh.normals[i.x]) + v * glm::dvec3(mesh.normals[i.y]) + w * glm::dvec3(mesh.normals[i.z]);
         if (glm::dot(glm::cross(e1, e2), d) > 0.0) n = -n;
-        hit = {static_cast<int>(e), static_cast<int>(s), along, origin + along * direction, localFromBody * glm::normalize(n),
+        hit = {static_cast<int>(e),
+               static_cast<int>(s),
+               along,
+               origin + along * direction,
+               localFromBody * glm::normalize(n),
                u * glm::dvec2(mesh.uv[i.x]) + v * glm::dvec2(mesh.uv[i.y]) + w * glm::dvec2(mesh.uv[i.z])};
       }
     }
@@ -100,7 +104,8 @@ ReferencePixel referencePixel(const Simulation& sim, const Plan& plan, const Vie
     for (size_t k = 0; k < material->modifiers.size(); ++k)
       if (material->modifiers[k] >= 0) mod[k] = textureValue(sim.textures[static_cast<size_t>(material->modifiers[k])], hit.uv);
     if (material->given && material->given->modifier >= 0) mod[3] = textureValue(sim.textures[static_cast<size_t>(material->given->modifier)], hit.uv);
-    pixel.temperature_K = surface->temperatureTexture >= 0 ? textureValue(sim.textures[static_cast<size_t>(surface->temperatureTexture)], hit.uv) : surface->temperature_K;
+    pixel.temperature_K =
+        surface->temperatureTexture >= 0 ? textureValue(sim.textures[static_cast<size_t>(surface->temperatureTexture)], hit.uv) : surface->temperature_K;
   }
 
   struct Leg {

@@ -25,8 +25,7 @@ class GltfCheck {
     if (root_.kind != Json::Kind::Object) fail(root_, "the glTF text is no object", "an object");
     const Json* asset = root_.find("asset");
     const Json* version = asset != nullptr ? asset->find("version") : nullptr;
-    if (version == nullptr || !version->text.starts_with("2."))
-      fail(root_, "this is not glTF 2", "\"asset\": {\"version\": \"2.0\"}");
+    if (version == nullptr || !version->text.starts_with("2.")) fail(root_, "this is not glTF 2", "\"asset\": {\"version\": \"2.0\"}");
     refuseExtensions();
     for (const Json& buffer : list(root_, "buffers")) checkBuffer(buffer);
     for (const Json& view : list(root_, "bufferViews")) checkView(view);
@@ -59,21 +58,17 @@ class GltfCheck {
     const std::string_view all = text_;
     const auto word = [&](std::size_t at) {
       std::uint32_t value = 0;
-      if (all.size() < at + 4)
-        failAtByte(file_, all.size(), "the file ends within a chunk's header", "a whole GLB file");
+      if (all.size() < at + 4) failAtByte(file_, all.size(), "the file ends within a chunk's header", "a whole GLB file");
       std::memcpy(&value, all.data() + at, 4);
       return value;
     };
     if (word(4) != 2) failAtByte(file_, 4, "this is GLB version " + std::to_string(word(4)), "2");
-    if (word(8) != all.size())
-      failAtByte(file_, 8, "the file says it has " + std::to_string(word(8)) + " bytes", std::to_string(all.size()));
+    if (word(8) != all.size()) failAtByte(file_, 8, "the file says it has " + std::to_string(word(8)) + " bytes", std::to_string(all.size()));
     for (std::size_t at = 12; at < all.size();) {
       const std::uint32_t length = word(at), type = word(at + 4);
-      if (length > all.size() - at - 8)
-        failAtByte(file_, at, "a chunk of " + std::to_string(length) + " bytes goes beyond the file's end");
+      if (length > all.size() - at - 8) failAtByte(file_, at, "a chunk of " + std::to_string(length) + " bytes goes beyond the file's end");
       const bool isFirst = at == 12;
-      if (isFirst != (type == 0x4E4F534Au))
-        failAtByte(file_, at + 4, "the chunk's type is not possible here", "JSON first, and once");
+      if (isFirst != (type == 0x4E4F534Au)) failAtByte(file_, at + 4, "the chunk's type is not possible here", "JSON first, and once");
       if (isFirst) {
         text_ = all.substr(at + 8, length);
         base_ = at + 8;
@@ -100,17 +95,14 @@ class GltfCheck {
     const Json* member = in.find(name);
     if (member == nullptr && otherwise >= 0.0) return otherwise;
     if (member == nullptr) fail(in, "'" + std::string(name) + "' is missing", "a whole number");
-    if (member->kind != Json::Kind::Number || member->number < 0.0 || member->number > most ||
-        member->number != std::floor(member->number))
-      fail(*member, "'" + std::string(name) + "' is not possible",
-           "a whole number in 0.." + std::to_string(static_cast<long long>(most)));
+    if (member->kind != Json::Kind::Number || member->number < 0.0 || member->number > most || member->number != std::floor(member->number))
+      fail(*member, "'" + std::string(name) + "' is not possible", "a whole number in 0.." + std::to_string(static_cast<long long>(most)));
     return member->number;
   }
 
   std::size_t index(const Json& in, std::string_view name, std::size_t count) const {
     const Json* member = in.find(name);
-    if (count == 0)
-      fail(member != nullptr ? *member : in, "'" + std::string(name) + "' refers to nothing", "one that exists");
+    if (count == 0) fail(member != nullptr ? *member : in, "'" + std::string(name) + "' refers to nothing", "one that exists");
     return static_cast<std::size_t>(whole(in, name, -1.0, static_cast<double>(count - 1)));
   }
 
@@ -119,8 +111,7 @@ class GltfCheck {
     const Json* member = in.find(name);
     if (member == nullptr) return out;
     for (const Json& item : member->items) {
-      if (item.kind != Json::Kind::Number || !(item.number >= 0.0 && item.number < static_cast<double>(count)) ||
-          item.number != std::floor(item.number))
+      if (item.kind != Json::Kind::Number || !(item.number >= 0.0 && item.number < static_cast<double>(count)) || item.number != std::floor(item.number))
         fail(item, "an index in '" + std::string(name) + "' refers to nothing", "below " + std::to_string(count));
       out.push_back(static_cast<std::size_t>(item.number));
     }
@@ -132,8 +123,7 @@ class GltfCheck {
     if (required == nullptr) return;
     for (const Json& name : required->items)  // those about materials and textures don't change the shape
       if (!name.text.starts_with("KHR_materials") && !name.text.starts_with("KHR_texture"))
-        fail(name, "the file needs the extension '" + name.text.substr(0, 60) + "'",
-             "plain glTF 2.0 (export without compression)");
+        fail(name, "the file needs the extension '" + name.text.substr(0, 60) + "'", "plain glTF 2.0 (export without compression)");
   }
 
   void checkBuffer(const Json& buffer) {
@@ -153,15 +143,12 @@ class GltfCheck {
       std::error_code missing;
       const auto path = std::filesystem::path(file_).parent_path() / uri->text;
       available = static_cast<double>(std::filesystem::file_size(path, missing));
-      if (missing)
-        fail(*uri, "the file '" + uri->text.substr(0, 100) + "' of a buffer cannot be read", "a file beside this one");
+      if (missing) fail(*uri, "the file '" + uri->text.substr(0, 100) + "' of a buffer cannot be read", "a file beside this one");
     } else if (available < 0.0 || !buffers_.empty()) {
       fail(buffer, "a buffer has no content", "a uri, or the first buffer of a GLB with a BIN chunk");
     }
     if (length > available)
-      fail(buffer,
-           "a buffer of " + std::to_string(static_cast<long long>(length)) + " bytes has only " +
-               std::to_string(static_cast<long long>(available)),
+      fail(buffer, "a buffer of " + std::to_string(static_cast<long long>(length)) + " bytes has only " + std::to_string(static_cast<long long>(available)),
            "all of them");
     buffers_.push_back(length);
   }
@@ -169,8 +156,7 @@ class GltfCheck {
   void checkView(const Json& view) {
     const double size = buffers_.empty() ? 0.0 : buffers_[index(view, "buffer", buffers_.size())];
     const double offset = whole(view, "byteOffset", 0.0, 4e9), length = whole(view, "byteLength", -1.0, 4e9);
-    if (offset + length > size)
-      fail(view, "a buffer view goes beyond its buffer", "up to byte " + std::to_string(static_cast<long long>(size)));
+    if (offset + length > size) fail(view, "a buffer view goes beyond its buffer", "up to byte " + std::to_string(static_cast<long long>(size)));
     views_.push_back({length, whole(view, "byteStride", 0.0, 252.0)});
   }
 
@@ -178,39 +164,30 @@ class GltfCheck {
     if (const Json* sparse = accessor.find("sparse")) fail(*sparse, "sparse accessors are not supported", "plain ones");
     const double count = whole(accessor, "count", -1.0, 4e9), offset = whole(accessor, "byteOffset", 0.0, 4e9);
     const auto type = static_cast<int>(whole(accessor, "componentType", -1.0, 1e6));
-    const double size = type == 5120 || type == 5121   ? 1.0
-                        : type == 5122 || type == 5123 ? 2.0
-                        : type == 5125 || type == 5126 ? 4.0
-                                                       : 0.0;
+    const double size = type == 5120 || type == 5121 ? 1.0 : type == 5122 || type == 5123 ? 2.0 : type == 5125 || type == 5126 ? 4.0 : 0.0;
     if (size == 0.0) fail(*accessor.find("componentType"), "the component type is unknown", "5120..5126");
     const Json* shape = accessor.find("type");
     constexpr std::array<std::pair<std::string_view, double>, 7> kShapes{
         {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
-    const auto known = std::find_if(kShapes.begin(), kShapes.end(),
-                                    [&](const auto& s) { return shape != nullptr && s.first == shape->text; });
+    const auto known = std::find_if(kShapes.begin(), kShapes.end(), [&](const auto& s) { return shape != nullptr && s.first == shape->text; });
     if (known == kShapes.end()) fail(accessor, "an accessor's type is unknown", "SCALAR, VEC2 .. MAT4");
     const View view = views_.empty() ? View{} : views_[index(accessor, "bufferView", views_.size())];
     const double item = size * known->second, stride = view.stride > 0.0 ? view.stride : item;
     if (stride < item || (count > 0.0 && offset + (count - 1.0) * stride + item > view.length))
-      fail(accessor, "an accessor goes beyond its buffer view",
-           "at most " + std::to_string(static_cast<long long>(view.length)) + " bytes");
+      fail(accessor, "an accessor goes beyond its buffer view", "at most " + std::to_string(static_cast<long long>(view.length)) + " bytes");
     accessors_.push_back({known->second, type, count});
   }
 
   double checkPrimitive(const Json& primitive) const {
     const Json* attributes = primitive.find("attributes");
-    if (attributes == nullptr || attributes->find("POSITION") == nullptr)
-      fail(primitive, "a primitive has no POSITION", "one");
-    const double points =
-        accessors_.empty() ? 0.0 : accessors_[index(*attributes, "POSITION", accessors_.size())].count;
+    if (attributes == nullptr || attributes->find("POSITION") == nullptr) fail(primitive, "a primitive has no POSITION", "one");
+    const double points = accessors_.empty() ? 0.0 : accessors_[index(*attributes, "POSITION", accessors_.size())].count;
     for (const auto& [name, value] : attributes->members) {
       const Accessor& a = accessors_.at(index(*attributes, name, accessors_.size()));
-      if (a.count != points)
-        fail(value, "the attribute " + name.substr(0, 40) + " has another count than POSITION", "equal counts");
+      if (a.count != points) fail(value, "the attribute " + name.substr(0, 40) + " has another count than POSITION", "equal counts");
       const double width = name == "POSITION" || name == "NORMAL" ? 3.0 : name.starts_with("TEXCOORD") ? 2.0 : a.width;
       const bool isFloat = a.type == 5126 || (name != "POSITION" && name != "NORMAL");
-      if (a.width != width || !isFloat)
-        fail(value, "the attribute " + name.substr(0, 40) + " has another type than glTF 2.0 allows", "floats");
+      if (a.width != width || !isFloat) fail(value, "the attribute " + name.substr(0, 40) + " has another type than glTF 2.0 allows", "floats");
     }
     for (const Json& target : list(primitive, "targets"))
       for (const auto& [name, value] : target.members)
@@ -224,8 +201,7 @@ class GltfCheck {
       corners = a.count;
     }
     const double mode = whole(primitive, "mode", 4.0, 6.0);
-    if (mode == 4.0 && std::fmod(corners, 3.0) != 0.0)
-      fail(primitive, "the indices of triangles are no multiple of three", "three each");
+    if (mode == 4.0 && std::fmod(corners, 3.0) != 0.0) fail(primitive, "the indices of triangles are no multiple of three", "three each");
     return mode < 4.0 ? 0.0 : mode == 4.0 ? corners / 3.0 : corners;
   }
 
@@ -237,8 +213,8 @@ class GltfCheck {
       if (nodes[i].find("mesh") != nullptr) index(nodes[i], "mesh", list(root_, "meshes").size());
       for (const auto& [name, width] : {std::pair{"matrix", 16u}, {"translation", 3u}, {"rotation", 4u}, {"scale", 3u}})
         if (const Json* numbers = nodes[i].find(name))
-          if (numbers->items.size() != width || std::any_of(numbers->items.begin(), numbers->items.end(),
-                                                            [](const Json& n) { return n.kind != Json::Kind::Number; }))
+          if (numbers->items.size() != width ||
+              std::any_of(numbers->items.begin(), numbers->items.end(), [](const Json& n) { return n.kind != Json::Kind::Number; }))
             fail(*numbers, std::string("a node's ") + name + " is damaged", std::to_string(width) + " numbers");
       for (const std::size_t child : indices(nodes[i], "children", nodes.size())) {
         if (parent[child] != nodes.size()) fail(nodes[i], "a node has two parents", "a tree");
@@ -273,8 +249,6 @@ class GltfCheck {
 
 }  // namespace
 
-CheckedFile checkGltf(const std::string& file, std::string_view bytes) {
-  return {{}, {}, GltfCheck(file, bytes).run()};
-}
+CheckedFile checkGltf(const std::string& file, std::string_view bytes) { return {{}, {}, GltfCheck(file, bytes).run()}; }
 
 }  // namespace pitviper

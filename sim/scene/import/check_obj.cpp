@@ -20,18 +20,12 @@ class ObjCheck {
   CheckedFile run() {
     while (!in_.atEnd()) {
       const std::string_view command = in_.wordOfLine();
-      if (command == "v")
-        vertexLine(0, 3, 3);
-      else if (command == "vt")
-        vertexLine(1, 1, 2);
-      else if (command == "vn")
-        vertexLine(2, 3, 3);
-      else if (command == "f")
-        faceLine();
-      else if (command == "g")
-        groupLine(groups_);
-      else if (command == "o")
-        groupLine(objects_);
+      if (command == "v") vertexLine(0, 3, 3);
+      else if (command == "vt") vertexLine(1, 1, 2);
+      else if (command == "vn") vertexLine(2, 3, 3);
+      else if (command == "f") faceLine();
+      else if (command == "g") groupLine(groups_);
+      else if (command == "o") groupLine(objects_);
       in_.skipLine();
     }
     finish();
@@ -57,8 +51,7 @@ class ObjCheck {
     }
     for (; count < most; ++count) text += " 0";
     text += '\n';
-    if (++counts_[kind] > 3 * static_cast<long long>(kMostImportedTriangles))
-      in_.fail("the mesh has too many vertices");
+    if (++counts_[kind] > 3 * static_cast<long long>(kMostImportedTriangles)) in_.fail("the mesh has too many vertices");
   }
 
   static void putNumber(std::string& text, float value) {
@@ -71,16 +64,14 @@ class ObjCheck {
   void faceLine() {
     long long corners = 0;
     for (std::string_view word = in_.wordOfLine(); !word.empty(); word = in_.wordOfLine(), ++corners) {
-      if (corners == kMostCorners)
-        in_.fail("this face has too many corners", "at most " + std::to_string(kMostCorners));
+      if (corners == kMostCorners) in_.fail("this face has too many corners", "at most " + std::to_string(kMostCorners));
       corners_.push_back(corner(word));
     }
     if (corners < 3) in_.fail("a face has " + std::to_string(corners) + " corners", "three or more");
     faceSizes_.push_back(static_cast<std::uint32_t>(corners));
     triangles_ += corners - 2;
     if (triangles_ > static_cast<long long>(kMostImportedTriangles))
-      in_.fail("the mesh has too many triangles", "at most " + std::to_string(kMostImportedTriangles),
-               "simplify the mesh");
+      in_.fail("the mesh has too many triangles", "at most " + std::to_string(kMostImportedTriangles), "simplify the mesh");
     groups_.ofFace.push_back(groups_.current);
     objects_.ofFace.push_back(objects_.current);
   }
@@ -102,8 +93,7 @@ class ObjCheck {
     constexpr long long kMost = 2'000'000'000;  // an int in the reader
     const long long index = in_.integer(word, -kMost, kMost);
     if (index == 0 || -index > counts_[kind])
-      in_.fail("index " + std::to_string(index) + " is out of range",
-               "1.." + std::to_string(counts_[kind]) + ", or negative to count back");
+      in_.fail("index " + std::to_string(index) + " is out of range", "1.." + std::to_string(counts_[kind]) + ", or negative to count back");
     const long long from0 = index > 0 ? index - 1 : counts_[kind] + index;
     if (from0 > farthest_[kind]) {
       farthest_[kind] = from0;
@@ -114,8 +104,7 @@ class ObjCheck {
 
   void groupLine(Naming& naming) {
     std::string name;
-    for (std::string_view word = in_.wordOfLine(); !word.empty(); word = in_.wordOfLine())
-      name.append(name.empty() ? "" : " ").append(word);
+    for (std::string_view word = in_.wordOfLine(); !word.empty(); word = in_.wordOfLine()) name.append(name.empty() ? "" : " ").append(word);
     if (name.empty()) name = "default";
     naming.used = true;
     const auto [entry, isNew] = naming.known.try_emplace(name, static_cast<std::uint32_t>(naming.names.size()));
@@ -126,8 +115,7 @@ class ObjCheck {
   void finish() {
     for (int kind = 0; kind < 3; ++kind)
       if (farthest_[kind] >= counts_[kind])
-        throw ImportFailure{farthestAt_[kind], "index " + std::to_string(farthest_[kind] + 1) + " is out of range",
-                            "1.." + std::to_string(counts_[kind]), ""};
+        throw ImportFailure{farthestAt_[kind], "index " + std::to_string(farthest_[kind] + 1) + " is out of range", "1.." + std::to_string(counts_[kind]), ""};
     if (faceSizes_.empty()) in_.fail("the file has no faces", "at least one 'f' line");
     // The reader drops faces that are not all alike: texture coordinates are filled up by 0 0, normals left out unless
     // every corner has one.

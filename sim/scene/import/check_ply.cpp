@@ -20,10 +20,9 @@ struct Type {
   enum { Signed, Unsigned, Real } kind;
 };
 
-constexpr Type kTypes[] = {{"char", "int8", 1, Type::Signed},   {"uchar", "uint8", 1, Type::Unsigned},
-                           {"short", "int16", 2, Type::Signed}, {"ushort", "uint16", 2, Type::Unsigned},
-                           {"int", "int32", 4, Type::Signed},   {"uint", "uint32", 4, Type::Unsigned},
-                           {"float", "float32", 4, Type::Real}, {"double", "float64", 8, Type::Real}};
+constexpr Type kTypes[] = {{"char", "int8", 1, Type::Signed},       {"uchar", "uint8", 1, Type::Unsigned}, {"short", "int16", 2, Type::Signed},
+                           {"ushort", "uint16", 2, Type::Unsigned}, {"int", "int32", 4, Type::Signed},     {"uint", "uint32", 4, Type::Unsigned},
+                           {"float", "float32", 4, Type::Real},     {"double", "float64", 8, Type::Real}};
 
 struct Property {
   std::string name;
@@ -56,8 +55,7 @@ class PlyCheck {
     const Element* vertices = find("vertex");
     const Element* faces = find("face");
     if (vertices == nullptr || faces == nullptr || vertices->count == 0 || faces->count == 0)
-      in_.fail("the file has no vertices or no faces", "elements 'vertex' and 'face'",
-               "points alone cannot be rendered");
+      in_.fail("the file has no vertices or no faces", "elements 'vertex' and 'face'", "points alone cannot be rendered");
     vertexCount_ = vertices->count;
     for (const Element& element : elements_) readElement(element);
     if (triangles_ == 0) in_.fail("the file has no triangles");
@@ -89,14 +87,12 @@ class PlyCheck {
         ascii_ = format == "ascii";
         swap_ = format == (std::endian::native == std::endian::little ? "binary_big_endian" : "binary_little_endian");
         if (!ascii_ && format != "binary_little_endian" && format != "binary_big_endian")
-          in_.fail("'" + TextCursor::shown(format) + "' is no format",
-                   "ascii, binary_little_endian or binary_big_endian");
+          in_.fail("'" + TextCursor::shown(format) + "' is no format", "ascii, binary_little_endian or binary_big_endian");
         formatKnown = true;
       } else if (word == "element") {
         Element element;
         element.name = in_.wordOfLine();
-        element.count =
-            in_.integer(in_.wordOfLine(), 0, static_cast<long long>(bytes_.size()));  // a byte each at least
+        element.count = in_.integer(in_.wordOfLine(), 0, static_cast<long long>(bytes_.size()));  // a byte each at least
         if (find(element.name) != nullptr) in_.fail("the element '" + element.name + "' is there twice");
         if (elements_.size() == 64) in_.fail("too many elements", "64 at most");  // real files have two to five
         elements_.push_back(element);
@@ -106,8 +102,7 @@ class PlyCheck {
         if (!formatKnown) in_.fail("the header does not say the format", "a 'format' line");
         done = true;
       } else if (word != "comment" && word != "obj_info" && !word.empty()) {
-        in_.fail("'" + TextCursor::shown(word) + "' is not possible in a PLY header",
-                 "element, property or end_header");
+        in_.fail("'" + TextCursor::shown(word) + "' is not possible in a PLY header", "element, property or end_header");
       }
     }
     at_ = in_.offset();
@@ -159,8 +154,7 @@ class PlyCheck {
   }
 
   static bool isIndexList(const Property& p) {
-    return p.countType != nullptr && p.type->kind != Type::Real &&
-           (p.name == "vertex_indices" || p.name == "vertex_index");
+    return p.countType != nullptr && p.type->kind != Type::Real && (p.name == "vertex_indices" || p.name == "vertex_index");
   }
 
   void findSlots(const Element& element) {
@@ -173,16 +167,12 @@ class PlyCheck {
   }
 
   void readList(const Property& property, bool isFace) {
-    const long long count =
-        whole(*property.countType, 0, isFace ? kMostCorners : std::numeric_limits<std::uint32_t>::max());
+    const long long count = whole(*property.countType, 0, isFace ? kMostCorners : std::numeric_limits<std::uint32_t>::max());
     std::vector<std::int32_t> face;
     if (isFace) face.push_back(static_cast<std::int32_t>(count));
     for (long long k = 0; k < count; ++k) {
-      if (isFace)
-        face.push_back(
-            static_cast<std::int32_t>(whole(*property.type, 0, std::min(vertexCount_ - 1, 2'000'000'000ll))));
-      else
-        skipValue(*property.type);
+      if (isFace) face.push_back(static_cast<std::int32_t>(whole(*property.type, 0, std::min(vertexCount_ - 1, 2'000'000'000ll))));
+      else skipValue(*property.type);
     }
     if (!isFace || count < 3) return;  // lines and points among the faces are left out
     append(faceBytes_, face.data(), face.size());
@@ -209,34 +199,27 @@ class PlyCheck {
   }
 
   void skipValue(const Type& type) {
-    if (!ascii_)
-      raw(type);
-    else if (in_.word().empty())
-      in_.fail("the file ends within its elements", "as many as the header says");
+    if (!ascii_) raw(type);
+    else if (in_.word().empty()) in_.fail("the file ends within its elements", "as many as the header says");
   }
 
   long long whole(const Type& type, long long least, long long most) {
     if (ascii_) return in_.integer(in_.word(), least, most);
     const std::uint64_t bits = raw(type);
     const unsigned unused = static_cast<unsigned>(64 - 8 * type.size);
-    const long long value = type.kind == Type::Signed ? static_cast<std::int64_t>(bits << unused) >> unused
-                                                      : static_cast<std::int64_t>(bits);
+    const long long value = type.kind == Type::Signed ? static_cast<std::int64_t>(bits << unused) >> unused : static_cast<std::int64_t>(bits);
     if (value < least || value > most) {
       at_ -= type.size;
-      failHere("the number " + std::to_string(value) + " is not possible here",
-               std::to_string(least) + ".." + std::to_string(most));
+      failHere("the number " + std::to_string(value) + " is not possible here", std::to_string(least) + ".." + std::to_string(most));
     }
     return value;
   }
 
   float real(const Type& type) {
     if (ascii_) return in_.number(in_.word());
-    if (type.kind != Type::Real)
-      return static_cast<float>(
-          whole(type, std::numeric_limits<long long>::min(), std::numeric_limits<long long>::max()));
+    if (type.kind != Type::Real) return static_cast<float>(whole(type, std::numeric_limits<long long>::min(), std::numeric_limits<long long>::max()));
     const std::uint64_t bits = raw(type);
-    const double value = type.size == 8 ? std::bit_cast<double>(bits)
-                                        : static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
+    const double value = type.size == 8 ? std::bit_cast<double>(bits) : static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
     if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()))) {
       at_ -= type.size;
       failHere("a number is not finite in single precision", "a finite number");
@@ -251,8 +234,7 @@ class PlyCheck {
 
   void assemble() {
     std::string& out = out_.bytes;
-    out = std::string("ply\nformat ") +
-          (std::endian::native == std::endian::little ? "binary_little_endian" : "binary_big_endian") + " 1.0\n";
+    out = std::string("ply\nformat ") + (std::endian::native == std::endian::little ? "binary_little_endian" : "binary_big_endian") + " 1.0\n";
     out += "element vertex " + std::to_string(vertexCount_) + "\n";
     for (std::size_t slot = 0; slot < kSlots.size(); ++slot)
       if (slot < 3 || (slot < 6 ? hasNormals_ : hasUv_)) out += "property float " + std::string(kSlots[slot]) + "\n";

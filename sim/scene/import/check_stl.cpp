@@ -24,8 +24,7 @@ void setCount(std::string& stl) {
 CheckedFile checkBinary(const std::string& file, std::string_view bytes, std::uint32_t count) {
   if (count == 0) failAtByte(file, 80, "the file has no triangles");
   if (count > kMostImportedTriangles)
-    failAtByte(file, 80, "the file has " + std::to_string(count) + " triangles",
-               "at most " + std::to_string(kMostImportedTriangles), "simplify the mesh");
+    failAtByte(file, 80, "the file has " + std::to_string(count) + " triangles", "at most " + std::to_string(kMostImportedTriangles), "simplify the mesh");
   CheckedFile out{emptyStl(), {}, {}};
   out.bytes.append(bytes.substr(kHeader, count * kRecord));
   for (std::size_t at = kHeader; at < out.bytes.size(); at += kRecord) {
@@ -45,8 +44,7 @@ CheckedFile checkAscii(const std::string& file, std::string_view text) {
   const auto expect = [&](std::string_view keyword) {
     const std::string_view word = in.word();
     if (word != keyword)
-      in.fail(word.empty() ? "the file ends here" : "'" + TextCursor::shown(word) + "' is not possible here",
-              "'" + std::string(keyword) + "'");
+      in.fail(word.empty() ? "the file ends here" : "'" + TextCursor::shown(word) + "' is not possible here", "'" + std::string(keyword) + "'");
   };
   expect("solid");
   in.skipLine();
@@ -71,8 +69,7 @@ CheckedFile checkAscii(const std::string& file, std::string_view text) {
     std::memcpy(record, numbers, 48);
     out.bytes.append(record, kRecord);
     if (out.bytes.size() > kHeader + kRecord * kMostImportedTriangles)
-      in.fail("the file has too many triangles", "at most " + std::to_string(kMostImportedTriangles),
-              "simplify the mesh");
+      in.fail("the file has too many triangles", "at most " + std::to_string(kMostImportedTriangles), "simplify the mesh");
   }
   if (out.bytes.size() == kHeader) in.fail("the file has no triangles");
   setCount(out.bytes);

@@ -37,8 +37,7 @@ class VtpCheck {
           fail(at, "the tag <" + shown(name) + "> closes nothing", open.empty() ? "nothing" : "</" + open.back() + ">");
         open.pop_back();
       } else {
-        if (open.empty() && name != "VTKFile")
-          fail(at, "the file is no VTK XML file", "<VTKFile type=\"PolyData\" ...>");
+        if (open.empty() && name != "VTKFile") fail(at, "the file is no VTK XML file", "<VTKFile type=\"PolyData\" ...>");
         if (name == "VTKFile") isPolyData = attribute(tag, "type") == "PolyData";
         if (name == "VTKFile" && !isPolyData) fail(at, "the file holds no PolyData", "type=\"PolyData\"");
         checkCounts(at, tag);
@@ -49,8 +48,7 @@ class VtpCheck {
       at = end;
     }
     if (!isPolyData) fail(0, "the file is no VTK XML file", "<VTKFile type=\"PolyData\" ...>");
-    if (!open.empty())
-      fail(text_.size(), "the file ends within <" + shown(open.back()) + ">", "</" + open.back() + ">");
+    if (!open.empty()) fail(text_.size(), "the file ends within <" + shown(open.back()) + ">", "</" + open.back() + ">");
   }
 
  private:
@@ -80,10 +78,9 @@ class VtpCheck {
   }
 
   void checkCounts(std::size_t at, std::string_view tag) const {
-    const double most = std::min(kMostItemsPerByte * static_cast<double>(text_.size()),
-                                 3.0 * static_cast<double>(kMostImportedTriangles));
-    for (const char* name : {"NumberOfPoints", "NumberOfVerts", "NumberOfLines", "NumberOfStrips", "NumberOfPolys",
-                             "NumberOfTuples", "NumberOfComponents", "offset"}) {
+    const double most = std::min(kMostItemsPerByte * static_cast<double>(text_.size()), 3.0 * static_cast<double>(kMostImportedTriangles));
+    for (const char* name :
+         {"NumberOfPoints", "NumberOfVerts", "NumberOfLines", "NumberOfStrips", "NumberOfPolys", "NumberOfTuples", "NumberOfComponents", "offset"}) {
       const std::string value = attribute(tag, name);
       if (value.empty()) continue;
       double count = -1.0;

@@ -22,8 +22,7 @@
 #include "sim/scene/mesh_cache.hpp"
 
 #if defined(__SANITIZE_ADDRESS__)
-#define PITVIPER_IMPORT_SANITIZED \
-  1  // the sanitizer's shadow needs terabytes of address space, and its reports are wanted
+#define PITVIPER_IMPORT_SANITIZED 1  // the sanitizer's shadow needs terabytes of address space, and its reports are wanted
 #else
 #define PITVIPER_IMPORT_SANITIZED 0
 #endif
@@ -34,9 +33,8 @@ namespace pitviper {
 inline std::string encodeReply(const ImportReply& reply) {
   if (!reply.failed) return "M" + serializeMesh(reply.mesh);
   std::string out = "E";
-  for (const std::string& field :
-       {reply.where.file, std::to_string(reply.where.line), std::to_string(reply.where.column),
-        std::to_string(reply.where.byte), reply.wrong, reply.expected, reply.fix}) {
+  for (const std::string& field : {reply.where.file, std::to_string(reply.where.line), std::to_string(reply.where.column), std::to_string(reply.where.byte),
+                                   reply.wrong, reply.expected, reply.fix}) {
     for (char c : field) out += c == '\0' ? ' ' : c;
     out += '\0';
   }
@@ -49,14 +47,12 @@ inline void limitMemory(std::size_t fileBytes) {
   if (PITVIPER_IMPORT_SANITIZED) return;
   unsigned long long pages = 0;
   std::ifstream("/proc/self/statm") >> pages;
-  const rlim_t bytes =
-      pages * static_cast<unsigned long long>(sysconf(_SC_PAGESIZE)) + (1ull << 30) + 16ull * fileBytes;
+  const rlim_t bytes = pages * static_cast<unsigned long long>(sysconf(_SC_PAGESIZE)) + (1ull << 30) + 16ull * fileBytes;
   const rlimit limit{bytes, bytes};
   setrlimit(RLIMIT_AS, &limit);
 }
 
-inline ImportReply runModule(const std::filesystem::path& module, const std::filesystem::path& file,
-                             std::size_t fileBytes, const Location& askedAt) {
+inline ImportReply runModule(const std::filesystem::path& module, const std::filesystem::path& file, std::size_t fileBytes, const Location& askedAt) {
   ImportReply reply;
   void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* symbol = handle == nullptr ? nullptr : dlsym(handle, kImportFunction);
@@ -64,8 +60,7 @@ inline ImportReply runModule(const std::filesystem::path& module, const std::fil
     const char* reason = dlerror();
     reply.failed = true;
     reply.where = askedAt;
-    reply.wrong =
-        std::string("the mesh import module cannot be loaded (") + (reason != nullptr ? reason : "unknown") + ")";
+    reply.wrong = std::string("the mesh import module cannot be loaded (") + (reason != nullptr ? reason : "unknown") + ")";
     reply.fix = "install the package libvtk9.1 (to build: libvtk9-dev)";
     return reply;
   }
@@ -74,8 +69,8 @@ inline ImportReply runModule(const std::filesystem::path& module, const std::fil
   return reply;
 }
 
-[[noreturn]] inline void childMain(int pipeEnd, pid_t parent, const std::filesystem::path& module,
-                                   const std::filesystem::path& file, std::size_t fileBytes, const Location& askedAt) {
+[[noreturn]] inline void childMain(int pipeEnd, pid_t parent, const std::filesystem::path& module, const std::filesystem::path& file, std::size_t fileBytes,
+                                   const Location& askedAt) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
   const rlimit none{0, 0};
@@ -105,8 +100,7 @@ inline std::string readUntil(int pipeEnd, std::chrono::steady_clock::time_point 
   std::string bytes;
   std::vector<char> block(1 << 16);  // the size of a pipe
   while (true) {
-    const auto left =
-        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
     pollfd waited{pipeEnd, POLLIN, 0};
     const int ready = left.count() <= 0 ? 0 : poll(&waited, 1, static_cast<int>(left.count()));
     if (ready < 0 && errno == EINTR) continue;
@@ -124,21 +118,17 @@ inline Mesh decodeReply(const std::string& bytes, const std::filesystem::path& f
     if (std::optional<Mesh> mesh = deserializeMesh(std::string_view(bytes).substr(1))) return std::move(*mesh);
   if (bytes.starts_with('E')) {
     std::vector<std::string> fields;
-    for (std::size_t at = 1, end; (end = bytes.find('\0', at)) != std::string::npos; at = end + 1)
-      fields.push_back(bytes.substr(at, end - at));
+    for (std::size_t at = 1, end; (end = bytes.find('\0', at)) != std::string::npos; at = end + 1) fields.push_back(bytes.substr(at, end - at));
     if (fields.size() == 7)
-      throw UserError(Location{fields[0], std::atoi(fields[1].c_str()), std::atoi(fields[2].c_str()),
-                               std::atoll(fields[3].c_str())},
-                      fields[4], fields[5].empty() ? "a sound mesh file" : fields[5],
+      throw UserError(Location{fields[0], std::atoi(fields[1].c_str()), std::atoi(fields[2].c_str()), std::atoll(fields[3].c_str())}, fields[4],
+                      fields[5].empty() ? "a sound mesh file" : fields[5],
                       fields[6].empty() ? "correct this place of the file, or export it again" : fields[6]);
   }
-  throw UserError(Location{file.string()}, "the reader failed on this file (" + failure + ")", "a sound file",
-                  "open and save it again in a mesh editor");
+  throw UserError(Location{file.string()}, "the reader failed on this file (" + failure + ")", "a sound file", "open and save it again in a mesh editor");
 }
 
 /// The mesh as the module read it: unchecked. Throws UserError.
-inline Mesh importInChild(const std::filesystem::path& module, const std::filesystem::path& file, std::size_t fileBytes,
-                          const Location& askedAt) {
+inline Mesh importInChild(const std::filesystem::path& module, const std::filesystem::path& file, std::size_t fileBytes, const Location& askedAt) {
   // OBJ text was read at 20 MB/s on one slow core: a minute and a second per MB is ample.
   const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60 + (fileBytes >> 20));
   int ends[2];
@@ -160,10 +150,8 @@ inline Mesh importInChild(const std::filesystem::path& module, const std::filesy
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   std::string failure = "it ended without an answer";
-  if (late)
-    failure = "it took too long";
-  else if (WIFSIGNALED(status))
-    failure = "it was ended by signal " + std::to_string(WTERMSIG(status));
+  if (late) failure = "it took too long";
+  else if (WIFSIGNALED(status)) failure = "it was ended by signal " + std::to_string(WTERMSIG(status));
   return decodeReply(late ? std::string() : bytes, file, failure);
 }
 

@@ -11,8 +11,8 @@ struct ImportFailure {
   std::string wrong, expected, fix;
 };
 
-[[noreturn]] inline void failAtByte(const std::string& file, unsigned long long byte, const std::string& wrong,
-                                    const std::string& expected = "", const std::string& fix = "") {
+[[noreturn]] inline void failAtByte(const std::string& file, unsigned long long byte, const std::string& wrong, const std::string& expected = "",
+                                    const std::string& fix = "") {
   throw ImportFailure{{file, 0, 0, static_cast<long long>(byte)}, wrong, expected, fix};
 }
 

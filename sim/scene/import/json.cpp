@@ -14,8 +14,7 @@ constexpr int kDeepest = 64;
 
 class JsonParser {
  public:
-  JsonParser(const std::string& file, std::string_view text, std::size_t base)
-      : file_(file), text_(text), base_(base) {}
+  JsonParser(const std::string& file, std::string_view text, std::size_t base) : file_(file), text_(text), base_(base) {}
 
   Json run() {
     if (text_.starts_with("\xEF\xBB\xBF")) at_ = 3;
@@ -26,9 +25,7 @@ class JsonParser {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& wrong, const std::string& expected) const {
-    failInJson(file_, text_, base_, at_, wrong, expected);
-  }
+  [[noreturn]] void fail(const std::string& wrong, const std::string& expected) const { failInJson(file_, text_, base_, at_, wrong, expected); }
 
   void space() {
     while (at_ < text_.size() && std::string_view(" \t\r\n").find(text_[at_]) != std::string_view::npos) ++at_;
@@ -70,8 +67,7 @@ class JsonParser {
     } else if (at_ < text_.size() && text_[at_] == '"') {
       json.kind = Json::Kind::String;
       json.text = string();
-    } else if (!literal("null", Json::Kind::Null, json) && !literal("true", Json::Kind::Bool, json) &&
-               !literal("false", Json::Kind::Bool, json)) {
+    } else if (!literal("null", Json::Kind::Null, json) && !literal("true", Json::Kind::Bool, json) && !literal("false", Json::Kind::Bool, json)) {
       json.kind = Json::Kind::Number;
       const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), json.number);
       if (error != std::errc{} || !std::isfinite(json.number)) fail("the JSON text is damaged here", "a value");
@@ -101,8 +97,7 @@ class JsonParser {
         if (c == 'u') {
           unsigned code = 0;
           const std::string_view digits = text_.substr(at_, 4);
-          if (digits.size() != 4 ||
-              std::from_chars(digits.data(), digits.data() + 4, code, 16).ptr != digits.data() + 4)
+          if (digits.size() != 4 || std::from_chars(digits.data(), digits.data() + 4, code, 16).ptr != digits.data() + 4)
             fail("an escape is damaged", "four hexadecimal digits");
           at_ += 4;
           c = code < 128 ? static_cast<char>(code) : '?';  // names and file names that matter here are plain or UTF-8
@@ -126,20 +121,14 @@ class JsonParser {
 
 }  // namespace
 
-Json parseJson(const std::string& file, std::string_view text, std::size_t base) {
-  return JsonParser(file, text, base).run();
-}
+Json parseJson(const std::string& file, std::string_view text, std::size_t base) { return JsonParser(file, text, base).run(); }
 
-void failInJson(const std::string& file, std::string_view text, std::size_t base, std::size_t offset,
-                const std::string& wrong, const std::string& expected) {
+void failInJson(const std::string& file, std::string_view text, std::size_t base, std::size_t offset, const std::string& wrong, const std::string& expected) {
   if (base > 0) failAtByte(file, base + offset, wrong, expected);
   const std::string_view before = text.substr(0, offset);
   const std::size_t lineStart = before.rfind('\n') == before.npos ? 0 : before.rfind('\n') + 1;
-  throw ImportFailure{{file, 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')),
-                       1 + static_cast<int>(offset - lineStart)},
-                      wrong,
-                      expected,
-                      ""};
+  throw ImportFailure{
+      {file, 1 + static_cast<int>(std::count(before.begin(), before.end(), '\n')), 1 + static_cast<int>(offset - lineStart)}, wrong, expected, ""};
 }
 
 }  // namespace pitviper

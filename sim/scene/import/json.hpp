@@ -27,7 +27,7 @@ struct Json {
 Json parseJson(const std::string& file, std::string_view text, std::size_t base);
 
 /// Fails at an offset of that text.
-[[noreturn]] void failInJson(const std::string& file, std::string_view text, std::size_t base, std::size_t offset,
-                             const std::string& wrong, const std::string& expected);
+[[noreturn]] void failInJson(const std::string& file, std::string_view text, std::size_t base, std::size_t offset, const std::string& wrong,
+                             const std::string& expected);
 
 }  // namespace pitviper

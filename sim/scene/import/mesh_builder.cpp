@@ -1,6 +1,5 @@
 #include "sim/scene/import/mesh_builder.hpp"
 
-#include <limits>
 #include <vtkCellArray.h>
 #include <vtkDataArray.h>
 #include <vtkIdList.h>
@@ -9,6 +8,8 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkPolygon.h>
+
+#include <limits>
 
 #include "sim/scene/import/import_failure.hpp"
 #include "sim/scene/import/import_reply.hpp"
@@ -38,8 +39,7 @@ void cutPolygon(vtkPolyData* data, const vtkIdType* corners, vtkIdType count, vt
 /// Texture coordinates of the points, under whatever name the reader gave them; null if there are none.
 vtkDataArray* uvOf(vtkPointData* data) {
   for (const char* name : {"TCoords", "TEXCOORD_0"})
-    if (vtkDataArray* found = data->GetArray(name); found != nullptr && found->GetNumberOfComponents() >= 2)
-      return found;
+    if (vtkDataArray* found = data->GetArray(name); found != nullptr && found->GetNumberOfComponents() >= 2) return found;
   vtkDataArray* found = data->GetTCoords();
   return found != nullptr && found->GetNumberOfComponents() >= 2 ? found : nullptr;
 }
@@ -52,15 +52,11 @@ void MeshBuilder::add(vtkPolyData* data, const CheckedFile& checked, const std::
   firstVertex_ = mesh_.positions.size();
   vtkDataArray* normals = data->GetPointData()->GetNormals();
   vtkDataArray* uv = uvOf(data->GetPointData());
-  if (normals != nullptr && (normals->GetNumberOfComponents() != 3 || normals->GetNumberOfTuples() != points))
-    normals = nullptr;
+  if (normals != nullptr && (normals->GetNumberOfComponents() != 3 || normals->GetNumberOfTuples() != points)) normals = nullptr;
   if (uv != nullptr && uv->GetNumberOfTuples() != points) uv = nullptr;
   // Every triangle has three vertices: more than that many can only be unused ones.
   if (mesh_.positions.size() + static_cast<std::size_t>(points) > 3 * kMostImportedTriangles)
-    throw ImportFailure{{file_},
-                        "the mesh has too many vertices",
-                        "at most " + std::to_string(3 * kMostImportedTriangles),
-                        "simplify the mesh"};
+    throw ImportFailure{{file_}, "the mesh has too many vertices", "at most " + std::to_string(3 * kMostImportedTriangles), "simplify the mesh"};
   for (vtkIdType i = 0; i < points; ++i) {
     double p[3], n[9] = {}, t[9] = {};
     data->GetPoint(i, p);
@@ -78,10 +74,8 @@ void MeshBuilder::add(vtkPolyData* data, const CheckedFile& checked, const std::
       cells->GetCellAtId(cell, count, corners);
       for (vtkIdType k = 0; k < count; ++k)
         if (corners[k] < 0 || corners[k] >= points)
-          throw ImportFailure{{file_},
-                              "face " + std::to_string(cell + 1) + " uses vertex " + std::to_string(corners[k]),
-                              "0.." + std::to_string(points - 1),
-                              ""};
+          throw ImportFailure{
+              {file_}, "face " + std::to_string(cell + 1) + " uses vertex " + std::to_string(corners[k]), "0.." + std::to_string(points - 1), ""};
       perCell(cell, corners, count);
     }
   };
@@ -92,10 +86,8 @@ void MeshBuilder::add(vtkPolyData* data, const CheckedFile& checked, const std::
   const std::uint32_t whole = checked.partNames.empty() ? partNumber(partName) : 0;
   checkedCells(data->GetPolys(), [&](vtkIdType cell, const vtkIdType* corners, vtkIdType count) {
     if (count > kMostCorners)
-      throw ImportFailure{{file_},
-                          "face " + std::to_string(cell + 1) + " has " + std::to_string(count) + " corners",
-                          "at most " + std::to_string(kMostCorners),
-                          ""};
+      throw ImportFailure{
+          {file_}, "face " + std::to_string(cell + 1) + " has " + std::to_string(count) + " corners", "at most " + std::to_string(kMostCorners), ""};
     const auto face = static_cast<std::size_t>(cell);
     const std::uint32_t part = face < checked.partOfFace.size() ? numbers[checked.partOfFace[face]] : whole;
     cutPolygon(data, corners, count, triples);
@@ -118,20 +110,14 @@ void MeshBuilder::add(vtkPolyData* data, const CheckedFile& checked, const std::
 
 void MeshBuilder::addTriangle(long long a, long long b, long long c, std::uint32_t part) {
   if (mesh_.triangles.size() == kMostImportedTriangles)
-    throw ImportFailure{{file_},
-                        "the mesh has too many triangles",
-                        "at most " + std::to_string(kMostImportedTriangles),
-                        "simplify the mesh"};
-  const auto vertex = [&](long long i) {
-    return static_cast<std::uint32_t>(firstVertex_ + static_cast<std::size_t>(i));
-  };
+    throw ImportFailure{{file_}, "the mesh has too many triangles", "at most " + std::to_string(kMostImportedTriangles), "simplify the mesh"};
+  const auto vertex = [&](long long i) { return static_cast<std::uint32_t>(firstVertex_ + static_cast<std::size_t>(i)); };
   mesh_.triangles.emplace_back(vertex(a), vertex(b), vertex(c));
   partOfTriangle_.push_back(part);
 }
 
 std::uint32_t MeshBuilder::partNumber(const std::string& name) {
-  const auto [entry, isNew] =
-      partNumbers_.try_emplace(name.empty() ? "all" : name, static_cast<std::uint32_t>(partNames_.size()));
+  const auto [entry, isNew] = partNumbers_.try_emplace(name.empty() ? "all" : name, static_cast<std::uint32_t>(partNames_.size()));
   if (isNew) partNames_.push_back(entry->first);
   return entry->second;
 }

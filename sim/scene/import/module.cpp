@@ -20,16 +20,11 @@ Mesh import(const std::string& file) {
     std::ifstream in(file, std::ios::binary);
     const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
     if (bytes.empty()) throw ImportFailure{{file}, "the file is empty or cannot be read", "a mesh", ""};
-    if (extension == ".obj")
-      checked = checkObj(file, bytes);
-    else if (extension == ".stl")
-      checked = checkStl(file, bytes);
-    else if (extension == ".ply")
-      checked = checkPly(file, bytes);
-    else if (extension == ".vtp")
-      checked = checkVtp(file, bytes);
-    else
-      checked = checkGltf(file, bytes);
+    if (extension == ".obj") checked = checkObj(file, bytes);
+    else if (extension == ".stl") checked = checkStl(file, bytes);
+    else if (extension == ".ply") checked = checkPly(file, bytes);
+    else if (extension == ".vtp") checked = checkVtp(file, bytes);
+    else checked = checkGltf(file, bytes);
   }
   Mesh mesh = readWithVtk(file, extension, checked);
   if (mesh.triangles.empty()) throw ImportFailure{{file}, "the file has no triangles", "at least one", ""};
@@ -39,10 +34,8 @@ Mesh import(const std::string& file) {
 }  // namespace
 }  // namespace pitviper
 
-extern "C" __attribute__((visibility("default"))) void pitviperImportMesh(const char* file,
-                                                                          pitviper::ImportReply* reply) {
-  const auto failed = [&](const pitviper::Location& where, const std::string& wrong, const std::string& expected,
-                          const std::string& fix) {
+extern "C" __attribute__((visibility("default"))) void pitviperImportMesh(const char* file, pitviper::ImportReply* reply) {
+  const auto failed = [&](const pitviper::Location& where, const std::string& wrong, const std::string& expected, const std::string& fix) {
     reply->mesh = {};
     reply->failed = true;
     reply->where = where;
@@ -55,8 +48,7 @@ extern "C" __attribute__((visibility("default"))) void pitviperImportMesh(const 
   } catch (const pitviper::ImportFailure& failure) {
     failed(failure.where, failure.wrong, failure.expected, failure.fix);
   } catch (const std::bad_alloc&) {
-    failed({file}, "reading this file takes too much memory", "at most 1 GiB and sixteen times its size",
-           "simplify the mesh");
+    failed({file}, "reading this file takes too much memory", "at most 1 GiB and sixteen times its size", "simplify the mesh");
   } catch (const std::exception& problem) {
     failed({file}, std::string("the reader failed on this file (") + problem.what() + ")", "a sound file", "");
   }

@@ -38,10 +38,8 @@ class TextCursor {
   /// Next word, on this line or a later one; empty at the end of the text.
   std::string_view word() {
     while (!atEnd() && isSpace(text_[at_])) {
-      if (text_[at_] == '\n')
-        newLine();
-      else
-        ++at_;
+      if (text_[at_] == '\n') newLine();
+      else ++at_;
     }
     if (!atEnd()) return take();
     wordColumn_ = column();
@@ -65,8 +63,7 @@ class TextCursor {
   /// Place of the last word taken.
   Location here() const { return {file_, wordLine_, wordColumn_}; }
 
-  [[noreturn]] void fail(const std::string& wrong, const std::string& expected = "",
-                         const std::string& fix = "") const {
+  [[noreturn]] void fail(const std::string& wrong, const std::string& expected = "", const std::string& fix = "") const {
     throw ImportFailure{here(), wrong, expected, fix};
   }
 
@@ -105,9 +102,7 @@ class TextCursor {
 
  private:
   static bool isSpace(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-  bool endOfLineAt(std::size_t i) const {
-    return i < text_.size() && (text_[i] == '\n' || (text_[i] == '\r' && i + 1 < text_.size() && text_[i + 1] == '\n'));
-  }
+  bool endOfLineAt(std::size_t i) const { return i < text_.size() && (text_[i] == '\n' || (text_[i] == '\r' && i + 1 < text_.size() && text_[i + 1] == '\n')); }
   int column() const { return static_cast<int>(at_ - lineStart_) + 1; }
   void newLine() {
     lineStart_ = ++at_;

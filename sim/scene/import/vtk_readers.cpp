@@ -2,11 +2,6 @@
 
 #include <sys/mman.h>
 #include <unistd.h>
-
-#include <charconv>
-#include <cstdio>
-#include <string_view>
-
 #include <vtkCellArray.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataObjectTreeIterator.h>
@@ -22,6 +17,10 @@
 #include <vtkPolyData.h>
 #include <vtkSTLReader.h>
 #include <vtkXMLPolyDataReader.h>
+
+#include <charconv>
+#include <cstdio>
+#include <string_view>
 
 #include "sim/scene/import/import_failure.hpp"
 #include "sim/scene/import/mesh_builder.hpp"
@@ -96,11 +95,9 @@ void readGltf(const std::string& name, const CheckedFile& checked, MeshBuilder& 
     // The reader calls blocks "Node_7" by the number in the file, below them "Mesh_0", and leaves the primitives
     // unnamed.
     vtkInformation* about = at->HasCurrentMetaData() ? at->GetCurrentMetaData() : nullptr;
-    const std::string_view block =
-        about != nullptr && about->Has(vtkCompositeDataSet::NAME()) ? about->Get(vtkCompositeDataSet::NAME()) : "";
+    const std::string_view block = about != nullptr && about->Has(vtkCompositeDataSet::NAME()) ? about->Get(vtkCompositeDataSet::NAME()) : "";
     std::size_t number = 0;
-    if (block.starts_with("Node_") &&
-        std::from_chars(block.data() + 5, block.data() + block.size(), number).ec == std::errc{} &&
+    if (block.starts_with("Node_") && std::from_chars(block.data() + 5, block.data() + block.size(), number).ec == std::errc{} &&
         number < checked.partNames.size())
       node = checked.partNames[number];
     if (auto* leaf = vtkPolyData::SafeDownCast(at->GetCurrentDataObject())) builder.add(leaf, {}, node);
@@ -111,8 +108,7 @@ void readGltf(const std::string& name, const CheckedFile& checked, MeshBuilder& 
 /// Where the XML parser stopped, if that is what is said: "Error parsing XML in stream at line 7, column 3, ...".
 Location placeIn(const std::string& file, const std::string& complaint) {
   int line = 0, column = -1;
-  if (std::sscanf(complaint.c_str(), "Error parsing XML in stream at line %d, column %d", &line, &column) != 2)
-    return {file};
+  if (std::sscanf(complaint.c_str(), "Error parsing XML in stream at line %d, column %d", &line, &column) != 2) return {file};
   return {file, line, column + 1};
 }
 
@@ -125,18 +121,12 @@ Mesh readWithVtk(const std::string& file, const std::string& extension, const Ch
   MeshBuilder builder(file);
   const MemoryFile copy(checked.bytes);
   const std::string name = checked.bytes.empty() ? file : copy.name();
-  if (extension == ".obj")
-    readOne<vtkOBJReader>(name, checked, builder);
-  else if (extension == ".stl")
-    readOne<vtkSTLReader>(name, checked, builder);
-  else if (extension == ".ply")
-    readOne<vtkPLYReader>(name, checked, builder);
-  else if (extension == ".vtp")
-    readOne<vtkXMLPolyDataReader>(name, checked, builder);
-  else
-    readGltf(name, checked, builder);
-  if (!complaints->first.empty())
-    throw ImportFailure{placeIn(file, complaints->first), "the reader says: " + complaints->first, "a sound file", ""};
+  if (extension == ".obj") readOne<vtkOBJReader>(name, checked, builder);
+  else if (extension == ".stl") readOne<vtkSTLReader>(name, checked, builder);
+  else if (extension == ".ply") readOne<vtkPLYReader>(name, checked, builder);
+  else if (extension == ".vtp") readOne<vtkXMLPolyDataReader>(name, checked, builder);
+  else readGltf(name, checked, builder);
+  if (!complaints->first.empty()) throw ImportFailure{placeIn(file, complaints->first), "the reader says: " + complaints->first, "a sound file", ""};
   return builder.take();
 }
 
