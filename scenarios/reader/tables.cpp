@@ -88,7 +88,7 @@ const ParameterTable& atmosphere() {
        text("library", "named air: its extinction and temperature, which the keys below replace"), spectrum("extinction", "1/m", "extinction coefficient"),
        within(number("temperature", "K", "the air emits as a black body of this temperature"), 0, kHottest_K),
        spectrum("radiance", "W/(m2 sr um)", "further source radiance at great depth, for instance scattered sunlight"),
-       within(number("top", "m", "height of the air's top above the ellipsoid; without it the air never ends and the sun's irradiance is that at the scene"),
+       within(number("top", "m", "height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never ends and the sun's irradiance is that at the scene"),
               -500, 1e7)}};
   return t;
 }

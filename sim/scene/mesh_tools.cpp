@@ -111,12 +111,6 @@ double signedVolume(const Mesh& mesh) {
   return sum;
 }
 
-double boundingRadius(const Mesh& mesh) {
-  double radius = 0.0;
-  for (const glm::vec3& p : mesh.positions) radius = std::max(radius, glm::length(glm::dvec3(p)));
-  return radius;
-}
-
 BoundingSphere boundingSphere(const Mesh& mesh) {
   if (mesh.positions.empty()) return {};
   glm::dvec3 low(mesh.positions[0]), high = low;

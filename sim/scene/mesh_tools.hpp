@@ -25,9 +25,6 @@ double surfaceArea(const Mesh& mesh);
 /// Overlapping bodies count twice. Meaningless for an open mesh.
 double signedVolume(const Mesh& mesh);
 
-/// Largest distance of a vertex from the body origin, m.
-double boundingRadius(const Mesh& mesh);
-
 /// A sphere that holds every vertex; at most a fifth larger than the smallest one.
 BoundingSphere boundingSphere(const Mesh& mesh);
 
