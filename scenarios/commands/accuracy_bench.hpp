@@ -1,4 +1,5 @@
 #pragma once
+// The speed and accuracy table of `bench --accuracy`.
 #include <string>
 
 namespace pitviper {

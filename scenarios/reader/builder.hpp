@@ -36,7 +36,7 @@ class Builder {
   std::shared_ptr<const Material> readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra);
   void countTable(const Record& component);
   int readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest);
-  // scene.cpp
+  // bodies.cpp
   struct Placement {
     Motion motion;
     int carrier = -1;

@@ -266,10 +266,6 @@ Location Record::where(std::string_view key) const {
   return v ? v->where : value_->where;
 }
 double Record::number(std::string_view key) const { return readNumber(value(key), parameter(key).unit, key); }
-std::optional<double> Record::optionalNumber(std::string_view key) const {
-  if (!has(key)) return std::nullopt;
-  return number(key);
-}
 long long Record::integer(std::string_view key) const { return readInteger(value(key), key); }
 bool Record::boolean(std::string_view key) const { return readBoolean(value(key), key); }
 std::string Record::text(std::string_view key) const { return readText(value(key), key); }

@@ -65,7 +65,6 @@ class Record {
   bool has(std::string_view key) const;       ///< given, or has a default
   bool given(std::string_view key) const;     ///< written by the user
   double number(std::string_view key) const;  ///< in the table's unit
-  std::optional<double> optionalNumber(std::string_view key) const;
   long long integer(std::string_view key) const;
   bool boolean(std::string_view key) const;
   std::string text(std::string_view key) const;

@@ -23,8 +23,6 @@ class CameraRenderer {
   }
   const Plan& plan() const { return plan_; }
   const AssembledShader& fragmentSource() const { return pass_->fragmentSource(); }
-  /// Entities of the last frame that were drawn by their zoomed views.
-  const std::vector<char>& smallBodies() const { return small_; }
 
  private:
   const Simulation& simulation_;

@@ -39,7 +39,7 @@ TEST(Quantities, FollowTheirDefinitions) {
   figure("volts by V/(W/m2)", value("b.volts"), 40.0 * kPi * behind / 16.0, 2e-6, why);
 }
 
-// One watt at 555 nm is 683 lumens; 1 % of the way down V(lambda) follows the CIE table.
+// One watt at 555 nm is 683 lumens; an equal-energy spectrum weighs the integral of V(lambda).
 TEST(Quantities, Photometric) {
   const auto sim = scene(
       "background: {radiance: 1000 W/(m2 sr um)}\ncameras:\n  - name: c\n    film: {width: 5, height: 5, pitch: 100 um}\n    focal_length: 100 mm\n    aperture: 50 mm\n"
