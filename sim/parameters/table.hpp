@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
