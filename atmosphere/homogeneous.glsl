@@ -10,6 +10,11 @@ Real sunAirLength(Real height_m) { return view.earth.y >= kFar ? 0.0 : airLength
 
 Real pathTransmittance(int i, Real length_m) { return exp(-nodes.node[i].x * length_m); }
 
+Real pathRadiance(int i, Real length_m) { return nodes.node[i].y * oneMinusExp(nodes.node[i].x * length_m); }
+
+// Optical depth of the air of a stretch that begins after another.
+Real pathDepth(int i, Real before_m, Real length_m) { return nodes.node[i].x * length_m; }
+
 Real pathSeen(int i, Real radiance) {
   Real depth = nodes.node[i].x * airLength_;
   return radiance * exp(-depth) + nodes.node[i].y * oneMinusExp(depth);

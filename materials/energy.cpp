@@ -16,9 +16,10 @@ constexpr size_t kMostProducts = 200000000;
 /// Competing wavelengths and angles that are kept as they are: 48 MB.
 constexpr size_t kMostExact = 1000000;
 
-using Parts = std::array<double, 4>;  ///< three reflectances and the given emissivity, or their modifiers
+constexpr size_t kParts = 5;
+using Parts = std::array<double, kParts>;  ///< three reflectances, the given emissivity and the transmittance, or their modifiers
 
-double product(const Parts& a, const Parts& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]; }
+double product(const Parts& a, const Parts& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4]; }
 
 struct Candidate {
   Parts parts;
@@ -33,10 +34,11 @@ std::vector<double> wavelengths(const Material& m) {
     const auto knots = r->knots_um();
     all.insert(all.end(), knots.begin(), knots.end());
   }
-  if (m.given) {
-    const auto knots = m.given->knots_um();
-    all.insert(all.end(), knots.begin(), knots.end());
-  }
+  for (const auto* v : {&m.given, &m.transmission})
+    if (*v) {
+      const auto knots = (*v)->knots_um();
+      all.insert(all.end(), knots.begin(), knots.end());
+    }
   for (int i = 0; i <= 64; ++i) all.push_back(std::clamp(low * std::pow(high / low, i / 64.0), low, high));  // rounding must not lead out of the data
   std::erase_if(all, [&](double w) { return w < low || w > high; });
   std::sort(all.begin(), all.end());
@@ -60,6 +62,7 @@ Parts partsAt(const Material& m, double wavelength, double angle) {
   Parts parts{};
   for (size_t k = 0; k < m.reflections.size(); ++k) parts[k] = m.reflections[k]->hemispherical(wavelength, angle);
   if (m.given) parts[3] = m.given->at(wavelength, angle);
+  parts[4] = m.transmittance(wavelength, angle);
   return parts;
 }
 
@@ -85,7 +88,7 @@ class Envelope {
   bool rounded() const { return step_ > 0.0; }
 
  private:
-  static bool below(const Parts& a, const Parts& b) { return a[0] <= b[0] && a[1] <= b[1] && a[2] <= b[2] && a[3] <= b[3]; }
+  static bool below(const Parts& a, const Parts& b) { return a[0] <= b[0] && a[1] <= b[1] && a[2] <= b[2] && a[3] <= b[3] && a[4] <= b[4]; }
   void round(Candidate& c) const {
     if (step_ > 0.0)
       for (double& p : c.parts) p = std::ceil(p / step_) * step_;
@@ -101,7 +104,7 @@ class Envelope {
 };
 
 /// Where two textures' texels lie along one axis, in texture coordinates.
-std::vector<double> lines(const std::array<const Texture*, 4>& textures, int Texture::*side) {
+std::vector<double> lines(const std::array<const Texture*, kParts>& textures, int Texture::*side) {
   std::vector<double> all;
   for (const Texture* t : textures)
     if (t)
@@ -134,6 +137,7 @@ class Modifiers {
     };
     for (size_t k = 0; k < m.modifiers.size(); ++k) take(k, m.modifiers[k]);
     if (m.given) take(3, m.given->modifier);
+    if (m.transmission) take(4, m.transmission->modifier);
     const Texture* largest = nullptr;
     for (const Texture* t : textures_)
       if (t && (!largest || t->texels.size() > largest->texels.size())) largest = t;
@@ -153,19 +157,19 @@ class Modifiers {
   }
   const Parts& greatest() const { return greatest_; }
   /// Fewer than two textures: their greatest values are taken on together.
-  bool together() const { return std::count(textures_.begin(), textures_.end(), nullptr) >= 3; }
+  bool together() const { return std::count(textures_.begin(), textures_.end(), nullptr) >= static_cast<std::ptrdiff_t>(kParts) - 1; }
   size_t points() const { return points_; }
   Parts at(size_t point) const {
     Parts parts = greatest_;
-    for (size_t k = 0; k < 4; ++k)
+    for (size_t k = 0; k < kParts; ++k)
       if (textures_[k])
         parts[k] = sameSize_ ? static_cast<double>(textures_[k]->texels[point]) : valueAt(*textures_[k], x_[point % x_.size()], y_[point / x_.size()]);
     return parts;
   }
 
  private:
-  std::array<const Texture*, 4> textures_{};
-  Parts greatest_{1.0, 1.0, 1.0, 1.0};
+  std::array<const Texture*, kParts> textures_{};
+  Parts greatest_{1.0, 1.0, 1.0, 1.0, 1.0};
   bool sameSize_ = true;
   std::vector<double> x_, y_;
   size_t points_ = 0;

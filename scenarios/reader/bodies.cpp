@@ -101,6 +101,7 @@ void refuseForeignKeys(const Record& r, const std::string& model) {
                                                                        {"box", {"length", "width", "height"}},
                                                                        {"disc", {"radius", "segments"}},
                                                                        {"sphere", {"radius", "segments", "fit"}},
+                                                                       {"ellipsoid", {"length", "width", "height", "segments"}},
                                                                        {"cylinder", {"radius", "length", "segments", "capped"}},
                                                                        {"cone", {"radius", "top_radius", "length", "segments", "capped"}},
                                                                        {"terrain", {"size", "relief", "columns", "terrain_seed", "height_map"}},
@@ -119,9 +120,21 @@ void refuseForeignKeys(const Record& r, const std::string& model) {
   }
 }
 
+/// The true form, scaled; what is missing has been, or will be, refused.
+BodyForm formOf(const Record& r, const std::string& model) {
+  const double scale = r.given("scale") ? r.number("scale") : 1.0;
+  auto metres = [&](const char* key) { return r.given(key) ? scale * r.number(key) : 0.0; };
+  if (model == "sphere") return {BodyForm::Kind::Ellipsoid, glm::dvec3(metres("radius"))};
+  if (model == "ellipsoid") return {BodyForm::Kind::Ellipsoid, 0.5 * glm::dvec3(metres("length"), metres("width"), metres("height"))};
+  const bool closed = r.boolean("capped");
+  if (model == "cylinder" && closed) return {BodyForm::Kind::Cone, {0.5 * metres("length"), metres("radius"), metres("radius")}};
+  if (model == "cone" && closed) return {BodyForm::Kind::Cone, {0.5 * metres("length"), metres("radius"), metres("top_radius")}};
+  return {};
+}
+
 }  // namespace
 
-std::shared_ptr<const Mesh> Builder::readShape(const Value& value) {
+std::shared_ptr<const Mesh> Builder::readShape(const Value& value, BodyForm& form) {
   const Record r(value, tables::shape());
   const std::string model = r.text("model");
   auto need = [&](const char* key) {
@@ -131,11 +144,13 @@ std::shared_ptr<const Mesh> Builder::readShape(const Value& value) {
   };
   refuseForeignKeys(r, model);
   const int segments = static_cast<int>(r.integer("segments"));
+  form = formOf(r, model);
   auto mesh = std::make_shared<Mesh>();
   if (model == "plate") *mesh = makePlate(need("width"), need("height"));
   else if (model == "box") *mesh = makeBox(need("length"), need("width"), need("height"));
   else if (model == "disc") *mesh = makeDisc(need("radius"), segments);
   else if (model == "sphere") *mesh = makeSphere(need("radius"), segments, r.text("fit") == "inscribed" ? SphereFit::Inscribed : SphereFit::EqualArea);
+  else if (model == "ellipsoid") *mesh = makeEllipsoid(need("length"), need("width"), need("height"), segments);
   else if (model == "cylinder") *mesh = makeCylinder(need("radius"), need("length"), segments, r.boolean("capped"));
   else if (model == "cone")
     *mesh = makeCone(need("radius"), r.given("top_radius") ? r.number("top_radius") : 0.0, need("length"), segments, r.boolean("capped"));
@@ -223,6 +238,24 @@ void Builder::readSurfaces(const Record& r, Entity& entity) {
   }
 }
 
+void Builder::checkMedium(const Record& r, const Entity& e) const {
+  const auto material = [&](const Surface& s) { return simulation_.materials[static_cast<size_t>(s.material)]; };
+  const auto filled = std::find_if(e.surfaces.begin(), e.surfaces.end(), [&](const Surface& s) { return material(s)->medium.has_value(); });
+  if (filled == e.surfaces.end()) return;
+  const std::string name = "'" + e.name.substr(0, 60) + "'";
+  for (const Surface& s : e.surfaces) {
+    if (s.material != filled->material || s.temperature_K != filled->temperature_K)
+      throw UserError(r.where("parts"), "the parts of " + name + " differ, and '" + material(*filled)->name.substr(0, 60) + "' is a medium",
+                      "one material and temperature for a body that a medium fills", "remove 'parts', or make two entities of it");
+    if (s.temperatureTexture >= 0)
+      throw UserError(r.where("temperature"), "a temperature texture on " + name + ", which a medium fills", "one temperature for the whole body",
+                      "write a number, such as '900 K'");
+  }
+  if (!e.mesh->closed)
+    throw UserError(r.where("shape"), "the body of " + name + " is not closed, and '" + material(*filled)->name.substr(0, 60) + "' is a medium that fills it",
+                    "a body whose every edge joins two triangles, with its normals outwards", "close it ('capped: true'), or take a sphere, ellipsoid, cone, cylinder or box");
+}
+
 void Builder::readEntities(const Record& scenario) {
   if (!scenario.given("entities")) return;
   std::size_t triangles = 0;
@@ -231,12 +264,13 @@ void Builder::readEntities(const Record& scenario) {
     Entity e;
     e.name = r.text("name");
     checkUnique(r.value("name"), entityNames_, "entity");
-    e.mesh = readShape(r.value("shape"));
+    e.mesh = readShape(r.value("shape"), e.form);
     triangles += e.mesh->triangles.size();
     if (triangles > kMostSceneTriangles)
       throw UserError(r.where("shape"), "the scene has more than " + std::to_string(kMostSceneTriangles) + " triangles with this body", "fewer",
                       "simplify meshes, or lower 'segments' and 'columns'");
     readSurfaces(r, e);
+    checkMedium(r, e);
     const Placement p = readPlacement(r, true);
     e.motion = p.motion;
     e.parent = p.carrier;

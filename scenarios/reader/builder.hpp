@@ -34,6 +34,9 @@ class Builder {
   // materials.cpp
   int materialNamed(const Value& asked);
   std::shared_ptr<const Material> readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra);
+  /// `what`: "emissivity" or "transmittance".
+  ViewSpectrum readViewSpectrum(const Record& r, const char* what, const std::string& material, const SpectrumReader& spectra);
+  void readMedium(const Record& r, Material& material, const SpectrumReader& spectra) const;
   void countTable(const Record& component);
   int readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest);
   // bodies.cpp
@@ -44,7 +47,8 @@ class Builder {
   Placement readPlacement(const Record& r, bool attitude);
   glm::dvec3 readPosition(const Record& r, bool required);
   std::optional<Attitude> readAttitude(const Record& r, bool attached);
-  std::shared_ptr<const Mesh> readShape(const Value& value);
+  std::shared_ptr<const Mesh> readShape(const Value& value, BodyForm& form);
+  void checkMedium(const Record& entity, const Entity& e) const;
   void readSurfaces(const Record& r, Entity& entity);
   int entityNamed(const Value& asked) const;
   // cameras.cpp

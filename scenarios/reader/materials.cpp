@@ -46,7 +46,8 @@ struct TableKind {
   const char* range;
   double most;
 };
-constexpr TableKind kBrdf{"a BRDF", "at least 0 per steradian", INFINITY}, kEmissivity{"an emissivity", "0 to 1", 1.0};
+constexpr TableKind kBrdf{"a BRDF", "at least 0 per steradian", INFINITY}, kEmissivity{"an emissivity", "0 to 1", 1.0},
+    kTransmittance{"a transmittance", "0 to 1", 1.0};
 std::string aTable(const TableKind& kind) { return std::string(kind.name) + " table"; }
 
 /// values[angle 2][angle 1][wavelength], with a nesting level left out for each missing axis.
@@ -114,15 +115,28 @@ std::shared_ptr<const ReflectionComponent> readTable(const Record& r) {
   return makeTabulated(std::move(t));
 }
 
-EmissivityTable readEmissivityTable(const Record& r) {
-  EmissivityTable t;
-  t.wavelength_um = readWavelengths(r.value("wavelength"), kEmissivity);
+ViewTable readViewTable(const Record& r, const TableKind& kind) {
+  ViewTable t;
+  t.wavelength_um = readWavelengths(r.value("wavelength"), kind);
   t.view = readAxis(r.value("angles").items.front());
   if (t.view.angle != Angle::View)
-    throw UserError(r.where("angles"), "an emissivity table over an angle that is not the view angle", "'angles: [{angle: view, count: 3, last: 90 deg}]'",
-                    "emission has no light: only 'view' is left");
-  t.values = readValues(r, kEmissivity, {static_cast<size_t>(t.view.count), t.wavelength_um.size()});
+    throw UserError(r.where("angles"), aTable(kind) + " over an angle that is not the view angle", "'angles: [{angle: view, count: 3, last: 90 deg}]'",
+                    "no light takes part in it: only 'view' is left");
+  t.values = readValues(r, kind, {static_cast<size_t>(t.view.count), t.wavelength_um.size()});
   return t;
+}
+
+/// Rows [angle, factor].
+void readAngular(const Value& rows, ViewSpectrum& v) {
+  for (const Value& row : rows.items) {
+    if (row.kind != Value::Kind::List || row.items.size() != 2)
+      throw UserError(row.where, "not a row [angle, factor]", "[60 deg, 0.9]", "write two values");
+    const double angle = readNumber(row.items[0], "rad", "view angle"), factor = readNumber(row.items[1], "", "factor");
+    if (angle < 0.0 || angle > 1.5709 || factor < 0.0 || (!v.viewAngle_rad.empty() && angle <= v.viewAngle_rad.back()))
+      throw UserError(row.where, "view angles must rise within 0 to 90 deg, factors must not be negative", "rising angles", "correct the row");
+    v.viewAngle_rad.push_back(angle);
+    v.factor.push_back(factor);
+  }
 }
 
 }  // namespace
@@ -190,6 +204,47 @@ void Builder::countTable(const Record& component) {
                     "fewer", "share materials, or thin the tables out");
 }
 
+ViewSpectrum Builder::readViewSpectrum(const Record& r, const char* what, const std::string& material, const SpectrumReader& spectra) {
+  ViewSpectrum v;
+  const std::string parent = std::string(what) == "emissivity" ? "an emission" : "a transmission", article = std::string(what) == "emissivity" ? "an " : "a ";
+  const bool table = r.given("wavelength") || r.given("angles") || r.given("values");
+  if (table == (r.given(what) || r.given("angular")))
+    throw UserError(r.where(), table ? parent + " that is both a spectrum and a table" : parent + " without " + article + what,
+                    std::string("'") + what + "' (and 'angular'), or 'wavelength', 'angles' and 'values'",
+                    table ? "keep one of the two" : std::string("add '") + what + ": 0.9', a spectrum, or a table");
+  if (table) {
+    for (const char* key : {"wavelength", "angles", "values"})
+      if (!r.given(key)) throw UserError(r.where(), article + what + " table without '" + key + "'", "'wavelength', 'angles' and 'values'", "add it");
+    v.table = readViewTable(r, std::string(what) == "emissivity" ? kEmissivity : kTransmittance);
+  } else if (!r.given(what)) {
+    throw UserError(r.where(), parent + " with 'angular' but without '" + what + "'", "both", std::string("add '") + what + ": 0.9' or a spectrum");
+  } else {
+    v.spectrum = bounded(spectra, r.value(what), "", std::string(what) + " of material '" + material.substr(0, 60) + "'", 0.0, 1.0);
+  }
+  if (r.given("angular")) readAngular(r.value("angular"), v);
+  if (r.given("modifier")) v.modifier = readTexture(r.value("modifier"), "", "a modifier", 0.0, 1.0);
+  return v;
+}
+
+void Builder::readMedium(const Record& r, Material& m, const SpectrumReader& spectra) const {
+  if (!r.given("absorption")) {
+    if (r.given("radiance"))
+      throw UserError(r.where("radiance"), "a material with 'radiance' that is no medium", "'absorption' beside it, or no 'radiance'",
+                      "add 'absorption: 0.1 /m', or remove it");
+    return;
+  }
+  for (const char* key : {"components", "emission", "transmission"})
+    if (r.given(key))
+      throw UserError(r.where(key), std::string("a medium with '") + key + "'", "a surface, or a medium ('absorption' and 'radiance')",
+                      "remove it, or 'absorption'; a body with both is two entities");
+  Medium medium;
+  medium.absorption_per_m =
+      bounded(spectra, r.value("absorption"), "1/m", "absorption coefficient of material '" + m.name.substr(0, 60) + "'", 0.0, 1e9);
+  if (r.given("radiance"))
+    medium.radiance = bounded(spectra, r.value("radiance"), "W/(m2 sr um)", "radiance of material '" + m.name.substr(0, 60) + "'", 0.0, INFINITY);
+  m.medium = std::move(medium);
+}
+
 std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra) {
   const Record r(value, tables::material());
   if (simulation_.materials.size() >= kMostMaterials)
@@ -219,43 +274,16 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
       else m->reflections.push_back(makeLambertian(fraction(k.value("reflectance"), "reflectance")));
       m->modifiers.push_back(k.given("modifier") ? readTexture(k.value("modifier"), "", "a modifier", 0.0, 1.0) : -1);
     }
-  if (r.given("emission")) {
-    const Record e(r.value("emission"), tables::emission());
-    GivenEmissivity g;
-    const bool table = e.given("wavelength") || e.given("angles") || e.given("values");
-    if (table == (e.given("emissivity") || e.given("angular")))
-      throw UserError(e.where(), table ? "an emission that is both a spectrum and a table" : "an emission without an emissivity",
-                      "'emissivity' (and 'angular'), or 'wavelength', 'angles' and 'values'",
-                      table ? "keep one of the two" : "add 'emissivity: 0.9', a spectrum, or a table");
-    if (table) {
-      for (const char* key : {"wavelength", "angles", "values"})
-        if (!e.given(key))
-          throw UserError(e.where(), std::string("an emissivity table without '") + key + "'", "'wavelength', 'angles' and 'values'", "add it");
-      g.table = readEmissivityTable(e);
-    } else if (!e.given("emissivity")) {
-      throw UserError(e.where(), "an emission with 'angular' but without 'emissivity'", "both", "add 'emissivity: 0.9' or a spectrum");
-    } else {
-      g.emissivity = fraction(e.value("emissivity"), "emissivity");
-    }
-    if (e.given("angular"))
-      for (const Value& row : e.value("angular").items) {
-        if (row.kind != Value::Kind::List || row.items.size() != 2)
-          throw UserError(row.where, "not a row [angle, factor]", "[60 deg, 0.9]", "write two values");
-        const double angle = readNumber(row.items[0], "rad", "view angle"), factor = readNumber(row.items[1], "", "factor");
-        if (angle < 0.0 || angle > 1.5709 || factor < 0.0 || (!g.viewAngle_rad.empty() && angle <= g.viewAngle_rad.back()))
-          throw UserError(row.where, "view angles must rise within 0 to 90 deg, factors must not be negative", "rising angles", "correct the row");
-        g.viewAngle_rad.push_back(angle);
-        g.factor.push_back(factor);
-      }
-    if (e.given("modifier")) g.modifier = readTexture(e.value("modifier"), "", "a modifier", 0.0, 1.0);
-    m->given = std::move(g);
-  }
+  if (r.given("emission")) m->given = readViewSpectrum(Record(r.value("emission"), tables::emission()), "emissivity", name, spectra);
+  if (r.given("transmission")) m->transmission = readViewSpectrum(Record(r.value("transmission"), tables::transmission()), "transmittance", name, spectra);
+  readMedium(r, *m, spectra);
   if (const auto excess = energyExcess(*m, simulation_.textures))
     throw UserError(value.where,
-                    "material '" + name + "' " + (m->given ? "reflects and emits" : "reflects") + " more than it receives (" +
+                    "material '" + name + "' reflects" + (m->transmission ? m->given ? ", transmits and emits" : " and transmits" : m->given ? " and emits" : "") +
+                        " more than it receives (" +
                         percentAt(excess->sum, excess->wavelength_um, excess->viewAngle_rad) + ")",
-                    m->given ? "reflectance + emissivity <= 1, at every wavelength, view angle and texel"
-                             : "the sum of its reflectances <= 1, at every wavelength, view angle and texel",
+                    std::string(m->given || m->transmission ? "reflectance" : "the sum of its reflectances") + (m->transmission ? " + transmittance" : "") +
+                        (m->given ? " + emissivity" : "") + " <= 1, at every wavelength, view angle and texel",
                     "lower a component");
   return m;
 }

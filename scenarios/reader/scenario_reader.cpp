@@ -54,7 +54,10 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
   sim.seed = r.integer("seed");
   Builder b(sim, base, libraries);
   try {
-    if (r.given("render") && Record(r.value("render"), tables::render()).text("mode") == "buffered") sim.mode = RenderMode::Buffered;
+    if (r.given("render")) {
+      const std::string mode = Record(r.value("render"), tables::render()).text("mode");
+      sim.mode = mode == "buffered" ? RenderMode::Buffered : mode == "direct" ? RenderMode::Direct : RenderMode::Auto;
+    }
     b.readOrigin(r);
     b.readTime(r);
     b.readAtmosphere(r);
@@ -63,6 +66,9 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     b.readAmbient(r);
     b.readMaterials(r);
     b.readEntities(r);
+    if (sim.mode == RenderMode::Direct && sim.hasTransparent())
+      throw UserError(Record(r.value("render"), tables::render()).where("mode"), "direct mode cannot draw what is seen through something transparent",
+                      "'auto' or 'buffered' in a scenario with a transmission or a medium", "write 'mode: auto'");
     b.readLights(r);
     b.readCameras(r);
     b.readProbes(r);

@@ -31,6 +31,16 @@ void addPlacement(std::vector<Parameter>& p, bool attitude) {
   p.push_back(text("attached_to", "name of an entity that carries it: positions are then in that body's axes"));
 }
 
+/// A spectrum over view angle: emissivity, transmittance.
+std::vector<Parameter> overView(const std::string& what) {
+  return {spectrum(what, "", "at normal view, 0..1"),
+          list("angular", "rows [angle, factor]: " + what + " over view angle divided by that at normal", 1, 1024),
+          list("wavelength", "of a table instead: rising wavelengths", 1, 1024),
+          list("angles", "of a table: one axis, `{angle: view, count: 3, last: 90 deg}`; held beyond its last", 1, 1),
+          list("values", "of a table: " + what + " 0..1, nested as values[angle][wavelength]", 2, 1024),
+          map("modifier", "texture that multiplies it, 0..1")};
+}
+
 }  // namespace
 
 const ParameterTable& scenario() {
@@ -52,7 +62,8 @@ const ParameterTable& render() {
   static const ParameterTable t{"render",
                                 "Pictures are the same in either mode, to rounding.",
                                 {withDefault(choice("mode", {"auto", "direct", "buffered"},
-                                                    "direct: shading integrates straight into the channels; buffered: through a spectral image; auto: direct"),
+                                                    "direct: shading integrates straight into the channels; buffered: through a spectral image, as "
+                                                    "transparent things need it; auto: buffered only in frames with something transparent in view"),
                                              "auto")}};
   return t;
 }
@@ -128,9 +139,13 @@ const ParameterTable& ambient() {
 const ParameterTable& material() {
   static const ParameterTable t{
       "material",
-      "Up to three reflection components and an emission. Also the form of materials/library/<name>.yaml.",
+      "A surface: up to three reflection components, an emission and a transmission; or a medium that fills a closed body (gas, smoke): `absorption`, "
+      "and its temperature in the entity. Also the form of materials/library/<name>.yaml.",
       {text("description", "what it is"), text("source", "where the figures come from"), list("components", "reflection components; none: black", 0, 3),
-       map("emission", "given emissivity; without it 1 - reflectance (Kirchhoff)")}};
+       map("emission", "given emissivity; without it 1 - reflectance - transmittance (Kirchhoff)"),
+       map("transmission", "what is behind is seen through it; needs buffered mode"),
+       spectrum("absorption", "1/m", "of a medium: absorption coefficient; optical depth is its product with the path length inside the body"),
+       spectrum("radiance", "W/(m2 sr um)", "of a medium: further radiance at great depth, for instance scattered sunlight")}};
   return t;
 }
 
@@ -172,11 +187,15 @@ const ParameterTable& emission() {
       "A spectrum and a factor over view angle, or a table over both. Pictures hold view angles every 0.5 deg, or finer (to 0.0625 deg) where that hits all "
       "the "
       "angles given, and are linear between; a bend that no such step hits is cut off by a quarter of step x change of slope.",
-      {spectrum("emissivity", "", "at normal view, 0..1"),
-       list("angular", "rows [angle, factor]: emissivity over view angle divided by that at normal", 1, 1024),
-       list("wavelength", "of a table instead: rising wavelengths", 1, 1024),
-       list("angles", "of a table: one axis, `{angle: view, count: 3, last: 90 deg}`; held beyond its last", 1, 1),
-       list("values", "of a table: emissivity 0..1, nested as values[angle][wavelength]", 2, 1024), map("modifier", "texture that multiplies it, 0..1")}};
+      overView("emissivity")};
+  return t;
+}
+
+const ParameterTable& transmission() {
+  static const ParameterTable t{"transmission",
+                                "Of the whole layer that a surface stands for (a pane of glass is one surface), at each crossing; over view angle as an "
+                                "emission. Reflectance + transmittance + given emissivity must not exceed 1.",
+                                overView("transmittance")};
   return t;
 }
 
@@ -217,13 +236,14 @@ const ParameterTable& shape() {
   static const ParameterTable t{
       "shape",
       "",
-      {required(choice("model", {"plate", "box", "disc", "sphere", "cylinder", "cone", "terrain", "jet", "missile", "mesh"},
+      {required(choice("model", {"plate", "box", "disc", "sphere", "ellipsoid", "cylinder", "cone", "terrain", "jet", "missile", "mesh"},
                        "kind; body axes x forward, y left, z up; see the table of shapes")),
-       within(number("width", "m", "plate, box: along y"), 1e-6, 1e7), within(number("height", "m", "plate, box: along z"), 1e-6, 1e7),
+       within(number("width", "m", "plate, box, ellipsoid: along y"), 1e-6, 1e7),
+       within(number("height", "m", "plate, box, ellipsoid: along z"), 1e-6, 1e7),
        within(number("radius", "m", "disc, sphere, cylinder, cone (base)"), 1e-6, 1e7),
        within(number("top_radius", "m", "cone: at its +x end, 0 unless given"), 0, 1e7),
-       within(number("length", "m", "cylinder, cone, box: along x"), 1e-6, 1e7),
-       withDefault(integer("segments", "disc, sphere, cylinder, cone: around", 8, 2048), "64"), withDefault(boolean("capped", "cylinder, cone"), "true"),
+       within(number("length", "m", "cylinder, cone, box, ellipsoid: along x"), 1e-6, 1e7),
+       withDefault(integer("segments", "disc, sphere, ellipsoid, cylinder, cone: around", 8, 2048), "64"), withDefault(boolean("capped", "cylinder, cone"), "true"),
        withDefault(choice("fit", {"inscribed", "equal_area"}, "sphere: vertices on it, or the same projected area"), "equal_area"),
        within(number("size", "m", "terrain: side of the square"), 1e-3, 1e6), within(number("relief", "m", "terrain: height range"), 0, 1e4),
        withDefault(integer("columns", "terrain: cells along a side", 1, 1024), "128"), withDefault(integer("terrain_seed", "terrain", 0, 1000000000), "1"),
@@ -311,7 +331,7 @@ const ParameterTable& probe() {
 
 std::vector<const ParameterTable*> all() {
   return {&scenario(),      &render(),   &origin(),    &time(),      &atmosphere(), &airLibrary(), &background(), &sun(),    &ambient(),
-          &spectrumTable(), &material(), &component(), &tableAxis(), &texture(),    &emission(),   &light(),      &entity(), &part(),
+          &spectrumTable(), &material(), &component(), &tableAxis(), &texture(),    &emission(),   &transmission(), &light(),      &entity(), &part(),
           &shape(),         &waypoint(), &geodetic(),  &camera(),    &film(),       &channel(),    &spectral(),   &probe()};
 }
 

@@ -19,6 +19,7 @@ const ParameterTable& material();
 const ParameterTable& component();
 const ParameterTable& texture();
 const ParameterTable& emission();
+const ParameterTable& transmission();
 const ParameterTable& tableAxis();
 const ParameterTable& light();
 const ParameterTable& entity();

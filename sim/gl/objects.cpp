@@ -133,6 +133,13 @@ void RenderTarget::select(std::size_t first, std::size_t count) {
   glNamedFramebufferDrawBuffers(name_, static_cast<GLsizei>(buffers.size()), buffers.data());
 }
 
+void RenderTarget::shareDepth(const RenderTarget& other) { glNamedFramebufferTexture(name_, GL_DEPTH_ATTACHMENT, other.depth().name(), 0); }
+
+void RenderTarget::copyFrom(const RenderTarget& other) {
+  for (std::size_t i = 0; i < colours_.size(); ++i)
+    glCopyImageSubData(other.colour(i).name(), GL_TEXTURE_2D, 0, 0, 0, 0, colours_[i].name(), GL_TEXTURE_2D, 0, 0, 0, 0, width_, height_, 1);
+}
+
 void RenderTarget::bind() const {
   glBindFramebuffer(GL_FRAMEBUFFER, name_);
   glViewport(0, 0, width_, height_);

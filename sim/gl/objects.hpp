@@ -98,6 +98,10 @@ class RenderTarget {
   void bind() const;
   /// Draws into colours [first, first + count) only; output locations stay as they are.
   void select(std::size_t first, std::size_t count);
+  /// Tests against another target's depth (of the same size) from now on; it must outlive this one's use.
+  void shareDepth(const RenderTarget& other);
+  /// Copies all colours of a target of the same size and formats.
+  void copyFrom(const RenderTarget& other);
   const Texture2D& colour(std::size_t i) const { return colours_[i]; }
   const Texture2D& depth() const { return *depth_; }
   std::size_t colourCount() const { return colours_.size(); }

@@ -78,8 +78,10 @@ class Assembler {
 AssembledShader assembleShader(const ShaderLibrary& library, const std::string& mainPath, const ShaderSlots& slots) {
   Assembler a(library, slots);
   a.line("#version 450 core", "dialect");
+  for (const auto& name : slots.extensions) a.line("#extension " + name + " : require", "plan extension");
   a.line("#define PHYSICS", "dialect");
   a.line("#define Real float", "dialect");
+  a.line("#define Vec2 vec2", "dialect");
   a.line("#define Vec3 vec3", "dialect");
   // Largest x for which exp(-x) is a normal single precision number: ln(2^126) = 87.33.
   a.line("const float kExpLimit = 87.33;", "dialect");

@@ -37,6 +37,7 @@ struct ShaderSlots {
   std::map<std::string, std::string> files;      ///< slot -> path
   std::map<std::string, std::string> generated;  ///< slot -> text written by the plan
   std::map<std::string, long long> constants;    ///< structural counts: const int NAME = value
+  std::vector<std::string> extensions;           ///< GLSL extensions the program requires
 };
 
 AssembledShader assembleShader(const ShaderLibrary& library, const std::string& mainPath, const ShaderSlots& slots);

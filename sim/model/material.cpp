@@ -3,38 +3,12 @@
 #include <algorithm>
 
 #include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 
-double GivenEmissivity::at(double wavelength_um, double angle) const {
-  if (tabulated()) {
-    const auto& x = table.wavelength_um;
-    if (wavelength_um < x.front() || wavelength_um > x.back())
-      throw OutsideSpectrum("an emissivity table has no data at " + std::to_string(wavelength_um) + " um");
-    const size_t n = x.size();
-    const size_t i = n < 2 ? 0 : std::min(static_cast<size_t>(std::upper_bound(x.begin(), x.end(), wavelength_um) - x.begin()) - 1, n - 2);
-    const double f = n < 2 ? 0.0 : (wavelength_um - x[i]) / (x[i + 1] - x[i]);
-    const double y = std::clamp(angle / table.view.last_rad, 0.0, 1.0) * (table.view.count - 1);
-    const size_t j = std::min(static_cast<size_t>(y), static_cast<size_t>(table.view.count - 2));
-    const double g = y - static_cast<double>(j);
-    auto along = [&](size_t row) { return (1.0 - f) * table.values[row * n + i] + (f > 0.0 ? f * table.values[row * n + i + 1] : 0.0); };
-    return (1.0 - g) * along(j) + g * along(j + 1);
-  }
-  const double eps = emissivity(wavelength_um);
-  if (viewAngle_rad.empty()) return eps;
-  if (angle <= viewAngle_rad.front()) return eps * factor.front();
-  if (angle >= viewAngle_rad.back()) return eps * factor.back();
-  const auto above = std::upper_bound(viewAngle_rad.begin(), viewAngle_rad.end(), angle);
-  const size_t i = static_cast<size_t>(above - viewAngle_rad.begin()) - 1;
-  const double f = (angle - viewAngle_rad[i]) / (viewAngle_rad[i + 1] - viewAngle_rad[i]);
-  return eps * (factor[i] + f * (factor[i + 1] - factor[i]));
-}
-
-std::vector<double> GivenEmissivity::knots_rad() const {
-  if (!tabulated()) return viewAngle_rad;
-  std::vector<double> all;
-  for (int j = 0; j < table.view.count; ++j) all.push_back(table.view.at(j));
-  return all;
+double Medium::source(double wavelength_um, double temperature_K) const {
+  return physics::planckRadiance(wavelength_um, temperature_K) + (radiance ? (*radiance)(wavelength_um) : 0.0);
 }
 
 double Material::reflectance(double wavelength_um, double angle) const {
@@ -44,12 +18,16 @@ double Material::reflectance(double wavelength_um, double angle) const {
 }
 
 double Material::emissivity(double wavelength_um, double angle) const {
-  return given ? given->at(wavelength_um, angle) : 1.0 - reflectance(wavelength_um, angle);
+  return given ? given->at(wavelength_um, angle) : 1.0 - reflectance(wavelength_um, angle) - transmittance(wavelength_um, angle);
 }
 
 std::vector<double> Material::viewKnots_rad() const {
   std::vector<double> all;
-  if (given) all = given->knots_rad();
+  for (const ViewSpectrum* v : {given ? &*given : nullptr, transmission ? &*transmission : nullptr})
+    if (v) {
+      const auto knots = v->knots_rad();
+      all.insert(all.end(), knots.begin(), knots.end());
+    }
   for (const auto& r : reflections)
     for (const AngleAxis& axis : r->axes())
       if (axis.angle == Angle::View)
@@ -61,7 +39,8 @@ std::vector<double> Material::viewKnots_rad() const {
 }
 
 bool Material::hemisphericalVaries() const {
-  return (given && given->varies()) || std::any_of(reflections.begin(), reflections.end(), [](const auto& r) { return r->hemisphericalVaries(); });
+  return (given && given->varies()) || (transmission && transmission->varies()) ||
+         std::any_of(reflections.begin(), reflections.end(), [](const auto& r) { return r->hemisphericalVaries(); });
 }
 
 bool Material::needsAngles() const {
@@ -69,16 +48,21 @@ bool Material::needsAngles() const {
 }
 
 bool Material::hasModifiers() const {
-  return std::any_of(modifiers.begin(), modifiers.end(), [](int m) { return m >= 0; }) || (given && given->modifier >= 0);
+  return std::any_of(modifiers.begin(), modifiers.end(), [](int m) { return m >= 0; }) || (given && given->modifier >= 0) ||
+         (transmission && transmission->modifier >= 0);
 }
 
 double Material::validLow_um() const {
+  if (medium) return medium->validLow_um();
   double low = given ? given->validLow_um() : kShortestWavelength_um;
+  if (transmission) low = std::max(low, transmission->validLow_um());
   for (const auto& r : reflections) low = std::max(low, r->validLow_um());
   return low;
 }
 double Material::validHigh_um() const {
+  if (medium) return medium->validHigh_um();
   double high = given ? given->validHigh_um() : kLongestWavelength_um;
+  if (transmission) high = std::min(high, transmission->validHigh_um());
   for (const auto& r : reflections) high = std::min(high, r->validHigh_um());
   return high;
 }

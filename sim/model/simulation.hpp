@@ -1,5 +1,6 @@
 #pragma once
 // A whole scenario, typed and in SI, as the kernel sees it: nothing here knows where it was read from.
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
@@ -59,15 +60,16 @@ struct TimeAxis {
   double at(int frame) const { return start_s + step_s * frame; }
 };
 
-/// Direct: shading integrates into the channels. Buffered: it leaves a spectral image, which a further pass integrates.
-enum class RenderMode { Direct, Buffered };
+/// Direct: shading integrates into the channels. Buffered: it leaves a spectral image, over which transparent things are blended and
+/// which a further pass integrates. Auto: buffered where something transparent is in view.
+enum class RenderMode { Auto, Direct, Buffered };
 
 struct Simulation {
   std::string name;
   std::string file;
   std::string sha256;
   long long seed = 0;
-  RenderMode mode = RenderMode::Direct;
+  RenderMode mode = RenderMode::Auto;
   LocalFrame frame;
   TimeAxis time;
   std::vector<Texture> textures;
@@ -80,6 +82,17 @@ struct Simulation {
   std::shared_ptr<const Path> path;
   std::vector<Camera> cameras;
   std::vector<Probe> probes;
+
+  const Material& materialOf(const Surface& s) const { return *materials[static_cast<size_t>(s.material)]; }
+  const Medium* mediumOf(const Entity& e) const {  ///< what fills it, or null
+    return e.surfaces.empty() || !materialOf(e.surfaces.front()).medium ? nullptr : &*materialOf(e.surfaces.front()).medium;
+  }
+  bool isTransparent(const Entity& e) const {  ///< any of its surfaces
+    return std::any_of(e.surfaces.begin(), e.surfaces.end(), [this](const Surface& s) { return materialOf(s).isTransparent(); });
+  }
+  bool hasTransparent() const {
+    return std::any_of(entities.begin(), entities.end(), [this](const Entity& e) { return isTransparent(e); });
+  }
 };
 
 }  // namespace pitviper

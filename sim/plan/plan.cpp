@@ -58,19 +58,27 @@ void checkCoverage(const Simulation& sim, const ChannelOutput& output) {
   check("the background", output.where, sim.background);
 }
 
+void add(SurfaceTerms& t, const Material& m, const Surface& s) {
+  t.any = true;
+  t.reflects |= !m.reflections.empty();
+  t.emits |= !m.given || m.given->tabulated() || !m.given->spectrum.isZero();
+  t.angular |= m.needsAngles();
+  t.modifiers |= m.hasModifiers();
+  t.temperatureTextures |= s.temperatureTexture >= 0;
+  for (const auto& r : m.reflections)
+    if (!r->lobeFile().empty()) t.lobeFile = r->lobeFile();
+}
+
 Terms termsOf(const Simulation& sim) {
   Terms t;
   t.air = sim.path && !sim.path->isNone();
   t.lights = !sim.lights.empty() || sim.sun;
   t.ambient = sim.ambient && !sim.ambient->isZero();
-  for (const auto& m : sim.materials) {
-    t.angular |= m->needsAngles();
-    t.modifiers |= m->hasModifiers();
-    for (const auto& r : m->reflections)
-      if (!r->lobeFile().empty()) t.lobeFile = r->lobeFile();
+  for (const auto& e : sim.entities) {
+    t.media |= sim.mediumOf(e) != nullptr;
+    if (sim.mediumOf(e)) continue;
+    for (const auto& s : e.surfaces) add(sim.materialOf(s).transmission ? t.layer : t.solid, sim.materialOf(s), s);
   }
-  for (const auto& e : sim.entities)
-    for (const auto& s : e.surfaces) t.temperatureTextures |= s.temperatureTexture >= 0;
   return t;
 }
 

@@ -16,15 +16,25 @@ struct NodeBlock {
   std::vector<int> slots;
 };
 
+/// Terms of the radiance equation that a kind of surfaces has.
+struct SurfaceTerms {
+  bool any = false;       ///< there are such surfaces
+  bool reflects = false;  ///< light that falls on them
+  bool emits = false;
+  bool angular = false;  ///< tables over angles, or an emissivity or transmittance that changes with view angle
+  bool modifiers = false;
+  bool temperatureTextures = false;
+  std::string lobeFile;  ///< shader file of the angular lobes, or empty
+  bool isGeneral() const { return angular || modifiers || temperatureTextures; }
+};
+
 /// Terms of the radiance equation that this scene has.
 struct Terms {
   bool air = false;     ///< extinction and path radiance
   bool lights = false;  ///< point lights or the sun
   bool ambient = false;
-  bool angular = false;  ///< tables over angles, or emissivity that changes with view angle
-  bool modifiers = false;
-  bool temperatureTextures = false;
-  std::string lobeFile;  ///< shader file of the angular lobes, or empty
+  SurfaceTerms solid, layer;  ///< opaque and transparent surfaces
+  bool media = false;         ///< bodies filled with an emitting medium
 };
 
 struct Plan {

@@ -6,6 +6,7 @@
 
 namespace pitviper::physics {
 using Real = double;
+using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
 using glm::dot;
 using std::exp;
@@ -21,8 +22,10 @@ constexpr Real kExpLimit = 708.0;
 constexpr Real kFar = 1e30;
 
 #define PHYSICS inline
+#include "sim/radiometry/glsl/chord.glsl"
 #include "sim/radiometry/glsl/exponential.glsl"
 #include "sim/radiometry/glsl/geometry.glsl"
+#include "sim/radiometry/glsl/medium.glsl"
 #include "sim/radiometry/glsl/planck.glsl"
 #undef PHYSICS
 }  // namespace pitviper::physics

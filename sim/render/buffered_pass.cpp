@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "sim/gl/context.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -79,6 +81,7 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
     batch.weights.upload(weights);
     batches_.push_back(std::move(batch));
   }
+  if (plan.terms.layer.any || plan.terms.media) layers_ = std::make_unique<LayerPass>(simulation, plan, tables(), sharedScene(), library, slots, targets_);
   if (!truth) return;
   slots.files["truth"] = "sim/render/glsl/truth_layers.glsl";
   slots.generated["targets"] = "void clearTargets() {}\n";
@@ -86,14 +89,21 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
   truth_ = shadingProgram(library, slots);
 }
 
-RenderTarget& BufferedPass::spectrumFor(int width, int height) {
+RenderTarget& BufferedPass::spectrumFor(const RenderTarget& visibility) {
   for (auto& t : spectra_)
-    if (t.width() == width && t.height() == height) return t;
-  return spectra_.emplace_back(width, height, std::vector<PixelFormat>(static_cast<size_t>(targets_), PixelFormat::Rgba32f), false);
+    if (t.width() == visibility.width() && t.height() == visibility.height()) return t;
+  RenderTarget& made =
+      spectra_.emplace_back(visibility.width(), visibility.height(), std::vector<PixelFormat>(static_cast<size_t>(targets_), PixelFormat::Rgba32f), false);
+  made.shareDepth(visibility);
+  return made;
 }
 
-void BufferedPass::shade(RenderTarget& into) {
-  RenderTarget& spectrum = spectrumFor(into.width(), into.height());
+void BufferedPass::beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) {
+  if (layers_) layers_->order(view, state, drawn);
+}
+
+void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
+  RenderTarget& spectrum = spectrumFor(visibility);
   const size_t groups = static_cast<size_t>(plan().groupCount());
   for (size_t b = 0; b < batches_.size(); ++b) {
     spectrum.bind();
@@ -102,6 +112,11 @@ void BufferedPass::shade(RenderTarget& into) {
     shade_.use();
     glUniform1i(shade_.uniform("firstNode"), batches_[b].firstNode);
     fillScreen(shade_);
+    if (layers_ && !layers_->isEmpty()) {
+      layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode});
+      bindBuffers();
+      visibility.colour(0).bind(0);
+    }
 
     into.select(0, groups);
     into.bind();
@@ -120,6 +135,37 @@ void BufferedPass::shade(RenderTarget& into) {
     fillScreen(truth_);
   }
   into.select(0, into.colourCount());
+}
+
+std::vector<double> BufferedPass::transmittance(const View& asked, const WorldState& state, const std::vector<char>& drawn, double farthest_m) {
+  std::vector<double> all(plan().node_um.size(), 1.0);
+  if (!layers_) return all;
+  const View view = centred(asked, state);
+  layers_->order(view, state, drawn);
+  if (layers_->isEmpty()) return all;
+  RenderTarget& visibility = visibilityFor(view.width, view.height);
+  RenderTarget& spectrum = spectrumFor(visibility);
+  uploadView(view);
+  uploadDraws(view, state);
+  bindBuffers();
+  const GLuint nothing[4] = {0, 0, 0, 0};
+  const GLfloat end = static_cast<float>(view.near_m / farthest_m), one[4] = {1, 1, 1, 1};
+  visibility.bind();
+  glDepthMask(GL_TRUE);
+  glClearBufferuiv(GL_COLOR, 0, nothing);
+  glClearBufferfv(GL_DEPTH, 0, &end);
+  for (const Batch& batch : batches_) {
+    spectrum.bind();
+    for (size_t t = 0; t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), one);
+    layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batch.firstNode, .emitting = false, .farthest_m = farthest_m});
+    Readback readback;
+    readback.start(spectrum, spectrum.colourCount());
+    const auto pixels = readback.wait();
+    for (size_t i = 0; i < 4 * spectrum.colourCount() && static_cast<size_t>(batch.firstNode) + i < all.size(); ++i)
+      all[static_cast<size_t>(batch.firstNode) + i] = static_cast<double>(pixels.colours[i / 4][i % 4]);
+  }
+  checkGl("drawing what stands before a light");
+  return all;
 }
 
 }  // namespace pitviper

@@ -1,6 +1,8 @@
 #pragma once
 // Buffered mode: the target holds the spectral image, one value per spectral node, and a pass of its own integrates it with the
-// channels' kernels. Source: Duvenhage 2006 section 4.6.2. Nodes beyond 32 (eight RGBA targets) go in further batches, whose integrals add up.
+// channels' kernels; between the two, transparent things are blended over it. Source: Duvenhage 2006 sections 4.6.2 and 5.3. Nodes beyond 32
+// (eight RGBA targets) go in further batches, whose integrals add up.
+#include "sim/render/layer_pass.hpp"
 #include "sim/render/scene_pass.hpp"
 
 namespace pitviper {
@@ -10,9 +12,14 @@ class BufferedPass final : public ScenePass {
   BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                double apertureArea_m2);
 
+  std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) override;
+  /// Null where nothing in the scenario is transparent.
+  const LayerPass* layers() const { return layers_.get(); }
+
  private:
-  void shade(RenderTarget& into) override;
-  RenderTarget& spectrumFor(int width, int height);
+  void shade(RenderTarget& into, const RenderTarget& visibility) override;
+  void beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) override;
+  RenderTarget& spectrumFor(const RenderTarget& visibility);
 
   struct Batch {
     int firstNode = 0;
@@ -21,6 +28,7 @@ class BufferedPass final : public ScenePass {
   };
   std::vector<Batch> batches_;
   Program shade_, truth_;
+  std::unique_ptr<LayerPass> layers_;
   int targets_ = 0;  ///< RGBA targets of the spectral image
   std::deque<RenderTarget> spectra_;
 };

@@ -1,5 +1,7 @@
 #include "sim/render/camera_renderer.hpp"
 
+#include "sim/render/buffered_pass.hpp"
+#include "sim/render/direct_pass.hpp"
 #include "sim/render/small_bodies.hpp"
 #include "sim/render/visible_lights.hpp"
 
@@ -9,8 +11,24 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
     : simulation_(simulation),
       camera_(camera),
       plan_(makePlan(simulation, camera.outputs, camera.spectral, camera.where)),
-      pass_(makeScenePass(simulation, plan_, library, std::move(scene), camera.truth.any(), camera.pinhole.apertureArea_m2())),
-      solidAngles_(std::make_shared<const Pinhole::SolidAngles>(camera.pinhole.solidAngles())) {}
+      solidAngles_(std::make_shared<const Pinhole::SolidAngles>(camera.pinhole.solidAngles())) {
+  const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
+  const double area_m2 = camera.pinhole.apertureArea_m2();
+  if (simulation.mode == RenderMode::Buffered || transparent) buffered_ = std::make_unique<BufferedPass>(simulation, plan_, library, scene, truth, area_m2);
+  // Its program is made at the start even where the first frame needs the other: none may be late for want of a compiler.
+  if (simulation.mode != RenderMode::Buffered) direct_ = std::make_unique<DirectPass>(simulation, plan_, library, scene, truth, area_m2);
+  pass_ = buffered_ ? buffered_.get() : direct_.get();
+}
+
+bool CameraRenderer::seesTransparent() const {
+  for (size_t e = 0; e < present_.size(); ++e) {
+    const Entity& entity = simulation_.entities[e];
+    if (!present_[e] || !simulation_.isTransparent(entity)) continue;
+    const Pose& pose = state_.entities[e];
+    if (mayShow(view_, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m)) return true;
+  }
+  return false;
+}
 
 void CameraRenderer::begin(const WorldState& state) {
   state_ = state;
@@ -21,6 +39,7 @@ void CameraRenderer::begin(const WorldState& state) {
   small_ = findSmallBodies(simulation_, state_, view_, camera_.smallBody_px * camera_.samples);
   std::vector<char> drawn(present_);
   for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = present_[e] && !small_[e];
+  if (direct_ && buffered_) pass_ = seesTransparent() ? buffered_.get() : direct_.get();
   pass_->setState(state_);
   pass_->draw(view_, state_, drawn);
   pass_->startReadback(false);

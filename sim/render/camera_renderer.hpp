@@ -22,13 +22,18 @@ class CameraRenderer {
     return finish();
   }
   const Plan& plan() const { return plan_; }
+  /// Of the mode that the last frame was drawn in.
   const AssembledShader& fragmentSource() const { return pass_->fragmentSource(); }
+  bool isBuffered() const { return pass_ == buffered_.get(); }
+
 
  private:
+  bool seesTransparent() const;
   const Simulation& simulation_;
   const Camera& camera_;
   Plan plan_;
-  std::unique_ptr<ScenePass> pass_;
+  std::unique_ptr<ScenePass> direct_, buffered_;  ///< both where auto has to choose frame by frame
+  ScenePass* pass_ = nullptr;
   WorldState state_;
   View view_;
   std::vector<char> small_, present_;

@@ -17,7 +17,7 @@ DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const Sha
   weights_.upload(tables().weights);
 }
 
-void DirectPass::shade(RenderTarget& into) {
+void DirectPass::shade(RenderTarget& into, const RenderTarget&) {
   into.bind();
   weights_.bindUniform(2);
   fillScreen(program_);
@@ -25,7 +25,8 @@ void DirectPass::shade(RenderTarget& into) {
 
 std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
                                          bool truth, double apertureArea_m2) {
-  if (simulation.mode == RenderMode::Buffered) return std::make_unique<BufferedPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2);
+  if (simulation.mode == RenderMode::Buffered || simulation.hasTransparent())
+    return std::make_unique<BufferedPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2);
   return std::make_unique<DirectPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2);
 }
 

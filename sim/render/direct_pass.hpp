@@ -10,7 +10,7 @@ class DirectPass final : public ScenePass {
              double apertureArea_m2);
 
  private:
-  void shade(RenderTarget& into) override;
+  void shade(RenderTarget& into, const RenderTarget& visibility) override;
   Program program_;
   Buffer weights_;
 };

@@ -18,9 +18,9 @@ struct GpuDraw {
 };
 static_assert(sizeof(GpuDraw) == 80);
 
-/// Mirrors ViewBlock of sim/render/glsl/shade.frag.glsl (std140).
+/// Mirrors ViewBlock of sim/render/glsl/view_block.glsl (std140).
 struct GpuView {
-  glm::vec4 pixel, up, earth, sun, aperture, east, north;
+  glm::vec4 pixel, film, depth, up, earth, sun, aperture, east, north;
 };
 
 }  // namespace
@@ -41,22 +41,21 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       truth_(truth),
       apertureArea_m2_(apertureArea_m2),
       tables_(makeTables(simulation, plan)),
+      solid_(tables_.solid),
       visibility_(assembleShader(library, "sim/render/glsl/visibility.vert.glsl", {}), assembleShader(library, "sim/render/glsl/visibility.frag.glsl", {})) {
   checkUniformSize((tables_.node.size() * 2 + plan.node_um.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
-  rows_.upload(tables_.rows);
-  hemispherical_.upload(tables_.hemispherical);
-  columns_.upload(tables_.columns);
-  materials_.upload(tables_.materials);
 }
 
 ShaderSlots ScenePass::shadingSlots() const {
   ShaderSlots slots;
   slots.files["path"] = simulation_.path ? simulation_.path->slotFile() : "sim/render/glsl/path_none.glsl";
-  slots.files["lobes"] = plan_.terms.lobeFile.empty() ? "sim/render/glsl/lobes_none.glsl" : plan_.terms.lobeFile;
+  const SurfaceTerms& t = plan_.terms.solid;
+  slots.files["lobes"] = t.lobeFile.empty() ? "sim/render/glsl/lobes_none.glsl" : t.lobeFile;
   slots.files["lights"] = plan_.lightCount > 0 ? "sim/render/glsl/lights_point.glsl" : "sim/render/glsl/lights_none.glsl";
-  slots.files["surface"] = tables_.general ? "sim/render/glsl/surface_general.glsl" : "sim/render/glsl/surface_simple.glsl";
-  slots.files["columns"] = tables_.tabulated ? "sim/render/glsl/columns_tabulated.glsl" : "sim/render/glsl/columns_plain.glsl";
-  slots.files["temperature"] = plan_.terms.temperatureTextures ? "sim/render/glsl/temperature_textured.glsl" : "sim/render/glsl/temperature_uniform.glsl";
+  slots.files["surface"] = tables_.solid.general ? "sim/render/glsl/surface_general.glsl" : "sim/render/glsl/surface_simple.glsl";
+  slots.files["columns"] = tables_.solid.tabulated ? "sim/render/glsl/columns_tabulated.glsl" : "sim/render/glsl/columns_plain.glsl";
+  slots.files["temperature"] = t.temperatureTextures ? "sim/render/glsl/temperature_textured.glsl" : "sim/render/glsl/temperature_uniform.glsl";
+  slots.files["transmission"] = "sim/render/glsl/transmission_none.glsl";
   slots.constants["NODES"] = plan_.nodeCount();
   slots.constants["GROUPS"] = plan_.groupCount();
   slots.constants["LIGHTS"] = plan_.lightCount;
@@ -87,6 +86,9 @@ void ScenePass::uploadView(const View& v) {
   const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
   GpuView g;
   g.pixel = {v.tanPerPixelX, v.tanPerPixelY, v.axisX, v.axisY};
+  const double halfX = 0.5 * v.width, halfY = 0.5 * v.height;
+  g.film = {1.0 / (halfX * v.tanPerPixelX), 1.0 / (halfY * v.tanPerPixelY), v.axisX / halfX - 1.0, v.axisY / halfY - 1.0};
+  g.depth = {v.near_m, v.onlyEntity >= 0 ? 0.5 * glm::length(v.depthCentre - v.position) / v.depthRadius_m : 0.0, 0.0, 0.0};
   g.up = glm::vec4(cameraFromLocal * simulation_.frame.up(v.position), simulation_.frame.height(v.position));
   g.earth = {simulation_.frame.earthRadius_m(), simulation_.path ? simulation_.path->top_m() : physics::kFar, v.onlyEntity + 1, 0.0};
   g.sun = glm::vec4(simulation_.sun ? cameraFromLocal * simulation_.sun->toSun : glm::dvec3(0.0), 0.0);
@@ -110,7 +112,7 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
     const glm::dvec3 origin = cameraFromLocal * (pose.position - v.position);
     for (int r = 0; r < 3; ++r) g.row[r] = glm::vec4(bodyFromCamera[0][r], bodyFromCamera[1][r], bodyFromCamera[2][r], origin[r]);
     const Surface* s = item.entity < 0 ? nullptr : &simulation_.entities[static_cast<size_t>(item.entity)].surfaces[static_cast<size_t>(item.surface)];
-    g.table = {tables_.rowOfDraw[d], tables_.materialOfDraw[d], s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u,
+    g.table = {item.row, item.material, s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u,
                static_cast<unsigned>(item.entity + 1)};
     const size_t lightRow = static_cast<size_t>(item.entity + 1);
     const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
@@ -136,13 +138,8 @@ ScenePass::Targets& ScenePass::targetsFor(int width, int height) {
 void ScenePass::bindBuffers() const {
   scene_->bind();
   draws_.bindStorage(2);
-  rows_.bindTexture(1, tables_.general ? 1 : 4);
-  if (tables_.general) {
-    hemispherical_.bindTexture(2, 4);
-    columns_.bindTexture(3, 4);
-  }
+  solid_.bind();
   lights_.bindStorage(5);
-  materials_.bindStorage(6);
   view_.bindUniform(0);
   nodes_.bindUniform(1);
 }
@@ -159,19 +156,13 @@ void ScenePass::drawVisibility(const View& v, const WorldState& state, const std
   glClearBufferuiv(GL_COLOR, 0, nothing);
   glClearBufferfv(GL_DEPTH, 0, &farthest);
   visibility_.use();
-  const double halfX = 0.5 * v.width * v.tanPerPixelX, halfY = 0.5 * v.height * v.tanPerPixelY;
-  glUniform4f(visibility_.uniform("film"), static_cast<float>(1.0 / halfX), static_cast<float>(1.0 / halfY),
-              static_cast<float>((v.axisX - 0.5 * v.width) / (0.5 * v.width)), static_cast<float>((v.axisY - 0.5 * v.height) / (0.5 * v.height)));
-  const double centreRange = glm::length(v.depthCentre - v.position);
-  glUniform3f(visibility_.uniform("depthRule"), static_cast<float>(v.near_m),
-              v.onlyEntity >= 0 ? static_cast<float>(0.5 * centreRange / v.depthRadius_m) : 0.0f, 0.0f);
   glEnable(GL_CLIP_DISTANCE0);
   if (v.onlyEntity >= 0) glEnable(GL_DEPTH_CLAMP);
   const int drawIndex = visibility_.uniform("drawIndex"), firstTriangle = visibility_.uniform("firstTriangle");
   for (size_t d = 1; d < tables_.draws.size(); ++d) {
     const DrawItem& item = tables_.draws[d];
     const auto e = static_cast<size_t>(item.entity);
-    if (!drawn[e]) continue;
+    if (item.kind != DrawKind::Solid || !drawn[e]) continue;
     const Entity& entity = simulation_.entities[e];
     const MeshPart& part = entity.mesh->parts[entity.surfaces[static_cast<size_t>(item.surface)].meshPart];
     const glm::dvec3 centre = state.entities[e].position + state.entities[e].orientation * glm::dvec3(entity.boundingCentre);
@@ -192,20 +183,33 @@ void ScenePass::drawVisibility(const View& v, const WorldState& state, const std
   glDisable(GL_CULL_FACE);
 }
 
-void ScenePass::draw(const View& v, const WorldState& state, const std::vector<char>& drawn) {
+View ScenePass::centred(View v, const WorldState& state) const {
+  if (v.onlyEntity < 0)
+    for (const DrawItem& d : tables_.draws)
+      if (d.kind == DrawKind::Medium) v.depthCentre = state.entities[static_cast<size_t>(d.entity)].position;
+  return v;
+}
+
+void ScenePass::draw(const View& asked, const WorldState& state, const std::vector<char>& drawn) {
+  const View v = centred(asked, state);
   current_ = &targetsFor(v.width, v.height);
   uploadView(v);
   uploadDraws(v, state);
   bindBuffers();
   drawVisibility(v, state, drawn);
+  beforeShading(v, state, drawn);
   current_->visibility.colour(0).bind(0);
   if (v.onlyEntity >= 0) {
     current_->shading.bind();
     const GLfloat zero[4] = {0, 0, 0, 0};
     for (size_t i = 0; i < current_->shading.colourCount(); ++i) glClearBufferfv(GL_COLOR, static_cast<GLint>(i), zero);
   }
-  shade(current_->shading);
+  shade(current_->shading, current_->visibility);
   checkGl("drawing a frame");
+}
+
+std::vector<double> ScenePass::transmittance(const View&, const WorldState&, const std::vector<char>&, double) {
+  return std::vector<double>(plan_.node_um.size(), 1.0);
 }
 
 void ScenePass::startReadback(bool depth, bool identity) {

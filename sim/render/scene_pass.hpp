@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sim/render/gpu_scene.hpp"
+#include "sim/render/surface_buffers.hpp"
 #include "sim/render/tables.hpp"
 #include "sim/render/view.hpp"
 
@@ -32,6 +33,9 @@ class ScenePass {
   /// Starts copying the last drawn image.
   void startReadback(bool depth, bool identity = false);
   RawImage finishReadback();
+  /// Transmittance per node of everything transparent on the line of sight of a view of one pixel (its centre), as far as a depth [m].
+  /// Light levels and poses as in setState() and the last draw().
+  virtual std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m);
   /// The main shading program's source.
   const AssembledShader& fragmentSource() const { return fragmentSource_; }
 
@@ -41,7 +45,9 @@ class ScenePass {
             double apertureArea_m2);
   /// Shades what `visibility` shows into `into`: channel groups first, then truth. Buffers, textures and state are bound;
   /// the target is not. Where only one entity is shaded the target has been cleared.
-  virtual void shade(RenderTarget& into) = 0;
+  virtual void shade(RenderTarget& into, const RenderTarget& visibility) = 0;
+  /// What a mode has to make ready for a view, its solid scene drawn.
+  virtual void beforeShading(const View&, const WorldState&, const std::vector<char>&) {}
 
   const Plan& plan() const { return plan_; }
   const RenderTables& tables() const { return tables_; }
@@ -51,15 +57,20 @@ class ScenePass {
   /// Compiles a shading program; its source is kept as fragmentSource().
   Program shadingProgram(const ShaderLibrary& library, const ShaderSlots& slots);
   static void fillScreen(const Program& program);
+  void uploadView(const View& view);
+  void uploadDraws(const View& view, const WorldState& state);
+  void bindBuffers() const;
+  /// A view of everything, with the centre that depths of bodies are told from (draws.glsl) put where digits are needed: at a medium.
+  View centred(View view, const WorldState& state) const;
+  RenderTarget& visibilityFor(int width, int height) { return targetsFor(width, height).visibility; }
+  std::shared_ptr<const GpuScene> sharedScene() const { return scene_; }
+  const Simulation& simulation() const { return simulation_; }
 
  private:
   struct Targets {
     RenderTarget visibility, shading;
   };
   Targets& targetsFor(int width, int height);
-  void uploadView(const View& view);
-  void uploadDraws(const View& view, const WorldState& state);
-  void bindBuffers() const;
   void drawVisibility(const View& view, const WorldState& state, const std::vector<char>& drawn);
 
   const Simulation& simulation_;
@@ -69,8 +80,9 @@ class ScenePass {
   double apertureArea_m2_;
   RenderTables tables_;
   AssembledShader fragmentSource_;
+  SurfaceBuffers solid_;
   Program visibility_;
-  Buffer rows_, hemispherical_, columns_, materials_, nodes_, draws_, lights_, view_;
+  Buffer nodes_, draws_, lights_, view_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;
   Readback readback_;

@@ -90,7 +90,9 @@ int viewAngles(const Material& m) {
   return kMostViewAngles;
 }
 
-void appendMaterial(RenderTables& t, const Material& m, const Plan& plan) {
+double viewAngle(int entry, int views) { return views > 1 ? 0.5 * kPi * entry / (views - 1) : 0.0; }
+
+void appendMaterial(SurfaceTables& t, const Material& m, const Plan& plan) {
   GpuMaterial g{};
   const auto axes = materialAxes(m);
   const int views = m.hemisphericalVaries() ? viewAngles(m) : 1;
@@ -113,7 +115,12 @@ void appendMaterial(RenderTables& t, const Material& m, const Plan& plan) {
     g.modifier[k] = m.modifiers[k];
   }
   if (m.given) g.modifier[3] = m.given->modifier;
+  g.transmission[0] = m.transmission ? m.transmission->modifier : -1;
+  g.transmission[1] = static_cast<std::int32_t>(t.transmittance.size());
   t.materials.push_back(g);
+  if (m.transmission)
+    for (int j = 0; j < views; ++j)
+      for (double w : plan.node_um) t.transmittance.push_back(static_cast<float>(m.transmittance(w, viewAngle(j, views))));
   if (!t.general) return;
 
   for (int j2 = 0; j2 < axes[1].count; ++j2)
@@ -124,7 +131,7 @@ void appendMaterial(RenderTables& t, const Material& m, const Plan& plan) {
         t.columns.push_back(0.0f);
       }
   for (int j = 0; j < views; ++j) {
-    const double angle = views > 1 ? 0.5 * kPi * j / (views - 1) : 0.0;
+    const double angle = viewAngle(j, views);
     for (double w : plan.node_um) {
       for (size_t k = 0; k < 3; ++k) t.hemispherical.push_back(k < m.reflections.size() ? static_cast<float>(m.reflections[k]->hemispherical(w, angle)) : 0.0f);
       t.hemispherical.push_back(m.given ? static_cast<float>(m.given->at(w, angle)) : 0.0f);
@@ -132,10 +139,11 @@ void appendMaterial(RenderTables& t, const Material& m, const Plan& plan) {
   }
 }
 
-void appendRow(RenderTables& t, const Simulation& sim, const Plan& plan, const Surface* surface) {
-  t.rowOfDraw.push_back(static_cast<std::uint32_t>(t.general ? t.rows.size() : t.rows.size() / 4));
+/// The row of a surface, or of the background, which shines by itself (null).
+std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& plan, const Surface* surface) {
+  const auto at = static_cast<std::uint32_t>(t.general ? t.rows.size() : t.rows.size() / 4);
   for (double w : plan.node_um) {
-    if (!surface) {  // the background shines by itself
+    if (!surface) {
       if (!t.general) t.rows.insert(t.rows.end(), 3, 0.0f);
       t.rows.push_back(static_cast<float>(sim.background(w)));
       continue;
@@ -145,13 +153,21 @@ void appendRow(RenderTables& t, const Simulation& sim, const Plan& plan, const S
       t.rows.push_back(static_cast<float>(planck));
       continue;
     }
-    const Material& m = *sim.materials[static_cast<size_t>(surface->material)];
+    const Material& m = sim.materialOf(*surface);
     const glm::dvec3 r = columnsAt(m, w, 0.0, 0.0, {});
     const double ambient = plan.terms.ambient ? (*sim.ambient)(w) : 0.0;
     const double self = m.emissivity(w, 0.0) * planck + (ambient > 0.0 ? m.reflectance(w, 0.0) * ambient : 0.0);
     for (int k = 0; k < 3; ++k) t.rows.push_back(static_cast<float>(r[k]));
     t.rows.push_back(static_cast<float>(self));
   }
+  return at;
+}
+
+std::uint32_t appendMedium(RenderTables& t, const Plan& plan, const Medium& medium, double temperature_K) {
+  const auto at = static_cast<std::uint32_t>(t.media.size() / 4);
+  for (double w : plan.node_um)
+    t.media.insert(t.media.end(), {static_cast<float>(medium.absorption_per_m(w)), static_cast<float>(medium.source(w, temperature_K)), 0.0f, 0.0f});
+  return at;
 }
 
 void writeIntegral(RenderTables& t, const Plan& plan) {
@@ -201,21 +217,31 @@ std::vector<float> lightTable(const Simulation& sim, const Plan& plan, const Wor
 
 RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   RenderTables t;
-  t.general = plan.terms.angular || plan.terms.modifiers || plan.terms.temperatureTextures;
-  for (const auto& m : sim.materials) appendMaterial(t, *m, plan);
-  Material background;  // black: its row is its radiance
-  appendMaterial(t, background, plan);
+  t.solid.general = plan.terms.solid.isGeneral();
+  t.layer.general = plan.terms.layer.isGeneral();
+  std::vector<std::uint32_t> at;  // of each material in the tables of its kind
+  for (const auto& m : sim.materials) {
+    SurfaceTables& kind = m->transmission ? t.layer : t.solid;
+    at.push_back(static_cast<std::uint32_t>(kind.materials.size()));
+    if (!m->medium) appendMaterial(kind, *m, plan);
+  }
+  const auto background = static_cast<std::uint32_t>(t.solid.materials.size());
+  appendMaterial(t.solid, Material{}, plan);  // black: its row is its radiance
 
-  t.draws.push_back({});
-  t.materialOfDraw.push_back(static_cast<std::uint32_t>(sim.materials.size()));
-  appendRow(t, sim, plan, nullptr);
-  for (size_t e = 0; e < sim.entities.size(); ++e)
-    for (size_t s = 0; s < sim.entities[e].surfaces.size(); ++s) {
-      const Surface& surface = sim.entities[e].surfaces[s];
-      t.draws.push_back({static_cast<int>(e), static_cast<int>(s)});
-      t.materialOfDraw.push_back(static_cast<std::uint32_t>(surface.material));
-      appendRow(t, sim, plan, &surface);
+  t.draws.push_back({DrawKind::Background, -1, -1, appendRow(t.solid, sim, plan, nullptr), background});
+  for (size_t e = 0; e < sim.entities.size(); ++e) {
+    const Entity& entity = sim.entities[e];
+    if (const Medium* medium = sim.mediumOf(entity)) {
+      t.draws.push_back({DrawKind::Medium, static_cast<int>(e), 0, appendMedium(t, plan, *medium, entity.surfaces.front().temperature_K), 0});
+      continue;
     }
+    for (size_t s = 0; s < entity.surfaces.size(); ++s) {
+      const Surface& surface = entity.surfaces[s];
+      const bool layer = sim.materialOf(surface).transmission.has_value();
+      t.draws.push_back({layer ? DrawKind::Layer : DrawKind::Solid, static_cast<int>(e), static_cast<int>(s),
+                         appendRow(layer ? t.layer : t.solid, sim, plan, &surface), at[static_cast<size_t>(surface.material)]});
+    }
+  }
 
   for (double w : plan.node_um) {
     const PathNode air = sim.path ? sim.path->node(w) : PathNode{};

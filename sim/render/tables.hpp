@@ -15,30 +15,41 @@ struct GpuMaterial {
   float scale[4];
   float exponent[4];
   std::int32_t modifier[4];
+  std::int32_t transmission[4];
 };
-static_assert(sizeof(GpuMaterial) == 80);
+static_assert(sizeof(GpuMaterial) == 96);
 
-/// A drawn part: entity and surface; the background is the first draw and has entity -1.
+enum class DrawKind { Background, Solid, Layer, Medium };
+
+/// A drawn part: entity and surface; the background is the first draw and has entity -1. A medium is one draw for its whole body.
 struct DrawItem {
+  DrawKind kind = DrawKind::Background;
   int entity = -1;
   int surface = -1;
+  std::uint32_t row = 0;       ///< first entry of its row in the tables of its kind
+  std::uint32_t material = 0;  ///< in the tables of its kind
+};
+
+/// What a program needs of the surfaces that it draws: the solid ones, or the transparent ones.
+struct SurfaceTables {
+  bool general = false;              ///< angular tables, modifiers or temperature textures
+  bool tabulated = false;            ///< some reflection component is a table over angles
+  std::vector<float> rows;           ///< simple: vec4 (R1, R2, R3, S) per node; general: Planck radiance per node
+  std::vector<float> hemispherical;  ///< vec4 (D1, D2, D3, given emissivity) per view angle and node
+  std::vector<float> columns;        ///< vec4 (R1, R2, R3, 0) per angle 2, angle 1 and node
+  std::vector<float> transmittance;  ///< per view angle and node
+  std::vector<GpuMaterial> materials;
 };
 
 struct RenderTables {
-  bool general = false;    ///< angular tables, modifiers or temperature textures in the scene
-  bool tabulated = false;  ///< some reflection component is a table over angles
   std::vector<DrawItem> draws;
-  std::vector<std::uint32_t> rowOfDraw;  ///< first entry of a draw's row
-  std::vector<std::uint32_t> materialOfDraw;
-  std::vector<float> rows;             ///< simple: vec4 (R1, R2, R3, S) per node; general: Planck radiance per node
-  std::vector<float> hemispherical;    ///< vec4 (D1, D2, D3, given emissivity) per view angle and node
-  std::vector<float> columns;          ///< vec4 (R1, R2, R3, 0) per angle 2, angle 1 and node
-  std::vector<GpuMaterial> materials;  ///< the background's last
-  std::vector<float> node;             ///< vec4 per node: extinction, source radiance, c2 / lambda, c1L / lambda^5
-  std::vector<float> ambient;          ///< vec4 per node
-  std::vector<float> weights;          ///< vec4s in the order of the integration text
-  std::string integrateText;           ///< body of the spectral integral
-  std::string targetsText;             ///< declarations of the channel targets
+  SurfaceTables solid, layer;   ///< the background's material is the last solid one
+  std::vector<float> media;     ///< vec4 (absorption [1/m], source radiance, 0, 0) per node
+  std::vector<float> node;      ///< vec4 per node: extinction, source radiance, c2 / lambda, c1L / lambda^5
+  std::vector<float> ambient;   ///< vec4 per node
+  std::vector<float> weights;   ///< vec4s in the order of the integration text
+  std::string integrateText;    ///< body of the spectral integral
+  std::string targetsText;      ///< declarations of the channel targets
 };
 
 /// Light intensities at the nodes, vec4 per group of four lights: changes with the lights' levels.

@@ -171,6 +171,15 @@ Mesh makeSphere(double radius_m, int segments, SphereFit fit) {
   return finished(std::move(mesh), true);
 }
 
+Mesh makeEllipsoid(double length_m, double width_m, double height_m, int segments) {
+  for (double axis : {length_m, width_m, height_m}) requireLength(axis, "an ellipsoid's axes must be positive");
+  Mesh mesh = makeSphere(1.0, segments);
+  const glm::dvec3 axes(0.5 * length_m, 0.5 * width_m, 0.5 * height_m);
+  for (glm::vec3& p : mesh.positions) p = glm::vec3(glm::dvec3(p) * axes);
+  for (glm::vec3& n : mesh.normals) n = glm::vec3(glm::normalize(glm::dvec3(n) / axes));
+  return mesh;
+}
+
 Mesh makeCylinder(double radius_m, double length_m, int segments, bool capped) { return makeCone(radius_m, radius_m, length_m, segments, capped); }
 
 Mesh makeCone(double baseRadius_m, double topRadius_m, double length_m, int segments, bool capped) {

@@ -35,6 +35,9 @@ Mesh makeDisc(double radius_m, int segments = 64);
 /// (0.09 % at 64; found over 2000 directions).
 Mesh makeSphere(double radius_m, int segments = 64, SphereFit fit = SphereFit::Inscribed);
 
+/// Ellipsoid around the origin with full axes along x, y and z: an inscribed sphere, stretched; normals are the true ellipsoid's.
+Mesh makeEllipsoid(double length_m, double width_m, double height_m, int segments = 64);
+
 /// Cylinder along x, centred on the origin, inscribed. Closed if capped. At least 3 segments.
 Mesh makeCylinder(double radius_m, double length_m, int segments = 64, bool capped = true);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/radiometry/spectrum.hpp"
+#include "sim/scene/body_form.hpp"
 #include "sim/scene/geodesy.hpp"
 #include "sim/scene/mesh.hpp"
 #include "sim/scene/motion.hpp"
@@ -31,6 +32,7 @@ struct Surface {
 struct Entity {
   std::string name;
   std::shared_ptr<const Mesh> mesh;
+  BodyForm form;
   std::vector<Surface> surfaces;
   Motion motion;
   int parent = -1;  ///< motion is then in that entity's body frame

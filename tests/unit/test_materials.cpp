@@ -249,16 +249,16 @@ TEST(MaterialTables, ComponentsOnOneAngleKeepTheirOwnSteps) {
     const auto sim = scene("materials: {m: {components: [" + component(n1, last1, 0.05) + ", " + component(n2, last2, 0.02) + "]}}\n" + kCamera);
     const Plan plan = makePlan(sim, sim.cameras[0].outputs, sim.cameras[0].spectral, sim.cameras[0].where);
     const RenderTables t = tablesOf(sim);
-    ASSERT_EQ(t.materials[0].counts[0], static_cast<std::uint32_t>(cells + 1));
+    ASSERT_EQ(t.solid.materials[0].counts[0], static_cast<std::uint32_t>(cells + 1));
     const double last = std::max(last1, last2) * kDegree;
-    EXPECT_NEAR(static_cast<double>(t.materials[0].scale[0]), cells / last, 1e-5);
+    EXPECT_NEAR(static_cast<double>(t.solid.materials[0].scale[0]), cells / last, 1e-5);
     double worst = 0.0;
     for (int i = 0; i <= 1000; ++i) {
       const double angle = last * i / 1000.0, x = angle / last * cells;
       const int j = std::min(static_cast<int>(x), cells - 1);
       for (int node = 0; node < plan.nodeCount(); ++node)
         for (size_t k = 0; k < 2; ++k) {
-          auto entry = [&](int row) { return static_cast<double>(t.columns[static_cast<size_t>((row * plan.nodeCount() + node) * 4) + k]); };
+          auto entry = [&](int row) { return static_cast<double>(t.solid.columns[static_cast<size_t>((row * plan.nodeCount() + node) * 4) + k]); };
           const double want = sim.materials[0]->reflections[k]->column(plan.node_um[static_cast<size_t>(node)], angle, 0.0);
           worst = std::max(worst, std::abs(entry(j) + (x - j) * (entry(j + 1) - entry(j)) - want) / want);
         }
@@ -311,7 +311,7 @@ TEST(MaterialTables, GridOfViewAnglesHasTheBends) {
     for (int i = 0; i < count; ++i) rows += i ? ", [0.5, 0.5]" : "[0.9, 0.9]";
     const auto sim = scene("materials: {m: {emission: {wavelength: [3 um, 5 um], angles: [{angle: view, count: " + std::to_string(count) + ", last: " + last +
                            "}], values: [" + rows + "]}}}\n" + kCamera);
-    EXPECT_EQ(tablesOf(sim).materials[0].counts[2], entries) << last;
+    EXPECT_EQ(tablesOf(sim).solid.materials[0].counts[2], entries) << last;
   }
 }
 

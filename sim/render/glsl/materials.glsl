@@ -5,6 +5,7 @@ struct MaterialShape {
   vec4 scale;       // entries per radian along angle 1, angle 2, view angle
   vec4 exponent;    // lobe exponents of R1, R2, R3; 0 has none
   ivec4 modifier;   // textures of R1, R2, R3, E or -1
+  ivec4 transmission;  // texture of T or -1; first entry of the transmittances
 };
 layout(std430, binding = 6) readonly buffer Materials { MaterialShape materials[]; };
 Vec3 exponents_;

@@ -6,7 +6,8 @@ layout(binding = 2) uniform samplerBuffer hemispherical;  // (D1, D2, D3, given 
 layout(binding = 3) uniform samplerBuffer columns;        // (R1, R2, R3) by angle 2, angle 1 and node
 MaterialShape material_;
 vec4 modifier_;
-int view0_, view1_;
+int view0_, view1_, viewEntry_;
+float transmissionModifier_;
 float viewMix_;
 float temperature_;
 
@@ -31,6 +32,8 @@ void prepareSurface() {
   viewMix_ = clamp(angleFromChord(normal_, toViewer_) * material_.scale.z, 0.0, float(material_.counts.z - 1u));
   int j = int(min(uint(viewMix_), max(material_.counts.z, 2u) - 2u));
   viewMix_ -= float(j);
+  viewEntry_ = j;
+  transmissionModifier_ = modifierAt(material_.transmission.x);
   view0_ = int(material_.kinds.w) + j * NODES;
   view1_ = material_.counts.z > 1u ? view0_ + NODES : view0_;
   temperature_ = draw_.table.z > 0u ? textureValue(int(draw_.table.z) - 1, uv_) : draw_.state.x;
@@ -40,10 +43,12 @@ void prepareSurface() {
 
 //@slot temperature
 
+//@slot transmission
+
 Real selfRadiance(int i) {
   vec4 d = mix(texelFetch(hemispherical, view0_ + i), texelFetch(hemispherical, view1_ + i), viewMix_);
   float reflectance = dot(d.xyz, modifier_.xyz);
-  float emissivity = material_.kinds.z == 1u ? 1.0 - reflectance : d.w * modifier_.w;
+  float emissivity = material_.kinds.z == 1u ? 1.0 - reflectance - transmittance(i) : d.w * modifier_.w;
   return isSurface_ * reflectance * nodes.nodeAmbient[i].x + emissivity * sourceRadiance(i);
 }
 float truthTemperature() { return temperature_; }

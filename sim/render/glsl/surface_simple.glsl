@@ -7,3 +7,4 @@ void prepareSurface() { exponents_ = materials[draw_.table.y].exponent.xyz; }
 Vec3 reflectionColumns(int i, int l) { return texelFetch(rows, int(draw_.table.x) + i).xyz; }
 Real selfRadiance(int i) { return texelFetch(rows, int(draw_.table.x) + i).w; }
 float truthTemperature() { return draw_.state.x; }
+//@slot transmission

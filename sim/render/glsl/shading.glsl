@@ -1,0 +1,67 @@
+// Spectral radiance of what a pixel sees, through the air. Duvenhage 2006 section 4.7 in the cancelled form: radiance leaves the
+// fragment, the pixel's projected solid angle and the aperture turn it into flux afterwards.
+//@use sim/radiometry/glsl/planck.glsl
+//@use sim/radiometry/glsl/geometry.glsl
+//@constants
+//@use sim/render/glsl/ray.glsl
+//@use sim/render/glsl/node_block.glsl
+layout(std140, binding = 2) uniform WeightBlock { vec4 weight[WEIGHTS]; } weights;
+
+// What a pixel sees, set by lookAt().
+Draw draw_;
+vec3 normal_;     // unit, body frame, towards the viewer
+vec3 toViewer_;   // unit, body frame
+vec3 point_;      // body frame [m]
+vec3 up_;         // up at the point, body frame
+vec2 uv_;
+float cosView_;
+float range_;
+float airLength_; // of the camera leg [m]
+float height_;    // of the point [m]
+float sunElevation_; // sine of it at the point
+float isSurface_; // 0 for the background
+float lightCos_, lightDistance2_;  // of the first light (truth)
+
+//@slot path
+//@slot lobes
+//@slot lights
+//@slot surface
+//@slot truth
+
+//@slot targets
+Real nodeRadiance(int i) { return pathSeen(i, selfRadiance(i)) + reflectedLight(i); }
+//@slot integrate
+
+// id: draw (0 is the background), triangle.
+void lookAt(uvec2 id) {
+  draw_ = draws[id.x];
+  prepareRay(gl_FragCoord.xy);
+  vec3 d = inBody(draw_, ray_);
+  isSurface_ = id.x == 0u ? 0.0 : 1.0;
+  toViewer_ = -d / rayLength_;
+  normal_ = toViewer_;
+  cosView_ = 1.0;
+  point_ = vec3(0.0);
+  uv_ = vec2(0.0);
+  range_ = kFar;
+  if (id.x != 0u) {
+    Meeting m = meet(id.y, pointOnPlane(draw_), d);
+    vec4 a = vertices[m.corner.x], b = vertices[m.corner.y], c = vertices[m.corner.z];
+    vec4 na = vertices[m.corner.x + 1u], nb = vertices[m.corner.y + 1u], nc = vertices[m.corner.z + 1u];
+    vec3 w = m.weight;
+    point_ = w.x * a.xyz + w.y * b.xyz + w.z * c.xyz;
+    range_ = max((planeOf(draw_) + m.along) * rayLength_, 1.0e-6);
+    uv_ = vec2(w.x * a.w + w.y * b.w + w.z * c.w, w.x * na.w + w.y * nb.w + w.z * nc.w);
+    vec3 n = w.x * na.xyz + w.y * nb.xyz + w.z * nc.xyz;
+    if (dot(m.geometric, d) > 0.0) n = -n;  // seen from behind
+    normal_ = normalize(n);
+    cosView_ = max(dot(normal_, toViewer_), 1.0e-6);
+  }
+  vec3 upThere;
+  height_ = heightAt(range_, upThere);
+  up_ = inBody(draw_, upThere);
+  sunElevation_ = dot(upThere, view.sun.xyz);
+  airLength_ = airLength(view.up.w, sinElevation_, range_);
+  prepareSurface();
+  prepareLights();
+}

@@ -1,0 +1,2 @@
+// Opaque surfaces.
+Real transmittance(int i) { return 0.0; }

@@ -1,0 +1,3 @@
+// Transmittance that is the same at all view angles and places.
+layout(binding = 4) uniform samplerBuffer transmittances;
+Real transmittance(int i) { return texelFetch(transmittances, materials[draw_.table.y].transmission.y + i).x; }

@@ -1,0 +1,62 @@
+// One body of emitting gas or smoke over the spectral image: PHYSICS section 2, see mediumRadiance().
+//@use sim/radiometry/glsl/chord.glsl
+//@use sim/radiometry/glsl/medium.glsl
+//@constants
+//@use sim/render/glsl/volume_ray.glsl
+//@use sim/render/glsl/node_block.glsl
+layout(binding = 5) uniform samplerBuffer media;      // (absorption [1/m], source radiance, 0, 0) per node
+layout(binding = 6) uniform sampler2D thicknessSums;  // of a meshed body
+layout(binding = 7) uniform sampler2D thicknessBounds;
+uniform int form;      // 0 mesh, 1 ellipsoid, 2 cone
+uniform vec3 formSize;
+uniform int mediumRow;
+uniform float emitting;
+
+float airLength_;     // from the camera to where the ray enters [m]
+float airInside_;     // of air on the way through [m]
+float pathLength_;    // inside the medium [m]
+float sunElevation_;
+
+//@slot path
+
+Real blended(Real behind, int i) {
+  vec2 medium = texelFetch(media, mediumRow + i).xy;
+  Real depth = medium.x * pathLength_;
+  Real air = pathDepth(i, airLength_, airInside_);
+  Real before = pathRadiance(i, airLength_), tau = pathTransmittance(i, airLength_), inside = tau * pathRadiance(i, airInside_);
+  Real own = mediumRadiance(depth, air, before, inside, tau, medium.y);
+  return decay(depth) * (behind - emitting * (before + inside)) + emitting * own;
+}
+
+//@slot targets
+//@slot blend
+
+void main() {
+  prepareRay(gl_FragCoord.xy);
+  Draw body = draws[drawIndex];
+  vec3 d = inBody(body, ray_), q = pointOnPlane(body);
+  float start = -planeOf(body);  // the camera
+  float end = endOfRay(body);
+  vec2 chord;
+  float inside;
+  if (form == 0) {
+    vec2 sums = texelFetch(thicknessSums, ivec2(gl_FragCoord.xy), 0).xy, bounds = texelFetch(thicknessBounds, ivec2(gl_FragCoord.xy), 0).xy;
+    start += view.depth.x;  // triangles nearer than the near plane are not drawn
+    bool from = sums.y > 0.5;  // the camera is inside
+    chord = vec2(from ? start : -bounds.x, bounds.y);
+    inside = sums.x - (from ? sums.y * start : 0.0);
+  } else {
+    chord = form == 1 ? ellipsoidChord(q, d, formSize) : coneChord(q, d, formSize.x, formSize.y, formSize.z);
+    chord = vec2(max(chord.x, start), min(chord.y, end));
+    inside = chord.y - chord.x;
+  }
+  if (!(inside > 0.0)) discard;
+  pathLength_ = inside * rayLength_;
+  float range = max((planeOf(body) + chord.x) * rayLength_, 0.0);
+  vec3 upThere;
+  float height = heightAt(range, upThere);
+  sunElevation_ = 0.0;
+  airLength_ = airLength(view.up.w, sinElevation_, range);
+  airInside_ = airLength(height, dot(upThere, ray_) / rayLength_, (chord.y - chord.x) * rayLength_);
+  blend();
+}

@@ -1,0 +1,34 @@
+#pragma once
+// Back to front: the order in which transparent triangles and media are blended.
+#include <cstdint>
+#include <vector>
+
+#include "sim/render/view.hpp"
+
+namespace pitviper {
+
+/// A transparent triangle, or the whole body of a medium, in camera axes [m] (z < 0 in front).
+struct LayerPiece {
+  std::uint32_t draw = 0;
+  std::uint32_t triangle = 0;  ///< in the shared index buffer; unused for a medium
+  bool medium = false;
+  glm::dvec3 corner[3];  ///< of a triangle
+  /// Of a medium: its box in its own axes, and where these stand.
+  glm::dvec3 low{0.0}, high{0.0}, origin{0.0};
+  glm::dmat3 cameraFromBody{1.0};
+};
+
+struct LayerOrder {
+  std::vector<std::uint32_t> pieces;  ///< indices of those in view, to be blended in this order
+  /// Pieces of one level don't overlap in the picture: level k is [levels[k], levels[k + 1]).
+  std::vector<std::uint32_t> levels;
+  bool exact = true;  ///< false where there were too many pieces to compare those that overlap: sorted by their middles only
+  int cyclic = 0;     ///< pieces that overlap in a ring, or pass through each other: put in order by their middles
+};
+
+/// Pieces that overlap in the picture are compared where they overlap (in double precision): right for all pieces that don't pass through
+/// each other, whatever their sizes. Of two that do, one is drawn before the other as a whole. A medium counts where it is thickest on the
+/// line of sight, so that what stands inside it is in front of it or behind it as a whole. Equally far: in the order given.
+LayerOrder orderLayers(const View& view, const std::vector<LayerPiece>& pieces);
+
+}  // namespace pitviper

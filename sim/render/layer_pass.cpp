@@ -1,0 +1,237 @@
+#include "sim/render/layer_pass.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "sim/gl/context.hpp"
+
+namespace pitviper {
+namespace {
+
+Pose poseOf(const WorldState& state, int entity) { return state.entities[static_cast<size_t>(entity)]; }
+
+/// A body's box, a little larger than its form, so that no line of sight through it slips past.
+void boundingBox(const Entity& e, glm::dvec3& low, glm::dvec3& high) {
+  constexpr double kMargin = 1e-5;
+  if (e.form.kind == BodyForm::Kind::Ellipsoid) {
+    high = e.form.size;
+    low = -high;
+  } else if (e.form.kind == BodyForm::Kind::Cone) {
+    const double radius = std::max(e.form.size.y, e.form.size.z);
+    high = {e.form.size.x, radius, radius};
+    low = -high;
+  } else {
+    low = glm::dvec3(INFINITY);
+    high = -low;
+    for (const glm::vec3& p : e.mesh->positions) low = glm::min(low, glm::dvec3(p)), high = glm::max(high, glm::dvec3(p));
+  }
+  const glm::dvec3 margin = kMargin * (high - low);
+  low -= margin;
+  high += margin;
+}
+
+}  // namespace
+
+LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const RenderTables& tables, std::shared_ptr<const GpuScene> scene,
+                     const ShaderLibrary& library, const ShaderSlots& slots, int targets)
+    : simulation_(simulation), plan_(plan), tables_(tables), scene_(std::move(scene)), path_(chooseBlendPath()), buffers_(tables.layer) {
+  ShaderSlots base = slots;
+  // The spectral image: in and out by framebuffer fetch, or read as a texture.
+  std::ostringstream declared, blend;
+  declared << "uniform int firstNode;\n";
+  const bool fetch = path_ == BlendPath::FramebufferFetch;
+  if (fetch) base.extensions.emplace_back("GL_EXT_shader_framebuffer_fetch");
+  for (int t = 0; t < targets; ++t) {
+    declared << "layout(location = " << t << ") " << (fetch ? "inout" : "out") << " vec4 spectrum" << t << ";\n";
+    if (!fetch) declared << "layout(binding = " << 8 + t << ") uniform sampler2D under" << t << ";\n";
+  }
+  blend << "void blend() {\n  float radiance[" << 4 * targets << "];\n";
+  for (int t = 0; t < targets; ++t) {
+    blend << "  vec4 u" << t << " = ";
+    if (fetch) blend << "spectrum" << t << ";\n";
+    else blend << "texelFetch(under" << t << ", ivec2(gl_FragCoord.xy), 0);\n";
+    for (int k = 0; k < 4; ++k) blend << "  radiance[" << 4 * t + k << "] = u" << t << "[" << k << "];\n";
+  }
+  blend << "  for (int i = 0; i < " << 4 * targets << "; ++i) radiance[i] = blended(radiance[i], min(firstNode + i, NODES - 1));\n";
+  for (int t = 0; t < targets; ++t)
+    blend << "  spectrum" << t << " = vec4(radiance[" << 4 * t << "], radiance[" << 4 * t + 1 << "], radiance[" << 4 * t + 2 << "], radiance[" << 4 * t + 3
+          << "]);\n";
+  blend << "}\n";
+  base.generated["targets"] = declared.str();
+  base.generated["integrate"] = "";
+  base.generated["blend"] = blend.str();
+  base.files["truth"] = "sim/render/glsl/truth_none.glsl";
+  base.constants["WEIGHTS"] = 1;  // nothing is integrated here
+
+  const SurfaceTerms& t = plan.terms.layer;
+  if (t.any) {
+    ShaderSlots own = base;
+    const std::string folder = "sim/render/glsl/";
+    const bool lit = t.reflects && plan.terms.lights;
+    own.files["lobes"] = t.lobeFile.empty() ? folder + "lobes_none.glsl" : t.lobeFile;
+    own.files["lights"] = folder + (lit ? "lights_point.glsl" : "lights_none.glsl");
+    own.files["surface"] = folder + (t.isGeneral() ? "surface_general.glsl" : t.emits || t.reflects ? "surface_simple.glsl" : "surface_filter.glsl");
+    own.files["transmission"] = folder + (t.isGeneral() ? "transmission_general.glsl" : "transmission_plain.glsl");
+    own.files["columns"] = folder + (tables.layer.tabulated ? "columns_tabulated.glsl" : "columns_plain.glsl");
+    own.files["temperature"] = folder + (t.temperatureTextures ? "temperature_textured.glsl" : "temperature_uniform.glsl");
+    layer_ = Program(assembleShader(library, folder + "layer.vert.glsl", own), assembleShader(library, folder + "layer.frag.glsl", own));
+  }
+  if (plan.terms.media) {
+    volume_ = Program(assembleShader(library, "sim/render/glsl/volume.vert.glsl", base), assembleShader(library, "sim/render/glsl/volume.frag.glsl", base));
+    thickness_ = Program(assembleShader(library, "sim/render/glsl/thickness.vert.glsl", base),
+                         assembleShader(library, "sim/render/glsl/thickness.frag.glsl", base));
+    media_.upload(tables.media);
+  }
+}
+
+void LayerPass::order(const View& view, const WorldState& state, const std::vector<char>& drawn) {
+  pieces_.clear();
+  const glm::dmat3 cameraFromLocal = glm::transpose(view.localFromCamera);
+  for (size_t d = 1; d < tables_.draws.size(); ++d) {
+    const DrawItem& item = tables_.draws[d];
+    const auto e = static_cast<size_t>(item.entity);
+    if ((item.kind != DrawKind::Layer && item.kind != DrawKind::Medium) || !drawn[e]) continue;
+    const Entity& entity = simulation_.entities[e];
+    const Pose pose = poseOf(state, item.entity);
+    if (!mayShow(view, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m)) continue;
+    LayerPiece piece;
+    piece.draw = static_cast<std::uint32_t>(d);
+    piece.origin = cameraFromLocal * (pose.position - view.position);
+    piece.cameraFromBody = cameraFromLocal * glm::mat3_cast(pose.orientation);
+    if (item.kind == DrawKind::Medium) {
+      piece.medium = true;
+      boundingBox(entity, piece.low, piece.high);
+      pieces_.push_back(piece);
+      continue;
+    }
+    const Mesh& mesh = *entity.mesh;
+    const MeshPart& part = mesh.parts[entity.surfaces[static_cast<size_t>(item.surface)].meshPart];
+    for (std::uint32_t t = part.firstTriangle; t < part.firstTriangle + part.triangleCount; ++t) {
+      piece.triangle = scene_->firstTriangle(item.entity) + t;
+      for (int k = 0; k < 3; ++k) piece.corner[k] = piece.origin + piece.cameraFromBody * glm::dvec3(mesh.positions[mesh.triangles[t][k]]);
+      pieces_.push_back(piece);
+    }
+  }
+  order_ = orderLayers(view, pieces_);
+
+  // Where the target is read in order of drawing, only the change between surfaces and media cuts a run; elsewhere each level does.
+  runs_.clear();
+  std::vector<glm::uvec2> sorted;
+  for (size_t level = 0; level + 1 < order_.levels.size(); ++level)
+    for (std::uint32_t i = order_.levels[level]; i < order_.levels[level + 1]; ++i) {
+      const LayerPiece& piece = pieces_[order_.pieces[i]];
+      sorted.emplace_back(piece.draw, piece.triangle);
+      const bool fresh = runs_.empty() || runs_.back().medium || piece.medium || (path_ != BlendPath::FramebufferFetch && i == order_.levels[level]);
+      if (fresh) runs_.push_back({piece.medium, i, 0});
+      ++runs_.back().count;
+    }
+  sorted_.upload(sorted);
+}
+
+RenderTarget& LayerPass::sizedLike(std::deque<RenderTarget>& pool, const RenderTarget& target, std::size_t colours) const {
+  for (auto& t : pool)
+    if (t.width() == target.width() && t.height() == target.height()) return t;
+  return pool.emplace_back(target.width(), target.height(), std::vector<PixelFormat>(colours, PixelFormat::Rgba32f), false);
+}
+
+void LayerPass::blend(const Over& over) {
+  if (isEmpty()) return;
+  RenderTarget* copy = path_ == BlendPath::PingPong ? &sizedLike(copies_, over.spectrum, over.spectrum.colourCount()) : nullptr;
+  for (const Run& run : runs_) {
+    const LayerPiece& first = pieces_[order_.pieces[run.first]];
+    if (run.medium && simulation_.entities[static_cast<size_t>(tables_.draws[first.draw].entity)].form.kind == BodyForm::Kind::Mesh) drawThickness(first, over);
+    if (copy) copy->copyFrom(over.spectrum);
+    over.spectrum.bind();
+    const RenderTarget& under = copy ? *copy : over.spectrum;
+    if (path_ != BlendPath::FramebufferFetch)
+      for (size_t t = 0; t < under.colourCount(); ++t) under.colour(t).bind(static_cast<unsigned>(8 + t));
+    if (path_ == BlendPath::TextureBarrier) glTextureBarrier();
+    const Program& program = run.medium ? volume_ : layer_;
+    program.use();
+    glUniform1i(program.uniform("firstNode"), over.firstNode);
+    glUniform1f(program.uniform("emitting"), over.emitting ? 1.0f : 0.0f);
+    if (run.medium) drawMedium(first, over);
+    else drawLayers(run);
+  }
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CLIP_DISTANCE0);
+  glDisable(GL_DEPTH_CLAMP);
+  glDisable(GL_CULL_FACE);
+  glDepthMask(GL_TRUE);
+}
+
+void LayerPass::drawLayers(const Run& run) {
+  buffers_.bind();
+  sorted_.bindStorage(3);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_GEQUAL);
+  glDepthMask(GL_FALSE);
+  glEnable(GL_CLIP_DISTANCE0);
+  glEnable(GL_DEPTH_CLAMP);
+  glDisable(GL_CULL_FACE);
+  glDrawArrays(GL_TRIANGLES, static_cast<GLint>(3 * run.first), static_cast<GLsizei>(3 * run.count));
+}
+
+namespace {
+
+void setMedium(const Program& program, const LayerPiece& piece, double farthest_m) {
+  glUniform1i(program.uniform("drawIndex"), static_cast<int>(piece.draw));
+  glUniform1f(program.uniform("farthest"), static_cast<float>(farthest_m));
+}
+
+}  // namespace
+
+void LayerPass::drawMedium(const LayerPiece& piece, const Over& over) {
+  const DrawItem& item = tables_.draws[piece.draw];
+  const BodyForm& form = simulation_.entities[static_cast<size_t>(item.entity)].form;
+  media_.bindTexture(5, 4);
+  over.visibility.colour(0).bind(0);
+  setMedium(volume_, piece, over.farthest_m);
+  const glm::vec3 low(piece.low), high(piece.high), size(form.size);
+  glUniform3f(volume_.uniform("low"), low.x, low.y, low.z);
+  glUniform3f(volume_.uniform("high"), high.x, high.y, high.z);
+  glUniform3f(volume_.uniform("formSize"), size.x, size.y, size.z);
+  glUniform1i(volume_.uniform("form"), static_cast<int>(form.kind));
+  glUniform1i(volume_.uniform("mediumRow"), static_cast<int>(item.row));
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CLIP_DISTANCE0);
+  glEnable(GL_DEPTH_CLAMP);  // the back of the box may lie anywhere
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT);
+  glDrawArrays(GL_TRIANGLES, 0, 36);
+  glCullFace(GL_BACK);
+}
+
+void LayerPass::drawThickness(const LayerPiece& piece, const Over& over) {
+  const DrawItem& item = tables_.draws[piece.draw];
+  const Mesh& mesh = *simulation_.entities[static_cast<size_t>(item.entity)].mesh;
+  RenderTarget& target = sizedLike(thicknesses_, over.spectrum, 2);
+  target.bind();
+  const GLfloat zero[4] = {0, 0, 0, 0}, nothing[4] = {-1e30f, -1e30f, 0, 0};
+  glClearBufferfv(GL_COLOR, 0, zero);
+  glClearBufferfv(GL_COLOR, 1, nothing);
+  over.visibility.colour(0).bind(0);
+  thickness_.use();
+  setMedium(thickness_, piece, over.farthest_m);
+  const std::uint32_t first = scene_->firstTriangle(item.entity);
+  glUniform1i(thickness_.uniform("firstTriangle"), static_cast<int>(first));
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_CLIP_DISTANCE0);
+  glEnable(GL_DEPTH_CLAMP);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glBlendEquationi(0, GL_FUNC_ADD);
+  glBlendEquationi(1, GL_MAX);
+  glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(mesh.triangles.size() * 3), GL_UNSIGNED_INT,
+                 reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * 12));
+  glBlendEquation(GL_FUNC_ADD);
+  glDisable(GL_BLEND);
+  target.colour(0).bind(6);
+  target.colour(1).bind(7);
+}
+
+}  // namespace pitviper

@@ -1,0 +1,63 @@
+#pragma once
+// The ordered pass of buffered mode: transparent surfaces and bodies of emitting media, back to front over the spectral image of the
+// solid scene, each node blended by its own transmittance. Source: Duvenhage 2006 section 5.3.2; PHYSICS section 2.
+#include <deque>
+#include <memory>
+
+#include "sim/gl/blend_path.hpp"
+#include "sim/render/gpu_scene.hpp"
+#include "sim/render/layer_order.hpp"
+#include "sim/render/surface_buffers.hpp"
+
+namespace pitviper {
+
+class LayerPass {
+ public:
+  /// All but the library must outlive it. `targets`: RGBA targets of the spectral image. `slots`: path, lights and constants of the
+  /// plan's shading programs.
+  LayerPass(const Simulation& simulation, const Plan& plan, const RenderTables& tables, std::shared_ptr<const GpuScene> scene, const ShaderLibrary& library,
+            const ShaderSlots& slots, int targets);
+
+  /// Sorts what of `drawn` is in view.
+  void order(const View& view, const WorldState& state, const std::vector<char>& drawn);
+  bool isEmpty() const { return order_.pieces.empty(); }
+
+  /// What a blend goes over.
+  struct Over {
+    RenderTarget& spectrum;          ///< with the visibility pass' depth attached
+    const RenderTarget& visibility;  ///< identity and depth of the solid scene
+    int firstNode = 0;
+    bool emitting = true;      ///< false: multiplies by transmittance alone
+    double farthest_m = 1e30;  ///< depth at which the ray ends where nothing solid does
+  };
+  /// Draws, view, lights and nodes are bound; changes the bound surface tables and the blend, cull and depth state's settings.
+  void blend(const Over& over);
+
+  BlendPath path() const { return path_; }
+  const LayerOrder& lastOrder() const { return order_; }
+
+ private:
+  struct Run {
+    bool medium;
+    std::uint32_t first, count;  ///< of order_.pieces
+  };
+  void drawLayers(const Run& run);
+  void drawMedium(const LayerPiece& piece, const Over& over);
+  void drawThickness(const LayerPiece& piece, const Over& over);
+  RenderTarget& sizedLike(std::deque<RenderTarget>& pool, const RenderTarget& target, std::size_t colours) const;
+
+  const Simulation& simulation_;
+  const Plan& plan_;
+  const RenderTables& tables_;
+  std::shared_ptr<const GpuScene> scene_;
+  BlendPath path_;
+  SurfaceBuffers buffers_;
+  Buffer sorted_, media_;
+  Program layer_, volume_, thickness_;
+  std::vector<LayerPiece> pieces_;
+  LayerOrder order_;
+  std::vector<Run> runs_;
+  std::deque<RenderTarget> copies_, thicknesses_;
+};
+
+}  // namespace pitviper

@@ -1,0 +1,32 @@
+#pragma once
+// The tables of one kind of surfaces on the GPU.
+#include "sim/gl/objects.hpp"
+#include "sim/render/tables.hpp"
+
+namespace pitviper {
+
+class SurfaceBuffers {
+ public:
+  explicit SurfaceBuffers(const SurfaceTables& tables) : general_(tables.general) {
+    rows_.upload(tables.rows);
+    hemispherical_.upload(tables.hemispherical);
+    columns_.upload(tables.columns);
+    transmittance_.upload(tables.transmittance);
+    materials_.upload(tables.materials);
+  }
+  void bind() const {
+    rows_.bindTexture(1, general_ ? 1 : 4);
+    if (general_) {
+      hemispherical_.bindTexture(2, 4);
+      columns_.bindTexture(3, 4);
+    }
+    transmittance_.bindTexture(4, 1);
+    materials_.bindStorage(6);
+  }
+
+ private:
+  bool general_;
+  Buffer rows_, hemispherical_, columns_, transmittance_, materials_;
+};
+
+}  // namespace pitviper
