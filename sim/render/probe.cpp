@@ -68,18 +68,22 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
   for (size_t l = 0; l < sim.lights.size(); ++l) {
     const glm::dvec3 line = state.lights[l] - probe.position;
     const double d = glm::length(line), cosine = d > 0.0 ? glm::dot(line, normal) / d : 0.0;
-    if (cosine <= 0.0 || state.lightLevels[l] <= 0.0 || !isFree(pass, state, all, probe.position, line / d, d, kNear_m)) continue;
+    if (cosine <= 0.0 || state.lightLevels[l] <= 0.0) continue;
+    const auto way = wayTo(pass, state, all, probe.position, line / d, d, kNear_m);
+    if (way.empty()) continue;
     const double factor = physics::pointIrradianceFactor(cosine, d * d, sim.lights[l].radius_m);
-    const auto intensity = apparentIntensity(sim, plan, state, l, probe.position);
+    const auto intensity = apparentIntensity(sim, plan, state, l, probe.position, way);
     for (size_t s = 0; s < sums.size(); ++s) sums[s] += factor * intensity[s];
   }
-  if (sim.sun && glm::dot(sim.sun->toSun, normal) > 0.0 && isFree(pass, state, all, probe.position, sim.sun->toSun, physics::kFar, kNear_m)) {
+  const std::vector<double> toSun =
+      sim.sun && glm::dot(sim.sun->toSun, normal) > 0.0 ? wayTo(pass, state, all, probe.position, sim.sun->toSun, physics::kFar, kNear_m) : std::vector<double>();
+  if (!toSun.empty()) {
     const bool layered = plan.terms.air && sim.path->top_m() < physics::kFar;
     const double sinElevation = glm::dot(sim.frame.up(probe.position), sim.sun->toSun);
     const double air = layered ? sim.path->airLength_m(sim.frame.height(probe.position), sinElevation, physics::kFar, sim.frame.earthRadius_m()) : 0.0;
     for (size_t i = 0; i < plan.node_um.size(); ++i) {
       const double w = plan.node_um[i];
-      const double e = glm::dot(sim.sun->toSun, normal) * sim.sun->irradiance(w) * (layered ? sim.path->transmittance(w, air) : 1.0);
+      const double e = toSun[i] * glm::dot(sim.sun->toSun, normal) * sim.sun->irradiance(w) * (layered ? sim.path->transmittance(w, air) : 1.0);
       for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * e;
     }
   }

@@ -83,10 +83,71 @@ std::map<size_t, Share> sharesOf(const Subpixels& image, const View& z, const Ra
   return shares;
 }
 
+/// The truth of a subpixel that a body covers by half or more.
+void takeTruth(Subpixels& image, const RawImage& zoomed, const Share& share, double whole, size_t pixel) {
+  if (!image.hasTruth() || share.covered < 0.5 * whole) return;
+  TruthPixel truth = truthAt(zoomed, share.sample);  // the zoomed view's axis points at the body: put the angle off the real one in
+  truth.area_m2 = static_cast<float>(truth.area_m2 * std::pow(share.cosPsi, 3));
+  truth.solidAngleFromLight_sr = static_cast<float>(truth.solidAngleFromLight_sr * std::pow(share.cosPsi, 3));
+  truth.solidAngleOfAperture_sr = static_cast<float>(truth.solidAngleOfAperture_sr * share.cosPsi);
+  image.setTruth(pixel, truth);
+}
+
 struct Delta {
   size_t pixel;
   std::vector<double> slots;
 };
+
+/// 256 across the bounding sphere, or at least 8 a subpixel: the area of a silhouette is sampled to about 0.1 %.
+int zoomedSize(double extent) {
+  int size = 256;
+  while (size < 8.0 * extent && size < 4096) size *= 2;
+  return size;
+}
+
+/// A transparent body changes what is seen around it: the same zoomed view with and without it, everything else in place that has been added
+/// to the image before it. The differences, over their solid angle, are what the image lacks; so several of them add up, whatever hides or
+/// dims what.
+void addTransparent(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, std::vector<char> others) {
+  const View& v = image.view();
+  View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity)));
+  z.onlyEntity = -1;
+  auto drawn = [&] {
+    pass.draw(z, state, others);
+    pass.startReadback(false, true);
+    return pass.finishReadback();
+  };
+  const RawImage without = drawn();
+  others[static_cast<size_t>(entity)] = 1;
+  const RawImage with = drawn();
+  const glm::dmat3 mainFromZoom = glm::transpose(v.localFromCamera) * z.localFromCamera, zoomFromMain = glm::transpose(mainFromZoom);
+  std::map<size_t, Share> shares;
+  for (int j = 0; j < z.height; ++j)
+    for (int i = 0; i < z.width; ++i) {
+      const glm::dvec3 ray = z.ray(i + 0.5, j + 0.5), seen = mainFromZoom * ray;
+      if (seen.z >= 0.0) continue;
+      const glm::dvec2 at = filmPosition(v, seen);
+      if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height)) continue;
+      const size_t q = static_cast<size_t>(j) * static_cast<size_t>(z.width) + static_cast<size_t>(i);
+      const double l2 = glm::dot(ray, ray), cosPsi = -seen.z / std::sqrt(l2), etendue = z.tanPerPixelX * z.tanPerPixelY / (l2 * std::sqrt(l2)) * cosPsi;
+      Share& share = shares[image.index(static_cast<int>(at.x), static_cast<int>(at.y))];
+      share.looked += etendue;
+      if (with.entity[q] == entity) {  // its solid parts
+        share.covered += etendue;
+        share.sample = q;
+        share.cosPsi = cosPsi;
+      }
+      share.sum.resize(image.slotCount(), 0.0);
+      for (size_t s = 0; s < image.slotCount(); ++s)
+        share.sum[s] += etendue * (static_cast<double>(with.groups[s / 4][4 * q + s % 4]) - static_cast<double>(without.groups[s / 4][4 * q + s % 4]));
+    }
+  for (const auto& [p, share] : shares) {
+    const int x = static_cast<int>(p % static_cast<size_t>(v.width)), y = static_cast<int>(p / static_cast<size_t>(v.width));
+    const double whole = isInside(v, z, zoomFromMain, x, y) ? share.looked : image.projectedSolidAngle_sr(x, y);
+    for (size_t s = 0; s < image.slotCount(); ++s) image.add(s, p, share.sum[s] / whole);
+    takeTruth(image, with, share, whole, p);
+  }
+}
 
 }  // namespace
 
@@ -100,14 +161,13 @@ void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, co
                     const std::vector<char>& present) {
   const View& v = image.view();
   std::vector<Delta> deltas;
+  // Solid ones first, seen through the large transparent ones only; then the small transparent ones, each on top of those before it.
+  std::vector<char> others = present;
+  for (size_t e = 0; e < small.size(); ++e) others[e] = present[e] && !(small[e] && sim.isTransparent(sim.entities[e]));
   for (size_t e = 0; e < small.size(); ++e) {
-    if (!small[e] || !present[e] || !mayShow(v, centreOf(sim, state, static_cast<int>(e)), sim.entities[e].boundingRadius_m)) continue;
-    // 256 across the bounding sphere, or at least 8 a subpixel: the area of a silhouette is sampled to about 0.1 %.
-    const double extent = extentOf(sim, state, v, static_cast<int>(e));
-    int size = 256;
-    while (size < 8.0 * extent && size < 4096) size *= 2;
-    const View z = zoomedView(sim, state, v, static_cast<int>(e), size);
-    pass.draw(z, state, present);
+    if (!small[e] || !others[e] || !mayShow(v, centreOf(sim, state, static_cast<int>(e)), sim.entities[e].boundingRadius_m)) continue;
+    const View z = zoomedView(sim, state, v, static_cast<int>(e), zoomedSize(extentOf(sim, state, v, static_cast<int>(e))));
+    pass.draw(z, state, others);
     pass.startReadback(false, true);
     const RawImage zoomed = pass.finishReadback();
     const glm::dmat3 zoomFromMain = glm::transpose(z.localFromCamera) * v.localFromCamera;
@@ -118,16 +178,16 @@ void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, co
       Delta d{p, std::vector<double>(image.slotCount())};
       for (size_t s = 0; s < d.slots.size(); ++s) d.slots[s] = (share.sum[s] - share.covered * image.slot(s, p)) / whole;
       deltas.push_back(std::move(d));
-      if (!image.hasTruth() || share.covered < 0.5 * whole) continue;
-      TruthPixel truth = truthAt(zoomed, share.sample);  // the zoomed view's axis points at the body: put the angle off the real one in
-      truth.area_m2 = static_cast<float>(truth.area_m2 * std::pow(share.cosPsi, 3));
-      truth.solidAngleFromLight_sr = static_cast<float>(truth.solidAngleFromLight_sr * std::pow(share.cosPsi, 3));
-      truth.solidAngleOfAperture_sr = static_cast<float>(truth.solidAngleOfAperture_sr * share.cosPsi);
-      image.setTruth(p, truth);
+      takeTruth(image, zoomed, share, whole, p);
     }
   }
   for (const auto& d : deltas)
     for (size_t s = 0; s < d.slots.size(); ++s) image.add(s, d.pixel, d.slots[s]);
+  for (size_t e = 0; e < small.size(); ++e) {
+    if (!small[e] || !present[e] || others[e] || !mayShow(v, centreOf(sim, state, static_cast<int>(e)), sim.entities[e].boundingRadius_m)) continue;
+    addTransparent(image, pass, sim, state, static_cast<int>(e), others);
+    others[e] = 1;
+  }
 }
 
 }  // namespace pitviper

@@ -4,7 +4,8 @@
 
 namespace pitviper {
 
-std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, const WorldState& state, size_t light, const glm::dvec3& from) {
+std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, const WorldState& state, size_t light, const glm::dvec3& from,
+                                      const std::vector<double>& way) {
   const glm::dvec3 line = state.lights[light] - from;
   const double range = glm::length(line);
   double air = 0.0;
@@ -16,14 +17,14 @@ std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, c
   std::vector<double> sums(static_cast<size_t>(plan.slotCount), 0.0);
   for (size_t i = 0; i < plan.node_um.size(); ++i) {
     const double w = plan.node_um[i];
-    const double intensity = state.lightLevels[light] * sim.lights[light].intensity(w) * (plan.terms.air ? sim.path->transmittance(w, air) : 1.0);
+    const double intensity = way[i] * state.lightLevels[light] * sim.lights[light].intensity(w) * (plan.terms.air ? sim.path->transmittance(w, air) : 1.0);
     for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * intensity;
   }
   return sums;
 }
 
-bool isFree(ScenePass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction, double distance_m,
-            double near_m) {
+std::vector<double> wayTo(ScenePass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction,
+                          double distance_m, double near_m) {
   // One pixel, turned so that its centre looks along the very line.
   View v;
   v.width = v.height = 1;
@@ -35,7 +36,8 @@ bool isFree(ScenePass& pass, const WorldState& state, const std::vector<char>& p
   pass.draw(v, state, present);
   pass.startReadback(true);
   const float depth = pass.finishReadback().depth[0];
-  return depth <= 0.0f || near_m / static_cast<double>(depth) >= distance_m * (1.0 - 1e-6);
+  const bool free = depth <= 0.0f || near_m / static_cast<double>(depth) >= distance_m * (1.0 - 1e-6);
+  return free ? pass.transmittance(v, state, present, distance_m) : std::vector<double>();
 }
 
 void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present) {
@@ -47,10 +49,11 @@ void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& sim, 
     const glm::dvec2 at = filmPosition(v, p);
     if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height)) continue;
     const double range = glm::length(line);
-    if (!isFree(pass, state, present, v.position, line / range, range, v.near_m)) continue;
+    const auto way = wayTo(pass, state, present, v.position, line / range, range, v.near_m);
+    if (way.empty()) continue;
     const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
     // As radiance: the flux divided by the aperture and the subpixel's projected solid angle.
-    const auto sums = apparentIntensity(sim, plan, state, l, v.position);
+    const auto sums = apparentIntensity(sim, plan, state, l, v.position, way);
     for (size_t s = 0; s < sums.size(); ++s) image.add(s, image.index(x, y), sums[s] * (-p.z / range) / (range * range) / image.projectedSolidAngle_sr(x, y));
   }
 }

@@ -8,11 +8,13 @@ namespace pitviper {
 void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& simulation, const Plan& plan, const WorldState& state,
                       const std::vector<char>& present);
 
-/// True where nothing present stands between a place and a direction (unit) up to a distance.
-bool isFree(ScenePass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction, double distance_m,
-            double near_m);
+/// What of a light or of the sun reaches a place from a direction (unit): a factor per node, the transmittance of everything transparent on
+/// the way (air not counted); empty where something solid stands there.
+std::vector<double> wayTo(ScenePass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction,
+                          double distance_m, double near_m);
 
-/// Integral of kernel x I x tau over a slot's nodes [kernel unit x W/sr] for a light seen from a place.
-std::vector<double> apparentIntensity(const Simulation& simulation, const Plan& plan, const WorldState& state, size_t light, const glm::dvec3& from);
+/// Integral of kernel x I x tau over a slot's nodes [kernel unit x W/sr] for a light seen from a place, through `way`.
+std::vector<double> apparentIntensity(const Simulation& simulation, const Plan& plan, const WorldState& state, size_t light, const glm::dvec3& from,
+                                      const std::vector<double>& way);
 
 }  // namespace pitviper

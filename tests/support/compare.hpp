@@ -6,6 +6,7 @@ namespace pitviper::test {
 
 struct Worst {
   double error = 0.0;
+  double percentile99 = 0.0;
   double covered = 0;
 };
 

@@ -1,0 +1,32 @@
+#pragma once
+// What a ray meets, in double precision, by testing every triangle.
+#include <glm/glm.hpp>
+#include <vector>
+
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+struct Hit {
+  int entity = -1, surface = -1;
+  double distance = INFINITY;                    ///< [m]
+  glm::dvec3 point{0.0}, normal{0.0, 0.0, 1.0};  ///< local frame; the normal towards the viewer
+  glm::dvec2 uv{0.0};
+};
+
+/// A stretch of the ray inside a medium [m].
+struct Stretch {
+  int entity = -1;
+  double enter = 0.0, leave = 0.0;
+};
+
+struct RayHits {
+  Hit solid;                       ///< the nearest opaque surface; entity -1: none
+  std::vector<Hit> layers;         ///< transparent surfaces before it, in no order
+  std::vector<Stretch> stretches;  ///< of media, cut off at it
+};
+
+/// direction of unit length; surfaces nearer than `nearest` are not seen. Source: Moeller and Trumbore 1997.
+RayHits castRay(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest);
+
+}  // namespace pitviper

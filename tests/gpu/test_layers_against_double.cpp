@@ -1,0 +1,60 @@
+// Transparent surfaces and media on the GPU against the double precision reference, which cuts each ray at every border.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/compare.hpp"
+#include "tests/support/figures.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+namespace {
+
+constexpr const char* kScene = R"(
+atmosphere: {extinction: 20 /km, temperature: 285 K}
+ambient: {temperature: 260 K}
+sun: {azimuth: 60 deg, elevation: 35 deg, temperature: 5772 K}
+materials:
+  pane: {transmission: {transmittance: 0.7}, components: [{reflection: lambertian, reflectance: 0.1}]}
+  varied:
+    transmission: {transmittance: 0.6, angular: [[0 deg, 1], [60 deg, 0.7], [90 deg, 0]], modifier: {rows: [[0.2, 1], [1, 0.5]]}}
+    components: [{reflection: phong, reflectance: 0.1, exponent: 20}]
+  gas: {absorption: {wavelength: um, unit: 1/m, values: [[2.9, 0.1], [4.2, 3], [5.2, 0.2]]}, radiance: 1e-3 W/(m2 sr um)}
+lights: [{name: l, intensity: 40 W/(sr um), position: [5 m, 2 m, 4 m], visible: false}]
+entities:
+  - {name: a, shape: {model: plate, width: 10 m, height: 10 m}, material: black_gloss_paint, temperature: 310 K}
+  - {name: p, shape: {model: plate, width: 2 m, height: 2 m}, material: pane, temperature: 290 K, position: [2 m, 0 m, 0 m], heading: 60 deg}
+  - {name: q, shape: {model: sphere, radius: 0.6 m}, material: varied, temperature: 330 K, position: [2.5 m, -1 m, 1 m]}
+  - {name: s, shape: {model: sphere, radius: 1 m}, material: gas, temperature: 400 K, position: [4 m, 1.5 m, 1 m]}
+  - {name: e, shape: {model: ellipsoid, length: 4 m, width: 1 m, height: 2 m}, material: gas, temperature: 700 K, position: [0.5 m, 3 m, -1 m], heading: 30 deg}
+  - {name: b, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: gas, temperature: 400 K, position: [4 m, -2 m, 1 m], heading: 30 deg}
+  - {name: c, shape: {model: cone, radius: 1 m, top_radius: 0.2 m, length: 3 m}, material: gas, temperature: 900 K, position: [4 m, 0 m, -2 m], heading: 30 deg}
+  - {name: inside, shape: {model: sphere, radius: 0.3 m}, material: sand, temperature: 350 K, position: [4 m, 0.1 m, -2 m]}
+  - {name: far, shape: {model: cylinder, radius: 40 m, length: 200 m}, material: gas, temperature: 500 K, position: [-2 km, 300 m, 200 m]}
+cameras:
+  - name: c
+    film: {width: 96, height: 80}
+    field_of_view: 50 deg
+    aperture: 5 mm
+    position: [9 m, 0 m, 0 m]
+    look_at: a
+    spectral: {samples: 20}
+)";
+
+std::string channels(int count) {
+  std::string y = "    channels:\n";
+  for (int c = 0; c < count; ++c) y += "      - {name: c" + std::to_string(c) + ", response: {band: [" + std::to_string(3.0 + 0.2 * c) + " um, 5 um]}}\n";
+  return y;
+}
+
+TEST(LayersAgainstDouble, PanesAndMedia) {
+  const Worst one = compare(scene(kScene + channels(1)), 3), many = compare(scene(kScene + channels(5)), 5);
+  bound("panes and media, GPU float against CPU double, 20 nodes, 99 % of pixels", one.percentile99, 1e-5, "single precision");
+  bound("panes and media, GPU float against CPU double, 100 nodes in 4 batches, 99 %", many.percentile99, 1e-5, "single precision");
+  bound("panes and media, GPU float against CPU double, worst pixel", std::max(one.error, many.error), 1e-3,
+        "a silhouette moved by 1e-5 pixel: directions in single precision");
+  EXPECT_GT(one.covered, 500);
+}
+
+}  // namespace
+}  // namespace pitviper::test
