@@ -11,17 +11,6 @@
 namespace pitviper {
 namespace {
 
-void addChannels(Frame& frame, const Camera& camera, const CameraImage& image, const std::vector<int>& slotOfOutput) {
-  for (size_t o = 0; o < camera.outputs.size(); ++o) {
-    const ChannelOutput& output = camera.outputs[o];
-    const auto& slot = image.slots[static_cast<size_t>(slotOfOutput[o])];
-    FrameLayer layer{output.layer(), output.unit, std::vector<float>(slot.size())};
-    for (size_t p = 0; p < slot.size(); ++p)
-      layer.pixels[p] = static_cast<float>(output.scale * slot[p] * (output.perEtendue ? image.solidAngles->projected_sr[p] : 1.0));
-    frame.layers.push_back(std::move(layer));
-  }
-}
-
 void addTruth(Frame& frame, const Camera& camera, const CameraImage& image) {
   if (image.truth.empty()) return;
   auto add = [&](const char* name, const char* unit, auto value) {
@@ -48,6 +37,48 @@ void addTruth(Frame& frame, const Camera& camera, const CameraImage& image) {
   }
 }
 
+}  // namespace
+
+Frame startFrame(const Camera& camera, const WorldState& state, int number) {
+  Frame frame;
+  frame.camera = camera.name;
+  frame.number = number;
+  frame.time_s = state.time_s;
+  frame.width = camera.pinhole.width;
+  frame.height = camera.pinhole.height;
+  return frame;
+}
+
+void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image) {
+  for (size_t o = 0; o < camera.outputs.size(); ++o) {
+    const ChannelOutput& output = camera.outputs[o];
+    const auto& slot = image.slots[static_cast<size_t>(image.slotOfOutput[o])];
+    FrameLayer layer{output.layer(), output.unit, std::vector<float>(slot.size())};
+    for (size_t p = 0; p < slot.size(); ++p)
+      layer.pixels[p] = static_cast<float>(output.scale * slot[p] * (output.perEtendue ? image.solidAngles->projected_sr[p] : 1.0));
+    frame.layers.push_back(std::move(layer));
+  }
+}
+
+void addOptics(Frame& frame, const Pinhole& p, double exposure_s) {
+  auto add = [&](const char* name, double value) { frame.attributes.push_back({name, value}); };
+  add("pitviper.focal_length_m", p.focalLength_m);
+  add("pitviper.pitch_x_m", p.pitchX_m);
+  add("pitviper.pitch_y_m", p.pitchY_m);
+  add("pitviper.aperture_m", p.apertureDiameter_m);
+  add("pitviper.aperture_area_m2", p.apertureArea_m2());
+  add("pitviper.exposure_s", exposure_s);
+}
+
+void addUnits(Frame& frame, const std::vector<ChannelOutput>& outputs) {
+  for (const auto& layer : frame.layers) frame.attributes.push_back({"unit." + layer.name, layer.unit});
+  for (const auto& o : outputs) {
+    char band[64];
+    std::snprintf(band, sizeof band, "%.6g to %.6g", o.bandLow_um, o.bandHigh_um);
+    frame.attributes.push_back({"band_um." + o.layer(), std::string(band)});
+  }
+}
+
 void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, const WorldState& state) {
   auto add = [&](std::string name, auto value) { frame.attributes.push_back({std::move(name), value}); };
   add("pitviper.version", std::string(kVersion));
@@ -58,12 +89,7 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   add("pitviper.frame", frame.number);
   add("pitviper.time_s", state.time_s);
   const Pinhole& p = camera.pinhole;
-  add("pitviper.focal_length_m", p.focalLength_m);
-  add("pitviper.pitch_x_m", p.pitchX_m);
-  add("pitviper.pitch_y_m", p.pitchY_m);
-  add("pitviper.aperture_m", p.apertureDiameter_m);
-  add("pitviper.aperture_area_m2", p.apertureArea_m2());
-  add("pitviper.exposure_s", camera.exposure_s);
+  addOptics(frame, p, camera.exposure_s);
   add("pitviper.samples", camera.samples);
   const Pose pose = cameraPose(camera.mount, state);
   const Geodetic g = sim.frame.toGeodetic(pose.position);
@@ -74,12 +100,7 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   add("pitviper.pose_local_m", std::vector<double>{pose.position.x, pose.position.y, pose.position.z});
   const glm::dquat q = glm::normalize(glm::quat_cast(sim.frame.ecefFromLocal()) * pose.orientation);
   add("pitviper.orientation_ecef_wxyz", std::vector<double>{q.w, q.x, q.y, q.z});
-  for (const auto& layer : frame.layers) add("unit." + layer.name, layer.unit);
-  for (const auto& o : camera.outputs) {
-    char band[64];
-    std::snprintf(band, sizeof band, "%.6g to %.6g", o.bandLow_um, o.bandHigh_um);
-    add("band_um." + o.layer(), std::string(band));
-  }
+  addUnits(frame, camera.outputs);
   const glm::dmat3 cameraFromLocal = glm::transpose(localFromCamera(pose));
   for (size_t e = 0; e < sim.entities.size(); ++e) {
     const glm::dvec3 x = cameraFromLocal * (state.entities[e].position - pose.position);
@@ -93,16 +114,9 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   }
 }
 
-}  // namespace
-
 Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number) {
-  Frame frame;
-  frame.camera = camera.name;
-  frame.number = number;
-  frame.time_s = state.time_s;
-  frame.width = image.width;
-  frame.height = image.height;
-  addChannels(frame, camera, image, image.slotOfOutput);
+  Frame frame = startFrame(camera, state, number);
+  addOutputs(frame, camera, image);
   addTruth(frame, camera, image);
   addMetadata(frame, sim, camera, state);
   return frame;
@@ -111,19 +125,25 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
 std::string frameFileStem(const Frame& frame) {
   char number[16];
   std::snprintf(number, sizeof number, "_%05d", frame.number);
-  return frame.camera + number;
+  return frame.camera + number + (frame.kind.empty() ? "" : "_" + frame.kind);
 }
 
-void writeFrame(const std::filesystem::path& folder, const Frame& frame) {
+void writeFrame(const std::filesystem::path& folder, const Frame& frame) { writeFrameFile(folder / (frameFileStem(frame) + ".exr"), frame); }
+
+void writeFrameFile(const std::filesystem::path& file, const Frame& frame) {
   ExrImage image;
   image.width = frame.width;
   image.height = frame.height;
   for (const auto& l : frame.layers) image.layers.push_back({l.name, l.pixels});
   image.attributes = frame.attributes;
-  writeExr(folder / (frameFileStem(frame) + ".exr"), image);
+  writeExr(file, image);
 }
 
 void writePreview(const std::filesystem::path& folder, const Frame& frame, const PreviewRanges& ranges) {
+  writePreviewFile(folder / (frameFileStem(frame) + ".png"), frame, ranges);
+}
+
+void writePreviewFile(const std::filesystem::path& file, const Frame& frame, const PreviewRanges& ranges) {
   std::vector<Rgb8Image> pictures;
   char time[32];
   std::snprintf(time, sizeof time, "t = %.3f s", frame.time_s);
@@ -141,7 +161,7 @@ void writePreview(const std::filesystem::path& folder, const Frame& frame, const
     options.colourMap = !band.empty() && std::stod(band) < 0.9 ? "grey" : "thermal";
     pictures.push_back(makePreview(frame.width, frame.height, l.pixels, options));
   }
-  writePng(folder / (frameFileStem(frame) + ".png"), placeSideBySide(pictures));
+  writePng(file, placeSideBySide(pictures));
 }
 
 }  // namespace pitviper

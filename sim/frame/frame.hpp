@@ -19,6 +19,7 @@ struct FrameLayer {
 
 struct Frame {
   std::string camera;
+  std::string kind;  ///< "": the camera's channels; "spectral": its spectral image
   int number = 0;
   double time_s = 0.0;
   int width = 0, height = 0;
@@ -30,14 +31,25 @@ struct Frame {
 /// bands, where each entity is in the picture).
 Frame makeFrame(const Simulation& simulation, const Camera& camera, const CameraImage& image, const WorldState& state, int number);
 
-/// "<camera>_00012": the name of a frame's files without extension.
+/// The same in steps, for a frame drawn in several passes: no layers; the layers of a pass's outputs; the metadata, last.
+Frame startFrame(const Camera& camera, const WorldState& state, int number);
+void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image);
+void addMetadata(Frame& frame, const Simulation& simulation, const Camera& camera, const WorldState& state);
+/// Aperture, film and exposure, as attributes.
+void addOptics(Frame& frame, const Pinhole& pinhole, double exposure_s);
+/// Unit of every layer, band of every output.
+void addUnits(Frame& frame, const std::vector<ChannelOutput>& outputs);
+
+/// "<camera>_00012" or "<camera>_00012_<kind>": the name of a frame's files without extension.
 std::string frameFileStem(const Frame& frame);
 
 /// One EXR with a layer per channel quantity and truth layer. Errors: OutputError.
 void writeFrame(const std::filesystem::path& folder, const Frame& frame);
+void writeFrameFile(const std::filesystem::path& file, const Frame& frame);
 /// Ends of the colour bar by layer name, in the layer's unit; layers without choose their own.
 using PreviewRanges = std::map<std::string, std::pair<double, double>>;
 /// One PNG per frame: channels side by side, each with colour bar and unit.
 void writePreview(const std::filesystem::path& folder, const Frame& frame, const PreviewRanges& ranges = {});
+void writePreviewFile(const std::filesystem::path& file, const Frame& frame, const PreviewRanges& ranges = {});
 
 }  // namespace pitviper
