@@ -28,7 +28,8 @@ const std::map<std::string, Command>& commands() {
         "pitviper run SCENARIO.yaml [--out FOLDER] [--frames A:B] [--set path.to.key=value]... [--preview]\n             [--preview-range "
         "LAYER=LOW:HIGH]...\n\n"
         "Renders the scenario's frames: one EXR per camera and frame in FOLDER (default 'out'), named <camera>_<frame>.exr,\n"
-        "with a float layer <channel>.<quantity> per output and truth.* layers; probes write <probe>.csv.\n\n"
+        "with a float layer <channel>.<quantity> per output and truth.* layers; probes write <probe>.csv; a camera with 'spectral_image:'\n"
+        "also writes <camera>_<frame>_spectral.exr for pitviper integrate.\n\n"
         "  --out FOLDER     where to write; created if missing\n"
         "  --frames A:B     frames A to B only (or one: A); counted from 0\n"
         "  --set PATH=VALUE replaces or adds a value: --set cameras.0.samples=2, --set cameras.seeker.exposure='1 ms',\n"
@@ -45,6 +46,16 @@ const std::map<std::string, Command>& commands() {
        {infoCommand, "what is in a frame",
         "pitviper info FILE.exr [--at COLUMN,ROW]\n\nLayers with unit, minimum, mean and maximum, and all attributes.\n\n"
         "  --at COLUMN,ROW  the values of one pixel with their units; (0,0) is the top left\n"}},
+      {"integrate",
+       {integrateCommand, "apply another sensor to a spectral image",
+        "pitviper integrate FILE_spectral.exr SENSOR.yaml [--out FILE.exr] [--preview]\n\n"
+        "Integrates a spectral image (a camera's 'spectral_image:') over the channels of a sensor file, such as scenarios/sensors/mw_insb.yaml:\n"
+        "the same keys 'channels', 'optics', 'exposure' and 'aperture' as of a camera; what it leaves out is as of the camera. Writes an EXR with a layer\n"
+        "<channel>.<quantity> per output. The sensor meets each bin's mean radiance: exact where its response is flat over the bin; how far off\n"
+        "the others are, to first order, is printed per layer and kept as attribute binning_error.<layer> (median and maximum over pixels).\n\n"
+        "  --out FILE.exr   what to write; otherwise <image>_<sensor>.exr beside the image\n"
+        "  --preview        also a PNG: every channel with colour bar and unit\n\n"
+        "The bins must cover every channel: one that reaches beyond them is refused.\n"}},
       {"bench",
        {benchCommand, "speed of this machine beside a fixed yardstick",
         "pitviper bench [--frames N] [--accuracy SCENARIO.yaml]\n\nTimes direct and buffered mode (16 channels, 16 wavelengths, one light, thermal emission, "
@@ -59,8 +70,8 @@ const std::map<std::string, Command>& commands() {
 
 void printHelp() {
   std::printf("pitviper: infrared and optronic sensor scenes in calibrated units\n\nusage: pitviper COMMAND ...\n\n");
-  for (const auto& [name, c] : commands()) std::printf("  %-8s %s\n", name.c_str(), c.summary);
-  std::printf("  %-8s %s\n", "test", "build and run every test (the pitviper script)");
+  for (const auto& [name, c] : commands()) std::printf("  %-9s %s\n", name.c_str(), c.summary);
+  std::printf("  %-9s %s\n", "test", "build and run every test (the pitviper script)");
   std::printf("\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input.\n");
 }
 

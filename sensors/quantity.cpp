@@ -30,7 +30,7 @@ Spectrum photometric(const Detector& d) { return d.photopic * d.response * kLumi
 
 double exposureOf(const Detector& d, const std::string& quantity, double exposure_s) {
   if (exposure_s > 0.0) return exposure_s;
-  throw UserError(d.where, "'" + quantity + "' needs an exposure time", "the camera's 'exposure', such as '2 ms'", "add 'exposure: 2 ms' to the camera");
+  throw UserError(d.where, "'" + quantity + "' needs an exposure time", "'exposure' of the camera or sensor, such as '2 ms'", "add 'exposure: 2 ms' to it");
 }
 
 }  // namespace

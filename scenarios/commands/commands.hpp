@@ -12,6 +12,7 @@ using Arguments = std::vector<std::string>;
 int runCommand(const Arguments& arguments);
 int checkCommand(const Arguments& arguments);
 int infoCommand(const Arguments& arguments);
+int integrateCommand(const Arguments& arguments);
 int benchCommand(const Arguments& arguments);
 int keysCommand(const Arguments& arguments);
 

@@ -48,6 +48,7 @@ void printLayers(const ExrImage& image) {
     }
     std::printf("%-32s %-18s %14.6g %14.6g %14.6g", layer.name.c_str(), unitOf(image, layer.name).c_str(), low,
                 sum / static_cast<double>(std::max<size_t>(1, layer.pixels.size() - bad - unseen)), high);
+    if (const Attribute* bin = image.findAttribute("bin_um." + layer.name)) std::printf("  bin [um] %s", textOf(*bin).c_str());
     if (unseen) std::printf("  (%zu pixels see nothing)", unseen);
     if (bad) std::printf("  (%zu not finite)", bad);
     std::printf("\n");
@@ -78,7 +79,8 @@ int infoCommand(const Arguments& arguments) {
   printLayers(image);
   std::printf("\n");
   for (const auto& a : image.attributes)
-    if (a.name.rfind("unit.", 0) != 0 && a.name.rfind("entity.", 0) != 0) std::printf("%-44s %s\n", a.name.c_str(), textOf(a).c_str());
+    if (a.name.rfind("unit.", 0) != 0 && a.name.rfind("entity.", 0) != 0 && a.name.rfind("bin_um.", 0) != 0 && a.name.rfind("wavelength_um.", 0) != 0)
+      std::printf("%-44s %s\n", a.name.c_str(), textOf(a).c_str());
   for (int e = 1;; ++e) {  // in their own order; attributes come sorted by name
     const std::string entity = "entity." + std::to_string(e);
     const Attribute* name = image.findAttribute(entity + ".name");

@@ -12,6 +12,7 @@
 #include "sim/parameters/units.hpp"
 #include "sim/render/tables.hpp"
 #include "sim/run/run.hpp"
+#include "sim/run/spectral_renderer.hpp"
 
 namespace pitviper {
 namespace {
@@ -91,13 +92,14 @@ int runCommand(const Arguments& arguments) {
   ensureWritableFolder(out);
   const GlContext context;
   const int frames = range.last - range.first + 1;
-  Progress progress(sim.name, frames * static_cast<int>(std::max<size_t>(1, sim.cameras.size())));
+  const auto spectral = static_cast<size_t>(std::count_if(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.spectralImage.has_value(); }));
+  Progress progress(sim.name, frames * static_cast<int>(std::max<size_t>(1, sim.cameras.size() + spectral)));
   ProbeTables probes;
   runFrames(
       sim, shaderLibrary(), range,
       [&](const Frame& f) {
         writeFrame(out, f);
-        if (o.has("--preview") || !ranges.empty()) writePreview(out, f, ranges);
+        if ((o.has("--preview") || !ranges.empty()) && f.kind.empty()) writePreview(out, f, ranges);
         progress.step();
       },
       sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) { probes.add(r); });
@@ -106,6 +108,7 @@ int runCommand(const Arguments& arguments) {
   auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
   std::string done;
   if (!sim.cameras.empty()) done = count(static_cast<size_t>(frames), "frame") + " of " + count(sim.cameras.size(), "camera");
+  if (spectral) done += " and " + count(spectral * static_cast<size_t>(frames), "spectral image");
   if (!sim.probes.empty()) done += (done.empty() ? "" : " and ") + count(sim.probes.size(), "probe table");
   std::printf("%s in %s (%s)\n", done.c_str(), out.string().c_str(), context.limits().renderer.c_str());
   return 0;
@@ -127,6 +130,11 @@ int checkCommand(const Arguments& arguments) {
     std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
                 count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),
                 count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths").c_str());
+    if (!c.spectralImage) continue;
+    const auto passes = spectralPasses(c);
+    for (const auto& pass : passes) makeTables(sim, makePlan(sim, pass.outputs, pass.spectral, pass.where));
+    std::printf("    spectral image: %d bins, %.6g to %.6g um, in %s\n", c.spectralImage->count(), c.spectralImage->edge_um.front(),
+                c.spectralImage->edge_um.back(), count(passes.size(), "pass", "passes").c_str());
   }
   return 0;
 }

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "scenarios/reader/scenario_reader.hpp"
+#include "scenarios/reader/sensor_reader.hpp"
 #include "sim/parameters/spectrum_value.hpp"
 #include "sim/parameters/table.hpp"
 
@@ -13,6 +14,9 @@ namespace pitviper {
 
 /// A number for a message: six digits at most.
 std::string briefNumber(double v);
+
+/// What a file held, as 64 hexadecimal digits.
+std::string sha256(const std::string& text);
 
 class Builder {
  public:
@@ -29,6 +33,8 @@ class Builder {
   void readLights(const Record& scenario);
   void readCameras(const Record& scenario);
   void readProbes(const Record& scenario);
+  /// `image`: the camera that drew the spectral image.
+  void readSensor(const Record& file, const Pinhole& image, double exposure_s, Sensor& sensor);
 
  private:
   // materials.cpp
@@ -57,6 +63,8 @@ class Builder {
   void keepOutput(std::vector<ChannelOutput>& outputs, const std::function<ChannelOutput()>& make, const Location& where) const;
   void planned(const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where);
   SpectralSampling readSpectral(const Record& r);
+  // sensor_reader.cpp
+  SpectralBins readSpectralBins(const Record& r, const Pinhole& pinhole);
 
   void checkUnique(const Value& name, std::map<std::string, Location>& names, const char* what);
   /// A spectrum whose values are finite and lie in [low, high] wherever it has data.

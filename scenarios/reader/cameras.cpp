@@ -216,6 +216,7 @@ void Builder::readCameras(const Record& scenario) {
                           nearestWord(word, names).empty() ? "choose one" : "did you mean '" + nearestWord(word, names) + "'?");
       }
     planned(c.outputs, c.spectral, c.where);
+    if (r.given("spectral_image")) c.spectralImage = readSpectralBins(Record(r.value("spectral_image"), tables::spectralImage()), p);
     simulation_.cameras.push_back(std::move(c));
   }
 }

@@ -10,7 +10,6 @@
 #include "sensors/quantity.hpp"
 
 namespace pitviper {
-namespace {
 
 std::string sha256(const std::string& text) {
   unsigned char digest[SHA256_DIGEST_LENGTH];
@@ -22,8 +21,6 @@ std::string sha256(const std::string& text) {
   }
   return hex;
 }
-
-}  // namespace
 
 Libraries findLibraries() {
   std::vector<std::filesystem::path> tried;

@@ -99,7 +99,9 @@ const ParameterTable& atmosphere() {
        text("library", "named air: its extinction and temperature, which the keys below replace"), spectrum("extinction", "1/m", "extinction coefficient"),
        within(number("temperature", "K", "the air emits as a black body of this temperature"), 0, kHottest_K),
        spectrum("radiance", "W/(m2 sr um)", "further source radiance at great depth, for instance scattered sunlight"),
-       within(number("top", "m", "height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never ends and the sun's irradiance is that at the scene"),
+       within(number("top", "m",
+                     "height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never ends and the "
+                     "sun's irradiance is that at the scene"),
               -500, 1e7)}};
   return t;
 }
@@ -238,12 +240,12 @@ const ParameterTable& shape() {
       "",
       {required(choice("model", {"plate", "box", "disc", "sphere", "ellipsoid", "cylinder", "cone", "terrain", "jet", "missile", "mesh"},
                        "kind; body axes x forward, y left, z up; see the table of shapes")),
-       within(number("width", "m", "plate, box, ellipsoid: along y"), 1e-6, 1e7),
-       within(number("height", "m", "plate, box, ellipsoid: along z"), 1e-6, 1e7),
+       within(number("width", "m", "plate, box, ellipsoid: along y"), 1e-6, 1e7), within(number("height", "m", "plate, box, ellipsoid: along z"), 1e-6, 1e7),
        within(number("radius", "m", "disc, sphere, cylinder, cone (base)"), 1e-6, 1e7),
        within(number("top_radius", "m", "cone: at its +x end, 0 unless given"), 0, 1e7),
        within(number("length", "m", "cylinder, cone, box, ellipsoid: along x"), 1e-6, 1e7),
-       withDefault(integer("segments", "disc, sphere, ellipsoid, cylinder, cone: around", 8, 2048), "64"), withDefault(boolean("capped", "cylinder, cone"), "true"),
+       withDefault(integer("segments", "disc, sphere, ellipsoid, cylinder, cone: around", 8, 2048), "64"),
+       withDefault(boolean("capped", "cylinder, cone"), "true"),
        withDefault(choice("fit", {"inscribed", "equal_area"}, "sphere: vertices on it, or the same projected area"), "equal_area"),
        within(number("size", "m", "terrain: side of the square"), 1e-3, 1e6), within(number("relief", "m", "terrain: height range"), 0, 1e4),
        withDefault(integer("columns", "terrain: cells along a side", 1, 1024), "128"), withDefault(integer("terrain_seed", "terrain", 0, 1000000000), "1"),
@@ -279,6 +281,7 @@ const ParameterTable& camera() {
                             0, 256),
                      "16"),
          map("spectral", "wavelength sampling"), required(list("channels", "spectral channels", 1, 64)),
+         map("spectral_image", "also writes <camera>_<frame>_spectral.exr, which `pitviper integrate` takes"),
          list("truth", "extra layers: range, entity, temperature, normal, area, solid_angles", 0, 6),
          any("look_at", "name of an entity, or a position [x, y, z]")}};
     addPlacement(x.parameters, true);
@@ -318,6 +321,30 @@ const ParameterTable& spectral() {
   return t;
 }
 
+const ParameterTable& spectralImage() {
+  static const ParameterTable t{
+      "spectral_image",
+      "Mean spectral radiance at the aperture in bins of wavelength, a layer each. Rendering time grows with bins x samples.",
+      {required(list("band", "[from, to]: first and last edge, such as [3 um, 5 um]", 2, 2)), withDefault(integer("bins", "layers", 2, 512), "32"),
+       withDefault(choice("spacing", {"even", "log"}, "even: bins of equal width; log: of equal ratio"), "even"),
+       withDefault(integer("samples", "Gauss points per bin (of log bins: of the narrowest drawn together)", 2, 16), "4")}};
+  return t;
+}
+
+const ParameterTable& sensor() {
+  static const ParameterTable t{
+      "sensor (file of `pitviper integrate`)",
+      "What looks at a spectral image. What is not given is as of the camera that drew it; the pixels' fields of view stay as they are, so `focal_length` and "
+      "`pixel_pitch` change together.",
+      {text("name", "written into the frame (default: the file's name)"), text("description", "one or two sentences"),
+       within(number("focal_length", "m", "the pixel pitch follows"), 1e-6, 1e4),
+       within(number("pixel_pitch", "m", "horizontal; the focal length follows"), 1e-9, 1),
+       within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3),
+       spectrum("optics", "", "transmission of the optics, 0..1 (1 unless given, whatever the camera's was)"),
+       within(number("exposure", "s", "exposure time"), 1e-12, 1e6), required(list("channels", "as a camera's", 1, 64))}};
+  return t;
+}
+
 const ParameterTable& probe() {
   static const ParameterTable t{
       "probe",
@@ -330,9 +357,9 @@ const ParameterTable& probe() {
 }
 
 std::vector<const ParameterTable*> all() {
-  return {&scenario(),      &render(),   &origin(),    &time(),      &atmosphere(), &airLibrary(), &background(), &sun(),    &ambient(),
-          &spectrumTable(), &material(), &component(), &tableAxis(), &texture(),    &emission(),   &transmission(), &light(),      &entity(), &part(),
-          &shape(),         &waypoint(), &geodetic(),  &camera(),    &film(),       &channel(),    &spectral(),   &probe()};
+  return {&scenario(), &render(),    &origin(),    &time(),    &atmosphere(), &airLibrary(),   &background(),    &sun(),    &ambient(), &spectrumTable(),
+          &material(), &component(), &tableAxis(), &texture(), &emission(),   &transmission(), &light(),         &entity(), &part(),    &shape(),
+          &waypoint(), &geodetic(),  &camera(),    &film(),    &channel(),    &spectral(),     &spectralImage(), &sensor(), &probe()};
 }
 
 }  // namespace pitviper::tables

@@ -31,6 +31,8 @@ const ParameterTable& camera();
 const ParameterTable& film();
 const ParameterTable& channel();
 const ParameterTable& spectral();
+const ParameterTable& spectralImage();
+const ParameterTable& sensor();
 const ParameterTable& probe();
 
 /// All of them and the spectrum, in the order of the key reference.

@@ -22,6 +22,14 @@ struct SpectralSampling {
   bool shared = false;  ///< one set of nodes for all channels, over the union of their bands
 };
 
+/// Neighbouring bins of wavelength, each averaged with Gauss points.
+struct SpectralBins {
+  std::vector<double> edge_um;  ///< one more than bins, rising
+  int samples = 4;              ///< wavelengths per bin
+  Location where;
+  int count() const { return static_cast<int>(edge_um.size()) - 1; }
+};
+
 /// Extra layers a camera can be asked for.
 struct TruthLayers {
   bool range = false, entity = false, normal = false, temperature = false, area = false, solidAngles = false;
@@ -39,6 +47,7 @@ struct Camera {
   double smallBody_px = 16.0;  ///< bodies smaller than this are drawn by their own zoomed view
   SpectralSampling spectral;
   std::vector<ChannelOutput> outputs;
+  std::optional<SpectralBins> spectralImage;  ///< written beside the frame
   TruthLayers truth;
 };
 

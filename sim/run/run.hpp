@@ -10,7 +10,7 @@ struct RunRange {
   int first = 0, last = 0;  ///< frame numbers, both included
 };
 
-/// Called for every frame in order: camera by camera, then tick by tick.
+/// Called for every frame in order: a camera's frame, its spectral image if it has one, camera by camera, then tick by tick.
 using FrameSink = std::function<void(const Frame&)>;
 struct ProbeReading {
   const Probe& probe;
