@@ -119,13 +119,16 @@ void Font::draw(Rgb8Image& picture, int x, int y, std::string_view utf8, int siz
          [&](FT_GlyphSlot slot, int pen) { drawGlyph(picture, slot->bitmap, x + pen + slot->bitmap_left, y - slot->bitmap_top, colour); });
 }
 
+std::filesystem::path plainFontFile() { return findFont("DejaVuSans.ttf"); }
+std::filesystem::path boldFontFile() { return findFont("DejaVuSans-Bold.ttf"); }
+
 const Font& plainFont() {
-  static const Font font(findFont("DejaVuSans.ttf"));
+  static const Font font(plainFontFile());
   return font;
 }
 
 const Font& boldFont() {
-  static const Font font(findFont("DejaVuSans-Bold.ttf"));
+  static const Font font(boldFontFile());
   return font;
 }
 

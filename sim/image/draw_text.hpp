@@ -30,7 +30,11 @@ class Font {
   std::unique_ptr<State> state_;
 };
 
-/// DejaVu Sans, and its bold face, from the system's font folders.
+/// The files of DejaVu Sans and its bold face in the system's font folders; empty where they are not installed.
+std::filesystem::path plainFontFile();
+std::filesystem::path boldFontFile();
+
+/// The fonts in these files.
 const Font& plainFont();
 const Font& boldFont();
 

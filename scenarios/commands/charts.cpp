@@ -1,0 +1,58 @@
+#include "scenarios/commands/charts.hpp"
+
+#include <dlfcn.h>
+
+#include <stdexcept>
+
+#include "scenarios/commands/charts/charts_module.hpp"
+#include "sim/image/png.hpp"
+#include "sim/parameters/error.hpp"
+
+namespace pitviper {
+namespace {
+
+std::filesystem::path& chartsFolder() {
+  static std::filesystem::path folder;
+  return folder;
+}
+
+std::filesystem::path modulePath() {
+  if (!chartsFolder().empty()) return chartsFolder() / kChartsModule;
+  std::error_code ignored;
+  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / kChartsModule;
+}
+
+ChartsFunction loadModule() {
+  const std::filesystem::path module = modulePath();
+  if (std::error_code ignored; !std::filesystem::exists(module, ignored))
+    throw UserError({"charts", 0, 0, -1}, "the charts module " + module.string() + " is missing", "a build with VTK",
+                    "install the package libvtk9-dev and build again, or ask for no chart");
+  // Never closed: VTK's factories would be left pointing into it.
+  void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* symbol = handle == nullptr ? nullptr : dlsym(handle, kChartsFunction);
+  if (symbol == nullptr) {
+    const char* reason = dlerror();
+    throw UserError({"charts", 0, 0, -1}, std::string("the charts module cannot be loaded (") + (reason != nullptr ? reason : "unknown") + ")",
+                    "VTK's libraries", "install the package libvtk9.1 (to build: libvtk9-dev), or ask for no chart");
+  }
+  return reinterpret_cast<ChartsFunction>(symbol);
+}
+
+}  // namespace
+
+void setChartsFolder(const std::filesystem::path& folder) { chartsFolder() = folder; }
+
+void needChartsModule() { loadModule(); }
+
+void drawCharts(const std::vector<Chart>& charts, int columns, const std::filesystem::path& png) {
+  if (charts.empty() || columns < 1) throw std::invalid_argument("nothing to draw");
+  for (const Chart& c : charts)
+    for (const Series& s : c.series)
+      if (s.x.size() != s.y.size()) throw std::invalid_argument("series '" + s.name + "' of chart '" + c.title + "' has unequal x and y");
+  ChartsReply reply;
+  loadModule()(&charts, columns, &reply);
+  if (!reply.failure.empty()) throw std::runtime_error("the chart " + png.string() + " could not be drawn: " + reply.failure);
+  writePng(png, reply.picture);
+}
+
+}  // namespace pitviper
