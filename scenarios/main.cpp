@@ -58,10 +58,13 @@ const std::map<std::string, Command>& commands() {
         "The bins must cover every channel: one that reaches beyond them is refused.\n"}},
       {"bench",
        {benchCommand, "speed of this machine beside a fixed yardstick",
-        "pitviper bench [--frames N] [--accuracy SCENARIO.yaml]\n\nTimes direct and buffered mode (16 channels, 16 wavelengths, one light, thermal emission, "
-        "air on both legs, 256x256) and, in the same\n"
-        "run, a bare loop over 16 wavelengths; prints both and their ratio.\n\n"
-        "  --frames N           frames to time (default 200)\n"
+        "pitviper bench [--factor NAME] [--frames N] [--out FOLDER]\npitviper bench --accuracy SCENARIO.yaml\n\n"
+        "Times direct and buffered mode on a wall that fills the film (256x256, 16 channels, 16 wavelengths, one light, thermal emission, air\n"
+        "on both legs), then with one factor varied at a time, in rounds that alternate with a bare loop over 16 wavelengths, the yardstick.\n"
+        "Prints tables: milliseconds, million pixels and frames a second, speed by the yardstick, time by the centre. Takes about a minute and a half.\n\n"
+        "  --factor NAME        this factor only: centre, overdraw, channels, wavelengths, lights, film\n"
+        "  --frames N           frames to time in each row, 10 or more (default 60; fewer of slow ones)\n"
+        "  --out FOLDER         also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing\n"
         "  --accuracy SCENARIO  instead: the scenario's middle frame at 4 to 64 spectral samples, frames a second and error against 192\n"}},
       {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
   };

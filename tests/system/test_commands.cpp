@@ -1,6 +1,7 @@
 // The program as a user runs it: commands, exit codes, files.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <cstdlib>
@@ -123,6 +124,41 @@ TEST_F(Commands, ProbesWriteTables) {
       EXPECT_NE(bytes(entry.path()).find("[W/m2]"), std::string::npos);
     }
   EXPECT_GT(tables, 0);
+}
+
+// Rationale: scripts read the table. Expected: one line per row under a heading that names units. No time is held to anything: machines differ.
+TEST_F(Commands, BenchWritesItsTable) {
+  const Result r = pitviper("bench --factor channels --frames 10 --out " + folder_.string());
+  EXPECT_NE(r.output.find("| channels | mode"), std::string::npos) << r.output;
+  std::istringstream table(bytes(folder_ / "bench.csv"));
+  std::string line;
+  std::getline(table, line);
+  EXPECT_EQ(line,
+            "factor,value,mode,film [px],channels,wavelengths,lights,overdraw,layers,frames,time [ms],yardstick time [ms],rate [Mpixel/s],rate [frame/s],"
+            "rate by yardstick,time by base,cost per layer");
+  for (const char* row : {"channels,1,direct,256,1,16,1,1,0,", "channels,1,buffered,", "channels,4,direct,", "channels,4,buffered,", "channels,16,direct,",
+                          "channels,16,buffered,256,16,16,1,1,0,"}) {
+    ASSERT_TRUE(std::getline(table, line));
+    EXPECT_EQ(line.rfind(row, 0), 0u) << line;
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), 16) << line;
+    for (const char* bad : {"nan", "inf"}) EXPECT_EQ(line.find(bad), std::string::npos) << line;
+  }
+  EXPECT_FALSE(std::getline(table, line));
+  if (fs::exists(fs::path(PITVIPER_BUILD_DIR) / "libpitviper_charts.so")) {
+    EXPECT_EQ(r.code, 0) << r.output;
+    EXPECT_GT(fs::file_size(folder_ / "bench.png"), 5000u);
+  } else {  // the table is written all the same
+    EXPECT_EQ(r.code, 2) << r.output;
+    EXPECT_NE(r.output.find("libvtk9-dev"), std::string::npos);
+  }
+}
+
+TEST_F(Commands, BenchKnowsItsFactors) {
+  const Result r = pitviper("bench --factor chanels");
+  EXPECT_EQ(r.code, 2);
+  EXPECT_NE(r.output.find("did you mean 'channels'?"), std::string::npos) << r.output;
+  EXPECT_EQ(pitviper("bench --frames 3").code, 2);
+  EXPECT_EQ(pitviper("bench --accuracy x.yaml --factor film").code, 2);
 }
 
 }  // namespace

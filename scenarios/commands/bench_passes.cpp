@@ -1,0 +1,51 @@
+#include "scenarios/commands/bench_passes.hpp"
+
+#include "scenarios/commands/commands.hpp"
+#include "sim/render/camera_renderer.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Never moved: passes keep references to the simulation and the plan.
+struct Prepared {
+  explicit Prepared(const BenchSetting& setting)
+      : simulation(benchSimulation(setting)),
+        scene(std::make_shared<const GpuScene>(simulation)),
+        state(advance(simulation.entities, simulation.lights, 0.0)) {}
+  Simulation simulation;
+  std::shared_ptr<const GpuScene> scene;
+  WorldState state;
+};
+
+struct PreparedPass : Prepared {
+  explicit PreparedPass(const BenchSetting& setting)
+      : Prepared(setting),
+        plan(makePlan(simulation, camera().outputs, camera().spectral, camera().where)),
+        view(cameraView(camera().pinhole, cameraPose(camera().mount, state), camera().near_m, 1)),
+        drawn(simulation.entities.size(), 1),
+        pass(makeScenePass(simulation, plan, shaderLibrary(), scene, false, camera().pinhole.apertureArea_m2())) {
+    pass->setState(state);
+  }
+  const Camera& camera() const { return simulation.cameras[0]; }
+  Plan plan;
+  View view;
+  std::vector<char> drawn;
+  std::unique_ptr<ScenePass> pass;
+};
+
+struct PreparedFrame : Prepared {
+  explicit PreparedFrame(const BenchSetting& setting) : Prepared(setting), renderer(simulation, simulation.cameras[0], shaderLibrary(), scene) {}
+  CameraRenderer renderer;
+};
+
+}  // namespace
+
+DrawFrame preparePass(const BenchSetting& setting) {
+  return [p = std::make_shared<PreparedPass>(setting)] { p->pass->draw(p->view, p->state, p->drawn); };
+}
+
+DrawFrame prepareWholeFrame(const BenchSetting& setting) {
+  return [p = std::make_shared<PreparedFrame>(setting)] { p->renderer.render(p->state); };
+}
+
+}  // namespace pitviper

@@ -1,0 +1,28 @@
+#pragma once
+// The scenes that `bench` draws: a wall that fills the film, seen through air, and what is varied about it.
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+/// What the transparent layers before the wall do.
+enum class LayerKind {
+  Attenuating,  ///< let 0.8 through, emit nothing, no air anywhere
+  Emitting,     ///< warm, in air
+  Reflecting    ///< and lit
+};
+
+/// The defaults are the centre that one factor at a time departs from.
+struct BenchSetting {
+  int film_px = 256;
+  int channels = 16, wavelengths = 16, lights = 1;
+  int overdraw = 1;          ///< plates behind one another, the visible one last in the file: the worst order
+  bool densePlates = false;  ///< of 8000 triangles instead of two
+  int layers = 0;            ///< transparent plates before the wall
+  LayerKind layerKind = LayerKind::Emitting;
+  bool air = true;
+  RenderMode mode = RenderMode::Direct;
+};
+
+Simulation benchSimulation(const BenchSetting& setting);
+
+}  // namespace pitviper
