@@ -140,6 +140,7 @@ Chart layersChart(const std::vector<const BenchRow*>& rows) {
   c.title = "Transparent layers, buffered mode";
   c.xLabel = "layers";
   c.yLabel = "time / time without layers";
+  for (int n = 0; n <= 8; ++n) c.xTicks.push_back(n);
   for (const char* mode : {"attenuation", "emission and air", "and reflection"})
     c.series.push_back(seriesOf(rows, mode, [](const BenchRow& r) { return r.timeByBase; }));
   c.series.push_back({"0.3 a layer", {0.0, 8.0}, {1.0, 3.4}, true, false});

@@ -28,6 +28,15 @@ float widthOf(const std::string& text, int size_px = kText_px, bool bold = false
   return static_cast<float>(box[1] - box[0] + 1);
 }
 
+/// A title's beginning and three dots, narrow enough; cut between UTF-8 characters.
+std::string shortened(std::string title, int size_px, float width) {
+  do {
+    while (!title.empty() && (static_cast<unsigned char>(title.back()) & 0xC0u) == 0x80u) title.pop_back();
+    if (!title.empty()) title.pop_back();
+  } while (!title.empty() && widthOf(title + "...", size_px, true) > width);
+  return title + "...";
+}
+
 }  // namespace
 
 vtkStandardNewMacro(PanelText)
@@ -36,6 +45,7 @@ vtkStandardNewMacro(PanelText)
   left_ = left;
   title_ = title;
   while (titleSize_px_ > kText_px && widthOf(title, titleSize_px_, true) > width) --titleSize_px_;
+  if (widthOf(title_, titleSize_px_, true) > width) title_ = shortened(title_, titleSize_px_, width);
   titleMiddle_ = top - 0.5f * kTitleRow;
   float x = left, y = top - kTitleRow - 0.5f * kLegendRow;
   for (const LegendEntry& entry : entries) {
@@ -61,6 +71,8 @@ bool PanelText::Paint(vtkContext2D* painter) {
   for (const Placed& p : placed_) {
     const Rgb8 c = p.entry.colour;
     painter->GetPen()->SetColor(c.r, c.g, c.b);
+    painter->GetPen()->SetOpacity(255);  // plots drawn before leave theirs
+    painter->GetBrush()->SetOpacity(255);
     painter->GetPen()->SetWidth(2.0f * kScale);
     painter->GetPen()->SetLineType(vtkPen::SOLID_LINE);
     painter->GetBrush()->SetColor(c.r, c.g, c.b);
