@@ -42,8 +42,6 @@ ChartsFunction loadModule() {
 
 void setChartsFolder(const std::filesystem::path& folder) { chartsFolder() = folder; }
 
-void needChartsModule() { loadModule(); }
-
 void drawCharts(const std::vector<Chart>& charts, int columns, const std::filesystem::path& png) {
   if (charts.empty() || columns < 1) throw std::invalid_argument("nothing to draw");
   for (const Chart& c : charts)

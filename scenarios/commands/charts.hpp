@@ -31,9 +31,6 @@ struct Chart {
 /// std::runtime_error if drawing failed.
 void drawCharts(const std::vector<Chart>& charts, int columns, const std::filesystem::path& png);
 
-/// Throws the UserError of a missing module; for those who have long work to do before there is something to draw.
-void needChartsModule();
-
 /// Where the module libpitviper_charts.so lies; without this call, next to the executable.
 void setChartsFolder(const std::filesystem::path& folder);
 
