@@ -6,7 +6,7 @@ namespace pitviper {
 namespace {
 
 /// Materials have no `transmission` yet; with it the transparent layers are timed as well.
-constexpr bool kTransparentMaterials = false;
+constexpr bool kTransparentMaterials = true;
 
 /// Both modes at each value; compared with the same mode at `base`.
 BenchFactor varied(const std::string& name, const std::string& heading, const std::vector<int>& values, int base,
