@@ -14,6 +14,7 @@ void deleteBuffer(unsigned n) { glDeleteBuffers(1, &n); }
 void deleteTexture(unsigned n) { glDeleteTextures(1, &n); }
 void deleteFramebuffer(unsigned n) { glDeleteFramebuffers(1, &n); }
 void deleteVertexArray(unsigned n) { glDeleteVertexArrays(1, &n); }
+void deleteQuery(unsigned n) { glDeleteQueries(1, &n); }
 
 VertexArray makeVertexArray() {
   GLuint n = 0;

@@ -37,6 +37,7 @@ void deleteBuffer(unsigned);
 void deleteTexture(unsigned);
 void deleteFramebuffer(unsigned);
 void deleteVertexArray(unsigned);
+void deleteQuery(unsigned);
 
 using VertexArray = GlName<deleteVertexArray>;
 VertexArray makeVertexArray();

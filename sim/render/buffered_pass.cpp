@@ -108,7 +108,7 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
   for (size_t b = 0; b < batches_.size(); ++b) {
     spectrum.bind();
     const GLfloat zero[4] = {0, 0, 0, 0};  // what a zoomed view leaves out must not keep the last picture's spectrum
-    for (size_t t = 0; t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), zero);
+    for (size_t t = 0; isPartial() && t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), zero);
     shade_.use();
     glUniform1i(shade_.uniform("firstNode"), batches_[b].firstNode);
     fillScreen(shade_);

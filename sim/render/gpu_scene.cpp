@@ -2,9 +2,27 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 
 namespace pitviper {
+
+namespace {
+
+BodyBox boxOf(const Mesh& mesh, const BodyForm& form) {
+  constexpr double kMargin = 1e-5;
+  BodyBox box{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
+  for (const glm::vec3& p : mesh.positions) box.low = glm::min(box.low, glm::dvec3(p)), box.high = glm::max(box.high, glm::dvec3(p));
+  glm::dvec3 reach(0.0);
+  if (form.kind == BodyForm::Kind::Ellipsoid) reach = form.size;
+  if (form.kind == BodyForm::Kind::Cone) reach = {form.size.x, std::max(form.size.y, form.size.z), std::max(form.size.y, form.size.z)};
+  if (form.kind != BodyForm::Kind::Mesh) box.low = glm::min(box.low, -reach), box.high = glm::max(box.high, reach);
+  const double margin = kMargin * glm::length(box.high - box.low);
+  return {box.low - margin, box.high + margin};
+}
+
+}  // namespace
 
 GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
   std::vector<glm::vec4> vertices;
@@ -14,6 +32,7 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
     const Mesh& mesh = *entity.mesh;
     const auto [at, fresh] = placed.try_emplace(&mesh, static_cast<std::uint32_t>(indices.size() / 3));
     firstTriangle_.push_back(at->second);
+    boxes_.push_back(boxOf(mesh, entity.form));
     if (!fresh) continue;
     const auto base = static_cast<std::uint32_t>(vertices.size() / 2);
     for (size_t i = 0; i < mesh.positions.size(); ++i) {

@@ -8,17 +8,25 @@
 
 namespace pitviper {
 
+/// In body axes [m].
+struct BodyBox {
+  glm::dvec3 low{0.0}, high{0.0};
+};
+
 class GpuScene {
  public:
   explicit GpuScene(const Simulation& simulation);
   void bind() const;
   /// First triangle of an entity's mesh in the shared index buffer.
   std::uint32_t firstTriangle(int entity) const { return firstTriangle_[static_cast<size_t>(entity)]; }
+  /// Around the entity's mesh and true form, a little larger, so that no line of sight through it slips past.
+  const BodyBox& box(int entity) const { return boxes_[static_cast<size_t>(entity)]; }
 
  private:
   Buffer vertices_, indices_, textureShapes_, texels_;
   VertexArray vertexArray_;
   std::vector<std::uint32_t> firstTriangle_;
+  std::vector<BodyBox> boxes_;
 };
 
 }  // namespace pitviper

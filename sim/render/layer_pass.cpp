@@ -13,26 +13,6 @@ namespace {
 
 Pose poseOf(const WorldState& state, int entity) { return state.entities[static_cast<size_t>(entity)]; }
 
-/// A body's box, a little larger than its form, so that no line of sight through it slips past.
-void boundingBox(const Entity& e, glm::dvec3& low, glm::dvec3& high) {
-  constexpr double kMargin = 1e-5;
-  if (e.form.kind == BodyForm::Kind::Ellipsoid) {
-    high = e.form.size;
-    low = -high;
-  } else if (e.form.kind == BodyForm::Kind::Cone) {
-    const double radius = std::max(e.form.size.y, e.form.size.z);
-    high = {e.form.size.x, radius, radius};
-    low = -high;
-  } else {
-    low = glm::dvec3(INFINITY);
-    high = -low;
-    for (const glm::vec3& p : e.mesh->positions) low = glm::min(low, glm::dvec3(p)), high = glm::max(high, glm::dvec3(p));
-  }
-  const glm::dvec3 margin = kMargin * (high - low);
-  low -= margin;
-  high += margin;
-}
-
 }  // namespace
 
 LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const RenderTables& tables, std::shared_ptr<const GpuScene> scene,
@@ -80,7 +60,7 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
     layer_ = Program(assembleShader(library, folder + "layer.vert.glsl", own), assembleShader(library, folder + "layer.frag.glsl", own));
   }
   if (plan.terms.media) {
-    volume_ = Program(assembleShader(library, "sim/render/glsl/volume.vert.glsl", base), assembleShader(library, "sim/render/glsl/volume.frag.glsl", base));
+    volume_ = Program(assembleShader(library, "sim/render/glsl/box.vert.glsl", base), assembleShader(library, "sim/render/glsl/volume.frag.glsl", base));
     thickness_ = Program(assembleShader(library, "sim/render/glsl/thickness.vert.glsl", base),
                          assembleShader(library, "sim/render/glsl/thickness.frag.glsl", base));
     media_.upload(tables.media);
@@ -103,7 +83,8 @@ void LayerPass::order(const View& view, const WorldState& state, const std::vect
     piece.cameraFromBody = cameraFromLocal * glm::mat3_cast(pose.orientation);
     if (item.kind == DrawKind::Medium) {
       piece.medium = true;
-      boundingBox(entity, piece.low, piece.high);
+      piece.low = scene_->box(item.entity).low;
+      piece.high = scene_->box(item.entity).high;
       pieces_.push_back(piece);
       continue;
     }

@@ -42,7 +42,8 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       apertureArea_m2_(apertureArea_m2),
       tables_(makeTables(simulation, plan)),
       solid_(tables_.solid),
-      visibility_(assembleShader(library, "sim/render/glsl/visibility.vert.glsl", {}), assembleShader(library, "sim/render/glsl/visibility.frag.glsl", {})) {
+      solids_(simulation, tables_, *scene_, library),
+      relevance_(simulation, plan, tables_) {
   checkUniformSize((tables_.node.size() * 2 + plan.node_um.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
 }
 
@@ -100,9 +101,9 @@ void ScenePass::uploadView(const View& v) {
 
 void ScenePass::uploadDraws(const View& v, const WorldState& state) {
   const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
-  const size_t lightCount = static_cast<size_t>(plan_.lightCount);
+  const size_t stride = 2 * static_cast<size_t>(plan_.lightCount) + 1;
   std::vector<GpuDraw> draws;
-  std::vector<glm::vec4> lights(std::max<size_t>(1, (state.entities.size() + 1) * lightCount));
+  std::vector<glm::vec4> lights((state.entities.size() + 1) * stride, glm::vec4(0.0f));
   for (size_t d = 0; d < tables_.draws.size(); ++d) {
     const DrawItem& item = tables_.draws[d];
     GpuDraw g{};
@@ -117,9 +118,19 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
     const size_t lightRow = static_cast<size_t>(item.entity + 1);
     const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
     g.state = {s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
-    for (size_t l = 0; l < simulation_.lights.size(); ++l)
-      lights[lightRow * lightCount + l] = glm::vec4(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m);
-    if (simulation_.sun) lights[lightRow * lightCount + simulation_.lights.size()] = glm::vec4(bodyFromLocal * simulation_.sun->toSun, 0.0);
+    glm::vec4* row = &lights[lightRow * stride];
+    if (item.entity >= 0 && row->x == 0.0f) {  // once for all surfaces of a body
+      auto add = [&](const glm::dvec3& place, double radius_m, size_t number) {
+        const size_t k = static_cast<size_t>(row->x);
+        row[2 * k + 1] = glm::vec4(place, radius_m);
+        row[2 * k + 2].x = static_cast<float>(number);
+        row->x += 1.0f;
+      };
+      for (size_t l = 0; l < simulation_.lights.size(); ++l)
+        if ((truth_ && l == 0) || relevance_.matters(static_cast<size_t>(item.entity), l, state))
+          add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l);
+      if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size());
+    }
     draws.push_back(g);
   }
   draws_.upload(draws);
@@ -144,45 +155,6 @@ void ScenePass::bindBuffers() const {
   nodes_.bindUniform(1);
 }
 
-void ScenePass::drawVisibility(const View& v, const WorldState& state, const std::vector<char>& drawn) {
-  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
-  current_->visibility.bind();
-  glDisable(GL_BLEND);
-  glEnable(GL_DEPTH_TEST);
-  glDepthMask(GL_TRUE);
-  glDepthFunc(GL_GREATER);
-  const GLuint nothing[4] = {0, 0, 0, 0};
-  const GLfloat farthest = 0.0f;
-  glClearBufferuiv(GL_COLOR, 0, nothing);
-  glClearBufferfv(GL_DEPTH, 0, &farthest);
-  visibility_.use();
-  glEnable(GL_CLIP_DISTANCE0);
-  if (v.onlyEntity >= 0) glEnable(GL_DEPTH_CLAMP);
-  const int drawIndex = visibility_.uniform("drawIndex"), firstTriangle = visibility_.uniform("firstTriangle");
-  for (size_t d = 1; d < tables_.draws.size(); ++d) {
-    const DrawItem& item = tables_.draws[d];
-    const auto e = static_cast<size_t>(item.entity);
-    if (item.kind != DrawKind::Solid || !drawn[e]) continue;
-    const Entity& entity = simulation_.entities[e];
-    const MeshPart& part = entity.mesh->parts[entity.surfaces[static_cast<size_t>(item.surface)].meshPart];
-    const glm::dvec3 centre = state.entities[e].position + state.entities[e].orientation * glm::dvec3(entity.boundingCentre);
-    if (!mayShow(v, centre, entity.boundingRadius_m)) continue;
-    const bool outside = glm::length(centre - v.position) > entity.boundingRadius_m * 1.0001 + v.near_m;
-    if (entity.mesh->closed && outside) glEnable(GL_CULL_FACE);
-    else glDisable(GL_CULL_FACE);
-    const std::uint32_t first = scene_->firstTriangle(item.entity) + part.firstTriangle;
-    glUniform1i(drawIndex, static_cast<int>(d));
-    glUniform1i(firstTriangle, static_cast<int>(first));
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.triangleCount * 3), GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * 12));
-  }
-
-  glDisable(GL_CLIP_DISTANCE0);
-  glDisable(GL_DEPTH_CLAMP);
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_CULL_FACE);
-}
-
 View ScenePass::centred(View v, const WorldState& state) const {
   if (v.onlyEntity < 0)
     for (const DrawItem& d : tables_.draws)
@@ -196,10 +168,11 @@ void ScenePass::draw(const View& asked, const WorldState& state, const std::vect
   uploadView(v);
   uploadDraws(v, state);
   bindBuffers();
-  drawVisibility(v, state, drawn);
+  solids_.draw(current_->visibility, v, state, drawn);
   beforeShading(v, state, drawn);
   current_->visibility.colour(0).bind(0);
-  if (v.onlyEntity >= 0) {
+  partial_ = v.onlyEntity >= 0;
+  if (partial_) {
     current_->shading.bind();
     const GLfloat zero[4] = {0, 0, 0, 0};
     for (size_t i = 0; i < current_->shading.colourCount(); ++i) glClearBufferfv(GL_COLOR, static_cast<GLint>(i), zero);

@@ -5,6 +5,8 @@
 #include <memory>
 
 #include "sim/render/gpu_scene.hpp"
+#include "sim/render/light_relevance.hpp"
+#include "sim/render/solid_pass.hpp"
 #include "sim/render/surface_buffers.hpp"
 #include "sim/render/tables.hpp"
 #include "sim/render/view.hpp"
@@ -46,6 +48,8 @@ class ScenePass {
   /// Shades what `visibility` shows into `into`: channel groups first, then truth. Buffers, textures and state are bound;
   /// the target is not. Where only one entity is shaded the target has been cleared.
   virtual void shade(RenderTarget& into, const RenderTarget& visibility) = 0;
+  /// Only one entity is shaded: what was cleared stays elsewhere.
+  bool isPartial() const { return partial_; }
   /// What a mode has to make ready for a view, its solid scene drawn.
   virtual void beforeShading(const View&, const WorldState&, const std::vector<char>&) {}
 
@@ -71,7 +75,6 @@ class ScenePass {
     RenderTarget visibility, shading;
   };
   Targets& targetsFor(int width, int height);
-  void drawVisibility(const View& view, const WorldState& state, const std::vector<char>& drawn);
 
   const Simulation& simulation_;
   const Plan& plan_;
@@ -81,10 +84,12 @@ class ScenePass {
   RenderTables tables_;
   AssembledShader fragmentSource_;
   SurfaceBuffers solid_;
-  Program visibility_;
+  SolidPass solids_;
+  LightRelevance relevance_;
   Buffer nodes_, draws_, lights_, view_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;
+  bool partial_ = false;
   Readback readback_;
 };
 

@@ -1,4 +1,5 @@
-// The back of a box around a body: each ray through the body leaves the box once, from inside too.
+// A box in body axes: around a medium (its back alone: each ray through the body leaves the box once, from inside too), or around a body
+// whose place in the picture may be hidden.
 //@use sim/render/glsl/project.glsl
 uniform int drawIndex;
 uniform vec3 low;

@@ -1,0 +1,2 @@
+// Counts as seen, and leaves no trace.
+void main() {}

@@ -1,0 +1,152 @@
+#include "sim/render/solid_pass.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+
+namespace pitviper {
+namespace {
+
+/// Surfaces with fewer triangles are drawn at once: they cost less than asking whether they show.
+constexpr std::uint32_t kDense = 1024;
+/// Asking makes the driver wait for what is drawn so far; worth it from so many triangles on (llvmpipe draws about 4000 in a millisecond).
+constexpr std::uint32_t kWorthAsking = 4096;
+
+}  // namespace
+
+SolidPass::SolidPass(const Simulation& simulation, const RenderTables& tables, const GpuScene& scene, const ShaderLibrary& library)
+    : simulation_(simulation),
+      tables_(tables),
+      scene_(scene),
+      visibility_(assembleShader(library, "sim/render/glsl/visibility.vert.glsl", {}), assembleShader(library, "sim/render/glsl/visibility.frag.glsl", {})),
+      box_(assembleShader(library, "sim/render/glsl/box.vert.glsl", {}), assembleShader(library, "sim/render/glsl/nothing.frag.glsl", {})) {}
+
+std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const WorldState& state, const std::vector<char>& drawn) const {
+  std::vector<Candidate> all;
+  const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
+  for (size_t d = 1; d < tables_.draws.size(); ++d) {
+    const DrawItem& item = tables_.draws[d];
+    const auto e = static_cast<size_t>(item.entity);
+    if (item.kind != DrawKind::Solid || !drawn[e]) continue;
+    const Entity& entity = simulation_.entities[e];
+    const Pose& pose = state.entities[e];
+    const glm::dvec3 centre = pose.position + pose.orientation * glm::dvec3(entity.boundingCentre);
+    if (!mayShow(v, centre, entity.boundingRadius_m)) continue;
+    const MeshPart& part = entity.mesh->parts[entity.surfaces[static_cast<size_t>(item.surface)].meshPart];
+    Candidate c;
+    c.draw = static_cast<std::uint32_t>(d);
+    c.first = scene_.firstTriangle(item.entity) + part.firstTriangle;
+    c.triangles = part.triangleCount;
+    c.entity = item.entity;
+    c.cull = entity.mesh->closed && glm::length(centre - v.position) > entity.boundingRadius_m * 1.0001 + v.near_m;
+    const BodyBox& box = scene_.box(item.entity);
+    const glm::dvec3 camera = glm::inverse(pose.orientation) * (v.position - pose.position);
+    c.distance_m = glm::length(camera - glm::clamp(camera, box.low, box.high));
+    c.boxBefore = true;
+    for (int k = 0; k < 8; ++k) {
+      const glm::dvec3 corner((k & 1) ? box.high.x : box.low.x, (k & 2) ? box.high.y : box.low.y, (k & 4) ? box.high.z : box.low.z);
+      c.boxBefore &= -(cameraFromLocal * (pose.position + pose.orientation * corner - v.position)).z > v.near_m;
+    }
+    all.push_back(c);
+  }
+  std::stable_sort(all.begin(), all.end(), [](const Candidate& a, const Candidate& b) { return a.distance_m < b.distance_m; });
+  return all;
+}
+
+void SolidPass::drawInstances(const Candidate& c, std::size_t firstInstance, std::size_t count) const {
+  if (c.cull) glEnable(GL_CULL_FACE);
+  else glDisable(GL_CULL_FACE);
+  glUniform1i(visibility_.uniform("firstInstance"), static_cast<int>(firstInstance));
+  glUniform1i(visibility_.uniform("firstTriangle"), static_cast<int>(c.first));
+  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(c.triangles * 3), GL_UNSIGNED_INT,
+                          reinterpret_cast<const void*>(static_cast<std::uintptr_t>(c.first) * 12), static_cast<GLsizei>(count));
+}
+
+void SolidPass::drawHidden(const std::vector<Candidate>& dense, std::size_t firstInstance) {
+  while (queries_.size() < dense.size()) {
+    GLuint name = 0;
+    glCreateQueries(GL_ANY_SAMPLES_PASSED_CONSERVATIVE, 1, &name);
+    queries_.emplace_back(name);
+  }
+  // All boxes against what is drawn so far, then the bodies whose box has shown: one wait for all.
+  box_.use();
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glDepthMask(GL_FALSE);
+  glDisable(GL_CULL_FACE);
+  for (size_t i = 0; i < dense.size(); ++i) {
+    if (!dense[i].boxBefore) continue;
+    const BodyBox& box = scene_.box(dense[i].entity);
+    const glm::vec3 low(box.low), high(box.high);
+    glUniform1i(box_.uniform("drawIndex"), static_cast<int>(dense[i].draw));
+    glUniform3f(box_.uniform("low"), low.x, low.y, low.z);
+    glUniform3f(box_.uniform("high"), high.x, high.y, high.z);
+    glBeginQuery(GL_ANY_SAMPLES_PASSED_CONSERVATIVE, queries_[i]);
+    glDrawArrays(GL_TRIANGLES, 0, 36);
+    glEndQuery(GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
+  }
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+  glDepthMask(GL_TRUE);
+  visibility_.use();
+  for (size_t i = 0; i < dense.size(); ++i) {
+    if (dense[i].boxBefore) glBeginConditionalRender(queries_[i], GL_QUERY_WAIT);
+    drawInstances(dense[i], firstInstance + i, 1);
+    if (dense[i].boxBefore) glEndConditionalRender();
+  }
+}
+
+void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& state, const std::vector<char>& drawn) {
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  target.bind();
+  glDisable(GL_BLEND);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_GREATER);
+  const GLuint nothing[4] = {0, 0, 0, 0};
+  const GLfloat farthest = 0.0f;
+  glClearBufferuiv(GL_COLOR, 0, nothing);
+  glClearBufferfv(GL_DEPTH, 0, &farthest);
+
+  std::vector<Candidate> light, dense;
+  std::uint32_t asked = 0;
+  for (const Candidate& c : candidatesIn(v, state, drawn)) {
+    if (c.triangles >= kDense && !dense.empty()) asked += c.triangles;
+    (c.triangles < kDense ? light : dense).push_back(c);
+  }
+  // Bodies of one shape together, where the nearest of them stands.
+  std::vector<Candidate> ordered;
+  std::vector<char> taken(light.size(), 0);
+  for (size_t i = 0; i < light.size(); ++i)
+    for (size_t j = i; j < light.size() && !taken[i]; ++j)
+      if (!taken[j] && light[j].sameShape(light[i])) {
+        ordered.push_back(light[j]);
+        if (j != i) taken[j] = 1;
+      }
+  const size_t few = ordered.size();
+  ordered.insert(ordered.end(), dense.begin(), dense.end());
+  std::vector<std::uint32_t> instances;
+  for (const Candidate& c : ordered) instances.push_back(c.draw);
+  instances_.upload(instances);
+  instances_.bindStorage(7);
+
+  visibility_.use();
+  glEnable(GL_CLIP_DISTANCE0);
+  if (v.onlyEntity >= 0) glEnable(GL_DEPTH_CLAMP);
+  for (size_t i = 0; i < few;) {
+    size_t end = i + 1;
+    while (end < few && ordered[end].sameShape(ordered[i])) ++end;
+    drawInstances(ordered[i], i, end - i);
+    i = end;
+  }
+  if (asked < kWorthAsking) {
+    for (size_t i = 0; i < dense.size(); ++i) drawInstances(dense[i], few + i, 1);
+  } else {
+    drawInstances(dense[0], few, 1);
+    drawHidden({dense.begin() + 1, dense.end()}, few + 1);
+  }
+  glDisable(GL_CLIP_DISTANCE0);
+  glDisable(GL_DEPTH_CLAMP);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+}
+
+}  // namespace pitviper

@@ -1,0 +1,39 @@
+#pragma once
+// The visibility pass: which opaque triangle each pixel sees, and how deep it is. Near bodies first; bodies of one mesh as instances; of
+// bodies with many triangles only those whose box shows something, so that what is hidden costs next to nothing.
+#include "sim/gl/objects.hpp"
+#include "sim/render/gpu_scene.hpp"
+#include "sim/render/tables.hpp"
+#include "sim/render/view.hpp"
+
+namespace pitviper {
+
+class SolidPass {
+ public:
+  /// All but the library must outlive it.
+  SolidPass(const Simulation& simulation, const RenderTables& tables, const GpuScene& scene, const ShaderLibrary& library);
+  /// Clears the target and fills it. Draws, view and meshes are bound.
+  void draw(RenderTarget& target, const View& view, const WorldState& state, const std::vector<char>& drawn);
+
+ private:
+  struct Candidate {
+    std::uint32_t draw = 0, first = 0, triangles = 0;
+    int entity = 0;
+    bool cull = false;
+    bool boxBefore = false;  ///< its box lies before the camera as a whole
+    double distance_m = 0.0;
+    bool sameShape(const Candidate& o) const { return first == o.first && triangles == o.triangles && cull == o.cull; }
+  };
+  std::vector<Candidate> candidatesIn(const View& view, const WorldState& state, const std::vector<char>& drawn) const;
+  void drawInstances(const Candidate& shape, std::size_t firstInstance, std::size_t count) const;
+  void drawHidden(const std::vector<Candidate>& dense, std::size_t firstInstance);
+
+  const Simulation& simulation_;
+  const RenderTables& tables_;
+  const GpuScene& scene_;
+  Program visibility_, box_;
+  Buffer instances_;
+  std::vector<GlName<deleteQuery>> queries_;
+};
+
+}  // namespace pitviper
