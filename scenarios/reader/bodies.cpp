@@ -120,6 +120,14 @@ void refuseForeignKeys(const Record& r, const std::string& model) {
   }
 }
 
+/// A value as text, places left out.
+std::string wordsOf(const Value& v) {
+  std::string words = std::to_string(static_cast<int>(v.kind)) + "'" + v.text + "'";
+  for (const Value& item : v.items) words += "[" + wordsOf(item) + "]";
+  for (const auto& [key, item] : v.entries) words += "{'" + key + "':" + wordsOf(item) + "}";
+  return words;
+}
+
 /// The true form, scaled; what is missing has been, or will be, refused.
 BodyForm formOf(const Record& r, const std::string& model) {
   const double scale = r.given("scale") ? r.number("scale") : 1.0;
@@ -133,6 +141,14 @@ BodyForm formOf(const Record& r, const std::string& model) {
 }
 
 }  // namespace
+
+std::shared_ptr<const Mesh> Builder::shapeOf(const Value& value, BodyForm& form) {
+  // The same words give the same mesh: bodies that share it are drawn together.
+  auto [known, fresh] = shapes_.try_emplace(wordsOf(value));
+  if (fresh) known->second.first = readShape(value, known->second.second);
+  form = known->second.second;
+  return known->second.first;
+}
 
 std::shared_ptr<const Mesh> Builder::readShape(const Value& value, BodyForm& form) {
   const Record r(value, tables::shape());
@@ -264,7 +280,7 @@ void Builder::readEntities(const Record& scenario) {
     Entity e;
     e.name = r.text("name");
     checkUnique(r.value("name"), entityNames_, "entity");
-    e.mesh = readShape(r.value("shape"), e.form);
+    e.mesh = shapeOf(r.value("shape"), e.form);
     triangles += e.mesh->triangles.size();
     if (triangles > kMostSceneTriangles)
       throw UserError(r.where("shape"), "the scene has more than " + std::to_string(kMostSceneTriangles) + " triangles with this body", "fewer",

@@ -53,6 +53,7 @@ class Builder {
   Placement readPlacement(const Record& r, bool attitude);
   glm::dvec3 readPosition(const Record& r, bool required);
   std::optional<Attitude> readAttitude(const Record& r, bool attached);
+  std::shared_ptr<const Mesh> shapeOf(const Value& value, BodyForm& form);
   std::shared_ptr<const Mesh> readShape(const Value& value, BodyForm& form);
   void checkMedium(const Record& entity, const Entity& e) const;
   void readSurfaces(const Record& r, Entity& entity);
@@ -80,6 +81,7 @@ class Builder {
   std::map<std::string, const Value*> materialValues_;
   std::map<std::string, Location> entityNames_, lightNames_, cameraNames_;
   std::map<std::string, int> entityIndex_;
+  std::map<std::string, std::pair<std::shared_ptr<const Mesh>, BodyForm>> shapes_;
 };
 
 }  // namespace pitviper

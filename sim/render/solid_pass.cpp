@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <map>
 
 namespace pitviper {
 namespace {
@@ -12,13 +13,25 @@ constexpr std::uint32_t kDense = 1024;
 /// Asking makes the driver wait for what is drawn so far; worth it from so many triangles on (llvmpipe draws about 4000 in a millisecond).
 constexpr std::uint32_t kWorthAsking = 4096;
 
+/// Larger meshes are drawn body by body: handing the body's number on with every triangle costs llvmpipe more than a draw call.
+constexpr std::uint32_t kWorthInstancing = 100;
+
+Program visibilityProgram(const ShaderLibrary& library, bool instances) {
+  ShaderSlots vertex, fragment;
+  vertex.files["drawn"] = instances ? "sim/render/glsl/drawn_instances.vert.glsl" : "sim/render/glsl/drawn_one.glsl";
+  fragment.files["drawn"] = instances ? "sim/render/glsl/drawn_instances.frag.glsl" : "sim/render/glsl/drawn_one.glsl";
+  return Program(assembleShader(library, "sim/render/glsl/visibility.vert.glsl", vertex),
+                 assembleShader(library, "sim/render/glsl/visibility.frag.glsl", fragment));
+}
+
 }  // namespace
 
 SolidPass::SolidPass(const Simulation& simulation, const RenderTables& tables, const GpuScene& scene, const ShaderLibrary& library)
     : simulation_(simulation),
       tables_(tables),
       scene_(scene),
-      visibility_(assembleShader(library, "sim/render/glsl/visibility.vert.glsl", {}), assembleShader(library, "sim/render/glsl/visibility.frag.glsl", {})),
+      single_(visibilityProgram(library, false)),
+      instanced_(visibilityProgram(library, true)),
       box_(assembleShader(library, "sim/render/glsl/box.vert.glsl", {}), assembleShader(library, "sim/render/glsl/nothing.frag.glsl", {})) {}
 
 std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const WorldState& state, const std::vector<char>& drawn) const {
@@ -53,16 +66,21 @@ std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const W
   return all;
 }
 
-void SolidPass::drawInstances(const Candidate& c, std::size_t firstInstance, std::size_t count) const {
-  if (c.cull) glEnable(GL_CULL_FACE);
-  else glDisable(GL_CULL_FACE);
-  glUniform1i(visibility_.uniform("firstInstance"), static_cast<int>(firstInstance));
-  glUniform1i(visibility_.uniform("firstTriangle"), static_cast<int>(c.first));
-  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(c.triangles * 3), GL_UNSIGNED_INT,
-                          reinterpret_cast<const void*>(static_cast<std::uintptr_t>(c.first) * 12), static_cast<GLsizei>(count));
+void SolidPass::drawOne(const Candidate& c) const {
+  single_.use();
+  glUniform1i(single_.uniform("drawIndex"), static_cast<int>(c.draw));
+  drawTriangles(single_, c, 1);
 }
 
-void SolidPass::drawHidden(const std::vector<Candidate>& dense, std::size_t firstInstance) {
+void SolidPass::drawTriangles(const Program& program, const Candidate& c, std::size_t instances) const {
+  if (c.cull) glEnable(GL_CULL_FACE);
+  else glDisable(GL_CULL_FACE);
+  glUniform1i(program.uniform("firstTriangle"), static_cast<int>(c.first));
+  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(c.triangles * 3), GL_UNSIGNED_INT,
+                          reinterpret_cast<const void*>(static_cast<std::uintptr_t>(c.first) * 12), static_cast<GLsizei>(instances));
+}
+
+void SolidPass::drawHidden(const std::vector<Candidate>& dense) {
   while (queries_.size() < dense.size()) {
     GLuint name = 0;
     glCreateQueries(GL_ANY_SAMPLES_PASSED_CONSERVATIVE, 1, &name);
@@ -86,10 +104,9 @@ void SolidPass::drawHidden(const std::vector<Candidate>& dense, std::size_t firs
   }
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   glDepthMask(GL_TRUE);
-  visibility_.use();
   for (size_t i = 0; i < dense.size(); ++i) {
     if (dense[i].boxBefore) glBeginConditionalRender(queries_[i], GL_QUERY_WAIT);
-    drawInstances(dense[i], firstInstance + i, 1);
+    drawOne(dense[i]);
     if (dense[i].boxBefore) glEndConditionalRender();
   }
 }
@@ -106,42 +123,47 @@ void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& stat
   glClearBufferuiv(GL_COLOR, 0, nothing);
   glClearBufferfv(GL_DEPTH, 0, &farthest);
 
-  std::vector<Candidate> light, dense;
+  std::vector<Candidate> dense;
+  std::vector<std::vector<Candidate>> groups;  // of one small mesh, where the nearest of them stands
+  std::map<std::pair<std::uint32_t, bool>, size_t> groupOf;
   std::uint32_t asked = 0;
   for (const Candidate& c : candidatesIn(v, state, drawn)) {
-    if (c.triangles >= kDense && !dense.empty()) asked += c.triangles;
-    (c.triangles < kDense ? light : dense).push_back(c);
+    if (c.triangles >= kDense) {
+      if (!dense.empty()) asked += c.triangles;
+      dense.push_back(c);
+      continue;
+    }
+    const auto [known, fresh] = groupOf.try_emplace({c.first, c.cull}, groups.size());
+    if (fresh || c.triangles > kWorthInstancing) groups.push_back({c});
+    else groups[known->second].push_back(c);
   }
-  // Bodies of one shape together, where the nearest of them stands.
-  std::vector<Candidate> ordered;
-  std::vector<char> taken(light.size(), 0);
-  for (size_t i = 0; i < light.size(); ++i)
-    for (size_t j = i; j < light.size() && !taken[i]; ++j)
-      if (!taken[j] && light[j].sameShape(light[i])) {
-        ordered.push_back(light[j]);
-        if (j != i) taken[j] = 1;
-      }
-  const size_t few = ordered.size();
-  ordered.insert(ordered.end(), dense.begin(), dense.end());
   std::vector<std::uint32_t> instances;
-  for (const Candidate& c : ordered) instances.push_back(c.draw);
-  instances_.upload(instances);
-  instances_.bindStorage(7);
+  for (const auto& group : groups)
+    if (group.size() > 1)
+      for (const Candidate& c : group) instances.push_back(c.draw);
+  if (!instances.empty()) {
+    instances_.upload(instances);
+    instances_.bindStorage(7);
+  }
 
-  visibility_.use();
   glEnable(GL_CLIP_DISTANCE0);
   if (v.onlyEntity >= 0) glEnable(GL_DEPTH_CLAMP);
-  for (size_t i = 0; i < few;) {
-    size_t end = i + 1;
-    while (end < few && ordered[end].sameShape(ordered[i])) ++end;
-    drawInstances(ordered[i], i, end - i);
-    i = end;
+  int firstInstance = 0;
+  for (const auto& group : groups) {
+    if (group.size() == 1) {
+      drawOne(group.front());
+      continue;
+    }
+    instanced_.use();
+    glUniform1i(instanced_.uniform("firstInstance"), firstInstance);
+    drawTriangles(instanced_, group.front(), group.size());
+    firstInstance += static_cast<int>(group.size());
   }
   if (asked < kWorthAsking) {
-    for (size_t i = 0; i < dense.size(); ++i) drawInstances(dense[i], few + i, 1);
+    for (const Candidate& c : dense) drawOne(c);
   } else {
-    drawInstances(dense[0], few, 1);
-    drawHidden({dense.begin() + 1, dense.end()}, few + 1);
+    drawOne(dense[0]);
+    drawHidden({dense.begin() + 1, dense.end()});
   }
   glDisable(GL_CLIP_DISTANCE0);
   glDisable(GL_DEPTH_CLAMP);

@@ -1,5 +1,5 @@
 #pragma once
-// The visibility pass: which opaque triangle each pixel sees, and how deep it is. Near bodies first; bodies of one mesh as instances; of
+// The visibility pass: which opaque triangle each pixel sees, and how deep it is. Near bodies first; bodies of one small mesh as instances; of
 // bodies with many triangles only those whose box shows something, so that what is hidden costs next to nothing.
 #include "sim/gl/objects.hpp"
 #include "sim/render/gpu_scene.hpp"
@@ -22,16 +22,16 @@ class SolidPass {
     bool cull = false;
     bool boxBefore = false;  ///< its box lies before the camera as a whole
     double distance_m = 0.0;
-    bool sameShape(const Candidate& o) const { return first == o.first && triangles == o.triangles && cull == o.cull; }
   };
   std::vector<Candidate> candidatesIn(const View& view, const WorldState& state, const std::vector<char>& drawn) const;
-  void drawInstances(const Candidate& shape, std::size_t firstInstance, std::size_t count) const;
-  void drawHidden(const std::vector<Candidate>& dense, std::size_t firstInstance);
+  void drawOne(const Candidate& c) const;
+  void drawTriangles(const Program& program, const Candidate& shape, std::size_t instances) const;
+  void drawHidden(const std::vector<Candidate>& dense);
 
   const Simulation& simulation_;
   const RenderTables& tables_;
   const GpuScene& scene_;
-  Program visibility_, box_;
+  Program single_, instanced_, box_;
   Buffer instances_;
   std::vector<GlName<deleteQuery>> queries_;
 };

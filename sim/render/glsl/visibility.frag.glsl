@@ -1,5 +1,5 @@
 layout(location = 0) out uvec2 identity;  // draw (0 is the background), triangle
-flat in uint drawIndex;
 uniform int firstTriangle;
+//@slot drawn
 
-void main() { identity = uvec2(drawIndex, uint(firstTriangle + gl_PrimitiveID)); }
+void main() { identity = uvec2(uint(drawIndex), uint(firstTriangle + gl_PrimitiveID)); }

@@ -1,11 +1,6 @@
-// Which surface each pixel sees. Bodies of one mesh are instances of one draw.
+// Which surface each pixel sees.
 //@use sim/render/glsl/geometry_buffers.glsl
 //@use sim/render/glsl/project.glsl
-layout(std430, binding = 7) readonly buffer Instances { uint drawOfInstance[]; };
-uniform int firstInstance;
-flat out uint drawIndex;
+//@slot drawn
 
-void main() {
-  drawIndex = drawOfInstance[firstInstance + gl_InstanceID];
-  project(draws[drawIndex], vertices[2 * gl_VertexID].xyz);
-}
+void main() { project(draws[drawnHere()], vertices[2 * gl_VertexID].xyz); }

@@ -1,0 +1,2 @@
+// The draw that the vertex stage found for the instance.
+flat in uint drawIndex;

@@ -1,0 +1,3 @@
+// One body a draw.
+uniform int drawIndex;
+int drawnHere() { return drawIndex; }
