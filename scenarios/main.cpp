@@ -43,8 +43,9 @@ const std::map<std::string, Command>& commands() {
         "pitviper check SCENARIO.yaml [--set path.to.key=value]...\n\nReads everything the scenario names and reports the first mistake as file:line:col with "
         "the fix (exit code 2).\n"}},
       {"info",
-       {infoCommand, "what is in a frame",
-        "pitviper info FILE.exr [--at COLUMN,ROW]\n\nLayers with unit, minimum, mean and maximum, and all attributes.\n\n"
+       {infoCommand, "what is in a frame, or what this machine draws with",
+        "pitviper info [FILE.exr [--at COLUMN,ROW]]\n\nLayers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver, its limits, and the way\n"
+        "in which transparent things are blended (fetch, barrier or ping_pong; PITVIPER_BLEND chooses another).\n\n"
         "  --at COLUMN,ROW  the values of one pixel with their units; (0,0) is the top left\n"}},
       {"integrate",
        {integrateCommand, "apply another sensor to a spectral image",

@@ -3,6 +3,8 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
+#include "sim/gl/blend_path.hpp"
+#include "sim/gl/context.hpp"
 #include "sim/image/exr.hpp"
 #include "sim/parameters/error.hpp"
 
@@ -55,10 +57,31 @@ void printLayers(const ExrImage& image) {
   }
 }
 
+/// The driver that `run` would draw with, and how.
+void printMachine() {
+  const GlContext context;
+  const GlLimits& l = context.limits();
+  const BlendPath chosen = chooseBlendPath();
+  std::string offered;
+  for (BlendPath path : offeredBlendPaths()) offered += (offered.empty() ? "" : ", ") + nameOf(path);
+  auto row = [](const char* what, const std::string& value) { std::printf("%-36s %s\n", what, value.c_str()); };
+  row("renderer", l.renderer + (l.software ? " (drawn by the CPU)" : ""));
+  row("vendor, OpenGL", l.vendor + ", " + l.version);
+  row("transparent things blended by", nameOf(chosen) + " (offered: " + offered + ")");
+  row("largest picture", std::to_string(l.largestTexture) + " subpixels a side");
+  row("targets in a pass", std::to_string(l.drawBuffers) + " of four channels: " + std::to_string(4 * l.drawBuffers) + " wavelengths a batch in buffered mode");
+  row("uniform block", std::to_string(l.uniformBlock) + " bytes: about " + std::to_string(l.uniformBlock / 48) + " wavelengths with up to four lights");
+}
+
 }  // namespace
 
 int infoCommand(const Arguments& arguments) {
-  const Options o("info", arguments, {{"--at"}}, 1, 1);
+  const Options o("info", arguments, {{"--at"}}, 0, 1);
+  if (o.words().empty()) {
+    if (o.has("--at")) throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "a pixel of no file", "info FILE.exr --at COLUMN,ROW", "name the file");
+    printMachine();
+    return 0;
+  }
   const ExrImage image = readExr(o.words()[0]);
   if (o.has("--at")) {
     std::string text = o.value("--at");

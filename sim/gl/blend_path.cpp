@@ -29,15 +29,23 @@ std::string nameOf(BlendPath path) {
   return "ping_pong";
 }
 
+std::vector<BlendPath> offeredBlendPaths() {
+  std::vector<BlendPath> all;
+  for (BlendPath path : {BlendPath::FramebufferFetch, BlendPath::TextureBarrier, BlendPath::PingPong})
+    if (isOffered(path)) all.push_back(path);
+  return all;
+}
+
 BlendPath chooseBlendPath() {
+  const auto offered = offeredBlendPaths();
   const char* wish = std::getenv("PITVIPER_BLEND");
-  const std::string asked = wish ? wish : "";
-  for (BlendPath path : {BlendPath::FramebufferFetch, BlendPath::TextureBarrier, BlendPath::PingPong}) {
-    if (!asked.empty() && asked != nameOf(path)) continue;
-    if (isOffered(path)) return path;
-    if (!asked.empty()) throw GlError("PITVIPER_BLEND asks for '" + asked + "', which this driver does not offer; leave it unset, or take ping_pong");
+  if (!wish || !*wish) return offered.front();
+  std::string names;
+  for (BlendPath path : offered) {
+    if (wish == nameOf(path)) return path;
+    names += (names.empty() ? "" : ", ") + nameOf(path);
   }
-  throw GlError("PITVIPER_BLEND is '" + asked + "'; it can be fetch, barrier or ping_pong");
+  throw GlError(std::string("PITVIPER_BLEND is '") + wish + "', which is none of what this driver offers: " + names + "; leave it unset, or take one of these");
 }
 
 }  // namespace pitviper

@@ -1,6 +1,7 @@
 #pragma once
 // How a fragment reads the target pixel that it is about to write: what Duvenhage 2006 section 7 calls a programmable blend.
 #include <string>
+#include <vector>
 
 namespace pitviper {
 
@@ -13,6 +14,8 @@ enum class BlendPath {
 /// The first of the three that the current context offers, or the one that the environment variable PITVIPER_BLEND names (fetch, barrier,
 /// ping_pong). Throws GlError for a name that is none, or that the driver cannot do.
 BlendPath chooseBlendPath();
+/// What the current context can do, best first.
+std::vector<BlendPath> offeredBlendPaths();
 /// "fetch", "barrier", "ping_pong".
 std::string nameOf(BlendPath path);
 

@@ -3,6 +3,7 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
@@ -58,6 +59,23 @@ std::string string(GLenum name) {
 
 }  // namespace
 
+GlLimits currentLimits() {
+  GlLimits l;
+  l.vendor = string(GL_VENDOR);
+  l.renderer = string(GL_RENDERER);
+  l.version = string(GL_VERSION);
+  l.software = l.renderer.find("llvmpipe") != std::string::npos || l.renderer.find("softpipe") != std::string::npos;
+  GLint viewport[2] = {0, 0}, attachments = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &l.largestTexture);
+  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
+  l.largestTexture = std::min({l.largestTexture, viewport[0], viewport[1]});
+  glGetIntegerv(GL_MAX_DRAW_BUFFERS, &l.drawBuffers);
+  glGetIntegerv(GL_MAX_COLOR_ATTACHMENTS, &attachments);
+  l.drawBuffers = std::min(l.drawBuffers, attachments);
+  glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &l.uniformBlock);
+  return l;
+}
+
 GlContext::GlContext(std::string device) {
   if (const char* wish = std::getenv("PITVIPER_GL"); wish && *wish && device == "auto") device = wish;
   EGLDisplay display = EGL_NO_DISPLAY;
@@ -88,10 +106,7 @@ GlContext::GlContext(std::string device) {
                   "); install Mesa's software renderer: apt-get install libegl1 libgl1-mesa-dri, or a GPU driver with EGL");
   display_ = display;
   context_ = context;
-  limits_.vendor = string(GL_VENDOR);
-  limits_.renderer = string(GL_RENDERER);
-  limits_.version = string(GL_VERSION);
-  limits_.software = limits_.renderer.find("llvmpipe") != std::string::npos || limits_.renderer.find("softpipe") != std::string::npos;
+  limits_ = currentLimits();
 }
 
 GlContext::~GlContext() {

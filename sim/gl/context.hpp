@@ -15,6 +15,9 @@ class GlError : public std::runtime_error {
 struct GlLimits {
   std::string vendor, renderer, version;
   bool software = false;  ///< drawn by the CPU
+  int largestTexture = 0;  ///< pixels a side
+  int drawBuffers = 0;     ///< colour targets of one pass
+  int uniformBlock = 0;    ///< bytes
 };
 
 /// Current on the thread that made it, until destroyed. Not copyable.
@@ -34,6 +37,9 @@ class GlContext {
   void* context_ = nullptr;
   GlLimits limits_;
 };
+
+/// Of the current context.
+GlLimits currentLimits();
 
 /// Throws GlError where GL has recorded an error; `doing` says at what.
 void checkGl(const char* doing);

@@ -109,6 +109,14 @@ Texture2D::Texture2D(int width, int height, PixelFormat format) {
 void Texture2D::bind(unsigned unit) const { glBindTextureUnit(unit, name_); }
 
 RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>& colours, bool depth) : width_(width), height_(height) {
+  const GlLimits limits = currentLimits();
+  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  if (std::max(width, height) > limits.largestTexture)
+    throw GlError("a picture of " + size + " subpixels is asked for, this driver's textures end at " + std::to_string(limits.largestTexture) +
+                  " a side; lower the film's width or height, or 'samples'");
+  if (colours.size() > static_cast<std::size_t>(limits.drawBuffers))
+    throw GlError(std::to_string(colours.size()) + " targets are asked for, this driver draws into " + std::to_string(limits.drawBuffers) +
+                  " at once; ask for fewer channels or truth layers");
   GLuint n = 0;
   glCreateFramebuffers(1, &n);
   name_ = GlName<deleteFramebuffer>(n);
@@ -124,8 +132,8 @@ RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>
   }
   glNamedFramebufferDrawBuffers(n, static_cast<GLsizei>(buffers.size()), buffers.data());
   if (glCheckNamedFramebufferStatus(n, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-    throw GlError("the driver cannot draw into " + std::to_string(colours.size()) + " targets of " + std::to_string(width) + "x" + std::to_string(height) +
-                  " pixels in single precision; ask for fewer channels or truth layers");
+    throw GlError("the driver cannot draw into " + std::to_string(colours.size()) + " targets of " + size +
+                  " pixels in single precision; ask for fewer channels or truth layers, or a smaller film");
 }
 
 void RenderTarget::select(std::size_t first, std::size_t count) {

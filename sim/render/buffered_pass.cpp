@@ -10,7 +10,8 @@
 namespace pitviper {
 namespace {
 
-constexpr int kMostTargets = 8;  // RGBA draw buffers that OpenGL 4.5 promises
+/// RGBA draw buffers that OpenGL 4.5 promises; a driver with more is not asked for them: registers hold a batch at a time.
+constexpr int kMostTargets = 8;
 
 /// The spectral image of a batch of nodes: declarations, and the body that fills it. Which batch is a uniform, so that one program
 /// serves all; nodes beyond the last repeat it and are not integrated.
