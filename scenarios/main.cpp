@@ -44,7 +44,8 @@ const std::map<std::string, Command>& commands() {
         "the fix (exit code 2).\n"}},
       {"info",
        {infoCommand, "what is in a frame, or what this machine draws with",
-        "pitviper info [FILE.exr [--at COLUMN,ROW]]\n\nLayers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver, its limits, and the way\n"
+        "pitviper info [FILE.exr [--at COLUMN,ROW]]\n\nLayers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver, its "
+        "limits, and the way\n"
         "in which transparent things are blended (fetch, barrier or ping_pong; PITVIPER_BLEND chooses another).\n\n"
         "  --at COLUMN,ROW  the values of one pixel with their units; (0,0) is the top left\n"}},
       {"integrate",
@@ -63,7 +64,7 @@ const std::map<std::string, Command>& commands() {
         "Times direct and buffered mode on a wall that fills the film (256x256, 16 channels, 16 wavelengths, one light, thermal emission, air\n"
         "on both legs), then with one factor varied at a time, in rounds that alternate with a bare loop over 16 wavelengths, the yardstick.\n"
         "Prints tables: milliseconds, million pixels and frames a second, speed by the yardstick, time by the centre. Takes about a minute and a half.\n\n"
-        "  --factor NAME        this factor only: centre, overdraw, channels, wavelengths, lights, film\n"
+        "  --factor NAME        this factor only: centre, overdraw, channels, wavelengths, lights, film, layers, shading, blend\n"
         "  --frames N           frames to time in each row, 10 or more (default 60; fewer of slow ones)\n"
         "  --out FOLDER         also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing\n"
         "  --accuracy SCENARIO  instead: the scenario's middle frame at 4 to 64 spectral samples, frames a second and error against 192\n"}},

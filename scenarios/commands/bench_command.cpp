@@ -49,11 +49,12 @@ int benchCommand(const Arguments& arguments) {
     return accuracyBench(o.value("--accuracy"));
   }
   const int frames = framesWanted(o);
-  const std::vector<BenchFactor> factors = factorsWanted(o);
+  std::vector<BenchFactor> factors = factorsWanted(o);
   const std::filesystem::path out = o.value("--out");
   if (o.has("--out")) ensureWritableFolder(out);
 
   const GlContext context;
+  for (BenchFactor& f : factors) dropWhatIsNotOffered(f);
   Yardstick yardstick;
   int steps = 0;
   for (const auto& f : factors) steps += benchSteps(f, frames);

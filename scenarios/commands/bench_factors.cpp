@@ -1,12 +1,13 @@
 #include "scenarios/commands/bench_factors.hpp"
 
+#include <algorithm>
 #include <functional>
+
+#include "sim/gl/blend_path.hpp"
+#include "sim/render/shading_program.hpp"
 
 namespace pitviper {
 namespace {
-
-/// Materials have no `transmission` yet; with it the transparent layers are timed as well.
-constexpr bool kTransparentMaterials = true;
 
 /// Both modes at each value; compared with the same mode at `base`.
 BenchFactor varied(const std::string& name, const std::string& heading, const std::vector<int>& values, int base,
@@ -59,6 +60,34 @@ BenchFactor layers() {
   return f;
 }
 
+/// The same bodies as full-screen fragments and as compute.
+BenchFactor shading() {
+  BenchFactor f{"shading", "spectral shading as", {}};
+  for (RenderMode mode : {RenderMode::Direct, RenderMode::Buffered})
+    for (ShadingStage stage : {ShadingStage::Fragment, ShadingStage::Compute}) {
+      BenchVariant v{nameOf(stage), stage == ShadingStage::Compute ? 1.0 : 0.0, mode == RenderMode::Direct ? "direct" : "buffered", {}};
+      v.setting.mode = mode;
+      v.setting.shading = nameOf(stage);
+      v.base = mode == RenderMode::Direct ? 0 : 2;
+      f.variants.push_back(v);
+    }
+  return f;
+}
+
+/// Four layers with emission and air by each way of blending.
+BenchFactor blend() {
+  BenchFactor f{"blend", "four layers blended by", {}};
+  for (BlendPath path : {BlendPath::FramebufferFetch, BlendPath::TextureBarrier, BlendPath::PingPong}) {
+    BenchVariant v{nameOf(path), static_cast<double>(f.variants.size()), "buffered", {}};
+    v.setting.mode = RenderMode::Buffered;
+    v.setting.layers = 4;
+    v.setting.blend = nameOf(path);
+    v.base = 2;  // a copy: every driver can do it
+    f.variants.push_back(v);
+  }
+  return f;
+}
+
 }  // namespace
 
 std::vector<BenchFactor> benchFactors() {
@@ -75,8 +104,19 @@ std::vector<BenchFactor> benchFactors() {
   all.push_back(varied("wavelengths", "wavelengths", {4, 8, 16, 32, 64, 128, 340}, 16, [](BenchSetting& s, int v) { s.wavelengths = v; }));
   all.push_back(varied("lights", "lights", {0, 1, 4, 16}, 1, [](BenchSetting& s, int v) { s.lights = v; }));
   all.push_back(varied("film", "pixels a side", {64, 128, 256, 512, 1024}, 256, [](BenchSetting& s, int v) { s.film_px = v; }));
-  if (kTransparentMaterials) all.push_back(layers());
+  all.push_back(layers());
+  all.push_back(shading());
+  all.push_back(blend());
   return all;
+}
+
+void dropWhatIsNotOffered(BenchFactor& f) {
+  if (f.name != "blend") return;
+  const auto offered = offeredBlendPaths();
+  std::erase_if(f.variants, [&](const BenchVariant& v) {
+    return std::none_of(offered.begin(), offered.end(), [&](BlendPath path) { return nameOf(path) == v.setting.blend; });
+  });
+  for (auto& v : f.variants) v.base = static_cast<int>(f.variants.size()) - 1;
 }
 
 }  // namespace pitviper

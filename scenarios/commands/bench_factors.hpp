@@ -25,5 +25,7 @@ struct BenchFactor {
 };
 
 std::vector<BenchFactor> benchFactors();
+/// Ways of blending that the current context cannot do.
+void dropWhatIsNotOffered(BenchFactor& factor);
 
 }  // namespace pitviper

@@ -1,10 +1,32 @@
 #include "scenarios/commands/bench_passes.hpp"
 
+#include <cstdlib>
+#include <optional>
+
 #include "scenarios/commands/commands.hpp"
 #include "sim/render/camera_renderer.hpp"
 
 namespace pitviper {
 namespace {
+
+/// Programs ask the environment when they are made.
+class Environment {
+ public:
+  Environment(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    if (!value.empty()) setenv(name, value.c_str(), 1);
+  }
+  ~Environment() {
+    if (before_) setenv(name_, before_->c_str(), 1);
+    else unsetenv(name_);
+  }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
 
 /// Never moved: passes keep references to the simulation and the plan.
 struct Prepared {
@@ -41,6 +63,7 @@ struct PreparedFrame : Prepared {
 }  // namespace
 
 DrawFrame preparePass(const BenchSetting& setting) {
+  const Environment shading("PITVIPER_SHADING", setting.shading), blend("PITVIPER_BLEND", setting.blend);
   return [p = std::make_shared<PreparedPass>(setting)] { p->pass->draw(p->view, p->state, p->drawn); };
 }
 

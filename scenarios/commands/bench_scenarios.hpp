@@ -1,5 +1,7 @@
 #pragma once
 // The scenes that `bench` draws: a wall that fills the film, seen through air, and what is varied about it.
+#include <string>
+
 #include "sim/model/simulation.hpp"
 
 namespace pitviper {
@@ -21,6 +23,8 @@ struct BenchSetting {
   LayerKind layerKind = LayerKind::Emitting;
   bool air = true;
   RenderMode mode = RenderMode::Direct;
+  std::string shading;  ///< as PITVIPER_SHADING; empty: what the machine chooses
+  std::string blend;    ///< as PITVIPER_BLEND
 };
 
 Simulation benchSimulation(const BenchSetting& setting);

@@ -7,6 +7,7 @@
 #include "sim/gl/context.hpp"
 #include "sim/image/exr.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/render/shading_program.hpp"
 
 namespace pitviper {
 namespace {
@@ -67,6 +68,7 @@ void printMachine() {
   auto row = [](const char* what, const std::string& value) { std::printf("%-36s %s\n", what, value.c_str()); };
   row("renderer", l.renderer + (l.software ? " (drawn by the CPU)" : ""));
   row("vendor, OpenGL", l.vendor + ", " + l.version);
+  row("spectral shading as", nameOf(chooseShadingStage()) + " (PITVIPER_SHADING: fragment, compute)");
   row("transparent things blended by", nameOf(chosen) + " (offered: " + offered + ")");
   row("largest picture", std::to_string(l.largestTexture) + " subpixels a side");
   row("targets in a pass", std::to_string(l.drawBuffers) + " of four channels: " + std::to_string(4 * l.drawBuffers) + " wavelengths a batch in buffered mode");

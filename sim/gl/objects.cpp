@@ -44,19 +44,22 @@ GLuint compile(GLenum stage, const AssembledShader& shader) {
 
 Program::Program(const AssembledShader& vertex, const AssembledShader& fragment) {
   const GLuint vs = compile(GL_VERTEX_SHADER, vertex);
-  const GLuint fs = compile(GL_FRAGMENT_SHADER, fragment);
+  link({vs, compile(GL_FRAGMENT_SHADER, fragment)}, fragment);
+}
+
+Program::Program(const AssembledShader& compute) { link({compile(GL_COMPUTE_SHADER, compute)}, compute); }
+
+void Program::link(std::initializer_list<unsigned> stages, const AssembledShader& lines) {
   name_ = GlName<deleteProgram>(glCreateProgram());
-  glAttachShader(name_, vs);
-  glAttachShader(name_, fs);
+  for (unsigned stage : stages) glAttachShader(name_, stage);
   glLinkProgram(name_);
-  glDeleteShader(vs);
-  glDeleteShader(fs);
+  for (unsigned stage : stages) glDeleteShader(stage);
   GLint ok = 0;
   glGetProgramiv(name_, GL_LINK_STATUS, &ok);
   if (ok) return;
   char log[4096] = "";
   glGetProgramInfoLog(name_, sizeof log, nullptr, log);
-  throw GlError("shader program does not link:\n" + fragment.mapLog(log));
+  throw GlError("shader program does not link:\n" + lines.mapLog(log));
 }
 
 void Program::use() const { glUseProgram(name_); }

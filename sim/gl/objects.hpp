@@ -2,6 +2,7 @@
 // Owners of GL objects: program, buffer, texture, framebuffer, timer, readback. All need a current GlContext.
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <optional>
 #include <span>
 #include <string>
@@ -47,10 +48,12 @@ class Program {
  public:
   Program() = default;
   Program(const AssembledShader& vertex, const AssembledShader& fragment);
+  explicit Program(const AssembledShader& compute);
   void use() const;
   int uniform(const char* name) const;
 
  private:
+  void link(std::initializer_list<unsigned> stages, const AssembledShader& lines);
   GlName<deleteProgram> name_;
 };
 

@@ -13,11 +13,10 @@ namespace {
 /// RGBA draw buffers that OpenGL 4.5 promises; a driver with more is not asked for them: registers hold a batch at a time.
 constexpr int kMostTargets = 8;
 
-/// The spectral image of a batch of nodes: declarations, and the body that fills it. Which batch is a uniform, so that one program
+/// The spectral image of a batch of nodes: names, and the body that fills it. Which batch is a uniform, so that one program
 /// serves all; nodes beyond the last repeat it and are not integrated.
-void writeSpectrum(ShaderSlots& slots, int targets) {
+std::vector<std::string> writeSpectrum(ShaderSlots& slots, int targets) {
   std::ostringstream declared, body;
-  for (int t = 0; t < targets; ++t) declared << "layout(location = " << t << ") out vec4 spectrum" << t << ";\n";
   declared << "uniform int firstNode;\nvoid clearTargets() {}\n";
   body << "void integrate() {\n  float radiance[" << 4 * targets << "];\n  for (int i = 0; i < " << 4 * targets
        << "; ++i) radiance[i] = nodeRadiance(min(firstNode + i, NODES - 1));\n";
@@ -27,6 +26,9 @@ void writeSpectrum(ShaderSlots& slots, int targets) {
   body << "}\n";
   slots.generated["targets"] = declared.str();
   slots.generated["integrate"] = body.str();
+  std::vector<std::string> names;
+  for (int t = 0; t < targets; ++t) names.push_back("spectrum" + std::to_string(t));
+  return names;
 }
 
 /// The integral over the same nodes: a multiply-add per node and group of channels that the node feeds; weights in that order.
@@ -68,8 +70,8 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
   ShaderSlots slots = shadingSlots();
   slots.constants["WEIGHTS"] = 1;  // shading itself integrates nothing
   slots.files["truth"] = "sim/render/glsl/truth_none.glsl";
-  writeSpectrum(slots, targets_);
-  shade_ = shadingProgram(library, slots);
+  const auto spectrum = writeSpectrum(slots, targets_);
+  shade_ = ShadingProgram(library, slots, spectrum, 0);
   for (int first = 0; first < plan.nodeCount(); first += perBatch) {
     const int count = std::min(perBatch, plan.nodeCount() - first);
     Batch batch;
@@ -87,7 +89,7 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
   slots.files["truth"] = "sim/render/glsl/truth_layers.glsl";
   slots.generated["targets"] = "void clearTargets() {}\n";
   slots.generated["integrate"] = "void integrate() {}\n";
-  truth_ = shadingProgram(library, slots);
+  truth_ = ShadingProgram(library, slots, truthTargets(), static_cast<size_t>(plan.groupCount()));
 }
 
 RenderTarget& BufferedPass::spectrumFor(const RenderTarget& visibility) {
@@ -107,12 +109,14 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
   RenderTarget& spectrum = spectrumFor(visibility);
   const size_t groups = static_cast<size_t>(plan().groupCount());
   for (size_t b = 0; b < batches_.size(); ++b) {
-    spectrum.bind();
-    const GLfloat zero[4] = {0, 0, 0, 0};  // what a zoomed view leaves out must not keep the last picture's spectrum
-    for (size_t t = 0; isPartial() && t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), zero);
+    if (isPartial()) {  // what a zoomed view leaves out must not keep the last picture's spectrum
+      spectrum.bind();
+      const GLfloat zero[4] = {0, 0, 0, 0};
+      for (size_t t = 0; t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), zero);
+    }
     shade_.use();
     glUniform1i(shade_.uniform("firstNode"), batches_[b].firstNode);
-    fillScreen(shade_);
+    shade_.run(spectrum);
     if (layers_ && !layers_->isEmpty()) {
       layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode});
       bindBuffers();
@@ -127,15 +131,11 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
       glEnable(GL_BLEND);
       glBlendFunc(GL_ONE, GL_ONE);
     }
-    fillScreen(batches_[b].integrate);
+    batches_[b].integrate.use();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
     glDisable(GL_BLEND);
   }
-  if (hasTruth()) {
-    into.select(groups, into.colourCount() - groups);
-    into.bind();
-    fillScreen(truth_);
-  }
-  into.select(0, into.colourCount());
+  if (hasTruth()) truth_.run(into);
 }
 
 std::vector<double> BufferedPass::transmittance(const View& asked, const WorldState& state, const std::vector<char>& drawn, double farthest_m) {

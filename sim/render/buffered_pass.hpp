@@ -12,6 +12,7 @@ class BufferedPass final : public ScenePass {
   BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                double apertureArea_m2);
 
+  const AssembledShader& shaderSource() const override { return shade_.source(); }
   std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) override;
   /// Null where nothing in the scenario is transparent.
   const LayerPass* layers() const { return layers_.get(); }
@@ -27,7 +28,7 @@ class BufferedPass final : public ScenePass {
     Buffer weights;
   };
   std::vector<Batch> batches_;
-  Program shade_, truth_;
+  ShadingProgram shade_, truth_;
   std::unique_ptr<LayerPass> layers_;
   int targets_ = 0;  ///< RGBA targets of the spectral image
   std::deque<RenderTarget> spectra_;

@@ -23,9 +23,8 @@ class CameraRenderer {
   }
   const Plan& plan() const { return plan_; }
   /// Of the mode that the last frame was drawn in.
-  const AssembledShader& fragmentSource() const { return pass_->fragmentSource(); }
+  const AssembledShader& shaderSource() const { return pass_->shaderSource(); }
   bool isBuffered() const { return pass_ == buffered_.get(); }
-
 
  private:
   bool seesTransparent() const;

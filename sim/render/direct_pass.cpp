@@ -13,14 +13,16 @@ DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const Sha
   slots.generated["targets"] = tables().targetsText;
   slots.generated["integrate"] = tables().integrateText;
   slots.constants["WEIGHTS"] = static_cast<long long>(tables().weights.size() / 4);
-  program_ = shadingProgram(library, slots);
+  auto targets = channelTargets();
+  if (truth)
+    for (const auto& name : truthTargets()) targets.push_back(name);
+  program_ = ShadingProgram(library, slots, targets, 0);
   weights_.upload(tables().weights);
 }
 
 void DirectPass::shade(RenderTarget& into, const RenderTarget&) {
-  into.bind();
   weights_.bindUniform(2);
-  fillScreen(program_);
+  program_.run(into);
 }
 
 std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,

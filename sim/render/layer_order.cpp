@@ -29,7 +29,7 @@ struct Footprint {
   std::uint32_t piece;
   Polygon outline;
   glm::dvec2 low, high;
-  double middle_m;       ///< range of its middle
+  double middle_m;        ///< range of its middle
   glm::dvec3 plane{0.0};  ///< of a triangle: 1 / depth = plane . (tan x, tan y, -1)
 };
 

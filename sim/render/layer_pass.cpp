@@ -41,6 +41,7 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
           << "]);\n";
   blend << "}\n";
   base.generated["targets"] = declared.str();
+  base.generated["outputs"] = "";
   base.generated["integrate"] = "";
   base.generated["blend"] = blend.str();
   base.files["truth"] = "sim/render/glsl/truth_none.glsl";
@@ -61,8 +62,8 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
   }
   if (plan.terms.media) {
     volume_ = Program(assembleShader(library, "sim/render/glsl/box.vert.glsl", base), assembleShader(library, "sim/render/glsl/volume.frag.glsl", base));
-    thickness_ = Program(assembleShader(library, "sim/render/glsl/thickness.vert.glsl", base),
-                         assembleShader(library, "sim/render/glsl/thickness.frag.glsl", base));
+    thickness_ =
+        Program(assembleShader(library, "sim/render/glsl/thickness.vert.glsl", base), assembleShader(library, "sim/render/glsl/thickness.frag.glsl", base));
     media_.upload(tables.media);
   }
 }

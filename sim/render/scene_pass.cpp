@@ -65,14 +65,10 @@ ShaderSlots ScenePass::shadingSlots() const {
   return slots;
 }
 
-Program ScenePass::shadingProgram(const ShaderLibrary& library, const ShaderSlots& slots) {
-  fragmentSource_ = assembleShader(library, "sim/render/glsl/shade.frag.glsl", slots);
-  return Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), fragmentSource_);
-}
-
-void ScenePass::fillScreen(const Program& program) {
-  program.use();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
+std::vector<std::string> ScenePass::channelTargets() const {
+  std::vector<std::string> names;
+  for (int g = 0; g < plan_.groupCount(); ++g) names.push_back("channels" + std::to_string(g));
+  return names;
 }
 
 void ScenePass::setState(const WorldState& state) {
@@ -113,8 +109,7 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
     const glm::dvec3 origin = cameraFromLocal * (pose.position - v.position);
     for (int r = 0; r < 3; ++r) g.row[r] = glm::vec4(bodyFromCamera[0][r], bodyFromCamera[1][r], bodyFromCamera[2][r], origin[r]);
     const Surface* s = item.entity < 0 ? nullptr : &simulation_.entities[static_cast<size_t>(item.entity)].surfaces[static_cast<size_t>(item.surface)];
-    g.table = {item.row, item.material, s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u,
-               static_cast<unsigned>(item.entity + 1)};
+    g.table = {item.row, item.material, s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u, static_cast<unsigned>(item.entity + 1)};
     const size_t lightRow = static_cast<size_t>(item.entity + 1);
     const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
     g.state = {s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
@@ -173,6 +168,7 @@ void ScenePass::draw(const View& asked, const WorldState& state, const std::vect
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
   if (partial_) {
+    current_->shading.select(0, current_->shading.colourCount());
     current_->shading.bind();
     const GLfloat zero[4] = {0, 0, 0, 0};
     for (size_t i = 0; i < current_->shading.colourCount(); ++i) glClearBufferfv(GL_COLOR, static_cast<GLint>(i), zero);

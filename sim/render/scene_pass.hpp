@@ -6,6 +6,7 @@
 
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/light_relevance.hpp"
+#include "sim/render/shading_program.hpp"
 #include "sim/render/solid_pass.hpp"
 #include "sim/render/surface_buffers.hpp"
 #include "sim/render/tables.hpp"
@@ -39,7 +40,7 @@ class ScenePass {
   /// Light levels and poses as in setState() and the last draw().
   virtual std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m);
   /// The main shading program's source.
-  const AssembledShader& fragmentSource() const { return fragmentSource_; }
+  virtual const AssembledShader& shaderSource() const = 0;
 
  protected:
   /// The simulation and the plan must outlive it.
@@ -58,9 +59,9 @@ class ScenePass {
   bool hasTruth() const { return truth_; }
   /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
   ShaderSlots shadingSlots() const;
-  /// Compiles a shading program; its source is kept as fragmentSource().
-  Program shadingProgram(const ShaderLibrary& library, const ShaderSlots& slots);
-  static void fillScreen(const Program& program);
+  /// Names of the channel targets, and of the truth targets, in order.
+  std::vector<std::string> channelTargets() const;
+  static std::vector<std::string> truthTargets() { return {"truthGeometry", "truthNormal", "truthIdentity"}; }
   void uploadView(const View& view);
   void uploadDraws(const View& view, const WorldState& state);
   void bindBuffers() const;
@@ -82,7 +83,6 @@ class ScenePass {
   bool truth_;
   double apertureArea_m2_;
   RenderTables tables_;
-  AssembledShader fragmentSource_;
   SurfaceBuffers solid_;
   SolidPass solids_;
   LightRelevance relevance_;

@@ -196,7 +196,6 @@ std::vector<Loop> integrationLoops(const Plan& plan) {
 
 void writeIntegral(RenderTables& t, const Plan& plan) {
   std::ostringstream targets, text;
-  for (int g = 0; g < plan.groupCount(); ++g) targets << "layout(location = " << g << ") out vec4 channels" << g << ";\n";
   targets << "void clearTargets() {\n";
   for (int g = 0; g < plan.groupCount(); ++g) targets << "  channels" << g << " = vec4(0.0);\n";
   targets << "}\n";

@@ -43,13 +43,13 @@ struct SurfaceTables {
 
 struct RenderTables {
   std::vector<DrawItem> draws;
-  SurfaceTables solid, layer;   ///< the background's material is the last solid one
-  std::vector<float> media;     ///< vec4 (absorption [1/m], source radiance, 0, 0) per node
-  std::vector<float> node;      ///< vec4 per node: extinction, source radiance, c2 / lambda, c1L / lambda^5
-  std::vector<float> ambient;   ///< vec4 per node
-  std::vector<float> weights;   ///< vec4s in the order of the integration text
-  std::string integrateText;    ///< body of the spectral integral
-  std::string targetsText;      ///< declarations of the channel targets
+  SurfaceTables solid, layer;  ///< the background's material is the last solid one
+  std::vector<float> media;    ///< vec4 (absorption [1/m], source radiance, 0, 0) per node
+  std::vector<float> node;     ///< vec4 per node: extinction, source radiance, c2 / lambda, c1L / lambda^5
+  std::vector<float> ambient;  ///< vec4 per node
+  std::vector<float> weights;  ///< vec4s in the order of the integration text
+  std::string integrateText;   ///< body of the spectral integral
+  std::string targetsText;     ///< how the channel targets begin
 };
 
 /// Light intensities at the nodes, vec4 per group of four lights: changes with the lights' levels.

@@ -15,6 +15,6 @@ Real blended(Real behind, int i) {
 //@slot blend
 
 void main() {
-  lookAt(seen);
+  lookAt(seen, gl_FragCoord.xy);
   blend();
 }

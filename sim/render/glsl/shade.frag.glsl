@@ -5,7 +5,7 @@ layout(binding = 0) uniform usampler2D visibility;
 void main() {
   uvec2 id = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).xy;
   if (view.earth.z > 0.0 && float(draws[id.x].table.w) != view.earth.z) discard;
-  lookAt(id);
+  lookAt(id, gl_FragCoord.xy);
   clearTargets();
   integrate();
   writeTruth(1.0 / rayLength_);

@@ -22,20 +22,22 @@ float sunElevation_; // sine of it at the point
 float isSurface_; // 0 for the background
 float lightCos_, lightDistance2_;  // of the first light (truth)
 
+//@slot outputs
+//@slot targets
+
 //@slot path
 //@slot lobes
 //@slot lights
 //@slot surface
 //@slot truth
 
-//@slot targets
 Real nodeRadiance(int i) { return pathSeen(i, selfRadiance(i)) + reflectedLight(i); }
 //@slot integrate
 
-// id: draw (0 is the background), triangle.
-void lookAt(uvec2 id) {
+// id: draw (0 is the background), triangle; where in the picture [pixels from the lower left].
+void lookAt(uvec2 id, vec2 pixel) {
   draw_ = draws[id.x];
-  prepareRay(gl_FragCoord.xy);
+  prepareRay(pixel);
   vec3 d = inBody(draw_, ray_);
   isSurface_ = id.x == 0u ? 0.0 : 1.0;
   toViewer_ = -d / rayLength_;

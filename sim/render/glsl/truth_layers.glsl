@@ -1,8 +1,5 @@
-// Geometry and identity of what a pixel sees, behind the channel targets: (area, w1, w2, range), (normal east, north, up, temperature),
+// Geometry and identity of what a pixel sees: (area, w1, w2, range), (normal east, north, up, temperature),
 // (entity, part, cos theta_v, 0). Where nothing is seen everything is 0.
-layout(location = GROUPS) out vec4 truthGeometry;
-layout(location = GROUPS + 1) out vec4 truthNormal;
-layout(location = GROUPS + 2) out vec4 truthIdentity;
 
 void writeTruth(float cosPsi) {
   if (isSurface_ == 0.0) {

@@ -1,0 +1,64 @@
+#include "sim/render/shading_program.hpp"
+
+#include <epoxy/gl.h>
+
+#include <cstdlib>
+
+#include "sim/gl/context.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Edge of a compute workgroup [pixels]: as in sim/render/glsl/shade.comp.glsl.
+constexpr unsigned kGroup = 8;
+
+}  // namespace
+
+std::string nameOf(ShadingStage stage) { return stage == ShadingStage::Compute ? "compute" : "fragment"; }
+
+ShadingStage chooseShadingStage() {
+  const char* wish = std::getenv("PITVIPER_SHADING");
+  if (!wish || !*wish) return currentLimits().software ? ShadingStage::Fragment : ShadingStage::Compute;
+  for (ShadingStage stage : {ShadingStage::Fragment, ShadingStage::Compute})
+    if (wish == nameOf(stage)) return stage;
+  throw GlError(std::string("PITVIPER_SHADING is '") + wish + "'; it can be fragment or compute");
+}
+
+ShadingProgram::ShadingProgram(const ShaderLibrary& library, ShaderSlots slots, const std::vector<std::string>& targets, std::size_t firstColour)
+    : stage_(chooseShadingStage()), firstColour_(firstColour), colours_(targets.size()) {
+  std::string outputs, store = "void storeTargets(ivec2 at) {\n";
+  for (std::size_t i = 0; i < targets.size(); ++i) {
+    const std::string number = std::to_string(i);
+    if (stage_ == ShadingStage::Fragment) {
+      outputs += "layout(location = " + std::to_string(firstColour + i) + ") out vec4 " + targets[i] + ";\n";
+    } else {
+      outputs += "vec4 " + targets[i] + ";\nlayout(rgba32f, binding = " + number + ") writeonly uniform image2D image" + number + ";\n";
+      store += "  imageStore(image" + number + ", at, " + targets[i] + ");\n";
+    }
+  }
+  slots.generated["outputs"] = outputs;
+  slots.generated["store"] = store + "}\n";
+  if (stage_ == ShadingStage::Fragment) {
+    source_ = assembleShader(library, "sim/render/glsl/shade.frag.glsl", slots);
+    program_ = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), source_);
+  } else {
+    source_ = assembleShader(library, "sim/render/glsl/shade.comp.glsl", slots);
+    program_ = Program(source_);
+  }
+}
+
+void ShadingProgram::run(RenderTarget& into) const {
+  program_.use();
+  if (stage_ == ShadingStage::Fragment) {
+    into.select(firstColour_, colours_);
+    into.bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+    return;
+  }
+  for (std::size_t i = 0; i < colours_; ++i)
+    glBindImageTexture(static_cast<GLuint>(i), into.colour(firstColour_ + i).name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  glDispatchCompute((static_cast<GLuint>(into.width()) + kGroup - 1) / kGroup, (static_cast<GLuint>(into.height()) + kGroup - 1) / kGroup, 1);
+  glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
+}
+
+}  // namespace pitviper

@@ -1,0 +1,33 @@
+#pragma once
+// Spectral shading of every pixel of a picture, as full-screen fragments or as compute, from the same bodies.
+#include "sim/gl/objects.hpp"
+
+namespace pitviper {
+
+enum class ShadingStage { Fragment, Compute };
+
+/// Fragments where the CPU draws (both take the same time there, `bench --factor shading`), compute on a GPU (data-centre GPUs give fragments
+/// few of their units); the environment variable PITVIPER_SHADING (fragment, compute) overrides. Throws GlError for another word.
+ShadingStage chooseShadingStage();
+std::string nameOf(ShadingStage stage);
+
+class ShadingProgram {
+ public:
+  ShadingProgram() = default;
+  /// `targets`: names of the vec4 that the slots' text fills, in the order of the target's colours from `firstColour` on.
+  ShadingProgram(const ShaderLibrary& library, ShaderSlots slots, const std::vector<std::string>& targets, std::size_t firstColour);
+  /// Uniforms may be set between use() and run().
+  void use() const { program_.use(); }
+  int uniform(const char* name) const { return program_.uniform(name); }
+  /// Buffers and textures are bound; binds and selects its colours of the target.
+  void run(RenderTarget& into) const;
+  const AssembledShader& source() const { return source_; }
+
+ private:
+  ShadingStage stage_ = ShadingStage::Fragment;
+  std::size_t firstColour_ = 0, colours_ = 0;
+  AssembledShader source_;
+  Program program_;
+};
+
+}  // namespace pitviper
