@@ -159,15 +159,18 @@ Chart rateChart(const BenchFactor& factor, const std::vector<const BenchRow*>& r
   c.yFromZero = true;
   c.logX = spread == Spread::Logarithmic;
   c.logY = logY;
+  for (const BenchRow* r : rows)
+    if (spread == Spread::Categories && r->variant.mode == rows.front()->variant.mode) c.categories.push_back(r->variant.value);
   for (const char* mode : {"direct", "buffered"}) {
     c.series.push_back(seriesOf(rows, mode, rateByYardstick));
     Series& s = c.series.back();
+    if (s.x.empty()) {
+      c.series.pop_back();
+      continue;
+    }
     if (spread == Spread::Logarithmic) c.xTicks = s.x;
     else
-      for (size_t i = 0; i < s.x.size(); ++i) {
-        if (c.categories.size() <= i) c.categories.push_back(format("%g", s.x[i]));
-        s.x[i] = static_cast<double>(i);
-      }
+      for (size_t i = 0; i < s.x.size(); ++i) s.x[i] = static_cast<double>(i);
   }
   return c;
 }
@@ -205,6 +208,8 @@ std::vector<Chart> benchCharts(const std::vector<BenchFactor>& factors, const st
     else if (f.name == "channels") charts.push_back(rateChart(f, rows, "Channels, at 16 wavelengths", Spread::Logarithmic, false));
     else if (f.name == "wavelengths") charts.push_back(rateChart(f, rows, "Wavelengths, for 16 channels", Spread::Logarithmic, true));
     else if (f.name == "lights") charts.push_back(rateChart(f, rows, "Point lights", Spread::Categories, false));
+    else if (f.name == "shading") charts.push_back(rateChart(f, rows, "Shading as fragments or as compute", Spread::Categories, false));
+    else if (f.name == "blend") charts.push_back(rateChart(f, rows, "Four transparent layers, by way of blending", Spread::Categories, false));
     else charts.push_back(rateChart(f, rows, "Size of the film", Spread::Logarithmic, false));
   }
   return charts;
