@@ -278,7 +278,7 @@ TEST(Media, SixteenChannelsInSeveralBatches) {
   for (int c = 0; c < 16; ++c)
     channels += (c ? ", " : "") + std::string("{name: c") + std::to_string(c) + ", response: {band: [" + text(3.0 + 0.5 * c) + " um, " + text(3.7 + 0.5 * c) + " um]}}";
   channels += "]";
-  for (const std::string spectral : {"{samples: 16}", "{samples: 40, shared: true}"}) {
+  for (const std::string spectral : {"{samples: 6}", "{samples: 40, shared: true}"}) {
     const Eye eye{{0, 0, 0}, {1, 0, 0}, 0.5, 5};
     const auto sim = scene(
         "background: {temperature: 300 K}\natmosphere: {extinction: 0.01 /m, temperature: 280 K}\n"

@@ -207,6 +207,80 @@ std::vector<Bad> badScenarios() {
        "materials:\n  paint: @@{components: [{reflection: lambertian, reflectance: {wavelength: um, unit: \"1\", values: [[0.4, 0.1], [2.5, 0.2]]}}]}\n" +
            entity("material: paint, temperature: 300 K"),
        {"material 'paint'", "channel 'mw'", "3.6 um to 4.9 um", "0.4 um to 2.5 um"}},
+      // Transparent surfaces and media.
+      {"TransmissionWithoutTransmittance", "materials: {m: {transmission: @@{}}}\n", {"a transmission without a transmittance", "transmittance"}},
+      {"TransmissionWithAngularAlone", "materials: {m: {transmission: @@{angular: [[0 deg, 1]]}}}\n", {"'angular' but without 'transmittance'"}},
+      {"TransmissionTwice",
+       "materials: {m: {transmission: @@{transmittance: 0.5, wavelength: [3 um, 5 um], angles: [{angle: view, count: 2, last: 90 deg}], values: [[0.1, 0.1], [0, 0]]}}}\n",
+       {"a transmission that is both a spectrum and a table"}},
+      {"TransmittanceBeyondOne", "materials: {m: {transmission: {transmittance: @@1.2}}}\n", {"transmittance", "leaves its range", "0 to 1"}},
+      {"TransmittanceTableBeyondOne",
+       "materials: {m: {transmission: {wavelength: [3 um, 5 um], angles: [{angle: view, count: 2, last: 90 deg}], values: [[0.1, @@1.3], [0, 0]]}}}\n",
+       {"transmittance", "0 to 1"}},
+      {"ReflectsAndTransmitsTooMuch",
+       "materials:\n  pane: @@{components: [{reflection: lambertian, reflectance: 0.7}], transmission: {transmittance: 0.4}}\n",
+       {"reflects and transmits more than it receives", "reflectance + transmittance <= 1"}},
+      {"ReflectsTransmitsAndEmitsTooMuch",
+       "materials:\n  pane: @@{components: [{reflection: lambertian, reflectance: 0.3}], transmission: {transmittance: 0.4}, emission: {emissivity: 0.4}}\n",
+       {"reflects, transmits and emits more than it receives", "reflectance + transmittance + emissivity <= 1"}},
+      {"TransmitsTooMuchAtAnAngle",
+       "materials:\n  pane: @@{transmission: {transmittance: 0.4, angular: [[0 deg, 1], [80 deg, 2]]}, emission: {emissivity: 0.5}}\n",
+       {"more than it receives", "130", "80 deg"}},
+      {"TransparentMaterialDoesNotCoverTheBand",
+       "materials:\n  pane: @@{transmission: {transmittance: {wavelength: um, unit: \"1\", values: [[0.4, 0.1], [2.5, 0.2]]}}}\n" +
+           entity("material: pane, temperature: 300 K"),
+       {"material 'pane'", "3.6 um to 4.9 um", "0.4 um to 2.5 um"}},
+      {"DirectModeWithAPane",
+       "render: {mode: @@direct}\n" + entity("material: {transmission: {transmittance: 0.5}}, temperature: 300 K"),
+       {"direct mode cannot draw", "'auto' or 'buffered'"}},
+      {"DirectModeWithAMedium",
+       "render: {mode: @@direct}\nentities: [{name: p, shape: {model: sphere, radius: 1 m}, material: {absorption: 1 /m}, temperature: 300 K}]\n" + kCamera,
+       {"direct mode cannot draw"}},
+      {"MediumOfNegativeTemperature",
+       "entities: [{name: p, shape: {model: sphere, radius: 1 m}, material: {absorption: 1 /m}, temperature: @@-5 K}]\n" + kCamera,
+       {"temperature is out of range (-5 K)"}},
+      {"MediumOfATexturedTemperature",
+       "entities: [{name: p, shape: {model: sphere, radius: 1 m}, material: {absorption: 1 /m}, temperature: @@{rows: [[300 K, 310 K]]}}]\n" + kCamera,
+       {"a temperature texture on 'p'", "one temperature"}},
+      {"MediumOnAPlate",
+       "entities: [{name: p, shape: @@{model: plate, width: 1 m, height: 1 m}, material: {absorption: 1 /m}, temperature: 300 K}]\n" + kCamera,
+       {"the body of 'p' is not closed", "capped: true"}},
+      {"MediumInAnUncappedCone",
+       "entities: [{name: p, shape: @@{model: cone, radius: 1 m, length: 2 m, capped: false}, material: {absorption: 1 /m}, temperature: 300 K}]\n" + kCamera,
+       {"the body of 'p' is not closed"}},
+      {"MediumInAnOpenMesh",
+       "materials: {gas: {absorption: 1 /m}}\nentities: [{name: p, shape: @@{model: mesh, file: body.obj, unit: 1 m}, material: gas, temperature: 300 K}]\n" + kCamera,
+       {"the body of 'p' is not closed", "'gas' is a medium"},
+       {{"body.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"}}},
+      {"MediumInAMeshInsideOut",
+       "materials: {gas: {absorption: 1 /m}}\nentities: [{name: p, shape: @@{model: mesh, file: body.obj, unit: 1 m}, material: gas, temperature: 300 K}]\n" + kCamera,
+       {"the body of 'p' is not closed", "normals outwards"},
+       {{"body.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n"}}},
+      {"MediumWithComponents",
+       "materials: {gas: {absorption: 1 /m, components: @@[{reflection: lambertian, reflectance: 0.1}]}}\n",
+       {"a medium with 'components'", "two entities"}},
+      {"MediumWithEmission", "materials: {gas: {absorption: 1 /m, emission: @@{emissivity: 0.1}}}\n", {"a medium with 'emission'"}},
+      {"MediumWithTransmission", "materials: {gas: {absorption: 1 /m, transmission: @@{transmittance: 0.1}}}\n", {"a medium with 'transmission'"}},
+      {"RadianceWithoutAbsorption", "materials: {gas: {radiance: @@1 W/(m2 sr um)}}\n", {"'radiance' that is no medium", "absorption"}},
+      {"NegativeAbsorption", "materials: {gas: {absorption: @@-1 /m}}\n", {"absorption coefficient", "leaves its range"}},
+      {"NegativeRadianceOfAMedium", "materials: {gas: {absorption: 1 /m, radiance: @@-1 W/(m2 sr um)}}\n", {"radiance", "leaves its range"}},
+      {"AbsorptionWithoutUnit", "materials: {gas: {absorption: @@1}}\n", {"absorption", "no unit"}},
+      {"MediumDoesNotCoverTheBand",
+       "materials:\n  gas: @@{absorption: {wavelength: um, unit: /m, values: [[0.4, 0.1], [2.5, 0.2]]}}\nentities: [{name: p, shape: {model: sphere, radius: 1 m}, "
+       "material: gas, temperature: 300 K}]\n" + kCamera,
+       {"material 'gas'", "channel 'mw'", "3.6 um to 4.9 um", "0.4 um to 2.5 um"}},
+      {"RadianceOfAMediumDoesNotCoverTheBand",
+       "materials:\n  gas: @@{absorption: 1 /m, radiance: {wavelength: um, unit: W/(m2 sr um), values: [[0.4, 0.1], [2.5, 0.2]]}}\nentities: [{name: p, shape: {model: "
+       "sphere, radius: 1 m}, material: gas, temperature: 300 K}]\n" + kCamera,
+       {"material 'gas'", "3.6 um to 4.9 um"}},
+      {"PartsOfAMediumDiffer",
+       "entities: [{name: p, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: {absorption: 1 /m}, temperature: 300 K, parts: @@{top: {temperature: "
+       "310 K}}}]\n" + kCamera,
+       {"the parts of 'p' differ", "make two entities"}},
+      {"APartOfABodyIsAMedium",
+       "entities: [{name: p, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: {}, temperature: 300 K, parts: @@{top: {material: {absorption: 1 "
+       "/m}}}}]\n" + kCamera,
+       {"the parts of 'p' differ", "is a medium"}},
       // Channels.
       {"CameraWithoutChannel", kPlate + "cameras: [{name: c, " + kCameraRest + ", channels: @@[]}]\n", {"channels has 0 entries"}},
       {"SeventeenChannels",
@@ -333,6 +407,21 @@ TEST(Disk, OutputFolderThatCannotBe) {
     messages()[std::string("OutputFolder ") + folder] = r.err;
   }
   EXPECT_EQ(readAll(place.folder() / "taken"), "a file in the way\n");
+}
+
+// A word that names no way of blending: the environment is at fault, not a scenario, and only where something is blended.
+TEST(Environment, UnknownBlendPath) {
+  const Workplace place;
+  place.put("pane.yaml", "render: {mode: buffered}\n" + entity("material: {transmission: {transmittance: 0.5}}, temperature: 300 K"));
+  place.put("good.yaml", kPlate + kCamera);
+  const Result r = place.run({"run", "pane.yaml", "--out", "frames"}, "PITVIPER_BLEND=blend");
+  EXPECT_EQ(r.code, 1) << r.err;
+  EXPECT_EQ(r.err.find('\n'), r.err.size() - 1) << r.err;
+  for (const char* word : {"PITVIPER_BLEND", "'blend'", "fetch", "barrier", "ping_pong"}) EXPECT_NE(r.err.find(word), std::string::npos) << r.err;
+  messages()["UnknownBlendPath"] = r.err;
+  EXPECT_FALSE(fs::exists(place.folder() / "frames") && !fs::is_empty(place.folder() / "frames"));
+  EXPECT_EQ(place.run({"run", "good.yaml", "--out", "frames"}, "PITVIPER_BLEND=blend").code, 0);
+  EXPECT_EQ(place.run({"run", "pane.yaml", "--out", "more"}, "PITVIPER_BLEND=ping_pong").code, 0);
 }
 
 /// Ten messages as a user sees them.
