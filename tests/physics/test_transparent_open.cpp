@@ -25,13 +25,16 @@ const glm::dvec3 kPlumeAxis = axesOf(130.0, -25.0)[0];  // (0.69, -0.58, -0.42):
 const Cloud kPlume = of(placed(cylinder(0.6, 30), {30, 0, 0}, 130.0, -25.0), 0.8, 500);
 
 TEST(NotYet, PaneOverTheSideOfAnObliquePlume) {
+  World alone{.eye = {{0, 0, 0}, {1, 0, 0}, 50.0, 48}, .background_K = 260.0};
+  alone.clouds = {kPlume};
+  bound("oblique plume alone, worst pixel", alone.worst(), 5e-4, "short chords at the rim: a way of 1 cm in a body of 30 m, 14 times brighter than what is behind");
   for (double end : {-1.0, 1.0}) {
     World w{.eye = {{0, 0, 0}, {1, 0, 0}, 50.0, 48}, .background_K = 260.0, .wallSize = 40.0};
     w.clouds = {kPlume};
     const glm::dvec3 p = kPlume.place + end * 11.0 * kPlumeAxis;
     // 1.5 m off in depth the plume's middle has moved by 1.3 m: the pane stays clear of it.
     w.walls = {{.x = p.x - 1.5 * end, .transmittance = 0.4, .kelvin = 350, .low = end < 0 ? p.y + 0.2 : p.y - 4.0, .high = end < 0 ? p.y + 4.0 : p.y - 0.2}};
-    bound(std::string("pane ") + (end < 0 ? "behind the near" : "before the far") + " end of an oblique plume, worst pixel", w.worst(), 3e-5, "march");
+    bound(std::string("pane ") + (end < 0 ? "behind the near" : "before the far") + " end of an oblique plume, worst pixel", w.worst(), 5e-4, "march; short chords at the rim");
   }
 }
 
@@ -43,8 +46,7 @@ TEST(NotYet, SphereOverTheSideOfAnObliquePlume) {
     // Off in depth and aside, its middle 1.75 m from the plume's: 0.15 m between them.
     const glm::dvec3 across = glm::normalize(glm::cross(kPlumeAxis, away)), off = glm::normalize(glm::cross(across, kPlumeAxis));
     w.clouds[1].place = p + 1.3 * across + (glm::dot(off, away) * end < 0 ? 1.0 : -1.0) * 1.17 * off;
-    bound(std::string("sphere ") + (end < 0 ? "behind the near" : "before the far") + " end of an oblique plume, worst pixel", w.worst(), 1e-4,
-          "march; short chords at the rims");
+    bound(std::string("sphere ") + (end < 0 ? "behind the near" : "before the far") + " end of an oblique plume, worst pixel", w.worst(), 5e-4, "march; short chords at the rims");
   }
 }
 
@@ -65,11 +67,11 @@ TEST(NotYet, CameraInsideAMesh) {
   bound("camera inside a box, worst pixel", w.worst(), 1e-5, "from the camera to where the ray leaves");
   // A side of it between the camera and the near plane.
   w.eye = {{0, 0, 0}, {1, 0, 0}, 40.0, 24};
-  for (double x : {3.05, 3.0001, 2.95}) {
+  for (double x : {3.2, 3.05, 3.0001, 2.95, -2.95}) {
     w.clouds = {of(placed(box(6, 50, 50), {x, 0, 0}), 0.05)};
-    bound("box that begins " + text(x - 3.0) + " m before the camera, worst pixel", w.worst(), 1e-5, "from the camera, or where the ray enters, to where it leaves");
+    bound("box of 6 m around " + text(x) + " m, worst pixel", w.worst(), 1e-5, "from the camera, or where the ray enters, to where it leaves");
     w.clouds = {of(placed(cylinder(25, 6), {x, 0, 0}), 0.05)};
-    bound("cylinder that begins " + text(x - 3.0) + " m before the camera, worst pixel", w.worst(), 1e-5, "from the camera, or where the ray enters, to where it leaves");
+    bound("cylinder of 6 m around " + text(x) + " m, worst pixel", w.worst(), 1e-5, "from the camera, or where the ray enters, to where it leaves");
   }
 }
 
