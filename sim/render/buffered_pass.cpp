@@ -138,10 +138,9 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
   if (hasTruth()) truth_.run(into);
 }
 
-std::vector<double> BufferedPass::transmittance(const View& asked, const WorldState& state, const std::vector<char>& drawn, double farthest_m) {
+std::vector<double> BufferedPass::transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) {
   std::vector<double> all(plan().node_um.size(), 1.0);
   if (!layers_) return all;
-  const View view = centred(asked, state);
   layers_->order(view, state, drawn);
   if (layers_->isEmpty()) return all;
   RenderTarget& visibility = visibilityFor(view.width, view.height);

@@ -5,6 +5,8 @@
 #include <numeric>
 #include <optional>
 
+#include "sim/radiometry/physics.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -47,14 +49,32 @@ Polygon clipped(const Polygon& p, const glm::dvec2& a, const glm::dvec2& b) {
   return out;
 }
 
-/// A point inside both outlines, if they overlap.
-std::optional<glm::dvec2> commonPoint(const Footprint& a, const Footprint& b) {
+/// What two outlines share, if it counts.
+Polygon commonPart(const Footprint& a, const Footprint& b) {
   Polygon p = a.outline;
   for (std::size_t i = 0; i < b.outline.size() && p.size() > 2; ++i) p = clipped(p, b.outline[i], b.outline[(i + 1) % b.outline.size()]);
-  if (p.size() < 3 || twiceArea(p) < 2.0 * kLeastOverlap_px2) return std::nullopt;
-  glm::dvec2 sum(0.0);
-  for (const auto& q : p) sum += q;
-  return sum / static_cast<double>(p.size());
+  if (p.size() < 3 || twiceArea(p) < 2.0 * kLeastOverlap_px2) return {};
+  return p;
+}
+
+/// The outline around points of the film, counter-clockwise (Andrew's monotone chain).
+Polygon hullOf(Polygon p) {
+  std::sort(p.begin(), p.end(), [](const glm::dvec2& a, const glm::dvec2& b) { return a.x < b.x || (a.x == b.x && a.y < b.y); });
+  Polygon hull;
+  for (int side = 0; side < 2; ++side) {
+    const std::size_t first = hull.size();
+    for (const glm::dvec2& q : p) {
+      while (hull.size() >= first + 2) {
+        const glm::dvec2 &u = hull[hull.size() - 2], &v = hull.back();
+        if ((v.x - u.x) * (q.y - u.y) - (v.y - u.y) * (q.x - u.x) > 0.0) break;
+        hull.pop_back();
+      }
+      hull.push_back(q);
+    }
+    hull.pop_back();  // the other side begins with it
+    std::reverse(p.begin(), p.end());
+  }
+  return hull;
 }
 
 class Sorter {
@@ -91,19 +111,17 @@ class Sorter {
     if (piece.medium) {
       const glm::dvec3 centre = piece.origin + piece.cameraFromBody * (0.5 * (piece.low + piece.high));
       f.middle_m = glm::length(centre);
-      glm::dvec2 low(INFINITY), high(-INFINITY);
+      const glm::dvec2 end(view_.width, view_.height);
       for (int c = 0; c < 8; ++c) {
         const glm::dvec3 body((c & 1) ? piece.high.x : piece.low.x, (c & 2) ? piece.high.y : piece.low.y, (c & 4) ? piece.high.z : piece.low.z);
         const glm::dvec3 p = piece.origin + piece.cameraFromBody * body;
         if (-p.z < view_.near_m) {  // the camera is inside, or nearly: it may fill the picture
-          low = glm::dvec2(0.0);
-          high = glm::dvec2(view_.width, view_.height);
+          f.outline = {{0.0, 0.0}, {end.x, 0.0}, end, {0.0, end.y}};
           break;
         }
-        low = glm::min(low, onFilm(p));
-        high = glm::max(high, onFilm(p));
+        f.outline.push_back(onFilm(p));
       }
-      f.outline = {low, {high.x, low.y}, high, {low.x, high.y}};
+      f.outline = hullOf(f.outline);
     } else {
       // Cut at the near plane, then to the film.
       std::vector<glm::dvec3> in, cut;
@@ -132,27 +150,52 @@ class Sorter {
     return f;
   }
 
-  /// Depth [m] of a piece on the line of sight through a film position.
-  double depthAt(const Footprint& f, const glm::dvec2& at) const {
+  /// Depth [m] of a piece on the line of sight through a film position, of a medium at the middle of its way; nothing where it is not met.
+  std::optional<double> depthAt(const Footprint& f, const glm::dvec2& at) const {
     const LayerPiece& piece = pieces_[f.piece];
     const glm::dvec3 ray = view_.ray(at.x, at.y);
     if (!piece.medium) return 1.0 / glm::dot(f.plane, ray);
     const glm::dmat3 bodyFromCamera = glm::transpose(piece.cameraFromBody);
-    const glm::dvec3 o = -(bodyFromCamera * piece.origin), d = bodyFromCamera * ray;
-    double enter = 0.0, leave = INFINITY;
-    for (int k = 0; k < 3; ++k) {
-      if (d[k] == 0.0) continue;
-      const double a = (piece.low[k] - o[k]) / d[k], b = (piece.high[k] - o[k]) / d[k];
-      enter = std::max(enter, std::min(a, b));
-      leave = std::min(leave, std::max(a, b));
-    }
-    return leave > enter ? 0.5 * (enter + leave) : -(piece.origin + piece.cameraFromBody * (0.5 * (piece.low + piece.high))).z;
+    const double near = -piece.origin.z;  // digits of the body's own size
+    const glm::dvec3 d = bodyFromCamera * ray, o = bodyFromCamera * (near * ray - piece.origin);
+    glm::dvec2 way(-INFINITY, INFINITY);
+    if (piece.form.kind == BodyForm::Kind::Ellipsoid) way = physics::ellipsoidChord(o, d, piece.form.size);
+    else if (piece.form.kind == BodyForm::Kind::Cone) way = physics::coneChord(o, d, piece.form.size.x, piece.form.size.y, piece.form.size.z);
+    else
+      for (int k = 0; k < 3; ++k) {
+        if (d[k] == 0.0) continue;
+        const double a = (piece.low[k] - o[k]) / d[k], b = (piece.high[k] - o[k]) / d[k];
+        way = {std::max(way.x, std::min(a, b)), std::min(way.y, std::max(a, b))};
+      }
+    const double enter = std::max(near + way.x, 0.0), leave = near + way.y;
+    return leave > enter ? std::optional(0.5 * (enter + leave)) : std::nullopt;
+  }
+
+  /// Their depths on a line of sight that meets both, if one of some does: the middle of what they share, else places spread over it.
+  std::optional<glm::dvec2> depthsOf(const Footprint& a, const Footprint& b) const {
+    const Polygon shared = commonPart(a, b);
+    if (shared.empty()) return std::nullopt;
+    auto both = [&](const glm::dvec2& at) -> std::optional<glm::dvec2> {
+      const auto da = depthAt(a, at), db = depthAt(b, at);
+      return da && db ? std::optional(glm::dvec2(*da, *db)) : std::nullopt;
+    };
+    glm::dvec2 middle(0.0);
+    for (const auto& p : shared) middle += p / static_cast<double>(shared.size());
+    if (const auto d = both(middle)) return d;
+    constexpr int kTries = 8;  // along an edge of each triangle about the middle
+    for (std::size_t k = 0; k < shared.size(); ++k)
+      for (int i = 1; i <= kTries; ++i)
+        for (int j = 0; j <= kTries; ++j) {
+          const glm::dvec2 edge = glm::mix(shared[k], shared[(k + 1) % shared.size()], (j + 0.5) / (kTries + 1));
+          if (const auto d = both(glm::mix(middle, edge, (i - 0.5) / kTries))) return d;
+        }
+    return std::nullopt;
   }
 
   void compare(std::uint32_t i, std::uint32_t j) {
-    const auto at = commonPoint(prints_[i], prints_[j]);
-    if (!at) return;
-    const double a = depthAt(prints_[i], *at), b = depthAt(prints_[j], *at);
+    const auto depths = depthsOf(prints_[i], prints_[j]);
+    if (!depths) return;
+    const double a = depths->x, b = depths->y;
     // Rounding does not decide: what is equally deep is drawn in the order given.
     const bool equal = std::abs(a - b) <= 1e-13 * std::max(a, b);
     const bool first = equal ? prints_[i].piece < prints_[j].piece : a > b;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/render/view.hpp"
+#include "sim/scene/body_form.hpp"
 
 namespace pitviper {
 
@@ -15,6 +16,7 @@ struct LayerPiece {
   glm::dvec3 corner[3];  ///< of a triangle
   /// Of a medium: its box in its own axes, and where these stand.
   glm::dvec3 low{0.0}, high{0.0}, origin{0.0};
+  BodyForm form{};  ///< true form within the box
   glm::dmat3 cameraFromBody{1.0};
 };
 
@@ -27,8 +29,8 @@ struct LayerOrder {
 };
 
 /// Pieces that overlap in the picture are compared where they overlap (in double precision): right for all pieces that don't pass through
-/// each other, whatever their sizes. Of two that do, one is drawn before the other as a whole. A medium counts where it is thickest on the
-/// line of sight, so that what stands inside it is in front of it or behind it as a whole. Equally far: in the order given.
+/// each other, whatever their sizes. Of two that do, one is drawn before the other as a whole. A medium counts at the middle of its way on a line
+/// of sight that meets both, so that what stands inside it is in front of it or behind it as a whole; a meshed one stands for its box. Equally far: in the order given.
 LayerOrder orderLayers(const View& view, const std::vector<LayerPiece>& pieces);
 
 }  // namespace pitviper

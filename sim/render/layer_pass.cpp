@@ -86,6 +86,7 @@ void LayerPass::order(const View& view, const WorldState& state, const std::vect
       piece.medium = true;
       piece.low = scene_->box(item.entity).low;
       piece.high = scene_->box(item.entity).high;
+      piece.form = entity.form;
       pieces_.push_back(piece);
       continue;
     }

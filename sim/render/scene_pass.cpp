@@ -15,8 +15,9 @@ struct GpuDraw {
   glm::vec4 row[3];
   glm::uvec4 table;
   glm::vec4 state;
+  glm::vec4 fine;
 };
-static_assert(sizeof(GpuDraw) == 80);
+static_assert(sizeof(GpuDraw) == 96);
 
 /// Mirrors ViewBlock of sim/render/glsl/view_block.glsl (std140).
 struct GpuView {
@@ -113,6 +114,7 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
     const size_t lightRow = static_cast<size_t>(item.entity + 1);
     const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
     g.state = {s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
+    g.fine = {origin.z - static_cast<double>(static_cast<float>(origin.z)), 0.0, 0.0, 0.0};
     glm::vec4* row = &lights[lightRow * stride];
     if (item.entity >= 0 && row->x == 0.0f) {  // once for all surfaces of a body
       auto add = [&](const glm::dvec3& place, double radius_m, size_t number) {
@@ -150,15 +152,7 @@ void ScenePass::bindBuffers() const {
   nodes_.bindUniform(1);
 }
 
-View ScenePass::centred(View v, const WorldState& state) const {
-  if (v.onlyEntity < 0)
-    for (const DrawItem& d : tables_.draws)
-      if (d.kind == DrawKind::Medium) v.depthCentre = state.entities[static_cast<size_t>(d.entity)].position;
-  return v;
-}
-
-void ScenePass::draw(const View& asked, const WorldState& state, const std::vector<char>& drawn) {
-  const View v = centred(asked, state);
+void ScenePass::draw(const View& v, const WorldState& state, const std::vector<char>& drawn) {
   current_ = &targetsFor(v.width, v.height);
   uploadView(v);
   uploadDraws(v, state);

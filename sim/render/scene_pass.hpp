@@ -65,8 +65,6 @@ class ScenePass {
   void uploadView(const View& view);
   void uploadDraws(const View& view, const WorldState& state);
   void bindBuffers() const;
-  /// A view of everything, with the centre that depths of bodies are told from (draws.glsl) put where digits are needed: at a medium.
-  View centred(View view, const WorldState& state) const;
   RenderTarget& visibilityFor(int width, int height) { return targetsFor(width, height).visibility; }
   std::shared_ptr<const GpuScene> sharedScene() const { return scene_; }
   const Simulation& simulation() const { return simulation_; }

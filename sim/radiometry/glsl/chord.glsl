@@ -37,12 +37,13 @@ PHYSICS Vec2 coneChord(Vec3 point, Vec3 direction, Real halfLength, Real baseRad
   Real b = point.y * direction.y + point.z * direction.z - r * widening;
   Real c = point.y * point.y + point.z * point.z - r * r;
   Real root = b * b - a * c;
-  if (root <= 0.0 && a >= 0.0) return Vec2(0.0, 0.0);
+  // Inside, and no crossing within any distance: parallel to the side of a cylinder.
+  if (root <= 0.0 && a >= 0.0) return c < 0.0 ? Vec2(enter, max(enter, leave)) : Vec2(0.0, 0.0);
   root = sqrt(max(root, 0.0));  // inside both nappes it passes the tip at worst: what is below 0 is rounding
   Real q = b >= 0.0 ? -b - root : -b + root;
   Real other = q != 0.0 ? c / q : 0.0;
   // Nearly parallel to the side: its far crossing lies beyond any body.
-  Real one = a > 1.0e-30 || a < -1.0e-30 ? q / a : (q > 0.0 ? kFar : -kFar);
+  Real one = a > 1.0e-30 || a < -1.0e-30 ? q / a : ((q > 0.0) == (a >= 0.0) ? kFar : -kFar);
   Real near = min(one, other);
   Real far = max(one, other);
   if (a >= 0.0) {

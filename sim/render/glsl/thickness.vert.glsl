@@ -3,4 +3,7 @@
 //@use sim/render/glsl/project.glsl
 uniform int drawIndex;
 
-void main() { project(draws[drawIndex], vertices[2 * gl_VertexID].xyz); }
+void main() {
+  project(draws[drawIndex], vertices[2 * gl_VertexID].xyz);
+  gl_ClipDistance[0] = gl_Position.w;  // a medium begins at the camera, not at the near plane
+}

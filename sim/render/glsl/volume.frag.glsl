@@ -41,7 +41,6 @@ void main() {
   float inside;
   if (form == 0) {
     vec2 sums = texelFetch(thicknessSums, ivec2(gl_FragCoord.xy), 0).xy, bounds = texelFetch(thicknessBounds, ivec2(gl_FragCoord.xy), 0).xy;
-    start += view.depth.x;  // triangles nearer than the near plane are not drawn
     bool from = sums.y > 0.5;  // the camera is inside
     chord = vec2(from ? start : -bounds.x, bounds.y);
     inside = sums.x - (from ? sums.y * start : 0.0);

@@ -4,14 +4,14 @@ layout(binding = 0) uniform usampler2D visibility;
 uniform int drawIndex;
 uniform float farthest;  // depth of what ends the ray, if no surface does [m]
 
-// Depths of planes are compared through their distance from a common centre near the bodies, so that their difference keeps its digits.
+// Depths of planes are compared in two parts each: the difference of the large ones is exact where they are near each other.
 float endOfRay(Draw body) {
   uvec2 id = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).xy;
   float end = farthest - planeOf(body);
   if (id.x != 0u) {
     Draw solid = draws[id.x];
     Meeting m = meet(id.y, pointOnPlane(solid), inBody(solid, ray_));
-    end = min(end, m.along + (body.state.w - solid.state.w));
+    end = min(end, m.along + ((body.row2.w - solid.row2.w) + (body.fine.x - solid.fine.x)));
   }
   return end;
 }
