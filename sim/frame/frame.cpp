@@ -119,6 +119,7 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   addOutputs(frame, camera, image);
   addTruth(frame, camera, image);
   addMetadata(frame, sim, camera, state);
+  if (!image.transparentOrder.empty()) frame.attributes.push_back({"pitviper.transparent_order", image.transparentOrder});
   return frame;
 }
 

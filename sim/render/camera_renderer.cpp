@@ -1,7 +1,5 @@
 #include "sim/render/camera_renderer.hpp"
 
-#include "sim/render/buffered_pass.hpp"
-#include "sim/render/direct_pass.hpp"
 #include "sim/render/small_bodies.hpp"
 #include "sim/render/visible_lights.hpp"
 
@@ -17,7 +15,7 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
   if (simulation.mode == RenderMode::Buffered || transparent) buffered_ = std::make_unique<BufferedPass>(simulation, plan_, library, scene, truth, area_m2);
   // Its program is made at the start even where the first frame needs the other: none may be late for want of a compiler.
   if (simulation.mode != RenderMode::Buffered) direct_ = std::make_unique<DirectPass>(simulation, plan_, library, scene, truth, area_m2);
-  pass_ = buffered_ ? buffered_.get() : direct_.get();
+  pass_ = buffered_ ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
 }
 
 bool CameraRenderer::seesTransparent() const {
@@ -39,10 +37,13 @@ void CameraRenderer::begin(const WorldState& state) {
   small_ = findSmallBodies(simulation_, state_, view_, camera_.smallBody_px * camera_.samples);
   std::vector<char> drawn(present_);
   for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = present_[e] && !small_[e];
-  if (direct_ && buffered_) pass_ = seesTransparent() ? buffered_.get() : direct_.get();
+  if (direct_ && buffered_) pass_ = seesTransparent() ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
   pass_->setState(state_);
   pass_->draw(view_, state_, drawn);
   pass_->startReadback(false);
+  // The zoomed views of small bodies have orders of their own; the picture's is the one worth telling.
+  const LayerPass* layers = isBuffered() ? buffered_->layers() : nullptr;
+  transparentOrder_ = layers && !layers->isEmpty() ? layers->lastOrder().describe() : "";
 }
 
 CameraImage CameraRenderer::finish() {
@@ -52,6 +53,7 @@ CameraImage CameraRenderer::finish() {
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
   resolved.slotOfOutput = plan_.slotOfOutput;
   resolved.solidAngles = solidAngles_;
+  resolved.transparentOrder = transparentOrder_;
   return resolved;
 }
 

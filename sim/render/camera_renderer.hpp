@@ -2,7 +2,8 @@
 // Draws one camera of a simulation at a time: everything between a world state and an image of integrals.
 #include <memory>
 
-#include "sim/render/scene_pass.hpp"
+#include "sim/render/buffered_pass.hpp"
+#include "sim/render/direct_pass.hpp"
 #include "sim/render/subpixels.hpp"
 
 namespace pitviper {
@@ -31,11 +32,13 @@ class CameraRenderer {
   const Simulation& simulation_;
   const Camera& camera_;
   Plan plan_;
-  std::unique_ptr<ScenePass> direct_, buffered_;  ///< both where auto has to choose frame by frame
+  std::unique_ptr<DirectPass> direct_;  ///< both where auto has to choose frame by frame
+  std::unique_ptr<BufferedPass> buffered_;
   ScenePass* pass_ = nullptr;
   WorldState state_;
   View view_;
   std::vector<char> small_, present_;
+  std::string transparentOrder_;
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles_;
 };
 

@@ -270,6 +270,11 @@ class Sorter {
 
 }  // namespace
 
+std::string LayerOrder::describe() const {
+  if (!exact) return "by middles";
+  return cyclic == 0 ? "exact" : "exact but for " + std::to_string(cyclic) + (cyclic == 1 ? " piece in a ring" : " pieces in rings");
+}
+
 LayerOrder orderLayers(const View& view, const std::vector<LayerPiece>& pieces) { return Sorter(view, pieces).run(); }
 
 }  // namespace pitviper

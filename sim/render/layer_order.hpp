@@ -1,6 +1,7 @@
 #pragma once
 // Back to front: the order in which transparent triangles and media are blended.
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "sim/render/view.hpp"
@@ -26,11 +27,14 @@ struct LayerOrder {
   std::vector<std::uint32_t> levels;
   bool exact = true;  ///< false where there were too many pieces to compare those that overlap: sorted by their middles only
   int cyclic = 0;     ///< pieces that overlap in a ring, or pass through each other: put in order by their middles
+  /// "exact", "exact but for N pieces in rings", "by middles": for a frame's metadata.
+  std::string describe() const;
 };
 
 /// Pieces that overlap in the picture are compared where they overlap (in double precision): right for all pieces that don't pass through
 /// each other, whatever their sizes. Of two that do, one is drawn before the other as a whole. A medium counts at the middle of its way on a line
-/// of sight that meets both, so that what stands inside it is in front of it or behind it as a whole; a meshed one stands for its box. Equally far: in the order given.
+/// of sight that meets both, so that what stands inside it is in front of it or behind it as a whole; a meshed one stands for its box. Equally far: in the
+/// order given.
 LayerOrder orderLayers(const View& view, const std::vector<LayerPiece>& pieces);
 
 }  // namespace pitviper

@@ -75,8 +75,9 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
     const auto intensity = apparentIntensity(sim, plan, state, l, probe.position, way);
     for (size_t s = 0; s < sums.size(); ++s) sums[s] += factor * intensity[s];
   }
-  const std::vector<double> toSun =
-      sim.sun && glm::dot(sim.sun->toSun, normal) > 0.0 ? wayTo(pass, state, all, probe.position, sim.sun->toSun, physics::kFar, kNear_m) : std::vector<double>();
+  const std::vector<double> toSun = sim.sun && glm::dot(sim.sun->toSun, normal) > 0.0
+                                        ? wayTo(pass, state, all, probe.position, sim.sun->toSun, physics::kFar, kNear_m)
+                                        : std::vector<double>();
   if (!toSun.empty()) {
     const bool layered = plan.terms.air && sim.path->top_m() < physics::kFar;
     const double sinElevation = glm::dot(sim.frame.up(probe.position), sim.sun->toSun);

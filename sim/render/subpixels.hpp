@@ -3,6 +3,7 @@
 // resolved into pixels.
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "sim/plan/plan.hpp"
@@ -25,6 +26,7 @@ struct CameraImage {
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles;
   std::vector<TruthPixel> truth;  ///< per pixel, or empty
   std::vector<int> slotOfOutput;  ///< from the plan
+  std::string transparentOrder;   ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view
 };
 
 class Subpixels {

@@ -26,24 +26,30 @@ TEST(Corners, ConcaveBodyInAir) {
   World w{.extinction = 0.2, .air_K = 280};
   w.walls = {{.x = 30, .kelvin = 350}};
   w.clouds = {of(placed(uShape(folder), {15, -1.5, -0.5}, 90, 0), 1.0, 450)};
-  bound("U in air, rays through both arms, worst pixel", w.worst(), 0.02, "air is spread evenly from the first entry to the last exit: second order in the optical depths");
+  bound("U in air, rays through both arms, worst pixel", w.worst(), 0.02,
+        "air is spread evenly from the first entry to the last exit: second order in the optical depths");
 }
 
 // What is seen in a probe's hemisphere, too: a plate above it, and a pane or a medium between.
 TEST(Corners, ProbeBehindAPaneAndAMedium) {
   const std::string probe =
-      "probes: [{name: s, position: [0 m, 0 m, 0 m], normal: [0, 0, 1], resolution: 128, channels: [{name: lw, response: {band: [8 um, 12 um]}, output: irradiance}]}]\n";
+      "probes: [{name: s, position: [0 m, 0 m, 0 m], normal: [0, 0, 1], resolution: 128, channels: [{name: lw, response: {band: [8 um, 12 um]}, output: "
+      "irradiance}]}]\n";
   auto ceiling = [](const std::string& name, double z, const std::string& rest) {
-    return "  - {name: " + name + ", shape: {model: plate, width: 4 km, height: 4 km}, heading: 0 deg, pitch: 90 deg, position: [0 m, 0 m, " + text(z) + " m], " + rest + "}\n";
+    return "  - {name: " + name + ", shape: {model: plate, width: 4 km, height: 4 km}, heading: 0 deg, pitch: 90 deg, position: [0 m, 0 m, " + text(z) +
+           " m], " + rest + "}\n";
   };
   const std::string warm = ceiling("top", 1.0, "material: blackbody, temperature: 400 K");
   const double open = probeReading(scene("entities:\n" + warm + probe))[0];
-  const double pane = probeReading(scene("entities:\n" + warm + ceiling("pane", 0.5, "material: {transmission: {transmittance: 0.4}}, temperature: 300 K") + probe))[0];
+  const double pane =
+      probeReading(scene("entities:\n" + warm + ceiling("pane", 0.5, "material: {transmission: {transmittance: 0.4}}, temperature: 300 K") + probe))[0];
   figure("probe under a pane [W/m2]", pane, 0.4 * open + 0.6 * open * B(300) / B(400), 1e-3, "T B + (1 - T) B(pane) over the hemisphere");
   const double fog = probeReading(scene(
-      "entities:\n" + warm + "  - {name: c, shape: {model: sphere, radius: 0.3 m}, material: {absorption: 50 /m}, temperature: 300 K, position: [0 m, 0 m, 0.6 m]}\n" + probe))[0];
-  const double solid = probeReading(scene(
-      "entities:\n" + warm + "  - {name: c, shape: {model: sphere, radius: 0.3 m}, material: blackbody, temperature: 300 K, position: [0 m, 0 m, 0.6 m]}\n" + probe))[0];
+      "entities:\n" + warm +
+      "  - {name: c, shape: {model: sphere, radius: 0.3 m}, material: {absorption: 50 /m}, temperature: 300 K, position: [0 m, 0 m, 0.6 m]}\n" + probe))[0];
+  const double solid = probeReading(
+      scene("entities:\n" + warm +
+            "  - {name: c, shape: {model: sphere, radius: 0.3 m}, material: blackbody, temperature: 300 K, position: [0 m, 0 m, 0.6 m]}\n" + probe))[0];
   figure("probe under an opaque medium, against a solid sphere [W/m2]", fog, solid, 3e-3, "a medium of depth 30 is a black body but for its rim");
 }
 
@@ -58,7 +64,8 @@ TEST(Corners, SmallSolidBehindAPaneAndInAMedium) {
     const std::string fog = of(placed(sphere(0.4 * range), {range, 0, 0}), 2.0 / range, 350).yaml("m");
     auto flux = [&](const std::string& entities) {
       return sum(layer(renderFrame(scene("background: {temperature: 280 K}\nentities:\n" + entities +
-                                         eye.yaml("[{name: lw, response: {band: [8 um, 12 um]}, output: irradiance}]"))), "lw.irradiance"));
+                                         eye.yaml("[{name: lw, response: {band: [8 um, 12 um]}, output: irradiance}]"))),
+                       "lw.irradiance"));
     };
     const double seen = 1.0 / (range * range);
     figure("1 m2 plate at " + text(range) + " m behind a pane, contrast [W/m2]", flux(pane + target) - flux(pane), 0.3 * (B(500) - B(280)) * seen, 2e-3,
