@@ -57,6 +57,7 @@ void ShadingProgram::run(RenderTarget& into) const {
   }
   for (std::size_t i = 0; i < colours_; ++i)
     glBindImageTexture(static_cast<GLuint>(i), into.colour(firstColour_ + i).name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);  // what was drawn into these textures, and read from them, comes first
   glDispatchCompute((static_cast<GLuint>(into.width()) + kGroup - 1) / kGroup, (static_cast<GLuint>(into.height()) + kGroup - 1) / kGroup, 1);
   glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
 }

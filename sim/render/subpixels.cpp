@@ -40,15 +40,31 @@ CameraImage Subpixels::resolve(const Pinhole& pinhole, int samples) const {
   image.height = pinhole.height;
   const size_t width = static_cast<size_t>(pinhole.width), pixels = width * static_cast<size_t>(pinhole.height);
   image.slots.assign(slotCount_, std::vector<double>(pixels, 0.0));
-  std::vector<double> total(pixels, 0.0);
   auto pixelOf = [&](int x, int y) { return static_cast<size_t>(pinhole.height - 1 - y / samples) * width + static_cast<size_t>(x / samples); };
-  for (int y = 0; y < view_.height; ++y)
-    for (int x = 0; x < view_.width; ++x) {
-      const size_t from = 4 * index(x, y), to = pixelOf(x, y);
-      const double weight = samples == 1 ? 1.0 : projectedSolidAngle_sr(x, y);
-      total[to] += weight;
-      for (size_t s = 0; s < slotCount_; ++s) image.slots[s][to] += weight * static_cast<double>(raw_.groups[s / 4][from + s % 4]);
+  std::vector<double> total, weights;
+  if (samples > 1) {
+    total.assign(pixels, 0.0);
+    for (int y = 0; y < view_.height; ++y)
+      for (int x = 0; x < view_.width; ++x) {
+        weights.push_back(projectedSolidAngle_sr(x, y));
+        total[pixelOf(x, y)] += weights.back();
+      }
+  }
+  // Slot by slot: what is written stays in the cache.
+  for (size_t s = 0; s < slotCount_; ++s) {
+    const float* from = raw_.groups[s / 4].data() + s % 4;
+    std::vector<double>& to = image.slots[s];
+    for (int y = 0; y < view_.height; ++y) {
+      const size_t row = index(0, y);
+      if (samples == 1) {
+        double* out = &to[pixelOf(0, y)];
+        for (size_t x = 0; x < width; ++x) out[x] = static_cast<double>(from[4 * (row + x)]);
+      } else {
+        for (int x = 0; x < view_.width; ++x)
+          to[pixelOf(x, y)] += weights[row + static_cast<size_t>(x)] * static_cast<double>(from[4 * (row + static_cast<size_t>(x))]);
+      }
     }
+  }
   for (const auto& [p, sums] : added_) {
     const int x = static_cast<int>(p % static_cast<size_t>(view_.width)), y = static_cast<int>(p / static_cast<size_t>(view_.width));
     const double weight = samples == 1 ? 1.0 : projectedSolidAngle_sr(x, y);
