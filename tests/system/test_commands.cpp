@@ -161,4 +161,32 @@ TEST_F(Commands, BenchKnowsItsFactors) {
   EXPECT_EQ(pitviper("bench --accuracy x.yaml --factor film").code, 2);
 }
 
+// Rationale: a picture does not depend on how it is drawn. Expected: a frame with a canopy, plumes and smoke is the same in auto and buffered
+// mode, has something of each in it, and direct mode is refused.
+TEST_F(Commands, TransparentThingsAreTheSameInEitherMode) {
+  const std::string line =
+      "run " + scenario("canopy_plume_smoke.yaml") +
+      " --frames 7 --set cameras.chase.film.width=96 --set cameras.chase.film.height=72 --set cameras.chase.samples=1"
+      " --set cameras.chase.spectral.samples=8 --set cameras.cockpit_view.film.width=64 --set cameras.cockpit_view.film.height=48"
+      " --set cameras.cockpit_view.samples=1 --set cameras.cockpit_view.spectral.samples=8 --set cameras.cockpit_view.small_bodies=0 --out " +
+      folder_.string();
+  ASSERT_EQ(pitviper(line + "/auto").code, 0);
+  ASSERT_EQ(pitviper(line + "/buffered --set render.mode=buffered").code, 0);
+  const Result direct = pitviper(line + "/direct --set render.mode=direct");
+  EXPECT_EQ(direct.code, 2) << direct.output;
+  for (const char* frame : {"chase_00007.exr", "cockpit_view_00007.exr"}) {
+    const auto a = pitviper::readExr(folder_ / "auto" / frame), b = pitviper::readExr(folder_ / "buffered" / frame);
+    for (const char* name : {"mw.radiance", "lw.radiance", "vis.radiance"}) {
+      ASSERT_NE(a.find(name), nullptr);
+      ASSERT_NE(b.find(name), nullptr);
+      EXPECT_EQ(a.find(name)->pixels, b.find(name)->pixels) << frame << " " << name;
+    }
+  }
+  const auto chase = pitviper::readExr(folder_ / "auto" / "chase_00007.exr");
+  const auto& mw = chase.find("mw.radiance")->pixels;
+  const auto& vis = chase.find("vis.radiance")->pixels;
+  EXPECT_GT(*std::max_element(mw.begin(), mw.end()), 100.0f) << "exhaust";
+  EXPECT_LT(*std::min_element(vis.begin(), vis.end()), 2.0f) << "smoke";
+}
+
 }  // namespace

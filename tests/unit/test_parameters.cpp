@@ -119,7 +119,7 @@ TEST(Reader, EveryLibraryFileIsGood) {
     return all;
   };
   for (const auto& n : names(home / "materials/library")) {
-    EXPECT_NO_THROW(scene("entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: " + n + ", temperature: 300 K}]\n" + kCamera)) << n;
+    EXPECT_NO_THROW(scene("entities: [{name: p, shape: {model: sphere, radius: 1 m}, material: " + n + ", temperature: 300 K}]\n" + kCamera)) << n;
     ++count;
   }
   for (const auto& n : names(home / "atmosphere/library")) {
