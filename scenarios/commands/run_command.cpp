@@ -10,6 +10,7 @@
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/table.hpp"
 #include "sim/parameters/units.hpp"
+#include "sim/plan/sampling_check.hpp"
 #include "sim/render/tables.hpp"
 #include "sim/run/run.hpp"
 #include "sim/run/spectral_renderer.hpp"
@@ -81,6 +82,18 @@ class ProbeTables {
   std::map<std::string, std::string> texts_;
 };
 
+/// One line for each camera whose wavelengths miss the bands of a gas by more than a per cent.
+void noteSampling(const Simulation& sim) {
+  for (const Camera& c : sim.cameras) {
+    const auto notes = checkSampling(sim, makePlan(sim, c.outputs, c.spectral, c.where), c.outputs, 0.01);
+    if (notes.empty()) continue;
+    const SamplingNote& n = notes.front();
+    std::fprintf(stderr, "note: camera %s: %d spectral samples are %.2g %% off for the emission of %.2g m of '%s' in channel %s; raise spectral.samples%s\n",
+                 c.name.c_str(), c.spectral.samples, 100.0 * n.error, n.thickness_m, n.medium.c_str(), n.channel.c_str(),
+                 notes.size() > 1 ? " (the worst of several)" : "");
+  }
+}
+
 }  // namespace
 
 int runCommand(const Arguments& arguments) {
@@ -90,6 +103,7 @@ int runCommand(const Arguments& arguments) {
   const PreviewRanges ranges = previewRanges(o, sim);
   const std::filesystem::path out = o.value("--out", "out");
   ensureWritableFolder(out);
+  noteSampling(sim);
   const GlContext context;
   const int frames = range.last - range.first + 1;
   const auto spectral = static_cast<size_t>(std::count_if(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.spectralImage.has_value(); }));
@@ -136,6 +150,7 @@ int checkCommand(const Arguments& arguments) {
     std::printf("    spectral image: %d bins, %.6g to %.6g um, in %s\n", c.spectralImage->count(), c.spectralImage->edge_um.front(),
                 c.spectralImage->edge_um.back(), count(passes.size(), "pass", "passes").c_str());
   }
+  noteSampling(sim);
   return 0;
 }
 

@@ -98,9 +98,10 @@ struct Delta {
   std::vector<double> slots;
 };
 
-/// 256 across the bounding sphere, or at least 8 a subpixel: the area of a silhouette is sampled to about 0.1 %.
-int zoomedSize(double extent) {
-  int size = 256;
+/// 256 across the bounding sphere, or at least 8 a subpixel: the area of a silhouette is sampled to about 0.1 %. A medium fades towards its
+/// silhouette: half as many do as well.
+int zoomedSize(double extent, bool medium = false) {
+  int size = medium ? 128 : 256;
   while (size < 8.0 * extent && size < 4096) size *= 2;
   return size;
 }
@@ -110,7 +111,8 @@ int zoomedSize(double extent) {
 /// dims what.
 void addTransparent(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, std::vector<char> others) {
   const View& v = image.view();
-  View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity)));
+  const bool medium = sim.mediumOf(sim.entities[static_cast<size_t>(entity)]) != nullptr;
+  View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity), medium));
   z.onlyEntity = -1;
   auto drawn = [&] {
     pass.draw(z, state, others);

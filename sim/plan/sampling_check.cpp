@@ -1,0 +1,68 @@
+#include "sim/plan/sampling_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <map>
+
+#include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
+#include "sim/radiometry/quadrature.hpp"
+
+namespace pitviper {
+namespace {
+
+/// c2 / (lambda T) beyond which a black body sends less than 1e-17 of its c1L / lambda^5.
+constexpr double kDark = 40.0;
+
+/// Integral between the knots of two spectra, eight Gauss points each.
+double fineIntegral(const Spectrum& kernel, const Spectrum& absorption, const std::function<double(double)>& f) {
+  std::vector<double> at;
+  const double low = kernel.supportLow(), high = kernel.supportHigh();
+  for (const Spectrum* s : {&kernel, &absorption})
+    for (double k : s->knots())
+      if (k > low && k < high) at.push_back(k);
+  at.insert(at.end(), {low, high});
+  std::sort(at.begin(), at.end());
+  at.erase(std::unique(at.begin(), at.end()), at.end());
+  double sum = 0.0;
+  for (size_t i = 0; i + 1 < at.size(); ++i)
+    for (const QuadratureNode& n : gaussLegendre(8, at[i], at[i + 1])) sum += n.weight * kernel(n.x) * f(n.x);
+  return sum;
+}
+
+}  // namespace
+
+std::vector<SamplingNote> checkSampling(const Simulation& sim, const Plan& plan, const std::vector<ChannelOutput>& outputs, double allowed) {
+  std::map<std::pair<std::string, std::string>, SamplingNote> worst;
+  for (const Entity& e : sim.entities) {
+    const Medium* medium = sim.mediumOf(e);
+    if (!medium || medium->absorption_per_m.isConstant()) continue;
+    const double temperature_K = e.surfaces.front().temperature_K;
+    for (size_t o = 0; o < outputs.size(); ++o) {
+      // Where the gas does not shine to speak of (smoke at 290 K in the visible), its error matters to nobody.
+      if (kSecondRadiation_umK / (outputs[o].kernel.supportHigh() * temperature_K) > kDark) continue;
+      for (double part : {0.1, 1.0}) {
+        const double thickness_m = part * static_cast<double>(e.boundingRadius_m);
+        auto emitted = [&](double w) { return physics::planckRadiance(w, temperature_K) * physics::oneMinusExp(medium->absorption_per_m(w) * thickness_m); };
+        const double fine = fineIntegral(outputs[o].kernel, medium->absorption_per_m, emitted);
+        if (!(fine > 0.0)) continue;
+        double planned = 0.0;
+        for (size_t i = 0; i < plan.node_um.size(); ++i) {
+          const double weight = plan.weight[static_cast<size_t>(plan.slotOfOutput[o])][i];
+          if (weight != 0.0) planned += weight * emitted(plan.node_um[i]);
+        }
+        SamplingNote note{sim.materialOf(e.surfaces.front()).name, outputs[o].channel, thickness_m, std::abs(planned / fine - 1.0)};
+        SamplingNote& kept = worst[{note.medium, note.channel}];
+        if (note.error > kept.error) kept = note;
+      }
+    }
+  }
+  std::vector<SamplingNote> notes;
+  for (const auto& [key, note] : worst)
+    if (note.error > allowed) notes.push_back(note);
+  std::sort(notes.begin(), notes.end(), [](const SamplingNote& a, const SamplingNote& b) { return a.error > b.error; });
+  return notes;
+}
+
+}  // namespace pitviper
