@@ -60,6 +60,19 @@ BenchFactor layers() {
   return f;
 }
 
+/// All of them matter, but for the last rows: one that does, and fifteen that can't.
+BenchFactor lights() {
+  BenchFactor f = varied("lights", "lights", {0, 1, 4, 16}, 1, [](BenchSetting& s, int v) { s.lights = v; });
+  for (size_t mode = 0; mode < 2; ++mode) {
+    BenchVariant v = f.variants[2 + mode];  // one light
+    v.value = "1 of 16";
+    v.x = 16.5;
+    v.setting.farLights = 15;
+    f.variants.push_back(v);
+  }
+  return f;
+}
+
 /// The same bodies as full-screen fragments and as compute.
 BenchFactor shading() {
   BenchFactor f{"shading", "spectral shading as", {}};
@@ -102,7 +115,7 @@ std::vector<BenchFactor> benchFactors() {
       true));
   all.push_back(varied("channels", "channels", {1, 4, 16}, 16, [](BenchSetting& s, int v) { s.channels = v; }));
   all.push_back(varied("wavelengths", "wavelengths", {4, 8, 16, 32, 64, 128, 340}, 16, [](BenchSetting& s, int v) { s.wavelengths = v; }));
-  all.push_back(varied("lights", "lights", {0, 1, 4, 16}, 1, [](BenchSetting& s, int v) { s.lights = v; }));
+  all.push_back(lights());
   all.push_back(varied("film", "pixels a side", {64, 128, 256, 512, 1024}, 256, [](BenchSetting& s, int v) { s.film_px = v; }));
   all.push_back(layers());
   all.push_back(shading());

@@ -28,7 +28,9 @@ std::string materials(const BenchSetting& s) {
 /// On a circle before the wall, so that every one of them lights every pixel. One light stands where the paper's figures had it.
 std::string lights(const BenchSetting& s) {
   std::ostringstream y;
-  if (s.lights > 0) y << "lights:\n";
+  if (s.lights + s.farLights > 0) y << "lights:\n";
+  for (int i = 0; i < s.farLights; ++i)
+    y << "  - {name: far" << i << ", intensity: 1 W/(sr um), visible: false, position: [600 km, " << 800 + 10 * i << " km, 0 m]}\n";
   for (int i = 0; i < s.lights; ++i) {
     const double turn = 2.0 * std::numbers::pi * i / s.lights;
     y << "  - {name: lamp" << i << ", intensity: {blackbody: 2000 K, area: 0.1 m2}, visible: false, position: [40 m, " << 20.0 * std::cos(turn) << " m, "

@@ -17,6 +17,7 @@ enum class LayerKind {
 struct BenchSetting {
   int film_px = 256;
   int channels = 16, wavelengths = 16, lights = 1;
+  int farLights = 0;         ///< further ones, a thousand kilometres away: they light every pixel by less than single precision can tell
   int overdraw = 1;          ///< plates behind one another, the visible one last in the file: the worst order
   bool densePlates = false;  ///< of 8000 triangles instead of two
   int layers = 0;            ///< transparent plates before the wall

@@ -53,7 +53,7 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
     const std::string folder = "sim/render/glsl/";
     const bool lit = t.reflects && plan.terms.lights;
     own.files["lobes"] = t.lobeFile.empty() ? folder + "lobes_none.glsl" : t.lobeFile;
-    own.files["lights"] = folder + (lit ? "lights_point.glsl" : "lights_none.glsl");
+    own.files["lights"] = lit ? lightsFile(plan) : folder + "lights_none.glsl";
     own.files["surface"] = folder + (t.isGeneral() ? "surface_general.glsl" : t.emits || t.reflects ? "surface_simple.glsl" : "surface_filter.glsl");
     own.files["transmission"] = folder + (t.isGeneral() ? "transmission_general.glsl" : "transmission_plain.glsl");
     own.files["columns"] = folder + (tables.layer.tabulated ? "columns_tabulated.glsl" : "columns_plain.glsl");

@@ -53,7 +53,7 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.files["path"] = simulation_.path ? simulation_.path->slotFile() : "sim/render/glsl/path_none.glsl";
   const SurfaceTerms& t = plan_.terms.solid;
   slots.files["lobes"] = t.lobeFile.empty() ? "sim/render/glsl/lobes_none.glsl" : t.lobeFile;
-  slots.files["lights"] = plan_.lightCount > 0 ? "sim/render/glsl/lights_point.glsl" : "sim/render/glsl/lights_none.glsl";
+  slots.files["lights"] = lightsFile(plan_);
   slots.files["surface"] = tables_.solid.general ? "sim/render/glsl/surface_general.glsl" : "sim/render/glsl/surface_simple.glsl";
   slots.files["columns"] = tables_.solid.tabulated ? "sim/render/glsl/columns_tabulated.glsl" : "sim/render/glsl/columns_plain.glsl";
   slots.files["temperature"] = t.temperatureTextures ? "sim/render/glsl/temperature_textured.glsl" : "sim/render/glsl/temperature_uniform.glsl";
@@ -117,16 +117,19 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
     g.fine = {origin.z - static_cast<double>(static_cast<float>(origin.z)), 0.0, 0.0, 0.0};
     glm::vec4* row = &lights[lightRow * stride];
     if (item.entity >= 0 && row->x == 0.0f) {  // once for all surfaces of a body
-      auto add = [&](const glm::dvec3& place, double radius_m, size_t number) {
-        const size_t k = static_cast<size_t>(row->x);
+      // Few lights have a place each, many are listed one after the other: lights_few.glsl, lights_many.glsl.
+      const bool few = plan_.lightCount <= kFewLights;
+      auto add = [&](const glm::dvec3& place, double radius_m, size_t number, bool matters) {
+        if (!few && !matters) return;
+        const size_t k = few ? number : static_cast<size_t>(row->x);
         row[2 * k + 1] = glm::vec4(place, radius_m);
-        row[2 * k + 2].x = static_cast<float>(number);
+        row[2 * k + 2].x = matters ? static_cast<float>(number) : -1.0f;
         row->x += 1.0f;
       };
       for (size_t l = 0; l < simulation_.lights.size(); ++l)
-        if ((truth_ && l == 0) || relevance_.matters(static_cast<size_t>(item.entity), l, state))
-          add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l);
-      if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size());
+        add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l,
+            (truth_ && l == 0) || relevance_.matters(static_cast<size_t>(item.entity), l, state));
+      if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true);
     }
     draws.push_back(g);
   }

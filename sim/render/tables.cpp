@@ -223,6 +223,11 @@ void writeIntegral(RenderTables& t, const Plan& plan) {
 
 int lightGroups(const Plan& plan) { return std::max(1, (plan.lightCount + 3) / 4); }
 
+std::string lightsFile(const Plan& plan) {
+  const std::string folder = "sim/render/glsl/";
+  return folder + (plan.lightCount == 0 ? "lights_none.glsl" : plan.lightCount <= kFewLights ? "lights_few.glsl" : "lights_many.glsl");
+}
+
 std::vector<float> lightTable(const Simulation& sim, const Plan& plan, const WorldState& state) {
   const size_t groups = static_cast<size_t>(lightGroups(plan));
   std::vector<float> table(plan.node_um.size() * groups * 4, 0.0f);

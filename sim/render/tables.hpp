@@ -55,6 +55,9 @@ struct RenderTables {
 /// Light intensities at the nodes, vec4 per group of four lights: changes with the lights' levels.
 std::vector<float> lightTable(const Simulation& simulation, const Plan& plan, const WorldState& state);
 int lightGroups(const Plan& plan);
+/// Shader file of the lights. Up to so many each have registers of their own; of more, bodies list those that matter.
+constexpr int kFewLights = 4;
+std::string lightsFile(const Plan& plan);
 
 RenderTables makeTables(const Simulation& simulation, const Plan& plan);
 

@@ -1,0 +1,33 @@
+// A body's row of lights: how many can matter to it, then their place or direction in the body frame with their radius, and their number;
+// places that are left over have the number -1.
+layout(std430, binding = 5) readonly buffer Lights { vec4 lights[]; };
+
+Vec3 reflectionColumns(int i, int l);
+Vec3 lobes(Vec3 toLight);
+
+// What the point sees of a light.
+struct LightHere {
+  vec3 to;       // unit
+  float factor;  // irradiance per unit intensity [1/m2]; 0 behind the surface
+  float air;     // both legs [m]
+  int number;
+};
+
+LightHere lightAt(int entry) {
+  LightHere here;
+  vec4 light = lights[entry];
+  here.number = int(lights[entry + 1].x);
+  bool sun = here.number >= LIGHTS - SUN;
+  vec3 line = sun ? light.xyz : light.xyz - point_;
+  float d2 = sun ? 1.0 : dot(line, line);
+  float d = sqrt(d2);
+  here.to = d > 0.0 ? line / d : normal_;
+  float cosLight = dot(normal_, here.to);
+  if (here.number == 0 && !sun) {
+    lightCos_ = cosLight;
+    lightDistance2_ = d2;
+  }
+  here.factor = here.number < 0 ? 0.0 : isSurface_ * (sun ? max(cosLight, 0.0) : pointIrradianceFactor(cosLight, d2, light.w));
+  here.air = airLength_ + (sun ? sunAirLength(height_) : airLength(height_, dot(up_, here.to), d));
+  return here;
+}

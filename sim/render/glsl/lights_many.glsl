@@ -1,0 +1,36 @@
+// Many point lights and, as the last one where SUN is 1, the sun; see lights_few.glsl. A body's row lists those that can matter to it; of
+// them a point keeps the ones that shine on its face.
+//@use sim/render/glsl/lights_buffer.glsl
+Vec3 lightFactor_[LIGHTS];   // irradiance per unit intensity x lobe of each component [1/m2]
+float lightAir_[LIGHTS];     // both legs [m]
+Vec3 toLight_[LIGHTS];
+int lightNumber_[LIGHTS];
+int shining_;
+
+Vec3 toLight(int l) { return toLight_[l]; }
+
+void prepareLights() {
+  lightCos_ = 0.0;
+  lightDistance2_ = 1.0;
+  shining_ = 0;
+  int row = int(draw_.state.z) * (2 * LIGHTS + 1);
+  int count = int(lights[row].x);
+  for (int k = 0; k < count; ++k) {
+    LightHere here = lightAt(row + 2 * k + 1);
+    if (!(here.factor > 0.0)) continue;
+    toLight_[shining_] = here.to;
+    lightFactor_[shining_] = here.factor * lobes(here.to);
+    lightAir_[shining_] = here.air;
+    lightNumber_[shining_] = here.number;
+    ++shining_;
+  }
+}
+
+Real reflectedLight(int i) {
+  Real sum = 0.0;
+  for (int l = 0; l < shining_; ++l) {
+    int number = lightNumber_[l];
+    sum += dot(reflectionColumns(i, l), lightFactor_[l]) * nodes.nodeLight[i * LIGHT_GROUPS + number / 4][number % 4] * pathTransmittance(i, lightAir_[l]);
+  }
+  return sum;
+}
