@@ -68,6 +68,13 @@ const std::map<std::string, Command>& commands() {
         "  --frames N           frames to time in each row, 10 or more (default 60; fewer of slow ones)\n"
         "  --out FOLDER         also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing\n"
         "  --accuracy SCENARIO  instead: the scenario's middle frame at 4 to 64 spectral samples, frames a second and error against 192\n"}},
+      {"atmosphere",
+       {atmosphereCommand, "what a MODTRAN tape7 holds, as tables and charts",
+        "pitviper atmosphere FILE [--out FOLDER]\n\n"
+        "Reads a tape7 (.tp7) of MODTRAN, transmittance, thermal radiance with or without the sun or solar irradiance, any number of runs, and prints\n"
+        "for each: kind, model, path, wavelengths and step, mean transmittance in 3-5 and 8-12 um where covered.\n\n"
+        "  --out FOLDER     also FILE_run<N>.csv, every column over wavelength in W/(m2 sr um) or W/(m2 um), and FILE_run<N>.png, charts (needs VTK),\n"
+        "                   in FOLDER; created if missing\n"}},
       {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
   };
   return all;
@@ -75,8 +82,8 @@ const std::map<std::string, Command>& commands() {
 
 void printHelp() {
   std::printf("pitviper: infrared and optronic sensor scenes in calibrated units\n\nusage: pitviper COMMAND ...\n\n");
-  for (const auto& [name, c] : commands()) std::printf("  %-9s %s\n", name.c_str(), c.summary);
-  std::printf("  %-9s %s\n", "test", "build and run every test (the pitviper script)");
+  for (const auto& [name, c] : commands()) std::printf("  %-10s %s\n", name.c_str(), c.summary);
+  std::printf("  %-10s %s\n", "test", "build and run every test (the pitviper script)");
   std::printf("\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input.\n");
 }
 

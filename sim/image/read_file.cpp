@@ -39,7 +39,7 @@ std::string readWholeFile(const std::filesystem::path& path) {
   if (file.number() < 0) throw UserError(where, "cannot open the file: " + reason(errno), "a readable file", "check the path and its permissions");
   struct stat about = {};
   if (::fstat(file.number(), &about) != 0) throw UserError(where, "cannot read the file: " + reason(errno), "a readable file", "check the file and its disk");
-  if (!S_ISREG(about.st_mode)) throw UserError(where, "is not a regular file", "an image file", "give the path of a file");
+  if (!S_ISREG(about.st_mode)) throw UserError(where, "is not a regular file", "a regular file", "give the path of a file");
   try {
     std::string bytes(static_cast<std::size_t>(about.st_size), '\0');
     std::size_t done = 0;

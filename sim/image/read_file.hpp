@@ -1,5 +1,5 @@
 #pragma once
-// A whole binary file in memory.
+// A whole file in memory.
 #include <filesystem>
 #include <string>
 

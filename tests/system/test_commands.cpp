@@ -54,7 +54,7 @@ class Commands : public ::testing::Test {
 TEST_F(Commands, HelpOfEveryCommand) {
   const Result all = pitviper("--help");
   EXPECT_EQ(all.code, 0);
-  for (const char* command : {"run", "check", "info", "integrate", "bench", "keys"}) {
+  for (const char* command : {"run", "check", "info", "integrate", "bench", "atmosphere", "keys"}) {
     EXPECT_NE(all.output.find(command), std::string::npos);
     const Result one = pitviper(std::string(command) + " --help");
     EXPECT_EQ(one.code, 0);
@@ -187,6 +187,29 @@ TEST_F(Commands, TransparentThingsAreTheSameInEitherMode) {
   const auto& vis = chase.find("vis.radiance")->pixels;
   EXPECT_GT(*std::max_element(mw.begin(), mw.end()), 100.0f) << "exhaust";
   EXPECT_LT(*std::min_element(vis.begin(), vis.end()), 2.0f) << "smoke";
+}
+
+// Rationale: whoever imports an atmosphere looks at it first. Expected: a summary, a table in SI units per um and a chart; one line for a
+// file that is none.
+TEST_F(Commands, ATape7InWordsAndTables) {
+  const std::string file = (folder_ / "sun.tp7").string();
+  std::ofstream(file) << "T F 6    3    3    0    6    6    6    6    6    6    1    0    0   0.000   0.00\n    1    1    1\n\n\n   36US\n"
+                         "   0.00000 100.00000  20.00000 106.31252   0.32202   0.00000    0        0.00000\n\n\n"
+                         "    2000.0    2500.0     500.0       1.0NW\n\n    FREQ   TRANS     SOL TR  SOLAR\n"
+                         " 2000.00  0.7500 7.50E-07 1.00E-06\n 2500.00  0.5000 8.00E-07 1.60E-06\n -9999.\n";
+  const Result r = pitviper("atmosphere " + file + " --out " + (folder_ / "out").string());
+  EXPECT_NE(r.output.find("direct solar irradiance (IEMSCT 3)"), std::string::npos) << r.output;
+  EXPECT_NE(r.output.find("path to space of 106.313 km from a height of 0 km, zenith angle 20 deg"), std::string::npos) << r.output;
+  EXPECT_NE(r.output.find("mean transmittance 0.625 over 4 to 5 um"), std::string::npos) << r.output;
+  EXPECT_EQ(bytes(folder_ / "out" / "sun.tp7_run1.csv"),
+            "wavelength [um],wavenumber [1/cm],TRANS,SOL_TR [W/(m2 um)],SOLAR [W/(m2 um)]\n4,2500,0.5,5,10\n5,2000,0.75,3,4\n");
+  const bool chart = fs::exists(folder_ / "out" / "sun.tp7_run1.png");
+  EXPECT_EQ(r.code, chart ? 0 : 2) << r.output;
+  EXPECT_EQ(r.output.find("libvtk9-dev") == std::string::npos, chart) << r.output;
+  const Result bad = pitviper("atmosphere " + scenario("first_light.yaml"));
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_NE(bad.output.find("first_light.yaml:1:"), std::string::npos) << bad.output;
+  EXPECT_EQ(std::count(bad.output.begin(), bad.output.end(), '\n'), 1) << bad.output;
 }
 
 }  // namespace

@@ -1,0 +1,20 @@
+#pragma once
+// Where the columns of a tape7 stand, and what they hold: from the lines with their names.
+#include <vector>
+
+#include "atmosphere/tape7_fields.hpp"
+
+namespace pitviper::tape7 {
+
+/// A line of column names begins with the wavenumber's, or with what some outputs have instead.
+bool isNames(const Line& line);
+
+struct Layout {
+  std::vector<Field> fields;  ///< the first is the wavenumber, the second the total transmittance
+  int nameLines = 1;
+};
+
+/// `lines[at]` is the line with the names. Errors: UserError if they are not those of a run of this kind.
+Layout layoutOf(Tape7Kind kind, const std::vector<Line>& lines, size_t at);
+
+}  // namespace pitviper::tape7

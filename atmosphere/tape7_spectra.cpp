@@ -1,0 +1,96 @@
+#include "atmosphere/tape7_spectra.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "sim/parameters/error.hpp"
+
+namespace pitviper {
+namespace {
+
+std::string number(double v) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", v);
+  return text;
+}
+
+const char* sayKind(Tape7Kind kind) {
+  constexpr const char* names[] = {"transmittance", "thermal radiance", "radiance with the sun", "solar irradiance"};
+  return names[static_cast<int>(kind)];
+}
+
+const Tape7Column& columnOf(const Tape7Run& run, const char* name, const char* what, const char* iemsct) {
+  const Tape7Column* column = run.find(name);
+  if (!column)
+    throw UserError({run.file, run.line, 11, -1}, "run " + std::to_string(run.number) + " (" + sayKind(run.kind) + ") holds no " + name + ", so no " + what,
+                    std::string("a run with IEMSCT ") + iemsct, std::string("run MODTRAN with IEMSCT = ") + iemsct + ", or name a run that has it");
+  if (column->gapLine > 0)
+    throw UserError({run.file, column->gapLine, column->firstColumn, -1}, std::string(name) + " is blank here and not in other rows", "a number in every row",
+                    "copy the whole file again, or run MODTRAN again");
+  return *column;
+}
+
+Spectrum table(const Tape7Run& run, std::vector<double> value, const std::string& columns) {
+  Spectrum s(Spectrum::Table{run.wavelength_um, std::move(value), Outside::Error, run.file + " run " + std::to_string(run.number)});
+  s.setProvenance(run.file + " run " + std::to_string(run.number) + ": " + columns);
+  return s;
+}
+
+Spectrum sun(const Tape7Run& run, const char* ofIrradiance, const char* ofRadiance, const char* what) {
+  const char* name = run.kind == Tape7Kind::SolarIrradiance ? ofIrradiance : ofRadiance;
+  return table(run, columnOf(run, name, what, "2 or 3").value, name);
+}
+
+/// Rounding of five digits in each of five columns is 7e-5 at most in the files known.
+constexpr double kSumsAgree = 5e-4;
+
+}  // namespace
+
+Spectrum totalTransmittance(const Tape7Run& run) {
+  const char* name = run.kind == Tape7Kind::Transmittance ? "COMBIN_TRANS" : run.kind == Tape7Kind::SolarIrradiance ? "TRANS" : "TOT_TRANS";
+  std::vector<double> value = columnOf(run, name, "transmittance", "0, 1, 2 or 3").value;
+  for (double& v : value) v = std::min(v, 1.0);
+  return table(run, std::move(value), name);
+}
+
+Spectrum pathRadiance(const Tape7Run& run) {
+  const char* const what = "path radiance";
+  const bool sunny = run.kind == Tape7Kind::SolarRadiance;
+  std::vector<double> value = columnOf(run, "PTH_THRML", what, "1 or 2").value;
+  const Tape7Column& total = columnOf(run, "TOTAL_RAD", what, "1 or 2");
+  std::vector<double> sum(value.size(), 0.0);
+  const auto add = [&](const char* name, std::vector<double>& to) {
+    const auto& more = columnOf(run, name, what, "1 or 2").value;
+    std::transform(to.begin(), to.end(), more.begin(), to.begin(), std::plus<>());
+  };
+  if (sunny) add("SOL_SCAT", value);
+  for (const char* surface : {"SURF_EMIS", "GRND_RFLT"})
+    if (run.find(surface)) add(surface, sum);
+  for (size_t i = 0; i < value.size(); ++i) {
+    const Location where{run.file, run.lineOf(i), total.firstColumn, -1};
+    if (std::abs(value[i] + sum[i] - total.value[i]) > kSumsAgree * std::abs(total.value[i]))
+      throw UserError(where, "TOTAL_RAD is not the sum of its parts (" + number((value[i] + sum[i]) / total.value[i]) + " times it)",
+                      sunny ? "PTH_THRML + SOL_SCAT + SURF_EMIS + GRND_RFLT" : "PTH_THRML + SURF_EMIS + GRND_RFLT", "give the file as MODTRAN wrote it");
+    if (value[i] < 0.0)
+      throw UserError(where, "the path radiance is below zero", "zero or more", "run MODTRAN again with more streams or without multiple scattering");
+  }
+  return table(run, std::move(value), sunny ? "PTH_THRML + SOL_SCAT" : "PTH_THRML");
+}
+
+Spectrum sunAtObserver(const Tape7Run& run) { return sun(run, "SOL_TR", "SOL@OBS", "sunlight at the observer"); }
+Spectrum sunAboveAir(const Tape7Run& run) { return sun(run, "SOLAR", "TOA_SUN", "sunlight above the air"); }
+
+void requireBand(const Tape7Run& run, double low_um, double high_um, const std::string& sensor) {
+  const double from = run.wavelength_um.front(), to = run.wavelength_um.back();
+  constexpr double kRounding = 1e-9;
+  if (low_um >= from * (1.0 - kRounding) && high_um <= to * (1.0 + kRounding)) return;
+  throw UserError({run.file, run.bandLine, 1, -1},
+                  "run " + std::to_string(run.number) + " covers " + number(from) + " to " + number(to) + " um, not the " + number(low_um) + " to " +
+                      number(high_um) + " um of " + sensor,
+                  "a run over all of it",
+                  "run MODTRAN from V1 = " + std::to_string(static_cast<int>(std::floor(1e4 / high_um))) +
+                      " to V2 = " + std::to_string(static_cast<int>(std::ceil(1e4 / low_um))) + " cm-1");
+}
+
+}  // namespace pitviper
