@@ -61,7 +61,6 @@ class RunReader {
   void addRow(const Line& line) {
     if (line.trimmed().empty())
       throw UserError(line.at(1), "a blank line in the table", "a row, or -9999. at its end", "remove the line, or copy the file again");
-    checkGaps(line);
     const auto v = tape7::numberIn(line, fields_[0]);
     if (!v)
       throw UserError(line.at(1), "no wavenumber in columns 1-" + std::to_string(fields_[0].last), "a wavenumber in cm-1, or -9999. at the table's end",
@@ -69,6 +68,7 @@ class RunReader {
     checkWavenumber(line, *v);
     wavenumber_.push_back(*v);
     for (size_t i = 1; i < fields_.size(); ++i) addValue(line, fields_[i], run_.columns[i - 1], *v);
+    checkGaps(line);  // last: a field that is wrong says more
   }
 
   /// Nothing but blanks where no field is.
@@ -77,8 +77,7 @@ class RunReader {
     const auto check = [&](int first, int last) {
       const std::string_view gap = line.cut(first, last);
       if (const size_t i = gap.find_first_not_of(' '); i != std::string_view::npos)
-        throw UserError(line.at(first + static_cast<int>(i)), tape7::inQuotes(gap) + " stands outside the columns of this run",
-                        "blanks in columns " + std::to_string(first) + (last < std::numeric_limits<int>::max() / 2 ? "-" + std::to_string(last) : " and on"),
+        throw UserError(line.at(first + static_cast<int>(i)), tape7::inQuotes(gap) + " stands outside the columns of this run", "a blank there",
                         "give the file as MODTRAN wrote it, its columns unchanged");
     };
     for (const Field& f : fields_) {

@@ -348,6 +348,7 @@ TEST(Tape7, BrokenOnesAreRefused) {
   starts(replaced(sunny, "\n 2500.00", "\n\n 2500.00"), "t7:13:1: a blank line in the table");
   starts(replaced(sunny, " 0.75000000", "           "), "t7:12:9: no total transmittance (TOT_TRANS)");
   starts(replaced(sunny, " 2000.00 ", "         "), "t7:12:1: no wavenumber");
+  starts(replaced(sunny, "1.2500E-08", "***********"), "t7:12:21: asterisks for PTH_THRML");  // and all behind it shifted
   // Not finite.
   starts(replaced(sunny, " 1.2500E-08", "        NaN"), "t7:12:28: 'NaN' for PTH_THRML");
   starts(replaced(sunny, " 1.2500E-08", "   Infinity"), "t7:12:23: 'Infinity' for PTH_THRML");
