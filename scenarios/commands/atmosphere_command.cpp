@@ -1,12 +1,14 @@
-// pitviper atmosphere: what a MODTRAN tape7 holds, in words, tables and charts.
+// pitviper atmosphere: what a MODTRAN tape7 or an air table of the library holds, in words, tables and charts.
 #include <cmath>
 #include <cstdio>
 
 #include "atmosphere/tape7.hpp"
 #include "atmosphere/tape7_summary.hpp"
+#include "scenarios/commands/air_report.hpp"
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
+#include "scenarios/reader/scenario_reader.hpp"
 #include "sim/image/atomic_file.hpp"
 
 namespace pitviper {
@@ -55,11 +57,29 @@ std::vector<Chart> chartsOf(const Tape7Run& run) {
   return charts;
 }
 
+void showAir(const std::filesystem::path& file, bool write, const std::filesystem::path& out) {
+  const AbsorberTable air = AbsorberTable::read(file);
+  std::printf("%s", describeAir(air).c_str());
+  if (!write) return;
+  ensureWritableFolder(out);
+  const std::string name = file.stem().string();
+  writeFileAtomically(out / (name + ".csv"), airCsv(air));
+  std::printf("\n%s written\n", (out / (name + ".csv")).string().c_str());
+  drawCharts(airCharts(air), 1, out / (name + ".png"));
+  std::printf("%s written\n", (out / (name + ".png")).string().c_str());
+}
+
 }  // namespace
 
 int atmosphereCommand(const Arguments& arguments) {
   const Options o("atmosphere", arguments, {{"--out"}}, 1, 1);
   const std::filesystem::path file = o.words()[0], out = o.value("--out");
+  const auto named = findLibraries().atmosphere / (o.words()[0] + ".air");
+  std::error_code ignored;
+  if (file.extension() == ".air" || (!std::filesystem::exists(file, ignored) && std::filesystem::is_regular_file(named, ignored))) {
+    showAir(file.extension() == ".air" ? file : named, o.has("--out"), out);
+    return 0;
+  }
   const auto runs = readTape7(file);
   std::printf("%s: %zu run%s of MODTRAN\n", file.string().c_str(), runs.size(), runs.size() == 1 ? "" : "s");
   for (const auto& run : runs) std::printf("%s", describe(run).c_str());
