@@ -106,10 +106,56 @@ int zoomedSize(double extent, bool medium = false) {
   return size;
 }
 
-/// A transparent body changes what is seen around it: the same zoomed view with and without it, everything else in place that has been added
-/// to the image before it. The differences, over their solid angle, are what the image lacks; so several of them add up, whatever hides or
-/// dims what.
-void addTransparent(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, std::vector<char> others) {
+/// Flags, in order, the bodies that are transparent or overlap one that is, directly or through others.
+std::vector<char> overlapTransparent(const Simulation& sim, const WorldState& state, const View& v, const std::vector<int>& bodies) {
+  std::vector<char> mixed(bodies.size(), 0);
+  std::vector<size_t> open;
+  std::vector<glm::dvec3> line;
+  std::vector<double> sine;  // of the angular radius
+  for (size_t i = 0; i < bodies.size(); ++i) {
+    const glm::dvec3 to = centreOf(sim, state, bodies[i]) - v.position;
+    line.push_back(glm::normalize(to));
+    sine.push_back(static_cast<double>(sim.entities[static_cast<size_t>(bodies[i])].boundingRadius_m) / glm::length(to));
+    if (!sim.isTransparent(sim.entities[static_cast<size_t>(bodies[i])])) continue;
+    mixed[i] = 1;
+    open.push_back(i);
+  }
+  while (!open.empty()) {
+    const size_t i = open.back();
+    open.pop_back();
+    for (size_t j = 0; j < bodies.size(); ++j)
+      if (!mixed[j] && glm::length(line[i] - line[j]) < 1.1 * (sine[i] + sine[j])) {  // small angles, with some room
+        mixed[j] = 1;
+        open.push_back(j);
+      }
+  }
+  return mixed;
+}
+
+/// A solid body: its radiance where it shows takes the place of the background's.
+void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, const std::vector<char>& drawn,
+               std::vector<Delta>& deltas) {
+  const View& v = image.view();
+  const View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity)));
+  pass.draw(z, state, drawn);
+  pass.startReadback(false, true);
+  const RawImage zoomed = pass.finishReadback();
+  const glm::dmat3 zoomFromMain = glm::transpose(z.localFromCamera) * v.localFromCamera;
+  for (auto& [p, share] : sharesOf(image, z, zoomed)) {
+    if (share.covered <= 0.0) continue;
+    const int x = static_cast<int>(p % static_cast<size_t>(v.width)), y = static_cast<int>(p / static_cast<size_t>(v.width));
+    const double whole = isInside(v, z, zoomFromMain, x, y) ? share.looked : image.projectedSolidAngle_sr(x, y);
+    Delta d{p, std::vector<double>(image.slotCount())};
+    for (size_t s = 0; s < d.slots.size(); ++s) d.slots[s] = (share.sum[s] - share.covered * image.slot(s, p)) / whole;
+    deltas.push_back(std::move(d));
+    takeTruth(image, zoomed, share, whole, p);
+  }
+}
+
+/// A body that is seen through something or that something is seen through: the same zoomed view with and without it, everything else in
+/// place that has been added to the image before it. The differences, over their solid angle, are what the image lacks; so several of them
+/// add up, whatever hides or dims what.
+void addDifference(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, std::vector<char> others) {
   const View& v = image.view();
   const bool medium = sim.mediumOf(sim.entities[static_cast<size_t>(entity)]) != nullptr;
   View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity), medium));
@@ -162,33 +208,33 @@ std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state
 void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small,
                     const std::vector<char>& present) {
   const View& v = image.view();
-  std::vector<Delta> deltas;
-  // Solid ones first, seen through the large transparent ones only; then the small transparent ones, each on top of those before it.
+  std::vector<int> bodies;
   std::vector<char> others = present;
-  for (size_t e = 0; e < small.size(); ++e) others[e] = present[e] && !(small[e] && sim.isTransparent(sim.entities[e]));
   for (size_t e = 0; e < small.size(); ++e) {
-    if (!small[e] || !others[e] || !mayShow(v, centreOf(sim, state, static_cast<int>(e)), sim.entities[e].boundingRadius_m)) continue;
-    const View z = zoomedView(sim, state, v, static_cast<int>(e), zoomedSize(extentOf(sim, state, v, static_cast<int>(e))));
-    pass.draw(z, state, others);
-    pass.startReadback(false, true);
-    const RawImage zoomed = pass.finishReadback();
-    const glm::dmat3 zoomFromMain = glm::transpose(z.localFromCamera) * v.localFromCamera;
-    for (auto& [p, share] : sharesOf(image, z, zoomed)) {
-      if (share.covered <= 0.0) continue;
-      const int x = static_cast<int>(p % static_cast<size_t>(v.width)), y = static_cast<int>(p / static_cast<size_t>(v.width));
-      const double whole = isInside(v, z, zoomFromMain, x, y) ? share.looked : image.projectedSolidAngle_sr(x, y);
-      Delta d{p, std::vector<double>(image.slotCount())};
-      for (size_t s = 0; s < d.slots.size(); ++s) d.slots[s] = (share.sum[s] - share.covered * image.slot(s, p)) / whole;
-      deltas.push_back(std::move(d));
-      takeTruth(image, zoomed, share, whole, p);
-    }
+    if (!small[e] || !present[e]) continue;
+    others[e] = 0;
+    if (mayShow(v, centreOf(sim, state, static_cast<int>(e)), sim.entities[e].boundingRadius_m)) bodies.push_back(static_cast<int>(e));
   }
+  const std::vector<char> mixed = overlapTransparent(sim, state, v, bodies);
+
+  // Solid bodies by themselves: each zoomed view shows what the others hide, so their order does not matter.
+  std::vector<char> solids = others;
+  for (size_t i = 0; i < bodies.size(); ++i) solids[static_cast<size_t>(bodies[i])] = !mixed[i];
+  std::vector<Delta> deltas;
+  for (size_t i = 0; i < bodies.size(); ++i)
+    if (!mixed[i]) drawSolid(image, pass, sim, state, bodies[i], solids, deltas);
   for (const auto& d : deltas)
     for (size_t s = 0; s < d.slots.size(); ++s) image.add(s, d.pixel, d.slots[s]);
-  for (size_t e = 0; e < small.size(); ++e) {
-    if (!small[e] || !present[e] || others[e] || !mayShow(v, centreOf(sim, state, static_cast<int>(e)), sim.entities[e].boundingRadius_m)) continue;
-    addTransparent(image, pass, sim, state, static_cast<int>(e), others);
-    others[e] = 1;
+
+  // Where something transparent takes part: the largest first, each on top of those before it. So each is sampled by a view of its own
+  // size, and never by the coarser one of a larger body: a small hot thing behind a large puff must cancel to the last digit.
+  std::vector<int> order;
+  for (size_t i = 0; i < bodies.size(); ++i)
+    if (mixed[i]) order.push_back(bodies[i]);
+  std::stable_sort(order.begin(), order.end(), [&](int x, int y) { return extentOf(sim, state, v, x) > extentOf(sim, state, v, y); });
+  for (int e : order) {
+    addDifference(image, pass, sim, state, e, others);
+    others[static_cast<size_t>(e)] = 1;
   }
 }
 
