@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <set>
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
@@ -94,6 +95,18 @@ void noteSampling(const Simulation& sim) {
   }
 }
 
+/// Once per camera: what of a picture's transparent things is not in its right order.
+void noteOrder(const Frame& f, std::set<std::string>& told) {
+  for (const auto& a : f.attributes) {
+    if (a.name != "pitviper.transparent_order") continue;
+    const std::string order = std::get<std::string>(a.value);
+    if (order != "exact" && told.insert(f.camera).second)
+      std::fprintf(stderr,
+                   "note: camera %s, frame %d: the order of transparent things is %s; of two that pass through each other one is drawn over the other\n",
+                   f.camera.c_str(), f.number, order.c_str());
+  }
+}
+
 }  // namespace
 
 int runCommand(const Arguments& arguments) {
@@ -109,9 +122,11 @@ int runCommand(const Arguments& arguments) {
   const auto spectral = static_cast<size_t>(std::count_if(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.spectralImage.has_value(); }));
   Progress progress(sim.name, frames * static_cast<int>(std::max<size_t>(1, sim.cameras.size() + spectral)));
   ProbeTables probes;
+  std::set<std::string> told;
   runFrames(
       sim, shaderLibrary(), range,
       [&](const Frame& f) {
+        noteOrder(f, told);
         writeFrame(out, f);
         if ((o.has("--preview") || !ranges.empty()) && f.kind.empty()) writePreview(out, f, ranges);
         progress.step();

@@ -15,6 +15,9 @@ constexpr std::size_t kMostPairs = 400000;
 /// Two triangles that share an edge overlap by rounding only: areas below this part of a pixel don't count.
 constexpr double kLeastOverlap_px2 = 1e-7;
 
+/// Parts of the depth by which pieces may overlap and still only touch: meshes in single precision.
+constexpr double kTouching = 1e-6;
+
 using Polygon = std::vector<glm::dvec2>;
 
 double twiceArea(const Polygon& p) {
@@ -90,6 +93,7 @@ class Sorter {
     nearer_.resize(prints_.size());
     farther_.assign(prints_.size(), 0);
     order.exact = compareAll();
+    order.crossing = crossing_;
     const std::vector<int> level = order.exact ? levels(order.cyclic) : std::vector<int>();
     std::vector<std::uint32_t> at(prints_.size());
     std::iota(at.begin(), at.end(), 0u);
@@ -150,11 +154,11 @@ class Sorter {
     return f;
   }
 
-  /// Depth [m] of a piece on the line of sight through a film position, of a medium at the middle of its way; nothing where it is not met.
-  std::optional<double> depthAt(const Footprint& f, const glm::dvec2& at) const {
+  /// Depth [m] of a piece on the line of sight through a film position, of a medium where its way begins and ends; nothing where it is not met.
+  std::optional<glm::dvec2> depthAt(const Footprint& f, const glm::dvec2& at) const {
     const LayerPiece& piece = pieces_[f.piece];
     const glm::dvec3 ray = view_.ray(at.x, at.y);
-    if (!piece.medium) return 1.0 / glm::dot(f.plane, ray);
+    if (!piece.medium) return glm::dvec2(1.0 / glm::dot(f.plane, ray));
     const glm::dmat3 bodyFromCamera = glm::transpose(piece.cameraFromBody);
     const double near = -piece.origin.z;  // digits of the body's own size
     const glm::dvec3 d = bodyFromCamera * ray, o = bodyFromCamera * (near * ray - piece.origin);
@@ -168,16 +172,17 @@ class Sorter {
         way = {std::max(way.x, std::min(a, b)), std::min(way.y, std::max(a, b))};
       }
     const double enter = std::max(near + way.x, 0.0), leave = near + way.y;
-    return leave > enter ? std::optional(0.5 * (enter + leave)) : std::nullopt;
+    return leave > enter ? std::optional(glm::dvec2(enter, leave)) : std::nullopt;
   }
 
-  /// Their depths on a line of sight that meets both, if one of some does: the middle of what they share, else places spread over it.
-  std::optional<glm::dvec2> depthsOf(const Footprint& a, const Footprint& b) const {
-    const Polygon shared = commonPart(a, b);
-    if (shared.empty()) return std::nullopt;
-    auto both = [&](const glm::dvec2& at) -> std::optional<glm::dvec2> {
+  /// Where both are on a line of sight that meets both, if one of some does: the middle of what they share, else places spread over it.
+  struct Depths {
+    glm::dvec2 a, b;
+  };
+  std::optional<Depths> depthsOf(const Footprint& a, const Footprint& b, const Polygon& shared) const {
+    auto both = [&](const glm::dvec2& at) -> std::optional<Depths> {
       const auto da = depthAt(a, at), db = depthAt(b, at);
-      return da && db ? std::optional(glm::dvec2(*da, *db)) : std::nullopt;
+      return da && db ? std::optional(Depths{*da, *db}) : std::nullopt;
     };
     glm::dvec2 middle(0.0);
     for (const auto& p : shared) middle += p / static_cast<double>(shared.size());
@@ -192,10 +197,28 @@ class Sorter {
     return std::nullopt;
   }
 
+  /// Whether two pieces pass through each other: triangles that change sides within what they share, or ways that overlap.
+  bool pass(const Footprint& a, const Footprint& b, const Polygon& shared, const Depths& d) const {
+    if (pieces_[a.piece].medium || pieces_[b.piece].medium) {
+      const double slack = kTouching * std::max(d.a.y, d.b.y);
+      return d.a.y - slack > d.b.x && d.b.y - slack > d.a.x;
+    }
+    double nearer = 0.0, farther = 0.0;  // of the first, by its depth
+    for (const auto& at : shared) {
+      const double za = 1.0 / glm::dot(a.plane, view_.ray(at.x, at.y)), zb = 1.0 / glm::dot(b.plane, view_.ray(at.x, at.y));
+      nearer = std::max(nearer, (zb - za) / zb);
+      farther = std::max(farther, (za - zb) / zb);
+    }
+    return nearer > kTouching && farther > kTouching;
+  }
+
   void compare(std::uint32_t i, std::uint32_t j) {
-    const auto depths = depthsOf(prints_[i], prints_[j]);
+    const Polygon shared = commonPart(prints_[i], prints_[j]);
+    if (shared.empty()) return;
+    const auto depths = depthsOf(prints_[i], prints_[j], shared);
     if (!depths) return;
-    const double a = depths->x, b = depths->y;
+    crossing_ += pass(prints_[i], prints_[j], shared, *depths);
+    const double a = 0.5 * (depths->a.x + depths->a.y), b = 0.5 * (depths->b.x + depths->b.y);
     // Rounding does not decide: what is equally deep is drawn in the order given.
     const bool equal = std::abs(a - b) <= 1e-13 * std::max(a, b);
     const bool first = equal ? prints_[i].piece < prints_[j].piece : a > b;
@@ -265,14 +288,19 @@ class Sorter {
   const std::vector<LayerPiece>& pieces_;
   std::vector<Footprint> prints_;
   std::vector<std::vector<std::uint32_t>> nearer_;  ///< overlapping pieces in front of each
-  std::vector<int> farther_;                        ///< how many are behind
+  int crossing_ = 0;
+  std::vector<int> farther_;  ///< how many are behind
 };
 
 }  // namespace
 
 std::string LayerOrder::describe() const {
   if (!exact) return "by middles";
-  return cyclic == 0 ? "exact" : "exact but for " + std::to_string(cyclic) + (cyclic == 1 ? " piece in a ring" : " pieces in rings");
+  auto count = [](int n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
+  std::string but;
+  if (crossing > 0) but = count(crossing, "pair") + " that " + (crossing == 1 ? "passes" : "pass") + " through each other";
+  if (cyclic > 0) but += (but.empty() ? "" : " and ") + count(cyclic, "piece") + " in rings";
+  return but.empty() ? "exact" : "exact but for " + but;
 }
 
 LayerOrder orderLayers(const View& view, const std::vector<LayerPiece>& pieces) { return Sorter(view, pieces).run(); }

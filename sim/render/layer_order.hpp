@@ -26,8 +26,9 @@ struct LayerOrder {
   /// Pieces of one level don't overlap in the picture: level k is [levels[k], levels[k + 1]).
   std::vector<std::uint32_t> levels;
   bool exact = true;  ///< false where there were too many pieces to compare those that overlap: sorted by their middles only
-  int cyclic = 0;     ///< pieces that overlap in a ring, or pass through each other: put in order by their middles
-  /// "exact", "exact but for N pieces in rings", "by middles": for a frame's metadata.
+  int crossing = 0;   ///< pairs found to pass through each other, on the lines of sight on which they were compared
+  int cyclic = 0;     ///< pieces that overlap in a ring: put in order by their middles
+  /// "exact", "exact but for 1 pair that passes through each other and 2 pieces in rings", "by middles": for a frame's metadata.
   std::string describe() const;
 };
 
