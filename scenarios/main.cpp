@@ -69,12 +69,13 @@ const std::map<std::string, Command>& commands() {
         "  --out FOLDER         also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing\n"
         "  --accuracy SCENARIO  instead: the scenario's middle frame at 4 to 64 spectral samples, frames a second and error against 192\n"}},
       {"atmosphere",
-       {atmosphereCommand, "what a MODTRAN tape7 holds, as tables and charts",
-        "pitviper atmosphere FILE [--out FOLDER]\n\n"
-        "Reads a tape7 (.tp7) of MODTRAN, transmittance, thermal radiance with or without the sun or solar irradiance, any number of runs, and prints\n"
+       {atmosphereCommand, "what air there is in the library or in a MODTRAN tape7, as tables and charts",
+        "pitviper atmosphere NAME|FILE [--out FOLDER]\n\n"
+        "NAME or FILE.air: an air table (us76_rural, mls_rural): mean transmittance of level and slant paths, to space.\n"
+        "FILE: a tape7 (.tp7) of MODTRAN, transmittance, thermal radiance with or without the sun or solar irradiance, any number of runs; prints\n"
         "for each: kind, model, path, wavelengths and step, mean transmittance in 3-5 and 8-12 um where covered.\n\n"
-        "  --out FOLDER     also FILE_run<N>.csv, every column over wavelength in W/(m2 sr um) or W/(m2 um), and FILE_run<N>.png, charts (needs VTK),\n"
-        "                   in FOLDER; created if missing\n"}},
+        "  --out FOLDER     also NAME.csv or FILE_run<N>.csv, every column over wavelength in W/(m2 sr um) or W/(m2 um), and a chart of the same name\n"
+        "                   (PNG, needs VTK), in FOLDER; created if missing\n"}},
       {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
   };
   return all;

@@ -44,7 +44,7 @@ int integrateCommand(const Arguments& arguments) {
   frame.attributes.push_back({"pitviper.sensor_sha256", sensor.sha256});
   ensureWritableFolder(out.parent_path().empty() ? fs::path(".") : out.parent_path());
   writeFrameFile(out, frame);
-  std::printf("%-32s %-18s error of %zu bins: median, maximum over pixels\n", "layer", "unit", image.bins.size());
+  std::printf("%-32s %-18s error of %zu bins alone: median, maximum over pixels\n", "layer", "unit", image.bins.size());
   for (size_t l = 0; l < frame.layers.size(); ++l)
     std::printf("%-32s %-18s %s, %s\n", frame.layers[l].name.c_str(), frame.layers[l].unit.c_str(), percent(result.binning[l].median).c_str(),
                 percent(result.binning[l].maximum).c_str());

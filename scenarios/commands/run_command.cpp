@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <set>
@@ -89,9 +90,32 @@ void noteSampling(const Simulation& sim) {
     const auto notes = checkSampling(sim, makePlan(sim, c.outputs, c.spectral, c.where), c.outputs, 0.01);
     if (notes.empty()) continue;
     const SamplingNote& n = notes.front();
-    std::fprintf(stderr, "note: camera %s: %d spectral samples are %.2g %% off for the emission of %.2g m of '%s' in channel %s; raise spectral.samples%s\n",
+    std::fprintf(stderr,
+                 "note: camera %s: %d spectral samples are %.2g %% off for the emission of %.2g m of '%s' in channel %s; raise spectral.samples, such as "
+                 "{samples: 64, spacing: even}%s\n",
                  c.name.c_str(), c.spectral.samples, 100.0 * n.error, n.thickness_m, n.medium.c_str(), n.channel.c_str(),
                  notes.size() > 1 ? " (the worst of several)" : "");
+  }
+}
+
+/// One line for each camera that begins with part of a body nearer than it draws: a dome in front of it, for instance.
+void noteNear(const Simulation& sim, double time_s) {
+  const WorldState state = advance(sim.entities, sim.lights, time_s);
+  for (const Camera& c : sim.cameras) {
+    const glm::dvec3 eye = cameraPose(c.mount, state).position;
+    for (size_t e = 0; e < sim.entities.size(); ++e) {
+      const Entity& body = sim.entities[e];
+      const Pose& pose = state.entities[e];
+      const glm::dvec3 centre = pose.position + pose.orientation * glm::dvec3(body.boundingCentre);
+      if (static_cast<int>(e) == c.mount.carrier || sim.mediumOf(body) || glm::length(eye - centre) > static_cast<double>(body.boundingRadius_m) + c.near_m)
+        continue;
+      const glm::dvec3 at = glm::inverse(pose.orientation) * (eye - pose.position);
+      double nearest = INFINITY;
+      for (const glm::vec3& p : body.mesh->positions) nearest = std::min(nearest, glm::length(glm::dvec3(p) - at));
+      if (nearest >= c.near_m) continue;
+      std::fprintf(stderr, "note: camera %s: part of '%s' is %.2g m away, nearer than its near (%.2g m), and is not drawn; set near: %.1g mm\n", c.name.c_str(),
+                   body.name.c_str(), nearest, c.near_m, std::max(1e3 * nearest / 10.0, 0.1));
+    }
   }
 }
 
@@ -117,6 +141,7 @@ int runCommand(const Arguments& arguments) {
   const std::filesystem::path out = o.value("--out", "out");
   ensureWritableFolder(out);
   noteSampling(sim);
+  noteNear(sim, sim.time.at(range.first));
   const GlContext context;
   const int frames = range.last - range.first + 1;
   const auto spectral = static_cast<size_t>(std::count_if(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.spectralImage.has_value(); }));
@@ -166,6 +191,7 @@ int checkCommand(const Arguments& arguments) {
                 c.spectralImage->edge_um.back(), count(passes.size(), "pass", "passes").c_str());
   }
   noteSampling(sim);
+  noteNear(sim, sim.time.at(0));
   return 0;
 }
 

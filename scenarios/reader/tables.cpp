@@ -28,7 +28,9 @@ void addPlacement(std::vector<Parameter>& p, bool attitude) {
   }
   p.push_back(list("motion", "waypoints; orientation follows the path unless a waypoint gives one", 1, 100000));
   p.push_back(withDefault(choice("interpolation", {"smooth", "linear"}, "between waypoints: cubic with continuous velocity, or straight"), "smooth"));
-  p.push_back(text("attached_to", "name of an entity that carries it: positions are then in that body's axes"));
+  p.push_back(text("attached_to",
+                   "name of an entity that carries it: positions are then in that body's axes. A camera does not see its carrier: attach one behind a dome to "
+                   "the aircraft, not to the dome"));
 }
 
 /// A spectrum over view angle: emissivity, transmittance.
@@ -155,7 +157,8 @@ const ParameterTable& component() {
   static const ParameterTable t{
       "component",
       "One reflection component: BRDF = table(lambda; angles) x lobe x modifier.",
-      {required(choice("reflection", {"lambertian", "phong", "table"}, "kind")), spectrum("reflectance", "", "0..1; of a Phong lobe: at normal view"),
+      {required(choice("reflection", {"lambertian", "phong", "table"}, "kind")),
+       spectrum("reflectance", "", "0..1; of a Phong lobe: at normal view, it falls as the cosine of the view angle (a table can hold Fresnel's rise)"),
        within(number("exponent", "", "of the Phong lobe"), 0, 1e7), map("modifier", "texture that multiplies it, 0..1"),
        list("wavelength", "of a table: rising wavelengths", 1, 1024), list("angles", "of a table: up to two axes", 0, 2),
        list("values", "of a table: BRDF [1/sr], nested as values[angle 2][angle 1][wavelength]", 1, 4096)}};
