@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "sim/gl/context.hpp"
+#include "sim/render/media_groups.hpp"
 
 namespace pitviper {
 namespace {
@@ -62,6 +63,10 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
   }
   if (plan.terms.media) {
     volume_ = Program(assembleShader(library, "sim/render/glsl/box.vert.glsl", base), assembleShader(library, "sim/render/glsl/volume.frag.glsl", base));
+    ShaderSlots several = base;
+    several.constants["GROUP"] = kMostMembers;
+    group_ =
+        Program(assembleShader(library, "sim/render/glsl/box.vert.glsl", several), assembleShader(library, "sim/render/glsl/volume_group.frag.glsl", several));
     thickness_ =
         Program(assembleShader(library, "sim/render/glsl/thickness.vert.glsl", base), assembleShader(library, "sim/render/glsl/thickness.frag.glsl", base));
     media_.upload(tables.media);
@@ -98,6 +103,7 @@ void LayerPass::order(const View& view, const WorldState& state, const std::vect
       pieces_.push_back(piece);
     }
   }
+  joinMedia(pieces_, groups_);
   order_ = orderLayers(view, pieces_);
 
   // Where the target is read in order of drawing, only the change between surfaces and media cuts a run; elsewhere each level does.
@@ -125,14 +131,15 @@ void LayerPass::blend(const Over& over) {
   RenderTarget* copy = path_ == BlendPath::PingPong ? &sizedLike(copies_, over.spectrum, over.spectrum.colourCount()) : nullptr;
   for (const Run& run : runs_) {
     const LayerPiece& first = pieces_[order_.pieces[run.first]];
-    if (run.medium && simulation_.entities[static_cast<size_t>(tables_.draws[first.draw].entity)].form.kind == BodyForm::Kind::Mesh) drawThickness(first, over);
+    if (run.medium && first.group < 0 && simulation_.entities[static_cast<size_t>(tables_.draws[first.draw].entity)].form.kind == BodyForm::Kind::Mesh)
+      drawThickness(first, over);
     if (copy) copy->copyFrom(over.spectrum);
     over.spectrum.bind();
     const RenderTarget& under = copy ? *copy : over.spectrum;
     if (path_ != BlendPath::FramebufferFetch)
       for (size_t t = 0; t < under.colourCount(); ++t) under.colour(t).bind(static_cast<unsigned>(8 + t));
     if (path_ == BlendPath::TextureBarrier) glTextureBarrier();
-    const Program& program = run.medium ? volume_ : layer_;
+    const Program& program = !run.medium ? layer_ : first.group >= 0 ? group_ : volume_;
     program.use();
     glUniform1i(program.uniform("firstNode"), over.firstNode);
     glUniform1f(program.uniform("emitting"), over.emitting ? 1.0f : 0.0f);
@@ -167,18 +174,41 @@ void setMedium(const Program& program, const LayerPiece& piece, double farthest_
 
 }  // namespace
 
+void LayerPass::setGroup(const std::vector<std::uint32_t>& draws) const {
+  std::vector<GLint> forms, rows, numbers;
+  std::vector<glm::vec3> sizes;
+  for (std::uint32_t d : draws) {
+    const BodyForm& form = simulation_.entities[static_cast<size_t>(tables_.draws[d].entity)].form;
+    numbers.push_back(static_cast<GLint>(d));
+    forms.push_back(static_cast<GLint>(form.kind));
+    rows.push_back(static_cast<GLint>(tables_.draws[d].row));
+    sizes.emplace_back(form.size);
+  }
+  const auto n = static_cast<GLsizei>(draws.size());
+  glUniform1i(group_.uniform("count"), n);
+  glUniform1iv(group_.uniform("memberDraw"), n, numbers.data());
+  glUniform1iv(group_.uniform("memberForm"), n, forms.data());
+  glUniform1iv(group_.uniform("memberRow"), n, rows.data());
+  glUniform3fv(group_.uniform("memberSize"), n, &sizes[0].x);
+}
+
 void LayerPass::drawMedium(const LayerPiece& piece, const Over& over) {
   const DrawItem& item = tables_.draws[piece.draw];
   const BodyForm& form = simulation_.entities[static_cast<size_t>(item.entity)].form;
+  const Program& program = piece.group >= 0 ? group_ : volume_;
   media_.bindTexture(5, 4);
   over.visibility.colour(0).bind(0);
-  setMedium(volume_, piece, over.farthest_m);
+  setMedium(program, piece, over.farthest_m);
   const glm::vec3 low(piece.low), high(piece.high), size(form.size);
-  glUniform3f(volume_.uniform("low"), low.x, low.y, low.z);
-  glUniform3f(volume_.uniform("high"), high.x, high.y, high.z);
-  glUniform3f(volume_.uniform("formSize"), size.x, size.y, size.z);
-  glUniform1i(volume_.uniform("form"), static_cast<int>(form.kind));
-  glUniform1i(volume_.uniform("mediumRow"), static_cast<int>(item.row));
+  glUniform3f(program.uniform("low"), low.x, low.y, low.z);
+  glUniform3f(program.uniform("high"), high.x, high.y, high.z);
+  if (piece.group >= 0) {
+    setGroup(groups_[static_cast<size_t>(piece.group)]);
+  } else {
+    glUniform3f(program.uniform("formSize"), size.x, size.y, size.z);
+    glUniform1i(program.uniform("form"), static_cast<int>(form.kind));
+    glUniform1i(program.uniform("mediumRow"), static_cast<int>(item.row));
+  }
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CLIP_DISTANCE0);
   glEnable(GL_DEPTH_CLAMP);  // the back of the box may lie anywhere

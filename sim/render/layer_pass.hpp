@@ -43,6 +43,7 @@ class LayerPass {
   };
   void drawLayers(const Run& run);
   void drawMedium(const LayerPiece& piece, const Over& over);
+  void setGroup(const std::vector<std::uint32_t>& draws) const;
   void drawThickness(const LayerPiece& piece, const Over& over);
   RenderTarget& sizedLike(std::deque<RenderTarget>& pool, const RenderTarget& target, std::size_t colours) const;
 
@@ -53,8 +54,9 @@ class LayerPass {
   BlendPath path_;
   SurfaceBuffers buffers_;
   Buffer sorted_, media_;
-  Program layer_, volume_, thickness_;
+  Program layer_, volume_, group_, thickness_;
   std::vector<LayerPiece> pieces_;
+  std::vector<std::vector<std::uint32_t>> groups_;
   LayerOrder order_;
   std::vector<Run> runs_;
   std::deque<RenderTarget> copies_, thicknesses_;

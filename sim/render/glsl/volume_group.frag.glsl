@@ -1,0 +1,82 @@
+// Several bodies of emitting gas or smoke that may lie in each other: the ray is cut at every border, and where bodies overlap their
+// absorption and emission add. See volume.frag.glsl for one.
+//@use sim/radiometry/glsl/chord.glsl
+//@use sim/radiometry/glsl/medium.glsl
+//@constants
+//@use sim/render/glsl/volume_ray.glsl
+//@use sim/render/glsl/node_block.glsl
+layout(binding = 5) uniform samplerBuffer media;  // (absorption [1/m], source radiance, 0, 0) per node
+uniform int count;
+uniform int memberDraw[GROUP];
+uniform int memberForm[GROUP];
+uniform vec3 memberSize[GROUP];
+uniform int memberRow[GROUP];
+uniform float emitting;
+
+float airLength_;  // of the part of the way at hand
+float sunElevation_;
+vec2 way_[GROUP];            // of each member: t along the ray from the plane of the first one's origin
+float cut_[2 * GROUP];       // borders, falling
+float airBefore_[2 * GROUP]; // of the stretch that begins at a border and ends at the one before
+float airInside_[2 * GROUP];
+int cuts_;
+
+//@slot path
+
+Real blended(Real behind, int i) {
+  Real radiance = behind;
+  for (int c = 0; c + 1 < cuts_; ++c) {
+    Real depth = 0.0, emitted = 0.0;
+    for (int k = 0; k < count; ++k) {
+      if (!(way_[k].x <= cut_[c + 1] && way_[k].y >= cut_[c])) continue;
+      vec2 medium = texelFetch(media, memberRow[k] + i).xy;
+      Real own = medium.x * (cut_[c] - cut_[c + 1]) * rayLength_;
+      depth += own;
+      emitted += own * medium.y;
+    }
+    if (!(depth > 0.0)) continue;
+    Real air = pathDepth(i, airBefore_[c], airInside_[c]);
+    Real before = pathRadiance(i, airBefore_[c]), tau = pathTransmittance(i, airBefore_[c]), inside = tau * pathRadiance(i, airInside_[c]);
+    radiance = decay(depth) * (radiance - emitting * (before + inside)) + emitting * mediumRadiance(depth, air, before, inside, tau, emitted / depth);
+  }
+  return radiance;
+}
+
+//@slot targets
+//@slot blend
+
+void main() {
+  prepareRay(gl_FragCoord.xy);
+  Draw first = draws[memberDraw[0]];
+  float start = -planeOf(first);  // the camera
+  float end = endOfRay(first);
+  cuts_ = 0;
+  for (int k = 0; k < count; ++k) {
+    Draw body = draws[memberDraw[k]];
+    vec3 d = inBody(body, ray_), q = pointOnPlane(body);
+    vec2 chord = memberForm[k] == 1 ? ellipsoidChord(q, d, memberSize[k]) : coneChord(q, d, memberSize[k].x, memberSize[k].y, memberSize[k].z);
+    float shift = (first.row2.w - body.row2.w) + (first.fine.x - body.fine.x);
+    way_[k] = chord.y > chord.x ? vec2(max(chord.x + shift, start), min(chord.y + shift, end)) : vec2(0.0);
+    if (!(way_[k].y > way_[k].x)) {
+      way_[k] = vec2(kFar, -kFar);  // in no stretch
+      continue;
+    }
+    for (int side = 0; side < 2; ++side) {
+      float border = side == 0 ? way_[k].x : way_[k].y;
+      int at = cuts_;
+      for (; at > 0 && cut_[at - 1] < border; --at) cut_[at] = cut_[at - 1];
+      cut_[at] = border;
+      ++cuts_;
+    }
+  }
+  if (cuts_ == 0) discard;
+  sunElevation_ = 0.0;
+  for (int c = 0; c + 1 < cuts_; ++c) {
+    float range = max((planeOf(first) + cut_[c + 1]) * rayLength_, 0.0);
+    vec3 upThere;
+    float height = heightAt(range, upThere);
+    airBefore_[c] = airLength(view.up.w, sinElevation_, range);
+    airInside_[c] = airLength(height, dot(upThere, ray_) / rayLength_, (cut_[c] - cut_[c + 1]) * rayLength_);
+  }
+  blend();
+}
