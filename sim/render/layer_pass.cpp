@@ -199,22 +199,34 @@ void LayerPass::drawMedium(const LayerPiece& piece, const Over& over) {
   media_.bindTexture(5, 4);
   over.visibility.colour(0).bind(0);
   setMedium(program, piece, over.farthest_m);
-  const glm::vec3 low(piece.low), high(piece.high), size(form.size);
-  glUniform3f(program.uniform("low"), low.x, low.y, low.z);
-  glUniform3f(program.uniform("high"), high.x, high.y, high.z);
-  if (piece.group >= 0) {
-    setGroup(groups_[static_cast<size_t>(piece.group)]);
-  } else {
-    glUniform3f(program.uniform("formSize"), size.x, size.y, size.z);
-    glUniform1i(program.uniform("form"), static_cast<int>(form.kind));
-    glUniform1i(program.uniform("mediumRow"), static_cast<int>(item.row));
-  }
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CLIP_DISTANCE0);
   glEnable(GL_DEPTH_CLAMP);  // the back of the box may lie anywhere
   glEnable(GL_CULL_FACE);
   glCullFace(GL_FRONT);
-  glDrawArrays(GL_TRIANGLES, 0, 36);
+  auto drawBox = [&](const glm::vec3& low, const glm::vec3& high) {
+    glUniform3f(program.uniform("low"), low.x, low.y, low.z);
+    glUniform3f(program.uniform("high"), high.x, high.y, high.z);
+    glDrawArrays(GL_TRIANGLES, 0, 36);
+  };
+  if (piece.group >= 0) {
+    const auto& draws = groups_[static_cast<size_t>(piece.group)];
+    setGroup(draws);
+    for (size_t k = 0; k < draws.size(); ++k) {
+      // A ray that meets a member must find its box, whatever the rasteriser's steps (1/256 of a pixel): the others leave it to that one.
+      const BodyBox& box = scene_->box(tables_.draws[draws[k]].entity);
+      const glm::dvec3 margin = 0.01 * (box.high - box.low);
+      glUniform1i(program.uniform("drawIndex"), static_cast<int>(draws[k]));
+      glUniform1i(program.uniform("member"), static_cast<int>(k));
+      drawBox(box.low - margin, box.high + margin);
+    }
+  } else {
+    const glm::vec3 size(form.size);
+    glUniform3f(program.uniform("formSize"), size.x, size.y, size.z);
+    glUniform1i(program.uniform("form"), static_cast<int>(form.kind));
+    glUniform1i(program.uniform("mediumRow"), static_cast<int>(item.row));
+    drawBox(piece.low, piece.high);
+  }
   glCullFace(GL_BACK);
 }
 

@@ -6,7 +6,9 @@
 //@use sim/render/glsl/volume_ray.glsl
 //@use sim/render/glsl/node_block.glsl
 layout(binding = 5) uniform samplerBuffer media;  // (absorption [1/m], source radiance, 0, 0) per node
+// Each member's box is drawn; a pixel is worked out in the box of the first member that its ray meets.
 uniform int count;
+uniform int member;  // whose box this is
 uniform int memberDraw[GROUP];
 uniform int memberForm[GROUP];
 uniform vec3 memberSize[GROUP];
@@ -15,7 +17,9 @@ uniform float emitting;
 
 float airLength_;  // of the part of the way at hand
 float sunElevation_;
-vec2 way_[GROUP];            // of each member: t along the ray from the plane of the first one's origin
+vec2 way_[GROUP];            // of each member that the ray meets: t along the ray from the plane of the first one's origin
+int row_[GROUP];
+int met_;
 float cut_[2 * GROUP];       // borders, falling
 float airBefore_[2 * GROUP]; // of the stretch that begins at a border and ends at the one before
 float airInside_[2 * GROUP];
@@ -27,9 +31,9 @@ Real blended(Real behind, int i) {
   Real radiance = behind;
   for (int c = 0; c + 1 < cuts_; ++c) {
     Real depth = 0.0, emitted = 0.0;
-    for (int k = 0; k < count; ++k) {
+    for (int k = 0; k < met_; ++k) {
       if (!(way_[k].x <= cut_[c + 1] && way_[k].y >= cut_[c])) continue;
-      vec2 medium = texelFetch(media, memberRow[k] + i).xy;
+      vec2 medium = texelFetch(media, row_[k] + i).xy;
       Real own = medium.x * (cut_[c] - cut_[c + 1]) * rayLength_;
       depth += own;
       emitted += own * medium.y;
@@ -51,25 +55,28 @@ void main() {
   float start = -planeOf(first);  // the camera
   float end = endOfRay(first);
   cuts_ = 0;
+  met_ = 0;
+  int turn = -1;
   for (int k = 0; k < count; ++k) {
     Draw body = draws[memberDraw[k]];
     vec3 d = inBody(body, ray_), q = pointOnPlane(body);
     vec2 chord = memberForm[k] == 1 ? ellipsoidChord(q, d, memberSize[k]) : coneChord(q, d, memberSize[k].x, memberSize[k].y, memberSize[k].z);
     float shift = (first.row2.w - body.row2.w) + (first.fine.x - body.fine.x);
-    way_[k] = chord.y > chord.x ? vec2(max(chord.x + shift, start), min(chord.y + shift, end)) : vec2(0.0);
-    if (!(way_[k].y > way_[k].x)) {
-      way_[k] = vec2(kFar, -kFar);  // in no stretch
-      continue;
-    }
+    vec2 way = vec2(max(chord.x + shift, start), min(chord.y + shift, end));
+    if (!(chord.y > chord.x && way.y > way.x)) continue;
+    if (turn < 0) turn = k;
+    way_[met_] = way;
+    row_[met_] = memberRow[k];
+    ++met_;
     for (int side = 0; side < 2; ++side) {
-      float border = side == 0 ? way_[k].x : way_[k].y;
+      float border = side == 0 ? way.x : way.y;
       int at = cuts_;
       for (; at > 0 && cut_[at - 1] < border; --at) cut_[at] = cut_[at - 1];
       cut_[at] = border;
       ++cuts_;
     }
   }
-  if (cuts_ == 0) discard;
+  if (turn != member) discard;
   sunElevation_ = 0.0;
   for (int c = 0; c + 1 < cuts_; ++c) {
     float range = max((planeOf(first) + cut_[c + 1]) * rayLength_, 0.0);
