@@ -58,7 +58,8 @@ bool isInside(const View& main, const View& zoomed, const glm::dmat3& zoomFromMa
   return true;
 }
 
-std::map<size_t, Share> sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed) {
+/// By subpixel. The sums are those of the samples that see the entity, or, beside a picture without it, of the differences of all samples.
+std::map<size_t, Share> sharesOf(const Subpixels& image, const View& z, int entity, const RawImage& zoomed, const RawImage* without = nullptr) {
   const View& v = image.view();
   const glm::dmat3 mainFromZoom = glm::transpose(v.localFromCamera) * z.localFromCamera;
   std::map<size_t, Share> shares;
@@ -73,12 +74,19 @@ std::map<size_t, Share> sharesOf(const Subpixels& image, const View& z, const Ra
       const double etendue = z.tanPerPixelX * z.tanPerPixelY / (l2 * std::sqrt(l2)) * cosPsi;
       Share& share = shares[image.index(static_cast<int>(at.x), static_cast<int>(at.y))];
       share.looked += etendue;
-      if (zoomed.entity[q] != z.onlyEntity) continue;
-      share.covered += etendue;
-      share.sample = q;
-      share.cosPsi = cosPsi;
+      const bool covered = zoomed.entity[q] == entity;
+      if (covered) {
+        share.covered += etendue;
+        share.sample = q;
+        share.cosPsi = cosPsi;
+      } else if (!without) {
+        continue;
+      }
       share.sum.resize(image.slotCount(), 0.0);
-      for (size_t s = 0; s < image.slotCount(); ++s) share.sum[s] += etendue * static_cast<double>(zoomed.groups[s / 4][4 * q + s % 4]);
+      for (size_t s = 0; s < image.slotCount(); ++s) {
+        const double beside = without ? static_cast<double>(without->groups[s / 4][4 * q + s % 4]) : 0.0;
+        share.sum[s] += etendue * (static_cast<double>(zoomed.groups[s / 4][4 * q + s % 4]) - beside);
+      }
     }
   return shares;
 }
@@ -141,7 +149,7 @@ void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const W
   pass.startReadback(false, true);
   const RawImage zoomed = pass.finishReadback();
   const glm::dmat3 zoomFromMain = glm::transpose(z.localFromCamera) * v.localFromCamera;
-  for (auto& [p, share] : sharesOf(image, z, zoomed)) {
+  for (auto& [p, share] : sharesOf(image, z, entity, zoomed)) {
     if (share.covered <= 0.0) continue;
     const int x = static_cast<int>(p % static_cast<size_t>(v.width)), y = static_cast<int>(p / static_cast<size_t>(v.width));
     const double whole = isInside(v, z, zoomFromMain, x, y) ? share.looked : image.projectedSolidAngle_sr(x, y);
@@ -168,28 +176,8 @@ void addDifference(Subpixels& image, ScenePass& pass, const Simulation& sim, con
   const RawImage without = drawn();
   others[static_cast<size_t>(entity)] = 1;
   const RawImage with = drawn();
-  const glm::dmat3 mainFromZoom = glm::transpose(v.localFromCamera) * z.localFromCamera, zoomFromMain = glm::transpose(mainFromZoom);
-  std::map<size_t, Share> shares;
-  for (int j = 0; j < z.height; ++j)
-    for (int i = 0; i < z.width; ++i) {
-      const glm::dvec3 ray = z.ray(i + 0.5, j + 0.5), seen = mainFromZoom * ray;
-      if (seen.z >= 0.0) continue;
-      const glm::dvec2 at = filmPosition(v, seen);
-      if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height)) continue;
-      const size_t q = static_cast<size_t>(j) * static_cast<size_t>(z.width) + static_cast<size_t>(i);
-      const double l2 = glm::dot(ray, ray), cosPsi = -seen.z / std::sqrt(l2), etendue = z.tanPerPixelX * z.tanPerPixelY / (l2 * std::sqrt(l2)) * cosPsi;
-      Share& share = shares[image.index(static_cast<int>(at.x), static_cast<int>(at.y))];
-      share.looked += etendue;
-      if (with.entity[q] == entity) {  // its solid parts
-        share.covered += etendue;
-        share.sample = q;
-        share.cosPsi = cosPsi;
-      }
-      share.sum.resize(image.slotCount(), 0.0);
-      for (size_t s = 0; s < image.slotCount(); ++s)
-        share.sum[s] += etendue * (static_cast<double>(with.groups[s / 4][4 * q + s % 4]) - static_cast<double>(without.groups[s / 4][4 * q + s % 4]));
-    }
-  for (const auto& [p, share] : shares) {
+  const glm::dmat3 zoomFromMain = glm::transpose(z.localFromCamera) * v.localFromCamera;
+  for (const auto& [p, share] : sharesOf(image, z, entity, with, &without)) {
     const int x = static_cast<int>(p % static_cast<size_t>(v.width)), y = static_cast<int>(p / static_cast<size_t>(v.width));
     const double whole = isInside(v, z, zoomFromMain, x, y) ? share.looked : image.projectedSolidAngle_sr(x, y);
     for (size_t s = 0; s < image.slotCount(); ++s) image.add(s, p, share.sum[s] / whole);
