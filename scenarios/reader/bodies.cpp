@@ -269,7 +269,8 @@ void Builder::checkMedium(const Record& r, const Entity& e) const {
   }
   if (!e.mesh->closed)
     throw UserError(r.where("shape"), "the body of " + name + " is not closed, and '" + material(*filled)->name.substr(0, 60) + "' is a medium that fills it",
-                    "a body whose every edge joins two triangles, with its normals outwards", "close it ('capped: true'), or take a sphere, ellipsoid, cone, cylinder or box");
+                    "a body whose every edge joins two triangles, with its normals outwards",
+                    "take a sphere, ellipsoid, box, or a capped cone or cylinder; or close the mesh");
 }
 
 void Builder::readEntities(const Record& scenario) {

@@ -379,6 +379,10 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& c
       nearest = c;
     }
   }
+  // The same beginning means the same thing: "transparency" for "transmission".
+  constexpr size_t kSameBeginning = 5;
+  for (const auto& c : candidates)
+    if (nearest.empty() && word.size() > kSameBeginning && c.size() > kSameBeginning && c.compare(0, kSameBeginning, word, 0, kSameBeginning) == 0) nearest = c;
   return nearest;
 }
 
