@@ -244,7 +244,7 @@ std::vector<Bad> badScenarios() {
        {"a temperature texture on 'p'", "one temperature"}},
       {"MediumOnAPlate",
        "entities: [{name: p, shape: @@{model: plate, width: 1 m, height: 1 m}, material: {absorption: 1 /m}, temperature: 300 K}]\n" + kCamera,
-       {"the body of 'p' is not closed", "capped: true"}},
+       {"the body of 'p' is not closed", "capped cone or cylinder"}},
       {"MediumInAnUncappedCone",
        "entities: [{name: p, shape: @@{model: cone, radius: 1 m, length: 2 m, capped: false}, material: {absorption: 1 /m}, temperature: 300 K}]\n" + kCamera,
        {"the body of 'p' is not closed"}},
