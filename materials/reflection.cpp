@@ -76,6 +76,7 @@ class Phong final : public ReflectionComponent {
   }
   double column(double w, double, double) const override { return reflectance_(w); }
   double lobeExponent() const override { return exponent_; }
+  double lobeMaximum() const override { return (exponent_ + 2.0) / (2.0 * kPi); }
   std::string lobeFile() const override { return "materials/phong.glsl"; }
   double lobe(const glm::dvec3& l, const glm::dvec3& v) const override { return physics::lobe(exponent_, {0, 0, 1}, l, v); }
   double hemispherical(double w, double angle) const override {

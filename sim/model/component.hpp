@@ -47,6 +47,8 @@ class ReflectionComponent {
   /// Exponent of the angular lobe; 0 where there is none (lobe = 1).
   virtual double lobeExponent() const { return 0.0; }
   virtual double lobe(const glm::dvec3& light, const glm::dvec3& view) const;
+  /// The greatest that lobe() can be.
+  virtual double lobeMaximum() const { return 1.0; }
   /// Shader file with the lobe's body, or empty.
   virtual std::string lobeFile() const { return ""; }
   /// Directional-hemispherical reflectance for a view angle: integral of BRDF cos(theta_l) over the hemisphere.

@@ -12,7 +12,6 @@ class BufferedPass final : public ScenePass {
   BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                double apertureArea_m2);
 
-  const AssembledShader& shaderSource() const override { return shade_.source(); }
   std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) override;
   /// Null where nothing in the scenario is transparent.
   const LayerPass* layers() const { return layers_.get(); }

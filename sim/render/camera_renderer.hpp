@@ -24,7 +24,6 @@ class CameraRenderer {
   }
   const Plan& plan() const { return plan_; }
   /// Of the mode that the last frame was drawn in.
-  const AssembledShader& shaderSource() const { return pass_->shaderSource(); }
   bool isBuffered() const { return pass_ == buffered_.get(); }
 
  private:

@@ -9,8 +9,6 @@ class DirectPass final : public ScenePass {
   DirectPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
              double apertureArea_m2);
 
-  const AssembledShader& shaderSource() const override { return program_.source(); }
-
  private:
   void shade(RenderTarget& into, const RenderTarget& visibility) override;
   ShadingProgram program_;

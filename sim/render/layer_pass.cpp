@@ -18,7 +18,7 @@ Pose poseOf(const WorldState& state, int entity) { return state.entities[static_
 
 LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const RenderTables& tables, std::shared_ptr<const GpuScene> scene,
                      const ShaderLibrary& library, const ShaderSlots& slots, int targets)
-    : simulation_(simulation), plan_(plan), tables_(tables), scene_(std::move(scene)), path_(chooseBlendPath()), buffers_(tables.layer) {
+    : simulation_(simulation), tables_(tables), scene_(std::move(scene)), path_(chooseBlendPath()), buffers_(tables.layer) {
   ShaderSlots base = slots;
   // The spectral image: in and out by framebuffer fetch, or read as a texture.
   std::ostringstream declared, blend;

@@ -33,7 +33,6 @@ class LayerPass {
   /// Draws, view, lights and nodes are bound; changes the bound surface tables and the blend, cull and depth state's settings.
   void blend(const Over& over);
 
-  BlendPath path() const { return path_; }
   const LayerOrder& lastOrder() const { return order_; }
 
  private:
@@ -48,7 +47,6 @@ class LayerPass {
   RenderTarget& sizedLike(std::deque<RenderTarget>& pool, const RenderTarget& target, std::size_t colours) const;
 
   const Simulation& simulation_;
-  const Plan& plan_;
   const RenderTables& tables_;
   std::shared_ptr<const GpuScene> scene_;
   BlendPath path_;

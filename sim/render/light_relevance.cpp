@@ -15,13 +15,16 @@ LightRelevance::LightRelevance(const Simulation& simulation, const Plan& plan, c
     : simulation_(simulation), ratio_(simulation.entities.size() * simulation.lights.size(), 0.0) {
   for (const DrawItem& d : tables.draws) {
     if (d.kind != DrawKind::Solid && d.kind != DrawKind::Layer) continue;
+    const Material& material = simulation.materialOf(simulation.entities[static_cast<size_t>(d.entity)].surfaces[static_cast<size_t>(d.surface)]);
     const SurfaceTables& t = d.kind == DrawKind::Layer ? tables.layer : tables.solid;
     for (size_t l = 0; l < simulation.lights.size(); ++l) {
       double& worst = ratio_[static_cast<size_t>(d.entity) * simulation.lights.size() + l];
       for (size_t i = 0; i < plan.node_um.size() && std::isfinite(worst); ++i) {
         // Tables over angles and textures have no bound at hand: such bodies are lit by every light that shines.
         const float* row = t.general ? nullptr : &t.rows[4 * (d.row + i)];
-        const double reflected = row ? static_cast<double>(row[0] + row[1] + row[2]) * simulation.lights[l].intensity(plan.node_um[i]) : INFINITY;
+        double most = row ? 0.0 : INFINITY;
+        for (size_t k = 0; row && k < material.reflections.size(); ++k) most += static_cast<double>(row[k]) * material.reflections[k]->lobeMaximum();
+        const double reflected = most * simulation.lights[l].intensity(plan.node_um[i]);
         if (reflected > 0.0) worst = std::max(worst, row && row[3] > 0.0f ? reflected / static_cast<double>(row[3]) : INFINITY);
       }
     }

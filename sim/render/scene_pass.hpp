@@ -39,8 +39,6 @@ class ScenePass {
   /// Transmittance per node of everything transparent on the line of sight of a view of one pixel (its centre), as far as a depth [m].
   /// Light levels and poses as in setState() and the last draw().
   virtual std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m);
-  /// The main shading program's source.
-  virtual const AssembledShader& shaderSource() const = 0;
 
  protected:
   /// The simulation and the plan must outlive it.
@@ -67,7 +65,6 @@ class ScenePass {
   void bindBuffers() const;
   RenderTarget& visibilityFor(int width, int height) { return targetsFor(width, height).visibility; }
   std::shared_ptr<const GpuScene> sharedScene() const { return scene_; }
-  const Simulation& simulation() const { return simulation_; }
 
  private:
   struct Targets {

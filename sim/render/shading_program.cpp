@@ -39,11 +39,10 @@ ShadingProgram::ShadingProgram(const ShaderLibrary& library, ShaderSlots slots, 
   slots.generated["outputs"] = outputs;
   slots.generated["store"] = store + "}\n";
   if (stage_ == ShadingStage::Fragment) {
-    source_ = assembleShader(library, "sim/render/glsl/shade.frag.glsl", slots);
-    program_ = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), source_);
+    program_ =
+        Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/shade.frag.glsl", slots));
   } else {
-    source_ = assembleShader(library, "sim/render/glsl/shade.comp.glsl", slots);
-    program_ = Program(source_);
+    program_ = Program(assembleShader(library, "sim/render/glsl/shade.comp.glsl", slots));
   }
 }
 

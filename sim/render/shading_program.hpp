@@ -21,12 +21,10 @@ class ShadingProgram {
   int uniform(const char* name) const { return program_.uniform(name); }
   /// Buffers and textures are bound; binds and selects its colours of the target.
   void run(RenderTarget& into) const;
-  const AssembledShader& source() const { return source_; }
 
  private:
   ShadingStage stage_ = ShadingStage::Fragment;
   std::size_t firstColour_ = 0, colours_ = 0;
-  AssembledShader source_;
   Program program_;
 };
 

@@ -32,7 +32,10 @@ Worst compare(const Simulation& sim, int stride) {
       const size_t p = static_cast<size_t>(y * view.width + x);
       const ReferencePixel reference = referencePixel(sim, plan, view, state, x, y);
       const TruthPixel truth = truthAt(raw, p);
-      if (static_cast<int>(truth.entity) != reference.entity + 1 || static_cast<int>(truth.part) != reference.surface + 1) continue;
+      if (static_cast<int>(truth.entity) != reference.entity + 1 || static_cast<int>(truth.part) != reference.surface + 1) {
+        ++worst.missed;
+        continue;
+      }
       ++worst.covered;
       for (size_t s = 0; s < reference.slots.size(); ++s) {
         const double got = static_cast<double>(raw.groups[s / 4][4 * p + s % 4]), want = reference.slots[s];

@@ -7,7 +7,8 @@ namespace pitviper::test {
 struct Worst {
   double error = 0.0;
   double percentile99 = 0.0;
-  double covered = 0;
+  double covered = 0;  ///< pixels compared
+  double missed = 0;   ///< pixels that see another surface than the reference does
 };
 
 /// Worst relative error of camera 0 at time 0 over every `stride`th pixel that sees the same surface on both sides (a silhouette may fall
