@@ -14,39 +14,61 @@ namespace physics {
 
 namespace {
 
+constexpr double kOne[] = {1.0};
+
 class NoAir final : public Path {
  public:
   std::string slotFile() const override { return "sim/render/glsl/path_none.glsl"; }
   bool isNone() const override { return true; }
-  PathNode node(double) const override { return {}; }
+  std::span<const double> exponents() const override { return {}; }
+  AirNode node(double) const override { return {}; }
   double top_m() const override { return physics::kFar; }
-  double airLength_m(double, double, double, double) const override { return 0.0; }
-  double transmittance(double, double) const override { return 1.0; }
-  double radiance(double, double) const override { return 0.0; }
+  AirAmounts amounts(const AirRay&, double) const override { return {}; }
+  std::vector<AirStation> stations(const AirRay&, double) const override { return {}; }
+  std::vector<AirStation> stationsAt(const AirRay&, std::span<const double> ranges_m) const override { return std::vector<AirStation>(ranges_m.size()); }
   double validLow_um() const override { return kShortestWavelength_um; }
   double validHigh_um() const override { return kLongestWavelength_um; }
+  std::vector<double> knots_um() const override { return {}; }
 };
 
 class Homogeneous final : public Path {
  public:
   explicit Homogeneous(HomogeneousAir air) : air_(std::move(air)) {}
   std::string slotFile() const override { return "atmosphere/homogeneous.glsl"; }
-  PathNode node(double w) const override { return {air_.extinction_per_m(w), source(w)}; }
-  double top_m() const override { return std::min(air_.top_m, physics::kFar); }
-  double airLength_m(double h, double sinElevation, double range, double radius) const override {
-    return physics::layerLength(h, sinElevation, std::min(range, physics::kFar), top_m(), radius);
+  std::span<const double> exponents() const override { return kOne; }
+  AirNode node(double w) const override {
+    AirNode n;
+    n.extinction[0] = air_.extinction_per_m(w);
+    n.source = (air_.temperature_K ? physics::planckRadiance(w, *air_.temperature_K) : 0.0) + (air_.radiance ? (*air_.radiance)(w) : 0.0);
+    return n;
   }
-  double transmittance(double w, double length) const override { return std::exp(-air_.extinction_per_m(w) * length); }
-  double radiance(double w, double length) const override { return source(w) * physics::oneMinusExp(air_.extinction_per_m(w) * length); }
+  double top_m() const override { return std::min(air_.top_m, physics::kFar); }
+  AirAmounts amounts(const AirRay& ray, double range_m) const override {
+    AirAmounts a;
+    a.amount[0] = physics::layerLength(ray.height_m, ray.sinElevation, std::min(range_m, physics::kFar), top_m(), ray.earthRadius_m);
+    return a;
+  }
+  std::vector<AirStation> stations(const AirRay& ray, double range_m) const override { return {{}, {range_m, 0.0, amounts(ray, range_m), {}, false}}; }
+  std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const override {
+    std::vector<AirStation> stations;
+    for (double r : ranges_m) stations.push_back({r, 0.0, amounts(ray, r), {}, false});
+    return stations;
+  }
   double validLow_um() const override { return std::max(air_.extinction_per_m.validLow(), air_.radiance ? air_.radiance->validLow() : kShortestWavelength_um); }
   double validHigh_um() const override {
     return std::min(air_.extinction_per_m.validHigh(), air_.radiance ? air_.radiance->validHigh() : kLongestWavelength_um);
   }
+  std::vector<double> knots_um() const override {
+    auto k = air_.extinction_per_m.knots();
+    if (air_.radiance) {
+      const auto more = air_.radiance->knots();
+      k.insert(k.end(), more.begin(), more.end());
+      std::sort(k.begin(), k.end());
+    }
+    return k;
+  }
 
  private:
-  double source(double w) const {
-    return (air_.temperature_K ? physics::planckRadiance(w, *air_.temperature_K) : 0.0) + (air_.radiance ? (*air_.radiance)(w) : 0.0);
-  }
   HomogeneousAir air_;
 };
 

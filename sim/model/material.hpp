@@ -18,9 +18,9 @@ struct Material {
   Location where;
   std::vector<std::shared_ptr<const ReflectionComponent>> reflections;  ///< at most three
   std::vector<int> modifiers;                                           ///< texture index or -1, one per reflection
-  std::optional<ViewSpectrum> given;         ///< emissivity; absent: Kirchhoff, 1 - reflectance - transmittance
-  std::optional<ViewSpectrum> transmission;  ///< transmittance of the whole layer that the surface stands for; absent: opaque
-  std::optional<Medium> medium;              ///< a medium has none of the above
+  std::optional<ViewSpectrum> given;                                    ///< emissivity; absent: Kirchhoff, 1 - reflectance - transmittance
+  std::optional<ViewSpectrum> transmission;                             ///< transmittance of the whole layer that the surface stands for; absent: opaque
+  std::optional<Medium> medium;                                         ///< a medium has none of the above
 
   /// What lies behind it is seen through it.
   bool isTransparent() const { return transmission || medium; }

@@ -1,13 +1,50 @@
 #pragma once
 // The contract of the air between two points. `none` is a model too.
+//
+// Law: -ln tau = sum over absorbers k of c_k(lambda) W_k^a_k, with W_k the amount of an absorber on the path. A band's transmittance does not
+// multiply along a path: amounts of parts, and of the two legs of reflected light, are added before the exponential.
+#include <array>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace pitviper {
 
-/// What a shader needs of the air at one wavelength.
-struct PathNode {
-  double extinction_per_m = 0.0;
-  double sourceRadiance = 0.0;  ///< radiance the air tends to at great depth [W/(m2 sr um)]
+constexpr int kMostAirAmounts = 16;
+
+/// What lies on a path, in units of the path model's own (homogeneous air: metres; layered air: kilometres of sea-level air). Unused places are 0.
+struct AirAmounts {
+  std::array<double, kMostAirAmounts> amount{};
+
+  AirAmounts& operator+=(const AirAmounts& other) {
+    for (size_t k = 0; k < amount.size(); ++k) amount[k] += other.amount[k];
+    return *this;
+  }
+  friend AirAmounts operator+(AirAmounts a, const AirAmounts& b) { return a += b; }
+};
+
+/// The air at one wavelength, or averaged over several.
+struct AirNode {
+  std::array<double, kMostAirAmounts> extinction{};  ///< c_k: optical depth of one unit of each absorber
+  std::array<double, kMostAirAmounts> scattering{};  ///< the part of it that scatters
+  double asymmetry = 0.0;                            ///< of what haze scatters: mean cosine of the angle it turns light by
+  double source = 0.0;                               ///< radiance the air tends to at great depth besides thermal emission by stations [W/(m2 sr um)]
+};
+
+/// A place on a path, with all that lies between its beginning and there.
+struct AirStation {
+  double range_m = 0.0;
+  double temperature_K = 0.0;  ///< 0: emits nothing but AirNode::source
+  AirAmounts amounts;
+  AirAmounts toSun;  ///< from there to the sun, where it is asked for
+  bool sunlit = false;
+};
+
+/// Where a path starts and which way it goes.
+struct AirRay {
+  double height_m = 0.0;      ///< LocalFrame::height
+  double sinElevation = 0.0;  ///< of its direction, there
+  double earthRadius_m = 0.0;
 };
 
 class Path {
@@ -16,17 +53,33 @@ class Path {
   /// Shader file for the slot `path`.
   virtual std::string slotFile() const = 0;
   virtual bool isNone() const { return false; }
-  virtual PathNode node(double wavelength_um) const = 0;
+  /// Amounts depend on heights: the shader reads tables made for a view (AirTables).
+  virtual bool isLayered() const { return false; }
+  /// Exponents a_k, one per absorber.
+  virtual std::span<const double> exponents() const = 0;
+  virtual AirNode node(double wavelength_um) const = 0;
   /// Height of the air's top above the sphere that stands for the earth [m]; infinite where it has none.
   virtual double top_m() const = 0;
-  /// Length of air [m] on a ray from a height, with the sine of its elevation there, as far as a range (may be infinite).
-  virtual double airLength_m(double height_m, double sinElevation, double range_m, double earthRadius_m) const = 0;
-  /// Transmittance of a length of air, 0..1.
-  virtual double transmittance(double wavelength_um, double airLength_m) const = 0;
-  /// Path radiance seen from one end [W/(m2 sr um)].
-  virtual double radiance(double wavelength_um, double airLength_m) const = 0;
+  /// Amounts from the beginning of a ray as far as a range (may be infinite); the earth does not stop it.
+  virtual AirAmounts amounts(const AirRay& ray, double range_m) const = 0;
+  /// Places along a ray, at least where its emission bends; the first where the air begins, the last at the range or the air's end.
+  virtual std::vector<AirStation> stations(const AirRay& ray, double range_m) const = 0;
+  /// The same at given ranges, rising.
+  virtual std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const = 0;
   virtual double validLow_um() const = 0;
   virtual double validHigh_um() const = 0;
+  /// Wavelengths between which its properties are smooth, rising [um].
+  virtual std::vector<double> knots_um() const = 0;
+
+  /// W_k^a_k: what the coefficients multiply.
+  AirAmounts powered(const AirAmounts& amounts) const;
+  double opticalDepth(const AirNode& node, const AirAmounts& amounts) const { return depthOf(node, powered(amounts)); }
+  static double depthOf(const AirNode& node, const AirAmounts& powered);
+  double transmittance(const AirNode& node, const AirAmounts& amounts) const;
 };
+
+/// Radiance seen from the first of several places, of all air as far as each of them: depth rises from the first on, source radiance is
+/// linear in optical depth between two. All of one size.
+void emittedAlong(std::span<const double> depth, std::span<const double> source, std::span<double> radiance);
 
 }  // namespace pitviper

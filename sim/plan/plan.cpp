@@ -84,6 +84,14 @@ Terms termsOf(const Simulation& sim) {
 
 }  // namespace
 
+SpectralNode nodeAt(const Simulation& sim, double wavelength_um) {
+  SpectralNode node;
+  node.members = {{wavelength_um, 1.0}};
+  if (sim.path) node.air = sim.path->node(wavelength_um);
+  for (const auto& m : sim.materials) node.absorption_per_m.push_back(m->medium ? m->medium->absorption_per_m(wavelength_um) : 0.0);
+  return node;
+}
+
 Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where) {
   Plan plan;
   plan.terms = termsOf(sim);
@@ -122,20 +130,20 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
     auto sameNodes = [&](const NodeBlock& b) {
       if (static_cast<size_t>(b.count) != rules[s].size()) return false;
       for (int i = 0; i < b.count; ++i)
-        if (plan.node_um[static_cast<size_t>(b.first + i)] != rules[s][static_cast<size_t>(i)].x) return false;
+        if (plan.nodes[static_cast<size_t>(b.first + i)].members.front().wavelength_um != rules[s][static_cast<size_t>(i)].x) return false;
       return true;
     };
     auto block = std::find_if(plan.blocks.begin(), plan.blocks.end(), sameNodes);
     if (block == plan.blocks.end()) {
       plan.blocks.push_back({plan.nodeCount(), static_cast<int>(rules[s].size()), {}});
-      for (const auto& n : rules[s]) plan.node_um.push_back(n.x);
+      for (const auto& n : rules[s]) plan.nodes.push_back(nodeAt(sim, n.x));
       block = plan.blocks.end() - 1;
     }
     block->slots.push_back(static_cast<int>(s));
-    for (auto& w : plan.weight) w.resize(plan.node_um.size(), 0.0);
+    for (auto& w : plan.weight) w.resize(plan.nodes.size(), 0.0);
     for (int i = 0; i < block->count; ++i) plan.weight[s][static_cast<size_t>(block->first + i)] = rules[s][static_cast<size_t>(i)].weight;
   }
-  for (auto& w : plan.weight) w.resize(plan.node_um.size(), 0.0);
+  for (auto& w : plan.weight) w.resize(plan.nodes.size(), 0.0);
   return plan;
 }
 

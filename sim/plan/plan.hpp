@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/model/simulation.hpp"
+#include "sim/model/spectral_node.hpp"
 
 namespace pitviper {
 
@@ -38,7 +39,7 @@ struct Terms {
 };
 
 struct Plan {
-  std::vector<double> node_um;
+  std::vector<SpectralNode> nodes;
   std::vector<NodeBlock> blocks;
   int slotCount = 0;
   std::vector<int> slotOfOutput;            ///< one per output
@@ -46,9 +47,12 @@ struct Plan {
   Terms terms;
   int lightCount = 0;  ///< point lights and, last, the sun
 
-  int nodeCount() const { return static_cast<int>(node_um.size()); }
+  int nodeCount() const { return static_cast<int>(nodes.size()); }
   int groupCount() const { return (slotCount + 3) / 4; }  ///< vec4 targets
 };
+
+/// The scene at one wavelength.
+SpectralNode nodeAt(const Simulation& simulation, double wavelength_um);
 
 /// Slots of one pass: four RGBA targets.
 constexpr int kMostSlots = 16;

@@ -48,9 +48,12 @@ std::vector<SamplingNote> checkSampling(const Simulation& sim, const Plan& plan,
         const double fine = fineIntegral(outputs[o].kernel, medium->absorption_per_m, emitted);
         if (!(fine > 0.0)) continue;
         double planned = 0.0;
-        for (size_t i = 0; i < plan.node_um.size(); ++i) {
+        for (size_t i = 0; i < plan.nodes.size(); ++i) {
           const double weight = plan.weight[static_cast<size_t>(plan.slotOfOutput[o])][i];
-          if (weight != 0.0) planned += weight * emitted(plan.node_um[i]);
+          if (weight == 0.0) continue;
+          const SpectralNode& n = plan.nodes[i];
+          const double absorption = n.absorption_per_m[static_cast<size_t>(e.surfaces.front().material)];
+          planned += weight * n.planck(temperature_K) * physics::oneMinusExp(absorption * thickness_m);
         }
         SamplingNote note{sim.materialOf(e.surfaces.front()).name, outputs[o].channel, thickness_m, std::abs(planned / fine - 1.0)};
         SamplingNote& kept = worst[{note.medium, note.channel}];

@@ -139,7 +139,7 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
 }
 
 std::vector<double> BufferedPass::transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) {
-  std::vector<double> all(plan().node_um.size(), 1.0);
+  std::vector<double> all(plan().nodes.size(), 1.0);
   if (!layers_) return all;
   layers_->order(view, state, drawn);
   if (layers_->isEmpty()) return all;

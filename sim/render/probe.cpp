@@ -79,12 +79,13 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
                                         ? wayTo(pass, state, all, probe.position, sim.sun->toSun, physics::kFar, kNear_m)
                                         : std::vector<double>();
   if (!toSun.empty()) {
-    const bool layered = plan.terms.air && sim.path->top_m() < physics::kFar;
+    const bool ended = plan.terms.air && sim.path->top_m() < physics::kFar;
     const double sinElevation = glm::dot(sim.frame.up(probe.position), sim.sun->toSun);
-    const double air = layered ? sim.path->airLength_m(sim.frame.height(probe.position), sinElevation, physics::kFar, sim.frame.earthRadius_m()) : 0.0;
-    for (size_t i = 0; i < plan.node_um.size(); ++i) {
-      const double w = plan.node_um[i];
-      const double e = toSun[i] * glm::dot(sim.sun->toSun, normal) * sim.sun->irradiance(w) * (layered ? sim.path->transmittance(w, air) : 1.0);
+    AirAmounts air;
+    if (ended) air = sim.path->amounts({sim.frame.height(probe.position), sinElevation, sim.frame.earthRadius_m()}, physics::kFar);
+    for (size_t i = 0; i < plan.nodes.size(); ++i) {
+      const SpectralNode& n = plan.nodes[i];
+      const double e = toSun[i] * glm::dot(sim.sun->toSun, normal) * n.mean(sim.sun->irradiance) * (ended ? sim.path->transmittance(n.air, air) : 1.0);
       for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * e;
     }
   }

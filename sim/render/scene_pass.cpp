@@ -45,7 +45,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
       relevance_(simulation, plan, tables_) {
-  checkUniformSize((tables_.node.size() * 2 + plan.node_um.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
+  checkUniformSize((tables_.node.size() * 2 + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
 }
 
 ShaderSlots ScenePass::shadingSlots() const {
@@ -175,7 +175,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
 }
 
 std::vector<double> ScenePass::transmittance(const View&, const WorldState&, const std::vector<char>&, double) {
-  return std::vector<double>(plan_.node_um.size(), 1.0);
+  return std::vector<double>(plan_.nodes.size(), 1.0);
 }
 
 void ScenePass::startReadback(bool depth, bool identity) {

@@ -120,21 +120,24 @@ void appendMaterial(SurfaceTables& t, const Material& m, const Plan& plan) {
   t.materials.push_back(g);
   if (m.transmission)
     for (int j = 0; j < views; ++j)
-      for (double w : plan.node_um) t.transmittance.push_back(static_cast<float>(m.transmittance(w, viewAngle(j, views))));
+      for (const SpectralNode& n : plan.nodes)
+        t.transmittance.push_back(static_cast<float>(n.mean([&](double w) { return m.transmittance(w, viewAngle(j, views)); })));
   if (!t.general) return;
 
   for (int j2 = 0; j2 < axes[1].count; ++j2)
     for (int j1 = 0; j1 < axes[0].count; ++j1)
-      for (double w : plan.node_um) {
-        const glm::dvec3 r = columnsAt(m, w, axes[0].at(j1), axes[1].at(j2), axes);
+      for (const SpectralNode& n : plan.nodes) {
+        const glm::dvec3 r = n.mean([&](double w) { return columnsAt(m, w, axes[0].at(j1), axes[1].at(j2), axes); });
         for (int k = 0; k < 3; ++k) t.columns.push_back(static_cast<float>(r[k]));
         t.columns.push_back(0.0f);
       }
   for (int j = 0; j < views; ++j) {
     const double angle = viewAngle(j, views);
-    for (double w : plan.node_um) {
-      for (size_t k = 0; k < 3; ++k) t.hemispherical.push_back(k < m.reflections.size() ? static_cast<float>(m.reflections[k]->hemispherical(w, angle)) : 0.0f);
-      t.hemispherical.push_back(m.given ? static_cast<float>(m.given->at(w, angle)) : 0.0f);
+    for (const SpectralNode& n : plan.nodes) {
+      for (size_t k = 0; k < 3; ++k)
+        t.hemispherical.push_back(k < m.reflections.size() ? static_cast<float>(n.mean([&](double w) { return m.reflections[k]->hemispherical(w, angle); }))
+                                                           : 0.0f);
+      t.hemispherical.push_back(m.given ? static_cast<float>(n.mean([&](double w) { return m.given->at(w, angle); })) : 0.0f);
     }
   }
 }
@@ -142,31 +145,33 @@ void appendMaterial(SurfaceTables& t, const Material& m, const Plan& plan) {
 /// The row of a surface, or of the background, which shines by itself (null).
 std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& plan, const Surface* surface) {
   const auto at = static_cast<std::uint32_t>(t.general ? t.rows.size() : t.rows.size() / 4);
-  for (double w : plan.node_um) {
+  for (const SpectralNode& n : plan.nodes) {
     if (!surface) {
       if (!t.general) t.rows.insert(t.rows.end(), 3, 0.0f);
-      t.rows.push_back(static_cast<float>(sim.background(w)));
+      t.rows.push_back(static_cast<float>(n.mean([&](double w) { return sim.background(w); })));
       continue;
     }
-    const double planck = physics::planckRadiance(w, surface->temperature_K);
     if (t.general) {
-      t.rows.push_back(static_cast<float>(planck));
+      t.rows.push_back(static_cast<float>(n.planck(surface->temperature_K)));
       continue;
     }
     const Material& m = sim.materialOf(*surface);
-    const glm::dvec3 r = columnsAt(m, w, 0.0, 0.0, {});
-    const double ambient = plan.terms.ambient ? (*sim.ambient)(w) : 0.0;
-    const double self = m.emissivity(w, 0.0) * planck + (ambient > 0.0 ? m.reflectance(w, 0.0) * ambient : 0.0);
+    const glm::dvec3 r = n.mean([&](double w) { return columnsAt(m, w, 0.0, 0.0, {}); });
+    const double self = n.mean([&](double w) {
+      const double ambient = plan.terms.ambient ? (*sim.ambient)(w) : 0.0;
+      return m.emissivity(w, 0.0) * physics::planckRadiance(w, surface->temperature_K) + (ambient > 0.0 ? m.reflectance(w, 0.0) * ambient : 0.0);
+    });
     for (int k = 0; k < 3; ++k) t.rows.push_back(static_cast<float>(r[k]));
     t.rows.push_back(static_cast<float>(self));
   }
   return at;
 }
 
-std::uint32_t appendMedium(RenderTables& t, const Plan& plan, const Medium& medium, double temperature_K) {
+std::uint32_t appendMedium(RenderTables& t, const Plan& plan, const Medium& medium, const Surface& surface) {
   const auto at = static_cast<std::uint32_t>(t.media.size() / 4);
-  for (double w : plan.node_um)
-    t.media.insert(t.media.end(), {static_cast<float>(medium.absorption_per_m(w)), static_cast<float>(medium.source(w, temperature_K)), 0.0f, 0.0f});
+  for (const SpectralNode& n : plan.nodes)
+    t.media.insert(t.media.end(), {static_cast<float>(n.absorption_per_m[static_cast<size_t>(surface.material)]),
+                                   static_cast<float>(n.mean([&](double w) { return medium.source(w, surface.temperature_K); })), 0.0f, 0.0f});
   return at;
 }
 
@@ -230,12 +235,12 @@ std::string lightsFile(const Plan& plan) {
 
 std::vector<float> lightTable(const Simulation& sim, const Plan& plan, const WorldState& state) {
   const size_t groups = static_cast<size_t>(lightGroups(plan));
-  std::vector<float> table(plan.node_um.size() * groups * 4, 0.0f);
-  for (size_t i = 0; i < plan.node_um.size(); ++i) {
-    const double w = plan.node_um[i];
+  std::vector<float> table(plan.nodes.size() * groups * 4, 0.0f);
+  for (size_t i = 0; i < plan.nodes.size(); ++i) {
+    const SpectralNode& n = plan.nodes[i];
     for (size_t l = 0; l < sim.lights.size(); ++l)
-      table[i * groups * 4 + l] = static_cast<float>(state.lightLevels[l] > 0.0 ? state.lightLevels[l] * sim.lights[l].intensity(w) : 0.0);
-    if (sim.sun) table[i * groups * 4 + sim.lights.size()] = static_cast<float>(sim.sun->irradiance(w));
+      table[i * groups * 4 + l] = static_cast<float>(state.lightLevels[l] > 0.0 ? state.lightLevels[l] * n.mean(sim.lights[l].intensity) : 0.0);
+    if (sim.sun) table[i * groups * 4 + sim.lights.size()] = static_cast<float>(n.mean(sim.sun->irradiance));
   }
   return table;
 }
@@ -257,7 +262,7 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   for (size_t e = 0; e < sim.entities.size(); ++e) {
     const Entity& entity = sim.entities[e];
     if (const Medium* medium = sim.mediumOf(entity)) {
-      t.draws.push_back({DrawKind::Medium, static_cast<int>(e), 0, appendMedium(t, plan, *medium, entity.surfaces.front().temperature_K), 0});
+      t.draws.push_back({DrawKind::Medium, static_cast<int>(e), 0, appendMedium(t, plan, *medium, entity.surfaces.front()), 0});
       continue;
     }
     for (size_t s = 0; s < entity.surfaces.size(); ++s) {
@@ -268,13 +273,13 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
     }
   }
 
-  for (double w : plan.node_um) {
-    const PathNode air = sim.path ? sim.path->node(w) : PathNode{};
-    t.node.push_back(static_cast<float>(air.extinction_per_m));
-    t.node.push_back(static_cast<float>(air.sourceRadiance));
+  for (const SpectralNode& n : plan.nodes) {
+    const double w = n.members.front().wavelength_um;
+    t.node.push_back(static_cast<float>(n.air.extinction[0]));
+    t.node.push_back(static_cast<float>(n.air.source));
     t.node.push_back(static_cast<float>(kSecondRadiation_umK / w));
     t.node.push_back(static_cast<float>(kFirstRadianceConstant / std::pow(w, 5)));
-    t.ambient.push_back(plan.terms.ambient ? static_cast<float>((*sim.ambient)(w)) : 0.0f);
+    t.ambient.push_back(plan.terms.ambient ? static_cast<float>(n.mean(*sim.ambient)) : 0.0f);
     t.ambient.insert(t.ambient.end(), 3, 0.0f);
   }
   writeIntegral(t, plan);

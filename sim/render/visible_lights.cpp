@@ -8,16 +8,14 @@ std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, c
                                       const std::vector<double>& way) {
   const glm::dvec3 line = state.lights[light] - from;
   const double range = glm::length(line);
-  double air = 0.0;
-  if (plan.terms.air) {
-    const double radius = sim.frame.earthRadius_m();
-    const double sinElevation = range > 0.0 ? glm::dot(line, sim.frame.up(from)) / range : 0.0;
-    air = sim.path->airLength_m(sim.frame.height(from), sinElevation, range, radius);
-  }
+  AirAmounts air;
+  if (plan.terms.air)
+    air = sim.path->amounts({sim.frame.height(from), range > 0.0 ? glm::dot(line, sim.frame.up(from)) / range : 0.0, sim.frame.earthRadius_m()}, range);
   std::vector<double> sums(static_cast<size_t>(plan.slotCount), 0.0);
-  for (size_t i = 0; i < plan.node_um.size(); ++i) {
-    const double w = plan.node_um[i];
-    const double intensity = way[i] * state.lightLevels[light] * sim.lights[light].intensity(w) * (plan.terms.air ? sim.path->transmittance(w, air) : 1.0);
+  for (size_t i = 0; i < plan.nodes.size(); ++i) {
+    const SpectralNode& n = plan.nodes[i];
+    const double intensity =
+        way[i] * state.lightLevels[light] * n.mean(sim.lights[light].intensity) * (plan.terms.air ? sim.path->transmittance(n.air, air) : 1.0);
     for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * intensity;
   }
   return sums;

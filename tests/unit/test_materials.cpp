@@ -260,7 +260,7 @@ TEST(MaterialTables, ComponentsOnOneAngleKeepTheirOwnSteps) {
       for (int node = 0; node < plan.nodeCount(); ++node)
         for (size_t k = 0; k < 2; ++k) {
           auto entry = [&](int row) { return static_cast<double>(t.solid.columns[static_cast<size_t>((row * plan.nodeCount() + node) * 4) + k]); };
-          const double want = sim.materials[0]->reflections[k]->column(plan.node_um[static_cast<size_t>(node)], angle, 0.0);
+          const double want = sim.materials[0]->reflections[k]->column(plan.nodes[static_cast<size_t>(node)].members.front().wavelength_um, angle, 0.0);
           worst = std::max(worst, std::abs(entry(j) + (x - j) * (entry(j + 1) - entry(j)) - want) / want);
         }
     }

@@ -8,7 +8,7 @@ uniform float emitting;
 
 Real blended(Real behind, int i) {
   Real t = transmittance(i);
-  Real own = (1.0 - t) * pathRadiance(i, airLength_) + pathTransmittance(i, airLength_) * selfRadiance(i) + reflectedLight(i);
+  Real own = (1.0 - t) * pathRadiance(i, air_) + pathTransmittance(i, air_) * selfRadiance(i) + reflectedLight(i);
   return t * behind + emitting * own;
 }
 

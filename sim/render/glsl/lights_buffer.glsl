@@ -9,7 +9,7 @@ Vec3 lobes(Vec3 toLight);
 struct LightHere {
   vec3 to;       // unit
   float factor;  // irradiance per unit intensity [1/m2]; 0 behind the surface
-  float air;     // both legs [m]
+  AirPath air;   // both legs
   int number;
 };
 
@@ -28,6 +28,7 @@ LightHere lightAt(int entry) {
     lightDistance2_ = d2;
   }
   here.factor = here.number < 0 ? 0.0 : isSurface_ * (sun ? max(cosLight, 0.0) : pointIrradianceFactor(cosLight, d2, light.w));
-  here.air = airLength_ + (sun ? sunAirLength(height_) : airLength(height_, dot(up_, here.to), d));
+  if (sun) here.air = airToSun(air_, height_);
+  else here.air = airToLight(air_, height_, dot(up_, here.to), d);
   return here;
 }

@@ -2,7 +2,7 @@
 // E = I cos(theta_l) / d^2 tau; the air of both legs is passed as one length, because a band's transmittance does not multiply.
 //@use sim/render/glsl/lights_buffer.glsl
 Vec3 lightFactor_[LIGHTS];   // irradiance per unit intensity x lobe of each component [1/m2]
-float lightAir_[LIGHTS];     // both legs [m]
+AirPath lightAir_[LIGHTS];   // both legs
 Vec3 toLight_[LIGHTS];
 
 Vec3 toLight(int l) { return toLight_[l]; }

@@ -2,7 +2,7 @@
 // them a point keeps the ones that shine on its face.
 //@use sim/render/glsl/lights_buffer.glsl
 Vec3 lightFactor_[LIGHTS];   // irradiance per unit intensity x lobe of each component [1/m2]
-float lightAir_[LIGHTS];     // both legs [m]
+AirPath lightAir_[LIGHTS];   // both legs
 Vec3 toLight_[LIGHTS];
 int lightNumber_[LIGHTS];
 int shining_;

@@ -16,7 +16,6 @@ vec3 up_;         // up at the point, body frame
 vec2 uv_;
 float cosView_;
 float range_;
-float airLength_; // of the camera leg [m]
 float height_;    // of the point [m]
 float sunElevation_; // sine of it at the point
 float isSurface_; // 0 for the background
@@ -26,12 +25,13 @@ float lightCos_, lightDistance2_;  // of the first light (truth)
 //@slot targets
 
 //@slot path
+AirPath air_;     // of the camera leg
 //@slot lobes
 //@slot lights
 //@slot surface
 //@slot truth
 
-Real nodeRadiance(int i) { return pathSeen(i, selfRadiance(i)) + reflectedLight(i); }
+Real nodeRadiance(int i) { return pathSeen(i, air_, selfRadiance(i)) + reflectedLight(i); }
 //@slot integrate
 
 // id: draw (0 is the background), triangle; where in the picture [pixels from the lower left].
@@ -63,7 +63,7 @@ void lookAt(uvec2 id, vec2 pixel) {
   height_ = heightAt(range_, upThere);
   up_ = inBody(draw_, upThere);
   sunElevation_ = dot(upThere, view.sun.xyz);
-  airLength_ = airLength(view.up.w, sinElevation_, range_);
+  air_ = airFromCamera(range_);
   prepareSurface();
   prepareLights();
 }

@@ -12,18 +12,17 @@ uniform vec3 formSize;
 uniform int mediumRow;
 uniform float emitting;
 
-float airLength_;     // from the camera to where the ray enters [m]
-float airInside_;     // of air on the way through [m]
 float pathLength_;    // inside the medium [m]
 float sunElevation_;
 
 //@slot path
+AirPath near_, far_;  // from the camera to where the ray enters and leaves
 
 Real blended(Real behind, int i) {
   vec2 medium = texelFetch(media, mediumRow + i).xy;
   Real depth = medium.x * pathLength_;
-  Real air = pathDepth(i, airLength_, airInside_);
-  Real before = pathRadiance(i, airLength_), tau = pathTransmittance(i, airLength_), inside = tau * pathRadiance(i, airInside_);
+  Real air = pathDepth(i, near_, far_);
+  Real before = pathRadiance(i, near_), tau = pathTransmittance(i, near_), inside = pathInside(i, near_, far_);
   Real own = mediumRadiance(depth, air, before, inside, tau, medium.y);
   return decay(depth) * (behind - emitting * (before + inside)) + emitting * own;
 }
@@ -55,7 +54,7 @@ void main() {
   vec3 upThere;
   float height = heightAt(range, upThere);
   sunElevation_ = 0.0;
-  airLength_ = airLength(view.up.w, sinElevation_, range);
-  airInside_ = airLength(height, dot(upThere, ray_) / rayLength_, (chord.y - chord.x) * rayLength_);
+  near_ = airFromCamera(range);
+  far_ = airBeyond(near_, range, height, dot(upThere, ray_) / rayLength_, (chord.y - chord.x) * rayLength_);
   blend();
 }

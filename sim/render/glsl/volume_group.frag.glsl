@@ -15,17 +15,16 @@ uniform vec3 memberSize[GROUP];
 uniform int memberRow[GROUP];
 uniform float emitting;
 
-float airLength_;  // of the part of the way at hand
 float sunElevation_;
 vec2 way_[GROUP];            // of each member that the ray meets: t along the ray from the plane of the first one's origin
 int row_[GROUP];
 int met_;
 float cut_[2 * GROUP];       // borders, falling
-float airBefore_[2 * GROUP]; // of the stretch that begins at a border and ends at the one before
-float airInside_[2 * GROUP];
 int cuts_;
 
 //@slot path
+AirPath near_[2 * GROUP];    // from the camera to a border, and on to the one before it in the list
+AirPath far_[2 * GROUP];
 
 Real blended(Real behind, int i) {
   Real radiance = behind;
@@ -39,8 +38,8 @@ Real blended(Real behind, int i) {
       emitted += own * medium.y;
     }
     if (!(depth > 0.0)) continue;
-    Real air = pathDepth(i, airBefore_[c], airInside_[c]);
-    Real before = pathRadiance(i, airBefore_[c]), tau = pathTransmittance(i, airBefore_[c]), inside = tau * pathRadiance(i, airInside_[c]);
+    Real air = pathDepth(i, near_[c], far_[c]);
+    Real before = pathRadiance(i, near_[c]), tau = pathTransmittance(i, near_[c]), inside = pathInside(i, near_[c], far_[c]);
     radiance = decay(depth) * (radiance - emitting * (before + inside)) + emitting * mediumRadiance(depth, air, before, inside, tau, emitted / depth);
   }
   return radiance;
@@ -82,8 +81,8 @@ void main() {
     float range = max((planeOf(first) + cut_[c + 1]) * rayLength_, 0.0);
     vec3 upThere;
     float height = heightAt(range, upThere);
-    airBefore_[c] = airLength(view.up.w, sinElevation_, range);
-    airInside_[c] = airLength(height, dot(upThere, ray_) / rayLength_, (cut_[c] - cut_[c + 1]) * rayLength_);
+    near_[c] = airFromCamera(range);
+    far_[c] = airBeyond(near_[c], range, height, dot(upThere, ray_) / rayLength_, (cut_[c] - cut_[c + 1]) * rayLength_);
   }
   blend();
 }

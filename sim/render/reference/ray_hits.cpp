@@ -37,8 +37,8 @@ void addStretches(RayHits& hits, const Entity& entity, int index, const BodyRay&
     // From the foot of the body's origin on the ray, so that a far body's chord keeps its digits.
     const double foot = -glm::dot(ray.origin, ray.direction);
     const glm::dvec3 at = ray.origin + foot * ray.direction, &s = entity.form.size;
-    const glm::dvec2 chord = entity.form.kind == BodyForm::Kind::Ellipsoid ? physics::ellipsoidChord(at, ray.direction, s)
-                                                                           : physics::coneChord(at, ray.direction, s.x, s.y, s.z);
+    const glm::dvec2 chord =
+        entity.form.kind == BodyForm::Kind::Ellipsoid ? physics::ellipsoidChord(at, ray.direction, s) : physics::coneChord(at, ray.direction, s.x, s.y, s.z);
     if (chord.y > chord.x) hits.stretches.push_back({index, foot + chord.x, foot + chord.y});
     return;
   }
@@ -72,8 +72,7 @@ RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3
       const bool layer = sim.materialOf(entity.surfaces[s]).transmission.has_value();
       meetTriangles(mesh, mesh.parts[entity.surfaces[s].meshPart], ray, [&](double along, const glm::dvec3& weight, const glm::uvec3& i, bool front) {
         if (along < nearest || (!layer && along >= hits.solid.distance)) return;
-        glm::dvec3 n =
-            weight.x * glm::dvec3(mesh.normals[i.x]) + weight.y * glm::dvec3(mesh.normals[i.y]) + weight.z * glm::dvec3(mesh.normals[i.z]);
+        glm::dvec3 n = weight.x * glm::dvec3(mesh.normals[i.x]) + weight.y * glm::dvec3(mesh.normals[i.y]) + weight.z * glm::dvec3(mesh.normals[i.z]);
         if (!front) n = -n;
         const Hit hit = {static_cast<int>(e),
                          static_cast<int>(s),

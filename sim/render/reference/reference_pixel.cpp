@@ -34,25 +34,52 @@ struct Sight {
   const WorldState& state;
   glm::dvec3 position, direction;
 
-  double airTo(double range) const {
-    if (!plan.terms.air) return 0.0;
-    return sim.path->airLength_m(sim.frame.height(position), glm::dot(direction, sim.frame.up(position)), range, sim.frame.earthRadius_m());
-  }
-  double transmittance(double w, double air) const { return plan.terms.air ? sim.path->transmittance(w, air) : 1.0; }
-  double airRadiance(double w, double air) const { return plan.terms.air ? sim.path->radiance(w, air) : 0.0; }
+  AirRay airRay() const { return {sim.frame.height(position), glm::dot(direction, sim.frame.up(position)), sim.frame.earthRadius_m()}; }
 };
+
+/// The air from the camera to somewhere, per node.
+struct Air {
+  AirAmounts amounts;
+  std::vector<double> transmittance, radiance;
+};
+
+Air airTo(const Sight& sight, double range) {
+  const auto& nodes = sight.plan.nodes;
+  Air air;
+  air.transmittance.assign(nodes.size(), 1.0);
+  air.radiance.assign(nodes.size(), 0.0);
+  if (!sight.plan.terms.air) return air;
+  const Path& path = *sight.sim.path;
+  const auto stations = path.stations(sight.airRay(), range);
+  if (stations.empty()) return air;
+  air.amounts = stations.back().amounts;
+  std::vector<AirAmounts> powered;
+  for (const AirStation& s : stations) powered.push_back(path.powered(s.amounts));
+  std::vector<double> depth(stations.size()), source(stations.size()), radiance(stations.size());
+  for (size_t i = 0; i < nodes.size(); ++i) {
+    for (size_t s = 0; s < stations.size(); ++s) {
+      depth[s] = Path::depthOf(nodes[i].air, powered[s]);
+      source[s] = nodes[i].air.source + (stations[s].temperature_K > 0.0 ? nodes[i].planck(stations[s].temperature_K) : 0.0);
+    }
+    emittedAlong(depth, source, radiance);
+    air.transmittance[i] = std::exp(-depth.back());
+    air.radiance[i] = radiance.back();
+  }
+  return air;
+}
 
 /// A surface's own radiance (emission, reflection) and transmittance per node, as seen from the camera, the air's own radiance left out.
 struct Seen {
   std::vector<double> radiance, transmittance;
-  double cosView = 0.0, temperature_K = 0.0, air = 0.0;
+  double cosView = 0.0, temperature_K = 0.0;
+  Air air;
 };
 
 Seen lookAt(const Sight& sight, const Hit& hit) {
   const Simulation& sim = sight.sim;
   const Plan& plan = sight.plan;
   Seen seen;
-  seen.air = sight.airTo(hit.distance);
+  seen.air = airTo(sight, hit.distance);
   const Surface& surface = sim.entities[static_cast<size_t>(hit.entity)].surfaces[static_cast<size_t>(hit.surface)];
   const Material& material = sim.materialOf(surface);
   glm::dvec3 view3 = inNormalFrame(hit.normal, -sight.direction);
@@ -68,10 +95,11 @@ Seen lookAt(const Sight& sight, const Hit& hit) {
 
   struct Leg {
     glm::dvec3 light;
-    double factor = 0.0, air = 0.0;
+    double factor = 0.0;
+    AirAmounts powered;
   };
   std::vector<Leg> legs;
-  const double radius = sim.frame.earthRadius_m(), height = sim.frame.height(hit.point);
+  const AirRay here{sim.frame.height(hit.point), 0.0, sim.frame.earthRadius_m()};
   const glm::dvec3 up = sim.frame.up(hit.point);
   auto addLeg = [&](const glm::dvec3& line, double radius_m, bool sun) {
     Leg leg;
@@ -81,29 +109,36 @@ Seen lookAt(const Sight& sight, const Hit& hit) {
     leg.factor = sun ? std::max(leg.light.z, 0.0) : physics::pointIrradianceFactor(leg.light.z, d2, radius_m);
     if (plan.terms.air) {
       const bool endless = sim.path->top_m() >= physics::kFar;
-      leg.air = seen.air + (sun ? (endless ? 0.0 : sim.path->airLength_m(height, glm::dot(up, sim.sun->toSun), physics::kFar, radius))
-                                : sim.path->airLength_m(height, glm::dot(up, to), d, radius));
+      AirRay leaving = here;
+      leaving.sinElevation = glm::dot(up, to);
+      AirAmounts both = seen.air.amounts;
+      if (!sun || !endless) both += sim.path->amounts(leaving, sun ? physics::kFar : d);
+      leg.powered = sim.path->powered(both);
     }
     legs.push_back(leg);
   };
   for (size_t l = 0; l < sim.lights.size(); ++l) addLeg(sight.state.lights[l] - hit.point, sim.lights[l].radius_m, false);
   if (sim.sun) addLeg(sim.sun->toSun, 0.0, true);
 
-  for (double w : plan.node_um) {
-    double reflectance = 0.0, reflected = 0.0;
-    for (size_t k = 0; k < material.reflections.size(); ++k) reflectance += mod[k] * material.reflections[k]->hemispherical(w, viewAngle);
-    const double transmittance = modT * material.transmittance(w, viewAngle);
-    const double emissivity = material.given ? modE * material.given->at(w, viewAngle) : 1.0 - reflectance - transmittance;
+  for (size_t i = 0; i < plan.nodes.size(); ++i) {
+    const SpectralNode& n = plan.nodes[i];
+    double reflected = 0.0;
     for (size_t l = 0; l < legs.size(); ++l) {
       if (legs[l].factor <= 0.0) continue;
       double f = 0.0;
-      for (size_t k = 0; k < material.reflections.size(); ++k) f += mod[k] * material.reflections[k]->brdf(w, legs[l].light, view3);
-      const double strength = l == sim.lights.size() ? sim.sun->irradiance(w) : sight.state.lightLevels[l] * sim.lights[l].intensity(w);
-      reflected += f * legs[l].factor * strength * sight.transmittance(w, legs[l].air);
+      for (size_t k = 0; k < material.reflections.size(); ++k)
+        f += mod[k] * n.mean([&](double w) { return material.reflections[k]->brdf(w, legs[l].light, view3); });
+      const double strength = l == sim.lights.size() ? n.mean(sim.sun->irradiance) : sight.state.lightLevels[l] * n.mean(sim.lights[l].intensity);
+      reflected += f * legs[l].factor * strength * (plan.terms.air ? std::exp(-Path::depthOf(n.air, legs[l].powered)) : 1.0);
     }
-    const double self = emissivity * physics::planckRadiance(w, seen.temperature_K) + (plan.terms.ambient ? reflectance * (*sim.ambient)(w) : 0.0);
-    seen.radiance.push_back(self * sight.transmittance(w, seen.air) + reflected);
-    seen.transmittance.push_back(transmittance);
+    const double self = n.mean([&](double w) {
+      double reflectance = 0.0;
+      for (size_t k = 0; k < material.reflections.size(); ++k) reflectance += mod[k] * material.reflections[k]->hemispherical(w, viewAngle);
+      const double emissivity = material.given ? modE * material.given->at(w, viewAngle) : 1.0 - reflectance - modT * material.transmittance(w, viewAngle);
+      return emissivity * physics::planckRadiance(w, seen.temperature_K) + (plan.terms.ambient ? reflectance * (*sim.ambient)(w) : 0.0);
+    });
+    seen.radiance.push_back(self * seen.air.transmittance[i] + reflected);
+    seen.transmittance.push_back(modT * n.mean([&](double w) { return material.transmittance(w, viewAngle); }));
   }
   return seen;
 }
@@ -116,33 +151,34 @@ void addTransparent(const Sight& sight, const RayHits& hits, std::vector<double>
   for (const Hit& h : hits.layers) cuts.push_back(h.distance);
   std::sort(cuts.begin(), cuts.end(), std::greater<>());
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-  const auto& nodes = sight.plan.node_um;
+  const auto& nodes = sight.plan.nodes;
   for (size_t c = 0; c < cuts.size(); ++c) {
     for (const Hit& h : hits.layers)
       if (h.distance == cuts[c]) {
         const Seen seen = lookAt(sight, h);
         for (size_t i = 0; i < nodes.size(); ++i)
-          radiance[i] = seen.transmittance[i] * radiance[i] + (1.0 - seen.transmittance[i]) * sight.airRadiance(nodes[i], seen.air) + seen.radiance[i];
+          radiance[i] = seen.transmittance[i] * radiance[i] + (1.0 - seen.transmittance[i]) * seen.air.radiance[i] + seen.radiance[i];
       }
     if (c + 1 == cuts.size()) break;
-    const double far = cuts[c], near = cuts[c + 1], airFar = sight.airTo(far), airNear = sight.airTo(near);
+    const double far = cuts[c], near = cuts[c + 1];
     std::vector<int> inside;
     for (const Stretch& s : hits.stretches)
       if (s.enter <= near && s.leave >= far) inside.push_back(s.entity);
     if (inside.empty()) continue;
+    const Air farAir = airTo(sight, far), nearAir = airTo(sight, near);
     for (size_t i = 0; i < nodes.size(); ++i) {
       double a = 0.0, source = 0.0;
       for (int e : inside) {
         const Entity& body = sight.sim.entities[static_cast<size_t>(e)];
-        const double own = sight.sim.mediumOf(body)->absorption_per_m(nodes[i]) * (far - near);
+        const Surface& surface = body.surfaces.front();
+        const double own = nodes[i].absorption_per_m[static_cast<size_t>(surface.material)] * (far - near);
         a += own;
-        source += own * sight.sim.mediumOf(body)->source(nodes[i], body.surfaces.front().temperature_K);
+        source += own * nodes[i].mean([&](double w) { return sight.sim.mediumOf(body)->source(w, surface.temperature_K); });
       }
       if (a <= 0.0) continue;
-      const double tau = sight.transmittance(nodes[i], airNear), before = sight.airRadiance(nodes[i], airNear);
-      const double between = tau * sight.airRadiance(nodes[i], airFar - airNear);
-      const double air = -std::log(std::max(sight.transmittance(nodes[i], airFar - airNear), 1e-300));
-      radiance[i] = std::exp(-a) * (radiance[i] - before - between) + physics::mediumRadiance(a, air, before, between, tau, source / a);
+      const double tau = nearAir.transmittance[i], before = nearAir.radiance[i], between = farAir.radiance[i] - before;
+      const double air = -std::log(std::max(farAir.transmittance[i], 1e-300) / std::max(tau, 1e-300));
+      radiance[i] = std::exp(-a) * (radiance[i] - before - between) + physics::mediumRadiance(a, std::max(air, 0.0), before, between, tau, source / a);
     }
   }
 }
@@ -158,22 +194,22 @@ ReferencePixel referencePixel(const Simulation& sim, const Plan& plan, const Vie
   pixel.surface = hits.solid.surface;
   const bool found = hits.solid.entity >= 0;
   pixel.range_m = found ? hits.solid.distance : physics::kFar;
+  Air air;
   if (found) {
-    const Seen seen = lookAt(sight, hits.solid);
+    Seen seen = lookAt(sight, hits.solid);
     pixel.cosView = seen.cosView;
     pixel.temperature_K = seen.temperature_K;
-    pixel.radiance = seen.radiance;
+    pixel.radiance = std::move(seen.radiance);
+    air = std::move(seen.air);
+  } else {
+    air = airTo(sight, physics::kFar);
+    for (size_t i = 0; i < plan.nodes.size(); ++i) pixel.radiance.push_back(plan.nodes[i].mean(sim.background) * air.transmittance[i]);
   }
-  const double air = sight.airTo(pixel.range_m);
-  for (size_t i = 0; i < plan.node_um.size(); ++i) {
-    const double w = plan.node_um[i];
-    if (!found) pixel.radiance.push_back(sim.background(w) * sight.transmittance(w, air));
-    pixel.radiance[i] += sight.airRadiance(w, air);
-  }
+  for (size_t i = 0; i < plan.nodes.size(); ++i) pixel.radiance[i] += air.radiance[i];
   addTransparent(sight, hits, pixel.radiance);
   pixel.slots.assign(static_cast<size_t>(plan.slotCount), 0.0);
   for (size_t s = 0; s < pixel.slots.size(); ++s)
-    for (size_t i = 0; i < plan.node_um.size(); ++i) pixel.slots[s] += plan.weight[s][i] * pixel.radiance[i];
+    for (size_t i = 0; i < plan.nodes.size(); ++i) pixel.slots[s] += plan.weight[s][i] * pixel.radiance[i];
   return pixel;
 }
 
