@@ -253,12 +253,13 @@ double AbsorberTable::temperature_K(double height_m) const {
   return levels_[i].temperature_K + f * (levels_[i + 1].temperature_K - levels_[i].temperature_K);
 }
 
-std::vector<PathStation> AbsorberTable::stations(double height_m, double sinElevation, double range_m, double earthRadius_m, int count) const {
+std::vector<PathStation> AbsorberTable::stations(double height_m, double sinElevation, double range_m, double earthRadius_m, int count,
+                                                 std::span<const double> alsoAt_m) const {
   const Ray ray(height_m, std::clamp(sinElevation, -1.0, 1.0), earthRadius_m);
   const auto within = ray.crossings(top_m());
   const double begin = within ? std::max(within->first, 0.0) : 0.0;
   const double end = within ? std::min(within->second, range_m) : 0.0;
-  if (!(end > begin)) return {PathStation{0.0, temperature_K(height_m), {}}};
+  if (!(end > begin)) return {PathStation{0.0, temperature_K(height_m), {}, height_m}};
 
   std::vector<double> cuts = {begin, end};
   const auto cut = [&](double s) {
@@ -271,14 +272,16 @@ std::vector<PathStation> AbsorberTable::stations(double height_m, double sinElev
     const double f = static_cast<double>(i) / count;
     cut(begin + (end - begin) * f * f);
   }
+  for (const double s : alsoAt_m) cut(s);
   std::sort(cuts.begin(), cuts.end());
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
 
-  std::vector<PathStation> stations = {PathStation{begin, temperature_K(ray.heightAt(begin)), {}}};
+  std::vector<PathStation> stations = {PathStation{begin, temperature_K(ray.heightAt(begin)), {}, ray.heightAt(begin)}};
   for (size_t i = 0; i + 1 < cuts.size(); ++i) {
     const double length = cuts[i + 1] - cuts[i];
     const size_t interval = intervalAt(ray.heightAt(cuts[i] + 0.5 * length));
-    PathStation next{cuts[i + 1], temperature_K(ray.heightAt(cuts[i + 1])), stations.back().amounts};
+    const double height = ray.heightAt(cuts[i + 1]);
+    PathStation next{cuts[i + 1], temperature_K(height), stations.back().amounts, height};
     for (const QuadratureNode& node : unitGauss()) addDensities(interval, ray.heightAt(cuts[i] + length * node.x), 1e-3 * length * node.weight, next.amounts);
     stations.push_back(next);
   }

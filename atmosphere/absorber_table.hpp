@@ -47,6 +47,7 @@ struct PathStation {
   double range_m = 0.0;
   double temperature_K = 0.0;
   AbsorberAmounts amounts;
+  double height_m = 0.0;
 };
 
 class AbsorberTable {
@@ -80,16 +81,18 @@ class AbsorberTable {
   static constexpr int kGaussPoints = 6;
 
   /// The same at places along the way, for emission: at every level crossed and, closer together near the beginning, at (i / count)^2 of
-  /// the part within the air. The first is at range 0 or where the air begins.
-  std::vector<PathStation> stations(double height_m, double sinElevation, double range_m, double earthRadius_m, int count = 32) const;
+  /// the part within the air, and at further ranges asked for. The first is at range 0 or where the air begins.
+  std::vector<PathStation> stations(double height_m, double sinElevation, double range_m, double earthRadius_m, int count = 32,
+                                    std::span<const double> alsoAt_m = {}) const;
 
   /// c_k at a wavelength [um]. Throws OutsideSpectrum outside valid...().
   std::array<double, kMostAbsorbers> coefficients(double wavelength_um) const;
   double opticalDepth(double wavelength_um, const AbsorberAmounts& amounts) const;
   double transmittance(double wavelength_um, const AbsorberAmounts& amounts) const;
 
-  /// Thermal radiance of the path seen from its beginning [W/(m2 sr um)], all extinction taken as emitting (as LOWTRAN does; too much where
-  /// scattering matters: the haze's albedo is 0.9 up to 5 um).
+  /// Thermal radiance of the path seen from its beginning [W/(m2 sr um)], all extinction taken as emitting (as LOWTRAN does, so this is what is
+  /// compared with its figures; too much where scattering matters: the haze's albedo is 0.9 up to 5 um. What only absorbs and what sunlight
+  /// scatters: scattered_sun.hpp).
   ///   L = sum over stations of integral of B(T) dtau, B linear in optical depth between two stations.
   /// Converges as the stations get closer: count 32 is within 0.4 % of finer ones in the 3-5 and 8-12 um means.
   double pathRadiance(double wavelength_um, std::span<const PathStation> stations) const;
