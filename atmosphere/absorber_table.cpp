@@ -41,9 +41,9 @@ struct Ray {
   }
 };
 
-const std::vector<QuadratureNode>& unitGauss() {
-  static const std::vector<QuadratureNode> nodes = gaussLegendre(AbsorberTable::kGaussPoints, 0.0, 1.0);
-  return nodes;
+const std::vector<QuadratureNode>& unitGauss(int points) {
+  static const std::vector<QuadratureNode> few = gaussLegendre(3, 0.0, 1.0), many = gaussLegendre(AbsorberTable::kGaussPoints, 0.0, 1.0);
+  return points == 3 ? few : many;
 }
 
 struct Word {
@@ -253,6 +253,29 @@ double AbsorberTable::temperature_K(double height_m) const {
   return levels_[i].temperature_K + f * (levels_[i + 1].temperature_K - levels_[i].temperature_K);
 }
 
+std::vector<PathStation> AbsorberTable::stationsBetween(double height_m, double sinElevation, double earthRadius_m, double begin, double end,
+                                                        std::vector<double> cuts, int points) const {
+  const Ray ray(height_m, std::clamp(sinElevation, -1.0, 1.0), earthRadius_m);
+  const auto cut = [&](double s) { cuts.push_back(s); };
+  cut(begin), cut(end), cut(ray.lowest_m());
+  for (const Level& level : levels_)
+    if (const auto at = ray.crossings(level.altitude_m)) cut(at->first), cut(at->second);
+  std::erase_if(cuts, [&](double s) { return !(s >= begin && s <= end); });
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+
+  const auto& gauss = unitGauss(points);
+  std::vector<PathStation> stations = {PathStation{begin, temperature_K(ray.heightAt(begin)), {}, ray.heightAt(begin)}};
+  for (size_t i = 0; i + 1 < cuts.size(); ++i) {
+    const double length = cuts[i + 1] - cuts[i], height = ray.heightAt(cuts[i + 1]);
+    const size_t interval = intervalAt(ray.heightAt(cuts[i] + 0.5 * length));
+    PathStation next{cuts[i + 1], temperature_K(height), stations.back().amounts, height};
+    for (const QuadratureNode& node : gauss) addDensities(interval, ray.heightAt(cuts[i] + length * node.x), 1e-3 * length * node.weight, next.amounts);
+    stations.push_back(next);
+  }
+  return stations;
+}
+
 std::vector<PathStation> AbsorberTable::stations(double height_m, double sinElevation, double range_m, double earthRadius_m, int count,
                                                  std::span<const double> alsoAt_m) const {
   const Ray ray(height_m, std::clamp(sinElevation, -1.0, 1.0), earthRadius_m);
@@ -260,36 +283,38 @@ std::vector<PathStation> AbsorberTable::stations(double height_m, double sinElev
   const double begin = within ? std::max(within->first, 0.0) : 0.0;
   const double end = within ? std::min(within->second, range_m) : 0.0;
   if (!(end > begin)) return {PathStation{0.0, temperature_K(height_m), {}, height_m}};
-
-  std::vector<double> cuts = {begin, end};
-  const auto cut = [&](double s) {
-    if (s > begin && s < end) cuts.push_back(s);
-  };
-  cut(ray.lowest_m());
-  for (const Level& level : levels_)
-    if (const auto at = ray.crossings(level.altitude_m)) cut(at->first), cut(at->second);
+  std::vector<double> cuts(alsoAt_m.begin(), alsoAt_m.end());
   for (int i = 1; i < count; ++i) {
     const double f = static_cast<double>(i) / count;
-    cut(begin + (end - begin) * f * f);
+    cuts.push_back(begin + (end - begin) * f * f);
   }
-  for (const double s : alsoAt_m) cut(s);
-  std::sort(cuts.begin(), cuts.end());
-  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  return stationsBetween(height_m, sinElevation, earthRadius_m, begin, end, std::move(cuts), kGaussPoints);
+}
 
-  std::vector<PathStation> stations = {PathStation{begin, temperature_K(ray.heightAt(begin)), {}, ray.heightAt(begin)}};
-  for (size_t i = 0; i + 1 < cuts.size(); ++i) {
-    const double length = cuts[i + 1] - cuts[i];
-    const size_t interval = intervalAt(ray.heightAt(cuts[i] + 0.5 * length));
-    const double height = ray.heightAt(cuts[i + 1]);
-    PathStation next{cuts[i + 1], temperature_K(height), stations.back().amounts, height};
-    for (const QuadratureNode& node : unitGauss()) addDensities(interval, ray.heightAt(cuts[i] + length * node.x), 1e-3 * length * node.weight, next.amounts);
-    stations.push_back(next);
+std::vector<PathStation> AbsorberTable::stationsAt(double height_m, double sinElevation, std::span<const double> ranges_m, double earthRadius_m) const {
+  const Ray ray(height_m, std::clamp(sinElevation, -1.0, 1.0), earthRadius_m);
+  const auto within = ray.crossings(top_m());
+  const double begin = within ? std::max(within->first, 0.0) : 0.0;
+  const double end = within && !ranges_m.empty() ? std::min(within->second, ranges_m.back()) : 0.0;
+  if (!(end > begin)) return std::vector<PathStation>(ranges_m.size(), PathStation{0.0, temperature_K(height_m), {}, height_m});
+  const auto all = stationsBetween(height_m, sinElevation, earthRadius_m, begin, end, {ranges_m.begin(), ranges_m.end()}, 3);
+  std::vector<PathStation> stations;
+  size_t at = 0;
+  for (double r : ranges_m) {
+    while (at + 1 < all.size() && all[at + 1].range_m <= r) ++at;
+    stations.push_back(all[at]);
   }
   return stations;
 }
 
 AbsorberAmounts AbsorberTable::amounts(double height_m, double sinElevation, double range_m, double earthRadius_m) const {
   return stations(height_m, sinElevation, range_m, earthRadius_m, 0).back().amounts;
+}
+
+std::vector<double> AbsorberTable::knots_um() const {
+  std::vector<double> knots;
+  for (auto b = bins_.rbegin(); b != bins_.rend(); ++b) knots.push_back(1e4 / b->wavenumber_per_cm);
+  return knots;
 }
 
 std::pair<size_t, double> AbsorberTable::binAt(double wavelength_um) const {

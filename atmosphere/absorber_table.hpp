@@ -61,6 +61,8 @@ class AbsorberTable {
   std::span<const Absorber> absorbers() const { return absorbers_; }
   double validLow_um() const { return 1e4 / bins_.back().wavenumber_per_cm; }
   double validHigh_um() const { return 1e4 / bins_.front().wavenumber_per_cm; }
+  /// Where the coefficients bend, rising.
+  std::vector<double> knots_um() const;
   /// Height above which there is nothing.
   double top_m() const { return levels_.back().altitude_m; }
 
@@ -84,6 +86,9 @@ class AbsorberTable {
   /// the part within the air, and at further ranges asked for. The first is at range 0 or where the air begins.
   std::vector<PathStation> stations(double height_m, double sinElevation, double range_m, double earthRadius_m, int count = 32,
                                     std::span<const double> alsoAt_m = {}) const;
+
+  /// The same at given ranges alone, rising from 0 on; those before the air begins and beyond its end hold what there is as far as there.
+  std::vector<PathStation> stationsAt(double height_m, double sinElevation, std::span<const double> ranges_m, double earthRadius_m) const;
 
   /// c_k at a wavelength [um]. Throws OutsideSpectrum outside valid...().
   std::array<double, kMostAbsorbers> coefficients(double wavelength_um) const;
@@ -118,6 +123,8 @@ class AbsorberTable {
   };
   friend class AbsorberTableReader;
 
+  std::vector<PathStation> stationsBetween(double height_m, double sinElevation, double earthRadius_m, double begin_m, double end_m, std::vector<double> cuts_m,
+                                           int points) const;
   size_t intervalAt(double height_m) const;
   void addDensities(size_t interval, double height_m, double weight_km, AbsorberAmounts& sum) const;
   double depthOf(const std::array<double, kMostAbsorbers>& coefficients, const AbsorberAmounts& amounts) const;

@@ -57,13 +57,6 @@ Spectrum ruralAsymmetry() {
   return g;
 }
 
-double rayleighPhase(double cosScatter) { return 3.0 / (16.0 * kPi) * (1.0 + cosScatter * cosScatter); }
-
-double henyeyGreensteinPhase(double cosScatter, double asymmetry) {
-  const double g = asymmetry, chord = 1.0 + g * g - 2.0 * g * cosScatter;
-  return (1.0 - g * g) / (4.0 * kPi * chord * std::sqrt(chord));
-}
-
 struct ScatteredSun::Optics {
   Powers extinction{}, molecules{}, haze{}, absorption{};  ///< optical depth per W^a: all of it; scattered by molecules, by haze; absorbed
   double asymmetry = 0.0;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "atmosphere/absorber_table.hpp"
+#include "sim/model/path.hpp"
 #include "sim/radiometry/spectrum.hpp"
 
 namespace pitviper {
@@ -24,11 +25,6 @@ namespace pitviper {
 /// Asymmetry of the rural haze by wavelength, 0.2-4.5 um at a relative humidity of 70 %, held beyond (where the haze's share of scattered sunlight
 /// is small). Source: Shettle and Fenn 1979 (AFGL-TR-79-0214), as in LOWTRAN 7; 0.015 less in dry air.
 Spectrum ruralAsymmetry();
-
-/// Integral over the sphere: 1 [1/sr].
-double rayleighPhase(double cosScatter);
-/// |asymmetry| < 1. Integral over the sphere: 1 [1/sr].
-double henyeyGreensteinPhase(double cosScatter, double asymmetry);
 
 /// A line of sight and the sun, both as seen from the camera.
 struct SunlitView {

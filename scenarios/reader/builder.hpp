@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "atmosphere/absorber_table.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
 #include "sim/parameters/spectrum_value.hpp"
@@ -67,6 +68,9 @@ class Builder {
   // sensor_reader.cpp
   SpectralBins readSpectralBins(const Record& r, const Pinhole& pinhole);
 
+  // surroundings.cpp
+  AbsorberTable readAirTable(const Record& r, const std::filesystem::path& folder) const;
+
   void checkUnique(const Value& name, std::map<std::string, Location>& names, const char* what);
   /// A spectrum whose values are finite and lie in [low, high] wherever it has data.
   static Spectrum bounded(const SpectrumReader& spectra, const Value& value, std::string_view unit, std::string_view name, double low, double high,
@@ -74,6 +78,7 @@ class Builder {
   Spectrum blackOrGiven(const Record& r, const char* what) const;
 
   Simulation& simulation_;
+  std::filesystem::path base_;  ///< folder of the scenario
   Libraries libraries_;
   SpectrumReader spectra_;
   std::size_t brdfTables_ = 0, brdfWavelengths_ = 0, phongLobes_ = 0, planSteps_ = 0;

@@ -129,8 +129,7 @@ ViewTable readViewTable(const Record& r, const TableKind& kind) {
 /// Rows [angle, factor].
 void readAngular(const Value& rows, ViewSpectrum& v) {
   for (const Value& row : rows.items) {
-    if (row.kind != Value::Kind::List || row.items.size() != 2)
-      throw UserError(row.where, "not a row [angle, factor]", "[60 deg, 0.9]", "write two values");
+    if (row.kind != Value::Kind::List || row.items.size() != 2) throw UserError(row.where, "not a row [angle, factor]", "[60 deg, 0.9]", "write two values");
     const double angle = readNumber(row.items[0], "rad", "view angle"), factor = readNumber(row.items[1], "", "factor");
     if (angle < 0.0 || angle > 1.5709 || factor < 0.0 || (!v.viewAngle_rad.empty() && angle <= v.viewAngle_rad.back()))
       throw UserError(row.where, "view angles must rise within 0 to 90 deg, factors must not be negative", "rising angles", "correct the row");
@@ -238,8 +237,7 @@ void Builder::readMedium(const Record& r, Material& m, const SpectrumReader& spe
       throw UserError(r.where(key), std::string("a medium with '") + key + "'", "a surface, or a medium ('absorption' and 'radiance')",
                       "remove it, or 'absorption'; a body with both is two entities");
   Medium medium;
-  medium.absorption_per_m =
-      bounded(spectra, r.value("absorption"), "1/m", "absorption coefficient of material '" + m.name.substr(0, 60) + "'", 0.0, 1e9);
+  medium.absorption_per_m = bounded(spectra, r.value("absorption"), "1/m", "absorption coefficient of material '" + m.name.substr(0, 60) + "'", 0.0, 1e9);
   if (r.given("radiance"))
     medium.radiance = bounded(spectra, r.value("radiance"), "W/(m2 sr um)", "radiance of material '" + m.name.substr(0, 60) + "'", 0.0, INFINITY);
   m.medium = std::move(medium);
@@ -279,9 +277,11 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
   readMedium(r, *m, spectra);
   if (const auto excess = energyExcess(*m, simulation_.textures))
     throw UserError(value.where,
-                    "material '" + name + "' reflects" + (m->transmission ? m->given ? ", transmits and emits" : " and transmits" : m->given ? " and emits" : "") +
-                        " more than it receives (" +
-                        percentAt(excess->sum, excess->wavelength_um, excess->viewAngle_rad) + ")",
+                    "material '" + name + "' reflects" +
+                        (m->transmission ? m->given ? ", transmits and emits" : " and transmits"
+                         : m->given      ? " and emits"
+                                         : "") +
+                        " more than it receives (" + percentAt(excess->sum, excess->wavelength_um, excess->viewAngle_rad) + ")",
                     std::string(m->given || m->transmission ? "reflectance" : "the sum of its reflectances") + (m->transmission ? " + transmittance" : "") +
                         (m->given ? " + emissivity" : "") + " <= 1, at every wavelength, view angle and texel",
                     "lower a component");

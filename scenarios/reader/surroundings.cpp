@@ -4,9 +4,11 @@
 #include <cstdio>
 
 #include "atmosphere/homogeneous.hpp"
+#include "atmosphere/layered.hpp"
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
+#include "sim/model/sky.hpp"
 
 namespace pitviper {
 namespace {
@@ -35,7 +37,7 @@ std::string briefNumber(double v) {
 }
 
 Builder::Builder(Simulation& simulation, std::filesystem::path base, Libraries libraries)
-    : simulation_(simulation), libraries_(libraries), spectra_([&] {
+    : simulation_(simulation), base_(base), libraries_(libraries), spectra_([&] {
         SpectrumFiles files;
         files.base = std::move(base);
         files.library = {libraries.sensors};
@@ -96,15 +98,20 @@ void Builder::readAtmosphere(const Record& scenario) {
   }
   const Record r(*value, tables::atmosphere());
   if (r.text("model") == "none") return;
+  if (r.given("library") && r.given("table")) throw UserError(r.where("table"), "the air has a library name and a table", "one of the two", "remove one");
+  std::optional<AbsorberTable> table;
   HomogeneousAir air;
   bool have = false;
-  auto take = [&](const Record& from, const SpectrumReader& spectra) {
+  auto take = [&](const Record& from, const SpectrumReader& spectra, const std::filesystem::path& folder) {
+    if (from.given("table")) table = readAirTable(from, folder);
     if (from.given("extinction")) {
       air.extinction_per_m = bounded(spectra, from.value("extinction"), "1/m", "extinction", 0.0, INFINITY);
       have = true;
     }
     if (from.given("temperature")) air.temperature_K = from.number("temperature");
     if (from.given("radiance")) air.radiance = bounded(spectra, from.value("radiance"), "W/(m2 sr um)", "air radiance", 0.0, INFINITY);
+    if (table && from.given("visibility")) table->setVisibility(1e-3 * from.number("visibility"));
+    if (table && from.given("aerosol") && from.text("aerosol") == "none") table->removeAerosol();
   };
   if (r.given("library")) {
     const std::string name = r.text("library");
@@ -117,13 +124,34 @@ void Builder::readAtmosphere(const Record& scenario) {
                       near.empty() ? "choose one" : "did you mean '" + near + "'?");
     }
     const Value tree = loadYaml(file, r.where("library"));
-    take(Record(tree, tables::airLibrary()), spectra_.in(libraries_.atmosphere));
+    take(Record(tree, tables::airLibrary()), spectra_.in(libraries_.atmosphere), libraries_.atmosphere);
   }
-  take(r, spectra_);
+  take(r, spectra_, base_);
+  if (table) {
+    for (const char* key : {"extinction", "temperature", "radiance", "top"})
+      if (r.given(key))
+        throw UserError(r.where(key), std::string("'") + key + "' is of homogeneous air, and this air is layered: its table has it",
+                        "'visibility' or 'aerosol', or homogeneous air", std::string("remove '") + key + "', or give an extinction instead of the library air");
+    simulation_.path = makeLayeredAir(std::move(*table));
+    return;
+  }
+  for (const char* key : {"visibility", "aerosol"})
+    if (r.given(key))
+      throw UserError(r.where(key), std::string("'") + key + "' is of layered air, and this air is homogeneous", "a library air or a table",
+                      std::string("remove '") + key + "'");
   if (!have)
-    throw UserError(r.where(), "homogeneous air without an extinction", "'extinction' or 'library'", "add 'extinction: 0.2 /km' or 'library: hazy_us76'");
+    throw UserError(r.where(), "air without an extinction, a table or a library name", "'library', 'table' or 'extinction'",
+                    "add 'library: hazy_us76' or 'extinction: 0.2 /km'");
   if (r.given("top")) air.top_m = r.number("top");
   simulation_.path = makeHomogeneousAir(std::move(air));
+}
+
+AbsorberTable Builder::readAirTable(const Record& r, const std::filesystem::path& folder) const {
+  const std::filesystem::path file = folder / r.text("table");
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw UserError(r.where("table"), "there is no file '" + file.string() + "'", "an air table, its path relative to this file", "check the path");
+  return AbsorberTable::read(file);
 }
 
 /// A map with either temperature or radiance.
@@ -142,7 +170,22 @@ void Builder::readBackground(const Record& scenario) {
 
 void Builder::readAmbient(const Record& scenario) {
   if (!scenario.given("ambient")) return;
-  simulation_.ambient = blackOrGiven(Record(scenario.value("ambient"), tables::ambient()), "ambient");
+  const Record r(scenario.value("ambient"), tables::ambient());
+  if (!r.given("from")) {
+    simulation_.ambient = blackOrGiven(r, "ambient");
+    return;
+  }
+  for (const char* key : {"temperature", "radiance"})
+    if (r.given(key)) throw UserError(r.where(key), "ambient light from the sky has its own radiance", "'from' alone", std::string("remove '") + key + "'");
+  if (!simulation_.path->isLayered())
+    throw UserError(r.where("from"), "ambient light from the sky needs layered air", "a library air or a table under 'atmosphere'",
+                    "add 'atmosphere: hazy_us76', or give a temperature or radiance");
+  try {
+    simulation_.ambient = meanSky(*simulation_.path, simulation_.sun, simulation_.background, 0.0, simulation_.frame.earthRadius_m());
+  } catch (const OutsideSpectrum& e) {
+    throw UserError(r.where("from"), std::string("the sky needs the sun and the background wherever the air has data: ") + e.what(),
+                    "spectra from 0.4 to 14.2 um", "extend the table, or declare 'outside: hold' or 'outside: zero' if that is true");
+  }
 }
 
 void Builder::readSun(const Record& scenario) {

@@ -96,14 +96,18 @@ const ParameterTable& time() {
 const ParameterTable& atmosphere() {
   static const ParameterTable t{
       "atmosphere",
-      "Homogeneous air, or none.",
-      {withDefault(choice("model", {"none", "homogeneous"}, "which path model"), "homogeneous"),
-       text("library", "named air: its extinction and temperature, which the keys below replace"), spectrum("extinction", "1/m", "extinction coefficient"),
-       within(number("temperature", "K", "the air emits as a black body of this temperature"), 0, kHottest_K),
-       spectrum("radiance", "W/(m2 sr um)", "further source radiance at great depth, for instance scattered sunlight"),
+      "None, layered air (library or table), or homogeneous air (extinction).",
+      {withDefault(choice("model", {"none", "air"}, "none: whatever else is given, there is no air"), "air"),
+       text("library", "named air, atmosphere/library/<name>.yaml"),
+       text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air"),
+       within(number("visibility", "m", "layered: meteorological visibility of the haze"), 1e3, 3e5),
+       choice("aerosol", {"none", "table"}, "layered: without aerosol, or with the table's"),
+       spectrum("extinction", "1/m", "homogeneous: extinction coefficient"),
+       within(number("temperature", "K", "homogeneous: the air emits as a black body of this temperature"), 0, kHottest_K),
+       spectrum("radiance", "W/(m2 sr um)", "homogeneous: further source radiance at great depth, for instance scattered sunlight"),
        within(number("top", "m",
-                     "height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never ends and the "
-                     "sun's irradiance is that at the scene"),
+                     "homogeneous: height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never "
+                     "ends and the sun's irradiance is that at the scene"),
               -500, 1e7)}};
   return t;
 }
@@ -111,9 +115,11 @@ const ParameterTable& atmosphere() {
 const ParameterTable& airLibrary() {
   static const ParameterTable t{
       "air (library file)",
-      "atmosphere/library/<name>.yaml",
-      {text("description", "what air it is"), text("source", "where the figures come from"), required(spectrum("extinction", "1/m", "extinction coefficient")),
-       within(number("temperature", "K", "air temperature"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "further source radiance")}};
+      "atmosphere/library/<name>.yaml: an air table, or an extinction.",
+      {text("description", "what air it is"), text("source", "where the figures come from"), text("table", "air table beside it"),
+       within(number("visibility", "m", "of the table's haze"), 1e3, 3e5), choice("aerosol", {"none", "table"}, "without aerosol, or with the table's"),
+       spectrum("extinction", "1/m", "extinction coefficient"), within(number("temperature", "K", "air temperature"), 0, kHottest_K),
+       spectrum("radiance", "W/(m2 sr um)", "further source radiance")}};
   return t;
 }
 
@@ -136,7 +142,11 @@ const ParameterTable& sun() {
 
 const ParameterTable& ambient() {
   static const ParameterTable t{
-      "ambient", "One of the two.", {within(number("temperature", "K", "black dome"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance")}};
+      "ambient",
+      "One of the three.",
+      {within(number("temperature", "K", "black dome"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance"),
+       choice("from", {"sky"},
+              "layered air: the mean of its sky, weighted by the cosine to the zenith, at height 0: its emission, sunlight it scatters once, the background")}};
   return t;
 }
 

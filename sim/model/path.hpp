@@ -26,18 +26,18 @@ struct AirAmounts {
 /// The air at one wavelength, or averaged over several.
 struct AirNode {
   std::array<double, kMostAirAmounts> extinction{};  ///< c_k: optical depth of one unit of each absorber
-  std::array<double, kMostAirAmounts> scattering{};  ///< the part of it that scatters
-  double asymmetry = 0.0;                            ///< of what haze scatters: mean cosine of the angle it turns light by
-  double source = 0.0;                               ///< radiance the air tends to at great depth besides thermal emission by stations [W/(m2 sr um)]
+  std::array<double, kMostAirAmounts> molecules{};   ///< the part of it that molecules scatter ...
+  std::array<double, kMostAirAmounts> haze{};        ///< ... and that particles scatter: neither emits
+  double asymmetry = 0.0;                            ///< of the particles: mean cosine of the angle they turn light by
+  double source = 0.0;                               ///< radiance the air tends to at great depth besides thermal emission of its stations [W/(m2 sr um)]
 };
 
 /// A place on a path, with all that lies between its beginning and there.
 struct AirStation {
   double range_m = 0.0;
+  double height_m = 0.0;
   double temperature_K = 0.0;  ///< 0: emits nothing but AirNode::source
   AirAmounts amounts;
-  AirAmounts toSun;  ///< from there to the sun, where it is asked for
-  bool sunlit = false;
 };
 
 /// Where a path starts and which way it goes.
@@ -50,8 +50,9 @@ struct AirRay {
 class Path {
  public:
   virtual ~Path() = default;
-  /// Shader file for the slot `path`.
+  /// Shader file for the slot `path`: path radiance of each node, or (layered air in direct mode) integrated over each channel beforehand.
   virtual std::string slotFile() const = 0;
+  virtual std::string channelSlotFile() const { return slotFile(); }
   virtual bool isNone() const { return false; }
   /// Amounts depend on heights: the shader reads tables made for a view (AirTables).
   virtual bool isLayered() const { return false; }
@@ -66,6 +67,8 @@ class Path {
   virtual std::vector<AirStation> stations(const AirRay& ray, double range_m) const = 0;
   /// The same at given ranges, rising.
   virtual std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const = 0;
+  /// Amounts that 1000 m of the air at a height hold (layered air).
+  virtual AirAmounts densities(double height_m) const;
   virtual double validLow_um() const = 0;
   virtual double validHigh_um() const = 0;
   /// Wavelengths between which its properties are smooth, rising [um].
@@ -78,8 +81,18 @@ class Path {
   double transmittance(const AirNode& node, const AirAmounts& amounts) const;
 };
 
-/// Radiance seen from the first of several places, of all air as far as each of them: depth rises from the first on, source radiance is
-/// linear in optical depth between two. All of one size.
-void emittedAlong(std::span<const double> depth, std::span<const double> source, std::span<double> radiance);
+/// What air sends along a line of sight, for all places on it: one value per place, 0 at the first. Depths rise from the first on.
+struct AirLight {
+  std::span<const double> depth;  ///< of all extinction, from the camera
+  /// Emission of what absorbs: `absorbed` depth of absorption alone, `source` radiance of a black body, linear in depth between two places.
+  void emitted(std::span<const double> absorbed, std::span<const double> source, std::span<double> radiance) const;
+  /// Light of irradiance 1 scattered once with phase 1/sr: `scattered` depth of the scattering alone, `both` depth from the camera and on to the
+  /// sun (infinite: in shadow).
+  void scattered(std::span<const double> scattered, std::span<const double> both, std::span<double> radiance) const;
+};
+
+/// Phase functions [1/sr]; their integral over the sphere is 1. Source: Chandrasekhar 1960; Henyey and Greenstein 1941.
+double rayleighPhase(double cosScatter);
+double henyeyGreensteinPhase(double cosScatter, double asymmetry);
 
 }  // namespace pitviper

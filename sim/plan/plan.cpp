@@ -72,6 +72,7 @@ void add(SurfaceTerms& t, const Material& m, const Surface& s) {
 Terms termsOf(const Simulation& sim) {
   Terms t;
   t.air = sim.path && !sim.path->isNone();
+  t.scatteredSun = t.air && sim.path->isLayered() && sim.sun.has_value();
   t.lights = !sim.lights.empty() || sim.sun;
   t.ambient = sim.ambient && !sim.ambient->isZero();
   for (const auto& e : sim.entities) {
@@ -96,6 +97,9 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   Plan plan;
   plan.terms = termsOf(sim);
   plan.lightCount = static_cast<int>(sim.lights.size()) + (sim.sun ? 1 : 0);
+
+  if (plan.terms.air && sim.path->isLayered() && sim.sun)
+    plan.sunLegs = std::make_shared<const SunLegs>(*sim.path, glm::dot(sim.frame.up(glm::dvec3(0.0)), sim.sun->toSun), sim.frame.earthRadius_m());
 
   std::vector<const ChannelOutput*> slots;
   for (const auto& output : outputs) {

@@ -2,11 +2,13 @@
 // What a set of sensor outputs requires of a scene: which terms exist, at which wavelengths they are evaluated and with which
 // weights they become channels. Here the nodes follow the user's `spectral` setting; a planner that chooses them for the
 // scene and an accuracy replaces makePlan() and nothing else.
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "sim/model/simulation.hpp"
 #include "sim/model/spectral_node.hpp"
+#include "sim/model/sun_legs.hpp"
 
 namespace pitviper {
 
@@ -31,8 +33,9 @@ struct SurfaceTerms {
 
 /// Terms of the radiance equation that this scene has.
 struct Terms {
-  bool air = false;     ///< extinction and path radiance
-  bool lights = false;  ///< point lights or the sun
+  bool air = false;           ///< extinction and path radiance
+  bool scatteredSun = false;  ///< sunlight that the air scatters, and the sky's by it
+  bool lights = false;        ///< point lights or the sun
   bool ambient = false;
   SurfaceTerms solid, layer;  ///< opaque and transparent surfaces
   bool media = false;         ///< bodies filled with an emitting medium
@@ -45,7 +48,8 @@ struct Plan {
   std::vector<int> slotOfOutput;            ///< one per output
   std::vector<std::vector<double>> weight;  ///< [slot][node]
   Terms terms;
-  int lightCount = 0;  ///< point lights and, last, the sun
+  int lightCount = 0;                      ///< point lights and, last, the sun
+  std::shared_ptr<const SunLegs> sunLegs;  ///< layered air in sunlight
 
   int nodeCount() const { return static_cast<int>(nodes.size()); }
   int groupCount() const { return (slotCount + 3) / 4; }  ///< vec4 targets

@@ -64,7 +64,7 @@ ShaderSlots integration(const Plan& plan, int first, int count, std::vector<floa
 
 BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                            double apertureArea_m2)
-    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2) {
+    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, false) {
   const int perBatch = std::min(4 * kMostTargets, plan.nodeCount());
   targets_ = (perBatch + 3) / 4;
   ShaderSlots slots = shadingSlots();
@@ -145,7 +145,7 @@ std::vector<double> BufferedPass::transmittance(const View& view, const WorldSta
   if (layers_->isEmpty()) return all;
   RenderTarget& visibility = visibilityFor(view.width, view.height);
   RenderTarget& spectrum = spectrumFor(visibility);
-  uploadView(view);
+  uploadView(view, state);
   uploadDraws(view, state);
   bindBuffers();
   const GLuint nothing[4] = {0, 0, 0, 0};

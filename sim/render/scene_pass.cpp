@@ -35,7 +35,7 @@ void checkUniformSize(std::size_t bytes, const char* what) {
 }
 
 ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
-                     double apertureArea_m2)
+                     double apertureArea_m2, bool perChannel)
     : simulation_(simulation),
       plan_(plan),
       scene_(std::move(scene)),
@@ -44,13 +44,16 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       tables_(makeTables(simulation, plan)),
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
-      relevance_(simulation, plan, tables_) {
+      relevance_(simulation, plan, tables_),
+      air_(simulation, plan, perChannel),
+      perChannel_(perChannel) {
   checkUniformSize((tables_.node.size() * 2 + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
 }
 
 ShaderSlots ScenePass::shadingSlots() const {
   ShaderSlots slots;
-  slots.files["path"] = simulation_.path ? simulation_.path->slotFile() : "sim/render/glsl/path_none.glsl";
+  slots.files["path"] =
+      simulation_.path ? (perChannel_ ? simulation_.path->channelSlotFile() : simulation_.path->slotFile()) : "sim/render/glsl/path_none.glsl";
   const SurfaceTerms& t = plan_.terms.solid;
   slots.files["lobes"] = t.lobeFile.empty() ? "sim/render/glsl/lobes_none.glsl" : t.lobeFile;
   slots.files["lights"] = lightsFile(plan_);
@@ -63,6 +66,7 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.constants["LIGHTS"] = plan_.lightCount;
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
   slots.constants["SUN"] = simulation_.sun ? 1 : 0;
+  air_.addConstants(slots);
   return slots;
 }
 
@@ -80,7 +84,8 @@ void ScenePass::setState(const WorldState& state) {
   nodes_.upload(block);
 }
 
-void ScenePass::uploadView(const View& v) {
+void ScenePass::uploadView(const View& v, const WorldState& state) {
+  air_.update(v, state);
   const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
   GpuView g;
   g.pixel = {v.tanPerPixelX, v.tanPerPixelY, v.axisX, v.axisY};
@@ -151,13 +156,14 @@ void ScenePass::bindBuffers() const {
   draws_.bindStorage(2);
   solid_.bind();
   lights_.bindStorage(5);
+  air_.bind();
   view_.bindUniform(0);
   nodes_.bindUniform(1);
 }
 
 void ScenePass::draw(const View& v, const WorldState& state, const std::vector<char>& drawn) {
   current_ = &targetsFor(v.width, v.height);
-  uploadView(v);
+  uploadView(v, state);
   uploadDraws(v, state);
   bindBuffers();
   solids_.draw(current_->visibility, v, state, drawn);

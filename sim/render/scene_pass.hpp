@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 
+#include "sim/render/air_tables.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/light_relevance.hpp"
 #include "sim/render/shading_program.hpp"
@@ -41,9 +42,9 @@ class ScenePass {
   virtual std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m);
 
  protected:
-  /// The simulation and the plan must outlive it.
+  /// The simulation and the plan must outlive it. `perChannel`: shading integrates, so that air can be integrated beforehand.
   ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
-            double apertureArea_m2);
+            double apertureArea_m2, bool perChannel);
   /// Shades what `visibility` shows into `into`: channel groups first, then truth. Buffers, textures and state are bound;
   /// the target is not. Where only one entity is shaded the target has been cleared.
   virtual void shade(RenderTarget& into, const RenderTarget& visibility) = 0;
@@ -60,7 +61,7 @@ class ScenePass {
   /// Names of the channel targets, and of the truth targets, in order.
   std::vector<std::string> channelTargets() const;
   static std::vector<std::string> truthTargets() { return {"truthGeometry", "truthNormal", "truthIdentity"}; }
-  void uploadView(const View& view);
+  void uploadView(const View& view, const WorldState& state);
   void uploadDraws(const View& view, const WorldState& state);
   void bindBuffers() const;
   RenderTarget& visibilityFor(int width, int height) { return targetsFor(width, height).visibility; }
@@ -81,6 +82,8 @@ class ScenePass {
   SurfaceBuffers solid_;
   SolidPass solids_;
   LightRelevance relevance_;
+  AirTables air_;
+  bool perChannel_;
   Buffer nodes_, draws_, lights_, view_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;

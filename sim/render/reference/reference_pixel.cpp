@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/sunlit_air.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/ray_hits.hpp"
@@ -49,21 +50,23 @@ Air airTo(const Sight& sight, double range) {
   air.transmittance.assign(nodes.size(), 1.0);
   air.radiance.assign(nodes.size(), 0.0);
   if (!sight.plan.terms.air) return air;
-  const Path& path = *sight.sim.path;
-  const auto stations = path.stations(sight.airRay(), range);
-  if (stations.empty()) return air;
-  air.amounts = stations.back().amounts;
-  std::vector<AirAmounts> powered;
-  for (const AirStation& s : stations) powered.push_back(path.powered(s.amounts));
-  std::vector<double> depth(stations.size()), source(stations.size()), radiance(stations.size());
+  const Simulation& sim = sight.sim;
+  const AirRay ray = sight.airRay();
+  RaySun sun;
+  if (sim.sun) sun = {glm::dot(sim.sun->toSun, sim.frame.up(sight.position)), glm::dot(sight.direction, sim.sun->toSun)};
+  const bool sunlit = sight.plan.terms.scatteredSun;
+  const SunlitAir line(*sim.path, ray, sim.path->stations(ray, range), sunlit ? sight.plan.sunLegs.get() : nullptr, sun);
+  if (line.stations.empty()) return air;
+  air.amounts = line.stations.back().amounts;
+  std::vector<double> source(line.stations.size());
   for (size_t i = 0; i < nodes.size(); ++i) {
-    for (size_t s = 0; s < stations.size(); ++s) {
-      depth[s] = Path::depthOf(nodes[i].air, powered[s]);
-      source[s] = nodes[i].air.source + (stations[s].temperature_K > 0.0 ? nodes[i].planck(stations[s].temperature_K) : 0.0);
-    }
-    emittedAlong(depth, source, radiance);
-    air.transmittance[i] = std::exp(-depth.back());
-    air.radiance[i] = radiance.back();
+    for (size_t s = 0; s < source.size(); ++s) source[s] = line.stations[s].temperature_K > 0.0 ? nodes[i].planck(line.stations[s].temperature_K) : 0.0;
+    const AirRadiance radiance = airRadiance(nodes[i].air, line, source);
+    air.transmittance[i] = std::exp(-radiance.depth.back());
+    air.radiance[i] = radiance.thermal.back();
+    if (sunlit)
+      air.radiance[i] += nodes[i].mean(sim.sun->irradiance) * (rayleighPhase(sun.cosScatter) * radiance.molecules.back() +
+                                                               henyeyGreensteinPhase(sun.cosScatter, nodes[i].air.asymmetry) * radiance.haze.back());
   }
   return air;
 }

@@ -1,0 +1,126 @@
+// Layered air: -ln tau = sum of c_k W_k^a_k over the absorbers k, four to a vector. What a camera's way holds (logarithm of the mean density)
+// and sends comes from a table by elevation and range, made in double precision for each view (sim/render/air_tables.hpp); ways on to lights
+// and to the sun from tables by height. Amounts of both legs are added before the power: a band does not decay exponentially.
+layout(std140, binding = 3) uniform AirBlock {
+  vec4 grid;       // root of the first elevation's sine, entries per unit of it; scale of ranges [m], entries per unit of ln(1 + range / scale)
+  vec4 heights;    // bottom [m], entries per root of a metre; sine of the first sun elevation, 1 / step to the second
+  vec4 exponent[AIR_VECTORS];
+  vec4 extinction[NODES * AIR_VECTORS];
+  vec4 asymmetry[AIR_ASYMMETRIES];
+} air;
+layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][density, sun low, sun high][vector]
+layout(binding = 21) uniform samplerBuffer airRadiance;  // [elevation][range, space last][part][value]
+
+struct AirPath {
+  vec4 w[AIR_VECTORS];  // amounts
+  vec4 u[AIR_VECTORS];  // the same to their powers
+  int cell;             // of the table
+  int next;             // steps to the next range
+  vec2 mixed;
+};
+
+// Length of ray outside the air before it begins [m].
+float airEntry() {
+  float h = view.up.w, q2 = (view.earth.y - h) * (2.0 * view.earth.x + view.earth.y + h), b = (view.earth.x + h) * sinElevation_;
+  if (q2 >= 0.0) return 0.0;
+  float root = b * b + q2;
+  return root <= 0.0 || b >= 0.0 ? kFar : -q2 / (sqrt(root) - b);
+}
+
+AirPath airFromCamera(float range) {
+  AirPath p;
+  bool space = range >= kFar;
+  float length = max(range - airEntry(), 0.0);
+  float x = clamp((sign(sinElevation_) * sqrt(abs(sinElevation_)) - air.grid.x) * air.grid.y, 0.0, float(AIR_ELEVATIONS - 1));
+  float y = clamp(log(1.0 + min(length, 1.0e9) / air.grid.z) * air.grid.w, 0.0, float(AIR_RANGES - 1));
+  int e = min(int(x), AIR_ELEVATIONS - 2), r = space ? AIR_RANGES : min(int(y), AIR_RANGES - 2);
+  p.cell = e * (AIR_RANGES + 1) + r;
+  p.next = space ? 0 : 1;
+  p.mixed = vec2(x - float(e), space ? 0.0 : y - float(r));
+  float logLength = space ? 0.0 : log(length * 1.0e-3);
+  for (int v = 0; v < AIR_VECTORS; ++v) {
+    int low = p.cell * AIR_VECTORS + v, step = p.next * AIR_VECTORS, high = low + (AIR_RANGES + 1) * AIR_VECTORS;
+    vec4 l = mix(mix(texelFetch(airAmounts, low), texelFetch(airAmounts, low + step), p.mixed.y),
+                 mix(texelFetch(airAmounts, high), texelFetch(airAmounts, high + step), p.mixed.y), p.mixed.x) + logLength;
+    p.w[v] = length > 0.0 ? exp(l) : vec4(0.0);
+    p.u[v] = length > 0.0 ? exp(l * air.exponent[v]) : vec4(0.0);
+  }
+  return p;
+}
+
+AirPath airBeyond(AirPath near, float nearRange, float height, float sinElevation, float length) { return airFromCamera(nearRange + length); }
+
+// Entry of a table by height: linear between heights, which lie closer together near the ground.
+void airHeight(float height, out int at, out float mixed) {
+  float t = clamp(sqrt(max(height - air.heights.x, 0.0)) * air.heights.y, 0.0, float(AIR_HEIGHTS - 1));
+  int h = min(int(t), AIR_HEIGHTS - 2);
+  float from = float(h), t2 = t * t, from2 = from * from;
+  mixed = clamp((t2 - from2) / (2.0 * from + 1.0), 0.0, 1.0);
+  at = AIR_ELEVATIONS * (AIR_RANGES + 1) * AIR_VECTORS + h * 3 * AIR_VECTORS;
+}
+
+vec4 airDensity(float height, int v) {
+  int at;
+  float m;
+  airHeight(height, at, m);
+  return exp(mix(texelFetch(airAmounts, at + v), texelFetch(airAmounts, at + 3 * AIR_VECTORS + v), m));
+}
+
+AirPath airRaised(AirPath p) {
+  for (int v = 0; v < AIR_VECTORS; ++v) p.u[v] = exp(log(max(p.w[v], vec4(1.0e-30))) * air.exponent[v]);
+  return p;
+}
+
+AirPath airToSun(AirPath camera, float height) {
+  AirPath p = camera;
+  int at;
+  float m, s = (sunElevation_ - air.heights.z) * air.heights.w;
+  airHeight(height, at, m);
+  for (int v = 0; v < AIR_VECTORS; ++v) {
+    int low = at + AIR_VECTORS + v, above = low + 3 * AIR_VECTORS;
+    p.w[v] += exp(mix(mix(texelFetch(airAmounts, low), texelFetch(airAmounts, above), m),
+                      mix(texelFetch(airAmounts, low + AIR_VECTORS), texelFetch(airAmounts, above + AIR_VECTORS), m), s));
+  }
+  return airRaised(p);
+}
+
+// Densities at both ends and between, by Simpson's rule.
+AirPath airToLight(AirPath camera, float height, float sinElevation, float distance) {
+  AirPath p = camera;
+  float curved = 0.5 / view.earth.x;
+  float half_ = 0.5 * distance, top = view.earth.y;
+  float middle = height + half_ * (sinElevation + half_ * curved), far = height + distance * (sinElevation + distance * curved);
+  for (int v = 0; v < AIR_VECTORS; ++v)
+    p.w[v] += distance * 1.0e-3 / 6.0 * ((height > top ? vec4(0.0) : airDensity(height, v)) + 4.0 * (middle > top ? vec4(0.0) : airDensity(middle, v)) +
+                                         (far > top ? vec4(0.0) : airDensity(far, v)));
+  return airRaised(p);
+}
+
+Real airDepth(int i, AirPath p) {
+  Real depth = 0.0;
+  for (int v = 0; v < AIR_VECTORS; ++v) depth += dot(air.extinction[i * AIR_VECTORS + v], p.u[v]);
+  return depth;
+}
+
+Real pathTransmittance(int i, AirPath p) { return exp(-airDepth(i, p)); }
+
+Real pathDepth(int i, AirPath near, AirPath far) { return max(airDepth(i, far) - airDepth(i, near), 0.0); }
+
+// Between the four entries of a table of `count` texels in each part.
+vec4 airPart(AirPath p, int part, int texel, int count) {
+  int size = AIR_PARTS * count, low = p.cell * size + part * count + texel, step = p.next * size, high = low + (AIR_RANGES + 1) * size;
+  return mix(mix(texelFetch(airRadiance, low), texelFetch(airRadiance, low + step), p.mixed.y),
+             mix(texelFetch(airRadiance, high), texelFetch(airRadiance, high + step), p.mixed.y), p.mixed.x);
+}
+
+// Emission, and sunlight scattered by molecules and haze, each with its phase function [1/sr].
+vec4 airValue(AirPath p, int texel, int count, vec4 g) {
+  vec4 sum = airPart(p, 0, texel, count);
+  if (AIR_PARTS > 1) {
+    float c = dot(ray_, view.sun.xyz) / rayLength_;
+    vec4 chord = 1.0 + g * g - 2.0 * g * c;
+    sum += 0.0596831037 * (1.0 + c * c) * airPart(p, 1, texel, count) +
+           0.0795774715 * (1.0 - g * g) * inversesqrt(chord) / chord * airPart(p, 2, texel, count);
+  }
+  return sum;
+}

@@ -1,0 +1,12 @@
+#pragma once
+// Air with structure as a path: amounts of absorbers by height, thermal emission by the temperature of each height.
+#include <memory>
+
+#include "atmosphere/absorber_table.hpp"
+#include "sim/model/path.hpp"
+
+namespace pitviper {
+
+std::shared_ptr<const Path> makeLayeredAir(AbsorberTable table);
+
+}  // namespace pitviper

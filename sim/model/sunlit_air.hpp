@@ -1,0 +1,34 @@
+#pragma once
+// The air along a line of sight in sunlight: what every wavelength needs of its geometry, worked out once.
+#include <optional>
+
+#include "sim/model/sun_legs.hpp"
+
+namespace pitviper {
+
+/// The sun as seen from the beginning of a ray.
+struct RaySun {
+  double sinElevation = 0.0;
+  double cosScatter = 0.0;  ///< of the angle between the ray and the direction to the sun
+};
+
+struct SunlitAir {
+  std::vector<AirStation> stations;
+  std::vector<AirAmounts> powered;  ///< of each station, from the camera
+  std::vector<AirAmounts> both;     ///< with the way on to the sun
+  std::vector<char> lit;            ///< whether the sun reaches it; empty: no sun
+
+  SunlitAir(const Path& path, const AirRay& ray, std::vector<AirStation> stations, const SunLegs* legs, const RaySun& sun);
+};
+
+/// What a node's air sends along it, as far as each station [W/(m2 sr um)].
+struct AirRadiance {
+  std::vector<double> depth;
+  std::vector<double> thermal;          ///< emission, and AirNode::source
+  std::vector<double> molecules, haze;  ///< scattered sunlight for phase functions and irradiance of 1; empty: no sun
+};
+
+/// `source`: per station, radiance of a black body of its temperature at the node (0 where it has none).
+AirRadiance airRadiance(const AirNode& node, const SunlitAir& air, std::span<const double> source);
+
+}  // namespace pitviper

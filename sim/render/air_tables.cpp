@@ -1,0 +1,233 @@
+#include "sim/render/air_tables.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/model/sunlit_air.hpp"
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Entries of the tables. Ranges lie evenly in ln(1 + range / scale), scale a thousandth of the farthest: 7 % apart beyond it, between which
+/// path radiance is straight to 0.1 % of itself (tests/gpu/test_layered_air_gpu.cpp).
+constexpr int kElevations = 33, kRanges = 96, kHeights = 128;
+constexpr double kScale = 1e-3;
+/// Ranges of places towards space [m].
+constexpr double kFirstSky_m = 100.0, kLastSky_m = 2e6;
+/// Lowest ground; the root of the height above it spreads the entries, as SunLegs does.
+constexpr double kBottom_m = -500.0;
+constexpr double kSunStep = 0.01;
+/// Temperatures of air anywhere [K] and entries over their inverse.
+constexpr double kColdest_K = 140.0, kWarmest_K = 400.0;
+constexpr int kTemperatures = 256;
+constexpr double kNothing = 1e-30;
+
+double logOf(double v) { return std::log(std::max(v, kNothing)); }
+
+/// Elevations lie evenly in the signed root of their sine: near the horizon a small step crosses much air.
+double spread(double sine) { return std::copysign(std::sqrt(std::abs(sine)), sine); }
+
+/// Least and greatest sine of elevation in a view.
+std::pair<double, double> elevations(const View& v, const glm::dvec3& up) {
+  double low = 1.0, high = -1.0;
+  constexpr int kSteps = 16;
+  for (int j = 0; j <= kSteps; ++j)
+    for (int i = 0; i <= kSteps; ++i) {
+      const double s = glm::dot(glm::normalize(v.localFromCamera * v.ray(v.width * i / double(kSteps), v.height * j / double(kSteps))), up);
+      low = std::min(low, s);
+      high = std::max(high, s);
+    }
+  const glm::dvec3 zenith = glm::transpose(v.localFromCamera) * up;
+  for (double sign : {1.0, -1.0}) {
+    const glm::dvec3 d = sign * zenith;
+    if (d.z >= 0.0) continue;
+    const glm::dvec2 at = filmPosition(v, d);
+    if (at.x >= 0 && at.y >= 0 && at.x <= v.width && at.y <= v.height) (sign > 0 ? high : low) = sign;
+  }
+  const double margin = 0.03 * (high - low) + 1e-4;  // between the places looked at
+  return {std::max(low - margin, -1.0), std::min(high + margin, 1.0)};
+}
+
+}  // namespace
+
+AirTables::AirTables(const Simulation& simulation, const Plan& plan, bool perChannel)
+    : simulation_(simulation), plan_(plan), perChannel_(perChannel), needed_(plan.terms.air && simulation.path->isLayered()) {
+  if (!needed_) return;
+  vectors_ = (static_cast<int>(simulation.path->exponents().size()) + 3) / 4;
+  values_ = perChannel ? 4 * plan.groupCount() : plan.nodeCount();
+  texels_ = perChannel ? plan.groupCount() : plan.nodeCount();
+  parts_ = plan.terms.scatteredSun ? 3 : 1;
+  for (const SpectralNode& n : plan.nodes) {
+    std::vector<double> table;
+    for (int t = 0; t < kTemperatures; ++t) {
+      const double inverse = 1.0 / kWarmest_K + (1.0 / kColdest_K - 1.0 / kWarmest_K) * t / (kTemperatures - 1);
+      table.push_back(std::log(std::max(n.planck(1.0 / inverse), 1e-300)));
+    }
+    logPlanck_.push_back(std::move(table));
+    sunIrradiance_.push_back(plan.terms.scatteredSun ? n.mean(simulation.sun->irradiance) : 0.0);
+  }
+  addHeights(heights_);
+}
+
+double AirTables::planck(size_t node, double temperature_K) const {
+  const double t = (1.0 / temperature_K - 1.0 / kWarmest_K) / (1.0 / kColdest_K - 1.0 / kWarmest_K) * (kTemperatures - 1);
+  if (!(t >= 0.0 && t <= kTemperatures - 1)) return plan_.nodes[node].planck(temperature_K);
+  const auto i = std::min(static_cast<size_t>(t), static_cast<size_t>(kTemperatures - 2));
+  const double f = t - static_cast<double>(i);
+  return std::exp((1 - f) * logPlanck_[node][i] + f * logPlanck_[node][i + 1]);
+}
+
+void AirTables::addConstants(ShaderSlots& slots) const {
+  if (!needed_) return;
+  slots.constants["AIR_VECTORS"] = vectors_;
+  slots.constants["AIR_ELEVATIONS"] = kElevations;
+  slots.constants["AIR_RANGES"] = kRanges;
+  slots.constants["AIR_HEIGHTS"] = kHeights;
+  slots.constants["AIR_PARTS"] = parts_;
+  slots.constants["AIR_ASYMMETRIES"] = (values_ + 3) / 4;
+}
+
+void AirTables::addHeights(std::vector<float>& out) const {
+  const Path& path = *simulation_.path;
+  const double top = path.top_m();
+  const glm::dvec3 up = simulation_.frame.up(glm::dvec3(0.0));
+  const double sine = simulation_.sun ? glm::dot(up, simulation_.sun->toSun) : 1.0, radius = simulation_.frame.earthRadius_m();
+  for (int h = 0; h < kHeights; ++h) {
+    const double t = static_cast<double>(h) / (kHeights - 1), height = kBottom_m + (top - kBottom_m) * t * t;
+    const AirAmounts density = path.densities(height);
+    AirAmounts sun[2];
+    for (int s = 0; s < 2; ++s)
+      if (simulation_.sun) {
+        const double low = sine - 0.5 * kSunStep + s * kSunStep;
+        // Behind the earth there is no sun: an amount that nothing comes through.
+        const bool shadow = low < 0.0 && (radius + height) * std::sqrt(1.0 - low * low) < radius;
+        if (shadow) sun[s].amount.fill(1e12);
+        else sun[s] = path.amounts({height, std::clamp(low, -1.0, 1.0), radius}, physics::kFar);
+      }
+    for (const AirAmounts* a : {&density, static_cast<const AirAmounts*>(&sun[0]), static_cast<const AirAmounts*>(&sun[1])})
+      for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) out.push_back(static_cast<float>(logOf(a->amount[k])));
+  }
+}
+
+std::vector<double> AirTables::rangesFrom(double entry_m) const {
+  std::vector<double> ranges;
+  const double scale = kScale * grid_.farthest_m;
+  for (int r = 0; r < kRanges; ++r) ranges.push_back(entry_m + scale * std::expm1(std::log1p(1.0 / kScale) * r / (kRanges - 1)));
+  // Beyond the scene, as far as space: the sky's emission needs places there, the table doesn't.
+  for (double r = 1.15 * std::max(grid_.farthest_m, kFirstSky_m); r < kLastSky_m; r *= 1.15) ranges.push_back(entry_m + r);
+  ranges.push_back(physics::kFar);
+  return ranges;
+}
+
+void AirTables::update(const View& view, const WorldState& state) {
+  if (!needed_) return;
+  const auto [low, high] = elevations(view, simulation_.frame.up(view.position));
+  double farthest = 1.0;
+  for (size_t e = 0; e < state.entities.size(); ++e) {
+    const Entity& entity = simulation_.entities[e];
+    farthest = std::max(farthest, glm::length(state.entities[e].position + state.entities[e].orientation * glm::dvec3(entity.boundingCentre) - view.position) +
+                                      static_cast<double>(entity.boundingRadius_m));
+  }
+  for (const auto& light : state.lights) farthest = std::max(farthest, glm::length(light - view.position));
+  // What was made for a wider view serves its parts (zoomed views of small bodies).
+  const bool serves = grid_.position == view.position && low >= grid_.low && high <= grid_.high && farthest <= grid_.farthest_m && high - low > 0.0 &&
+                      farthest > 0.5 * grid_.farthest_m;
+  if (serves) return;
+  grid_ = {view.position, low, high, farthest};
+  fill(view);
+}
+
+void AirTables::fill(const View& view) {
+  const Path& path = *simulation_.path;
+  const glm::dvec3 up = simulation_.frame.up(view.position);
+  const double height = simulation_.frame.height(view.position), radius = simulation_.frame.earthRadius_m();
+  const size_t nodes = plan_.nodes.size(), values = static_cast<size_t>(values_), parts = static_cast<size_t>(parts_), columns = kRanges + 1;
+  std::vector<float> amounts, radiance(kElevations * columns * parts * static_cast<size_t>(texels_) * (perChannel_ ? 4 : 1));
+  RaySun sun;
+  double sunAcross = 0.0;  // cosine of the azimuth between the view's middle and the sun, times both horizontal parts
+  if (plan_.terms.scatteredSun) {
+    const glm::dvec3 axis = view.localFromCamera * glm::dvec3(0, 0, -1), toSun = simulation_.sun->toSun;
+    sun.sinElevation = glm::dot(toSun, up);
+    const glm::dvec3 a = axis - glm::dot(axis, up) * up, b = toSun - sun.sinElevation * up;
+    sunAcross = glm::length(a) > 1e-6 && glm::length(b) > 1e-6 ? glm::dot(glm::normalize(a), b) : 0.0;
+  }
+  for (int e = 0; e < kElevations; ++e) {
+    const double x = spread(grid_.low) + (spread(grid_.high) - spread(grid_.low)) * e / (kElevations - 1), sine = x * std::abs(x);
+    const AirRay ray{height, sine, radius};
+    if (plan_.terms.scatteredSun) sun.cosScatter = sine * sun.sinElevation + std::sqrt(std::max(1.0 - sine * sine, 0.0)) * sunAcross;
+    double entry = 0.0;
+    if (height > path.top_m()) {
+      const double b = (radius + height) * sine, q2 = (path.top_m() - height) * (2.0 * radius + path.top_m() + height), root = b * b + q2;
+      entry = root <= 0.0 || b >= 0.0 ? physics::kFar : -q2 / (std::sqrt(root) - b);
+    }
+    const auto ranges = rangesFrom(std::min(entry, 1e12));
+    const SunlitAir line(path, ray, path.stationsAt(ray, ranges), plan_.terms.scatteredSun ? plan_.sunLegs.get() : nullptr, sun);
+    for (size_t r = 0; r < columns; ++r) {
+      // At the beginning of the air: the density there. Towards space: the whole amount.
+      const double length_km = r == 0 || r + 1 == columns ? 1.0 : 1e-3 * (ranges[r] - ranges[0]);
+      const size_t s = r + 1 == columns ? ranges.size() - 1 : r;
+      const AirAmounts a = r == 0 ? path.densities(line.stations.empty() ? height : line.stations[0].height_m) : line.stations[s].amounts;
+      for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) amounts.push_back(static_cast<float>(logOf(a.amount[k] / length_km)));
+    }
+    std::vector<double> source(line.stations.size());
+    for (size_t i = 0; i < nodes; ++i) {
+      for (size_t s = 0; s < source.size(); ++s) source[s] = line.stations[s].temperature_K > 0.0 ? planck(i, line.stations[s].temperature_K) : 0.0;
+      const AirRadiance found = airRadiance(plan_.nodes[i].air, line, source);
+      for (size_t part = 0; part < parts; ++part) {
+        const auto& sent = part == 0 ? found.thermal : part == 1 ? found.molecules : found.haze;
+        const double strength = part == 0 ? 1.0 : sunIrradiance_[i];
+        for (size_t r = 0; r < columns; ++r) {
+          const double value = r + 1 == columns ? sent.back() : sent[r];
+          float* at = &radiance[((static_cast<size_t>(e) * columns + r) * parts + part) * values];
+          if (!perChannel_) at[i] = static_cast<float>(strength * value);
+          else
+            for (size_t slot = 0; slot < plan_.weight.size(); ++slot) at[slot] += static_cast<float>(plan_.weight[slot][i] * strength * value);
+        }
+      }
+    }
+  }
+  amounts.insert(amounts.end(), heights_.begin(), heights_.end());
+  amounts_.upload(amounts);
+  radiance_.upload(radiance);
+
+  std::vector<float> block;
+  auto put = [&block](std::initializer_list<double> v) {
+    for (double x : v) block.push_back(static_cast<float>(x));
+  };
+  const double top = path.top_m(), sine = simulation_.sun ? glm::dot(simulation_.frame.up(glm::dvec3(0.0)), simulation_.sun->toSun) : 1.0;
+  put({spread(grid_.low), (kElevations - 1) / (spread(grid_.high) - spread(grid_.low)), kScale * grid_.farthest_m, (kRanges - 1) / std::log1p(1.0 / kScale)});
+  put({kBottom_m, (kHeights - 1) / std::sqrt(top - kBottom_m), sine - 0.5 * kSunStep, 1.0 / kSunStep});
+  const auto powers = path.exponents();
+  for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) put({k < powers.size() ? powers[k] : 1.0});
+  for (const SpectralNode& n : plan_.nodes)
+    for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) put({n.air.extinction[k]});
+  std::vector<double> asymmetry(static_cast<size_t>((values_ + 3) / 4 * 4), 0.0);
+  if (!perChannel_) {
+    for (size_t i = 0; i < nodes; ++i) asymmetry[i] = plan_.nodes[i].air.asymmetry;
+  } else {
+    // Of a channel: as its nodes' sunlight is scattered.
+    for (size_t slot = 0; slot < plan_.weight.size(); ++slot) {
+      double sum = 0.0, total = 0.0;
+      for (size_t i = 0; i < nodes; ++i) {
+        double share = 0.0;
+        for (double h : plan_.nodes[i].air.haze) share += h;
+        share *= plan_.weight[slot][i] * sunIrradiance_[i];
+        sum += share * plan_.nodes[i].air.asymmetry;
+        total += share;
+      }
+      asymmetry[slot] = total > 0.0 ? sum / total : 0.0;
+    }
+  }
+  block.insert(block.end(), asymmetry.begin(), asymmetry.end());
+  block_.upload(block);
+}
+
+void AirTables::bind() const {
+  if (!needed_) return;
+  block_.bindUniform(3);
+  amounts_.bindTexture(20, 4);
+  radiance_.bindTexture(21, perChannel_ ? 4 : 1);
+}
+
+}  // namespace pitviper
