@@ -52,7 +52,9 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
   Builder b(sim, base, libraries);
   try {
     if (r.given("render")) {
-      const std::string mode = Record(r.value("render"), tables::render()).text("mode");
+      const Record render(r.value("render"), tables::render());
+      const std::string mode = render.text("mode");
+      sim.shadows = render.boolean("shadows");
       sim.mode = mode == "buffered" ? RenderMode::Buffered : mode == "direct" ? RenderMode::Direct : RenderMode::Auto;
     }
     b.readOrigin(r);

@@ -66,7 +66,8 @@ const ParameterTable& render() {
                                 {withDefault(choice("mode", {"auto", "direct", "buffered"},
                                                     "direct: shading integrates straight into the channels; buffered: through a spectral image, as "
                                                     "transparent things need it; auto: buffered only in frames with something transparent in view"),
-                                             "auto")}};
+                                             "auto"),
+                                 withDefault(boolean("shadows", "opaque surfaces cast shadows of the sun and of point lights"), "true")}};
   return t;
 }
 

@@ -157,6 +157,29 @@ void RenderTarget::bind() const {
   glViewport(0, 0, width_, height_);
 }
 
+DepthLayers::DepthLayers(int size, int count) : size_(size), count_(count) {
+  GLuint n = 0;
+  glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &n);
+  texture_ = GlName<deleteTexture>(n);
+  glTextureStorage3D(n, 1, GL_DEPTH_COMPONENT32F, size, size, count);
+  glTextureParameteri(n, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTextureParameteri(n, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glCreateFramebuffers(1, &n);
+  framebuffer_ = GlName<deleteFramebuffer>(n);
+  glNamedFramebufferDrawBuffer(n, GL_NONE);
+  glNamedFramebufferTextureLayer(n, GL_DEPTH_ATTACHMENT, texture_, 0, 0);
+  if (glCheckNamedFramebufferStatus(n, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
+    throw GlError("the driver cannot draw into " + std::to_string(count) + " depth textures of " + std::to_string(size) + "x" + std::to_string(size));
+}
+
+void DepthLayers::bindForDrawing(int layer) const {
+  glNamedFramebufferTextureLayer(framebuffer_, GL_DEPTH_ATTACHMENT, texture_, 0, layer);
+  glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);
+  glViewport(0, 0, size_, size_);
+}
+
+void DepthLayers::bind(unsigned unit) const { glBindTextureUnit(unit, texture_); }
+
 void drawFullScreen(const RenderTarget& target, const Program& program, const std::vector<std::pair<const char*, float>>& uniforms) {
   const VertexArray empty = makeVertexArray();
   target.bind();

@@ -120,6 +120,22 @@ class RenderTarget {
   int width_ = 0, height_ = 0;
 };
 
+/// Square depth textures of one size, single precision, drawn one at a time and read together.
+class DepthLayers {
+ public:
+  DepthLayers() = default;
+  /// Throws GlError where the driver has no such texture.
+  DepthLayers(int size, int count);
+  void bindForDrawing(int layer) const;
+  void bind(unsigned unit) const;
+  int count() const { return count_; }
+
+ private:
+  GlName<deleteTexture> texture_;
+  GlName<deleteFramebuffer> framebuffer_;
+  int size_ = 0, count_ = 0;
+};
+
 /// Runs a fragment program once per pixel of a target, with float uniforms by name. The vertex stage is the caller's.
 void drawFullScreen(const RenderTarget& target, const Program& program, const std::vector<std::pair<const char*, float>>& uniforms);
 

@@ -79,6 +79,7 @@ struct Simulation {
   std::string sha256;
   long long seed = 0;
   RenderMode mode = RenderMode::Auto;
+  bool shadows = true;  ///< opaque bodies cast them
   LocalFrame frame;
   TimeAxis time;
   std::vector<Texture> textures;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sim/model/shadow_casters.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -75,6 +77,7 @@ Terms termsOf(const Simulation& sim) {
   t.scatteredSun = t.air && sim.path->isLayered() && sim.sun.has_value();
   t.lights = !sim.lights.empty() || sim.sun;
   t.ambient = sim.ambient && !sim.ambient->isZero();
+  t.shadows = canHaveShadows(sim);
   for (const auto& e : sim.entities) {
     t.media |= sim.mediumOf(e) != nullptr;
     if (sim.mediumOf(e)) continue;

@@ -37,6 +37,7 @@ struct Terms {
   bool scatteredSun = false;  ///< sunlight that the air scatters, and the sky's by it
   bool lights = false;        ///< point lights or the sun
   bool ambient = false;
+  bool shadows = false;       ///< of the lights
   SurfaceTerms solid, layer;  ///< opaque and transparent surfaces
   bool media = false;         ///< bodies filled with an emitting medium
 };

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <map>
 
+#include "sim/render/shadow_trees.hpp"
+
 namespace pitviper {
 
 namespace {
@@ -54,6 +56,11 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
   }
   textureShapes_.upload(shapes);
   texels_.upload(texels);
+}
+
+std::shared_ptr<const ShadowTrees> GpuScene::shadowTrees(const Simulation& simulation) const {
+  if (!shadowTrees_) shadowTrees_ = std::make_shared<const ShadowTrees>(simulation);
+  return shadowTrees_;
 }
 
 void GpuScene::bind() const {

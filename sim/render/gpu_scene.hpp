@@ -13,6 +13,8 @@ struct BodyBox {
   glm::dvec3 low{0.0}, high{0.0};
 };
 
+class ShadowTrees;
+
 class GpuScene {
  public:
   explicit GpuScene(const Simulation& simulation);
@@ -22,11 +24,15 @@ class GpuScene {
   /// Around the entity's mesh and true form, a little larger, so that no line of sight through it slips past.
   const BodyBox& box(int entity) const { return boxes_[static_cast<size_t>(entity)]; }
 
+  /// Of the simulation it was made for; made when first asked for.
+  std::shared_ptr<const ShadowTrees> shadowTrees(const Simulation& simulation) const;
+
  private:
   Buffer vertices_, indices_, textureShapes_, texels_;
   VertexArray vertexArray_;
   std::vector<std::uint32_t> firstTriangle_;
   std::vector<BodyBox> boxes_;
+  mutable std::shared_ptr<const ShadowTrees> shadowTrees_;
 };
 
 }  // namespace pitviper

@@ -47,6 +47,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       relevance_(simulation, plan, tables_),
       air_(simulation, plan, perChannel),
       perChannel_(perChannel) {
+  if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
   checkUniformSize((tables_.node.size() * 2 + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
 }
 
@@ -57,6 +58,7 @@ ShaderSlots ScenePass::shadingSlots() const {
   const SurfaceTerms& t = plan_.terms.solid;
   slots.files["lobes"] = t.lobeFile.empty() ? "sim/render/glsl/lobes_none.glsl" : t.lobeFile;
   slots.files["lights"] = lightsFile(plan_);
+  slots.files["shadow"] = ShadowPass::slotFile(plan_);
   slots.files["surface"] = tables_.solid.general ? "sim/render/glsl/surface_general.glsl" : "sim/render/glsl/surface_simple.glsl";
   slots.files["columns"] = tables_.solid.tabulated ? "sim/render/glsl/columns_tabulated.glsl" : "sim/render/glsl/columns_plain.glsl";
   slots.files["temperature"] = t.temperatureTextures ? "sim/render/glsl/temperature_textured.glsl" : "sim/render/glsl/temperature_uniform.glsl";
@@ -82,6 +84,7 @@ void ScenePass::setState(const WorldState& state) {
   block.insert(block.end(), lights.begin(), lights.end());
   block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
   nodes_.upload(block);
+  if (shadows_) shadows_->setState(state);
 }
 
 void ScenePass::uploadView(const View& v, const WorldState& state) {
@@ -128,7 +131,8 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
         if (!few && !matters) return;
         const size_t k = few ? number : static_cast<size_t>(row->x);
         row[2 * k + 1] = glm::vec4(place, radius_m);
-        row[2 * k + 2].x = matters ? static_cast<float>(number) : -1.0f;
+        const auto casters = shadows_ && matters ? shadows_->castersOf(static_cast<size_t>(item.entity), number) : ShadowPass::Range{};
+        row[2 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, 0.0f);
         row->x += 1.0f;
       };
       for (size_t l = 0; l < simulation_.lights.size(); ++l)
@@ -159,6 +163,7 @@ void ScenePass::bindBuffers() const {
   air_.bind();
   view_.bindUniform(0);
   nodes_.bindUniform(1);
+  if (shadows_) shadows_->bind();
 }
 
 void ScenePass::draw(const View& v, const WorldState& state, const std::vector<char>& drawn) {

@@ -8,6 +8,7 @@
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/light_relevance.hpp"
 #include "sim/render/shading_program.hpp"
+#include "sim/render/shadow_pass.hpp"
 #include "sim/render/solid_pass.hpp"
 #include "sim/render/surface_buffers.hpp"
 #include "sim/render/tables.hpp"
@@ -30,7 +31,7 @@ class ScenePass {
   ScenePass(const ScenePass&) = delete;
   ScenePass& operator=(const ScenePass&) = delete;
 
-  /// Uploads what changes with time: light levels.
+  /// Uploads what changes with time: light levels; draws shadow maps.
   void setState(const WorldState& state);
   /// `drawn`: one flag per entity; the others are left out (small bodies have views of their own).
   void draw(const View& view, const WorldState& state, const std::vector<char>& drawn);
@@ -84,6 +85,7 @@ class ScenePass {
   LightRelevance relevance_;
   AirTables air_;
   bool perChannel_;
+  std::unique_ptr<ShadowPass> shadows_;  ///< where the plan has them
   Buffer nodes_, draws_, lights_, view_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;

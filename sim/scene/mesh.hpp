@@ -22,7 +22,8 @@ struct Mesh {
   std::vector<glm::vec2> uv;
   std::vector<glm::uvec3> triangles;
   std::vector<MeshPart> parts;
-  bool closed = false;  ///< every edge shared by exactly two triangles: back faces can't be seen from outside
+  bool closed = false;       ///< every edge shared by exactly two triangles: back faces can't be seen from outside
+  bool heightField = false;  ///< one height over every place of x and y, seen from above: a line from above meets its upper side first
 };
 
 }  // namespace pitviper

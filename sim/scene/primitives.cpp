@@ -255,6 +255,7 @@ Mesh makeTerrain(double size_m, int columns, int rows, const std::vector<float>&
       addVertex(mesh, {(i - 0.5 * columns) * cell, (j - 0.5 * rows) * cell, height(i, j)},
                 glm::normalize(glm::dvec3(-slope(i, j, 1, 0), -slope(i, j, 0, 1), 1.0)), static_cast<double>(i) / columns, static_cast<double>(j) / rows);
   addGrid(mesh, 0, columns, rows);
+  mesh.heightField = true;
   return finished(std::move(mesh), false);
 }
 

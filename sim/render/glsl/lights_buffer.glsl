@@ -1,9 +1,11 @@
 // A body's row of lights: how many can matter to it, then their place or direction in the body frame with their radius, and their number;
-// places that are left over have the number -1.
+// places that are left over have the number -1. Beside the
+// number: first and count of the casters that can shade the body from it.
 layout(std430, binding = 5) readonly buffer Lights { vec4 lights[]; };
 
 Vec3 reflectionColumns(int i, int l);
 Vec3 lobes(Vec3 toLight);
+//@slot shadow
 
 // What the point sees of a light.
 struct LightHere {
@@ -28,6 +30,7 @@ LightHere lightAt(int entry) {
     lightDistance2_ = d2;
   }
   here.factor = here.number < 0 ? 0.0 : isSurface_ * (sun ? max(cosLight, 0.0) : pointIrradianceFactor(cosLight, d2, light.w));
+  if (here.factor > 0.0) here.factor *= shareSeen(lights[entry + 1], here.to, sun ? kFar : d - light.w);
   if (sun) here.air = airToSun(air_, height_);
   else here.air = airToLight(air_, height_, dot(up_, here.to), d);
   return here;

@@ -12,6 +12,7 @@ Draw draw_;
 vec3 normal_;     // unit, body frame, towards the viewer
 vec3 toViewer_;   // unit, body frame
 vec3 point_;      // body frame [m]
+vec3 facet_;      // outward normal of the triangle itself, not of unit length, body frame
 vec3 up_;         // up at the point, body frame
 vec2 uv_;
 float cosView_;
@@ -42,6 +43,7 @@ void lookAt(uvec2 id, vec2 pixel) {
   isSurface_ = id.x == 0u ? 0.0 : 1.0;
   toViewer_ = -d / rayLength_;
   normal_ = toViewer_;
+  facet_ = toViewer_;
   cosView_ = 1.0;
   point_ = vec3(0.0);
   uv_ = vec2(0.0);
@@ -51,6 +53,7 @@ void lookAt(uvec2 id, vec2 pixel) {
     vec4 a = vertices[m.corner.x], b = vertices[m.corner.y], c = vertices[m.corner.z];
     vec4 na = vertices[m.corner.x + 1u], nb = vertices[m.corner.y + 1u], nc = vertices[m.corner.z + 1u];
     vec3 w = m.weight;
+    facet_ = m.geometric;
     point_ = w.x * a.xyz + w.y * b.xyz + w.z * c.xyz;
     range_ = max((planeOf(draw_) + m.along) * rayLength_, 1.0e-6);
     uv_ = vec2(w.x * a.w + w.y * b.w + w.z * c.w, w.x * na.w + w.y * nb.w + w.z * nc.w);

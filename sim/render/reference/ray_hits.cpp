@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/radiometry/physics.hpp"
+#include "sim/scene/triangle_tree.hpp"
 
 namespace pitviper {
 namespace {
@@ -13,24 +14,6 @@ struct BodyRay {
   glm::dmat3 localFromBody;
   glm::dvec3 origin, direction;
 };
-
-/// Calls visit(distance, u, v, w, corners, frontFacing) for every triangle of a part that the ray meets.
-template <class Visit>
-void meetTriangles(const Mesh& mesh, const MeshPart& part, const BodyRay& ray, Visit visit) {
-  for (std::uint32_t t = part.firstTriangle; t < part.firstTriangle + part.triangleCount; ++t) {
-    const glm::uvec3 i = mesh.triangles[t];
-    const glm::dvec3 a(mesh.positions[i.x]), e1 = glm::dvec3(mesh.positions[i.y]) - a, e2 = glm::dvec3(mesh.positions[i.z]) - a;
-    const glm::dvec3 p = glm::cross(ray.direction, e2);
-    const double det = glm::dot(e1, p);
-    if (det == 0.0) continue;
-    const glm::dvec3 q = ray.origin - a;
-    const double v = glm::dot(q, p) / det;
-    const glm::dvec3 r = glm::cross(q, e1);
-    const double w = glm::dot(ray.direction, r) / det;
-    if (v < 0.0 || w < 0.0 || v + w > 1.0) continue;
-    visit(glm::dot(e2, r) / det, glm::dvec3(1.0 - v - w, v, w), i, glm::dot(glm::cross(e1, e2), ray.direction) < 0.0);
-  }
-}
 
 void addStretches(RayHits& hits, const Entity& entity, int index, const BodyRay& ray) {
   if (entity.form.kind != BodyForm::Kind::Mesh) {
@@ -43,8 +26,12 @@ void addStretches(RayHits& hits, const Entity& entity, int index, const BodyRay&
     return;
   }
   std::vector<std::pair<double, int>> crossings;
-  for (const MeshPart& part : entity.mesh->parts)
-    meetTriangles(*entity.mesh, part, ray, [&](double t, const glm::dvec3&, const glm::uvec3&, bool front) { crossings.emplace_back(t, front ? 1 : -1); });
+  const double endless = INFINITY;
+  treeOf(entity.mesh)->along(ray.origin, ray.direction, -INFINITY, endless, [&](std::uint32_t t) {
+    const TriangleMeeting m = meetTriangle(*entity.mesh, t, ray.origin, ray.direction);
+    if (m.met) crossings.emplace_back(m.along, m.entering ? 1 : -1);
+    return false;
+  });
   std::sort(crossings.begin(), crossings.end());
   int inside = 0;
   for (size_t k = 0; k < crossings.size(); ++k) {
@@ -55,6 +42,14 @@ void addStretches(RayHits& hits, const Entity& entity, int index, const BodyRay&
 }
 
 }  // namespace
+
+size_t surfaceOf(const Entity& entity, std::uint32_t triangle) {
+  for (size_t s = 0; s + 1 < entity.surfaces.size(); ++s) {
+    const MeshPart& part = entity.mesh->parts[entity.surfaces[s].meshPart];
+    if (triangle >= part.firstTriangle && triangle - part.firstTriangle < part.triangleCount) return s;
+  }
+  return entity.surfaces.size() - 1;
+}
 
 RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest) {
   RayHits hits;
@@ -68,22 +63,31 @@ RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3
       continue;
     }
     const Mesh& mesh = *entity.mesh;
-    for (size_t s = 0; s < entity.surfaces.size(); ++s) {
+    treeOf(entity.mesh)->along(ray.origin, ray.direction, nearest, hits.solid.distance, [&](std::uint32_t t) {
+      const TriangleMeeting m = meetTriangle(mesh, t, ray.origin, ray.direction);
+      if (!m.met || m.along < nearest || m.along > hits.solid.distance) return false;
+      const size_t s = surfaceOf(entity, t);
       const bool layer = sim.materialOf(entity.surfaces[s]).transmission.has_value();
-      meetTriangles(mesh, mesh.parts[entity.surfaces[s].meshPart], ray, [&](double along, const glm::dvec3& weight, const glm::uvec3& i, bool front) {
-        if (along < nearest || (!layer && along >= hits.solid.distance)) return;
-        glm::dvec3 n = weight.x * glm::dvec3(mesh.normals[i.x]) + weight.y * glm::dvec3(mesh.normals[i.y]) + weight.z * glm::dvec3(mesh.normals[i.z]);
-        if (!front) n = -n;
-        const Hit hit = {static_cast<int>(e),
-                         static_cast<int>(s),
-                         along,
-                         origin + along * direction,
-                         localFromBody * glm::normalize(n),
-                         weight.x * glm::dvec2(mesh.uv[i.x]) + weight.y * glm::dvec2(mesh.uv[i.y]) + weight.z * glm::dvec2(mesh.uv[i.z])};
-        if (layer) hits.layers.push_back(hit);
-        else hits.solid = hit;
-      });
-    }
+      // Of two in one place the first of the scenario is seen, whatever the order of the tree.
+      const std::pair place(static_cast<int>(e), static_cast<int>(s));
+      if (!layer && m.along == hits.solid.distance && place >= std::pair(hits.solid.entity, hits.solid.surface)) return false;
+      const glm::uvec3 i = mesh.triangles[t];
+      const glm::dvec3 w = m.weight;
+      Hit hit;
+      hit.entity = place.first;
+      hit.surface = place.second;
+      hit.distance = m.along;
+      hit.point = origin + m.along * direction;
+      hit.front = m.entering;
+      const glm::dvec3 n = w.x * glm::dvec3(mesh.normals[i.x]) + w.y * glm::dvec3(mesh.normals[i.y]) + w.z * glm::dvec3(mesh.normals[i.z]);
+      hit.normal = localFromBody * glm::normalize(m.entering ? n : -n);
+      const glm::dvec3 a(mesh.positions[i.x]);
+      hit.facet = localFromBody * glm::normalize(glm::cross(glm::dvec3(mesh.positions[i.y]) - a, glm::dvec3(mesh.positions[i.z]) - a));
+      hit.uv = w.x * glm::dvec2(mesh.uv[i.x]) + w.y * glm::dvec2(mesh.uv[i.y]) + w.z * glm::dvec2(mesh.uv[i.z]);
+      if (layer) hits.layers.push_back(hit);
+      else hits.solid = hit;
+      return false;
+    });
   }
   std::erase_if(hits.layers, [&](const Hit& h) { return h.distance > hits.solid.distance; });
   for (Stretch& s : hits.stretches) {

@@ -1,5 +1,5 @@
 #pragma once
-// What a ray meets, in double precision, by testing every triangle.
+// What a ray meets, in double precision, through the meshes' trees.
 #include <glm/glm.hpp>
 #include <vector>
 
@@ -12,6 +12,8 @@ struct Hit {
   double distance = INFINITY;                    ///< [m]
   glm::dvec3 point{0.0}, normal{0.0, 0.0, 1.0};  ///< local frame; the normal towards the viewer
   glm::dvec2 uv{0.0};
+  glm::dvec3 facet{0.0, 0.0, 1.0};  ///< unit normal of the triangle itself, outward
+  bool front = true;                ///< seen from outside
 };
 
 /// A stretch of the ray inside a medium [m].
@@ -25,6 +27,9 @@ struct RayHits {
   std::vector<Hit> layers;         ///< transparent surfaces before it, in no order
   std::vector<Stretch> stretches;  ///< of media, cut off at it
 };
+
+/// The surface of an entity that a triangle of its mesh belongs to.
+size_t surfaceOf(const Entity& entity, std::uint32_t triangle);
 
 /// direction of unit length; surfaces nearer than `nearest` are not seen. Source: Moeller and Trumbore 1997.
 RayHits castRay(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest);

@@ -7,6 +7,7 @@
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/ray_hits.hpp"
+#include "sim/render/reference/shadow_rays.hpp"
 
 namespace pitviper {
 namespace {
@@ -102,6 +103,7 @@ Seen lookAt(const Sight& sight, const Hit& hit) {
     AirAmounts powered;
   };
   std::vector<Leg> legs;
+  const ShadowCaster shadows(sim);
   const AirRay here{sim.frame.height(hit.point), 0.0, sim.frame.earthRadius_m()};
   const glm::dvec3 up = sim.frame.up(hit.point);
   auto addLeg = [&](const glm::dvec3& line, double radius_m, bool sun) {
@@ -110,6 +112,7 @@ Seen lookAt(const Sight& sight, const Hit& hit) {
     const glm::dvec3 to = d > 0.0 ? line / d : hit.normal;
     leg.light = inNormalFrame(hit.normal, to);
     leg.factor = sun ? std::max(leg.light.z, 0.0) : physics::pointIrradianceFactor(leg.light.z, d2, radius_m);
+    if (leg.factor > 0.0 && plan.terms.shadows && !shadows.lit(sight.state, hit, to, sun ? INFINITY : d - radius_m)) leg.factor = 0.0;
     if (plan.terms.air) {
       const bool endless = sim.path->top_m() >= physics::kFar;
       AirRay leaving = here;

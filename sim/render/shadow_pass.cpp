@@ -1,0 +1,152 @@
+#include "sim/render/shadow_pass.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/gl/context.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Mirrors Shadow of sim/render/glsl/shadow_maps.glsl (std430).
+struct GpuShadow {
+  glm::vec4 map[4];
+  glm::vec4 body[3];
+  glm::ivec4 what;
+  glm::vec4 fine;
+};
+static_assert(sizeof(GpuShadow) == 144);
+
+/// Half a unit in the last place of a float.
+constexpr double kRounding = 6e-8;
+
+/// How a caster shades the receiver, as sim/render/glsl/shadow_maps.glsl has it: 0 another body, else 1 + SelfShadow.
+int kindOf(bool self, SelfShadow how) { return self ? 1 + static_cast<int>(how) : 0; }
+
+/// The farthest corner from the axes' origin.
+double reachOf(const ShadowBox& box) { return glm::length(glm::max(glm::abs(box.low), glm::abs(box.high))); }
+
+}  // namespace
+
+std::string ShadowPass::slotFile(const Plan& plan) { return plan.terms.shadows ? "sim/render/glsl/shadow_maps.glsl" : "sim/render/glsl/shadow_none.glsl"; }
+
+ShadowPass::ShadowPass(const Simulation& simulation, const Plan& plan, std::shared_ptr<const GpuScene> scene, const ShaderLibrary& library)
+    : simulation_(simulation), scene_(std::move(scene)), trees_(scene_->shadowTrees(simulation)), lightCount_(plan.lightCount) {
+  const ShaderSlots none;
+  program_ = Program(assembleShader(library, "sim/render/glsl/shadow_map.vert.glsl", none), assembleShader(library, "sim/render/glsl/nothing.frag.glsl", none));
+  int wanted = 0;
+  for (size_t e = 0; e < simulation.entities.size(); ++e) {
+    ShadowBox box{glm::dvec3(INFINITY), glm::dvec3(-INFINITY)};
+    for (const glm::vec3& p : simulation.entities[e].mesh->positions) box.low = glm::min(box.low, glm::dvec3(p)), box.high = glm::max(box.high, glm::dvec3(p));
+    boxes_.push_back(box);
+    if (trees_->of(e).triangles >= kDense) wanted += lightCount_;
+  }
+  layers_ = DepthLayers(kTexels, std::clamp(wanted, 1, kMostMaps));
+  ranges_.assign(simulation.entities.size() * static_cast<size_t>(lightCount_), {});
+}
+
+LightPlace ShadowPass::lightFor(std::size_t caster, std::size_t light, const WorldState& state) const {
+  const Pose& pose = state.entities[caster];
+  const glm::dmat3 bodyFromLocal = glm::transpose(glm::mat3_cast(pose.orientation));
+  if (light == simulation_.lights.size()) return {true, bodyFromLocal * simulation_.sun->toSun, 0.0};
+  return {false, bodyFromLocal * (state.lights[light] - pose.position), simulation_.lights[light].radius_m};
+}
+
+ShadowPass::Map& ShadowPass::mapOf(std::size_t caster, std::size_t light, const LightPlace& place) {
+  Map& map = maps_[{caster, light}];
+  if (trees_->of(caster).triangles < kDense) return map;
+  const bool drawn = map.layer >= 0 && map.projection && map.light.at == place.at;
+  if (drawn) return map;
+  if (map.layer < 0 && layersTaken_ == layers_.count()) return map;
+  map.light = place;
+  map.projection = fitShadowMap({trees_->of(caster).low, trees_->of(caster).high}, place, kTexels);
+  if (!map.projection) return map;
+  if (map.layer < 0) map.layer = layersTaken_++;
+  draw(caster, map);
+  return map;
+}
+
+void ShadowPass::draw(std::size_t caster, const Map& map) {
+  const Entity& entity = simulation_.entities[caster];
+  layers_.bindForDrawing(map.layer);
+  glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_DEPTH_CLAMP);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_LESS);
+  const GLfloat farthest = 1.0f;
+  glClearBufferfv(GL_DEPTH, 0, &farthest);
+  scene_->bind();
+  program_.use();
+  glm::vec4 rows[4];
+  for (int r = 0; r < 4; ++r) rows[r] = glm::vec4(map.projection->row[r]);
+  glUniform4fv(program_.uniform("mapFromBody"), 4, &rows[0].x);
+  glUniform1f(program_.uniform("texels"), static_cast<float>(kTexels));
+  for (const Surface& s : entity.surfaces) {
+    if (simulation_.materialOf(s).isTransparent()) continue;
+    const MeshPart& part = entity.mesh->parts[s.meshPart];
+    const std::uintptr_t first = scene_->firstTriangle(static_cast<int>(caster)) + part.firstTriangle;
+    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.triangleCount * 3), GL_UNSIGNED_INT, reinterpret_cast<const void*>(first * 12));
+  }
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_DEPTH_CLAMP);
+}
+
+void ShadowPass::setState(const WorldState& state) {
+  const auto lights = static_cast<size_t>(lightCount_);
+  std::vector<GpuShadow> shadows;
+  ranges_.assign(state.entities.size() * lights, {});
+  for (size_t l = 0; l < lights; ++l) {
+    if (l < simulation_.lights.size() && !(state.lightLevels[l] > 0.0)) continue;
+    for (size_t r = 0; r < state.entities.size(); ++r) {
+      if (simulation_.mediumOf(simulation_.entities[r])) continue;
+      const Pose& receiver = state.entities[r];
+      const auto first = static_cast<std::uint32_t>(shadows.size());
+      for (size_t c = 0; c < state.entities.size(); ++c) {
+        const ShadowTrees::Body& body = trees_->of(c);
+        if (!body.casts() || (c == r && body.self == SelfShadow::Never)) continue;
+        const Pose& caster = state.entities[c];
+        const glm::dmat3 casterFromLocal = glm::transpose(glm::mat3_cast(caster.orientation));
+        const glm::dmat3 axes = c == r ? glm::dmat3(1.0) : casterFromLocal * glm::mat3_cast(receiver.orientation);
+        const glm::dvec3 origin = c == r ? glm::dvec3(0.0) : casterFromLocal * (receiver.position - caster.position);
+        const LightPlace place = lightFor(c, l, state);
+        const ShadowBox box{body.low, body.high};
+        if (c != r && !mayShade(box, boxes_[r], axes, origin, place)) continue;
+        // Of the inside of a convex body, seldom seen, rays are enough.
+        const Map* map = c == r && body.self == SelfShadow::Inside ? nullptr : &mapOf(c, l, place);
+        const bool mapped = map && map->layer >= 0 && map->projection;
+        GpuShadow g{};
+        double noise = 0.0;
+        const double reach = reachOf(boxes_[r]);
+        for (int k = 0; k < 3; ++k) g.body[k] = glm::vec4(axes[0][k], axes[1][k], axes[2][k], origin[k]);
+        for (int k = 0; mapped && k < 4; ++k) {
+          const glm::dvec4& row = map->projection->row[k];
+          const glm::dvec3 turned = glm::transpose(axes) * glm::dvec3(row);
+          const double constant = glm::dot(glm::dvec3(row), origin) + row.w;
+          g.map[k] = glm::vec4(turned, constant);
+          // Rounding of the four products and sums, and of the point itself.
+          if (k == 2 || k == 3) noise += 8.0 * kRounding * (glm::length(turned) * reach + std::abs(constant));
+        }
+        // Rounding of a place in the receiver: it stays on its facet's plane to a few units of the last place of its coordinates.
+        g.fine = {noise, mapped ? map->projection->texelDepth : 0.0, c == r ? 8.0 * kRounding * reach : 0.0, 0.0};
+        g.what = {mapped ? map->layer : -1, body.first, body.end, kindOf(c == r, body.self)};
+        shadows.push_back(g);
+      }
+      ranges_[r * lights + l] = {first, static_cast<std::uint32_t>(shadows.size()) - first};
+    }
+  }
+  shadows_.upload(shadows);
+  checkGl("drawing shadow maps");
+}
+
+void ShadowPass::bind() const {
+  shadows_.bindStorage(4);
+  trees_->bind();
+  layers_.bind(16);
+}
+
+}  // namespace pitviper

@@ -1,0 +1,65 @@
+#pragma once
+// Shadows of the sun and of point lights. Each body that casts them has a depth map of its own for each light, fitted to its box and in its
+// body axes: a jet's map has texels of centimetres beside terrain of 50 km, and terrain's is drawn once, as long as the sun stands still over
+// it. A map only decides where it can: where the four texels around a point agree, by more than their own error, that the caster is wholly
+// behind the point's plane or well before it. Elsewhere, at outlines and on surfaces nearly along the light, a ray through the caster's tree
+// does. So neither bias nor texels show; what a map can miss is what lies between four texels without touching one.
+#include <map>
+#include <memory>
+#include <tuple>
+#include <vector>
+
+#include "sim/gl/objects.hpp"
+#include "sim/plan/plan.hpp"
+#include "sim/render/gpu_scene.hpp"
+#include "sim/render/shadow_reach.hpp"
+#include "sim/render/shadow_trees.hpp"
+
+namespace pitviper {
+
+class ShadowPass {
+ public:
+  /// The simulation and the plan must outlive it.
+  ShadowPass(const Simulation& simulation, const Plan& plan, std::shared_ptr<const GpuScene> scene, const ShaderLibrary& library);
+  /// Shader file of the slot `shadow`.
+  static std::string slotFile(const Plan& plan);
+
+  /// Finds who can shade whom, and draws the maps that have changed.
+  void setState(const WorldState& state);
+  /// Buffers and maps; unit 16 and storage 4 and 10.
+  void bind() const;
+  /// Those that can shade an entity from a light (the sun is the last).
+  struct Range {
+    std::uint32_t first = 0, count = 0;
+  };
+  Range castersOf(std::size_t entity, std::size_t light) const { return ranges_[entity * static_cast<size_t>(lightCount_) + light]; }
+
+ private:
+  /// A map's texels a side; of a mesh of fewer triangles than kDense rays cost less than a map.
+  static constexpr int kTexels = 1024;
+  static constexpr std::uint32_t kDense = 64;
+  /// Maps of 4 MiB each; further casters are left to rays.
+  static constexpr int kMostMaps = 64;
+  struct Map {
+    int layer = -1;
+    LightPlace light;  ///< it was drawn for
+    std::optional<ShadowProjection> projection;
+  };
+  LightPlace lightFor(std::size_t caster, std::size_t light, const WorldState& state) const;
+  Map& mapOf(std::size_t caster, std::size_t light, const LightPlace& place);
+  void draw(std::size_t caster, const Map& map);
+
+  const Simulation& simulation_;
+  std::shared_ptr<const GpuScene> scene_;
+  std::shared_ptr<const ShadowTrees> trees_;
+  int lightCount_;
+  Program program_;
+  DepthLayers layers_;
+  std::map<std::pair<std::size_t, std::size_t>, Map> maps_;
+  int layersTaken_ = 0;
+  std::vector<ShadowBox> boxes_;  ///< of whole meshes
+  std::vector<Range> ranges_;
+  Buffer shadows_;
+};
+
+}  // namespace pitviper
