@@ -62,10 +62,11 @@ int mapSays(Shadow s, vec3 facet) {
   vec2 slope = vec2(j1.z * j2.y - j2.z * j1.y, j1.x * j2.z - j2.x * j1.z) / det;
   float steep = abs(slope.x) + abs(slope.y);
   ivec2 cell = ivec2(floor(at.xy - 0.5));
-  float nearest = 2.0, farthest = -2.0;
+  float nearest = kFar, farthest = -kFar;
   for (int k = 0; k < 4; ++k) {
     ivec2 texel = cell + ivec2(k & 1, k >> 1);
-    float before = texelFetch(shadowMaps, ivec3(texel, s.what.x), 0).x - (at.z + dot(slope, vec2(texel) + 0.5 - at.xy));
+    float surface = texelFetch(shadowMaps, ivec3(texel, s.what.x), 0).x;
+    float before = surface >= 1.0 ? kFar : surface - (at.z + dot(slope, vec2(texel) + 0.5 - at.xy));  // 1 is left by the clearing: nothing there
     nearest = min(nearest, before);
     farthest = max(farthest, before);
   }

@@ -1,0 +1,115 @@
+// Shadows as drawn, by depth maps and rays in single precision, against the reference's rays in double precision, which know no maps.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "scenarios/commands/commands.hpp"
+#include "sim/render/direct_pass.hpp"
+#include "sim/render/reference/reference_pixel.hpp"
+#include "tests/support/compare.hpp"
+#include "tests/support/figures.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+namespace {
+
+/// Pixels of a picture, and those of them that are lit otherwise than the reference's by more than 1 %.
+struct Tally {
+  long pixels = 0, wrong = 0, shaded = 0;
+  void operator+=(const Tally& t) { pixels += t.pixels, wrong += t.wrong, shaded += t.shaded; }
+};
+
+Tally tally(const Simulation& sim, int stride = 1) {
+  needContext();
+  const Camera& camera = sim.cameras[0];
+  const Plan plan = makePlan(sim, camera.outputs, camera.spectral, camera.where);
+  EXPECT_TRUE(plan.terms.shadows);
+  Plan open = plan;
+  open.terms.shadows = false;
+  const WorldState state = advance(sim.entities, sim.lights, 0.0);
+  const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, 1);
+  auto gpu = std::make_shared<const GpuScene>(sim);
+  const auto pass = makeScenePass(sim, plan, shaderLibrary(), gpu, true, camera.pinhole.apertureArea_m2());
+  pass->setState(state);
+  pass->draw(view, state, std::vector<char>(sim.entities.size(), 1));
+  pass->startReadback(false);
+  const RawImage raw = pass->finishReadback();
+  Tally t;
+  for (int y = 0; y < view.height; y += stride)
+    for (int x = 0; x < view.width; x += stride) {
+      const size_t p = static_cast<size_t>(y * view.width + x);
+      const ReferencePixel want = referencePixel(sim, plan, view, state, x, y);
+      const TruthPixel truth = truthAt(raw, p);
+      // A silhouette of the picture itself may fall either way.
+      if (want.entity < 0 || static_cast<int>(truth.entity) != want.entity + 1 ||
+          std::abs(static_cast<double>(truth.range_m) - want.range_m) > 1e-4 * want.range_m)
+        continue;
+      ++t.pixels;
+      t.shaded += referencePixel(sim, open, view, state, x, y).slots[0] > 1.01 * want.slots[0];
+      t.wrong += std::abs(static_cast<double>(raw.groups[0][4 * p]) - want.slots[0]) > 0.01 * want.slots[0];
+    }
+  return t;
+}
+
+std::string number(double v) { return std::to_string(v); }
+
+constexpr const char* kFilm =
+    "cameras:\n  - {name: c, film: {width: 64, height: 64}, aperture: 5 mm, small_bodies: 0, channels: [{name: a, response: {band: [3 um, 4 um]}}], ";
+
+// Balls, boxes, cylinders, jets and terrain in all attitudes over a plate, the sun and lights among them.
+TEST(ShadowsAgainstDouble, AHundredRandomScenes) {
+  std::mt19937 random(11);
+  auto within = [&](double low, double high) { return std::uniform_real_distribution<>(low, high)(random); };
+  auto place = [&](double reach, double low, double high) {
+    return "[" + number(within(-reach, reach)) + " m, " + number(within(-reach, reach)) + " m, " + number(within(low, high)) + " m]";
+  };
+  Tally all;
+  for (int n = 0; n < 100; ++n) {
+    std::string y = "materials: {m: {components: [{reflection: lambertian, reflectance: 0.6}]}}\nambient: {temperature: 200 K}\n";
+    if (n % 3 != 1) y += "sun: {azimuth: " + number(within(0, 360)) + " deg, elevation: " + number(within(3, 90)) + " deg, temperature: 5772 K}\n";
+    if (n % 3 != 0) {
+      y += "lights:\n";
+      for (int l = 0; l < 1 + n % 6; ++l)
+        y +=
+            "  - {name: l" + std::to_string(l) + ", visible: false, intensity: " + number(within(10, 100)) + " W/(sr um), position: " + place(8, 2, 12) + "}\n";
+    }
+    const std::string plain = ", material: m, temperature: 200 K, ";
+    y += "entities:\n";
+    y += n % 4 == 3 ? "  - {name: ground, shape: {model: terrain, size: 40 m, relief: 6 m, columns: 60, terrain_seed: " + std::to_string(n) + "}" + plain +
+                          "position: [0 m, 0 m, -3 m]}\n"
+                    : "  - {name: ground, shape: {model: plate, width: 40 m, height: 40 m}" + plain + "pitch: 90 deg}\n";
+    for (int b = 0; b < 5; ++b) {
+      static const char* const shapes[] = {"{model: sphere, radius: 1 m}", "{model: box, length: 2 m, width: 1 m, height: 1.5 m}",
+                                           "{model: cylinder, radius: 0.6 m, length: 2 m, capped: false}", "{model: jet}", "{model: disc, radius: 1 m}"};
+      y += "  - {name: b" + std::to_string(b) + ", shape: " + shapes[(n + b) % 5] + plain + "position: " + place(5, 1, 5) +
+           ", heading: " + number(within(0, 360)) + " deg, pitch: " + number(within(-80, 80)) + " deg, roll: " + number(within(-180, 180)) + " deg}\n";
+    }
+    y += kFilm + std::string("field_of_view: 40 deg, position: ") + place(15, 8, 20) + ", look_at: [0 m, 0 m, 1 m]}\n";
+    all += tally(scene(y), 2);
+  }
+  EXPECT_GT(all.shaded, all.pixels / 20);
+  bound("100 random scenes, share of pixels lit otherwise than by exact shadow rays", static_cast<double>(all.wrong) / static_cast<double>(all.pixels), 1e-3,
+        "parts thinner than a map's texel; outlines in single precision; " + std::to_string(all.pixels) + " pixels, " + std::to_string(all.shaded) + " shaded");
+}
+
+// Terrain 50 km wide: hills in front of a low sun, near by and over its whole width.
+TEST(ShadowsAgainstDouble, HillsAtLowSun) {
+  Tally all;
+  for (double elevation : {2.0, 8.0, 20.0})
+    for (double height : {800.0, 6000.0})
+      all += tally(scene(
+          "materials: {m: {components: [{reflection: lambertian, reflectance: 0.6}]}}\n"
+          "sun: {azimuth: 250 deg, elevation: " +
+          number(elevation) +
+          " deg, temperature: 5772 K}\n"
+          "entities: [{name: ground, shape: {model: terrain, size: 50 km, relief: 1200 m, columns: 250, terrain_seed: 3}, material: m, temperature: 200 K}]\n" +
+          kFilm + "field_of_view: 50 deg, position: [2 km, -12 km, " + number(height) + " m], look_at: [0 m, 0 m, 0 m]}\n"));
+  EXPECT_GT(all.shaded, 400);
+  bound("hills of 50 km terrain at low sun, share of pixels lit otherwise than by exact shadow rays",
+        static_cast<double>(all.wrong) / static_cast<double>(all.pixels), 2e-3,
+        "outlines in single precision: 4 mm of place at 25 km; " + std::to_string(all.pixels) + " pixels, " + std::to_string(all.shaded) + " shaded");
+}
+
+}  // namespace
+}  // namespace pitviper::test
