@@ -54,6 +54,7 @@ std::string violation(const Use& use) {
                                                                           {"GeographicLib/", {"sim/scene/"}},
                                                                           {"OpenEXR/", {"sim/image/"}},
                                                                           {"Imf", {"sim/image/"}},
+                                                                          {"Eigen/", {"sim/plan/"}},
                                                                           {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}},
                                                                           {"epoxy/", {"sim/gl/", "sim/render/", "scenarios/commands/bench"}}};
     for (const auto& [library, allowed] : homes) {

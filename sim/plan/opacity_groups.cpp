@@ -1,0 +1,187 @@
+#include "sim/plan/opacity_groups.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+
+#include "sim/plan/group_refine.hpp"
+#include "sim/plan/group_start.hpp"
+#include "sim/plan/product_set.hpp"
+
+namespace pitviper {
+namespace {
+
+using Eigen::VectorXd;
+
+/// Shares of a wavelength below this go to its other groups: they cost the builder of tables time and change nothing.
+constexpr double kLeastShare = 1e-4;
+
+/// Rounds between two looks at all products.
+constexpr int kRoundsPerPass = 6;
+
+/// What the second pass leaves the later ones rarely lower by more than half of this.
+constexpr double kHopeless = 5.0;
+
+/// Whether the budget of time is spent; without one, never.
+std::function<bool()> clockOf(const FitEffort& effort) {
+  if (!(effort.budget_s > 0.0)) return [] { return false; };
+  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(effort.budget_s);
+  return [end] { return std::chrono::steady_clock::now() >= end; };
+}
+
+std::vector<int> spreadOf(int count, int most) {
+  std::vector<int> picked;
+  const int n = std::min(count, std::max(most, 1));
+  for (int j = 0; j < n; ++j) picked.push_back(static_cast<int>(static_cast<long long>(j) * count / n));
+  return picked;
+}
+
+void dropSmallShares(GroupState& s) {
+  for (Eigen::Index i = 0; i < s.share.cols(); ++i) {
+    s.share.col(i) = (s.share.col(i).array() >= kLeastShare).select(s.share.col(i), 0.0);
+    s.share.col(i) /= s.share.col(i).sum();
+  }
+}
+
+std::vector<SpectralGroup> groupsOf(const ProductSet& set, const GroupState& s, const SpectralProblem& problem) {
+  std::vector<SpectralGroup> groups;
+  for (Eigen::Index g = 0; g < s.share.rows(); ++g) {
+    SpectralGroup group;
+    group.weight = s.share.row(g).dot(set.weight);
+    if (!(group.weight > 0.0)) continue;
+    for (Eigen::Index i = 0; i < s.share.cols(); ++i)
+      if (s.share(g, i) > 0.0) group.members.emplace_back(set.fineIndex[static_cast<size_t>(i)], s.share(g, i) * set.weight[i] / group.weight);
+    for (Eigen::Index k = 0; k < s.extinction.cols(); ++k) group.extinction.push_back(s.extinction(g, k));
+    groups.push_back(std::move(group));
+  }
+  if (groups.empty()) {
+    // A channel that sees nothing: one group of weight 0, so that averages still exist.
+    SpectralGroup none;
+    for (size_t i = 0; i < problem.weight.size(); ++i) none.members.emplace_back(static_cast<int>(i), 1.0 / static_cast<double>(problem.weight.size()));
+    none.extinction.assign(problem.extinction.size(), 0.0);
+    groups.push_back(std::move(none));
+  }
+  return groups;
+}
+
+/// A problem with its start, for fits of several counts.
+class Fitter {
+ public:
+  Fitter(const SpectralProblem& problem, const FitEffort& effort)
+      : problem_(problem),
+        effort_(effort),
+        expired_(clockOf(effort)),
+        all_(problem),
+        working_(spreadOf(all_.size(), effort.workingProducts)),
+        set_(all_.subset(working_)),
+        start_(all_) {}
+
+  int mostGroups() const { return all_.fineCount(); }
+
+  /// The best found of a count; stops early below a goal, or where it is plain that the goal cannot be met.
+  GroupFit fit(int groups, double goal) {
+    if (all_.fineCount() == 0) return finish(GroupState{}, 0);
+    const int count = std::clamp(groups, 1, mostGroups());
+    GroupState state = start_.state(count), best = state;
+    RefineProgress progress;
+    double least = INFINITY;
+    for (int left = std::max(effort_.rounds, 1), pass = 0; left > 0; ++pass) {
+      const int rounds = std::min(left, pass == 0 ? std::max(effort_.rounds / 3, 1) : kRoundsPerPass);
+      left -= rounds;
+      refineGroups(set_, state, progress, {rounds, effort_.innerSteps, 0.9 * goal, expired_});
+      const VectorXd errors = all_.errors(all_.moments(state));
+      const double most = errorFigures(errors).first;
+      if (most < least) {
+        least = most;
+        best = state;
+      }
+      if (least <= goal || expired_()) break;
+      if (pass > 0 && least > kHopeless * goal && goal > 0.0) break;
+      if (left > 0 && static_cast<int>(working_.size()) < all_.size()) addWorst(errors);
+    }
+    return finish(best, count);
+  }
+
+ private:
+  /// The worst products outside the working set join it.
+  void addWorst(const VectorXd& errors) {
+    std::vector<bool> has(static_cast<size_t>(all_.size()), false);
+    for (int m : working_) has[static_cast<size_t>(m)] = true;
+    std::vector<int> others;
+    for (int m = 0; m < all_.size(); ++m)
+      if (!has[static_cast<size_t>(m)]) others.push_back(m);
+    std::stable_sort(others.begin(), others.end(), [&](int a, int b) { return std::abs(errors[a]) > std::abs(errors[b]); });
+    others.resize(std::min(others.size(), working_.size() / 8 + 1));
+    working_.insert(working_.end(), others.begin(), others.end());
+    set_ = all_.subset(working_);
+  }
+
+  GroupFit finish(GroupState state, int count) {
+    GroupFit result;
+    if (count > 0) dropSmallShares(state);
+    result.groups = groupsOf(all_, state, problem_);
+    if (count > 0) std::tie(result.maximum, result.p99) = errorFigures(all_.errors(all_.moments(state)));
+    return result;
+  }
+
+  const SpectralProblem& problem_;
+  FitEffort effort_;
+  std::function<bool()> expired_;
+  ProductSet all_;
+  std::vector<int> working_;
+  ProductSet set_;
+  GroupStart start_;
+};
+
+}  // namespace
+
+GroupFit fitGroups(const SpectralProblem& problem, int groups, const FitEffort& effort) { return Fitter(problem, effort).fit(groups, 0.0); }
+
+GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mostGroups, const FitEffort& effort) {
+  Fitter fitter(problem, effort);
+  const int most = std::max(std::min(mostGroups, fitter.mostGroups()), 1);
+  int tooFew = 0, enough = most + 1;
+  GroupFit best;
+  // Growing by halves until it holds, then between the last two.
+  for (int n = 1; tooFew + 1 < enough;) {
+    GroupFit fit = fitter.fit(n, tolerance);
+    if (fit.maximum <= tolerance) {
+      enough = n;
+      best = std::move(fit);
+      n = (tooFew + enough) / 2;
+      if (n == tooFew) break;
+    } else {
+      tooFew = n;
+      if (best.groups.empty() || (enough > most && fit.maximum < best.maximum)) best = std::move(fit);
+      n = enough <= most ? (tooFew + enough) / 2 : std::min(std::max(n + 1, n * 3 / 2), most);
+      if (n <= tooFew) break;
+    }
+  }
+  return best;
+}
+
+GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups) {
+  const ProductSet set(fresh);
+  GroupFit result{groups, 0.0, 0.0};
+  if (set.size() == 0 || groups.empty()) return result;
+  std::vector<int> keptIndex(fresh.weight.size(), -1);
+  for (size_t i = 0; i < set.fineIndex.size(); ++i) keptIndex[static_cast<size_t>(set.fineIndex[i])] = static_cast<int>(i);
+  const auto g = static_cast<Eigen::Index>(groups.size());
+  GroupState state{Eigen::MatrixXd::Zero(g, set.fineCount()), Eigen::MatrixXd::Zero(g, set.columnCount())};
+  for (Eigen::Index j = 0; j < g; ++j) {
+    const SpectralGroup& group = groups[static_cast<size_t>(j)];
+    if (group.extinction.size() != fresh.extinction.size()) throw std::invalid_argument("opacity groups: another number of columns");
+    for (Eigen::Index k = 0; k < set.columnCount(); ++k) state.extinction(j, k) = group.extinction[static_cast<size_t>(k)];
+    for (const auto& [index, share] : group.members) {
+      if (index < 0 || static_cast<size_t>(index) >= fresh.weight.size()) throw std::invalid_argument("opacity groups: a member outside the grid");
+      const int i = keptIndex[static_cast<size_t>(index)];
+      if (i >= 0) state.share(j, i) = share * group.weight / set.weight[i];
+    }
+  }
+  std::tie(result.maximum, result.p99) = errorFigures(set.errors(set.moments(state)));
+  return result;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,71 @@
+#pragma once
+// Opacity groups: a channel's integral over wavelength as a sum over few groups of wavelengths that air and gases dim alike.
+//
+// Law: integral of S(lambda) s(lambda) exp(-sum over k of c_k(lambda) U_k) dlambda  ~  sum over g of w_g <s>_g exp(-sum over k of C_gk U_k),
+//   <s>_g = sum over the group's members i of a share p_gi times s(lambda_i),  p_gi >= 0, sum over i of p_gi = 1.
+//   S response; s source (emitted or reflected spectrum); c_k extinction per amount U_k of an absorber on the path (an amount already raised to
+//   its power, or the thickness of a gas); w_g weight of the group [as the fine weights]; C_gk >= 0 its extinction, fitted.
+// The averages are linear and alike for every spectrum, so that what adds up to one at every wavelength (emissivity, reflectance,
+// transmittance) does so in every group, and a spectrum that comes later only needs to be averaged. Each wavelength's weight is shared out
+// whole, sum over g of w_g p_gi = w_i: without absorbers every source is integrated as on the fine grid.
+// This is the correlated-k idea (Goody et al. 1989, J. Quant. Spectrosc. Radiat. Transfer 42, 539) with the groups fitted to the scene's own
+// products, several absorbers at once, instead of sorted by the strength of one.
+// What the error is: the largest relative difference from the fine sum over the products given; evaluateGroups() tells it for others.
+#include <utility>
+#include <vector>
+
+namespace pitviper {
+
+/// coefficient x <source> x <second> x transmittance of a path.
+struct ProductTerm {
+  int source = 0;
+  int second = -1;  ///< another spectrum that the renderer multiplies only after averaging (emissivity x Planck of a texture's pixel), or -1
+  int path = 0;
+  double coefficient = 1.0;
+};
+
+/// Terms that add up, and may cancel (path radiance is a sum of B(T_j) (tau_j - tau_j+1)).
+struct SpectralProduct {
+  std::vector<ProductTerm> terms;
+  double floor = 0.0;  ///< error = |planned - fine| / max(|fine|, floor); 0 where both are 0
+};
+
+struct SpectralProblem {
+  std::vector<double> wavelength_um;            ///< for the reader's eyes; the fit does not look at it
+  std::vector<double> weight;                   ///< response x width of each fine wavelength, >= 0
+  std::vector<std::vector<double>> spectra;     ///< [source][fine]
+  std::vector<std::vector<double>> extinction;  ///< [column][fine], >= 0
+  std::vector<std::vector<double>> paths;       ///< [path][column], amounts U_k >= 0
+  std::vector<SpectralProduct> products;
+};
+
+struct SpectralGroup {
+  std::vector<std::pair<int, double>> members;  ///< fine wavelength and share > 0; the shares sum to 1
+  double weight = 0.0;
+  std::vector<double> extinction;  ///< per column
+};
+
+struct GroupFit {
+  std::vector<SpectralGroup> groups;
+  double maximum = 0.0, p99 = 0.0;  ///< relative error over the products: largest, and 99th percentile
+};
+
+/// How much work a fit may take. The result depends on these alone unless budget_s is set.
+struct FitEffort {
+  int rounds = 40;            ///< Gauss-Newton steps per fit; 100 with 60 inner steps: a quarter fewer groups for six times the time
+  int innerSteps = 25;        ///< conjugate-gradient steps in each
+  int workingProducts = 600;  ///< products in a fit at first; the worst of the others join them as it goes on
+  double budget_s = 0.0;      ///< stop improving after so much time; 0: no clock
+};
+
+/// The best of a given count of groups; never more than there are wavelengths of weight > 0. Throws std::invalid_argument where sizes do not
+/// match, an index is out of range, or a value is not finite or negative where it may not be.
+GroupFit fitGroups(const SpectralProblem& problem, int groups, const FitEffort& effort = {});
+
+/// The fewest groups found whose largest error is within the tolerance; with `mostGroups`, what they reach, if even those are not enough.
+GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mostGroups, const FitEffort& effort = {});
+
+/// Error of groups over the products of another problem on the same wavelengths and columns.
+GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups);
+
+}  // namespace pitviper

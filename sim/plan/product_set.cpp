@@ -1,0 +1,290 @@
+#include "sim/plan/product_set.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace pitviper {
+namespace {
+
+void require(bool condition, const std::string& what) {
+  if (!condition) throw std::invalid_argument("spectral problem: " + what);
+}
+
+bool allFinite(const std::vector<double>& values, double least) {
+  return std::all_of(values.begin(), values.end(), [&](double v) { return std::isfinite(v) && v >= least; });
+}
+
+void check(const SpectralProblem& p) {
+  constexpr double kAny = -std::numeric_limits<double>::max();
+  const size_t n = p.weight.size();
+  require(n > 0, "no wavelengths");
+  require(p.wavelength_um.empty() || p.wavelength_um.size() == n, "wavelengths and weights differ in number");
+  require(allFinite(p.weight, 0.0), "a weight is negative or not finite");
+  for (const auto& s : p.spectra) require(s.size() == n && allFinite(s, kAny), "a spectrum of another length, or not finite");
+  for (const auto& c : p.extinction) require(c.size() == n && allFinite(c, 0.0), "extinction of another length, negative or not finite");
+  for (const auto& u : p.paths) require(u.size() == p.extinction.size() && allFinite(u, 0.0), "amounts of another length, negative or not finite");
+  const auto within = [](int index, size_t count) { return index >= 0 && static_cast<size_t>(index) < count; };
+  for (const auto& product : p.products) {
+    require(std::isfinite(product.floor) && product.floor >= 0.0, "a floor is negative or not finite");
+    for (const ProductTerm& t : product.terms)
+      require(within(t.source, p.spectra.size()) && (t.second == -1 || within(t.second, p.spectra.size())) && within(t.path, p.paths.size()) &&
+                  std::isfinite(t.coefficient),
+              "a term with an index out of range, or a coefficient that is not finite");
+  }
+}
+
+/// Old index -> new one in the order of first use; -1 where unused.
+class Renumbering {
+ public:
+  explicit Renumbering(size_t count) : newIndex_(count, -1) {}
+  int operator()(int old) {
+    int& n = newIndex_[static_cast<size_t>(old)];
+    if (n < 0) {
+      n = static_cast<int>(used.size());
+      used.push_back(old);
+    }
+    return n;
+  }
+  std::vector<int> used;
+
+ private:
+  std::vector<int> newIndex_;
+};
+
+}  // namespace
+
+ProductSet::ProductSet(const SpectralProblem& p) {
+  check(p);
+  for (size_t i = 0; i < p.weight.size(); ++i)
+    if (p.weight[i] > 0.0) fineIndex.push_back(static_cast<int>(i));
+  const auto n = static_cast<Eigen::Index>(fineIndex.size());
+  const auto at = [&](const std::vector<double>& values, Eigen::Index i) { return values[static_cast<size_t>(fineIndex[static_cast<size_t>(i)])]; };
+  weight.resize(n);
+  for (Eigen::Index i = 0; i < n; ++i) weight[i] = at(p.weight, i);
+  extinction.resize(n, static_cast<Eigen::Index>(p.extinction.size()));
+  for (Eigen::Index k = 0; k < extinction.cols(); ++k)
+    for (Eigen::Index i = 0; i < n; ++i) extinction(i, k) = at(p.extinction[static_cast<size_t>(k)], i);
+
+  Renumbering source(p.spectra.size()), path(p.paths.size());
+  std::vector<double> floors;
+  firstTerm.push_back(0);
+  for (const SpectralProduct& product : p.products) {
+    for (ProductTerm t : product.terms) {
+      t.source = source(t.source);
+      if (t.second >= 0) t.second = source(t.second);
+      t.path = path(t.path);
+      terms.push_back(t);
+    }
+    firstTerm.push_back(static_cast<int>(terms.size()));
+    floors.push_back(product.floor);
+  }
+  weighted.resize(n, static_cast<Eigen::Index>(source.used.size()));
+  for (Eigen::Index s = 0; s < weighted.cols(); ++s)
+    for (Eigen::Index i = 0; i < n; ++i) weighted(i, s) = weight[i] * at(p.spectra[static_cast<size_t>(source.used[static_cast<size_t>(s)])], i);
+  amounts.resize(extinction.cols(), static_cast<Eigen::Index>(path.used.size()));
+  for (Eigen::Index u = 0; u < amounts.cols(); ++u)
+    for (Eigen::Index k = 0; k < amounts.rows(); ++k) amounts(k, u) = p.paths[static_cast<size_t>(path.used[static_cast<size_t>(u)])][static_cast<size_t>(k)];
+  compress();
+  integrate(floors);
+}
+
+// Gram-Schmidt with the column worst represented as the next direction: surfaces times Planck's law at many temperatures are few shapes.
+void ProductSet::compress() {
+  Eigen::MatrixXd rest = weighted;
+  Eigen::VectorXd size = weighted.colwise().norm();
+  const Eigen::Index most = std::min(weighted.rows(), weighted.cols());
+  basis.resize(weighted.rows(), most);
+  mix.resize(most, weighted.cols());
+  Eigen::Index rank = 0;
+  for (; rank < most; ++rank) {
+    Eigen::Index worst = 0;
+    const double left = (rest.colwise().norm().transpose().array() / size.array().max(1e-300)).maxCoeff(&worst);
+    if (!(left > kBasisError)) break;
+    basis.col(rank) = rest.col(worst).normalized();
+    mix.row(rank).noalias() = basis.col(rank).transpose() * rest;
+    rest.noalias() -= basis.col(rank) * mix.row(rank);
+  }
+  basis.conservativeResize(Eigen::NoChange, rank);
+  mix.conservativeResize(rank, Eigen::NoChange);
+}
+
+// Path by path, so that the transmittances of all paths need not be kept.
+void ProductSet::integrate(const std::vector<double>& floors) {
+  std::vector<int> order(terms.size()), productOf(terms.size());
+  for (int m = 0; m + 1 < static_cast<int>(firstTerm.size()); ++m)
+    for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) productOf[static_cast<size_t>(t)] = m;
+  for (size_t t = 0; t < order.size(); ++t) order[t] = static_cast<int>(t);
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return terms[static_cast<size_t>(a)].path < terms[static_cast<size_t>(b)].path; });
+  fine = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(floors.size()));
+  Eigen::VectorXd tau;
+  int current = -1;
+  for (int index : order) {
+    const ProductTerm& t = terms[static_cast<size_t>(index)];
+    if (t.path != current) {
+      current = t.path;
+      tau = (-(extinction * amounts.col(current)).array()).exp();
+    }
+    const double value = t.second < 0 ? weighted.col(t.source).dot(tau)
+                                      : (weighted.col(t.source).array() * (weighted.col(t.second).array() / weight.array()) * tau.array()).sum();
+    fine[productOf[static_cast<size_t>(index)]] += t.coefficient * value;
+  }
+  scale.resize(fine.size());
+  for (Eigen::Index m = 0; m < fine.size(); ++m) {
+    const double size = std::max(std::abs(fine[m]), floors[static_cast<size_t>(m)]);
+    scale[m] = size > std::numeric_limits<double>::min() ? 1.0 / size : 0.0;
+  }
+}
+
+ProductSet ProductSet::subset(const std::vector<int>& products) const {
+  ProductSet s;
+  s.fineIndex = fineIndex;
+  s.weight = weight;
+  s.extinction = extinction;
+  s.fine.resize(static_cast<Eigen::Index>(products.size()));
+  s.scale.resize(s.fine.size());
+  Renumbering source(static_cast<size_t>(sourceCount())), path(static_cast<size_t>(pathCount()));
+  s.firstTerm.push_back(0);
+  for (size_t j = 0; j < products.size(); ++j) {
+    const auto m = static_cast<size_t>(products[j]);
+    s.fine[static_cast<Eigen::Index>(j)] = fine[products[j]];
+    s.scale[static_cast<Eigen::Index>(j)] = scale[products[j]];
+    for (int t = firstTerm[m]; t < firstTerm[m + 1]; ++t) {
+      ProductTerm term = terms[static_cast<size_t>(t)];
+      term.source = source(term.source);
+      if (term.second >= 0) term.second = source(term.second);
+      term.path = path(term.path);
+      s.terms.push_back(term);
+    }
+    s.firstTerm.push_back(static_cast<int>(s.terms.size()));
+  }
+  s.weighted.resize(fineCount(), static_cast<Eigen::Index>(source.used.size()));
+  for (Eigen::Index i = 0; i < s.weighted.cols(); ++i) s.weighted.col(i) = weighted.col(source.used[static_cast<size_t>(i)]);
+  s.basis = basis;
+  s.mix.resize(mix.rows(), s.weighted.cols());
+  for (Eigen::Index i = 0; i < s.mix.cols(); ++i) s.mix.col(i) = mix.col(source.used[static_cast<size_t>(i)]);
+  s.amounts.resize(columnCount(), static_cast<Eigen::Index>(path.used.size()));
+  for (Eigen::Index i = 0; i < s.amounts.cols(); ++i) s.amounts.col(i) = amounts.col(path.used[static_cast<size_t>(i)]);
+  return s;
+}
+
+bool ProductSet::hasSeconds() const {
+  return std::any_of(terms.begin(), terms.end(), [](const ProductTerm& t) { return t.second >= 0; });
+}
+
+GroupMoments ProductSet::moments(const GroupState& state) const {
+  GroupMoments m;
+  m.source.noalias() = state.share * weighted;
+  m.weight.noalias() = state.share * weight;
+  m.transmittance.noalias() = state.extinction * amounts;
+  m.transmittance = (-m.transmittance.array()).exp();
+  return m;
+}
+
+namespace {
+
+// A group that lost all its weight gives nothing: its sources are 0 too.
+Eigen::ArrayXd inverse(const Eigen::VectorXd& weight) { return (weight.array() > 0.0).select(1.0 / weight.array(), 0.0); }
+
+}  // namespace
+
+Eigen::VectorXd ProductSet::errors(const GroupMoments& at) const {
+  const Eigen::ArrayXd perWeight = inverse(at.weight);
+  Eigen::VectorXd e(size());
+  for (int m = 0; m < size(); ++m) {
+    double sum = 0.0;
+    for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
+      const ProductTerm& term = terms[static_cast<size_t>(t)];
+      const auto source = at.source.col(term.source), tau = at.transmittance.col(term.path);
+      sum += term.coefficient * (term.second < 0 ? source.dot(tau) : (source.array() * tau.array() * at.source.col(term.second).array() * perWeight).sum());
+    }
+    e[m] = scale[m] * (sum - fine[m]);
+  }
+  return e;
+}
+
+Eigen::VectorXd ProductSet::forward(const GroupMoments& at, const GroupMoments& change) const {
+  const Eigen::ArrayXd perWeight = inverse(at.weight);
+  Eigen::VectorXd e(size());
+  for (int m = 0; m < size(); ++m) {
+    double sum = 0.0;
+    for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
+      const ProductTerm& term = terms[static_cast<size_t>(t)];
+      const auto source = at.source.col(term.source), tau = at.transmittance.col(term.path);
+      const auto dSource = change.source.col(term.source), dTau = change.transmittance.col(term.path);
+      double value = 0.0;
+      if (term.second < 0) {
+        value = dSource.dot(tau) + source.dot(dTau);
+      } else {
+        const auto second = at.source.col(term.second), dSecond = change.source.col(term.second);
+        value = (perWeight * (tau.array() * (dSource.array() * second.array() + source.array() * dSecond.array() -
+                                             source.array() * second.array() * change.weight.array() * perWeight) +
+                              dTau.array() * source.array() * second.array()))
+                    .sum();
+      }
+      sum += term.coefficient * value;
+    }
+    e[m] = scale[m] * sum;
+  }
+  return e;
+}
+
+GroupMoments ProductSet::backward(const GroupMoments& at, const Eigen::VectorXd& u) const {
+  const Eigen::ArrayXd perWeight = inverse(at.weight);
+  const Eigen::Index groups = at.source.rows();
+  GroupMoments g{Eigen::MatrixXd::Zero(groups, sourceCount()), Eigen::VectorXd::Zero(groups), Eigen::MatrixXd::Zero(groups, pathCount())};
+  for (int m = 0; m < size(); ++m) {
+    const double factor = u[m] * scale[m];
+    if (factor == 0.0) continue;
+    for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
+      const ProductTerm& term = terms[static_cast<size_t>(t)];
+      const double c = factor * term.coefficient;
+      const auto source = at.source.col(term.source), tau = at.transmittance.col(term.path);
+      if (term.second < 0) {
+        g.source.col(term.source) += c * tau;
+        g.transmittance.col(term.path) += c * source;
+      } else {
+        const auto second = at.source.col(term.second);
+        g.source.col(term.source).array() += c * perWeight * tau.array() * second.array();
+        g.source.col(term.second).array() += c * perWeight * tau.array() * source.array();
+        g.weight.array() -= c * perWeight * perWeight * tau.array() * source.array() * second.array();
+        g.transmittance.col(term.path).array() += c * perWeight * source.array() * second.array();
+      }
+    }
+  }
+  return g;
+}
+
+GroupMoments ProductSet::squares(const GroupMoments& at, const Eigen::VectorXd& u) const {
+  const Eigen::ArrayXd perWeight = inverse(at.weight);
+  const Eigen::Index groups = at.source.rows();
+  GroupMoments g{Eigen::MatrixXd::Zero(groups, sourceCount()), Eigen::VectorXd::Zero(groups), Eigen::MatrixXd::Zero(groups, pathCount())};
+  for (int m = 0; m < size(); ++m)
+    for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
+      const ProductTerm& term = terms[static_cast<size_t>(t)];
+      const double c = u[m] * scale[m] * scale[m] * term.coefficient * term.coefficient;
+      const auto source = at.source.col(term.source).array(), tau = at.transmittance.col(term.path).array();
+      if (term.second < 0) {
+        g.source.col(term.source).array() += c * tau.square();
+        g.transmittance.col(term.path).array() += c * source.square();
+      } else {
+        const auto second = at.source.col(term.second).array();
+        g.source.col(term.source).array() += c * (perWeight * tau * second).square();
+        g.source.col(term.second).array() += c * (perWeight * tau * source).square();
+        g.transmittance.col(term.path).array() += c * (perWeight * source * second).square();
+      }
+    }
+  return g;
+}
+
+std::pair<double, double> errorFigures(const Eigen::VectorXd& errors) {
+  if (errors.size() == 0) return {0.0, 0.0};
+  std::vector<double> sizes(static_cast<size_t>(errors.size()));
+  for (size_t i = 0; i < sizes.size(); ++i) sizes[i] = std::abs(errors[static_cast<Eigen::Index>(i)]);
+  const auto rank = static_cast<std::ptrdiff_t>(std::ceil(0.99 * static_cast<double>(sizes.size()))) - 1;
+  std::nth_element(sizes.begin(), sizes.begin() + rank, sizes.end());
+  return {*std::max_element(sizes.begin(), sizes.end()), sizes[static_cast<size_t>(rank)]};
+}
+
+}  // namespace pitviper
