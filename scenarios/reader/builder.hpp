@@ -25,6 +25,8 @@ class Builder {
 
   void readOrigin(const Record& scenario);
   void readTime(const Record& scenario);
+  /// After everything that can be narrow in wavelength: air and materials.
+  void readAccuracy(const Record& scenario);
   void readAtmosphere(const Record& scenario);
   void readBackground(const Record& scenario);
   void readSun(const Record& scenario);
@@ -77,6 +79,7 @@ class Builder {
                           Outside outside = Outside::Error);
   Spectrum blackOrGiven(const Record& r, const char* what) const;
 
+  SpectralSampling accuracy_;  ///< of cameras without a sampling of their own
   Simulation& simulation_;
   std::filesystem::path base_;  ///< folder of the scenario
   Libraries libraries_;

@@ -29,8 +29,9 @@ Gain readGain(const Value& v) {
 }  // namespace
 
 SpectralSampling Builder::readSpectral(const Record& owner) {
-  SpectralSampling s;
+  SpectralSampling s = accuracy_;
   if (!owner.given("spectral")) return s;
+  s = {};
   const Record r(owner.value("spectral"), tables::spectral());
   s.samples = static_cast<int>(r.integer("samples"));
   const std::string spacing = r.text("spacing");
@@ -77,7 +78,10 @@ void Builder::planned(const std::vector<ChannelOutput>& outputs, const SpectralS
       throw UserError(output.where, "the channels of this scenario take too long to plan with " + std::to_string(samples) + " wavelengths",
                       "fewer or smaller tables, or fewer wavelengths", "lower 'samples' under 'spectral:', or thin the tables out");
   }
-  makePlan(simulation_, outputs, sampling, where);  // its mistakes are the scenario's
+  SpectralSampling quick = sampling;
+  quick.accuracy = 0.0;  // its mistakes are the scenario's; a plan for an accuracy takes its time and is made where it is drawn
+  quick.reference = false;
+  makePlan(simulation_, outputs, quick, where);
 }
 
 std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s) {

@@ -63,6 +63,7 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     b.readBackground(r);
     b.readSun(r);
     b.readAmbient(r);
+    b.readAccuracy(r);
     b.readMaterials(r);
     b.readEntities(r);
     if (sim.mode == RenderMode::Direct && sim.hasTransparent())

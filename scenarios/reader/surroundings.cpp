@@ -9,12 +9,16 @@
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/model/sky.hpp"
+#include "sim/parameters/units.hpp"
 
 namespace pitviper {
 namespace {
 
 /// Far below the end of a float, 3.4e38.
 constexpr double kLargestFloatValue = 1e30;
+
+/// What layered air is drawn with if nobody says; and the ends of what can be asked for: single precision and the tables' angles do 0.01 %.
+constexpr double kUsualAccuracy = 0.01, kLeastAccuracy = 0.0005, kMostAccuracy = 0.2;
 
 std::string libraryNames(const std::filesystem::path& folder, const std::string& word, std::string& nearest) {
   std::vector<std::string> names;
@@ -82,6 +86,24 @@ void Builder::readTime(const Record& scenario) {
   empty.where = scenario.where();
   const Record r(scenario.given("time") ? scenario.value("time") : empty, tables::time());
   simulation_.time = {r.number("start"), 1.0 / r.number("rate"), static_cast<int>(r.integer("frames"))};
+}
+
+void Builder::readAccuracy(const Record& scenario) {
+  if (!scenario.given("accuracy")) {
+    accuracy_.accuracy = simulation_.path->isLayered() ? kUsualAccuracy : 0.0;
+    return;
+  }
+  const Value& v = scenario.value("accuracy");
+  if (v.text == "reference") {
+    accuracy_.reference = true;
+    return;
+  }
+  const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
+  const auto share = q && !q->unit.empty() ? convert(*q, "") : std::nullopt;
+  if (!share || !(*share >= kLeastAccuracy && *share <= kMostAccuracy))
+    throw UserError(v.where, "accuracy '" + v.text.substr(0, 40) + "' is neither a share nor 'reference'", "0.05 % to 20 %, or 'reference'",
+                    "write 'accuracy: 1 %'");
+  accuracy_.accuracy = *share;
 }
 
 void Builder::readAtmosphere(const Record& scenario) {

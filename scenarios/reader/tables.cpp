@@ -52,7 +52,11 @@ const ParameterTable& scenario() {
       {text("name", "short name, written into every frame (default: the file's name)"), text("description", "one or two sentences"),
        withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL), "1"),
        map("origin", "where the local east-north-up frame stands on the earth"), map("time", "first frame, rate and number of frames"),
-       map("render", "how it is drawn"), any("atmosphere", "the air: `none`, the name of a library air, or a map"),
+       map("render", "how it is drawn"),
+       text("accuracy",
+            "relative error of a pixel that the plan may spend on wavelengths, tables and terms left out, `1 %` for example, or `reference`: every wavelength "
+            "in double precision on the CPU, slow; without it: 1 % in layered air, else as each camera's `spectral` says"),
+       any("atmosphere", "the air: `none`, the name of a library air, or a map"),
        map("background", "what is behind everything (0 K unless given), seen through the air"), map("sun", "direction and irradiance"),
        map("ambient", "radiance of a uniform dome that lights all surfaces"), map("materials", "name: material; library materials need not be listed"),
        list("lights", "spectral point lights", 0, 1024), list("entities", "bodies", 0, 4096), list("cameras", "sensors", 0, 64),

@@ -19,7 +19,9 @@ namespace pitviper {
 struct SpectralSampling {
   int samples = 16;
   Spacing spacing = Spacing::Gauss;
-  bool shared = false;  ///< one set of nodes for all channels, over the union of their bands
+  bool shared = false;     ///< one set of nodes for all channels, over the union of their bands
+  double accuracy = 0.0;   ///< relative error that the plan may spend: it chooses wavelengths, terms and tables; 0: as the above says
+  bool reference = false;  ///< every wavelength of the fine grid, in double precision on the CPU
 };
 
 /// Neighbouring bins of wavelength, each averaged with Gauss points.

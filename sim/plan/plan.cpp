@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "sim/model/shadow_casters.hpp"
+#include "sim/plan/fine_grid.hpp"
 
 namespace pitviper {
 namespace {
@@ -122,8 +123,9 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   std::vector<std::vector<QuadratureNode>> rules;
   for (const auto* slot : slots) {
     try {
-      rules.push_back(sampling.shared ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, pieces)
-                                      : spectralRule(slot->kernel, sampling.samples, sampling.spacing));
+      rules.push_back(sampling.reference ? fineGrid(slot->kernel)
+                      : sampling.shared  ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, pieces)
+                                         : spectralRule(slot->kernel, sampling.samples, sampling.spacing));
     } catch (const std::invalid_argument& e) {
       throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(),
                       sampling.shared ? "a response that these samples integrate to 0.1 %" : "a response above zero somewhere",

@@ -51,8 +51,8 @@ std::pair<double, double> elevations(const View& v, const glm::dvec3& up) {
 
 }  // namespace
 
-AirTables::AirTables(const Simulation& simulation, const Plan& plan, bool perChannel)
-    : simulation_(simulation), plan_(plan), perChannel_(perChannel), needed_(plan.terms.air && simulation.path->isLayered()) {
+AirTables::AirTables(const Simulation& simulation, const Plan& plan, bool perChannel, bool wanted)
+    : simulation_(simulation), plan_(plan), perChannel_(perChannel), needed_(wanted && plan.terms.air && simulation.path->isLayered()) {
   if (!needed_) return;
   vectors_ = (static_cast<int>(simulation.path->exponents().size()) + 3) / 4;
   values_ = perChannel ? 4 * plan.groupCount() : plan.nodeCount();

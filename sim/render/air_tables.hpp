@@ -13,7 +13,7 @@ namespace pitviper {
 class AirTables {
  public:
   /// `perChannel`: path radiance is integrated over the channels (direct mode), else it is kept per node. Both must outlive it.
-  AirTables(const Simulation& simulation, const Plan& plan, bool perChannel);
+  AirTables(const Simulation& simulation, const Plan& plan, bool perChannel, bool wanted = true);
   /// Nothing to do for air that is not layered.
   bool isNeeded() const { return needed_; }
   void addConstants(ShaderSlots& slots) const;

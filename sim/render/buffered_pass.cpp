@@ -64,7 +64,7 @@ ShaderSlots integration(const Plan& plan, int first, int count, std::vector<floa
 
 BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                            double apertureArea_m2)
-    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, false) {
+    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Buffered) {
   const int perBatch = std::min(4 * kMostTargets, plan.nodeCount());
   targets_ = (perBatch + 3) / 4;
   ShaderSlots slots = shadingSlots();

@@ -12,6 +12,11 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
       solidAngles_(std::make_shared<const Pinhole::SolidAngles>(camera.pinhole.solidAngles())) {
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
   const double area_m2 = camera.pinhole.apertureArea_m2();
+  if (camera.spectral.reference) {
+    reference_ = std::make_unique<ReferencePass>(simulation, plan_, library, scene, truth, area_m2);
+    pass_ = reference_.get();
+    return;
+  }
   if (simulation.mode == RenderMode::Buffered || transparent) buffered_ = std::make_unique<BufferedPass>(simulation, plan_, library, scene, truth, area_m2);
   // Its program is made at the start even where the first frame needs the other: none may be late for want of a compiler.
   if (simulation.mode != RenderMode::Buffered) direct_ = std::make_unique<DirectPass>(simulation, plan_, library, scene, truth, area_m2);

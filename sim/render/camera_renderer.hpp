@@ -4,6 +4,7 @@
 
 #include "sim/render/buffered_pass.hpp"
 #include "sim/render/direct_pass.hpp"
+#include "sim/render/reference/reference_pass.hpp"
 #include "sim/render/subpixels.hpp"
 
 namespace pitviper {
@@ -24,14 +25,15 @@ class CameraRenderer {
   }
   const Plan& plan() const { return plan_; }
   /// Of the mode that the last frame was drawn in.
-  bool isBuffered() const { return pass_ == buffered_.get(); }
+  bool isBuffered() const { return buffered_ && pass_ == buffered_.get(); }
 
  private:
   bool seesTransparent() const;
   const Simulation& simulation_;
   const Camera& camera_;
   Plan plan_;
-  std::unique_ptr<DirectPass> direct_;  ///< both where auto has to choose frame by frame
+  std::unique_ptr<ReferencePass> reference_;  ///< instead of the other two
+  std::unique_ptr<DirectPass> direct_;        ///< both where auto has to choose frame by frame
   std::unique_ptr<BufferedPass> buffered_;
   ScenePass* pass_ = nullptr;
   WorldState state_;

@@ -6,13 +6,13 @@ namespace pitviper {
 
 DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                        double apertureArea_m2)
-    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, true) {
+    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Direct) {
   checkUniformSize(tables().weights.size() * sizeof(float), "the channels' spectral weights");
   ShaderSlots slots = shadingSlots();
   slots.files["truth"] = truth ? "sim/render/glsl/truth_layers.glsl" : "sim/render/glsl/truth_none.glsl";
   slots.generated["targets"] = tables().targetsText;
   std::string integral = tables().integrateText;
-  if (simulation.path && simulation.path->isLayered()) {
+  if (plan.terms.air && simulation.path->isLayered()) {
     std::string air;
     for (int g = 0; g < plan.groupCount(); ++g) air += "  channels" + std::to_string(g) + " += channelAir(" + std::to_string(g) + ", air_);\n";
     integral.insert(integral.rfind('}'), air);

@@ -24,6 +24,16 @@ struct GpuView {
   glm::vec4 pixel, film, depth, up, earth, sun, aperture, east, north;
 };
 
+/// The same plan at one wavelength: what the reference needs of tables is which part each draw is.
+Plan outline(const Plan& plan) {
+  Plan one = plan;
+  one.nodes.resize(1);
+  for (auto& w : one.weight) w.resize(1);
+  one.blocks = {{0, 1, {}}};
+  for (int s = 0; s < plan.slotCount; ++s) one.blocks[0].slots.push_back(s);
+  return one;
+}
+
 }  // namespace
 
 void checkUniformSize(std::size_t bytes, const char* what) {
@@ -35,26 +45,28 @@ void checkUniformSize(std::size_t bytes, const char* what) {
 }
 
 ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
-                     double apertureArea_m2, bool perChannel)
+                     double apertureArea_m2, Shading shading)
     : simulation_(simulation),
       plan_(plan),
       scene_(std::move(scene)),
       truth_(truth),
       apertureArea_m2_(apertureArea_m2),
-      tables_(makeTables(simulation, plan)),
+      tables_(shading == Shading::Reference ? makeTables(simulation, outline(plan)) : makeTables(simulation, plan)),
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
       relevance_(simulation, plan, tables_),
-      air_(simulation, plan, perChannel),
-      perChannel_(perChannel) {
+      air_(simulation, plan, shading == Shading::Direct, shading != Shading::Reference),
+      how_(shading) {
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
-  checkUniformSize((tables_.node.size() * 2 + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
+  if (shading != Shading::Reference)
+    checkUniformSize((tables_.node.size() * 2 + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
 }
 
 ShaderSlots ScenePass::shadingSlots() const {
   ShaderSlots slots;
-  slots.files["path"] =
-      simulation_.path ? (perChannel_ ? simulation_.path->channelSlotFile() : simulation_.path->slotFile()) : "sim/render/glsl/path_none.glsl";
+  slots.files["path"] = !simulation_.path || !plan_.terms.air || how_ == Shading::Reference ? "sim/render/glsl/path_none.glsl"
+                        : how_ == Shading::Direct                                           ? simulation_.path->channelSlotFile()
+                                                                                            : simulation_.path->slotFile();
   const SurfaceTerms& t = plan_.terms.solid;
   slots.files["lobes"] = t.lobeFile.empty() ? "sim/render/glsl/lobes_none.glsl" : t.lobeFile;
   slots.files["lights"] = lightsFile(plan_);
@@ -63,7 +75,7 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.files["columns"] = tables_.solid.tabulated ? "sim/render/glsl/columns_tabulated.glsl" : "sim/render/glsl/columns_plain.glsl";
   slots.files["temperature"] = t.temperatureTextures ? "sim/render/glsl/temperature_textured.glsl" : "sim/render/glsl/temperature_uniform.glsl";
   slots.files["transmission"] = "sim/render/glsl/transmission_none.glsl";
-  slots.constants["NODES"] = plan_.nodeCount();
+  slots.constants["NODES"] = how_ == Shading::Reference ? 1 : plan_.nodeCount();
   slots.constants["GROUPS"] = plan_.groupCount();
   slots.constants["LIGHTS"] = plan_.lightCount;
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
@@ -80,7 +92,7 @@ std::vector<std::string> ScenePass::channelTargets() const {
 
 void ScenePass::setState(const WorldState& state) {
   std::vector<float> block = tables_.node;
-  const auto lights = lightTable(simulation_, plan_, state);
+  const auto lights = lightTable(simulation_, how_ == Shading::Reference ? outline(plan_) : plan_, state);
   block.insert(block.end(), lights.begin(), lights.end());
   block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
   nodes_.upload(block);

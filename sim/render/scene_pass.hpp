@@ -43,9 +43,11 @@ class ScenePass {
   virtual std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m);
 
  protected:
-  /// The simulation and the plan must outlive it. `perChannel`: shading integrates, so that air can be integrated beforehand.
+  /// Direct: in the shader, so that air is integrated over the channels beforehand; buffered: after it; reference: not on the GPU at all.
+  enum class Shading { Direct, Buffered, Reference };
+  /// The simulation and the plan must outlive it. `shading`: where the spectral integral is done.
   ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
-            double apertureArea_m2, bool perChannel);
+            double apertureArea_m2, Shading shading);
   /// Shades what `visibility` shows into `into`: channel groups first, then truth. Buffers, textures and state are bound;
   /// the target is not. Where only one entity is shaded the target has been cleared.
   virtual void shade(RenderTarget& into, const RenderTarget& visibility) = 0;
@@ -84,7 +86,7 @@ class ScenePass {
   SolidPass solids_;
   LightRelevance relevance_;
   AirTables air_;
-  bool perChannel_;
+  Shading how_;
   std::unique_ptr<ShadowPass> shadows_;  ///< where the plan has them
   Buffer nodes_, draws_, lights_, view_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid

@@ -41,6 +41,25 @@ void addStretches(RayHits& hits, const Entity& entity, int index, const BodyRay&
   }
 }
 
+Hit hitAt(const Entity& entity, std::pair<int, int> place, std::uint32_t triangle, const TriangleMeeting& m, const BodyRay& ray, const glm::dvec3& origin,
+          const glm::dvec3& direction) {
+  const Mesh& mesh = *entity.mesh;
+  const glm::uvec3 i = mesh.triangles[triangle];
+  const glm::dvec3 w = m.weight;
+  Hit hit;
+  hit.entity = place.first;
+  hit.surface = place.second;
+  hit.distance = m.along;
+  hit.point = origin + m.along * direction;
+  hit.front = m.entering;
+  const glm::dvec3 n = w.x * glm::dvec3(mesh.normals[i.x]) + w.y * glm::dvec3(mesh.normals[i.y]) + w.z * glm::dvec3(mesh.normals[i.z]);
+  hit.normal = ray.localFromBody * glm::normalize(m.entering ? n : -n);
+  const glm::dvec3 a(mesh.positions[i.x]);
+  hit.facet = ray.localFromBody * glm::normalize(glm::cross(glm::dvec3(mesh.positions[i.y]) - a, glm::dvec3(mesh.positions[i.z]) - a));
+  hit.uv = w.x * glm::dvec2(mesh.uv[i.x]) + w.y * glm::dvec2(mesh.uv[i.y]) + w.z * glm::dvec2(mesh.uv[i.z]);
+  return hit;
+}
+
 }  // namespace
 
 size_t surfaceOf(const Entity& entity, std::uint32_t triangle) {
@@ -51,10 +70,12 @@ size_t surfaceOf(const Entity& entity, std::uint32_t triangle) {
   return entity.surfaces.size() - 1;
 }
 
-RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest) {
+RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest,
+                const std::vector<char>* drawn, bool transparentOnly) {
   RayHits hits;
   for (size_t e = 0; e < sim.entities.size(); ++e) {
     const Entity& entity = sim.entities[e];
+    if ((drawn && !(*drawn)[e]) || (transparentOnly && !sim.isTransparent(entity))) continue;
     const Pose& pose = state.entities[e];
     const glm::dmat3 localFromBody = glm::mat3_cast(pose.orientation), bodyFromLocal = glm::transpose(localFromBody);
     const BodyRay ray{localFromBody, bodyFromLocal * (origin - pose.position), bodyFromLocal * direction};
@@ -70,20 +91,9 @@ RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3
       const bool layer = sim.materialOf(entity.surfaces[s]).transmission.has_value();
       // Of two in one place the first of the scenario is seen, whatever the order of the tree.
       const std::pair place(static_cast<int>(e), static_cast<int>(s));
+      if (transparentOnly && !layer) return false;
       if (!layer && m.along == hits.solid.distance && place >= std::pair(hits.solid.entity, hits.solid.surface)) return false;
-      const glm::uvec3 i = mesh.triangles[t];
-      const glm::dvec3 w = m.weight;
-      Hit hit;
-      hit.entity = place.first;
-      hit.surface = place.second;
-      hit.distance = m.along;
-      hit.point = origin + m.along * direction;
-      hit.front = m.entering;
-      const glm::dvec3 n = w.x * glm::dvec3(mesh.normals[i.x]) + w.y * glm::dvec3(mesh.normals[i.y]) + w.z * glm::dvec3(mesh.normals[i.z]);
-      hit.normal = localFromBody * glm::normalize(m.entering ? n : -n);
-      const glm::dvec3 a(mesh.positions[i.x]);
-      hit.facet = localFromBody * glm::normalize(glm::cross(glm::dvec3(mesh.positions[i.y]) - a, glm::dvec3(mesh.positions[i.z]) - a));
-      hit.uv = w.x * glm::dvec2(mesh.uv[i.x]) + w.y * glm::dvec2(mesh.uv[i.y]) + w.z * glm::dvec2(mesh.uv[i.z]);
+      const Hit hit = hitAt(entity, place, t, m, ray, origin, direction);
       if (layer) hits.layers.push_back(hit);
       else hits.solid = hit;
       return false;
@@ -96,6 +106,26 @@ RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3
   }
   std::erase_if(hits.stretches, [](const Stretch& s) { return s.leave <= s.enter; });
   return hits;
+}
+
+// The visibility pass may give a pixel's middle to a triangle whose edge runs beside it: the weights are held within it, as the shader's are.
+Hit hitOf(const Simulation& sim, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, int entity, std::uint32_t triangle) {
+  const Entity& body = sim.entities[static_cast<size_t>(entity)];
+  const Pose& pose = state.entities[static_cast<size_t>(entity)];
+  const glm::dmat3 localFromBody = glm::mat3_cast(pose.orientation), bodyFromLocal = glm::transpose(localFromBody);
+  const BodyRay ray{localFromBody, bodyFromLocal * (origin - pose.position), bodyFromLocal * direction};
+  const Mesh& mesh = *body.mesh;
+  const glm::uvec3 i = mesh.triangles[triangle];
+  const glm::dvec3 a(mesh.positions[i.x]), e1 = glm::dvec3(mesh.positions[i.y]) - a, e2 = glm::dvec3(mesh.positions[i.z]) - a;
+  const glm::dvec3 p = glm::cross(ray.direction, e2), q = ray.origin - a, r = glm::cross(q, e1);
+  const double det = glm::dot(e1, p), inverse = det != 0.0 ? 1.0 / det : 0.0;
+  const double v = std::clamp(glm::dot(q, p) * inverse, 0.0, 1.0), w = std::clamp(glm::dot(ray.direction, r) * inverse, 0.0, 1.0 - v);
+  TriangleMeeting m;
+  m.met = true;
+  m.along = glm::dot(e2, r) * inverse;
+  m.weight = {1.0 - v - w, v, w};
+  m.entering = glm::dot(glm::cross(e1, e2), ray.direction) < 0.0;
+  return hitAt(body, {entity, static_cast<int>(surfaceOf(body, triangle))}, triangle, m, ray, origin, direction);
 }
 
 }  // namespace pitviper

@@ -32,6 +32,11 @@ struct RayHits {
 size_t surfaceOf(const Entity& entity, std::uint32_t triangle);
 
 /// direction of unit length; surfaces nearer than `nearest` are not seen. Source: Moeller and Trumbore 1997.
-RayHits castRay(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest);
+/// `drawn`: one flag per entity, or null for all; `transparentOnly`: opaque surfaces neither show nor hide.
+RayHits castRay(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest,
+                const std::vector<char>* drawn = nullptr, bool transparentOnly = false);
+
+/// Where a ray meets the plane of a triangle that is known to be seen.
+Hit hitOf(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, int entity, std::uint32_t triangle);
 
 }  // namespace pitviper

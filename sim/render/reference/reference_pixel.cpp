@@ -35,6 +35,7 @@ struct Sight {
   const Plan& plan;
   const WorldState& state;
   glm::dvec3 position, direction;
+  const ShadowCaster& shadows;
 
   AirRay airRay() const { return {sim.frame.height(position), glm::dot(direction, sim.frame.up(position)), sim.frame.earthRadius_m()}; }
 };
@@ -103,7 +104,6 @@ Seen lookAt(const Sight& sight, const Hit& hit) {
     AirAmounts powered;
   };
   std::vector<Leg> legs;
-  const ShadowCaster shadows(sim);
   const AirRay here{sim.frame.height(hit.point), 0.0, sim.frame.earthRadius_m()};
   const glm::dvec3 up = sim.frame.up(hit.point);
   auto addLeg = [&](const glm::dvec3& line, double radius_m, bool sun) {
@@ -112,7 +112,7 @@ Seen lookAt(const Sight& sight, const Hit& hit) {
     const glm::dvec3 to = d > 0.0 ? line / d : hit.normal;
     leg.light = inNormalFrame(hit.normal, to);
     leg.factor = sun ? std::max(leg.light.z, 0.0) : physics::pointIrradianceFactor(leg.light.z, d2, radius_m);
-    if (leg.factor > 0.0 && plan.terms.shadows && !shadows.lit(sight.state, hit, to, sun ? INFINITY : d - radius_m)) leg.factor = 0.0;
+    if (leg.factor > 0.0 && plan.terms.shadows && !sight.shadows.lit(sight.state, hit, to, sun ? INFINITY : d - radius_m)) leg.factor = 0.0;
     if (plan.terms.air) {
       const bool endless = sim.path->top_m() >= physics::kFar;
       AirRay leaving = here;
@@ -191,11 +191,57 @@ void addTransparent(const Sight& sight, const RayHits& hits, std::vector<double>
 
 }  // namespace
 
-ReferencePixel referencePixel(const Simulation& sim, const Plan& plan, const View& view, const WorldState& state, int x, int y) {
+ReferenceShader::ReferenceShader(const Simulation& simulation, const Plan& plan, const View& view, const WorldState& state, const std::vector<char>& drawn)
+    : simulation_(simulation), plan_(plan), view_(view), state_(state), drawn_(drawn), transparent_(simulation.hasTransparent()), shadows_(simulation) {}
+
+ReferencePixel ReferenceShader::pixel(int x, int y) const {
+  const glm::dvec3 ray = view_.ray(x + 0.5, y + 0.5);
+  return shade(x, y, castRay(simulation_, state_, view_.position, view_.localFromCamera * ray / glm::length(ray), view_.near_m * glm::length(ray), &drawn_));
+}
+
+ReferencePixel ReferenceShader::pixel(int x, int y, const SeenTriangle& seen) const {
+  const glm::dvec3 ray = view_.ray(x + 0.5, y + 0.5), direction = view_.localFromCamera * ray / glm::length(ray);
+  RayHits hits;
+  if (seen.entity >= 0) hits.solid = hitOf(simulation_, state_, view_.position, direction, seen.entity, seen.triangle);
+  if (transparent_) {
+    // What is transparent, before the solid surface that is known already.
+    RayHits all = castRay(simulation_, state_, view_.position, direction, view_.near_m * glm::length(ray), &drawn_, true);
+    std::erase_if(all.layers, [&](const Hit& h) { return h.distance > hits.solid.distance; });
+    for (Stretch& s : all.stretches) s.leave = std::min(s.leave, hits.solid.distance);
+    std::erase_if(all.stretches, [](const Stretch& s) { return s.leave <= s.enter; });
+    hits.layers = std::move(all.layers);
+    hits.stretches = std::move(all.stretches);
+  }
+  return shade(x, y, hits);
+}
+
+std::vector<double> ReferenceShader::transmittance(double farthest_m) const {
+  std::vector<double> all(plan_.nodes.size(), 1.0);
+  if (!transparent_) return all;
+  const glm::dvec3 ray = view_.ray(0.5 * view_.width, 0.5 * view_.height), direction = view_.localFromCamera * ray / glm::length(ray);
+  const Sight sight{simulation_, plan_, state_, view_.position, direction, shadows_};
+  const RayHits hits = castRay(simulation_, state_, view_.position, direction, view_.near_m * glm::length(ray), &drawn_, true);
+  const double end = farthest_m * glm::length(ray);
+  for (const Hit& h : hits.layers) {
+    if (h.distance > end) continue;
+    const Seen seen = lookAt(sight, h);
+    for (size_t i = 0; i < all.size(); ++i) all[i] *= seen.transmittance[i];
+  }
+  for (const Stretch& s : hits.stretches) {
+    const size_t material = static_cast<size_t>(simulation_.entities[static_cast<size_t>(s.entity)].surfaces.front().material);
+    const double length = std::min(s.leave, end) - s.enter;
+    if (length > 0.0)
+      for (size_t i = 0; i < all.size(); ++i) all[i] *= std::exp(-plan_.nodes[i].absorption_per_m[material] * length);
+  }
+  return all;
+}
+
+ReferencePixel ReferenceShader::shade(int x, int y, const RayHits& hits) const {
+  const Simulation& sim = simulation_;
+  const Plan& plan = plan_;
   ReferencePixel pixel;
-  const glm::dvec3 ray = view.ray(x + 0.5, y + 0.5);
-  const Sight sight{sim, plan, state, view.position, view.localFromCamera * ray / glm::length(ray)};
-  const RayHits hits = castRay(sim, state, sight.position, sight.direction, view.near_m * glm::length(ray));
+  const glm::dvec3 ray = view_.ray(x + 0.5, y + 0.5);
+  const Sight sight{sim, plan, state_, view_.position, view_.localFromCamera * ray / glm::length(ray), shadows_};
   pixel.entity = hits.solid.entity;
   pixel.surface = hits.solid.surface;
   const bool found = hits.solid.entity >= 0;
@@ -217,6 +263,11 @@ ReferencePixel referencePixel(const Simulation& sim, const Plan& plan, const Vie
   for (size_t s = 0; s < pixel.slots.size(); ++s)
     for (size_t i = 0; i < plan.nodes.size(); ++i) pixel.slots[s] += plan.weight[s][i] * pixel.radiance[i];
   return pixel;
+}
+
+ReferencePixel referencePixel(const Simulation& sim, const Plan& plan, const View& view, const WorldState& state, int x, int y) {
+  const std::vector<char> all(sim.entities.size(), 1);
+  return ReferenceShader(sim, plan, view, state, all).pixel(x, y);
 }
 
 }  // namespace pitviper

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/plan/plan.hpp"
+#include "sim/render/reference/shadow_rays.hpp"
 #include "sim/render/view.hpp"
 
 namespace pitviper {
@@ -18,7 +19,36 @@ struct ReferencePixel {
   double temperature_K = 0.0;
 };
 
-/// The centre of pixel (x, y) of a view, counted from the lower left.
+/// What the visibility pass found; entity -1: the background.
+struct SeenTriangle {
+  int entity = -1;
+  std::uint32_t triangle = 0;  ///< of its mesh
+};
+
+/// Many pixels of one view; pixels may be asked for from several threads.
+class ReferenceShader {
+ public:
+  /// All must outlive it. `drawn`: one flag per entity, what is left out neither shows nor lets less through (it still casts shadows).
+  ReferenceShader(const Simulation& simulation, const Plan& plan, const View& view, const WorldState& state, const std::vector<char>& drawn);
+  /// The centre of pixel (x, y), counted from the lower left: what a ray meets.
+  ReferencePixel pixel(int x, int y) const;
+  /// The same, given which triangle it sees.
+  ReferencePixel pixel(int x, int y, const SeenTriangle& seen) const;
+  /// Per node, of everything transparent on the line through the middle of the view as far as a depth.
+  std::vector<double> transmittance(double farthest_m) const;
+
+ private:
+  ReferencePixel shade(int x, int y, const RayHits& hits) const;
+  const Simulation& simulation_;
+  const Plan& plan_;
+  const View& view_;
+  const WorldState& state_;
+  const std::vector<char>& drawn_;
+  bool transparent_;
+  ShadowCaster shadows_;
+};
+
+/// The centre of pixel (x, y) of a view, counted from the lower left; everything is drawn.
 ReferencePixel referencePixel(const Simulation& simulation, const Plan& plan, const View& view, const WorldState& state, int x, int y);
 
 }  // namespace pitviper

@@ -1,0 +1,64 @@
+#include "sim/render/reference/reference_pass.hpp"
+
+#include <epoxy/gl.h>
+
+#include <atomic>
+#include <cmath>
+#include <future>
+#include <thread>
+
+#include "sim/render/reference/reference_pixel.hpp"
+
+namespace pitviper {
+
+ReferencePass::ReferencePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
+                             double apertureArea_m2)
+    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Reference), simulation_(simulation) {
+  if (!truth) return;
+  ShaderSlots slots = shadingSlots();
+  slots.constants["WEIGHTS"] = 1;
+  slots.files["truth"] = "sim/render/glsl/truth_layers.glsl";
+  slots.generated["targets"] = "void clearTargets() {}\n";
+  slots.generated["integrate"] = "void integrate() {}\n";
+  truthProgram_ = ShadingProgram(library, slots, truthTargets(), static_cast<size_t>(plan.groupCount()));
+}
+
+void ReferencePass::beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) {
+  view_ = view;
+  state_ = state;
+  drawn_ = drawn;
+}
+
+void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
+  Readback readback;
+  readback.start(into, 0, nullptr, &visibility);
+  const auto identity = readback.wait().identity;
+  const int width = visibility.width(), height = visibility.height();
+  const size_t groups = static_cast<size_t>(plan().groupCount());
+  std::vector<std::vector<float>> channels(groups, std::vector<float>(4 * static_cast<size_t>(width) * static_cast<size_t>(height), 0.0f));
+  const ReferenceShader shader(simulation_, plan(), view_, state_, drawn_);
+  std::atomic<int> next{0};
+  auto work = [&] {
+    for (int y = next++; y < height; y = next++)
+      for (int x = 0; x < width; ++x) {
+        const size_t p = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
+        const DrawItem& item = tables().draws[identity[2 * p]];
+        if (view_.onlyEntity >= 0 && item.entity != view_.onlyEntity) continue;
+        SeenTriangle seen;
+        if (item.entity >= 0) seen = {item.entity, identity[2 * p + 1] - sharedScene()->firstTriangle(item.entity)};
+        const ReferencePixel pixel = shader.pixel(x, y, seen);
+        for (size_t s = 0; s < pixel.slots.size(); ++s) channels[s / 4][4 * p + s % 4] = static_cast<float>(pixel.slots[s]);
+      }
+  };
+  std::vector<std::future<void>> workers;
+  for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t) workers.push_back(std::async(std::launch::async, work));
+  for (auto& w : workers) w.get();
+  for (size_t g = 0; g < groups; ++g) glTextureSubImage2D(into.colour(g).name(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, channels[g].data());
+  if (hasTruth()) truthProgram_.run(into);
+}
+
+std::vector<double> ReferencePass::transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) {
+  return ReferenceShader(simulation_, plan(), view, state, drawn).transmittance(farthest_m);
+}
+
+}  // namespace pitviper

@@ -1,0 +1,25 @@
+#pragma once
+// The third mode of drawing: the visibility pass says which triangle each subpixel sees; everything from there on is double precision on the
+// CPU, at every wavelength of the plan, from the models themselves. No tables, no term left out. Slow, for judging the other two.
+#include "sim/render/scene_pass.hpp"
+
+namespace pitviper {
+
+class ReferencePass final : public ScenePass {
+ public:
+  ReferencePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
+                double apertureArea_m2);
+  std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) override;
+
+ private:
+  void beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) override;
+  void shade(RenderTarget& into, const RenderTarget& visibility) override;
+
+  const Simulation& simulation_;
+  ShadingProgram truthProgram_;
+  View view_;
+  WorldState state_;
+  std::vector<char> drawn_;
+};
+
+}  // namespace pitviper
