@@ -69,13 +69,16 @@ const std::map<std::string, Command>& commands() {
         "  --out FOLDER         also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing\n"
         "  --accuracy SCENARIO  instead: the scenario's middle frame at 4 to 64 spectral samples, frames a second and error against 192\n"}},
       {"atmosphere",
-       {atmosphereCommand, "what air there is in the library or in a MODTRAN tape7, as tables and charts",
-        "pitviper atmosphere NAME|FILE [--out FOLDER]\n\n"
-        "NAME or FILE.air: an air table (us76_rural, mls_rural): mean transmittance of level and slant paths, to space.\n"
+       {atmosphereCommand, "what air there is in the library, in a MODTRAN tape7 or in a CSV file, as tables and charts",
+        "pitviper atmosphere NAME|FILE [--range KM] [--out FOLDER]\n\n"
+        "NAME or FILE.air: an air table (us76_rural, mls_rural): mean transmittance and radiance of level and slant paths, sky, sun at the ground.\n"
+        "FILE.csv: air by tables; the columns it may have are listed at the head of atmosphere/tabulated_csv.hpp, for instance\n"
+        "  wavelength_um, range_km, transmittance, path_radiance_W/(m2 sr um)\n"
         "FILE: a tape7 (.tp7) of MODTRAN, transmittance, thermal radiance with or without the sun or solar irradiance, any number of runs; prints\n"
-        "for each: kind, model, path, wavelengths and step, mean transmittance in 3-5 and 8-12 um where covered.\n\n"
-        "  --out FOLDER     also NAME.csv or FILE_run<N>.csv, every column over wavelength in W/(m2 sr um) or W/(m2 um), and a chart of the same name\n"
-        "                   (PNG, needs VTK), in FOLDER; created if missing\n"}},
+        "for each: kind, model, path, wavelengths and step, mean transmittance in 3-5 and 8-12 um where covered; and how it serves as air along a path.\n\n"
+        "  --range KM       of the only path in a tape7 whose cards have none\n"
+        "  --out FOLDER     also NAME.csv, FILE_run<N>.csv or FILE_air.csv, every column over wavelength in W/(m2 sr um) or W/(m2 um), and a chart of\n"
+        "                   the same name (PNG, needs VTK), in FOLDER; created if missing\n"}},
       {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
   };
   return all;

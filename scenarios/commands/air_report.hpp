@@ -1,5 +1,5 @@
 #pragma once
-// What an air table holds, for people: transmittance of a few paths in words, as CSV and as a chart.
+// What an air table holds, for people: transmittance and radiance of a few paths, the sky and the sun, in words, as CSV and as charts.
 #include <string>
 #include <vector>
 
@@ -8,9 +8,9 @@
 
 namespace pitviper {
 
-/// Title, source, range of wavelengths, and band means of transmittance over level and slant paths.
+/// Title, source, range of wavelengths, and band means: transmittance and radiance over level and slant paths, sky, sun at the ground.
 std::string describeAir(const AbsorberTable& air);
-/// Transmittance of the same paths and path radiance of the level ones at every 20 1/cm.
+/// The same at every 20 1/cm.
 std::string airCsv(const AbsorberTable& air);
 std::vector<Chart> airCharts(const AbsorberTable& air);
 

@@ -1,15 +1,21 @@
-// pitviper atmosphere: what a MODTRAN tape7 or an air table of the library holds, in words, tables and charts.
+// pitviper atmosphere: what a MODTRAN tape7, a table of air or an air table of the library holds, in words, tables and charts.
+#include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
+#include "atmosphere/tabulated_csv.hpp"
+#include "atmosphere/tabulated_tape7.hpp"
 #include "atmosphere/tape7.hpp"
 #include "atmosphere/tape7_summary.hpp"
 #include "scenarios/commands/air_report.hpp"
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
+#include "scenarios/commands/tabulated_report.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/image/atomic_file.hpp"
+#include "sim/parameters/error.hpp"
 
 namespace pitviper {
 namespace {
@@ -57,42 +63,78 @@ std::vector<Chart> chartsOf(const Tape7Run& run) {
   return charts;
 }
 
-void showAir(const std::filesystem::path& file, bool write, const std::filesystem::path& out) {
+/// Writes NAME.csv and NAME.png.
+void write(const std::filesystem::path& out, const std::string& name, const std::string& csv, const std::vector<Chart>& charts, int columns) {
+  ensureWritableFolder(out);
+  writeFileAtomically(out / (name + ".csv"), csv);
+  std::printf("%s written\n", (out / (name + ".csv")).string().c_str());
+  drawCharts(charts, columns, out / (name + ".png"));
+  std::printf("%s written\n", (out / (name + ".png")).string().c_str());
+}
+
+void showAir(const std::filesystem::path& file, const std::optional<std::filesystem::path>& out) {
   const AbsorberTable air = AbsorberTable::read(file);
   std::printf("%s", describeAir(air).c_str());
-  if (!write) return;
-  ensureWritableFolder(out);
-  const std::string name = file.stem().string();
-  writeFileAtomically(out / (name + ".csv"), airCsv(air));
-  std::printf("\n%s written\n", (out / (name + ".csv")).string().c_str());
-  drawCharts(airCharts(air), 1, out / (name + ".png"));
-  std::printf("%s written\n", (out / (name + ".png")).string().c_str());
+  if (!out) return;
+  std::printf("\n");
+  write(*out, file.stem().string(), airCsv(air), airCharts(air), 2);
+}
+
+void showTable(const TabulatedAir& air, const std::string& name, const std::optional<std::filesystem::path>& out) {
+  std::printf("%s", describeTable(air).c_str());
+  if (!out) return;
+  const auto charts = tableCharts(air);
+  write(*out, name, tableCsv(air), charts, static_cast<int>(charts.size()));
+}
+
+std::optional<double> rangeGiven(const Options& o) {
+  if (!o.has("--range")) return std::nullopt;
+  const std::string text = o.value("--range");
+  double km = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), km);
+  if (error != std::errc() || end != text.data() + text.size() || !(km > 0.0 && km <= 1e5))
+    throw UserError({}, "--range is '" + text + "'", "a number of km above 0", "--range 5");
+  return 1e3 * km;
+}
+
+void showTape7(const std::filesystem::path& file, std::optional<double> range_m, const std::optional<std::filesystem::path>& out) {
+  const auto runs = readTape7(file);
+  std::printf("%s: %zu run%s of MODTRAN\n", file.string().c_str(), runs.size(), runs.size() == 1 ? "" : "s");
+  for (const auto& run : runs) std::printf("%s", describe(run).c_str());
+  const std::string name = file.filename().string();
+  if (out)
+    for (const auto& run : runs) {
+      const auto charts = chartsOf(run);
+      write(*out, name + "_run" + std::to_string(run.number), csvOf(run), charts, static_cast<int>(charts.size()));
+    }
+  // Not every file is air along a path: of one that is not, the reason is part of what there is to know.
+  std::optional<TabulatedAir> air;
+  try {
+    air = tabulatedAir(runs, range_m);
+  } catch (const UserError& e) {
+    if (range_m) throw;
+    std::printf("as air: no; %s\n", e.what());
+    return;
+  }
+  std::printf("as air: ");
+  showTable(*air, name + "_air", out);
 }
 
 }  // namespace
 
 int atmosphereCommand(const Arguments& arguments) {
-  const Options o("atmosphere", arguments, {{"--out"}}, 1, 1);
-  const std::filesystem::path file = o.words()[0], out = o.value("--out");
+  const Options o("atmosphere", arguments, {{"--out"}, {"--range"}}, 1, 1);
+  const std::filesystem::path file = o.words()[0];
+  const auto out = o.has("--out") ? std::optional<std::filesystem::path>(o.value("--out")) : std::nullopt;
+  const auto range_m = rangeGiven(o);
   const auto named = findLibraries().atmosphere / (o.words()[0] + ".air");
   std::error_code ignored;
-  if (file.extension() == ".air" || (!std::filesystem::exists(file, ignored) && std::filesystem::is_regular_file(named, ignored))) {
-    showAir(file.extension() == ".air" ? file : named, o.has("--out"), out);
-    return 0;
-  }
-  const auto runs = readTape7(file);
-  std::printf("%s: %zu run%s of MODTRAN\n", file.string().c_str(), runs.size(), runs.size() == 1 ? "" : "s");
-  for (const auto& run : runs) std::printf("%s", describe(run).c_str());
-  if (!o.has("--out")) return 0;
-  ensureWritableFolder(out);
-  for (const auto& run : runs) {
-    const std::string name = file.filename().string() + "_run" + std::to_string(run.number);
-    writeFileAtomically(out / (name + ".csv"), csvOf(run));
-    std::printf("%s written\n", (out / (name + ".csv")).string().c_str());
-    const auto charts = chartsOf(run);
-    drawCharts(charts, static_cast<int>(charts.size()), out / (name + ".png"));
-    std::printf("%s written\n", (out / (name + ".png")).string().c_str());
-  }
+  const bool library = file.extension() == ".air" || (!std::filesystem::exists(file, ignored) && std::filesystem::is_regular_file(named, ignored));
+  if (range_m && (library || file.extension() == ".csv"))
+    throw UserError({}, "--range with '" + o.words()[0] + "'", "a tape7 whose path has no range", "leave it out: air tables and CSV files have their ranges");
+  if (library) showAir(file.extension() == ".air" ? file : named, out);
+  else if (file.extension() == ".csv") showTable(readAirCsv(file), file.stem().string(), out);
+  else showTape7(file, range_m, out);
   return 0;
 }
 

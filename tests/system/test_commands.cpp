@@ -212,4 +212,33 @@ TEST_F(Commands, ATape7InWordsAndTables) {
   EXPECT_EQ(std::count(bad.output.begin(), bad.output.end(), '\n'), 1) << bad.output;
 }
 
+// Rationale: air by tables is only as good as what was typed in. Expected: how it was read and fits, with figures; a table; one line for a mistake.
+TEST_F(Commands, AirFromCommaSeparatedValues) {
+  const std::string file = (folder_ / "measured.csv").string();
+  std::ofstream(file) << "wavelength_um,range_km,transmittance,path_radiance_W/(m2 sr um)\n4,1,0.8,0.1\n5,1,0.5,0.25\n4,2,0.64,0.18\n5,2,0.25,0.375\n";
+  const Result r = pitviper("atmosphere " + file + " --out " + (folder_ / "out").string());
+  EXPECT_NE(r.output.find("2 ranges, 1 to 2 km; powers of range fitted"), std::string::npos) << r.output;
+  // Beer's law at both wavelengths, linear in the depth between: (0.8 + 0.5)/2 by trapezoids.
+  EXPECT_NE(r.output.find("| 1 km | 0.6500 |"), std::string::npos) << r.output;
+  EXPECT_EQ(bytes(folder_ / "out" / "measured.csv").rfind("wavelength [um],wavenumber [1/cm],depth of the first km of power 0.55,", 0), 0u);
+  const Result bad = pitviper("atmosphere " + file + " --range 3");
+  EXPECT_EQ(bad.code, 2);
+  EXPECT_NE(bad.output.find("--range"), std::string::npos) << bad.output;
+  std::ofstream(file) << "wavelength_um,transmittance\n4,0.8\n";
+  const Result missing = pitviper("atmosphere " + file);
+  EXPECT_EQ(missing.code, 2);
+  EXPECT_NE(missing.output.find("measured.csv:1:15: a transmittance without a range"), std::string::npos) << missing.output;
+  EXPECT_EQ(std::count(missing.output.begin(), missing.output.end(), '\n'), 1) << missing.output;
+}
+
+// Expected: the library's structured air with its sky and the sun, in words and as a table.
+TEST_F(Commands, LibraryAirWithSkyAndSun) {
+  const Result r = pitviper("atmosphere us76_rural --out " + (folder_ / "out").string());
+  for (const char* part : {"| level 5 km | 0.4443 | 0.3571 |", "| sky, 90 deg up |", "| at the ground, 20 deg up |"})
+    EXPECT_NE(r.output.find(part), std::string::npos) << part << "\n" << r.output;
+  const std::string csv = bytes(folder_ / "out" / "us76_rural.csv");
+  EXPECT_NE(csv.find(",sky radiance 20 deg up [W/(m2 sr um)]"), std::string::npos);
+  EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 1200);
+}
+
 }  // namespace

@@ -73,7 +73,9 @@ void addSeries(vtkChartXY& plot, const Series& series, vtkTable* points, Rgb8 co
   p->SetWidth(2.0f * kOversampling);
   if (series.dashed) p->GetPen()->SetLineType(vtkPen::DASH_LINE);
   if (auto* line = vtkPlotLine::SafeDownCast(p)) {
-    line->SetMarkerStyle(series.dashed ? vtkPlotPoints::NONE : vtkPlotPoints::CIRCLE);
+    // Points of a spectrum would cover its line and each other.
+    constexpr size_t kMostMarked = 60;
+    line->SetMarkerStyle(series.dashed || series.x.size() > kMostMarked ? vtkPlotPoints::NONE : vtkPlotPoints::CIRCLE);
     line->SetMarkerSize(7.0f * kOversampling);
   }
 }
