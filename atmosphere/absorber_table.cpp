@@ -240,6 +240,12 @@ void AbsorberTable::addDensities(size_t interval, double height_m, double weight
   }
 }
 
+std::vector<double> AbsorberTable::levels_m() const {
+  std::vector<double> heights;
+  for (const Level& level : levels_) heights.push_back(level.altitude_m);
+  return heights;
+}
+
 AbsorberAmounts AbsorberTable::densities(double height_m) const {
   AbsorberAmounts sum;
   if (height_m <= top_m()) addDensities(intervalAt(height_m), height_m, 1.0, sum);

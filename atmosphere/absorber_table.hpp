@@ -65,6 +65,8 @@ class AbsorberTable {
   std::vector<double> knots_um() const;
   /// Height above which there is nothing.
   double top_m() const { return levels_.back().altitude_m; }
+  /// Heights of the table's levels, rising: densities bend there.
+  std::vector<double> levels_m() const;
 
   /// Scales the haze to another meteorological visibility, 1 to 300 km. Extinction at 0.55 um: 3.912 / V - 0.0116 per km.
   /// Source: Koschmieder's law less Rayleigh scattering, as LOWTRAN does. The haze keeps its profile: below 10 km of visibility LOWTRAN's
@@ -78,7 +80,7 @@ class AbsorberTable {
   /// Quadrature: kGaussPoints points of Gauss-Legendre between each two neighbours of: the levels crossed, the lowest point of the line.
   /// Relative error below 1e-6 of each amount against the same profiles integrated finely (tests/unit/test_absorber_table.cpp).
   /// Refraction left out: between two given points it is of second order; of what lies towards space it is 0.4 % at a zenith angle of 80
-  /// degrees (LOWTRAN's bent path, same profiles), more below.
+  /// degrees (LOWTRAN's bent path, same profiles), more below: bent_path.hpp has it.
   AbsorberAmounts amounts(double height_m, double sinElevation, double range_m, double earthRadius_m) const;
   static constexpr int kGaussPoints = 6;
 

@@ -18,8 +18,11 @@ double dot(const Powers& a, const Powers& b) {
   return sum;
 }
 
-// Mean of exp(-D) over a stretch where D goes evenly from 0 to x, of either sign.
-double meanDecay(double x) { return std::abs(x) < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x; }
+// Mean of exp(-D) over a stretch where D goes evenly from one end's to the other's; the lesser comes out of it, so that neither overflows.
+double meanDecay(double depth, double other) {
+  const double x = std::abs(other - depth);
+  return std::exp(-std::min(depth, other)) * (x < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x);
+}
 
 double cosineOf(double sine) { return std::sqrt(std::max(1.0 - sine * sine, 0.0)); }
 
@@ -105,10 +108,11 @@ SunlitPath ScatteredSun::path(const SunlitView& view, double range_m, int count)
 }
 
 SunlitPath ScatteredSun::pathToEnd(const SunlitView& view, int count) const {
-  // To the ground: s from r0^2 + s (2 b + s) = radius^2, nearer root.
-  const double r0 = radius_m_ + view.height_m, b = r0 * view.sinElevation, c = view.height_m * (r0 + radius_m_);
+  // To the ground: s from r0^2 + s (2 b + s) = ground^2, nearer root. A camera below sea level stands on it.
+  const double ground_m = std::min(view.height_m, 0.0);
+  const double r0 = radius_m_ + view.height_m, b = r0 * view.sinElevation, c = (view.height_m - ground_m) * (r0 + radius_m_ + ground_m);
   const double inside = b * b - c;
-  const bool down = view.height_m >= 0.0 && b < 0.0 && inside >= 0.0;
+  const bool down = b < 0.0 && inside >= 0.0;
   return path(view, down ? c / (-b + std::sqrt(inside)) : INFINITY, count);
 }
 
@@ -150,7 +154,7 @@ double ScatteredSun::scatteredRadiance(double wavelength_um, const SunlitPath& p
     const auto &near = path.stations[i - 1], &far = path.stations[i];
     const double scattered = dot(source, far.viewPower) - dot(source, near.viewPower);
     const double before = dot(o.extinction, near.bothPower), after = dot(o.extinction, far.bothPower);
-    sum += scattered * std::exp(-before) * meanDecay(after - before);
+    sum += scattered * meanDecay(before, after);
   }
   return irradiance * sum;
 }

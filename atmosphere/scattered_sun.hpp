@@ -61,7 +61,7 @@ class ScatteredSun {
   /// Stations as AbsorberTable::stations() sets them and at the edge of the earth's shadow. With count 32 scattered sunlight is within 0.3 % of
   /// finer ones in the windows, 3 % in opaque bands (2.7 and 4.5 um); the error falls with the square of count.
   SunlitPath path(const SunlitView& view, double range_m, int count = 32) const;
-  /// As far as space or the ground (whose own radiance is not in it).
+  /// As far as space or the ground (whose own radiance is not in it; a camera below sea level stands on it).
   SunlitPath pathToEnd(const SunlitView& view, int count = 32) const;
   /// Gauss rule over the sine of the elevation, even over half the azimuths. 10 x 12: within 1 % of finer ones.
   SkyDome dome(double height_m, double sinSunElevation, int elevations = 10, int azimuths = 12) const;

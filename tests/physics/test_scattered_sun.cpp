@@ -305,6 +305,27 @@ TEST(ScatteredSun, IsModtransInTheMidwave) {
   }
 }
 
+TEST(ScatteredSun, AnyGeometryGivesANumber) {
+  const ScatteredSun& sky = standardSky();
+  for (double height : {-400.0, 0.0, 5.0, 12000.0, 99999.0, 100001.0, 4e7})
+    for (double e : {-1.0, -0.6, -1e-3, 0.0, 1e-9, 0.2, 1.0})
+      for (double sun : {-1.0, -0.2, -1e-6, 0.0, 1e-6, 0.5, 1.0})
+        for (double azimuth : {0.0, 1.0, kPi}) {
+          const SunlitView view{height, e, azimuth, sun};
+          for (const auto& path : {sky.pathToEnd(view), sky.path(view, 1000.0), sky.path(view, 0.0)})
+            for (double um : {0.4, 4.26, 14.0}) {
+              const double l = sky.radiance(um, path, 2000.0), tau = sky.transmittance(um, path);
+              ASSERT_TRUE(std::isfinite(l) && l >= 0.0) << height << " " << e << " " << sun << " " << um << ": " << l;
+              ASSERT_TRUE(tau >= 0.0 && tau <= 1.0) << height << " " << e << " " << sun << " " << um << ": " << tau;
+            }
+          const double direct = sky.directSun(1.0, height, sun, 1.0);
+          ASSERT_TRUE(direct >= 0.0 && direct <= 1.0);
+        }
+  // Above the air the sky is black, and the sun at noon whole.
+  EXPECT_EQ(sky.skyRadiance(0.5, {100001.0, 0.1, 0.0, 0.5}, 2000.0), 0.0);
+  EXPECT_EQ(sky.directSun(0.5, 100001.0, 0.5, 2000.0), 2000.0);
+}
+
 TEST(ScatteredSun, ManyWavelengthsOfOneViewAreCheap) {
   const ScatteredSun& sky = standardSky();
   const auto start = std::chrono::steady_clock::now();
