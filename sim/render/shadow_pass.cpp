@@ -132,7 +132,8 @@ void ShadowPass::setState(const WorldState& state) {
           if (k == 2 || k == 3) noise += 8.0 * kRounding * (glm::length(turned) * reach + std::abs(constant));
         }
         // Rounding of a place in the receiver: it stays on its facet's plane to a few units of the last place of its coordinates.
-        g.fine = {noise, mapped ? map->projection->texelDepth : 0.0, c == r ? 8.0 * kRounding * reach : 0.0, 0.0};
+        g.fine = {noise, mapped ? map->projection->texelDepth : 0.0, c == r ? 8.0 * kRounding * reach : 0.0,
+                  mapped && place.sun ? 1.0 / glm::length(glm::dvec3(map->projection->row[2])) : 0.0};
         g.what = {mapped ? map->layer : -1, body.first, body.end, kindOf(c == r, body.self)};
         shadows.push_back(g);
       }

@@ -256,11 +256,6 @@ TEST(Shadows, OnlyWhereTheSceneHasThem) {
   EXPECT_FALSE(terms(sun + "entities:\n" + ground(9)));
   EXPECT_TRUE(terms(sun + "entities:\n  - {name: b, shape: {model: sphere, radius: 30 m}, material: m, temperature: 1 K}\n")) << "seen from inside";
   EXPECT_TRUE(terms(sun + "entities:\n  - {name: b, shape: {model: jet}, material: m, temperature: 1 K}\n"));
-  EXPECT_FALSE(terms(
-      sun +
-      "entities:\n  - {name: a, shape: {model: plate, width: 1 m, height: 1 m}, material: blackbody, temperature: 1 K}\n  - {name: b, shape: {model: plate}, "
-      "material: blackbody, temperature: 1 K}\n"))
-      << "nothing reflects";
 }
 
 // A closed room has no sun in it; a lamp inside lights it.

@@ -4,7 +4,7 @@ struct Shadow {
   vec4 map[4];   // rows: map from receiver; (texels, texels, depth, 1) x w
   vec4 body[3];  // rows: caster from receiver [m]
   ivec4 what;    // map or -1; first and end of the caster's tree; 0 another body, or 1 + how it shades itself
-  vec4 fine;     // rounding of the map's depth; a texel's size in depth; distance by which a ray leaves its own body [m]
+  vec4 fine;     // rounding of the map's depth; a texel's size in depth; distance by which a ray leaves its own body; depth 0 to 1 where even, or 0 [m]
 };
 layout(std430, binding = 4) readonly buffer Shadows { Shadow shadows[]; };
 layout(std430, binding = 10) readonly buffer Trees { uvec4 trees[]; };
@@ -43,10 +43,13 @@ bool meetsTree(int at, int end, vec3 origin, vec3 direction, float farthest, flo
   return met;
 }
 
+float stopsWithin_;  // where a map has not decided: no farther off is what it has seen before the point [m]
+
 float inMap(vec4 row) { return dot(row.xyz, point_) + row.w; }
 
 // 1 clear, -1 stopped, 0 undecided.
 int mapSays(Shadow s, vec3 facet) {
+  stopsWithin_ = kFar;
   float w = inMap(s.map[3]);
   if (w <= 0.0) return 1;  // behind the light
   vec3 at = vec3(inMap(s.map[0]), inMap(s.map[1]), inMap(s.map[2])) / w;
@@ -72,6 +75,8 @@ int mapSays(Shadow s, vec3 facet) {
   }
   // The rasteriser moves corners by up to 1/256 of a texel: a map's depth is as uncertain as the slope over that makes it.
   if (nearest >= -(noise + steep / 128.0)) return 1;
+  // What is seen before the plane may rise by as much again to where the point's own line meets it.
+  if (s.fine.w > 0.0) stopsWithin_ = 2.0 * (noise + steep + s.fine.y - nearest) * s.fine.w;
   // Stopped for sure only by something that is no part of the surface around the point: farther off than it can rise in two texels.
   return farthest < -(noise + 2.0 * (steep + s.fine.y)) ? -1 : 0;
 }
@@ -87,6 +92,7 @@ bool stops(int number, vec3 toLight, float farthest) {
   if (s.what.x >= 0 && !away) {
     int says = mapSays(s, facet);
     if (says != 0) return says < 0;
+    farthest = min(farthest, stopsWithin_);
   }
   vec3 from = point_ + (lightSide * s.fine.z) * facet;
   vec3 origin = vec3(dot(s.body[0].xyz, from) + s.body[0].w, dot(s.body[1].xyz, from) + s.body[1].w, dot(s.body[2].xyz, from) + s.body[2].w);
