@@ -96,7 +96,7 @@ void ScenePass::setState(const WorldState& state) {
   block.insert(block.end(), lights.begin(), lights.end());
   block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
   nodes_.upload(block);
-  if (shadows_) shadows_->setState(state);
+  if (shadows_) shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_.matters(e, l, state); });
 }
 
 void ScenePass::uploadView(const View& v, const WorldState& state) {

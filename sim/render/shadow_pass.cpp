@@ -96,19 +96,39 @@ void ShadowPass::draw(std::size_t caster, const Map& map) {
   glDisable(GL_DEPTH_CLAMP);
 }
 
-void ShadowPass::setState(const WorldState& state) {
+bool ShadowPass::isNearLine(std::size_t caster, std::size_t receiver, std::size_t light, const WorldState& state, const std::vector<glm::dvec3>& centre) const {
+  // Bounding spheres of floats, hence the room.
+  const double both =
+      1.0001 * (static_cast<double>(simulation_.entities[caster].boundingRadius_m) + static_cast<double>(simulation_.entities[receiver].boundingRadius_m));
+  const glm::dvec3 to = centre[caster] - centre[receiver];
+  glm::dvec3 nearest;
+  if (light == simulation_.lights.size()) {
+    nearest = std::max(glm::dot(to, simulation_.sun->toSun), 0.0) * simulation_.sun->toSun;
+  } else {
+    const glm::dvec3 line = state.lights[light] - centre[receiver];
+    const double l2 = glm::dot(line, line);
+    nearest = (l2 > 0.0 ? std::clamp(glm::dot(to, line) / l2, 0.0, 1.0) : 0.0) * line;
+  }
+  const glm::dvec3 beside = to - nearest;
+  return glm::dot(beside, beside) <= both * both;
+}
+
+void ShadowPass::setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters) {
   const auto lights = static_cast<size_t>(lightCount_);
   std::vector<GpuShadow> shadows;
   ranges_.assign(state.entities.size() * lights, {});
+  std::vector<glm::dvec3> centre;
+  for (size_t e = 0; e < state.entities.size(); ++e)
+    centre.push_back(state.entities[e].position + state.entities[e].orientation * glm::dvec3(simulation_.entities[e].boundingCentre));
   for (size_t l = 0; l < lights; ++l) {
     if (l < simulation_.lights.size() && !(state.lightLevels[l] > 0.0)) continue;
     for (size_t r = 0; r < state.entities.size(); ++r) {
-      if (simulation_.mediumOf(simulation_.entities[r])) continue;
+      if (simulation_.mediumOf(simulation_.entities[r]) || !matters(r, l)) continue;
       const Pose& receiver = state.entities[r];
       const auto first = static_cast<std::uint32_t>(shadows.size());
       for (size_t c = 0; c < state.entities.size(); ++c) {
         const ShadowTrees::Body& body = trees_->of(c);
-        if (!body.casts() || (c == r && body.self == SelfShadow::Never)) continue;
+        if (!body.casts() || (c == r ? body.self == SelfShadow::Never : !isNearLine(c, r, l, state, centre))) continue;
         const Pose& caster = state.entities[c];
         const glm::dmat3 casterFromLocal = glm::transpose(glm::mat3_cast(caster.orientation));
         const glm::dmat3 axes = c == r ? glm::dmat3(1.0) : casterFromLocal * glm::mat3_cast(receiver.orientation);

@@ -4,9 +4,10 @@
 // it. A map only decides where it can: where the four texels around a point agree, by more than their own error, that the caster is wholly
 // behind the point's plane or well before it. Elsewhere, at outlines and on surfaces nearly along the light, a ray through the caster's tree
 // does. So neither bias nor texels show; what a map can miss is what lies between four texels without touching one.
+#include <functional>
 #include <map>
 #include <memory>
-#include <tuple>
+#include <optional>
 #include <vector>
 
 #include "sim/gl/objects.hpp"
@@ -24,8 +25,8 @@ class ShadowPass {
   /// Shader file of the slot `shadow`.
   static std::string slotFile(const Plan& plan);
 
-  /// Finds who can shade whom, and draws the maps that have changed.
-  void setState(const WorldState& state);
+  /// Finds who can shade whom, and draws the maps that have changed. `matters(entity, light)`: false where it is not worth asking.
+  void setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters);
   /// Buffers and maps; unit 16 and storage 4 and 10.
   void bind() const;
   /// Those that can shade an entity from a light (the sun is the last).
@@ -45,6 +46,8 @@ class ShadowPass {
     LightPlace light;  ///< it was drawn for
     std::optional<ShadowProjection> projection;
   };
+  /// Whether a caster's bounding sphere comes near the lines from a receiver's to a light, in the local frame: all that most pairs cost.
+  bool isNearLine(std::size_t caster, std::size_t receiver, std::size_t light, const WorldState& state, const std::vector<glm::dvec3>& centre) const;
   LightPlace lightFor(std::size_t caster, std::size_t light, const WorldState& state) const;
   Map& mapOf(std::size_t caster, std::size_t light, const LightPlace& place);
   void draw(std::size_t caster, const Map& map);
