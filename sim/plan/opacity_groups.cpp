@@ -86,8 +86,9 @@ class Fitter {
     const int count = std::clamp(groups, 1, mostGroups());
     GroupState state = start_.state(count), best = state;
     RefineProgress progress;
-    double least = INFINITY;
-    for (int left = std::max(effort_.rounds, 1), pass = 0; left > 0; ++pass) {
+    // The start by itself is exact where wavelengths are few or alike.
+    double least = errorFigures(all_.errors(all_.moments(state))).first;
+    for (int left = std::max(effort_.rounds, 1), pass = 0; left > 0 && least > goal; ++pass) {
       const int rounds = std::min(left, pass == 0 ? std::max(effort_.rounds / 3, 1) : kRoundsPerPass);
       left -= rounds;
       refineGroups(set_, state, progress, {rounds, effort_.innerSteps, 0.9 * goal, expired_});

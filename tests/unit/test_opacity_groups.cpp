@@ -79,10 +79,9 @@ TEST(OpacityGroups, TwoValuesAreTwoGroups) {
   ASSERT_EQ(fit.groups.size(), 2u);
   const GroupFit exact = fitGroups(p, 2);
   const auto [low, high] = std::minmax(exact.groups[0].extinction[0], exact.groups[1].extinction[0]);
-  // The fit ends where errors no longer fall: they are squares of what is off.
-  figure("air of two values: the clear group", low, 0.05, 1e-4, "closed form; the fit's end");
-  figure("air of two values: the dim group", high, 2.0, 1e-4, "closed form; the fit's end");
-  bound("air of two values: error of two groups", exact.maximum, 1e-4, "closed form; the fit's end");
+  figure("air of two values: the clear group", low, 0.05, kRounding, "closed form; rounding");
+  figure("air of two values: the dim group", high, 2.0, kRounding, "closed form; rounding");
+  bound("air of two values: error of two groups", exact.maximum, kRounding, "closed form; rounding");
 }
 
 TEST(OpacityGroups, WithoutAbsorbersOneGroupIsExact) {
@@ -104,7 +103,7 @@ TEST(OpacityGroups, SeparateFactorsForceGroups) {
   const GroupFit one = fitGroups(p, 1), two = fitGroups(p, 2);
   expectSound(p, two);
   EXPECT_GT(one.maximum, 0.02);
-  bound("two-valued emissivity as a factor of its own: error of two groups", two.maximum, 1e-3, "closed form: two groups are exact; the fit's end");
+  bound("two-valued emissivity as a factor of its own: error of two groups", two.maximum, kRounding, "closed form: two groups are exact; rounding");
   EXPECT_EQ(fitToTolerance(p, 1e-3, 10).groups.size(), 2u);
 }
 
@@ -141,7 +140,7 @@ TEST(OpacityGroups, EdgesOfWhatCanBeAsked) {
   const GroupFit all = fitGroups(small, 50);
   expectSound(small, all);
   EXPECT_LE(all.groups.size(), 3u);
-  bound("a group per wavelength", all.maximum, 1e-2, "point nodes are exact; the fit spreads shares and takes them back");
+  bound("a group per wavelength", all.maximum, kRounding, "point nodes are exact; rounding");
   // Zero weights, a source that is zero in part, one that is zero everywhere, opaque paths, a product without terms or without a floor.
   for (size_t i = 0; i < 20; ++i) p.weight[i] = 0.0;
   for (size_t i = 0; i < 40; ++i) p.spectra[0][i] = 0.0;
