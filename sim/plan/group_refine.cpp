@@ -25,9 +25,6 @@ struct Step {
   }
 };
 
-/// Part of each wavelength that is spread evenly over all groups before a fit.
-constexpr double kSpread = 0.02;
-
 /// Part of the plain sum of squares in what is minimised: keeps what is already good from drifting.
 constexpr double kEven = 1e-3;
 
@@ -157,8 +154,6 @@ Step solve(Linear& linear, const VectorXd& weightedErrors, int steps) {
 }  // namespace
 
 double refineGroups(const ProductSet& set, GroupState& state, RefineProgress& progress, const RefineLimits& limits) {
-  // A share of exactly 0 could not move.
-  if (progress.round == 0) state.share = (1.0 - kSpread) * state.share.array() + kSpread / static_cast<double>(state.share.rows());
   GroupMoments at = set.moments(state);
   VectorXd errors = set.errors(at);
   double most = errorFigures(errors).first;

@@ -21,7 +21,7 @@ struct RefineProgress {
 
 /// Gauss-Newton on the p-norm of the errors (p rising from 2 towards the maximum), all extinctions and shares together: each step by conjugate
 /// gradients on the free variables, damped (Levenberg and Marquardt), put back onto shares >= 0 that sum to 1 and extinctions >= 0.
-/// Returns the largest error; the state is never worse in it than what was given.
+/// A share of exactly 0 stays 0. Returns the largest error; the state is never worse in it than what was given.
 double refineGroups(const ProductSet& set, GroupState& state, RefineProgress& progress, const RefineLimits& limits);
 
 }  // namespace pitviper

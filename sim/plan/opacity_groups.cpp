@@ -16,7 +16,10 @@ namespace {
 using Eigen::VectorXd;
 
 /// Shares of a wavelength below this go to its other groups: they cost the builder of tables time and change nothing.
-constexpr double kLeastShare = 1e-4;
+constexpr double kLeastShare = 1e-6;
+
+/// Part of each wavelength that is spread evenly over all groups before a fit: a share of 0 could not move. Neither is always the better.
+constexpr double kSpreads[] = {0.1, 0.01};
 
 /// Rounds between two looks at all products.
 constexpr int kRoundsPerPass = 6;
@@ -88,19 +91,37 @@ class Fitter {
     RefineProgress progress;
     // The start by itself is exact where wavelengths are few or alike.
     double least = errorFigures(all_.errors(all_.moments(state))).first;
-    for (int left = std::max(effort_.rounds, 1), pass = 0; left > 0 && least > goal; ++pass) {
-      const int rounds = std::min(left, pass == 0 ? std::max(effort_.rounds / 3, 1) : kRoundsPerPass);
-      left -= rounds;
-      refineGroups(set_, state, progress, {rounds, effort_.innerSteps, 0.9 * goal, expired_});
-      const VectorXd errors = all_.errors(all_.moments(state));
-      const double most = errorFigures(errors).first;
+    const int firstRounds = std::max(effort_.rounds / 3, 1);
+    if (least > goal) {
+      double leastBegun = INFINITY;
+      const GroupState start = state;
+      for (double spread : kSpreads) {
+        GroupState trial = start;
+        trial.share = (1.0 - spread) * trial.share.array() + spread / static_cast<double>(trial.share.rows());
+        RefineProgress trialProgress;
+        refineGroups(set_, trial, trialProgress, {firstRounds, effort_.innerSteps, 0.9 * goal, expired_});
+        const double most = errorFigures(all_.errors(all_.moments(trial))).first;
+        if (most < leastBegun) {
+          leastBegun = most;
+          state = std::move(trial);
+          progress = trialProgress;
+        }
+        if (leastBegun <= goal) break;
+      }
+      if (leastBegun < least) {
+        least = leastBegun;
+        best = state;
+      }
+    }
+    for (int left = effort_.rounds - firstRounds; left > 0 && least > goal && !expired_(); left -= kRoundsPerPass) {
+      if (static_cast<int>(working_.size()) < all_.size()) addWorst(all_.errors(all_.moments(state)));
+      refineGroups(set_, state, progress, {std::min(left, kRoundsPerPass), effort_.innerSteps, 0.9 * goal, expired_});
+      const double most = errorFigures(all_.errors(all_.moments(state))).first;
       if (most < least) {
         least = most;
         best = state;
       }
-      if (least <= goal || expired_()) break;
-      if (pass > 0 && least > kHopeless * goal && goal > 0.0) break;
-      if (left > 0 && static_cast<int>(working_.size()) < all_.size()) addWorst(errors);
+      if (goal > 0.0 && least > kHopeless * goal) break;
     }
     return finish(best, count);
   }
