@@ -88,6 +88,7 @@ class Fitter {
     if (all_.fineCount() == 0) return finish(GroupState{}, 0);
     const int count = std::clamp(groups, 1, mostGroups());
     GroupState state = start_.state(count), best = state;
+    forgetOldest();
     RefineProgress progress;
     // The start by itself is exact where wavelengths are few or alike.
     double least = errorFigures(all_.errors(all_.moments(state))).first;
@@ -127,6 +128,14 @@ class Fitter {
   }
 
  private:
+  /// Of the products that fits before this one added, the latest stay, as many as there were at first: they are hard for other counts too.
+  void forgetOldest() {
+    const size_t first = spreadOf(all_.size(), effort_.workingProducts).size();
+    if (working_.size() <= 2 * first) return;
+    working_.erase(working_.begin() + static_cast<std::ptrdiff_t>(first), working_.end() - static_cast<std::ptrdiff_t>(first));
+    set_ = all_.subset(working_);
+  }
+
   /// The worst products outside the working set join it.
   void addWorst(const VectorXd& errors) {
     std::vector<bool> has(static_cast<size_t>(all_.size()), false);
