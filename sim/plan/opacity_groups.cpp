@@ -215,4 +215,9 @@ GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<Spectral
   return result;
 }
 
+std::vector<double> fineIntegrals(const SpectralProblem& problem) {
+  const ProductSet set(problem);
+  return {set.fine.data(), set.fine.data() + set.fine.size()};
+}
+
 }  // namespace pitviper

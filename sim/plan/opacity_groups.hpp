@@ -68,4 +68,7 @@ GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mo
 /// Error of groups over the products of another problem on the same wavelengths and columns.
 GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups);
 
+/// Value of each product on the fine grid.
+std::vector<double> fineIntegrals(const SpectralProblem& problem);
+
 }  // namespace pitviper

@@ -48,6 +48,7 @@ struct Plan {
   int slotCount = 0;
   std::vector<int> slotOfOutput;            ///< one per output
   std::vector<std::vector<double>> weight;  ///< [slot][node]
+  std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where none was asked for
   Terms terms;
   int lightCount = 0;                      ///< point lights and, last, the sun
   std::shared_ptr<const SunLegs> sunLegs;  ///< layered air in sunlight

@@ -1,5 +1,6 @@
 #include "sim/render/camera_renderer.hpp"
 
+#include "sim/plan/planner.hpp"
 #include "sim/render/small_bodies.hpp"
 #include "sim/render/visible_lights.hpp"
 
@@ -8,7 +9,7 @@ namespace pitviper {
 CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene)
     : simulation_(simulation),
       camera_(camera),
-      plan_(makePlan(simulation, camera.outputs, camera.spectral, camera.where)),
+      plan_(planFor(simulation, {&camera, nullptr})),
       solidAngles_(std::make_shared<const Pinhole::SolidAngles>(camera.pinhole.solidAngles())) {
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
   const double area_m2 = camera.pinhole.apertureArea_m2();

@@ -58,7 +58,8 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
     own.files["surface"] = folder + (t.isGeneral() ? "surface_general.glsl" : t.emits || t.reflects ? "surface_simple.glsl" : "surface_filter.glsl");
     own.files["transmission"] = folder + (t.isGeneral() ? "transmission_general.glsl" : "transmission_plain.glsl");
     own.files["columns"] = folder + (tables.layer.tabulated ? "columns_tabulated.glsl" : "columns_plain.glsl");
-    own.files["temperature"] = folder + (t.temperatureTextures ? "temperature_textured.glsl" : "temperature_uniform.glsl");
+    own.files["temperature"] = temperatureFile(tables.layer, t);
+    addTemperatureConstants(tables.layer, own);
     layer_ = Program(assembleShader(library, folder + "layer.vert.glsl", own), assembleShader(library, folder + "layer.frag.glsl", own));
   }
   if (plan.terms.media) {

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sim/plan/planner.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/small_bodies.hpp"
 #include "sim/render/visible_lights.hpp"
@@ -40,7 +41,7 @@ std::vector<View> hemisphere(const Probe& probe) {
 
 std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
                                  const WorldState& state) {
-  const Plan plan = makePlan(sim, probe.outputs, probe.spectral, probe.where);
+  const Plan plan = planFor(sim, {nullptr, &probe});
   const auto owned = makeScenePass(sim, plan, library, scene, false, 1.0);
   ScenePass& pass = *owned;
   pass.setState(state);

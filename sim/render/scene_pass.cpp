@@ -73,7 +73,8 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.files["shadow"] = ShadowPass::slotFile(plan_);
   slots.files["surface"] = tables_.solid.general ? "sim/render/glsl/surface_general.glsl" : "sim/render/glsl/surface_simple.glsl";
   slots.files["columns"] = tables_.solid.tabulated ? "sim/render/glsl/columns_tabulated.glsl" : "sim/render/glsl/columns_plain.glsl";
-  slots.files["temperature"] = t.temperatureTextures ? "sim/render/glsl/temperature_textured.glsl" : "sim/render/glsl/temperature_uniform.glsl";
+  slots.files["temperature"] = temperatureFile(tables_.solid, t);
+  addTemperatureConstants(tables_.solid, slots);
   slots.files["transmission"] = "sim/render/glsl/transmission_none.glsl";
   slots.constants["NODES"] = how_ == Shading::Reference ? 1 : plan_.nodeCount();
   slots.constants["GROUPS"] = plan_.groupCount();

@@ -167,6 +167,29 @@ std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& pla
   return at;
 }
 
+/// Entries over the inverse of the temperature: at 250 to 2000 K 0.6 K apart at 300 K, where 4 um is straight to 1e-4 between two.
+constexpr int kPlanckEntries = 512;
+
+/// Means over groups of wavelengths have no closed form: a table from the coldest to the hottest texel, see temperature_tabulated.glsl.
+void appendPlanck(SurfaceTables& t, const Simulation& sim, const Plan& plan) {
+  double coldest = INFINITY, hottest = 0.0;
+  for (const Entity& e : sim.entities)
+    for (const Surface& s : e.surfaces)
+      if (s.temperatureTexture >= 0)
+        for (float texel : sim.textures[static_cast<size_t>(s.temperatureTexture)].texels) {
+          coldest = std::min(coldest, static_cast<double>(texel));
+          hottest = std::max(hottest, static_cast<double>(texel));
+        }
+  coldest = std::max(coldest, 1.0);
+  hottest = std::max(hottest, coldest * (1.0 + 1e-6));
+  const double first = 1.0 / hottest, step = (1.0 / coldest - first) / (kPlanckEntries - 1);
+  t.planckAt = static_cast<long long>(t.rows.size());
+  t.rows.push_back(static_cast<float>(first));
+  t.rows.push_back(static_cast<float>(1.0 / step));
+  for (int k = 0; k < kPlanckEntries; ++k)
+    for (const SpectralNode& n : plan.nodes) t.rows.push_back(static_cast<float>(n.planck(1.0 / (first + step * k))));
+}
+
 std::uint32_t appendMedium(RenderTables& t, const Plan& plan, const Medium& medium, const Surface& surface) {
   const auto at = static_cast<std::uint32_t>(t.media.size() / 4);
   for (const SpectralNode& n : plan.nodes)
@@ -245,6 +268,17 @@ std::vector<float> lightTable(const Simulation& sim, const Plan& plan, const Wor
   return table;
 }
 
+std::string temperatureFile(const SurfaceTables& tables, const SurfaceTerms& terms) {
+  const std::string folder = "sim/render/glsl/";
+  return folder + (!terms.temperatureTextures ? "temperature_uniform.glsl" : tables.planckAt >= 0 ? "temperature_tabulated.glsl" : "temperature_textured.glsl");
+}
+
+void addTemperatureConstants(const SurfaceTables& tables, ShaderSlots& slots) {
+  if (tables.planckAt < 0) return;
+  slots.constants["PLANCK_AT"] = tables.planckAt;
+  slots.constants["PLANCK_ENTRIES"] = kPlanckEntries;
+}
+
 RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   RenderTables t;
   t.solid.general = plan.terms.solid.isGeneral();
@@ -282,6 +316,9 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
     t.ambient.push_back(plan.terms.ambient ? static_cast<float>(n.mean(*sim.ambient)) : 0.0f);
     t.ambient.insert(t.ambient.end(), 3, 0.0f);
   }
+  const bool groups = std::any_of(plan.nodes.begin(), plan.nodes.end(), [](const SpectralNode& n) { return !n.isWavelength(); });
+  if (groups && plan.terms.solid.temperatureTextures) appendPlanck(t.solid, sim, plan);
+  if (groups && plan.terms.layer.temperatureTextures) appendPlanck(t.layer, sim, plan);
   writeIntegral(t, plan);
   return t;
 }

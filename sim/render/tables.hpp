@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sim/gl/shader_assembler.hpp"
 #include "sim/plan/plan.hpp"
 
 namespace pitviper {
@@ -35,6 +36,7 @@ struct SurfaceTables {
   bool general = false;              ///< angular tables, modifiers or temperature textures
   bool tabulated = false;            ///< some reflection component is a table over angles
   std::vector<float> rows;           ///< simple: vec4 (R1, R2, R3, S) per node; general: Planck radiance per node
+  long long planckAt = -1;           ///< general: entry of `rows` where Planck radiance is tabulated over the inverse of the temperature, or -1
   std::vector<float> hemispherical;  ///< vec4 (D1, D2, D3, given emissivity) per view angle and node
   std::vector<float> columns;        ///< vec4 (R1, R2, R3, 0) per angle 2, angle 1 and node
   std::vector<float> transmittance;  ///< per view angle and node
@@ -58,6 +60,10 @@ int lightGroups(const Plan& plan);
 /// Shader file of the lights. Up to so many each have registers of their own; of more, bodies list those that matter.
 constexpr int kFewLights = 4;
 std::string lightsFile(const Plan& plan);
+
+/// Shader file of what parts of a kind emit; its constants.
+std::string temperatureFile(const SurfaceTables& tables, const SurfaceTerms& terms);
+void addTemperatureConstants(const SurfaceTables& tables, ShaderSlots& slots);
 
 RenderTables makeTables(const Simulation& simulation, const Plan& plan);
 

@@ -25,6 +25,8 @@ float angleFromChord(vec3 a, vec3 b) { return 2.0 * arcTangent(length(a - b) / m
 
 float modifierAt(int texture) { return texture < 0 ? 1.0 : textureValue(texture, uv_); }
 
+void prepareTemperature();
+
 void prepareSurface() {
   material_ = materials[draw_.table.y];
   exponents_ = material_.exponent.xyz;
@@ -37,6 +39,7 @@ void prepareSurface() {
   view0_ = int(material_.kinds.w) + j * NODES;
   view1_ = material_.counts.z > 1u ? view0_ + NODES : view0_;
   temperature_ = draw_.table.z > 0u ? textureValue(int(draw_.table.z) - 1, uv_) : draw_.state.x;
+  prepareTemperature();
 }
 
 //@slot columns

@@ -1,2 +1,3 @@
 // Each part has one temperature: its Planck radiance was made in double precision.
+void prepareTemperature() {}
 Real sourceRadiance(int i) { return texelFetch(rows, int(draw_.table.x) + i).x; }

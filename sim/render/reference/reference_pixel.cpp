@@ -6,7 +6,7 @@
 #include "sim/model/sunlit_air.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
-#include "sim/render/reference/ray_hits.hpp"
+#include "sim/model/ray_hits.hpp"
 #include "sim/render/reference/shadow_rays.hpp"
 
 namespace pitviper {

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "sim/model/shadow_casters.hpp"
-#include "sim/render/reference/ray_hits.hpp"
+#include "sim/model/ray_hits.hpp"
 
 namespace pitviper {
 

@@ -1,4 +1,4 @@
-#include "sim/render/reference/ray_hits.hpp"
+#include "sim/model/ray_hits.hpp"
 
 #include <algorithm>
 #include <cmath>

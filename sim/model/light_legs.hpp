@@ -1,0 +1,17 @@
+#pragma once
+// The way from a place on a surface to a light.
+#include "sim/model/ray_hits.hpp"
+
+namespace pitviper {
+
+struct LightLeg {
+  glm::dvec3 toLight{0.0};  ///< unit, local frame
+  double distance_m = 0.0;  ///< infinite for the sun
+  double factor = 0.0;      ///< irradiance for an intensity (for the sun: an irradiance) of 1 without air: cosine / distance^2, 0 from behind
+  AirAmounts air;           ///< between the surface and the light (of air without a top: none on the way to the sun)
+};
+
+/// `light`: an index into Simulation::lights, or their number for the sun.
+LightLeg lightLeg(const Simulation& simulation, const WorldState& state, const Hit& hit, std::size_t light);
+
+}  // namespace pitviper
