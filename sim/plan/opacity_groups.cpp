@@ -170,13 +170,14 @@ class Fitter {
 
 GroupFit fitGroups(const SpectralProblem& problem, int groups, const FitEffort& effort) { return Fitter(problem, effort).fit(groups, 0.0); }
 
-GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mostGroups, const FitEffort& effort) {
+GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mostGroups, const FitEffort& effort, int fewest) {
   Fitter fitter(problem, effort);
   const int most = std::max(std::min(mostGroups, fitter.mostGroups()), 1);
-  int tooFew = 0, enough = most + 1;
+  const int first = std::clamp(fewest, 1, most);
+  int tooFew = first - 1, enough = most + 1;
   GroupFit best;
   // Growing by halves until it holds, then between the last two.
-  for (int n = 1; tooFew + 1 < enough;) {
+  for (int n = first; tooFew + 1 < enough;) {
     GroupFit fit = fitter.fit(n, tolerance);
     if (fit.maximum <= tolerance) {
       enough = n;
@@ -193,10 +194,9 @@ GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mo
   return best;
 }
 
-GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups) {
+std::vector<double> groupErrors(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups) {
   const ProductSet set(fresh);
-  GroupFit result{groups, 0.0, 0.0};
-  if (set.size() == 0 || groups.empty()) return result;
+  if (set.size() == 0 || groups.empty()) return std::vector<double>(fresh.products.size(), 0.0);
   std::vector<int> keptIndex(fresh.weight.size(), -1);
   for (size_t i = 0; i < set.fineIndex.size(); ++i) keptIndex[static_cast<size_t>(set.fineIndex[i])] = static_cast<int>(i);
   const auto g = static_cast<Eigen::Index>(groups.size());
@@ -211,7 +211,14 @@ GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<Spectral
       if (i >= 0) state.share(j, i) = share * group.weight / set.weight[i];
     }
   }
-  std::tie(result.maximum, result.p99) = errorFigures(set.errors(set.moments(state)));
+  const Eigen::VectorXd errors = set.errors(set.moments(state));
+  return {errors.data(), errors.data() + errors.size()};
+}
+
+GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups) {
+  const std::vector<double> errors = groupErrors(fresh, groups);
+  GroupFit result{groups, 0.0, 0.0};
+  std::tie(result.maximum, result.p99) = errorFigures(Eigen::Map<const Eigen::VectorXd>(errors.data(), static_cast<Eigen::Index>(errors.size())));
   return result;
 }
 

@@ -62,11 +62,15 @@ struct FitEffort {
 /// match, an index is out of range, or a value is not finite or negative where it may not be.
 GroupFit fitGroups(const SpectralProblem& problem, int groups, const FitEffort& effort = {});
 
-/// The fewest groups found whose largest error is within the tolerance; with `mostGroups`, what they reach, if even those are not enough.
-GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mostGroups, const FitEffort& effort = {});
+/// The fewest groups found, from `fewest` on, whose largest error is within the tolerance; with `mostGroups`, what they reach, if even those are
+/// not enough.
+GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mostGroups, const FitEffort& effort = {}, int fewest = 1);
 
 /// Error of groups over the products of another problem on the same wavelengths and columns.
 GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups);
+
+/// (planned - fine) / max(|fine|, floor) of each product.
+std::vector<double> groupErrors(const SpectralProblem& problem, const std::vector<SpectralGroup>& groups);
 
 /// Value of each product on the fine grid.
 std::vector<double> fineIntegrals(const SpectralProblem& problem);

@@ -42,6 +42,11 @@ struct Terms {
   bool media = false;         ///< bodies filled with an emitting medium
 };
 
+/// Entries of layered air's tables for a view (sim/render/air_tables). Linear between: their error falls with the square of both.
+struct AirGrid {
+  int elevations = 33, ranges = 96;
+};
+
 struct Plan {
   std::vector<SpectralNode> nodes;
   std::vector<NodeBlock> blocks;
@@ -49,6 +54,7 @@ struct Plan {
   std::vector<int> slotOfOutput;            ///< one per output
   std::vector<std::vector<double>> weight;  ///< [slot][node]
   std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where none was asked for
+  AirGrid airGrid;
   Terms terms;
   int lightCount = 0;                      ///< point lights and, last, the sun
   std::shared_ptr<const SunLegs> sunLegs;  ///< layered air in sunlight

@@ -1,22 +1,20 @@
 #include "sim/plan/planner.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
+#include <atomic>
+#include <functional>
+#include <future>
+#include <thread>
+
+#include "sim/plan/channel_fit.hpp"
+#include "sim/plan/plan_cache.hpp"
 
 namespace pitviper {
 namespace {
 
-/// Of the error asked for: what groups may take of the products they are fitted to, and of those they are not.
-constexpr double kFitted = 0.3, kUnseen = 0.5;
-/// Lines of sight to fit to and to check with.
-constexpr int kDrawn = 400, kFresh = 800;
-constexpr int kMostGroups = 64;
-
 /// A group of a channel's fine wavelengths as a node of the scene.
-SpectralNode nodeOf(const Simulation& sim, const FineGrid& grid, const SpectralGroup& group, const std::vector<int>& absorbers) {
+SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const SpectralGroup& group) {
+  const FineGrid& grid = fit.grid;
   SpectralNode node;
   node.absorption_per_m.assign(sim.materials.size(), 0.0);
   AirNode mean;
@@ -34,8 +32,8 @@ SpectralNode nodeOf(const Simulation& sim, const FineGrid& grid, const SpectralG
   }
   node.air.source = mean.source;
   node.air.asymmetry = scattered > 0.0 ? turned / scattered : 0.0;
-  for (size_t a = 0; a < absorbers.size(); ++a) {
-    const auto k = static_cast<size_t>(absorbers[a]);
+  for (size_t a = 0; a < fit.absorbers.size(); ++a) {
+    const auto k = static_cast<size_t>(fit.absorbers[a]);
     if (k < kMostAirAmounts) node.air.extinction[k] = group.extinction[a];
     else node.absorption_per_m[k - kMostAirAmounts] = group.extinction[a];
   }
@@ -43,6 +41,18 @@ SpectralNode nodeOf(const Simulation& sim, const FineGrid& grid, const SpectralG
   node.air.molecules = mean.molecules;
   node.air.haze = mean.haze;
   return node;
+}
+
+/// On as many threads as the machine has.
+void fitAll(std::vector<ChannelFit>& fits, const std::function<ChannelFit(size_t)>& fit) {
+  std::atomic<size_t> next{0};
+  auto work = [&] {
+    for (size_t s = next++; s < fits.size(); s = next++) fits[s] = fit(s);
+  };
+  std::vector<std::future<void>> others;
+  for (unsigned t = 1; t < std::min<size_t>(std::thread::hardware_concurrency(), fits.size()); ++t) others.push_back(std::async(std::launch::async, work));
+  work();
+  for (auto& o : others) o.get();
 }
 
 }  // namespace
@@ -57,42 +67,23 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
   std::vector<const ChannelOutput*> slots(static_cast<size_t>(plan.slotCount), nullptr);
   for (size_t o = 0; o < outputs.size(); ++o)
     if (!slots[static_cast<size_t>(plan.slotOfOutput[o])]) slots[static_cast<size_t>(plan.slotOfOutput[o])] = &outputs[o];
-  const auto begin = std::chrono::steady_clock::now();
-  auto tell = [&](const char* what) {
-    if (std::getenv("PITVIPER_PLAN_TIMES"))
-      std::fprintf(stderr, "%8.3f s %s\n", std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count(), what);
-  };
-  const Sights drawn(sim, plan, eye, kDrawn, 1), fresh(sim, plan, eye, kFresh, 2);
-  tell("drawn");
+  const ContentKey key = planKey(sim, plan, eye);
+  if (readCachedPlan(key, plan)) return plan;
+  const Sights sights(sim, plan, eye, kSights, static_cast<unsigned long long>(sim.seed));
+  std::vector<ChannelFit> fits(slots.size());
+  fitAll(fits, [&](size_t s) { return fitChannel(sim, sights, slots[s]->kernel, sampling.accuracy); });
+
   plan.nodes.clear();
   plan.blocks.clear();
-  std::vector<std::vector<double>> weights;
-  for (int s = 0; s < plan.slotCount; ++s) {
-    const FineGrid grid = fineGridOf(sim, slots[static_cast<size_t>(s)]->kernel);
-    tell("grid");
-    const auto absorbers = drawn.absorbers(grid);
-    const SpectralProblem problem = drawn.problem(grid, absorbers);
-    const SpectralProblem check = fresh.problem(grid, absorbers);
-    tell("problems");
-    const GroupFit fit = fitToTolerance(problem, kFitted * sampling.accuracy, kMostGroups);
-    tell("fitted");
-    const GroupFit seen = evaluateGroups(check, fit.groups);
-    plan.predictedError.push_back(std::max(fit.maximum, seen.maximum));
-    if (std::getenv("PITVIPER_PLAN_TIMES")) {
-      size_t terms = 0;
-      for (const auto& p : problem.products) terms += p.terms.size();
-      std::fprintf(stderr, "%s: %zu fine, %zu spectra, %zu paths, %zu terms, %zu absorbers -> %zu groups, %.5f fitted, %.5f unseen, p99 %.5f\n",
-                   slots[static_cast<size_t>(s)]->channel.c_str(), grid.weight.size(), problem.spectra.size(), problem.paths.size(), terms, absorbers.size(),
-                   fit.groups.size(), fit.maximum, seen.maximum, seen.p99);
-    }
-    plan.blocks.push_back({plan.nodeCount(), static_cast<int>(fit.groups.size()), {s}});
-    for (const SpectralGroup& g : fit.groups) plan.nodes.push_back(nodeOf(sim, grid, g, absorbers));
-    weights.emplace_back();
-    for (const SpectralGroup& g : fit.groups) weights.back().push_back(g.weight);
+  for (size_t s = 0; s < fits.size(); ++s) {
+    plan.blocks.push_back({plan.nodeCount(), static_cast<int>(fits[s].groups.size()), {static_cast<int>(s)}});
+    for (const SpectralGroup& g : fits[s].groups) plan.nodes.push_back(nodeOf(sim, fits[s], g));
+    plan.predictedError.push_back(fits[s].error);
   }
   plan.weight.assign(slots.size(), std::vector<double>(plan.nodes.size(), 0.0));
-  for (size_t s = 0; s < slots.size(); ++s) std::copy(weights[s].begin(), weights[s].end(), plan.weight[s].begin() + plan.blocks[s].first);
-  tell("done");
+  for (size_t s = 0; s < slots.size(); ++s)
+    for (size_t g = 0; g < fits[s].groups.size(); ++g) plan.weight[s][static_cast<size_t>(plan.blocks[s].first) + g] = fits[s].groups[g].weight;
+  writeCachedPlan(key, plan);
   return plan;
 }
 

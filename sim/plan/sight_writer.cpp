@@ -11,7 +11,7 @@ namespace pitviper {
 namespace {
 
 /// Places along a line of sight between which the air's emission is taken as one black body's.
-constexpr size_t kStations = 12;
+constexpr size_t kStations = 8;
 /// Black bodies of textures and air are mixtures of those at these steps [K], surfaces at other view angles like those at these steps.
 constexpr double kTemperatureStep_K = 4.0, kAngleStep_rad = kPi / 36.0;
 
@@ -124,6 +124,8 @@ void SightWriter::air(Sight& sight, double range_m) {
   if (sim_.sun) sun = {glm::dot(sim_.sun->toSun, sim_.frame.up(ray_.origin)), glm::dot(ray_.direction, sim_.sun->toSun)};
   const bool sunlit = plan_.terms.scatteredSun;
   const SunlitAir line(path, airRay_, thinned(path.stations(airRay_, range_m)), sunlit ? plan_.sunLegs.get() : nullptr, sun);
+  if (line.stations.size() < 2) return;
+  const int absorbed = absorbedShare(line.powered.front(), line.powered.back());
   int before = -1;
   for (size_t j = 0; j < line.stations.size(); ++j) {
     const AirStation& s = line.stations[j];
@@ -137,7 +139,6 @@ void SightWriter::air(Sight& sight, double range_m) {
     int end = here;
     if (book_.paths[static_cast<size_t>(here)].media_m != book_.paths[static_cast<size_t>(before)].media_m) end = pathTo(last.range_m, s.amounts);
     const double temperature_K = 0.5 * (last.temperature_K + s.temperature_K);
-    const int absorbed = absorbedShare(line.powered[j - 1], line.powered[j]);
     for (int k = 0; k < 2; ++k) {
       SightTerm term{-1, absorbed, k == 0 ? before : end, k == 0 ? 1.0 : -1.0};
       if (temperature_K > 0.0) addThermal(sight, s.range_m, temperature_K, term);
@@ -149,7 +150,7 @@ void SightWriter::air(Sight& sight, double range_m) {
   }
 }
 
-/// Part of the extinction between two places that emits: -1 where all of it does.
+/// Part of the extinction between two places that emits (of the whole line, for all its parts): -1 where all of it does.
 int SightWriter::absorbedShare(const AirAmounts& from, const AirAmounts& to) {
   std::vector<std::pair<size_t, double>> passed;
   for (size_t k = 0; k < kMostAirAmounts; ++k)

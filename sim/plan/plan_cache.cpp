@@ -1,0 +1,156 @@
+#include "sim/plan/plan_cache.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <sstream>
+
+#include "sim/image/atomic_file.hpp"
+
+namespace pitviper {
+namespace {
+
+constexpr const char* kFormat = "pitviper plan 1";
+
+std::filesystem::path fileOf(const ContentKey& key) {
+  const std::filesystem::path folder = meshCacheFolder();
+  if (folder.empty()) return {};
+  char name[64];
+  std::snprintf(name, sizeof name, "%016llx%016llx.plan", static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
+  return folder / name;
+}
+
+/// Hexadecimal floating point: every digit, both ways.
+class Writer {
+ public:
+  void put(double v) {
+    char s[40];
+    std::snprintf(s, sizeof s, "%a ", v);
+    text += s;
+  }
+  void put(size_t v) { text += std::to_string(v) + " "; }
+  template <class Range>
+  void all(const Range& values) {
+    put(static_cast<size_t>(values.size()));
+    for (double v : values) put(v);
+  }
+  std::string text;
+};
+
+class Reader {
+ public:
+  explicit Reader(const std::string& text) : in_(text) {}
+  double number() {
+    std::string word;
+    if (!(in_ >> word)) return fail();
+    char* end = nullptr;
+    const double v = std::strtod(word.c_str(), &end);
+    return *end == '\0' && std::isfinite(v) ? v : fail();
+  }
+  size_t count(size_t most) {
+    const double v = number();
+    if (v >= 0.0 && v <= static_cast<double>(most) && v == std::floor(v)) return static_cast<size_t>(v);
+    fail();
+    return 0;
+  }
+  std::vector<double> all(size_t most) {
+    std::vector<double> values(count(most));
+    for (double& v : values) v = number();
+    return values;
+  }
+  void into(std::array<double, kMostAirAmounts>& values) {
+    const auto read = all(values.size());
+    if (read.size() == values.size()) std::copy(read.begin(), read.end(), values.begin());
+    else fail();
+  }
+  bool ok() const { return ok_; }
+
+ private:
+  double fail() {
+    ok_ = false;
+    return 0.0;
+  }
+  std::istringstream in_;
+  bool ok_ = true;
+};
+
+constexpr size_t kMostNodes = 4096, kMostMembers = 100000;
+
+}  // namespace
+
+std::string writePlanned(const Plan& plan) {
+  Writer w;
+  w.put(plan.nodes.size());
+  for (const SpectralNode& n : plan.nodes) {
+    w.put(n.members.size());
+    for (const auto& m : n.members) w.put(m.wavelength_um), w.put(m.share);
+    w.all(n.air.extinction), w.all(n.air.molecules), w.all(n.air.haze);
+    w.put(n.air.asymmetry), w.put(n.air.source);
+    w.all(n.absorption_per_m);
+  }
+  w.put(plan.blocks.size());
+  for (const NodeBlock& b : plan.blocks) {
+    w.put(static_cast<size_t>(b.first)), w.put(static_cast<size_t>(b.count)), w.put(b.slots.size());
+    for (int s : b.slots) w.put(static_cast<size_t>(s));
+  }
+  w.put(plan.weight.size());
+  for (const auto& row : plan.weight) w.all(row);
+  w.all(plan.predictedError);
+  const ContentKey sum = contentKey(w.text);
+  return std::string(kFormat) + " " + std::to_string(sum[0]) + " " + std::to_string(sum[1]) + "\n" + w.text + "\n";
+}
+
+bool readPlanned(const std::string& text, Plan& into) {
+  const size_t line = text.find('\n');
+  if (line == std::string::npos || text.back() != '\n' || line + 1 >= text.size()) return false;
+  const std::string body = text.substr(line + 1, text.size() - line - 2);
+  const ContentKey sum = contentKey(body);
+  if (text.substr(0, line) != std::string(kFormat) + " " + std::to_string(sum[0]) + " " + std::to_string(sum[1])) return false;
+  Reader r(body);
+  Plan plan = into;
+  plan.nodes.assign(r.count(kMostNodes), {});
+  for (SpectralNode& n : plan.nodes) {
+    n.members.assign(r.count(kMostMembers), {});
+    for (auto& m : n.members) m.wavelength_um = r.number(), m.share = r.number();
+    r.into(n.air.extinction), r.into(n.air.molecules), r.into(n.air.haze);
+    n.air.asymmetry = r.number(), n.air.source = r.number();
+    n.absorption_per_m = r.all(kMostMembers);
+    if (!r.ok() || n.members.empty()) return false;
+  }
+  plan.blocks.assign(r.count(kMostSlots), {});
+  for (NodeBlock& b : plan.blocks) {
+    b.first = static_cast<int>(r.count(plan.nodes.size())), b.count = static_cast<int>(r.count(plan.nodes.size()));
+    for (size_t k = r.count(kMostSlots); k > 0; --k) b.slots.push_back(static_cast<int>(r.count(kMostSlots)));
+  }
+  plan.weight.assign(r.count(kMostSlots), {});
+  for (auto& row : plan.weight) row = r.all(plan.nodes.size());
+  plan.predictedError = r.all(kMostSlots);
+  bool fits = r.ok() && plan.weight.size() == static_cast<size_t>(into.slotCount) && plan.predictedError.size() == plan.weight.size();
+  for (const auto& row : plan.weight) fits &= row.size() == plan.nodes.size();
+  if (fits) into = std::move(plan);
+  return fits;
+}
+
+bool readCachedPlan(const ContentKey& key, Plan& into) {
+  try {
+    std::ifstream file(fileOf(key), std::ios::binary);
+    if (!file) return false;
+    return readPlanned({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, into);
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+void writeCachedPlan(const ContentKey& key, const Plan& plan) {
+  try {
+    const std::filesystem::path file = fileOf(key);
+    if (file.empty()) return;
+    std::filesystem::create_directories(file.parent_path());
+    writeFileAtomically(file, writePlanned(plan));
+  } catch (const std::exception&) {
+    // Nothing is lost but time: see the header.
+  }
+}
+
+}  // namespace pitviper

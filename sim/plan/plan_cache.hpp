@@ -1,0 +1,24 @@
+#pragma once
+// Plans kept between runs, by content: the same scene, eye and accuracy give the same plan, which takes a second or more to find.
+// In $XDG_CACHE_HOME/pitviper (or ~/.cache/pitviper), beside imported meshes. Losing the folder costs time only.
+#include <optional>
+
+#include "sim/plan/plan.hpp"
+#include "sim/plan/sight_rays.hpp"
+#include "sim/scene/mesh_cache.hpp"
+
+namespace pitviper {
+
+/// Of everything a plan is made from: spectra at the wavelengths of the channels, bodies, poses over the time axis, textures, settings.
+ContentKey planKey(const Simulation& simulation, const Plan& outline, const Eye& eye);
+
+/// What a planner adds to an outline (makePlan's plan), as text that reads back to the same numbers; `into` is unchanged where it cannot be read.
+std::string writePlanned(const Plan& plan);
+bool readPlanned(const std::string& text, Plan& into);
+
+/// False where it is not there, unreadable or damaged. Never throws.
+bool readCachedPlan(const ContentKey& key, Plan& into);
+/// A folder that cannot be written is no error. Never throws.
+void writeCachedPlan(const ContentKey& key, const Plan& plan);
+
+}  // namespace pitviper
