@@ -69,6 +69,7 @@ class TabulatedAir {
   double longestRange_m() const { return data_.longest_m; }
   const std::string& description() const { return data_.description; }
   const std::string& file() const { return data_.file; }
+  int line() const { return data_.line; }  ///< where the file says which wavelengths it has
   const TableFit& fit() const { return data_.fit; }
   bool emits() const { return !data_.sourceRadiance.empty(); }
   const std::optional<TabulatedSky>& sky() const { return data_.sky; }

@@ -72,6 +72,9 @@ class Builder {
 
   // surroundings.cpp
   AbsorberTable readAirTable(const Record& r, const std::filesystem::path& folder) const;
+  // air_tables.cpp
+  /// False where the air is of another kind.
+  bool readTabulatedAir(const Record& r);
 
   void checkUnique(const Value& name, std::map<std::string, Location>& names, const char* what);
   /// A spectrum whose values are finite and lie in [low, high] wherever it has data.

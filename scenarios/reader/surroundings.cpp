@@ -90,7 +90,7 @@ void Builder::readTime(const Record& scenario) {
 
 void Builder::readAccuracy(const Record& scenario) {
   if (!scenario.given("accuracy")) {
-    accuracy_.accuracy = simulation_.path->isLayered() ? kUsualAccuracy : 0.0;
+    accuracy_.accuracy = simulation_.path->isLayered() || simulation_.path->isTabulated() ? kUsualAccuracy : 0.0;
     return;
   }
   const Value& v = scenario.value("accuracy");
@@ -119,7 +119,7 @@ void Builder::readAtmosphere(const Record& scenario) {
     value = &named;
   }
   const Record r(*value, tables::atmosphere());
-  if (r.text("model") == "none") return;
+  if (r.text("model") == "none" || readTabulatedAir(r)) return;
   if (r.given("library") && r.given("table")) throw UserError(r.where("table"), "the air has a library name and a table", "one of the two", "remove one");
   std::optional<AbsorberTable> table;
   HomogeneousAir air;
@@ -162,7 +162,7 @@ void Builder::readAtmosphere(const Record& scenario) {
       throw UserError(r.where(key), std::string("'") + key + "' is of layered air, and this air is homogeneous", "a library air or a table",
                       std::string("remove '") + key + "'");
   if (!have)
-    throw UserError(r.where(), "air without an extinction, a table or a library name", "'library', 'table' or 'extinction'",
+    throw UserError(r.where(), "air without an extinction, a table or a library name", "'library', 'table', 'extinction', 'tape7' or 'csv'",
                     "add 'library: hazy_us76' or 'extinction: 0.2 /km'");
   if (r.given("top")) air.top_m = r.number("top");
   simulation_.path = makeHomogeneousAir(std::move(air));

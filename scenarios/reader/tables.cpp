@@ -55,7 +55,7 @@ const ParameterTable& scenario() {
        map("render", "how it is drawn"),
        text("accuracy",
             "relative error of a pixel that the plan may spend on wavelengths, tables and terms left out, `1 %` for example, or `reference`: every wavelength "
-            "in double precision on the CPU, slow; without it: 1 % in layered air, else as each camera's `spectral` says"),
+            "in double precision on the CPU, slow; without it: 1 % in layered air and air from tables, else as each camera's `spectral` says"),
        any("atmosphere", "the air: `none`, the name of a library air, or a map"),
        map("background", "what is behind everything (0 K unless given), seen through the air"), map("sun", "direction and irradiance"),
        map("ambient", "radiance of a uniform dome that lights all surfaces"), map("materials", "name: material; library materials need not be listed"),
@@ -101,7 +101,7 @@ const ParameterTable& time() {
 const ParameterTable& atmosphere() {
   static const ParameterTable t{
       "atmosphere",
-      "None, layered air (library or table), or homogeneous air (extinction).",
+      "None, layered air (library or table), homogeneous air (extinction), or air along level paths from a table of your own (tape7 or csv).",
       {withDefault(choice("model", {"none", "air"}, "none: whatever else is given, there is no air"), "air"),
        text("library", "named air, atmosphere/library/<name>.yaml"),
        text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air"),
@@ -113,7 +113,10 @@ const ParameterTable& atmosphere() {
        within(number("top", "m",
                      "homogeneous: height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never "
                      "ends and the sun's irradiance is that at the scene"),
-              -500, 1e7)}};
+              -500, 1e7),
+       text("tape7", "file of MODTRAN runs along a horizontal or slant path, relative to the scenario; several ranges in one file are best"),
+       above(within(number("range", "m", "of the only path of a tape7 that does not say it"), 0, kFarthest_m), 0),
+       text("csv", "file of transmittance or extinction by wavelength and range, relative to the scenario; its columns: atmosphere/tabulated_csv.hpp")}};
   return t;
 }
 
@@ -290,7 +293,8 @@ const ParameterTable& camera() {
         {required(text("name", "unique name; begins the file names")), required(map("film", "pixels")),
          within(number("focal_length", "m", "with `pitch` of the film"), 1e-6, 1e4),
          within(number("field_of_view", "rad", "horizontal, instead of focal length (then 50 mm) or of pitch"), 1e-9, 3.1),
-         required(within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3)), spectrum("optics", "", "transmission of the optics, 0..1"),
+         required(within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3)),
+         spectrum("optics", "", "transmission of the optics, 0..1; 0 outside its table, as a response is"),
          within(number("exposure", "s", "exposure time"), 1e-12, 1e6), withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
          withDefault(integer("samples", "n: n x n subpixels per pixel", 1, 16), "1"),
          withDefault(within(number("small_bodies", "",
@@ -358,7 +362,7 @@ const ParameterTable& sensor() {
        within(number("focal_length", "m", "the pixel pitch follows"), 1e-6, 1e4),
        within(number("pixel_pitch", "m", "horizontal; the focal length follows"), 1e-9, 1),
        within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3),
-       spectrum("optics", "", "transmission of the optics, 0..1 (1 unless given, whatever the camera's was)"),
+       spectrum("optics", "", "transmission of the optics, 0..1, and 0 outside its table (1 unless given, whatever the camera's was)"),
        within(number("exposure", "s", "exposure time"), 1e-12, 1e6), required(list("channels", "as a camera's", 1, 64))}};
   return t;
 }

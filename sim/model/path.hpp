@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/parameters/error.hpp"
+
 namespace pitviper {
 
 constexpr int kMostAirAmounts = 16;
@@ -56,6 +58,10 @@ class Path {
   virtual bool isNone() const { return false; }
   /// Amounts depend on heights: the shader reads tables made for a view (AirTables).
   virtual bool isLayered() const { return false; }
+  /// Amounts are lengths alone: the shader reads exponents and coefficients (PathBlock).
+  virtual bool isTabulated() const { return false; }
+  /// The file that says which wavelengths it has; none: it is in the scenario.
+  virtual Location where() const { return {}; }
   /// Exponents a_k, one per absorber.
   virtual std::span<const double> exponents() const = 0;
   virtual AirNode node(double wavelength_um) const = 0;

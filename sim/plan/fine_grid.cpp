@@ -10,9 +10,31 @@ constexpr double kWidth_per_cm = 5.0, kWidth_um = 1e-3;
 /// Width of a bin that begins at a wavelength [um].
 double widthAt(double wavelength_um) { return std::max(kWidth_um, kWidth_per_cm * 1e-4 * wavelength_um * wavelength_um); }
 
+/// Bins of a table's own from `low` to `high`, wide ones cut into usual ones.
+std::vector<QuadratureNode> tableGrid(const Spectrum& kernel, std::span<const double> table, double low, double high) {
+  std::vector<QuadratureNode> nodes;
+  auto add = [&](double from, double to, double at) {
+    const double weight = from < to ? kernel.integral(from, to) : 0.0;
+    if (weight != 0.0) nodes.push_back({at, weight});
+  };
+  for (size_t k = 0; k < table.size(); ++k) {
+    const double from = k == 0 ? low : std::max(low, 0.5 * (table[k - 1] + table[k]));
+    const double to = k + 1 == table.size() ? high : std::min(high, 0.5 * (table[k] + table[k + 1]));
+    if (!(from < to)) continue;
+    if (to - from <= widthAt(table[k])) {
+      add(from, to, std::clamp(table[k], from, to));
+      continue;
+    }
+    const int bins = static_cast<int>((to - from) / widthAt(table[k]) + 0.999);
+    for (int b = 0; b < bins; ++b) add(from + (to - from) * b / bins, from + (to - from) * (b + 1) / bins, from + (to - from) * (b + 0.5) / bins);
+  }
+  return nodes;
+}
+
 }  // namespace
 
-std::vector<QuadratureNode> fineGrid(const Spectrum& kernel) {
+std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const double> table) {
+  if (!table.empty()) return tableGrid(kernel, table, kernel.supportLow(), kernel.supportHigh());
   const double low = kernel.supportLow(), high = kernel.supportHigh();
   std::vector<double> edges = {low, high};
   for (double k : kernel.knots())

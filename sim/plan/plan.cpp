@@ -1,6 +1,7 @@
 #include "sim/plan/plan.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "sim/model/shadow_casters.hpp"
@@ -29,7 +30,7 @@ bool sameKernel(const Spectrum& a, const Spectrum& b) {
 
 std::string micrometres(double v) {
   char s[32];
-  std::snprintf(s, sizeof s, "%.4g um", v);
+  std::snprintf(s, sizeof s, "%.6g um", v);
   return s;
 }
 
@@ -38,11 +39,17 @@ class CoverageCheck {
  public:
   CoverageCheck(double low, double high, const ChannelOutput& starved) : low_(low), high_(high), starved_(starved) {}
 
-  void operator()(const std::string& what, const Location& where, double validLow, double validHigh) const {
+  void operator()(const std::string& what, const Location& where, double validLow, double validHigh,
+                  const std::string& fix = "extend its table, narrow the channel, or declare 'outside: hold' or 'outside: zero' if that is true") const {
     if (validLow <= low_ * (1 + 1e-12) && validHigh >= high_ * (1 - 1e-12)) return;
     throw UserError(where, what + " has no data for channel '" + starved_.channel + "' (" + micrometres(low_) + " to " + micrometres(high_) + ")",
-                    "a spectrum that covers the channel's band; this one covers " + micrometres(validLow) + " to " + micrometres(validHigh),
-                    "extend its table, narrow the channel, or declare 'outside: hold' or 'outside: zero' if that is true");
+                    "a spectrum that covers the channel's band; this one covers " + micrometres(validLow) + " to " + micrometres(validHigh), fix);
+  }
+  /// What to do about a table made by a program that counts in wavenumbers.
+  std::string wavenumbers() const {
+    char s[96];
+    std::snprintf(s, sizeof s, "make the table from %.0f to %.0f 1/cm or more, or narrow the channel", std::floor(1e4 / high_), std::ceil(1e4 / low_));
+    return s;
   }
   void operator()(const std::string& what, const Location& where, const Spectrum& s) const { (*this)(what, where, s.validLow(), s.validHigh()); }
 
@@ -54,7 +61,9 @@ class CoverageCheck {
 void checkCoverage(const Simulation& sim, const ChannelOutput& output) {
   const CoverageCheck check(output.kernel.supportLow(), output.kernel.supportHigh(), output);
   for (const auto& m : sim.materials) check("material '" + m->name + "'", m->where, m->validLow_um(), m->validHigh_um());
-  if (sim.path) check("the atmosphere", output.where, sim.path->validLow_um(), sim.path->validHigh_um());
+  if (sim.path && !sim.path->where().file.empty())  // a table that somebody made: nothing may be declared of what is outside it
+    check("the atmosphere", sim.path->where(), sim.path->validLow_um(), sim.path->validHigh_um(), check.wavenumbers());
+  else if (sim.path) check("the atmosphere", output.where, sim.path->validLow_um(), sim.path->validHigh_um());
   for (const auto& l : sim.lights) check("light '" + l.name + "'", output.where, l.intensity);
   if (sim.sun) check("the sun", output.where, sim.sun->irradiance);
   if (sim.ambient) check("ambient", output.where, *sim.ambient);
@@ -120,10 +129,11 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   std::vector<const Spectrum*> kernels;
   for (const auto* slot : slots) kernels.push_back(&slot->kernel);
   const auto pieces = commonPieces(kernels);
+  const std::vector<double> table = sim.path && sim.path->isTabulated() ? sim.path->knots_um() : std::vector<double>();
   std::vector<std::vector<QuadratureNode>> rules;
   for (const auto* slot : slots) {
     try {
-      rules.push_back(sampling.reference ? fineGrid(slot->kernel)
+      rules.push_back(sampling.reference ? fineGrid(slot->kernel, table)
                       : sampling.shared  ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, pieces)
                                          : spectralRule(slot->kernel, sampling.samples, sampling.spacing));
     } catch (const std::invalid_argument& e) {

@@ -56,6 +56,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       solids_(simulation, tables_, *scene_, library),
       relevance_(simulation, plan, tables_),
       air_(simulation, plan, shading == Shading::Direct, shading != Shading::Reference),
+      pathBlock_(simulation, plan, shading != Shading::Reference),
       how_(shading) {
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
   if (shading != Shading::Reference)
@@ -82,6 +83,7 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
   slots.constants["SUN"] = simulation_.sun ? 1 : 0;
   air_.addConstants(slots);
+  pathBlock_.addConstants(slots);
   return slots;
 }
 
@@ -174,6 +176,7 @@ void ScenePass::bindBuffers() const {
   solid_.bind();
   lights_.bindStorage(5);
   air_.bind();
+  pathBlock_.bind();
   view_.bindUniform(0);
   nodes_.bindUniform(1);
   if (shadows_) shadows_->bind();

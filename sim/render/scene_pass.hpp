@@ -7,6 +7,7 @@
 #include "sim/render/air_tables.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/light_relevance.hpp"
+#include "sim/render/path_block.hpp"
 #include "sim/render/shading_program.hpp"
 #include "sim/render/shadow_pass.hpp"
 #include "sim/render/solid_pass.hpp"
@@ -86,6 +87,7 @@ class ScenePass {
   SolidPass solids_;
   LightRelevance relevance_;
   AirTables air_;
+  PathBlock pathBlock_;
   Shading how_;
   std::unique_ptr<ShadowPass> shadows_;  ///< where the plan has them
   Buffer nodes_, draws_, lights_, view_;

@@ -13,6 +13,7 @@
 #include "atmosphere/tabulated_air.hpp"
 #include "atmosphere/tabulated_csv.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/plan/fine_grid.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/spectrum.hpp"
 #include "tests/support/figures.hpp"
@@ -227,6 +228,28 @@ TEST(TabulatedAir, ABandMustBeCovered) {
 }
 
 // ---- Files -------------------------------------------------------------------------------------------------------------------------------
+
+// Bins of a table's own where it is finer than the usual ones, usual ones between its wavelengths where it is coarse; nothing of a response is lost.
+TEST(FineGrid, FollowsATable) {
+  const Spectrum band = Spectrum::band(4.0, 5.0, 2.0);
+  std::vector<double> fine, coarse = {3.0, 4.1, 4.7, 6.0};
+  for (int v = 2600; v >= 1900; --v) fine.push_back(1e4 / v);
+  const auto sum = [](const std::vector<QuadratureNode>& nodes) {
+    double total = 0.0;
+    for (const auto& n : nodes) total += n.weight;
+    return total;
+  };
+  const auto own = fineGrid(band, fine);
+  EXPECT_NEAR(sum(own), 2.0, 1e-12);
+  ASSERT_EQ(own.size(), 501u);  // 2000 to 2500 1/cm
+  for (size_t i = 0; i < own.size(); ++i) EXPECT_NEAR(1e4 / own[i].x, 2500.0 - static_cast<double>(i), 1e-9);
+  const auto usual = fineGrid(band, coarse);
+  EXPECT_NEAR(sum(usual), 2.0, 1e-12);
+  EXPECT_GT(usual.size(), 90u);  // 5 1/cm are 0.008 to 0.0125 um
+  EXPECT_LT(usual.size(), 130u);
+  for (size_t i = 1; i < usual.size(); ++i) EXPECT_GT(usual[i].x, usual[i - 1].x);
+  EXPECT_NEAR(sum(fineGrid(band)), 2.0, 1e-12);
+}
 
 TEST(AirCsv, AllFormsAgree) {
   const double tau1 = std::exp(-0.3 - 0.1), tau4 = std::exp(-0.3 * std::pow(4.0, 0.55) - 0.4), j = 2.5;

@@ -1,0 +1,51 @@
+#include "atmosphere/tabulated_path.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+namespace {
+
+class TabulatedPath final : public Path {
+ public:
+  explicit TabulatedPath(TabulatedAir air) : air_(std::move(air)) {
+    if (air_.exponents().size() > kMostAirAmounts) throw std::invalid_argument("table of air: more exponents than a path has amounts");
+  }
+  std::string slotFile() const override { return "atmosphere/tabulated.glsl"; }
+  bool isTabulated() const override { return true; }
+  Location where() const override { return {air_.file(), air_.line(), 1, -1}; }
+  std::span<const double> exponents() const override { return air_.exponents(); }
+  AirNode node(double wavelength_um) const override {
+    AirNode n;
+    const auto c = air_.coefficients(wavelength_um);
+    std::copy(c.begin(), c.end(), n.extinction.begin());
+    n.source = air_.sourceRadiance(wavelength_um);
+    return n;
+  }
+  double top_m() const override { return physics::kFar; }
+  AirAmounts amounts(const AirRay&, double range_m) const override {
+    AirAmounts a;
+    std::fill_n(a.amount.begin(), air_.exponents().size(), 1e-3 * std::min(range_m, physics::kFar));
+    return a;
+  }
+  std::vector<AirStation> stations(const AirRay& ray, double range_m) const override { return {{}, {range_m, 0.0, 0.0, amounts(ray, range_m)}}; }
+  std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const override {
+    std::vector<AirStation> stations;
+    for (double r : ranges_m) stations.push_back({r, 0.0, 0.0, amounts(ray, r)});
+    return stations;
+  }
+  double validLow_um() const override { return air_.validLow_um(); }
+  double validHigh_um() const override { return air_.validHigh_um(); }
+  std::vector<double> knots_um() const override { return {air_.knots_um().begin(), air_.knots_um().end()}; }
+
+ private:
+  TabulatedAir air_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Path> makeTabulatedPath(TabulatedAir air) { return std::make_shared<TabulatedPath>(std::move(air)); }
+
+}  // namespace pitviper
