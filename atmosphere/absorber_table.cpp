@@ -99,7 +99,8 @@ class AbsorberTableReader {
 
  private:
   [[noreturn]] void fail(int column, const std::string& wrong, const std::string& expected = "") const {
-    throw UserError(Location{name_, line_, column}, wrong, expected);
+    throw UserError(Location{name_, line_, column}, wrong, expected.empty() ? "an air table" : expected,
+                    "correct the line; the format is at the head of atmosphere/library/us76_rural.air");
   }
 
   double number(size_t word, double low, double high, const std::string& what) const {
@@ -208,7 +209,7 @@ AbsorberTable AbsorberTable::read(std::istream& in, const std::string& name) { r
 
 AbsorberTable AbsorberTable::read(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw UserError(Location{file.string()}, "the air table cannot be opened");
+  if (!in) throw UserError(Location{file.string()}, "the air table cannot be opened", "a file that can be read", "check its name and rights");
   return read(in, file.string());
 }
 

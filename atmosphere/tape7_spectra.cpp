@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "sim/parameters/error.hpp"
+#include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 namespace {
@@ -45,6 +46,24 @@ Spectrum sun(const Tape7Run& run, const char* ofIrradiance, const char* ofRadian
 /// Rounding of five digits in each of five columns is 7e-5 at most in the files known.
 constexpr double kSumsAgree = 5e-4;
 
+/// BBODY_T is what a black body of TOTAL_RAD has: radiances in other units (per um a factor of nu^2 / 1e4, per m2 1e4) are far from it. Three decimals
+/// of it are 1e-4 at the shortest wavelengths; a factor of 5 leaves room for what was edited by hand, and finds all but 45 to 224 1/cm per um.
+constexpr double kSameUnit = 5.0;
+
+void checkUnit(const Tape7Run& run, const Tape7Column& total) {
+  const Tape7Column* temperature = run.find("BBODY_T[K]");
+  if (!temperature) return;
+  for (size_t i = 0; i < total.value.size(); ++i) {
+    const double kelvin = temperature->value[i], written = total.value[i];
+    if (!(kelvin > 1.0) || !(written > 0.0)) continue;  // dark, or blank here
+    const double ratio = written / physics::planckRadiance(run.wavelength_um[i], kelvin);
+    if (ratio < kSameUnit && ratio > 1.0 / kSameUnit) continue;
+    throw UserError({run.file, run.lineOf(i), total.firstColumn, -1},
+                    "TOTAL_RAD is " + number(ratio) + " times what a black body of BBODY_T, " + number(kelvin) + " K, sends: its unit is another",
+                    "W/(cm2 sr cm-1), as MODTRAN writes it", "give the file as MODTRAN wrote it, its radiances not converted");
+  }
+}
+
 }  // namespace
 
 Spectrum totalTransmittance(const Tape7Run& run) {
@@ -64,6 +83,7 @@ Spectrum pathRadiance(const Tape7Run& run) {
     const auto& more = columnOf(run, name, what, "1 or 2").value;
     std::transform(to.begin(), to.end(), more.begin(), to.begin(), std::plus<>());
   };
+  checkUnit(run, total);
   if (sunny) add("SOL_SCAT", value);
   for (const char* surface : {"SURF_EMIS", "GRND_RFLT"})
     if (run.find(surface)) add(surface, sum);

@@ -40,6 +40,7 @@ class Reader {
     for (Bin& bin : bins()) {
       if (image.edge_um.empty()) image.edge_um.push_back(bin.low_um);
       image.edge_um.push_back(bin.high_um);
+      checkFinite(*bin.layer);
       image.bins.push_back(std::move(bin.layer->pixels));
     }
     readCamera(image);
@@ -51,6 +52,14 @@ class Reader {
  private:
   [[noreturn]] void refuse(const std::string& wrong, const std::string& expected) const {
     throw UserError(where_, wrong, expected, "take a <camera>_<frame>_spectral.exr of a camera with 'spectral_image: {band: [3 um, 5 um]}'");
+  }
+
+  void checkFinite(const FloatLayer& layer) const {
+    const auto bad = std::find_if(layer.pixels.begin(), layer.pixels.end(), [](float v) { return !std::isfinite(v); });
+    if (bad == layer.pixels.end()) return;
+    const auto pixel = bad - layer.pixels.begin();
+    refuse("layer '" + layer.name + "' is not finite at column " + std::to_string(pixel % exr_.width) + ", row " + std::to_string(pixel / exr_.width),
+           "finite radiances");
   }
 
   std::vector<Bin> bins() {

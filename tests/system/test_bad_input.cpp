@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "sim/image/png.hpp"
+#include "tests/support/air_text.hpp"
 
 namespace {
 
@@ -157,6 +158,78 @@ std::string colourPng() {
   const std::string bytes = readAll(file);
   fs::remove(file);
   return bytes;
+}
+
+/// A sound tape7 of one level path of 2 km, 2000 to 2500 1/cm, and the same changed in one place.
+std::string tape7() {
+  constexpr double kRange_km[] = {2.0};
+  return pitviper::test::tape7Text(
+      2000, 2500, 50, kRange_km, [](double, double) { return 0.75; }, [](double um, double) { return 0.25 * um; });
+}
+
+std::string tape7With(const std::string& what, const std::string& with) {
+  std::string text = tape7();
+  const std::size_t at = text.find(what);
+  EXPECT_NE(at, std::string::npos) << what;
+  return at == std::string::npos ? text : text.replace(at, what.size(), with);
+}
+
+const char* const kAirHeader = "wavelength_um,range_km,transmittance,path_radiance_W/(m2 sr um)\n";
+
+/// A scene in air from a file; its channel responds from 4.1 to 4.9 um.
+std::string airScene(const std::string& air) {
+  std::string camera = kCamera;
+  const std::string band = "[3.6 um, 4.9 um]";
+  return "atmosphere: " + air + "\n" + kPlate + camera.replace(camera.find(band), band.size(), "[4.1 um, 4.9 um]");
+}
+
+/// Air from tables: what the scenario says of it, and what is in the files.
+std::vector<Bad> badAir() {
+  const std::string csv = airScene("{csv: air.csv}"), t7 = airScene("{tape7: air.tp7}");
+  const std::string row = " 2050.00 0.75000000 ";
+  const auto air = [](const std::string& text) { return std::map<std::string, std::string>{{"air.csv", text}}; };
+  const auto run = [](const std::string& text) { return std::map<std::string, std::string>{{"air.tp7", text}}; };
+  std::string cut = tape7With(row, "@@" + row);
+  cut.resize(cut.find(row) + 60);
+  return {
+      {"Tape7Missing", airScene("{tape7: @@nothing.tp7}"), {"there is no file 'nothing.tp7'", "a tape7 of MODTRAN"}},
+      {"AirCsvMissing", airScene("{csv: @@nothing.csv}"), {"there is no file 'nothing.csv'"}},
+      {"AirTwice", airScene("{tape7: air.tp7, library: @@hazy_us76}"), {"given twice, by 'tape7' and by 'library'"}},
+      {"AirFromTapeAndCsv", airScene("{tape7: air.tp7, csv: @@air.csv}"), {"given twice, by 'tape7' and by 'csv'"}},
+      {"AirFromCsvWithATemperature", airScene("{csv: air.csv, temperature: @@280 K}"), {"'temperature' is of another kind of air", "remove 'temperature'"}},
+      {"RangeOfACsv", airScene("{csv: air.csv, range: @@5 km}"), {"'range' is of a tape7"}},
+      {"RangeAlone", airScene("{library: hazy_us76, range: @@5 km}"), {"'range' is of air from a tape7"}},
+      {"RangeOfNothing", airScene("{tape7: air.tp7, range: @@0 km}"), {"range is out of range (0 km)"}},
+      // CSV.
+      {"AirCsvWithoutUnits", csv, {"'range' has no unit", "range_km or range_m"}, air("wavelength_um,@@range,transmittance\n4,1,0.5\n5,1,0.5\n")},
+      {"AirCsvWavelengthWithoutUnit", csv, {"'wavelength' has no unit", "wavelength_um or wavelength_nm"}, air("@@wavelength,extinction_1/km\n4,1\n5,1\n")},
+      {"AirCsvExtinctionWithoutUnit", csv, {"'extinction' has no unit", "extinction_1/km"}, air("wavelength_um,@@extinction\n4,1\n5,1\n")},
+      {"AirCsvRadianceInAnotherUnit", csv, {"unknown unit", "convert the column"}, air("wavelength_um,extinction_1/km,@@source_radiance_W/m2\n4,1,1\n5,1,1\n")},
+      {"AirCsvWithNan", csv, {"'nan' for transmittance is not finite"}, air(kAirHeader + std::string("4,1,0.5,0\n5,1,@@nan,0\n"))},
+      {"AirCsvWithInfinity", csv, {"'inf' for path_radiance"}, air(kAirHeader + std::string("4,1,0.5,0\n5,1,0.5,@@inf\n"))},
+      {"AirCsvOfTooMuchRadiance", csv, {"source radiance", "at most 1e30"}, air("@@" + std::string(kAirHeader) + "4,1,0.9999999,1e30\n5,1,0.5,1e30\n")},
+      {"AirCsvDoesNotCoverTheBand",
+       csv,
+       {"channel 'mw'", "4.1 um to 4.9 um", "4 um to 4.5 um"},
+       air("# measured\n@@wavelength_um,extinction_1/km\n4,1\n4.5,1\n")},
+      // tape7.
+      {"Tape7CutShort", t7, {"the file is cut short", "-9999."}, run(cut), "air.tp7:"},
+      {"Tape7CutInAnEarlierRun", t7, {"numbers run together", "two decimal points"}, run(tape7With(row, " 2050.00@@0.75000000.")), "air.tp7:"},
+      {"Tape7FieldsRunTogether", t7, {"asterisks for TOT_TRANS"}, run(tape7With(row, " 2050.00@@*********** "))},
+      {"Tape7WithNan", t7, {"'NaN' for TOT_TRANS", "a finite number"}, run(tape7With(row, " 2050.00        @@NaN "))},
+      {"Tape7OverWavelengths", t7, {"a table over wavelength", "FREQ, wavenumbers in cm-1"}, run(tape7With("    FREQ  TOT", "  @@WAVLEN  TOT"))},
+      {"Tape7InPerCent", t7, {"TOT_TRANS"}, run(tape7With(" 0.75000000", "75.00000000")), "air.tp7:"},
+      {"Tape7DoesNotCoverTheBand",
+       airScene("{tape7: air.tp7}").replace(airScene("{tape7: air.tp7}").find("4.9 um"), 6, "5.2 um"),
+       {"the atmosphere has no data for channel 'mw'", "4.1 um to 5.2 um", "4 um to 5 um", "1923 to 2440 1/cm"},
+       run(tape7With("    2000.0    2500.0", "@@    2000.0    2500.0"))},
+      {"Tape7WithoutARange", t7, {"the range of run 1 is not in its card 3", "give the range"}, run("@@" + tape7With("   2.00000", "   0.00000"))},
+      {"RangeIsNotTheFiles", airScene("{tape7: air.tp7, range: 3 km}"), {"the range given, 3 km, is not the 2 km of run 1"}, run("@@" + tape7())},
+      {"AirTableWithNan",
+       airScene("{table: bad.air}"),
+       {"is 'nan'", "a number from"},
+       {{"bad.air", "pitviper-air 1\ntitle x\nsource y\namount a @@nan gas\n"}}},
+  };
 }
 
 std::vector<Bad> badScenarios() {
@@ -333,6 +406,7 @@ TEST_P(BadScenario, IsRefusedAtItsPlace) {
   }
 }
 
+INSTANTIATE_TEST_SUITE_P(Air, BadScenario, testing::ValuesIn(badAir()), [](const auto& one) { return std::string(one.param.name); });
 INSTANTIATE_TEST_SUITE_P(All, BadScenario, testing::ValuesIn(badScenarios()), [](const auto& one) { return std::string(one.param.name); });
 
 TEST(GoodScenario, MinimalAndWithAliases) {

@@ -155,6 +155,10 @@ TEST_F(Integrate, RefusesImagesThatAreNotSpectral) {
     damaged(attribute("bin_um.spectrum.003", std::string(broken)));
     refused(line, "bad.exr: ", {"'bin_um.spectrum.003' is not a bin"});
   }
+  for (const float broken : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+    damaged([broken](ExrImage& image) { image.layers.at(2).pixels.at(static_cast<size_t>(image.width) + 1) = broken; });
+    refused(line, "bad.exr: ", {"is not finite at column 1, row 1"});
+  }
   damaged(attribute("unit.spectrum.003", std::string("W/(m2 sr)")));
   refused(line, "bad.exr: ", {"'spectrum.003' is not spectral radiance"});
   damaged(attribute("pitviper.focal_length_m", 0.0));

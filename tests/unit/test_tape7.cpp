@@ -383,6 +383,14 @@ TEST(Tape7, BrokenOnesAreRefused) {
 
 TEST(Tape7, SpectraRefuseWhatDoesNotAddUp) {
   EXPECT_THROW(pathRadiance(read(replaced(sunnyRun(), "7.0000E-08", "9.0000E-08")).at(0)), UserError);
+  // Radiances that somebody turned into W/(cm2 um): nu^2 / 1e4 = 400 times as large at 2000 1/cm.
+  try {
+    pathRadiance(read(replaced(replaced(sunnyRun(), "1.2500E-08", "5.0000E-06"), "7.0000E-08", "2.8000E-05")).at(0));
+    FAIL();
+  } catch (const UserError& e) {
+    EXPECT_EQ(std::string(e.what()).rfind("t7:12:97: TOTAL_RAD is ", 0), 0u) << e.what();
+    EXPECT_NE(std::string(e.what()).find("BBODY_T, 251.5 K, sends: its unit is another"), std::string::npos) << e.what();
+  }
   EXPECT_THROW(pathRadiance(read(replaced(sunnyRun(), " 2.5000E-09", "           ")).at(0)), UserError);
   EXPECT_NO_THROW(pathRadiance(read(replaced(sunnyRun(), "    251.500", "           ")).at(0)));  // blank, but not asked for
   try {
