@@ -265,7 +265,8 @@ std::string userOf(Role role) {
                       : role == Role::Light ? "lights: [{name: l, intensity: mutant}]\n"
                       : role == Role::Sun   ? "sun: {azimuth: 0 deg, elevation: 40 deg, irradiance: mutant}\n"
                                             : "";
-  return std::string(first) + "entities: [{name: p, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: " + (role == Role::Material ? "mutant" : "{}") +
+  return std::string(first) +
+         "entities: [{name: p, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: " + (role == Role::Material ? "mutant" : "{}") +
          ", temperature: 300 K}]\ncameras: [{name: c, film: {width: 8, height: 8, pitch: 20 um}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: "
          "[9 m, 0 m, 0 m], "
          "channels: [{name: b, response: " +
@@ -279,7 +280,7 @@ Libraries copyLibraries(const fs::path& root, const fs::path& folder) {
     fs::remove_all(copy);
     fs::create_directories(copy);
     for (const auto& entry : fs::directory_iterator(root / copy.filename() / "library"))
-      if (entry.path().extension() == ".yaml") fs::copy_file(entry.path(), copy / entry.path().filename());
+      if (entry.path().extension() == ".yaml" || entry.path().extension() == ".air") fs::copy_file(entry.path(), copy / entry.path().filename());
   }
   return copies;
 }
