@@ -58,4 +58,8 @@ std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const dou
   return nodes;
 }
 
+std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, const Path* air) {
+  return fineGrid(kernel, air && air->isTabulated() ? air->knots_um() : std::vector<double>());
+}
+
 }  // namespace pitviper

@@ -129,11 +129,10 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   std::vector<const Spectrum*> kernels;
   for (const auto* slot : slots) kernels.push_back(&slot->kernel);
   const auto pieces = commonPieces(kernels);
-  const std::vector<double> table = sim.path && sim.path->isTabulated() ? sim.path->knots_um() : std::vector<double>();
   std::vector<std::vector<QuadratureNode>> rules;
   for (const auto* slot : slots) {
     try {
-      rules.push_back(sampling.reference ? fineGrid(slot->kernel, table)
+      rules.push_back(sampling.reference ? fineGrid(slot->kernel, sim.path.get())
                       : sampling.shared  ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, pieces)
                                          : spectralRule(slot->kernel, sampling.samples, sampling.spacing));
     } catch (const std::invalid_argument& e) {

@@ -55,5 +55,36 @@ TEST(AirFromTables, GpuAgainstDouble) {
         "powers by exp(a ln R) in single precision: 1e-7 of depths to 10 that still let something through, ranges and angles");
 }
 
+// The planner's groups of the table's wavelengths, sky included, against the reference's every one.
+TEST(AirFromTables, PlannedAgainstReference) {
+  const std::string table = writeTable();
+  const std::string rest =
+      "atmosphere: {csv: " + table +
+      "}\nsun: {azimuth: 60 deg, elevation: 35 deg, temperature: 5772 K}\n"
+      "materials: {m: {components: [{reflection: lambertian, reflectance: 0.35}]}}\n"
+      "entities:\n  - {name: ground, shape: {model: plate, width: 80 km, height: 80 km}, material: m, temperature: 290 K, pitch: 90 deg}\n"
+      "  - {name: near, shape: {model: sphere, radius: 10 m}, material: m, temperature: 320 K, position: [0 m, 150 m, 300 m]}\n"
+      "  - {name: far, shape: {model: sphere, radius: 900 m}, material: m, temperature: 500 K, position: [2 km, 25 km, 4 km]}\n"
+      "cameras: [{name: c, film: {width: 32, height: 32}, field_of_view: 40 deg, aperture: 5 mm, position: [0 m, 0 m, 300 m], look_at: [0 m, 10 km, 1 km], "
+      "channels: [{name: a, response: {band: [3.1 um, 4.9 um]}}]}]\n";
+  const Frame planned = renderFrame(scene("accuracy: 1 %\n" + rest)), reference = renderFrame(scene("accuracy: reference\n" + rest));
+  std::filesystem::remove(table);
+  double worst = 0.0;
+  int compared = 0;
+  for (int y = 1; y + 1 < reference.height; ++y)
+    for (int x = 1; x + 1 < reference.width; ++x) {
+      const double want = at(reference.layers[0], reference, x, y), error = std::abs(at(planned.layers[0], planned, x, y) / want - 1.0);
+      // A silhouette may fall either way: a step to a neighbour of more than 2 %.
+      bool edge = false;
+      for (const auto& [dx, dy] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}})
+        edge |= std::abs(at(reference.layers[0], reference, x + dx, y + dy) / want - 1.0) > 0.02;
+      if (edge) continue;
+      ++compared;
+      worst = std::max(worst, error);
+    }
+  EXPECT_GT(compared, 500);
+  bound("air from tables planned for 1 %, against every wavelength, worst pixel", worst, 1e-2, "the accuracy asked for");
+}
+
 }  // namespace
 }  // namespace pitviper::test
