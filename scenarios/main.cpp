@@ -42,6 +42,16 @@ const std::map<std::string, Command>& commands() {
        {checkCommand, "validate a scenario, render nothing",
         "pitviper check SCENARIO.yaml [--set path.to.key=value]...\n\nReads everything the scenario names and reports the first mistake as file:line:col with "
         "the fix (exit code 2).\n"}},
+      {"plan",
+       {planCommand, "what a scenario's accuracy makes of it: terms, wavelengths, predicted error",
+        "pitviper plan SCENARIO.yaml [--set path.to.key=value]... [--json] [--speed] [--shaders]\n\n"
+        "Per camera and probe: how much of a pixel each term can be in each channel, which are kept and which dropped; into how many\n"
+        "groups of wavelengths each channel's integral goes, of how many the reference has, and the error predicted for lines of sight the\n"
+        "groups were not fitted to. 'accuracy: 1 %' in the scenario, or --set accuracy='0.1 %', asks for another. Plans are kept by content in\n"
+        "$XDG_CACHE_HOME/pitviper (or ~/.cache/pitviper).\n\n"
+        "  --json     for programs: a list with an object per camera and probe\n"
+        "  --speed    also predicted frames a second, from a measured yardstick\n"
+        "  --shaders  also the text of the shading program\n"}},
       {"info",
        {infoCommand, "what is in a frame, or what this machine draws with",
         "pitviper info [FILE.exr [--at COLUMN,ROW]]\n\nLayers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver, its "

@@ -14,6 +14,7 @@ int checkCommand(const Arguments& arguments);
 int infoCommand(const Arguments& arguments);
 int integrateCommand(const Arguments& arguments);
 int benchCommand(const Arguments& arguments);
+int planCommand(const Arguments& arguments);
 int atmosphereCommand(const Arguments& arguments);
 int keysCommand(const Arguments& arguments);
 

@@ -12,6 +12,7 @@
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/table.hpp"
 #include "sim/parameters/units.hpp"
+#include "sim/plan/planner.hpp"
 #include "sim/plan/sampling_check.hpp"
 #include "sim/render/tables.hpp"
 #include "sim/run/run.hpp"
@@ -87,6 +88,7 @@ class ProbeTables {
 /// One line for each camera whose wavelengths miss the bands of a gas by more than a per cent.
 void noteSampling(const Simulation& sim) {
   for (const Camera& c : sim.cameras) {
+    if (c.spectral.reference || c.spectral.accuracy > 0.0) continue;  // planned for the gas
     const auto notes = checkSampling(sim, makePlan(sim, c.outputs, c.spectral, c.where), c.outputs, 0.01);
     if (notes.empty()) continue;
     const SamplingNote& n = notes.front();
@@ -179,7 +181,7 @@ int checkCommand(const Arguments& arguments) {
               count(triangles, "triangle", "triangles").c_str(), count(sim.lights.size(), "light", "lights").c_str(),
               count(sim.materials.size(), "material", "materials").c_str(), count(sim.probes.size(), "probe", "probes").c_str());
   for (const auto& c : sim.cameras) {
-    const Plan plan = makePlan(sim, c.outputs, c.spectral, c.where);
+    const Plan plan = planFor(sim, {&c, nullptr});
     makeTables(sim, plan);  // what only the tables can find wrong
     std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
                 count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),

@@ -71,6 +71,14 @@ struct TimeAxis {
   double at(int frame) const { return start_s + step_s * frame; }
 };
 
+/// What a plan must hold for besides the scenario's own times, where poses or levels come from elsewhere. 0: nothing said.
+struct Limits {
+  double nearest_m = 0.0, farthest_m = 0.0;  ///< between a camera and a body
+  double coldest_K = 0.0, hottest_K = 0.0;   ///< of a body
+  double lightLevel = 0.0;                   ///< greatest, of a point light
+  bool any() const { return farthest_m > 0.0 || hottest_K > 0.0 || lightLevel > 0.0; }
+};
+
 /// Direct: shading integrates into the channels. Buffered: it leaves a spectral image, over which transparent things are blended and
 /// which a further pass integrates. Auto: buffered where something transparent is in view.
 enum class RenderMode { Auto, Direct, Buffered };
@@ -84,6 +92,7 @@ struct Simulation {
   bool shadows = true;  ///< opaque bodies cast them
   LocalFrame frame;
   TimeAxis time;
+  Limits limits;
   std::vector<Texture> textures;
   std::vector<std::shared_ptr<const Material>> materials;
   std::vector<Entity> entities;

@@ -1,20 +1,35 @@
 #pragma once
-// The groups of wavelengths of one channel: fitted to some lines of sight, checked on others.
+// The groups of wavelengths of one channel: fitted to some lines of sight, checked on ever new ones.
 #include "sim/plan/sights.hpp"
 
 namespace pitviper {
 
-struct ChannelFit {
-  FineGrid grid;
-  std::vector<int> absorbers;         ///< columns of the groups' extinction: see Sights::absorbers
-  std::vector<SpectralGroup> groups;  ///< members: wavelengths of the grid
-  double error = 0.0;                 ///< the largest on all lines of sight drawn, most of which were not fitted to
+class ChannelFit {
+ public:
+  /// `accuracy`: relative error that may be spent.
+  ChannelFit(const Simulation& simulation, const Spectrum& kernel, double accuracy);
+  /// Fits groups to all sights drawn so far.
+  void begin(const Sights& sights);
+  /// Checks the groups on the sights drawn since it last looked; where they are not within the accuracy, learns the worst and fits again.
+  /// True where they were.
+  bool check(const Sights& sights);
+  bool holds() const { return holds_; }
+
+  const FineGrid& grid() const { return grid_; }
+  const std::vector<int>& absorbers() const { return absorbers_; }          ///< columns of the groups' extinction: see Sights::absorbers
+  const std::vector<SpectralGroup>& groups() const { return fit_.groups; }  ///< members: wavelengths of the grid
+  double floor() const { return floor_; }
+  /// The largest error: of those fitted to, and of those it was last checked on, which it had not seen.
+  double error() const { return error_; }
+
+ private:
+  FineGrid grid_;
+  std::vector<int> absorbers_;
+  double accuracy_, floor_ = 0.0, error_ = 0.0;
+  std::vector<SpectralProduct> training_;
+  size_t seen_ = 0;
+  GroupFit fit_;
+  bool holds_ = false;
 };
-
-/// Lines of sight to draw for a fit.
-constexpr int kSights = 1100;
-
-/// Holds an accuracy (relative error) on the sights: groups are fitted to some, checked on others, fitted to the worst of those too.
-ChannelFit fitChannel(const Simulation& simulation, const Sights& sights, const Spectrum& kernel, double accuracy);
 
 }  // namespace pitviper

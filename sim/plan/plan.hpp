@@ -1,7 +1,7 @@
 #pragma once
 // What a set of sensor outputs requires of a scene: which terms exist, at which wavelengths they are evaluated and with which
-// weights they become channels. Here the nodes follow the user's `spectral` setting; a planner that chooses them for the
-// scene and an accuracy replaces makePlan() and nothing else.
+// weights they become channels. Here the nodes follow the user's `spectral` setting; planFor() (planner.hpp) chooses them for the
+// scene and an accuracy.
 #include <memory>
 #include <string>
 #include <vector>
@@ -17,6 +17,7 @@ struct NodeBlock {
   int first = 0;
   int count = 0;
   std::vector<int> slots;
+  bool lit = true;  ///< reflected light of the sun or of points matters in these channels
 };
 
 /// Terms of the radiance equation that a kind of surfaces has.
@@ -42,9 +43,11 @@ struct Terms {
   bool media = false;         ///< bodies filled with an emitting medium
 };
 
-/// Entries of layered air's tables for a view (sim/render/air_tables). Linear between: their error falls with the square of both.
-struct AirGrid {
-  int elevations = 33, ranges = 96;
+/// How much of what channels see a term can be, at most over the lines of sight looked at.
+struct TermShare {
+  std::string term;
+  std::vector<double> share;  ///< [slot]: relative to the pixel, as errors are
+  bool kept = true;
 };
 
 struct Plan {
@@ -53,8 +56,10 @@ struct Plan {
   int slotCount = 0;
   std::vector<int> slotOfOutput;            ///< one per output
   std::vector<std::vector<double>> weight;  ///< [slot][node]
+  double accuracy = 0.0;                    ///< relative error asked for; 0: none was
   std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where none was asked for
-  AirGrid airGrid;
+  std::vector<int> fineCount;               ///< [slot]: wavelengths of the reference
+  std::vector<TermShare> shares;            ///< what was looked at to keep or drop terms; empty where no accuracy was asked for
   Terms terms;
   int lightCount = 0;                      ///< point lights and, last, the sun
   std::shared_ptr<const SunLegs> sunLegs;  ///< layered air in sunlight

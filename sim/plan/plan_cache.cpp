@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "sim/image/atomic_file.hpp"
+#include "sim/plan/sights.hpp"
 
 namespace pitviper {
 namespace {
@@ -97,6 +98,9 @@ std::string writePlanned(const Plan& plan) {
   w.put(plan.weight.size());
   for (const auto& row : plan.weight) w.all(row);
   w.all(plan.predictedError);
+  w.all(plan.fineCount);
+  w.put(plan.shares.size());
+  for (const TermShare& s : plan.shares) w.all(s.share);
   const ContentKey sum = contentKey(w.text);
   return std::string(kFormat) + " " + std::to_string(sum[0]) + " " + std::to_string(sum[1]) + "\n" + w.text + "\n";
 }
@@ -126,7 +130,13 @@ bool readPlanned(const std::string& text, Plan& into) {
   plan.weight.assign(r.count(kMostSlots), {});
   for (auto& row : plan.weight) row = r.all(plan.nodes.size());
   plan.predictedError = r.all(kMostSlots);
-  bool fits = r.ok() && plan.weight.size() == static_cast<size_t>(into.slotCount) && plan.predictedError.size() == plan.weight.size();
+  plan.fineCount.clear();
+  for (double n : r.all(kMostSlots)) plan.fineCount.push_back(static_cast<int>(n));
+  plan.shares.assign(r.count(kTermKinds), {});
+  for (size_t k = 0; k < plan.shares.size(); ++k) plan.shares[k] = {nameOf(static_cast<TermKind>(k)), r.all(kMostSlots), true};
+  bool fits = r.ok() && plan.weight.size() == static_cast<size_t>(into.slotCount) && plan.predictedError.size() == plan.weight.size() &&
+              plan.fineCount.size() == plan.weight.size() && plan.shares.size() == static_cast<size_t>(kTermKinds);
+  for (const TermShare& s : plan.shares) fits &= s.share.size() == plan.weight.size();
   for (const auto& row : plan.weight) fits &= row.size() == plan.nodes.size();
   if (fits) into = std::move(plan);
   return fits;

@@ -93,7 +93,7 @@ ContentKey planKey(const Simulation& sim, const Plan& outline, const Eye& eye) {
   std::vector<double> grid;
   for (size_t o = 0; o < outputs.size(); ++o) {
     b.add(outline.slotOfOutput[o]);
-    for (const QuadratureNode& n : fineGrid(outputs[o].kernel)) b.add(n.x), b.add(n.weight), grid.push_back(n.x);
+    for (const QuadratureNode& n : fineGrid(outputs[o].kernel, sim.path.get())) b.add(n.x), b.add(n.weight), grid.push_back(n.x);
   }
   std::sort(grid.begin(), grid.end());
   grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
@@ -111,6 +111,8 @@ ContentKey planKey(const Simulation& sim, const Plan& outline, const Eye& eye) {
     if (sim.ambient) b.add((*sim.ambient)(w));
     b.add(sim.background(w));
   }
+  const Limits& limits = sim.limits;
+  for (double v : {limits.nearest_m, limits.farthest_m, limits.coldest_K, limits.hottest_K, limits.lightLevel}) b.add(v);
   for (const PointLight& l : sim.lights) b.add(l.radius_m), b.add(l.visible);
   if (sim.sun) b.add(sim.sun->toSun);
   b.add(sim.frame.earthRadius_m()), b.add(sim.frame.origin().height_m);

@@ -12,47 +12,69 @@
 namespace pitviper {
 namespace {
 
+/// Lines of sight to fit to at first, and of each check; checks until one is passed, but no more than so many.
+constexpr int kFirst = 260, kCheck = 360, kChecks = 6;
+/// A term that is nowhere more than this part of the accuracy is dropped.
+constexpr double kDropped = 0.05;
+
 /// A group of a channel's fine wavelengths as a node of the scene.
 SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const SpectralGroup& group) {
-  const FineGrid& grid = fit.grid;
+  const FineGrid& grid = fit.grid();
   SpectralNode node;
   node.absorption_per_m.assign(sim.materials.size(), 0.0);
-  AirNode mean;
   double turned = 0.0, scattered = 0.0;
+  // What is scattered is averaged, not fitted: which absorber a fit puts extinction on is of no matter to transmittance, but would be here.
   for (const auto& [index, share] : group.members) {
-    const auto i = static_cast<size_t>(index);
-    node.members.push_back({grid.wavelength_um[i], share});
-    mean.source += share * grid.air[i].source;
+    const AirNode& air = grid.air[static_cast<size_t>(index)];
+    node.members.push_back({grid.wavelength_um[static_cast<size_t>(index)], share});
+    node.air.source += share * air.source;
     for (size_t k = 0; k < kMostAirAmounts; ++k) {
-      mean.molecules[k] += share * grid.air[i].molecules[k];
-      mean.haze[k] += share * grid.air[i].haze[k];
-      turned += share * grid.air[i].haze[k] * grid.air[i].asymmetry;
-      scattered += share * grid.air[i].haze[k];
+      node.air.molecules[k] += share * air.molecules[k];
+      node.air.haze[k] += share * air.haze[k];
+      turned += share * air.haze[k] * air.asymmetry;
+      scattered += share * air.haze[k];
     }
   }
-  node.air.source = mean.source;
   node.air.asymmetry = scattered > 0.0 ? turned / scattered : 0.0;
-  for (size_t a = 0; a < fit.absorbers.size(); ++a) {
-    const auto k = static_cast<size_t>(fit.absorbers[a]);
+  for (size_t a = 0; a < fit.absorbers().size(); ++a) {
+    const auto k = static_cast<size_t>(fit.absorbers()[a]);
     if (k < kMostAirAmounts) node.air.extinction[k] = group.extinction[a];
     else node.absorption_per_m[k - kMostAirAmounts] = group.extinction[a];
   }
-  // What is scattered is averaged, not fitted: which absorber a fit puts extinction on is of no matter to transmittance, but would be here.
-  node.air.molecules = mean.molecules;
-  node.air.haze = mean.haze;
   return node;
 }
 
 /// On as many threads as the machine has.
-void fitAll(std::vector<ChannelFit>& fits, const std::function<ChannelFit(size_t)>& fit) {
+void forAll(std::vector<ChannelFit>& fits, const std::function<void(ChannelFit&)>& work) {
   std::atomic<size_t> next{0};
-  auto work = [&] {
-    for (size_t s = next++; s < fits.size(); s = next++) fits[s] = fit(s);
+  auto some = [&] {
+    for (size_t s = next++; s < fits.size(); s = next++) work(fits[s]);
   };
   std::vector<std::future<void>> others;
-  for (unsigned t = 1; t < std::min<size_t>(std::thread::hardware_concurrency(), fits.size()); ++t) others.push_back(std::async(std::launch::async, work));
-  work();
+  for (unsigned t = 1; t < std::min<size_t>(std::thread::hardware_concurrency(), fits.size()); ++t) others.push_back(std::async(std::launch::async, some));
+  some();
   for (auto& o : others) o.get();
+}
+
+/// What is nowhere seen in any channel has no place in the programs; sunlight and lamps also by channel.
+void dropTerms(Plan& plan, bool keepLights) {
+  auto seen = [&](TermKind kind, size_t slot) { return plan.shares[static_cast<size_t>(kind)].share[slot] > kDropped * plan.accuracy; };
+  auto anywhere = [&](TermKind kind) {
+    bool kept = false;
+    for (size_t s = 0; s < static_cast<size_t>(plan.slotCount); ++s) kept |= seen(kind, s);
+    return plan.shares[static_cast<size_t>(kind)].kept = kept;
+  };
+  for (int k = 0; k < kTermKinds; ++k) anywhere(static_cast<TermKind>(k));
+  plan.terms.scatteredSun = plan.terms.scatteredSun && anywhere(TermKind::ScatteredSun);
+  plan.terms.ambient = plan.terms.ambient && anywhere(TermKind::Ambient);
+  for (NodeBlock& b : plan.blocks) {
+    b.lit = keepLights;
+    for (int s : b.slots) b.lit |= seen(TermKind::Sun, static_cast<size_t>(s)) || seen(TermKind::Lights, static_cast<size_t>(s));
+  }
+  if (std::none_of(plan.blocks.begin(), plan.blocks.end(), [](const NodeBlock& b) { return b.lit; })) {
+    plan.terms.lights = plan.terms.shadows = false;
+    plan.lightCount = 0;
+  }
 }
 
 }  // namespace
@@ -63,27 +85,47 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
   const Location& where = eye.camera ? eye.camera->where : eye.probe->where;
   Plan plan = makePlan(sim, outputs, sampling, where);
   if (sampling.reference || !(sampling.accuracy > 0.0)) return plan;
+  plan.accuracy = sampling.accuracy;
 
-  std::vector<const ChannelOutput*> slots(static_cast<size_t>(plan.slotCount), nullptr);
-  for (size_t o = 0; o < outputs.size(); ++o)
-    if (!slots[static_cast<size_t>(plan.slotOfOutput[o])]) slots[static_cast<size_t>(plan.slotOfOutput[o])] = &outputs[o];
   const ContentKey key = planKey(sim, plan, eye);
-  if (readCachedPlan(key, plan)) return plan;
-  const Sights sights(sim, plan, eye, kSights, static_cast<unsigned long long>(sim.seed));
-  std::vector<ChannelFit> fits(slots.size());
-  fitAll(fits, [&](size_t s) { return fitChannel(sim, sights, slots[s]->kernel, sampling.accuracy); });
+  if (!readCachedPlan(key, plan)) {
+    std::vector<const ChannelOutput*> slots(static_cast<size_t>(plan.slotCount), nullptr);
+    for (size_t o = 0; o < outputs.size(); ++o)
+      if (!slots[static_cast<size_t>(plan.slotOfOutput[o])]) slots[static_cast<size_t>(plan.slotOfOutput[o])] = &outputs[o];
+    Sights sights(sim, plan, eye, static_cast<unsigned long long>(sim.seed));
+    std::vector<ChannelFit> fits;
+    for (const ChannelOutput* slot : slots) fits.emplace_back(sim, slot->kernel, sampling.accuracy);
+    sights.draw(kFirst);
+    forAll(fits, [&](ChannelFit& f) { f.begin(sights); });
+    for (int n = 0; n < kChecks && !std::all_of(fits.begin(), fits.end(), [](const ChannelFit& f) { return f.holds(); }); ++n) {
+      sights.draw(kCheck);
+      forAll(fits, [&](ChannelFit& f) {
+        if (!f.holds()) f.check(sights);
+      });
+    }
 
-  plan.nodes.clear();
-  plan.blocks.clear();
-  for (size_t s = 0; s < fits.size(); ++s) {
-    plan.blocks.push_back({plan.nodeCount(), static_cast<int>(fits[s].groups.size()), {static_cast<int>(s)}});
-    for (const SpectralGroup& g : fits[s].groups) plan.nodes.push_back(nodeOf(sim, fits[s], g));
-    plan.predictedError.push_back(fits[s].error);
+    plan.nodes.clear();
+    plan.blocks.clear();
+    plan.weight.clear();
+    plan.shares.clear();
+    for (int k = 0; k < kTermKinds; ++k) plan.shares.push_back({nameOf(static_cast<TermKind>(k)), {}, true});
+    for (const ChannelFit& f : fits) {
+      plan.blocks.push_back({plan.nodeCount(), static_cast<int>(f.groups().size()), {static_cast<int>(plan.blocks.size())}});
+      for (const SpectralGroup& g : f.groups()) plan.nodes.push_back(nodeOf(sim, f, g));
+      plan.predictedError.push_back(f.error());
+      plan.fineCount.push_back(static_cast<int>(f.grid().weight.size()));
+      const auto shares = sights.shares(f.grid(), f.absorbers(), f.floor());
+      for (size_t k = 0; k < shares.size(); ++k) plan.shares[k].share.push_back(shares[k]);
+    }
+    for (size_t s = 0; s < fits.size(); ++s) {
+      std::vector<double> weights(plan.nodes.size(), 0.0);
+      for (size_t g = 0; g < fits[s].groups().size(); ++g) weights[static_cast<size_t>(plan.blocks[s].first) + g] = fits[s].groups()[g].weight;
+      plan.weight.push_back(std::move(weights));
+    }
+    writeCachedPlan(key, plan);
   }
-  plan.weight.assign(slots.size(), std::vector<double>(plan.nodes.size(), 0.0));
-  for (size_t s = 0; s < slots.size(); ++s)
-    for (size_t g = 0; g < fits[s].groups.size(); ++g) plan.weight[s][static_cast<size_t>(plan.blocks[s].first) + g] = fits[s].groups[g].weight;
-  writeCachedPlan(key, plan);
+  // The truth layers show the first light's geometry.
+  dropTerms(plan, eye.camera && eye.camera->truth.solidAngles);
   return plan;
 }
 

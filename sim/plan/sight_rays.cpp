@@ -45,6 +45,20 @@ bool SightRays::inView(const SightRay& ray, const glm::dmat3& localFromCamera, c
   return glm::length(direction) > ray.nearest_m && d.z < 0.0 && std::abs(d.x) <= -d.z * p.tanX(p.width) && std::abs(d.y) <= -d.z * p.tanY(0);
 }
 
+/// To some place within the scenario's limits.
+void SightRays::stretch(SightRay& ray, double distance_m) {
+  const Limits& limits = simulation_.limits;
+  if (limits.farthest_m > 0.0) {
+    const double nearest = std::max(limits.nearest_m, std::max(ray.nearest_m, 0.1));
+    const double range = nearest * std::pow(std::max(limits.farthest_m / nearest, 1.0), dice_.unit());
+    const glm::dvec3 from = ray.origin + (distance_m - range) * ray.direction;
+    if (simulation_.frame.height(from) > -100.0) ray.origin = from;  // not from under the ground
+  }
+  if (limits.hottest_K > 0.0) ray.temperature_K = limits.coldest_K + (limits.hottest_K - limits.coldest_K) * dice_.unit();
+  if (limits.lightLevel > 0.0)
+    for (double& level : ray.state.lightLevels) level = limits.lightLevel * dice_.unit();
+}
+
 double SightRays::pixel_sr() const {
   if (eye_.probe) return 4.0 / (static_cast<double>(eye_.probe->resolution) * eye_.probe->resolution);
   const Pinhole& p = eye_.camera->pinhole;
@@ -71,6 +85,7 @@ SightRay SightRays::draw() {
       if (!(glm::length(line) > 0.0) || !inView(ray, axes, line)) continue;
       ray.direction = glm::normalize(line);
       ray.fromFilm = false;
+      if (simulation_.limits.any() && dice_.unit() < 0.5) stretch(ray, glm::length(line));
       return ray;
     }
   if (eye_.camera) {

@@ -28,14 +28,16 @@ struct SightRay {
   WorldState state;
   glm::dvec3 origin{0.0}, direction{0.0, 0.0, 1.0};
   double nearest_m = 0.0;
-  bool fromFilm = true;  ///< evenly over the film, not aimed at something
+  double temperature_K = 0.0;  ///< of bodies without a temperature texture; 0: their own
+  bool fromFilm = true;        ///< evenly over the film, not aimed at something
 };
 
 class SightRays {
  public:
   /// Both must outlive it.
   SightRays(const Simulation& simulation, const Eye& eye, unsigned long long seed);
-  /// Half of them evenly over the film, half aimed at a random place of a random part of a body, so that what is small is not missed.
+  /// Half of them evenly over the film, half aimed at a random place of a random part of a body, so that what is small is not missed. Where the
+  /// scenario states limits, half of the aimed ones come from any range, see any temperature and levels of lights within them.
   SightRay draw();
   /// About the solid angle of a subpixel.
   double pixel_sr() const;
@@ -45,6 +47,7 @@ class SightRays {
 
  private:
   glm::dvec3 placeOn(const WorldState& state, size_t surface);
+  void stretch(SightRay& ray, double distance_m);
   bool inView(const SightRay& ray, const glm::dmat3& localFromCamera, const glm::dvec3& direction) const;
 
   const Simulation& simulation_;

@@ -11,7 +11,7 @@ namespace pitviper {
 namespace {
 
 /// Places along a line of sight between which the air's emission is taken as one black body's.
-constexpr size_t kStations = 8;
+constexpr size_t kStations = 10;
 /// Black bodies of textures and air are mixtures of those at these steps [K], surfaces at other view angles like those at these steps.
 constexpr double kTemperatureStep_K = 4.0, kAngleStep_rad = kPi / 36.0;
 
@@ -124,8 +124,6 @@ void SightWriter::air(Sight& sight, double range_m) {
   if (sim_.sun) sun = {glm::dot(sim_.sun->toSun, sim_.frame.up(ray_.origin)), glm::dot(ray_.direction, sim_.sun->toSun)};
   const bool sunlit = plan_.terms.scatteredSun;
   const SunlitAir line(path, airRay_, thinned(path.stations(airRay_, range_m)), sunlit ? plan_.sunLegs.get() : nullptr, sun);
-  if (line.stations.size() < 2) return;
-  const int absorbed = absorbedShare(line.powered.front(), line.powered.back());
   int before = -1;
   for (size_t j = 0; j < line.stations.size(); ++j) {
     const AirStation& s = line.stations[j];
@@ -139,8 +137,9 @@ void SightWriter::air(Sight& sight, double range_m) {
     int end = here;
     if (book_.paths[static_cast<size_t>(here)].media_m != book_.paths[static_cast<size_t>(before)].media_m) end = pathTo(last.range_m, s.amounts);
     const double temperature_K = 0.5 * (last.temperature_K + s.temperature_K);
+    const int absorbed = absorbedShare(line.powered[j - 1], line.powered[j]);
     for (int k = 0; k < 2; ++k) {
-      SightTerm term{-1, absorbed, k == 0 ? before : end, k == 0 ? 1.0 : -1.0};
+      SightTerm term{-1, absorbed, k == 0 ? before : end, k == 0 ? 1.0 : -1.0, TermKind::AirEmission};
       if (temperature_K > 0.0) addThermal(sight, s.range_m, temperature_K, term);
       term.source = book_.spectrum("air's own", [](const FineGrid& g, size_t i) { return g.air[i].source; });
       add(sight, s.range_m, term);
@@ -150,7 +149,7 @@ void SightWriter::air(Sight& sight, double range_m) {
   }
 }
 
-/// Part of the extinction between two places that emits (of the whole line, for all its parts): -1 where all of it does.
+/// Part of the extinction between two places that emits: -1 where all of it does.
 int SightWriter::absorbedShare(const AirAmounts& from, const AirAmounts& to) {
   std::vector<std::pair<size_t, double>> passed;
   for (size_t k = 0; k < kMostAirAmounts; ++k)
@@ -187,7 +186,7 @@ void SightWriter::scattered(Sight& sight, const SunlitAir& line, size_t station,
       const AirNode& n = g.air[i];
       return n.molecules[k] * rayleighPhase(cosine) + n.haze[k] * henyeyGreensteinPhase(cosine, n.asymmetry);
     });
-    for (int p = 0; p < 3; ++p) add(sight, range, {irradiance, scatter, way[p], passed * (p == 1 ? 4.0 : 1.0) / 6.0});
+    for (int p = 0; p < 3; ++p) add(sight, range, {irradiance, scatter, way[p], passed * (p == 1 ? 4.0 : 1.0) / 6.0, TermKind::ScatteredSun});
   }
 }
 
@@ -218,7 +217,8 @@ void SightWriter::reflected(Sight& sight, const Hit& hit, const Material& materi
       }
       const int column = book_.spectrum(plain ? name("column", r) : name("column", r, angle[0], angle[1]),
                                         [r, a = angle[0], b = angle[1]](const FineGrid& g, size_t i) { return r->column(g.wavelength_um[i], a, b); });
-      add(sight, hit.distance, {column, source, path, modifier[k] * level * leg.factor * strength * r->lobe(light, view)});
+      add(sight, hit.distance,
+          {column, source, path, modifier[k] * level * leg.factor * strength * r->lobe(light, view), sun ? TermKind::Sun : TermKind::Lights});
     }
   }
 }
@@ -231,12 +231,13 @@ void SightWriter::surface(Sight& sight, const Hit& hit) {
   double modifier[3] = {1.0, 1.0, 1.0};
   for (size_t k = 0; k < material.modifiers.size(); ++k) modifier[k] = modifierOf(material.modifiers[k]);
   const int path = pathTo(hit.distance, plan_.terms.air ? sim_.path->amounts(airRay_, hit.distance) : AirAmounts{});
-  const double temperature_K =
-      surface.temperatureTexture >= 0 ? texel(sim_.textures[static_cast<size_t>(surface.temperatureTexture)], hit.uv) : surface.temperature_K;
+  const double temperature_K = surface.temperatureTexture >= 0 ? texel(sim_.textures[static_cast<size_t>(surface.temperatureTexture)], hit.uv)
+                               : ray_.temperature_K > 0.0      ? ray_.temperature_K
+                                                               : surface.temperature_K;
 
   if (!general) {
     const bool ambient = plan_.terms.ambient;
-    const int self = book_.spectrum(name("self", &surface), [&sim = sim_, &material, ambient, temperature_K](const FineGrid& g, size_t i) {
+    const int self = book_.spectrum(name("self", &surface, temperature_K), [&sim = sim_, &material, ambient, temperature_K](const FineGrid& g, size_t i) {
       const double w = g.wavelength_um[i], sky = ambient ? (*sim.ambient)(w) : 0.0;
       return material.emissivity(w, 0.0) * physics::planckRadiance(w, temperature_K) + (sky > 0.0 ? material.reflectance(w, 0.0) * sky : 0.0);
     });
@@ -269,7 +270,8 @@ void SightWriter::surface(Sight& sight, const Hit& hit) {
   }
   if (plan_.terms.ambient) {
     const int sky = book_.spectrum("ambient", [&sim = sim_](const FineGrid& g, size_t i) { return (*sim.ambient)(g.wavelength_um[i]); });
-    for (size_t k = 0; k < material.reflections.size(); ++k) add(sight, hit.distance, {reflectance(material, k, viewAngle), sky, path, modifier[k]});
+    for (size_t k = 0; k < material.reflections.size(); ++k)
+      add(sight, hit.distance, {reflectance(material, k, viewAngle), sky, path, modifier[k], TermKind::Ambient});
   }
   reflected(sight, hit, material, modifier);
 }
@@ -284,11 +286,11 @@ void SightWriter::media(Sight& sight) {
     const int source = book_.spectrum(name("medium", medium, surface.temperature_K),
                                       [medium, t = surface.temperature_K](const FineGrid& g, size_t i) { return medium->source(g.wavelength_um[i], t); });
     const int path = pathTo(enter, plan_.terms.air ? sim_.path->amounts(airRay_, enter) : AirAmounts{});
-    add(sight, enter, {source, -1, path, 1.0});
+    add(sight, enter, {source, -1, path, 1.0, TermKind::Media});
     SightPath behind = book_.paths[static_cast<size_t>(path)];
     behind.media_m[static_cast<size_t>(surface.material)] += s.leave - enter;
     book_.paths.push_back(std::move(behind));
-    add(sight, enter, {source, -1, static_cast<int>(book_.paths.size()) - 1, -1.0});
+    add(sight, enter, {source, -1, static_cast<int>(book_.paths.size()) - 1, -1.0, TermKind::Media});
   }
 }
 
@@ -300,7 +302,7 @@ Sight SightWriter::pixel() {
     surface(sight, hits_.solid);
   } else if (!sim_.background.isZero()) {
     const int behind = book_.spectrum("background", [&sim = sim_](const FineGrid& g, size_t i) { return sim.background(g.wavelength_um[i]); });
-    add(sight, range, {behind, -1, pathTo(range, plan_.terms.air ? sim_.path->amounts(airRay_, range) : AirAmounts{}), 1.0});
+    add(sight, range, {behind, -1, pathTo(range, plan_.terms.air ? sim_.path->amounts(airRay_, range) : AirAmounts{}), 1.0, TermKind::Background});
   }
   for (const Hit& h : hits_.layers) surface(sight, h);
   media(sight);
@@ -321,7 +323,7 @@ Sight SightWriter::lamp(size_t light, double pixel_sr) {
   book_.paths.push_back({sim_.path ? sim_.path->powered(amounts) : AirAmounts{}, {}});
   const Spectrum* shine = &sim_.lights[light].intensity;
   const int source = book_.spectrum(name("light", shine), [shine](const FineGrid& g, size_t i) { return (*shine)(g.wavelength_um[i]); });
-  sight.terms.push_back({source, -1, static_cast<int>(book_.paths.size()) - 1, level / (range * range * pixel_sr)});
+  sight.terms.push_back({source, -1, static_cast<int>(book_.paths.size()) - 1, level / (range * range * pixel_sr), TermKind::Background});
   return sight;
 }
 

@@ -35,9 +35,14 @@ struct SightPath {
   }
 };
 
+enum class TermKind { Emission, Ambient, Sun, Lights, AirEmission, ScatteredSun, Background, Media };
+constexpr int kTermKinds = 8;
+const char* nameOf(TermKind kind);
+
 struct SightTerm {
   int source = 0, second = -1, path = 0;  ///< as in ProductTerm, into Sights
   double coefficient = 1.0;
+  TermKind kind = TermKind::Emission;
 };
 
 struct Sight {
@@ -56,18 +61,30 @@ struct SightBook {
 
 class Sights {
  public:
-  /// Draws `count` of them; the same for the same seed. All must outlive it. `plan`: what makePlan() says of terms.
-  Sights(const Simulation& simulation, const Plan& plan, const Eye& eye, int count, unsigned long long seed);
-  /// The absorbers that a channel meets: places in AirAmounts, and from kMostAirAmounts on the materials of media.
+  /// All must outlive it. `plan`: what makePlan() says of terms.
+  Sights(const Simulation& simulation, const Plan& plan, const Eye& eye, unsigned long long seed)
+      : simulation_(simulation), plan_(plan), rays_(simulation, eye, seed) {}
+  /// More of them.
+  void draw(int count);
+  size_t size() const { return book_.sights.size(); }
+  /// The absorbers that a channel may meet: places in AirAmounts, and from kMostAirAmounts on the materials of media.
   std::vector<int> absorbers(const FineGrid& grid) const;
-  /// The spectral problem of a channel, one column of extinction per absorber. Floors: 1e-3 of the 99th percentile of what the film sees.
-  SpectralProblem problem(const FineGrid& grid, const std::vector<int>& absorbers) const;
-  int size() const { return static_cast<int>(book_.sights.size()); }
+  /// The spectral problem of a channel, of sights from a number on, one column of extinction per absorber. Terms that with nothing in their way
+  /// would be far below the floor are left out.
+  SpectralProblem problem(const FineGrid& grid, const std::vector<int>& absorbers, double floor, size_t first = 0) const;
+  /// 1e-3 of the 99th percentile of what a channel's film sees.
+  double floorOf(const FineGrid& grid, const std::vector<int>& absorbers) const;
+  /// By kind of term, the greatest part of a pixel it makes up (0.1: a tenth), given the channel's problem without terms left out.
+  std::vector<double> shares(const FineGrid& grid, const std::vector<int>& absorbers, double floor) const;
 
  private:
   double coefficientOf(const FineGrid& grid, size_t i, int absorber) const;
+  SpectralProblem whole(const FineGrid& grid, const std::vector<int>& absorbers, size_t first) const;
   const Simulation& simulation_;
+  const Plan& plan_;
+  SightRays rays_;
   SightBook book_;
+  int drawn_ = 0;
 };
 
 FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel);

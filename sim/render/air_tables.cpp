@@ -9,8 +9,9 @@
 namespace pitviper {
 namespace {
 
-/// Entries over height. Ranges lie evenly in ln(1 + range / scale), scale a thousandth of the farthest: of 96, 7 % apart beyond it.
-constexpr int kHeights = 128;
+/// Entries of the tables. Ranges lie evenly in ln(1 + range / scale), scale a thousandth of the farthest: 7 % apart beyond it.
+/// More elevations or ranges change nothing in tests/gpu/test_layered_air_gpu.cpp: what is left comes from ways to lights, by height.
+constexpr int kElevations = 33, kRanges = 96, kHeights = 128;
 constexpr double kScale = 1e-3;
 /// Ranges of places towards space [m].
 constexpr double kFirstSky_m = 100.0, kLastSky_m = 2e6;
@@ -53,8 +54,6 @@ std::pair<double, double> elevations(const View& v, const glm::dvec3& up) {
 AirTables::AirTables(const Simulation& simulation, const Plan& plan, bool perChannel, bool wanted)
     : simulation_(simulation), plan_(plan), perChannel_(perChannel), needed_(wanted && plan.terms.air && simulation.path->isLayered()) {
   if (!needed_) return;
-  elevations_ = plan.airGrid.elevations;
-  ranges_ = plan.airGrid.ranges;
   vectors_ = (static_cast<int>(simulation.path->exponents().size()) + 3) / 4;
   values_ = perChannel ? 4 * plan.groupCount() : plan.nodeCount();
   texels_ = perChannel ? plan.groupCount() : plan.nodeCount();
@@ -82,8 +81,8 @@ double AirTables::planck(size_t node, double temperature_K) const {
 void AirTables::addConstants(ShaderSlots& slots) const {
   if (!needed_) return;
   slots.constants["AIR_VECTORS"] = vectors_;
-  slots.constants["AIR_ELEVATIONS"] = elevations_;
-  slots.constants["AIR_RANGES"] = ranges_;
+  slots.constants["AIR_ELEVATIONS"] = kElevations;
+  slots.constants["AIR_RANGES"] = kRanges;
   slots.constants["AIR_HEIGHTS"] = kHeights;
   slots.constants["AIR_PARTS"] = parts_;
   slots.constants["AIR_ASYMMETRIES"] = (values_ + 3) / 4;
@@ -114,7 +113,7 @@ void AirTables::addHeights(std::vector<float>& out) const {
 std::vector<double> AirTables::rangesFrom(double entry_m) const {
   std::vector<double> ranges;
   const double scale = kScale * grid_.farthest_m;
-  for (int r = 0; r < ranges_; ++r) ranges.push_back(entry_m + scale * std::expm1(std::log1p(1.0 / kScale) * r / (ranges_ - 1)));
+  for (int r = 0; r < kRanges; ++r) ranges.push_back(entry_m + scale * std::expm1(std::log1p(1.0 / kScale) * r / (kRanges - 1)));
   // Beyond the scene, as far as space: the sky's emission needs places there, the table doesn't.
   for (double r = 1.15 * std::max(grid_.farthest_m, kFirstSky_m); r < kLastSky_m; r *= 1.15) ranges.push_back(entry_m + r);
   ranges.push_back(physics::kFar);
@@ -165,8 +164,8 @@ void AirTables::fill(const View& view) {
   const glm::dvec3 up = simulation_.frame.up(view.position);
   const double height = simulation_.frame.height(view.position), radius = simulation_.frame.earthRadius_m();
   const size_t nodes = plan_.nodes.size(), values = static_cast<size_t>(values_), parts = static_cast<size_t>(parts_),
-               columns = static_cast<size_t>(ranges_) + 1;
-  std::vector<float> amounts, radiance(static_cast<size_t>(elevations_) * columns * parts * static_cast<size_t>(texels_) * (perChannel_ ? 4 : 1));
+               columns = static_cast<size_t>(kRanges) + 1;
+  std::vector<float> amounts, radiance(static_cast<size_t>(kElevations) * columns * parts * static_cast<size_t>(texels_) * (perChannel_ ? 4 : 1));
   RaySun sun;
   double sunAcross = 0.0;  // cosine of the azimuth between the view's middle and the sun, times both horizontal parts
   if (plan_.terms.scatteredSun) {
@@ -176,8 +175,8 @@ void AirTables::fill(const View& view) {
     sunAcross = glm::length(a) > 1e-6 && glm::length(b) > 1e-6 ? glm::dot(glm::normalize(a), b) : 0.0;
   }
   const std::vector<double> asymmetry = asymmetries();
-  for (int e = 0; e < elevations_; ++e) {
-    const double x = spread(grid_.low) + (spread(grid_.high) - spread(grid_.low)) * e / (elevations_ - 1), sine = x * std::abs(x);
+  for (int e = 0; e < kElevations; ++e) {
+    const double x = spread(grid_.low) + (spread(grid_.high) - spread(grid_.low)) * e / (kElevations - 1), sine = x * std::abs(x);
     const AirRay ray{height, sine, radius};
     if (plan_.terms.scatteredSun) sun.cosScatter = sine * sun.sinElevation + std::sqrt(std::max(1.0 - sine * sine, 0.0)) * sunAcross;
     double entry = 0.0;
@@ -226,7 +225,7 @@ void AirTables::fill(const View& view) {
     for (double x : v) block.push_back(static_cast<float>(x));
   };
   const double top = path.top_m(), sine = simulation_.sun ? glm::dot(simulation_.frame.up(glm::dvec3(0.0)), simulation_.sun->toSun) : 1.0;
-  put({spread(grid_.low), (elevations_ - 1) / (spread(grid_.high) - spread(grid_.low)), kScale * grid_.farthest_m, (ranges_ - 1) / std::log1p(1.0 / kScale)});
+  put({spread(grid_.low), (kElevations - 1) / (spread(grid_.high) - spread(grid_.low)), kScale * grid_.farthest_m, (kRanges - 1) / std::log1p(1.0 / kScale)});
   put({kBottom_m, (kHeights - 1) / std::sqrt(top - kBottom_m), sine - 0.5 * kSunStep, 1.0 / kSunStep});
   const auto powers = path.exponents();
   for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) put({k < powers.size() ? powers[k] : 1.0});

@@ -81,7 +81,7 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.constants["GROUPS"] = plan_.groupCount();
   slots.constants["LIGHTS"] = plan_.lightCount;
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
-  slots.constants["SUN"] = simulation_.sun ? 1 : 0;
+  slots.constants["SUN"] = simulation_.sun && plan_.lightCount > 0 ? 1 : 0;
   air_.addConstants(slots);
   pathBlock_.addConstants(slots);
   return slots;
@@ -139,7 +139,7 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
     g.state = {s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
     g.fine = {origin.z - static_cast<double>(static_cast<float>(origin.z)), 0.0, 0.0, 0.0};
     glm::vec4* row = &lights[lightRow * stride];
-    if (item.entity >= 0 && row->x == 0.0f) {  // once for all surfaces of a body
+    if (plan_.lightCount > 0 && item.entity >= 0 && row->x == 0.0f) {  // once for all surfaces of a body
       // Few lights have a place each, many are listed one after the other: lights_few.glsl, lights_many.glsl.
       const bool few = plan_.lightCount <= kFewLights;
       auto add = [&](const glm::dvec3& place, double radius_m, size_t number, bool matters) {

@@ -43,6 +43,9 @@ class ScenePass {
   /// Light levels and poses as in setState() and the last draw().
   virtual std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m);
 
+  /// Text of the program that shades what is solid; empty where none does.
+  virtual std::string shadingText() const { return ""; }
+
  protected:
   /// Direct: in the shader, so that air is integrated over the channels beforehand; buffered: after it; reference: not on the GPU at all.
   enum class Shading { Direct, Buffered, Reference };

@@ -16,6 +16,8 @@ class ShadingProgram {
   ShadingProgram() = default;
   /// `targets`: names of the vec4 that the slots' text fills, in the order of the target's colours from `firstColour` on.
   ShadingProgram(const ShaderLibrary& library, ShaderSlots slots, const std::vector<std::string>& targets, std::size_t firstColour);
+  /// The stage that shades, as it was compiled.
+  const std::string& text() const { return text_; }
   /// Uniforms may be set between use() and run().
   void use() const { program_.use(); }
   int uniform(const char* name) const { return program_.uniform(name); }
@@ -26,6 +28,7 @@ class ShadingProgram {
   ShadingStage stage_ = ShadingStage::Fragment;
   std::size_t firstColour_ = 0, colours_ = 0;
   Program program_;
+  std::string text_;
 };
 
 }  // namespace pitviper

@@ -202,22 +202,33 @@ std::uint32_t appendMedium(RenderTables& t, const Plan& plan, const Medium& medi
 struct Loop {
   int first = 0, count = 0;
   std::vector<int> groups;
+  bool lit = false;
 };
+
+/// Neighbouring blocks of nodes that feed the same groups in one loop each; `apart`: those that light does not matter to by themselves.
+std::vector<Loop> loopsOf(const Plan& plan, bool apart) {
+  std::vector<Loop> loops;
+  for (const auto& block : plan.blocks) {
+    Loop loop{block.first, block.count, {}, block.lit};
+    for (int s : block.slots)
+      if (std::find(loop.groups.begin(), loop.groups.end(), s / 4) == loop.groups.end()) loop.groups.push_back(s / 4);
+    if (loops.empty() || loops.back().groups != loop.groups || (apart && loops.back().lit != loop.lit)) {
+      loops.push_back(loop);
+      continue;
+    }
+    loops.back().count += loop.count;
+    loops.back().lit |= loop.lit;
+  }
+  return loops;
+}
 
 /// Each loop holds the whole radiance once more, and a driver's time to compile grows steeply with their number (Mesa: 0.35 s with 10, 20 s
 /// with 16): beyond four, one loop feeds all groups, with weights of 0.
 std::vector<Loop> integrationLoops(const Plan& plan) {
   constexpr size_t kMostLoops = 4;
-  std::vector<Loop> loops;
-  for (const auto& block : plan.blocks) {
-    Loop loop{block.first, block.count, {}};
-    for (int s : block.slots)
-      if (std::find(loop.groups.begin(), loop.groups.end(), s / 4) == loop.groups.end()) loop.groups.push_back(s / 4);
-    if (!loops.empty() && loops.back().groups == loop.groups) loops.back().count += loop.count;
-    else loops.push_back(loop);
-  }
-  if (loops.size() <= kMostLoops) return loops;
-  Loop all{0, plan.nodeCount(), {}};
+  for (bool apart : {true, false})
+    if (auto loops = loopsOf(plan, apart); loops.size() <= kMostLoops) return loops;
+  Loop all{0, plan.nodeCount(), {}, true};
   for (int g = 0; g < plan.groupCount(); ++g) all.groups.push_back(g);
   return {all};
 }
@@ -230,7 +241,7 @@ void writeIntegral(RenderTables& t, const Plan& plan) {
   text << "void integrate() {\n";
   size_t at = 0;
   for (const Loop& loop : integrationLoops(plan)) {
-    text << "  for (int i = 0; i < " << loop.count << "; ++i) {\n    Real radiance = nodeRadiance(" << loop.first << " + i);\n";
+    text << "  for (int i = 0; i < " << loop.count << "; ++i) {\n    Real radiance = nodeRadiance" << (loop.lit && plan.terms.lights ? "" : "Unlit") << "(" << loop.first << " + i);\n";
     for (size_t k = 0; k < loop.groups.size(); ++k)
       text << "    channels" << loop.groups[k] << " += weights.weight[" << at << " + i * " << loop.groups.size() << " + " << k << "] * radiance;\n";
     text << "  }\n";
@@ -259,6 +270,7 @@ std::string lightsFile(const Plan& plan) {
 std::vector<float> lightTable(const Simulation& sim, const Plan& plan, const WorldState& state) {
   const size_t groups = static_cast<size_t>(lightGroups(plan));
   std::vector<float> table(plan.nodes.size() * groups * 4, 0.0f);
+  if (plan.lightCount == 0) return table;
   for (size_t i = 0; i < plan.nodes.size(); ++i) {
     const SpectralNode& n = plan.nodes[i];
     for (size_t l = 0; l < sim.lights.size(); ++l)

@@ -32,6 +32,7 @@ AirPath air_;     // of the camera leg
 //@slot surface
 //@slot truth
 
+Real nodeRadianceUnlit(int i) { return pathSeen(i, air_, selfRadiance(i)); }
 Real nodeRadiance(int i) { return pathSeen(i, air_, selfRadiance(i)) + reflectedLight(i); }
 //@slot integrate
 

@@ -1,0 +1,68 @@
+#include <chrono>
+#include <cstdio>
+
+#include "scenarios/commands/bench_yardstick.hpp"
+#include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/options.hpp"
+#include "scenarios/commands/plan_report.hpp"
+#include "scenarios/reader/scenario_reader.hpp"
+#include "sim/gl/context.hpp"
+#include "sim/render/buffered_pass.hpp"
+#include "sim/render/direct_pass.hpp"
+
+namespace pitviper {
+namespace {
+
+double secondsSince(std::chrono::steady_clock::time_point start) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
+
+/// Pixels a second of the yardstick: the median of a few frames.
+double yardstickRate() {
+  Yardstick yardstick;
+  std::vector<double> rates;
+  for (int k = 0; k < 9; ++k) {
+    const auto start = std::chrono::steady_clock::now();
+    yardstick.draw();
+    rates.push_back(Yardstick::kSize_px * Yardstick::kSize_px / secondsSince(start));
+  }
+  std::sort(rates.begin(), rates.end());
+  return rates[rates.size() / 2];
+}
+
+/// Frames a second from the yardstick's pixels a second. A subpixel costs kBase of the yardstick's (visibility, geometry, readback), and so much
+/// more for each node with and without reflected light; fitted to `bench` on llvmpipe, within a factor of two of what is measured.
+double predictedRate(const Plan& plan, double subpixels, double yardstick, bool buffered) {
+  constexpr double kBase = 0.9, kLit = 0.16, kUnlit = 0.07, kBuffered = 1.6;
+  const NodeCost cost = costOf(plan);
+  return yardstick / (subpixels * (kBase + kLit * cost.lit + kUnlit * cost.unlit) * (buffered ? kBuffered : 1.0));
+}
+
+}  // namespace
+
+int planCommand(const Arguments& arguments) {
+  const Options o("plan", arguments, {{"--set", true, true}, {"--json", false}, {"--speed", false}, {"--shaders", false}}, 1, 1);
+  const Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
+  std::optional<GlContext> context;
+  if (o.has("--speed") || o.has("--shaders")) context.emplace();
+  const double yardstick = o.has("--speed") ? yardstickRate() : 0.0;
+  std::string json;
+  auto tell = [&](const std::string& name, const Eye& eye, double subpixels) {
+    const auto start = std::chrono::steady_clock::now();
+    const Plan plan = planFor(sim, eye);
+    const bool buffered = sim.mode == RenderMode::Buffered || sim.hasTransparent();
+    PlannedEye told{name, eye.camera ? eye.camera->outputs : eye.probe->outputs, plan, secondsSince(start), subpixels, 0.0, buffered};
+    if (yardstick > 0.0) told.framesPerSecond = predictedRate(plan, subpixels, yardstick, buffered);
+    if (o.has("--json")) json += (json.empty() ? "" : ", ") + planJson(told);
+    else std::printf("%s\n", planText(told).c_str());
+    if (o.has("--shaders")) {
+      const auto pass = makeScenePass(sim, plan, shaderLibrary(), std::make_shared<const GpuScene>(sim), eye.camera && eye.camera->truth.any(), 1.0);
+      std::printf("%s\n", pass->shadingText().c_str());
+    }
+  };
+  for (const Camera& c : sim.cameras)
+    tell("camera " + c.name, {&c, nullptr}, static_cast<double>(c.pinhole.width) * c.pinhole.height * c.samples * c.samples);
+  for (const Probe& p : sim.probes) tell("probe " + p.name, {nullptr, &p}, 3.0 * p.resolution * p.resolution);
+  if (o.has("--json")) std::printf("[%s]\n", json.c_str());
+  return 0;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,139 @@
+#include "scenarios/commands/plan_report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdarg>
+#include <cstdio>
+
+#include "sim/radiometry/physics.hpp"
+#include "sim/render/tables.hpp"
+
+namespace pitviper {
+namespace {
+
+std::string print(const char* format, ...) __attribute__((format(printf, 1, 2)));
+std::string print(const char* format, ...) {
+  char text[256];
+  va_list values;
+  va_start(values, format);
+  std::vsnprintf(text, sizeof text, format, values);
+  va_end(values);
+  return text;
+}
+
+std::string quoted(const std::string& s) {
+  std::string out = "\"";
+  for (char c : s) {
+    if (c == '"' || c == '\\') out += '\\';
+    if (static_cast<unsigned char>(c) < 0x20) out += print("\\u%04x", static_cast<unsigned>(c));
+    else out += c;
+  }
+  return out + "\"";
+}
+
+std::string percent(double part) {
+  const double p = 100.0 * part;
+  return p == 0.0 ? "0" : p < 0.001 ? "<0.001" : print(p < 0.1 ? "%.3f" : p < 10.0 ? "%.2f" : "%.0f", p);
+}
+
+int nodesOf(const Plan& plan, size_t slot) {
+  return static_cast<int>(std::count_if(plan.weight[slot].begin(), plan.weight[slot].end(), [](double w) { return w != 0.0; }));
+}
+
+/// What a relative error is as a difference of temperature of a black body; 0 where it does not shine.
+double kelvinOf(const Plan& plan, size_t slot, double error, double temperature_K) {
+  double cold = 0.0, warm = 0.0;
+  for (size_t i = 0; i < plan.nodes.size(); ++i) {
+    if (plan.weight[slot][i] == 0.0) continue;
+    cold += plan.weight[slot][i] * plan.nodes[i].planck(temperature_K - 0.5);
+    warm += plan.weight[slot][i] * plan.nodes[i].planck(temperature_K + 0.5);
+  }
+  return warm > cold && cold > 1e-12 ? error * 0.5 * (cold + warm) / (warm - cold) : 0.0;
+}
+
+}  // namespace
+
+std::vector<std::string> slotNames(const Plan& plan, const std::vector<ChannelOutput>& outputs) {
+  std::vector<std::string> names(static_cast<size_t>(plan.slotCount));
+  for (size_t o = 0; o < outputs.size(); ++o) {
+    std::string& name = names[static_cast<size_t>(plan.slotOfOutput[o])];
+    if (name.empty()) name = outputs[o].channel;
+    else if (name.find(outputs[o].channel) == std::string::npos) name += "+" + outputs[o].channel;
+  }
+  return names;
+}
+
+NodeCost costOf(const Plan& plan) {
+  NodeCost cost;
+  for (const NodeBlock& b : plan.blocks) (b.lit && plan.terms.lights ? cost.lit : cost.unlit) += b.count;
+  return cost;
+}
+
+std::string planText(const PlannedEye& eye) {
+  const Plan& plan = eye.plan;
+  const auto names = slotNames(plan, eye.outputs);
+  std::string out = eye.name + ": ";
+  if (plan.accuracy > 0.0) out += "within " + percent(plan.accuracy) + " % of every wavelength\n";
+  else out += "wavelengths as its 'spectral' says; no accuracy asked for, none predicted\n";
+
+  out += print("\n  %-26s", "greatest part of a pixel");
+  for (const auto& n : names) out += print(" %9s", n.c_str());
+  out += "\n";
+  for (const TermShare& s : plan.shares) {
+    if (std::all_of(s.share.begin(), s.share.end(), [](double v) { return v == 0.0; })) continue;
+    out += print("  %-26s", s.term.c_str());
+    for (double v : s.share) out += print(" %7s %%", percent(v).c_str());
+    out += s.kept ? "  kept\n" : "  dropped: no channel would notice\n";
+  }
+  std::string dark;
+  for (const NodeBlock& b : plan.blocks)
+    for (int s : b.slots)
+      if (!b.lit && plan.terms.lights) dark += (dark.empty() ? "" : ", ") + names[static_cast<size_t>(s)];
+  if (!dark.empty()) out += "  no reflected light of sun or lamps in " + dark + "\n";
+  if (plan.accuracy > 0.0) out += "  shadows                   " + std::string(plan.terms.shadows ? " kept\n" : " none\n");
+
+  out += print("\n  %-16s %8s %12s %16s\n", "channel", "nodes", "reference", "predicted error");
+  for (size_t s = 0; s < names.size(); ++s) {
+    out += print("  %-16s %8d", names[s].c_str(), nodesOf(plan, s));
+    if (plan.predictedError.empty()) {
+      out += "\n";
+      continue;
+    }
+    out += print(" %12d %14s %%", plan.fineCount[s], percent(plan.predictedError[s]).c_str());
+    if (const double k = kelvinOf(plan, s, plan.predictedError[s], 300.0); k > 0.0 && k < 10.0) out += print("  (%.2f K of a body at 300 K)", k);
+    if (plan.predictedError[s] > plan.accuracy) out += "  MORE THAN ASKED FOR";
+    out += "\n";
+  }
+  const NodeCost cost = costOf(plan);
+  out += print("\n  %s; %d nodes a subpixel with reflected light, %d without; %.3g million evaluations a frame\n",
+               eye.buffered ? "buffered where something transparent is in view, else direct" : "direct", cost.lit, cost.unlit,
+               1e-6 * eye.subpixels * (cost.lit + cost.unlit));
+  if (eye.framesPerSecond > 0.0) out += print("  about %.3g frames a second on this machine\n", eye.framesPerSecond);
+  if (plan.accuracy > 0.0) out += print("  planned in %.2f s\n", eye.seconds);
+  return out;
+}
+
+std::string planJson(const PlannedEye& eye) {
+  const Plan& plan = eye.plan;
+  const auto names = slotNames(plan, eye.outputs);
+  std::string out = "{\"name\": " + quoted(eye.name) + print(", \"accuracy\": %.9g", plan.accuracy) + ", \"terms\": [";
+  for (size_t k = 0; k < plan.shares.size(); ++k) {
+    const TermShare& s = plan.shares[k];
+    out += std::string(k ? ", " : "") + "{\"term\": " + quoted(s.term) + ", \"kept\": " + (s.kept ? "true" : "false") + ", \"share\": {";
+    for (size_t i = 0; i < s.share.size(); ++i) out += std::string(i ? ", " : "") + quoted(names[i]) + print(": %.9g", s.share[i]);
+    out += "}}";
+  }
+  out += std::string("], \"shadows\": ") + (plan.terms.shadows ? "true" : "false") + ", \"channels\": [";
+  for (size_t s = 0; s < names.size(); ++s) {
+    out += std::string(s ? ", " : "") + "{\"name\": " + quoted(names[s]) + print(", \"nodes\": %d", nodesOf(plan, s));
+    if (!plan.predictedError.empty()) out += print(", \"reference_wavelengths\": %d, \"predicted_error\": %.9g", plan.fineCount[s], plan.predictedError[s]);
+    out += "}";
+  }
+  const NodeCost cost = costOf(plan);
+  out += print("], \"nodes_lit\": %d, \"nodes_unlit\": %d, \"subpixels\": %.0f, \"transparent\": %s, \"planning_s\": %.4g", cost.lit, cost.unlit, eye.subpixels,
+               eye.buffered ? "true" : "false", eye.seconds);
+  if (eye.framesPerSecond > 0.0) out += print(", \"predicted_frames_per_s\": %.4g", eye.framesPerSecond);
+  return out + "}";
+}
+
+}  // namespace pitviper

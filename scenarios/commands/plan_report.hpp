@@ -1,0 +1,33 @@
+#pragma once
+// What a plan chose, told to people and to programs.
+#include <string>
+
+#include "sim/plan/planner.hpp"
+
+namespace pitviper {
+
+/// One camera or probe of a scenario with its plan.
+struct PlannedEye {
+  std::string name;
+  const std::vector<ChannelOutput>& outputs;
+  const Plan& plan;
+  double seconds = 0.0;       ///< that planning took
+  double subpixels = 0.0;     ///< of a frame
+  double framesPerSecond = 0.0;  ///< predicted; 0: not asked for
+  bool buffered = false;      ///< something transparent may be in view
+};
+
+/// The name of each slot: its first output's channel, or several where they share it.
+std::vector<std::string> slotNames(const Plan& plan, const std::vector<ChannelOutput>& outputs);
+
+/// Node evaluations of a pixel: each is a reading of the tables, an exponential and what light adds.
+struct NodeCost {
+  int lit = 0, unlit = 0;
+};
+NodeCost costOf(const Plan& plan);
+
+std::string planText(const PlannedEye& eye);
+/// One JSON object.
+std::string planJson(const PlannedEye& eye);
+
+}  // namespace pitviper
