@@ -5,6 +5,7 @@
 #include <mutex>
 #include <numeric>
 #include <optional>
+#include <tuple>
 
 namespace pitviper {
 namespace {
@@ -107,17 +108,31 @@ void TriangleTree::build(const Mesh& mesh, const std::vector<glm::vec3>& centre,
   nodes_[at].skip = static_cast<std::uint32_t>(nodes_.size());
 }
 
+namespace {
+
+/// On which side a line passes an edge: > 0 or < 0, the very opposite for the same edge the other way round, so that of two neighbours one is
+/// met and one is not. A line through the edge itself counts as if it ran a little aside: along x, where that says nothing y, then z.
+double sideOf(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& origin, const glm::dvec3& direction) {
+  if (std::tie(to.x, to.y, to.z) < std::tie(from.x, from.y, from.z)) return -sideOf(to, from, origin, direction);
+  const glm::dvec3 edge = to - from;
+  const double side = glm::dot(direction, glm::cross(edge, from - origin));
+  if (side != 0.0) return side;
+  const glm::dvec3 aside = glm::cross(direction, edge);
+  return aside.x != 0.0 ? aside.x : aside.y != 0.0 ? aside.y : aside.z;
+}
+
+}  // namespace
+
 TriangleMeeting meetTriangle(const Mesh& mesh, std::uint32_t triangle, const glm::dvec3& origin, const glm::dvec3& direction) {
   const glm::uvec3& i = mesh.triangles[triangle];
-  const glm::dvec3 a(mesh.positions[i.x]), e1 = glm::dvec3(mesh.positions[i.y]) - a, e2 = glm::dvec3(mesh.positions[i.z]) - a;
+  const glm::dvec3 a(mesh.positions[i.x]), b(mesh.positions[i.y]), c(mesh.positions[i.z]), e1 = b - a, e2 = c - a;
   const glm::dvec3 p = glm::cross(direction, e2);
   const double det = glm::dot(e1, p);
   if (det == 0.0) return {};
-  const glm::dvec3 q = origin - a;
-  const double v = glm::dot(q, p) / det;
-  const glm::dvec3 r = glm::cross(q, e1);
-  const double w = glm::dot(direction, r) / det;
-  if (v < 0.0 || w < 0.0 || v + w > 1.0) return {};
+  const double ab = sideOf(a, b, origin, direction), bc = sideOf(b, c, origin, direction), ca = sideOf(c, a, origin, direction);
+  if (!(ab > 0.0 && bc > 0.0 && ca > 0.0) && !(ab < 0.0 && bc < 0.0 && ca < 0.0)) return {};
+  const glm::dvec3 q = origin - a, r = glm::cross(q, e1);
+  const double v = glm::dot(q, p) / det, w = glm::dot(direction, r) / det;
   return {glm::dot(e2, r) / det, {1.0 - v - w, v, w}, det > 0.0, true};
 }
 

@@ -70,7 +70,8 @@ struct TriangleMeeting {
   bool met = false;
 };
 
-/// Source: Moeller and Trumbore 1997.
+/// A line through an edge or a corner that neighbours share meets one of them: what counts crossings counts each sheet once.
+/// Source: Moeller and Trumbore 1997; ties after Edelsbrunner and Muecke 1990.
 TriangleMeeting meetTriangle(const Mesh& mesh, std::uint32_t triangle, const glm::dvec3& origin, const glm::dvec3& direction);
 
 /// A mesh's tree over all triangles, made when first asked for and kept as long as the mesh lives.
