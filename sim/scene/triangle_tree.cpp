@@ -111,12 +111,15 @@ void TriangleTree::build(const Mesh& mesh, const std::vector<glm::vec3>& centre,
 namespace {
 
 /// On which side a line passes an edge: > 0 or < 0, the very opposite for the same edge the other way round, so that of two neighbours one is
-/// met and one is not. A line through the edge itself counts as if it ran a little aside: along x, where that says nothing y, then z.
+/// met and one is not. A line through the edge itself, to rounding, counts as if it ran a little aside: along x, where that says nothing y,
+/// then z. So it does for all edges of a corner, and one of its triangles is met.
 double sideOf(const glm::dvec3& from, const glm::dvec3& to, const glm::dvec3& origin, const glm::dvec3& direction) {
   if (std::tie(to.x, to.y, to.z) < std::tie(from.x, from.y, from.z)) return -sideOf(to, from, origin, direction);
-  const glm::dvec3 edge = to - from;
-  const double side = glm::dot(direction, glm::cross(edge, from - origin));
-  if (side != 0.0) return side;
+  // Twenty times the half unit of last place by which a product may be off.
+  constexpr double kRounding = 2e-15;
+  const glm::dvec3 edge = to - from, there = from - origin;
+  const double side = glm::dot(direction, glm::cross(edge, there));
+  if (side * side > kRounding * kRounding * glm::dot(direction, direction) * glm::dot(edge, edge) * glm::dot(there, there)) return side;
   const glm::dvec3 aside = glm::cross(direction, edge);
   return aside.x != 0.0 ? aside.x : aside.y != 0.0 ? aside.y : aside.z;
 }
