@@ -27,8 +27,8 @@ bool ShadowCaster::lit(const WorldState& state, const Hit& from, const glm::dvec
     const bool self = static_cast<int>(e) == from.entity;
     if (!body.casts || (self && (body.self == SelfShadow::Never || (body.self == SelfShadow::Inside && from.front)))) continue;
     const bool oneSided = self && (body.self != SelfShadow::Open || lightSide != outside);
-    glm::dvec3 origin = from.point;
-    if (self) origin += kRounding * (glm::length(from.point) + from.distance) * lightSide * from.facet;
+    // Off the facet to the light's side: neither it nor what lies in its plane stands in the way.
+    glm::dvec3 origin = from.point + kRounding * (glm::length(from.point) + from.distance) * lightSide * from.facet;
     const Pose& pose = state.entities[e];
     const glm::dmat3 bodyFromLocal = glm::transpose(glm::mat3_cast(pose.orientation));
     origin = bodyFromLocal * (origin - pose.position);
