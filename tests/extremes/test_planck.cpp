@@ -74,8 +74,8 @@ void sweep(const std::string& name, std::string (*temperature)(double), bool inS
 TEST(Planck, UniformTemperature) { sweep("Planck, 2-6000 K, 0.3-30 um", uniform, false, false); }
 TEST(Planck, TemperatureTexture) { sweep("Planck of a temperature texture, 2-6000 K, 0.3-30 um", texture, true, false); }
 TEST(Planck, InDouble) {
-  sweep("Planck in double (accuracy: reference), 2-6000 K, 0.3-30 um", uniform, false, true);
-  sweep("Planck of a texture in double (accuracy: reference), 2-6000 K, 0.3-30 um", texture, false, true);
+  sweep("Planck in double, 2-6000 K, 0.3-30 um", uniform, false, true);
+  sweep("Planck of a texture in double, 2-6000 K, 0.3-30 um", texture, false, true);
 }
 
 // From 0 K to 100 000 K over one texture: what lies between two texels is mixed in kelvin; GPU against double pixel by pixel.

@@ -24,8 +24,8 @@ std::string stairs(const std::string& air) {
 TEST(Ranges, TenCentimetresToTwoThousandKilometres) {
   const Eye eye{{0, 0, 0}, {1, 0, 0}, 12.0, 60};
   Range range("range of plates 0.1 m to 2000 km off in one picture", 1e-6, "plane over cosine; single precision"),
-      direct("their radiance through air, optical depth 1e-7 to 2", 1e-5, "B(T) exp(-x) + B(280 K) (1 - exp(-x))"),
-      reference("the same in double (accuracy: reference)", 2e-5, "the same; bins of 5 1/cm");
+      direct("radiance of plates 0.1 m to 2000 km off through air, optical depth 1e-7 to 2", 1e-5, "B(T) exp(-x) + B(280 K) (1 - exp(-x))"),
+      reference("radiance of plates 0.1 m to 2000 km off through air, in double", 2e-5, "B(T) exp(-x) + B(280 K) (1 - exp(-x)); bins of 5 1/cm");
   const std::string yaml = stairs("atmosphere: {extinction: 1e-6 /m, temperature: 280 K}\n");
   for (const std::string mode : {"direct", "buffered", "reference"}) {
     const Frame f = finiteFrame((mode == "reference" ? "accuracy: reference\n" : "render: {mode: " + mode + "}\n") + yaml +
@@ -80,7 +80,7 @@ constexpr const char* kOrigins[] = {"{latitude: 0 deg, longitude: 0 deg}", "{lat
 // Above one place on the ellipsoid heights are lengths; the frame's origin may be anywhere, the far side of the earth included.
 TEST(Ranges, MillimetresOfHeightAnywhere) {
   Range step("millimetre steps of height, poles, date line and antipodes, origin anywhere", 2e-7, "difference of heights; float of 10 m");
-  Range seen("radiance of the same through 10 m of air", 1e-5, "Beer-Lambert");
+  Range seen("radiance of a plate through 10 m of air at poles, date line and antipodes", 1e-5, "Beer-Lambert");
   for (const char* origin : kOrigins)
     for (const auto& [latitude, longitude] :
          {std::pair{0.0, 0.0}, {90.0, 0.0}, {90.0, 211.0}, {-90.0, -77.0}, {12.0, 180.0}, {12.0, -180.0}, {-47.3, 359.9999}})

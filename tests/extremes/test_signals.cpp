@@ -17,8 +17,8 @@ std::string background(const std::string& radiance) { return "background: {radia
 TEST(Radiance, FromFaintToBlinding) {
   const Folder folder;
   Range drawn("radiance 1e-30 to 1e30 W/(m2 sr um), direct, buffered, in double", 1e-6, "4 um of it; single precision");
-  Range written("the same written as EXR and read again", 0.0, "every bit");
-  Range integrated("the same as spectral image, written, read, integrated", 1e-6, "4 um of it");
+  Range written("radiance 1e-30 to 1e30 W/(m2 sr um) written as EXR and read again", 0.0, "every bit");
+  Range integrated("radiance 1e-30 to 1e30 W/(m2 sr um) as a spectral image, written, read, integrated", 1e-6, "4 um of it");
   for (const char* radiance : kRadiances) {
     const double want = 4.0 * std::stod(radiance);
     for (const char* mode : {"render: {mode: direct}\n", "render: {mode: buffered}\n", "accuracy: reference\n"})

@@ -18,6 +18,16 @@
 namespace pitviper::test {
 namespace {
 
+int replaced = 0, taken = 0;
+
+class NotANumber : public ::testing::Test {
+ protected:
+  static void TearDownTestSuite() {
+    bound("numbers of input replaced by nan or infinity and not refused at their file", taken, 0,
+          "of " + std::to_string(replaced) + ": scenario, CSV, sensor file, air table, air CSV");
+  }
+};
+
 constexpr const char* kNotNumbers[] = {"nan", ".nan", "inf", "-.inf", "1e999"};
 
 template <class Read>
@@ -47,6 +57,8 @@ void sweep(const std::string& good, const std::string& place, Read read) {
     for (const char* bad : kNotNumbers) {
       const std::string text = good.substr(0, from) + bad + good.substr(to);
       const std::string message = refusal([&] { read(text); });
+      ++replaced;
+      taken += message.substr(0, place.size()) != place;
       EXPECT_EQ(message.substr(0, place.size()), place) << bad << " for " << word << " at " << from << " of\n"
                                                         << good << "\n: " << (message.empty() ? "taken" : message);
       EXPECT_NE(message.find("; expected "), std::string::npos) << message;
@@ -62,7 +74,7 @@ void scenario(const std::string& good) {
 const std::string kPlateOf = "entities: [{name: p, shape: {model: plate, width: 4 m, height: 4 m}, temperature: 300 K, material: ";
 std::string material(const std::string& m) { return kPlateOf + m + "}]\n" + Look{.pixels = 1}.yaml(); }
 
-TEST(NotANumber, InSpectraOfAScenario) {
+TEST_F(NotANumber, InSpectraOfAScenario) {
   auto table = [](const std::string& unit) { return "{wavelength: um, unit: " + unit + ", values: [[7, 0.5], [13, 0.6]]}"; };
   Look look;
   look.channels = "[{name: a, response: " + table("\"1\"") + ", quantum_efficiency: " + table("\"1\"") + "}]";
@@ -81,7 +93,7 @@ TEST(NotANumber, InSpectraOfAScenario) {
       plate(300) + Look{}.yaml());
 }
 
-TEST(NotANumber, InMaterialsOfAScenario) {
+TEST_F(NotANumber, InMaterialsOfAScenario) {
   scenario(
       material("{components: [{reflection: phong, reflectance: 0.3, exponent: 20, modifier: {rows: [[0.5, 0.6]]}}, {reflection: lambertian, reflectance: "
                "{wavelength: um, unit: \"1\", "
@@ -99,7 +111,7 @@ TEST(NotANumber, InMaterialsOfAScenario) {
       Look{}.yaml());
 }
 
-TEST(NotANumber, InBodiesAndPlacesOfAScenario) {
+TEST_F(NotANumber, InBodiesAndPlacesOfAScenario) {
   const std::string look = Look{.pixels = 1, .more = "spectral: {samples: 4}, spectral_image: {band: [8 um, 12 um], bins: 4}, "}.yaml();
   scenario("seed: 3\norigin: {latitude: 12 deg, longitude: 34 deg, height: 5 m}\ntime: {start: 1 s, rate: 30 Hz, frames: 2}\n" + plate(300) + look);
   scenario(
@@ -119,7 +131,7 @@ TEST(NotANumber, InBodiesAndPlacesOfAScenario) {
       "{band: [8 um, 12 um]}}]}]\n");
 }
 
-TEST(NotANumber, InFiles) {
+TEST_F(NotANumber, InFiles) {
   const Folder folder;
   const std::string csv = (std::filesystem::path(folder.put("r.csv", ""))).string();
   sweep("wavelength [um],response [1]\n8,0.5\n12,0.6\n", csv, [&](const std::string& text) {
@@ -152,7 +164,7 @@ TEST(NotANumber, InFiles) {
     });
 }
 
-TEST(NotANumber, InTablesMadeInCode) {
+TEST_F(NotANumber, InTablesMadeInCode) {
   for (double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()}) {
     EXPECT_THROW(Spectrum(Spectrum::Table{{1, 2, 3}, {0, bad, 0}, Outside::Zero, "t"}), std::invalid_argument);
     EXPECT_THROW(Spectrum(Spectrum::Table{{1, bad, 3}, {0, 1, 0}, Outside::Zero, "t"}), std::invalid_argument);
@@ -166,7 +178,7 @@ TEST(NotANumber, InTablesMadeInCode) {
 }
 
 // One pixel of one bin of a spectral image.
-TEST(NotANumber, InASpectralImage) {
+TEST_F(NotANumber, InASpectralImage) {
   const Folder folder;
   const std::filesystem::path file = folder.put("i.exr", "");
   const Simulation sim = scene("background: {radiance: 1 W/(m2 sr um)}\n" + Look{.more = "spectral_image: {band: [8 um, 12 um], bins: 4}, "}.yaml());
