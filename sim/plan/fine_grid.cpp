@@ -45,7 +45,8 @@ std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const dou
   std::vector<double> kept = {edges.front()};
   for (double e : edges)
     if (e - kept.back() > 0.25 * widthAt(e)) kept.push_back(e);
-  if (kept.back() != high) kept.back() = high;
+  if (kept.size() == 1) kept.push_back(high);
+  else if (kept.back() != high) kept.back() = high;
   std::vector<QuadratureNode> nodes;
   for (size_t i = 0; i + 1 < kept.size(); ++i) {
     const int bins = std::max(1, static_cast<int>((kept[i + 1] - kept[i]) / widthAt(0.5 * (kept[i] + kept[i + 1])) + 0.999));

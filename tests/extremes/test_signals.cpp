@@ -121,7 +121,7 @@ TEST(Spectra, ZeroEverywhere) {
 TEST(Spectra, ResponseOfOneLine) {
   Range line("response of one line 1e-3 to 1e-8 um wide", 2e-5, "width x B at its middle");
   for (double width : {1e-3, 1e-5, 1e-7, 1e-8})
-    for (const char* mode : {"", "render: {mode: buffered}\n"}) {
+    for (const char* mode : {"", "render: {mode: buffered}\n", "accuracy: reference\n"}) {
       char values[160];
       std::snprintf(values, sizeof values, "[[%.12g, 0], [10, 1], [%.12g, 0]]", 10.0 - width, 10.0 + width);
       Look look;
