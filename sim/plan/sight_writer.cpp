@@ -50,7 +50,11 @@ glm::dvec3 inNormalFrame(const glm::dvec3& normal, const glm::dvec3& direction) 
 SightWriter::SightWriter(const Simulation& simulation, const Plan& plan, SightBook& book, const SightRay& ray, RayHits hits, Dice& dice)
     : sim_(simulation), plan_(plan), book_(book), ray_(ray), hits_(std::move(hits)), dice_(dice) {
   airRay_ = {sim_.frame.height(ray.origin), glm::dot(ray.direction, sim_.frame.up(ray.origin)), sim_.frame.earthRadius_m()};
-  scatters_ = plan.terms.air && sim_.path->isLayered();
+  if (plan.terms.air) {
+    const AirNode node = sim_.path->node(std::clamp(1.0, sim_.path->validLow_um(), sim_.path->validHigh_um()));
+    for (size_t k = 0; k < kMostAirAmounts; ++k)
+      if (node.molecules[k] + node.haze[k] > 0.0) scatterers_.push_back(k);
+  }
   for (const Hit& h : hits_.layers) {
     const Material& m = sim_.materialOf(sim_.entities[static_cast<size_t>(h.entity)].surfaces[static_cast<size_t>(h.surface)]);
     const double angle = kAngleStep_rad * std::round(std::acos(std::clamp(-glm::dot(h.normal, ray.direction), 0.0, 1.0)) / kAngleStep_rad);
@@ -137,32 +141,32 @@ void SightWriter::air(Sight& sight, double range_m) {
     int end = here;
     if (book_.paths[static_cast<size_t>(here)].media_m != book_.paths[static_cast<size_t>(before)].media_m) end = pathTo(last.range_m, s.amounts);
     const double temperature_K = 0.5 * (last.temperature_K + s.temperature_K);
-    const int absorbed = absorbedShare(line.powered[j - 1], line.powered[j]);
     for (int k = 0; k < 2; ++k) {
-      SightTerm term{-1, absorbed, k == 0 ? before : end, k == 0 ? 1.0 : -1.0, TermKind::AirEmission};
+      SightTerm term{-1, -1, k == 0 ? before : end, k == 0 ? 1.0 : -1.0, TermKind::AirEmission};
       if (temperature_K > 0.0) addThermal(sight, s.range_m, temperature_K, term);
       term.source = book_.spectrum("air's own", [](const FineGrid& g, size_t i) { return g.air[i].source; });
       add(sight, s.range_m, term);
     }
+    if (temperature_K > 0.0) notEmitted(sight, line, j, temperature_K, before, end);
     if (sunlit && line.lit[j - 1] && line.lit[j]) scattered(sight, line, j, sun.cosScatter);
     before = here;
   }
 }
 
-/// Part of the extinction between two places that emits: -1 where all of it does.
-int SightWriter::absorbedShare(const AirAmounts& from, const AirAmounts& to) {
-  std::vector<std::pair<size_t, double>> passed;
-  for (size_t k = 0; k < kMostAirAmounts; ++k)
-    if (to.amount[k] > from.amount[k]) passed.emplace_back(k, to.amount[k] - from.amount[k]);
-  if (!scatters_) return -1;
-  return book_.spectrum("absorbed " + std::to_string(book_.spectra.size()), [passed](const FineGrid& g, size_t i) {
-    double all = 0.0, sent = 0.0;
-    for (const auto& [k, amount] : passed) {
-      all += g.air[i].extinction[k] * amount;
-      sent += (g.air[i].extinction[k] - g.air[i].molecules[k] - g.air[i].haze[k]) * amount;
-    }
-    return all > 0.0 ? std::clamp(sent / all, 0.0, 1.0) : 1.0;
-  });
+/// What scatters between two places does not emit: less than a black body by that, by Simpson's rule.
+void SightWriter::notEmitted(Sight& sight, const SunlitAir& line, size_t station, double temperature_K, int from, int to) {
+  if (scatterers_.empty()) return;
+  SightPath middle = book_.paths[static_cast<size_t>(from)];
+  for (size_t k = 0; k < kMostAirAmounts; ++k) middle.air.amount[k] = 0.5 * (middle.air.amount[k] + book_.paths[static_cast<size_t>(to)].air.amount[k]);
+  book_.paths.push_back(std::move(middle));
+  const int way[3] = {from, static_cast<int>(book_.paths.size()) - 1, to};
+  for (size_t k : scatterers_) {
+    const double passed = line.powered[station].amount[k] - line.powered[station - 1].amount[k];
+    if (!(passed > 0.0)) continue;
+    const int lost = book_.spectrum("lost " + std::to_string(k), [k](const FineGrid& g, size_t i) { return g.air[i].molecules[k] + g.air[i].haze[k]; });
+    for (int p = 0; p < 3; ++p)
+      addThermal(sight, line.stations[station].range_m, temperature_K, {lost, -1, way[p], -passed * (p == 1 ? 4.0 : 1.0) / 6.0, TermKind::AirEmission});
+  }
 }
 
 /// Sunlight scattered between two places, by Simpson's rule over what scatters.
@@ -179,7 +183,7 @@ void SightWriter::scattered(Sight& sight, const SunlitAir& line, size_t station,
   const int irradiance = book_.spectrum("sun", [&sim = sim_](const FineGrid& g, size_t i) { return sim.sun->irradiance(g.wavelength_um[i]); });
   // Steps of a tenth in the cosine: what matters here is the wavelength.
   const double cosine = 0.1 * std::round(10.0 * cosScatter);
-  for (size_t k = 0; k < sim_.path->exponents().size(); ++k) {
+  for (size_t k : scatterers_) {
     const double passed = line.powered[station].amount[k] - line.powered[station - 1].amount[k];
     if (!(passed > 0.0)) continue;
     const int scatter = book_.spectrum("scatter " + std::to_string(k) + " " + std::to_string(cosine), [k, cosine](const FineGrid& g, size_t i) {

@@ -22,7 +22,7 @@ class SightWriter {
   void reflected(Sight& sight, const Hit& hit, const Material& material, const double* modifier);
   void media(Sight& sight);
   void scattered(Sight& sight, const SunlitAir& line, size_t station, double cosScatter);
-  int absorbedShare(const AirAmounts& from, const AirAmounts& to);
+  void notEmitted(Sight& sight, const SunlitAir& line, size_t station, double temperature_K, int from, int to);
   int pathTo(double range_m, const AirAmounts& air);
   std::vector<double> mediaUpTo(double range_m) const;
   int planck(double temperature_K);
@@ -37,7 +37,7 @@ class SightWriter {
   RayHits hits_;
   Dice& dice_;
   AirRay airRay_;
-  bool scatters_ = false;  ///< the air has particles or molecules that scatter
+  std::vector<size_t> scatterers_;  ///< absorbers of the air that scatter
   /// Transparent surfaces by distance, each with what it lets through: a spectrum and a modifier.
   struct Filter {
     double range_m;

@@ -2,8 +2,8 @@
 // Lines of sight of a scene, drawn at random over its time, and what each pixel's radiance is a sum of: what a plan's wavelengths must integrate.
 //
 // Terms as the renderer has them: emission and reflected ambient light of surfaces, reflected light of the sun and of points, the air's emission and
-// scattered sunlight cut at stations, media and transparent surfaces on the way. Two things are simpler here: the air's emission takes no heed of
-// what share of its extinction is absorption, and spectra that meet in threes are multiplied two at a time.
+// scattered sunlight cut at stations, media and transparent surfaces on the way. One thing is simpler here:
+// spectra that meet in threes are multiplied two at a time.
 #include <functional>
 #include <map>
 #include <string>
