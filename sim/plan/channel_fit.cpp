@@ -10,13 +10,18 @@ namespace {
 /// Of the error asked for: what groups may take of the products they are fitted to, and of those they have not seen. The rest is for tables
 /// and for what was not drawn.
 constexpr double kFitted = 0.35, kUnseen = 0.6;
+/// With gases in bodies, whose lengths and temperatures vary more than a few hundred lines of sight show.
+constexpr double kGas = 0.6;
 constexpr int kMostGroups = 96;
 /// Of the worst that a fit learns from at a time.
 constexpr size_t kLearnt = 60;
 
 }  // namespace
 
-ChannelFit::ChannelFit(const Simulation& simulation, const Spectrum& kernel, double accuracy) : grid_(fineGridOf(simulation, kernel)), accuracy_(accuracy) {}
+ChannelFit::ChannelFit(const Simulation& simulation, const Spectrum& kernel, double accuracy) : grid_(fineGridOf(simulation, kernel)), accuracy_(accuracy) {
+  const auto isGas = [](const auto& m) { return m->medium.has_value(); };
+  if (std::any_of(simulation.materials.begin(), simulation.materials.end(), isGas)) accuracy_ *= kGas;
+}
 
 void ChannelFit::begin(const Sights& sights) {
   absorbers_ = sights.absorbers(grid_);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "sim/model/light_legs.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -11,7 +12,7 @@ namespace pitviper {
 namespace {
 
 /// Places along a line of sight between which the air's emission is taken as one black body's.
-constexpr size_t kStations = 10;
+constexpr size_t kStations = 9;
 /// Black bodies of textures and air are mixtures of those at these steps [K], surfaces at other view angles like those at these steps.
 constexpr double kTemperatureStep_K = 4.0, kAngleStep_rad = kPi / 36.0;
 
@@ -27,6 +28,19 @@ std::vector<AirStation> thinned(const std::vector<AirStation>& all) {
   std::vector<AirStation> some;
   for (size_t k = 0; k < kStations; ++k) some.push_back(all[k * (all.size() - 1) / (kStations - 1)]);
   return some;
+}
+
+/// Terms of the same spectra on the same path as one.
+std::vector<SightTerm> merged(std::vector<SightTerm> terms) {
+  std::map<std::tuple<int, int, int, TermKind>, size_t> placeOf;
+  std::vector<SightTerm> out;
+  for (const SightTerm& t : terms) {
+    const auto [at, isNew] = placeOf.try_emplace({t.source, t.second, t.path, t.kind}, out.size());
+    if (isNew) out.push_back(t);
+    else out[at->second].coefficient += t.coefficient;
+  }
+  std::erase_if(out, [](const SightTerm& t) { return t.coefficient == 0.0; });
+  return out;
 }
 
 /// The nearest texel.
@@ -141,31 +155,32 @@ void SightWriter::air(Sight& sight, double range_m) {
     int end = here;
     if (book_.paths[static_cast<size_t>(here)].media_m != book_.paths[static_cast<size_t>(before)].media_m) end = pathTo(last.range_m, s.amounts);
     const double temperature_K = 0.5 * (last.temperature_K + s.temperature_K);
+    const int black = temperature_K > 0.0 ? planck(kTemperatureStep_K * std::round(temperature_K / kTemperatureStep_K)) : -1;
+    const int own = book_.spectrum("air's own", [](const FineGrid& g, size_t i) { return g.air[i].source; });
     for (int k = 0; k < 2; ++k) {
-      SightTerm term{-1, -1, k == 0 ? before : end, k == 0 ? 1.0 : -1.0, TermKind::AirEmission};
-      if (temperature_K > 0.0) addThermal(sight, s.range_m, temperature_K, term);
-      term.source = book_.spectrum("air's own", [](const FineGrid& g, size_t i) { return g.air[i].source; });
-      add(sight, s.range_m, term);
+      const int at = k == 0 ? before : end;
+      const double sign = k == 0 ? 1.0 : -1.0;
+      if (black >= 0) add(sight, s.range_m, {black, -1, at, sign, TermKind::AirEmission});
+      add(sight, s.range_m, {own, -1, at, sign, TermKind::AirEmission});
     }
-    if (temperature_K > 0.0) notEmitted(sight, line, j, temperature_K, before, end);
+    if (black >= 0) notEmitted(sight, line, j, black, before, end);
     if (sunlit && line.lit[j - 1] && line.lit[j]) scattered(sight, line, j, sun.cosScatter);
     before = here;
   }
 }
 
-/// What scatters between two places does not emit: less than a black body by that, by Simpson's rule.
-void SightWriter::notEmitted(Sight& sight, const SunlitAir& line, size_t station, double temperature_K, int from, int to) {
+/// What scatters between two places does not emit: less than a black body by that.
+void SightWriter::notEmitted(Sight& sight, const SunlitAir& line, size_t station, int black, int from, int to) {
   if (scatterers_.empty()) return;
   SightPath middle = book_.paths[static_cast<size_t>(from)];
   for (size_t k = 0; k < kMostAirAmounts; ++k) middle.air.amount[k] = 0.5 * (middle.air.amount[k] + book_.paths[static_cast<size_t>(to)].air.amount[k]);
   book_.paths.push_back(std::move(middle));
-  const int way[3] = {from, static_cast<int>(book_.paths.size()) - 1, to};
+  const int way = static_cast<int>(book_.paths.size()) - 1;
   for (size_t k : scatterers_) {
     const double passed = line.powered[station].amount[k] - line.powered[station - 1].amount[k];
     if (!(passed > 0.0)) continue;
     const int lost = book_.spectrum("lost " + std::to_string(k), [k](const FineGrid& g, size_t i) { return g.air[i].molecules[k] + g.air[i].haze[k]; });
-    for (int p = 0; p < 3; ++p)
-      addThermal(sight, line.stations[station].range_m, temperature_K, {lost, -1, way[p], -passed * (p == 1 ? 4.0 : 1.0) / 6.0, TermKind::AirEmission});
+    add(sight, line.stations[station].range_m, {black, lost, way, -passed, TermKind::AirEmission});
   }
 }
 
@@ -311,6 +326,7 @@ Sight SightWriter::pixel() {
   for (const Hit& h : hits_.layers) surface(sight, h);
   media(sight);
   air(sight, range);
+  sight.terms = merged(std::move(sight.terms));
   return sight;
 }
 
