@@ -1,7 +1,8 @@
 // Speed of this machine: one factor at a time, beside a fixed yardstick timed in the same rounds, because machines drift.
+#include <algorithm>
 #include <cstdio>
 
-#include "scenarios/commands/accuracy_bench.hpp"
+#include "scenarios/commands/accuracy_report.hpp"
 #include "scenarios/commands/bench_report.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
@@ -39,15 +40,44 @@ std::vector<BenchFactor> factorsWanted(const Options& o) {
   return all;
 }
 
+/// A whole number of an option within bounds, or what it is without.
+int wholeNumber(const Options& o, const std::string& name, int otherwise, int least, int most, const std::string& meaning) {
+  if (!o.has(name)) return otherwise;
+  const auto [n, last] = readRange(o.value(name), name);
+  if (n != last || n < least || n > most)
+    throw UserError({name + " " + o.value(name), 0, 0, -1}, "not " + meaning, std::to_string(least) + " to " + std::to_string(most),
+                    "write " + name + " " + std::to_string(otherwise > 0 ? otherwise : least));
+  return static_cast<int>(n);
+}
+
+int accuracyCommand(const Options& o) {
+  if (o.has("--factor")) throw UserError({"pitviper bench", 0, 0, -1}, "--factor says nothing to --accuracy", "one of the two", "remove one");
+  AccuracyRequest request;
+  request.scenario = o.value("--accuracy");
+  request.changes = o.values("--set");
+  request.size_px = wholeNumber(o, "--size", 0, 8, 4096, "a number of columns");
+  request.frames = wholeNumber(o, "--frames", 3, 1, 1000, "a number of frames to compare");
+  const std::filesystem::path out = o.value("--out");
+  if (o.has("--out")) ensureWritableFolder(out);
+  const GlContext context;
+  const AccuracyReport report = measureAccuracy(request);
+  std::printf("%s\n%s\n%s", report.heading.c_str(), context.limits().renderer.c_str(), accuracyTables(report).c_str());
+  if (!o.has("--out")) return 0;
+  writeFileAtomically(out / "accuracy.csv", accuracyCsv(report));
+  std::printf("\n%s written\n", (out / "accuracy.csv").string().c_str());
+  const auto charts = accuracyCharts(report);
+  drawCharts(charts, std::min(static_cast<int>(charts.size()), 4), out / "accuracy.png");
+  std::printf("%s written\n", (out / "accuracy.png").string().c_str());
+  return 0;
+}
+
 }  // namespace
 
 int benchCommand(const Arguments& arguments) {
-  const Options o("bench", arguments, {{"--frames"}, {"--factor"}, {"--out"}, {"--accuracy"}}, 0, 0);
-  if (o.has("--accuracy")) {
-    for (const char* other : {"--factor", "--out"})
-      if (o.has(other)) throw UserError({"pitviper bench", 0, 0, -1}, std::string(other) + " says nothing to --accuracy", "one of the two", "remove one");
-    return accuracyBench(o.value("--accuracy"));
-  }
+  const Options o("bench", arguments, {{"--frames"}, {"--factor"}, {"--out"}, {"--accuracy"}, {"--size"}, {"--set", true, true}}, 0, 0);
+  if (o.has("--accuracy")) return accuracyCommand(o);
+  for (const char* other : {"--size", "--set"})
+    if (o.has(other)) throw UserError({"pitviper bench", 0, 0, -1}, std::string(other) + " goes with --accuracy", "a scenario", "remove it, or add --accuracy");
   const int frames = framesWanted(o);
   std::vector<BenchFactor> factors = factorsWanted(o);
   const std::filesystem::path out = o.value("--out");

@@ -158,7 +158,7 @@ int runCommand(const Arguments& arguments) {
         if ((o.has("--preview") || !ranges.empty()) && f.kind.empty()) writePreview(out, f, ranges);
         progress.step();
       },
-      sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) { probes.add(r); });
+      sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) { probes.add(r); }, [&](double share) { progress.within(share); });
   probes.write(out);
   progress.finish();
   auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };

@@ -45,16 +45,14 @@ void AirLight::emitted(std::span<const double> absorbed, std::span<const double>
   }
 }
 
-void AirLight::scattered(std::span<const double> scattered, std::span<const double> both, std::span<double> radiance) const {
-  double sum = 0.0;
-  if (!depth.empty()) radiance[0] = 0.0;
-  for (size_t i = 1; i < depth.size(); ++i) {
-    if (std::isfinite(both[i - 1]) && std::isfinite(both[i])) {
-      const double x = both[i] - both[i - 1];  // of either sign: looking up, the sun's leg gets shorter
-      const double mean = std::abs(x) < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
-      sum += std::max(scattered[i] - scattered[i - 1], 0.0) * std::exp(-both[i - 1]) * mean;
-    }
-    radiance[i] = sum;
+void AirLight::reaching(std::span<const double> both, std::span<double> share) {
+  if (!both.empty()) share[0] = 0.0;
+  for (size_t i = 1; i < both.size(); ++i) {
+    share[i] = 0.0;
+    if (!std::isfinite(both[i - 1]) || !std::isfinite(both[i])) continue;
+    const double x = both[i] - both[i - 1];  // of either sign: looking up, the sun's leg gets shorter
+    const double mean = std::abs(x) < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
+    share[i] = std::exp(-both[i - 1]) * mean;
   }
 }
 

@@ -92,9 +92,10 @@ struct AirLight {
   std::span<const double> depth;  ///< of all extinction, from the camera
   /// Emission of what absorbs: `absorbed` depth of absorption alone, `source` radiance of a black body, linear in depth between two places.
   void emitted(std::span<const double> absorbed, std::span<const double> source, std::span<double> radiance) const;
-  /// Light of irradiance 1 scattered once with phase 1/sr: `scattered` depth of the scattering alone, `both` depth from the camera and on to the
-  /// sun (infinite: in shadow).
-  void scattered(std::span<const double> scattered, std::span<const double> both, std::span<double> radiance) const;
+  /// Of light of irradiance 1 scattered once, what all that scatters has in common: the mean of exp(-both) over each stretch, which times the
+  /// stretch's depth of a scatterer adds up to its radiance for a phase of 1/sr. `both`: depth from the camera and on to the sun (infinite: in
+  /// shadow).
+  static void reaching(std::span<const double> both, std::span<double> share);
 };
 
 /// Phase functions [1/sr]; their integral over the sphere is 1. Source: Chandrasekhar 1960; Henyey and Greenstein 1941.

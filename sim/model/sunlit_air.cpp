@@ -1,6 +1,7 @@
 #include "sim/model/sunlit_air.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -18,30 +19,52 @@ SunlitAir::SunlitAir(const Path& path, const AirRay& ray, std::vector<AirStation
   }
 }
 
+namespace {
+
+/// The absorbers that a coefficient is not zero of: most have one, few scatter.
+struct Absorbers {
+  explicit Absorbers(const std::array<double, kMostAirAmounts>& coefficients) {
+    for (size_t k = 0; k < coefficients.size(); ++k)
+      if (coefficients[k] != 0.0) number[count] = k, value[count++] = coefficients[k];
+  }
+  double depth(const AirAmounts& powered) const {
+    double sum = 0.0;
+    for (size_t j = 0; j < count; ++j) sum += value[j] * powered.amount[number[j]];
+    return sum;
+  }
+  std::array<size_t, kMostAirAmounts> number{};
+  std::array<double, kMostAirAmounts> value{};
+  size_t count = 0;
+};
+
+}  // namespace
+
 AirRadiance airRadiance(const AirNode& node, const SunlitAir& air, std::span<const double> source) {
   const size_t n = air.stations.size();
   AirRadiance out;
   out.depth.resize(n);
   out.thermal.resize(n);
-  std::vector<double> absorbed(n), molecules(n), haze(n), black(n);
+  // One allocation: this is called for every wavelength of every line of sight.
+  std::vector<double> room(6 * n);
+  const auto part = [&](size_t i) { return std::span(room).subspan(i * n, n); };
+  const std::span<double> absorbed = part(0), molecules = part(1), haze = part(2), black = part(3), both = part(4), share = part(5);
+  const Absorbers all(node.extinction), small(node.molecules), large(node.haze);
   for (size_t s = 0; s < n; ++s) {
-    double d = 0.0, m = 0.0, p = 0.0;
-    for (size_t k = 0; k < node.extinction.size(); ++k) {
-      const double u = air.powered[s].amount[k];
-      d += node.extinction[k] * u, m += node.molecules[k] * u, p += node.haze[k] * u;
-    }
+    const double d = all.depth(air.powered[s]), m = small.depth(air.powered[s]), p = large.depth(air.powered[s]);
     out.depth[s] = d, molecules[s] = m, haze[s] = p, absorbed[s] = d - m - p;
     black[s] = node.source + source[s];
   }
   AirLight{out.depth}.emitted(absorbed, black, out.thermal);
   if (air.lit.empty()) return out;
-  std::vector<double> both(n, std::numeric_limits<double>::infinity());
-  for (size_t s = 0; s < n; ++s)
-    if (air.lit[s]) both[s] = Path::depthOf(node, air.both[s]);
+  for (size_t s = 0; s < n; ++s) both[s] = air.lit[s] ? all.depth(air.both[s]) : std::numeric_limits<double>::infinity();
+  AirLight::reaching(both, share);
   out.molecules.resize(n);
   out.haze.resize(n);
-  AirLight{out.depth}.scattered(molecules, both, out.molecules);
-  AirLight{out.depth}.scattered(haze, both, out.haze);
+  double fromMolecules = 0.0, fromHaze = 0.0;
+  for (size_t s = 1; s < n; ++s) {
+    out.molecules[s] = fromMolecules += std::max(molecules[s] - molecules[s - 1], 0.0) * share[s];
+    out.haze[s] = fromHaze += std::max(haze[s] - haze[s - 1], 0.0) * share[s];
+  }
   return out;
 }
 

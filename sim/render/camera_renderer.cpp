@@ -34,6 +34,22 @@ bool CameraRenderer::seesTransparent() const {
   return false;
 }
 
+void CameraRenderer::setProgress(std::function<void(double)> progress) {
+  if (reference_) reference_->setProgress(std::move(progress));
+}
+
+/// The camera's own and those of its small bodies: one for each, two where anything is transparent (addSmallBodies may still need fewer).
+int CameraRenderer::viewsOfPicture() const {
+  int views = 1;
+  for (size_t e = 0; e < small_.size(); ++e) {
+    const Pose& pose = state_.entities[e];
+    const Entity& entity = simulation_.entities[e];
+    if (small_[e] && present_[e] && mayShow(view_, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m))
+      views += simulation_.hasTransparent() ? 2 : 1;
+  }
+  return views;
+}
+
 void CameraRenderer::begin(const WorldState& state) {
   state_ = state;
   view_ = cameraView(camera_.pinhole, cameraPose(camera_.mount, state), camera_.near_m, camera_.samples);
@@ -44,6 +60,7 @@ void CameraRenderer::begin(const WorldState& state) {
   std::vector<char> drawn(present_);
   for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = present_[e] && !small_[e];
   if (direct_ && buffered_) pass_ = seesTransparent() ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
+  if (reference_) reference_->beginPicture(viewsOfPicture());
   pass_->setState(state_);
   pass_->draw(view_, state_, drawn);
   pass_->startReadback(false);

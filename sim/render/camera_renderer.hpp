@@ -1,5 +1,6 @@
 #pragma once
 // Draws one camera of a simulation at a time: everything between a world state and an image of integrals.
+#include <functional>
 #include <memory>
 
 #include "sim/render/buffered_pass.hpp"
@@ -24,11 +25,14 @@ class CameraRenderer {
     return finish();
   }
   const Plan& plan() const { return plan_; }
+  /// Reference mode: called now and then on the drawing thread with the share of the picture that is done, 0 to 1. The other modes never call it.
+  void setProgress(std::function<void(double share)> progress);
   /// Of the mode that the last frame was drawn in.
   bool isBuffered() const { return buffered_ && pass_ == buffered_.get(); }
 
  private:
   bool seesTransparent() const;
+  int viewsOfPicture() const;
   const Simulation& simulation_;
   const Camera& camera_;
   Plan plan_;

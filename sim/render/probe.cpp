@@ -4,6 +4,7 @@
 
 #include "sim/plan/planner.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/render/reference/reference_pass.hpp"
 #include "sim/render/small_bodies.hpp"
 #include "sim/render/visible_lights.hpp"
 
@@ -42,7 +43,8 @@ std::vector<View> hemisphere(const Probe& probe) {
 std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
                                  const WorldState& state) {
   const Plan plan = planFor(sim, {nullptr, &probe});
-  const auto owned = makeScenePass(sim, plan, library, scene, false, 1.0);
+  const auto owned =
+      probe.spectral.reference ? std::make_unique<ReferencePass>(sim, plan, library, scene, false, 1.0) : makeScenePass(sim, plan, library, scene, false, 1.0);
   ScenePass& pass = *owned;
   pass.setState(state);
   const std::vector<char> all(sim.entities.size(), 1);

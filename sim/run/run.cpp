@@ -7,12 +7,14 @@
 
 namespace pitviper {
 
-void runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes) {
+void runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes,
+               const PictureProgress& progress) {
   auto scene = std::make_shared<const GpuScene>(sim);
   std::vector<std::unique_ptr<CameraRenderer>> renderers;
   std::vector<std::unique_ptr<SpectralRenderer>> spectral;  // null for a camera without a spectral image
   for (const auto& camera : sim.cameras) {
     renderers.push_back(std::make_unique<CameraRenderer>(sim, camera, library, scene));
+    if (progress) renderers.back()->setProgress(progress);
     spectral.push_back(camera.spectralImage ? std::make_unique<SpectralRenderer>(sim, camera, library, scene) : nullptr);
   }
   std::future<void> handing;  // its destructor waits, so nothing it uses goes first

@@ -18,10 +18,13 @@ struct ProbeReading {
   double time_s;
   std::vector<double> values;
 };
+/// Called on the drawing thread while a picture takes long (reference mode): the share of it that is done.
+using PictureProgress = std::function<void(double share)>;
 using ProbeSink = std::function<void(const ProbeReading&)>;
 
 /// Renders the frames of all cameras. While one frame is handed to the sink on a thread of its own, the next is drawn; frames
 /// arrive in order, one at a time. An exception of the sink ends the run and is thrown here.
-void runFrames(const Simulation& simulation, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes = {});
+void runFrames(const Simulation& simulation, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes = {},
+               const PictureProgress& progress = {});
 
 }  // namespace pitviper

@@ -25,6 +25,7 @@ std::vector<Camera> spectralPasses(const Camera& camera) {
     for (end = first; end < bins.count() && end - first < kMostSlots && width(end) < 2.0 * width(first); ++end) pass.outputs.push_back(binOutput(bins, end));
     const double total = bins.edge_um[static_cast<size_t>(end)] - bins.edge_um[static_cast<size_t>(first)];
     pass.spectral = {static_cast<int>(std::lround(bins.samples * total / width(first))), Spacing::Gauss, true};
+    pass.spectral.reference = camera.spectral.reference;
     passes.push_back(pass);
   }
   return passes;

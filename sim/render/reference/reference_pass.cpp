@@ -2,6 +2,7 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <future>
@@ -23,6 +24,11 @@ ReferencePass::ReferencePass(const Simulation& simulation, const Plan& plan, con
   truthProgram_ = ShadingProgram(library, slots, truthTargets(), static_cast<size_t>(plan.groupCount()));
 }
 
+void ReferencePass::beginPicture(int views) {
+  views_ = std::max(views, 1);
+  viewsDone_ = 0;
+}
+
 void ReferencePass::beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) {
   view_ = view;
   state_ = state;
@@ -38,8 +44,8 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
   std::vector<std::vector<float>> channels(groups, std::vector<float>(4 * static_cast<size_t>(width) * static_cast<size_t>(height), 0.0f));
   const ReferenceShader shader(simulation_, plan(), view_, state_, drawn_);
   std::atomic<int> next{0};
-  auto work = [&] {
-    for (int y = next++; y < height; y = next++)
+  auto work = [&](bool tells) {
+    for (int y = next++; y < height; y = next++) {
       for (int x = 0; x < width; ++x) {
         const size_t p = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
         const DrawItem& item = tables().draws[identity[2 * p]];
@@ -49,10 +55,15 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
         const ReferencePixel pixel = shader.pixel(x, y, seen);
         for (size_t s = 0; s < pixel.slots.size(); ++s) channels[s / 4][4 * p + s % 4] = static_cast<float>(pixel.slots[s]);
       }
+      // More views than were announced: the picture is as good as done.
+      if (tells && progress_) progress_(std::min((viewsDone_ + std::min(1.0, static_cast<double>(next) / height)) / views_, 1.0));
+    }
   };
   std::vector<std::future<void>> workers;
-  for (unsigned t = 0; t < std::max(1u, std::thread::hardware_concurrency()); ++t) workers.push_back(std::async(std::launch::async, work));
+  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) workers.push_back(std::async(std::launch::async, work, false));
+  work(true);
   for (auto& w : workers) w.get();
+  ++viewsDone_;
   for (size_t g = 0; g < groups; ++g) glTextureSubImage2D(into.colour(g).name(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, channels[g].data());
   if (hasTruth()) truthProgram_.run(into);
 }

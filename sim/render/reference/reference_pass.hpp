@@ -1,6 +1,8 @@
 #pragma once
 // The third mode of drawing: the visibility pass says which triangle each subpixel sees; everything from there on is double precision on the
 // CPU, at every wavelength of the plan, from the models themselves. No tables, no term left out. Slow, for judging the other two.
+#include <functional>
+
 #include "sim/render/scene_pass.hpp"
 
 namespace pitviper {
@@ -9,6 +11,10 @@ class ReferencePass final : public ScenePass {
  public:
   ReferencePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                 double apertureArea_m2);
+  /// Called now and then on the drawing thread with the share of a picture that is done, 0 to 1.
+  void setProgress(std::function<void(double share)> progress) { progress_ = std::move(progress); }
+  /// A picture begins, of about so many views: its own and those of its small bodies.
+  void beginPicture(int views);
   std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) override;
 
  private:
@@ -20,6 +26,8 @@ class ReferencePass final : public ScenePass {
   View view_;
   WorldState state_;
   std::vector<char> drawn_;
+  std::function<void(double)> progress_;
+  int views_ = 1, viewsDone_ = 0;
 };
 
 }  // namespace pitviper

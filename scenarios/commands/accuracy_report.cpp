@@ -1,0 +1,119 @@
+#include "scenarios/commands/accuracy_report.hpp"
+
+#include <algorithm>
+#include <cstdarg>
+#include <cstdio>
+
+namespace pitviper {
+namespace {
+
+__attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ...) {
+  char text[512];
+  va_list arguments;
+  va_start(arguments, pattern);
+  std::vsnprintf(text, sizeof text, pattern, arguments);
+  va_end(arguments);
+  return text;
+}
+
+/// Three figures that keep two digits, whatever their size.
+std::string threeOf(const ErrorFigures& e, double scale) { return format("%.2g / %.2g / %.2g", scale * e.median, scale * e.percentile99, scale * e.maximum); }
+
+std::string rule(size_t cells) {
+  std::string line = "|";
+  for (size_t i = 0; i < cells; ++i) line += "---|";
+  return line + "\n";
+}
+
+const char* kindName(AccuracySetting::Kind k) {
+  switch (k) {
+    case AccuracySetting::Kind::Planned:
+      return "planned";
+    case AccuracySetting::Kind::Even:
+      return "even";
+    case AccuracySetting::Kind::Gauss:
+      return "gauss";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string accuracyTables(const AccuracyReport& report) {
+  std::string out = "Error per pixel in per cent, median / 99th percentile / largest; n: wavelengths or groups that count in the channel.\n\n";
+  if (report.rows.empty()) return out;
+  const auto& first = report.rows.front().channels;
+  const bool predicted = std::any_of(report.rows.begin(), report.rows.end(), [](const AccuracyRow& r) {
+    return std::any_of(r.channels.begin(), r.channels.end(), [](const auto& c) { return c.predicted.has_value(); });
+  });
+  out += "| setting | frames/s | in all |";
+  for (const auto& c : first) out += " " + c.name + " n |" + (predicted ? " expected |" : "") + " " + c.name + " |";
+  out += "\n" + rule(3 + first.size() * (predicted ? 3 : 2));
+  for (const AccuracyRow& r : report.rows) {
+    out += format("| %s | %.1f | %d |", r.setting.name.c_str(), r.framesPerSecond, r.nodes);
+    for (const auto& c : r.channels) {
+      out += format(" %d |", c.nodes);
+      if (predicted) out += c.predicted ? format(" %.2g |", 100.0 * *c.predicted) : " |";
+      out += " " + threeOf(c.errors.relative, 100.0) + " |";
+    }
+    out += "\n";
+  }
+  std::vector<size_t> warm;
+  for (size_t c = 0; c < first.size(); ++c)
+    if (first[c].errors.kelvin) warm.push_back(c);
+  if (!warm.empty()) {
+    out += "\nThe same as a temperature difference, in mK, of the pixels as bright as a black body of 250 to 330 K.\n\n| setting |";
+    for (size_t c : warm) out += " " + first[c].name + " |";
+    out += "\n" + rule(1 + warm.size());
+    for (const AccuracyRow& r : report.rows) {
+      out += "| " + r.setting.name + " |";
+      for (size_t c : warm) out += " " + threeOf(*r.channels[c].errors.kelvin, 1e3) + " |";
+      out += "\n";
+    }
+  }
+  for (const auto& m : report.missing) out += "\nnot drawn: " + m + "\n";
+  return out;
+}
+
+std::string accuracyCsv(const AccuracyReport& report) {
+  std::string out =
+      "kind,setting,accuracy,samples,rate [frame/s],nodes,channel,nodes in channel,expected error,median error,99th percentile error,largest error,median "
+      "difference [K],99th percentile difference [K],largest difference [K]\n";
+  for (const AccuracyRow& r : report.rows)
+    for (const auto& c : r.channels) {
+      const bool planned = r.setting.kind == AccuracySetting::Kind::Planned;
+      out += format("%s,%s,%s,%s,%.6g,%d,%s,%d,%s,%.6g,%.6g,%.6g,", kindName(r.setting.kind), r.setting.name.c_str(),
+                    planned ? format("%g", r.setting.sampling.accuracy).c_str() : "", planned ? "" : std::to_string(r.setting.sampling.samples).c_str(),
+                    r.framesPerSecond, r.nodes, c.name.c_str(), c.nodes, c.predicted ? format("%.6g", *c.predicted).c_str() : "", c.errors.relative.median,
+                    c.errors.relative.percentile99, c.errors.relative.maximum);
+      out += (c.errors.kelvin ? format("%.6g,%.6g,%.6g", c.errors.kelvin->median, c.errors.kelvin->percentile99, c.errors.kelvin->maximum) : ",,") + "\n";
+    }
+  return out;
+}
+
+std::vector<Chart> accuracyCharts(const AccuracyReport& report) {
+  std::vector<Chart> charts;
+  if (report.rows.empty()) return charts;
+  for (size_t c = 0; c < report.rows.front().channels.size(); ++c) {
+    Chart chart;
+    chart.title = report.rows.front().channels[c].name + ": 99 of 100 pixels";
+    chart.xLabel = "frames/s";
+    chart.yLabel = "error [%]";
+    chart.logX = chart.logY = true;
+    for (const auto& [kind, name] : {std::pair{AccuracySetting::Kind::Planned, "accuracy 10 % to 0.1 %"},
+                                     {AccuracySetting::Kind::Even, "4 to 340 even samples"},
+                                     {AccuracySetting::Kind::Gauss, "16 Gauss points"}}) {
+      Series s{name, {}, {}, kind != AccuracySetting::Kind::Planned, false};
+      for (const AccuracyRow& r : report.rows)
+        if (r.setting.kind == kind) {
+          s.x.push_back(r.framesPerSecond);
+          s.y.push_back(100.0 * r.channels[c].errors.relative.percentile99);
+        }
+      chart.series.push_back(s);
+    }
+    charts.push_back(chart);
+  }
+  return charts;
+}
+
+}  // namespace pitviper
