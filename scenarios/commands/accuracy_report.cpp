@@ -103,12 +103,13 @@ std::vector<Chart> accuracyCharts(const AccuracyReport& report) {
     for (const auto& [kind, name] : {std::pair{AccuracySetting::Kind::Planned, "accuracy 10 % to 0.1 %"},
                                      {AccuracySetting::Kind::Even, "4 to 340 even samples"},
                                      {AccuracySetting::Kind::Gauss, "16 Gauss points"}}) {
-      Series s{name, {}, {}, kind != AccuracySetting::Kind::Planned, false};
+      Series s{name, {}, {}, false, false};
       for (const AccuracyRow& r : report.rows)
         if (r.setting.kind == kind) {
           s.x.push_back(r.framesPerSecond);
           s.y.push_back(100.0 * r.channels[c].errors.relative.percentile99);
         }
+      if (s.x.size() == 1) s.x.push_back(s.x[0]), s.y.push_back(s.y[0]);  // a line has two ends
       chart.series.push_back(s);
     }
     charts.push_back(chart);

@@ -73,6 +73,7 @@ CameraImage CameraRenderer::finish() {
   Subpixels image(plan_, view_, pass_->finishReadback());
   addSmallBodies(image, *pass_, simulation_, state_, small_, present_);
   addVisibleLights(image, *pass_, simulation_, plan_, state_, present_);
+  if (reference_) reference_->endPicture();
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
   resolved.slotOfOutput = plan_.slotOfOutput;
   resolved.solidAngles = solidAngles_;

@@ -29,6 +29,10 @@ void ReferencePass::beginPicture(int views) {
   viewsDone_ = 0;
 }
 
+void ReferencePass::endPicture() const {
+  if (progress_) progress_(1.0);
+}
+
 void ReferencePass::beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) {
   view_ = view;
   state_ = state;

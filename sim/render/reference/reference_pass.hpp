@@ -15,6 +15,8 @@ class ReferencePass final : public ScenePass {
   void setProgress(std::function<void(double share)> progress) { progress_ = std::move(progress); }
   /// A picture begins, of about so many views: its own and those of its small bodies.
   void beginPicture(int views);
+  /// It is done, whatever it took.
+  void endPicture() const;
   std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) override;
 
  private:
