@@ -168,6 +168,7 @@ void addDifference(Subpixels& image, ScenePass& pass, const Simulation& sim, con
   const bool medium = sim.mediumOf(sim.entities[static_cast<size_t>(entity)]) != nullptr;
   View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity), medium));
   z.onlyEntity = -1;
+  z.differenceOf = entity;
   auto drawn = [&] {
     pass.draw(z, state, others);
     pass.startReadback(false, true);

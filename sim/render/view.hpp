@@ -18,6 +18,7 @@ struct View {
   int onlyEntity = -1;          ///< shade this entity alone, behind whatever hides it; -1: everything
   glm::dvec3 depthCentre{0.0};  ///< with onlyEntity: depth has its digits around this place (local frame) ...
   double depthRadius_m = 1.0;   ///< ... within this distance
+  int differenceOf = -1;        ///< two pictures are compared, with this entity and without: rays that miss it need no colour; -1: they do
   double pixelTan2 = 0.0;       ///< (tangent per whole pixel)^2, for the truth layer of the fragment's area
 
   /// Direction of a film position in camera axes, z = -1.

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <sstream>
 
 #include "sim/image/exr.hpp"
@@ -159,6 +160,46 @@ TEST_F(Commands, BenchKnowsItsFactors) {
   EXPECT_NE(r.output.find("did you mean 'channels'?"), std::string::npos) << r.output;
   EXPECT_EQ(pitviper("bench --frames 3").code, 2);
   EXPECT_EQ(pitviper("bench --accuracy x.yaml --factor film").code, 2);
+  EXPECT_EQ(pitviper("bench --accuracy x.yaml --size 1").code, 2);
+  EXPECT_EQ(pitviper("bench --size 64").code, 2);
+}
+
+// Rationale: the trade of speed and accuracy is measured, not promised. Expected: a line in the table and in the CSV per setting and channel; of a
+// smooth spectrum more even samples are closer to the reference, which single precision limits; what accuracy is asked for is kept.
+TEST_F(Commands, BenchMeasuresAccuracyAgainstTheReference) {
+  const std::string file = (folder_ / "wall.yaml").string();
+  std::ofstream(file) << "name: wall\natmosphere: {extinction: {wavelength: um, unit: 1/km, values: [[2.9, 0.1], [4, 2], [13, 0.3]]}, temperature: 285 K}\n"
+                         "entities: [{name: p, shape: {model: plate, width: 40 m, height: 40 m}, temperature: 300 K,\n"
+                         "  material: {components: [{reflection: lambertian, reflectance: 0.2}]}}]\n"
+                         "cameras: [{name: c, film: {width: 64, height: 64}, field_of_view: 4 deg, aperture: 5 mm, position: [700 m, 0 m, 0 m], look_at: p,\n"
+                         "  channels: [{name: mw, response: {band: [3 um, 5 um]}}, {name: lw, response: {band: [8 um, 12 um]}}]}]\n";
+  const Result r = pitviper("bench --accuracy " + file + " --size 8 --frames 1 --out " + folder_.string());
+  ASSERT_TRUE(fs::exists(folder_ / "accuracy.csv")) << r.output;
+  EXPECT_NE(r.output.find("8x8 pixels"), std::string::npos) << r.output;
+  EXPECT_NE(r.output.find("| even 340 |"), std::string::npos) << r.output;
+  std::ifstream csv(folder_ / "accuracy.csv");
+  std::string line;
+  std::map<std::string, double> worst;  // of a setting's channel
+  std::getline(csv, line);
+  while (std::getline(csv, line)) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    ASSERT_EQ(cells.size(), 15u) << line;
+    EXPECT_GT(std::stod(cells[4]), 0.0) << line;
+    worst[cells[1] + " " + cells[6]] = std::stod(cells[11]);
+  }
+  EXPECT_EQ(worst.size(), 28u);
+  for (const char* channel : {"mw", "lw"}) {
+    EXPECT_LT(worst[std::string("even 340 ") + channel], 5e-5) << channel;
+    EXPECT_LT(worst[std::string("even 340 ") + channel], 0.1 * worst[std::string("even 4 ") + channel]) << channel;
+    for (const auto& [name, accuracy] : {std::pair{"10 %", 0.1}, {"1 %", 0.01}, {"0.1 %", 0.001}})
+      EXPECT_LT(worst[std::string(name) + " " + channel], accuracy) << name << " " << channel;
+  }
+  if (fs::exists(fs::path(PITVIPER_BUILD_DIR) / "libpitviper_charts.so")) {
+    EXPECT_EQ(r.code, 0) << r.output;
+    EXPECT_GT(fs::file_size(folder_ / "accuracy.png"), 5000u);
+  }
 }
 
 // Rationale: a picture does not depend on how it is drawn. Expected: a frame with a canopy, plumes and smoke is the same in auto and buffered

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/ray_hits.hpp"
 #include "sim/model/sunlit_air.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
-#include "sim/model/ray_hits.hpp"
 #include "sim/render/reference/shadow_rays.hpp"
 
 namespace pitviper {
@@ -257,6 +257,14 @@ ReferencePixel ReferenceShader::pixel(int x, int y, const SeenTriangle& seen) co
     hits.stretches = std::move(all.stretches);
   }
   return shade(x, y, hits);
+}
+
+bool ReferenceShader::meets(int x, int y, int entity) const {
+  const glm::dvec3 ray = view_.ray(x + 0.5, y + 0.5);
+  std::vector<char> alone(simulation_.entities.size(), 0);
+  alone[static_cast<size_t>(entity)] = 1;
+  const RayHits hits = castRay(simulation_, state_, view_.position, view_.localFromCamera * ray / glm::length(ray), view_.near_m * glm::length(ray), &alone);
+  return hits.solid.entity >= 0 || !hits.layers.empty() || !hits.stretches.empty();
 }
 
 std::vector<double> ReferenceShader::transmittance(double farthest_m) const {

@@ -34,6 +34,8 @@ class ReferenceShader {
   ReferencePixel pixel(int x, int y) const;
   /// The same, given which triangle it sees.
   ReferencePixel pixel(int x, int y, const SeenTriangle& seen) const;
+  /// Whether the ray through its centre meets a body at all, whatever hides it.
+  bool meets(int x, int y, int entity) const;
   /// Per node, of everything transparent on the line through the middle of the view as far as a depth.
   std::vector<double> transmittance(double farthest_m) const;
 
