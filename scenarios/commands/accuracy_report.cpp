@@ -1,6 +1,7 @@
 #include "scenarios/commands/accuracy_report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
@@ -16,8 +17,16 @@ __attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ..
   return text;
 }
 
-/// Three figures that keep two digits, whatever their size.
-std::string threeOf(const ErrorFigures& e, double scale) { return format("%.2g / %.2g / %.2g", scale * e.median, scale * e.percentile99, scale * e.maximum); }
+/// Two digits, and no exponent where it can be read without.
+std::string figure(double v) {
+  if (!(v >= 1e-4 && v < 1e6)) return format("%.2g", v);
+  const int place = static_cast<int>(std::floor(std::log10(v))) - 1;
+  return format("%.*f", std::max(0, -place), v);
+}
+
+std::string threeOf(const ErrorFigures& e, double scale) {
+  return figure(scale * e.median) + " / " + figure(scale * e.percentile99) + " / " + figure(scale * e.maximum);
+}
 
 std::string rule(size_t cells) {
   std::string line = "|";
@@ -53,7 +62,7 @@ std::string accuracyTables(const AccuracyReport& report) {
     out += format("| %s | %.1f | %d |", r.setting.name.c_str(), r.framesPerSecond, r.nodes);
     for (const auto& c : r.channels) {
       out += format(" %d |", c.nodes);
-      if (predicted) out += c.predicted ? format(" %.2g |", 100.0 * *c.predicted) : " |";
+      if (predicted) out += c.predicted ? " " + figure(100.0 * *c.predicted) + " |" : " |";
       out += " " + threeOf(c.errors.relative, 100.0) + " |";
     }
     out += "\n";
