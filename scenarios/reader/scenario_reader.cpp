@@ -35,10 +35,37 @@ Libraries findLibraries() {
                   "set PITVIPER_HOME to it");
 }
 
+namespace {
+
+/// `extends: other.yaml`: the other's keys hold where the tree has none.
+void extend(Value& tree, const std::filesystem::path& base, std::string& identity) {
+  const Value* from = tree.find("extends");
+  if (tree.kind != Value::Kind::Map || !from) return;
+  const std::filesystem::path name = from->text;
+  if (from->kind != Value::Kind::Scalar || name.empty() || name.filename() != name)
+    throw UserError(from->where, "not the name of a scenario beside this one", "a file in the same folder, because both name their files from there",
+                    "write 'extends: first_light.yaml'");
+  std::string text;
+  const Value other = loadYaml(base / name, from->where, &text);
+  if (other.kind != Value::Kind::Map)
+    throw UserError(other.where, "a scenario is " + std::string(other.kindName()), "a map of keys", "see scenarios/README.md");
+  if (const Value* further = other.find("extends"))
+    throw UserError(further->where, "a scenario that is extended extends another itself", "one that is whole", "name that one, or write its keys here");
+  identity += "\n--extends\n" + text;
+  for (size_t k = 0; k < other.entries.size(); ++k)
+    if (!tree.find(other.entries[k].first)) {
+      tree.entries.push_back(other.entries[k]);
+      tree.keyPlaces.push_back(other.keyPlaces[k]);
+    }
+}
+
+}  // namespace
+
 Simulation readScenarioText(const std::string& text, const std::string& fileName, const std::filesystem::path& base, const std::vector<std::string>& overrides,
                             const Libraries& libraries) {
   Value tree = parseYaml(text, fileName);
   std::string identity = text;
+  extend(tree, base, identity);
   for (const auto& o : overrides) {
     applyOverride(tree, o);
     identity += "\n--set " + o;

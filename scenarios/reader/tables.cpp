@@ -50,6 +50,7 @@ const ParameterTable& scenario() {
       "scenario",
       "The file itself.",
       {text("name", "short name, written into every frame (default: the file's name)"), text("description", "one or two sentences"),
+       text("extends", "name of a scenario in the same folder, whose keys hold where this one has none: the same scene with other cameras"),
        withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL), "1"),
        map("origin", "where the local east-north-up frame stands on the earth"), map("time", "first frame, rate and number of frames"),
        map("render", "how it is drawn"),
