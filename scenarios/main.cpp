@@ -70,7 +70,9 @@ const std::map<std::string, Command>& commands() {
         "The bins must cover every channel: one that reaches beyond them is refused.\n"}},
       {"bench",
        {benchCommand, "speed of this machine beside a fixed yardstick",
-        "pitviper bench [--factor NAME] [--frames N] [--out FOLDER]\npitviper bench --accuracy SCENARIO.yaml [--size N] [--frames N] [--set "
+        "pitviper bench [--factor NAME] [--frames N] [--out FOLDER]\n"
+        "pitviper bench --scenario SCENARIO.yaml [--frames N] [--set path.to.key=value]...\npitviper bench --accuracy SCENARIO.yaml [--size N] [--frames N] "
+        "[--set "
         "path.to.key=value]... [--out FOLDER]\n\n"
         "Times direct and buffered mode on a wall that fills the film (256x256, 16 channels, 16 wavelengths, one light, thermal emission, air\n"
         "on both legs), then with one factor varied at a time, in rounds that alternate with a bare loop over 16 wavelengths, the yardstick.\n"

@@ -6,6 +6,7 @@
 #include "scenarios/commands/bench_report.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
+#include "scenarios/commands/scenario_bench.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/error.hpp"
@@ -71,13 +72,23 @@ int accuracyCommand(const Options& o) {
   return 0;
 }
 
+int scenarioCommand(const Options& o) {
+  for (const char* other : {"--factor", "--out"})
+    if (o.has(other)) throw UserError({"pitviper bench", 0, 0, -1}, std::string(other) + " says nothing to --scenario", "one of the two", "remove one");
+  const GlContext context;
+  const auto rates = timeScenario(o.value("--scenario"), o.values("--set"), framesWanted(o));
+  std::printf("%s\n%s", context.limits().renderer.c_str(), rateTable(rates).c_str());
+  return 0;
+}
+
 }  // namespace
 
 int benchCommand(const Arguments& arguments) {
-  const Options o("bench", arguments, {{"--frames"}, {"--factor"}, {"--out"}, {"--accuracy"}, {"--size"}, {"--set", true, true}}, 0, 0);
+  const Options o("bench", arguments, {{"--frames"}, {"--factor"}, {"--out"}, {"--accuracy"}, {"--scenario"}, {"--size"}, {"--set", true, true}}, 0, 0);
   if (o.has("--accuracy")) return accuracyCommand(o);
-  for (const char* other : {"--size", "--set"})
-    if (o.has(other)) throw UserError({"pitviper bench", 0, 0, -1}, std::string(other) + " goes with --accuracy", "a scenario", "remove it, or add --accuracy");
+  if (o.has("--size")) throw UserError({"pitviper bench", 0, 0, -1}, "--size goes with --accuracy", "a scenario", "remove it, or add --accuracy");
+  if (o.has("--scenario")) return scenarioCommand(o);
+  if (o.has("--set")) throw UserError({"pitviper bench", 0, 0, -1}, "--set goes with --accuracy or --scenario", "a scenario", "remove it, or add one");
   const int frames = framesWanted(o);
   std::vector<BenchFactor> factors = factorsWanted(o);
   const std::filesystem::path out = o.value("--out");

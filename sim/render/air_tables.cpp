@@ -1,7 +1,10 @@
 #include "sim/render/air_tables.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <future>
+#include <thread>
 
 #include "sim/model/sunlit_air.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -22,6 +25,10 @@ constexpr double kSunStep = 0.01;
 constexpr double kColdest_K = 140.0, kWarmest_K = 400.0;
 constexpr int kTemperatures = 256;
 constexpr double kNothing = 1e-30;
+/// Tables reach so much of a view's elevations beyond it, to serve the next views of a camera that turns.
+constexpr double kMargin = 0.2;
+/// At 1 %: heights [m] and azimuths (cosines) to the sun that one table serves. Haze thins by 0.1 % in a metre.
+constexpr double kSameHeight_m = 1.0, kSameAzimuth = 0.02;
 
 double logOf(double v) { return std::log(std::max(v, kNothing)); }
 
@@ -130,12 +137,29 @@ void AirTables::update(const View& view, const WorldState& state) {
                                       static_cast<double>(entity.boundingRadius_m));
   }
   for (const auto& light : state.lights) farthest = std::max(farthest, glm::length(light - view.position));
-  // What was made for a wider view serves its parts (zoomed views of small bodies).
-  const bool serves = grid_.position == view.position && low >= grid_.low && high <= grid_.high && farthest <= grid_.farthest_m && high - low > 0.0 &&
-                      farthest > 0.5 * grid_.farthest_m;
-  if (serves) return;
-  grid_ = {view.position, low, high, farthest};
+  if (serves(view, low, high, farthest)) return;
+  const double margin = kMargin * (high - low);
+  grid_ = {view.position, simulation_.frame.height(view.position), sunAcrossOf(view), std::max(low - margin, -1.0), std::min(high + margin, 1.0),
+           1.1 * farthest};
   fill(view);
+}
+
+/// What was made for a wider view serves its parts (zoomed views of small bodies), and a camera on the move where its height is the same but
+/// for what the plan's accuracy allows: air knows heights and elevations, no places.
+bool AirTables::serves(const View& view, double low, double high, double farthest_m) const {
+  if (!(grid_.farthest_m > 0.0)) return false;
+  const double share = plan_.accuracy / 0.01;
+  const bool near = grid_.position == view.position || (std::abs(simulation_.frame.height(view.position) - grid_.height_m) <= kSameHeight_m * share &&
+                                                        std::abs(sunAcrossOf(view) - grid_.sunAcross) <= kSameAzimuth * share);
+  return near && low >= grid_.low && high <= grid_.high && farthest_m <= grid_.farthest_m && high - low > 0.0 && farthest_m > 0.5 * grid_.farthest_m;
+}
+
+/// Cosine of the azimuth between the view's middle and the sun, times both horizontal parts.
+double AirTables::sunAcrossOf(const View& view) const {
+  if (!plan_.terms.scatteredSun) return 0.0;
+  const glm::dvec3 up = simulation_.frame.up(view.position), axis = view.localFromCamera * glm::dvec3(0, 0, -1), toSun = simulation_.sun->toSun;
+  const glm::dvec3 a = axis - glm::dot(axis, up) * up, b = toSun - glm::dot(toSun, up) * up;
+  return glm::length(a) > 1e-6 && glm::length(b) > 1e-6 ? glm::dot(glm::normalize(a), b) : 0.0;
 }
 
 /// Per node, or per channel as its nodes' sunlight is scattered; padded to vec4.
@@ -159,63 +183,73 @@ std::vector<double> AirTables::asymmetries() const {
   return asymmetry;
 }
 
-void AirTables::fill(const View& view) {
+/// One row of the tables.
+void AirTables::fillElevation(const View& view, int e, const std::vector<double>& asymmetry, std::vector<float>& amounts, std::vector<float>& radiance) const {
   const Path& path = *simulation_.path;
-  const glm::dvec3 up = simulation_.frame.up(view.position);
   const double height = simulation_.frame.height(view.position), radius = simulation_.frame.earthRadius_m();
-  const size_t nodes = plan_.nodes.size(), values = static_cast<size_t>(values_), parts = static_cast<size_t>(parts_),
-               columns = static_cast<size_t>(kRanges) + 1;
-  std::vector<float> amounts, radiance(static_cast<size_t>(kElevations) * columns * parts * static_cast<size_t>(texels_) * (perChannel_ ? 4 : 1));
+  const size_t nodes = plan_.nodes.size(), values = static_cast<size_t>(values_), parts = static_cast<size_t>(parts_), columns = kRanges + 1;
+  const double x = spread(grid_.low) + (spread(grid_.high) - spread(grid_.low)) * e / (kElevations - 1), sine = x * std::abs(x);
+  const AirRay ray{height, sine, radius};
   RaySun sun;
-  double sunAcross = 0.0;  // cosine of the azimuth between the view's middle and the sun, times both horizontal parts
   if (plan_.terms.scatteredSun) {
-    const glm::dvec3 axis = view.localFromCamera * glm::dvec3(0, 0, -1), toSun = simulation_.sun->toSun;
-    sun.sinElevation = glm::dot(toSun, up);
-    const glm::dvec3 a = axis - glm::dot(axis, up) * up, b = toSun - sun.sinElevation * up;
-    sunAcross = glm::length(a) > 1e-6 && glm::length(b) > 1e-6 ? glm::dot(glm::normalize(a), b) : 0.0;
+    sun.sinElevation = glm::dot(simulation_.sun->toSun, simulation_.frame.up(view.position));
+    sun.cosScatter = sine * sun.sinElevation + std::sqrt(std::max(1.0 - sine * sine, 0.0)) * grid_.sunAcross;
   }
-  const std::vector<double> asymmetry = asymmetries();
-  for (int e = 0; e < kElevations; ++e) {
-    const double x = spread(grid_.low) + (spread(grid_.high) - spread(grid_.low)) * e / (kElevations - 1), sine = x * std::abs(x);
-    const AirRay ray{height, sine, radius};
-    if (plan_.terms.scatteredSun) sun.cosScatter = sine * sun.sinElevation + std::sqrt(std::max(1.0 - sine * sine, 0.0)) * sunAcross;
-    double entry = 0.0;
-    if (height > path.top_m()) {
-      const double b = (radius + height) * sine, q2 = (path.top_m() - height) * (2.0 * radius + path.top_m() + height), root = b * b + q2;
-      entry = root <= 0.0 || b >= 0.0 ? physics::kFar : -q2 / (std::sqrt(root) - b);
-    }
-    const auto ranges = rangesFrom(std::min(entry, 1e12));
-    const SunlitAir line(path, ray, path.stationsAt(ray, ranges), plan_.terms.scatteredSun ? plan_.sunLegs.get() : nullptr, sun);
-    for (size_t r = 0; r < columns; ++r) {
-      // At the beginning of the air: the density there. Towards space: the whole amount.
-      const double length_km = r == 0 || r + 1 == columns ? 1.0 : 1e-3 * (ranges[r] - ranges[0]);
-      const size_t s = r + 1 == columns ? ranges.size() - 1 : r;
-      const AirAmounts a = r == 0 ? path.densities(line.stations.empty() ? height : line.stations[0].height_m) : line.stations[s].amounts;
-      for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) amounts.push_back(static_cast<float>(logOf(a.amount[k] / length_km)));
-    }
-    std::vector<double> source(line.stations.size());
-    for (size_t i = 0; i < nodes; ++i) {
-      for (size_t s = 0; s < source.size(); ++s) source[s] = line.stations[s].temperature_K > 0.0 ? planck(i, line.stations[s].temperature_K) : 0.0;
-      const AirRadiance found = airRadiance(plan_.nodes[i].air, line, source);
-      for (size_t part = 0; part < parts; ++part) {
-        const auto& sent = part == 0 ? found.thermal : part == 1 ? found.molecules : found.haze;
-        const double strength = part == 0 ? 1.0 : sunIrradiance_[i];
-        for (size_t r = 0; r < columns; ++r) {
-          const double value = r + 1 == columns ? sent.back() : sent[r];
-          float* at = &radiance[((static_cast<size_t>(e) * columns + r) * parts + part) * values];
-          if (!perChannel_) at[i] = static_cast<float>(strength * value);
-          else
-            for (size_t slot = 0; slot < plan_.weight.size(); ++slot) {
-              if (plan_.weight[slot][i] == 0.0) continue;
-              // The shader has one asymmetry per channel: in the view's middle each node keeps its own.
-              const double own =
-                  part < 2 ? 1.0 : henyeyGreensteinPhase(sun.cosScatter, plan_.nodes[i].air.asymmetry) / henyeyGreensteinPhase(sun.cosScatter, asymmetry[slot]);
-              at[slot] += static_cast<float>(plan_.weight[slot][i] * strength * value * own);
-            }
+  double entry = 0.0;
+  if (height > path.top_m()) {
+    const double b = (radius + height) * sine, q2 = (path.top_m() - height) * (2.0 * radius + path.top_m() + height), root = b * b + q2;
+    entry = root <= 0.0 || b >= 0.0 ? physics::kFar : -q2 / (std::sqrt(root) - b);
+  }
+  const auto ranges = rangesFrom(std::min(entry, 1e12));
+  const SunlitAir line(path, ray, path.stationsAt(ray, ranges), plan_.terms.scatteredSun ? plan_.sunLegs.get() : nullptr, sun);
+  float* amount = &amounts[static_cast<size_t>(e) * columns * static_cast<size_t>(4 * vectors_)];
+  for (size_t r = 0; r < columns; ++r) {
+    // At the beginning of the air: the density there. Towards space: the whole amount.
+    const double length_km = r == 0 || r + 1 == columns ? 1.0 : 1e-3 * (ranges[r] - ranges[0]);
+    const size_t s = r + 1 == columns ? ranges.size() - 1 : r;
+    const AirAmounts a = r == 0 ? path.densities(line.stations.empty() ? height : line.stations[0].height_m) : line.stations[s].amounts;
+    for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) *amount++ = static_cast<float>(logOf(a.amount[k] / length_km));
+  }
+  std::vector<double> source(line.stations.size());
+  for (size_t i = 0; i < nodes; ++i) {
+    for (size_t s = 0; s < source.size(); ++s) source[s] = line.stations[s].temperature_K > 0.0 ? planck(i, line.stations[s].temperature_K) : 0.0;
+    const AirRadiance found = airRadiance(plan_.nodes[i].air, line, source);
+    for (size_t part = 0; part < parts; ++part) {
+      const auto& sent = part == 0 ? found.thermal : part == 1 ? found.molecules : found.haze;
+      const double strength = part == 0 ? 1.0 : sunIrradiance_[i];
+      for (size_t r = 0; r < columns; ++r) {
+        const double value = r + 1 == columns ? sent.back() : sent[r];
+        float* at = &radiance[((static_cast<size_t>(e) * columns + r) * parts + part) * values];
+        if (!perChannel_) {
+          at[i] = static_cast<float>(strength * value);
+          continue;
+        }
+        for (size_t slot = 0; slot < plan_.weight.size(); ++slot) {
+          if (plan_.weight[slot][i] == 0.0) continue;
+          // The shader has one asymmetry per channel: in the view's middle each node keeps its own.
+          const double own =
+              part < 2 ? 1.0 : henyeyGreensteinPhase(sun.cosScatter, plan_.nodes[i].air.asymmetry) / henyeyGreensteinPhase(sun.cosScatter, asymmetry[slot]);
+          at[slot] += static_cast<float>(plan_.weight[slot][i] * strength * value * own);
         }
       }
     }
   }
+}
+
+void AirTables::fill(const View& view) {
+  const Path& path = *simulation_.path;
+  const size_t columns = kRanges + 1;
+  std::vector<float> amounts(kElevations * columns * static_cast<size_t>(4 * vectors_)),
+      radiance(kElevations * columns * static_cast<size_t>(parts_) * static_cast<size_t>(texels_) * (perChannel_ ? 4 : 1));
+  const std::vector<double> asymmetry = asymmetries();
+  std::atomic<int> next{0};
+  auto work = [&] {
+    for (int e = next++; e < kElevations; e = next++) fillElevation(view, e, asymmetry, amounts, radiance);
+  };
+  std::vector<std::future<void>> others;
+  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
+  work();
+  for (auto& o : others) o.get();
   amounts.insert(amounts.end(), heights_.begin(), heights_.end());
   amounts_.upload(amounts);
   radiance_.upload(radiance);

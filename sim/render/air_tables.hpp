@@ -24,11 +24,16 @@ class AirTables {
  private:
   struct Grid {
     glm::dvec3 position{NAN};
+    double height_m = 0.0;
+    double sunAcross = 0.0;        ///< see sunAcrossOf()
     double low = 0.0, high = 0.0;  ///< sines of elevation
     double farthest_m = 0.0;
   };
   std::vector<double> rangesFrom(double entry_m) const;
+  bool serves(const View& view, double low, double high, double farthest_m) const;
+  double sunAcrossOf(const View& view) const;
   void fill(const View& view);
+  void fillElevation(const View& view, int elevation, const std::vector<double>& asymmetry, std::vector<float>& amounts, std::vector<float>& radiance) const;
   std::vector<double> asymmetries() const;
   void addHeights(std::vector<float>& amounts) const;
   double planck(size_t node, double temperature_K) const;

@@ -24,17 +24,43 @@ BodyBox boxOf(const Mesh& mesh, const BodyForm& form) {
   return {box.low - margin, box.high + margin};
 }
 
+/// Triangles in a run, and of a mesh that is worth cutting up.
+constexpr std::uint32_t kRun = 512, kWorthRuns = 8192;
+
+std::vector<MeshRun> runsOf(const Mesh& mesh) {
+  std::vector<MeshRun> runs;
+  if (mesh.triangles.size() < kWorthRuns) return runs;
+  for (const MeshPart& part : mesh.parts)
+    for (std::uint32_t done = 0; done < part.triangleCount; done += kRun) {
+      MeshRun run{part.firstTriangle + done, std::min(kRun, part.triangleCount - done), {}, 0.0};
+      glm::dvec3 low(INFINITY), high(-INFINITY);
+      for (std::uint32_t t = run.first; t < run.first + run.count; ++t)
+        for (int k = 0; k < 3; ++k) {
+          const glm::dvec3 p(mesh.positions[mesh.triangles[t][k]]);
+          low = glm::min(low, p), high = glm::max(high, p);
+        }
+      run.centre = 0.5 * (low + high);
+      run.radius_m = 0.5 * glm::length(high - low) * (1.0 + 1e-9);
+      runs.push_back(run);
+    }
+  return runs;
+}
+
 }  // namespace
 
 GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
   std::vector<glm::vec4> vertices;
   std::vector<std::uint32_t> indices;
   std::map<const Mesh*, std::uint32_t> placed;
+  std::map<const Mesh*, std::shared_ptr<const std::vector<MeshRun>>> runs;
   for (const auto& entity : sim.entities) {
     const Mesh& mesh = *entity.mesh;
     const auto [at, fresh] = placed.try_emplace(&mesh, static_cast<std::uint32_t>(indices.size() / 3));
     firstTriangle_.push_back(at->second);
     boxes_.push_back(boxOf(mesh, entity.form));
+    auto& cut = runs[&mesh];
+    if (!cut) cut = std::make_shared<const std::vector<MeshRun>>(runsOf(mesh));
+    runs_.push_back(cut);
     if (!fresh) continue;
     const auto base = static_cast<std::uint32_t>(vertices.size() / 2);
     for (size_t i = 0; i < mesh.positions.size(); ++i) {

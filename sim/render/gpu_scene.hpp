@@ -13,6 +13,13 @@ struct BodyBox {
   glm::dvec3 low{0.0}, high{0.0};
 };
 
+/// Neighbouring triangles of a large mesh, and a sphere about them (body axes) [m].
+struct MeshRun {
+  std::uint32_t first = 0, count = 0;  ///< of the mesh
+  glm::dvec3 centre{0.0};
+  double radius_m = 0.0;
+};
+
 class ShadowTrees;
 
 class GpuScene {
@@ -24,6 +31,9 @@ class GpuScene {
   /// Around the entity's mesh and true form, a little larger, so that no line of sight through it slips past.
   const BodyBox& box(int entity) const { return boxes_[static_cast<size_t>(entity)]; }
 
+  /// Parts of an entity's mesh that may be out of a view each by itself; none where the mesh is small.
+  const std::vector<MeshRun>& runs(int entity) const { return *runs_[static_cast<size_t>(entity)]; }
+
   /// Of the simulation it was made for; made when first asked for.
   std::shared_ptr<const ShadowTrees> shadowTrees(const Simulation& simulation) const;
 
@@ -32,6 +42,7 @@ class GpuScene {
   VertexArray vertexArray_;
   std::vector<std::uint32_t> firstTriangle_;
   std::vector<BodyBox> boxes_;
+  std::vector<std::shared_ptr<const std::vector<MeshRun>>> runs_;  ///< per entity, shared by those with the same mesh
   mutable std::shared_ptr<const ShadowTrees> shadowTrees_;
 };
 

@@ -51,6 +51,8 @@ std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const W
     c.first = scene_.firstTriangle(item.entity) + part.firstTriangle;
     c.triangles = part.triangleCount;
     c.entity = item.entity;
+    cutOff(c, v, pose, part);
+    if (c.triangles == 0) continue;
     c.cull = entity.mesh->closed && glm::length(centre - v.position) > entity.boundingRadius_m * 1.0001 + v.near_m;
     const BodyBox& box = scene_.box(item.entity);
     const glm::dvec3 camera = glm::inverse(pose.orientation) * (v.position - pose.position);
@@ -69,15 +71,32 @@ std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const W
 void SolidPass::drawOne(const Candidate& c) const {
   single_.use();
   glUniform1i(single_.uniform("drawIndex"), static_cast<int>(c.draw));
-  drawTriangles(single_, c, 1);
+  if (c.shown.empty()) drawTriangles(single_, c, c.first, c.triangles, 1);
+  for (const auto& [first, count] : c.shown) drawTriangles(single_, c, first, count, 1);
 }
 
-void SolidPass::drawTriangles(const Program& program, const Candidate& c, std::size_t instances) const {
+/// Runs of a large mesh that lie wholly outside the view are left out: a driver without a GPU takes 80 ns for a vertex that nobody sees.
+void SolidPass::cutOff(Candidate& c, const View& v, const Pose& pose, const MeshPart& part) const {
+  const std::uint32_t base = scene_.firstTriangle(c.entity), end = part.firstTriangle + part.triangleCount;
+  bool any = false;
+  for (const MeshRun& run : scene_.runs(c.entity)) {
+    if (run.first < part.firstTriangle || run.first >= end) continue;
+    any = true;
+    if (!mayShow(v, pose.position + pose.orientation * run.centre, run.radius_m)) continue;
+    if (!c.shown.empty() && c.shown.back().first + c.shown.back().second == base + run.first) c.shown.back().second += run.count;
+    else c.shown.emplace_back(base + run.first, run.count);
+  }
+  if (!any) return;
+  c.triangles = 0;
+  for (const auto& s : c.shown) c.triangles += s.second;
+}
+
+void SolidPass::drawTriangles(const Program& program, const Candidate& c, std::uint32_t first, std::uint32_t count, std::size_t instances) const {
   if (c.cull) glEnable(GL_CULL_FACE);
   else glDisable(GL_CULL_FACE);
-  glUniform1i(program.uniform("firstTriangle"), static_cast<int>(c.first));
-  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(c.triangles * 3), GL_UNSIGNED_INT,
-                          reinterpret_cast<const void*>(static_cast<std::uintptr_t>(c.first) * 12), static_cast<GLsizei>(instances));
+  glUniform1i(program.uniform("firstTriangle"), static_cast<int>(first));
+  glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT,
+                          reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * 12), static_cast<GLsizei>(instances));
 }
 
 void SolidPass::drawHidden(const std::vector<Candidate>& dense) {
@@ -156,7 +175,7 @@ void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& stat
     }
     instanced_.use();
     glUniform1i(instanced_.uniform("firstInstance"), firstInstance);
-    drawTriangles(instanced_, group.front(), group.size());
+    drawTriangles(instanced_, group.front(), group.front().first, group.front().triangles, group.size());
     firstInstance += static_cast<int>(group.size());
   }
   if (asked < kWorthAsking) {

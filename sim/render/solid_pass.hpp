@@ -18,6 +18,7 @@ class SolidPass {
  private:
   struct Candidate {
     std::uint32_t draw = 0, first = 0, triangles = 0;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> shown;  ///< first and count of what of them may show; empty: all
     int entity = 0;
     bool cull = false;
     bool boxBefore = false;  ///< its box lies before the camera as a whole
@@ -25,7 +26,8 @@ class SolidPass {
   };
   std::vector<Candidate> candidatesIn(const View& view, const WorldState& state, const std::vector<char>& drawn) const;
   void drawOne(const Candidate& c) const;
-  void drawTriangles(const Program& program, const Candidate& shape, std::size_t instances) const;
+  void drawTriangles(const Program& program, const Candidate& shape, std::uint32_t first, std::uint32_t count, std::size_t instances) const;
+  void cutOff(Candidate& c, const View& view, const Pose& pose, const MeshPart& part) const;
   void drawHidden(const std::vector<Candidate>& dense);
 
   const Simulation& simulation_;

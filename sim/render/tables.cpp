@@ -241,7 +241,8 @@ void writeIntegral(RenderTables& t, const Plan& plan) {
   text << "void integrate() {\n";
   size_t at = 0;
   for (const Loop& loop : integrationLoops(plan)) {
-    text << "  for (int i = 0; i < " << loop.count << "; ++i) {\n    Real radiance = nodeRadiance" << (loop.lit && plan.terms.lights ? "" : "Unlit") << "(" << loop.first << " + i);\n";
+    text << "  for (int i = 0; i < " << loop.count << "; ++i) {\n    Real radiance = nodeRadiance" << (loop.lit && plan.terms.lights ? "" : "Unlit") << "("
+         << loop.first << " + i);\n";
     for (size_t k = 0; k < loop.groups.size(); ++k)
       text << "    channels" << loop.groups[k] << " += weights.weight[" << at << " + i * " << loop.groups.size() << " + " << k << "] * radiance;\n";
     text << "  }\n";

@@ -255,6 +255,12 @@ Mesh makeTerrain(double size_m, int columns, int rows, const std::vector<float>&
       addVertex(mesh, {(i - 0.5 * columns) * cell, (j - 0.5 * rows) * cell, height(i, j)},
                 glm::normalize(glm::dvec3(-slope(i, j, 1, 0), -slope(i, j, 0, 1), 1.0)), static_cast<double>(i) / columns, static_cast<double>(j) / rows);
   addGrid(mesh, 0, columns, rows);
+  // In tiles of 16 x 16 cells: neighbours in the list are neighbours in the field, and what a view leaves out is left out in long runs.
+  const auto tileOf = [&](const glm::uvec3& t) {
+    const auto corner = static_cast<std::size_t>(std::min({t.x, t.y, t.z}));
+    return corner / stride / 16 * stride + corner % stride / 16;
+  };
+  std::stable_sort(mesh.triangles.begin(), mesh.triangles.end(), [&](const glm::uvec3& a, const glm::uvec3& b) { return tileOf(a) < tileOf(b); });
   mesh.heightField = true;
   return finished(std::move(mesh), false);
 }

@@ -1,0 +1,73 @@
+#include "scenarios/commands/scenario_bench.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+#include "scenarios/commands/bench_yardstick.hpp"
+#include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/progress.hpp"
+#include "scenarios/reader/scenario_reader.hpp"
+#include "sim/render/camera_renderer.hpp"
+
+namespace pitviper {
+namespace {
+
+/// The speed that figures are told at, whatever the machine [pixels of the yardstick a second].
+constexpr double kNominalRate = 6e6;
+
+template <class F>
+double timed(const F& draw) {
+  glFinish();
+  const auto start = std::chrono::steady_clock::now();
+  draw();
+  glFinish();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+double median(std::vector<double> v) {
+  std::sort(v.begin(), v.end());
+  return v[v.size() / 2];
+}
+
+}  // namespace
+
+std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes, int frames) {
+  const Simulation sim = readScenario(scenario, changes, findLibraries());
+  const auto scene = std::make_shared<const GpuScene>(sim);
+  Yardstick yardstick;
+  std::vector<ScenarioRate> rates;
+  Progress progress("bench", frames * static_cast<int>(sim.cameras.size()));
+  for (const Camera& camera : sim.cameras) {
+    CameraRenderer renderer(sim, camera, shaderLibrary(), scene);
+    auto draw = [&](int k) { renderer.render(advance(sim.entities, sim.lights, sim.time.at(k * (sim.time.frames - 1) / std::max(frames - 1, 1)))); };
+    draw(0);  // the driver compiles
+    timed([&] { yardstick.draw(); });
+    std::vector<double> own, bare;
+    for (int k = 0; k < frames; ++k) {
+      bare.push_back(timed([&] { yardstick.draw(); }));
+      own.push_back(timed([&] { draw(k); }));
+      progress.step();
+    }
+    rates.push_back({camera.name, renderer.plan().nodeCount(), renderer.plan().slotCount, frames, median(own), median(bare)});
+  }
+  progress.finish();
+  return rates;
+}
+
+std::string rateTable(const std::vector<ScenarioRate>& rates) {
+  std::string out =
+      "| camera | channels | nodes | ms a frame | frames/s | yardstick, million pixels/s | frames/s at 6 million |\n|---|---|---|---|---|---|---|\n";
+  for (const ScenarioRate& r : rates) {
+    const double yardstick = Yardstick::kSize_px * Yardstick::kSize_px / r.yardstickSeconds;
+    char line[256];
+    std::snprintf(line, sizeof line, "| %s | %d | %d | %.2f | %.1f | %.2f | %.1f |\n", r.camera.c_str(), r.channels, r.nodes, 1e3 * r.seconds, 1.0 / r.seconds,
+                  1e-6 * yardstick, kNominalRate / yardstick / r.seconds);
+    out += line;
+  }
+  return out;
+}
+
+}  // namespace pitviper

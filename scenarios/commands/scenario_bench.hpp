@@ -1,0 +1,20 @@
+#pragma once
+// Frames a second of a scenario as it is: drawn, read back and resolved in memory, no files; beside the yardstick.
+#include <string>
+#include <vector>
+
+namespace pitviper {
+
+struct ScenarioRate {
+  std::string camera;
+  int nodes = 0, channels = 0, frames = 0;
+  double seconds = 0.0;           ///< of a frame: median
+  double yardstickSeconds = 0.0;  ///< of the yardstick's frame between
+};
+
+/// Every camera over the scenario's time, at least one round of frames each.
+std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes, int frames);
+
+std::string rateTable(const std::vector<ScenarioRate>& rates);
+
+}  // namespace pitviper
