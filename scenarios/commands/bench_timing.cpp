@@ -18,8 +18,18 @@ constexpr int kYardsticks = 2;  ///< before every row of every round
 constexpr double kTurn_s = 0.03;
 constexpr int kMostStride = 4;
 
-/// The device idle before and after.
-double timed(const DrawFrame& draw) {
+int roundsFor(int frames) { return std::clamp(frames, 1, kMostRounds); }
+
+struct Timing {
+  DrawFrame draw;
+  int perRound = 1, stride = 1;  ///< frames in a round, every how many rounds
+  std::vector<double> frames, bare;
+  std::vector<double> frameOfRound, bareOfRound;  ///< medians; 0 where it sat out
+};
+
+}  // namespace
+
+double timed(const std::function<void()>& draw) {
   glFinish();
   const auto start = std::chrono::steady_clock::now();
   draw();
@@ -32,17 +42,6 @@ double median(std::vector<double> v) {
   const size_t half = v.size() / 2;
   return v.size() % 2 == 1 ? v[half] : 0.5 * (v[half - 1] + v[half]);
 }
-
-int roundsFor(int frames) { return std::clamp(frames, 1, kMostRounds); }
-
-struct Timing {
-  DrawFrame draw;
-  int perRound = 1, stride = 1;  ///< frames in a round, every how many rounds
-  std::vector<double> frames, bare;
-  std::vector<double> frameOfRound, bareOfRound;  ///< medians; 0 where it sat out
-};
-
-}  // namespace
 
 int benchSteps(const BenchFactor& factor, int frames) { return static_cast<int>(factor.variants.size()) * (roundsFor(frames) + 1); }
 

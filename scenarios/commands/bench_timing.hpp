@@ -1,5 +1,6 @@
 #pragma once
 // Times the rows of a factor in rounds, every row right behind the yardstick, so that a drifting machine drifts out of the ratios.
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -24,6 +25,11 @@ struct BenchRow {
   double megapixelsPerSecond() const { return pixels() / seconds * 1e-6; }
   double framesPerSecond() const { return 1.0 / seconds; }
 };
+
+/// Seconds that drawing takes, the device idle before and after.
+double timed(const std::function<void()>& draw);
+/// Of at least one value.
+double median(std::vector<double> values);
 
 /// Steps of a progress bar that timing a factor takes.
 int benchSteps(const BenchFactor& factor, int frames);

@@ -1,10 +1,8 @@
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 
-#include "scenarios/commands/bench_yardstick.hpp"
+#include "scenarios/commands/bench_timing.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/plan_report.hpp"
@@ -22,22 +20,17 @@ double secondsSince(std::chrono::steady_clock::time_point start) { return std::c
 double yardstickRate() {
   Yardstick yardstick;
   std::vector<double> rates;
-  for (int k = 0; k < 9; ++k) {
-    const auto start = std::chrono::steady_clock::now();
-    yardstick.draw();
-    glFinish();
-    rates.push_back(Yardstick::kSize_px * Yardstick::kSize_px / secondsSince(start));
-  }
-  std::sort(rates.begin(), rates.end());
-  return rates[rates.size() / 2];
+  for (int k = 0; k < 9; ++k) rates.push_back(Yardstick::kSize_px * Yardstick::kSize_px / timed([&] { yardstick.draw(); }));
+  return median(rates);
 }
 
-/// Frames a second from the yardstick's pixels a second. A subpixel costs kBase of the yardstick's (visibility, geometry, readback), and so much
-/// more for each node with and without reflected light; fitted to `bench` on llvmpipe, within a factor of two of what is measured.
+/// Frames a second from the yardstick's. In pixels of the yardstick: what a frame costs whatever its size, a subpixel, and each of its nodes with
+/// and without reflected light; about what `bench --scenario` finds for first_light and sixteen on llvmpipe, elsewhere within a factor of two or so.
 double predictedRate(const Plan& plan, double subpixels, double yardstick, bool buffered) {
-  constexpr double kBase = 0.9, kLit = 0.16, kUnlit = 0.07, kBuffered = 1.6;
+  constexpr double kFrame = 0.2e6, kSubpixel = 5.0, kLit = 0.28, kUnlit = 0.18, kShadows = 1.4, kBuffered = 1.6;
   const NodeCost cost = costOf(plan);
-  return yardstick / (subpixels * (kBase + kLit * cost.lit + kUnlit * cost.unlit) * (buffered ? kBuffered : 1.0));
+  const double each = (kSubpixel + kLit * cost.lit + kUnlit * cost.unlit) * (plan.terms.shadows ? kShadows : 1.0) * (buffered ? kBuffered : 1.0);
+  return yardstick / (kFrame + subpixels * each);
 }
 
 }  // namespace

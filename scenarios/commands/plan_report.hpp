@@ -11,10 +11,10 @@ struct PlannedEye {
   std::string name;
   const std::vector<ChannelOutput>& outputs;
   const Plan& plan;
-  double seconds = 0.0;       ///< that planning took
-  double subpixels = 0.0;     ///< of a frame
+  double seconds = 0.0;          ///< that planning took
+  double subpixels = 0.0;        ///< of a frame
   double framesPerSecond = 0.0;  ///< predicted; 0: not asked for
-  bool buffered = false;      ///< something transparent may be in view
+  bool buffered = false;         ///< something transparent may be in view
 };
 
 /// The name of each slot: its first output's channel, or several where they share it.

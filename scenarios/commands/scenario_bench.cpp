@@ -1,12 +1,9 @@
 #include "scenarios/commands/scenario_bench.hpp"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
-#include <chrono>
 #include <cstdio>
 
-#include "scenarios/commands/bench_yardstick.hpp"
+#include "scenarios/commands/bench_timing.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
@@ -17,20 +14,6 @@ namespace {
 
 /// The speed that figures are told at, whatever the machine [pixels of the yardstick a second].
 constexpr double kNominalRate = 6e6;
-
-template <class F>
-double timed(const F& draw) {
-  glFinish();
-  const auto start = std::chrono::steady_clock::now();
-  draw();
-  glFinish();
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-double median(std::vector<double> v) {
-  std::sort(v.begin(), v.end());
-  return v[v.size() / 2];
-}
 
 }  // namespace
 

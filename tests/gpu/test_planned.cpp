@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/commands/bench_timing.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/plan/planner.hpp"
@@ -22,6 +23,26 @@ struct PlanErrors {
 
 /// |L - L_ref| / max(L_ref, 1e-3 x 99th percentile of L_ref).
 double errorOf(double got, double want, double p99) { return std::abs(got - want) / std::max(want, 1e-3 * p99); }
+
+/// Everything transparent on a line of sight, by kind.
+std::vector<std::pair<int, int>> seenThrough(const Simulation& sim, const WorldState& state, const View& view, const std::vector<char>& present, double x,
+                                             double y) {
+  const glm::dvec3 ray = view.ray(x, y);
+  const RayHits hits = castRay(sim, state, view.position, view.localFromCamera * ray / glm::length(ray), view.near_m * glm::length(ray), &present, true);
+  std::vector<std::pair<int, int>> all;
+  for (const Hit& h : hits.layers) all.emplace_back(h.entity, h.surface);
+  for (const Stretch& s : hits.stretches) all.emplace_back(s.entity, -1);
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+/// The outline of something transparent does not run through the pixel's middle, where it may fall either way.
+bool isSteady(const Simulation& sim, const WorldState& state, const View& view, const std::vector<char>& present, int x, int y) {
+  const auto middle = seenThrough(sim, state, view, present, x + 0.5, y + 0.5);
+  for (const auto& [dx, dy] : {std::pair{0.02, 0.02}, {-0.02, 0.02}, {0.02, -0.02}, {-0.02, -0.02}})
+    if (seenThrough(sim, state, view, present, x + 0.5 + dx, y + 0.5 + dy) != middle) return false;
+  return true;
+}
 
 /// Per slot.
 std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan& plan, int size, int stride, const std::vector<double>& times) {
@@ -54,6 +75,9 @@ std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan
         const TruthPixel truth = truthAt(raw, p);
         const ReferencePixel want = exact.pixel(x, y);
         if (static_cast<int>(truth.entity) != want.entity + 1 || static_cast<int>(truth.part) != want.surface + 1) continue;
+        // Another triangle of the same part: a ridge or a wing's edge.
+        if (want.entity >= 0 && std::abs(static_cast<double>(truth.range_m) / want.range_m - 1.0) > 1e-3) continue;
+        if (sim.hasTransparent() && !isSteady(sim, state, view, present, x, y)) continue;
         Seen seen;
         for (size_t s = 0; s < want.slots.size(); ++s) seen.drawn.push_back(static_cast<double>(raw.groups[s / 4][4 * p + s % 4]));
         seen.planned = planned.pixel(x, y).slots;
@@ -77,24 +101,60 @@ std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan
   return errors;
 }
 
-TEST(Planned, ShippedScenarios) {
-  for (const char* name : {"first_light", "canopy_plume_smoke", "far_jet", "lamp_on_plane"}) {
-    Simulation sim = readScenario(std::string(PITVIPER_SOURCE_DIR) + "/scenarios/" + name + ".yaml", {}, findLibraries());
-    for (Camera camera : sim.cameras) {
-      camera.spectral.accuracy = std::getenv("ACC") ? std::atof(std::getenv("ACC")) : 0.01;
-      camera.spectral.reference = false;
-      const Plan plan = planFor(sim, {&camera, nullptr});
-      const double end = sim.time.at(sim.time.frames - 1);
-      const auto errors = compare(sim, camera, plan, 64, 5, {sim.time.start_s, 0.35 * end, 0.7 * end});
-      for (size_t s = 0; s < errors.size(); ++s) {
-        const auto& e = errors[s];
-        const size_t n = e.drawn.size();
-        std::printf("%s %s slot %zu: %d nodes, predicted %.4f; spectral median %.5f p99 %.5f max %.5f; drawn median %.5f p99 %.5f max %.5f (%zu pixels)\n",
-                    name, camera.name.c_str(), s, plan.nodeCount(), plan.predictedError[s], e.spectral[n / 2], e.spectral[n * 99 / 100], e.spectral.back(),
-                    e.drawn[n / 2], e.drawn[n * 99 / 100], e.drawn.back(), n);
-      }
+/// A body's temperature that a relative error stands for, about 300 K [K].
+double kelvinOf(const Plan& plan, size_t slot, double error) {
+  double cold = 0.0, warm = 0.0;
+  for (size_t i = 0; i < plan.nodes.size(); ++i) {
+    cold += plan.weight[slot][i] * plan.nodes[i].planck(299.5);
+    warm += plan.weight[slot][i] * plan.nodes[i].planck(300.5);
+  }
+  return error * 0.5 * (cold + warm) / (warm - cold);
+}
+
+class Planned : public ::testing::TestWithParam<const char*> {
+ protected:
+  /// Errors of a camera's channels at an accuracy, over three times.
+  std::vector<PlanErrors> errorsAt(const Simulation& sim, Camera& camera, double accuracy, Plan& plan) {
+    camera.spectral = {};
+    camera.spectral.accuracy = accuracy;
+    plan = planFor(sim, {&camera, nullptr});
+    const double end = sim.time.at(sim.time.frames - 1);
+    return compare(sim, camera, plan, 64, 7, {sim.time.start_s, 0.35 * end, 0.7 * end});
+  }
+};
+
+// What is asked for holds, and what is predicted is about what is found.
+TEST_P(Planned, PercentHolds) {
+  const Simulation sim = readScenario(std::string(PITVIPER_SOURCE_DIR) + "/scenarios/" + GetParam() + ".yaml", {}, findLibraries());
+  std::vector<double> ratios;
+  for (Camera camera : sim.cameras) {
+    Plan plan;
+    const auto errors = errorsAt(sim, camera, 0.01, plan);
+    for (size_t s = 0; s < errors.size(); ++s) {
+      const auto &spectral = errors[s].spectral, &drawn = errors[s].drawn;
+      ASSERT_GT(drawn.size(), 150u);
+      const std::string what = std::string(GetParam()) + ", " + camera.name + ", slot " + std::to_string(s) + ", 1 %: ";
+      bound(what + "error of planned wavelengths, worst pixel", spectral.back(), 0.01, "asked for; every wavelength in double precision");
+      bound(what + "error of the picture, worst pixel", drawn.back(), 0.01, "the same; " + std::to_string(plan.blocks[s].count) + " nodes");
+      bound(what + "predicted error", plan.predictedError[s], 0.01, "asked for");
+      ratios.push_back(plan.predictedError[s] / std::max(drawn.back(), 1e-9));
     }
   }
+  bound(std::string(GetParam()) + ": predicted over found", median(ratios), 5.0, "median of its channels");
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenarios, Planned, ::testing::Values("first_light", "canopy_plume_smoke", "far_jet", "lamp_on_plane", "sixteen"),
+                         [](const auto& row) { return std::string(row.param); });
+
+// At a per mille bodies are within a tenth of a kelvin.
+TEST_F(Planned, PerMilleInKelvin) {
+  const Simulation sim = readScenario(std::string(PITVIPER_SOURCE_DIR) + "/scenarios/first_light.yaml", {}, findLibraries());
+  Camera camera = sim.cameras[0];
+  Plan plan;
+  const auto errors = errorsAt(sim, camera, 0.001, plan);
+  for (size_t s : {0u, 1u})
+    bound("first_light, slot " + std::to_string(s) + ", 0.1 %: as a temperature [K]", kelvinOf(plan, s, errors[s].drawn.back()), 0.1,
+          "of a body at 300 K, worst pixel");
 }
 
 }  // namespace
