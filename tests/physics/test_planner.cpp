@@ -1,0 +1,143 @@
+// Plans for a scene and an accuracy: against closed forms, the same every time, kept by content.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include "sim/plan/plan_cache.hpp"
+#include "sim/plan/planner.hpp"
+#include "tests/support/figures.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+namespace {
+
+std::string camera(const std::string& channels, const std::string& more = "") {
+  return "cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 2 deg, aperture: 5 mm, position: [0 m, 0 m, 100 m], look_at: [0 m, 1 km, 100 m], "
+         "channels: [" +
+         channels + "]" + more + "}]\n";
+}
+const std::string kMidwave = "{name: mw, response: {band: [3 um, 5 um]}}", kLongwave = "{name: lw, response: {band: [8 um, 12 um]}}";
+const std::string kWall =
+    "entities: [{name: wall, shape: {model: plate, width: 200 m, height: 200 m}, material: m, temperature: 310 K, "
+    "position: [0 m, 1 km, 100 m], heading: 180 deg}]\n";
+const std::string kGrey = "materials: {m: {components: [{reflection: lambertian, reflectance: 0.2}]}}\n";
+
+Plan planOf(const Simulation& sim) { return planFor(sim, {&sim.cameras.at(0), nullptr}); }
+
+/// A cache of its own for each test, so that plans are really made.
+class Planner : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    needContext();  // the driver looks for its own cache once
+    if (const char* old = std::getenv("XDG_CACHE_HOME")) before_ = old;
+    folder_ = std::filesystem::temp_directory_path() / ("pitviper_plans_" + std::to_string(::testing::UnitTest::GetInstance()->random_seed()) + "_" +
+                                                        ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+    setenv("XDG_CACHE_HOME", folder_.c_str(), 1);
+  }
+  void TearDown() override {
+    if (before_.empty()) unsetenv("XDG_CACHE_HOME");
+    else setenv("XDG_CACHE_HOME", before_.c_str(), 1);
+    std::filesystem::remove_all(folder_);
+  }
+  size_t kept() const {
+    size_t n = 0;
+    for (const auto& f : std::filesystem::recursive_directory_iterator(folder_)) n += f.path().extension() == ".plan";
+    return n;
+  }
+  std::filesystem::path folder_;
+  std::string before_;
+};
+
+// Nothing that varies over wavelength but the wall's own black body: one group does.
+TEST_F(Planner, GreySceneNeedsOneGroup) {
+  const auto sim = scene("accuracy: 0.1 %\n" + kGrey + kWall + camera(kMidwave + ", " + kLongwave));
+  const Plan plan = planOf(sim);
+  ASSERT_EQ(plan.slotCount, 2);
+  EXPECT_EQ(plan.nodeCount(), 2);
+  for (double e : plan.predictedError) EXPECT_LE(e, 0.001);
+  const Frame frame = renderFrame(sim);
+  figure("planned grey wall, 3-5 um, one group [W/(m2 sr)]", at(layer(frame, "mw.radiance"), frame, 4, 4), 0.8 * blackBodyBand(3, 5, 310), 1e-3,
+         "asked for; series of the Planck integral");
+  figure("planned grey wall, 8-12 um, one group [W/(m2 sr)]", at(layer(frame, "lw.radiance"), frame, 4, 4), 0.8 * blackBodyBand(8, 12, 310), 1e-3,
+         "asked for; series of the Planck integral");
+}
+
+// Two lines, one of which the air does not let through: no mean extinction can stand for both.
+TEST_F(Planner, AirThatTellsWavelengthsApartNeedsMore) {
+  const std::string air = "atmosphere: {extinction: {wavelength: um, unit: 1/m, values: [[3, 0], [3.99, 0], [4.01, 0.004], [5, 0.004]]}, temperature: 290 K}\n";
+  // From one place a single mean does; between 0.1 and 1 km none can.
+  EXPECT_EQ(planOf(scene("accuracy: 1 %\n" + air + kGrey + kWall + camera(kMidwave))).nodeCount(), 1);
+  std::string moving = camera(kMidwave);
+  const std::string still = "position: [0 m, 0 m, 100 m]";
+  moving.replace(moving.find(still), still.size(), "motion: [{time: 0 s, position: [0 m, 0 m, 100 m]}, {time: 9 s, position: [0 m, 900 m, 100 m]}]");
+  const auto sim = scene("accuracy: 1 %\ntime: {rate: 1 Hz, frames: 10}\n" + air + kGrey + kWall + moving);
+  const Plan plan = planOf(sim);
+  EXPECT_GE(plan.nodeCount(), 2);
+  EXPECT_LE(plan.nodeCount(), 6);
+  EXPECT_LE(plan.predictedError.at(0), 0.01);
+  const Frame frame = renderFrame(sim);
+  auto through = [&](double low, double high, double tau) { return 0.8 * tau * blackBodyBand(low, high, 310) + (1 - tau) * blackBodyBand(low, high, 290); };
+  figure("planned wall through air with an edge [W/(m2 sr)]", at(layer(frame, "mw.radiance"), frame, 4, 4), through(3, 4, 1) + through(4, 5, std::exp(-4.0)),
+         1e-2, "asked for; Beer-Lambert on either side of 4 um, the ramp of 0.02 um as a step");
+}
+
+TEST_F(Planner, DropsWhatNoChannelSees) {
+  const std::string sun = "sun: {azimuth: 180 deg, elevation: 30 deg, temperature: 5772 K}\n";
+  const Plan both = planOf(scene("accuracy: 1 %\n" + sun + kGrey + kWall + camera(kMidwave + ", " + kLongwave)));
+  EXPECT_TRUE(both.terms.lights);
+  ASSERT_EQ(both.blocks.size(), 2u);
+  EXPECT_TRUE(both.blocks[0].lit);
+  const Plan far = planOf(scene("accuracy: 10 %\n" + sun + kGrey + kWall + camera(kLongwave)));
+  EXPECT_FALSE(far.terms.lights) << "0.1 % of sunlight at 8 to 12 um is far below 10 %";
+  EXPECT_FALSE(far.terms.shadows);
+  EXPECT_EQ(far.lightCount, 0);
+  EXPECT_TRUE(planOf(scene("accuracy: 0.1 %\n" + sun + kGrey + kWall + camera(kLongwave))).terms.lights);
+}
+
+TEST_F(Planner, SamePlanEveryTimeAndFromTheCache) {
+  const std::string text = "accuracy: 1 %\natmosphere: clear_us76\n" + kGrey + kWall + camera(kMidwave);
+  const Plan first = planOf(scene(text));
+  EXPECT_EQ(kept(), 1u);
+  const Plan again = planOf(scene(text));
+  EXPECT_EQ(writePlanned(first), writePlanned(again));
+  EXPECT_EQ(kept(), 1u);
+  std::filesystem::remove_all(folder_);
+  EXPECT_EQ(writePlanned(planOf(scene(text))), writePlanned(first)) << "made anew";
+  // Whatever a plan depends on makes another one.
+  for (const auto& [from, to] : {std::pair{"310 K", "311 K"},
+                                 {"reflectance: 0.2", "reflectance: 0.21"},
+                                 {"1 km, 100 m], heading", "1.1 km, 100 m], heading"},
+                                 {"clear_us76", "hazy_us76"},
+                                 {"accuracy: 1 %", "accuracy: 2 %"},
+                                 {"5 um", "5.1 um"}}) {
+    std::string other = text;
+    other.replace(other.find(from), std::string(from).size(), to);
+    const size_t before = kept();
+    planOf(scene(other));
+    EXPECT_EQ(kept(), before + 1) << to;
+  }
+}
+
+TEST_F(Planner, DamagedPlansAreNotRead) {
+  const auto sim = scene("accuracy: 1 %\n" + kGrey + kWall + camera(kMidwave));
+  const Plan plan = planOf(sim);
+  const std::string text = writePlanned(plan);
+  Plan read = makePlan(sim, sim.cameras[0].outputs, sim.cameras[0].spectral, sim.cameras[0].where);
+  const int nodes = read.nodeCount();
+  ASSERT_NE(nodes, plan.nodeCount());
+  for (size_t k = 0; k < text.size(); k += 1 + text.size() / 200) {
+    std::string bad = text;
+    bad[k] = bad[k] == '7' ? '3' : '7';
+    EXPECT_FALSE(readPlanned(bad, read)) << k;
+    EXPECT_FALSE(readPlanned(text.substr(0, k), read)) << k;
+  }
+  EXPECT_EQ(read.nodeCount(), nodes) << "left as it was";
+  EXPECT_TRUE(readPlanned(text, read));
+  EXPECT_EQ(writePlanned(read), text);
+}
+
+}  // namespace
+}  // namespace pitviper::test
