@@ -12,7 +12,8 @@ namespace pitviper {
 namespace {
 
 /// Places along a line of sight between which the air's emission is taken as one black body's.
-constexpr size_t kStations = 9;
+constexpr size_t kStations = 9, kFineStations = 18;  ///< the second below kFine
+constexpr double kFine = 0.003;
 /// Black bodies of textures and air are mixtures of those at these steps [K], surfaces at other view angles like those at these steps.
 constexpr double kTemperatureStep_K = 4.0, kAngleStep_rad = kPi / 36.0;
 
@@ -23,10 +24,10 @@ std::string name(const char* what, const void* of, double x = 0.0, double y = 0.
 }
 
 /// About evenly spread members of a list with its first and last.
-std::vector<AirStation> thinned(const std::vector<AirStation>& all) {
-  if (all.size() <= kStations) return all;
+std::vector<AirStation> thinned(const std::vector<AirStation>& all, size_t count) {
+  if (all.size() <= count) return all;
   std::vector<AirStation> some;
-  for (size_t k = 0; k < kStations; ++k) some.push_back(all[k * (all.size() - 1) / (kStations - 1)]);
+  for (size_t k = 0; k < count; ++k) some.push_back(all[k * (all.size() - 1) / (count - 1)]);
   return some;
 }
 
@@ -141,7 +142,8 @@ void SightWriter::air(Sight& sight, double range_m) {
   RaySun sun;
   if (sim_.sun) sun = {glm::dot(sim_.sun->toSun, sim_.frame.up(ray_.origin)), glm::dot(ray_.direction, sim_.sun->toSun)};
   const bool sunlit = plan_.terms.scatteredSun;
-  const SunlitAir line(path, airRay_, thinned(path.stations(airRay_, range_m)), sunlit ? plan_.sunLegs.get() : nullptr, sun);
+  const SunlitAir line(path, airRay_, thinned(path.stations(airRay_, range_m), plan_.accuracy < kFine ? kFineStations : kStations),
+                       sunlit ? plan_.sunLegs.get() : nullptr, sun);
   int before = -1;
   for (size_t j = 0; j < line.stations.size(); ++j) {
     const AirStation& s = line.stations[j];

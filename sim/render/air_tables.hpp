@@ -41,7 +41,7 @@ class AirTables {
   const Simulation& simulation_;
   const Plan& plan_;
   bool perChannel_, needed_;
-  int vectors_ = 0, values_ = 0, texels_ = 0, parts_ = 1;
+  int elevations_ = 0, ranges_ = 0, vectors_ = 0, values_ = 0, texels_ = 0, parts_ = 1;
   std::vector<std::vector<double>> logPlanck_;  ///< per node, over the inverse of the temperature
   std::vector<double> sunIrradiance_;           ///< per node
   std::vector<float> heights_;                  ///< by height: the same for every view
