@@ -1,5 +1,6 @@
 #include "sim/frame/frame.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -35,6 +36,18 @@ void addTruth(Frame& frame, const Camera& camera, const CameraImage& image) {
     add("solid_angle_from_light", "sr", [](const TruthPixel& p) { return p.solidAngleFromLight_sr; });
     add("solid_angle_of_aperture", "sr", [](const TruthPixel& p) { return p.solidAngleOfAperture_sr; });
   }
+}
+
+/// What was asked of the plan, and what it expects: of a channel's quantities the worst.
+void addAccuracy(Frame& frame, const Camera& camera, const CameraImage& image) {
+  if (!(image.accuracy > 0.0)) return;
+  frame.attributes.push_back({"pitviper.accuracy", image.accuracy});
+  std::map<std::string, double> errorOf;
+  for (size_t o = 0; o < camera.outputs.size() && !image.predictedError.empty(); ++o) {
+    double& error = errorOf[camera.outputs[o].channel];
+    error = std::max(error, image.predictedError[static_cast<size_t>(image.slotOfOutput[o])]);
+  }
+  for (const auto& [channel, error] : errorOf) frame.attributes.push_back({"pitviper.predicted_error." + channel, error});
 }
 
 }  // namespace
@@ -119,6 +132,7 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   addOutputs(frame, camera, image);
   addTruth(frame, camera, image);
   addMetadata(frame, sim, camera, state);
+  addAccuracy(frame, camera, image);
   if (!image.transparentOrder.empty()) frame.attributes.push_back({"pitviper.transparent_order", image.transparentOrder});
   return frame;
 }

@@ -28,7 +28,7 @@ struct Frame {
 };
 
 /// Turns integrals into quantities: value = scale x integral [x projected solid angle]. Adds truth layers and metadata (pose, optics,
-/// bands, where each entity is in the picture).
+/// bands, where each entity is in the picture, the error its plan expects).
 Frame makeFrame(const Simulation& simulation, const Camera& camera, const CameraImage& image, const WorldState& state, int number);
 
 /// The same in steps, for a frame drawn in several passes: no layers; the layers of a pass's outputs; the metadata, last.

@@ -78,6 +78,8 @@ CameraImage CameraRenderer::finish() {
   resolved.slotOfOutput = plan_.slotOfOutput;
   resolved.solidAngles = solidAngles_;
   resolved.transparentOrder = transparentOrder_;
+  resolved.accuracy = plan_.accuracy;
+  resolved.predictedError = plan_.predictedError;
   return resolved;
 }
 
