@@ -9,7 +9,7 @@ namespace pitviper {
 namespace {
 
 /// A change of the planner makes old plans strangers.
-constexpr double kPlannerVersion = 5;
+constexpr double kPlannerVersion = 6;
 /// Times at which poses are looked at.
 constexpr int kTimes = 17;
 

@@ -257,12 +257,18 @@ void SightWriter::surface(Sight& sight, const Hit& hit) {
                                                                : surface.temperature_K;
 
   if (!general) {
-    const bool ambient = plan_.terms.ambient;
-    const int self = book_.spectrum(name("self", &surface, temperature_K), [&sim = sim_, &material, ambient, temperature_K](const FineGrid& g, size_t i) {
-      const double w = g.wavelength_um[i], sky = ambient ? (*sim.ambient)(w) : 0.0;
-      return material.emissivity(w, 0.0) * physics::planckRadiance(w, temperature_K) + (sky > 0.0 ? material.reflectance(w, 0.0) * sky : 0.0);
+    // Both are one row of the program's tables, but whether the dome's light matters is asked by itself.
+    const int self = book_.spectrum(name("self", &surface, temperature_K), [&material, temperature_K](const FineGrid& g, size_t i) {
+      return material.emissivity(g.wavelength_um[i], 0.0) * physics::planckRadiance(g.wavelength_um[i], temperature_K);
     });
     add(sight, hit.distance, {self, -1, path, 1.0});
+    if (plan_.terms.ambient) {
+      const int dome = book_.spectrum(name("dome", &material), [&sim = sim_, &material](const FineGrid& g, size_t i) {
+        const double sky = (*sim.ambient)(g.wavelength_um[i]);
+        return sky > 0.0 ? material.reflectance(g.wavelength_um[i], 0.0) * sky : 0.0;
+      });
+      add(sight, hit.distance, {dome, -1, path, 1.0, TermKind::Ambient});
+    }
     reflected(sight, hit, material, modifier);
     return;
   }
