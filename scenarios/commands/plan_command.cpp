@@ -7,6 +7,7 @@
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/plan_report.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
+#include "sim/frame/limits_check.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/render/buffered_pass.hpp"
 #include "sim/render/direct_pass.hpp"
@@ -46,7 +47,7 @@ int planCommand(const Arguments& arguments) {
     const auto start = std::chrono::steady_clock::now();
     const Plan plan = planFor(sim, eye);
     const bool buffered = sim.mode == RenderMode::Buffered || sim.hasTransparent();
-    PlannedEye told{name, eye.camera ? eye.camera->outputs : eye.probe->outputs, plan, secondsSince(start), subpixels, 0.0, buffered};
+    PlannedEye told{name, eye.camera ? eye.camera->outputs : eye.probe->outputs, plan, secondsSince(start), subpixels, 0.0, buffered, describe(sim.limits)};
     if (yardstick > 0.0) told.framesPerSecond = predictedRate(plan, subpixels, yardstick, buffered);
     if (o.has("--json")) json += (json.empty() ? "" : ", ") + planJson(told);
     else std::printf("%s\n", planText(told).c_str());

@@ -76,6 +76,8 @@ std::string planText(const PlannedEye& eye) {
   if (plan.accuracy > 0.0) out += "within " + percent(plan.accuracy) + " % of every wavelength\n";
   else out += "wavelengths as its 'spectral' says; no accuracy asked for, none predicted\n";
 
+  if (!eye.limits.empty()) out += "  for what the scenario shows at its times, and " + eye.limits + "\n";
+
   out += print("\n  %-26s", "greatest part of a pixel");
   for (const auto& n : names) out += print(" %9s", n.c_str());
   out += "\n";
@@ -133,6 +135,7 @@ std::string planJson(const PlannedEye& eye) {
   out += print("], \"nodes_lit\": %d, \"nodes_unlit\": %d, \"subpixels\": %.0f, \"transparent\": %s, \"planning_s\": %.4g", cost.lit, cost.unlit, eye.subpixels,
                eye.buffered ? "true" : "false", eye.seconds);
   if (eye.framesPerSecond > 0.0) out += print(", \"predicted_frames_per_s\": %.4g", eye.framesPerSecond);
+  if (!eye.limits.empty()) out += ", \"limits\": " + quoted(eye.limits);
   return out + "}";
 }
 

@@ -15,6 +15,7 @@ struct PlannedEye {
   double subpixels = 0.0;        ///< of a frame
   double framesPerSecond = 0.0;  ///< predicted; 0: not asked for
   bool buffered = false;         ///< something transparent may be in view
+  std::string limits;            ///< of the scenario, in words; empty: none
 };
 
 /// The name of each slot: its first output's channel, or several where they share it.

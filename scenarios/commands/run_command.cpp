@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <fstream>
 #include <set>
+#include <utility>
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
@@ -133,6 +134,14 @@ void noteOrder(const Frame& f, std::set<std::string>& told) {
   }
 }
 
+/// Once a run: what the plan was not made for.
+void noteLimits(const Frame& f, bool& told) {
+  for (const auto& a : f.attributes)
+    if (a.name == "pitviper.outside_limits" && !std::exchange(told, true))
+      std::fprintf(stderr, "note: camera %s, frame %d is outside the scenario's limits: %s; pixels may be off by more than the accuracy asked for\n",
+                   f.camera.c_str(), f.number, std::get<std::string>(a.value).c_str());
+}
+
 }  // namespace
 
 int runCommand(const Arguments& arguments) {
@@ -150,10 +159,12 @@ int runCommand(const Arguments& arguments) {
   Progress progress(sim.name, frames * static_cast<int>(std::max<size_t>(1, sim.cameras.size() + spectral)));
   ProbeTables probes;
   std::set<std::string> told;
+  bool toldOfLimits = false;
   runFrames(
       sim, shaderLibrary(), range,
       [&](const Frame& f) {
         noteOrder(f, told);
+        noteLimits(f, toldOfLimits);
         writeFrame(out, f);
         if ((o.has("--preview") || !ranges.empty()) && f.kind.empty()) writePreview(out, f, ranges);
         progress.step();

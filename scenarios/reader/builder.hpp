@@ -25,6 +25,7 @@ class Builder {
 
   void readOrigin(const Record& scenario);
   void readTime(const Record& scenario);
+  void readLimits(const Record& scenario);
   /// After everything that can be narrow in wavelength: air and materials.
   void readAccuracy(const Record& scenario);
   void readAtmosphere(const Record& scenario);

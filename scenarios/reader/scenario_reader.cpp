@@ -86,6 +86,7 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     }
     b.readOrigin(r);
     b.readTime(r);
+    b.readLimits(r);
     b.readAtmosphere(r);
     b.readBackground(r);
     b.readSun(r);

@@ -20,6 +20,9 @@ constexpr double kLargestFloatValue = 1e30;
 /// What layered air is drawn with if nobody says; and the ends of what can be asked for: single precision and the tables' angles do 0.01 %.
 constexpr double kUsualAccuracy = 0.01, kLeastAccuracy = 0.0005, kMostAccuracy = 0.2;
 
+/// Of limits: as far and as hot as a scenario's bodies can be.
+constexpr double kFarthestRange_m = 1e9, kHottestBody_K = 1e5;
+
 std::string libraryNames(const std::filesystem::path& folder, const std::string& word, std::string& nearest) {
   std::vector<std::string> names;
   std::error_code ignored;
@@ -30,6 +33,21 @@ std::string libraryNames(const std::filesystem::path& folder, const std::string&
   std::string all;
   for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
   return all;
+}
+
+/// Two rising numbers above 0.
+void readPair(const Record& r, const char* key, const char* unit, double most, const char* example, double& low, double& high) {
+  if (!r.given(key)) return;
+  const auto& ends = r.value(key).items;
+  const std::string name = std::string(key) + " of limits", fix = "write '" + std::string(key) + ": " + example + "'";
+  low = readNumber(ends[0], unit, name);
+  high = readNumber(ends[1], unit, name);
+  const std::string expected = "two rising values above 0, at most " + briefNumber(most) + " " + unit;
+  for (const auto& [value, written] : {std::pair{low, ends[0]}, {high, ends[1]}})
+    if (!(value > 0.0 && value <= most)) throw UserError(written.where, name + " has an end at " + written.text.substr(0, 40), expected, fix);
+  if (!(low < high))
+    throw UserError(r.where(key), name + " goes from " + ends[0].text.substr(0, 40) + " to " + ends[1].text.substr(0, 40), expected,
+                    low > high ? "swap its ends" : fix);
 }
 
 }  // namespace
@@ -86,6 +104,17 @@ void Builder::readTime(const Record& scenario) {
   empty.where = scenario.where();
   const Record r(scenario.given("time") ? scenario.value("time") : empty, tables::time());
   simulation_.time = {r.number("start"), 1.0 / r.number("rate"), static_cast<int>(r.integer("frames"))};
+}
+
+void Builder::readLimits(const Record& scenario) {
+  if (!scenario.given("limits")) return;
+  const Record r(scenario.value("limits"), tables::limits());
+  Limits& limits = simulation_.limits;
+  readPair(r, "range", "m", kFarthestRange_m, "[100 m, 20 km]", limits.nearest_m, limits.farthest_m);
+  readPair(r, "temperature", "K", kHottestBody_K, "[250 K, 900 K]", limits.coldest_K, limits.hottest_K);
+  if (r.given("light")) limits.lightLevel = r.number("light");
+  if (!limits.any())
+    throw UserError(r.where(), "limits without any", "'range', 'temperature' or 'light'", "write 'limits: {range: [100 m, 20 km]}', or remove 'limits'");
 }
 
 void Builder::readAccuracy(const Record& scenario) {

@@ -53,7 +53,7 @@ const ParameterTable& scenario() {
        text("extends", "name of a scenario in the same folder, whose keys hold where this one has none: the same scene with other cameras"),
        withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL), "1"),
        map("origin", "where the local east-north-up frame stands on the earth"), map("time", "first frame, rate and number of frames"),
-       map("render", "how it is drawn"),
+       map("limits", "what may come besides the scenario's own times, where poses and levels come live"), map("render", "how it is drawn"),
        text("accuracy",
             "relative error of a pixel that the plan may spend on wavelengths, tables and terms left out, `1 %` for example, or `reference`: every wavelength "
             "in double precision on the CPU, slow; without it: 1 % in layered air and air from tables, else as each camera's `spectral` says"),
@@ -96,6 +96,16 @@ const ParameterTable& time() {
                                 {withDefault(within(number("start", "s", "time of frame 0"), -kLongestTime_s, kLongestTime_s), "0 s"),
                                  withDefault(within(number("rate", "Hz", "frames per second"), 1e-6, 1e9), "30 Hz"),
                                  withDefault(integer("frames", "number of frames", 1, 10000000), "1")}};
+  return t;
+}
+
+const ParameterTable& limits() {
+  static const ParameterTable t{
+      "limits",
+      "What the plan for an `accuracy` must hold for besides what the scenario's own times show. Frames beyond it say so (`pitviper.outside_limits`).",
+      {list("range", "[nearest, farthest] between a camera and a body in view, such as [100 m, 20 km]", 2, 2),
+       list("temperature", "[coldest, hottest] of a body, such as [250 K, 900 K]; temperature textures count as they are", 2, 2),
+       within(above(number("light", "", "greatest level of a point light"), 0.0), 0.0, 1e6)}};
   return t;
 }
 
@@ -380,9 +390,9 @@ const ParameterTable& probe() {
 }
 
 std::vector<const ParameterTable*> all() {
-  return {&scenario(), &render(),    &origin(),    &time(),    &atmosphere(), &airLibrary(),   &background(),    &sun(),    &ambient(), &spectrumTable(),
-          &material(), &component(), &tableAxis(), &texture(), &emission(),   &transmission(), &light(),         &entity(), &part(),    &shape(),
-          &waypoint(), &geodetic(),  &camera(),    &film(),    &channel(),    &spectral(),     &spectralImage(), &sensor(), &probe()};
+  return {&scenario(),      &render(),   &origin(),    &time(),      &limits(),  &atmosphere(), &airLibrary(),   &background(),    &sun(),    &ambient(),
+          &spectrumTable(), &material(), &component(), &tableAxis(), &texture(), &emission(),   &transmission(), &light(),         &entity(), &part(),
+          &shape(),         &waypoint(), &geodetic(),  &camera(),    &film(),    &channel(),    &spectral(),     &spectralImage(), &sensor(), &probe()};
 }
 
 }  // namespace pitviper::tables

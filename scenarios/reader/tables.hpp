@@ -10,6 +10,7 @@ const ParameterTable& scenario();
 const ParameterTable& render();
 const ParameterTable& origin();
 const ParameterTable& time();
+const ParameterTable& limits();
 const ParameterTable& atmosphere();
 const ParameterTable& airLibrary();
 const ParameterTable& background();

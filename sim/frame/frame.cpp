@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/frame/limits_check.hpp"
 #include "sim/frame/version.hpp"
 #include "sim/image/png.hpp"
 #include "sim/image/preview.hpp"
@@ -125,6 +126,7 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
     add("entity." + std::to_string(e + 1) + ".name", sim.entities[e].name);
     add("entity." + std::to_string(e + 1) + ".range_column_row", seen);
   }
+  if (const std::string outside = outsideLimits(sim, camera, state); !outside.empty()) add("pitviper.outside_limits", outside);
 }
 
 Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number) {

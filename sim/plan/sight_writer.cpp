@@ -310,8 +310,9 @@ void SightWriter::media(Sight& sight) {
     const double enter = std::max(s.enter, 0.0);
     if (!(s.leave > enter)) continue;
     const Medium* medium = sim_.mediumOf(body);
-    const int source = book_.spectrum(name("medium", medium, surface.temperature_K),
-                                      [medium, t = surface.temperature_K](const FineGrid& g, size_t i) { return medium->source(g.wavelength_um[i], t); });
+    const double temperature_K = ray_.temperature_K > 0.0 ? ray_.temperature_K : surface.temperature_K;
+    const int source = book_.spectrum(name("medium", medium, temperature_K),
+                                      [medium, t = temperature_K](const FineGrid& g, size_t i) { return medium->source(g.wavelength_um[i], t); });
     const int path = pathTo(enter, plan_.terms.air ? sim_.path->amounts(airRay_, enter) : AirAmounts{});
     add(sight, enter, {source, -1, path, 1.0, TermKind::Media});
     SightPath behind = book_.paths[static_cast<size_t>(path)];

@@ -1,4 +1,4 @@
-// What a frame says of its own error.
+// What a frame says of its own error, and of a scene beyond what its plan was made for.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -98,6 +98,35 @@ TEST_F(FramePromises, PredictedErrorInTheFrame) {
   const ExrImage sampled = frame(0);
   EXPECT_NE(sampled.findAttribute("unit.mw.radiance"), nullptr);
   for (const char* name : {"pitviper.accuracy", "pitviper.predicted_error.mw", "pitviper.predicted_error.lw"}) EXPECT_EQ(sampled.findAttribute(name), nullptr);
+}
+
+// Rationale: poses and levels that come live may leave what was planned for, and then the accuracy is not promised. Expected: the frames that do say what does,
+// the run says it once, and what is out of view does not count.
+TEST_F(FramePromises, BeyondTheLimits) {
+  const std::string limits = " --set 'limits={range: [500 m, 2.5 km], temperature: [250 K, 900 K], light: 1.5}'";
+  const Result r = pitviper("run scene.yaml --out out" + limits);
+  ASSERT_EQ(r.code, 0) << r.err;
+  EXPECT_EQ(frame(0).findAttribute("pitviper.outside_limits"), nullptr);
+  EXPECT_EQ(text(frame(1), "pitviper.outside_limits"), "light lamp at level 2, planned to 1.5");
+  EXPECT_EQ(text(frame(2), "pitviper.outside_limits"), "ball at 2.98 km, planned to 2.5 km");
+  EXPECT_EQ(countOf(r.err, "outside the scenario's limits"), 1u) << r.err;
+  EXPECT_NE(r.err.find("camera c, frame 1 is outside the scenario's limits: light lamp at level 2, planned to 1.5"), std::string::npos) << r.err;
+
+  const Result tight = pitviper("run scene.yaml --frames 0 --out out --set 'limits={range: [1.1 km, 2.5 km], temperature: [250 K, 350 K]}'");
+  ASSERT_EQ(tight.code, 0) << tight.err;
+  EXPECT_EQ(text(frame(0), "pitviper.outside_limits"), "ball at 1.02 km, planned from 1.1 km; ball at 400 K, planned to 350 K");
+
+  const Result plain = pitviper("run scene.yaml --out out");
+  EXPECT_EQ(plain.err.find("limits"), std::string::npos) << plain.err;
+  for (int n = 0; n < 3; ++n) EXPECT_EQ(frame(n).findAttribute("pitviper.outside_limits"), nullptr);
+}
+
+TEST_F(FramePromises, PlanTellsTheLimits) {
+  const std::string limits = " --set 'limits={range: [500 m, 2.5 km], temperature: [-20 degC, 900 K], light: 1.5}'";
+  const std::string words = "bodies at 500 m to 2.5 km, at 253.1 K to 900 K, lights to level 1.5";
+  EXPECT_EQ(countOf(pitviper("plan scene.yaml" + limits).out, words + "\n"), 1u);
+  EXPECT_EQ(countOf(pitviper("plan scene.yaml --json" + limits).out, "\"limits\": \"" + words + "\""), 1u);
+  EXPECT_EQ(countOf(pitviper("plan scene.yaml --json").out, "limits"), 0u);
 }
 
 }  // namespace

@@ -1,0 +1,67 @@
+#include "sim/frame/limits_check.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <vector>
+
+#include "sim/render/view.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Things named one by one; of more their number.
+constexpr size_t kMostNamed = 4;
+
+std::string number(const char* format, double v) {
+  char text[40];
+  std::snprintf(text, sizeof text, format, v);
+  return text;
+}
+
+std::string metres(double v) { return std::abs(v) >= 1e3 ? number("%.4g km", 1e-3 * v) : number("%.4g m", v); }
+std::string kelvins(double v) { return number("%.4g K", v); }
+
+}  // namespace
+
+std::string outsideLimits(const Simulation& sim, const Camera& camera, const WorldState& state) {
+  const Limits& limits = sim.limits;
+  std::vector<std::string> found;
+  const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, camera.samples);
+  for (size_t e = 0; e < sim.entities.size() && (limits.farthest_m > 0.0 || limits.hottest_K > 0.0); ++e) {
+    const Entity& body = sim.entities[e];
+    const Pose& pose = state.entities[e];
+    const glm::dvec3 centre = pose.position + pose.orientation * glm::dvec3(body.boundingCentre);
+    const auto radius = static_cast<double>(body.boundingRadius_m);
+    if (static_cast<int>(e) == camera.mount.carrier || !mayShow(view, centre, radius)) continue;
+    const double range = glm::length(centre - view.position);
+    if (limits.farthest_m > 0.0 && range - radius > limits.farthest_m)
+      found.push_back(body.name + " at " + metres(range - radius) + ", planned to " + metres(limits.farthest_m));
+    if (limits.farthest_m > 0.0 && range + radius < limits.nearest_m)
+      found.push_back(body.name + " at " + metres(range + radius) + ", planned from " + metres(limits.nearest_m));
+    double coldest = INFINITY, hottest = 0.0;
+    for (const Surface& s : body.surfaces)
+      if (s.temperatureTexture < 0) coldest = std::min(coldest, s.temperature_K), hottest = std::max(hottest, s.temperature_K);
+    if (limits.hottest_K > 0.0 && hottest > limits.hottest_K)
+      found.push_back(body.name + " at " + kelvins(hottest) + ", planned to " + kelvins(limits.hottest_K));
+    if (limits.hottest_K > 0.0 && coldest < limits.coldest_K)
+      found.push_back(body.name + " at " + kelvins(coldest) + ", planned from " + kelvins(limits.coldest_K));
+  }
+  for (size_t l = 0; l < sim.lights.size() && limits.lightLevel > 0.0; ++l)
+    if (state.lightLevels[l] > limits.lightLevel)
+      found.push_back("light " + sim.lights[l].name + " at level " + number("%.4g", state.lightLevels[l]) + ", planned to " +
+                      number("%.4g", limits.lightLevel));
+  std::string text;
+  for (size_t k = 0; k < std::min(kMostNamed, found.size()); ++k) text += (k ? "; " : "") + found[k];
+  if (found.size() > kMostNamed) text += "; and " + std::to_string(found.size() - kMostNamed) + " more";
+  return text;
+}
+
+std::string describe(const Limits& limits) {
+  std::string text;
+  if (limits.farthest_m > 0.0) text = "bodies at " + metres(limits.nearest_m) + " to " + metres(limits.farthest_m);
+  if (limits.hottest_K > 0.0) text += (text.empty() ? "bodies at " : ", at ") + kelvins(limits.coldest_K) + " to " + kelvins(limits.hottest_K);
+  if (limits.lightLevel > 0.0) text += (text.empty() ? "" : ", ") + ("lights to level " + number("%.4g", limits.lightLevel));
+  return text;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,76 @@
+// A plan made within a scenario's limits, held against every wavelength in double precision at poses that the scenario itself never shows.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "sim/plan/planner.hpp"
+#include "sim/render/reference/reference_pixel.hpp"
+#include "tests/support/figures.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+namespace {
+
+constexpr double kAccuracy = 0.01;
+
+/// A ball 600 m off, at 300 K, under a lamp that the scenario lets glow; the camera looks level.
+std::string ball(const std::string& limits) {
+  return limits +
+         "atmosphere: hazy_us76\naccuracy: 1 %\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
+         "materials: {m: {components: [{reflection: lambertian, reflectance: {wavelength: um, unit: \"1\", values: [[0.3, 0.5], [4, 0.2], [4.4, 0.35], [15, "
+         "0.1]]}}]}}\n"
+         "lights: [{name: lamp, intensity: {blackbody: 2200 K, area: 2 m2}, position: [0 m, 560 m, 1040 m], level: [[0 s, 0.01]], visible: false}]\n"
+         "entities: [{name: ball, shape: {model: sphere, radius: 10 m}, material: m, temperature: 300 K, position: [0 m, 600 m, 1 km]}]\n"
+         "cameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 3 deg, aperture: 10 mm, position: [0 m, 0 m, 1 km], look_at: [0 m, 600 m, 1 km],\n"
+         "  channels: [{name: mw, response: {band: [3.4 um, 5 um]}}, {name: lw, response: {band: [8 um, 12 um]}}]}]\n";
+}
+
+/// The largest error of a plan's wavelengths, in double precision, over both channels, in the middle of the ball: moved, heated, under a lamp turned up.
+double worstError(const Simulation& sim, const Plan& plan) {
+  const Camera& camera = sim.cameras[0];
+  SpectralSampling all = camera.spectral;
+  all.reference = true;
+  const Plan fine = makePlan(sim, camera.outputs, all, camera.where);
+  const std::vector<char> present(1, 1);
+  double worst = 0.0;
+  for (const double range_m : {550.0, 1500.0, 5e3, 12e3, 19e3})
+    for (const double temperature_K : {260.0, 330.0, 500.0, 880.0})
+      for (const double level : {0.0, 0.3, 0.95}) {
+        Simulation live = sim;
+        for (Surface& s : live.entities[0].surfaces) s.temperature_K = temperature_K;
+        WorldState state = advance(sim.entities, sim.lights, 0.0);
+        const glm::dvec3 move(0.31, range_m - 600.0, 0.17);  // the ray misses edges of the mesh
+        state.entities[0].position += move;
+        state.lights[0] += move;
+        state.lightLevels[0] = level;
+        const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, 1);
+        const ReferenceShader planned(live, plan, view, state, present), exact(live, fine, view, state, present);
+        const ReferencePixel got = planned.pixel(4, 4), want = exact.pixel(4, 4);
+        EXPECT_EQ(want.entity, 0);
+        EXPECT_NEAR(want.range_m, range_m - 10.0, 1.0);
+        for (size_t s = 0; s < want.slots.size(); ++s) worst = std::max(worst, std::abs(got.slots[s] - want.slots[s]) / want.slots[s]);
+      }
+  return worst;
+}
+
+TEST(PlanLimits, HoldWhereTheScenarioNeverIs) {
+  const std::string limits = "limits: {range: [500 m, 20 km], temperature: [250 K, 900 K], light: 1}\n";
+  double worst[2];
+  int nodes[2];
+  for (int with = 0; with < 2; ++with) {
+    const Simulation sim = scene(ball(with ? limits : ""));
+    const Plan plan = planFor(sim, {&sim.cameras[0], nullptr});
+    worst[with] = worstError(sim, plan);
+    nodes[with] = plan.nodeCount();
+  }
+  std::printf(
+      "worst error of a 1 %% plan at 0.55 to 19 km, 260 to 880 K, lamp to 0.95: %.3f %% with %d groups planned for it, %.3f %% with %d for 300 K at 600 m\n",
+      100.0 * worst[1], nodes[1], 100.0 * worst[0], nodes[0]);
+  bound("plan within limits, poses and temperatures unseen, worst", worst[1], kAccuracy, "the accuracy asked for; not fitted to these lines of sight");
+  EXPECT_GT(worst[0], kAccuracy) << "a plan for the scenario's own pose alone was good enough: this scene shows nothing of limits";
+}
+
+}  // namespace
+}  // namespace pitviper::test
