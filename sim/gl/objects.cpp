@@ -51,6 +51,7 @@ Program::Program(const AssembledShader& compute) { link({compile(GL_COMPUTE_SHAD
 
 void Program::link(std::initializer_list<unsigned> stages, const AssembledShader& lines) {
   name_ = GlName<deleteProgram>(glCreateProgram());
+  text_ = lines.source;
   for (unsigned stage : stages) glAttachShader(name_, stage);
   glLinkProgram(name_);
   for (unsigned stage : stages) glDeleteShader(stage);

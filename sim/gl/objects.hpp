@@ -51,10 +51,13 @@ class Program {
   explicit Program(const AssembledShader& compute);
   void use() const;
   int uniform(const char* name) const;
+  /// Source of its fragment or compute stage; empty where there is no program.
+  const std::string& text() const { return text_; }
 
  private:
   void link(std::initializer_list<unsigned> stages, const AssembledShader& lines);
   GlName<deleteProgram> name_;
+  std::string text_;
 };
 
 class Buffer {

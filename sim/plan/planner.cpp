@@ -59,6 +59,11 @@ void forAll(std::vector<ChannelFit>& fits, const std::function<void(ChannelFit&)
   for (auto& o : others) o.get();
 }
 
+void dropLights(Plan& plan) {
+  plan.terms.lights = plan.terms.shadows = false;
+  plan.lightCount = 0;
+}
+
 /// What is nowhere seen in any channel has no place in the programs; sunlight and lamps also by channel.
 void dropTerms(Plan& plan, bool keepLights) {
   auto seen = [&](TermKind kind, size_t slot) { return plan.shares[static_cast<size_t>(kind)].share[slot] > kDropped * plan.accuracy; };
@@ -74,10 +79,7 @@ void dropTerms(Plan& plan, bool keepLights) {
     b.lit = keepLights;
     for (int s : b.slots) b.lit |= seen(TermKind::Sun, static_cast<size_t>(s)) || seen(TermKind::Lights, static_cast<size_t>(s));
   }
-  if (std::none_of(plan.blocks.begin(), plan.blocks.end(), [](const NodeBlock& b) { return b.lit; })) {
-    plan.terms.lights = plan.terms.shadows = false;
-    plan.lightCount = 0;
-  }
+  if (std::none_of(plan.blocks.begin(), plan.blocks.end(), [](const NodeBlock& b) { return b.lit; })) dropLights(plan);
 }
 
 }  // namespace
@@ -87,6 +89,9 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
   const SpectralSampling& sampling = eye.camera ? eye.camera->spectral : eye.probe->spectral;
   const Location& where = eye.camera ? eye.camera->where : eye.probe->where;
   Plan plan = makePlan(sim, outputs, sampling, where);
+  // The truth layers show the first light's geometry.
+  const bool keepLights = eye.camera && eye.camera->truth.solidAngles;
+  if (!keepLights && !plan.terms.solid.reflects && !plan.terms.layer.reflects) dropLights(plan);
   if (sampling.reference || !(sampling.accuracy > 0.0)) return plan;
   plan.accuracy = sampling.accuracy;
 
@@ -128,8 +133,7 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
     }
     writeCachedPlan(key, plan);
   }
-  // The truth layers show the first light's geometry.
-  dropTerms(plan, eye.camera && eye.camera->truth.solidAngles);
+  dropTerms(plan, keepLights);
   return plan;
 }
 

@@ -79,7 +79,7 @@ AirTables::AirTables(const Simulation& simulation, const Plan& plan, bool perCha
     logPlanck_.push_back(std::move(table));
     sunIrradiance_.push_back(plan.terms.scatteredSun ? n.mean(simulation.sun->irradiance) : 0.0);
   }
-  addHeights(heights_);
+  if (plan.lightCount > 0) addHeights(heights_);  // ways on to them
 }
 
 double AirTables::planck(size_t node, double temperature_K) const {

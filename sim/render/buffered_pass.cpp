@@ -92,6 +92,16 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
   truth_ = ShadingProgram(library, slots, truthTargets(), static_cast<size_t>(plan.groupCount()));
 }
 
+std::vector<NamedProgram> BufferedPass::programs() const {
+  auto all = ScenePass::programs();
+  all.push_back({"shading", shade_.text()});
+  if (hasTruth()) all.push_back({"truth", truth_.text()});
+  if (layers_)
+    for (NamedProgram& p : layers_->programs()) all.push_back(std::move(p));
+  for (const Batch& b : batches_) all.push_back({"integration", b.integrate.text()});
+  return all;
+}
+
 RenderTarget& BufferedPass::spectrumFor(const RenderTarget& visibility) {
   for (auto& t : spectra_)
     if (t.width() == visibility.width() && t.height() == visibility.height()) return t;

@@ -12,6 +12,7 @@ class BufferedPass final : public ScenePass {
   BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                double apertureArea_m2);
   std::string shadingText() const override { return shade_.text(); }
+  std::vector<NamedProgram> programs() const override;
 
   std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) override;
   /// Null where nothing in the scenario is transparent.

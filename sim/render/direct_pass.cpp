@@ -26,6 +26,12 @@ DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const Sha
   weights_.upload(tables().weights);
 }
 
+std::vector<NamedProgram> DirectPass::programs() const {
+  auto all = ScenePass::programs();
+  all.push_back({"shading", program_.text()});
+  return all;
+}
+
 void DirectPass::shade(RenderTarget& into, const RenderTarget&) {
   weights_.bindUniform(2);
   program_.run(into);

@@ -9,6 +9,7 @@ class DirectPass final : public ScenePass {
   DirectPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
              double apertureArea_m2);
   std::string shadingText() const override { return program_.text(); }
+  std::vector<NamedProgram> programs() const override;
 
  private:
   void shade(RenderTarget& into, const RenderTarget& visibility) override;

@@ -52,26 +52,38 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
   if (t.any) {
     ShaderSlots own = base;
     const std::string folder = "sim/render/glsl/";
-    const bool lit = t.reflects && plan.terms.lights;
-    own.files["lobes"] = t.lobeFile.empty() ? folder + "lobes_none.glsl" : t.lobeFile;
-    own.files["lights"] = lit ? lightsFile(plan) : folder + "lights_none.glsl";
-    own.files["surface"] = folder + (t.isGeneral() ? "surface_general.glsl" : t.emits || t.reflects ? "surface_simple.glsl" : "surface_filter.glsl");
-    own.files["transmission"] = folder + (t.isGeneral() ? "transmission_general.glsl" : "transmission_plain.glsl");
-    own.files["columns"] = folder + (tables.layer.tabulated ? "columns_tabulated.glsl" : "columns_plain.glsl");
-    own.files["temperature"] = temperatureFile(tables.layer, t);
-    addTemperatureConstants(tables.layer, own);
+    addSurfaceSlots(tables.layer, t, plan, own);
+    own.files["surface"] = folder + (tables.layer.general    ? "surface_general.glsl"
+                                     : tables.layer.lit      ? "surface_simple.glsl"
+                                     : t.emits || t.reflects ? "surface_unlit.glsl"
+                                                             : "surface_filter.glsl");
+    own.files["transmission"] = folder + (tables.layer.general ? "transmission_general.glsl" : "transmission_plain.glsl");
     layer_ = Program(assembleShader(library, folder + "layer.vert.glsl", own), assembleShader(library, folder + "layer.frag.glsl", own));
   }
   if (plan.terms.media) {
     volume_ = Program(assembleShader(library, "sim/render/glsl/box.vert.glsl", base), assembleShader(library, "sim/render/glsl/volume.frag.glsl", base));
-    ShaderSlots several = base;
-    several.constants["GROUP"] = kMostMembers;
-    group_ =
-        Program(assembleShader(library, "sim/render/glsl/box.vert.glsl", several), assembleShader(library, "sim/render/glsl/volume_group.frag.glsl", several));
-    thickness_ =
-        Program(assembleShader(library, "sim/render/glsl/thickness.vert.glsl", base), assembleShader(library, "sim/render/glsl/thickness.frag.glsl", base));
+    int formed = 0, meshed = 0;
+    for (const Entity& e : simulation.entities)
+      if (simulation.mediumOf(e)) ++(e.form.kind == BodyForm::Kind::Mesh ? meshed : formed);
+    if (formed > 1) {  // joinMedia() may find them in each other
+      ShaderSlots several = base;
+      several.constants["GROUP"] = kMostMembers;
+      group_ = Program(assembleShader(library, "sim/render/glsl/box.vert.glsl", several),
+                       assembleShader(library, "sim/render/glsl/volume_group.frag.glsl", several));
+    }
+    if (meshed > 0)
+      thickness_ =
+          Program(assembleShader(library, "sim/render/glsl/thickness.vert.glsl", base), assembleShader(library, "sim/render/glsl/thickness.frag.glsl", base));
     media_.upload(tables.media);
   }
+}
+
+std::vector<NamedProgram> LayerPass::programs() const {
+  std::vector<NamedProgram> all;
+  for (const auto& [name, program] :
+       {std::pair{"transparent surfaces", &layer_}, {"media", &volume_}, {"media in each other", &group_}, {"thickness of media", &thickness_}})
+    if (!program->text().empty()) all.push_back({name, program->text()});
+  return all;
 }
 
 void LayerPass::order(const View& view, const WorldState& state, const std::vector<char>& drawn) {

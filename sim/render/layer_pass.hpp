@@ -7,6 +7,7 @@
 #include "sim/gl/blend_path.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/layer_order.hpp"
+#include "sim/render/shading_program.hpp"
 #include "sim/render/surface_buffers.hpp"
 
 namespace pitviper {
@@ -34,6 +35,8 @@ class LayerPass {
   void blend(const Over& over);
 
   const LayerOrder& lastOrder() const { return order_; }
+  /// Those that the scenario's transparent things need: of surfaces, media, media in each other, meshed media.
+  std::vector<NamedProgram> programs() const;
 
  private:
   struct Run {

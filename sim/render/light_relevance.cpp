@@ -17,7 +17,7 @@ LightRelevance::LightRelevance(const Simulation& simulation, const Plan& plan, c
     if (d.kind != DrawKind::Solid && d.kind != DrawKind::Layer) continue;
     const Material& material = simulation.materialOf(simulation.entities[static_cast<size_t>(d.entity)].surfaces[static_cast<size_t>(d.surface)]);
     const SurfaceTables& t = d.kind == DrawKind::Layer ? tables.layer : tables.solid;
-    for (size_t l = 0; l < simulation.lights.size(); ++l) {
+    for (size_t l = 0; t.lit && l < simulation.lights.size(); ++l) {
       double& worst = ratio_[static_cast<size_t>(d.entity) * simulation.lights.size() + l];
       for (size_t i = 0; i < plan.nodes.size() && std::isfinite(worst); ++i) {
         // Tables over angles and textures have no bound at hand: such bodies are lit by every light that shines.

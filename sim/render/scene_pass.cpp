@@ -60,7 +60,8 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       how_(shading) {
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
   if (shading != Shading::Reference)
-    checkUniformSize((tables_.node.size() * 2 + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float), "the spectral nodes");
+    checkUniformSize((tables_.node.size() + tables_.ambient.size() + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float),
+                     "the spectral nodes");
 }
 
 ShaderSlots ScenePass::shadingSlots() const {
@@ -68,23 +69,28 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.files["path"] = !simulation_.path || !plan_.terms.air || how_ == Shading::Reference ? "sim/render/glsl/path_none.glsl"
                         : how_ == Shading::Direct                                           ? simulation_.path->channelSlotFile()
                                                                                             : simulation_.path->slotFile();
-  const SurfaceTerms& t = plan_.terms.solid;
-  slots.files["lobes"] = t.lobeFile.empty() ? "sim/render/glsl/lobes_none.glsl" : t.lobeFile;
-  slots.files["lights"] = lightsFile(plan_);
+  addSurfaceSlots(tables_.solid, plan_.terms.solid, plan_, slots);
   slots.files["shadow"] = ShadowPass::slotFile(plan_);
-  slots.files["surface"] = tables_.solid.general ? "sim/render/glsl/surface_general.glsl" : "sim/render/glsl/surface_simple.glsl";
-  slots.files["columns"] = tables_.solid.tabulated ? "sim/render/glsl/columns_tabulated.glsl" : "sim/render/glsl/columns_plain.glsl";
-  slots.files["temperature"] = temperatureFile(tables_.solid, t);
-  addTemperatureConstants(tables_.solid, slots);
+  slots.files["surface"] = std::string("sim/render/glsl/") + (tables_.solid.general ? "surface_general.glsl"
+                                                              : tables_.solid.lit   ? "surface_simple.glsl"
+                                                                                    : "surface_unlit.glsl");
   slots.files["transmission"] = "sim/render/glsl/transmission_none.glsl";
   slots.constants["NODES"] = how_ == Shading::Reference ? 1 : plan_.nodeCount();
   slots.constants["GROUPS"] = plan_.groupCount();
   slots.constants["LIGHTS"] = plan_.lightCount;
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
   slots.constants["SUN"] = simulation_.sun && plan_.lightCount > 0 ? 1 : 0;
+  // Of four lights a vec4 at each node [W/(sr um)], the sun as irradiance; and radiance of the dome.
+  slots.generated["light_nodes"] = plan_.lightCount > 0 ? "  vec4 nodeLight[NODES * LIGHT_GROUPS];\n" : "";
+  slots.generated["ambient_nodes"] = tables_.ambient.empty() ? "" : "  vec4 nodeAmbient[NODES];\n";
   air_.addConstants(slots);
   pathBlock_.addConstants(slots);
   return slots;
+}
+
+std::vector<NamedProgram> ScenePass::programs() const {
+  if (!shadows_) return {};
+  return {{"shadow maps", shadows_->program().text()}};
 }
 
 std::vector<std::string> ScenePass::channelTargets() const {

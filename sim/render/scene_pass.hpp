@@ -45,6 +45,9 @@ class ScenePass {
 
   /// Text of the program that shades what is solid; empty where none does.
   virtual std::string shadingText() const { return ""; }
+  /// What a picture is drawn with besides the visibility pass, in order: shadow maps, shading, truth, transparent things, integration.
+  virtual std::vector<NamedProgram> programs() const;
+  const RenderTables& tables() const { return tables_; }
 
  protected:
   /// Direct: in the shader, so that air is integrated over the channels beforehand; buffered: after it; reference: not on the GPU at all.
@@ -61,7 +64,6 @@ class ScenePass {
   virtual void beforeShading(const View&, const WorldState&, const std::vector<char>&) {}
 
   const Plan& plan() const { return plan_; }
-  const RenderTables& tables() const { return tables_; }
   bool hasTruth() const { return truth_; }
   /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
   ShaderSlots shadingSlots() const;

@@ -41,7 +41,6 @@ ShadingProgram::ShadingProgram(const ShaderLibrary& library, ShaderSlots slots, 
   const bool fragments = stage_ == ShadingStage::Fragment;
   const AssembledShader shading = assembleShader(library, fragments ? "sim/render/glsl/shade.frag.glsl" : "sim/render/glsl/shade.comp.glsl", slots);
   program_ = fragments ? Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), shading) : Program(shading);
-  text_ = shading.source;
 }
 
 void ShadingProgram::run(RenderTarget& into) const {

@@ -11,13 +11,18 @@ enum class ShadingStage { Fragment, Compute };
 ShadingStage chooseShadingStage();
 std::string nameOf(ShadingStage stage);
 
+/// A program of a pass, for whoever wants to see what is in it.
+struct NamedProgram {
+  std::string name, text;
+};
+
 class ShadingProgram {
  public:
   ShadingProgram() = default;
   /// `targets`: names of the vec4 that the slots' text fills, in the order of the target's colours from `firstColour` on.
   ShadingProgram(const ShaderLibrary& library, ShaderSlots slots, const std::vector<std::string>& targets, std::size_t firstColour);
   /// The stage that shades, as it was compiled.
-  const std::string& text() const { return text_; }
+  const std::string& text() const { return program_.text(); }
   /// Uniforms may be set between use() and run().
   void use() const { program_.use(); }
   int uniform(const char* name) const { return program_.uniform(name); }
@@ -28,7 +33,6 @@ class ShadingProgram {
   ShadingStage stage_ = ShadingStage::Fragment;
   std::size_t firstColour_ = 0, colours_ = 0;
   Program program_;
-  std::string text_;
 };
 
 }  // namespace pitviper

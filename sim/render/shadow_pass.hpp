@@ -33,6 +33,7 @@ class ShadowPass {
   struct Range {
     std::uint32_t first = 0, count = 0;
   };
+  const Program& program() const { return program_; }
   Range castersOf(std::size_t entity, std::size_t light) const { return ranges_[entity * static_cast<size_t>(lightCount_) + light]; }
 
  private:

@@ -7,7 +7,7 @@ namespace pitviper {
 
 class SurfaceBuffers {
  public:
-  explicit SurfaceBuffers(const SurfaceTables& tables) : general_(tables.general) {
+  explicit SurfaceBuffers(const SurfaceTables& tables) : general_(tables.general), perRowEntry_(tables.floatsPerRowEntry()) {
     rows_.upload(tables.rows);
     hemispherical_.upload(tables.hemispherical);
     columns_.upload(tables.columns);
@@ -15,7 +15,7 @@ class SurfaceBuffers {
     materials_.upload(tables.materials);
   }
   void bind() const {
-    rows_.bindTexture(1, general_ ? 1 : 4);
+    rows_.bindTexture(1, perRowEntry_);
     if (general_) {
       hemispherical_.bindTexture(2, 4);
       columns_.bindTexture(3, 4);
@@ -26,6 +26,7 @@ class SurfaceBuffers {
 
  private:
   bool general_;
+  int perRowEntry_;
   Buffer rows_, hemispherical_, columns_, transmittance_, materials_;
 };
 

@@ -124,7 +124,7 @@ void appendMaterial(SurfaceTables& t, const Material& m, const Plan& plan) {
         t.transmittance.push_back(static_cast<float>(n.mean([&](double w) { return m.transmittance(w, viewAngle(j, views)); })));
   if (!t.general) return;
 
-  for (int j2 = 0; j2 < axes[1].count; ++j2)
+  for (int j2 = 0; t.lit && j2 < axes[1].count; ++j2)
     for (int j1 = 0; j1 < axes[0].count; ++j1)
       for (const SpectralNode& n : plan.nodes) {
         const glm::dvec3 r = n.mean([&](double w) { return columnsAt(m, w, axes[0].at(j1), axes[1].at(j2), axes); });
@@ -144,10 +144,10 @@ void appendMaterial(SurfaceTables& t, const Material& m, const Plan& plan) {
 
 /// The row of a surface, or of the background, which shines by itself (null).
 std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& plan, const Surface* surface) {
-  const auto at = static_cast<std::uint32_t>(t.general ? t.rows.size() : t.rows.size() / 4);
+  const auto at = static_cast<std::uint32_t>(t.rows.size()) / static_cast<std::uint32_t>(t.floatsPerRowEntry());
   for (const SpectralNode& n : plan.nodes) {
     if (!surface) {
-      if (!t.general) t.rows.insert(t.rows.end(), 3, 0.0f);
+      t.rows.insert(t.rows.end(), static_cast<size_t>(t.floatsPerRowEntry() - 1), 0.0f);
       t.rows.push_back(static_cast<float>(n.mean([&](double w) { return sim.background(w); })));
       continue;
     }
@@ -161,7 +161,7 @@ std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& pla
       const double ambient = plan.terms.ambient ? (*sim.ambient)(w) : 0.0;
       return m.emissivity(w, 0.0) * physics::planckRadiance(w, surface->temperature_K) + (ambient > 0.0 ? m.reflectance(w, 0.0) * ambient : 0.0);
     });
-    for (int k = 0; k < 3; ++k) t.rows.push_back(static_cast<float>(r[k]));
+    for (int k = 0; t.lit && k < 3; ++k) t.rows.push_back(static_cast<float>(r[k]));
     t.rows.push_back(static_cast<float>(self));
   }
   return at;
@@ -261,7 +261,7 @@ void writeIntegral(RenderTables& t, const Plan& plan) {
 
 }  // namespace
 
-int lightGroups(const Plan& plan) { return std::max(1, (plan.lightCount + 3) / 4); }
+int lightGroups(const Plan& plan) { return (plan.lightCount + 3) / 4; }
 
 std::string lightsFile(const Plan& plan) {
   const std::string folder = "sim/render/glsl/";
@@ -281,12 +281,16 @@ std::vector<float> lightTable(const Simulation& sim, const Plan& plan, const Wor
   return table;
 }
 
-std::string temperatureFile(const SurfaceTables& tables, const SurfaceTerms& terms) {
-  const std::string folder = "sim/render/glsl/";
-  return folder + (!terms.temperatureTextures ? "temperature_uniform.glsl" : tables.planckAt >= 0 ? "temperature_tabulated.glsl" : "temperature_textured.glsl");
-}
-
-void addTemperatureConstants(const SurfaceTables& tables, ShaderSlots& slots) {
+void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, const Plan& plan, ShaderSlots& slots) {
+  auto file = [&](const char* slot, const char* name) { slots.files[slot] = std::string("sim/render/glsl/") + name + ".glsl"; };
+  file("lobes", "lobes_none");
+  if (tables.lit && !terms.lobeFile.empty()) slots.files["lobes"] = terms.lobeFile;
+  file("lights", "lights_none");
+  if (tables.lit) slots.files["lights"] = lightsFile(plan);
+  file("columns", !tables.lit ? "columns_none" : tables.tabulated ? "columns_tabulated" : "columns_plain");
+  file("temperature", !terms.temperatureTextures ? "temperature_uniform" : tables.planckAt >= 0 ? "temperature_tabulated" : "temperature_textured");
+  file("modifiers", terms.modifiers ? "modifiers_textured" : "modifiers_none");
+  file("ambient", plan.terms.ambient ? "ambient_dome" : "ambient_none");
   if (tables.planckAt < 0) return;
   slots.constants["PLANCK_AT"] = tables.planckAt;
   slots.constants["PLANCK_ENTRIES"] = kPlanckEntries;
@@ -296,6 +300,8 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   RenderTables t;
   t.solid.general = plan.terms.solid.isGeneral();
   t.layer.general = plan.terms.layer.isGeneral();
+  t.solid.lit = plan.terms.lights;
+  t.layer.lit = plan.terms.lights && plan.terms.layer.reflects;
   std::vector<std::uint32_t> at;  // of each material in the tables of its kind
   for (const auto& m : sim.materials) {
     SurfaceTables& kind = m->transmission ? t.layer : t.solid;
@@ -326,8 +332,9 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
     t.node.push_back(static_cast<float>(n.air.source));
     t.node.push_back(static_cast<float>(kSecondRadiation_umK / w));
     t.node.push_back(static_cast<float>(kFirstRadianceConstant / std::pow(w, 5)));
-    t.ambient.push_back(plan.terms.ambient ? static_cast<float>(n.mean(*sim.ambient)) : 0.0f);
-    t.ambient.insert(t.ambient.end(), 3, 0.0f);
+    // Rows of simple surfaces hold the dome's light already.
+    if (plan.terms.ambient && (t.solid.general || t.layer.general))
+      t.ambient.insert(t.ambient.end(), {static_cast<float>(n.mean(*sim.ambient)), 0.0f, 0.0f, 0.0f});
   }
   const bool groups = std::any_of(plan.nodes.begin(), plan.nodes.end(), [](const SpectralNode& n) { return !n.isWavelength(); });
   if (groups && plan.terms.solid.temperatureTextures) appendPlanck(t.solid, sim, plan);

@@ -35,12 +35,14 @@ struct DrawItem {
 struct SurfaceTables {
   bool general = false;              ///< angular tables, modifiers or temperature textures
   bool tabulated = false;            ///< some reflection component is a table over angles
-  std::vector<float> rows;           ///< simple: vec4 (R1, R2, R3, S) per node; general: Planck radiance per node
+  bool lit = false;                  ///< there are lights for them to reflect
+  std::vector<float> rows;           ///< simple: vec4 (R1, R2, R3, S) per node, unlit S alone; general: Planck radiance per node
   long long planckAt = -1;           ///< general: entry of `rows` where Planck radiance is tabulated over the inverse of the temperature, or -1
   std::vector<float> hemispherical;  ///< vec4 (D1, D2, D3, given emissivity) per view angle and node
-  std::vector<float> columns;        ///< vec4 (R1, R2, R3, 0) per angle 2, angle 1 and node
+  std::vector<float> columns;        ///< lit: vec4 (R1, R2, R3, 0) per angle 2, angle 1 and node
   std::vector<float> transmittance;  ///< per view angle and node
   std::vector<GpuMaterial> materials;
+  int floatsPerRowEntry() const { return general || !lit ? 1 : 4; }
 };
 
 struct RenderTables {
@@ -48,7 +50,7 @@ struct RenderTables {
   SurfaceTables solid, layer;  ///< the background's material is the last solid one
   std::vector<float> media;    ///< vec4 (absorption [1/m], source radiance, 0, 0) per node
   std::vector<float> node;     ///< vec4 per node: extinction, source radiance, c2 / lambda, c1L / lambda^5
-  std::vector<float> ambient;  ///< vec4 per node
+  std::vector<float> ambient;  ///< vec4 per node; empty without a dome's light, or where all rows hold it
   std::vector<float> weights;  ///< vec4s in the order of the integration text
   std::string integrateText;   ///< body of the spectral integral
   std::string targetsText;     ///< how the channel targets begin
@@ -61,9 +63,9 @@ int lightGroups(const Plan& plan);
 constexpr int kFewLights = 4;
 std::string lightsFile(const Plan& plan);
 
-/// Shader file of what parts of a kind emit; its constants.
-std::string temperatureFile(const SurfaceTables& tables, const SurfaceTerms& terms);
-void addTemperatureConstants(const SurfaceTables& tables, ShaderSlots& slots);
+/// Shader files and constants of a kind of surfaces: what light does to them, what they emit, their textures. All but the slots "surface" and
+/// "transmission".
+void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, const Plan& plan, ShaderSlots& slots);
 
 RenderTables makeTables(const Simulation& simulation, const Plan& plan);
 

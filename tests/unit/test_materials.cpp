@@ -246,7 +246,8 @@ TEST(MaterialTables, ComponentsOnOneAngleKeepTheirOwnSteps) {
            " deg}], values: [" + rows + "]}";
   };
   for (const auto& [n1, last1, n2, last2, cells] : {std::tuple{3, 90.0, 7, 90.0, 6}, {5, 90.0, 4, 90.0, 12}, {4, 30.0, 10, 90.0, 9}, {5, 20.0, 10, 90.0, 18}}) {
-    const auto sim = scene("materials: {m: {components: [" + component(n1, last1, 0.05) + ", " + component(n2, last2, 0.02) + "]}}\n" +
+    const auto sim = scene("sun: {azimuth: 0 deg, elevation: 45 deg, temperature: 5772 K}\nmaterials: {m: {components: [" + component(n1, last1, 0.05) + ", " +
+                           component(n2, last2, 0.02) + "]}}\n" +
                            "entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: m, temperature: 300 K}]\n" + kCamera);
     const Plan plan = makePlan(sim, sim.cameras[0].outputs, sim.cameras[0].spectral, sim.cameras[0].where);
     const RenderTables t = tablesOf(sim);

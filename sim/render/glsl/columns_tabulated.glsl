@@ -1,4 +1,8 @@
 // Some reflection component is a table over one or two angles: linear between its entries, for each light.
+//@use sim/render/glsl/lobes.glsl
+layout(binding = 3) uniform samplerBuffer columns;  // (R1, R2, R3) by angle 2, angle 1 and node
+void prepareLobes() { exponents_ = material_.exponent.xyz; }
+
 float angleOf(uint kind, Vec3 l) {
   if (kind == 1u) return angleFromChord(normal_, l);
   if (kind == 2u) return angleFromChord(normal_, toViewer_);

@@ -1,6 +1,7 @@
 // Materials without angular tables and modifiers: reflection columns and self radiance (emission and reflected ambient) of a part
 // are one row, made in double precision: (R1, R2, R3, S).
 //@use sim/render/glsl/materials.glsl
+//@use sim/render/glsl/lobes.glsl
 layout(binding = 1) uniform samplerBuffer rows;
 
 void prepareSurface() { exponents_ = materials[draw_.table.y].exponent.xyz; }

@@ -1,5 +1,7 @@
 // Some part has a temperature texture, and nodes are groups of wavelengths: their mean Planck radiance is tabulated over the inverse of the
 // temperature. The table begins with the first inverse and entries per inverse.
+//@use sim/render/glsl/textures.glsl
+float surfaceTemperature() { return draw_.table.z > 0u ? textureValue(int(draw_.table.z) - 1, uv_) : draw_.state.x; }
 int planckEntry_;
 float planckMix_;
 void prepareTemperature() {

@@ -1,0 +1,2 @@
+// A uniform dome lights all surfaces.
+Real reflectedAmbient(Real reflectance, int i) { return isSurface_ * reflectance * nodes.nodeAmbient[i].x; }

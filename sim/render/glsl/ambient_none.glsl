@@ -1,0 +1,2 @@
+// No light from all around.
+Real reflectedAmbient(Real reflectance, int i) { return 0.0; }

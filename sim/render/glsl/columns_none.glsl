@@ -1,0 +1,2 @@
+// No light asks for reflection columns.
+void prepareLobes() {}
