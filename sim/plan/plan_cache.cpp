@@ -1,5 +1,6 @@
 #include "sim/plan/plan_cache.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -20,6 +21,20 @@ std::filesystem::path fileOf(const ContentKey& key) {
   char name[64];
   std::snprintf(name, sizeof name, "%016llx%016llx.plan", static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
   return folder / name;
+}
+
+/// As many plans as are kept; 60 kB each, about.
+constexpr size_t kMostKept = 200;
+
+/// Of too many plans the older half goes.
+void forgetOldest(const std::filesystem::path& folder) {
+  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> kept;
+  for (const auto& f : std::filesystem::directory_iterator(folder))
+    if (f.path().extension() == ".plan") kept.emplace_back(f.last_write_time(), f.path());
+  if (kept.size() <= kMostKept) return;
+  std::sort(kept.begin(), kept.end());
+  std::error_code ignored;  // another run may have been quicker
+  for (size_t k = 0; k < kept.size() / 2; ++k) std::filesystem::remove(kept[k].second, ignored);
 }
 
 /// Hexadecimal floating point: every digit, both ways.
@@ -158,6 +173,7 @@ void writeCachedPlan(const ContentKey& key, const Plan& plan) {
     if (file.empty()) return;
     std::filesystem::create_directories(file.parent_path());
     writeFileAtomically(file, writePlanned(plan));
+    forgetOldest(file.parent_path());
   } catch (const std::exception&) {
     // Nothing is lost but time: see the header.
   }
