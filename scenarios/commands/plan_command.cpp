@@ -34,6 +34,12 @@ double predictedRate(const Plan& plan, double subpixels, double yardstick, bool 
   return yardstick / (kFrame + subpixels * each);
 }
 
+double bytesOf(const RenderTables& t) {
+  size_t floats = t.media.size() + t.node.size() + t.ambient.size() + t.weights.size();
+  for (const SurfaceTables* s : {&t.solid, &t.layer}) floats += s->rows.size() + s->hemispherical.size() + s->columns.size() + s->transmittance.size();
+  return static_cast<double>(floats * sizeof(float));
+}
+
 }  // namespace
 
 int planCommand(const Arguments& arguments) {
@@ -47,7 +53,7 @@ int planCommand(const Arguments& arguments) {
     const auto start = std::chrono::steady_clock::now();
     const Plan plan = planFor(sim, eye);
     const bool buffered = sim.mode == RenderMode::Buffered || sim.hasTransparent();
-    PlannedEye told{name, eye.camera ? eye.camera->outputs : eye.probe->outputs, plan, secondsSince(start), subpixels, 0.0, buffered, describe(sim.limits)};
+    PlannedEye told{name, eye.camera ? eye.camera->outputs : eye.probe->outputs, plan, secondsSince(start), subpixels, 0.0, bytesOf(makeTables(sim, plan)), buffered, describe(sim.limits)};
     if (yardstick > 0.0) told.framesPerSecond = predictedRate(plan, subpixels, yardstick, buffered);
     if (o.has("--json")) json += (json.empty() ? "" : ", ") + planJson(told);
     else std::printf("%s\n", planText(told).c_str());

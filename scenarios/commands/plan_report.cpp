@@ -110,6 +110,7 @@ std::string planText(const PlannedEye& eye) {
   out += print("\n  %s; %d nodes a subpixel with reflected light, %d without; %.3g million evaluations a frame\n",
                eye.buffered ? "buffered where something transparent is in view, else direct" : "direct", cost.lit, cost.unlit,
                1e-6 * eye.subpixels * (cost.lit + cost.unlit));
+  out += print("  tables of surfaces and media: %.0f kB\n", 1e-3 * eye.tableBytes);
   if (eye.framesPerSecond > 0.0) out += print("  about %.3g frames a second on this machine\n", eye.framesPerSecond);
   if (plan.accuracy > 0.0) out += print("  planned in %.2f s\n", eye.seconds);
   return out;
@@ -132,8 +133,8 @@ std::string planJson(const PlannedEye& eye) {
     out += "}";
   }
   const NodeCost cost = costOf(plan);
-  out += print("], \"nodes_lit\": %d, \"nodes_unlit\": %d, \"subpixels\": %.0f, \"transparent\": %s, \"planning_s\": %.4g", cost.lit, cost.unlit, eye.subpixels,
-               eye.buffered ? "true" : "false", eye.seconds);
+  out += print("], \"nodes_lit\": %d, \"nodes_unlit\": %d, \"subpixels\": %.0f, \"transparent\": %s, \"planning_s\": %.4g, \"table_bytes\": %.0f", cost.lit,
+               cost.unlit, eye.subpixels, eye.buffered ? "true" : "false", eye.seconds, eye.tableBytes);
   if (eye.framesPerSecond > 0.0) out += print(", \"predicted_frames_per_s\": %.4g", eye.framesPerSecond);
   if (!eye.limits.empty()) out += ", \"limits\": " + quoted(eye.limits);
   return out + "}";

@@ -14,6 +14,7 @@ struct PlannedEye {
   double seconds = 0.0;          ///< that planning took
   double subpixels = 0.0;        ///< of a frame
   double framesPerSecond = 0.0;  ///< predicted; 0: not asked for
+  double tableBytes = 0.0;       ///< of what the shading programs read of surfaces and media
   bool buffered = false;         ///< something transparent may be in view
   std::string limits;            ///< of the scenario, in words; empty: none
 };
