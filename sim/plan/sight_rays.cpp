@@ -11,6 +11,8 @@ namespace {
 constexpr double kAimed = 0.5;
 /// Tries to hit on something that is in view at a time.
 constexpr int kTries = 24;
+/// Nothing is lower than this [m].
+constexpr double kGround_m = -100.0;
 
 }  // namespace
 
@@ -51,8 +53,15 @@ void SightRays::stretch(SightRay& ray, double distance_m) {
   if (limits.farthest_m > 0.0) {
     const double nearest = std::max(limits.nearest_m, std::max(ray.nearest_m, 0.1));
     const double range = nearest * std::pow(std::max(limits.farthest_m / nearest, 1.0), dice_.unit());
-    const glm::dvec3 from = ray.origin + (distance_m - range) * ray.direction;
-    if (simulation_.frame.height(from) > -100.0) ray.origin = from;  // not from under the ground
+    // What is aimed at comes nearer or goes away with all that is around it, or the eye does; neither to under the ground.
+    const glm::dvec3 away = (range - distance_m) * ray.direction, aim = ray.origin + distance_m * ray.direction;
+    const bool eyeCan = simulation_.frame.height(ray.origin - away) > kGround_m, aimCan = simulation_.frame.height(aim + away) > kGround_m;
+    if (eyeCan && (!aimCan || dice_.unit() < 0.5)) {
+      ray.origin -= away;
+    } else if (aimCan) {
+      for (Pose& pose : ray.state.entities) pose.position += away;
+      for (glm::dvec3& light : ray.state.lights) light += away;
+    }
   }
   if (limits.hottest_K > 0.0) ray.temperature_K = limits.coldest_K + (limits.hottest_K - limits.coldest_K) * dice_.unit();
   if (limits.lightLevel > 0.0)
