@@ -5,12 +5,14 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <numeric>
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/render/camera_renderer.hpp"
+#include "sim/render/reference/outline.hpp"
 
 namespace pitviper {
 namespace {
@@ -45,13 +47,14 @@ class Renderings {
   }
   CameraRenderer& renderer() { return *renderer_; }
   const Plan& plan() const { return renderer_->plan(); }
-  /// Adds a frame's pixels to each channel's.
-  void add(const WorldState& state, std::vector<std::vector<double>>& channels) {
+  /// Adds a frame's pixels to each channel's, those that `left` marks left out.
+  void add(const WorldState& state, const std::vector<char>& left, std::vector<std::vector<double>>& channels) {
     const CameraImage image = renderer_->render(state);
     channels.resize(camera_.outputs.size());
     for (size_t c = 0; c < channels.size(); ++c) {
       const auto& pixels = image.slots[static_cast<size_t>(image.slotOfOutput[c])];
-      channels[c].insert(channels[c].end(), pixels.begin(), pixels.end());
+      for (size_t p = 0; p < pixels.size(); ++p)
+        if (!left[p]) channels[c].push_back(pixels[p]);
     }
   }
 
@@ -59,6 +62,22 @@ class Renderings {
   Camera camera_;
   std::unique_ptr<CameraRenderer> renderer_;
 };
+
+/// Pixels of a frame, from the top, with the outline of something transparent in the middle of a subpixel: there the reference, which casts rays, and
+/// the rasteriser see different things.
+std::vector<char> outlines(const Simulation& sim, const Camera& camera, const WorldState& state) {
+  const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, camera.samples);
+  std::vector<char> drawn(sim.entities.size(), 1);
+  if (camera.mount.carrier >= 0) drawn[static_cast<size_t>(camera.mount.carrier)] = 0;
+  std::vector<char> marked(static_cast<size_t>(camera.pinhole.width) * static_cast<size_t>(camera.pinhole.height), 0);
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) {
+      char& mark = marked[static_cast<size_t>((view.height - 1 - y) / camera.samples) * static_cast<size_t>(camera.pinhole.width) +
+                          static_cast<size_t>(x / camera.samples)];
+      mark = static_cast<char>(mark || onOutline(sim, state, view, drawn, x, y));
+    }
+  return marked;
+}
 
 AccuracyRow rowOf(const AccuracySetting& setting, const Camera& camera, const Plan& plan, const std::vector<ChannelReference>& reference,
                   const std::vector<std::vector<double>>& rendered) {
@@ -124,8 +143,10 @@ AccuracyReport measureAccuracy(const AccuracyRequest& request) {
   Renderings truth(sim, camera, fine, scene);
   truth.renderer().setProgress([&](double share) { waiting.within(share); });
   std::vector<std::vector<double>> found;
+  std::vector<std::vector<char>> left;
   for (const WorldState& state : states) {
-    truth.add(state, found);
+    left.push_back(outlines(sim, camera, state));
+    truth.add(state, left.back(), found);
     waiting.step();
   }
   waiting.finish();
@@ -133,10 +154,12 @@ AccuracyReport measureAccuracy(const AccuracyRequest& request) {
   for (size_t c = 0; c < found.size(); ++c) reference.emplace_back(camera.outputs[c].kernel, std::move(found[c]));
 
   AccuracyReport report;
+  const auto count = std::accumulate(left.begin(), left.end(), std::ptrdiff_t{0}, [](auto n, const auto& f) { return n + std::count(f.begin(), f.end(), 1); });
+  const std::string skipped = count > 0 ? "; " + std::to_string(count) + " pixels on outlines of transparent things left out" : "";
   char heading[512];
-  std::snprintf(heading, sizeof heading, "%s, camera %s, %dx%d pixels of %dx%d subpixels, frame%s %s, against the reference (%d wavelengths)", sim.name.c_str(),
-                camera.name.c_str(), camera.pinhole.width, camera.pinhole.height, camera.samples, camera.samples, frames == 1 ? "" : "s", numbers.c_str(),
-                truth.plan().nodeCount());
+  std::snprintf(heading, sizeof heading, "%s, camera %s, %dx%d pixels of %dx%d subpixels, frame%s %s, against the reference (%d wavelengths)%s",
+                sim.name.c_str(), camera.name.c_str(), camera.pinhole.width, camera.pinhole.height, camera.samples, camera.samples, frames == 1 ? "" : "s",
+                numbers.c_str(), truth.plan().nodeCount(), skipped.c_str());
   report.heading = heading;
 
   const auto ladder = accuracyLadder();
@@ -146,7 +169,7 @@ AccuracyReport measureAccuracy(const AccuracyRequest& request) {
     try {
       auto renderings = std::make_unique<Renderings>(sim, camera, setting.sampling, scene);
       std::vector<std::vector<double>> rendered;
-      for (const WorldState& state : states) renderings->add(state, rendered);
+      for (size_t f = 0; f < states.size(); ++f) renderings->add(states[f], left[f], rendered);
       report.rows.push_back(rowOf(setting, camera, renderings->plan(), reference, rendered));
       drawn.push_back(std::move(renderings));
     } catch (const GlError& e) {

@@ -9,6 +9,7 @@
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/render/direct_pass.hpp"
+#include "sim/render/reference/outline.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -23,26 +24,6 @@ struct PlanErrors {
 
 /// |L - L_ref| / max(L_ref, 1e-3 x 99th percentile of L_ref).
 double errorOf(double got, double want, double p99) { return std::abs(got - want) / std::max(want, 1e-3 * p99); }
-
-/// Everything transparent on a line of sight, by kind.
-std::vector<std::pair<int, int>> seenThrough(const Simulation& sim, const WorldState& state, const View& view, const std::vector<char>& present, double x,
-                                             double y) {
-  const glm::dvec3 ray = view.ray(x, y);
-  const RayHits hits = castRay(sim, state, view.position, view.localFromCamera * ray / glm::length(ray), view.near_m * glm::length(ray), &present, true);
-  std::vector<std::pair<int, int>> all;
-  for (const Hit& h : hits.layers) all.emplace_back(h.entity, h.surface);
-  for (const Stretch& s : hits.stretches) all.emplace_back(s.entity, -1);
-  std::sort(all.begin(), all.end());
-  return all;
-}
-
-/// The outline of something transparent does not run through the pixel's middle, where it may fall either way.
-bool isSteady(const Simulation& sim, const WorldState& state, const View& view, const std::vector<char>& present, int x, int y) {
-  const auto middle = seenThrough(sim, state, view, present, x + 0.5, y + 0.5);
-  for (const auto& [dx, dy] : {std::pair{0.02, 0.02}, {-0.02, 0.02}, {0.02, -0.02}, {-0.02, -0.02}})
-    if (seenThrough(sim, state, view, present, x + 0.5 + dx, y + 0.5 + dy) != middle) return false;
-  return true;
-}
 
 /// Per slot.
 std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan& plan, int size, int stride, const std::vector<double>& times) {
@@ -77,7 +58,7 @@ std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan
         if (static_cast<int>(truth.entity) != want.entity + 1 || static_cast<int>(truth.part) != want.surface + 1) continue;
         // Another triangle of the same part: a ridge or a wing's edge.
         if (want.entity >= 0 && std::abs(static_cast<double>(truth.range_m) / want.range_m - 1.0) > 1e-3) continue;
-        if (sim.hasTransparent() && !isSteady(sim, state, view, present, x, y)) continue;
+        if (onOutline(sim, state, view, present, x, y)) continue;
         Seen seen;
         for (size_t s = 0; s < want.slots.size(); ++s) seen.drawn.push_back(static_cast<double>(raw.groups[s / 4][4 * p + s % 4]));
         seen.planned = planned.pixel(x, y).slots;
