@@ -352,7 +352,7 @@ Sight SightWriter::lamp(size_t light, double pixel_sr) {
   book_.paths.push_back({sim_.path ? sim_.path->powered(amounts) : AirAmounts{}, {}});
   const Spectrum* shine = &sim_.lights[light].intensity;
   const int source = book_.spectrum(name("light", shine), [shine](const FineGrid& g, size_t i) { return (*shine)(g.wavelength_um[i]); });
-  sight.terms.push_back({source, -1, static_cast<int>(book_.paths.size()) - 1, level / (range * range * pixel_sr), TermKind::Background});
+  sight.terms.push_back({source, -1, static_cast<int>(book_.paths.size()) - 1, level / (range * range * pixel_sr), TermKind::LampsInView});
   return sight;
 }
 

@@ -36,7 +36,8 @@ int SightBook::spectrum(const std::string& name, GridSpectrum f) {
 
 const char* nameOf(TermKind kind) {
   constexpr const char* kNames[kTermKinds] = {"emission of surfaces", "reflected ambient light", "reflected sunlight", "reflected light of lamps",
-                                              "emission of the air",  "scattered sunlight",      "background",         "media"};
+                                              "emission of the air",  "scattered sunlight",      "background",         "media",
+                                              "lamps in view"};
   return kNames[static_cast<int>(kind)];
 }
 

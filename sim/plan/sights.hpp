@@ -35,8 +35,8 @@ struct SightPath {
   }
 };
 
-enum class TermKind { Emission, Ambient, Sun, Lights, AirEmission, ScatteredSun, Background, Media };
-constexpr int kTermKinds = 8;
+enum class TermKind { Emission, Ambient, Sun, Lights, AirEmission, ScatteredSun, Background, Media, LampsInView };
+constexpr int kTermKinds = 9;
 const char* nameOf(TermKind kind);
 
 struct SightTerm {
