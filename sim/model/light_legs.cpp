@@ -28,4 +28,10 @@ LightLeg lightLeg(const Simulation& sim, const WorldState& state, const Hit& hit
   return leg;
 }
 
+glm::dvec3 inNormalFrame(const glm::dvec3& normal, const glm::dvec3& direction) {
+  const glm::dvec3 helper = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 x = glm::normalize(glm::cross(helper, normal)), y = glm::cross(normal, x);
+  return {glm::dot(direction, x), glm::dot(direction, y), glm::dot(direction, normal)};
+}
+
 }  // namespace pitviper

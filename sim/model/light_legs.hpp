@@ -14,4 +14,7 @@ struct LightLeg {
 /// `light`: an index into Simulation::lights, or their number for the sun.
 LightLeg lightLeg(const Simulation& simulation, const WorldState& state, const Hit& hit, std::size_t light);
 
+/// A direction in a frame whose z is the normal: what reflection components take.
+glm::dvec3 inNormalFrame(const glm::dvec3& normal, const glm::dvec3& direction);
+
 }  // namespace pitviper

@@ -53,13 +53,6 @@ double texel(const Texture& t, glm::dvec2 uv) {
   return static_cast<double>(t.texels[at(uv.y, t.height) * static_cast<size_t>(t.width) + at(uv.x, t.width)]);
 }
 
-/// Light and view directions in a frame whose z is the normal.
-glm::dvec3 inNormalFrame(const glm::dvec3& normal, const glm::dvec3& direction) {
-  const glm::dvec3 helper = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-  const glm::dvec3 x = glm::normalize(glm::cross(helper, normal)), y = glm::cross(normal, x);
-  return {glm::dot(direction, x), glm::dot(direction, y), glm::dot(direction, normal)};
-}
-
 }  // namespace
 
 SightWriter::SightWriter(const Simulation& simulation, const Plan& plan, SightBook& book, const SightRay& ray, RayHits hits, Dice& dice)

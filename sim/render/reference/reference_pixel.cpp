@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/light_legs.hpp"
 #include "sim/model/ray_hits.hpp"
 #include "sim/model/sunlit_air.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -20,13 +21,6 @@ double textureValue(const Texture& t, glm::dvec2 uv) {
     return static_cast<double>(t.texels[wrap(j, t.height) * static_cast<size_t>(t.width) + wrap(i, t.width)]);
   };
   return (1 - fy) * ((1 - fx) * at(cx, cy) + fx * at(cx + 1, cy)) + fy * ((1 - fx) * at(cx, cy + 1) + fx * at(cx + 1, cy + 1));
-}
-
-/// Light and view directions in a frame whose z is the normal.
-glm::dvec3 inNormalFrame(const glm::dvec3& normal, const glm::dvec3& direction) {
-  const glm::dvec3 helper = std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-  const glm::dvec3 x = glm::normalize(glm::cross(helper, normal)), y = glm::cross(normal, x);
-  return {glm::dot(direction, x), glm::dot(direction, y), glm::dot(direction, normal)};
 }
 
 /// The camera's line of sight.
@@ -147,27 +141,14 @@ Seen lookAt(const Sight& sight, const Hit& hit, const Air& air) {
     AirAmounts powered;
   };
   std::vector<Leg> legs;
-  const AirRay here{sim.frame.height(hit.point), 0.0, sim.frame.earthRadius_m()};
-  const glm::dvec3 up = sim.frame.up(hit.point);
-  auto addLeg = [&](const glm::dvec3& line, double radius_m, bool sun) {
-    Leg leg;
-    const double d2 = sun ? 1.0 : glm::dot(line, line), d = std::sqrt(d2);
-    const glm::dvec3 to = d > 0.0 ? line / d : hit.normal;
-    leg.light = inNormalFrame(hit.normal, to);
-    leg.factor = sun ? std::max(leg.light.z, 0.0) : physics::pointIrradianceFactor(leg.light.z, d2, radius_m);
-    if (leg.factor > 0.0 && plan.terms.shadows && !sight.shadows.lit(sight.state, hit, to, sun ? INFINITY : d - radius_m)) leg.factor = 0.0;
-    if (plan.terms.air) {
-      const bool endless = sim.path->top_m() >= physics::kFar;
-      AirRay leaving = here;
-      leaving.sinElevation = glm::dot(up, to);
-      AirAmounts both = air.amounts;
-      if (!sun || !endless) both += sim.path->amounts(leaving, sun ? physics::kFar : d);
-      leg.powered = sim.path->powered(both);
-    }
+  for (size_t l = 0; l < sim.lights.size() + (sim.sun ? 1 : 0); ++l) {
+    const LightLeg way = lightLeg(sim, sight.state, hit, l);
+    Leg leg{inNormalFrame(hit.normal, way.toLight), way.factor, {}};
+    const double radius_m = l < sim.lights.size() ? sim.lights[l].radius_m : 0.0;
+    if (leg.factor > 0.0 && plan.terms.shadows && !sight.shadows.lit(sight.state, hit, way.toLight, way.distance_m - radius_m)) leg.factor = 0.0;
+    if (plan.terms.air) leg.powered = sim.path->powered(air.amounts + way.air);
     legs.push_back(leg);
-  };
-  for (size_t l = 0; l < sim.lights.size(); ++l) addLeg(sight.state.lights[l] - hit.point, sim.lights[l].radius_m, false);
-  if (sim.sun) addLeg(sim.sun->toSun, 0.0, true);
+  }
 
   for (size_t i = 0; i < plan.nodes.size(); ++i) {
     const SpectralNode& n = plan.nodes[i];
