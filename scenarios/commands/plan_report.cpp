@@ -78,9 +78,11 @@ std::string planText(const PlannedEye& eye) {
 
   if (!eye.limits.empty()) out += "  for what the scenario shows at its times, and " + eye.limits + "\n";
 
-  out += print("\n  %-26s", "greatest part of a pixel");
-  for (const auto& n : names) out += print(" %9s", n.c_str());
-  out += "\n";
+  if (!plan.shares.empty()) {
+    out += print("\n  %-26s", "greatest part of a pixel");
+    for (const auto& n : names) out += print(" %9s", n.c_str());
+    out += "\n";
+  }
   for (const TermShare& s : plan.shares) {
     if (std::all_of(s.share.begin(), s.share.end(), [](double v) { return v == 0.0; })) continue;
     out += print("  %-26s", s.term.c_str());

@@ -70,6 +70,8 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     applyOverride(tree, o);
     identity += "\n--set " + o;
   }
+  if (const Value* e = tree.find("extends"); e && e->where.file.starts_with("--set"))
+    throw UserError(e->where, "what a scenario extends cannot be set from outside", "other keys", "write 'extends' into the file");
   const Record r(tree, tables::scenario());
   Simulation sim;
   sim.file = fileName;

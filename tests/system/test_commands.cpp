@@ -55,7 +55,7 @@ class Commands : public ::testing::Test {
 TEST_F(Commands, HelpOfEveryCommand) {
   const Result all = pitviper("--help");
   EXPECT_EQ(all.code, 0);
-  for (const char* command : {"run", "check", "info", "integrate", "bench", "atmosphere", "keys"}) {
+  for (const char* command : {"run", "check", "plan", "info", "integrate", "bench", "atmosphere", "keys"}) {
     EXPECT_NE(all.output.find(command), std::string::npos);
     const Result one = pitviper(std::string(command) + " --help");
     EXPECT_EQ(one.code, 0);
