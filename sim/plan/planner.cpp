@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <future>
 #include <thread>
@@ -17,8 +18,14 @@ constexpr int kFirst = 260, kCheck = 360, kChecks = 6;
 /// A term that is nowhere more than this part of the accuracy is dropped.
 constexpr double kDropped = 0.05;
 
-/// What the tables of layered air add (bench --accuracy with 340 even samples), and with twice the entries below kFine.
-constexpr double kTables = 8e-4, kFineTables = 2e-4, kFine = 0.003;
+/// What the tables of layered air add in a narrow field (bench --accuracy with 340 even samples), and besides in one of 40 degrees, growing with its
+/// square (tests/gpu/test_layered_air_gpu.cpp); with twice the entries, below kFine, a quarter.
+constexpr double kTables = 8e-4, kWideTables = 2.5e-3, kWide_rad = 0.7, kFine = 0.003;
+
+double tableError(const Eye& eye, double accuracy) {
+  const double field_rad = eye.camera ? 2.0 * std::atan(eye.camera->pinhole.tanY(0)) : kWide_rad, share = std::min(field_rad / kWide_rad, 1.0);
+  return (kTables + kWideTables * share * share) * (accuracy < kFine ? 0.25 : 1.0);
+}
 
 /// A group of a channel's fine wavelengths as a node of the scene.
 SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const SpectralGroup& group) {
@@ -117,7 +124,7 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
     plan.weight.clear();
     plan.shares.clear();
     for (int k = 0; k < kTermKinds; ++k) plan.shares.push_back({nameOf(static_cast<TermKind>(k)), {}, true});
-    const double tables = sim.path && sim.path->isLayered() ? (sampling.accuracy < kFine ? kFineTables : kTables) : 0.0;
+    const double tables = sim.path && sim.path->isLayered() ? tableError(eye, sampling.accuracy) : 0.0;
     for (const ChannelFit& f : fits) {
       plan.blocks.push_back({plan.nodeCount(), static_cast<int>(f.groups().size()), {static_cast<int>(plan.blocks.size())}});
       for (const SpectralGroup& g : f.groups()) plan.nodes.push_back(nodeOf(sim, f, g));
