@@ -54,7 +54,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       tables_(shading == Shading::Reference ? makeTables(simulation, outline(plan)) : makeTables(simulation, plan)),
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
-      relevance_(simulation, plan, tables_),
+      relevance_(simulation, shading == Shading::Reference ? outline(plan) : plan, tables_),
       air_(simulation, plan, shading == Shading::Direct, shading != Shading::Reference),
       pathBlock_(simulation, plan, shading != Shading::Reference),
       how_(shading) {
