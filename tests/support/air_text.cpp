@@ -2,23 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
+
+#include "tests/support/print.hpp"
 
 namespace pitviper::test {
-namespace {
-
-std::string print(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-std::string print(const char* pattern, ...) {
-  char line[512];
-  va_list list;
-  va_start(list, pattern);
-  std::vsnprintf(line, sizeof line, pattern, list);
-  va_end(list);
-  return line;
-}
-
-}  // namespace
 
 std::string tape7Text(int from_per_cm, int to_per_cm, int step_per_cm, std::span<const double> ranges_km, const OfPath& transmittance, const OfPath& radiance) {
   std::string text;

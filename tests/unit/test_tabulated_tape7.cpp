@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -13,19 +12,10 @@
 #include "sim/parameters/error.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/spectrum.hpp"
+#include "tests/support/print.hpp"
 
 namespace pitviper::test {
 namespace {
-
-std::string print(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-std::string print(const char* pattern, ...) {
-  char line[512];
-  va_list list;
-  va_start(list, pattern);
-  std::vsnprintf(line, sizeof line, pattern, list);
-  va_end(list);
-  return line;
-}
 
 struct Card {
   int iemsct = 0, itype = 1;

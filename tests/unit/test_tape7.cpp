@@ -4,7 +4,6 @@
 
 #include <array>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -17,19 +16,10 @@
 #include "atmosphere/tape7_summary.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "tests/support/print.hpp"
 
 namespace pitviper::test {
 namespace {
-
-std::string print(const char* pattern, ...) __attribute__((format(printf, 1, 2)));
-std::string print(const char* pattern, ...) {
-  char line[512];
-  va_list list;
-  va_start(list, pattern);
-  std::vsnprintf(line, sizeof line, pattern, list);
-  va_end(list);
-  return line;
-}
 
 /// The ten lines above the names of columns; a run at sea level over 1.5 km, or 2 to 10 km.
 std::string cards(int iemsct, int itype, const std::string& letters = "T F", const std::string& card3 = "") {
