@@ -9,6 +9,7 @@
 #include "sim/model/simulation.hpp"
 #include "sim/model/spectral_node.hpp"
 #include "sim/model/sun_legs.hpp"
+#include "sim/radiance/terms.hpp"
 
 namespace pitviper {
 
@@ -18,29 +19,6 @@ struct NodeBlock {
   int count = 0;
   std::vector<int> slots;
   bool lit = true;  ///< reflected light of the sun or of points matters in these channels
-};
-
-/// Terms of the radiance equation that a kind of surfaces has.
-struct SurfaceTerms {
-  bool any = false;       ///< there are such surfaces
-  bool reflects = false;  ///< light that falls on them
-  bool emits = false;
-  bool angular = false;  ///< tables over angles, or an emissivity or transmittance that changes with view angle
-  bool modifiers = false;
-  bool temperatureTextures = false;
-  std::string lobeFile;  ///< shader file of the angular lobes, or empty
-  bool isGeneral() const { return angular || modifiers || temperatureTextures; }
-};
-
-/// Terms of the radiance equation that this scene has.
-struct Terms {
-  bool air = false;           ///< extinction and path radiance
-  bool scatteredSun = false;  ///< sunlight that the air scatters, and the sky's by it
-  bool lights = false;        ///< point lights or the sun
-  bool ambient = false;
-  bool shadows = false;       ///< of the lights
-  SurfaceTerms solid, layer;  ///< opaque and transparent surfaces
-  bool media = false;         ///< bodies filled with an emitting medium
 };
 
 /// How much of what channels see a term can be, at most over the lines of sight looked at.
