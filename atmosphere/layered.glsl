@@ -1,12 +1,14 @@
+//@use sim/radiometry/glsl/exponential.glsl
 // Layered air: -ln tau = sum of c_k W_k^a_k over the absorbers k, four to a vector. What a camera's way holds (logarithm of the mean density)
-// and sends comes from a table by elevation and range, made in double precision for each view (sim/render/air_tables.hpp); ways on to lights
-// and to the sun from tables by height. Amounts of both legs are added before the power: a band does not decay exponentially.
+// and sends beyond air of one temperature comes from a table by elevation and range, made in double precision for each view
+// (sim/render/air_tables.hpp); ways on to lights and to the sun from tables by height. Amounts of both legs are added before the power: a band does not decay exponentially.
 layout(std140, binding = 3) uniform AirBlock {
   vec4 grid;       // root of the first elevation's sine, entries per unit of it; scale of ranges [m], entries per unit of ln(1 + range / scale)
   vec4 heights;    // bottom [m], entries per root of a metre; sine of the first sun elevation, 1 / step to the second
   vec4 exponent[AIR_VECTORS];
   vec4 extinction[NODES * AIR_VECTORS];
   vec4 asymmetry[AIR_ASYMMETRIES];
+  vec4 black[AIR_BLACKS];  // of nodes: radiance of a black body of the air's temperature at the camera
 } air;
 layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][density, sun low, sun high][vector]
 layout(binding = 21) uniform samplerBuffer airRadiance;  // [elevation][range, space last][part][value]
@@ -102,6 +104,9 @@ Real airDepth(int i, AirPath p) {
   return depth;
 }
 
+// What air of one temperature sends: with it the balance of a world of that temperature holds to rounding, whatever the tables lose.
+Real airBlack(int i, Real depth) { return air.black[i / 4][i % 4] * oneMinusExp(depth); }
+
 Real pathTransmittance(int i, AirPath p) { return exp(-airDepth(i, p)); }
 
 Real pathDepth(int i, AirPath near, AirPath far) { return max(airDepth(i, far) - airDepth(i, near), 0.0); }
@@ -113,7 +118,7 @@ vec4 airPart(AirPath p, int part, int texel, int count) {
              mix(texelFetch(airRadiance, high), texelFetch(airRadiance, high + step), p.mixed.y), p.mixed.x);
 }
 
-// Emission, and sunlight scattered by molecules and haze, each with its phase function [1/sr].
+// Emission less that of air of one temperature, and sunlight scattered by molecules and haze, each with its phase function [1/sr].
 vec4 airValue(AirPath p, int texel, int count, vec4 g) {
   vec4 sum = airPart(p, 0, texel, count);
   if (AIR_PARTS > 1) {

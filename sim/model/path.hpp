@@ -29,7 +29,7 @@ struct AirAmounts {
 struct AirNode {
   std::array<double, kMostAirAmounts> extinction{};  ///< c_k: optical depth of one unit of each absorber
   std::array<double, kMostAirAmounts> molecules{};   ///< the part of it that molecules scatter ...
-  std::array<double, kMostAirAmounts> haze{};        ///< ... and that particles scatter: neither emits
+  std::array<double, kMostAirAmounts> haze{};        ///< ... and that particles scatter
   double asymmetry = 0.0;                            ///< of the particles: mean cosine of the angle they turn light by
   double source = 0.0;                               ///< radiance the air tends to at great depth besides thermal emission of its stations [W/(m2 sr um)]
 };
@@ -90,8 +90,12 @@ class Path {
 /// What air sends along a line of sight, for all places on it: one value per place, 0 at the first. Depths rise from the first on.
 struct AirLight {
   std::span<const double> depth;  ///< of all extinction, from the camera
-  /// Emission of what absorbs: `absorbed` depth of absorption alone, `source` radiance of a black body, linear in depth between two places.
-  void emitted(std::span<const double> absorbed, std::span<const double> source, std::span<double> radiance) const;
+  /// Thermal radiance, all extinction taken as emitting: `source` radiance of a black body at each place, linear in depth between two.
+  /// Law: the source of air is (1 - w) B + w <L>, w the albedo, <L> the mean of the radiance around weighted by the phase function. Here <L> = B:
+  /// what is scattered out of a line is scattered in again as from surroundings of the air's own temperature.
+  /// Source: LOWTRAN 7 without multiple scattering (Kneizys et al. 1988, AFGL-TR-88-0177). Valid: exact in a world of one temperature (Kirchhoff) and
+  /// for what only absorbs; where much is scattered under a cold sky the air comes out too bright, by at most the scattered share.
+  void emitted(std::span<const double> source, std::span<double> radiance) const;
   /// Of light of irradiance 1 scattered once, what all that scatters has in common: the mean of exp(-both) over each stretch, which times the
   /// stretch's depth of a scatterer adds up to its radiance for a phase of 1/sr. `both`: depth from the camera and on to the sun (infinite: in
   /// shadow).

@@ -45,16 +45,15 @@ AirRadiance airRadiance(const AirNode& node, const SunlitAir& air, std::span<con
   out.depth.resize(n);
   out.thermal.resize(n);
   // One allocation: this is called for every wavelength of every line of sight.
-  std::vector<double> room(6 * n);
+  std::vector<double> room(5 * n);
   const auto part = [&](size_t i) { return std::span(room).subspan(i * n, n); };
-  const std::span<double> absorbed = part(0), molecules = part(1), haze = part(2), black = part(3), both = part(4), share = part(5);
+  const std::span<double> molecules = part(0), haze = part(1), black = part(2), both = part(3), share = part(4);
   const Absorbers all(node.extinction), small(node.molecules), large(node.haze);
   for (size_t s = 0; s < n; ++s) {
-    const double d = all.depth(air.powered[s]), m = small.depth(air.powered[s]), p = large.depth(air.powered[s]);
-    out.depth[s] = d, molecules[s] = m, haze[s] = p, absorbed[s] = d - m - p;
+    out.depth[s] = all.depth(air.powered[s]), molecules[s] = small.depth(air.powered[s]), haze[s] = large.depth(air.powered[s]);
     black[s] = node.source + source[s];
   }
-  AirLight{out.depth}.emitted(absorbed, black, out.thermal);
+  AirLight{out.depth}.emitted(black, out.thermal);
   if (air.lit.empty()) return out;
   for (size_t s = 0; s < n; ++s) both[s] = air.lit[s] ? all.depth(air.both[s]) : std::numeric_limits<double>::infinity();
   AirLight::reaching(both, share);

@@ -24,7 +24,7 @@ struct SunlitAir {
 /// What a node's air sends along it, as far as each station [W/(m2 sr um)].
 struct AirRadiance {
   std::vector<double> depth;
-  std::vector<double> thermal;          ///< emission, and AirNode::source
+  std::vector<double> thermal;          ///< emission of all extinction (AirLight::emitted), and AirNode::source
   std::vector<double> molecules, haze;  ///< scattered sunlight for phase functions and irradiance of 1; empty: no sun
 };
 

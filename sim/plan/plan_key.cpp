@@ -9,7 +9,7 @@ namespace pitviper {
 namespace {
 
 /// A change of the planner makes old plans strangers.
-constexpr double kPlannerVersion = 9;
+constexpr double kPlannerVersion = 10;
 /// Times at which poses are looked at.
 constexpr int kTimes = 17;
 

@@ -158,24 +158,8 @@ void SightWriter::air(Sight& sight, double range_m) {
       if (black >= 0) add(sight, s.range_m, {black, -1, at, sign, TermKind::AirEmission});
       add(sight, s.range_m, {own, -1, at, sign, TermKind::AirEmission});
     }
-    if (black >= 0) notEmitted(sight, line, j, black, before, end);
     if (sunlit && line.lit[j - 1] && line.lit[j]) scattered(sight, line, j, sun.cosScatter);
     before = here;
-  }
-}
-
-/// What scatters between two places does not emit: less than a black body by that.
-void SightWriter::notEmitted(Sight& sight, const SunlitAir& line, size_t station, int black, int from, int to) {
-  if (scatterers_.empty()) return;
-  SightPath middle = book_.paths[static_cast<size_t>(from)];
-  for (size_t k = 0; k < kMostAirAmounts; ++k) middle.air.amount[k] = 0.5 * (middle.air.amount[k] + book_.paths[static_cast<size_t>(to)].air.amount[k]);
-  book_.paths.push_back(std::move(middle));
-  const int way = static_cast<int>(book_.paths.size()) - 1;
-  for (size_t k : scatterers_) {
-    const double passed = line.powered[station].amount[k] - line.powered[station - 1].amount[k];
-    if (!(passed > 0.0)) continue;
-    const int lost = book_.spectrum("lost " + std::to_string(k), [k](const FineGrid& g, size_t i) { return g.air[i].molecules[k] + g.air[i].haze[k]; });
-    add(sight, line.stations[station].range_m, {black, lost, way, -passed, TermKind::AirEmission});
   }
 }
 

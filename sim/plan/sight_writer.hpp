@@ -22,7 +22,6 @@ class SightWriter {
   void reflected(Sight& sight, const Hit& hit, const Material& material, const double* modifier);
   void media(Sight& sight);
   void scattered(Sight& sight, const SunlitAir& line, size_t station, double cosScatter);
-  void notEmitted(Sight& sight, const SunlitAir& line, size_t station, int black, int from, int to);
   int pathTo(double range_m, const AirAmounts& air);
   std::vector<double> mediaUpTo(double range_m) const;
   int planck(double temperature_K);

@@ -1,6 +1,7 @@
 #include "sim/render/air_tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <future>
@@ -97,6 +98,7 @@ void AirTables::addConstants(ShaderSlots& slots) const {
   slots.constants["AIR_HEIGHTS"] = kHeights;
   slots.constants["AIR_PARTS"] = parts_;
   slots.constants["AIR_ASYMMETRIES"] = (values_ + 3) / 4;
+  slots.constants["AIR_BLACKS"] = (plan_.nodeCount() + 3) / 4;
 }
 
 void AirTables::addHeights(std::vector<float>& out) const {
@@ -145,6 +147,10 @@ void AirTables::update(const View& view, const WorldState& state) {
   const double margin = kMargin * (high - low);
   grid_ = {view.position, simulation_.frame.height(view.position), sunAcrossOf(view), std::max(low - margin, -1.0), std::min(high + margin, 1.0),
            1.1 * farthest};
+  const AirRay here{std::min(grid_.height_m, simulation_.path->top_m()), 1.0, simulation_.frame.earthRadius_m()};
+  const double temperature_K = simulation_.path->stationsAt(here, std::array{0.0}).front().temperature_K;
+  black_.clear();
+  for (size_t i = 0; i < plan_.nodes.size(); ++i) black_.push_back(temperature_K > 0.0 ? planck(i, temperature_K) : 0.0);
   fill(view);
 }
 
@@ -218,8 +224,11 @@ void AirTables::fillElevation(const View& view, int e, const std::vector<double>
   std::vector<double> source(line.stations.size());
   for (size_t i = 0; i < nodes; ++i) {
     for (size_t s = 0; s < source.size(); ++s) source[s] = line.stations[s].temperature_K > 0.0 ? planck(i, line.stations[s].temperature_K) : 0.0;
-    const AirRadiance found = airRadiance(plan_.nodes[i].air, line, source);
+    AirRadiance found = airRadiance(plan_.nodes[i].air, line, source);
     for (size_t part = 0; part < parts; ++part) {
+      // Emission is kept as what it differs from that of air of one temperature, which the shader works out by the pixel's own depth.
+      if (part == 0)
+        for (size_t s = 0; s < found.depth.size(); ++s) found.thermal[s] -= black_[i] * physics::oneMinusExp(found.depth[s]);
       const auto& sent = part == 0 ? found.thermal : part == 1 ? found.molecules : found.haze;
       const double strength = part == 0 ? 1.0 : sunIrradiance_[i];
       for (size_t r = 0; r < columns; ++r) {
@@ -271,6 +280,7 @@ void AirTables::fill(const View& view) {
   for (const SpectralNode& n : plan_.nodes)
     for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) put({n.air.extinction[k]});
   block.insert(block.end(), asymmetry.begin(), asymmetry.end());
+  for (size_t i = 0; i < (plan_.nodes.size() + 3) / 4 * 4; ++i) put({i < black_.size() ? black_[i] : 0.0});
   block_.upload(block);
 }
 
