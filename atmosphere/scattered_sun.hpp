@@ -10,7 +10,7 @@
 // Valid: scattering optical depth well below 1. Left out: light scattered twice or more and light from the ground (in the visible the sky is a half to
 // a third of what is published, at 4.8 um within 1 to 13 % of MODTRAN's: tests/physics/test_scattered_sun.cpp); that the sky is colder than the
 // air: where haze scatters, the thermal sky is up to 5 % (3-5 um) and 8 % (8-12 um) above that of absorption alone, and the truth between;
-// depolarisation (1.5 % of P_R); refraction. What lies in the earth's shadow gets nothing.
+// depolarisation (1.5 % of P_R); refraction; the sun's size. What lies in the earth's shadow gets nothing.
 // The LOWTRAN 7 figures that this air was fitted to hold no scattered sunlight: this part rests on closed forms, two MODTRAN runs and two
 // published skies.
 #include <memory>

@@ -44,14 +44,16 @@ void AirLight::emitted(std::span<const double> source, std::span<double> radianc
   }
 }
 
-void AirLight::reaching(std::span<const double> both, std::span<double> share) {
+void AirLight::reaching(std::span<const double> both, std::span<const double> lit, std::span<double> share) {
   if (!both.empty()) share[0] = 0.0;
   for (size_t i = 1; i < both.size(); ++i) {
+    const double sun = 0.5 * (lit[i - 1] + lit[i]);
     share[i] = 0.0;
-    if (!std::isfinite(both[i - 1]) || !std::isfinite(both[i])) continue;
-    const double x = both[i] - both[i - 1];  // of either sign: looking up, the sun's leg gets shorter
+    if (!(sun > 0.0)) continue;
+    const double near = lit[i - 1] > 0.0 ? both[i - 1] : both[i], far = lit[i] > 0.0 ? both[i] : both[i - 1];
+    const double x = far - near;  // of either sign: looking up, the sun's leg gets shorter
     const double mean = std::abs(x) < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
-    share[i] = std::exp(-both[i - 1]) * mean;
+    share[i] = sun * std::exp(-near) * mean;
   }
 }
 

@@ -14,8 +14,9 @@ SunlitAir::SunlitAir(const Path& path, const AirRay& ray, std::vector<AirStation
     if (!legs) continue;
     // The sun's elevation there: its direction does not change, the vertical does.
     const double sine = std::clamp((r0 * sun.sinElevation + s.range_m * sun.cosScatter) / (ray.earthRadius_m + s.height_m), -1.0, 1.0);
-    lit.push_back(!legs->inShadow(s.height_m, sine));
-    both.push_back(lit.back() ? path.powered(s.amounts + legs->at(s.height_m, sine)) : AirAmounts{});
+    const RisenSun risen = risenSun(s.height_m, sine, ray.earthRadius_m);
+    lit.push_back(risen.share);
+    both.push_back(risen.share > 0.0 ? path.powered(s.amounts + legs->at(s.height_m, risen.sinElevation)) : AirAmounts{});
   }
 }
 
@@ -55,8 +56,8 @@ AirRadiance airRadiance(const AirNode& node, const SunlitAir& air, std::span<con
   }
   AirLight{out.depth}.emitted(black, out.thermal);
   if (air.lit.empty()) return out;
-  for (size_t s = 0; s < n; ++s) both[s] = air.lit[s] ? all.depth(air.both[s]) : std::numeric_limits<double>::infinity();
-  AirLight::reaching(both, share);
+  for (size_t s = 0; s < n; ++s) both[s] = air.lit[s] > 0.0 ? all.depth(air.both[s]) : std::numeric_limits<double>::infinity();
+  AirLight::reaching(both, air.lit, share);
   out.molecules.resize(n);
   out.haze.resize(n);
   double fromMolecules = 0.0, fromHaze = 0.0;

@@ -9,7 +9,7 @@ namespace pitviper {
 namespace {
 
 /// A change of the planner makes old plans strangers.
-constexpr double kPlannerVersion = 10;
+constexpr double kPlannerVersion = 11;
 /// Times at which poses are looked at.
 constexpr int kTimes = 17;
 

@@ -158,7 +158,7 @@ void SightWriter::air(Sight& sight, double range_m) {
       if (black >= 0) add(sight, s.range_m, {black, -1, at, sign, TermKind::AirEmission});
       add(sight, s.range_m, {own, -1, at, sign, TermKind::AirEmission});
     }
-    if (sunlit && line.lit[j - 1] && line.lit[j]) scattered(sight, line, j, sun.cosScatter);
+    if (sunlit && line.lit[j - 1] > 0.0 && line.lit[j] > 0.0) scattered(sight, line, j, sun.cosScatter);
     before = here;
   }
 }
@@ -178,7 +178,8 @@ void SightWriter::scattered(Sight& sight, const SunlitAir& line, size_t station,
   // Steps of a tenth in the cosine: what matters here is the wavelength.
   const double cosine = 0.1 * std::round(10.0 * cosScatter);
   for (size_t k : scatterers_) {
-    const double passed = line.powered[station].amount[k] - line.powered[station - 1].amount[k];
+    const double lit = 0.5 * (line.lit[station - 1] + line.lit[station]);
+    const double passed = lit * (line.powered[station].amount[k] - line.powered[station - 1].amount[k]);
     if (!(passed > 0.0)) continue;
     const int scatter = book_.spectrum("scatter " + std::to_string(k) + " " + std::to_string(cosine), [k, cosine](const FineGrid& g, size_t i) {
       const AirNode& n = g.air[i];
