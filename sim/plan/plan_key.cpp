@@ -9,7 +9,7 @@ namespace pitviper {
 namespace {
 
 /// A change of the planner makes old plans strangers.
-constexpr double kPlannerVersion = 11;
+constexpr double kPlannerVersion = 12;
 /// Times at which poses are looked at.
 constexpr int kTimes = 17;
 
@@ -93,7 +93,7 @@ ContentKey planKey(const Simulation& sim, const Plan& outline, const Eye& eye) {
   std::vector<double> grid;
   for (size_t o = 0; o < outputs.size(); ++o) {
     b.add(outline.slotOfOutput[o]);
-    for (const QuadratureNode& n : fineGrid(outputs[o].kernel, sim.path.get())) b.add(n.x), b.add(n.weight), grid.push_back(n.x);
+    for (const QuadratureNode& n : fineGrid(outputs[o].kernel, sim)) b.add(n.x), b.add(n.weight), grid.push_back(n.x);
   }
   std::sort(grid.begin(), grid.end());
   grid.erase(std::unique(grid.begin(), grid.end()), grid.end());
