@@ -69,6 +69,17 @@ void checkCoverage(const Simulation& sim, const ChannelOutput& output) {
   check("the background", output.where, sim.background);
 }
 
+/// The user's sampling of a response; narrow lines of the scene, which it would step over or hit by chance, have nodes of their own.
+std::vector<QuadratureNode> ruleWithLines(const Simulation& sim, const Spectrum& kernel, const SpectralSampling& sampling) {
+  auto rule = spectralRule(kernel, sampling.samples, sampling.spacing);
+  const auto lines = narrowLines(spectraOf(sim), kernel, rule);
+  if (lines.empty()) return rule;
+  rule = spectralRule(kernel * betweenLines(lines), sampling.samples, sampling.spacing);
+  const auto own = lineNodes(lines, kernel);
+  rule.insert(rule.end(), own.begin(), own.end());
+  return rule;
+}
+
 }  // namespace
 
 SpectralNode nodeAt(const Simulation& sim, double wavelength_um) {
@@ -105,9 +116,9 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   std::vector<std::vector<QuadratureNode>> rules;
   for (const auto* slot : slots) {
     try {
-      rules.push_back(sampling.reference ? fineGrid(slot->kernel, sim.path.get())
+      rules.push_back(sampling.reference ? fineGrid(slot->kernel, sim)
                       : sampling.shared  ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, pieces)
-                                         : spectralRule(slot->kernel, sampling.samples, sampling.spacing));
+                                         : ruleWithLines(sim, slot->kernel, sampling));
     } catch (const std::invalid_argument& e) {
       throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(),
                       sampling.shared ? "a response that these samples integrate to 0.1 %" : "a response above zero somewhere",

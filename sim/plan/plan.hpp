@@ -28,6 +28,16 @@ struct TermShare {
   bool kept = true;
 };
 
+/// What a channel's predicted error is made of, relative to the pixel.
+struct PredictedParts {
+  double wavelengths = 0.0;  ///< largest on the last lines, times a margin
+  double tables = 0.0;       ///< between entries of tables
+  double dropped = 0.0;      ///< terms left out
+  double precision = 0.0;    ///< single precision
+  double extremes = 0.0;     ///< by itself: largest on the lines at the extremes, of wavelengths alone
+  double sum() const { return wavelengths + tables + dropped + precision; }
+};
+
 struct Plan {
   std::vector<SpectralNode> nodes;
   std::vector<NodeBlock> blocks;
@@ -35,7 +45,9 @@ struct Plan {
   std::vector<int> slotOfOutput;            ///< one per output
   std::vector<std::vector<double>> weight;  ///< [slot][node]
   double accuracy = 0.0;                    ///< relative error asked for; 0: none was
-  std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where none was asked for
+  std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where nothing was measured
+  std::vector<PredictedParts> parts;        ///< [slot]: what it is made of
+  int lines = 0;                            ///< lines of sight it was measured on
   std::vector<int> fineCount;               ///< [slot]: wavelengths of the reference
   std::vector<TermShare> shares;            ///< what was looked at to keep or drop terms; empty where no accuracy was asked for
   Terms terms;

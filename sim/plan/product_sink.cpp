@@ -117,7 +117,7 @@ void ProductSink::segment(const Segment& s) {
   for (const MediumInside& m : s.media) inside_m_[static_cast<size_t>(m.material)] += m.length_m;
   if (!s.dark) {
     emission(s);
-    if (s.sunlit && s.near.sun > 0.0 && s.far.sun > 0.0) scattered(s);
+    if (s.sunlit && s.near.sun + s.far.sun > 0.0) scattered(s);
   }
   if (!inside_m_.empty()) {
     media_m_.resize(inside_m_.size(), 0.0);
@@ -163,10 +163,12 @@ void ProductSink::emission(const Segment& s) {
 
 /// Sunlight scattered between two places, by Simpson's rule over what scatters.
 void ProductSink::scattered(const Segment& s) {
+  const AirAmounts &from = s.near.sun > 0.0 ? s.near.both : s.far.both, &to = s.far.sun > 0.0 ? s.far.both : s.near.both;
+  const double sun = 0.5 * (s.near.sun + s.far.sun);
   int way[3];
   for (int p = 0; p < 3; ++p) {
     AirAmounts both;
-    for (size_t k = 0; k < kMostAirAmounts; ++k) both.amount[k] = s.near.both.amount[k] + 0.5 * p * (s.far.both.amount[k] - s.near.both.amount[k]);
+    for (size_t k = 0; k < kMostAirAmounts; ++k) both.amount[k] = from.amount[k] + 0.5 * p * (to.amount[k] - from.amount[k]);
     way[p] = pathOf(both, 0.5 * p);
   }
   const int irradiance = book_.spectrum(Factor::sun(), sim_);
@@ -181,7 +183,7 @@ void ProductSink::scattered(const Segment& s) {
     for (int p = 0; p < 3; ++p) {
       SightTerm t{{}, TermKind::ScatteredSun};
       t.product.spectrum[0] = irradiance, t.product.spectrum[1] = scatter, t.product.count = 2;
-      t.product.path = way[p], t.product.coefficient = passed * (p == 1 ? 4.0 : 1.0) / 6.0;
+      t.product.path = way[p], t.product.coefficient = sun * passed * (p == 1 ? 4.0 : 1.0) / 6.0;
       add(t);
     }
   }

@@ -18,7 +18,7 @@ constexpr double kNegligible = 1e-4;
 
 FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel) {
   FineGrid grid;
-  for (const QuadratureNode& n : fineGrid(kernel, simulation.path.get())) {
+  for (const QuadratureNode& n : fineGrid(kernel, simulation)) {
     grid.wavelength_um.push_back(n.x);
     grid.weight.push_back(n.weight);
     grid.air.push_back(simulation.path ? simulation.path->node(n.x) : AirNode{});

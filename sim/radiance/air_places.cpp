@@ -67,7 +67,7 @@ AirPlaces::AirPlaces(const RadianceScene& scene, const LineOfSight& line, std::v
   cosScatter_ = sun.cosScatter;
   const SunlitAir air(path, ray, path.stationsAt(ray, ranges), sunlit_ ? scene.sunLegs : nullptr, sun);
   for (size_t i = 0; i < ranges.size(); ++i) {
-    places_.push_back({ranges[i], air.stations[i].temperature_K, air.powered[i], sunlit_ ? air.both[i] : AirAmounts{}, sunlit_ && air.lit[i] ? 1.0 : 0.0});
+    places_.push_back({ranges[i], air.stations[i].temperature_K, air.powered[i], sunlit_ ? air.both[i] : AirAmounts{}, sunlit_ ? air.lit[i] : 0.0});
     amounts_.push_back(air.stations[i].amounts);
   }
 }

@@ -113,7 +113,10 @@ void NodeSum::segment(const Segment& s) {
   }
   const auto nodes = spectra_.nodes();
   const size_t used = s.air ? spectra_.simulation().path->exponents().size() : 0;
-  const bool sunlit = s.sunlit && s.near.sun > 0.0 && s.far.sun > 0.0;
+  // Where one end sees no sun, the other's way to it holds for the segment.
+  const double sun = s.sunlit ? 0.5 * (s.near.sun + s.far.sun) : 0.0;
+  const bool sunlit = sun > 0.0;
+  const AirAmounts &nearBoth = s.near.sun > 0.0 ? s.near.both : s.far.both, &farBoth = s.far.sun > 0.0 ? s.far.both : s.near.both;
   const std::vector<double>* irradiance = sunlit ? &values(Factor::sun()) : nullptr;
   const double rayleigh = sunlit ? rayleighPhase(s.cosScatter) : 0.0;
   std::vector<const std::vector<double>*> sources;
@@ -137,9 +140,9 @@ void NodeSum::segment(const Segment& s) {
       if (sunlit) {
         const double molecules = depthOf(nodes[i].air.molecules, s.far.powered, used) - depthOf(nodes[i].air.molecules, s.near.powered, used);
         const double haze = depthOf(nodes[i].air.haze, s.far.powered, used) - depthOf(nodes[i].air.haze, s.near.powered, used);
-        const double from = depthOf(nodes[i].air.extinction, s.near.both, used), to = depthOf(nodes[i].air.extinction, s.far.both, used) + x;
+        const double from = depthOf(nodes[i].air.extinction, nearBoth, used), to = depthOf(nodes[i].air.extinction, farBoth, used) + x;
         const double change = to - from, mean = std::abs(change) < 1e-8 ? 1.0 - 0.5 * change : -std::expm1(-change) / change;
-        send(TermKind::ScatteredSun, i, panes_[i] * std::exp(-mediaDepth_[i] - from) * mean * (*irradiance)[i] *
+        send(TermKind::ScatteredSun, i, sun * panes_[i] * std::exp(-mediaDepth_[i] - from) * mean * (*irradiance)[i] *
                  (rayleigh * std::max(molecules, 0.0) + henyeyGreensteinPhase(s.cosScatter, nodes[i].air.asymmetry) * std::max(haze, 0.0)));
       }
     }

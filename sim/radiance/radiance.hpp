@@ -35,8 +35,8 @@ struct AirPlace {
   double range_m = 0.0;
   double temperature_K = 0.0;  ///< of the air; 0: it emits nothing but AirNode::source
   AirAmounts powered;          ///< raised to their powers
-  AirAmounts both;             ///< with the way on to the sun
-  double sun = 0.0;            ///< 1: the sun reaches it
+  AirAmounts both;             ///< with the way on to the sun, where there is one
+  double sun = 0.0;            ///< share of its disc that reaches it
 };
 
 /// A body of gas or smoke on a stretch of the way.
