@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <fstream>
 
+#include "sim/model/path.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/quadrature.hpp"
@@ -16,6 +17,9 @@ namespace {
 
 // Extinction of the haze at 0.55 um [1/km] at a meteorological visibility.
 double hazeExtinction_per_km(double visibility_km) { return 3.912 / visibility_km - 0.0116; }
+
+// Dense fog to the clearest air; below 0.5 km haze grows to droplets of other spectra than the table's.
+constexpr double kLeastVisibility_km = 0.5, kMostVisibility_km = 300.0;
 
 // Below this the first interval's exponential is held: the deepest open ground on earth is 0.43 km below the sea.
 constexpr double kLowest_m = -2000.0;
@@ -136,7 +140,7 @@ class AbsorberTableReader {
       text += (text.empty() ? "" : " ") + line.substr(from, static_cast<size_t>(last.column - 1) + last.text.size() - from);
     } else if (key == "visibility_km") {
       expectWords(2);
-      table_.visibility_km_ = number(1, 1.0, 300.0, "visibility [km]");
+      table_.visibility_km_ = number(1, kLeastVisibility_km, kMostVisibility_km, "visibility [km]");
     } else if (key == "amount") {
       readAmount();
     } else if (key == "level") {
@@ -216,9 +220,13 @@ AbsorberTable AbsorberTable::read(const std::filesystem::path& file) {
 void AbsorberTable::setVisibility(double visibility_km) {
   for (size_t k = 0; k < absorbers_.size(); ++k) {
     if (absorbers_[k].kind == AbsorberKind::Haze)
-      scale_[k] = hazeExtinction_per_km(std::clamp(visibility_km, 1.0, 300.0)) / hazeExtinction_per_km(visibility_km_);
+      scale_[k] = hazeExtinction_per_km(std::clamp(visibility_km, kLeastVisibility_km, kMostVisibility_km)) / hazeExtinction_per_km(visibility_km_);
     if (absorbers_[k].kind == AbsorberKind::Aerosol) scale_[k] = 1.0;
   }
+}
+
+void AbsorberTable::setTemperature(double temperature_K) {
+  for (Level& level : levels_) level.temperature_K = temperature_K;
 }
 
 void AbsorberTable::removeAerosol() {
@@ -343,6 +351,12 @@ std::array<double, kMostAbsorbers> AbsorberTable::coefficients(double wavelength
   return c;
 }
 
+void AbsorberTable::addTo(Fingerprint& f) const {
+  f.add(visibility_km_).all(levels_).all(bins_);
+  for (double s : scale_) f.add(s);
+  for (const Absorber& a : absorbers_) f.add(a.exponent).add(static_cast<int>(a.kind));
+}
+
 double AbsorberTable::hazeAlbedo(double wavelength_um) const {
   const auto [i, f] = binAt(wavelength_um);
   return bins_[i].albedo * (1.0 - f) + bins_[i + 1].albedo * f;
@@ -361,24 +375,15 @@ double AbsorberTable::opticalDepth(double wavelength_um, const AbsorberAmounts& 
 
 double AbsorberTable::transmittance(double wavelength_um, const AbsorberAmounts& amounts) const { return std::exp(-opticalDepth(wavelength_um, amounts)); }
 
-// B linear in optical depth t over a stretch of depth d seen through depth t0:
-//   integral of B exp(-t0 - t) dt = exp(-t0) (B_near (1 - exp(-d)) + (B_far - B_near) g(d)),  g = (1 - exp(-d) (1 + d)) / d.
-// With no more than the ends' temperatures known this keeps the right limit on either side: B_near when opaque, the mean when thin.
 double AbsorberTable::pathRadiance(double wavelength_um, std::span<const PathStation> stations) const {
   const auto c = coefficients(wavelength_um);
-  double radiance = 0.0, before = 0.0;
-  double nearB = stations.empty() ? 0.0 : physics::planckRadiance(wavelength_um, stations.front().temperature_K);
-  for (size_t i = 1; i < stations.size(); ++i) {
-    const double depth = depthOf(c, stations[i].amounts), d = std::max(depth - before, 0.0);
-    const double farB = physics::planckRadiance(wavelength_um, stations[i].temperature_K);
-    const double emitted = physics::oneMinusExp(d);
-    // The series where the difference would lose its digits: d/2 - d^2/3, next term d^3/8 below 2e-10 of it.
-    const double g = d < 1e-3 ? d * (0.5 - d / 3.0) : (emitted - d * std::exp(-d)) / d;
-    radiance += std::exp(-before) * (nearB * emitted + (farB - nearB) * g);
-    before = depth;
-    nearB = farB;
+  std::vector<double> depth, source, radiance(stations.size());
+  for (const PathStation& s : stations) {
+    depth.push_back(depthOf(c, s.amounts));
+    source.push_back(physics::planckRadiance(wavelength_um, s.temperature_K));
   }
-  return radiance;
+  AirLight{depth}.emitted(source, radiance);
+  return radiance.empty() ? 0.0 : radiance.back();
 }
 
 double AbsorberTable::pathRadiance(double wavelength_um, double height_m, double sinElevation, double range_m, double earthRadius_m) const {

@@ -19,6 +19,8 @@
 #include <string_view>
 #include <vector>
 
+#include "sim/parameters/fingerprint.hpp"
+
 namespace pitviper {
 
 constexpr int kMostAbsorbers = 16;
@@ -68,10 +70,12 @@ class AbsorberTable {
   /// Heights of the table's levels, rising: densities bend there.
   std::vector<double> levels_m() const;
 
-  /// Scales the haze to another meteorological visibility, 1 to 300 km. Extinction at 0.55 um: 3.912 / V - 0.0116 per km.
+  /// Scales the haze to another meteorological visibility, 0.5 to 300 km. Extinction at 0.55 um: 3.912 / V - 0.0116 per km.
   /// Source: Koschmieder's law less Rayleigh scattering, as LOWTRAN does. The haze keeps its profile: below 10 km of visibility LOWTRAN's
   /// own falls off less in the first kilometre, so that slant paths out of such haze are too clear here.
   void setVisibility(double visibility_km);
+  /// The same temperature everywhere; densities stay as they are.
+  void setTemperature(double temperature_K);
   /// No aerosol at all; setVisibility() brings it back.
   void removeAerosol();
 
@@ -97,9 +101,8 @@ class AbsorberTable {
   double opticalDepth(double wavelength_um, const AbsorberAmounts& amounts) const;
   double transmittance(double wavelength_um, const AbsorberAmounts& amounts) const;
 
-  /// Thermal radiance of the path seen from its beginning [W/(m2 sr um)], all extinction taken as emitting (as LOWTRAN does, so this is what is
-  /// compared with its figures; too much where scattering matters: the haze's albedo is 0.9 up to 5 um. What only absorbs and what sunlight
-  /// scatters: scattered_sun.hpp).
+  /// Thermal radiance of the path seen from its beginning [W/(m2 sr um)], all extinction taken as emitting, as LOWTRAN does
+  /// (AirLight::emitted; with sunlight that is scattered: scattered_sun.hpp).
   ///   L = sum over stations of integral of B(T) dtau, B linear in optical depth between two stations.
   /// Converges as the stations get closer: count 32 is within 0.4 % of finer ones in the 3-5 and 8-12 um means.
   double pathRadiance(double wavelength_um, std::span<const PathStation> stations) const;
@@ -110,6 +113,8 @@ class AbsorberTable {
   /// Densities relative to sea level (the haze scaled to the visibility) and temperature at a height.
   AbsorberAmounts densities(double height_m) const;
   double temperature_K(double height_m) const;
+  /// All of it.
+  void addTo(Fingerprint& f) const;
 
  private:
   struct Level {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/scene_fingerprint.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -29,6 +30,7 @@ class NoAir final : public Path {
   double validLow_um() const override { return kShortestWavelength_um; }
   double validHigh_um() const override { return kLongestWavelength_um; }
   std::vector<double> knots_um() const override { return {}; }
+  void addTo(Fingerprint& f) const override { f.add("no air"); }
 };
 
 class Homogeneous final : public Path {
@@ -66,6 +68,11 @@ class Homogeneous final : public Path {
       std::sort(k.begin(), k.end());
     }
     return k;
+  }
+  void addTo(Fingerprint& f) const override {
+    f.add("homogeneous").add(air_.temperature_K.value_or(-1.0)).add(air_.radiance.has_value()).add(air_.top_m);
+    pitviper::addTo(f, air_.extinction_per_m);
+    if (air_.radiance) pitviper::addTo(f, *air_.radiance);
   }
 
  private:

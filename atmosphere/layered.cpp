@@ -68,6 +68,7 @@ class Layered final : public Path {
   double validLow_um() const override { return table_.validLow_um(); }
   double validHigh_um() const override { return table_.validHigh_um(); }
   std::vector<double> knots_um() const override { return table_.knots_um(); }
+  void addTo(Fingerprint& f) const override { table_.addTo(f.add("layered")); }
 
  private:
   AbsorberTable table_;

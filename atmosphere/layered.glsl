@@ -1,14 +1,16 @@
+//@use sim/radiometry/glsl/exponential.glsl
 // Layered air: -ln tau = sum of c_k W_k^a_k over the absorbers k, four to a vector. What a camera's way holds (logarithm of the mean density)
-// and sends comes from a table by elevation and range, made in double precision for each view (sim/render/air_tables.hpp); ways on to lights
-// and to the sun from tables by height. Amounts of both legs are added before the power: a band does not decay exponentially.
+// and sends beyond air of one temperature comes from a table by elevation and range, made in double precision for each view
+// (sim/render/air_tables.hpp); ways on to lights and to the sun from tables by height. Amounts of both legs are added before the power: a band does not decay exponentially.
 layout(std140, binding = 3) uniform AirBlock {
   vec4 grid;       // root of the first elevation's sine, entries per unit of it; scale of ranges [m], entries per unit of ln(1 + range / scale)
-  vec4 heights;    // bottom [m], entries per root of a metre; sine of the first sun elevation, 1 / step to the second
+  vec4 heights;    // bottom [m], entries per root of a metre; sine of the first sun elevation, 1 / step to the next
   vec4 exponent[AIR_VECTORS];
   vec4 extinction[NODES * AIR_VECTORS];
   vec4 asymmetry[AIR_ASYMMETRIES];
+  vec4 black[AIR_BLACKS];  // of nodes: radiance of a black body of the air's temperature at the camera
 } air;
-layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][density, sun low, sun high][vector]
+layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][density, sun elevations][vector]
 layout(binding = 21) uniform samplerBuffer airRadiance;  // [elevation][range, space last][part][value]
 
 struct AirPath {
@@ -56,14 +58,14 @@ void airHeight(float height, out int at, out float mixed) {
   int h = min(int(t), AIR_HEIGHTS - 2);
   float from = float(h), t2 = t * t, from2 = from * from;
   mixed = clamp((t2 - from2) / (2.0 * from + 1.0), 0.0, 1.0);
-  at = AIR_ELEVATIONS * (AIR_RANGES + 1) * AIR_VECTORS + h * 3 * AIR_VECTORS;
+  at = AIR_ELEVATIONS * (AIR_RANGES + 1) * AIR_VECTORS + h * (1 + AIR_SUNS) * AIR_VECTORS;
 }
 
 vec4 airDensity(float height, int v) {
   int at;
   float m;
   airHeight(height, at, m);
-  return exp(mix(texelFetch(airAmounts, at + v), texelFetch(airAmounts, at + 3 * AIR_VECTORS + v), m));
+  return exp(mix(texelFetch(airAmounts, at + v), texelFetch(airAmounts, at + (1 + AIR_SUNS) * AIR_VECTORS + v), m));
 }
 
 AirPath airRaised(AirPath p) {
@@ -71,15 +73,22 @@ AirPath airRaised(AirPath p) {
   return p;
 }
 
+// Cubic between elevations, as SunLegs::at().
 AirPath airToSun(AirPath camera, float height) {
   AirPath p = camera;
+  if (AIR_SUNS == 0) return p;
   int at;
-  float m, s = (sunElevation_ - air.heights.z) * air.heights.w;
+  float m, x = clamp((sunElevation_ - air.heights.z) * air.heights.w, 0.0, float(AIR_SUNS - 1));
   airHeight(height, at, m);
+  int e = clamp(int(x) - 1, 0, max(AIR_SUNS - 4, 0));
+  float f = x - float(e);
+  vec4 weight = vec4((f - 1.0) * (f - 2.0) * (3.0 - f) / 6.0, f * (f - 2.0) * (f - 3.0) / 2.0, f * (f - 1.0) * (3.0 - f) / 2.0, f * (f - 1.0) * (f - 2.0) / 6.0);
   for (int v = 0; v < AIR_VECTORS; ++v) {
-    int low = at + AIR_VECTORS + v, above = low + 3 * AIR_VECTORS;
-    p.w[v] += exp(mix(mix(texelFetch(airAmounts, low), texelFetch(airAmounts, above), m),
-                      mix(texelFetch(airAmounts, low + AIR_VECTORS), texelFetch(airAmounts, above + AIR_VECTORS), m), s));
+    int low = at + (1 + e) * AIR_VECTORS + v, above = low + (1 + AIR_SUNS) * AIR_VECTORS;
+    vec4 l = vec4(0.0);
+    for (int j = 0; j < 4; ++j)
+      l += weight[j] * mix(texelFetch(airAmounts, low + j * AIR_VECTORS), texelFetch(airAmounts, above + j * AIR_VECTORS), m);
+    p.w[v] += exp(l);
   }
   return airRaised(p);
 }
@@ -102,6 +111,9 @@ Real airDepth(int i, AirPath p) {
   return depth;
 }
 
+// What air of one temperature sends: with it the balance of a world of that temperature holds to rounding, whatever the tables lose.
+Real airBlack(int i, Real depth) { return air.black[i / 4][i % 4] * oneMinusExp(depth); }
+
 Real pathTransmittance(int i, AirPath p) { return exp(-airDepth(i, p)); }
 
 Real pathDepth(int i, AirPath near, AirPath far) { return max(airDepth(i, far) - airDepth(i, near), 0.0); }
@@ -113,7 +125,7 @@ vec4 airPart(AirPath p, int part, int texel, int count) {
              mix(texelFetch(airRadiance, high), texelFetch(airRadiance, high + step), p.mixed.y), p.mixed.x);
 }
 
-// Emission, and sunlight scattered by molecules and haze, each with its phase function [1/sr].
+// Emission less that of air of one temperature, and sunlight scattered by molecules and haze, each with its phase function [1/sr].
 vec4 airValue(AirPath p, int texel, int count, vec4 g) {
   vec4 sum = airPart(p, 0, texel, count);
   if (AIR_PARTS > 1) {

@@ -1,5 +1,8 @@
 //@use atmosphere/layered.glsl
-// Path radiance integrated over each channel beforehand: it depends on the way alone.
+// What depends on the way alone is integrated over each channel beforehand.
 Real pathRadiance(int i, AirPath p) { return 0.0; }
-Real pathSeen(int i, AirPath p, Real radiance) { return radiance * pathTransmittance(i, p); }
+Real pathSeen(int i, AirPath p, Real radiance) {
+  Real depth = airDepth(i, p);
+  return radiance * exp(-depth) + airBlack(i, depth);
+}
 vec4 channelAir(int group, AirPath p) { return airValue(p, group, GROUPS, air.asymmetry[group]); }

@@ -61,7 +61,7 @@ Spectrum ruralAsymmetry() {
 }
 
 struct ScatteredSun::Optics {
-  Powers extinction{}, molecules{}, haze{}, absorption{};  ///< optical depth per W^a: all of it; scattered by molecules, by haze; absorbed
+  Powers extinction{}, molecules{}, haze{};  ///< optical depth per W^a: all of it; scattered by molecules, by haze
   double asymmetry = 0.0;
 };
 
@@ -130,7 +130,6 @@ SkyDome ScatteredSun::dome(double height_m, double sinSunElevation, int elevatio
 ScatteredSun::Optics ScatteredSun::optics(double wavelength_um) const {
   Optics o;
   o.extinction = air_->coefficients(wavelength_um);
-  o.absorption = o.extinction;
   o.asymmetry = asymmetry_(wavelength_um);
   const double albedo = air_->hazeAlbedo(wavelength_um);
   const auto absorbers = air_->absorbers();
@@ -138,7 +137,6 @@ ScatteredSun::Optics ScatteredSun::optics(double wavelength_um) const {
     const AbsorberKind kind = absorbers[k].kind;
     if (kind == AbsorberKind::Scattering) o.molecules[k] = o.extinction[k];
     if (kind == AbsorberKind::Haze || kind == AbsorberKind::Aerosol) o.haze[k] = albedo * o.extinction[k];
-    o.absorption[k] -= o.molecules[k] + o.haze[k];
   }
   return o;
 }
@@ -159,24 +157,15 @@ double ScatteredSun::scatteredRadiance(double wavelength_um, const SunlitPath& p
   return irradiance * sum;
 }
 
-// As AbsorberTable::pathRadiance(), the share of a stretch's depth that absorbs taken as even within it.
 double ScatteredSun::thermalRadiance(double wavelength_um, const SunlitPath& path) const {
-  const Optics o = optics(wavelength_um);
-  double radiance = 0.0, before = 0.0, absorbedBefore = 0.0;
-  double nearB = path.stations.empty() ? 0.0 : physics::planckRadiance(wavelength_um, path.stations.front().temperature_K);
-  for (size_t i = 1; i < path.stations.size(); ++i) {
-    const auto& s = path.stations[i];
-    const double depth = dot(o.extinction, s.viewPower), absorbed = dot(o.absorption, s.viewPower), d = std::max(depth - before, 0.0);
-    const double farB = physics::planckRadiance(wavelength_um, s.temperature_K);
-    const double emitted = physics::oneMinusExp(d);
-    const double g = d < 1e-3 ? d * (0.5 - d / 3.0) : (emitted - d * std::exp(-d)) / d;
-    const double share = d > 0.0 ? std::clamp((absorbed - absorbedBefore) / d, 0.0, 1.0) : 0.0;
-    radiance += share * std::exp(-before) * (nearB * emitted + (farB - nearB) * g);
-    before = depth;
-    absorbedBefore = absorbed;
-    nearB = farB;
+  const Powers extinction = air_->coefficients(wavelength_um);
+  std::vector<double> depth, source, radiance(path.stations.size());
+  for (const SunlitPath::Station& s : path.stations) {
+    depth.push_back(dot(extinction, s.viewPower));
+    source.push_back(physics::planckRadiance(wavelength_um, s.temperature_K));
   }
-  return radiance;
+  AirLight{depth}.emitted(source, radiance);
+  return radiance.empty() ? 0.0 : radiance.back();
 }
 
 double ScatteredSun::radiance(double wavelength_um, const SunlitPath& path, double irradiance) const {

@@ -1,18 +1,18 @@
 #pragma once
 // Sunlight scattered once by structured air, and what that air emits itself: the sky, and the haze between camera and target.
 //
-// Law: L = E0 integral of (beta_R P_R + beta_A P_A) exp(-D) ds + integral of B(T) dt_a exp(-t),
+// Law: L = E0 integral of (beta_R P_R + beta_A P_A) exp(-D) ds + integral of B(T) exp(-t) dt,
 //   D = sum over k of c_k (W_k,view + W_k,sun)^a_k: the amounts on both legs are added before the exponential (absorber_table.hpp);
 //   P_R = 3/(16 pi) (1 + cos^2) molecules, P_A = (1 - g^2)/(4 pi (1 + g^2 - 2 g cos)^1.5) haze, cos of the angle between sunlight and what goes
-//   on to the camera; beta_R [1/km] the table's `scattering`; beta_A albedo x its `haze` and `aerosol`; t optical depth of the view, t_a the
-//   part of it that absorbs: what is scattered away emits nothing; E0 irradiance above the air [W/(m2 um)].
+//   on to the camera; beta_R [1/km] the table's `scattering`; beta_A albedo x its `haze` and `aerosol`; t optical depth of the view, all of
+//   which emits (AirLight::emitted says why); E0 irradiance above the air [W/(m2 um)].
 // Source: Chandrasekhar 1960, Radiative Transfer, chapter III (phase functions; first-order scattering); Henyey and Greenstein 1941.
 // Valid: scattering optical depth well below 1. Left out: light scattered twice or more and light from the ground (in the visible the sky is a half to
-// a third of what is published, at 4.8 um within 1 to 13 % of MODTRAN's: tests/physics/test_scattered_sun.cpp); thermal radiation that is
-// scattered, so that the thermal sky is up to 5 % (3-5 um) and 8 % (8-12 um) below that of all extinction emitting, and the truth between;
+// a third of what is published, at 4.8 um within 1 to 13 % of MODTRAN's: tests/physics/test_scattered_sun.cpp); that the sky is colder than the
+// air: where haze scatters, the thermal sky is up to 5 % (3-5 um) and 8 % (8-12 um) above that of absorption alone, and the truth between;
 // depolarisation (1.5 % of P_R); refraction; the sun's size. What lies in the earth's shadow gets nothing.
 // The LOWTRAN 7 figures that this air was fitted to hold no scattered sunlight: this part rests on closed forms, two MODTRAN runs and two
-// published skies. AbsorberTable::pathRadiance() (all extinction emits) is for comparison with LOWTRAN; a scene's air and sky come from here.
+// published skies.
 #include <memory>
 #include <vector>
 

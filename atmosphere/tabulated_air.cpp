@@ -85,6 +85,11 @@ TabulatedAir::TabulatedAir(Data data) : data_(std::move(data)) {
   require(!emits() || (data_.sourceRadiance.size() == data_.wavelength_um.size() && allAtLeastZero(data_.sourceRadiance)), "source radiances");
 }
 
+void TabulatedAir::addTo(Fingerprint& f) const {
+  f.all(data_.wavelength_um).all(data_.exponents).all(data_.sourceRadiance);
+  for (const auto& row : data_.depth) f.all(row);
+}
+
 std::vector<double> TabulatedAir::coefficients(double wavelength_um) const {
   const auto [i, f] = placeOf(data_.wavelength_um, wavelength_um);
   std::vector<double> c(data_.exponents.size());

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/parameters/fingerprint.hpp"
+
 namespace pitviper {
 
 /// Radiance of the sky by elevation, as seen from one place.
@@ -71,6 +73,8 @@ class TabulatedAir {
   const std::string& file() const { return data_.file; }
   int line() const { return data_.line; }  ///< where the file says which wavelengths it has
   const TableFit& fit() const { return data_.fit; }
+  /// All that paths depend on.
+  void addTo(Fingerprint& f) const;
   bool emits() const { return !data_.sourceRadiance.empty(); }
   const std::optional<TabulatedSky>& sky() const { return data_.sky; }
 

@@ -38,6 +38,7 @@ class TabulatedPath final : public Path {
   }
   double validLow_um() const override { return air_.validLow_um(); }
   double validHigh_um() const override { return air_.validHigh_um(); }
+  void addTo(Fingerprint& f) const override { air_.addTo(f.add("table")); }
   std::vector<double> knots_um() const override { return {air_.knots_um().begin(), air_.knots_um().end()}; }
 
  private:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "sim/model/scene_fingerprint.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/quadrature.hpp"
@@ -26,6 +27,10 @@ class Lambertian final : public ReflectionComponent {
   std::vector<double> knots_um() const override { return reflectance_.knots(); }
   double validLow_um() const override { return reflectance_.validLow(); }
   double validHigh_um() const override { return reflectance_.validHigh(); }
+  void addTo(Fingerprint& f) const override {
+    f.add("lambertian");
+    pitviper::addTo(f, reflectance_);
+  }
 
  private:
   Spectrum reflectance_;
@@ -88,6 +93,10 @@ class Phong final : public ReflectionComponent {
   std::vector<double> knots_um() const override { return reflectance_.knots(); }
   double validLow_um() const override { return reflectance_.validLow(); }
   double validHigh_um() const override { return reflectance_.validHigh(); }
+  void addTo(Fingerprint& f) const override {
+    f.add("phong").add(exponent_);
+    pitviper::addTo(f, reflectance_);
+  }
 
  private:
   static constexpr int kAngles = 360;
@@ -139,6 +148,10 @@ class Tabulated final : public ReflectionComponent {
   std::vector<double> knots_um() const override { return table_.wavelength_um; }
   double validLow_um() const override { return table_.wavelength_um.front(); }
   double validHigh_um() const override { return table_.wavelength_um.back(); }
+  void addTo(Fingerprint& f) const override {
+    f.add("table").all(table_.wavelength_um).all(table_.values);
+    for (const AngleAxis& a : table_.axes) f.add(static_cast<int>(a.angle)).add(a.count).add(a.last_rad);
+  }
 
  private:
   /// About half a second.

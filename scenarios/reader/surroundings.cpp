@@ -20,6 +20,9 @@ constexpr double kLargestFloatValue = 1e30;
 /// What layered air is drawn with if nobody says; and the ends of what can be asked for: single precision and the tables' angles do 0.01 %.
 constexpr double kUsualAccuracy = 0.01, kLeastAccuracy = 0.0005, kMostAccuracy = 0.2;
 
+/// Of layered air: what its absorbers were fitted over is far within.
+constexpr double kColdestAir_K = 100.0, kWarmestAir_K = 500.0;
+
 /// Of limits: as far and as hot as a scenario's bodies can be.
 constexpr double kFarthestRange_m = 1e9, kHottestBody_K = 1e5;
 
@@ -179,10 +182,17 @@ void Builder::readAtmosphere(const Record& scenario) {
   }
   take(r, spectra_, base_);
   if (table) {
-    for (const char* key : {"extinction", "temperature", "radiance", "top"})
+    for (const char* key : {"extinction", "radiance", "top"})
       if (r.given(key))
         throw UserError(r.where(key), std::string("'") + key + "' is of homogeneous air, and this air is layered: its table has it",
-                        "'visibility' or 'aerosol', or homogeneous air", std::string("remove '") + key + "', or give an extinction instead of the library air");
+                        "'visibility', 'aerosol' or 'temperature', or homogeneous air",
+                        std::string("remove '") + key + "', or give an extinction instead of the library air");
+    if (air.temperature_K) {
+      if (!(*air.temperature_K >= kColdestAir_K && *air.temperature_K <= kWarmestAir_K))
+        throw UserError(r.given("temperature") ? r.where("temperature") : r.where(), "layered air at " + briefNumber(*air.temperature_K) + " K",
+                        briefNumber(kColdestAir_K) + " to " + briefNumber(kWarmestAir_K) + " K", "correct the temperature, or describe homogeneous air");
+      table->setTemperature(*air.temperature_K);
+    }
     simulation_.path = makeLayeredAir(std::move(*table));
     return;
   }

@@ -116,10 +116,13 @@ const ParameterTable& atmosphere() {
       {withDefault(choice("model", {"none", "air"}, "none: whatever else is given, there is no air"), "air"),
        text("library", "named air, atmosphere/library/<name>.yaml"),
        text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air"),
-       within(number("visibility", "m", "layered: meteorological visibility of the haze"), 1e3, 3e5),
+       within(number("visibility", "m", "layered: meteorological visibility of the haze"), 500, 3e5),
        choice("aerosol", {"none", "table"}, "layered: without aerosol, or with the table's"),
        spectrum("extinction", "1/m", "homogeneous: extinction coefficient"),
-       within(number("temperature", "K", "homogeneous: the air emits as a black body of this temperature"), 0, kHottest_K),
+       within(number("temperature", "K",
+                     "homogeneous: the air emits as a black body of this temperature, and does not without; layered: the same at every height, in place of the "
+                     "table's"),
+              0, kHottest_K),
        spectrum("radiance", "W/(m2 sr um)", "homogeneous: further source radiance at great depth, for instance scattered sunlight"),
        within(number("top", "m",
                      "homogeneous: height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never "
@@ -136,8 +139,9 @@ const ParameterTable& airLibrary() {
       "air (library file)",
       "atmosphere/library/<name>.yaml: an air table, or an extinction.",
       {text("description", "what air it is"), text("source", "where the figures come from"), text("table", "air table beside it"),
-       within(number("visibility", "m", "of the table's haze"), 1e3, 3e5), choice("aerosol", {"none", "table"}, "without aerosol, or with the table's"),
-       spectrum("extinction", "1/m", "extinction coefficient"), within(number("temperature", "K", "air temperature"), 0, kHottest_K),
+       within(number("visibility", "m", "of the table's haze"), 500, 3e5), choice("aerosol", {"none", "table"}, "without aerosol, or with the table's"),
+       spectrum("extinction", "1/m", "extinction coefficient"),
+       within(number("temperature", "K", "air temperature (of a table: the same at every height)"), 0, kHottest_K),
        spectrum("radiance", "W/(m2 sr um)", "further source radiance")}};
   return t;
 }

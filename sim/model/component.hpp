@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sim/parameters/fingerprint.hpp"
+
 namespace pitviper {
 
 /// Angles a table can run over [rad]: incidence and view from the normal, specular between view and mirrored light direction, half
@@ -61,6 +63,8 @@ class ReflectionComponent {
   virtual std::vector<double> knots_um() const = 0;
   virtual double validLow_um() const = 0;
   virtual double validHigh_um() const = 0;
+  /// All that it depends on.
+  virtual void addTo(Fingerprint& f) const = 0;
 };
 
 }  // namespace pitviper

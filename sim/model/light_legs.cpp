@@ -3,28 +3,42 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/sun_legs.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 
+SunHere sunHere(const Simulation& sim, const glm::dvec3& point) {
+  SunHere here{sim.sun->toSun, 1.0, {}};
+  if (!sim.overEarth()) return here;
+  const glm::dvec3 up = sim.frame.up(point);
+  const double sine = glm::dot(here.toSun, up), height = sim.frame.height(point);
+  const RisenSun risen = risenSun(height, sine, sim.frame.earthRadius_m());
+  here.share = risen.share;
+  // Turned upwards by the sine's change over the cosine twice: once for the angle, once for what of `up` lies across the line.
+  here.toSun = glm::normalize(here.toSun + (risen.sinElevation - sine) / std::max(1.0 - sine * sine, 1e-6) * up);
+  if (here.share > 0.0 && sim.path->top_m() < physics::kFar)
+    here.air = sim.path->amounts({height, risen.sinElevation, sim.frame.earthRadius_m()}, physics::kFar);
+  return here;
+}
+
 LightLeg lightLeg(const Simulation& sim, const WorldState& state, const Hit& hit, std::size_t light) {
-  const bool sun = light == sim.lights.size();
   LightLeg leg;
-  double d2 = 1.0;
-  if (sun) {
-    leg.toLight = sim.sun->toSun;
+  if (light == sim.lights.size()) {
+    const SunHere sun = sunHere(sim, hit.point);
+    leg.toLight = sun.toSun;
     leg.distance_m = INFINITY;
-  } else {
-    const glm::dvec3 line = state.lights[light] - hit.point;
-    d2 = glm::dot(line, line);
-    leg.distance_m = std::sqrt(d2);
-    leg.toLight = d2 > 0.0 ? line / leg.distance_m : hit.normal;
+    leg.factor = sun.share * std::max(glm::dot(sun.toSun, hit.normal), 0.0);
+    leg.air = sun.air;
+    return leg;
   }
-  const double cosine = glm::dot(leg.toLight, hit.normal);
-  leg.factor = sun ? std::max(cosine, 0.0) : physics::pointIrradianceFactor(cosine, d2, sim.lights[light].radius_m);
-  if (!sim.path || sim.path->isNone() || (sun && sim.path->top_m() >= physics::kFar)) return leg;
-  const AirRay ray{sim.frame.height(hit.point), glm::dot(leg.toLight, sim.frame.up(hit.point)), sim.frame.earthRadius_m()};
-  leg.air = sim.path->amounts(ray, sun ? physics::kFar : leg.distance_m);
+  const glm::dvec3 line = state.lights[light] - hit.point;
+  const double d2 = glm::dot(line, line);
+  leg.distance_m = std::sqrt(d2);
+  leg.toLight = d2 > 0.0 ? line / leg.distance_m : hit.normal;
+  leg.factor = physics::pointIrradianceFactor(glm::dot(leg.toLight, hit.normal), d2, sim.lights[light].radius_m);
+  if (!sim.path || sim.path->isNone()) return leg;
+  leg.air = sim.path->amounts({sim.frame.height(hit.point), glm::dot(leg.toLight, sim.frame.up(hit.point)), sim.frame.earthRadius_m()}, leg.distance_m);
   return leg;
 }
 

@@ -28,31 +28,32 @@ double Path::depthOf(const AirNode& node, const AirAmounts& powered) {
 
 double Path::transmittance(const AirNode& node, const AirAmounts& amounts) const { return std::exp(-opticalDepth(node, amounts)); }
 
-// B linear in optical depth t over a stretch of depth d seen through depth t0, a share of which absorbs:
-//   share x integral of B exp(-t0 - t) dt = share exp(-t0) (B_near (1 - exp(-d)) + (B_far - B_near) g(d)),  g = (1 - exp(-d) (1 + d)) / d.
+// B linear in optical depth t over a stretch of depth d seen through depth t0:
+//   integral of B exp(-t0 - t) dt = exp(-t0) (B_near (1 - exp(-d)) + (B_far - B_near) g(d)),  g = (1 - exp(-d) (1 + d)) / d.
 // This keeps the right limit on either side: B_near when opaque, the mean when thin.
-void AirLight::emitted(std::span<const double> absorbed, std::span<const double> source, std::span<double> radiance) const {
+void AirLight::emitted(std::span<const double> source, std::span<double> radiance) const {
   double sum = 0.0, seen = 1.0;
   if (!depth.empty()) seen = std::exp(-depth[0]), radiance[0] = 0.0;
   for (size_t i = 1; i < depth.size(); ++i) {
     const double d = std::max(depth[i] - depth[i - 1], 0.0), left = std::exp(-d), lost = physics::oneMinusExp(d);
     // The series where the difference would lose its digits: d/2 - d^2/3, next term d^3/8 below 2e-10 of it.
     const double g = d < 1e-3 ? d * (0.5 - d / 3.0) : (lost - d * left) / d;
-    const double share = d > 0.0 ? std::clamp((absorbed[i] - absorbed[i - 1]) / d, 0.0, 1.0) : 0.0;
-    sum += share * seen * (source[i - 1] * lost + (source[i] - source[i - 1]) * g);
+    sum += seen * (source[i - 1] * lost + (source[i] - source[i - 1]) * g);
     seen *= left;
     radiance[i] = sum;
   }
 }
 
-void AirLight::reaching(std::span<const double> both, std::span<double> share) {
+void AirLight::reaching(std::span<const double> both, std::span<const double> lit, std::span<double> share) {
   if (!both.empty()) share[0] = 0.0;
   for (size_t i = 1; i < both.size(); ++i) {
+    const double sun = 0.5 * (lit[i - 1] + lit[i]);
     share[i] = 0.0;
-    if (!std::isfinite(both[i - 1]) || !std::isfinite(both[i])) continue;
-    const double x = both[i] - both[i - 1];  // of either sign: looking up, the sun's leg gets shorter
+    if (!(sun > 0.0)) continue;
+    const double near = lit[i - 1] > 0.0 ? both[i - 1] : both[i], far = lit[i] > 0.0 ? both[i] : both[i - 1];
+    const double x = far - near;  // of either sign: looking up, the sun's leg gets shorter
     const double mean = std::abs(x) < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
-    share[i] = std::exp(-both[i - 1]) * mean;
+    share[i] = sun * std::exp(-near) * mean;
   }
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/fingerprint.hpp"
 
 namespace pitviper {
 
@@ -29,7 +30,7 @@ struct AirAmounts {
 struct AirNode {
   std::array<double, kMostAirAmounts> extinction{};  ///< c_k: optical depth of one unit of each absorber
   std::array<double, kMostAirAmounts> molecules{};   ///< the part of it that molecules scatter ...
-  std::array<double, kMostAirAmounts> haze{};        ///< ... and that particles scatter: neither emits
+  std::array<double, kMostAirAmounts> haze{};        ///< ... and that particles scatter
   double asymmetry = 0.0;                            ///< of the particles: mean cosine of the angle they turn light by
   double source = 0.0;                               ///< radiance the air tends to at great depth besides thermal emission of its stations [W/(m2 sr um)]
 };
@@ -79,6 +80,8 @@ class Path {
   virtual double validHigh_um() const = 0;
   /// Wavelengths between which its properties are smooth, rising [um].
   virtual std::vector<double> knots_um() const = 0;
+  /// All that it depends on.
+  virtual void addTo(Fingerprint& f) const = 0;
 
   /// W_k^a_k: what the coefficients multiply.
   AirAmounts powered(const AirAmounts& amounts) const;
@@ -90,12 +93,16 @@ class Path {
 /// What air sends along a line of sight, for all places on it: one value per place, 0 at the first. Depths rise from the first on.
 struct AirLight {
   std::span<const double> depth;  ///< of all extinction, from the camera
-  /// Emission of what absorbs: `absorbed` depth of absorption alone, `source` radiance of a black body, linear in depth between two places.
-  void emitted(std::span<const double> absorbed, std::span<const double> source, std::span<double> radiance) const;
-  /// Of light of irradiance 1 scattered once, what all that scatters has in common: the mean of exp(-both) over each stretch, which times the
-  /// stretch's depth of a scatterer adds up to its radiance for a phase of 1/sr. `both`: depth from the camera and on to the sun (infinite: in
-  /// shadow).
-  static void reaching(std::span<const double> both, std::span<double> share);
+  /// Thermal radiance, all extinction taken as emitting: `source` radiance of a black body at each place, linear in depth between two.
+  /// Law: the source of air is (1 - w) B + w <L>, w the albedo, <L> the mean of the radiance around weighted by the phase function. Here <L> = B:
+  /// what is scattered out of a line is scattered in again as from surroundings of the air's own temperature.
+  /// Source: LOWTRAN 7 without multiple scattering (Kneizys et al. 1988, AFGL-TR-88-0177). Valid: exact in a world of one temperature (Kirchhoff) and
+  /// for what only absorbs; where much is scattered under a cold sky the air comes out too bright, by at most the scattered share.
+  void emitted(std::span<const double> source, std::span<double> radiance) const;
+  /// Of light of irradiance 1 scattered once, what all that scatters has in common: the mean of lit exp(-both) over each stretch, which times the
+  /// stretch's depth of a scatterer adds up to its radiance for a phase of 1/sr. `both`: depth from the camera and on to the sun; `lit`: share of
+  /// the sun that a place sees, linear between two. Where one end sees none, the other's depth holds for the stretch.
+  static void reaching(std::span<const double> both, std::span<const double> lit, std::span<double> share);
 };
 
 /// Phase functions [1/sr]; their integral over the sphere is 1. Source: Chandrasekhar 1960; Henyey and Greenstein 1941.

@@ -9,6 +9,7 @@
 #include "sim/model/channel.hpp"
 #include "sim/model/material.hpp"
 #include "sim/model/path.hpp"
+#include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectral_rule.hpp"
 #include "sim/scene/camera.hpp"
 #include "sim/scene/scene.hpp"
@@ -109,6 +110,8 @@ struct Simulation {
   const Medium* mediumOf(const Entity& e) const {  ///< what fills it, or null
     return e.surfaces.empty() || !materialOf(e.surfaces.front()).medium ? nullptr : &*materialOf(e.surfaces.front()).medium;
   }
+  /// The earth, a sphere, is there and hides the sun: under air with a top.
+  bool overEarth() const { return path && path->top_m() < physics::kFar; }
   bool isTransparent(const Entity& e) const {  ///< any of its surfaces
     return std::any_of(e.surfaces.begin(), e.surfaces.end(), [this](const Surface& s) { return materialOf(s).isTransparent(); });
   }

@@ -14,8 +14,9 @@ SunlitAir::SunlitAir(const Path& path, const AirRay& ray, std::vector<AirStation
     if (!legs) continue;
     // The sun's elevation there: its direction does not change, the vertical does.
     const double sine = std::clamp((r0 * sun.sinElevation + s.range_m * sun.cosScatter) / (ray.earthRadius_m + s.height_m), -1.0, 1.0);
-    lit.push_back(!legs->inShadow(s.height_m, sine));
-    both.push_back(lit.back() ? path.powered(s.amounts + legs->at(s.height_m, sine)) : AirAmounts{});
+    const RisenSun risen = risenSun(s.height_m, sine, ray.earthRadius_m);
+    lit.push_back(risen.share);
+    both.push_back(risen.share > 0.0 ? path.powered(s.amounts + legs->at(s.height_m, risen.sinElevation)) : AirAmounts{});
   }
 }
 
@@ -45,19 +46,18 @@ AirRadiance airRadiance(const AirNode& node, const SunlitAir& air, std::span<con
   out.depth.resize(n);
   out.thermal.resize(n);
   // One allocation: this is called for every wavelength of every line of sight.
-  std::vector<double> room(6 * n);
+  std::vector<double> room(5 * n);
   const auto part = [&](size_t i) { return std::span(room).subspan(i * n, n); };
-  const std::span<double> absorbed = part(0), molecules = part(1), haze = part(2), black = part(3), both = part(4), share = part(5);
+  const std::span<double> molecules = part(0), haze = part(1), black = part(2), both = part(3), share = part(4);
   const Absorbers all(node.extinction), small(node.molecules), large(node.haze);
   for (size_t s = 0; s < n; ++s) {
-    const double d = all.depth(air.powered[s]), m = small.depth(air.powered[s]), p = large.depth(air.powered[s]);
-    out.depth[s] = d, molecules[s] = m, haze[s] = p, absorbed[s] = d - m - p;
+    out.depth[s] = all.depth(air.powered[s]), molecules[s] = small.depth(air.powered[s]), haze[s] = large.depth(air.powered[s]);
     black[s] = node.source + source[s];
   }
-  AirLight{out.depth}.emitted(absorbed, black, out.thermal);
+  AirLight{out.depth}.emitted(black, out.thermal);
   if (air.lit.empty()) return out;
-  for (size_t s = 0; s < n; ++s) both[s] = air.lit[s] ? all.depth(air.both[s]) : std::numeric_limits<double>::infinity();
-  AirLight::reaching(both, share);
+  for (size_t s = 0; s < n; ++s) both[s] = air.lit[s] > 0.0 ? all.depth(air.both[s]) : std::numeric_limits<double>::infinity();
+  AirLight::reaching(both, air.lit, share);
   out.molecules.resize(n);
   out.haze.resize(n);
   double fromMolecules = 0.0, fromHaze = 0.0;

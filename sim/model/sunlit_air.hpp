@@ -16,7 +16,7 @@ struct SunlitAir {
   std::vector<AirStation> stations;
   std::vector<AirAmounts> powered;  ///< of each station, from the camera
   std::vector<AirAmounts> both;     ///< with the way on to the sun
-  std::vector<char> lit;            ///< whether the sun reaches it; empty: no sun
+  std::vector<double> lit;          ///< share of the sun's disc that stands above its horizon; empty: no sun
 
   SunlitAir(const Path& path, const AirRay& ray, std::vector<AirStation> stations, const SunLegs* legs, const RaySun& sun);
 };
@@ -24,7 +24,7 @@ struct SunlitAir {
 /// What a node's air sends along it, as far as each station [W/(m2 sr um)].
 struct AirRadiance {
   std::vector<double> depth;
-  std::vector<double> thermal;          ///< emission, and AirNode::source
+  std::vector<double> thermal;          ///< emission of all extinction (AirLight::emitted), and AirNode::source
   std::vector<double> molecules, haze;  ///< scattered sunlight for phase functions and irradiance of 1; empty: no sun
 };
 

@@ -1,40 +1,50 @@
 #include "sim/plan/fine_grid.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pitviper {
 namespace {
 
-constexpr double kWidth_per_cm = 5.0, kWidth_um = 1e-3;
+/// Usual bins; of the far infrared, where 5 1/cm are a half of the wavelength, no more than a part of it: the middle of a bin is then within 1e-4 of its
+/// mean on the steepest flank of Planck's law that matters (c2 / (lambda T) = 50: 50^2 / 24 x 0.01^2 = 1 % there, where 1e-15 of its light is).
+constexpr double kWidth_per_cm = 5.0, kWidth_um = 1e-3, kPart = 0.01;
+/// A bin is cut at a spectrum's bends where its middle is farther from its mean than this part of its largest value there.
+constexpr double kBent = 1e-3;
+/// Cuts of a bin that one spectrum may ask for; of more bends every second, third ... is taken.
+constexpr size_t kMostCuts = 32;
+/// Air's own bends are edges where they lie no closer than this part of a usual bin.
+constexpr double kOwnBins = 0.9;
 
 /// Width of a bin that begins at a wavelength [um].
-double widthAt(double wavelength_um) { return std::max(kWidth_um, kWidth_per_cm * 1e-4 * wavelength_um * wavelength_um); }
+double widthAt(double wavelength_um) {
+  return std::min(std::max(kWidth_um, kWidth_per_cm * 1e-4 * wavelength_um * wavelength_um), std::max(kPart * wavelength_um, kWidth_um));
+}
+
+struct Bin {
+  double from, to, at;
+};
 
 /// Bins of a table's own from `low` to `high`, wide ones cut into usual ones.
-std::vector<QuadratureNode> tableGrid(const Spectrum& kernel, std::span<const double> table, double low, double high) {
-  std::vector<QuadratureNode> nodes;
-  auto add = [&](double from, double to, double at) {
-    const double weight = from < to ? kernel.integral(from, to) : 0.0;
-    if (weight != 0.0) nodes.push_back({at, weight});
-  };
+std::vector<Bin> tableBins(std::span<const double> table, double low, double high) {
+  std::vector<Bin> bins;
   for (size_t k = 0; k < table.size(); ++k) {
     const double from = k == 0 ? low : std::max(low, 0.5 * (table[k - 1] + table[k]));
     const double to = k + 1 == table.size() ? high : std::min(high, 0.5 * (table[k] + table[k + 1]));
     if (!(from < to)) continue;
     if (to - from <= widthAt(table[k])) {
-      add(from, to, std::clamp(table[k], from, to));
+      bins.push_back({from, to, std::clamp(table[k], from, to)});
       continue;
     }
-    const int bins = static_cast<int>((to - from) / widthAt(table[k]) + 0.999);
-    for (int b = 0; b < bins; ++b) add(from + (to - from) * b / bins, from + (to - from) * (b + 1) / bins, from + (to - from) * (b + 0.5) / bins);
+    const int parts = static_cast<int>((to - from) / widthAt(table[k]) + 0.999);
+    for (int b = 0; b < parts; ++b)
+      bins.push_back({from + (to - from) * b / parts, from + (to - from) * (b + 1) / parts, from + (to - from) * (b + 0.5) / parts});
   }
-  return nodes;
+  return bins;
 }
 
-}  // namespace
-
-std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const double> table) {
-  if (!table.empty()) return tableGrid(kernel, table, kernel.supportLow(), kernel.supportHigh());
+/// From edge to edge, at least at the response's own: `own` are further ones where they leave room.
+std::vector<Bin> usualBins(const Spectrum& kernel, std::span<const double> own) {
   const double low = kernel.supportLow(), high = kernel.supportHigh();
   std::vector<double> edges = {low, high};
   for (double k : kernel.knots())
@@ -47,20 +57,88 @@ std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const dou
     if (e - kept.back() > 0.25 * widthAt(e)) kept.push_back(e);
   if (kept.size() == 1) kept.push_back(high);
   else if (kept.back() != high) kept.back() = high;
-  std::vector<QuadratureNode> nodes;
-  for (size_t i = 0; i + 1 < kept.size(); ++i) {
-    const int bins = std::max(1, static_cast<int>((kept[i + 1] - kept[i]) / widthAt(0.5 * (kept[i] + kept[i + 1])) + 0.999));
-    for (int b = 0; b < bins; ++b) {
-      const double a = kept[i] + (kept[i + 1] - kept[i]) * b / bins, e = kept[i] + (kept[i + 1] - kept[i]) * (b + 1) / bins;
-      const double weight = kernel.integral(a, e);
-      if (weight != 0.0) nodes.push_back({0.5 * (a + e), weight});
+  std::vector<double> all = kept;
+  for (double o : own) {
+    const auto above = std::upper_bound(kept.begin(), kept.end(), o);
+    if (above == kept.begin() || above == kept.end()) continue;
+    if (std::min(o - *(above - 1), *above - o) > 0.25 * widthAt(o)) all.push_back(o);
+  }
+  std::sort(all.begin(), all.end());
+  std::vector<Bin> bins;
+  for (size_t i = 0; i + 1 < all.size(); ++i) {
+    const int parts = std::max(1, static_cast<int>((all[i + 1] - all[i]) / widthAt(0.5 * (all[i] + all[i + 1])) + 0.999));
+    for (int b = 0; b < parts; ++b) {
+      const double a = all[i] + (all[i + 1] - all[i]) * b / parts, e = all[i] + (all[i + 1] - all[i]) * (b + 1) / parts;
+      bins.push_back({a, e, 0.5 * (a + e)});
     }
+  }
+  return bins;
+}
+
+/// Where spectra bend within a bin so that its middle does not stand for it.
+std::vector<double> cutsOf(const Bin& bin, std::span<const BentSpectrum> spectra) {
+  std::vector<double> cuts;
+  for (const BentSpectrum& s : spectra) {
+    auto knots = knotsWithin(s, bin.from, bin.to);
+    if (knots.empty()) continue;
+    // By Simpson's rule between bends, from inside: at a step the value just before counts too.
+    std::vector<double> edges = {bin.from};
+    edges.insert(edges.end(), knots.begin(), knots.end());
+    edges.push_back(bin.to);
+    double sum = 0.0, most = std::abs(s.at(bin.at));
+    for (size_t i = 0; i + 1 < edges.size(); ++i) {
+      const double width = edges[i + 1] - edges[i];
+      for (const auto& [place, weight] : {std::pair{0.2113248654051871, 0.5}, {0.7886751345948129, 0.5}}) {
+        const double value = s.at(edges[i] + place * width);
+        sum += weight * width * value;
+        most = std::max(most, std::abs(value));
+      }
+    }
+    if (std::abs(sum / (bin.to - bin.from) - s.at(bin.at)) <= kBent * most) continue;
+    const size_t step = (knots.size() + kMostCuts - 1) / kMostCuts;
+    for (size_t k = 0; k < knots.size(); k += step) cuts.push_back(knots[k]);
+  }
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  return cuts;
+}
+
+std::vector<QuadratureNode> weighted(const Spectrum& kernel, const std::vector<Bin>& bins, std::span<const BentSpectrum> spectra) {
+  std::vector<QuadratureNode> nodes;
+  const auto add = [&](double from, double to, double at) {
+    const double weight = from < to ? kernel.integral(from, to) : 0.0;
+    if (weight != 0.0) nodes.push_back({at, weight});
+  };
+  for (const Bin& bin : bins) {
+    const auto cuts = cutsOf(bin, spectra);
+    if (cuts.empty()) {
+      add(bin.from, bin.to, bin.at);
+      continue;
+    }
+    double from = bin.from;
+    for (double c : cuts) add(from, c, 0.5 * (from + c)), from = c;
+    add(from, bin.to, 0.5 * (from + bin.to));
   }
   return nodes;
 }
 
-std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, const Path* air) {
-  return fineGrid(kernel, air && air->isTabulated() ? air->knots_um() : std::vector<double>());
+}  // namespace
+
+std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const double> table) {
+  return weighted(kernel, table.empty() ? usualBins(kernel, {}) : tableBins(table, kernel.supportLow(), kernel.supportHigh()), {});
+}
+
+std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, const Simulation& sim) {
+  auto spectra = spectraOf(sim);
+  if (!sim.path || sim.path->isNone()) return weighted(kernel, usualBins(kernel, {}), spectra);
+  const std::vector<double> knots = sim.path->knots_um();
+  // Air from a table keeps its table's wavelengths.
+  if (sim.path->isTabulated()) return weighted(kernel, tableBins(knots, kernel.supportLow(), kernel.supportHigh()), spectra);
+  std::vector<double> own;
+  for (size_t k = 1; k + 1 < knots.size(); ++k)
+    if (std::min(knots[k] - knots[k - 1], knots[k + 1] - knots[k]) >= kOwnBins * widthAt(knots[k])) own.push_back(knots[k]);
+  spectra.push_back(airSpectrum(*sim.path));
+  return weighted(kernel, usualBins(kernel, own), spectra);
 }
 
 }  // namespace pitviper

@@ -93,10 +93,10 @@ GroupStart::GroupStart(const ProductSet& set) : extinction_(set.extinction) {
 
   const auto paths = spread(set.pathCount(), kMostPaths);
   std::vector<Eigen::Index> spectra;
-  if (set.hasSeconds()) {
+  if (set.hasProducts()) {
     std::vector<bool> used(static_cast<size_t>(set.sourceCount()), false);
     for (const ProductTerm& t : set.terms)
-      if (t.second >= 0) used[static_cast<size_t>(t.source)] = used[static_cast<size_t>(t.second)] = true;
+      for (int f = 0; t.count > 1 && f < t.count; ++f) used[static_cast<size_t>(t.spectrum[static_cast<size_t>(f)])] = true;
     std::vector<Eigen::Index> all;
     for (size_t s = 0; s < used.size(); ++s)
       if (used[s]) all.push_back(static_cast<Eigen::Index>(s));

@@ -2,6 +2,7 @@
 // Opacity groups: a channel's integral over wavelength as a sum over few groups of wavelengths that air and gases dim alike.
 //
 // Law: integral of S(lambda) s(lambda) exp(-sum over k of c_k(lambda) U_k) dlambda  ~  sum over g of w_g <s>_g exp(-sum over k of C_gk U_k),
+//   or with a product of averages in the place of <s>_g where several spectra meet that are averaged apart,
 //   <s>_g = sum over the group's members i of a share p_gi times s(lambda_i),  p_gi >= 0, sum over i of p_gi = 1.
 //   S response; s source (emitted or reflected spectrum); c_k extinction per amount U_k of an absorber on the path (an amount already raised to
 //   its power, or the thickness of a gas); w_g weight of the group [as the fine weights]; C_gk >= 0 its extinction, fitted.
@@ -11,17 +12,23 @@
 // This is the correlated-k idea (Goody et al. 1989, J. Quant. Spectrosc. Radiat. Transfer 42, 539) with the groups fitted to the scene's own
 // products, several absorbers at once, instead of sorted by the strength of one.
 // What the error is: the largest relative difference from the fine sum over the products given; evaluateGroups() tells it for others.
+#include <array>
+#include <span>
 #include <utility>
 #include <vector>
 
 namespace pitviper {
 
-/// coefficient x <source> x <second> x transmittance of a path.
+/// Spectra that are multiplied after averaging: a light, a reflectance, and each pane on the way.
+constexpr int kMostFactors = 8;
+
+/// coefficient x product of <spectrum> x transmittance of a path.
 struct ProductTerm {
-  int source = 0;
-  int second = -1;  ///< another spectrum that the renderer multiplies only after averaging (emissivity x Planck of a texture's pixel), or -1
+  std::array<int, kMostFactors> spectrum{};  ///< the first `count` of them
+  int count = 1;
   int path = 0;
   double coefficient = 1.0;
+  std::span<const int> spectra() const { return {spectrum.data(), static_cast<size_t>(count)}; }
 };
 
 /// Terms that add up, and may cancel (path radiance is a sum of B(T_j) (tau_j - tau_j+1)).

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "sim/model/shadow_casters.hpp"
 #include "sim/plan/fine_grid.hpp"
 
 namespace pitviper {
@@ -70,30 +69,15 @@ void checkCoverage(const Simulation& sim, const ChannelOutput& output) {
   check("the background", output.where, sim.background);
 }
 
-void add(SurfaceTerms& t, const Material& m, const Surface& s) {
-  t.any = true;
-  t.reflects |= !m.reflections.empty();
-  t.emits |= !m.given || m.given->tabulated() || !m.given->spectrum.isZero();
-  t.angular |= m.needsAngles();
-  t.modifiers |= m.hasModifiers();
-  t.temperatureTextures |= s.temperatureTexture >= 0;
-  for (const auto& r : m.reflections)
-    if (!r->lobeFile().empty()) t.lobeFile = r->lobeFile();
-}
-
-Terms termsOf(const Simulation& sim) {
-  Terms t;
-  t.air = sim.path && !sim.path->isNone();
-  t.scatteredSun = t.air && sim.path->isLayered() && sim.sun.has_value();
-  t.lights = !sim.lights.empty() || sim.sun;
-  t.ambient = sim.ambient && !sim.ambient->isZero();
-  t.shadows = canHaveShadows(sim);
-  for (const auto& e : sim.entities) {
-    t.media |= sim.mediumOf(e) != nullptr;
-    if (sim.mediumOf(e)) continue;
-    for (const auto& s : e.surfaces) add(sim.materialOf(s).transmission ? t.layer : t.solid, sim.materialOf(s), s);
-  }
-  return t;
+/// The user's sampling of a response; narrow lines of the scene, which it would step over or hit by chance, have nodes of their own.
+std::vector<QuadratureNode> ruleWithLines(const Simulation& sim, const Spectrum& kernel, const SpectralSampling& sampling) {
+  auto rule = spectralRule(kernel, sampling.samples, sampling.spacing);
+  const auto lines = narrowLines(spectraOf(sim), kernel, rule);
+  if (lines.empty()) return rule;
+  rule = spectralRule(kernel * betweenLines(lines), sampling.samples, sampling.spacing);
+  const auto own = lineNodes(lines, kernel);
+  rule.insert(rule.end(), own.begin(), own.end());
+  return rule;
 }
 
 }  // namespace
@@ -132,9 +116,9 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   std::vector<std::vector<QuadratureNode>> rules;
   for (const auto* slot : slots) {
     try {
-      rules.push_back(sampling.reference ? fineGrid(slot->kernel, sim.path.get())
+      rules.push_back(sampling.reference ? fineGrid(slot->kernel, sim)
                       : sampling.shared  ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, pieces)
-                                         : spectralRule(slot->kernel, sampling.samples, sampling.spacing));
+                                         : ruleWithLines(sim, slot->kernel, sampling));
     } catch (const std::invalid_argument& e) {
       throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(),
                       sampling.shared ? "a response that these samples integrate to 0.1 %" : "a response above zero somewhere",

@@ -9,6 +9,7 @@
 #include "sim/model/simulation.hpp"
 #include "sim/model/spectral_node.hpp"
 #include "sim/model/sun_legs.hpp"
+#include "sim/radiance/terms.hpp"
 
 namespace pitviper {
 
@@ -20,34 +21,21 @@ struct NodeBlock {
   bool lit = true;  ///< reflected light of the sun or of points matters in these channels
 };
 
-/// Terms of the radiance equation that a kind of surfaces has.
-struct SurfaceTerms {
-  bool any = false;       ///< there are such surfaces
-  bool reflects = false;  ///< light that falls on them
-  bool emits = false;
-  bool angular = false;  ///< tables over angles, or an emissivity or transmittance that changes with view angle
-  bool modifiers = false;
-  bool temperatureTextures = false;
-  std::string lobeFile;  ///< shader file of the angular lobes, or empty
-  bool isGeneral() const { return angular || modifiers || temperatureTextures; }
-};
-
-/// Terms of the radiance equation that this scene has.
-struct Terms {
-  bool air = false;           ///< extinction and path radiance
-  bool scatteredSun = false;  ///< sunlight that the air scatters, and the sky's by it
-  bool lights = false;        ///< point lights or the sun
-  bool ambient = false;
-  bool shadows = false;       ///< of the lights
-  SurfaceTerms solid, layer;  ///< opaque and transparent surfaces
-  bool media = false;         ///< bodies filled with an emitting medium
-};
-
 /// How much of what channels see a term can be, at most over the lines of sight looked at.
 struct TermShare {
   std::string term;
   std::vector<double> share;  ///< [slot]: relative to the pixel, as errors are
   bool kept = true;
+};
+
+/// What a channel's predicted error is made of, relative to the pixel.
+struct PredictedParts {
+  double wavelengths = 0.0;  ///< largest on the last lines, times a margin
+  double tables = 0.0;       ///< between entries of tables
+  double dropped = 0.0;      ///< terms left out
+  double precision = 0.0;    ///< single precision
+  double extremes = 0.0;     ///< by itself: largest on the lines at the extremes, of wavelengths alone
+  double sum() const { return wavelengths + tables + dropped + precision; }
 };
 
 struct Plan {
@@ -57,7 +45,9 @@ struct Plan {
   std::vector<int> slotOfOutput;            ///< one per output
   std::vector<std::vector<double>> weight;  ///< [slot][node]
   double accuracy = 0.0;                    ///< relative error asked for; 0: none was
-  std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where none was asked for
+  std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where nothing was measured
+  std::vector<PredictedParts> parts;        ///< [slot]: what it is made of
+  int lines = 0;                            ///< lines of sight it was measured on
   std::vector<int> fineCount;               ///< [slot]: wavelengths of the reference
   std::vector<TermShare> shares;            ///< what was looked at to keep or drop terms; empty where no accuracy was asked for
   Terms terms;

@@ -13,7 +13,7 @@
 namespace pitviper {
 namespace {
 
-constexpr const char* kFormat = "pitviper plan 1";
+constexpr const char* kFormat = "pitviper plan 2";
 
 std::filesystem::path fileOf(const ContentKey& key) {
   const std::filesystem::path folder = meshCacheFolder();
@@ -109,10 +109,13 @@ std::string writePlanned(const Plan& plan) {
   for (const NodeBlock& b : plan.blocks) {
     w.put(static_cast<size_t>(b.first)), w.put(static_cast<size_t>(b.count)), w.put(b.slots.size());
     for (int s : b.slots) w.put(static_cast<size_t>(s));
+    w.put(static_cast<size_t>(b.lit));
   }
   w.put(plan.weight.size());
   for (const auto& row : plan.weight) w.all(row);
   w.all(plan.predictedError);
+  for (const PredictedParts& p : plan.parts) w.all(std::array{p.wavelengths, p.tables, p.dropped, p.precision, p.extremes});
+  w.put(static_cast<size_t>(plan.lines));
   w.all(plan.fineCount);
   w.put(plan.shares.size());
   for (const TermShare& s : plan.shares) w.all(s.share);
@@ -141,10 +144,18 @@ bool readPlanned(const std::string& text, Plan& into) {
   for (NodeBlock& b : plan.blocks) {
     b.first = static_cast<int>(r.count(plan.nodes.size())), b.count = static_cast<int>(r.count(plan.nodes.size()));
     for (size_t k = r.count(kMostSlots); k > 0; --k) b.slots.push_back(static_cast<int>(r.count(kMostSlots)));
+    b.lit = r.count(1) != 0;
   }
   plan.weight.assign(r.count(kMostSlots), {});
   for (auto& row : plan.weight) row = r.all(plan.nodes.size());
   plan.predictedError = r.all(kMostSlots);
+  plan.parts.clear();
+  for (size_t k = 0; k < plan.predictedError.size(); ++k) {
+    const auto p = r.all(5);
+    if (p.size() != 5) return false;
+    plan.parts.push_back({p[0], p[1], p[2], p[3], p[4]});
+  }
+  plan.lines = static_cast<int>(r.count(kMostMembers));
   plan.fineCount.clear();
   for (double n : r.all(kMostSlots)) plan.fineCount.push_back(static_cast<int>(n));
   plan.shares.assign(r.count(kTermKinds), {});

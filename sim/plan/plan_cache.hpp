@@ -9,8 +9,8 @@
 
 namespace pitviper {
 
-/// Of everything a plan is made from: spectra at the wavelengths of the channels, bodies, poses over the time axis, textures, settings.
-ContentKey planKey(const Simulation& simulation, const Plan& outline, const Eye& eye);
+/// Of everything a plan is made from: the scenario's content, whole, and the eye's.
+ContentKey planKey(const Simulation& simulation, const Eye& eye);
 
 /// What a planner adds to an outline (makePlan's plan), as text that reads back to the same numbers; `into` is unchanged where it cannot be read.
 std::string writePlanned(const Plan& plan);

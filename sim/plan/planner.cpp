@@ -8,15 +8,24 @@
 #include <thread>
 
 #include "sim/plan/channel_fit.hpp"
+#include "sim/plan/line_check.hpp"
 #include "sim/plan/plan_cache.hpp"
 
 namespace pitviper {
 namespace {
 
-/// Lines of sight to fit to at first, and of each check; checks until one is passed, but no more than so many.
-constexpr int kFirst = 260, kCheck = 360, kChecks = 6;
+/// Lines of sight to fit to at first besides the extremes, and of each check; checks until one is passed, but no more than so many.
+constexpr int kFirst = 240, kCheck = 360, kChecks = 6;
+/// Lines as the film draws them that say what a plan is off by, seen by no fit; of at most 3/n of pixels more is to be expected with 95 %.
+constexpr int kLast = 400;
+/// Their largest error times this is predicted: what a film of all pixels shows more than they do.
+constexpr double kMargin = 1.5;
 /// A term that is nowhere more than this part of the accuracy is dropped.
 constexpr double kDropped = 0.05;
+/// Single precision on the GPU over a whole pixel (tests/gpu/test_float_against_double.cpp: 2.8e-6, tables 1e-5).
+constexpr double kPrecision = 2e-5;
+/// Seeds of the last lines lie apart from those of the fit.
+constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u;
 
 /// What the tables of layered air add in a narrow field (bench --accuracy with 340 even samples), and besides in one of 40 degrees, growing with its
 /// square (tests/gpu/test_layered_air_gpu.cpp); with twice the entries, below kFine, a quarter.
@@ -89,6 +98,55 @@ void dropTerms(Plan& plan, bool keepLights) {
   if (std::none_of(plan.blocks.begin(), plan.blocks.end(), [](const NodeBlock& b) { return b.lit; })) dropLights(plan);
 }
 
+/// Groups of wavelengths for each channel, fitted to lines of sight.
+void chooseNodes(const Simulation& sim, const std::vector<const ChannelOutput*>& slots, double accuracy, Sights& sights, Plan& plan) {
+  std::vector<ChannelFit> fits;
+  for (const ChannelOutput* slot : slots) fits.emplace_back(sim, slot->kernel, accuracy);
+  sights.begin(kFirst);
+  forAll(fits, [&](ChannelFit& f) { f.begin(sights); });
+  for (int n = 0; n < kChecks && !std::all_of(fits.begin(), fits.end(), [](const ChannelFit& f) { return f.holds(); }); ++n) {
+    sights.draw(kCheck);
+    forAll(fits, [&](ChannelFit& f) {
+      if (!f.holds()) f.check(sights);
+    });
+  }
+  plan.nodes.clear();
+  plan.blocks.clear();
+  plan.weight.clear();
+  plan.shares.clear();
+  plan.fineCount.clear();
+  for (int k = 0; k < kTermKinds; ++k) plan.shares.push_back({nameOf(static_cast<TermKind>(k)), {}, true});
+  for (const ChannelFit& f : fits) {
+    plan.blocks.push_back({plan.nodeCount(), static_cast<int>(f.groups().size()), {static_cast<int>(plan.blocks.size())}});
+    for (const SpectralGroup& g : f.groups()) plan.nodes.push_back(nodeOf(sim, f, g));
+    plan.fineCount.push_back(static_cast<int>(f.grid().weight.size()));
+    const auto shares = sights.shares(f.grid(), f.absorbers(), f.floor());
+    for (size_t k = 0; k < shares.size(); ++k) plan.shares[k].share.push_back(shares[k]);
+  }
+  for (size_t s = 0; s < fits.size(); ++s) {
+    std::vector<double> weights(plan.nodes.size(), 0.0);
+    for (size_t g = 0; g < fits[s].groups().size(); ++g) weights[static_cast<size_t>(plan.blocks[s].first) + g] = fits[s].groups()[g].weight;
+    plan.weight.push_back(std::move(weights));
+  }
+}
+
+/// What it is off by, on lines that no fit has seen and at the extremes.
+void predict(const Simulation& sim, const Eye& eye, const Plan& fine, Plan& plan) {
+  SightRays rays(sim, eye, static_cast<unsigned long long>(sim.seed) ^ kLastSeed);
+  std::vector<SightRay> last;
+  for (int n = 0; n < kLast; ++n) last.push_back(rays.fromFilm());
+  std::vector<double> floor;
+  const auto found = checkLines(sim, plan, fine, last, rays.pixel_sr(), floor), extreme = checkLines(sim, plan, fine, rays.extremes(), rays.pixel_sr(), floor);
+  const double tables = sim.path && sim.path->isLayered() ? tableError(eye, plan.accuracy) : 0.0;
+  plan.lines = kLast;
+  plan.parts.clear();
+  plan.predictedError.clear();
+  for (size_t s = 0; s < found.size(); ++s) {
+    plan.parts.push_back({kMargin * found[s].largest, tables, found[s].dropped, kPrecision, extreme[s].largest});
+    plan.predictedError.push_back(plan.parts.back().sum());
+  }
+}
+
 }  // namespace
 
 Plan planFor(const Simulation& sim, const Eye& eye) {
@@ -99,48 +157,32 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
   // The truth layers show the first light's geometry.
   const bool keepLights = eye.camera && eye.camera->truth.solidAngles;
   if (!keepLights && !plan.terms.solid.reflects && !plan.terms.layer.reflects) dropLights(plan);
-  if (sampling.reference || !(sampling.accuracy > 0.0)) return plan;
+  if (sampling.reference || sampling.shared) return plan;
   plan.accuracy = sampling.accuracy;
 
-  const ContentKey key = planKey(sim, plan, eye);
+  const ContentKey key = planKey(sim, eye);
+  const Terms all = plan.terms;
   if (!readCachedPlan(key, plan)) {
-    std::vector<const ChannelOutput*> slots(static_cast<size_t>(plan.slotCount), nullptr);
-    for (size_t o = 0; o < outputs.size(); ++o)
-      if (!slots[static_cast<size_t>(plan.slotOfOutput[o])]) slots[static_cast<size_t>(plan.slotOfOutput[o])] = &outputs[o];
-    Sights sights(sim, plan, eye, static_cast<unsigned long long>(sim.seed));
-    std::vector<ChannelFit> fits;
-    for (const ChannelOutput* slot : slots) fits.emplace_back(sim, slot->kernel, sampling.accuracy);
-    sights.draw(kFirst);
-    forAll(fits, [&](ChannelFit& f) { f.begin(sights); });
-    for (int n = 0; n < kChecks && !std::all_of(fits.begin(), fits.end(), [](const ChannelFit& f) { return f.holds(); }); ++n) {
-      sights.draw(kCheck);
-      forAll(fits, [&](ChannelFit& f) {
-        if (!f.holds()) f.check(sights);
-      });
+    SpectralSampling exact;
+    exact.reference = true;
+    Plan fine = makePlan(sim, outputs, exact, where);
+    fine.terms = all;
+    if (plan.accuracy > 0.0) {
+      std::vector<const ChannelOutput*> slots(static_cast<size_t>(plan.slotCount), nullptr);
+      for (size_t o = 0; o < outputs.size(); ++o)
+        if (!slots[static_cast<size_t>(plan.slotOfOutput[o])]) slots[static_cast<size_t>(plan.slotOfOutput[o])] = &outputs[o];
+      Sights sights(sim, plan, eye, static_cast<unsigned long long>(sim.seed));
+      chooseNodes(sim, slots, sampling.accuracy, sights, plan);
+      dropTerms(plan, keepLights);
+    } else {
+      for (const auto& w : fine.weight)
+        plan.fineCount.push_back(static_cast<int>(std::count_if(w.begin(), w.end(), [](double v) { return v != 0.0; })));
     }
-
-    plan.nodes.clear();
-    plan.blocks.clear();
-    plan.weight.clear();
-    plan.shares.clear();
-    for (int k = 0; k < kTermKinds; ++k) plan.shares.push_back({nameOf(static_cast<TermKind>(k)), {}, true});
-    const double tables = sim.path && sim.path->isLayered() ? tableError(eye, sampling.accuracy) : 0.0;
-    for (const ChannelFit& f : fits) {
-      plan.blocks.push_back({plan.nodeCount(), static_cast<int>(f.groups().size()), {static_cast<int>(plan.blocks.size())}});
-      for (const SpectralGroup& g : f.groups()) plan.nodes.push_back(nodeOf(sim, f, g));
-      plan.predictedError.push_back(f.error() + tables);
-      plan.fineCount.push_back(static_cast<int>(f.grid().weight.size()));
-      const auto shares = sights.shares(f.grid(), f.absorbers(), f.floor());
-      for (size_t k = 0; k < shares.size(); ++k) plan.shares[k].share.push_back(shares[k]);
-    }
-    for (size_t s = 0; s < fits.size(); ++s) {
-      std::vector<double> weights(plan.nodes.size(), 0.0);
-      for (size_t g = 0; g < fits[s].groups().size(); ++g) weights[static_cast<size_t>(plan.blocks[s].first) + g] = fits[s].groups()[g].weight;
-      plan.weight.push_back(std::move(weights));
-    }
+    predict(sim, eye, fine, plan);
+    plan.terms = all;
     writeCachedPlan(key, plan);
   }
-  dropTerms(plan, keepLights);
+  if (plan.accuracy > 0.0) dropTerms(plan, keepLights);
   return plan;
 }
 

@@ -28,10 +28,11 @@ void check(const SpectralProblem& p) {
   const auto within = [](int index, size_t count) { return index >= 0 && static_cast<size_t>(index) < count; };
   for (const auto& product : p.products) {
     require(std::isfinite(product.floor) && product.floor >= 0.0, "a floor is negative or not finite");
-    for (const ProductTerm& t : product.terms)
-      require(within(t.source, p.spectra.size()) && (t.second == -1 || within(t.second, p.spectra.size())) && within(t.path, p.paths.size()) &&
-                  std::isfinite(t.coefficient),
-              "a term with an index out of range, or a coefficient that is not finite");
+    for (const ProductTerm& t : product.terms) {
+      bool good = t.count >= 1 && t.count <= kMostFactors && within(t.path, p.paths.size()) && std::isfinite(t.coefficient);
+      for (int f = 0; good && f < t.count; ++f) good = within(t.spectrum[static_cast<size_t>(f)], p.spectra.size());
+      require(good, "a term with an index out of range, or a coefficient that is not finite");
+    }
   }
 }
 
@@ -72,8 +73,7 @@ ProductSet::ProductSet(const SpectralProblem& p) {
   firstTerm.push_back(0);
   for (const SpectralProduct& product : p.products) {
     for (ProductTerm t : product.terms) {
-      t.source = source(t.source);
-      if (t.second >= 0) t.second = source(t.second);
+      for (int f = 0; f < t.count; ++f) t.spectrum[static_cast<size_t>(f)] = source(t.spectrum[static_cast<size_t>(f)]);
       t.path = path(t.path);
       terms.push_back(t);
     }
@@ -126,9 +126,9 @@ void ProductSet::integrate(const std::vector<double>& floors) {
       current = t.path;
       tau = (-(extinction * amounts.col(current)).array()).exp();
     }
-    const double value = t.second < 0 ? weighted.col(t.source).dot(tau)
-                                      : (weighted.col(t.source).array() * (weighted.col(t.second).array() / weight.array()) * tau.array()).sum();
-    fine[productOf[static_cast<size_t>(index)]] += t.coefficient * value;
+    Eigen::ArrayXd product = weighted.col(t.spectrum[0]).array() * tau.array();
+    for (int f = 1; f < t.count; ++f) product *= weighted.col(t.spectrum[static_cast<size_t>(f)]).array() / weight.array();
+    fine[productOf[static_cast<size_t>(index)]] += t.coefficient * product.sum();
   }
   scale.resize(fine.size());
   for (Eigen::Index m = 0; m < fine.size(); ++m) {
@@ -152,8 +152,7 @@ ProductSet ProductSet::subset(const std::vector<int>& products) const {
     s.scale[static_cast<Eigen::Index>(j)] = scale[products[j]];
     for (int t = firstTerm[m]; t < firstTerm[m + 1]; ++t) {
       ProductTerm term = terms[static_cast<size_t>(t)];
-      term.source = source(term.source);
-      if (term.second >= 0) term.second = source(term.second);
+      for (int f = 0; f < term.count; ++f) term.spectrum[static_cast<size_t>(f)] = source(term.spectrum[static_cast<size_t>(f)]);
       term.path = path(term.path);
       s.terms.push_back(term);
     }
@@ -169,8 +168,8 @@ ProductSet ProductSet::subset(const std::vector<int>& products) const {
   return s;
 }
 
-bool ProductSet::hasSeconds() const {
-  return std::any_of(terms.begin(), terms.end(), [](const ProductTerm& t) { return t.second >= 0; });
+bool ProductSet::hasProducts() const {
+  return std::any_of(terms.begin(), terms.end(), [](const ProductTerm& t) { return t.count > 1; });
 }
 
 GroupMoments ProductSet::moments(const GroupState& state) const {
@@ -187,17 +186,47 @@ namespace {
 // A group that lost all its weight gives nothing: its sources are 0 too.
 Eigen::ArrayXd inverse(const Eigen::VectorXd& weight) { return (weight.array() > 0.0).select(1.0 / weight.array(), 0.0); }
 
+// Of a term, per group: value = transmittance x S_1 x (S_2 / W) x (S_3 / W) ..., S_f sums of weight x share x spectrum, W the group's weight.
+class TermValue {
+ public:
+  TermValue(const GroupMoments& at, const Eigen::ArrayXd& perWeight, const ProductTerm& term) : at_(at), perWeight_(perWeight), term_(term) {}
+  /// The product of all spectra but one (-1: of all), without the transmittance.
+  void spectraBut(int left, Eigen::ArrayXd& out) const {
+    bool first = true;
+    for (int f = 0; f < term_.count; ++f) {
+      if (f == left) continue;
+      const auto column = at_.source.col(term_.spectrum[static_cast<size_t>(f)]).array();
+      if (first) out = column;
+      else out *= column;
+      first = false;
+    }
+    if (first) out.setOnes(at_.weight.size());
+    for (int f = 1; f < term_.count; ++f) out *= perWeight_;
+  }
+
+ private:
+  const GroupMoments& at_;
+  const Eigen::ArrayXd& perWeight_;
+  const ProductTerm& term_;
+};
+
 }  // namespace
 
 Eigen::VectorXd ProductSet::errors(const GroupMoments& at) const {
   const Eigen::ArrayXd perWeight = inverse(at.weight);
   Eigen::VectorXd e(size());
+  Eigen::ArrayXd product(at.weight.size());
   for (int m = 0; m < size(); ++m) {
     double sum = 0.0;
     for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
       const ProductTerm& term = terms[static_cast<size_t>(t)];
-      const auto source = at.source.col(term.source), tau = at.transmittance.col(term.path);
-      sum += term.coefficient * (term.second < 0 ? source.dot(tau) : (source.array() * tau.array() * at.source.col(term.second).array() * perWeight).sum());
+      const auto tau = at.transmittance.col(term.path);
+      if (term.count == 1) {
+        sum += term.coefficient * at.source.col(term.spectrum[0]).dot(tau);
+        continue;
+      }
+      TermValue(at, perWeight, term).spectraBut(-1, product);
+      sum += term.coefficient * (product * tau.array()).sum();
     }
     e[m] = scale[m] * (sum - fine[m]);
   }
@@ -207,23 +236,24 @@ Eigen::VectorXd ProductSet::errors(const GroupMoments& at) const {
 Eigen::VectorXd ProductSet::forward(const GroupMoments& at, const GroupMoments& change) const {
   const Eigen::ArrayXd perWeight = inverse(at.weight);
   Eigen::VectorXd e(size());
+  Eigen::ArrayXd product(at.weight.size());
   for (int m = 0; m < size(); ++m) {
     double sum = 0.0;
     for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
       const ProductTerm& term = terms[static_cast<size_t>(t)];
-      const auto source = at.source.col(term.source), tau = at.transmittance.col(term.path);
-      const auto dSource = change.source.col(term.source), dTau = change.transmittance.col(term.path);
-      double value = 0.0;
-      if (term.second < 0) {
-        value = dSource.dot(tau) + source.dot(dTau);
-      } else {
-        const auto second = at.source.col(term.second), dSecond = change.source.col(term.second);
-        value = (perWeight * (tau.array() * (dSource.array() * second.array() + source.array() * dSecond.array() -
-                                             source.array() * second.array() * change.weight.array() * perWeight) +
-                              dTau.array() * source.array() * second.array()))
-                    .sum();
+      const auto tau = at.transmittance.col(term.path), dTau = change.transmittance.col(term.path);
+      if (term.count == 1) {
+        sum += term.coefficient * (change.source.col(term.spectrum[0]).dot(tau) + at.source.col(term.spectrum[0]).dot(dTau));
+        continue;
       }
-      sum += term.coefficient * value;
+      const TermValue value(at, perWeight, term);
+      value.spectraBut(-1, product);
+      double changed = (product * (dTau.array() - tau.array() * (term.count - 1) * change.weight.array() * perWeight)).sum();
+      for (int f = 0; f < term.count; ++f) {
+        value.spectraBut(f, product);
+        changed += (product * tau.array() * change.source.col(term.spectrum[static_cast<size_t>(f)]).array()).sum();
+      }
+      sum += term.coefficient * changed;
     }
     e[m] = scale[m] * sum;
   }
@@ -234,22 +264,26 @@ GroupMoments ProductSet::backward(const GroupMoments& at, const Eigen::VectorXd&
   const Eigen::ArrayXd perWeight = inverse(at.weight);
   const Eigen::Index groups = at.source.rows();
   GroupMoments g{Eigen::MatrixXd::Zero(groups, sourceCount()), Eigen::VectorXd::Zero(groups), Eigen::MatrixXd::Zero(groups, pathCount())};
+  Eigen::ArrayXd product(groups);
   for (int m = 0; m < size(); ++m) {
     const double factor = u[m] * scale[m];
     if (factor == 0.0) continue;
     for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
       const ProductTerm& term = terms[static_cast<size_t>(t)];
       const double c = factor * term.coefficient;
-      const auto source = at.source.col(term.source), tau = at.transmittance.col(term.path);
-      if (term.second < 0) {
-        g.source.col(term.source) += c * tau;
-        g.transmittance.col(term.path) += c * source;
-      } else {
-        const auto second = at.source.col(term.second);
-        g.source.col(term.source).array() += c * perWeight * tau.array() * second.array();
-        g.source.col(term.second).array() += c * perWeight * tau.array() * source.array();
-        g.weight.array() -= c * perWeight * perWeight * tau.array() * source.array() * second.array();
-        g.transmittance.col(term.path).array() += c * perWeight * source.array() * second.array();
+      const auto tau = at.transmittance.col(term.path);
+      if (term.count == 1) {
+        g.source.col(term.spectrum[0]) += c * tau;
+        g.transmittance.col(term.path) += c * at.source.col(term.spectrum[0]);
+        continue;
+      }
+      const TermValue value(at, perWeight, term);
+      value.spectraBut(-1, product);
+      g.transmittance.col(term.path).array() += c * product;
+      g.weight.array() -= c * (term.count - 1) * perWeight * product * tau.array();
+      for (int f = 0; f < term.count; ++f) {
+        value.spectraBut(f, product);
+        g.source.col(term.spectrum[static_cast<size_t>(f)]).array() += c * product * tau.array();
       }
     }
   }
@@ -260,19 +294,18 @@ GroupMoments ProductSet::squares(const GroupMoments& at, const Eigen::VectorXd& 
   const Eigen::ArrayXd perWeight = inverse(at.weight);
   const Eigen::Index groups = at.source.rows();
   GroupMoments g{Eigen::MatrixXd::Zero(groups, sourceCount()), Eigen::VectorXd::Zero(groups), Eigen::MatrixXd::Zero(groups, pathCount())};
+  Eigen::ArrayXd product(groups);
   for (int m = 0; m < size(); ++m)
     for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
       const ProductTerm& term = terms[static_cast<size_t>(t)];
       const double c = u[m] * scale[m] * scale[m] * term.coefficient * term.coefficient;
-      const auto source = at.source.col(term.source).array(), tau = at.transmittance.col(term.path).array();
-      if (term.second < 0) {
-        g.source.col(term.source).array() += c * tau.square();
-        g.transmittance.col(term.path).array() += c * source.square();
-      } else {
-        const auto second = at.source.col(term.second).array();
-        g.source.col(term.source).array() += c * (perWeight * tau * second).square();
-        g.source.col(term.second).array() += c * (perWeight * tau * source).square();
-        g.transmittance.col(term.path).array() += c * (perWeight * source * second).square();
+      const auto tau = at.transmittance.col(term.path).array();
+      const TermValue value(at, perWeight, term);
+      value.spectraBut(-1, product);
+      g.transmittance.col(term.path).array() += c * product.square();
+      for (int f = 0; f < term.count; ++f) {
+        value.spectraBut(f, product);
+        g.source.col(term.spectrum[static_cast<size_t>(f)]).array() += c * (product * tau).square();
       }
     }
   return g;

@@ -34,7 +34,8 @@ class ProductSet {
   int pathCount() const { return static_cast<int>(amounts.cols()); }
   int sourceCount() const { return static_cast<int>(weighted.cols()); }
   int size() const { return static_cast<int>(fine.size()); }
-  bool hasSeconds() const;
+  /// Some term multiplies averages.
+  bool hasProducts() const;
 
   GroupMoments moments(const GroupState& state) const;
   /// (planned - fine) / max(|fine|, floor).

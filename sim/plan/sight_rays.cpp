@@ -1,16 +1,22 @@
 #include "sim/plan/sight_rays.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
 
-/// Of the rays.
-constexpr double kAimed = 0.5;
+/// Lines that a survey of the film casts, evenly and aimed at bodies: what shows on a thousandth of it is met with 99 %.
+constexpr int kSurvey = 3000, kAimedSurvey = 600;
 /// Tries to hit on something that is in view at a time.
 constexpr int kTries = 24;
+/// Frames at which bodies and lamps are looked for at their nearest and farthest.
+constexpr int kMostFrames = 400;
+/// Combinations beyond so many, the rarest, have no extremes of their own.
+constexpr size_t kMostExtremes = 40;
 /// Nothing is lower than this [m].
 constexpr double kGround_m = -100.0;
 
@@ -22,6 +28,52 @@ SightRays::SightRays(const Simulation& simulation, const Eye& eye, unsigned long
   for (size_t e = 0; e < simulation.entities.size(); ++e)
     for (size_t s = 0; drawn_[e] && s < simulation.entities[e].surfaces.size(); ++s) surfaces_.emplace_back(e, s);
 }
+
+std::shared_ptr<const WorldState> SightRays::stateAt(int frame) {
+  if (frame != frame_ || !state_) {
+    state_ = std::make_shared<const WorldState>(advance(simulation_.entities, simulation_.lights, simulation_.time.at(frame)));
+    frame_ = frame;
+  }
+  return state_;
+}
+
+void SightRays::cast(SightRay& ray) const {
+  ray.line.hits = castRay(simulation_, *ray.state, ray.line.origin, ray.line.direction, ray.nearest_m, &drawn_);
+}
+
+SightRay SightRays::startAt(int frame) {
+  SightRay ray;
+  ray.state = stateAt(frame);
+  if (!eye_.camera) {
+    ray.line.origin = eye_.probe->position;
+    return ray;
+  }
+  ray.line.origin = cameraPose(eye_.camera->mount, *ray.state).position;
+  ray.nearest_m = eye_.camera->near_m;
+  return ray;
+}
+
+SightRay SightRays::filmRay(int frame) {
+  SightRay ray = startAt(frame);
+  if (eye_.camera) {
+    const Pinhole& p = eye_.camera->pinhole;
+    const auto samples = static_cast<size_t>(eye_.camera->samples);
+    const double x = (static_cast<double>(dice_.below(static_cast<size_t>(p.width) * samples)) + 0.5) / static_cast<double>(samples);
+    const double y = (static_cast<double>(dice_.below(static_cast<size_t>(p.height) * samples)) + 0.5) / static_cast<double>(samples);
+    const glm::dvec3 film(p.tanX(x), p.tanY(y), -1.0);
+    ray.line.direction = glm::normalize(localFromCamera(cameraPose(eye_.camera->mount, *ray.state)) * film);
+    ray.nearest_m *= glm::length(film);
+  } else {
+    const double z = dice_.unit(), phi = 2.0 * kPi * dice_.unit(), r = std::sqrt(1.0 - z * z);
+    const glm::dvec3 n = glm::normalize(eye_.probe->normal), helper = std::abs(n.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 x = glm::normalize(glm::cross(helper, n)), y = glm::cross(n, x);
+    ray.line.direction = r * std::cos(phi) * x + r * std::sin(phi) * y + z * n;
+  }
+  cast(ray);
+  return ray;
+}
+
+SightRay SightRays::fromFilm() { return filmRay(static_cast<int>(dice_.below(static_cast<size_t>(simulation_.time.frames)))); }
 
 glm::dvec3 SightRays::placeOn(const WorldState& state, size_t surface) {
   const auto [e, s] = surfaces_[surface];
@@ -40,32 +92,51 @@ glm::dvec3 SightRays::placeOn(const WorldState& state, size_t surface) {
   return state.entities[e].position + state.entities[e].orientation * place;
 }
 
-bool SightRays::inView(const SightRay& ray, const glm::dmat3& localFromCamera, const glm::dvec3& direction) const {
+bool SightRays::inView(const SightRay& ray, const glm::dvec3& direction) const {
   if (eye_.probe) return glm::dot(direction, eye_.probe->normal) > 0.0;
   const Pinhole& p = eye_.camera->pinhole;
-  const glm::dvec3 d = glm::transpose(localFromCamera) * direction;
+  const glm::dvec3 d = glm::transpose(localFromCamera(cameraPose(eye_.camera->mount, *ray.state))) * direction;
   return glm::length(direction) > ray.nearest_m && d.z < 0.0 && std::abs(d.x) <= -d.z * p.tanX(p.width) && std::abs(d.y) <= -d.z * p.tanY(0);
+}
+
+std::optional<SightRay> SightRays::aimedAt(int frame, size_t surface) {
+  SightRay ray = startAt(frame);
+  ray.fromFilm = false;
+  const glm::dvec3 line = placeOn(*ray.state, surface) - ray.line.origin;
+  if (!(glm::length(line) > 0.0) || !inView(ray, line)) return {};
+  ray.line.direction = glm::normalize(line);
+  if (simulation_.limits.any() && dice_.unit() < 0.5) stretch(ray, glm::length(line));
+  cast(ray);
+  return ray;
+}
+
+SightRay SightRays::aimed() {
+  for (int tries = 0; tries < kTries && !surfaces_.empty(); ++tries)
+    if (auto ray = aimedAt(static_cast<int>(dice_.below(static_cast<size_t>(simulation_.time.frames))), dice_.below(surfaces_.size()))) return *ray;
+  return fromFilm();
 }
 
 /// To some place within the scenario's limits.
 void SightRays::stretch(SightRay& ray, double distance_m) {
   const Limits& limits = simulation_.limits;
+  auto state = std::make_shared<WorldState>(*ray.state);
   if (limits.farthest_m > 0.0) {
     const double nearest = std::max(limits.nearest_m, std::max(ray.nearest_m, 0.1));
     const double range = nearest * std::pow(std::max(limits.farthest_m / nearest, 1.0), dice_.unit());
     // What is aimed at comes nearer or goes away with all that is around it, or the eye does; neither to under the ground.
-    const glm::dvec3 away = (range - distance_m) * ray.direction, aim = ray.origin + distance_m * ray.direction;
-    const bool eyeCan = simulation_.frame.height(ray.origin - away) > kGround_m, aimCan = simulation_.frame.height(aim + away) > kGround_m;
+    const glm::dvec3 away = (range - distance_m) * ray.line.direction, aim = ray.line.origin + distance_m * ray.line.direction;
+    const bool eyeCan = simulation_.frame.height(ray.line.origin - away) > kGround_m, aimCan = simulation_.frame.height(aim + away) > kGround_m;
     if (eyeCan && (!aimCan || dice_.unit() < 0.5)) {
-      ray.origin -= away;
+      ray.line.origin -= away;
     } else if (aimCan) {
-      for (Pose& pose : ray.state.entities) pose.position += away;
-      for (glm::dvec3& light : ray.state.lights) light += away;
+      for (Pose& pose : state->entities) pose.position += away;
+      for (glm::dvec3& light : state->lights) light += away;
     }
   }
-  if (limits.hottest_K > 0.0) ray.temperature_K = limits.coldest_K + (limits.hottest_K - limits.coldest_K) * dice_.unit();
+  if (limits.hottest_K > 0.0) ray.line.temperature_K = limits.coldest_K + (limits.hottest_K - limits.coldest_K) * dice_.unit();
   if (limits.lightLevel > 0.0)
-    for (double& level : ray.state.lightLevels) level = limits.lightLevel * dice_.unit();
+    for (double& level : state->lightLevels) level = limits.lightLevel * dice_.unit();
+  ray.state = std::move(state);
 }
 
 double SightRays::pixel_sr() const {
@@ -75,38 +146,121 @@ double SightRays::pixel_sr() const {
   return p.pitchX_m * p.pitchY_m / (across * across);
 }
 
-SightRay SightRays::draw() {
-  SightRay ray;
-  const TimeAxis& time = simulation_.time;
-  ray.state = advance(simulation_.entities, simulation_.lights, time.start_s + time.step_s * (time.frames - 1) * dice_.unit());
-  glm::dmat3 axes(1.0);
-  if (eye_.camera) {
-    const Pose pose = cameraPose(eye_.camera->mount, ray.state);
-    axes = localFromCamera(pose);
-    ray.origin = pose.position;
-    ray.nearest_m = eye_.camera->near_m;
-  } else {
-    ray.origin = eye_.probe->position;
+SightRays::Candidate SightRays::candidate(SightRay ray) const {
+  Candidate c{std::move(ray), {}};
+  const RayHits& hits = c.ray.line.hits;
+  c.things.emplace_back(hits.solid.entity, hits.solid.surface);
+  for (const Hit& h : hits.layers) c.things.emplace_back(h.entity, h.surface);
+  for (const Stretch& s : hits.stretches) c.things.emplace_back(s.entity, -1);
+  std::sort(c.things.begin() + 1, c.things.end());
+  return c;
+}
+
+void SightRays::survey() {
+  if (!candidates_.empty()) return;
+  const int last = simulation_.time.frames - 1;
+  for (int n = 0; n < kSurvey; ++n) {
+    // The first and the last frame count for as much as a tenth of all.
+    const int frame = n % 20 == 0 ? 0 : n % 20 == 10 ? last : static_cast<int>(dice_.below(static_cast<size_t>(last) + 1));
+    candidates_.push_back(candidate(filmRay(frame)));
   }
-  if (dice_.unit() < kAimed)
-    for (int tries = 0; tries < kTries && !surfaces_.empty(); ++tries) {
-      const glm::dvec3 line = placeOn(ray.state, dice_.below(surfaces_.size())) - ray.origin;
-      if (!(glm::length(line) > 0.0) || !inView(ray, axes, line)) continue;
-      ray.direction = glm::normalize(line);
-      ray.fromFilm = false;
-      if (simulation_.limits.any() && dice_.unit() < 0.5) stretch(ray, glm::length(line));
-      return ray;
-    }
-  if (eye_.camera) {
-    const Pinhole& p = eye_.camera->pinhole;
-    ray.direction = glm::normalize(axes * glm::dvec3(p.tanX(p.width * dice_.unit()), p.tanY(p.height * dice_.unit()), -1.0));
-  } else {
-    const double z = dice_.unit(), phi = 2.0 * kPi * dice_.unit(), r = std::sqrt(1.0 - z * z);
-    const glm::dvec3 n = glm::normalize(eye_.probe->normal), helper = std::abs(n.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-    const glm::dvec3 x = glm::normalize(glm::cross(helper, n)), y = glm::cross(n, x);
-    ray.direction = r * std::cos(phi) * x + r * std::sin(phi) * y + z * n;
+  for (int n = 0; n < kAimedSurvey && !surfaces_.empty(); ++n)
+    if (auto ray = aimedAt(static_cast<int>(dice_.below(static_cast<size_t>(last) + 1)), static_cast<size_t>(n) % surfaces_.size()))
+      candidates_.push_back(candidate(std::move(*ray)));
+  std::map<std::vector<std::pair<int, int>>, size_t> placeOf;
+  for (size_t c = 0; c < candidates_.size(); ++c) {
+    const auto [at, isNew] = placeOf.try_emplace(candidates_[c].things, combinations_.size());
+    if (isNew) combinations_.emplace_back();
+    combinations_[at->second].push_back(c);
   }
+}
+
+SightRay SightRays::ofCombination() {
+  survey();
+  const auto& combination = combinations_[dice_.below(combinations_.size())];
+  SightRay ray = candidates_[combination[dice_.below(combination.size())]].ray;
+  ray.fromFilm = false;
   return ray;
+}
+
+/// Lamps in view at a frame, each with what else its pixel shows.
+std::vector<SightRay> SightRays::lamps(int frame) {
+  std::vector<SightRay> seen;
+  for (size_t l = 0; l < simulation_.lights.size(); ++l) {
+    SightRay ray = startAt(frame);
+    const glm::dvec3 line = ray.state->lights[l] - ray.line.origin;
+    if (!simulation_.lights[l].visible || !(ray.state->lightLevels[l] > 0.0) || !(glm::length(line) > 0.0) || !inView(ray, line)) continue;
+    ray.line.direction = glm::normalize(line);
+    ray.lamp = static_cast<int>(l);
+    ray.fromFilm = false;
+    cast(ray);
+    if (ray.line.hits.solid.distance > glm::length(line)) seen.push_back(std::move(ray));
+  }
+  return seen;
+}
+
+std::vector<SightRay> SightRays::extremes() {
+  survey();
+  std::vector<SightRay> all;
+  // The frames at which each body is nearest and farthest, and the first and last.
+  const int frames = simulation_.time.frames, looked = std::min(frames, kMostFrames);
+  struct Extent {
+    double nearest = INFINITY, farthest = 0.0;
+    int nearestFrame = 0, farthestFrame = 0;
+  };
+  std::vector<Extent> bodies(simulation_.entities.size()), lights(simulation_.lights.size());
+  for (int k = 0; k < looked; ++k) {
+    const int frame = looked > 1 ? static_cast<int>(static_cast<long long>(k) * (frames - 1) / (looked - 1)) : 0;
+    const SightRay start = startAt(frame);
+    auto look = [&](Extent& e, const glm::dvec3& place) {
+      const double d = glm::length(place - start.line.origin);
+      if (d < e.nearest) e.nearest = d, e.nearestFrame = frame;
+      if (d > e.farthest) e.farthest = d, e.farthestFrame = frame;
+    };
+    for (size_t e = 0; e < bodies.size(); ++e) look(bodies[e], start.state->entities[e].position);
+    for (size_t l = 0; l < lights.size(); ++l) look(lights[l], start.state->lights[l]);
+  }
+  std::vector<int> lampFrames = {0, frames / 2, frames - 1};
+  for (const Extent& l : lights) lampFrames.insert(lampFrames.end(), {l.nearestFrame, l.farthestFrame});
+  std::sort(lampFrames.begin(), lampFrames.end());
+  lampFrames.erase(std::unique(lampFrames.begin(), lampFrames.end()), lampFrames.end());
+  for (int frame : lampFrames)
+    for (SightRay& r : lamps(frame)) all.push_back(std::move(r));
+  for (size_t s = 0; s < surfaces_.size(); ++s) {
+    const Extent& e = bodies[surfaces_[s].first];
+    for (int frame : {e.nearestFrame, e.farthestFrame})
+      if (auto ray = aimedAt(frame, s)) all.push_back(std::move(*ray));
+  }
+  std::vector<const std::vector<size_t>*> order;
+  for (const auto& c : combinations_) order.push_back(&c);
+  std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return a->size() > b->size(); });
+  if (order.size() > kMostExtremes) order.resize(kMostExtremes);
+  const auto figures = [this](const SightRay& r) {
+    const RayHits& h = r.line.hits;
+    const double cosView = h.solid.entity >= 0 ? -glm::dot(h.solid.normal, r.line.direction) : 0.0;
+    double media_m = 0.0, texel_K = 0.0;
+    for (const Stretch& s : h.stretches) media_m += s.leave - s.enter;
+    if (h.solid.entity >= 0) {
+      const Surface& s = simulation_.entities[static_cast<size_t>(h.solid.entity)].surfaces[static_cast<size_t>(h.solid.surface)];
+      if (s.temperatureTexture >= 0) texel_K = textureValue(simulation_.textures[static_cast<size_t>(s.temperatureTexture)], h.solid.uv);
+    }
+    const double up = glm::dot(r.line.direction, simulation_.frame.up(r.line.origin));
+    const double toSun = simulation_.sun ? glm::dot(r.line.direction, simulation_.sun->toSun) : 0.0;
+    return std::array{h.solid.entity >= 0 ? h.solid.distance : 0.0, cosView, media_m, texel_K, up, std::abs(up), toSun};
+  };
+  for (const auto* combination : order) {
+    const size_t count = figures(candidates_[combination->front()].ray).size();
+    for (size_t f = 0; f < count; ++f) {
+      const auto less = [&](size_t a, size_t b) { return figures(candidates_[a].ray)[f] < figures(candidates_[b].ray)[f]; };
+      const auto [low, high] = std::minmax_element(combination->begin(), combination->end(), less);
+      for (size_t c : {*low, *high}) {
+        all.push_back(candidates_[c].ray);
+        all.back().fromFilm = false;
+        if (*low == *high) break;
+      }
+    }
+  }
+  return all;
 }
 
 }  // namespace pitviper

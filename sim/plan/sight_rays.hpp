@@ -1,9 +1,11 @@
 #pragma once
-// Random lines of sight of a camera or a probe, over a scenario's time.
+// Random lines of sight of a camera or a probe, over a scenario's time: as its film draws them, aimed at bodies, and those at the extremes.
+#include <memory>
+#include <optional>
 #include <random>
 #include <vector>
 
-#include "sim/model/simulation.hpp"
+#include "sim/radiance/radiance.hpp"
 
 namespace pitviper {
 
@@ -24,37 +26,59 @@ class Dice {
   std::mt19937_64 engine_;
 };
 
+/// A line of sight at a time, and what it meets.
 struct SightRay {
-  WorldState state;
-  glm::dvec3 origin{0.0}, direction{0.0, 0.0, 1.0};
+  std::shared_ptr<const WorldState> state;
+  LineOfSight line;
   double nearest_m = 0.0;
-  double temperature_K = 0.0;  ///< of bodies without a temperature texture; 0: their own
-  bool fromFilm = true;        ///< evenly over the film, not aimed at something
+  int lamp = -1;         ///< a light that is seen in the same pixel
+  bool fromFilm = true;  ///< drawn as the film draws pixels, not aimed at something
 };
 
 class SightRays {
  public:
   /// Both must outlive it.
   SightRays(const Simulation& simulation, const Eye& eye, unsigned long long seed);
-  /// Half of them evenly over the film, half aimed at a random place of a random part of a body, so that what is small is not missed. Where the
-  /// scenario states limits, half of the aimed ones come from any range, see any temperature and levels of lights within them.
-  SightRay draw();
+  /// The middle of a random subpixel of a random frame; of a probe a random direction.
+  SightRay fromFilm();
+  /// A random line of one of the combinations of things (surface, panes and media before it) that the film has, all alike often.
+  SightRay ofCombination();
+  /// At a random place of a random part of a body, so that what is small is not missed. Where the scenario states limits, half of them come from
+  /// any range, see any temperature and levels of lights within them.
+  SightRay aimed();
+  /// Of every combination: the nearest, the farthest, the most grazing, the most level, the longest way through media, the hottest and the coldest texel;
+  /// in the first and in the last frame; bodies and lamps at their nearest and farthest.
+  std::vector<SightRay> extremes();
   /// About the solid angle of a subpixel.
   double pixel_sr() const;
-  /// One flag per entity: a camera does not see the body it rides on.
-  const std::vector<char>& drawn() const { return drawn_; }
   Dice& dice() { return dice_; }
 
  private:
+  struct Candidate {
+    SightRay ray;
+    std::vector<std::pair<int, int>> things;  ///< entity and surface, -1 for a medium; sorted
+  };
+  std::shared_ptr<const WorldState> stateAt(int frame);
+  SightRay startAt(int frame);
+  SightRay filmRay(int frame);
+  std::optional<SightRay> aimedAt(int frame, size_t surface);
+  std::vector<SightRay> lamps(int frame);
+  void cast(SightRay& ray) const;
+  void survey();
+  Candidate candidate(SightRay ray) const;
   glm::dvec3 placeOn(const WorldState& state, size_t surface);
   void stretch(SightRay& ray, double distance_m);
-  bool inView(const SightRay& ray, const glm::dmat3& localFromCamera, const glm::dvec3& direction) const;
+  bool inView(const SightRay& ray, const glm::dvec3& direction) const;
 
   const Simulation& simulation_;
   Eye eye_;
   Dice dice_;
-  std::vector<char> drawn_;
+  std::vector<char> drawn_;                          ///< one flag per entity: a camera does not see the body it rides on
   std::vector<std::pair<size_t, size_t>> surfaces_;  ///< entity and surface
+  std::vector<Candidate> candidates_;
+  std::vector<std::vector<size_t>> combinations_;  ///< candidates of each
+  int frame_ = -1;
+  std::shared_ptr<const WorldState> state_;  ///< of the frame asked for last
 };
 
 }  // namespace pitviper

@@ -4,23 +4,21 @@
 #include <cmath>
 
 #include "sim/plan/fine_grid.hpp"
-#include "sim/plan/sight_writer.hpp"
+#include "sim/plan/product_sink.hpp"
 
 namespace pitviper {
 namespace {
 
-/// A lamp in view for so many pixels.
-constexpr int kPixelsPerLamp = 24;
+/// Places on a line between which the air's emission is taken as one black body's; the second below 0.3 %.
+constexpr int kPlaces = 9, kFinePlaces = 18;
+constexpr double kFine = 0.003;
 /// Terms that, with nothing in their way, would be below this part of the floor are left out.
 constexpr double kNegligible = 1e-4;
-/// Part of the film's brightest that an error is measured against where it is dark.
-constexpr double kDark = 1e-3;
-
 }  // namespace
 
 FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel) {
   FineGrid grid;
-  for (const QuadratureNode& n : fineGrid(kernel, simulation.path.get())) {
+  for (const QuadratureNode& n : fineGrid(kernel, simulation)) {
     grid.wavelength_um.push_back(n.x);
     grid.weight.push_back(n.weight);
     grid.air.push_back(simulation.path ? simulation.path->node(n.x) : AirNode{});
@@ -29,27 +27,46 @@ FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel) {
 }
 
 int SightBook::spectrum(const std::string& name, GridSpectrum f) {
-  const auto [at, isNew] = spectrumOf.try_emplace(name, static_cast<int>(spectra.size()));
+  const auto [at, isNew] = named_.try_emplace(name, static_cast<int>(spectra.size()));
   if (isNew) spectra.push_back(std::move(f));
   return at->second;
 }
 
-const char* nameOf(TermKind kind) {
-  constexpr const char* kNames[kTermKinds] = {"emission of surfaces", "reflected ambient light", "reflected sunlight", "reflected light of lamps",
-                                              "emission of the air",  "scattered sunlight",      "background",         "media",
-                                              "lamps in view"};
-  return kNames[static_cast<int>(kind)];
+int SightBook::spectrum(const Factor& factor, const Simulation& sim) {
+  const auto [at, isNew] = factors_.try_emplace(factor, static_cast<int>(spectra.size()));
+  if (isNew) spectra.push_back([factor, &sim](const FineGrid& g, size_t i) { return valueOf(sim, factor, g.wavelength_um[i]); });
+  return at->second;
+}
+
+int SightBook::both(int a, int b) {
+  return spectrum("both " + std::to_string(a) + " " + std::to_string(b), [fa = spectra[static_cast<size_t>(a)], fb = spectra[static_cast<size_t>(b)]](
+                                                                             const FineGrid& g, size_t i) { return fa(g, i) * fb(g, i); });
+}
+
+Sights::Sights(const Simulation& simulation, const Plan& plan, const Eye& eye, unsigned long long seed)
+    : simulation_(simulation), plan_(plan), rays_(simulation, eye, seed) {}
+
+void Sights::add(const SightRay& ray) {
+  RadianceScene scene{simulation_, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, plan_.accuracy < kFine ? kFinePlaces : kPlaces};
+  // In shade, half in it, or lit: other lights of a pixel then count for more.
+  scene.lit = [this](const Hit&, size_t, const LightLeg&) {
+    const double shade = rays_.dice().unit();
+    return shade < 0.25 ? 0.0 : shade < 0.5 ? rays_.dice().unit() : 1.0;
+  };
+  ProductSink sink(simulation_, book_);
+  sink.begin(ray.fromFilm);
+  radianceAlong(scene, ray.line, sink);
+  if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), rays_.pixel_sr(), sink);
+  book_.sights.push_back(sink.finish());
+}
+
+void Sights::begin(int count) {
+  for (const SightRay& ray : rays_.extremes()) add(ray);
+  draw(count);
 }
 
 void Sights::draw(int count) {
-  for (int n = 0; n < count; ++n, ++drawn_) {
-    const SightRay ray = rays_.draw();
-    SightWriter writer(simulation_, plan_, book_, ray, castRay(simulation_, ray.state, ray.origin, ray.direction, ray.nearest_m, &rays_.drawn()), rays_.dice());
-    book_.sights.push_back(writer.pixel());
-    if (drawn_ % kPixelsPerLamp != 0) continue;
-    for (size_t l = 0; l < simulation_.lights.size(); ++l)
-      if (Sight lamp = writer.lamp(l, rays_.pixel_sr()); simulation_.lights[l].visible && !lamp.terms.empty()) book_.sights.push_back(std::move(lamp));
-  }
+  for (int n = 0; n < count; ++n) add(n % 2 == 0 ? rays_.fromFilm() : n % 4 == 1 ? rays_.ofCombination() : rays_.aimed());
 }
 
 double Sights::coefficientOf(const FineGrid& grid, size_t i, int absorber) const {
@@ -74,11 +91,11 @@ SpectralProblem Sights::whole(const FineGrid& grid, const std::vector<int>& abso
   p.wavelength_um = grid.wavelength_um;
   p.weight = grid.weight;
   const size_t fine = grid.weight.size();
-  for (const GridSpectrum& f : book_.spectra) {
-    std::vector<double> values(fine);
-    for (size_t i = 0; i < fine; ++i) values[i] = f(grid, i);
-    p.spectra.push_back(std::move(values));
+  for (size_t s = grid.known.size(); s < book_.spectra.size(); ++s) {
+    grid.known.emplace_back(fine);
+    for (size_t i = 0; i < fine; ++i) grid.known.back()[i] = book_.spectra[s](grid, i);
   }
+  p.spectra = grid.known;
   for (int a : absorbers) {
     p.extinction.emplace_back(fine);
     for (size_t i = 0; i < fine; ++i) p.extinction.back()[i] = coefficientOf(grid, i, a);
@@ -90,7 +107,7 @@ SpectralProblem Sights::whole(const FineGrid& grid, const std::vector<int>& abso
   }
   for (size_t m = first; m < book_.sights.size(); ++m) {
     SpectralProduct product;
-    for (const SightTerm& t : book_.sights[m].terms) product.terms.push_back({t.source, t.second, t.path, t.coefficient});
+    for (const SightTerm& t : book_.sights[m].terms) product.terms.push_back(t.product);
     p.products.push_back(std::move(product));
   }
 
@@ -108,15 +125,17 @@ double Sights::floorOf(const FineGrid& grid, const std::vector<int>& absorbers) 
 
 SpectralProblem Sights::problem(const FineGrid& grid, const std::vector<int>& absorbers, double floor, size_t first) const {
   SpectralProblem p = whole(grid, absorbers, first);
-  std::map<std::pair<int, int>, double> bound;
+  std::map<std::pair<int, std::array<int, kMostFactors>>, double> bound;
   for (SpectralProduct& product : p.products) {
     product.floor = floor;
     std::erase_if(product.terms, [&](const ProductTerm& t) {
-      auto [at, isNew] = bound.try_emplace({t.source, t.second}, 0.0);
+      auto [at, isNew] = bound.try_emplace({t.count, t.spectrum}, 0.0);
       if (isNew)
-        for (size_t i = 0; i < p.weight.size(); ++i)
-          at->second +=
-              p.weight[i] * std::abs(p.spectra[static_cast<size_t>(t.source)][i] * (t.second < 0 ? 1.0 : p.spectra[static_cast<size_t>(t.second)][i]));
+        for (size_t i = 0; i < p.weight.size(); ++i) {
+          double value = p.weight[i];
+          for (int s : t.spectra()) value *= p.spectra[static_cast<size_t>(s)][i];
+          at->second += std::abs(value);
+        }
       return std::abs(t.coefficient) * at->second < kNegligible * floor;
     });
   }

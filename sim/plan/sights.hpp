@@ -1,9 +1,5 @@
 #pragma once
-// Lines of sight of a scene, drawn at random over its time, and what each pixel's radiance is a sum of: what a plan's wavelengths must integrate.
-//
-// Terms as the renderer has them: emission and reflected ambient light of surfaces, reflected light of the sun and of points, the air's emission and
-// scattered sunlight cut at stations, media and transparent surfaces on the way. One thing is simpler here:
-// spectra that meet in threes are multiplied two at a time.
+// Lines of sight of a scene as sums of products: what a plan's wavelengths must integrate.
 #include <functional>
 #include <map>
 #include <string>
@@ -19,6 +15,7 @@ namespace pitviper {
 struct FineGrid {
   std::vector<double> wavelength_um, weight;
   std::vector<AirNode> air;
+  mutable std::vector<std::vector<double>> known;  ///< of a SightBook's spectra, the first so many
 };
 
 /// A spectrum on a grid: value at its i-th wavelength.
@@ -35,13 +32,8 @@ struct SightPath {
   }
 };
 
-enum class TermKind { Emission, Ambient, Sun, Lights, AirEmission, ScatteredSun, Background, Media, LampsInView };
-constexpr int kTermKinds = 9;
-const char* nameOf(TermKind kind);
-
 struct SightTerm {
-  int source = 0, second = -1, path = 0;  ///< as in ProductTerm, into Sights
-  double coefficient = 1.0;
+  ProductTerm product;  ///< its indices into a SightBook
   TermKind kind = TermKind::Emission;
 };
 
@@ -53,20 +45,29 @@ struct Sight {
 /// Sights with the spectra and paths that their terms point to.
 struct SightBook {
   std::vector<GridSpectrum> spectra;
-  std::map<std::string, int> spectrumOf;  ///< the same name is the same spectrum
   std::vector<SightPath> paths;
   std::vector<Sight> sights;
-  int spectrum(const std::string& name, GridSpectrum f);
+  int spectrum(const Factor& factor, const Simulation& simulation);
+  int spectrum(const std::string& name, GridSpectrum f);  ///< the same name is the same spectrum
+  int both(int a, int b);                                 ///< their product
+
+ private:
+  std::map<Factor, int> factors_;
+  std::map<std::string, int> named_;
 };
 
 class Sights {
  public:
   /// All must outlive it. `plan`: what makePlan() says of terms.
-  Sights(const Simulation& simulation, const Plan& plan, const Eye& eye, unsigned long long seed)
-      : simulation_(simulation), plan_(plan), rays_(simulation, eye, seed) {}
-  /// More of them.
+  Sights(const Simulation& simulation, const Plan& plan, const Eye& eye, unsigned long long seed);
+  /// The extremes, and so many others: half of them as the film draws pixels, a quarter of all combinations of things alike, a quarter aimed at bodies.
+  void begin(int count);
+  /// More of the others.
   void draw(int count);
+  /// A line that turned out to matter.
+  void add(const SightRay& ray);
   size_t size() const { return book_.sights.size(); }
+  SightRays& rays() { return rays_; }
   /// The absorbers that a channel may meet: places in AirAmounts, and from kMostAirAmounts on the materials of media.
   std::vector<int> absorbers(const FineGrid& grid) const;
   /// The spectral problem of a channel, of sights from a number on, one column of extinction per absorber. Terms that with nothing in their way
@@ -84,8 +85,10 @@ class Sights {
   const Plan& plan_;
   SightRays rays_;
   SightBook book_;
-  int drawn_ = 0;
 };
+
+/// Part of the film's brightest (99th percentile) that an error is measured against where it is dark.
+constexpr double kDark = 1e-3;
 
 FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel);
 

@@ -22,10 +22,12 @@ constexpr Real kExpLimit = 708.0;
 constexpr Real kFar = 1e30;
 
 #define PHYSICS inline
+#include "sim/radiometry/glsl/arc_tangent.glsl"
 #include "sim/radiometry/glsl/chord.glsl"
 #include "sim/radiometry/glsl/exponential.glsl"
 #include "sim/radiometry/glsl/geometry.glsl"
 #include "sim/radiometry/glsl/medium.glsl"
 #include "sim/radiometry/glsl/planck.glsl"
+#include "sim/radiometry/glsl/sun_disc.glsl"
 #undef PHYSICS
 }  // namespace pitviper::physics

@@ -1,6 +1,7 @@
 #include "sim/render/air_tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <future>
@@ -13,15 +14,12 @@ namespace pitviper {
 namespace {
 
 /// Entries of the tables. Ranges lie evenly in ln(1 + range / scale), scale a thousandth of the farthest: 7 % apart beyond it.
-constexpr int kElevations = 65, kRanges = 96, kHeights = 128;
+constexpr int kElevations = 65, kRanges = 96;
 /// Below 0.3 %: twice as many elevations and ranges, for a quarter of what is lost between them (0.3 % of the worst pixel in a field of 40 degrees).
 constexpr double kFine = 0.003;
 constexpr double kScale = 1e-3;
 /// Ranges of places towards space [m].
 constexpr double kFirstSky_m = 100.0, kLastSky_m = 2e6;
-/// Lowest ground; the root of the height above it spreads the entries, as SunLegs does.
-constexpr double kBottom_m = -500.0;
-constexpr double kSunStep = 0.01;
 /// Temperatures of air anywhere [K] and entries over their inverse.
 constexpr double kColdest_K = 140.0, kWarmest_K = 400.0;
 constexpr int kTemperatures = 256;
@@ -94,30 +92,23 @@ void AirTables::addConstants(ShaderSlots& slots) const {
   slots.constants["AIR_VECTORS"] = vectors_;
   slots.constants["AIR_ELEVATIONS"] = elevations_;
   slots.constants["AIR_RANGES"] = ranges_;
-  slots.constants["AIR_HEIGHTS"] = kHeights;
+  slots.constants["AIR_HEIGHTS"] = SunLegs::kHeights;
+  slots.constants["AIR_SUNS"] = plan_.sunLegs ? SunLegs::kElevations : 0;
   slots.constants["AIR_PARTS"] = parts_;
   slots.constants["AIR_ASYMMETRIES"] = (values_ + 3) / 4;
+  slots.constants["AIR_BLACKS"] = (plan_.nodeCount() + 3) / 4;
 }
 
 void AirTables::addHeights(std::vector<float>& out) const {
   const Path& path = *simulation_.path;
-  const double top = path.top_m();
-  const glm::dvec3 up = simulation_.frame.up(glm::dvec3(0.0));
-  const double sine = simulation_.sun ? glm::dot(up, simulation_.sun->toSun) : 1.0, radius = simulation_.frame.earthRadius_m();
-  for (int h = 0; h < kHeights; ++h) {
-    const double t = static_cast<double>(h) / (kHeights - 1), height = kBottom_m + (top - kBottom_m) * t * t;
-    const AirAmounts density = path.densities(height);
-    AirAmounts sun[2];
-    for (int s = 0; s < 2; ++s)
-      if (simulation_.sun) {
-        const double low = sine - 0.5 * kSunStep + s * kSunStep;
-        // Behind the earth there is no sun: an amount that nothing comes through.
-        const bool shadow = low < 0.0 && (radius + height) * std::sqrt(1.0 - low * low) < radius;
-        if (shadow) sun[s].amount.fill(1e12);
-        else sun[s] = path.amounts({height, std::clamp(low, -1.0, 1.0), radius}, physics::kFar);
-      }
-    for (const AirAmounts* a : {&density, static_cast<const AirAmounts*>(&sun[0]), static_cast<const AirAmounts*>(&sun[1])})
-      for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) out.push_back(static_cast<float>(logOf(a->amount[k])));
+  const auto put = [&](const AirAmounts& logs) {
+    for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) out.push_back(static_cast<float>(logs.amount[k]));
+  };
+  for (int h = 0; h < SunLegs::kHeights; ++h) {
+    AirAmounts density = path.densities(SunLegs::heightAt(h, path.top_m()));
+    for (double& d : density.amount) d = logOf(d);
+    put(density);
+    for (int e = 0; plan_.sunLegs && e < SunLegs::kElevations; ++e) put(plan_.sunLegs->logAt(e, h));
   }
 }
 
@@ -145,6 +136,10 @@ void AirTables::update(const View& view, const WorldState& state) {
   const double margin = kMargin * (high - low);
   grid_ = {view.position, simulation_.frame.height(view.position), sunAcrossOf(view), std::max(low - margin, -1.0), std::min(high + margin, 1.0),
            1.1 * farthest};
+  const AirRay here{std::min(grid_.height_m, simulation_.path->top_m()), 1.0, simulation_.frame.earthRadius_m()};
+  const double temperature_K = simulation_.path->stationsAt(here, std::array{0.0}).front().temperature_K;
+  black_.clear();
+  for (size_t i = 0; i < plan_.nodes.size(); ++i) black_.push_back(temperature_K > 0.0 ? planck(i, temperature_K) : 0.0);
   fill(view);
 }
 
@@ -218,8 +213,11 @@ void AirTables::fillElevation(const View& view, int e, const std::vector<double>
   std::vector<double> source(line.stations.size());
   for (size_t i = 0; i < nodes; ++i) {
     for (size_t s = 0; s < source.size(); ++s) source[s] = line.stations[s].temperature_K > 0.0 ? planck(i, line.stations[s].temperature_K) : 0.0;
-    const AirRadiance found = airRadiance(plan_.nodes[i].air, line, source);
+    AirRadiance found = airRadiance(plan_.nodes[i].air, line, source);
     for (size_t part = 0; part < parts; ++part) {
+      // Emission is kept as what it differs from that of air of one temperature, which the shader works out by the pixel's own depth.
+      if (part == 0)
+        for (size_t s = 0; s < found.depth.size(); ++s) found.thermal[s] -= black_[i] * physics::oneMinusExp(found.depth[s]);
       const auto& sent = part == 0 ? found.thermal : part == 1 ? found.molecules : found.haze;
       const double strength = part == 0 ? 1.0 : sunIrradiance_[i];
       for (size_t r = 0; r < columns; ++r) {
@@ -263,14 +261,16 @@ void AirTables::fill(const View& view) {
   auto put = [&block](std::initializer_list<double> v) {
     for (double x : v) block.push_back(static_cast<float>(x));
   };
-  const double top = path.top_m(), sine = simulation_.sun ? glm::dot(simulation_.frame.up(glm::dvec3(0.0)), simulation_.sun->toSun) : 1.0;
+  const double top = path.top_m();
   put({spread(grid_.low), (elevations_ - 1) / (spread(grid_.high) - spread(grid_.low)), kScale * grid_.farthest_m, (ranges_ - 1) / std::log1p(1.0 / kScale)});
-  put({kBottom_m, (kHeights - 1) / std::sqrt(top - kBottom_m), sine - 0.5 * kSunStep, 1.0 / kSunStep});
+  put({SunLegs::kBottom_m, (SunLegs::kHeights - 1) / std::sqrt(top - SunLegs::kBottom_m), plan_.sunLegs ? plan_.sunLegs->firstSine() : 0.0,
+       plan_.sunLegs ? 1.0 / plan_.sunLegs->step() : 0.0});
   const auto powers = path.exponents();
   for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) put({k < powers.size() ? powers[k] : 1.0});
   for (const SpectralNode& n : plan_.nodes)
     for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) put({n.air.extinction[k]});
   block.insert(block.end(), asymmetry.begin(), asymmetry.end());
+  for (size_t i = 0; i < (plan_.nodes.size() + 3) / 4 * 4; ++i) put({i < black_.size() ? black_[i] : 0.0});
   block_.upload(block);
 }
 

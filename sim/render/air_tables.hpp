@@ -44,6 +44,7 @@ class AirTables {
   int elevations_ = 0, ranges_ = 0, vectors_ = 0, values_ = 0, texels_ = 0, parts_ = 1;
   std::vector<std::vector<double>> logPlanck_;  ///< per node, over the inverse of the temperature
   std::vector<double> sunIrradiance_;           ///< per node
+  std::vector<double> black_;                   ///< per node, at the air's temperature where the tables begin
   std::vector<float> heights_;                  ///< by height: the same for every view
   Grid grid_;
   Buffer block_, amounts_, radiance_;

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "sim/model/light_legs.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/reference_pass.hpp"
@@ -78,19 +79,14 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
     const auto intensity = apparentIntensity(sim, plan, state, l, probe.position, way);
     for (size_t s = 0; s < sums.size(); ++s) sums[s] += factor * intensity[s];
   }
-  const std::vector<double> toSun = sim.sun && glm::dot(sim.sun->toSun, normal) > 0.0
-                                        ? wayTo(pass, state, all, probe.position, sim.sun->toSun, physics::kFar, kNear_m)
-                                        : std::vector<double>();
-  if (!toSun.empty()) {
-    const bool ended = plan.terms.air && sim.path->top_m() < physics::kFar;
-    const double sinElevation = glm::dot(sim.frame.up(probe.position), sim.sun->toSun);
-    AirAmounts air;
-    if (ended) air = sim.path->amounts({sim.frame.height(probe.position), sinElevation, sim.frame.earthRadius_m()}, physics::kFar);
-    for (size_t i = 0; i < plan.nodes.size(); ++i) {
-      const SpectralNode& n = plan.nodes[i];
-      const double e = toSun[i] * glm::dot(sim.sun->toSun, normal) * n.mean(sim.sun->irradiance) * (ended ? sim.path->transmittance(n.air, air) : 1.0);
-      for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * e;
-    }
+  const SunHere sun = sim.sun ? sunHere(sim, probe.position) : SunHere{{}, 0.0, {}};
+  const double cosine = glm::dot(sun.toSun, normal);
+  const std::vector<double> toSun =
+      sun.share > 0.0 && cosine > 0.0 ? wayTo(pass, state, all, probe.position, sun.toSun, physics::kFar, kNear_m) : std::vector<double>();
+  for (size_t i = 0; i < toSun.size(); ++i) {
+    const SpectralNode& n = plan.nodes[i];
+    const double e = toSun[i] * sun.share * cosine * n.mean(sim.sun->irradiance) * (plan.terms.air ? sim.path->transmittance(n.air, sun.air) : 1.0);
+    for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * e;
   }
   std::vector<double> values;
   for (size_t o = 0; o < probe.outputs.size(); ++o) values.push_back(probe.outputs[o].scale * sums[static_cast<size_t>(plan.slotOfOutput[o])]);

@@ -80,6 +80,7 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.constants["LIGHTS"] = plan_.lightCount;
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
   slots.constants["SUN"] = simulation_.sun && plan_.lightCount > 0 ? 1 : 0;
+  slots.constants["SUN_SETS"] = simulation_.overEarth() ? 1 : 0;
   // Of four lights a vec4 at each node [W/(sr um)], the sun as irradiance; and radiance of the dome.
   slots.generated["light_nodes"] = plan_.lightCount > 0 ? "  vec4 nodeLight[NODES * LIGHT_GROUPS];\n" : "";
   slots.generated["ambient_nodes"] = tables_.ambient.empty() ? "" : "  vec4 nodeAmbient[NODES];\n";

@@ -38,6 +38,9 @@ class Motion {
   explicit Motion(const Pose& fixed) : fixed_(fixed) {}
   Motion(std::vector<Waypoint> waypoints, Interpolation interpolation);
   Pose at(double time_s) const;
+  const Pose& fixed() const { return fixed_; }  ///< where there are no waypoints
+  const std::vector<Waypoint>& waypoints() const { return waypoints_; }
+  Interpolation interpolation() const { return interpolation_; }
 
  private:
   glm::dvec3 tangent(size_t i) const;

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "scenarios/assets/make_aircraft.hpp"
-#include "sim/render/reference/shadow_rays.hpp"
+#include "sim/radiance/shadow_rays.hpp"
 #include "sim/scene/primitives.hpp"
 #include "sim/scene/triangle_tree.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -1,3 +1,4 @@
+//@use sim/radiometry/glsl/sun_disc.glsl
 // A body's row of lights: how many can matter to it, then their place or direction in the body frame with their radius, and their number;
 // places that are left over have the number -1. Beside the
 // number: first and count of the casters that can shade the body from it.
@@ -21,6 +22,14 @@ LightHere lightAt(int entry) {
   here.number = int(lights[entry + 1].x);
   bool sun = here.number >= LIGHTS - SUN;
   vec3 line = sun ? light.xyz : light.xyz - point_;
+  float share = 1.0;
+  if (SUN_SETS > 0 && sun) {  // the part of the sun's disc above the point's own horizon stands for the sun
+    float x = sunAboveHorizon(height_, sunElevation_, view.earth.x), cosine = sqrt(max(1.0 - sunElevation_ * sunElevation_, 1.0e-6));
+    float rise = sunRise(x) * sunRadius();
+    share = sunShare(x);
+    line = normalize(line + rise / cosine * up_);
+    sunElevation_ += rise * cosine;
+  }
   float d2 = sun ? 1.0 : dot(line, line);
   float d = sqrt(d2);
   here.to = d > 0.0 ? line / d : normal_;
@@ -29,7 +38,7 @@ LightHere lightAt(int entry) {
     lightCos_ = cosLight;
     lightDistance2_ = d2;
   }
-  here.factor = here.number < 0 ? 0.0 : isSurface_ * (sun ? max(cosLight, 0.0) : pointIrradianceFactor(cosLight, d2, light.w));
+  here.factor = here.number < 0 ? 0.0 : isSurface_ * (sun ? share * max(cosLight, 0.0) : pointIrradianceFactor(cosLight, d2, light.w));
   if (here.factor > 0.0) here.factor *= shareSeen(lights[entry + 1], here.to, sun ? kFar : d - light.w);
   if (sun) here.air = airToSun(air_, height_);
   else here.air = airToLight(air_, height_, dot(up_, here.to), d);

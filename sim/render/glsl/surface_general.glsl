@@ -1,5 +1,6 @@
 // Materials with tables over angles, modifier textures or temperature textures: components are put together per fragment.
 //@use sim/render/glsl/materials.glsl
+//@use sim/radiometry/glsl/arc_tangent.glsl
 layout(binding = 1) uniform samplerBuffer rows;           // Planck radiance per temperature and node
 layout(binding = 2) uniform samplerBuffer hemispherical;  // (D1, D2, D3, given emissivity) by view angle and node
 MaterialShape material_;
@@ -8,15 +9,6 @@ int view0_, view1_, viewEntry_;
 float transmissionModifier_;
 float viewMix_;
 float temperature_;
-
-// Arc tangent of t >= 0 to single precision; GLSL's own is allowed 4096 units of the last place (Mesa's asin is off by 3e-4).
-// Source: S. Moshier, Cephes atanf: reduction at tan(pi/8) and tan(3 pi/8), odd polynomial.
-float arcTangent(float t) {
-  float base = t > 2.414213562 ? 1.570796327 : t > 0.414213562 ? 0.785398163 : 0.0;
-  float x = t > 2.414213562 ? -1.0 / t : t > 0.414213562 ? (t - 1.0) / (t + 1.0) : t;
-  float z = x * x;
-  return base + (((8.05374449538e-2 * z - 1.38776856032e-1) * z + 1.99777106478e-1) * z - 3.33329491539e-1) * z * x + x;
-}
 
 // The angle between unit vectors from chord and sum: keeps its digits near 0 and near pi.
 float angleFromChord(vec3 a, vec3 b) { return 2.0 * arcTangent(length(a - b) / max(length(a + b), 1.0e-20)); }

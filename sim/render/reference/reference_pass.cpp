@@ -49,6 +49,7 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
   const ReferenceShader shader(simulation_, plan(), view_, state_, drawn_);
   std::atomic<int> next{0};
   auto work = [&](bool tells) {
+    NodeSum sum(shader.spectra());
     for (int y = next++; y < height; y = next++) {
       for (int x = 0; x < width; ++x) {
         const size_t p = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
@@ -57,7 +58,7 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
         if (view_.differenceOf >= 0 && !shader.meets(x, y, view_.differenceOf)) continue;
         SeenTriangle seen;
         if (item.entity >= 0) seen = {item.entity, identity[2 * p + 1] - sharedScene()->firstTriangle(item.entity)};
-        const ReferencePixel pixel = shader.pixel(x, y, seen);
+        const ReferencePixel pixel = shader.pixel(x, y, seen, sum);
         for (size_t s = 0; s < pixel.slots.size(); ++s) channels[s / 4][4 * p + s % 4] = static_cast<float>(pixel.slots[s]);
       }
       // More views than were announced: the picture is as good as done.

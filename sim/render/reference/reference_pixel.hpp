@@ -4,7 +4,8 @@
 #include <vector>
 
 #include "sim/plan/plan.hpp"
-#include "sim/render/reference/shadow_rays.hpp"
+#include "sim/radiance/node_sum.hpp"
+#include "sim/radiance/shadow_rays.hpp"
 #include "sim/render/view.hpp"
 
 namespace pitviper {
@@ -15,8 +16,6 @@ struct ReferencePixel {
   int entity = -1;
   int surface = -1;
   double range_m = 0.0;
-  double cosView = 0.0;
-  double temperature_K = 0.0;
 };
 
 /// What the visibility pass found; entity -1: the background.
@@ -25,22 +24,28 @@ struct SeenTriangle {
   std::uint32_t triangle = 0;  ///< of its mesh
 };
 
-/// Many pixels of one view; pixels may be asked for from several threads.
+/// Many pixels of one view; pixels may be asked for from several threads, each with a sum of its own over spectra().
 class ReferenceShader {
  public:
   /// All must outlive it. `drawn`: one flag per entity, what is left out neither shows nor lets less through (it still casts shadows).
   ReferenceShader(const Simulation& simulation, const Plan& plan, const View& view, const WorldState& state, const std::vector<char>& drawn);
   /// The centre of pixel (x, y), counted from the lower left: what a ray meets.
+  ReferencePixel pixel(int x, int y, NodeSum& sum) const;
   ReferencePixel pixel(int x, int y) const;
   /// The same, given which triangle it sees.
-  ReferencePixel pixel(int x, int y, const SeenTriangle& seen) const;
+  ReferencePixel pixel(int x, int y, const SeenTriangle& seen, NodeSum& sum) const;
   /// Whether the ray through its centre meets a body at all, whatever hides it.
   bool meets(int x, int y, int entity) const;
   /// Per node, of everything transparent on the line through the middle of the view as far as a depth.
   std::vector<double> transmittance(double farthest_m) const;
 
+  const NodeSpectra& spectra() const { return spectra_; }
+
  private:
-  ReferencePixel shade(int x, int y, const RayHits& hits) const;
+  RadianceScene scene() const;
+  LineOfSight lineThrough(double x, double y) const;
+  double nearest_m(double x, double y) const;
+  ReferencePixel shade(const LineOfSight& line, NodeSum& sum) const;
   const Simulation& simulation_;
   const Plan& plan_;
   const View& view_;
@@ -48,6 +53,7 @@ class ReferenceShader {
   const std::vector<char>& drawn_;
   bool transparent_;
   ShadowCaster shadows_;
+  NodeSpectra spectra_;
 };
 
 /// The centre of pixel (x, y) of a view, counted from the lower left; everything is drawn.

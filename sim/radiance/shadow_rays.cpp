@@ -1,4 +1,4 @@
-#include "sim/render/reference/shadow_rays.hpp"
+#include "sim/radiance/shadow_rays.hpp"
 
 #include <algorithm>
 #include <cmath>

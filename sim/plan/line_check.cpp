@@ -1,0 +1,114 @@
+#include "sim/plan/line_check.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <future>
+#include <thread>
+
+#include "sim/plan/sights.hpp"
+#include "sim/radiance/node_sum.hpp"
+#include "sim/radiance/shadow_rays.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Places at which a line's air is looked at: alike on both sides, so that only wavelengths differ.
+constexpr int kPlaces = 24;
+
+std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance) {
+  std::vector<double> slots(plan.weight.size(), 0.0);
+  for (size_t s = 0; s < slots.size(); ++s)
+    for (size_t i = 0; i < radiance.size(); ++i) slots[s] += plan.weight[s][i] * radiance[i];
+  return slots;
+}
+
+/// Whether a node of the plan leaves a kind of terms out.
+bool isDropped(const Plan& plan, const Terms& all, TermKind kind, const NodeBlock& block) {
+  switch (kind) {
+    case TermKind::Ambient:
+      return all.ambient && !plan.terms.ambient;
+    case TermKind::ScatteredSun:
+      return all.scatteredSun && !plan.terms.scatteredSun;
+    case TermKind::Sun:
+    case TermKind::Lights:
+      return all.lights && (!plan.terms.lights || !block.lit);
+    default:
+      return false;
+  }
+}
+
+/// What a line's slots lose by it.
+std::vector<double> droppedOf(const Plan& plan, const Terms& all, const NodeSum& sum) {
+  std::vector<double> lost(plan.weight.size(), 0.0);
+  for (const NodeBlock& b : plan.blocks)
+    for (int kind = 0; kind < kTermKinds; ++kind) {
+      if (!isDropped(plan, all, static_cast<TermKind>(kind), b)) continue;
+      const auto part = sum.part(static_cast<TermKind>(kind));
+      for (int s : b.slots)
+        for (int i = b.first; i < b.first + b.count; ++i) lost[static_cast<size_t>(s)] += plan.weight[static_cast<size_t>(s)][static_cast<size_t>(i)] * part[static_cast<size_t>(i)];
+    }
+  return lost;
+}
+
+struct LineSums {
+  std::vector<double> planned, exact, dropped;
+};
+
+}  // namespace
+
+std::vector<LineFigures> checkLines(const Simulation& sim, const Plan& plan, const Plan& fine, const std::vector<SightRay>& lines, double pixel_sr,
+                                    std::vector<double>& floor) {
+  const NodeSpectra plannedSpectra(sim, plan.nodes), fineSpectra(sim, fine.nodes);
+  const ShadowCaster shadows(sim);
+  std::vector<LineSums> sums(lines.size());
+  std::atomic<size_t> next{0};
+  auto work = [&] {
+    NodeSum planned(plannedSpectra), exact(fineSpectra);
+    planned.keepParts();
+    for (size_t n = next++; n < lines.size(); n = next++) {
+      const SightRay& ray = lines[n];
+      RadianceScene scene{sim, fine.terms, fine.sunLegs.get(), *ray.state, {}, kPlaces};
+      if (fine.terms.shadows)
+        scene.lit = [&](const Hit& hit, size_t light, const LightLeg& leg) {
+          const double radius_m = light < sim.lights.size() ? sim.lights[light].radius_m : 0.0;
+          return shadows.lit(*ray.state, hit, leg.toLight, leg.distance_m - radius_m) ? 1.0 : 0.0;
+        };
+      for (NodeSum* sum : {&planned, &exact}) {
+        sum->begin();
+        radianceAlong(scene, ray.line, *sum);
+        if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), pixel_sr, *sum);
+      }
+      sums[n] = {slotsOf(plan, planned.radiance()), slotsOf(fine, exact.radiance()), droppedOf(plan, fine.terms, planned)};
+    }
+  };
+  std::vector<std::future<void>> others;
+  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
+  work();
+  for (auto& o : others) o.get();
+
+  std::vector<LineFigures> figures(plan.weight.size());
+  const bool chooses = floor.empty();
+  for (size_t s = 0; s < figures.size(); ++s) {
+    if (chooses) {
+      std::vector<double> seen;
+      for (const LineSums& l : sums) seen.push_back(l.exact[s]);
+      std::sort(seen.begin(), seen.end());
+      floor.push_back(seen.empty() ? 0.0 : kDark * seen[std::min(seen.size() - 1, seen.size() * 99 / 100)]);
+    }
+    LineFigures& f = figures[s];
+    for (const LineSums& l : sums) {
+      const double size = std::max(std::abs(l.exact[s]), floor[s]), difference = std::abs(l.planned[s] - l.exact[s]);
+      f.errors.push_back(size > 0.0 ? difference / size : difference > 0.0 ? INFINITY : 0.0);
+      if (size > 0.0) f.dropped = std::max(f.dropped, std::abs(l.dropped[s]) / size);
+    }
+    if (f.errors.empty()) continue;
+    std::vector<double> sorted = f.errors;
+    std::sort(sorted.begin(), sorted.end());
+    f.largest = sorted.back();
+    f.median = sorted[sorted.size() / 2];
+  }
+  return figures;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,192 @@
+#include "sim/plan/product_sink.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "sim/radiometry/constants.hpp"
+
+namespace pitviper {
+namespace {
+
+constexpr double kTemperatureStep_K = 4.0, kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
+
+/// The factor at one of the steps.
+Factor stepped(Factor f) {
+  if (f.kind != Factor::Kind::Planck && f.kind != Factor::Kind::Emission && f.kind != Factor::Kind::Medium)
+    f.x = kAngleStep_rad * std::round(f.x / kAngleStep_rad), f.y = kAngleStep_rad * std::round(f.y / kAngleStep_rad);
+  return f;
+}
+
+/// Terms of the same spectra on the same path as one.
+std::vector<SightTerm> merged(std::vector<SightTerm> terms) {
+  std::map<std::tuple<std::array<int, kMostFactors>, int, int, TermKind>, size_t> placeOf;
+  std::vector<SightTerm> out;
+  for (const SightTerm& t : terms) {
+    const auto [at, isNew] = placeOf.try_emplace({t.product.spectrum, t.product.count, t.product.path, t.kind}, out.size());
+    if (isNew) out.push_back(t);
+    else out[at->second].product.coefficient += t.product.coefficient;
+  }
+  std::erase_if(out, [](const SightTerm& t) { return t.product.coefficient == 0.0; });
+  return out;
+}
+
+}  // namespace
+
+ProductSink::ProductSink(const Simulation& simulation, SightBook& book) : sim_(simulation), book_(book) {
+  if (!sim_.path || sim_.path->isNone()) return;
+  const AirNode node = sim_.path->node(std::clamp(1.0, sim_.path->validLow_um(), sim_.path->validHigh_um()));
+  for (size_t k = 0; k < kMostAirAmounts; ++k)
+    if (node.molecules[k] + node.haze[k] > 0.0) scatterers_.push_back(k);
+}
+
+void ProductSink::begin(bool fromFilm) {
+  sight_ = {};
+  sight_.fromFilm = fromFilm;
+  restart();
+}
+
+void ProductSink::restart() {
+  here_ = {};
+  media_m_.clear();
+  inside_m_.clear();
+  panes_.clear();
+}
+
+Sight ProductSink::finish() {
+  sight_.terms = merged(std::move(sight_.terms));
+  return std::move(sight_);
+}
+
+/// Through the media so far, and a part of those of the segment being told.
+int ProductSink::pathOf(const AirAmounts& powered, double ownPart) {
+  SightPath path{powered, media_m_};
+  if (!inside_m_.empty() && ownPart > 0.0) {
+    path.media_m.resize(inside_m_.size(), 0.0);
+    for (size_t m = 0; m < inside_m_.size(); ++m) path.media_m[m] += ownPart * inside_m_[m];
+  }
+  book_.paths.push_back(std::move(path));
+  return static_cast<int>(book_.paths.size()) - 1;
+}
+
+/// Through all panes so far.
+void ProductSink::add(SightTerm term) {
+  for (const Pane& p : panes_) {
+    term.product.coefficient *= p.modifier;
+    if (term.product.count < kMostFactors) term.product.spectrum[static_cast<size_t>(term.product.count++)] = p.transmittance;
+    else term.product.spectrum.back() = book_.both(term.product.spectrum.back(), p.transmittance);
+  }
+  if (term.product.coefficient != 0.0) sight_.terms.push_back(term);
+}
+
+/// A black body of a texture's temperature is a mixture of two.
+void ProductSink::addFactor(const SightTerm& term, std::span<const Factor> rest) {
+  if (rest.empty()) {
+    add(term);
+    return;
+  }
+  const auto with = [&](const Factor& f, double part) {
+    SightTerm t = term;
+    t.product.coefficient *= part;
+    t.product.spectrum[static_cast<size_t>(t.product.count++)] = book_.spectrum(f, sim_);
+    if (part > 0.0) addFactor(t, rest.subspan(1));
+  };
+  const Factor& f = rest.front();
+  if (f.kind != Factor::Kind::Planck || f.lasting) {
+    with(stepped(f), 1.0);
+    return;
+  }
+  const double at = f.x / kTemperatureStep_K, low = std::floor(at);
+  if (low > 0.0) with(Factor::planck(kTemperatureStep_K * low, true), 1.0 - (at - low));
+  with(Factor::planck(kTemperatureStep_K * (low + 1.0), true), at - low);
+}
+
+void ProductSink::term(const Term& t) {
+  SightTerm term{{}, t.kind};
+  term.product.count = 0;
+  term.product.coefficient = t.coefficient;
+  term.product.path = pathOf(t.air ? *t.air : here_, 0.0);
+  addFactor(term, t.factors);
+}
+
+void ProductSink::pane(const Factor& transmittance, double modifier) { panes_.push_back({book_.spectrum(stepped(transmittance), sim_), modifier}); }
+
+void ProductSink::segment(const Segment& s) {
+  inside_m_.clear();
+  if (!s.media.empty()) inside_m_.assign(sim_.materials.size(), 0.0);
+  for (const MediumInside& m : s.media) inside_m_[static_cast<size_t>(m.material)] += m.length_m;
+  if (!s.dark) {
+    emission(s);
+    if (s.sunlit && s.near.sun + s.far.sun > 0.0) scattered(s);
+  }
+  if (!inside_m_.empty()) {
+    media_m_.resize(inside_m_.size(), 0.0);
+    for (size_t m = 0; m < inside_m_.size(); ++m) media_m_[m] += inside_m_[m];
+    inside_m_.clear();
+  }
+  here_ = s.far.powered;
+}
+
+void ProductSink::emission(const Segment& s) {
+  auto both = [&](int spectrum, int near, int far, TermKind kind) {
+    for (const auto& [path, sign] : {std::pair{near, 1.0}, {far, -1.0}}) {
+      SightTerm t{{}, kind};
+      t.product.spectrum[0] = spectrum, t.product.path = path, t.product.coefficient = sign;
+      add(t);
+    }
+  };
+  if (s.air && s.far.range_m > s.near.range_m) {
+    const int near = pathOf(s.near.powered, 0.5), far = pathOf(s.far.powered, 0.5);
+    const double temperature_K = 0.5 * (s.near.temperature_K + s.far.temperature_K);
+    if (temperature_K > 0.0) {
+      const double step_K = kTemperatureStep_K * std::max(std::round(temperature_K / kTemperatureStep_K), 1.0);
+      both(book_.spectrum(Factor::planck(step_K, true), sim_), near, far, TermKind::AirEmission);
+    }
+    both(book_.spectrum("air's own", [](const FineGrid& g, size_t i) { return g.air[i].source; }), near, far, TermKind::AirEmission);
+  }
+  if (s.media.empty()) return;
+  AirAmounts middle;
+  for (size_t k = 0; k < kMostAirAmounts; ++k) middle.amount[k] = 0.5 * (s.near.powered.amount[k] + s.far.powered.amount[k]);
+  double total_m = 0.0;
+  for (const MediumInside& m : s.media) total_m += m.length_m;
+  // Several in each other: each sends its share by length, which only their fit is for.
+  const int near = pathOf(middle, 0.0), far = pathOf(middle, 1.0);
+  for (const MediumInside& m : s.media) {
+    const int source = book_.spectrum(Factor::medium(*m.medium, m.temperature_K), sim_);
+    for (const auto& [path, sign] : {std::pair{near, 1.0}, {far, -1.0}}) {
+      SightTerm t{{}, TermKind::Media};
+      t.product.spectrum[0] = source, t.product.path = path, t.product.coefficient = sign * m.length_m / total_m;
+      add(t);
+    }
+  }
+}
+
+/// Sunlight scattered between two places, by Simpson's rule over what scatters.
+void ProductSink::scattered(const Segment& s) {
+  const AirAmounts &from = s.near.sun > 0.0 ? s.near.both : s.far.both, &to = s.far.sun > 0.0 ? s.far.both : s.near.both;
+  const double sun = 0.5 * (s.near.sun + s.far.sun);
+  int way[3];
+  for (int p = 0; p < 3; ++p) {
+    AirAmounts both;
+    for (size_t k = 0; k < kMostAirAmounts; ++k) both.amount[k] = from.amount[k] + 0.5 * p * (to.amount[k] - from.amount[k]);
+    way[p] = pathOf(both, 0.5 * p);
+  }
+  const int irradiance = book_.spectrum(Factor::sun(), sim_);
+  const double cosine = kCosineStep * std::round(s.cosScatter / kCosineStep);  // what matters here is the wavelength
+  for (size_t k : scatterers_) {
+    const double passed = s.far.powered.amount[k] - s.near.powered.amount[k];
+    if (!(passed > 0.0)) continue;
+    const int scatter = book_.spectrum("scatter " + std::to_string(k) + " " + std::to_string(cosine), [k, cosine](const FineGrid& g, size_t i) {
+      const AirNode& n = g.air[i];
+      return n.molecules[k] * rayleighPhase(cosine) + n.haze[k] * henyeyGreensteinPhase(cosine, n.asymmetry);
+    });
+    for (int p = 0; p < 3; ++p) {
+      SightTerm t{{}, TermKind::ScatteredSun};
+      t.product.spectrum[0] = irradiance, t.product.spectrum[1] = scatter, t.product.count = 2;
+      t.product.path = way[p], t.product.coefficient = sun * passed * (p == 1 ? 4.0 : 1.0) / 6.0;
+      add(t);
+    }
+  }
+}
+
+}  // namespace pitviper

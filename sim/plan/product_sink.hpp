@@ -1,0 +1,46 @@
+#pragma once
+// A sink that writes a line of sight down as a sum of products: what a plan's wavelengths are fitted to.
+//
+// Simpler than the equation, alike for every wavelength, in four things: the air's emission between two places is that of one black body at steps of 4 K;
+// textured temperatures are mixtures of two such; view angles go in steps of 5 degrees; what media and air send on the same stretch each pass half
+// of the other. Errors are measured on sums (line_check.hpp), which take none of these liberties.
+#include "sim/plan/sights.hpp"
+
+namespace pitviper {
+
+class ProductSink final : public TermSink {
+ public:
+  /// All must outlive it.
+  ProductSink(const Simulation& simulation, SightBook& book);
+  /// A new line begins.
+  void begin(bool fromFilm);
+  /// What was told since.
+  Sight finish();
+
+  void restart() override;
+  void term(const Term& term) override;
+  void segment(const Segment& segment) override;
+  void pane(const Factor& transmittance, double modifier) override;
+
+ private:
+  int pathOf(const AirAmounts& powered, double ownPart);
+  void add(SightTerm term);
+  void addFactor(const SightTerm& term, std::span<const Factor> rest);
+  void emission(const Segment& segment);
+  void scattered(const Segment& segment);
+
+  const Simulation& sim_;
+  SightBook& book_;
+  Sight sight_;
+  std::vector<size_t> scatterers_;  ///< absorbers of the air that scatter
+  AirAmounts here_;                 ///< from the eye to the place reached, raised to their powers
+  std::vector<double> media_m_;     ///< on the way so far, by material; empty: none
+  std::vector<double> inside_m_;    ///< of the segment being told
+  struct Pane {
+    int transmittance;
+    double modifier;
+  };
+  std::vector<Pane> panes_;
+};
+
+}  // namespace pitviper

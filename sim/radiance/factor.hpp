@@ -1,0 +1,55 @@
+#pragma once
+// A spectrum that the radiance of a line of sight is a product of: what it is a property of, and the numbers it depends on.
+#include <compare>
+
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+struct Factor {
+  enum class Kind {
+    Planck,         ///< black body at x [K]
+    Emission,       ///< of a material (`of`) at x [K] seen from its normal: emissivity and black body as one spectrum
+    Dome,           ///< of a material: reflected uniform sky, reflectance and ambient light as one
+    Emissivity,     ///< of a material, given, at a view angle x [rad]; modifier at 1
+    Hemispherical,  ///< of a reflection component at a view angle x
+    Column,         ///< of a reflection component at its two angles x and y
+    Transmittance,  ///< of a material at a view angle x; modifier at 1
+    Light,          ///< intensity of a point light
+    Sun,            ///< irradiance
+    Ambient,
+    Background,
+    Medium  ///< source radiance of a medium at x [K]
+  };
+  Kind kind = Kind::Background;
+  const void* of = nullptr;
+  double x = 0.0, y = 0.0;
+  bool lasting = true;  ///< other lines have it too: worth keeping
+
+  /// The same spectrum.
+  bool operator==(const Factor& o) const { return kind == o.kind && of == o.of && x == o.x && y == o.y; }
+  auto operator<=>(const Factor& o) const {
+    if (const auto c = kind <=> o.kind; c != 0) return std::partial_ordering(c);
+    if (of != o.of) return std::less<>()(of, o.of) ? std::partial_ordering::less : std::partial_ordering::greater;
+    if (const auto c = x <=> o.x; c != 0) return c;
+    return y <=> o.y;
+  }
+
+  static Factor planck(double temperature_K, bool lasting) { return {Kind::Planck, nullptr, temperature_K, 0.0, lasting}; }
+  static Factor emission(const Material& m, double temperature_K) { return {Kind::Emission, &m, temperature_K}; }
+  static Factor dome(const Material& m) { return {Kind::Dome, &m}; }
+  static Factor emissivity(const Material& m, double viewAngle_rad);
+  static Factor hemispherical(const ReflectionComponent& r, double viewAngle_rad);
+  static Factor column(const ReflectionComponent& r, const glm::dvec3& light, const glm::dvec3& view);
+  static Factor transmittance(const Material& m, double viewAngle_rad);
+  static Factor light(const PointLight& l) { return {Kind::Light, &l}; }
+  static Factor sun() { return {Kind::Sun}; }
+  static Factor ambient() { return {Kind::Ambient}; }
+  static Factor background() { return {Kind::Background}; }
+  static Factor medium(const Medium& m, double temperature_K) { return {Kind::Medium, &m, temperature_K}; }
+};
+
+/// Its value at a wavelength [of its kind: W/(m2 sr um), 1, 1/sr, W/(sr um), W/(m2 um)].
+double valueOf(const Simulation& simulation, const Factor& factor, double wavelength_um);
+
+}  // namespace pitviper

@@ -1,0 +1,68 @@
+#pragma once
+// A sink that adds a line of sight up at wavelengths, or at averages over groups of wavelengths as the shaders do.
+#include <array>
+#include <map>
+#include <memory>
+#include <vector>
+
+#include "sim/model/spectral_node.hpp"
+#include "sim/radiance/radiance.hpp"
+
+namespace pitviper {
+
+/// What lines have in common at some nodes; may be shared between threads.
+class NodeSpectra {
+ public:
+  /// Both must outlive it.
+  NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes);
+  const Simulation& simulation() const { return simulation_; }
+  std::span<const SpectralNode> nodes() const { return nodes_; }
+  /// Black body of a temperature of the air per node, in place; a table between 140 and 400 K where nodes are groups.
+  void planck(double temperature_K, std::span<double> into) const;
+  std::vector<double> of(const Factor& factor) const;
+
+ private:
+  const Simulation& simulation_;
+  std::span<const SpectralNode> nodes_;
+  std::vector<double> logPlanck_;  ///< [temperature][node], over 1/T; empty where all nodes are wavelengths
+};
+
+/// Radiance per node of one line after the other. One for each thread.
+class NodeSum final : public TermSink {
+ public:
+  explicit NodeSum(const NodeSpectra& spectra);
+  /// A new sum begins.
+  void begin();
+  void restart() override;
+  void term(const Term& term) override;
+  void segment(const Segment& segment) override;
+  void pane(const Factor& transmittance, double modifier) override;
+
+  /// [W/(m2 sr um)] per node.
+  std::span<const double> radiance() const { return radiance_; }
+  /// By kind of term, in the order of TermKind, where keepParts() was called: [kind][node].
+  std::span<const double> part(TermKind kind) const { return parts_[static_cast<size_t>(kind)]; }
+  void keepParts() { keepsParts_ = true; }
+  /// Of panes and media on the whole way.
+  std::vector<double> transmittance() const;
+
+ private:
+  const std::vector<double>& values(const Factor& factor);
+  void send(TermKind kind, size_t node, double radiance) {
+    radiance_[node] += radiance;
+    if (keepsParts_) parts_[static_cast<size_t>(kind)][node] += radiance;
+  }
+  void place(const AirPlace& at, std::vector<double>& depth, std::vector<double>& black);
+
+  const NodeSpectra& spectra_;
+  size_t count_;
+  bool keepsParts_ = false;
+  std::vector<double> radiance_;
+  std::array<std::vector<double>, kTermKinds> parts_;
+  std::vector<double> panes_, mediaDepth_;           ///< on the way so far
+  std::vector<double> nearDepth_, nearBlack_, farDepth_, farBlack_, scratch_;
+  const AirPlace* here_ = nullptr;                   ///< the place reached: nearDepth_ and nearBlack_ are its
+  std::map<Factor, std::vector<double>> kept_;
+};
+
+}  // namespace pitviper

@@ -1,0 +1,175 @@
+#include "sim/radiance/radiance.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/radiance/air_places.hpp"
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Tells one line of sight to a sink.
+class Teller {
+ public:
+  Teller(const RadianceScene& scene, const LineOfSight& line, double end_m, TermSink& sink)
+      : scene_(scene), sim_(scene.simulation), line_(line), sink_(sink), air_(scene, line, placesOf(line, end_m)) {}
+
+  /// As far as its end; `shining` or only what lies on the way.
+  void run(bool shining) {
+    dark_ = !shining;
+    sink_.restart();
+    std::vector<const Hit*> panes;
+    for (const Hit& h : line_.hits.layers) panes.push_back(&h);
+    std::stable_sort(panes.begin(), panes.end(), [](const Hit* a, const Hit* b) { return a->distance < b->distance; });
+    size_t next = 0;
+    const auto& places = air_.places();
+    for (size_t p = 0; p < places.size(); ++p) {
+      if (p > 0) segment(places[p - 1], places[p]);
+      for (; next < panes.size() && panes[next]->distance <= places[p].range_m; ++next) {
+        if (shining) surface(*panes[next], places[p]);
+        pane(*panes[next]);
+      }
+    }
+    if (!shining) return;
+    const std::array behind{Factor::background()};
+    if (line_.hits.solid.entity >= 0) surface(line_.hits.solid, places.back());
+    else if (!sim_.background.isZero()) sink_.term({TermKind::Background, 1.0, behind, nullptr});
+  }
+
+ private:
+  /// Where something begins or ends, rising, with the ends of the way.
+  static std::vector<double> placesOf(const LineOfSight& line, double end_m) {
+    std::vector<double> at = {0.0, end_m};
+    for (const Hit& h : line.hits.layers) at.push_back(h.distance);
+    for (const auto& s : line.hits.stretches) at.insert(at.end(), {s.enter, s.leave});
+    std::erase_if(at, [&](double r) { return !(r >= 0.0 && r <= end_m); });
+    std::sort(at.begin(), at.end());
+    at.erase(std::unique(at.begin(), at.end()), at.end());
+    return at;
+  }
+
+  const Surface& surfaceOf(const Hit& hit) const {
+    return sim_.entities[static_cast<size_t>(hit.entity)].surfaces[static_cast<size_t>(hit.surface)];
+  }
+  double modifier(int texture, const Hit& hit) const { return texture < 0 ? 1.0 : textureValue(sim_.textures[static_cast<size_t>(texture)], hit.uv); }
+
+  void segment(const AirPlace& near, const AirPlace& far) {
+    inside_.clear();
+    const double middle = 0.5 * (near.range_m + far.range_m);
+    for (const auto& s : line_.hits.stretches) {
+      if (!(s.enter < middle && s.leave > middle)) continue;
+      const Entity& body = sim_.entities[static_cast<size_t>(s.entity)];
+      const Surface& surface = body.surfaces.front();
+      inside_.push_back({sim_.mediumOf(body), surface.material, line_.temperature_K > 0.0 ? line_.temperature_K : surface.temperature_K,
+                         far.range_m - near.range_m});
+    }
+    sink_.segment({near, far, inside_, scene_.terms.air, air_.sunlit(), air_.cosScatter(), dark_});
+  }
+
+  double viewAngle(const Hit& hit) const { return std::acos(std::clamp(-glm::dot(hit.normal, line_.direction), 0.0, 1.0)); }
+
+  void pane(const Hit& hit) {
+    const Material& m = sim_.materialOf(surfaceOf(hit));
+    sink_.pane(Factor::transmittance(m, viewAngle(hit)), m.transmission ? modifier(m.transmission->modifier, hit) : 1.0);
+  }
+
+  void add(TermKind kind, double coefficient, std::initializer_list<Factor> factors, const AirAmounts* air = nullptr) {
+    if (coefficient != 0.0) sink_.term({kind, coefficient, {factors.begin(), factors.size()}, air});
+  }
+
+  void surface(const Hit& hit, const AirPlace& place) {
+    const Surface& s = surfaceOf(hit);
+    const Material& m = sim_.materialOf(s);
+    std::vector<double> modifiers;
+    for (int texture : m.modifiers) modifiers.push_back(modifier(texture, hit));
+    const bool textured = s.temperatureTexture >= 0;
+    const double temperature_K = textured ? textureValue(sim_.textures[static_cast<size_t>(s.temperatureTexture)], hit.uv)
+                                 : line_.temperature_K > 0.0 ? line_.temperature_K
+                                                             : s.temperature_K;
+    if ((m.transmission ? scene_.terms.layer : scene_.terms.solid).isGeneral()) {
+      const double angle = viewAngle(hit);
+      const Factor black = Factor::planck(temperature_K, !textured);
+      if (m.given) {
+        add(TermKind::Emission, modifier(m.given->modifier, hit), {black, Factor::emissivity(m, angle)});
+      } else {
+        // Kirchhoff: 1 - reflectance - transmittance, each with its texture.
+        add(TermKind::Emission, 1.0, {black});
+        for (size_t k = 0; k < m.reflections.size(); ++k)
+          add(TermKind::Emission, -modifiers[k], {black, Factor::hemispherical(*m.reflections[k], angle)});
+        if (m.transmission) add(TermKind::Emission, -modifier(m.transmission->modifier, hit), {black, Factor::transmittance(m, angle)});
+      }
+      for (size_t k = 0; scene_.terms.ambient && k < m.reflections.size(); ++k)
+        add(TermKind::Ambient, modifiers[k], {Factor::ambient(), Factor::hemispherical(*m.reflections[k], angle)});
+    } else {
+      add(TermKind::Emission, 1.0, {Factor::emission(m, temperature_K)});
+      if (scene_.terms.ambient) add(TermKind::Ambient, 1.0, {Factor::dome(m)});
+    }
+    reflected(hit, m, modifiers, place);
+  }
+
+  void reflected(const Hit& hit, const Material& m, const std::vector<double>& modifiers, const AirPlace& place) {
+    if (!scene_.terms.lights || m.reflections.empty()) return;
+    glm::dvec3 view = inNormalFrame(hit.normal, -line_.direction);
+    view.z = std::max(view.z, 1e-6);
+    for (size_t l = 0; l < sim_.lights.size() + (sim_.sun ? 1 : 0); ++l) {
+      const bool sun = l == sim_.lights.size();
+      const LightLeg leg = lightLeg(sim_, scene_.state, hit, l);
+      double strength = leg.factor * (sun ? 1.0 : scene_.state.lightLevels[l]);
+      if (strength > 0.0 && scene_.lit) strength *= scene_.lit(hit, l, leg);
+      if (!(strength > 0.0)) continue;
+      const glm::dvec3 light = inNormalFrame(hit.normal, leg.toLight);
+      AirAmounts both;
+      if (scene_.terms.air) both = sim_.path->powered(air_.amounts(place) + leg.air);
+      for (size_t k = 0; k < m.reflections.size(); ++k) {
+        const ReflectionComponent& r = *m.reflections[k];
+        add(sun ? TermKind::Sun : TermKind::Lights, modifiers[k] * strength * r.lobe(light, view),
+            {Factor::column(r, light, view), sun ? Factor::sun() : Factor::light(sim_.lights[l])}, scene_.terms.air ? &both : nullptr);
+      }
+    }
+  }
+
+  const RadianceScene& scene_;
+  const Simulation& sim_;
+  const LineOfSight& line_;
+  TermSink& sink_;
+  AirPlaces air_;
+  std::vector<MediumInside> inside_;
+  bool dark_ = false;
+};
+
+}  // namespace
+
+const char* nameOf(TermKind kind) {
+  constexpr const char* kNames[kTermKinds] = {"emission of surfaces", "reflected ambient light", "reflected sunlight", "reflected light of lamps",
+                                              "emission of the air",  "scattered sunlight",      "background",         "media",
+                                              "lamps in view"};
+  return kNames[static_cast<int>(kind)];
+}
+
+void radianceAlong(const RadianceScene& scene, const LineOfSight& line, TermSink& sink) {
+  Teller(scene, line, line.hits.solid.entity >= 0 ? line.hits.solid.distance : physics::kFar, sink).run(true);
+}
+
+void wayAlong(const RadianceScene& scene, const LineOfSight& line, double range_m, TermSink& sink) { Teller(scene, line, range_m, sink).run(false); }
+
+void lampAlong(const RadianceScene& scene, const LineOfSight& line, std::size_t light, double pixel_sr, TermSink& sink) {
+  const double range = glm::length(scene.state.lights[light] - line.origin), level = scene.state.lightLevels[light];
+  if (!(level > 0.0) || !(range > 0.0)) return;
+  wayAlong(scene, line, range, sink);
+  const std::array shine{Factor::light(scene.simulation.lights[light])};
+  sink.term({TermKind::LampsInView, level / (range * range * pixel_sr), shine, nullptr});
+}
+
+double textureValue(const Texture& t, glm::dvec2 uv) {
+  const double x = uv.x * t.width - 0.5, y = uv.y * t.height - 0.5;
+  const double cx = std::floor(x), cy = std::floor(y), fx = x - cx, fy = y - cy;
+  auto at = [&](double i, double j) {
+    auto wrap = [&t](double k, int n) { return static_cast<size_t>(t.repeats ? k - std::floor(k / n) * n : std::clamp(k, 0.0, n - 1.0)); };
+    return static_cast<double>(t.texels[wrap(j, t.height) * static_cast<size_t>(t.width) + wrap(i, t.width)]);
+  };
+  return (1 - fy) * ((1 - fx) * at(cx, cy) + fx * at(cx + 1, cy)) + fy * ((1 - fx) * at(cx, cy + 1) + fx * at(cx + 1, cy + 1));
+}
+
+}  // namespace pitviper

@@ -1,0 +1,36 @@
+#include "sim/radiance/terms.hpp"
+
+#include "sim/model/shadow_casters.hpp"
+
+namespace pitviper {
+namespace {
+
+void add(SurfaceTerms& t, const Material& m, const Surface& s) {
+  t.any = true;
+  t.reflects |= !m.reflections.empty();
+  t.emits |= !m.given || m.given->tabulated() || !m.given->spectrum.isZero();
+  t.angular |= m.needsAngles();
+  t.modifiers |= m.hasModifiers();
+  t.temperatureTextures |= s.temperatureTexture >= 0;
+  for (const auto& r : m.reflections)
+    if (!r->lobeFile().empty()) t.lobeFile = r->lobeFile();
+}
+
+}  // namespace
+
+Terms termsOf(const Simulation& sim) {
+  Terms t;
+  t.air = sim.path && !sim.path->isNone();
+  t.scatteredSun = t.air && sim.path->isLayered() && sim.sun.has_value();
+  t.lights = !sim.lights.empty() || sim.sun;
+  t.ambient = sim.ambient && !sim.ambient->isZero();
+  t.shadows = canHaveShadows(sim);
+  for (const auto& e : sim.entities) {
+    t.media |= sim.mediumOf(e) != nullptr;
+    if (sim.mediumOf(e)) continue;
+    for (const auto& s : e.surfaces) add(sim.materialOf(s).transmission ? t.layer : t.solid, sim.materialOf(s), s);
+  }
+  return t;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,35 @@
+#pragma once
+// Which terms of the radiance equation a scene has.
+#include <string>
+
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+/// Terms of the radiance equation that a kind of surfaces has.
+struct SurfaceTerms {
+  bool any = false;       ///< there are such surfaces
+  bool reflects = false;  ///< light that falls on them
+  bool emits = false;
+  bool angular = false;  ///< tables over angles, or an emissivity or transmittance that changes with view angle
+  bool modifiers = false;
+  bool temperatureTextures = false;
+  std::string lobeFile;  ///< shader file of the angular lobes, or empty
+  /// Emission is a product of averages over a group of wavelengths; else the average of a product, one row of a table.
+  bool isGeneral() const { return angular || modifiers || temperatureTextures; }
+};
+
+/// Terms of the radiance equation that a scene has.
+struct Terms {
+  bool air = false;           ///< extinction and path radiance
+  bool scatteredSun = false;  ///< sunlight that the air scatters, and the sky's by it
+  bool lights = false;        ///< point lights or the sun
+  bool ambient = false;
+  bool shadows = false;       ///< of the lights
+  SurfaceTerms solid, layer;  ///< opaque and transparent surfaces
+  bool media = false;         ///< bodies filled with an emitting medium
+};
+
+Terms termsOf(const Simulation& simulation);
+
+}  // namespace pitviper

@@ -1,0 +1,154 @@
+// The sun near the horizon: its disc's visible part against closed forms, and direct sunlight through layered air against straight lines worked out here.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "atmosphere/layered.hpp"
+#include "sim/model/sun_legs.hpp"
+#include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
+#include "sim/radiometry/quadrature.hpp"
+#include "tests/support/figures.hpp"
+#include "tests/support/print.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+namespace {
+
+constexpr double kDegree = kPi / 180.0;
+
+/// Of a disc of radius 1 whose centre is x above a straight horizon: share above it, and height of that part's middle, by acos and its integral.
+double segmentShare(double x) { return (std::acos(-x) + x * std::sqrt(1.0 - x * x)) / kPi; }
+double segmentMiddle(double x) {
+  double area = 0.0, moment = 0.0;
+  for (const QuadratureNode& n : gaussLegendre(200, 0.0, 1.0)) {
+    // y = 1 - (1 + x) t^2 from the centre: strips close together at the limb, where the width has a root.
+    const double y = 1.0 - (1.0 + x) * n.x * n.x, strip = 2.0 * std::sqrt(std::max(1.0 - y * y, 0.0)) * 2.0 * (1.0 + x) * n.x * n.weight;
+    area += strip, moment += strip * (y + x);
+  }
+  return moment / area;
+}
+
+TEST(LowSun, DiscIsACirclesSegment) {
+  double share = 0.0, middle = 0.0, half = 0.0;
+  for (int i = -999; i <= 999; ++i) {
+    const double x = 1e-3 * i;
+    share = std::max(share, std::abs(physics::sunShare(x) - segmentShare(x)));
+    middle = std::max(middle, std::abs(x + physics::sunRise(x) - segmentMiddle(x)));
+    half = std::max(half, std::abs(physics::sunShare(x) + physics::sunShare(-x) - 1.0));
+  }
+  bound("sun's disc above the horizon, share, against acos", share, 1e-7, "arc tangent of single precision");
+  bound("the same, middle of what is up over the horizon, in radii", middle, 2e-4, "thin segments by 2/5 of their height");
+  bound("share of x and of -x, sum less 1", half, 1e-15, "rounding");
+  EXPECT_EQ(physics::sunShare(1.0), 1.0);
+  EXPECT_EQ(physics::sunShare(-1.0), 0.0);
+  EXPECT_EQ(physics::sunRise(1.0), 0.0);
+  EXPECT_NEAR(physics::sunRadius(), std::sqrt(6.7943e-5 / kPi), 1e-8);
+}
+
+TEST(LowSun, HorizonDropsWithHeight) {
+  const double radius = 6371000.0;
+  double worst = 0.0;
+  for (double height : {0.0, 2.0, 100.0, 1e4, 4e5, 3.6e7})
+    for (double off_deg : {-0.2, -0.05, 0.0, 0.1, 0.26}) {
+      const long double dip = std::acos(static_cast<long double>(radius) / (radius + height)), off = static_cast<long double>(off_deg * kDegree);
+      const double x = physics::sunAboveHorizon(height, static_cast<double>(std::sin(off - dip)), radius);
+      worst = std::max(worst, std::abs(x - static_cast<double>(off) / physics::sunRadius()));
+    }
+  bound("sun's centre over the horizon, 0 to 36000 km up, in radii", worst, 1e-5, "sine for the angle: 0.26 deg squared / 6");
+  EXPECT_EQ(risenSun(0.0, std::sin(-0.3 * kDegree), radius).share, 0.0);
+  EXPECT_EQ(risenSun(10000.0, std::sin(-2.0 * kDegree), radius).share, 1.0);
+  EXPECT_EQ(risenSun(3.6e7, 1.0, radius).share, 1.0);
+  EXPECT_NEAR(risenSun(-100.0, 0.0, radius).share, 0.5, 1e-9);
+}
+
+/// Air at the same places of both.
+std::shared_ptr<const Path> air() {
+  AbsorberTable table = AbsorberTable::read(std::filesystem::path(PITVIPER_SOURCE_DIR) / "atmosphere/library/us76_rural.air");
+  table.removeAerosol();
+  return makeLayeredAir(std::move(table));
+}
+
+TEST(LowSun, TablesOfWaysToTheSun) {
+  const auto path = air();
+  const double radius = LocalFrame().earthRadius_m();
+  double low = 0.0, high = 0.0;
+  for (double sun_deg : {-2.0, -0.1, 0.3, 1.0, 2.0, 8.0, 30.0, 89.0}) {
+    const SunLegs legs(*path, std::sin(sun_deg * kDegree), radius);
+    for (double height : {0.0, 3.0, 260.0, 1777.0, 5000.0, 8200.0, 14321.0, 29000.0})
+      for (double off : {-0.01, -0.003, 0.0, 0.0021, 0.01}) {
+        const RisenSun sun = risenSun(height, std::min(std::sin(sun_deg * kDegree) + off, 1.0), radius);
+        if (!(sun.share > 0.0)) continue;
+        const AirAmounts near = legs.at(height, sun.sinElevation), exact = path->amounts({height, sun.sinElevation, radius}, physics::kFar);
+        double& worst = sun.sinElevation < 0.035 ? low : high;
+        for (size_t k = 0; k < path->exponents().size(); ++k)
+          if (exact.amount[k] > 1e-6) worst = std::max(worst, std::abs(near.amount[k] / exact.amount[k] - 1.0));
+      }
+  }
+  bound("amounts of air towards the sun by table, sun below 2 deg, relative", low, 5e-3, "cubic between elevations, linear between heights");
+  bound("the same, sun from 2 deg up", high, 5e-4, "the same");
+}
+
+/// A white plate that stands facing the sun's azimuth, seen from 5 m away.
+double plateInSun(double height_m, double elevation_deg, double um, const std::string& accuracy) {
+  return renderFrame(
+             scene(
+                 "atmosphere: clear_us76\naccuracy: " + accuracy + "\nsun: {azimuth: 180 deg, elevation: " + print("%.9g", elevation_deg) +
+                 " deg, irradiance: 1000 W/(m2 um)}\nmaterials: {w: {components: [{reflection: lambertian, reflectance: 1.0}]}}\n"
+                 "entities: [{name: p, shape: {model: plate, width: 4 m, height: 4 m}, material: w, temperature: 0 K, heading: 180 deg, position: [0 m, 0 m, " +
+                 print("%.9g", height_m) +
+                 " m]}]\ncameras: [{name: c, film: {width: 1, height: 1}, field_of_view: 1 deg, aperture: 5 mm, position: [0 m, -5 m, " +
+                 print("%.9g", height_m) + " m], look_at: p, small_bodies: 0, channels: [{name: a, response: {band: [" + print("%.9g", um - 1e-3) + " um, " +
+                 print("%.9g", um + 1e-3) + " um]}, output: radiance_per_um}]}]\n"))
+      .layers[0]
+      .pixels[0];
+}
+
+/// Straight through the air from a height: densities in steps of 200 m and less, amounts to their powers.
+double transmittanceToSun(const Path& path, double height_m, double elevation_rad, double um) {
+  const double r0 = LocalFrame().earthRadius_m() + height_m, sine = std::sin(elevation_rad);
+  AirAmounts sum;
+  for (double s = 0.0, step; s < 2.5e6; s += step) {
+    step = 10.0 + 1e-3 * s;
+    const double at = s + 0.5 * step, h = std::sqrt(r0 * r0 + at * (2.0 * r0 * sine + at)) - LocalFrame().earthRadius_m();
+    if (h > path.top_m()) break;
+    AirAmounts part = path.densities(h);
+    for (double& a : part.amount) a *= 1e-3 * step;
+    sum += part;
+  }
+  return path.transmittance(path.node(um), sum);
+}
+
+TEST(LowSun, DirectSunlightByStraightLines) {
+  const auto path = air();
+  const double radius = LocalFrame().earthRadius_m(), e0 = 1000.0;
+  double planned = 0.0, exact = 0.0, closed = 0.0;
+  int dark = 0;
+  for (double height : {3.0, 8000.0})
+    for (double um : {0.55, 2.2})
+      for (double e : {-3.5, -1.0, -0.5, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 5.0}) {
+        const double x = (e * kDegree + std::acos(radius / (radius + height))) / std::sqrt(6.7943e-5 / kPi);
+        const double share = x >= 1.0 ? 1.0 : x <= -1.0 ? 0.0 : segmentShare(x);
+        const double fine = plateInSun(height, e, um, "0.1 %"), reference = plateInSun(height, e, um, "reference");
+        if (share == 0.0) {
+          ++dark;
+          EXPECT_LT(reference, 1e-3) << height << " " << e;  // 5 m of air lit from above
+          EXPECT_LT(fine, 1e-3) << height << " " << e;
+          continue;
+        }
+        const double middle = x >= 1.0 ? e * kDegree : e * kDegree + (segmentMiddle(x) - x) * std::sqrt(6.7943e-5 / kPi);
+        const double expected = e0 / kPi * share * std::cos(middle) * transmittanceToSun(*path, height, middle, um);
+        closed = std::max(closed, std::abs(reference / expected - 1.0));
+        planned = std::max(planned, std::abs(fine / reference - 1.0));
+        exact = std::max(exact, std::abs(fine / expected - 1.0));
+      }
+  EXPECT_GE(dark, 4);
+  bound("direct sunlight, sun at -1 to 5 deg, in double against straight lines by small steps, relative", closed, 1e-3,
+        "steps of 10 m and a thousandth of the way");
+  bound("the same, planned at 0.1 % against double", planned, 1e-3, "tables of ways to the sun; what was asked");
+  bound("the same, planned at 0.1 % against straight lines", exact, 2e-3, "both");
+}
+
+}  // namespace
+}  // namespace pitviper::test
