@@ -7,12 +7,10 @@
 #include <memory>
 #include <numeric>
 
-#include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/accuracy_renderings.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/gl/context.hpp"
-#include "sim/render/camera_renderer.hpp"
-#include "sim/render/reference/outline.hpp"
 
 namespace pitviper {
 namespace {
@@ -21,63 +19,6 @@ namespace {
 constexpr int kRounds = 6;
 
 double secondsOf(const std::chrono::steady_clock::duration& d) { return std::chrono::duration<double>(d).count(); }
-
-/// One output per channel: its radiance where that is asked for, else its first. Relative errors are the same for all of a kernel.
-std::vector<ChannelOutput> onePerChannel(const std::vector<ChannelOutput>& all) {
-  std::vector<ChannelOutput> chosen;
-  for (const ChannelOutput& output : all) {
-    auto same = std::find_if(chosen.begin(), chosen.end(), [&](const ChannelOutput& c) { return c.channel == output.channel; });
-    if (same == chosen.end()) chosen.push_back(output);
-    else if (output.quantity == "radiance") *same = output;
-  }
-  return chosen;
-}
-
-std::optional<double> predictedOf(const Plan& plan, size_t slot) {
-  if (slot < plan.predictedError.size()) return plan.predictedError[slot];
-  return {};
-}
-
-/// The scenario with one camera, at a setting, for all frames.
-class Renderings {
- public:
-  Renderings(const Simulation& sim, const Camera& camera, const SpectralSampling& sampling, const std::shared_ptr<const GpuScene>& scene) : camera_(camera) {
-    camera_.spectral = sampling;
-    renderer_ = std::make_unique<CameraRenderer>(sim, camera_, shaderLibrary(), scene);
-  }
-  CameraRenderer& renderer() { return *renderer_; }
-  const Plan& plan() const { return renderer_->plan(); }
-  /// Adds a frame's pixels to each channel's, those that `left` marks left out.
-  void add(const WorldState& state, const std::vector<char>& left, std::vector<std::vector<double>>& channels) {
-    const CameraImage image = renderer_->render(state);
-    channels.resize(camera_.outputs.size());
-    for (size_t c = 0; c < channels.size(); ++c) {
-      const auto& pixels = image.slots[static_cast<size_t>(image.slotOfOutput[c])];
-      for (size_t p = 0; p < pixels.size(); ++p)
-        if (!left[p]) channels[c].push_back(pixels[p]);
-    }
-  }
-
- private:
-  Camera camera_;
-  std::unique_ptr<CameraRenderer> renderer_;
-};
-
-/// Pixels of a frame, from the top, with the outline of something transparent in the middle of a subpixel: there the reference, which casts rays, and
-/// the rasteriser see different things.
-std::vector<char> outlines(const Simulation& sim, const Camera& camera, const WorldState& state) {
-  const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, camera.samples);
-  std::vector<char> drawn(sim.entities.size(), 1);
-  if (camera.mount.carrier >= 0) drawn[static_cast<size_t>(camera.mount.carrier)] = 0;
-  std::vector<char> marked(static_cast<size_t>(camera.pinhole.width) * static_cast<size_t>(camera.pinhole.height), 0);
-  for (int y = 0; y < view.height; ++y)
-    for (int x = 0; x < view.width; ++x) {
-      char& mark = marked[static_cast<size_t>((view.height - 1 - y) / camera.samples) * static_cast<size_t>(camera.pinhole.width) +
-                          static_cast<size_t>(x / camera.samples)];
-      mark = static_cast<char>(mark || onOutline(sim, state, view, drawn, x, y));
-    }
-  return marked;
-}
 
 AccuracyRow rowOf(const AccuracySetting& setting, const Camera& camera, const Plan& plan, const std::vector<ChannelReference>& reference,
                   const std::vector<std::vector<double>>& rendered) {
@@ -88,7 +29,7 @@ AccuracyRow rowOf(const AccuracySetting& setting, const Camera& camera, const Pl
     const auto slot = static_cast<size_t>(plan.slotOfOutput[c]);
     const auto& weights = plan.weight[slot];
     const auto own = std::count_if(weights.begin(), weights.end(), [](double w) { return w != 0.0; });
-    row.channels.push_back({camera.outputs[c].channel, static_cast<int>(own), predictedOf(plan, slot), reference[c].errors(rendered[c])});
+    row.channels.push_back({camera.outputs[c].channel, static_cast<int>(own), predictedError(plan, slot), reference[c].errors(rendered[c])});
   }
   return row;
 }
@@ -123,9 +64,7 @@ AccuracyReport measureAccuracy(const AccuracyRequest& request) {
   if (sim.cameras.empty()) throw UserError({request.scenario, 0, 0, -1}, "the scenario has no camera", "at least one", "choose another scenario");
   sim.cameras.resize(1);
   Camera& camera = sim.cameras[0];
-  camera.outputs = onePerChannel(camera.outputs);
-  camera.truth = {};
-  camera.spectralImage.reset();
+  keepRadianceAlone(camera);
   if (request.size_px > 0) resizeFilm(camera.pinhole, request.size_px);
   const int frames = std::min(request.frames, sim.time.frames);
   std::vector<WorldState> states;
@@ -145,7 +84,7 @@ AccuracyReport measureAccuracy(const AccuracyRequest& request) {
   std::vector<std::vector<double>> found;
   std::vector<std::vector<char>> left;
   for (const WorldState& state : states) {
-    left.push_back(outlines(sim, camera, state));
+    left.push_back(outlinePixels(sim, camera, state));
     truth.add(state, left.back(), found);
     waiting.step();
   }

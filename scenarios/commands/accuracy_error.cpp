@@ -56,14 +56,20 @@ ChannelReference::ChannelReference(const Spectrum& kernel, std::vector<double> v
   for (double l : values_) slope_.push_back(bodies.slopeAt(l));
 }
 
-ChannelErrors ChannelReference::errors(std::span<const double> rendered) const {
+std::vector<double> ChannelReference::relative(std::span<const double> rendered) const {
   if (rendered.size() != values_.size()) throw std::invalid_argument("a picture of another size than its reference");
-  std::vector<double> relative, kelvin;
+  std::vector<double> all;
   for (size_t p = 0; p < values_.size(); ++p) {
     const double difference = std::abs(rendered[p] - values_[p]), scale = std::max(values_[p], floor_);
-    relative.push_back(scale > 0.0 ? difference / scale : difference > 0.0 ? INFINITY : 0.0);
-    if (slope_[p] > 0.0) kelvin.push_back(difference / slope_[p]);
+    all.push_back(scale > 0.0 ? difference / scale : difference > 0.0 ? INFINITY : 0.0);
   }
+  return all;
+}
+
+ChannelErrors ChannelReference::errors(std::span<const double> rendered) const {
+  std::vector<double> relative = this->relative(rendered), kelvin;
+  for (size_t p = 0; p < values_.size(); ++p)
+    if (slope_[p] > 0.0) kelvin.push_back(std::abs(rendered[p] - values_[p]) / slope_[p]);
   ChannelErrors errors{figuresOf(relative), {}};
   if (!kelvin.empty()) errors.kelvin = figuresOf(kelvin);
   return errors;

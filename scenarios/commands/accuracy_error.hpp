@@ -26,6 +26,9 @@ class ChannelReference {
   ChannelReference(const Spectrum& kernel, std::vector<double> values);
   /// The same pixels, rendered otherwise.
   ChannelErrors errors(std::span<const double> rendered) const;
+  /// Of each pixel.
+  std::vector<double> relative(std::span<const double> rendered) const;
+  const std::vector<double>& values() const { return values_; }
 
   static constexpr double kColdest_K = 250.0, kWarmest_K = 330.0;
 

@@ -48,6 +48,7 @@ struct Camera {
   double near_m = 0.1;
   int samples = 1;             ///< n: n x n subpixels
   double smallBody_px = 16.0;  ///< bodies smaller than this are drawn by their own zoomed view
+  int zoomedSamples = 256;     ///< at least so many across it; a medium, which fades towards its silhouette, half as many
   SpectralSampling spectral;
   std::vector<ChannelOutput> outputs;
   std::optional<SpectralBins> spectralImage;  ///< written beside the frame

@@ -71,7 +71,7 @@ void CameraRenderer::begin(const WorldState& state) {
 
 CameraImage CameraRenderer::finish() {
   Subpixels image(plan_, view_, pass_->finishReadback());
-  addSmallBodies(image, *pass_, simulation_, state_, small_, present_);
+  addSmallBodies(image, *pass_, simulation_, state_, small_, present_, camera_.zoomedSamples);
   addVisibleLights(image, *pass_, simulation_, plan_, state_, present_);
   if (reference_) reference_->endPicture();
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);

@@ -58,7 +58,7 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
     pass.draw(v, state, drawn);
     pass.startReadback(false);
     Subpixels image(plan, v, pass.finishReadback());
-    addSmallBodies(image, pass, sim, state, small, all);
+    addSmallBodies(image, pass, sim, state, small, all, Camera{}.zoomedSamples);
     for (int y = 0; y < v.height; ++y)
       for (int x = 0; x < v.width; ++x) {
         const glm::dvec3 ray = v.ray(x + 0.5, y + 0.5);

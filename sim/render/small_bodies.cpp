@@ -106,10 +106,9 @@ struct Delta {
   std::vector<double> slots;
 };
 
-/// 256 across the bounding sphere, or at least 8 a subpixel: the area of a silhouette is sampled to about 0.1 %. A medium fades towards its
-/// silhouette: half as many do as well.
-int zoomedSize(double extent, bool medium = false) {
-  int size = medium ? 128 : 256;
+/// With 256 across the bounding sphere the area of a silhouette is sampled to about 0.1 %; at least 8 a subpixel.
+int zoomedSize(double extent, int samples) {
+  int size = samples;
   while (size < 8.0 * extent && size < 4096) size *= 2;
   return size;
 }
@@ -141,10 +140,10 @@ std::vector<char> overlapTransparent(const Simulation& sim, const WorldState& st
 }
 
 /// A solid body: its radiance where it shows takes the place of the background's.
-void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, const std::vector<char>& drawn,
+void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, const std::vector<char>& drawn, int samples,
                std::vector<Delta>& deltas) {
   const View& v = image.view();
-  const View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity)));
+  const View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity), samples));
   pass.draw(z, state, drawn);
   pass.startReadback(false, true);
   const RawImage zoomed = pass.finishReadback();
@@ -163,10 +162,10 @@ void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const W
 /// A body that is seen through something or that something is seen through: the same zoomed view with and without it, everything else in
 /// place that has been added to the image before it. The differences, over their solid angle, are what the image lacks; so several of them
 /// add up, whatever hides or dims what.
-void addDifference(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, std::vector<char> others) {
+void addDifference(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, std::vector<char> others, int samples) {
   const View& v = image.view();
   const bool medium = sim.mediumOf(sim.entities[static_cast<size_t>(entity)]) != nullptr;
-  View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity), medium));
+  View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity), medium ? samples / 2 : samples));
   z.onlyEntity = -1;
   z.differenceOf = entity;
   auto drawn = [&] {
@@ -195,7 +194,7 @@ std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state
 }
 
 void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small,
-                    const std::vector<char>& present) {
+                    const std::vector<char>& present, int zoomedSamples) {
   const View& v = image.view();
   std::vector<int> bodies;
   std::vector<char> others = present;
@@ -211,7 +210,7 @@ void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, co
   for (size_t i = 0; i < bodies.size(); ++i) solids[static_cast<size_t>(bodies[i])] = !mixed[i];
   std::vector<Delta> deltas;
   for (size_t i = 0; i < bodies.size(); ++i)
-    if (!mixed[i]) drawSolid(image, pass, sim, state, bodies[i], solids, deltas);
+    if (!mixed[i]) drawSolid(image, pass, sim, state, bodies[i], solids, zoomedSamples, deltas);
   for (const auto& d : deltas)
     for (size_t s = 0; s < d.slots.size(); ++s) image.add(s, d.pixel, d.slots[s]);
 
@@ -222,7 +221,7 @@ void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, co
     if (mixed[i]) order.push_back(bodies[i]);
   std::stable_sort(order.begin(), order.end(), [&](int x, int y) { return extentOf(sim, state, v, x) > extentOf(sim, state, v, y); });
   for (int e : order) {
-    addDifference(image, pass, sim, state, e, others);
+    addDifference(image, pass, sim, state, e, others, zoomedSamples);
     others[static_cast<size_t>(e)] = 1;
   }
 }

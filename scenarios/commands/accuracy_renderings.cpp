@@ -1,0 +1,57 @@
+#include "scenarios/commands/accuracy_renderings.hpp"
+
+#include <algorithm>
+
+#include "scenarios/commands/commands.hpp"
+#include "sim/render/reference/outline.hpp"
+
+namespace pitviper {
+
+void keepRadianceAlone(Camera& camera) {
+  std::vector<ChannelOutput> chosen;
+  for (const ChannelOutput& output : camera.outputs) {
+    auto same = std::find_if(chosen.begin(), chosen.end(), [&](const ChannelOutput& c) { return c.channel == output.channel; });
+    if (same == chosen.end()) chosen.push_back(output);
+    else if (output.quantity == "radiance") *same = output;
+  }
+  camera.outputs = std::move(chosen);
+  camera.truth = {};
+  camera.spectralImage.reset();
+}
+
+std::optional<double> predictedError(const Plan& plan, std::size_t slot) {
+  if (slot < plan.predictedError.size()) return plan.predictedError[slot];
+  return {};
+}
+
+Renderings::Renderings(const Simulation& sim, const Camera& camera, const SpectralSampling& sampling, const std::shared_ptr<const GpuScene>& scene)
+    : camera_(camera) {
+  camera_.spectral = sampling;
+  renderer_ = std::make_unique<CameraRenderer>(sim, camera_, shaderLibrary(), scene);
+}
+
+void Renderings::add(const WorldState& state, const std::vector<char>& left, std::vector<std::vector<double>>& outputs) {
+  const CameraImage image = renderer_->render(state);
+  outputs.resize(camera_.outputs.size());
+  for (size_t c = 0; c < outputs.size(); ++c) {
+    const auto& pixels = image.slots[static_cast<size_t>(image.slotOfOutput[c])];
+    for (size_t p = 0; p < pixels.size(); ++p)
+      if (!left[p]) outputs[c].push_back(pixels[p]);
+  }
+}
+
+std::vector<char> outlinePixels(const Simulation& sim, const Camera& camera, const WorldState& state) {
+  const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, camera.samples);
+  std::vector<char> drawn(sim.entities.size(), 1);
+  if (camera.mount.carrier >= 0) drawn[static_cast<size_t>(camera.mount.carrier)] = 0;
+  std::vector<char> marked(static_cast<size_t>(camera.pinhole.width) * static_cast<size_t>(camera.pinhole.height), 0);
+  for (int y = 0; y < view.height; ++y)
+    for (int x = 0; x < view.width; ++x) {
+      char& mark = marked[static_cast<size_t>((view.height - 1 - y) / camera.samples) * static_cast<size_t>(camera.pinhole.width) +
+                          static_cast<size_t>(x / camera.samples)];
+      mark = static_cast<char>(mark || onOutline(sim, state, view, drawn, x, y));
+    }
+  return marked;
+}
+
+}  // namespace pitviper
