@@ -55,7 +55,7 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
         const size_t p = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
         const DrawItem& item = tables().draws[identity[2 * p]];
         if (view_.onlyEntity >= 0 && item.entity != view_.onlyEntity) continue;
-        if (view_.differenceOf >= 0 && !shader.meets(x, y, view_.differenceOf)) continue;
+        if (view_.wanted && !(*view_.wanted)[p]) continue;
         SeenTriangle seen;
         if (item.entity >= 0) seen = {item.entity, identity[2 * p + 1] - sharedScene()->firstTriangle(item.entity)};
         const ReferencePixel pixel = shader.pixel(x, y, seen, sum);
