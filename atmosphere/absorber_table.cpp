@@ -4,10 +4,11 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
+#include <sstream>
 
 #include "sim/model/path.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/read_file.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/quadrature.hpp"
 #include "sim/radiometry/spectrum.hpp"
@@ -74,6 +75,7 @@ std::vector<Word> wordsOf(std::string_view line) {
 // Longer than any honest file: bounds the memory a broken one can take.
 constexpr size_t kMostRows = 100000;
 constexpr size_t kLongestLine = 4096;
+constexpr std::uintmax_t kLargestFile = 64u << 20;
 
 }  // namespace
 
@@ -212,8 +214,7 @@ class AbsorberTableReader {
 AbsorberTable AbsorberTable::read(std::istream& in, const std::string& name) { return AbsorberTableReader(name).read(in); }
 
 AbsorberTable AbsorberTable::read(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw UserError(Location{file.string()}, "the air table cannot be opened", "a file that can be read", "check its name and rights");
+  std::istringstream in(readWholeFile(file, {.what = "an air table", .mostBytes = kLargestFile, .fix = "check its name and rights"}));
   return read(in, file.string());
 }
 

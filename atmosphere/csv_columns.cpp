@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "sim/parameters/readable_text.hpp"
+
 namespace pitviper::csv {
 namespace {
 
@@ -33,11 +35,7 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-std::string quoted(std::string_view text) {
-  std::string out = "'";
-  for (char c : text.substr(0, 40)) out += c >= ' ' && c < 127 ? c : '?';
-  return out + (text.size() > 40 ? "...'" : "'");
-}
+std::string quoted(std::string_view text) { return tokenOf(text); }
 
 /// Blanks as underscores, so that "path radiance [..]" and "path_radiance_.." are alike.
 std::string plain(std::string_view text) {
@@ -113,6 +111,11 @@ Column columnOf(const Cell& cell, Location where) {
                   "wavelength, wavenumber, range, transmittance, extinction, path_radiance or source_radiance, with units", "rename the column, or remove it");
 }
 
+bool isKnown(const Cell& cell) {
+  const std::string name = plain(cell.text);
+  return std::any_of(kinds().begin(), kinds().end(), [&](const Kind& kind) { return name.starts_with(kind.name); });
+}
+
 }  // namespace
 
 std::vector<Cell> cellsOf(std::string_view line) {
@@ -131,7 +134,12 @@ std::vector<Cell> cellsOf(std::string_view line) {
 
 std::vector<Column> columnsOf(std::string_view header, const Location& line) {
   std::vector<Column> columns;
-  for (const Cell& cell : cellsOf(header)) {
+  const auto cells = cellsOf(header);
+  // A file that is something else is not told of by its words.
+  if (std::none_of(cells.begin(), cells.end(), isKnown))
+    throw UserError({line.file, line.line, 1, -1}, "no column of air has a name of those on this line",
+                    "a line with the names of columns: wavelength_um, range_km, transmittance", "see atmosphere/tabulated_csv.hpp");
+  for (const Cell& cell : cells) {
     Column c = columnOf(cell, line);
     for (const Column& other : columns)
       if (other.meaning == c.meaning && (other.range_km.has_value() == c.range_km.has_value()) &&

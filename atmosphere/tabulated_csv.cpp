@@ -5,12 +5,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
 #include <map>
+#include <sstream>
 
 #include "atmosphere/csv_columns.hpp"
 #include "atmosphere/depth_fit.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/read_file.hpp"
+#include "sim/parameters/readable_text.hpp"
 #include "sim/radiometry/spectrum.hpp"
 
 namespace pitviper {
@@ -25,6 +27,7 @@ constexpr std::array<double, 3> kFittedPowers = {0.55, 0.75, 1.0};
 constexpr double kResolution = 1e-6;
 // Longer than any honest file: bounds the memory a broken one can take.
 constexpr size_t kMostRows = 500000;
+constexpr std::uintmax_t kLargestFile = 64u << 20;  // as many rows of 130 characters
 constexpr size_t kLongestLine = 65536;
 
 std::string number(double v) {
@@ -75,7 +78,7 @@ class Reader {
     std::string_view text = cell.text;
     if (!text.empty() && text.front() == '+') text.remove_prefix(1);
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), v);
-    const std::string what = "'" + std::string(cell.text.substr(0, 40)) + "' for " + column.name;
+    const std::string what = tokenOf(cell.text) + " for " + column.name;
     if (cell.text.empty()) fail(cell.column, "nothing stands for " + column.name, "a number in every cell", "fill it in, or remove the row");
     if (end != text.data() + text.size() || text.empty()) fail(cell.column, what + " is not a number", "a number such as 0.93 or 1.2e-3", "correct the cell");
     if (error != std::errc() || !std::isfinite(v)) fail(cell.column, what + " is not finite", "a number such as 0.93 or 1.2e-3", "correct the cell");
@@ -235,10 +238,7 @@ class Reader {
 TabulatedAir readAirCsv(std::istream& in, const std::string& name) { return Reader(name).read(in); }
 
 TabulatedAir readAirCsv(const std::filesystem::path& file) {
-  std::error_code ignored;
-  std::ifstream in(file, std::ios::binary);
-  if (!in || std::filesystem::is_directory(file, ignored))
-    throw UserError(Location{file.string()}, "the table of air cannot be opened", "a file of comma-separated values", "check its name");
+  std::istringstream in(readWholeFile(file, {.what = "a file of comma-separated values", .mostBytes = kLargestFile, .fix = "check its name"}));
   return readAirCsv(in, file.string());
 }
 

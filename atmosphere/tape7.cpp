@@ -6,7 +6,7 @@
 
 #include "atmosphere/tape7_cards.hpp"
 #include "atmosphere/tape7_layout.hpp"
-#include "sim/image/read_file.hpp"
+#include "sim/parameters/read_file.hpp"
 #include "sim/radiometry/spectrum.hpp"
 
 namespace pitviper {
@@ -17,6 +17,8 @@ using tape7::Line;
 
 // Four decimals round to within 0.00005; what is filtered over wavenumber may add a little. A per cent or a shifted column is far beyond.
 constexpr double kMostTransmittance = 1.001;
+/// A run of 5000 1/cm by 1 1/cm has 1 MB.
+constexpr std::uintmax_t kLargestFile = 64u << 20;
 
 bool isEnd(const Line& line) { return line.trimmed().rfind("-9999", 0) == 0; }
 
@@ -176,6 +178,8 @@ std::vector<Tape7Run> parseTape7(std::string_view text, const std::string& name)
   return runs;
 }
 
-std::vector<Tape7Run> readTape7(const std::filesystem::path& path) { return parseTape7(readWholeFile(path), path.string()); }
+std::vector<Tape7Run> readTape7(const std::filesystem::path& path) {
+  return parseTape7(readWholeFile(path, {.what = "a tape7 of MODTRAN", .mostBytes = kLargestFile, .fix = "check its name"}), path.string());
+}
 
 }  // namespace pitviper

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <cmath>
 
+#include "sim/parameters/readable_text.hpp"
+
 namespace pitviper::tape7 {
 namespace {
 
@@ -66,11 +68,7 @@ std::string_view trim(std::string_view text) {
   return text;
 }
 
-std::string inQuotes(std::string_view text) {
-  std::string out = "'";
-  for (char c : trim(text).substr(0, 32)) out += c < ' ' || c > '~' ? '?' : c;
-  return out + (trim(text).size() > 32 ? "...'" : "'");
-}
+std::string inQuotes(std::string_view text) { return tokenOf(text); }
 
 std::string_view Line::cut(int first, int last) const {
   const size_t from = static_cast<size_t>(first - 1);

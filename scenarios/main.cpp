@@ -1,10 +1,11 @@
 // The pitviper program: finds the command, turns errors into one line and an exit code.
 #include <cstdio>
-#include <cstring>
 #include <exception>
 #include <map>
+#include <new>
 
 #include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/process.hpp"
 #include "sim/frame/version.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
@@ -26,7 +27,7 @@ const std::map<std::string, Command>& commands() {
       {"run",
        {runCommand, "render a scenario to calibrated EXR frames",
         "pitviper run SCENARIO.yaml [--out FOLDER] [--frames A:B] [--set path.to.key=value]... [--preview]\n             [--preview-range "
-        "LAYER=LOW:HIGH]...\n\n"
+        "LAYER=LOW:HIGH]... [--overwrite]\n\n"
         "Renders the scenario's frames: one EXR per camera and frame in FOLDER (default 'out'), named <camera>_<frame>.exr,\n"
         "with a float layer <channel>.<quantity> per output and truth.* layers; probes write <probe>.csv; a camera with 'spectral_image:'\n"
         "also writes <camera>_<frame>_spectral.exr for pitviper integrate.\n\n"
@@ -37,7 +38,9 @@ const std::map<std::string, Command>& commands() {
         "  --preview        also a PNG per frame: every channel with colour bar and unit\n"
         "  --preview-range LAYER=LOW:HIGH  ends of a layer's colour bar, in its unit (implies --preview); repeatable. Without it the bar\n"
         "                   runs from the 0.5 to the 99.8 percentile, and is bent where a few bright things would hide the rest\n\n"
-        "Files of the same names are replaced; others in FOLDER are left as they are.\n"}},
+        "  --overwrite      also replaces files of other scenarios, and files that are not of this program\n\n"
+        "Files of the same names are replaced where they are of the same scenario (its text, what it extends, --set); another's is refused before\n"
+        "anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"}},
       {"check",
        {checkCommand, "validate a scenario, render nothing",
         "pitviper check SCENARIO.yaml [--set path.to.key=value]...\n\nReads everything the scenario names and reports the first mistake as file:line:col with "
@@ -108,13 +111,10 @@ void printHelp() {
   std::printf("pitviper: infrared and optronic sensor scenes in calibrated units\n\nusage: pitviper COMMAND ...\n\n");
   for (const auto& [name, c] : commands()) std::printf("  %-10s %s\n", name.c_str(), c.summary);
   std::printf("  %-10s %s\n", "test", "build and run every test (the pitviper script)");
-  std::printf("\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input.\n");
+  std::printf("\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input, 130 and 143 ended by a signal.\n");
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  Arguments arguments(argv + 1, argv + argc);
+int run(Arguments arguments) {
   if (arguments.empty() || arguments[0] == "--help" || arguments[0] == "-h" || (arguments[0] == "help" && arguments.size() == 1)) {
     printHelp();
     return arguments.empty() ? 2 : 0;
@@ -126,28 +126,40 @@ int main(int argc, char** argv) {
   if (arguments[0] == "help" && arguments.size() > 1) arguments = {arguments[1], "--help"};
   const std::string name = arguments[0];
   arguments.erase(arguments.begin());
-  try {
-    const auto found = commands().find(name);
-    if (found == commands().end()) {
-      std::vector<std::string> names;
-      for (const auto& [n, c] : commands()) names.push_back(n);
-      const std::string near = nearestWord(name, names);
-      throw UserError({"pitviper", 0, 0, -1}, "unknown command '" + name + "'", "one of those of pitviper --help",
-                      near.empty() ? "see pitviper --help" : "did you mean '" + near + "'?");
+  const auto found = commands().find(name);
+  if (found == commands().end()) {
+    std::vector<std::string> names;
+    for (const auto& [n, c] : commands()) names.push_back(n);
+    const std::string near = nearestWord(name, names);
+    throw UserError({"pitviper", 0, 0, -1}, "unknown command '" + name + "'", "one of those of pitviper --help",
+                    near.empty() ? "see pitviper --help" : "did you mean '" + near + "'?");
+  }
+  for (const auto& a : arguments)
+    if (a == "--help" || a == "-h") {
+      std::fputs(found->second.help, stdout);
+      return 0;
     }
-    for (const auto& a : arguments)
-      if (a == "--help" || a == "-h") {
-        std::fputs(found->second.help, stdout);
-        return 0;
-      }
-    return found->second.run(arguments);
+  return found->second.run(arguments);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  prepareProcess();
+  int code = 0;
+  try {
+    code = run({argv + 1, argv + argc});
   } catch (const UserError& e) {
     std::fflush(stdout);
-    std::fprintf(stderr, "%s\n", e.what());
-    return 2;
+    tell(e.what());
+    code = 2;
+  } catch (const std::bad_alloc&) {
+    std::fflush(stdout);
+    code = tellOutOfMemory();
   } catch (const std::exception& e) {
     std::fflush(stdout);
-    std::fprintf(stderr, "pitviper: %s\n", e.what());
-    return 1;
+    tell((std::string("pitviper: ") + e.what()).c_str());
+    code = 1;
   }
+  return finishOutput(code);
 }

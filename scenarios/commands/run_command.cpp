@@ -9,6 +9,8 @@
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
+#include "sim/frame/file_owner.hpp"
+#include "sim/frame/spectral_image.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/table.hpp"
@@ -16,6 +18,7 @@
 #include "sim/plan/planner.hpp"
 #include "sim/plan/sampling_check.hpp"
 #include "sim/render/tables.hpp"
+#include "sim/run/memory_need.hpp"
 #include "sim/run/run.hpp"
 #include "sim/run/spectral_renderer.hpp"
 
@@ -62,10 +65,11 @@ PreviewRanges previewRanges(const Options& o, const Simulation& sim) {
 /// Probe readings as CSV, one file a probe.
 class ProbeTables {
  public:
+  explicit ProbeTables(const Simulation& simulation) : mark_(tableMark(simulation)) {}
   void add(const ProbeReading& reading) {
     std::string& text = texts_[reading.probe.name];
     if (text.empty()) {
-      text = "frame,time [s]";
+      text = mark_ + "frame,time [s]";
       for (const auto& o : reading.probe.outputs) text += "," + o.layer() + " [" + o.unit + "]";
       text += "\n";
     }
@@ -78,11 +82,13 @@ class ProbeTables {
     }
     text += "\n";
   }
-  void write(const std::filesystem::path& folder) const {
-    for (const auto& [name, text] : texts_) writeFileAtomically(folder / (name + ".csv"), text);
+  void write(const std::filesystem::path& folder, const MayReplace& mayReplace) const {
+    for (const auto& [name, text] : texts_) writeFileAtomically(folder / fileOf(name), text, mayReplace);
   }
+  static std::string fileOf(const std::string& probe) { return probe + ".csv"; }
 
  private:
+  std::string mark_;
   std::map<std::string, std::string> texts_;
 };
 
@@ -122,6 +128,18 @@ void noteNear(const Simulation& sim, double time_s) {
   }
 }
 
+/// Before any work: no file that the run would write may be of another scenario.
+void refuseForeignFiles(const Simulation& sim, const RunRange& range, const std::filesystem::path& folder, bool previews) {
+  for (int number = range.first; number <= range.last; ++number)
+    for (const Camera& c : sim.cameras) {
+      const std::filesystem::path file = folder / (frameFileStem(c.name, number, "") + ".exr");
+      refuseForeignFile(file, sim);
+      if (previews) refuseForeignFile(std::filesystem::path(file).replace_extension(".png"), sim);
+      if (c.spectralImage) refuseForeignFile(folder / (frameFileStem(c.name, number, kSpectralKind) + ".exr"), sim);
+    }
+  for (const Probe& p : sim.probes) refuseForeignFile(folder / ProbeTables::fileOf(p.name), sim);
+}
+
 /// Once per camera: what of a picture's transparent things is not in its right order.
 void noteOrder(const Frame& f, std::set<std::string>& told) {
   for (const auto& a : f.attributes) {
@@ -145,11 +163,20 @@ void noteLimits(const Frame& f, bool& told) {
 }  // namespace
 
 int runCommand(const Arguments& arguments) {
-  const Options o("run", arguments, {{"--out"}, {"--frames"}, {"--set", true, true}, {"--preview", false}, {"--preview-range", true, true}}, 1, 1);
+  const Options o("run", arguments,
+                  {{"--out"}, {"--frames"}, {"--set", true, true}, {"--preview", false}, {"--preview-range", true, true}, {"--overwrite", false}}, 1, 1);
   const Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
+  refuseBeyondMemory(sim);
   const RunRange range = framesWanted(o, sim);
   const PreviewRanges ranges = previewRanges(o, sim);
   const std::filesystem::path out = o.value("--out", "out");
+  const bool previews = o.has("--preview") || !ranges.empty();
+  MayReplace mayReplace;
+  if (!o.has("--overwrite")) {
+    refuseForeignFiles(sim, range, out, previews);
+    // And again for each: another run may have put it there meanwhile.
+    mayReplace = [&sim](const std::filesystem::path& file) { refuseForeignFile(file, sim); };
+  }
   ensureWritableFolder(out);
   noteSampling(sim);
   noteNear(sim, sim.time.at(range.first));
@@ -157,7 +184,7 @@ int runCommand(const Arguments& arguments) {
   const int frames = range.last - range.first + 1;
   const auto spectral = static_cast<size_t>(std::count_if(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.spectralImage.has_value(); }));
   Progress progress(sim.name, frames * static_cast<int>(std::max<size_t>(1, sim.cameras.size() + spectral)));
-  ProbeTables probes;
+  ProbeTables probes(sim);
   std::set<std::string> told;
   bool toldOfLimits = false;
   runFrames(
@@ -165,12 +192,12 @@ int runCommand(const Arguments& arguments) {
       [&](const Frame& f) {
         noteOrder(f, told);
         noteLimits(f, toldOfLimits);
-        writeFrame(out, f);
-        if ((o.has("--preview") || !ranges.empty()) && f.kind.empty()) writePreview(out, f, ranges);
+        writeFrame(out, f, mayReplace);
+        if (previews && f.kind.empty()) writePreview(out, f, ranges, mayReplace);
         progress.step();
       },
       sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) { probes.add(r); }, [&](double share) { progress.within(share); });
-  probes.write(out);
+  probes.write(out, mayReplace);
   progress.finish();
   auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
   std::string done;
@@ -184,6 +211,7 @@ int runCommand(const Arguments& arguments) {
 int checkCommand(const Arguments& arguments) {
   const Options o("check", arguments, {{"--set", true, true}}, 1, 1);
   const Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
+  refuseBeyondMemory(sim);
   size_t triangles = 0;
   for (const auto& e : sim.entities) triangles += e.mesh->triangles.size();
   auto count = [](size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); };

@@ -3,6 +3,8 @@
 #include <openssl/sha.h>
 
 #include <cstdlib>
+#include <set>
+#include <string_view>
 
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
@@ -52,8 +54,11 @@ void extend(Value& tree, const std::filesystem::path& base, std::string& identit
   if (const Value* further = other.find("extends"))
     throw UserError(further->where, "a scenario that is extended extends another itself", "one that is whole", "name that one, or write its keys here");
   identity += "\n--extends\n" + text;
+  tree.entries.reserve(tree.entries.size() + other.entries.size());  // `own` looks at the keys: they must stay where they are
+  std::set<std::string_view> own;
+  for (const auto& [key, value] : tree.entries) own.insert(key);
   for (size_t k = 0; k < other.entries.size(); ++k)
-    if (!tree.find(other.entries[k].first)) {
+    if (own.count(other.entries[k].first) == 0) {  // a key twice in the other stays twice: the reader tells
       tree.entries.push_back(other.entries[k]);
       tree.keyPlaces.push_back(other.keyPlaces[k]);
     }

@@ -7,9 +7,11 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
-#include <fstream>
 #include <map>
 #include <sstream>
+
+#include "sim/parameters/read_file.hpp"
+#include "sim/parameters/readable_text.hpp"
 
 namespace pitviper {
 namespace {
@@ -149,20 +151,6 @@ class TreeBuilder final : public YAML::EventHandler {
   bool done_ = false;
 };
 
-/// Length of the UTF-8 character at the front; 0 where there is none. Overlong forms, surrogates and values above U+10FFFF are none.
-std::size_t utf8Length(std::string_view t) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(t[i]); };
-  const unsigned char first = byte(0);
-  if (first < 0x80) return 1;
-  const std::size_t length = first >= 0xf0 ? 4 : first >= 0xe0 ? 3 : 2;
-  if (first < 0xc2 || first > 0xf4 || t.size() < length) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-  const bool overlong = (first == 0xe0 && byte(1) < 0xa0) || (first == 0xf0 && byte(1) < 0x90);
-  const bool beyond = (first == 0xed && byte(1) > 0x9f) || (first == 0xf4 && byte(1) > 0x8f);
-  return overlong || beyond ? 0 : length;
-}
-
 /// A file of another encoding, or no text at all, would be read as something nobody wrote.
 void refuseOtherThanText(std::string_view text, const std::string& file) {
   Location at{file, 1, 1, -1};
@@ -220,19 +208,11 @@ Value parseYaml(const std::string& text, const std::string& fileName) {
 }
 
 Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::string* textOut) {
-  std::error_code problem;
-  const auto size = std::filesystem::file_size(file, problem);
-  std::ifstream in(file, std::ios::binary);
-  if (problem || !in)
-    throw UserError(askedAt, "cannot read the file '" + file.string() + "'" + (problem ? " (" + problem.message() + ")" : ""), "a readable YAML file",
-                    "check the name");
-  if (size > kLargestYamlBytes)
-    throw UserError({file.string(), 1, 1, -1}, "the file has " + std::to_string(size) + " bytes", kLargestText, "put large tables into CSV files");
-  std::string text(static_cast<std::size_t>(size), '\0');
-  in.read(text.data(), static_cast<std::streamsize>(size));
-  text.resize(static_cast<std::size_t>(in.gcount()));
-  if (textOut) *textOut = text;
-  return parseYaml(text, file.string());
+  std::string text = readWholeFile(
+      file, {.what = "a readable YAML file", .mostBytes = kLargestYamlBytes, .fix = "check the name", .fixLarge = "put large tables into CSV files"}, askedAt);
+  Value tree = parseYaml(text, file.string());
+  if (textOut) *textOut = std::move(text);
+  return tree;
 }
 
 void applyOverride(Value& tree, const std::string& assignment) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/frame/file_owner.hpp"
 #include "sim/frame/limits_check.hpp"
 #include "sim/frame/version.hpp"
 #include "sim/image/png.hpp"
@@ -96,8 +97,8 @@ void addUnits(Frame& frame, const std::vector<ChannelOutput>& outputs) {
 void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, const WorldState& state) {
   auto add = [&](std::string name, auto value) { frame.attributes.push_back({std::move(name), value}); };
   add("pitviper.version", std::string(kVersion));
-  add("pitviper.scenario", sim.name);
-  add("pitviper.scenario_sha256", sim.sha256);
+  add(kScenarioName, sim.name);
+  add(kScenarioHash, sim.sha256);
   add("pitviper.seed", std::to_string(sim.seed));
   add("pitviper.camera", camera.name);
   add("pitviper.frame", frame.number);
@@ -139,28 +140,32 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   return frame;
 }
 
-std::string frameFileStem(const Frame& frame) {
-  char number[16];
-  std::snprintf(number, sizeof number, "_%05d", frame.number);
-  return frame.camera + number + (frame.kind.empty() ? "" : "_" + frame.kind);
+std::string frameFileStem(const std::string& camera, int number, const std::string& kind) {
+  char digits[16];
+  std::snprintf(digits, sizeof digits, "_%05d", number);
+  return camera + digits + (kind.empty() ? "" : "_" + kind);
 }
 
-void writeFrame(const std::filesystem::path& folder, const Frame& frame) { writeFrameFile(folder / (frameFileStem(frame) + ".exr"), frame); }
+std::string frameFileStem(const Frame& frame) { return frameFileStem(frame.camera, frame.number, frame.kind); }
 
-void writeFrameFile(const std::filesystem::path& file, const Frame& frame) {
+void writeFrame(const std::filesystem::path& folder, const Frame& frame, const MayReplace& mayReplace) {
+  writeFrameFile(folder / (frameFileStem(frame) + ".exr"), frame, mayReplace);
+}
+
+void writeFrameFile(const std::filesystem::path& file, const Frame& frame, const MayReplace& mayReplace) {
   ExrImage image;
   image.width = frame.width;
   image.height = frame.height;
   for (const auto& l : frame.layers) image.layers.push_back({l.name, l.pixels});
   image.attributes = frame.attributes;
-  writeExr(file, image);
+  writeExr(file, image, mayReplace);
 }
 
-void writePreview(const std::filesystem::path& folder, const Frame& frame, const PreviewRanges& ranges) {
-  writePreviewFile(folder / (frameFileStem(frame) + ".png"), frame, ranges);
+void writePreview(const std::filesystem::path& folder, const Frame& frame, const PreviewRanges& ranges, const MayReplace& mayReplace) {
+  writePreviewFile(folder / (frameFileStem(frame) + ".png"), frame, ranges, mayReplace);
 }
 
-void writePreviewFile(const std::filesystem::path& file, const Frame& frame, const PreviewRanges& ranges) {
+void writePreviewFile(const std::filesystem::path& file, const Frame& frame, const PreviewRanges& ranges, const MayReplace& mayReplace) {
   std::vector<Rgb8Image> pictures;
   char time[32];
   std::snprintf(time, sizeof time, "t = %.3f s", frame.time_s);
@@ -178,7 +183,10 @@ void writePreviewFile(const std::filesystem::path& file, const Frame& frame, con
     options.colourMap = !band.empty() && std::stod(band) < 0.9 ? "grey" : "thermal";
     pictures.push_back(makePreview(frame.width, frame.height, l.pixels, options));
   }
-  writePng(file, placeSideBySide(pictures));
+  std::map<std::string, std::string> texts;
+  for (const auto& a : frame.attributes)
+    if (const auto* text = std::get_if<std::string>(&a.value); text && (a.name == kScenarioName || a.name == kScenarioHash)) texts[a.name] = *text;
+  writePng(file, placeSideBySide(pictures), texts, mayReplace);
 }
 
 }  // namespace pitviper

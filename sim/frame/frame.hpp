@@ -42,14 +42,15 @@ void addUnits(Frame& frame, const std::vector<ChannelOutput>& outputs);
 
 /// "<camera>_00012" or "<camera>_00012_<kind>": the name of a frame's files without extension.
 std::string frameFileStem(const Frame& frame);
+std::string frameFileStem(const std::string& camera, int number, const std::string& kind);
 
-/// One EXR with a layer per channel quantity and truth layer. Errors: OutputError.
-void writeFrame(const std::filesystem::path& folder, const Frame& frame);
-void writeFrameFile(const std::filesystem::path& file, const Frame& frame);
+/// One EXR with a layer per channel quantity and truth layer. `mayReplace`: as of writeFileAtomically. Errors: OutputError.
+void writeFrame(const std::filesystem::path& folder, const Frame& frame, const MayReplace& mayReplace = {});
+void writeFrameFile(const std::filesystem::path& file, const Frame& frame, const MayReplace& mayReplace = {});
 /// Ends of the colour bar by layer name, in the layer's unit; layers without choose their own.
 using PreviewRanges = std::map<std::string, std::pair<double, double>>;
 /// One PNG per frame: channels side by side, each with colour bar and unit.
-void writePreview(const std::filesystem::path& folder, const Frame& frame, const PreviewRanges& ranges = {});
-void writePreviewFile(const std::filesystem::path& file, const Frame& frame, const PreviewRanges& ranges = {});
+void writePreview(const std::filesystem::path& folder, const Frame& frame, const PreviewRanges& ranges = {}, const MayReplace& mayReplace = {});
+void writePreviewFile(const std::filesystem::path& file, const Frame& frame, const PreviewRanges& ranges = {}, const MayReplace& mayReplace = {});
 
 }  // namespace pitviper

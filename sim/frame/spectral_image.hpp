@@ -7,6 +7,9 @@
 
 namespace pitviper {
 
+/// Frame::kind of one.
+inline constexpr const char* kSpectralKind = "spectral";
+
 struct SpectralImage {
   std::string file;
   int width = 0, height = 0;

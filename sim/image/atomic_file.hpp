@@ -1,6 +1,7 @@
 #pragma once
 // Output files appear under their final name only when whole.
 #include <filesystem>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -15,12 +16,22 @@ class OutputError : public std::runtime_error {
   OutputError(const std::filesystem::path& path, const std::string& what, int errorNumber, const std::string& fix = "");
 };
 
-/// Writes `bytes` to `.<name>.partial` in the same folder and renames it to `path` when whole; an existing regular file is
-/// replaced. The folder must exist. One writer per path at a time.
-/// Errors: OutputError; then neither the temporary nor a changed `path` is left.
-void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes);
+/// Called where a file of the name exists; throws what is to be said where it must stay.
+using MayReplace = std::function<void(const std::filesystem::path&)>;
 
-/// Creates `folder` with its parents where missing. Errors: OutputError if it is no folder or cannot be written to.
+/// Writes `bytes` to a temporary of its own in the same folder and renames it to `path` when whole. The folder must exist. An existing regular file is
+/// replaced, if `mayReplace` (where given) lets it. Any number of processes and threads may write the same path at once: one of their files stands there,
+/// whole, at every moment.
+/// Errors: OutputError, and what `mayReplace` throws; then neither the temporary nor a changed `path` is left.
+void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes, const MayReplace& mayReplace = {});
+
+/// What processes that were killed left in `folder`. Files that a living process is writing stay.
+void removeAbandonedTemporaries(const std::filesystem::path& folder);
+
+/// For a program that is about to end by a signal: removes the temporaries of all its threads, and lets no thread begin another.
+void removeOpenTemporaries();
+
+/// Creates `folder` with its parents where missing; removes what killed processes left in it. Errors: OutputError if it is no folder or cannot be written to.
 void ensureWritableFolder(const std::filesystem::path& folder);
 
 /// Writes all of `bytes` to an open descriptor, going on after short writes and interrupts; `path` is only for the message.

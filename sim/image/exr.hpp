@@ -7,6 +7,8 @@
 #include <variant>
 #include <vector>
 
+#include "sim/image/atomic_file.hpp"
+
 namespace pitviper {
 
 /// Row-major, row 0 at the top: width * height values. A dot in the name makes a layer in EXR viewers ("mw.radiance").
@@ -40,12 +42,16 @@ std::optional<std::vector<double>> numbersOf(const Attribute& attribute);
 /// Scan-line file, 32-bit float channels, ZIP compression; the same image gives the same bytes. Written atomically.
 /// Errors: OutputError if it cannot be stored; std::invalid_argument if the image breaks the shapes and names above, is empty, is
 /// over 32768 on a side or has more than 1024 layers (a caller's bug, not a user's).
-void writeExr(const std::filesystem::path& path, const ExrImage& image);
+/// `mayReplace`: as of writeFileAtomically.
+void writeExr(const std::filesystem::path& path, const ExrImage& image, const MayReplace& mayReplace = {});
 
 /// Reads a single-part scan-line file of any compression; half and integer channels become float. The data window is the image.
 /// Layers and attributes come sorted by name. Attributes of types string, double, float, int, v3d and v3f are returned, others and
 /// EXR's own are left out.
 /// Errors: UserError with the file name if it is missing, damaged, truncated, tiled, multi-part, deep, subsampled or over the limits above.
 ExrImage readExr(const std::filesystem::path& path);
+
+/// A text attribute, from the header alone, read at most 4 MB far. Nothing where it isn't there, or the file is no EXR. Never throws but std::bad_alloc.
+std::optional<std::string> readExrText(const std::filesystem::path& path, std::string_view name);
 
 }  // namespace pitviper

@@ -159,4 +159,23 @@ class Walk {
 
 void checkHeader(std::string& bytes, const std::string& file) { Walk(bytes, file).run(); }
 
+std::optional<std::string> textIn(std::string_view bytes, std::string_view attribute) {
+  const auto word = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) value = value << 8 | static_cast<unsigned char>(bytes[at + i]);
+    return value;
+  };
+  if (bytes.size() < 8 || word(0) != magic) return std::nullopt;
+  for (std::size_t at = 8; at < bytes.size() && bytes[at] != 0;) {
+    const std::size_t name = at, type = bytes.find('\0', name) + 1;
+    const std::size_t size = type == 0 ? 0 : bytes.find('\0', type) + 1;
+    if (size == 0 || size > bytes.size() || bytes.size() - size < 4) return std::nullopt;
+    const std::size_t length = word(size), value = size + 4;
+    if (length > bytes.size() - value) return std::nullopt;
+    if (bytes.substr(name, type - 1 - name) == attribute && bytes.substr(type, size - 1 - type) == "string") return std::string(bytes.substr(value, length));
+    at = value + length;
+  }
+  return std::nullopt;
+}
+
 }  // namespace pitviper::exr

@@ -19,8 +19,8 @@
 #include "sim/image/exr.hpp"
 #include "sim/image/exr_check.hpp"
 #include "sim/image/exr_names.hpp"
-#include "sim/image/read_file.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/read_file.hpp"
 
 namespace pitviper {
 namespace {
@@ -125,6 +125,15 @@ ExrImage readExr(const std::filesystem::path& path) {
     throw UserError(where, "the image is too large for this machine's memory", "a smaller image", "use a machine with more memory");
   } catch (const std::exception& failure) {
     throw UserError(where, std::string("cannot read the EXR image: ") + failure.what(), "a whole EXR file", "copy or render the file again");
+  }
+}
+
+std::optional<std::string> readExrText(const std::filesystem::path& path, std::string_view name) {
+  constexpr std::size_t kLongestHeader = 4u << 20;  // 4096 bodies with their places have 1 MB, 1024 layers 0.3 MB
+  try {
+    return exr::textIn(readFileStart(path, kLongestHeader), name);
+  } catch (const UserError&) {
+    return std::nullopt;
   }
 }
 

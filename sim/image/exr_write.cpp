@@ -112,7 +112,7 @@ std::string encode(const ExrImage& image) {
 
 }  // namespace
 
-void writeExr(const std::filesystem::path& path, const ExrImage& image) {
+void writeExr(const std::filesystem::path& path, const ExrImage& image, const MayReplace& mayReplace) {
   check(image);
   std::string bytes;
   try {
@@ -120,7 +120,7 @@ void writeExr(const std::filesystem::path& path, const ExrImage& image) {
   } catch (const std::exception& failure) {
     throw OutputError(path, std::string("cannot encode the image: ") + failure.what(), 0, "free memory or make a smaller image");
   }
-  writeFileAtomically(path, bytes);
+  writeFileAtomically(path, bytes, mayReplace);
 }
 
 }  // namespace pitviper

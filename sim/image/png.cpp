@@ -11,16 +11,17 @@
 #include <string>
 
 #include "sim/image/atomic_file.hpp"
-#include "sim/image/read_file.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/read_file.hpp"
 
 namespace pitviper {
 namespace {
 
 constexpr png_uint_32 maxSide = 16384;
-constexpr std::size_t maxGreyPixels = std::size_t{8192} * 4096;  // a small file can claim 16384 x 16384: over 1 GB as floats
-constexpr std::size_t maxChunkBytes = std::size_t{16} << 20;     // of text, profiles and the like; pixels are not counted
-constexpr std::size_t maxDeflateFactor = 1032;                   // zlib, "Maximum Compression Factor"
+constexpr std::size_t maxGreyPixels = std::size_t{8192} * 4096;   // a small file can claim 16384 x 16384: over 1 GB as floats
+constexpr std::size_t maxChunkBytes = std::size_t{16} << 20;      // of text, profiles and the like; pixels are not counted
+constexpr std::uintmax_t maxFileBytes = std::uintmax_t{2} << 30;  // 16384 x 16384 of 8-bit RGB, packed badly, has 0.8 GB
+constexpr std::size_t maxDeflateFactor = 1032;                    // zlib, "Maximum Compression Factor"
 
 // libpng leaves on an error by longjmp, which must not pass objects with destructors. So all objects live in Job, outside the functions
 // that call setjmp, and those functions hold plain values only. Callbacks into C code may not throw either.
@@ -32,6 +33,7 @@ struct Job {
   std::array<char, 200> message = {};
   std::vector<png_byte> pixels;
   std::vector<png_bytep> rows;
+  std::vector<png_text> texts;
   png_uint_32 width = 0, height = 0;
   int bits = 0, colour = 0;
 };
@@ -72,7 +74,7 @@ void setRows(Job& job, std::size_t rowBytes) {
 class Reader {
  public:
   explicit Reader(const std::filesystem::path& path) : where_{.file = path.string()} {
-    job_.bytes = readWholeFile(path);
+    job_.bytes = readWholeFile(path, {.what = "a PNG file", .mostBytes = maxFileBytes, .fixLarge = "make a smaller picture"});
     job_.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &job_, onError, onWarning);
     if (job_.png != nullptr) job_.info = png_create_info_struct(job_.png);
     if (job_.info == nullptr) {
@@ -165,6 +167,7 @@ bool encode(Job& job) {
   png_set_filter(job.png, PNG_FILTER_TYPE_BASE, PNG_ALL_FILTERS);
   png_set_IHDR(job.png, job.info, job.width, job.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(job.png, job.info, PNG_sRGB_INTENT_RELATIVE);
+  if (!job.texts.empty()) png_set_text(job.png, job.info, job.texts.data(), static_cast<int>(job.texts.size()));
   png_write_info(job.png, job.info);
   png_write_image(job.png, job.rows.data());
   png_write_end(job.png, nullptr);
@@ -173,7 +176,7 @@ bool encode(Job& job) {
 
 }  // namespace
 
-void writePng(const std::filesystem::path& path, const Rgb8Image& picture) {
+void writePng(const std::filesystem::path& path, const Rgb8Image& picture, const std::map<std::string, std::string>& texts, const MayReplace& mayReplace) {
   const int limit = static_cast<int>(maxSide);
   if (picture.width < 1 || picture.height < 1 || picture.width > limit || picture.height > limit)
     throw std::invalid_argument("writePng: a side is not in 1..16384");
@@ -183,13 +186,45 @@ void writePng(const std::filesystem::path& path, const Rgb8Image& picture) {
   job.width = static_cast<png_uint_32>(picture.width);
   job.height = static_cast<png_uint_32>(picture.height);
   job.pixels = picture.rgb;
+  for (const auto& [keyword, text] : texts) {
+    png_text entry = {};
+    entry.compression = PNG_TEXT_COMPRESSION_NONE;
+    // The library takes one pointer type for reading and writing; it only reads from these.
+    entry.key = const_cast<char*>(keyword.c_str());
+    entry.text = const_cast<char*>(text.c_str());
+    entry.text_length = text.size();
+    job.texts.push_back(entry);
+  }
   setRows(job, rowBytes);
   job.png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &job, onError, onWarning);
   if (job.png != nullptr) job.info = png_create_info_struct(job.png);
   const bool whole = job.info != nullptr && encode(job);
   png_destroy_write_struct(&job.png, &job.info);
   if (!whole) throw OutputError(path, std::string("cannot encode the picture: ") + job.message.data(), 0, "free memory or make a smaller picture");
-  writeFileAtomically(path, job.bytes);
+  writeFileAtomically(path, job.bytes, mayReplace);
+}
+
+std::optional<std::string> readPngText(const std::filesystem::path& path, std::string_view keyword) {
+  constexpr std::size_t kFarthest = 1u << 16;  // what is written before the pixels has less than 1 kB
+  std::string bytes;
+  try {
+    bytes = readFileStart(path, kFarthest);
+  } catch (const UserError&) {
+    return std::nullopt;
+  }
+  if (bytes.size() < 8 || png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, 8) != 0) return std::nullopt;
+  const std::string_view all = bytes;
+  // A chunk: length (big-endian), type, content, checksum.
+  for (std::size_t at = 8; at + 12 <= all.size();) {
+    const std::size_t length = png_get_uint_32(reinterpret_cast<png_const_bytep>(bytes.data() + at));
+    const std::string_view type = all.substr(at + 4, 4);
+    if (type == "IDAT" || length > all.size() - at - 12) return std::nullopt;
+    const std::string_view content = all.substr(at + 8, length);
+    if (type == "tEXt" && content.size() > keyword.size() && content.starts_with(keyword) && content[keyword.size()] == '\0')
+      return std::string(content.substr(keyword.size() + 1));
+    at += 12 + length;
+  }
+  return std::nullopt;
 }
 
 Rgb8Image readPng(const std::filesystem::path& path) {

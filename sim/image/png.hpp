@@ -1,8 +1,13 @@
 #pragma once
 // PNG files: pictures for people, and grey maps as textures.
 #include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "sim/image/atomic_file.hpp"
 #include "sim/image/picture.hpp"
 
 namespace pitviper {
@@ -18,7 +23,12 @@ struct GreyImage {
 
 /// 8-bit RGB; the same picture gives the same bytes. Written atomically.
 /// Errors: OutputError if it cannot be stored; std::invalid_argument if `rgb` is not 3 * width * height or a side is not in 1..16384.
-void writePng(const std::filesystem::path& path, const Rgb8Image& picture);
+/// `texts`: keywords (1 to 79 letters) and what they say, kept in the file. `mayReplace`: as of writeFileAtomically.
+void writePng(const std::filesystem::path& path, const Rgb8Image& picture, const std::map<std::string, std::string>& texts = {},
+              const MayReplace& mayReplace = {});
+
+/// What a keyword says, from before the pixels. Nothing where it isn't there, or the file is no PNG. Never throws but std::bad_alloc.
+std::optional<std::string> readPngText(const std::filesystem::path& path, std::string_view keyword);
 
 /// Any PNG as 8-bit RGB; alpha is dropped, 16-bit codes are rounded to 8.
 /// Errors: UserError with the file name if it is missing, damaged, truncated or over 16384 on a side.

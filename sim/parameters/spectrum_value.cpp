@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
+#include <sstream>
 
+#include "sim/parameters/read_file.hpp"
+#include "sim/parameters/readable_text.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/radiometry/constants.hpp"
 
@@ -265,14 +267,12 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
 }
 
 Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view unit, Outside outside, const Location& askedAt) {
-  std::ifstream in(file);
-  std::error_code ignored;
-  if (!in || !std::filesystem::is_regular_file(file, ignored))
-    throw UserError(askedAt, "cannot read the file '" + file.string() + "'", "a CSV file with a spectrum",
-                    "check the name; it is relative to the scenario's folder");
-  if (std::filesystem::file_size(file, ignored) > kLargestCsvBytes)
-    throw UserError({file.string(), 1, 1, -1}, "the file is larger than 16 MB", "a table of at most " + std::to_string(kMostSpectrumRows) + " rows",
-                    "thin the table out");
+  std::istringstream in(readWholeFile(file,
+                                      {.what = "a CSV file with a spectrum of at most " + std::to_string(kMostSpectrumRows) + " rows",
+                                       .mostBytes = kLargestCsvBytes,
+                                       .fix = "check the name; it is relative to the scenario's folder",
+                                       .fixLarge = "thin the table out"},
+                                      askedAt));
   std::string line, axisUnit, valueUnit;
   Location where{file.string(), 0, 1, -1};
   Location unitPlace[2];
@@ -309,7 +309,7 @@ Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view uni
       if (!q || !q->unit.empty()) {
         Location at = where;
         at.column = c == 0 ? 1 : static_cast<int>(comma) + 2;
-        throw UserError(at, "not a finite number: '" + cell[c].substr(0, 40) + "'", "a number", "correct or remove the line");
+        throw UserError(at, "not a finite number: " + tokenOf(cell[c]), "a number", "correct or remove the line");
       }
       *into[c] = q->value;
     }

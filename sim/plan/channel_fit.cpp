@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <numeric>
 
 namespace pitviper {
@@ -9,10 +11,12 @@ namespace {
 
 /// Of the error asked for: what groups may take of the products they are fitted to, and of those they have not seen. The rest is for tables
 /// and for what was not drawn.
-constexpr double kFitted = 0.35, kUnseen = 0.6;
+constexpr double kFitted = 0.3, kUnseen = 0.42;
 /// With gases in bodies, whose lengths and temperatures vary more than a few hundred lines of sight show.
 constexpr double kGas = 0.6;
 constexpr int kMostGroups = 96;
+/// Of hundreds of lines most say the same: a fit begins with some, and the worst of the others join them.
+constexpr FitEffort kEffort{40, 25, 160, 0.0};
 /// Of the worst that a fit learns from at a time.
 constexpr size_t kLearnt = 60;
 
@@ -28,7 +32,8 @@ void ChannelFit::begin(const Sights& sights) {
   floor_ = sights.floorOf(grid_, absorbers_);
   SpectralProblem problem = sights.problem(grid_, absorbers_, floor_);
   seen_ = sights.size();
-  fit_ = fitToTolerance(problem, kFitted * accuracy_, kMostGroups);
+  if (getenv("PV_DEBUG")) { size_t t=0; for (auto& p : problem.products) t += p.terms.size(); fprintf(stderr, "products %zu terms %zu fine %zu spectra %zu paths %zu columns %zu\n", problem.products.size(), t, problem.weight.size(), problem.spectra.size(), problem.paths.size(), problem.extinction.size()); }
+  fit_ = fitToTolerance(problem, kFitted * accuracy_, kMostGroups, kEffort);
   training_ = std::move(problem.products);
   error_ = fit_.maximum;
 }
@@ -47,7 +52,7 @@ bool ChannelFit::check(const Sights& sights) {
   for (size_t k = 0; k < std::min(kLearnt, order.size()) && std::abs(errors[order[k]]) > kFitted * accuracy_; ++k)
     training_.push_back(problem.products[order[k]]);
   problem.products = training_;
-  fit_ = fitToTolerance(problem, kFitted * accuracy_, kMostGroups, {}, static_cast<int>(fit_.groups.size()));
+  fit_ = fitToTolerance(problem, kFitted * accuracy_, kMostGroups, kEffort, static_cast<int>(fit_.groups.size()));
   return false;
 }
 

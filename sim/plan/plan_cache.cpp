@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
 
 #include "sim/image/atomic_file.hpp"
+#include "sim/parameters/read_file.hpp"
 #include "sim/plan/sights.hpp"
 
 namespace pitviper {
@@ -25,6 +25,9 @@ std::filesystem::path fileOf(const ContentKey& key) {
 
 /// As many plans as are kept; 60 kB each, about.
 constexpr size_t kMostKept = 200;
+
+/// A thousand times an ordinary one.
+constexpr std::uintmax_t kLargestPlan = 64u << 20;
 
 /// Of too many plans the older half goes.
 void forgetOldest(const std::filesystem::path& folder) {
@@ -170,9 +173,7 @@ bool readPlanned(const std::string& text, Plan& into) {
 
 bool readCachedPlan(const ContentKey& key, Plan& into) {
   try {
-    std::ifstream file(fileOf(key), std::ios::binary);
-    if (!file) return false;
-    return readPlanned({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, into);
+    return readPlanned(readWholeFile(fileOf(key), {.mostBytes = kLargestPlan}), into);
   } catch (const std::exception&) {
     return false;
   }
@@ -185,6 +186,7 @@ void writeCachedPlan(const ContentKey& key, const Plan& plan) {
     std::filesystem::create_directories(file.parent_path());
     writeFileAtomically(file, writePlanned(plan));
     forgetOldest(file.parent_path());
+    removeAbandonedTemporaries(file.parent_path());
   } catch (const std::exception&) {
     // Nothing is lost but time: see the header.
   }

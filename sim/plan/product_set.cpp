@@ -189,24 +189,35 @@ Eigen::ArrayXd inverse(const Eigen::VectorXd& weight) { return (weight.array() >
 // Of a term, per group: value = transmittance x S_1 x (S_2 / W) x (S_3 / W) ..., S_f sums of weight x share x spectrum, W the group's weight.
 class TermValue {
  public:
-  TermValue(const GroupMoments& at, const Eigen::ArrayXd& perWeight, const ProductTerm& term) : at_(at), perWeight_(perWeight), term_(term) {}
+  TermValue(const GroupMoments& at, const Eigen::ArrayXd& perWeight, const ProductTerm& term)
+      : source_(at.source.data()), perWeight_(perWeight.data()), groups_(at.source.rows()), term_(term) {}
   /// The product of all spectra but one (-1: of all), without the transmittance.
   void spectraBut(int left, Eigen::ArrayXd& out) const {
-    bool first = true;
-    for (int f = 0; f < term_.count; ++f) {
-      if (f == left) continue;
-      const auto column = at_.source.col(term_.spectrum[static_cast<size_t>(f)]).array();
-      if (first) out = column;
-      else out *= column;
-      first = false;
+    double* p = out.data();
+    const auto column = [&](int f) { return source_ + groups_ * term_.spectrum[static_cast<size_t>(f)]; };
+    if (term_.count == 2) {
+      if (left < 0) {
+        const double *a = column(0), *b = column(1);
+        for (Eigen::Index g = 0; g < groups_; ++g) p[g] = a[g] * b[g] * perWeight_[g];
+      } else {
+        const double* a = column(1 - left);
+        for (Eigen::Index g = 0; g < groups_; ++g) p[g] = a[g] * perWeight_[g];
+      }
+      return;
     }
-    if (first) out.setOnes(at_.weight.size());
-    for (int f = 1; f < term_.count; ++f) out *= perWeight_;
+    for (Eigen::Index g = 0; g < groups_; ++g) {
+      double product = 1.0;
+      for (int f = 0; f < term_.count; ++f) {
+        if (f != left) product *= column(f)[g];
+        if (f > 0) product *= perWeight_[g];
+      }
+      p[g] = product;
+    }
   }
 
  private:
-  const GroupMoments& at_;
-  const Eigen::ArrayXd& perWeight_;
+  const double *source_, *perWeight_;
+  Eigen::Index groups_;
   const ProductTerm& term_;
 };
 
@@ -233,25 +244,37 @@ Eigen::VectorXd ProductSet::errors(const GroupMoments& at) const {
   return e;
 }
 
+// Terms of one and of two spectra are nearly all; groups are few: plain loops are several times faster than expressions of short arrays.
 Eigen::VectorXd ProductSet::forward(const GroupMoments& at, const GroupMoments& change) const {
   const Eigen::ArrayXd perWeight = inverse(at.weight);
+  const Eigen::Index groups = at.source.rows();
+  const double *w = perWeight.data(), *dW = change.weight.data();
   Eigen::VectorXd e(size());
-  Eigen::ArrayXd product(at.weight.size());
+  Eigen::ArrayXd product(groups);
   for (int m = 0; m < size(); ++m) {
     double sum = 0.0;
     for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
       const ProductTerm& term = terms[static_cast<size_t>(t)];
-      const auto tau = at.transmittance.col(term.path), dTau = change.transmittance.col(term.path);
+      const double *tau = at.transmittance.data() + groups * term.path, *dTau = change.transmittance.data() + groups * term.path;
+      const double *a = at.source.data() + groups * term.spectrum[0], *dA = change.source.data() + groups * term.spectrum[0];
+      double changed = 0.0;
       if (term.count == 1) {
-        sum += term.coefficient * (change.source.col(term.spectrum[0]).dot(tau) + at.source.col(term.spectrum[0]).dot(dTau));
-        continue;
-      }
-      const TermValue value(at, perWeight, term);
-      value.spectraBut(-1, product);
-      double changed = (product * (dTau.array() - tau.array() * (term.count - 1) * change.weight.array() * perWeight)).sum();
-      for (int f = 0; f < term.count; ++f) {
-        value.spectraBut(f, product);
-        changed += (product * tau.array() * change.source.col(term.spectrum[static_cast<size_t>(f)]).array()).sum();
+        for (Eigen::Index g = 0; g < groups; ++g) changed += dA[g] * tau[g] + a[g] * dTau[g];
+      } else if (term.count == 2) {
+        const double *b = at.source.data() + groups * term.spectrum[1], *dB = change.source.data() + groups * term.spectrum[1];
+        for (Eigen::Index g = 0; g < groups; ++g) {
+          const double ab = a[g] * b[g];
+          changed += w[g] * (tau[g] * (dA[g] * b[g] + a[g] * dB[g] - ab * dW[g] * w[g]) + dTau[g] * ab);
+        }
+      } else {
+        const TermValue value(at, perWeight, term);
+        value.spectraBut(-1, product);
+        for (Eigen::Index g = 0; g < groups; ++g) changed += product[g] * (dTau[g] - tau[g] * (term.count - 1) * dW[g] * w[g]);
+        for (int f = 0; f < term.count; ++f) {
+          const double* d = change.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
+          value.spectraBut(f, product);
+          for (Eigen::Index g = 0; g < groups; ++g) changed += product[g] * tau[g] * d[g];
+        }
       }
       sum += term.coefficient * changed;
     }
@@ -263,7 +286,9 @@ Eigen::VectorXd ProductSet::forward(const GroupMoments& at, const GroupMoments& 
 GroupMoments ProductSet::backward(const GroupMoments& at, const Eigen::VectorXd& u) const {
   const Eigen::ArrayXd perWeight = inverse(at.weight);
   const Eigen::Index groups = at.source.rows();
-  GroupMoments g{Eigen::MatrixXd::Zero(groups, sourceCount()), Eigen::VectorXd::Zero(groups), Eigen::MatrixXd::Zero(groups, pathCount())};
+  GroupMoments out{Eigen::MatrixXd::Zero(groups, sourceCount()), Eigen::VectorXd::Zero(groups), Eigen::MatrixXd::Zero(groups, pathCount())};
+  const double* w = perWeight.data();
+  double* outWeight = out.weight.data();
   Eigen::ArrayXd product(groups);
   for (int m = 0; m < size(); ++m) {
     const double factor = u[m] * scale[m];
@@ -271,23 +296,35 @@ GroupMoments ProductSet::backward(const GroupMoments& at, const Eigen::VectorXd&
     for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
       const ProductTerm& term = terms[static_cast<size_t>(t)];
       const double c = factor * term.coefficient;
-      const auto tau = at.transmittance.col(term.path);
+      const double* tau = at.transmittance.data() + groups * term.path;
+      double* outTau = out.transmittance.data() + groups * term.path;
+      const double* a = at.source.data() + groups * term.spectrum[0];
+      double* outA = out.source.data() + groups * term.spectrum[0];
       if (term.count == 1) {
-        g.source.col(term.spectrum[0]) += c * tau;
-        g.transmittance.col(term.path) += c * at.source.col(term.spectrum[0]);
-        continue;
-      }
-      const TermValue value(at, perWeight, term);
-      value.spectraBut(-1, product);
-      g.transmittance.col(term.path).array() += c * product;
-      g.weight.array() -= c * (term.count - 1) * perWeight * product * tau.array();
-      for (int f = 0; f < term.count; ++f) {
-        value.spectraBut(f, product);
-        g.source.col(term.spectrum[static_cast<size_t>(f)]).array() += c * product * tau.array();
+        for (Eigen::Index g = 0; g < groups; ++g) outA[g] += c * tau[g], outTau[g] += c * a[g];
+      } else if (term.count == 2) {
+        const double* b = at.source.data() + groups * term.spectrum[1];
+        double* outB = out.source.data() + groups * term.spectrum[1];
+        for (Eigen::Index g = 0; g < groups; ++g) {
+          const double cw = c * w[g], ab = a[g] * b[g];
+          outA[g] += cw * tau[g] * b[g];
+          outB[g] += cw * tau[g] * a[g];
+          outWeight[g] -= cw * w[g] * tau[g] * ab;
+          outTau[g] += cw * ab;
+        }
+      } else {
+        const TermValue value(at, perWeight, term);
+        value.spectraBut(-1, product);
+        for (Eigen::Index g = 0; g < groups; ++g) outTau[g] += c * product[g], outWeight[g] -= c * (term.count - 1) * w[g] * product[g] * tau[g];
+        for (int f = 0; f < term.count; ++f) {
+          double* outF = out.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
+          value.spectraBut(f, product);
+          for (Eigen::Index g = 0; g < groups; ++g) outF[g] += c * product[g] * tau[g];
+        }
       }
     }
   }
-  return g;
+  return out;
 }
 
 GroupMoments ProductSet::squares(const GroupMoments& at, const Eigen::VectorXd& u) const {

@@ -51,6 +51,7 @@ void ProductSink::restart() {
   media_m_.clear();
   inside_m_.clear();
   panes_.clear();
+  herePath_ = sunPath_ = -1;
 }
 
 Sight ProductSink::finish() {
@@ -105,7 +106,8 @@ void ProductSink::term(const Term& t) {
   SightTerm term{{}, t.kind};
   term.product.count = 0;
   term.product.coefficient = t.coefficient;
-  term.product.path = pathOf(t.air ? *t.air : here_, 0.0);
+  if (!t.air && herePath_ < 0) herePath_ = pathOf(here_, 0.0);
+  term.product.path = t.air ? pathOf(*t.air, 0.0) : herePath_;
   addFactor(term, t.factors);
 }
 
@@ -125,6 +127,8 @@ void ProductSink::segment(const Segment& s) {
     inside_m_.clear();
   }
   here_ = s.far.powered;
+  if (s.dark || !s.air || !s.media.empty()) herePath_ = -1;
+  if (s.dark || !(s.far.sun > 0.0) || !s.media.empty()) sunPath_ = -1;
 }
 
 void ProductSink::emission(const Segment& s) {
@@ -136,7 +140,8 @@ void ProductSink::emission(const Segment& s) {
     }
   };
   if (s.air && s.far.range_m > s.near.range_m) {
-    const int near = pathOf(s.near.powered, 0.5), far = pathOf(s.far.powered, 0.5);
+    const int near = herePath_ >= 0 && s.media.empty() ? herePath_ : pathOf(s.near.powered, 0.5), far = pathOf(s.far.powered, 0.5);
+    herePath_ = far;
     const double temperature_K = 0.5 * (s.near.temperature_K + s.far.temperature_K);
     if (temperature_K > 0.0) {
       const double step_K = kTemperatureStep_K * std::max(std::round(temperature_K / kTemperatureStep_K), 1.0);
@@ -169,8 +174,9 @@ void ProductSink::scattered(const Segment& s) {
   for (int p = 0; p < 3; ++p) {
     AirAmounts both;
     for (size_t k = 0; k < kMostAirAmounts; ++k) both.amount[k] = from.amount[k] + 0.5 * p * (to.amount[k] - from.amount[k]);
-    way[p] = pathOf(both, 0.5 * p);
+    way[p] = p == 0 && sunPath_ >= 0 && s.near.sun > 0.0 && s.media.empty() ? sunPath_ : pathOf(both, 0.5 * p);
   }
+  sunPath_ = s.far.sun > 0.0 ? way[2] : -1;
   const int irradiance = book_.spectrum(Factor::sun(), sim_);
   const double cosine = kCosineStep * std::round(s.cosScatter / kCosineStep);  // what matters here is the wavelength
   for (size_t k : scatterers_) {

@@ -40,7 +40,7 @@ SpectralRenderer::SpectralRenderer(const Simulation& simulation, const Camera& c
 
 Frame SpectralRenderer::render(const WorldState& state, int number) {
   Frame frame = startFrame(camera_, state, number);
-  frame.kind = "spectral";
+  frame.kind = kSpectralKind;
   for (size_t p = 0; p < passes_.size(); ++p)
     addOutputs(frame, passes_[p], p < kept_.size() ? kept_[p]->render(state) : CameraRenderer(simulation_, passes_[p], library_, scene_).render(state));
   Camera whole = camera_;

@@ -5,15 +5,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <type_traits>
 
 #include "sim/image/atomic_file.hpp"
+#include "sim/parameters/read_file.hpp"
 
 namespace pitviper {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x31304853'4d565450u;  // "PTVMSH01" in little-endian order: form and version
+constexpr std::uint64_t kMagic = 0x32304853'4d565450u;  // "PTVMSH02" in little-endian order: form and version
 
 std::uint64_t mix(std::uint64_t h, std::uint64_t word, std::uint64_t multiplier) {
   h = (std::rotl(h, 27) ^ word) * multiplier;
@@ -60,11 +60,13 @@ struct Source {
   }
 };
 
+constexpr const char* kPrefix = "mesh-";
+
 std::filesystem::path cacheFile(const ContentKey& key) {
   const std::filesystem::path folder = meshCacheFolder();
   if (folder.empty()) return {};
   char name[64];
-  std::snprintf(name, sizeof name, "mesh-%016llx%016llx.bin", static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
+  std::snprintf(name, sizeof name, "%s%016llx%016llx.bin", kPrefix, static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
   return folder / name;
 }
 
@@ -83,9 +85,16 @@ ContentKey contentKey(std::string_view bytes, ContentKey seed) {
   return {mix(a, b, kFirst), mix(b, a, kSecond)};
 }
 
-std::string serializeMesh(const Mesh& mesh) {
+std::string serializeMesh(const Mesh& mesh, const std::vector<NamedFile>& named) {
   std::string body;
   body.reserve(64 + mesh.positions.size() * 32 + mesh.triangles.size() * 12);
+  putWord(body, named.size());
+  for (const NamedFile& file : named) {
+    putWord(body, file.key[0]);
+    putWord(body, file.key[1]);
+    putWord(body, file.name.size());
+    body += file.name;
+  }
   putWord(body, mesh.positions.size());
   putWord(body, mesh.normals.size());
   putWord(body, mesh.uv.size());
@@ -112,12 +121,20 @@ std::string serializeMesh(const Mesh& mesh) {
   return out += body;
 }
 
-std::optional<Mesh> deserializeMesh(std::string_view bytes) {
+std::optional<Mesh> deserializeMesh(std::string_view bytes, std::vector<NamedFile>* named) {
   Source in{bytes};
   if (in.word() != kMagic || !in.ok) return std::nullopt;
   const std::uint64_t size = in.word();
   const ContentKey sum{in.word(), in.word()};
   if (!in.ok || size != in.left.size() || contentKey(in.left) != sum) return std::nullopt;
+  std::vector<NamedFile> files;
+  for (std::uint64_t left = in.word(); left > 0 && in.ok; --left) {
+    NamedFile file;
+    file.key[0] = in.word();
+    file.key[1] = in.word();
+    file.name = std::string(in.take(in.word()));
+    files.push_back(std::move(file));
+  }
   const std::uint64_t positions = in.word(), normals = in.word(), uv = in.word(), triangles = in.word(), parts = in.word();
   Mesh mesh;
   mesh.closed = in.word() != 0;
@@ -133,6 +150,7 @@ std::optional<Mesh> deserializeMesh(std::string_view bytes) {
     mesh.parts.push_back(std::move(part));
   }
   if (!in.ok || !in.left.empty()) return std::nullopt;
+  if (named != nullptr) *named = std::move(files);
   return mesh;
 }
 
@@ -143,25 +161,62 @@ std::filesystem::path meshCacheFolder() {
   return {};
 }
 
-std::optional<Mesh> readCachedMesh(const ContentKey& key) {
+std::optional<Mesh> readCachedMesh(const ContentKey& key, const std::function<bool(const NamedFile&)>& isUnchanged) {
   try {
-    std::ifstream file(cacheFile(key), std::ios::binary);
-    if (!file) return std::nullopt;
-    const std::string bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-    return deserializeMesh(bytes);
+    const std::filesystem::path file = cacheFile(key);
+    std::vector<NamedFile> named;
+    std::optional<Mesh> mesh = deserializeMesh(readWholeFile(file), &named);
+    if (!mesh) return std::nullopt;
+    for (const NamedFile& other : named)
+      if (!isUnchanged || !isUnchanged(other)) return std::nullopt;
+    std::error_code ignored;  // a cache that may only be read
+    std::filesystem::last_write_time(file, std::filesystem::file_time_type::clock::now(), ignored);
+    return mesh;
   } catch (const std::exception&) {
     return std::nullopt;
   }
 }
 
-void writeCachedMesh(const ContentKey& key, const Mesh& mesh) {
+void writeCachedMesh(const ContentKey& key, const Mesh& mesh, const std::vector<NamedFile>& named) {
   try {
     const std::filesystem::path file = cacheFile(key);
     if (file.empty()) return;
     std::filesystem::create_directories(file.parent_path());
-    writeFileAtomically(file, serializeMesh(mesh));
+    writeFileAtomically(file, serializeMesh(mesh, named));
+    pruneCache(file.parent_path(), kPrefix, kMostCachedBytes, file);
   } catch (const std::exception&) {
     // Nothing is lost but time: see the header.
+  }
+}
+
+void pruneCache(const std::filesystem::path& folder, std::string_view prefix, std::uintmax_t mostBytes, const std::filesystem::path& keep) {
+  try {
+    removeAbandonedTemporaries(folder);
+    struct Kept {
+      std::filesystem::file_time_type used;
+      std::uintmax_t bytes;
+      std::filesystem::path file;
+    };
+    std::vector<Kept> kept;
+    std::uintmax_t total = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      std::error_code gone;  // another run may have been quicker
+      if (!entry.path().filename().string().starts_with(prefix) || !entry.is_regular_file(gone)) continue;
+      const auto used = entry.last_write_time(gone);
+      const std::uintmax_t bytes = gone ? 0 : entry.file_size(gone);
+      if (gone) continue;
+      total += bytes;
+      if (entry.path() != keep) kept.push_back({used, bytes, entry.path()});
+    }
+    std::sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });
+    std::error_code ignored;
+    for (const Kept& oldest : kept) {
+      if (total <= mostBytes) return;
+      std::filesystem::remove(oldest.file, ignored);
+      total -= oldest.bytes;
+    }
+  } catch (const std::exception&) {
+    // Too large a cache is no reason to end.
   }
 }
 

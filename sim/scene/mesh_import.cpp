@@ -3,10 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <cstring>
-#include <fstream>
 #include <numbers>
 
+#include "sim/parameters/read_file.hpp"
 #include "sim/scene/import/child_process.hpp"
 #include "sim/scene/import/import_reply.hpp"
 #include "sim/scene/mesh_cache.hpp"
@@ -16,7 +15,7 @@ namespace pitviper {
 namespace {
 
 /// Raised whenever the same file would be imported differently: older cache entries are then not found any more.
-constexpr std::uint64_t kImportVersion = 1;
+constexpr std::uint64_t kImportVersion = 2;
 
 /// 10 million triangles take 0.5 GB as binary STL and about 1.5 GB as ASCII STL.
 constexpr std::uintmax_t kMostBytes = 2ull << 30;
@@ -42,35 +41,38 @@ std::string lowerExtension(const std::filesystem::path& file) {
 }
 
 std::string readAll(const std::filesystem::path& file, const Location& askedAt) {
-  std::error_code failure;
-  const std::filesystem::file_status status = std::filesystem::status(file, failure);
-  if (!std::filesystem::exists(status))
-    throw UserError(askedAt, "the mesh file '" + file.string() + "' does not exist", "a mesh file", "check the name; it is relative to the scenario's folder");
-  if (!std::filesystem::is_regular_file(status))
-    throw UserError(askedAt, "the mesh file '" + file.string() + "' is not a plain file", "a mesh file", "give the path of a file");
-  const std::uintmax_t size = std::filesystem::file_size(file, failure);
-  if (failure || size > kMostBytes) throw UserError(askedAt, "the mesh file '" + file.string() + "' is too large", "at most 2 GiB", "simplify the mesh");
-  std::ifstream in(file, std::ios::binary);
-  std::string bytes(size, '\0');
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(size)))
-    throw UserError(askedAt, "the mesh file '" + file.string() + "' cannot be read", "a readable file", "check its permissions");
-  return bytes;
+  return readWholeFile(
+      file, {.what = "a mesh file", .mostBytes = kMostBytes, .fix = "check the name; it is relative to the scenario's folder", .fixLarge = "simplify the mesh"},
+      askedAt);
 }
 
-/// The content of a .gltf is also that of the files it names: every "uri" that is no data: URI.
-ContentKey keyOf(const std::filesystem::path& file, const std::string& extension, std::string_view bytes) {
-  ContentKey key = contentKey(extension, contentKey(bytes, {kImportVersion, 0}));
-  if (extension != ".gltf") return key;
-  for (std::size_t at = bytes.find("\"uri\""); at != std::string_view::npos; at = bytes.find("\"uri\"", at + 5)) {
-    const std::size_t open = bytes.find('"', at + 5), close = bytes.find('"', std::min(open, bytes.size() - 1) + 1);
-    if (open == std::string_view::npos || close == std::string_view::npos) break;
-    const std::string_view uri = bytes.substr(open + 1, close - open - 1);
-    if (uri.starts_with("data:")) continue;
-    std::ifstream in(file.parent_path() / uri, std::ios::binary);
-    key = contentKey(std::string{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()}, key);
+/// Reads what an imported file names, relative to it, and notes what it was.
+class FilesBeside {
+ public:
+  explicit FilesBeside(const std::filesystem::path& file) : folder_(file.parent_path()) {}
+
+  bool read(const std::string& name, std::string& bytes, std::string& problem) {
+    try {
+      bytes = readWholeFile(folder_ / name, {.mostBytes = kMostBytes - read_});
+      read_ += bytes.size();
+      named_.push_back({name, contentKey(bytes)});
+      return true;
+    } catch (const std::exception& failure) {
+      problem = failure.what();
+      return false;
+    }
   }
-  return key;
-}
+  bool isUnchanged(const NamedFile& named) {
+    std::string bytes, problem;
+    return read(named.name, bytes, problem) && named_.back().key == named.key;
+  }
+  const std::vector<NamedFile>& named() const { return named_; }
+
+ private:
+  std::filesystem::path folder_;
+  std::uintmax_t read_ = 0;
+  std::vector<NamedFile> named_;
+};
 
 /// Fills in what the file did not have and checks everything: what comes from the child is not trusted.
 void finish(Mesh& mesh, const Location& where) {
@@ -106,16 +108,20 @@ Mesh importMesh(const std::filesystem::path& file, double metresPerUnit, const L
     throw UserError(askedAt, "the mesh file '" + file.string() + "' has an unknown extension", "one of .obj .stl .ply .vtp .gltf .glb",
                     "convert the file, or give it the extension of its format");
   const std::string bytes = readAll(file, askedAt);
-  const ContentKey key = keyOf(file, extension, bytes);
-  std::optional<Mesh> mesh = readCachedMesh(key);
+  // The key is of this file's bytes; those of files that it names stand in the cache's entry, as the reader read them.
+  const ContentKey key = contentKey(extension, contentKey(bytes, {kImportVersion, 0}));
+  FilesBeside before(file);
+  std::optional<Mesh> mesh = readCachedMesh(key, [&](const NamedFile& named) { return before.isUnchanged(named); });
   if (!mesh) {
     const std::filesystem::path module = modulePath();
     if (std::error_code ignored; !std::filesystem::exists(module, ignored))
       throw UserError(askedAt, "the mesh import module " + module.string() + " is missing", "a build with VTK",
                       "install the package libvtk9-dev and build again");
-    mesh = importInChild(module, file, bytes.size(), askedAt);
+    FilesBeside beside(file);
+    std::vector<NamedFile> named;
+    mesh = importInChild(module, {file.string(), bytes, {}}, beside, named, askedAt);
     finish(*mesh, Location{file.string()});
-    writeCachedMesh(key, *mesh);
+    writeCachedMesh(key, *mesh, named);
   }
   scale(*mesh, metresPerUnit, askedAt);
   return std::move(*mesh);

@@ -11,7 +11,7 @@ struct FuzzReport {
   int accepted = 0;  ///< still a scenario
   int refused = 0;   ///< a UserError of one line with place and fix
   int failed = 0;    ///< anything else: another exception, a message without place or fix, too much memory
-  double slowest_s = 0.0;
+  double slowest_s = 0.0;  ///< of the processor
   std::uint64_t slowestSeed = 0;
   long peakMemory_kB = 0;
 };
@@ -22,7 +22,7 @@ std::vector<std::filesystem::path> shippedFiles(const std::filesystem::path& roo
 /// Reads `iterations` damaged copies of `files` (case i from seed + i: same seed, same cases). Library files are read through a
 /// small scenario that uses them; terrains are made coarse first. `folder` is created and holds the case being read, so that
 /// a crash leaves its input there; inputs that failed are kept as failed_<seed>.yaml and told on stderr. A case of
-/// more than 10 s ends the program (SIGABRT).
+/// more than 60 s of the processor ends the program (SIGABRT).
 FuzzReport fuzzScenarios(std::uint64_t seed, int iterations, const std::vector<std::filesystem::path>& files, const std::filesystem::path& root,
                          const std::filesystem::path& folder);
 

@@ -153,7 +153,7 @@ class Draw {
 
   void add(std::vector<ProductTerm> terms) {
     double most = 0.0;
-    for (const ProductTerm& t : terms) most = std::max(most, std::abs(t.coefficient) * whole_[static_cast<size_t>(t.source)]);
+    for (const ProductTerm& t : terms) most = std::max(most, std::abs(t.coefficient) * whole_[static_cast<size_t>(t.spectrum[0])]);
     problem_.products.push_back({std::move(terms), 1e-4 * most});
   }
 
@@ -175,23 +175,23 @@ class Draw {
     const double end_m = std::clamp(height_m + sine * range_m, 0.0, 10000.0);
     if (scene_.band == SceneBand::Shortwave) {
       // Warm enough to be seen there at all.
-      add({{source(false, surface, std::max(pick(temperature_K_), 600.0)), -1, path, 1.0}});
-      add({{source(true, surface, 2400.0), -1, path, 1.0}});
+      add({{{source(false, surface, std::max(pick(temperature_K_), 600.0))}, 1, path, 1.0}});
+      add({{{source(true, surface, 2400.0)}, 1, path, 1.0}});
     } else {
-      add({{source(false, surface, pick(temperature_K_)), -1, path, 1.0}});
-      add({{source(true, surface, std::min(pick(temperature_K_), 320.0)), -1, path, 1.0}});
+      add({{{source(false, surface, pick(temperature_K_))}, 1, path, 1.0}});
+      add({{{source(true, surface, std::min(pick(temperature_K_), 320.0))}, 1, path, 1.0}});
       if (random_(0.0, 1.0) < 0.25) addPathRadiance(height_m, sine, range_m);
     }
     if (scene_.band != SceneBand::Longwave) {
       const AbsorberAmounts sun = air().amounts(end_m, draw_.fresh ? random_(0.2, 1.0) : atEnds(random_(0.1, 1.05), 0.2, 1.0), INFINITY, kEarth_m);
-      add({{source(true, random_.below(static_cast<int>(emissivity_.size())), 5772.0), -1, addPath(w + sun, 0.0, 0.0), 1.0}});
+      add({{{source(true, random_.below(static_cast<int>(emissivity_.size())), 5772.0)}, 1, addPath(w + sun, 0.0, 0.0), 1.0}});
     }
     if (scene_.band == SceneBand::MidwavePlume) {
       const bool burning = random_(0.0, 1.0) < 0.5;
       const double thickness_m = draw_.fresh ? random_.byFactor(0.05, 10.0) : atEnds(random_.byFactor(0.04, 16.0), 0.05, 10.0);
       const int through = addPath(w, burning ? thickness_m : 0.0, burning ? 0.0 : thickness_m), gas = source(false, -1, pick(gas_K_));
-      add({{gas, -1, path, 1.0}, {gas, -1, through, -1.0}});
-      add({{source(false, surface, pick(temperature_K_)), -1, through, 1.0}});
+      add({{{gas}, 1, path, 1.0}, {{gas}, 1, through, -1.0}});
+      add({{{source(false, surface, pick(temperature_K_))}, 1, through, 1.0}});
     }
   }
 
@@ -207,8 +207,8 @@ class Draw {
       const double middle_m = 0.5 * (at(static_cast<double>(j) / kStretches) + at(static_cast<double>(j - 1) / kStretches));
       const double step_K = draw_.fresh ? 3.0 : 8.0;
       const int b = source(false, -1, step_K * std::round(air().temperature_K(std::clamp(height_m + sine * middle_m, 0.0, 10000.0)) / step_K));
-      terms.push_back({b, -1, before, 1.0});
-      terms.push_back({b, -1, here, -1.0});
+      terms.push_back({{b}, 1, before, 1.0});
+      terms.push_back({{b}, 1, here, -1.0});
       before = here;
     }
     add(std::move(terms));
@@ -300,7 +300,7 @@ EvenBins::EvenBins(const SpectralProblem& problem) : problem_(problem), weight_(
   }
   for (size_t m = 0; m < fine_.size(); ++m)
     for (const ProductTerm& t : problem.products[m].terms) {
-      const auto &s = problem.spectra[static_cast<size_t>(t.source)], &through = tau[static_cast<size_t>(t.path)];
+      const auto &s = problem.spectra[static_cast<size_t>(t.spectrum[0])], &through = tau[static_cast<size_t>(t.path)];
       for (size_t i = 0; i < n; ++i) fine_[m] += t.coefficient * problem.weight[i] * s[i] * through[i];
     }
 }
@@ -326,7 +326,7 @@ std::vector<double> EvenBins::planned(const std::vector<double>& edges) const {
   for (const auto& product : problem_.products) {
     double sum = 0.0;
     for (const ProductTerm& t : product.terms) {
-      const auto &s = spectra[static_cast<size_t>(t.source)], &tau = paths[static_cast<size_t>(t.path)];
+      const auto &s = spectra[static_cast<size_t>(t.spectrum[0])], &tau = paths[static_cast<size_t>(t.path)];
       for (size_t b = 0; b < bins; ++b) sum += t.coefficient * s[b] * tau[b];
     }
     values.push_back(sum);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <vector>
 
@@ -35,7 +36,9 @@ class Table : public ::testing::Environment {
     }
     std::printf("\n%s\n", text.c_str());
     const std::string program = ::testing::internal::GetArgvs().empty() ? "test" : ::testing::internal::GetArgvs()[0];
-    const std::string name = program.substr(program.find_last_of('/') + 1);
+    std::string name = program.substr(program.find_last_of('/') + 1);
+    // Each of a kind's pieces has the rows of its own tests; `pitviper test` puts them together.
+    if (const char* piece = std::getenv("PITVIPER_PIECE")) name = std::string("test_") + piece;
     if (::testing::GTEST_FLAG(filter) == "*") std::ofstream(std::string(PITVIPER_FIGURES_DIR) + "/figures_" + name + ".md") << text;
   }
 };

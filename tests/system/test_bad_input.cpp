@@ -103,7 +103,7 @@ class Workplace {
 
   Result run(const std::vector<std::string>& arguments, const std::string& before = "") const {
     std::string command =
-        "cd " + quoted(folder_.string()) + " && " + before + " PITVIPER_HOME=" + quoted(PITVIPER_SOURCE_DIR) + " timeout 60 " + quoted(PITVIPER_PROGRAM);
+        "cd " + quoted(folder_.string()) + " && " + before + " PITVIPER_HOME=" + quoted(PITVIPER_SOURCE_DIR) + " timeout 7200 " + quoted(PITVIPER_PROGRAM);
     for (const auto& a : arguments) command += " " + quoted(a);
     const int status = std::system((command + " >.stdout 2>.stderr").c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readAll(folder_ / ".stdout"), readAll(folder_ / ".stderr")};

@@ -66,7 +66,7 @@ class FramePromises : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
   Result pitviper(const std::string& arguments) const {
-    const std::string line = "cd '" + folder_.string() + "' && PITVIPER_HOME='" + PITVIPER_SOURCE_DIR + "' timeout 120 '" + PITVIPER_PROGRAM + "' " +
+    const std::string line = "cd '" + folder_.string() + "' && PITVIPER_HOME='" + PITVIPER_SOURCE_DIR + "' timeout 7200 '" + PITVIPER_PROGRAM + "' " +
                              arguments + " >.stdout 2>.stderr";
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readAll(folder_ / ".stdout"), readAll(folder_ / ".stderr")};

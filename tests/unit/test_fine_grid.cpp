@@ -66,10 +66,10 @@ TEST(FineGrid, WideBandsAreEvenWhereLightIs) {
     const Spectrum black(Spectrum::BlackBody{kelvin, 1.0});
     double worst = 0.0;
     for (const auto& [low, high] : {std::pair{0.2, 14.0}, {0.2, 100.0}, {0.2, 999.0}, {20.0, 999.0}})
-      worst = std::max(worst, std::abs(over(fineGrid(Spectrum::band(low, high), Simulation{}), black) / blackBodyBand(low, high, kelvin) - 1.0));
+      worst = std::max(worst, std::abs(over(fineGrid(Spectrum::band(low, high), Simulation()), black) / blackBodyBand(low, high, kelvin) - 1.0));
     bound("black body of " + print("%g", kelvin) + " K over 0.2-14 to 20-999 um on the reference's grid, relative", worst, 1e-4, "bins of 5 1/cm, 1 nm, 1 %");
   }
-  for (const QuadratureNode& n : fineGrid(Spectrum::band(0.1, 1000.0), Simulation{})) ASSERT_LE(n.weight, 0.0101 * n.x) << n.x;
+  for (const QuadratureNode& n : fineGrid(Spectrum::band(0.1, 1000.0), Simulation())) ASSERT_LE(n.weight, 0.0101 * n.x) << n.x;
 }
 
 TEST(FineGrid, SmoothScenesKeepTheirBins) {

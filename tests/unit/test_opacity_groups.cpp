@@ -26,7 +26,7 @@ SpectralProblem problem(std::vector<std::vector<double>> extinction, const std::
   p.extinction = std::move(extinction);
   p.paths = paths;
   for (int s = 0; s < 5; ++s)
-    for (int u = 0; u < static_cast<int>(paths.size()); ++u) p.products.push_back({{{s, -1, u, 1.0}}, 1e-4});
+    for (int u = 0; u < static_cast<int>(paths.size()); ++u) p.products.push_back({{{{s}, 1, u, 1.0}}, 1e-4});
   return p;
 }
 
@@ -99,7 +99,7 @@ TEST(OpacityGroups, SeparateFactorsForceGroups) {
   SpectralProblem p = problem({}, {{}});
   p.spectra.push_back(per([](int i) { return i < kFine / 3 ? 0.9 : 0.2; }));
   p.products.clear();
-  for (int s = 0; s < 5; ++s) p.products.push_back({{{s, 5, 0, 1.0}}, 1e-4});
+  for (int s = 0; s < 5; ++s) p.products.push_back({{{{s, 5}, 2, 0, 1.0}}, 1e-4});
   const GroupFit one = fitGroups(p, 1), two = fitGroups(p, 2);
   expectSound(p, two);
   EXPECT_GT(one.maximum, 0.02);
@@ -113,8 +113,8 @@ TEST(OpacityGroups, PathRadianceAndTwoColumns) {
   p.products.clear();
   for (int s = 0; s < 5; ++s)
     for (int u = 1; u < 5; ++u) {
-      p.products.push_back({{{s, -1, u, 1.0}}, 1e-4});
-      p.products.push_back({{{s, -1, 0, 1.0}, {s, -1, u, -1.0}}, 1e-4});
+      p.products.push_back({{{{s}, 1, u, 1.0}}, 1e-4});
+      p.products.push_back({{{{s}, 1, 0, 1.0}, {{s}, 1, u, -1.0}}, 1e-4});
     }
   double before = INFINITY;
   for (int n : {1, 3, 6}) {
@@ -146,9 +146,9 @@ TEST(OpacityGroups, EdgesOfWhatCanBeAsked) {
   for (size_t i = 0; i < 40; ++i) p.spectra[0][i] = 0.0;
   std::fill(p.spectra[1].begin(), p.spectra[1].end(), 0.0);
   p.paths.push_back({1e30});
-  p.products.push_back({{{2, -1, 7, 1.0}}, 0.0});
+  p.products.push_back({{{{2}, 1, 7, 1.0}}, 0.0});
   p.products.push_back({{}, 0.0});
-  p.products.push_back({{{2, -1, 0, 1.0}, {2, -1, 0, -1.0}}, 0.0});
+  p.products.push_back({{{{2}, 1, 0, 1.0}, {{2}, 1, 0, -1.0}}, 0.0});
   for (int n : {-1, 0, 1, 4, 1000}) expectSound(p, fitGroups(p, n, {6, 10, 100, 0.0}));
   expectSound(p, fitToTolerance(p, 1e-2, 12));
   // A channel that sees nothing; no products; one product.
@@ -169,7 +169,7 @@ TEST(OpacityGroups, ManyProducts) {
   p.products.clear();
   for (int u = 0; u < 4000; ++u) {
     p.paths.push_back({0.002 * u});
-    for (int s = 0; s < 5; ++s) p.products.push_back({{{s, -1, u, 1.0}}, 1e-4});
+    for (int s = 0; s < 5; ++s) p.products.push_back({{{{s}, 1, u, 1.0}}, 1e-4});
   }
   const GroupFit fit = fitToTolerance(p, 1e-2, 20);
   expectSound(p, fit);
@@ -192,8 +192,8 @@ TEST(OpacityGroups, WrongProblemsAreRefused) {
   refused([](SpectralProblem& p) { p.extinction[0][0] = -1.0; });
   refused([](SpectralProblem& p) { p.paths[0].clear(); });
   refused([](SpectralProblem& p) { p.paths[0][0] = NAN; });
-  refused([](SpectralProblem& p) { p.products[0].terms[0].source = 99; });
-  refused([](SpectralProblem& p) { p.products[0].terms[0].second = -2; });
+  refused([](SpectralProblem& p) { p.products[0].terms[0].spectrum[0] = 99; });
+  refused([](SpectralProblem& p) { p.products[0].terms[0].count = 0; });
   refused([](SpectralProblem& p) { p.products[0].terms[0].path = -1; });
   refused([](SpectralProblem& p) { p.products[0].floor = NAN; });
   std::vector<SpectralGroup> foreign(1);

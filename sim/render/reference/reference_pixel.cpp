@@ -80,12 +80,26 @@ std::vector<double> ReferenceShader::transmittance(double farthest_m) const {
   return sum.transmittance();
 }
 
+namespace {
+
+/// Of the surface, and of panes and media before it whatever their order.
+std::size_t thingsOf(const RayHits& hits) {
+  const auto one = [](int entity, int surface) { return std::hash<long long>()((static_cast<long long>(entity) << 20) + surface + 2); };
+  std::size_t all = 0x9e3779b97f4a7c15u ^ one(hits.solid.entity, hits.solid.surface) * 3;
+  for (const Hit& h : hits.layers) all += one(h.entity, h.surface) * 0xff51afd7ed558ccdu;
+  for (const Stretch& s : hits.stretches) all += one(s.entity, -2) * 0xc4ceb9fe1a85ec53u;
+  return all | 1u;
+}
+
+}  // namespace
+
 ReferencePixel ReferenceShader::shade(const LineOfSight& line, NodeSum& sum) const {
   sum.begin();
   radianceAlong(scene(), line, sum);
   ReferencePixel pixel;
   const Hit& solid = line.hits.solid;
   pixel.entity = solid.entity;
+  pixel.things = thingsOf(line.hits);
   pixel.surface = solid.surface;
   pixel.range_m = solid.entity >= 0 ? solid.distance : physics::kFar;
   pixel.radiance.assign(sum.radiance().begin(), sum.radiance().end());

@@ -16,6 +16,7 @@ struct ReferencePixel {
   int entity = -1;
   int surface = -1;
   double range_m = 0.0;
+  std::size_t things = 0;  ///< the same for pixels that see the same surface through the same things; 0: not worked out
 };
 
 /// What the visibility pass found; entity -1: the background.

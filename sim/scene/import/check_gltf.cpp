@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 
 #include "sim/scene/import/checks.hpp"
 #include "sim/scene/import/import_failure.hpp"
@@ -16,10 +15,19 @@ namespace {
 
 class GltfCheck {
  public:
-  GltfCheck(const std::string& file, std::string_view bytes) : file_(file), text_(bytes) {}
+  explicit GltfCheck(const ImportRequest& request) : request_(request), file_(request.file), text_(request.bytes) {}
 
+  CheckedFile run() {
+    CheckedFile checked;
+    checked.partNames = check();
+    checked.bytes = canonical();
+    checked.buffers = std::move(contents_);
+    return checked;
+  }
+
+ private:
   /// Names of the nodes: their own, else their mesh's, else their number.
-  std::vector<std::string> run() {
+  std::vector<std::string> check() {
     if (text_.starts_with("glTF")) splitContainer();
     root_ = parseJson(file_, text_, base_);
     if (root_.kind != Json::Kind::Object) fail(root_, "the glTF text is no object", "an object");
@@ -48,7 +56,29 @@ class GltfCheck {
     return names;
   }
 
- private:
+  /// The text with every buffer in a file of ours, and without what has no say in the shape.
+  std::string canonical() {
+    for (const char* name : {"images", "textures", "samplers", "materials", "extensions", "extensionsUsed", "extensionsRequired", "extras"})
+      root_.members.erase(name);
+    const auto items = [](Json& in, const char* name) -> std::vector<Json>& {
+      static std::vector<Json> none;
+      const auto found = in.members.find(name);
+      return found == in.members.end() ? none : found->second.items;
+    };
+    for (Json& mesh : items(root_, "meshes"))
+      for (Json& primitive : items(mesh, "primitives")) primitive.members.erase("material");
+    std::size_t k = 0;
+    for (Json& buffer : items(root_, "buffers")) {
+      if (const auto& content = contents_[k++]) {
+        Json uri;
+        uri.kind = Json::Kind::String;
+        uri.text = content->name();
+        buffer.members.insert_or_assign("uri", std::move(uri));
+      }
+    }
+    return writeJson(root_);
+  }
+
   [[noreturn]] void fail(const Json& at, const std::string& wrong, const std::string& expected) const {
     failInJson(file_, text_, base_, at.offset, wrong, expected);
   }
@@ -74,6 +104,7 @@ class GltfCheck {
         base_ = at + 8;
       } else if (type == 0x004E4942u && binarySize_ < 0.0) {
         binarySize_ = length;
+        binary_ = all.substr(at + 8, length);
       }
       at += 8 + length;
     }
@@ -130,6 +161,7 @@ class GltfCheck {
     const double length = whole(buffer, "byteLength", -1.0, 4e9);
     const Json* uri = buffer.find("uri");
     double available = binarySize_;
+    std::unique_ptr<const MemoryFile> content;
     if (uri != nullptr && uri->text.starts_with("data:")) {
       const std::size_t comma = uri->text.find(";base64,");
       if (comma == std::string::npos) fail(*uri, "a data URI is not in base64", "data:...;base64,...");
@@ -140,17 +172,20 @@ class GltfCheck {
         fail(*uri, "a data URI's base64 is damaged", "base64 with padding");
       available = static_cast<double>(data.size() / 4 * 3 - padding);
     } else if (uri != nullptr) {
-      std::error_code missing;
-      const auto path = std::filesystem::path(file_).parent_path() / uri->text;
-      available = static_cast<double>(std::filesystem::file_size(path, missing));
-      if (missing) fail(*uri, "the file '" + uri->text.substr(0, 100) + "' of a buffer cannot be read", "a file beside this one");
+      std::string bytes, problem;
+      if (!request_.readNamed(uri->text, bytes, problem)) fail(*uri, "the file of a buffer cannot be read: " + problem, "a file beside this one");
+      available = static_cast<double>(bytes.size());
+      content = std::make_unique<const MemoryFile>(bytes);
     } else if (available < 0.0 || !buffers_.empty()) {
       fail(buffer, "a buffer has no content", "a uri, or the first buffer of a GLB with a BIN chunk");
+    } else {
+      content = std::make_unique<const MemoryFile>(binary_);
     }
     if (length > available)
       fail(buffer, "a buffer of " + std::to_string(static_cast<long long>(length)) + " bytes has only " + std::to_string(static_cast<long long>(available)),
            "all of them");
     buffers_.push_back(length);
+    contents_.push_back(std::move(content));
   }
 
   void checkView(const Json& view) {
@@ -237,18 +272,20 @@ class GltfCheck {
     double count = 0.0;
   };
 
+  const ImportRequest& request_;
   std::string file_;
-  std::string_view text_;
+  std::string_view text_, binary_;
   std::size_t base_ = 0;
   double binarySize_ = -1.0;  ///< bytes of the GLB's BIN chunk; negative: none
   Json root_;
   std::vector<double> buffers_;
+  std::vector<std::unique_ptr<const MemoryFile>> contents_;  ///< of each buffer; null: a data URI
   std::vector<View> views_;
   std::vector<Accessor> accessors_;
 };
 
 }  // namespace
 
-CheckedFile checkGltf(const std::string& file, std::string_view bytes) { return {{}, {}, GltfCheck(file, bytes).run()}; }
+CheckedFile checkGltf(const ImportRequest& request) { return GltfCheck(request).run(); }
 
 }  // namespace pitviper

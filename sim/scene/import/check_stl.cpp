@@ -25,7 +25,7 @@ CheckedFile checkBinary(const std::string& file, std::string_view bytes, std::ui
   if (count == 0) failAtByte(file, 80, "the file has no triangles");
   if (count > kMostImportedTriangles)
     failAtByte(file, 80, "the file has " + std::to_string(count) + " triangles", "at most " + std::to_string(kMostImportedTriangles), "simplify the mesh");
-  CheckedFile out{emptyStl(), {}, {}};
+  CheckedFile out{emptyStl(), {}, {}, {}};
   out.bytes.append(bytes.substr(kHeader, count * kRecord));
   for (std::size_t at = kHeader; at < out.bytes.size(); at += kRecord) {
     float numbers[12] = {};
@@ -39,7 +39,7 @@ CheckedFile checkBinary(const std::string& file, std::string_view bytes, std::ui
 }
 
 CheckedFile checkAscii(const std::string& file, std::string_view text) {
-  CheckedFile out{emptyStl(), {}, {}};
+  CheckedFile out{emptyStl(), {}, {}, {}};
   TextCursor in(file, text);
   const auto expect = [&](std::string_view keyword) {
     const std::string_view word = in.word();

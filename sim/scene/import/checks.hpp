@@ -3,16 +3,22 @@
 // counts and indices), so the simple formats are parsed here in full and VTK gets a canonical copy that holds only what
 // was checked. All throw ImportFailure with line and column, or byte.
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sim/scene/import/import_reply.hpp"
+#include "sim/scene/import/memory_file.hpp"
+
 namespace pitviper {
 
 struct CheckedFile {
-  std::string bytes;                      ///< canonical copy for the reader; empty: the file itself is fit
+  std::string bytes;                      ///< canonical copy for the reader; empty: the file's own are fit
   std::vector<std::uint32_t> partOfFace;  ///< per face in file order, index into partNames; empty: one part
   std::vector<std::string> partNames;     ///< of glTF: the names of all nodes
+  /// What a glTF's buffers hold, under the names that the canonical copy calls them by.
+  std::vector<std::unique_ptr<const MemoryFile>> buffers;
 };
 
 /// Largest number of corners of one face: beyond any modeller's, and short enough for the readers' line buffers.
@@ -22,6 +28,7 @@ CheckedFile checkObj(const std::string& file, std::string_view text);
 CheckedFile checkStl(const std::string& file, std::string_view bytes);
 CheckedFile checkPly(const std::string& file, std::string_view bytes);
 CheckedFile checkVtp(const std::string& file, std::string_view bytes);
-CheckedFile checkGltf(const std::string& file, std::string_view bytes);  ///< .gltf and .glb
+/// .gltf and .glb. The canonical copy has no images, textures and materials: nothing but the buffers is read.
+CheckedFile checkGltf(const ImportRequest& request);
 
 }  // namespace pitviper

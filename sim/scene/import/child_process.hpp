@@ -9,6 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
@@ -29,9 +30,9 @@
 
 namespace pitviper {
 
-/// A reply over the pipe: 'M' and a serialized mesh, or 'E' and seven fields, each ended by a zero byte.
-inline std::string encodeReply(const ImportReply& reply) {
-  if (!reply.failed) return "M" + serializeMesh(reply.mesh);
+/// A reply over the pipe: 'M' and a serialized mesh with the files read for it, or 'E' and seven fields, each ended by a zero byte.
+inline std::string encodeReply(const ImportReply& reply, const std::vector<NamedFile>& named) {
+  if (!reply.failed) return "M" + serializeMesh(reply.mesh, named);
   std::string out = "E";
   for (const std::string& field : {reply.where.file, std::to_string(reply.where.line), std::to_string(reply.where.column), std::to_string(reply.where.byte),
                                    reply.wrong, reply.expected, reply.fix}) {
@@ -41,18 +42,27 @@ inline std::string encodeReply(const ImportReply& reply) {
   return out;
 }
 
-/// Address space beyond what the process has now: 1 GiB and sixteen times the file, which the densest format (binary
-/// STL, 50 bytes a triangle, points merged) stays below.
-inline void limitMemory(std::size_t fileBytes) {
+/// Address space beyond what the process has now: 1 GiB and sixteen times the files, which the densest format (binary STL, 50 bytes a triangle, points
+/// merged) stays below. Called again for files that the first one names.
+inline void allowMemory(std::size_t fileBytes) {
   if (PITVIPER_IMPORT_SANITIZED) return;
-  unsigned long long pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  const rlim_t bytes = pages * static_cast<unsigned long long>(sysconf(_SC_PAGESIZE)) + (1ull << 30) + 16ull * fileBytes;
-  const rlimit limit{bytes, bytes};
+  static rlim_t most = 0;
+  rlimit limit{};
+  if (most == 0) {
+    unsigned long long pages = 0;
+    std::ifstream("/proc/self/statm") >> pages;
+    most = pages * static_cast<unsigned long long>(sysconf(_SC_PAGESIZE)) + (1ull << 30);
+  }
+  most += 16ull * fileBytes;
+  getrlimit(RLIMIT_AS, &limit);
+  limit.rlim_cur = std::min<rlim_t>(most, limit.rlim_max);
   setrlimit(RLIMIT_AS, &limit);
 }
 
-inline ImportReply runModule(const std::filesystem::path& module, const std::filesystem::path& file, std::size_t fileBytes, const Location& askedAt) {
+/// OBJ text was read at 20 MB/s on one slow core: a minute and a second per MB of the processor's own time is ample, whatever else the machine does.
+inline rlim_t mostProcessor_s(std::size_t fileBytes) { return 60 + (fileBytes >> 20); }
+
+inline ImportReply runModule(const std::filesystem::path& module, const ImportRequest& request, const Location& askedAt) {
   ImportReply reply;
   void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
   void* symbol = handle == nullptr ? nullptr : dlsym(handle, kImportFunction);
@@ -64,26 +74,36 @@ inline ImportReply runModule(const std::filesystem::path& module, const std::fil
     reply.fix = "install the package libvtk9.1 (to build: libvtk9-dev)";
     return reply;
   }
-  limitMemory(fileBytes);
-  reinterpret_cast<ImportFunction>(symbol)(file.c_str(), &reply);
+  allowMemory(request.bytes.size());
+  reinterpret_cast<ImportFunction>(symbol)(request, &reply);
   return reply;
 }
 
-[[noreturn]] inline void childMain(int pipeEnd, pid_t parent, const std::filesystem::path& module, const std::filesystem::path& file, std::size_t fileBytes,
-                                   const Location& askedAt) {
+template <class FilesBeside>
+[[noreturn]] void childMain(int pipeEnd, pid_t parent, const std::filesystem::path& module, ImportRequest request, FilesBeside& beside,
+                            const Location& askedAt) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   if (getppid() != parent) _exit(1);
-  const rlimit none{0, 0};
+  sigset_t all;
+  sigemptyset(&all);
+  sigprocmask(SIG_SETMASK, &all, nullptr);  // the parent may wait for its signals in a thread that is not here
+  const rlimit none{0, 0}, processor{mostProcessor_s(request.bytes.size()), RLIM_INFINITY};
   setrlimit(RLIMIT_CORE, &none);
+  setrlimit(RLIMIT_CPU, &processor);
   if (!PITVIPER_IMPORT_SANITIZED) {
-    for (int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT}) std::signal(signal, SIG_DFL);
+    for (int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT, SIGXCPU}) std::signal(signal, SIG_DFL);
     if (const int nowhere = open("/dev/null", O_WRONLY); nowhere >= 0) {  // a library's last words are not for the user
       dup2(nowhere, STDOUT_FILENO);
       dup2(nowhere, STDERR_FILENO);
     }
   }
+  request.readNamed = [&beside](const std::string& name, std::string& bytes, std::string& problem) {
+    if (!beside.read(name, bytes, problem)) return false;
+    allowMemory(bytes.size());
+    return true;
+  };
   try {
-    const std::string bytes = encodeReply(runModule(module, file, fileBytes, askedAt));
+    const std::string bytes = encodeReply(runModule(module, request, askedAt), beside.named());
     for (std::size_t sent = 0; sent < bytes.size();) {
       const ssize_t count = write(pipeEnd, bytes.data() + sent, bytes.size() - sent);
       if (count < 0 && errno != EINTR) _exit(1);
@@ -113,9 +133,9 @@ inline std::string readUntil(int pipeEnd, std::chrono::steady_clock::time_point 
   }
 }
 
-inline Mesh decodeReply(const std::string& bytes, const std::filesystem::path& file, const std::string& failure) {
+inline Mesh decodeReply(const std::string& bytes, const std::string& file, const std::string& failure, std::vector<NamedFile>& named) {
   if (bytes.starts_with('M'))
-    if (std::optional<Mesh> mesh = deserializeMesh(std::string_view(bytes).substr(1))) return std::move(*mesh);
+    if (std::optional<Mesh> mesh = deserializeMesh(std::string_view(bytes).substr(1), &named)) return std::move(*mesh);
   if (bytes.starts_with('E')) {
     std::vector<std::string> fields;
     for (std::size_t at = 1, end; (end = bytes.find('\0', at)) != std::string::npos; at = end + 1) fields.push_back(bytes.substr(at, end - at));
@@ -124,13 +144,15 @@ inline Mesh decodeReply(const std::string& bytes, const std::filesystem::path& f
                       fields[5].empty() ? "a sound mesh file" : fields[5],
                       fields[6].empty() ? "correct this place of the file, or export it again" : fields[6]);
   }
-  throw UserError(Location{file.string()}, "the reader failed on this file (" + failure + ")", "a sound file", "open and save it again in a mesh editor");
+  throw UserError(Location{file}, "the reader failed on this file (" + failure + ")", "a sound file", "open and save it again in a mesh editor");
 }
 
-/// The mesh as the module read it: unchecked. Throws UserError.
-inline Mesh importInChild(const std::filesystem::path& module, const std::filesystem::path& file, std::size_t fileBytes, const Location& askedAt) {
-  // OBJ text was read at 20 MB/s on one slow core: a minute and a second per MB is ample.
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(60 + (fileBytes >> 20));
+/// The mesh as the module read it: unchecked; `named`: the files that it read besides, through `beside`. Throws UserError.
+template <class FilesBeside>
+Mesh importInChild(const std::filesystem::path& module, const ImportRequest& request, FilesBeside& beside, std::vector<NamedFile>& named,
+                   const Location& askedAt) {
+  // The child ends by its limit of processor time; this is for one that waits for something, however busy the machine: a disk that is gone, for instance.
+  const auto deadline = std::chrono::steady_clock::now() + 30 * std::chrono::seconds(mostProcessor_s(request.bytes.size()));
   int ends[2];
   const pid_t parent = getpid();
   if (pipe2(ends, O_CLOEXEC) != 0) throw UserError(askedAt, "no pipe to the mesh import could be made");
@@ -140,7 +162,7 @@ inline Mesh importInChild(const std::filesystem::path& module, const std::filesy
     close(ends[1]);
     throw UserError(askedAt, "no process for the mesh import could be started");
   }
-  if (child == 0) childMain(ends[1], parent, module, file, fileBytes, askedAt);
+  if (child == 0) childMain(ends[1], parent, module, request, beside, askedAt);
   close(ends[1]);
   bool late = false;
   const std::string bytes = readUntil(ends[0], deadline, late);
@@ -150,9 +172,9 @@ inline Mesh importInChild(const std::filesystem::path& module, const std::filesy
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   std::string failure = "it ended without an answer";
-  if (late) failure = "it took too long";
+  if (late || (WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU)) failure = "it took too long";
   else if (WIFSIGNALED(status)) failure = "it was ended by signal " + std::to_string(WTERMSIG(status));
-  return decodeReply(late ? std::string() : bytes, file, failure);
+  return decodeReply(late ? std::string() : bytes, request.file, failure, named);
 }
 
 }  // namespace pitviper

@@ -1,6 +1,8 @@
 #pragma once
 // What the import module hands back. It never throws across its border: a mistake in the file is part of the reply.
+#include <functional>
 #include <string>
+#include <string_view>
 
 #include "sim/parameters/error.hpp"
 #include "sim/scene/mesh.hpp"
@@ -19,8 +21,16 @@ struct ImportReply {
   std::string wrong, expected, fix;
 };
 
+/// What the module is given: it opens no file itself.
+struct ImportRequest {
+  std::string file;        ///< for messages, and for its extension
+  std::string_view bytes;  ///< the whole file
+  /// Reads a file that this one names, relative to it. False where it cannot: `problem` then says why. Never throws.
+  std::function<bool(const std::string& name, std::string& bytes, std::string& problem)> readNamed;
+};
+
 /// The module's one function, exported as kImportFunction.
-using ImportFunction = void (*)(const char* file, ImportReply* reply);
+using ImportFunction = void (*)(const ImportRequest& request, ImportReply* reply);
 inline constexpr const char* kImportFunction = "pitviperImportMesh";
 inline constexpr const char* kImportModule = "libpitviper_mesh_import.so";
 

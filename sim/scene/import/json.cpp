@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
+#include <utility>
 
 #include "sim/scene/import/import_failure.hpp"
 
@@ -119,7 +121,64 @@ class JsonParser {
   std::size_t base_, at_ = 0;
 };
 
+void writeText(const std::string& text, std::string& out) {
+  out += '"';
+  for (char c : text) {
+    char code[8];
+    std::snprintf(code, sizeof code, "\\u%04x", static_cast<unsigned>(static_cast<unsigned char>(c)));
+    if (c == '"' || c == '\\' || static_cast<unsigned char>(c) < 32) out += code;
+    else out += c;
+  }
+  out += '"';
+}
+
+void writeNumber(double number, std::string& out) {
+  char digits[32];
+  // Indices and sizes as whole numbers: exact below 2^53.
+  const bool whole = std::abs(number) < 9007199254740992.0 && number == std::floor(number);
+  const auto end =
+      whole ? std::to_chars(digits, digits + sizeof digits, static_cast<long long>(number)) : std::to_chars(digits, digits + sizeof digits, number);
+  out.append(digits, end.ptr);
+}
+
+void write(const Json& json, std::string& out) {
+  bool first = true;
+  const auto comma = [&] {
+    if (!std::exchange(first, false)) out += ',';
+  };
+  switch (json.kind) {
+    case Json::Kind::Null:
+      out += "null";
+      break;
+    case Json::Kind::Bool:
+      out += json.number != 0.0 ? "true" : "false";
+      break;
+    case Json::Kind::Number:
+      writeNumber(json.number, out);
+      break;
+    case Json::Kind::String:
+      writeText(json.text, out);
+      break;
+    case Json::Kind::Array:
+      out += '[';
+      for (const Json& item : json.items) comma(), write(item, out);
+      out += ']';
+      break;
+    case Json::Kind::Object:
+      out += '{';
+      for (const auto& [name, member] : json.members) comma(), writeText(name, out), out += ':', write(member, out);
+      out += '}';
+      break;
+  }
+}
+
 }  // namespace
+
+std::string writeJson(const Json& json) {
+  std::string out;
+  write(json, out);
+  return out;
+}
 
 Json parseJson(const std::string& file, std::string_view text, std::size_t base) { return JsonParser(file, text, base).run(); }
 

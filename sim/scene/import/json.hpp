@@ -26,6 +26,9 @@ struct Json {
 /// `base` is the text's offset in the file; if above 0, places are given as bytes, else as line and column.
 Json parseJson(const std::string& file, std::string_view text, std::size_t base);
 
+/// The tree as JSON text, on one line.
+std::string writeJson(const Json& json);
+
 /// Fails at an offset of that text.
 [[noreturn]] void failInJson(const std::string& file, std::string_view text, std::size_t base, std::size_t offset, const std::string& wrong,
                              const std::string& expected);

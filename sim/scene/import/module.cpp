@@ -1,7 +1,6 @@
 // The module's border: one C function, no exceptions out.
 #include <cctype>
 #include <filesystem>
-#include <fstream>
 #include <new>
 
 #include "sim/scene/import/checks.hpp"
@@ -12,21 +11,18 @@
 namespace pitviper {
 namespace {
 
-Mesh import(const std::string& file) {
+Mesh import(const ImportRequest& request) {
+  const std::string& file = request.file;
   std::string extension = std::filesystem::path(file).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (request.bytes.empty()) throw ImportFailure{{file}, "the file is empty", "a mesh", ""};
   CheckedFile checked;
-  {
-    std::ifstream in(file, std::ios::binary);
-    const std::string bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-    if (bytes.empty()) throw ImportFailure{{file}, "the file is empty or cannot be read", "a mesh", ""};
-    if (extension == ".obj") checked = checkObj(file, bytes);
-    else if (extension == ".stl") checked = checkStl(file, bytes);
-    else if (extension == ".ply") checked = checkPly(file, bytes);
-    else if (extension == ".vtp") checked = checkVtp(file, bytes);
-    else checked = checkGltf(file, bytes);
-  }
-  Mesh mesh = readWithVtk(file, extension, checked);
+  if (extension == ".obj") checked = checkObj(file, request.bytes);
+  else if (extension == ".stl") checked = checkStl(file, request.bytes);
+  else if (extension == ".ply") checked = checkPly(file, request.bytes);
+  else if (extension == ".vtp") checked = checkVtp(file, request.bytes);
+  else checked = checkGltf(request);
+  Mesh mesh = readWithVtk(file, extension, checked.bytes.empty() ? request.bytes : checked.bytes, checked);
   if (mesh.triangles.empty()) throw ImportFailure{{file}, "the file has no triangles", "at least one", ""};
   return mesh;
 }
@@ -34,7 +30,7 @@ Mesh import(const std::string& file) {
 }  // namespace
 }  // namespace pitviper
 
-extern "C" __attribute__((visibility("default"))) void pitviperImportMesh(const char* file, pitviper::ImportReply* reply) {
+extern "C" __attribute__((visibility("default"))) void pitviperImportMesh(const pitviper::ImportRequest& request, pitviper::ImportReply* reply) {
   const auto failed = [&](const pitviper::Location& where, const std::string& wrong, const std::string& expected, const std::string& fix) {
     reply->mesh = {};
     reply->failed = true;
@@ -44,12 +40,12 @@ extern "C" __attribute__((visibility("default"))) void pitviperImportMesh(const 
     reply->fix = fix;
   };
   try {
-    reply->mesh = pitviper::import(file);
+    reply->mesh = pitviper::import(request);
   } catch (const pitviper::ImportFailure& failure) {
     failed(failure.where, failure.wrong, failure.expected, failure.fix);
   } catch (const std::bad_alloc&) {
-    failed({file}, "reading this file takes too much memory", "at most 1 GiB and sixteen times its size", "simplify the mesh");
+    failed({request.file}, "reading this file takes too much memory", "at most 1 GiB and sixteen times its size", "simplify the mesh");
   } catch (const std::exception& problem) {
-    failed({file}, std::string("the reader failed on this file (") + problem.what() + ")", "a sound file", "");
+    failed({request.file}, std::string("the reader failed on this file (") + problem.what() + ")", "a sound file", "");
   }
 }

@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "sim/parameters/readable_text.hpp"
 #include "sim/scene/import/import_failure.hpp"
 
 namespace pitviper {
@@ -94,10 +95,8 @@ class TextCursor {
 
   /// Fit for a message, whatever it is: one readable line.
   static std::string shown(std::string_view word) {
-    std::string text(word.substr(0, 40));
-    for (char& c : text)
-      if (c < 32 || c > 126) c = '?';
-    return text + (word.size() > 40 ? "..." : "");
+    const std::string quoted = tokenOf(word);
+    return quoted.substr(1, quoted.size() - 2);
   }
 
  private:

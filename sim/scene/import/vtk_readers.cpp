@@ -1,7 +1,5 @@
 #include "sim/scene/import/vtk_readers.hpp"
 
-#include <sys/mman.h>
-#include <unistd.h>
 #include <vtkCellArray.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataObjectTreeIterator.h>
@@ -23,6 +21,7 @@
 #include <string_view>
 
 #include "sim/scene/import/import_failure.hpp"
+#include "sim/scene/import/memory_file.hpp"
 #include "sim/scene/import/mesh_builder.hpp"
 
 namespace pitviper {
@@ -52,27 +51,8 @@ class Complaints : public vtkOutputWindow {
 };
 vtkStandardNewMacro(Complaints)
 
-    /// A file in memory under a name that a reader can open.
-    class MemoryFile {
- public:
-  explicit MemoryFile(const std::string& bytes) : handle_(memfd_create("mesh", MFD_CLOEXEC)) {
-    for (std::size_t sent = 0; sent < bytes.size();) {
-      const ssize_t count = write(handle_, bytes.data() + sent, bytes.size() - sent);
-      if (count <= 0) throw std::bad_alloc();
-      sent += static_cast<std::size_t>(count);
-    }
-  }
-  ~MemoryFile() { close(handle_); }
-  MemoryFile(const MemoryFile&) = delete;
-  MemoryFile& operator=(const MemoryFile&) = delete;
-  std::string name() const { return "/proc/self/fd/" + std::to_string(handle_); }
-
- private:
-  int handle_;
-};
-
-template <class Reader>
-void readOne(const std::string& name, const CheckedFile& checked, MeshBuilder& builder) {
+    template <class Reader>
+    void readOne(const std::string& name, const CheckedFile& checked, MeshBuilder& builder) {
   vtkNew<Reader> reader;
   reader->SetFileName(name.c_str());
   reader->Update();
@@ -114,13 +94,13 @@ Location placeIn(const std::string& file, const std::string& complaint) {
 
 }  // namespace
 
-Mesh readWithVtk(const std::string& file, const std::string& extension, const CheckedFile& checked) {
+Mesh readWithVtk(const std::string& file, const std::string& extension, std::string_view bytes, const CheckedFile& checked) {
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);
   vtkNew<Complaints> complaints;
   vtkOutputWindow::SetInstance(complaints);
   MeshBuilder builder(file);
-  const MemoryFile copy(checked.bytes);
-  const std::string name = checked.bytes.empty() ? file : copy.name();
+  const MemoryFile copy(bytes);
+  const std::string name = copy.name();
   if (extension == ".obj") readOne<vtkOBJReader>(name, checked, builder);
   else if (extension == ".stl") readOne<vtkSTLReader>(name, checked, builder);
   else if (extension == ".ply") readOne<vtkPLYReader>(name, checked, builder);

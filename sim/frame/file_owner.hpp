@@ -1,0 +1,21 @@
+#pragma once
+// Whose a file is that a run would write: every file says which scenario it was made for.
+#include <filesystem>
+#include <string>
+
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+/// Names under which frames (attributes), previews (texts) and tables of probes (first line) keep them.
+inline constexpr const char* kScenarioName = "pitviper.scenario";
+inline constexpr const char* kScenarioHash = "pitviper.scenario_sha256";
+
+/// The first line of a table of a probe, with its end.
+std::string tableMark(const Simulation& simulation);
+
+/// UserError where `file` (.exr, .png or .csv) exists and is not of this scenario: of another, damaged, or no file of this program.
+/// Looks at the beginning of the file only.
+void refuseForeignFile(const std::filesystem::path& file, const Simulation& simulation);
+
+}  // namespace pitviper
