@@ -108,6 +108,27 @@ RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3
   return hits;
 }
 
+bool meetsBody(const Simulation& sim, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest, int index) {
+  const Entity& entity = sim.entities[static_cast<size_t>(index)];
+  const Pose& pose = state.entities[static_cast<size_t>(index)];
+  const glm::dvec3 to = pose.position + pose.orientation * glm::dvec3(entity.boundingCentre) - origin;
+  const double radius = (1.0 + 1e-5) * static_cast<double>(entity.boundingRadius_m);  // it is single precision
+  if (glm::length(to - glm::dot(to, direction) * direction) > radius) return false;
+  const glm::dmat3 localFromBody = glm::mat3_cast(pose.orientation), bodyFromLocal = glm::transpose(localFromBody);
+  const BodyRay ray{localFromBody, bodyFromLocal * (origin - pose.position), bodyFromLocal * direction};
+  if (sim.mediumOf(entity)) {
+    RayHits hits;
+    addStretches(hits, entity, index, ray);
+    return std::any_of(hits.stretches.begin(), hits.stretches.end(), [](const Stretch& s) { return s.leave > 0.0; });
+  }
+  bool met = false;
+  treeOf(entity.mesh)->along(ray.origin, ray.direction, nearest, INFINITY, [&](std::uint32_t t) {
+    const TriangleMeeting m = meetTriangle(*entity.mesh, t, ray.origin, ray.direction);
+    return met = m.met && m.along >= nearest;
+  });
+  return met;
+}
+
 // The visibility pass may give a pixel's middle to a triangle whose edge runs beside it: the weights are held within it, as the shader's are.
 Hit hitOf(const Simulation& sim, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, int entity, std::uint32_t triangle) {
   const Entity& body = sim.entities[static_cast<size_t>(entity)];

@@ -36,6 +36,9 @@ size_t surfaceOf(const Entity& entity, std::uint32_t triangle);
 RayHits castRay(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest,
                 const std::vector<char>* drawn = nullptr, bool transparentOnly = false);
 
+/// Whether a ray meets an entity at all, whatever hides it.
+bool meetsBody(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest, int entity);
+
 /// Where a ray meets the plane of a triangle that is known to be seen.
 Hit hitOf(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, int entity, std::uint32_t triangle);
 

@@ -38,14 +38,14 @@ void CameraRenderer::setProgress(std::function<void(double)> progress) {
   if (reference_) reference_->setProgress(std::move(progress));
 }
 
-/// The camera's own and those of its small bodies: one for each, two where anything is transparent (addSmallBodies may still need fewer).
+/// The camera's own and those of its small bodies.
 int CameraRenderer::viewsOfPicture() const {
   int views = 1;
   for (size_t e = 0; e < small_.size(); ++e) {
     const Pose& pose = state_.entities[e];
     const Entity& entity = simulation_.entities[e];
     if (small_[e] && present_[e] && mayShow(view_, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m))
-      views += simulation_.hasTransparent() ? 2 : 1;
+      ++views;
   }
   return views;
 }

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+
+#include "sim/model/ray_hits.hpp"
 
 namespace pitviper {
 namespace {
@@ -38,14 +41,50 @@ View zoomedView(const Simulation& sim, const WorldState& state, const View& v, i
   return z;
 }
 
-/// What falls into one subpixel of the image.
+/// What zoomed samples say of one subpixel of the image.
 struct Share {
   double looked = 0.0;   ///< projected solid angle of all zoomed samples in it [sr]
-  double covered = 0.0;  ///< of those that see the body
+  double covered = 0.0;  ///< of those that count: what they see takes the place of what the image has there
   std::vector<double> sum;
-  size_t sample = 0;
+  size_t sample = 0;  ///< one of them
   double cosPsi = 1.0;
 };
+using Shares = std::map<size_t, Share>;
+
+/// Calls visit(zoomed pixel, subpixel, projected solid angle, cosine to the image's axis) for each zoomed sample that falls into the image.
+template <class Visit>
+void eachSample(const Subpixels& image, const View& z, const Visit& visit) {
+  const View& v = image.view();
+  const glm::dmat3 mainFromZoom = glm::transpose(v.localFromCamera) * z.localFromCamera;
+  for (int j = 0; j < z.height; ++j)
+    for (int i = 0; i < z.width; ++i) {
+      const glm::dvec3 ray = z.ray(i + 0.5, j + 0.5), seen = mainFromZoom * ray;
+      if (seen.z >= 0.0) continue;
+      const glm::dvec2 at = filmPosition(v, seen);
+      if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height)) continue;
+      const double l2 = glm::dot(ray, ray), cosPsi = -seen.z / std::sqrt(l2);
+      const double etendue = z.tanPerPixelX * z.tanPerPixelY / (l2 * std::sqrt(l2)) * cosPsi;
+      visit(static_cast<size_t>(j) * static_cast<size_t>(z.width) + static_cast<size_t>(i), image.index(static_cast<int>(at.x), static_cast<int>(at.y)),
+            etendue, cosPsi);
+    }
+}
+
+/// By subpixel, of the samples that count.
+template <class Counts>
+Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, const Counts& counts) {
+  Shares shares;
+  eachSample(image, z, [&](size_t q, size_t p, double etendue, double cosPsi) {
+    Share& share = shares[p];
+    share.looked += etendue;
+    if (!counts(q)) return;
+    share.covered += etendue;
+    share.sample = q;
+    share.cosPsi = cosPsi;
+    share.sum.resize(image.slotCount(), 0.0);
+    for (size_t s = 0; s < image.slotCount(); ++s) share.sum[s] += etendue * static_cast<double>(zoomed.groups[s / 4][4 * q + s % 4]);
+  });
+  return shares;
+}
 
 /// True where a subpixel lies wholly inside the zoomed picture: its samples then make up the whole of it.
 bool isInside(const View& main, const View& zoomed, const glm::dmat3& zoomFromMain, int x, int y) {
@@ -58,39 +97,6 @@ bool isInside(const View& main, const View& zoomed, const glm::dmat3& zoomFromMa
   return true;
 }
 
-/// By subpixel. The sums are those of the samples that see the entity, or, beside a picture without it, of the differences of all samples.
-std::map<size_t, Share> sharesOf(const Subpixels& image, const View& z, int entity, const RawImage& zoomed, const RawImage* without = nullptr) {
-  const View& v = image.view();
-  const glm::dmat3 mainFromZoom = glm::transpose(v.localFromCamera) * z.localFromCamera;
-  std::map<size_t, Share> shares;
-  for (int j = 0; j < z.height; ++j)
-    for (int i = 0; i < z.width; ++i) {
-      const glm::dvec3 ray = z.ray(i + 0.5, j + 0.5), seen = mainFromZoom * ray;
-      if (seen.z >= 0.0) continue;
-      const glm::dvec2 at = filmPosition(v, seen);
-      if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height)) continue;
-      const size_t q = static_cast<size_t>(j) * static_cast<size_t>(z.width) + static_cast<size_t>(i);
-      const double l2 = glm::dot(ray, ray), cosPsi = -seen.z / std::sqrt(l2);
-      const double etendue = z.tanPerPixelX * z.tanPerPixelY / (l2 * std::sqrt(l2)) * cosPsi;
-      Share& share = shares[image.index(static_cast<int>(at.x), static_cast<int>(at.y))];
-      share.looked += etendue;
-      const bool covered = zoomed.entity[q] == entity;
-      if (covered) {
-        share.covered += etendue;
-        share.sample = q;
-        share.cosPsi = cosPsi;
-      } else if (!without) {
-        continue;
-      }
-      share.sum.resize(image.slotCount(), 0.0);
-      for (size_t s = 0; s < image.slotCount(); ++s) {
-        const double beside = without ? static_cast<double>(without->groups[s / 4][4 * q + s % 4]) : 0.0;
-        share.sum[s] += etendue * (static_cast<double>(zoomed.groups[s / 4][4 * q + s % 4]) - beside);
-      }
-    }
-  return shares;
-}
-
 /// The truth of a subpixel that a body covers by half or more.
 void takeTruth(Subpixels& image, const RawImage& zoomed, const Share& share, double whole, size_t pixel) {
   if (!image.hasTruth() || share.covered < 0.5 * whole) return;
@@ -100,11 +106,6 @@ void takeTruth(Subpixels& image, const RawImage& zoomed, const Share& share, dou
   truth.solidAngleOfAperture_sr = static_cast<float>(truth.solidAngleOfAperture_sr * share.cosPsi);
   image.setTruth(pixel, truth);
 }
-
-struct Delta {
-  size_t pixel;
-  std::vector<double> slots;
-};
 
 /// With 256 across the bounding sphere the area of a silhouette is sampled to about 0.1 %; at least 8 a subpixel.
 int zoomedSize(double extent, int samples) {
@@ -139,51 +140,100 @@ std::vector<char> overlapTransparent(const Simulation& sim, const WorldState& st
   return mixed;
 }
 
-/// A solid body: its radiance where it shows takes the place of the background's.
-void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, const std::vector<char>& drawn, int samples,
-               std::vector<Delta>& deltas) {
+/// What is sampled finely in a subpixel, by all zoomed views that look at it, each at directions of its own.
+struct Fine {
+  double covered = 0.0;  ///< projected solid angle [sr]
+  double whole = 0.0;    ///< of the subpixel
+  std::vector<double> sum;
+};
+using FineSubpixels = std::map<size_t, Fine>;
+
+void gather(Subpixels& image, const View& z, const RawImage& zoomed, const Shares& shares, FineSubpixels& fine) {
   const View& v = image.view();
-  const View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity), samples));
-  pass.draw(z, state, drawn);
-  pass.startReadback(false, true);
-  const RawImage zoomed = pass.finishReadback();
   const glm::dmat3 zoomFromMain = glm::transpose(z.localFromCamera) * v.localFromCamera;
-  for (auto& [p, share] : sharesOf(image, z, entity, zoomed)) {
+  for (const auto& [p, share] : shares) {
     if (share.covered <= 0.0) continue;
     const int x = static_cast<int>(p % static_cast<size_t>(v.width)), y = static_cast<int>(p / static_cast<size_t>(v.width));
     const double whole = isInside(v, z, zoomFromMain, x, y) ? share.looked : image.projectedSolidAngle_sr(x, y);
-    Delta d{p, std::vector<double>(image.slotCount())};
-    for (size_t s = 0; s < d.slots.size(); ++s) d.slots[s] = (share.sum[s] - share.covered * image.slot(s, p)) / whole;
-    deltas.push_back(std::move(d));
+    Fine& f = fine[p];
+    f.sum.resize(image.slotCount(), 0.0);
+    f.covered += share.covered;
+    f.whole = std::max(f.whole, whole);
+    for (size_t s = 0; s < f.sum.size(); ++s) f.sum[s] += share.sum[s];
     takeTruth(image, zoomed, share, whole, p);
   }
 }
 
-/// A body that is seen through something or that something is seen through: the same zoomed view with and without it, everything else in
-/// place that has been added to the image before it. The differences, over their solid angle, are what the image lacks; so several of them
-/// add up, whatever hides or dims what.
-void addDifference(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, std::vector<char> others, int samples) {
-  const View& v = image.view();
-  const bool medium = sim.mediumOf(sim.entities[static_cast<size_t>(entity)]) != nullptr;
-  View z = zoomedView(sim, state, v, entity, zoomedSize(extentOf(sim, state, v, entity), medium ? samples / 2 : samples));
-  z.onlyEntity = -1;
-  z.differenceOf = entity;
-  auto drawn = [&] {
-    pass.draw(z, state, others);
-    pass.startReadback(false, true);
-    return pass.finishReadback();
-  };
-  const RawImage without = drawn();
-  others[static_cast<size_t>(entity)] = 1;
-  const RawImage with = drawn();
-  const glm::dmat3 zoomFromMain = glm::transpose(z.localFromCamera) * v.localFromCamera;
-  for (const auto& [p, share] : sharesOf(image, z, entity, with, &without)) {
-    const int x = static_cast<int>(p % static_cast<size_t>(v.width)), y = static_cast<int>(p / static_cast<size_t>(v.width));
-    const double whole = isInside(v, z, zoomFromMain, x, y) ? share.looked : image.projectedSolidAngle_sr(x, y);
-    for (size_t s = 0; s < image.slotCount(); ++s) image.add(s, p, share.sum[s] / whole);
-    takeTruth(image, with, share, whole, p);
+/// The image keeps what it has in the rest of a subpixel: a mean of radiances, none of which is below 0.
+void put(Subpixels& image, const FineSubpixels& fine) {
+  for (const auto& [p, f] : fine) {
+    const double whole = std::max(f.whole, f.covered);  // samples fall to one side or the other of a subpixel's edge
+    for (size_t s = 0; s < f.sum.size(); ++s) image.add(s, p, (f.sum[s] - f.covered * image.slot(s, p)) / whole);
   }
 }
+
+/// A solid body that nothing transparent is near: where it shows it takes the place of what is behind it.
+void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, const std::vector<char>& drawn, int samples,
+               FineSubpixels& fine) {
+  const View z = zoomedView(sim, state, image.view(), entity, zoomedSize(extentOf(sim, state, image.view(), entity), samples));
+  pass.draw(z, state, drawn);
+  pass.startReadback(false, true);
+  const RawImage zoomed = pass.finishReadback();
+  gather(image, z, zoomed, sharesOf(image, z, zoomed, [&](size_t q) { return zoomed.entity[q] == entity; }), fine);
+}
+
+/// Bodies that are seen through something or that something is seen through, all in their places in every picture. A direction is sampled by the
+/// finest view that looks at it: a small hot thing behind a large puff by its own, not by the puff's.
+class MixedBodies {
+ public:
+  MixedBodies(const Simulation& sim, const WorldState& state, const View& v, const std::vector<int>& bodies, int samples)
+      : sim_(sim), state_(state), bodies_(bodies) {
+    std::stable_sort(bodies_.begin(), bodies_.end(), [&](int x, int y) { return extentOf(sim, state, v, x) < extentOf(sim, state, v, y); });
+    for (int e : bodies_) {
+      const bool medium = sim.mediumOf(sim.entities[static_cast<size_t>(e)]) != nullptr;
+      views_.push_back(zoomedView(sim, state, v, e, zoomedSize(extentOf(sim, state, v, e), medium ? samples / 2 : samples)));
+      views_.back().onlyEntity = -1;
+    }
+  }
+  /// `others`: what else is in the picture.
+  void draw(Subpixels& image, ScenePass& pass, std::vector<char> drawn, FineSubpixels& fine) const {
+    for (int e : bodies_) drawn[static_cast<size_t>(e)] = 1;
+    for (size_t i = 0; i < views_.size(); ++i) {
+      View z = views_[i];
+      z.wanted = meeting(image, i);
+      pass.draw(z, state_, drawn);
+      pass.startReadback(false, true);
+      const RawImage zoomed = pass.finishReadback();
+      gather(image, z, zoomed, sharesOf(image, z, zoomed, [&](size_t q) { return (*z.wanted)[q] != 0; }), fine);
+    }
+  }
+
+ private:
+  /// Marks the samples of a view that meet one of the bodies, and that no finer view has.
+  std::shared_ptr<const std::vector<char>> meeting(const Subpixels& image, size_t index) const {
+    const View& z = views_[index];
+    auto marks = std::make_shared<std::vector<char>>(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
+    eachSample(image, z, [&](size_t q, size_t, double, double) {
+      const glm::dvec3 ray = z.ray(static_cast<double>(q % static_cast<size_t>(z.width)) + 0.5, static_cast<double>(q / static_cast<size_t>(z.width)) + 0.5);
+      const glm::dvec3 direction = z.localFromCamera * ray / glm::length(ray);
+      for (size_t j = 0; j < index; ++j)
+        if (looksAt(views_[j], direction)) return;
+      (*marks)[q] =
+          std::any_of(bodies_.begin(), bodies_.end(), [&](int e) { return meetsBody(sim_, state_, z.position, direction, z.near_m * glm::length(ray), e); });
+    });
+    return marks;
+  }
+  static bool looksAt(const View& z, const glm::dvec3& direction) {
+    const glm::dvec3 p = glm::transpose(z.localFromCamera) * direction;
+    if (p.z >= 0.0) return false;
+    const glm::dvec2 at = filmPosition(z, p);
+    return at.x >= 0.0 && at.y >= 0.0 && at.x < z.width && at.y < z.height;
+  }
+  const Simulation& sim_;
+  const WorldState& state_;
+  std::vector<int> bodies_;  ///< the smallest first
+  std::vector<View> views_;
+};
 
 }  // namespace
 
@@ -205,25 +255,18 @@ void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, co
   }
   const std::vector<char> mixed = overlapTransparent(sim, state, v, bodies);
 
-  // Solid bodies by themselves: each zoomed view shows what the others hide, so their order does not matter.
+  // Each zoomed view shows what the others hide, and directions are shared out among them: their order does not matter.
   std::vector<char> solids = others;
-  for (size_t i = 0; i < bodies.size(); ++i) solids[static_cast<size_t>(bodies[i])] = !mixed[i];
-  std::vector<Delta> deltas;
-  for (size_t i = 0; i < bodies.size(); ++i)
-    if (!mixed[i]) drawSolid(image, pass, sim, state, bodies[i], solids, zoomedSamples, deltas);
-  for (const auto& d : deltas)
-    for (size_t s = 0; s < d.slots.size(); ++s) image.add(s, d.pixel, d.slots[s]);
-
-  // Where something transparent takes part: the largest first, each on top of those before it. So each is sampled by a view of its own
-  // size, and never by the coarser one of a larger body: a small hot thing behind a large puff must cancel to the last digit.
-  std::vector<int> order;
-  for (size_t i = 0; i < bodies.size(); ++i)
-    if (mixed[i]) order.push_back(bodies[i]);
-  std::stable_sort(order.begin(), order.end(), [&](int x, int y) { return extentOf(sim, state, v, x) > extentOf(sim, state, v, y); });
-  for (int e : order) {
-    addDifference(image, pass, sim, state, e, others, zoomedSamples);
-    others[static_cast<size_t>(e)] = 1;
+  std::vector<int> together;
+  for (size_t i = 0; i < bodies.size(); ++i) {
+    solids[static_cast<size_t>(bodies[i])] = !mixed[i];
+    if (mixed[i]) together.push_back(bodies[i]);
   }
+  FineSubpixels fine;
+  for (size_t i = 0; i < bodies.size(); ++i)
+    if (!mixed[i]) drawSolid(image, pass, sim, state, bodies[i], solids, zoomedSamples, fine);
+  MixedBodies(sim, state, v, together, zoomedSamples).draw(image, pass, others, fine);
+  put(image, fine);
 }
 
 }  // namespace pitviper

@@ -1,6 +1,8 @@
 #pragma once
 // A rectangle of film seen from a point: a camera's image, or the zoomed view of a small body.
 #include <glm/glm.hpp>
+#include <memory>
+#include <vector>
 
 #include "sim/model/simulation.hpp"
 
@@ -15,11 +17,11 @@ struct View {
   glm::dvec3 position{0.0};         ///< local frame
   glm::dmat3 localFromCamera{1.0};
   double near_m = 0.1;
-  int onlyEntity = -1;          ///< shade this entity alone, behind whatever hides it; -1: everything
-  glm::dvec3 depthCentre{0.0};  ///< with onlyEntity: depth has its digits around this place (local frame) ...
-  double depthRadius_m = 1.0;   ///< ... within this distance
-  int differenceOf = -1;        ///< two pictures are compared, with this entity and without: rays that miss it need no colour; -1: they do
-  double pixelTan2 = 0.0;       ///< (tangent per whole pixel)^2, for the truth layer of the fragment's area
+  int onlyEntity = -1;                              ///< shade this entity alone, behind whatever hides it; -1: everything
+  glm::dvec3 depthCentre{0.0};                      ///< with onlyEntity: depth has its digits around this place (local frame) ...
+  double depthRadius_m = 1.0;                       ///< ... within this distance
+  std::shared_ptr<const std::vector<char>> wanted;  ///< one flag per pixel, row 0 at the bottom: the others need no colour; null: all do
+  double pixelTan2 = 0.0;                           ///< (tangent per whole pixel)^2, for the truth layer of the fragment's area
 
   /// Direction of a film position in camera axes, z = -1.
   glm::dvec3 ray(double x, double y) const { return {(x - axisX) * tanPerPixelX, (y - axisY) * tanPerPixelY, -1.0}; }

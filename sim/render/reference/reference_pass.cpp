@@ -52,7 +52,7 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
     const size_t p = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
     const DrawItem& item = tables().draws[identity[2 * p]];
     if (view_.onlyEntity >= 0 && item.entity != view_.onlyEntity) return {};
-    if (view_.differenceOf >= 0 && !shader.meets(x, y, view_.differenceOf)) return {};
+    if (view_.wanted && !(*view_.wanted)[p]) return {};
     SeenTriangle seen;
     if (item.entity >= 0) seen = {item.entity, identity[2 * p + 1] - sharedScene()->firstTriangle(item.entity)};
     return shader.pixel(x, y, seen, sum);
@@ -62,7 +62,7 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
     for (size_t s = 0; s < slots.size(); ++s) channels[s / 4][4 * p + s % 4] = static_cast<float>(slots[s]);
   };
   // A zoomed view of a small body by tiles, a picture by rows.
-  const bool zoomed = view_.onlyEntity >= 0 || view_.differenceOf >= 0;
+  const bool zoomed = view_.onlyEntity >= 0 || view_.wanted;
   const int columns = zoomed ? (width + ZoomedTile::kSize - 1) / ZoomedTile::kSize : 1;
   const int pieces = zoomed ? columns * ((height + ZoomedTile::kSize - 1) / ZoomedTile::kSize) : height;
   std::atomic<int> next{0};
