@@ -9,7 +9,7 @@ namespace pitviper {
 namespace {
 
 /// A change of the planner makes old plans strangers.
-constexpr double kPlannerVersion = 12;
+constexpr double kPlannerVersion = 13;
 /// Times at which poses are looked at.
 constexpr int kTimes = 17;
 
@@ -115,6 +115,7 @@ ContentKey planKey(const Simulation& sim, const Plan& outline, const Eye& eye) {
   for (double v : {limits.nearest_m, limits.farthest_m, limits.coldest_K, limits.hottest_K, limits.lightLevel}) b.add(v);
   for (const PointLight& l : sim.lights) b.add(l.radius_m), b.add(l.visible);
   if (sim.sun) b.add(sim.sun->toSun);
+  b.add(sim.ground ? sim.ground->material : -1), b.add(sim.ground ? sim.ground->temperature_K : -1.0);
   b.add(sim.frame.earthRadius_m()), b.add(sim.frame.origin().height_m);
   if (sim.path) {
     // Amounts and temperatures along one line: two airs with the same spectra may differ in their layers.

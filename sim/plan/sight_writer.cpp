@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "sim/model/ground.hpp"
 #include "sim/model/light_legs.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -197,7 +198,7 @@ void SightWriter::reflected(Sight& sight, const Hit& hit, const Material& materi
     const bool sun = l == sim_.lights.size();
     const double level = sun ? 1.0 : ray_.state.lightLevels[l];
     const LightLeg leg = lightLeg(sim_, ray_.state, hit, l);
-    if (!(level * leg.factor > 0.0)) continue;
+    if (!(level * leg.factor > 0.0) || (hit.entity < 0 && !sun)) continue;  // lamps do not light the ground beyond all bodies
     // In shade, half in it, or lit: other lights of a pixel then count for more.
     const double shade = dice_.unit(), strength = shade < 0.25 ? 0.0 : shade < 0.5 ? dice_.unit() : 1.0;
     if (strength <= 0.0) continue;
@@ -223,7 +224,7 @@ void SightWriter::reflected(Sight& sight, const Hit& hit, const Material& materi
 }
 
 void SightWriter::surface(Sight& sight, const Hit& hit) {
-  const Surface& surface = sim_.entities[static_cast<size_t>(hit.entity)].surfaces[static_cast<size_t>(hit.surface)];
+  const Surface& surface = surfaceAt(sim_, hit);
   const Material& material = sim_.materialOf(surface);
   const bool general = (material.transmission ? plan_.terms.layer : plan_.terms.solid).isGeneral();
   auto modifierOf = [&](int texture) { return texture < 0 ? 1.0 : texel(sim_.textures[static_cast<size_t>(texture)], hit.uv); };
@@ -231,7 +232,7 @@ void SightWriter::surface(Sight& sight, const Hit& hit) {
   for (size_t k = 0; k < material.modifiers.size(); ++k) modifier[k] = modifierOf(material.modifiers[k]);
   const int path = pathTo(hit.distance, plan_.terms.air ? sim_.path->amounts(airRay_, hit.distance) : AirAmounts{});
   const double temperature_K = surface.temperatureTexture >= 0 ? texel(sim_.textures[static_cast<size_t>(surface.temperatureTexture)], hit.uv)
-                               : ray_.temperature_K > 0.0      ? ray_.temperature_K
+                               : ray_.temperature_K > 0.0 && hit.entity >= 0 ? ray_.temperature_K
                                                                : surface.temperature_K;
 
   if (!general) {
@@ -303,9 +304,10 @@ void SightWriter::media(Sight& sight) {
 Sight SightWriter::pixel() {
   Sight sight;
   sight.fromFilm = ray_.fromFilm;
-  const double range = hits_.solid.entity >= 0 ? hits_.solid.distance : physics::kFar;
-  if (hits_.solid.entity >= 0) {
-    surface(sight, hits_.solid);
+  const std::optional<Hit> end = hits_.solid.entity >= 0 ? hits_.solid : groundHit(sim_, ray_.origin, ray_.direction);
+  const double range = end ? end->distance : physics::kFar;
+  if (end) {
+    surface(sight, *end);
   } else if (!sim_.background.isZero()) {
     const int behind = book_.spectrum("background", [&sim = sim_](const FineGrid& g, size_t i) { return sim.background(g.wavelength_um[i]); });
     add(sight, range, {behind, -1, pathTo(range, plan_.terms.air ? sim_.path->amounts(airRay_, range) : AirAmounts{}), 1.0, TermKind::Background});

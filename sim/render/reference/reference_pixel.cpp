@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/ground.hpp"
 #include "sim/model/light_legs.hpp"
 #include "sim/model/ray_hits.hpp"
 #include "sim/model/sunlit_air.hpp"
@@ -122,7 +123,7 @@ Seen lookAt(const Sight& sight, const Hit& hit, const Air& air) {
   const Simulation& sim = sight.sim;
   const Plan& plan = sight.plan;
   Seen seen;
-  const Surface& surface = sim.entities[static_cast<size_t>(hit.entity)].surfaces[static_cast<size_t>(hit.surface)];
+  const Surface& surface = surfaceAt(sim, hit);
   const Material& material = sim.materialOf(surface);
   glm::dvec3 view3 = inNormalFrame(hit.normal, -sight.direction);
   view3.z = std::max(view3.z, 1e-6);
@@ -145,7 +146,8 @@ Seen lookAt(const Sight& sight, const Hit& hit, const Air& air) {
     const LightLeg way = lightLeg(sim, sight.state, hit, l);
     Leg leg{inNormalFrame(hit.normal, way.toLight), way.factor, {}};
     const double radius_m = l < sim.lights.size() ? sim.lights[l].radius_m : 0.0;
-    if (leg.factor > 0.0 && plan.terms.shadows && !sight.shadows.lit(sight.state, hit, way.toLight, way.distance_m - radius_m)) leg.factor = 0.0;
+    if (hit.entity < 0) leg.factor = l == sim.lights.size() ? leg.factor : 0.0;  // the ground: the sun's light alone, and no shadows
+    else if (leg.factor > 0.0 && plan.terms.shadows && !sight.shadows.lit(sight.state, hit, way.toLight, way.distance_m - radius_m)) leg.factor = 0.0;
     if (plan.terms.air) leg.powered = sim.path->powered(air.amounts + way.air);
     legs.push_back(leg);
   }
@@ -278,16 +280,16 @@ ReferencePixel ReferenceShader::shade(int x, int y, const RayHits& hits) const {
   const Sight sight{sim, plan, state_, view_.position, view_.localFromCamera * ray / glm::length(ray), shadows_};
   pixel.entity = hits.solid.entity;
   pixel.surface = hits.solid.surface;
-  const bool found = hits.solid.entity >= 0;
-  pixel.range_m = found ? hits.solid.distance : physics::kFar;
-  const double end = found ? hits.solid.distance : physics::kFar;
+  const std::optional<Hit> found = hits.solid.entity >= 0 ? hits.solid : groundHit(sim, sight.position, sight.direction);
+  const double end = found ? found->distance : physics::kFar;
+  pixel.range_m = end;
   std::vector<double> places = {end};
   for (const Stretch& s : hits.stretches) places.insert(places.end(), {s.enter, s.leave});
   for (const Hit& h : hits.layers) places.push_back(h.distance);
   const AirLine line(sight, std::move(places));
   const Air& air = line.at(end);
   if (found) {
-    Seen seen = lookAt(sight, hits.solid, air);
+    Seen seen = lookAt(sight, *found, air);
     pixel.cosView = seen.cosView;
     pixel.temperature_K = seen.temperature_K;
     pixel.radiance = std::move(seen.radiance);
