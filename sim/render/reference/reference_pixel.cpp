@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/ground.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -95,7 +96,8 @@ ReferencePixel ReferenceShader::shade(const LineOfSight& line, NodeSum& sum) con
   const Hit& solid = line.hits.solid;
   pixel.entity = solid.entity;
   pixel.surface = solid.surface;
-  pixel.range_m = solid.entity >= 0 ? solid.distance : physics::kFar;
+  const auto ground = solid.entity >= 0 ? std::nullopt : groundHit(simulation_, line.origin, line.direction);
+  pixel.range_m = ground ? ground->distance : solid.entity >= 0 ? solid.distance : physics::kFar;
   pixel.radiance.assign(sum.radiance().begin(), sum.radiance().end());
   pixel.slots.assign(static_cast<size_t>(plan_.slotCount), 0.0);
   for (size_t s = 0; s < pixel.slots.size(); ++s)
