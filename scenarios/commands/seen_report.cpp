@@ -14,7 +14,7 @@ namespace {
 
 /// Bodies that get a line of their own; of more, those alike share one. And lines in all.
 constexpr size_t kOneByOne = 20, kMostLines = 60;
-/// Hidden shares below this are not told: what the places looked at can tell (48 of them).
+/// Hidden shares below this are not told: what the places looked at can tell (96 of them).
 constexpr double kHidden = 0.04;
 /// Cameras x bodies beyond which only the first frame is looked at: all three would take minutes.
 constexpr size_t kMostPairs = 50000;

@@ -46,9 +46,9 @@ bool isNear(const std::filesystem::path& folder, const std::filesystem::path& na
   for (const auto& part : plain) up += part == "..";
   if (up > 1) return false;
   std::error_code failed;
-  const auto home = std::filesystem::weakly_canonical(folder.empty() ? std::filesystem::path(".") : folder, failed).parent_path();
+  const auto here = std::filesystem::canonical(folder.empty() ? std::filesystem::path(".") : folder, failed);
   if (failed) return false;
-  const auto at = std::filesystem::weakly_canonical(folder / plain, failed).lexically_relative(home);
+  const auto at = std::filesystem::weakly_canonical(here / plain, failed).lexically_relative(here.parent_path());
   return !failed && !at.empty() && *at.begin() != "..";
 }
 

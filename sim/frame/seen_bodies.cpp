@@ -11,8 +11,8 @@
 namespace pitviper {
 namespace {
 
-/// Places on a body, and columns and rows of the grid over the film: 2 % of a body. In crowds fewer, so that thousands of bodies take seconds.
-constexpr int kPlaces = 48, kPlacesOfMany = 12, kGrid = 16;
+/// Places on a body, and columns and rows of the grid over the film. In crowds fewer, so that thousands of bodies take seconds.
+constexpr int kPlaces = 96, kPlacesOfMany = 12, kGrid = 16;
 constexpr size_t kMany = 256;
 /// Vertices that an outline is made of; of larger meshes every n-th.
 constexpr size_t kMostVertices = 100000;

@@ -28,7 +28,7 @@ struct BodySight {
 };
 
 /// One for each entity. Rays go through a grid over the film and to places spread over each body by area: what is smaller than both may be
-/// seen between them, so that 'hidden' and its share are good to a few per cent of a body.
+/// seen between them, so that 'hidden' means all of some dozens of places, and its share is good to about 5 % of a body.
 std::vector<BodySight> bodiesSeen(const Simulation& simulation, const Camera& camera, const WorldState& state);
 
 }  // namespace pitviper

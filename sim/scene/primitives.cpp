@@ -270,10 +270,10 @@ Mesh makeGround(double extent_m, double earthRadius_m, double tile_m) {
   requireLength(earthRadius_m, "the earth's radius must be positive");
   require(std::isfinite(tile_m) && tile_m >= 0.0, "a ground's tile must be 0 or more");
   require(extent_m < 0.5 * earthRadius_m, "a ground reaches less than half the earth's radius");
-  // A facet from r1 to r2 lies (r2 - r1)2 / 8R below the sphere in its middle: rings grow by a seventh to 10 km (2 m); 192 sectors add
-  // (r dphi)2 / 8R, 3.4 m at 400 km.
+  // A facet from r1 to r2 lies (r2 - r1)2 / 8R below the sphere in its middle: rings grow by a seventh to 10 km (2 m); 256 sectors add
+  // (r dphi)2 / 8R, 1.9 m at 400 km.
   constexpr double kFirst_m = 100.0, kGrowth = 1.15, kWidest_m = 1e4;
-  constexpr int kSectors = 192;
+  constexpr int kSectors = 256;
   std::vector<double> radius_m;
   for (double r = std::min(kFirst_m, extent_m); r < extent_m; r = std::min(r * kGrowth, r + kWidest_m)) radius_m.push_back(r);
   if (radius_m.size() > 1 && extent_m - radius_m.back() < 0.02 * extent_m) radius_m.pop_back();

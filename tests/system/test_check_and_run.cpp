@@ -174,7 +174,7 @@ TEST_F(CheckAndRun, ExtendsAScenarioInAnotherFolder) {
   put("b.yaml", "extends: common/base.yaml\n" + kCamera);
   EXPECT_EQ(run("check mine/a.yaml").first, 0) << run("check mine/a.yaml").second;  // heat.csv lies beside the scenario that names it
   EXPECT_EQ(run("check b.yaml").first, 0);
-  for (const std::string bad :
+  for (const std::string& bad :
        {"../../" + folder_.filename().string() + "/common/base.yaml", (folder_ / "common/base.yaml").string(), std::string("../common/heat.csv")}) {
     put("mine/c.yaml", "extends: " + bad + "\n" + kCamera);
     const auto [code, text] = run("check mine/c.yaml");
