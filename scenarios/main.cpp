@@ -37,6 +37,8 @@ const std::map<std::string, Command>& commands() {
         "  --preview        also a PNG per frame: every channel with colour bar and unit\n"
         "  --preview-range LAYER=LOW:HIGH  ends of a layer's colour bar, in its unit (implies --preview); repeatable. Without it the bar\n"
         "                   runs from the 0.5 to the 99.8 percentile, and is bent where a few bright things would hide the rest\n\n"
+        "On a terminal a bar shows how far it is; elsewhere lines come on stderr, the first after 3 s, each next after as long again as all before.\n"
+        "The last lines sum up: frames, time, frames a second, and for each camera what its plan expects to be off by at most.\n"
         "Files of the same names are replaced; others in FOLDER are left as they are.\n"}},
       {"check",
        {checkCommand, "validate a scenario, render nothing",
