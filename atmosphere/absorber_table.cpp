@@ -235,6 +235,11 @@ void AbsorberTable::removeAerosol() {
     if (absorbers_[k].kind == AbsorberKind::Haze || absorbers_[k].kind == AbsorberKind::Aerosol) scale_[k] = 0.0;
 }
 
+void AbsorberTable::restoreAerosol() {
+  for (size_t k = 0; k < absorbers_.size(); ++k)
+    if ((absorbers_[k].kind == AbsorberKind::Haze || absorbers_[k].kind == AbsorberKind::Aerosol) && scale_[k] == 0.0) scale_[k] = 1.0;
+}
+
 size_t AbsorberTable::intervalAt(double height_m) const {
   const auto above = std::upper_bound(levels_.begin() + 1, levels_.end() - 1, height_m, [](double h, const Level& l) { return h < l.altitude_m; });
   return static_cast<size_t>(above - levels_.begin()) - 1;

@@ -78,6 +78,8 @@ class AbsorberTable {
   void setTemperature(double temperature_K);
   /// No aerosol at all; setVisibility() brings it back.
   void removeAerosol();
+  /// What was removed is as the table has it; an aerosol that is there stays as it is.
+  void restoreAerosol();
 
   /// Amounts on the straight line from a height, with the sine of its elevation there, as far as a range (may be infinite) over a spherical
   /// earth; the earth itself does not stop it. From either end the same to rounding.

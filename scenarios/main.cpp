@@ -32,7 +32,7 @@ const std::map<std::string, Command>& commands() {
         "with a float layer <channel>.<quantity> per output and truth.* layers; probes write <probe>.csv; a camera with 'spectral_image:'\n"
         "also writes <camera>_<frame>_spectral.exr for pitviper integrate.\n\n"
         "  --out FOLDER     where to write; created if missing\n"
-        "  --frames A:B     frames A to B only (or one: A); counted from 0\n"
+        "  --frames A:B     frames A to B only, both included (or one: A); counted from 0: --frames 0:9 draws ten\n"
         "  --set PATH=VALUE replaces or adds a value: --set cameras.0.samples=2, --set cameras.seeker.exposure='1 ms',\n"
         "                   --set entities.jet.temperature='300 K'; list items by number or by their name; repeatable\n"
         "  --preview        also a PNG per frame: every channel with colour bar and unit\n"
@@ -44,7 +44,10 @@ const std::map<std::string, Command>& commands() {
       {"check",
        {checkCommand, "validate a scenario, render nothing",
         "pitviper check SCENARIO.yaml [--set path.to.key=value]...\n\nReads everything the scenario names and reports the first mistake as file:line:col with "
-        "the fix (exit code 2).\n"}},
+        "the fix (exit code 2).\nThen tells what each camera sees in the first, the middle and the last frame: a line a body (many alike in one) with its "
+        "size,\n"
+        "range, size in pixels, and whether it is out of view, behind the camera, hidden by another or smaller than a pixel; 'hidden' is\n"
+        "found by rays to a few dozen places on the body. Meshes whose size smells of another unit than the one given are noted.\n"}},
       {"plan",
        {planCommand, "what a scenario's accuracy makes of it: terms, wavelengths, predicted error",
         "pitviper plan SCENARIO.yaml [--set path.to.key=value]... [--json] [--speed] [--shaders]\n\n"
@@ -93,8 +96,9 @@ const std::map<std::string, Command>& commands() {
         "  --out FOLDER         also write accuracy.csv and a chart, accuracy.png (needs VTK)\n"}},
       {"atmosphere",
        {atmosphereCommand, "what air there is in the library, in a MODTRAN tape7 or in a CSV file, as tables and charts",
-        "pitviper atmosphere NAME|FILE [--range KM] [--out FOLDER]\n\n"
-        "NAME or FILE.air: an air table (us76_rural, mls_rural): mean transmittance and radiance of level and slant paths, sky, sun at the ground.\n"
+        "pitviper atmosphere [NAME|FILE] [--range KM] [--out FOLDER]\n\n"
+        "Without an argument: the library airs. NAME: one of them (clear_mls), or an air table (us76_rural), as FILE.air: mean transmittance and\n"
+        "radiance of level and slant paths, sky, sun at the ground.\n"
         "FILE.csv: air by tables; the columns it may have are listed at the head of atmosphere/tabulated_csv.hpp, for instance\n"
         "  wavelength_um, range_km, transmittance, path_radiance_W/(m2 sr um)\n"
         "FILE: a tape7 (.tp7) of MODTRAN, transmittance, thermal radiance with or without the sun or solar irradiance, any number of runs; prints\n"

@@ -13,7 +13,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/tabulated_report.hpp"
-#include "scenarios/reader/scenario_reader.hpp"
+#include "scenarios/reader/library_air.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/error.hpp"
 
@@ -72,12 +72,16 @@ void write(const std::filesystem::path& out, const std::string& name, const std:
   std::printf("%s written\n", (out / (name + ".png")).string().c_str());
 }
 
-void showAir(const std::filesystem::path& file, const std::optional<std::filesystem::path>& out) {
-  const AbsorberTable air = AbsorberTable::read(file);
+void showAir(const AbsorberTable& air, const std::string& name, const std::optional<std::filesystem::path>& out) {
   std::printf("%s", describeAir(air).c_str());
   if (!out) return;
   std::printf("\n");
-  write(*out, file.stem().string(), airCsv(air), airCharts(air), 2);
+  write(*out, name, airCsv(air), airCharts(air), 2);
+}
+
+void listLibrary(const Libraries& libraries) {
+  std::printf("library airs (pitviper atmosphere NAME shows one; 'atmosphere: NAME' in a scenario takes it):\n");
+  for (const LibraryAir& air : libraryAirs(libraries)) std::printf("  %-12s %s\n", air.name.c_str(), air.description.c_str());
 }
 
 void showTable(const TabulatedAir& air, const std::string& name, const std::optional<std::filesystem::path>& out) {
@@ -123,16 +127,31 @@ void showTape7(const std::filesystem::path& file, std::optional<double> range_m,
 }  // namespace
 
 int atmosphereCommand(const Arguments& arguments) {
-  const Options o("atmosphere", arguments, {{"--out"}, {"--range"}}, 1, 1);
-  const std::filesystem::path file = o.words()[0];
+  const Options o("atmosphere", arguments, {{"--out"}, {"--range"}}, 0, 1);
+  const Libraries libraries = findLibraries();
+  if (o.words().empty()) {
+    for (const char* option : {"--out", "--range"})
+      if (o.has(option)) throw UserError({option, 0, 0, -1}, "of which air?", "atmosphere NAME|FILE " + std::string(option) + " ...", "name it");
+    listLibrary(libraries);
+    return 0;
+  }
+  const std::string& word = o.words()[0];
+  const std::filesystem::path file = word;
   const auto out = o.has("--out") ? std::optional<std::filesystem::path>(o.value("--out")) : std::nullopt;
   const auto range_m = rangeGiven(o);
-  const auto named = findLibraries().atmosphere / (o.words()[0] + ".air");
+  // A word without folder and extension that is no file is a name: of a table of the library, or of a library air.
   std::error_code ignored;
-  const bool library = file.extension() == ".air" || (!std::filesystem::exists(file, ignored) && std::filesystem::is_regular_file(named, ignored));
-  if (range_m && (library || file.extension() == ".csv"))
-    throw UserError({}, "--range with '" + o.words()[0] + "'", "a tape7 whose path has no range", "leave it out: air tables and CSV files have their ranges");
-  if (library) showAir(file.extension() == ".air" ? file : named, out);
+  const bool named = !std::filesystem::exists(file, ignored) && file.extension().empty() && !file.has_parent_path();
+  const auto table = libraries.atmosphere / (word + ".air");
+  if (range_m && (named || file.extension() == ".air" || file.extension() == ".csv"))
+    throw UserError({}, "--range with '" + word + "'", "a tape7 whose path has no range", "leave it out: air tables and CSV files have their ranges");
+  if (named && std::filesystem::is_regular_file(table, ignored)) showAir(AbsorberTable::read(table), word, out);
+  else if (named) {
+    const AbsorberTable air = libraryAirTable(word, libraries);
+    for (const LibraryAir& a : libraryAirs(libraries))
+      if (a.name == word) std::printf("%s: %s; its table:\n", word.c_str(), a.description.c_str());
+    showAir(air, word, out);
+  } else if (file.extension() == ".air") showAir(AbsorberTable::read(file), file.stem().string(), out);
   else if (file.extension() == ".csv") showTable(readAirCsv(file), file.stem().string(), out);
   else showTape7(file, range_m, out);
   return 0;

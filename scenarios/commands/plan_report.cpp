@@ -36,6 +36,14 @@ std::string percent(double part) {
   return p == 0.0 ? "0" : p < 0.001 ? "<0.001" : print(p < 0.1 ? "%.3f" : p < 10.0 ? "%.2f" : "%.0f", p);
 }
 
+/// Columns of shares, unless their channel's name is wider.
+constexpr size_t kShare = 9;
+
+std::string padded(const std::string& s, size_t width, bool right) {
+  const std::string blank(s.size() < width ? width - s.size() : 0, ' ');
+  return right ? blank + s : s + blank;
+}
+
 int nodesOf(const Plan& plan, size_t slot) {
   return static_cast<int>(std::count_if(plan.weight[slot].begin(), plan.weight[slot].end(), [](double w) { return w != 0.0; }));
 }
@@ -54,11 +62,24 @@ double kelvinOf(const Plan& plan, size_t slot, double error, double temperature_
 }  // namespace
 
 std::vector<std::string> slotNames(const Plan& plan, const std::vector<ChannelOutput>& outputs) {
-  std::vector<std::string> names(static_cast<size_t>(plan.slotCount));
-  for (size_t o = 0; o < outputs.size(); ++o) {
-    std::string& name = names[static_cast<size_t>(plan.slotOfOutput[o])];
-    if (name.empty()) name = outputs[o].channel;
-    else if (name.find(outputs[o].channel) == std::string::npos) name += "+" + outputs[o].channel;
+  std::vector<std::vector<const ChannelOutput*>> members(static_cast<size_t>(plan.slotCount));
+  for (size_t o = 0; o < outputs.size(); ++o) members[static_cast<size_t>(plan.slotOfOutput[o])].push_back(&outputs[o]);
+  // A channel that is one slot alone is named by itself; of one with several (radiance and photons, say) each says of what quantities.
+  auto slotsOf = [&](const std::string& channel) {
+    return std::count_if(members.begin(), members.end(), [&](const auto& slot) {
+      return std::any_of(slot.begin(), slot.end(), [&](const ChannelOutput* o) { return o->channel == channel; });
+    });
+  };
+  std::vector<std::string> names;
+  for (const auto& slot : members) {
+    std::vector<std::string> parts;
+    for (const ChannelOutput* o : slot) {
+      std::string part = slotsOf(o->channel) > 1 ? o->layer() : o->channel;
+      if (std::find(parts.begin(), parts.end(), part) == parts.end()) parts.push_back(std::move(part));
+    }
+    std::string name;
+    for (const auto& part : parts) name += (name.empty() ? "" : "+") + part;
+    names.push_back(std::move(name));
   }
   return names;
 }
@@ -80,13 +101,13 @@ std::string planText(const PlannedEye& eye) {
 
   if (!plan.shares.empty()) {
     out += print("\n  %-26s", "greatest part of a pixel");
-    for (const auto& n : names) out += print(" %9s", n.c_str());
+    for (const auto& n : names) out += " " + padded(n, kShare, true);
     out += "\n";
   }
   for (const TermShare& s : plan.shares) {
     if (std::all_of(s.share.begin(), s.share.end(), [](double v) { return v == 0.0; })) continue;
     out += print("  %-26s", s.term.c_str());
-    for (double v : s.share) out += print(" %7s %%", percent(v).c_str());
+    for (size_t i = 0; i < s.share.size(); ++i) out += " " + padded(percent(s.share[i]) + " %", std::max(kShare, names[i].size()), true);
     out += s.kept ? "  kept\n" : "  dropped: no channel would notice\n";
   }
   std::string dark;
@@ -96,9 +117,11 @@ std::string planText(const PlannedEye& eye) {
   if (!dark.empty()) out += "  no reflected light of sun or lamps in " + dark + "\n";
   if (plan.accuracy > 0.0) out += "  shadows                   " + std::string(plan.terms.shadows ? " kept\n" : " none\n");
 
-  out += print("\n  %-16s %8s %12s %16s\n", "channel", "nodes", "reference", "predicted error");
+  size_t widest = 16;
+  for (const auto& n : names) widest = std::max(widest, n.size());
+  out += "\n  " + padded("channel", widest, false) + print(" %8s %12s %16s\n", "nodes", "reference", "predicted error");
   for (size_t s = 0; s < names.size(); ++s) {
-    out += print("  %-16s %8d", names[s].c_str(), nodesOf(plan, s));
+    out += "  " + padded(names[s], widest, false) + print(" %8d", nodesOf(plan, s));
     if (plan.predictedError.empty()) {
       out += "\n";
       continue;

@@ -19,7 +19,8 @@ struct PlannedEye {
   std::string limits;            ///< of the scenario, in words; empty: none
 };
 
-/// The name of each slot: its first output's channel, or several where they share it.
+/// The name of each slot: the channels it feeds, "mw" or "mw+lw"; where a channel has several slots, with its quantities: "mw.radiance",
+/// "mw.photons+mw.electrons".
 std::vector<std::string> slotNames(const Plan& plan, const std::vector<ChannelOutput>& outputs);
 
 /// Node evaluations of a pixel: each is a reading of the tables, an exponential and what light adds.

@@ -8,71 +8,128 @@
 namespace pitviper {
 namespace {
 
-/// Less than that is not worth a line.
-constexpr double kLong_s = 10.0;
+/// How often a bar is drawn anew [s].
+constexpr double kBar_s = 0.2;
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
 
+std::string print(const char* format, double v) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, v);
+  return text;
+}
+
+/// "37 s", "12 min", "3.4 h": no more digits than are known.
+std::string duration(double s) { return s < 100.0 ? print("%.0f s", s) : s < 6000.0 ? print("%.0f min", s / 60.0) : print("%.1f h", s / 3600.0); }
+
+double stepsASecond(const ProgressState& s) {
+  // Before the first step is over its share is all there is to judge by.
+  const double done = s.done > 0 ? s.done + s.share - 1.0 : s.share, took = s.done > 0 ? s.sinceFirst_s : s.elapsed_s;
+  return done > 0.0 && took > 0.0 ? done / took : 0.0;
+}
+
 }  // namespace
 
-Progress::Progress(std::string what, int total)
-    : what_(std::move(what)), total_(total), terminal_(isatty(STDERR_FILENO) != 0), start_(std::chrono::steady_clock::now()), first_(start_), shown_(start_) {}
+double secondsLeft(const ProgressState& s) {
+  const double rate = stepsASecond(s);
+  return rate > 0.0 ? std::max(0.0, s.total - s.done - s.share) / rate : -1.0;
+}
+
+std::string progressText(const ProgressState& s) {
+  if (!s.phase.empty()) {
+    std::string text = s.phase;
+    if (s.phaseShare > 0.0) text += print(", %.0f %%", 100.0 * s.phaseShare);
+    return text + ", " + duration(s.elapsed_s) + " so far";
+  }
+  std::string text = std::to_string(s.done) + " of " + std::to_string(s.total);
+  if (s.share > 0.0) text += " and " + print("%.0f %%", 100.0 * s.share) + " of the next";
+  const double rate = stepsASecond(s), left = secondsLeft(s);
+  if (left < 0.0) return text + ", " + duration(s.elapsed_s) + " so far";
+  return text + ", " + print(rate < 0.1 ? "%.3f/s" : "%.1f/s", rate) + ", " + duration(left) + " left";
+}
+
+double ProgressPace::next_s(double elapsed_s) const { return std::max(first_s, elapsed_s + std::min(elapsed_s, most_s)); }
+
+Progress::Progress(std::string what, int total, ProgressPace pace, std::function<void(const std::string&)> line)
+    : what_(std::move(what)),
+      pace_(pace),
+      line_(std::move(line)),
+      start_(Clock::now()),
+      first_(start_),
+      terminal_(!line_ && isatty(STDERR_FILENO) != 0),
+      watcher_([this] { watch(); }) {
+  const std::lock_guard lock(mutex_);
+  state_.total = total;
+}
+
+Progress::~Progress() { finish(); }
+
+void Progress::phase(const std::string& name, double share) {
+  const std::lock_guard lock(mutex_);
+  state_.phase = name;
+  state_.phaseShare = std::clamp(share, 0.0, 1.0);
+}
 
 void Progress::step() {
   const std::lock_guard lock(mutex_);
-  ++done_;
-  share_ = 0.0;
-  lastQuarter_ = 0;
-  const auto now = std::chrono::steady_clock::now();
-  if (done_ == 1) first_ = now;  // the first frame compiles programs: it says nothing of the others
-  if (terminal_ && (seconds(now - shown_) > 0.1 || done_ == total_)) {
-    shown_ = now;
-    show(false);
-  } else if (!terminal_ && total_ > 1) {
-    const int tenth = done_ * 4 / total_;
-    if (tenth != lastTenth_ && done_ < total_ && done_ > 1) show(false);
-    lastTenth_ = tenth;
-    shown_ = now;
-  }
+  if (++state_.done == 1) first_ = Clock::now();
+  state_.share = 0.0;
+  state_.phase.clear();
 }
 
 void Progress::within(double share) {
   const std::lock_guard lock(mutex_);
-  share_ = std::clamp(share, 0.0, 1.0);
-  const auto now = std::chrono::steady_clock::now();
-  if (terminal_) {
-    if (seconds(now - shown_) <= 0.1) return;
-    shown_ = now;
-    show(false);
-  } else if (const int quarter = static_cast<int>(share_ * 4.0); quarter > lastQuarter_ && share_ < 1.0 && seconds(now - shown_) > kLong_s) {
-    lastQuarter_ = quarter;
-    shown_ = now;
-    show(false);
+  state_.share = std::clamp(share, 0.0, 1.0);
+  state_.phase.clear();
+}
+
+double Progress::elapsed_s() const { return seconds(Clock::now() - start_); }
+
+ProgressState Progress::now() const {
+  ProgressState s = state_;
+  const auto at = Clock::now();
+  s.elapsed_s = seconds(at - start_);
+  s.sinceFirst_s = s.done > 0 ? seconds(at - first_) : 0.0;
+  return s;
+}
+
+void Progress::watch() {
+  std::unique_lock lock(mutex_);
+  double next_s = terminal_ ? kBar_s : pace_.first_s;
+  while (!finished_) {
+    wake_.wait_until(lock, start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(next_s)));
+    const ProgressState s = now();
+    if (finished_ || s.elapsed_s < next_s) continue;
+    if (terminal_) {
+      drawBar(false);
+      next_s = s.elapsed_s + kBar_s;
+      continue;
+    }
+    next_s = pace_.next_s(s.elapsed_s);
+    const std::string text = what_ + ": " + progressText(s);
+    if (line_) line_(text);
+    else std::fprintf(stderr, "%s\n", text.c_str());
   }
 }
 
-void Progress::show(bool last) {
-  const auto now = std::chrono::steady_clock::now();
-  // Before the first step is over its share is all there is to judge by.
-  const double after = done_ > 0 ? position() - 1.0 : position(), took = seconds(now - (done_ > 0 ? first_ : start_));
-  const double rate = after > 0.0 ? after / std::max(1e-9, took) : 0.0;
-  const double left = rate > 0.0 ? std::max(0.0, total_ - position()) / rate : 0.0;
-  const std::string part = share_ > 0.0 ? " and " + std::to_string(static_cast<int>(100.0 * share_)) + " % of the next" : "";
-  if (terminal_) {
-    constexpr int kWidth = 30;
-    const int filled = std::min(kWidth, static_cast<int>(kWidth * position() / std::max(1, total_)));
-    std::string bar(static_cast<size_t>(filled), '#');
-    bar.resize(kWidth, '.');
-    std::fprintf(stderr, "\r%s [%s] %d/%d%s  %.*f/s  %.0f s left \033[K", what_.c_str(), bar.c_str(), done_, total_, part.c_str(), rate < 0.1 ? 3 : 1, rate,
-                 left);
-    if (last) std::fprintf(stderr, "\n");
-  } else if (!last) {
-    std::fprintf(stderr, "%s: %d%s of %d, %.*f/s, %.0f s left\n", what_.c_str(), done_, part.c_str(), total_, rate < 0.1 ? 3 : 1, rate, left);
-  }
+void Progress::drawBar(bool last) {
+  constexpr int kWidth = 30;
+  const ProgressState s = now();
+  const int filled = std::clamp(static_cast<int>(kWidth * (s.done + s.share) / std::max(1, s.total)), 0, kWidth);
+  std::string bar(static_cast<size_t>(filled), '#');
+  bar.resize(kWidth, '.');
+  std::fprintf(stderr, "\r%s [%s] %s\033[K%s", what_.c_str(), bar.c_str(), progressText(s).c_str(), last ? "\n" : "");
 }
 
 void Progress::finish() {
-  if (terminal_) show(true);
+  {
+    const std::lock_guard lock(mutex_);
+    if (finished_) return;
+    finished_ = true;
+    if (terminal_) drawBar(true);
+  }
+  wake_.notify_all();
+  watcher_.join();
 }
 
 }  // namespace pitviper

@@ -8,6 +8,8 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/progress.hpp"
+#include "scenarios/commands/run_total.hpp"
+#include "scenarios/commands/seen_report.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/frame/file_owner.hpp"
 #include "sim/frame/spectral_image.hpp"
@@ -140,6 +142,18 @@ void refuseForeignFiles(const Simulation& sim, const RunRange& range, const std:
   for (const Probe& p : sim.probes) refuseForeignFile(folder / ProbeTables::fileOf(p.name), sim);
 }
 
+/// One line for each channel whose response ends before its own end, where the scene has no data.
+void noteCuts(const Simulation& sim) {
+  std::set<std::string> told;
+  auto note = [&](const std::string& owner, const std::vector<ChannelOutput>& outputs) {
+    for (const ChannelOutput& o : outputs)
+      if (!o.cut.empty() && told.insert(owner + o.channel).second)
+        std::fprintf(stderr, "note: %s, channel '%s': %s\n", owner.c_str(), o.channel.c_str(), o.cut.c_str());
+  };
+  for (const Camera& c : sim.cameras) note("camera " + c.name, c.outputs);
+  for (const Probe& p : sim.probes) note("probe " + p.name, p.outputs);
+}
+
 /// Once per camera: what of a picture's transparent things is not in its right order.
 void noteOrder(const Frame& f, std::set<std::string>& told) {
   for (const auto& a : f.attributes) {
@@ -178,13 +192,16 @@ int runCommand(const Arguments& arguments) {
     mayReplace = [&sim](const std::filesystem::path& file) { refuseForeignFile(file, sim); };
   }
   ensureWritableFolder(out);
+  noteCuts(sim);
   noteSampling(sim);
   noteNear(sim, sim.time.at(range.first));
   const GlContext context;
   const int frames = range.last - range.first + 1;
   const auto spectral = static_cast<size_t>(std::count_if(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.spectralImage.has_value(); }));
   Progress progress(sim.name, frames * static_cast<int>(std::max<size_t>(1, sim.cameras.size() + spectral)));
+  progress.phase("preparing");
   ProbeTables probes(sim);
+  RunTotal total;
   std::set<std::string> told;
   bool toldOfLimits = false;
   runFrames(
@@ -194,9 +211,13 @@ int runCommand(const Arguments& arguments) {
         noteLimits(f, toldOfLimits);
         writeFrame(out, f, mayReplace);
         if (previews && f.kind.empty()) writePreview(out, f, ranges, mayReplace);
+        total.add(f);
         progress.step();
       },
-      sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) { probes.add(r); }, [&](double share) { progress.within(share); });
+      sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) {
+        probes.add(r);
+        if (sim.cameras.empty() && &r.probe == &sim.probes.back()) progress.step();
+      }, [&](double share) { progress.within(share); });
   probes.write(out, mayReplace);
   progress.finish();
   auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
@@ -204,7 +225,8 @@ int runCommand(const Arguments& arguments) {
   if (!sim.cameras.empty()) done = count(static_cast<size_t>(frames), "frame") + " of " + count(sim.cameras.size(), "camera");
   if (spectral) done += " and " + count(spectral * static_cast<size_t>(frames), "spectral image");
   if (!sim.probes.empty()) done += (done.empty() ? "" : " and ") + count(sim.probes.size(), "probe table");
-  std::printf("%s in %s (%s)\n", done.c_str(), out.string().c_str(), context.limits().renderer.c_str());
+  std::printf("%s in %s (%s), %s\n%s", done.c_str(), out.string().c_str(), context.limits().renderer.c_str(),
+              RunTotal::pace(frames, progress.elapsed_s()).c_str(), total.expected().c_str());
   return 0;
 }
 
@@ -231,6 +253,11 @@ int checkCommand(const Arguments& arguments) {
     std::printf("    spectral image: %d bins, %.6g to %.6g um, in %s\n", c.spectralImage->count(), c.spectralImage->edge_um.front(),
                 c.spectralImage->edge_um.back(), count(passes.size(), "pass", "passes").c_str());
   }
+  const SeenReport seen = reportSeen(sim);
+  std::printf("%s", seen.text.c_str());
+  std::fflush(stdout);  // before the notes, where both go to one place
+  std::fprintf(stderr, "%s", seen.notes.c_str());
+  noteCuts(sim);
   noteSampling(sim);
   noteNear(sim, sim.time.at(0));
   return 0;

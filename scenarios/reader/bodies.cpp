@@ -6,6 +6,7 @@
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/scene/mesh_axes.hpp"
 #include "sim/scene/mesh_import.hpp"
 #include "sim/scene/mesh_tools.hpp"
 #include "sim/scene/primitives.hpp"
@@ -15,6 +16,8 @@ namespace pitviper {
 namespace {
 /// About 300 MB of vertices and indices.
 constexpr std::size_t kMostSceneTriangles = 10000000;
+/// A ground's reach unless given: the horizon from 12.5 km up.
+constexpr double kUsualGround_m = 4e5;
 }  // namespace
 
 glm::dvec3 Builder::readPosition(const Record& r, bool required) {
@@ -95,6 +98,26 @@ int Builder::entityNamed(const Value& asked) const {
 
 namespace {
 
+/// Whether u and v differ anywhere over a part.
+bool hasUv(const Mesh& mesh, size_t part) {
+  const MeshPart& p = mesh.parts[part];
+  const glm::vec2 first = mesh.uv[mesh.triangles[p.firstTriangle].x];
+  for (std::uint32_t t = p.firstTriangle; t < p.firstTriangle + p.triangleCount; ++t)
+    for (int k = 0; k < 3; ++k)
+      if (mesh.uv[mesh.triangles[t][k]] != first) return true;
+  return false;
+}
+
+/// Whether a texture of more than one texel says something of a surface.
+bool hasPattern(const Simulation& sim, const Surface& s) {
+  const Material& m = sim.materialOf(s);
+  std::vector<int> textures = m.modifiers;
+  textures.push_back(s.temperatureTexture);
+  if (m.given) textures.push_back(m.given->modifier);
+  if (m.transmission) textures.push_back(m.transmission->modifier);
+  return std::any_of(textures.begin(), textures.end(), [&](int t) { return t >= 0 && sim.textures[static_cast<size_t>(t)].texels.size() > 1; });
+}
+
 /// The keys that a shape takes: a key of another shape would be ignored without a word.
 void refuseForeignKeys(const Record& r, const std::string& model) {
   static const std::map<std::string, std::vector<std::string>> keys = {{"plate", {"width", "height"}},
@@ -107,7 +130,8 @@ void refuseForeignKeys(const Record& r, const std::string& model) {
                                                                        {"terrain", {"size", "relief", "columns", "terrain_seed", "height_map"}},
                                                                        {"jet", {}},
                                                                        {"missile", {}},
-                                                                       {"mesh", {"file", "unit"}}};
+                                                                       {"ground", {"extent", "tile"}},
+                                                                       {"mesh", {"file", "unit", "forward", "up"}}};
   std::vector<std::string> own = keys.at(model);
   own.emplace_back("scale");
   for (size_t i = 0; i < r.whole().entries.size(); ++i) {
@@ -118,6 +142,21 @@ void refuseForeignKeys(const Record& r, const std::string& model) {
     const std::string near = nearestWord(key, own);
     throw UserError(r.whole().keyPlaces[i], "a " + model + " has no '" + key + "'", all, near.empty() ? "remove it" : "did you mean '" + near + "'?");
   }
+}
+
+/// Turns a mesh from a file by its 'forward' and 'up'; what is not given is as the format has it.
+void turnAsAsked(Mesh& mesh, const Record& r) {
+  const FileAxes usual = usualAxes(r.text("file"));
+  FileAxes meant = usual;
+  if (r.given("forward")) meant.forward = *axisNamed(r.text("forward"));
+  if (r.given("up")) meant.up = *axisNamed(r.text("up"));
+  if (meant.forward == meant.up || meant.forward == -meant.up)
+    throw UserError(r.where(r.given("up") ? "up" : "forward"), "a body's nose and its upper side point along the same axis of its file",
+                    "'forward' and 'up' at right angles",
+                    r.given("up") && r.given("forward") ? "change one"
+                    : r.given("up")                     ? "add 'forward:'"
+                                                        : "add 'up:'");
+  turnAxes(mesh, usual, meant);
 }
 
 /// A value as text, places left out.
@@ -186,6 +225,8 @@ std::shared_ptr<const Mesh> Builder::readShape(const Value& value, BodyForm& for
       shape.seed = static_cast<std::uint64_t>(r.integer("terrain_seed"));
       *mesh = makeTerrain(shape);
     }
+  } else if (model == "ground") {
+    *mesh = makeGround(r.given("extent") ? r.number("extent") : kUsualGround_m, simulation_.frame.earthRadius_m(), r.given("tile") ? r.number("tile") : 0.0);
   } else if (model == "jet") *mesh = makeJet();
   else if (model == "missile") *mesh = makeMissile();
   else {
@@ -194,6 +235,7 @@ std::shared_ptr<const Mesh> Builder::readShape(const Value& value, BodyForm& for
     std::filesystem::path path = r.text("file");
     if (path.is_relative()) path = spectra_.files().base / path;
     *mesh = importMesh(path, r.number("unit"), r.where("file"));
+    turnAsAsked(*mesh, r);
     mesh->closed = isClosed(*mesh);
   }
   if (r.given("scale"))
@@ -250,6 +292,11 @@ void Builder::readSurfaces(const Record& r, Entity& entity) {
       if (s.temperature_K < 0.0 || s.temperature_K > 1e5)
         throw UserError(temperature->where, "temperature is out of range (" + temperature->text.substr(0, 40) + ")", "0 to 100000 K", "correct it");
     }
+    if (hasPattern(simulation_, s) && !hasUv(*entity.mesh, i))
+      throw UserError(s.temperatureTexture >= 0 ? temperature->where : material->where,
+                      "a texture on part '" + names[i] + "' of '" + entity.name + "', which has no texture coordinates: all of it would get one texel",
+                      "a shape with u and v (of a mesh: in its file, at every face), or a number instead of the texture",
+                      "unwrap the mesh and export it with its u,v, or take the texture off this part");
     entity.surfaces.push_back(s);
   }
 }
@@ -282,6 +329,10 @@ void Builder::readEntities(const Record& scenario) {
     e.name = r.text("name");
     checkUnique(r.value("name"), entityNames_, "entity");
     e.mesh = shapeOf(r.value("shape"), e.form);
+    if (const Record shape(r.value("shape"), tables::shape()); shape.text("model") == "mesh") {
+      e.meshFile = shape.text("file");
+      e.metresPerUnit = shape.number("unit") * (shape.given("scale") ? shape.number("scale") : 1.0);
+    }
     triangles += e.mesh->triangles.size();
     if (triangles > kMostSceneTriangles)
       throw UserError(r.where("shape"), "the scene has more than " + std::to_string(kMostSceneTriangles) + " triangles with this body", "fewer",

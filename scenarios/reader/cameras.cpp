@@ -6,6 +6,7 @@
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sensors/quantity.hpp"
+#include "sim/model/coverage.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/plan/plan.hpp"
 
@@ -44,8 +45,12 @@ Spectrum Builder::readResponse(const Record& channel) const {
   const Location where = channel.where("response");
   const std::string name = "the response of channel '" + channel.text("name") + "'";
   Spectrum s = bounded(spectra_, channel.value("response"), "", name, 0.0, INFINITY, Outside::Zero);
-  if (s.supportHigh() >= kLongestWavelength_um)
-    throw UserError(where, name + " has no band", "a table, a library name, or {band: [3 um, 5 um]}", "give it edges");
+  // A response that ends at the very end of the axis has an edge there; one that is never zero has none.
+  const bool ends = std::any_of(s.factors().begin(), s.factors().end(), [](const Spectrum::Factor& f) {
+    const auto* table = std::get_if<Spectrum::Table>(&f);
+    return table && table->outside == Outside::Zero;
+  });
+  if (!ends) throw UserError(where, name + " has no band", "a table, a library name, or {band: [3 um, 5 um]}", "give it edges");
   const double low = std::max(s.supportLow(), s.validLow()), high = std::min(s.supportHigh(), s.validHigh());
   // 1e-30: what is left of a product of responses that hardly overlap; its quadrature would be one of rounding errors.
   if (!(low < high) || s.maximum(low, high) < 1e-30)
@@ -59,8 +64,10 @@ void Builder::keepOutput(std::vector<ChannelOutput>& outputs, const std::functio
   } catch (const OutsideSpectrum& e) {
     throw UserError(where, "channel: " + std::string(e.what()), "factors of a response that cover its band", "extend the table or declare 'outside: zero'");
   }
-  const ChannelOutput& output = outputs.back();
+  ChannelOutput& output = outputs.back();
   spectra_.count(output.kernel, where);
+  const double left = cutToData(simulation_, output);
+  if (output.quantity == "radiance_per_um") output.scale /= left;  // per integral of what is left of the response
   if (!(std::isfinite(output.scale) && std::abs(output.scale) < 1e30))
     throw UserError(where, "the factor of '" + output.layer() + "' is larger than any that can be drawn", "a pixel of usual size",
                     "check film, focal length, aperture, exposure and gain");
@@ -207,7 +214,7 @@ void Builder::readCameras(const Record& scenario) {
     c.outputs = readChannels(r.value("channels"), &optics, &p, c.exposure_s);
     if (r.given("truth"))
       for (const Value& t : r.value("truth").items) {
-        static const std::vector<std::string> names{"range", "entity", "temperature", "normal", "area", "solid_angles"};
+        static const std::vector<std::string> names{"range", "entity", "temperature", "normal", "area", "solid_angles", "pixel_solid_angle"};
         const std::string word = readText(t, "truth");
         if (word == "range") c.truth.range = true;
         else if (word == "entity") c.truth.entity = true;
@@ -215,8 +222,10 @@ void Builder::readCameras(const Record& scenario) {
         else if (word == "normal") c.truth.normal = true;
         else if (word == "area") c.truth.area = true;
         else if (word == "solid_angles") c.truth.solidAngles = true;
+        else if (word == "pixel_solid_angle") c.truth.pixelSolidAngle = true;
         else
-          throw UserError(t.where, "there is no truth layer '" + word.substr(0, 40) + "'", "range, entity, temperature, normal, area, solid_angles",
+          throw UserError(t.where, "there is no truth layer '" + word.substr(0, 40) + "'",
+                          "range, entity, temperature, normal, area, solid_angles, pixel_solid_angle",
                           nearestWord(word, names).empty() ? "choose one" : "did you mean '" + nearestWord(word, names) + "'?");
       }
     planned(c.outputs, c.spectral, c.where);

@@ -69,7 +69,7 @@ void flatten(const Value& v, const TableKind& kind, const std::vector<size_t>& e
 std::vector<double> readWavelengths(const Value& list, const TableKind& kind) {
   std::vector<double> all;
   for (const Value& w : list.items) {
-    const double x = readNumber(w, "um", "wavelength");
+    const double x = onAxis(readNumber(w, "um", "wavelength"));
     if (x < kShortestWavelength_um || x > kLongestWavelength_um || (!all.empty() && x <= all.back()))
       throw UserError(w.where, "the wavelengths of " + aTable(kind) + " do not rise or leave the spectral axis", "rising, within 0.1 to 1000 um", "sort them");
     all.push_back(x);

@@ -39,21 +39,48 @@ Libraries findLibraries() {
 
 namespace {
 
+/// Whether a path leads from a folder to somewhere below the folder above it, by its words and where links on the way lead.
+bool isNear(const std::filesystem::path& folder, const std::filesystem::path& name) {
+  if (name.empty() || name.is_absolute()) return false;
+  if (name.has_parent_path() && name.extension() != ".yaml" && name.extension() != ".yml") return false;  // elsewhere nothing but scenarios is read
+  const auto plain = name.lexically_normal();
+  int up = 0;
+  for (const auto& part : plain) up += part == "..";
+  if (up > 1) return false;
+  std::error_code failed;
+  const auto here = std::filesystem::canonical(folder.empty() ? std::filesystem::path(".") : folder, failed);
+  if (failed) return false;
+  const auto at = std::filesystem::weakly_canonical(here / plain, failed).lexically_relative(here.parent_path());
+  return !failed && !at.empty() && *at.begin() != "..";
+}
+
+/// Files that a tree names, found from `folder`, are found from where it is put as well.
+void moveFiles(Value& value, const std::filesystem::path& folder) {
+  for (Value& item : value.items) moveFiles(item, folder);
+  for (auto& [key, item] : value.entries) {
+    moveFiles(item, folder);
+    const bool names = key == "file" || key == "table" || key == "tape7" || key == "csv";
+    if (names && item.kind == Value::Kind::Scalar && std::filesystem::path(item.text).is_relative()) item.text = (folder / item.text).string();
+  }
+}
+
 /// `extends: other.yaml`: the other's keys hold where the tree has none.
 void extend(Value& tree, const std::filesystem::path& base, std::string& identity) {
   const Value* from = tree.find("extends");
   if (tree.kind != Value::Kind::Map || !from) return;
   const std::filesystem::path name = from->text;
-  if (from->kind != Value::Kind::Scalar || name.empty() || name.filename() != name)
-    throw UserError(from->where, "not the name of a scenario beside this one", "a file in the same folder, because both name their files from there",
-                    "write 'extends: first_light.yaml'");
+  if (from->kind != Value::Kind::Scalar || !isNear(base, name))
+    throw UserError(from->where, "not the name of a scenario near this one",
+                    "a relative path to a .yaml file below the folder that holds this scenario's own folder",
+                    "write 'extends: first_light.yaml', 'extends: base/scene.yaml' or 'extends: ../common/scene.yaml'");
   std::string text;
-  const Value other = loadYaml(base / name, from->where, &text);
+  Value other = loadYaml(base / name, from->where, &text);
   if (other.kind != Value::Kind::Map)
     throw UserError(other.where, "a scenario is " + std::string(other.kindName()), "a map of keys", "see scenarios/README.md");
   if (const Value* further = other.find("extends"))
     throw UserError(further->where, "a scenario that is extended extends another itself", "one that is whole", "name that one, or write its keys here");
   identity += "\n--extends\n" + text;
+  if (name.has_parent_path()) moveFiles(other, name.parent_path());
   tree.entries.reserve(tree.entries.size() + other.entries.size());  // `own` looks at the keys: they must stay where they are
   std::set<std::string_view> own;
   for (const auto& [key, value] : tree.entries) own.insert(key);

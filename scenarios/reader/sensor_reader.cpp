@@ -37,7 +37,7 @@ SpectralBins Builder::readSpectralBins(const Record& r, const Pinhole& pinhole) 
   bins.samples = static_cast<int>(r.integer("samples"));
   const int count = static_cast<int>(r.integer("bins"));
   const auto& band = r.value("band").items;
-  const double low = readNumber(band[0], "um", "band edge"), high = readNumber(band[1], "um", "band edge");
+  const double low = onAxis(readNumber(band[0], "um", "band edge")), high = onAxis(readNumber(band[1], "um", "band edge"));
   if (!(low >= kShortestWavelength_um && low < high && high <= kLongestWavelength_um))
     throw UserError(r.where("band"), "the band of the spectral image is empty or outside the spectral axis", "rising edges within 0.1 to 1000 um",
                     "write 'band: [3 um, 5 um]'");

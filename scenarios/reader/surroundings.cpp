@@ -165,7 +165,7 @@ void Builder::readAtmosphere(const Record& scenario) {
     if (from.given("temperature")) air.temperature_K = from.number("temperature");
     if (from.given("radiance")) air.radiance = bounded(spectra, from.value("radiance"), "W/(m2 sr um)", "air radiance", 0.0, INFINITY);
     if (table && from.given("visibility")) table->setVisibility(1e-3 * from.number("visibility"));
-    if (table && from.given("aerosol") && from.text("aerosol") == "none") table->removeAerosol();
+    if (table && from.given("aerosol")) from.text("aerosol") == "none" ? table->removeAerosol() : table->restoreAerosol();
   };
   if (r.given("library")) {
     const std::string name = r.text("library");

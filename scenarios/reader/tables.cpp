@@ -11,20 +11,26 @@ constexpr double kHalfTurn = 3.14159265358979324;
 constexpr double kLongestTime_s = 1e9;
 /// More than twice the way to the moon.
 constexpr double kFarthest_m = 1e9;
+/// Of an attitude given once, whole turns don't matter: so many are taken for a slip of a program that counts on, not of a unit. Waypoints: one.
+constexpr double kMostTurn = 200 * kHalfTurn;
 /// Beyond any fireball; spectral radiance is then far from the end of a float.
 constexpr double kHottest_K = 1e5;
 
+const std::vector<std::string> kAxes = {"+x", "-x", "+y", "-y", "+z", "-z"};
+
 /// Where something is: shared by entities, lights and cameras.
-void addPlacement(std::vector<Parameter>& p, bool attitude) {
+void addPlacement(std::vector<Parameter>& p, bool attitude, double mostTurn = kMostTurn) {
   p.push_back(
       within(vector3("position", "m", "east, north, up from the origin (or in the carrier's body axes: forward, left, up)"), -kFarthest_m, kFarthest_m));
   p.push_back(map("geodetic", "position as latitude, longitude, height instead"));
   if (attitude) {
-    p.push_back(
-        within(number("heading", "rad", "of the x axis, clockwise from north (on a carrier: from its forward axis); 90 deg unless given: x east, y north"),
-               -2 * kHalfTurn, 2 * kHalfTurn));
+    p.push_back(within(
+        number("heading", "rad",
+               "of the x axis, clockwise from north (on a carrier: from its forward axis); 90 deg unless given: x east, y north. An attitude, not a turn: "
+               "360 deg is 0 deg"),
+        -mostTurn, mostTurn));
     p.push_back(within(number("pitch", "rad", "nose up; 0 unless given"), -kHalfTurn, kHalfTurn));
-    p.push_back(within(number("roll", "rad", "right wing down; 0 unless given"), -2 * kHalfTurn, 2 * kHalfTurn));
+    p.push_back(within(number("roll", "rad", "right wing down; 0 unless given"), -mostTurn, mostTurn));
   }
   p.push_back(list("motion", "waypoints; orientation follows the path unless a waypoint gives one", 1, 100000));
   p.push_back(withDefault(choice("interpolation", {"smooth", "linear"}, "between waypoints: cubic with continuous velocity, or straight"), "smooth"));
@@ -50,7 +56,9 @@ const ParameterTable& scenario() {
       "scenario",
       "The file itself.",
       {text("name", "short name, written into every frame (default: the file's name)"), text("description", "one or two sentences"),
-       text("extends", "name of a scenario in the same folder, whose keys hold where this one has none: the same scene with other cameras"),
+       text("extends",
+            "a scenario whose keys hold where this one has none: the same scene with other cameras. A path relative to this file, within the folder above its "
+            "own; files that it names are found from its own folder"),
        withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL), "1"),
        map("origin", "where the local east-north-up frame stands on the earth"), map("time", "first frame, rate and number of frames"),
        map("limits", "what may come besides the scenario's own times, where poses and levels come live"), map("render", "how it is drawn"),
@@ -274,26 +282,38 @@ const ParameterTable& shape() {
   static const ParameterTable t{
       "shape",
       "",
-      {required(choice("model", {"plate", "box", "disc", "sphere", "ellipsoid", "cylinder", "cone", "terrain", "jet", "missile", "mesh"},
+      {required(choice("model", {"plate", "box", "disc", "sphere", "ellipsoid", "cylinder", "cone", "terrain", "ground", "jet", "missile", "mesh"},
                        "kind; body axes x forward, y left, z up; see the table of shapes")),
-       within(number("width", "m", "plate, box, ellipsoid: along y"), 1e-6, 1e7), within(number("height", "m", "plate, box, ellipsoid: along z"), 1e-6, 1e7),
+       within(number("width", "m", "plate, box, ellipsoid: along y"), 1e-6, 1e7),
+       within(number("height", "m", "plate, box, ellipsoid: along z"), 1e-6, 1e7),
        within(number("radius", "m", "disc, sphere, cylinder, cone (base)"), 1e-6, 1e7),
        within(number("top_radius", "m", "cone: at its +x end, 0 unless given"), 0, 1e7),
        within(number("length", "m", "cylinder, cone, box, ellipsoid: along x"), 1e-6, 1e7),
        withDefault(integer("segments", "disc, sphere, ellipsoid, cylinder, cone: around", 8, 2048), "64"),
        withDefault(boolean("capped", "cylinder, cone"), "true"),
        withDefault(choice("fit", {"inscribed", "equal_area"}, "sphere: vertices on it, or the same projected area"), "equal_area"),
-       within(number("size", "m", "terrain: side of the square"), 1e-3, 1e6), within(number("relief", "m", "terrain: height range"), 0, 1e4),
-       withDefault(integer("columns", "terrain: cells along a side", 1, 1024), "128"), withDefault(integer("terrain_seed", "terrain", 0, 1000000000), "1"),
-       map("height_map", "terrain: a texture of heights instead of noise"), text("file", "mesh: .obj .stl .ply .vtp .gltf .glb"),
-       within(number("unit", "m", "mesh: length of one unit of the file"), 1e-9, 1e9), within(number("scale", "", "factor on all lengths"), 1e-9, 1e9)}};
+       within(number("size", "m", "terrain: side of the square"), 1e-3, 1e6),
+       within(number("relief", "m", "terrain: height range"), 0, 1e4),
+       withDefault(integer("columns", "terrain: cells along a side", 1, 1024), "128"),
+       withDefault(integer("terrain_seed", "terrain", 0, 1000000000), "1"),
+       map("height_map", "terrain: a texture of heights instead of noise"),
+       within(number("extent", "m", "ground: how far it reaches from its position; 400 km unless given, the horizon from 12.5 km up"), 1, 1e6),
+       within(number("tile", "m",
+                     "ground: length over which u and v grow by 1 (a texture with `edges: repeat` begins anew); unless given they go from 0 to 1 "
+                     "over all of it"),
+              1e-3, 1e6),
+       text("file", "mesh: .obj .stl .ply .vtp .gltf .glb"),
+       within(number("unit", "m", "mesh: length of one unit of the file"), 1e-9, 1e9),
+       choice("forward", kAxes, "mesh: where its nose points in the axes of its file; +x unless given, of glTF +z"),
+       choice("up", kAxes, "mesh: where its upper side points in the axes of its file; +z unless given, of glTF +y (Blender writes OBJ with +y up)"),
+       within(number("scale", "", "factor on all lengths"), 1e-9, 1e9)}};
   return t;
 }
 
 const ParameterTable& waypoint() {
   static const ParameterTable t = [] {
     ParameterTable x{"waypoint", "", {required(within(number("time", "s", "rising"), -kLongestTime_s, kLongestTime_s))}};
-    addPlacement(x.parameters, true);
+    addPlacement(x.parameters, true, 2 * kHalfTurn);
     std::erase_if(x.parameters, [](const Parameter& p) { return p.key == "motion" || p.key == "interpolation" || p.key == "attached_to"; });
     return x;
   }();
@@ -319,7 +339,7 @@ const ParameterTable& camera() {
                      "16"),
          map("spectral", "wavelength sampling"), required(list("channels", "spectral channels", 1, 64)),
          map("spectral_image", "also writes <camera>_<frame>_spectral.exr, which `pitviper integrate` takes"),
-         list("truth", "extra layers: range, entity, temperature, normal, area, solid_angles", 0, 6),
+         list("truth", "extra layers: range, entity, temperature, normal, area, solid_angles, pixel_solid_angle (of each pixel's field, sr)", 0, 7),
          any("look_at", "name of an entity, or a position [x, y, z]")}};
     addPlacement(x.parameters, true);
     return x;

@@ -15,6 +15,10 @@ namespace pitviper {
 namespace {
 
 void addTruth(Frame& frame, const Camera& camera, const CameraImage& image) {
+  if (camera.truth.pixelSolidAngle) {
+    const std::vector<double>& omega_sr = image.solidAngles->plain_sr;
+    frame.layers.push_back({"truth.pixel_solid_angle", "sr", std::vector<float>(omega_sr.begin(), omega_sr.end())});
+  }
   if (image.truth.empty()) return;
   auto add = [&](const char* name, const char* unit, auto value) {
     FrameLayer layer{std::string("truth.") + name, unit, std::vector<float>(image.truth.size())};
@@ -38,6 +42,12 @@ void addTruth(Frame& frame, const Camera& camera, const CameraImage& image) {
     add("solid_angle_from_light", "sr", [](const TruthPixel& p) { return p.solidAngleFromLight_sr; });
     add("solid_angle_of_aperture", "sr", [](const TruthPixel& p) { return p.solidAngleOfAperture_sr; });
   }
+}
+
+/// How wavelengths were chosen. A spectral image has its own: no plan is made for it.
+void addMode(Frame& frame, const SpectralSampling& sampling) {
+  const bool planned = sampling.accuracy > 0.0 && frame.kind.empty();
+  frame.attributes.push_back({"pitviper.mode", std::string(sampling.reference ? "reference" : planned ? "planned" : "sampled")});
 }
 
 /// What was asked of the plan, and what it expects: of a channel's quantities the worst.
@@ -91,6 +101,7 @@ void addUnits(Frame& frame, const std::vector<ChannelOutput>& outputs) {
     char band[64];
     std::snprintf(band, sizeof band, "%.6g to %.6g", o.bandLow_um, o.bandHigh_um);
     frame.attributes.push_back({"band_um." + o.layer(), std::string(band)});
+    if (!o.cut.empty()) frame.attributes.push_back({"pitviper.response_cut." + o.layer(), o.cut});
   }
 }
 
@@ -106,6 +117,7 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   const Pinhole& p = camera.pinhole;
   addOptics(frame, p, camera.exposure_s);
   add("pitviper.samples", camera.samples);
+  addMode(frame, camera.spectral);
   const Pose pose = cameraPose(camera.mount, state);
   const Geodetic g = sim.frame.toGeodetic(pose.position);
   constexpr double kDegrees = 180.0 / kPi;

@@ -18,6 +18,7 @@ struct ChannelOutput {
   double scale = 1.0;
   bool perEtendue = false;
   double bandLow_um = 0.0, bandHigh_um = 0.0;
+  std::string cut;  ///< what of its response is left out for want of data, in words; empty: nothing (coverage.hpp)
   std::string layer() const { return channel + "." + quantity; }
 };
 

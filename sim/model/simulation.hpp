@@ -36,6 +36,8 @@ struct SpectralBins {
 /// Extra layers a camera can be asked for.
 struct TruthLayers {
   bool range = false, entity = false, normal = false, temperature = false, area = false, solidAngles = false;
+  bool pixelSolidAngle = false;  ///< of the camera alone: nothing is drawn for it
+  /// What has to be drawn.
   bool any() const { return range || entity || normal || temperature || area || solidAngles; }
 };
 

@@ -67,8 +67,8 @@ Spectrum fromRows(std::vector<Row> rows, const std::string& axisUnit, const Loca
     if (i > 0 && (falls ? r.x >= rows[i - 1].x : r.x <= rows[i - 1].x))
       throw UserError(r.where, std::string("the ") + (axis == Axis::Wavenumber ? "wavenumbers" : "wavelengths") + " of " + std::string(name) + " do not rise",
                       "each above the one before", "sort the table and remove duplicates");
-    const double w = axis == Axis::Wavenumber ? 1e4 / (r.x * perCm) : *convert({r.x, axisUnit}, "um");
-    if (!(w >= kShortestWavelength_um * (1 - 1e-9) && w <= kLongestWavelength_um * (1 + 1e-9)))
+    const double w = onAxis(axis == Axis::Wavenumber ? 1e4 / (r.x * perCm) : *convert({r.x, axisUnit}, "um"));
+    if (!(w >= kShortestWavelength_um && w <= kLongestWavelength_um))
       throw UserError(r.where, "a wavelength of " + std::string(name) + " is outside the spectral axis", "0.1 to 1000 um (10 to 100000 1/cm)",
                       "check the unit of the first column");
     const double value = *convert({r.y, valueUnit}, canonical);
@@ -106,6 +106,12 @@ double plainNumber(const Value& v, std::string_view name) {
 }
 
 }  // namespace
+
+double onAxis(double wavelength_um) {
+  for (double end : {kShortestWavelength_um, kLongestWavelength_um})
+    if (std::abs(wavelength_um / end - 1.0) < 1e-9) return end;  // far above rounding, far below any width of a band
+  return wavelength_um;
+}
 
 const ParameterTable& spectrumTable() {
   static const ParameterTable table{
@@ -229,7 +235,7 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
     s = readLibrary(r.text("library"), r.where("library"), unit, name, beyond, depth + 1);
   } else if (kind == "band") {
     const auto& b = r.value("band").items;
-    const double low = readNumber(b[0], "um", "band edge"), high = readNumber(b[1], "um", "band edge");
+    const double low = onAxis(readNumber(b[0], "um", "band edge")), high = onAxis(readNumber(b[1], "um", "band edge"));
     if (!(low >= kShortestWavelength_um && high <= kLongestWavelength_um && low < high))
       throw UserError(r.where("band"), "the band of " + std::string(name) + " is empty or outside the spectral axis", "rising edges within 0.1 to 1000 um",
                       "write [3 um, 5 um]");

@@ -24,6 +24,9 @@ struct SpectrumFiles {
   std::shared_ptr<std::size_t> rowsRead = std::make_shared<std::size_t>(0);
 };
 
+/// An end of the spectral axis that a change of unit has rounded past it (1000 um, 10 1/cm) put back; other wavelengths [um] as they are.
+double onAxis(double wavelength_um);
+
 /// How a spectrum may be written; for the key reference.
 const ParameterTable& spectrumTable();
 

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "sim/model/coverage.hpp"
 #include "sim/plan/fine_grid.hpp"
 
 namespace pitviper {
@@ -25,48 +25,6 @@ bool sameKernel(const Spectrum& a, const Spectrum& b) {
     }
   }
   return true;
-}
-
-std::string micrometres(double v) {
-  char s[32];
-  std::snprintf(s, sizeof s, "%.6g um", v);
-  return s;
-}
-
-/// Every spectrum the scene can be asked for, over the bands of the channels.
-class CoverageCheck {
- public:
-  CoverageCheck(double low, double high, const ChannelOutput& starved) : low_(low), high_(high), starved_(starved) {}
-
-  void operator()(const std::string& what, const Location& where, double validLow, double validHigh,
-                  const std::string& fix = "extend its table, narrow the channel, or declare 'outside: hold' or 'outside: zero' if that is true") const {
-    if (validLow <= low_ * (1 + 1e-12) && validHigh >= high_ * (1 - 1e-12)) return;
-    throw UserError(where, what + " has no data for channel '" + starved_.channel + "' (" + micrometres(low_) + " to " + micrometres(high_) + ")",
-                    "a spectrum that covers the channel's band; this one covers " + micrometres(validLow) + " to " + micrometres(validHigh), fix);
-  }
-  /// What to do about a table made by a program that counts in wavenumbers.
-  std::string wavenumbers() const {
-    char s[96];
-    std::snprintf(s, sizeof s, "make the table from %.0f to %.0f 1/cm or more, or narrow the channel", std::floor(1e4 / high_), std::ceil(1e4 / low_));
-    return s;
-  }
-  void operator()(const std::string& what, const Location& where, const Spectrum& s) const { (*this)(what, where, s.validLow(), s.validHigh()); }
-
- private:
-  double low_, high_;
-  const ChannelOutput& starved_;
-};
-
-void checkCoverage(const Simulation& sim, const ChannelOutput& output) {
-  const CoverageCheck check(output.kernel.supportLow(), output.kernel.supportHigh(), output);
-  for (const auto& m : sim.materials) check("material '" + m->name + "'", m->where, m->validLow_um(), m->validHigh_um());
-  if (sim.path && !sim.path->where().file.empty())  // a table that somebody made: nothing may be declared of what is outside it
-    check("the atmosphere", sim.path->where(), sim.path->validLow_um(), sim.path->validHigh_um(), check.wavenumbers());
-  else if (sim.path) check("the atmosphere", output.where, sim.path->validLow_um(), sim.path->validHigh_um());
-  for (const auto& l : sim.lights) check("light '" + l.name + "'", output.where, l.intensity);
-  if (sim.sun) check("the sun", output.where, sim.sun->irradiance);
-  if (sim.ambient) check("ambient", output.where, *sim.ambient);
-  check("the background", output.where, sim.background);
 }
 
 /// The user's sampling of a response; narrow lines of the scene, which it would step over or hit by chance, have nodes of their own.
@@ -100,7 +58,7 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
 
   std::vector<const ChannelOutput*> slots;
   for (const auto& output : outputs) {
-    checkCoverage(sim, output);
+    requireData(sim, output);
     auto same = std::find_if(slots.begin(), slots.end(), [&](const auto* s) { return sameKernel(s->kernel, output.kernel); });
     plan.slotOfOutput.push_back(static_cast<int>(same - slots.begin()));
     if (same == slots.end()) slots.push_back(&output);

@@ -265,4 +265,40 @@ Mesh makeTerrain(double size_m, int columns, int rows, const std::vector<float>&
   return finished(std::move(mesh), false);
 }
 
+Mesh makeGround(double extent_m, double earthRadius_m, double tile_m) {
+  requireLength(extent_m, "a ground's extent must be positive");
+  requireLength(earthRadius_m, "the earth's radius must be positive");
+  require(std::isfinite(tile_m) && tile_m >= 0.0, "a ground's tile must be 0 or more");
+  require(extent_m < 0.5 * earthRadius_m, "a ground reaches less than half the earth's radius");
+  // A facet from r1 to r2 lies (r2 - r1)2 / 8R below the sphere in its middle: rings grow by a seventh to 10 km (2 m); 256 sectors add
+  // (r dphi)2 / 8R, 1.9 m at 400 km.
+  constexpr double kFirst_m = 100.0, kGrowth = 1.15, kWidest_m = 1e4;
+  constexpr int kSectors = 256;
+  std::vector<double> radius_m;
+  for (double r = std::min(kFirst_m, extent_m); r < extent_m; r = std::min(r * kGrowth, r + kWidest_m)) radius_m.push_back(r);
+  if (radius_m.size() > 1 && extent_m - radius_m.back() < 0.02 * extent_m) radius_m.pop_back();
+  radius_m.push_back(extent_m);
+  Mesh mesh;
+  const double perTurn = tile_m > 0.0 ? tile_m : 2.0 * extent_m, middle = tile_m > 0.0 ? 0.0 : 0.5;
+  auto add = [&](double x, double y) {
+    const double r2 = x * x + y * y, down = std::sqrt(earthRadius_m * earthRadius_m - r2);
+    addVertex(mesh, {x, y, -r2 / (earthRadius_m + down)}, glm::dvec3(x, y, down) / earthRadius_m, middle + x / perTurn, middle + y / perTurn);
+  };
+  add(0.0, 0.0);
+  for (double r : radius_m)
+    for (int i = 0; i < kSectors; ++i) {
+      const glm::dvec3 d = around(i, kSectors);
+      add(r * d.y, r * d.z);
+    }
+  auto at = [](size_t ring, int i) { return static_cast<std::uint32_t>(1 + ring * kSectors + static_cast<size_t>(i % kSectors)); };
+  for (int i = 0; i < kSectors; ++i) mesh.triangles.emplace_back(0u, at(0, i), at(0, i + 1));
+  for (size_t ring = 0; ring + 1 < radius_m.size(); ++ring)
+    for (int i = 0; i < kSectors; ++i) {
+      mesh.triangles.emplace_back(at(ring, i), at(ring + 1, i), at(ring + 1, i + 1));
+      mesh.triangles.emplace_back(at(ring, i), at(ring + 1, i + 1), at(ring, i + 1));
+    }
+  mesh.heightField = true;
+  return finished(std::move(mesh), false);
+}
+
 }  // namespace pitviper

@@ -65,4 +65,9 @@ Mesh makeTerrain(const TerrainShape& shape);
 /// size_m is the extent along x.
 Mesh makeTerrain(double size_m, int columns, int rows, const std::vector<float>& heights_m);
 
+/// Level ground: a cap of the earth's sphere below the x-y plane that touches it at the origin, out to `extent_m` measured in that plane, z up, with
+/// the sphere's normals. Facets grow with distance: they lie at most 4 m below the sphere, within 10 km of the origin 0.1 m. u runs along x, v along
+/// y: from 0 to 1 over all of it, or by 1 in each `tile_m` from the origin where that is above 0. Not closed. The extent is below half the radius.
+Mesh makeGround(double extent_m, double earthRadius_m, double tile_m = 0.0);
+
 }  // namespace pitviper

@@ -38,6 +38,8 @@ struct Entity {
   int parent = -1;  ///< motion is then in that entity's body frame
   glm::vec3 boundingCentre{0.0f};
   float boundingRadius_m = 0.0f;
+  std::string meshFile;        ///< as the scenario names it, of a mesh from a file; else empty
+  double metresPerUnit = 0.0;  ///< that its unit and scale give
 };
 
 /// Point light: intensity(lambda) x level(t) [W/(sr um)].

@@ -75,8 +75,8 @@ TEST_F(PlanCommand, AScenarioExtendsAnother) {
   EXPECT_TRUE(has(bad, "other.yaml:1:10: a scenario that is extended extends another itself")) << bad;
   put("nowhere.yaml", "extends: nothing.yaml\n");
   EXPECT_TRUE(has(run("check nowhere.yaml").second, "nowhere.yaml:1:10: cannot read the file"));
-  put("above.yaml", "extends: ../base.yaml\n");
-  EXPECT_TRUE(has(run("check above.yaml").second, "above.yaml:1:10: not the name of a scenario beside this one"));
+  put("above.yaml", "extends: ../../base.yaml\n");
+  EXPECT_TRUE(has(run("check above.yaml").second, "above.yaml:1:10: not the name of a scenario near this one"));
   EXPECT_TRUE(has(run("check other.yaml --set extends=further.yaml").second, "cannot be set from outside"));
 }
 

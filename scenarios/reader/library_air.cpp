@@ -1,0 +1,45 @@
+#include "scenarios/reader/library_air.hpp"
+
+#include <algorithm>
+
+#include "scenarios/reader/tables.hpp"
+#include "scenarios/reader/yaml_tree.hpp"
+
+namespace pitviper {
+
+std::vector<LibraryAir> libraryAirs(const Libraries& libraries) {
+  std::vector<LibraryAir> all;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(libraries.atmosphere, ignored)) {
+    if (entry.path().extension() != ".yaml") continue;
+    const Value tree = loadYaml(entry.path(), {entry.path().string(), 0, 0, -1});
+    const Record r(tree, tables::airLibrary());
+    all.push_back({entry.path().stem().string(), r.given("description") ? r.text("description") : ""});
+  }
+  std::sort(all.begin(), all.end(), [](const LibraryAir& a, const LibraryAir& b) { return a.name < b.name; });
+  return all;
+}
+
+AbsorberTable libraryAirTable(const std::string& name, const Libraries& libraries) {
+  const auto airs = libraryAirs(libraries);
+  if (std::none_of(airs.begin(), airs.end(), [&](const LibraryAir& a) { return a.name == name; })) {
+    std::vector<std::string> names;
+    std::string all;
+    for (const auto& a : airs) names.push_back(a.name), all += (all.empty() ? "" : ", ") + a.name;
+    const std::string near = nearestWord(name, names);
+    throw UserError({name, 0, 0, -1}, "there is no such file and no such library air", "a file of air, or one of " + all,
+                    near.empty() ? "check the name" : "did you mean '" + near + "'?");
+  }
+  const auto file = libraries.atmosphere / (name + ".yaml");
+  const Value tree = loadYaml(file, {file.string(), 0, 0, -1});
+  const Record r(tree, tables::airLibrary());
+  if (!r.given("table"))
+    throw UserError(r.where(), "this library air has no table: it is homogeneous, its extinction is in the file", "a library air with 'table'",
+                    "read the file itself");
+  AbsorberTable table = AbsorberTable::read(libraries.atmosphere / r.text("table"));
+  if (r.given("visibility")) table.setVisibility(1e-3 * r.number("visibility"));
+  if (r.given("aerosol") && r.text("aerosol") == "none") table.removeAerosol();
+  return table;
+}
+
+}  // namespace pitviper
