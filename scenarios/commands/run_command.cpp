@@ -166,6 +166,24 @@ void noteOrder(const Frame& f, std::set<std::string>& told) {
   }
 }
 
+/// By so much light scattered more than once must brighten a channel to be worth a word.
+constexpr double kWorthSaying = 1.1;
+
+void sayScatteredAgain(const std::string& camera, const std::string& channel, double factor) {
+  std::fprintf(stderr,
+               "note: camera %s, channel %s: light that the air scatters more than once is left out; with it pixels would be about %.2g times as bright "
+               "(two-stream estimate, within a factor of 2)\n",
+               camera.c_str(), channel.c_str(), factor);
+}
+
+/// Once per camera and channel.
+void noteScattering(const Frame& f, std::set<std::string>& told) {
+  const std::string begin = "pitviper.scattered_again.";
+  for (const auto& a : f.attributes)
+    if (a.name.rfind(begin, 0) == 0 && std::get<double>(a.value) > kWorthSaying && told.insert(f.camera + "/" + a.name).second)
+      sayScatteredAgain(f.camera, a.name.substr(begin.size()), std::get<double>(a.value));
+}
+
 /// Once a run: what the plan was not made for.
 void noteLimits(const Frame& f, bool& told) {
   for (const auto& a : f.attributes)
@@ -209,6 +227,7 @@ int runCommand(const Arguments& arguments) {
       [&](const Frame& f) {
         noteOrder(f, told);
         noteLimits(f, toldOfLimits);
+        noteScattering(f, told);
         writeFrame(out, f, mayReplace);
         if (previews && f.kind.empty()) writePreview(out, f, ranges, mayReplace);
         total.add(f);
@@ -247,6 +266,8 @@ int checkCommand(const Arguments& arguments) {
     std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
                 count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),
                 count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths").c_str());
+    for (const ScatteredAgain& s : ScatteringCheck(sim, c, plan).at(advance(sim.entities, sim.lights, sim.time.at(0))))
+      if (s.factor > kWorthSaying) sayScatteredAgain(c.name, s.channel, s.factor);
     if (!c.spectralImage) continue;
     const auto passes = spectralPasses(c);
     for (const auto& pass : passes) makeTables(sim, makePlan(sim, pass.outputs, pass.spectral, pass.where));

@@ -33,6 +33,8 @@ class Builder {
   void readSun(const Record& scenario);
   void readAmbient(const Record& scenario);
   void readMaterials(const Record& scenario);
+  /// After materials and air.
+  void readGround(const Record& scenario);
   void readEntities(const Record& scenario);
   void readLights(const Record& scenario);
   void readCameras(const Record& scenario);
@@ -83,6 +85,7 @@ class Builder {
                           Outside outside = Outside::Error);
   Spectrum blackOrGiven(const Record& r, const char* what) const;
 
+  std::optional<double> homogeneousAir_K_;
   SpectralSampling accuracy_;  ///< of cameras without a sampling of their own
   Simulation& simulation_;
   std::filesystem::path base_;  ///< folder of the scenario

@@ -127,6 +127,7 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     b.readAmbient(r);
     b.readAccuracy(r);
     b.readMaterials(r);
+    b.readGround(r);
     b.readEntities(r);
     if (sim.mode == RenderMode::Direct && sim.hasTransparent())
       throw UserError(Record(r.value("render"), tables::render()).where("mode"), "direct mode cannot draw what is seen through something transparent",

@@ -1,5 +1,6 @@
 // Origin, time, air, background, sun and ambient light.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -204,6 +205,7 @@ void Builder::readAtmosphere(const Record& scenario) {
     throw UserError(r.where(), "air without an extinction, a table or a library name", "'library', 'table', 'extinction', 'tape7' or 'csv'",
                     "add 'library: hazy_us76' or 'extinction: 0.2 /km'");
   if (r.given("top")) air.top_m = r.number("top");
+  homogeneousAir_K_ = air.temperature_K;
   simulation_.path = makeHomogeneousAir(std::move(air));
 }
 
@@ -227,6 +229,33 @@ Spectrum Builder::blackOrGiven(const Record& r, const char* what) const {
 void Builder::readBackground(const Record& scenario) {
   if (!scenario.given("background")) return;
   simulation_.background = blackOrGiven(Record(scenario.value("background"), tables::background()), "background");
+}
+
+void Builder::readGround(const Record& scenario) {
+  const bool given = scenario.given("ground");
+  if (!given && !simulation_.path->isLayered()) return;
+  Value none;
+  none.kind = Value::Kind::Map;
+  none.where = scenario.where();
+  const Record r(given ? scenario.value("ground") : none, tables::ground());
+  Surface ground;
+  if (r.given("material")) {
+    ground.material = materialNamed(r.value("material"));
+    const Material& m = simulation_.materialOf(ground);
+    if (m.isTransparent() || m.hasModifiers())
+      throw UserError(r.where("material"), "the ground's material '" + m.name + "' is " + (m.isTransparent() ? "transparent" : "textured"),
+                      "an opaque material without textures", "choose another, or lay a body over the ground");
+  } else {
+    ground.material = static_cast<int>(simulation_.materials.size());
+    auto black = std::make_shared<Material>();
+    black->name = "black ground";
+    simulation_.materials.push_back(std::move(black));
+  }
+  const auto air = simulation_.path->stationsAt({0.0, 1.0, simulation_.frame.earthRadius_m()}, std::array{0.0});
+  ground.temperature_K = r.given("temperature") ? r.number("temperature") : homogeneousAir_K_ ? *homogeneousAir_K_ : air.front().temperature_K;
+  if (!r.given("temperature") && !(ground.temperature_K > 0.0))
+    throw UserError(r.where(), "a ground without a temperature, under air that has none", "a temperature", "add 'temperature: 288 K'");
+  simulation_.ground = ground;
 }
 
 void Builder::readAmbient(const Record& scenario) {

@@ -66,10 +66,11 @@ const ParameterTable& scenario() {
             "relative error of a pixel that the plan may spend on wavelengths, tables and terms left out, `1 %` for example, or `reference`: every wavelength "
             "in double precision on the CPU, slow; without it: 1 % in layered air and air from tables, else as each camera's `spectral` says"),
        any("atmosphere", "the air: `none`, the name of a library air, or a map"),
-       map("background", "what is behind everything (0 K unless given), seen through the air"), map("sun", "direction and irradiance"),
-       map("ambient", "radiance of a uniform dome that lights all surfaces"), map("materials", "name: material; library materials need not be listed"),
-       list("lights", "spectral point lights", 0, 1024), list("entities", "bodies", 0, 4096), list("cameras", "sensors", 0, 64),
-       list("probes", "irradiance meters", 0, 256)}};
+       map("background", "what is behind everything (0 K unless given), seen through the air"),
+       map("ground", "the earth's surface where bodies end: under layered air it is always there, black unless this says otherwise"),
+       map("sun", "direction and irradiance"), map("ambient", "radiance of a uniform dome that lights all surfaces"),
+       map("materials", "name: material; library materials need not be listed"), list("lights", "spectral point lights", 0, 1024),
+       list("entities", "bodies", 0, 4096), list("cameras", "sensors", 0, 64), list("probes", "irradiance meters", 0, 256)}};
   return t;
 }
 
@@ -157,6 +158,16 @@ const ParameterTable& airLibrary() {
 const ParameterTable& background() {
   static const ParameterTable t{
       "background", "One of the two.", {within(number("temperature", "K", "black body"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance")}};
+  return t;
+}
+
+const ParameterTable& ground() {
+  static const ParameterTable t{
+      "ground",
+      "The sphere at height 0 that stands for the earth, where lines of sight end that meet no body and go down (beyond the edge of a terrain too). Lit by "
+      "the sun and ambient light; bodies cast no shadows on it, lamps do not light it. With it, or under air with a top, the earth hides the sun.",
+      {any("material", "a name, or a material written out, opaque and without textures; black unless given"),
+       within(number("temperature", "K", "that of the air at height 0 (homogeneous air: its own) unless given"), 0, kHottest_K)}};
   return t;
 }
 
@@ -414,9 +425,9 @@ const ParameterTable& probe() {
 }
 
 std::vector<const ParameterTable*> all() {
-  return {&scenario(),      &render(),   &origin(),    &time(),      &limits(),  &atmosphere(), &airLibrary(),   &background(),    &sun(),    &ambient(),
-          &spectrumTable(), &material(), &component(), &tableAxis(), &texture(), &emission(),   &transmission(), &light(),         &entity(), &part(),
-          &shape(),         &waypoint(), &geodetic(),  &camera(),    &film(),    &channel(),    &spectral(),     &spectralImage(), &sensor(), &probe()};
+  return {&scenario(),      &render(),   &origin(),    &time(),      &limits(),  &atmosphere(), &airLibrary(),    &background(), &ground(), &sun(),  &ambient(),
+          &spectrumTable(), &material(), &component(), &tableAxis(), &texture(), &emission(),   &transmission(),  &light(),      &entity(), &part(), &shape(),
+          &waypoint(),      &geodetic(), &camera(),    &film(),      &channel(), &spectral(),   &spectralImage(), &sensor(),     &probe()};
 }
 
 }  // namespace pitviper::tables

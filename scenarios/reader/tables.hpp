@@ -14,6 +14,7 @@ const ParameterTable& limits();
 const ParameterTable& atmosphere();
 const ParameterTable& airLibrary();
 const ParameterTable& background();
+const ParameterTable& ground();
 const ParameterTable& sun();
 const ParameterTable& ambient();
 const ParameterTable& material();

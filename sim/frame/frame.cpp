@@ -148,6 +148,7 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   addTruth(frame, camera, image);
   addMetadata(frame, sim, camera, state);
   addAccuracy(frame, camera, image);
+  for (const ScatteredAgain& s : image.scatteredAgain) frame.attributes.push_back({"pitviper.scattered_again." + s.channel, s.factor});
   if (!image.transparentOrder.empty()) frame.attributes.push_back({"pitviper.transparent_order", image.transparentOrder});
   return frame;
 }

@@ -97,6 +97,8 @@ void addTo(Fingerprint& f, const Simulation& sim) {
   }
   addTo(f, sim.ambient);
   addTo(f, sim.background);
+  f.add(sim.ground.has_value());
+  if (sim.ground) f.add(sim.ground->material).add(sim.ground->temperature_K);
   f.add(sim.path != nullptr);
   if (sim.path) sim.path->addTo(f);
 }

@@ -104,6 +104,7 @@ struct Simulation {
   std::optional<Sun> sun;
   std::optional<Spectrum> ambient;  ///< radiance of a uniform dome [W/(m2 sr um)]
   Spectrum background;              ///< radiance behind everything [W/(m2 sr um)]
+  std::optional<Surface> ground;    ///< of the earth's sphere, where lines of sight end that meet no body and go down
   std::shared_ptr<const Path> path;
   std::vector<Camera> cameras;
   std::vector<Probe> probes;
@@ -112,8 +113,8 @@ struct Simulation {
   const Medium* mediumOf(const Entity& e) const {  ///< what fills it, or null
     return e.surfaces.empty() || !materialOf(e.surfaces.front()).medium ? nullptr : &*materialOf(e.surfaces.front()).medium;
   }
-  /// The earth, a sphere, is there and hides the sun: under air with a top.
-  bool overEarth() const { return path && path->top_m() < physics::kFar; }
+  /// The earth, a sphere, is there and hides the sun: under air with a top, or where it has a ground.
+  bool overEarth() const { return ground || (path && path->top_m() < physics::kFar); }
   bool isTransparent(const Entity& e) const {  ///< any of its surfaces
     return std::any_of(e.surfaces.begin(), e.surfaces.end(), [this](const Surface& s) { return materialOf(s).isTransparent(); });
   }

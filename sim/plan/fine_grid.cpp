@@ -6,11 +6,14 @@
 namespace pitviper {
 namespace {
 
-/// Usual bins; of the far infrared, where 5 1/cm are a half of the wavelength, no more than a part of it: the middle of a bin is then within 1e-4 of its
-/// mean on the steepest flank of Planck's law that matters (c2 / (lambda T) = 50: 50^2 / 24 x 0.01^2 = 1 % there, where 1e-15 of its light is).
+/// Usual bins; of the far infrared, where 5 1/cm are a half of the wavelength, no more than a part of it: with x = c2 / (lambda T)
+/// the middle of a bin is off Planck's mean by up to x^2 / 24 x 0.01^2: 1e-4 at x = 5, where most of its light is, and of either sign.
 constexpr double kWidth_per_cm = 5.0, kWidth_um = 1e-3, kPart = 0.01;
-/// A bin is cut at a spectrum's bends where its middle is farther from its mean than this part of its largest value there.
-constexpr double kBent = 1e-3;
+/// Even bins, as wide as is usual in the middle, over what widths grow by no more than this (8-12 um: 2.25); else over so many times a wavelength each.
+constexpr double kEven = 2.5, kSteps = 1.1;
+/// A bin is cut at a spectrum's bends where its middle is farther from its mean than this part of its largest value there: the grain of
+/// air's own bands, of either sign, is averaged over a band's bins; lines are not.
+constexpr double kBent = 5e-3;
 /// Cuts of a bin that one spectrum may ask for; of more bends every second, third ... is taken.
 constexpr size_t kMostCuts = 32;
 /// Air's own bends are edges where they lie no closer than this part of a usual bin.
@@ -65,12 +68,18 @@ std::vector<Bin> usualBins(const Spectrum& kernel, std::span<const double> own) 
   }
   std::sort(all.begin(), all.end());
   std::vector<Bin> bins;
-  for (size_t i = 0; i + 1 < all.size(); ++i) {
-    const int parts = std::max(1, static_cast<int>((all[i + 1] - all[i]) / widthAt(0.5 * (all[i] + all[i + 1])) + 0.999));
+  const auto even = [&bins](double from, double to) {
+    const int parts = std::max(1, static_cast<int>((to - from) / widthAt(0.5 * (from + to)) + 0.999));
     for (int b = 0; b < parts; ++b) {
-      const double a = all[i] + (all[i + 1] - all[i]) * b / parts, e = all[i] + (all[i + 1] - all[i]) * (b + 1) / parts;
+      const double a = from + (to - from) * b / parts, e = from + (to - from) * (b + 1) / parts;
       bins.push_back({a, e, 0.5 * (a + e)});
     }
+  };
+  for (size_t i = 0; i + 1 < all.size(); ++i) {
+    const double from = all[i], to = all[i + 1], grown = widthAt(to) / widthAt(from);
+    const int parts = grown <= kEven ? 1 : static_cast<int>(std::ceil(std::log(to / from) / std::log(kSteps)));
+    for (int p = 0; p < parts; ++p)
+      even(p == 0 ? from : from * std::pow(to / from, static_cast<double>(p) / parts), p + 1 == parts ? to : from * std::pow(to / from, (p + 1.0) / parts));
   }
   return bins;
 }

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/model/ground.hpp"
 #include "sim/radiance/air_places.hpp"
 #include "sim/radiometry/physics.hpp"
 
@@ -16,8 +17,8 @@ class Teller {
   Teller(const RadianceScene& scene, const LineOfSight& line, double end_m, TermSink& sink)
       : scene_(scene), sim_(scene.simulation), line_(line), sink_(sink), air_(scene, line, placesOf(line, end_m)) {}
 
-  /// As far as its end; `shining` or only what lies on the way.
-  void run(bool shining) {
+  /// As far as its end, where something solid may be met; `shining` or only what lies on the way.
+  void run(bool shining, const Hit* solid = nullptr) {
     dark_ = !shining;
     sink_.restart();
     std::vector<const Hit*> panes;
@@ -34,7 +35,7 @@ class Teller {
     }
     if (!shining) return;
     const std::array behind{Factor::background()};
-    if (line_.hits.solid.entity >= 0) surface(line_.hits.solid, places.back());
+    if (solid) surface(*solid, places.back());
     else if (!sim_.background.isZero()) sink_.term({TermKind::Background, 1.0, behind, nullptr});
   }
 
@@ -50,9 +51,6 @@ class Teller {
     return at;
   }
 
-  const Surface& surfaceOf(const Hit& hit) const {
-    return sim_.entities[static_cast<size_t>(hit.entity)].surfaces[static_cast<size_t>(hit.surface)];
-  }
   double modifier(int texture, const Hit& hit) const { return texture < 0 ? 1.0 : textureValue(sim_.textures[static_cast<size_t>(texture)], hit.uv); }
 
   void segment(const AirPlace& near, const AirPlace& far) {
@@ -71,7 +69,7 @@ class Teller {
   double viewAngle(const Hit& hit) const { return std::acos(std::clamp(-glm::dot(hit.normal, line_.direction), 0.0, 1.0)); }
 
   void pane(const Hit& hit) {
-    const Material& m = sim_.materialOf(surfaceOf(hit));
+    const Material& m = sim_.materialOf(surfaceAt(sim_, hit));
     sink_.pane(Factor::transmittance(m, viewAngle(hit)), m.transmission ? modifier(m.transmission->modifier, hit) : 1.0);
   }
 
@@ -80,13 +78,13 @@ class Teller {
   }
 
   void surface(const Hit& hit, const AirPlace& place) {
-    const Surface& s = surfaceOf(hit);
+    const Surface& s = surfaceAt(sim_, hit);
     const Material& m = sim_.materialOf(s);
     std::vector<double> modifiers;
     for (int texture : m.modifiers) modifiers.push_back(modifier(texture, hit));
     const bool textured = s.temperatureTexture >= 0;
     const double temperature_K = textured ? textureValue(sim_.textures[static_cast<size_t>(s.temperatureTexture)], hit.uv)
-                                 : line_.temperature_K > 0.0 ? line_.temperature_K
+                                 : line_.temperature_K > 0.0 && hit.entity >= 0 ? line_.temperature_K
                                                              : s.temperature_K;
     if ((m.transmission ? scene_.terms.layer : scene_.terms.solid).isGeneral()) {
       const double angle = viewAngle(hit);
@@ -117,7 +115,8 @@ class Teller {
       const bool sun = l == sim_.lights.size();
       const LightLeg leg = lightLeg(sim_, scene_.state, hit, l);
       double strength = leg.factor * (sun ? 1.0 : scene_.state.lightLevels[l]);
-      if (strength > 0.0 && scene_.lit) strength *= scene_.lit(hit, l, leg);
+      if (hit.entity < 0 && !sun) continue;  // lamps do not light the ground beyond all bodies, nor does anything shade it
+      if (strength > 0.0 && scene_.lit && hit.entity >= 0) strength *= scene_.lit(hit, l, leg);
       if (!(strength > 0.0)) continue;
       const glm::dvec3 light = inNormalFrame(hit.normal, leg.toLight);
       AirAmounts both;
@@ -149,7 +148,9 @@ const char* nameOf(TermKind kind) {
 }
 
 void radianceAlong(const RadianceScene& scene, const LineOfSight& line, TermSink& sink) {
-  Teller(scene, line, line.hits.solid.entity >= 0 ? line.hits.solid.distance : physics::kFar, sink).run(true);
+  const std::optional<Hit> ground = line.hits.solid.entity >= 0 ? std::nullopt : groundHit(scene.simulation, line.origin, line.direction);
+  const Hit* solid = ground ? &*ground : line.hits.solid.entity >= 0 ? &line.hits.solid : nullptr;
+  Teller(scene, line, solid ? solid->distance : physics::kFar, sink).run(true, solid);
 }
 
 void wayAlong(const RadianceScene& scene, const LineOfSight& line, double range_m, TermSink& sink) { Teller(scene, line, range_m, sink).run(false); }

@@ -26,6 +26,7 @@ constexpr Real kFar = 1e30;
 #include "sim/radiometry/glsl/chord.glsl"
 #include "sim/radiometry/glsl/exponential.glsl"
 #include "sim/radiometry/glsl/geometry.glsl"
+#include "sim/radiometry/glsl/ground.glsl"
 #include "sim/radiometry/glsl/medium.glsl"
 #include "sim/radiometry/glsl/planck.glsl"
 #include "sim/radiometry/glsl/sun_disc.glsl"

@@ -132,6 +132,8 @@ void AirTables::update(const View& view, const WorldState& state) {
                                       static_cast<double>(entity.boundingRadius_m));
   }
   for (const auto& light : state.lights) farthest = std::max(farthest, glm::length(light - view.position));
+  const double radius = simulation_.frame.earthRadius_m(), above = std::max(simulation_.frame.height(view.position), 0.0);
+  if (simulation_.ground) farthest = std::max(farthest, std::sqrt(above * (2.0 * radius + above)));  // the ground as far as the horizon
   if (serves(view, low, high, farthest)) return;
   const double margin = kMargin * (high - low);
   grid_ = {view.position, simulation_.frame.height(view.position), sunAcrossOf(view), std::max(low - margin, -1.0), std::min(high + margin, 1.0),
@@ -188,8 +190,11 @@ void AirTables::fillElevation(const View& view, int e, const std::vector<double>
   const double height = simulation_.frame.height(view.position), radius = simulation_.frame.earthRadius_m();
   const size_t nodes = plan_.nodes.size(), values = static_cast<size_t>(values_), parts = static_cast<size_t>(parts_),
                columns = static_cast<size_t>(ranges_) + 1;
-  const double x = spread(grid_.low) + (spread(grid_.high) - spread(grid_.low)) * e / (elevations_ - 1), sine = x * std::abs(x);
-  const AirRay ray{height, sine, radius};
+  const auto sineOf = [this](int row) {
+    const double x = spread(grid_.low) + (spread(grid_.high) - spread(grid_.low)) * row / (elevations_ - 1);
+    return x * std::abs(x);
+  };
+  const double sine = sineOf(e);
   RaySun sun;
   if (plan_.terms.scatteredSun) {
     sun.sinElevation = glm::dot(simulation_.sun->toSun, simulation_.frame.up(view.position));
@@ -201,23 +206,43 @@ void AirTables::fillElevation(const View& view, int e, const std::vector<double>
     entry = root <= 0.0 || b >= 0.0 ? physics::kFar : -q2 / (std::sqrt(root) - b);
   }
   const auto ranges = rangesFrom(std::min(entry, 1e12));
-  const SunlitAir line(path, ray, path.stationsAt(ray, ranges), plan_.terms.scatteredSun ? plan_.sunLegs.get() : nullptr, sun);
+  const auto lineAt = [&](double sineAt) {
+    RaySun at = sun;
+    if (plan_.terms.scatteredSun) at.cosScatter = sineAt * sun.sinElevation + std::sqrt(std::max(1.0 - sineAt * sineAt, 0.0)) * grid_.sunAcross;
+    const AirRay along{height, sineAt, radius};
+    return SunlitAir(path, along, path.stationsAt(along, ranges), plan_.terms.scatteredSun ? plan_.sunLegs.get() : nullptr, at);
+  };
+  const SunlitAir line = lineAt(sine);
+  // Below the horizon nothing is seen through the earth: between the last row there and the next the sky is mixed with that on the horizon.
+  const double above = std::max(height, 0.0), horizon = -std::sqrt(above * (2.0 * radius + above)) / (radius + above);
+  std::optional<SunlitAir> onHorizon;
+  if (simulation_.ground && sine < horizon && sineOf(e + 1) >= horizon) onHorizon = lineAt(horizon);
   float* amount = &amounts[static_cast<size_t>(e) * columns * static_cast<size_t>(4 * vectors_)];
   for (size_t r = 0; r < columns; ++r) {
     // At the beginning of the air: the density there. Towards space: the whole amount.
     const double length_km = r == 0 || r + 1 == columns ? 1.0 : 1e-3 * (ranges[r] - ranges[0]);
     const size_t s = r + 1 == columns ? ranges.size() - 1 : r;
-    const AirAmounts a = r == 0 ? path.densities(line.stations.empty() ? height : line.stations[0].height_m) : line.stations[s].amounts;
+    const AirAmounts a = onHorizon && r + 1 == columns ? onHorizon->stations.back().amounts
+                         : r == 0                      ? path.densities(line.stations.empty() ? height : line.stations[0].height_m)
+                                                       : line.stations[s].amounts;
     for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) *amount++ = static_cast<float>(logOf(a.amount[k] / length_km));
   }
   std::vector<double> source(line.stations.size());
+  const auto radianceOf = [&](const SunlitAir& along, size_t i) {
+    for (size_t s = 0; s < source.size(); ++s) source[s] = along.stations[s].temperature_K > 0.0 ? planck(i, along.stations[s].temperature_K) : 0.0;
+    AirRadiance found = airRadiance(plan_.nodes[i].air, along, source);
+    // Emission is kept as what it differs from that of air of one temperature, which the shader works out by the pixel's own depth.
+    for (size_t s = 0; s < found.depth.size(); ++s) found.thermal[s] -= black_[i] * physics::oneMinusExp(found.depth[s]);
+    return found;
+  };
   for (size_t i = 0; i < nodes; ++i) {
-    for (size_t s = 0; s < source.size(); ++s) source[s] = line.stations[s].temperature_K > 0.0 ? planck(i, line.stations[s].temperature_K) : 0.0;
-    AirRadiance found = airRadiance(plan_.nodes[i].air, line, source);
+    AirRadiance found = radianceOf(line, i);
+    if (onHorizon) {
+      const AirRadiance sky = radianceOf(*onHorizon, i);
+      found.thermal.back() = sky.thermal.back();
+      if (!sky.haze.empty()) found.molecules.back() = sky.molecules.back(), found.haze.back() = sky.haze.back();
+    }
     for (size_t part = 0; part < parts; ++part) {
-      // Emission is kept as what it differs from that of air of one temperature, which the shader works out by the pixel's own depth.
-      if (part == 0)
-        for (size_t s = 0; s < found.depth.size(); ++s) found.thermal[s] -= black_[i] * physics::oneMinusExp(found.depth[s]);
       const auto& sent = part == 0 ? found.thermal : part == 1 ? found.molecules : found.haze;
       const double strength = part == 0 ? 1.0 : sunIrradiance_[i];
       for (size_t r = 0; r < columns; ++r) {

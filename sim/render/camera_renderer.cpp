@@ -10,6 +10,7 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
     : simulation_(simulation),
       camera_(camera),
       plan_(planFor(simulation, {&camera, nullptr})),
+      scattering_(simulation, camera, plan_),
       solidAngles_(std::make_shared<const Pinhole::SolidAngles>(camera.pinhole.solidAngles())) {
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
   const double area_m2 = camera.pinhole.apertureArea_m2();
@@ -78,6 +79,7 @@ CameraImage CameraRenderer::finish() {
   resolved.slotOfOutput = plan_.slotOfOutput;
   resolved.solidAngles = solidAngles_;
   resolved.transparentOrder = transparentOrder_;
+  resolved.scatteredAgain = scattering_.at(state_);
   resolved.accuracy = plan_.accuracy;
   resolved.predictedError = plan_.predictedError;
   return resolved;

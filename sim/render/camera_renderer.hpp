@@ -36,6 +36,7 @@ class CameraRenderer {
   const Simulation& simulation_;
   const Camera& camera_;
   Plan plan_;
+  ScatteringCheck scattering_;
   std::unique_ptr<ReferencePass> reference_;  ///< instead of the other two
   std::unique_ptr<DirectPass> direct_;        ///< both where auto has to choose frame by frame
   std::unique_ptr<BufferedPass> buffered_;

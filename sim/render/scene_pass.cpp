@@ -80,6 +80,7 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.constants["LIGHTS"] = plan_.lightCount;
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
   slots.constants["SUN"] = simulation_.sun && plan_.lightCount > 0 ? 1 : 0;
+  slots.constants["GROUND"] = tables_.ground;
   slots.constants["SUN_SETS"] = simulation_.overEarth() ? 1 : 0;
   // Of four lights a vec4 at each node [W/(sr um)], the sun as irradiance; and radiance of the dome.
   slots.generated["light_nodes"] = plan_.lightCount > 0 ? "  vec4 nodeLight[NODES * LIGHT_GROUPS];\n" : "";
@@ -139,27 +140,30 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
     const glm::dmat3 bodyFromCamera = bodyFromLocal * v.localFromCamera;
     const glm::dvec3 origin = cameraFromLocal * (pose.position - v.position);
     for (int r = 0; r < 3; ++r) g.row[r] = glm::vec4(bodyFromCamera[0][r], bodyFromCamera[1][r], bodyFromCamera[2][r], origin[r]);
-    const Surface* s = item.entity < 0 ? nullptr : &simulation_.entities[static_cast<size_t>(item.entity)].surfaces[static_cast<size_t>(item.surface)];
+    const Surface* s = item.kind == DrawKind::Ground ? &*simulation_.ground
+                       : item.entity < 0             ? nullptr
+                                                     : &simulation_.entities[static_cast<size_t>(item.entity)].surfaces[static_cast<size_t>(item.surface)];
     g.table = {item.row, item.material, s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u, static_cast<unsigned>(item.entity + 1)};
     const size_t lightRow = static_cast<size_t>(item.entity + 1);
     const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
     g.state = {s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
     g.fine = {origin.z - static_cast<double>(static_cast<float>(origin.z)), 0.0, 0.0, 0.0};
     glm::vec4* row = &lights[lightRow * stride];
-    if (plan_.lightCount > 0 && item.entity >= 0 && row->x == 0.0f) {  // once for all surfaces of a body
+    const bool ground = item.kind == DrawKind::Ground;
+    if (plan_.lightCount > 0 && (item.entity >= 0 || ground) && row->x == 0.0f) {  // once for all surfaces of a body
       // Few lights have a place each, many are listed one after the other: lights_few.glsl, lights_many.glsl.
       const bool few = plan_.lightCount <= kFewLights;
       auto add = [&](const glm::dvec3& place, double radius_m, size_t number, bool matters) {
         if (!few && !matters) return;
         const size_t k = few ? number : static_cast<size_t>(row->x);
         row[2 * k + 1] = glm::vec4(place, radius_m);
-        const auto casters = shadows_ && matters ? shadows_->castersOf(static_cast<size_t>(item.entity), number) : ShadowPass::Range{};
+        const auto casters = shadows_ && matters && !ground ? shadows_->castersOf(static_cast<size_t>(item.entity), number) : ShadowPass::Range{};
         row[2 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, 0.0f);
         row->x += 1.0f;
       };
       for (size_t l = 0; l < simulation_.lights.size(); ++l)
         add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l,
-            (truth_ && l == 0) || relevance_.matters(static_cast<size_t>(item.entity), l, state));
+            !ground && ((truth_ && l == 0) || relevance_.matters(static_cast<size_t>(item.entity), l, state)));
       if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true);
     }
     draws.push_back(g);

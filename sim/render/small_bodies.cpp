@@ -36,6 +36,7 @@ View zoomedView(const Simulation& sim, const WorldState& state, const View& v, i
   z.tanPerPixelX = z.tanPerPixelY = 2.04 * radius / std::sqrt(distance * distance - radius * radius) / size;
   z.axisX = z.axisY = 0.5 * size;
   z.onlyEntity = entity;
+  z.zoomed = true;
   z.depthCentre = centre;
   z.depthRadius_m = 1.02 * radius;
   return z;

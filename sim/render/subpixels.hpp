@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/plan/plan.hpp"
+#include "sim/plan/scattered_again.hpp"
 #include "sim/render/scene_pass.hpp"
 
 namespace pitviper {
@@ -24,11 +25,12 @@ struct CameraImage {
   int width = 0, height = 0;
   std::vector<std::vector<double>> slots;  ///< [slot][pixel], kernel unit x W/(m2 sr)
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles;
-  std::vector<TruthPixel> truth;       ///< per pixel, or empty
-  std::vector<int> slotOfOutput;       ///< from the plan
-  std::string transparentOrder;        ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view
-  double accuracy = 0.0;               ///< from the plan, and so its error per slot
-  std::vector<double> predictedError;  ///< empty where no accuracy was asked for
+  std::vector<TruthPixel> truth;               ///< per pixel, or empty
+  std::vector<int> slotOfOutput;               ///< from the plan
+  std::string transparentOrder;                ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view
+  std::vector<ScatteredAgain> scatteredAgain;  ///< channels in which light scattered more than once would matter
+  double accuracy = 0.0;                       ///< from the plan, and so its error per slot
+  std::vector<double> predictedError;          ///< empty where no accuracy was asked for
 };
 
 class Subpixels {

@@ -312,6 +312,10 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   appendMaterial(t.solid, Material{}, plan);  // black: its row is its radiance
 
   t.draws.push_back({DrawKind::Background, -1, -1, appendRow(t.solid, sim, plan, nullptr), background});
+  if (sim.ground) {
+    t.ground = static_cast<int>(t.draws.size());
+    t.draws.push_back({DrawKind::Ground, -1, -1, appendRow(t.solid, sim, plan, &*sim.ground), at[static_cast<size_t>(sim.ground->material)]});
+  }
   for (size_t e = 0; e < sim.entities.size(); ++e) {
     const Entity& entity = sim.entities[e];
     if (const Medium* medium = sim.mediumOf(entity)) {

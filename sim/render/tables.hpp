@@ -20,9 +20,9 @@ struct GpuMaterial {
 };
 static_assert(sizeof(GpuMaterial) == 96);
 
-enum class DrawKind { Background, Solid, Layer, Medium };
+enum class DrawKind { Background, Ground, Solid, Layer, Medium };
 
-/// A drawn part: entity and surface; the background is the first draw and has entity -1. A medium is one draw for its whole body.
+/// A drawn part: entity and surface; the background is the first draw and has entity -1, as has the ground, which pixels of the background find. A medium is one draw for its whole body.
 struct DrawItem {
   DrawKind kind = DrawKind::Background;
   int entity = -1;
@@ -47,6 +47,7 @@ struct SurfaceTables {
 
 struct RenderTables {
   std::vector<DrawItem> draws;
+  int ground = -1;             ///< its draw, where the scene has one
   SurfaceTables solid, layer;  ///< the background's material is the last solid one
   std::vector<float> media;    ///< vec4 (absorption [1/m], source radiance, 0, 0) per node
   std::vector<float> node;     ///< vec4 per node: extinction, source radiance, c2 / lambda, c1L / lambda^5

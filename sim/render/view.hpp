@@ -17,6 +17,7 @@ struct View {
   glm::dvec3 position{0.0};         ///< local frame
   glm::dmat3 localFromCamera{1.0};
   double near_m = 0.1;
+  bool zoomed = false;                              ///< many pixels on a small body
   int onlyEntity = -1;                              ///< shade this entity alone, behind whatever hides it; -1: everything
   glm::dvec3 depthCentre{0.0};                      ///< with onlyEntity: depth has its digits around this place (local frame) ...
   double depthRadius_m = 1.0;                       ///< ... within this distance

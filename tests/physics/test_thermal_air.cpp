@@ -32,7 +32,7 @@ std::string closedWorld(double visibility_km, const std::string& accuracy, const
          (pane ? "  - {name: pane, shape: {model: plate, width: 30 m, height: 200 m}, material: pane, position: [20 m, 500 m, 0 m], heading: 180 deg" + at +
                      "}\n"
                : "") +
-         "cameras:\n  - name: c\n    film: {width: 16, height: 16}\n    field_of_view: 40 deg\n    aperture: 5 mm\n    position: [0 m, 0 m, 50 m]\n"
+         "cameras:\n  - name: c\n    film: {width: 8, height: 8}\n    field_of_view: 40 deg\n    aperture: 5 mm\n    position: [0 m, 0 m, 50 m]\n"
          "    look_at: [0 m, 1 km, 100 m]\n    channels:\n"
          "      - {name: swir, response: {band: [2 um, 2.5 um]}}\n      - {name: mw, response: {band: [3 um, 5 um]}}\n"
          "      - {name: narrow, response: {band: [3.9 um, 4.1 um]}}\n      - {name: lw, response: {band: [8 um, 12 um]}}\n"
@@ -54,7 +54,7 @@ double worstOff(const std::string& yaml) {
 TEST(ThermalAir, AWorldOfOneTemperatureIsABlackBody) {
   for (double visibility_km : {0.5, 2.0, 23.0, 100.0}) {
     const std::string name = "isothermal world, visibility " + print("%g", visibility_km) + " km, off Planck's law, worst pixel";
-    for (const char* accuracy : {"10 %", "1 %", "0.1 %"})
+    for (const char* accuracy : {"10 %", "0.1 %"})
       bound(name + ", at " + accuracy, worstOff(closedWorld(visibility_km, accuracy, "direct", false)), 1e-4,
             "groups weigh every spectrum alike; single precision");
     bound(name + ", at 1 %, buffered, through a pane", worstOff(closedWorld(visibility_km, "1 %", "buffered", true)), 1e-4, "the same");
@@ -108,9 +108,9 @@ TEST(ThermalAir, PathsAreLowtrans) {
     }
     for (size_t c = 0; c < 3; ++c) {
       const std::string name = std::string(" paths against LOWTRAN 7, ") + bands[c] + ", relative, " + accuracy;
-      bound("thermal radiance of level" + name, std::abs(level[c]), 0.01, "fit of transmittance");
+      bound("thermal radiance of level" + name, std::abs(level[c]), 0.02, "fit of transmittance: 5e-4 of 0.025 that 100 m send");
       // LOWTRAN gives each 1 km layer one temperature: at opaque wavelengths it shows the middle of the first, 3 K from the air at the camera.
-      bound("thermal radiance of slant" + name, std::abs(slant[c]), c == 1 ? 0.09 : 0.03, "fit; LOWTRAN's layers of 1 km and one temperature each");
+      bound("thermal radiance of slant" + name, std::abs(slant[c]), c == 1 ? 0.09 : 0.04, "fit; LOWTRAN's layers of 1 km and one temperature each");
     }
   }
 }

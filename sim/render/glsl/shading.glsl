@@ -2,6 +2,7 @@
 // fragment, the pixel's projected solid angle and the aperture turn it into flux afterwards.
 //@use sim/radiometry/glsl/planck.glsl
 //@use sim/radiometry/glsl/geometry.glsl
+//@use sim/radiometry/glsl/ground.glsl
 //@constants
 //@use sim/render/glsl/ray.glsl
 //@use sim/render/glsl/node_block.glsl
@@ -38,17 +39,19 @@ Real nodeRadiance(int i) { return pathSeen(i, air_, selfRadiance(i)) + reflected
 
 // id: draw (0 is the background), triangle; where in the picture [pixels from the lower left].
 void lookAt(uvec2 id, vec2 pixel) {
-  draw_ = draws[id.x];
   prepareRay(pixel);
+  // What meets no body and goes down ends at the ground.
+  float ground = GROUND >= 0 && id.x == 0u ? groundRange(view.up.w, sinElevation_, view.earth.x) : kFar;
+  draw_ = draws[ground < kFar ? uint(max(GROUND, 0)) : id.x];
   vec3 d = inBody(draw_, ray_);
-  isSurface_ = id.x == 0u ? 0.0 : 1.0;
+  isSurface_ = id.x == 0u && ground >= kFar ? 0.0 : 1.0;
   toViewer_ = -d / rayLength_;
   normal_ = toViewer_;
   facet_ = toViewer_;
   cosView_ = 1.0;
   point_ = vec3(0.0);
   uv_ = vec2(0.0);
-  range_ = kFar;
+  range_ = max(ground, 1.0e-6);
   if (id.x != 0u) {
     Meeting m = meet(id.y, pointOnPlane(draw_), d);
     vec4 a = vertices[m.corner.x], b = vertices[m.corner.y], c = vertices[m.corner.z];
@@ -66,6 +69,12 @@ void lookAt(uvec2 id, vec2 pixel) {
   vec3 upThere;
   height_ = heightAt(range_, upThere);
   up_ = inBody(draw_, upThere);
+  if (ground < kFar) {
+    height_ = min(view.up.w, 0.0);
+    normal_ = up_;
+    facet_ = up_;
+    cosView_ = max(dot(normal_, toViewer_), 1.0e-6);
+  }
   sunElevation_ = dot(upThere, view.sun.xyz);
   air_ = airFromCamera(range_);
   prepareSurface();

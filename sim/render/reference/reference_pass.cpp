@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <future>
+#include <optional>
 #include <thread>
 
 #include "sim/render/reference/reference_pixel.hpp"
@@ -48,36 +49,40 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
   const size_t groups = static_cast<size_t>(plan().groupCount());
   std::vector<std::vector<float>> channels(groups, std::vector<float>(4 * static_cast<size_t>(width) * static_cast<size_t>(height), 0.0f));
   const ReferenceShader shader(simulation_, plan(), view_, state_, drawn_);
-  const auto seenAt = [&](int x, int y, NodeSum& sum) -> ReferencePixel {
+  // The line of a pixel that counts.
+  const auto lineAt = [&](int x, int y) -> std::optional<LineOfSight> {
     const size_t p = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
     const DrawItem& item = tables().draws[identity[2 * p]];
     if (view_.onlyEntity >= 0 && item.entity != view_.onlyEntity) return {};
     if (view_.wanted && !(*view_.wanted)[p]) return {};
     SeenTriangle seen;
     if (item.entity >= 0) seen = {item.entity, identity[2 * p + 1] - sharedScene()->firstTriangle(item.entity)};
-    return shader.pixel(x, y, seen, sum);
+    return shader.line(x, y, seen);
   };
   const auto put = [&](int x, int y, const std::vector<double>& slots) {
     const size_t p = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
     for (size_t s = 0; s < slots.size(); ++s) channels[s / 4][4 * p + s % 4] = static_cast<float>(slots[s]);
   };
   // A zoomed view of a small body by tiles, a picture by rows.
-  const bool zoomed = view_.onlyEntity >= 0 || view_.wanted;
+  const bool zoomed = view_.zoomed;
   const int columns = zoomed ? (width + ZoomedTile::kSize - 1) / ZoomedTile::kSize : 1;
   const int pieces = zoomed ? columns * ((height + ZoomedTile::kSize - 1) / ZoomedTile::kSize) : height;
   std::atomic<int> next{0};
   auto work = [&](bool tells) {
     NodeSum sum(shader.spectra());
-    ZoomedTile tile([&](int x, int y) {
-      ReferencePixel pixel = seenAt(x, y, sum);
-      return ZoomedTile::Seen{std::move(pixel.slots), pixel.things};
-    });
+    ZoomedTile tile(
+        [&](int x, int y) {
+          const auto line = lineAt(x, y);
+          return line ? ReferenceShader::things(line->hits) : 0;
+        },
+        [&](int x, int y) { return shader.shade(*lineAt(x, y), sum).slots; });
     for (int piece = next++; piece < pieces; piece = next++) {
       if (zoomed) {
         const int x = piece % columns * ZoomedTile::kSize, y = piece / columns * ZoomedTile::kSize;
         tile.fill(x, y, std::min(ZoomedTile::kSize, width - x), std::min(ZoomedTile::kSize, height - y), put);
       } else {
-        for (int x = 0; x < width; ++x) put(x, piece, seenAt(x, piece, sum).slots);
+        for (int x = 0; x < width; ++x)
+          if (const auto line = lineAt(x, piece)) put(x, piece, shader.shade(*line, sum).slots);
       }
       // More views than were announced: the picture is as good as done.
       if (tells && progress_) progress_(std::min((viewsDone_ + std::min(1.0, static_cast<double>(next) / pieces)) / views_, 1.0));

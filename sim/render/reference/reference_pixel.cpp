@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/ground.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -45,7 +46,7 @@ ReferencePixel ReferenceShader::pixel(int x, int y) const {
   return pixel(x, y, sum);
 }
 
-ReferencePixel ReferenceShader::pixel(int x, int y, const SeenTriangle& seen, NodeSum& sum) const {
+LineOfSight ReferenceShader::line(int x, int y, const SeenTriangle& seen) const {
   LineOfSight line = lineThrough(x + 0.5, y + 0.5);
   RayHits& hits = line.hits;
   if (seen.entity >= 0) hits.solid = hitOf(simulation_, state_, line.origin, line.direction, seen.entity, seen.triangle);
@@ -58,7 +59,7 @@ ReferencePixel ReferenceShader::pixel(int x, int y, const SeenTriangle& seen, No
     hits.layers = std::move(all.layers);
     hits.stretches = std::move(all.stretches);
   }
-  return shade(line, sum);
+  return line;
 }
 
 bool ReferenceShader::meets(int x, int y, int entity) const {
@@ -80,10 +81,7 @@ std::vector<double> ReferenceShader::transmittance(double farthest_m) const {
   return sum.transmittance();
 }
 
-namespace {
-
-/// Of the surface, and of panes and media before it whatever their order.
-std::size_t thingsOf(const RayHits& hits) {
+std::size_t ReferenceShader::things(const RayHits& hits) {
   const auto one = [](int entity, int surface) { return std::hash<long long>()((static_cast<long long>(entity) << 20) + surface + 2); };
   std::size_t all = 0x9e3779b97f4a7c15u ^ one(hits.solid.entity, hits.solid.surface) * 3;
   for (const Hit& h : hits.layers) all += one(h.entity, h.surface) * 0xff51afd7ed558ccdu;
@@ -91,17 +89,15 @@ std::size_t thingsOf(const RayHits& hits) {
   return all | 1u;
 }
 
-}  // namespace
-
 ReferencePixel ReferenceShader::shade(const LineOfSight& line, NodeSum& sum) const {
   sum.begin();
   radianceAlong(scene(), line, sum);
   ReferencePixel pixel;
   const Hit& solid = line.hits.solid;
   pixel.entity = solid.entity;
-  pixel.things = thingsOf(line.hits);
   pixel.surface = solid.surface;
-  pixel.range_m = solid.entity >= 0 ? solid.distance : physics::kFar;
+  const auto ground = solid.entity >= 0 ? std::nullopt : groundHit(simulation_, line.origin, line.direction);
+  pixel.range_m = ground ? ground->distance : solid.entity >= 0 ? solid.distance : physics::kFar;
   pixel.radiance.assign(sum.radiance().begin(), sum.radiance().end());
   pixel.slots.assign(static_cast<size_t>(plan_.slotCount), 0.0);
   for (size_t s = 0; s < pixel.slots.size(); ++s)

@@ -16,7 +16,6 @@ struct ReferencePixel {
   int entity = -1;
   int surface = -1;
   double range_m = 0.0;
-  std::size_t things = 0;  ///< the same for pixels that see the same surface through the same things; 0: not worked out
 };
 
 /// What the visibility pass found; entity -1: the background.
@@ -33,8 +32,11 @@ class ReferenceShader {
   /// The centre of pixel (x, y), counted from the lower left: what a ray meets.
   ReferencePixel pixel(int x, int y, NodeSum& sum) const;
   ReferencePixel pixel(int x, int y) const;
-  /// The same, given which triangle it sees.
-  ReferencePixel pixel(int x, int y, const SeenTriangle& seen, NodeSum& sum) const;
+  /// The line of sight of the same, given which triangle it sees; and what comes along a line.
+  LineOfSight line(int x, int y, const SeenTriangle& seen) const;
+  ReferencePixel shade(const LineOfSight& line, NodeSum& sum) const;
+  /// The same number, not 0, for lines that meet the same surface through the same panes and media.
+  static std::size_t things(const RayHits& hits);
   /// Whether the ray through its centre meets a body at all, whatever hides it.
   bool meets(int x, int y, int entity) const;
   /// Per node, of everything transparent on the line through the middle of the view as far as a depth.
@@ -46,7 +48,6 @@ class ReferenceShader {
   RadianceScene scene() const;
   LineOfSight lineThrough(double x, double y) const;
   double nearest_m(double x, double y) const;
-  ReferencePixel shade(const LineOfSight& line, NodeSum& sum) const;
   const Simulation& simulation_;
   const Plan& plan_;
   const View& view_;

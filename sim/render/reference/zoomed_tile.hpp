@@ -6,28 +6,30 @@
 
 namespace pitviper {
 
-/// A square of pixels. Where the corners of a part of it see the same things and its middle is what lies between them, the rest is linear between; else
+/// A square of pixels. Where all of a part of it see the same things and its middle is what lies between its corners, the rest is linear between; else
 /// the part is cut in four, down to single pixels: outlines, edges and shadows are followed.
 class ZoomedTile {
  public:
-  struct Seen {
-    std::vector<double> slots;
-    std::size_t things = 0;  ///< what is seen; 0: nothing that counts
-  };
-  /// `see`: works a pixel out.
-  explicit ZoomedTile(std::function<Seen(int x, int y)> see) : see_(std::move(see)) {}
+  using Things = std::function<std::size_t(int x, int y)>;
+  using Slots = std::function<std::vector<double>(int x, int y)>;
+  /// `things`: the same number for pixels that see the same, 0 where nothing counts; `slots`: works a pixel out.
+  ZoomedTile(Things things, Slots slots) : thingsAt_(std::move(things)), slotsAt_(std::move(slots)) {}
   /// Pixels from (x, y) on, `width` x `height` of them; `put` takes each of those that see something.
   void fill(int x, int y, int width, int height, const std::function<void(int x, int y, const std::vector<double>& slots)>& put);
   static constexpr int kSize = 32;
 
  private:
-  const Seen& at(int x, int y);
+  std::size_t index(int x, int y) const { return static_cast<std::size_t>(y - y_) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x - x_); }
+  const std::vector<double>& at(int x, int y);
   void part(int x0, int y0, int x1, int y1);
+  bool seesOne(int x0, int y0, int x1, int y1) const;
   bool isLinear(int x0, int y0, int x1, int y1);
 
-  std::function<Seen(int, int)> see_;
+  Things thingsAt_;
+  Slots slotsAt_;
   int x_ = 0, y_ = 0, width_ = 0;
-  std::vector<std::optional<Seen>> seen_;
+  std::vector<std::size_t> things_;
+  std::vector<std::optional<std::vector<double>>> seen_;
 };
 
 }  // namespace pitviper

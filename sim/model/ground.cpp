@@ -1,0 +1,22 @@
+#include "sim/model/ground.hpp"
+
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+
+std::optional<Hit> groundHit(const Simulation& sim, const glm::dvec3& origin, const glm::dvec3& direction) {
+  if (!sim.ground) return std::nullopt;
+  const double range = physics::groundRange(sim.frame.height(origin), glm::dot(direction, sim.frame.up(origin)), sim.frame.earthRadius_m());
+  if (range >= physics::kFar) return std::nullopt;
+  Hit hit;
+  hit.distance = range;
+  hit.point = origin + range * direction;
+  hit.normal = hit.facet = sim.frame.up(hit.point);
+  return hit;
+}
+
+const Surface& surfaceAt(const Simulation& sim, const Hit& hit) {
+  return hit.entity < 0 ? *sim.ground : sim.entities[static_cast<size_t>(hit.entity)].surfaces[static_cast<size_t>(hit.surface)];
+}
+
+}  // namespace pitviper

@@ -1,0 +1,16 @@
+#pragma once
+// The ground under a scene: where a line of sight that meets no body and goes down ends.
+#include <optional>
+
+#include "sim/model/ray_hits.hpp"
+
+namespace pitviper {
+
+/// The earth's sphere at height 0 as a ray meets it (from below it: at once), entity -1, or none where the scene has no ground or the ray passes it
+/// by. Bodies are seen before it even where they reach below the sphere. direction of unit length.
+std::optional<Hit> groundHit(const Simulation& simulation, const glm::dvec3& origin, const glm::dvec3& direction);
+
+/// What a hit is the surface of: an entity's, or the ground.
+const Surface& surfaceAt(const Simulation& simulation, const Hit& hit);
+
+}  // namespace pitviper
