@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
@@ -87,6 +88,35 @@ TEST(SmallBodies, HiddenBehindAnother) {
       "[{name: mw, response: {band: [3 um, 5 um]}}]}\n";
   EXPECT_GT(sum(layer(renderFrame(scene(head + cam)), "mw.radiance")), 0.0);
   EXPECT_EQ(sum(layer(renderFrame(scene(head + wall + cam)), "mw.radiance")), 0.0);
+}
+
+/// Radiance of the middle pixel: a warm wall begins 0.2 pixels left of its middle, which sees only the dark behind; before the part of it that the
+/// wall fills lies a square of 0.16 pixels, of something transparent. 8 um to 12 um.
+double overAnEdge(const std::string& square, const std::string& accuracy) {
+  const double pixel_m = 2.0 * std::tan(kPi / 180.0) / 33.0 * 1000.0;
+  char text[1024];
+  std::snprintf(
+      text, sizeof text,
+      "background: {temperature: 0 K}\naccuracy: %s\nmaterials: {filter: {transmission: {transmittance: 0}}}\nentities:\n"
+      "  - {name: wall, shape: {model: plate, width: 100 m, height: 100 m}, material: blackbody, temperature: 300 K, position: [%.9g m, 1010 m, 0 m]}\n"
+      "  - {name: square, shape: {model: plate, width: %.9g m, height: %.9g m}, material: filter, temperature: %s, position: [%.9g m, 1000 m, 0 m]}\n"
+      "cameras:\n  - {name: c, film: {width: 33, height: 33}, field_of_view: 2 deg, aperture: 20 mm, position: [0 m, 0 m, 0 m], heading: 0 deg,\n"
+      "     channels: [{name: lw, response: {band: [8 um, 12 um]}}]}\n",
+      accuracy.c_str(), -50.0 - 0.2 * 1.01 * pixel_m, 0.16 * pixel_m, 0.16 * pixel_m, square.c_str(), -0.35 * pixel_m);
+  std::string yaml(text);
+  for (const char* name : {"1010 m, 0 m]", "1000 m, 0 m]"}) yaml.insert(yaml.find(name) + std::string(name).size(), ", heading: 180 deg");
+  const CameraImage image = renderImage(scene(yaml));
+  for (double l : image.slots[0]) EXPECT_GE(l, 0.0);
+  return image.slots[0][16 * 33 + 16];
+}
+
+// What a body hides is no more than what the pixel has: its middle alone was looked at for the rest of the scene.
+TEST(SmallBodies, HideNoMoreThanThereIs) {
+  for (const std::string accuracy : {"1 %", "reference"}) {
+    EXPECT_EQ(overAnEdge("0 K", accuracy), 0.0);
+    figure("square of 0.16 pixels at 600 K over an edge, " + accuracy, overAnEdge("600 K", accuracy), 0.16 * 0.16 * blackBodyBand(8, 12, 600), 1e-2,
+           "0.16^2 B; silhouette on 256 x 256, a pixel's tangent for its solid angle");
+  }
 }
 
 }  // namespace

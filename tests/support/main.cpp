@@ -92,8 +92,9 @@ class Names : public testing::EmptyTestEventListener {
 };
 
 [[noreturn]] void watch() {
-  // A fuzz test that was asked to be long is one test.
-  const bool isLong = std::getenv("PITVIPER_FUZZ") != nullptr || std::getenv("PITVIPER_FUZZ_AIR") != nullptr || std::getenv("PITVIPER_KILLS") != nullptr;
+  // A fuzz test that was asked to be long is one test, and so is a long promise.
+  const bool isLong = std::getenv("PITVIPER_FUZZ") != nullptr || std::getenv("PITVIPER_FUZZ_AIR") != nullptr || std::getenv("PITVIPER_KILLS") != nullptr ||
+                      std::getenv("PITVIPER_PROMISE") != nullptr;
   const double perSecond = static_cast<double>(sysconf(_SC_CLK_TCK));
   unsigned long long before = 0, begin = 0;
   for (int idle = 0;; std::this_thread::sleep_for(kBetween)) {
