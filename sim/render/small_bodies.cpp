@@ -173,14 +173,29 @@ void put(Subpixels& image, const FineSubpixels& fine) {
   }
 }
 
+bool anyOf(const std::vector<char>& flags) {
+  return std::any_of(flags.begin(), flags.end(), [](char f) { return f != 0; });
+}
+
+/// The samples of a zoomed view that fall into wanted subpixels.
+std::shared_ptr<const std::vector<char>> marksOf(const Subpixels& image, const View& z, const std::vector<char>& wanted) {
+  auto marks = std::make_shared<std::vector<char>>(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
+  eachSample(image, z, [&](size_t q, size_t p, double, double) { (*marks)[q] = wanted[p]; });
+  return marks;
+}
+
 /// A solid body that nothing transparent is near: where it shows it takes the place of what is behind it.
 void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, const std::vector<char>& drawn, int samples,
-               FineSubpixels& fine) {
-  const View z = zoomedView(sim, state, image.view(), entity, zoomedSize(extentOf(sim, state, image.view(), entity), samples));
+               const std::vector<char>* wanted, FineSubpixels& fine) {
+  View z = zoomedView(sim, state, image.view(), entity, zoomedSize(extentOf(sim, state, image.view(), entity), samples));
+  if (wanted) {
+    z.wanted = marksOf(image, z, *wanted);
+    if (!anyOf(*z.wanted)) return;
+  }
   pass.draw(z, state, drawn);
   pass.startReadback(false, true);
   const RawImage zoomed = pass.finishReadback();
-  gather(image, z, zoomed, sharesOf(image, z, zoomed, [&](size_t q) { return zoomed.entity[q] == entity; }), fine);
+  gather(image, z, zoomed, sharesOf(image, z, zoomed, [&](size_t q) { return zoomed.entity[q] == entity && (!wanted || (*z.wanted)[q]); }), fine);
 }
 
 /// Bodies that are seen through something or that something is seen through, all in their places in every picture. A direction is sampled by the
@@ -197,11 +212,12 @@ class MixedBodies {
     }
   }
   /// `others`: what else is in the picture.
-  void draw(Subpixels& image, ScenePass& pass, std::vector<char> drawn, FineSubpixels& fine) const {
+  void draw(Subpixels& image, ScenePass& pass, std::vector<char> drawn, const std::vector<char>* wanted, FineSubpixels& fine) const {
     for (int e : bodies_) drawn[static_cast<size_t>(e)] = 1;
     for (size_t i = 0; i < views_.size(); ++i) {
       View z = views_[i];
-      z.wanted = meeting(image, i);
+      z.wanted = meeting(image, i, wanted);
+      if (!anyOf(*z.wanted)) continue;
       pass.draw(z, state_, drawn);
       pass.startReadback(false, true);
       const RawImage zoomed = pass.finishReadback();
@@ -211,10 +227,11 @@ class MixedBodies {
 
  private:
   /// Marks the samples of a view that meet one of the bodies, and that no finer view has.
-  std::shared_ptr<const std::vector<char>> meeting(const Subpixels& image, size_t index) const {
+  std::shared_ptr<const std::vector<char>> meeting(const Subpixels& image, size_t index, const std::vector<char>* wanted) const {
     const View& z = views_[index];
     auto marks = std::make_shared<std::vector<char>>(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
-    eachSample(image, z, [&](size_t q, size_t, double, double) {
+    eachSample(image, z, [&](size_t q, size_t p, double, double) {
+      if (wanted && !(*wanted)[p]) return;
       const glm::dvec3 ray = z.ray(static_cast<double>(q % static_cast<size_t>(z.width)) + 0.5, static_cast<double>(q / static_cast<size_t>(z.width)) + 0.5);
       const glm::dvec3 direction = z.localFromCamera * ray / glm::length(ray);
       for (size_t j = 0; j < index; ++j)
@@ -245,7 +262,7 @@ std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state
 }
 
 void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small,
-                    const std::vector<char>& present, int zoomedSamples) {
+                    const std::vector<char>& present, int zoomedSamples, const std::vector<char>* wanted) {
   const View& v = image.view();
   std::vector<int> bodies;
   std::vector<char> others = present;
@@ -265,8 +282,8 @@ void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, co
   }
   FineSubpixels fine;
   for (size_t i = 0; i < bodies.size(); ++i)
-    if (!mixed[i]) drawSolid(image, pass, sim, state, bodies[i], solids, zoomedSamples, fine);
-  MixedBodies(sim, state, v, together, zoomedSamples).draw(image, pass, others, fine);
+    if (!mixed[i]) drawSolid(image, pass, sim, state, bodies[i], solids, zoomedSamples, wanted, fine);
+  MixedBodies(sim, state, v, together, zoomedSamples).draw(image, pass, others, wanted, fine);
   put(image, fine);
 }
 
