@@ -40,7 +40,9 @@ const std::map<std::string, Command>& commands() {
         "                   runs from the 0.5 to the 99.8 percentile, and is bent where a few bright things would hide the rest\n\n"
         "  --overwrite      also replaces files of other scenarios, and files that are not of this program\n\n"
         "Files of the same names are replaced where they are of the same scenario (its text, what it extends, --set); another's is refused before\n"
-        "anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"}},
+        "anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"
+        "On a terminal a bar shows how far it is; elsewhere lines come on stderr, the first after 3 s, each next after as long again as all before.\n"
+        "The last lines sum up: frames, time, frames a second, and for each camera what its plan expects to be off by at most.\n"}},
       {"check",
        {checkCommand, "validate a scenario, render nothing",
         "pitviper check SCENARIO.yaml [--set path.to.key=value]...\n\nReads everything the scenario names and reports the first mistake as file:line:col with "

@@ -96,7 +96,7 @@ double cutToData(const Simulation& sim, ChannelOutput& output) {
     if (!(share < kMostCut)) refuse(s, output, share);
     from = std::max(from, s.low_um);
     to = std::min(to, s.high_um);
-    if (share >= worst) worst = share, ends = s;
+    if (share > worst || ends.what.empty()) worst = share, ends = s;  // of several alike the first: ambient light may be made of the air
   }
   if (from == low && to == high) return 1.0;
   const double share = shareOutside(output.kernel, from, to);

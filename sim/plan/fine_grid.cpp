@@ -11,7 +11,7 @@ namespace {
 constexpr double kWidth_per_cm = 5.0, kWidth_um = 1e-3, kPart = 0.01;
 /// Even bins, as wide as is usual in the middle, over what widths grow by no more than this (8-12 um: 2.25); else over so many times a wavelength each.
 constexpr double kEven = 2.5, kSteps = 1.1;
-/// A bin is cut at a spectrum's bends where its middle is farther from its mean than this part of its largest value there: the grain of
+/// A bin is cut at a spectrum's bends where its middle is farther from its mean than this part of the larger of them: the grain of
 /// air's own bands, of either sign, is averaged over a band's bins; lines are not.
 constexpr double kBent = 5e-3;
 /// Cuts of a bin that one spectrum may ask for; of more bends every second, third ... is taken.
@@ -90,20 +90,19 @@ std::vector<double> cutsOf(const Bin& bin, std::span<const BentSpectrum> spectra
   for (const BentSpectrum& s : spectra) {
     auto knots = knotsWithin(s, bin.from, bin.to);
     if (knots.empty()) continue;
-    // By Simpson's rule between bends, from inside: at a step the value just before counts too.
+    // By two Gauss points between bends: at a step the values on both sides count.
     std::vector<double> edges = {bin.from};
     edges.insert(edges.end(), knots.begin(), knots.end());
     edges.push_back(bin.to);
-    double sum = 0.0, most = std::abs(s.at(bin.at));
+    double sum = 0.0;
     for (size_t i = 0; i + 1 < edges.size(); ++i) {
       const double width = edges[i + 1] - edges[i];
       for (const auto& [place, weight] : {std::pair{0.2113248654051871, 0.5}, {0.7886751345948129, 0.5}}) {
-        const double value = s.at(edges[i] + place * width);
-        sum += weight * width * value;
-        most = std::max(most, std::abs(value));
+        sum += weight * width * s.at(edges[i] + place * width);
       }
     }
-    if (std::abs(sum / (bin.to - bin.from) - s.at(bin.at)) <= kBent * most) continue;
+    const double mean = sum / (bin.to - bin.from), middle = s.at(bin.at);
+    if (std::abs(mean - middle) <= kBent * std::max(std::abs(mean), std::abs(middle))) continue;
     const size_t step = (knots.size() + kMostCuts - 1) / kMostCuts;
     for (size_t k = 0; k < knots.size(); k += step) cuts.push_back(knots[k]);
   }

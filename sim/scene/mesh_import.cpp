@@ -59,6 +59,7 @@ class FilesBeside {
       return true;
     } catch (const std::exception& failure) {
       problem = failure.what();
+      problem.resize(std::min(problem.find("; expected"), problem.size()));  // what the reader expects is said by itself
       return false;
     }
   }

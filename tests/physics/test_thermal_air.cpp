@@ -32,7 +32,7 @@ std::string closedWorld(double visibility_km, const std::string& accuracy, const
          (pane ? "  - {name: pane, shape: {model: plate, width: 30 m, height: 200 m}, material: pane, position: [20 m, 500 m, 0 m], heading: 180 deg" + at +
                      "}\n"
                : "") +
-         "cameras:\n  - name: c\n    film: {width: 8, height: 8}\n    field_of_view: 40 deg\n    aperture: 5 mm\n    position: [0 m, 0 m, 50 m]\n"
+         "cameras:\n  - name: c\n    film: {width: 5, height: 5}\n    field_of_view: 40 deg\n    aperture: 5 mm\n    position: [0 m, 0 m, 50 m]\n"
          "    look_at: [0 m, 1 km, 100 m]\n    channels:\n"
          "      - {name: swir, response: {band: [2 um, 2.5 um]}}\n      - {name: mw, response: {band: [3 um, 5 um]}}\n"
          "      - {name: narrow, response: {band: [3.9 um, 4.1 um]}}\n      - {name: lw, response: {band: [8 um, 12 um]}}\n"
@@ -52,7 +52,7 @@ double worstOff(const std::string& yaml) {
 }
 
 TEST(ThermalAir, AWorldOfOneTemperatureIsABlackBody) {
-  for (double visibility_km : {0.5, 2.0, 23.0, 100.0}) {
+  for (double visibility_km : {0.5, 2.0, 100.0}) {
     const std::string name = "isothermal world, visibility " + print("%g", visibility_km) + " km, off Planck's law, worst pixel";
     for (const char* accuracy : {"10 %", "0.1 %"})
       bound(name + ", at " + accuracy, worstOff(closedWorld(visibility_km, accuracy, "direct", false)), 1e-4,

@@ -450,7 +450,7 @@ std::vector<BadCommand> badCommands() {
       {"FramesOutOfRange", {"run", "good.yaml", "--frames", "0:7"}, "--frames 0:7: ", {"within 0:0"}},
       {"FramesNoNumber", {"run", "good.yaml", "--frames", "all"}, "--frames: ", {"'all' is not a range"}},
       {"FramesBackwards", {"run", "good.yaml", "--frames", "0:-1"}, "--frames 0:-1: ", {"no such range"}},
-      {"ExrMissing", {"info", "nothing.exr"}, "nothing.exr: ", {"cannot open the file"}},
+      {"ExrMissing", {"info", "nothing.exr"}, "nothing.exr: ", {"cannot read the file"}},
       {"ExrDamaged", {"info", "damaged.exr"}, "damaged.exr: ", {}},
       {"ExrIsText", {"info", "good.yaml"}, "good.yaml: ", {}},
   };

@@ -78,7 +78,7 @@ class FramePromises : public ::testing::Test {
 // Rationale: a frame is used without its scenario. Expected: the accuracy asked for and what the plan expects of each channel, the worst of the channel's
 // quantities, the same as `plan` says; none where none was asked for.
 TEST_F(FramePromises, PredictedErrorInTheFrame) {
-  const Result r = pitviper("run scene.yaml --frames 0 --out out");
+  const Result r = pitviper("run scene.yaml --frames 0 --overwrite --out out");
   ASSERT_EQ(r.code, 0) << r.err;
   const ExrImage image = frame(0);
   EXPECT_EQ(number(image, "pitviper.accuracy"), 0.02);
@@ -94,7 +94,7 @@ TEST_F(FramePromises, PredictedErrorInTheFrame) {
       if (const size_t value = plan.out.find(key, at); value != std::string::npos) worst = std::max(worst, std::stod(plan.out.substr(value + key.size())));
     EXPECT_NEAR(predicted, worst, 1e-8 * worst) << channel << "; printed with nine digits";
   }
-  ASSERT_EQ(pitviper("run scene.yaml --frames 0 --out out --set 'cameras.0.spectral={samples: 8}'").code, 0);
+  ASSERT_EQ(pitviper("run scene.yaml --frames 0 --overwrite --out out --set 'cameras.0.spectral={samples: 8}'").code, 0);
   const ExrImage sampled = frame(0);
   EXPECT_NE(sampled.findAttribute("unit.mw.radiance"), nullptr);
   for (const char* name : {"pitviper.accuracy", "pitviper.predicted_error.mw", "pitviper.predicted_error.lw"}) EXPECT_EQ(sampled.findAttribute(name), nullptr);
@@ -104,7 +104,7 @@ TEST_F(FramePromises, PredictedErrorInTheFrame) {
 // the run says it once, and what is out of view does not count.
 TEST_F(FramePromises, BeyondTheLimits) {
   const std::string limits = " --set 'limits={range: [500 m, 2.5 km], temperature: [250 K, 900 K], light: 1.5}'";
-  const Result r = pitviper("run scene.yaml --out out" + limits);
+  const Result r = pitviper("run scene.yaml --overwrite --out out" + limits);
   ASSERT_EQ(r.code, 0) << r.err;
   EXPECT_EQ(frame(0).findAttribute("pitviper.outside_limits"), nullptr);
   EXPECT_EQ(text(frame(1), "pitviper.outside_limits"), "light lamp at level 2, planned to 1.5");
@@ -112,11 +112,11 @@ TEST_F(FramePromises, BeyondTheLimits) {
   EXPECT_EQ(countOf(r.err, "outside the scenario's limits"), 1u) << r.err;
   EXPECT_NE(r.err.find("camera c, frame 1 is outside the scenario's limits: light lamp at level 2, planned to 1.5"), std::string::npos) << r.err;
 
-  const Result tight = pitviper("run scene.yaml --frames 0 --out out --set 'limits={range: [1.1 km, 2.5 km], temperature: [250 K, 350 K]}'");
+  const Result tight = pitviper("run scene.yaml --frames 0 --overwrite --out out --set 'limits={range: [1.1 km, 2.5 km], temperature: [250 K, 350 K]}'");
   ASSERT_EQ(tight.code, 0) << tight.err;
   EXPECT_EQ(text(frame(0), "pitviper.outside_limits"), "ball at 1.02 km, planned from 1.1 km; ball at 400 K, planned to 350 K");
 
-  const Result plain = pitviper("run scene.yaml --out out");
+  const Result plain = pitviper("run scene.yaml --overwrite --out out");
   EXPECT_EQ(plain.err.find("limits"), std::string::npos) << plain.err;
   for (int n = 0; n < 3; ++n) EXPECT_EQ(frame(n).findAttribute("pitviper.outside_limits"), nullptr);
 }

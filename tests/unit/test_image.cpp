@@ -1,14 +1,18 @@
 // The image module: what is written comes back, damage is reported, and nothing partly written is left.
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <future>
 #include <limits>
 #include <random>
 #include <sstream>
@@ -251,10 +255,89 @@ TEST_F(ExrFile, ADataWindowAwayFromTheOriginIsTheImage) {
 
 TEST_F(AtomicFile, ReplacesAFileAndLeavesNoTemporary) {
   writeFileAtomically(folder_ / "a.txt", "one");
-  spill(folder_ / ".a.txt.partial", "left over by a killed run");
   writeFileAtomically(folder_ / "a.txt", std::string_view("t\0o", 3));
   EXPECT_EQ(slurp(folder_ / "a.txt"), std::string("t\0o", 3));
   EXPECT_EQ(filesLeft(), 1u);
+}
+
+// Expected: what nobody writes any more goes; what is being written (locked by whoever writes), is no file, or only looks alike stays.
+TEST_F(AtomicFile, OnlyAbandonedTemporariesGo) {
+  const std::string tag = ".0123456789abcdef.partial";
+  spill(folder_ / (".killed.exr" + tag), "half");
+  spill(folder_ / (".written.exr" + tag), "half");
+  spill(folder_ / ".other.partial", "a download of the user's");
+  spill(folder_ / ("no_dot" + tag), "x");
+  fs::create_directory(folder_ / (".folder" + tag));
+  fs::create_symlink(folder_ / ".other.partial", folder_ / (".link" + tag));
+  ASSERT_EQ(mkfifo((folder_ / (".pipe" + tag)).c_str(), 0600), 0);
+  const int writer = open((folder_ / (".written.exr" + tag)).c_str(), O_WRONLY | O_CLOEXEC);
+  ASSERT_EQ(flock(writer, LOCK_EX), 0);
+  ensureWritableFolder(folder_);
+  EXPECT_FALSE(fs::exists(folder_ / (".killed.exr" + tag)));
+  EXPECT_EQ(filesLeft(), 6u);
+  close(writer);
+  removeAbandonedTemporaries(folder_);
+  EXPECT_FALSE(fs::exists(folder_ / (".written.exr" + tag)));
+  EXPECT_EQ(filesLeft(), 5u);
+}
+
+// Expected: whatever the order, a reader meets one of the writers' files, whole, at every moment; cleaning up meanwhile disturbs none of them.
+TEST_F(AtomicFile, ManyWritersOfOneName) {
+  constexpr int kWriters = 4, kTurns = 100;
+  writeFileAtomically(folder_ / "a.bin", std::string(10000, 'a'));
+  std::atomic<int> left{kWriters};
+  std::vector<std::future<void>> writers;
+  for (int w = 0; w < kWriters; ++w)
+    writers.push_back(std::async(std::launch::async, [&, w] {
+      for (int turn = 0; turn < kTurns; ++turn) writeFileAtomically(folder_ / "a.bin", std::string(10000, static_cast<char>('a' + w)));
+      --left;
+    }));
+  while (left > 0) {
+    removeAbandonedTemporaries(folder_);
+    const std::string bytes = slurp(folder_ / "a.bin");
+    ASSERT_EQ(bytes.size(), 10000u);
+    ASSERT_EQ(bytes.find_first_not_of(bytes[0]), std::string::npos);
+  }
+  for (auto& w : writers) w.get();  // no writer has failed
+  EXPECT_EQ(filesLeft(), 1u);
+}
+
+TEST_F(AtomicFile, WhatMayNotBeReplacedStays) {
+  const auto refuse = [](const fs::path& file) { throw UserError({file.string()}, "is another's"); };
+  writeFileAtomically(folder_ / "a.txt", "one", refuse);  // nothing there: not asked
+  EXPECT_THROW(writeFileAtomically(folder_ / "a.txt", "two", refuse), UserError);
+  EXPECT_EQ(slurp(folder_ / "a.txt"), "one");
+  writeFileAtomically(folder_ / "a.txt", "three", [](const fs::path&) {});
+  EXPECT_EQ(slurp(folder_ / "a.txt"), "three");
+  EXPECT_EQ(filesLeft(), 1u);
+}
+
+// Expected: what a file says of its origin is found without reading its pixels, and nothing is found in what is damaged, cut at any place or something else.
+TEST_F(AtomicFile, TextsInHeaders) {
+  ExrImage image = sample();
+  image.attributes.push_back({"pitviper.scenario_sha256", std::string("abc")});
+  image.attributes.push_back({"a.number", 3});
+  writeExr(folder_ / "a.exr", image);
+  EXPECT_EQ(readExrText(folder_ / "a.exr", "pitviper.scenario_sha256"), "abc");
+  EXPECT_EQ(readExrText(folder_ / "a.exr", "a.number"), std::nullopt);
+  EXPECT_EQ(readExrText(folder_ / "a.exr", "pitviper.scenario"), std::nullopt);
+  Rgb8Image picture(13, 7, {1, 2, 3});
+  writePng(folder_ / "a.png", picture, {{"pitviper.scenario_sha256", "abc"}, {"pitviper.scenario", "name"}});
+  EXPECT_EQ(readPngText(folder_ / "a.png", "pitviper.scenario_sha256"), "abc");
+  EXPECT_EQ(readPngText(folder_ / "a.png", "pitviper.scenario"), "name");
+  EXPECT_EQ(readPngText(folder_ / "a.png", "pitviper"), std::nullopt);
+  EXPECT_EQ(readPng(folder_ / "a.png").rgb, picture.rgb);
+  for (const char* name : {"a.exr", "a.png"}) {
+    const std::string bytes = slurp(folder_ / name);
+    for (size_t size = 0; size < bytes.size(); size += size < 2000 ? 1 : 997) {
+      spill(folder_ / "cut", bytes.substr(0, size));
+      const auto exr = readExrText(folder_ / "cut", "pitviper.scenario_sha256"), png = readPngText(folder_ / "cut", "pitviper.scenario_sha256");
+      EXPECT_TRUE((!exr || *exr == "abc") && (!png || *png == "abc")) << size;
+    }
+  }
+  EXPECT_EQ(readExrText(folder_ / "nothing", "a"), std::nullopt);
+  EXPECT_EQ(readExrText("/dev/zero", "a"), std::nullopt);
+  EXPECT_EQ(readPngText(folder_, "a"), std::nullopt);
 }
 
 TEST_F(AtomicFile, AMissingFolderIsAnOutputError) {

@@ -1,12 +1,16 @@
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include "scenarios/assets/make_aircraft.hpp"
 #include "sim/scene/mesh_cache.hpp"
@@ -52,7 +56,11 @@ struct Import : testing::Test {
     setMeshImportFolder(PITVIPER_MESH_IMPORT_FOLDER);
 #endif
   }
-  ~Import() override { std::filesystem::remove_all(folder); }
+  ~Import() override {
+    std::filesystem::remove_all(folder);
+    setenv("XDG_CACHE_HOME", before.c_str(), 1);
+  }
+  const std::string before = std::getenv("XDG_CACHE_HOME") != nullptr ? std::getenv("XDG_CACHE_HOME") : "";
 
   std::filesystem::path write(const std::string& name, const std::string& bytes) const {
     std::ofstream(folder / name, std::ios::binary) << bytes;
@@ -334,7 +342,7 @@ TEST_F(Import, MistakesAreNamedWithTheirPlace) {
   file = write("bad.vtp", "<VTKFile type=\"PolyData\">\n<Piece NumberOfPoints=\"9999999999\">");
   starts(complaint(file), file.string() + ":2:1: NumberOfPoints");
   starts(complaint(write("a.step", "x")), "scene.yaml:7:3: the mesh file");
-  starts(complaint(folder / "missing.obj"), "scene.yaml:7:3: the mesh file");
+  starts(complaint(folder / "missing.obj"), "scene.yaml:7:3: cannot read the file '" + (folder / "missing.obj").string() + "': No such file");
   starts(complaint(write("empty.obj", "")), (folder / "empty.obj").string() + ": the file is empty");
   starts(complaint(write("t.obj", vertices + "f 1 2 3\n"), -1.0), "scene.yaml:7:3: metres per unit");
 }
@@ -364,6 +372,76 @@ TEST_F(Import, KnownFilesNeedNoModule) {
   EXPECT_GT(std::filesystem::file_size(cached()[0]), 100u);
   setenv("XDG_CACHE_HOME", "/proc/unwritable", 1);
   EXPECT_EQ(importMesh(file, 1.0, {}).triangles, first.triangles);
+}
+
+/// A tetrahedron whose buffer is in a file, named as it is written in JSON.
+std::string gltfNaming(const std::string& uri) {
+  return R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"name": "h\"ull", "mesh": 0}],
+"meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1, "mode": 4, "material": 0}]}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}, {"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}],
+"bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+"materials": [{"pbrMetallicRoughness": {"baseColorTexture": {"index": 0}}}], "textures": [{"source": 0}], "images": [{"uri": "/dev/zero"}],
+"buffers": [{"byteLength": 72, "uri": ")" +
+         uri + "\"}]}";
+}
+
+std::string tetrahedron(float size) {
+  const float corners[12] = {0, 0, 0, size, 0, 0, 0, size, 0, 0, 0, size};
+  const std::uint16_t faces[12] = {0, 2, 1, 0, 1, 3, 1, 2, 3, 0, 3, 2};
+  std::string bytes(72, '\0');
+  std::memcpy(bytes.data(), corners, 48);
+  std::memcpy(bytes.data() + 48, faces, 24);
+  return bytes;
+}
+
+// Rationale: a buffer's name may be written in many ways. Expected: what was kept is used only while every file that the reader read is as it was; images are
+// not read at all.
+TEST_F(Import, AChangedBufferIsReadAgain) {
+  std::filesystem::create_directories(folder / "sub");
+  for (const char* uri : {"sub/x.bin", "sub\\/x.bin", "\\u0073ub\\/x.bin", "./sub/../sub/x.bin"}) {
+    const auto file = write("a.gltf", gltfNaming(uri));
+    write("sub/x.bin", tetrahedron(1));
+    const Mesh one = importMesh(file, 1.0, {});
+    EXPECT_EQ(one.parts[0].name, "h\"ull");
+    write("sub/x.bin", tetrahedron(2));
+    EXPECT_NEAR(surfaceArea(importMesh(file, 1.0, {})), 4 * surfaceArea(one), 1e-5) << uri;
+    setMeshImportFolder(folder / "nowhere");  // and it is kept
+    EXPECT_NEAR(surfaceArea(importMesh(file, 1.0, {})), 4 * surfaceArea(one), 1e-5) << uri;
+    std::filesystem::remove(folder / "sub/x.bin");
+    EXPECT_NE(complaint(file), "") << uri;
+#ifdef PITVIPER_MESH_IMPORT_FOLDER
+    setMeshImportFolder(PITVIPER_MESH_IMPORT_FOLDER);
+#else
+    setMeshImportFolder({});
+#endif
+  }
+}
+
+TEST_F(Import, OnlyPlainFilesAreRead) {
+  ASSERT_EQ(mkfifo((folder / "pipe").c_str(), 0600), 0);
+  std::filesystem::create_symlink(folder / "pipe", folder / "pipe.obj");
+  EXPECT_NE(complaint(folder / "pipe.obj").find("it is a pipe, not a regular file"), std::string::npos) << complaint(folder / "pipe.obj");
+  for (const auto& [uri, kind] : {std::pair{"/dev/zero", "a device"}, {"pipe", "a pipe"}, {".", "a folder"}, {"nothing", "No such file"}}) {
+    const auto file = write("a.gltf", gltfNaming(uri));
+    EXPECT_TRUE(complaint(file).starts_with(file.string() + ":6:")) << complaint(file);
+    EXPECT_NE(complaint(file).find(kind), std::string::npos) << complaint(file);
+  }
+}
+
+TEST_F(Import, TheCacheIsBounded) {
+  const auto cache = folder / "cache" / "pitviper";
+  std::filesystem::create_directories(cache);
+  const auto now = std::filesystem::file_time_type::clock::now();
+  for (int k = 0; k < 10; ++k) {
+    const auto file = write("cache/pitviper/mesh-" + std::to_string(k), std::string(1000, 'x'));
+    std::filesystem::last_write_time(file, now - std::chrono::hours(k));
+  }
+  write("cache/pitviper/a.plan", std::string(5000, 'x'));
+  write("cache/pitviper/.mesh-1.0123456789abcdef.partial", "half");
+  pruneCache(cache, "mesh-", 4500, cache / "mesh-9");
+  std::set<std::string> left;
+  for (const auto& entry : std::filesystem::directory_iterator(cache)) left.insert(entry.path().filename().string());
+  EXPECT_EQ(left, (std::set<std::string>{"a.plan", "mesh-0", "mesh-1", "mesh-2", "mesh-9"}));  // the newest, and the one to keep
 }
 
 TEST_F(Import, ABrokenModuleIsNamed) {

@@ -28,6 +28,8 @@ class MemoryFile {
   ~MemoryFile() { close(handle_); }
   MemoryFile(const MemoryFile&) = delete;
   MemoryFile& operator=(const MemoryFile&) = delete;
+  /// The same file under one number more. False where the number cannot be had.
+  bool alsoAs(int number) const { return dup2(handle_, number) == number; }
   std::string name() const { return "/proc/self/fd/" + std::to_string(handle_); }
 
  private:

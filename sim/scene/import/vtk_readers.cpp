@@ -1,5 +1,6 @@
 #include "sim/scene/import/vtk_readers.hpp"
 
+#include <dlfcn.h>
 #include <vtkCellArray.h>
 #include <vtkCompositeDataSet.h>
 #include <vtkDataObjectTreeIterator.h>
@@ -18,6 +19,7 @@
 
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <string_view>
 
 #include "sim/scene/import/import_failure.hpp"
@@ -59,9 +61,19 @@ vtkStandardNewMacro(Complaints)
   builder.add(reader->GetOutput(), checked, "");
 }
 
-void readGltf(const std::string& name, const CheckedFile& checked, MeshBuilder& builder) {
+/// The link beside this module that leads to the file of that number (sim/scene/import/CMakeLists.txt).
+constexpr const char* kGltfLink = "pitviper_mesh_import.gltf";
+constexpr int kGltfNumber = 200;
+
+void readGltf(const MemoryFile& copy, const CheckedFile& checked, MeshBuilder& builder) {
+  Dl_info here = {};
+  dladdr(reinterpret_cast<const void*>(&kGltfLink), &here);
+  const std::filesystem::path link = std::filesystem::path(here.dli_fname != nullptr ? here.dli_fname : "").parent_path() / kGltfLink;
+  std::error_code missing;
+  if (!copy.alsoAs(kGltfNumber) || !std::filesystem::exists(link, missing))
+    throw ImportFailure{{}, "the link " + link.string() + " to the file being read is missing", "a whole build folder", "build pitviper again"};
   vtkNew<vtkGLTFReader> reader;
-  reader->SetFileName(name.c_str());
+  reader->SetFileName(link.c_str());
   reader->SetApplyDeformationsToGeometry(true);  // node transforms and morph targets
   reader->Update();
   auto* tree = vtkMultiBlockDataSet::SafeDownCast(reader->GetOutputDataObject(0));
@@ -105,7 +117,7 @@ Mesh readWithVtk(const std::string& file, const std::string& extension, std::str
   else if (extension == ".stl") readOne<vtkSTLReader>(name, checked, builder);
   else if (extension == ".ply") readOne<vtkPLYReader>(name, checked, builder);
   else if (extension == ".vtp") readOne<vtkXMLPolyDataReader>(name, checked, builder);
-  else readGltf(name, checked, builder);
+  else readGltf(copy, checked, builder);
   if (!complaints->first.empty()) throw ImportFailure{placeIn(file, complaints->first), "the reader says: " + complaints->first, "a sound file", ""};
   return builder.take();
 }

@@ -1,0 +1,239 @@
+// Faults from outside: files that are no files, streams and memory that are not there, a build folder that is another's.
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "sim/parameters/readable_text.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Result {
+  int code = -1;
+  std::string out, err;
+  long peak_kB = 0;
+};
+
+std::string readAll(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+}
+
+const std::string kPlate = "entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: {}, temperature: 300 K}]\n";
+
+std::string camera(const std::string& response = "{band: [3.6 um, 4.9 um]}", const std::string& film = "{width: 8, height: 8}", int layers = 1) {
+  std::string channels;
+  for (int k = 0; k < layers; ++k)
+    channels += std::string(k == 0 ? "" : ", ") + "{name: m" + std::to_string(k) +
+                ", response: " + (layers == 1 ? response : "{band: [" + std::to_string(3000 + 100 * k) + " nm, " + std::to_string(3100 + 100 * k) + " nm]}") +
+                "}";
+  return "cameras: [{name: c, film: " + film +
+         ", field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m], spectral: {samples: 2}, channels: [" + channels + "]}]\n";
+}
+
+class Faults : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_);
+    ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
+    fs::create_directories(folder_ / "folder");
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  fs::path put(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+  /// Runs a line of bash in the folder; $P is the program.
+  Result run(const std::string& line) const {
+    put(".line", line);
+    const pid_t child = fork();
+    if (child == 0) {
+      setenv("P", PITVIPER_PROGRAM, 1);
+      setenv("PITVIPER_HOME", PITVIPER_SOURCE_DIR, 1);
+      if (chdir(folder_.c_str()) != 0) _exit(126);
+      execlp("bash", "bash", "-c", "{ . ./.line; } >.stdout 2>.stderr", nullptr);
+      _exit(127);
+    }
+    int status = 0;
+    rusage usage = {};
+    wait4(child, &status, 0, &usage);
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), readAll(folder_ / ".stdout"), readAll(folder_ / ".stderr"), usage.ru_maxrss};
+  }
+  void expectRefused(const std::string& line, const std::string& word) const {
+    const Result r = run(line);
+    EXPECT_EQ(r.code, 2) << line << "\n" << r.err;
+    EXPECT_EQ(r.err.find('\n'), r.err.size() - 1) << r.err;
+    EXPECT_NE(r.err.find(word), std::string::npos) << line << "\n" << r.err;
+    EXPECT_NE(r.err.find("; expected "), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("; fix: "), std::string::npos) << r.err;
+    EXPECT_LT(r.peak_kB, 1 << 20) << line;
+  }
+  const fs::path folder_ = fs::temp_directory_path() / ("pitviper_faults_" + std::to_string(getpid()));
+};
+
+// Expected: wherever a scenario or the command line names a file, a pipe, a device and a folder are refused in one line, at once, without memory.
+TEST_F(Faults, OnlyRegularFilesAreRead) {
+  for (const auto& [name, kind] : {std::pair<std::string, std::string>{"pipe", "pipe"}, {"/dev/zero", "device"}, {"folder", "folder"}}) {
+    const std::string wrong = "it is a " + kind + ", not a regular file";
+    expectRefused("$P check " + name, wrong);
+    expectRefused("$P run " + name, wrong);
+    expectRefused("$P info " + name, wrong);
+    expectRefused("$P integrate " + name + " sensor.yaml", wrong);
+    put("a.yaml", kPlate + camera("{file: " + name + "}"));
+    expectRefused("$P check a.yaml", wrong);
+    put("a.yaml", "atmosphere: {csv: " + name + "}\n" + kPlate + camera());
+    expectRefused("$P check a.yaml", "there is no file");
+    put("a.yaml", "atmosphere: {tape7: " + name + "}\n" + kPlate + camera());
+    expectRefused("$P check a.yaml", "there is no file");
+    put("a.yaml", "atmosphere: {table: " + name + "}\n" + kPlate + camera());
+    expectRefused("$P check a.yaml", "there is no file");
+    put("a.yaml", "entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: {}, temperature: {file: " + name +
+                      ", minimum: 0 K, maximum: 9 K}}]\n" + camera());
+    expectRefused("$P check a.yaml", "cannot read the file");
+    const std::string link = "mesh_" + kind + ".obj";
+    fs::create_symlink(name[0] == '/' ? fs::path(name) : folder_ / name, folder_ / link);
+    put("a.yaml", "entities: [{name: p, shape: {model: mesh, file: " + link + ", unit: 1 m}, material: {}, temperature: 300 K}]\n" + camera());
+    expectRefused("$P check a.yaml", wrong);
+    if (name[0] == '/') continue;
+    put("a.yaml", "extends: " + name + "\n" + kPlate + camera());
+    expectRefused("$P check a.yaml", wrong);
+  }
+}
+
+// Rationale: a scenario from elsewhere must not carry a file of this machine into a message. Expected: of files that are no tables nothing but a short
+// beginning of a word that a table could hold.
+TEST_F(Faults, OtherFilesAreNotToldOf) {
+  const std::string secret = "hunter2hunter2hunter2";
+  for (const std::string& text : {secret + "\n", "root:" + secret + ":1:2\n", "a," + secret + "\nb," + secret + "\n",
+                                  "# " + secret + "\n" + secret + " " + secret + "\n", "key: {" + secret + ": $" + secret + "}\n"}) {
+    for (const char* name : {"s.csv", "s.tp7", "s.air", "s.obj", "s.ply", "s.stl", "s.vtp", "s.gltf", "s.png"}) put(name, text);
+    std::vector<std::string> scenes = {kPlate + camera("{file: s.csv}")};
+    for (const char* air : {"csv: s.csv", "tape7: s.tp7", "table: s.air"}) scenes.push_back("atmosphere: {" + std::string(air) + "}\n" + kPlate + camera());
+    for (const char* mesh : {"s.obj", "s.ply", "s.stl", "s.vtp", "s.gltf"})
+      scenes.push_back("entities: [{name: p, shape: {model: mesh, file: " + std::string(mesh) + ", unit: 1 m}, material: {}, temperature: 300 K}]\n" +
+                       camera());
+    for (const std::string& scene : scenes) {
+      put("a.yaml", scene);
+      const Result r = run("$P check a.yaml");
+      EXPECT_EQ(r.code, 2) << scene << r.err;
+      const bool isTable = text[0] == 'a';  // two columns: a cell that is no number is told
+      EXPECT_TRUE(isTable || r.err.find("hunter2") == std::string::npos) << scene << r.err;
+      EXPECT_EQ(r.err.find("$"), std::string::npos) << scene << r.err;
+    }
+  }
+}
+
+// Expected: a message is whole UTF-8, wherever a word was cut for it.
+TEST_F(Faults, MessagesAreWholeCharacters) {
+  for (int before = 50; before < 64; ++before) {
+    put("a.yaml", std::string(static_cast<size_t>(before), 'k') + "\xc3\xa9\xe2\x82\xac\xf0\x9f\x98\x80\xc3\xa9\xc3\xa9: 1\n" + kPlate + camera());
+    const Result r = run("$P check a.yaml");
+    EXPECT_EQ(r.code, 2);
+    for (size_t at = 0; at < r.err.size(); at += pitviper::utf8Length(std::string_view(r.err).substr(at)))
+      ASSERT_GT(pitviper::utf8Length(std::string_view(r.err).substr(at)), 0u) << r.err;
+    EXPECT_EQ(r.err.find('?'), std::string::npos) << r.err;
+  }
+}
+
+// Expected: what was to be printed and could not be is an error, with a message.
+TEST_F(Faults, OutputThatIsLostIsAnError) {
+  put("a.yaml", kPlate + camera());
+  for (const char* command : {"--help", "--version", "keys", "run --help", "check a.yaml"}) {
+    const Result full = run(std::string("$P ") + command + " >/dev/full");
+    EXPECT_EQ(full.code, 1) << command;
+    EXPECT_EQ(full.err.rfind("standard output: cannot write what was to be printed", 0), 0u) << command << full.err;
+    const Result closed = run(std::string("$P ") + command + " >&-");
+    EXPECT_EQ(closed.code, 1) << command;
+    EXPECT_EQ(closed.err.rfind("standard output: cannot write", 0), 0u) << command << closed.err;
+  }
+  // With nothing open a frame must not become the standard output.
+  EXPECT_EQ(run("$P run a.yaml --out out >&- 2>&- <&-").code, 1);
+  EXPECT_EQ(readAll(folder_ / "out" / "c_00000.exr").substr(0, 4), "\x76\x2f\x31\x01");
+  const std::string frame = readAll(folder_ / "out" / "c_00000.exr");
+  ASSERT_EQ(run("$P run a.yaml --out again").code, 0);
+  EXPECT_TRUE(frame == readAll(folder_ / "again" / "c_00000.exr"));
+}
+
+// Expected: a picture beyond the memory is refused by check and by run, before any work, with the place, the numbers and the fix.
+TEST_F(Faults, MemoryIsPredicted) {
+  put("large.yaml", kPlate + camera("", "{width: 4096, height: 4096}", 16));
+  for (const char* command : {"check", "run"}) {
+    const Result r = run("ulimit -v 4000000; $P " + std::string(command) + " large.yaml");
+    EXPECT_EQ(r.code, 2) << r.err;
+    EXPECT_EQ(r.err.rfind("large.yaml:2:11: drawing this takes about 1", 0), 0u) << r.err;
+    for (const char* word :
+         {" GB of memory, ", "for camera c (4096x4096 pixels, 1x1 subpixels, 16 layers); expected at most the 4", "; fix: lower the film"})
+      EXPECT_NE(r.err.find(word), std::string::npos) << r.err;
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+    EXPECT_LT(r.peak_kB, 200 << 10);
+  }
+}
+
+// Expected: where memory ends all the same, one message and 2.
+TEST_F(Faults, OutOfMemoryIsAMessage) {
+#if defined(__SANITIZE_ADDRESS__)
+  GTEST_SKIP() << "the sanitizer takes all the address space it can get";
+#endif
+  std::string table = "wavelength [um], value [1]\n";
+  for (int k = 0; k < 90000; ++k) table += std::to_string(0.2 + 1e-4 * k) + ", 0.5\n";
+  put("table.csv", table);
+  std::string many = "materials:\n";
+  for (int k = 0; k < 40; ++k) many += "  m" + std::to_string(k) + ": {components: [{reflection: lambertian, reflectance: {file: table.csv}}]}\n";
+  put("a.yaml", many + kPlate + camera());
+  bool ended = false;
+  for (int megabytes = 40; megabytes <= 400; megabytes += 12) {
+    const Result r = run("ulimit -v " + std::to_string(megabytes) + "000; $P check a.yaml");
+    if (r.code == 127 || r.err.find("cannot allocate memory in") != std::string::npos || r.err.find("error while loading") != std::string::npos)
+      continue;  // not even begun
+    if (r.code == 0) break;
+    EXPECT_EQ(r.code, 2) << megabytes << " MB: " << r.err;
+    EXPECT_EQ(r.err.find('\n'), r.err.size() - 1) << r.err;
+    EXPECT_NE(r.err.find("; fix: "), std::string::npos) << r.err;
+    ended |= r.err.rfind("pitviper: more memory is needed than this machine gives; ", 0) == 0;
+  }
+  EXPECT_TRUE(ended) << "no limit met the reader at work";
+}
+
+// Rationale: a checkout is copied with its build folder. Expected: the copy builds anew, for itself; a build folder named by PITVIPER_BUILD that is another
+// checkout's is refused and stays as it is.
+TEST_F(Faults, ABuildFolderBelongsToItsCheckout) {
+  fs::create_directories(folder_ / "one/scenarios");
+  for (const char* name : {"cmake", "sim", "materials", "atmosphere", "sensors"}) fs::create_directories(folder_ / "one" / name);
+  fs::copy_file(fs::path(PITVIPER_SOURCE_DIR) / "pitviper", folder_ / "one/pitviper");
+  put("one/CMakeLists.txt", "");
+  // Stand-ins: what configures notes whose folder it is, what builds makes a program that says so.
+  fs::create_directories(folder_ / "bin");
+  put("bin/dpkg-query", "#!/bin/bash\nfor p in \"$@\"; do echo \"$p installed\"; done\n");
+  put("bin/cmake",
+      "#!/bin/bash\nmkdir -p \"$4\"\nprintf 'CMAKE_HOME_DIRECTORY:INTERNAL=%s\\nCMAKE_CACHEFILE_DIR:INTERNAL=%s\\n' \"$2\" \"$4\" >\"$4/CMakeCache.txt\"\n"
+      "printf '%s' \"$2\" >\"$4/build.ninja\"\n");
+  put("bin/ninja", "#!/bin/bash\nprintf '#!/bin/bash\\necho program of %s\\n' \"$(cat \"$2/build.ninja\")\" >\"$2/pitviper\"\nchmod +x \"$2/pitviper\"\n");
+  ASSERT_EQ(run("chmod +x bin/* one/pitviper").code, 0);
+  const std::string path = "export PATH=\"$PWD/bin:$PATH\"; unset PITVIPER_BUILD; ";
+  const std::string one = (folder_ / "one").string(), two = (folder_ / "two").string();
+  EXPECT_EQ(run(path + "one/pitviper check").out, "program of " + one + "\n");
+  EXPECT_EQ(run(path + "one/pitviper check").out, "program of " + one + "\n");
+  ASSERT_EQ(run("cp -a one two").code, 0);
+  const Result copied = run(path + "two/pitviper check");
+  EXPECT_EQ(copied.out, "program of " + two + "\n") << copied.err;
+  EXPECT_NE(copied.err.find("was copied from " + one), std::string::npos) << copied.err;
+  EXPECT_EQ(run(path + "one/pitviper check").out, "program of " + one + "\n");
+  const Result other = run(path + "export PITVIPER_BUILD=$PWD/one/build; two/pitviper check");
+  EXPECT_EQ(other.code, 1);
+  EXPECT_NE(other.err.find("was made for the checkout " + one), std::string::npos) << other.err;
+  EXPECT_EQ(run(path + "one/pitviper check").out, "program of " + one + "\n");
+  ASSERT_EQ(run("mv one three").code, 0);
+  EXPECT_EQ(run(path + "three/pitviper check").out, "program of " + (folder_ / "three").string() + "\n");
+}
+
+}  // namespace
