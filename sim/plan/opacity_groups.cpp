@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -23,6 +25,11 @@ constexpr double kSpreads[] = {0.1, 0.01};
 
 /// Rounds between two looks at all products.
 constexpr int kRoundsPerPass = 6;
+
+/// Counts up to which a fit gets all of its rounds, and what any gets.
+constexpr int kFewGroups = 12, kFewestRounds = 4;
+/// Beyond so many groups a sixth more or less of them is not looked for.
+constexpr int kManyGroups = 12;
 
 /// What the second pass leaves the later ones rarely lower by more than half of this.
 constexpr double kHopeless = 5.0;
@@ -83,16 +90,33 @@ class Fitter {
 
   int mostGroups() const { return all_.fineCount(); }
 
+  /// Neighbouring wavelengths as one group each, without any fitting: exact where there are as many groups as wavelengths.
+  GroupFit bins(int groups) const {
+    const Eigen::Index n = all_.fineCount(), count = std::min<Eigen::Index>(groups, n);
+    GroupState state{Eigen::MatrixXd::Zero(count, n), Eigen::MatrixXd::Zero(count, all_.columnCount())};
+    VectorXd weight = VectorXd::Zero(count);
+    for (Eigen::Index i = 0; i < n; ++i) {
+      const Eigen::Index g = i * count / n;
+      state.share(g, i) = 1.0;
+      state.extinction.row(g) += all_.weight[i] * all_.extinction.row(i);
+      weight[g] += all_.weight[i];
+    }
+    for (Eigen::Index g = 0; g < count; ++g) state.extinction.row(g) /= weight[g];
+    return finish(std::move(state), static_cast<int>(count));
+  }
+
   /// The best found of a count; stops early below a goal, or where it is plain that the goal cannot be met.
   GroupFit fit(int groups, double goal) {
     if (all_.fineCount() == 0) return finish(GroupState{}, 0);
     const int count = std::clamp(groups, 1, mostGroups());
+    // A step costs as its groups; many groups begin near enough for a few.
+    const int rounds = std::clamp(effort_.rounds * kFewGroups / count, std::min(effort_.rounds, kFewestRounds), effort_.rounds);
     GroupState state = start_.state(count), best = state;
     forgetOldest();
     RefineProgress progress;
     // The start by itself is exact where wavelengths are few or alike.
     double least = errorFigures(all_.errors(all_.moments(state))).first;
-    const int firstRounds = std::max(effort_.rounds / 3, 1);
+    const int firstRounds = std::max(rounds / 3, 1);
     if (least > goal) {
       double leastBegun = INFINITY;
       const GroupState start = state;
@@ -114,7 +138,7 @@ class Fitter {
         best = state;
       }
     }
-    for (int left = effort_.rounds - firstRounds; left > 0 && least > goal && !expired_(); left -= kRoundsPerPass) {
+    for (int left = rounds - firstRounds; left > 0 && least > goal && !expired_(); left -= kRoundsPerPass) {
       if (static_cast<int>(working_.size()) < all_.size()) addWorst(all_.errors(all_.moments(state)));
       refineGroups(set_, state, progress, {std::min(left, kRoundsPerPass), effort_.innerSteps, 0.9 * goal, expired_});
       const double most = errorFigures(all_.errors(all_.moments(state))).first;
@@ -149,7 +173,7 @@ class Fitter {
     set_ = all_.subset(working_);
   }
 
-  GroupFit finish(GroupState state, int count) {
+  GroupFit finish(GroupState state, int count) const {
     GroupFit result;
     if (count > 0) dropSmallShares(state);
     result.groups = groupsOf(all_, state, problem_);
@@ -179,17 +203,24 @@ GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mo
   // Growing by halves until it holds, then between the last two.
   for (int n = first; tooFew + 1 < enough;) {
     GroupFit fit = fitter.fit(n, tolerance);
+    if (getenv("PV_DEBUG")) fprintf(stderr, "fit %d groups: %.4g for %.4g\n", n, fit.maximum, tolerance);
     if (fit.maximum <= tolerance) {
       enough = n;
       best = std::move(fit);
       n = (tooFew + enough) / 2;
-      if (n == tooFew) break;
+      if (n == tooFew || (enough > kManyGroups && 6 * (enough - tooFew) <= enough)) break;
     } else {
       tooFew = n;
       if (best.groups.empty() || (enough > most && fit.maximum < best.maximum)) best = std::move(fit);
       n = enough <= most ? (tooFew + enough) / 2 : std::min(std::max(n + 1, n * 3 / 2), most);
       if (n <= tooFew) break;
     }
+  }
+  // Where even these are not enough, spectra too rich to share groups: bins, each half as many again.
+  for (int n = most; best.maximum > tolerance && n < fitter.mostGroups();) {
+    n = std::min(n * 3 / 2 + 1, fitter.mostGroups());
+    GroupFit fit = fitter.bins(n); if (getenv("PV_DEBUG")) fprintf(stderr, "bins %d: %.4g\n", n, fit.maximum);
+    if (fit.maximum < best.maximum) best = std::move(fit);
   }
   return best;
 }

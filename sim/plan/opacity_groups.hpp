@@ -69,8 +69,8 @@ struct FitEffort {
 /// match, an index is out of range, or a value is not finite or negative where it may not be.
 GroupFit fitGroups(const SpectralProblem& problem, int groups, const FitEffort& effort = {});
 
-/// The fewest groups found, from `fewest` on, whose largest error is within the tolerance; with `mostGroups`, what they reach, if even those are
-/// not enough.
+/// The fewest groups found, from `fewest` on, whose largest error is within the tolerance; where more than `mostGroups` would be needed, bins of
+/// neighbouring wavelengths, down to every wavelength by itself.
 GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mostGroups, const FitEffort& effort = {}, int fewest = 1);
 
 /// Error of groups over the products of another problem on the same wavelengths and columns.

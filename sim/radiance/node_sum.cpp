@@ -8,15 +8,24 @@
 namespace pitviper {
 namespace {
 
-/// Temperatures of air anywhere [K]; over the inverse a logarithm is all but straight: 256 entries are within 1e-6.
-constexpr double kColdest_K = 140.0, kWarmest_K = 400.0;
-constexpr int kTemperatures = 256;
+/// Temperatures of air anywhere [K], 1 K apart: a cubic between two, with slopes from their neighbours.
+constexpr int kColdest_K = 140, kWarmest_K = 400;
+/// What lets less through than this sends nothing that anybody sees.
+constexpr double kOpaque = 45.0;
 
-/// (1 - exp(-d) (1 + d)) / d: weight of what grows linearly with depth over a stretch of depth d. The series where the difference would lose its
+/// (1 - exp(-d)) for a depth and its transmittance: the series where the difference would lose its digits (next term d^4/24: 4e-22).
+double lostOf(double d, double left) { return d < 1e-5 ? d * (1.0 - d * (0.5 - d / 6.0)) : 1.0 - left; }
+
+/// (1 - exp(-d) (1 + d)) / d: weight of what grows linearly with depth over a segment of depth d. The series where the difference would lose its
 /// digits: d/2 - d^2/3, next term d^3/8 below 2e-10 of it.
 double growing(double d, double left, double lost) { return d < 1e-3 ? d * (0.5 - d / 3.0) : (lost - d * left) / d; }
 
-/// The absorbers that a coefficient is not zero of: most have one, few scatter.
+/// Mean of exp(-t) between two depths, given both: the series where the difference would lose its digits.
+double meanPassed(double from, double to, double fromPassed, double toPassed) {
+  const double change = to - from;
+  return std::abs(change) < 1e-4 ? fromPassed * (1.0 - change * (0.5 - change * (1.0 / 6.0 - change / 24.0))) : (fromPassed - toPassed) / change;
+}
+
 double depthOf(const std::array<double, kMostAirAmounts>& coefficient, const AirAmounts& powered, size_t used) {
   double sum = 0.0;
   for (size_t k = 0; k < used; ++k) sum += coefficient[k] * powered.amount[k];
@@ -27,24 +36,23 @@ double depthOf(const std::array<double, kMostAirAmounts>& coefficient, const Air
 
 NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes) : simulation_(simulation), nodes_(nodes) {
   if (!simulation.path || !simulation.path->isLayered()) return;
-  if (std::all_of(nodes.begin(), nodes.end(), [](const SpectralNode& n) { return n.isWavelength(); })) return;
-  for (int t = 0; t < kTemperatures; ++t) {
-    const double inverse = 1.0 / kWarmest_K + (1.0 / kColdest_K - 1.0 / kWarmest_K) * t / (kTemperatures - 1);
-    for (const SpectralNode& n : nodes) logPlanck_.push_back(std::log(std::max(n.planck(1.0 / inverse), 1e-300)));
-  }
+  for (int t = kColdest_K - 1; t <= kWarmest_K + 1; ++t)
+    for (const SpectralNode& n : nodes) planck_.push_back(n.planck(t));
 }
 
 void NodeSpectra::planck(double temperature_K, std::span<double> into) const {
-  const double t = (1.0 / temperature_K - 1.0 / kWarmest_K) / (1.0 / kColdest_K - 1.0 / kWarmest_K) * (kTemperatures - 1);
-  if (logPlanck_.empty() || !(t >= 0.0 && t <= kTemperatures - 1)) {
-    for (size_t i = 0; i < nodes_.size(); ++i)
-      into[i] = nodes_[i].isWavelength() ? physics::planckRadiance(nodes_[i].members.front().wavelength_um, temperature_K) : nodes_[i].planck(temperature_K);
+  if (planck_.empty() || !(temperature_K >= kColdest_K && temperature_K <= kWarmest_K)) {
+    for (size_t i = 0; i < nodes_.size(); ++i) into[i] = nodes_[i].planck(temperature_K);
     return;
   }
-  const auto low = std::min(static_cast<size_t>(t), static_cast<size_t>(kTemperatures - 2));
-  const double f = t - static_cast<double>(low);
-  const double *a = &logPlanck_[low * nodes_.size()], *b = a + nodes_.size();
-  for (size_t i = 0; i < nodes_.size(); ++i) into[i] = std::exp((1.0 - f) * a[i] + f * b[i]);
+  const double t = temperature_K - kColdest_K;
+  const auto low = std::min(static_cast<size_t>(t), static_cast<size_t>(kWarmest_K - kColdest_K - 1));
+  const double u = t - static_cast<double>(low);
+  // Catmull and Rom's cubic on four neighbours.
+  const double w0 = u * (-0.5 + u * (1.0 - 0.5 * u)), w1 = 1.0 + u * u * (-2.5 + 1.5 * u), w2 = u * (0.5 + u * (2.0 - 1.5 * u)), w3 = u * u * (-0.5 + 0.5 * u);
+  const size_t n = nodes_.size();
+  const double *p0 = &planck_[low * n], *p1 = p0 + n, *p2 = p1 + n, *p3 = p2 + n;
+  for (size_t i = 0; i < n; ++i) into[i] = w0 * p0[i] + w1 * p1[i] + w2 * p2[i] + w3 * p3[i];
 }
 
 std::vector<double> NodeSpectra::of(const Factor& factor) const {
@@ -55,7 +63,8 @@ std::vector<double> NodeSpectra::of(const Factor& factor) const {
 }
 
 NodeSum::NodeSum(const NodeSpectra& spectra) : spectra_(spectra), count_(spectra.nodes().size()) {
-  for (auto* v : {&nearDepth_, &nearBlack_, &farDepth_, &farBlack_}) v->resize(count_);
+  for (At* at : {&near_, &far_})
+    for (auto* v : {&at->depth, &at->passed, &at->black, &at->sunDepth, &at->sunPassed}) v->resize(count_);
 }
 
 void NodeSum::begin() {
@@ -68,8 +77,9 @@ void NodeSum::begin() {
 void NodeSum::restart() {
   panes_.assign(count_, 1.0);
   mediaDepth_.assign(count_, 0.0);
-  std::fill(nearDepth_.begin(), nearDepth_.end(), 0.0);
-  here_ = nullptr;
+  std::fill(near_.depth.begin(), near_.depth.end(), 0.0);
+  std::fill(near_.passed.begin(), near_.passed.end(), 1.0);
+  here_ = sunKnownAt_ = nullptr;
 }
 
 const std::vector<double>& NodeSum::values(const Factor& factor) {
@@ -87,8 +97,8 @@ void NodeSum::term(const Term& term) {
   }
   for (size_t i = 0; i < count_; ++i) {
     if (product[i] == 0.0) continue;
-    const double air = term.air ? Path::depthOf(spectra_.nodes()[i].air, *term.air) : nearDepth_[i];
-    send(term.kind, i, product[i] * panes_[i] * std::exp(-(air + mediaDepth_[i])));
+    const double air = term.air ? std::exp(-Path::depthOf(spectra_.nodes()[i].air, *term.air)) : near_.passed[i];
+    send(term.kind, i, product[i] * panes_[i] * air * (mediaDepth_[i] > 0.0 ? std::exp(-mediaDepth_[i]) : 1.0));
   }
 }
 
@@ -97,62 +107,68 @@ void NodeSum::pane(const Factor& transmittance, double modifier) {
   for (size_t i = 0; i < count_; ++i) panes_[i] *= modifier * v[i];
 }
 
-void NodeSum::place(const AirPlace& at, std::vector<double>& depth, std::vector<double>& black) {
+/// `both`: amounts with the way on to the sun, or null where nobody asks.
+void NodeSum::place(const AirPlace& at, const AirAmounts* both, At& out) {
   const size_t used = spectra_.simulation().path->exponents().size();
-  for (size_t i = 0; i < count_; ++i) depth[i] = depthOf(spectra_.nodes()[i].air.extinction, at.powered, used);
-  if (at.temperature_K > 0.0) spectra_.planck(at.temperature_K, black);
-  else std::fill(black.begin(), black.end(), 0.0);
+  const auto nodes = spectra_.nodes();
+  for (size_t i = 0; i < count_; ++i) {
+    out.depth[i] = depthOf(nodes[i].air.extinction, at.powered, used);
+    out.passed[i] = std::exp(-out.depth[i]);
+  }
+  for (size_t i = 0; both && i < count_; ++i) {
+    out.sunDepth[i] = depthOf(nodes[i].air.extinction, *both, used);
+    out.sunPassed[i] = std::exp(-out.sunDepth[i]);
+  }
+  if (at.temperature_K > 0.0) spectra_.planck(at.temperature_K, out.black);
+  else std::fill(out.black.begin(), out.black.end(), 0.0);
 }
 
 // J = (x S + y B) / (x + y) with S of the media and B of the air, B linear in depth from one end to the other:
 //   integral of J exp(-t) dt = J_near (1 - exp(-d)) + (J_far - J_near) g(d), d = x + y.
 void NodeSum::segment(const Segment& s) {
-  if (s.air) {
-    if (here_ != &s.near) place(s.near, nearDepth_, nearBlack_);
-    place(s.far, farDepth_, farBlack_);
-  }
   const auto nodes = spectra_.nodes();
   const size_t used = s.air ? spectra_.simulation().path->exponents().size() : 0;
   // Where one end sees no sun, the other's way to it holds for the segment.
-  const double sun = s.sunlit ? 0.5 * (s.near.sun + s.far.sun) : 0.0;
+  const double sun = s.sunlit && !s.dark ? 0.5 * (s.near.sun + s.far.sun) : 0.0;
   const bool sunlit = sun > 0.0;
-  const AirAmounts &nearBoth = s.near.sun > 0.0 ? s.near.both : s.far.both, &farBoth = s.far.sun > 0.0 ? s.far.both : s.near.both;
+  if (s.air) {
+    const AirAmounts &nearBoth = s.near.sun > 0.0 ? s.near.both : s.far.both, &farBoth = s.far.sun > 0.0 ? s.far.both : s.near.both;
+    if (here_ != &s.near || (sunlit && sunKnownAt_ != &s.near)) place(s.near, sunlit ? &nearBoth : nullptr, near_);
+    place(s.far, sunlit ? &farBoth : nullptr, far_);
+  }
   const std::vector<double>* irradiance = sunlit ? &values(Factor::sun()) : nullptr;
   const double rayleigh = sunlit ? rayleighPhase(s.cosScatter) : 0.0;
   std::vector<const std::vector<double>*> sources;
   for (const MediumInside& m : s.media) sources.push_back(&values(Factor::medium(*m.medium, m.temperature_K)));
   for (size_t i = 0; i < count_; ++i) {
-    const double seen = panes_[i] * std::exp(-(s.air ? nearDepth_[i] : 0.0) - mediaDepth_[i]);
     double x = 0.0, emitted = 0.0;
     for (size_t m = 0; m < s.media.size(); ++m) {
       const double own = nodes[i].absorption_per_m[static_cast<size_t>(s.media[m].material)] * s.media[m].length_m;
       x += own;
       emitted += own * (*sources[m])[i];
     }
-    const double y = s.air ? std::max(farDepth_[i] - nearDepth_[i], 0.0) : 0.0, d = x + y;
-    if (d > 0.0 && seen > 0.0 && !s.dark) {
-      const double left = std::exp(-d), lost = physics::oneMinusExp(d), g = growing(d, left, lost);
-      if (x > 0.0) send(TermKind::Media, i, seen * emitted / d * lost);
-      if (y > 0.0) {
-        const double near = nearBlack_[i] + nodes[i].air.source, far = farBlack_[i] + nodes[i].air.source;
-        send(TermKind::AirEmission, i, seen * (y / d) * (near * lost + (far - near) * g));
-      }
-      if (sunlit) {
-        const double molecules = depthOf(nodes[i].air.molecules, s.far.powered, used) - depthOf(nodes[i].air.molecules, s.near.powered, used);
-        const double haze = depthOf(nodes[i].air.haze, s.far.powered, used) - depthOf(nodes[i].air.haze, s.near.powered, used);
-        const double from = depthOf(nodes[i].air.extinction, nearBoth, used), to = depthOf(nodes[i].air.extinction, farBoth, used) + x;
-        const double change = to - from, mean = std::abs(change) < 1e-8 ? 1.0 - 0.5 * change : -std::expm1(-change) / change;
-        send(TermKind::ScatteredSun, i, sun * panes_[i] * std::exp(-mediaDepth_[i] - from) * mean * (*irradiance)[i] *
-                 (rayleigh * std::max(molecules, 0.0) + henyeyGreensteinPhase(s.cosScatter, nodes[i].air.asymmetry) * std::max(haze, 0.0)));
-      }
-    }
+    const double before = mediaDepth_[i];
     mediaDepth_[i] += x;
+    if (s.dark || (s.air ? near_.depth[i] : 0.0) + before > kOpaque) continue;
+    const double y = s.air ? std::max(far_.depth[i] - near_.depth[i], 0.0) : 0.0, d = x + y;
+    if (!(d > 0.0)) continue;
+    const double reaching = panes_[i] * (before > 0.0 ? std::exp(-before) : 1.0), seen = reaching * (s.air ? near_.passed[i] : 1.0);
+    const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * (x > 0.0 ? std::exp(-x) : 1.0), lost = lostOf(d, left);
+    if (x > 0.0) send(TermKind::Media, i, seen * emitted / d * lost);
+    if (y > 0.0) {
+      const double near = near_.black[i] + nodes[i].air.source, far = far_.black[i] + nodes[i].air.source;
+      send(TermKind::AirEmission, i, seen * (y / d) * (near * lost + (far - near) * growing(d, left, lost)));
+    }
+    if (!sunlit) continue;
+    const double molecules = depthOf(nodes[i].air.molecules, s.far.powered, used) - depthOf(nodes[i].air.molecules, s.near.powered, used);
+    const double haze = depthOf(nodes[i].air.haze, s.far.powered, used) - depthOf(nodes[i].air.haze, s.near.powered, used);
+    const double mean = meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * (x > 0.0 ? std::exp(-x) : 1.0));
+    send(TermKind::ScatteredSun, i, sun * reaching * mean * (*irradiance)[i] *
+             (rayleigh * std::max(molecules, 0.0) + henyeyGreensteinPhase(s.cosScatter, nodes[i].air.asymmetry) * std::max(haze, 0.0)));
   }
-  if (s.air) {
-    std::swap(nearDepth_, farDepth_);
-    std::swap(nearBlack_, farBlack_);
-  }
+  if (s.air) std::swap(near_, far_);
   here_ = &s.far;
+  sunKnownAt_ = sunlit && s.far.sun > 0.0 ? &s.far : nullptr;
 }
 
 std::vector<double> NodeSum::transmittance() const {

@@ -17,14 +17,14 @@ class NodeSpectra {
   NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes);
   const Simulation& simulation() const { return simulation_; }
   std::span<const SpectralNode> nodes() const { return nodes_; }
-  /// Black body of a temperature of the air per node, in place; a table between 140 and 400 K where nodes are groups.
+  /// Black body of a temperature of the air per node, in place; between 140 and 400 K by a table (3e-6 at 1 um, 1e-8 at 4 um and beyond).
   void planck(double temperature_K, std::span<double> into) const;
   std::vector<double> of(const Factor& factor) const;
 
  private:
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
-  std::vector<double> logPlanck_;  ///< [temperature][node], over 1/T; empty where all nodes are wavelengths
+  std::vector<double> planck_;  ///< [temperature][node]; empty without layered air
 };
 
 /// Radiance per node of one line after the other. One for each thread.
@@ -52,16 +52,22 @@ class NodeSum final : public TermSink {
     radiance_[node] += radiance;
     if (keepsParts_) parts_[static_cast<size_t>(kind)][node] += radiance;
   }
-  void place(const AirPlace& at, std::vector<double>& depth, std::vector<double>& black);
+  /// Of the place reached and the next: depth of the air, what it lets through; black body; both with the way on to the sun.
+  struct At {
+    std::vector<double> depth, passed, black, sunDepth, sunPassed;
+  };
+  void place(const AirPlace& at, const AirAmounts* both, At& out);
 
   const NodeSpectra& spectra_;
   size_t count_;
   bool keepsParts_ = false;
   std::vector<double> radiance_;
   std::array<std::vector<double>, kTermKinds> parts_;
-  std::vector<double> panes_, mediaDepth_;           ///< on the way so far
-  std::vector<double> nearDepth_, nearBlack_, farDepth_, farBlack_, scratch_;
-  const AirPlace* here_ = nullptr;                   ///< the place reached: nearDepth_ and nearBlack_ are its
+  std::vector<double> panes_, mediaDepth_;  ///< on the way so far
+  At near_, far_;
+  std::vector<double> scratch_;
+  const AirPlace* sunKnownAt_ = nullptr;             ///< near_ has the way on to the sun from there
+  const AirPlace* here_ = nullptr;                   ///< the place reached: near_ is its
   std::map<Factor, std::vector<double>> kept_;
 };
 
