@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <memory>
 
@@ -47,7 +48,8 @@ struct Share {
   double looked = 0.0;   ///< projected solid angle of all zoomed samples in it [sr]
   double covered = 0.0;  ///< of those that count: what they see takes the place of what the image has there
   std::vector<double> sum;
-  size_t sample = 0;  ///< one of them
+  double shown = 0.0;  ///< of those whose surface is a small body's
+  size_t sample = 0;   ///< one of them
   double cosPsi = 1.0;
 };
 using Shares = std::map<size_t, Share>;
@@ -70,19 +72,25 @@ void eachSample(const Subpixels& image, const View& z, const Visit& visit) {
     }
 }
 
-/// By subpixel, of the samples that count.
-template <class Counts>
-Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, const Counts& counts) {
+/// A sample that does not count.
+constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// By subpixel. `colourOf(q)`: the sample whose colour a sample has (itself, nearly always), or kNone; `isShown(entity)`: of what surface truth is.
+template <class ColourOf, class IsShown>
+Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, const ColourOf& colourOf, const IsShown& isShown) {
   Shares shares;
   eachSample(image, z, [&](size_t q, size_t p, double etendue, double cosPsi) {
     Share& share = shares[p];
     share.looked += etendue;
-    if (!counts(q)) return;
+    const std::uint32_t from = colourOf(q);
+    if (from == kNone) return;
     share.covered += etendue;
-    share.sample = q;
-    share.cosPsi = cosPsi;
     share.sum.resize(image.slotCount(), 0.0);
-    for (size_t s = 0; s < image.slotCount(); ++s) share.sum[s] += etendue * static_cast<double>(zoomed.groups[s / 4][4 * q + s % 4]);
+    for (size_t s = 0; s < image.slotCount(); ++s) share.sum[s] += etendue * static_cast<double>(zoomed.groups[s / 4][4 * from + s % 4]);
+    if (!isShown(zoomed.entity[from])) return;
+    share.shown += etendue;
+    share.sample = from;
+    share.cosPsi = cosPsi;
   });
   return shares;
 }
@@ -100,7 +108,7 @@ bool isInside(const View& main, const View& zoomed, const glm::dmat3& zoomFromMa
 
 /// The truth of a subpixel that a body covers by half or more.
 void takeTruth(Subpixels& image, const RawImage& zoomed, const Share& share, double whole, size_t pixel) {
-  if (!image.hasTruth() || share.covered < 0.5 * whole) return;
+  if (!image.hasTruth() || share.shown < 0.5 * whole) return;
   TruthPixel truth = truthAt(zoomed, share.sample);  // the zoomed view's axis points at the body: put the angle off the real one in
   truth.area_m2 = static_cast<float>(truth.area_m2 * std::pow(share.cosPsi, 3));
   truth.solidAngleFromLight_sr = static_cast<float>(truth.solidAngleFromLight_sr * std::pow(share.cosPsi, 3));
@@ -177,25 +185,28 @@ bool anyOf(const std::vector<char>& flags) {
   return std::any_of(flags.begin(), flags.end(), [](char f) { return f != 0; });
 }
 
-/// The samples of a zoomed view that fall into wanted subpixels.
-std::shared_ptr<const std::vector<char>> marksOf(const Subpixels& image, const View& z, const std::vector<char>& wanted) {
+/// The samples of a zoomed view that fall into some subpixels.
+std::shared_ptr<const std::vector<char>> marksOf(const Subpixels& image, const View& z, const std::vector<char>& subpixels) {
   auto marks = std::make_shared<std::vector<char>>(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
-  eachSample(image, z, [&](size_t q, size_t p, double, double) { (*marks)[q] = wanted[p]; });
+  eachSample(image, z, [&](size_t q, size_t p, double, double) { (*marks)[q] = subpixels[p]; });
   return marks;
 }
 
 /// A solid body that nothing transparent is near: where it shows it takes the place of what is behind it.
 void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, const std::vector<char>& drawn, int samples,
-               const std::vector<char>* wanted, FineSubpixels& fine) {
+               const std::vector<char>* only, FineSubpixels& fine) {
   View z = zoomedView(sim, state, image.view(), entity, zoomedSize(extentOf(sim, state, image.view(), entity), samples));
-  if (wanted) {
-    z.wanted = marksOf(image, z, *wanted);
+  if (only) {
+    z.wanted = marksOf(image, z, *only);
     if (!anyOf(*z.wanted)) return;
   }
   pass.draw(z, state, drawn);
   pass.startReadback(false, true);
   const RawImage zoomed = pass.finishReadback();
-  gather(image, z, zoomed, sharesOf(image, z, zoomed, [&](size_t q) { return zoomed.entity[q] == entity && (!wanted || (*z.wanted)[q]); }), fine);
+  gather(image, z, zoomed,
+         sharesOf(
+             image, z, zoomed, [&](size_t q) { return zoomed.entity[q] == entity && (!only || (*z.wanted)[q]) ? static_cast<std::uint32_t>(q) : kNone; }, [](int) { return true; }),
+         fine);
 }
 
 /// Bodies that are seen through something or that something is seen through, all in their places in every picture. A direction is sampled by the
@@ -212,33 +223,84 @@ class MixedBodies {
     }
   }
   /// `others`: what else is in the picture.
-  void draw(Subpixels& image, ScenePass& pass, std::vector<char> drawn, const std::vector<char>* wanted, FineSubpixels& fine) const {
+  void draw(Subpixels& image, ScenePass& pass, std::vector<char> drawn, const std::vector<char>* only, FineSubpixels& fine) const {
     for (int e : bodies_) drawn[static_cast<size_t>(e)] = 1;
     for (size_t i = 0; i < views_.size(); ++i) {
       View z = views_[i];
-      z.wanted = meeting(image, i, wanted);
+      std::vector<std::uint32_t> colour = colours(z, sets(image, i));
+      if (only) {
+        const auto marks = marksOf(image, z, *only);
+        for (size_t q = 0; q < colour.size(); ++q)
+          if (!(*marks)[q]) colour[q] = kNone;
+      }
+      z.wanted = wanted(colour);
       if (!anyOf(*z.wanted)) continue;
       pass.draw(z, state_, drawn);
       pass.startReadback(false, true);
       const RawImage zoomed = pass.finishReadback();
-      gather(image, z, zoomed, sharesOf(image, z, zoomed, [&](size_t q) { return (*z.wanted)[q] != 0; }), fine);
+      const auto isOne = [&](int e) { return std::find(bodies_.begin(), bodies_.end(), e) != bodies_.end(); };
+      gather(image, z, zoomed,
+             sharesOf(
+                 image, z, zoomed, [&](size_t q) { return colour[q]; }, isOne),
+             fine);
     }
   }
 
  private:
-  /// Marks the samples of a view that meet one of the bodies, and that no finer view has.
-  std::shared_ptr<const std::vector<char>> meeting(const Subpixels& image, size_t index, const std::vector<char>* wanted) const {
+  /// Which of the bodies a ray meets, whatever hides them: one bit each, the first again after 64.
+  std::uint64_t setOf(const View& z, double x, double y) const {
+    const glm::dvec3 ray = z.ray(x, y), direction = z.localFromCamera * ray / glm::length(ray);
+    std::uint64_t set = 0;
+    for (size_t b = 0; b < bodies_.size(); ++b)
+      if (meetsBody(sim_, state_, z.position, direction, z.near_m * glm::length(ray), bodies_[b])) set |= std::uint64_t{1} << b % 64;
+    return set;
+  }
+  /// What each sample of a view meets, none where a finer view has it.
+  std::vector<std::uint64_t> sets(const Subpixels& image, size_t index) const {
     const View& z = views_[index];
-    auto marks = std::make_shared<std::vector<char>>(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
-    eachSample(image, z, [&](size_t q, size_t p, double, double) {
-      if (wanted && !(*wanted)[p]) return;
-      const glm::dvec3 ray = z.ray(static_cast<double>(q % static_cast<size_t>(z.width)) + 0.5, static_cast<double>(q / static_cast<size_t>(z.width)) + 0.5);
-      const glm::dvec3 direction = z.localFromCamera * ray / glm::length(ray);
+    std::vector<std::uint64_t> all(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
+    eachSample(image, z, [&](size_t q, size_t, double, double) {
+      const double x = static_cast<double>(q % static_cast<size_t>(z.width)) + 0.5, y = static_cast<double>(q / static_cast<size_t>(z.width)) + 0.5;
+      const glm::dvec3 direction = z.localFromCamera * z.ray(x, y);
       for (size_t j = 0; j < index; ++j)
         if (looksAt(views_[j], direction)) return;
-      (*marks)[q] =
-          std::any_of(bodies_.begin(), bodies_.end(), [&](int e) { return meetsBody(sim_, state_, z.position, direction, z.near_m * glm::length(ray), e); });
+      all[q] = setOf(z, x, y);
     });
+    return all;
+  }
+  /// Whose colour a sample has. One on an outline, where a ray and the rasteriser may see different things (it counts in 1/256 of a pixel), has that of
+  /// a neighbour that meets the same.
+  std::vector<std::uint32_t> colours(const View& z, const std::vector<std::uint64_t>& set) const {
+    constexpr double kMargin_px = 0.02;
+    const size_t width = static_cast<size_t>(z.width);
+    const auto neighbours = [&](size_t q, auto&& visit) {
+      if (q % width > 0) visit(q - 1);
+      if (q % width + 1 < width) visit(q + 1);
+      if (q >= width) visit(q - width);
+      if (q + width < set.size()) visit(q + width);
+    };
+    std::vector<std::uint32_t> colour(set.size(), kNone);
+    std::vector<size_t> outline;
+    for (size_t q = 0; q < set.size(); ++q) {
+      if (set[q] == 0) continue;
+      bool border = false, clear = true;
+      neighbours(q, [&](size_t n) { border |= set[n] != set[q]; });
+      for (int corner = 0; border && clear && corner < 4; ++corner)
+        clear = setOf(z, static_cast<double>(q % width) + 0.5 + ((corner & 1) ? kMargin_px : -kMargin_px),
+                      static_cast<double>(q / width) + 0.5 + ((corner & 2) ? kMargin_px : -kMargin_px)) == set[q];
+      if (clear) colour[q] = static_cast<std::uint32_t>(q);
+      else outline.push_back(q);
+    }
+    for (size_t q : outline)
+      neighbours(q, [&](size_t n) {
+        if (set[n] == set[q] && colour[n] == n) colour[q] = static_cast<std::uint32_t>(n);
+      });
+    return colour;
+  }
+  static std::shared_ptr<const std::vector<char>> wanted(const std::vector<std::uint32_t>& colour) {
+    auto marks = std::make_shared<std::vector<char>>(colour.size(), 0);
+    for (std::uint32_t from : colour)
+      if (from != kNone) (*marks)[from] = 1;
     return marks;
   }
   static bool looksAt(const View& z, const glm::dvec3& direction) {
