@@ -95,7 +95,7 @@ std::string planText(const PlannedEye& eye) {
   const auto names = slotNames(plan, eye.outputs);
   std::string out = eye.name + ": ";
   if (plan.accuracy > 0.0) out += "within " + percent(plan.accuracy) + " % of every wavelength\n";
-  else out += "wavelengths as its 'spectral' says; no accuracy asked for, none predicted\n";
+  else out += "wavelengths as its 'spectral' says; no accuracy asked for\n";
 
   if (!eye.limits.empty()) out += "  for what the scenario shows at its times, and " + eye.limits + "\n";
 
@@ -128,9 +128,15 @@ std::string planText(const PlannedEye& eye) {
     }
     out += print(" %12d %14s %%", plan.fineCount[s], percent(plan.predictedError[s]).c_str());
     if (const double k = kelvinOf(plan, s, plan.predictedError[s], 300.0); k > 0.0 && k < 10.0) out += print("  (%.2f K of a body at 300 K)", k);
-    if (plan.predictedError[s] > plan.accuracy) out += "  MORE THAN ASKED FOR";
+    if (plan.accuracy > 0.0 && plan.predictedError[s] > plan.accuracy) out += "  MORE THAN ASKED FOR";
     out += "\n";
+    if (s >= plan.parts.size()) continue;
+    const PredictedParts& p = plan.parts[s];
+    out += "  " + padded("", widest, false) + "   of it wavelengths " + percent(p.wavelengths) + ", tables " + percent(p.tables) + ", terms left out " + percent(p.dropped) +
+           ", precision " + percent(p.precision) + "; at the extremes " + percent(p.extremes) + "\n";
   }
+  if (plan.lines > 0)
+    out += print("\n  found on %d lines of sight that no fit has seen: at most %.2g %% of pixels lie above their largest error (95 %%)\n", plan.lines, 300.0 / plan.lines);
   const NodeCost cost = costOf(plan);
   out += print("\n  %s; %d nodes a subpixel with reflected light, %d without; %.3g million evaluations a frame\n",
                eye.buffered ? "buffered where something transparent is in view, else direct" : "direct", cost.lit, cost.unlit,

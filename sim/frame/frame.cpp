@@ -51,10 +51,9 @@ void addMode(Frame& frame, const SpectralSampling& sampling) {
   frame.attributes.push_back({"pitviper.mode", std::string(sampling.reference ? "reference" : planned ? "planned" : "sampled")});
 }
 
-/// What was asked of the plan, and what it expects: of a channel's quantities the worst.
+/// What was asked of the plan, if anything was, and what it expects: of a channel's quantities the worst.
 void addAccuracy(Frame& frame, const Camera& camera, const CameraImage& image) {
-  if (!(image.accuracy > 0.0)) return;
-  frame.attributes.push_back({"pitviper.accuracy", image.accuracy});
+  if (image.accuracy > 0.0) frame.attributes.push_back({"pitviper.accuracy", image.accuracy});
   std::map<std::string, double> errorOf;
   for (size_t o = 0; o < camera.outputs.size() && !image.predictedError.empty(); ++o) {
     double& error = errorOf[camera.outputs[o].channel];

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
-#include <cstdlib>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
@@ -26,10 +24,8 @@ constexpr double kSpreads[] = {0.1, 0.01};
 /// Rounds between two looks at all products.
 constexpr int kRoundsPerPass = 6;
 
-/// Counts up to which a fit gets all of its rounds, and what any gets.
-constexpr int kFewGroups = 12, kFewestRounds = 4;
-/// Beyond so many groups a sixth more or less of them is not looked for.
-constexpr int kManyGroups = 12;
+/// What a fit of many groups gets at least.
+constexpr int kFewestRounds = 4;
 
 /// What the second pass leaves the later ones rarely lower by more than half of this.
 constexpr double kHopeless = 5.0;
@@ -110,7 +106,8 @@ class Fitter {
     if (all_.fineCount() == 0) return finish(GroupState{}, 0);
     const int count = std::clamp(groups, 1, mostGroups());
     // A step costs as its groups; many groups begin near enough for a few.
-    const int rounds = std::clamp(effort_.rounds * kFewGroups / count, std::min(effort_.rounds, kFewestRounds), effort_.rounds);
+    const int rounds =
+        effort_.fewGroups > 0 ? std::clamp(effort_.rounds * effort_.fewGroups / count, std::min(effort_.rounds, kFewestRounds), effort_.rounds) : effort_.rounds;
     GroupState state = start_.state(count), best = state;
     forgetOldest();
     RefineProgress progress;
@@ -203,12 +200,11 @@ GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mo
   // Growing by halves until it holds, then between the last two.
   for (int n = first; tooFew + 1 < enough;) {
     GroupFit fit = fitter.fit(n, tolerance);
-    if (getenv("PV_DEBUG")) fprintf(stderr, "fit %d groups: %.4g for %.4g\n", n, fit.maximum, tolerance);
     if (fit.maximum <= tolerance) {
       enough = n;
       best = std::move(fit);
       n = (tooFew + enough) / 2;
-      if (n == tooFew || (enough > kManyGroups && 6 * (enough - tooFew) <= enough)) break;
+      if (n == tooFew || (effort.fewGroups > 0 && enough > effort.fewGroups && 6 * (enough - tooFew) <= enough)) break;
     } else {
       tooFew = n;
       if (best.groups.empty() || (enough > most && fit.maximum < best.maximum)) best = std::move(fit);
@@ -219,8 +215,7 @@ GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mo
   // Where even these are not enough, spectra too rich to share groups: bins, each half as many again.
   for (int n = most; best.maximum > tolerance && n < fitter.mostGroups();) {
     n = std::min(n * 3 / 2 + 1, fitter.mostGroups());
-    GroupFit fit = fitter.bins(n); if (getenv("PV_DEBUG")) fprintf(stderr, "bins %d: %.4g\n", n, fit.maximum);
-    if (fit.maximum < best.maximum) best = std::move(fit);
+    if (GroupFit fit = fitter.bins(n); fit.maximum < best.maximum) best = std::move(fit);
   }
   return best;
 }

@@ -63,6 +63,7 @@ struct FitEffort {
   int innerSteps = 25;        ///< conjugate-gradient steps in each
   int workingProducts = 600;  ///< products in a fit at first; the worst of the others join them as it goes on
   double budget_s = 0.0;      ///< stop improving after so much time; 0: no clock
+  int fewGroups = 0;          ///< beyond so many groups rounds get fewer as groups get more, and counts are not told apart to one; 0: never
 };
 
 /// The best of a given count of groups; never more than there are wavelengths of weight > 0. Throws std::invalid_argument where sizes do not

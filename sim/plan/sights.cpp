@@ -67,7 +67,9 @@ void Sights::begin(int count, const std::vector<FilmPlace>& learnt) {
 }
 
 void Sights::draw(int count) {
-  for (int n = 0; n < count; ++n) add(n % 2 == 0 ? rays_.fromFilm() : n % 4 == 1 ? rays_.ofCombination() : rays_.aimed());
+  // Where limits let more come than the scenario shows, aimed lines are those that know it.
+  const int ofCombinations = simulation_.limits.any() ? 8 : 4;
+  for (int n = 0; n < count; ++n) add(n % 2 == 0 ? rays_.fromFilm() : n % ofCombinations == 1 ? rays_.ofCombination() : rays_.aimed());
 }
 
 double Sights::coefficientOf(const FineGrid& grid, size_t i, int absorber) const {

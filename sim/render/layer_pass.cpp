@@ -47,6 +47,8 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
   base.generated["blend"] = blend.str();
   base.files["truth"] = "sim/render/glsl/truth_none.glsl";
   base.constants["WEIGHTS"] = 1;  // nothing is integrated here
+  base.files["ground"] = simulation.ground ? "sim/render/glsl/ground_hides.glsl" : "sim/render/glsl/ground_none.glsl";
+  base.files["ground_end"] = simulation.ground ? "sim/render/glsl/ground_end.glsl" : "sim/render/glsl/ground_endless.glsl";
 
   const SurfaceTerms& t = plan.terms.layer;
   if (t.any) {
@@ -157,7 +159,7 @@ void LayerPass::blend(const Over& over) {
     glUniform1i(program.uniform("firstNode"), over.firstNode);
     glUniform1f(program.uniform("emitting"), over.emitting ? 1.0f : 0.0f);
     if (run.medium) drawMedium(first, over);
-    else drawLayers(run);
+    else drawLayers(run, over);
   }
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CLIP_DISTANCE0);
@@ -166,8 +168,9 @@ void LayerPass::blend(const Over& over) {
   glDepthMask(GL_TRUE);
 }
 
-void LayerPass::drawLayers(const Run& run) {
+void LayerPass::drawLayers(const Run& run, const Over& over) {
   buffers_.bind();
+  over.visibility.colour(0).bind(0);
   sorted_.bindStorage(3);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GEQUAL);

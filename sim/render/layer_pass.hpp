@@ -43,7 +43,7 @@ class LayerPass {
     bool medium;
     std::uint32_t first, count;  ///< of order_.pieces
   };
-  void drawLayers(const Run& run);
+  void drawLayers(const Run& run, const Over& over);
   void drawMedium(const LayerPiece& piece, const Over& over);
   void setGroup(const std::vector<std::uint32_t>& draws) const;
   void drawThickness(const LayerPiece& piece, const Over& over);

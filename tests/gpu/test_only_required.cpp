@@ -238,7 +238,7 @@ TEST(OnlyRequired, TablesOverAngles) {
   Features less = f;
   less.angular = false;
   const Built with(f), without(less);
-  expectGone(with, without, {"angleOf", "arcTangent", "uniform samplerBuffer hemispherical", "uniform samplerBuffer columns", "material_"});
+  expectGone(with, without, {"angleOf", "angleFromChord", "uniform samplerBuffer hemispherical", "uniform samplerBuffer columns", "material_"});
   EXPECT_GT(with.tables().solid.columns.size(), 0u);
   EXPECT_GT(with.tables().solid.hemispherical.size(), 0u);
   EXPECT_EQ(without.tables().solid.columns.size() + without.tables().solid.hemispherical.size(), 0u);

@@ -90,7 +90,7 @@ TEST_F(FramePromises, PredictedErrorInTheFrame) {
     EXPECT_LE(predicted, 0.02) << channel;
     double worst = 0.0;  // over the channel's slots
     const std::string key = "\"predicted_error\": ";
-    for (size_t at = plan.out.find("{\"name\": \"" + channel + "\""); at != std::string::npos; at = plan.out.find("{\"name\": \"" + channel + "\"", at + 1))
+    for (size_t at = plan.out.find("{\"name\": \"" + channel); at != std::string::npos; at = plan.out.find("{\"name\": \"" + channel, at + 1))
       if (const size_t value = plan.out.find(key, at); value != std::string::npos) worst = std::max(worst, std::stod(plan.out.substr(value + key.size())));
     EXPECT_NEAR(predicted, worst, 1e-8 * worst) << channel << "; printed with nine digits";
   }

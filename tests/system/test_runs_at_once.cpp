@@ -99,7 +99,7 @@ class RunsAtOnce : public ::testing::Test {
   std::map<std::string, std::string> whole() const {
     EXPECT_EQ(run({"run", "scene.yaml", "--preview", "--out", "whole"}), 0) << log();
     auto files = filesIn(folder_ / "whole");
-    EXPECT_EQ(files.size(), kFrames * 5u + 1u);  // a frame and a preview of each camera, a spectral image; the probe's table
+    EXPECT_EQ(files.size(), kFrames * 5u + 3u);  // a frame and a preview of each camera, a spectral image; the probe's table, a plan of each camera
     return files;
   }
   static bool isTemporary(const std::string& name) { return name[0] == '.'; }
@@ -181,7 +181,7 @@ TEST_F(RunsAtOnce, TwoScenariosDoNotMix) {
 TEST_F(RunsAtOnce, AnotherScenariosFilesStay) {
   ASSERT_EQ(run({"run", "scene.yaml", "--frames", "0:1", "--preview", "--out", "out"}), 0) << log();
   const auto before = filesIn(folder_ / "out");
-  ASSERT_EQ(before.size(), 11u);
+  ASSERT_EQ(before.size(), 13u);
   EXPECT_EQ(run({"run", "scene.yaml", "--frames", "1:2", "--out", "out"}), 0) << log();  // its own are replaced
   const auto more = filesIn(folder_ / "out");
   EXPECT_EQ(run({"run", "other.yaml", "--frames", "2:3", "--out", "out"}), 2);

@@ -10,7 +10,7 @@
 
 namespace {
 
-const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image", "sim/gl",     "sim/scene", "sim/model",
+const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image", "sim/gl",     "sim/scene", "sim/model", "sim/radiance",
                                          "sim/plan",       "sim/render",     "sim/frame", "sim/stream", "sim/run"};
 
 int levelOf(const std::string& path) {

@@ -5,6 +5,7 @@
 flat in uvec2 seen;
 uniform float emitting;
 //@use sim/render/glsl/shading.glsl
+//@slot ground
 
 Real blended(Real behind, int i) {
   Real t = transmittance(i);
@@ -16,5 +17,6 @@ Real blended(Real behind, int i) {
 
 void main() {
   lookAt(seen, gl_FragCoord.xy);
+  if (hiddenByGround(range_)) discard;
   blend();
 }

@@ -1,4 +1,6 @@
 //@use sim/render/glsl/ray.glsl
+//@use sim/radiometry/glsl/geometry.glsl
+//@slot ground_end
 // How far a ray through a medium's body may count: t along the ray from the plane of the body's origin.
 layout(binding = 0) uniform usampler2D visibility;
 uniform int drawIndex;
@@ -12,6 +14,8 @@ float endOfRay(Draw body) {
     Draw solid = draws[id.x];
     Meeting m = meet(id.y, pointOnPlane(solid), inBody(solid, ray_));
     end = min(end, m.along + ((body.row2.w - solid.row2.w) + (body.fine.x - solid.fine.x)));
+  } else {
+    end = min(end, groundDepth() - planeOf(body));
   }
   return end;
 }
