@@ -35,6 +35,7 @@ const std::map<std::string, Command>& commands() {
         "  --frames A:B     frames A to B only, both included (or one: A); counted from 0: --frames 0:9 draws ten\n"
         "  --set PATH=VALUE replaces or adds a value: --set cameras.0.samples=2, --set cameras.seeker.exposure='1 ms',\n"
         "                   --set entities.jet.temperature='300 K'; list items by number or by their name; repeatable\n"
+        "  --plan FILE      draws a camera with the plan of another run, FOLDER/CAMERA.plan: the same scenario and plan give the same bytes; repeatable\n"
         "  --preview        also a PNG per frame: every channel with colour bar and unit\n"
         "  --preview-range LAYER=LOW:HIGH  ends of a layer's colour bar, in its unit (implies --preview); repeatable. Without it the bar\n"
         "                   runs from the 0.5 to the 99.8 percentile, and is bent where a few bright things would hide the rest\n\n"

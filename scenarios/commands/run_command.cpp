@@ -15,6 +15,7 @@
 #include "sim/frame/spectral_image.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
+#include "sim/parameters/read_file.hpp"
 #include "sim/parameters/table.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/plan/planner.hpp"
@@ -192,13 +193,63 @@ void noteLimits(const Frame& f, bool& told) {
                    f.camera.c_str(), f.number, std::get<std::string>(a.value).c_str());
 }
 
+/// Times that a run starts over with what its audits found.
+constexpr int kMostStarts = 3;
+
+/// `--plan FILE`: each is the plan of the camera that it is named after.
+void readPlans(const Options& o, Simulation& sim) {
+  for (const std::string& name : o.values("--plan")) {
+    const std::filesystem::path file = name;
+    const Location where{name, 0, 0, -1};
+    const auto camera = std::find_if(sim.cameras.begin(), sim.cameras.end(), [&](const Camera& c) { return c.name == file.stem().string(); });
+    if (camera == sim.cameras.end())
+      throw UserError(where, "a plan of no camera of this scenario", "a file named after a camera, CAMERA.plan", "name the .plan file that a run wrote");
+    camera->plan = readWholeFile(file, {}, where);
+    camera->planFile = name;
+  }
+}
+
+/// The lines that audits found to be off by more than was asked become part of what the plan must hold for.
+void learn(const RunReport& report, Simulation& sim, int start) {
+  for (Camera& c : sim.cameras) {
+    const auto found = report.broken.find(c.name);
+    if (found == report.broken.end()) continue;
+    const AuditTally& tally = report.audits.at(c.name);
+    std::fprintf(stderr, "note: camera %s: an audit found %.2g %% in '%s', of %.2g %% asked; its plan learns that line and the run starts over (%d of %d)\n",
+                 c.name.c_str(), 100.0 * tally.largest, tally.channel.c_str(), 100.0 * tally.asked, start, kMostStarts);
+    c.learnt.insert(c.learnt.end(), found->second.begin(), found->second.end());
+    c.plan.clear();  // what --plan gave does not hold
+  }
+}
+
+/// A line a camera that was audited.
+std::string auditText(const RunReport& report) {
+  std::string text;
+  for (const auto& [camera, t] : report.audits) {
+    std::vector<double> sorted = t.errors;
+    std::sort(sorted.begin(), sorted.end());
+    char line[256];
+    std::snprintf(line, sizeof line, "  %s: audited %d pixel%s of %d frame%s against the reference: median %.2g %%, largest %.2g %% (%s)", camera.c_str(), t.pixels,
+                  t.pixels == 1 ? "" : "s", t.frames, t.frames == 1 ? "" : "s", 100.0 * sorted[sorted.size() / 2], 100.0 * t.largest, t.channel.c_str());
+    text += line;
+    if (t.asked > 0.0) {
+      std::snprintf(line, sizeof line, " of %.2g %% asked%s", 100.0 * t.asked, t.largest > t.asked ? ": MORE THAN ASKED, those frames say so" : "");
+      text += line;
+    }
+    text += "\n";
+  }
+  return text;
+}
+
 }  // namespace
 
 int runCommand(const Arguments& arguments) {
   const Options o("run", arguments,
-                  {{"--out"}, {"--frames"}, {"--set", true, true}, {"--preview", false}, {"--preview-range", true, true}, {"--overwrite", false}}, 1, 1);
-  const Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
+                  {{"--out"}, {"--frames"}, {"--set", true, true}, {"--preview", false}, {"--preview-range", true, true}, {"--overwrite", false},
+                   {"--plan", true, true}}, 1, 1);
+  Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
   refuseBeyondMemory(sim);
+  readPlans(o, sim);
   const RunRange range = framesWanted(o, sim);
   const PreviewRanges ranges = previewRanges(o, sim);
   const std::filesystem::path out = o.value("--out", "out");
@@ -216,37 +267,44 @@ int runCommand(const Arguments& arguments) {
   const GlContext context;
   const int frames = range.last - range.first + 1;
   const auto spectral = static_cast<size_t>(std::count_if(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.spectralImage.has_value(); }));
-  Progress progress(sim.name, frames * static_cast<int>(std::max<size_t>(1, sim.cameras.size() + spectral)));
-  progress.phase("preparing");
-  ProbeTables probes(sim);
-  RunTotal total;
   std::set<std::string> told;
   bool toldOfLimits = false;
-  runFrames(
-      sim, shaderLibrary(), range,
-      [&](const Frame& f) {
-        noteOrder(f, told);
-        noteLimits(f, toldOfLimits);
-        noteScattering(f, told);
-        writeFrame(out, f, mayReplace);
-        if (previews && f.kind.empty()) writePreview(out, f, ranges, mayReplace);
-        total.add(f);
-        progress.step();
-      },
-      sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) {
-        probes.add(r);
-        if (sim.cameras.empty() && &r.probe == &sim.probes.back()) progress.step();
-      }, [&](double share) { progress.within(share); });
-  probes.write(out, mayReplace);
-  progress.finish();
-  auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
-  std::string done;
-  if (!sim.cameras.empty()) done = count(static_cast<size_t>(frames), "frame") + " of " + count(sim.cameras.size(), "camera");
-  if (spectral) done += " and " + count(spectral * static_cast<size_t>(frames), "spectral image");
-  if (!sim.probes.empty()) done += (done.empty() ? "" : " and ") + count(sim.probes.size(), "probe table");
-  std::printf("%s in %s (%s), %s\n%s", done.c_str(), out.string().c_str(), context.limits().renderer.c_str(),
-              RunTotal::pace(frames, progress.elapsed_s()).c_str(), total.expected().c_str());
-  return 0;
+  for (int attempt = 0;; ++attempt) {
+    Progress progress(sim.name, frames * static_cast<int>(std::max<size_t>(1, sim.cameras.size() + spectral)));
+    progress.phase("preparing");
+    ProbeTables probes(sim);
+    RunTotal total;
+    const RunReport report = runFrames(
+        sim, shaderLibrary(), range,
+        [&](const Frame& f) {
+          noteOrder(f, told);
+          noteLimits(f, toldOfLimits);
+          noteScattering(f, told);
+          writeFrame(out, f, mayReplace);
+          if (previews && f.kind.empty()) writePreview(out, f, ranges, mayReplace);
+          total.add(f);
+          progress.step();
+        },
+        sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) {
+          probes.add(r);
+          if (sim.cameras.empty() && &r.probe == &sim.probes.back()) progress.step();
+        }, [&](double share) { progress.within(share); }, attempt < kMostStarts);
+    if (!report.broken.empty() && attempt < kMostStarts) {
+      learn(report, sim, attempt + 1);
+      continue;
+    }
+    probes.write(out, mayReplace);
+    for (const auto& [camera, plan] : report.plans) writeFileAtomically(out / (camera + ".plan"), plan);
+    progress.finish();
+    auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
+    std::string done;
+    if (!sim.cameras.empty()) done = count(static_cast<size_t>(frames), "frame") + " of " + count(sim.cameras.size(), "camera");
+    if (spectral) done += " and " + count(spectral * static_cast<size_t>(frames), "spectral image");
+    if (!sim.probes.empty()) done += (done.empty() ? "" : " and ") + count(sim.probes.size(), "probe table");
+    std::printf("%s in %s (%s), %s\n%s%s", done.c_str(), out.string().c_str(), context.limits().renderer.c_str(),
+                RunTotal::pace(frames, progress.elapsed_s()).c_str(), total.expected().c_str(), auditText(report).c_str());
+    return 0;
+  }
 }
 
 int checkCommand(const Arguments& arguments) {

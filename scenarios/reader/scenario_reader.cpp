@@ -110,6 +110,7 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
   sim.name = r.given("name") ? r.text("name") : std::filesystem::path(fileName).stem().string();
   sim.sha256 = sha256(identity);
   sim.seed = r.integer("seed");
+  if (r.given("audit")) sim.audit = r.number("audit");
   Builder b(sim, base, libraries);
   try {
     if (r.given("render")) {

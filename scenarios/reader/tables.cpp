@@ -65,6 +65,10 @@ const ParameterTable& scenario() {
        text("accuracy",
             "relative error of a pixel that the plan may spend on wavelengths, tables and terms left out, `1 %` for example, or `reference`: every wavelength "
             "in double precision on the CPU, slow; without it: 1 % in layered air and air from tables, else as each camera's `spectral` says"),
+       within(number("audit", "",
+                     "pixels a frame that are worked out by the reference as well, and held against it: 0.1 is one in each tenth frame, 0 none; without it as "
+                     "many as cost about a twentieth of the time"),
+              0.0, 1e6),
        any("atmosphere", "the air: `none`, the name of a library air, or a map"),
        map("background", "what is behind everything (0 K unless given), seen through the air"),
        map("ground", "the earth's surface where bodies end: under layered air it is always there, black unless this says otherwise"),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <set>
 
 #include "sim/frame/file_owner.hpp"
 #include "sim/frame/limits_check.hpp"
@@ -60,6 +61,22 @@ void addAccuracy(Frame& frame, const Camera& camera, const CameraImage& image) {
     error = std::max(error, image.predictedError[static_cast<size_t>(image.slotOfOutput[o])]);
   }
   for (const auto& [channel, error] : errorOf) frame.attributes.push_back({"pitviper.predicted_error." + channel, error});
+}
+
+/// What the reference says of some of its pixels: of a channel's quantities the first.
+void addAudit(Frame& frame, const Camera& camera, const CameraImage& image) {
+  if (!image.plan.empty()) frame.attributes.push_back({"pitviper.plan", image.plan});
+  std::set<std::string> told;
+  for (size_t o = 0; o < camera.outputs.size() && !image.audit.empty(); ++o) {
+    const SlotAudit& a = image.audit[static_cast<size_t>(image.slotOfOutput[o])];
+    if (a.pixels == 0 || !told.insert(camera.outputs[o].channel).second) continue;
+    const std::string name = "pitviper.audit." + camera.outputs[o].channel;
+    frame.attributes.push_back({name + ".pixels", static_cast<double>(a.pixels)});
+    frame.attributes.push_back({name + ".median", a.median});
+    frame.attributes.push_back({name + ".largest", a.largest});
+    if (a.doubt >= 0.0) frame.attributes.push_back({name + ".doubt", a.doubt});
+    if (image.accuracy > 0.0 && std::max(a.largest, a.doubt) > image.accuracy) frame.attributes.push_back({name + ".broken", std::string("more than asked")});
+  }
 }
 
 }  // namespace
@@ -148,6 +165,7 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   addTruth(frame, camera, image);
   addMetadata(frame, sim, camera, state);
   addAccuracy(frame, camera, image);
+  addAudit(frame, camera, image);
   for (const ScatteredAgain& s : image.scatteredAgain) frame.attributes.push_back({"pitviper.scattered_again." + s.channel, s.factor});
   if (!image.transparentOrder.empty()) frame.attributes.push_back({"pitviper.transparent_order", image.transparentOrder});
   return frame;

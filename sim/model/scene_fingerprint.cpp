@@ -109,6 +109,7 @@ void addTo(Fingerprint& f, const Camera& c) {
   addTo(f, c.mount.motion);
   f.add(c.mount.carrier).add(c.mount.lookAtEntity).add(c.mount.looksAtPoint).add(c.mount.lookAtPoint);
   f.add(c.exposure_s).add(c.near_m).add(c.samples).add(c.smallBody_px).add(c.truth.any()).add(c.truth.solidAngles);
+  for (const FilmPlace& l : c.learnt) f.add(l.frame).add(l.column).add(l.row);
   addTo(f, c.spectral);
   addTo(f, c.outputs);
 }

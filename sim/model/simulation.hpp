@@ -41,6 +41,12 @@ struct TruthLayers {
   bool any() const { return range || entity || normal || temperature || area || solidAngles; }
 };
 
+/// A subpixel of a frame: its place on the film [pixels from the top left].
+struct FilmPlace {
+  int frame = 0;
+  double column = 0.0, row = 0.0;
+};
+
 struct Camera {
   std::string name;
   Location where;
@@ -52,6 +58,9 @@ struct Camera {
   double smallBody_px = 16.0;  ///< bodies smaller than this are drawn by their own zoomed view
   int zoomedSamples = 256;     ///< at least so many across it; a medium, which fades towards its silhouette, half as many
   SpectralSampling spectral;
+  std::vector<FilmPlace> learnt;  ///< lines of sight that its plan must hold for besides those it draws: where an audit found more than was asked
+  std::string plan;               ///< text of a plan to draw with, as written by another run; empty: one is made
+  std::string planFile;           ///< where it came from, for messages
   std::vector<ChannelOutput> outputs;
   std::optional<SpectralBins> spectralImage;  ///< written beside the frame
   TruthLayers truth;
@@ -94,6 +103,7 @@ struct Simulation {
   long long seed = 0;
   RenderMode mode = RenderMode::Auto;
   bool shadows = true;  ///< opaque bodies cast them
+  double audit = -1.0;  ///< pixels a frame that are worked out by the reference; below 0: as many as cost a twentieth of the time
   LocalFrame frame;
   TimeAxis time;
   Limits limits;

@@ -49,14 +49,14 @@ inline std::string readable(std::string_view text) {
 /// What a message may show of a file that need not be what its reader takes it for: the beginning of a word, a number or a unit, in quotes. It ends before
 /// the first character that none of these has, so that nothing of a file of passwords is told.
 inline std::string tokenOf(std::string_view text) {
-  constexpr std::size_t kMost = 24;  // the longest honest ones: names of columns with their units
+  constexpr std::size_t kMost = 32;  // the longest honest ones: names of columns with their units
   while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
   while (!text.empty() && (text.back() == ' ' || text.back() == '\t' || text.back() == '\r')) text.remove_suffix(1);
   std::size_t length = 0;
   while (length < text.size() && length < kMost) {
     const char c = text[length];
     const bool fits =
-        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::string_view("_.+-*%/()[]^ ").find(c) != std::string_view::npos;
+        (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || std::string_view("_.,+-*%/()[]^ ").find(c) != std::string_view::npos;
     if (!fits) break;
     ++length;
   }

@@ -48,6 +48,7 @@ struct Plan {
   std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where nothing was measured
   std::vector<PredictedParts> parts;        ///< [slot]: what it is made of
   int lines = 0;                            ///< lines of sight it was measured on
+  std::string fingerprint;                  ///< of all that drawing takes from it
   std::vector<int> fineCount;               ///< [slot]: wavelengths of the reference
   std::vector<TermShare> shares;            ///< what was looked at to keep or drop terms; empty where no accuracy was asked for
   Terms terms;

@@ -12,6 +12,9 @@ namespace pitviper {
 /// Of everything a plan is made from: the scenario's content, whole, and the eye's.
 ContentKey planKey(const Simulation& simulation, const Eye& eye);
 
+/// Of a plan's content, 32 hexadecimal digits.
+std::string planFingerprint(const Plan& plan);
+
 /// What a planner adds to an outline (makePlan's plan), as text that reads back to the same numbers; `into` is unchanged where it cannot be read.
 std::string writePlanned(const Plan& plan);
 bool readPlanned(const std::string& text, Plan& into);

@@ -99,10 +99,11 @@ void dropTerms(Plan& plan, bool keepLights) {
 }
 
 /// Groups of wavelengths for each channel, fitted to lines of sight.
-void chooseNodes(const Simulation& sim, const std::vector<const ChannelOutput*>& slots, double accuracy, Sights& sights, Plan& plan) {
+void chooseNodes(const Simulation& sim, const std::vector<const ChannelOutput*>& slots, double accuracy, const std::vector<FilmPlace>& learnt, Sights& sights,
+                 Plan& plan) {
   std::vector<ChannelFit> fits;
   for (const ChannelOutput* slot : slots) fits.emplace_back(sim, slot->kernel, accuracy);
-  sights.begin(kFirst);
+  sights.begin(kFirst, learnt);
   forAll(fits, [&](ChannelFit& f) { f.begin(sights); });
   for (int n = 0; n < kChecks && !std::all_of(fits.begin(), fits.end(), [](const ChannelFit& f) { return f.holds(); }); ++n) {
     sights.draw(kCheck);
@@ -128,6 +129,11 @@ void chooseNodes(const Simulation& sim, const std::vector<const ChannelOutput*>&
     for (size_t g = 0; g < fits[s].groups().size(); ++g) weights[static_cast<size_t>(plan.blocks[s].first) + g] = fits[s].groups()[g].weight;
     plan.weight.push_back(std::move(weights));
   }
+}
+
+/// A plan that was made elsewhere has what drawing takes from it.
+bool fits(const Plan& plan, const Simulation& sim) {
+  return std::all_of(plan.nodes.begin(), plan.nodes.end(), [&](const SpectralNode& n) { return n.absorption_per_m.size() == sim.materials.size(); });
 }
 
 /// What it is off by, on lines that no fit has seen and at the extremes.
@@ -157,12 +163,19 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
   // The truth layers show the first light's geometry.
   const bool keepLights = eye.camera && eye.camera->truth.solidAngles;
   if (!keepLights && !plan.terms.solid.reflects && !plan.terms.layer.reflects) dropLights(plan);
-  if (sampling.reference || sampling.shared) return plan;
+  if (sampling.reference || sampling.shared) {
+    plan.fingerprint = planFingerprint(plan);
+    return plan;
+  }
   plan.accuracy = sampling.accuracy;
 
   const ContentKey key = planKey(sim, eye);
   const Terms all = plan.terms;
-  if (!readCachedPlan(key, plan)) {
+  const bool given = eye.camera && !eye.camera->plan.empty();
+  if (given && !(readPlanned(eye.camera->plan, plan) && fits(plan, sim)))
+    throw UserError({eye.camera->planFile, 0, 0, -1}, "not a plan for camera '" + eye.camera->name + "' of this scenario",
+                    "the plan that a run of it wrote, whole: the same channels and materials", "leave --plan out, or name the .plan file of such a run");
+  if (!given && !readCachedPlan(key, plan)) {
     SpectralSampling exact;
     exact.reference = true;
     Plan fine = makePlan(sim, outputs, exact, where);
@@ -172,7 +185,7 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
       for (size_t o = 0; o < outputs.size(); ++o)
         if (!slots[static_cast<size_t>(plan.slotOfOutput[o])]) slots[static_cast<size_t>(plan.slotOfOutput[o])] = &outputs[o];
       Sights sights(sim, plan, eye, static_cast<unsigned long long>(sim.seed));
-      chooseNodes(sim, slots, sampling.accuracy, sights, plan);
+      chooseNodes(sim, slots, sampling.accuracy, eye.camera ? eye.camera->learnt : std::vector<FilmPlace>(), sights, plan);
       dropTerms(plan, keepLights);
     } else {
       for (const auto& w : fine.weight)
@@ -183,6 +196,7 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
     writeCachedPlan(key, plan);
   }
   if (plan.accuracy > 0.0) dropTerms(plan, keepLights);
+  plan.fingerprint = planFingerprint(plan);
   return plan;
 }
 

@@ -73,6 +73,17 @@ SightRay SightRays::filmRay(int frame) {
   return ray;
 }
 
+SightRay SightRays::through(const FilmPlace& place) {
+  SightRay ray = startAt(place.frame);
+  const Pinhole& p = eye_.camera->pinhole;
+  const glm::dvec3 film(p.tanX(place.column), p.tanY(place.row), -1.0);
+  ray.line.direction = glm::normalize(localFromCamera(cameraPose(eye_.camera->mount, *ray.state)) * film);
+  ray.nearest_m *= glm::length(film);
+  ray.fromFilm = false;
+  cast(ray);
+  return ray;
+}
+
 SightRay SightRays::fromFilm() { return filmRay(static_cast<int>(dice_.below(static_cast<size_t>(simulation_.time.frames)))); }
 
 glm::dvec3 SightRays::placeOn(const WorldState& state, size_t surface) {

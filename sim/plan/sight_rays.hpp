@@ -46,6 +46,8 @@ class SightRays {
   /// At a random place of a random part of a body, so that what is small is not missed. Where the scenario states limits, half of them come from
   /// any range, see any temperature and levels of lights within them.
   SightRay aimed();
+  /// Through a place on the film.
+  SightRay through(const FilmPlace& place);
   /// Of every combination: the nearest, the farthest, the most grazing, the most level, the longest way through media, the hottest and the coldest texel;
   /// in the first and in the last frame; bodies and lamps at their nearest and farthest.
   std::vector<SightRay> extremes();

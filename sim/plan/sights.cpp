@@ -60,8 +60,9 @@ void Sights::add(const SightRay& ray) {
   book_.sights.push_back(sink.finish());
 }
 
-void Sights::begin(int count) {
+void Sights::begin(int count, const std::vector<FilmPlace>& learnt) {
   for (const SightRay& ray : rays_.extremes()) add(ray);
+  for (const FilmPlace& place : learnt) add(rays_.through(place));
   draw(count);
 }
 

@@ -54,6 +54,7 @@ int CameraRenderer::viewsOfPicture() const {
 void CameraRenderer::begin(const WorldState& state) {
   state_ = state;
   view_ = cameraView(camera_.pinhole, cameraPose(camera_.mount, state), camera_.near_m, camera_.samples);
+  view_.wanted = wanted_;
   // The carrier would be seen from inside: a camera does not see the body it rides on.
   present_.assign(simulation_.entities.size(), 1);
   if (camera_.mount.carrier >= 0) present_[static_cast<size_t>(camera_.mount.carrier)] = 0;
@@ -70,10 +71,21 @@ void CameraRenderer::begin(const WorldState& state) {
   transparentOrder_ = layers && !layers->isEmpty() ? layers->lastOrder().describe() : "";
 }
 
+void CameraRenderer::setWanted(const std::vector<int>& pixels) {
+  const auto n = static_cast<size_t>(camera_.samples), width = static_cast<size_t>(camera_.pinhole.width), height = static_cast<size_t>(camera_.pinhole.height);
+  auto flags = std::make_shared<std::vector<char>>(width * n * height * n, 0);
+  for (int pixel : pixels) {
+    const size_t column = static_cast<size_t>(pixel) % width, row = static_cast<size_t>(pixel) / width;
+    for (size_t y = 0; y < n; ++y)
+      for (size_t x = 0; x < n; ++x) (*flags)[((height - 1 - row) * n + y) * width * n + column * n + x] = 1;
+  }
+  wanted_ = std::move(flags);
+}
+
 CameraImage CameraRenderer::finish() {
   Subpixels image(plan_, view_, pass_->finishReadback());
-  addSmallBodies(image, *pass_, simulation_, state_, small_, present_, camera_.zoomedSamples);
-  addVisibleLights(image, *pass_, simulation_, plan_, state_, present_);
+  addSmallBodies(image, *pass_, simulation_, state_, small_, present_, camera_.zoomedSamples, wanted_.get());
+  addVisibleLights(image, *pass_, simulation_, plan_, state_, present_, wanted_.get());
   if (reference_) reference_->endPicture();
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
   resolved.slotOfOutput = plan_.slotOfOutput;
@@ -82,6 +94,7 @@ CameraImage CameraRenderer::finish() {
   resolved.scatteredAgain = scattering_.at(state_);
   resolved.accuracy = plan_.accuracy;
   resolved.predictedError = plan_.predictedError;
+  resolved.plan = plan_.fingerprint;
   return resolved;
 }
 

@@ -20,6 +20,8 @@ class CameraRenderer {
   /// Draws and begins reading back; the caller may do other work before finish().
   void begin(const WorldState& state);
   CameraImage finish();
+  /// Only these pixels are wanted of the pictures that follow (row x width + column, row 0 at the top); the others come out dark. Reference mode.
+  void setWanted(const std::vector<int>& pixels);
   CameraImage render(const WorldState& state) {
     begin(state);
     return finish();
@@ -44,6 +46,7 @@ class CameraRenderer {
   WorldState state_;
   View view_;
   std::vector<char> small_, present_;
+  std::shared_ptr<const std::vector<char>> wanted_;  ///< one flag per subpixel, row 0 at the bottom; null: all
   std::string transparentOrder_;
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles_;
 };

@@ -181,16 +181,31 @@ void put(Subpixels& image, const FineSubpixels& fine) {
   }
 }
 
+bool anyOf(const std::vector<char>& flags) {
+  return std::any_of(flags.begin(), flags.end(), [](char f) { return f != 0; });
+}
+
+/// The samples of a zoomed view that fall into some subpixels.
+std::shared_ptr<const std::vector<char>> marksOf(const Subpixels& image, const View& z, const std::vector<char>& subpixels) {
+  auto marks = std::make_shared<std::vector<char>>(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
+  eachSample(image, z, [&](size_t q, size_t p, double, double) { (*marks)[q] = subpixels[p]; });
+  return marks;
+}
+
 /// A solid body that nothing transparent is near: where it shows it takes the place of what is behind it.
 void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, const std::vector<char>& drawn, int samples,
-               FineSubpixels& fine) {
-  const View z = zoomedView(sim, state, image.view(), entity, zoomedSize(extentOf(sim, state, image.view(), entity), samples));
+               const std::vector<char>* only, FineSubpixels& fine) {
+  View z = zoomedView(sim, state, image.view(), entity, zoomedSize(extentOf(sim, state, image.view(), entity), samples));
+  if (only) {
+    z.wanted = marksOf(image, z, *only);
+    if (!anyOf(*z.wanted)) return;
+  }
   pass.draw(z, state, drawn);
   pass.startReadback(false, true);
   const RawImage zoomed = pass.finishReadback();
   gather(image, z, zoomed,
          sharesOf(
-             image, z, zoomed, [&](size_t q) { return zoomed.entity[q] == entity ? static_cast<std::uint32_t>(q) : kNone; }, [](int) { return true; }),
+             image, z, zoomed, [&](size_t q) { return zoomed.entity[q] == entity && (!only || (*z.wanted)[q]) ? static_cast<std::uint32_t>(q) : kNone; }, [](int) { return true; }),
          fine);
 }
 
@@ -208,12 +223,18 @@ class MixedBodies {
     }
   }
   /// `others`: what else is in the picture.
-  void draw(Subpixels& image, ScenePass& pass, std::vector<char> drawn, FineSubpixels& fine) const {
+  void draw(Subpixels& image, ScenePass& pass, std::vector<char> drawn, const std::vector<char>* only, FineSubpixels& fine) const {
     for (int e : bodies_) drawn[static_cast<size_t>(e)] = 1;
     for (size_t i = 0; i < views_.size(); ++i) {
       View z = views_[i];
-      const std::vector<std::uint32_t> colour = colours(z, sets(image, i));
+      std::vector<std::uint32_t> colour = colours(z, sets(image, i));
+      if (only) {
+        const auto marks = marksOf(image, z, *only);
+        for (size_t q = 0; q < colour.size(); ++q)
+          if (!(*marks)[q]) colour[q] = kNone;
+      }
       z.wanted = wanted(colour);
+      if (!anyOf(*z.wanted)) continue;
       pass.draw(z, state_, drawn);
       pass.startReadback(false, true);
       const RawImage zoomed = pass.finishReadback();
@@ -303,7 +324,7 @@ std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state
 }
 
 void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small,
-                    const std::vector<char>& present, int zoomedSamples) {
+                    const std::vector<char>& present, int zoomedSamples, const std::vector<char>* wanted) {
   const View& v = image.view();
   std::vector<int> bodies;
   std::vector<char> others = present;
@@ -323,8 +344,8 @@ void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, co
   }
   FineSubpixels fine;
   for (size_t i = 0; i < bodies.size(); ++i)
-    if (!mixed[i]) drawSolid(image, pass, sim, state, bodies[i], solids, zoomedSamples, fine);
-  MixedBodies(sim, state, v, together, zoomedSamples).draw(image, pass, others, fine);
+    if (!mixed[i]) drawSolid(image, pass, sim, state, bodies[i], solids, zoomedSamples, wanted, fine);
+  MixedBodies(sim, state, v, together, zoomedSamples).draw(image, pass, others, wanted, fine);
   put(image, fine);
 }
 

@@ -20,6 +20,13 @@ struct TruthPixel {
   float entity = 0, part = 0, cosView = 0;
 };
 
+/// What an audit found of a channel's slot: relative errors |L - Lref| / max(|Lref|, 1e-3 x the 99th percentile of the picture).
+struct SlotAudit {
+  int pixels = 0;  ///< random ones
+  double median = 0.0, largest = 0.0;
+  double doubt = -1.0;  ///< of the pixel that sees what few do; below 0: none was looked at
+};
+
 /// What leaves the renderer: integrals of kernel x radiance per slot and pixel, row 0 at the top.
 struct CameraImage {
   int width = 0, height = 0;
@@ -30,7 +37,9 @@ struct CameraImage {
   std::string transparentOrder;                ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view
   std::vector<ScatteredAgain> scatteredAgain;  ///< channels in which light scattered more than once would matter
   double accuracy = 0.0;                       ///< from the plan, and so its error per slot
-  std::vector<double> predictedError;          ///< empty where no accuracy was asked for
+  std::vector<double> predictedError;          ///< empty where nothing was measured
+  std::string plan;                            ///< its fingerprint
+  std::vector<SlotAudit> audit;                ///< per slot; empty: not audited
 };
 
 class Subpixels {

@@ -38,7 +38,8 @@ std::vector<double> wayTo(ScenePass& pass, const WorldState& state, const std::v
   return free ? pass.transmittance(v, state, present, distance_m) : std::vector<double>();
 }
 
-void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present) {
+void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present,
+                      const std::vector<char>* wanted) {
   const View& v = image.view();
   for (size_t l = 0; l < sim.lights.size(); ++l) {
     if (!sim.lights[l].visible || state.lightLevels[l] <= 0.0) continue;
@@ -46,6 +47,7 @@ void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& sim, 
     if (-p.z < v.near_m) continue;
     const glm::dvec2 at = filmPosition(v, p);
     if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height)) continue;
+    if (wanted && !(*wanted)[image.index(static_cast<int>(at.x), static_cast<int>(at.y))]) continue;
     const double range = glm::length(line);
     const auto way = wayTo(pass, state, present, v.position, line / range, range, v.near_m);
     if (way.empty()) continue;

@@ -5,8 +5,9 @@
 
 namespace pitviper {
 
+/// `wanted`: one flag per subpixel that counts, or null for all.
 void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& simulation, const Plan& plan, const WorldState& state,
-                      const std::vector<char>& present);
+                      const std::vector<char>& present, const std::vector<char>* wanted = nullptr);
 
 /// What of a light or of the sun reaches a place from a direction (unit): a factor per node, the transmittance of everything transparent on
 /// the way (air not counted); empty where something solid stands there.

@@ -1,20 +1,24 @@
 #include "sim/run/run.hpp"
 
+#include <algorithm>
 #include <future>
 
+#include "sim/plan/plan_cache.hpp"
 #include "sim/render/probe.hpp"
 #include "sim/run/spectral_renderer.hpp"
 
 namespace pitviper {
 
-void runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes,
-               const PictureProgress& progress) {
+RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes,
+                    const PictureProgress& progress, bool stopsAtBroken) {
   auto scene = std::make_shared<const GpuScene>(sim);
   std::vector<std::unique_ptr<CameraRenderer>> renderers;
+  std::vector<Auditor> auditors;
   std::vector<std::unique_ptr<SpectralRenderer>> spectral;  // null for a camera without a spectral image
   for (const auto& camera : sim.cameras) {
     renderers.push_back(std::make_unique<CameraRenderer>(sim, camera, library, scene));
     if (progress) renderers.back()->setProgress(progress);
+    auditors.emplace_back(sim, camera, renderers.back()->plan(), library, scene);
     spectral.push_back(camera.spectralImage ? std::make_unique<SpectralRenderer>(sim, camera, library, scene) : nullptr);
   }
   std::future<void> handing;  // its destructor waits, so nothing it uses goes first
@@ -26,17 +30,28 @@ void runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRan
     wait();
     handing = std::async(std::launch::async, [&frames, frame] { frames(*frame); });
   };
-  for (int number = range.first; number <= range.last; ++number) {
+  auto isBroken = [&] { return std::any_of(auditors.begin(), auditors.end(), [](const Auditor& a) { return !a.broken().empty(); }); };
+  for (int number = range.first; number <= range.last && !(stopsAtBroken && isBroken()); ++number) {
     const WorldState state = advance(sim.entities, sim.lights, sim.time.at(number));
     for (size_t c = 0; c < renderers.size(); ++c) {
       renderers[c]->begin(state);
-      hand(makeFrame(sim, sim.cameras[c], renderers[c]->finish(), state, number));
+      CameraImage image = renderers[c]->finish();
+      auditors[c].look(state, number, image, number == range.first);
+      hand(makeFrame(sim, sim.cameras[c], image, state, number));
       if (spectral[c]) hand(spectral[c]->render(state, number));
     }
     if (probes)
       for (const auto& probe : sim.probes) probes({probe, number, state.time_s, measureProbe(sim, probe, library, scene, state)});
   }
   wait();
+  RunReport report;
+  for (size_t c = 0; c < auditors.size(); ++c) {
+    const std::string& name = sim.cameras[c].name;
+    if (!auditors[c].broken().empty()) report.broken[name] = auditors[c].broken();
+    if (auditors[c].tally().pixels > 0) report.audits[name] = auditors[c].tally();
+    if (!sim.cameras[c].spectral.reference) report.plans[name] = writePlanned(renderers[c]->plan());
+  }
+  return report;
 }
 
 }  // namespace pitviper

@@ -1,8 +1,10 @@
 #pragma once
 // The loop: advance, render, frame, hand over.
 #include <functional>
+#include <map>
 
 #include "sim/frame/frame.hpp"
+#include "sim/render/audit.hpp"
 
 namespace pitviper {
 
@@ -22,9 +24,17 @@ struct ProbeReading {
 using PictureProgress = std::function<void(double share)>;
 using ProbeSink = std::function<void(const ProbeReading&)>;
 
-/// Renders the frames of all cameras. While one frame is handed to the sink on a thread of its own, the next is drawn; frames
-/// arrive in order, one at a time. An exception of the sink ends the run and is thrown here.
-void runFrames(const Simulation& simulation, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes = {},
-               const PictureProgress& progress = {});
+/// What audits found, by camera.
+struct RunReport {
+  std::map<std::string, std::vector<FilmPlace>> broken;  ///< where it was more than was asked
+  std::map<std::string, AuditTally> audits;
+  std::map<std::string, std::string> plans;  ///< text of each camera's plan (Camera::plan); none in reference mode
+};
+
+/// Renders the frames of all cameras, and audits them (Simulation::audit). With `stopsAtBroken` it ends after the first tick in which an audit
+/// found more than was asked. While one frame is handed to the sink on a thread of its own, the next is drawn; frames
+/// arrive in order, one at a time. An exception of the sink ends the run and is thrown here. Returns what audits found.
+RunReport runFrames(const Simulation& simulation, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes = {},
+                    const PictureProgress& progress = {}, bool stopsAtBroken = false);
 
 }  // namespace pitviper

@@ -85,7 +85,8 @@ TEST(Text, IsShownAsWholeCharacters) {
 
 TEST(Text, OfFilesIsShownAsTokens) {
   EXPECT_EQ(tokenOf("1.5e-3"), "'1.5e-3'");
-  EXPECT_EQ(tokenOf("  path_radiance_5km_W/(m2 sr um) "), "'path_radiance_5km_W/(m2 ...'");
+  EXPECT_EQ(tokenOf("  path_radiance_5km_W/(m2 sr um) "), "'path_radiance_5km_W/(m2 sr um)'");
+  EXPECT_EQ(tokenOf(std::string(40, 'x')), "'" + std::string(32, 'x') + "...'");
   EXPECT_EQ(tokenOf("root:$6$salt$hash:19000"), "'root...'");
   EXPECT_EQ(tokenOf("\x1b[2J"), "'...'");
   EXPECT_EQ(tokenOf(""), "''");
@@ -130,7 +131,7 @@ TEST(Memory, GrowsWithThePicture) {
   EXPECT_LT(large, 80e9);
   EXPECT_GT(need(4096, 16), 0.24 * large);
   EXPECT_LT(need(4096, 16), 0.3 * large);
-  EXPECT_GT(need(4096, 16, 2), 2.0 * need(4096, 16));
+  EXPECT_GT(need(4096, 16, 2), 1.5 * need(4096, 16));
   EXPECT_GT(need(2048, 4, 1, "{transmission: {transmittance: 0.5}}"), need(2048, 4));
   EXPECT_LT(need(16, 1), 0.3e9);
   const MemoryNeed told = memoryNeeded(scene(filmOf(8192, 16)));
@@ -154,7 +155,8 @@ TEST_F(Files, OwnersAreTold) {
   other.sha256 = "def";
   write("a.csv", tableMark(mine) + "frame\n");
   write("b.csv", tableMark(other) + "frame\n");
-  EXPECT_EQ(std::count(tableMark(other).begin(), tableMark(other).end(), '\n'), 1);
+  const std::string mark = tableMark(other);
+  EXPECT_EQ(std::count(mark.begin(), mark.end(), '\n'), 1);
   refuseForeignFile(folder / "none.csv", mine);
   refuseForeignFile(folder / "a.csv", mine);
   refuseForeignFile(folder / "b.csv", other);

@@ -320,7 +320,7 @@ TEST_F(AtomicFile, TextsInHeaders) {
   writeExr(folder_ / "a.exr", image);
   EXPECT_EQ(readExrText(folder_ / "a.exr", "pitviper.scenario_sha256"), "abc");
   EXPECT_EQ(readExrText(folder_ / "a.exr", "a.number"), std::nullopt);
-  EXPECT_EQ(readExrText(folder_ / "a.exr", "pitviper.scenario"), std::nullopt);
+  EXPECT_EQ(readExrText(folder_ / "a.exr", "pitviper.scenar"), std::nullopt);
   Rgb8Image picture(13, 7, {1, 2, 3});
   writePng(folder_ / "a.png", picture, {{"pitviper.scenario_sha256", "abc"}, {"pitviper.scenario", "name"}});
   EXPECT_EQ(readPngText(folder_ / "a.png", "pitviper.scenario_sha256"), "abc");
