@@ -131,8 +131,7 @@ class Composer {
       default:
         layered_ = true;
         out << "atmosphere: {library: " << dice_.of(kAirs);
-        // 1 km is the least visibility that a scenario may ask for.
-        if (dice_.chance(0.5)) out << ", visibility: " << dice_.byFactor(1.0, 100.0) << " km";
+        if (dice_.chance(0.5)) out << ", visibility: " << dice_.byFactor(0.5, 100.0) << " km";
         return out << "}\n";
     }
   }

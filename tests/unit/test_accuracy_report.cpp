@@ -24,6 +24,13 @@ TEST(AccuracyError, RelativeToThePixelOrToAThousandthOfTheScene) {
   EXPECT_FALSE(e.kelvin) << "no body is that cold and that bright in visible light";
 }
 
+// Where single precision has no digits left there is nothing to be off by: a channel as dark as that is not held to itself.
+TEST(AccuracyError, OfWhatIsDarkerThanAnyDetectorSees) {
+  const ChannelReference dark(Spectrum::band(0.5, 0.6), std::vector<double>(100, 1e-35)), dim(Spectrum::band(0.5, 0.6), std::vector<double>(100, 1e-29));
+  EXPECT_NEAR(dark.errors(std::vector<double>(100, 1.1e-35)).relative.maximum, 1e-6, 1e-12);
+  EXPECT_NEAR(dim.errors(std::vector<double>(100, 1.1e-29)).relative.maximum, 0.1, 1e-9);
+}
+
 // Against the classical series of the band's radiance; its slope by a difference of 0.02 K.
 TEST(AccuracyError, AsATemperatureDifferenceOfBodiesNearThoseOfTheEarth) {
   for (const auto& [low, high] : {std::pair{3.0, 5.0}, {8.0, 12.0}})
