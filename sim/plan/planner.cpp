@@ -50,6 +50,7 @@ SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const Spectral
     for (size_t k = 0; k < kMostAirAmounts; ++k) {
       node.air.molecules[k] += share * air.molecules[k];
       node.air.haze[k] += share * air.haze[k];
+      node.air.extinction[k] += share * air.extinction[k];  // of what is not fitted
       turned += share * air.haze[k] * air.asymmetry;
       scattered += share * air.haze[k];
     }

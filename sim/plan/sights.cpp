@@ -82,6 +82,9 @@ double Sights::coefficientOf(const FineGrid& grid, size_t i, int absorber) const
 std::vector<int> Sights::absorbers(const FineGrid& grid) const {
   std::vector<int> found;
   for (int a = 0; a < kMostAirAmounts + static_cast<int>(simulation_.materials.size()); ++a) {
+    // What no line has any of (haze of clear air) can't be fitted: whatever extinction it got would do.
+    const auto k = static_cast<size_t>(a);
+    if (k < kMostAirAmounts && std::none_of(book_.paths.begin(), book_.paths.end(), [k](const SightPath& p) { return p.air.amount[k] > 0.0; })) continue;
     bool absorbs = false;
     for (size_t i = 0; i < grid.weight.size() && !absorbs; ++i) absorbs = coefficientOf(grid, i, a) > 0.0;
     if (absorbs) found.push_back(a);
