@@ -95,7 +95,7 @@ std::string planText(const PlannedEye& eye) {
   const auto names = slotNames(plan, eye.outputs);
   std::string out = eye.name + ": ";
   if (plan.accuracy > 0.0) out += "within " + percent(plan.accuracy) + " % of every wavelength\n";
-  else out += "wavelengths as its 'spectral' says; no accuracy asked for\n";
+  else out += "wavelengths as its 'spectral' says; no accuracy asked for" + std::string(plan.predictedError.empty() ? ", none predicted\n" : "\n");
 
   if (!eye.limits.empty()) out += "  for what the scenario shows at its times, and " + eye.limits + "\n";
 

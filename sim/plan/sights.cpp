@@ -14,6 +14,8 @@ constexpr int kPlaces = 9, kFinePlaces = 18;
 constexpr double kFine = 0.003;
 /// Terms that, with nothing in their way, would be below this part of the floor are left out.
 constexpr double kNegligible = 1e-4;
+/// No amount at all: tables of ways to the sun have 1e-30 where there is nothing.
+constexpr double kNone = 1e-20;
 }  // namespace
 
 FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel) {
@@ -84,7 +86,7 @@ std::vector<int> Sights::absorbers(const FineGrid& grid) const {
   for (int a = 0; a < kMostAirAmounts + static_cast<int>(simulation_.materials.size()); ++a) {
     // What no line has any of (haze of clear air) can't be fitted: whatever extinction it got would do.
     const auto k = static_cast<size_t>(a);
-    if (k < kMostAirAmounts && std::none_of(book_.paths.begin(), book_.paths.end(), [k](const SightPath& p) { return p.air.amount[k] > 0.0; })) continue;
+    if (k < kMostAirAmounts && std::none_of(book_.paths.begin(), book_.paths.end(), [k](const SightPath& p) { return p.air.amount[k] > kNone; })) continue;
     bool absorbs = false;
     for (size_t i = 0; i < grid.weight.size() && !absorbs; ++i) absorbs = coefficientOf(grid, i, a) > 0.0;
     if (absorbs) found.push_back(a);

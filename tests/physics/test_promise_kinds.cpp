@@ -1,0 +1,69 @@
+// Kinds of scenes on which plans once were wrong without a word, each against a closed form or the reference.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/figures.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+namespace {
+
+std::string camera(const std::string& position, const std::string& lookAt, const std::string& fieldAndChannels) {
+  return "cameras:\n- {name: c, film: {width: 8, height: 8, pitch: 20 um}, aperture: 30 mm, position: " + position + ", look_at: " + lookAt + ", " +
+         fieldAndChannels + "}\n";
+}
+
+/// The worst of a planned picture against the reference's, as the promise has it.
+double worstOff(const std::string& text, const std::string& accuracy) {
+  const CameraImage planned = renderImage(scene(text + "accuracy: " + accuracy + "\n")), exact = renderImage(scene(text + "accuracy: reference\n"));
+  double worst = 0.0;
+  for (size_t s = 0; s < exact.slots.size(); ++s) {
+    std::vector<double> sorted = exact.slots[s];
+    std::sort(sorted.begin(), sorted.end());
+    const double floor = 1e-3 * sorted[sorted.size() * 99 / 100];
+    for (size_t p = 0; p < exact.slots[s].size(); ++p)
+      worst = std::max(worst, std::abs(planned.slots[s][p] - exact.slots[s][p]) / std::max(exact.slots[s][p], floor));
+  }
+  return worst;
+}
+
+// Two panes that let through opposite halves of a band fill the film: the product of their averages is not the average of their product.
+TEST(PromiseKinds, TwoComplementaryPanes) {
+  const std::string pane = "{transmission: {transmittance: {wavelength: um, unit: '1', outside: hold, values: ";
+  const std::string text =
+      "background: {temperature: 600 K}\nmaterials:\n  a: " + pane + "[[3, 1], [4.2499999, 1], [4.25, 0.02], [6, 0.02]]}}, components: []}\n  b: " + pane +
+      "[[3, 0.02], [4.2499999, 0.02], [4.25, 1], [6, 1]]}}, components: []}\nentities:\n"
+      "- {name: pa, shape: {model: plate, width: 4 m, height: 4 m}, material: a, position: [0 m, -2 m, 0 m], heading: 180 deg, temperature: 0 K}\n"
+      "- {name: pb, shape: {model: plate, width: 4 m, height: 4 m}, material: b, position: [0 m, 0 m, 0 m], heading: 180 deg, temperature: 0 K}\n" +
+      camera("[0 m, -10 m, 0 m]", "[0 m, 0 m, 0 m]", "field_of_view: 4 deg, channels: [{name: m, response: {band: [4.0 um, 4.5 um]}}]");
+  const Frame frame = renderFrame(scene(text + "accuracy: 1 %\n"));
+  figure("two panes of opposite halves of a band, planned at 1 % [W/(m2 sr)]", at(layer(frame, "m.radiance"), frame, 4, 4), 0.02 * blackBodyBand(4.0, 4.5, 600.0),
+         0.01, "asked for; 0.02 B on either side of 4.25 um");
+}
+
+// Clear air has no haze at all: what is nowhere cannot be fitted, and must not grow.
+TEST(PromiseKinds, AbsorbersThatNoLineHas) {
+  const std::string text =
+      "atmosphere: clear_us76\nsun: {azimuth: 210 deg, elevation: 2 deg, temperature: 5772 K}\nambient: {from: sky}\nentities:\n"
+      "- {name: ground, shape: {model: plate, width: 60 km, height: 60 km}, material: dry_grass, temperature: 288 K, pitch: 90 deg}\n"
+      "- {name: hull, shape: {model: box, length: 6 m, width: 3 m, height: 1.4 m}, material: green_grass, temperature: 300 K, position: [0 m, 0 m, 1 m]}\n"
+      "- {name: hot, shape: {model: sphere, radius: 0.5 m}, material: oxidised_nickel_alloy, temperature: 3000 K, position: [-2.2 m, -2 m, 2.9 m]}\n" +
+      camera("[-12000 m, -15912 m, 2091 m]", "hull", "field_of_view: 0.04 deg, channels: [{name: vis, response: {band: [0.5 um, 0.52 um]}}]");
+  bound("20 km of clear air at a low sun, planned at 1 %, worst pixel", worstOff(text, "1 %"), 0.01, "asked for");
+}
+
+// Materials with steps and a curved pane in the way, where several spectra meet.
+TEST(PromiseKinds, DomeAndWindowBeforeAWall) {
+  const std::string text =
+      "entities:\n- {name: wall, shape: {model: plate, width: 6 m, height: 6 m}, material: concrete, position: [0 m, 8 m, 0 m], heading: 180 deg, temperature: 295 K}\n"
+      "- {name: hot, shape: {model: sphere, radius: 0.12 m}, material: blackbody, temperature: 900 K, position: [0 m, 5 m, 0 m]}\n"
+      "- {name: dome, shape: {model: sphere, radius: 0.3 m}, material: acrylic_canopy, temperature: 320 K, position: [0 m, -10 m, 0 m]}\n"
+      "- {name: win, shape: {model: plate, width: 4 m, height: 4 m}, material: window_glass, position: [0 m, -5 m, 0 m], heading: 180 deg, temperature: 300 K}\n" +
+      camera("[0 m, -10 m, 0 m]", "[0 m, 5 m, 0 m]", "field_of_view: 4 deg, channels: [{name: a, response: {band: [0.5 um, 3.0 um]}}]");
+  bound("dome and window before a wall, planned at 1 %, worst pixel", worstOff(text, "1 %"), 0.01, "asked for");
+}
+
+}  // namespace
+}  // namespace pitviper::test
