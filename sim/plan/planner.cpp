@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <future>
+#include <memory>
 #include <thread>
 
 #include "sim/plan/channel_fit.hpp"
@@ -20,6 +21,10 @@ constexpr int kFirst = 240, kCheck = 360, kChecks = 6;
 constexpr int kLast = 400;
 /// Their largest error times this is predicted: what a film of all pixels shows more than they do.
 constexpr double kMargin = 1.5;
+/// Lines on which fits are held against the equation before that, besides the extremes; what they may show of the accuracy; how often a fit is tightened.
+constexpr int kSecond = 160, kTighter = 2;
+constexpr double kHeld = 0.6;
+constexpr unsigned long long kSecondSeed = 0xd1b54a32d192ed03u;
 /// A term that is nowhere more than this part of the accuracy is dropped.
 constexpr double kDropped = 0.05;
 /// Single precision on the GPU over a whole pixel (tests/gpu/test_float_against_double.cpp: 2.8e-6, tables 1e-5).
@@ -65,10 +70,10 @@ SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const Spectral
 }
 
 /// On as many threads as the machine has.
-void forAll(std::vector<ChannelFit>& fits, const std::function<void(ChannelFit&)>& work) {
+void forAll(const std::vector<ChannelFit*>& fits, const std::function<void(ChannelFit&)>& work) {
   std::atomic<size_t> next{0};
   auto some = [&] {
-    for (size_t s = next++; s < fits.size(); s = next++) work(fits[s]);
+    for (size_t s = next++; s < fits.size(); s = next++) work(*fits[s]);
   };
   std::vector<std::future<void>> others;
   for (unsigned t = 1; t < std::min<size_t>(std::thread::hardware_concurrency(), fits.size()); ++t) others.push_back(std::async(std::launch::async, some));
@@ -99,36 +104,61 @@ void dropTerms(Plan& plan, bool keepLights) {
   if (std::none_of(plan.blocks.begin(), plan.blocks.end(), [](const NodeBlock& b) { return b.lit; })) dropLights(plan);
 }
 
-/// Groups of wavelengths for each channel, fitted to lines of sight.
-void chooseNodes(const Simulation& sim, const std::vector<const ChannelOutput*>& slots, double accuracy, const std::vector<FilmPlace>& learnt, Sights& sights,
-                 Plan& plan) {
-  std::vector<ChannelFit> fits;
-  for (const ChannelOutput* slot : slots) fits.emplace_back(sim, slot->kernel, accuracy);
-  sights.begin(kFirst, learnt);
-  forAll(fits, [&](ChannelFit& f) { f.begin(sights); });
-  for (int n = 0; n < kChecks && !std::all_of(fits.begin(), fits.end(), [](const ChannelFit& f) { return f.holds(); }); ++n) {
-    sights.draw(kCheck);
-    forAll(fits, [&](ChannelFit& f) {
-      if (!f.holds()) f.check(sights);
-    });
-  }
+/// The channels' groups as the plan's nodes.
+void takeNodes(const Simulation& sim, const std::vector<std::unique_ptr<ChannelFit>>& fits, const Sights& sights, Plan& plan) {
   plan.nodes.clear();
   plan.blocks.clear();
   plan.weight.clear();
   plan.shares.clear();
   plan.fineCount.clear();
   for (int k = 0; k < kTermKinds; ++k) plan.shares.push_back({nameOf(static_cast<TermKind>(k)), {}, true});
-  for (const ChannelFit& f : fits) {
-    plan.blocks.push_back({plan.nodeCount(), static_cast<int>(f.groups().size()), {static_cast<int>(plan.blocks.size())}});
-    for (const SpectralGroup& g : f.groups()) plan.nodes.push_back(nodeOf(sim, f, g));
-    plan.fineCount.push_back(static_cast<int>(f.grid().weight.size()));
-    const auto shares = sights.shares(f.grid(), f.absorbers(), f.floor());
+  for (const auto& f : fits) {
+    plan.blocks.push_back({plan.nodeCount(), static_cast<int>(f->groups().size()), {static_cast<int>(plan.blocks.size())}});
+    for (const SpectralGroup& g : f->groups()) plan.nodes.push_back(nodeOf(sim, *f, g));
+    plan.fineCount.push_back(static_cast<int>(f->grid().weight.size()));
+    const auto shares = sights.shares(f->grid(), f->absorbers(), f->floor());
     for (size_t k = 0; k < shares.size(); ++k) plan.shares[k].share.push_back(shares[k]);
   }
   for (size_t s = 0; s < fits.size(); ++s) {
     std::vector<double> weights(plan.nodes.size(), 0.0);
-    for (size_t g = 0; g < fits[s].groups().size(); ++g) weights[static_cast<size_t>(plan.blocks[s].first) + g] = fits[s].groups()[g].weight;
+    for (size_t g = 0; g < fits[s]->groups().size(); ++g) weights[static_cast<size_t>(plan.blocks[s].first) + g] = fits[s]->groups()[g].weight;
     plan.weight.push_back(std::move(weights));
+  }
+}
+
+/// Groups of wavelengths for each channel, fitted to lines of sight as sums of products and then held against the equation itself, which products are
+/// simpler than: a channel that does not hold there is fitted to half as much.
+void chooseNodes(const Simulation& sim, const Eye& eye, const std::vector<const ChannelOutput*>& slots, const Plan& fine, Sights& sights, Plan& plan) {
+  const double accuracy = plan.accuracy;
+  std::vector<double> tolerance(slots.size(), accuracy);
+  std::vector<std::unique_ptr<ChannelFit>> fits(slots.size());
+  SightRays rays(sim, eye, static_cast<unsigned long long>(sim.seed) ^ kSecondSeed);
+  std::vector<SightRay> lines = rays.extremes();
+  for (int n = 0; n < kSecond; ++n) lines.push_back(n % 2 == 0 ? rays.fromFilm() : rays.ofCombination());
+  sights.begin(kFirst, eye.camera ? eye.camera->learnt : std::vector<FilmPlace>());
+  std::vector<double> floor;
+  for (int attempt = 0;; ++attempt) {
+    std::vector<ChannelFit*> fresh;
+    for (size_t s = 0; s < slots.size(); ++s)
+      if (!fits[s]) fresh.push_back((fits[s] = std::make_unique<ChannelFit>(sim, slots[s]->kernel, tolerance[s])).get());
+    forAll(fresh, [&](ChannelFit& f) { f.begin(sights); });
+    for (int n = 0; n < kChecks && !std::all_of(fresh.begin(), fresh.end(), [](const ChannelFit* f) { return f->holds(); }); ++n) {
+      sights.draw(kCheck);
+      forAll(fresh, [&](ChannelFit& f) {
+        if (!f.holds()) f.check(sights);
+      });
+    }
+    takeNodes(sim, fits, sights, plan);
+    if (attempt == kTighter) return;
+    const auto found = checkLines(sim, plan, fine, lines, rays.pixel_sr(), floor);
+    bool all = true;
+    for (size_t s = 0; s < slots.size(); ++s) {
+      if (found[s].largest <= kHeld * accuracy) continue;
+      all = false;
+      tolerance[s] *= 0.5;
+      fits[s].reset();
+    }
+    if (all) return;
   }
 }
 
@@ -186,7 +216,7 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
       for (size_t o = 0; o < outputs.size(); ++o)
         if (!slots[static_cast<size_t>(plan.slotOfOutput[o])]) slots[static_cast<size_t>(plan.slotOfOutput[o])] = &outputs[o];
       Sights sights(sim, plan, eye, static_cast<unsigned long long>(sim.seed));
-      chooseNodes(sim, slots, sampling.accuracy, eye.camera ? eye.camera->learnt : std::vector<FilmPlace>(), sights, plan);
+      chooseNodes(sim, eye, slots, fine, sights, plan);
       dropTerms(plan, keepLights);
     } else {
       for (const auto& w : fine.weight)

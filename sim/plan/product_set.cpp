@@ -191,6 +191,16 @@ class TermValue {
  public:
   TermValue(const GroupMoments& at, const Eigen::ArrayXd& perWeight, const ProductTerm& term)
       : source_(at.source.data()), perWeight_(perWeight.data()), groups_(at.source.rows()), term_(term) {}
+  /// Of a group, given the product of all and the one to leave out: a quotient, unless it might lose what is left.
+  double but(int left, Eigen::Index group, double all, double one) const {
+    if (std::abs(one) > 1e-100 && all != 0.0) return all / one;
+    double product = 1.0;
+    for (int f = 0; f < term_.count; ++f) {
+      if (f != left) product *= source_[groups_ * term_.spectrum[static_cast<size_t>(f)] + group];
+      if (f > 0) product *= perWeight_[group];
+    }
+    return product;
+  }
   /// The product of all spectra but one (-1: of all), without the transmittance.
   void spectraBut(int left, Eigen::ArrayXd& out) const {
     double* p = out.data();
@@ -271,9 +281,8 @@ Eigen::VectorXd ProductSet::forward(const GroupMoments& at, const GroupMoments& 
         value.spectraBut(-1, product);
         for (Eigen::Index g = 0; g < groups; ++g) changed += product[g] * (dTau[g] - tau[g] * (term.count - 1) * dW[g] * w[g]);
         for (int f = 0; f < term.count; ++f) {
-          const double* d = change.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
-          value.spectraBut(f, product);
-          for (Eigen::Index g = 0; g < groups; ++g) changed += product[g] * tau[g] * d[g];
+          const double *s = at.source.data() + groups * term.spectrum[static_cast<size_t>(f)], *d = change.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
+          for (Eigen::Index g = 0; g < groups; ++g) changed += value.but(f, g, product[g], s[g]) * tau[g] * d[g];
         }
       }
       sum += term.coefficient * changed;
@@ -317,9 +326,9 @@ GroupMoments ProductSet::backward(const GroupMoments& at, const Eigen::VectorXd&
         value.spectraBut(-1, product);
         for (Eigen::Index g = 0; g < groups; ++g) outTau[g] += c * product[g], outWeight[g] -= c * (term.count - 1) * w[g] * product[g] * tau[g];
         for (int f = 0; f < term.count; ++f) {
+          const double* s = at.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
           double* outF = out.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
-          value.spectraBut(f, product);
-          for (Eigen::Index g = 0; g < groups; ++g) outF[g] += c * product[g] * tau[g];
+          for (Eigen::Index g = 0; g < groups; ++g) outF[g] += c * value.but(f, g, product[g], s[g]) * tau[g];
         }
       }
     }
