@@ -51,8 +51,7 @@ void readFirstCard(const Line& card, Tape7Run& run) {
   const std::string_view t = card.text;  // only what is used is looked at: later versions put letters between the numbers
   const bool letter = t.size() >= 15 && std::string_view("TMCKFL ").find(t[0]) != std::string_view::npos;
   if (!letter || t[4] < '0' || t[4] > '9')
-    throw UserError(card.at(letter ? 5 : 1), "not card 1 of a MODTRAN run",
-                    "its band model (T, M, C, K, F, L) in column 1, MODEL in column 5", kNotTape7);
+    throw UserError(card.at(letter ? 5 : 1), "not card 1 of a MODTRAN run", "its band model (T, M, C, K, F, L) in column 1, MODEL in column 5", kNotTape7);
   run.line = card.number;
   run.bandModel = t[0];
   if (t[2] == 'T' || t[2] == 't')

@@ -46,7 +46,8 @@ const std::map<std::string, Command>& commands() {
         "The last lines sum up: frames, time, frames a second, and for each camera what its plan expects to be off by at most.\n"}},
       {"check",
        {checkCommand, "validate a scenario, render nothing",
-        "pitviper check SCENARIO.yaml [--set path.to.key=value]... [--audit]\n\nReads everything the scenario names and reports the first mistake as file:line:col with "
+        "pitviper check SCENARIO.yaml [--set path.to.key=value]... [--audit]\n\nReads everything the scenario names and reports the first mistake as "
+        "file:line:col with "
         "the fix (exit code 2).\nThen tells what each camera sees in the first, the middle and the last frame: a line a body (many alike in one) with its "
         "size,\n"
         "range, size in pixels, and whether it is out of view, behind the camera, hidden by another or smaller than a pixel; 'hidden' is\n"

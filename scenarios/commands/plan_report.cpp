@@ -132,11 +132,12 @@ std::string planText(const PlannedEye& eye) {
     out += "\n";
     if (s >= plan.parts.size()) continue;
     const PredictedParts& p = plan.parts[s];
-    out += "  " + padded("", widest, false) + "   of it wavelengths " + percent(p.wavelengths) + ", tables " + percent(p.tables) + ", terms left out " + percent(p.dropped) +
-           ", precision " + percent(p.precision) + "; at the extremes " + percent(p.extremes) + "\n";
+    out += "  " + padded("", widest, false) + "   of it wavelengths " + percent(p.wavelengths) + ", tables " + percent(p.tables) + ", terms left out " +
+           percent(p.dropped) + ", precision " + percent(p.precision) + "; at the extremes " + percent(p.extremes) + "\n";
   }
   if (plan.lines > 0)
-    out += print("\n  found on %d lines of sight that no fit has seen: at most %.2g %% of pixels lie above their largest error (95 %%)\n", plan.lines, 300.0 / plan.lines);
+    out += print("\n  found on %d lines of sight that no fit has seen: at most %.2g %% of pixels lie above their largest error (95 %%)\n", plan.lines,
+                 300.0 / plan.lines);
   const NodeCost cost = costOf(plan);
   out += print("\n  %s; %d nodes a subpixel with reflected light, %d without; %.3g million evaluations a frame\n",
                eye.buffered ? "buffered where something transparent is in view, else direct" : "direct", cost.lit, cost.unlit,

@@ -229,8 +229,9 @@ std::string auditText(const RunReport& report) {
     std::vector<double> sorted = t.errors;
     std::sort(sorted.begin(), sorted.end());
     char line[256];
-    std::snprintf(line, sizeof line, "  %s: audited %d pixel%s of %d frame%s against the reference: median %.2g %%, largest %.2g %% (%s)", camera.c_str(), t.pixels,
-                  t.pixels == 1 ? "" : "s", t.frames, t.frames == 1 ? "" : "s", 100.0 * sorted[sorted.size() / 2], 100.0 * t.largest, t.channel.c_str());
+    std::snprintf(line, sizeof line, "  %s: audited %d pixel%s of %d frame%s against the reference: median %.2g %%, largest %.2g %% (%s)", camera.c_str(),
+                  t.pixels, t.pixels == 1 ? "" : "s", t.frames, t.frames == 1 ? "" : "s", 100.0 * sorted[sorted.size() / 2], 100.0 * t.largest,
+                  t.channel.c_str());
     text += line;
     if (t.asked > 0.0) {
       std::snprintf(line, sizeof line, " of %.2g %% asked%s", 100.0 * t.asked, t.largest > t.asked ? ": MORE THAN ASKED, those frames say so" : "");
@@ -255,9 +256,10 @@ void auditFrames(Simulation& sim) {
 }  // namespace
 
 int runCommand(const Arguments& arguments) {
-  const Options o("run", arguments,
-                  {{"--out"}, {"--frames"}, {"--set", true, true}, {"--preview", false}, {"--preview-range", true, true}, {"--overwrite", false},
-                   {"--plan", true, true}}, 1, 1);
+  const Options o(
+      "run", arguments,
+      {{"--out"}, {"--frames"}, {"--set", true, true}, {"--preview", false}, {"--preview-range", true, true}, {"--overwrite", false}, {"--plan", true, true}},
+      1, 1);
   Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
   refuseBeyondMemory(sim);
   readPlans(o, sim);

@@ -55,13 +55,16 @@ const ParameterTable& scenario() {
   static const ParameterTable t{
       "scenario",
       "The file itself.",
-      {text("name", "short name, written into every frame (default: the file's name)"), text("description", "one or two sentences"),
+      {text("name", "short name, written into every frame (default: the file's name)"),
+       text("description", "one or two sentences"),
        text("extends",
             "a scenario whose keys hold where this one has none: the same scene with other cameras. A path relative to this file, within the folder above its "
             "own; files that it names are found from its own folder"),
        withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL), "1"),
-       map("origin", "where the local east-north-up frame stands on the earth"), map("time", "first frame, rate and number of frames"),
-       map("limits", "what may come besides the scenario's own times, where poses and levels come live"), map("render", "how it is drawn"),
+       map("origin", "where the local east-north-up frame stands on the earth"),
+       map("time", "first frame, rate and number of frames"),
+       map("limits", "what may come besides the scenario's own times, where poses and levels come live"),
+       map("render", "how it is drawn"),
        text("accuracy",
             "relative error of a pixel that the plan may spend on wavelengths, tables and terms left out, `1 %` for example, or `reference`: every wavelength "
             "in double precision on the CPU, slow; without it: 1 % in layered air and air from tables, else as each camera's `spectral` says"),
@@ -72,9 +75,13 @@ const ParameterTable& scenario() {
        any("atmosphere", "the air: `none`, the name of a library air, or a map"),
        map("background", "what is behind everything (0 K unless given), seen through the air"),
        map("ground", "the earth's surface where bodies end: under layered air it is always there, black unless this says otherwise"),
-       map("sun", "direction and irradiance"), map("ambient", "radiance of a uniform dome that lights all surfaces"),
-       map("materials", "name: material; library materials need not be listed"), list("lights", "spectral point lights", 0, 1024),
-       list("entities", "bodies", 0, 4096), list("cameras", "sensors", 0, 64), list("probes", "irradiance meters", 0, 256)}};
+       map("sun", "direction and irradiance"),
+       map("ambient", "radiance of a uniform dome that lights all surfaces"),
+       map("materials", "name: material; library materials need not be listed"),
+       list("lights", "spectral point lights", 0, 1024),
+       list("entities", "bodies", 0, 4096),
+       list("cameras", "sensors", 0, 64),
+       list("probes", "irradiance meters", 0, 256)}};
   return t;
 }
 

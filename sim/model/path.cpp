@@ -51,9 +51,10 @@ void AirLight::reaching(std::span<const double> both, std::span<const double> li
     share[i] = 0.0;
     if (!(sun > 0.0)) continue;
     const double near = lit[i - 1] > 0.0 ? both[i - 1] : both[i], far = lit[i] > 0.0 ? both[i] : both[i - 1];
-    const double x = far - near;  // of either sign: looking up, the sun's leg gets shorter
-    const double mean = std::abs(x) < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
-    share[i] = sun * std::exp(-near) * mean;
+    // The lesser depth comes out of the mean, so that neither overflows: looking up from shade, the way to the sun gets shorter by thousands.
+    const double x = std::abs(far - near);
+    const double mean = x < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x;
+    share[i] = sun * std::exp(-std::min(near, far)) * mean;
   }
 }
 

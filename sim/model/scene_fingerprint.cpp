@@ -42,9 +42,7 @@ void addTo(Fingerprint& f, const std::vector<ChannelOutput>& outputs) {
   }
 }
 
-void addTo(Fingerprint& f, const SpectralSampling& s) {
-  f.add(s.samples).add(static_cast<int>(s.spacing)).add(s.shared).add(s.accuracy).add(s.reference);
-}
+void addTo(Fingerprint& f, const SpectralSampling& s) { f.add(s.samples).add(static_cast<int>(s.spacing)).add(s.shared).add(s.accuracy).add(s.reference); }
 
 }  // namespace
 

@@ -46,7 +46,8 @@ std::vector<double> droppedOf(const Plan& plan, const Terms& all, const NodeSum&
       if (!isDropped(plan, all, static_cast<TermKind>(kind), b)) continue;
       const auto part = sum.part(static_cast<TermKind>(kind));
       for (int s : b.slots)
-        for (int i = b.first; i < b.first + b.count; ++i) lost[static_cast<size_t>(s)] += plan.weight[static_cast<size_t>(s)][static_cast<size_t>(i)] * part[static_cast<size_t>(i)];
+        for (int i = b.first; i < b.first + b.count; ++i)
+          lost[static_cast<size_t>(s)] += plan.weight[static_cast<size_t>(s)][static_cast<size_t>(i)] * part[static_cast<size_t>(i)];
     }
   return lost;
 }

@@ -10,7 +10,7 @@ namespace pitviper {
 /// Of one channel, relative to max(|L|, floor).
 struct LineFigures {
   double largest = 0.0, median = 0.0;
-  double dropped = 0.0;  ///< the most that terms make up which the plan leaves out
+  double dropped = 0.0;        ///< the most that terms make up which the plan leaves out
   std::vector<double> errors;  ///< of each line
 };
 

@@ -106,8 +106,8 @@ class Fitter {
     if (all_.fineCount() == 0) return finish(GroupState{}, 0);
     const int count = std::clamp(groups, 1, mostGroups());
     // A step costs as its groups; many groups begin near enough for a few.
-    const int rounds =
-        effort_.fewGroups > 0 ? std::clamp(effort_.rounds * effort_.fewGroups / count, std::min(effort_.rounds, kFewestRounds), effort_.rounds) : effort_.rounds;
+    const int rounds = effort_.fewGroups > 0 ? std::clamp(effort_.rounds * effort_.fewGroups / count, std::min(effort_.rounds, kFewestRounds), effort_.rounds)
+                                             : effort_.rounds;
     GroupState state = start_.state(count), best = state;
     forgetOldest();
     RefineProgress progress;

@@ -219,8 +219,7 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
       chooseNodes(sim, eye, slots, fine, sights, plan);
       dropTerms(plan, keepLights);
     } else {
-      for (const auto& w : fine.weight)
-        plan.fineCount.push_back(static_cast<int>(std::count_if(w.begin(), w.end(), [](double v) { return v != 0.0; })));
+      for (const auto& w : fine.weight) plan.fineCount.push_back(static_cast<int>(std::count_if(w.begin(), w.end(), [](double v) { return v != 0.0; })));
     }
     predict(sim, eye, fine, plan);
     plan.terms = all;

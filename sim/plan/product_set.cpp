@@ -281,7 +281,8 @@ Eigen::VectorXd ProductSet::forward(const GroupMoments& at, const GroupMoments& 
         value.spectraBut(-1, product);
         for (Eigen::Index g = 0; g < groups; ++g) changed += product[g] * (dTau[g] - tau[g] * (term.count - 1) * dW[g] * w[g]);
         for (int f = 0; f < term.count; ++f) {
-          const double *s = at.source.data() + groups * term.spectrum[static_cast<size_t>(f)], *d = change.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
+          const double *s = at.source.data() + groups * term.spectrum[static_cast<size_t>(f)],
+                       *d = change.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
           for (Eigen::Index g = 0; g < groups; ++g) changed += value.but(f, g, product[g], s[g]) * tau[g] * d[g];
         }
       }

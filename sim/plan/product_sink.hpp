@@ -32,10 +32,10 @@ class ProductSink final : public TermSink {
   const Simulation& sim_;
   SightBook& book_;
   Sight sight_;
-  std::vector<size_t> scatterers_;  ///< absorbers of the air that scatter
-  AirAmounts here_;                 ///< from the eye to the place reached, raised to their powers
-  std::vector<double> media_m_;     ///< on the way so far, by material; empty: none
-  std::vector<double> inside_m_;    ///< of the segment being told
+  std::vector<size_t> scatterers_;    ///< absorbers of the air that scatter
+  AirAmounts here_;                   ///< from the eye to the place reached, raised to their powers
+  std::vector<double> media_m_;       ///< on the way so far, by material; empty: none
+  std::vector<double> inside_m_;      ///< of the segment being told
   int herePath_ = -1, sunPath_ = -1;  ///< as far as the place reached, and with the way on to the sun; -1: not written down yet
   struct Pane {
     int transmittance;

@@ -39,9 +39,7 @@ std::shared_ptr<const WorldState> SightRays::stateAt(int frame) {
   return state_;
 }
 
-void SightRays::cast(SightRay& ray) const {
-  ray.line.hits = castRay(simulation_, *ray.state, ray.line.origin, ray.line.direction, ray.nearest_m, &drawn_);
-}
+void SightRays::cast(SightRay& ray) const { ray.line.hits = castRay(simulation_, *ray.state, ray.line.origin, ray.line.direction, ray.nearest_m, &drawn_); }
 
 SightRay SightRays::startAt(int frame) {
   SightRay ray;

@@ -41,8 +41,8 @@ int SightBook::spectrum(const Factor& factor, const Simulation& sim) {
 }
 
 int SightBook::both(int a, int b) {
-  return spectrum("both " + std::to_string(a) + " " + std::to_string(b), [fa = spectra[static_cast<size_t>(a)], fb = spectra[static_cast<size_t>(b)]](
-                                                                             const FineGrid& g, size_t i) { return fa(g, i) * fb(g, i); });
+  return spectrum("both " + std::to_string(a) + " " + std::to_string(b),
+                  [fa = spectra[static_cast<size_t>(a)], fb = spectra[static_cast<size_t>(b)]](const FineGrid& g, size_t i) { return fa(g, i) * fb(g, i); });
 }
 
 Sights::Sights(const Simulation& simulation, const Plan& plan, const Eye& eye, unsigned long long seed)

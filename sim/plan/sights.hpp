@@ -60,7 +60,8 @@ class Sights {
  public:
   /// All must outlive it. `plan`: what makePlan() says of terms.
   Sights(const Simulation& simulation, const Plan& plan, const Eye& eye, unsigned long long seed);
-  /// The extremes, what was learnt, and so many others: half of them as the film draws pixels, a quarter of all combinations of things alike, a quarter aimed at bodies.
+  /// The extremes, what was learnt, and so many others: half of them as the film draws pixels, a quarter of all combinations of things alike, a quarter aimed
+  /// at bodies.
   void begin(int count, const std::vector<FilmPlace>& learnt);
   /// More of the others.
   void draw(int count);

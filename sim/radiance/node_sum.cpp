@@ -163,7 +163,8 @@ void NodeSum::segment(const Segment& s) {
     const double molecules = depthOf(nodes[i].air.molecules, s.far.powered, used) - depthOf(nodes[i].air.molecules, s.near.powered, used);
     const double haze = depthOf(nodes[i].air.haze, s.far.powered, used) - depthOf(nodes[i].air.haze, s.near.powered, used);
     const double mean = meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * (x > 0.0 ? std::exp(-x) : 1.0));
-    send(TermKind::ScatteredSun, i, sun * reaching * mean * (*irradiance)[i] *
+    send(TermKind::ScatteredSun, i,
+         sun * reaching * mean * (*irradiance)[i] *
              (rayleigh * std::max(molecules, 0.0) + henyeyGreensteinPhase(s.cosScatter, nodes[i].air.asymmetry) * std::max(haze, 0.0)));
   }
   if (s.air) std::swap(near_, far_);

@@ -60,8 +60,8 @@ class Teller {
       if (!(s.enter < middle && s.leave > middle)) continue;
       const Entity& body = sim_.entities[static_cast<size_t>(s.entity)];
       const Surface& surface = body.surfaces.front();
-      inside_.push_back({sim_.mediumOf(body), surface.material, line_.temperature_K > 0.0 ? line_.temperature_K : surface.temperature_K,
-                         far.range_m - near.range_m});
+      inside_.push_back(
+          {sim_.mediumOf(body), surface.material, line_.temperature_K > 0.0 ? line_.temperature_K : surface.temperature_K, far.range_m - near.range_m});
     }
     sink_.segment({near, far, inside_, scene_.terms.air, air_.sunlit(), air_.cosScatter(), dark_});
   }
@@ -83,9 +83,9 @@ class Teller {
     std::vector<double> modifiers;
     for (int texture : m.modifiers) modifiers.push_back(modifier(texture, hit));
     const bool textured = s.temperatureTexture >= 0;
-    const double temperature_K = textured ? textureValue(sim_.textures[static_cast<size_t>(s.temperatureTexture)], hit.uv)
+    const double temperature_K = textured                                       ? textureValue(sim_.textures[static_cast<size_t>(s.temperatureTexture)], hit.uv)
                                  : line_.temperature_K > 0.0 && hit.entity >= 0 ? line_.temperature_K
-                                                             : s.temperature_K;
+                                                                                : s.temperature_K;
     if ((m.transmission ? scene_.terms.layer : scene_.terms.solid).isGeneral()) {
       const double angle = viewAngle(hit);
       const Factor black = Factor::planck(temperature_K, !textured);
@@ -94,8 +94,7 @@ class Teller {
       } else {
         // Kirchhoff: 1 - reflectance - transmittance, each with its texture.
         add(TermKind::Emission, 1.0, {black});
-        for (size_t k = 0; k < m.reflections.size(); ++k)
-          add(TermKind::Emission, -modifiers[k], {black, Factor::hemispherical(*m.reflections[k], angle)});
+        for (size_t k = 0; k < m.reflections.size(); ++k) add(TermKind::Emission, -modifiers[k], {black, Factor::hemispherical(*m.reflections[k], angle)});
         if (m.transmission) add(TermKind::Emission, -modifier(m.transmission->modifier, hit), {black, Factor::transmittance(m, angle)});
       }
       for (size_t k = 0; scene_.terms.ambient && k < m.reflections.size(); ++k)

@@ -73,8 +73,7 @@ int Auditor::doubtful(const WorldState& state, int frame) const {
   for (int pixel : pixelsOf(kDoubts, frame, 2)) {
     const int n = camera_.samples, column = pixel % camera_.pinhole.width, row = camera_.pinhole.height - 1 - pixel / camera_.pinhole.width;
     const glm::dvec3 ray = view.ray((column + 0.5) * n, (row + 0.5) * n);
-    const RayHits hits =
-        castRay(simulation_, state, view.position, view.localFromCamera * ray / glm::length(ray), view.near_m * glm::length(ray), &drawn);
+    const RayHits hits = castRay(simulation_, state, view.position, view.localFromCamera * ray / glm::length(ray), view.near_m * glm::length(ray), &drawn);
     const auto [at, isNew] = seen.try_emplace(ReferenceShader::things(hits), 0, pixel);
     ++at->second.first;
   }
@@ -122,7 +121,8 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
   for (size_t k = 0; k < pixels.size(); ++k)
     for (int y = 0; isBroken[k] && y < camera_.samples; ++y)
       for (int x = 0; x < camera_.samples; ++x)
-        broken_.push_back({frame, pixels[k] % camera_.pinhole.width + (x + 0.5) / camera_.samples, pixels[k] / camera_.pinhole.width + (y + 0.5) / camera_.samples});
+        broken_.push_back(
+            {frame, pixels[k] % camera_.pinhole.width + (x + 0.5) / camera_.samples, pixels[k] / camera_.pinhole.width + (y + 0.5) / camera_.samples});
 }
 
 }  // namespace pitviper

@@ -45,8 +45,7 @@ int CameraRenderer::viewsOfPicture() const {
   for (size_t e = 0; e < small_.size(); ++e) {
     const Pose& pose = state_.entities[e];
     const Entity& entity = simulation_.entities[e];
-    if (small_[e] && present_[e] && mayShow(view_, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m))
-      ++views;
+    if (small_[e] && present_[e] && mayShow(view_, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m)) ++views;
   }
   return views;
 }

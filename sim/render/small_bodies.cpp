@@ -205,7 +205,8 @@ void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const W
   const RawImage zoomed = pass.finishReadback();
   gather(image, z, zoomed,
          sharesOf(
-             image, z, zoomed, [&](size_t q) { return zoomed.entity[q] == entity && (!only || (*z.wanted)[q]) ? static_cast<std::uint32_t>(q) : kNone; }, [](int) { return true; }),
+             image, z, zoomed, [&](size_t q) { return zoomed.entity[q] == entity && (!only || (*z.wanted)[q]) ? static_cast<std::uint32_t>(q) : kNone; },
+             [](int) { return true; }),
          fine);
 }
 

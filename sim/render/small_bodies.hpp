@@ -12,7 +12,8 @@ namespace pitviper {
 std::vector<char> findSmallBodies(const Simulation& simulation, const WorldState& state, const View& view, double limit_subpixels);
 
 /// Draws every small body that may show and adds it to the image. `present`: all entities that can be seen or hide (small ones too).
-/// `zoomedSamples`: Camera::zoomedSamples. `wanted`: one flag per subpixel, or null for all. The image must hold everything but the small bodies; since each zoomed view shows what the others hide, their order does not matter.
+/// `zoomedSamples`: Camera::zoomedSamples. `wanted`: one flag per subpixel, or null for all. The image must hold everything but the small bodies; since each
+/// zoomed view shows what the others hide, their order does not matter.
 void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& simulation, const WorldState& state, const std::vector<char>& small,
                     const std::vector<char>& present, int zoomedSamples, const std::vector<char>* wanted = nullptr);
 

@@ -22,7 +22,8 @@ static_assert(sizeof(GpuMaterial) == 96);
 
 enum class DrawKind { Background, Ground, Solid, Layer, Medium };
 
-/// A drawn part: entity and surface; the background is the first draw and has entity -1, as has the ground, which pixels of the background find. A medium is one draw for its whole body.
+/// A drawn part: entity and surface; the background is the first draw and has entity -1, as has the ground, which pixels of the background find. A medium is
+/// one draw for its whole body.
 struct DrawItem {
   DrawKind kind = DrawKind::Background;
   int entity = -1;

@@ -8,9 +8,9 @@
 namespace pitviper {
 
 struct FuzzReport {
-  int accepted = 0;  ///< still a scenario
-  int refused = 0;   ///< a UserError of one line with place and fix
-  int failed = 0;    ///< anything else: another exception, a message without place or fix, too much memory
+  int accepted = 0;        ///< still a scenario
+  int refused = 0;         ///< a UserError of one line with place and fix
+  int failed = 0;          ///< anything else: another exception, a message without place or fix, too much memory
   double slowest_s = 0.0;  ///< of the processor
   std::uint64_t slowestSeed = 0;
   long peakMemory_kB = 0;

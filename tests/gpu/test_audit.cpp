@@ -1,6 +1,4 @@
 // Frames that audit themselves: what is looked at, what is found, and what comes of it.
-#include "sim/render/audit.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/planner.hpp"
+#include "sim/render/audit.hpp"
 #include "sim/run/run.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -97,7 +96,8 @@ TEST(Audit, FindsWhatAPlanIsOffBy) {
   sim.cameras[0].plan = writePlanned(bad);
   sim.cameras[0].planFile = "c.plan";
   int drawn = 0;
-  const RunReport broken = runFrames(sim, shaderLibrary(), {0, 9}, [&](const Frame&) { ++drawn; }, {}, {}, true);
+  const RunReport broken = runFrames(
+      sim, shaderLibrary(), {0, 9}, [&](const Frame&) { ++drawn; }, {}, {}, true);
   EXPECT_EQ(drawn, 1) << "it stops where it is found";
   EXPECT_FALSE(broken.broken.empty());
   EXPECT_NEAR(broken.audits.at("c").largest, 0.05, 0.011) << "5 %, and what the good plan may be off by";

@@ -157,3 +157,20 @@ TEST(LowSun, DirectSunlightByStraightLines) {
 
 }  // namespace
 }  // namespace pitviper::test
+
+namespace pitviper::test {
+namespace {
+
+// Ways to the sun from places in deep shade are thousands of optical depths long, and shorten upwards: their mean must not overflow.
+TEST(LowSun, SkyOfASunBelowTheHorizonIsANumber) {
+  for (const char* elevation : {"-1", "-0.3", "0"}) {
+    const Simulation sim =
+        scene(std::string("atmosphere: hazy_us76\nsun: {azimuth: 100 deg, elevation: ") + elevation + " deg, temperature: 5772 K}\nambient: {from: sky}\n");
+    ASSERT_TRUE(sim.ambient.has_value());
+    const double sky = (*sim.ambient)(0.6);
+    EXPECT_TRUE(std::isfinite(sky) && sky >= 0.0) << elevation << " deg: " << sky;
+  }
+}
+
+}  // namespace
+}  // namespace pitviper::test

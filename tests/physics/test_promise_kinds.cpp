@@ -39,8 +39,8 @@ TEST(PromiseKinds, TwoComplementaryPanes) {
       "- {name: pb, shape: {model: plate, width: 4 m, height: 4 m}, material: b, position: [0 m, 0 m, 0 m], heading: 180 deg, temperature: 0 K}\n" +
       camera("[0 m, -10 m, 0 m]", "[0 m, 0 m, 0 m]", "field_of_view: 4 deg, channels: [{name: m, response: {band: [4.0 um, 4.5 um]}}]");
   const Frame frame = renderFrame(scene(text + "accuracy: 1 %\n"));
-  figure("two panes of opposite halves of a band, planned at 1 % [W/(m2 sr)]", at(layer(frame, "m.radiance"), frame, 4, 4), 0.02 * blackBodyBand(4.0, 4.5, 600.0),
-         0.01, "asked for; 0.02 B on either side of 4.25 um");
+  figure("two panes of opposite halves of a band, planned at 1 % [W/(m2 sr)]", at(layer(frame, "m.radiance"), frame, 4, 4),
+         0.02 * blackBodyBand(4.0, 4.5, 600.0), 0.01, "asked for; 0.02 B on either side of 4.25 um");
 }
 
 // Clear air has no haze at all: what is nowhere cannot be fitted, and must not grow.
@@ -57,10 +57,12 @@ TEST(PromiseKinds, AbsorbersThatNoLineHas) {
 // Materials with steps and a curved pane in the way, where several spectra meet.
 TEST(PromiseKinds, DomeAndWindowBeforeAWall) {
   const std::string text =
-      "entities:\n- {name: wall, shape: {model: plate, width: 6 m, height: 6 m}, material: concrete, position: [0 m, 8 m, 0 m], heading: 180 deg, temperature: 295 K}\n"
+      "entities:\n- {name: wall, shape: {model: plate, width: 6 m, height: 6 m}, material: concrete, position: [0 m, 8 m, 0 m], heading: 180 deg, temperature: "
+      "295 K}\n"
       "- {name: hot, shape: {model: sphere, radius: 0.12 m}, material: blackbody, temperature: 900 K, position: [0 m, 5 m, 0 m]}\n"
       "- {name: dome, shape: {model: sphere, radius: 0.3 m}, material: acrylic_canopy, temperature: 320 K, position: [0 m, -10 m, 0 m]}\n"
-      "- {name: win, shape: {model: plate, width: 4 m, height: 4 m}, material: window_glass, position: [0 m, -5 m, 0 m], heading: 180 deg, temperature: 300 K}\n" +
+      "- {name: win, shape: {model: plate, width: 4 m, height: 4 m}, material: window_glass, position: [0 m, -5 m, 0 m], heading: 180 deg, temperature: 300 "
+      "K}\n" +
       camera("[0 m, -10 m, 0 m]", "[0 m, 5 m, 0 m]", "field_of_view: 4 deg, channels: [{name: a, response: {band: [0.5 um, 3.0 um]}}]");
   bound("dome and window before a wall, planned at 1 %, worst pixel", worstOff(text, "1 %"), 0.01, "asked for");
 }

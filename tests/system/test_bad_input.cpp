@@ -284,7 +284,8 @@ std::vector<Bad> badScenarios() {
       {"TransmissionWithoutTransmittance", "materials: {m: {transmission: @@{}}}\n", {"a transmission without a transmittance", "transmittance"}},
       {"TransmissionWithAngularAlone", "materials: {m: {transmission: @@{angular: [[0 deg, 1]]}}}\n", {"'angular' but without 'transmittance'"}},
       {"TransmissionTwice",
-       "materials: {m: {transmission: @@{transmittance: 0.5, wavelength: [3 um, 5 um], angles: [{angle: view, count: 2, last: 90 deg}], values: [[0.1, 0.1], [0, 0]]}}}\n",
+       "materials: {m: {transmission: @@{transmittance: 0.5, wavelength: [3 um, 5 um], angles: [{angle: view, count: 2, last: 90 deg}], values: [[0.1, 0.1], "
+       "[0, 0]]}}}\n",
        {"a transmission that is both a spectrum and a table"}},
       {"TransmittanceBeyondOne", "materials: {m: {transmission: {transmittance: @@1.2}}}\n", {"transmittance", "leaves its range", "0 to 1"}},
       {"TransmittanceTableBeyondOne",
@@ -322,11 +323,13 @@ std::vector<Bad> badScenarios() {
        "entities: [{name: p, shape: @@{model: cone, radius: 1 m, length: 2 m, capped: false}, material: {absorption: 1 /m}, temperature: 300 K}]\n" + kCamera,
        {"the body of 'p' is not closed"}},
       {"MediumInAnOpenMesh",
-       "materials: {gas: {absorption: 1 /m}}\nentities: [{name: p, shape: @@{model: mesh, file: body.obj, unit: 1 m}, material: gas, temperature: 300 K}]\n" + kCamera,
+       "materials: {gas: {absorption: 1 /m}}\nentities: [{name: p, shape: @@{model: mesh, file: body.obj, unit: 1 m}, material: gas, temperature: 300 K}]\n" +
+           kCamera,
        {"the body of 'p' is not closed", "'gas' is a medium"},
        {{"body.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"}}},
       {"MediumInAMeshInsideOut",
-       "materials: {gas: {absorption: 1 /m}}\nentities: [{name: p, shape: @@{model: mesh, file: body.obj, unit: 1 m}, material: gas, temperature: 300 K}]\n" + kCamera,
+       "materials: {gas: {absorption: 1 /m}}\nentities: [{name: p, shape: @@{model: mesh, file: body.obj, unit: 1 m}, material: gas, temperature: 300 K}]\n" +
+           kCamera,
        {"the body of 'p' is not closed", "normals outwards"},
        {{"body.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n"}}},
       {"MediumWithComponents",
@@ -339,20 +342,28 @@ std::vector<Bad> badScenarios() {
       {"NegativeRadianceOfAMedium", "materials: {gas: {absorption: 1 /m, radiance: @@-1 W/(m2 sr um)}}\n", {"radiance", "leaves its range"}},
       {"AbsorptionWithoutUnit", "materials: {gas: {absorption: @@1}}\n", {"absorption", "no unit"}},
       {"MediumDoesNotCoverTheBand",
-       "materials:\n  gas: @@{absorption: {wavelength: um, unit: /m, values: [[0.4, 0.1], [2.5, 0.2]]}}\nentities: [{name: p, shape: {model: sphere, radius: 1 m}, "
-       "material: gas, temperature: 300 K}]\n" + kCamera,
+       "materials:\n  gas: @@{absorption: {wavelength: um, unit: /m, values: [[0.4, 0.1], [2.5, 0.2]]}}\nentities: [{name: p, shape: {model: sphere, radius: 1 "
+       "m}, "
+       "material: gas, temperature: 300 K}]\n" +
+           kCamera,
        {"material 'gas'", "channel 'mw'", "3.6 um to 4.9 um", "0.4 um to 2.5 um"}},
       {"RadianceOfAMediumDoesNotCoverTheBand",
-       "materials:\n  gas: @@{absorption: 1 /m, radiance: {wavelength: um, unit: W/(m2 sr um), values: [[0.4, 0.1], [2.5, 0.2]]}}\nentities: [{name: p, shape: {model: "
-       "sphere, radius: 1 m}, material: gas, temperature: 300 K}]\n" + kCamera,
+       "materials:\n  gas: @@{absorption: 1 /m, radiance: {wavelength: um, unit: W/(m2 sr um), values: [[0.4, 0.1], [2.5, 0.2]]}}\nentities: [{name: p, shape: "
+       "{model: "
+       "sphere, radius: 1 m}, material: gas, temperature: 300 K}]\n" +
+           kCamera,
        {"material 'gas'", "3.6 um to 4.9 um"}},
       {"PartsOfAMediumDiffer",
-       "entities: [{name: p, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: {absorption: 1 /m}, temperature: 300 K, parts: @@{top: {temperature: "
-       "310 K}}}]\n" + kCamera,
+       "entities: [{name: p, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: {absorption: 1 /m}, temperature: 300 K, parts: @@{top: "
+       "{temperature: "
+       "310 K}}}]\n" +
+           kCamera,
        {"the parts of 'p' differ", "make two entities"}},
       {"APartOfABodyIsAMedium",
-       "entities: [{name: p, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: {}, temperature: 300 K, parts: @@{top: {material: {absorption: 1 "
-       "/m}}}}]\n" + kCamera,
+       "entities: [{name: p, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: {}, temperature: 300 K, parts: @@{top: {material: "
+       "{absorption: 1 "
+       "/m}}}}]\n" +
+           kCamera,
        {"the parts of 'p' differ", "is a medium"}},
       // Channels.
       {"CameraWithoutChannel", kPlate + "cameras: [{name: c, " + kCameraRest + ", channels: @@[]}]\n", {"channels has 0 entries"}},

@@ -171,8 +171,7 @@ TEST_F(Faults, MemoryIsPredicted) {
     const Result r = run("ulimit -v 4000000; $P " + std::string(command) + " large.yaml");
     EXPECT_EQ(r.code, 2) << r.err;
     EXPECT_EQ(r.err.rfind("large.yaml:2:11: drawing this takes about 1", 0), 0u) << r.err;
-    for (const char* word :
-         {" GB of memory, ", "for camera c (4096x4096 pixels, 1x1 subpixels, 16 layers); expected at most the 4", "; fix: lower the film"})
+    for (const char* word : {" GB of memory, ", "for camera c (4096x4096 pixels, 1x1 subpixels, 16 layers); expected at most the 4", "; fix: lower the film"})
       EXPECT_NE(r.err.find(word), std::string::npos) << r.err;
     EXPECT_FALSE(fs::exists(folder_ / "out"));
     EXPECT_LT(r.peak_kB, 200 << 10);

@@ -47,8 +47,8 @@ class Integrate : public ::testing::Test {
 
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name, std::ios::binary) << text; }
   Result pitviper(const std::string& arguments) const {
-    const std::string line = "cd '" + folder_.string() + "' && PITVIPER_HOME='" + PITVIPER_SOURCE_DIR + "' timeout 7200 '" + PITVIPER_PROGRAM + "' " + arguments +
-                             " >.stdout 2>.stderr";
+    const std::string line = "cd '" + folder_.string() + "' && PITVIPER_HOME='" + PITVIPER_SOURCE_DIR + "' timeout 7200 '" + PITVIPER_PROGRAM + "' " +
+                             arguments + " >.stdout 2>.stderr";
     const int status = std::system(line.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, readAll(folder_ / ".stdout"), readAll(folder_ / ".stderr")};
   }

@@ -10,8 +10,8 @@
 
 namespace {
 
-const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image", "sim/gl",     "sim/scene", "sim/model", "sim/radiance",
-                                         "sim/plan",       "sim/render",     "sim/frame", "sim/stream", "sim/run"};
+const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image",  "sim/gl",    "sim/scene",  "sim/model",
+                                         "sim/radiance",   "sim/plan",       "sim/render", "sim/frame", "sim/stream", "sim/run"};
 
 int levelOf(const std::string& path) {
   for (size_t i = 0; i < kOrder.size(); ++i)

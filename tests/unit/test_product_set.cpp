@@ -1,10 +1,9 @@
 // Products of averages: their derivatives against differences of the products themselves, for one to five spectra in a term.
-#include "sim/plan/product_set.hpp"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "sim/plan/product_set.hpp"
 #include "tests/support/figures.hpp"
 
 namespace pitviper::test {
