@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 namespace {
 
-/// Temperatures of air anywhere [K], 1 K apart: a cubic between two, with slopes from their neighbours.
+/// Temperatures of air anywhere [K], 1 K apart: between two the cubic that has their values and slopes (Hermite's).
 constexpr int kColdest_K = 140, kWarmest_K = 400;
 /// What lets less through than this sends nothing that anybody sees.
 constexpr double kOpaque = 45.0;
@@ -36,8 +37,15 @@ double depthOf(const std::array<double, kMostAirAmounts>& coefficient, const Air
 
 NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes) : simulation_(simulation), nodes_(nodes) {
   if (!simulation.path || !simulation.path->isLayered()) return;
-  for (int t = kColdest_K - 1; t <= kWarmest_K + 1; ++t)
-    for (const SpectralNode& n : nodes) planck_.push_back(n.planck(t));
+  for (int t = kColdest_K; t <= kWarmest_K; ++t)
+    for (const SpectralNode& n : nodes) {
+      planck_.push_back(n.planck(t));
+      // dB/dT = B x / (T (1 - exp(-x))), x = c2 / (lambda T).
+      slope_.push_back(n.mean([t](double w) {
+        const double x = kSecondRadiation_umK / (w * t);
+        return physics::planckRadiance(w, t) * x / (t * physics::oneMinusExp(x));
+      }));
+    }
 }
 
 void NodeSpectra::planck(double temperature_K, std::span<double> into) const {
@@ -47,12 +55,10 @@ void NodeSpectra::planck(double temperature_K, std::span<double> into) const {
   }
   const double t = temperature_K - kColdest_K;
   const auto low = std::min(static_cast<size_t>(t), static_cast<size_t>(kWarmest_K - kColdest_K - 1));
-  const double u = t - static_cast<double>(low);
-  // Catmull and Rom's cubic on four neighbours.
-  const double w0 = u * (-0.5 + u * (1.0 - 0.5 * u)), w1 = 1.0 + u * u * (-2.5 + 1.5 * u), w2 = u * (0.5 + u * (2.0 - 1.5 * u)), w3 = u * u * (-0.5 + 0.5 * u);
-  const size_t n = nodes_.size();
-  const double *p0 = &planck_[low * n], *p1 = p0 + n, *p2 = p1 + n, *p3 = p2 + n;
-  for (size_t i = 0; i < n; ++i) into[i] = w0 * p0[i] + w1 * p1[i] + w2 * p2[i] + w3 * p3[i];
+  const double u = t - static_cast<double>(low), v = 1.0 - u;
+  const double p0 = v * v * (1.0 + 2.0 * u), p1 = u * u * (1.0 + 2.0 * v), s0 = u * v * v, s1 = -u * u * v;
+  const size_t n = nodes_.size(), at = low * n;
+  for (size_t i = 0; i < n; ++i) into[i] = p0 * planck_[at + i] + p1 * planck_[at + n + i] + s0 * slope_[at + i] + s1 * slope_[at + n + i];
 }
 
 std::vector<double> NodeSpectra::of(const Factor& factor) const {

@@ -17,14 +17,14 @@ class NodeSpectra {
   NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes);
   const Simulation& simulation() const { return simulation_; }
   std::span<const SpectralNode> nodes() const { return nodes_; }
-  /// Black body of a temperature of the air per node, in place; between 140 and 400 K by a table (3e-6 at 1 um, 1e-8 at 4 um and beyond).
+  /// Black body of a temperature of the air per node, in place; between 140 and 400 K by a table (tests/unit/test_node_sum.cpp has its error).
   void planck(double temperature_K, std::span<double> into) const;
   std::vector<double> of(const Factor& factor) const;
 
  private:
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
-  std::vector<double> planck_;  ///< [temperature][node]; empty without layered air
+  std::vector<double> planck_, slope_;  ///< [temperature][node], and by kelvin; empty without layered air
 };
 
 /// Radiance per node of one line after the other. One for each thread.

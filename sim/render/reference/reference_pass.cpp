@@ -16,7 +16,9 @@ namespace pitviper {
 
 ReferencePass::ReferencePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                              double apertureArea_m2)
-    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Reference), simulation_(simulation) {
+    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Reference),
+      simulation_(simulation),
+      spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes)) {
   if (!truth) return;
   ShaderSlots slots = shadingSlots();
   slots.constants["WEIGHTS"] = 1;
@@ -48,7 +50,7 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
   const int width = visibility.width(), height = visibility.height();
   const size_t groups = static_cast<size_t>(plan().groupCount());
   std::vector<std::vector<float>> channels(groups, std::vector<float>(4 * static_cast<size_t>(width) * static_cast<size_t>(height), 0.0f));
-  const ReferenceShader shader(simulation_, plan(), view_, state_, drawn_);
+  const ReferenceShader shader(simulation_, plan(), view_, state_, drawn_, spectra_);
   // The line of a pixel that counts.
   const auto lineAt = [&](int x, int y) -> std::optional<LineOfSight> {
     const size_t p = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x);
@@ -98,7 +100,7 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
 }
 
 std::vector<double> ReferencePass::transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) {
-  return ReferenceShader(simulation_, plan(), view, state, drawn).transmittance(farthest_m);
+  return ReferenceShader(simulation_, plan(), view, state, drawn, spectra_).transmittance(farthest_m);
 }
 
 }  // namespace pitviper

@@ -1,8 +1,10 @@
 #pragma once
 // The third mode of drawing: the visibility pass says which triangle each subpixel sees; everything from there on is double precision on the
-// CPU, at every wavelength of the plan, from the models themselves. No tables, no term left out. Slow, for judging the other two.
+// CPU, at every wavelength of the plan, from the models themselves; no term left out. Zoomed views of small bodies are worked out where they bend, linear
+// between within 2e-5 (ZoomedTile). Slow, for judging the other two.
 #include <functional>
 
+#include "sim/radiance/node_sum.hpp"
 #include "sim/render/scene_pass.hpp"
 
 namespace pitviper {
@@ -24,6 +26,7 @@ class ReferencePass final : public ScenePass {
   void shade(RenderTarget& into, const RenderTarget& visibility) override;
 
   const Simulation& simulation_;
+  std::shared_ptr<const NodeSpectra> spectra_;
   ShadingProgram truthProgram_;
   View view_;
   WorldState state_;

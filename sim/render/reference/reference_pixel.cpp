@@ -8,7 +8,8 @@
 
 namespace pitviper {
 
-ReferenceShader::ReferenceShader(const Simulation& simulation, const Plan& plan, const View& view, const WorldState& state, const std::vector<char>& drawn)
+ReferenceShader::ReferenceShader(const Simulation& simulation, const Plan& plan, const View& view, const WorldState& state, const std::vector<char>& drawn,
+                                 std::shared_ptr<const NodeSpectra> spectra)
     : simulation_(simulation),
       plan_(plan),
       view_(view),
@@ -16,7 +17,7 @@ ReferenceShader::ReferenceShader(const Simulation& simulation, const Plan& plan,
       drawn_(drawn),
       transparent_(simulation.hasTransparent()),
       shadows_(simulation),
-      spectra_(simulation, plan.nodes) {}
+      spectra_(spectra ? std::move(spectra) : std::make_shared<const NodeSpectra>(simulation, plan.nodes)) {}
 
 RadianceScene ReferenceShader::scene() const {
   RadianceScene s{simulation_, plan_.terms, plan_.sunLegs.get(), state_, {}, 0};
@@ -42,7 +43,7 @@ ReferencePixel ReferenceShader::pixel(int x, int y, NodeSum& sum) const {
 }
 
 ReferencePixel ReferenceShader::pixel(int x, int y) const {
-  NodeSum sum(spectra_);
+  NodeSum sum(*spectra_);
   return pixel(x, y, sum);
 }
 
@@ -62,16 +63,8 @@ LineOfSight ReferenceShader::line(int x, int y, const SeenTriangle& seen) const 
   return line;
 }
 
-bool ReferenceShader::meets(int x, int y, int entity) const {
-  const LineOfSight line = lineThrough(x + 0.5, y + 0.5);
-  std::vector<char> alone(simulation_.entities.size(), 0);
-  alone[static_cast<size_t>(entity)] = 1;
-  const RayHits hits = castRay(simulation_, state_, line.origin, line.direction, nearest_m(x + 0.5, y + 0.5), &alone);
-  return hits.solid.entity >= 0 || !hits.layers.empty() || !hits.stretches.empty();
-}
-
 std::vector<double> ReferenceShader::transmittance(double farthest_m) const {
-  NodeSum sum(spectra_);
+  NodeSum sum(*spectra_);
   sum.begin();
   if (!transparent_) return sum.transmittance();
   const double x = 0.5 * view_.width, y = 0.5 * view_.height, end = farthest_m * glm::length(view_.ray(x, y));

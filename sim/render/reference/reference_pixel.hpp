@@ -1,6 +1,6 @@
 #pragma once
-// The same pixel in double precision on the CPU: geometry by casting a ray through every triangle, radiance from the models
-// themselves (no tables between). Slow, for tests and for judging the GPU's rounding.
+// The same pixel in double precision on the CPU: geometry by rays or from the visibility pass, radiance by sim/radiance from the models themselves. The one
+// table between is that of black bodies of air (NodeSpectra). For the reference mode, audits and tests.
 #include <vector>
 
 #include "sim/plan/plan.hpp"
@@ -28,7 +28,9 @@ struct SeenTriangle {
 class ReferenceShader {
  public:
   /// All must outlive it. `drawn`: one flag per entity, what is left out neither shows nor lets less through (it still casts shadows).
-  ReferenceShader(const Simulation& simulation, const Plan& plan, const View& view, const WorldState& state, const std::vector<char>& drawn);
+  /// `spectra`: of the plan's nodes, where they are at hand; null: made here.
+  ReferenceShader(const Simulation& simulation, const Plan& plan, const View& view, const WorldState& state, const std::vector<char>& drawn,
+                  std::shared_ptr<const NodeSpectra> spectra = nullptr);
   /// The centre of pixel (x, y), counted from the lower left: what a ray meets.
   ReferencePixel pixel(int x, int y, NodeSum& sum) const;
   ReferencePixel pixel(int x, int y) const;
@@ -37,12 +39,10 @@ class ReferenceShader {
   ReferencePixel shade(const LineOfSight& line, NodeSum& sum) const;
   /// The same number, not 0, for lines that meet the same surface through the same panes and media.
   static std::size_t things(const RayHits& hits);
-  /// Whether the ray through its centre meets a body at all, whatever hides it.
-  bool meets(int x, int y, int entity) const;
   /// Per node, of everything transparent on the line through the middle of the view as far as a depth.
   std::vector<double> transmittance(double farthest_m) const;
 
-  const NodeSpectra& spectra() const { return spectra_; }
+  const NodeSpectra& spectra() const { return *spectra_; }
 
  private:
   RadianceScene scene() const;
@@ -55,7 +55,7 @@ class ReferenceShader {
   const std::vector<char>& drawn_;
   bool transparent_;
   ShadowCaster shadows_;
-  NodeSpectra spectra_;
+  std::shared_ptr<const NodeSpectra> spectra_;
 };
 
 /// The centre of pixel (x, y) of a view, counted from the lower left; everything is drawn.

@@ -5,7 +5,7 @@
 namespace pitviper {
 namespace {
 
-/// What a middle may be off by and still count as between the corners, relative to it: a thirtieth of the least error that can be asked for (0.05 %), and
+/// What a middle may be off by and still count as between the corners, relative to it: a twenty-fifth of the least error that can be asked for (0.05 %), and
 /// an error of second order is greatest there.
 constexpr double kLinear = 2e-5;
 
