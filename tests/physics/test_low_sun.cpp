@@ -164,8 +164,10 @@ namespace {
 // Ways to the sun from places in deep shade are thousands of optical depths long, and shorten upwards: their mean must not overflow.
 TEST(LowSun, SkyOfASunBelowTheHorizonIsANumber) {
   for (const char* elevation : {"-1", "-0.3", "0"}) {
-    const Simulation sim =
-        scene(std::string("atmosphere: hazy_us76\nsun: {azimuth: 100 deg, elevation: ") + elevation + " deg, temperature: 5772 K}\nambient: {from: sky}\n");
+    const Simulation sim = scene(std::string("atmosphere: hazy_us76\nsun: {azimuth: 100 deg, elevation: ") + elevation +
+                                 " deg, temperature: 5772 K}\nambient: {from: sky}\n"
+                                 "cameras: [{name: c, film: {width: 1, height: 1}, field_of_view: 1 deg, aperture: 1 mm, look_at: [1 m, 0 m, 0 m], channels: "
+                                 "[{name: a, response: {band: [0.6 um, 0.7 um]}}]}]\n");
     ASSERT_TRUE(sim.ambient.has_value());
     const double sky = (*sim.ambient)(0.6);
     EXPECT_TRUE(std::isfinite(sky) && sky >= 0.0) << elevation << " deg: " << sky;
