@@ -17,7 +17,7 @@ namespace {
 constexpr int kHeights = 65;
 /// Wavelengths of a channel.
 constexpr int kWavelengths = 2;
-/// Lines of sight: parts of the film across and down. Five cost 2 ms a frame.
+/// Lines of sight: parts of the film across and down.
 constexpr double kLines[][2] = {{0.5, 0.5}, {0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}};
 /// A channel is lit where white air in full sun would send this part of a black body of 288 K.
 constexpr double kLit = 0.1, kWarm_K = 288.0;

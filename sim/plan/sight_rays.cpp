@@ -9,7 +9,7 @@
 namespace pitviper {
 namespace {
 
-/// Lines that a survey of the film casts, evenly and aimed at bodies: what shows on a thousandth of it is met with 99 %.
+/// Lines that a survey of the film casts, evenly and aimed at bodies: what shows on a thousandth of it is met with 95 %.
 constexpr int kSurvey = 3000, kAimedSurvey = 600;
 /// Where in a subpixel its line goes through: not its very middle, where lines of a symmetrical scene run along edges of meshes and miss both sides.
 constexpr double kInColumn = 0.4871, kInRow = 0.5113;
