@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/plan/product_set.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -14,7 +16,7 @@ constexpr double kFitted = 0.25, kUnseen = 0.36;
 constexpr double kGas = 0.6;
 constexpr int kMostGroups = 96;
 /// Of hundreds of lines most say the same: a fit begins with some, and the worst of the others join them.
-constexpr FitEffort kEffort{40, 25, 160, 0.0, 12};
+constexpr FitEffort kEffort{60, 160, 0.0, 12};
 /// Of the worst that a fit learns from at a time.
 constexpr size_t kLearnt = 60;
 
@@ -25,12 +27,20 @@ ChannelFit::ChannelFit(const Simulation& simulation, const Spectrum& kernel, dou
   if (std::any_of(simulation.materials.begin(), simulation.materials.end(), isGas)) accuracy_ *= kGas;
 }
 
+void ChannelFit::look(const ProductSet& products) {
+  for (Eigen::Index m = 0; m < products.parts.cols(); ++m)
+    for (Eigen::Index k = 0; k < products.parts.rows(); ++k)
+      shares_[static_cast<size_t>(k)] = std::max(shares_[static_cast<size_t>(k)], std::abs(products.parts(k, m)) * products.scale[m]);
+}
+
 void ChannelFit::begin(const Sights& sights) {
   absorbers_ = sights.absorbers(grid_);
   floor_ = sights.floorOf(grid_, absorbers_);
   SpectralProblem problem = sights.problem(grid_, absorbers_, floor_);
   seen_ = sights.size();
-  fit_ = fitToTolerance(problem, kFitted * accuracy_, kMostGroups, kEffort);
+  const ProductSet products(problem);
+  look(products);
+  fit_ = fitToTolerance(products, kFitted * accuracy_, kMostGroups, kEffort, {});
   training_ = std::move(problem.products);
   error_ = fit_.maximum;
 }
@@ -38,7 +48,9 @@ void ChannelFit::begin(const Sights& sights) {
 bool ChannelFit::check(const Sights& sights) {
   SpectralProblem problem = sights.problem(grid_, absorbers_, floor_, seen_);
   seen_ = sights.size();
-  const std::vector<double> errors = groupErrors(problem, fit_.groups);
+  const ProductSet products(problem);
+  look(products);
+  const std::vector<double> errors = groupErrors(products, fit_.groups);
   std::vector<size_t> order(errors.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return std::abs(errors[a]) > std::abs(errors[b]); });
@@ -48,9 +60,23 @@ bool ChannelFit::check(const Sights& sights) {
   if (holds_) return true;
   for (size_t k = 0; k < std::min(kLearnt, order.size()) && std::abs(errors[order[k]]) > kFitted * accuracy_; ++k)
     training_.push_back(problem.products[order[k]]);
-  problem.products = training_;
-  fit_ = fitToTolerance(problem, kFitted * accuracy_, kMostGroups, kEffort, static_cast<int>(fit_.groups.size()));
+  fit(std::move(problem));
   return false;
+}
+
+void ChannelFit::tighten(double factor, const Sights& sights) {
+  accuracy_ *= factor;
+  holds_ = false;
+  SpectralProblem problem = sights.problem(grid_, absorbers_, floor_, seen_);
+  seen_ = sights.size();
+  training_.insert(training_.end(), problem.products.begin(), problem.products.end());
+  fit(std::move(problem));
+}
+
+/// To what it has learnt; from the groups it has.
+void ChannelFit::fit(SpectralProblem problem) {
+  problem.products = training_;
+  fit_ = fitToTolerance(ProductSet(problem), kFitted * accuracy_, kMostGroups, kEffort, fit_.groups);
 }
 
 }  // namespace pitviper

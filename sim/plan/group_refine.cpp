@@ -3,27 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/plan/group_start.hpp"
+#include "sim/plan/group_step.hpp"
 
 namespace pitviper {
 namespace {
 
-using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 /// An optical depth of the longest path that nobody sees: extinctions move by factors above it, by amounts below.
 constexpr double kUnseenDepth = 0.02;
 
-/// A step in the unknowns: roots of shares [group, fine] and logarithms of extinctions [group, column].
-struct Step {
-  MatrixXd share, extinction;
+/// How far roots of shares may go where an extinction goes by a factor of e: between these, each round also tried with a multiple or a part.
+constexpr double kLeastRootStep = 0.5, kMostRootStep = 32.0, kOther = 4.0;
+/// Where that costs much, in two of so many rounds.
+constexpr int kSeldom = 8;
 
-  double dot(const Step& o) const { return share.cwiseProduct(o.share).sum() + extinction.cwiseProduct(o.extinction).sum(); }
-  void add(double factor, const Step& o) {
-    share += factor * o.share;
-    extinction += factor * o.extinction;
-  }
+/// A part of a step, and where it leads.
+struct Trial {
+  GroupState state;
+  GroupMoments at;
+  VectorXd errors;
+  double merit = 0.0, length = 0.0, rootStep = 0.0;
 };
+
+/// Dampings tried of one step, each ten times the last.
+constexpr int kDampings = 3;
 
 /// Part of the plain sum of squares in what is minimised: keeps what is already good from drifting.
 constexpr double kEven = 1e-3;
@@ -32,123 +36,6 @@ constexpr double kEven = 1e-3;
 double merit(const VectorXd& errors, double p, double unit) {
   const auto parts = errors.array().abs() / unit;
   return (parts.pow(p) * (2.0 / p) + kEven * parts.square()).mean();
-}
-
-/// The errors to first order about a state, in unknowns scaled so that each matters about as much as the others.
-class Linear {
- public:
-  Linear(const ProductSet& set, const GroupState& state, const GroupMoments& at, const VectorXd& rowWeight, const VectorXd& unseen, double damping)
-      : set_(set), state_(state), at_(at), root_(rowWeight.cwiseSqrt()), shareRoot_(state.share.cwiseSqrt()), slope_(state.extinction) {
-    for (Eigen::Index k = 0; k < slope_.cols(); ++k)
-      slope_.col(k) = unseen[k] > 0.0 ? VectorXd(state.extinction.col(k).array() + unseen[k]) : VectorXd::Zero(slope_.rows());
-    // The diagonal of J'J but for what terms of one product have in common.
-    const GroupMoments sq = set.squares(at, rowWeight);
-    const MatrixXd shareDiagonal = sq.source * set.weighted.cwiseAbs2().transpose();
-    const MatrixXd depthSquares = sq.transmittance.cwiseProduct(at.transmittance.cwiseAbs2()) * set.amounts.cwiseAbs2().transpose();
-    // Of share = root^2: derivative 2 root.
-    shareScale_ = 4.0 * shareDiagonal.cwiseProduct(state.share).colwise().mean();
-    // Damping holds back the unknowns themselves: a linear model knows nothing beyond some tenths of a root or of a logarithm. The scale
-    // is 1 / sqrt of the diagonal with it.
-    const double shareDamping = std::max(damping * shareScale_.mean(), 1e-300);
-    shareScale_ = (shareScale_.array() + shareDamping).rsqrt();
-    shareDamping_ = shareDamping * shareScale_.cwiseAbs2();
-    extinctionScale_ = depthSquares.cwiseProduct(slope_.cwiseAbs2());
-    const double extinctionDamping = std::max(extinctionScale_.size() ? damping * extinctionScale_.mean() : 0.0, 1e-300);
-    extinctionScale_ = (extinctionScale_.array() + extinctionDamping).rsqrt();
-    extinctionDamping_ = extinctionDamping * extinctionScale_.cwiseAbs2();
-    shareSlope_ = 2.0 * (shareRoot_.array().rowwise() * shareScale_.transpose().array()).matrix();
-    freeExtinction_ = MatrixXd::Ones(slope_.rows(), slope_.cols());
-  }
-
-  VectorXd forward(const Step& d) const {
-    GroupMoments change;
-    const MatrixXd share = d.share.cwiseProduct(shareSlope_);
-    change.source.noalias() = (share * set_.basis).eval() * set_.mix;
-    change.weight.noalias() = share * set_.weight;
-    const MatrixXd extinction = d.extinction.cwiseProduct(extinctionScale_).cwiseProduct(slope_);
-    change.transmittance.noalias() = extinction * set_.amounts;
-    change.transmittance = -change.transmittance.cwiseProduct(at_.transmittance);
-    return set_.forward(at_, change).cwiseProduct(root_);
-  }
-
-  Step backward(const VectorXd& u) const {
-    GroupMoments sums = set_.backward(at_, u.cwiseProduct(root_));
-    Step g;
-    g.share.noalias() = (sums.source * set_.mix.transpose()).eval() * set_.basis.transpose();
-    g.share.noalias() += sums.weight * set_.weight.transpose();
-    g.share = g.share.cwiseProduct(shareSlope_);
-    sums.transmittance = -sums.transmittance.cwiseProduct(at_.transmittance);
-    g.extinction.noalias() = sums.transmittance * set_.amounts.transpose();
-    g.extinction = g.extinction.cwiseProduct(slope_).cwiseProduct(extinctionScale_);
-    project(g);
-    return g;
-  }
-
-  /// An extinction of 0 moves only where the descent direction leads inwards.
-  void chooseFree(const Step& descent) { freeExtinction_ = (state_.extinction.array() > 0.0 || descent.extinction.array() > 0.0).cast<double>(); }
-
-  /// Onto steps along the sphere on which the roots of each wavelength's shares lie.
-  void project(Step& d) const {
-    const Eigen::RowVectorXd along = d.share.cwiseProduct(shareRoot_).colwise().sum();
-    d.share -= (shareRoot_.array().rowwise() * along.array()).matrix();
-    d.extinction = d.extinction.cwiseProduct(freeExtinction_);
-  }
-
-  GroupState moved(const Step& d, double length) const {
-    GroupState s = state_;
-    MatrixXd stepped = shareRoot_ + length * (d.share.array().rowwise() * shareScale_.transpose().array()).matrix();
-    s.share = stepped.cwiseAbs2();
-    s.share.array().rowwise() /= s.share.colwise().sum().array();
-    // Extinction + unseen depth grows by a factor; no step by more than e.
-    const auto logStep = (length * d.extinction.cwiseProduct(extinctionScale_)).array().max(-1.0).min(1.0);
-    s.extinction = (s.extinction.array() + slope_.array() * (logStep.exp() - 1.0)).max(0.0);
-    return s;
-  }
-
-  Step damped(const Step& d) const {
-    Step r{(d.share.array().rowwise() * shareDamping_.transpose().array()).matrix(), d.extinction.cwiseProduct(extinctionDamping_)};
-    project(r);
-    return r;
-  }
-
-  Step zero() const { return {MatrixXd::Zero(shareRoot_.rows(), shareRoot_.cols()), MatrixXd::Zero(slope_.rows(), slope_.cols())}; }
-
- private:
-  const ProductSet& set_;
-  const GroupState& state_;
-  const GroupMoments& at_;
-  VectorXd root_;
-  MatrixXd shareRoot_, shareSlope_;
-  MatrixXd slope_;  ///< change of an extinction by its unknown
-  VectorXd shareScale_, shareDamping_;
-  MatrixXd extinctionScale_, extinctionDamping_, freeExtinction_;
-};
-
-/// Least squares of J d = -e with damping, by conjugate gradients from 0 (Hestenes and Stiefel 1952, on the normal equations).
-Step solve(Linear& linear, const VectorXd& weightedErrors, int steps) {
-  Step d = linear.zero();
-  VectorXd r = -weightedErrors;
-  Step s = linear.backward(r);
-  linear.chooseFree(s);
-  linear.project(s);
-  Step p = s;
-  double gamma = s.dot(s);
-  const double first = gamma;
-  for (int i = 0; i < steps && gamma > 1e-12 * first && gamma > 0.0; ++i) {
-    const VectorXd q = linear.forward(p);
-    const double curvature = q.squaredNorm() + p.dot(linear.damped(p));
-    if (!(curvature > 0.0)) break;
-    const double alpha = gamma / curvature;
-    d.add(alpha, p);
-    r -= alpha * q;
-    s = linear.backward(r);
-    s.add(-1.0, linear.damped(d));
-    const double next = s.dot(s), beta = next / gamma;
-    gamma = next;
-    p.share = s.share + beta * p.share;
-    p.extinction = s.extinction + beta * p.extinction;
-  }
-  return d;
 }
 
 }  // namespace
@@ -172,39 +59,42 @@ double refineGroups(const ProductSet& set, GroupState& state, RefineProgress& pr
     // Newton's step on the p-norm: rows weighted with |e|^(p-2); a small part for all keeps the good ones good.
     VectorXd rowWeight = (errors.array().abs() / largest).pow(p - 2.0) + kEven;
     rowWeight /= rowWeight.sum();
-    Linear linear(set, state, at, rowWeight, unseen, damping);
-    const Step d = solve(linear, errors.cwiseProduct(rowWeight.cwiseSqrt()), limits.innerSteps);
+    GroupStep step(set, state, at, errors, rowWeight, unseen);
     const double before = merit(errors, p, largest);
-    double after = before;
-    GroupState moved;
-    GroupMoments movedAt;
-    VectorXd movedErrors;
-    double taken = 0.0;
-    for (double length : {1.0, 0.5, 0.25, 0.12, 0.06, 0.03}) {
-      GroupState trial = linear.moved(d, length);
-      GroupMoments trialAt = set.moments(trial);
-      VectorXd trialErrors = set.errors(trialAt);
-      const double value = merit(trialErrors, p, largest);
-      if (!(value < after)) {
-        if (taken > 0.0) break;
-        continue;
+    const auto along = [&](double rootStep) {
+      Trial nearest;
+      nearest.merit = before;
+      step.solve(damping, rootStep);
+      for (double length : {1.0, 0.5, 0.25, 0.12}) {
+        Trial trial{step.moved(length), {}, {}, 0.0, length, rootStep};
+        trial.at = set.moments(trial.state);
+        trial.errors = set.errors(trial.at);
+        trial.merit = merit(trial.errors, p, largest);
+        if (trial.merit < nearest.merit) nearest = std::move(trial);
+        else if (nearest.length > 0.0) break;
       }
-      after = value;
-      taken = length;
-      moved = std::move(trial);
-      movedAt = std::move(trialAt);
-      movedErrors = std::move(trialErrors);
+      return nearest;
+    };
+    Trial taken = along(progress.rootStep);
+    // Which of the two kinds of unknowns should go farther differs from scene to scene, and from round to round.
+    const double other = std::clamp(progress.rootStep * (progress.round % 2 == 0 ? kOther : 1.0 / kOther), kLeastRootStep, kMostRootStep);
+    if (step.isCheap() || progress.round % kSeldom < 2)
+      if (Trial trial = along(other); trial.merit < taken.merit) taken = std::move(trial);
+    for (int tries = 1; tries < kDampings && taken.length == 0.0; ++tries) {
+      damping = std::min(damping * 10.0, 1e3);
+      taken = along(progress.rootStep);
     }
-    if (taken == 0.0) {
+    if (taken.length == 0.0) {
       damping = std::min(damping * 10.0, 1e3);
       continue;
     }
+    progress.rootStep = taken.rootStep;
     // Newton's step on the p-norm is 1 / (p - 1) of this one; much less says that the model is wrong so far out.
     const double newton = 1.0 / (p - 1.0);
-    damping = std::clamp(damping * (taken >= std::min(2.0 * newton, 1.0) ? 0.4 : taken >= 0.9 * newton ? 1.0 : 4.0), 1e-6, 1e4);
-    state = std::move(moved);
-    at = std::move(movedAt);
-    errors = std::move(movedErrors);
+    damping = std::clamp(damping * (taken.length >= std::min(2.0 * newton, 1.0) ? 0.4 : taken.length >= 0.9 * newton ? 1.0 : 4.0), 1e-9, 1e4);
+    state = std::move(taken.state);
+    at = std::move(taken.at);
+    errors = std::move(taken.errors);
     const double reached = errorFigures(errors).first;
     if (reached < most) {
       most = reached;

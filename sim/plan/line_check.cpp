@@ -52,20 +52,34 @@ std::vector<double> droppedOf(const Plan& plan, const Terms& all, const NodeSum&
   return lost;
 }
 
+/// Tells a line once to both.
+class BothSums final : public TermSink {
+ public:
+  BothSums(NodeSum& first, NodeSum& second) : first_(first), second_(second) {}
+  void restart() override { first_.restart(), second_.restart(); }
+  void term(const Term& t) override { first_.term(t), second_.term(t); }
+  void segment(const Segment& s) override { first_.segment(s), second_.segment(s); }
+  void pane(const Factor& transmittance, double modifier) override { first_.pane(transmittance, modifier), second_.pane(transmittance, modifier); }
+
+ private:
+  NodeSum &first_, &second_;
+};
+
 struct LineSums {
   std::vector<double> planned, exact, dropped;
 };
 
 }  // namespace
 
-std::vector<LineFigures> checkLines(const Simulation& sim, const Plan& plan, const Plan& fine, const std::vector<SightRay>& lines, double pixel_sr,
-                                    std::vector<double>& floor) {
-  const NodeSpectra plannedSpectra(sim, plan.nodes), fineSpectra(sim, fine.nodes);
+std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& ofPlan, const NodesOfPlan& ofFine, const std::vector<SightRay>& lines,
+                                    double pixel_sr, std::vector<double>& floor) {
+  const Plan &plan = ofPlan.plan, &fine = ofFine.plan;
   const ShadowCaster shadows(sim);
   std::vector<LineSums> sums(lines.size());
   std::atomic<size_t> next{0};
   auto work = [&] {
-    NodeSum planned(plannedSpectra), exact(fineSpectra);
+    NodeSum planned(ofPlan.spectra), exact(ofFine.spectra);
+    BothSums both(planned, exact);
     planned.keepParts();
     for (size_t n = next++; n < lines.size(); n = next++) {
       const SightRay& ray = lines[n];
@@ -75,11 +89,10 @@ std::vector<LineFigures> checkLines(const Simulation& sim, const Plan& plan, con
           const double radius_m = light < sim.lights.size() ? sim.lights[light].radius_m : 0.0;
           return shadows.lit(*ray.state, hit, leg.toLight, leg.distance_m - radius_m) ? 1.0 : 0.0;
         };
-      for (NodeSum* sum : {&planned, &exact}) {
-        sum->begin();
-        radianceAlong(scene, ray.line, *sum);
-        if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), pixel_sr, *sum);
-      }
+      planned.begin();
+      exact.begin();
+      radianceAlong(scene, ray.line, both);
+      if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), pixel_sr, both);
       sums[n] = {slotsOf(plan, planned.radiance()), slotsOf(fine, exact.radiance()), droppedOf(plan, fine.terms, planned)};
     }
   };

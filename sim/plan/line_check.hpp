@@ -4,6 +4,7 @@
 
 #include "sim/plan/plan.hpp"
 #include "sim/plan/sight_rays.hpp"
+#include "sim/radiance/node_sum.hpp"
 
 namespace pitviper {
 
@@ -14,9 +15,16 @@ struct LineFigures {
   std::vector<double> errors;  ///< of each line
 };
 
+/// A plan with the spectra that lines have in common at its nodes. Both must outlive it.
+struct NodesOfPlan {
+  NodesOfPlan(const Simulation& simulation, const Plan& of) : plan(of), spectra(simulation, of.nodes) {}
+  const Plan& plan;
+  NodeSpectra spectra;
+};
+
 /// One per slot. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: per slot; where empty it becomes 1e-3 of the 99th percentile of
 /// these lines. Terms are those of `fine`; `plan` may leave kinds of terms out, all of them or by node.
-std::vector<LineFigures> checkLines(const Simulation& simulation, const Plan& plan, const Plan& fine, const std::vector<SightRay>& lines, double pixel_sr,
-                                    std::vector<double>& floor);
+std::vector<LineFigures> checkLines(const Simulation& simulation, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines,
+                                    double pixel_sr, std::vector<double>& floor);
 
 }  // namespace pitviper

@@ -51,7 +51,7 @@ void dropSmallShares(GroupState& s) {
   }
 }
 
-std::vector<SpectralGroup> groupsOf(const ProductSet& set, const GroupState& s, const SpectralProblem& problem) {
+std::vector<SpectralGroup> groupsOf(const ProductSet& set, const GroupState& s) {
   std::vector<SpectralGroup> groups;
   for (Eigen::Index g = 0; g < s.share.rows(); ++g) {
     SpectralGroup group;
@@ -65,21 +65,39 @@ std::vector<SpectralGroup> groupsOf(const ProductSet& set, const GroupState& s, 
   if (groups.empty()) {
     // A channel that sees nothing: one group of weight 0, so that averages still exist.
     SpectralGroup none;
-    for (size_t i = 0; i < problem.weight.size(); ++i) none.members.emplace_back(static_cast<int>(i), 1.0 / static_cast<double>(problem.weight.size()));
-    none.extinction.assign(problem.extinction.size(), 0.0);
+    for (int i = 0; i < set.wavelengths; ++i) none.members.emplace_back(i, 1.0 / set.wavelengths);
+    none.extinction.assign(static_cast<size_t>(set.columnCount()), 0.0);
     groups.push_back(std::move(none));
   }
   return groups;
 }
 
-/// A problem with its start, for fits of several counts.
+GroupState stateOf(const ProductSet& set, const std::vector<SpectralGroup>& groups) {
+  std::vector<int> keptIndex(static_cast<size_t>(set.wavelengths), -1);
+  for (size_t i = 0; i < set.fineIndex.size(); ++i) keptIndex[static_cast<size_t>(set.fineIndex[i])] = static_cast<int>(i);
+  const auto g = static_cast<Eigen::Index>(groups.size());
+  GroupState state{Eigen::MatrixXd::Zero(g, set.fineCount()), Eigen::MatrixXd::Zero(g, set.columnCount())};
+  for (Eigen::Index j = 0; j < g; ++j) {
+    const SpectralGroup& group = groups[static_cast<size_t>(j)];
+    if (static_cast<int>(group.extinction.size()) != set.columnCount()) throw std::invalid_argument("opacity groups: another number of columns");
+    for (Eigen::Index k = 0; k < set.columnCount(); ++k) state.extinction(j, k) = group.extinction[static_cast<size_t>(k)];
+    for (const auto& [index, share] : group.members) {
+      if (index < 0 || index >= set.wavelengths) throw std::invalid_argument("opacity groups: a member outside the grid");
+      const int i = keptIndex[static_cast<size_t>(index)];
+      if (i >= 0) state.share(j, i) = share * group.weight / set.weight[i];
+    }
+  }
+  return state;
+}
+
+/// Products with a start, for fits of several counts.
 class Fitter {
  public:
-  Fitter(const SpectralProblem& problem, const FitEffort& effort)
-      : problem_(problem),
-        effort_(effort),
+  Fitter(const ProductSet& products, const FitEffort& effort, GroupState from)
+      : effort_(effort),
         expired_(clockOf(effort)),
-        all_(problem),
+        all_(products),
+        from_(std::move(from)),
         working_(spreadOf(all_.size(), effort.workingProducts)),
         set_(all_.subset(working_)),
         start_(all_) {}
@@ -114,30 +132,30 @@ class Fitter {
     // The start by itself is exact where wavelengths are few or alike.
     double least = errorFigures(all_.errors(all_.moments(state))).first;
     const int firstRounds = std::max(rounds / 3, 1);
-    if (least > goal) {
-      double leastBegun = INFINITY;
-      const GroupState start = state;
-      for (double spread : kSpreads) {
-        GroupState trial = start;
-        trial.share = (1.0 - spread) * trial.share.array() + spread / static_cast<double>(trial.share.rows());
-        RefineProgress trialProgress;
-        refineGroups(set_, trial, trialProgress, {firstRounds, effort_.innerSteps, 0.9 * goal, expired_});
-        const double most = errorFigures(all_.errors(all_.moments(trial))).first;
-        if (most < leastBegun) {
-          leastBegun = most;
-          state = std::move(trial);
-          progress = trialProgress;
-        }
-        if (leastBegun <= goal) break;
-      }
-      if (leastBegun < least) {
-        least = leastBegun;
-        best = state;
-      }
+    std::vector<GroupState> begins;
+    if (from_.share.rows() == count) begins.push_back(from_);
+    for (double spread : kSpreads) {
+      begins.push_back(state);
+      begins.back().share = (1.0 - spread) * state.share.array() + spread / static_cast<double>(state.share.rows());
+    }
+    double leastBegun = INFINITY;
+    for (GroupState& trial : begins) {
+      if (std::min(least, leastBegun) <= goal) break;
+      RefineProgress trialProgress;
+      refineGroups(set_, trial, trialProgress, {firstRounds, 0.9 * goal, expired_});
+      const double most = errorFigures(all_.errors(all_.moments(trial))).first;
+      if (most >= leastBegun) continue;
+      leastBegun = most;
+      state = std::move(trial);
+      progress = trialProgress;
+    }
+    if (leastBegun < least) {
+      least = leastBegun;
+      best = state;
     }
     for (int left = rounds - firstRounds; left > 0 && least > goal && !expired_(); left -= kRoundsPerPass) {
       if (static_cast<int>(working_.size()) < all_.size()) addWorst(all_.errors(all_.moments(state)));
-      refineGroups(set_, state, progress, {std::min(left, kRoundsPerPass), effort_.innerSteps, 0.9 * goal, expired_});
+      refineGroups(set_, state, progress, {std::min(left, kRoundsPerPass), 0.9 * goal, expired_});
       const double most = errorFigures(all_.errors(all_.moments(state))).first;
       if (most < least) {
         least = most;
@@ -173,15 +191,15 @@ class Fitter {
   GroupFit finish(GroupState state, int count) const {
     GroupFit result;
     if (count > 0) dropSmallShares(state);
-    result.groups = groupsOf(all_, state, problem_);
+    result.groups = groupsOf(all_, state);
     if (count > 0) std::tie(result.maximum, result.p99) = errorFigures(all_.errors(all_.moments(state)));
     return result;
   }
 
-  const SpectralProblem& problem_;
   FitEffort effort_;
   std::function<bool()> expired_;
-  ProductSet all_;
+  const ProductSet& all_;
+  GroupState from_;  ///< found elsewhere; tried first where it has as many groups
   std::vector<int> working_;
   ProductSet set_;
   GroupStart start_;
@@ -189,10 +207,15 @@ class Fitter {
 
 }  // namespace
 
-GroupFit fitGroups(const SpectralProblem& problem, int groups, const FitEffort& effort) { return Fitter(problem, effort).fit(groups, 0.0); }
+GroupFit fitGroups(const SpectralProblem& problem, int groups, const FitEffort& effort) {
+  const ProductSet products(problem);
+  return Fitter(products, effort, {}).fit(groups, 0.0);
+}
 
-GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mostGroups, const FitEffort& effort, int fewest) {
-  Fitter fitter(problem, effort);
+namespace {
+
+GroupFit fitToTolerance(const ProductSet& products, double tolerance, int mostGroups, const FitEffort& effort, int fewest, GroupState from) {
+  Fitter fitter(products, effort, std::move(from));
   const int most = std::max(std::min(mostGroups, fitter.mostGroups()), 1);
   const int first = std::clamp(fewest, 1, most);
   int tooFew = first - 1, enough = most + 1;
@@ -220,26 +243,23 @@ GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mo
   return best;
 }
 
-std::vector<double> groupErrors(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups) {
-  const ProductSet set(fresh);
-  if (set.size() == 0 || groups.empty()) return std::vector<double>(fresh.products.size(), 0.0);
-  std::vector<int> keptIndex(fresh.weight.size(), -1);
-  for (size_t i = 0; i < set.fineIndex.size(); ++i) keptIndex[static_cast<size_t>(set.fineIndex[i])] = static_cast<int>(i);
-  const auto g = static_cast<Eigen::Index>(groups.size());
-  GroupState state{Eigen::MatrixXd::Zero(g, set.fineCount()), Eigen::MatrixXd::Zero(g, set.columnCount())};
-  for (Eigen::Index j = 0; j < g; ++j) {
-    const SpectralGroup& group = groups[static_cast<size_t>(j)];
-    if (group.extinction.size() != fresh.extinction.size()) throw std::invalid_argument("opacity groups: another number of columns");
-    for (Eigen::Index k = 0; k < set.columnCount(); ++k) state.extinction(j, k) = group.extinction[static_cast<size_t>(k)];
-    for (const auto& [index, share] : group.members) {
-      if (index < 0 || static_cast<size_t>(index) >= fresh.weight.size()) throw std::invalid_argument("opacity groups: a member outside the grid");
-      const int i = keptIndex[static_cast<size_t>(index)];
-      if (i >= 0) state.share(j, i) = share * group.weight / set.weight[i];
-    }
-  }
-  const Eigen::VectorXd errors = set.errors(set.moments(state));
+}  // namespace
+
+GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mostGroups, const FitEffort& effort, int fewest) {
+  return fitToTolerance(ProductSet(problem), tolerance, mostGroups, effort, fewest, {});
+}
+
+GroupFit fitToTolerance(const ProductSet& products, double tolerance, int mostGroups, const FitEffort& effort, const std::vector<SpectralGroup>& from) {
+  return fitToTolerance(products, tolerance, mostGroups, effort, std::max(static_cast<int>(from.size()), 1), from.empty() ? GroupState{} : stateOf(products, from));
+}
+
+std::vector<double> groupErrors(const ProductSet& set, const std::vector<SpectralGroup>& groups) {
+  if (set.size() == 0 || groups.empty()) return std::vector<double>(static_cast<size_t>(set.size()), 0.0);
+  const Eigen::VectorXd errors = set.errors(set.moments(stateOf(set, groups)));
   return {errors.data(), errors.data() + errors.size()};
 }
+
+std::vector<double> groupErrors(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups) { return groupErrors(ProductSet(fresh), groups); }
 
 GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups) {
   const std::vector<double> errors = groupErrors(fresh, groups);

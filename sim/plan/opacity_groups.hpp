@@ -28,8 +28,11 @@ struct ProductTerm {
   int count = 1;
   int path = 0;
   double coefficient = 1.0;
+  int tag = 0;  ///< what it is of; says nothing to a fit
   std::span<const int> spectra() const { return {spectrum.data(), static_cast<size_t>(count)}; }
 };
+
+class ProductSet;
 
 /// Terms that add up, and may cancel (path radiance is a sum of B(T_j) (tau_j - tau_j+1)).
 struct SpectralProduct {
@@ -59,8 +62,7 @@ struct GroupFit {
 
 /// How much work a fit may take. The result depends on these alone unless budget_s is set.
 struct FitEffort {
-  int rounds = 40;            ///< Gauss-Newton steps per fit; 100 with 60 inner steps: a quarter fewer groups for six times the time
-  int innerSteps = 25;        ///< conjugate-gradient steps in each
+  int rounds = 40;            ///< Gauss-Newton steps per fit
   int workingProducts = 600;  ///< products in a fit at first; the worst of the others join them as it goes on
   double budget_s = 0.0;      ///< stop improving after so much time; 0: no clock
   int fewGroups = 0;          ///< beyond so many groups rounds get fewer as groups get more, and counts are not told apart to one; 0: never
@@ -73,11 +75,14 @@ GroupFit fitGroups(const SpectralProblem& problem, int groups, const FitEffort& 
 /// The fewest groups found, from `fewest` on, whose largest error is within the tolerance; where more than `mostGroups` would be needed, bins of
 /// neighbouring wavelengths, down to every wavelength by itself.
 GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mostGroups, const FitEffort& effort = {}, int fewest = 1);
+/// The same, beginning with groups that a fit of some other products of this problem found: as many at least.
+GroupFit fitToTolerance(const ProductSet& products, double tolerance, int mostGroups, const FitEffort& effort, const std::vector<SpectralGroup>& from);
 
 /// Error of groups over the products of another problem on the same wavelengths and columns.
 GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups);
 
 /// (planned - fine) / max(|fine|, floor) of each product.
+std::vector<double> groupErrors(const ProductSet& products, const std::vector<SpectralGroup>& groups);
 std::vector<double> groupErrors(const SpectralProblem& problem, const std::vector<SpectralGroup>& groups);
 
 /// Value of each product on the fine grid.

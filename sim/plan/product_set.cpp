@@ -58,6 +58,7 @@ class Renumbering {
 
 ProductSet::ProductSet(const SpectralProblem& p) {
   check(p);
+  wavelengths = static_cast<int>(p.weight.size());
   for (size_t i = 0; i < p.weight.size(); ++i)
     if (p.weight[i] > 0.0) fineIndex.push_back(static_cast<int>(i));
   const auto n = static_cast<Eigen::Index>(fineIndex.size());
@@ -75,6 +76,7 @@ ProductSet::ProductSet(const SpectralProblem& p) {
     for (ProductTerm t : product.terms) {
       for (int f = 0; f < t.count; ++f) t.spectrum[static_cast<size_t>(f)] = source(t.spectrum[static_cast<size_t>(f)]);
       t.path = path(t.path);
+      require(t.tag >= 0, "a tag below 0");
       terms.push_back(t);
     }
     firstTerm.push_back(static_cast<int>(terms.size()));
@@ -106,8 +108,10 @@ void ProductSet::compress() {
     mix.row(rank).noalias() = basis.col(rank).transpose() * rest;
     rest.noalias() -= basis.col(rank) * mix.row(rank);
   }
-  basis.conservativeResize(Eigen::NoChange, rank);
   mix.conservativeResize(rank, Eigen::NoChange);
+  weightSize = weight.norm();
+  basis.conservativeResize(Eigen::NoChange, hasProducts() ? rank + 1 : rank);
+  if (basis.cols() > rank) basis.col(rank) = weight / weightSize;
 }
 
 // Path by path, so that the transmittances of all paths need not be kept.
@@ -117,7 +121,9 @@ void ProductSet::integrate(const std::vector<double>& floors) {
     for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) productOf[static_cast<size_t>(t)] = m;
   for (size_t t = 0; t < order.size(); ++t) order[t] = static_cast<int>(t);
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return terms[static_cast<size_t>(a)].path < terms[static_cast<size_t>(b)].path; });
-  fine = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(floors.size()));
+  int tags = 0;
+  for (const ProductTerm& t : terms) tags = std::max(tags, t.tag + 1);
+  parts = Eigen::MatrixXd::Zero(tags, static_cast<Eigen::Index>(floors.size()));
   Eigen::VectorXd tau;
   int current = -1;
   for (int index : order) {
@@ -128,8 +134,9 @@ void ProductSet::integrate(const std::vector<double>& floors) {
     }
     Eigen::ArrayXd product = weighted.col(t.spectrum[0]).array() * tau.array();
     for (int f = 1; f < t.count; ++f) product *= weighted.col(t.spectrum[static_cast<size_t>(f)]).array() / weight.array();
-    fine[productOf[static_cast<size_t>(index)]] += t.coefficient * product.sum();
+    parts(t.tag, productOf[static_cast<size_t>(index)]) += t.coefficient * product.sum();
   }
+  fine = parts.colwise().sum();
   scale.resize(fine.size());
   for (Eigen::Index m = 0; m < fine.size(); ++m) {
     const double size = std::max(std::abs(fine[m]), floors[static_cast<size_t>(m)]);
@@ -139,6 +146,7 @@ void ProductSet::integrate(const std::vector<double>& floors) {
 
 ProductSet ProductSet::subset(const std::vector<int>& products) const {
   ProductSet s;
+  s.wavelengths = wavelengths;
   s.fineIndex = fineIndex;
   s.weight = weight;
   s.extinction = extinction;
@@ -161,6 +169,7 @@ ProductSet ProductSet::subset(const std::vector<int>& products) const {
   s.weighted.resize(fineCount(), static_cast<Eigen::Index>(source.used.size()));
   for (Eigen::Index i = 0; i < s.weighted.cols(); ++i) s.weighted.col(i) = weighted.col(source.used[static_cast<size_t>(i)]);
   s.basis = basis;
+  s.weightSize = weightSize;
   s.mix.resize(mix.rows(), s.weighted.cols());
   for (Eigen::Index i = 0; i < s.mix.cols(); ++i) s.mix.col(i) = mix.col(source.used[static_cast<size_t>(i)]);
   s.amounts.resize(columnCount(), static_cast<Eigen::Index>(path.used.size()));
@@ -191,20 +200,15 @@ class TermValue {
  public:
   TermValue(const GroupMoments& at, const Eigen::ArrayXd& perWeight, const ProductTerm& term)
       : source_(at.source.data()), perWeight_(perWeight.data()), groups_(at.source.rows()), term_(term) {}
-  /// Of a group, given the product of all and the one to leave out: a quotient, unless it might lose what is left.
-  double but(int left, Eigen::Index group, double all, double one) const {
-    if (std::abs(one) > 1e-100 && all != 0.0) return all / one;
-    double product = 1.0;
-    for (int f = 0; f < term_.count; ++f) {
-      if (f != left) product *= source_[groups_ * term_.spectrum[static_cast<size_t>(f)] + group];
-      if (f > 0) product *= perWeight_[group];
-    }
-    return product;
-  }
   /// The product of all spectra but one (-1: of all), without the transmittance.
   void spectraBut(int left, Eigen::ArrayXd& out) const {
     double* p = out.data();
     const auto column = [&](int f) { return source_ + groups_ * term_.spectrum[static_cast<size_t>(f)]; };
+    if (term_.count == 1 && left < 0) {
+      const double* a = column(0);
+      for (Eigen::Index g = 0; g < groups_; ++g) p[g] = a[g];
+      return;
+    }
     if (term_.count == 2) {
       if (left < 0) {
         const double *a = column(0), *b = column(1);
@@ -254,108 +258,48 @@ Eigen::VectorXd ProductSet::errors(const GroupMoments& at) const {
   return e;
 }
 
-// Terms of one and of two spectra are nearly all; groups are few: plain loops are several times faster than expressions of short arrays.
-Eigen::VectorXd ProductSet::forward(const GroupMoments& at, const GroupMoments& change) const {
+// Group by group in the inner loops: a term's derivatives by a spectrum's averages go to the shapes that make up the spectrum.
+GroupSlopes ProductSet::slopes(const GroupMoments& at) const {
   const Eigen::ArrayXd perWeight = inverse(at.weight);
-  const Eigen::Index groups = at.source.rows();
-  const double *w = perWeight.data(), *dW = change.weight.data();
-  Eigen::VectorXd e(size());
-  Eigen::ArrayXd product(groups);
-  for (int m = 0; m < size(); ++m) {
-    double sum = 0.0;
-    for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
-      const ProductTerm& term = terms[static_cast<size_t>(t)];
-      const double *tau = at.transmittance.data() + groups * term.path, *dTau = change.transmittance.data() + groups * term.path;
-      const double *a = at.source.data() + groups * term.spectrum[0], *dA = change.source.data() + groups * term.spectrum[0];
-      double changed = 0.0;
-      if (term.count == 1) {
-        for (Eigen::Index g = 0; g < groups; ++g) changed += dA[g] * tau[g] + a[g] * dTau[g];
-      } else if (term.count == 2) {
-        const double *b = at.source.data() + groups * term.spectrum[1], *dB = change.source.data() + groups * term.spectrum[1];
-        for (Eigen::Index g = 0; g < groups; ++g) {
-          const double ab = a[g] * b[g];
-          changed += w[g] * (tau[g] * (dA[g] * b[g] + a[g] * dB[g] - ab * dW[g] * w[g]) + dTau[g] * ab);
-        }
-      } else {
-        const TermValue value(at, perWeight, term);
-        value.spectraBut(-1, product);
-        for (Eigen::Index g = 0; g < groups; ++g) changed += product[g] * (dTau[g] - tau[g] * (term.count - 1) * dW[g] * w[g]);
-        for (int f = 0; f < term.count; ++f) {
-          const double *s = at.source.data() + groups * term.spectrum[static_cast<size_t>(f)],
-                       *d = change.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
-          for (Eigen::Index g = 0; g < groups; ++g) changed += value.but(f, g, product[g], s[g]) * tau[g] * d[g];
-        }
-      }
-      sum += term.coefficient * changed;
-    }
-    e[m] = scale[m] * sum;
-  }
-  return e;
-}
-
-GroupMoments ProductSet::backward(const GroupMoments& at, const Eigen::VectorXd& u) const {
-  const Eigen::ArrayXd perWeight = inverse(at.weight);
-  const Eigen::Index groups = at.source.rows();
-  GroupMoments out{Eigen::MatrixXd::Zero(groups, sourceCount()), Eigen::VectorXd::Zero(groups), Eigen::MatrixXd::Zero(groups, pathCount())};
+  const Eigen::Index groups = at.source.rows(), shapes = mix.rows(), columns = amounts.rows();
+  GroupSlopes out{Eigen::MatrixXd::Zero(basis.cols() * groups, size()), Eigen::MatrixXd::Zero(columns * groups, size())};
   const double* w = perWeight.data();
-  double* outWeight = out.weight.data();
-  Eigen::ArrayXd product(groups);
+  Eigen::ArrayXd product(groups), own(groups), byWeight(groups);
+  const auto addTo = [&](double* averages, int source) {
+    const double *d = own.data(), *m = mix.data() + shapes * source;
+    for (Eigen::Index r = 0; r < shapes; ++r, averages += groups)
+      for (Eigen::Index g = 0; g < groups; ++g) averages[g] += m[r] * d[g];
+  };
   for (int m = 0; m < size(); ++m) {
-    const double factor = u[m] * scale[m];
-    if (factor == 0.0) continue;
+    double* averages = out.average.col(m).data();
+    byWeight.setZero();
     for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
       const ProductTerm& term = terms[static_cast<size_t>(t)];
-      const double c = factor * term.coefficient;
+      const double c = scale[m] * term.coefficient;
       const double* tau = at.transmittance.data() + groups * term.path;
-      double* outTau = out.transmittance.data() + groups * term.path;
-      const double* a = at.source.data() + groups * term.spectrum[0];
-      double* outA = out.source.data() + groups * term.spectrum[0];
-      if (term.count == 1) {
-        for (Eigen::Index g = 0; g < groups; ++g) outA[g] += c * tau[g], outTau[g] += c * a[g];
-      } else if (term.count == 2) {
-        const double* b = at.source.data() + groups * term.spectrum[1];
-        double* outB = out.source.data() + groups * term.spectrum[1];
-        for (Eigen::Index g = 0; g < groups; ++g) {
-          const double cw = c * w[g], ab = a[g] * b[g];
-          outA[g] += cw * tau[g] * b[g];
-          outB[g] += cw * tau[g] * a[g];
-          outWeight[g] -= cw * w[g] * tau[g] * ab;
-          outTau[g] += cw * ab;
-        }
-      } else {
-        const TermValue value(at, perWeight, term);
-        value.spectraBut(-1, product);
-        for (Eigen::Index g = 0; g < groups; ++g) outTau[g] += c * product[g], outWeight[g] -= c * (term.count - 1) * w[g] * product[g] * tau[g];
-        for (int f = 0; f < term.count; ++f) {
-          const double* s = at.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
-          double* outF = out.source.data() + groups * term.spectrum[static_cast<size_t>(f)];
-          for (Eigen::Index g = 0; g < groups; ++g) outF[g] += c * value.but(f, g, product[g], s[g]) * tau[g];
-        }
-      }
-    }
-  }
-  return out;
-}
-
-GroupMoments ProductSet::squares(const GroupMoments& at, const Eigen::VectorXd& u) const {
-  const Eigen::ArrayXd perWeight = inverse(at.weight);
-  const Eigen::Index groups = at.source.rows();
-  GroupMoments g{Eigen::MatrixXd::Zero(groups, sourceCount()), Eigen::VectorXd::Zero(groups), Eigen::MatrixXd::Zero(groups, pathCount())};
-  Eigen::ArrayXd product(groups);
-  for (int m = 0; m < size(); ++m)
-    for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
-      const ProductTerm& term = terms[static_cast<size_t>(t)];
-      const double c = u[m] * scale[m] * scale[m] * term.coefficient * term.coefficient;
-      const auto tau = at.transmittance.col(term.path).array();
       const TermValue value(at, perWeight, term);
       value.spectraBut(-1, product);
-      g.transmittance.col(term.path).array() += c * product.square();
+      product *= c * at.transmittance.col(term.path).array();
       for (int f = 0; f < term.count; ++f) {
-        value.spectraBut(f, product);
-        g.source.col(term.spectrum[static_cast<size_t>(f)]).array() += c * (product * tau).square();
+        if (term.count == 1)
+          for (Eigen::Index g = 0; g < groups; ++g) own[g] = c * tau[g];
+        else {
+          value.spectraBut(f, own);
+          for (Eigen::Index g = 0; g < groups; ++g) own[g] *= c * tau[g];
+        }
+        addTo(averages, term.spectrum[static_cast<size_t>(f)]);
       }
+      if (term.count > 1)
+        for (Eigen::Index g = 0; g < groups; ++g) byWeight[g] -= (term.count - 1) * w[g] * product[g];
+      const double* amount = amounts.data() + columns * term.path;
+      double* depths = out.extinction.col(m).data();
+      for (Eigen::Index k = 0; k < columns; ++k, depths += groups)
+        if (amount[k] != 0.0)
+          for (Eigen::Index g = 0; g < groups; ++g) depths[g] -= amount[k] * product[g];
     }
-  return g;
+    if (basis.cols() > shapes) out.average.col(m).tail(groups) = weightSize * byWeight.matrix();
+  }
+  return out;
 }
 
 std::pair<double, double> errorFigures(const Eigen::VectorXd& errors) {

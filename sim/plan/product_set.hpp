@@ -20,6 +20,12 @@ struct GroupMoments {
   Eigen::MatrixXd transmittance;  ///< [group, path]
 };
 
+/// Derivatives of each product's error.
+struct GroupSlopes {
+  Eigen::MatrixXd average;     ///< [(shape, group), product]: by sum over wavelengths of shape x share; the group runs faster
+  Eigen::MatrixXd extinction;  ///< [(column, group), product]
+};
+
 /// Enough for directions of steps, which is all that the basis is for.
 constexpr double kBasisError = 1e-3;
 
@@ -40,19 +46,18 @@ class ProductSet {
   GroupMoments moments(const GroupState& state) const;
   /// (planned - fine) / max(|fine|, floor).
   Eigen::VectorXd errors(const GroupMoments& moments) const;
-  /// Change of errors() by a change of the moments.
-  Eigen::VectorXd forward(const GroupMoments& at, const GroupMoments& change) const;
-  /// Its transpose: sums of u x derivative by each moment.
-  GroupMoments backward(const GroupMoments& at, const Eigen::VectorXd& u) const;
-  /// Sums of u x (derivative of each term)^2 by each moment, for scaling (weights are left out).
-  GroupMoments squares(const GroupMoments& at, const Eigen::VectorXd& u) const;
+  /// Derivatives of errors().
+  GroupSlopes slopes(const GroupMoments& at) const;
 
+  int wavelengths = 0;         ///< of the problem
   std::vector<int> fineIndex;  ///< of each kept wavelength, in the problem
   Eigen::VectorXd weight;      ///< [fine]
   Eigen::MatrixXd weighted;    ///< [fine, source]: weight x spectrum
-  Eigen::MatrixXd basis, mix;  ///< weighted ~ basis x mix to kBasisError of each column's norm: [fine, rank], [rank, source]
+  Eigen::MatrixXd basis, mix;  ///< weighted ~ basis x mix to kBasisError of each column's norm: [fine, shape], [shape, source];
+  double weightSize = 0.0;     ///< where averages are multiplied the weight is one more shape, the last: basis x weightSize
   Eigen::MatrixXd extinction;  ///< [fine, column]
   Eigen::MatrixXd amounts;     ///< [column, path]
+  Eigen::MatrixXd parts;       ///< [tag, product]: what terms of a tag add to `fine`; not of a subset
   Eigen::VectorXd fine;        ///< [product]: value on the fine grid
   Eigen::VectorXd scale;       ///< [product]: 1 / max(|fine|, floor), 0 where that is 0
   std::vector<ProductTerm> terms;

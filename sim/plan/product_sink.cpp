@@ -19,15 +19,15 @@ Factor stepped(Factor f) {
 }
 
 /// Terms of the same spectra on the same path as one.
-std::vector<SightTerm> merged(std::vector<SightTerm> terms) {
-  std::map<std::tuple<std::array<int, kMostFactors>, int, int, TermKind>, size_t> placeOf;
-  std::vector<SightTerm> out;
-  for (const SightTerm& t : terms) {
-    const auto [at, isNew] = placeOf.try_emplace({t.product.spectrum, t.product.count, t.product.path, t.kind}, out.size());
+std::vector<ProductTerm> merged(std::vector<ProductTerm> terms) {
+  std::map<std::tuple<std::array<int, kMostFactors>, int, int, int>, size_t> placeOf;
+  std::vector<ProductTerm> out;
+  for (const ProductTerm& t : terms) {
+    const auto [at, isNew] = placeOf.try_emplace({t.spectrum, t.count, t.path, t.tag}, out.size());
     if (isNew) out.push_back(t);
-    else out[at->second].product.coefficient += t.product.coefficient;
+    else out[at->second].coefficient += t.coefficient;
   }
-  std::erase_if(out, [](const SightTerm& t) { return t.product.coefficient == 0.0; });
+  std::erase_if(out, [](const ProductTerm& t) { return t.coefficient == 0.0; });
   return out;
 }
 
@@ -71,25 +71,25 @@ int ProductSink::pathOf(const AirAmounts& powered, double ownPart) {
 }
 
 /// Through all panes so far.
-void ProductSink::add(SightTerm term) {
+void ProductSink::add(ProductTerm term) {
   for (const Pane& p : panes_) {
-    term.product.coefficient *= p.modifier;
-    if (term.product.count < kMostFactors) term.product.spectrum[static_cast<size_t>(term.product.count++)] = p.transmittance;
-    else term.product.spectrum.back() = book_.both(term.product.spectrum.back(), p.transmittance);
+    term.coefficient *= p.modifier;
+    if (term.count < kMostFactors) term.spectrum[static_cast<size_t>(term.count++)] = p.transmittance;
+    else term.spectrum.back() = book_.both(term.spectrum.back(), p.transmittance);
   }
-  if (term.product.coefficient != 0.0) sight_.terms.push_back(term);
+  if (term.coefficient != 0.0) sight_.terms.push_back(term);
 }
 
 /// A black body of a texture's temperature is a mixture of two.
-void ProductSink::addFactor(const SightTerm& term, std::span<const Factor> rest) {
+void ProductSink::addFactor(const ProductTerm& term, std::span<const Factor> rest) {
   if (rest.empty()) {
     add(term);
     return;
   }
   const auto with = [&](const Factor& f, double part) {
-    SightTerm t = term;
-    t.product.coefficient *= part;
-    t.product.spectrum[static_cast<size_t>(t.product.count++)] = book_.spectrum(f, sim_);
+    ProductTerm t = term;
+    t.coefficient *= part;
+    t.spectrum[static_cast<size_t>(t.count++)] = book_.spectrum(f, sim_);
     if (part > 0.0) addFactor(t, rest.subspan(1));
   };
   const Factor& f = rest.front();
@@ -103,11 +103,12 @@ void ProductSink::addFactor(const SightTerm& term, std::span<const Factor> rest)
 }
 
 void ProductSink::term(const Term& t) {
-  SightTerm term{{}, t.kind};
-  term.product.count = 0;
-  term.product.coefficient = t.coefficient;
+  ProductTerm term;
+  term.tag = static_cast<int>(t.kind);
+  term.count = 0;
+  term.coefficient = t.coefficient;
   if (!t.air && herePath_ < 0) herePath_ = pathOf(here_, 0.0);
-  term.product.path = t.air ? pathOf(*t.air, 0.0) : herePath_;
+  term.path = t.air ? pathOf(*t.air, 0.0) : herePath_;
   addFactor(term, t.factors);
 }
 
@@ -134,8 +135,9 @@ void ProductSink::segment(const Segment& s) {
 void ProductSink::emission(const Segment& s) {
   auto both = [&](int spectrum, int near, int far, TermKind kind) {
     for (const auto& [path, sign] : {std::pair{near, 1.0}, {far, -1.0}}) {
-      SightTerm t{{}, kind};
-      t.product.spectrum[0] = spectrum, t.product.path = path, t.product.coefficient = sign;
+      ProductTerm t;
+      t.tag = static_cast<int>(kind);
+      t.spectrum[0] = spectrum, t.path = path, t.coefficient = sign;
       add(t);
     }
   };
@@ -159,8 +161,9 @@ void ProductSink::emission(const Segment& s) {
   for (const MediumInside& m : s.media) {
     const int source = book_.spectrum(Factor::medium(*m.medium, m.temperature_K), sim_);
     for (const auto& [path, sign] : {std::pair{near, 1.0}, {far, -1.0}}) {
-      SightTerm t{{}, TermKind::Media};
-      t.product.spectrum[0] = source, t.product.path = path, t.product.coefficient = sign * m.length_m / total_m;
+      ProductTerm t;
+      t.tag = static_cast<int>(TermKind::Media);
+      t.spectrum[0] = source, t.path = path, t.coefficient = sign * m.length_m / total_m;
       add(t);
     }
   }
@@ -187,9 +190,10 @@ void ProductSink::scattered(const Segment& s) {
       return n.molecules[k] * rayleighPhase(cosine) + n.haze[k] * henyeyGreensteinPhase(cosine, n.asymmetry);
     });
     for (int p = 0; p < 3; ++p) {
-      SightTerm t{{}, TermKind::ScatteredSun};
-      t.product.spectrum[0] = irradiance, t.product.spectrum[1] = scatter, t.product.count = 2;
-      t.product.path = way[p], t.product.coefficient = sun * passed * (p == 1 ? 4.0 : 1.0) / 6.0;
+      ProductTerm t;
+      t.tag = static_cast<int>(TermKind::ScatteredSun);
+      t.spectrum[0] = irradiance, t.spectrum[1] = scatter, t.count = 2;
+      t.path = way[p], t.coefficient = sun * passed * (p == 1 ? 4.0 : 1.0) / 6.0;
       add(t);
     }
   }

@@ -24,8 +24,8 @@ class ProductSink final : public TermSink {
 
  private:
   int pathOf(const AirAmounts& powered, double ownPart);
-  void add(SightTerm term);
-  void addFactor(const SightTerm& term, std::span<const Factor> rest);
+  void add(ProductTerm term);
+  void addFactor(const ProductTerm& term, std::span<const Factor> rest);
   void emission(const Segment& segment);
   void scattered(const Segment& segment);
 

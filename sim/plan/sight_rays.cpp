@@ -211,9 +211,14 @@ std::vector<SightRay> SightRays::lamps(int frame) {
   return seen;
 }
 
-std::vector<SightRay> SightRays::extremes() {
+const std::vector<SightRay>& SightRays::extremes() {
+  if (extremes_.empty()) findExtremes();
+  return extremes_;
+}
+
+void SightRays::findExtremes() {
   survey();
-  std::vector<SightRay> all;
+  std::vector<SightRay>& all = extremes_;
   // The frames at which each body is nearest and farthest, and the first and last.
   const int frames = simulation_.time.frames, looked = std::min(frames, kMostFrames);
   struct Extent {
@@ -272,7 +277,6 @@ std::vector<SightRay> SightRays::extremes() {
       }
     }
   }
-  return all;
 }
 
 }  // namespace pitviper

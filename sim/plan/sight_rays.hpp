@@ -50,10 +50,12 @@ class SightRays {
   SightRay through(const FilmPlace& place);
   /// Of every combination: the nearest, the farthest, the most grazing, the most level, the longest way through media, the hottest and the coldest texel;
   /// in the first and in the last frame; bodies and lamps at their nearest and farthest.
-  std::vector<SightRay> extremes();
+  const std::vector<SightRay>& extremes();
   /// About the solid angle of a subpixel.
   double pixel_sr() const;
   Dice& dice() { return dice_; }
+  /// Lines from here on are those of another seed. What was surveyed stays.
+  void reseed(unsigned long long seed) { dice_ = Dice(seed); }
 
  private:
   struct Candidate {
@@ -67,6 +69,7 @@ class SightRays {
   std::vector<SightRay> lamps(int frame);
   void cast(SightRay& ray) const;
   void survey();
+  void findExtremes();
   Candidate candidate(SightRay ray) const;
   glm::dvec3 placeOn(const WorldState& state, size_t surface);
   void stretch(SightRay& ray, double distance_m);
@@ -79,6 +82,7 @@ class SightRays {
   std::vector<std::pair<size_t, size_t>> surfaces_;  ///< entity and surface
   std::vector<Candidate> candidates_;
   std::vector<std::vector<size_t>> combinations_;  ///< candidates of each
+  std::vector<SightRay> extremes_;
   int frame_ = -1;
   std::shared_ptr<const WorldState> state_;  ///< of the frame asked for last
 };

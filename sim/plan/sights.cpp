@@ -45,8 +45,7 @@ int SightBook::both(int a, int b) {
                   [fa = spectra[static_cast<size_t>(a)], fb = spectra[static_cast<size_t>(b)]](const FineGrid& g, size_t i) { return fa(g, i) * fb(g, i); });
 }
 
-Sights::Sights(const Simulation& simulation, const Plan& plan, const Eye& eye, unsigned long long seed)
-    : simulation_(simulation), plan_(plan), rays_(simulation, eye, seed) {}
+Sights::Sights(const Simulation& simulation, const Plan& plan, SightRays& rays) : simulation_(simulation), plan_(plan), rays_(rays) {}
 
 void Sights::add(const SightRay& ray) {
   RadianceScene scene{simulation_, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, plan_.accuracy < kFine ? kFinePlaces : kPlaces};
@@ -94,7 +93,7 @@ std::vector<int> Sights::absorbers(const FineGrid& grid) const {
   return found;
 }
 
-SpectralProblem Sights::whole(const FineGrid& grid, const std::vector<int>& absorbers, size_t first) const {
+SpectralProblem Sights::whole(const FineGrid& grid, const std::vector<int>& absorbers, std::span<const Sight> sights) const {
   SpectralProblem p;
   p.wavelength_um = grid.wavelength_um;
   p.weight = grid.weight;
@@ -113,26 +112,20 @@ SpectralProblem Sights::whole(const FineGrid& grid, const std::vector<int>& abso
     for (int a : absorbers) u.push_back(path.amount(a));
     p.paths.push_back(std::move(u));
   }
-  for (size_t m = first; m < book_.sights.size(); ++m) {
-    SpectralProduct product;
-    for (const SightTerm& t : book_.sights[m].terms) product.terms.push_back(t.product);
-    p.products.push_back(std::move(product));
-  }
-
+  for (const Sight& s : sights) p.products.push_back({s.terms, 0.0});
   return p;
 }
 
 double Sights::floorOf(const FineGrid& grid, const std::vector<int>& absorbers) const {
-  const std::vector<double> seen = fineIntegrals(whole(grid, absorbers, 0));
-  std::vector<double> film;
-  for (size_t m = 0; m < seen.size(); ++m)
-    if (book_.sights[m].fromFilm) film.push_back(seen[m]);
+  std::vector<Sight> drawn;
+  std::copy_if(book_.sights.begin(), book_.sights.end(), std::back_inserter(drawn), [](const Sight& s) { return s.fromFilm; });
+  std::vector<double> film = fineIntegrals(whole(grid, absorbers, drawn));
   std::sort(film.begin(), film.end());
   return film.empty() ? 0.0 : kDark * film[std::min(film.size() - 1, film.size() * 99 / 100)];
 }
 
 SpectralProblem Sights::problem(const FineGrid& grid, const std::vector<int>& absorbers, double floor, size_t first) const {
-  SpectralProblem p = whole(grid, absorbers, first);
+  SpectralProblem p = whole(grid, absorbers, std::span(book_.sights).subspan(first));
   std::map<std::pair<int, std::array<int, kMostFactors>>, double> bound;
   for (SpectralProduct& product : p.products) {
     product.floor = floor;
@@ -148,26 +141,6 @@ SpectralProblem Sights::problem(const FineGrid& grid, const std::vector<int>& ab
     });
   }
   return p;
-}
-
-std::vector<double> Sights::shares(const FineGrid& grid, const std::vector<int>& absorbers, double floor) const {
-  SpectralProblem p = whole(grid, absorbers, 0);
-  const std::vector<double> all = fineIntegrals(p);
-  std::vector<double> most(kTermKinds, 0.0);
-  for (int kind = 0; kind < kTermKinds; ++kind) {
-    SpectralProblem part = p;
-    for (size_t m = 0; m < part.products.size(); ++m) {
-      auto& terms = part.products[m].terms;
-      terms.clear();
-      for (size_t k = 0; k < p.products[m].terms.size(); ++k)
-        if (book_.sights[m].terms[k].kind == static_cast<TermKind>(kind)) terms.push_back(p.products[m].terms[k]);
-    }
-    const std::vector<double> own = fineIntegrals(part);
-    for (size_t m = 0; m < own.size(); ++m)
-      if (const double size = std::max(std::abs(all[m]), floor); size > 0.0)
-        most[static_cast<size_t>(kind)] = std::max(most[static_cast<size_t>(kind)], std::abs(own[m]) / size);
-  }
-  return most;
 }
 
 }  // namespace pitviper

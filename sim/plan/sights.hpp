@@ -32,13 +32,8 @@ struct SightPath {
   }
 };
 
-struct SightTerm {
-  ProductTerm product;  ///< its indices into a SightBook
-  TermKind kind = TermKind::Emission;
-};
-
 struct Sight {
-  std::vector<SightTerm> terms;
+  std::vector<ProductTerm> terms;  ///< their indices into a SightBook, their tags kinds of terms
   bool fromFilm = false;  ///< drawn evenly over the film, not aimed at something
 };
 
@@ -59,7 +54,7 @@ struct SightBook {
 class Sights {
  public:
   /// All must outlive it. `plan`: what makePlan() says of terms.
-  Sights(const Simulation& simulation, const Plan& plan, const Eye& eye, unsigned long long seed);
+  Sights(const Simulation& simulation, const Plan& plan, SightRays& rays);
   /// The extremes, what was learnt, and so many others: half of them as the film draws pixels, a quarter of all combinations of things alike, a quarter aimed
   /// at bodies.
   void begin(int count, const std::vector<FilmPlace>& learnt);
@@ -68,7 +63,6 @@ class Sights {
   /// A line that turned out to matter.
   void add(const SightRay& ray);
   size_t size() const { return book_.sights.size(); }
-  SightRays& rays() { return rays_; }
   /// The absorbers that a channel may meet: places in AirAmounts, and from kMostAirAmounts on the materials of media.
   std::vector<int> absorbers(const FineGrid& grid) const;
   /// The spectral problem of a channel, of sights from a number on, one column of extinction per absorber. Terms that with nothing in their way
@@ -76,15 +70,13 @@ class Sights {
   SpectralProblem problem(const FineGrid& grid, const std::vector<int>& absorbers, double floor, size_t first = 0) const;
   /// 1e-3 of the 99th percentile of what a channel's film sees.
   double floorOf(const FineGrid& grid, const std::vector<int>& absorbers) const;
-  /// By kind of term, the greatest part of a pixel it makes up (0.1: a tenth), given the channel's problem without terms left out.
-  std::vector<double> shares(const FineGrid& grid, const std::vector<int>& absorbers, double floor) const;
 
  private:
   double coefficientOf(const FineGrid& grid, size_t i, int absorber) const;
-  SpectralProblem whole(const FineGrid& grid, const std::vector<int>& absorbers, size_t first) const;
+  SpectralProblem whole(const FineGrid& grid, const std::vector<int>& absorbers, std::span<const Sight> sights) const;
   const Simulation& simulation_;
   const Plan& plan_;
-  SightRays rays_;
+  SightRays& rays_;
   SightBook book_;
 };
 

@@ -1,5 +1,6 @@
 #include "sim/radiance/node_sum.hpp"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
@@ -27,15 +28,30 @@ double meanPassed(double from, double to, double fromPassed, double toPassed) {
   return std::abs(change) < 1e-4 ? fromPassed * (1.0 - change * (0.5 - change * (1.0 / 6.0 - change / 24.0))) : (fromPassed - toPassed) / change;
 }
 
-double depthOf(const std::array<double, kMostAirAmounts>& coefficient, const AirAmounts& powered, size_t used) {
-  double sum = 0.0;
-  for (size_t k = 0; k < used; ++k) sum += coefficient[k] * powered.amount[k];
-  return sum;
+/// A coefficient per node and amount of air, as arithmetic likes it.
+std::vector<double> coefficientsOf(std::span<const SpectralNode> nodes, size_t used, std::array<double, kMostAirAmounts> AirNode::*coefficient) {
+  std::vector<double> all;
+  for (size_t k = 0; k < used; ++k)
+    for (const SpectralNode& n : nodes) all.push_back((n.air.*coefficient)[k]);
+  return all;
+}
+
+Eigen::Map<Eigen::ArrayXd> arrayOf(std::vector<double>& v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
+
+/// Per node, sum over amounts of coefficient x amount.
+void weigh(std::span<const double> coefficient, const AirAmounts& amounts, std::vector<double>& into) {
+  const auto nodes = static_cast<Eigen::Index>(into.size()), used = nodes > 0 ? static_cast<Eigen::Index>(coefficient.size()) / nodes : 0;
+  arrayOf(into).matrix().noalias() =
+      Eigen::Map<const Eigen::MatrixXd>(coefficient.data(), nodes, used) * Eigen::Map<const Eigen::VectorXd>(amounts.amount.data(), used);
 }
 
 }  // namespace
 
 NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes) : simulation_(simulation), nodes_(nodes) {
+  const size_t used = simulation.path ? simulation.path->exponents().size() : 0;
+  extinction_ = coefficientsOf(nodes, used, &AirNode::extinction);
+  molecules_ = coefficientsOf(nodes, used, &AirNode::molecules);
+  haze_ = coefficientsOf(nodes, used, &AirNode::haze);
   if (!simulation.path || !simulation.path->isLayered()) return;
   for (int t = kColdest_K; t <= kWarmest_K; ++t)
     for (const SpectralNode& n : nodes) {
@@ -70,7 +86,8 @@ std::vector<double> NodeSpectra::of(const Factor& factor) const {
 
 NodeSum::NodeSum(const NodeSpectra& spectra) : spectra_(spectra), count_(spectra.nodes().size()) {
   for (At* at : {&near_, &far_})
-    for (auto* v : {&at->depth, &at->passed, &at->black, &at->sunDepth, &at->sunPassed}) v->resize(count_);
+    for (auto* v : {&at->depth, &at->passed, &at->black, &at->sunDepth, &at->sunPassed}) v->assign(count_, 0.0);
+  for (auto* v : {&turned_, &turnedByHaze_}) v->assign(count_, 0.0);
 }
 
 void NodeSum::begin() {
@@ -115,25 +132,28 @@ void NodeSum::pane(const Factor& transmittance, double modifier) {
 
 /// `both`: amounts with the way on to the sun, or null where nobody asks.
 void NodeSum::place(const AirPlace& at, const AirAmounts* both, At& out) {
-  const size_t used = spectra_.simulation().path->exponents().size();
-  const auto nodes = spectra_.nodes();
-  for (size_t i = 0; i < count_; ++i) {
-    out.depth[i] = depthOf(nodes[i].air.extinction, at.powered, used);
-    out.passed[i] = std::exp(-out.depth[i]);
-  }
-  for (size_t i = 0; both && i < count_; ++i) {
-    out.sunDepth[i] = depthOf(nodes[i].air.extinction, *both, used);
-    out.sunPassed[i] = std::exp(-out.sunDepth[i]);
+  weigh(spectra_.extinction(), at.powered, out.depth);
+  arrayOf(out.passed) = (-arrayOf(out.depth)).exp();
+  if (both) {
+    weigh(spectra_.extinction(), *both, out.sunDepth);
+    arrayOf(out.sunPassed) = (-arrayOf(out.sunDepth)).exp();
   }
   if (at.temperature_K > 0.0) spectra_.planck(at.temperature_K, out.black);
   else std::fill(out.black.begin(), out.black.end(), 0.0);
+}
+
+const std::vector<double>& NodeSum::hazePhase(double cosScatter) {
+  if (cosScatter == hazePhaseOf_) return hazePhase_;
+  hazePhaseOf_ = cosScatter;
+  hazePhase_.clear();
+  for (const SpectralNode& n : spectra_.nodes()) hazePhase_.push_back(henyeyGreensteinPhase(cosScatter, n.air.asymmetry));
+  return hazePhase_;
 }
 
 // J = (x S + y B) / (x + y) with S of the media and B of the air, B linear in depth from one end to the other:
 //   integral of J exp(-t) dt = J_near (1 - exp(-d)) + (J_far - J_near) g(d), d = x + y.
 void NodeSum::segment(const Segment& s) {
   const auto nodes = spectra_.nodes();
-  const size_t used = s.air ? spectra_.simulation().path->exponents().size() : 0;
   // Where one end sees no sun, the other's way to it holds for the segment.
   const double sun = s.sunlit && !s.dark ? 0.5 * (s.near.sun + s.far.sun) : 0.0;
   const bool sunlit = sun > 0.0;
@@ -143,7 +163,16 @@ void NodeSum::segment(const Segment& s) {
     place(s.far, sunlit ? &farBoth : nullptr, far_);
   }
   const std::vector<double>* irradiance = sunlit ? &values(Factor::sun()) : nullptr;
-  const double rayleigh = sunlit ? rayleighPhase(s.cosScatter) : 0.0;
+  // Per node, what the segment turns towards the eye.
+  if (sunlit) {
+    AirAmounts passed;
+    for (size_t k = 0; k < kMostAirAmounts; ++k) passed.amount[k] = s.far.powered.amount[k] - s.near.powered.amount[k];
+    const double rayleigh = rayleighPhase(s.cosScatter);
+    const std::vector<double>& phase = hazePhase(s.cosScatter);
+    weigh(spectra_.molecules(), passed, turned_);
+    weigh(spectra_.haze(), passed, turnedByHaze_);
+    for (size_t i = 0; i < count_; ++i) turned_[i] = rayleigh * std::max(turned_[i], 0.0) + phase[i] * std::max(turnedByHaze_[i], 0.0);
+  }
   std::vector<const std::vector<double>*> sources;
   for (const MediumInside& m : s.media) sources.push_back(&values(Factor::medium(*m.medium, m.temperature_K)));
   for (size_t i = 0; i < count_; ++i) {
@@ -166,12 +195,8 @@ void NodeSum::segment(const Segment& s) {
       send(TermKind::AirEmission, i, seen * (y / d) * (near * lost + (far - near) * growing(d, left, lost)));
     }
     if (!sunlit) continue;
-    const double molecules = depthOf(nodes[i].air.molecules, s.far.powered, used) - depthOf(nodes[i].air.molecules, s.near.powered, used);
-    const double haze = depthOf(nodes[i].air.haze, s.far.powered, used) - depthOf(nodes[i].air.haze, s.near.powered, used);
     const double mean = meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * (x > 0.0 ? std::exp(-x) : 1.0));
-    send(TermKind::ScatteredSun, i,
-         sun * reaching * mean * (*irradiance)[i] *
-             (rayleigh * std::max(molecules, 0.0) + henyeyGreensteinPhase(s.cosScatter, nodes[i].air.asymmetry) * std::max(haze, 0.0)));
+    send(TermKind::ScatteredSun, i, sun * reaching * mean * (*irradiance)[i] * turned_[i]);
   }
   if (s.air) std::swap(near_, far_);
   here_ = &s.far;

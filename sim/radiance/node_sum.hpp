@@ -20,10 +20,15 @@ class NodeSpectra {
   /// Black body of a temperature of the air per node, in place; between 140 and 400 K by a table (tests/unit/test_node_sum.cpp has its error).
   void planck(double temperature_K, std::span<double> into) const;
   std::vector<double> of(const Factor& factor) const;
+  /// What an amount of air takes from a line, and scatters by molecules and by haze: [amount][node].
+  std::span<const double> extinction() const { return extinction_; }
+  std::span<const double> molecules() const { return molecules_; }
+  std::span<const double> haze() const { return haze_; }
 
  private:
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
+  std::vector<double> extinction_, molecules_, haze_;
   std::vector<double> planck_, slope_;  ///< [temperature][node], and by kelvin; empty without layered air
 };
 
@@ -57,6 +62,8 @@ class NodeSum final : public TermSink {
     std::vector<double> depth, passed, black, sunDepth, sunPassed;
   };
   void place(const AirPlace& at, const AirAmounts* both, At& out);
+  /// Of haze, per node; lines of one sun mostly ask for the same angle again.
+  const std::vector<double>& hazePhase(double cosScatter);
 
   const NodeSpectra& spectra_;
   size_t count_;
@@ -65,7 +72,8 @@ class NodeSum final : public TermSink {
   std::array<std::vector<double>, kTermKinds> parts_;
   std::vector<double> panes_, mediaDepth_;  ///< on the way so far
   At near_, far_;
-  std::vector<double> scratch_;
+  std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_;
+  double hazePhaseOf_ = 2.0;  ///< cosine that hazePhase_ is for
   const AirPlace* sunKnownAt_ = nullptr;  ///< near_ has the way on to the sun from there
   const AirPlace* here_ = nullptr;        ///< the place reached: near_ is its
   std::map<Factor, std::vector<double>> kept_;

@@ -35,7 +35,7 @@ struct Chosen {
 };
 
 Chosen choose(const SpectralProblem& train, const SpectralProblem& unseen, double tolerance, int atLeast, int most, int step) {
-  const FitEffort effort{80, 40, 600, 0.0};
+  const FitEffort effort{60, 500, 0.0};
   Chosen c;
   for (int n = atLeast; n <= most; n += step) {
     c.fit = fitGroups(train, n, effort);

@@ -190,7 +190,7 @@ TEST_F(Faults, OutOfMemoryIsAMessage) {
   for (int k = 0; k < 40; ++k) many += "  m" + std::to_string(k) + ": {components: [{reflection: lambertian, reflectance: {file: table.csv}}]}\n";
   put("a.yaml", many + kPlate + camera());
   bool ended = false;
-  for (int megabytes = 40; megabytes <= 400; megabytes += 12) {
+  for (int megabytes = 40; megabytes <= 400; megabytes += 30) {
     const Result r = run("ulimit -v " + std::to_string(megabytes) + "000; $P check a.yaml");
     if (r.code == 127 || r.err.find("cannot allocate memory in") != std::string::npos || r.err.find("error while loading") != std::string::npos)
       continue;  // not even begun

@@ -1,0 +1,133 @@
+#include "sim/plan/plan_fits.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <functional>
+#include <future>
+#include <set>
+#include <thread>
+
+namespace pitviper {
+namespace {
+
+/// Lines of sight to fit to at first besides the extremes, and of each check; checks until one is passed, but no more than so many.
+constexpr int kFirst = 240, kCheck = 360, kChecks = 6;
+/// Lines on which fits are held against the equation after that, besides the extremes; how often one is tightened; what they may show of the accuracy, and
+/// those that a tightened fit learns.
+constexpr int kSecond = 400, kTighter = 2;
+constexpr double kHeld = 0.6, kLearnt = 0.3;
+constexpr double kTightened = 0.5;
+
+/// A group of a channel's fine wavelengths as a node of the scene.
+SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const SpectralGroup& group) {
+  const FineGrid& grid = fit.grid();
+  SpectralNode node;
+  node.absorption_per_m.assign(sim.materials.size(), 0.0);
+  double turned = 0.0, scattered = 0.0;
+  // What is scattered is averaged, not fitted: which absorber a fit puts extinction on is of no matter to transmittance, but would be here.
+  for (const auto& [index, share] : group.members) {
+    const AirNode& air = grid.air[static_cast<size_t>(index)];
+    node.members.push_back({grid.wavelength_um[static_cast<size_t>(index)], share});
+    node.air.source += share * air.source;
+    for (size_t k = 0; k < kMostAirAmounts; ++k) {
+      node.air.molecules[k] += share * air.molecules[k];
+      node.air.haze[k] += share * air.haze[k];
+      node.air.extinction[k] += share * air.extinction[k];  // of what is not fitted
+      turned += share * air.haze[k] * air.asymmetry;
+      scattered += share * air.haze[k];
+    }
+  }
+  node.air.asymmetry = scattered > 0.0 ? turned / scattered : 0.0;
+  for (size_t a = 0; a < fit.absorbers().size(); ++a) {
+    const auto k = static_cast<size_t>(fit.absorbers()[a]);
+    if (k < kMostAirAmounts) node.air.extinction[k] = group.extinction[a];
+    else node.absorption_per_m[k - kMostAirAmounts] = group.extinction[a];
+  }
+  return node;
+}
+
+/// On as many threads as the machine has.
+void forAll(const std::vector<size_t>& slots, const std::function<void(size_t)>& work) {
+  std::atomic<size_t> next{0};
+  auto some = [&] {
+    for (size_t s = next++; s < slots.size(); s = next++) work(slots[s]);
+  };
+  std::vector<std::future<void>> others;
+  for (unsigned t = 1; t < std::min<size_t>(std::thread::hardware_concurrency(), slots.size()); ++t) others.push_back(std::async(std::launch::async, some));
+  some();
+  for (auto& o : others) o.get();
+}
+
+}  // namespace
+
+PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
+                   SightRays& rays)
+    : sim_(simulation), fine_(fine), rays_(rays), plan_(plan), sights_(simulation, plan_, rays) {
+  std::vector<size_t> all;
+  for (const ChannelOutput* slot : slots) {
+    all.push_back(fits_.size());
+    fits_.push_back(std::make_unique<ChannelFit>(simulation, slot->kernel, plan.accuracy));
+  }
+  sights_.begin(kFirst, eye.camera ? eye.camera->learnt : std::vector<FilmPlace>());
+  forAll(all, [&](size_t s) { fits_[s]->begin(sights_); });
+  hold(all);
+}
+
+void PlanFits::learn(const CheckedLines& checked, const std::vector<size_t>& slots) {
+  tighten(checked, slots);
+  hold(slots);
+}
+
+void PlanFits::tighten(const CheckedLines& checked, const std::vector<size_t>& slots) {
+  std::set<size_t> missed;
+  for (size_t s : slots)
+    for (size_t n = 0; n < checked.lines.size(); ++n)
+      if (checked.figures[s].errors[n] > kLearnt * plan_.accuracy) missed.insert(n);
+  for (size_t n : missed) sights_.add(checked.lines[n]);
+  forAll(slots, [&](size_t s) { fits_[s]->tighten(kTightened, sights_); });
+}
+
+/// Checks fits on ever new lines and on the second ones, until they hold or enough was tried.
+void PlanFits::hold(std::vector<size_t> open) {
+  for (int attempt = 0;; ++attempt) {
+    for (int n = 0; n < kChecks && !open.empty(); ++n) {
+      sights_.draw(kCheck);
+      forAll(open, [&](size_t s) { fits_[s]->check(sights_); });
+      std::erase_if(open, [&](size_t s) { return fits_[s]->holds(); });
+    }
+    if (attempt == kTighter) return;
+    if (second_.lines.empty()) {
+      second_.lines = rays_.extremes();
+      for (int n = 0; n < kSecond; ++n) second_.lines.push_back(n % 4 != 0 ? rays_.fromFilm() : rays_.ofCombination());
+    }
+    takeNodes(plan_);
+    second_.figures = checkLines(sim_, NodesOfPlan(sim_, plan_), fine_, second_.lines, rays_.pixel_sr(), floor_);
+    open.clear();
+    for (size_t s = 0; s < fits_.size(); ++s)
+      if (second_.figures[s].largest > kHeld * plan_.accuracy) open.push_back(s);
+    if (open.empty()) return;
+    tighten(second_, open);
+  }
+}
+
+void PlanFits::takeNodes(Plan& plan) const {
+  plan.nodes.clear();
+  plan.blocks.clear();
+  plan.weight.clear();
+  plan.shares.clear();
+  plan.fineCount.clear();
+  for (int k = 0; k < kTermKinds; ++k) plan.shares.push_back({nameOf(static_cast<TermKind>(k)), {}, true});
+  for (const auto& f : fits_) {
+    plan.blocks.push_back({plan.nodeCount(), static_cast<int>(f->groups().size()), {static_cast<int>(plan.blocks.size())}});
+    for (const SpectralGroup& g : f->groups()) plan.nodes.push_back(nodeOf(sim_, *f, g));
+    plan.fineCount.push_back(static_cast<int>(f->grid().weight.size()));
+    for (size_t k = 0; k < f->shares().size(); ++k) plan.shares[k].share.push_back(f->shares()[k]);
+  }
+  for (size_t s = 0; s < fits_.size(); ++s) {
+    std::vector<double> weights(plan.nodes.size(), 0.0);
+    for (size_t g = 0; g < fits_[s]->groups().size(); ++g) weights[static_cast<size_t>(plan.blocks[s].first) + g] = fits_[s]->groups()[g].weight;
+    plan.weight.push_back(std::move(weights));
+  }
+}
+
+}  // namespace pitviper

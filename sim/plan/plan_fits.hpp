@@ -1,0 +1,42 @@
+#pragma once
+// The groups of wavelengths of all channels of a plan: fitted to lines of sight as sums of products, then held against the radiance equation itself,
+// which products are simpler than.
+#include <memory>
+#include <vector>
+
+#include "sim/plan/channel_fit.hpp"
+#include "sim/plan/line_check.hpp"
+
+namespace pitviper {
+
+/// Lines of sight, and what each slot is off by on them.
+struct CheckedLines {
+  std::vector<SightRay> lines;
+  std::vector<LineFigures> figures;
+};
+
+class PlanFits {
+ public:
+  /// Fits groups within plan.accuracy. `slots`: an output of each; `fine`: the plan of every wavelength. All must outlive it.
+  PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
+           SightRays& rays);
+  /// Fits those slots to half of what they were fitted to, and to what they are off by on these lines.
+  void learn(const CheckedLines& checked, const std::vector<size_t>& slots);
+  /// The groups as the plan's nodes.
+  void takeNodes(Plan& plan) const;
+
+ private:
+  void hold(std::vector<size_t> open);
+  void tighten(const CheckedLines& checked, const std::vector<size_t>& slots);
+
+  const Simulation& sim_;
+  const NodesOfPlan& fine_;
+  SightRays& rays_;
+  Plan plan_;
+  Sights sights_;
+  std::vector<std::unique_ptr<ChannelFit>> fits_;
+  CheckedLines second_;  ///< what fits are held against
+  std::vector<double> floor_;
+};
+
+}  // namespace pitviper
