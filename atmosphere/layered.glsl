@@ -4,6 +4,7 @@
 // (sim/render/air_tables.hpp); ways on to lights and to the sun from tables by height. Amounts of both legs are added before the power: a band does not decay exponentially.
 layout(std140, binding = 3) uniform AirBlock {
   vec4 grid;       // root of the first elevation's sine, entries per unit of it; scale of ranges [m], entries per unit of ln(1 + range / scale)
+  vec4 azimuth;    // first cosine of the azimuth to the sun times the sun's horizontal part, entries per unit of it; number of elevations
   vec4 heights;    // bottom [m], entries per root of a metre; sine of the first sun elevation, 1 / step to the next
   vec4 exponent[AIR_VECTORS];
   vec4 extinction[NODES * AIR_VECTORS];
@@ -11,7 +12,9 @@ layout(std140, binding = 3) uniform AirBlock {
   vec4 black[AIR_BLACKS];  // of nodes: radiance of a black body of the air's temperature at the camera
 } air;
 layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][density, sun elevations][vector]
-layout(binding = 21) uniform samplerBuffer airRadiance;  // [elevation][range, space last][part][value]
+layout(binding = 21) uniform samplerBuffer airRadiance;  // [azimuth][elevation][range, space last][part][value]
+
+int airElevations() { return int(air.azimuth.z); }
 
 struct AirPath {
   vec4 w[AIR_VECTORS];  // amounts
@@ -33,9 +36,9 @@ AirPath airFromCamera(float range) {
   AirPath p;
   bool space = range >= kFar;
   float length = max(range - airEntry(), 0.0);
-  float x = clamp((sign(sinElevation_) * sqrt(abs(sinElevation_)) - air.grid.x) * air.grid.y, 0.0, float(AIR_ELEVATIONS - 1));
+  float x = clamp((sign(sinElevation_) * sqrt(abs(sinElevation_)) - air.grid.x) * air.grid.y, 0.0, float(airElevations() - 1));
   float y = clamp(log(1.0 + min(length, 1.0e9) / air.grid.z) * air.grid.w, 0.0, float(AIR_RANGES - 1));
-  int e = min(int(x), AIR_ELEVATIONS - 2), r = space ? AIR_RANGES : min(int(y), AIR_RANGES - 2);
+  int e = min(int(x), airElevations() - 2), r = space ? AIR_RANGES : min(int(y), AIR_RANGES - 2);
   p.cell = e * (AIR_RANGES + 1) + r;
   p.next = space ? 0 : 1;
   p.mixed = vec2(x - float(e), space ? 0.0 : y - float(r));
@@ -58,7 +61,7 @@ void airHeight(float height, out int at, out float mixed) {
   int h = min(int(t), AIR_HEIGHTS - 2);
   float from = float(h), t2 = t * t, from2 = from * from;
   mixed = clamp((t2 - from2) / (2.0 * from + 1.0), 0.0, 1.0);
-  at = AIR_ELEVATIONS * (AIR_RANGES + 1) * AIR_VECTORS + h * (1 + AIR_SUNS) * AIR_VECTORS;
+  at = airElevations() * (AIR_RANGES + 1) * AIR_VECTORS + h * (1 + AIR_SUNS) * AIR_VECTORS;
 }
 
 vec4 airDensity(float height, int v) {
@@ -118,21 +121,29 @@ Real pathTransmittance(int i, AirPath p) { return exp(-airDepth(i, p)); }
 
 Real pathDepth(int i, AirPath near, AirPath far) { return max(airDepth(i, far) - airDepth(i, near), 0.0); }
 
-// Between the four entries of a table of `count` texels in each part.
-vec4 airPart(AirPath p, int part, int texel, int count) {
-  int size = AIR_PARTS * count, low = p.cell * size + part * count + texel, step = p.next * size, high = low + (AIR_RANGES + 1) * size;
+// Between the four entries of a table of `count` texels in each part; of one azimuth.
+vec4 airPart(AirPath p, int azimuth, int part, int texel, int count) {
+  int size = AIR_PARTS * count, low = (azimuth * airElevations() * (AIR_RANGES + 1) + p.cell) * size + part * count + texel, step = p.next * size, high = low + (AIR_RANGES + 1) * size;
   return mix(mix(texelFetch(airRadiance, low), texelFetch(airRadiance, low + step), p.mixed.y),
              mix(texelFetch(airRadiance, high), texelFetch(airRadiance, high + step), p.mixed.y), p.mixed.x);
 }
 
 // Emission less that of air of one temperature, and sunlight scattered by molecules and haze, each with its phase function [1/sr].
 vec4 airValue(AirPath p, int texel, int count, vec4 g) {
-  vec4 sum = airPart(p, 0, texel, count);
+  vec4 sum = airPart(p, 0, 0, texel, count);
   if (AIR_PARTS > 1) {
     float c = dot(ray_, view.sun.xyz) / rayLength_;
     vec4 chord = 1.0 + g * g - 2.0 * g * c;
-    sum += 0.0596831037 * (1.0 + c * c) * airPart(p, 1, texel, count) +
-           0.0795774715 * (1.0 - g * g) * inversesqrt(chord) / chord * airPart(p, 2, texel, count);
+    vec4 molecules = airPart(p, 0, 1, texel, count), haze = airPart(p, 0, 2, texel, count);
+    if (AIR_AZIMUTHS > 1) {
+      // The sun's height over far air depends on the azimuth it is seen under.
+      float across = (c - sinElevation_ * dot(view.up.xyz, view.sun.xyz)) * inversesqrt(max(1.0 - sinElevation_ * sinElevation_, 1.0e-8));
+      float z = clamp((across - air.azimuth.x) * air.azimuth.y, 0.0, float(AIR_AZIMUTHS - 1));
+      int a = min(int(z), AIR_AZIMUTHS - 2);
+      molecules = mix(airPart(p, a, 1, texel, count), airPart(p, a + 1, 1, texel, count), z - float(a));
+      haze = mix(airPart(p, a, 2, texel, count), airPart(p, a + 1, 2, texel, count), z - float(a));
+    }
+    sum += 0.0596831037 * (1.0 + c * c) * molecules + 0.0795774715 * (1.0 - g * g) * inversesqrt(chord) / chord * haze;
   }
   return sum;
 }

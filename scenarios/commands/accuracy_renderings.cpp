@@ -51,6 +51,22 @@ std::vector<char> outlinePixels(const Simulation& sim, const Camera& camera, con
                           static_cast<size_t>(x / camera.samples)];
       mark = static_cast<char>(mark || onOutline(sim, state, view, drawn, x, y));
     }
+  if (!sim.hasTransparent()) return marked;
+  // Small bodies are drawn by lines all over a pixel: some of those may lie on an outline.
+  for (size_t e = 0; e < sim.entities.size(); ++e) {
+    if (!drawn[e]) continue;
+    const glm::dvec3 to = state.entities[e].position + state.entities[e].orientation * glm::dvec3(sim.entities[e].boundingCentre) - view.position;
+    const glm::dvec3 d = glm::transpose(view.localFromCamera) * to;
+    const double radius_m = static_cast<double>(sim.entities[e].boundingRadius_m), pixel_rad = camera.pinhole.pitchX_m / camera.pinhole.focalLength_m;
+    if (!(d.z < -radius_m) || 2.0 * radius_m / glm::length(d) > camera.smallBody_px * pixel_rad) continue;
+    const glm::dvec2 at = filmPosition(view, d);
+    const double reach = radius_m / glm::length(d) / pixel_rad * camera.samples + camera.samples;
+    for (int y = std::max(0, static_cast<int>(at.y - reach)); y < std::min<double>(view.height, at.y + reach); ++y)
+      for (int x = std::max(0, static_cast<int>(at.x - reach)); x < std::min<double>(view.width, at.x + reach); ++x)
+        if (outlineWithin(sim, state, view, drawn, x, y))
+          marked[static_cast<size_t>((view.height - 1 - y) / camera.samples) * static_cast<size_t>(camera.pinhole.width) +
+                 static_cast<size_t>(x / camera.samples)] = 1;
+  }
   return marked;
 }
 

@@ -14,8 +14,8 @@ struct RefineLimits {
 
 /// Where a refinement stands, to go on with other products.
 struct RefineProgress {
-  int round = 0;         ///< sets p
-  double damping = 0.1;  ///< relative to the mean curvature
+  int round = 0;          ///< sets p
+  double damping = 0.1;   ///< relative to the mean curvature
   double rootStep = 4.0;  ///< see GroupStep::solve
 };
 

@@ -15,7 +15,6 @@ using Eigen::VectorXd;
 /// Pivots below this part of the largest are rounding: shares of a wavelength sum to 1, so that a group's averages follow from the others'.
 constexpr double kNoPivot = 1e-12;
 
-
 /// Equations of so many unknowns are solved at once, of more by steps, until the slope is so much smaller.
 constexpr Index kMostDirect = 240;
 constexpr int kMostSteps = 40;
@@ -155,9 +154,7 @@ void GroupStep::solveBySteps(double rootDamping, double extinctionDamping) {
   const auto forward = [&](const Unknowns& x) -> VectorXd {
     return slopes_.average.transpose() * (rootScale * averagesOf(x.roots)) + slopes_.extinction.transpose() * (extinctionScale * x.extinctions);
   };
-  const auto backward = [&](const VectorXd& r) -> Unknowns {
-    return {rootScale * rootsOf(slopes_.average * r), extinctionScale * (slopes_.extinction * r)};
-  };
+  const auto backward = [&](const VectorXd& r) -> Unknowns { return {rootScale * rootsOf(slopes_.average * r), extinctionScale * (slopes_.extinction * r)}; };
   Unknowns x{MatrixXd::Zero(root_.rows(), root_.cols()), VectorXd::Zero(slopes_.extinction.rows())};
   VectorXd rest = -errors_;
   Unknowns slope = backward(rest), direction = slope;

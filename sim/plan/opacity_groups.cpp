@@ -250,7 +250,8 @@ GroupFit fitToTolerance(const SpectralProblem& problem, double tolerance, int mo
 }
 
 GroupFit fitToTolerance(const ProductSet& products, double tolerance, int mostGroups, const FitEffort& effort, const std::vector<SpectralGroup>& from) {
-  return fitToTolerance(products, tolerance, mostGroups, effort, std::max(static_cast<int>(from.size()), 1), from.empty() ? GroupState{} : stateOf(products, from));
+  return fitToTolerance(products, tolerance, mostGroups, effort, std::max(static_cast<int>(from.size()), 1),
+                        from.empty() ? GroupState{} : stateOf(products, from));
 }
 
 std::vector<double> groupErrors(const ProductSet& set, const std::vector<SpectralGroup>& groups) {

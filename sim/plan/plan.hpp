@@ -10,6 +10,7 @@
 #include "sim/model/spectral_node.hpp"
 #include "sim/model/sun_legs.hpp"
 #include "sim/radiance/terms.hpp"
+#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 
@@ -44,6 +45,7 @@ struct Plan {
   int slotCount = 0;
   std::vector<int> slotOfOutput;            ///< one per output
   std::vector<std::vector<double>> weight;  ///< [slot][node]
+  double field_rad = 2.0 * kPi;             ///< an angle that no two lines of sight are farther apart than
   double accuracy = 0.0;                    ///< relative error asked for; 0: none was
   std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where nothing was measured
   std::vector<PredictedParts> parts;        ///< [slot]: what it is made of

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <functional>
 #include <future>
 #include <set>
@@ -17,6 +18,8 @@ constexpr int kFirst = 240, kCheck = 360, kChecks = 6;
 constexpr int kSecond = 400, kTighter = 2;
 constexpr double kHeld = 0.6, kLearnt = 0.3;
 constexpr double kTightened = 0.5;
+/// Below, air and the textures of usual scenes send no thermal light to speak of.
+constexpr double kThermal_um = 1.2;
 
 /// A group of a channel's fine wavelengths as a node of the scene.
 SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const SpectralGroup& group) {
@@ -58,11 +61,19 @@ void forAll(const std::vector<size_t>& slots, const std::function<void(size_t)>&
   for (auto& o : others) o.get();
 }
 
+/// Of channels that black bodies are seen in.
+double shortestOf(const std::vector<const ChannelOutput*>& slots) {
+  double shortest_um = INFINITY;
+  for (const ChannelOutput* s : slots)
+    if (s->kernel.supportHigh() > kThermal_um) shortest_um = std::min(shortest_um, std::max(s->kernel.supportLow(), kThermal_um));
+  return shortest_um;
+}
+
 }  // namespace
 
 PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
                    SightRays& rays)
-    : sim_(simulation), fine_(fine), rays_(rays), plan_(plan), sights_(simulation, plan_, rays) {
+    : sim_(simulation), fine_(fine), rays_(rays), plan_(plan), sights_(simulation, plan_, rays, shortestOf(slots)) {
   std::vector<size_t> all;
   for (const ChannelOutput* slot : slots) {
     all.push_back(fits_.size());

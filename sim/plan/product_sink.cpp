@@ -9,7 +9,9 @@
 namespace pitviper {
 namespace {
 
-constexpr double kTemperatureStep_K = 4.0, kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
+/// Black bodies of the air and of textures stand at steps; below kShort_um, where a step changes the shape of their spectra, at finer ones.
+constexpr double kStep_K = 4.0, kFineStep_K = 1.0, kShort_um = 3.0;
+constexpr double kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
 
 /// The factor at one of the steps.
 Factor stepped(Factor f) {
@@ -33,7 +35,8 @@ std::vector<ProductTerm> merged(std::vector<ProductTerm> terms) {
 
 }  // namespace
 
-ProductSink::ProductSink(const Simulation& simulation, SightBook& book) : sim_(simulation), book_(book) {
+ProductSink::ProductSink(const Simulation& simulation, SightBook& book, double shortest_um)
+    : sim_(simulation), book_(book), step_K_(shortest_um < kShort_um ? kFineStep_K : kStep_K) {
   if (!sim_.path || sim_.path->isNone()) return;
   const AirNode node = sim_.path->node(std::clamp(1.0, sim_.path->validLow_um(), sim_.path->validHigh_um()));
   for (size_t k = 0; k < kMostAirAmounts; ++k)
@@ -97,9 +100,9 @@ void ProductSink::addFactor(const ProductTerm& term, std::span<const Factor> res
     with(stepped(f), 1.0);
     return;
   }
-  const double at = f.x / kTemperatureStep_K, low = std::floor(at);
-  if (low > 0.0) with(Factor::planck(kTemperatureStep_K * low, true), 1.0 - (at - low));
-  with(Factor::planck(kTemperatureStep_K * (low + 1.0), true), at - low);
+  const double at = f.x / step_K_, low = std::floor(at);
+  if (low > 0.0) with(Factor::planck(step_K_ * low, true), 1.0 - (at - low));
+  with(Factor::planck(step_K_ * (low + 1.0), true), at - low);
 }
 
 void ProductSink::term(const Term& t) {
@@ -146,8 +149,8 @@ void ProductSink::emission(const Segment& s) {
     herePath_ = far;
     const double temperature_K = 0.5 * (s.near.temperature_K + s.far.temperature_K);
     if (temperature_K > 0.0) {
-      const double step_K = kTemperatureStep_K * std::max(std::round(temperature_K / kTemperatureStep_K), 1.0);
-      both(book_.spectrum(Factor::planck(step_K, true), sim_), near, far, TermKind::AirEmission);
+      const double nearest_K = step_K_ * std::max(std::round(temperature_K / step_K_), 1.0);
+      both(book_.spectrum(Factor::planck(nearest_K, true), sim_), near, far, TermKind::AirEmission);
     }
     both(book_.spectrum("air's own", [](const FineGrid& g, size_t i) { return g.air[i].source; }), near, far, TermKind::AirEmission);
   }

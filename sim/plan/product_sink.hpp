@@ -11,7 +11,8 @@ namespace pitviper {
 class ProductSink final : public TermSink {
  public:
   /// All must outlive it.
-  ProductSink(const Simulation& simulation, SightBook& book);
+  /// `shortest_um`: of what is seen.
+  ProductSink(const Simulation& simulation, SightBook& book, double shortest_um);
   /// A new line begins.
   void begin(bool fromFilm);
   /// What was told since.
@@ -31,6 +32,7 @@ class ProductSink final : public TermSink {
 
   const Simulation& sim_;
   SightBook& book_;
+  double step_K_;  ///< between temperatures of black bodies
   Sight sight_;
   std::vector<size_t> scatterers_;    ///< absorbers of the air that scatter
   AirAmounts here_;                   ///< from the eye to the place reached, raised to their powers

@@ -45,7 +45,8 @@ int SightBook::both(int a, int b) {
                   [fa = spectra[static_cast<size_t>(a)], fb = spectra[static_cast<size_t>(b)]](const FineGrid& g, size_t i) { return fa(g, i) * fb(g, i); });
 }
 
-Sights::Sights(const Simulation& simulation, const Plan& plan, SightRays& rays) : simulation_(simulation), plan_(plan), rays_(rays) {}
+Sights::Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um)
+    : simulation_(simulation), plan_(plan), rays_(rays), shortest_um_(shortest_um) {}
 
 void Sights::add(const SightRay& ray) {
   RadianceScene scene{simulation_, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, plan_.accuracy < kFine ? kFinePlaces : kPlaces};
@@ -54,7 +55,7 @@ void Sights::add(const SightRay& ray) {
     const double shade = rays_.dice().unit();
     return shade < 0.25 ? 0.0 : shade < 0.5 ? rays_.dice().unit() : 1.0;
   };
-  ProductSink sink(simulation_, book_);
+  ProductSink sink(simulation_, book_, shortest_um_);
   sink.begin(ray.fromFilm);
   radianceAlong(scene, ray.line, sink);
   if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), rays_.pixel_sr(), sink);

@@ -34,7 +34,7 @@ struct SightPath {
 
 struct Sight {
   std::vector<ProductTerm> terms;  ///< their indices into a SightBook, their tags kinds of terms
-  bool fromFilm = false;  ///< drawn evenly over the film, not aimed at something
+  bool fromFilm = false;           ///< drawn evenly over the film, not aimed at something
 };
 
 /// Sights with the spectra and paths that their terms point to.
@@ -53,8 +53,8 @@ struct SightBook {
 
 class Sights {
  public:
-  /// All must outlive it. `plan`: what makePlan() says of terms.
-  Sights(const Simulation& simulation, const Plan& plan, SightRays& rays);
+  /// All must outlive it. `plan`: what makePlan() says of terms. `shortest_um`: the shortest wavelength that any channel sees thermal light at.
+  Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um);
   /// The extremes, what was learnt, and so many others: half of them as the film draws pixels, a quarter of all combinations of things alike, a quarter aimed
   /// at bodies.
   void begin(int count, const std::vector<FilmPlace>& learnt);
@@ -78,6 +78,7 @@ class Sights {
   const Plan& plan_;
   SightRays& rays_;
   SightBook book_;
+  double shortest_um_;
 };
 
 /// Part of the film's brightest (99th percentile) that an error is measured against where it is dark.

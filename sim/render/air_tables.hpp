@@ -25,15 +25,21 @@ class AirTables {
   struct Grid {
     glm::dvec3 position{NAN};
     double height_m = 0.0;
-    double sunAcross = 0.0;        ///< see sunAcrossOf()
-    double low = 0.0, high = 0.0;  ///< sines of elevation
+    double sunAcross = 0.0;                    ///< in the view's middle, see sunAcrossOf()
+    double acrossLow = 0.0, acrossHigh = 0.0;  ///< in all of it
+    double low = 0.0, high = 0.0;              ///< sines of elevation
     double farthest_m = 0.0;
   };
   std::vector<double> rangesFrom(double entry_m) const;
   bool serves(const View& view, double low, double high, double farthest_m) const;
-  double sunAcrossOf(const View& view) const;
+  double sunAcrossOf(const View& view, const glm::dvec3& direction) const;
+  std::pair<double, double> sunAcrossIn(const View& view) const;
+  double acrossAt(int azimuth) const;
+  double sineAt(int elevation) const;
   void fill(const View& view);
-  void fillElevation(const View& view, int elevation, const std::vector<double>& asymmetry, std::vector<float>& amounts, std::vector<float>& radiance) const;
+  double elevationError(const std::vector<double>& totals) const;
+  void fillElevation(const View& view, int azimuth, int elevation, const std::vector<double>& asymmetry, std::vector<float>& amounts,
+                     std::vector<float>& radiance, std::vector<double>& totals) const;
   std::vector<double> asymmetries() const;
   void addHeights(std::vector<float>& amounts) const;
   double planck(size_t node, double temperature_K) const;
@@ -41,7 +47,7 @@ class AirTables {
   const Simulation& simulation_;
   const Plan& plan_;
   bool perChannel_, needed_;
-  int elevations_ = 0, ranges_ = 0, vectors_ = 0, values_ = 0, texels_ = 0, parts_ = 1;
+  int azimuths_ = 1, elevations_ = 0, ranges_ = 0, vectors_ = 0, values_ = 0, texels_ = 0, parts_ = 1;
   std::vector<std::vector<double>> logPlanck_;  ///< per node, over the inverse of the temperature
   std::vector<double> sunIrradiance_;           ///< per node
   std::vector<double> black_;                   ///< per node, at the air's temperature where the tables begin

@@ -137,7 +137,13 @@ void appendMaterial(SurfaceTables& t, const Material& m, const Plan& plan) {
       for (size_t k = 0; k < 3; ++k)
         t.hemispherical.push_back(k < m.reflections.size() ? static_cast<float>(n.mean([&](double w) { return m.reflections[k]->hemispherical(w, angle); }))
                                                            : 0.0f);
-      t.hemispherical.push_back(m.given ? static_cast<float>(n.mean([&](double w) { return m.given->at(w, angle); })) : 0.0f);
+      // In double precision: what a good window emits is nearly all digits of 1 less than what it lets through and reflects.
+      t.hemispherical.push_back(static_cast<float>(n.mean([&](double w) {
+        if (m.given) return m.given->at(w, angle);
+        double left = 1.0 - m.transmittance(w, angle);
+        for (const auto& r : m.reflections) left -= r->hemispherical(w, angle);
+        return left;
+      })));
     }
   }
 }

@@ -54,7 +54,7 @@ std::string violation(const Use& use) {
                                                                           {"GeographicLib/", {"sim/scene/"}},
                                                                           {"OpenEXR/", {"sim/image/"}},
                                                                           {"Imf", {"sim/image/"}},
-                                                                          {"Eigen/", {"sim/plan/"}},
+                                                                          {"Eigen/", {"sim/plan/", "sim/radiance/"}},
                                                                           {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}},
                                                                           {"epoxy/", {"sim/gl/", "sim/render/", "scenarios/commands/bench"}}};
     for (const auto& [library, allowed] : homes) {

@@ -71,9 +71,7 @@ TEST(ProductSet, DerivativesAreThoseOfTheProducts) {
   GroupState change = at;
   for (auto* m : {&change.share, &change.extinction})
     for (Eigen::Index i = 0; i < m->size(); ++i) m->data()[i] = random(-1.0, 1.0);
-  const auto moved = [&](double step) {
-    return set.errors(set.moments({at.share + step * change.share, at.extinction + step * change.extinction}));
-  };
+  const auto moved = [&](double step) { return set.errors(set.moments({at.share + step * change.share, at.extinction + step * change.extinction})); };
   constexpr double kStep = 1e-4;
   const GroupSlopes slopes = set.slopes(set.moments(at));
   const Eigen::MatrixXd averages = change.share * set.basis;

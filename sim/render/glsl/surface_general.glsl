@@ -2,7 +2,7 @@
 //@use sim/render/glsl/materials.glsl
 //@use sim/radiometry/glsl/arc_tangent.glsl
 layout(binding = 1) uniform samplerBuffer rows;           // Planck radiance per temperature and node
-layout(binding = 2) uniform samplerBuffer hemispherical;  // (D1, D2, D3, given emissivity) by view angle and node
+layout(binding = 2) uniform samplerBuffer hemispherical;  // (D1, D2, D3, emissivity of modifiers of 1) by view angle and node
 MaterialShape material_;
 vec4 modifier_;
 int view0_, view1_, viewEntry_;
@@ -45,7 +45,7 @@ void prepareSurface() {
 Real selfRadiance(int i) {
   vec4 d = mix(texelFetch(hemispherical, view0_ + i), texelFetch(hemispherical, view1_ + i), viewMix_);
   float reflectance = dot(d.xyz, modifier_.xyz);
-  float emissivity = material_.kinds.z == 1u ? 1.0 - reflectance - transmittance(i) : d.w * modifier_.w;
+  float emissivity = material_.kinds.z == 1u ? d.w + dot(d.xyz, 1.0 - modifier_.xyz) + transmittanceLost(i) : d.w * modifier_.w;
   return reflectedAmbient(reflectance, i) + emissivity * sourceRadiance(i);
 }
 float truthTemperature() { return temperature_; }

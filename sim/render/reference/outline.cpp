@@ -29,4 +29,13 @@ bool onOutline(const Simulation& sim, const WorldState& state, const View& view,
   return false;
 }
 
+bool outlineWithin(const Simulation& sim, const WorldState& state, const View& view, const std::vector<char>& drawn, int x, int y) {
+  constexpr int kLines = 5;
+  const auto middle = seenThrough(sim, state, view, drawn, x + 0.5, y + 0.5);
+  for (int j = 0; j < kLines; ++j)
+    for (int i = 0; i < kLines; ++i)
+      if (seenThrough(sim, state, view, drawn, x + i / (kLines - 1.0), y + j / (kLines - 1.0)) != middle) return true;
+  return false;
+}
+
 }  // namespace pitviper

@@ -8,4 +8,7 @@ namespace pitviper {
 /// `drawn`: one flag per entity.
 bool onOutline(const Simulation& simulation, const WorldState& state, const View& view, const std::vector<char>& drawn, int x, int y);
 
+/// Something transparent begins or ends somewhere in pixel (x, y), as far as a grid of lines tells.
+bool outlineWithin(const Simulation& simulation, const WorldState& state, const View& view, const std::vector<char>& drawn, int x, int y);
+
 }  // namespace pitviper
