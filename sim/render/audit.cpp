@@ -14,7 +14,8 @@ namespace {
 constexpr double kPart = 0.05;
 /// Costs in pixels of the bare 16-wavelength loop that `bench` calls the yardstick: of a frame whatever its size, of a subpixel and of each node of it
 /// (as plan_command.cpp has them), of a wavelength of the reference with and without layered air, and the part of a frame that its second visibility pass
-/// takes. Measured on llvmpipe, two cores; elsewhere the part is another.
+/// takes. Estimates for llvmpipe on two cores (the README has what audits cost
+/// there); elsewhere the part is another.
 constexpr double kFrame = 0.2e6, kSubpixel = 5.0, kNode = 0.28, kWavelength = 60.0, kPlainWavelength = 2.0, kVisibility = 0.3;
 /// More would be a second reference run.
 constexpr double kMost = 16.0;
