@@ -130,25 +130,24 @@ TEST(LowSun, DirectSunlightByStraightLines) {
   const double radius = LocalFrame().earthRadius_m(), e0 = 1000.0;
   double planned = 0.0, exact = 0.0, closed = 0.0;
   int dark = 0;
-  for (double height : {3.0, 8000.0})
-    for (double um : {0.55, 2.2})
-      for (double e : {-3.5, -1.0, -0.2, 0.0, 0.2, 0.5, 5.0}) {
-        const double x = (e * kDegree + std::acos(radius / (radius + height))) / std::sqrt(6.7943e-5 / kPi);
-        const double share = x >= 1.0 ? 1.0 : x <= -1.0 ? 0.0 : segmentShare(x);
-        const double fine = plateInSun(height, e, um, "0.1 %"), reference = plateInSun(height, e, um, "reference");
-        if (share == 0.0) {
-          ++dark;
-          EXPECT_LT(reference, 1e-3) << height << " " << e;  // 5 m of air lit from above
-          EXPECT_LT(fine, 1e-3) << height << " " << e;
-          continue;
-        }
-        const double middle = x >= 1.0 ? e * kDegree : e * kDegree + (segmentMiddle(x) - x) * std::sqrt(6.7943e-5 / kPi);
-        const double expected = e0 / kPi * share * std::cos(middle) * transmittanceToSun(*path, height, middle, um);
-        closed = std::max(closed, std::abs(reference / expected - 1.0));
-        planned = std::max(planned, std::abs(fine / reference - 1.0));
-        exact = std::max(exact, std::abs(fine / expected - 1.0));
+  for (const auto& [height, um] : {std::pair{3.0, 0.55}, {8000.0, 2.2}})
+    for (double e : {-3.5, -1.0, -0.2, 0.0, 0.2, 0.5, 5.0}) {
+      const double x = (e * kDegree + std::acos(radius / (radius + height))) / std::sqrt(6.7943e-5 / kPi);
+      const double share = x >= 1.0 ? 1.0 : x <= -1.0 ? 0.0 : segmentShare(x);
+      const double fine = plateInSun(height, e, um, "0.1 %"), reference = plateInSun(height, e, um, "reference");
+      if (share == 0.0) {
+        ++dark;
+        EXPECT_LT(reference, 1e-3) << height << " " << e;  // 5 m of air lit from above
+        EXPECT_LT(fine, 1e-3) << height << " " << e;
+        continue;
       }
-  EXPECT_GE(dark, 4);
+      const double middle = x >= 1.0 ? e * kDegree : e * kDegree + (segmentMiddle(x) - x) * std::sqrt(6.7943e-5 / kPi);
+      const double expected = e0 / kPi * share * std::cos(middle) * transmittanceToSun(*path, height, middle, um);
+      closed = std::max(closed, std::abs(reference / expected - 1.0));
+      planned = std::max(planned, std::abs(fine / reference - 1.0));
+      exact = std::max(exact, std::abs(fine / expected - 1.0));
+    }
+  EXPECT_GE(dark, 3);
   bound("direct sunlight, sun at -1 to 5 deg, in double against straight lines by small steps, relative", closed, 1e-3,
         "steps of 10 m and a thousandth of the way");
   bound("the same, planned at 0.1 % against double", planned, 1e-3, "tables of ways to the sun; what was asked");
