@@ -47,6 +47,15 @@ double logOf(double v) { return std::log(std::max(v, kNothing)); }
 /// Elevations lie evenly in the signed root of their sine: near the horizon a small step crosses much air.
 double spread(double sine) { return std::copysign(std::sqrt(std::abs(sine)), sine); }
 
+glm::dvec3 axisOf(const View& v) { return v.localFromCamera * glm::dvec3(0, 0, -1); }
+
+bool onFilm(const View& v, const glm::dvec3& direction) {
+  const glm::dvec3 d = glm::transpose(v.localFromCamera) * direction;
+  if (d.z >= 0.0) return false;
+  const glm::dvec2 at = filmPosition(v, d);
+  return at.x >= 0 && at.y >= 0 && at.x <= v.width && at.y <= v.height;
+}
+
 /// Least and greatest sine of elevation in a view.
 std::pair<double, double> elevations(const View& v, const glm::dvec3& up) {
   double low = 1.0, high = -1.0;
@@ -57,13 +66,8 @@ std::pair<double, double> elevations(const View& v, const glm::dvec3& up) {
       low = std::min(low, s);
       high = std::max(high, s);
     }
-  const glm::dvec3 zenith = glm::transpose(v.localFromCamera) * up;
-  for (double sign : {1.0, -1.0}) {
-    const glm::dvec3 d = sign * zenith;
-    if (d.z >= 0.0) continue;
-    const glm::dvec2 at = filmPosition(v, d);
-    if (at.x >= 0 && at.y >= 0 && at.x <= v.width && at.y <= v.height) (sign > 0 ? high : low) = sign;
-  }
+  if (onFilm(v, up)) high = 1.0;
+  if (onFilm(v, -up)) low = -1.0;
   const double margin = 0.03 * (high - low) + 1e-4;  // between the places looked at
   return {std::max(low - margin, -1.0), std::min(high + margin, 1.0)};
 }
@@ -165,12 +169,13 @@ void AirTables::update(const View& view, const WorldState& state) {
   if (serves(view, low, high, farthest)) return;
   const double margin = kMargin * (high - low);
   const auto [acrossLow, acrossHigh] = sunAcrossIn(view);
-  const double acrossMargin = kMargin * (acrossHigh - acrossLow);
+  // No farther than towards the sun and away from it: beyond, scattering angles have no cosine.
+  const double acrossMargin = kMargin * (acrossHigh - acrossLow), most = sunAcrossAtMost(view);
   grid_ = {view.position,
            simulation_.frame.height(view.position),
-           sunAcrossOf(view, view.localFromCamera * glm::dvec3(0, 0, -1)),
-           acrossLow - acrossMargin,
-           acrossHigh + acrossMargin,
+           sunAcrossOf(view, axisOf(view)),
+           std::max(acrossLow - acrossMargin, -most),
+           std::min(acrossHigh + acrossMargin, most),
            std::max(low - margin, -1.0),
            std::min(high + margin, 1.0),
            1.1 * farthest};
@@ -187,10 +192,11 @@ bool AirTables::serves(const View& view, double low, double high, double farthes
   if (!(grid_.farthest_m > 0.0)) return false;
   const double share = plan_.accuracy / 0.01;
   const auto [acrossLow, acrossHigh] = sunAcrossIn(view);
-  const bool near = grid_.position == view.position || (std::abs(simulation_.frame.height(view.position) - grid_.height_m) <= kSameHeight_m * share &&
-                                                        (azimuths_ > 1 || std::abs(0.5 * (acrossLow + acrossHigh) - grid_.sunAcross) <= kSameAzimuth * share));
-  return near && acrossLow >= grid_.acrossLow && acrossHigh <= grid_.acrossHigh && low >= grid_.low && high <= grid_.high && farthest_m <= grid_.farthest_m &&
-         high - low > 0.0 && farthest_m > 0.5 * grid_.farthest_m;
+  const bool sameHeight = grid_.position == view.position || std::abs(simulation_.frame.height(view.position) - grid_.height_m) <= kSameHeight_m * share;
+  const bool sameAzimuths = (acrossLow >= grid_.acrossLow && acrossHigh <= grid_.acrossHigh) ||
+                            (azimuths_ == 1 && std::abs(sunAcrossOf(view, axisOf(view)) - grid_.sunAcross) <= kSameAzimuth * share);
+  return sameHeight && sameAzimuths && low >= grid_.low && high <= grid_.high && farthest_m <= grid_.farthest_m && high - low > 0.0 &&
+         farthest_m > 0.5 * grid_.farthest_m;
 }
 
 /// Cosine of the azimuth between a direction and the sun, times the sun's horizontal part.
@@ -201,11 +207,17 @@ double AirTables::sunAcrossOf(const View& view, const glm::dvec3& direction) con
   return glm::length(a) > 1e-6 && glm::length(b) > 1e-6 ? glm::dot(glm::normalize(a), b) : 0.0;
 }
 
+/// Towards the sun's own azimuth.
+double AirTables::sunAcrossAtMost(const View& view) const {
+  if (!plan_.terms.scatteredSun) return 0.0;
+  const glm::dvec3 up = simulation_.frame.up(view.position), toSun = simulation_.sun->toSun;
+  return glm::length(toSun - glm::dot(toSun, up) * up);
+}
+
 /// Least and greatest in a view, from its edge; all where it sees the zenith or its opposite.
 std::pair<double, double> AirTables::sunAcrossIn(const View& view) const {
   if (!plan_.terms.scatteredSun) return {0.0, 0.0};
-  const glm::dvec3 up = simulation_.frame.up(view.position), toSun = simulation_.sun->toSun;
-  const double most = glm::length(toSun - glm::dot(toSun, up) * up);
+  const double most = sunAcrossAtMost(view);
   double low = most, high = -most;
   constexpr int kSteps = 16;
   for (int j = 0; j <= kSteps; ++j)
@@ -214,13 +226,8 @@ std::pair<double, double> AirTables::sunAcrossIn(const View& view) const {
       low = std::min(low, across);
       high = std::max(high, across);
     }
-  const glm::dvec3 zenith = glm::transpose(view.localFromCamera) * up;
-  for (double sign : {1.0, -1.0}) {
-    const glm::dvec3 d = sign * zenith;
-    if (d.z >= 0.0) continue;
-    const glm::dvec2 at = filmPosition(view, d);
-    if (at.x >= 0 && at.y >= 0 && at.x <= view.width && at.y <= view.height) return {-most, most};
-  }
+  for (double sign : {1.0, -1.0})
+    if (onFilm(view, sign * simulation_.frame.up(view.position))) return {-most, most};
   // The sun's own azimuth, or its opposite, may lie between the places looked at.
   const double margin = 0.03 * (high - low) + 1e-6;
   return {std::max(low - margin, -most), std::min(high + margin, most)};

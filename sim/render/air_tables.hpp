@@ -34,6 +34,7 @@ class AirTables {
   bool serves(const View& view, double low, double high, double farthest_m) const;
   double sunAcrossOf(const View& view, const glm::dvec3& direction) const;
   std::pair<double, double> sunAcrossIn(const View& view) const;
+  double sunAcrossAtMost(const View& view) const;
   double acrossAt(int azimuth) const;
   double sineAt(int elevation) const;
   void fill(const View& view);
