@@ -42,7 +42,6 @@ void ChannelFit::begin(const Sights& sights) {
   look(products);
   fit_ = fitToTolerance(products, kFitted * accuracy_, kMostGroups, kEffort, {});
   training_ = std::move(problem.products);
-  error_ = fit_.maximum;
 }
 
 bool ChannelFit::check(const Sights& sights) {
@@ -55,7 +54,6 @@ bool ChannelFit::check(const Sights& sights) {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return std::abs(errors[a]) > std::abs(errors[b]); });
   const double worst = order.empty() ? 0.0 : std::abs(errors[order.front()]);
-  error_ = std::max(fit_.maximum, worst);
   holds_ = worst <= kUnseen * accuracy_;
   if (holds_) return true;
   for (size_t k = 0; k < std::min(kLearnt, order.size()) && std::abs(errors[order[k]]) > kFitted * accuracy_; ++k)

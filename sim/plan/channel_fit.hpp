@@ -20,11 +20,8 @@ class ChannelFit {
   const FineGrid& grid() const { return grid_; }
   const std::vector<int>& absorbers() const { return absorbers_; }          ///< columns of the groups' extinction: see Sights::absorbers
   const std::vector<SpectralGroup>& groups() const { return fit_.groups; }  ///< members: wavelengths of the grid
-  double floor() const { return floor_; }
   /// By kind of term, the greatest part it made up of a line looked at (0.1: a tenth).
   const std::vector<double>& shares() const { return shares_; }
-  /// The largest error: of those fitted to, and of those it was last checked on, which it had not seen.
-  double error() const { return error_; }
 
  private:
   void look(const ProductSet& products);
@@ -32,7 +29,7 @@ class ChannelFit {
 
   FineGrid grid_;
   std::vector<int> absorbers_;
-  double accuracy_, floor_ = 0.0, error_ = 0.0;
+  double accuracy_, floor_ = 0.0;
   std::vector<SpectralProduct> training_;
   std::vector<double> shares_ = std::vector<double>(kTermKinds, 0.0);
   size_t seen_ = 0;
