@@ -2,21 +2,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
-#include <random>
 
 #include "sim/plan/group_step.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/numbers.hpp"
 
 namespace pitviper::test {
 namespace {
-
-class Numbers {
- public:
-  double operator()(double low, double high) { return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53; }
-
- private:
-  std::mt19937_64 engine_{11};
-};
 
 constexpr int kFine = 25, kColumns = 2;
 constexpr double kDamping = 0.1, kRootStep = 3.0;
@@ -48,7 +40,7 @@ struct Steps {
 
 /// Slopes of shares and extinctions at the beginning of the step.
 Steps steps(int groups, int products) {
-  Numbers random;
+  Numbers random(11);
   const ProductSet set(problem(random, products));
   GroupState state{Eigen::MatrixXd(groups, kFine), Eigen::MatrixXd(groups, kColumns)};
   for (auto* m : {&state.share, &state.extinction})

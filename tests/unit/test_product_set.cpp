@@ -1,21 +1,12 @@
 // Products of averages: their derivatives against differences of the products themselves, for one to five spectra in a term.
 #include <gtest/gtest.h>
 
-#include <random>
-
 #include "sim/plan/product_set.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/numbers.hpp"
 
 namespace pitviper::test {
 namespace {
-
-class Numbers {
- public:
-  double operator()(double low, double high) { return low + (high - low) * static_cast<double>(engine_() >> 11) * 0x1p-53; }
-
- private:
-  std::mt19937_64 engine_{7};
-};
 
 constexpr int kFine = 40, kGroups = 4, kSpectra = 6;
 
@@ -58,14 +49,14 @@ GroupState stateOf(Numbers& random) {
 
 // With as many groups as wavelengths every product is its fine value, however many spectra meet in it.
 TEST(ProductSet, EveryWavelengthByItselfIsExact) {
-  Numbers random;
+  Numbers random(7);
   const ProductSet set(problem(random));
   GroupState state{Eigen::MatrixXd::Identity(kFine, kFine), set.extinction};
   EXPECT_LT(set.errors(set.moments(state)).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 TEST(ProductSet, DerivativesAreThoseOfTheProducts) {
-  Numbers random;
+  Numbers random(7);
   const ProductSet set(problem(random));
   const GroupState at = stateOf(random);
   GroupState change = at;
