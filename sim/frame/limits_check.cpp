@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "sim/render/view.hpp"
+#include "sim/model/view.hpp"
 
 namespace pitviper {
 namespace {

@@ -6,7 +6,7 @@
 #include <map>
 
 #include "sim/model/ray_hits.hpp"
-#include "sim/render/view.hpp"
+#include "sim/model/view.hpp"
 
 namespace pitviper {
 namespace {

@@ -13,8 +13,11 @@
 namespace pitviper {
 namespace {
 
-/// Places at which a line's air is looked at: alike on both sides, so that only wavelengths differ.
-constexpr int kPlaces = 24;
+/// Numbers of places tried, the part of the accuracy that they may lose against all that the air's model has, and lines looked at, of the film and of
+/// the extremes.
+constexpr int kTried[] = {5, 9, 18, 36, 72};
+constexpr double kPlacesShare = 0.25;
+constexpr size_t kLooked = 20;
 
 std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance) {
   std::vector<double> slots(plan.weight.size(), 0.0);
@@ -71,8 +74,45 @@ struct LineSums {
 
 }  // namespace
 
+int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays, double accuracy) {
+  if (!fine.plan.terms.air || !sim.path->isLayered()) return kTried[0];
+  std::vector<SightRay> lines;
+  const auto& extremes = rays.extremes();
+  for (size_t n = 0; n < std::min(kLooked, extremes.size()); ++n) lines.push_back(extremes[n * extremes.size() / std::min(kLooked, extremes.size())]);
+  for (size_t n = 0; n < kLooked; ++n) lines.push_back(rays.fromFilm());
+  NodeSum sum(fine.spectra);
+  const Plan& plan = fine.plan;
+  const auto seen = [&](const SightRay& ray, int places) {
+    sum.begin();
+    radianceAlong({sim, plan.terms, plan.sunLegs.get(), *ray.state, {}, places}, ray.line, sum);
+    return std::vector<double>(sum.radiance().begin(), sum.radiance().end());
+  };
+  std::vector<std::vector<double>> all, slots;
+  std::vector<double> floor(plan.weight.size(), 0.0);
+  for (const SightRay& ray : lines) {
+    all.push_back(seen(ray, 0));
+    slots.push_back(slotsOf(plan, all.back()));
+    for (size_t s = 0; s < floor.size(); ++s) floor[s] = std::max(floor[s], kDark * slots.back()[s]);
+  }
+  // Wavelength by wavelength: what is lost at one and won at another is nothing to a channel, but something to groups of them.
+  const auto isEnough = [&](int places) {
+    for (size_t n = 0; n < lines.size(); ++n) {
+      const auto found = seen(lines[n], places);
+      for (size_t s = 0; s < slots[n].size(); ++s) {
+        double lost = 0.0;
+        for (size_t i = 0; i < found.size(); ++i) lost += plan.weight[s][i] * std::abs(found[i] - all[n][i]);
+        if (lost > kPlacesShare * accuracy * std::max(slots[n][s], floor[s])) return false;
+      }
+    }
+    return true;
+  };
+  for (int places : kTried)
+    if (isEnough(places)) return places;
+  return kTried[std::size(kTried) - 1];
+}
+
 std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& ofPlan, const NodesOfPlan& ofFine, const std::vector<SightRay>& lines,
-                                    double pixel_sr, std::vector<double>& floor) {
+                                    double pixel_sr, int places, std::vector<double>& floor) {
   const Plan &plan = ofPlan.plan, &fine = ofFine.plan;
   const ShadowCaster shadows(sim);
   std::vector<LineSums> sums(lines.size());
@@ -83,7 +123,7 @@ std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& of
     planned.keepParts();
     for (size_t n = next++; n < lines.size(); n = next++) {
       const SightRay& ray = lines[n];
-      RadianceScene scene{sim, fine.terms, fine.sunLegs.get(), *ray.state, {}, kPlaces};
+      RadianceScene scene{sim, fine.terms, fine.sunLegs.get(), *ray.state, {}, places};
       if (fine.terms.shadows)
         scene.lit = [&](const Hit& hit, size_t light, const LightLeg& leg) {
           const double radius_m = light < sim.lights.size() ? sim.lights[light].radius_m : 0.0;

@@ -22,9 +22,17 @@ struct NodesOfPlan {
   NodeSpectra spectra;
 };
 
+/// Places at which a line's air is looked at unless an accuracy says how many.
+constexpr int kUsualPlaces = 24;
+
+/// The fewest places at which air may be looked at along lines of sight, for channels to be within a part of the accuracy that leaves the rest to wavelengths:
+/// short waves see it bend where long ones don't. On some of the film's lines and the extremes.
+int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays, double accuracy);
+
 /// One per slot. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: per slot; where empty it becomes 1e-3 of the 99th percentile of
-/// these lines. Terms are those of `fine`; `plan` may leave kinds of terms out, all of them or by node.
+/// these lines. `places`: at which the air is looked at, alike on both sides, so that only wavelengths differ. Terms are those of `fine`; `plan` may leave
+/// kinds of terms out, all of them or by node.
 std::vector<LineFigures> checkLines(const Simulation& simulation, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines,
-                                    double pixel_sr, std::vector<double>& floor);
+                                    double pixel_sr, int places, std::vector<double>& floor);
 
 }  // namespace pitviper

@@ -39,13 +39,20 @@ struct PredictedParts {
   double sum() const { return wavelengths + tables + dropped + precision; }
 };
 
+/// Entries of the tables that the GPU reads layered air from.
+struct AirTableSize {
+  int elevations = 129, ranges = 193;
+  int azimuths = 5;  ///< of scattered sunlight
+  bool operator==(const AirTableSize&) const = default;
+};
+
 struct Plan {
   std::vector<SpectralNode> nodes;
   std::vector<NodeBlock> blocks;
   int slotCount = 0;
   std::vector<int> slotOfOutput;            ///< one per output
   std::vector<std::vector<double>> weight;  ///< [slot][node]
-  double field_rad = 2.0 * kPi;             ///< an angle that no two lines of sight are farther apart than
+  AirTableSize air;
   double accuracy = 0.0;                    ///< relative error asked for; 0: none was
   std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where nothing was measured
   std::vector<PredictedParts> parts;        ///< [slot]: what it is made of

@@ -13,7 +13,7 @@
 namespace pitviper {
 namespace {
 
-constexpr const char* kFormat = "pitviper plan 2";
+constexpr const char* kFormat = "pitviper plan 3";
 
 std::filesystem::path fileOf(const ContentKey& key) {
   const std::filesystem::path folder = meshCacheFolder();
@@ -94,7 +94,7 @@ class Reader {
   bool ok_ = true;
 };
 
-constexpr size_t kMostNodes = 4096, kMostMembers = 100000;
+constexpr size_t kMostNodes = 4096, kMostMembers = 100000, kMostEntries = 1025;
 
 }  // namespace
 
@@ -118,6 +118,7 @@ std::string writePlanned(const Plan& plan) {
   for (const auto& row : plan.weight) w.all(row);
   w.all(plan.predictedError);
   for (const PredictedParts& p : plan.parts) w.all(std::array{p.wavelengths, p.tables, p.dropped, p.precision, p.extremes});
+  for (int n : {plan.air.elevations, plan.air.ranges, plan.air.azimuths}) w.put(static_cast<size_t>(n));
   w.put(static_cast<size_t>(plan.lines));
   w.all(plan.fineCount);
   w.put(plan.shares.size());
@@ -165,13 +166,15 @@ bool readPlanned(const std::string& text, Plan& into) {
     if (p.size() != 5) return false;
     plan.parts.push_back({p[0], p[1], p[2], p[3], p[4]});
   }
+  for (int* n : {&plan.air.elevations, &plan.air.ranges, &plan.air.azimuths}) *n = static_cast<int>(r.count(kMostEntries));
   plan.lines = static_cast<int>(r.count(kMostMembers));
   plan.fineCount.clear();
   for (double n : r.all(kMostSlots)) plan.fineCount.push_back(static_cast<int>(n));
   plan.shares.assign(r.count(kTermKinds), {});
   for (size_t k = 0; k < plan.shares.size(); ++k) plan.shares[k] = {nameOf(static_cast<TermKind>(k)), r.all(kMostSlots), true};
-  bool fits = r.ok() && plan.weight.size() == static_cast<size_t>(into.slotCount) && plan.predictedError.size() == plan.weight.size() &&
-              plan.fineCount.size() == plan.weight.size() && plan.shares.size() == static_cast<size_t>(kTermKinds);
+  bool fits = r.ok() && plan.air.elevations > 1 && plan.air.ranges > 1 && plan.air.azimuths > 0 && plan.weight.size() == static_cast<size_t>(into.slotCount) &&
+              plan.predictedError.size() == plan.weight.size() && plan.fineCount.size() == plan.weight.size() &&
+              plan.shares.size() == static_cast<size_t>(kTermKinds);
   for (const TermShare& s : plan.shares) fits &= s.share.size() == plan.weight.size();
   for (const auto& row : plan.weight) fits &= row.size() == plan.nodes.size();
   if (fits) into = std::move(plan);

@@ -72,8 +72,8 @@ double shortestOf(const std::vector<const ChannelOutput*>& slots) {
 }  // namespace
 
 PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
-                   SightRays& rays)
-    : sim_(simulation), fine_(fine), rays_(rays), plan_(plan), sights_(simulation, plan_, rays, shortestOf(slots)) {
+                   SightRays& rays, int airPlaces)
+    : sim_(simulation), fine_(fine), rays_(rays), airPlaces_(airPlaces), plan_(plan), sights_(simulation, plan_, rays, shortestOf(slots), airPlaces) {
   std::vector<size_t> all;
   for (const ChannelOutput* slot : slots) {
     all.push_back(fits_.size());
@@ -112,7 +112,7 @@ void PlanFits::hold(std::vector<size_t> open) {
       for (int n = 0; n < kSecond; ++n) second_.lines.push_back(n % 4 != 0 ? rays_.fromFilm() : rays_.ofCombination());
     }
     takeNodes(plan_);
-    second_.figures = checkLines(sim_, NodesOfPlan(sim_, plan_), fine_, second_.lines, rays_.pixel_sr(), floor_);
+    second_.figures = checkLines(sim_, NodesOfPlan(sim_, plan_), fine_, second_.lines, rays_.pixel_sr(), airPlaces_, floor_);
     open.clear();
     for (size_t s = 0; s < fits_.size(); ++s)
       if (second_.figures[s].largest > kHeld * plan_.accuracy) open.push_back(s);

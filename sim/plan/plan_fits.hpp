@@ -17,9 +17,10 @@ struct CheckedLines {
 
 class PlanFits {
  public:
-  /// Fits groups within plan.accuracy. `slots`: an output of each; `fine`: the plan of every wavelength. All must outlive it.
+  /// Fits groups within plan.accuracy. `slots`: an output of each; `fine`: the plan of every wavelength;
+  /// `airPlaces`: airPlacesFor() it. All must outlive it.
   PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
-           SightRays& rays);
+           SightRays& rays, int airPlaces);
   /// Fits those slots to half of what they were fitted to, and to what they are off by on these lines.
   void learn(const CheckedLines& checked, const std::vector<size_t>& slots);
   /// The groups as the plan's nodes.
@@ -32,6 +33,7 @@ class PlanFits {
   const Simulation& sim_;
   const NodesOfPlan& fine_;
   SightRays& rays_;
+  int airPlaces_;
   Plan plan_;
   Sights sights_;
   std::vector<std::unique_ptr<ChannelFit>> fits_;

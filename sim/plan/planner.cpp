@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/plan/air_table_fit.hpp"
 #include "sim/plan/line_check.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/plan_fits.hpp"
@@ -25,21 +26,10 @@ constexpr double kPrecision = 2e-5;
 /// Seeds of the last lines lie apart from those of the fit, and of the last ones before.
 constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u, kNextSeed = 0xd1b54a32d192ed03u;
 
-/// What the tables of layered air add in a narrow field (bench --accuracy with 340 even samples), and besides in one of 40 degrees, growing with its
-/// square: stored figures, of tables that had 65 elevations, below kFine a quarter (AirTables now has as many as keep what lies between them lower).
-constexpr double kTables = 8e-4, kWideTables = 2.5e-3, kWide_rad = 0.7, kFine = 0.003;
-
-/// From corner to corner of a film; a probe sees half of all directions.
-double fieldOf(const Eye& eye) {
-  if (!eye.camera) return kPi;
-  const Pinhole& p = eye.camera->pinhole;
-  return 2.0 * std::atan(std::hypot(p.tanX(p.width), p.tanY(0)));
-}
-
-double tableError(const Eye& eye, double accuracy) {
-  const double field_rad = eye.camera ? 2.0 * std::atan(eye.camera->pinhole.tanY(0)) : kWide_rad, share = std::min(field_rad / kWide_rad, 1.0);
-  return (kTables + kWideTables * share * share) * (accuracy < kFine ? 0.25 : 1.0);
-}
+/// What tables of layered air lose on the lines that their size was chosen on, times this, is predicted.
+constexpr double kTableMargin = 2.0;
+/// They are made for this where no accuracy is asked for.
+constexpr double kUsual = 0.01;
 
 void dropLights(Plan& plan) {
   plan.terms.lights = plan.terms.shadows = false;
@@ -69,21 +59,31 @@ bool suits(const Plan& plan, const Simulation& sim) {
   return std::all_of(plan.nodes.begin(), plan.nodes.end(), [&](const SpectralNode& n) { return n.absorption_per_m.size() == sim.materials.size(); });
 }
 
+/// Tables of layered air, as large as the accuracy needs; what they lose, per slot. A probe keeps the usual size.
+std::vector<double> planTables(const Simulation& sim, const Eye& eye, SightRays& rays, Plan& plan) {
+  if (!plan.terms.air || !sim.path->isLayered() || !eye.camera) return std::vector<double>(plan.weight.size(), 0.0);
+  const NodesOfPlan nodes(sim, plan);
+  auto [size, loss] = AirTableFit(sim, *eye.camera, nodes, rays).within(plan.accuracy > 0.0 ? plan.accuracy : kUsual);
+  plan.air = size;
+  for (double& l : loss.sums) l *= kTableMargin;
+  return loss.sums;
+}
+
 /// What it is off by, on lines that no fit has seen and at the extremes.
-CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& fine, SightRays& rays, unsigned long long seed, Plan& plan) {
+CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& fine, SightRays& rays, int airPlaces, unsigned long long seed, Plan& plan) {
   rays.reseed(seed);
   CheckedLines last;
   for (int n = 0; n < kLast; ++n) last.lines.push_back(rays.fromFilm());
   std::vector<double> floor;
   const NodesOfPlan planned(sim, plan);
-  const auto& found = last.figures = checkLines(sim, planned, fine, last.lines, rays.pixel_sr(), floor);
-  const auto extreme = checkLines(sim, planned, fine, rays.extremes(), rays.pixel_sr(), floor);
-  const double tables = sim.path && sim.path->isLayered() ? tableError(eye, plan.accuracy) : 0.0;
+  const auto& found = last.figures = checkLines(sim, planned, fine, last.lines, rays.pixel_sr(), airPlaces, floor);
+  const auto extreme = checkLines(sim, planned, fine, rays.extremes(), rays.pixel_sr(), airPlaces, floor);
+  const std::vector<double> tables = planTables(sim, eye, rays, plan);
   plan.lines = kLast;
   plan.parts.clear();
   plan.predictedError.clear();
   for (size_t s = 0; s < found.size(); ++s) {
-    plan.parts.push_back({kMargin * found[s].largest, tables, found[s].dropped, kPrecision, extreme[s].largest});
+    plan.parts.push_back({kMargin * found[s].largest, tables[s], found[s].dropped, kPrecision, extreme[s].largest});
     plan.predictedError.push_back(plan.parts.back().sum());
   }
   return last;
@@ -101,7 +101,8 @@ std::vector<const ChannelOutput*> slotsOf(const Plan& plan, const std::vector<Ch
 void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const NodesOfPlan& fine, bool keepLights, Plan& plan) {
   auto seed = static_cast<unsigned long long>(sim.seed);
   SightRays rays(sim, eye, seed);
-  PlanFits fits(sim, eye, plan, slotsOf(plan, outputs), fine, rays);
+  const int airPlaces = airPlacesFor(sim, fine, rays, plan.accuracy), lastPlaces = std::max(airPlaces, kUsualPlaces);
+  PlanFits fits(sim, eye, plan, slotsOf(plan, outputs), fine, rays, airPlaces);
   const Terms all = plan.terms;
   const int lights = plan.lightCount;
   std::vector<size_t> missed;
@@ -110,10 +111,10 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
     plan.terms = all;
     plan.lightCount = lights;
     dropTerms(plan, keepLights);
-    const CheckedLines last = predict(sim, eye, fine, rays, seed ^= attempt == 0 ? kLastSeed : kNextSeed, plan);
+    const CheckedLines last = predict(sim, eye, fine, rays, lastPlaces, seed ^= attempt == 0 ? kLastSeed : kNextSeed, plan);
     missed.clear();
     for (size_t s = 0; s < plan.parts.size() && attempt < kAgain; ++s)
-      if (plan.parts[s].sum() > std::max(plan.accuracy, 2.0 * plan.parts[s].tables)) missed.push_back(s);
+      if (plan.parts[s].sum() > plan.accuracy) missed.push_back(s);
     if (!missed.empty()) fits.learn(last, missed);
   }
 }
@@ -125,7 +126,6 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
   const SpectralSampling& sampling = eye.camera ? eye.camera->spectral : eye.probe->spectral;
   const Location& where = eye.camera ? eye.camera->where : eye.probe->where;
   Plan plan = makePlan(sim, outputs, sampling, where);
-  plan.field_rad = fieldOf(eye);
   // The truth layers show the first light's geometry.
   const bool keepLights = eye.camera && eye.camera->truth.solidAngles;
   if (!keepLights && !plan.terms.solid.reflects && !plan.terms.layer.reflects) dropLights(plan);
@@ -152,7 +152,7 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
     } else {
       for (const auto& w : fine.weight) plan.fineCount.push_back(static_cast<int>(std::count_if(w.begin(), w.end(), [](double v) { return v != 0.0; })));
       SightRays rays(sim, eye, static_cast<unsigned long long>(sim.seed));
-      predict(sim, eye, exactNodes, rays, static_cast<unsigned long long>(sim.seed) ^ kLastSeed, plan);
+      predict(sim, eye, exactNodes, rays, kUsualPlaces, static_cast<unsigned long long>(sim.seed) ^ kLastSeed, plan);
     }
     plan.terms = all;
     writeCachedPlan(key, plan);

@@ -9,9 +9,6 @@
 namespace pitviper {
 namespace {
 
-/// Places on a line between which the air's emission is taken as one black body's; the second below 0.3 %.
-constexpr int kPlaces = 9, kFinePlaces = 18;
-constexpr double kFine = 0.003;
 /// Terms that, with nothing in their way, would be below this part of the floor are left out.
 constexpr double kNegligible = 1e-4;
 /// No amount at all: tables of ways to the sun have 1e-30 where there is nothing.
@@ -45,11 +42,11 @@ int SightBook::both(int a, int b) {
                   [fa = spectra[static_cast<size_t>(a)], fb = spectra[static_cast<size_t>(b)]](const FineGrid& g, size_t i) { return fa(g, i) * fb(g, i); });
 }
 
-Sights::Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um)
-    : simulation_(simulation), plan_(plan), rays_(rays), shortest_um_(shortest_um) {}
+Sights::Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um, int airPlaces)
+    : simulation_(simulation), plan_(plan), rays_(rays), shortest_um_(shortest_um), airPlaces_(airPlaces) {}
 
 void Sights::add(const SightRay& ray) {
-  RadianceScene scene{simulation_, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, plan_.accuracy < kFine ? kFinePlaces : kPlaces};
+  RadianceScene scene{simulation_, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, airPlaces_};
   // In shade, half in it, or lit: other lights of a pixel then count for more.
   scene.lit = [this](const Hit&, size_t, const LightLeg&) {
     const double shade = rays_.dice().unit();

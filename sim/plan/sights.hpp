@@ -53,8 +53,9 @@ struct SightBook {
 
 class Sights {
  public:
-  /// All must outlive it. `plan`: what makePlan() says of terms. `shortest_um`: the shortest wavelength that any channel sees thermal light at.
-  Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um);
+  /// All must outlive it. `plan`: what makePlan() says of terms. `shortest_um`: the shortest wavelength that any channel sees thermal light at; `airPlaces`:
+  /// at which air is looked at, between which its emission is taken as one black body's.
+  Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um, int airPlaces);
   /// The extremes, what was learnt, and so many others: half of them as the film draws pixels, a quarter of all combinations of things alike, a quarter aimed
   /// at bodies.
   void begin(int count, const std::vector<FilmPlace>& learnt);
@@ -79,6 +80,7 @@ class Sights {
   SightRays& rays_;
   SightBook book_;
   double shortest_um_;
+  int airPlaces_;
 };
 
 /// Part of the film's brightest (99th percentile) that an error is measured against where it is dark.

@@ -9,6 +9,8 @@ namespace {
 /// The air's own places and those asked for, and between them so many more that none is farther from the last than 100 m or a tenth of the way:
 /// emission, linear in depth between two, is then within 3e-5 of finer ones towards space, where the model's own places are 0.13 % off.
 constexpr double kStep_m = 100.0, kPart = 0.1;
+/// Of fewer places: nearer than this one is as good as another, and beyond the other there is no air to speak of.
+constexpr double kNear_m = 100.0, kFar_m = 1e6;
 
 std::vector<double> subdivided(std::vector<double> at) {
   std::vector<double> all = {at.front()};
@@ -21,11 +23,28 @@ std::vector<double> subdivided(std::vector<double> at) {
   return all;
 }
 
-/// About evenly spread members of a list with its first and last.
-std::vector<double> thinned(const std::vector<double>& all, size_t count) {
+/// So many of rising places, the first and the last among them, where the air changes: half by the share of each absorber that lies before a place, half by
+/// the logarithm of its range, as much of the near air is all that is seen where much absorbs.
+std::vector<double> thinned(const Path& path, const AirRay& ray, const std::vector<double>& all, size_t count) {
   if (all.size() <= count) return all;
+  const auto stations = path.stationsAt(ray, all);
+  const AirAmounts& whole = stations.back().amounts;
+  std::vector<double> measure;
+  for (size_t i = 0; i < all.size(); ++i) {
+    double share = 0.0, absorbers = 0.0;
+    for (size_t k = 0; k < whole.amount.size(); ++k)
+      if (whole.amount[k] > 0.0) share += stations[i].amounts.amount[k] / whole.amount[k], absorbers += 1.0;
+    const double far = std::log1p((all[i] - all.front()) / kNear_m) / std::log1p((std::min(all.back(), kFar_m) - all.front()) / kNear_m);
+    measure.push_back((absorbers > 0.0 ? share / absorbers : 0.0) + std::min(far, 1.0));
+  }
   std::vector<double> some;
-  for (size_t k = 0; k < count; ++k) some.push_back(all[k * (all.size() - 1) / (count - 1)]);
+  size_t i = 0;
+  for (size_t k = 0; k < count; ++k) {
+    const double wanted = measure.back() * static_cast<double>(k) / static_cast<double>(count - 1);
+    while (i + 1 < all.size() && measure[i] < wanted) ++i;
+    if (some.empty() || all[i] > some.back()) some.push_back(all[i]);
+  }
+  if (some.back() < all.back()) some.push_back(all.back());
   return some;
 }
 
@@ -49,16 +68,13 @@ AirPlaces::AirPlaces(const RadianceScene& scene, const LineOfSight& line, std::v
   if (path.isLayered()) {
     std::vector<double> own;
     for (const AirStation& s : path.stations(ray, ranges.back())) own.push_back(s.range_m);
-    if (scene.airPlaces > 0) {
-      own = thinned(own, static_cast<size_t>(scene.airPlaces));
-    } else {
-      std::erase_if(own, [&](double r) { return r > ranges.back(); });
-      const double begin = own.front(), end = own.back();
-      for (double r : ranges)
-        if (r > begin && r < end) own.push_back(r);
-      std::sort(own.begin(), own.end());
-      own = subdivided(std::move(own));
-    }
+    std::erase_if(own, [&](double r) { return r > ranges.back(); });
+    const double begin = own.front(), end = own.back();
+    for (double r : ranges)
+      if (r > begin && r < end) own.push_back(r);
+    std::sort(own.begin(), own.end());
+    own = subdivided(std::move(own));
+    if (scene.airPlaces > 0) own = thinned(path, ray, own, static_cast<size_t>(scene.airPlaces));
     mergeInto(ranges, own);
   }
   RaySun sun;

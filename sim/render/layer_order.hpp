@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sim/render/view.hpp"
+#include "sim/model/view.hpp"
 #include "sim/scene/body_form.hpp"
 
 namespace pitviper {

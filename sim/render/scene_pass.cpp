@@ -107,6 +107,7 @@ void ScenePass::setState(const WorldState& state) {
   block.insert(block.end(), lights.begin(), lights.end());
   block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
   nodes_.upload(block);
+  air_.begin();
   if (shadows_) shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_.matters(e, l, state); });
 }
 

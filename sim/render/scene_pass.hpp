@@ -13,7 +13,7 @@
 #include "sim/render/solid_pass.hpp"
 #include "sim/render/surface_buffers.hpp"
 #include "sim/render/tables.hpp"
-#include "sim/render/view.hpp"
+#include "sim/model/view.hpp"
 
 namespace pitviper {
 

@@ -4,7 +4,7 @@
 #include "sim/gl/objects.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/tables.hpp"
-#include "sim/render/view.hpp"
+#include "sim/model/view.hpp"
 
 namespace pitviper {
 

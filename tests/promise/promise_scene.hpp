@@ -16,7 +16,8 @@ struct PromiseCell {
   std::uint64_t seed = 0;
   std::string channel;
   double asked = 0.0, predicted = 0.0;
-  double found = 0.0;  ///< largest of |L - Lref| / max(Lref, 1e-3 x 99th percentile of Lref); infinite where a pixel is not a number
+  double ofWavelengths = 0.0, ofTables = 0.0;  ///< parts of what is predicted
+  double found = 0.0;                          ///< largest of |L - Lref| / max(Lref, 1e-3 x 99th percentile of Lref); infinite where a pixel is not a number
   int groups = 0, wavelengths = 0;
   PromisePixel worst;
 };

@@ -1,6 +1,6 @@
 #pragma once
 // Where a rasteriser and a ray may disagree on what is seen through: the outlines of transparent things.
-#include "sim/render/view.hpp"
+#include "sim/model/view.hpp"
 
 namespace pitviper {
 

@@ -6,7 +6,7 @@
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
 #include "sim/radiance/shadow_rays.hpp"
-#include "sim/render/view.hpp"
+#include "sim/model/view.hpp"
 
 namespace pitviper {
 

@@ -1,4 +1,4 @@
-#include "sim/render/view.hpp"
+#include "sim/model/view.hpp"
 
 #include <cmath>
 

@@ -1,0 +1,190 @@
+#include "sim/plan/air_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Part of the farthest beyond which ranges lie evenly in their logarithm.
+constexpr double kScale = 1e-3;
+/// Ranges of places towards space [m].
+constexpr double kFirstSky_m = 100.0, kLastSky_m = 2e6;
+/// Part of a range to the next place on the way to space where there are so many ranges: at 1.6 um a black body of air halves within 12 K, some 2 km.
+constexpr double kSkyStep = 0.08;
+constexpr int kRanges = 97;
+
+/// At 1 %: steps of heights [m] and of azimuths (cosines) that share tables. Haze thins by 0.1 % in a metre; near the ground no more than a part of the height.
+constexpr double kSameHeight_m = 1.0, kSameAzimuth = 0.02, kPartOfHeight = 0.05, kLowest_m = 0.02;
+/// Part of the accuracy that the sun's elevation may take between two of its steps.
+constexpr double kSunShare = 0.1;
+/// What a view sees is widened to whole steps of about so much of itself.
+constexpr double kWidened = 0.125;
+
+/// Light from lower than this comes through the air as from here, about [sine].
+constexpr double kLowestSun = 0.02;
+
+glm::dvec3 axisOf(const View& v) { return v.localFromCamera * glm::dvec3(0, 0, -1); }
+
+bool onFilm(const View& v, const glm::dvec3& direction) {
+  const glm::dvec3 d = glm::transpose(v.localFromCamera) * direction;
+  if (d.z >= 0.0) return false;
+  const glm::dvec2 at = filmPosition(v, d);
+  return at.x >= 0 && at.y >= 0 && at.x <= v.width && at.y <= v.height;
+}
+
+/// Calls visit(direction) for rays all over a view.
+template <class Visit>
+void overView(const View& v, const Visit& visit) {
+  constexpr int kSteps = 16;
+  for (int j = 0; j <= kSteps; ++j)
+    for (int i = 0; i <= kSteps; ++i) visit(glm::normalize(v.localFromCamera * v.ray(v.width * i / double(kSteps), v.height * j / double(kSteps))));
+}
+
+/// Least and greatest sine of elevation in a view.
+std::pair<double, double> elevationsIn(const View& v, const glm::dvec3& up) {
+  double low = 1.0, high = -1.0;
+  overView(v, [&](const glm::dvec3& d) {
+    const double s = glm::dot(d, up);
+    low = std::min(low, s);
+    high = std::max(high, s);
+  });
+  if (onFilm(v, up)) high = 1.0;
+  if (onFilm(v, -up)) low = -1.0;
+  const double margin = 0.03 * (high - low) + 1e-4;  // between the places looked at
+  return {std::max(low - margin, -1.0), std::min(high + margin, 1.0)};
+}
+
+/// The sun's horizontal part, and the azimuths to it in a view.
+class Across {
+ public:
+  Across(const View& view, const glm::dvec3& up, const glm::dvec3& toSun) : view_(view), up_(up), level_(toSun - glm::dot(toSun, up) * up) {}
+  /// Towards the sun's own azimuth.
+  double most() const { return glm::length(level_); }
+  double of(const glm::dvec3& direction) const {
+    const glm::dvec3 a = direction - glm::dot(direction, up_) * up_;
+    return glm::length(a) > 1e-6 ? glm::dot(glm::normalize(a), level_) : 0.0;
+  }
+  /// Least and greatest; all where the view sees the zenith or its opposite.
+  std::pair<double, double> all() const {
+    double low = most(), high = -most();
+    for (double sign : {1.0, -1.0})
+      if (onFilm(view_, sign * up_)) return {-most(), most()};
+    overView(view_, [&](const glm::dvec3& d) {
+      low = std::min(low, of(d));
+      high = std::max(high, of(d));
+    });
+    // The sun's own azimuth, or its opposite, may lie between the places looked at.
+    const double margin = 0.03 * (high - low) + 1e-6;
+    return {std::max(low - margin, -most()), std::min(high + margin, most())};
+  }
+
+ private:
+  const View& view_;
+  glm::dvec3 up_, level_;
+};
+
+double powerOfTwoBelow(double v) { return std::exp2(std::floor(std::log2(v))); }
+
+/// The middle of the step that a value lies in; without a step the value itself.
+double snapped(double value, double step) { return step > 0.0 ? step * std::round(value / step) : value; }
+
+/// Limits on whole steps that hold two others.
+std::pair<double, double> widened(double low, double high, double least, double most) {
+  const double step = powerOfTwoBelow(std::max(kWidened * (high - low), 1e-9));
+  return {std::max(step * std::floor(low / step), least), std::min(step * std::ceil(high / step), most)};
+}
+
+double farthestIn(const Simulation& simulation, const View& view, const WorldState& state) {
+  double farthest = 1.0;
+  for (size_t e = 0; e < state.entities.size(); ++e) {
+    const Entity& entity = simulation.entities[e];
+    farthest = std::max(farthest, glm::length(state.entities[e].position + state.entities[e].orientation * glm::dvec3(entity.boundingCentre) - view.position) +
+                                      static_cast<double>(entity.boundingRadius_m));
+  }
+  for (const auto& light : state.lights) farthest = std::max(farthest, glm::length(light - view.position));
+  const double radius = simulation.frame.earthRadius_m(), above = std::max(simulation.frame.height(view.position), 0.0);
+  if (simulation.ground) farthest = std::max(farthest, std::sqrt(above * (2.0 * radius + above)));  // the ground as far as the horizon
+  return farthest;
+}
+
+/// Of the air above the ground, where it is deepest.
+double verticalDepth(const Simulation& simulation, const Plan& plan) {
+  const AirAmounts above = simulation.path->powered(simulation.path->amounts({0.0, 1.0, simulation.frame.earthRadius_m()}, physics::kFar));
+  double deepest = 0.0;
+  for (const SpectralNode& n : plan.nodes) deepest = std::max(deepest, Path::depthOf(n.air, above));
+  return deepest;
+}
+
+/// Step of the sine of the sun's elevation that changes what comes through the air, exp(-depth / sine), by no more than its share of the accuracy.
+double sunStep(const Simulation& simulation, const Plan& plan, double sine) {
+  const double lowest = std::max(sine, kLowestSun);
+  return powerOfTwoBelow(kSunShare * plan.accuracy * lowest * lowest / std::max(verticalDepth(simulation, plan), 1.0));
+}
+
+}  // namespace
+
+double spreadOf(double sine) { return std::copysign(std::sqrt(std::abs(sine)), sine); }
+
+double AirGrid::sineAt(int elevation) const {
+  const double x = spreadOf(low) + (spreadOf(high) - spreadOf(low)) * elevation / (elevations - 1);
+  return x * std::abs(x);
+}
+
+double AirGrid::acrossAt(int azimuth) const { return azimuths == 1 ? acrossLow : acrossLow + (acrossHigh - acrossLow) * azimuth / (azimuths - 1); }
+
+double AirGrid::scale_m() const { return kScale * farthest_m; }
+
+double AirGrid::entriesPerLog() const { return (ranges - 1) / std::log1p(1.0 / kScale); }
+
+std::vector<double> AirGrid::rangesFrom(double entry_m) const {
+  std::vector<double> all;
+  for (int r = 0; r < ranges; ++r) all.push_back(entry_m + scale_m() * std::expm1(r / entriesPerLog()));
+  // Beyond the scene, as far as space: the sky's emission needs places there, the table doesn't.
+  const double step = 1.0 + kSkyStep * kRanges / ranges;
+  for (double r = step * std::max(farthest_m, kFirstSky_m); r < kLastSky_m; r *= step) all.push_back(entry_m + r);
+  all.push_back(physics::kFar);
+  return all;
+}
+
+double AirGrid::horizon(double earthRadius_m) const {
+  const double above = std::max(height_m, 0.0);
+  return -std::sqrt(above * (2.0 * earthRadius_m + above)) / (earthRadius_m + above);
+}
+
+AirGrid airGrid(const Simulation& simulation, const Plan& plan, const AirTableSize& size, const View& view, const WorldState& state) {
+  const glm::dvec3 up = simulation.frame.up(view.position);
+  const double share = plan.accuracy / 0.01, height = simulation.frame.height(view.position);
+  AirGrid g;
+  g.elevations = size.elevations;
+  g.ranges = size.ranges;
+  g.height_m = share > 0.0 ? snapped(height, powerOfTwoBelow(share * std::min(kSameHeight_m, kPartOfHeight * std::max(std::abs(height), kLowest_m)))) : height;
+  const auto [low, high] = elevationsIn(view, up);
+  std::tie(g.low, g.high) = widened(low, high, -1.0, 1.0);
+  g.farthest_m = std::exp2(0.5 * std::ceil(2.0 * std::log2(farthestIn(simulation, view, state))));
+  if (!plan.terms.scatteredSun) return g;
+  const double sine = glm::dot(simulation.sun->toSun, up);
+  g.sunSine = share > 0.0 ? snapped(sine, sunStep(simulation, plan, sine)) : sine;
+  const Across across(view, up, simulation.sun->toSun);
+  const double most = std::sqrt(std::max(1.0 - g.sunSine * g.sunSine, 0.0));
+  const auto [viewLow, viewHigh] = across.all();
+  // No farther than towards the sun and away from it: beyond, scattering angles have no cosine.
+  std::tie(g.viewLow, g.viewHigh) = widened(viewLow, viewHigh, -most, most);
+  g.azimuths = size.azimuths;
+  if (g.azimuths > 1) g.acrossLow = g.viewLow, g.acrossHigh = g.viewHigh;
+  else g.acrossLow = g.acrossHigh = std::clamp(snapped(across.of(axisOf(view)), share * kSameAzimuth), -most, most);
+  return g;
+}
+
+bool holds(const AirGrid& grid, const Simulation& simulation, const Plan& plan, const View& narrower, const WorldState& state) {
+  const glm::dvec3 up = simulation.frame.up(narrower.position);
+  const auto [low, high] = elevationsIn(narrower, up);
+  if (low < grid.low || high > grid.high || farthestIn(simulation, narrower, state) > grid.farthest_m) return false;
+  if (!plan.terms.scatteredSun) return true;
+  const auto [acrossLow, acrossHigh] = Across(narrower, up, simulation.sun->toSun).all();
+  return acrossLow >= grid.viewLow && acrossHigh <= grid.viewHigh;
+}
+
+}  // namespace pitviper

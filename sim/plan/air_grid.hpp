@@ -1,0 +1,41 @@
+#pragma once
+// Where the tables of layered air have entries for a view. A function of view and scene alone, so that frames are the same whatever was drawn before them:
+// what a view needs is widened to fixed steps, and views with the same steps have the same tables.
+#include <vector>
+
+#include "sim/model/view.hpp"
+#include "sim/plan/plan.hpp"
+
+namespace pitviper {
+
+/// Elevations lie evenly in the signed root of their sine: near the horizon a small step crosses much air.
+double spreadOf(double sine);
+
+struct AirGrid {
+  double height_m = 0.0;
+  double sunSine = 0.0;                      ///< of the sun's elevation
+  double low = 0.0, high = 0.0;              ///< sines of elevation
+  double acrossLow = 0.0, acrossHigh = 0.0;  ///< cosine of the azimuth to the sun times the sun's horizontal part; alike where there is one azimuth
+  double viewLow = 0.0, viewHigh = 0.0;      ///< the same, of all that the view sees
+  double farthest_m = 0.0;                   ///< of what is in the scene
+  int azimuths = 1, elevations = 0, ranges = 0;
+
+  double sineAt(int elevation) const;
+  double acrossAt(int azimuth) const;
+  /// Entries lie evenly in ln(1 + range / scale).
+  double scale_m() const;
+  double entriesPerLog() const;
+  /// Of a ray that meets the air after so many metres: the table's entries, places on the way to space that it has none for, space.
+  std::vector<double> rangesFrom(double entry_m) const;
+  /// Sine of the elevation at which the sphere of the earth begins.
+  double horizon(double earthRadius_m) const;
+  bool operator==(const AirGrid&) const = default;
+};
+
+/// The grid of a view. `state`: for how far things are.
+AirGrid airGrid(const Simulation& simulation, const Plan& plan, const AirTableSize& size, const View& view, const WorldState& state);
+
+/// Whether tables made for a view from the same place hold all that a narrower one sees (zoomed views of small bodies).
+bool holds(const AirGrid& grid, const Simulation& simulation, const Plan& plan, const View& narrower, const WorldState& state);
+
+}  // namespace pitviper

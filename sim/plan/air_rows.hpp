@@ -1,0 +1,60 @@
+#pragma once
+// Rows of the tables of layered air: what one line of sight has before it and sends, range by range, in double precision.
+#include <span>
+
+#include "sim/model/sunlit_air.hpp"
+#include "sim/plan/air_grid.hpp"
+
+namespace pitviper {
+
+/// A line of sight of a table.
+struct AirLine {
+  double sine = 0.0;          ///< of its elevation
+  double across = 0.0;        ///< as AirGrid::acrossLow
+  bool meetsHorizon = false;  ///< the next row above is over the horizon: towards space it has what the horizon has
+};
+
+/// Entries by range.
+struct AirRow {
+  std::vector<float> amounts;   ///< [range][4 x vectors]: ln of the mean per km; at the first the density there, to space of all
+  std::vector<float> radiance;  ///< [range][part][value]: emission less that of air of one temperature; scattered by molecules and by haze for phases of 1/sr
+};
+
+class AirRows {
+ public:
+  /// `perChannel`: values are of channels (direct mode), else of nodes. Both must outlive it.
+  AirRows(const Simulation& simulation, const Plan& plan, bool perChannel);
+  /// Rows are of this grid from here on.
+  void begin(const AirGrid& grid);
+  /// An entry for each of the grid's ranges, space last. May be called from several threads at once, as may the others.
+  AirRow at(const AirLine& line) const;
+  /// Of ranges rising from stationsOf().front() on [m].
+  AirRow at(const AirLine& line, std::span<const double> ranges_m) const;
+  /// The ranges that at(line) looks at [m]: from where the air begins, as far as space.
+  std::vector<double> stationsOf(const AirLine& line) const { return grid_.rangesFrom(entryOf(line.sine)); }
+  double cosScatterOf(const AirLine& line) const;
+
+  int vectors() const { return vectors_; }  ///< four absorbers each
+  int values() const { return values_; }
+  int parts() const { return parts_; }
+  int columns() const { return grid_.ranges + 1; }
+  /// Per node: radiance of a black body of the air's temperature at the camera.
+  const std::vector<double>& black() const { return black_; }
+  /// Of haze, per value; padded to vec4.
+  const std::vector<double>& asymmetries() const { return asymmetry_; }
+
+ private:
+  double planck(size_t node, double temperature_K) const;
+  double entryOf(double sine) const;
+  std::vector<double> asymmetriesOf() const;
+  const Simulation& simulation_;
+  const Plan& plan_;
+  bool perChannel_;
+  int vectors_ = 1, values_ = 0, parts_ = 1;
+  std::vector<std::vector<double>> logPlanck_;  ///< per node, over the inverse of the temperature
+  std::vector<double> sunIrradiance_;           ///< per node
+  std::vector<double> asymmetry_, black_;
+  AirGrid grid_;
+};
+
+}  // namespace pitviper

@@ -1,0 +1,238 @@
+#include "sim/plan/air_table_fit.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <future>
+#include <thread>
+
+#include "sim/model/ground.hpp"
+#include "sim/plan/sights.hpp"
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Lines looked at: of the film, and of the extremes. (And the film's corners and edges.)
+constexpr size_t kFilm = 64, kExtremes = 32;
+/// Part of the accuracy that each of elevations, ranges and azimuths may take on them.
+constexpr double kShare = 0.05;
+/// Sizes to begin with and to end at.
+constexpr AirTableSize kLeast{17, 49, 1}, kMost{257, 385, 17};
+/// No more values than this (200 MB): what many nodes, azimuths and elevations together lose then is said, not mended.
+constexpr double kMostValues = 5e7;
+/// Sizes tried.
+constexpr int kTries = 6;
+/// How much finer than a table's ranges the air is looked at to tell what is lost by adding it up over these.
+constexpr int kFiner = 4;
+
+/// What a pixel has of an entry, per slot.
+struct Seen {
+  std::vector<double> air, passed;
+};
+
+/// Works out entries as the shader does in direct mode (atmosphere/layered.glsl), in double precision.
+class Reader {
+ public:
+  Reader(const Simulation& simulation, const Plan& plan, const AirRows& rows, double cosScatter)
+      : plan_(plan), rows_(rows), powers_(simulation.path->exponents()), cosScatter_(cosScatter) {}
+
+  /// Between two entries, a share of the way to the second. `length_m`: of the air before it.
+  Seen between(const AirRow& a, size_t columnA, const AirRow& b, size_t columnB, double length_m, double share = 0.5) const {
+    const size_t slots = plan_.weight.size(), logs = static_cast<size_t>(4 * rows_.vectors()), values = static_cast<size_t>(rows_.values());
+    const double logLength = length_m >= physics::kFar ? 0.0 : std::log(1e-3 * length_m);
+    const auto mixed = [share](const std::vector<float>& x, size_t i, const std::vector<float>& y, size_t j) {
+      return (1.0 - share) * static_cast<double>(x[i]) + share * static_cast<double>(y[j]);
+    };
+    std::array<double, kMostAirAmounts> u{};
+    for (size_t k = 0; k < powers_.size(); ++k) u[k] = std::exp((mixed(a.amounts, columnA * logs + k, b.amounts, columnB * logs + k) + logLength) * powers_[k]);
+    Seen seen{std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0)};
+    for (size_t i = 0; i < plan_.nodes.size(); ++i) {
+      double depth = 0.0;
+      for (size_t k = 0; k < powers_.size(); ++k) depth += plan_.nodes[i].air.extinction[k] * u[k];
+      const double tau = std::exp(-depth), black = rows_.black()[i] * physics::oneMinusExp(depth);
+      for (size_t s = 0; s < slots; ++s) {
+        seen.air[s] += plan_.weight[s][i] * black;
+        seen.passed[s] += plan_.weight[s][i] * tau;
+      }
+    }
+    const auto parts = static_cast<size_t>(rows_.parts());
+    for (size_t s = 0; s < slots; ++s) {
+      const auto part = [&](size_t p) { return mixed(a.radiance, (columnA * parts + p) * values + s, b.radiance, (columnB * parts + p) * values + s); };
+      seen.air[s] += part(0);
+      if (parts > 1) seen.air[s] += rayleighPhase(cosScatter_) * part(1) + henyeyGreensteinPhase(cosScatter_, rows_.asymmetries()[s]) * part(2);
+    }
+    return seen;
+  }
+  Seen at(const AirRow& row, size_t column, double length_m) const { return between(row, column, row, column, length_m); }
+
+ private:
+  const Plan& plan_;
+  const AirRows& rows_;
+  std::span<const double> powers_;
+  double cosScatter_;
+};
+
+/// Those of rising ranges before an end, and the ends.
+std::vector<double> upTo(std::vector<double> ranges, std::initializer_list<double> ends) {
+  std::erase_if(ranges, [&](double r) { return r >= *ends.begin(); });
+  ranges.insert(ranges.end(), ends);
+  return ranges;
+}
+
+double largestOf(const std::vector<double>& all) { return all.empty() ? 0.0 : *std::max_element(all.begin(), all.end()); }
+
+/// Steps as many times half as wide as leave a share of an error, of which each leaves a quarter.
+int finer(int entries, double error, double share, int most) {
+  if (!(error > share)) return entries;
+  const int doublings = std::clamp(static_cast<int>(std::ceil(0.5 * std::log2(error / share))), 1, 8);
+  return std::min(((std::max(entries, 2) - 1) << doublings) + 1, most);
+}
+
+}  // namespace
+
+AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, const NodesOfPlan& plan, SightRays& rays)
+    : simulation_(simulation), camera_(camera), plan_(plan.plan), rows_(simulation, plan.plan, true), floor_(plan.plan.weight.size(), 0.0) {
+  std::vector<SightRay> lines;
+  const auto& extremes = rays.extremes();
+  for (size_t n = 0; n < std::min(kExtremes, extremes.size()); ++n) lines.push_back(extremes[n * extremes.size() / std::min(kExtremes, extremes.size())]);
+  for (size_t n = 0; n < kFilm; ++n) lines.push_back(rays.fromFilm());
+  // The film's edges, where azimuths and elevations are farthest from its middle.
+  const Pinhole& p = camera.pinhole;
+  for (int frame : {0, simulation.time.frames / 2, simulation.time.frames - 1})
+    for (double row : {0.5, 0.5 * p.height, p.height - 0.5})
+      for (double column : {0.5, 0.5 * p.width, p.width - 0.5}) lines.push_back(rays.through({frame, column, row}));
+  NodeSum sum(plan.spectra);
+  for (SightRay& ray : lines) {
+    // What stands in the air dims what the tables lose as well as the rest.
+    ray.line.hits.layers.clear();
+    ray.line.hits.stretches.clear();
+    sum.begin();
+    radianceAlong({simulation, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, kUsualPlaces}, ray.line, sum);
+    Sample sample{ray.state, ray.line.direction, physics::kFar, std::vector<double>(floor_.size(), 0.0)};
+    if (ray.line.hits.solid.entity >= 0) sample.range_m = ray.line.hits.solid.distance;
+    else if (const auto ground = groundHit(simulation, ray.line.origin, ray.line.direction)) sample.range_m = ground->distance;
+    for (size_t s = 0; s < floor_.size(); ++s) {
+      for (size_t i = 0; i < plan_.nodes.size(); ++i) sample.radiance[s] += plan_.weight[s][i] * sum.radiance()[i];
+      floor_[s] = std::max(floor_[s], kDark * sample.radiance[s]);
+    }
+    samples_.push_back(std::move(sample));
+  }
+}
+
+AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& size) const {
+  const size_t slots = floor_.size();
+  Lost lost{std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0)};
+  const View view = cameraView(camera_.pinhole, cameraPose(camera_.mount, *sample.state), camera_.near_m, camera_.samples);
+  const AirGrid grid = airGrid(simulation_, plan_, size, view, *sample.state);
+  AirRows rows = rows_;
+  rows.begin(grid);
+  const glm::dvec3 up = simulation_.frame.up(view.position);
+  AirLine line{glm::dot(sample.direction, up), 0.0, false};
+  if (plan_.terms.scatteredSun) {
+    const glm::dvec3 level = sample.direction - line.sine * up, sun = simulation_.sun->toSun - glm::dot(simulation_.sun->toSun, up) * up;
+    if (glm::length(level) > 1e-6)
+      line.across = std::clamp(glm::dot(glm::normalize(level), sun), std::min(grid.viewLow, grid.acrossLow), std::max(grid.viewHigh, grid.acrossHigh));
+  }
+  const auto stations = rows.stationsOf(line);
+  const double entry = stations.front(), end = sample.range_m, length = end >= physics::kFar ? physics::kFar : end - entry;
+  if (!(length > 0.0)) return lost;
+  const Reader reader(simulation_, plan_, rows, rows.cosScatterOf(line));
+  const auto ranges = upTo(stations, {end});
+  const size_t last = ranges.size() - 1;
+  const AirRow own = rows.at(line, ranges);
+  const Seen right = reader.at(own, last, length);
+  const auto note = [&](std::vector<double>& into, const Seen& found, const Seen& than) {
+    for (size_t s = 0; s < slots; ++s) {
+      const double behind = right.passed[s] > 0.0 ? std::max(sample.radiance[s] - right.air[s], 0.0) / right.passed[s] : 0.0;
+      const double all = std::max(std::max(sample.radiance[s], right.air[s]), floor_[s]);
+      if (all > 0.0) into[s] += std::abs(found.air[s] - than.air[s] + behind * (found.passed[s] - than.passed[s])) / all;
+    }
+  };
+  // Elevations: half a step below and above.
+  const double radius = simulation_.frame.earthRadius_m(), horizon = grid.horizon(radius);
+  const double half = 0.5 * (spreadOf(grid.high) - spreadOf(grid.low)) / (size.elevations - 1), x = spreadOf(line.sine);
+  const auto beside = [&](double spread) {
+    const double clamped = std::clamp(spread, -1.0, 1.0);
+    return AirLine{clamped * std::abs(clamped), line.across, false};
+  };
+  AirLine below = beside(x - half);
+  const AirLine above = beside(x + half);
+  below.meetsHorizon = simulation_.ground && below.sine < horizon && above.sine >= horizon;
+  // A line to space starts where its own air does.
+  const auto rangesOf = [&](const AirLine& l) {
+    const auto all = rows.stationsOf(l);
+    return upTo(all, {length >= physics::kFar ? physics::kFar : all.front() + length});
+  };
+  const auto rangesBelow = rangesOf(below), rangesAbove = rangesOf(above);
+  note(lost.elevation, reader.between(rows.at(below, rangesBelow), rangesBelow.size() - 1, rows.at(above, rangesAbove), rangesAbove.size() - 1, length), right);
+  // Ranges: between two entries, and added up in steps.
+  if (length < physics::kFar) {
+    const double entryAt = std::log1p(length / grid.scale_m()) * grid.entriesPerLog();
+    const auto rangeAt = [&](double t) { return entry + grid.scale_m() * std::expm1(t / grid.entriesPerLog()); };
+    // Before the first of them everything is as near to the eye as it is.
+    const double share = std::min(0.5, entryAt), before = rangeAt(entryAt - share), after = rangeAt(entryAt - share + 1.0);
+    auto three = upTo(stations, {before, end, after});
+    const AirRow row = rows.at(line, three);
+    const size_t n = three.size();
+    if (after > end && end > before) note(lost.range, reader.between(row, n - 3, row, n - 1, length, share), reader.at(row, n - 2, length));
+  }
+  AirGrid fine = grid;
+  fine.ranges = kFiner * (grid.ranges - 1) + 1;
+  const auto fineRanges = upTo(fine.rangesFrom(entry), {end});
+  note(lost.range, right, reader.at(rows.at(line, fineRanges), fineRanges.size() - 1, length));
+  // Azimuths: half a step to each side, or the view's middle.
+  if (plan_.terms.scatteredSun) {
+    const auto turned = [&](double across) { return rows.at({line.sine, across, false}, ranges); };
+    if (size.azimuths == 1) {
+      note(lost.azimuth, reader.at(turned(grid.acrossLow), last, length), right);
+    } else {
+      const double step = 0.5 * (grid.acrossHigh - grid.acrossLow) / (size.azimuths - 1), most = std::sqrt(std::max(1.0 - grid.sunSine * grid.sunSine, 0.0));
+      const double middle = std::clamp(line.across, std::min(step - most, 0.0), std::max(most - step, 0.0));
+      const AirRow here = turned(middle);
+      note(lost.azimuth, reader.between(turned(std::max(middle - step, -most)), last, turned(std::min(middle + step, most)), last, length),
+           reader.at(here, last, length));
+    }
+  }
+  return lost;
+}
+
+AirTableLoss AirTableFit::lossOf(const AirTableSize& size) const {
+  const size_t slots = floor_.size();
+  std::vector<Lost> lost(samples_.size());
+  std::atomic<size_t> next{0};
+  auto work = [&] {
+    for (size_t n = next++; n < samples_.size(); n = next++) lost[n] = lostOn(samples_[n], size);
+  };
+  std::vector<std::future<void>> others;
+  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
+  work();
+  for (auto& o : others) o.get();
+  AirTableLoss loss{std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0)};
+  for (const Lost& l : lost)
+    for (size_t s = 0; s < slots; ++s) {
+      loss.elevations[s] = std::max(loss.elevations[s], l.elevation[s]);
+      loss.ranges[s] = std::max(loss.ranges[s], l.range[s]);
+      loss.azimuths[s] = std::max(loss.azimuths[s], l.azimuth[s]);
+      loss.sums[s] = std::max(loss.sums[s], l.elevation[s] + l.range[s] + l.azimuth[s]);
+    }
+  return loss;
+}
+
+std::pair<AirTableSize, AirTableLoss> AirTableFit::within(double accuracy) const {
+  const double share = kShare * accuracy;
+  const double values = (plan_.terms.scatteredSun ? 3.0 : 1.0) * plan_.nodeCount();
+  AirTableSize size = kLeast;
+  AirTableLoss loss = lossOf(size);
+  for (int tries = 1; tries < kTries; ++tries) {
+    AirTableSize next{finer(size.elevations, largestOf(loss.elevations), share, kMost.elevations),
+                      finer(size.ranges, largestOf(loss.ranges), share, kMost.ranges), finer(size.azimuths, largestOf(loss.azimuths), share, kMost.azimuths)};
+    if (next == size || values * next.elevations * (next.ranges + 1) * next.azimuths > kMostValues) break;
+    size = next;
+    loss = lossOf(size);
+  }
+  return {size, loss};
+}
+
+}  // namespace pitviper
