@@ -17,9 +17,9 @@ constexpr double kSkyStep = 0.08;
 constexpr int kRanges = 97;
 
 /// At 1 %: steps of heights [m] and of azimuths (cosines) that share tables. Haze thins by 0.1 % in a metre; near the ground no more than a part of the height.
-constexpr double kSameHeight_m = 1.0, kSameAzimuth = 0.02, kPartOfHeight = 0.05, kLowest_m = 0.02;
+constexpr double kSameHeight_m = 0.5, kSameAzimuth = 0.02, kPartOfHeight = 0.05, kLowest_m = 0.02;
 /// Part of the accuracy that the sun's elevation may take between two of its steps.
-constexpr double kSunShare = 0.1;
+constexpr double kSunShare = 0.03;
 /// What a view sees is widened to whole steps of about so much of itself.
 constexpr double kWidened = 0.125;
 
@@ -94,7 +94,7 @@ double snapped(double value, double step) { return step > 0.0 ? step * std::roun
 /// Limits on whole steps that hold two others.
 std::pair<double, double> widened(double low, double high, double least, double most) {
   const double step = powerOfTwoBelow(std::max(kWidened * (high - low), 1e-9));
-  return {std::max(step * std::floor(low / step), least), std::min(step * std::ceil(high / step), most)};
+  return {std::clamp(step * std::floor(low / step), least, most), std::clamp(step * std::ceil(high / step), least, most)};
 }
 
 double farthestIn(const Simulation& simulation, const View& view, const WorldState& state) {
@@ -110,19 +110,8 @@ double farthestIn(const Simulation& simulation, const View& view, const WorldSta
   return farthest;
 }
 
-/// Of the air above the ground, where it is deepest.
-double verticalDepth(const Simulation& simulation, const Plan& plan) {
-  const AirAmounts above = simulation.path->powered(simulation.path->amounts({0.0, 1.0, simulation.frame.earthRadius_m()}, physics::kFar));
-  double deepest = 0.0;
-  for (const SpectralNode& n : plan.nodes) deepest = std::max(deepest, Path::depthOf(n.air, above));
-  return deepest;
-}
-
 /// Step of the sine of the sun's elevation that changes what comes through the air, exp(-depth / sine), by no more than its share of the accuracy.
-double sunStep(const Simulation& simulation, const Plan& plan, double sine) {
-  const double lowest = std::max(sine, kLowestSun);
-  return powerOfTwoBelow(kSunShare * plan.accuracy * lowest * lowest / std::max(verticalDepth(simulation, plan), 1.0));
-}
+double sunStep(double accuracy, double depth, double sine) { return powerOfTwoBelow(kSunShare * accuracy * std::max(sine, kLowestSun) / std::max(depth, 1.0)); }
 
 }  // namespace
 
@@ -135,13 +124,11 @@ double AirGrid::sineAt(int elevation) const {
 
 double AirGrid::acrossAt(int azimuth) const { return azimuths == 1 ? acrossLow : acrossLow + (acrossHigh - acrossLow) * azimuth / (azimuths - 1); }
 
-double AirGrid::scale_m() const { return kScale * farthest_m; }
-
-double AirGrid::entriesPerLog() const { return (ranges - 1) / std::log1p(1.0 / kScale); }
+double AirGrid::entriesPerLog() const { return (ranges - 1) / std::log1p(farthest_m / scale_m); }
 
 std::vector<double> AirGrid::rangesFrom(double entry_m) const {
   std::vector<double> all;
-  for (int r = 0; r < ranges; ++r) all.push_back(entry_m + scale_m() * std::expm1(r / entriesPerLog()));
+  for (int r = 0; r < ranges; ++r) all.push_back(entry_m + scale_m * std::expm1(r / entriesPerLog()));
   // Beyond the scene, as far as space: the sky's emission needs places there, the table doesn't.
   const double step = 1.0 + kSkyStep * kRanges / ranges;
   for (double r = step * std::max(farthest_m, kFirstSky_m); r < kLastSky_m; r *= step) all.push_back(entry_m + r);
@@ -154,6 +141,21 @@ double AirGrid::horizon(double earthRadius_m) const {
   return -std::sqrt(above * (2.0 * earthRadius_m + above)) / (earthRadius_m + above);
 }
 
+std::vector<double> depthsToSun(const Simulation& simulation, const Plan& plan) {
+  const double sine = std::max(glm::dot(simulation.sun->toSun, simulation.frame.up(glm::dvec3(0.0))), kLowestSun);
+  const AirAmounts way = simulation.path->powered(simulation.path->amounts({0.0, sine, simulation.frame.earthRadius_m()}, physics::kFar));
+  std::vector<double> sum(plan.weight.size(), 0.0), all(plan.weight.size(), 0.0);
+  for (size_t i = 0; i < plan.nodes.size(); ++i) {
+    const double depth = Path::depthOf(plan.nodes[i].air, way), passed = std::exp(-depth) * plan.nodes[i].mean(simulation.sun->irradiance);
+    for (size_t s = 0; s < sum.size(); ++s) {
+      sum[s] += plan.weight[s][i] * passed * depth;
+      all[s] += plan.weight[s][i] * passed;
+    }
+  }
+  for (size_t s = 0; s < sum.size(); ++s) sum[s] = all[s] > 0.0 ? sum[s] / all[s] : 0.0;
+  return sum;
+}
+
 AirGrid airGrid(const Simulation& simulation, const Plan& plan, const AirTableSize& size, const View& view, const WorldState& state) {
   const glm::dvec3 up = simulation.frame.up(view.position);
   const double share = plan.accuracy / 0.01, height = simulation.frame.height(view.position);
@@ -164,9 +166,10 @@ AirGrid airGrid(const Simulation& simulation, const Plan& plan, const AirTableSi
   const auto [low, high] = elevationsIn(view, up);
   std::tie(g.low, g.high) = widened(low, high, -1.0, 1.0);
   g.farthest_m = std::exp2(0.5 * std::ceil(2.0 * std::log2(farthestIn(simulation, view, state))));
+  g.scale_m = size.near_m > 0.0 ? std::min(size.near_m, kScale * g.farthest_m) : kScale * g.farthest_m;
   if (!plan.terms.scatteredSun) return g;
   const double sine = glm::dot(simulation.sun->toSun, up);
-  g.sunSine = share > 0.0 ? snapped(sine, sunStep(simulation, plan, sine)) : sine;
+  g.sunSine = share > 0.0 ? snapped(sine, sunStep(plan.accuracy, size.sunDepth, sine)) : sine;
   const Across across(view, up, simulation.sun->toSun);
   const double most = std::sqrt(std::max(1.0 - g.sunSine * g.sunSine, 0.0));
   const auto [viewLow, viewHigh] = across.all();
@@ -184,7 +187,8 @@ bool holds(const AirGrid& grid, const Simulation& simulation, const Plan& plan, 
   if (low < grid.low || high > grid.high || farthestIn(simulation, narrower, state) > grid.farthest_m) return false;
   if (!plan.terms.scatteredSun) return true;
   const auto [acrossLow, acrossHigh] = Across(narrower, up, simulation.sun->toSun).all();
-  return acrossLow >= grid.viewLow && acrossHigh <= grid.viewHigh;
+  const double most = std::sqrt(std::max(1.0 - grid.sunSine * grid.sunSine, 0.0));
+  return std::max(acrossLow, -most) >= grid.viewLow && std::min(acrossHigh, most) <= grid.viewHigh;
 }
 
 }  // namespace pitviper

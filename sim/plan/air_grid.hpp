@@ -18,12 +18,11 @@ struct AirGrid {
   double acrossLow = 0.0, acrossHigh = 0.0;  ///< cosine of the azimuth to the sun times the sun's horizontal part; alike where there is one azimuth
   double viewLow = 0.0, viewHigh = 0.0;      ///< the same, of all that the view sees
   double farthest_m = 0.0;                   ///< of what is in the scene
+  double scale_m = 0.0;                      ///< ranges lie evenly in ln(1 + range / scale)
   int azimuths = 1, elevations = 0, ranges = 0;
 
   double sineAt(int elevation) const;
   double acrossAt(int azimuth) const;
-  /// Entries lie evenly in ln(1 + range / scale).
-  double scale_m() const;
   double entriesPerLog() const;
   /// Of a ray that meets the air after so many metres: the table's entries, places on the way to space that it has none for, space.
   std::vector<double> rangesFrom(double entry_m) const;
@@ -31,6 +30,9 @@ struct AirGrid {
   double horizon(double earthRadius_m) const;
   bool operator==(const AirGrid&) const = default;
 };
+
+/// Optical depth of the air on the way from the ground to the sun, per slot: the mean over the sunlight that gets through.
+std::vector<double> depthsToSun(const Simulation& simulation, const Plan& plan);
 
 /// The grid of a view. `state`: for how far things are.
 AirGrid airGrid(const Simulation& simulation, const Plan& plan, const AirTableSize& size, const View& view, const WorldState& state);

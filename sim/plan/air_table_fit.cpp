@@ -14,14 +14,19 @@
 namespace pitviper {
 namespace {
 
-/// Lines looked at: of the film, and of the extremes. (And the film's corners and edges.)
-constexpr size_t kFilm = 64, kExtremes = 32;
+/// Lines looked at, besides the film's corners and edges: of the film, and half as many of the extremes; where nodes are many, each costs as much as they do.
+constexpr size_t kFilm = 64, kFewest = 8;
+constexpr int kFewNodes = 24;
 /// Part of the accuracy that each of elevations, ranges and azimuths may take on them.
 constexpr double kShare = 0.05;
 /// Sizes to begin with and to end at.
 constexpr AirTableSize kLeast{17, 49, 1}, kMost{257, 385, 17};
-/// No more values than this (200 MB): what many nodes, azimuths and elevations together lose then is said, not mended.
+/// No more values than this (200 MB): what smaller tables lose then is said, not mended.
 constexpr double kMostValues = 5e7;
+/// Ranges lie evenly up to this part of the nearest thing's.
+constexpr double kNear = 0.3;
+/// Air that lets less through hides all that is behind it [kernel unit x um].
+constexpr double kOpaque = 1e-9;
 /// Sizes tried.
 constexpr int kTries = 6;
 /// How much finer than a table's ranges the air is looked at to tell what is lost by adding it up over these.
@@ -86,21 +91,33 @@ double largestOf(const std::vector<double>& all) { return all.empty() ? 0.0 : *s
 /// Steps as many times half as wide as leave a share of an error, of which each leaves a quarter.
 int finer(int entries, double error, double share, int most) {
   if (!(error > share)) return entries;
-  const int doublings = std::clamp(static_cast<int>(std::ceil(0.5 * std::log2(error / share))), 1, 8);
+  const int doublings = static_cast<int>(std::clamp(std::ceil(0.5 * std::log2(error / share)), 1.0, 8.0));
   return std::min(((std::max(entries, 2) - 1) << doublings) + 1, most);
 }
 
 }  // namespace
 
+AirTableSize affordable(AirTableSize size, const Simulation& simulation, const Plan& plan) {
+  const bool perNode = simulation.hasTransparent() || simulation.mode == RenderMode::Buffered;
+  const double each = (plan.terms.scatteredSun ? 3.0 : 1.0) * (perNode ? plan.nodeCount() : 4 * plan.groupCount());
+  while (each * size.elevations * (size.ranges + 1) * size.azimuths > kMostValues && size.elevations > kLeast.elevations) {
+    int& most = size.azimuths > 5 ? size.azimuths : size.ranges > 97 && size.ranges > size.elevations ? size.ranges : size.elevations;
+    most = (most - 1) / 2 + 1;
+  }
+  return size;
+}
+
 AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, const NodesOfPlan& plan, SightRays& rays)
     : simulation_(simulation), camera_(camera), plan_(plan.plan), rows_(simulation, plan.plan, true), floor_(plan.plan.weight.size(), 0.0) {
   std::vector<SightRay> lines;
   const auto& extremes = rays.extremes();
-  for (size_t n = 0; n < std::min(kExtremes, extremes.size()); ++n) lines.push_back(extremes[n * extremes.size() / std::min(kExtremes, extremes.size())]);
-  for (size_t n = 0; n < kFilm; ++n) lines.push_back(rays.fromFilm());
+  const size_t film = std::max(kFilm * kFewNodes / static_cast<size_t>(std::max(plan_.nodeCount(), kFewNodes)), kFewest),
+               some = std::min(film / 2, extremes.size());
+  for (size_t n = 0; n < some; ++n) lines.push_back(extremes[n * extremes.size() / some]);
+  for (size_t n = 0; n < film; ++n) lines.push_back(rays.fromFilm());
   // The film's edges, where azimuths and elevations are farthest from its middle.
   const Pinhole& p = camera.pinhole;
-  for (int frame : {0, simulation.time.frames / 2, simulation.time.frames - 1})
+  for (int frame : film < kFilm / 2 ? std::vector{simulation.time.frames / 2} : std::vector{0, simulation.time.frames / 2, simulation.time.frames - 1})
     for (double row : {0.5, 0.5 * p.height, p.height - 0.5})
       for (double column : {0.5, 0.5 * p.width, p.width - 0.5}) lines.push_back(rays.through({frame, column, row}));
   NodeSum sum(plan.spectra);
@@ -110,13 +127,14 @@ AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, con
     ray.line.hits.stretches.clear();
     sum.begin();
     radianceAlong({simulation, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, kUsualPlaces}, ray.line, sum);
-    Sample sample{ray.state, ray.line.direction, physics::kFar, std::vector<double>(floor_.size(), 0.0)};
+    Sample sample{ray.state, ray.line.origin, ray.line.direction, physics::kFar, std::vector<double>(floor_.size(), 0.0)};
     if (ray.line.hits.solid.entity >= 0) sample.range_m = ray.line.hits.solid.distance;
     else if (const auto ground = groundHit(simulation, ray.line.origin, ray.line.direction)) sample.range_m = ground->distance;
     for (size_t s = 0; s < floor_.size(); ++s) {
       for (size_t i = 0; i < plan_.nodes.size(); ++i) sample.radiance[s] += plan_.weight[s][i] * sum.radiance()[i];
       floor_[s] = std::max(floor_[s], kDark * sample.radiance[s]);
     }
+    if (sample.range_m > 0.0) nearest_m_ = std::min(nearest_m_, sample.range_m);
     samples_.push_back(std::move(sample));
   }
 }
@@ -124,7 +142,8 @@ AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, con
 AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& size) const {
   const size_t slots = floor_.size();
   Lost lost{std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0)};
-  const View view = cameraView(camera_.pinhole, cameraPose(camera_.mount, *sample.state), camera_.near_m, camera_.samples);
+  View view = cameraView(camera_.pinhole, cameraPose(camera_.mount, *sample.state), camera_.near_m, camera_.samples);
+  view.position = sample.origin;  // limits move the eye
   const AirGrid grid = airGrid(simulation_, plan_, size, view, *sample.state);
   AirRows rows = rows_;
   rows.begin(grid);
@@ -145,7 +164,7 @@ AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& 
   const Seen right = reader.at(own, last, length);
   const auto note = [&](std::vector<double>& into, const Seen& found, const Seen& than) {
     for (size_t s = 0; s < slots; ++s) {
-      const double behind = right.passed[s] > 0.0 ? std::max(sample.radiance[s] - right.air[s], 0.0) / right.passed[s] : 0.0;
+      const double behind = right.passed[s] > kOpaque ? std::max(sample.radiance[s] - right.air[s], 0.0) / right.passed[s] : 0.0;
       const double all = std::max(std::max(sample.radiance[s], right.air[s]), floor_[s]);
       if (all > 0.0) into[s] += std::abs(found.air[s] - than.air[s] + behind * (found.passed[s] - than.passed[s])) / all;
     }
@@ -169,8 +188,8 @@ AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& 
   note(lost.elevation, reader.between(rows.at(below, rangesBelow), rangesBelow.size() - 1, rows.at(above, rangesAbove), rangesAbove.size() - 1, length), right);
   // Ranges: between two entries, and added up in steps.
   if (length < physics::kFar) {
-    const double entryAt = std::log1p(length / grid.scale_m()) * grid.entriesPerLog();
-    const auto rangeAt = [&](double t) { return entry + grid.scale_m() * std::expm1(t / grid.entriesPerLog()); };
+    const double entryAt = std::log1p(length / grid.scale_m) * grid.entriesPerLog();
+    const auto rangeAt = [&](double t) { return entry + grid.scale_m * std::expm1(t / grid.entriesPerLog()); };
     // Before the first of them everything is as near to the eye as it is.
     const double share = std::min(0.5, entryAt), before = rangeAt(entryAt - share), after = rangeAt(entryAt - share + 1.0);
     auto three = upTo(stations, {before, end, after});
@@ -222,13 +241,16 @@ AirTableLoss AirTableFit::lossOf(const AirTableSize& size) const {
 
 std::pair<AirTableSize, AirTableLoss> AirTableFit::within(double accuracy) const {
   const double share = kShare * accuracy;
-  const double values = (plan_.terms.scatteredSun ? 3.0 : 1.0) * plan_.nodeCount();
   AirTableSize size = kLeast;
+  size.sunDepth = plan_.air.sunDepth;
+  if (nearest_m_ < physics::kFar) size.near_m = kNear * nearest_m_;
   AirTableLoss loss = lossOf(size);
   for (int tries = 1; tries < kTries; ++tries) {
     AirTableSize next{finer(size.elevations, largestOf(loss.elevations), share, kMost.elevations),
-                      finer(size.ranges, largestOf(loss.ranges), share, kMost.ranges), finer(size.azimuths, largestOf(loss.azimuths), share, kMost.azimuths)};
-    if (next == size || values * next.elevations * (next.ranges + 1) * next.azimuths > kMostValues) break;
+                      finer(size.ranges, largestOf(loss.ranges), share, kMost.ranges), finer(size.azimuths, largestOf(loss.azimuths), share, kMost.azimuths),
+                      size.near_m};
+    next = affordable(next, simulation_, plan_);
+    if (next == size) break;
     size = next;
     loss = lossOf(size);
   }

@@ -4,6 +4,7 @@
 
 #include "sim/plan/air_rows.hpp"
 #include "sim/plan/line_check.hpp"
+#include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 
@@ -13,19 +14,22 @@ struct AirTableLoss {
   std::vector<double> sums;  ///< of a line, at most
 };
 
+/// The same, or less where that would take more memory than tables may: fewer azimuths, then ranges and elevations.
+AirTableSize affordable(AirTableSize size, const Simulation& simulation, const Plan& plan);
+
 /// Lines of sight of a camera through layered air, each with what lies behind the air.
 class AirTableFit {
  public:
   /// Of some of the film's lines and of the extremes. All must outlive it.
   AirTableFit(const Simulation& simulation, const Camera& camera, const NodesOfPlan& plan, SightRays& rays);
   AirTableLoss lossOf(const AirTableSize& size) const;
-  /// The smallest tables found that keep a part of the accuracy, with what they lose. Where even the largest don't, these.
+  /// The smallest tables found that keep a part of the accuracy, with what they lose. Where even the largest that are affordable don't, these.
   std::pair<AirTableSize, AirTableLoss> within(double accuracy) const;
 
  private:
   struct Sample {
     std::shared_ptr<const WorldState> state;
-    glm::dvec3 direction{0.0};
+    glm::dvec3 origin{0.0}, direction{0.0};
     double range_m = 0.0;          ///< physics::kFar: towards space
     std::vector<double> radiance;  ///< per slot, of air and what is behind it
   };
@@ -40,6 +44,7 @@ class AirTableFit {
   AirRows rows_;
   std::vector<Sample> samples_;
   std::vector<double> floor_;  ///< per slot
+  double nearest_m_ = physics::kFar;
 };
 
 }  // namespace pitviper

@@ -16,7 +16,7 @@ namespace {
 /// Numbers of places tried, the part of the accuracy that they may lose against all that the air's model has, and lines looked at, of the film and of
 /// the extremes.
 constexpr int kTried[] = {5, 9, 18, 36, 72};
-constexpr double kPlacesShare = 0.25;
+constexpr double kPlacesShare = 0.4;
 constexpr size_t kLooked = 20;
 
 std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance) {

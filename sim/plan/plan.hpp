@@ -42,7 +42,9 @@ struct PredictedParts {
 /// Entries of the tables that the GPU reads layered air from.
 struct AirTableSize {
   int elevations = 129, ranges = 193;
-  int azimuths = 5;  ///< of scattered sunlight
+  int azimuths = 5;        ///< of scattered sunlight
+  double near_m = 0.0;     ///< ranges lie evenly up to about here, beyond in their logarithm; 0 or beyond a thousandth of the farthest: up to there
+  double sunDepth = 10.0;  ///< of the air on the way from the ground to the sun, at most of the channels, for the sunlight that gets through
   bool operator==(const AirTableSize&) const = default;
 };
 
@@ -53,13 +55,13 @@ struct Plan {
   std::vector<int> slotOfOutput;            ///< one per output
   std::vector<std::vector<double>> weight;  ///< [slot][node]
   AirTableSize air;
-  double accuracy = 0.0;                    ///< relative error asked for; 0: none was
-  std::vector<double> predictedError;       ///< [slot]: largest relative error expected; empty where nothing was measured
-  std::vector<PredictedParts> parts;        ///< [slot]: what it is made of
-  int lines = 0;                            ///< lines of sight it was measured on
-  std::string fingerprint;                  ///< of all that drawing takes from it
-  std::vector<int> fineCount;               ///< [slot]: wavelengths of the reference
-  std::vector<TermShare> shares;            ///< what was looked at to keep or drop terms; empty where no accuracy was asked for
+  double accuracy = 0.0;               ///< relative error asked for; 0: none was
+  std::vector<double> predictedError;  ///< [slot]: largest relative error expected; empty where nothing was measured
+  std::vector<PredictedParts> parts;   ///< [slot]: what it is made of
+  int lines = 0;                       ///< lines of sight it was measured on
+  std::string fingerprint;             ///< of all that drawing takes from it
+  std::vector<int> fineCount;          ///< [slot]: wavelengths of the reference
+  std::vector<TermShare> shares;       ///< what was looked at to keep or drop terms; empty where no accuracy was asked for
   Terms terms;
   int lightCount = 0;                      ///< point lights and, last, the sun
   std::shared_ptr<const SunLegs> sunLegs;  ///< layered air in sunlight

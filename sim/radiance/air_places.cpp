@@ -34,7 +34,7 @@ std::vector<double> thinned(const Path& path, const AirRay& ray, const std::vect
     double share = 0.0, absorbers = 0.0;
     for (size_t k = 0; k < whole.amount.size(); ++k)
       if (whole.amount[k] > 0.0) share += stations[i].amounts.amount[k] / whole.amount[k], absorbers += 1.0;
-    const double far = std::log1p((all[i] - all.front()) / kNear_m) / std::log1p((std::min(all.back(), kFar_m) - all.front()) / kNear_m);
+    const double far = std::log1p((all[i] - all.front()) / kNear_m) / std::log1p(std::min(all.back() - all.front(), kFar_m) / kNear_m);
     measure.push_back((absorbers > 0.0 ? share / absorbers : 0.0) + std::min(far, 1.0));
   }
   std::vector<double> some;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <future>
 #include <thread>
 
@@ -97,7 +96,7 @@ void AirTables::upload(const std::vector<AirRow>& rows) {
     for (double x : v) block.push_back(static_cast<float>(x));
   };
   const double from = spreadOf(grid_.low), width = spreadOf(grid_.high) - from;
-  put({from, (grid_.elevations - 1) / width, grid_.scale_m(), grid_.entriesPerLog()});
+  put({from, (grid_.elevations - 1) / width, grid_.scale_m, grid_.entriesPerLog()});
   put({grid_.acrossLow, grid_.azimuths > 1 ? (grid_.azimuths - 1) / std::max(grid_.acrossHigh - grid_.acrossLow, 1e-12) : 0.0,
        static_cast<double>(grid_.elevations), static_cast<double>(grid_.ranges)});
   put({SunLegs::kBottom_m, (SunLegs::kHeights - 1) / std::sqrt(simulation_.path->top_m() - SunLegs::kBottom_m),

@@ -126,7 +126,7 @@ TEST(Audit, TheSameWhicheverFramesAreDrawn) {
 
 TEST(Audit, APlanOfSomethingElseIsRefused) {
   Simulation sim = scene(std::string(kScene) + "accuracy: 1 %\n");
-  sim.cameras[0].plan = "pitviper plan 2 1 1\nnonsense\n";
+  sim.cameras[0].plan = "pitviper plan 3 1 1\nnonsense\n";
   sim.cameras[0].planFile = "c.plan";
   EXPECT_THROW(planFor(sim, {&sim.cameras[0], nullptr}), UserError);
 }

@@ -13,9 +13,13 @@
 namespace pitviper::test {
 
 Worst compare(const Simulation& sim, int stride) {
+  const Camera& camera = sim.cameras[0];
+  return compare(sim, makePlan(sim, camera.outputs, camera.spectral, camera.where), stride);
+}
+
+Worst compare(const Simulation& sim, const Plan& plan, int stride, double floor) {
   needContext();
   const Camera& camera = sim.cameras[0];
-  const Plan plan = makePlan(sim, camera.outputs, camera.spectral, camera.where);
   const WorldState state = advance(sim.entities, sim.lights, 0.0);
   const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, 1);
   auto gpu = std::make_shared<const GpuScene>(sim);
@@ -26,7 +30,10 @@ Worst compare(const Simulation& sim, int stride) {
   pass.startReadback(true);
   const RawImage raw = pass.finishReadback();
   Worst worst;
-  std::vector<double> errors;
+  struct Pair {
+    double got, want;
+  };
+  std::vector<std::vector<Pair>> pairs(static_cast<size_t>(plan.slotCount));
   for (int y = 0; y < view.height; y += stride)
     for (int x = 0; x < view.width; x += stride) {
       const size_t p = static_cast<size_t>(y * view.width + x);
@@ -40,11 +47,20 @@ Worst compare(const Simulation& sim, int stride) {
       for (size_t s = 0; s < reference.slots.size(); ++s) {
         const double got = static_cast<double>(raw.groups[s / 4][4 * p + s % 4]), want = reference.slots[s];
         EXPECT_TRUE(std::isfinite(got));
-        if (!(want > 1e-37)) continue;
-        errors.push_back(std::abs(got - want) / want);
-        worst.error = std::max(worst.error, errors.back());
+        pairs[s].push_back({got, want});
       }
     }
+  std::vector<double> errors;
+  for (const auto& slot : pairs) {
+    double brightest = 0.0;
+    for (const Pair& p : slot) brightest = std::max(brightest, p.want);
+    for (const Pair& p : slot) {
+      const double size = std::max(p.want, floor * brightest);
+      if (!(size > 1e-37)) continue;
+      errors.push_back(std::abs(p.got - p.want) / size);
+      worst.error = std::max(worst.error, errors.back());
+    }
+  }
   std::sort(errors.begin(), errors.end());
   if (!errors.empty()) worst.percentile99 = errors[errors.size() * 99 / 100];
   return worst;
