@@ -11,7 +11,7 @@ layout(std140, binding = 3) uniform AirBlock {
   vec4 asymmetry[AIR_ASYMMETRIES];
   vec4 black[AIR_BLACKS];  // of nodes: radiance of a black body of the air's temperature at the camera
 } air;
-layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][density, sun elevations][vector]
+layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density]
 layout(binding = 21) uniform samplerBuffer airRadiance;  // [azimuth][elevation][range, space last][part][value]
 
 int airElevations() { return int(air.azimuth.z); }
@@ -56,20 +56,22 @@ AirPath airFromCamera(float range) {
 
 AirPath airBeyond(AirPath near, float nearRange, float height, float sinElevation, float length) { return airFromCamera(nearRange + length); }
 
-// Entry of a table by height: linear between heights, which lie closer together near the ground.
-void airHeight(float height, out int at, out float mixed) {
-  float t = clamp(sqrt(max(height - air.heights.x, 0.0)) * air.heights.y, 0.0, float(AIR_HEIGHTS - 1));
-  int h = min(int(t), AIR_HEIGHTS - 2);
-  float from = float(h), t2 = t * t, from2 = from * from;
+// Entry of a table by height: linear between heights, which lie closer together near the ground; `finer`: so many steps for each of these.
+void airHeight(float height, int finer, out int entry, out float mixed) {
+  int last = (AIR_HEIGHTS - 1) * finer;
+  float t = clamp(sqrt(max(height - air.heights.x, 0.0)) * air.heights.y * float(finer), 0.0, float(last));
+  entry = min(int(t), last - 1);
+  float from = float(entry), t2 = t * t, from2 = from * from;
   mixed = clamp((t2 - from2) / (2.0 * from + 1.0), 0.0, 1.0);
-  at = airElevations() * (airRanges() + 1) * AIR_VECTORS + h * (1 + AIR_SUNS) * AIR_VECTORS;
 }
+int airHeights() { return airElevations() * (airRanges() + 1) * AIR_VECTORS; }
 
 vec4 airDensity(float height, int v) {
-  int at;
+  int entry;
   float m;
-  airHeight(height, at, m);
-  return exp(mix(texelFetch(airAmounts, at + v), texelFetch(airAmounts, at + (1 + AIR_SUNS) * AIR_VECTORS + v), m));
+  airHeight(height, AIR_FINER, entry, m);
+  int at = airHeights() + (AIR_HEIGHTS * AIR_SUNS + entry) * AIR_VECTORS + v;
+  return height > view.earth.y ? vec4(0.0) : exp(mix(texelFetch(airAmounts, at), texelFetch(airAmounts, at + AIR_VECTORS), m));
 }
 
 AirPath airRaised(AirPath p) {
@@ -81,14 +83,15 @@ AirPath airRaised(AirPath p) {
 AirPath airToSun(AirPath camera, float height) {
   AirPath p = camera;
   if (AIR_SUNS == 0) return p;
-  int at;
+  int entry;
   float m, x = clamp((sunElevation_ - air.heights.z) * air.heights.w, 0.0, float(AIR_SUNS - 1));
-  airHeight(height, at, m);
+  airHeight(height, 1, entry, m);
+  int at = airHeights() + entry * AIR_SUNS * AIR_VECTORS;
   int e = clamp(int(x) - 1, 0, max(AIR_SUNS - 4, 0));
   float f = x - float(e);
   vec4 weight = vec4((f - 1.0) * (f - 2.0) * (3.0 - f) / 6.0, f * (f - 2.0) * (f - 3.0) / 2.0, f * (f - 1.0) * (3.0 - f) / 2.0, f * (f - 1.0) * (f - 2.0) / 6.0);
   for (int v = 0; v < AIR_VECTORS; ++v) {
-    int low = at + (1 + e) * AIR_VECTORS + v, above = low + (1 + AIR_SUNS) * AIR_VECTORS;
+    int low = at + e * AIR_VECTORS + v, above = low + AIR_SUNS * AIR_VECTORS;
     vec4 l = vec4(0.0);
     for (int j = 0; j < 4; ++j)
       l += weight[j] * mix(texelFetch(airAmounts, low + j * AIR_VECTORS), texelFetch(airAmounts, above + j * AIR_VECTORS), m);
@@ -97,15 +100,18 @@ AirPath airToSun(AirPath camera, float height) {
   return airRaised(p);
 }
 
-// Densities at both ends and between, by Simpson's rule.
+// Densities along it by Simpson's rule in a few pieces: haze ends within some hundred metres.
 AirPath airToLight(AirPath camera, float height, float sinElevation, float distance) {
   AirPath p = camera;
-  float curved = 0.5 / view.earth.x;
-  float half_ = 0.5 * distance, top = view.earth.y;
-  float middle = height + half_ * (sinElevation + half_ * curved), far = height + distance * (sinElevation + distance * curved);
-  for (int v = 0; v < AIR_VECTORS; ++v)
-    p.w[v] += distance * 1.0e-3 / 6.0 * ((height > top ? vec4(0.0) : airDensity(height, v)) + 4.0 * (middle > top ? vec4(0.0) : airDensity(middle, v)) +
-                                         (far > top ? vec4(0.0) : airDensity(far, v)));
+  float curved = 0.5 / view.earth.x, step_ = 0.5 * distance / float(AIR_PIECES);
+  for (int v = 0; v < AIR_VECTORS; ++v) {
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k <= 2 * AIR_PIECES; ++k) {
+      float s = float(k) * step_;
+      sum += (k == 0 || k == 2 * AIR_PIECES ? 1.0 : k % 2 == 0 ? 2.0 : 4.0) * airDensity(height + s * (sinElevation + s * curved), v);
+    }
+    p.w[v] += step_ * 1.0e-3 / 3.0 * sum;
+  }
   return airRaised(p);
 }
 

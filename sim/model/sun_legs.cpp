@@ -37,8 +37,8 @@ SunLegs::SunLegs(const Path& path, double sinElevation, double earthRadius_m)
     }
 }
 
-double SunLegs::heightAt(int entry, double top_m) {
-  const double t = static_cast<double>(entry) / (kHeights - 1);
+double SunLegs::heightAt(double entry, double top_m) {
+  const double t = entry / (kHeights - 1);
   return kBottom_m + (top_m - kBottom_m) * t * t;
 }
 

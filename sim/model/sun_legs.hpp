@@ -27,7 +27,7 @@ class SunLegs {
   /// The deepest open ground is 0.43 km below the sea.
   static constexpr double kBottom_m = -500.0;
   /// Entry of a height: closer together near the ground, a step of 100 m there, 0.5 km at 10 km.
-  static double heightAt(int entry, double top_m);
+  static double heightAt(double entry, double top_m);
   double firstSine() const { return first_; }
   double step() const { return step_; }
   const AirAmounts& logAt(int elevation, int height) const { return logs_[static_cast<size_t>(elevation * kHeights + height)]; }

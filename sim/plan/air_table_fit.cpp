@@ -248,7 +248,7 @@ std::pair<AirTableSize, AirTableLoss> AirTableFit::within(double accuracy) const
   for (int tries = 1; tries < kTries; ++tries) {
     AirTableSize next{finer(size.elevations, largestOf(loss.elevations), share, kMost.elevations),
                       finer(size.ranges, largestOf(loss.ranges), share, kMost.ranges), finer(size.azimuths, largestOf(loss.azimuths), share, kMost.azimuths),
-                      size.near_m};
+                      size.near_m, size.sunDepth};
     next = affordable(next, simulation_, plan_);
     if (next == size) break;
     size = next;

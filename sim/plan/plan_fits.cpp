@@ -71,6 +71,16 @@ double shortestOf(const std::vector<const ChannelOutput*>& slots) {
 
 }  // namespace
 
+void CheckedLines::add(const std::vector<SightRay>& more, const std::vector<LineFigures>& theirs) {
+  lines.insert(lines.end(), more.begin(), more.end());
+  for (size_t s = 0; s < figures.size(); ++s) {
+    LineFigures& f = figures[s];
+    f.largest = std::max(f.largest, theirs[s].largest);
+    f.dropped = std::max(f.dropped, theirs[s].dropped);
+    f.errors.insert(f.errors.end(), theirs[s].errors.begin(), theirs[s].errors.end());
+  }
+}
+
 PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
                    SightRays& rays, int airPlaces)
     : sim_(simulation), fine_(fine), rays_(rays), airPlaces_(airPlaces), plan_(plan), sights_(simulation, plan_, rays, shortestOf(slots), airPlaces) {

@@ -13,6 +13,8 @@ namespace pitviper {
 struct CheckedLines {
   std::vector<SightRay> lines;
   std::vector<LineFigures> figures;
+  /// More of them; medians stay those of the first.
+  void add(const std::vector<SightRay>& more, const std::vector<LineFigures>& theirs);
 };
 
 class PlanFits {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "sim/model/glint.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -19,6 +20,11 @@ constexpr int kTries = 24;
 constexpr int kMostFrames = 400;
 /// Combinations beyond so many, the rarest, have no extremes of their own.
 constexpr size_t kMostExtremes = 40;
+/// Steps towards a glint, each shorter than the last.
+constexpr int kGlintSteps = 40;
+constexpr double kShorter = 0.87;
+/// Lamps whose glints are looked for.
+constexpr size_t kGlintLamps = 3;
 /// Nothing is lower than this [m].
 constexpr double kGround_m = -100.0;
 
@@ -111,13 +117,13 @@ bool SightRays::inView(const SightRay& ray, const glm::dvec3& direction) const {
   return glm::length(direction) > ray.nearest_m && d.z < 0.0 && std::abs(d.x) <= -d.z * p.tanX(p.width) && std::abs(d.y) <= -d.z * p.tanY(0);
 }
 
-std::optional<SightRay> SightRays::aimedAt(int frame, size_t surface) {
+std::optional<SightRay> SightRays::aimedAt(int frame, size_t surface, bool withinLimits) {
   SightRay ray = startAt(frame);
   ray.fromFilm = false;
   const glm::dvec3 line = placeOn(*ray.state, surface) - ray.line.origin;
   if (!(glm::length(line) > 0.0) || !inView(ray, line)) return {};
   ray.line.direction = glm::normalize(line);
-  if (simulation_.limits.any() && dice_.unit() < 0.5) stretch(ray, glm::length(line));
+  if (withinLimits && simulation_.limits.any() && dice_.unit() < 0.5) stretch(ray, glm::length(line));
   cast(ray);
   return ray;
 }
@@ -126,6 +132,26 @@ SightRay SightRays::aimed() {
   for (int tries = 0; tries < kTries && !surfaces_.empty(); ++tries)
     if (auto ray = aimedAt(static_cast<int>(dice_.below(static_cast<size_t>(simulation_.time.frames))), dice_.below(surfaces_.size()))) return *ray;
   return fromFilm();
+}
+
+bool SightRays::isSmall(const SightRay& ray, const Entity& entity, const Pose& pose) const {
+  const Pinhole& p = eye_.camera->pinhole;
+  const glm::dvec3 to = pose.position + pose.orientation * glm::dvec3(entity.boundingCentre) - ray.line.origin;
+  const double depth = -(glm::transpose(localFromCamera(cameraPose(eye_.camera->mount, *ray.state))) * to).z, radius = entity.boundingRadius_m;
+  return depth > 4.0 * radius + eye_.camera->near_m && 2.0 * radius / depth < eye_.camera->smallBody_px * std::min(p.pitchX_m, p.pitchY_m) / p.focalLength_m;
+}
+
+std::vector<SightRay> SightRays::ofSmallBodies(int count) {
+  std::vector<SightRay> lines;
+  for (int tries = 0; eye_.camera && !surfaces_.empty() && static_cast<int>(lines.size()) < count && tries < kTries * count; ++tries) {
+    if (lines.empty() && tries == kTries * kTries) break;
+    const int frame = static_cast<int>(dice_.below(static_cast<size_t>(simulation_.time.frames)));
+    const size_t surface = dice_.below(surfaces_.size()), e = surfaces_[surface].first;
+    const SightRay start = startAt(frame);
+    if (!isSmall(start, simulation_.entities[e], start.state->entities[e])) continue;
+    if (auto ray = aimedAt(frame, surface, false)) lines.push_back(std::move(*ray));
+  }
+  return lines;
 }
 
 /// To some place within the scenario's limits.
@@ -216,6 +242,32 @@ const std::vector<SightRay>& SightRays::extremes() {
   return extremes_;
 }
 
+std::optional<SightRay> SightRays::glint(const std::vector<size_t>& combination, size_t light) {
+  const auto shine = [&](const SightRay& r) { return glintOf(simulation_, *r.state, r.line.hits.solid, r.line.direction, light); };
+  size_t best = combination.front();
+  double most = 0.0;
+  for (size_t c : combination)
+    if (const double s = shine(candidates_[c].ray); s > most) most = s, best = c;
+  if (!(most > 0.0)) return {};
+  SightRay ray = candidates_[best].ray;
+  const Hit& hit = ray.line.hits.solid;
+  double step = std::min(0.3 * static_cast<double>(simulation_.entities[static_cast<size_t>(hit.entity)].boundingRadius_m) / hit.distance, 0.05);
+  for (int n = 0; n < kGlintSteps; ++n, step *= kShorter) {
+    SightRay next = ray;
+    const glm::dvec3 aside(dice_.unit() - 0.5, dice_.unit() - 0.5, dice_.unit() - 0.5);
+    next.line.direction = glm::normalize(ray.line.direction + 2.0 * step * aside);
+    if (!inView(next, hit.distance * next.line.direction)) continue;
+    cast(next);
+    if (candidate(next).things == candidates_[best].things && shine(next) > most) {
+      most = shine(next);
+      ray = std::move(next);
+    }
+  }
+  ray.fromFilm = false;
+  ray.glints = true;
+  return ray;
+}
+
 void SightRays::findExtremes() {
   survey();
   std::vector<SightRay>& all = extremes_;
@@ -276,6 +328,9 @@ void SightRays::findExtremes() {
         if (*low == *high) break;
       }
     }
+    for (size_t l = 0; l < countLights(simulation_); ++l)
+      if (l < kGlintLamps || l == simulation_.lights.size())
+        if (auto ray = glint(*combination, l)) all.push_back(std::move(*ray));
   }
 }
 

@@ -33,6 +33,7 @@ struct SightRay {
   double nearest_m = 0.0;
   int lamp = -1;         ///< a light that is seen in the same pixel
   bool fromFilm = true;  ///< drawn as the film draws pixels, not aimed at something
+  bool glints = false;   ///< aimed at a glint: what is lit there is lit
 };
 
 class SightRays {
@@ -46,9 +47,13 @@ class SightRays {
   /// At a random place of a random part of a body, so that what is small is not missed. Where the scenario states limits, half of them come from
   /// any range, see any temperature and levels of lights within them.
   SightRay aimed();
+  /// Lines at random places of random bodies in view that are drawn by views of their own (Camera::smallBody_px), as these see them: the film's pixels hold
+  /// them, but few of its middles. None where there are no such bodies.
+  std::vector<SightRay> ofSmallBodies(int count);
   /// Through a place on the film.
   SightRay through(const FilmPlace& place);
-  /// Of every combination: the nearest, the farthest, the most grazing, the most level, the longest way through media, the hottest and the coldest texel;
+  /// Of every combination: the nearest, the farthest, the most grazing, the most level, the longest way through media, the hottest and the coldest texel, the
+  /// glints of the sun and of lamps;
   /// in the first and in the last frame; bodies and lamps at their nearest and farthest.
   const std::vector<SightRay>& extremes();
   /// About the solid angle of a subpixel.
@@ -65,11 +70,14 @@ class SightRays {
   std::shared_ptr<const WorldState> stateAt(int frame);
   SightRay startAt(int frame);
   SightRay filmRay(int frame);
-  std::optional<SightRay> aimedAt(int frame, size_t surface);
+  std::optional<SightRay> aimedAt(int frame, size_t surface, bool withinLimits = true);
+  bool isSmall(const SightRay& ray, const Entity& entity, const Pose& pose) const;
   std::vector<SightRay> lamps(int frame);
   void cast(SightRay& ray) const;
   void survey();
   void findExtremes();
+  /// Where a light glints most, about; none where it does not.
+  std::optional<SightRay> glint(const std::vector<size_t>& combination, size_t light);
   Candidate candidate(SightRay ray) const;
   glm::dvec3 placeOn(const WorldState& state, size_t surface);
   void stretch(SightRay& ray, double distance_m);

@@ -48,7 +48,8 @@ Sights::Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, 
 void Sights::add(const SightRay& ray) {
   RadianceScene scene{simulation_, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, airPlaces_};
   // In shade, half in it, or lit: other lights of a pixel then count for more.
-  scene.lit = [this](const Hit&, size_t, const LightLeg&) {
+  scene.lit = [this, &ray](const Hit&, size_t, const LightLeg&) {
+    if (ray.glints) return 1.0;
     const double shade = rays_.dice().unit();
     return shade < 0.25 ? 0.0 : shade < 0.5 ? rays_.dice().unit() : 1.0;
   };

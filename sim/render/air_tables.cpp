@@ -10,6 +10,9 @@ namespace pitviper {
 namespace {
 
 constexpr double kNothing = 1e-30;
+/// Densities by height have so many steps for one of those to the sun, and ways to lamps so many pieces: what these hold is told to 2e-3 where haze ends
+/// within a few hundred metres (tests/gpu/test_ways_to_lamps.cpp).
+constexpr int kFiner = 8, kPieces = 4;
 
 }  // namespace
 
@@ -26,6 +29,8 @@ void AirTables::addConstants(ShaderSlots& slots) const {
   slots.constants["AIR_AZIMUTHS"] = plan_.terms.scatteredSun ? plan_.air.azimuths : 1;
   slots.constants["AIR_HEIGHTS"] = SunLegs::kHeights;
   slots.constants["AIR_SUNS"] = plan_.sunLegs ? SunLegs::kElevations : 0;
+  slots.constants["AIR_FINER"] = kFiner;
+  slots.constants["AIR_PIECES"] = kPieces;
   slots.constants["AIR_PARTS"] = rows_->parts();
   slots.constants["AIR_ASYMMETRIES"] = (rows_->values() + 3) / 4;
   slots.constants["AIR_BLACKS"] = (plan_.nodeCount() + 3) / 4;
@@ -36,11 +41,12 @@ void AirTables::addHeights(std::vector<float>& out) const {
   const auto put = [&](const AirAmounts& logs) {
     for (size_t k = 0; k < static_cast<size_t>(4 * rows_->vectors()); ++k) out.push_back(static_cast<float>(logs.amount[k]));
   };
-  for (int h = 0; h < SunLegs::kHeights; ++h) {
-    AirAmounts density = path.densities(SunLegs::heightAt(h, path.top_m()));
+  for (int h = 0; plan_.sunLegs && h < SunLegs::kHeights; ++h)
+    for (int e = 0; e < SunLegs::kElevations; ++e) put(plan_.sunLegs->logAt(e, h));
+  for (int h = 0; h <= (SunLegs::kHeights - 1) * kFiner; ++h) {
+    AirAmounts density = path.densities(SunLegs::heightAt(static_cast<double>(h) / kFiner, path.top_m()));
     for (double& d : density.amount) d = std::log(std::max(d, kNothing));
     put(density);
-    for (int e = 0; plan_.sunLegs && e < SunLegs::kElevations; ++e) put(plan_.sunLegs->logAt(e, h));
   }
 }
 

@@ -119,5 +119,35 @@ TEST(SmallBodies, HideNoMoreThanThereIs) {
   }
 }
 
+/// What a warm glossy sphere of 3.4 pixels throws at the camera, with the sun and with one as good as dark [W/sr].
+double glossySphere(const std::string& accuracy, double azimuth_deg, double sun) {
+  char text[1500];
+  std::snprintf(
+      text, sizeof text,
+      "background: {temperature: 0 K}\naccuracy: %s\nmaterials: {gloss: {components: [{reflection: phong, exponent: 4000, reflectance: 0.5}]}}\n"
+      "sun: {azimuth: %g deg, elevation: 25 deg, irradiance: {wavelength: um, unit: W/(m2 um), values: [[3, %g], [4, %g]]}}\n"
+      "entities:\n  - {name: s, shape: {model: sphere, radius: 2 m, segments: 256}, material: gloss, temperature: 400 K, position: [0.3 m, 1000 m, 0.4 m]}\n"
+      "cameras:\n  - {name: c, film: {width: 9, height: 9}, field_of_view: 0.6 deg, aperture: 20 mm, position: [0 m, 0 m, 0 m], heading: 0 deg,\n"
+      "     channels: [{name: v, response: {band: [3.6 um, 3.8 um]}}]}\n",
+      accuracy.c_str(), azimuth_deg, sun, sun);
+  const CameraImage image = renderImage(scene(text));
+  double intensity = 0.0;
+  for (size_t p = 0; p < image.slots[0].size(); ++p) intensity += image.slots[0][p] * image.solidAngles->plain_sr[p] * 1e6;
+  return intensity;
+}
+
+// A glossy sphere throws the sun's light evenly all around, from a spot of half a degree wherever it happens to lie: E a^2 / 4 times the lobe's
+// reflectance; a lobe without 1 / cos(theta) has the cosine of incidence besides. (The reference once took what lies between warm
+// places for no more than warm, and a plan dropped a sun that no line of its own had seen.)
+TEST(SmallBodies, GlintIsNotMissed) {
+  for (const auto& [accuracy, azimuth] : {std::pair<std::string, double>{"1 %", 73.0}, {"1 %", 131.0}, {"1 %", 222.0}, {"reference", 222.0}}) {
+    // The viewer is south of the sphere: half of the angle between what goes to the sun and what goes to the viewer.
+    const double between = std::acos(-std::cos(azimuth * kPi / 180.0) * std::cos(25.0 * kPi / 180.0));
+    figure("glossy sphere of 3.4 pixels, sun at " + std::to_string(static_cast<int>(azimuth)) + " deg, " + accuracy + ", intensity [W/sr]",
+           glossySphere(accuracy, azimuth, 100.0) - glossySphere(accuracy, azimuth, 1e-6), 0.5 * 20.0 * 2.0 * 2.0 / 4.0 * std::cos(0.5 * between), 0.015,
+           "1/n of the lobe's width; 256 facets around; zoomed view");
+  }
+}
+
 }  // namespace
 }  // namespace pitviper::test

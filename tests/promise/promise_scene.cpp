@@ -101,7 +101,8 @@ PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const 
       cell.channel = camera.outputs[c].channel;
       cell.asked = accuracy;
       cell.predicted = predictedError(plan, slot).value_or(0.0);
-      if (slot < plan.parts.size()) cell.ofWavelengths = plan.parts[slot].wavelengths, cell.ofTables = plan.parts[slot].tables;
+      if (slot < plan.parts.size())
+        cell.ofWavelengths = plan.parts[slot].wavelengths, cell.ofTables = plan.parts[slot].tables, cell.extremes = plan.parts[slot].extremes;
       cell.groups = static_cast<int>(std::count_if(plan.weight[slot].begin(), plan.weight[slot].end(), [](double w) { return w != 0.0; }));
       cell.wavelengths = slot < plan.fineCount.size() ? plan.fineCount[slot] : 0;
       auto errors = reference[c].relative(pixels[c]);

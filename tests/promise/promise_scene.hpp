@@ -17,6 +17,7 @@ struct PromiseCell {
   std::string channel;
   double asked = 0.0, predicted = 0.0;
   double ofWavelengths = 0.0, ofTables = 0.0;  ///< parts of what is predicted
+  double extremes = 0.0;                       ///< reported apart
   double found = 0.0;                          ///< largest of |L - Lref| / max(Lref, 1e-3 x 99th percentile of Lref); infinite where a pixel is not a number
   int groups = 0, wavelengths = 0;
   PromisePixel worst;

@@ -75,7 +75,7 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
     ZoomedTile tile(
         [&](int x, int y) {
           const auto line = lineAt(x, y);
-          return line ? ReferenceShader::things(line->hits) : 0;
+          return line ? shader.looks(*line) : 0;
         },
         [&](int x, int y) { return shader.shade(*lineAt(x, y), sum).slots; });
     for (int piece = next++; piece < pieces; piece = next++) {

@@ -3,10 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/glint.hpp"
 #include "sim/model/ground.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
+namespace {
+
+/// A glint below this part of a lobe's maximum is none; above, so many steps for a factor of two.
+constexpr double kNoGlint = 1e-7;
+constexpr double kGlintSteps = 2.0;
+
+}  // namespace
 
 ReferenceShader::ReferenceShader(const Simulation& simulation, const Plan& plan, const View& view, const WorldState& state, const std::vector<char>& drawn,
                                  std::shared_ptr<const NodeSpectra> spectra)
@@ -79,6 +87,29 @@ std::size_t ReferenceShader::things(const RayHits& hits) {
   std::size_t all = 0x9e3779b97f4a7c15u ^ one(hits.solid.entity, hits.solid.surface) * 3;
   for (const Hit& h : hits.layers) all += one(h.entity, h.surface) * 0xff51afd7ed558ccdu;
   for (const Stretch& s : hits.stretches) all += one(s.entity, -2) * 0xc4ceb9fe1a85ec53u;
+  return all | 1u;
+}
+
+std::size_t ReferenceShader::looks(const LineOfSight& line) const {
+  std::size_t all = things(line.hits);
+  const auto add = [&all](std::size_t number) { all = all * 0x9e3779b97f4a7c15u + number; };
+  const auto look = [&](const Hit& hit) {
+    for (size_t l = 0; hit.entity >= 0 && l < countLights(simulation_); ++l) {
+      const double glint = glintOf(simulation_, state_, hit, line.direction, l);
+      add(glint > kNoGlint ? static_cast<std::size_t>(kGlintSteps * (std::log2(glint / kNoGlint) + 1.0)) : 0);
+      if (!plan_.terms.shadows) continue;
+      const bool sun = l == simulation_.lights.size();
+      const glm::dvec3 to = sun ? simulation_.sun->toSun : state_.lights[l] - hit.point;
+      const double distance = glm::length(to);
+      add(distance > 0.0 && glm::dot(to, hit.normal) > 0.0 &&
+                  shadows_.lit(state_, hit, to / distance, sun ? INFINITY : distance - simulation_.lights[l].radius_m)
+              ? 1
+              : 0);
+    }
+  };
+  if (!plan_.terms.lights) return all;
+  look(line.hits.solid);
+  for (const Hit& h : line.hits.layers) look(h);
   return all | 1u;
 }
 

@@ -3,10 +3,10 @@
 // table between is that of black bodies of air (NodeSpectra). For the reference mode, audits and tests.
 #include <vector>
 
+#include "sim/model/view.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
 #include "sim/radiance/shadow_rays.hpp"
-#include "sim/model/view.hpp"
 
 namespace pitviper {
 
@@ -39,6 +39,8 @@ class ReferenceShader {
   ReferencePixel shade(const LineOfSight& line, NodeSum& sum) const;
   /// The same number, not 0, for lines that meet the same surface through the same panes and media.
   static std::size_t things(const RayHits& hits);
+  /// The same number, not 0, for lines between which radiance changes smoothly: the same things, lit by the same lights, which glint about as strongly.
+  std::size_t looks(const LineOfSight& line) const;
   /// Per node, of everything transparent on the line through the middle of the view as far as a depth.
   std::vector<double> transmittance(double farthest_m) const;
 
