@@ -5,15 +5,12 @@
 #include <stdexcept>
 
 #include "sim/plan/fine_grid.hpp"
+#include "sim/plan/sights.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 namespace {
 
-/// A pixel that is almost dark is judged by the scene: a thousandth of what is bright in it.
-constexpr double kFloor = 1e-3;
-/// Pictures are single precision, whose digits end at 1e-38 [kernel unit x W/(m2 sr)]: tests/extremes reach 1e-30, and a photon an hour on a pixel is more.
-constexpr double kDarkest = 1e-30;
 constexpr double kSecondRadiation_um_K = 14387.768775039337;
 
 double rank(const std::vector<double>& sorted, double part) { return sorted[static_cast<size_t>(part * static_cast<double>(sorted.size() - 1))]; }
@@ -53,7 +50,7 @@ ErrorFigures figuresOf(std::vector<double>& values) {
 
 ChannelReference::ChannelReference(const Spectrum& kernel, std::vector<double> values) : values_(std::move(values)) {
   std::vector<double> sorted = values_;
-  floor_ = std::max(kFloor * figuresOf(sorted).percentile99, kDarkest);
+  floor_ = std::max(kDark * figuresOf(sorted).percentile99, kDarkest);
   const BlackBodies bodies(kernel);
   for (double l : values_) slope_.push_back(bodies.slopeAt(l));
 }

@@ -88,7 +88,7 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
     return std::vector<double>(sum.radiance().begin(), sum.radiance().end());
   };
   std::vector<std::vector<double>> all, slots;
-  std::vector<double> floor(plan.weight.size(), 0.0);
+  std::vector<double> floor(plan.weight.size(), kDarkest);
   for (const SightRay& ray : lines) {
     all.push_back(seen(ray, 0));
     slots.push_back(slotsOf(plan, all.back()));
@@ -148,7 +148,7 @@ std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& of
       std::vector<double> seen;
       for (const LineSums& l : sums) seen.push_back(l.exact[s]);
       std::sort(seen.begin(), seen.end());
-      floor.push_back(seen.empty() ? 0.0 : kDark * seen[std::min(seen.size() - 1, seen.size() * 99 / 100)]);
+      floor.push_back(seen.empty() ? kDarkest : std::max(kDark * seen[std::min(seen.size() - 1, seen.size() * 99 / 100)], kDarkest));
     }
     LineFigures& f = figures[s];
     for (const LineSums& l : sums) {

@@ -30,8 +30,8 @@ constexpr int kUsualPlaces = 24;
 int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays, double accuracy);
 
 /// One per slot. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: per slot; where empty it becomes 1e-3 of the 99th percentile of
-/// these lines. `places`: at which the air is looked at, alike on both sides, so that only wavelengths differ. Terms are those of `fine`; `plan` may leave
-/// kinds of terms out, all of them or by node.
+/// these lines, but at least kDarkest. `places`: at which the air is looked at, alike on both sides, so that only wavelengths differ. Terms are those of
+/// `fine`; `plan` may leave kinds of terms out, all of them or by node.
 std::vector<LineFigures> checkLines(const Simulation& simulation, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines,
                                     double pixel_sr, int places, std::vector<double>& floor);
 

@@ -120,7 +120,7 @@ double Sights::floorOf(const FineGrid& grid, const std::vector<int>& absorbers) 
   std::copy_if(book_.sights.begin(), book_.sights.end(), std::back_inserter(drawn), [](const Sight& s) { return s.fromFilm; });
   std::vector<double> film = fineIntegrals(whole(grid, absorbers, drawn));
   std::sort(film.begin(), film.end());
-  return film.empty() ? 0.0 : kDark * film[std::min(film.size() - 1, film.size() * 99 / 100)];
+  return film.empty() ? kDarkest : std::max(kDark * film[std::min(film.size() - 1, film.size() * 99 / 100)], kDarkest);
 }
 
 SpectralProblem Sights::problem(const FineGrid& grid, const std::vector<int>& absorbers, double floor, size_t first) const {

@@ -5,7 +5,7 @@
 namespace pitviper {
 
 Factor Factor::emissivity(const Material& m, double angle) {
-  const bool varies = m.given->varies();
+  const bool varies = m.given ? m.given->varies() : m.hemisphericalVaries();
   return {Kind::Emissivity, &m, varies ? angle : 0.0, 0.0, !varies};
 }
 
@@ -40,7 +40,7 @@ double valueOf(const Simulation& sim, const Factor& f, double w) {
       return sky > 0.0 ? material().reflectance(w, 0.0) * sky : 0.0;
     }
     case Factor::Kind::Emissivity:
-      return material().given->at(w, f.x);
+      return material().emissivity(w, f.x);
     case Factor::Kind::Hemispherical:
       return component().hemispherical(w, f.x);
     case Factor::Kind::Column:

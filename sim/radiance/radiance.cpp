@@ -89,8 +89,8 @@ class Teller {
     if ((m.transmission ? scene_.terms.layer : scene_.terms.solid).isGeneral()) {
       const double angle = viewAngle(hit);
       const Factor black = Factor::planck(temperature_K, !textured);
-      if (m.given) {
-        add(TermKind::Emission, modifier(m.given->modifier, hit), {black, Factor::emissivity(m, angle)});
+      if (m.given || !m.hasModifiers()) {
+        add(TermKind::Emission, m.given ? modifier(m.given->modifier, hit) : 1.0, {black, Factor::emissivity(m, angle)});
       } else {
         // Kirchhoff: 1 - reflectance - transmittance, each with its texture.
         add(TermKind::Emission, 1.0, {black});
