@@ -6,6 +6,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/plan_report.hpp"
+#include "scenarios/commands/progress.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/frame/limits_check.hpp"
 #include "sim/gl/context.hpp"
@@ -51,7 +52,9 @@ int planCommand(const Arguments& arguments) {
   std::string json;
   auto tell = [&](const std::string& name, const Eye& eye, double subpixels) {
     const auto start = std::chrono::steady_clock::now();
-    const Plan plan = planFor(sim, eye);
+    Progress progress("plan", 1);
+    const Plan plan = planFor(sim, eye, [&](double share) { progress.phase("planning " + name, share); });
+    progress.withdraw();
     const bool buffered = sim.mode == RenderMode::Buffered || sim.hasTransparent();
     PlannedEye told{name,
                     eye.camera ? eye.camera->outputs : eye.probe->outputs,

@@ -74,12 +74,14 @@ void Progress::step() {
   const std::lock_guard lock(mutex_);
   if (++state_.done == 1) first_ = Clock::now();
   state_.share = 0.0;
+  state_.phaseShare = 0.0;
   state_.phase.clear();
 }
 
 void Progress::within(double share) {
   const std::lock_guard lock(mutex_);
   state_.share = std::clamp(share, 0.0, 1.0);
+  state_.phaseShare = 0.0;
   state_.phase.clear();
 }
 
@@ -115,18 +117,20 @@ void Progress::watch() {
 void Progress::drawBar(bool last) {
   constexpr int kWidth = 30;
   const ProgressState s = now();
-  const int filled = std::clamp(static_cast<int>(kWidth * (s.done + s.share) / std::max(1, s.total)), 0, kWidth);
+  const double share = s.phaseShare > 0.0 ? s.phaseShare : (s.done + s.share) / std::max(1, s.total);
+  const int filled = std::clamp(static_cast<int>(kWidth * share), 0, kWidth);
   std::string bar(static_cast<size_t>(filled), '#');
   bar.resize(kWidth, '.');
   std::fprintf(stderr, "\r%s [%s] %s\033[K%s", what_.c_str(), bar.c_str(), progressText(s).c_str(), last ? "\n" : "");
 }
 
-void Progress::finish() {
+void Progress::end(bool keepsBar) {
   {
     const std::lock_guard lock(mutex_);
     if (finished_) return;
     finished_ = true;
-    if (terminal_) drawBar(true);
+    if (terminal_ && keepsBar) drawBar(true);
+    else if (terminal_) std::fprintf(stderr, "\r\033[K");
   }
   wake_.notify_all();
   watcher_.join();

@@ -45,11 +45,14 @@ class Progress {
   /// How much of the next step is done, for steps that take long: 0 to 1.
   void within(double share);
   /// Says no more.
-  void finish();
+  void finish() { end(true); }
+  /// The same, and takes its bar off the terminal: where what comes next says all.
+  void withdraw() { end(false); }
   double elapsed_s() const;
 
  private:
   using Clock = std::chrono::steady_clock;
+  void end(bool keepsBar);
   void watch();
   ProgressState now() const;
   void drawBar(bool last);

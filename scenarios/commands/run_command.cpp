@@ -301,7 +301,10 @@ int runCommand(const Arguments& arguments) {
         sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) {
           probes.add(r);
           if (sim.cameras.empty() && &r.probe == &sim.probes.back()) progress.step();
-        }, [&](double share) { progress.within(share); }, attempt < kMostStarts);
+        },
+        {[&](double share) { progress.within(share); },
+         [&](const Camera& c, double share) { progress.phase(share < 1.0 ? "planning camera " + c.name : "preparing", share < 1.0 ? share : 0.0); }},
+        attempt < kMostStarts);
     if (!report.broken.empty() && attempt < kMostStarts) {
       learn(report, sim, attempt + 1);
       continue;

@@ -82,14 +82,21 @@ void CheckedLines::add(const std::vector<SightRay>& more, const std::vector<Line
 }
 
 PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
-                   SightRays& rays, int airPlaces)
-    : sim_(simulation), fine_(fine), rays_(rays), airPlaces_(airPlaces), plan_(plan), sights_(simulation, plan_, rays, shortestOf(slots), airPlaces) {
+                   SightRays& rays, int airPlaces, const std::function<void(double)>& tell)
+    : sim_(simulation),
+      fine_(fine),
+      rays_(rays),
+      airPlaces_(airPlaces),
+      tell_(tell),
+      plan_(plan),
+      sights_(simulation, plan_, rays, shortestOf(slots), airPlaces) {
   std::vector<size_t> all;
   for (const ChannelOutput* slot : slots) {
     all.push_back(fits_.size());
     fits_.push_back(std::make_unique<ChannelFit>(simulation, slot->kernel, plan.accuracy));
   }
   sights_.begin(kFirst, eye.camera ? eye.camera->learnt : std::vector<FilmPlace>());
+  tell_(0.1);
   forAll(all, [&](size_t s) { fits_[s]->begin(sights_); });
   hold(all);
 }
@@ -112,6 +119,7 @@ void PlanFits::tighten(const CheckedLines& checked, const std::vector<size_t>& s
 void PlanFits::hold(std::vector<size_t> open) {
   for (int attempt = 0;; ++attempt) {
     for (int n = 0; n < kChecks && !open.empty(); ++n) {
+      tell_(0.5 + 0.5 * (attempt + static_cast<double>(n) / kChecks) / (kTighter + 1));
       sights_.draw(kCheck);
       forAll(open, [&](size_t s) { fits_[s]->check(sights_); });
       std::erase_if(open, [&](size_t s) { return fits_[s]->holds(); });

@@ -1,6 +1,7 @@
 #pragma once
 // The groups of wavelengths of all channels of a plan: fitted to lines of sight as sums of products, then held against the radiance equation itself,
 // which products are simpler than.
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -20,9 +21,9 @@ struct CheckedLines {
 class PlanFits {
  public:
   /// Fits groups within plan.accuracy. `slots`: an output of each; `fine`: the plan of every wavelength;
-  /// `airPlaces`: airPlacesFor() it. All must outlive it.
+  /// `airPlaces`: airPlacesFor() it; `tell`: what part of the work of the constructor or of learn() is done, at most. All must outlive it.
   PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
-           SightRays& rays, int airPlaces);
+           SightRays& rays, int airPlaces, const std::function<void(double part)>& tell);
   /// Fits those slots to half of what they were fitted to, and to what they are off by on these lines.
   void learn(const CheckedLines& checked, const std::vector<size_t>& slots);
   /// The groups as the plan's nodes.
@@ -36,6 +37,7 @@ class PlanFits {
   const NodesOfPlan& fine_;
   SightRays& rays_;
   int airPlaces_;
+  const std::function<void(double)>& tell_;
   Plan plan_;
   Sights sights_;
   std::vector<std::unique_ptr<ChannelFit>> fits_;

@@ -126,15 +126,24 @@ std::vector<const ChannelOutput*> slotsOf(const Plan& plan, const std::vector<Ch
 }
 
 /// Groups of wavelengths within plan.accuracy, terms that nobody would notice left out, and what all that is off by.
-void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const NodesOfPlan& fine, bool keepLights, Plan& plan) {
+void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const NodesOfPlan& fine, bool keepLights, Plan& plan,
+             const PlanProgress& progress) {
   auto seed = static_cast<unsigned long long>(sim.seed);
   SightRays rays(sim, eye, seed);
+  // Fits take most of the time, the last lines and tables the rest; what is done again comes out of that.
+  double from = 0.05, to = 0.6;
+  const auto tell = [&](double share) {
+    if (progress) progress(share);
+  };
+  const std::function<void(double)> tellFits = [&](double part) { tell(from + (to - from) * part); };
+  tell(0.02);
   const int airPlaces = airPlacesFor(sim, fine, rays, plan.accuracy), lastPlaces = std::max(airPlaces, kUsualPlaces);
-  PlanFits fits(sim, eye, plan, slotsOf(plan, outputs), fine, rays, airPlaces);
+  PlanFits fits(sim, eye, plan, slotsOf(plan, outputs), fine, rays, airPlaces, tellFits);
   const Terms all = plan.terms;
   const int lights = plan.lightCount;
   std::vector<size_t> missed;
   for (int attempt = 0; attempt == 0 || !missed.empty(); ++attempt) {
+    tell(to);
     fits.takeNodes(plan);
     plan.terms = all;
     plan.lightCount = lights;
@@ -143,13 +152,14 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
     missed.clear();
     for (size_t s = 0; s < plan.parts.size() && attempt < kAgain; ++s)
       if (plan.parts[s].sum() - plan.parts[s].tables > plan.accuracy - std::min(plan.parts[s].tables, kMended * plan.accuracy)) missed.push_back(s);
+    from = 0.75, to = 0.9;
     if (!missed.empty()) fits.learn(last, missed);
   }
 }
 
 }  // namespace
 
-Plan planFor(const Simulation& sim, const Eye& eye) {
+Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress) {
   const auto& outputs = eye.camera ? eye.camera->outputs : eye.probe->outputs;
   const SpectralSampling& sampling = eye.camera ? eye.camera->spectral : eye.probe->spectral;
   const Location& where = eye.camera ? eye.camera->where : eye.probe->where;
@@ -177,7 +187,7 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
     fine.terms = all;
     const NodesOfPlan exactNodes(sim, fine);
     if (plan.accuracy > 0.0) {
-      fitPlan(sim, eye, outputs, exactNodes, keepLights, plan);
+      fitPlan(sim, eye, outputs, exactNodes, keepLights, plan, progress);
     } else {
       for (const auto& w : fine.weight) plan.fineCount.push_back(static_cast<int>(std::count_if(w.begin(), w.end(), [](double v) { return v != 0.0; })));
       SightRays rays(sim, eye, static_cast<unsigned long long>(sim.seed));
@@ -188,6 +198,7 @@ Plan planFor(const Simulation& sim, const Eye& eye) {
   }
   if (plan.accuracy > 0.0) dropTerms(plan, keepLights);
   plan.fingerprint = planFingerprint(plan);
+  if (progress) progress(1.0);
   return plan;
 }
 

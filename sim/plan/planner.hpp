@@ -1,11 +1,17 @@
 #pragma once
 // Chooses a plan's wavelengths for what a scene shows: makePlan() with groups of wavelengths in the place of samples.
+#include <functional>
+
 #include "sim/plan/sights.hpp"
 
 namespace pitviper {
 
+/// About how much of a plan is made, 0 to 1.
+using PlanProgress = std::function<void(double share)>;
+
 /// A plan for what a camera or a probe sees. With an accuracy in its spectral settings: groups of wavelengths that integrate lines of sight drawn at
 /// random within it, their error on others found (Plan::predictedError). Without: makePlan(). Throws what makePlan() throws.
-Plan planFor(const Simulation& simulation, const Eye& eye);
+/// `progress` is told how much is done, on the calling thread; of a plan at hand only that it is made.
+Plan planFor(const Simulation& simulation, const Eye& eye, const PlanProgress& progress = {});
 
 }  // namespace pitviper

@@ -85,8 +85,8 @@ class Sights {
 
 /// Part of the film's brightest (99th percentile) that an error is measured against where it is dark.
 constexpr double kDark = 1e-3;
-/// What counts as dark in any film [kernel unit x W/(m2 sr)]: a photon of 1 um a day, from a whole steradian on a square metre. Single precision ends at 1e-38.
-constexpr double kDarkest = 1e-24;
+/// What counts as dark in any film [kernel unit x W/(m2 sr)]: to a pixel of 1e-9 m2 sr it sends a photon of 1 um in six years.
+constexpr double kDarkest = 1e-18;
 
 FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel);
 

@@ -16,7 +16,7 @@ class BufferedPass final : public ScenePass {
 
   std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) override;
   /// Null where nothing in the scenario is transparent.
-  const LayerPass* layers() const { return layers_.get(); }
+  LayerPass* layers() const { return layers_.get(); }
 
  private:
   void shade(RenderTarget& into, const RenderTarget& visibility) override;

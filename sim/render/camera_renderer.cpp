@@ -6,10 +6,11 @@
 
 namespace pitviper {
 
-CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene)
+CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
+                               const std::function<void(double)>& planning)
     : simulation_(simulation),
       camera_(camera),
-      plan_(planFor(simulation, {&camera, nullptr})),
+      plan_(planFor(simulation, {&camera, nullptr}, planning)),
       scattering_(simulation, camera, plan_),
       solidAngles_(std::make_shared<const Pinhole::SolidAngles>(camera.pinhole.solidAngles())) {
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
@@ -62,12 +63,10 @@ void CameraRenderer::begin(const WorldState& state) {
   for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = present_[e] && !small_[e];
   if (direct_ && buffered_) pass_ = seesTransparent() ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
   if (reference_) reference_->beginPicture(viewsOfPicture());
+  if (isBuffered() && buffered_->layers()) buffered_->layers()->beginPicture();
   pass_->setState(state_);
   pass_->draw(view_, state_, drawn);
   pass_->startReadback(false);
-  // The zoomed views of small bodies have orders of their own; the picture's is the one worth telling.
-  const LayerPass* layers = isBuffered() ? buffered_->layers() : nullptr;
-  transparentOrder_ = layers && !layers->isEmpty() ? layers->lastOrder().describe() : "";
 }
 
 void CameraRenderer::setWanted(const std::vector<int>& pixels) {
@@ -89,7 +88,7 @@ CameraImage CameraRenderer::finish() {
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
   resolved.slotOfOutput = plan_.slotOfOutput;
   resolved.solidAngles = solidAngles_;
-  resolved.transparentOrder = transparentOrder_;
+  if (isBuffered() && buffered_->layers()) resolved.transparentOrder = buffered_->layers()->describeOrder();
   resolved.scatteredAgain = scattering_.at(state_);
   resolved.accuracy = plan_.accuracy;
   resolved.predictedError = plan_.predictedError;

@@ -12,8 +12,9 @@ namespace pitviper {
 
 class CameraRenderer {
  public:
-  /// The simulation, camera and library must outlive it. Needs a current GlContext.
-  CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene);
+  /// The simulation, camera and library must outlive it. Needs a current GlContext. `planning`: told while a plan is made.
+  CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
+                 const std::function<void(double share)>& planning = {});
   CameraRenderer(const CameraRenderer&) = delete;
   CameraRenderer& operator=(const CameraRenderer&) = delete;
 
@@ -47,7 +48,6 @@ class CameraRenderer {
   View view_;
   std::vector<char> small_, present_;
   std::shared_ptr<const std::vector<char>> wanted_;  ///< one flag per subpixel, row 0 at the bottom; null: all
-  std::string transparentOrder_;
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles_;
 };
 

@@ -184,25 +184,37 @@ class Sorter {
       const auto da = depthAt(a, at), db = depthAt(b, at);
       return da && db ? std::optional(Depths{*da, *db}) : std::nullopt;
     };
-    glm::dvec2 middle(0.0);
-    for (const auto& p : shared) middle += p / static_cast<double>(shared.size());
-    if (const auto d = both(middle)) return d;
-    constexpr int kTries = 8;  // along an edge of each triangle about the middle
-    for (std::size_t k = 0; k < shared.size(); ++k)
-      for (int i = 1; i <= kTries; ++i)
-        for (int j = 0; j <= kTries; ++j) {
-          const glm::dvec2 edge = glm::mix(shared[k], shared[(k + 1) % shared.size()], (j + 0.5) / (kTries + 1));
-          if (const auto d = both(glm::mix(middle, edge, (i - 0.5) / kTries))) return d;
-        }
-    return std::nullopt;
+    std::optional<Depths> found;
+    constexpr int kTries = 8;
+    anywhere(shared, kTries, [&](const glm::dvec2& at) { return (found = both(at)).has_value(); });
+    return found;
   }
 
-  /// Whether two pieces pass through each other: triangles that change sides within what they share, or ways that overlap.
-  bool pass(const Footprint& a, const Footprint& b, const Polygon& shared, const Depths& d) const {
-    if (pieces_[a.piece].medium || pieces_[b.piece].medium) {
-      const double slack = kTouching * std::max(d.a.y, d.b.y);
-      return d.a.y - slack > d.b.x && d.b.y - slack > d.a.x;
-    }
+  /// Visits the middle of an outline and places spread over it, so many along an edge of each triangle about the middle, until one is enough.
+  template <class Visit>
+  static bool anywhere(const Polygon& outline, int along, const Visit& visit) {
+    glm::dvec2 middle(0.0);
+    for (const auto& p : outline) middle += p / static_cast<double>(outline.size());
+    if (visit(middle)) return true;
+    for (std::size_t k = 0; k < outline.size(); ++k)
+      for (int i = 1; i <= along; ++i)
+        for (int j = 0; j <= along; ++j) {
+          const glm::dvec2 edge = glm::mix(outline[k], outline[(k + 1) % outline.size()], (j + 0.5) / (along + 1));
+          if (visit(glm::mix(middle, edge, (i - 0.5) / along))) return true;
+        }
+    return false;
+  }
+
+  /// Whether two pieces pass through each other: triangles that change sides within what they share, or ways that overlap somewhere in it.
+  bool pass(const Footprint& a, const Footprint& b, const Polygon& shared) const {
+    constexpr int kTries = 5;
+    if (pieces_[a.piece].medium || pieces_[b.piece].medium)
+      return anywhere(shared, kTries, [&](const glm::dvec2& at) {
+        const auto da = depthAt(a, at), db = depthAt(b, at);
+        if (!da || !db) return false;
+        const double slack = kTouching * std::max(da->y, db->y);
+        return da->y - slack > db->x && db->y - slack > da->x;
+      });
     double nearer = 0.0, farther = 0.0;  // of the first, by its depth
     for (const auto& at : shared) {
       const double za = 1.0 / glm::dot(a.plane, view_.ray(at.x, at.y)), zb = 1.0 / glm::dot(b.plane, view_.ray(at.x, at.y));
@@ -217,7 +229,7 @@ class Sorter {
     if (shared.empty()) return;
     const auto depths = depthsOf(prints_[i], prints_[j], shared);
     if (!depths) return;
-    crossing_ += pass(prints_[i], prints_[j], shared, *depths);
+    crossing_ += pass(prints_[i], prints_[j], shared);
     const double a = 0.5 * (depths->a.x + depths->a.y), b = 0.5 * (depths->b.x + depths->b.y);
     // Rounding does not decide: what is equally deep is drawn in the order given.
     const bool equal = std::abs(a - b) <= 1e-13 * std::max(a, b);
@@ -294,7 +306,13 @@ class Sorter {
 
 }  // namespace
 
-std::string LayerOrder::describe() const {
+void OrderFaults::add(const OrderFaults& v) {
+  exact = exact && v.exact;
+  crossing = std::max(crossing, v.crossing);
+  cyclic = std::max(cyclic, v.cyclic);
+}
+
+std::string OrderFaults::describe() const {
   if (!exact) return "by middles";
   auto count = [](int n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
   std::string but;

@@ -22,15 +22,21 @@ struct LayerPiece {
   glm::dmat3 cameraFromBody{1.0};
 };
 
-struct LayerOrder {
-  std::vector<std::uint32_t> pieces;  ///< indices of those in view, to be blended in this order
-  /// Pieces of one level don't overlap in the picture: level k is [levels[k], levels[k + 1]).
-  std::vector<std::uint32_t> levels;
+/// What an order is not right about.
+struct OrderFaults {
   bool exact = true;  ///< false where there were too many pieces to compare those that overlap: sorted by their middles only
-  int crossing = 0;   ///< pairs found to pass through each other, on the lines of sight on which they were compared
+  int crossing = 0;   ///< pairs found to pass through each other; with a medium, on some hundred lines of sight over what they share
   int cyclic = 0;     ///< pieces that overlap in a ring: put in order by their middles
   /// "exact", "exact but for 1 pair that passes through each other and 2 pieces in rings", "by middles": for a frame's metadata.
   std::string describe() const;
+  /// Of a picture's views the most.
+  void add(const OrderFaults& ofView);
+};
+
+struct LayerOrder : OrderFaults {
+  std::vector<std::uint32_t> pieces;  ///< indices of those in view, to be blended in this order
+  /// Pieces of one level don't overlap in the picture: level k is [levels[k], levels[k + 1]).
+  std::vector<std::uint32_t> levels;
 };
 
 /// Pieces that overlap in the picture are compared where they overlap (in double precision): right for all pieces that don't pass through

@@ -120,6 +120,10 @@ void LayerPass::order(const View& view, const WorldState& state, const std::vect
   }
   joinMedia(pieces_, groups_);
   order_ = orderLayers(view, pieces_);
+  if (!order_.pieces.empty()) {
+    if (!faults_) faults_.emplace();
+    faults_->add(order_);
+  }
 
   // Where the target is read in order of drawing, only the change between surfaces and media cuts a run; elsewhere each level does.
   runs_.clear();

@@ -3,6 +3,7 @@
 // solid scene, each node blended by its own transmittance. Source: Duvenhage 2006 section 5.3.2; PHYSICS section 2.
 #include <deque>
 #include <memory>
+#include <optional>
 
 #include "sim/gl/blend_path.hpp"
 #include "sim/render/gpu_scene.hpp"
@@ -34,7 +35,9 @@ class LayerPass {
   /// Draws, view, lights and nodes are bound; changes the bound surface tables and the blend, cull and depth state's settings.
   void blend(const Over& over);
 
-  const LayerOrder& lastOrder() const { return order_; }
+  /// Of all views since beginPicture(): the picture's own and those of small bodies; empty where nothing transparent was in them.
+  void beginPicture() { faults_.reset(); }
+  std::string describeOrder() const { return faults_ ? faults_->describe() : ""; }
   /// Those that the scenario's transparent things need: of surfaces, media, media in each other, meshed media.
   std::vector<NamedProgram> programs() const;
 
@@ -59,6 +62,7 @@ class LayerPass {
   std::vector<LayerPiece> pieces_;
   std::vector<std::vector<std::uint32_t>> groups_;
   LayerOrder order_;
+  std::optional<OrderFaults> faults_;
   std::vector<Run> runs_;
   std::deque<RenderTarget> copies_, thicknesses_;
 };

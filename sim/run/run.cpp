@@ -10,14 +10,17 @@
 namespace pitviper {
 
 RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes,
-                    const PictureProgress& progress, bool stopsAtBroken) {
+                    const RunProgress& progress, bool stopsAtBroken) {
   auto scene = std::make_shared<const GpuScene>(sim);
   std::vector<std::unique_ptr<CameraRenderer>> renderers;
   std::vector<Auditor> auditors;
   std::vector<std::unique_ptr<SpectralRenderer>> spectral;  // null for a camera without a spectral image
   for (const auto& camera : sim.cameras) {
-    renderers.push_back(std::make_unique<CameraRenderer>(sim, camera, library, scene));
-    if (progress) renderers.back()->setProgress(progress);
+    const auto planning = [&](double share) {
+      if (progress.planning) progress.planning(camera, share);
+    };
+    renderers.push_back(std::make_unique<CameraRenderer>(sim, camera, library, scene, planning));
+    if (progress.picture) renderers.back()->setProgress(progress.picture);
     auditors.emplace_back(sim, camera, renderers.back()->plan(), library, scene);
     spectral.push_back(camera.spectralImage ? std::make_unique<SpectralRenderer>(sim, camera, library, scene) : nullptr);
   }

@@ -20,8 +20,11 @@ struct ProbeReading {
   double time_s;
   std::vector<double> values;
 };
-/// Called on the drawing thread while a picture takes long (reference mode): the share of it that is done.
-using PictureProgress = std::function<void(double share)>;
+/// Called on the drawing thread while something takes long: with the share that is done of a picture (reference mode), or of a camera's plan.
+struct RunProgress {
+  std::function<void(double share)> picture;
+  std::function<void(const Camera& camera, double share)> planning;  ///< 1: made
+};
 using ProbeSink = std::function<void(const ProbeReading&)>;
 
 /// What audits found, by camera.
@@ -35,6 +38,6 @@ struct RunReport {
 /// found more than was asked. While one frame is handed to the sink on a thread of its own, the next is drawn; frames
 /// arrive in order, one at a time. An exception of the sink ends the run and is thrown here. Returns what audits found.
 RunReport runFrames(const Simulation& simulation, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes = {},
-                    const PictureProgress& progress = {}, bool stopsAtBroken = false);
+                    const RunProgress& progress = {}, bool stopsAtBroken = false);
 
 }  // namespace pitviper

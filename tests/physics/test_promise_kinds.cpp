@@ -122,5 +122,20 @@ TEST(PromiseKinds, AirThatChangesAlongALine) {
   bound("sky of a sun just set, planned at 1 %, worst pixel", worstOff(dusk, "1 %"), 0.01, "asked for");
 }
 
+// A pane whose end stands in a plume is drawn before or behind it as a whole: the frame says so, small as the plume may be, which has a view of its own.
+TEST(PromiseKinds, PaneInAPlumeIsSaid) {
+  const auto orderOf = [](double end_m) {
+    const std::string text =
+        "background: {temperature: 280 K}\nmaterials:\n  p: {transmission: {transmittance: 0.5}, components: []}\nentities:\n"
+        "- {name: plume, shape: {model: sphere, radius: 1 m}, material: jet_exhaust, temperature: 850 K, position: [0 m, 0 m, 0 m]}\n"
+        "- {name: pane, shape: {model: plate, width: 20 m, height: 20 m}, material: p, position: [" +
+        std::to_string(end_m - 5.0) + " m, 8.66 m, 0 m], heading: 240 deg, temperature: 280 K}\n" +
+        camera("[0 m, -60 m, 0 m]", "[0 m, 0 m, 0 m]", "field_of_view: 8 deg, channels: [{name: m, response: {band: [4.2 um, 4.4 um]}}]");
+    return renderImage(scene(text + "accuracy: 1 %\n")).transparentOrder;
+  };
+  EXPECT_EQ(orderOf(0.7), "exact but for 1 pair that passes through each other");
+  EXPECT_EQ(orderOf(-3.0), "exact");
+}
+
 }  // namespace
 }  // namespace pitviper::test
