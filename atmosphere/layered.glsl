@@ -11,7 +11,7 @@ layout(std140, binding = 3) uniform AirBlock {
   vec4 asymmetry[AIR_ASYMMETRIES];
   vec4 black[AIR_BLACKS];  // of nodes: radiance of a black body of the air's temperature at the camera
 } air;
-layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density]
+layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density, column above][vector]
 layout(binding = 21) uniform samplerBuffer airRadiance;  // [azimuth][elevation][range, space last][part][value]
 
 int airElevations() { return int(air.azimuth.z); }
@@ -66,13 +66,15 @@ void airHeight(float height, int finer, out int entry, out float mixed) {
 }
 int airHeights() { return airElevations() * (airRanges() + 1) * AIR_VECTORS; }
 
-vec4 airDensity(float height, int v) {
+// Of the finer heights: the logarithm of the density (0), the column above (1).
+vec4 airFiner(float height, int what, int v) {
   int entry;
   float m;
   airHeight(height, AIR_FINER, entry, m);
-  int at = airHeights() + (AIR_HEIGHTS * AIR_SUNS + entry) * AIR_VECTORS + v;
-  return height > view.earth.y ? vec4(0.0) : exp(mix(texelFetch(airAmounts, at), texelFetch(airAmounts, at + AIR_VECTORS), m));
+  int at = airHeights() + (AIR_HEIGHTS * AIR_SUNS + 2 * entry + what) * AIR_VECTORS + v;
+  return mix(texelFetch(airAmounts, at), texelFetch(airAmounts, at + 2 * AIR_VECTORS), m);
 }
+vec4 airDensity(float height, int v) { return height > view.earth.y ? vec4(0.0) : exp(airFiner(height, 0, v)); }
 
 AirPath airRaised(AirPath p) {
   for (int v = 0; v < AIR_VECTORS; ++v) p.u[v] = exp(log(max(p.w[v], vec4(1.0e-30))) * air.exponent[v]);
@@ -100,17 +102,21 @@ AirPath airToSun(AirPath camera, float height) {
   return airRaised(p);
 }
 
-// Densities along it by Simpson's rule in a few pieces: haze ends within some hundred metres.
+// Between two heights what one has above it more than the other, or, where these are near each other, densities by Simpson's rule. In a few pieces, for ways
+// bend away from the ground; shorter ones at the lower end, where there is most air.
 AirPath airToLight(AirPath camera, float height, float sinElevation, float distance) {
   AirPath p = camera;
-  float curved = 0.5 / view.earth.x, step_ = 0.5 * distance / float(AIR_PIECES);
-  for (int v = 0; v < AIR_VECTORS; ++v) {
-    vec4 sum = vec4(0.0);
-    for (int k = 0; k <= 2 * AIR_PIECES; ++k) {
-      float s = float(k) * step_;
-      sum += (k == 0 || k == 2 * AIR_PIECES ? 1.0 : k % 2 == 0 ? 2.0 : 4.0) * airDensity(height + s * (sinElevation + s * curved), v);
+  float curved = 0.5 / view.earth.x, rise = distance * (sinElevation + distance * curved);
+  for (int k = 0; k < AIR_PIECES; ++k) {
+    float u0 = float(k) / float(AIR_PIECES), u1 = float(k + 1) / float(AIR_PIECES);
+    vec3 s = distance * (abs(rise) < 300.0 ? vec3(u0, 0.5 * (u0 + u1), u1) : rise > 0.0 ? vec3(u0 * u0, 0.5 * (u0 * u0 + u1 * u1), u1 * u1)
+                                                                                    : 1.0 - vec3(u1 * u1, 0.5 * (u0 * u0 + u1 * u1), u0 * u0));
+    vec3 h = height + s * (sinElevation + s * curved);
+    for (int v = 0; v < AIR_VECTORS; ++v) {
+      vec4 mean = abs(h.z - h.x) > 50.0 ? (airFiner(h.x, 1, v) - airFiner(h.z, 1, v)) / (h.z - h.x) * 1.0e3
+                                        : (airDensity(h.x, v) + 4.0 * airDensity(h.y, v) + airDensity(h.z, v)) / 6.0;
+      p.w[v] += (s.z - s.x) * 1.0e-3 * mean;
     }
-    p.w[v] += step_ * 1.0e-3 / 3.0 * sum;
   }
   return airRaised(p);
 }

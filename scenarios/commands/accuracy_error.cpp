@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "sim/plan/fine_grid.hpp"
-#include "sim/plan/sights.hpp"
+#include "sim/plan/plan.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -18,9 +18,11 @@ double rank(const std::vector<double>& sorted, double part) { return sorted[stat
 /// Black bodies in a channel, 1 K apart: the change of slope from one to the next is below 3 %, what is interpolated below 1e-4.
 struct BlackBodies {
   std::vector<double> radiance, slope;
+  double integral = 0.0;  ///< of the kernel
 
   explicit BlackBodies(const Spectrum& kernel) {
     const auto nodes = fineGrid(kernel);
+    for (const auto& n : nodes) integral += n.weight;
     for (double t = ChannelReference::kColdest_K; t <= ChannelReference::kWarmest_K; t += 1.0) {
       double sum = 0.0, derivative = 0.0;
       for (const auto& n : nodes) {
@@ -50,8 +52,8 @@ ErrorFigures figuresOf(std::vector<double>& values) {
 
 ChannelReference::ChannelReference(const Spectrum& kernel, std::vector<double> values) : values_(std::move(values)) {
   std::vector<double> sorted = values_;
-  floor_ = std::max(kDark * figuresOf(sorted).percentile99, kDarkest);
   const BlackBodies bodies(kernel);
+  floor_ = darkFloor(figuresOf(sorted).percentile99, bodies.integral);
   for (double l : values_) slope_.push_back(bodies.slopeAt(l));
 }
 

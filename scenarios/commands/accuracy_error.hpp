@@ -18,7 +18,7 @@ struct ChannelErrors {
 };
 
 /// A channel's reference, and what is held against it.
-///   relative error at a pixel: |L - Lref| / max(Lref, 1e-3 x the 99th percentile of Lref, kDarkest: 1e-18)
+///   relative error at a pixel: |L - Lref| / max(Lref, 1e-3 x the 99th percentile of Lref, 1e-14 W/(m2 sr um) x the kernel's integral)
 ///   temperature difference: |L - Lref| / (integral of kernel dB/dT at the temperature whose black body has Lref)
 class ChannelReference {
  public:

@@ -108,7 +108,7 @@ AirTableSize affordable(AirTableSize size, const Simulation& simulation, const P
 }
 
 AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, const NodesOfPlan& plan, SightRays& rays)
-    : simulation_(simulation), camera_(camera), plan_(plan.plan), rows_(simulation, plan.plan, true), floor_(plan.plan.weight.size(), kDarkest) {
+    : simulation_(simulation), camera_(camera), plan_(plan.plan), rows_(simulation, plan.plan, true), floor_(plan.plan.darkFloors()) {
   std::vector<SightRay> lines;
   const auto& extremes = rays.extremes();
   const size_t film = std::max(kFilm * kFewNodes / static_cast<size_t>(std::max(plan_.nodeCount(), kFewNodes)), kFewest),

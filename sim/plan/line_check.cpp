@@ -88,7 +88,7 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
     return std::vector<double>(sum.radiance().begin(), sum.radiance().end());
   };
   std::vector<std::vector<double>> all, slots;
-  std::vector<double> floor(plan.weight.size(), kDarkest);
+  std::vector<double> floor = plan.darkFloors();
   for (const SightRay& ray : lines) {
     all.push_back(seen(ray, 0));
     slots.push_back(slotsOf(plan, all.back()));
@@ -143,12 +143,13 @@ std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& of
 
   std::vector<LineFigures> figures(plan.weight.size());
   const bool chooses = floor.empty();
+  const std::vector<double> dark = fine.darkFloors();
   for (size_t s = 0; s < figures.size(); ++s) {
     if (chooses) {
       std::vector<double> seen;
       for (const LineSums& l : sums) seen.push_back(l.exact[s]);
       std::sort(seen.begin(), seen.end());
-      floor.push_back(seen.empty() ? kDarkest : std::max(kDark * seen[std::min(seen.size() - 1, seen.size() * 99 / 100)], kDarkest));
+      floor.push_back(std::max(dark[s], seen.empty() ? 0.0 : kDark * seen[std::min(seen.size() - 1, seen.size() * 99 / 100)]));
     }
     LineFigures& f = figures[s];
     for (const LineSums& l : sums) {

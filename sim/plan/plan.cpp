@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "sim/model/coverage.hpp"
 #include "sim/plan/fine_grid.hpp"
@@ -105,6 +106,12 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   }
   for (auto& w : plan.weight) w.resize(plan.nodes.size(), 0.0);
   return plan;
+}
+
+std::vector<double> Plan::darkFloors() const {
+  std::vector<double> floors;
+  for (const auto& w : weight) floors.push_back(darkFloor(0.0, std::accumulate(w.begin(), w.end(), 0.0)));
+  return floors;
 }
 
 }  // namespace pitviper

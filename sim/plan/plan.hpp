@@ -2,6 +2,7 @@
 // What a set of sensor outputs requires of a scene: which terms exist, at which wavelengths they are evaluated and with which
 // weights they become channels. Here the nodes follow the user's `spectral` setting; planFor() (planner.hpp) chooses them for the
 // scene and an accuracy.
+#include <algorithm>
 #include <memory>
 #include <string>
 #include <vector>
@@ -48,6 +49,13 @@ struct AirTableSize {
   bool operator==(const AirTableSize&) const = default;
 };
 
+/// Part of the film's brightest (99th percentile) that an error is measured against where it is dark.
+constexpr double kDark = 1e-3;
+/// What counts as dark in any film [W/(m2 sr um)]: to a pixel of 1e-9 m2 sr a micrometre of it sends a photon in five hours.
+constexpr double kDarkest = 1e-14;
+/// The floor of a channel whose bright pixels have so much; `kernel`: its integral over wavelength, which is the sum of its weights.
+inline double darkFloor(double bright, double kernel) { return std::max(kDark * bright, kDarkest * kernel); }
+
 struct Plan {
   std::vector<SpectralNode> nodes;
   std::vector<NodeBlock> blocks;
@@ -68,6 +76,7 @@ struct Plan {
 
   int nodeCount() const { return static_cast<int>(nodes.size()); }
   int groupCount() const { return (slotCount + 3) / 4; }  ///< vec4 targets
+  std::vector<double> darkFloors() const;                 ///< [slot]: darkFloor() of a film that is dark everywhere
 };
 
 /// The scene at one wavelength.

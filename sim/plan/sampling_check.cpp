@@ -13,7 +13,7 @@ namespace pitviper {
 namespace {
 
 /// c2 / (lambda T) beyond which a black body sends less than 1e-17 of its c1L / lambda^5.
-constexpr double kDark = 40.0;
+constexpr double kWien = 40.0;
 
 /// Integral between the knots of two spectra, eight Gauss points each.
 double fineIntegral(const Spectrum& kernel, const Spectrum& absorption, const std::function<double(double)>& f) {
@@ -41,7 +41,7 @@ std::vector<SamplingNote> checkSampling(const Simulation& sim, const Plan& plan,
     const double temperature_K = e.surfaces.front().temperature_K;
     for (size_t o = 0; o < outputs.size(); ++o) {
       // Where the gas does not shine to speak of (smoke at 290 K in the visible), its error matters to nobody.
-      if (kSecondRadiation_umK / (outputs[o].kernel.supportHigh() * temperature_K) > kDark) continue;
+      if (kSecondRadiation_umK / (outputs[o].kernel.supportHigh() * temperature_K) > kWien) continue;
       for (double part : {0.1, 1.0}) {
         const double thickness_m = part * static_cast<double>(e.boundingRadius_m);
         auto emitted = [&](double w) { return physics::planckRadiance(w, temperature_K) * physics::oneMinusExp(medium->absorption_per_m(w) * thickness_m); };

@@ -20,11 +20,13 @@ constexpr int kTries = 24;
 constexpr int kMostFrames = 400;
 /// Combinations beyond so many, the rarest, have no extremes of their own.
 constexpr size_t kMostExtremes = 40;
+/// Frames in which bodies are looked for that are small there, the first and the last among them.
+constexpr int kSmallFrames = 12;
 /// Steps towards a glint, each shorter than the last.
 constexpr int kGlintSteps = 40;
 constexpr double kShorter = 0.87;
 /// Lamps whose glints are looked for.
-constexpr size_t kGlintLamps = 3;
+constexpr size_t kGlintLamps = 8;
 /// Nothing is lower than this [m].
 constexpr double kGround_m = -100.0;
 
@@ -143,13 +145,20 @@ bool SightRays::isSmall(const SightRay& ray, const Entity& entity, const Pose& p
 
 std::vector<SightRay> SightRays::ofSmallBodies(int count) {
   std::vector<SightRay> lines;
-  for (int tries = 0; eye_.camera && !surfaces_.empty() && static_cast<int>(lines.size()) < count && tries < kTries * count; ++tries) {
-    if (lines.empty() && tries == kTries * kTries) break;
-    const int frame = static_cast<int>(dice_.below(static_cast<size_t>(simulation_.time.frames)));
-    const size_t surface = dice_.below(surfaces_.size()), e = surfaces_[surface].first;
+  if (!eye_.camera || surfaces_.empty()) return lines;
+  const int last = simulation_.time.frames - 1, frames = std::min(simulation_.time.frames, kSmallFrames);
+  for (int k = 0; k < frames; ++k) {
+    const int frame = k == 0 ? 0 : k == 1 ? last : static_cast<int>(dice_.below(static_cast<size_t>(last) + 1));
     const SightRay start = startAt(frame);
-    if (!isSmall(start, simulation_.entities[e], start.state->entities[e])) continue;
-    if (auto ray = aimedAt(frame, surface, false)) lines.push_back(std::move(*ray));
+    std::vector<size_t> small;
+    for (size_t s = 0; s < surfaces_.size(); ++s)
+      if (isSmall(start, simulation_.entities[surfaces_[s].first], start.state->entities[surfaces_[s].first])) small.push_back(s);
+    for (int n = 0; !small.empty() && n < count / frames; ++n)
+      for (int tries = 0; tries < kTries; ++tries)
+        if (auto ray = aimedAt(frame, small[dice_.below(small.size())], false)) {
+          lines.push_back(std::move(*ray));
+          break;
+        }
   }
   return lines;
 }
@@ -242,30 +251,57 @@ const std::vector<SightRay>& SightRays::extremes() {
   return extremes_;
 }
 
-std::optional<SightRay> SightRays::glint(const std::vector<size_t>& combination, size_t light) {
-  const auto shine = [&](const SightRay& r) { return glintOf(simulation_, *r.state, r.line.hits.solid, r.line.direction, light); };
+namespace {
+
+/// What a ray meets of a surface.
+const Hit* hitOn(const SightRay& ray, std::pair<int, int> surface) {
+  const auto is = [&](const Hit& h) { return h.entity == surface.first && h.surface == surface.second; };
+  if (is(ray.line.hits.solid)) return &ray.line.hits.solid;
+  const auto at = std::find_if(ray.line.hits.layers.begin(), ray.line.hits.layers.end(), is);
+  return at == ray.line.hits.layers.end() ? nullptr : &*at;
+}
+
+}  // namespace
+
+std::optional<SightRay> SightRays::glint(const std::vector<size_t>& combination, std::pair<int, int> surface, size_t light) {
+  const auto offOf = [&](const SightRay& r) {
+    const Hit* hit = hitOn(r, surface);
+    return hit ? offMirror(simulation_, *r.state, *hit, r.line.direction, light) : INFINITY;
+  };
   size_t best = combination.front();
-  double most = 0.0;
+  double least = INFINITY;
   for (size_t c : combination)
-    if (const double s = shine(candidates_[c].ray); s > most) most = s, best = c;
-  if (!(most > 0.0)) return {};
+    if (const double off = offOf(candidates_[c].ray); off < least) least = off, best = c;
+  if (!(least < INFINITY)) return {};
   SightRay ray = candidates_[best].ray;
-  const Hit& hit = ray.line.hits.solid;
-  double step = std::min(0.3 * static_cast<double>(simulation_.entities[static_cast<size_t>(hit.entity)].boundingRadius_m) / hit.distance, 0.05);
+  const double distance = hitOn(ray, surface)->distance;
+  double step = std::min(0.3 * static_cast<double>(simulation_.entities[static_cast<size_t>(surface.first)].boundingRadius_m) / distance, 0.05);
   for (int n = 0; n < kGlintSteps; ++n, step *= kShorter) {
     SightRay next = ray;
     const glm::dvec3 aside(dice_.unit() - 0.5, dice_.unit() - 0.5, dice_.unit() - 0.5);
     next.line.direction = glm::normalize(ray.line.direction + 2.0 * step * aside);
-    if (!inView(next, hit.distance * next.line.direction)) continue;
+    if (!inView(next, distance * next.line.direction)) continue;
     cast(next);
-    if (candidate(next).things == candidates_[best].things && shine(next) > most) {
-      most = shine(next);
-      ray = std::move(next);
-    }
+    if (candidate(next).things != candidates_[best].things || !(offOf(next) < least)) continue;
+    least = offOf(next);
+    ray = std::move(next);
   }
+  if (!(glintOf(simulation_, *ray.state, *hitOn(ray, surface), ray.line.direction, light) > 0.0)) return {};
   ray.fromFilm = false;
   ray.glints = true;
   return ray;
+}
+
+void SightRays::findGlints(const std::vector<size_t>& combination) {
+  const RayHits& hits = candidates_[combination.front()].ray.line.hits;
+  std::vector<std::pair<int, int>> glossy;
+  if (isGlossy(simulation_, hits.solid)) glossy.emplace_back(hits.solid.entity, hits.solid.surface);
+  for (const Hit& h : hits.layers)
+    if (isGlossy(simulation_, h)) glossy.emplace_back(h.entity, h.surface);
+  for (const auto& surface : glossy)
+    for (size_t l = 0; l < countLights(simulation_); ++l)
+      if (l < kGlintLamps || l == simulation_.lights.size())
+        if (auto ray = glint(combination, surface, l)) extremes_.push_back(std::move(*ray));
 }
 
 void SightRays::findExtremes() {
@@ -328,9 +364,7 @@ void SightRays::findExtremes() {
         if (*low == *high) break;
       }
     }
-    for (size_t l = 0; l < countLights(simulation_); ++l)
-      if (l < kGlintLamps || l == simulation_.lights.size())
-        if (auto ray = glint(*combination, l)) all.push_back(std::move(*ray));
+    findGlints(*combination);
   }
 }
 

@@ -76,8 +76,9 @@ class SightRays {
   void cast(SightRay& ray) const;
   void survey();
   void findExtremes();
-  /// Where a light glints most, about; none where it does not.
-  std::optional<SightRay> glint(const std::vector<size_t>& combination, size_t light);
+  /// Where a light glints most on a surface (entity and surface), about; none where it does not.
+  std::optional<SightRay> glint(const std::vector<size_t>& combination, std::pair<int, int> surface, size_t light);
+  void findGlints(const std::vector<size_t>& combination);
   Candidate candidate(SightRay ray) const;
   glm::dvec3 placeOn(const WorldState& state, size_t surface);
   void stretch(SightRay& ray, double distance_m);

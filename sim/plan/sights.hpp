@@ -1,5 +1,6 @@
 #pragma once
 // Lines of sight of a scene as sums of products: what a plan's wavelengths must integrate.
+#include <algorithm>
 #include <functional>
 #include <map>
 #include <string>
@@ -82,11 +83,6 @@ class Sights {
   double shortest_um_;
   int airPlaces_;
 };
-
-/// Part of the film's brightest (99th percentile) that an error is measured against where it is dark.
-constexpr double kDark = 1e-3;
-/// What counts as dark in any film [kernel unit x W/(m2 sr)]: to a pixel of 1e-9 m2 sr it sends a photon of 1 um in six years.
-constexpr double kDarkest = 1e-18;
 
 FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel);
 

@@ -11,7 +11,7 @@ struct Factor {
     Planck,         ///< black body at x [K]
     Emission,       ///< of a material (`of`) at x [K] seen from its normal: emissivity and black body as one spectrum
     Dome,           ///< of a material: reflected uniform sky, reflectance and ambient light as one
-    Emissivity,     ///< of a material, given, at a view angle x [rad]; modifier at 1
+    Emissivity,     ///< of a material at a view angle x [rad], given or what is neither reflected nor let through; modifiers at 1
     Hemispherical,  ///< of a reflection component at a view angle x
     Column,         ///< of a reflection component at its two angles x and y
     Transmittance,  ///< of a material at a view angle x; modifier at 1

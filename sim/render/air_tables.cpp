@@ -10,8 +10,7 @@ namespace pitviper {
 namespace {
 
 constexpr double kNothing = 1e-30;
-/// Densities by height have so many steps for one of those to the sun, and ways to lamps so many pieces: what these hold is told to 2e-3 where haze ends
-/// within a few hundred metres (tests/gpu/test_ways_to_lamps.cpp).
+/// Densities by height have so many steps for one of those to the sun, and ways to lamps so many pieces (tests/gpu/test_ways_to_lamps.cpp).
 constexpr int kFiner = 8, kPieces = 4;
 
 }  // namespace
@@ -43,10 +42,24 @@ void AirTables::addHeights(std::vector<float>& out) const {
   };
   for (int h = 0; plan_.sunLegs && h < SunLegs::kHeights; ++h)
     for (int e = 0; e < SunLegs::kElevations; ++e) put(plan_.sunLegs->logAt(e, h));
-  for (int h = 0; h <= (SunLegs::kHeights - 1) * kFiner; ++h) {
-    AirAmounts density = path.densities(SunLegs::heightAt(static_cast<double>(h) / kFiner, path.top_m()));
-    for (double& d : density.amount) d = std::log(std::max(d, kNothing));
-    put(density);
+  // From the top down, what lies above by Simpson's rule.
+  const auto heightOf = [&](double h) { return SunLegs::heightAt(h / kFiner, path.top_m()); };
+  const int last = (SunLegs::kHeights - 1) * kFiner;
+  std::vector<AirAmounts> densities(static_cast<size_t>(last) + 1), columns(densities.size());
+  for (int h = last; h >= 0; --h) {
+    const auto at = static_cast<size_t>(h);
+    densities[at] = path.densities(heightOf(h));
+    if (h == last) continue;
+    const double low = heightOf(h), high = heightOf(h + 1);
+    const AirAmounts middle = path.densities(0.5 * (low + high));
+    for (size_t k = 0; k < kMostAirAmounts; ++k)
+      columns[at].amount[k] =
+          columns[at + 1].amount[k] + (high - low) * 1e-3 / 6.0 * (densities[at].amount[k] + 4.0 * middle.amount[k] + densities[at + 1].amount[k]);
+  }
+  for (size_t h = 0; h < columns.size(); ++h) {
+    for (double& d : densities[h].amount) d = std::log(std::max(d, kNothing));
+    put(densities[h]);
+    put(columns[h]);
   }
 }
 

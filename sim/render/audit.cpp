@@ -98,7 +98,7 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
     if (image.audit[slot].pixels > 0) continue;  // another output of the same kernel
     std::vector<double> sorted = image.slots[slot], errors;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 99 / 100), sorted.end());
-    const double floor = std::max(kDark * sorted[sorted.size() * 99 / 100], kDarkest);
+    const double floor = std::max(kDark * sorted[sorted.size() * 99 / 100], reference_->plan().darkFloors()[static_cast<size_t>(exact.slotOfOutput[o])]);
     SlotAudit& audit = image.audit[slot];
     for (size_t k = 0; k < pixels.size(); ++k) {
       const auto p = static_cast<size_t>(pixels[k]);

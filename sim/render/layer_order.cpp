@@ -31,11 +31,12 @@ double twiceArea(const Polygon& p) {
 
 /// A piece's footprint in the picture [pixels], counter-clockwise, and what is needed to tell how deep it is there.
 struct Footprint {
-  std::uint32_t piece;
+  std::uint32_t piece = 0;
   Polygon outline;
-  glm::dvec2 low, high;
-  double middle_m;        ///< range of its middle
-  glm::dvec3 plane{0.0};  ///< of a triangle: 1 / depth = plane . (tan x, tan y, -1)
+  glm::dvec2 low{0.0}, high{0.0};
+  double middle_m = 0.0;                   ///< range of its middle
+  glm::dvec2 depths{INFINITY, -INFINITY};  ///< least and greatest [m]
+  glm::dvec3 plane{0.0};                   ///< of a triangle: 1 / depth = plane . (tan x, tan y, -1)
 };
 
 /// What is left of a convex polygon on one side of the line from a to b.
@@ -111,7 +112,8 @@ class Sorter {
 
   std::optional<Footprint> footprint(std::uint32_t index) const {
     const LayerPiece& piece = pieces_[index];
-    Footprint f{index, {}, {}, {}, 0.0};
+    Footprint f;
+    f.piece = index;
     if (piece.medium) {
       const glm::dvec3 centre = piece.origin + piece.cameraFromBody * (0.5 * (piece.low + piece.high));
       f.middle_m = glm::length(centre);
@@ -119,8 +121,10 @@ class Sorter {
       for (int c = 0; c < 8; ++c) {
         const glm::dvec3 body((c & 1) ? piece.high.x : piece.low.x, (c & 2) ? piece.high.y : piece.low.y, (c & 4) ? piece.high.z : piece.low.z);
         const glm::dvec3 p = piece.origin + piece.cameraFromBody * body;
+        f.depths = {std::min(f.depths.x, -p.z), std::max(f.depths.y, -p.z)};
         if (-p.z < view_.near_m) {  // the camera is inside, or nearly: it may fill the picture
           f.outline = {{0.0, 0.0}, {end.x, 0.0}, end, {0.0, end.y}};
+          f.depths = {-INFINITY, INFINITY};
           break;
         }
         f.outline.push_back(onFilm(p));
@@ -129,7 +133,10 @@ class Sorter {
     } else {
       // Cut at the near plane, then to the film.
       std::vector<glm::dvec3> in, cut;
-      for (const auto& c : piece.corner) in.push_back(c);
+      for (const auto& c : piece.corner) {
+        in.push_back(c);
+        f.depths = {std::min(f.depths.x, -c.z), std::max(f.depths.y, -c.z)};
+      }
       for (std::size_t i = 0; i < 3; ++i) {
         const glm::dvec3 &u = in[i], &v = in[(i + 1) % 3];
         const double su = -u.z - view_.near_m, sv = -v.z - view_.near_m;
@@ -208,6 +215,7 @@ class Sorter {
   /// Whether two pieces pass through each other: triangles that change sides within what they share, or ways that overlap somewhere in it.
   bool pass(const Footprint& a, const Footprint& b, const Polygon& shared) const {
     constexpr int kTries = 5;
+    if (a.depths.x > b.depths.y || b.depths.x > a.depths.y) return false;
     if (pieces_[a.piece].medium || pieces_[b.piece].medium)
       return anywhere(shared, kTries, [&](const glm::dvec2& at) {
         const auto da = depthAt(a, at), db = depthAt(b, at);

@@ -131,8 +131,11 @@ INSTANTIATE_TEST_SUITE_P(Scenarios, Planned, ::testing::Values("first_light", "c
 TEST_F(Planned, PerMilleInKelvin) {
   const Simulation sim = readScenario(std::string(PITVIPER_SOURCE_DIR) + "/scenarios/first_light.yaml", {}, findLibraries());
   Camera camera = sim.cameras[0];
+  // Visible light is no measure of temperature, and takes most of the time.
+  std::erase_if(camera.outputs, [](const ChannelOutput& o) { return o.channel == "vis"; });
   Plan plan;
   const auto errors = errorsAt(sim, camera, 0.001, plan);
+  ASSERT_EQ(errors.size(), 2u);
   for (size_t s : {0u, 1u})
     bound("first_light, slot " + std::to_string(s) + ", 0.1 %: as a temperature [K]", kelvinOf(plan, s, errors[s].drawn.back()), 0.1,
           "of a body at 300 K, worst pixel");

@@ -24,11 +24,17 @@ TEST(AccuracyError, RelativeToThePixelOrToAThousandthOfTheScene) {
   EXPECT_FALSE(e.kelvin) << "no body is that cold and that bright in visible light";
 }
 
-// Where single precision has no digits left there is nothing to be off by: a channel as dark as that is not held to itself.
+// What sends a pixel a photon in hours there is nothing to be off by: a channel as dark as that is not held to itself.
 TEST(AccuracyError, OfWhatIsDarkerThanAnyDetectorSees) {
-  const ChannelReference dark(Spectrum::band(0.5, 0.6), std::vector<double>(100, 1e-35)), dim(Spectrum::band(0.5, 0.6), std::vector<double>(100, 1e-29));
-  EXPECT_NEAR(dark.errors(std::vector<double>(100, 1.1e-35)).relative.maximum, 1e-6, 1e-12);
-  EXPECT_NEAR(dim.errors(std::vector<double>(100, 1.1e-29)).relative.maximum, 0.1, 1e-9);
+  // A band of 0.1 um: a floor of 1e-15 W/(m2 sr); in photons a joule (a kernel 4e18 times as large) as much larger.
+  for (const double unit : {1.0, 4e18}) {
+    const Spectrum band = Spectrum::band(0.5, 0.6) * unit;
+    const auto largest = [&](double l) {
+      return ChannelReference(band, std::vector<double>(100, unit * l)).errors(std::vector<double>(100, 1.1 * unit * l)).relative.maximum;
+    };
+    EXPECT_NEAR(largest(1e-20), 1e-6, 1e-9);
+    EXPECT_NEAR(largest(1e-14), 0.1, 1e-9);
+  }
 }
 
 // Against the classical series of the band's radiance; its slope by a difference of 0.02 K.

@@ -42,9 +42,14 @@ Meeting meet(uint triangle, vec3 q, vec3 d) {
   float inverse = det != 0.0 ? 1.0 / det : 0.0;
   float v = clamp(dot(s, p) * inverse, 0.0, 1.0);
   float w = clamp(dot(d, r) * inverse, 0.0, 1.0 - v);
-  m.along = dot(e2, r) * inverse;
   m.weight = vec3(1.0 - v - w, v, w);
   m.geometric = cross(e1, e2);
+  // On the triangle's plane: its digits are those of the place, not of a triangle that may be 200 km long. On edge no farther than its corners.
+  float facing = dot(m.geometric, d), d2 = dot(d, d);
+  vec3 corners = vec3(0.0, dot(e1, d), dot(e2, d)) - dot(s, d);
+  float slack = 1.0e-6 * sqrt(d2) * (length(e1) + length(e2) + length(s));
+  float first = min(corners.x, min(corners.y, corners.z)) - slack, last = max(corners.x, max(corners.y, corners.z)) + slack;
+  m.along = clamp(facing != 0.0 ? -dot(m.geometric, s) / facing : dot(e2, r) * inverse, first / d2, last / d2);
   return m;
 }
 

@@ -53,12 +53,13 @@ void lookAt(uvec2 id, vec2 pixel) {
   uv_ = vec2(0.0);
   range_ = max(ground, 1.0e-6);
   if (id.x != 0u) {
-    Meeting m = meet(id.y, pointOnPlane(draw_), d);
+    vec3 q = pointOnPlane(draw_);
+    Meeting m = meet(id.y, q, d);
     vec4 a = vertices[m.corner.x], b = vertices[m.corner.y], c = vertices[m.corner.z];
     vec4 na = vertices[m.corner.x + 1u], nb = vertices[m.corner.y + 1u], nc = vertices[m.corner.z + 1u];
     vec3 w = m.weight;
     facet_ = m.geometric;
-    point_ = w.x * a.xyz + w.y * b.xyz + w.z * c.xyz;
+    point_ = q + m.along * d;
     range_ = max((planeOf(draw_) + m.along) * rayLength_, 1.0e-6);
     uv_ = vec2(w.x * a.w + w.y * b.w + w.z * c.w, w.x * na.w + w.y * nb.w + w.z * nc.w);
     vec3 n = w.x * na.xyz + w.y * nb.xyz + w.z * nc.xyz;

@@ -94,11 +94,15 @@ std::size_t ReferenceShader::looks(const LineOfSight& line) const {
   std::size_t all = things(line.hits);
   const auto add = [&all](std::size_t number) { all = all * 0x9e3779b97f4a7c15u + number; };
   const auto look = [&](const Hit& hit) {
-    for (size_t l = 0; hit.entity >= 0 && l < countLights(simulation_); ++l) {
+    if (hit.entity < 0 ||
+        simulation_.materialOf(simulation_.entities[static_cast<size_t>(hit.entity)].surfaces[static_cast<size_t>(hit.surface)]).reflections.empty())
+      return;
+    for (size_t l = 0; l < countLights(simulation_); ++l) {
+      const bool sun = l == simulation_.lights.size();
+      if (!sun && !(state_.lightLevels[l] > 0.0)) continue;
       const double glint = glintOf(simulation_, state_, hit, line.direction, l);
       add(glint > kNoGlint ? static_cast<std::size_t>(kGlintSteps * (std::log2(glint / kNoGlint) + 1.0)) : 0);
       if (!plan_.terms.shadows) continue;
-      const bool sun = l == simulation_.lights.size();
       const glm::dvec3 to = sun ? simulation_.sun->toSun : state_.lights[l] - hit.point;
       const double distance = glm::length(to);
       add(distance > 0.0 && glm::dot(to, hit.normal) > 0.0 &&
