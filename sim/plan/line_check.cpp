@@ -149,7 +149,7 @@ std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& of
       std::vector<double> seen;
       for (const LineSums& l : sums) seen.push_back(l.exact[s]);
       std::sort(seen.begin(), seen.end());
-      floor.push_back(std::max(dark[s], seen.empty() ? 0.0 : kDark * seen[std::min(seen.size() - 1, seen.size() * 99 / 100)]));
+      floor.push_back(std::max(dark[s], seen.empty() ? 0.0 : kDark * seen[seen.size() * kBrightPercent / 100]));
     }
     LineFigures& f = figures[s];
     for (const LineSums& l : sums) {

@@ -29,7 +29,7 @@ constexpr int kUsualPlaces = 24;
 /// short waves see it bend where long ones don't. On some of the film's lines and the extremes.
 int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays, double accuracy);
 
-/// One per slot. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: per slot; where empty it becomes 1e-3 of the 99th percentile of
+/// One per slot. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: per slot; where empty it becomes 1e-3 of a high percentile of
 /// these lines, but at least kDarkest. `places`: at which the air is looked at, alike on both sides, so that only wavelengths differ. Terms are those of
 /// `fine`; `plan` may leave kinds of terms out, all of them or by node.
 std::vector<LineFigures> checkLines(const Simulation& simulation, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines,

@@ -121,7 +121,7 @@ double Sights::floorOf(const FineGrid& grid, const std::vector<int>& absorbers) 
   std::copy_if(book_.sights.begin(), book_.sights.end(), std::back_inserter(drawn), [](const Sight& s) { return s.fromFilm; });
   std::vector<double> film = fineIntegrals(whole(grid, absorbers, drawn));
   std::sort(film.begin(), film.end());
-  return darkFloor(film.empty() ? 0.0 : film[std::min(film.size() - 1, film.size() * 99 / 100)], std::accumulate(grid.weight.begin(), grid.weight.end(), 0.0));
+  return darkFloor(film.empty() ? 0.0 : film[film.size() * kBrightPercent / 100], std::accumulate(grid.weight.begin(), grid.weight.end(), 0.0));
 }
 
 SpectralProblem Sights::problem(const FineGrid& grid, const std::vector<int>& absorbers, double floor, size_t first) const {
