@@ -56,49 +56,58 @@ AirPath airFromCamera(float range) {
 
 AirPath airBeyond(AirPath near, float nearRange, float height, float sinElevation, float length) { return airFromCamera(nearRange + length); }
 
-// Entry of a table by height: linear between heights, which lie closer together near the ground; `finer`: so many steps for each of these.
-void airHeight(float height, int finer, out int entry, out float mixed) {
-  int last = (AIR_HEIGHTS - 1) * finer;
-  float t = clamp(sqrt(max(height - air.heights.x, 0.0)) * air.heights.y * float(finer), 0.0, float(last));
+// Entry of a table by height: linear between heights, which lie closer together near the ground.
+void airHeight(float height, out int entry, out float mixed) {
+  int last = AIR_HEIGHTS - 1;
+  float t = clamp(sqrt(max(height - air.heights.x, 0.0)) * air.heights.y, 0.0, float(last));
   entry = min(int(t), last - 1);
   float from = float(entry), t2 = t * t, from2 = from * from;
   mixed = clamp((t2 - from2) / (2.0 * from + 1.0), 0.0, 1.0);
 }
 int airHeights() { return airElevations() * (airRanges() + 1) * AIR_VECTORS; }
 
-// Of the finer heights: the logarithm of the density (0), the column above (1).
-vec4 airFiner(float height, int what, int v) {
+// The logarithm of the density at a height (0), the column above (1).
+vec4 airByHeight(float height, int what, int v) {
   int entry;
   float m;
-  airHeight(height, AIR_FINER, entry, m);
+  airHeight(height, entry, m);
   int at = airHeights() + (AIR_HEIGHTS * AIR_SUNS + 2 * entry + what) * AIR_VECTORS + v;
   return mix(texelFetch(airAmounts, at), texelFetch(airAmounts, at + 2 * AIR_VECTORS), m);
 }
-vec4 airDensity(float height, int v) { return height > view.earth.y ? vec4(0.0) : exp(airFiner(height, 0, v)); }
+vec4 airDensity(float height, int v) { return height > view.earth.y ? vec4(0.0) : exp(airByHeight(height, 0, v)); }
 
 AirPath airRaised(AirPath p) {
   for (int v = 0; v < AIR_VECTORS; ++v) p.u[v] = exp(log(max(p.w[v], vec4(1.0e-30))) * air.exponent[v]);
   return p;
 }
 
-// Cubic between elevations, as SunLegs::at().
-AirPath airToSun(AirPath camera, float height) {
-  AirPath p = camera;
-  if (AIR_SUNS == 0) return p;
+// Towards an elevation from the level on, cubic between elevations as SunLegs::upwards().
+void airUpwards(float height, float sine, out vec4 w[AIR_VECTORS]) {
   int entry;
-  float m, x = clamp((sunElevation_ - air.heights.z) * air.heights.w, 0.0, float(AIR_SUNS - 1));
-  airHeight(height, 1, entry, m);
-  int at = airHeights() + entry * AIR_SUNS * AIR_VECTORS;
-  int e = clamp(int(x) - 1, 0, max(AIR_SUNS - 4, 0));
+  float m, x = clamp((sine - air.heights.z) * air.heights.w, 0.0, float(AIR_SUNS - 1));
+  airHeight(height, entry, m);
+  int e = clamp(int(x) - 1, 0, max(AIR_SUNS - 4, 0)), at = airHeights() + (entry * AIR_SUNS + e) * AIR_VECTORS;
   float f = x - float(e);
   vec4 weight = vec4((f - 1.0) * (f - 2.0) * (3.0 - f) / 6.0, f * (f - 2.0) * (f - 3.0) / 2.0, f * (f - 1.0) * (3.0 - f) / 2.0, f * (f - 1.0) * (f - 2.0) / 6.0);
   for (int v = 0; v < AIR_VECTORS; ++v) {
-    int low = at + e * AIR_VECTORS + v, above = low + AIR_SUNS * AIR_VECTORS;
-    vec4 l = vec4(0.0);
+    int low = at + v, above = low + AIR_SUNS * AIR_VECTORS;
+    vec4 root = vec4(0.0);
     for (int j = 0; j < 4; ++j)
-      l += weight[j] * mix(texelFetch(airAmounts, low + j * AIR_VECTORS), texelFetch(airAmounts, above + j * AIR_VECTORS), m);
-    p.w[v] += exp(l);
+      root += weight[j] * mix(texelFetch(airAmounts, low + j * AIR_VECTORS), texelFetch(airAmounts, above + j * AIR_VECTORS), m);
+    root = max(root, vec4(0.0));
+    w[v] = root * root;
   }
+}
+
+// A way that goes down first has twice what lies above its lowest point, less what lies behind it.
+AirPath airToSun(AirPath camera, float height) {
+  AirPath p = camera;
+  if (AIR_SUNS == 0) return p;
+  vec4 w[AIR_VECTORS], half_[AIR_VECTORS];
+  float sine = sunElevation_;
+  airUpwards(height, abs(sine), w);
+  if (sine < 0.0) airUpwards(height - (view.earth.x + height) * sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0))), 0.0, half_);
+  for (int v = 0; v < AIR_VECTORS; ++v) p.w[v] += sine < 0.0 ? max(2.0 * half_[v] - w[v], vec4(0.0)) : w[v];
   return airRaised(p);
 }
 
@@ -113,7 +122,7 @@ AirPath airToLight(AirPath camera, float height, float sinElevation, float dista
                                                                                     : 1.0 - vec3(u1 * u1, 0.5 * (u0 * u0 + u1 * u1), u0 * u0));
     vec3 h = height + s * (sinElevation + s * curved);
     for (int v = 0; v < AIR_VECTORS; ++v) {
-      vec4 mean = abs(h.z - h.x) > 50.0 ? (airFiner(h.x, 1, v) - airFiner(h.z, 1, v)) / (h.z - h.x) * 1.0e3
+      vec4 mean = abs(h.z - h.x) > 50.0 ? (airByHeight(h.x, 1, v) - airByHeight(h.z, 1, v)) / (h.z - h.x) * 1.0e3
                                         : (airDensity(h.x, v) + 4.0 * airDensity(h.y, v) + airDensity(h.z, v)) / 6.0;
       p.w[v] += (s.z - s.x) * 1.0e-3 * mean;
     }

@@ -66,10 +66,13 @@ const std::map<std::string, Command>& commands() {
         "  --shaders  also the text of the shading program\n"}},
       {"info",
        {infoCommand, "what is in a frame, or what this machine draws with",
-        "pitviper info [FILE.exr [--at COLUMN,ROW]]\n\nLayers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver, its "
+        "pitviper info [FILE.exr [--at COLUMN,ROW [--terms SCENARIO.yaml [--set path.to.key=value]...]]]\n\nLayers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver, its "
         "limits, and the way\n"
         "in which transparent things are blended (fetch, barrier or ping_pong; PITVIPER_BLEND chooses another).\n\n"
-        "  --at COLUMN,ROW  the values of one pixel with their units; (0,0) is the top left\n"}},
+        "  --at COLUMN,ROW  the values of one pixel with their units; (0,0) is the top left\n"
+        "  --terms SCENARIO.yaml  what that pixel is made of: emission, each light's reflection, the dome's, the air's emission, scattered sunlight,\n"
+        "                   media and lamps in view, by the body that sends it, worked out in double precision at every wavelength; the scenario must be\n"
+        "                   the one that the frame was drawn from, with the same --set, and its tables and meshes as they were\n"}},
       {"integrate",
        {integrateCommand, "apply another sensor to a spectral image",
         "pitviper integrate FILE_spectral.exr SENSOR.yaml [--out FILE.exr] [--preview]\n\n"

@@ -3,6 +3,7 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
+#include "scenarios/commands/pixel_terms.hpp"
 #include "sim/gl/blend_path.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/exr.hpp"
@@ -78,12 +79,16 @@ void printMachine() {
 }  // namespace
 
 int infoCommand(const Arguments& arguments) {
-  const Options o("info", arguments, {{"--at"}}, 0, 1);
+  const Options o("info", arguments, {{"--at"}, {"--terms"}, {"--set", true, true}}, 0, 1);
   if (o.words().empty()) {
     if (o.has("--at")) throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "a pixel of no file", "info FILE.exr --at COLUMN,ROW", "name the file");
     printMachine();
     return 0;
   }
+  if (o.has("--terms") && !o.has("--at"))
+    throw UserError({"--terms " + o.value("--terms"), 0, 0, -1}, "parts of no pixel", "info FILE.exr --at COLUMN,ROW --terms SCENARIO.yaml", "add --at");
+  if (o.has("--set") && !o.has("--terms"))
+    throw UserError({"--set", 0, 0, -1}, "a change of no scenario", "--set beside --terms SCENARIO.yaml", "add --terms, or remove --set");
   const ExrImage image = readExr(o.words()[0]);
   if (o.has("--at")) {
     std::string text = o.value("--at");
@@ -94,6 +99,10 @@ int infoCommand(const Arguments& arguments) {
     if (x < 0 || y < 0 || x >= image.width || y >= image.height)
       throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "outside the picture",
                       "column 0 to " + std::to_string(image.width - 1) + ", row 0 to " + std::to_string(image.height - 1), "choose a pixel of it");
+    if (o.has("--terms")) {
+      printPixelTerms(image, o.words()[0], static_cast<int>(x), static_cast<int>(y), o.value("--terms"), o.values("--set"));
+      return 0;
+    }
     for (const auto& layer : image.layers)
       std::printf("%-32s %.9g %s\n", layer.name.c_str(),
                   static_cast<double>(layer.pixels[static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)]),

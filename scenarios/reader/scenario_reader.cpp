@@ -10,6 +10,7 @@
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sensors/quantity.hpp"
+#include "sim/model/scene_fingerprint.hpp"
 
 namespace pitviper {
 
@@ -141,6 +142,9 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
   }
   if (sim.cameras.empty() && sim.probes.empty())
     throw UserError(tree.where, "the scenario has neither a camera nor a probe", "at least one under 'cameras:'", "add a camera");
+  Fingerprint content;
+  addTo(content, sim);
+  sim.content = sha256(content.bytes());
   return sim;
 }
 

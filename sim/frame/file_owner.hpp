@@ -10,6 +10,8 @@ namespace pitviper {
 /// Names under which frames (attributes), previews (texts) and tables of probes (first line) keep them.
 inline constexpr const char* kScenarioName = "pitviper.scenario";
 inline constexpr const char* kScenarioHash = "pitviper.scenario_sha256";
+/// And frames what it was made of.
+inline constexpr const char* kScenarioContent = "pitviper.scenario_content";
 
 /// The first line of a table of a probe, with its end.
 std::string tableMark(const Simulation& simulation);

@@ -126,6 +126,7 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   add("pitviper.version", std::string(kVersion));
   add(kScenarioName, sim.name);
   add(kScenarioHash, sim.sha256);
+  add(kScenarioContent, sim.content);
   add("pitviper.seed", std::to_string(sim.seed));
   add("pitviper.camera", camera.name);
   add("pitviper.frame", frame.number);

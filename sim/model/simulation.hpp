@@ -99,7 +99,8 @@ enum class RenderMode { Auto, Direct, Buffered };
 struct Simulation {
   std::string name;
   std::string file;
-  std::string sha256;
+  std::string sha256;   ///< of its text, of what it extends, and of what was set from outside
+  std::string content;  ///< of all that it was made of, tables and meshes whole
   long long seed = 0;
   RenderMode mode = RenderMode::Auto;
   bool shadows = true;  ///< opaque bodies cast them

@@ -16,13 +16,13 @@ constexpr double kRanges_m[] = {0.0, 50.0, 200.0, 600.0, 1500.0, 3e3, 5e3, 8e3, 
 
 }  // namespace
 
-Spectrum meanSky(const Path& path, const std::optional<Sun>& sun, const Spectrum& background, double height_m, double earthRadius_m) {
+Spectrum meanSky(const std::shared_ptr<const Path>& of, const std::optional<Sun>& sun, const Spectrum& background, double height_m, double earthRadius_m) {
   struct Direction {
     SunlitAir air;
     double weight, cosScatter;
   };
-  std::optional<SunLegs> legs;
-  if (sun) legs.emplace(path, sun->toSun.z, earthRadius_m);
+  const Path& path = *of;
+  const auto legs = sun ? SunLegs::of(of, sun->toSun.z, earthRadius_m) : nullptr;
   std::vector<Direction> directions;
   for (const QuadratureNode& node : gaussLegendre(kElevations, 0.0, 1.0)) {
     const AirRay ray{height_m, node.x, earthRadius_m};
@@ -34,7 +34,7 @@ Spectrum meanSky(const Path& path, const std::optional<Sun>& sun, const Spectrum
         const double across = std::sqrt((1.0 - node.x * node.x) * std::max(1.0 - sun->toSun.z * sun->toSun.z, 0.0));
         seen = {sun->toSun.z, node.x * sun->toSun.z + across * std::cos(kPi * (a + 0.5) / azimuths)};
       }
-      directions.push_back({SunlitAir(path, ray, stations, legs ? &*legs : nullptr, seen), 2.0 * node.x * node.weight / azimuths, seen.cosScatter});
+      directions.push_back({SunlitAir(path, ray, stations, legs.get(), seen), 2.0 * node.x * node.weight / azimuths, seen.cosScatter});
     }
   }
   Spectrum::Table table;

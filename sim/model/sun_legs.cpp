@@ -1,19 +1,23 @@
 #include "sim/model/sun_legs.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <future>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <tuple>
 
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 namespace {
 
-/// Stands for no amount at all: 1e-30 of anything has no optical depth.
-constexpr double kNothing = 1e-30;
-/// Steps of sine on the horizon, where ln of the air mass bends most (scale of its sine: 1/38), and their growth with the sun's height.
-constexpr double kStep = 0.005, kGrowth = 10.0;
+/// Steps of sine on the horizon, where the air mass bends most (scale of its sine: 1/38), and their growth with the sun's height.
+constexpr double kStep = 0.0035, kGrowth = 10.0;
 /// Entries below the sun's own sine.
-constexpr int kBelow = 4;
+constexpr int kBelow = 6;
 
 }  // namespace
 
@@ -23,18 +27,40 @@ RisenSun risenSun(double height_m, double sinElevation, double earthRadius_m) {
           std::min(sinElevation + physics::sunRise(x) * physics::sunRadius() * std::sqrt(std::max(1.0 - sinElevation * sinElevation, 0.0)), 1.0)};
 }
 
-SunLegs::SunLegs(const Path& path, double sinElevation, double earthRadius_m)
-    : path_(path),
+SunLegs::SunLegs(std::shared_ptr<const Path> path, double sinElevation, double earthRadius_m)
+    : path_(std::move(path)),
       step_(kStep * (1.0 + kGrowth * std::max(sinElevation, 0.0))),
-      first_(std::clamp(sinElevation - kBelow * step_, -1.0, 1.0 - (kElevations - 1) * step_)),
+      first_(std::clamp(sinElevation - kBelow * step_, 0.0, 1.0 - (kElevations - 1) * step_)),
       radius_m_(earthRadius_m),
-      top_m_(path.top_m()) {
-  for (int e = 0; e < kElevations; ++e)
-    for (int h = 0; h < kHeights; ++h) {
-      AirAmounts a = path.amounts({heightAt(h, top_m_), first_ + step_ * e, earthRadius_m}, physics::kFar);
-      for (double& w : a.amount) w = std::log(std::max(w, kNothing));
-      logs_.push_back(a);
-    }
+      top_m_(path_->top_m()),
+      roots_(static_cast<size_t>(kElevations) * kHeights) {
+  std::atomic<int> next{0};
+  const auto work = [&] {
+    for (int h = next++; h < kHeights; h = next++)
+      for (int e = 0; e < kElevations; ++e) {
+        AirAmounts a = path_->amounts({heightAt(h, top_m_), first_ + step_ * e, earthRadius_m}, physics::kFar);
+        for (double& w : a.amount) w = std::sqrt(std::max(w, 0.0));
+        roots_[static_cast<size_t>(e * kHeights + h)] = a;
+      }
+  };
+  std::vector<std::future<void>> others;
+  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
+  work();
+  for (auto& o : others) o.get();
+}
+
+std::shared_ptr<const SunLegs> SunLegs::of(const std::shared_ptr<const Path>& path, double sinElevation, double earthRadius_m) {
+  // Who keeps one keeps its path: no other has the same address meanwhile.
+  using Key = std::tuple<const Path*, double, double>;
+  static std::mutex mutex;
+  static std::map<Key, std::weak_ptr<const SunLegs>> all;
+  const std::scoped_lock lock(mutex);
+  std::erase_if(all, [](const auto& kept) { return kept.second.expired(); });
+  auto& kept = all[{path.get(), sinElevation, earthRadius_m}];
+  if (auto legs = kept.lock()) return legs;
+  auto legs = std::make_shared<const SunLegs>(path, sinElevation, earthRadius_m);
+  kept = legs;
+  return legs;
 }
 
 double SunLegs::heightAt(double entry, double top_m) {
@@ -42,22 +68,34 @@ double SunLegs::heightAt(double entry, double top_m) {
   return kBottom_m + (top_m - kBottom_m) * t * t;
 }
 
-AirAmounts SunLegs::at(double height_m, double sinElevation) const {
-  const double x = (sinElevation - first_) / step_;
-  if (height_m >= top_m_ || height_m < kBottom_m || !(x >= 0.0 && x <= kElevations - 1))
-    return path_.amounts({height_m, sinElevation, radius_m_}, physics::kFar);
-  const double t = std::sqrt((height_m - kBottom_m) / (top_m_ - kBottom_m)) * (kHeights - 1);
+bool SunLegs::has(double height_m, double sine) const {
+  return height_m < top_m_ && height_m >= kBottom_m && sine >= first_ && sine <= first_ + (kElevations - 1) * step_;
+}
+
+AirAmounts SunLegs::at(double height_m, double sine) const {
+  // The lowest point of a line that goes down first.
+  const double lowest_m = height_m - (radius_m_ + height_m) * sine * sine / (1.0 + std::sqrt(std::max(1.0 - sine * sine, 0.0)));
+  if (!has(height_m, std::abs(sine)) || (sine < 0.0 && !has(lowest_m, 0.0))) return path_->amounts({height_m, sine, radius_m_}, physics::kFar);
+  AirAmounts a = upwards(height_m, std::abs(sine));
+  if (sine >= 0.0) return a;
+  const AirAmounts half = upwards(lowest_m, 0.0);
+  for (size_t k = 0; k < a.amount.size(); ++k) a.amount[k] = std::max(2.0 * half.amount[k] - a.amount[k], 0.0);
+  return a;
+}
+
+AirAmounts SunLegs::upwards(double height_m, double sine) const {
+  const double x = (sine - first_) / step_, t = std::sqrt((height_m - kBottom_m) / (top_m_ - kBottom_m)) * (kHeights - 1);
   const int h = std::min(static_cast<int>(t), kHeights - 2), e = std::clamp(static_cast<int>(x) - 1, 0, kElevations - 4);
-  // Linear in height, not in its root: amounts fall off exponentially with height.
+  // Linear in height, not in its root.
   const double low = heightAt(h, top_m_), high = (height_m - low) / (heightAt(h + 1, top_m_) - low), f = x - e;
   // Lagrange's cubic through four entries.
   const double weight[] = {(f - 1) * (f - 2) * (3 - f) / 6, f * (f - 2) * (f - 3) / 2, f * (f - 1) * (3 - f) / 2, f * (f - 1) * (f - 2) / 6};
   AirAmounts a;
-  const size_t used = path_.exponents().size();
+  const size_t used = path_->exponents().size();
   for (size_t k = 0; k < used; ++k) {
-    double l = 0.0;
-    for (int j = 0; j < 4; ++j) l += weight[j] * ((1 - high) * logAt(e + j, h).amount[k] + high * logAt(e + j, h + 1).amount[k]);
-    a.amount[k] = std::exp(l);
+    double root = 0.0;
+    for (int j = 0; j < 4; ++j) root += weight[j] * ((1 - high) * rootAt(e + j, h).amount[k] + high * rootAt(e + j, h + 1).amount[k]);
+    a.amount[k] = root > 0.0 ? root * root : 0.0;
   }
   return a;
 }

@@ -1,5 +1,6 @@
 #pragma once
 // What lies between places of layered air and the sun, by height: tabulated once, asked for every place that sunlight reaches.
+#include <memory>
 #include <vector>
 
 #include "sim/model/path.hpp"
@@ -17,26 +18,32 @@ class SunLegs {
  public:
   /// For sun elevations around one: sines from 0.02 below it to 0.025 above (130 km around the origin, and a disc on the horizon), more of a high
   /// sun; others are worked out in full.
-  SunLegs(const Path& path, double sinElevation, double earthRadius_m);
-  /// Towards a sun above the place's horizon. Relative error of amounts below 3e-3 up to 3 km (1e-3 with the sun 2 degrees up), above 4e-3, of water 5 %
-  /// (tests/physics/test_low_sun.cpp).
+  SunLegs(std::shared_ptr<const Path> path, double sinElevation, double earthRadius_m);
+  /// The same once for all who ask while somebody keeps it.
+  static std::shared_ptr<const SunLegs> of(const std::shared_ptr<const Path>& path, double sinElevation, double earthRadius_m);
+  /// Towards a sun above the place's horizon. Optical depths of haze within 1e-3 but for some metres below where a haze ends, there within 0.02 of 10
+  /// (visibilities from 10 km; tests/physics/test_low_sun.cpp).
   AirAmounts at(double height_m, double sinElevation) const;
 
-  /// The table, as the shader reads it too (atmosphere/layered.glsl): ln of amounts, cubic between elevations, linear between heights.
-  static constexpr int kHeights = 128, kElevations = 10;
+  /// The table, as the shader reads it too (atmosphere/layered.glsl): roots of the amounts above a height towards elevations from 0 on, cubic between
+  /// elevations, linear between heights: a column of what ends at a height falls to nothing as a square, and elsewhere a root bends less than the column.
+  /// A line that goes down first has twice what lies above its lowest point, less what lies behind it.
+  static constexpr int kHeights = 1024, kElevations = 14;
   /// The deepest open ground is 0.43 km below the sea.
   static constexpr double kBottom_m = -500.0;
-  /// Entry of a height: closer together near the ground, a step of 100 m there, 0.5 km at 10 km.
+  /// Entry of a height: closer together near the ground, a step of 14 m there, 60 m at 10 km.
   static double heightAt(double entry, double top_m);
   double firstSine() const { return first_; }
   double step() const { return step_; }
-  const AirAmounts& logAt(int elevation, int height) const { return logs_[static_cast<size_t>(elevation * kHeights + height)]; }
+  const AirAmounts& rootAt(int elevation, int height) const { return roots_[static_cast<size_t>(elevation * kHeights + height)]; }
   double earthRadius_m() const { return radius_m_; }
 
  private:
-  const Path& path_;
+  bool has(double height_m, double sine) const;
+  AirAmounts upwards(double height_m, double sine) const;
+  std::shared_ptr<const Path> path_;
   double step_, first_, radius_m_, top_m_;
-  std::vector<AirAmounts> logs_;  ///< [elevation][height]
+  std::vector<AirAmounts> roots_;  ///< [elevation][height]
 };
 
 }  // namespace pitviper

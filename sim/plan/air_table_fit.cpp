@@ -107,8 +107,8 @@ AirTableSize affordable(AirTableSize size, const Simulation& simulation, const P
   return size;
 }
 
-AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, const NodesOfPlan& plan, SightRays& rays)
-    : simulation_(simulation), camera_(camera), plan_(plan.plan), rows_(simulation, plan.plan, true), floor_(plan.plan.darkFloors()) {
+AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, const NodesOfPlan& plan, SightRays& rays, const std::vector<double>& floor)
+    : simulation_(simulation), camera_(camera), plan_(plan.plan), rows_(simulation, plan.plan, true), floor_(floor) {
   std::vector<SightRay> lines;
   const auto& extremes = rays.extremes();
   const size_t film = std::max(kFilm * kFewNodes / static_cast<size_t>(std::max(plan_.nodeCount(), kFewNodes)), kFewest),
@@ -130,10 +130,8 @@ AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, con
     Sample sample{ray.state, ray.line.origin, ray.line.direction, physics::kFar, std::vector<double>(floor_.size(), 0.0)};
     if (ray.line.hits.solid.entity >= 0) sample.range_m = ray.line.hits.solid.distance;
     else if (const auto ground = groundHit(simulation, ray.line.origin, ray.line.direction)) sample.range_m = ground->distance;
-    for (size_t s = 0; s < floor_.size(); ++s) {
+    for (size_t s = 0; s < floor_.size(); ++s)
       for (size_t i = 0; i < plan_.nodes.size(); ++i) sample.radiance[s] += plan_.weight[s][i] * sum.radiance()[i];
-      floor_[s] = std::max(floor_[s], kDark * sample.radiance[s]);
-    }
     if (sample.range_m > 0.0) nearest_m_ = std::min(nearest_m_, sample.range_m);
     samples_.push_back(std::move(sample));
   }

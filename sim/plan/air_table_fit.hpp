@@ -20,8 +20,8 @@ AirTableSize affordable(AirTableSize size, const Simulation& simulation, const P
 /// Lines of sight of a camera through layered air, each with what lies behind the air.
 class AirTableFit {
  public:
-  /// Of some of the film's lines and of the extremes. All must outlive it.
-  AirTableFit(const Simulation& simulation, const Camera& camera, const NodesOfPlan& plan, SightRays& rays);
+  /// Of some of the film's lines and of the extremes. `floor`: what is darker counts as this much, per slot. All must outlive it.
+  AirTableFit(const Simulation& simulation, const Camera& camera, const NodesOfPlan& plan, SightRays& rays, const std::vector<double>& floor);
   AirTableLoss lossOf(const AirTableSize& size) const;
   /// The smallest tables found that keep a part of the accuracy, with what they lose. Where even the largest that are affordable don't, these.
   std::pair<AirTableSize, AirTableLoss> within(double accuracy) const;
@@ -43,7 +43,7 @@ class AirTableFit {
   const Plan& plan_;
   AirRows rows_;
   std::vector<Sample> samples_;
-  std::vector<double> floor_;  ///< per slot
+  const std::vector<double>& floor_;
   double nearest_m_ = physics::kFar;
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <thread>
 
@@ -18,6 +19,8 @@ namespace {
 constexpr int kTried[] = {5, 9, 18, 36, 72};
 constexpr double kPlacesShare = 0.4;
 constexpr size_t kLooked = 20;
+/// So many of these lines are brighter than what is taken for the film's bright parts.
+constexpr size_t kBright = 3;
 
 std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance) {
   std::vector<double> slots(plan.weight.size(), 0.0);
@@ -92,7 +95,14 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
   for (const SightRay& ray : lines) {
     all.push_back(seen(ray, 0));
     slots.push_back(slotsOf(plan, all.back()));
-    for (size_t s = 0; s < floor.size(); ++s) floor[s] = std::max(floor[s], kDark * slots.back()[s]);
+  }
+  // What is bright on this many of the film's lines is so on more than a few of its pixels.
+  for (size_t s = 0; s < floor.size(); ++s) {
+    std::vector<double> film;
+    for (size_t n = 0; n < lines.size(); ++n)
+      if (lines[n].fromFilm) film.push_back(slots[n][s]);
+    std::nth_element(film.begin(), film.begin() + kBright, film.end(), std::greater<>());
+    floor[s] = std::max(floor[s], kDark * film[kBright]);
   }
   // Wavelength by wavelength: what is lost at one and won at another is nothing to a channel, but something to groups of them.
   const auto isEnough = [&](int places) {

@@ -55,7 +55,7 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   plan.lightCount = static_cast<int>(sim.lights.size()) + (sim.sun ? 1 : 0);
 
   if (plan.terms.air && sim.path->isLayered() && sim.sun)
-    plan.sunLegs = std::make_shared<const SunLegs>(*sim.path, glm::dot(sim.frame.up(glm::dvec3(0.0)), sim.sun->toSun), sim.frame.earthRadius_m());
+    plan.sunLegs = SunLegs::of(sim.path, glm::dot(sim.frame.up(glm::dvec3(0.0)), sim.sun->toSun), sim.frame.earthRadius_m());
 
   std::vector<const ChannelOutput*> slots;
   for (const auto& output : outputs) {

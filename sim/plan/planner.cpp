@@ -70,8 +70,8 @@ bool suits(const Plan& plan, const Simulation& sim) {
   return std::all_of(plan.nodes.begin(), plan.nodes.end(), [&](const SpectralNode& n) { return n.absorption_per_m.size() == sim.materials.size(); });
 }
 
-/// Tables of layered air, as large as the accuracy needs; what they lose, per slot. A probe keeps the usual size.
-std::vector<double> planTables(const Simulation& sim, const Eye& eye, SightRays& rays, Plan& plan) {
+/// Tables of layered air, as large as the accuracy needs; what they lose, per slot. A probe keeps the usual size. `floor`: of each slot, where it is dark.
+std::vector<double> planTables(const Simulation& sim, const Eye& eye, SightRays& rays, const std::vector<double>& floor, Plan& plan) {
   const double accuracy = plan.accuracy > 0.0 ? plan.accuracy : kUsual;
   if (!plan.terms.air || !sim.path->isLayered()) return std::vector<double>(plan.weight.size(), 0.0);
   plan.air = affordable(AirTableSize{}, sim, plan);
@@ -79,7 +79,7 @@ std::vector<double> planTables(const Simulation& sim, const Eye& eye, SightRays&
   const std::vector<double> toSun = sim.sun ? depthsToSun(sim, plan) : std::vector<double>();
   if (!toSun.empty()) plan.air.sunDepth = *std::max_element(toSun.begin(), toSun.end());
   const NodesOfPlan nodes(sim, plan);
-  auto [size, loss] = AirTableFit(sim, *eye.camera, nodes, rays).within(accuracy);
+  auto [size, loss] = AirTableFit(sim, *eye.camera, nodes, rays, floor).within(accuracy);
   plan.air = size;
   for (size_t s = 0; s < loss.sums.size(); ++s) {
     double& l = loss.sums[s];
@@ -95,7 +95,7 @@ std::vector<double> planTables(const Simulation& sim, const Eye& eye, SightRays&
 CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& fine, SightRays& rays, int airPlaces, unsigned long long seed, Plan& plan) {
   rays.reseed(seed);
   CheckedLines last;
-  for (int n = 0; n < kLast; ++n) last.lines.push_back(rays.fromFilm());
+  last.lines = rays.overFilm(kLast);
   std::vector<double> floor;
   const NodesOfPlan planned(sim, plan);
   last.figures = checkLines(sim, planned, fine, last.lines, rays.pixel_sr(), airPlaces, floor);
@@ -105,7 +105,7 @@ CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& f
   last.add(small, checkLines(sim, planned, fine, small, rays.pixel_sr(), airPlaces, floor));
   const auto& found = last.figures;
   const auto extreme = checkLines(sim, planned, fine, rays.extremes(), rays.pixel_sr(), airPlaces, floor);
-  const std::vector<double> tables = planTables(sim, eye, rays, plan);
+  const std::vector<double> tables = planTables(sim, eye, rays, floor, plan);
   plan.lines = kLast;
   plan.parts.clear();
   plan.predictedError.clear();

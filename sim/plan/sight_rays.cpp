@@ -61,24 +61,32 @@ SightRay SightRays::startAt(int frame) {
   return ray;
 }
 
-SightRay SightRays::filmRay(int frame) {
+SightRay SightRays::cameraRay(int frame, size_t column, size_t row) {
   SightRay ray = startAt(frame);
-  if (eye_.camera) {
-    const Pinhole& p = eye_.camera->pinhole;
-    const auto samples = static_cast<size_t>(eye_.camera->samples);
-    const double x = (static_cast<double>(dice_.below(static_cast<size_t>(p.width) * samples)) + kInColumn) / static_cast<double>(samples);
-    const double y = (static_cast<double>(dice_.below(static_cast<size_t>(p.height) * samples)) + kInRow) / static_cast<double>(samples);
-    const glm::dvec3 film(p.tanX(x), p.tanY(y), -1.0);
-    ray.line.direction = glm::normalize(localFromCamera(cameraPose(eye_.camera->mount, *ray.state)) * film);
-    ray.nearest_m *= glm::length(film);
-  } else {
-    const double z = dice_.unit(), phi = 2.0 * kPi * dice_.unit(), r = std::sqrt(1.0 - z * z);
-    const glm::dvec3 n = glm::normalize(eye_.probe->normal), helper = std::abs(n.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
-    const glm::dvec3 x = glm::normalize(glm::cross(helper, n)), y = glm::cross(n, x);
-    ray.line.direction = r * std::cos(phi) * x + r * std::sin(phi) * y + z * n;
-  }
+  const Pinhole& p = eye_.camera->pinhole;
+  const double samples = eye_.camera->samples;
+  const glm::dvec3 film(p.tanX((static_cast<double>(column) + kInColumn) / samples), p.tanY((static_cast<double>(row) + kInRow) / samples), -1.0);
+  ray.line.direction = glm::normalize(localFromCamera(cameraPose(eye_.camera->mount, *ray.state)) * film);
+  ray.nearest_m *= glm::length(film);
   cast(ray);
   return ray;
+}
+
+SightRay SightRays::probeRay(int frame) {
+  SightRay ray = startAt(frame);
+  const double z = dice_.unit(), phi = 2.0 * kPi * dice_.unit(), r = std::sqrt(1.0 - z * z);
+  const glm::dvec3 n = glm::normalize(eye_.probe->normal), helper = std::abs(n.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0);
+  const glm::dvec3 x = glm::normalize(glm::cross(helper, n)), y = glm::cross(n, x);
+  ray.line.direction = r * std::cos(phi) * x + r * std::sin(phi) * y + z * n;
+  cast(ray);
+  return ray;
+}
+
+SightRay SightRays::filmRay(int frame) {
+  if (!eye_.camera) return probeRay(frame);
+  const auto samples = static_cast<size_t>(eye_.camera->samples);
+  const size_t column = dice_.below(static_cast<size_t>(eye_.camera->pinhole.width) * samples);
+  return cameraRay(frame, column, dice_.below(static_cast<size_t>(eye_.camera->pinhole.height) * samples));
 }
 
 SightRay SightRays::through(const FilmPlace& place) {
@@ -94,6 +102,25 @@ SightRay SightRays::through(const FilmPlace& place) {
 }
 
 SightRay SightRays::fromFilm() { return filmRay(static_cast<int>(dice_.below(static_cast<size_t>(simulation_.time.frames)))); }
+
+std::vector<SightRay> SightRays::overFilm(int count) {
+  std::vector<SightRay> lines;
+  if (!eye_.camera) {
+    for (int n = 0; n < count; ++n) lines.push_back(fromFilm());
+    return lines;
+  }
+  const auto samples = static_cast<size_t>(eye_.camera->samples);
+  const size_t columns = static_cast<size_t>(eye_.camera->pinhole.width) * samples, rows = static_cast<size_t>(eye_.camera->pinhole.height) * samples;
+  const double all = static_cast<double>(columns) * static_cast<double>(rows) * simulation_.time.frames;
+  // With fewer subpixels than lines each is drawn as often as any other, or once more.
+  for (int n = 0; n < count; ++n) {
+    const double at = std::min((n + dice_.unit()) * all / count, all - 1.0);
+    const auto frame = static_cast<int>(at / static_cast<double>(columns * rows));
+    const auto place = static_cast<size_t>(at - static_cast<double>(frame) * static_cast<double>(columns * rows));
+    lines.push_back(cameraRay(frame, place % columns, place / columns));
+  }
+  return lines;
+}
 
 glm::dvec3 SightRays::placeOn(const WorldState& state, size_t surface) {
   const auto [e, s] = surfaces_[surface];

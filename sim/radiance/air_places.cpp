@@ -3,22 +3,31 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/radiometry/physics.hpp"
+
 namespace pitviper {
 namespace {
 
-/// The air's own places and those asked for, and between them so many more that none is farther from the last than 100 m or a tenth of the way:
-/// emission, linear in depth between two, is then within 3e-5 of finer ones towards space, where the model's own places are 0.13 % off.
-constexpr double kStep_m = 100.0, kPart = 0.1;
+/// The air's own places and those asked for, and between them so many more that none is farther from the last than 2 m or a quarter of the way up to 100 m,
+/// from there on than a tenth of it or 100 m: emission, linear in depth between two, is then within 3e-5 of finer ones towards space, where the model's own
+/// places are 0.13 % off, and within 1e-5 where a band is so opaque that all it shows lies in the first metres, for its depth grows as a root of the range.
+constexpr double kFirst_m = 2.0, kNearPart = 0.25, kStep_m = 100.0, kPart = 0.1;
 /// Of fewer places: nearer than this one is as good as another, and beyond the other there is no air to speak of.
-constexpr double kNear_m = 100.0, kFar_m = 1e6;
+constexpr double kNear_m = 10.0, kFar_m = 1e6;
+
+/// The longest step from a place so far from the eye.
+double stepAfter(double range_m) { return range_m < kStep_m ? std::max(kFirst_m, kNearPart * range_m) : std::max(kStep_m, kPart * range_m); }
 
 std::vector<double> subdivided(std::vector<double> at) {
   std::vector<double> all = {at.front()};
   for (size_t i = 1; i < at.size(); ++i) {
-    const double step = at[i] - at[i - 1];
-    const int parts = std::max(1, static_cast<int>(std::ceil(step / std::max(kStep_m, kPart * (at[i - 1] - at.front())))));
-    for (int k = 1; k < parts; ++k) all.push_back(at[i - 1] + step * k / parts);
-    all.push_back(at[i]);
+    for (double from = at[i - 1]; from < at[i];) {
+      const double rest = at[i] - from;
+      const double most = stepAfter(from - at.front());
+      // Even steps as far as they may be that long, growing ones near the eye.
+      from = rest <= most ? at[i] : from + (most < kStep_m ? most : rest / std::ceil(rest / most));
+      all.push_back(from);
+    }
   }
   return all;
 }
@@ -48,6 +57,26 @@ std::vector<double> thinned(const Path& path, const AirRay& ray, const std::vect
   return some;
 }
 
+/// And where the sun's disc sets along the way: no place has more than this of its radius more of it above the horizon than the next.
+constexpr double kSunStep = 0.02;
+
+std::vector<double> refinedAtDusk(const AirRay& ray, const RaySun& sun, const std::vector<double>& at) {
+  const double r0 = ray.earthRadius_m + ray.height_m;
+  // Radii of the disc that its centre stands above the horizon there.
+  const auto above = [&](double s) {
+    const double r = std::sqrt(std::max(r0 * r0 + s * (2.0 * r0 * ray.sinElevation + s), 0.0));
+    return physics::sunAboveHorizon(r - ray.earthRadius_m, std::clamp((r0 * sun.sinElevation + s * sun.cosScatter) / r, -1.0, 1.0), ray.earthRadius_m);
+  };
+  std::vector<double> all = {at.front()};
+  for (size_t i = 1; i < at.size(); ++i) {
+    const double near = std::clamp(above(at[i - 1]), -1.0, 1.0), far = std::clamp(above(at[i]), -1.0, 1.0);
+    const int parts = std::max(1, static_cast<int>(std::ceil(std::abs(far - near) / kSunStep)));
+    for (int k = 1; k < parts; ++k) all.push_back(at[i - 1] + (at[i] - at[i - 1]) * k / parts);
+    all.push_back(at[i]);
+  }
+  return all;
+}
+
 void mergeInto(std::vector<double>& at, const std::vector<double>& more) {
   at.insert(at.end(), more.begin(), more.end());
   std::sort(at.begin(), at.end());
@@ -65,6 +94,8 @@ AirPlaces::AirPlaces(const RadianceScene& scene, const LineOfSight& line, std::v
   }
   const Path& path = *sim.path;
   const AirRay ray{sim.frame.height(line.origin), glm::dot(line.direction, sim.frame.up(line.origin)), sim.frame.earthRadius_m()};
+  RaySun sun;
+  if (sim.sun) sun = {glm::dot(sim.sun->toSun, sim.frame.up(line.origin)), glm::dot(line.direction, sim.sun->toSun)};
   if (path.isLayered()) {
     std::vector<double> own;
     for (const AirStation& s : path.stations(ray, ranges.back())) own.push_back(s.range_m);
@@ -74,11 +105,10 @@ AirPlaces::AirPlaces(const RadianceScene& scene, const LineOfSight& line, std::v
       if (r > begin && r < end) own.push_back(r);
     std::sort(own.begin(), own.end());
     own = subdivided(std::move(own));
+    if (scene.terms.scatteredSun && sim.sun) own = refinedAtDusk(ray, sun, own);
     if (scene.airPlaces > 0) own = thinned(path, ray, own, static_cast<size_t>(scene.airPlaces));
     mergeInto(ranges, own);
   }
-  RaySun sun;
-  if (sim.sun) sun = {glm::dot(sim.sun->toSun, sim.frame.up(line.origin)), glm::dot(line.direction, sim.sun->toSun)};
   sunlit_ = scene.terms.scatteredSun;
   cosScatter_ = sun.cosScatter;
   const SunlitAir air(path, ray, path.stationsAt(ray, ranges), sunlit_ ? scene.sunLegs : nullptr, sun);

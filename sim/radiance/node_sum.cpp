@@ -113,6 +113,7 @@ const std::vector<double>& NodeSum::values(const Factor& factor) {
 }
 
 void NodeSum::term(const Term& term) {
+  if (!takes(term.part())) return;
   std::vector<double> product(count_, term.coefficient);
   for (const Factor& f : term.factors) {
     const std::vector<double>& v = values(f);
@@ -173,6 +174,8 @@ void NodeSum::segment(const Segment& s) {
     weigh(spectra_.haze(), passed, turnedByHaze_);
     for (size_t i = 0; i < count_; ++i) turned_[i] = rayleigh * std::max(turned_[i], 0.0) + phase[i] * std::max(turnedByHaze_[i], 0.0);
   }
+  const bool media = !s.media.empty() && takes({TermKind::Media}), air = s.air && takes({TermKind::AirEmission}),
+             turned = sunlit && takes({TermKind::ScatteredSun});
   std::vector<const std::vector<double>*> sources;
   for (const MediumInside& m : s.media) sources.push_back(&values(Factor::medium(*m.medium, m.temperature_K)));
   for (size_t i = 0; i < count_; ++i) {
@@ -189,12 +192,12 @@ void NodeSum::segment(const Segment& s) {
     if (!(d > 0.0)) continue;
     const double reaching = panes_[i] * (before > 0.0 ? std::exp(-before) : 1.0), seen = reaching * (s.air ? near_.passed[i] : 1.0);
     const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * (x > 0.0 ? std::exp(-x) : 1.0), lost = lostOf(d, left);
-    if (x > 0.0) send(TermKind::Media, i, seen * emitted / d * lost);
-    if (y > 0.0) {
+    if (media && x > 0.0) send(TermKind::Media, i, seen * emitted / d * lost);
+    if (air && y > 0.0) {
       const double near = near_.black[i] + nodes[i].air.source, far = far_.black[i] + nodes[i].air.source;
       send(TermKind::AirEmission, i, seen * (y / d) * (near * lost + (far - near) * growing(d, left, lost)));
     }
-    if (!sunlit) continue;
+    if (!turned) continue;
     const double mean = meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * (x > 0.0 ? std::exp(-x) : 1.0));
     send(TermKind::ScatteredSun, i, sun * reaching * mean * (*irradiance)[i] * turned_[i]);
   }

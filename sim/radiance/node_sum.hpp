@@ -3,6 +3,8 @@
 #include <array>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <vector>
 
 #include "sim/model/spectral_node.hpp"
@@ -48,11 +50,19 @@ class NodeSum final : public TermSink {
   /// By kind of term, in the order of TermKind, where keepParts() was called: [kind][node].
   std::span<const double> part(TermKind kind) const { return parts_[static_cast<size_t>(kind)]; }
   void keepParts() { keepsParts_ = true; }
+  /// Sums from here on are of this part alone; without one of all.
+  void setOnly(const std::optional<Part>& only) { only_ = only; }
+  /// The parts that lines had since it was made.
+  const std::set<Part>& met() const { return met_; }
   /// Of panes and media on the whole way.
   std::vector<double> transmittance() const;
 
  private:
   const std::vector<double>& values(const Factor& factor);
+  bool takes(const Part& part) {
+    if (met_.empty() || part != last_) met_.insert(last_ = part);
+    return !only_ || *only_ == part;
+  }
   void send(TermKind kind, size_t node, double radiance) {
     radiance_[node] += radiance;
     if (keepsParts_) parts_[static_cast<size_t>(kind)][node] += radiance;
@@ -68,6 +78,9 @@ class NodeSum final : public TermSink {
   const NodeSpectra& spectra_;
   size_t count_;
   bool keepsParts_ = false;
+  std::optional<Part> only_;
+  std::set<Part> met_;
+  Part last_;
   std::vector<double> radiance_;
   std::array<std::vector<double>, kTermKinds> parts_;
   std::vector<double> panes_, mediaDepth_;  ///< on the way so far

@@ -73,13 +73,14 @@ class Teller {
     sink_.pane(Factor::transmittance(m, viewAngle(hit)), m.transmission ? modifier(m.transmission->modifier, hit) : 1.0);
   }
 
-  void add(TermKind kind, double coefficient, std::initializer_list<Factor> factors, const AirAmounts* air = nullptr) {
-    if (coefficient != 0.0) sink_.term({kind, coefficient, {factors.begin(), factors.size()}, air});
+  void add(TermKind kind, double coefficient, std::initializer_list<Factor> factors, const AirAmounts* air = nullptr, int light = -1) {
+    if (coefficient != 0.0) sink_.term({kind, coefficient, {factors.begin(), factors.size()}, air, entity_, light});
   }
 
   void surface(const Hit& hit, const AirPlace& place) {
     const Surface& s = surfaceAt(sim_, hit);
     const Material& m = sim_.materialOf(s);
+    entity_ = hit.entity;
     std::vector<double> modifiers;
     for (int texture : m.modifiers) modifiers.push_back(modifier(texture, hit));
     const bool textured = s.temperatureTexture >= 0;
@@ -123,7 +124,8 @@ class Teller {
       for (size_t k = 0; k < m.reflections.size(); ++k) {
         const ReflectionComponent& r = *m.reflections[k];
         add(sun ? TermKind::Sun : TermKind::Lights, modifiers[k] * strength * r.lobe(light, view),
-            {Factor::column(r, light, view), sun ? Factor::sun() : Factor::light(sim_.lights[l])}, scene_.terms.air ? &both : nullptr);
+            {Factor::column(r, light, view), sun ? Factor::sun() : Factor::light(sim_.lights[l])}, scene_.terms.air ? &both : nullptr,
+            sun ? -1 : static_cast<int>(l));
       }
     }
   }
@@ -135,6 +137,7 @@ class Teller {
   AirPlaces air_;
   std::vector<MediumInside> inside_;
   bool dark_ = false;
+  int entity_ = -1;  ///< of the surface that is told
 };
 
 }  // namespace
@@ -159,7 +162,7 @@ void lampAlong(const RadianceScene& scene, const LineOfSight& line, std::size_t 
   if (!(level > 0.0) || !(range > 0.0)) return;
   wayAlong(scene, line, range, sink);
   const std::array shine{Factor::light(scene.simulation.lights[light])};
-  sink.term({TermKind::LampsInView, level / (range * range * pixel_sr), shine, nullptr});
+  sink.term({TermKind::LampsInView, level / (range * range * pixel_sr), shine, nullptr, -1, static_cast<int>(light)});
 }
 
 double textureValue(const Texture& t, glm::dvec2 uv) {

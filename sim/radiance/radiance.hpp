@@ -22,12 +22,22 @@ enum class TermKind { Emission, Ambient, Sun, Lights, AirEmission, ScatteredSun,
 constexpr int kTermKinds = 9;
 const char* nameOf(TermKind kind);
 
+/// What a part of a line's radiance is.
+struct Part {
+  TermKind kind = TermKind::Emission;
+  int entity = -1;  ///< whose surface sends it; -1: no body's
+  int light = -1;   ///< whose light it is: an index into Simulation::lights; -1: of none of them
+  auto operator<=>(const Part&) const = default;
+};
+
 /// coefficient x product of spectra x exp(-depth on its way) x what the panes and media so far let through.
 struct Term {
   TermKind kind = TermKind::Emission;
   double coefficient = 1.0;
   std::span<const Factor> factors;
   const AirAmounts* air = nullptr;  ///< on all legs, raised to their powers; null: from the eye to here alone
+  int entity = -1, light = -1;      ///< as of Part
+  Part part() const { return {kind, entity, light}; }
 };
 
 /// A place on the line of sight, with the air between the eye and it.

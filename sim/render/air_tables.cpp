@@ -10,8 +10,8 @@ namespace pitviper {
 namespace {
 
 constexpr double kNothing = 1e-30;
-/// Densities by height have so many steps for one of those to the sun, and ways to lamps so many pieces (tests/gpu/test_ways_to_lamps.cpp).
-constexpr int kFiner = 8, kPieces = 4;
+/// Ways to lamps have so many pieces (tests/gpu/test_ways_to_lamps.cpp).
+constexpr int kPieces = 4;
 
 }  // namespace
 
@@ -28,7 +28,6 @@ void AirTables::addConstants(ShaderSlots& slots) const {
   slots.constants["AIR_AZIMUTHS"] = plan_.terms.scatteredSun ? plan_.air.azimuths : 1;
   slots.constants["AIR_HEIGHTS"] = SunLegs::kHeights;
   slots.constants["AIR_SUNS"] = plan_.sunLegs ? SunLegs::kElevations : 0;
-  slots.constants["AIR_FINER"] = kFiner;
   slots.constants["AIR_PIECES"] = kPieces;
   slots.constants["AIR_PARTS"] = rows_->parts();
   slots.constants["AIR_ASYMMETRIES"] = (rows_->values() + 3) / 4;
@@ -41,10 +40,10 @@ void AirTables::addHeights(std::vector<float>& out) const {
     for (size_t k = 0; k < static_cast<size_t>(4 * rows_->vectors()); ++k) out.push_back(static_cast<float>(logs.amount[k]));
   };
   for (int h = 0; plan_.sunLegs && h < SunLegs::kHeights; ++h)
-    for (int e = 0; e < SunLegs::kElevations; ++e) put(plan_.sunLegs->logAt(e, h));
+    for (int e = 0; e < SunLegs::kElevations; ++e) put(plan_.sunLegs->rootAt(e, h));
   // From the top down, what lies above by Simpson's rule.
-  const auto heightOf = [&](double h) { return SunLegs::heightAt(h / kFiner, path.top_m()); };
-  const int last = (SunLegs::kHeights - 1) * kFiner;
+  const auto heightOf = [&](double h) { return SunLegs::heightAt(h, path.top_m()); };
+  const int last = SunLegs::kHeights - 1;
   std::vector<AirAmounts> densities(static_cast<size_t>(last) + 1), columns(densities.size());
   for (int h = last; h >= 0; --h) {
     const auto at = static_cast<size_t>(h);

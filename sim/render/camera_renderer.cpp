@@ -80,10 +80,30 @@ void CameraRenderer::setWanted(const std::vector<int>& pixels) {
   wanted_ = std::move(flags);
 }
 
+void CameraRenderer::setOnly(const std::optional<Part>& only) {
+  only_ = only;
+  if (reference_) reference_->setOnly(only);
+}
+
+std::set<Part> CameraRenderer::parts() const {
+  std::set<Part> all = reference_ ? reference_->met() : std::set<Part>{};
+  for (size_t l = 0; l < simulation_.lights.size(); ++l)
+    if (lightIsInView(simulation_, state_, view_, l)) all.insert({TermKind::LampsInView, -1, static_cast<int>(l)});
+  return all;
+}
+
+/// Of a part alone: only its own lamp shines into the camera, or none.
+WorldState CameraRenderer::lampsInView() const {
+  WorldState state = state_;
+  for (size_t l = 0; only_ && l < state.lightLevels.size(); ++l)
+    if (*only_ != Part{TermKind::LampsInView, -1, static_cast<int>(l)}) state.lightLevels[l] = 0.0;
+  return state;
+}
+
 CameraImage CameraRenderer::finish() {
   Subpixels image(plan_, view_, pass_->finishReadback());
   addSmallBodies(image, *pass_, simulation_, state_, small_, present_, camera_.zoomedSamples, wanted_.get());
-  addVisibleLights(image, *pass_, simulation_, plan_, state_, present_, wanted_.get());
+  addVisibleLights(image, *pass_, simulation_, plan_, lampsInView(), present_);
   if (reference_) reference_->endPicture();
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
   resolved.slotOfOutput = plan_.slotOfOutput;

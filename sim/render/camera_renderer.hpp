@@ -23,6 +23,10 @@ class CameraRenderer {
   CameraImage finish();
   /// Only these pixels are wanted of the pictures that follow (row x width + column, row 0 at the top); the others come out dark. Reference mode.
   void setWanted(const std::vector<int>& pixels);
+  /// Reference mode: the pictures that follow are of one part alone (all parts add up to the whole); without one of all.
+  void setOnly(const std::optional<Part>& only);
+  /// Reference mode: the parts that the wanted pixels of the last picture are made of, with those lamps that are seen in them.
+  std::set<Part> parts() const;
   CameraImage render(const WorldState& state) {
     begin(state);
     return finish();
@@ -36,6 +40,7 @@ class CameraRenderer {
  private:
   bool seesTransparent() const;
   int viewsOfPicture() const;
+  WorldState lampsInView() const;
   const Simulation& simulation_;
   const Camera& camera_;
   Plan plan_;
@@ -46,6 +51,7 @@ class CameraRenderer {
   ScenePass* pass_ = nullptr;
   WorldState state_;
   View view_;
+  std::optional<Part> only_;
   std::vector<char> small_, present_;
   std::shared_ptr<const std::vector<char>> wanted_;  ///< one flag per subpixel, row 0 at the bottom; null: all
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles_;

@@ -4,6 +4,7 @@
 #include <deque>
 #include <memory>
 
+#include "sim/model/view.hpp"
 #include "sim/render/air_tables.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/light_relevance.hpp"
@@ -13,7 +14,6 @@
 #include "sim/render/solid_pass.hpp"
 #include "sim/render/surface_buffers.hpp"
 #include "sim/render/tables.hpp"
-#include "sim/model/view.hpp"
 
 namespace pitviper {
 

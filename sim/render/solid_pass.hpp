@@ -2,9 +2,9 @@
 // The visibility pass: which opaque triangle each pixel sees, and how deep it is. Near bodies first; bodies of one small mesh as instances; of
 // bodies with many triangles only those whose box shows something, so that what is hidden costs next to nothing.
 #include "sim/gl/objects.hpp"
+#include "sim/model/view.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/tables.hpp"
-#include "sim/model/view.hpp"
 
 namespace pitviper {
 

@@ -38,16 +38,21 @@ std::vector<double> wayTo(ScenePass& pass, const WorldState& state, const std::v
   return free ? pass.transmittance(v, state, present, distance_m) : std::vector<double>();
 }
 
-void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present,
-                      const std::vector<char>* wanted) {
+bool lightIsInView(const Simulation& sim, const WorldState& state, const View& v, size_t light) {
+  if (!sim.lights[light].visible || state.lightLevels[light] <= 0.0) return false;
+  const glm::dvec3 p = glm::transpose(v.localFromCamera) * (state.lights[light] - v.position);
+  if (-p.z < v.near_m) return false;
+  const glm::dvec2 at = filmPosition(v, p);
+  if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height)) return false;
+  return !v.wanted || (*v.wanted)[static_cast<size_t>(at.y) * static_cast<size_t>(v.width) + static_cast<size_t>(at.x)];
+}
+
+void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present) {
   const View& v = image.view();
   for (size_t l = 0; l < sim.lights.size(); ++l) {
-    if (!sim.lights[l].visible || state.lightLevels[l] <= 0.0) continue;
+    if (!lightIsInView(sim, state, v, l)) continue;
     const glm::dvec3 line = state.lights[l] - v.position, p = glm::transpose(v.localFromCamera) * line;
-    if (-p.z < v.near_m) continue;
     const glm::dvec2 at = filmPosition(v, p);
-    if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height)) continue;
-    if (wanted && !(*wanted)[image.index(static_cast<int>(at.x), static_cast<int>(at.y))]) continue;
     const double range = glm::length(line);
     const auto way = wayTo(pass, state, present, v.position, line / range, range, v.near_m);
     if (way.empty()) continue;

@@ -5,9 +5,11 @@
 
 namespace pitviper {
 
-/// `wanted`: one flag per subpixel that counts, or null for all.
+/// Whether a light is on the film, in front of the camera, in a subpixel that is wanted. Something may stand before it.
+bool lightIsInView(const Simulation& simulation, const WorldState& state, const View& view, size_t light);
+
 void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& simulation, const Plan& plan, const WorldState& state,
-                      const std::vector<char>& present, const std::vector<char>* wanted = nullptr);
+                      const std::vector<char>& present);
 
 /// What of a light or of the sun reaches a place from a direction (unit): a factor per node, the transmittance of everything transparent on
 /// the way (air not counted); empty where something solid stands there.

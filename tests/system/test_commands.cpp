@@ -282,4 +282,24 @@ TEST_F(Commands, LibraryAirWithSkyAndSun) {
   EXPECT_GT(std::count(csv.begin(), csv.end(), '\n'), 1200);
 }
 
+// The parts of a pixel, of the frame's own scenario alone.
+TEST_F(Commands, TermsOfAPixel) {
+  std::ofstream(folder_ / "plate.yaml")
+      << "sun: {azimuth: 90 deg, elevation: 30 deg, irradiance: 20 W/(m2 um)}\n"
+         "entities: [{name: wall, shape: {model: plate, width: 40 m, height: 40 m}, material: sand, temperature: 300 K}]\n"
+         "cameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 20 mm, position: [10 m, 0 m, 0 m],\n"
+         "           look_at: [0 m, 0 m, 0 m], channels: [{name: lw, response: {band: [8 um, 9 um]}}]}]\n";
+  const std::string file = (folder_ / "plate.yaml").string(), frame = (folder_ / "out" / "c_00000.exr").string();
+  ASSERT_EQ(pitviper("run " + file + " --out " + (folder_ / "out").string()).code, 0);
+  const Result told = pitviper("info " + frame + " --at 1,2 --terms " + file);
+  EXPECT_EQ(told.code, 0) << told.output;
+  for (const char* word : {"emission of surfaces: wall", "reflected sunlight: wall", "all of it", "this frame", "lw.radiance [W/(m2 sr)]"})
+    EXPECT_NE(told.output.find(word), std::string::npos) << word << "\n" << told.output;
+  const Result other = pitviper("info " + frame + " --at 1,2 --terms " + file + " --set entities.wall.temperature='301 K'");
+  EXPECT_EQ(other.code, 2);
+  EXPECT_NE(other.output.find("not a frame of"), std::string::npos) << other.output;
+  EXPECT_EQ(pitviper("info " + frame + " --terms " + file).code, 2) << "no pixel";
+  EXPECT_EQ(pitviper("info " + frame + " --at 1,2 --set a=b").code, 2) << "no scenario";
+}
+
 }  // namespace

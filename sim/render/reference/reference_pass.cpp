@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cmath>
 #include <future>
+#include <mutex>
 #include <optional>
 #include <thread>
 
@@ -70,8 +71,10 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
   const int columns = zoomed ? (width + ZoomedTile::kSize - 1) / ZoomedTile::kSize : 1;
   const int pieces = zoomed ? columns * ((height + ZoomedTile::kSize - 1) / ZoomedTile::kSize) : height;
   std::atomic<int> next{0};
+  std::mutex meeting;
   auto work = [&](bool tells) {
     NodeSum sum(shader.spectra());
+    sum.setOnly(only_);
     ZoomedTile tile(
         [&](int x, int y) {
           const auto line = lineAt(x, y);
@@ -89,6 +92,8 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
       // More views than were announced: the picture is as good as done.
       if (tells && progress_) progress_(std::min((viewsDone_ + std::min(1.0, static_cast<double>(next) / pieces)) / views_, 1.0));
     }
+    const std::scoped_lock lock(meeting);
+    met_.insert(sum.met().begin(), sum.met().end());
   };
   std::vector<std::future<void>> workers;
   for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) workers.push_back(std::async(std::launch::async, work, false));

@@ -15,6 +15,10 @@ class ReferencePass final : public ScenePass {
                 double apertureArea_m2);
   /// Called now and then on the drawing thread with the share of a picture that is done, 0 to 1.
   void setProgress(std::function<void(double share)> progress) { progress_ = std::move(progress); }
+  /// Pictures from here on are of one part alone, which is linear in all of them; without one of all.
+  void setOnly(const std::optional<Part>& only) { only_ = only; }
+  /// The parts that were met since it was made.
+  const std::set<Part>& met() const { return met_; }
   /// A picture begins, of about so many views: its own and those of its small bodies.
   void beginPicture(int views);
   /// It is done, whatever it took.
@@ -33,6 +37,8 @@ class ReferencePass final : public ScenePass {
   std::vector<char> drawn_;
   std::function<void(double)> progress_;
   int views_ = 1, viewsDone_ = 0;
+  std::optional<Part> only_;
+  std::set<Part> met_;
 };
 
 }  // namespace pitviper

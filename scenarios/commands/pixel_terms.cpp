@@ -1,0 +1,109 @@
+#include "scenarios/commands/pixel_terms.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <set>
+
+#include "scenarios/commands/commands.hpp"
+#include "scenarios/reader/scenario_reader.hpp"
+#include "sim/frame/file_owner.hpp"
+#include "sim/frame/frame.hpp"
+#include "sim/gl/context.hpp"
+#include "sim/parameters/error.hpp"
+
+namespace pitviper {
+namespace {
+
+std::string textAttribute(const ExrImage& image, const std::string& name) {
+  const Attribute* a = image.findAttribute(name);
+  const auto* text = a ? std::get_if<std::string>(&a->value) : nullptr;
+  return text ? *text : "";
+}
+
+int wholeAttribute(const ExrImage& image, const std::string& name) {
+  const Attribute* a = image.findAttribute(name);
+  const auto* value = a ? std::get_if<int>(&a->value) : nullptr;
+  return value ? *value : -1;
+}
+
+/// The frame's camera, drawn by the reference.
+Camera cameraOf(const ExrImage& frame, const std::string& file, const Simulation& sim) {
+  const std::string name = textAttribute(frame, "pitviper.camera");
+  for (const Camera& c : sim.cameras) {
+    if (c.name != name || c.pinhole.width != frame.width || c.pinhole.height != frame.height) continue;
+    Camera reference = c;
+    reference.spectral = {};
+    reference.spectral.reference = true;
+    reference.truth = {};
+    reference.spectralImage.reset();
+    return reference;
+  }
+  throw UserError({file, 0, 0, -1}, "a frame of a camera '" + name + "' that the scenario does not have", "a frame that a run of it wrote",
+                  "name the frame's own scenario");
+}
+
+std::string nameOf(const Part& part, const Simulation& sim) {
+  std::string name = pitviper::nameOf(part.kind);
+  if (part.light >= 0)
+    name = (part.kind == TermKind::LampsInView ? "lamp in view: " : "reflected light of ") + sim.lights[static_cast<size_t>(part.light)].name;
+  if (part.entity >= 0) name += ": " + sim.entities[static_cast<size_t>(part.entity)].name;
+  return name;
+}
+
+/// Of each channel the first output that the frame has a layer of, in its unit.
+std::vector<size_t> toldOutputs(const ExrImage& frame, const Camera& camera) {
+  std::vector<size_t> told;
+  std::set<std::string> channels;
+  for (size_t o = 0; o < camera.outputs.size(); ++o)
+    if (frame.find(camera.outputs[o].layer()) && channels.insert(camera.outputs[o].channel).second) told.push_back(o);
+  return told;
+}
+
+}  // namespace
+
+void printPixelTerms(const ExrImage& frame, const std::string& file, int column, int row, const std::string& scenario,
+                     const std::vector<std::string>& changes) {
+  const Simulation sim = readScenario(scenario, changes, findLibraries());
+  if (textAttribute(frame, kScenarioHash) != sim.sha256 || textAttribute(frame, kScenarioContent) != sim.content)
+    throw UserError({file, 0, 0, -1}, "not a frame of '" + scenario + "' as it is now", "the scenario that the frame was drawn from, with the same --set",
+                    "name that one, or draw the frame again");
+  const Camera camera = cameraOf(frame, file, sim);
+  const GlContext context;
+  CameraRenderer renderer(sim, camera, shaderLibrary(), std::make_shared<const GpuScene>(sim));
+  const int number = wholeAttribute(frame, "pitviper.frame");
+  const WorldState state = advance(sim.entities, sim.lights, sim.time.at(number));
+  const size_t pixel = static_cast<size_t>(row) * static_cast<size_t>(frame.width) + static_cast<size_t>(column);
+  const auto outputs = toldOutputs(frame, camera);
+  const auto valuesOf = [&](const std::optional<Part>& part) {
+    renderer.setOnly(part);
+    const CameraImage image = renderer.render(state);
+    std::vector<double> values;
+    for (size_t o : outputs) {
+      const ChannelOutput& output = camera.outputs[o];
+      const double etendue = output.perEtendue ? image.solidAngles->projected_sr[pixel] : 1.0;
+      values.push_back(output.scale * etendue * image.slots[static_cast<size_t>(image.slotOfOutput[o])][pixel]);
+    }
+    return values;
+  };
+  renderer.setWanted({static_cast<int>(pixel)});
+  const std::vector<double> all = valuesOf({});
+
+  std::printf("camera %s, frame %d, pixel %d,%d: every wavelength, in double precision\n\n%-44s", camera.name.c_str(), number, column, row, "");
+  for (size_t o : outputs) std::printf(" %26s", (camera.outputs[o].layer() + " [" + camera.outputs[o].unit + "]").c_str());
+  std::printf("\n");
+  const auto print = [&](const std::string& name, const std::vector<double>& values) {
+    std::printf("%-44s", name.c_str());
+    for (size_t k = 0; k < values.size(); ++k) std::printf(" %14.6g %9.4g %%", values[k], all[k] != 0.0 ? 100.0 * values[k] / all[k] : 0.0);
+    std::printf("\n");
+  };
+  for (const Part& part : renderer.parts()) {
+    const auto values = valuesOf(part);
+    if (std::any_of(values.begin(), values.end(), [](double v) { return v != 0.0; })) print(nameOf(part, sim), values);
+  }
+  print("all of it", all);
+  std::vector<double> own;
+  for (size_t o : outputs) own.push_back(static_cast<double>(frame.find(camera.outputs[o].layer())->pixels[pixel]));
+  print("this frame", own);
+}
+
+}  // namespace pitviper
