@@ -74,6 +74,12 @@ vec4 airByHeight(float height, int what, int v) {
   int at = airHeights() + (AIR_HEIGHTS * AIR_SUNS + 2 * entry + what) * AIR_VECTORS + v;
   return mix(texelFetch(airAmounts, at), texelFetch(airAmounts, at + 2 * AIR_VECTORS), m);
 }
+// The column above a height; below the lowest the air is as dense as there.
+vec4 airColumn(float height, int v) {
+  vec4 column = airByHeight(height, 1, v);
+  float below = air.heights.x - height;
+  return below > 0.0 ? column + below * 1.0e-3 * exp(airByHeight(height, 0, v)) : column;
+}
 vec4 airDensity(float height, int v) { return height > view.earth.y ? vec4(0.0) : exp(airByHeight(height, 0, v)); }
 
 AirPath airRaised(AirPath p) {
@@ -107,6 +113,8 @@ AirPath airToSun(AirPath camera, float height) {
   float sine = sunElevation_;
   airUpwards(height, abs(sine), w);
   if (sine < 0.0) airUpwards(height - (view.earth.x + height) * sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0))), 0.0, half_);
+  float below = max(air.heights.x - height, 0.0) / max(sine, 0.01) * 1.0e-3;
+  for (int v = 0; v < AIR_VECTORS && below > 0.0; ++v) w[v] += below * exp(airByHeight(height, 0, v));
   for (int v = 0; v < AIR_VECTORS; ++v) p.w[v] += sine < 0.0 ? max(2.0 * half_[v] - w[v], vec4(0.0)) : w[v];
   return airRaised(p);
 }
@@ -122,7 +130,7 @@ AirPath airToLight(AirPath camera, float height, float sinElevation, float dista
                                                                                     : 1.0 - vec3(u1 * u1, 0.5 * (u0 * u0 + u1 * u1), u0 * u0));
     vec3 h = height + s * (sinElevation + s * curved);
     for (int v = 0; v < AIR_VECTORS; ++v) {
-      vec4 mean = abs(h.z - h.x) > 50.0 ? (airByHeight(h.x, 1, v) - airByHeight(h.z, 1, v)) / (h.z - h.x) * 1.0e3
+      vec4 mean = abs(h.z - h.x) > 50.0 ? (airColumn(h.x, v) - airColumn(h.z, v)) / (h.z - h.x) * 1.0e3
                                         : (airDensity(h.x, v) + 4.0 * airDensity(h.y, v) + airDensity(h.z, v)) / 6.0;
       p.w[v] += (s.z - s.x) * 1.0e-3 * mean;
     }

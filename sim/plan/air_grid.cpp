@@ -158,7 +158,7 @@ std::vector<double> depthsToSun(const Simulation& simulation, const Plan& plan) 
 
 AirGrid airGrid(const Simulation& simulation, const Plan& plan, const AirTableSize& size, const View& view, const WorldState& state) {
   const glm::dvec3 up = simulation.frame.up(view.position);
-  const double share = plan.accuracy / 0.01, height = simulation.frame.height(view.position);
+  const double share = size.same * plan.accuracy / 0.01, height = simulation.frame.height(view.position);
   AirGrid g;
   g.elevations = size.elevations;
   g.ranges = size.ranges;
@@ -169,7 +169,7 @@ AirGrid airGrid(const Simulation& simulation, const Plan& plan, const AirTableSi
   g.scale_m = size.near_m > 0.0 ? std::min(size.near_m, kScale * g.farthest_m) : kScale * g.farthest_m;
   if (!plan.terms.scatteredSun) return g;
   const double sine = glm::dot(simulation.sun->toSun, up);
-  g.sunSine = share > 0.0 ? snapped(sine, sunStep(plan.accuracy, size.sunDepth, sine)) : sine;
+  g.sunSine = share > 0.0 ? snapped(sine, sunStep(size.same * plan.accuracy, size.sunDepth, sine)) : sine;
   const Across across(view, up, simulation.sun->toSun);
   const double most = std::sqrt(std::max(1.0 - g.sunSine * g.sunSine, 0.0));
   const auto [viewLow, viewHigh] = across.all();

@@ -27,6 +27,8 @@ constexpr double kMostValues = 5e7;
 constexpr double kNear = 0.3;
 /// Air that lets less through hides all that is behind it [kernel unit x um].
 constexpr double kOpaque = 1e-9;
+/// Steps of heights and suns become no smaller than this part of the usual ones.
+constexpr double kSame = 1.0 / 1024.0;
 /// Sizes tried.
 constexpr int kTries = 6;
 /// How much finer than a table's ranges the air is looked at to tell what is lost by adding it up over these.
@@ -139,7 +141,8 @@ AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, con
 
 AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& size) const {
   const size_t slots = floor_.size();
-  Lost lost{std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0)};
+  const std::vector<double> none(slots, 0.0);
+  Lost lost{none, none, none, none};
   View view = cameraView(camera_.pinhole, cameraPose(camera_.mount, *sample.state), camera_.near_m, camera_.samples);
   view.position = sample.origin;  // limits move the eye
   const AirGrid grid = airGrid(simulation_, plan_, size, view, *sample.state);
@@ -167,6 +170,18 @@ AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& 
       if (all > 0.0) into[s] += std::abs(found.air[s] - than.air[s] + behind * (found.passed[s] - than.passed[s])) / all;
     }
   };
+  // Heights and suns that share tables.
+  AirGrid exact = grid;
+  exact.height_m = simulation_.frame.height(view.position);
+  if (plan_.terms.scatteredSun) exact.sunSine = glm::dot(simulation_.sun->toSun, up);
+  if (!(exact == grid)) {
+    AirRows exactRows = rows_;
+    exactRows.begin(exact);
+    const auto alone = upTo(exactRows.stationsOf(line), {end});
+    const double air_m = end >= physics::kFar ? physics::kFar : end - alone.front();
+    if (air_m > 0.0)
+      note(lost.shared, right, Reader(simulation_, plan_, exactRows, exactRows.cosScatterOf(line)).at(exactRows.at(line, alone), alone.size() - 1, air_m));
+  }
   // Elevations: half a step below and above.
   const double radius = simulation_.frame.earthRadius_m(), horizon = grid.horizon(radius);
   const double half = 0.5 * (spreadOf(grid.high) - spreadOf(grid.low)) / (size.elevations - 1), x = spreadOf(line.sine);
@@ -226,13 +241,15 @@ AirTableLoss AirTableFit::lossOf(const AirTableSize& size) const {
   for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
   work();
   for (auto& o : others) o.get();
-  AirTableLoss loss{std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0)};
+  const std::vector<double> none(slots, 0.0);
+  AirTableLoss loss{none, none, none, none, none};
   for (const Lost& l : lost)
     for (size_t s = 0; s < slots; ++s) {
       loss.elevations[s] = std::max(loss.elevations[s], l.elevation[s]);
       loss.ranges[s] = std::max(loss.ranges[s], l.range[s]);
       loss.azimuths[s] = std::max(loss.azimuths[s], l.azimuth[s]);
-      loss.sums[s] = std::max(loss.sums[s], l.elevation[s] + l.range[s] + l.azimuth[s]);
+      loss.shared[s] = std::max(loss.shared[s], l.shared[s]);
+      loss.sums[s] = std::max(loss.sums[s], l.elevation[s] + l.range[s] + l.azimuth[s] + l.shared[s]);
     }
   return loss;
 }
@@ -245,8 +262,12 @@ std::pair<AirTableSize, AirTableLoss> AirTableFit::within(double accuracy) const
   AirTableLoss loss = lossOf(size);
   for (int tries = 1; tries < kTries; ++tries) {
     AirTableSize next{finer(size.elevations, largestOf(loss.elevations), share, kMost.elevations),
-                      finer(size.ranges, largestOf(loss.ranges), share, kMost.ranges), finer(size.azimuths, largestOf(loss.azimuths), share, kMost.azimuths),
-                      size.near_m, size.sunDepth};
+                      finer(size.ranges, largestOf(loss.ranges), share, kMost.ranges),
+                      finer(size.azimuths, largestOf(loss.azimuths), share, kMost.azimuths),
+                      size.near_m,
+                      size.same,
+                      size.sunDepth};
+    if (const double shared = largestOf(loss.shared); shared > share) next.same = std::max(size.same * std::exp2(std::floor(std::log2(share / shared))), kSame);
     next = affordable(next, simulation_, plan_);
     if (next == size) break;
     size = next;

@@ -11,7 +11,8 @@ namespace pitviper {
 /// What tables of a size lose in the middle between their entries, at most over lines of sight; relative to the pixel, per slot.
 struct AirTableLoss {
   std::vector<double> elevations, ranges, azimuths;
-  std::vector<double> sums;  ///< of a line, at most
+  std::vector<double> shared;  ///< by views that share tables
+  std::vector<double> sums;    ///< of a line, at most
 };
 
 /// The same, or less where that would take more memory than tables may: fewer azimuths, then ranges and elevations.
@@ -34,7 +35,7 @@ class AirTableFit {
     std::vector<double> radiance;  ///< per slot, of air and what is behind it
   };
   struct Lost {
-    std::vector<double> elevation, range, azimuth;
+    std::vector<double> elevation, range, azimuth, shared;
   };
   Lost lostOn(const Sample& sample, const AirTableSize& size) const;
 

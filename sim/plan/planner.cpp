@@ -32,8 +32,6 @@ constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u, kNextSeed = 0xd1b5
 
 /// What tables of layered air lose on the lines that their size was chosen on, times this, is predicted.
 constexpr double kTableMargin = 2.0;
-/// And what views lose that share tables (steps of height, azimuth and sun in air_grid.cpp), of the accuracy.
-constexpr double kShared = 0.05;
 /// And what ways on from lit surfaces to the sun lose, by the depth of these and the share of that light: 6e-4 of a pixel on the ground at a depth of 8 (fog,
 /// visibility 0.7 km; found on the GPU against double precision).
 constexpr double kSunWay = 1e-4;
@@ -83,7 +81,7 @@ std::vector<double> planTables(const Simulation& sim, const Eye& eye, SightRays&
   plan.air = size;
   for (size_t s = 0; s < loss.sums.size(); ++s) {
     double& l = loss.sums[s];
-    l = kTableMargin * l + kShared * accuracy;
+    l *= kTableMargin;
     if (toSun.empty()) continue;
     const size_t sun = static_cast<size_t>(TermKind::Sun);
     l += kSunWay * toSun[s] * (sun < plan.shares.size() && s < plan.shares[sun].share.size() ? std::min(plan.shares[sun].share[s], 1.0) : 1.0);
@@ -99,9 +97,9 @@ CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& f
   std::vector<double> floor;
   const NodesOfPlan planned(sim, plan);
   last.figures = checkLines(sim, planned, fine, last.lines, rays.pixel_sr(), airPlaces, floor);
-  // What middles of pixels miss and pixels hold: small bodies, and glints, which are small.
+  // What middles of pixels miss and pixels hold: small bodies, glints, which are small, and lamps.
   std::vector<SightRay> small = rays.ofSmallBodies(kLastSmall);
-  std::copy_if(rays.extremes().begin(), rays.extremes().end(), std::back_inserter(small), [](const SightRay& r) { return r.glints; });
+  std::copy_if(rays.extremes().begin(), rays.extremes().end(), std::back_inserter(small), [](const SightRay& r) { return r.glints || r.lamp >= 0; });
   last.add(small, checkLines(sim, planned, fine, small, rays.pixel_sr(), airPlaces, floor));
   const auto& found = last.figures;
   const auto extreme = checkLines(sim, planned, fine, rays.extremes(), rays.pixel_sr(), airPlaces, floor);

@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <random>
 
 #include "atmosphere/layered.hpp"
 #include "sim/model/sun_legs.hpp"
