@@ -33,9 +33,9 @@ void ChannelFit::look(const ProductSet& products) {
       shares_[static_cast<size_t>(k)] = std::max(shares_[static_cast<size_t>(k)], std::abs(products.parts(k, m)) * products.scale[m]);
 }
 
-void ChannelFit::begin(const Sights& sights) {
+void ChannelFit::begin(const Sights& sights, double floor) {
   absorbers_ = sights.absorbers(grid_);
-  floor_ = sights.floorOf(grid_, absorbers_);
+  floor_ = floor;
   SpectralProblem problem = sights.problem(grid_, absorbers_, floor_);
   seen_ = sights.size();
   const ProductSet products(problem);

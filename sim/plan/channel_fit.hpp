@@ -8,8 +8,8 @@ class ChannelFit {
  public:
   /// `accuracy`: relative error that may be spent.
   ChannelFit(const Simulation& simulation, const Spectrum& kernel, double accuracy);
-  /// Fits groups to all sights drawn so far.
-  void begin(const Sights& sights);
+  /// Fits groups to all sights drawn so far. `floor`: what is darker counts as this much.
+  void begin(const Sights& sights, double floor);
   /// Checks the groups on the sights drawn since it last looked; where they are not within the accuracy, learns the worst and fits again.
   /// True where they were.
   bool check(const Sights& sights);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <functional>
 #include <future>
 #include <thread>
 
@@ -19,8 +18,8 @@ namespace {
 constexpr int kTried[] = {5, 9, 18, 36, 72};
 constexpr double kPlacesShare = 0.4;
 constexpr size_t kLooked = 20;
-/// So many of these lines are brighter than what is taken for the film's bright parts.
-constexpr size_t kBright = 3;
+/// Frames that are looked at for how dark the film gets, and lines in all of them and at least in each.
+constexpr int kFloorFrames = 24, kFloorLines = 240, kFewestLines = 12;
 
 std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance) {
   std::vector<double> slots(plan.weight.size(), 0.0);
@@ -75,9 +74,63 @@ struct LineSums {
   std::vector<double> planned, exact, dropped;
 };
 
+/// Calls work(next) on as many threads as the machine has; next() gives each number from 0 on once.
+template <class Work>
+void onAllThreads(size_t count, const Work& work) {
+  std::atomic<size_t> taken{0};
+  const auto next = [&] { return taken++; };
+  std::vector<std::future<void>> others;
+  for (unsigned t = 1; t < std::min<size_t>(std::thread::hardware_concurrency(), count); ++t)
+    others.push_back(std::async(std::launch::async, [&] { work(next); }));
+  work(next);
+  for (auto& o : others) o.get();
+}
+
+RadianceScene sceneOf(const Simulation& sim, const Plan& fine, const ShadowCaster& shadows, const SightRay& ray, int places) {
+  RadianceScene scene{sim, fine.terms, fine.sunLegs.get(), *ray.state, {}, places};
+  if (fine.terms.shadows)
+    scene.lit = [&](const Hit& hit, size_t light, const LightLeg& leg) {
+      const double radius_m = light < sim.lights.size() ? sim.lights[light].radius_m : 0.0;
+      return shadows.lit(*ray.state, hit, leg.toLight, leg.distance_m - radius_m) ? 1.0 : 0.0;
+    };
+  return scene;
+}
+
 }  // namespace
 
-int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays, double accuracy) {
+std::vector<double> filmFloors(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays) {
+  const Plan& plan = fine.plan;
+  const int all = sim.time.frames, looked = std::min(all, kFloorFrames), each = std::max(kFloorLines / looked, kFewestLines);
+  std::vector<SightRay> lines;
+  for (int k = 0; k < looked; ++k) {
+    const int frame = k == 0 ? 0 : k == looked - 1 ? all - 1 : std::min(static_cast<int>((k + rays.dice().unit()) * all / looked), all - 1);
+    for (SightRay& ray : rays.overFilm(each, frame)) lines.push_back(std::move(ray));
+  }
+  const ShadowCaster shadows(sim);
+  std::vector<std::vector<double>> seen(lines.size());
+  onAllThreads(lines.size(), [&](const auto& next) {
+    NodeSum sum(fine.spectra);
+    for (size_t n = next(); n < lines.size(); n = next()) {
+      sum.begin();
+      radianceAlong(sceneOf(sim, plan, shadows, lines[n], kUsualPlaces), lines[n].line, sum);
+      seen[n] = slotsOf(plan, sum.radiance());
+    }
+  });
+  std::vector<double> floors = plan.darkFloors();
+  for (size_t s = 0; s < floors.size(); ++s) {
+    double darkest = INFINITY;
+    for (int k = 0; k < looked; ++k) {
+      std::vector<double> frame;
+      for (int n = k * each; n < (k + 1) * each; ++n) frame.push_back(seen[static_cast<size_t>(n)][s]);
+      std::sort(frame.begin(), frame.end());
+      darkest = std::min(darkest, frame[frame.size() * kBrightPercent / 100]);
+    }
+    floors[s] = std::max(floors[s], kDark * darkest);
+  }
+  return floors;
+}
+
+int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays, double accuracy, const std::vector<double>& floor) {
   if (!fine.plan.terms.air || !sim.path->isLayered()) return kTried[0];
   std::vector<SightRay> lines;
   const auto& extremes = rays.extremes();
@@ -91,18 +144,9 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
     return std::vector<double>(sum.radiance().begin(), sum.radiance().end());
   };
   std::vector<std::vector<double>> all, slots;
-  std::vector<double> floor = plan.darkFloors();
   for (const SightRay& ray : lines) {
     all.push_back(seen(ray, 0));
     slots.push_back(slotsOf(plan, all.back()));
-  }
-  // What is bright on this many of the film's lines is so on more than a few of its pixels.
-  for (size_t s = 0; s < floor.size(); ++s) {
-    std::vector<double> film;
-    for (size_t n = 0; n < lines.size(); ++n)
-      if (lines[n].fromFilm) film.push_back(slots[n][s]);
-    std::nth_element(film.begin(), film.begin() + kBright, film.end(), std::greater<>());
-    floor[s] = std::max(floor[s], kDark * film[kBright]);
   }
   // Wavelength by wavelength: what is lost at one and won at another is nothing to a channel, but something to groups of them.
   const auto isEnough = [&](int places) {
@@ -122,45 +166,26 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
 }
 
 std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& ofPlan, const NodesOfPlan& ofFine, const std::vector<SightRay>& lines,
-                                    double pixel_sr, int places, std::vector<double>& floor) {
+                                    double pixel_sr, int places, const std::vector<double>& floor) {
   const Plan &plan = ofPlan.plan, &fine = ofFine.plan;
   const ShadowCaster shadows(sim);
   std::vector<LineSums> sums(lines.size());
-  std::atomic<size_t> next{0};
-  auto work = [&] {
+  onAllThreads(lines.size(), [&](const auto& next) {
     NodeSum planned(ofPlan.spectra), exact(ofFine.spectra);
     BothSums both(planned, exact);
     planned.keepParts();
-    for (size_t n = next++; n < lines.size(); n = next++) {
+    for (size_t n = next(); n < lines.size(); n = next()) {
       const SightRay& ray = lines[n];
-      RadianceScene scene{sim, fine.terms, fine.sunLegs.get(), *ray.state, {}, places};
-      if (fine.terms.shadows)
-        scene.lit = [&](const Hit& hit, size_t light, const LightLeg& leg) {
-          const double radius_m = light < sim.lights.size() ? sim.lights[light].radius_m : 0.0;
-          return shadows.lit(*ray.state, hit, leg.toLight, leg.distance_m - radius_m) ? 1.0 : 0.0;
-        };
+      const RadianceScene scene = sceneOf(sim, fine, shadows, ray, places);
       planned.begin();
       exact.begin();
       radianceAlong(scene, ray.line, both);
       if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), pixel_sr, both);
       sums[n] = {slotsOf(plan, planned.radiance()), slotsOf(fine, exact.radiance()), droppedOf(plan, fine.terms, planned)};
     }
-  };
-  std::vector<std::future<void>> others;
-  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
-  work();
-  for (auto& o : others) o.get();
-
+  });
   std::vector<LineFigures> figures(plan.weight.size());
-  const bool chooses = floor.empty();
-  const std::vector<double> dark = fine.darkFloors();
   for (size_t s = 0; s < figures.size(); ++s) {
-    if (chooses) {
-      std::vector<double> seen;
-      for (const LineSums& l : sums) seen.push_back(l.exact[s]);
-      std::sort(seen.begin(), seen.end());
-      floor.push_back(std::max(dark[s], seen.empty() ? 0.0 : kDark * seen[seen.size() * kBrightPercent / 100]));
-    }
     LineFigures& f = figures[s];
     for (const LineSums& l : sums) {
       const double size = std::max(std::abs(l.exact[s]), floor[s]), difference = std::abs(l.planned[s] - l.exact[s]);

@@ -25,14 +25,16 @@ struct NodesOfPlan {
 /// Places at which a line's air is looked at unless an accuracy says how many.
 constexpr int kUsualPlaces = 24;
 
+/// What is darker counts as this much, per slot: 1e-3 of a high percentile of what the film sees in the darkest of its frames, but at least kDarkest.
+std::vector<double> filmFloors(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays);
+
 /// The fewest places at which air may be looked at along lines of sight, for channels to be within a part of the accuracy that leaves the rest to wavelengths:
 /// short waves see it bend where long ones don't. On some of the film's lines and the extremes.
-int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays, double accuracy);
+int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays, double accuracy, const std::vector<double>& floor);
 
-/// One per slot. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: per slot; where empty it becomes 1e-3 of a high percentile of
-/// these lines, but at least kDarkest. `places`: at which the air is looked at, alike on both sides, so that only wavelengths differ. Terms are those of
-/// `fine`; `plan` may leave kinds of terms out, all of them or by node.
+/// One per slot. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: filmFloors(). `places`: at which the air is looked at, alike on
+/// both sides, so that only wavelengths differ. Terms are those of `fine`; `plan` may leave kinds of terms out, all of them or by node.
 std::vector<LineFigures> checkLines(const Simulation& simulation, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines,
-                                    double pixel_sr, int places, std::vector<double>& floor);
+                                    double pixel_sr, int places, const std::vector<double>& floor);
 
 }  // namespace pitviper

@@ -82,10 +82,11 @@ void CheckedLines::add(const std::vector<SightRay>& more, const std::vector<Line
 }
 
 PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
-                   SightRays& rays, int airPlaces, const std::function<void(double)>& tell)
+                   SightRays& rays, const std::vector<double>& floor, int airPlaces, const std::function<void(double)>& tell)
     : sim_(simulation),
       fine_(fine),
       rays_(rays),
+      floor_(floor),
       airPlaces_(airPlaces),
       tell_(tell),
       plan_(plan),
@@ -97,7 +98,7 @@ PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& pla
   }
   sights_.begin(kFirst, eye.camera ? eye.camera->learnt : std::vector<FilmPlace>());
   tell_(0.1);
-  forAll(all, [&](size_t s) { fits_[s]->begin(sights_); });
+  forAll(all, [&](size_t s) { fits_[s]->begin(sights_, floor_[s]); });
   hold(all);
 }
 

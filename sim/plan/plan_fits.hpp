@@ -20,10 +20,10 @@ struct CheckedLines {
 
 class PlanFits {
  public:
-  /// Fits groups within plan.accuracy. `slots`: an output of each; `fine`: the plan of every wavelength;
+  /// Fits groups within plan.accuracy. `slots`: an output of each; `fine`: the plan of every wavelength; `floor`: filmFloors();
   /// `airPlaces`: airPlacesFor() it; `tell`: what part of the work of the constructor or of learn() is done, at most. All must outlive it.
   PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
-           SightRays& rays, int airPlaces, const std::function<void(double part)>& tell);
+           SightRays& rays, const std::vector<double>& floor, int airPlaces, const std::function<void(double part)>& tell);
   /// Fits those slots to half of what they were fitted to, and to what they are off by on these lines.
   void learn(const CheckedLines& checked, const std::vector<size_t>& slots);
   /// The groups as the plan's nodes.
@@ -36,13 +36,13 @@ class PlanFits {
   const Simulation& sim_;
   const NodesOfPlan& fine_;
   SightRays& rays_;
+  const std::vector<double>& floor_;
   int airPlaces_;
   const std::function<void(double)>& tell_;
   Plan plan_;
   Sights sights_;
   std::vector<std::unique_ptr<ChannelFit>> fits_;
   CheckedLines second_;  ///< what fits are held against
-  std::vector<double> floor_;
 };
 
 }  // namespace pitviper

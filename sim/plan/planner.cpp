@@ -90,11 +90,11 @@ std::vector<double> planTables(const Simulation& sim, const Eye& eye, SightRays&
 }
 
 /// What it is off by, on lines that no fit has seen and at the extremes.
-CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& fine, SightRays& rays, int airPlaces, unsigned long long seed, Plan& plan) {
+CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& fine, SightRays& rays, const std::vector<double>& floor, int airPlaces,
+                     unsigned long long seed, Plan& plan) {
   rays.reseed(seed);
   CheckedLines last;
   last.lines = rays.overFilm(kLast);
-  std::vector<double> floor;
   const NodesOfPlan planned(sim, plan);
   last.figures = checkLines(sim, planned, fine, last.lines, rays.pixel_sr(), airPlaces, floor);
   // What middles of pixels miss and pixels hold: small bodies, glints, which are small, and lamps.
@@ -134,8 +134,9 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
   };
   const std::function<void(double)> tellFits = [&](double part) { tell(from + (to - from) * part); };
   tell(0.02);
-  const int airPlaces = airPlacesFor(sim, fine, rays, plan.accuracy), lastPlaces = std::max(airPlaces, kUsualPlaces);
-  PlanFits fits(sim, eye, plan, slotsOf(plan, outputs), fine, rays, airPlaces, tellFits);
+  const std::vector<double> floor = filmFloors(sim, fine, rays);
+  const int airPlaces = airPlacesFor(sim, fine, rays, plan.accuracy, floor), lastPlaces = std::max(airPlaces, kUsualPlaces);
+  PlanFits fits(sim, eye, plan, slotsOf(plan, outputs), fine, rays, floor, airPlaces, tellFits);
   const Terms all = plan.terms;
   const int lights = plan.lightCount;
   std::vector<size_t> missed;
@@ -145,7 +146,7 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
     plan.terms = all;
     plan.lightCount = lights;
     dropTerms(plan, keepLights);
-    const CheckedLines last = predict(sim, eye, fine, rays, lastPlaces, seed ^= attempt == 0 ? kLastSeed : kNextSeed, plan);
+    const CheckedLines last = predict(sim, eye, fine, rays, floor, lastPlaces, seed ^= attempt == 0 ? kLastSeed : kNextSeed, plan);
     missed.clear();
     for (size_t s = 0; s < plan.parts.size() && attempt < kAgain; ++s)
       if (plan.parts[s].sum() - plan.parts[s].tables > plan.accuracy - std::min(plan.parts[s].tables, kMended * plan.accuracy)) missed.push_back(s);
@@ -188,7 +189,7 @@ Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress
     } else {
       for (const auto& w : fine.weight) plan.fineCount.push_back(static_cast<int>(std::count_if(w.begin(), w.end(), [](double v) { return v != 0.0; })));
       SightRays rays(sim, eye, static_cast<unsigned long long>(sim.seed));
-      predict(sim, eye, exactNodes, rays, kUsualPlaces, static_cast<unsigned long long>(sim.seed) ^ kLastSeed, plan);
+      predict(sim, eye, exactNodes, rays, filmFloors(sim, exactNodes, rays), kUsualPlaces, static_cast<unsigned long long>(sim.seed) ^ kLastSeed, plan);
     }
     plan.terms = all;
     writeCachedPlan(key, plan);

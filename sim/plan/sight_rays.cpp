@@ -103,21 +103,21 @@ SightRay SightRays::through(const FilmPlace& place) {
 
 SightRay SightRays::fromFilm() { return filmRay(static_cast<int>(dice_.below(static_cast<size_t>(simulation_.time.frames)))); }
 
-std::vector<SightRay> SightRays::overFilm(int count) {
+std::vector<SightRay> SightRays::overFilm(int count, std::optional<int> only) {
   std::vector<SightRay> lines;
   if (!eye_.camera) {
-    for (int n = 0; n < count; ++n) lines.push_back(fromFilm());
+    for (int n = 0; n < count; ++n) lines.push_back(only ? filmRay(*only) : fromFilm());
     return lines;
   }
   const auto samples = static_cast<size_t>(eye_.camera->samples);
   const size_t columns = static_cast<size_t>(eye_.camera->pinhole.width) * samples, rows = static_cast<size_t>(eye_.camera->pinhole.height) * samples;
-  const double all = static_cast<double>(columns) * static_cast<double>(rows) * simulation_.time.frames;
+  const double each = static_cast<double>(columns * rows), all = each * (only ? 1 : simulation_.time.frames);
   // With fewer subpixels than lines each is drawn as often as any other, or once more.
   for (int n = 0; n < count; ++n) {
     const double at = std::min((n + dice_.unit()) * all / count, all - 1.0);
-    const auto frame = static_cast<int>(at / static_cast<double>(columns * rows));
-    const auto place = static_cast<size_t>(at - static_cast<double>(frame) * static_cast<double>(columns * rows));
-    lines.push_back(cameraRay(frame, place % columns, place / columns));
+    const auto frame = static_cast<int>(at / each);
+    const auto place = static_cast<size_t>(at - frame * each);
+    lines.push_back(cameraRay(only.value_or(frame), place % columns, place / columns));
   }
   return lines;
 }

@@ -42,8 +42,8 @@ class SightRays {
   SightRays(const Simulation& simulation, const Eye& eye, unsigned long long seed);
   /// The middle of a random subpixel of a random frame; of a probe a random direction.
   SightRay fromFilm();
-  /// So many of them, one from each of as many parts of all frames' subpixels in their order: none is drawn twice before all have been.
-  std::vector<SightRay> overFilm(int count);
+  /// So many of them, one from each of as many parts of the subpixels of all frames, or of one, in their order: none is drawn twice before all have been.
+  std::vector<SightRay> overFilm(int count, std::optional<int> frame = {});
   /// A random line of one of the combinations of things (surface, panes and media before it) that the film has, all alike often.
   SightRay ofCombination();
   /// At a random place of a random part of a body, so that what is small is not missed. Where the scenario states limits, half of them come from

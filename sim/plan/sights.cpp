@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "sim/plan/fine_grid.hpp"
 #include "sim/plan/product_sink.hpp"
@@ -114,14 +113,6 @@ SpectralProblem Sights::whole(const FineGrid& grid, const std::vector<int>& abso
   }
   for (const Sight& s : sights) p.products.push_back({s.terms, 0.0});
   return p;
-}
-
-double Sights::floorOf(const FineGrid& grid, const std::vector<int>& absorbers) const {
-  std::vector<Sight> drawn;
-  std::copy_if(book_.sights.begin(), book_.sights.end(), std::back_inserter(drawn), [](const Sight& s) { return s.fromFilm; });
-  std::vector<double> film = fineIntegrals(whole(grid, absorbers, drawn));
-  std::sort(film.begin(), film.end());
-  return darkFloor(film.empty() ? 0.0 : film[film.size() * kBrightPercent / 100], std::accumulate(grid.weight.begin(), grid.weight.end(), 0.0));
 }
 
 SpectralProblem Sights::problem(const FineGrid& grid, const std::vector<int>& absorbers, double floor, size_t first) const {

@@ -70,8 +70,6 @@ class Sights {
   /// The spectral problem of a channel, of sights from a number on, one column of extinction per absorber. Terms that with nothing in their way
   /// would be far below the floor are left out.
   SpectralProblem problem(const FineGrid& grid, const std::vector<int>& absorbers, double floor, size_t first = 0) const;
-  /// 1e-3 of the 99th percentile of what a channel's film sees.
-  double floorOf(const FineGrid& grid, const std::vector<int>& absorbers) const;
 
  private:
   double coefficientOf(const FineGrid& grid, size_t i, int absorber) const;
