@@ -123,19 +123,27 @@ AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, con
     for (double row : {0.5, 0.5 * p.height, p.height - 0.5})
       for (double column : {0.5, 0.5 * p.width, p.width - 0.5}) lines.push_back(rays.through({frame, column, row}));
   NodeSum sum(plan.spectra);
-  for (SightRay& ray : lines) {
-    // What stands in the air dims what the tables lose as well as the rest.
-    ray.line.hits.layers.clear();
-    ray.line.hits.stretches.clear();
+  const auto add = [&](const SightRay& ray, double range_m) {
     sum.begin();
     radianceAlong({simulation, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, kUsualPlaces}, ray.line, sum);
-    Sample sample{ray.state, ray.line.origin, ray.line.direction, physics::kFar, std::vector<double>(floor_.size(), 0.0)};
-    if (ray.line.hits.solid.entity >= 0) sample.range_m = ray.line.hits.solid.distance;
-    else if (const auto ground = groundHit(simulation, ray.line.origin, ray.line.direction)) sample.range_m = ground->distance;
+    Sample sample{ray.state, ray.line.origin, ray.line.direction, range_m, std::vector<double>(floor_.size(), 0.0)};
     for (size_t s = 0; s < floor_.size(); ++s)
       for (size_t i = 0; i < plan_.nodes.size(); ++i) sample.radiance[s] += plan_.weight[s][i] * sum.radiance()[i];
-    if (sample.range_m > 0.0) nearest_m_ = std::min(nearest_m_, sample.range_m);
+    if (range_m > 0.0) nearest_m_ = std::min(nearest_m_, range_m);
     samples_.push_back(std::move(sample));
+  };
+  for (SightRay& ray : lines) {
+    RayHits& hits = ray.line.hits;
+    // The air before the first thing that stands in it may be all that is seen; what lies behind is looked at as if nothing stood there.
+    double first = INFINITY;
+    for (const Hit& h : hits.layers) first = std::min(first, h.distance);
+    for (const Stretch& s : hits.stretches)
+      if (s.enter > 0.0) first = std::min(first, s.enter);
+    if (first < INFINITY) add(ray, first);
+    hits.layers.clear();
+    hits.stretches.clear();
+    const auto ground = hits.solid.entity >= 0 ? std::nullopt : groundHit(simulation, ray.line.origin, ray.line.direction);
+    add(ray, ground ? ground->distance : hits.solid.entity >= 0 ? hits.solid.distance : physics::kFar);
   }
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 /// The air's own places and those asked for, and between them so many more that none is farther from the last than 2 m or a quarter of the way up to 100 m,
 /// from there on than a tenth of it or 100 m: emission, linear in depth between two, is then within 3e-5 of finer ones towards space, where the model's own
-/// places are 0.13 % off, and within 1e-5 where a band is so opaque that all it shows lies in the first metres, for its depth grows as a root of the range.
+/// places are 0.13 % off, and within 6e-5 where a band is so opaque that all it shows lies in the first metres, for its depth grows as a root of the range.
 constexpr double kFirst_m = 2.0, kNearPart = 0.25, kStep_m = 100.0, kPart = 0.1;
 /// Of fewer places: nearer than this one is as good as another, and beyond the other there is no air to speak of.
 constexpr double kNear_m = 10.0, kFar_m = 1e6;

@@ -137,5 +137,16 @@ TEST(PromiseKinds, PaneInAPlumeIsSaid) {
   EXPECT_EQ(orderOf(-3.0), "exact");
 }
 
+// In the frames between a lamp's flashes a wall shows next to nothing, and that is held to what is asked too: dark is what is dark in the frame.
+TEST(PromiseKinds, BetweenTheFlashesOfALamp) {
+  const std::string text =
+      "time: {rate: 1 Hz, frames: 9}\natmosphere: clear_us76\nlights:\n"
+      "- {name: flash, intensity: {blackbody: 3000 K, area: 1 m2}, visible: false, position: [-5 m, 0 m, 2 m], level: [[0 s, 0], [1 s, 1], [2 s, 0], [3 s, 1], "
+      "[4 s, 0], [5 s, 1], [6 s, 0], [7 s, 1], [8 s, 0]]}\nentities:\n"
+      "- {name: wall, shape: {model: plate, width: 40 m, height: 40 m}, material: white_lambertian, temperature: 290 K, heading: 270 deg}\n" +
+      camera("[-50 m, 0 m, 1 m]", "wall", "field_of_view: 10 deg, channels: [{name: nir, response: {band: [0.9 um, 1.6 um]}}]");
+  bound("a wall between the flashes of a lamp, 1e-13 of what it is in one, planned at 1 %, worst pixel", worstOff(text, "1 %"), 0.01, "asked for");
+}
+
 }  // namespace
 }  // namespace pitviper::test
