@@ -1,8 +1,9 @@
 #include "materials/energy.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <functional>
+#include <numeric>
 
 #include "sim/radiometry/constants.hpp"
 
@@ -16,10 +17,10 @@ constexpr size_t kMostProducts = 200000000;
 /// Competing wavelengths and angles that are kept as they are: 48 MB.
 constexpr size_t kMostExact = 1000000;
 
-constexpr size_t kParts = 5;
-using Parts = std::array<double, kParts>;  ///< three reflectances, the given emissivity and the transmittance, or their modifiers
+using Parts = std::vector<double>;  ///< the given emissivity, the transmittance and the components' reflectances, or their modifiers
+constexpr size_t kGiven = 0, kTransmitted = 1, kReflected = 2;
 
-double product(const Parts& a, const Parts& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3] + a[4] * b[4]; }
+double product(const Parts& a, const Parts& b) { return std::inner_product(a.begin(), a.end(), b.begin(), 0.0); }
 
 struct Candidate {
   Parts parts;
@@ -59,10 +60,10 @@ std::vector<double> viewAngles(const Material& m) {
 }
 
 Parts partsAt(const Material& m, double wavelength, double angle) {
-  Parts parts{};
-  for (size_t k = 0; k < m.reflections.size(); ++k) parts[k] = m.reflections[k]->hemispherical(wavelength, angle);
-  if (m.given) parts[3] = m.given->at(wavelength, angle);
-  parts[4] = m.transmittance(wavelength, angle);
+  Parts parts(kReflected + m.reflections.size(), 0.0);
+  for (size_t k = 0; k < m.reflections.size(); ++k) parts[kReflected + k] = m.reflections[k]->hemispherical(wavelength, angle);
+  if (m.given) parts[kGiven] = m.given->at(wavelength, angle);
+  parts[kTransmitted] = m.transmittance(wavelength, angle);
   return parts;
 }
 
@@ -88,7 +89,7 @@ class Envelope {
   bool rounded() const { return step_ > 0.0; }
 
  private:
-  static bool below(const Parts& a, const Parts& b) { return a[0] <= b[0] && a[1] <= b[1] && a[2] <= b[2] && a[3] <= b[3] && a[4] <= b[4]; }
+  static bool below(const Parts& a, const Parts& b) { return std::equal(a.begin(), a.end(), b.begin(), std::less_equal<>()); }
   void round(Candidate& c) const {
     if (step_ > 0.0)
       for (double& p : c.parts) p = std::ceil(p / step_) * step_;
@@ -104,7 +105,7 @@ class Envelope {
 };
 
 /// Where two textures' texels lie along one axis, in texture coordinates.
-std::vector<double> lines(const std::array<const Texture*, kParts>& textures, int Texture::*side) {
+std::vector<double> lines(const std::vector<const Texture*>& textures, int Texture::*side) {
   std::vector<double> all;
   for (const Texture* t : textures)
     if (t)
@@ -128,16 +129,16 @@ double valueAt(const Texture& t, double u, double v) {
 /// The modifiers of a material: their greatest values, and where they have to be looked at together.
 class Modifiers {
  public:
-  Modifiers(const Material& m, std::span<const Texture> textures) {
+  Modifiers(const Material& m, std::span<const Texture> textures) : textures_(kReflected + m.reflections.size(), nullptr), greatest_(textures_.size(), 1.0) {
     auto take = [&](size_t k, int index) {
       if (index < 0) return;
       const Texture& t = textures[static_cast<size_t>(index)];
       textures_[k] = &t;
       greatest_[k] = static_cast<double>(*std::max_element(t.texels.begin(), t.texels.end()));
     };
-    for (size_t k = 0; k < m.modifiers.size(); ++k) take(k, m.modifiers[k]);
-    if (m.given) take(3, m.given->modifier);
-    if (m.transmission) take(4, m.transmission->modifier);
+    for (size_t k = 0; k < m.modifiers.size(); ++k) take(kReflected + k, m.modifiers[k]);
+    if (m.given) take(kGiven, m.given->modifier);
+    if (m.transmission) take(kTransmitted, m.transmission->modifier);
     const Texture* largest = nullptr;
     for (const Texture* t : textures_)
       if (t && (!largest || t->texels.size() > largest->texels.size())) largest = t;
@@ -157,19 +158,19 @@ class Modifiers {
   }
   const Parts& greatest() const { return greatest_; }
   /// Fewer than two textures: their greatest values are taken on together.
-  bool together() const { return std::count(textures_.begin(), textures_.end(), nullptr) >= static_cast<std::ptrdiff_t>(kParts) - 1; }
+  bool together() const { return std::count(textures_.begin(), textures_.end(), nullptr) >= static_cast<std::ptrdiff_t>(textures_.size()) - 1; }
   size_t points() const { return points_; }
   Parts at(size_t point) const {
     Parts parts = greatest_;
-    for (size_t k = 0; k < kParts; ++k)
+    for (size_t k = 0; k < textures_.size(); ++k)
       if (textures_[k])
         parts[k] = sameSize_ ? static_cast<double>(textures_[k]->texels[point]) : valueAt(*textures_[k], x_[point % x_.size()], y_[point / x_.size()]);
     return parts;
   }
 
  private:
-  std::array<const Texture*, kParts> textures_{};
-  Parts greatest_{1.0, 1.0, 1.0, 1.0, 1.0};
+  std::vector<const Texture*> textures_;
+  Parts greatest_;
   bool sameSize_ = true;
   std::vector<double> x_, y_;
   size_t points_ = 0;

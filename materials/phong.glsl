@@ -4,7 +4,8 @@
 //   their digits. Reciprocal. Zero beyond 90 degrees. Its directional-hemispherical reflectance is 1 at normal view and falls off
 //   towards grazing.
 // Source: Lafortune and Willems 1994 (normalisation); Duvenhage 2006 section 6 (spectral Phong). Valid: n >= 0.
-PHYSICS Real lobe(Real exponent, Vec3 normal, Vec3 toLight, Vec3 toViewer) {
+PHYSICS Real phongLobe(Vec4 parameters, Vec3 normal, Vec3 toLight, Vec3 toViewer) {
+  Real exponent = parameters.x;
   Vec3 mirrored = 2.0 * dot(normal, toLight) * normal - toLight;
   Vec3 chord = mirrored - toViewer;
   Real c = 0.5 * dot(chord, chord);

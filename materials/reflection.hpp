@@ -8,10 +8,10 @@
 namespace pitviper {
 
 /// f = rho(lambda) / pi.
-std::shared_ptr<const ReflectionComponent> makeLambertian(Spectrum reflectance);
+std::shared_ptr<ReflectionComponent> makeLambertian(Spectrum reflectance);
 
 /// f = rho(lambda) (n + 2) / (2 pi) cos^n(alpha); rho is the reflectance at normal view.
-std::shared_ptr<const ReflectionComponent> makePhong(Spectrum reflectance, double exponent);
+std::shared_ptr<ReflectionComponent> makePhong(Spectrum reflectance, double exponent);
 
 /// BRDF values [1/sr] at rising wavelengths [um] and equally spaced angles from 0, linear between.
 /// values[(a2 * count1 + a1) * wavelengths + w]; its hemispherical reflectance is integrated numerically.
@@ -20,6 +20,11 @@ struct BrdfTable {
   std::array<AngleAxis, 2> axes;
   std::vector<double> values;
 };
-std::shared_ptr<const ReflectionComponent> makeTabulated(BrdfTable table);
+std::shared_ptr<ReflectionComponent> makeTabulated(BrdfTable table);
+
+struct ReflectionModel;
+ReflectionModel lambertianModel();
+ReflectionModel phongModel();
+ReflectionModel tabulatedModel();
 
 }  // namespace pitviper

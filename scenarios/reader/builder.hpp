@@ -49,7 +49,7 @@ class Builder {
   /// `what`: "emissivity" or "transmittance".
   ViewSpectrum readViewSpectrum(const Record& r, const char* what, const std::string& material, const SpectrumReader& spectra);
   void readMedium(const Record& r, Material& material, const SpectrumReader& spectra) const;
-  void countTable(const Record& component);
+  std::shared_ptr<const ReflectionComponent> readComponent(const Value& value, const std::string& material, const SpectrumReader& spectra);
   int readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest);
   // bodies.cpp
   struct Placement {
@@ -91,7 +91,9 @@ class Builder {
   std::filesystem::path base_;  ///< folder of the scenario
   Libraries libraries_;
   SpectrumReader spectra_;
-  std::size_t brdfTables_ = 0, brdfWavelengths_ = 0, phongLobes_ = 0, planSteps_ = 0;
+  std::size_t planSteps_ = 0;
+  std::map<std::string, ParameterTable> componentTables_;  ///< by model
+  std::map<std::string, double> componentShares_;          ///< of all that a scenario may hold of a model
   std::map<std::string, int> materialIndex_;
   std::map<std::string, const Value*> materialValues_;
   std::map<std::string, Location> entityNames_, lightNames_, cameraNames_;

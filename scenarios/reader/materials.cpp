@@ -3,8 +3,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "materials/angle_tables.hpp"
 #include "materials/energy.hpp"
-#include "materials/reflection.hpp"
+#include "materials/models.hpp"
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
@@ -14,25 +15,9 @@
 namespace pitviper {
 namespace {
 
-/// As many as one YAML file can hold.
-constexpr std::size_t kMostTableValues = 400000;
-/// Two angles that both depend on the light: up to 1.4 s to integrate over the hemisphere. Others take 3 ms and, with the most entries,
-/// half a second.
-constexpr std::size_t kMostAnglePairs = 65536;
-constexpr std::size_t kMostTables = 64, kMostTableWavelengths = 1024;
-/// Each Phong lobe takes about 10 ms to integrate over the hemisphere.
-constexpr std::size_t kMostLobes = 256;
 constexpr std::size_t kMostMaterials = 4096;
 /// 160 MB of texels.
 constexpr std::size_t kMostTexels = 40000000;
-
-Angle angleNamed(const std::string& word) {
-  if (word == "incidence") return Angle::Incidence;
-  if (word == "view") return Angle::View;
-  if (word == "specular") return Angle::Specular;
-  if (word == "half") return Angle::Half;
-  return Angle::Difference;
-}
 
 std::string percentAt(double sum, double wavelength_um, double angle_rad) {
   char text[80];
@@ -40,89 +25,16 @@ std::string percentAt(double sum, double wavelength_um, double angle_rad) {
   return text;
 }
 
-/// What a table holds, for its messages.
-struct TableKind {
-  const char* name;
-  const char* range;
-  double most;
-};
-constexpr TableKind kBrdf{"a BRDF", "at least 0 per steradian", INFINITY}, kEmissivity{"an emissivity", "0 to 1", 1.0},
-    kTransmittance{"a transmittance", "0 to 1", 1.0};
-std::string aTable(const TableKind& kind) { return std::string(kind.name) + " table"; }
+constexpr AngleTableKind kEmissivity{"an emissivity", "0 to 1", 1.0}, kTransmittance{"a transmittance", "0 to 1", 1.0};
 
-/// values[angle 2][angle 1][wavelength], with a nesting level left out for each missing axis.
-void flatten(const Value& v, const TableKind& kind, const std::vector<size_t>& extents, size_t level, std::vector<double>& into) {
-  if (level == extents.size()) {
-    const double x = readNumber(v, "", "a value of " + aTable(kind));
-    if (!(x >= 0.0 && x <= kind.most))
-      throw UserError(v.where, std::string(kind.name) + " value is " + (x < 0.0 ? "negative" : "above 1"), kind.range, "correct the table");
-    into.push_back(x);
-    return;
-  }
-  if (v.kind != Value::Kind::List || v.items.size() != extents[level])
-    throw UserError(v.where, "a level of " + aTable(kind) + " has " + std::to_string(v.kind == Value::Kind::List ? v.items.size() : 0) + " entries",
-                    std::to_string(extents[level]) + ", as its axis says", "fill the hole or change 'count'");
-  for (const Value& item : v.items) flatten(item, kind, extents, level + 1, into);
-}
-
-/// Rising wavelengths [um] of a table.
-std::vector<double> readWavelengths(const Value& list, const TableKind& kind) {
-  std::vector<double> all;
-  for (const Value& w : list.items) {
-    const double x = onAxis(readNumber(w, "um", "wavelength"));
-    if (x < kShortestWavelength_um || x > kLongestWavelength_um || (!all.empty() && x <= all.back()))
-      throw UserError(w.where, "the wavelengths of " + aTable(kind) + " do not rise or leave the spectral axis", "rising, within 0.1 to 1000 um", "sort them");
-    all.push_back(x);
-  }
-  return all;
-}
-
-AngleAxis readAxis(const Value& value) {
-  const Record axis(value, tables::tableAxis());
-  return {angleNamed(axis.text("angle")), static_cast<int>(axis.integer("count")), axis.number("last")};
-}
-
-std::vector<double> readValues(const Record& r, const TableKind& kind, const std::vector<size_t>& extents) {
-  size_t total = 1;
-  for (size_t e : extents) total *= e;
-  if (total > kMostTableValues)
-    throw UserError(r.where("values"), aTable(kind) + " of " + std::to_string(total) + " values", "at most " + std::to_string(kMostTableValues), "thin it out");
-  std::vector<double> values;
-  flatten(r.value("values"), kind, extents, 0, values);
-  return values;
-}
-
-std::shared_ptr<const ReflectionComponent> readTable(const Record& r) {
-  BrdfTable t;
-  for (const char* key : {"wavelength", "values"})
-    if (!r.given(key)) throw UserError(r.where(), std::string("a BRDF table without '") + key + "'", "'wavelength', 'angles' and 'values'", "add it");
-  t.wavelength_um = readWavelengths(r.value("wavelength"), kBrdf);
-  std::vector<size_t> extents{t.wavelength_um.size()};
-  if (r.given("angles")) {
-    size_t k = 0;
-    for (const Value& a : r.value("angles").items) {
-      t.axes[k] = readAxis(a);
-      extents.insert(extents.begin(), static_cast<size_t>(t.axes[k++].count));
-    }
-    if (k == 2 && t.axes[0].angle == t.axes[1].angle) throw UserError(r.where("angles"), "both axes are the same angle", "two different angles", "change one");
-  }
-  const auto ofLight = [](const AngleAxis& a) { return a.angle != Angle::None && a.angle != Angle::View; };
-  const auto pairs = static_cast<std::size_t>(t.axes[0].count) * static_cast<std::size_t>(t.axes[1].count);
-  if (ofLight(t.axes[0]) && ofLight(t.axes[1]) && pairs > kMostAnglePairs)
-    throw UserError(r.where("angles"), "a BRDF table over " + std::to_string(pairs) + " pairs of angles", "at most " + std::to_string(kMostAnglePairs),
-                    "thin it out");
-  t.values = readValues(r, kBrdf, extents);
-  return makeTabulated(std::move(t));
-}
-
-ViewTable readViewTable(const Record& r, const TableKind& kind) {
+ViewTable readViewTable(const Record& r, const AngleTableKind& kind) {
   ViewTable t;
-  t.wavelength_um = readWavelengths(r.value("wavelength"), kind);
-  t.view = readAxis(r.value("angles").items.front());
+  t.wavelength_um = readTableWavelengths(r.value("wavelength"), kind);
+  t.view = readAngleAxis(r.value("angles").items.front());
   if (t.view.angle != Angle::View)
     throw UserError(r.where("angles"), aTable(kind) + " over an angle that is not the view angle", "'angles: [{angle: view, count: 3, last: 90 deg}]'",
                     "no light takes part in it: only 'view' is left");
-  t.values = readValues(r, kind, {static_cast<size_t>(t.view.count), t.wavelength_um.size()});
+  t.values = readTableValues(r, kind, {static_cast<size_t>(t.view.count), t.wavelength_um.size()});
   return t;
 }
 
@@ -195,12 +107,17 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
   return static_cast<int>(simulation_.textures.size()) - 1;
 }
 
-void Builder::countTable(const Record& component) {
-  brdfWavelengths_ += component.value("wavelength").items.size();
-  if (++brdfTables_ > kMostTables || brdfWavelengths_ > kMostTableWavelengths)
-    throw UserError(component.where(),
-                    "more than " + std::to_string(kMostTables) + " BRDF tables, or " + std::to_string(kMostTableWavelengths) + " wavelengths in them together",
-                    "fewer", "share materials, or thin the tables out");
+std::shared_ptr<const ReflectionComponent> Builder::readComponent(const Value& value, const std::string& material, const SpectrumReader& spectra) {
+  static const ParameterTable any = anyComponentTable();
+  const ReflectionModel& model = *reflectionModels().named(Record(value, any).text("reflection"));
+  const ParameterTable& table = componentTables_.try_emplace(model.name, componentTable(model)).first->second;
+  const Record record(value, table);
+  if (model.share && (componentShares_[model.name] += model.share(record)) > 1.0 + 1e-9)
+    throw UserError(record.where(), "more components of the kind '" + model.name + "' than a scenario may hold", "fewer, or smaller ones",
+                    "give alike materials one name under 'materials:', or thin their tables out");
+  return makeComponent(model, record, [&](const Value& v, const Parameter& p) {
+    return bounded(spectra, v, p.unit, p.key + " of material '" + material.substr(0, 60) + "'", p.minimum, p.maximum);
+  });
 }
 
 ViewSpectrum Builder::readViewSpectrum(const Record& r, const char* what, const std::string& material, const SpectrumReader& spectra) {
@@ -252,25 +169,11 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
   m->name = name;
   m->where = value.where;
   if (r.given("source")) m->provenance = r.text("source");
-  auto fraction = [&](const Value& v, const char* what) {
-    return bounded(spectra, v, "", std::string(what) + " of material '" + name.substr(0, 60) + "'", 0.0, 1.0);
-  };
   if (r.given("components"))
     for (const Value& c : r.value("components").items) {
-      const Record k(c, tables::component());
-      const std::string kind = k.text("reflection");
-      if (kind != "table" && !k.given("reflectance"))
-        throw UserError(k.where(), "a " + kind + " component without a reflectance", "'reflectance: 0.3' or a spectrum", "add it");
-      if (kind == "phong" && !k.given("exponent")) throw UserError(k.where(), "a phong component without an exponent", "'exponent: 50'", "add it");
-      if (kind == "table") {
-        m->reflections.push_back(readTable(k));
-        countTable(k);
-      } else if (kind == "phong" && ++phongLobes_ > kMostLobes)
-        throw UserError(k.where(), "more than " + std::to_string(kMostLobes) + " Phong lobes in the scenario", "fewer",
-                        "give alike materials one name under 'materials:'");
-      else if (kind == "phong") m->reflections.push_back(makePhong(fraction(k.value("reflectance"), "reflectance"), k.number("exponent")));
-      else m->reflections.push_back(makeLambertian(fraction(k.value("reflectance"), "reflectance")));
-      m->modifiers.push_back(k.given("modifier") ? readTexture(k.value("modifier"), "", "a modifier", 0.0, 1.0) : -1);
+      m->reflections.push_back(readComponent(c, name, spectra));
+      const Value* texture = c.find("modifier");
+      m->modifiers.push_back(texture ? readTexture(*texture, "", "a modifier", 0.0, 1.0) : -1);
     }
   if (r.given("emission")) m->given = readViewSpectrum(Record(r.value("emission"), tables::emission()), "emissivity", name, spectra);
   if (r.given("transmission")) m->transmission = readViewSpectrum(Record(r.value("transmission"), tables::transmission()), "transmittance", name, spectra);

@@ -1,5 +1,7 @@
 #include "scenarios/reader/tables.hpp"
 
+#include "materials/angle_tables.hpp"
+#include "materials/models.hpp"
 #include "sensors/quantity.hpp"
 #include "sim/parameters/spectrum_value.hpp"
 
@@ -206,35 +208,13 @@ const ParameterTable& ambient() {
 const ParameterTable& material() {
   static const ParameterTable t{
       "material",
-      "A surface: up to three reflection components, an emission and a transmission; or a medium that fills a closed body (gas, smoke): `absorption`, "
+      "A surface: reflection components, an emission and a transmission; or a medium that fills a closed body (gas, smoke): `absorption`, "
       "and its temperature in the entity. Also the form of materials/library/<name>.yaml.",
-      {text("description", "what it is"), text("source", "where the figures come from"), list("components", "reflection components; none: black", 0, 3),
+      {text("description", "what it is"), text("source", "where the figures come from"), list("components", "reflection components; none: black", 0, 64),
        map("emission", "given emissivity; without it 1 - reflectance - transmittance (Kirchhoff)"),
        map("transmission", "what is behind is seen through it; needs buffered mode"),
        spectrum("absorption", "1/m", "of a medium: absorption coefficient; optical depth is its product with the path length inside the body"),
        spectrum("radiance", "W/(m2 sr um)", "of a medium: further radiance at great depth, for instance scattered sunlight")}};
-  return t;
-}
-
-const ParameterTable& component() {
-  static const ParameterTable t{
-      "component",
-      "One reflection component: BRDF = table(lambda; angles) x lobe x modifier.",
-      {required(choice("reflection", {"lambertian", "phong", "table"}, "kind")),
-       spectrum("reflectance", "", "0..1; of a Phong lobe: at normal view, it falls as the cosine of the view angle (a table can hold Fresnel's rise)"),
-       within(number("exponent", "", "of the Phong lobe"), 0, 1e7), map("modifier", "texture that multiplies it, 0..1"),
-       list("wavelength", "of a table: rising wavelengths", 1, 1024), list("angles", "of a table: up to two axes", 0, 2),
-       list("values", "of a table: BRDF [1/sr], nested as values[angle 2][angle 1][wavelength]", 1, 4096)}};
-  return t;
-}
-
-const ParameterTable& tableAxis() {
-  static const ParameterTable t{
-      "angle axis",
-      "Equally spaced angles from 0 of a BRDF table.",
-      {required(choice("angle", {"incidence", "view", "specular", "half", "difference"},
-                       "from the normal to the light or viewer; between viewer and mirrored light; of the half vector to normal or light")),
-       required(integer("count", "entries", 2, 1024)), required(within(number("last", "rad", "angle of the last entry"), 1e-6, kHalfTurn))}};
   return t;
 }
 
@@ -436,9 +416,17 @@ const ParameterTable& probe() {
 }
 
 std::vector<const ParameterTable*> all() {
-  return {&scenario(),      &render(),   &origin(),    &time(),      &limits(),  &atmosphere(), &airLibrary(),    &background(), &ground(), &sun(),  &ambient(),
-          &spectrumTable(), &material(), &component(), &tableAxis(), &texture(), &emission(),   &transmission(),  &light(),      &entity(), &part(), &shape(),
-          &waypoint(),      &geodetic(), &camera(),    &film(),      &channel(), &spectral(),   &spectralImage(), &sensor(),     &probe()};
+  static const std::vector<ParameterTable> components = [] {
+    std::vector<ParameterTable> tables;
+    for (const ReflectionModel& m : reflectionModels().all()) tables.push_back(componentTable(m));
+    return tables;
+  }();
+  std::vector<const ParameterTable*> tables{&scenario(),   &render(), &origin(), &time(),    &limits(),        &atmosphere(), &airLibrary(),
+                                            &background(), &ground(), &sun(),    &ambient(), &spectrumTable(), &material()};
+  for (const ParameterTable& t : components) tables.push_back(&t);
+  tables.insert(tables.end(), {&angleAxisTable(), &texture(), &emission(), &transmission(), &light(), &entity(), &part(), &shape(), &waypoint(), &geodetic(),
+                               &camera(), &film(), &channel(), &spectral(), &spectralImage(), &sensor(), &probe()});
+  return tables;
 }
 
 }  // namespace pitviper::tables

@@ -59,7 +59,9 @@ class Assembler {
   void generated(const std::string& slot, std::string_view text) {
     while (!text.empty()) {
       const size_t end = text.find('\n');
-      line(text.substr(0, end), "generated " + slot);
+      const std::string_view current = text.substr(0, end);
+      if (current.starts_with("//@use ")) file(std::string(current.substr(7)));
+      else line(current, "generated " + slot);
       text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     }
   }
@@ -83,6 +85,7 @@ AssembledShader assembleShader(const ShaderLibrary& library, const std::string& 
   a.line("#define Real float", "dialect");
   a.line("#define Vec2 vec2", "dialect");
   a.line("#define Vec3 vec3", "dialect");
+  a.line("#define Vec4 vec4", "dialect");
   // Largest x for which exp(-x) is a normal single precision number: ln(2^126) = 87.33.
   a.line("const float kExpLimit = 87.33;", "dialect");
   a.line("const float kFar = 1.0e30;  // an infinite distance [m]", "dialect");

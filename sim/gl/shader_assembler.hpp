@@ -35,7 +35,7 @@ struct AssembledShader {
 
 struct ShaderSlots {
   std::map<std::string, std::string> files;      ///< slot -> path
-  std::map<std::string, std::string> generated;  ///< slot -> text written by the plan
+  std::map<std::string, std::string> generated;  ///< slot -> text written by the plan; its //@use lines count
   std::map<std::string, long long> constants;    ///< structural counts: const int NAME = value
   std::vector<std::string> extensions;           ///< GLSL extensions the program requires
 };

@@ -40,19 +40,24 @@ struct LightSample {
 /// lobe as narrow as its table counts in full. Relative error below 1e-5 for one axis, 1e-3 for two.
 void integrateHemisphere(const std::array<AngleAxis, 2>& axes, double viewAngle_rad, const std::function<void(const LightSample&)>& visit);
 
+/// The part of a component that is a formula of directions: one .glsl body, float on the GPU, double in C++.
+struct Lobe {
+  std::string file;            ///< shader file with the body; empty: there is none, it is 1
+  std::string function;        ///< PHYSICS Real function(Vec4 parameters, Vec3 normal, Vec3 toLight, Vec3 toViewer), of a name of its own
+  glm::dvec4 parameters{0.0};  ///< what it takes
+  double maximum = 1.0;        ///< the greatest that it can be
+  double exponent = 0.0;  ///< of the cosine of the angle to the mirrored direction that is as narrow: how finely its integral and its glints are looked for
+};
+
 class ReflectionComponent {
  public:
   virtual ~ReflectionComponent() = default;
   /// The table part [1/sr where the lobe is 1].
   virtual double column(double wavelength_um, double angle1_rad, double angle2_rad) const = 0;
   virtual std::array<AngleAxis, 2> axes() const { return {}; }
-  /// Exponent of the angular lobe; 0 where there is none (lobe = 1).
-  virtual double lobeExponent() const { return 0.0; }
-  virtual double lobe(const glm::dvec3& light, const glm::dvec3& view) const;
-  /// The greatest that lobe() can be.
-  virtual double lobeMaximum() const { return 1.0; }
-  /// Shader file with the lobe's body, or empty.
-  virtual std::string lobeFile() const { return ""; }
+  virtual Lobe lobe() const { return {}; }
+  /// The lobe's value for directions in a frame whose z is the normal.
+  virtual double lobeAt(const glm::dvec3& light, const glm::dvec3& view) const;
   /// Directional-hemispherical reflectance for a view angle: integral of BRDF cos(theta_l) over the hemisphere.
   virtual double hemispherical(double wavelength_um, double viewAngle_rad) const;
   /// The whole BRDF [1/sr].
@@ -63,8 +68,12 @@ class ReflectionComponent {
   virtual std::vector<double> knots_um() const = 0;
   virtual double validLow_um() const = 0;
   virtual double validHigh_um() const = 0;
-  /// All that it depends on.
-  virtual void addTo(Fingerprint& f) const = 0;
+  /// All that it depends on: the values of its model's parameters, whole. Empty where it was not read from any.
+  const std::string& fingerprint() const { return fingerprint_; }
+  void setFingerprint(std::string bytes) { fingerprint_ = std::move(bytes); }
+
+ private:
+  std::string fingerprint_;
 };
 
 }  // namespace pitviper

@@ -28,7 +28,7 @@ std::size_t countLights(const Simulation& sim) { return sim.lights.size() + (sim
 bool isGlossy(const Simulation& sim, const Hit& hit) {
   if (hit.entity < 0) return false;
   const auto& reflections = materialAt(sim, hit).reflections;
-  return std::any_of(reflections.begin(), reflections.end(), [](const auto& r) { return r->lobeExponent() > kSharp; });
+  return std::any_of(reflections.begin(), reflections.end(), [](const auto& r) { return r->lobe().exponent > kSharp; });
 }
 
 double offMirror(const Simulation& sim, const WorldState& state, const Hit& hit, const glm::dvec3& direction, std::size_t light) {
@@ -48,7 +48,7 @@ double glintOf(const Simulation& sim, const WorldState& state, const Hit& hit, c
   view.z = std::max(view.z, 1e-6);
   double sum = 0.0;
   for (const auto& r : materialAt(sim, hit).reflections)
-    if (r->lobeExponent() > kSharp) sum += cosine * r->lobe(inNormalFrame(hit.normal, to), view) / r->lobeMaximum();
+    if (r->lobe().exponent > kSharp) sum += cosine * r->lobeAt(inNormalFrame(hit.normal, to), view) / r->lobe().maximum;
   return sum;
 }
 

@@ -66,7 +66,7 @@ void addTo(Fingerprint& f, const Motion& m) {
 
 void addTo(Fingerprint& f, const Material& m) {
   f.add(static_cast<double>(m.reflections.size())).all(m.modifiers);
-  for (const auto& r : m.reflections) r->addTo(f);
+  for (const auto& r : m.reflections) f.add(r->fingerprint());
   addTo(f, m.given);
   addTo(f, m.transmission);
   f.add(m.medium.has_value());

@@ -123,7 +123,7 @@ class Teller {
       if (scene_.terms.air) both = sim_.path->powered(air_.amounts(place) + leg.air);
       for (size_t k = 0; k < m.reflections.size(); ++k) {
         const ReflectionComponent& r = *m.reflections[k];
-        add(sun ? TermKind::Sun : TermKind::Lights, modifiers[k] * strength * r.lobe(light, view),
+        add(sun ? TermKind::Sun : TermKind::Lights, modifiers[k] * strength * r.lobeAt(light, view),
             {Factor::column(r, light, view), sun ? Factor::sun() : Factor::light(sim_.lights[l])}, scene_.terms.air ? &both : nullptr,
             sun ? -1 : static_cast<int>(l));
       }

@@ -1,6 +1,8 @@
 #pragma once
 // Which terms of the radiance equation a scene has.
+#include <set>
 #include <string>
+#include <utility>
 
 #include "sim/model/simulation.hpp"
 
@@ -14,7 +16,7 @@ struct SurfaceTerms {
   bool angular = false;  ///< tables over angles, or an emissivity or transmittance that changes with view angle
   bool modifiers = false;
   bool temperatureTextures = false;
-  std::string lobeFile;  ///< shader file of the angular lobes, or empty
+  std::set<std::pair<std::string, std::string>> lobes;  ///< shader file and function of each angular lobe
   /// Emission is a product of averages over a group of wavelengths; else the average of a product, one row of a table.
   bool isGeneral() const { return angular || modifiers || temperatureTextures; }
 };

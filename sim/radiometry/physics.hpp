@@ -8,6 +8,7 @@ namespace pitviper::physics {
 using Real = double;
 using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
+using Vec4 = glm::dvec4;
 using glm::dot;
 using std::exp;
 using std::floor;

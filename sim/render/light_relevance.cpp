@@ -21,9 +21,9 @@ LightRelevance::LightRelevance(const Simulation& simulation, const Plan& plan, c
       double& worst = ratio_[static_cast<size_t>(d.entity) * simulation.lights.size() + l];
       for (size_t i = 0; i < plan.nodes.size() && std::isfinite(worst); ++i) {
         // Tables over angles and textures have no bound at hand: such bodies are lit by every light that shines.
-        const float* row = t.general ? nullptr : &t.rows[4 * (d.row + i)];
+        const float* row = t.general ? nullptr : &t.rows[4 * static_cast<size_t>(t.vectors) * (d.row + i)];
         double most = row ? 0.0 : INFINITY;
-        for (size_t k = 0; row && k < material.reflections.size(); ++k) most += static_cast<double>(row[k]) * material.reflections[k]->lobeMaximum();
+        for (size_t k = 0; row && k < material.reflections.size(); ++k) most += static_cast<double>(row[4 * (k / 3) + k % 3]) * material.reflections[k]->lobe().maximum;
         const double reflected = most * plan.nodes[i].mean(simulation.lights[l].intensity);
         if (reflected > 0.0) worst = std::max(worst, row && row[3] > 0.0f ? reflected / static_cast<double>(row[3]) : INFINITY);
       }

@@ -12,7 +12,7 @@ class SurfaceBuffers {
     hemispherical_.upload(tables.hemispherical);
     columns_.upload(tables.columns);
     transmittance_.upload(tables.transmittance);
-    materials_.upload(tables.materials);
+    materials_.upload(tables.packedMaterials());
   }
   void bind() const {
     rows_.bindTexture(1, perRowEntry_);

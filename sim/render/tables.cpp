@@ -1,6 +1,7 @@
 #include "sim/render/tables.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdio>
 #include <sstream>
@@ -11,16 +12,21 @@
 namespace pitviper {
 namespace {
 
-/// The three reflection columns of a material at a node, or 0 where it has fewer components.
-glm::dvec3 columnsAt(const Material& m, double w, double angle1, double angle2, const std::array<AngleAxis, 2>& axes) {
-  glm::dvec3 r(0.0);
-  for (size_t k = 0; k < m.reflections.size(); ++k) {
-    // A component's own axes, in the order of the material's.
-    const auto own = m.reflections[k]->axes();
-    auto pick = [&](Angle a) { return a == Angle::None ? 0.0 : a == axes[0].angle ? angle1 : angle2; };
-    r[static_cast<int>(k)] = m.reflections[k]->column(w, pick(own[0].angle), pick(own[1].angle));
+/// A component's column at angles on the axes of its material.
+double columnAt(const ReflectionComponent& r, double w, double angle1, double angle2, const std::array<AngleAxis, 2>& axes) {
+  // Its own axes, in the order of the material's.
+  const auto own = r.axes();
+  const auto pick = [&](Angle a) { return a == Angle::None ? 0.0 : a == axes[0].angle ? angle1 : angle2; };
+  return r.column(w, pick(own[0].angle), pick(own[1].angle));
+}
+
+/// Appends a value for each of a material's components, three to a vec4, and what the first vec4's last place holds.
+template <class ValueOf>
+void appendComponents(std::vector<float>& into, const SurfaceTables& t, const Material& m, double last, const ValueOf& valueOf) {
+  for (size_t v = 0; v < static_cast<size_t>(t.vectors); ++v) {
+    for (size_t k = 3 * v; k < 3 * v + 3; ++k) into.push_back(k < m.reflections.size() ? static_cast<float>(valueOf(*m.reflections[k])) : 0.0f);
+    into.push_back(v == 0 ? static_cast<float>(last) : 0.0f);
   }
-  return r;
 }
 
 constexpr const char* kAngleNames[] = {"none", "incidence", "view", "specular", "half", "difference"};
@@ -92,7 +98,7 @@ int viewAngles(const Material& m) {
 
 double viewAngle(int entry, int views) { return views > 1 ? 0.5 * kPi * entry / (views - 1) : 0.0; }
 
-void appendMaterial(SurfaceTables& t, const Material& m, const Plan& plan) {
+void appendMaterial(SurfaceTables& t, const Material& m, const std::set<std::pair<std::string, std::string>>& lobes, const Plan& plan) {
   GpuMaterial g{};
   const auto axes = materialAxes(m);
   const int views = m.hemisphericalVaries() ? viewAngles(m) : 1;
@@ -109,15 +115,18 @@ void appendMaterial(SurfaceTables& t, const Material& m, const Plan& plan) {
     g.scale[k] =
         axes[static_cast<size_t>(k)].count > 1 ? static_cast<float>((axes[static_cast<size_t>(k)].count - 1) / axes[static_cast<size_t>(k)].last_rad) : 0.0f;
   g.scale[2] = views > 1 ? static_cast<float>((views - 1) / (0.5 * kPi)) : 0.0f;
-  for (int k = 0; k < 4; ++k) g.modifier[k] = -1;
+  g.components.assign(3 * static_cast<size_t>(t.vectors), {0, -1, 0, 0});
+  g.lobes.resize(g.components.size());
   for (size_t k = 0; k < m.reflections.size(); ++k) {
-    g.exponent[k] = static_cast<float>(m.reflections[k]->lobeExponent());
-    g.modifier[k] = m.modifiers[k];
+    const Lobe lobe = m.reflections[k]->lobe();
+    const auto at = lobes.find({lobe.file, lobe.function});
+    g.components[k] = {at == lobes.end() ? 0 : static_cast<std::int32_t>(std::distance(lobes.begin(), at)) + 1, m.modifiers[k], 0, 0};
+    for (int c = 0; c < 4; ++c) g.lobes[k][static_cast<size_t>(c)] = static_cast<float>(lobe.parameters[c]);
   }
-  if (m.given) g.modifier[3] = m.given->modifier;
   g.transmission[0] = m.transmission ? m.transmission->modifier : -1;
   g.transmission[1] = static_cast<std::int32_t>(t.transmittance.size());
-  t.materials.push_back(g);
+  g.transmission[2] = m.given ? m.given->modifier : -1;
+  t.materials.push_back(std::move(g));
   if (m.transmission)
     for (int j = 0; j < views; ++j)
       for (const SpectralNode& n : plan.nodes)
@@ -126,35 +135,34 @@ void appendMaterial(SurfaceTables& t, const Material& m, const Plan& plan) {
 
   for (int j2 = 0; t.lit && j2 < axes[1].count; ++j2)
     for (int j1 = 0; j1 < axes[0].count; ++j1)
-      for (const SpectralNode& n : plan.nodes) {
-        const glm::dvec3 r = n.mean([&](double w) { return columnsAt(m, w, axes[0].at(j1), axes[1].at(j2), axes); });
-        for (int k = 0; k < 3; ++k) t.columns.push_back(static_cast<float>(r[k]));
-        t.columns.push_back(0.0f);
-      }
+      for (const SpectralNode& n : plan.nodes)
+        appendComponents(t.columns, t, m, 0.0,
+                         [&](const ReflectionComponent& r) { return n.mean([&](double w) { return columnAt(r, w, axes[0].at(j1), axes[1].at(j2), axes); }); });
   for (int j = 0; j < views; ++j) {
     const double angle = viewAngle(j, views);
     for (const SpectralNode& n : plan.nodes) {
-      for (size_t k = 0; k < 3; ++k)
-        t.hemispherical.push_back(k < m.reflections.size() ? static_cast<float>(n.mean([&](double w) { return m.reflections[k]->hemispherical(w, angle); }))
-                                                           : 0.0f);
       // In double precision: what a good window emits is nearly all digits of 1 less than what it lets through and reflects.
-      t.hemispherical.push_back(static_cast<float>(n.mean([&](double w) {
+      const double emissivity = n.mean([&](double w) {
         if (m.given) return m.given->at(w, angle);
         double left = 1.0 - m.transmittance(w, angle);
         for (const auto& r : m.reflections) left -= r->hemispherical(w, angle);
         return left;
-      })));
+      });
+      appendComponents(t.hemispherical, t, m, emissivity,
+                       [&](const ReflectionComponent& r) { return n.mean([&](double w) { return r.hemispherical(w, angle); }); });
     }
   }
 }
 
 /// The row of a surface, or of the background, which shines by itself (null).
 std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& plan, const Surface* surface) {
-  const auto at = static_cast<std::uint32_t>(t.rows.size()) / static_cast<std::uint32_t>(t.floatsPerRowEntry());
+  const auto floats = static_cast<size_t>(t.floatsPerRowEntry() * t.texelsPerRowEntry());
+  const auto at = static_cast<std::uint32_t>(t.rows.size() / floats);
   for (const SpectralNode& n : plan.nodes) {
     if (!surface) {
-      t.rows.insert(t.rows.end(), static_cast<size_t>(t.floatsPerRowEntry() - 1), 0.0f);
-      t.rows.push_back(static_cast<float>(n.mean([&](double w) { return sim.background(w); })));
+      const size_t self = t.rows.size() + (floats > 1 ? 3 : 0);
+      t.rows.insert(t.rows.end(), floats, 0.0f);
+      t.rows[self] = static_cast<float>(n.mean([&](double w) { return sim.background(w); }));
       continue;
     }
     if (t.general) {
@@ -162,13 +170,12 @@ std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& pla
       continue;
     }
     const Material& m = sim.materialOf(*surface);
-    const glm::dvec3 r = n.mean([&](double w) { return columnsAt(m, w, 0.0, 0.0, {}); });
     const double self = n.mean([&](double w) {
       const double ambient = plan.terms.ambient ? (*sim.ambient)(w) : 0.0;
       return m.emissivity(w, 0.0) * physics::planckRadiance(w, surface->temperature_K) + (ambient > 0.0 ? m.reflectance(w, 0.0) * ambient : 0.0);
     });
-    for (int k = 0; t.lit && k < 3; ++k) t.rows.push_back(static_cast<float>(r[k]));
-    t.rows.push_back(static_cast<float>(self));
+    if (!t.lit) t.rows.push_back(static_cast<float>(self));
+    else appendComponents(t.rows, t, m, self, [&](const ReflectionComponent& r) { return n.mean([&](double w) { return r.column(w, 0.0, 0.0); }); });
   }
   return at;
 }
@@ -287,10 +294,40 @@ std::vector<float> lightTable(const Simulation& sim, const Plan& plan, const Wor
   return table;
 }
 
+std::vector<std::uint32_t> SurfaceTables::packedMaterials() const {
+  std::vector<std::uint32_t> words;
+  const auto put = [&words](const auto& four) {
+    for (auto v : four) words.push_back(std::bit_cast<std::uint32_t>(v));
+  };
+  for (const GpuMaterial& m : materials) {
+    put(m.counts), put(m.kinds), put(m.scale), put(m.transmission);
+    for (const auto& c : m.components) put(c);
+    for (const auto& l : m.lobes) put(l);
+  }
+  return words;
+}
+
+namespace {
+
+/// The bodies of all lobes, and the choice between them by number from 1 on.
+std::string lobesText(const std::set<std::pair<std::string, std::string>>& lobes) {
+  std::string uses, choice;
+  int number = 0;
+  for (const auto& [name, function] : lobes) {
+    uses += "//@use " + name + "\n";
+    choice += "  if (kind == " + std::to_string(++number) + ") return " + function + "(parameters, normal_, toLight, toViewer_);\n";
+  }
+  return uses + "Real lobeOf(int kind, Vec4 parameters, Vec3 toLight) {\n" + choice + "  return 1.0;\n}\n";
+}
+
+}  // namespace
+
 void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, const Plan& plan, ShaderSlots& slots) {
   auto file = [&](const char* slot, const char* name) { slots.files[slot] = std::string("sim/render/glsl/") + name + ".glsl"; };
-  file("lobes", "lobes_none");
-  if (tables.lit && !terms.lobeFile.empty()) slots.files["lobes"] = terms.lobeFile;
+  slots.generated["lobes"] = lobesText(tables.lit ? terms.lobes : std::set<std::pair<std::string, std::string>>());
+  slots.constants["LOBES"] = tables.lit ? static_cast<long long>(terms.lobes.size()) : 0;
+  slots.constants["COMPONENT_VECTORS"] = tables.vectors;
+  slots.constants["COMPONENTS"] = 3 * tables.vectors;
   file("lights", "lights_none");
   if (tables.lit) slots.files["lights"] = lightsFile(plan);
   file("columns", !tables.lit ? "columns_none" : tables.tabulated ? "columns_tabulated" : "columns_plain");
@@ -308,14 +345,18 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   t.layer.general = plan.terms.layer.isGeneral();
   t.solid.lit = plan.terms.lights;
   t.layer.lit = plan.terms.lights && plan.terms.layer.reflects;
+  for (const auto& m : sim.materials) {
+    int& vectors = m->transmission ? t.layer.vectors : t.solid.vectors;
+    vectors = std::max(vectors, (static_cast<int>(m->reflections.size()) + 2) / 3);
+  }
   std::vector<std::uint32_t> at;  // of each material in the tables of its kind
   for (const auto& m : sim.materials) {
     SurfaceTables& kind = m->transmission ? t.layer : t.solid;
     at.push_back(static_cast<std::uint32_t>(kind.materials.size()));
-    if (!m->medium) appendMaterial(kind, *m, plan);
+    if (!m->medium) appendMaterial(kind, *m, (m->transmission ? plan.terms.layer : plan.terms.solid).lobes, plan);
   }
   const auto background = static_cast<std::uint32_t>(t.solid.materials.size());
-  appendMaterial(t.solid, Material{}, plan);  // black: its row is its radiance
+  appendMaterial(t.solid, Material{}, {}, plan);  // black: its row is its radiance
 
   t.draws.push_back({DrawKind::Background, -1, -1, appendRow(t.solid, sim, plan, nullptr), background});
   if (sim.ground) {

@@ -9,16 +9,14 @@
 
 namespace pitviper {
 
-/// Mirrors MaterialShape of sim/render/glsl/materials.glsl (std430).
+/// Mirrors MaterialShape of sim/render/glsl/materials.glsl (std430), which ends with so many components as its program has.
 struct GpuMaterial {
-  std::uint32_t counts[4];
-  std::uint32_t kinds[4];
-  float scale[4];
-  float exponent[4];
-  std::int32_t modifier[4];
-  std::int32_t transmission[4];
+  std::array<std::uint32_t, 4> counts{}, kinds{};
+  std::array<float, 4> scale{};
+  std::array<std::int32_t, 4> transmission{};
+  std::vector<std::array<std::int32_t, 4>> components;
+  std::vector<std::array<float, 4>> lobes;
 };
-static_assert(sizeof(GpuMaterial) == 96);
 
 enum class DrawKind { Background, Ground, Solid, Layer, Medium };
 
@@ -37,13 +35,17 @@ struct SurfaceTables {
   bool general = false;              ///< angular tables, modifiers or temperature textures
   bool tabulated = false;            ///< some reflection component is a table over angles
   bool lit = false;                  ///< there are lights for them to reflect
-  std::vector<float> rows;           ///< simple: vec4 (R1, R2, R3, S) per node, unlit S alone; general: Planck radiance per node
+  int vectors = 1;                   ///< so many vec4 hold a material's components at a node: (R1, R2, R3, S), (R4, R5, R6, 0) ...
+  std::vector<float> rows;           ///< simple: these per node, unlit S alone; general: Planck radiance per node
   long long planckAt = -1;           ///< general: entry of `rows` where Planck radiance is tabulated over the inverse of the temperature, or -1
-  std::vector<float> hemispherical;  ///< vec4 (D1, D2, D3, given emissivity) per view angle and node
-  std::vector<float> columns;        ///< lit: vec4 (R1, R2, R3, 0) per angle 2, angle 1 and node
+  std::vector<float> hemispherical;  ///< (D1, D2, D3, given emissivity), (D4, D5, D6, 0) ... per view angle and node
+  std::vector<float> columns;        ///< lit: (R1, R2, R3, 0) ... per angle 2, angle 1 and node
   std::vector<float> transmittance;  ///< per view angle and node
   std::vector<GpuMaterial> materials;
-  int floatsPerRowEntry() const { return general || !lit ? 1 : 4; }
+  int floatsPerRowEntry() const { return general || !lit ? 1 : 4; }  ///< of a texel
+  int texelsPerRowEntry() const { return general || !lit ? 1 : vectors; }
+  /// The materials as the shader reads them.
+  std::vector<std::uint32_t> packedMaterials() const;
 };
 
 struct RenderTables {

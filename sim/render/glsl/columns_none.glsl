@@ -1,2 +1,1 @@
 // No light asks for reflection columns.
-void prepareLobes() {}

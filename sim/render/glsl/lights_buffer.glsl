@@ -4,8 +4,9 @@
 // number: first and count of the casters that can shade the body from it.
 layout(std430, binding = 5) readonly buffer Lights { vec4 lights[]; };
 
-Vec3 reflectionColumns(int i, int l);
-Vec3 lobes(Vec3 toLight);
+// Of a material's components three at a time: columns at a node for a light, and lobes.
+Vec3 reflectionColumns(int i, int l, int v);
+Vec3 lobes(Vec3 toLight, int v);
 //@slot shadow
 
 // What the point sees of a light.

@@ -1,7 +1,7 @@
 // A few point lights and, as the last one where SUN is 1, the sun: each has its place in registers. Step 3 of the paper:
 // E = I cos(theta_l) / d^2 tau; the air of both legs is passed as one length, because a band's transmittance does not multiply.
 //@use sim/render/glsl/lights_buffer.glsl
-Vec3 lightFactor_[LIGHTS];   // irradiance per unit intensity x lobe of each component [1/m2]
+Vec3 lightFactor_[LIGHTS * COMPONENT_VECTORS];   // irradiance per unit intensity x lobe of each component [1/m2]
 AirPath lightAir_[LIGHTS];   // both legs
 Vec3 toLight_[LIGHTS];
 
@@ -14,14 +14,18 @@ void prepareLights() {
   for (int l = 0; l < LIGHTS; ++l) {
     LightHere here = lightAt(row + 2 * l + 1);  // lights that don't matter have a place, and no strength
     toLight_[l] = here.to;
-    lightFactor_[l] = here.factor > 0.0 ? here.factor * lobes(here.to) : vec3(0.0);
+    for (int v = 0; v < COMPONENT_VECTORS; ++v)
+      lightFactor_[l * COMPONENT_VECTORS + v] = here.factor > 0.0 ? here.factor * lobes(here.to, v) : vec3(0.0);
     lightAir_[l] = here.air;
   }
 }
 
 Real reflectedLight(int i) {
   Real sum = 0.0;
-  for (int l = 0; l < LIGHTS; ++l)
-    sum += dot(reflectionColumns(i, l), lightFactor_[l]) * nodes.nodeLight[i * LIGHT_GROUPS + l / 4][l % 4] * pathTransmittance(i, lightAir_[l]);
+  for (int l = 0; l < LIGHTS; ++l) {
+    Real reflected = 0.0;
+    for (int v = 0; v < COMPONENT_VECTORS; ++v) reflected += dot(reflectionColumns(i, l, v), lightFactor_[l * COMPONENT_VECTORS + v]);
+    sum += reflected * nodes.nodeLight[i * LIGHT_GROUPS + l / 4][l % 4] * pathTransmittance(i, lightAir_[l]);
+  }
   return sum;
 }

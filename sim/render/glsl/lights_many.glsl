@@ -1,7 +1,7 @@
 // Many point lights and, as the last one where SUN is 1, the sun; see lights_few.glsl. A body's row lists those that can matter to it; of
 // them a point keeps the ones that shine on its face.
 //@use sim/render/glsl/lights_buffer.glsl
-Vec3 lightFactor_[LIGHTS];   // irradiance per unit intensity x lobe of each component [1/m2]
+Vec3 lightFactor_[LIGHTS * COMPONENT_VECTORS];   // irradiance per unit intensity x lobe of each component [1/m2]
 AirPath lightAir_[LIGHTS];   // both legs
 Vec3 toLight_[LIGHTS];
 int lightNumber_[LIGHTS];
@@ -19,7 +19,7 @@ void prepareLights() {
     LightHere here = lightAt(row + 2 * k + 1);
     if (!(here.factor > 0.0)) continue;
     toLight_[shining_] = here.to;
-    lightFactor_[shining_] = here.factor * lobes(here.to);
+    for (int v = 0; v < COMPONENT_VECTORS; ++v) lightFactor_[shining_ * COMPONENT_VECTORS + v] = here.factor * lobes(here.to, v);
     lightAir_[shining_] = here.air;
     lightNumber_[shining_] = here.number;
     ++shining_;
@@ -30,7 +30,9 @@ Real reflectedLight(int i) {
   Real sum = 0.0;
   for (int l = 0; l < shining_; ++l) {
     int number = lightNumber_[l];
-    sum += dot(reflectionColumns(i, l), lightFactor_[l]) * nodes.nodeLight[i * LIGHT_GROUPS + number / 4][number % 4] * pathTransmittance(i, lightAir_[l]);
+    Real reflected = 0.0;
+    for (int v = 0; v < COMPONENT_VECTORS; ++v) reflected += dot(reflectionColumns(i, l, v), lightFactor_[l * COMPONENT_VECTORS + v]);
+    sum += reflected * nodes.nodeLight[i * LIGHT_GROUPS + number / 4][number % 4] * pathTransmittance(i, lightAir_[l]);
   }
   return sum;
 }

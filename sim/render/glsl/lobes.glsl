@@ -1,9 +1,10 @@
-// What light asks of a surface besides its columns.
-Vec3 exponents_;
-
-// Angular lobes of the three components for a light.
-Vec3 lobes(Vec3 toLight) {
-  return Vec3(exponents_.x > 0.0 ? lobe(exponents_.x, normal_, toLight, toViewer_) : 1.0,
-              exponents_.y > 0.0 ? lobe(exponents_.y, normal_, toLight, toViewer_) : 1.0,
-              exponents_.z > 0.0 ? lobe(exponents_.z, normal_, toLight, toViewer_) : 1.0);
+// What light asks of a surface besides its columns: the angular lobes of three of its components for a light.
+Vec3 lobes(Vec3 toLight, int v) {
+  Vec3 all = Vec3(1.0);
+  if (LOBES > 0)
+    for (int k = 0; k < 3; ++k) {
+      int lobe = materials[draw_.table.y].component[3 * v + k].x;
+      if (lobe > 0) all[k] = lobeOf(lobe, materials[draw_.table.y].lobe[3 * v + k], toLight);
+    }
+  return all;
 }

@@ -2,9 +2,10 @@
 //@use sim/render/glsl/materials.glsl
 //@use sim/radiometry/glsl/arc_tangent.glsl
 layout(binding = 1) uniform samplerBuffer rows;           // Planck radiance per temperature and node
-layout(binding = 2) uniform samplerBuffer hemispherical;  // (D1, D2, D3, emissivity of modifiers of 1) by view angle and node
+layout(binding = 2) uniform samplerBuffer hemispherical;  // (D1, D2, D3, emissivity of modifiers of 1), (D4 ... by view angle and node
 MaterialShape material_;
-vec4 modifier_;
+vec3 modifier_[COMPONENT_VECTORS];  // of the components
+float emissionModifier_;
 int view0_, view1_, viewEntry_;
 float transmissionModifier_;
 float viewMix_;
@@ -15,21 +16,21 @@ float angleFromChord(vec3 a, vec3 b) { return 2.0 * arcTangent(length(a - b) / m
 
 //@slot modifiers
 
-void prepareLobes();
 float surfaceTemperature();
 void prepareTemperature();
 
 void prepareSurface() {
   material_ = materials[draw_.table.y];
-  prepareLobes();
-  modifier_ = vec4(modifierAt(material_.modifier.x), modifierAt(material_.modifier.y), modifierAt(material_.modifier.z), modifierAt(material_.modifier.w));
+  for (int v = 0; v < COMPONENT_VECTORS; ++v)
+    modifier_[v] = vec3(modifierAt(material_.component[3 * v].y), modifierAt(material_.component[3 * v + 1].y), modifierAt(material_.component[3 * v + 2].y));
+  emissionModifier_ = modifierAt(material_.transmission.z);
   viewMix_ = clamp(angleFromChord(normal_, toViewer_) * material_.scale.z, 0.0, float(material_.counts.z - 1u));
   int j = int(min(uint(viewMix_), max(material_.counts.z, 2u) - 2u));
   viewMix_ -= float(j);
   viewEntry_ = j;
   transmissionModifier_ = modifierAt(material_.transmission.x);
-  view0_ = int(material_.kinds.w) + j * NODES;
-  view1_ = material_.counts.z > 1u ? view0_ + NODES : view0_;
+  view0_ = int(material_.kinds.w) + j * NODES * COMPONENT_VECTORS;
+  view1_ = material_.counts.z > 1u ? view0_ + NODES * COMPONENT_VECTORS : view0_;
   temperature_ = surfaceTemperature();
   prepareTemperature();
 }
@@ -43,9 +44,15 @@ void prepareSurface() {
 //@slot ambient
 
 Real selfRadiance(int i) {
-  vec4 d = mix(texelFetch(hemispherical, view0_ + i), texelFetch(hemispherical, view1_ + i), viewMix_);
-  float reflectance = dot(d.xyz, modifier_.xyz);
-  float emissivity = material_.kinds.z == 1u ? d.w + dot(d.xyz, 1.0 - modifier_.xyz) + transmittanceLost(i) : d.w * modifier_.w;
+  float reflectance = 0.0, lost = 0.0, given = 0.0;
+  for (int v = 0; v < COMPONENT_VECTORS; ++v) {
+    int at = i * COMPONENT_VECTORS + v;
+    vec4 d = mix(texelFetch(hemispherical, view0_ + at), texelFetch(hemispherical, view1_ + at), viewMix_);
+    reflectance += dot(d.xyz, modifier_[v]);
+    lost += dot(d.xyz, 1.0 - modifier_[v]);
+    if (v == 0) given = d.w;
+  }
+  float emissivity = material_.kinds.z == 1u ? given + lost + transmittanceLost(i) : given * emissionModifier_;
   return reflectedAmbient(reflectance, i) + emissivity * sourceRadiance(i);
 }
 float truthTemperature() { return temperature_; }

@@ -1,109 +1,20 @@
-#include "materials/reflection.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/model/scene_fingerprint.hpp"
+#include "materials/angle_tables.hpp"
+#include "materials/models.hpp"
+#include "materials/reflection.hpp"
 #include "sim/radiometry/constants.hpp"
-#include "sim/radiometry/physics.hpp"
-#include "sim/radiometry/quadrature.hpp"
 
 namespace pitviper {
-namespace physics {
-#define PHYSICS inline
-#include "materials/phong.glsl"
-#undef PHYSICS
-}  // namespace physics
-
 namespace {
 
-class Lambertian final : public ReflectionComponent {
- public:
-  explicit Lambertian(Spectrum reflectance) : reflectance_(std::move(reflectance)) {}
-  double column(double w, double, double) const override { return reflectance_(w) / kPi; }
-  double hemispherical(double w, double) const override { return reflectance_(w); }
-  bool hemisphericalVaries() const override { return false; }
-  std::vector<double> knots_um() const override { return reflectance_.knots(); }
-  double validLow_um() const override { return reflectance_.validLow(); }
-  double validHigh_um() const override { return reflectance_.validHigh(); }
-  void addTo(Fingerprint& f) const override {
-    f.add("lambertian");
-    pitviper::addTo(f, reflectance_);
-  }
-
- private:
-  Spectrum reflectance_;
-};
-
-/// Directional-hemispherical reflectance of the unit Phong lobe:
-///   A(theta) = (n + 2) / (n + 1) / (2 pi) integral_0^1 dt integral dphi max(0, cos theta cos alpha + sin theta sin alpha cos phi),
-/// t = cos^(n+1) alpha; the azimuth integral in closed form.
-class PhongAlbedo {
- public:
-  explicit PhongAlbedo(double n) : factor_((n + 2.0) / (n + 1.0) / (2.0 * kPi)) {
-    static const double edges[] = {0.0, 1e-6, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0};
-    for (const auto& node : fineNodes(0.0, 1.0, edges, 512)) {
-      const double ca = std::pow(node.x, 1.0 / (n + 1.0));
-      rings_.push_back({ca, std::sqrt(std::max(0.0, 1.0 - ca * ca)), node.weight});
-    }
-  }
-  double at(double theta) const;
-
- private:
-  struct Ring {
-    double cosine, sine, weight;
-  };
-  double factor_;
-  std::vector<Ring> rings_;
-};
-
-double PhongAlbedo::at(double theta) const {
-  const double ct = std::cos(theta), st = std::sin(theta);
-  double sum = 0.0;
-  for (const Ring& r : rings_) {
-    const double a = ct * r.cosine, b = st * r.sine;
-    double ring = 2.0 * kPi * a;
-    if (b > a) {
-      const double phi = std::acos(std::clamp(-a / b, -1.0, 1.0));
-      ring = 2.0 * (phi * a + b * std::sin(phi));
-    }
-    sum += r.weight * ring;
-  }
-  return factor_ * sum;
-}
-
-class Phong final : public ReflectionComponent {
- public:
-  Phong(Spectrum reflectance, double exponent) : reflectance_(std::move(reflectance)), exponent_(exponent) {
-    const PhongAlbedo albedo(exponent);
-    for (int i = 0; i <= kAngles; ++i) albedo_.push_back(albedo.at(0.5 * kPi * i / kAngles));
-  }
-  double column(double w, double, double) const override { return reflectance_(w); }
-  double lobeExponent() const override { return exponent_; }
-  double lobeMaximum() const override { return (exponent_ + 2.0) / (2.0 * kPi); }
-  std::string lobeFile() const override { return "materials/phong.glsl"; }
-  double lobe(const glm::dvec3& l, const glm::dvec3& v) const override { return physics::lobe(exponent_, {0, 0, 1}, l, v); }
-  double hemispherical(double w, double angle) const override {
-    const double x = std::clamp(angle / (0.5 * kPi), 0.0, 1.0) * kAngles;
-    const auto i = std::min(static_cast<size_t>(x), static_cast<size_t>(kAngles - 1));
-    return reflectance_(w) * (albedo_[i] + (x - static_cast<double>(i)) * (albedo_[i + 1] - albedo_[i]));
-  }
-  bool hemisphericalVaries() const override { return true; }
-  std::vector<double> knots_um() const override { return reflectance_.knots(); }
-  double validLow_um() const override { return reflectance_.validLow(); }
-  double validHigh_um() const override { return reflectance_.validHigh(); }
-  void addTo(Fingerprint& f) const override {
-    f.add("phong").add(exponent_);
-    pitviper::addTo(f, reflectance_);
-  }
-
- private:
-  static constexpr int kAngles = 360;
-  Spectrum reflectance_;
-  double exponent_;
-  std::vector<double> albedo_;
-};
+/// Two angles that both depend on the light: up to 1.4 s to integrate over the hemisphere. Others take 3 ms and, with the most entries,
+/// half a second.
+constexpr std::size_t kMostAnglePairs = 65536;
+constexpr double kMostTables = 64.0, kMostTableWavelengths = 1024.0;
+constexpr AngleTableKind kBrdf{"a BRDF", "at least 0 per steradian", INFINITY};
 
 class Tabulated final : public ReflectionComponent {
  public:
@@ -148,10 +59,6 @@ class Tabulated final : public ReflectionComponent {
   std::vector<double> knots_um() const override { return table_.wavelength_um; }
   double validLow_um() const override { return table_.wavelength_um.front(); }
   double validHigh_um() const override { return table_.wavelength_um.back(); }
-  void addTo(Fingerprint& f) const override {
-    f.add("table").all(table_.wavelength_um).all(table_.values);
-    for (const AngleAxis& a : table_.axes) f.add(static_cast<int>(a.angle)).add(a.count).add(a.last_rad);
-  }
 
  private:
   /// About half a second.
@@ -202,16 +109,42 @@ class Tabulated final : public ReflectionComponent {
   std::vector<double> viewAngle_, albedo_;  ///< albedo by view angle and wavelength
 };
 
+std::shared_ptr<ReflectionComponent> readTable(const Record& r) {
+  BrdfTable t;
+  t.wavelength_um = readTableWavelengths(r.value("wavelength"), kBrdf);
+  std::vector<size_t> extents{t.wavelength_um.size()};
+  if (r.given("angles")) {
+    size_t k = 0;
+    for (const Value& a : r.value("angles").items) {
+      t.axes[k] = readAngleAxis(a);
+      extents.insert(extents.begin(), static_cast<size_t>(t.axes[k++].count));
+    }
+    if (k == 2 && t.axes[0].angle == t.axes[1].angle) throw UserError(r.where("angles"), "both axes are the same angle", "two different angles", "change one");
+  }
+  const auto ofLight = [](const AngleAxis& a) { return a.angle != Angle::None && a.angle != Angle::View; };
+  const auto pairs = static_cast<std::size_t>(t.axes[0].count) * static_cast<std::size_t>(t.axes[1].count);
+  if (ofLight(t.axes[0]) && ofLight(t.axes[1]) && pairs > kMostAnglePairs)
+    throw UserError(r.where("angles"), "a BRDF table over " + std::to_string(pairs) + " pairs of angles", "at most " + std::to_string(kMostAnglePairs),
+                    "thin it out");
+  t.values = readTableValues(r, kBrdf, extents);
+  return makeTabulated(std::move(t));
+}
+
 }  // namespace
 
-std::shared_ptr<const ReflectionComponent> makeLambertian(Spectrum reflectance) { return std::make_shared<Lambertian>(std::move(reflectance)); }
-std::shared_ptr<const ReflectionComponent> makePhong(Spectrum reflectance, double exponent) {
-  return std::make_shared<Phong>(std::move(reflectance), exponent);
-}
-std::shared_ptr<const ReflectionComponent> makeTabulated(BrdfTable table) {
+std::shared_ptr<ReflectionComponent> makeTabulated(BrdfTable table) {
   const size_t wanted = table.wavelength_um.size() * static_cast<size_t>(table.axes[0].count) * static_cast<size_t>(table.axes[1].count);
   if (table.values.size() != wanted) throw std::invalid_argument("a BRDF table of the wrong size");
   return std::make_shared<Tabulated>(std::move(table));
+}
+
+ReflectionModel tabulatedModel() {
+  return {"table",
+          "A BRDF by wavelength and up to two angles, linear between.",
+          {required(list("wavelength", "rising wavelengths", 1, 1024)), list("angles", "up to two axes", 0, 2),
+           required(list("values", "BRDF [1/sr], nested as values[angle 2][angle 1][wavelength]", 1, 4096))},
+          [](const ComponentRecord& r) { return readTable(r.record); },
+          [](const Record& r) { return std::max(1.0 / kMostTables, static_cast<double>(r.value("wavelength").items.size()) / kMostTableWavelengths); }};
 }
 
 }  // namespace pitviper

@@ -1,0 +1,98 @@
+#include <algorithm>
+#include <cmath>
+
+#include "materials/models.hpp"
+#include "materials/reflection.hpp"
+#include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
+#include "sim/radiometry/quadrature.hpp"
+
+namespace pitviper {
+namespace physics {
+#define PHYSICS inline
+#include "materials/phong.glsl"
+#undef PHYSICS
+}  // namespace physics
+
+namespace {
+
+/// Each lobe takes about 10 ms to integrate over the hemisphere.
+constexpr double kMostLobes = 256.0;
+
+/// Directional-hemispherical reflectance of the unit Phong lobe:
+///   A(theta) = (n + 2) / (n + 1) / (2 pi) integral_0^1 dt integral dphi max(0, cos theta cos alpha + sin theta sin alpha cos phi),
+/// t = cos^(n+1) alpha; the azimuth integral in closed form.
+class PhongAlbedo {
+ public:
+  explicit PhongAlbedo(double n) : factor_((n + 2.0) / (n + 1.0) / (2.0 * kPi)) {
+    static const double edges[] = {0.0, 1e-6, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0};
+    for (const auto& node : fineNodes(0.0, 1.0, edges, 512)) {
+      const double ca = std::pow(node.x, 1.0 / (n + 1.0));
+      rings_.push_back({ca, std::sqrt(std::max(0.0, 1.0 - ca * ca)), node.weight});
+    }
+  }
+  double at(double theta) const;
+
+ private:
+  struct Ring {
+    double cosine, sine, weight;
+  };
+  double factor_;
+  std::vector<Ring> rings_;
+};
+
+double PhongAlbedo::at(double theta) const {
+  const double ct = std::cos(theta), st = std::sin(theta);
+  double sum = 0.0;
+  for (const Ring& r : rings_) {
+    const double a = ct * r.cosine, b = st * r.sine;
+    double ring = 2.0 * kPi * a;
+    if (b > a) {
+      const double phi = std::acos(std::clamp(-a / b, -1.0, 1.0));
+      ring = 2.0 * (phi * a + b * std::sin(phi));
+    }
+    sum += r.weight * ring;
+  }
+  return factor_ * sum;
+}
+
+class Phong final : public ReflectionComponent {
+ public:
+  Phong(Spectrum reflectance, double exponent) : reflectance_(std::move(reflectance)), exponent_(exponent) {
+    const PhongAlbedo albedo(exponent);
+    for (int i = 0; i <= kAngles; ++i) albedo_.push_back(albedo.at(0.5 * kPi * i / kAngles));
+  }
+  double column(double w, double, double) const override { return reflectance_(w); }
+  Lobe lobe() const override { return {"materials/phong.glsl", "phongLobe", {exponent_, 0.0, 0.0, 0.0}, (exponent_ + 2.0) / (2.0 * kPi), exponent_}; }
+  double lobeAt(const glm::dvec3& l, const glm::dvec3& v) const override { return physics::phongLobe({exponent_, 0.0, 0.0, 0.0}, {0, 0, 1}, l, v); }
+  double hemispherical(double w, double angle) const override {
+    const double x = std::clamp(angle / (0.5 * kPi), 0.0, 1.0) * kAngles;
+    const auto i = std::min(static_cast<size_t>(x), static_cast<size_t>(kAngles - 1));
+    return reflectance_(w) * (albedo_[i] + (x - static_cast<double>(i)) * (albedo_[i + 1] - albedo_[i]));
+  }
+  bool hemisphericalVaries() const override { return true; }
+  std::vector<double> knots_um() const override { return reflectance_.knots(); }
+  double validLow_um() const override { return reflectance_.validLow(); }
+  double validHigh_um() const override { return reflectance_.validHigh(); }
+
+ private:
+  static constexpr int kAngles = 360;
+  Spectrum reflectance_;
+  double exponent_;
+  std::vector<double> albedo_;
+};
+
+}  // namespace
+
+std::shared_ptr<ReflectionComponent> makePhong(Spectrum reflectance, double exponent) { return std::make_shared<Phong>(std::move(reflectance), exponent); }
+
+ReflectionModel phongModel() {
+  return {"phong",
+          "An energy-normalised lobe about the mirrored direction: f = reflectance (n + 2) / (2 pi) cos^n(alpha).",
+          {required(within(spectrum("reflectance", "", "at normal view; it falls as the cosine of the view angle (a table can hold Fresnel's rise)"), 0, 1)),
+           required(within(number("exponent", "", "n: the greater, the narrower"), 0, 1e7))},
+          [](const ComponentRecord& r) { return makePhong(r.spectrum("reflectance"), r.record.number("exponent")); },
+          [](const Record&) { return 1.0 / kMostLobes; }};
+}
+
+}  // namespace pitviper
