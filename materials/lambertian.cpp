@@ -27,8 +27,7 @@ ReflectionModel lambertianModel() {
   return {"lambertian",
           "Alike in all directions: f = reflectance / pi.",
           {required(within(spectrum("reflectance", "", "of light from and to anywhere"), 0, 1))},
-          [](const ComponentRecord& r) { return makeLambertian(r.spectrum("reflectance")); },
-          {}};
+          [](const ComponentRecord& r) { return makeLambertian(r.spectrum("reflectance")); }};
 }
 
 }  // namespace pitviper

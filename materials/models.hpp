@@ -27,7 +27,9 @@ struct ReflectionModel {
   std::vector<Parameter> parameters;  ///< besides `reflection` and `modifier`; the ranges of spectra are those of their values
   std::function<std::shared_ptr<ReflectionComponent>(const ComponentRecord&)> make;
   /// How much of all that a scenario may hold of it (1) one takes: what costs time or memory to read. None: nothing to speak of.
-  std::function<double(const Record&)> share;
+  std::function<double(const Record&)> share = {};
+  /// Path and text of its lobe's body, where that is not compiled in with this folder.
+  std::pair<std::string, std::string> shader = {};
 };
 
 Registry<ReflectionModel>& reflectionModels();

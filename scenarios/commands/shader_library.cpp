@@ -1,3 +1,6 @@
+#include <array>
+
+#include "materials/models.hpp"
 #include "scenarios/commands/commands.hpp"
 
 namespace pitviper {
@@ -14,6 +17,8 @@ const ShaderLibrary& shaderLibrary() {
     l.add(pv_render_shaders());
     l.add(pv_materials_shaders());
     l.add(pv_atmosphere_shaders());
+    for (const ReflectionModel& m : reflectionModels().all())
+      if (!m.shader.first.empty()) l.add(std::array{ShaderText{m.shader.first, m.shader.second}});
     return l;
   }();
   return library;
