@@ -17,6 +17,12 @@ std::vector<std::string> names() {
 Parameter reflection() { return required(choice("reflection", names(), "kind")); }
 Parameter modifier() { return map("modifier", "texture that multiplies it, 0..1"); }
 
+Parameter stateOf(const StateParameter& s) {
+  Parameter p = any(s.key, s.description + "; a number, or a texture of them over the surface");
+  p.unit = s.unit;
+  return p;
+}
+
 /// A value as it was written.
 void addTo(Fingerprint& f, const Value& v) {
   f.add(static_cast<int>(v.kind)).add(v.text).add(static_cast<double>(v.items.size())).add(static_cast<double>(v.entries.size()));
@@ -37,6 +43,7 @@ Registry<ReflectionModel>& reflectionModels() {
 ParameterTable componentTable(const ReflectionModel& model) {
   ParameterTable t{"component: " + model.name, model.description, {reflection()}};
   t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
+  if (model.state) t.parameters.push_back(stateOf(*model.state));
   t.parameters.push_back(modifier());
   return t;
 }
@@ -46,11 +53,12 @@ ParameterTable anyComponentTable() {
   for (const ReflectionModel& m : reflectionModels().all())
     for (const Parameter& p : m.parameters)
       if (!t.find(p.key)) t.parameters.push_back(any(p.key, p.description));
+  for (const ReflectionModel& m : reflectionModels().all())
+    if (m.state && !t.find(m.state->key)) t.parameters.push_back(stateOf(*m.state));
   return t;
 }
 
-std::shared_ptr<const ReflectionComponent> makeComponent(const ReflectionModel& model, const Record& record,
-                                                         const std::function<Spectrum(const Value&, const Parameter&)>& spectrum) {
+ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const std::function<Spectrum(const Value&, const Parameter&)>& spectrum) {
   Fingerprint f;
   f.add(model.name);
   std::map<std::string, Spectrum> spectra;
@@ -60,9 +68,12 @@ std::shared_ptr<const ReflectionComponent> makeComponent(const ReflectionModel& 
     if (p.type == ParameterType::Spectrum) addTo(f, spectra.emplace(p.key, spectrum(record.value(p.key), p)).first->second);
     else addTo(f, record.value(p.key));
   }
-  auto component = model.make({record, spectra});
-  component->setFingerprint(f.bytes());
-  return component;
+  return [&model, &record, spectra = std::move(spectra), f = std::move(f)](double state) {
+    auto component = model.make({record, spectra, state});
+    Fingerprint own = f;
+    component->setFingerprint(own.add(state).bytes());
+    return component;
+  };
 }
 
 }  // namespace pitviper

@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,16 @@ namespace pitviper {
 struct ComponentRecord {
   const Record& record;
   const std::map<std::string, Spectrum>& spectra;  ///< of the parameters that are spectra, where given
+  double state = 0.0;                              ///< of its model's state parameter
   const Spectrum& spectrum(const std::string& key) const { return spectra.at(key); }
+};
+
+/// A parameter that a texture may drive over a surface: a number, or a texture of them.
+struct StateParameter {
+  std::string key, unit, description;
+  double low = 0.0, high = 1.0;  ///< what it may be
+  double usual = 0.0;            ///< where it is not given
+  int entries = 2;               ///< so many components stand for a texture's range; between two of them the surface is linear
 };
 
 struct ReflectionModel {
@@ -28,6 +38,7 @@ struct ReflectionModel {
   std::function<std::shared_ptr<ReflectionComponent>(const ComponentRecord&)> make;
   /// How much of all that a scenario may hold of it (1) one takes: what costs time or memory to read. None: nothing to speak of.
   std::function<double(const Record&)> share = {};
+  std::optional<StateParameter> state = {};
   /// Path and text of its lobe's body, where that is not compiled in with this folder.
   std::pair<std::string, std::string> shader = {};
 };
@@ -39,8 +50,10 @@ ParameterTable componentTable(const ReflectionModel& model);
 /// All keys of any model: what is none of them is a mistake whatever the model.
 ParameterTable anyComponentTable();
 
-/// Reads a component. `spectrum`: reads a spectrum's value as its parameter says.
-std::shared_ptr<const ReflectionComponent> makeComponent(const ReflectionModel& model, const Record& record,
-                                                         const std::function<Spectrum(const Value&, const Parameter&)>& spectrum);
+/// Makes a component of a state.
+using ComponentMaker = std::function<std::shared_ptr<const ReflectionComponent>(double state)>;
+
+/// Reads a component but for its state. `record` must outlive what it returns. `spectrum`: reads a spectrum's value as its parameter says.
+ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const std::function<Spectrum(const Value&, const Parameter&)>& spectrum);
 
 }  // namespace pitviper

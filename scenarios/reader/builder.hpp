@@ -49,7 +49,8 @@ class Builder {
   /// `what`: "emissivity" or "transmittance".
   ViewSpectrum readViewSpectrum(const Record& r, const char* what, const std::string& material, const SpectrumReader& spectra);
   void readMedium(const Record& r, Material& material, const SpectrumReader& spectra) const;
-  std::shared_ptr<const ReflectionComponent> readComponent(const Value& value, const std::string& material, const SpectrumReader& spectra);
+  /// Adds it to a material, and to each of its entries where a texture drives its state or that of one before.
+  void readComponent(const Value& value, const SpectrumReader& spectra, Material& material, std::vector<std::shared_ptr<const Material>>& entries);
   int readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest);
   // bodies.cpp
   struct Placement {

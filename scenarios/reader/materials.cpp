@@ -107,7 +107,7 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
   return static_cast<int>(simulation_.textures.size()) - 1;
 }
 
-std::shared_ptr<const ReflectionComponent> Builder::readComponent(const Value& value, const std::string& material, const SpectrumReader& spectra) {
+void Builder::readComponent(const Value& value, const SpectrumReader& spectra, Material& m, std::vector<std::shared_ptr<const Material>>& entries) {
   static const ParameterTable any = anyComponentTable();
   const ReflectionModel& model = *reflectionModels().named(Record(value, any).text("reflection"));
   const ParameterTable& table = componentTables_.try_emplace(model.name, componentTable(model)).first->second;
@@ -115,9 +115,44 @@ std::shared_ptr<const ReflectionComponent> Builder::readComponent(const Value& v
   if (model.share && (componentShares_[model.name] += model.share(record)) > 1.0 + 1e-9)
     throw UserError(record.where(), "more components of the kind '" + model.name + "' than a scenario may hold", "fewer, or smaller ones",
                     "give alike materials one name under 'materials:', or thin their tables out");
-  return makeComponent(model, record, [&](const Value& v, const Parameter& p) {
-    return bounded(spectra, v, p.unit, p.key + " of material '" + material.substr(0, 60) + "'", p.minimum, p.maximum);
+  const ComponentMaker make = componentMaker(model, record, [&](const Value& v, const Parameter& p) {
+    return bounded(spectra, v, p.unit, p.key + " of material '" + m.name.substr(0, 60) + "'", p.minimum, p.maximum);
   });
+  const Value* modifier = value.find("modifier");
+  m.modifiers.push_back(modifier ? readTexture(*modifier, "", "a modifier", 0.0, 1.0) : -1);
+  const Value* state = model.state ? value.find(model.state->key) : nullptr;
+  const auto add = [&](const std::function<double(size_t)>& stateOf) {
+    m.reflections.push_back(make(stateOf(0)));
+    for (size_t k = 0; k < entries.size(); ++k) {
+      auto entry = std::make_shared<Material>(*entries[k]);
+      entry->reflections.push_back(make(stateOf(k)));
+      entry->modifiers = m.modifiers;
+      entries[k] = std::move(entry);
+    }
+  };
+  if (!state || state->kind != Value::Kind::Map) {
+    double number = model.state ? model.state->usual : 0.0;
+    if (state) number = readNumber(*state, model.state->unit, model.state->key);
+    if (state && !(number >= model.state->low && number <= model.state->high))
+      throw UserError(state->where, "'" + model.state->key + "' is " + briefNumber(number),
+                      briefNumber(model.state->low) + " to " + briefNumber(model.state->high), "change it");
+    return add([number](size_t) { return number; });
+  }
+  if (m.states)
+    throw UserError(state->where, "a second texture drives material '" + m.name.substr(0, 60) + "'", "one component whose state is a texture",
+                    "give the others a number");
+  MaterialStates states;
+  states.texture = readTexture(*state, model.state->unit, model.state->key, model.state->low, model.state->high);
+  const auto& texels = simulation_.textures[static_cast<size_t>(states.texture)].texels;
+  const auto [low, high] = std::minmax_element(texels.begin(), texels.end());
+  states.low = static_cast<double>(*low);
+  // A texture of one value is a number: an end beside it that nothing reaches.
+  states.high = *high > *low ? static_cast<double>(*high) : states.low + std::max(1e-6 * std::abs(states.low), 1e-9);
+  // The components before it are the same in all of its states.
+  entries.assign(static_cast<size_t>(model.state->entries), std::make_shared<const Material>(m));
+  const double last = static_cast<double>(entries.size() - 1);
+  m.states = states;
+  add([&](size_t k) { return states.low + (states.high - states.low) * static_cast<double>(k) / last; });
 }
 
 ViewSpectrum Builder::readViewSpectrum(const Record& r, const char* what, const std::string& material, const SpectrumReader& spectra) {
@@ -169,25 +204,31 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
   m->name = name;
   m->where = value.where;
   if (r.given("source")) m->provenance = r.text("source");
+  std::vector<std::shared_ptr<const Material>> entries;
   if (r.given("components"))
-    for (const Value& c : r.value("components").items) {
-      m->reflections.push_back(readComponent(c, name, spectra));
-      const Value* texture = c.find("modifier");
-      m->modifiers.push_back(texture ? readTexture(*texture, "", "a modifier", 0.0, 1.0) : -1);
-    }
+    for (const Value& c : r.value("components").items) readComponent(c, spectra, *m, entries);
   if (r.given("emission")) m->given = readViewSpectrum(Record(r.value("emission"), tables::emission()), "emissivity", name, spectra);
   if (r.given("transmission")) m->transmission = readViewSpectrum(Record(r.value("transmission"), tables::transmission()), "transmittance", name, spectra);
   readMedium(r, *m, spectra);
-  if (const auto excess = energyExcess(*m, simulation_.textures))
-    throw UserError(value.where,
-                    "material '" + name + "' reflects" +
-                        (m->transmission ? m->given ? ", transmits and emits" : " and transmits"
-                         : m->given      ? " and emits"
-                                         : "") +
-                        " more than it receives (" + percentAt(excess->sum, excess->wavelength_um, excess->viewAngle_rad) + ")",
-                    std::string(m->given || m->transmission ? "reflectance" : "the sum of its reflectances") + (m->transmission ? " + transmittance" : "") +
-                        (m->given ? " + emissivity" : "") + " <= 1, at every wavelength, view angle and texel",
-                    "lower a component");
+  for (auto& e : entries) {
+    auto entry = std::make_shared<Material>(*e);
+    entry->given = m->given;
+    entry->transmission = m->transmission;
+    e = std::move(entry);
+  }
+  if (m->states) m->states->entries = entries;
+  else entries = {m};
+  for (const auto& entry : entries)
+    if (const auto excess = energyExcess(*entry, simulation_.textures))
+      throw UserError(value.where,
+                      "material '" + name + "' reflects" +
+                          (m->transmission ? m->given ? ", transmits and emits" : " and transmits"
+                           : m->given      ? " and emits"
+                                           : "") +
+                          " more than it receives (" + percentAt(excess->sum, excess->wavelength_um, excess->viewAngle_rad) + ")",
+                      std::string(m->given || m->transmission ? "reflectance" : "the sum of its reflectances") + (m->transmission ? " + transmittance" : "") +
+                          (m->given ? " + emissivity" : "") + " <= 1, at every wavelength, view angle and texel",
+                      "lower a component");
   return m;
 }
 

@@ -48,7 +48,7 @@ bool Material::needsAngles() const {
 }
 
 bool Material::hasModifiers() const {
-  return std::any_of(modifiers.begin(), modifiers.end(), [](int m) { return m >= 0; }) || (given && given->modifier >= 0) ||
+  return states || std::any_of(modifiers.begin(), modifiers.end(), [](int m) { return m >= 0; }) || (given && given->modifier >= 0) ||
          (transmission && transmission->modifier >= 0);
 }
 

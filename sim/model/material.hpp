@@ -1,5 +1,5 @@
 #pragma once
-// A material: a surface (up to three reflection components, what it emits and what it lets through) or a medium that fills a body.
+// A material: a surface (reflection components, what it emits and what it lets through) or a medium that fills a body.
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,15 +12,25 @@
 
 namespace pitviper {
 
+struct Material;
+
+/// A state of a surface that a texture drives (wetness, thickness of a film): between two entries, which lie evenly over it, the surface is linear.
+struct MaterialStates {
+  int texture = -1;
+  double low = 0.0, high = 1.0;                          ///< of the texture's values: states of the first and the last entry
+  std::vector<std::shared_ptr<const Material>> entries;  ///< two or more, with the same axes, lobes and textures, without states of their own
+};
+
 struct Material {
   std::string name;
   std::string provenance;
   Location where;
-  std::vector<std::shared_ptr<const ReflectionComponent>> reflections;  ///< at most three
-  std::vector<int> modifiers;                                           ///< texture index or -1, one per reflection
-  std::optional<ViewSpectrum> given;                                    ///< emissivity; absent: Kirchhoff, 1 - reflectance - transmittance
-  std::optional<ViewSpectrum> transmission;                             ///< transmittance of the whole layer that the surface stands for; absent: opaque
-  std::optional<Medium> medium;                                         ///< a medium has none of the above
+  std::vector<std::shared_ptr<const ReflectionComponent>> reflections;
+  std::vector<int> modifiers;                ///< texture index or -1, one per reflection
+  std::optional<ViewSpectrum> given;         ///< emissivity; absent: Kirchhoff, 1 - reflectance - transmittance
+  std::optional<ViewSpectrum> transmission;  ///< transmittance of the whole layer that the surface stands for; absent: opaque
+  std::optional<Medium> medium;              ///< a medium has none of the above
+  std::optional<MaterialStates> states;      ///< where there are some, the above are those of the first entry
 
   /// What lies behind it is seen through it.
   bool isTransparent() const { return transmission || medium; }

@@ -69,6 +69,11 @@ void addTo(Fingerprint& f, const Material& m) {
   for (const auto& r : m.reflections) f.add(r->fingerprint());
   addTo(f, m.given);
   addTo(f, m.transmission);
+  f.add(m.states.has_value());
+  if (m.states) {
+    f.add(m.states->texture).add(m.states->low).add(m.states->high).add(static_cast<double>(m.states->entries.size()));
+    for (const auto& entry : m.states->entries) addTo(f, *entry);
+  }
   f.add(m.medium.has_value());
   if (!m.medium) return;
   addTo(f, m.medium->absorption_per_m);

@@ -74,13 +74,26 @@ class Teller {
   }
 
   void add(TermKind kind, double coefficient, std::initializer_list<Factor> factors, const AirAmounts* air = nullptr, int light = -1) {
-    if (coefficient != 0.0) sink_.term({kind, coefficient, {factors.begin(), factors.size()}, air, entity_, light});
+    if (coefficient * share_ != 0.0) sink_.term({kind, coefficient * share_, {factors.begin(), factors.size()}, air, entity_, light});
   }
 
   void surface(const Hit& hit, const AirPlace& place) {
-    const Surface& s = surfaceAt(sim_, hit);
-    const Material& m = sim_.materialOf(s);
+    const Material& m = sim_.materialOf(surfaceAt(sim_, hit));
     entity_ = hit.entity;
+    share_ = 1.0;
+    if (!m.states) return surface(hit, m, place);
+    const MaterialStates& states = *m.states;
+    const double last = static_cast<double>(states.entries.size() - 1);
+    const double x = std::clamp((modifier(states.texture, hit) - states.low) / (states.high - states.low), 0.0, 1.0) * last,
+                 low = std::min(std::floor(x), last - 1.0);
+    share_ = 1.0 - (x - low);
+    surface(hit, *states.entries[static_cast<size_t>(low)], place);
+    share_ = x - low;
+    surface(hit, *states.entries[static_cast<size_t>(low) + 1], place);
+  }
+
+  void surface(const Hit& hit, const Material& m, const AirPlace& place) {
+    const Surface& s = surfaceAt(sim_, hit);
     std::vector<double> modifiers;
     for (int texture : m.modifiers) modifiers.push_back(modifier(texture, hit));
     const bool textured = s.temperatureTexture >= 0;
@@ -137,7 +150,8 @@ class Teller {
   AirPlaces air_;
   std::vector<MediumInside> inside_;
   bool dark_ = false;
-  int entity_ = -1;  ///< of the surface that is told
+  int entity_ = -1;     ///< of the surface that is told
+  double share_ = 1.0;  ///< of the state that is told
 };
 
 }  // namespace

@@ -98,6 +98,33 @@ int viewAngles(const Material& m) {
 
 double viewAngle(int entry, int views) { return views > 1 ? 0.5 * kPi * entry / (views - 1) : 0.0; }
 
+/// By angle 2, angle 1 and node.
+void appendColumns(SurfaceTables& t, const Material& m, const std::array<AngleAxis, 2>& axes, const Plan& plan) {
+  for (int j2 = 0; t.lit && j2 < axes[1].count; ++j2)
+    for (int j1 = 0; j1 < axes[0].count; ++j1)
+      for (const SpectralNode& n : plan.nodes)
+        appendComponents(t.columns, t, m, 0.0,
+                         [&](const ReflectionComponent& r) { return n.mean([&](double w) { return columnAt(r, w, axes[0].at(j1), axes[1].at(j2), axes); }); });
+}
+
+/// By view angle and node.
+void appendHemispherical(SurfaceTables& t, const Material& m, int views, const Plan& plan) {
+  for (int j = 0; j < views; ++j) {
+    const double angle = viewAngle(j, views);
+    for (const SpectralNode& n : plan.nodes) {
+      // In double precision: what a good window emits is nearly all digits of 1 less than what it lets through and reflects.
+      const double emissivity = n.mean([&](double w) {
+        if (m.given) return m.given->at(w, angle);
+        double left = 1.0 - m.transmittance(w, angle);
+        for (const auto& r : m.reflections) left -= r->hemispherical(w, angle);
+        return left;
+      });
+      appendComponents(t.hemispherical, t, m, emissivity,
+                       [&](const ReflectionComponent& r) { return n.mean([&](double w) { return r.hemispherical(w, angle); }); });
+    }
+  }
+}
+
 void appendMaterial(SurfaceTables& t, const Material& m, const std::set<std::pair<std::string, std::string>>& lobes, const Plan& plan) {
   GpuMaterial g{};
   const auto axes = materialAxes(m);
@@ -126,31 +153,27 @@ void appendMaterial(SurfaceTables& t, const Material& m, const std::set<std::pai
   g.transmission[0] = m.transmission ? m.transmission->modifier : -1;
   g.transmission[1] = static_cast<std::int32_t>(t.transmittance.size());
   g.transmission[2] = m.given ? m.given->modifier : -1;
+  g.state = {-1, 1, 0, 0};
+  if (m.states) {
+    const auto entries = static_cast<std::int32_t>(m.states->entries.size());
+    g.state = {m.states->texture, entries, 0, 0};
+    g.stateScale = {static_cast<float>(m.states->low), static_cast<float>((entries - 1) / (m.states->high - m.states->low)), 0.0f, 0.0f};
+    t.states = true;
+  }
   t.materials.push_back(std::move(g));
   if (m.transmission)
     for (int j = 0; j < views; ++j)
       for (const SpectralNode& n : plan.nodes)
         t.transmittance.push_back(static_cast<float>(n.mean([&](double w) { return m.transmittance(w, viewAngle(j, views)); })));
   if (!t.general) return;
-
-  for (int j2 = 0; t.lit && j2 < axes[1].count; ++j2)
-    for (int j1 = 0; j1 < axes[0].count; ++j1)
-      for (const SpectralNode& n : plan.nodes)
-        appendComponents(t.columns, t, m, 0.0,
-                         [&](const ReflectionComponent& r) { return n.mean([&](double w) { return columnAt(r, w, axes[0].at(j1), axes[1].at(j2), axes); }); });
-  for (int j = 0; j < views; ++j) {
-    const double angle = viewAngle(j, views);
-    for (const SpectralNode& n : plan.nodes) {
-      // In double precision: what a good window emits is nearly all digits of 1 less than what it lets through and reflects.
-      const double emissivity = n.mean([&](double w) {
-        if (m.given) return m.given->at(w, angle);
-        double left = 1.0 - m.transmittance(w, angle);
-        for (const auto& r : m.reflections) left -= r->hemispherical(w, angle);
-        return left;
-      });
-      appendComponents(t.hemispherical, t, m, emissivity,
-                       [&](const ReflectionComponent& r) { return n.mean([&](double w) { return r.hemispherical(w, angle); }); });
-    }
+  std::vector<const Material*> entries{&m};
+  if (m.states) {
+    entries.clear();
+    for (const auto& entry : m.states->entries) entries.push_back(entry.get());
+  }
+  for (const Material* entry : entries) {
+    appendColumns(t, *entry, axes, plan);
+    appendHemispherical(t, *entry, views, plan);
   }
 }
 
@@ -300,7 +323,7 @@ std::vector<std::uint32_t> SurfaceTables::packedMaterials() const {
     for (auto v : four) words.push_back(std::bit_cast<std::uint32_t>(v));
   };
   for (const GpuMaterial& m : materials) {
-    put(m.counts), put(m.kinds), put(m.scale), put(m.transmission);
+    put(m.counts), put(m.kinds), put(m.scale), put(m.transmission), put(m.state), put(m.stateScale);
     for (const auto& c : m.components) put(c);
     for (const auto& l : m.lobes) put(l);
   }
@@ -325,6 +348,7 @@ std::string lobesText(const std::set<std::pair<std::string, std::string>>& lobes
 void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, const Plan& plan, ShaderSlots& slots) {
   auto file = [&](const char* slot, const char* name) { slots.files[slot] = std::string("sim/render/glsl/") + name + ".glsl"; };
   slots.generated["lobes"] = lobesText(tables.lit ? terms.lobes : std::set<std::pair<std::string, std::string>>());
+  slots.constants["STATES"] = tables.states ? 1 : 0;
   slots.constants["LOBES"] = tables.lit ? static_cast<long long>(terms.lobes.size()) : 0;
   slots.constants["COMPONENT_VECTORS"] = tables.vectors;
   slots.constants["COMPONENTS"] = 3 * tables.vectors;

@@ -13,7 +13,8 @@ namespace pitviper {
 struct GpuMaterial {
   std::array<std::uint32_t, 4> counts{}, kinds{};
   std::array<float, 4> scale{};
-  std::array<std::int32_t, 4> transmission{};
+  std::array<std::int32_t, 4> transmission{}, state{};
+  std::array<float, 4> stateScale{};
   std::vector<std::array<std::int32_t, 4>> components;
   std::vector<std::array<float, 4>> lobes;
 };
@@ -35,11 +36,12 @@ struct SurfaceTables {
   bool general = false;              ///< angular tables, modifiers or temperature textures
   bool tabulated = false;            ///< some reflection component is a table over angles
   bool lit = false;                  ///< there are lights for them to reflect
+  bool states = false;               ///< some material has states
   int vectors = 1;                   ///< so many vec4 hold a material's components at a node: (R1, R2, R3, S), (R4, R5, R6, 0) ...
   std::vector<float> rows;           ///< simple: these per node, unlit S alone; general: Planck radiance per node
   long long planckAt = -1;           ///< general: entry of `rows` where Planck radiance is tabulated over the inverse of the temperature, or -1
-  std::vector<float> hemispherical;  ///< (D1, D2, D3, given emissivity), (D4, D5, D6, 0) ... per view angle and node
-  std::vector<float> columns;        ///< lit: (R1, R2, R3, 0) ... per angle 2, angle 1 and node
+  std::vector<float> hemispherical;  ///< (D1, D2, D3, given emissivity), (D4, D5, D6, 0) ... per state, view angle and node
+  std::vector<float> columns;        ///< lit: (R1, R2, R3, 0) ... per state, angle 2, angle 1 and node
   std::vector<float> transmittance;  ///< per view angle and node
   std::vector<GpuMaterial> materials;
   int floatsPerRowEntry() const { return general || !lit ? 1 : 4; }  ///< of a texel

@@ -19,8 +19,15 @@ Vec3 reflectionColumns(int i, int l, int v) {
   int jx = min(int(x), max(nx, 2) - 2), jy = min(int(y), max(ny, 2) - 2);
   float fx = x - float(jx), fy = y - float(jy);
   int row = NODES * COMPONENT_VECTORS, sx = nx > 1 ? row : 0, sy = ny > 1 ? nx * row : 0;
-  int at = int(material_.counts.w) + (jy * nx + jx) * row + i * COMPONENT_VECTORS + v;
+  int each = nx * ny * row, at = int(material_.counts.w) + state_ * each + (jy * nx + jx) * row + i * COMPONENT_VECTORS + v;
   vec3 low = mix(texelFetch(columns, at).xyz, texelFetch(columns, at + sx).xyz, fx);
   vec3 high = mix(texelFetch(columns, at + sy).xyz, texelFetch(columns, at + sx + sy).xyz, fx);
-  return mix(low, high, fy) * modifier_[v];
+  vec3 column = mix(low, high, fy);
+  if (STATES > 0) {
+    at += nextState(each);
+    low = mix(texelFetch(columns, at).xyz, texelFetch(columns, at + sx).xyz, fx);
+    high = mix(texelFetch(columns, at + sy).xyz, texelFetch(columns, at + sx + sy).xyz, fx);
+    column = mix(column, mix(low, high, fy), stateMix_);
+  }
+  return column * modifier_[v];
 }

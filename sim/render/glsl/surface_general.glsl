@@ -9,12 +9,17 @@ float emissionModifier_;
 int view0_, view1_, viewEntry_;
 float transmissionModifier_;
 float viewMix_;
+int state_;  // the entry below the state of the surface
+float stateMix_;
 float temperature_;
 
 // The angle between unit vectors from chord and sum: keeps its digits near 0 and near pi.
 float angleFromChord(vec3 a, vec3 b) { return 2.0 * arcTangent(length(a - b) / max(length(a + b), 1.0e-20)); }
 
 //@slot modifiers
+
+// So many entries on, from one state to the next, in a table of so many for each.
+int nextState(int each) { return material_.state.y > 1 ? each : 0; }
 
 float surfaceTemperature();
 void prepareTemperature();
@@ -24,12 +29,19 @@ void prepareSurface() {
   for (int v = 0; v < COMPONENT_VECTORS; ++v)
     modifier_[v] = vec3(modifierAt(material_.component[3 * v].y), modifierAt(material_.component[3 * v + 1].y), modifierAt(material_.component[3 * v + 2].y));
   emissionModifier_ = modifierAt(material_.transmission.z);
+  state_ = 0;
+  stateMix_ = 0.0;
+  if (STATES > 0 && material_.state.x >= 0) {
+    stateMix_ = clamp((modifierAt(material_.state.x) - material_.stateScale.x) * material_.stateScale.y, 0.0, float(material_.state.y - 1));
+    state_ = min(int(stateMix_), material_.state.y - 2);
+    stateMix_ -= float(state_);
+  }
   viewMix_ = clamp(angleFromChord(normal_, toViewer_) * material_.scale.z, 0.0, float(material_.counts.z - 1u));
   int j = int(min(uint(viewMix_), max(material_.counts.z, 2u) - 2u));
   viewMix_ -= float(j);
   viewEntry_ = j;
   transmissionModifier_ = modifierAt(material_.transmission.x);
-  view0_ = int(material_.kinds.w) + j * NODES * COMPONENT_VECTORS;
+  view0_ = int(material_.kinds.w) + (state_ * int(material_.counts.z) + j) * NODES * COMPONENT_VECTORS;
   view1_ = material_.counts.z > 1u ? view0_ + NODES * COMPONENT_VECTORS : view0_;
   temperature_ = surfaceTemperature();
   prepareTemperature();
@@ -48,6 +60,10 @@ Real selfRadiance(int i) {
   for (int v = 0; v < COMPONENT_VECTORS; ++v) {
     int at = i * COMPONENT_VECTORS + v;
     vec4 d = mix(texelFetch(hemispherical, view0_ + at), texelFetch(hemispherical, view1_ + at), viewMix_);
+    if (STATES > 0) {
+      at += nextState(int(material_.counts.z) * NODES * COMPONENT_VECTORS);
+      d = mix(d, mix(texelFetch(hemispherical, view0_ + at), texelFetch(hemispherical, view1_ + at), viewMix_), stateMix_);
+    }
     reflectance += dot(d.xyz, modifier_[v]);
     lost += dot(d.xyz, 1.0 - modifier_[v]);
     if (v == 0) given = d.w;
