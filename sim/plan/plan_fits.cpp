@@ -15,7 +15,7 @@ namespace {
 constexpr int kFirst = 240, kCheck = 360, kChecks = 6;
 /// Lines on which fits are held against the equation after that, besides the extremes; how often one is tightened; what they may show of the accuracy, and
 /// those that a tightened fit learns.
-constexpr int kSecond = 400, kTighter = 2;
+constexpr int kSecond = 400, kTighter = 4;
 constexpr double kHeld = 0.6, kLearnt = 0.3;
 constexpr double kTightened = 0.5;
 /// Below, air and the textures of usual scenes send no thermal light to speak of.

@@ -347,7 +347,7 @@ std::string lobesText(const std::set<std::pair<std::string, std::string>>& lobes
 
 void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, const Plan& plan, ShaderSlots& slots) {
   auto file = [&](const char* slot, const char* name) { slots.files[slot] = std::string("sim/render/glsl/") + name + ".glsl"; };
-  slots.generated["lobes"] = lobesText(tables.lit ? terms.lobes : std::set<std::pair<std::string, std::string>>());
+  slots.generated["lobes"] = tables.lit ? lobesText(terms.lobes) : "";
   slots.constants["STATES"] = tables.states ? 1 : 0;
   slots.constants["LOBES"] = tables.lit ? static_cast<long long>(terms.lobes.size()) : 0;
   slots.constants["COMPONENT_VECTORS"] = tables.vectors;

@@ -136,7 +136,7 @@ TEST(OnlyRequired, Lights) {
     less.sun = less.lamp = false;
     const Built with(f), without(less);
     expectGone(with, without,
-               {"lightAt", "buffer Lights", "nodeLight", "prepareLobes() { exponents_", "Vec3 lobes(", "0.159154943091895", "uniform samplerBuffer columns",
+               {"lightAt", "buffer Lights", "nodeLight", "Real lobeOf(", "Vec3 lobes(", "0.159154943091895", "uniform samplerBuffer columns",
                 "reflectionColumns", "shareSeen", "meetsTree", "shadowMaps", "angleOf"});
     EXPECT_EQ(with.count("shadow maps"), 1);
     EXPECT_EQ(without.count("shadow maps"), 0);
@@ -154,7 +154,7 @@ TEST(OnlyRequired, Lights) {
   const Built with(plain), without(dark);
   EXPECT_EQ(with.tables().solid.rows.size(), 4 * with.nodes() * with.tables().draws.size());
   EXPECT_EQ(without.tables().solid.rows.size(), without.nodes() * without.tables().draws.size());
-  expectGone(with, without, {"Materials", "exponents_"});
+  expectGone(with, without, {"Materials", "lobeOf"});
 }
 
 // Surfaces that reflect nothing ask for no light, unless truth layers show its geometry.
