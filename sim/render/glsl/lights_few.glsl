@@ -20,12 +20,17 @@ void prepareLights() {
   }
 }
 
+// Without the loop where one vector holds all components: it keeps drivers from unrolling the loop over nodes.
+Real reflectedOf(int i, int l) {
+  if (COMPONENT_VECTORS == 1) return dot(reflectionColumns(i, l, 0), lightFactor_[l]);
+  Real sum = 0.0;
+  for (int v = 0; v < COMPONENT_VECTORS; ++v) sum += dot(reflectionColumns(i, l, v), lightFactor_[l * COMPONENT_VECTORS + v]);
+  return sum;
+}
+
 Real reflectedLight(int i) {
   Real sum = 0.0;
-  for (int l = 0; l < LIGHTS; ++l) {
-    Real reflected = 0.0;
-    for (int v = 0; v < COMPONENT_VECTORS; ++v) reflected += dot(reflectionColumns(i, l, v), lightFactor_[l * COMPONENT_VECTORS + v]);
-    sum += reflected * nodes.nodeLight[i * LIGHT_GROUPS + l / 4][l % 4] * pathTransmittance(i, lightAir_[l]);
-  }
+  for (int l = 0; l < LIGHTS; ++l)
+    sum += reflectedOf(i, l) * nodes.nodeLight[i * LIGHT_GROUPS + l / 4][l % 4] * pathTransmittance(i, lightAir_[l]);
   return sum;
 }

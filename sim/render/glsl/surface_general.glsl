@@ -55,19 +55,23 @@ void prepareSurface() {
 
 //@slot ambient
 
+// (D1, D2, D3, given emissivity) or what follows it.
+vec4 hemisphericalAt(int at) {
+  vec4 d = mix(texelFetch(hemispherical, view0_ + at), texelFetch(hemispherical, view1_ + at), viewMix_);
+  if (STATES == 0) return d;
+  at += nextState(int(material_.counts.z) * NODES * COMPONENT_VECTORS);
+  return mix(d, mix(texelFetch(hemispherical, view0_ + at), texelFetch(hemispherical, view1_ + at), viewMix_), stateMix_);
+}
+
 Real selfRadiance(int i) {
-  float reflectance = 0.0, lost = 0.0, given = 0.0;
-  for (int v = 0; v < COMPONENT_VECTORS; ++v) {
-    int at = i * COMPONENT_VECTORS + v;
-    vec4 d = mix(texelFetch(hemispherical, view0_ + at), texelFetch(hemispherical, view1_ + at), viewMix_);
-    if (STATES > 0) {
-      at += nextState(int(material_.counts.z) * NODES * COMPONENT_VECTORS);
-      d = mix(d, mix(texelFetch(hemispherical, view0_ + at), texelFetch(hemispherical, view1_ + at), viewMix_), stateMix_);
+  vec4 d = hemisphericalAt(i * COMPONENT_VECTORS);
+  float reflectance = dot(d.xyz, modifier_[0]), lost = dot(d.xyz, 1.0 - modifier_[0]), given = d.w;
+  if (COMPONENT_VECTORS > 1)
+    for (int v = 1; v < COMPONENT_VECTORS; ++v) {
+      vec3 more = hemisphericalAt(i * COMPONENT_VECTORS + v).xyz;
+      reflectance += dot(more, modifier_[v]);
+      lost += dot(more, 1.0 - modifier_[v]);
     }
-    reflectance += dot(d.xyz, modifier_[v]);
-    lost += dot(d.xyz, 1.0 - modifier_[v]);
-    if (v == 0) given = d.w;
-  }
   float emissivity = material_.kinds.z == 1u ? given + lost + transmittanceLost(i) : given * emissionModifier_;
   return reflectedAmbient(reflectance, i) + emissivity * sourceRadiance(i);
 }
