@@ -113,6 +113,7 @@ AirPath airToSun(AirPath camera, float height) {
   float sine = sunElevation_;
   airUpwards(height, abs(sine), w);
   if (sine < 0.0) airUpwards(height - (view.earth.x + height) * sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0))), 0.0, half_);
+  // Below the lowest entry: evenly dense, as CPU and columns have it, on a way as if the earth were flat; no flatter than 0.6 degrees, where it is not.
   float below = max(air.heights.x - height, 0.0) / max(sine, 0.01) * 1.0e-3;
   for (int v = 0; v < AIR_VECTORS && below > 0.0; ++v) w[v] += below * exp(airByHeight(height, 0, v));
   for (int v = 0; v < AIR_VECTORS; ++v) p.w[v] += sine < 0.0 ? max(2.0 * half_[v] - w[v], vec4(0.0)) : w[v];

@@ -16,8 +16,9 @@ namespace {
 
 /// Steps of sine on the horizon, where the air mass bends most (scale of its sine: 1/38), and their growth with the sun's height.
 constexpr double kStep = 0.0035, kGrowth = 10.0;
-/// Entries below the sun's own sine.
+/// Entries below the sun's own sine. Of a sun below the level, which high places see, they reach from the level to its depth below and so far beyond.
 constexpr int kBelow = 6;
+constexpr double kAbove = 0.025;
 
 }  // namespace
 
@@ -29,8 +30,8 @@ RisenSun risenSun(double height_m, double sinElevation, double earthRadius_m) {
 
 SunLegs::SunLegs(std::shared_ptr<const Path> path, double sinElevation, double earthRadius_m)
     : path_(std::move(path)),
-      step_(kStep * (1.0 + kGrowth * std::max(sinElevation, 0.0))),
-      first_(std::clamp(sinElevation - kBelow * step_, 0.0, 1.0 - (kElevations - 1) * step_)),
+      step_(sinElevation < 0.0 ? std::max(kStep, (kAbove - sinElevation) / (kElevations - 1)) : kStep * (1.0 + kGrowth * sinElevation)),
+      first_(std::clamp(sinElevation - kBelow * step_, 0.0, std::max(1.0 - (kElevations - 1) * step_, 0.0))),
       radius_m_(earthRadius_m),
       top_m_(path_->top_m()),
       roots_(static_cast<size_t>(kElevations) * kHeights) {

@@ -32,7 +32,10 @@ class Registry {
     return models_;
   }
   /// Null where there is none.
-  const Model* named(std::string_view name) const { return all().empty() ? nullptr : find(name); }
+  const Model* named(std::string_view name) const {
+    all();  // which tells faults
+    return find(name);
+  }
 
  private:
   const Model* find(std::string_view name) const {

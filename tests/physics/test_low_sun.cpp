@@ -83,10 +83,10 @@ TEST(LowSun, TablesOfWaysToTheSun) {
     const AirNode node = path->node(0.55);
     std::mt19937 random(3);
     const auto between = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
-    for (double sun_deg : {-2.0, -0.6, -0.1, 0.3, 1.0, 2.0, 8.0, 30.0, 89.0}) {
+    for (double sun_deg : {-9.0, -5.0, -3.0, -2.0, -0.6, -0.1, 0.3, 1.0, 2.0, 8.0, 30.0, 89.0}) {
       const auto legs = SunLegs::of(path, std::sin(sun_deg * kDegree), radius);
       for (int n = 0; n < 400; ++n) {
-        const double height = n % 2 ? between(0.0, 4000.0) : between(0.0, 30000.0);
+        const double height = n % 2 ? between(0.0, 4000.0) : between(0.0, sun_deg < -2.5 ? 90000.0 : 30000.0);
         const RisenSun sun = risenSun(height, std::min(std::sin(sun_deg * kDegree) + between(-0.01, 0.01), 1.0), radius);
         if (!(sun.share > 0.0)) continue;
         const AirAmounts near = legs->at(height, sun.sinElevation), exact = path->amounts({height, sun.sinElevation, radius}, physics::kFar);
@@ -103,6 +103,27 @@ TEST(LowSun, TablesOfWaysToTheSun) {
   bound("the same, sun below", low, 0.02, "metres below where haze ends");
   bound("the same, fog that ends at 3 km", most, 0.15, "the same");
   bound("amounts of its gases, relative", gases, 2e-3, "the same");
+}
+
+TEST(LowSun, WaysToTheSunThroughClearAir) {
+  const auto path = air();
+  const double radius = LocalFrame().earthRadius_m();
+  double low = 0.0, high = 0.0, aloft = 0.0;
+  for (double sun_deg : {-2.0, -0.1, 0.3, 1.0, 2.0, 8.0, 30.0, 89.0}) {
+    const auto legs = SunLegs::of(path, std::sin(sun_deg * kDegree), radius);
+    for (double height : {0.0, 3.0, 260.0, 1777.0, 5000.0, 8200.0, 14321.0, 29000.0})
+      for (double off : {-0.01, -0.003, 0.0, 0.0021, 0.01}) {
+        const RisenSun sun = risenSun(height, std::min(std::sin(sun_deg * kDegree) + off, 1.0), radius);
+        if (!(sun.share > 0.0)) continue;
+        const AirAmounts near = legs->at(height, sun.sinElevation), exact = path->amounts({height, sun.sinElevation, radius}, physics::kFar);
+        double& worst = height > 3000.0 ? aloft : sun.sinElevation < 0.035 ? low : high;
+        for (size_t k = 0; k < path->exponents().size(); ++k)
+          if (exact.amount[k] > 1e-6) worst = std::max(worst, std::abs(near.amount[k] / exact.amount[k] - 1.0));
+      }
+  }
+  bound("amounts of air towards the sun by table, up to 3 km, sun below 2 deg, relative", low, 3e-3, "cubic between elevations, linear between heights");
+  bound("the same, sun from 2 deg up", high, 1e-3, "the same");
+  bound("the same, from 3 to 29 km", aloft, 5e-2, "water, of which there is next to nothing, towards a sun below the level; else 4e-3");
 }
 
 /// A white plate that stands facing the sun's azimuth, seen from 5 m away.
@@ -172,6 +193,18 @@ TEST(LowSun, DirectSunlightByStraightLines) {
 
 namespace pitviper::test {
 namespace {
+
+// From high up the sun is seen far below the level: its light comes up through the air from the lowest point of its way.
+TEST(LowSun, SunFarBelowTheLevel) {
+  double worst = 0.0;
+  for (const auto& [height_m, elevation_deg] : {std::pair{12e3, -2.9}, {12e3, -3.3}, {25e3, -4.6}, {60e3, -7.2}})
+    for (double um : {0.75, 1.25}) {
+      const double exact = plateInSun(height_m, elevation_deg, um, "reference");
+      EXPECT_GT(exact, 1e-3) << "there is light";
+      worst = std::max(worst, std::abs(plateInSun(height_m, elevation_deg, um, "0.1 %") / exact - 1.0));
+    }
+  bound("sunlight from 2.9 to 7.2 deg below the level, 12 to 60 km up, planned at 0.1 % against double", worst, 1e-3, "what was asked");
+}
 
 // Ways to the sun from places in deep shade are thousands of optical depths long, and shorten upwards: their mean must not overflow.
 TEST(LowSun, SkyOfASunBelowTheHorizonIsANumber) {
