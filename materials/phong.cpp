@@ -58,13 +58,14 @@ double PhongAlbedo::at(double theta) const {
 
 class Phong final : public ReflectionComponent {
  public:
-  Phong(Spectrum reflectance, double exponent) : reflectance_(std::move(reflectance)), exponent_(exponent) {
+  Phong(Spectrum reflectance, double exponent)
+      : ReflectionComponent({"materials/phong.glsl", "phongLobe", {exponent, 0.0, 0.0, 0.0}, (exponent + 2.0) / (2.0 * kPi), exponent}),
+        reflectance_(std::move(reflectance)) {
     const PhongAlbedo albedo(exponent);
     for (int i = 0; i <= kAngles; ++i) albedo_.push_back(albedo.at(0.5 * kPi * i / kAngles));
   }
   double column(double w, double, double) const override { return reflectance_(w); }
-  Lobe lobe() const override { return {"materials/phong.glsl", "phongLobe", {exponent_, 0.0, 0.0, 0.0}, (exponent_ + 2.0) / (2.0 * kPi), exponent_}; }
-  double lobeAt(const glm::dvec3& l, const glm::dvec3& v) const override { return physics::phongLobe({exponent_, 0.0, 0.0, 0.0}, {0, 0, 1}, l, v); }
+  double lobeAt(const glm::dvec3& l, const glm::dvec3& v) const override { return physics::phongLobe(lobe().parameters, {0, 0, 1}, l, v); }
   double hemispherical(double w, double angle) const override {
     const double x = std::clamp(angle / (0.5 * kPi), 0.0, 1.0) * kAngles;
     const auto i = std::min(static_cast<size_t>(x), static_cast<size_t>(kAngles - 1));
@@ -78,7 +79,6 @@ class Phong final : public ReflectionComponent {
  private:
   static constexpr int kAngles = 360;
   Spectrum reflectance_;
-  double exponent_;
   std::vector<double> albedo_;
 };
 

@@ -86,6 +86,7 @@ void printPixelTerms(const ExrImage& frame, const std::string& file, int column,
     return values;
   };
   renderer.setWanted({static_cast<int>(pixel)});
+  renderer.watchParts();
   const std::vector<double> all = valuesOf({});
 
   std::printf("camera %s, frame %d, pixel %d,%d: every wavelength, in double precision\n\n%-44s", camera.name.c_str(), number, column, row, "");

@@ -240,7 +240,7 @@ double ReflectionComponent::brdf(double wavelength_um, const glm::dvec3& l, cons
 double ReflectionComponent::hemispherical(double wavelength_um, double viewAngle_rad) const {
   auto grid = axes();
   // A lobe counts as an axis about the mirrored direction, in steps of its width; cos^n is below 1e-17 at 9 / sqrt(n).
-  if (const Lobe own = lobe(); !own.file.empty()) grid = {AngleAxis{Angle::Specular, 49, std::min(0.5 * kPi, 9.0 / std::sqrt(own.exponent + 1.0))}, grid[0]};
+  if (const Lobe& own = lobe(); !own.file.empty()) grid = {AngleAxis{Angle::Specular, 49, std::min(0.5 * kPi, 9.0 / std::sqrt(own.exponent + 1.0))}, grid[0]};
   const glm::dvec3 view(std::sin(viewAngle_rad), 0.0, std::cos(viewAngle_rad));
   double sum = 0.0;
   integrateHemisphere(grid, viewAngle_rad, [&](const LightSample& s) { sum += s.weight * brdf(wavelength_um, s.light, view); });

@@ -51,11 +51,12 @@ struct Lobe {
 
 class ReflectionComponent {
  public:
+  explicit ReflectionComponent(Lobe lobe = {}) : lobe_(std::move(lobe)) {}
   virtual ~ReflectionComponent() = default;
   /// The table part [1/sr where the lobe is 1].
   virtual double column(double wavelength_um, double angle1_rad, double angle2_rad) const = 0;
   virtual std::array<AngleAxis, 2> axes() const { return {}; }
-  virtual Lobe lobe() const { return {}; }
+  const Lobe& lobe() const { return lobe_; }
   /// The lobe's value for directions in a frame whose z is the normal.
   virtual double lobeAt(const glm::dvec3& light, const glm::dvec3& view) const;
   /// Directional-hemispherical reflectance for a view angle: integral of BRDF cos(theta_l) over the hemisphere.
@@ -73,6 +74,7 @@ class ReflectionComponent {
   void setFingerprint(std::string bytes) { fingerprint_ = std::move(bytes); }
 
  private:
+  Lobe lobe_;
   std::string fingerprint_;
 };
 

@@ -52,15 +52,16 @@ class NodeSum final : public TermSink {
   void keepParts() { keepsParts_ = true; }
   /// Sums from here on are of this part alone; without one of all.
   void setOnly(const std::optional<Part>& only) { only_ = only; }
-  /// The parts that lines had since it was made.
+  /// The parts that lines had since watchParts() was called.
   const std::set<Part>& met() const { return met_; }
+  void watchParts() { watches_ = true; }
   /// Of panes and media on the whole way.
   std::vector<double> transmittance() const;
 
  private:
   const std::vector<double>& values(const Factor& factor);
   bool takes(const Part& part) {
-    if (met_.empty() || part != last_) met_.insert(last_ = part);
+    if (watches_) met_.insert(part);
     return !only_ || *only_ == part;
   }
   void send(TermKind kind, size_t node, double radiance) {
@@ -79,8 +80,8 @@ class NodeSum final : public TermSink {
   size_t count_;
   bool keepsParts_ = false;
   std::optional<Part> only_;
+  bool watches_ = false;
   std::set<Part> met_;
-  Part last_;
   std::vector<double> radiance_;
   std::array<std::vector<double>, kTermKinds> parts_;
   std::vector<double> panes_, mediaDepth_;  ///< on the way so far

@@ -13,7 +13,7 @@ void add(SurfaceTerms& t, const Material& m, const Surface& s) {
   t.modifiers |= m.hasModifiers();
   t.temperatureTextures |= s.temperatureTexture >= 0;
   for (const auto& r : m.reflections)
-    if (const Lobe lobe = r->lobe(); !lobe.file.empty()) t.lobes.emplace(lobe.file, lobe.function);
+    if (const Lobe& lobe = r->lobe(); !lobe.file.empty()) t.lobes.emplace(lobe.file, lobe.function);
 }
 
 }  // namespace

@@ -85,6 +85,10 @@ void CameraRenderer::setOnly(const std::optional<Part>& only) {
   if (reference_) reference_->setOnly(only);
 }
 
+void CameraRenderer::watchParts() {
+  if (reference_) reference_->watchParts();
+}
+
 std::set<Part> CameraRenderer::parts() const {
   std::set<Part> all = reference_ ? reference_->met() : std::set<Part>{};
   for (size_t l = 0; l < simulation_.lights.size(); ++l)

@@ -25,8 +25,9 @@ class CameraRenderer {
   void setWanted(const std::vector<int>& pixels);
   /// Reference mode: the pictures that follow are of one part alone (all parts add up to the whole); without one of all.
   void setOnly(const std::optional<Part>& only);
-  /// Reference mode: the parts that the wanted pixels of the last picture are made of, with those lamps that are seen in them.
+  /// Reference mode: the parts that the wanted pixels of pictures after watchParts() are made of, with those lamps that are seen in the last one.
   std::set<Part> parts() const;
+  void watchParts();
   CameraImage render(const WorldState& state) {
     begin(state);
     return finish();

@@ -145,7 +145,7 @@ void appendMaterial(SurfaceTables& t, const Material& m, const std::set<std::pai
   g.components.assign(3 * static_cast<size_t>(t.vectors), {0, -1, 0, 0});
   g.lobes.resize(g.components.size());
   for (size_t k = 0; k < m.reflections.size(); ++k) {
-    const Lobe lobe = m.reflections[k]->lobe();
+    const Lobe& lobe = m.reflections[k]->lobe();
     const auto at = lobes.find({lobe.file, lobe.function});
     g.components[k] = {at == lobes.end() ? 0 : static_cast<std::int32_t>(std::distance(lobes.begin(), at)) + 1, m.modifiers[k], 0, 0};
     for (int c = 0; c < 4; ++c) g.lobes[k][static_cast<size_t>(c)] = static_cast<float>(lobe.parameters[c]);

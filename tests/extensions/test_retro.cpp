@@ -27,10 +27,12 @@ class Retro final : public ReflectionComponent {
  public:
   /// `soot`: share of it that covers the surface and reflects nothing.
   Retro(Spectrum reflectance, double exponent, double soot)
-      : albedo_(makePhong(Spectrum(1.0), exponent)), reflectance_(std::move(reflectance)), exponent_(exponent), clean_(1.0 - soot) {}
+      : ReflectionComponent({"tests/extensions/retro.glsl", "retroLobe", {exponent, 0.0, 0.0, 0.0}, (exponent + 2.0) / (2.0 * kPi), exponent}),
+        albedo_(makePhong(Spectrum(1.0), exponent)),
+        reflectance_(std::move(reflectance)),
+        clean_(1.0 - soot) {}
   double column(double w, double, double) const override { return clean_ * reflectance_(w); }
-  Lobe lobe() const override { return {"tests/extensions/retro.glsl", "retroLobe", {exponent_, 0.0, 0.0, 0.0}, (exponent_ + 2.0) / (2.0 * kPi), exponent_}; }
-  double lobeAt(const glm::dvec3& l, const glm::dvec3& v) const override { return physics::retroLobe({exponent_, 0.0, 0.0, 0.0}, {0, 0, 1}, l, v); }
+  double lobeAt(const glm::dvec3& l, const glm::dvec3& v) const override { return physics::retroLobe(lobe().parameters, {0, 0, 1}, l, v); }
   double hemispherical(double w, double angle) const override { return clean_ * reflectance_(w) * albedo_->hemispherical(w, angle); }
   bool hemisphericalVaries() const override { return true; }
   std::vector<double> knots_um() const override { return reflectance_.knots(); }
@@ -40,7 +42,7 @@ class Retro final : public ReflectionComponent {
  private:
   std::shared_ptr<const ReflectionComponent> albedo_;
   Spectrum reflectance_;
-  double exponent_, clean_;
+  double clean_;
 };
 
 ReflectionModel retroModel() {

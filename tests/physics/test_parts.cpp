@@ -27,6 +27,7 @@ Parts partsOf(const std::string& yaml, int pixel) {
   camera.zoomedSamples = 32;
   CameraRenderer renderer(sim, camera, shaderLibrary(), std::make_shared<const GpuScene>(sim));
   renderer.setWanted({pixel});
+  renderer.watchParts();
   const WorldState state = advance(sim.entities, sim.lights, sim.time.at(0));
   const auto draw = [&] {
     std::vector<double> values;

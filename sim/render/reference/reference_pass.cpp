@@ -75,6 +75,7 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
   auto work = [&](bool tells) {
     NodeSum sum(shader.spectra());
     sum.setOnly(only_);
+    if (watches_) sum.watchParts();
     ZoomedTile tile(
         [&](int x, int y) {
           const auto line = lineAt(x, y);

@@ -17,8 +17,9 @@ class ReferencePass final : public ScenePass {
   void setProgress(std::function<void(double share)> progress) { progress_ = std::move(progress); }
   /// Pictures from here on are of one part alone, which is linear in all of them; without one of all.
   void setOnly(const std::optional<Part>& only) { only_ = only; }
-  /// The parts that were met since it was made.
+  /// The parts that were met since watchParts() was called.
   const std::set<Part>& met() const { return met_; }
+  void watchParts() { watches_ = true; }
   /// A picture begins, of about so many views: its own and those of its small bodies.
   void beginPicture(int views);
   /// It is done, whatever it took.
@@ -38,6 +39,7 @@ class ReferencePass final : public ScenePass {
   std::function<void(double)> progress_;
   int views_ = 1, viewsDone_ = 0;
   std::optional<Part> only_;
+  bool watches_ = false;
   std::set<Part> met_;
 };
 
