@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <sstream>
 
-#include "sim/model/path.hpp"
+#include "sim/model/atmosphere.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/radiometry/physics.hpp"

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/models.hpp"
 #include "sim/model/scene_fingerprint.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/render/air_on_gpu.hpp"
 
 namespace pitviper {
 namespace physics {
@@ -17,10 +19,10 @@ namespace {
 
 constexpr double kOne[] = {1.0};
 
-class NoAir final : public Path {
+class NoAir final : public Atmosphere {
  public:
-  std::string slotFile() const override { return "sim/render/glsl/path_none.glsl"; }
-  bool isNone() const override { return true; }
+  AirTraits traits() const override { return {.any = false}; }
+  std::unique_ptr<AirOnGpu> onGpu(const Simulation&, const Plan&, bool) const override { return std::make_unique<AirFile>("sim/render/glsl/path_none.glsl"); }
   std::span<const double> exponents() const override { return {}; }
   AirNode node(double) const override { return {}; }
   double top_m() const override { return physics::kFar; }
@@ -33,10 +35,11 @@ class NoAir final : public Path {
   void addTo(Fingerprint& f) const override { f.add("no air"); }
 };
 
-class Homogeneous final : public Path {
+class Homogeneous final : public Atmosphere {
  public:
   explicit Homogeneous(HomogeneousAir air) : air_(std::move(air)) {}
-  std::string slotFile() const override { return "atmosphere/homogeneous.glsl"; }
+  std::unique_ptr<AirOnGpu> onGpu(const Simulation&, const Plan&, bool) const override { return std::make_unique<AirFile>("atmosphere/homogeneous.glsl"); }
+  double groundTemperature_K() const override { return air_.temperature_K.value_or(0.0); }
   std::span<const double> exponents() const override { return kOne; }
   AirNode node(double w) const override {
     AirNode n;
@@ -81,7 +84,28 @@ class Homogeneous final : public Path {
 
 }  // namespace
 
-std::shared_ptr<const Path> makeHomogeneousAir(HomogeneousAir air) { return std::make_shared<Homogeneous>(std::move(air)); }
-std::shared_ptr<const Path> makeNoAir() { return std::make_shared<NoAir>(); }
+std::shared_ptr<const Atmosphere> makeHomogeneousAir(HomogeneousAir air) { return std::make_shared<Homogeneous>(std::move(air)); }
+std::shared_ptr<const Atmosphere> makeNoAir() { return std::make_shared<NoAir>(); }
+
+AirModel homogeneousModel() {
+  return {"homogeneous",
+          "Air of the same extinction everywhere.",
+          {"extinction"},
+          {required(atLeast(spectrum("extinction", "1/m", "extinction coefficient"), 0.0)),
+           within(number("temperature", "K", "the air emits as a black body of this temperature, and does not without"), 0, 1e5),
+           atLeast(spectrum("radiance", "W/(m2 sr um)", "further source radiance at great depth, for instance scattered sunlight"), 0.0),
+           within(number("top", "m",
+                         "height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never ends and the "
+                         "sun's irradiance is that at the scene"),
+                  -500, 1e7)},
+          [](const AirRecord& air) {
+            HomogeneousAir own;
+            own.extinction_per_m = air.spectra.at("extinction");
+            if (air.record.given("temperature")) own.temperature_K = air.record.number("temperature");
+            if (air.spectra.count("radiance")) own.radiance = air.spectra.at("radiance");
+            if (air.record.given("top")) own.top_m = air.record.number("top");
+            return makeHomogeneousAir(std::move(own));
+          }};
+}
 
 }  // namespace pitviper

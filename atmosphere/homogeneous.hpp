@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "sim/model/path.hpp"
+#include "sim/model/atmosphere.hpp"
 #include "sim/radiometry/spectrum.hpp"
 
 namespace pitviper {
@@ -16,7 +16,7 @@ struct HomogeneousAir {
   double top_m = std::numeric_limits<double>::infinity();  ///< height of its top above the earth (LocalFrame::height)
 };
 
-std::shared_ptr<const Path> makeHomogeneousAir(HomogeneousAir air);
-std::shared_ptr<const Path> makeNoAir();
+std::shared_ptr<const Atmosphere> makeHomogeneousAir(HomogeneousAir air);
+std::shared_ptr<const Atmosphere> makeNoAir();
 
 }  // namespace pitviper

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/layered_fit.hpp"
+#include "atmosphere/layered_gpu.hpp"
+#include "atmosphere/models.hpp"
 #include "atmosphere/scattered_sun.hpp"
 #include "sim/radiometry/spectrum.hpp"
 
@@ -20,14 +23,17 @@ AirStation stationOf(const PathStation& s) {
   return station;
 }
 
-class Layered final : public Path {
+class Layered final : public Atmosphere {
  public:
   explicit Layered(AbsorberTable table) : table_(std::move(table)) {
     for (const Absorber& a : table_.absorbers()) exponents_.push_back(a.exponent);
   }
-  std::string slotFile() const override { return "atmosphere/layered_nodes.glsl"; }
-  std::string channelSlotFile() const override { return "atmosphere/layered_channels.glsl"; }
-  bool isLayered() const override { return true; }
+  AirTraits traits() const override { return {.variesAlongWay = true, .scattersSun = true, .liesOnGround = true, .isBanded = true}; }
+  std::unique_ptr<AirOnGpu> onGpu(const Simulation& simulation, const Plan& plan, bool perChannel) const override {
+    return std::make_unique<LayeredOnGpu>(simulation, plan, perChannel);
+  }
+  std::vector<double> planTables(const AirTableRequest& request) const override { return planLayeredTables(request); }
+  double groundTemperature_K() const override { return table_.temperature_K(0.0); }
   std::span<const double> exponents() const override { return exponents_; }
   AirNode node(double w) const override {
     AirNode n;
@@ -78,6 +84,36 @@ class Layered final : public Path {
 
 }  // namespace
 
-std::shared_ptr<const Path> makeLayeredAir(AbsorberTable table) { return std::make_shared<Layered>(std::move(table)); }
+std::shared_ptr<const Atmosphere> makeLayeredAir(AbsorberTable table) { return std::make_shared<Layered>(std::move(table)); }
+
+namespace {
+
+/// What the absorbers were fitted over is far within.
+constexpr double kColdest_K = 100.0, kWarmest_K = 500.0;
+
+AbsorberTable readTable(const AirRecord& air) {
+  const std::filesystem::path file = air.folder / air.record.text("table");
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw UserError(air.record.where("table"), "there is no file '" + file.string() + "'", "an air table, its path relative to this file", "check the path");
+  AbsorberTable table = AbsorberTable::read(file);
+  if (air.record.given("visibility")) table.setVisibility(1e-3 * air.record.number("visibility"));
+  if (air.record.given("aerosol")) air.record.text("aerosol") == "none" ? table.removeAerosol() : table.restoreAerosol();
+  if (air.record.given("temperature")) table.setTemperature(air.record.number("temperature"));
+  return table;
+}
+
+}  // namespace
+
+AirModel layeredModel() {
+  return {"layered",
+          "Air with structure: absorbers and temperature by height, as a library air has them or a table.",
+          {"table"},
+          {required(text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air")),
+           within(number("visibility", "m", "meteorological visibility of the haze"), 500, 3e5),
+           choice("aerosol", {"none", "table"}, "without aerosol, or with the table's"),
+           within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
+          [](const AirRecord& air) { return makeLayeredAir(readTable(air)); }};
+}
 
 }  // namespace pitviper

@@ -1,7 +1,7 @@
 //@use sim/radiometry/glsl/exponential.glsl
 // Layered air: -ln tau = sum of c_k W_k^a_k over the absorbers k, four to a vector. What a camera's way holds (logarithm of the mean density)
 // and sends beyond air of one temperature comes from a table by elevation and range, made in double precision for each view
-// (sim/render/air_tables.hpp); ways on to lights and to the sun from tables by height. Amounts of both legs are added before the power: a band does not decay exponentially.
+// (atmosphere/layered_gpu.hpp); ways on to lights and to the sun from tables by height. Amounts of both legs are added before the power: a band does not decay exponentially.
 layout(std140, binding = 3) uniform AirBlock {
   vec4 grid;       // root of the first elevation's sine, entries per unit of it; scale of ranges [m], entries per unit of ln(1 + range / scale)
   vec4 azimuth;    // first cosine of the azimuth to the sun times the sun's horizontal part, entries per unit of it; number of elevations, of ranges

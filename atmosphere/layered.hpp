@@ -3,10 +3,10 @@
 #include <memory>
 
 #include "atmosphere/absorber_table.hpp"
-#include "sim/model/path.hpp"
+#include "sim/model/atmosphere.hpp"
 
 namespace pitviper {
 
-std::shared_ptr<const Path> makeLayeredAir(AbsorberTable table);
+std::shared_ptr<const Atmosphere> makeLayeredAir(AbsorberTable table);
 
 }  // namespace pitviper

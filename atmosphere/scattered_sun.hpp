@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "atmosphere/absorber_table.hpp"
-#include "sim/model/path.hpp"
+#include "sim/model/atmosphere.hpp"
 #include "sim/radiometry/spectrum.hpp"
 
 namespace pitviper {

@@ -1,6 +1,6 @@
 //@use sim/radiometry/glsl/exponential.glsl
 // Air from tables: -ln tau = sum of c_k R^a_k with R the length of the whole way [km], both legs in one; L_path = J (1 - tau).
-// Valid: all lengths, infinite included. The block: sim/render/path_block.hpp; J [W/(m2 sr um)] is in nodes.node[i].y.
+// Valid: all lengths, infinite included. The block: atmosphere/tabulated_gpu.hpp; J [W/(m2 sr um)] is in nodes.node[i].y.
 layout(std140, binding = 3) uniform PathBlock {
   vec4 exponent[AIR_VECTORS];
   vec4 extinction[NODES * AIR_VECTORS];

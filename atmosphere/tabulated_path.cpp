@@ -3,18 +3,21 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "atmosphere/tabulated_gpu.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 namespace {
 
-class TabulatedPath final : public Path {
+class TabulatedPath final : public Atmosphere {
  public:
   explicit TabulatedPath(TabulatedAir air) : air_(std::move(air)) {
     if (air_.exponents().size() > kMostAirAmounts) throw std::invalid_argument("table of air: more exponents than a path has amounts");
   }
-  std::string slotFile() const override { return "atmosphere/tabulated.glsl"; }
-  bool isTabulated() const override { return true; }
+  AirTraits traits() const override { return {.isBanded = true, .linearBetweenKnots = true}; }
+  std::unique_ptr<AirOnGpu> onGpu(const Simulation& simulation, const Plan& plan, bool) const override {
+    return std::make_unique<TabulatedOnGpu>(simulation, plan);
+  }
   Location where() const override { return {air_.file(), air_.line(), 1, -1}; }
   std::span<const double> exponents() const override { return air_.exponents(); }
   AirNode node(double wavelength_um) const override {
@@ -47,6 +50,6 @@ class TabulatedPath final : public Path {
 
 }  // namespace
 
-std::shared_ptr<const Path> makeTabulatedPath(TabulatedAir air) { return std::make_shared<TabulatedPath>(std::move(air)); }
+std::shared_ptr<const Atmosphere> makeTabulatedPath(TabulatedAir air) { return std::make_shared<TabulatedPath>(std::move(air)); }
 
 }  // namespace pitviper

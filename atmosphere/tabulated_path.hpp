@@ -7,11 +7,11 @@
 #include <memory>
 
 #include "atmosphere/tabulated_air.hpp"
-#include "sim/model/path.hpp"
+#include "sim/model/atmosphere.hpp"
 
 namespace pitviper {
 
 /// Amounts are all the same: the length of the way [km]. Throws std::invalid_argument for more than kMostAirAmounts exponents.
-std::shared_ptr<const Path> makeTabulatedPath(TabulatedAir air);
+std::shared_ptr<const Atmosphere> makeTabulatedPath(TabulatedAir air);
 
 }  // namespace pitviper

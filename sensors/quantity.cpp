@@ -28,9 +28,9 @@ ChannelOutput start(const Detector& d, const std::string& quantity) {
 
 Spectrum photometric(const Detector& d) { return d.photopic * d.response * kLuminousEfficacy; }
 
-double exposureOf(const Detector& d, const std::string& quantity, double exposure_s) {
-  if (exposure_s > 0.0) return exposure_s;
-  throw UserError(d.where, "'" + quantity + "' needs an exposure time", "'exposure' of the camera or sensor, such as '2 ms'", "add 'exposure: 2 ms' to it");
+void requireExposure(const Detector& d, const std::string& quantity, double exposure_s) {
+  if (!(exposure_s > 0.0))
+    throw UserError(d.where, "'" + quantity + "' needs an exposure time", "'exposure' of the camera or sensor, such as '2 ms'", "add 'exposure: 2 ms' to it");
 }
 
 }  // namespace
@@ -87,21 +87,19 @@ ChannelOutput makeOutput(const Detector& d, const std::string& quantity, const P
     const double grey = d.optics.isConstant() ? d.optics(1.0) : 1.0;
     o.scale = aperture * grey;
     o.kernel = d.optics.isConstant() ? d.response : d.response * d.optics;
+    o.perExposure = quantity == "exposure" || quantity == "photons" || quantity == "electrons";
+    if (o.perExposure) requireExposure(d, quantity, exposure_s);
     if (quantity == "focal_irradiance") {
       o.scale /= pixel;
     } else if (quantity == "focal_illuminance") {
       o.scale /= pixel;
       o.kernel = d.optics.isConstant() ? photometric(d) : photometric(d) * d.optics;
-    } else if (quantity == "exposure") {
-      o.scale *= exposureOf(d, quantity, exposure_s);
     } else if (quantity == "photons") {
-      o.scale *= exposureOf(d, quantity, exposure_s);
       o.kernel = o.kernel * photonsPerJoule();
     } else if (quantity == "electrons") {
       if (!d.quantumEfficiency)
         throw UserError(d.where, "'electrons' needs a quantum efficiency", "'quantum_efficiency' of the channel, a number or a spectrum",
                         "add 'quantum_efficiency: 0.8'");
-      o.scale *= exposureOf(d, quantity, exposure_s);
       o.kernel = o.kernel * *d.quantumEfficiency * photonsPerJoule();
     } else if (quantity == "volts") {
       if (!d.gain) throw UserError(d.where, "'volts' needs a gain", "'gain' of the channel in V/W or V/(W/m2)", "add 'gain: 2e6 V/W'");

@@ -71,7 +71,7 @@ AccuracyReport measureAccuracy(const AccuracyRequest& request) {
   std::string numbers;
   for (int i = 0; i < frames; ++i) {
     const int number = (2 * i + 1) * sim.time.frames / (2 * frames);
-    states.push_back(advance(sim.entities, sim.lights, sim.time.at(number)));
+    states.push_back(advance(sim, sim.time.at(number)));
     numbers += (i == 0 ? "" : i + 1 < frames ? ", " : " and ") + std::to_string(number);
   }
   const auto scene = std::make_shared<const GpuScene>(sim);

@@ -41,7 +41,7 @@ void Renderings::add(const WorldState& state, const std::vector<char>& left, std
 }
 
 std::vector<char> outlinePixels(const Simulation& sim, const Camera& camera, const WorldState& state) {
-  const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, camera.samples);
+  const View view = cameraView(camera, state, camera.samples);
   std::vector<char> drawn(sim.entities.size(), 1);
   if (camera.mount.carrier >= 0) drawn[static_cast<size_t>(camera.mount.carrier)] = 0;
   std::vector<char> marked(static_cast<size_t>(camera.pinhole.width) * static_cast<size_t>(camera.pinhole.height), 0);
@@ -57,7 +57,7 @@ std::vector<char> outlinePixels(const Simulation& sim, const Camera& camera, con
     if (!drawn[e]) continue;
     const glm::dvec3 to = state.entities[e].position + state.entities[e].orientation * glm::dvec3(sim.entities[e].boundingCentre) - view.position;
     const glm::dvec3 d = glm::transpose(view.localFromCamera) * to;
-    const double radius_m = static_cast<double>(sim.entities[e].boundingRadius_m), pixel_rad = camera.pinhole.pitchX_m / camera.pinhole.focalLength_m;
+    const double radius_m = static_cast<double>(sim.entities[e].boundingRadius_m), pixel_rad = view.tanPerPixelX * camera.samples;
     if (!(d.z < -radius_m) || 2.0 * radius_m / glm::length(d) > camera.smallBody_px * pixel_rad) continue;
     const glm::dvec2 at = filmPosition(view, d);
     const double reach = radius_m / glm::length(d) / pixel_rad * camera.samples + camera.samples;

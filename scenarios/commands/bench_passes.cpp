@@ -33,7 +33,7 @@ struct Prepared {
   explicit Prepared(const BenchSetting& setting)
       : simulation(benchSimulation(setting)),
         scene(std::make_shared<const GpuScene>(simulation)),
-        state(advance(simulation.entities, simulation.lights, 0.0)) {}
+        state(advance(simulation, 0.0)) {}
   Simulation simulation;
   std::shared_ptr<const GpuScene> scene;
   WorldState state;
@@ -43,7 +43,7 @@ struct PreparedPass : Prepared {
   explicit PreparedPass(const BenchSetting& setting)
       : Prepared(setting),
         plan(makePlan(simulation, camera().outputs, camera().spectral, camera().where)),
-        view(cameraView(camera().pinhole, cameraPose(camera().mount, state), camera().near_m, 1)),
+        view(cameraView(camera(), state, 1)),
         drawn(simulation.entities.size(), 1),
         pass(makeScenePass(simulation, plan, shaderLibrary(), scene, false, camera().pinhole.apertureArea_m2())) {
     pass->setState(state);

@@ -4,6 +4,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
+#include "sim/frame/frame_files.hpp"
 #include "sim/frame/integrate.hpp"
 #include "sim/image/atomic_file.hpp"
 

@@ -7,7 +7,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/frame/file_owner.hpp"
-#include "sim/frame/frame.hpp"
+#include "sim/render/camera_renderer.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/parameters/error.hpp"
 
@@ -71,7 +71,7 @@ void printPixelTerms(const ExrImage& frame, const std::string& file, int column,
   const GlContext context;
   CameraRenderer renderer(sim, camera, shaderLibrary(), std::make_shared<const GpuScene>(sim));
   const int number = wholeAttribute(frame, "pitviper.frame");
-  const WorldState state = advance(sim.entities, sim.lights, sim.time.at(number));
+  const WorldState state = advance(sim, sim.time.at(number));
   const size_t pixel = static_cast<size_t>(row) * static_cast<size_t>(frame.width) + static_cast<size_t>(column);
   const auto outputs = toldOutputs(frame, camera);
   const auto valuesOf = [&](const std::optional<Part>& part) {
@@ -80,8 +80,8 @@ void printPixelTerms(const ExrImage& frame, const std::string& file, int column,
     std::vector<double> values;
     for (size_t o : outputs) {
       const ChannelOutput& output = camera.outputs[o];
-      const double etendue = output.perEtendue ? image.solidAngles->projected_sr[pixel] : 1.0;
-      values.push_back(output.scale * etendue * image.slots[static_cast<size_t>(image.slotOfOutput[o])][pixel]);
+      const double etendue = output.perEtendue ? image.solidAngles->projected_sr[pixel] : 1.0, exposure = output.perExposure ? image.exposure_s : 1.0;
+      values.push_back(output.scale * etendue * exposure * image.slots[static_cast<size_t>(image.slotOfOutput[o])][pixel]);
     }
     return values;
   };

@@ -64,7 +64,7 @@ int planCommand(const Arguments& arguments) {
                     0.0,
                     bytesOf(makeTables(sim, plan)),
                     buffered,
-                    plan.terms.air && sim.path->isLayered(),
+                    plan.terms.air && plan.air.elevations > 0,
                     describe(sim.limits)};
     if (yardstick > 0.0) told.framesPerSecond = predictedRate(plan, subpixels, yardstick, buffered);
     if (o.has("--json")) json += (json.empty() ? "" : ", ") + planJson(told);

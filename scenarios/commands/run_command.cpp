@@ -12,6 +12,7 @@
 #include "scenarios/commands/seen_report.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/frame/file_owner.hpp"
+#include "sim/frame/frame_files.hpp"
 #include "sim/frame/spectral_image.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
@@ -24,6 +25,7 @@
 #include "sim/run/memory_need.hpp"
 #include "sim/run/run.hpp"
 #include "sim/run/spectral_renderer.hpp"
+#include "sim/stream/sink_models.hpp"
 
 namespace pitviper {
 namespace {
@@ -112,9 +114,9 @@ void noteSampling(const Simulation& sim) {
 
 /// One line for each camera that begins with part of a body nearer than it draws: a dome in front of it, for instance.
 void noteNear(const Simulation& sim, double time_s) {
-  const WorldState state = advance(sim.entities, sim.lights, time_s);
+  const WorldState state = advance(sim, time_s);
   for (const Camera& c : sim.cameras) {
-    const glm::dvec3 eye = cameraPose(c.mount, state).position;
+    const glm::dvec3 eye = cameraAt(c, state).pose.position;
     for (size_t e = 0; e < sim.entities.size(); ++e) {
       const Entity& body = sim.entities[e];
       const Pose& pose = state.entities[e];
@@ -132,15 +134,26 @@ void noteNear(const Simulation& sim, double time_s) {
 }
 
 /// Before any work: no file that the run would write may be of another scenario.
-void refuseForeignFiles(const Simulation& sim, const RunRange& range, const std::filesystem::path& folder, bool previews) {
+void refuseForeignFiles(const Simulation& sim, const RunRange& range, const std::filesystem::path& folder, const std::vector<std::unique_ptr<Sink>>& sinks) {
+  const auto refuse = [&](const std::filesystem::path& file) {
+    if (!file.empty()) refuseForeignFile(file, sim);
+  };
   for (int number = range.first; number <= range.last; ++number)
-    for (const Camera& c : sim.cameras) {
-      const std::filesystem::path file = folder / (frameFileStem(c.name, number, "") + ".exr");
-      refuseForeignFile(file, sim);
-      if (previews) refuseForeignFile(std::filesystem::path(file).replace_extension(".png"), sim);
-      if (c.spectralImage) refuseForeignFile(folder / (frameFileStem(c.name, number, kSpectralKind) + ".exr"), sim);
-    }
-  for (const Probe& p : sim.probes) refuseForeignFile(folder / ProbeTables::fileOf(p.name), sim);
+    for (const Camera& c : sim.cameras)
+      for (const auto& sink : sinks) {
+        refuse(sink->fileOf(c.name, number, ""));
+        if (c.spectralImage) refuse(sink->fileOf(c.name, number, kSpectralKind));
+      }
+  for (const Probe& p : sim.probes) refuse(folder / ProbeTables::fileOf(p.name));
+}
+
+/// Those of the scenario, or files; and what the command line asks for besides.
+std::vector<std::unique_ptr<Sink>> makeSinks(const Simulation& sim, const SinkPlace& place, const PreviewRanges* previews) {
+  std::vector<std::unique_ptr<Sink>> sinks;
+  for (const SinkChoice& choice : sim.sinks) sinks.push_back(choice.make(sim, place));
+  if (sim.sinks.empty()) sinks.push_back(sinkNamed("files").make(sim, place));
+  if (previews) sinks.push_back(makePreviewsSink(place, *previews));
+  return sinks;
 }
 
 /// One line for each channel whose response ends before its own end, where the scene has no data.
@@ -250,7 +263,7 @@ void auditFrames(Simulation& sim) {
   const GlContext context;
   if (!(sim.audit > 0.0)) sim.audit = kCheckedPixels;
   std::set<int> frames = {0, sim.time.frames / 2, sim.time.frames - 1};
-  for (int frame : frames) std::printf("frame %d\n%s", frame, auditText(runFrames(sim, shaderLibrary(), {frame, frame}, [](const Frame&) {})).c_str());
+  for (int frame : frames) std::printf("frame %d\n%s", frame, auditText(runFrames(sim, shaderLibrary(), {frame, frame}, [](const auto&) {})).c_str());
 }
 
 }  // namespace
@@ -267,11 +280,12 @@ int runCommand(const Arguments& arguments) {
   const PreviewRanges ranges = previewRanges(o, sim);
   const std::filesystem::path out = o.value("--out", "out");
   const bool previews = o.has("--preview") || !ranges.empty();
-  MayReplace mayReplace;
+  SinkPlace place{out, {}};
+  const auto sinksOf = [&] { return makeSinks(sim, place, previews ? &ranges : nullptr); };
   if (!o.has("--overwrite")) {
-    refuseForeignFiles(sim, range, out, previews);
+    refuseForeignFiles(sim, range, out, sinksOf());
     // And again for each: another run may have put it there meanwhile.
-    mayReplace = [&sim](const std::filesystem::path& file) { refuseForeignFile(file, sim); };
+    place.mayReplace = [&sim](const std::filesystem::path& file) { refuseForeignFile(file, sim); };
   }
   ensureWritableFolder(out);
   noteCuts(sim);
@@ -287,15 +301,16 @@ int runCommand(const Arguments& arguments) {
     progress.phase("preparing");
     ProbeTables probes(sim);
     RunTotal total;
+    const auto sinks = sinksOf();
+    for (const auto& sink : sinks) sink->start();
     const RunReport report = runFrames(
         sim, shaderLibrary(), range,
-        [&](const Frame& f) {
-          noteOrder(f, told);
-          noteLimits(f, toldOfLimits);
-          noteScattering(f, told);
-          writeFrame(out, f, mayReplace);
-          if (previews && f.kind.empty()) writePreview(out, f, ranges, mayReplace);
-          total.add(f);
+        [&](const std::shared_ptr<const Frame>& f) {
+          noteOrder(*f, told);
+          noteLimits(*f, toldOfLimits);
+          noteScattering(*f, told);
+          for (const auto& sink : sinks) sink->take(f);
+          total.add(*f);
           progress.step();
         },
         sim.probes.empty() ? ProbeSink{} : [&](const ProbeReading& r) {
@@ -309,7 +324,8 @@ int runCommand(const Arguments& arguments) {
       learn(report, sim, attempt + 1);
       continue;
     }
-    probes.write(out, mayReplace);
+    for (const auto& sink : sinks) sink->finish();
+    probes.write(out, place.mayReplace);
     for (const auto& [camera, plan] : report.plans) writeFileAtomically(out / (camera + ".plan"), plan);
     progress.finish();
     auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
@@ -340,7 +356,7 @@ int checkCommand(const Arguments& arguments) {
     std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
                 count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),
                 count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths").c_str());
-    for (const ScatteredAgain& s : ScatteringCheck(sim, c, plan).at(advance(sim.entities, sim.lights, sim.time.at(0))))
+    for (const ScatteredAgain& s : ScatteringCheck(sim, c, plan).at(advance(sim, sim.time.at(0))))
       if (s.factor > kWorthSaying) sayScatteredAgain(c.name, s.channel, s.factor);
     if (!c.spectralImage) continue;
     const auto passes = spectralPasses(c);

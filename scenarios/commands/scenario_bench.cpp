@@ -25,7 +25,7 @@ std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::v
   Progress progress("bench", frames * static_cast<int>(sim.cameras.size()));
   for (const Camera& camera : sim.cameras) {
     CameraRenderer renderer(sim, camera, shaderLibrary(), scene);
-    auto draw = [&](int k) { renderer.render(advance(sim.entities, sim.lights, sim.time.at(k * (sim.time.frames - 1) / std::max(frames - 1, 1)))); };
+    auto draw = [&](int k) { renderer.render(advance(sim, sim.time.at(k * (sim.time.frames - 1) / std::max(frames - 1, 1)))); };
     draw(0);  // the driver compiles
     timed([&] { yardstick.draw(); });
     std::vector<double> own, bare;

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "sim/frame/seen_bodies.hpp"
+#include "sim/model/world.hpp"
 #include "sim/scene/mesh_units.hpp"
 
 namespace pitviper {
@@ -47,7 +48,7 @@ class Report {
     const bool crowd = sim.cameras.size() * sim.entities.size() > kMostPairs;
     for (int f : {0, last / 2, last})
       if (frames_.empty() || (frames_.back() != f && !crowd)) frames_.push_back(f);
-    for (int f : frames_) seen_.push_back(bodiesSeen(sim, camera, advance(sim.entities, sim.lights, sim.time.at(f))));
+    for (int f : frames_) seen_.push_back(bodiesSeen(sim, camera, advance(sim, sim.time.at(f))));
   }
 
   std::string text() const {

@@ -1,5 +1,6 @@
 #include <array>
 
+#include "atmosphere/models.hpp"
 #include "materials/models.hpp"
 #include "scenarios/commands/commands.hpp"
 
@@ -17,6 +18,8 @@ const ShaderLibrary& shaderLibrary() {
     l.add(pv_render_shaders());
     l.add(pv_materials_shaders());
     l.add(pv_atmosphere_shaders());
+    for (const AirModel& m : airModels().all()) 
+      for (const auto& [path, text] : m.shaders) l.add(std::array{ShaderText{path, text}});
     for (const ReflectionModel& m : reflectionModels().all())
       if (!m.shader.first.empty()) l.add(std::array{ShaderText{m.shader.first, m.shader.second}});
     return l;

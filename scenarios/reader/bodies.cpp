@@ -9,6 +9,7 @@
 #include "sim/scene/mesh_axes.hpp"
 #include "sim/scene/mesh_import.hpp"
 #include "sim/scene/mesh_tools.hpp"
+#include "sim/scene/placement.hpp"
 #include "sim/scene/primitives.hpp"
 
 namespace pitviper {
@@ -20,27 +21,10 @@ constexpr std::size_t kMostSceneTriangles = 10000000;
 constexpr double kUsualGround_m = 4e5;
 }  // namespace
 
-glm::dvec3 Builder::readPosition(const Record& r, bool required) {
-  if (r.given("position") && r.given("geodetic")) throw UserError(r.where("geodetic"), "a position and a geodetic position", "one of the two", "remove one");
-  if (r.given("geodetic")) {
-    const Record g(r.value("geodetic"), tables::geodetic());
-    return simulation_.frame.toLocal({g.number("latitude"), g.number("longitude"), g.number("height")});
-  }
-  if (r.given("position")) {
-    return r.vector("position");
-  }
-  if (required) throw UserError(r.where(), "no position", "'position: [0 m, 0 m, 100 m]', 'geodetic' or 'motion'", "add it");
-  return glm::dvec3(0.0);
-}
-
-std::optional<Attitude> Builder::readAttitude(const Record& r, bool attached) {
-  if (!r.given("heading") && !r.given("pitch") && !r.given("roll")) return std::nullopt;
-  Attitude a;
-  a.heading_rad = r.given("heading") ? r.number("heading") : attached ? 0.0 : 0.5 * kPi;  // as a body that is not turned
-  if (attached) a.heading_rad += 0.5 * kPi;                                               // clockwise from the carrier's forward axis instead of north
-  if (r.given("pitch")) a.pitch_rad = r.number("pitch");
-  if (r.given("roll")) a.roll_rad = r.number("roll");
-  return a;
+glm::dvec3 Builder::positionOf(const Record& r, bool required) const {
+  const auto given = readPosition(r, simulation_.frame);
+  if (!given && required) throw UserError(r.where(), "no position", "'position: [0 m, 0 m, 100 m]', 'geodetic' or 'motion'", "add it");
+  return given.value_or(glm::dvec3(0.0));
 }
 
 Builder::Placement Builder::readPlacement(const Record& r, bool attitude) {
@@ -61,7 +45,7 @@ Builder::Placement Builder::readPlacement(const Record& r, bool attitude) {
       const Record w(v, tables::waypoint());
       Waypoint point;
       point.time_s = w.number("time");
-      point.position = readPosition(w, true);
+      point.position = positionOf(w, true);
       if (w.given("pitch") && !w.given("heading"))
         throw UserError(w.where("pitch"), "a waypoint with a pitch but no heading", "both, or neither (then it follows the path)", "add 'heading:'");
       if (w.given("heading")) point.attitude = readAttitude(w, p.carrier >= 0);
@@ -75,7 +59,7 @@ Builder::Placement Builder::readPlacement(const Record& r, bool attitude) {
     return p;
   }
   Pose fixed;
-  fixed.position = readPosition(r, false);
+  fixed.position = positionOf(r, false);
   if (attitude) {
     // Not turned: the body's x, y, z are east, north, up (or the carrier's own axes).
     if (const auto given = readAttitude(r, p.carrier >= 0)) fixed.orientation = orientationFrom(*given);
@@ -157,14 +141,6 @@ void turnAsAsked(Mesh& mesh, const Record& r) {
                     : r.given("up")                     ? "add 'forward:'"
                                                         : "add 'up:'");
   turnAxes(mesh, usual, meant);
-}
-
-/// A value as text, places left out.
-std::string wordsOf(const Value& v) {
-  std::string words = std::to_string(static_cast<int>(v.kind)) + "'" + v.text + "'";
-  for (const Value& item : v.items) words += "[" + wordsOf(item) + "]";
-  for (const auto& [key, item] : v.entries) words += "{'" + key + "':" + wordsOf(item) + "}";
-  return words;
 }
 
 /// The true form, scaled; what is missing has been, or will be, refused.

@@ -5,7 +5,6 @@
 #include <optional>
 #include <string>
 
-#include "atmosphere/absorber_table.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
 #include "sim/parameters/spectrum_value.hpp"
@@ -39,6 +38,9 @@ class Builder {
   void readLights(const Record& scenario);
   void readCameras(const Record& scenario);
   void readProbes(const Record& scenario);
+  /// After everything that they can change.
+  void readCommands(const Record& scenario);
+  void readSinks(const Record& scenario);
   /// `image`: the camera that drew the spectral image.
   void readSensor(const Record& file, const Pinhole& image, double exposure_s, Sensor& sensor);
 
@@ -58,8 +60,7 @@ class Builder {
     int carrier = -1;
   };
   Placement readPlacement(const Record& r, bool attitude);
-  glm::dvec3 readPosition(const Record& r, bool required);
-  std::optional<Attitude> readAttitude(const Record& r, bool attached);
+  glm::dvec3 positionOf(const Record& r, bool required) const;
   std::shared_ptr<const Mesh> shapeOf(const Value& value, BodyForm& form);
   std::shared_ptr<const Mesh> readShape(const Value& value, BodyForm& form);
   void checkMedium(const Record& entity, const Entity& e) const;
@@ -74,19 +75,12 @@ class Builder {
   // sensor_reader.cpp
   SpectralBins readSpectralBins(const Record& r, const Pinhole& pinhole);
 
-  // surroundings.cpp
-  AbsorberTable readAirTable(const Record& r, const std::filesystem::path& folder) const;
-  // air_tables.cpp
-  /// False where the air is of another kind.
-  bool readTabulatedAir(const Record& r);
-
   void checkUnique(const Value& name, std::map<std::string, Location>& names, const char* what);
   /// A spectrum whose values are finite and lie in [low, high] wherever it has data.
   static Spectrum bounded(const SpectrumReader& spectra, const Value& value, std::string_view unit, std::string_view name, double low, double high,
                           Outside outside = Outside::Error);
   Spectrum blackOrGiven(const Record& r, const char* what) const;
 
-  std::optional<double> homogeneousAir_K_;
   SpectralSampling accuracy_;  ///< of cameras without a sampling of their own
   Simulation& simulation_;
   std::filesystem::path base_;  ///< folder of the scenario

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "scenarios/reader/builder.hpp"
+#include "scenarios/reader/move_files.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sensors/quantity.hpp"
@@ -53,16 +54,6 @@ bool isNear(const std::filesystem::path& folder, const std::filesystem::path& na
   if (failed) return false;
   const auto at = std::filesystem::weakly_canonical(here / plain, failed).lexically_relative(here.parent_path());
   return !failed && !at.empty() && *at.begin() != "..";
-}
-
-/// Files that a tree names, found from `folder`, are found from where it is put as well.
-void moveFiles(Value& value, const std::filesystem::path& folder) {
-  for (Value& item : value.items) moveFiles(item, folder);
-  for (auto& [key, item] : value.entries) {
-    moveFiles(item, folder);
-    const bool names = key == "file" || key == "table" || key == "tape7" || key == "csv";
-    if (names && item.kind == Value::Kind::Scalar && std::filesystem::path(item.text).is_relative()) item.text = (folder / item.text).string();
-  }
 }
 
 /// `extends: other.yaml`: the other's keys hold where the tree has none.
@@ -137,6 +128,8 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     b.readLights(r);
     b.readCameras(r);
     b.readProbes(r);
+    b.readCommands(r);
+    b.readSinks(r);
   } catch (const OutsideSpectrum& e) {
     throw UserError(tree.where, e.what(), "spectra that cover what they are multiplied with", "extend the table or narrow the band");
   }

@@ -1,11 +1,8 @@
 // Origin, time, air, background, sun and ambient light.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "atmosphere/homogeneous.hpp"
-#include "atmosphere/layered.hpp"
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
@@ -21,23 +18,8 @@ constexpr double kLargestFloatValue = 1e30;
 /// What layered air is drawn with if nobody says; and the ends of what can be asked for: single precision and the tables' angles do 0.01 %.
 constexpr double kUsualAccuracy = 0.01, kLeastAccuracy = 0.0005, kMostAccuracy = 0.2;
 
-/// Of layered air: what its absorbers were fitted over is far within.
-constexpr double kColdestAir_K = 100.0, kWarmestAir_K = 500.0;
-
 /// Of limits: as far and as hot as a scenario's bodies can be.
 constexpr double kFarthestRange_m = 1e9, kHottestBody_K = 1e5;
-
-std::string libraryNames(const std::filesystem::path& folder, const std::string& word, std::string& nearest) {
-  std::vector<std::string> names;
-  std::error_code ignored;
-  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-  std::sort(names.begin(), names.end());
-  nearest = nearestWord(word, names);
-  std::string all;
-  for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
-  return all;
-}
 
 /// Two rising numbers above 0.
 void readPair(const Record& r, const char* key, const char* unit, double most, const char* example, double& low, double& high) {
@@ -123,7 +105,7 @@ void Builder::readLimits(const Record& scenario) {
 
 void Builder::readAccuracy(const Record& scenario) {
   if (!scenario.given("accuracy")) {
-    accuracy_.accuracy = simulation_.path->isLayered() || simulation_.path->isTabulated() ? kUsualAccuracy : 0.0;
+    accuracy_.accuracy = simulation_.air->traits().isBanded ? kUsualAccuracy : 0.0;
     return;
   }
   const Value& v = scenario.value("accuracy");
@@ -137,84 +119,6 @@ void Builder::readAccuracy(const Record& scenario) {
     throw UserError(v.where, "accuracy '" + v.text.substr(0, 40) + "' is neither a share nor 'reference'", "0.05 % to 20 %, or 'reference'",
                     "write 'accuracy: 1 %'");
   accuracy_.accuracy = *share;
-}
-
-void Builder::readAtmosphere(const Record& scenario) {
-  simulation_.path = makeNoAir();
-  const Value* value = scenario.find("atmosphere");
-  if (!value || (value->kind == Value::Kind::Scalar && value->text == "none")) return;
-  Value named;
-  if (value->kind == Value::Kind::Scalar) {
-    named.kind = Value::Kind::Map;
-    named.where = value->where;
-    named.entries = {{"library", *value}};
-    named.keyPlaces = {value->where};
-    value = &named;
-  }
-  const Record r(*value, tables::atmosphere());
-  if (r.text("model") == "none" || readTabulatedAir(r)) return;
-  if (r.given("library") && r.given("table")) throw UserError(r.where("table"), "the air has a library name and a table", "one of the two", "remove one");
-  std::optional<AbsorberTable> table;
-  HomogeneousAir air;
-  bool have = false;
-  auto take = [&](const Record& from, const SpectrumReader& spectra, const std::filesystem::path& folder) {
-    if (from.given("table")) table = readAirTable(from, folder);
-    if (from.given("extinction")) {
-      air.extinction_per_m = bounded(spectra, from.value("extinction"), "1/m", "extinction", 0.0, INFINITY);
-      have = true;
-    }
-    if (from.given("temperature")) air.temperature_K = from.number("temperature");
-    if (from.given("radiance")) air.radiance = bounded(spectra, from.value("radiance"), "W/(m2 sr um)", "air radiance", 0.0, INFINITY);
-    if (table && from.given("visibility")) table->setVisibility(1e-3 * from.number("visibility"));
-    if (table && from.given("aerosol")) from.text("aerosol") == "none" ? table->removeAerosol() : table->restoreAerosol();
-  };
-  if (r.given("library")) {
-    const std::string name = r.text("library");
-    const auto file = libraries_.atmosphere / (name + ".yaml");
-    std::error_code ignored;
-    if (name.find('/') != std::string::npos || name.size() > 100 || !std::filesystem::is_regular_file(file, ignored)) {
-      std::string near;
-      const std::string all = libraryNames(libraries_.atmosphere, name, near);
-      throw UserError(r.where("library"), "there is no library air '" + name.substr(0, 60) + "'", "one of " + all,
-                      near.empty() ? "choose one" : "did you mean '" + near + "'?");
-    }
-    const Value tree = loadYaml(file, r.where("library"));
-    take(Record(tree, tables::airLibrary()), spectra_.in(libraries_.atmosphere), libraries_.atmosphere);
-  }
-  take(r, spectra_, base_);
-  if (table) {
-    for (const char* key : {"extinction", "radiance", "top"})
-      if (r.given(key))
-        throw UserError(r.where(key), std::string("'") + key + "' is of homogeneous air, and this air is layered: its table has it",
-                        "'visibility', 'aerosol' or 'temperature', or homogeneous air",
-                        std::string("remove '") + key + "', or give an extinction instead of the library air");
-    if (air.temperature_K) {
-      if (!(*air.temperature_K >= kColdestAir_K && *air.temperature_K <= kWarmestAir_K))
-        throw UserError(r.given("temperature") ? r.where("temperature") : r.where(), "layered air at " + briefNumber(*air.temperature_K) + " K",
-                        briefNumber(kColdestAir_K) + " to " + briefNumber(kWarmestAir_K) + " K", "correct the temperature, or describe homogeneous air");
-      table->setTemperature(*air.temperature_K);
-    }
-    simulation_.path = makeLayeredAir(std::move(*table));
-    return;
-  }
-  for (const char* key : {"visibility", "aerosol"})
-    if (r.given(key))
-      throw UserError(r.where(key), std::string("'") + key + "' is of layered air, and this air is homogeneous", "a library air or a table",
-                      std::string("remove '") + key + "'");
-  if (!have)
-    throw UserError(r.where(), "air without an extinction, a table or a library name", "'library', 'table', 'extinction', 'tape7' or 'csv'",
-                    "add 'library: hazy_us76' or 'extinction: 0.2 /km'");
-  if (r.given("top")) air.top_m = r.number("top");
-  homogeneousAir_K_ = air.temperature_K;
-  simulation_.path = makeHomogeneousAir(std::move(air));
-}
-
-AbsorberTable Builder::readAirTable(const Record& r, const std::filesystem::path& folder) const {
-  const std::filesystem::path file = folder / r.text("table");
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored))
-    throw UserError(r.where("table"), "there is no file '" + file.string() + "'", "an air table, its path relative to this file", "check the path");
-  return AbsorberTable::read(file);
 }
 
 /// A map with either temperature or radiance.
@@ -233,7 +137,7 @@ void Builder::readBackground(const Record& scenario) {
 
 void Builder::readGround(const Record& scenario) {
   const bool given = scenario.given("ground");
-  if (!given && !simulation_.path->isLayered()) return;
+  if (!given && !simulation_.air->traits().liesOnGround) return;
   Value none;
   none.kind = Value::Kind::Map;
   none.where = scenario.where();
@@ -251,8 +155,7 @@ void Builder::readGround(const Record& scenario) {
     black->name = "black ground";
     simulation_.materials.push_back(std::move(black));
   }
-  const auto air = simulation_.path->stationsAt({0.0, 1.0, simulation_.frame.earthRadius_m()}, std::array{0.0});
-  ground.temperature_K = r.given("temperature") ? r.number("temperature") : homogeneousAir_K_ ? *homogeneousAir_K_ : air.front().temperature_K;
+  ground.temperature_K = r.given("temperature") ? r.number("temperature") : simulation_.air->groundTemperature_K();
   if (!r.given("temperature") && !(ground.temperature_K > 0.0))
     throw UserError(r.where(), "a ground without a temperature, under air that has none", "a temperature", "add 'temperature: 288 K'");
   simulation_.ground = ground;
@@ -267,11 +170,11 @@ void Builder::readAmbient(const Record& scenario) {
   }
   for (const char* key : {"temperature", "radiance"})
     if (r.given(key)) throw UserError(r.where(key), "ambient light from the sky has its own radiance", "'from' alone", std::string("remove '") + key + "'");
-  if (!simulation_.path->isLayered())
+  if (!simulation_.air->traits().liesOnGround)
     throw UserError(r.where("from"), "ambient light from the sky needs layered air", "a library air or a table under 'atmosphere'",
                     "add 'atmosphere: hazy_us76', or give a temperature or radiance");
   try {
-    simulation_.ambient = meanSky(simulation_.path, simulation_.sun, simulation_.background, 0.0, simulation_.frame.earthRadius_m());
+    simulation_.ambient = meanSky(simulation_.air, simulation_.sun, simulation_.background, 0.0, simulation_.frame.earthRadius_m());
   } catch (const OutsideSpectrum& e) {
     throw UserError(r.where("from"), std::string("the sky needs the sun and the background wherever the air has data: ") + e.what(),
                     "spectra from 0.4 to 14.2 um", "extend the table, or declare 'outside: hold' or 'outside: zero' if that is true");

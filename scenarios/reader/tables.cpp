@@ -1,9 +1,13 @@
 #include "scenarios/reader/tables.hpp"
 
+#include "atmosphere/models.hpp"
 #include "materials/angle_tables.hpp"
 #include "materials/models.hpp"
 #include "sensors/quantity.hpp"
 #include "sim/parameters/spectrum_value.hpp"
+#include "sim/scene/placement.hpp"
+#include "sim/stream/command_models.hpp"
+#include "sim/stream/sink_models.hpp"
 
 namespace pitviper::tables {
 namespace {
@@ -11,29 +15,16 @@ namespace {
 constexpr double kHalfTurn = 3.14159265358979324;
 /// 32 years: a double still tells 0.1 us apart there.
 constexpr double kLongestTime_s = 1e9;
-/// More than twice the way to the moon.
-constexpr double kFarthest_m = 1e9;
-/// Of an attitude given once, whole turns don't matter: so many are taken for a slip of a program that counts on, not of a unit. Waypoints: one.
-constexpr double kMostTurn = 200 * kHalfTurn;
 /// Beyond any fireball; spectral radiance is then far from the end of a float.
 constexpr double kHottest_K = 1e5;
 
 const std::vector<std::string> kAxes = {"+x", "-x", "+y", "-y", "+z", "-z"};
 
 /// Where something is: shared by entities, lights and cameras.
-void addPlacement(std::vector<Parameter>& p, bool attitude, double mostTurn = kMostTurn) {
-  p.push_back(
-      within(vector3("position", "m", "east, north, up from the origin (or in the carrier's body axes: forward, left, up)"), -kFarthest_m, kFarthest_m));
-  p.push_back(map("geodetic", "position as latitude, longitude, height instead"));
-  if (attitude) {
-    p.push_back(within(
-        number("heading", "rad",
-               "of the x axis, clockwise from north (on a carrier: from its forward axis); 90 deg unless given: x east, y north. An attitude, not a turn: "
-               "360 deg is 0 deg"),
-        -mostTurn, mostTurn));
-    p.push_back(within(number("pitch", "rad", "nose up; 0 unless given"), -kHalfTurn, kHalfTurn));
-    p.push_back(within(number("roll", "rad", "right wing down; 0 unless given"), -mostTurn, mostTurn));
-  }
+void addPlacement(std::vector<Parameter>& p, bool attitude, double mostTurn = kMostTurn_rad) {
+  for (auto& own : positionParameters()) p.push_back(std::move(own));
+  if (attitude)
+    for (auto& own : attitudeParameters(mostTurn)) p.push_back(std::move(own));
   p.push_back(list("motion", "waypoints; orientation follows the path unless a waypoint gives one", 1, 100000));
   p.push_back(withDefault(choice("interpolation", {"smooth", "linear"}, "between waypoints: cubic with continuous velocity, or straight"), "smooth"));
   p.push_back(text("attached_to",
@@ -83,7 +74,9 @@ const ParameterTable& scenario() {
        list("lights", "spectral point lights", 0, 1024),
        list("entities", "bodies", 0, 4096),
        list("cameras", "sensors", 0, 64),
-       list("probes", "irradiance meters", 0, 256)}};
+       list("probes", "irradiance meters", 0, 256),
+       list("commands", "changes from a time on: bodies moved, cameras turned, temperatures, lights", 0, 4096),
+       list("sinks", "where frames go; `[files]` unless given", 1, 64)}};
   return t;
 }
 
@@ -99,11 +92,7 @@ const ParameterTable& render() {
 }
 
 const ParameterTable& origin() {
-  static const ParameterTable t{"origin",
-                                "",
-                                {required(within(number("latitude", "rad", "geodetic, WGS 84"), -kHalfTurn / 2, kHalfTurn / 2)),
-                                 required(within(number("longitude", "rad", "east positive"), -kHalfTurn, 2 * kHalfTurn)),
-                                 withDefault(within(number("height", "m", "above the ellipsoid"), -20000, 1e8), "0 m")}};
+  static const ParameterTable t{"origin", "", geodeticParameters()};
   return t;
 }
 
@@ -131,40 +120,15 @@ const ParameterTable& limits() {
   return t;
 }
 
-const ParameterTable& atmosphere() {
-  static const ParameterTable t{
-      "atmosphere",
-      "None, layered air (library or table), homogeneous air (extinction), or air along level paths from a table of your own (tape7 or csv).",
-      {withDefault(choice("model", {"none", "air"}, "none: whatever else is given, there is no air"), "air"),
-       text("library", "named air, atmosphere/library/<name>.yaml"),
-       text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air"),
-       within(number("visibility", "m", "layered: meteorological visibility of the haze"), 500, 3e5),
-       choice("aerosol", {"none", "table"}, "layered: without aerosol, or with the table's"),
-       spectrum("extinction", "1/m", "homogeneous: extinction coefficient"),
-       within(number("temperature", "K",
-                     "homogeneous: the air emits as a black body of this temperature, and does not without; layered: the same at every height, in place of the "
-                     "table's"),
-              0, kHottest_K),
-       spectrum("radiance", "W/(m2 sr um)", "homogeneous: further source radiance at great depth, for instance scattered sunlight"),
-       within(number("top", "m",
-                     "homogeneous: height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never "
-                     "ends and the sun's irradiance is that at the scene"),
-              -500, 1e7),
-       text("tape7", "file of MODTRAN runs along a horizontal or slant path, relative to the scenario; several ranges in one file are best"),
-       above(within(number("range", "m", "of the only path of a tape7 that does not say it"), 0, kFarthest_m), 0),
-       text("csv", "file of transmittance or extinction by wavelength and range, relative to the scenario; its columns: atmosphere/tabulated_csv.hpp")}};
-  return t;
-}
-
 const ParameterTable& airLibrary() {
-  static const ParameterTable t{
-      "air (library file)",
-      "atmosphere/library/<name>.yaml: an air table, or an extinction.",
-      {text("description", "what air it is"), text("source", "where the figures come from"), text("table", "air table beside it"),
-       within(number("visibility", "m", "of the table's haze"), 500, 3e5), choice("aerosol", {"none", "table"}, "without aerosol, or with the table's"),
-       spectrum("extinction", "1/m", "extinction coefficient"),
-       within(number("temperature", "K", "air temperature (of a table: the same at every height)"), 0, kHottest_K),
-       spectrum("radiance", "W/(m2 sr um)", "further source radiance")}};
+  static const ParameterTable t = [] {
+    ParameterTable own = anyAirTable();
+    own.title = "air (library file)";
+    own.description = "atmosphere/library/<name>.yaml: the keys of any of these airs.";
+    std::erase_if(own.parameters, [](const Parameter& p) { return p.key == "library"; });
+    own.parameters.insert(own.parameters.begin(), {text("description", "what air it is"), text("source", "where the figures come from")});
+    return own;
+  }();
   return t;
 }
 
@@ -421,11 +385,25 @@ std::vector<const ParameterTable*> all() {
     for (const ReflectionModel& m : reflectionModels().all()) tables.push_back(componentTable(m));
     return tables;
   }();
-  std::vector<const ParameterTable*> tables{&scenario(),   &render(), &origin(), &time(),    &limits(),        &atmosphere(), &airLibrary(),
-                                            &background(), &ground(), &sun(),    &ambient(), &spectrumTable(), &material()};
+  static const std::vector<ParameterTable> airs = [] {
+    std::vector<ParameterTable> tables;
+    tables.push_back(commonAirTable());
+    for (const AirModel& m : airModels().all()) tables.push_back(airTable(m));
+    return tables;
+  }();
+  std::vector<const ParameterTable*> tables{&scenario(), &render(), &origin(), &time(), &limits()};
+  for (const ParameterTable& t : airs) tables.push_back(&t);
+  tables.insert(tables.end(), {&airLibrary(), &background(), &ground(), &sun(), &ambient(), &spectrumTable(), &material()});
   for (const ParameterTable& t : components) tables.push_back(&t);
+  static const std::vector<ParameterTable> live = [] {
+    std::vector<ParameterTable> each;
+    for (const CommandModel& m : commandModels().all()) each.push_back(commandTable(m));
+    for (const SinkModel& m : sinkModels().all()) each.push_back(sinkTable(m));
+    return each;
+  }();
   tables.insert(tables.end(), {&angleAxisTable(), &texture(), &emission(), &transmission(), &light(), &entity(), &part(), &shape(), &waypoint(), &geodetic(),
                                &camera(), &film(), &channel(), &spectral(), &spectralImage(), &sensor(), &probe()});
+  for (const ParameterTable& t : live) tables.push_back(&t);
   return tables;
 }
 

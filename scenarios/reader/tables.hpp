@@ -11,7 +11,6 @@ const ParameterTable& render();
 const ParameterTable& origin();
 const ParameterTable& time();
 const ParameterTable& limits();
-const ParameterTable& atmosphere();
 const ParameterTable& airLibrary();
 const ParameterTable& background();
 const ParameterTable& ground();

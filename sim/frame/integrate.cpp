@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/frame/make_frame.hpp"
 #include "sim/frame/version.hpp"
 
 namespace pitviper {
@@ -101,7 +102,8 @@ IntegratedFrame integrateSpectralImage(const SpectralImage& image, const std::ve
     const auto value = weightedSum(image, w.value);
     result.binning.push_back(errorOf(value, weightedSum(image, w.error)));
     FrameLayer layer{o.layer(), o.unit, std::vector<float>(value.size())};
-    for (size_t p = 0; p < value.size(); ++p) layer.pixels[p] = static_cast<float>(o.scale * value[p] * (o.perEtendue ? solidAngles.projected_sr[p] : 1.0));
+    const double scale = o.scale * (o.perExposure ? exposure_s : 1.0);
+    for (size_t p = 0; p < value.size(); ++p) layer.pixels[p] = static_cast<float>(scale * value[p] * (o.perEtendue ? solidAngles.projected_sr[p] : 1.0));
     frame.layers.push_back(std::move(layer));
     frame.attributes.push_back({"binning_error." + o.layer(), std::vector<double>{result.binning.back().median, result.binning.back().maximum}});
   }

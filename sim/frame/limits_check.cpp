@@ -26,7 +26,7 @@ std::string kelvins(double v) { return number("%.4g K", v); }
 std::string outsideLimits(const Simulation& sim, const Camera& camera, const WorldState& state) {
   const Limits& limits = sim.limits;
   std::vector<std::string> found;
-  const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, camera.samples);
+  const View view = cameraView(camera, state, camera.samples);
   for (size_t e = 0; e < sim.entities.size() && (limits.farthest_m > 0.0 || limits.hottest_K > 0.0); ++e) {
     const Entity& body = sim.entities[e];
     const Pose& pose = state.entities[e];
@@ -39,8 +39,8 @@ std::string outsideLimits(const Simulation& sim, const Camera& camera, const Wor
     if (limits.farthest_m > 0.0 && range + radius < limits.nearest_m)
       found.push_back(body.name + " at " + metres(range + radius) + ", planned from " + metres(limits.nearest_m));
     double coldest = INFINITY, hottest = 0.0;
-    for (const Surface& s : body.surfaces)
-      if (s.temperatureTexture < 0) coldest = std::min(coldest, s.temperature_K), hottest = std::max(hottest, s.temperature_K);
+    for (size_t s = 0; s < body.surfaces.size(); ++s)
+      if (const double t = state.temperatures_K[e][s]; body.surfaces[s].temperatureTexture < 0) coldest = std::min(coldest, t), hottest = std::max(hottest, t);
     if (limits.hottest_K > 0.0 && hottest > limits.hottest_K)
       found.push_back(body.name + " at " + kelvins(hottest) + ", planned to " + kelvins(limits.hottest_K));
     if (limits.hottest_K > 0.0 && coldest < limits.coldest_K)

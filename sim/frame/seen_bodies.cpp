@@ -51,7 +51,7 @@ class Looker {
   Looker(const Simulation& sim, const Camera& camera, const WorldState& state)
       : sim_(sim),
         state_(state),
-        view_(cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, 1)),
+        view_(cameraView(camera, state, 1)),
         cameraFromLocal_(glm::transpose(view_.localFromCamera)),
         present_(sim.entities.size(), 1),
         onFilm_(sim.entities.size(), 0),

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "sim/frame/frame.hpp"
+#include "sim/model/simulation.hpp"
 
 namespace pitviper {
 

@@ -78,6 +78,8 @@ GlLimits currentLimits() {
 
 GlContext::GlContext(std::string device) {
   if (const char* wish = std::getenv("PITVIPER_GL"); wish && *wish && device == "auto") device = wish;
+  displayBefore_ = eglGetCurrentDisplay();
+  before_ = eglGetCurrentContext();
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
   auto tryDisplay = [&](EGLDisplay candidate) {
@@ -110,8 +112,17 @@ GlContext::GlContext(std::string device) {
 }
 
 GlContext::~GlContext() {
-  eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+  if (before_) eglMakeCurrent(displayBefore_, EGL_NO_SURFACE, EGL_NO_SURFACE, before_);
+  else eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
   eglDestroyContext(display_, context_);
+}
+
+void checkUniformSize(std::size_t bytes, const char* what) {
+  GLint limit = 0;
+  glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &limit);
+  if (bytes > static_cast<std::size_t>(limit))
+    throw GlError(std::string(what) + " take " + std::to_string(bytes) + " bytes, this driver's uniform blocks hold " + std::to_string(limit) +
+                  "; use fewer spectral samples, channels or lights");
 }
 
 void checkGl(const char* doing) {

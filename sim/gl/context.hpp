@@ -20,7 +20,7 @@ struct GlLimits {
   int uniformBlock = 0;    ///< bytes
 };
 
-/// Current on the thread that made it, until destroyed. Not copyable.
+/// Current on the thread that made it, until destroyed; then the one that was before is again. Not copyable.
 class GlContext {
  public:
   /// `device`: "auto" takes the first hardware EGL device and falls back on surfaceless; "surfaceless"; or "device:N".
@@ -35,11 +35,16 @@ class GlContext {
  private:
   void* display_ = nullptr;
   void* context_ = nullptr;
+  void* displayBefore_ = nullptr;
+  void* before_ = nullptr;
   GlLimits limits_;
 };
 
 /// Of the current context.
 GlLimits currentLimits();
+
+/// Throws GlError where a uniform block would be larger than the driver's; says what takes the room.
+void checkUniformSize(std::size_t bytes, const char* what);
 
 /// Throws GlError where GL has recorded an error; `doing` says at what.
 void checkGl(const char* doing);

@@ -7,7 +7,8 @@
 
 namespace pitviper {
 
-/// pixel value = scale x integral of kernel(lambda) L(lambda) dlambda [x projected solid angle of the pixel, where perEtendue].
+/// pixel value = scale x integral of kernel(lambda) L(lambda) dlambda [x projected solid angle of the pixel, where perEtendue] [x exposure time, where
+/// perExposure].
 /// The kernel holds response and calibration k(lambda) (and optics and quantum efficiency where the quantity has them).
 struct ChannelOutput {
   std::string channel;   ///< "mw"
@@ -16,7 +17,7 @@ struct ChannelOutput {
   Location where;
   Spectrum kernel;
   double scale = 1.0;
-  bool perEtendue = false;
+  bool perEtendue = false, perExposure = false;
   double bandLow_um = 0.0, bandHigh_um = 0.0;
   std::string cut;  ///< what of its response is left out for want of data, in words; empty: nothing (coverage.hpp)
   std::string layer() const { return channel + "." + quantity; }

@@ -20,9 +20,9 @@ std::vector<Source> sourcesOf(const Simulation& sim, const Location& channel) {
   std::vector<Source> all;
   auto add = [&](std::string what, const Location& where, const Spectrum& s) { all.push_back({std::move(what), where, s.validLow(), s.validHigh()}); };
   for (const auto& m : sim.materials) all.push_back({"material '" + m->name + "'", m->where, m->validLow_um(), m->validHigh_um()});
-  if (sim.path) {
-    const bool table = !sim.path->where().file.empty();
-    all.push_back({"the atmosphere", table ? sim.path->where() : channel, sim.path->validLow_um(), sim.path->validHigh_um(), table, true});
+  if (sim.air) {
+    const bool table = !sim.air->where().file.empty();
+    all.push_back({"the atmosphere", table ? sim.air->where() : channel, sim.air->validLow_um(), sim.air->validHigh_um(), table, true});
   }
   for (const auto& l : sim.lights) add("light '" + l.name + "'", channel, l.intensity);
   if (sim.sun) add("the sun", channel, sim.sun->irradiance);

@@ -19,4 +19,8 @@ const Surface& surfaceAt(const Simulation& sim, const Hit& hit) {
   return hit.entity < 0 ? *sim.ground : sim.entities[static_cast<size_t>(hit.entity)].surfaces[static_cast<size_t>(hit.surface)];
 }
 
+double temperatureAt(const Simulation& sim, const WorldState& state, const Hit& hit) {
+  return hit.entity < 0 ? sim.ground->temperature_K : state.temperatures_K[static_cast<size_t>(hit.entity)][static_cast<size_t>(hit.surface)];
+}
+
 }  // namespace pitviper

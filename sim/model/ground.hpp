@@ -13,4 +13,7 @@ std::optional<Hit> groundHit(const Simulation& simulation, const glm::dvec3& ori
 /// What a hit is the surface of: an entity's, or the ground.
 const Surface& surfaceAt(const Simulation& simulation, const Hit& hit);
 
+/// Its temperature [K], where no texture says.
+double temperatureAt(const Simulation& simulation, const WorldState& state, const Hit& hit);
+
 }  // namespace pitviper

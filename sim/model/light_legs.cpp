@@ -17,8 +17,8 @@ SunHere sunHere(const Simulation& sim, const glm::dvec3& point) {
   here.share = risen.share;
   // Turned upwards by the sine's change over the cosine twice: once for the angle, once for what of `up` lies across the line.
   here.toSun = glm::normalize(here.toSun + (risen.sinElevation - sine) / std::max(1.0 - sine * sine, 1e-6) * up);
-  if (here.share > 0.0 && sim.path->top_m() < physics::kFar)
-    here.air = sim.path->amounts({height, risen.sinElevation, sim.frame.earthRadius_m()}, physics::kFar);
+  if (here.share > 0.0 && sim.air->top_m() < physics::kFar)
+    here.air = sim.air->amounts({height, risen.sinElevation, sim.frame.earthRadius_m()}, physics::kFar);
   return here;
 }
 
@@ -37,8 +37,8 @@ LightLeg lightLeg(const Simulation& sim, const WorldState& state, const Hit& hit
   leg.distance_m = std::sqrt(d2);
   leg.toLight = d2 > 0.0 ? line / leg.distance_m : hit.normal;
   leg.factor = physics::pointIrradianceFactor(glm::dot(leg.toLight, hit.normal), d2, sim.lights[light].radius_m);
-  if (!sim.path || sim.path->isNone()) return leg;
-  leg.air = sim.path->amounts({sim.frame.height(hit.point), glm::dot(leg.toLight, sim.frame.up(hit.point)), sim.frame.earthRadius_m()}, leg.distance_m);
+  if (!sim.air || !sim.air->traits().any) return leg;
+  leg.air = sim.air->amounts({sim.frame.height(hit.point), glm::dot(leg.toLight, sim.frame.up(hit.point)), sim.frame.earthRadius_m()}, leg.distance_m);
   return leg;
 }
 

@@ -37,7 +37,7 @@ void addTo(Fingerprint& f, const PointLight& l) {
 void addTo(Fingerprint& f, const std::vector<ChannelOutput>& outputs) {
   f.add(static_cast<double>(outputs.size()));
   for (const ChannelOutput& o : outputs) {
-    f.add(o.channel).add(o.quantity).add(o.scale).add(o.perEtendue);
+    f.add(o.channel).add(o.quantity).add(o.scale).add(o.perEtendue).add(o.perExposure);
     pitviper::addTo(f, o.kernel);
   }
 }
@@ -102,8 +102,10 @@ void addTo(Fingerprint& f, const Simulation& sim) {
   addTo(f, sim.background);
   f.add(sim.ground.has_value());
   if (sim.ground) f.add(sim.ground->material).add(sim.ground->temperature_K);
-  f.add(sim.path != nullptr);
-  if (sim.path) sim.path->addTo(f);
+  f.add(sim.air != nullptr);
+  if (sim.air) sim.air->addTo(f);
+  f.add(static_cast<double>(sim.commands.size()));
+  for (const Command& c : sim.commands) f.add(c.at_s).add(c.words);
 }
 
 void addTo(Fingerprint& f, const Camera& c) {

@@ -2,6 +2,8 @@
 
 #include <map>
 
+#include "sim/model/world.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -23,12 +25,12 @@ std::vector<std::uint32_t> opaqueTriangles(const Simulation& sim, const Entity& 
 bool staysOutside(const Simulation& sim) {
   if (sim.time.frames > kMostFrames) return false;
   for (int frame = 0; frame < sim.time.frames; ++frame) {
-    const WorldState state = advance(sim.entities, sim.lights, sim.time.at(frame));
+    const WorldState state = advance(sim, sim.time.at(frame));
     const Pose& pose = state.entities[0];
     const glm::dvec3 centre = pose.position + pose.orientation * glm::dvec3(sim.entities[0].boundingCentre);
     auto inside = [&](const glm::dvec3& p) { return glm::length(p - centre) <= static_cast<double>(sim.entities[0].boundingRadius_m); };
     for (const Camera& c : sim.cameras)
-      if (inside(cameraPose(c.mount, state).position)) return false;
+      if (inside(cameraAt(c, state).pose.position)) return false;
     for (const Probe& p : sim.probes)
       if (inside(p.position)) return false;
   }

@@ -7,8 +7,10 @@
 #include <vector>
 
 #include "sim/model/channel.hpp"
+#include "sim/model/command.hpp"
 #include "sim/model/material.hpp"
-#include "sim/model/path.hpp"
+#include "sim/model/atmosphere.hpp"
+#include "sim/model/sink.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectral_rule.hpp"
 #include "sim/scene/camera.hpp"
@@ -116,16 +118,18 @@ struct Simulation {
   std::optional<Spectrum> ambient;  ///< radiance of a uniform dome [W/(m2 sr um)]
   Spectrum background;              ///< radiance behind everything [W/(m2 sr um)]
   std::optional<Surface> ground;    ///< of the earth's sphere, where lines of sight end that meet no body and go down
-  std::shared_ptr<const Path> path;
+  std::shared_ptr<const Atmosphere> air;
   std::vector<Camera> cameras;
   std::vector<Probe> probes;
+  std::vector<Command> commands;  ///< in the order of their times
+  std::vector<SinkChoice> sinks;  ///< of its frames; none: files of all of them
 
   const Material& materialOf(const Surface& s) const { return *materials[static_cast<size_t>(s.material)]; }
   const Medium* mediumOf(const Entity& e) const {  ///< what fills it, or null
     return e.surfaces.empty() || !materialOf(e.surfaces.front()).medium ? nullptr : &*materialOf(e.surfaces.front()).medium;
   }
   /// The earth, a sphere, is there and hides the sun: under air with a top, or where it has a ground.
-  bool overEarth() const { return ground || (path && path->top_m() < physics::kFar); }
+  bool overEarth() const { return ground || (air && air->top_m() < physics::kFar); }
   bool isTransparent(const Entity& e) const {  ///< any of its surfaces
     return std::any_of(e.surfaces.begin(), e.surfaces.end(), [this](const Surface& s) { return materialOf(s).isTransparent(); });
   }

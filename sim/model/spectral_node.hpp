@@ -2,7 +2,7 @@
 // What a plan evaluates as if it were one wavelength: a wavelength, or several that the air treats alike, averaged.
 #include <vector>
 
-#include "sim/model/path.hpp"
+#include "sim/model/atmosphere.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {

@@ -28,7 +28,7 @@ RisenSun risenSun(double height_m, double sinElevation, double earthRadius_m) {
           std::min(sinElevation + physics::sunRise(x) * physics::sunRadius() * std::sqrt(std::max(1.0 - sinElevation * sinElevation, 0.0)), 1.0)};
 }
 
-SunLegs::SunLegs(std::shared_ptr<const Path> path, double sinElevation, double earthRadius_m)
+SunLegs::SunLegs(std::shared_ptr<const Atmosphere> path, double sinElevation, double earthRadius_m)
     : path_(std::move(path)),
       step_(sinElevation < 0.0 ? std::max(kStep, (kAbove - sinElevation) / (kElevations - 1)) : kStep * (1.0 + kGrowth * sinElevation)),
       first_(std::clamp(sinElevation - kBelow * step_, 0.0, std::max(1.0 - (kElevations - 1) * step_, 0.0))),
@@ -50,9 +50,9 @@ SunLegs::SunLegs(std::shared_ptr<const Path> path, double sinElevation, double e
   for (auto& o : others) o.get();
 }
 
-std::shared_ptr<const SunLegs> SunLegs::of(const std::shared_ptr<const Path>& path, double sinElevation, double earthRadius_m) {
+std::shared_ptr<const SunLegs> SunLegs::of(const std::shared_ptr<const Atmosphere>& path, double sinElevation, double earthRadius_m) {
   // Who keeps one keeps its path: no other has the same address meanwhile.
-  using Key = std::tuple<const Path*, double, double>;
+  using Key = std::tuple<const Atmosphere*, double, double>;
   static std::mutex mutex;
   static std::map<Key, std::weak_ptr<const SunLegs>> all;
   const std::scoped_lock lock(mutex);

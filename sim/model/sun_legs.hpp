@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/model/path.hpp"
+#include "sim/model/atmosphere.hpp"
 
 namespace pitviper {
 
@@ -18,9 +18,9 @@ class SunLegs {
  public:
   /// For sun elevations around one: sines from 0.02 below it to 0.025 above (130 km around the origin, and a disc on the horizon), more of a high
   /// sun; others are worked out in full.
-  SunLegs(std::shared_ptr<const Path> path, double sinElevation, double earthRadius_m);
+  SunLegs(std::shared_ptr<const Atmosphere> path, double sinElevation, double earthRadius_m);
   /// The same once for all who ask while somebody keeps it.
-  static std::shared_ptr<const SunLegs> of(const std::shared_ptr<const Path>& path, double sinElevation, double earthRadius_m);
+  static std::shared_ptr<const SunLegs> of(const std::shared_ptr<const Atmosphere>& path, double sinElevation, double earthRadius_m);
   /// Towards a sun above the place's horizon. Optical depths of haze within 1e-3 but for some metres below where a haze ends, there within 0.02 of 10
   /// (visibilities from 10 km; tests/physics/test_low_sun.cpp).
   AirAmounts at(double height_m, double sinElevation) const;
@@ -41,7 +41,7 @@ class SunLegs {
  private:
   bool has(double height_m, double sine) const;
   AirAmounts upwards(double height_m, double sine) const;
-  std::shared_ptr<const Path> path_;
+  std::shared_ptr<const Atmosphere> path_;
   double step_, first_, radius_m_, top_m_;
   std::vector<AirAmounts> roots_;  ///< [elevation][height]
 };

@@ -18,7 +18,7 @@ struct SunlitAir {
   std::vector<AirAmounts> both;     ///< with the way on to the sun
   std::vector<double> lit;          ///< share of the sun's disc that stands above its horizon; empty: no sun
 
-  SunlitAir(const Path& path, const AirRay& ray, std::vector<AirStation> stations, const SunLegs* legs, const RaySun& sun);
+  SunlitAir(const Atmosphere& path, const AirRay& ray, std::vector<AirStation> stations, const SunLegs* legs, const RaySun& sun);
 };
 
 /// What a node's air sends along it, as far as each station [W/(m2 sr um)].

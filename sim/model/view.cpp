@@ -4,7 +4,9 @@
 
 namespace pitviper {
 
-View cameraView(const Pinhole& pinhole, const Pose& pose, double near_m, int samples) {
+View cameraView(const Camera& camera, const WorldState& state, int samples) {
+  const CameraState at = cameraAt(camera, state);
+  const Pinhole& pinhole = at.pinhole;
   View v;
   v.width = pinhole.width * samples;
   v.height = pinhole.height * samples;
@@ -12,9 +14,9 @@ View cameraView(const Pinhole& pinhole, const Pose& pose, double near_m, int sam
   v.tanPerPixelY = pinhole.pitchY_m / pinhole.focalLength_m / samples;
   v.axisX = 0.5 * v.width;
   v.axisY = 0.5 * v.height;
-  v.position = pose.position;
-  v.localFromCamera = localFromCamera(pose);
-  v.near_m = near_m;
+  v.position = at.pose.position;
+  v.localFromCamera = localFromCamera(at.pose);
+  v.near_m = camera.near_m;
   v.pixelTan2 = pinhole.pitchX_m * pinhole.pitchY_m / (pinhole.focalLength_m * pinhole.focalLength_m);
   return v;
 }

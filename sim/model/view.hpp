@@ -4,7 +4,7 @@
 #include <memory>
 #include <vector>
 
-#include "sim/model/simulation.hpp"
+#include "sim/model/world.hpp"
 
 namespace pitviper {
 
@@ -29,7 +29,7 @@ struct View {
 };
 
 /// The whole image of a camera at n x n subpixels.
-View cameraView(const Pinhole& pinhole, const Pose& pose, double near_m, int samples);
+View cameraView(const Camera& camera, const WorldState& state, int samples);
 
 /// False where a sphere lies wholly outside the four sides of a view, or behind it.
 bool mayShow(const View& view, const glm::dvec3& centre, double radius_m);

@@ -43,4 +43,7 @@ struct Value {
   }
 };
 
+/// A value as text, places left out: two with the same words are the same.
+std::string wordsOf(const Value& value);
+
 }  // namespace pitviper

@@ -138,14 +138,14 @@ std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const dou
 
 std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, const Simulation& sim) {
   auto spectra = spectraOf(sim);
-  if (!sim.path || sim.path->isNone()) return weighted(kernel, usualBins(kernel, {}), spectra);
-  const std::vector<double> knots = sim.path->knots_um();
+  if (!sim.air || !sim.air->traits().any) return weighted(kernel, usualBins(kernel, {}), spectra);
+  const std::vector<double> knots = sim.air->knots_um();
   // Air from a table keeps its table's wavelengths.
-  if (sim.path->isTabulated()) return weighted(kernel, tableBins(knots, kernel.supportLow(), kernel.supportHigh()), spectra);
+  if (sim.air->traits().linearBetweenKnots) return weighted(kernel, tableBins(knots, kernel.supportLow(), kernel.supportHigh()), spectra);
   std::vector<double> own;
   for (size_t k = 1; k + 1 < knots.size(); ++k)
     if (std::min(knots[k] - knots[k - 1], knots[k + 1] - knots[k]) >= kOwnBins * widthAt(knots[k])) own.push_back(knots[k]);
-  spectra.push_back(airSpectrum(*sim.path));
+  spectra.push_back(airSpectrum(*sim.air));
   return weighted(kernel, usualBins(kernel, own), spectra);
 }
 

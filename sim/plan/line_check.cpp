@@ -131,7 +131,7 @@ std::vector<double> filmFloors(const Simulation& sim, const NodesOfPlan& fine, S
 }
 
 int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays, double accuracy, const std::vector<double>& floor) {
-  if (!fine.plan.terms.air || !sim.path->isLayered()) return kTried[0];
+  if (!fine.plan.terms.air || !sim.air->traits().variesAlongWay) return kTried[0];
   std::vector<SightRay> lines;
   const auto& extremes = rays.extremes();
   for (size_t n = 0; n < std::min(kLooked, extremes.size()); ++n) lines.push_back(extremes[n * extremes.size() / std::min(kLooked, extremes.size())]);

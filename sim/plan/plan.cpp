@@ -5,6 +5,7 @@
 #include <numeric>
 
 #include "sim/model/coverage.hpp"
+#include "sim/plan/air_table_request.hpp"
 #include "sim/plan/fine_grid.hpp"
 
 namespace pitviper {
@@ -44,7 +45,7 @@ std::vector<QuadratureNode> ruleWithLines(const Simulation& sim, const Spectrum&
 SpectralNode nodeAt(const Simulation& sim, double wavelength_um) {
   SpectralNode node;
   node.members = {{wavelength_um, 1.0}};
-  if (sim.path) node.air = sim.path->node(wavelength_um);
+  if (sim.air) node.air = sim.air->node(wavelength_um);
   for (const auto& m : sim.materials) node.absorption_per_m.push_back(m->medium ? m->medium->absorption_per_m(wavelength_um) : 0.0);
   return node;
 }
@@ -54,8 +55,8 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   plan.terms = termsOf(sim);
   plan.lightCount = static_cast<int>(sim.lights.size()) + (sim.sun ? 1 : 0);
 
-  if (plan.terms.air && sim.path->isLayered() && sim.sun)
-    plan.sunLegs = SunLegs::of(sim.path, glm::dot(sim.frame.up(glm::dvec3(0.0)), sim.sun->toSun), sim.frame.earthRadius_m());
+  if (plan.terms.air && sim.air->traits().scattersSun && sim.sun)
+    plan.sunLegs = SunLegs::of(sim.air, glm::dot(sim.frame.up(glm::dvec3(0.0)), sim.sun->toSun), sim.frame.earthRadius_m());
 
   std::vector<const ChannelOutput*> slots;
   for (const auto& output : outputs) {
@@ -105,6 +106,7 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
     for (int i = 0; i < block->count; ++i) plan.weight[s][static_cast<size_t>(block->first + i)] = rules[s][static_cast<size_t>(i)].weight;
   }
   for (auto& w : plan.weight) w.resize(plan.nodes.size(), 0.0);
+  if (plan.terms.air) sim.air->planTables({sim, plan, nullptr, nullptr, nullptr});
   return plan;
 }
 

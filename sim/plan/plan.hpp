@@ -40,10 +40,10 @@ struct PredictedParts {
   double sum() const { return wavelengths + tables + dropped + precision; }
 };
 
-/// Entries of the tables that the GPU reads layered air from.
+/// Entries of the tables that the GPU reads air from; 0: none.
 struct AirTableSize {
-  int elevations = 129, ranges = 193;
-  int azimuths = 5;        ///< of scattered sunlight
+  int elevations = 0, ranges = 0;
+  int azimuths = 1;        ///< of scattered sunlight
   double near_m = 0.0;     ///< ranges lie evenly up to about here, beyond in their logarithm; 0 or beyond a thousandth of the farthest: up to there
   double same = 1.0;       ///< views share tables whose heights and suns lie within this of the usual steps (air_grid.cpp)
   double sunDepth = 10.0;  ///< of the air on the way from the ground to the sun, at most of the channels, for the sunlight that gets through

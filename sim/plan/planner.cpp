@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/plan/air_table_fit.hpp"
+#include "sim/plan/air_table_request.hpp"
 #include "sim/plan/line_check.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/plan_fits.hpp"
@@ -29,16 +29,6 @@ constexpr double kDropped = 0.05;
 constexpr double kPrecision = 6e-5;
 /// Seeds of the last lines lie apart from those of the fit, and of the last ones before.
 constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u, kNextSeed = 0xd1b54a32d192ed03u;
-
-/// What tables of layered air lose on the lines that their size was chosen on, times this, is predicted.
-constexpr double kTableMargin = 2.0;
-/// And what ways on from lit surfaces to the sun lose, by the depth of these and the share of that light: 6e-4 of a pixel on the ground at a depth of 8 (fog,
-/// visibility 0.7 km; found on the GPU against double precision).
-constexpr double kSunWay = 1e-4;
-/// A probe keeps tables of the usual size, all around: a guess of what these lose, of the accuracy.
-constexpr double kProbeTables = 0.2;
-/// They are made for this where no accuracy is asked for.
-constexpr double kUsual = 0.01;
 
 void dropLights(Plan& plan) {
   plan.terms.lights = plan.terms.shadows = false;
@@ -68,25 +58,11 @@ bool suits(const Plan& plan, const Simulation& sim) {
   return std::all_of(plan.nodes.begin(), plan.nodes.end(), [&](const SpectralNode& n) { return n.absorption_per_m.size() == sim.materials.size(); });
 }
 
-/// Tables of layered air, as large as the accuracy needs; what they lose, per slot. A probe keeps the usual size. `floor`: of each slot, where it is dark.
+/// Tables of the air, as large as the accuracy needs; what they lose, per slot.
 std::vector<double> planTables(const Simulation& sim, const Eye& eye, SightRays& rays, const std::vector<double>& floor, Plan& plan) {
-  const double accuracy = plan.accuracy > 0.0 ? plan.accuracy : kUsual;
-  if (!plan.terms.air || !sim.path->isLayered()) return std::vector<double>(plan.weight.size(), 0.0);
-  plan.air = affordable(AirTableSize{}, sim, plan);
-  if (!eye.camera) return std::vector<double>(plan.weight.size(), kProbeTables * accuracy);
-  const std::vector<double> toSun = sim.sun ? depthsToSun(sim, plan) : std::vector<double>();
-  if (!toSun.empty()) plan.air.sunDepth = *std::max_element(toSun.begin(), toSun.end());
-  const NodesOfPlan nodes(sim, plan);
-  auto [size, loss] = AirTableFit(sim, *eye.camera, nodes, rays, floor).within(accuracy);
-  plan.air = size;
-  for (size_t s = 0; s < loss.sums.size(); ++s) {
-    double& l = loss.sums[s];
-    l *= kTableMargin;
-    if (toSun.empty()) continue;
-    const size_t sun = static_cast<size_t>(TermKind::Sun);
-    l += kSunWay * toSun[s] * (sun < plan.shares.size() && s < plan.shares[sun].share.size() ? std::min(plan.shares[sun].share[s], 1.0) : 1.0);
-  }
-  return loss.sums;
+  std::vector<double> lost;
+  if (plan.terms.air) lost = sim.air->planTables({sim, plan, eye.camera, &rays, &floor});
+  return lost.empty() ? std::vector<double>(plan.weight.size(), 0.0) : lost;
 }
 
 /// What it is off by, on lines that no fit has seen and at the extremes.
@@ -165,7 +141,6 @@ Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress
   // The truth layers show the first light's geometry.
   const bool keepLights = eye.camera && eye.camera->truth.solidAngles;
   if (!keepLights && !plan.terms.solid.reflects && !plan.terms.layer.reflects) dropLights(plan);
-  plan.air = affordable(plan.air, sim, plan);
   if (sampling.reference || sampling.shared) {
     plan.fingerprint = planFingerprint(plan);
     return plan;

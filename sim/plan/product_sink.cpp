@@ -37,8 +37,8 @@ std::vector<ProductTerm> merged(std::vector<ProductTerm> terms) {
 
 ProductSink::ProductSink(const Simulation& simulation, SightBook& book, double shortest_um)
     : sim_(simulation), book_(book), step_K_(shortest_um < kShort_um ? kFineStep_K : kStep_K) {
-  if (!sim_.path || sim_.path->isNone()) return;
-  const AirNode node = sim_.path->node(std::clamp(1.0, sim_.path->validLow_um(), sim_.path->validHigh_um()));
+  if (!sim_.air || !sim_.air->traits().any) return;
+  const AirNode node = sim_.air->node(std::clamp(1.0, sim_.air->validLow_um(), sim_.air->validHigh_um()));
   for (size_t k = 0; k < kMostAirAmounts; ++k)
     if (node.molecules[k] + node.haze[k] > 0.0) scatterers_.push_back(k);
 }

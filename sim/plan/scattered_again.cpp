@@ -6,6 +6,7 @@
 #include "sim/model/ground.hpp"
 #include "sim/model/light_legs.hpp"
 #include "sim/model/sunlit_air.hpp"
+#include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectral_rule.hpp"
@@ -32,13 +33,13 @@ double sumOver(const std::array<double, kMostAirAmounts>& coefficients, const Ai
 
 double ScatteringCheck::heightAt(int entry) const {
   const double t = static_cast<double>(entry) / (kHeights - 1);
-  return sim_.path->top_m() * t * t;
+  return sim_.air->top_m() * t * t;
 }
 
 ScatteringCheck::ScatteringCheck(const Simulation& sim, const Camera& camera, const Plan& plan) : sim_(sim), camera_(camera), plan_(plan) {
   if (!plan.sunLegs) return;
   std::vector<AirAmounts> above;
-  for (int h = 0; h < kHeights; ++h) above.push_back(sim.path->powered(sim.path->amounts({heightAt(h), 1.0, sim.frame.earthRadius_m()}, physics::kFar)));
+  for (int h = 0; h < kHeights; ++h) above.push_back(sim.air->powered(sim.air->amounts({heightAt(h), 1.0, sim.frame.earthRadius_m()}, physics::kFar)));
   for (const ChannelOutput& output : camera.outputs) {
     if (std::any_of(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.name == output.channel; })) continue;
     Channel channel{output.channel, {}, {}, {}};
@@ -46,7 +47,7 @@ ScatteringCheck::ScatteringCheck(const Simulation& sim, const Camera& camera, co
     for (const QuadratureNode& q : spectralRule(output.kernel, kWavelengths, Spacing::Gauss)) {
       const SpectralNode node = nodeAt(sim, q.x);
       Column column;
-      for (const AirAmounts& a : above) column.depth.push_back(Path::depthOf(node.air, a));
+      for (const AirAmounts& a : above) column.depth.push_back(Atmosphere::depthOf(node.air, a));
       const double molecules = sumOver(node.air.molecules, above.front()), haze = sumOver(node.air.haze, above.front());
       column.albedo = column.depth.front() > 0.0 ? (molecules + haze) / column.depth.front() : 0.0;
       column.asymmetry = molecules + haze > 0.0 ? haze * node.air.asymmetry / (molecules + haze) : 0.0;
@@ -58,7 +59,7 @@ ScatteringCheck::ScatteringCheck(const Simulation& sim, const Camera& camera, co
 }
 
 double ScatteringCheck::depthAbove(const Column& column, double height_m) const {
-  const double t = std::sqrt(std::clamp(height_m / sim_.path->top_m(), 0.0, 1.0)) * (kHeights - 1);
+  const double t = std::sqrt(std::clamp(height_m / sim_.air->top_m(), 0.0, 1.0)) * (kHeights - 1);
   const int h = std::min(static_cast<int>(t), kHeights - 2);
   const double f = std::clamp((height_m - heightAt(h)) / (heightAt(h + 1) - heightAt(h)), 0.0, 1.0);
   return (1.0 - f) * column.depth[static_cast<size_t>(h)] + f * column.depth[static_cast<size_t>(h) + 1];
@@ -67,7 +68,8 @@ double ScatteringCheck::depthAbove(const Column& column, double height_m) const 
 std::vector<ScatteredAgain> ScatteringCheck::at(const WorldState& state) const {
   std::vector<ScatteredAgain> all;
   if (channels_.empty()) return all;
-  const Pose pose = cameraPose(camera_.mount, state);
+  const CameraState eye = cameraAt(camera_, state);
+  const Pose& pose = eye.pose;
   const glm::dmat3 axes = localFromCamera(pose);
   std::vector<char> drawn(sim_.entities.size(), 1);
   if (camera_.mount.carrier >= 0) drawn[static_cast<size_t>(camera_.mount.carrier)] = 0;
@@ -81,7 +83,7 @@ std::vector<ScatteredAgain> ScatteringCheck::at(const WorldState& state) const {
   // What the sun goes through from where over what lies straight above: the cosine that a flat layer would have.
   const RisenSun risen = risenSun(0.0, sunSine, sim_.frame.earthRadius_m());
   if (!(risen.share > 0.0)) return all;
-  const AirAmounts slant = sim_.path->powered(plan_.sunLegs->at(0.0, risen.sinElevation));
+  const AirAmounts slant = sim_.air->powered(plan_.sunLegs->at(0.0, risen.sinElevation));
 
   struct Line {
     std::optional<Hit> end;
@@ -92,14 +94,14 @@ std::vector<ScatteredAgain> ScatteringCheck::at(const WorldState& state) const {
   };
   std::vector<Line> lines;
   for (const auto& [across, down] : kLines) {
-    const Pinhole& p = camera_.pinhole;
+    const Pinhole& p = eye.pinhole;
     const glm::dvec3 direction = glm::normalize(axes * glm::dvec3(p.tanX(p.width * across), p.tanY(p.height * down), -1.0));
     const std::optional<Hit> end = endOf(direction);
     const AirRay ray{sim_.frame.height(pose.position), glm::dot(direction, up), sim_.frame.earthRadius_m()};
     const RaySun sun{sunSine, glm::dot(direction, sim_.sun->toSun)};
-    SunlitAir air(*sim_.path, ray, sim_.path->stations(ray, end ? end->distance : physics::kFar), plan_.sunLegs.get(), sun);
+    SunlitAir air(*sim_.air, ray, sim_.air->stations(ray, end ? end->distance : physics::kFar), plan_.sunLegs.get(), sun);
     const LightLeg leg = end ? lightLeg(sim_, state, *end, sim_.lights.size()) : LightLeg{};
-    lines.push_back({end, std::move(air), sun.cosScatter, leg, sim_.path->powered(leg.air)});
+    lines.push_back({end, std::move(air), sun.cosScatter, leg, sim_.air->powered(leg.air)});
   }
 
   for (const Channel& channel : channels_) {
@@ -111,7 +113,7 @@ std::vector<ScatteredAgain> ScatteringCheck::at(const WorldState& state) const {
         const Column& column = channel.columns[n];
         const double um = node.members.front().wavelength_um, weight = channel.weight[n], e0 = sim_.sun->irradiance(um);
         const double ground = below ? std::clamp(sim_.materialOf(surfaceAt(sim_, *below)).reflectance(um, 0.0), 0.0, 1.0) : 0.0;
-        const double sine = column.depth.front() / std::max(Path::depthOf(node.air, slant), column.depth.front());
+        const double sine = column.depth.front() / std::max(Atmosphere::depthOf(node.air, slant), column.depth.front());
         const TwoStream layer(column.depth.front(), column.albedo, column.asymmetry, sine, ground);
         std::vector<double> source;
         for (const AirStation& s : line.air.stations) source.push_back(physics::planckRadiance(um, s.temperature_K));
@@ -137,10 +139,10 @@ std::vector<ScatteredAgain> ScatteringCheck::at(const WorldState& state) const {
           const Surface& surface = surfaceAt(sim_, *line.end);
           const Material& material = sim_.materialOf(surface);
           const double reflectance = material.reflectance(um, 0.0), cosine = glm::dot(line.end->normal, sim_.frame.up(line.end->point));
-          const double height = sim_.frame.height(line.end->point), from = depthAbove(column, height), leg = Path::depthOf(node.air, line.toSun);
+          const double height = sim_.frame.height(line.end->point), from = depthAbove(column, height), leg = Atmosphere::depthOf(node.air, line.toSun);
           const double dome = sim_.ambient ? kPi * (*sim_.ambient)(um) : 0.0;
           const TwoStream::Fluxes flux = layer.at(from);
-          own += through * (material.emissivity(um, 0.0) * physics::planckRadiance(um, surface.temperature_K) +
+          own += through * (material.emissivity(um, 0.0) * physics::planckRadiance(um, temperatureAt(sim_, state, *line.end)) +
                             reflectance / kPi * (e0 * line.sun.factor * std::exp(-leg) + dome));
           // A dome that the scenario has lights every side alike; else half of what is level, by how the surface lies.
           const double around = sim_.ambient ? flux.down : 0.5 * (1.0 + cosine) * flux.down + 0.5 * (1.0 - cosine) * flux.up;

@@ -41,7 +41,7 @@ std::vector<BentSpectrum> spectraOf(const Simulation& sim) {
   return all;
 }
 
-BentSpectrum airSpectrum(const Path& air) {
+BentSpectrum airSpectrum(const Atmosphere& air) {
   return {air.knots_um(), [&air](double w) {
             double sum = 0.0;
             for (double c : air.node(w).extinction) sum += c;

@@ -18,7 +18,7 @@ struct BentSpectrum {
 std::vector<BentSpectrum> spectraOf(const Simulation& simulation);
 
 /// The same of the air: the sum of its extinction coefficients.
-BentSpectrum airSpectrum(const Path& air);
+BentSpectrum airSpectrum(const Atmosphere& air);
 
 /// Knots of a spectrum between two wavelengths, both left out.
 std::vector<double> knotsWithin(const BentSpectrum& spectrum, double low_um, double high_um);

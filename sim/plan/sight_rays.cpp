@@ -41,7 +41,7 @@ SightRays::SightRays(const Simulation& simulation, const Eye& eye, unsigned long
 
 std::shared_ptr<const WorldState> SightRays::stateAt(int frame) {
   if (frame != frame_ || !state_) {
-    state_ = std::make_shared<const WorldState>(advance(simulation_.entities, simulation_.lights, simulation_.time.at(frame)));
+    state_ = std::make_shared<const WorldState>(advance(simulation_, simulation_.time.at(frame)));
     frame_ = frame;
   }
   return state_;
@@ -56,17 +56,18 @@ SightRay SightRays::startAt(int frame) {
     ray.line.origin = eye_.probe->position;
     return ray;
   }
-  ray.line.origin = cameraPose(eye_.camera->mount, *ray.state).position;
+  ray.line.origin = cameraAt(*eye_.camera, *ray.state).pose.position;
   ray.nearest_m = eye_.camera->near_m;
   return ray;
 }
 
 SightRay SightRays::cameraRay(int frame, size_t column, size_t row) {
   SightRay ray = startAt(frame);
-  const Pinhole& p = eye_.camera->pinhole;
+  const CameraState at = cameraAt(*eye_.camera, *ray.state);
+  const Pinhole& p = at.pinhole;
   const double samples = eye_.camera->samples;
   const glm::dvec3 film(p.tanX((static_cast<double>(column) + kInColumn) / samples), p.tanY((static_cast<double>(row) + kInRow) / samples), -1.0);
-  ray.line.direction = glm::normalize(localFromCamera(cameraPose(eye_.camera->mount, *ray.state)) * film);
+  ray.line.direction = glm::normalize(localFromCamera(at.pose) * film);
   ray.nearest_m *= glm::length(film);
   cast(ray);
   return ray;
@@ -91,10 +92,11 @@ SightRay SightRays::filmRay(int frame) {
 
 SightRay SightRays::through(const FilmPlace& place) {
   SightRay ray = startAt(place.frame);
-  const Pinhole& p = eye_.camera->pinhole;
+  const CameraState at = cameraAt(*eye_.camera, *ray.state);
+  const Pinhole& p = at.pinhole;
   const double n = eye_.camera->samples;
   const glm::dvec3 film(p.tanX(place.column + (kInColumn - 0.5) / n), p.tanY(place.row + (kInRow - 0.5) / n), -1.0);
-  ray.line.direction = glm::normalize(localFromCamera(cameraPose(eye_.camera->mount, *ray.state)) * film);
+  ray.line.direction = glm::normalize(localFromCamera(at.pose) * film);
   ray.nearest_m *= glm::length(film);
   ray.fromFilm = false;
   cast(ray);
@@ -141,8 +143,9 @@ glm::dvec3 SightRays::placeOn(const WorldState& state, size_t surface) {
 
 bool SightRays::inView(const SightRay& ray, const glm::dvec3& direction) const {
   if (eye_.probe) return glm::dot(direction, eye_.probe->normal) > 0.0;
-  const Pinhole& p = eye_.camera->pinhole;
-  const glm::dvec3 d = glm::transpose(localFromCamera(cameraPose(eye_.camera->mount, *ray.state))) * direction;
+  const CameraState at = cameraAt(*eye_.camera, *ray.state);
+  const Pinhole& p = at.pinhole;
+  const glm::dvec3 d = glm::transpose(localFromCamera(at.pose)) * direction;
   return glm::length(direction) > ray.nearest_m && d.z < 0.0 && std::abs(d.x) <= -d.z * p.tanX(p.width) && std::abs(d.y) <= -d.z * p.tanY(0);
 }
 
@@ -164,9 +167,10 @@ SightRay SightRays::aimed() {
 }
 
 bool SightRays::isSmall(const SightRay& ray, const Entity& entity, const Pose& pose) const {
-  const Pinhole& p = eye_.camera->pinhole;
+  const CameraState at = cameraAt(*eye_.camera, *ray.state);
+  const Pinhole& p = at.pinhole;
   const glm::dvec3 to = pose.position + pose.orientation * glm::dvec3(entity.boundingCentre) - ray.line.origin;
-  const double depth = -(glm::transpose(localFromCamera(cameraPose(eye_.camera->mount, *ray.state))) * to).z, radius = entity.boundingRadius_m;
+  const double depth = -(glm::transpose(localFromCamera(at.pose)) * to).z, radius = entity.boundingRadius_m;
   return depth > 4.0 * radius + eye_.camera->near_m && 2.0 * radius / depth < eye_.camera->smallBody_px * std::min(p.pitchX_m, p.pitchY_m) / p.focalLength_m;
 }
 
@@ -230,12 +234,20 @@ SightRays::Candidate SightRays::candidate(SightRay ray) const {
   return c;
 }
 
+int SightRays::frameOfCommand() {
+  const Command& c = simulation_.commands[dice_.below(simulation_.commands.size())];
+  return std::clamp(static_cast<int>(std::ceil((c.at_s - simulation_.time.start_s) / simulation_.time.step_s)), 0, simulation_.time.frames - 1);
+}
+
 void SightRays::survey() {
   if (!candidates_.empty()) return;
   const int last = simulation_.time.frames - 1;
   for (int n = 0; n < kSurvey; ++n) {
-    // The first and the last frame count for as much as a tenth of all.
-    const int frame = n % 20 == 0 ? 0 : n % 20 == 10 ? last : static_cast<int>(dice_.below(static_cast<size_t>(last) + 1));
+    // The first and the last frame count for as much as a tenth of all, and so do those in which a command begins to hold.
+    const int frame = n % 20 == 0                                       ? 0
+                      : n % 20 == 10                                    ? last
+                      : n % 10 == 5 && !simulation_.commands.empty() ? frameOfCommand()
+                                                                        : static_cast<int>(dice_.below(static_cast<size_t>(last) + 1));
     candidates_.push_back(candidate(filmRay(frame)));
   }
   for (int n = 0; n < kAimedSurvey && !surfaces_.empty(); ++n)

@@ -5,6 +5,7 @@
 #include <random>
 #include <vector>
 
+#include "sim/model/world.hpp"
 #include "sim/radiance/radiance.hpp"
 
 namespace pitviper {
@@ -78,6 +79,7 @@ class SightRays {
   bool isSmall(const SightRay& ray, const Entity& entity, const Pose& pose) const;
   std::vector<SightRay> lamps(int frame);
   void cast(SightRay& ray) const;
+  int frameOfCommand();
   void survey();
   void findExtremes();
   /// Where a light glints most on a surface (entity and surface), about; none where it does not.

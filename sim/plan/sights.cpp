@@ -20,7 +20,7 @@ FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel) {
   for (const QuadratureNode& n : fineGrid(kernel, simulation)) {
     grid.wavelength_um.push_back(n.x);
     grid.weight.push_back(n.weight);
-    grid.air.push_back(simulation.path ? simulation.path->node(n.x) : AirNode{});
+    grid.air.push_back(simulation.air ? simulation.air->node(n.x) : AirNode{});
   }
   return grid;
 }

@@ -34,7 +34,7 @@ std::vector<double> subdivided(std::vector<double> at) {
 
 /// So many of rising places, the first and the last among them, where the air changes: half by the share of each absorber that lies before a place, half by
 /// the logarithm of its range, as much of the near air is all that is seen where much absorbs.
-std::vector<double> thinned(const Path& path, const AirRay& ray, const std::vector<double>& all, size_t count) {
+std::vector<double> thinned(const Atmosphere& path, const AirRay& ray, const std::vector<double>& all, size_t count) {
   if (all.size() <= count) return all;
   const auto stations = path.stationsAt(ray, all);
   const AirAmounts& whole = stations.back().amounts;
@@ -92,11 +92,11 @@ AirPlaces::AirPlaces(const RadianceScene& scene, const LineOfSight& line, std::v
     amounts_.resize(places_.size());
     return;
   }
-  const Path& path = *sim.path;
+  const Atmosphere& path = *sim.air;
   const AirRay ray{sim.frame.height(line.origin), glm::dot(line.direction, sim.frame.up(line.origin)), sim.frame.earthRadius_m()};
   RaySun sun;
   if (sim.sun) sun = {glm::dot(sim.sun->toSun, sim.frame.up(line.origin)), glm::dot(line.direction, sim.sun->toSun)};
-  if (path.isLayered()) {
+  if (path.traits().variesAlongWay) {
     std::vector<double> own;
     for (const AirStation& s : path.stations(ray, ranges.back())) own.push_back(s.range_m);
     std::erase_if(own, [&](double r) { return r > ranges.back(); });

@@ -48,11 +48,11 @@ void weigh(std::span<const double> coefficient, const AirAmounts& amounts, std::
 }  // namespace
 
 NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes) : simulation_(simulation), nodes_(nodes) {
-  const size_t used = simulation.path ? simulation.path->exponents().size() : 0;
+  const size_t used = simulation.air ? simulation.air->exponents().size() : 0;
   extinction_ = coefficientsOf(nodes, used, &AirNode::extinction);
   molecules_ = coefficientsOf(nodes, used, &AirNode::molecules);
   haze_ = coefficientsOf(nodes, used, &AirNode::haze);
-  if (!simulation.path || !simulation.path->isLayered()) return;
+  if (!simulation.air || !simulation.air->traits().variesAlongWay) return;
   for (int t = kColdest_K; t <= kWarmest_K; ++t)
     for (const SpectralNode& n : nodes) {
       planck_.push_back(n.planck(t));
@@ -121,7 +121,7 @@ void NodeSum::term(const Term& term) {
   }
   for (size_t i = 0; i < count_; ++i) {
     if (product[i] == 0.0) continue;
-    const double air = term.air ? std::exp(-Path::depthOf(spectra_.nodes()[i].air, *term.air)) : near_.passed[i];
+    const double air = term.air ? std::exp(-Atmosphere::depthOf(spectra_.nodes()[i].air, *term.air)) : near_.passed[i];
     send(term.kind, i, product[i] * panes_[i] * air * (mediaDepth_[i] > 0.0 ? std::exp(-mediaDepth_[i]) : 1.0));
   }
 }

@@ -61,7 +61,8 @@ class Teller {
       const Entity& body = sim_.entities[static_cast<size_t>(s.entity)];
       const Surface& surface = body.surfaces.front();
       inside_.push_back(
-          {sim_.mediumOf(body), surface.material, line_.temperature_K > 0.0 ? line_.temperature_K : surface.temperature_K, far.range_m - near.range_m});
+          {sim_.mediumOf(body), surface.material, line_.temperature_K > 0.0 ? line_.temperature_K : scene_.state.temperatures_K[static_cast<size_t>(s.entity)][0],
+           far.range_m - near.range_m});
     }
     sink_.segment({near, far, inside_, scene_.terms.air, air_.sunlit(), air_.cosScatter(), dark_});
   }
@@ -99,7 +100,7 @@ class Teller {
     const bool textured = s.temperatureTexture >= 0;
     const double temperature_K = textured                                       ? textureValue(sim_.textures[static_cast<size_t>(s.temperatureTexture)], hit.uv)
                                  : line_.temperature_K > 0.0 && hit.entity >= 0 ? line_.temperature_K
-                                                                                : s.temperature_K;
+                                                                                : temperatureAt(sim_, scene_.state, hit);
     if ((m.transmission ? scene_.terms.layer : scene_.terms.solid).isGeneral()) {
       const double angle = viewAngle(hit);
       const Factor black = Factor::planck(temperature_K, !textured);
@@ -133,7 +134,7 @@ class Teller {
       if (!(strength > 0.0)) continue;
       const glm::dvec3 light = inNormalFrame(hit.normal, leg.toLight);
       AirAmounts both;
-      if (scene_.terms.air) both = sim_.path->powered(air_.amounts(place) + leg.air);
+      if (scene_.terms.air) both = sim_.air->powered(air_.amounts(place) + leg.air);
       for (size_t k = 0; k < m.reflections.size(); ++k) {
         const ReflectionComponent& r = *m.reflections[k];
         add(sun ? TermKind::Sun : TermKind::Lights, modifiers[k] * strength * r.lobeAt(light, view),

@@ -20,8 +20,8 @@ void add(SurfaceTerms& t, const Material& m, const Surface& s) {
 
 Terms termsOf(const Simulation& sim) {
   Terms t;
-  t.air = sim.path && !sim.path->isNone();
-  t.scatteredSun = t.air && sim.path->isLayered() && sim.sun.has_value();
+  t.air = sim.air && sim.air->traits().any;
+  t.scatteredSun = t.air && sim.air->traits().scattersSun && sim.sun.has_value();
   t.lights = !sim.lights.empty() || sim.sun;
   t.ambient = sim.ambient && !sim.ambient->isZero();
   t.shadows = canHaveShadows(sim);

@@ -43,7 +43,7 @@ double affordablePixels(const Simulation& sim, const Camera& camera, const Plan&
   const double frame = kFrame + subpixels * (kSubpixel + kNode * plan.nodeCount());
   double wavelengths = 0.0;
   for (int count : plan.fineCount) wavelengths += count;
-  const double pixel = n * n * wavelengths * (plan.terms.air && sim.path->isLayered() ? kWavelength : kPlainWavelength);
+  const double pixel = n * n * wavelengths * (plan.terms.air && sim.air->traits().variesAlongWay ? kWavelength : kPlainWavelength);
   return std::min(kPart * frame / (kVisibility * frame + pixel), kMost);
 }
 
@@ -67,7 +67,7 @@ std::vector<int> Auditor::pixelsOf(int count, int frame, std::uint64_t stream) c
 }
 
 int Auditor::doubtful(const WorldState& state, int frame) const {
-  const View view = cameraView(camera_.pinhole, cameraPose(camera_.mount, state), camera_.near_m, camera_.samples);
+  const View view = cameraView(camera_, state, camera_.samples);
   std::vector<char> drawn(simulation_.entities.size(), 1);
   if (camera_.mount.carrier >= 0) drawn[static_cast<size_t>(camera_.mount.carrier)] = 0;
   std::map<std::size_t, std::pair<int, int>> seen;  // how many, and the first of them

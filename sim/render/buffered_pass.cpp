@@ -111,6 +111,10 @@ RenderTarget& BufferedPass::spectrumFor(const RenderTarget& visibility) {
   return made;
 }
 
+void BufferedPass::onTemperatures() {
+  if (layers_) layers_->updateTemperatures();
+}
+
 void BufferedPass::beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) {
   if (layers_) layers_->order(view, state, drawn);
 }

@@ -20,6 +20,7 @@ class BufferedPass final : public ScenePass {
 
  private:
   void shade(RenderTarget& into, const RenderTarget& visibility) override;
+  void onTemperatures() override;
   void beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) override;
   RenderTarget& spectrumFor(const RenderTarget& visibility);
 

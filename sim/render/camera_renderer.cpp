@@ -11,8 +11,7 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
     : simulation_(simulation),
       camera_(camera),
       plan_(planFor(simulation, {&camera, nullptr}, planning)),
-      scattering_(simulation, camera, plan_),
-      solidAngles_(std::make_shared<const Pinhole::SolidAngles>(camera.pinhole.solidAngles())) {
+      scattering_(simulation, camera, plan_) {
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
   const double area_m2 = camera.pinhole.apertureArea_m2();
   if (camera.spectral.reference) {
@@ -53,8 +52,12 @@ int CameraRenderer::viewsOfPicture() const {
 
 void CameraRenderer::begin(const WorldState& state) {
   state_ = state;
-  view_ = cameraView(camera_.pinhole, cameraPose(camera_.mount, state), camera_.near_m, camera_.samples);
+  view_ = cameraView(camera_, state, camera_.samples);
   view_.wanted = wanted_;
+  if (const Pinhole now = cameraAt(camera_, state).pinhole; now.focalLength_m != focalLength_m_) {
+    solidAngles_ = std::make_shared<const Pinhole::SolidAngles>(now.solidAngles());
+    focalLength_m_ = now.focalLength_m;
+  }
   // The carrier would be seen from inside: a camera does not see the body it rides on.
   present_.assign(simulation_.entities.size(), 1);
   if (camera_.mount.carrier >= 0) present_[static_cast<size_t>(camera_.mount.carrier)] = 0;
@@ -112,6 +115,7 @@ CameraImage CameraRenderer::finish() {
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
   resolved.slotOfOutput = plan_.slotOfOutput;
   resolved.solidAngles = solidAngles_;
+  resolved.exposure_s = cameraAt(camera_, state_).exposure_s;
   if (isBuffered() && buffered_->layers()) resolved.transparentOrder = buffered_->layers()->describeOrder();
   resolved.scatteredAgain = scattering_.at(state_);
   resolved.accuracy = plan_.accuracy;

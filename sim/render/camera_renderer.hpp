@@ -56,6 +56,7 @@ class CameraRenderer {
   std::vector<char> small_, present_;
   std::shared_ptr<const std::vector<char>> wanted_;  ///< one flag per subpixel, row 0 at the bottom; null: all
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles_;
+  double focalLength_m_ = 0.0;  ///< that these are of
 };
 
 }  // namespace pitviper

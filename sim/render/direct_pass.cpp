@@ -1,5 +1,6 @@
 #include "sim/render/direct_pass.hpp"
 
+#include "sim/gl/context.hpp"
 #include "sim/render/buffered_pass.hpp"
 
 namespace pitviper {
@@ -12,10 +13,10 @@ DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const Sha
   slots.files["truth"] = truth ? "sim/render/glsl/truth_layers.glsl" : "sim/render/glsl/truth_none.glsl";
   slots.generated["targets"] = tables().targetsText;
   std::string integral = tables().integrateText;
-  if (plan.terms.air && simulation.path->isLayered()) {
-    std::string air;
-    for (int g = 0; g < plan.groupCount(); ++g) air += "  channels" + std::to_string(g) + " += channelAir(" + std::to_string(g) + ", air_);\n";
-    integral.insert(integral.rfind('}'), air);
+  if (air() && air()->givesChannels()) {
+    std::string own;
+    for (int g = 0; g < plan.groupCount(); ++g) own += "  channels" + std::to_string(g) + " += channelAir(" + std::to_string(g) + ", air_);\n";
+    integral.insert(integral.rfind('}'), own);
   }
   slots.generated["integrate"] = integral;
   slots.constants["WEIGHTS"] = static_cast<long long>(tables().weights.size() / 4);

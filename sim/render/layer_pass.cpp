@@ -88,6 +88,11 @@ std::vector<NamedProgram> LayerPass::programs() const {
   return all;
 }
 
+void LayerPass::updateTemperatures() {
+  buffers_.update(tables_.layer);
+  media_.upload(tables_.media);
+}
+
 void LayerPass::order(const View& view, const WorldState& state, const std::vector<char>& drawn) {
   pieces_.clear();
   const glm::dmat3 cameraFromLocal = glm::transpose(view.localFromCamera);

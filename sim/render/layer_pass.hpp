@@ -20,6 +20,9 @@ class LayerPass {
   LayerPass(const Simulation& simulation, const Plan& plan, const RenderTables& tables, std::shared_ptr<const GpuScene> scene, const ShaderLibrary& library,
             const ShaderSlots& slots, int targets);
 
+  /// What follows temperatures, as the tables have it now.
+  void updateTemperatures();
+
   /// Sorts what of `drawn` is in view.
   void order(const View& view, const WorldState& state, const std::vector<char>& drawn);
   bool isEmpty() const { return order_.pieces.empty(); }

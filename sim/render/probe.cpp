@@ -85,7 +85,7 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
       sun.share > 0.0 && cosine > 0.0 ? wayTo(pass, state, all, probe.position, sun.toSun, physics::kFar, kNear_m) : std::vector<double>();
   for (size_t i = 0; i < toSun.size(); ++i) {
     const SpectralNode& n = plan.nodes[i];
-    const double e = toSun[i] * sun.share * cosine * n.mean(sim.sun->irradiance) * (plan.terms.air ? sim.path->transmittance(n.air, sun.air) : 1.0);
+    const double e = toSun[i] * sun.share * cosine * n.mean(sim.sun->irradiance) * (plan.terms.air ? sim.air->transmittance(n.air, sun.air) : 1.0);
     for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * e;
   }
   std::vector<double> values;

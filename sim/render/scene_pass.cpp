@@ -36,14 +36,6 @@ Plan outline(const Plan& plan) {
 
 }  // namespace
 
-void checkUniformSize(std::size_t bytes, const char* what) {
-  GLint limit = 0;
-  glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &limit);
-  if (bytes > static_cast<std::size_t>(limit))
-    throw GlError(std::string(what) + " take " + std::to_string(bytes) + " bytes, this driver's uniform blocks hold " + std::to_string(limit) +
-                  "; use fewer spectral samples, channels or lights");
-}
-
 ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                      double apertureArea_m2, Shading shading)
     : simulation_(simulation),
@@ -54,10 +46,9 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       tables_(shading == Shading::Reference ? makeTables(simulation, outline(plan)) : makeTables(simulation, plan)),
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
-      relevance_(simulation, shading == Shading::Reference ? outline(plan) : plan, tables_),
-      air_(simulation, plan, shading == Shading::Direct, shading != Shading::Reference),
-      pathBlock_(simulation, plan, shading != Shading::Reference),
+      relevance_(std::in_place, simulation, shading == Shading::Reference ? outline(plan) : plan, tables_),
       how_(shading) {
+  if (plan.terms.air && shading != Shading::Reference) air_ = simulation.air->onGpu(simulation, plan, shading == Shading::Direct);
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
   if (shading != Shading::Reference)
     checkUniformSize((tables_.node.size() + tables_.ambient.size() + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float),
@@ -66,9 +57,8 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
 
 ShaderSlots ScenePass::shadingSlots() const {
   ShaderSlots slots;
-  slots.files["path"] = !simulation_.path || !plan_.terms.air || how_ == Shading::Reference ? "sim/render/glsl/path_none.glsl"
-                        : how_ == Shading::Direct                                           ? simulation_.path->channelSlotFile()
-                                                                                            : simulation_.path->slotFile();
+  slots.files["path"] = "sim/render/glsl/path_none.glsl";
+  if (air_) air_->addSlots(slots);
   addSurfaceSlots(tables_.solid, plan_.terms.solid, plan_, slots);
   slots.files["shadow"] = ShadowPass::slotFile(plan_);
   slots.files["surface"] = std::string("sim/render/glsl/") + (tables_.solid.general ? "surface_general.glsl"
@@ -85,8 +75,6 @@ ShaderSlots ScenePass::shadingSlots() const {
   // Of four lights a vec4 at each node [W/(sr um)], the sun as irradiance; and radiance of the dome.
   slots.generated["light_nodes"] = plan_.lightCount > 0 ? "  vec4 nodeLight[NODES * LIGHT_GROUPS];\n" : "";
   slots.generated["ambient_nodes"] = tables_.ambient.empty() ? "" : "  vec4 nodeAmbient[NODES];\n";
-  air_.addConstants(slots);
-  pathBlock_.addConstants(slots);
   return slots;
 }
 
@@ -102,17 +90,22 @@ std::vector<std::string> ScenePass::channelTargets() const {
 }
 
 void ScenePass::setState(const WorldState& state) {
+  if (updateTemperatures(tables_, simulation_, how_ == Shading::Reference ? outline(plan_) : plan_, state)) {
+    solid_.update(tables_.solid);
+    relevance_.emplace(simulation_, how_ == Shading::Reference ? outline(plan_) : plan_, tables_);
+    onTemperatures();
+  }
   std::vector<float> block = tables_.node;
   const auto lights = lightTable(simulation_, how_ == Shading::Reference ? outline(plan_) : plan_, state);
   block.insert(block.end(), lights.begin(), lights.end());
   block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
   nodes_.upload(block);
-  air_.begin();
-  if (shadows_) shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_.matters(e, l, state); });
+  if (air_) air_->begin();
+  if (shadows_) shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_->matters(e, l, state); });
 }
 
 void ScenePass::uploadView(const View& v, const WorldState& state) {
-  air_.update(v, state);
+  if (air_) air_->update(v, state);
   const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
   GpuView g;
   g.pixel = {v.tanPerPixelX, v.tanPerPixelY, v.axisX, v.axisY};
@@ -120,7 +113,7 @@ void ScenePass::uploadView(const View& v, const WorldState& state) {
   g.film = {1.0 / (halfX * v.tanPerPixelX), 1.0 / (halfY * v.tanPerPixelY), v.axisX / halfX - 1.0, v.axisY / halfY - 1.0};
   g.depth = {v.near_m, v.onlyEntity >= 0 ? 0.5 * glm::length(v.depthCentre - v.position) / v.depthRadius_m : 0.0, 0.0, 0.0};
   g.up = glm::vec4(cameraFromLocal * simulation_.frame.up(v.position), simulation_.frame.height(v.position));
-  g.earth = {simulation_.frame.earthRadius_m(), simulation_.path ? simulation_.path->top_m() : physics::kFar, v.onlyEntity + 1, 0.0};
+  g.earth = {simulation_.frame.earthRadius_m(), simulation_.air ? simulation_.air->top_m() : physics::kFar, v.onlyEntity + 1, 0.0};
   g.sun = glm::vec4(simulation_.sun ? cameraFromLocal * simulation_.sun->toSun : glm::dvec3(0.0), 0.0);
   g.aperture = {apertureArea_m2_, v.pixelTan2, 0.0, 0.0};
   g.east = glm::vec4(cameraFromLocal * glm::dvec3(1, 0, 0), 0.0);
@@ -147,7 +140,7 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
     g.table = {item.row, item.material, s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u, static_cast<unsigned>(item.entity + 1)};
     const size_t lightRow = static_cast<size_t>(item.entity + 1);
     const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
-    g.state = {s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
+    g.state = {item.entity >= 0 ? item.temperature_K : s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
     g.fine = {origin.z - static_cast<double>(static_cast<float>(origin.z)), 0.0, 0.0, 0.0};
     glm::vec4* row = &lights[lightRow * stride];
     const bool ground = item.kind == DrawKind::Ground;
@@ -164,7 +157,7 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
       };
       for (size_t l = 0; l < simulation_.lights.size(); ++l)
         add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l,
-            !ground && ((truth_ && l == 0) || relevance_.matters(static_cast<size_t>(item.entity), l, state)));
+            !ground && ((truth_ && l == 0) || relevance_->matters(static_cast<size_t>(item.entity), l, state)));
       if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true);
     }
     draws.push_back(g);
@@ -187,8 +180,7 @@ void ScenePass::bindBuffers() const {
   draws_.bindStorage(2);
   solid_.bind();
   lights_.bindStorage(5);
-  air_.bind();
-  pathBlock_.bind();
+  if (air_) air_->bind();
   view_.bindUniform(0);
   nodes_.bindUniform(1);
   if (shadows_) shadows_->bind();

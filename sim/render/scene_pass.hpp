@@ -3,12 +3,12 @@
 // Speed does not depend on how much is hidden. Direct mode and buffered mode differ in what shading leaves behind.
 #include <deque>
 #include <memory>
+#include <optional>
 
 #include "sim/model/view.hpp"
-#include "sim/render/air_tables.hpp"
+#include "sim/render/air_on_gpu.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/light_relevance.hpp"
-#include "sim/render/path_block.hpp"
 #include "sim/render/shading_program.hpp"
 #include "sim/render/shadow_pass.hpp"
 #include "sim/render/solid_pass.hpp"
@@ -32,7 +32,7 @@ class ScenePass {
   ScenePass(const ScenePass&) = delete;
   ScenePass& operator=(const ScenePass&) = delete;
 
-  /// Uploads what changes with time: light levels; draws shadow maps.
+  /// Uploads what changes with time: light levels, temperatures; draws shadow maps.
   void setState(const WorldState& state);
   /// `drawn`: one flag per entity; the others are left out (small bodies have views of their own).
   void draw(const View& view, const WorldState& state, const std::vector<char>& drawn);
@@ -60,10 +60,13 @@ class ScenePass {
   virtual void shade(RenderTarget& into, const RenderTarget& visibility) = 0;
   /// Only one entity is shaded: what was cleared stays elsewhere.
   bool isPartial() const { return partial_; }
+  /// The tables follow other temperatures than before.
+  virtual void onTemperatures() {}
   /// What a mode has to make ready for a view, its solid scene drawn.
   virtual void beforeShading(const View&, const WorldState&, const std::vector<char>&) {}
 
   const Plan& plan() const { return plan_; }
+  const AirOnGpu* air() const { return air_.get(); }
   bool hasTruth() const { return truth_; }
   /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
   ShaderSlots shadingSlots() const;
@@ -90,9 +93,8 @@ class ScenePass {
   RenderTables tables_;
   SurfaceBuffers solid_;
   SolidPass solids_;
-  LightRelevance relevance_;
-  AirTables air_;
-  PathBlock pathBlock_;
+  std::optional<LightRelevance> relevance_;
+  std::unique_ptr<AirOnGpu> air_;  ///< null: none, or not on the GPU
   Shading how_;
   std::unique_ptr<ShadowPass> shadows_;  ///< where the plan has them
   Buffer nodes_, draws_, lights_, view_;
@@ -105,8 +107,5 @@ class ScenePass {
 /// A pass in the mode the scenario asks for.
 std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
                                          bool truth, double apertureArea_m2);
-
-/// Throws GlError where a uniform block would be larger than the driver's; says what takes the room.
-void checkUniformSize(std::size_t bytes, const char* what);
 
 }  // namespace pitviper

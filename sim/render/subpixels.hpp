@@ -7,40 +7,10 @@
 #include <vector>
 
 #include "sim/plan/plan.hpp"
-#include "sim/plan/scattered_again.hpp"
+#include "sim/render/camera_image.hpp"
 #include "sim/render/scene_pass.hpp"
 
 namespace pitviper {
-
-/// Truth of a pixel: see sim/render/glsl/truth_layers.glsl for the order.
-struct TruthPixel {
-  float area_m2 = 0, solidAngleFromLight_sr = 0, solidAngleOfAperture_sr = 0, range_m = 0;
-  float normal[3] = {0, 0, 0};
-  float temperature_K = 0;
-  float entity = 0, part = 0, cosView = 0;
-};
-
-/// What an audit found of a channel's slot: relative errors |L - Lref| / max(|Lref|, 1e-3 x the 99th percentile of the picture).
-struct SlotAudit {
-  int pixels = 0;  ///< random ones
-  double median = 0.0, largest = 0.0;
-  double doubt = -1.0;  ///< of the pixel that sees what few do; below 0: none was looked at
-};
-
-/// What leaves the renderer: integrals of kernel x radiance per slot and pixel, row 0 at the top.
-struct CameraImage {
-  int width = 0, height = 0;
-  std::vector<std::vector<double>> slots;  ///< [slot][pixel], kernel unit x W/(m2 sr)
-  std::shared_ptr<const Pinhole::SolidAngles> solidAngles;
-  std::vector<TruthPixel> truth;               ///< per pixel, or empty
-  std::vector<int> slotOfOutput;               ///< from the plan
-  std::string transparentOrder;                ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view
-  std::vector<ScatteredAgain> scatteredAgain;  ///< channels in which light scattered more than once would matter
-  double accuracy = 0.0;                       ///< from the plan, and so its error per slot
-  std::vector<double> predictedError;          ///< empty where nothing was measured
-  std::string plan;                            ///< its fingerprint
-  std::vector<SlotAudit> audit;                ///< per slot; empty: not audited
-};
 
 class Subpixels {
  public:

@@ -8,12 +8,14 @@ namespace pitviper {
 class SurfaceBuffers {
  public:
   explicit SurfaceBuffers(const SurfaceTables& tables) : general_(tables.general), perRowEntry_(tables.floatsPerRowEntry()) {
-    rows_.upload(tables.rows);
+    update(tables);
     hemispherical_.upload(tables.hemispherical);
     columns_.upload(tables.columns);
     transmittance_.upload(tables.transmittance);
     materials_.upload(tables.packedMaterials());
   }
+  /// What follows temperatures.
+  void update(const SurfaceTables& tables) { rows_.upload(tables.rows); }
   void bind() const {
     rows_.bindTexture(1, perRowEntry_);
     if (general_) {

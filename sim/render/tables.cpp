@@ -177,6 +177,16 @@ void appendMaterial(SurfaceTables& t, const Material& m, const std::set<std::pai
   }
 }
 
+/// What a surface of a temperature sends by itself (simple: emission and the dome's light), or the black body of its temperature (general).
+float selfOf(const SurfaceTables& t, const Simulation& sim, const Plan& plan, const SpectralNode& n, const Surface& surface, double temperature_K) {
+  if (t.general) return static_cast<float>(n.planck(temperature_K));
+  const Material& m = sim.materialOf(surface);
+  return static_cast<float>(n.mean([&](double w) {
+    const double ambient = plan.terms.ambient ? (*sim.ambient)(w) : 0.0;
+    return m.emissivity(w, 0.0) * physics::planckRadiance(w, temperature_K) + (ambient > 0.0 ? m.reflectance(w, 0.0) * ambient : 0.0);
+  }));
+}
+
 /// The row of a surface, or of the background, which shines by itself (null).
 std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& plan, const Surface* surface) {
   const auto floats = static_cast<size_t>(t.floatsPerRowEntry() * t.texelsPerRowEntry());
@@ -188,17 +198,11 @@ std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& pla
       t.rows[self] = static_cast<float>(n.mean([&](double w) { return sim.background(w); }));
       continue;
     }
-    if (t.general) {
-      t.rows.push_back(static_cast<float>(n.planck(surface->temperature_K)));
-      continue;
-    }
-    const Material& m = sim.materialOf(*surface);
-    const double self = n.mean([&](double w) {
-      const double ambient = plan.terms.ambient ? (*sim.ambient)(w) : 0.0;
-      return m.emissivity(w, 0.0) * physics::planckRadiance(w, surface->temperature_K) + (ambient > 0.0 ? m.reflectance(w, 0.0) * ambient : 0.0);
-    });
-    if (!t.lit) t.rows.push_back(static_cast<float>(self));
-    else appendComponents(t.rows, t, m, self, [&](const ReflectionComponent& r) { return n.mean([&](double w) { return r.column(w, 0.0, 0.0); }); });
+    const float self = selfOf(t, sim, plan, n, *surface, surface->temperature_K);
+    if (floats == 1) t.rows.push_back(self);
+    else
+      appendComponents(t.rows, t, sim.materialOf(*surface), static_cast<double>(self),
+                       [&](const ReflectionComponent& r) { return n.mean([&](double w) { return r.column(w, 0.0, 0.0); }); });
   }
   return at;
 }
@@ -226,11 +230,15 @@ void appendPlanck(SurfaceTables& t, const Simulation& sim, const Plan& plan) {
     for (const SpectralNode& n : plan.nodes) t.rows.push_back(static_cast<float>(n.planck(1.0 / (first + step * k))));
 }
 
+float sourceOf(const Medium& medium, const SpectralNode& n, double temperature_K) {
+  return static_cast<float>(n.mean([&](double w) { return medium.source(w, temperature_K); }));
+}
+
 std::uint32_t appendMedium(RenderTables& t, const Plan& plan, const Medium& medium, const Surface& surface) {
   const auto at = static_cast<std::uint32_t>(t.media.size() / 4);
   for (const SpectralNode& n : plan.nodes)
-    t.media.insert(t.media.end(), {static_cast<float>(n.absorption_per_m[static_cast<size_t>(surface.material)]),
-                                   static_cast<float>(n.mean([&](double w) { return medium.source(w, surface.temperature_K); })), 0.0f, 0.0f});
+    t.media.insert(t.media.end(), {static_cast<float>(n.absorption_per_m[static_cast<size_t>(surface.material)]), sourceOf(medium, n, surface.temperature_K),
+                                   0.0f, 0.0f});
   return at;
 }
 
@@ -390,14 +398,14 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   for (size_t e = 0; e < sim.entities.size(); ++e) {
     const Entity& entity = sim.entities[e];
     if (const Medium* medium = sim.mediumOf(entity)) {
-      t.draws.push_back({DrawKind::Medium, static_cast<int>(e), 0, appendMedium(t, plan, *medium, entity.surfaces.front()), 0});
+      t.draws.push_back({DrawKind::Medium, static_cast<int>(e), 0, appendMedium(t, plan, *medium, entity.surfaces.front()), 0, entity.surfaces.front().temperature_K});
       continue;
     }
     for (size_t s = 0; s < entity.surfaces.size(); ++s) {
       const Surface& surface = entity.surfaces[s];
       const bool layer = sim.materialOf(surface).transmission.has_value();
       t.draws.push_back({layer ? DrawKind::Layer : DrawKind::Solid, static_cast<int>(e), static_cast<int>(s),
-                         appendRow(layer ? t.layer : t.solid, sim, plan, &surface), at[static_cast<size_t>(surface.material)]});
+                         appendRow(layer ? t.layer : t.solid, sim, plan, &surface), at[static_cast<size_t>(surface.material)], surface.temperature_K});
     }
   }
 
@@ -416,6 +424,26 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   if (groups && plan.terms.layer.temperatureTextures) appendPlanck(t.layer, sim, plan);
   writeIntegral(t, plan);
   return t;
+}
+
+bool updateTemperatures(RenderTables& tables, const Simulation& sim, const Plan& plan, const WorldState& state) {
+  bool changed = false;
+  for (DrawItem& d : tables.draws) {
+    if (d.entity < 0) continue;
+    const double now_K = state.temperatures_K[static_cast<size_t>(d.entity)][static_cast<size_t>(d.surface)];
+    if (now_K == d.temperature_K) continue;
+    d.temperature_K = now_K;
+    changed = true;
+    const Entity& entity = sim.entities[static_cast<size_t>(d.entity)];
+    SurfaceTables& t = d.kind == DrawKind::Layer ? tables.layer : tables.solid;
+    const auto floats = static_cast<size_t>(t.floatsPerRowEntry() * t.texelsPerRowEntry());
+    for (size_t i = 0; i < plan.nodes.size(); ++i) {
+      const SpectralNode& n = plan.nodes[i];
+      if (d.kind == DrawKind::Medium) tables.media[4 * (d.row + i) + 1] = sourceOf(*sim.mediumOf(entity), n, now_K);
+      else t.rows[floats * (d.row + i) + (floats > 1 ? 3 : 0)] = selfOf(t, sim, plan, n, entity.surfaces[static_cast<size_t>(d.surface)], now_K);
+    }
+  }
+  return changed;
 }
 
 }  // namespace pitviper

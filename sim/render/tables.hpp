@@ -29,6 +29,7 @@ struct DrawItem {
   int surface = -1;
   std::uint32_t row = 0;       ///< first entry of its row in the tables of its kind
   std::uint32_t material = 0;  ///< in the tables of its kind
+  double temperature_K = 0.0;  ///< that its row is of
 };
 
 /// What a program needs of the surfaces that it draws: the solid ones, or the transparent ones.
@@ -74,6 +75,9 @@ std::string lightsFile(const Plan& plan);
 void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, const Plan& plan, ShaderSlots& slots);
 
 RenderTables makeTables(const Simulation& simulation, const Plan& plan);
+
+/// Rows of surfaces and media whose temperatures are no longer those they were made for are made anew, at their places. False where there are none.
+bool updateTemperatures(RenderTables& tables, const Simulation& simulation, const Plan& plan, const WorldState& state);
 
 /// Entries of a material's grid of view angles from 0 to 90 deg, linear between: 181 (every 0.5 deg), or as many more, up to 1441 (every
 /// 0.0625 deg), as it takes to have all bends of an emissivity or table on the grid. Where no such grid exists, a bend between two entries

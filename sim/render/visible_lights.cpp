@@ -10,12 +10,12 @@ std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, c
   const double range = glm::length(line);
   AirAmounts air;
   if (plan.terms.air)
-    air = sim.path->amounts({sim.frame.height(from), range > 0.0 ? glm::dot(line, sim.frame.up(from)) / range : 0.0, sim.frame.earthRadius_m()}, range);
+    air = sim.air->amounts({sim.frame.height(from), range > 0.0 ? glm::dot(line, sim.frame.up(from)) / range : 0.0, sim.frame.earthRadius_m()}, range);
   std::vector<double> sums(static_cast<size_t>(plan.slotCount), 0.0);
   for (size_t i = 0; i < plan.nodes.size(); ++i) {
     const SpectralNode& n = plan.nodes[i];
     const double intensity =
-        way[i] * state.lightLevels[light] * n.mean(sim.lights[light].intensity) * (plan.terms.air ? sim.path->transmittance(n.air, air) : 1.0);
+        way[i] * state.lightLevels[light] * n.mean(sim.lights[light].intensity) * (plan.terms.air ? sim.air->transmittance(n.air, air) : 1.0);
     for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * intensity;
   }
   return sums;

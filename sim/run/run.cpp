@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <future>
 
+#include "sim/frame/make_frame.hpp"
+#include "sim/model/world.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/render/probe.hpp"
 #include "sim/run/spectral_renderer.hpp"
 
 namespace pitviper {
 
-RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes,
+RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRange& range, const FrameTaker& frames, const ProbeSink& probes,
                     const RunProgress& progress, bool stopsAtBroken) {
   auto scene = std::make_shared<const GpuScene>(sim);
   std::vector<std::unique_ptr<CameraRenderer>> renderers;
@@ -31,11 +33,11 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
   auto hand = [&](Frame drawn) {
     auto frame = std::make_shared<const Frame>(std::move(drawn));
     wait();
-    handing = std::async(std::launch::async, [&frames, frame] { frames(*frame); });
+    handing = std::async(std::launch::async, [&frames, frame] { frames(frame); });
   };
   auto isBroken = [&] { return std::any_of(auditors.begin(), auditors.end(), [](const Auditor& a) { return !a.broken().empty(); }); };
   for (int number = range.first; number <= range.last && !(stopsAtBroken && isBroken()); ++number) {
-    const WorldState state = advance(sim.entities, sim.lights, sim.time.at(number));
+    const WorldState state = advance(sim, sim.time.at(number));
     for (size_t c = 0; c < renderers.size(); ++c) {
       renderers[c]->begin(state);
       CameraImage image = renderers[c]->finish();

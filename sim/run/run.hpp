@@ -2,6 +2,7 @@
 // The loop: advance, render, frame, hand over.
 #include <functional>
 #include <map>
+#include <memory>
 
 #include "sim/frame/frame.hpp"
 #include "sim/render/audit.hpp"
@@ -12,8 +13,8 @@ struct RunRange {
   int first = 0, last = 0;  ///< frame numbers, both included
 };
 
-/// Called for every frame in order: a camera's frame, its spectral image if it has one, camera by camera, then tick by tick.
-using FrameSink = std::function<void(const Frame&)>;
+/// Called for every frame, as of Sink::take().
+using FrameTaker = std::function<void(const std::shared_ptr<const Frame>&)>;
 struct ProbeReading {
   const Probe& probe;
   int frame;
@@ -37,7 +38,7 @@ struct RunReport {
 /// Renders the frames of all cameras, and audits them (Simulation::audit). With `stopsAtBroken` it ends after the first tick in which an audit
 /// found more than was asked. While one frame is handed to the sink on a thread of its own, the next is drawn; frames
 /// arrive in order, one at a time. An exception of the sink ends the run and is thrown here. Returns what audits found.
-RunReport runFrames(const Simulation& simulation, const ShaderLibrary& library, const RunRange& range, const FrameSink& frames, const ProbeSink& probes = {},
+RunReport runFrames(const Simulation& simulation, const ShaderLibrary& library, const RunRange& range, const FrameTaker& frames, const ProbeSink& probes = {},
                     const RunProgress& progress = {}, bool stopsAtBroken = false);
 
 }  // namespace pitviper

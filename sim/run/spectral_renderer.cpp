@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/frame/make_frame.hpp"
 #include "sim/frame/spectral_image.hpp"
 
 namespace pitviper {

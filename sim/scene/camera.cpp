@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "sim/radiometry/constants.hpp"
-#include "sim/scene/scene.hpp"
 
 namespace pitviper {
 
@@ -33,17 +32,6 @@ Pinhole::SolidAngles Pinhole::solidAngles() const {
       all.projected_sr.push_back(projectedSolidAngle_sr(column, row));
     }
   return all;
-}
-
-Pose cameraPose(const Mount& mount, const WorldState& state) {
-  Pose pose = mount.motion.at(state.time_s);
-  if (mount.carrier >= 0) pose = composed(state.entities[static_cast<size_t>(mount.carrier)], pose);
-  if (mount.lookAtEntity >= 0 || mount.looksAtPoint) {
-    const glm::dvec3 target = mount.looksAtPoint ? mount.lookAtPoint : state.entities[static_cast<size_t>(mount.lookAtEntity)].position;
-    const glm::dvec3 line = target - pose.position;
-    if (glm::dot(line, line) > 0.0) pose.orientation = orientationAlong(line);
-  }
-  return pose;
 }
 
 glm::dmat3 localFromCamera(const Pose& pose) {

@@ -41,9 +41,6 @@ struct Mount {
   glm::dvec3 lookAtPoint{0.0};
 };
 
-struct WorldState;
-/// Camera pose in the local frame (body axes: x is the line of sight, y left, z up).
-Pose cameraPose(const Mount& mount, const WorldState& state);
 /// Columns: camera x (right), y (up), z (backward) in the local frame.
 glm::dmat3 localFromCamera(const Pose& pose);
 

@@ -1,5 +1,6 @@
 #pragma once
 // What stands in a scene: textures, entities with their parts, point lights, the sun; and where all of it is at a time.
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -60,15 +61,22 @@ struct Sun {
   Spectrum irradiance;
 };
 
-/// Poses at one time, in the local frame.
+/// What of a camera is not as the scenario has it.
+struct CameraChange {
+  std::optional<glm::dvec3> position;     ///< in the local frame or in its carrier's
+  std::optional<glm::dquat> orientation;  ///< the same; it looks along its x axis
+  std::optional<double> focalLength_m, exposure_s;
+};
+
+/// Everything that changes, at one time: poses in the local frame.
 struct WorldState {
   double time_s = 0.0;
   std::vector<Pose> entities;
+  std::vector<std::vector<double>> temperatures_K;  ///< per entity and surface; of a surface with a temperature texture its mean
   std::vector<glm::dvec3> lights;
   std::vector<double> lightLevels;
+  std::map<std::string, CameraChange> cameras;  ///< by name, of those that commands have changed
 };
-
-WorldState advance(const std::vector<Entity>& entities, const std::vector<PointLight>& lights, double time_s);
 
 /// Pose of a child given in its parent's body frame.
 Pose composed(const Pose& parent, const Pose& child);

@@ -84,7 +84,7 @@ TEST(ZeroArea, NothingElse) {
 
 // A cone with a tip, its upper ring one point; a ray down its axis, along a diagonal, through corners.
 TEST(ZeroArea, MediaMetAtTheirEdges) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Cloud cube = meshed(folder.put("cube.obj", prism({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, {{0, 1, 2}, {0, 2, 3}})), {{{0, 0, 0}, {1, 1, 1}}});
   Range edges("meshed medium met on diagonals and through corners, in double", 2e-5, "chord by hand; bins of 5 1/cm");
   const double b = B(400);

@@ -1,5 +1,6 @@
 // Radiances from 1e-30 to 1e9 W/(m2 sr um) through every mode, through files and previews; counts to 1e22; spectra that are zero, or one line.
 #include "scenarios/commands/commands.hpp"
+#include "sim/frame/frame_files.hpp"
 #include "sim/frame/integrate.hpp"
 #include "sim/image/exr.hpp"
 #include "sim/parameters/error.hpp"
@@ -15,7 +16,7 @@ constexpr const char* kRadiances[] = {"1e-30", "1e-20", "1e-9", "1", "1e9", "1e2
 std::string background(const std::string& radiance) { return "background: {radiance: " + radiance + " W/(m2 sr um)}\n"; }
 
 TEST(Radiance, FromFaintToBlinding) {
-  const Folder folder;
+  const TemporaryFolder folder;
   Range drawn("radiance 1e-30 to 1e30 W/(m2 sr um), direct, buffered, in double", 1e-6, "4 um of it; single precision");
   Range written("radiance 1e-30 to 1e30 W/(m2 sr um) written as EXR and read again", 0.0, "every bit");
   Range integrated("radiance 1e-30 to 1e30 W/(m2 sr um) as a spectral image, written, read, integrated", 1e-6, "4 um of it");
@@ -31,7 +32,7 @@ TEST(Radiance, FromFaintToBlinding) {
 
     const Simulation sim = scene(background(radiance) + Look{.more = "spectral_image: {band: [8 um, 12 um], bins: 4}, "}.yaml());
     SpectralRenderer renderer(sim, sim.cameras.at(0), shaderLibrary(), std::make_shared<const GpuScene>(sim));
-    writeFrameFile(file, renderer.render(advance(sim.entities, sim.lights, 0.0), 0));
+    writeFrameFile(file, renderer.render(advance(sim, 0.0), 0));
     const SpectralImage image = readSpectralImage(file);
     const IntegratedFrame i = integrateSpectralImage(image, sim.cameras[0].outputs, image.pinhole, 0.0);
     integrated.add(static_cast<double>(i.frame.layers.at(0).pixels.at(12)), want, radiance);
@@ -41,7 +42,7 @@ TEST(Radiance, FromFaintToBlinding) {
 
 // Beside each other in one picture: the faint is not lost in the light of the bright, and the preview has a colour for both.
 TEST(Radiance, FaintBesideBlinding) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string yaml =
       "background: {radiance: 1e-30 W/(m2 sr um)}\nentities: [{name: p, shape: {model: plate, width: 4 m, height: 4 m}, material: blackbody, temperature: "
       "100000 K, position: [0 "

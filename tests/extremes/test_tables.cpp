@@ -6,6 +6,7 @@
 #include "atmosphere/tabulated_csv.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
+#include "sim/frame/frame_files.hpp"
 #include "sim/frame/integrate.hpp"
 #include "sim/image/exr.hpp"
 #include "sim/parameters/error.hpp"
@@ -132,7 +133,7 @@ TEST_F(NotANumber, InBodiesAndPlacesOfAScenario) {
 }
 
 TEST_F(NotANumber, InFiles) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::string csv = (std::filesystem::path(folder.put("r.csv", ""))).string();
   sweep("wavelength [um],response [1]\n8,0.5\n12,0.6\n", csv, [&](const std::string& text) {
     folder.put("r.csv", text);
@@ -179,12 +180,12 @@ TEST_F(NotANumber, InTablesMadeInCode) {
 
 // One pixel of one bin of a spectral image.
 TEST_F(NotANumber, InASpectralImage) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const std::filesystem::path file = folder.put("i.exr", "");
   const Simulation sim = scene("background: {radiance: 1 W/(m2 sr um)}\n" + Look{.more = "spectral_image: {band: [8 um, 12 um], bins: 4}, "}.yaml());
   needContext();
   SpectralRenderer renderer(sim, sim.cameras.at(0), shaderLibrary(), std::make_shared<const GpuScene>(sim));
-  Frame frame = renderer.render(advance(sim.entities, sim.lights, 0.0), 0);
+  Frame frame = renderer.render(advance(sim, 0.0), 0);
   for (float bad : {NAN, INFINITY, -INFINITY}) {
     frame.layers.at(1).pixels.at(7) = bad;
     writeFrameFile(file, frame);

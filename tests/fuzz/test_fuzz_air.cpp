@@ -86,7 +86,7 @@ long long fromEnvironment(const char* name, long long otherwise) {
 }
 
 /// Every number that a plan or a shader would ask for.
-bool isFinite(const Path& path) {
+bool isFinite(const Atmosphere& path) {
   for (double um : path.knots_um()) {
     const AirNode node = path.node(um);
     if (!(std::isfinite(node.source) && node.source >= 0.0)) return false;
@@ -117,7 +117,7 @@ TEST(FuzzAir, DamagedTablesAreReadOrRefused) {
             "channels: [{name: mw, response: {band: [4.1 um, 4.9 um]}}]}]\n",
         "case.yaml", folder, {}, libraries);
   };
-  for (const Corpus& c : sound) EXPECT_TRUE(isFinite(*read(c.key, c.text).path));  // undamaged: else all would be refused for a reason of the test's own
+  for (const Corpus& c : sound) EXPECT_TRUE(isFinite(*read(c.key, c.text).air));  // undamaged: else all would be refused for a reason of the test's own
 
   int accepted = 0, refused = 0, failed = 0;
   double slowest_s = 0.0;
@@ -132,7 +132,7 @@ TEST(FuzzAir, DamagedTablesAreReadOrRefused) {
     try {
       const Simulation sim = read(chosen.key, text);
       ++accepted;
-      if (!isFinite(*sim.path)) wrong = "read, but not finite";
+      if (!isFinite(*sim.air)) wrong = "read, but not finite";
     } catch (const UserError& e) {
       ++refused;
       const std::string message = e.what();

@@ -64,7 +64,7 @@ TEST(Audit, WantedPixelsAreThoseOfTheWholePicture) {
   sim.cameras[0].spectral = {};
   sim.cameras[0].spectral.reference = true;
   const auto gpu = std::make_shared<const GpuScene>(sim);
-  const WorldState state = advance(sim.entities, sim.lights, 0.0);
+  const WorldState state = advance(sim, 0.0);
   CameraRenderer renderer(sim, sim.cameras[0], shaderLibrary(), gpu);
   const CameraImage whole = renderer.render(state);
   std::vector<int> wanted;
@@ -83,7 +83,7 @@ TEST(Audit, FindsWhatAPlanIsOffBy) {
   needContext();
   Simulation sim = scene(std::string(kScene) + "accuracy: 1 %\naudit: 12\n");
   const Plan good = planFor(sim, {&sim.cameras[0], nullptr});
-  const RunReport kept = runFrames(sim, shaderLibrary(), {0, 1}, [](const Frame&) {});
+  const RunReport kept = runFrames(sim, shaderLibrary(), {0, 1}, [](const auto&) {});
   EXPECT_TRUE(kept.broken.empty());
   ASSERT_EQ(kept.audits.count("c"), 1u);
   EXPECT_EQ(kept.audits.at("c").pixels, 24);
@@ -97,7 +97,7 @@ TEST(Audit, FindsWhatAPlanIsOffBy) {
   sim.cameras[0].planFile = "c.plan";
   int drawn = 0;
   const RunReport broken = runFrames(
-      sim, shaderLibrary(), {0, 9}, [&](const Frame&) { ++drawn; }, {}, {}, true);
+      sim, shaderLibrary(), {0, 9}, [&](const auto&) { ++drawn; }, {}, {}, true);
   EXPECT_EQ(drawn, 1) << "it stops where it is found";
   EXPECT_FALSE(broken.broken.empty());
   EXPECT_NEAR(broken.audits.at("c").largest, 0.05, 0.011) << "5 %, and what the good plan may be off by";
@@ -109,7 +109,7 @@ TEST(Audit, TheSameWhicheverFramesAreDrawn) {
   const Simulation sim = scene(std::string(kScene) + "accuracy: 1 %\naudit: 0.5\n");
   const auto framesOf = [&](RunRange range) {
     std::map<int, Frame> frames;
-    runFrames(sim, shaderLibrary(), range, [&](const Frame& f) { frames[f.number] = f; });
+    runFrames(sim, shaderLibrary(), range, [&](const auto& f) { frames[f->number] = *f; });
     return frames;
   };
   const auto many = framesOf({0, 4}), few = framesOf({3, 4});

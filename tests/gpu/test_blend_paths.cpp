@@ -106,7 +106,7 @@ TEST(BlendPaths, SameBytesAgain) {
     const Setting setting("PITVIPER_BLEND", path);
     auto gpu = std::make_shared<const GpuScene>(sim);
     CameraRenderer renderer(sim, sim.cameras.at(0), shaderLibrary(), gpu);
-    const WorldState state = advance(sim.entities, sim.lights, 0.0);
+    const WorldState state = advance(sim, 0.0);
     const CameraImage first = renderer.render(state), again = renderer.render(state);
     EXPECT_EQ(first.slots, again.slots) << path;
   }

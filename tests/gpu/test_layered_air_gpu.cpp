@@ -83,7 +83,7 @@ TEST(LayeredAir, NoFrameDependsOnThoseBeforeIt) {
       "4.8 um]}}, {name: b, response: {band: [0.5 um, 0.7 um]}}]}]\n");
   const auto framesOf = [&](RunRange range) {
     std::map<int, Frame> frames;
-    runFrames(sim, shaderLibrary(), range, [&](const Frame& f) { frames[f.number] = f; });
+    runFrames(sim, shaderLibrary(), range, [&](const auto& f) { frames[f->number] = *f; });
     return frames;
   };
   const auto all = framesOf({0, 11});

@@ -142,7 +142,7 @@ TEST(OnlyRequired, Lights) {
     EXPECT_EQ(without.count("shadow maps"), 0);
     EXPECT_GT(with.tables().solid.columns.size(), 0u);
     EXPECT_EQ(without.tables().solid.columns.size(), 0u);
-    const WorldState state = advance(with.sim.entities, with.sim.lights, 0.0), dark = advance(without.sim.entities, without.sim.lights, 0.0);
+    const WorldState state = advance(with.sim, 0.0), dark = advance(without.sim, 0.0);
     EXPECT_EQ(lightTable(with.sim, with.plan, state).size(), 4 * with.nodes());
     EXPECT_EQ(lightTable(without.sim, without.plan, dark).size(), 0u);
   }
@@ -397,7 +397,7 @@ TEST(OnlyRequired, NoSpectralImageWhereNothingTransparentIsInView) {
   for (const bool behind : {false, true}) {
     const Simulation& sim = behind ? hidden : seen;
     CameraRenderer renderer(sim, sim.cameras[0], shaderLibrary(), std::make_shared<const GpuScene>(sim));
-    renderer.render(advance(sim.entities, sim.lights, 0.0));
+    renderer.render(advance(sim, 0.0));
     EXPECT_EQ(renderer.isBuffered(), !behind);
   }
 }

@@ -54,15 +54,14 @@ double worstError(const Simulation& sim, const Plan& plan, const Sight& sight, c
   for (const double range_m : {550.0, 1500.0, 5e3, 12e3, 19e3})
     for (const double temperature_K : temperatures_K)
       for (const double level : {0.0, 0.3, 0.95}) {
-        Simulation live = sim;
-        for (Surface& s : live.entities[0].surfaces) s.temperature_K = temperature_K;
-        WorldState state = advance(sim.entities, sim.lights, 0.0);
+        WorldState state = advance(sim, 0.0);
+        for (double& surface_K : state.temperatures_K[0]) surface_K = temperature_K;
         const glm::dvec3 move = (range_m - 600.0) * sight.direction() + glm::dvec3(0.31, 0.0, 0.17);  // the ray misses edges of the mesh
         state.entities[0].position += move;
         state.lights[0] += move;
         state.lightLevels[0] = level;
-        const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, 1);
-        const ReferenceShader planned(live, plan, view, state, present), exact(live, fine, view, state, present);
+        const View view = cameraView(camera, state, 1);
+        const ReferenceShader planned(sim, plan, view, state, present), exact(sim, fine, view, state, present);
         const ReferencePixel got = planned.pixel(4, 4), want = exact.pixel(4, 4);
         if (!sim.mediumOf(sim.entities[0])) {
           EXPECT_EQ(want.entity, 0);

@@ -43,8 +43,8 @@ std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan
   };
   std::vector<Seen> pixels;
   for (double t : times) {
-    const WorldState state = advance(sim.entities, sim.lights, t);
-    const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, 1);
+    const WorldState state = advance(sim, t);
+    const View view = cameraView(camera, state, 1);
     pass->setState(state);
     pass->draw(view, state, present);
     pass->startReadback(true);

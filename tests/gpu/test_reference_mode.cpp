@@ -106,7 +106,7 @@ TEST(ReferenceMode, SpectralImageAndProbe) {
             "output: irradiance}]}]\n");
   const auto fine = withSampling(sim, referenceSampling()), even = withSampling(sim, evenly(96));
   needContext();
-  const WorldState state = advance(sim.entities, sim.lights, 0.0);
+  const WorldState state = advance(sim, 0.0);
   auto image = [&](const Simulation& s) { return SpectralRenderer(s, s.cameras[0], shaderLibrary(), std::make_shared<const GpuScene>(s)).render(state, 0); };
   const Frame a = image(fine), b = image(even);
   double worst = 0.0;
@@ -125,7 +125,7 @@ TEST(ReferenceMode, TellsHowFarAPictureIs) {
   for (int picture = 0; picture < 2; ++picture) {
     std::vector<double> shares;
     renderer.setProgress([&](double s) { shares.push_back(s); });
-    renderer.render(advance(sim.entities, sim.lights, 0.0));
+    renderer.render(advance(sim, 0.0));
     ASSERT_GT(shares.size(), 10u);
     EXPECT_TRUE(std::is_sorted(shares.begin(), shares.end()));
     EXPECT_LT(shares.front(), 0.5);

@@ -27,8 +27,8 @@ Tally tally(const Simulation& sim, int stride = 1) {
   EXPECT_TRUE(plan.terms.shadows);
   Plan open = plan;
   open.terms.shadows = false;
-  const WorldState state = advance(sim.entities, sim.lights, 0.0);
-  const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, 1);
+  const WorldState state = advance(sim, 0.0);
+  const View view = cameraView(camera, state, 1);
   auto gpu = std::make_shared<const GpuScene>(sim);
   const auto pass = makeScenePass(sim, plan, shaderLibrary(), gpu, true, camera.pinhole.apertureArea_m2());
   pass->setState(state);

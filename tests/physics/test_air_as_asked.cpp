@@ -48,7 +48,7 @@ TEST(AirAsAsked, AerosolOfTheTable) {
 TEST(AirAsAsked, AResponseCutAtTheAirsEnd) {
   const Simulation cut = wall("hazy_us76", "accuracy: 1 %\n", "microbolometer_lwir");
   char band[120];
-  std::snprintf(band, sizeof band, "{product: [microbolometer_lwir, {band: [1 um, %.17g um]}]}", cut.path->validHigh_um());
+  std::snprintf(band, sizeof band, "{product: [microbolometer_lwir, {band: [1 um, %.17g um]}]}", cut.air->validHigh_um());
   const Frame a = renderFrame(cut), b = renderFrame(wall("hazy_us76", "accuracy: 1 %\n", band));
   EXPECT_NEAR(at(layer(a, "b.radiance"), a, 0, 0) / at(layer(b, "b.radiance"), b, 0, 0), 1.0, 1e-6);
   EXPECT_NE(attribute(a, "pitviper.response_cut.b.radiance").find("is left out"), std::string::npos);

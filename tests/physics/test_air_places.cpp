@@ -29,8 +29,8 @@ struct Seen {
 
 Seen lookAlong(const Simulation& sim, double um, double height_m, const glm::dvec3& direction) {
   const SpectralNode node = nodeAt(sim, um);
-  const auto legs = SunLegs::of(sim.path, sim.sun->toSun.z, sim.frame.earthRadius_m());
-  const WorldState state = advance(sim.entities, sim.lights, 0.0);
+  const auto legs = SunLegs::of(sim.air, sim.sun->toSun.z, sim.frame.earthRadius_m());
+  const WorldState state = advance(sim, 0.0);
   const LineOfSight line{{0.0, 0.0, height_m}, glm::normalize(direction), {}, 0.0};
   const std::vector<SpectralNode> nodes{node};
   const NodeSpectra spectra(sim, nodes);
@@ -44,7 +44,7 @@ Seen lookAlong(const Simulation& sim, double um, double height_m, const glm::dve
   ranges.push_back(physics::kFar);
   const AirRay ray{height_m, line.direction.z, sim.frame.earthRadius_m()};
   const RaySun sun{sim.sun->toSun.z, glm::dot(line.direction, sim.sun->toSun)};
-  const SunlitAir air(*sim.path, ray, sim.path->stationsAt(ray, ranges), legs.get(), sun);
+  const SunlitAir air(*sim.air, ray, sim.air->stationsAt(ray, ranges), legs.get(), sun);
   std::vector<double> source;
   for (const AirStation& s : air.stations) source.push_back(s.temperature_K > 0.0 ? physics::planckRadiance(um, s.temperature_K) : 0.0);
   const AirRadiance found = airRadiance(node.air, air, source);

@@ -66,7 +66,7 @@ TEST(LowSun, HorizonDropsWithHeight) {
 }
 
 /// Air at the same places of both.
-std::shared_ptr<const Path> air() {
+std::shared_ptr<const Atmosphere> air() {
   AbsorberTable table = AbsorberTable::read(std::filesystem::path(PITVIPER_SOURCE_DIR) / "atmosphere/library/us76_rural.air");
   table.removeAerosol();
   return makeLayeredAir(std::move(table));
@@ -90,7 +90,7 @@ TEST(LowSun, TablesOfWaysToTheSun) {
         const RisenSun sun = risenSun(height, std::min(std::sin(sun_deg * kDegree) + between(-0.01, 0.01), 1.0), radius);
         if (!(sun.share > 0.0)) continue;
         const AirAmounts near = legs->at(height, sun.sinElevation), exact = path->amounts({height, sun.sinElevation, radius}, physics::kFar);
-        const double depth = Path::depthOf(node, path->powered(exact)), error = std::abs(Path::depthOf(node, path->powered(near)) - depth);
+        const double depth = Atmosphere::depthOf(node, path->powered(exact)), error = std::abs(Atmosphere::depthOf(node, path->powered(near)) - depth);
         if (depth > 20.0) continue;  // exp(-20): no sunlight to speak of
         if (visibility_km < 5.0) most = std::max(most, error);
         else (sun.sinElevation < 0.035 ? low : high) = std::max(sun.sinElevation < 0.035 ? low : high, error);
@@ -142,7 +142,7 @@ double plateInSun(double height_m, double elevation_deg, double um, const std::s
 }
 
 /// Straight through the air from a height: densities in steps of 200 m and less, amounts to their powers.
-double transmittanceToSun(const Path& path, double height_m, double elevation_rad, double um) {
+double transmittanceToSun(const Atmosphere& path, double height_m, double elevation_rad, double um) {
   const double r0 = LocalFrame().earthRadius_m() + height_m, sine = std::sin(elevation_rad);
   AirAmounts sum;
   for (double s = 0.0, step; s < 2.5e6; s += step) {

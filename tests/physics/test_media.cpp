@@ -86,7 +86,7 @@ TEST(Media, FarAwayChordsKeepTheirDigits) {
 // --- meshes -------------------------------------------------------------------------------------------------------------------------
 
 TEST(Media, ClosedMeshes) {
-  const Folder folder;
+  const TemporaryFolder folder;
   const Cloud brick = meshed(folder.put("brick.obj", prism({{0, 0}, {3, 0}, {3, 2}, {0, 2}}, {{0, 1, 2}, {0, 2, 3}})), {{{0, 0, 0}, {3, 2, 1}}});
   const Cloud u = uShape(folder);
   for (double heading : {90.0, 0.0, 63.0, 200.0}) {
@@ -169,7 +169,7 @@ TEST(Media, AirBeforeInsideAndBehind) {
         w.walls = {{.x = 30, .kelvin = 350}};
         bound("ellipsoid of " + text(k) + "/m in air of " + text(air) + "/m, " + text(airKelvin) + " K, worst pixel", w.worst(), 1e-5, "march through both");
       }
-  const Folder folder;
+  const TemporaryFolder folder;
   World w{.extinction = 0.2, .air_K = 280};
   w.clouds = {of(placed(box(3, 3, 2), {15, 0, 0}, 30, 40), 0.4)};
   w.walls = {{.x = 30, .kelvin = 350}};

@@ -28,7 +28,7 @@ Parts partsOf(const std::string& yaml, int pixel) {
   CameraRenderer renderer(sim, camera, shaderLibrary(), std::make_shared<const GpuScene>(sim));
   renderer.setWanted({pixel});
   renderer.watchParts();
-  const WorldState state = advance(sim.entities, sim.lights, sim.time.at(0));
+  const WorldState state = advance(sim, sim.time.at(0));
   const auto draw = [&] {
     std::vector<double> values;
     for (const auto& slot : renderer.render(state).slots) values.push_back(slot[static_cast<size_t>(pixel)]);

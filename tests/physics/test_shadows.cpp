@@ -25,9 +25,9 @@ Picture draw(const Simulation& sim) {
   needContext();
   const Camera& camera = sim.cameras[0];
   const Plan plan = makePlan(sim, camera.outputs, camera.spectral, camera.where);
-  const WorldState state = advance(sim.entities, sim.lights, 0.0);
+  const WorldState state = advance(sim, 0.0);
   Picture picture;
-  picture.view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, 1);
+  picture.view = cameraView(camera, state, 1);
   const auto pass = makeScenePass(sim, plan, shaderLibrary(), std::make_shared<const GpuScene>(sim), false, 1.0);
   pass->setState(state);
   pass->draw(picture.view, state, std::vector<char>(sim.entities.size(), 1));
@@ -203,7 +203,7 @@ TEST(Shadows, JetOverTerrain) {
   const Picture p = draw(sim);
   const GroundTally t = onGround(p, 0.0, [](glm::dvec2) { return 1.0; });
   // The outline along the sun, on a grid of 2 cm.
-  const WorldState state = advance(sim.entities, sim.lights, 0.0);
+  const WorldState state = advance(sim, 0.0);
   const auto tree = treeOf(sim.entities[1].mesh);
   const glm::dmat3 body = glm::transpose(glm::mat3_cast(state.entities[1].orientation));
   const glm::dvec3 toSun = body * sim.sun->toSun, x = glm::normalize(glm::cross(toSun, glm::dvec3(0.3, 0.9, 0.1))), z = glm::cross(x, toSun);

@@ -22,7 +22,7 @@ TEST(Corners, SpheresThatNearlyTouch) {
 
 // Air between the arms of a U is not inside it.
 TEST(Corners, ConcaveBodyInAir) {
-  const Folder folder;
+  const TemporaryFolder folder;
   World w{.extinction = 0.2, .air_K = 280};
   w.walls = {{.x = 30, .kelvin = 350}};
   w.clouds = {of(placed(uShape(folder), {15, -1.5, -0.5}, 90, 0), 1.0, 450)};

@@ -65,7 +65,7 @@ PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const 
   std::vector<WorldState> states;
   std::vector<std::vector<char>> left;
   for (int f = 0; f < sim.time.frames; ++f) {
-    states.push_back(advance(sim.entities, sim.lights, sim.time.at(f)));
+    states.push_back(advance(sim, sim.time.at(f)));
     left.push_back(outlinePixels(sim, camera, states.back()));
     out.leftOut += static_cast<int>(std::count(left.back().begin(), left.back().end(), 1));
   }

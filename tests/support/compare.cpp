@@ -20,8 +20,8 @@ Worst compare(const Simulation& sim, int stride) {
 Worst compare(const Simulation& sim, const Plan& plan, int stride, double floor) {
   needContext();
   const Camera& camera = sim.cameras[0];
-  const WorldState state = advance(sim.entities, sim.lights, 0.0);
-  const View view = cameraView(camera.pinhole, cameraPose(camera.mount, state), camera.near_m, 1);
+  const WorldState state = advance(sim, 0.0);
+  const View view = cameraView(camera, state, 1);
   auto gpu = std::make_shared<const GpuScene>(sim);
   const auto owned = makeScenePass(sim, plan, shaderLibrary(), gpu, true, camera.pinhole.apertureArea_m2());
   ScenePass& pass = *owned;

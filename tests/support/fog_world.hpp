@@ -1,16 +1,14 @@
 #pragma once
 // Bodies of grey medium, panes and walls, as a scenario and as what a ray meets: what the tests of media share.
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 
 #include "tests/support/ray_march.hpp"
 #include "tests/support/scene_builder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace pitviper::test {
 
@@ -157,21 +155,6 @@ struct World {
 
 // --- meshes
 
-class Folder {
- public:
-  Folder() : path_(std::filesystem::temp_directory_path() / ("pitviper_media_" + std::to_string(getpid()))) { std::filesystem::create_directories(path_); }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  std::string put(const std::string& name, const std::string& content) const {
-    std::ofstream(path_ / name) << content;
-    return (path_ / name).string();
-  }
-
- private:
-  std::filesystem::path path_;
-};
-
 /// A polygon in the x-y plane (counter-clockwise) between z = 0 and 1, its top triangulated as told.
 inline std::string prism(const std::vector<glm::dvec2>& outline, const std::vector<glm::ivec3>& top) {
   std::string obj;
@@ -193,7 +176,7 @@ inline Cloud meshed(const std::string& file, std::vector<std::pair<glm::dvec3, g
   return c;
 }
 
-inline Cloud uShape(const Folder& folder) {
+inline Cloud uShape(const TemporaryFolder& folder) {
   // Two arms and what joins them.
   const std::string file = folder.put("u.obj", prism({{0, 0}, {3, 0}, {3, 2}, {2, 2}, {2, 1}, {1, 1}, {1, 2}, {0, 2}},
                                                      {{1, 2, 3}, {1, 3, 4}, {0, 1, 4}, {0, 4, 5}, {0, 5, 6}, {0, 6, 7}}));

@@ -28,11 +28,11 @@ CameraImage renderImage(const Simulation& sim, int frame) {
   needContext();
   auto gpu = std::make_shared<const GpuScene>(sim);
   CameraRenderer renderer(sim, sim.cameras.at(0), shaderLibrary(), gpu);
-  return renderer.render(advance(sim.entities, sim.lights, sim.time.at(frame)));
+  return renderer.render(advance(sim, sim.time.at(frame)));
 }
 
 Frame renderFrame(const Simulation& sim, int frame) {
-  return makeFrame(sim, sim.cameras.at(0), renderImage(sim, frame), advance(sim.entities, sim.lights, sim.time.at(frame)), frame);
+  return makeFrame(sim, sim.cameras.at(0), renderImage(sim, frame), advance(sim, sim.time.at(frame)), frame);
 }
 
 const FrameLayer& layer(const Frame& frame, const std::string& name) {
@@ -52,7 +52,7 @@ double sum(const FrameLayer& l) {
 std::vector<double> probeReading(const Simulation& sim) {
   needContext();
   auto gpu = std::make_shared<const GpuScene>(sim);
-  return measureProbe(sim, sim.probes.at(0), shaderLibrary(), gpu, advance(sim.entities, sim.lights, sim.time.at(0)));
+  return measureProbe(sim, sim.probes.at(0), shaderLibrary(), gpu, advance(sim, sim.time.at(0)));
 }
 
 double blackBodyBand(double low_um, double high_um, double temperature_K) {

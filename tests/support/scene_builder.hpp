@@ -2,7 +2,7 @@
 // Scenes for tests, written as scenarios are, and rendered through the whole pipeline.
 #include <string>
 
-#include "sim/frame/frame.hpp"
+#include "sim/frame/make_frame.hpp"
 #include "sim/render/camera_renderer.hpp"
 
 namespace pitviper::test {

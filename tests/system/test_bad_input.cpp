@@ -196,9 +196,9 @@ std::vector<Bad> badAir() {
       {"AirCsvMissing", airScene("{csv: @@nothing.csv}"), {"there is no file 'nothing.csv'"}},
       {"AirTwice", airScene("{tape7: air.tp7, library: @@hazy_us76}"), {"given twice, by 'tape7' and by 'library'"}},
       {"AirFromTapeAndCsv", airScene("{tape7: air.tp7, csv: @@air.csv}"), {"given twice, by 'tape7' and by 'csv'"}},
-      {"AirFromCsvWithATemperature", airScene("{csv: air.csv, temperature: @@280 K}"), {"'temperature' is of another kind of air", "remove 'temperature'"}},
-      {"RangeOfACsv", airScene("{csv: air.csv, range: @@5 km}"), {"'range' is of a tape7"}},
-      {"RangeAlone", airScene("{library: hazy_us76, range: @@5 km}"), {"'range' is of air from a tape7"}},
+      {"AirFromCsvWithATemperature", airScene("{csv: air.csv, temperature: @@280 K}"), {"'temperature' is of homogeneous or layered air, and this air is csv", "remove 'temperature'"}},
+      {"RangeOfACsv", airScene("{csv: air.csv, range: @@5 km}"), {"'range' is of tape7 air, and this air is csv"}},
+      {"RangeAlone", airScene("{library: hazy_us76, range: @@5 km}"), {"'range' is of tape7 air, and this air is layered"}},
       {"RangeOfNothing", airScene("{tape7: air.tp7, range: @@0 km}"), {"range is out of range (0 km)"}},
       // CSV.
       {"AirCsvWithoutUnits", csv, {"'range' has no unit", "range_km or range_m"}, air("wavelength_um,@@range,transmittance\n4,1,0.5\n5,1,0.5\n")},

@@ -35,7 +35,7 @@ TEST(Coverage, MicrobolometerIsCutWhereLibraryAirEnds) {
   for (const char* air : {"clear_us76", "hazy_us76", "clear_mls", "hazy_mls"}) {
     const ChannelOutput o = only(yaml(air, "microbolometer_lwir")), whole = only(yaml("none", "microbolometer_lwir"));
     const Simulation sim = test::scene(yaml(air, "microbolometer_lwir"));
-    const double end = sim.path->validHigh_um();
+    const double end = sim.air->validHigh_um();
     EXPECT_LT(end, 14.8);
     EXPECT_DOUBLE_EQ(o.kernel.supportHigh(), end);
     EXPECT_DOUBLE_EQ(o.bandHigh_um, end);
@@ -56,7 +56,7 @@ TEST(Coverage, MicrobolometerIsCutWhereLibraryAirEnds) {
 TEST(Coverage, MoreIsRefusedWithAFixThatHelps) {
   const std::string said = refusal(yaml("clear_us76", "{band: [8 um, 15 um]}"));
   EXPECT_TRUE(has(said, "the atmosphere has no data for channel 'lw' (8 um to 15 um): ")) << said;
-  const double end = test::scene(yaml("clear_us76", "{band: [8 um, 9 um]}")).path->validHigh_um();
+  const double end = test::scene(yaml("clear_us76", "{band: [8 um, 9 um]}")).air->validHigh_um();
   char share[32];
   std::snprintf(share, sizeof share, "%.2g %% of its response", 100.0 * (15.0 - end) / 7.0);
   EXPECT_TRUE(has(said, share)) << said;

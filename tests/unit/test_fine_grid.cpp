@@ -85,7 +85,7 @@ TEST(FineGrid, SmoothScenesKeepTheirBins) {
     const auto grid = fineGrid(infrared, sim);
     EXPECT_LE(grid.size(), fineGrid(infrared).size() + 4);
     // Within each piece of the air's table: the middle is the mean.
-    const BentSpectrum air = airSpectrum(*sim.path);
+    const BentSpectrum air = airSpectrum(*sim.air);
     double sum = 0.0, whole = integrate(air.at, low, high, air.knots_um);
     for (const QuadratureNode& n : grid) sum += n.weight * air.at(n.x);
     EXPECT_NEAR(sum / whole, 1.0, 1e-4) << low;  // at the band's ends a bin holds a bend

@@ -62,7 +62,7 @@ TEST(Limits, MistakesAreTold) {
 // A body counts by its bounding sphere: 990 to 1010 m here (the sphere itself to 1e-3 of its radius).
 TEST(Limits, RangeIsOfTheWholeBody) {
   Simulation sim = scene(kScene);
-  const WorldState state = advance(sim.entities, sim.lights, 0.0);
+  const WorldState state = advance(sim, 0.0);
   auto outside = [&](double nearest_m, double farthest_m) {
     sim.limits = {nearest_m, farthest_m, 0.0, 0.0, 0.0};
     return outsideLimits(sim, sim.cameras[0], state);
@@ -77,7 +77,7 @@ TEST(Limits, RangeIsOfTheWholeBody) {
 TEST(Limits, OnlyWhatMayBeInView) {
   Simulation sim = scene(kScene);
   sim.limits = {1.0, 500.0, 400.0, 500.0, 0.0};
-  WorldState state = advance(sim.entities, sim.lights, 0.0);
+  WorldState state = advance(sim, 0.0);
   EXPECT_EQ(outsideLimits(sim, sim.cameras[0], state), "p at 990 m, planned to 500 m; p at 300 K, planned from 400 K");
   state.entities[0].position = {0.0, -1000.0, 0.0};
   EXPECT_EQ(outsideLimits(sim, sim.cameras[0], state), "");
@@ -94,7 +94,7 @@ TEST(Limits, ManyAreCounted) {
   Simulation sim = scene(bodies + kScene.substr(kScene.find("cameras")));
   sim.limits.nearest_m = 1.0;
   sim.limits.farthest_m = 100.0;
-  const std::string text = outsideLimits(sim, sim.cameras[0], advance(sim.entities, sim.lights, 0.0));
+  const std::string text = outsideLimits(sim, sim.cameras[0], advance(sim, 0.0));
   EXPECT_NE(text.find("b3 at 1.002 km, planned to 100 m; and 3 more"), std::string::npos) << text;
   EXPECT_EQ(text.find("b4"), std::string::npos) << text;
 }

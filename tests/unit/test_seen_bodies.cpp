@@ -20,7 +20,7 @@ std::vector<BodySight> seen(const std::string& bodies, const std::string& more =
                   "cameras: [{name: c, film: {width: 100, height: 100, pitch: 50 um}, focal_length: 50 mm, aperture: 5 mm, position: [0 m, 0 "
                   "m, 0 m], heading: 0 deg, pitch: 0 deg, channels: [{name: lw, response: {band: [8 um, 9 um]}}]" +
                   more + "}]\n");
-  return bodiesSeen(sim, sim.cameras.at(0), advance(sim.entities, sim.lights, 0.0));
+  return bodiesSeen(sim, sim.cameras.at(0), advance(sim, 0.0));
 }
 
 const std::string kPlate = "plate, width: 2 m, height: 1 m", kNorth = ", heading: 180 deg";

@@ -104,7 +104,7 @@ TEST(ShadowRays, SquareOverGround) {
                                      "  - {name: square, shape: {model: plate, width: 2 m, height: 2 m}, material: sand, temperature: 300 K, pitch: 90 deg, "
                                      "position: [0 m, 0 m, 3 m]}\n") +
                          kCamera);
-  const WorldState state = advance(sim.entities, sim.lights, 0.0);
+  const WorldState state = advance(sim, 0.0);
   const ShadowCaster shadows(sim);
   std::mt19937 random(7);
   std::uniform_real_distribution<> unit(-1.0, 1.0);
@@ -129,7 +129,7 @@ TEST(ShadowRays, TerminatorOfACoarseBody) {
                         "  - {name: missile, shape: {model: missile}, material: sand, temperature: 300 K}\n"
                         "  - {name: far, shape: {model: sphere, radius: 1 m}, material: sand, temperature: 300 K, position: [900 m, 0 m, 0 m]}\n") +
             kCamera);
-  const WorldState state = advance(sim.entities, sim.lights, 0.0);
+  const WorldState state = advance(sim, 0.0);
   const ShadowCaster shadows(sim);
   // The tube between nose and fins is convex around: every place that the smooth normal calls lit by a light abeam must be lit.
   int away = 0;

@@ -1,4 +1,4 @@
-#include "sim/plan/air_rows.hpp"
+#include "atmosphere/layered_rows.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +20,7 @@ double logOf(double v) { return std::log(std::max(v, kNothing)); }
 }  // namespace
 
 AirRows::AirRows(const Simulation& simulation, const Plan& plan, bool perChannel) : simulation_(simulation), plan_(plan), perChannel_(perChannel) {
-  vectors_ = (static_cast<int>(simulation.path->exponents().size()) + 3) / 4;
+  vectors_ = (static_cast<int>(simulation.air->exponents().size()) + 3) / 4;
   values_ = perChannel ? 4 * plan.groupCount() : plan.nodeCount();
   parts_ = plan.terms.scatteredSun ? 3 : 1;
   for (const SpectralNode& n : plan.nodes) {
@@ -37,8 +37,8 @@ AirRows::AirRows(const Simulation& simulation, const Plan& plan, bool perChannel
 
 void AirRows::begin(const AirGrid& grid) {
   grid_ = grid;
-  const AirRay here{std::min(grid_.height_m, simulation_.path->top_m()), 1.0, simulation_.frame.earthRadius_m()};
-  const double temperature_K = simulation_.path->stationsAt(here, std::array{0.0}).front().temperature_K;
+  const AirRay here{std::min(grid_.height_m, simulation_.air->top_m()), 1.0, simulation_.frame.earthRadius_m()};
+  const double temperature_K = simulation_.air->stationsAt(here, std::array{0.0}).front().temperature_K;
   black_.clear();
   for (size_t i = 0; i < plan_.nodes.size(); ++i) black_.push_back(temperature_K > 0.0 ? planck(i, temperature_K) : 0.0);
 }
@@ -73,7 +73,7 @@ std::vector<double> AirRows::asymmetriesOf() const {
 }
 
 double AirRows::entryOf(double sine) const {
-  const double height = grid_.height_m, top = simulation_.path->top_m(), radius = simulation_.frame.earthRadius_m();
+  const double height = grid_.height_m, top = simulation_.air->top_m(), radius = simulation_.frame.earthRadius_m();
   if (!(height > top)) return 0.0;
   const double b = (radius + height) * sine, q2 = (top - height) * (2.0 * radius + top + height), root = b * b + q2;
   return std::min(root <= 0.0 || b >= 0.0 ? physics::kFar : -q2 / (std::sqrt(root) - b), 1e12);
@@ -96,7 +96,7 @@ AirRow AirRows::at(const AirLine& line) const {
 }
 
 AirRow AirRows::at(const AirLine& asked, std::span<const double> ranges) const {
-  const Path& path = *simulation_.path;
+  const Atmosphere& path = *simulation_.air;
   const double height = grid_.height_m, radius = simulation_.frame.earthRadius_m();
   const auto parts = static_cast<size_t>(parts_), values = static_cast<size_t>(values_), columns = ranges.size();
   const auto lineAt = [&](double sine) {

@@ -1,4 +1,4 @@
-#include "sim/plan/air_table_fit.hpp"
+#include "atmosphere/layered_fit.hpp"
 
 #include <algorithm>
 #include <array>
@@ -43,7 +43,7 @@ struct Seen {
 class Reader {
  public:
   Reader(const Simulation& simulation, const Plan& plan, const AirRows& rows, double cosScatter)
-      : plan_(plan), rows_(rows), powers_(simulation.path->exponents()), cosScatter_(cosScatter) {}
+      : plan_(plan), rows_(rows), powers_(simulation.air->exponents()), cosScatter_(cosScatter) {}
 
   /// Between two entries, a share of the way to the second. `length_m`: of the air before it.
   Seen between(const AirRow& a, size_t columnA, const AirRow& b, size_t columnB, double length_m, double share = 0.5) const {
@@ -96,6 +96,18 @@ int finer(int entries, double error, double share, int most) {
   const int doublings = static_cast<int>(std::clamp(std::ceil(0.5 * std::log2(error / share)), 1.0, 8.0));
   return std::min(((std::max(entries, 2) - 1) << doublings) + 1, most);
 }
+
+/// Where no accuracy is asked for, and of a probe.
+constexpr AirTableSize kUsualSize{129, 193, 5};
+/// What tables of layered air lose on the lines that their size was chosen on, times this, is predicted.
+constexpr double kTableMargin = 2.0;
+/// And what ways on from lit surfaces to the sun lose, by the depth of these and the share of that light: 6e-4 of a pixel on the ground at a depth of 8 (fog,
+/// visibility 0.7 km; found on the GPU against double precision).
+constexpr double kSunWay = 1e-4;
+/// A probe keeps tables of the usual size, all around: a guess of what these lose, of the accuracy.
+constexpr double kProbeTables = 0.2;
+/// They are made for this where no accuracy is asked for.
+constexpr double kUsualAccuracy = 0.01;
 
 }  // namespace
 
@@ -151,7 +163,7 @@ AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& 
   const size_t slots = floor_.size();
   const std::vector<double> none(slots, 0.0);
   Lost lost{none, none, none, none};
-  View view = cameraView(camera_.pinhole, cameraPose(camera_.mount, *sample.state), camera_.near_m, camera_.samples);
+  View view = cameraView(camera_, *sample.state, camera_.samples);
   view.position = sample.origin;  // limits move the eye
   const AirGrid grid = airGrid(simulation_, plan_, size, view, *sample.state);
   AirRows rows = rows_;
@@ -282,6 +294,26 @@ std::pair<AirTableSize, AirTableLoss> AirTableFit::within(double accuracy) const
     loss = lossOf(size);
   }
   return {size, loss};
+}
+
+std::vector<double> planLayeredTables(const AirTableRequest& r) {
+  Plan& plan = r.plan;
+  const double accuracy = plan.accuracy > 0.0 ? plan.accuracy : kUsualAccuracy;
+  plan.air = affordable(kUsualSize, r.simulation, plan);
+  if (!r.rays || !r.camera) return std::vector<double>(plan.weight.size(), kProbeTables * accuracy);
+  const std::vector<double> toSun = r.simulation.sun ? depthsToSun(r.simulation, plan) : std::vector<double>();
+  if (!toSun.empty()) plan.air.sunDepth = *std::max_element(toSun.begin(), toSun.end());
+  const NodesOfPlan nodes(r.simulation, plan);
+  auto [size, loss] = AirTableFit(r.simulation, *r.camera, nodes, *r.rays, *r.floor).within(accuracy);
+  plan.air = size;
+  for (size_t s = 0; s < loss.sums.size(); ++s) {
+    double& l = loss.sums[s];
+    l *= kTableMargin;
+    if (toSun.empty()) continue;
+    const size_t sun = static_cast<size_t>(TermKind::Sun);
+    l += kSunWay * toSun[s] * (sun < plan.shares.size() && s < plan.shares[sun].share.size() ? std::min(plan.shares[sun].share[s], 1.0) : 1.0);
+  }
+  return loss.sums;
 }
 
 }  // namespace pitviper

@@ -2,7 +2,8 @@
 // How many entries tables of layered air need: what they lose on lines of sight, and the size that keeps it within an accuracy.
 #include <vector>
 
-#include "sim/plan/air_rows.hpp"
+#include "atmosphere/layered_rows.hpp"
+#include "sim/plan/air_table_request.hpp"
 #include "sim/plan/line_check.hpp"
 #include "sim/radiometry/physics.hpp"
 
@@ -17,6 +18,9 @@ struct AirTableLoss {
 
 /// The same, or less where that would take more memory than tables may: fewer azimuths, then ranges and elevations.
 AirTableSize affordable(AirTableSize size, const Simulation& simulation, const Plan& plan);
+
+/// As of Atmosphere::planTables().
+std::vector<double> planLayeredTables(const AirTableRequest& request);
 
 /// Lines of sight of a camera through layered air, each with what lies behind the air.
 class AirTableFit {

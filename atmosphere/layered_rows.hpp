@@ -3,7 +3,7 @@
 #include <span>
 
 #include "sim/model/sunlit_air.hpp"
-#include "sim/plan/air_grid.hpp"
+#include "atmosphere/layered_grid.hpp"
 
 namespace pitviper {
 

@@ -1,4 +1,4 @@
-#include "sim/plan/air_grid.hpp"
+#include "atmosphere/layered_grid.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -143,10 +143,10 @@ double AirGrid::horizon(double earthRadius_m) const {
 
 std::vector<double> depthsToSun(const Simulation& simulation, const Plan& plan) {
   const double sine = std::max(glm::dot(simulation.sun->toSun, simulation.frame.up(glm::dvec3(0.0))), kLowestSun);
-  const AirAmounts way = simulation.path->powered(simulation.path->amounts({0.0, sine, simulation.frame.earthRadius_m()}, physics::kFar));
+  const AirAmounts way = simulation.air->powered(simulation.air->amounts({0.0, sine, simulation.frame.earthRadius_m()}, physics::kFar));
   std::vector<double> sum(plan.weight.size(), 0.0), all(plan.weight.size(), 0.0);
   for (size_t i = 0; i < plan.nodes.size(); ++i) {
-    const double depth = Path::depthOf(plan.nodes[i].air, way), passed = std::exp(-depth) * plan.nodes[i].mean(simulation.sun->irradiance);
+    const double depth = Atmosphere::depthOf(plan.nodes[i].air, way), passed = std::exp(-depth) * plan.nodes[i].mean(simulation.sun->irradiance);
     for (size_t s = 0; s < sum.size(); ++s) {
       sum[s] += plan.weight[s][i] * passed * depth;
       all[s] += plan.weight[s][i] * passed;

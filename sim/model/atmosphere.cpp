@@ -1,4 +1,4 @@
-#include "sim/model/path.hpp"
+#include "sim/model/atmosphere.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 namespace pitviper {
 
-AirAmounts Path::densities(double) const { return {}; }
+AirAmounts Atmosphere::densities(double) const { return {}; }
 
-AirAmounts Path::powered(const AirAmounts& amounts) const {
+AirAmounts Atmosphere::powered(const AirAmounts& amounts) const {
   AirAmounts u;
   const auto powers = exponents();
   for (size_t k = 0; k < powers.size(); ++k) {
@@ -20,13 +20,13 @@ AirAmounts Path::powered(const AirAmounts& amounts) const {
   return u;
 }
 
-double Path::depthOf(const AirNode& node, const AirAmounts& powered) {
+double Atmosphere::depthOf(const AirNode& node, const AirAmounts& powered) {
   double depth = 0.0;
   for (size_t k = 0; k < node.extinction.size(); ++k) depth += node.extinction[k] * powered.amount[k];
   return depth;
 }
 
-double Path::transmittance(const AirNode& node, const AirAmounts& amounts) const { return std::exp(-opticalDepth(node, amounts)); }
+double Atmosphere::transmittance(const AirNode& node, const AirAmounts& amounts) const { return std::exp(-opticalDepth(node, amounts)); }
 
 // B linear in optical depth t over a stretch of depth d seen through depth t0:
 //   integral of B exp(-t0 - t) dt = exp(-t0) (B_near (1 - exp(-d)) + (B_far - B_near) g(d)),  g = (1 - exp(-d) (1 + d)) / d.

@@ -1,9 +1,10 @@
 #pragma once
-// The contract of the air between two points. `none` is a model too.
+// The contract of the air: what lies between two points, and what it sends. `none` is a model too.
 //
 // Law: -ln tau = sum over absorbers k of c_k(lambda) W_k^a_k, with W_k the amount of an absorber on the path. A band's transmittance does not
 // multiply along a path: amounts of parts, and of the two legs of reflected light, are added before the exponential.
 #include <array>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -50,17 +51,30 @@ struct AirRay {
   double earthRadius_m = 0.0;
 };
 
-class Path {
+/// What the kernel has to do for an air.
+struct AirTraits {
+  bool any = true;                  ///< false: lets everything through and sends nothing
+  bool variesAlongWay = false;      ///< its temperature or what it scatters does: lines of sight are looked at in many places
+  bool scattersSun = false;         ///< densities(), AirNode::molecules and haze are there
+  bool liesOnGround = false;        ///< a scene in it has a ground, and a sky that lights
+  bool isBanded = false;            ///< its extinction changes within nanometres: drawn to an accuracy where a scenario does not say otherwise
+  bool linearBetweenKnots = false;  ///< its reference needs no other wavelengths
+};
+
+class AirOnGpu;
+struct AirTableRequest;
+struct Simulation;
+struct Plan;
+
+class Atmosphere {
  public:
-  virtual ~Path() = default;
-  /// Shader file for the slot `path`: path radiance of each node, or (layered air in direct mode) integrated over each channel beforehand.
-  virtual std::string slotFile() const = 0;
-  virtual std::string channelSlotFile() const { return slotFile(); }
-  virtual bool isNone() const { return false; }
-  /// Amounts depend on heights: the shader reads tables made for a view (AirTables).
-  virtual bool isLayered() const { return false; }
-  /// Amounts are lengths alone: the shader reads exponents and coefficients (PathBlock).
-  virtual bool isTabulated() const { return false; }
+  virtual ~Atmosphere() = default;
+  virtual AirTraits traits() const { return {}; }
+  /// Its half on the GPU (sim/render/air_on_gpu.hpp), for pictures of a plan. `perChannel`: shading integrates over the channels (direct mode), so path
+  /// radiance may be integrated over them beforehand. All must outlive it; needs a current GlContext.
+  virtual std::unique_ptr<AirOnGpu> onGpu(const Simulation& simulation, const Plan& plan, bool perChannel) const = 0;
+  /// Chooses how large the tables are that this half reads (Plan::air), and says what they lose, per slot; empty: nothing, there are none.
+  virtual std::vector<double> planTables(const AirTableRequest&) const { return {}; }
   /// The file that says which wavelengths it has; none: it is in the scenario.
   virtual Location where() const { return {}; }
   /// Exponents a_k, one per absorber.
@@ -74,7 +88,9 @@ class Path {
   virtual std::vector<AirStation> stations(const AirRay& ray, double range_m) const = 0;
   /// The same at given ranges, rising.
   virtual std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const = 0;
-  /// Amounts that 1000 m of the air at a height hold (layered air).
+  /// Temperature at height 0 [K]; 0: it does not say.
+  virtual double groundTemperature_K() const { return 0.0; }
+  /// Amounts that 1000 m of the air at a height hold (of air that scatters sunlight).
   virtual AirAmounts densities(double height_m) const;
   virtual double validLow_um() const = 0;
   virtual double validHigh_um() const = 0;

@@ -1,4 +1,4 @@
-#include "sim/render/air_tables.hpp"
+#include "atmosphere/layered_gpu.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -15,29 +15,27 @@ constexpr int kPieces = 4;
 
 }  // namespace
 
-AirTables::AirTables(const Simulation& simulation, const Plan& plan, bool perChannel, bool wanted)
-    : simulation_(simulation), plan_(plan), perChannel_(perChannel) {
-  if (!wanted || !plan.terms.air || !simulation.path->isLayered()) return;
-  rows_ = std::make_unique<AirRows>(simulation, plan, perChannel);
+LayeredOnGpu::LayeredOnGpu(const Simulation& simulation, const Plan& plan, bool perChannel)
+    : simulation_(simulation), plan_(plan), perChannel_(perChannel), rows_(simulation, plan, perChannel) {
   if (plan.lightCount > 0) addHeights(heights_);  // ways on to them
 }
 
-void AirTables::addConstants(ShaderSlots& slots) const {
-  if (!isNeeded()) return;
-  slots.constants["AIR_VECTORS"] = rows_->vectors();
+void LayeredOnGpu::addSlots(ShaderSlots& slots) const {
+  slots.files["path"] = perChannel_ ? "atmosphere/layered_channels.glsl" : "atmosphere/layered_nodes.glsl";
+  slots.constants["AIR_VECTORS"] = rows_.vectors();
   slots.constants["AIR_AZIMUTHS"] = plan_.terms.scatteredSun ? plan_.air.azimuths : 1;
   slots.constants["AIR_HEIGHTS"] = SunLegs::kHeights;
   slots.constants["AIR_SUNS"] = plan_.sunLegs ? SunLegs::kElevations : 0;
   slots.constants["AIR_PIECES"] = kPieces;
-  slots.constants["AIR_PARTS"] = rows_->parts();
-  slots.constants["AIR_ASYMMETRIES"] = (rows_->values() + 3) / 4;
+  slots.constants["AIR_PARTS"] = rows_.parts();
+  slots.constants["AIR_ASYMMETRIES"] = (rows_.values() + 3) / 4;
   slots.constants["AIR_BLACKS"] = (plan_.nodeCount() + 3) / 4;
 }
 
-void AirTables::addHeights(std::vector<float>& out) const {
-  const Path& path = *simulation_.path;
+void LayeredOnGpu::addHeights(std::vector<float>& out) const {
+  const Atmosphere& path = *simulation_.air;
   const auto put = [&](const AirAmounts& logs) {
-    for (size_t k = 0; k < static_cast<size_t>(4 * rows_->vectors()); ++k) out.push_back(static_cast<float>(logs.amount[k]));
+    for (size_t k = 0; k < static_cast<size_t>(4 * rows_.vectors()); ++k) out.push_back(static_cast<float>(logs.amount[k]));
   };
   for (int h = 0; plan_.sunLegs && h < SunLegs::kHeights; ++h)
     for (int e = 0; e < SunLegs::kElevations; ++e) put(plan_.sunLegs->rootAt(e, h));
@@ -62,22 +60,19 @@ void AirTables::addHeights(std::vector<float>& out) const {
   }
 }
 
-void AirTables::begin() { first_ = true; }
-
-void AirTables::update(const View& view, const WorldState& state) {
-  if (!isNeeded()) return;
+void LayeredOnGpu::update(const View& view, const WorldState& state) {
   if (!first_ && view.position == position_ && holds(grid_, simulation_, plan_, view, state)) return;
   const AirGrid grid = airGrid(simulation_, plan_, plan_.air, view, state);
   first_ = false;
   position_ = view.position;
   if (grid == grid_) return;
   grid_ = grid;
-  rows_->begin(grid_);
+  rows_.begin(grid_);
   upload(fill());
 }
 
 /// [azimuth][elevation]
-std::vector<AirRow> AirTables::fill() const {
+std::vector<AirRow> LayeredOnGpu::fill() const {
   const double horizon = grid_.horizon(simulation_.frame.earthRadius_m());
   std::vector<AirRow> rows(static_cast<size_t>(grid_.azimuths * grid_.elevations));
   std::atomic<size_t> next{0};
@@ -86,7 +81,7 @@ std::vector<AirRow> AirTables::fill() const {
       const int e = static_cast<int>(n) % grid_.elevations;
       AirLine line{grid_.sineAt(e), grid_.acrossAt(static_cast<int>(n) / grid_.elevations), false};
       line.meetsHorizon = simulation_.ground && line.sine < horizon && grid_.sineAt(e + 1) >= horizon;
-      rows[n] = rows_->at(line);
+      rows[n] = rows_.at(line);
     }
   };
   std::vector<std::future<void>> others;
@@ -96,8 +91,8 @@ std::vector<AirRow> AirTables::fill() const {
   return rows;
 }
 
-void AirTables::upload(const std::vector<AirRow>& rows) {
-  const auto columns = static_cast<size_t>(rows_->columns()), parts = static_cast<size_t>(rows_->parts()), values = static_cast<size_t>(rows_->values());
+void LayeredOnGpu::upload(const std::vector<AirRow>& rows) {
+  const auto columns = static_cast<size_t>(rows_.columns()), parts = static_cast<size_t>(rows_.parts()), values = static_cast<size_t>(rows_.values());
   std::vector<float> amounts, radiance;
   amounts.reserve(static_cast<size_t>(grid_.elevations) * rows.front().amounts.size() + heights_.size());
   radiance.reserve(rows.size() * columns * parts * values);
@@ -117,21 +112,20 @@ void AirTables::upload(const std::vector<AirRow>& rows) {
   put({from, (grid_.elevations - 1) / width, grid_.scale_m, grid_.entriesPerLog()});
   put({grid_.acrossLow, grid_.azimuths > 1 ? (grid_.azimuths - 1) / std::max(grid_.acrossHigh - grid_.acrossLow, 1e-12) : 0.0,
        static_cast<double>(grid_.elevations), static_cast<double>(grid_.ranges)});
-  put({SunLegs::kBottom_m, (SunLegs::kHeights - 1) / std::sqrt(simulation_.path->top_m() - SunLegs::kBottom_m),
+  put({SunLegs::kBottom_m, (SunLegs::kHeights - 1) / std::sqrt(simulation_.air->top_m() - SunLegs::kBottom_m),
        plan_.sunLegs ? plan_.sunLegs->firstSine() : 0.0, plan_.sunLegs ? 1.0 / plan_.sunLegs->step() : 0.0});
-  const auto powers = simulation_.path->exponents();
-  const auto absorbers = static_cast<size_t>(4 * rows_->vectors());
+  const auto powers = simulation_.air->exponents();
+  const auto absorbers = static_cast<size_t>(4 * rows_.vectors());
   for (size_t k = 0; k < absorbers; ++k) put({k < powers.size() ? powers[k] : 1.0});
   for (const SpectralNode& n : plan_.nodes)
     for (size_t k = 0; k < absorbers; ++k) put({n.air.extinction[k]});
-  for (double g : rows_->asymmetries()) put({g});
-  const auto& black = rows_->black();
+  for (double g : rows_.asymmetries()) put({g});
+  const auto& black = rows_.black();
   for (size_t i = 0; i < (plan_.nodes.size() + 3) / 4 * 4; ++i) put({i < black.size() ? black[i] : 0.0});
   block_.upload(block);
 }
 
-void AirTables::bind() const {
-  if (!isNeeded()) return;
+void LayeredOnGpu::bind() const {
   block_.bindUniform(3);
   amounts_.bindTexture(20, 4);
   radiance_.bindTexture(21, perChannel_ ? 4 : 1);

@@ -1,27 +1,23 @@
 #pragma once
 // Layered air as the shader reads it (atmosphere/layered.glsl): tables by elevation and range for a view, made in double precision, and by
 // height for ways to lights and to the sun.
-#include <memory>
-
+#include "atmosphere/layered_rows.hpp"
 #include "sim/gl/objects.hpp"
-#include "sim/gl/shader_assembler.hpp"
-#include "sim/plan/air_rows.hpp"
+#include "sim/render/air_on_gpu.hpp"
 
 namespace pitviper {
 
-class AirTables {
+class LayeredOnGpu final : public AirOnGpu {
  public:
   /// `perChannel`: path radiance is integrated over the channels (direct mode), else it is kept per node. Both must outlive it.
-  AirTables(const Simulation& simulation, const Plan& plan, bool perChannel, bool wanted = true);
-  /// Nothing to do for air that is not layered.
-  bool isNeeded() const { return rows_ != nullptr; }
-  void addConstants(ShaderSlots& slots) const;
-  /// A new picture: its first view has tables of its own (the last picture's where they are the same), which serve those after it where they hold what
+  LayeredOnGpu(const Simulation& simulation, const Plan& plan, bool perChannel);
+  void addSlots(ShaderSlots& slots) const override;
+  bool givesChannels() const override { return perChannel_; }
+  /// The first view of a picture has tables of its own (the last picture's where they are the same), which serve those after it where they hold what
   /// these see.
-  void begin();
-  /// Makes the tables for a view, unless those at hand serve it.
-  void update(const View& view, const WorldState& state);
-  void bind() const;
+  void begin() override { first_ = true; }
+  void update(const View& view, const WorldState& state) override;
+  void bind() const override;
 
  private:
   void addHeights(std::vector<float>& amounts) const;
@@ -31,7 +27,7 @@ class AirTables {
   const Simulation& simulation_;
   const Plan& plan_;
   bool perChannel_;
-  std::unique_ptr<AirRows> rows_;
+  AirRows rows_;
   std::vector<float> heights_;  ///< by height: the same for every view
   AirGrid grid_;
   glm::dvec3 position_{NAN};

@@ -1,19 +1,17 @@
 #pragma once
 // Air from tables as the shader reads it (atmosphere/tabulated.glsl): exponents and every node's coefficients, once for a plan.
 #include "sim/gl/objects.hpp"
-#include "sim/gl/shader_assembler.hpp"
 #include "sim/plan/plan.hpp"
+#include "sim/render/air_on_gpu.hpp"
 
 namespace pitviper {
 
-class PathBlock {
+class TabulatedOnGpu final : public AirOnGpu {
  public:
   /// Throws GlError where the coefficients do not fit into a uniform block.
-  PathBlock(const Simulation& simulation, const Plan& plan, bool wanted = true);
-  /// Nothing to do for air of another kind.
-  bool isNeeded() const { return vectors_ > 0; }
-  void addConstants(ShaderSlots& slots) const;
-  void bind() const;
+  TabulatedOnGpu(const Simulation& simulation, const Plan& plan);
+  void addSlots(ShaderSlots& slots) const override;
+  void bind() const override { block_.bindUniform(3); }
 
  private:
   int vectors_ = 0;  ///< four exponents each

@@ -1,12 +1,11 @@
-#include "sim/render/path_block.hpp"
+#include "atmosphere/tabulated_gpu.hpp"
 
-#include "sim/render/scene_pass.hpp"
+#include "sim/gl/context.hpp"
 
 namespace pitviper {
 
-PathBlock::PathBlock(const Simulation& simulation, const Plan& plan, bool wanted) {
-  if (!wanted || !plan.terms.air || !simulation.path->isTabulated()) return;
-  const auto powers = simulation.path->exponents();
+TabulatedOnGpu::TabulatedOnGpu(const Simulation& simulation, const Plan& plan) {
+  const auto powers = simulation.air->exponents();
   vectors_ = (static_cast<int>(powers.size()) + 3) / 4;
   std::vector<float> block;
   for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) block.push_back(k < powers.size() ? static_cast<float>(powers[k]) : 1.0f);
@@ -16,12 +15,9 @@ PathBlock::PathBlock(const Simulation& simulation, const Plan& plan, bool wanted
   block_.upload(block);
 }
 
-void PathBlock::addConstants(ShaderSlots& slots) const {
-  if (isNeeded()) slots.constants["AIR_VECTORS"] = vectors_;
-}
-
-void PathBlock::bind() const {
-  if (isNeeded()) block_.bindUniform(3);
+void TabulatedOnGpu::addSlots(ShaderSlots& slots) const {
+  slots.files["path"] = "atmosphere/tabulated.glsl";
+  slots.constants["AIR_VECTORS"] = vectors_;
 }
 
 }  // namespace pitviper

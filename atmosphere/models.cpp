@@ -1,0 +1,107 @@
+#include "atmosphere/models.hpp"
+
+#include <algorithm>
+
+#include "atmosphere/homogeneous.hpp"
+
+namespace pitviper {
+namespace {
+
+std::string joined(const std::vector<std::string>& words, const char* between) {
+  std::string all;
+  for (const auto& w : words) all += (all.empty() ? "" : between) + w;
+  return all;
+}
+
+bool has(const AirModel& m, const std::string& key) {
+  return std::any_of(m.parameters.begin(), m.parameters.end(), [&](const Parameter& p) { return p.key == key; });
+}
+
+std::vector<std::string> allMarks() {
+  std::vector<std::string> all;
+  for (const AirModel& m : airModels().all()) all.insert(all.end(), m.marks.begin(), m.marks.end());
+  return all;
+}
+
+std::vector<Parameter> common() {
+  std::vector<std::string> names{"none", "air"};
+  for (const AirModel& m : airModels().all()) names.push_back(m.name);
+  return {withDefault(choice("model", names, "none: whatever else is given, there is no air; air: as its other keys say"), "air"),
+          text("library", "named air, atmosphere/library/<name>.yaml: its keys hold where they are not given here")};
+}
+
+/// The only model with a mark among the keys.
+const AirModel& markedModel(const Value& air) {
+  const AirModel* found = nullptr;
+  std::string mark;
+  for (const AirModel& m : airModels().all())
+    for (const std::string& own : m.marks) {
+      if (!air.find(own)) continue;
+      if (found && found != &m)
+        throw UserError(air.find(own)->where, "the air is given twice, by '" + mark + "' and by '" + own + "'", "one of " + joined(allMarks(), ", "), "remove one");
+      found = &m;
+      mark = own;
+    }
+  if (found) return *found;
+  throw UserError(air.where, "air that does not say which", "'library', 'model', or one of " + joined(allMarks(), ", "),
+                  "add 'library: hazy_us76' or 'extinction: 0.2 /km'");
+}
+
+}  // namespace
+
+Registry<AirModel>& airModels() {
+  static Registry<AirModel> all("air", {homogeneousModel(), layeredModel(), tape7Model(), csvModel()});
+  return all;
+}
+
+ParameterTable commonAirTable() {
+  return {"atmosphere", "The air: `none`, the name of a library air, or a map with these keys and those of one of the airs below.", common()};
+}
+
+ParameterTable airTable(const AirModel& model) {
+  ParameterTable t{"atmosphere: " + model.name, model.description, common()};
+  t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
+  return t;
+}
+
+ParameterTable anyAirTable() {
+  ParameterTable t{"atmosphere", "", common()};
+  for (const AirModel& m : airModels().all())
+    for (const Parameter& p : m.parameters)
+      if (!t.find(p.key)) t.parameters.push_back(any(p.key, p.description));
+  return t;
+}
+
+namespace {
+
+/// Errors: UserError where a key is of another model.
+void refuseForeignKeys(const Value& air, const AirModel& model) {
+  for (size_t i = 0; i < air.entries.size(); ++i) {
+    const std::string& key = air.entries[i].first;
+    if (key == "model" || key == "library" || has(model, key)) continue;
+    std::vector<std::string> owners;
+    for (const AirModel& m : airModels().all())
+      if (has(m, key)) owners.push_back(m.name);
+    throw UserError(air.entries[i].second.where, "'" + key + "' is of " + joined(owners, " or ") + " air, and this air is " + model.name,
+                    "the keys of 'atmosphere: " + model.name + "'", "remove '" + key + "'");
+  }
+}
+
+}  // namespace
+
+std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder,
+                                          const std::function<Spectrum(const Value&, const Parameter&)>& spectrum) {
+  const ParameterTable all = anyAirTable();
+  const std::string asked = Record(air, all).text("model");
+  if (asked == "none") return makeNoAir();
+  const AirModel& model = asked == "air" ? markedModel(air) : *airModels().named(asked);
+  refuseForeignKeys(air, model);
+  const ParameterTable table = airTable(model);
+  const Record record(air, table);
+  std::map<std::string, Spectrum> spectra;
+  for (const Parameter& p : model.parameters)
+    if (p.type == ParameterType::Spectrum && record.given(p.key)) spectra.emplace(p.key, spectrum(record.value(p.key), p));
+  return model.make({record, spectra, folder});
+}
+
+}  // namespace pitviper

@@ -1,0 +1,62 @@
+// Air that the user brings as a table: a tape7 of MODTRAN or comma-separated values.
+#include "atmosphere/models.hpp"
+#include "atmosphere/tabulated_csv.hpp"
+#include "atmosphere/tabulated_path.hpp"
+#include "atmosphere/tabulated_tape7.hpp"
+
+namespace pitviper {
+namespace {
+
+/// A band of 5000 1/cm by 1 1/cm at seven ranges has 10 MB.
+constexpr std::uintmax_t kLargestTableBytes = 64u << 20;
+
+std::filesystem::path tableFile(const AirRecord& air, const char* key, const char* what) {
+  const std::filesystem::path file = air.folder / air.record.text(key);
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored))
+    throw UserError(air.record.where(key), "there is no file '" + file.string() + "'", std::string(what) + ", its path relative to this file", "check the path");
+  if (std::filesystem::file_size(file, ignored) > kLargestTableBytes)
+    throw UserError(Location{file.string(), 1, 1, -1}, "the file is larger than 64 MB", std::string(what) + " of the bands that the sensors need",
+                    "make it over fewer wavenumbers, or with larger steps");
+  return file;
+}
+
+/// Far below the end of a float, 3.4e38.
+constexpr double kLargestRadiance = 1e30;
+
+std::shared_ptr<const Atmosphere> airOf(TabulatedAir air) {
+  for (double w : air.knots_um())
+    if (const double source = air.sourceRadiance(w); !(source <= kLargestRadiance)) {
+      char text[160];
+      std::snprintf(text, sizeof text, "the air's source radiance, path radiance / (1 - transmittance), is %.6g W/(m2 sr um) at %.6g um", source, w);
+      throw UserError({air.file(), air.line(), 1, -1}, text, "at most 1e30", "correct the radiances or their unit");
+    }
+  return makeTabulatedPath(std::move(air));
+}
+
+constexpr double kFarthest_m = 1e9;
+
+}  // namespace
+
+AirModel tape7Model() {
+  return {"tape7",
+          "Air along level paths from MODTRAN runs: the same everywhere and without an end.",
+          {"tape7"},
+          {required(text("tape7", "file of MODTRAN runs along a horizontal or slant path, relative to the scenario; several ranges in one file are best")),
+           above(within(number("range", "m", "of the only path of a tape7 that does not say it"), 0, kFarthest_m), 0)},
+          [](const AirRecord& air) {
+            const auto runs = readTape7(tableFile(air, "tape7", "a tape7 of MODTRAN"));
+            return airOf(tabulatedAir(runs, air.record.given("range") ? std::optional(air.record.number("range")) : std::nullopt));
+          }};
+}
+
+AirModel csvModel() {
+  return {"csv",
+          "Air along level paths from a table of your own: the same everywhere and without an end.",
+          {"csv"},
+          {required(text("csv",
+                         "file of transmittance or extinction by wavelength and range, relative to the scenario; its columns: atmosphere/tabulated_csv.hpp"))},
+          [](const AirRecord& air) { return airOf(readAirCsv(tableFile(air, "csv", "a CSV table of air"))); }};
+}
+
+}  // namespace pitviper

@@ -1,0 +1,83 @@
+// The air of a scenario: its own keys, or those of a library air.
+#include <algorithm>
+
+#include "atmosphere/models.hpp"
+#include "scenarios/reader/builder.hpp"
+#include "scenarios/reader/move_files.hpp"
+#include "scenarios/reader/tables.hpp"
+#include "scenarios/reader/yaml_tree.hpp"
+
+namespace pitviper {
+namespace {
+
+std::string libraryNames(const std::filesystem::path& folder, const std::string& word, std::string& nearest) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  nearest = nearestWord(word, names);
+  std::string all;
+  for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
+  return all;
+}
+
+/// The keys of a library air that are not given beside its name.
+void addLibrary(Value& air, const std::filesystem::path& folder) {
+  const Value word = *air.find("library");
+  const std::string name = readText(word, "library");
+  const auto file = folder / (name + ".yaml");
+  std::error_code ignored;
+  if (name.find('/') != std::string::npos || name.size() > 100 || !std::filesystem::is_regular_file(file, ignored)) {
+    std::string near;
+    const std::string all = libraryNames(folder, name, near);
+    throw UserError(word.where, "there is no library air '" + name.substr(0, 60) + "'", "one of " + all,
+                    near.empty() ? "choose one" : "did you mean '" + near + "'?");
+  }
+  Value tree = loadYaml(file, word.where);
+  const Record checked(tree, tables::airLibrary());
+  moveFiles(tree, folder);
+  // A visibility is of a haze, whatever the library says of having one.
+  const bool hazy = air.find("visibility") && !air.find("aerosol");
+  for (size_t k = 0; k < tree.entries.size(); ++k) {
+    const std::string& key = tree.entries[k].first;
+    if (key == "description" || key == "source" || air.find(key) || (hazy && key == "aerosol")) continue;
+    air.entries.push_back(tree.entries[k]);
+    air.keyPlaces.push_back(tree.keyPlaces[k]);
+  }
+}
+
+}  // namespace
+
+void Builder::readAtmosphere(const Record& scenario) {
+  const Value* value = scenario.find("atmosphere");
+  Value air;
+  air.kind = Value::Kind::Map;
+  air.where = value ? value->where : scenario.where();
+  const bool word = value && value->kind == Value::Kind::Scalar;
+  if (value && !word) air = *value;
+  else if (word && value->text != "none") air.entries = {{"library", *value}}, air.keyPlaces = {value->where};
+  if (!value || (word && value->text == "none")) {
+    Value none;
+    none.kind = Value::Kind::Scalar;
+    none.where = air.where;
+    none.text = "none";
+    air.entries = {{"model", none}};
+    air.keyPlaces = {air.where};
+  }
+  const ParameterTable all = anyAirTable();
+  const Record r(air, all);
+  const bool none = r.text("model") == "none";
+  if (r.given("library") && !none) {
+    std::string mark;
+    for (const AirModel& m : airModels().all())
+      for (const auto& own : m.marks)
+        if (air.find(own))
+          throw UserError(air.find("library")->where, "the air is given twice, by '" + own + "' and by 'library'", "one of the two", "remove one");
+    addLibrary(air, libraries_.atmosphere);
+  }
+  simulation_.air =
+      makeAir(air, base_, [this](const Value& v, const Parameter& p) { return bounded(spectra_, v, p.unit, p.key + " of the air", p.minimum, p.maximum); });
+}
+
+}  // namespace pitviper

@@ -1,0 +1,175 @@
+#include "sim/frame/make_frame.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <set>
+
+#include "sim/frame/file_owner.hpp"
+#include "sim/frame/limits_check.hpp"
+#include "sim/frame/version.hpp"
+#include "sim/model/world.hpp"
+#include "sim/radiometry/constants.hpp"
+
+namespace pitviper {
+namespace {
+
+void addTruth(Frame& frame, const Camera& camera, const CameraImage& image) {
+  if (camera.truth.pixelSolidAngle) {
+    const std::vector<double>& omega_sr = image.solidAngles->plain_sr;
+    frame.layers.push_back({"truth.pixel_solid_angle", "sr", std::vector<float>(omega_sr.begin(), omega_sr.end())});
+  }
+  if (image.truth.empty()) return;
+  auto add = [&](const char* name, const char* unit, auto value) {
+    FrameLayer layer{std::string("truth.") + name, unit, std::vector<float>(image.truth.size())};
+    for (size_t p = 0; p < image.truth.size(); ++p) layer.pixels[p] = value(image.truth[p]);
+    frame.layers.push_back(std::move(layer));
+  };
+  const TruthLayers& t = camera.truth;
+  if (t.range) add("range", "m", [](const TruthPixel& p) { return p.range_m; });
+  if (t.entity) {
+    add("entity", "1", [](const TruthPixel& p) { return p.entity; });
+    add("part", "1", [](const TruthPixel& p) { return p.part; });
+  }
+  if (t.temperature) add("temperature", "K", [](const TruthPixel& p) { return p.temperature_K; });
+  if (t.normal) {
+    add("normal_east", "1", [](const TruthPixel& p) { return p.normal[0]; });
+    add("normal_north", "1", [](const TruthPixel& p) { return p.normal[1]; });
+    add("normal_up", "1", [](const TruthPixel& p) { return p.normal[2]; });
+  }
+  if (t.area) add("area", "m2", [](const TruthPixel& p) { return p.area_m2; });
+  if (t.solidAngles) {
+    add("solid_angle_from_light", "sr", [](const TruthPixel& p) { return p.solidAngleFromLight_sr; });
+    add("solid_angle_of_aperture", "sr", [](const TruthPixel& p) { return p.solidAngleOfAperture_sr; });
+  }
+}
+
+/// How wavelengths were chosen. A spectral image has its own: no plan is made for it.
+void addMode(Frame& frame, const SpectralSampling& sampling) {
+  const bool planned = sampling.accuracy > 0.0 && frame.kind.empty();
+  frame.attributes.push_back({"pitviper.mode", std::string(sampling.reference ? "reference" : planned ? "planned" : "sampled")});
+}
+
+/// What was asked of the plan, if anything was, and what it expects: of a channel's quantities the worst.
+void addAccuracy(Frame& frame, const Camera& camera, const CameraImage& image) {
+  if (image.accuracy > 0.0) frame.attributes.push_back({"pitviper.accuracy", image.accuracy});
+  std::map<std::string, double> errorOf;
+  for (size_t o = 0; o < camera.outputs.size() && !image.predictedError.empty(); ++o) {
+    double& error = errorOf[camera.outputs[o].channel];
+    error = std::max(error, image.predictedError[static_cast<size_t>(image.slotOfOutput[o])]);
+  }
+  for (const auto& [channel, error] : errorOf) frame.attributes.push_back({"pitviper.predicted_error." + channel, error});
+}
+
+/// What the reference says of some of its pixels: of a channel's quantities the first.
+void addAudit(Frame& frame, const Camera& camera, const CameraImage& image) {
+  if (!image.plan.empty()) frame.attributes.push_back({"pitviper.plan", image.plan});
+  std::set<std::string> told;
+  for (size_t o = 0; o < camera.outputs.size() && !image.audit.empty(); ++o) {
+    const SlotAudit& a = image.audit[static_cast<size_t>(image.slotOfOutput[o])];
+    if (a.pixels == 0 || !told.insert(camera.outputs[o].channel).second) continue;
+    const std::string name = "pitviper.audit." + camera.outputs[o].channel;
+    frame.attributes.push_back({name + ".pixels", static_cast<double>(a.pixels)});
+    frame.attributes.push_back({name + ".median", a.median});
+    frame.attributes.push_back({name + ".largest", a.largest});
+    if (a.doubt >= 0.0) frame.attributes.push_back({name + ".doubt", a.doubt});
+    if (image.accuracy > 0.0 && std::max(a.largest, a.doubt) > image.accuracy) frame.attributes.push_back({name + ".broken", std::string("more than asked")});
+  }
+}
+
+}  // namespace
+
+Frame startFrame(const Camera& camera, const WorldState& state, int number) {
+  Frame frame;
+  frame.camera = camera.name;
+  frame.number = number;
+  frame.time_s = state.time_s;
+  frame.width = camera.pinhole.width;
+  frame.height = camera.pinhole.height;
+  return frame;
+}
+
+void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image) {
+  for (size_t o = 0; o < camera.outputs.size(); ++o) {
+    const ChannelOutput& output = camera.outputs[o];
+    const auto& slot = image.slots[static_cast<size_t>(image.slotOfOutput[o])];
+    FrameLayer layer{output.layer(), output.unit, std::vector<float>(slot.size())};
+    const double scale = output.scale * (output.perExposure ? image.exposure_s : 1.0);
+    for (size_t p = 0; p < slot.size(); ++p)
+      layer.pixels[p] = static_cast<float>(scale * slot[p] * (output.perEtendue ? image.solidAngles->projected_sr[p] : 1.0));
+    frame.layers.push_back(std::move(layer));
+  }
+}
+
+void addOptics(Frame& frame, const Pinhole& p, double exposure_s) {
+  auto add = [&](const char* name, double value) { frame.attributes.push_back({name, value}); };
+  add("pitviper.focal_length_m", p.focalLength_m);
+  add("pitviper.pitch_x_m", p.pitchX_m);
+  add("pitviper.pitch_y_m", p.pitchY_m);
+  add("pitviper.aperture_m", p.apertureDiameter_m);
+  add("pitviper.aperture_area_m2", p.apertureArea_m2());
+  add("pitviper.exposure_s", exposure_s);
+}
+
+void addUnits(Frame& frame, const std::vector<ChannelOutput>& outputs) {
+  for (const auto& layer : frame.layers) frame.attributes.push_back({"unit." + layer.name, layer.unit});
+  for (const auto& o : outputs) {
+    char band[64];
+    std::snprintf(band, sizeof band, "%.6g to %.6g", o.bandLow_um, o.bandHigh_um);
+    frame.attributes.push_back({"band_um." + o.layer(), std::string(band)});
+    if (!o.cut.empty()) frame.attributes.push_back({"pitviper.response_cut." + o.layer(), o.cut});
+  }
+}
+
+void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, const WorldState& state) {
+  auto add = [&](std::string name, auto value) { frame.attributes.push_back({std::move(name), value}); };
+  add("pitviper.version", std::string(kVersion));
+  add(kScenarioName, sim.name);
+  add(kScenarioHash, sim.sha256);
+  add(kScenarioContent, sim.content);
+  add("pitviper.seed", std::to_string(sim.seed));
+  add("pitviper.camera", camera.name);
+  add("pitviper.frame", frame.number);
+  add("pitviper.time_s", state.time_s);
+  const CameraState eye = cameraAt(camera, state);
+  const Pinhole& p = eye.pinhole;
+  addOptics(frame, p, eye.exposure_s);
+  add("pitviper.samples", camera.samples);
+  addMode(frame, camera.spectral);
+  const Pose& pose = eye.pose;
+  const Geodetic g = sim.frame.toGeodetic(pose.position);
+  constexpr double kDegrees = 180.0 / kPi;
+  add("pitviper.pose_geodetic_deg_deg_m", std::vector<double>{g.latitude_rad * kDegrees, g.longitude_rad * kDegrees, g.height_m});
+  const glm::dvec3 ecef = sim.frame.toEcef(pose.position);
+  add("pitviper.pose_ecef_m", std::vector<double>{ecef.x, ecef.y, ecef.z});
+  add("pitviper.pose_local_m", std::vector<double>{pose.position.x, pose.position.y, pose.position.z});
+  const glm::dquat q = glm::normalize(glm::quat_cast(sim.frame.ecefFromLocal()) * pose.orientation);
+  add("pitviper.orientation_ecef_wxyz", std::vector<double>{q.w, q.x, q.y, q.z});
+  addUnits(frame, camera.outputs);
+  const glm::dmat3 cameraFromLocal = glm::transpose(localFromCamera(pose));
+  for (size_t e = 0; e < sim.entities.size(); ++e) {
+    const glm::dvec3 x = cameraFromLocal * (state.entities[e].position - pose.position);
+    std::vector<double> seen = {glm::length(x), NAN, NAN};  // behind the camera: no place in the picture
+    if (x.z < 0.0) {
+      seen[1] = 0.5 * p.width + x.x / -x.z * p.focalLength_m / p.pitchX_m;
+      seen[2] = 0.5 * p.height - x.y / -x.z * p.focalLength_m / p.pitchY_m;
+    }
+    add("entity." + std::to_string(e + 1) + ".name", sim.entities[e].name);
+    add("entity." + std::to_string(e + 1) + ".range_column_row", seen);
+  }
+  if (const std::string outside = outsideLimits(sim, camera, state); !outside.empty()) add("pitviper.outside_limits", outside);
+}
+
+Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number) {
+  Frame frame = startFrame(camera, state, number);
+  addOutputs(frame, camera, image);
+  addTruth(frame, camera, image);
+  addMetadata(frame, sim, camera, state);
+  addAccuracy(frame, camera, image);
+  addAudit(frame, camera, image);
+  for (const ScatteredAgain& s : image.scatteredAgain) frame.attributes.push_back({"pitviper.scattered_again." + s.channel, s.factor});
+  if (!image.transparentOrder.empty()) frame.attributes.push_back({"pitviper.transparent_order", image.transparentOrder});
+  return frame;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,22 @@
+#pragma once
+// Makes frames of what the renderer leaves.
+#include "sim/frame/frame.hpp"
+#include "sim/model/simulation.hpp"
+#include "sim/render/camera_image.hpp"
+
+namespace pitviper {
+
+/// Turns integrals into quantities: value = scale x integral [x projected solid angle]. Adds truth layers and metadata (pose, optics,
+/// bands, where each entity is in the picture, the error its plan expects).
+Frame makeFrame(const Simulation& simulation, const Camera& camera, const CameraImage& image, const WorldState& state, int number);
+
+/// The same in steps, for a frame drawn in several passes: no layers; the layers of a pass's outputs; the metadata, last.
+Frame startFrame(const Camera& camera, const WorldState& state, int number);
+void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image);
+void addMetadata(Frame& frame, const Simulation& simulation, const Camera& camera, const WorldState& state);
+/// Aperture, film and exposure, as attributes.
+void addOptics(Frame& frame, const Pinhole& pinhole, double exposure_s);
+/// Unit of every layer, band of every output.
+void addUnits(Frame& frame, const std::vector<ChannelOutput>& outputs);
+
+}  // namespace pitviper

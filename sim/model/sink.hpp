@@ -1,0 +1,44 @@
+#pragma once
+// The contract of what takes frames: files, previews, streams. A sink sees frames and nothing of how they were drawn.
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/image/atomic_file.hpp"
+#include "sim/parameters/error.hpp"
+
+namespace pitviper {
+
+struct Frame;
+struct Simulation;
+
+/// Where frames go; one at a time, in order: a camera's frame, its spectral image if it has one, camera by camera, then tick by tick. The calls come
+/// from a thread that is not the one that draws. An exception ends the run.
+class Sink {
+ public:
+  virtual ~Sink() = default;
+  /// Before the first frame: what must be there is made. Called on the thread that draws.
+  virtual void start() {}
+  virtual void take(const std::shared_ptr<const Frame>& frame) = 0;
+  /// After the last frame.
+  virtual void finish() {}
+  /// The file that it would write for a frame of this camera, number and kind (as of Frame); empty: none.
+  virtual std::filesystem::path fileOf(const std::string&, int, const std::string&) const { return {}; }
+};
+
+/// Where a run puts what it writes.
+struct SinkPlace {
+  std::filesystem::path folder;
+  MayReplace mayReplace;
+  SinkPlace below(const std::filesystem::path& part) const { return {(folder / part).lexically_normal(), mayReplace}; }
+};
+
+/// A sink that a scenario asks for. It is made anew where a run starts over.
+struct SinkChoice {
+  Location where;
+  std::function<std::unique_ptr<Sink>(const Simulation& simulation, const SinkPlace& place)> make;
+};
+
+}  // namespace pitviper

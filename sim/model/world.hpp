@@ -1,0 +1,37 @@
+#pragma once
+// Where everything is at a time: what the scenario says of it, and what commands have changed.
+#include <cmath>
+
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+/// As the scenario has it, its own commands carried out.
+WorldState advance(const Simulation& simulation, double time_s);
+
+/// A world that takes further commands while it runs; what it keeps does not grow with their number. The simulation must outlive it.
+class World {
+ public:
+  explicit World(const Simulation& simulation) : simulation_(simulation) {}
+  /// From the beginning of a tick (frame number) on. Commands of one tick hold in the order in which they came, after the scenario's own.
+  /// Throws std::invalid_argument where a later tick has had one: what was drawn stays.
+  void apply(const Command& command, int tick);
+  /// At a time not before the last command's tick, also within the exposure of a tick; before it std::invalid_argument.
+  WorldState at(double time_s) const;
+
+ private:
+  const Simulation& simulation_;
+  Courses courses_;
+  std::size_t next_ = 0;  ///< of the scenario's commands, those before it are in courses_
+  double since_s_ = -INFINITY;
+};
+
+/// A camera at a time.
+struct CameraState {
+  Pose pose;  ///< local frame; body axes: x is the line of sight, y left, z up
+  Pinhole pinhole;
+  double exposure_s = 0.0;
+};
+CameraState cameraAt(const Camera& camera, const WorldState& state);
+
+}  // namespace pitviper

@@ -1,0 +1,63 @@
+#include "sim/stream/command_models.hpp"
+
+namespace pitviper {
+namespace {
+
+/// 32 years, as the times of waypoints.
+constexpr double kLongestTime_s = 1e9;
+
+template <class T>
+int named(const Record& r, const char* key, const std::vector<T>& all) {
+  const std::string name = r.text(key);
+  std::vector<std::string> names;
+  for (const T& one : all) {
+    if (one.name == name) return static_cast<int>(names.size());
+    names.push_back(one.name);
+  }
+  std::string list;
+  for (const auto& n : names) list += (list.empty() ? "" : ", ") + n;
+  const std::string near = nearestWord(name, names);
+  throw UserError(r.where(key), std::string("there is no ") + key + " '" + name.substr(0, 60) + "'", list.empty() ? std::string("a ") + key : "one of " + list,
+                  near.empty() ? "choose one" : "did you mean '" + near + "'?");
+}
+
+const CommandModel& modelOf(const Value& value) {
+  std::vector<std::string> names;
+  std::string all;
+  for (const CommandModel& m : commandModels().all()) names.push_back(m.name), all += (all.empty() ? "" : ", ") + m.name;
+  const Value* word = asMap(value, "a command").find("command");
+  if (!word) throw UserError(value.where, "missing key 'command'", "one of " + all, "add 'command:'");
+  const std::string name = readText(*word, "command");
+  if (const CommandModel* model = commandModels().named(name)) return *model;
+  const std::string near = nearestWord(name, names);
+  throw UserError(word->where, "there is no command '" + name.substr(0, 60) + "'", "one of " + all,
+                  near.empty() ? "choose one" : "did you mean '" + near + "'?");
+}
+
+}  // namespace
+
+Registry<CommandModel>& commandModels() {
+  static Registry<CommandModel> all("command", {moveCommand(), lookCommand(), temperatureCommand(), lightCommand()});
+  return all;
+}
+
+ParameterTable commandTable(const CommandModel& model) {
+  ParameterTable t{"command: " + model.name, model.description, {required(text("command", "`" + model.name + "`"))}};
+  t.parameters.push_back(within(number("at", "s", "simulation time from which on it holds, until another says otherwise (in a scenario: its first frame)"),
+                                -kLongestTime_s, kLongestTime_s));
+  t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
+  return t;
+}
+
+Command readCommand(const Value& value, const Simulation& simulation, double now_s) {
+  const CommandModel& model = modelOf(value);
+  const ParameterTable table = commandTable(model);
+  const Record r(value, table);
+  return {r.given("at") ? r.number("at") : now_s, wordsOf(value), value.where, model.read(r, simulation)};
+}
+
+int entityOf(const Record& r, const Simulation& sim) { return named(r, "entity", sim.entities); }
+int lightOf(const Record& r, const Simulation& sim) { return named(r, "light", sim.lights); }
+int cameraOf(const Record& r, const Simulation& sim) { return named(r, "camera", sim.cameras); }
+
+}  // namespace pitviper

@@ -1,0 +1,32 @@
+// Every frame as an EXR file.
+#include "sim/frame/frame_files.hpp"
+#include "sim/stream/sink_models.hpp"
+
+namespace pitviper {
+namespace {
+
+class FilesSink final : public Sink {
+ public:
+  explicit FilesSink(SinkPlace place) : place_(std::move(place)) {}
+  void start() override { ensureWritableFolder(place_.folder); }
+  void take(const std::shared_ptr<const Frame>& frame) override { writeFrame(place_.folder, *frame, place_.mayReplace); }
+  std::filesystem::path fileOf(const std::string& camera, int number, const std::string& kind) const override {
+    return place_.folder / (frameFileStem(camera, number, kind) + ".exr");
+  }
+
+ private:
+  SinkPlace place_;
+};
+
+}  // namespace
+
+SinkModel filesSink() {
+  return {"files", "Every frame as an EXR file, `<camera>_<frame>.exr`, with all its layers. This is what a run writes where no sink is given.",
+          {folderParameter()}, [](const Record& r) {
+            return [folder = readFolder(r)](const Simulation&, const SinkPlace& place) -> std::unique_ptr<Sink> {
+              return std::make_unique<FilesSink>(place.below(folder));
+            };
+          }};
+}
+
+}  // namespace pitviper

@@ -1,0 +1,36 @@
+#pragma once
+// Sinks as rooms: a file each, opening with its table of parameters; a row in sink_models.cpp registers it.
+#include "sim/model/sink.hpp"
+#include "sim/parameters/registry.hpp"
+#include "sim/parameters/table.hpp"
+
+namespace pitviper {
+
+struct SinkModel {
+  std::string name;  ///< what `sink:` says
+  std::string description;
+  std::vector<Parameter> parameters;  ///< besides `sink`
+  /// Errors: UserError. The record does not outlive the call.
+  std::function<decltype(SinkChoice::make)(const Record&)> read;
+};
+
+Registry<SinkModel>& sinkModels();
+/// All keys of a sink of a model.
+ParameterTable sinkTable(const SinkModel& model);
+
+/// `folder`, for sinks that write files; what it says, which never leads out of the run's own. Errors: UserError.
+Parameter folderParameter();
+std::filesystem::path readFolder(const Record& record);
+
+/// From what a user wrote: a map, or its name alone. Every mistake is a UserError.
+SinkChoice readSink(const Value& value);
+/// The same as if it had been written by its name.
+SinkChoice sinkNamed(const std::string& name);
+
+/// Previews with ranges as of writePreview().
+std::unique_ptr<Sink> makePreviewsSink(const SinkPlace& place, const std::map<std::string, std::pair<double, double>>& ranges);
+
+SinkModel filesSink();
+SinkModel previewsSink();
+
+}  // namespace pitviper
