@@ -91,19 +91,19 @@ namespace {
 /// What the absorbers were fitted over is far within.
 constexpr double kColdest_K = 100.0, kWarmest_K = 500.0;
 
-AbsorberTable readTable(const AirRecord& air) {
-  const std::filesystem::path file = air.folder / air.record.text("table");
+}  // namespace
+
+AbsorberTable readAirTable(const Record& r, const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / r.text("table");
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored))
-    throw UserError(air.record.where("table"), "there is no file '" + file.string() + "'", "an air table, its path relative to this file", "check the path");
+    throw UserError(r.where("table"), "there is no file '" + file.string() + "'", "an air table, its path relative to this file", "check the path");
   AbsorberTable table = AbsorberTable::read(file);
-  if (air.record.given("visibility")) table.setVisibility(1e-3 * air.record.number("visibility"));
-  if (air.record.given("aerosol")) air.record.text("aerosol") == "none" ? table.removeAerosol() : table.restoreAerosol();
-  if (air.record.given("temperature")) table.setTemperature(air.record.number("temperature"));
+  if (r.given("visibility")) table.setVisibility(1e-3 * r.number("visibility"));
+  if (r.given("aerosol")) r.text("aerosol") == "none" ? table.removeAerosol() : table.restoreAerosol();
+  if (r.given("temperature")) table.setTemperature(r.number("temperature"));
   return table;
 }
-
-}  // namespace
 
 AirModel layeredModel() {
   return {"layered",
@@ -113,7 +113,7 @@ AirModel layeredModel() {
            within(number("visibility", "m", "meteorological visibility of the haze"), 500, 3e5),
            choice("aerosol", {"none", "table"}, "without aerosol, or with the table's"),
            within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
-          [](const AirRecord& air) { return makeLayeredAir(readTable(air)); }};
+          [](const AirRecord& air) { return makeLayeredAir(readAirTable(air.record, air.folder)); }};
 }
 
 }  // namespace pitviper

@@ -74,7 +74,10 @@ int planCommand(const Arguments& arguments) {
       std::printf("%s\n", pass->shadingText().c_str());
     }
   };
-  for (const Camera& c : sim.cameras) tell("camera " + c.name, {&c, nullptr}, static_cast<double>(c.pinhole.width) * c.pinhole.height * c.samples * c.samples);
+  for (const Camera& one : sim.cameras) {
+    const Camera c = drawnCamera(one);
+    tell("camera " + c.name, {&c, nullptr}, static_cast<double>(c.pinhole.width) * c.pinhole.height * c.samples * c.samples);
+  }
   for (const Probe& p : sim.probes) tell("probe " + p.name, {nullptr, &p}, 3.0 * p.resolution * p.resolution);
   if (o.has("--json")) std::printf("[%s]\n", json.c_str());
   return 0;

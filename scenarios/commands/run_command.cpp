@@ -351,7 +351,8 @@ int checkCommand(const Arguments& arguments) {
               count(triangles, "triangle", "triangles").c_str(), count(sim.lights.size(), "light", "lights").c_str(),
               count(sim.materials.size(), "material", "materials").c_str(), count(sim.probes.size(), "probe", "probes").c_str());
   for (const auto& c : sim.cameras) {
-    const Plan plan = planFor(sim, {&c, nullptr});
+    const Camera drawn = drawnCamera(c);
+    const Plan plan = planFor(sim, {&drawn, nullptr});
     makeTables(sim, plan);  // what only the tables can find wrong
     std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
                 count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),

@@ -3,6 +3,7 @@
 #include "atmosphere/models.hpp"
 #include "materials/models.hpp"
 #include "scenarios/commands/commands.hpp"
+#include "sensors/stages.hpp"
 
 namespace pitviper {
 
@@ -18,6 +19,8 @@ const ShaderLibrary& shaderLibrary() {
     l.add(pv_render_shaders());
     l.add(pv_materials_shaders());
     l.add(pv_atmosphere_shaders());
+    for (const StageModel& m : stageModels().all())
+      for (const auto& [path, text] : m.shaders) l.add(std::array{ShaderText{path, text}});
     for (const AirModel& m : airModels().all()) 
       for (const auto& [path, text] : m.shaders) l.add(std::array{ShaderText{path, text}});
     for (const ReflectionModel& m : reflectionModels().all())

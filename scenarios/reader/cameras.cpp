@@ -6,6 +6,7 @@
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sensors/quantity.hpp"
+#include "sensors/stages.hpp"
 #include "sim/model/coverage.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/plan/plan.hpp"
@@ -229,6 +230,8 @@ void Builder::readCameras(const Record& scenario) {
                           nearestWord(word, names).empty() ? "choose one" : "did you mean '" + nearestWord(word, names) + "'?");
       }
     planned(c.outputs, c.spectral, c.where);
+    if (r.given("stages"))
+      for (const Value& s : r.value("stages").items) c.stages.push_back(readStage(s, c));
     if (r.given("spectral_image")) c.spectralImage = readSpectralBins(Record(r.value("spectral_image"), tables::spectralImage()), p);
     simulation_.cameras.push_back(std::move(c));
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "atmosphere/layered.hpp"
+#include "atmosphere/models.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 
@@ -36,10 +38,15 @@ AbsorberTable libraryAirTable(const std::string& name, const Libraries& librarie
   if (!r.given("table"))
     throw UserError(r.where(), "this library air has no table: it is homogeneous, its extinction is in the file", "a library air with 'table'",
                     "read the file itself");
-  AbsorberTable table = AbsorberTable::read(libraries.atmosphere / r.text("table"));
-  if (r.given("visibility")) table.setVisibility(1e-3 * r.number("visibility"));
-  if (r.given("aerosol") && r.text("aerosol") == "none") table.removeAerosol();
-  return table;
+  Value keys = tree;
+  keys.entries.clear(), keys.keyPlaces.clear();
+  for (size_t k = 0; k < tree.entries.size(); ++k) {
+    if (tree.entries[k].first == "description" || tree.entries[k].first == "source") continue;
+    keys.entries.push_back(tree.entries[k]);
+    keys.keyPlaces.push_back(tree.keyPlaces[k]);
+  }
+  const ParameterTable table = airTable(layeredModel());
+  return readAirTable(Record(keys, table), libraries.atmosphere);
 }
 
 }  // namespace pitviper

@@ -4,6 +4,7 @@
 #include "materials/angle_tables.hpp"
 #include "materials/models.hpp"
 #include "sensors/quantity.hpp"
+#include "sensors/stages.hpp"
 #include "sim/parameters/spectrum_value.hpp"
 #include "sim/scene/placement.hpp"
 #include "sim/stream/command_models.hpp"
@@ -304,6 +305,7 @@ const ParameterTable& camera() {
                             0, 256),
                      "16"),
          map("spectral", "wavelength sampling"), required(list("channels", "spectral channels", 1, 64)),
+         list("stages", "what its optics, detector and electronics do to its pictures, in this order", 0, 32),
          map("spectral_image", "also writes <camera>_<frame>_spectral.exr, which `pitviper integrate` takes"),
          list("truth", "extra layers: range, entity, temperature, normal, area, solid_angles, pixel_solid_angle (of each pixel's field, sr)", 0, 7),
          any("look_at", "name of an entity, or a position [x, y, z]")}};
@@ -397,6 +399,7 @@ std::vector<const ParameterTable*> all() {
   for (const ParameterTable& t : components) tables.push_back(&t);
   static const std::vector<ParameterTable> live = [] {
     std::vector<ParameterTable> each;
+    for (const StageModel& m : stageModels().all()) each.push_back(stageTable(m));
     for (const CommandModel& m : commandModels().all()) each.push_back(commandTable(m));
     for (const SinkModel& m : sinkModels().all()) each.push_back(sinkTable(m));
     return each;

@@ -14,15 +14,20 @@
 namespace pitviper {
 namespace {
 
-void addTruth(Frame& frame, const Camera& camera, const CameraImage& image) {
+void addTruth(Frame& frame, const Camera& camera, const CameraImage& image, const Pinhole& pinhole, const SensorChain* chain) {
   if (camera.truth.pixelSolidAngle) {
-    const std::vector<double>& omega_sr = image.solidAngles->plain_sr;
+    const std::vector<double> omega_sr = chain ? pinhole.solidAngles().plain_sr : image.solidAngles->plain_sr;
     frame.layers.push_back({"truth.pixel_solid_angle", "sr", std::vector<float>(omega_sr.begin(), omega_sr.end())});
   }
   if (image.truth.empty()) return;
   auto add = [&](const char* name, const char* unit, auto value) {
-    FrameLayer layer{std::string("truth.") + name, unit, std::vector<float>(image.truth.size())};
-    for (size_t p = 0; p < image.truth.size(); ++p) layer.pixels[p] = value(image.truth[p]);
+    FrameLayer layer{std::string("truth.") + name, unit, {}};
+    layer.pixels.reserve(static_cast<size_t>(frame.width) * static_cast<size_t>(frame.height));
+    for (int row = 0; row < frame.height; ++row)
+      for (int column = 0; column < frame.width; ++column) {
+        const size_t own = static_cast<size_t>(row) * static_cast<size_t>(frame.width) + static_cast<size_t>(column);
+        layer.pixels.push_back(value(image.truth[chain ? chain->middleCell(column, row) : own]));
+      }
     frame.layers.push_back(std::move(layer));
   };
   const TruthLayers& t = camera.truth;
@@ -89,16 +94,28 @@ Frame startFrame(const Camera& camera, const WorldState& state, int number) {
   return frame;
 }
 
+namespace {
+
+std::vector<float> valuesOf(const ChannelOutput& output, size_t o, const CameraImage& image) {
+  const auto& slot = image.slots[static_cast<size_t>(image.slotOfOutput[o])];
+  const double scale = output.scale * (output.perExposure ? image.exposure_s : 1.0);
+  std::vector<float> values(slot.size());
+  for (size_t p = 0; p < slot.size(); ++p) values[p] = static_cast<float>(scale * slot[p] * (output.perEtendue ? image.solidAngles->projected_sr[p] : 1.0));
+  return values;
+}
+
+/// Numbers of a scenario's random effects in a camera: by its name, so that another camera more changes nothing.
+std::uint64_t seedOf(const Simulation& sim, const Camera& camera) {
+  std::uint64_t seed = static_cast<std::uint64_t>(sim.seed) * 0x9e3779b97f4a7c15u + 0xcbf29ce484222325u;
+  for (char c : camera.name) seed = (seed ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
+  return seed;
+}
+
+}  // namespace
+
 void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image) {
-  for (size_t o = 0; o < camera.outputs.size(); ++o) {
-    const ChannelOutput& output = camera.outputs[o];
-    const auto& slot = image.slots[static_cast<size_t>(image.slotOfOutput[o])];
-    FrameLayer layer{output.layer(), output.unit, std::vector<float>(slot.size())};
-    const double scale = output.scale * (output.perExposure ? image.exposure_s : 1.0);
-    for (size_t p = 0; p < slot.size(); ++p)
-      layer.pixels[p] = static_cast<float>(scale * slot[p] * (output.perEtendue ? image.solidAngles->projected_sr[p] : 1.0));
-    frame.layers.push_back(std::move(layer));
-  }
+  for (size_t o = 0; o < camera.outputs.size(); ++o)
+    frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, valuesOf(camera.outputs[o], o, image)});
 }
 
 void addOptics(Frame& frame, const Pinhole& p, double exposure_s) {
@@ -160,10 +177,17 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   if (const std::string outside = outsideLimits(sim, camera, state); !outside.empty()) add("pitviper.outside_limits", outside);
 }
 
-Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number) {
+Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number, SensorChain* chain) {
   Frame frame = startFrame(camera, state, number);
-  addOutputs(frame, camera, image);
-  addTruth(frame, camera, image);
+  if (chain) {
+    std::vector<std::vector<float>> drawn;
+    for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(camera.outputs[o], o, image));
+    auto pixels = chain->run(drawn, image.solidAngles->projected_sr, {number, state.time_s, image.exposure_s, seedOf(sim, camera)});
+    for (size_t o = 0; o < camera.outputs.size(); ++o) frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, std::move(pixels[o])});
+  } else {
+    addOutputs(frame, camera, image);
+  }
+  addTruth(frame, camera, image, cameraAt(camera, state).pinhole, chain);
   addMetadata(frame, sim, camera, state);
   addAccuracy(frame, camera, image);
   addAudit(frame, camera, image);

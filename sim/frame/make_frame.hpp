@@ -3,12 +3,15 @@
 #include "sim/frame/frame.hpp"
 #include "sim/model/simulation.hpp"
 #include "sim/render/camera_image.hpp"
+#include "sim/render/sensor_chain.hpp"
 
 namespace pitviper {
 
-/// Turns integrals into quantities: value = scale x integral [x projected solid angle]. Adds truth layers and metadata (pose, optics,
-/// bands, where each entity is in the picture, the error its plan expects).
-Frame makeFrame(const Simulation& simulation, const Camera& camera, const CameraImage& image, const WorldState& state, int number);
+/// Turns integrals into quantities: value = scale x integral [x projected solid angle] [x exposure time], which then go through the sensor's stages
+/// (`chain`; the image is then one of drawnCamera()). Adds truth layers and metadata (pose, optics, bands, where each entity is in the picture, the error its
+/// plan expects).
+Frame makeFrame(const Simulation& simulation, const Camera& camera, const CameraImage& image, const WorldState& state, int number,
+                SensorChain* chain = nullptr);
 
 /// The same in steps, for a frame drawn in several passes: no layers; the layers of a pass's outputs; the metadata, last.
 Frame startFrame(const Camera& camera, const WorldState& state, int number);

@@ -100,14 +100,25 @@ void Buffer::bindPack() const { glBindBuffer(GL_PIXEL_PACK_BUFFER, name_); }
 void Buffer::download(void* into, std::size_t bytes) const { glGetNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(bytes), into); }
 void Buffer::bindElements() const { glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, name_); }
 
-Texture2D::Texture2D(int width, int height, PixelFormat format) {
+Texture2D::Texture2D(int width, int height, PixelFormat format) : width_(width), height_(height) {
   GLuint n = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &n);
   name_ = GlName<deleteTexture>(n);
-  const GLenum internal = format == PixelFormat::Rgba32f ? GL_RGBA32F : format == PixelFormat::Rg32ui ? GL_RG32UI : GL_DEPTH_COMPONENT32F;
+  const GLenum internal = format == PixelFormat::Rgba32f ? GL_RGBA32F : format == PixelFormat::R32f ? GL_R32F : format == PixelFormat::Rg32ui ? GL_RG32UI : GL_DEPTH_COMPONENT32F;
   glTextureStorage2D(n, 1, internal, width, height);
   glTextureParameteri(n, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(n, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+}
+
+void Texture2D::upload(const std::vector<float>& texels) const {
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
+  glTextureSubImage2D(name_, 0, 0, 0, width_, height_, GL_RED, GL_FLOAT, texels.data());
+}
+
+void Texture2D::download(std::vector<float>& texels) const {
+  texels.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_));
+  glPixelStorei(GL_PACK_ALIGNMENT, 4);
+  glGetTextureImage(name_, 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(float)), texels.data());
 }
 
 void Texture2D::bind(unsigned unit) const { glBindTextureUnit(unit, name_); }

@@ -84,7 +84,7 @@ class Buffer {
   std::size_t bytes_ = 0;
 };
 
-enum class PixelFormat { Rgba32f, Rg32ui, Depth32f };
+enum class PixelFormat { Rgba32f, R32f, Rg32ui, Depth32f };
 
 class Texture2D {
  public:
@@ -92,9 +92,13 @@ class Texture2D {
   Texture2D(int width, int height, PixelFormat format);
   void bind(unsigned unit) const;
   unsigned name() const { return name_; }
+  /// Of R32f: all its texels, row by row from texel row 0 on. download() waits for what is drawn into it.
+  void upload(const std::vector<float>& texels) const;
+  void download(std::vector<float>& texels) const;
 
  private:
   GlName<deleteTexture> name_;
+  int width_ = 0, height_ = 0;
 };
 
 /// A set of colour textures and, if asked for, a depth texture, all of one size.

@@ -11,6 +11,7 @@
 #include "sim/model/material.hpp"
 #include "sim/model/atmosphere.hpp"
 #include "sim/model/sink.hpp"
+#include "sim/model/stage.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectral_rule.hpp"
 #include "sim/scene/camera.hpp"
@@ -64,6 +65,7 @@ struct Camera {
   std::string plan;               ///< text of a plan to draw with, as written by another run; empty: one is made
   std::string planFile;           ///< where it came from, for messages
   std::vector<ChannelOutput> outputs;
+  std::vector<StageChoice> stages;             ///< of its sensor, after the spectral integral
   std::optional<SpectralBins> spectralImage;  ///< written beside the frame
   TruthLayers truth;
 };

@@ -174,7 +174,9 @@ bool readPlanned(const std::string& text, Plan& into) {
   for (double n : r.all(kMostSlots)) plan.fineCount.push_back(static_cast<int>(n));
   plan.shares.assign(r.count(kTermKinds), {});
   for (size_t k = 0; k < plan.shares.size(); ++k) plan.shares[k] = {nameOf(static_cast<TermKind>(k)), r.all(kMostSlots), true};
-  bool fits = r.ok() && plan.air.elevations > 1 && plan.air.ranges > 1 && plan.air.azimuths > 0 && plan.weight.size() == static_cast<size_t>(into.slotCount) &&
+  // The air has tables or it has none: makePlan() has asked it.
+  const bool tables = plan.air.elevations > 1 && plan.air.ranges > 1, none = plan.air.elevations == 0 && plan.air.ranges == 0;
+  bool fits = r.ok() && (into.air.elevations > 0 ? tables : none) && plan.air.azimuths > 0 && plan.weight.size() == static_cast<size_t>(into.slotCount) &&
               plan.predictedError.size() == plan.weight.size() && plan.fineCount.size() == plan.weight.size() &&
               plan.shares.size() == static_cast<size_t>(kTermKinds);
   for (const TermShare& s : plan.shares) fits &= s.share.size() == plan.weight.size();

@@ -64,7 +64,7 @@ Picture pictureOf(const Camera& c) {
 }
 
 double needOf(const Simulation& sim, const Camera& c) {
-  const Picture p = pictureOf(c);
+  const Picture p = pictureOf(drawnCamera(c));
   constexpr double kSolidAngles = 16.0;
   double need = keptOnGpu(sim, p, c.spectral.reference) + whileDrawn(p) + frames((p.layers + p.truth) * p.pixels) + kSolidAngles * p.pixels;
   if (c.spectralImage) {

@@ -14,16 +14,20 @@ namespace pitviper {
 RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRange& range, const FrameTaker& frames, const ProbeSink& probes,
                     const RunProgress& progress, bool stopsAtBroken) {
   auto scene = std::make_shared<const GpuScene>(sim);
+  std::vector<Camera> cameras;  // which the renderers look at: it is not to grow
+  for (const Camera& camera : sim.cameras) cameras.push_back(drawnCamera(camera));
   std::vector<std::unique_ptr<CameraRenderer>> renderers;
+  std::vector<std::unique_ptr<SensorChain>> chains;  // null for a camera without stages
   std::vector<Auditor> auditors;
   std::vector<std::unique_ptr<SpectralRenderer>> spectral;  // null for a camera without a spectral image
   for (const auto& camera : sim.cameras) {
     const auto planning = [&](double share) {
       if (progress.planning) progress.planning(camera, share);
     };
-    renderers.push_back(std::make_unique<CameraRenderer>(sim, camera, library, scene, planning));
+    renderers.push_back(std::make_unique<CameraRenderer>(sim, cameras[renderers.size()], library, scene, planning));
     if (progress.picture) renderers.back()->setProgress(progress.picture);
-    auditors.emplace_back(sim, camera, renderers.back()->plan(), library, scene);
+    auditors.emplace_back(sim, cameras[auditors.size()], renderers.back()->plan(), library, scene);
+    chains.push_back(camera.stages.empty() ? nullptr : std::make_unique<SensorChain>(camera, library));
     spectral.push_back(camera.spectralImage ? std::make_unique<SpectralRenderer>(sim, camera, library, scene) : nullptr);
   }
   std::future<void> handing;  // its destructor waits, so nothing it uses goes first
@@ -42,7 +46,7 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
       renderers[c]->begin(state);
       CameraImage image = renderers[c]->finish();
       auditors[c].look(state, number, image, number == range.first);
-      hand(makeFrame(sim, sim.cameras[c], image, state, number));
+      hand(makeFrame(sim, sim.cameras[c], image, state, number, chains[c].get()));
       if (spectral[c]) hand(spectral[c]->render(state, number));
     }
     if (probes)

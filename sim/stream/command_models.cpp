@@ -1,5 +1,7 @@
 #include "sim/stream/command_models.hpp"
 
+#include "sim/parameters/asked_model.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -21,19 +23,6 @@ int named(const Record& r, const char* key, const std::vector<T>& all) {
                   near.empty() ? "choose one" : "did you mean '" + near + "'?");
 }
 
-const CommandModel& modelOf(const Value& value) {
-  std::vector<std::string> names;
-  std::string all;
-  for (const CommandModel& m : commandModels().all()) names.push_back(m.name), all += (all.empty() ? "" : ", ") + m.name;
-  const Value* word = asMap(value, "a command").find("command");
-  if (!word) throw UserError(value.where, "missing key 'command'", "one of " + all, "add 'command:'");
-  const std::string name = readText(*word, "command");
-  if (const CommandModel* model = commandModels().named(name)) return *model;
-  const std::string near = nearestWord(name, names);
-  throw UserError(word->where, "there is no command '" + name.substr(0, 60) + "'", "one of " + all,
-                  near.empty() ? "choose one" : "did you mean '" + near + "'?");
-}
-
 }  // namespace
 
 Registry<CommandModel>& commandModels() {
@@ -50,7 +39,7 @@ ParameterTable commandTable(const CommandModel& model) {
 }
 
 Command readCommand(const Value& value, const Simulation& simulation, double now_s) {
-  const CommandModel& model = modelOf(value);
+  const CommandModel& model = askedModel(commandModels(), value, "command");
   const ParameterTable table = commandTable(model);
   const Record r(value, table);
   return {r.given("at") ? r.number("at") : now_s, wordsOf(value), value.where, model.read(r, simulation)};

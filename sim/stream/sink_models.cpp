@@ -1,5 +1,7 @@
 #include "sim/stream/sink_models.hpp"
 
+#include "sim/parameters/asked_model.hpp"
+
 namespace pitviper {
 
 Parameter folderParameter() { return withDefault(text("folder", "below the one that the run writes into"), "."); }
@@ -33,19 +35,9 @@ SinkChoice readSink(const Value& value) {
     map.entries = {{"sink", value}};
     map.keyPlaces = {value.where};
   }
-  std::vector<std::string> names;
-  std::string all;
-  for (const SinkModel& m : sinkModels().all()) names.push_back(m.name), all += (all.empty() ? "" : ", ") + m.name;
-  const Value* word = asMap(map, "a sink").find("sink");
-  if (!word) throw UserError(value.where, "missing key 'sink'", "one of " + all, "add 'sink:'");
-  const std::string name = readText(*word, "sink");
-  const SinkModel* model = sinkModels().named(name);
-  if (!model) {
-    const std::string near = nearestWord(name, names);
-    throw UserError(word->where, "there is no sink '" + name.substr(0, 60) + "'", "one of " + all, near.empty() ? "choose one" : "did you mean '" + near + "'?");
-  }
-  const ParameterTable table = sinkTable(*model);
-  return {value.where, model->read(Record(map, table))};
+  const SinkModel& model = askedModel(sinkModels(), map, "sink");
+  const ParameterTable table = sinkTable(model);
+  return {value.where, model.read(Record(map, table))};
 }
 
 SinkChoice sinkNamed(const std::string& name) {

@@ -27,12 +27,17 @@ Simulation scene(const std::string& yaml) {
 CameraImage renderImage(const Simulation& sim, int frame) {
   needContext();
   auto gpu = std::make_shared<const GpuScene>(sim);
-  CameraRenderer renderer(sim, sim.cameras.at(0), shaderLibrary(), gpu);
+  const Camera drawn = drawnCamera(sim.cameras.at(0));
+  CameraRenderer renderer(sim, drawn, shaderLibrary(), gpu);
   return renderer.render(advance(sim, sim.time.at(frame)));
 }
 
 Frame renderFrame(const Simulation& sim, int frame) {
-  return makeFrame(sim, sim.cameras.at(0), renderImage(sim, frame), advance(sim, sim.time.at(frame)), frame);
+  const Camera& camera = sim.cameras.at(0);
+  const CameraImage image = renderImage(sim, frame);
+  std::optional<SensorChain> chain;
+  if (!camera.stages.empty()) chain.emplace(camera, shaderLibrary());
+  return makeFrame(sim, camera, image, advance(sim, sim.time.at(frame)), frame, chain ? &*chain : nullptr);
 }
 
 const FrameLayer& layer(const Frame& frame, const std::string& name) {

@@ -1,0 +1,37 @@
+#include "sensors/stages.hpp"
+
+#include "sim/parameters/asked_model.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Far more than any point spread function that a film holds.
+constexpr int kMostMargin_px = 256, kMostCells = 16;
+
+}  // namespace
+
+Registry<StageModel>& stageModels() {
+  static Registry<StageModel> all("stage", {});
+  return all;
+}
+
+ParameterTable stageTable(const StageModel& model) {
+  ParameterTable t{"stage: " + model.name, model.description, {required(text("stage", "`" + model.name + "`"))}};
+  t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
+  return t;
+}
+
+StageChoice readStage(const Value& value, const Camera& camera) {
+  const StageModel& model = askedModel(stageModels(), value, "stage");
+  const ParameterTable table = stageTable(model);
+  StageChoice choice = model.read(Record(value, table), camera);
+  choice.words = wordsOf(value);
+  choice.where = value.where;
+  if (choice.margin_px < 0 || choice.margin_px > kMostMargin_px || choice.cells < 1 || choice.cells > kMostCells)
+    throw UserError(value.where, "stage '" + model.name + "' needs " + std::to_string(choice.margin_px) + " pixels around the film and " + std::to_string(choice.cells) +
+                        " cells a pixel",
+                    "at most " + std::to_string(kMostMargin_px) + " and " + std::to_string(kMostCells), "ask less of it");
+  return choice;
+}
+
+}  // namespace pitviper

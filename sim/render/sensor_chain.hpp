@@ -1,0 +1,27 @@
+#pragma once
+// Runs a camera's stages over what was drawn of it, on the GPU, and brings cells together into its pixels.
+#include <memory>
+
+#include "sim/render/sensor_stage.hpp"
+
+namespace pitviper {
+
+class SensorChain {
+ public:
+  /// Both must outlive it; the camera has stages. Needs a current GlContext.
+  SensorChain(const Camera& camera, const ShaderLibrary& library);
+  /// `drawn`: of each output a picture of drawnCamera(), row by row from the top, in its unit; `etendue_m2sr`: of each of its cells, what means of
+  /// intensive outputs are weighted by (those per etendue add up). Returns pictures of the camera's own pixels.
+  std::vector<std::vector<float>> run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick);
+  /// The cell in the middle of a pixel of the camera, in pictures of drawnCamera().
+  std::size_t middleCell(int column, int row) const;
+
+ private:
+  std::vector<float> resolved(const std::vector<float>& cells, const std::vector<double>& weights, bool addsUp) const;
+  const Camera& camera_;
+  SensorPictures pictures_;
+  int width_, height_;  ///< cells
+  std::vector<std::unique_ptr<SensorStage>> stages_;
+};
+
+}  // namespace pitviper

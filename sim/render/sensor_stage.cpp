@@ -1,0 +1,38 @@
+#include "sim/render/sensor_stage.hpp"
+
+#include <epoxy/gl.h>
+
+#include <stdexcept>
+
+#include "sim/gl/context.hpp"
+
+namespace pitviper {
+
+FormulaStage::FormulaStage(const ShaderLibrary& library, const std::string& file, std::vector<float> parameters)
+    : parameters_(std::move(parameters)), empty_(makeVertexArray()) {
+  if (parameters_.size() > 16) throw std::invalid_argument("a stage has at most 16 parameters");
+  ShaderSlots slots;
+  slots.files["stage"] = file;
+  program_ = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots),
+                     assembleShader(library, "sim/render/glsl/sensor_stage.frag.glsl", slots));
+}
+
+void FormulaStage::run(const SensorTick& tick, SensorPictures& pictures) {
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
+  glDisable(GL_CULL_FACE);
+  glBindVertexArray(empty_);
+  program_.use();
+  if (!parameters_.empty()) glUniform1fv(program_.uniform("parameters"), static_cast<GLsizei>(parameters_.size()), parameters_.data());
+  glUniform1i(program_.uniform("cellsPerPixel"), pictures.cells);
+  glUniform1i(program_.uniform("frameNumber"), tick.frame);
+  for (size_t o = 0; o < pictures.now.size(); ++o) {
+    pictures.next[o].bind();
+    pictures.now[o].colour(0).bind(0);
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  checkGl("a stage of a sensor");
+  pictures.advance();
+}
+
+}  // namespace pitviper
