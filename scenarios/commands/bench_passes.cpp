@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "scenarios/commands/commands.hpp"
-#include "sim/render/camera_renderer.hpp"
+#include "sim/camera/camera_renderer.hpp"
 
 namespace pitviper {
 namespace {

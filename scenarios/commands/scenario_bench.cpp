@@ -7,7 +7,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
-#include "sim/render/camera_renderer.hpp"
+#include "sim/camera/camera_renderer.hpp"
 
 namespace pitviper {
 namespace {

@@ -9,6 +9,7 @@ namespace pitviper {
 
 std::span<const ShaderText> pv_radiometry_shaders();
 std::span<const ShaderText> pv_render_shaders();
+std::span<const ShaderText> pv_camera_shaders();
 std::span<const ShaderText> pv_materials_shaders();
 std::span<const ShaderText> pv_atmosphere_shaders();
 
@@ -17,6 +18,7 @@ const ShaderLibrary& shaderLibrary() {
     ShaderLibrary l;
     l.add(pv_radiometry_shaders());
     l.add(pv_render_shaders());
+    l.add(pv_camera_shaders());
     l.add(pv_materials_shaders());
     l.add(pv_atmosphere_shaders());
     for (const StageModel& m : stageModels().all())

@@ -2,8 +2,8 @@
 // Makes frames of what the renderer leaves.
 #include "sim/frame/frame.hpp"
 #include "sim/model/simulation.hpp"
-#include "sim/render/camera_image.hpp"
-#include "sim/render/sensor_chain.hpp"
+#include "sim/camera/camera_image.hpp"
+#include "sim/camera/sensor_chain.hpp"
 
 namespace pitviper {
 

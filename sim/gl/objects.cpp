@@ -214,14 +214,12 @@ void Readback::copy(Buffer& into, const RenderTarget& from, unsigned attachment,
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
 }
 
-void Readback::start(const RenderTarget& target, std::size_t count, const RenderTarget* depthOf, const RenderTarget* identityOf) {
+void Readback::start(const RenderTarget& target, std::size_t count, const RenderTarget* identityOf) {
   pixels_ = static_cast<size_t>(target.width()) * static_cast<size_t>(target.height());
-  hasDepth_ = depthOf != nullptr;
   hasIdentity_ = identityOf != nullptr;
   colours_.resize(count);
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
   for (size_t i = 0; i < count; ++i) copy(colours_[i], target, GL_COLOR_ATTACHMENT0 + static_cast<unsigned>(i), GL_RGBA, GL_FLOAT, pixels_ * 16);
-  if (depthOf) copy(depth_, *depthOf, GL_COLOR_ATTACHMENT0, GL_DEPTH_COMPONENT, GL_FLOAT, pixels_ * 4);
   if (identityOf) copy(identity_, *identityOf, GL_COLOR_ATTACHMENT0, GL_RG_INTEGER, GL_UNSIGNED_INT, pixels_ * 8);
   fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   glFlush();
@@ -239,10 +237,6 @@ Readback::Pixels Readback::wait() {
   for (auto& buffer : colours_) {
     out.colours.emplace_back(pixels_ * 4);
     buffer.download(out.colours.back().data(), pixels_ * 16);
-  }
-  if (hasDepth_) {
-    out.depth.resize(pixels_);
-    depth_.download(out.depth.data(), pixels_ * 4);
   }
   if (hasIdentity_) {
     out.identity.resize(pixels_ * 2);

@@ -149,12 +149,11 @@ void drawFullScreen(const RenderTarget& target, const Program& program, const st
 /// Copies targets to pixel buffers without waiting; wait() gives the floats. Row 0 is the bottom row, as GL has it.
 class Readback {
  public:
-  /// Begins copying colour attachments [0, count) as RGBA floats; of other targets of the same size, if given, the depth and the
-  /// first colour as pairs of whole numbers.
-  void start(const RenderTarget& target, std::size_t count, const RenderTarget* depthOf = nullptr, const RenderTarget* identityOf = nullptr);
+  /// Begins copying colour attachments [0, count) as RGBA floats; of another target of the same size, if given, the first colour as pairs of whole
+  /// numbers.
+  void start(const RenderTarget& target, std::size_t count, const RenderTarget* identityOf = nullptr);
   struct Pixels {
     std::vector<std::vector<float>> colours;  ///< each width * height * 4
-    std::vector<float> depth;                 ///< width * height, or empty
     std::vector<std::uint32_t> identity;      ///< width * height * 2, or empty
   };
   /// Blocks until the copy is done.
@@ -166,8 +165,8 @@ class Readback {
  private:
   void copy(Buffer& into, const RenderTarget& from, unsigned attachment, unsigned format, unsigned type, std::size_t bytes);
   std::vector<Buffer> colours_;
-  Buffer depth_, identity_;
-  bool hasDepth_ = false, hasIdentity_ = false;
+  Buffer identity_;
+  bool hasIdentity_ = false;
   std::size_t pixels_ = 0;
   void* fence_ = nullptr;
 };

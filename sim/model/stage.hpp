@@ -12,7 +12,7 @@ class SensorStage;
 class ShaderLibrary;
 struct Camera;
 
-/// A stage of a camera; its contract is in sim/render/sensor_stage.hpp.
+/// A stage of a camera; its contract is in sim/camera/sensor_stage.hpp.
 struct StageChoice {
   std::string words;  ///< what it depends on: two with the same words are the same
   Location where;

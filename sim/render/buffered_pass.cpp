@@ -152,34 +152,4 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
   if (hasTruth()) truth_.run(into);
 }
 
-std::vector<double> BufferedPass::transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) {
-  std::vector<double> all(plan().nodes.size(), 1.0);
-  if (!layers_) return all;
-  layers_->order(view, state, drawn);
-  if (layers_->isEmpty()) return all;
-  RenderTarget& visibility = visibilityFor(view.width, view.height);
-  RenderTarget& spectrum = spectrumFor(visibility);
-  uploadView(view, state);
-  uploadDraws(view, state);
-  bindBuffers();
-  const GLuint nothing[4] = {0, 0, 0, 0};
-  const GLfloat end = static_cast<float>(view.near_m / farthest_m), one[4] = {1, 1, 1, 1};
-  visibility.bind();
-  glDepthMask(GL_TRUE);
-  glClearBufferuiv(GL_COLOR, 0, nothing);
-  glClearBufferfv(GL_DEPTH, 0, &end);
-  for (const Batch& batch : batches_) {
-    spectrum.bind();
-    for (size_t t = 0; t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), one);
-    layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batch.firstNode, .emitting = false, .farthest_m = farthest_m});
-    Readback readback;
-    readback.start(spectrum, spectrum.colourCount());
-    const auto pixels = readback.wait();
-    for (size_t i = 0; i < 4 * spectrum.colourCount() && static_cast<size_t>(batch.firstNode) + i < all.size(); ++i)
-      all[static_cast<size_t>(batch.firstNode) + i] = static_cast<double>(pixels.colours[i / 4][i % 4]);
-  }
-  checkGl("drawing what stands before a light");
-  return all;
-}
-
 }  // namespace pitviper

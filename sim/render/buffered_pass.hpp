@@ -14,7 +14,6 @@ class BufferedPass final : public ScenePass {
   std::string shadingText() const override { return shade_.text(); }
   std::vector<NamedProgram> programs() const override;
 
-  std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) override;
   /// Null where nothing in the scenario is transparent.
   LayerPass* layers() const { return layers_.get(); }
 

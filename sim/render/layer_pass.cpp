@@ -166,7 +166,6 @@ void LayerPass::blend(const Over& over) {
     const Program& program = !run.medium ? layer_ : first.group >= 0 ? group_ : volume_;
     program.use();
     glUniform1i(program.uniform("firstNode"), over.firstNode);
-    glUniform1f(program.uniform("emitting"), over.emitting ? 1.0f : 0.0f);
     if (run.medium) drawMedium(first, over);
     else drawLayers(run, over);
   }
@@ -192,10 +191,7 @@ void LayerPass::drawLayers(const Run& run, const Over& over) {
 
 namespace {
 
-void setMedium(const Program& program, const LayerPiece& piece, double farthest_m) {
-  glUniform1i(program.uniform("drawIndex"), static_cast<int>(piece.draw));
-  glUniform1f(program.uniform("farthest"), static_cast<float>(farthest_m));
-}
+void setMedium(const Program& program, const LayerPiece& piece) { glUniform1i(program.uniform("drawIndex"), static_cast<int>(piece.draw)); }
 
 }  // namespace
 
@@ -223,7 +219,7 @@ void LayerPass::drawMedium(const LayerPiece& piece, const Over& over) {
   const Program& program = piece.group >= 0 ? group_ : volume_;
   media_.bindTexture(5, 4);
   over.visibility.colour(0).bind(0);
-  setMedium(program, piece, over.farthest_m);
+  setMedium(program, piece);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CLIP_DISTANCE0);
   glEnable(GL_DEPTH_CLAMP);  // the back of the box may lie anywhere
@@ -265,7 +261,7 @@ void LayerPass::drawThickness(const LayerPiece& piece, const Over& over) {
   glClearBufferfv(GL_COLOR, 1, nothing);
   over.visibility.colour(0).bind(0);
   thickness_.use();
-  setMedium(thickness_, piece, over.farthest_m);
+  setMedium(thickness_, piece);
   const std::uint32_t first = scene_->firstTriangle(item.entity);
   glUniform1i(thickness_.uniform("firstTriangle"), static_cast<int>(first));
   glDisable(GL_DEPTH_TEST);

@@ -32,8 +32,6 @@ class LayerPass {
     RenderTarget& spectrum;          ///< with the visibility pass' depth attached
     const RenderTarget& visibility;  ///< identity and depth of the solid scene
     int firstNode = 0;
-    bool emitting = true;      ///< false: multiplies by transmittance alone
-    double farthest_m = 1e30;  ///< depth at which the ray ends where nothing solid does
   };
   /// Draws, view, lights and nodes are bound; changes the bound surface tables and the blend, cull and depth state's settings.
   void blend(const Over& over);

@@ -205,12 +205,8 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   checkGl("drawing a frame");
 }
 
-std::vector<double> ScenePass::transmittance(const View&, const WorldState&, const std::vector<char>&, double) {
-  return std::vector<double>(plan_.nodes.size(), 1.0);
-}
-
-void ScenePass::startReadback(bool depth, bool identity) {
-  readback_.start(current_->shading, current_->shading.colourCount(), depth ? &current_->visibility : nullptr, identity ? &current_->visibility : nullptr);
+void ScenePass::startReadback(bool identity) {
+  readback_.start(current_->shading, current_->shading.colourCount(), identity ? &current_->visibility : nullptr);
 }
 
 RawImage ScenePass::finishReadback() {
@@ -218,7 +214,6 @@ RawImage ScenePass::finishReadback() {
   RawImage image;
   image.width = current_->shading.width();
   image.height = current_->shading.height();
-  image.depth = std::move(pixels.depth);
   for (size_t i = 0; i < pixels.identity.size(); i += 2) image.entity.push_back(tables_.draws[pixels.identity[i]].entity);
   for (size_t i = 0; i < pixels.colours.size(); ++i)
     (i < static_cast<size_t>(plan_.groupCount()) ? image.groups : image.truth).push_back(std::move(pixels.colours[i]));

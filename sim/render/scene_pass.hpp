@@ -22,7 +22,6 @@ struct RawImage {
   int width = 0, height = 0;
   std::vector<std::vector<float>> groups;  ///< four slots each, RGBA
   std::vector<std::vector<float>> truth;   ///< three layers of RGBA where asked for
-  std::vector<float> depth;                ///< reversed: near / z; 0 where nothing was met. Empty unless asked for
   std::vector<int> entity;                 ///< what each pixel sees, -1 the background. Empty unless asked for
 };
 
@@ -37,12 +36,8 @@ class ScenePass {
   /// `drawn`: one flag per entity; the others are left out (small bodies have views of their own).
   void draw(const View& view, const WorldState& state, const std::vector<char>& drawn);
   /// Starts copying the last drawn image.
-  void startReadback(bool depth, bool identity = false);
+  void startReadback(bool identity = false);
   RawImage finishReadback();
-  /// Transmittance per node of everything transparent on the line of sight of a view of one pixel (its centre), as far as a depth [m].
-  /// Light levels and poses as in setState() and the last draw().
-  virtual std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m);
-
   /// Text of the program that shades what is solid; empty where none does.
   virtual std::string shadingText() const { return ""; }
   /// What a picture is drawn with besides the visibility pass, in order: shadow maps, shading, truth, transparent things, integration.

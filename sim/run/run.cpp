@@ -6,7 +6,7 @@
 #include "sim/frame/make_frame.hpp"
 #include "sim/model/world.hpp"
 #include "sim/plan/plan_cache.hpp"
-#include "sim/render/probe.hpp"
+#include "sim/camera/probe.hpp"
 #include "sim/run/spectral_renderer.hpp"
 
 namespace pitviper {

@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "sim/frame/frame.hpp"
-#include "sim/render/audit.hpp"
+#include "sim/camera/audit.hpp"
 
 namespace pitviper {
 

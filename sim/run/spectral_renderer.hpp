@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "sim/frame/frame.hpp"
-#include "sim/render/camera_renderer.hpp"
+#include "sim/camera/camera_renderer.hpp"
 
 namespace pitviper {
 

@@ -7,7 +7,7 @@
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sensors/stages.hpp"
 #include "sim/parameters/read_file.hpp"
-#include "sim/render/sensor_stage.hpp"
+#include "sim/camera/sensor_stage.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 

@@ -6,7 +6,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/planner.hpp"
-#include "sim/render/audit.hpp"
+#include "sim/camera/audit.hpp"
 #include "sim/run/run.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -9,7 +9,7 @@
 #include "sim/gl/context.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
-#include "sim/render/small_bodies.hpp"
+#include "sim/camera/small_bodies.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -9,7 +9,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/render/buffered_pass.hpp"
-#include "sim/render/camera_renderer.hpp"
+#include "sim/camera/camera_renderer.hpp"
 #include "sim/render/direct_pass.hpp"
 #include "tests/support/scene_builder.hpp"
 

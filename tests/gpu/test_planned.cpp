@@ -47,7 +47,7 @@ std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan
     const View view = cameraView(camera, state, 1);
     pass->setState(state);
     pass->draw(view, state, present);
-    pass->startReadback(true);
+    pass->startReadback();
     const RawImage raw = pass->finishReadback();
     const ReferenceShader planned(sim, plan, view, state, present), exact(sim, fine, view, state, present);
     for (int y = 0; y < size; y += stride)

@@ -33,7 +33,7 @@ Tally tally(const Simulation& sim, int stride = 1) {
   const auto pass = makeScenePass(sim, plan, shaderLibrary(), gpu, true, camera.pinhole.apertureArea_m2());
   pass->setState(state);
   pass->draw(view, state, std::vector<char>(sim.entities.size(), 1));
-  pass->startReadback(false);
+  pass->startReadback();
   const RawImage raw = pass->finishReadback();
   Tally t;
   for (int y = 0; y < view.height; y += stride)

@@ -6,7 +6,7 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "sim/render/direct_pass.hpp"
-#include "sim/render/small_bodies.hpp"
+#include "sim/camera/small_bodies.hpp"
 #include "sim/scene/triangle_tree.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -31,7 +31,7 @@ Picture draw(const Simulation& sim) {
   const auto pass = makeScenePass(sim, plan, shaderLibrary(), std::make_shared<const GpuScene>(sim), false, 1.0);
   pass->setState(state);
   pass->draw(picture.view, state, std::vector<char>(sim.entities.size(), 1));
-  pass->startReadback(false, true);
+  pass->startReadback(true);
   const RawImage raw = pass->finishReadback();
   for (size_t p = 0; p < raw.entity.size(); ++p) picture.radiance.push_back(raw.groups[0][4 * p]);
   picture.entity = raw.entity;

@@ -27,7 +27,7 @@ Worst compare(const Simulation& sim, const Plan& plan, int stride, double floor)
   ScenePass& pass = *owned;
   pass.setState(state);
   pass.draw(view, state, std::vector<char>(sim.entities.size(), 1));
-  pass.startReadback(true);
+  pass.startReadback();
   const RawImage raw = pass.finishReadback();
   Worst worst;
   struct Pair {

@@ -6,7 +6,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/gl/context.hpp"
-#include "sim/render/probe.hpp"
+#include "sim/camera/probe.hpp"
 
 namespace pitviper::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "sim/frame/make_frame.hpp"
-#include "sim/render/camera_renderer.hpp"
+#include "sim/camera/camera_renderer.hpp"
 
 namespace pitviper::test {
 

@@ -1,16 +1,15 @@
 // One transparent surface over the spectral image, each node by its own transmittance T. With radiances as seen from the camera:
 //   L <- T L + (1 - T) L_path(r) + tau(r) (emission + reflection).   Source: PHYSICS section 2; Duvenhage 2006 section 5.3.2.
 // What lies behind was drawn without the surface, air from the camera on included; of that air the part in front of the surface is not
-// dimmed by it, hence the second term. emitting = 0 leaves the transmittance alone (what is left of a light behind).
+// dimmed by it, hence the second term.
 flat in uvec2 seen;
-uniform float emitting;
 //@use sim/render/glsl/shading.glsl
 //@slot ground
 
 Real blended(Real behind, int i) {
   Real t = transmittance(i);
   Real own = (1.0 - t) * pathRadiance(i, air_) + pathTransmittance(i, air_) * selfRadiance(i) + reflectedLight(i);
-  return t * behind + emitting * own;
+  return t * behind + own;
 }
 
 //@slot blend

@@ -10,7 +10,6 @@ layout(binding = 7) uniform sampler2D thicknessBounds;
 uniform int form;      // 0 mesh, 1 ellipsoid, 2 cone
 uniform vec3 formSize;
 uniform int mediumRow;
-uniform float emitting;
 
 float pathLength_;    // inside the medium [m]
 float sunElevation_;
@@ -24,7 +23,7 @@ Real blended(Real behind, int i) {
   Real air = pathDepth(i, near_, far_);
   Real before = pathRadiance(i, near_), tau = pathTransmittance(i, near_), inside = pathInside(i, near_, far_);
   Real own = mediumRadiance(depth, air, before, inside, tau, medium.y);
-  return decay(depth) * (behind - emitting * (before + inside)) + emitting * own;
+  return decay(depth) * (behind - (before + inside)) + own;
 }
 
 //@slot targets

@@ -13,7 +13,6 @@ uniform int memberDraw[GROUP];
 uniform int memberForm[GROUP];
 uniform vec3 memberSize[GROUP];
 uniform int memberRow[GROUP];
-uniform float emitting;
 
 float sunElevation_;
 vec2 way_[GROUP];            // of each member that the ray meets: t along the ray from the plane of the first one's origin
@@ -40,7 +39,7 @@ Real blended(Real behind, int i) {
     if (!(depth > 0.0)) continue;
     Real air = pathDepth(i, near_[c], far_[c]);
     Real before = pathRadiance(i, near_[c]), tau = pathTransmittance(i, near_[c]), inside = pathInside(i, near_[c], far_[c]);
-    radiance = decay(depth) * (radiance - emitting * (before + inside)) + emitting * mediumRadiance(depth, air, before, inside, tau, emitted / depth);
+    radiance = decay(depth) * (radiance - (before + inside)) + mediumRadiance(depth, air, before, inside, tau, emitted / depth);
   }
   return radiance;
 }

@@ -4,12 +4,11 @@
 // How far a ray through a medium's body may count: t along the ray from the plane of the body's origin.
 layout(binding = 0) uniform usampler2D visibility;
 uniform int drawIndex;
-uniform float farthest;  // depth of what ends the ray, if no surface does [m]
 
 // Depths of planes are compared in two parts each: the difference of the large ones is exact where they are near each other.
 float endOfRay(Draw body) {
   uvec2 id = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).xy;
-  float end = farthest - planeOf(body);
+  float end = kFar - planeOf(body);
   if (id.x != 0u) {
     Draw solid = draws[id.x];
     Meeting m = meet(id.y, pointOnPlane(solid), inBody(solid, ray_));

@@ -46,7 +46,7 @@ void ReferencePass::beforeShading(const View& view, const WorldState& state, con
 
 void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
   Readback readback;
-  readback.start(into, 0, nullptr, &visibility);
+  readback.start(into, 0, &visibility);
   const auto identity = readback.wait().identity;
   const int width = visibility.width(), height = visibility.height();
   const size_t groups = static_cast<size_t>(plan().groupCount());
@@ -103,10 +103,6 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
   ++viewsDone_;
   for (size_t g = 0; g < groups; ++g) glTextureSubImage2D(into.colour(g).name(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, channels[g].data());
   if (hasTruth()) truthProgram_.run(into);
-}
-
-std::vector<double> ReferencePass::transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) {
-  return ReferenceShader(simulation_, plan(), view, state, drawn, spectra_).transmittance(farthest_m);
 }
 
 }  // namespace pitviper

@@ -24,7 +24,6 @@ class ReferencePass final : public ScenePass {
   void beginPicture(int views);
   /// It is done, whatever it took.
   void endPicture() const;
-  std::vector<double> transmittance(const View& view, const WorldState& state, const std::vector<char>& drawn, double farthest_m) override;
 
  private:
   void beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) override;

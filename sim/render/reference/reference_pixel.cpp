@@ -71,17 +71,6 @@ LineOfSight ReferenceShader::line(int x, int y, const SeenTriangle& seen) const 
   return line;
 }
 
-std::vector<double> ReferenceShader::transmittance(double farthest_m) const {
-  NodeSum sum(*spectra_);
-  sum.begin();
-  if (!transparent_) return sum.transmittance();
-  const double x = 0.5 * view_.width, y = 0.5 * view_.height, end = farthest_m * glm::length(view_.ray(x, y));
-  LineOfSight line = lineThrough(x, y);
-  line.hits = castRay(simulation_, state_, line.origin, line.direction, nearest_m(x, y), &drawn_, true);
-  wayAlong(scene(), line, end, sum);
-  return sum.transmittance();
-}
-
 std::size_t ReferenceShader::things(const RayHits& hits) {
   const auto one = [](int entity, int surface) { return std::hash<long long>()((static_cast<long long>(entity) << 20) + surface + 2); };
   std::size_t all = 0x9e3779b97f4a7c15u ^ one(hits.solid.entity, hits.solid.surface) * 3;

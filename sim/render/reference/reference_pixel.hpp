@@ -41,8 +41,6 @@ class ReferenceShader {
   static std::size_t things(const RayHits& hits);
   /// The same number, not 0, for lines between which radiance changes smoothly: the same things, lit by the same lights, which glint about as strongly.
   std::size_t looks(const LineOfSight& line) const;
-  /// Per node, of everything transparent on the line through the middle of the view as far as a depth.
-  std::vector<double> transmittance(double farthest_m) const;
 
   const NodeSpectra& spectra() const { return *spectra_; }
 

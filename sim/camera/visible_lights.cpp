@@ -1,4 +1,4 @@
-#include "sim/render/visible_lights.hpp"
+#include "sim/camera/visible_lights.hpp"
 
 #include <cmath>
 
@@ -21,21 +21,18 @@ std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, c
   return sums;
 }
 
-std::vector<double> wayTo(ScenePass& pass, const WorldState& state, const std::vector<char>& present, const glm::dvec3& from, const glm::dvec3& direction,
-                          double distance_m, double near_m) {
-  // One pixel, turned so that its centre looks along the very line.
-  View v;
-  v.width = v.height = 1;
-  v.tanPerPixelX = v.tanPerPixelY = 1e-4;
-  v.axisX = v.axisY = 0.5;
-  v.position = from;
-  v.localFromCamera = localFromCamera({from, orientationAlong(direction)});
-  v.near_m = near_m;
-  pass.draw(v, state, present);
-  pass.startReadback(true);
-  const float depth = pass.finishReadback().depth[0];
-  const bool free = depth <= 0.0f || near_m / static_cast<double>(depth) >= distance_m * (1.0 - 1e-6);
-  return free ? pass.transmittance(v, state, present, distance_m) : std::vector<double>();
+WaysToLights::WaysToLights(const Simulation& simulation, const Plan& plan) : simulation_(simulation), terms_(plan.terms), spectra_(simulation, plan.nodes) {
+  terms_.air = terms_.scatteredSun = false;
+}
+
+std::vector<double> WaysToLights::from(const WorldState& state, const std::vector<char>& present, const glm::dvec3& place, const glm::dvec3& direction,
+                                       double distance_m, double near_m) const {
+  LineOfSight line{place, direction, castRay(simulation_, state, place, direction, near_m, &present), 0.0};
+  if (line.hits.solid.entity >= 0 && line.hits.solid.distance < distance_m * (1.0 - 1e-6)) return {};
+  NodeSum sum(spectra_);
+  sum.begin();
+  if (!line.hits.layers.empty() || !line.hits.stretches.empty()) wayAlong({simulation_, terms_, nullptr, state, {}}, line, distance_m, sum);
+  return sum.transmittance();
 }
 
 bool lightIsInView(const Simulation& sim, const WorldState& state, const View& v, size_t light) {
@@ -47,14 +44,14 @@ bool lightIsInView(const Simulation& sim, const WorldState& state, const View& v
   return !v.wanted || (*v.wanted)[static_cast<size_t>(at.y) * static_cast<size_t>(v.width) + static_cast<size_t>(at.x)];
 }
 
-void addVisibleLights(Subpixels& image, ScenePass& pass, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present) {
+void addVisibleLights(Subpixels& image, const WaysToLights& ways, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present) {
   const View& v = image.view();
   for (size_t l = 0; l < sim.lights.size(); ++l) {
     if (!lightIsInView(sim, state, v, l)) continue;
     const glm::dvec3 line = state.lights[l] - v.position, p = glm::transpose(v.localFromCamera) * line;
     const glm::dvec2 at = filmPosition(v, p);
     const double range = glm::length(line);
-    const auto way = wayTo(pass, state, present, v.position, line / range, range, v.near_m);
+    const auto way = ways.from(state, present, v.position, line / range, range, v.near_m);
     if (way.empty()) continue;
     const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
     // As radiance: the flux divided by the aperture and the subpixel's projected solid angle.

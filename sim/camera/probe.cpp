@@ -1,4 +1,4 @@
-#include "sim/render/probe.hpp"
+#include "sim/camera/probe.hpp"
 
 #include <cmath>
 
@@ -6,8 +6,8 @@
 #include "sim/plan/planner.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/reference_pass.hpp"
-#include "sim/render/small_bodies.hpp"
-#include "sim/render/visible_lights.hpp"
+#include "sim/camera/small_bodies.hpp"
+#include "sim/camera/visible_lights.hpp"
 
 namespace pitviper {
 namespace {
@@ -56,7 +56,7 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
     std::vector<char> drawn(all);
     for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = !small[e];
     pass.draw(v, state, drawn);
-    pass.startReadback(false);
+    pass.startReadback();
     Subpixels image(plan, v, pass.finishReadback());
     addSmallBodies(image, pass, sim, state, small, all, Camera{}.zoomedSamples);
     for (int y = 0; y < v.height; ++y)
@@ -69,11 +69,12 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
         for (size_t s = 0; s < sums.size(); ++s) sums[s] += weight * image.slot(s, image.index(x, y));
       }
   }
+  const WaysToLights ways(sim, plan);
   for (size_t l = 0; l < sim.lights.size(); ++l) {
     const glm::dvec3 line = state.lights[l] - probe.position;
     const double d = glm::length(line), cosine = d > 0.0 ? glm::dot(line, normal) / d : 0.0;
     if (cosine <= 0.0 || state.lightLevels[l] <= 0.0) continue;
-    const auto way = wayTo(pass, state, all, probe.position, line / d, d, kNear_m);
+    const auto way = ways.from(state, all, probe.position, line / d, d, kNear_m);
     if (way.empty()) continue;
     const double factor = physics::pointIrradianceFactor(cosine, d * d, sim.lights[l].radius_m);
     const auto intensity = apparentIntensity(sim, plan, state, l, probe.position, way);
@@ -82,7 +83,7 @@ std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, cons
   const SunHere sun = sim.sun ? sunHere(sim, probe.position) : SunHere{{}, 0.0, {}};
   const double cosine = glm::dot(sun.toSun, normal);
   const std::vector<double> toSun =
-      sun.share > 0.0 && cosine > 0.0 ? wayTo(pass, state, all, probe.position, sun.toSun, physics::kFar, kNear_m) : std::vector<double>();
+      sun.share > 0.0 && cosine > 0.0 ? ways.from(state, all, probe.position, sun.toSun, physics::kFar, kNear_m) : std::vector<double>();
   for (size_t i = 0; i < toSun.size(); ++i) {
     const SpectralNode& n = plan.nodes[i];
     const double e = toSun[i] * sun.share * cosine * n.mean(sim.sun->irradiance) * (plan.terms.air ? sim.air->transmittance(n.air, sun.air) : 1.0);

@@ -1,4 +1,4 @@
-#include "sim/render/sensor_stage.hpp"
+#include "sim/camera/sensor_stage.hpp"
 
 #include <epoxy/gl.h>
 
@@ -14,7 +14,7 @@ FormulaStage::FormulaStage(const ShaderLibrary& library, const std::string& file
   ShaderSlots slots;
   slots.files["stage"] = file;
   program_ = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots),
-                     assembleShader(library, "sim/render/glsl/sensor_stage.frag.glsl", slots));
+                     assembleShader(library, "sim/camera/glsl/sensor_stage.frag.glsl", slots));
 }
 
 void FormulaStage::run(const SensorTick& tick, SensorPictures& pictures) {

@@ -1,8 +1,8 @@
-#include "sim/render/camera_renderer.hpp"
+#include "sim/camera/camera_renderer.hpp"
 
 #include "sim/plan/planner.hpp"
-#include "sim/render/small_bodies.hpp"
-#include "sim/render/visible_lights.hpp"
+#include "sim/camera/small_bodies.hpp"
+#include "sim/camera/visible_lights.hpp"
 
 namespace pitviper {
 
@@ -11,7 +11,8 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
     : simulation_(simulation),
       camera_(camera),
       plan_(planFor(simulation, {&camera, nullptr}, planning)),
-      scattering_(simulation, camera, plan_) {
+      scattering_(simulation, camera, plan_),
+      ways_(simulation, plan_) {
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
   const double area_m2 = camera.pinhole.apertureArea_m2();
   if (camera.spectral.reference) {
@@ -69,7 +70,7 @@ void CameraRenderer::begin(const WorldState& state) {
   if (isBuffered() && buffered_->layers()) buffered_->layers()->beginPicture();
   pass_->setState(state_);
   pass_->draw(view_, state_, drawn);
-  pass_->startReadback(false);
+  pass_->startReadback();
 }
 
 void CameraRenderer::setWanted(const std::vector<int>& pixels) {
@@ -110,7 +111,7 @@ WorldState CameraRenderer::lampsInView() const {
 CameraImage CameraRenderer::finish() {
   Subpixels image(plan_, view_, pass_->finishReadback());
   addSmallBodies(image, *pass_, simulation_, state_, small_, present_, camera_.zoomedSamples, wanted_.get());
-  addVisibleLights(image, *pass_, simulation_, plan_, lampsInView(), present_);
+  addVisibleLights(image, ways_, simulation_, plan_, lampsInView(), present_);
   if (reference_) reference_->endPicture();
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
   resolved.slotOfOutput = plan_.slotOfOutput;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sim/plan/plan.hpp"
-#include "sim/render/camera_image.hpp"
+#include "sim/camera/camera_image.hpp"
 #include "sim/render/scene_pass.hpp"
 
 namespace pitviper {

@@ -1,4 +1,4 @@
-#include "sim/render/small_bodies.hpp"
+#include "sim/camera/small_bodies.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -201,7 +201,7 @@ void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const W
     if (!anyOf(*z.wanted)) return;
   }
   pass.draw(z, state, drawn);
-  pass.startReadback(false, true);
+  pass.startReadback(true);
   const RawImage zoomed = pass.finishReadback();
   gather(image, z, zoomed,
          sharesOf(
@@ -237,7 +237,7 @@ class MixedBodies {
       z.wanted = wanted(colour);
       if (!anyOf(*z.wanted)) continue;
       pass.draw(z, state_, drawn);
-      pass.startReadback(false, true);
+      pass.startReadback(true);
       const RawImage zoomed = pass.finishReadback();
       const auto isOne = [&](int e) { return std::find(bodies_.begin(), bodies_.end(), e) != bodies_.end(); };
       gather(image, z, zoomed,

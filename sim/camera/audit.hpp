@@ -2,7 +2,7 @@
 // Frames that audit themselves: some pixels are worked out by the reference, at the subpixels the frame used, and held against it.
 #include <memory>
 
-#include "sim/render/camera_renderer.hpp"
+#include "sim/camera/camera_renderer.hpp"
 
 namespace pitviper {
 

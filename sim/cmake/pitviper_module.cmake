@@ -35,8 +35,8 @@ function(pitviper_module name)
     set(embedded ${CMAKE_CURRENT_BINARY_DIR}/${name}_shaders.cpp)
     add_custom_command(OUTPUT ${embedded}
       COMMAND ${CMAKE_COMMAND} -DOUT=${embedded} -DROOT=${CMAKE_SOURCE_DIR} -DNAME=${name}
-              "-DFILES=${shaders}" -P ${CMAKE_SOURCE_DIR}/cmake/embed_shaders.cmake
-      DEPENDS ${shaders} ${CMAKE_SOURCE_DIR}/cmake/embed_shaders.cmake VERBATIM)
+              "-DFILES=${shaders}" -P ${CMAKE_SOURCE_DIR}/sim/cmake/embed_shaders.cmake
+      DEPENDS ${shaders} ${CMAKE_SOURCE_DIR}/sim/cmake/embed_shaders.cmake VERBATIM)
     list(APPEND sources ${embedded})
   endif()
   if(NOT sources)

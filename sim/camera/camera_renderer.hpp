@@ -6,7 +6,8 @@
 #include "sim/render/buffered_pass.hpp"
 #include "sim/render/direct_pass.hpp"
 #include "sim/render/reference/reference_pass.hpp"
-#include "sim/render/subpixels.hpp"
+#include "sim/camera/subpixels.hpp"
+#include "sim/camera/visible_lights.hpp"
 
 namespace pitviper {
 
@@ -46,6 +47,7 @@ class CameraRenderer {
   const Camera& camera_;
   Plan plan_;
   ScatteringCheck scattering_;
+  WaysToLights ways_;
   std::unique_ptr<ReferencePass> reference_;  ///< instead of the other two
   std::unique_ptr<DirectPass> direct_;        ///< both where auto has to choose frame by frame
   std::unique_ptr<BufferedPass> buffered_;

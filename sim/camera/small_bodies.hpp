@@ -4,7 +4,7 @@
 // range:  sum over pixels of (L - L_background) w_pix = tau(R) (I - L_background A_projected) / R^2.
 #include <vector>
 
-#include "sim/render/subpixels.hpp"
+#include "sim/camera/subpixels.hpp"
 
 namespace pitviper {
 

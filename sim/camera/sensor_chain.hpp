@@ -2,7 +2,7 @@
 // Runs a camera's stages over what was drawn of it, on the GPU, and brings cells together into its pixels.
 #include <memory>
 
-#include "sim/render/sensor_stage.hpp"
+#include "sim/camera/sensor_stage.hpp"
 
 namespace pitviper {
 

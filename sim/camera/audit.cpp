@@ -1,4 +1,4 @@
-#include "sim/render/audit.hpp"
+#include "sim/camera/audit.hpp"
 
 #include <algorithm>
 #include <cmath>

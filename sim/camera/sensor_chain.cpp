@@ -1,4 +1,4 @@
-#include "sim/render/sensor_chain.hpp"
+#include "sim/camera/sensor_chain.hpp"
 
 namespace pitviper {
 

@@ -1,4 +1,4 @@
-#include "sim/render/subpixels.hpp"
+#include "sim/camera/subpixels.hpp"
 
 namespace pitviper {
 
