@@ -41,56 +41,72 @@ std::vector<View> hemisphere(const Probe& probe) {
 
 }  // namespace
 
-std::vector<double> measureProbe(const Simulation& sim, const Probe& probe, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
-                                 const WorldState& state) {
-  const Plan plan = planFor(sim, {nullptr, &probe});
-  const auto owned =
-      probe.spectral.reference ? std::make_unique<ReferencePass>(sim, plan, library, scene, false, 1.0) : makeScenePass(sim, plan, library, scene, false, 1.0);
-  ScenePass& pass = *owned;
-  pass.setState(state);
-  const std::vector<char> all(sim.entities.size(), 1);
-  const glm::dvec3 normal = glm::normalize(probe.normal);
-  std::vector<double> sums(static_cast<size_t>(plan.slotCount), 0.0);
-  for (const View& v : hemisphere(probe)) {
-    const auto small = findSmallBodies(sim, state, v, 16.0);  // as a camera's default: a far body falls between rays otherwise
-    std::vector<char> drawn(all);
+ProbeMeter::ProbeMeter(const Simulation& simulation, const Probe& probe, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene)
+    : simulation_(simulation),
+      probe_(probe),
+      normal_(glm::normalize(probe.normal)),
+      plan_(planFor(simulation, {nullptr, &probe})),
+      ways_(simulation, plan_),
+      all_(simulation.entities.size(), 1) {
+  pass_ = probe.spectral.reference ? std::make_unique<ReferencePass>(simulation, plan_, library, scene, false, 1.0)
+                                   : makeScenePass(simulation, plan_, library, scene, false, 1.0);
+}
+
+void ProbeMeter::addSurroundings(const WorldState& state, std::vector<double>& sums) {
+  for (const View& v : hemisphere(probe_)) {
+    const auto small = findSmallBodies(simulation_, state, v, 16.0);  // as a camera's default: a far body falls between rays otherwise
+    std::vector<char> drawn(all_);
     for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = !small[e];
-    pass.draw(v, state, drawn);
-    pass.startReadback();
-    Subpixels image(plan, v, pass.finishReadback());
-    addSmallBodies(image, pass, sim, state, small, all, Camera{}.zoomedSamples);
+    pass_->draw(v, state, drawn);
+    pass_->startReadback();
+    Subpixels image(plan_, v, pass_->finishReadback());
+    addSmallBodies(image, *pass_, simulation_, state, small, all_, Camera{}.zoomedSamples);
     for (int y = 0; y < v.height; ++y)
       for (int x = 0; x < v.width; ++x) {
         const glm::dvec3 ray = v.ray(x + 0.5, y + 0.5);
         const double l2 = glm::dot(ray, ray);
-        const double cosine = glm::dot(v.localFromCamera * ray, normal) / std::sqrt(l2);
+        const double cosine = glm::dot(v.localFromCamera * ray, normal_) / std::sqrt(l2);
         if (cosine <= 0.0) continue;
         const double weight = cosine * v.tanPerPixelX * v.tanPerPixelY / (l2 * std::sqrt(l2));
         for (size_t s = 0; s < sums.size(); ++s) sums[s] += weight * image.slot(s, image.index(x, y));
       }
   }
-  const WaysToLights ways(sim, plan);
-  for (size_t l = 0; l < sim.lights.size(); ++l) {
-    const glm::dvec3 line = state.lights[l] - probe.position;
-    const double d = glm::length(line), cosine = d > 0.0 ? glm::dot(line, normal) / d : 0.0;
+}
+
+void ProbeMeter::addLights(const WorldState& state, std::vector<double>& sums) const {
+  for (size_t l = 0; l < simulation_.lights.size(); ++l) {
+    const glm::dvec3 line = state.lights[l] - probe_.position;
+    const double d = glm::length(line), cosine = d > 0.0 ? glm::dot(line, normal_) / d : 0.0;
     if (cosine <= 0.0 || state.lightLevels[l] <= 0.0) continue;
-    const auto way = ways.from(state, all, probe.position, line / d, d, kNear_m);
+    const auto way = ways_.from(state, all_, probe_.position, line / d, d, kNear_m);
     if (way.empty()) continue;
-    const double factor = physics::pointIrradianceFactor(cosine, d * d, sim.lights[l].radius_m);
-    const auto intensity = apparentIntensity(sim, plan, state, l, probe.position, way);
+    const double factor = physics::pointIrradianceFactor(cosine, d * d, simulation_.lights[l].radius_m);
+    const auto intensity = apparentIntensity(simulation_, plan_, state, l, probe_.position, way);
     for (size_t s = 0; s < sums.size(); ++s) sums[s] += factor * intensity[s];
   }
-  const SunHere sun = sim.sun ? sunHere(sim, probe.position) : SunHere{{}, 0.0, {}};
-  const double cosine = glm::dot(sun.toSun, normal);
-  const std::vector<double> toSun =
-      sun.share > 0.0 && cosine > 0.0 ? ways.from(state, all, probe.position, sun.toSun, physics::kFar, kNear_m) : std::vector<double>();
-  for (size_t i = 0; i < toSun.size(); ++i) {
-    const SpectralNode& n = plan.nodes[i];
-    const double e = toSun[i] * sun.share * cosine * n.mean(sim.sun->irradiance) * (plan.terms.air ? sim.air->transmittance(n.air, sun.air) : 1.0);
-    for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * e;
+}
+
+void ProbeMeter::addSun(const WorldState& state, std::vector<double>& sums) const {
+  if (!simulation_.sun) return;
+  const SunHere sun = sunHere(simulation_, probe_.position);
+  const double cosine = glm::dot(sun.toSun, normal_);
+  if (!(sun.share > 0.0 && cosine > 0.0)) return;
+  const std::vector<double> way = ways_.from(state, all_, probe_.position, sun.toSun, physics::kFar, kNear_m);
+  for (size_t i = 0; i < way.size(); ++i) {
+    const SpectralNode& n = plan_.nodes[i];
+    const double e =
+        way[i] * sun.share * cosine * n.mean(simulation_.sun->irradiance) * (plan_.terms.air ? simulation_.air->transmittance(n.air, sun.air) : 1.0);
+    for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan_.weight[s][i] * e;
   }
-  std::vector<double> values;
-  for (size_t o = 0; o < probe.outputs.size(); ++o) values.push_back(probe.outputs[o].scale * sums[static_cast<size_t>(plan.slotOfOutput[o])]);
+}
+
+std::vector<double> ProbeMeter::read(const WorldState& state) {
+  pass_->setState(state);
+  std::vector<double> sums(static_cast<size_t>(plan_.slotCount), 0.0), values;
+  addSurroundings(state, sums);
+  addLights(state, sums);
+  addSun(state, sums);
+  for (size_t o = 0; o < probe_.outputs.size(); ++o) values.push_back(probe_.outputs[o].scale * sums[static_cast<size_t>(plan_.slotOfOutput[o])]);
   return values;
 }
 

@@ -1,13 +1,32 @@
 #pragma once
 // Irradiance on a plane at a point: the whole hemisphere in five wide views, summed by projected solid angle, and the point lights
 // and the sun that reach it.
-#include "sim/render/scene_pass.hpp"
+#include "sim/camera/visible_lights.hpp"
 
 namespace pitviper {
 
-/// One value per output, in the output's unit. Surfaces are sampled by 5 x resolution^2 rays on a turned grid (no edge of a scene
-/// runs along it); the sky between them likewise.
-std::vector<double> measureProbe(const Simulation& simulation, const Probe& probe, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
-                                 const WorldState& state);
+/// A probe's plan and programs, which it keeps from one reading to the next.
+class ProbeMeter {
+ public:
+  /// Simulation, probe and library must outlive it. Needs a current GlContext.
+  ProbeMeter(const Simulation& simulation, const Probe& probe, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene);
+  ProbeMeter(const ProbeMeter&) = delete;
+  ProbeMeter& operator=(const ProbeMeter&) = delete;
+  /// One value per output, in the output's unit. Surfaces are sampled by 5 x resolution^2 rays on a turned grid (no edge of a scene
+  /// runs along it); the sky between them likewise.
+  std::vector<double> read(const WorldState& state);
+
+ private:
+  void addSurroundings(const WorldState& state, std::vector<double>& sums);
+  void addLights(const WorldState& state, std::vector<double>& sums) const;
+  void addSun(const WorldState& state, std::vector<double>& sums) const;
+  const Simulation& simulation_;
+  const Probe& probe_;
+  glm::dvec3 normal_;
+  Plan plan_;
+  std::unique_ptr<ScenePass> pass_;
+  WaysToLights ways_;
+  std::vector<char> all_;  ///< flags of all entities
+};
 
 }  // namespace pitviper

@@ -195,6 +195,43 @@ Spectrum SpectrumReader::readLibrary(const std::string& word, const Location& wh
                   near.empty() ? "write a number with its unit, a table or a library name" : "did you mean '" + near + "'?");
 }
 
+namespace {
+
+Spectrum readValues(const Record& r, std::string_view unit, std::string_view name, Outside beyond) {
+  if (!r.given("wavelength"))
+      throw UserError(r.where(), "the table of " + std::string(name) + " has no unit for its first column", "'wavelength: um', 'nm' or '1/cm'",
+                      "add 'wavelength: um'");
+  if (!r.given("unit"))
+    throw UserError(r.where(), "the table of " + std::string(name) + " has no unit for its values",
+                    unit.empty() ? "'unit: \"1\"'" : "'unit: " + std::string(unit) + "'", "add it");
+  std::vector<Row> rows;
+  for (const Value& row : r.value("values").items) {
+    if (row.kind != Value::Kind::List || row.items.size() != 2)
+      throw UserError(
+          row.where,
+          "a table row of " + std::string(name) + " is " + (row.kind == Value::Kind::List ? "a list of " + std::to_string(row.items.size()) : row.kindName()),
+          "two numbers [wavelength, value]", "write [3.5, 0.82]");
+    rows.push_back({plainNumber(row.items[0], name), plainNumber(row.items[1], name), row.where});
+  }
+  return fromRows(std::move(rows), r.text("wavelength"), r.where("wavelength"), r.text("unit"), r.where("unit"), unit, beyond, name, r.where());
+}
+
+Spectrum readBlackBody(const Record& r, std::string_view unit, std::string_view name) {
+  const double t = r.number("blackbody");
+  double factor = 1.0;
+  std::string dimension = "W/(m2 sr um)";
+  if (r.given("area")) factor = r.number("area"), dimension = "W/(sr um)";
+  if (r.given("solid_angle")) factor *= r.number("solid_angle"), dimension = r.given("area") ? "W/um" : "W/(m2 um)";
+  const auto converted = convert({factor, dimension}, unit);
+  if (!converted)
+    throw UserError(r.where(),
+                    "a black body here is in " + dimension + " but " + std::string(name) + " is in " + std::string(unit.empty() ? "plain numbers" : unit),
+                    "for an intensity 'area', for an irradiance 'solid_angle', for a radiance neither", "add or remove 'area' or 'solid_angle'");
+  return Spectrum(Spectrum::BlackBody{t, *converted});
+}
+
+}  // namespace
+
 Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std::string_view name, Outside outside, int depth) const {
   const Record r(value, spectrumTable());
   static const char* const kinds[] = {"values", "file", "library", "band", "blackbody", "product", "power"};
@@ -210,23 +247,7 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
   const double scale = r.given("scale") ? r.number("scale") : 1.0;
   Spectrum s;
   if (kind == "values") {
-    for (const char* key : {"wavelength"})
-      if (!r.given(key))
-        throw UserError(value.where, "the table of " + std::string(name) + " has no unit for its first column", "'wavelength: um', 'nm' or '1/cm'",
-                        "add 'wavelength: um'");
-    if (!r.given("unit"))
-      throw UserError(value.where, "the table of " + std::string(name) + " has no unit for its values",
-                      unit.empty() ? "'unit: \"1\"'" : "'unit: " + std::string(unit) + "'", "add it");
-    std::vector<Row> rows;
-    for (const Value& row : r.value("values").items) {
-      if (row.kind != Value::Kind::List || row.items.size() != 2)
-        throw UserError(
-            row.where,
-            "a table row of " + std::string(name) + " is " + (row.kind == Value::Kind::List ? "a list of " + std::to_string(row.items.size()) : row.kindName()),
-            "two numbers [wavelength, value]", "write [3.5, 0.82]");
-      rows.push_back({plainNumber(row.items[0], name), plainNumber(row.items[1], name), row.where});
-    }
-    s = fromRows(std::move(rows), r.text("wavelength"), r.where("wavelength"), r.text("unit"), r.where("unit"), unit, beyond, name, value.where);
+    s = readValues(r, unit, name, beyond);
   } else if (kind == "file") {
     std::filesystem::path path = r.text("file");
     if (path.is_relative()) path = files_.base / path;
@@ -241,17 +262,7 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
                       "write [3 um, 5 um]");
     s = Spectrum::band(low, high, r.given("value") ? bandValue(r.value("value"), unit) : convert({1.0, ""}, unit).value_or(1.0));
   } else if (kind == "blackbody") {
-    const double t = r.number("blackbody");
-    double factor = 1.0;
-    std::string dimension = "W/(m2 sr um)";
-    if (r.given("area")) factor = r.number("area"), dimension = "W/(sr um)";
-    if (r.given("solid_angle")) factor *= r.number("solid_angle"), dimension = r.given("area") ? "W/um" : "W/(m2 um)";
-    const auto converted = convert({factor, dimension}, unit);
-    if (!converted)
-      throw UserError(value.where,
-                      "a black body here is in " + dimension + " but " + std::string(name) + " is in " + std::string(unit.empty() ? "plain numbers" : unit),
-                      "for an intensity 'area', for an irradiance 'solid_angle', for a radiance neither", "add or remove 'area' or 'solid_angle'");
-    s = Spectrum(Spectrum::BlackBody{t, *converted});
+    s = readBlackBody(r, unit, name);
   } else if (kind == "product") {
     bool first = true;
     for (const Value& factor : r.value("product").items) {

@@ -65,94 +65,106 @@ double ScatteringCheck::depthAbove(const Column& column, double height_m) const 
   return (1.0 - f) * column.depth[static_cast<size_t>(h)] + f * column.depth[static_cast<size_t>(h) + 1];
 }
 
-std::vector<ScatteredAgain> ScatteringCheck::at(const WorldState& state) const {
-  std::vector<ScatteredAgain> all;
-  if (channels_.empty()) return all;
+/// A line of sight, with what it has of the sun.
+struct ScatteringCheck::Line {
+  std::optional<Hit> end;
+  double end_K;  ///< temperature there
+  SunlitAir air;
+  double cosScatter;
+  LightLeg sun;
+  AirAmounts toSun;  ///< from its end on
+};
+
+std::vector<ScatteringCheck::Line> ScatteringCheck::linesOver(const WorldState& state, std::optional<Hit>& below) const {
   const CameraState eye = cameraAt(camera_, state);
-  const Pose& pose = eye.pose;
-  const glm::dmat3 axes = localFromCamera(pose);
+  const glm::dvec3 place = eye.pose.position, up = sim_.frame.up(place);
+  const glm::dmat3 axes = localFromCamera(eye.pose);
   std::vector<char> drawn(sim_.entities.size(), 1);
   if (camera_.mount.carrier >= 0) drawn[static_cast<size_t>(camera_.mount.carrier)] = 0;
-  const glm::dvec3 up = sim_.frame.up(pose.position);
   const auto endOf = [&](const glm::dvec3& direction) -> std::optional<Hit> {
-    const RayHits hits = castRay(sim_, state, pose.position, direction, camera_.near_m, &drawn);
-    return hits.solid.entity >= 0 ? hits.solid : groundHit(sim_, pose.position, direction);
+    const RayHits hits = castRay(sim_, state, place, direction, camera_.near_m, &drawn);
+    return hits.solid.entity >= 0 ? hits.solid : groundHit(sim_, place, direction);
   };
-  const std::optional<Hit> below = endOf(-up);
-  const double sunSine = glm::dot(sim_.sun->toSun, up);
-  // What the sun goes through from where over what lies straight above: the cosine that a flat layer would have.
-  const RisenSun risen = risenSun(0.0, sunSine, sim_.frame.earthRadius_m());
-  if (!(risen.share > 0.0)) return all;
-  const AirAmounts slant = sim_.air->powered(plan_.sunLegs->at(0.0, risen.sinElevation));
-
-  struct Line {
-    std::optional<Hit> end;
-    SunlitAir air;
-    double cosScatter;
-    LightLeg sun;
-    AirAmounts toSun;  ///< from its end on
-  };
+  below = endOf(-up);
   std::vector<Line> lines;
   for (const auto& [across, down] : kLines) {
     const Pinhole& p = eye.pinhole;
     const glm::dvec3 direction = glm::normalize(axes * glm::dvec3(p.tanX(p.width * across), p.tanY(p.height * down), -1.0));
     const std::optional<Hit> end = endOf(direction);
-    const AirRay ray{sim_.frame.height(pose.position), glm::dot(direction, up), sim_.frame.earthRadius_m()};
-    const RaySun sun{sunSine, glm::dot(direction, sim_.sun->toSun)};
+    const AirRay ray{sim_.frame.height(place), glm::dot(direction, up), sim_.frame.earthRadius_m()};
+    const RaySun sun{glm::dot(sim_.sun->toSun, up), glm::dot(direction, sim_.sun->toSun)};
     SunlitAir air(*sim_.air, ray, sim_.air->stations(ray, end ? end->distance : physics::kFar), plan_.sunLegs.get(), sun);
     const LightLeg leg = end ? lightLeg(sim_, state, *end, sim_.lights.size()) : LightLeg{};
-    lines.push_back({end, std::move(air), sun.cosScatter, leg, sim_.air->powered(leg.air)});
+    lines.push_back({end, end ? temperatureAt(sim_, state, *end) : 0.0, std::move(air), sun.cosScatter, leg, sim_.air->powered(leg.air)});
   }
+  return lines;
+}
 
+ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n, const Line& line, const std::optional<Hit>& below, const AirAmounts& slant) const {
+  const SpectralNode& node = channel.nodes[n];
+  const Column& column = channel.columns[n];
+  const double um = node.members.front().wavelength_um, e0 = sim_.sun->irradiance(um);
+  const double ground = below ? std::clamp(sim_.materialOf(surfaceAt(sim_, *below)).reflectance(um, 0.0), 0.0, 1.0) : 0.0;
+  const double sine = column.depth.front() / std::max(Atmosphere::depthOf(node.air, slant), column.depth.front());
+  const TwoStream layer(column.depth.front(), column.albedo, column.asymmetry, sine, ground);
+  std::vector<double> source;
+  for (const AirStation& s : line.air.stations) source.push_back(physics::planckRadiance(um, s.temperature_K));
+  const AirRadiance seen = airRadiance(node.air, line.air, source);
+  const double rayleigh = rayleighPhase(line.cosScatter), haze = henyeyGreensteinPhase(line.cosScatter, node.air.asymmetry);
+  Parts parts{seen.thermal.back() + e0 * (rayleigh * seen.molecules.back() + haze * seen.haze.back()), 0.0, 0.0};
+  for (size_t s = 1; s < line.air.stations.size(); ++s) {
+    const auto passed = [&](const std::array<double, kMostAirAmounts>& c) {
+      return sumOver(c, line.air.powered[s]) - sumOver(c, line.air.powered[s - 1]);
+    };
+    const double small = passed(node.air.molecules), large = passed(node.air.haze), d = seen.depth[s] - seen.depth[s - 1];
+    parts.scattering += small + large;
+    if (!(d > 0.0)) continue;
+    const double height = 0.5 * (line.air.stations[s - 1].height_m + line.air.stations[s].height_m), from = depthAbove(column, height);
+    const TwoStream::Fluxes flux = layer.at(from);
+    // Once scattered is in the picture: what is left of the beam by all extinction. More than that goes its way, and all around.
+    const double aside = std::max(flux.beam - std::exp(-from / std::max(sine, 1e-3)), 0.0);
+    const double each = (small * rayleigh + large * haze) * aside + (small + large) * (flux.down + flux.up) / (2.0 * kPi);
+    parts.more += e0 * each / d * std::exp(-seen.depth[s - 1]) * physics::oneMinusExp(d);
+  }
+  const double through = std::exp(-seen.depth.back());
+  if (!line.end) {
+    parts.own += through * sim_.background(um);
+    return parts;
+  }
+  const Surface& surface = surfaceAt(sim_, *line.end);
+  const Material& material = sim_.materialOf(surface);
+  const double reflectance = material.reflectance(um, 0.0), cosine = glm::dot(line.end->normal, sim_.frame.up(line.end->point));
+  const double height = sim_.frame.height(line.end->point), from = depthAbove(column, height), leg = Atmosphere::depthOf(node.air, line.toSun);
+  const double dome = sim_.ambient ? kPi * (*sim_.ambient)(um) : 0.0;
+  const TwoStream::Fluxes flux = layer.at(from);
+  parts.own += through * (material.emissivity(um, 0.0) * physics::planckRadiance(um, line.end_K) +
+                    reflectance / kPi * (e0 * line.sun.factor * std::exp(-leg) + dome));
+  // A dome that the scenario has lights every side alike; else half of what is level, by how the surface lies.
+  const double around = sim_.ambient ? flux.down : 0.5 * (1.0 + cosine) * flux.down + 0.5 * (1.0 - cosine) * flux.up;
+  const double falls = around + std::max(flux.beam - std::exp(-leg), 0.0) * line.sun.factor;
+  parts.more += through * reflectance / kPi * std::max(e0 * falls - dome, 0.0);
+  parts.scattering += sumOver(node.air.molecules, line.toSun) + sumOver(node.air.haze, line.toSun);
+  return parts;
+}
+
+std::vector<ScatteredAgain> ScatteringCheck::at(const WorldState& state) const {
+  std::vector<ScatteredAgain> all;
+  if (channels_.empty()) return all;
+  const double sunSine = glm::dot(sim_.sun->toSun, sim_.frame.up(cameraAt(camera_, state).pose.position));
+  // What the sun goes through from where over what lies straight above: the cosine that a flat layer would have.
+  const RisenSun risen = risenSun(0.0, sunSine, sim_.frame.earthRadius_m());
+  if (!(risen.share > 0.0)) return all;
+  const AirAmounts slant = sim_.air->powered(plan_.sunLegs->at(0.0, risen.sinElevation));
+  std::optional<Hit> below;
+  const std::vector<Line> lines = linesOver(state, below);
   for (const Channel& channel : channels_) {
     std::vector<double> factors, depths;
     for (const Line& line : lines) {
       double once = 0.0, again = 0.0, depth = 0.0, total = 0.0;
       for (size_t n = 0; n < channel.nodes.size(); ++n) {
-        const SpectralNode& node = channel.nodes[n];
-        const Column& column = channel.columns[n];
-        const double um = node.members.front().wavelength_um, weight = channel.weight[n], e0 = sim_.sun->irradiance(um);
-        const double ground = below ? std::clamp(sim_.materialOf(surfaceAt(sim_, *below)).reflectance(um, 0.0), 0.0, 1.0) : 0.0;
-        const double sine = column.depth.front() / std::max(Atmosphere::depthOf(node.air, slant), column.depth.front());
-        const TwoStream layer(column.depth.front(), column.albedo, column.asymmetry, sine, ground);
-        std::vector<double> source;
-        for (const AirStation& s : line.air.stations) source.push_back(physics::planckRadiance(um, s.temperature_K));
-        const AirRadiance seen = airRadiance(node.air, line.air, source);
-        const double rayleigh = rayleighPhase(line.cosScatter), haze = henyeyGreensteinPhase(line.cosScatter, node.air.asymmetry);
-        double own = seen.thermal.back() + e0 * (rayleigh * seen.molecules.back() + haze * seen.haze.back()), more = 0.0, scattering = 0.0;
-        for (size_t s = 1; s < line.air.stations.size(); ++s) {
-          const auto passed = [&](const std::array<double, kMostAirAmounts>& c) {
-            return sumOver(c, line.air.powered[s]) - sumOver(c, line.air.powered[s - 1]);
-          };
-          const double small = passed(node.air.molecules), large = passed(node.air.haze), d = seen.depth[s] - seen.depth[s - 1];
-          scattering += small + large;
-          if (!(d > 0.0)) continue;
-          const double height = 0.5 * (line.air.stations[s - 1].height_m + line.air.stations[s].height_m), from = depthAbove(column, height);
-          const TwoStream::Fluxes flux = layer.at(from);
-          // Once scattered is in the picture: what is left of the beam by all extinction. More than that goes its way, and all around.
-          const double aside = std::max(flux.beam - std::exp(-from / std::max(sine, 1e-3)), 0.0);
-          const double each = (small * rayleigh + large * haze) * aside + (small + large) * (flux.down + flux.up) / (2.0 * kPi);
-          more += e0 * each / d * std::exp(-seen.depth[s - 1]) * physics::oneMinusExp(d);
-        }
-        const double through = std::exp(-seen.depth.back());
-        if (line.end) {
-          const Surface& surface = surfaceAt(sim_, *line.end);
-          const Material& material = sim_.materialOf(surface);
-          const double reflectance = material.reflectance(um, 0.0), cosine = glm::dot(line.end->normal, sim_.frame.up(line.end->point));
-          const double height = sim_.frame.height(line.end->point), from = depthAbove(column, height), leg = Atmosphere::depthOf(node.air, line.toSun);
-          const double dome = sim_.ambient ? kPi * (*sim_.ambient)(um) : 0.0;
-          const TwoStream::Fluxes flux = layer.at(from);
-          own += through * (material.emissivity(um, 0.0) * physics::planckRadiance(um, temperatureAt(sim_, state, *line.end)) +
-                            reflectance / kPi * (e0 * line.sun.factor * std::exp(-leg) + dome));
-          // A dome that the scenario has lights every side alike; else half of what is level, by how the surface lies.
-          const double around = sim_.ambient ? flux.down : 0.5 * (1.0 + cosine) * flux.down + 0.5 * (1.0 - cosine) * flux.up;
-          const double falls = around + std::max(flux.beam - std::exp(-leg), 0.0) * line.sun.factor;
-          more += through * reflectance / kPi * std::max(e0 * falls - dome, 0.0);
-          scattering += sumOver(node.air.molecules, line.toSun) + sumOver(node.air.haze, line.toSun);
-        } else {
-          own += through * sim_.background(um);
-        }
-        once += weight * own, again += weight * more, depth += weight * scattering, total += weight;
+        const Parts parts = partsOf(channel, n, line, below, slant);
+        const double weight = channel.weight[n];
+        once += weight * parts.own, again += weight * parts.more, depth += weight * parts.scattering, total += weight;
       }
       if (!(once > 0.0)) continue;
       factors.push_back(1.0 + again / once), depths.push_back(depth / total);

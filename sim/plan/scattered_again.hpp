@@ -1,8 +1,10 @@
 #pragma once
 // By about what factor a picture would be brighter if sunlight that the air scatters more than once were in it: it is left out.
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/model/ray_hits.hpp"
 #include "sim/model/two_stream.hpp"
 #include "sim/plan/plan.hpp"
 
@@ -35,7 +37,14 @@ class ScatteringCheck {
     std::vector<Column> columns;
   };
   double heightAt(int entry) const;
+  struct Line;
+  /// Of a line at a node: radiance as drawn, what light scattered again would add, optical depth of what scatters.
+  struct Parts {
+    double own, more, scattering;
+  };
   double depthAbove(const Column& column, double height_m) const;
+  std::vector<Line> linesOver(const WorldState& state, std::optional<Hit>& below) const;
+  Parts partsOf(const Channel& channel, std::size_t node, const Line& line, const std::optional<Hit>& below, const AirAmounts& slant) const;
 
   const Simulation& sim_;
   const Camera& camera_;

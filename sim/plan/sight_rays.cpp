@@ -343,9 +343,8 @@ void SightRays::findGlints(const std::vector<size_t>& combination) {
         if (auto ray = glint(combination, surface, l)) extremes_.push_back(std::move(*ray));
 }
 
-void SightRays::findExtremes() {
-  survey();
-  std::vector<SightRay>& all = extremes_;
+/// Lamps, and each surface where its body is nearest and farthest.
+void SightRays::findNearAndFar() {
   // The frames at which each body is nearest and farthest, and the first and last.
   const int frames = simulation_.time.frames, looked = std::min(frames, kMostFrames);
   struct Extent {
@@ -369,37 +368,44 @@ void SightRays::findExtremes() {
   std::sort(lampFrames.begin(), lampFrames.end());
   lampFrames.erase(std::unique(lampFrames.begin(), lampFrames.end()), lampFrames.end());
   for (int frame : lampFrames)
-    for (SightRay& r : lamps(frame)) all.push_back(std::move(r));
+    for (SightRay& r : lamps(frame)) extremes_.push_back(std::move(r));
   for (size_t s = 0; s < surfaces_.size(); ++s) {
     const Extent& e = bodies[surfaces_[s].first];
     for (int frame : {e.nearestFrame, e.farthestFrame})
-      if (auto ray = aimedAt(frame, s)) all.push_back(std::move(*ray));
+      if (auto ray = aimedAt(frame, s)) extremes_.push_back(std::move(*ray));
   }
+}
+
+/// What lines of a combination have extremes of.
+std::array<double, 7> SightRays::figuresOf(const SightRay& r) const {
+  const RayHits& h = r.line.hits;
+  const double cosView = h.solid.entity >= 0 ? -glm::dot(h.solid.normal, r.line.direction) : 0.0;
+  double media_m = 0.0, texel_K = 0.0;
+  for (const Stretch& s : h.stretches) media_m += s.leave - s.enter;
+  if (h.solid.entity >= 0) {
+    const Surface& s = simulation_.entities[static_cast<size_t>(h.solid.entity)].surfaces[static_cast<size_t>(h.solid.surface)];
+    if (s.temperatureTexture >= 0) texel_K = textureValue(simulation_.textures[static_cast<size_t>(s.temperatureTexture)], h.solid.uv);
+  }
+  const double up = glm::dot(r.line.direction, simulation_.frame.up(r.line.origin));
+  const double toSun = simulation_.sun ? glm::dot(r.line.direction, simulation_.sun->toSun) : 0.0;
+  return {h.solid.entity >= 0 ? h.solid.distance : 0.0, cosView, media_m, texel_K, up, std::abs(up), toSun};
+}
+
+void SightRays::findExtremes() {
+  survey();
+  findNearAndFar();
   std::vector<const std::vector<size_t>*> order;
   for (const auto& c : combinations_) order.push_back(&c);
   std::stable_sort(order.begin(), order.end(), [](const auto* a, const auto* b) { return a->size() > b->size(); });
   if (order.size() > kMostExtremes) order.resize(kMostExtremes);
-  const auto figures = [this](const SightRay& r) {
-    const RayHits& h = r.line.hits;
-    const double cosView = h.solid.entity >= 0 ? -glm::dot(h.solid.normal, r.line.direction) : 0.0;
-    double media_m = 0.0, texel_K = 0.0;
-    for (const Stretch& s : h.stretches) media_m += s.leave - s.enter;
-    if (h.solid.entity >= 0) {
-      const Surface& s = simulation_.entities[static_cast<size_t>(h.solid.entity)].surfaces[static_cast<size_t>(h.solid.surface)];
-      if (s.temperatureTexture >= 0) texel_K = textureValue(simulation_.textures[static_cast<size_t>(s.temperatureTexture)], h.solid.uv);
-    }
-    const double up = glm::dot(r.line.direction, simulation_.frame.up(r.line.origin));
-    const double toSun = simulation_.sun ? glm::dot(r.line.direction, simulation_.sun->toSun) : 0.0;
-    return std::array{h.solid.entity >= 0 ? h.solid.distance : 0.0, cosView, media_m, texel_K, up, std::abs(up), toSun};
-  };
   for (const auto* combination : order) {
-    const size_t count = figures(candidates_[combination->front()].ray).size();
+    const size_t count = figuresOf(candidates_[combination->front()].ray).size();
     for (size_t f = 0; f < count; ++f) {
-      const auto less = [&](size_t a, size_t b) { return figures(candidates_[a].ray)[f] < figures(candidates_[b].ray)[f]; };
+      const auto less = [&](size_t a, size_t b) { return figuresOf(candidates_[a].ray)[f] < figuresOf(candidates_[b].ray)[f]; };
       const auto [low, high] = std::minmax_element(combination->begin(), combination->end(), less);
       for (size_t c : {*low, *high}) {
-        all.push_back(candidates_[c].ray);
-        all.back().fromFilm = false;
+        extremes_.push_back(candidates_[c].ray);
+        extremes_.back().fromFilm = false;
         if (*low == *high) break;
       }
     }

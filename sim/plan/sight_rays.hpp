@@ -1,5 +1,6 @@
 #pragma once
 // Random lines of sight of a camera or a probe, over a scenario's time: as its film draws them, aimed at bodies, and those at the extremes.
+#include <array>
 #include <memory>
 #include <optional>
 #include <random>
@@ -81,6 +82,8 @@ class SightRays {
   void cast(SightRay& ray) const;
   int frameOfCommand();
   void survey();
+  void findNearAndFar();
+  std::array<double, 7> figuresOf(const SightRay& ray) const;
   void findExtremes();
   /// Where a light glints most on a surface (entity and surface), about; none where it does not.
   std::optional<SightRay> glint(const std::vector<size_t>& combination, std::pair<int, int> surface, size_t light);

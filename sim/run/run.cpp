@@ -30,6 +30,8 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
     chains.push_back(camera.stages.empty() ? nullptr : std::make_unique<SensorChain>(camera, library));
     spectral.push_back(camera.spectralImage ? std::make_unique<SpectralRenderer>(sim, camera, library, scene) : nullptr);
   }
+  std::vector<std::unique_ptr<ProbeMeter>> meters;
+  for (size_t p = 0; probes && p < sim.probes.size(); ++p) meters.push_back(std::make_unique<ProbeMeter>(sim, sim.probes[p], library, scene));
   std::future<void> handing;  // its destructor waits, so nothing it uses goes first
   auto wait = [&handing] {
     if (handing.valid()) handing.get();
@@ -49,8 +51,7 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
       hand(makeFrame(sim, sim.cameras[c], image, state, number, chains[c].get()));
       if (spectral[c]) hand(spectral[c]->render(state, number));
     }
-    if (probes)
-      for (const auto& probe : sim.probes) probes({probe, number, state.time_s, measureProbe(sim, probe, library, scene, state)});
+    for (size_t p = 0; p < meters.size(); ++p) probes({sim.probes[p], number, state.time_s, meters[p]->read(state)});
   }
   wait();
   RunReport report;

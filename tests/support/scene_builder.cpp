@@ -57,7 +57,7 @@ double sum(const FrameLayer& l) {
 std::vector<double> probeReading(const Simulation& sim) {
   needContext();
   auto gpu = std::make_shared<const GpuScene>(sim);
-  return measureProbe(sim, sim.probes.at(0), shaderLibrary(), gpu, advance(sim, sim.time.at(0)));
+  return ProbeMeter(sim, sim.probes.at(0), shaderLibrary(), gpu).read(advance(sim, sim.time.at(0)));
 }
 
 double blackBodyBand(double low_um, double high_um, double temperature_K) {
