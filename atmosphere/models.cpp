@@ -31,7 +31,7 @@ std::vector<Parameter> common() {
 }
 
 /// The only model with a mark among the keys.
-const AirModel& markedModel(const Value& air) {
+const AirModel& onlyMarkedModel(const Value& air) {
   const AirModel* found = nullptr;
   std::string mark;
   for (const AirModel& m : airModels().all())
@@ -89,12 +89,23 @@ void refuseForeignKeys(const Value& air, const AirModel& model) {
 
 }  // namespace
 
+const AirModel* markedModel(const Value& air) {
+  const AirModel* found = nullptr;
+  for (const AirModel& m : airModels().all())
+    for (const std::string& own : m.marks) {
+      if (!air.find(own)) continue;
+      if (found && found != &m) return nullptr;
+      found = &m;
+    }
+  return found;
+}
+
 std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder,
                                           const std::function<Spectrum(const Value&, const Parameter&)>& spectrum) {
   const ParameterTable all = anyAirTable();
   const std::string asked = Record(air, all).text("model");
   if (asked == "none") return makeNoAir();
-  const AirModel& model = asked == "air" ? markedModel(air) : *airModels().named(asked);
+  const AirModel& model = asked == "air" ? onlyMarkedModel(air) : *airModels().named(asked);
   refuseForeignKeys(air, model);
   const ParameterTable table = airTable(model);
   const Record record(air, table);

@@ -38,6 +38,9 @@ ParameterTable airTable(const AirModel& model);
 /// All keys of any: what is none of them is a mistake whatever the model.
 ParameterTable anyAirTable();
 
+/// The model whose mark is among the keys; null where none is, or those of several.
+const AirModel* markedModel(const Value& air);
+
 /// The air that keys describe; none where `model` says so. `spectrum`: reads a spectrum's value as its parameter says. Errors: UserError, also where the keys
 /// are of several models, of none, or one of them is of another model.
 std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder,

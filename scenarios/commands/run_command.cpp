@@ -133,27 +133,61 @@ void noteNear(const Simulation& sim, double time_s) {
   }
 }
 
-/// Before any work: no file that the run would write may be of another scenario.
-void refuseForeignFiles(const Simulation& sim, const RunRange& range, const std::filesystem::path& folder, const std::vector<std::unique_ptr<Sink>>& sinks) {
+/// A sink and where it was asked for.
+struct PlacedSink {
+  std::unique_ptr<Sink> sink;
+  Location where;
+};
+
+/// Those of the scenario, or files; and what the command line asks for besides.
+std::vector<PlacedSink> makeSinks(const Simulation& sim, const SinkPlace& place, const PreviewRanges* previews) {
+  std::vector<PlacedSink> sinks;
+  for (const SinkChoice& choice : sim.sinks) sinks.push_back({choice.make(sim, place), choice.where});
+  if (sim.sinks.empty()) sinks.push_back({sinkNamed("files", sim).make(sim, place), {}});
+  if (previews) sinks.push_back({makePreviewsSink(place, *previews), {"--preview", 0, 0, -1}});
+  return sinks;
+}
+
+/// What a run would write, and who: more names than this are not held against each other.
+constexpr size_t kMostNames = 200000;
+
+/// Before any work: every file has one writer, and no folder of one is a file of another.
+void refuseClashes(const Simulation& sim, const RunRange& range, const std::filesystem::path& folder, const std::vector<PlacedSink>& sinks) {
+  std::map<std::string, const Location*> files;
+  const auto clash = [](const Location& where, const std::filesystem::path& file) {
+    throw UserError(where, "two sinks write '" + file.string() + "', or one writes into it as a folder", "sinks whose files lie apart",
+                    "give this one a 'folder:' of its own, or remove it");
+  };
+  const auto add = [&](const std::filesystem::path& file, const Location* who) {
+    if (!file.empty() && !files.emplace(file.lexically_normal().string(), who).second && who) clash(*who, file);
+  };
+  for (const Camera& c : sim.cameras) add(folder / (c.name + ".plan"), nullptr);
+  for (const Probe& p : sim.probes) add(folder / ProbeTables::fileOf(p.name), nullptr);
+  for (int number = range.first; number <= range.last && files.size() < kMostNames; ++number)
+    for (const Camera& c : sim.cameras)
+      for (const auto& [sink, where] : sinks)
+        for (const char* kind : {"", kSpectralKind})
+          if (!*kind || c.spectralImage) add(sink->fileOf(c.name, number, kind), &where);
+  for (const auto& [sink, where] : sinks)
+    for (const Camera& c : sim.cameras) {
+      const auto file = sink->fileOf(c.name, range.first, "").lexically_normal();
+      for (auto above = file.parent_path(); !above.empty() && above != above.root_path(); above = above.parent_path())
+        if (files.count(above.string())) clash(where, above);
+    }
+}
+
+/// Nor may any be of another scenario.
+void refuseForeignFiles(const Simulation& sim, const RunRange& range, const std::filesystem::path& folder, const std::vector<PlacedSink>& sinks) {
   const auto refuse = [&](const std::filesystem::path& file) {
     if (!file.empty()) refuseForeignFile(file, sim);
   };
   for (int number = range.first; number <= range.last; ++number)
     for (const Camera& c : sim.cameras)
-      for (const auto& sink : sinks) {
-        refuse(sink->fileOf(c.name, number, ""));
-        if (c.spectralImage) refuse(sink->fileOf(c.name, number, kSpectralKind));
+      for (const auto& placed : sinks) {
+        refuse(placed.sink->fileOf(c.name, number, ""));
+        if (c.spectralImage) refuse(placed.sink->fileOf(c.name, number, kSpectralKind));
       }
   for (const Probe& p : sim.probes) refuse(folder / ProbeTables::fileOf(p.name));
-}
-
-/// Those of the scenario, or files; and what the command line asks for besides.
-std::vector<std::unique_ptr<Sink>> makeSinks(const Simulation& sim, const SinkPlace& place, const PreviewRanges* previews) {
-  std::vector<std::unique_ptr<Sink>> sinks;
-  for (const SinkChoice& choice : sim.sinks) sinks.push_back(choice.make(sim, place));
-  if (sim.sinks.empty()) sinks.push_back(sinkNamed("files").make(sim, place));
-  if (previews) sinks.push_back(makePreviewsSink(place, *previews));
-  return sinks;
 }
 
 /// One line for each channel whose response ends before its own end, where the scene has no data.
@@ -282,6 +316,7 @@ int runCommand(const Arguments& arguments) {
   const bool previews = o.has("--preview") || !ranges.empty();
   SinkPlace place{out, {}};
   const auto sinksOf = [&] { return makeSinks(sim, place, previews ? &ranges : nullptr); };
+  refuseClashes(sim, range, out, sinksOf());
   if (!o.has("--overwrite")) {
     refuseForeignFiles(sim, range, out, sinksOf());
     // And again for each: another run may have put it there meanwhile.
@@ -302,14 +337,14 @@ int runCommand(const Arguments& arguments) {
     ProbeTables probes(sim);
     RunTotal total;
     const auto sinks = sinksOf();
-    for (const auto& sink : sinks) sink->start();
+    for (const auto& placed : sinks) placed.sink->start();
     const RunReport report = runFrames(
         sim, shaderLibrary(), range,
         [&](const std::shared_ptr<const Frame>& f) {
           noteOrder(*f, told);
           noteLimits(*f, toldOfLimits);
           noteScattering(*f, told);
-          for (const auto& sink : sinks) sink->take(f);
+          for (const auto& placed : sinks) placed.sink->take(f);
           total.add(*f);
           progress.step();
         },
@@ -324,7 +359,7 @@ int runCommand(const Arguments& arguments) {
       learn(report, sim, attempt + 1);
       continue;
     }
-    for (const auto& sink : sinks) sink->finish();
+    for (const auto& placed : sinks) placed.sink->finish();
     probes.write(out, place.mayReplace);
     for (const auto& [camera, plan] : report.plans) writeFileAtomically(out / (camera + ".plan"), plan);
     progress.finish();

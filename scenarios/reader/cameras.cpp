@@ -179,7 +179,7 @@ void Builder::readCameras(const Record& scenario) {
       p.pitchX_m = film.given("pitch") ? film.number("pitch") : p.focalLength_m * tangent / p.width;
     }
     p.pitchY_m = film.given("pitch_y") ? film.number("pitch_y") : p.pitchX_m;
-    if (0.5 * p.width * p.pitchX_m / p.focalLength_m > 30.0 || 0.5 * p.height * p.pitchY_m / p.focalLength_m > 30.0)
+    if (!p.isFlat())
       throw UserError(r.where("film"), "the field of view is wider than a flat film can hold", "below 176 deg",
                       "use a longer focal length, or several cameras");
 
@@ -231,7 +231,14 @@ void Builder::readCameras(const Record& scenario) {
       }
     planned(c.outputs, c.spectral, c.where);
     if (r.given("stages"))
-      for (const Value& s : r.value("stages").items) c.stages.push_back(readStage(s, c));
+      for (const Value& s : r.value("stages").items) {
+        c.stages.push_back(readStage(s, c));
+        const Camera drawn = drawnCamera(c);
+        const double columns = static_cast<double>(drawn.pinhole.width) * drawn.samples, rows = static_cast<double>(drawn.pinhole.height) * drawn.samples;
+        if (columns > 16384 || rows > 16384 || columns * rows > 16384.0 * 4096.0 || !drawn.pinhole.isFlat())
+          throw UserError(s.where, "with its margin and cells the picture would have " + briefNumber(columns) + "x" + briefNumber(rows) + " subpixels",
+                          "at most 67 million, 16384 on a side, within 176 deg", "lower film or samples, or ask less of the stage");
+      }
     if (r.given("spectral_image")) c.spectralImage = readSpectralBins(Record(r.value("spectral_image"), tables::spectralImage()), p);
     simulation_.cameras.push_back(std::move(c));
   }

@@ -15,7 +15,7 @@ void Builder::readCommands(const Record& scenario) {
 
 void Builder::readSinks(const Record& scenario) {
   if (!scenario.given("sinks")) return;
-  for (const Value& v : scenario.value("sinks").items) simulation_.sinks.push_back(readSink(v));
+  for (const Value& v : scenario.value("sinks").items) simulation_.sinks.push_back(readSink(v, simulation_));
 }
 
 }  // namespace pitviper

@@ -2,6 +2,9 @@
 
 #include <cmath>
 
+#include "sim/model/ground.hpp"
+#include "sim/radiometry/physics.hpp"
+
 namespace pitviper {
 
 std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, const WorldState& state, size_t light, const glm::dvec3& from,
@@ -29,6 +32,8 @@ std::vector<double> WaysToLights::from(const WorldState& state, const std::vecto
                                        double distance_m, double near_m) const {
   LineOfSight line{place, direction, castRay(simulation_, state, place, direction, near_m, &present), 0.0};
   if (line.hits.solid.entity >= 0 && line.hits.solid.distance < distance_m * (1.0 - 1e-6)) return {};
+  // The sun's direction is to the part of it that stands above the horizon.
+  if (distance_m < physics::kFar && hiddenByGround(simulation_, line.hits, place, direction, distance_m)) return {};
   NodeSum sum(spectra_);
   sum.begin();
   if (!line.hits.layers.empty() || !line.hits.stretches.empty()) wayAlong({simulation_, terms_, nullptr, state, {}}, line, distance_m, sum);
@@ -51,7 +56,7 @@ void addVisibleLights(Subpixels& image, const WaysToLights& ways, const Simulati
     const glm::dvec3 line = state.lights[l] - v.position, p = glm::transpose(v.localFromCamera) * line;
     const glm::dvec2 at = filmPosition(v, p);
     const double range = glm::length(line);
-    const auto way = ways.from(state, present, v.position, line / range, range, v.near_m);
+    const auto way = ways.from(state, present, v.position, line / range, range, v.near_m * range / -p.z);
     if (way.empty()) continue;
     const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
     // As radiance: the flux divided by the aperture and the subpixel's projected solid angle.

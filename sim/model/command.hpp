@@ -25,6 +25,9 @@ struct Courses {
   std::map<std::string, Course<double>> focalLengths_m, exposures_s;
 };
 
+/// A command's time and a frame's are the same where they lie within this part of a tick: sums of steps round.
+constexpr double kSameTick = 1e-6;
+
 /// From its time on until another says otherwise.
 struct Command {
   double at_s = 0.0;

@@ -15,6 +15,12 @@ std::optional<Hit> groundHit(const Simulation& sim, const glm::dvec3& origin, co
   return hit;
 }
 
+bool hiddenByGround(const Simulation& sim, const RayHits& hits, const glm::dvec3& origin, const glm::dvec3& direction, double distance_m) {
+  if (hits.solid.entity >= 0) return false;
+  const std::optional<Hit> ground = groundHit(sim, origin, direction);
+  return ground && ground->distance < distance_m * (1.0 - 1e-6);
+}
+
 const Surface& surfaceAt(const Simulation& sim, const Hit& hit) {
   return hit.entity < 0 ? *sim.ground : sim.entities[static_cast<size_t>(hit.entity)].surfaces[static_cast<size_t>(hit.surface)];
 }

@@ -10,6 +10,9 @@ namespace pitviper {
 /// by. Bodies are seen before it even where they reach below the sphere. direction of unit length.
 std::optional<Hit> groundHit(const Simulation& simulation, const glm::dvec3& origin, const glm::dvec3& direction);
 
+/// Whether the ground stands before a place on a line of sight: where no body does, which would be seen before it.
+bool hiddenByGround(const Simulation& simulation, const RayHits& hits, const glm::dvec3& origin, const glm::dvec3& direction, double distance_m);
+
 /// What a hit is the surface of: an entity's, or the ground.
 const Surface& surfaceAt(const Simulation& simulation, const Hit& hit);
 

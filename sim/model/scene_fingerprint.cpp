@@ -20,14 +20,14 @@ void addTo(Fingerprint& f, const std::optional<T>& value) {
 void addTo(Fingerprint& f, const Entity& e) {
   const Mesh& m = *e.mesh;
   f.add(e.name).all(m.positions).all(m.normals).all(m.uv).all(m.triangles).add(m.closed);
-  for (const MeshPart& p : m.parts) f.add(p.firstTriangle).add(p.triangleCount);
+  for (const MeshPart& p : m.parts) f.add(p.name).add(p.firstTriangle).add(p.triangleCount);
   f.add(static_cast<int>(e.form.kind)).add(e.form.size).add(e.parent);
   for (const Surface& s : e.surfaces) f.add(s.meshPart).add(s.material).add(s.temperature_K).add(s.temperatureTexture);
   pitviper::addTo(f, e.motion);
 }
 
 void addTo(Fingerprint& f, const PointLight& l) {
-  f.add(l.radius_m).add(l.visible).add(l.parent);
+  f.add(l.name).add(l.radius_m).add(l.visible).add(l.parent);
   pitviper::addTo(f, l.intensity);
   pitviper::addTo(f, l.motion);
   f.add(static_cast<double>(l.level.size()));

@@ -7,7 +7,7 @@ namespace {
 
 /// The scenario's commands from one on, as far as a time; returns the first that is left.
 std::size_t carryOut(const Simulation& sim, std::size_t next, double time_s, Courses& courses) {
-  for (; next < sim.commands.size() && sim.commands[next].at_s <= time_s; ++next) sim.commands[next].change(courses, sim.commands[next].at_s);
+  for (; next < sim.commands.size() && sim.commands[next].at_s <= time_s + kSameTick * sim.time.step_s; ++next) sim.commands[next].change(courses, sim.commands[next].at_s);
   return next;
 }
 

@@ -166,7 +166,7 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
 }
 
 std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& ofPlan, const NodesOfPlan& ofFine, const std::vector<SightRay>& lines,
-                                    double pixel_sr, int places, const std::vector<double>& floor) {
+                                    int places, const std::vector<double>& floor) {
   const Plan &plan = ofPlan.plan, &fine = ofFine.plan;
   const ShadowCaster shadows(sim);
   std::vector<LineSums> sums(lines.size());
@@ -180,7 +180,7 @@ std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& of
       planned.begin();
       exact.begin();
       radianceAlong(scene, ray.line, both);
-      if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), pixel_sr, both);
+      if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), ray.pixel_sr, both);
       sums[n] = {slotsOf(plan, planned.radiance()), slotsOf(fine, exact.radiance()), droppedOf(plan, fine.terms, planned)};
     }
   });

@@ -35,6 +35,6 @@ int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRay
 /// One per slot. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: filmFloors(). `places`: at which the air is looked at, alike on
 /// both sides, so that only wavelengths differ. Terms are those of `fine`; `plan` may leave kinds of terms out, all of them or by node.
 std::vector<LineFigures> checkLines(const Simulation& simulation, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines,
-                                    double pixel_sr, int places, const std::vector<double>& floor);
+                                    int places, const std::vector<double>& floor);
 
 }  // namespace pitviper

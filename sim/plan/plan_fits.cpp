@@ -131,7 +131,7 @@ void PlanFits::hold(std::vector<size_t> open) {
       for (int n = 0; n < kSecond; ++n) second_.lines.push_back(n % 4 != 0 ? rays_.fromFilm() : rays_.ofCombination());
     }
     takeNodes(plan_);
-    second_.figures = checkLines(sim_, NodesOfPlan(sim_, plan_), fine_, second_.lines, rays_.pixel_sr(), airPlaces_, floor_);
+    second_.figures = checkLines(sim_, NodesOfPlan(sim_, plan_), fine_, second_.lines, airPlaces_, floor_);
     open.clear();
     for (size_t s = 0; s < fits_.size(); ++s)
       if (second_.figures[s].largest > kHeld * plan_.accuracy) open.push_back(s);

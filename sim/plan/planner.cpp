@@ -72,13 +72,13 @@ CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& f
   CheckedLines last;
   last.lines = rays.overFilm(kLast);
   const NodesOfPlan planned(sim, plan);
-  last.figures = checkLines(sim, planned, fine, last.lines, rays.pixel_sr(), airPlaces, floor);
+  last.figures = checkLines(sim, planned, fine, last.lines, airPlaces, floor);
   // What middles of pixels miss and pixels hold: small bodies, glints, which are small, and lamps.
   std::vector<SightRay> small = rays.ofSmallBodies(kLastSmall);
   std::copy_if(rays.extremes().begin(), rays.extremes().end(), std::back_inserter(small), [](const SightRay& r) { return r.glints || r.lamp >= 0; });
-  last.add(small, checkLines(sim, planned, fine, small, rays.pixel_sr(), airPlaces, floor));
+  last.add(small, checkLines(sim, planned, fine, small, airPlaces, floor));
   const auto& found = last.figures;
-  const auto extreme = checkLines(sim, planned, fine, rays.extremes(), rays.pixel_sr(), airPlaces, floor);
+  const auto extreme = checkLines(sim, planned, fine, rays.extremes(), airPlaces, floor);
   const std::vector<double> tables = planTables(sim, eye, rays, floor, plan);
   plan.lines = kLast;
   plan.parts.clear();

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "sim/model/glint.hpp"
+#include "sim/model/ground.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -18,6 +19,8 @@ constexpr double kInColumn = 0.4871, kInRow = 0.5113;
 constexpr int kTries = 24;
 /// Frames at which bodies and lamps are looked for at their nearest and farthest.
 constexpr int kMostFrames = 400;
+/// Frames in which levels of lights may change that lamps are looked for in.
+constexpr size_t kMostLevels = 64;
 /// Combinations beyond so many, the rarest, have no extremes of their own.
 constexpr size_t kMostExtremes = 40;
 /// Frames in which bodies are looked for that are small there, the first and the last among them.
@@ -54,9 +57,13 @@ SightRay SightRays::startAt(int frame) {
   ray.state = stateAt(frame);
   if (!eye_.camera) {
     ray.line.origin = eye_.probe->position;
+    ray.pixel_sr = 4.0 / (static_cast<double>(eye_.probe->resolution) * eye_.probe->resolution);
     return ray;
   }
-  ray.line.origin = cameraAt(*eye_.camera, *ray.state).pose.position;
+  const CameraState at = cameraAt(*eye_.camera, *ray.state);
+  const double across = static_cast<double>(eye_.camera->samples) * at.pinhole.focalLength_m;
+  ray.line.origin = at.pose.position;
+  ray.pixel_sr = at.pinhole.pitchX_m * at.pinhole.pitchY_m / (across * across);
   ray.nearest_m = eye_.camera->near_m;
   return ray;
 }
@@ -217,13 +224,6 @@ void SightRays::stretch(SightRay& ray, double distance_m) {
   ray.state = std::move(state);
 }
 
-double SightRays::pixel_sr() const {
-  if (eye_.probe) return 4.0 / (static_cast<double>(eye_.probe->resolution) * eye_.probe->resolution);
-  const Pinhole& p = eye_.camera->pinhole;
-  const double across = static_cast<double>(eye_.camera->samples) * p.focalLength_m;
-  return p.pitchX_m * p.pitchY_m / (across * across);
-}
-
 SightRays::Candidate SightRays::candidate(SightRay ray) const {
   Candidate c{std::move(ray), {}};
   const RayHits& hits = c.ray.line.hits;
@@ -234,9 +234,10 @@ SightRays::Candidate SightRays::candidate(SightRay ray) const {
   return c;
 }
 
-int SightRays::frameOfCommand() {
-  const Command& c = simulation_.commands[dice_.below(simulation_.commands.size())];
-  return std::clamp(static_cast<int>(std::ceil((c.at_s - simulation_.time.start_s) / simulation_.time.step_s)), 0, simulation_.time.frames - 1);
+/// The first that is not before a time.
+int SightRays::frameOf(double time_s) const {
+  const double frame = std::ceil((time_s - simulation_.time.start_s) / simulation_.time.step_s - kSameTick);
+  return static_cast<int>(std::clamp(frame, 0.0, static_cast<double>(simulation_.time.frames - 1)));
 }
 
 void SightRays::survey() {
@@ -246,7 +247,7 @@ void SightRays::survey() {
     // The first and the last frame count for as much as a tenth of all, and so do those in which a command begins to hold.
     const int frame = n % 20 == 0                                       ? 0
                       : n % 20 == 10                                    ? last
-                      : n % 10 == 5 && !simulation_.commands.empty() ? frameOfCommand()
+                      : n % 10 == 5 && !simulation_.commands.empty() ? frameOf(simulation_.commands[dice_.below(simulation_.commands.size())].at_s)
                                                                         : static_cast<int>(dice_.below(static_cast<size_t>(last) + 1));
     candidates_.push_back(candidate(filmRay(frame)));
   }
@@ -275,14 +276,39 @@ std::vector<SightRay> SightRays::lamps(int frame) {
   for (size_t l = 0; l < simulation_.lights.size(); ++l) {
     SightRay ray = startAt(frame);
     const glm::dvec3 line = ray.state->lights[l] - ray.line.origin;
-    if (!simulation_.lights[l].visible || !(ray.state->lightLevels[l] > 0.0) || !(glm::length(line) > 0.0) || !inView(ray, line)) continue;
+    const double most = simulation_.limits.lightLevel;
+    if (!simulation_.lights[l].visible || !(std::max(ray.state->lightLevels[l], most) > 0.0) || !(glm::length(line) > 0.0) || !inView(ray, line)) continue;
     ray.line.direction = glm::normalize(line);
     ray.lamp = static_cast<int>(l);
     ray.fromFilm = false;
     cast(ray);
-    if (ray.line.hits.solid.distance > glm::length(line)) seen.push_back(std::move(ray));
+    if (ray.line.hits.solid.distance <= glm::length(line) || hiddenByGround(simulation_, ray.line.hits, ray.line.origin, ray.line.direction, glm::length(line)))
+      continue;
+    if (most > 0.0) {  // as bright as it may come
+      SightRay brightest = ray;
+      auto state = std::make_shared<WorldState>(*ray.state);
+      state->lightLevels[l] = most;
+      brightest.state = std::move(state);
+      seen.push_back(std::move(brightest));
+    }
+    if (ray.state->lightLevels[l] > 0.0) seen.push_back(std::move(ray));
   }
   return seen;
+}
+
+/// Where lights may begin to shine, or shine most: at the bends of their courses and where commands begin to hold.
+std::vector<int> SightRays::framesOfLevels() const {
+  std::vector<int> frames;
+  for (const Command& c : simulation_.commands) frames.push_back(frameOf(c.at_s));
+  for (const PointLight& light : simulation_.lights)
+    for (const auto& [time_s, level] : light.level)
+      for (int before : {0, 1}) frames.push_back(std::max(frameOf(time_s) - before, 0));
+  std::sort(frames.begin(), frames.end());
+  frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
+  // Of very many some, evenly.
+  std::vector<int> some;
+  for (size_t k = 0; k < std::min(frames.size(), kMostLevels); ++k) some.push_back(frames[k * frames.size() / std::min(frames.size(), kMostLevels)]);
+  return some;
 }
 
 const std::vector<SightRay>& SightRays::extremes() {
@@ -365,6 +391,7 @@ void SightRays::findNearAndFar() {
   }
   std::vector<int> lampFrames = {0, frames / 2, frames - 1};
   for (const Extent& l : lights) lampFrames.insert(lampFrames.end(), {l.nearestFrame, l.farthestFrame});
+  for (int frame : framesOfLevels()) lampFrames.push_back(frame);
   std::sort(lampFrames.begin(), lampFrames.end());
   lampFrames.erase(std::unique(lampFrames.begin(), lampFrames.end()), lampFrames.end());
   for (int frame : lampFrames)

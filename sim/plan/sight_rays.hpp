@@ -33,6 +33,7 @@ struct SightRay {
   std::shared_ptr<const WorldState> state;
   LineOfSight line;
   double nearest_m = 0.0;
+  double pixel_sr = 0.0;  ///< about the solid angle of a subpixel
   int lamp = -1;         ///< a light that is seen in the same pixel
   bool fromFilm = true;  ///< drawn as the film draws pixels, not aimed at something
   bool glints = false;   ///< aimed at a glint: what is lit there is lit
@@ -60,8 +61,6 @@ class SightRays {
   /// glints of the sun and of lamps;
   /// in the first and in the last frame; bodies and lamps at their nearest and farthest.
   const std::vector<SightRay>& extremes();
-  /// About the solid angle of a subpixel.
-  double pixel_sr() const;
   Dice& dice() { return dice_; }
   /// Lines from here on are those of another seed. What was surveyed stays.
   void reseed(unsigned long long seed) { dice_ = Dice(seed); }
@@ -79,8 +78,9 @@ class SightRays {
   std::optional<SightRay> aimedAt(int frame, size_t surface, bool withinLimits = true);
   bool isSmall(const SightRay& ray, const Entity& entity, const Pose& pose) const;
   std::vector<SightRay> lamps(int frame);
+  std::vector<int> framesOfLevels() const;
   void cast(SightRay& ray) const;
-  int frameOfCommand();
+  int frameOf(double time_s) const;
   void survey();
   void findNearAndFar();
   std::array<double, 7> figuresOf(const SightRay& ray) const;

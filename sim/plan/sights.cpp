@@ -56,7 +56,7 @@ void Sights::add(const SightRay& ray) {
   ProductSink sink(simulation_, book_, shortest_um_);
   sink.begin(ray.fromFilm);
   radianceAlong(scene, ray.line, sink);
-  if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), rays_.pixel_sr(), sink);
+  if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), ray.pixel_sr, sink);
   book_.sights.push_back(sink.finish());
 }
 

@@ -15,6 +15,8 @@ struct Pinhole {
   double apertureDiameter_m = 0.0;
 
   double apertureArea_m2() const;
+  /// Edges within tangents of 30 (176 deg from edge to edge): beyond, a flat film has hardly any light.
+  bool isFlat() const { return 0.5 * width * pitchX_m / focalLength_m <= 30.0 && 0.5 * height * pitchY_m / focalLength_m <= 30.0; }
   /// Tangents of the angles of a film position (pixels from the top left corner) from the axis: right, up.
   double tanX(double column) const { return (column - 0.5 * width) * pitchX_m / focalLength_m; }
   double tanY(double row) const { return (0.5 * height - row) * pitchY_m / focalLength_m; }

@@ -43,4 +43,29 @@ std::optional<Attitude> readAttitude(const Record& r, bool attached) {
   return a;
 }
 
+std::vector<Parameter> commandedPoseParameters() {
+  std::vector<Parameter> keys = positionParameters();
+  keys.push_back(within(vector3("velocity", "m/s", "goes on from the position; at rest unless given"), -1e6, 1e6));
+  for (auto& p : attitudeParameters(kMostTurn_rad)) {
+    if (p.key != "heading") p.description += ", with a heading";
+    keys.push_back(std::move(p));
+  }
+  return keys;
+}
+
+CommandedPose readCommandedPose(const Record& r, const LocalFrame& frame, bool attached) {
+  if (attached && r.given("geodetic"))
+    throw UserError(r.where("geodetic"), "a geodetic position of something attached to a body", "'position' in the body's axes", "use 'position'");
+  for (const char* key : {"pitch", "roll"})
+    if (r.given(key) && !r.given("heading"))
+      throw UserError(r.where(key), std::string("a ") + key + " but no heading", "an attitude as a whole: what is not given of it is 0", "add 'heading:'");
+  CommandedPose pose{readPosition(r, frame), readAttitude(r, attached)};
+  if (r.given("velocity")) {
+    if (!pose.position)
+      throw UserError(r.where("velocity"), "a velocity without a position to go on from", "both", "add 'position:', or remove 'velocity'");
+    pose.velocity = r.vector("velocity");
+  }
+  return pose;
+}
+
 }  // namespace pitviper

@@ -21,6 +21,16 @@ std::vector<Parameter> geodeticParameters();
 
 /// In the local frame, or as given in a carrier's. Errors: UserError where both keys are given.
 std::optional<glm::dvec3> readPosition(const Record& record, const LocalFrame& frame);
+/// A position and an attitude of a command: as above, but no geodetic position in a carrier's axes, and an attitude that is whole. Errors: UserError.
+struct CommandedPose {
+  std::optional<glm::dvec3> position;
+  std::optional<Attitude> attitude;
+  glm::dvec3 velocity{0.0};  ///< with which it goes on from the position
+};
+CommandedPose readCommandedPose(const Record& record, const LocalFrame& frame, bool attached);
+/// `position`, `geodetic`, `velocity`, `heading`, `pitch` and `roll` of it.
+std::vector<Parameter> commandedPoseParameters();
+
 /// `attached`: the heading is clockwise from the carrier's forward axis instead of north. What is not given is as of a body that is not turned.
 std::optional<Attitude> readAttitude(const Record& record, bool attached);
 

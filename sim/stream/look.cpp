@@ -5,33 +5,42 @@
 #include "sim/stream/command_models.hpp"
 
 namespace pitviper {
+namespace {
+
+/// That of a field of view; 0 where none is given. UserError where the film would be wider or higher than a flat one can be.
+double focalLength_m(const Record& r, const Pinhole& p) {
+  if (!r.given("field_of_view")) return 0.0;
+  Pinhole zoomed = p;
+  zoomed.focalLength_m = 0.5 * p.width * p.pitchX_m / std::tan(0.5 * r.number("field_of_view"));
+  if (!zoomed.isFlat())
+    throw UserError(r.where("field_of_view"), "the field of view is wider than a flat film can hold", "below 176 deg across and up", "lower it");
+  return zoomed.focalLength_m;
+}
+
+}  // namespace
 
 CommandModel lookCommand() {
   std::vector<Parameter> keys = {required(text("camera", "name of a camera"))};
-  for (auto& p : positionParameters()) keys.push_back(std::move(p));
-  keys.push_back(within(vector3("velocity", "m/s", "goes on from the position; at rest unless given"), -1e6, 1e6));
-  for (auto& p : attitudeParameters(kMostTurn_rad)) keys.push_back(std::move(p));
-  keys.push_back(within(number("field_of_view", "rad", "horizontal: the focal length follows, the film stays"), 1e-9, 2.0 * std::atan(30.0)));
+  for (auto& p : commandedPoseParameters()) keys.push_back(std::move(p));
+  keys.push_back(within(number("field_of_view", "rad", "horizontal: the focal length follows, the film stays"), 1e-9, 3.1));
   keys.push_back(within(number("exposure", "s", "exposure time"), 1e-12, 1e6));
   const auto read = [](const Record& r, const Simulation& sim) -> decltype(Command::change) {
     const Camera& camera = sim.cameras[static_cast<size_t>(cameraOf(r, sim))];
-    const auto position = readPosition(r, sim.frame);
-    const auto attitude = readAttitude(r, camera.mount.carrier >= 0);
-    if (!position && r.given("velocity"))
-      throw UserError(r.where("velocity"), "a velocity without a position to go on from", "both", "add 'position:', or remove 'velocity'");
-    const glm::dvec3 velocity = r.given("velocity") ? r.vector("velocity") : glm::dvec3(0.0);
-    const double field_rad = r.given("field_of_view") ? r.number("field_of_view") : 0.0, exposure_s = r.given("exposure") ? r.number("exposure") : 0.0;
-    if (!position && !attitude && field_rad == 0.0 && exposure_s == 0.0)
+    const CommandedPose pose = readCommandedPose(r, sim.frame, camera.mount.carrier >= 0);
+    const double focal_m = focalLength_m(r, camera.pinhole), exposure_s = r.given("exposure") ? r.number("exposure") : 0.0;
+    if (!pose.position && !pose.attitude && focal_m == 0.0 && exposure_s == 0.0)
       throw UserError(r.where(), "a look that changes nothing", "a position, an attitude, a field of view or an exposure", "add one");
-    const double focalLength_m = field_rad > 0.0 ? 0.5 * camera.pinhole.width * camera.pinhole.pitchX_m / std::tan(0.5 * field_rad) : 0.0;
     return [=, name = camera.name](Courses& courses, double at_s) {
-      if (position) courses.cameraPositions[name] = [=](double t) { return *position + (t - at_s) * velocity; };
-      if (attitude) courses.cameraOrientations[name] = [q = orientationFrom(*attitude)](double) { return q; };
-      if (field_rad > 0.0) courses.focalLengths_m[name] = [=](double) { return focalLength_m; };
+      if (pose.position) courses.cameraPositions[name] = [=](double t) { return *pose.position + (t - at_s) * pose.velocity; };
+      if (pose.attitude) courses.cameraOrientations[name] = [q = orientationFrom(*pose.attitude)](double) { return q; };
+      if (focal_m > 0.0) courses.focalLengths_m[name] = [=](double) { return focal_m; };
       if (exposure_s > 0.0) courses.exposures_s[name] = [=](double) { return exposure_s; };
     };
   };
-  return {"look", "Points a camera. What is not given stays as the scenario has it; one that is turned no longer follows its `look_at`.", keys, read};
+  return {"look",
+          "Points a camera. A position, an attitude, a field of view or an exposure that is not given stays as the scenario has it; a camera that is turned no longer follows "
+          "its `look_at`.",
+          keys, read};
 }
 
 }  // namespace pitviper

@@ -1,5 +1,8 @@
 // Every frame as a picture for people.
+#include <algorithm>
+
 #include "sim/frame/frame_files.hpp"
+#include "sim/model/simulation.hpp"
 #include "sim/stream/sink_models.hpp"
 
 namespace pitviper {
@@ -21,10 +24,21 @@ class PreviewsSink final : public Sink {
   PreviewRanges ranges_;
 };
 
-PreviewRanges readRanges(const Record& r) {
+PreviewRanges readRanges(const Record& r, const Simulation& sim) {
   PreviewRanges ranges;
   if (!r.given("ranges")) return ranges;
-  for (const auto& [layer, value] : asMap(r.value("ranges"), "ranges").entries) {
+  std::vector<std::string> layers;
+  for (const Camera& c : sim.cameras)
+    for (const ChannelOutput& o : c.outputs) layers.push_back(o.layer());
+  const Value& map = asMap(r.value("ranges"), "ranges");
+  for (size_t k = 0; k < map.entries.size(); ++k) {
+    const auto& [layer, value] = map.entries[k];
+    if (std::find(layers.begin(), layers.end(), layer) == layers.end()) {
+      const std::string near = nearestWord(layer, layers);
+      throw UserError(map.keyPlaces[k], "there is no layer '" + layer.substr(0, 60) + "'", "a channel and quantity of the scenario",
+                      near.empty() ? "see pitviper check" : "did you mean '" + near + "'?");
+    }
+    if (ranges.count(layer)) throw UserError(map.keyPlaces[k], "a second range for layer '" + layer + "'", "one", "remove one");
     const Value& ends = asList(value, "a range");
     if (ends.items.size() != 2) throw UserError(value.where, "not a range", "[low, high] in the layer's own unit", "write two numbers");
     ranges[layer] = {readNumber(ends.items[0], "", "the range"), readNumber(ends.items[1], "", "the range")};
@@ -40,8 +54,8 @@ std::unique_ptr<Sink> makePreviewsSink(const SinkPlace& place, const PreviewRang
 SinkModel previewsSink() {
   return {"previews", "Every frame as a PNG with a colour bar: its channels side by side.",
           {folderParameter(),
-           map("ranges", "layer: [low, high], ends of its colour bar in the layer's own unit; those not given fit themselves to each frame")}, [](const Record& r) {
-            return [folder = readFolder(r), ranges = readRanges(r)](const Simulation&, const SinkPlace& place) {
+           map("ranges", "layer: [low, high], ends of its colour bar in the layer's own unit; those not given fit themselves to each frame")}, [](const Record& r, const Simulation& sim) {
+            return [folder = readFolder(r), ranges = readRanges(r, sim)](const Simulation&, const SinkPlace& place) {
               return makePreviewsSink(place.below(folder), ranges);
             };
           }};

@@ -26,7 +26,7 @@ ParameterTable sinkTable(const SinkModel& model) {
   return t;
 }
 
-SinkChoice readSink(const Value& value) {
+SinkChoice readSink(const Value& value, const Simulation& simulation) {
   Value map = value;
   if (value.kind == Value::Kind::Scalar) {
     map = {};
@@ -37,14 +37,14 @@ SinkChoice readSink(const Value& value) {
   }
   const SinkModel& model = askedModel(sinkModels(), map, "sink");
   const ParameterTable table = sinkTable(model);
-  return {value.where, model.read(Record(map, table))};
+  return {value.where, model.read(Record(map, table), simulation)};
 }
 
-SinkChoice sinkNamed(const std::string& name) {
+SinkChoice sinkNamed(const std::string& name, const Simulation& simulation) {
   Value word;
   word.kind = Value::Kind::Scalar;
   word.text = name;
-  return readSink(word);
+  return readSink(word, simulation);
 }
 
 }  // namespace pitviper

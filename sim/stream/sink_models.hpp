@@ -10,8 +10,8 @@ struct SinkModel {
   std::string name;  ///< what `sink:` says
   std::string description;
   std::vector<Parameter> parameters;  ///< besides `sink`
-  /// Errors: UserError. The record does not outlive the call.
-  std::function<decltype(SinkChoice::make)(const Record&)> read;
+  /// Errors: UserError. The record does not outlive the call; the simulation has its cameras.
+  std::function<decltype(SinkChoice::make)(const Record&, const Simulation&)> read;
 };
 
 Registry<SinkModel>& sinkModels();
@@ -23,9 +23,9 @@ Parameter folderParameter();
 std::filesystem::path readFolder(const Record& record);
 
 /// From what a user wrote: a map, or its name alone. Every mistake is a UserError.
-SinkChoice readSink(const Value& value);
+SinkChoice readSink(const Value& value, const Simulation& simulation);
 /// The same as if it had been written by its name.
-SinkChoice sinkNamed(const std::string& name);
+SinkChoice sinkNamed(const std::string& name, const Simulation& simulation);
 
 /// Previews with ranges as of writePreview().
 std::unique_ptr<Sink> makePreviewsSink(const SinkPlace& place, const std::map<std::string, std::pair<double, double>>& ranges);

@@ -36,7 +36,7 @@ class MeansSink final : public Sink {
 };
 
 SinkModel meansSink() {
-  return {"means", "Means over the film.", {folderParameter(), withDefault(number("factor", "", "of each"), "1")}, [](const Record& r) {
+  return {"means", "Means over the film.", {folderParameter(), withDefault(number("factor", "", "of each"), "1")}, [](const Record& r, const Simulation&) {
             return [folder = readFolder(r), factor = r.number("factor")](const Simulation&, const SinkPlace& place) -> std::unique_ptr<Sink> {
               return std::make_unique<MeansSink>(place.below(folder), factor);
             };
@@ -87,6 +87,30 @@ TEST(MeansSink, IsReadByItsTable) {
   EXPECT_NE(refusal("[{sink: means, factor: 1 m}]").find("factor"), std::string::npos);
   EXPECT_NE(refusal("[{sink: files, folder: ../../elsewhere}]").find("outside"), std::string::npos);
   EXPECT_NE(refusal("[{sink: files, folder: /tmp}]").find("outside"), std::string::npos);
+}
+
+// Sinks that would write over each other, or into each other's files: refused before anything is drawn.
+TEST(SinkModels, EachHasFilesOfItsOwn) {
+  const TemporaryFolder folder;
+  const std::filesystem::path out = folder.path() / "out";
+  const auto refusal = [&](const std::string& sinks, const std::vector<std::string>& more = {}) -> std::string {
+    Arguments arguments{folder.put("s.yaml", kScene + "sinks: " + sinks + "\n"), "--out", out.string()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    try {
+      runCommand(arguments);
+    } catch (const UserError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_NE(refusal("[files, files]").find("two sinks write"), std::string::npos);
+  EXPECT_NE(refusal("[previews]", {"--preview"}).find("two sinks write"), std::string::npos);
+  EXPECT_NE(refusal("[{sink: files, folder: c.plan}]").find("c.plan"), std::string::npos);
+  EXPECT_NE(refusal("[files, {sink: previews, folder: c_00001.exr}]").find("c_00001.exr"), std::string::npos);
+  EXPECT_NE(refusal("[{sink: previews, ranges: {mw.radance: [1, 2]}}]").find("did you mean 'mw.radiance'?"), std::string::npos);
+  EXPECT_FALSE(std::filesystem::exists(out / "c_00000.exr"));
+  EXPECT_EQ(refusal("[files, {sink: files, folder: again}, {sink: previews, ranges: {mw.radiance: [1, 2]}}]"), "");
+  EXPECT_TRUE(std::filesystem::exists(out / "again/c_00001.exr") && std::filesystem::exists(out / "c_00001.png"));
 }
 
 TEST(SinkModels, TwoOfOneNameAreRefused) {

@@ -1,6 +1,7 @@
 // Commands of a scenario: what they set is drawn as if the scenario had it from the beginning, in every mode.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenarios/commands/commands.hpp"
@@ -152,6 +153,9 @@ TEST(Commands, RefusedWithTheName) {
   expect("{command: look, camera: c}", "changes nothing");
   expect("{command: look, camera: d, heading: 3 deg}", "there is no camera 'd'");
   expect("{command: light, light: lamp, level: 2}", "there is no light 'lamp'");
+  expect("{command: move, entity: b, roll: 0 deg}", "a roll but no heading");
+  expect("{command: look, camera: c, pitch: -3 deg}", "a pitch but no heading");
+  expect("{command: look, camera: c, field_of_view: 177 deg}", "wider than a flat film");
   expect("{at: 3 s}", "missing key 'command'");
   expect("{command: explode, entity: b}", "there is no command 'explode'");
 }
@@ -164,6 +168,60 @@ TEST(Commands, KeepNoMoreThanTheLast) {
     world.apply({0.0, "", {}, [tick](Courses& c, double) { c.temperatures_K[{1, 0}] = [tick](double) { return 300.0 + tick % 7; }; }}, tick);
   EXPECT_EQ(world.at(1e5).temperatures_K[1][0], 300.0 + 99999 % 7);
   EXPECT_EQ(world.at(1e5).temperatures_K[0][0], 290.0);
+}
+
+/// A lamp of 4.2 to 4.4 um, where the air is opaque within some hundred metres, 5 km off.
+const std::string kLampInABand =
+    "accuracy: 0.5 %\natmosphere: hazy_us76\nbackground: {temperature: 3 K}\n"
+    "lights: [{name: la, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 0], [4.15, 0], [4.2, 30], [4.4, 30], [4.45, 0], [5, 0]]}, position: [0 m, 5000 m, 1000 m]}]\n";
+std::string watch(const std::string& field) {
+  return "cameras: [{name: watch, film: {width: 16, height: 16}, field_of_view: " + field +
+         ", aperture: 50 mm, position: [0 m, 0 m, 1000 m], look_at: [0 m, 5000 m, 1000 m], channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n";
+}
+
+/// The brightest pixel, planned and by the reference.
+void expectPlanned(const std::string& yaml, int frame, const std::string& what) {
+  const Frame a = renderFrame(scene(yaml), frame), b = renderFrame(scene(with(yaml, "accuracy: 0.5 %", "accuracy: reference")), frame);
+  const auto &p = layer(a, "mw.radiance").pixels, &q = layer(b, "mw.radiance").pixels;
+  const size_t at = static_cast<size_t>(std::max_element(q.begin(), q.end()) - q.begin());
+  figure(what + " [W/(m2 sr)]", static_cast<double>(p[at]), static_cast<double>(q[at]), 0.005, "accuracy asked");
+}
+
+// What a command or a course lights up for a moment, and a field of view that a command narrows: plans look there.
+TEST(Commands, ArePlannedForInLamps) {
+  expectPlanned("time: {rate: 10 Hz, frames: 2}\n" + kLampInABand + watch("60 deg") + "commands: [{command: look, camera: watch, field_of_view: 0.02 deg}]\n", 1,
+                "a lamp in a camera that a command zooms");
+  const std::string time = "time: {rate: 10 Hz, frames: 11}\n";
+  expectPlanned(time + kLampInABand + watch("0.02 deg") +
+                    "commands: [{command: light, light: la, level: 0}, {command: light, light: la, level: 1, at: 0.25 s}, {command: light, light: la, level: 0, at: 0.45 s}]\n",
+                3, "a lamp that commands light for two frames of eleven");
+  expectPlanned(time + with(kLampInABand, "name: la,", "name: la, level: [[0.25 s, 0], [0.3 s, 1], [0.35 s, 0]],") + watch("0.02 deg"), 3,
+                "a lamp whose course lights it in one frame of eleven");
+}
+
+// Steps of time round: a command at a frame's time holds in it.
+TEST(Commands, HoldFromTheFrameOfTheirTimeOn) {
+  for (double start : {0.0, 0.7, 3.3})
+    for (double rate : {10.0, 24.0, 30.0, 60.0, 120.0, 1000.0 / 3.0}) {
+      Simulation sim = scene(kEye + with(kinds()[0].scene, "TEMPERATURE", "300 K"));
+      sim.time = {start, 1.0 / rate, 400};
+      for (int frame : {1, 2, 23, 31, 46, 399}) {
+        sim.commands = {{start + frame / rate, "", {}, [](Courses& c, double) { c.temperatures_K[{1, 0}] = [](double) { return 400.0; }; }}};
+        EXPECT_EQ(advance(sim, sim.time.at(frame)).temperatures_K[1][0], 400.0) << start << " " << rate << " " << frame;
+        EXPECT_EQ(advance(sim, sim.time.at(frame - 1)).temperatures_K[1][0], 300.0) << start << " " << rate << " " << frame;
+      }
+    }
+}
+
+// Two lamps that have changed names, and what a command says of one of them: two scenes, and two plans.
+TEST(Commands, NamesAreOfTheScene) {
+  const auto content = [](const char* first, const char* second) {
+    return scene(std::string("lights: [{name: ") + first + ", intensity: 1 W/(sr um), position: [0 m, 0 m, 9 m]}, {name: " + second +
+                 ", intensity: 2 W/(sr um), position: [0 m, 0 m, 8 m]}]\n" + kEye + with(kinds()[0].scene, "TEMPERATURE", "300 K") +
+                 "commands: [{command: light, light: la, level: 0}]\n")
+        .content;
+  };
+  EXPECT_NE(content("la", "lb"), content("lb", "la"));
 }
 
 }  // namespace

@@ -266,6 +266,7 @@ std::vector<Bad> badScenarios() {
       // Names.
       {"UnknownMaterial", entity("material: @@green_gras, temperature: 300 K"), {"no material 'green_gras'", "did you mean 'green_grass'?"}},
       {"UnknownLibrarySpectrum", response("@@insb_mwr"), {"did you mean 'insb_mwir'?"}},
+      {"LibraryAirOfAnotherModel", "atmosphere: {model: @@homogeneous, library: hazy_us76}\n", {"library air 'hazy_us76' is layered", "remove 'model'"}},
       {"UnknownAir", "atmosphere: @@hazy_us67\n", {"did you mean 'hazy_us76'?"}},
       {"CarriedByItself", entity("material: {}, temperature: 300 K, attached_to: @@p"), {"no entity 'p' (above this place)"}},
       // Materials.
