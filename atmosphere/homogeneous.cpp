@@ -88,24 +88,25 @@ std::shared_ptr<const Atmosphere> makeHomogeneousAir(HomogeneousAir air) { retur
 std::shared_ptr<const Atmosphere> makeNoAir() { return std::make_shared<NoAir>(); }
 
 AirModel homogeneousModel() {
-  return {"homogeneous",
-          "Air of the same extinction everywhere.",
-          {"extinction"},
-          {required(atLeast(spectrum("extinction", "1/m", "extinction coefficient"), 0.0)),
-           within(number("temperature", "K", "the air emits as a black body of this temperature, and does not without"), 0, 1e5),
-           atLeast(spectrum("radiance", "W/(m2 sr um)", "further source radiance at great depth, for instance scattered sunlight"), 0.0),
-           within(number("top", "m",
-                         "height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never ends and the "
-                         "sun's irradiance is that at the scene"),
-                  -500, 1e7)},
-          [](const AirRecord& air) {
-            HomogeneousAir own;
-            own.extinction_per_m = air.spectra.at("extinction");
-            if (air.record.given("temperature")) own.temperature_K = air.record.number("temperature");
-            if (air.spectra.count("radiance")) own.radiance = air.spectra.at("radiance");
-            if (air.record.given("top")) own.top_m = air.record.number("top");
-            return makeHomogeneousAir(std::move(own));
-          }};
+  return {
+      "homogeneous",
+      "Air of the same extinction everywhere.",
+      {"extinction"},
+      {required(atLeast(spectrum("extinction", "1/m", "extinction coefficient"), 0.0)),
+       within(number("temperature", "K", "the air emits as a black body of this temperature, and does not without"), 0, 1e5),
+       atLeast(spectrum("radiance", "W/(m2 sr um)", "further source radiance at great depth, for instance scattered sunlight"), 0.0),
+       within(number("top", "m",
+                     "height of the air's top above the earth (a sphere that touches the ellipsoid under the origin); without it the air never ends and the "
+                     "sun's irradiance is that at the scene"),
+              -500, 1e7)},
+      [](const AirRecord& air) {
+        HomogeneousAir own;
+        own.extinction_per_m = air.spectra.at("extinction");
+        if (air.record.given("temperature")) own.temperature_K = air.record.number("temperature");
+        if (air.spectra.count("radiance")) own.radiance = air.spectra.at("radiance");
+        if (air.record.given("top")) own.top_m = air.record.number("top");
+        return makeHomogeneousAir(std::move(own));
+      }};
 }
 
 }  // namespace pitviper

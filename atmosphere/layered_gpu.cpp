@@ -112,8 +112,8 @@ void LayeredOnGpu::upload(const std::vector<AirRow>& rows) {
   put({from, (grid_.elevations - 1) / width, grid_.scale_m, grid_.entriesPerLog()});
   put({grid_.acrossLow, grid_.azimuths > 1 ? (grid_.azimuths - 1) / std::max(grid_.acrossHigh - grid_.acrossLow, 1e-12) : 0.0,
        static_cast<double>(grid_.elevations), static_cast<double>(grid_.ranges)});
-  put({SunLegs::kBottom_m, (SunLegs::kHeights - 1) / std::sqrt(simulation_.air->top_m() - SunLegs::kBottom_m),
-       plan_.sunLegs ? plan_.sunLegs->firstSine() : 0.0, plan_.sunLegs ? 1.0 / plan_.sunLegs->step() : 0.0});
+  put({SunLegs::kBottom_m, (SunLegs::kHeights - 1) / std::sqrt(simulation_.air->top_m() - SunLegs::kBottom_m), plan_.sunLegs ? plan_.sunLegs->firstSine() : 0.0,
+       plan_.sunLegs ? 1.0 / plan_.sunLegs->step() : 0.0});
   const auto powers = simulation_.air->exponents();
   const auto absorbers = static_cast<size_t>(4 * rows_.vectors());
   for (size_t k = 0; k < absorbers; ++k) put({k < powers.size() ? powers[k] : 1.0});

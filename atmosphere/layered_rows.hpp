@@ -2,8 +2,8 @@
 // Rows of the tables of layered air: what one line of sight has before it and sends, range by range, in double precision.
 #include <span>
 
-#include "sim/model/sunlit_air.hpp"
 #include "atmosphere/layered_grid.hpp"
+#include "sim/model/sunlit_air.hpp"
 
 namespace pitviper {
 

@@ -38,7 +38,8 @@ const AirModel& onlyMarkedModel(const Value& air) {
     for (const std::string& own : m.marks) {
       if (!air.find(own)) continue;
       if (found && found != &m)
-        throw UserError(air.find(own)->where, "the air is given twice, by '" + mark + "' and by '" + own + "'", "one of " + joined(allMarks(), ", "), "remove one");
+        throw UserError(air.find(own)->where, "the air is given twice, by '" + mark + "' and by '" + own + "'", "one of " + joined(allMarks(), ", "),
+                        "remove one");
       found = &m;
       mark = own;
     }

@@ -14,7 +14,8 @@ std::filesystem::path tableFile(const AirRecord& air, const char* key, const cha
   const std::filesystem::path file = air.folder / air.record.text(key);
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored))
-    throw UserError(air.record.where(key), "there is no file '" + file.string() + "'", std::string(what) + ", its path relative to this file", "check the path");
+    throw UserError(air.record.where(key), "there is no file '" + file.string() + "'", std::string(what) + ", its path relative to this file",
+                    "check the path");
   if (std::filesystem::file_size(file, ignored) > kLargestTableBytes)
     throw UserError(Location{file.string(), 1, 1, -1}, "the file is larger than 64 MB", std::string(what) + " of the bands that the sensors need",
                     "make it over fewer wavenumbers, or with larger steps");
@@ -54,8 +55,8 @@ AirModel csvModel() {
   return {"csv",
           "Air along level paths from a table of your own: the same everywhere and without an end.",
           {"csv"},
-          {required(text("csv",
-                         "file of transmittance or extinction by wavelength and range, relative to the scenario; its columns: atmosphere/tabulated_csv.hpp"))},
+          {required(
+              text("csv", "file of transmittance or extinction by wavelength and range, relative to the scenario; its columns: atmosphere/tabulated_csv.hpp"))},
           [](const AirRecord& air) { return airOf(readAirCsv(tableFile(air, "csv", "a CSV table of air"))); }};
 }
 

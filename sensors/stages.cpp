@@ -28,7 +28,8 @@ StageChoice readStage(const Value& value, const Camera& camera) {
   choice.words = wordsOf(value);
   choice.where = value.where;
   if (choice.margin_px < 0 || choice.margin_px > kMostMargin_px || choice.cells < 1 || choice.cells > kMostCells)
-    throw UserError(value.where, "stage '" + model.name + "' needs " + std::to_string(choice.margin_px) + " pixels around the film and " + std::to_string(choice.cells) +
+    throw UserError(value.where,
+                    "stage '" + model.name + "' needs " + std::to_string(choice.margin_px) + " pixels around the film and " + std::to_string(choice.cells) +
                         " cells a pixel",
                     "at most " + std::to_string(kMostMargin_px) + " and " + std::to_string(kMostCells), "ask less of it");
   return choice;

@@ -31,9 +31,7 @@ class Environment {
 /// Never moved: passes keep references to the simulation and the plan.
 struct Prepared {
   explicit Prepared(const BenchSetting& setting)
-      : simulation(benchSimulation(setting)),
-        scene(std::make_shared<const GpuScene>(simulation)),
-        state(advance(simulation, 0.0)) {}
+      : simulation(benchSimulation(setting)), scene(std::make_shared<const GpuScene>(simulation)), state(advance(simulation, 0.0)) {}
   Simulation simulation;
   std::shared_ptr<const GpuScene> scene;
   WorldState state;

@@ -6,8 +6,8 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
-#include "sim/frame/file_owner.hpp"
 #include "sim/camera/camera_renderer.hpp"
+#include "sim/frame/file_owner.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/parameters/error.hpp"
 

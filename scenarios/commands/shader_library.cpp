@@ -23,7 +23,7 @@ const ShaderLibrary& shaderLibrary() {
     l.add(pv_atmosphere_shaders());
     for (const StageModel& m : stageModels().all())
       for (const auto& [path, text] : m.shaders) l.add(std::array{ShaderText{path, text}});
-    for (const AirModel& m : airModels().all()) 
+    for (const AirModel& m : airModels().all())
       for (const auto& [path, text] : m.shaders) l.add(std::array{ShaderText{path, text}});
     for (const ReflectionModel& m : reflectionModels().all())
       if (!m.shader.first.empty()) l.add(std::array{ShaderText{m.shader.first, m.shader.second}});

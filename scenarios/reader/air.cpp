@@ -77,8 +77,8 @@ void Builder::readAtmosphere(const Record& scenario) {
     addLibrary(air, libraries_.atmosphere);
     const AirModel* own = markedModel(air);
     if (const std::string asked = r.text("model"); asked != "air" && own && own->name != asked)
-      throw UserError(r.where("model"), "library air '" + r.text("library") + "' is " + own->name + ", and 'model' says " + asked, "'model: " + own->name + "', or none",
-                      "remove 'model'");
+      throw UserError(r.where("model"), "library air '" + r.text("library") + "' is " + own->name + ", and 'model' says " + asked,
+                      "'model: " + own->name + "', or none", "remove 'model'");
   }
   simulation_.air =
       makeAir(air, base_, [this](const Value& v, const Parameter& p) { return bounded(spectra_, v, p.unit, p.key + " of the air", p.minimum, p.maximum); });

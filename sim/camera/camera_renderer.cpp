@@ -1,8 +1,8 @@
 #include "sim/camera/camera_renderer.hpp"
 
-#include "sim/plan/planner.hpp"
 #include "sim/camera/small_bodies.hpp"
 #include "sim/camera/visible_lights.hpp"
+#include "sim/plan/planner.hpp"
 
 namespace pitviper {
 

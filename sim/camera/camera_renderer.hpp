@@ -3,11 +3,11 @@
 #include <functional>
 #include <memory>
 
+#include "sim/camera/subpixels.hpp"
+#include "sim/camera/visible_lights.hpp"
 #include "sim/render/buffered_pass.hpp"
 #include "sim/render/direct_pass.hpp"
 #include "sim/render/reference/reference_pass.hpp"
-#include "sim/camera/subpixels.hpp"
-#include "sim/camera/visible_lights.hpp"
 
 namespace pitviper {
 

@@ -2,12 +2,12 @@
 
 #include <cmath>
 
+#include "sim/camera/small_bodies.hpp"
+#include "sim/camera/visible_lights.hpp"
 #include "sim/model/light_legs.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/reference_pass.hpp"
-#include "sim/camera/small_bodies.hpp"
-#include "sim/camera/visible_lights.hpp"
 
 namespace pitviper {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sim/plan/plan.hpp"
 #include "sim/camera/camera_image.hpp"
+#include "sim/plan/plan.hpp"
 #include "sim/render/scene_pass.hpp"
 
 namespace pitviper {

@@ -49,7 +49,8 @@ bool lightIsInView(const Simulation& sim, const WorldState& state, const View& v
   return !v.wanted || (*v.wanted)[static_cast<size_t>(at.y) * static_cast<size_t>(v.width) + static_cast<size_t>(at.x)];
 }
 
-void addVisibleLights(Subpixels& image, const WaysToLights& ways, const Simulation& sim, const Plan& plan, const WorldState& state, const std::vector<char>& present) {
+void addVisibleLights(Subpixels& image, const WaysToLights& ways, const Simulation& sim, const Plan& plan, const WorldState& state,
+                      const std::vector<char>& present) {
   const View& v = image.view();
   for (size_t l = 0; l < sim.lights.size(); ++l) {
     if (!lightIsInView(sim, state, v, l)) continue;

@@ -1,8 +1,8 @@
 #pragma once
 // A point light in view adds its own flux, I tau A_ap cos(psi) / R^2, to the subpixel it falls into, unless something stands in
 // front of it on the very line to it.
-#include "sim/radiance/node_sum.hpp"
 #include "sim/camera/subpixels.hpp"
+#include "sim/radiance/node_sum.hpp"
 
 namespace pitviper {
 

@@ -1,9 +1,9 @@
 #pragma once
 // Makes frames of what the renderer leaves.
-#include "sim/frame/frame.hpp"
-#include "sim/model/simulation.hpp"
 #include "sim/camera/camera_image.hpp"
 #include "sim/camera/sensor_chain.hpp"
+#include "sim/frame/frame.hpp"
+#include "sim/model/simulation.hpp"
 
 namespace pitviper {
 

@@ -14,7 +14,7 @@ class GlError : public std::runtime_error {
 
 struct GlLimits {
   std::string vendor, renderer, version;
-  bool software = false;  ///< drawn by the CPU
+  bool software = false;   ///< drawn by the CPU
   int largestTexture = 0;  ///< pixels a side
   int drawBuffers = 0;     ///< colour targets of one pass
   int uniformBlock = 0;    ///< bytes

@@ -104,7 +104,10 @@ Texture2D::Texture2D(int width, int height, PixelFormat format) : width_(width),
   GLuint n = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &n);
   name_ = GlName<deleteTexture>(n);
-  const GLenum internal = format == PixelFormat::Rgba32f ? GL_RGBA32F : format == PixelFormat::R32f ? GL_R32F : format == PixelFormat::Rg32ui ? GL_RG32UI : GL_DEPTH_COMPONENT32F;
+  const GLenum internal = format == PixelFormat::Rgba32f  ? GL_RGBA32F
+                          : format == PixelFormat::R32f   ? GL_R32F
+                          : format == PixelFormat::Rg32ui ? GL_RG32UI
+                                                          : GL_DEPTH_COMPONENT32F;
   glTextureStorage2D(n, 1, internal, width, height);
   glTextureParameteri(n, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
   glTextureParameteri(n, GL_TEXTURE_MAG_FILTER, GL_NEAREST);

@@ -16,11 +16,11 @@ using Course = std::function<T(double time_s)>;
 
 /// What commands have set: each course takes the place of what the scenario says. Indices are Simulation's.
 struct Courses {
-  std::map<int, Course<glm::dvec3>> positions;                    ///< by entity; in the local frame, or in the carrier's
-  std::map<int, Course<glm::dquat>> orientations;                 ///< the same
-  std::map<std::pair<int, int>, Course<double>> temperatures_K;   ///< by entity and surface; not of one with a temperature texture
-  std::map<int, Course<double>> lightLevels;                      ///< by point light
-  std::map<std::string, Course<glm::dvec3>> cameraPositions;      ///< by name, as of CameraChange
+  std::map<int, Course<glm::dvec3>> positions;                   ///< by entity; in the local frame, or in the carrier's
+  std::map<int, Course<glm::dquat>> orientations;                ///< the same
+  std::map<std::pair<int, int>, Course<double>> temperatures_K;  ///< by entity and surface; not of one with a temperature texture
+  std::map<int, Course<double>> lightLevels;                     ///< by point light
+  std::map<std::string, Course<glm::dvec3>> cameraPositions;     ///< by name, as of CameraChange
   std::map<std::string, Course<glm::dquat>> cameraOrientations;
   std::map<std::string, Course<double>> focalLengths_m, exposures_s;
 };

@@ -17,8 +17,7 @@ SunHere sunHere(const Simulation& sim, const glm::dvec3& point) {
   here.share = risen.share;
   // Turned upwards by the sine's change over the cosine twice: once for the angle, once for what of `up` lies across the line.
   here.toSun = glm::normalize(here.toSun + (risen.sinElevation - sine) / std::max(1.0 - sine * sine, 1e-6) * up);
-  if (here.share > 0.0 && sim.air->top_m() < physics::kFar)
-    here.air = sim.air->amounts({height, risen.sinElevation, sim.frame.earthRadius_m()}, physics::kFar);
+  if (here.share > 0.0 && sim.air->top_m() < physics::kFar) here.air = sim.air->amounts({height, risen.sinElevation, sim.frame.earthRadius_m()}, physics::kFar);
   return here;
 }
 

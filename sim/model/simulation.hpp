@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "sim/model/atmosphere.hpp"
 #include "sim/model/channel.hpp"
 #include "sim/model/command.hpp"
 #include "sim/model/material.hpp"
-#include "sim/model/atmosphere.hpp"
 #include "sim/model/sink.hpp"
 #include "sim/model/stage.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -65,7 +65,7 @@ struct Camera {
   std::string plan;               ///< text of a plan to draw with, as written by another run; empty: one is made
   std::string planFile;           ///< where it came from, for messages
   std::vector<ChannelOutput> outputs;
-  std::vector<StageChoice> stages;             ///< of its sensor, after the spectral integral
+  std::vector<StageChoice> stages;            ///< of its sensor, after the spectral integral
   std::optional<SpectralBins> spectralImage;  ///< written beside the frame
   TruthLayers truth;
 };

@@ -16,7 +16,8 @@ constexpr double kRanges_m[] = {0.0, 50.0, 200.0, 600.0, 1500.0, 3e3, 5e3, 8e3, 
 
 }  // namespace
 
-Spectrum meanSky(const std::shared_ptr<const Atmosphere>& of, const std::optional<Sun>& sun, const Spectrum& background, double height_m, double earthRadius_m) {
+Spectrum meanSky(const std::shared_ptr<const Atmosphere>& of, const std::optional<Sun>& sun, const Spectrum& background, double height_m,
+                 double earthRadius_m) {
   struct Direction {
     SunlitAir air;
     double weight, cosScatter;

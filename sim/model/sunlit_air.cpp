@@ -7,7 +7,8 @@
 
 namespace pitviper {
 
-SunlitAir::SunlitAir(const Atmosphere& path, const AirRay& ray, std::vector<AirStation> along, const SunLegs* legs, const RaySun& sun) : stations(std::move(along)) {
+SunlitAir::SunlitAir(const Atmosphere& path, const AirRay& ray, std::vector<AirStation> along, const SunLegs* legs, const RaySun& sun)
+    : stations(std::move(along)) {
   const double r0 = ray.earthRadius_m + ray.height_m;
   for (const AirStation& s : stations) {
     powered.push_back(path.powered(s.amounts));

@@ -7,7 +7,8 @@ namespace {
 
 /// The scenario's commands from one on, as far as a time; returns the first that is left.
 std::size_t carryOut(const Simulation& sim, std::size_t next, double time_s, Courses& courses) {
-  for (; next < sim.commands.size() && sim.commands[next].at_s <= time_s + kSameTick * sim.time.step_s; ++next) sim.commands[next].change(courses, sim.commands[next].at_s);
+  for (; next < sim.commands.size() && sim.commands[next].at_s <= time_s + kSameTick * sim.time.step_s; ++next)
+    sim.commands[next].change(courses, sim.commands[next].at_s);
   return next;
 }
 
@@ -20,9 +21,7 @@ auto valueOf(const Map& courses, const Key& key, double time_s, const Other& oth
 WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s) {
   WorldState state;
   state.time_s = time_s;
-  const auto carried = [&state](int carrier, const Pose& own) {
-    return carrier >= 0 ? composed(state.entities[static_cast<size_t>(carrier)], own) : own;
-  };
+  const auto carried = [&state](int carrier, const Pose& own) { return carrier >= 0 ? composed(state.entities[static_cast<size_t>(carrier)], own) : own; };
   for (const Entity& e : sim.entities) {  // a parent comes before its children
     const int index = static_cast<int>(state.entities.size());
     Pose own = e.motion.at(time_s);
@@ -31,8 +30,7 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
     state.entities.push_back(carried(e.parent, own));
     std::vector<double>& temperatures = state.temperatures_K.emplace_back();
     for (const Surface& s : e.surfaces)
-      temperatures.push_back(
-          valueOf(courses.temperatures_K, std::pair(index, static_cast<int>(temperatures.size())), time_s, [&] { return s.temperature_K; }));
+      temperatures.push_back(valueOf(courses.temperatures_K, std::pair(index, static_cast<int>(temperatures.size())), time_s, [&] { return s.temperature_K; }));
   }
   for (const PointLight& l : sim.lights) {
     const int index = static_cast<int>(state.lights.size());

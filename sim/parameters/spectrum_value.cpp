@@ -199,8 +199,8 @@ namespace {
 
 Spectrum readValues(const Record& r, std::string_view unit, std::string_view name, Outside beyond) {
   if (!r.given("wavelength"))
-      throw UserError(r.where(), "the table of " + std::string(name) + " has no unit for its first column", "'wavelength: um', 'nm' or '1/cm'",
-                      "add 'wavelength: um'");
+    throw UserError(r.where(), "the table of " + std::string(name) + " has no unit for its first column", "'wavelength: um', 'nm' or '1/cm'",
+                    "add 'wavelength: um'");
   if (!r.given("unit"))
     throw UserError(r.where(), "the table of " + std::string(name) + " has no unit for its values",
                     unit.empty() ? "'unit: \"1\"'" : "'unit: " + std::string(unit) + "'", "add it");

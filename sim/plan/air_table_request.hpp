@@ -8,9 +8,9 @@ class SightRays;
 
 struct AirTableRequest {
   const Simulation& simulation;
-  Plan& plan;               ///< for its nodes; takes the sizes
-  const Camera* camera;     ///< null: a probe
-  SightRays* rays;          ///< null: the usual sizes, nothing is known yet
+  Plan& plan;                        ///< for its nodes; takes the sizes
+  const Camera* camera;              ///< null: a probe
+  SightRays* rays;                   ///< null: the usual sizes, nothing is known yet
   const std::vector<double>* floor;  ///< of each slot, where it is dark
 };
 

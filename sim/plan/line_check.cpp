@@ -165,8 +165,8 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
   return kTried[std::size(kTried) - 1];
 }
 
-std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& ofPlan, const NodesOfPlan& ofFine, const std::vector<SightRay>& lines,
-                                    int places, const std::vector<double>& floor) {
+std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& ofPlan, const NodesOfPlan& ofFine, const std::vector<SightRay>& lines, int places,
+                                    const std::vector<double>& floor) {
   const Plan &plan = ofPlan.plan, &fine = ofFine.plan;
   const ShadowCaster shadows(sim);
   std::vector<LineSums> sums(lines.size());

@@ -100,7 +100,8 @@ std::vector<ScatteringCheck::Line> ScatteringCheck::linesOver(const WorldState& 
   return lines;
 }
 
-ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n, const Line& line, const std::optional<Hit>& below, const AirAmounts& slant) const {
+ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n, const Line& line, const std::optional<Hit>& below,
+                                                const AirAmounts& slant) const {
   const SpectralNode& node = channel.nodes[n];
   const Column& column = channel.columns[n];
   const double um = node.members.front().wavelength_um, e0 = sim_.sun->irradiance(um);
@@ -113,9 +114,7 @@ ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n
   const double rayleigh = rayleighPhase(line.cosScatter), haze = henyeyGreensteinPhase(line.cosScatter, node.air.asymmetry);
   Parts parts{seen.thermal.back() + e0 * (rayleigh * seen.molecules.back() + haze * seen.haze.back()), 0.0, 0.0};
   for (size_t s = 1; s < line.air.stations.size(); ++s) {
-    const auto passed = [&](const std::array<double, kMostAirAmounts>& c) {
-      return sumOver(c, line.air.powered[s]) - sumOver(c, line.air.powered[s - 1]);
-    };
+    const auto passed = [&](const std::array<double, kMostAirAmounts>& c) { return sumOver(c, line.air.powered[s]) - sumOver(c, line.air.powered[s - 1]); };
     const double small = passed(node.air.molecules), large = passed(node.air.haze), d = seen.depth[s] - seen.depth[s - 1];
     parts.scattering += small + large;
     if (!(d > 0.0)) continue;
@@ -137,8 +136,8 @@ ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n
   const double height = sim_.frame.height(line.end->point), from = depthAbove(column, height), leg = Atmosphere::depthOf(node.air, line.toSun);
   const double dome = sim_.ambient ? kPi * (*sim_.ambient)(um) : 0.0;
   const TwoStream::Fluxes flux = layer.at(from);
-  parts.own += through * (material.emissivity(um, 0.0) * physics::planckRadiance(um, line.end_K) +
-                    reflectance / kPi * (e0 * line.sun.factor * std::exp(-leg) + dome));
+  parts.own +=
+      through * (material.emissivity(um, 0.0) * physics::planckRadiance(um, line.end_K) + reflectance / kPi * (e0 * line.sun.factor * std::exp(-leg) + dome));
   // A dome that the scenario has lights every side alike; else half of what is level, by how the surface lies.
   const double around = sim_.ambient ? flux.down : 0.5 * (1.0 + cosine) * flux.down + 0.5 * (1.0 - cosine) * flux.up;
   const double falls = around + std::max(flux.beam - std::exp(-leg), 0.0) * line.sun.factor;

@@ -245,10 +245,10 @@ void SightRays::survey() {
   const int last = simulation_.time.frames - 1;
   for (int n = 0; n < kSurvey; ++n) {
     // The first and the last frame count for as much as a tenth of all, and so do those in which a command begins to hold.
-    const int frame = n % 20 == 0                                       ? 0
-                      : n % 20 == 10                                    ? last
+    const int frame = n % 20 == 0                                    ? 0
+                      : n % 20 == 10                                 ? last
                       : n % 10 == 5 && !simulation_.commands.empty() ? frameOf(simulation_.commands[dice_.below(simulation_.commands.size())].at_s)
-                                                                        : static_cast<int>(dice_.below(static_cast<size_t>(last) + 1));
+                                                                     : static_cast<int>(dice_.below(static_cast<size_t>(last) + 1));
     candidates_.push_back(candidate(filmRay(frame)));
   }
   for (int n = 0; n < kAimedSurvey && !surfaces_.empty(); ++n)

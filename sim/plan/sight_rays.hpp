@@ -34,9 +34,9 @@ struct SightRay {
   LineOfSight line;
   double nearest_m = 0.0;
   double pixel_sr = 0.0;  ///< about the solid angle of a subpixel
-  int lamp = -1;         ///< a light that is seen in the same pixel
-  bool fromFilm = true;  ///< drawn as the film draws pixels, not aimed at something
-  bool glints = false;   ///< aimed at a glint: what is lit there is lit
+  int lamp = -1;          ///< a light that is seen in the same pixel
+  bool fromFilm = true;   ///< drawn as the film draws pixels, not aimed at something
+  bool glints = false;    ///< aimed at a glint: what is lit there is lit
 };
 
 class SightRays {

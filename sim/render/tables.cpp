@@ -237,8 +237,8 @@ float sourceOf(const Medium& medium, const SpectralNode& n, double temperature_K
 std::uint32_t appendMedium(RenderTables& t, const Plan& plan, const Medium& medium, const Surface& surface) {
   const auto at = static_cast<std::uint32_t>(t.media.size() / 4);
   for (const SpectralNode& n : plan.nodes)
-    t.media.insert(t.media.end(), {static_cast<float>(n.absorption_per_m[static_cast<size_t>(surface.material)]), sourceOf(medium, n, surface.temperature_K),
-                                   0.0f, 0.0f});
+    t.media.insert(t.media.end(),
+                   {static_cast<float>(n.absorption_per_m[static_cast<size_t>(surface.material)]), sourceOf(medium, n, surface.temperature_K), 0.0f, 0.0f});
   return at;
 }
 
@@ -398,7 +398,8 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   for (size_t e = 0; e < sim.entities.size(); ++e) {
     const Entity& entity = sim.entities[e];
     if (const Medium* medium = sim.mediumOf(entity)) {
-      t.draws.push_back({DrawKind::Medium, static_cast<int>(e), 0, appendMedium(t, plan, *medium, entity.surfaces.front()), 0, entity.surfaces.front().temperature_K});
+      t.draws.push_back(
+          {DrawKind::Medium, static_cast<int>(e), 0, appendMedium(t, plan, *medium, entity.surfaces.front()), 0, entity.surfaces.front().temperature_K});
       continue;
     }
     for (size_t s = 0; s < entity.surfaces.size(); ++s) {

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <future>
 
+#include "sim/camera/probe.hpp"
 #include "sim/frame/make_frame.hpp"
 #include "sim/model/world.hpp"
 #include "sim/plan/plan_cache.hpp"
-#include "sim/camera/probe.hpp"
 #include "sim/run/spectral_renderer.hpp"
 
 namespace pitviper {

@@ -4,8 +4,8 @@
 #include <map>
 #include <memory>
 
-#include "sim/frame/frame.hpp"
 #include "sim/camera/audit.hpp"
+#include "sim/frame/frame.hpp"
 
 namespace pitviper {
 

@@ -2,8 +2,8 @@
 // Draws a camera's spectral image: bins are channels with a box response, and a pass holds 16 channels.
 #include <memory>
 
-#include "sim/frame/frame.hpp"
 #include "sim/camera/camera_renderer.hpp"
+#include "sim/frame/frame.hpp"
 
 namespace pitviper {
 

@@ -61,8 +61,7 @@ CommandedPose readCommandedPose(const Record& r, const LocalFrame& frame, bool a
       throw UserError(r.where(key), std::string("a ") + key + " but no heading", "an attitude as a whole: what is not given of it is 0", "add 'heading:'");
   CommandedPose pose{readPosition(r, frame), readAttitude(r, attached)};
   if (r.given("velocity")) {
-    if (!pose.position)
-      throw UserError(r.where("velocity"), "a velocity without a position to go on from", "both", "add 'position:', or remove 'velocity'");
+    if (!pose.position) throw UserError(r.where("velocity"), "a velocity without a position to go on from", "both", "add 'position:', or remove 'velocity'");
     pose.velocity = r.vector("velocity");
   }
   return pose;

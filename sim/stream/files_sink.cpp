@@ -21,8 +21,10 @@ class FilesSink final : public Sink {
 }  // namespace
 
 SinkModel filesSink() {
-  return {"files", "Every frame as an EXR file, `<camera>_<frame>.exr`, with all its layers. This is what a run writes where no sink is given.",
-          {folderParameter()}, [](const Record& r, const Simulation&) {
+  return {"files",
+          "Every frame as an EXR file, `<camera>_<frame>.exr`, with all its layers. This is what a run writes where no sink is given.",
+          {folderParameter()},
+          [](const Record& r, const Simulation&) {
             return [folder = readFolder(r)](const Simulation&, const SinkPlace& place) -> std::unique_ptr<Sink> {
               return std::make_unique<FilesSink>(place.below(folder));
             };

@@ -38,7 +38,8 @@ CommandModel lookCommand() {
     };
   };
   return {"look",
-          "Points a camera. A position, an attitude, a field of view or an exposure that is not given stays as the scenario has it; a camera that is turned no longer follows "
+          "Points a camera. A position, an attitude, a field of view or an exposure that is not given stays as the scenario has it; a camera that is turned no "
+          "longer follows "
           "its `look_at`.",
           keys, read};
 }

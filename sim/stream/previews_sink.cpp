@@ -52,13 +52,15 @@ PreviewRanges readRanges(const Record& r, const Simulation& sim) {
 std::unique_ptr<Sink> makePreviewsSink(const SinkPlace& place, const PreviewRanges& ranges) { return std::make_unique<PreviewsSink>(place, ranges); }
 
 SinkModel previewsSink() {
-  return {"previews", "Every frame as a PNG with a colour bar: its channels side by side.",
-          {folderParameter(),
-           map("ranges", "layer: [low, high], ends of its colour bar in the layer's own unit; those not given fit themselves to each frame")}, [](const Record& r, const Simulation& sim) {
-            return [folder = readFolder(r), ranges = readRanges(r, sim)](const Simulation&, const SinkPlace& place) {
-              return makePreviewsSink(place.below(folder), ranges);
-            };
-          }};
+  return {
+      "previews",
+      "Every frame as a PNG with a colour bar: its channels side by side.",
+      {folderParameter(), map("ranges", "layer: [low, high], ends of its colour bar in the layer's own unit; those not given fit themselves to each frame")},
+      [](const Record& r, const Simulation& sim) {
+        return [folder = readFolder(r), ranges = readRanges(r, sim)](const Simulation&, const SinkPlace& place) {
+          return makePreviewsSink(place.below(folder), ranges);
+        };
+      }};
 }
 
 }  // namespace pitviper

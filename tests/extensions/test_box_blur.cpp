@@ -6,8 +6,8 @@
 
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sensors/stages.hpp"
-#include "sim/parameters/read_file.hpp"
 #include "sim/camera/sensor_stage.hpp"
+#include "sim/parameters/read_file.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 
@@ -20,7 +20,8 @@ StageModel boxBlurModel() {
           {withDefault(integer("width", "pixels, odd", 1, 31), "3"), withDefault(integer("cells", "cells a side of a pixel, odd", 1, 7), "1")},
           [](const Record& r, const Camera&) {
             const auto width = static_cast<int>(r.integer("width")), cells = static_cast<int>(r.integer("cells"));
-            if (width % 2 == 0) throw UserError(r.where("width"), "a box of " + std::to_string(width) + " pixels has no middle one", "an odd number", "add one");
+            if (width % 2 == 0)
+              throw UserError(r.where("width"), "a box of " + std::to_string(width) + " pixels has no middle one", "an odd number", "add one");
             const int reach = (width * cells - 1) / 2;
             StageChoice choice;
             choice.margin_px = (reach + cells - 1) / cells;
@@ -30,8 +31,7 @@ StageModel boxBlurModel() {
             };
             return choice;
           },
-          {{"tests/extensions/box_blur.glsl",
-            readFileStart(std::filesystem::path(PITVIPER_SOURCE_DIR) / "tests/extensions/box_blur.glsl", 1 << 20)}}};
+          {{"tests/extensions/box_blur.glsl", readFileStart(std::filesystem::path(PITVIPER_SOURCE_DIR) / "tests/extensions/box_blur.glsl", 1 << 20)}}};
 }
 
 [[maybe_unused]] const bool kRegistered = stageModels().add(boxBlurModel());
@@ -43,12 +43,14 @@ namespace {
 
 /// Pixels are 0.1 m on a black plate of 500 K from one y to another, before nothing.
 Frame seen(double from_m, double to_m, const std::string& stages, const std::string& accuracy = "") {
-  return renderFrame(scene(accuracy + "materials: {m: {components: [{reflection: lambertian, reflectance: 0}]}}\n"
-                                      "entities: [{name: p, shape: {model: plate, width: " + std::to_string(to_m - from_m) +
-                           " m, height: 20 m}, material: m, temperature: 500 K, position: [0 m, " + std::to_string(0.5 * (from_m + to_m)) + " m, 0 m]}]\n" +
+  return renderFrame(scene(accuracy +
+                           "materials: {m: {components: [{reflection: lambertian, reflectance: 0}]}}\n"
+                           "entities: [{name: p, shape: {model: plate, width: " +
+                           std::to_string(to_m - from_m) + " m, height: 20 m}, material: m, temperature: 500 K, position: [0 m, " +
+                           std::to_string(0.5 * (from_m + to_m)) + " m, 0 m]}]\n" +
                            "cameras: [{name: c, film: {width: 9, height: 9, pitch: 1 mm}, focal_length: 100 mm, aperture: 20 mm, small_bodies: 0, "
-                           "position: [10 m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], truth: [range], " + stages +
-                           "channels: [{name: mw, response: {band: [3 um, 5 um]}, output: [radiance, flux]}]}]\n"));
+                           "position: [10 m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], truth: [range], " +
+                           stages + "channels: [{name: mw, response: {band: [3 um, 5 um]}, output: [radiance, flux]}]}]\n"));
 }
 
 // A step becomes a ramp: 0, 1/3, 2/3, 1 of pixels; of nine cells a pixel one in 27 more on either side, where the first of nine columns of cells is met.
@@ -84,8 +86,10 @@ TEST(BoxBlur, KeepsFlux) {
     return sum;
   };
   const double plain = flux("");
-  figure("flux of a row through two boxes [W]", flux("stages: [{stage: box_blur}, {stage: box_blur}], "), plain, 5e-4, "light moved by two pixels of 10 mrad, 2 psi^2");
-  figure("the same with nine cells a pixel [W]", flux("stages: [{stage: box_blur}, {stage: box_blur, cells: 3}], "), plain, 5e-4, "light moved by two pixels of 10 mrad, 2 psi^2");
+  figure("flux of a row through two boxes [W]", flux("stages: [{stage: box_blur}, {stage: box_blur}], "), plain, 5e-4,
+         "light moved by two pixels of 10 mrad, 2 psi^2");
+  figure("the same with nine cells a pixel [W]", flux("stages: [{stage: box_blur}, {stage: box_blur, cells: 3}], "), plain, 5e-4,
+         "light moved by two pixels of 10 mrad, 2 psi^2");
 }
 
 TEST(BoxBlur, IsReadByItsTable) {

@@ -77,16 +77,17 @@ class ExponentialAir final : public Atmosphere {
 };
 
 AirModel exponentialModel() {
-  return {"exponential",
-          "Air of one temperature that thins out with height, over flat ground.",
-          {},
-          {required(atLeast(spectrum("extinction", "1/m", "at height 0"), 0.0)),
-           required(within(number("scale_height", "m", "in which it thins out to 1/e"), 1.0, 1e5)), withDefault(number("temperature", "K", "of the air"), "280 K")},
-          [](const AirRecord& air) {
-            return std::make_shared<ExponentialAir>(air.spectra.at("extinction"), air.record.number("scale_height"), air.record.number("temperature"));
-          },
-          {{"tests/extensions/exponential_air.glsl",
-            readFileStart(std::filesystem::path(PITVIPER_SOURCE_DIR) / "tests/extensions/exponential_air.glsl", 1 << 20)}}};
+  return {
+      "exponential",
+      "Air of one temperature that thins out with height, over flat ground.",
+      {},
+      {required(atLeast(spectrum("extinction", "1/m", "at height 0"), 0.0)),
+       required(within(number("scale_height", "m", "in which it thins out to 1/e"), 1.0, 1e5)), withDefault(number("temperature", "K", "of the air"), "280 K")},
+      [](const AirRecord& air) {
+        return std::make_shared<ExponentialAir>(air.spectra.at("extinction"), air.record.number("scale_height"), air.record.number("temperature"));
+      },
+      {{"tests/extensions/exponential_air.glsl",
+        readFileStart(std::filesystem::path(PITVIPER_SOURCE_DIR) / "tests/extensions/exponential_air.glsl", 1 << 20)}}};
 }
 
 [[maybe_unused]] const bool kRegistered = airModels().add(exponentialModel());
@@ -124,13 +125,13 @@ TEST(ExponentialAir, DimsByItsAmount) {
 
 // A lamp's light comes and goes through it: both legs.
 TEST(ExponentialAir, OnTheWayToALamp) {
-  const Frame f = renderFrame(scene(
-      "atmosphere: {model: exponential, extinction: 0.5 /km, scale_height: 1 km, temperature: 1 K}\nground: {temperature: 0 K}\n"
-      "materials: {m: {components: [{reflection: lambertian, reflectance: 0.5}]}}\n"
-      "lights: [{name: lamp, intensity: 5 kW/(sr um), position: [900 m, 0 m, 700 m], visible: false}]\n"
-      "entities: [{name: p, shape: {model: plate, width: 40 m, height: 40 m}, material: m, temperature: 0 K, position: [0 m, 0 m, 100 m]}]\n"
-      "cameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 0.02 deg, aperture: 20 mm, position: [1000 m, 0 m, 100 m], look_at: p, "
-      "channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n"));
+  const Frame f = renderFrame(
+      scene("atmosphere: {model: exponential, extinction: 0.5 /km, scale_height: 1 km, temperature: 1 K}\nground: {temperature: 0 K}\n"
+            "materials: {m: {components: [{reflection: lambertian, reflectance: 0.5}]}}\n"
+            "lights: [{name: lamp, intensity: 5 kW/(sr um), position: [900 m, 0 m, 700 m], visible: false}]\n"
+            "entities: [{name: p, shape: {model: plate, width: 40 m, height: 40 m}, material: m, temperature: 0 K, position: [0 m, 0 m, 100 m]}]\n"
+            "cameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 0.02 deg, aperture: 20 mm, position: [1000 m, 0 m, 100 m], look_at: p, "
+            "channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n"));
   const double d2 = 900.0 * 900.0 + 600.0 * 600.0, d = std::sqrt(d2), x = 0.6, thin = std::exp(-0.1);
   const double amount = thin * (1000.0 + d * -std::expm1(-x) / x), tau = std::exp(-5e-4 * amount);
   figure("a plate under a lamp, both ways through exponential air [W/(m2 sr)]", at(layer(f, "mw.radiance"), f, 4, 4),
@@ -150,7 +151,8 @@ TEST(ExponentialAir, IsReadByItsTable) {
   };
   EXPECT_NE(refusal("{model: exponential, extinction: 1 /km}").find("missing key 'scale_height'"), std::string::npos);
   EXPECT_NE(refusal("{model: exponental, extinction: 1 /km}").find("exponential"), std::string::npos);
-  EXPECT_NE(refusal("{model: exponential, extinction: 1 /km, scale_height: 1 km, visibility: 5 km}").find("'visibility' is of layered air, and this air is exponential"),
+  EXPECT_NE(refusal("{model: exponential, extinction: 1 /km, scale_height: 1 km, visibility: 5 km}")
+                .find("'visibility' is of layered air, and this air is exponential"),
             std::string::npos)
       << refusal("{model: exponential, extinction: 1 /km, scale_height: 1 km, visibility: 5 km}");
   EXPECT_NE(refusal("{extinction: 1 /km, scale_height: 1 km}").find("'scale_height' is of exponential air, and this air is homogeneous"), std::string::npos);

@@ -50,7 +50,8 @@ TEST(Flicker, FollowsItsCourse) {
     const Simulation sim = lamp(command + accuracy);
     for (const auto& [frame, level] : {std::pair{3, 1.0}, {7, 1.4}, {9, 1.0}, {11, 0.6}}) {
       const Frame f = renderFrame(sim, frame);
-      figure(std::string("a plate under a flickering lamp, frame ") + std::to_string(frame) + ", " + (*accuracy ? "accuracy " + std::string(accuracy + 10, std::strlen(accuracy) - 11) : "sampled") + " [W/(m2 sr)]",
+      figure(std::string("a plate under a flickering lamp, frame ") + std::to_string(frame) + ", " +
+                 (*accuracy ? "accuracy " + std::string(accuracy + 10, std::strlen(accuracy) - 11) : "sampled") + " [W/(m2 sr)]",
              at(layer(f, "mw.radiance"), f, 4, 4), level * steady, 2e-6, "rho I / (pi d^2), single precision");
     }
   }
@@ -67,7 +68,8 @@ TEST(Flicker, IsReadByItsTable) {
     return "";
   };
   EXPECT_NE(refusal("{command: flicker, light: lamp}").find("missing key 'depth'"), std::string::npos);
-  EXPECT_NE(refusal("{command: flicker, light: lmp, depth: 1}").find("did you mean 'lamp'?"), std::string::npos) << refusal("{command: flicker, light: lmp, depth: 1}");
+  EXPECT_NE(refusal("{command: flicker, light: lmp, depth: 1}").find("did you mean 'lamp'?"), std::string::npos)
+      << refusal("{command: flicker, light: lmp, depth: 1}");
   EXPECT_NE(refusal("{command: flicer, light: lamp}").find("did you mean 'flicker'?"), std::string::npos);
 }
 

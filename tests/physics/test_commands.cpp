@@ -30,19 +30,19 @@ const std::string kEye =
     "sun: {azimuth: 60 deg, elevation: 30 deg, temperature: 5772 K}\n";
 
 std::vector<Kind> kinds() {
-  const std::string grey = "g: {components: [{reflection: lambertian, reflectance: 0.3}]}", wall =
-      "{name: wall, shape: {model: plate, width: 4 m, height: 4 m}, material: g, temperature: 290 K, position: [-3 m, 0 m, 0 m]}";
+  const std::string grey = "g: {components: [{reflection: lambertian, reflectance: 0.3}]}",
+                    wall = "{name: wall, shape: {model: plate, width: 4 m, height: 4 m}, material: g, temperature: 290 K, position: [-3 m, 0 m, 0 m]}";
   return {
-      {"a simple surface", "materials: {" + grey + "}\nentities: [" + wall +
-                               ", {name: b, shape: {model: sphere, radius: 1 m}, material: g, temperature: TEMPERATURE}]\n"},
+      {"a simple surface",
+       "materials: {" + grey + "}\nentities: [" + wall + ", {name: b, shape: {model: sphere, radius: 1 m}, material: g, temperature: TEMPERATURE}]\n"},
       {"a lobe", "materials: {" + grey + ", p: {components: [{reflection: phong, reflectance: 0.2, exponent: 12}]}}\nentities: [" + wall +
                      ", {name: b, shape: {model: sphere, radius: 1 m}, material: p, temperature: TEMPERATURE}]\n"},
-      {"a pane", "materials: {" + grey + ", w: {components: [{reflection: lambertian, reflectance: 0.1}], transmission: {transmittance: 0.5}}}\nentities: [" + wall +
-                     ", {name: b, shape: {model: plate, width: 1 m, height: 1 m}, material: w, temperature: TEMPERATURE}]\n"},
+      {"a pane", "materials: {" + grey + ", w: {components: [{reflection: lambertian, reflectance: 0.1}], transmission: {transmittance: 0.5}}}\nentities: [" +
+                     wall + ", {name: b, shape: {model: plate, width: 1 m, height: 1 m}, material: w, temperature: TEMPERATURE}]\n"},
       {"a medium", "materials: {" + grey + ", m: {absorption: 0.4 /m}}\nentities: [" + wall +
                        ", {name: b, shape: {model: sphere, radius: 1 m}, material: m, temperature: TEMPERATURE}]\n"},
-      {"a small body", "materials: {" + grey + "}\nentities: [" + wall +
-                           ", {name: b, shape: {model: sphere, radius: 5 cm}, material: g, temperature: TEMPERATURE}]\n"},
+      {"a small body",
+       "materials: {" + grey + "}\nentities: [" + wall + ", {name: b, shape: {model: sphere, radius: 5 cm}, material: g, temperature: TEMPERATURE}]\n"},
   };
 }
 
@@ -50,8 +50,10 @@ std::vector<Kind> kinds() {
 TEST(Commands, HeatAsIfItHadBeenHot) {
   for (const Kind& kind : kinds())
     for (const char* accuracy : {"", "accuracy: reference\n"}) {
-      const Simulation heated = scene(kEye + accuracy + with(kind.scene, "TEMPERATURE", "300 K") + "commands: [{command: temperature, at: 0.1 s, entity: b, value: 700 K}]\n"),
-                       cold = scene(kEye + accuracy + with(kind.scene, "TEMPERATURE", "300 K")), hot = scene(kEye + accuracy + with(kind.scene, "TEMPERATURE", "700 K"));
+      const Simulation heated = scene(kEye + accuracy + with(kind.scene, "TEMPERATURE", "300 K") +
+                                      "commands: [{command: temperature, at: 0.1 s, entity: b, value: 700 K}]\n"),
+                       cold = scene(kEye + accuracy + with(kind.scene, "TEMPERATURE", "300 K")),
+                       hot = scene(kEye + accuracy + with(kind.scene, "TEMPERATURE", "700 K"));
       EXPECT_EQ(layer(renderFrame(heated, 0), "mw.radiance").pixels, layer(renderFrame(cold, 0), "mw.radiance").pixels) << kind.name << accuracy;
       const Frame a = renderFrame(heated, 1), b = renderFrame(hot, 1);
       EXPECT_EQ(layer(a, "mw.radiance").pixels, layer(b, "mw.radiance").pixels) << kind.name << accuracy;
@@ -66,7 +68,8 @@ TEST(Commands, CoolAgain) {
   for (const Kind& kind : kinds()) {
     const Simulation sim = scene(kEye + with(kind.scene, "TEMPERATURE", "300 K") + "commands: [{command: temperature, at: 0.1 s, entity: b, value: 700 K}]\n");
     CameraRenderer renderer(sim, sim.cameras[0], shaderLibrary(), std::make_shared<const GpuScene>(sim));
-    const auto first = renderer.render(advance(sim, 0.0)).slots, hot = renderer.render(advance(sim, 0.1)).slots, again = renderer.render(advance(sim, 0.0)).slots;
+    const auto first = renderer.render(advance(sim, 0.0)).slots, hot = renderer.render(advance(sim, 0.1)).slots,
+               again = renderer.render(advance(sim, 0.0)).slots;
     EXPECT_NE(first, hot) << kind.name;
     EXPECT_EQ(first, again) << kind.name;
   }
@@ -74,9 +77,11 @@ TEST(Commands, CoolAgain) {
 
 // A plan holds for what commands bring: a body that is hot in one frame of thirty.
 TEST(Commands, ArePlannedFor) {
-  const std::string text = with(with(kEye, "frames: 3", "frames: 30"), "film: {width: 24, height: 24}, field_of_view: 6 deg",
-                                "film: {width: 3, height: 3}, field_of_view: 0.5 deg, small_bodies: 0") + "accuracy: 1 %\natmosphere: clear_us76\n" + with(kinds()[1].scene, "TEMPERATURE", "300 K") +
-                           "commands: [{command: temperature, at: 1.7 s, entity: b, value: 2200 K}, {command: temperature, at: 1.75 s, entity: b, value: 300 K}]\n";
+  const std::string text =
+      with(with(kEye, "frames: 3", "frames: 30"), "film: {width: 24, height: 24}, field_of_view: 6 deg",
+           "film: {width: 3, height: 3}, field_of_view: 0.5 deg, small_bodies: 0") +
+      "accuracy: 1 %\natmosphere: clear_us76\n" + with(kinds()[1].scene, "TEMPERATURE", "300 K") +
+      "commands: [{command: temperature, at: 1.7 s, entity: b, value: 2200 K}, {command: temperature, at: 1.75 s, entity: b, value: 300 K}]\n";
   const Simulation planned = scene(text), reference = scene(with(text, "accuracy: 1 %", "accuracy: reference"));
   for (int frame : {0, 17, 18}) {
     const Frame a = renderFrame(planned, frame), b = renderFrame(reference, frame);
@@ -89,11 +94,13 @@ TEST(Commands, ArePlannedFor) {
 // Where it is and how it goes on, seen in the truth layer of ranges.
 TEST(Commands, MoveABody) {
   const std::string plain = with(kinds()[0].scene, "TEMPERATURE", "300 K");
-  const Simulation sim = scene(with(with(kEye, "position: [30 m, 3 m, 2 m]", "truth: [range], position: [30 m, 0 m, 0 m]"), "film: {width: 24, height: 24}", "film: {width: 25, height: 25}") +
+  const Simulation sim = scene(with(with(kEye, "position: [30 m, 3 m, 2 m]", "truth: [range], position: [30 m, 0 m, 0 m]"), "film: {width: 24, height: 24}",
+                                    "film: {width: 25, height: 25}") +
                                plain + "commands: [{command: move, at: 0.1 s, entity: b, position: [2 m, 0 m, 0 m], velocity: [-30 m/s, 0 m/s, 0 m/s]}]\n");
   for (const auto& [frame, range_m] : {std::pair{0, 29.0}, {1, 27.0}, {2, 30.0}}) {
     const Frame f = renderFrame(sim, frame);
-    figure("range of a moved sphere, frame " + std::to_string(frame) + " [m]", at(layer(f, "truth.range"), f, 12, 12), range_m, 2e-4, "faces of a sphere of 1 m");
+    figure("range of a moved sphere, frame " + std::to_string(frame) + " [m]", at(layer(f, "truth.range"), f, 12, 12), range_m, 2e-4,
+           "faces of a sphere of 1 m");
   }
   const WorldState within = advance(sim, 0.15);
   EXPECT_NEAR(within.entities[1].position.x, 0.5, 1e-12) << "between two frames too";
@@ -101,16 +108,19 @@ TEST(Commands, MoveABody) {
 
 // A camera turned, zoomed and exposed otherwise is the camera that a scenario has so.
 TEST(Commands, PointACamera) {
-  const std::string plain = with(kinds()[1].scene, "TEMPERATURE", "500 K"),
-                    camera = "time: {rate: 10 Hz, frames: 2}\ncameras: [{name: c, film: {width: 24, height: 24, pitch: 15 um}, field_of_view: FIELD, aperture: 20 mm, "
-                             "exposure: EXPOSURE, position: [30 m, 3 m, 2 m], heading: HEADING, pitch: -4 deg, channels: [{name: mw, response: {band: [3 um, 5 um]}, "
-                             "quantum_efficiency: 0.7, output: [radiance, electrons, irradiance]}]}]\n";
+  const std::string
+      plain = with(kinds()[1].scene, "TEMPERATURE", "500 K"),
+      camera =
+          "time: {rate: 10 Hz, frames: 2}\ncameras: [{name: c, film: {width: 24, height: 24, pitch: 15 um}, field_of_view: FIELD, aperture: 20 mm, "
+          "exposure: EXPOSURE, position: [30 m, 3 m, 2 m], heading: HEADING, pitch: -4 deg, channels: [{name: mw, response: {band: [3 um, 5 um]}, "
+          "quantum_efficiency: 0.7, output: [radiance, electrons, irradiance]}]}]\n";
   const auto written = [&](const char* field, const char* exposure, const char* heading) {
     return with(with(with(camera, "FIELD", field), "EXPOSURE", exposure), "HEADING", heading) + plain;
   };
-  const Frame asked = renderFrame(
-      scene(written("6 deg", "2 ms", "269 deg") +
-            "commands: [{command: look, at: 0.1 s, camera: c, heading: 265 deg, pitch: -4 deg, field_of_view: 3 deg, exposure: 5 ms}]\n"), 1);
+  const Frame asked =
+      renderFrame(scene(written("6 deg", "2 ms", "269 deg") +
+                        "commands: [{command: look, at: 0.1 s, camera: c, heading: 265 deg, pitch: -4 deg, field_of_view: 3 deg, exposure: 5 ms}]\n"),
+                  1);
   const Frame so = renderFrame(scene(written("3 deg", "5 ms", "265 deg")), 1);
   for (const FrameLayer& l : so.layers) {
     const FrameLayer& other = layer(asked, l.name);
@@ -173,7 +183,8 @@ TEST(Commands, KeepNoMoreThanTheLast) {
 /// A lamp of 4.2 to 4.4 um, where the air is opaque within some hundred metres, 5 km off.
 const std::string kLampInABand =
     "accuracy: 0.5 %\natmosphere: hazy_us76\nbackground: {temperature: 3 K}\n"
-    "lights: [{name: la, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 0], [4.15, 0], [4.2, 30], [4.4, 30], [4.45, 0], [5, 0]]}, position: [0 m, 5000 m, 1000 m]}]\n";
+    "lights: [{name: la, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 0], [4.15, 0], [4.2, 30], [4.4, 30], [4.45, 0], [5, 0]]}, position: [0 m, "
+    "5000 m, 1000 m]}]\n";
 std::string watch(const std::string& field) {
   return "cameras: [{name: watch, film: {width: 16, height: 16}, field_of_view: " + field +
          ", aperture: 50 mm, position: [0 m, 0 m, 1000 m], look_at: [0 m, 5000 m, 1000 m], channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n";
@@ -189,11 +200,12 @@ void expectPlanned(const std::string& yaml, int frame, const std::string& what) 
 
 // What a command or a course lights up for a moment, and a field of view that a command narrows: plans look there.
 TEST(Commands, ArePlannedForInLamps) {
-  expectPlanned("time: {rate: 10 Hz, frames: 2}\n" + kLampInABand + watch("60 deg") + "commands: [{command: look, camera: watch, field_of_view: 0.02 deg}]\n", 1,
-                "a lamp in a camera that a command zooms");
+  expectPlanned("time: {rate: 10 Hz, frames: 2}\n" + kLampInABand + watch("60 deg") + "commands: [{command: look, camera: watch, field_of_view: 0.02 deg}]\n",
+                1, "a lamp in a camera that a command zooms");
   const std::string time = "time: {rate: 10 Hz, frames: 11}\n";
   expectPlanned(time + kLampInABand + watch("0.02 deg") +
-                    "commands: [{command: light, light: la, level: 0}, {command: light, light: la, level: 1, at: 0.25 s}, {command: light, light: la, level: 0, at: 0.45 s}]\n",
+                    "commands: [{command: light, light: la, level: 0}, {command: light, light: la, level: 1, at: 0.25 s}, {command: light, light: la, level: "
+                    "0, at: 0.45 s}]\n",
                 3, "a lamp that commands light for two frames of eleven");
   expectPlanned(time + with(kLampInABand, "name: la,", "name: la, level: [[0.25 s, 0], [0.3 s, 1], [0.35 s, 0]],") + watch("0.02 deg"), 3,
                 "a lamp whose course lights it in one frame of eleven");
