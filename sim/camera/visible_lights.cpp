@@ -24,7 +24,7 @@ std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, c
   return sums;
 }
 
-WaysToLights::WaysToLights(const Simulation& simulation, const Plan& plan) : simulation_(simulation), terms_(plan.terms), spectra_(simulation, plan.nodes) {
+WaysToLights::WaysToLights(const Simulation& simulation, const Plan& plan) : simulation_(simulation), terms_(plan.terms), plan_(plan) {
   terms_.air = terms_.scatteredSun = false;
 }
 
@@ -34,9 +34,11 @@ std::vector<double> WaysToLights::from(const WorldState& state, const std::vecto
   if (line.hits.solid.entity >= 0 && line.hits.solid.distance < distance_m * (1.0 - 1e-6)) return {};
   // The sun's direction is to the part of it that stands above the horizon.
   if (distance_m < physics::kFar && hiddenByGround(simulation_, line.hits, place, direction, distance_m)) return {};
-  NodeSum sum(spectra_);
+  if (line.hits.layers.empty() && line.hits.stretches.empty()) return std::vector<double>(plan_.nodes.size(), 1.0);
+  if (!spectra_) spectra_ = std::make_unique<const NodeSpectra>(simulation_, plan_.nodes);
+  NodeSum sum(*spectra_);
   sum.begin();
-  if (!line.hits.layers.empty() || !line.hits.stretches.empty()) wayAlong({simulation_, terms_, nullptr, state, {}}, line, distance_m, sum);
+  wayAlong({simulation_, terms_, nullptr, state, {}}, line, distance_m, sum);
   return sum.transmittance();
 }
 

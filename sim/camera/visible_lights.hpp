@@ -21,8 +21,9 @@ class WaysToLights {
 
  private:
   const Simulation& simulation_;
-  Terms terms_;
-  NodeSpectra spectra_;
+  Terms terms_;  ///< without air
+  const Plan& plan_;
+  mutable std::unique_ptr<const NodeSpectra> spectra_;  ///< once something transparent stands before a light
 };
 
 void addVisibleLights(Subpixels& image, const WaysToLights& ways, const Simulation& simulation, const Plan& plan, const WorldState& state,
