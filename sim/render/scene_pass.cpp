@@ -43,10 +43,11 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       scene_(std::move(scene)),
       truth_(truth),
       apertureArea_m2_(apertureArea_m2),
-      tables_(shading == Shading::Reference ? makeTables(simulation, outline(plan)) : makeTables(simulation, plan)),
+      outline_(shading == Shading::Reference ? std::optional(outline(plan)) : std::nullopt),
+      tables_(makeTables(simulation, tabled())),
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
-      relevance_(std::in_place, simulation, shading == Shading::Reference ? outline(plan) : plan, tables_),
+      relevance_(std::in_place, simulation, tabled(), tables_),
       how_(shading) {
   if (plan.terms.air && shading != Shading::Reference) air_ = simulation.air->onGpu(simulation, plan, shading == Shading::Direct);
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
@@ -90,13 +91,13 @@ std::vector<std::string> ScenePass::channelTargets() const {
 }
 
 void ScenePass::setState(const WorldState& state) {
-  if (updateTemperatures(tables_, simulation_, how_ == Shading::Reference ? outline(plan_) : plan_, state)) {
+  if (updateTemperatures(tables_, simulation_, tabled(), state)) {
     solid_.update(tables_.solid);
-    relevance_.emplace(simulation_, how_ == Shading::Reference ? outline(plan_) : plan_, tables_);
+    relevance_.emplace(simulation_, tabled(), tables_);
     onTemperatures();
   }
   std::vector<float> block = tables_.node;
-  const auto lights = lightTable(simulation_, how_ == Shading::Reference ? outline(plan_) : plan_, state);
+  const auto lights = lightTable(simulation_, tabled(), state);
   block.insert(block.end(), lights.begin(), lights.end());
   block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
   nodes_.upload(block);

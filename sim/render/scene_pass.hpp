@@ -79,12 +79,15 @@ class ScenePass {
     RenderTarget visibility, shading;
   };
   Targets& targetsFor(int width, int height);
+  /// What tables are made for.
+  const Plan& tabled() const { return outline_ ? *outline_ : plan_; }
 
   const Simulation& simulation_;
   const Plan& plan_;
   std::shared_ptr<const GpuScene> scene_;
   bool truth_;
   double apertureArea_m2_;
+  std::optional<Plan> outline_;  ///< reference: the same plan at one wavelength
   RenderTables tables_;
   SurfaceBuffers solid_;
   SolidPass solids_;
