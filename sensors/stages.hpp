@@ -10,7 +10,7 @@ struct StageModel {
   std::string name;  ///< what `stage:` says
   std::string description;
   std::vector<Parameter> parameters;  ///< besides `stage`
-  /// Margin, cells and what makes it (words and place are filled in). The camera has its outputs. Errors: UserError.
+  /// Margin, cells and what makes it. The camera has its outputs. Errors: UserError.
   std::function<StageChoice(const Record&, const Camera&)> read;
   /// Paths and texts of its shader files, where those are not compiled in with this folder.
   std::vector<std::pair<std::string, std::string>> shaders = {};

@@ -29,7 +29,7 @@ struct CameraImage {
   int width = 0, height = 0;
   std::vector<std::vector<double>> slots;  ///< [slot][pixel], kernel unit x W/(m2 sr)
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles;
-  double exposure_s = 0.0;
+  double exposure_s = 0.0;                     ///< of the camera at its time
   std::vector<TruthPixel> truth;               ///< per pixel, or empty
   std::vector<int> slotOfOutput;               ///< from the plan
   std::string transparentOrder;                ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view

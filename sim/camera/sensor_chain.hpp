@@ -10,8 +10,8 @@ class SensorChain {
  public:
   /// Both must outlive it; the camera has stages. Needs a current GlContext.
   SensorChain(const Camera& camera, const ShaderLibrary& library);
-  /// `drawn`: of each output a picture of drawnCamera(), row by row from the top, in its unit; `etendue_m2sr`: of each of its cells, what means of
-  /// intensive outputs are weighted by (those per etendue add up). Returns pictures of the camera's own pixels.
+  /// `drawn`: of each output a picture of drawnCamera(), row by row from the top, in its unit; `cellWeights`: projected solid angle of each of
+  /// its cells, which means of intensive outputs are weighted by (those per etendue add up). Returns pictures of the camera's own pixels.
   std::vector<std::vector<float>> run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick);
   /// The cell in the middle of a pixel of the camera, in pictures of drawnCamera().
   std::size_t middleCell(int column, int row) const;

@@ -1,6 +1,5 @@
 #pragma once
 // The contract of a sensor's stage: what optics, a detector or electronics make of a camera's pictures, which stay on the GPU from one to the next.
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,7 +12,6 @@ namespace pitviper {
 struct SensorTick {
   int frame = 0;
   double time_s = 0.0, exposure_s = 0.0;
-  std::uint64_t seed = 0;  ///< of the scenario and the camera: with the frame's number what random numbers are counted by
 };
 
 /// A picture of each of a camera's outputs in its unit, on cells: row 0 is the film's top, with the margin around it.

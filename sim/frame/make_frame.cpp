@@ -104,13 +104,6 @@ std::vector<float> valuesOf(const ChannelOutput& output, size_t o, const CameraI
   return values;
 }
 
-/// Numbers of a scenario's random effects in a camera: by its name, so that another camera more changes nothing.
-std::uint64_t seedOf(const Simulation& sim, const Camera& camera) {
-  std::uint64_t seed = static_cast<std::uint64_t>(sim.seed) * 0x9e3779b97f4a7c15u + 0xcbf29ce484222325u;
-  for (char c : camera.name) seed = (seed ^ static_cast<unsigned char>(c)) * 0x100000001b3u;
-  return seed;
-}
-
 }  // namespace
 
 void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image) {
@@ -182,7 +175,7 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   if (chain) {
     std::vector<std::vector<float>> drawn;
     for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(camera.outputs[o], o, image));
-    auto pixels = chain->run(drawn, image.solidAngles->projected_sr, {number, state.time_s, image.exposure_s, seedOf(sim, camera)});
+    auto pixels = chain->run(drawn, image.solidAngles->projected_sr, {number, state.time_s, image.exposure_s});
     for (size_t o = 0; o < camera.outputs.size(); ++o) frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, std::move(pixels[o])});
   } else {
     addOutputs(frame, camera, image);

@@ -5,7 +5,6 @@
 #include <string>
 #include <utility>
 
-#include "sim/parameters/error.hpp"
 #include "sim/scene/motion.hpp"
 
 namespace pitviper {
@@ -32,7 +31,6 @@ constexpr double kSameTick = 1e-6;
 struct Command {
   double at_s = 0.0;
   std::string words;  ///< what it depends on: two with the same words are the same
-  Location where;
   std::function<void(Courses& courses, double at_s)> change;
 };
 

@@ -27,6 +27,7 @@ Camera drawnCamera(const Camera& camera) {
   drawn.pinhole.pitchY_m /= cells;
   drawn.samples = (camera.samples + cells - 1) / cells;
   drawn.smallBody_px *= cells;
+  drawn.stages.clear();
   return drawn;
 }
 

@@ -2,9 +2,6 @@
 // A sensor's stages as a scenario asks for them: what becomes of a camera's pictures after the spectral integral.
 #include <functional>
 #include <memory>
-#include <string>
-
-#include "sim/parameters/error.hpp"
 
 namespace pitviper {
 
@@ -14,8 +11,6 @@ struct Camera;
 
 /// A stage of a camera; its contract is in sim/camera/sensor_stage.hpp.
 struct StageChoice {
-  std::string words;  ///< what it depends on: two with the same words are the same
-  Location where;
   int margin_px = 0;  ///< how far beyond a pixel it looks: so much is drawn around the film
   int cells = 1;      ///< cells a side of a pixel that it needs
   std::function<std::unique_ptr<SensorStage>(const ShaderLibrary&)> make;

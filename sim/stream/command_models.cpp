@@ -42,7 +42,7 @@ Command readCommand(const Value& value, const Simulation& simulation, double now
   const CommandModel& model = askedModel(commandModels(), value, "command");
   const ParameterTable table = commandTable(model);
   const Record r(value, table);
-  return {r.given("at") ? r.number("at") : now_s, wordsOf(value), value.where, model.read(r, simulation)};
+  return {r.given("at") ? r.number("at") : now_s, wordsOf(value), model.read(r, simulation)};
 }
 
 int entityOf(const Record& r, const Simulation& sim) { return named(r, "entity", sim.entities); }

@@ -175,7 +175,7 @@ TEST(Commands, KeepNoMoreThanTheLast) {
   const Simulation sim = scene(kEye + with(kinds()[0].scene, "TEMPERATURE", "300 K"));
   World world(sim);
   for (int tick = 0; tick < 100000; ++tick)
-    world.apply({0.0, "", {}, [tick](Courses& c, double) { c.temperatures_K[{1, 0}] = [tick](double) { return 300.0 + tick % 7; }; }}, tick);
+    world.apply({0.0, "", [tick](Courses& c, double) { c.temperatures_K[{1, 0}] = [tick](double) { return 300.0 + tick % 7; }; }}, tick);
   EXPECT_EQ(world.at(1e5).temperatures_K[1][0], 300.0 + 99999 % 7);
   EXPECT_EQ(world.at(1e5).temperatures_K[0][0], 290.0);
 }
@@ -218,7 +218,7 @@ TEST(Commands, HoldFromTheFrameOfTheirTimeOn) {
       Simulation sim = scene(kEye + with(kinds()[0].scene, "TEMPERATURE", "300 K"));
       sim.time = {start, 1.0 / rate, 400};
       for (int frame : {1, 2, 23, 31, 46, 399}) {
-        sim.commands = {{start + frame / rate, "", {}, [](Courses& c, double) { c.temperatures_K[{1, 0}] = [](double) { return 400.0; }; }}};
+        sim.commands = {{start + frame / rate, "", [](Courses& c, double) { c.temperatures_K[{1, 0}] = [](double) { return 400.0; }; }}};
         EXPECT_EQ(advance(sim, sim.time.at(frame)).temperatures_K[1][0], 400.0) << start << " " << rate << " " << frame;
         EXPECT_EQ(advance(sim, sim.time.at(frame - 1)).temperatures_K[1][0], 300.0) << start << " " << rate << " " << frame;
       }
