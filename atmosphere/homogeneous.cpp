@@ -53,12 +53,6 @@ class Homogeneous final : public Atmosphere {
     a.amount[0] = physics::layerLength(ray.height_m, ray.sinElevation, std::min(range_m, physics::kFar), top_m(), ray.earthRadius_m);
     return a;
   }
-  std::vector<AirStation> stations(const AirRay& ray, double range_m) const override { return {{}, {range_m, 0.0, 0.0, amounts(ray, range_m)}}; }
-  std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const override {
-    std::vector<AirStation> stations;
-    for (double r : ranges_m) stations.push_back({r, 0.0, 0.0, amounts(ray, r)});
-    return stations;
-  }
   double validLow_um() const override { return std::max(air_.extinction_per_m.validLow(), air_.radiance ? air_.radiance->validLow() : kShortestWavelength_um); }
   double validHigh_um() const override {
     return std::min(air_.extinction_per_m.validHigh(), air_.radiance ? air_.radiance->validHigh() : kLongestWavelength_um);

@@ -7,12 +7,6 @@
 namespace pitviper {
 namespace {
 
-std::string joined(const std::vector<std::string>& words, const char* between) {
-  std::string all;
-  for (const auto& w : words) all += (all.empty() ? "" : between) + w;
-  return all;
-}
-
 bool has(const AirModel& m, const std::string& key) {
   return std::any_of(m.parameters.begin(), m.parameters.end(), [&](const Parameter& p) { return p.key == key; });
 }
@@ -32,20 +26,15 @@ std::vector<Parameter> common() {
 
 /// The only model with a mark among the keys.
 const AirModel& onlyMarkedModel(const Value& air) {
-  const AirModel* found = nullptr;
-  std::string mark;
-  for (const AirModel& m : airModels().all())
-    for (const std::string& own : m.marks) {
-      if (!air.find(own)) continue;
-      if (found && found != &m)
-        throw UserError(air.find(own)->where, "the air is given twice, by '" + mark + "' and by '" + own + "'", "one of " + joined(allMarks(), ", "),
-                        "remove one");
-      found = &m;
-      mark = own;
-    }
-  if (found) return *found;
-  throw UserError(air.where, "air that does not say which", "'library', 'model', or one of " + joined(allMarks(), ", "),
-                  "add 'library: hazy_us76' or 'extinction: 0.2 /km'");
+  const auto marks = marksOf(air);
+  if (marks.empty())
+    throw UserError(air.where, "air that does not say which", "'library', 'model', or one of " + listed(allMarks()),
+                    "add 'library: hazy_us76' or 'extinction: 0.2 /km'");
+  for (const AirMark& m : marks)
+    if (m.model != marks.front().model)
+      throw UserError(air.find(m.key)->where, "the air is given twice, by '" + marks.front().key + "' and by '" + m.key + "'", "one of " + listed(allMarks()),
+                      "remove one");
+  return *marks.front().model;
 }
 
 }  // namespace
@@ -83,22 +72,19 @@ void refuseForeignKeys(const Value& air, const AirModel& model) {
     std::vector<std::string> owners;
     for (const AirModel& m : airModels().all())
       if (has(m, key)) owners.push_back(m.name);
-    throw UserError(air.entries[i].second.where, "'" + key + "' is of " + joined(owners, " or ") + " air, and this air is " + model.name,
+    throw UserError(air.entries[i].second.where, "'" + key + "' is of " + listed(owners, " or ") + " air, and this air is " + model.name,
                     "the keys of 'atmosphere: " + model.name + "'", "remove '" + key + "'");
   }
 }
 
 }  // namespace
 
-const AirModel* markedModel(const Value& air) {
-  const AirModel* found = nullptr;
+std::vector<AirMark> marksOf(const Value& air) {
+  std::vector<AirMark> marks;
   for (const AirModel& m : airModels().all())
-    for (const std::string& own : m.marks) {
-      if (!air.find(own)) continue;
-      if (found && found != &m) return nullptr;
-      found = &m;
-    }
-  return found;
+    for (const std::string& own : m.marks)
+      if (air.find(own)) marks.push_back({own, &m});
+  return marks;
 }
 
 std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder,

@@ -1,5 +1,5 @@
 #pragma once
-// Atmospheres as rooms: a file each (.cpp, .glsl), opening with its table of parameters; a row in models.cpp registers it.
+// Atmospheres as rooms: a file each (.cpp, .glsl) with its table of parameters; a row in models.cpp registers it.
 // From the table come reading, units, ranges and the key reference.
 #include <filesystem>
 #include <functional>
@@ -38,8 +38,13 @@ ParameterTable airTable(const AirModel& model);
 /// All keys of any: what is none of them is a mistake whatever the model.
 ParameterTable anyAirTable();
 
-/// The model whose mark is among the keys; null where none is, or those of several.
-const AirModel* markedModel(const Value& air);
+/// A key of an air that says of which model it is.
+struct AirMark {
+  std::string key;
+  const AirModel* model;
+};
+/// Those among the keys of an air.
+std::vector<AirMark> marksOf(const Value& air);
 
 /// The air that keys describe; none where `model` says so. `spectrum`: reads a spectrum's value as its parameter says. Errors: UserError, also where the keys
 /// are of several models, of none, or one of them is of another model.

@@ -3,6 +3,7 @@
 #include "atmosphere/tabulated_csv.hpp"
 #include "atmosphere/tabulated_path.hpp"
 #include "atmosphere/tabulated_tape7.hpp"
+#include "sim/scene/placement.hpp"
 
 namespace pitviper {
 namespace {
@@ -34,8 +35,6 @@ std::shared_ptr<const Atmosphere> airOf(TabulatedAir air) {
     }
   return makeTabulatedPath(std::move(air));
 }
-
-constexpr double kFarthest_m = 1e9;
 
 }  // namespace
 

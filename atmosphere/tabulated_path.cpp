@@ -33,12 +33,6 @@ class TabulatedPath final : public Atmosphere {
     std::fill_n(a.amount.begin(), air_.exponents().size(), 1e-3 * std::min(range_m, physics::kFar));
     return a;
   }
-  std::vector<AirStation> stations(const AirRay& ray, double range_m) const override { return {{}, {range_m, 0.0, 0.0, amounts(ray, range_m)}}; }
-  std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const override {
-    std::vector<AirStation> stations;
-    for (double r : ranges_m) stations.push_back({r, 0.0, 0.0, amounts(ray, r)});
-    return stations;
-  }
   double validLow_um() const override { return air_.validLow_um(); }
   double validHigh_um() const override { return air_.validHigh_um(); }
   void addTo(Fingerprint& f) const override { air_.addTo(f.add("table")); }

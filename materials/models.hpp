@@ -1,5 +1,5 @@
 #pragma once
-// Reflection models as rooms: a file pair each (.cpp, and .glsl where it has a lobe), opening with its table of parameters; a row in models.cpp registers it.
+// Reflection models as rooms: a file pair each (.cpp, and .glsl where it has a lobe) with its table of parameters; a row in models.cpp registers it.
 // From the table come reading, units, ranges, the key reference and the fingerprint.
 #include <functional>
 #include <map>

@@ -143,9 +143,8 @@ int run(Arguments arguments) {
   if (found == commands().end()) {
     std::vector<std::string> names;
     for (const auto& [n, c] : commands()) names.push_back(n);
-    const std::string near = nearestWord(name, names);
     throw UserError({"pitviper", 0, 0, -1}, "unknown command '" + name + "'", "one of those of pitviper --help",
-                    near.empty() ? "see pitviper --help" : "did you mean '" + near + "'?");
+                    didYouMean(name, names, "see pitviper --help"));
   }
   for (const auto& a : arguments)
     if (a == "--help" || a == "-h") {

@@ -15,11 +15,7 @@ Registry<StageModel>& stageModels() {
   return all;
 }
 
-ParameterTable stageTable(const StageModel& model) {
-  ParameterTable t{"stage: " + model.name, model.description, {required(text("stage", "`" + model.name + "`"))}};
-  t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
-  return t;
-}
+ParameterTable stageTable(const StageModel& model) { return tableOf(model, "stage"); }
 
 StageChoice readStage(const Value& value, const Camera& camera) {
   const StageModel& model = askedModel(stageModels(), value, "stage");

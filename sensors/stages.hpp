@@ -1,5 +1,5 @@
 #pragma once
-// Stages of a sensor as rooms: a file pair each (.cpp, .glsl), opening with its table of parameters; a row in stages.cpp registers it.
+// Stages of a sensor as rooms: a file pair each (.cpp, .glsl) with its table of parameters; a row in stages.cpp registers it.
 #include "sim/model/simulation.hpp"
 #include "sim/parameters/registry.hpp"
 #include "sim/parameters/table.hpp"

@@ -27,17 +27,11 @@ std::vector<BenchFactor> factorsWanted(const Options& o) {
   if (!o.has("--factor")) return all;
   const std::string wanted = o.value("--factor");
   std::vector<std::string> names;
-  std::string list;
-  for (const auto& f : all) {
-    names.push_back(f.name);
-    list += (list.empty() ? "" : ", ") + f.name;
-  }
+  for (const auto& f : all) names.push_back(f.name);
   std::erase_if(all, [&](const BenchFactor& f) { return f.name != wanted; });
-  if (all.empty()) {
-    const std::string near = nearestWord(wanted, names);
-    throw UserError({"--factor " + wanted, 0, 0, -1}, "there is no such factor", "one of " + list,
-                    near.empty() ? "choose one, or leave --factor out" : "did you mean '" + near + "'?");
-  }
+  if (all.empty())
+    throw UserError({"--factor " + wanted, 0, 0, -1}, "there is no such factor", "one of " + listed(names),
+                    didYouMean(wanted, names, "choose one, or leave --factor out"));
   return all;
 }
 

@@ -29,9 +29,7 @@ Options::Options(const std::string& command, const Arguments& arguments, const s
     if (spec == specs.end()) {
       std::vector<std::string> names;
       for (const auto& s : specs) names.push_back(s.name);
-      const std::string near = nearestWord(a, names);
-      throw UserError(commandLine(command), "unknown option '" + a + "'", "an option of pitviper " + command + " --help",
-                      near.empty() ? "remove it" : "did you mean '" + near + "'?");
+      throw UserError(commandLine(command), "unknown option '" + a + "'", "an option of pitviper " + command + " --help", didYouMean(a, names, "remove it"));
     }
     std::string value;
     if (spec->value) {

@@ -101,10 +101,10 @@ void printPixelTerms(const ExrImage& frame, const std::string& file, int column,
     const auto values = valuesOf(part);
     if (std::any_of(values.begin(), values.end(), [](double v) { return v != 0.0; })) print(nameOf(part, sim), values);
   }
-  print("all of it", all);
+  print(camera.stages.empty() ? "all of it" : "all of it, before the sensor's stages", all);
   std::vector<double> own;
   for (size_t o : outputs) own.push_back(static_cast<double>(frame.find(camera.outputs[o].layer())->pixels[pixel]));
-  print("this frame", own);
+  print(camera.stages.empty() ? "this frame" : "this frame, after them", own);
 }
 
 }  // namespace pitviper

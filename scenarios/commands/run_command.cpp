@@ -52,9 +52,7 @@ PreviewRanges previewRanges(const Options& o, const Simulation& sim) {
     std::vector<std::string> layers;
     for (const auto& c : sim.cameras)
       for (const auto& out : c.outputs) layers.push_back(out.layer());
-    if (std::find(layers.begin(), layers.end(), layer) == layers.end())
-      throw UserError(where, "there is no layer '" + layer + "'", "a channel and quantity of the scenario",
-                      nearestWord(layer, layers).empty() ? "see pitviper check" : "did you mean '" + nearestWord(layer, layers) + "'?");
+    if (std::find(layers.begin(), layers.end(), layer) == layers.end()) throw unknownWord(where, "there is no layer", layer, layers);
     auto number = [&](const std::string& t) {
       const auto q = splitQuantity(t);
       if (!q || !q->unit.empty())

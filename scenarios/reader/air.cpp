@@ -10,16 +10,13 @@
 namespace pitviper {
 namespace {
 
-std::string libraryNames(const std::filesystem::path& folder, const std::string& word, std::string& nearest) {
+std::vector<std::string> libraryNames(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
     if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   std::sort(names.begin(), names.end());
-  nearest = nearestWord(word, names);
-  std::string all;
-  for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
-  return all;
+  return names;
 }
 
 /// The keys of a library air that are not given beside its name.
@@ -28,12 +25,8 @@ void addLibrary(Value& air, const std::filesystem::path& folder) {
   const std::string name = readText(word, "library");
   const auto file = folder / (name + ".yaml");
   std::error_code ignored;
-  if (name.find('/') != std::string::npos || name.size() > 100 || !std::filesystem::is_regular_file(file, ignored)) {
-    std::string near;
-    const std::string all = libraryNames(folder, name, near);
-    throw UserError(word.where, "there is no library air '" + name.substr(0, 60) + "'", "one of " + all,
-                    near.empty() ? "choose one" : "did you mean '" + near + "'?");
-  }
+  if (name.find('/') != std::string::npos || name.size() > 100 || !std::filesystem::is_regular_file(file, ignored))
+    throw unknownWord(word.where, "there is no library air", name, libraryNames(folder));
   Value tree = loadYaml(file, word.where);
   const Record checked(tree, tables::airLibrary());
   moveFiles(tree, folder);
@@ -69,16 +62,13 @@ void Builder::readAtmosphere(const Record& scenario) {
   const Record r(air, all);
   const bool none = r.text("model") == "none";
   if (r.given("library") && !none) {
-    std::string mark;
-    for (const AirModel& m : airModels().all())
-      for (const auto& own : m.marks)
-        if (air.find(own))
-          throw UserError(air.find("library")->where, "the air is given twice, by '" + own + "' and by 'library'", "one of the two", "remove one");
+    if (const auto own = marksOf(air); !own.empty())
+      throw UserError(air.find("library")->where, "the air is given twice, by '" + own.front().key + "' and by 'library'", "one of the two", "remove one");
     addLibrary(air, libraries_.atmosphere);
-    const AirModel* own = markedModel(air);
-    if (const std::string asked = r.text("model"); asked != "air" && own && own->name != asked)
-      throw UserError(r.where("model"), "library air '" + r.text("library") + "' is " + own->name + ", and 'model' says " + asked,
-                      "'model: " + own->name + "', or none", "remove 'model'");
+    const auto own = marksOf(air);
+    if (const std::string asked = r.text("model"); asked != "air" && !own.empty() && own.front().model->name != asked)
+      throw UserError(r.where("model"), "library air '" + r.text("library") + "' is " + own.front().model->name + ", and 'model' says " + asked,
+                      "'model: " + own.front().model->name + "', or none", "remove 'model'");
   }
   simulation_.air =
       makeAir(air, base_, [this](const Value& v, const Parameter& p) { return bounded(spectra_, v, p.unit, p.key + " of the air", p.minimum, p.maximum); });

@@ -73,11 +73,8 @@ int Builder::entityNamed(const Value& asked) const {
   const auto found = entityIndex_.find(name);
   if (found != entityIndex_.end()) return found->second;
   std::vector<std::string> names;
-  std::string all;
-  for (const auto& [n, i] : entityIndex_) names.push_back(n), all += (all.empty() ? "" : ", ") + n;
-  const std::string near = nearestWord(name, names);
-  throw UserError(asked.where, "there is no entity '" + name.substr(0, 60) + "' (above this place)", all.empty() ? "an entity" : "one of " + all,
-                  near.empty() ? "add it under 'entities:', a carrier before what it carries" : "did you mean '" + near + "'?");
+  for (const auto& [n, i] : entityIndex_) names.push_back(n);
+  throw unknownWord(asked.where, "above this place there is no entity", name, names, "add it under 'entities:', a carrier before what it carries");
 }
 
 namespace {
@@ -121,10 +118,7 @@ void refuseForeignKeys(const Record& r, const std::string& model) {
   for (size_t i = 0; i < r.whole().entries.size(); ++i) {
     const std::string& key = r.whole().entries[i].first;
     if (key == "model" || std::find(own.begin(), own.end(), key) != own.end()) continue;
-    std::string all;
-    for (const auto& k : own) all += (all.empty() ? "" : ", ") + k;
-    const std::string near = nearestWord(key, own);
-    throw UserError(r.whole().keyPlaces[i], "a " + model + " has no '" + key + "'", all, near.empty() ? "remove it" : "did you mean '" + near + "'?");
+    throw unknownWord(r.whole().keyPlaces[i], "a " + model + " has no", key, own, "remove it");
   }
 }
 
@@ -232,13 +226,8 @@ void Builder::readSurfaces(const Record& r, Entity& entity) {
     const Value& map = r.value("parts");
     for (size_t i = 0; i < map.entries.size(); ++i) {
       const auto& [name, value] = map.entries[i];
-      if (std::find(names.begin(), names.end(), name) == names.end()) {
-        std::string all;
-        for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
-        const std::string near = nearestWord(name, names);
-        throw UserError(map.keyPlaces[i], "this shape has no part '" + name.substr(0, 60) + "'", "one of " + all,
-                        near.empty() ? "remove it" : "did you mean '" + near + "'?");
-      }
+      if (std::find(names.begin(), names.end(), name) == names.end())
+        throw unknownWord(map.keyPlaces[i], "this shape has no part", name, names, "remove it");
       const Record part(value, tables::part());
       if (!parts.emplace(name, Given{part.find("material"), part.find("temperature")}).second)
         throw UserError(map.keyPlaces[i], "a second entry for part '" + name + "'", "one", "remove one");

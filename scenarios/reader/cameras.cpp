@@ -28,6 +28,12 @@ Gain readGain(const Value& v) {
   throw UserError(v.where, "gain is not in volts per watt or per irradiance", "'2e6 V/W' or '40 V/(W/m2)'", "write it with its unit");
 }
 
+/// More subpixels than a picture may have.
+bool tooLarge(const Camera& c) {
+  const double columns = static_cast<double>(c.pinhole.width) * c.samples, rows = static_cast<double>(c.pinhole.height) * c.samples;
+  return columns > 16384 || rows > 16384 || columns * rows > 16384.0 * 4096.0;
+}
+
 }  // namespace
 
 SpectralSampling Builder::readSpectral(const Record& owner) {
@@ -120,13 +126,8 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
       wanted.emplace_back(r.text("output"), r.where("output"));
     }
     for (const auto& [quantity, where] : wanted) {
-      if (std::find(allowed.begin(), allowed.end(), quantity) == allowed.end()) {
-        std::string all;
-        for (const auto& q : allowed) all += (all.empty() ? "" : ", ") + q;
-        const std::string near = nearestWord(quantity, allowed);
-        throw UserError(where, "there is no quantity '" + quantity.substr(0, 40) + "' here", "one of " + all,
-                        near.empty() ? "choose one" : "did you mean '" + near + "'?");
-      }
+      if (std::find(allowed.begin(), allowed.end(), quantity) == allowed.end())
+        throw unknownWord(where, pinhole ? "a camera has no quantity" : "a probe has no quantity", quantity, allowed);
       if (quantity == "luminance" || quantity == "illuminance" || quantity == "focal_illuminance") {
         Value photopic;
         photopic.kind = Value::Kind::Scalar;
@@ -159,7 +160,7 @@ void Builder::readCameras(const Record& scenario) {
     p.width = static_cast<int>(film.integer("width"));
     p.height = static_cast<int>(film.integer("height"));
     c.samples = static_cast<int>(r.integer("samples"));
-    if (p.width * c.samples > 16384 || p.height * c.samples > 16384 || static_cast<double>(p.width) * p.height * c.samples * c.samples > 16384.0 * 4096.0)
+    if (tooLarge(c))
       throw UserError(r.where("film"),
                       "a picture of " + std::to_string(p.width) + "x" + std::to_string(p.height) + " pixels with " + std::to_string(c.samples) + "x" +
                           std::to_string(c.samples) + " subpixels",
@@ -225,18 +226,18 @@ void Builder::readCameras(const Record& scenario) {
         else if (word == "solid_angles") c.truth.solidAngles = true;
         else if (word == "pixel_solid_angle") c.truth.pixelSolidAngle = true;
         else
-          throw UserError(t.where, "there is no truth layer '" + word.substr(0, 40) + "'",
-                          "range, entity, temperature, normal, area, solid_angles, pixel_solid_angle",
-                          nearestWord(word, names).empty() ? "choose one" : "did you mean '" + nearestWord(word, names) + "'?");
+          throw unknownWord(t.where, "there is no truth layer", word, names);
       }
     planned(c.outputs, c.spectral, c.where);
     if (r.given("stages"))
       for (const Value& s : r.value("stages").items) {
         c.stages.push_back(readStage(s, c));
         const Camera drawn = drawnCamera(c);
-        const double columns = static_cast<double>(drawn.pinhole.width) * drawn.samples, rows = static_cast<double>(drawn.pinhole.height) * drawn.samples;
-        if (columns > 16384 || rows > 16384 || columns * rows > 16384.0 * 4096.0 || !drawn.pinhole.isFlat())
-          throw UserError(s.where, "with its margin and cells the picture would have " + briefNumber(columns) + "x" + briefNumber(rows) + " subpixels",
+        if (tooLarge(drawn) || !drawn.pinhole.isFlat())
+          throw UserError(s.where,
+                          "with its margin and cells the picture would have " + std::to_string(drawn.pinhole.width) + "x" +
+                              std::to_string(drawn.pinhole.height) + " cells of " + std::to_string(drawn.samples) + "x" + std::to_string(drawn.samples) +
+                              " subpixels",
                           "at most 67 million, 16384 on a side, within 176 deg", "lower film or samples, or ask less of the stage");
       }
     if (r.given("spectral_image")) c.spectralImage = readSpectralBins(Record(r.value("spectral_image"), tables::spectralImage()), p);

@@ -26,11 +26,9 @@ AbsorberTable libraryAirTable(const std::string& name, const Libraries& librarie
   const auto airs = libraryAirs(libraries);
   if (std::none_of(airs.begin(), airs.end(), [&](const LibraryAir& a) { return a.name == name; })) {
     std::vector<std::string> names;
-    std::string all;
-    for (const auto& a : airs) names.push_back(a.name), all += (all.empty() ? "" : ", ") + a.name;
-    const std::string near = nearestWord(name, names);
-    throw UserError({name, 0, 0, -1}, "there is no such file and no such library air", "a file of air, or one of " + all,
-                    near.empty() ? "check the name" : "did you mean '" + near + "'?");
+    for (const auto& a : airs) names.push_back(a.name);
+    throw UserError({name, 0, 0, -1}, "there is no such file and no such library air", "a file of air, or one of " + listed(names),
+                    didYouMean(name, names, "check the name"));
   }
   const auto file = libraries.atmosphere / (name + ".yaml");
   const Value tree = loadYaml(file, {file.string(), 0, 0, -1});

@@ -261,11 +261,7 @@ int Builder::materialNamed(const Value& asked) {
       if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
-    const std::string near = nearestWord(name, names);
-    std::string all;
-    for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
-    throw UserError(asked.where, "there is no material '" + name.substr(0, 60) + "'", "one of " + all,
-                    near.empty() ? "define it under 'materials:'" : "did you mean '" + near + "'?");
+    throw unknownWord(asked.where, "there is no material", name, names, "define it under 'materials:'");
   }
   const Value tree = loadYaml(file, asked.where);
   simulation_.materials.push_back(readMaterial(tree, name, spectra_.in(libraries_.materials)));

@@ -14,8 +14,6 @@ namespace pitviper::tables {
 namespace {
 
 constexpr double kHalfTurn = 3.14159265358979324;
-/// 32 years: a double still tells 0.1 us apart there.
-constexpr double kLongestTime_s = 1e9;
 /// Beyond any fireball; spectral radiance is then far from the end of a float.
 constexpr double kHottest_K = 1e5;
 

@@ -10,6 +10,14 @@ namespace pitviper {
 
 AirAmounts Atmosphere::densities(double) const { return {}; }
 
+std::vector<AirStation> Atmosphere::stations(const AirRay& ray, double range_m) const { return {{}, {range_m, 0.0, 0.0, amounts(ray, range_m)}}; }
+
+std::vector<AirStation> Atmosphere::stationsAt(const AirRay& ray, std::span<const double> ranges_m) const {
+  std::vector<AirStation> stations;
+  for (double r : ranges_m) stations.push_back({r, 0.0, 0.0, amounts(ray, r)});
+  return stations;
+}
+
 AirAmounts Atmosphere::powered(const AirAmounts& amounts) const {
   AirAmounts u;
   const auto powers = exponents();

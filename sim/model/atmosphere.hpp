@@ -85,9 +85,10 @@ class Atmosphere {
   /// Amounts from the beginning of a ray as far as a range (may be infinite); the earth does not stop it.
   virtual AirAmounts amounts(const AirRay& ray, double range_m) const = 0;
   /// Places along a ray, at least where its emission bends; the first where the air begins, the last at the range or the air's end.
-  virtual std::vector<AirStation> stations(const AirRay& ray, double range_m) const = 0;
-  /// The same at given ranges, rising.
-  virtual std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const = 0;
+  /// Here: the beginning and the end of air that is the same along the ray.
+  virtual std::vector<AirStation> stations(const AirRay& ray, double range_m) const;
+  /// The same at given ranges, rising. Here: amounts alone.
+  virtual std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const;
   /// Temperature at height 0 [K]; 0: it does not say.
   virtual double groundTemperature_K() const { return 0.0; }
   /// Amounts that 1000 m of the air at a height hold (of air that scatters sunlight).

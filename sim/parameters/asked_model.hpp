@@ -9,15 +9,21 @@ namespace pitviper {
 template <class Model>
 const Model& askedModel(const Registry<Model>& registry, const Value& map, const std::string& key) {
   std::vector<std::string> names;
-  std::string all;
-  for (const Model& m : registry.all()) names.push_back(m.name), all += (all.empty() ? "" : ", ") + m.name;
-  const std::string expected = all.empty() ? "none: this program has no " + key : "one of " + all;
+  for (const Model& m : registry.all()) names.push_back(m.name);
   const Value* word = asMap(map, "a " + key).find(key);
-  if (!word) throw UserError(map.where, "missing key '" + key + "'", expected, "add '" + key + ":'");
+  if (!word) throw UserError(map.where, "missing key '" + key + "'", "one of " + listed(names), "add '" + key + ":'");
   const std::string name = readText(*word, key);
   if (const Model* model = registry.named(name)) return *model;
-  const std::string near = nearestWord(name, names);
-  throw UserError(word->where, "there is no " + key + " '" + name.substr(0, 60) + "'", expected, near.empty() ? "choose one" : "did you mean '" + near + "'?");
+  throw unknownWord(word->where, "there is no " + key, name, names);
+}
+
+/// All keys of such a map: `key` itself with the model's name, `common` ones, and the model's.
+template <class Model>
+ParameterTable tableOf(const Model& model, const std::string& key, const std::vector<Parameter>& common = {}) {
+  ParameterTable t{key + ": " + model.name, model.description, {required(text(key, "`" + model.name + "`"))}};
+  t.parameters.insert(t.parameters.end(), common.begin(), common.end());
+  t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
+  return t;
 }
 
 }  // namespace pitviper

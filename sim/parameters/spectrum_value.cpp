@@ -187,12 +187,8 @@ Spectrum SpectrumReader::readLibrary(const std::string& word, const Location& wh
       if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
-  const std::string near = nearestWord(word, names);
-  std::string all;
-  for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
   throw UserError(where, std::string(name) + " is neither a quantity nor a library spectrum ('" + word.substr(0, 60) + "')",
-                  unitExample(unit) + ", or one of " + all,
-                  near.empty() ? "write a number with its unit, a table or a library name" : "did you mean '" + near + "'?");
+                  unitExample(unit) + ", or one of " + listed(names), didYouMean(word, names, "write a number with its unit, a table or a library name"));
 }
 
 namespace {

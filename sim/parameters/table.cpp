@@ -20,12 +20,6 @@ Parameter make(std::string key, ParameterType type, std::string unit, std::strin
   return p;
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string all;
-  for (const auto& w : words) all += (all.empty() ? "" : ", ") + w;
-  return all;
-}
-
 std::string shortNumber(double v) {
   char buffer[40];
   const auto end = std::to_chars(buffer, buffer + sizeof buffer, v, std::chars_format::general, 6).ptr;
@@ -106,7 +100,7 @@ void check(const Parameter& p, const Value& v) {
     case ParameterType::Choice:
       if (v.kind != Value::Kind::Scalar || std::find(p.choices.begin(), p.choices.end(), v.text) == p.choices.end()) {
         const std::string near = nearestWord(v.text, p.choices);
-        throw UserError(v.where, p.key + " cannot be " + (v.kind == Value::Kind::Scalar ? quotedShort(v.text) : v.kindName()), "one of " + joined(p.choices),
+        throw UserError(v.where, p.key + " cannot be " + (v.kind == Value::Kind::Scalar ? quotedShort(v.text) : v.kindName()), "one of " + listed(p.choices),
                         near.empty() ? "choose one of these" : "write '" + near + "'");
       }
       break;
@@ -221,9 +215,7 @@ Record::Record(const Value& value, const ParameterTable& table) : value_(&value)
     const Location& at = i < value.keyPlaces.size() ? value.keyPlaces[i] : node.where;
     const Parameter* p = table.find(key);
     if (!p) {
-      const std::string near = nearestWord(key, names);
-      throw UserError(at, "unknown key " + quotedShort(key) + " in " + table.title, "one of " + joined(names),
-                      near.empty() ? "remove it" : "did you mean '" + near + "'?");
+      throw UserError(at, "unknown key " + quotedShort(key) + " in " + table.title, "one of " + listed(names), didYouMean(key, names, "remove it"));
     }
     if (!seen.insert(key).second) throw UserError(at, "duplicate key " + quotedShort(key) + " in " + table.title, "each key once", "remove one of the two");
     check(*p, node);
@@ -386,12 +378,29 @@ std::string nearestWord(std::string_view word, const std::vector<std::string>& c
   return nearest;
 }
 
+std::string didYouMean(std::string_view word, const std::vector<std::string>& candidates, const std::string& otherwise) {
+  const std::string near = nearestWord(word, candidates);
+  return near.empty() ? otherwise : "did you mean '" + near + "'?";
+}
+
+std::string listed(const std::vector<std::string>& words, const char* between) {
+  std::string all;
+  for (const auto& w : words) all += (all.empty() ? "" : between) + w;
+  return all;
+}
+
+UserError unknownWord(const Location& where, const std::string& wrong, const std::string& word, const std::vector<std::string>& names,
+                      const std::string& otherwise) {
+  return UserError(where, wrong + " '" + word.substr(0, 60) + "'", names.empty() ? "none: there are none" : "one of " + listed(names),
+                   didYouMean(word, names, otherwise));
+}
+
 std::string describe(const ParameterTable& table) {
   std::string out = "### " + table.title + "\n\n";
   if (!table.description.empty()) out += table.description + "\n\n";
   out += "| key | type | unit | default | range | meaning |\n|---|---|---|---|---|---|\n";
   for (const auto& p : table.parameters) {
-    std::string range = p.type == ParameterType::Choice ? joined(p.choices)
+    std::string range = p.type == ParameterType::Choice ? listed(p.choices)
                         : p.type == ParameterType::List && p.minimumItems > 0
                             ? std::to_string(p.minimumItems) + " to " + std::to_string(p.maximumItems) + " entries"
                             : rangeText(p);

@@ -92,6 +92,13 @@ std::string readText(const Value& value, std::string_view name);
 
 /// The nearest of `candidates` to `word`, or empty where none is near.
 std::string nearestWord(std::string_view word, const std::vector<std::string>& candidates);
+/// "did you mean 'x'?", or `otherwise` where none is near.
+std::string didYouMean(std::string_view word, const std::vector<std::string>& candidates, const std::string& otherwise = "choose one");
+/// "a, b, c".
+std::string listed(const std::vector<std::string>& words, const char* between = ", ");
+/// `wrong` 'word' ("there is no command 'blow'"); expected: one of the names; fix: the nearest of them, or `otherwise`.
+UserError unknownWord(const Location& where, const std::string& wrong, const std::string& word, const std::vector<std::string>& names,
+                      const std::string& otherwise = "choose one");
 
 /// The table as Markdown rows.
 std::string describe(const ParameterTable& table);

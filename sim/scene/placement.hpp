@@ -16,6 +16,8 @@ std::vector<Parameter> attitudeParameters(double mostTurn_rad);
 constexpr double kMostTurn_rad = 200 * 3.14159265358979324;
 /// More than twice the way to the moon [m].
 constexpr double kFarthest_m = 1e9;
+/// 32 years: a double still tells 0.1 us apart there.
+constexpr double kLongestTime_s = 1e9;
 /// Latitude, longitude, height.
 std::vector<Parameter> geodeticParameters();
 

@@ -1,12 +1,10 @@
 #include "sim/stream/command_models.hpp"
 
 #include "sim/parameters/asked_model.hpp"
+#include "sim/scene/placement.hpp"
 
 namespace pitviper {
 namespace {
-
-/// 32 years, as the times of waypoints.
-constexpr double kLongestTime_s = 1e9;
 
 template <class T>
 int named(const Record& r, const char* key, const std::vector<T>& all) {
@@ -16,11 +14,7 @@ int named(const Record& r, const char* key, const std::vector<T>& all) {
     if (one.name == name) return static_cast<int>(names.size());
     names.push_back(one.name);
   }
-  std::string list;
-  for (const auto& n : names) list += (list.empty() ? "" : ", ") + n;
-  const std::string near = nearestWord(name, names);
-  throw UserError(r.where(key), std::string("there is no ") + key + " '" + name.substr(0, 60) + "'", list.empty() ? std::string("a ") + key : "one of " + list,
-                  near.empty() ? "choose one" : "did you mean '" + near + "'?");
+  throw unknownWord(r.where(key), std::string("there is no ") + key, name, names);
 }
 
 }  // namespace
@@ -31,11 +25,9 @@ Registry<CommandModel>& commandModels() {
 }
 
 ParameterTable commandTable(const CommandModel& model) {
-  ParameterTable t{"command: " + model.name, model.description, {required(text("command", "`" + model.name + "`"))}};
-  t.parameters.push_back(within(number("at", "s", "simulation time from which on it holds, until another says otherwise (in a scenario: its first frame)"),
-                                -kLongestTime_s, kLongestTime_s));
-  t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
-  return t;
+  return tableOf(model, "command",
+                 {within(number("at", "s", "simulation time from which on it holds, until another says otherwise (in a scenario: its first frame)"),
+                         -kLongestTime_s, kLongestTime_s)});
 }
 
 Command readCommand(const Value& value, const Simulation& simulation, double now_s) {

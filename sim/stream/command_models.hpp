@@ -1,5 +1,5 @@
 #pragma once
-// Commands as rooms: a file each, opening with its table of parameters; a row in command_models.cpp registers it. The same words serve in a scenario's
+// Commands as rooms: a file each with its table of parameters; a row in command_models.cpp registers it. The same words serve in a scenario's
 // `commands` and wherever else they come from.
 #include "sim/model/simulation.hpp"
 #include "sim/parameters/registry.hpp"

@@ -33,11 +33,7 @@ PreviewRanges readRanges(const Record& r, const Simulation& sim) {
   const Value& map = asMap(r.value("ranges"), "ranges");
   for (size_t k = 0; k < map.entries.size(); ++k) {
     const auto& [layer, value] = map.entries[k];
-    if (std::find(layers.begin(), layers.end(), layer) == layers.end()) {
-      const std::string near = nearestWord(layer, layers);
-      throw UserError(map.keyPlaces[k], "there is no layer '" + layer.substr(0, 60) + "'", "a channel and quantity of the scenario",
-                      near.empty() ? "see pitviper check" : "did you mean '" + near + "'?");
-    }
+    if (std::find(layers.begin(), layers.end(), layer) == layers.end()) throw unknownWord(map.keyPlaces[k], "there is no layer", layer, layers);
     if (ranges.count(layer)) throw UserError(map.keyPlaces[k], "a second range for layer '" + layer + "'", "one", "remove one");
     const Value& ends = asList(value, "a range");
     if (ends.items.size() != 2) throw UserError(value.where, "not a range", "[low, high] in the layer's own unit", "write two numbers");

@@ -20,11 +20,7 @@ Registry<SinkModel>& sinkModels() {
   return all;
 }
 
-ParameterTable sinkTable(const SinkModel& model) {
-  ParameterTable t{"sink: " + model.name, model.description, {required(text("sink", "`" + model.name + "`"))}};
-  t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
-  return t;
-}
+ParameterTable sinkTable(const SinkModel& model) { return tableOf(model, "sink"); }
 
 SinkChoice readSink(const Value& value, const Simulation& simulation) {
   Value map = value;

@@ -1,5 +1,5 @@
 #pragma once
-// Sinks as rooms: a file each, opening with its table of parameters; a row in sink_models.cpp registers it.
+// Sinks as rooms: a file each with its table of parameters; a row in sink_models.cpp registers it.
 #include "sim/model/sink.hpp"
 #include "sim/parameters/registry.hpp"
 #include "sim/parameters/table.hpp"

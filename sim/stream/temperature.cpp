@@ -21,13 +21,7 @@ CommandModel temperatureCommand() {
                         "name another part, or give it a number in the scenario");
       surfaces.push_back(static_cast<int>(s));
     }
-    if (surfaces.empty()) {
-      std::string all;
-      for (const auto& n : names) all += (all.empty() ? "" : ", ") + n;
-      const std::string near = nearestWord(r.text("part"), names);
-      throw UserError(r.where("part"), "'" + entity.name + "' has no part '" + r.text("part").substr(0, 60) + "'", "one of " + all,
-                      near.empty() ? "choose one" : "did you mean '" + near + "'?");
-    }
+    if (surfaces.empty()) throw unknownWord(r.where("part"), "'" + entity.name + "' has no part", r.text("part"), names);
     return [=, value_K = r.number("value")](Courses& courses, double) {
       for (int s : surfaces) courses.temperatures_K[{e, s}] = [=](double) { return value_K; };
     };

@@ -56,12 +56,6 @@ class ExponentialAir final : public Atmosphere {
     a.amount[0] = physics::exponentialAmount(ray.height_m, ray.sinElevation, std::min(range_m, physics::kFar), scale_m_);
     return a;
   }
-  std::vector<AirStation> stations(const AirRay& ray, double range_m) const override { return {{}, {range_m, 0.0, 0.0, amounts(ray, range_m)}}; }
-  std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const override {
-    std::vector<AirStation> stations;
-    for (double r : ranges_m) stations.push_back({r, 0.0, 0.0, amounts(ray, r)});
-    return stations;
-  }
   double groundTemperature_K() const override { return temperature_K_; }
   double validLow_um() const override { return extinction_per_m_.validLow(); }
   double validHigh_um() const override { return extinction_per_m_.validHigh(); }

@@ -143,9 +143,10 @@ TEST(Commands, PointACamera) {
 
 TEST(Commands, RefusedWithTheName) {
   const std::string text = kEye + with(kinds()[0].scene, "TEMPERATURE", "300 K");
+  std::string more;
   const auto refusal = [&](const std::string& command) -> std::string {
     try {
-      scene(text + "commands: [" + command + "]\n");
+      scene(text + more + "commands: [" + command + "]\n");
     } catch (const UserError& e) {
       return e.what();
     }
@@ -168,6 +169,8 @@ TEST(Commands, RefusedWithTheName) {
   expect("{command: look, camera: c, field_of_view: 177 deg}", "wider than a flat film");
   expect("{at: 3 s}", "missing key 'command'");
   expect("{command: explode, entity: b}", "there is no command 'explode'");
+  more = "lights: [{name: seat, intensity: 1 W/(sr um), position: [0 m, 0 m, 1 m]}]\norigin: {latitude: 50 deg, longitude: 8 deg, height: 0 m}\n";
+  expect("{command: move, entity: seat, geodetic: {latitude: 50 deg, longitude: 8 deg, height: 10 m}}", "there is no entity 'seat'");
 }
 
 // A world that takes commands for an hour keeps no more than it did after the first.

@@ -169,5 +169,25 @@ TEST(Ground, HidesLamps) {
   }
 }
 
+// `near` is a depth, not a distance: off the axis what is nearer by depth is cut away and hides no lamp, though it is farther away than `near`.
+TEST(Near, HidesNoLampsByDepth) {
+  const auto brightest = [](const char* mode, double depth_m) {
+    // A pane of wall across the line to a lamp 45 degrees off the axis.
+    const std::string wall = "materials: {m: {components: [{reflection: lambertian, reflectance: 0.1}]}}\nentities: [{name: wall, shape: {model: plate, width: 20 cm, height: "
+                             "20 cm}, material: m, temperature: 20 K, heading: 180 deg, position: [" + print("%.9g m, %.9g m, 0 m", depth_m, depth_m) + "]}]\n";
+    const Frame f = renderFrame(scene(std::string(mode) + wall + "lights: [{name: la, intensity: 1 W/(sr um), position: [10 m, 10 m, 0 m]}]\n"
+                                      "cameras: [{name: c, film: {width: 33, height: 33}, field_of_view: 110 deg, aperture: 5 mm, near: 1 m, look_at: [0 m, 1 m, 0 m], "
+                                      "position: [0 m, 0 m, 0 m], channels: [{name: lw, response: {band: [8 um, 12 um]}}]}]\n"));
+    const auto& p = layer(f, "lw.radiance").pixels;
+    return static_cast<double>(*std::max_element(p.begin(), p.end()));
+  };
+  for (const char* mode : {"", "accuracy: reference\n"}) {
+    const double open = brightest(mode, -5.0), cut = brightest(mode, 0.85), hidden = brightest(mode, 1.15);
+    EXPECT_GT(open, 0.0);
+    EXPECT_NEAR(cut / open, 1.0, 1e-6) << mode;
+    EXPECT_LT(hidden, 0.5 * open) << mode;
+  }
+}
+
 }  // namespace
 }  // namespace pitviper::test

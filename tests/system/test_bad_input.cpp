@@ -268,7 +268,7 @@ std::vector<Bad> badScenarios() {
       {"UnknownLibrarySpectrum", response("@@insb_mwr"), {"did you mean 'insb_mwir'?"}},
       {"LibraryAirOfAnotherModel", "atmosphere: {model: @@homogeneous, library: hazy_us76}\n", {"library air 'hazy_us76' is layered", "remove 'model'"}},
       {"UnknownAir", "atmosphere: @@hazy_us67\n", {"did you mean 'hazy_us76'?"}},
-      {"CarriedByItself", entity("material: {}, temperature: 300 K, attached_to: @@p"), {"no entity 'p' (above this place)"}},
+      {"CarriedByItself", entity("material: {}, temperature: 300 K, attached_to: @@p"), {"above this place there is no entity 'p'"}},
       // Materials.
       {"ReflectsMoreThanItReceives",
        "materials:\n  shiny: @@{components: [{reflection: lambertian, reflectance: 0.7}, {reflection: lambertian, reflectance: 0.6}]}\n",
