@@ -18,8 +18,10 @@ int airElevations() { return int(air.azimuth.z); }
 int airRanges() { return int(air.azimuth.w); }
 
 struct AirPath {
-  vec4 w[AIR_VECTORS];  // amounts
-  vec4 u[AIR_VECTORS];  // the same to their powers
+//@each v AIR_VECTORS
+  vec4 w{v};            // amounts
+  vec4 u{v};            // the same to their powers
+//@end
   int cell;             // of the table
   int next;             // steps to the next range
   vec2 mixed;
@@ -44,13 +46,15 @@ AirPath airFromCamera(float range) {
   p.next = space ? 0 : 1;
   p.mixed = vec2(x - float(e), space ? 0.0 : y - float(r));
   float logLength = space ? 0.0 : log(length * 1.0e-3);
-  for (int v = 0; v < AIR_VECTORS; ++v) {
-    int low = p.cell * AIR_VECTORS + v, step = p.next * AIR_VECTORS, high = low + (airRanges() + 1) * AIR_VECTORS;
+//@each v AIR_VECTORS
+  {
+    int low = p.cell * AIR_VECTORS + {v}, step = p.next * AIR_VECTORS, high = low + (airRanges() + 1) * AIR_VECTORS;
     vec4 l = mix(mix(texelFetch(airAmounts, low), texelFetch(airAmounts, low + step), p.mixed.y),
                  mix(texelFetch(airAmounts, high), texelFetch(airAmounts, high + step), p.mixed.y), p.mixed.x) + logLength;
-    p.w[v] = length > 0.0 ? exp(l) : vec4(0.0);
-    p.u[v] = length > 0.0 ? exp(l * air.exponent[v]) : vec4(0.0);
+    p.w{v} = length > 0.0 ? exp(l) : vec4(0.0);
+    p.u{v} = length > 0.0 ? exp(l * air.exponent[{v}]) : vec4(0.0);
   }
+//@end
   return p;
 }
 
@@ -83,40 +87,53 @@ vec4 airColumn(float height, int v) {
 vec4 airDensity(float height, int v) { return height > view.earth.y ? vec4(0.0) : exp(airByHeight(height, 0, v)); }
 
 AirPath airRaised(AirPath p) {
-  for (int v = 0; v < AIR_VECTORS; ++v) p.u[v] = exp(log(max(p.w[v], vec4(1.0e-30))) * air.exponent[v]);
+//@each v AIR_VECTORS
+  p.u{v} = exp(log(max(p.w{v}, vec4(1.0e-30))) * air.exponent[{v}]);
+//@end
   return p;
 }
 
-// Towards an elevation from the level on, cubic between elevations as SunLegs::upwards().
-void airUpwards(float height, float sine, out vec4 w[AIR_VECTORS]) {
+// Amounts towards an elevation from the level on, cubic between elevations as SunLegs::upwards().
+struct AirLeg {
+//@each v AIR_VECTORS
+  vec4 w{v};
+//@end
+};
+AirLeg airUpwards(float height, float sine) {
+  AirLeg leg;
   int entry;
   float m, x = clamp((sine - air.heights.z) * air.heights.w, 0.0, float(AIR_SUNS - 1));
   airHeight(height, entry, m);
   int e = clamp(int(x) - 1, 0, max(AIR_SUNS - 4, 0)), at = airHeights() + (entry * AIR_SUNS + e) * AIR_VECTORS;
   float f = x - float(e);
   vec4 weight = vec4((f - 1.0) * (f - 2.0) * (3.0 - f) / 6.0, f * (f - 2.0) * (f - 3.0) / 2.0, f * (f - 1.0) * (3.0 - f) / 2.0, f * (f - 1.0) * (f - 2.0) / 6.0);
-  for (int v = 0; v < AIR_VECTORS; ++v) {
-    int low = at + v, above = low + AIR_SUNS * AIR_VECTORS;
+//@each v AIR_VECTORS
+  {
+    int low = at + {v}, above = low + AIR_SUNS * AIR_VECTORS;
     vec4 root = vec4(0.0);
-    for (int j = 0; j < 4; ++j)
-      root += weight[j] * mix(texelFetch(airAmounts, low + j * AIR_VECTORS), texelFetch(airAmounts, above + j * AIR_VECTORS), m);
+//@each j 4
+    root += weight[{j}] * mix(texelFetch(airAmounts, low + {j} * AIR_VECTORS), texelFetch(airAmounts, above + {j} * AIR_VECTORS), m);
+//@end
     root = max(root, vec4(0.0));
-    w[v] = root * root;
+    leg.w{v} = root * root;
   }
+//@end
+  return leg;
 }
 
 // A way that goes down first has twice what lies above its lowest point, less what lies behind it.
 AirPath airToSun(AirPath camera, float height) {
   AirPath p = camera;
   if (AIR_SUNS == 0) return p;
-  vec4 w[AIR_VECTORS], half_[AIR_VECTORS];
   float sine = sunElevation_;
-  airUpwards(height, abs(sine), w);
-  if (sine < 0.0) airUpwards(height - (view.earth.x + height) * sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0))), 0.0, half_);
+  AirLeg leg = airUpwards(height, abs(sine)), half_ = leg;
+  if (sine < 0.0) half_ = airUpwards(height - (view.earth.x + height) * sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0))), 0.0);
   // Below the lowest entry: evenly dense, as CPU and columns have it, on a way as if the earth were flat; no flatter than 0.6 degrees, where it is not.
   float below = max(air.heights.x - height, 0.0) / max(sine, 0.01) * 1.0e-3;
-  for (int v = 0; v < AIR_VECTORS && below > 0.0; ++v) w[v] += below * exp(airByHeight(height, 0, v));
-  for (int v = 0; v < AIR_VECTORS; ++v) p.w[v] += sine < 0.0 ? max(2.0 * half_[v] - w[v], vec4(0.0)) : w[v];
+//@each v AIR_VECTORS
+  if (below > 0.0) leg.w{v} += below * exp(airByHeight(height, 0, {v}));
+  p.w{v} += sine < 0.0 ? max(2.0 * half_.w{v} - leg.w{v}, vec4(0.0)) : leg.w{v};
+//@end
   return airRaised(p);
 }
 
@@ -130,18 +147,20 @@ AirPath airToLight(AirPath camera, float height, float sinElevation, float dista
     vec3 s = distance * (abs(rise) < 300.0 ? vec3(u0, 0.5 * (u0 + u1), u1) : rise > 0.0 ? vec3(u0 * u0, 0.5 * (u0 * u0 + u1 * u1), u1 * u1)
                                                                                     : 1.0 - vec3(u1 * u1, 0.5 * (u0 * u0 + u1 * u1), u0 * u0));
     vec3 h = height + s * (sinElevation + s * curved);
-    for (int v = 0; v < AIR_VECTORS; ++v) {
-      vec4 mean = abs(h.z - h.x) > 50.0 ? (airColumn(h.x, v) - airColumn(h.z, v)) / (h.z - h.x) * 1.0e3
-                                        : (airDensity(h.x, v) + 4.0 * airDensity(h.y, v) + airDensity(h.z, v)) / 6.0;
-      p.w[v] += (s.z - s.x) * 1.0e-3 * mean;
-    }
+    bool apart = abs(h.z - h.x) > 50.0;
+//@each v AIR_VECTORS
+    p.w{v} += (s.z - s.x) * 1.0e-3 * (apart ? (airColumn(h.x, {v}) - airColumn(h.z, {v})) / (h.z - h.x) * 1.0e3
+                                            : (airDensity(h.x, {v}) + 4.0 * airDensity(h.y, {v}) + airDensity(h.z, {v})) / 6.0);
+//@end
   }
   return airRaised(p);
 }
 
 Real airDepth(int i, AirPath p) {
   Real depth = 0.0;
-  for (int v = 0; v < AIR_VECTORS; ++v) depth += dot(air.extinction[i * AIR_VECTORS + v], p.u[v]);
+//@each v AIR_VECTORS
+  depth += dot(air.extinction[i * AIR_VECTORS + {v}], p.u{v});
+//@end
   return depth;
 }
 

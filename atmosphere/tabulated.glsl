@@ -8,19 +8,20 @@ layout(std140, binding = 3) uniform PathBlock {
 
 struct AirPath {
   float length;              // [m]
-  vec4 u[AIR_VECTORS];       // R^a_k
-  vec4 beyond[AIR_VECTORS];  // what the last stretch adds to them
+//@each v AIR_VECTORS
+  vec4 u{v};       // R^a_k
+  vec4 beyond{v};  // what the last stretch adds to them
+//@end
 };
 
 AirPath airOf(float length) {
   AirPath p;
   p.length = length;
   float km = 1.0e-3 * length;
-  for (int v = 0; v < AIR_VECTORS; ++v) {
-    vec4 a = air.exponent[v];
-    p.u[v] = km > 0.0 ? mix(exp(a * log(km)), vec4(km), equal(a, vec4(1.0))) : vec4(0.0);  // plain Beer's law keeps its digits
-    p.beyond[v] = vec4(0.0);
-  }
+//@each v AIR_VECTORS
+  p.u{v} = km > 0.0 ? mix(exp(air.exponent[{v}] * log(km)), vec4(km), equal(air.exponent[{v}], vec4(1.0))) : vec4(0.0);  // plain Beer's law keeps its digits
+  p.beyond{v} = vec4(0.0);
+//@end
   return p;
 }
 
@@ -31,10 +32,13 @@ AirPath airBeyond(AirPath near, float nearRange, float height, float sinElevatio
   AirPath p = airOf(near.length + length);
   if (near.length > 0.0 && length > 0.0) {
     float ratio = -logOneMinus(length / p.length);
-    for (int v = 0; v < AIR_VECTORS; ++v)
-      for (int c = 0; c < 4; ++c) p.beyond[v][c] = p.u[v][c] * oneMinusExp(air.exponent[v][c] * ratio);
+//@each v AIR_VECTORS
+    for (int c = 0; c < 4; ++c) p.beyond{v}[c] = p.u{v}[c] * oneMinusExp(air.exponent[{v}][c] * ratio);
+//@end
   } else if (length > 0.0) {
-    p.beyond = p.u;
+//@each v AIR_VECTORS
+    p.beyond{v} = p.u{v};
+//@end
   }
   return p;
 }
@@ -45,13 +49,17 @@ AirPath airToLight(AirPath camera, float height, float sinElevation, float dista
 
 Real airDepth(int i, AirPath p) {
   Real depth = 0.0;
-  for (int v = 0; v < AIR_VECTORS; ++v) depth += dot(air.extinction[i * AIR_VECTORS + v], p.u[v]);
+//@each v AIR_VECTORS
+  depth += dot(air.extinction[i * AIR_VECTORS + {v}], p.u{v});
+//@end
   return depth;
 }
 
 Real pathDepth(int i, AirPath near, AirPath far) {
   Real depth = 0.0;
-  for (int v = 0; v < AIR_VECTORS; ++v) depth += dot(air.extinction[i * AIR_VECTORS + v], far.beyond[v]);
+//@each v AIR_VECTORS
+  depth += dot(air.extinction[i * AIR_VECTORS + {v}], far.beyond{v});
+//@end
   return depth;
 }
 

@@ -30,45 +30,82 @@ class Assembler {
 
   void file(const std::string& path) {
     if (!used_.insert(path).second) return;
+    std::vector<Line> lines;
     std::string_view text = library_.text(path);
-    int number = 0;
     while (!text.empty()) {
       const size_t end = text.find('\n');
-      const std::string_view current = text.substr(0, end);
-      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-      ++number;
-      if (current.starts_with("//@use ")) {
-        file(std::string(current.substr(7)));
-      } else if (current.starts_with("//@slot ")) {
-        const std::string slot(current.substr(8));
-        if (const auto own = slots_.generated.find(slot); own != slots_.generated.end()) {
-          generated(slot, own->second);
-          continue;
-        }
-        const auto chosen = slots_.files.find(slot);
-        if (chosen == slots_.files.end()) throw std::logic_error(path + ": no file chosen for shader slot '" + slot + "'");
-        file(chosen->second);
-      } else if (current == "//@constants") {
-        for (const auto& [name, value] : slots_.constants) line("const int " + name + " = " + std::to_string(value) + ";", "plan constant " + name);
-      } else {
-        line(current, path + ":" + std::to_string(number));
-      }
-    }
-  }
-
-  void generated(const std::string& slot, std::string_view text) {
-    while (!text.empty()) {
-      const size_t end = text.find('\n');
-      const std::string_view current = text.substr(0, end);
-      if (current.starts_with("//@use ")) file(std::string(current.substr(7)));
-      else line(current, "generated " + slot);
+      lines.push_back({std::string(text.substr(0, end)), path + ":" + std::to_string(lines.size() + 1)});
       text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
     }
+    write(lines);
   }
 
   AssembledShader take() { return std::move(out_); }
 
  private:
+  struct Line {
+    std::string text, from;
+  };
+
+  void write(std::span<const Line> lines) {
+    for (size_t n = 0; n < lines.size(); ++n) {
+      const auto& [text, from] = lines[n];
+      if (text.starts_with("//@use ")) {
+        file(text.substr(7));
+      } else if (text.starts_with("//@slot ")) {
+        slot(text.substr(8), from);
+      } else if (text.starts_with("//@each ")) {
+        const size_t end = endOf(lines, n);
+        each(text.substr(8), from, lines.subspan(n + 1, end - n - 1));
+        n = end;
+      } else if (text == "//@constants") {
+        for (const auto& [name, value] : slots_.constants) line("const int " + name + " = " + std::to_string(value) + ";", "plan constant " + name);
+      } else {
+        line(text, from);
+      }
+    }
+  }
+
+  void slot(const std::string& name, const std::string& from) {
+    if (const auto own = slots_.generated.find(name); own != slots_.generated.end()) {
+      std::string_view text = own->second;
+      std::vector<Line> lines;
+      while (!text.empty()) {
+        const size_t end = text.find('\n');
+        lines.push_back({std::string(text.substr(0, end)), "generated " + name});
+        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+      }
+      return write(lines);
+    }
+    const auto chosen = slots_.files.find(name);
+    if (chosen == slots_.files.end()) throw std::logic_error(from + ": no file chosen for shader slot '" + name + "'");
+    file(chosen->second);
+  }
+
+  static size_t endOf(std::span<const Line> lines, size_t begin) {
+    int open = 0;
+    for (size_t n = begin; n < lines.size(); ++n) {
+      if (lines[n].text.starts_with("//@each ")) ++open;
+      if (lines[n].text == "//@end" && --open == 0) return n;
+    }
+    throw std::logic_error(lines[begin].from + ": no //@end to this //@each");
+  }
+
+  /// `what`: "k COUNT".
+  void each(const std::string& what, const std::string& from, std::span<const Line> lines) {
+    const std::string word = "{" + what.substr(0, what.find(' ')) + "}", count = what.substr(what.find(' ') + 1);
+    const auto constant = slots_.constants.find(count);
+    if (constant == slots_.constants.end() && count.find_first_not_of("0123456789") != std::string::npos)
+      throw std::logic_error(from + ": no constant " + count);
+    const long long times = constant != slots_.constants.end() ? constant->second : std::stoll(count);
+    for (long long k = 0; k < times; ++k) {
+      std::vector<Line> own(lines.begin(), lines.end());
+      for (Line& l : own)
+        for (size_t at = l.text.find(word); at != std::string::npos; at = l.text.find(word, at)) l.text.replace(at, word.size(), std::to_string(k));
+      write(own);
+    }
+  }
+
   const ShaderLibrary& library_;
   const ShaderSlots& slots_;
   AssembledShader out_;

@@ -4,6 +4,8 @@
 // In a .glsl file:   //@use path        the file's text is inserted here, once per program
 //                    //@slot name       the file chosen for that slot is inserted here
 //                    //@constants       the structural constants of the plan are inserted here
+//                    //@each k COUNT    the lines to its //@end once for each k from 0 on, {k} replaced; COUNT: a constant of the plan, or a number.
+//                                       Arrays written out so: drivers without a GPU keep real ones in memory, several times slower
 #include <map>
 #include <span>
 #include <string>

@@ -17,11 +17,10 @@ struct LightHere {
   int number;
 };
 
-LightHere lightAt(int entry) {
+LightHere lightAt(int entry, bool sun) {
   LightHere here;
   vec4 light = lights[entry];
   here.number = int(lights[entry + 1].x);
-  bool sun = here.number >= LIGHTS - SUN;
   vec3 line = sun ? light.xyz : light.xyz - point_;
   float share = 1.0;
   if (SUN_SETS > 0 && sun) {  // the part of the sun's disc above the point's own horizon stands for the sun
