@@ -7,10 +7,10 @@ layout(std140, binding = 3) uniform AirBlock {
   vec4 azimuth;    // first cosine of the azimuth to the sun times the sun's horizontal part, entries per unit of it; number of elevations, of ranges
   vec4 heights;    // bottom [m], entries per root of a metre; sine of the first sun elevation, 1 / step to the next
   vec4 exponent[AIR_VECTORS];
-  vec4 extinction[NODES * AIR_VECTORS];
   vec4 asymmetry[AIR_ASYMMETRIES];
   vec4 black[AIR_BLACKS];  // of nodes: radiance of a black body of the air's temperature at the camera
 } air;
+//@slot air_extinction
 layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density, column above][vector]
 layout(binding = 21) uniform samplerBuffer airRadiance;  // [azimuth][elevation][range, space last][part][value]
 
@@ -78,12 +78,9 @@ vec4 airByHeight(float height, int what, int v) {
   int at = airHeights() + (AIR_HEIGHTS * AIR_SUNS + 2 * entry + what) * AIR_VECTORS + v;
   return mix(texelFetch(airAmounts, at), texelFetch(airAmounts, at + 2 * AIR_VECTORS), m);
 }
-// The column above a height; below the lowest the air is as dense as there.
-vec4 airColumn(float height, int v) {
-  vec4 column = airByHeight(height, 1, v);
-  float below = air.heights.x - height;
-  return below > 0.0 ? column + below * 1.0e-3 * exp(airByHeight(height, 0, v)) : column;
-}
+// Below the lowest height the air is as dense as there.
+vec4 airLowest(int v) { return exp(texelFetch(airAmounts, airHeights() + AIR_HEIGHTS * AIR_SUNS * AIR_VECTORS + v)); }
+vec4 airColumn(float height, int v, vec4 lowest) { return airByHeight(height, 1, v) + max(air.heights.x - height, 0.0) * 1.0e-3 * lowest; }
 vec4 airDensity(float height, int v) { return height > view.earth.y ? vec4(0.0) : exp(airByHeight(height, 0, v)); }
 
 AirPath airRaised(AirPath p) {
@@ -131,35 +128,45 @@ AirPath airToSun(AirPath camera, float height) {
   // Below the lowest entry: evenly dense, as CPU and columns have it, on a way as if the earth were flat; no flatter than 0.6 degrees, where it is not.
   float below = max(air.heights.x - height, 0.0) / max(sine, 0.01) * 1.0e-3;
 //@each v AIR_VECTORS
-  if (below > 0.0) leg.w{v} += below * exp(airByHeight(height, 0, {v}));
+  leg.w{v} += below * airLowest({v});
   p.w{v} += sine < 0.0 ? max(2.0 * half_.w{v} - leg.w{v}, vec4(0.0)) : leg.w{v};
 //@end
   return airRaised(p);
 }
 
-// Between two heights what one has above it more than the other, or, where these are near each other, densities by Simpson's rule. In a few pieces, for ways
+// Between two heights what one has above it more than the other, or, where these are near each other, the density between them. In a few pieces, for ways
 // bend away from the ground; shorter ones at the lower end, where there is most air.
 AirPath airToLight(AirPath camera, float height, float sinElevation, float distance) {
   AirPath p = camera;
   float curved = 0.5 / view.earth.x, rise = distance * (sinElevation + distance * curved);
-  for (int k = 0; k < AIR_PIECES; ++k) {
-    float u0 = float(k) / float(AIR_PIECES), u1 = float(k + 1) / float(AIR_PIECES);
-    vec3 s = distance * (abs(rise) < 300.0 ? vec3(u0, 0.5 * (u0 + u1), u1) : rise > 0.0 ? vec3(u0 * u0, 0.5 * (u0 * u0 + u1 * u1), u1 * u1)
-                                                                                    : 1.0 - vec3(u1 * u1, 0.5 * (u0 * u0 + u1 * u1), u0 * u0));
-    vec3 h = height + s * (sinElevation + s * curved);
-    bool apart = abs(h.z - h.x) > 50.0;
+  bool level = abs(rise) < 300.0;
+  float h0 = height, s0 = 0.0;
 //@each v AIR_VECTORS
-    p.w{v} += (s.z - s.x) * 1.0e-3 * (apart ? (airColumn(h.x, {v}) - airColumn(h.z, {v})) / (h.z - h.x) * 1.0e3
-                                            : (airDensity(h.x, {v}) + 4.0 * airDensity(h.y, {v}) + airDensity(h.z, {v})) / 6.0);
+  vec4 lowest{v} = airLowest({v}), column{v} = airColumn(height, {v}, lowest{v});
 //@end
+//@each k AIR_PIECES
+  {
+    float u = float({k} + 1) / float(AIR_PIECES), s1 = distance * (level ? u : rise > 0.0 ? u * u : 1.0 - (1.0 - u) * (1.0 - u));
+    float h1 = height + s1 * (sinElevation + s1 * curved), middle = 0.5 * (s0 + s1);
+    middle = height + middle * (sinElevation + middle * curved);
+    bool apart = abs(h1 - h0) > 50.0;
+    float length_km = (s1 - s0) * 1.0e-3, perRise = 1.0e3 / (apart ? h1 - h0 : 1.0);
+//@each v AIR_VECTORS
+    vec4 next{v} = airColumn(h1, {v}, lowest{v});
+    p.w{v} += length_km * (apart ? (column{v} - next{v}) * perRise : airDensity(middle, {v}));
+    column{v} = next{v};
+//@end
+    h0 = h1;
+    s0 = s1;
   }
+//@end
   return airRaised(p);
 }
 
 Real airDepth(int i, AirPath p) {
   Real depth = 0.0;
 //@each v AIR_VECTORS
-  depth += dot(air.extinction[i * AIR_VECTORS + {v}], p.u{v});
+  depth += dot(airExtinction[i * AIR_VECTORS + {v}], p.u{v});
 //@end
   return depth;
 }

@@ -11,18 +11,18 @@ namespace {
 
 constexpr double kNothing = 1e-30;
 /// Ways to lamps have so many pieces (tests/gpu/test_ways_to_lamps.cpp).
-constexpr int kPieces = 4;
+constexpr int kPieces = 3;
 
 }  // namespace
 
 LayeredOnGpu::LayeredOnGpu(const Simulation& simulation, const Plan& plan, bool perChannel)
-    : simulation_(simulation), plan_(plan), perChannel_(perChannel), rows_(simulation, plan, perChannel) {
+    : simulation_(simulation), plan_(plan), perChannel_(perChannel), rows_(simulation, plan, perChannel), coefficients_(plan, rows_.vectors()) {
   if (plan.lightCount > 0) addHeights(heights_);  // ways on to them
 }
 
 void LayeredOnGpu::addSlots(ShaderSlots& slots) const {
   slots.files["path"] = perChannel_ ? "atmosphere/layered_channels.glsl" : "atmosphere/layered_nodes.glsl";
-  slots.constants["AIR_VECTORS"] = rows_.vectors();
+  coefficients_.addSlots(slots);
   slots.constants["AIR_AZIMUTHS"] = plan_.terms.scatteredSun ? plan_.air.azimuths : 1;
   slots.constants["AIR_HEIGHTS"] = SunLegs::kHeights;
   slots.constants["AIR_SUNS"] = plan_.sunLegs ? SunLegs::kElevations : 0;
@@ -117,8 +117,6 @@ void LayeredOnGpu::upload(const std::vector<AirRow>& rows) {
   const auto powers = simulation_.air->exponents();
   const auto absorbers = static_cast<size_t>(4 * rows_.vectors());
   for (size_t k = 0; k < absorbers; ++k) put({k < powers.size() ? powers[k] : 1.0});
-  for (const SpectralNode& n : plan_.nodes)
-    for (size_t k = 0; k < absorbers; ++k) put({n.air.extinction[k]});
   for (double g : rows_.asymmetries()) put({g});
   const auto& black = rows_.black();
   for (size_t i = 0; i < (plan_.nodes.size() + 3) / 4 * 4; ++i) put({i < black.size() ? black[i] : 0.0});
@@ -127,6 +125,7 @@ void LayeredOnGpu::upload(const std::vector<AirRow>& rows) {
 
 void LayeredOnGpu::bind() const {
   block_.bindUniform(3);
+  coefficients_.bind();
   amounts_.bindTexture(20, 4);
   radiance_.bindTexture(21, perChannel_ ? 4 : 1);
 }

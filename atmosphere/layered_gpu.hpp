@@ -1,6 +1,7 @@
 #pragma once
 // Layered air as the shader reads it (atmosphere/layered.glsl): tables by elevation and range for a view, made in double precision, and by
 // height for ways to lights and to the sun.
+#include "atmosphere/coefficients_gpu.hpp"
 #include "atmosphere/layered_rows.hpp"
 #include "sim/gl/objects.hpp"
 #include "sim/render/air_on_gpu.hpp"
@@ -32,6 +33,7 @@ class LayeredOnGpu final : public AirOnGpu {
   AirGrid grid_;
   glm::dvec3 position_{NAN};
   bool first_ = true;  ///< of the picture
+  CoefficientsOnGpu coefficients_;
   Buffer block_, amounts_, radiance_;
 };
 

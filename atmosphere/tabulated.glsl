@@ -3,8 +3,8 @@
 // Valid: all lengths, infinite included. The block: atmosphere/tabulated_gpu.hpp; J [W/(m2 sr um)] is in nodes.node[i].y.
 layout(std140, binding = 3) uniform PathBlock {
   vec4 exponent[AIR_VECTORS];
-  vec4 extinction[NODES * AIR_VECTORS];
 } air;
+//@slot air_extinction
 
 struct AirPath {
   float length;              // [m]
@@ -50,7 +50,7 @@ AirPath airToLight(AirPath camera, float height, float sinElevation, float dista
 Real airDepth(int i, AirPath p) {
   Real depth = 0.0;
 //@each v AIR_VECTORS
-  depth += dot(air.extinction[i * AIR_VECTORS + {v}], p.u{v});
+  depth += dot(airExtinction[i * AIR_VECTORS + {v}], p.u{v});
 //@end
   return depth;
 }
@@ -58,7 +58,7 @@ Real airDepth(int i, AirPath p) {
 Real pathDepth(int i, AirPath near, AirPath far) {
   Real depth = 0.0;
 //@each v AIR_VECTORS
-  depth += dot(air.extinction[i * AIR_VECTORS + {v}], far.beyond{v});
+  depth += dot(airExtinction[i * AIR_VECTORS + {v}], far.beyond{v});
 //@end
   return depth;
 }

@@ -1,5 +1,6 @@
 #pragma once
 // Air from tables as the shader reads it (atmosphere/tabulated.glsl): exponents and every node's coefficients, once for a plan.
+#include "atmosphere/coefficients_gpu.hpp"
 #include "sim/gl/objects.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/render/air_on_gpu.hpp"
@@ -11,10 +12,10 @@ class TabulatedOnGpu final : public AirOnGpu {
   /// Throws GlError where the coefficients do not fit into a uniform block.
   TabulatedOnGpu(const Simulation& simulation, const Plan& plan);
   void addSlots(ShaderSlots& slots) const override;
-  void bind() const override { block_.bindUniform(3); }
+  void bind() const override;
 
  private:
-  int vectors_ = 0;  ///< four exponents each
+  CoefficientsOnGpu coefficients_;
   Buffer block_;
 };
 

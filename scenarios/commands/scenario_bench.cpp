@@ -8,12 +8,15 @@
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/camera/camera_renderer.hpp"
+#include "sim/gl/timing.hpp"
 
 namespace pitviper {
 namespace {
 
 /// The speed that figures are told at, whatever the machine [pixels of the yardstick a second].
 constexpr double kNominalRate = 6e6;
+/// So many are timed part by part.
+constexpr int kPartFrames = 4;
 
 }  // namespace
 
@@ -34,7 +37,11 @@ std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::v
       own.push_back(timed([&] { draw(k); }));
       progress.step();
     }
-    rates.push_back({camera.name, renderer.plan().nodeCount(), renderer.plan().slotCount, frames, median(own), median(bare)});
+    const Timing timing;
+    for (int k = 0; k < kPartFrames; ++k) draw(k * (frames - 1) / (kPartFrames - 1));
+    auto parts = timing.seconds();
+    for (auto& [name, seconds] : parts) seconds /= kPartFrames;
+    rates.push_back({camera.name, renderer.plan().nodeCount(), renderer.plan().slotCount, frames, median(own), median(bare), parts});
   }
   progress.finish();
   return rates;
@@ -49,6 +56,16 @@ std::string rateTable(const std::vector<ScenarioRate>& rates) {
     std::snprintf(line, sizeof line, "| %s | %d | %d | %.2f | %.1f | %.2f | %.1f |\n", r.camera.c_str(), r.channels, r.nodes, 1e3 * r.seconds, 1.0 / r.seconds,
                   1e-6 * yardstick, kNominalRate / yardstick / r.seconds);
     out += line;
+  }
+  out += "\nBy part, ms a frame, each waited for (together they may take longer than what is not waited for):\n";
+  for (const ScenarioRate& r : rates) {
+    out += r.camera + ": ";
+    for (const auto& [name, seconds] : r.parts) {
+      char part[120];
+      std::snprintf(part, sizeof part, "%s%s %.2f", out.ends_with(": ") ? "" : ", ", name.c_str(), 1e3 * seconds);
+      out += part;
+    }
+    out += "\n";
   }
   return out;
 }

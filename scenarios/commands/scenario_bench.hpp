@@ -1,5 +1,6 @@
 #pragma once
 // Frames a second of a scenario as it is: drawn, read back and resolved in memory, no files; beside the yardstick.
+#include <map>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@ struct ScenarioRate {
   int nodes = 0, channels = 0, frames = 0;
   double seconds = 0.0;           ///< of a frame: median
   double yardstickSeconds = 0.0;  ///< of the yardstick's frame between
+  std::map<std::string, double> parts = {};  ///< seconds of each part of a frame
 };
 
 /// Every camera over the scenario's time, at least one round of frames each.

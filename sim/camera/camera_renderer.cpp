@@ -2,6 +2,7 @@
 
 #include "sim/camera/small_bodies.hpp"
 #include "sim/camera/visible_lights.hpp"
+#include "sim/gl/timing.hpp"
 #include "sim/plan/planner.hpp"
 
 namespace pitviper {
@@ -110,8 +111,15 @@ WorldState CameraRenderer::lampsInView() const {
 
 CameraImage CameraRenderer::finish() {
   Subpixels image(plan_, view_, pass_->finishReadback());
-  addSmallBodies(image, *pass_, simulation_, state_, small_, present_, camera_.zoomedSamples, wanted_.get());
-  addVisibleLights(image, ways_, simulation_, plan_, lampsInView(), present_);
+  {
+    const TimedPart part("small bodies");
+    addSmallBodies(image, *pass_, simulation_, state_, small_, present_, camera_.zoomedSamples, wanted_.get());
+  }
+  {
+    const TimedPart part("lamps in view");
+    addVisibleLights(image, ways_, simulation_, plan_, lampsInView(), present_);
+  }
+  const TimedPart part("resolve");
   if (reference_) reference_->endPicture();
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
   resolved.slotOfOutput = plan_.slotOfOutput;

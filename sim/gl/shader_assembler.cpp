@@ -1,5 +1,6 @@
 #include "sim/gl/shader_assembler.hpp"
 
+#include <charconv>
 #include <regex>
 #include <set>
 #include <stdexcept>
@@ -113,6 +114,21 @@ class Assembler {
 };
 
 }  // namespace
+
+std::string planNumbers(const std::string& name, std::span<const float> numbers, int binding) {
+  constexpr size_t kMostConstants = 256;
+  const size_t count = numbers.size() / 4;
+  const std::string declared = "vec4 " + name + "[" + std::to_string(count) + "]";
+  if (count == 0) return "";
+  if (count > kMostConstants) return "layout(std140, binding = " + std::to_string(binding) + ") uniform " + name + "Block { " + declared + "; };\n";
+  std::string text = "const " + declared + " = vec4[](\n";
+  for (size_t i = 0; i < 4 * count; ++i) {
+    char digits[32];
+    const auto end = std::to_chars(digits, digits + sizeof digits, numbers[i], std::chars_format::scientific).ptr;
+    text += (i % 4 == 0 ? "  vec4(" : ", ") + std::string(digits, end) + (i % 4 == 3 ? i + 1 < 4 * count ? "),\n" : "));\n" : "");
+  }
+  return text;
+}
 
 AssembledShader assembleShader(const ShaderLibrary& library, const std::string& mainPath, const ShaderSlots& slots) {
   Assembler a(library, slots);

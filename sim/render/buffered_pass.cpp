@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "sim/gl/context.hpp"
+#include "sim/gl/timing.hpp"
 
 namespace pitviper {
 namespace {
@@ -68,7 +69,7 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
   const int perBatch = std::min(4 * kMostTargets, plan.nodeCount());
   targets_ = (perBatch + 3) / 4;
   ShaderSlots slots = shadingSlots();
-  slots.constants["WEIGHTS"] = 1;  // shading itself integrates nothing
+  slots.generated["weights"] = "";  // shading itself integrates nothing
   slots.files["truth"] = "sim/render/glsl/truth_none.glsl";
   const auto spectrum = writeSpectrum(slots, targets_);
   shade_ = ShadingProgram(library, slots, spectrum, 0);
@@ -132,11 +133,13 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
     glUniform1i(shade_.uniform("firstNode"), batches_[b].firstNode);
     shade_.run(spectrum);
     if (layers_ && !layers_->isEmpty()) {
+      const TimedPart part("transparent");
       layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode});
       bindBuffers();
       visibility.colour(0).bind(0);
     }
 
+    const TimedPart part("integration");
     into.select(0, groups);
     into.bind();
     for (size_t t = 0; t < spectrum.colourCount(); ++t) spectrum.colour(t).bind(static_cast<unsigned>(8 + t));

@@ -46,7 +46,6 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
   base.generated["integrate"] = "";
   base.generated["blend"] = blend.str();
   base.files["truth"] = "sim/render/glsl/truth_none.glsl";
-  base.constants["WEIGHTS"] = 1;  // nothing is integrated here
   base.files["ground"] = simulation.ground ? "sim/render/glsl/ground_hides.glsl" : "sim/render/glsl/ground_none.glsl";
   base.files["ground_end"] = simulation.ground ? "sim/render/glsl/ground_end.glsl" : "sim/render/glsl/ground_endless.glsl";
 

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/gl/context.hpp"
+#include "sim/gl/timing.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -91,6 +92,7 @@ std::vector<std::string> ScenePass::channelTargets() const {
 }
 
 void ScenePass::setState(const WorldState& state) {
+  const TimedPart part("tables");
   if (updateTemperatures(tables_, simulation_, tabled(), state)) {
     solid_.update(tables_.solid);
     relevance_.emplace(simulation_, tabled(), tables_);
@@ -102,11 +104,12 @@ void ScenePass::setState(const WorldState& state) {
   block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
   nodes_.upload(block);
   if (air_) air_->begin();
+  const TimedPart shadows("shadow maps");
   if (shadows_) shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_->matters(e, l, state); });
 }
 
 void ScenePass::uploadView(const View& v, const WorldState& state) {
-  if (air_) air_->update(v, state);
+  if (const TimedPart part("air"); air_) air_->update(v, state);
   const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
   GpuView g;
   g.pixel = {v.tanPerPixelX, v.tanPerPixelY, v.axisX, v.axisY};
@@ -190,10 +193,20 @@ void ScenePass::bindBuffers() const {
 void ScenePass::draw(const View& v, const WorldState& state, const std::vector<char>& drawn) {
   current_ = &targetsFor(v.width, v.height);
   uploadView(v, state);
-  uploadDraws(v, state);
-  bindBuffers();
-  solids_.draw(current_->visibility, v, state, drawn);
-  beforeShading(v, state, drawn);
+  {
+    const TimedPart part("draws");
+    uploadDraws(v, state);
+    bindBuffers();
+  }
+  {
+    const TimedPart part("visibility");
+    solids_.draw(current_->visibility, v, state, drawn);
+  }
+  {
+    const TimedPart part("order");
+    beforeShading(v, state, drawn);
+  }
+  const TimedPart part("shading");
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
   if (partial_) {
@@ -207,10 +220,12 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
 }
 
 void ScenePass::startReadback(bool identity) {
+  const TimedPart part("readback");
   readback_.start(current_->shading, current_->shading.colourCount(), identity ? &current_->visibility : nullptr);
 }
 
 RawImage ScenePass::finishReadback() {
+  const TimedPart part("readback");
   auto pixels = readback_.wait();
   RawImage image;
   image.width = current_->shading.width();

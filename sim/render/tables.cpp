@@ -277,24 +277,30 @@ std::vector<Loop> integrationLoops(const Plan& plan) {
   return {all};
 }
 
+/// Loops over nodes with so many terms in all are written out, which llvmpipe draws by a tenth to a third faster; longer ones would take it seconds to
+/// compile (2 s for 288).
+constexpr int kMostWrittenOut = 128;
+
 void writeIntegral(RenderTables& t, const Plan& plan) {
   std::ostringstream targets, text;
   targets << "void clearTargets() {\n";
   for (int g = 0; g < plan.groupCount(); ++g) targets << "  channels" << g << " = vec4(0.0);\n";
   targets << "}\n";
-  text << "void integrate() {\n";
+  text << "void integrate() {\n  Real radiance;\n";
+  const bool written = plan.nodeCount() * (1 + (plan.terms.lights ? plan.lightCount * t.solid.vectors : 0)) <= kMostWrittenOut;
   size_t at = 0;
-  for (const Loop& loop : integrationLoops(plan)) {
-    text << "  for (int i = 0; i < " << loop.count << "; ++i) {\n    Real radiance = nodeRadiance" << (loop.lit && plan.terms.lights ? "" : "Unlit") << "("
-         << loop.first << " + i);\n";
+  for (const Loop& loop : written ? loopsOf(plan, true) : integrationLoops(plan)) {
+    const std::string i = written ? "{i}" : "i";
+    text << (written ? "//@each i " + std::to_string(loop.count) : "  for (int i = 0; i < " + std::to_string(loop.count) + "; ++i) {") << "\n"
+         << "  radiance = nodeRadiance" << (loop.lit && plan.terms.lights ? "" : "Unlit") << "(" << loop.first << " + " << i << ");\n";
     for (size_t k = 0; k < loop.groups.size(); ++k)
-      text << "    channels" << loop.groups[k] << " += weights.weight[" << at << " + i * " << loop.groups.size() << " + " << k << "] * radiance;\n";
-    text << "  }\n";
-    for (int i = 0; i < loop.count; ++i)
+      text << "  channels" << loop.groups[k] << " += weights[" << at << " + " << i << " * " << loop.groups.size() << " + " << k << "] * radiance;\n";
+    text << (written ? "//@end\n" : "  }\n");
+    for (int n = 0; n < loop.count; ++n)
       for (int g : loop.groups)
         for (int k = 0; k < 4; ++k) {
           const size_t slot = static_cast<size_t>(4 * g + k);
-          t.weights.push_back(slot < plan.weight.size() ? static_cast<float>(plan.weight[slot][static_cast<size_t>(loop.first + i)]) : 0.0f);
+          t.weights.push_back(slot < plan.weight.size() ? static_cast<float>(plan.weight[slot][static_cast<size_t>(loop.first + n)]) : 0.0f);
         }
     at += static_cast<size_t>(loop.count) * loop.groups.size();
   }

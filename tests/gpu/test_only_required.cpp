@@ -342,7 +342,7 @@ TEST(OnlyRequired, BarestProgram) {
   const Built bare(f);
   ASSERT_EQ(bare.programs.size(), 1u);
   EXPECT_EQ(readsOf(bare.programs[0].text),
-            (std::set<std::string>{"visibility", "WeightBlock", "ViewBlock", "NodeBlock", "rows", "Draws", "Vertices", "Indices"}));
+            (std::set<std::string>{"visibility", "ViewBlock", "NodeBlock", "rows", "Draws", "Vertices", "Indices"}));
   const std::set<std::string> all = readsOf(Built(opaque()).programs[1].text);
   for (const char* name : {"hemispherical", "columns", "Materials", "Texels", "TextureShapes", "Lights", "Shadows", "Trees", "shadowMaps", "AirBlock",
                            "airAmounts", "airRadiance"})
@@ -374,7 +374,7 @@ TEST(OnlyRequired, WhatNoChannelWouldNotice) {
   ASSERT_EQ(both.plan.blocks.size(), 2u);
   EXPECT_FALSE(both.plan.blocks[0].lit);
   EXPECT_TRUE(both.plan.blocks[1].lit);
-  EXPECT_TRUE(both.holds("= nodeRadianceUnlit(0 + i)") && both.holds("= nodeRadiance(" + std::to_string(both.plan.blocks[1].first) + " + i)"));
+  EXPECT_TRUE(both.holds("= nodeRadianceUnlit(0 + 0)") && both.holds("= nodeRadiance(" + std::to_string(both.plan.blocks[1].first) + " + 0)"));
   // Asked for more closely it counts.
   Features close = lw;
   close.accuracy = "accuracy: 0.1 %\n";

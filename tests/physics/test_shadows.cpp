@@ -181,14 +181,15 @@ TEST(Shadows, NothingLitIsDarkened) {
                           camera(96, 40, "[3 m, -14 m, 9 m]", "[0 m, 0 m, 0 m]")));
       };
       const Picture with = picture(true), without = picture(false);
+      const float brightest = *std::max_element(without.radiance.begin(), without.radiance.end());
       for (size_t p = 0; p < with.radiance.size(); ++p) {
         lit += without.radiance[p] > 0.0f;
-        wrong += with.radiance[p] != without.radiance[p];
+        wrong += std::abs(with.radiance[p] - without.radiance[p]) > 2e-6f * brightest;
       }
     }
   EXPECT_GT(lit, 100000);
   bound("surfaces that nothing shades, 1 to 90 deg of sun, pixels changed by shadows", static_cast<double>(wrong), 0,
-        "same bits; " + std::to_string(lit) + " lit pixels");
+        "but for the rounding of another program, 2e-6 of the brightest; " + std::to_string(lit) + " lit pixels");
 }
 
 // A jet 200 m above terrain of 50 km, 10 km from its middle: area of its shadow is its outline's along the sun over sin(elevation).

@@ -6,7 +6,7 @@
 //@constants
 //@use sim/render/glsl/ray.glsl
 //@use sim/render/glsl/node_block.glsl
-layout(std140, binding = 2) uniform WeightBlock { vec4 weight[WEIGHTS]; } weights;
+//@slot weights
 
 // What a pixel sees, set by lookAt().
 Draw draw_;

@@ -22,7 +22,7 @@ ReferencePass::ReferencePass(const Simulation& simulation, const Plan& plan, con
       spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes)) {
   if (!truth) return;
   ShaderSlots slots = shadingSlots();
-  slots.constants["WEIGHTS"] = 1;
+  slots.generated["weights"] = "";
   slots.files["truth"] = "sim/render/glsl/truth_layers.glsl";
   slots.generated["targets"] = "void clearTargets() {}\n";
   slots.generated["integrate"] = "void integrate() {}\n";
