@@ -72,7 +72,7 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
   slots.generated["weights"] = "";  // shading itself integrates nothing
   slots.files["truth"] = "sim/render/glsl/truth_none.glsl";
   const auto spectrum = writeSpectrum(slots, targets_);
-  shade_ = ShadingProgram(library, slots, spectrum, 0);
+  shade_ = ClassPrograms(library, slots, tables(), surfaceClasses(), spectrum);
   for (int first = 0; first < plan.nodeCount(); first += perBatch) {
     const int count = std::min(perBatch, plan.nodeCount() - first);
     Batch batch;
@@ -95,7 +95,7 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
 
 std::vector<NamedProgram> BufferedPass::programs() const {
   auto all = ScenePass::programs();
-  all.push_back({"shading", shade_.text()});
+  shade_.addTo(all);
   if (hasTruth()) all.push_back({"truth", truth_.text()});
   if (layers_)
     for (NamedProgram& p : layers_->programs()) all.push_back(std::move(p));
@@ -108,7 +108,6 @@ RenderTarget& BufferedPass::spectrumFor(const RenderTarget& visibility) {
     if (t.width() == visibility.width() && t.height() == visibility.height()) return t;
   RenderTarget& made =
       spectra_.emplace_back(visibility.width(), visibility.height(), std::vector<PixelFormat>(static_cast<size_t>(targets_), PixelFormat::Rgba32f), false);
-  made.shareDepth(visibility);
   return made;
 }
 
@@ -129,11 +128,10 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
       const GLfloat zero[4] = {0, 0, 0, 0};
       for (size_t t = 0; t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), zero);
     }
-    shade_.use();
-    glUniform1i(shade_.uniform("firstNode"), batches_[b].firstNode);
-    shade_.run(spectrum);
+    shade_.run(spectrum, pixelClasses(), [&](const ShadingProgram& p) { glUniform1i(p.uniform("firstNode"), batches_[b].firstNode); });
     if (layers_ && !layers_->isEmpty()) {
       const TimedPart part("transparent");
+      spectrum.shareDepth(visibility);
       layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode});
       bindBuffers();
       visibility.colour(0).bind(0);
@@ -152,7 +150,7 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDisable(GL_BLEND);
   }
-  if (hasTruth()) truth_.run(into);
+  if (hasTruth()) truth_.run(into, pixelClasses().all());
 }
 
 }  // namespace pitviper

@@ -2,6 +2,7 @@
 // Buffered mode: the target holds the spectral image, one value per spectral node, and a pass of its own integrates it with the
 // channels' kernels; between the two, transparent things are blended over it. Source: Duvenhage 2006 sections 4.6.2 and 5.3. Nodes beyond 32
 // (eight RGBA targets) go in further batches, whose integrals add up.
+#include "sim/render/class_programs.hpp"
 #include "sim/render/layer_pass.hpp"
 #include "sim/render/scene_pass.hpp"
 
@@ -29,7 +30,8 @@ class BufferedPass final : public ScenePass {
     Buffer weights;
   };
   std::vector<Batch> batches_;
-  ShadingProgram shade_, truth_;
+  ClassPrograms shade_;
+  ShadingProgram truth_;
   std::unique_ptr<LayerPass> layers_;
   int targets_ = 0;  ///< RGBA targets of the spectral image
   std::deque<RenderTarget> spectra_;

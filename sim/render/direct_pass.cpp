@@ -23,19 +23,19 @@ DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const Sha
   auto targets = channelTargets();
   if (truth)
     for (const auto& name : truthTargets()) targets.push_back(name);
-  program_ = ShadingProgram(library, slots, targets, 0);
+  programs_ = ClassPrograms(library, slots, tables(), surfaceClasses(), targets);
   weights_.upload(tables().weights);
 }
 
 std::vector<NamedProgram> DirectPass::programs() const {
   auto all = ScenePass::programs();
-  all.push_back({"shading", program_.text()});
+  programs_.addTo(all);
   return all;
 }
 
 void DirectPass::shade(RenderTarget& into, const RenderTarget&) {
   weights_.bindUniform(2);
-  program_.run(into);
+  programs_.run(into, pixelClasses());
 }
 
 std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,

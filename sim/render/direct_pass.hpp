@@ -1,5 +1,6 @@
 #pragma once
 // Direct mode: shading integrates straight into the channels; the spectral image never exists. Source: Duvenhage 2006 section 4.6.1.
+#include "sim/render/class_programs.hpp"
 #include "sim/render/scene_pass.hpp"
 
 namespace pitviper {
@@ -8,12 +9,12 @@ class DirectPass final : public ScenePass {
  public:
   DirectPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
              double apertureArea_m2);
-  std::string shadingText() const override { return program_.text(); }
+  std::string shadingText() const override { return programs_.text(); }
   std::vector<NamedProgram> programs() const override;
 
  private:
   void shade(RenderTarget& into, const RenderTarget& visibility) override;
-  ShadingProgram program_;
+  ClassPrograms programs_;
   Buffer weights_;
 };
 

@@ -1,5 +1,5 @@
 #pragma once
-// Which point lights can matter to which bodies: the others cost nothing.
+// Which point lights can matter to which bodies, and to what distance their shadows do: the others cost nothing.
 #include <vector>
 
 #include "sim/render/tables.hpp"
@@ -12,9 +12,22 @@ class LightRelevance {
   /// False where a light is dark, or where the most that a body can reflect of it anywhere is, at every wavelength and for all lights
   /// together, below what single precision can tell from the radiance that its surfaces have by themselves: E f_max < 6e-8 / lights x S.
   bool matters(std::size_t entity, std::size_t light, const WorldState& state) const;
+  /// The square of the distance from a light beyond which its shadows on a body don't matter [m2]: unshaded it is, for all lights together, less than
+  /// kShadowShare of the accuracy asked for; without one, as above.
+  double shadowReach2_m2(std::size_t entity, std::size_t light, const WorldState& state) const;
+  /// Whether the body comes as near.
+  bool shadowMatters(std::size_t entity, std::size_t light, const WorldState& state) const;
+  /// Of the accuracy, the part that shadows of lamps may take.
+  static constexpr double kShadowShare = 0.02;
 
  private:
+  double nearest2_m2(std::size_t entity, std::size_t light, const WorldState& state) const;
+  double share(double part) const { return part / static_cast<double>(simulation_.lights.size()); }
+  double strength_m2(std::size_t entity, std::size_t light, const WorldState& state) const {
+    return state.lightLevels[light] > 0.0 ? state.lightLevels[light] * ratio_[entity * simulation_.lights.size() + light] : 0.0;
+  }
   const Simulation& simulation_;
+  double accuracy_;
   std::vector<double> ratio_;  ///< [entity][light]: greatest f_max I / S over nodes and surfaces at level 1 [m2]; 0: reflects none of it
 };
 

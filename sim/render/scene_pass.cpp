@@ -46,12 +46,16 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       apertureArea_m2_(apertureArea_m2),
       outline_(shading == Shading::Reference ? std::optional(outline(plan)) : std::nullopt),
       tables_(makeTables(simulation, tabled())),
+      surfaceClasses_(sortIntoClasses(tables_, simulation)),
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
       relevance_(std::in_place, simulation, tabled(), tables_),
       how_(shading) {
   if (plan.terms.air && shading != Shading::Reference) air_ = simulation.air->onGpu(simulation, plan, shading == Shading::Direct);
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
+  ShaderSlots slots;
+  slots.constants["GROUND"] = tables_.ground;
+  pixelClasses_.emplace(library, slots);
   if (shading != Shading::Reference)
     checkUniformSize((tables_.node.size() + tables_.ambient.size() + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float),
                      "the spectral nodes");
@@ -73,6 +77,7 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
   slots.constants["SUN"] = simulation_.sun && plan_.lightCount > 0 ? 1 : 0;
   slots.constants["GROUND"] = tables_.ground;
+  slots.constants["SURFACES"] = 1;
   slots.constants["SUN_SETS"] = simulation_.overEarth() ? 1 : 0;
   // Of four lights a vec4 at each node [W/(sr um)], the sun as irradiance; and radiance of the dome.
   slots.generated["light_nodes"] = plan_.lightCount > 0 ? "  vec4 nodeLight[NODES * LIGHT_GROUPS];\n" : "";
@@ -81,8 +86,9 @@ ShaderSlots ScenePass::shadingSlots() const {
 }
 
 std::vector<NamedProgram> ScenePass::programs() const {
-  if (!shadows_) return {};
-  return {{"shadow maps", shadows_->program().text()}};
+  std::vector<NamedProgram> all;
+  if (shadows_) all.push_back({"shadow maps", shadows_->program().text()});
+  return all;
 }
 
 std::vector<std::string> ScenePass::channelTargets() const {
@@ -105,7 +111,7 @@ void ScenePass::setState(const WorldState& state) {
   nodes_.upload(block);
   if (air_) air_->begin();
   const TimedPart shadows("shadow maps");
-  if (shadows_) shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_->matters(e, l, state); });
+  if (shadows_) shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_->shadowMatters(e, l, state); });
 }
 
 void ScenePass::uploadView(const View& v, const WorldState& state) {
@@ -145,24 +151,25 @@ void ScenePass::uploadDraws(const View& v, const WorldState& state) {
     const size_t lightRow = static_cast<size_t>(item.entity + 1);
     const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
     g.state = {item.entity >= 0 ? item.temperature_K : s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
-    g.fine = {origin.z - static_cast<double>(static_cast<float>(origin.z)), 0.0, 0.0, 0.0};
+    g.fine = {origin.z - static_cast<double>(static_cast<float>(origin.z)), PixelClasses::depthOf(static_cast<size_t>(item.surfaceClass)), 0.0, 0.0};
     glm::vec4* row = &lights[lightRow * stride];
     const bool ground = item.kind == DrawKind::Ground;
     if (plan_.lightCount > 0 && (item.entity >= 0 || ground) && row->x == 0.0f) {  // once for all surfaces of a body
       // Few lights have a place each, many are listed one after the other: lights_few.glsl, lights_many.glsl.
       const bool few = plan_.lightCount <= kFewLights;
-      auto add = [&](const glm::dvec3& place, double radius_m, size_t number, bool matters) {
+      auto add = [&](const glm::dvec3& place, double radius_m, size_t number, bool matters, double shadowReach2_m2) {
         if (!few && !matters) return;
         const size_t k = few ? number : static_cast<size_t>(row->x);
         row[2 * k + 1] = glm::vec4(place, radius_m);
         const auto casters = shadows_ && matters && !ground ? shadows_->castersOf(static_cast<size_t>(item.entity), number) : ShadowPass::Range{};
-        row[2 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, 0.0f);
+        row[2 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, shadowReach2_m2);
         row->x += 1.0f;
       };
       for (size_t l = 0; l < simulation_.lights.size(); ++l)
         add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l,
-            !ground && ((truth_ && l == 0) || relevance_->matters(static_cast<size_t>(item.entity), l, state)));
-      if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true);
+            !ground && ((truth_ && l == 0) || relevance_->matters(static_cast<size_t>(item.entity), l, state)),
+            ground ? 0.0 : relevance_->shadowReach2_m2(static_cast<size_t>(item.entity), l, state));
+      if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true, physics::kFar);
     }
     draws.push_back(g);
   }
@@ -207,6 +214,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
     beforeShading(v, state, drawn);
   }
   const TimedPart part("shading");
+  pixelClasses_->find(current_->visibility);
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
   if (partial_) {

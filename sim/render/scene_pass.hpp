@@ -9,10 +9,12 @@
 #include "sim/render/air_on_gpu.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/light_relevance.hpp"
+#include "sim/render/pixel_classes.hpp"
 #include "sim/render/shading_program.hpp"
 #include "sim/render/shadow_pass.hpp"
 #include "sim/render/solid_pass.hpp"
 #include "sim/render/surface_buffers.hpp"
+#include "sim/render/surface_classes.hpp"
 #include "sim/render/tables.hpp"
 
 namespace pitviper {
@@ -63,6 +65,10 @@ class ScenePass {
   const Plan& plan() const { return plan_; }
   const AirOnGpu* air() const { return air_.get(); }
   bool hasTruth() const { return truth_; }
+  /// Classes of what is solid.
+  const std::vector<SurfaceClass>& surfaceClasses() const { return surfaceClasses_; }
+  /// Of the picture's pixels, found before shade().
+  const PixelClasses& pixelClasses() const { return *pixelClasses_; }
   /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
   ShaderSlots shadingSlots() const;
   /// Names of the channel targets, and of the truth targets, in order.
@@ -89,6 +95,8 @@ class ScenePass {
   double apertureArea_m2_;
   std::optional<Plan> outline_;  ///< reference: the same plan at one wavelength
   RenderTables tables_;
+  std::vector<SurfaceClass> surfaceClasses_;
+  std::optional<PixelClasses> pixelClasses_;  ///< made with the tables
   SurfaceBuffers solid_;
   SolidPass solids_;
   std::optional<LightRelevance> relevance_;

@@ -43,14 +43,22 @@ ShadingProgram::ShadingProgram(const ShaderLibrary& library, ShaderSlots slots, 
   program_ = fragments ? Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), shading) : Program(shading);
 }
 
-void ShadingProgram::run(RenderTarget& into) const {
+void ShadingProgram::run(RenderTarget& into, const ChosenPixels& chosen) const {
   program_.use();
+  glUniform1f(program_.uniform("classDepth"), chosen.depth);
   if (stage_ == ShadingStage::Fragment) {
     into.select(firstColour_, colours_);
+    into.shareDepth(chosen.classes);
     into.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(chosen.below ? GL_GREATER : GL_EQUAL);
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    glDisable(GL_DEPTH_TEST);
     return;
   }
+  glUniform1i(program_.uniform("below"), chosen.below);
+  chosen.classes.depth().bind(18);
   for (std::size_t i = 0; i < colours_; ++i)
     glBindImageTexture(static_cast<GLuint>(i), into.colour(firstColour_ + i).name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);  // what was drawn into these textures, and read from them, comes first

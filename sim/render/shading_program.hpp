@@ -1,6 +1,7 @@
 #pragma once
 // Spectral shading of every pixel of a picture, as full-screen fragments or as compute, from the same bodies.
 #include "sim/gl/objects.hpp"
+#include "sim/render/pixel_classes.hpp"
 
 namespace pitviper {
 
@@ -26,8 +27,8 @@ class ShadingProgram {
   /// Uniforms may be set between use() and run().
   void use() const { program_.use(); }
   int uniform(const char* name) const { return program_.uniform(name); }
-  /// Buffers and textures are bound; binds and selects its colours of the target.
-  void run(RenderTarget& into) const;
+  /// Buffers and textures are bound; binds and selects its colours of the target, whose depth becomes the classes'.
+  void run(RenderTarget& into, const ChosenPixels& chosen) const;
 
  private:
   ShadingStage stage_ = ShadingStage::Fragment;

@@ -30,6 +30,7 @@ struct DrawItem {
   std::uint32_t row = 0;       ///< first entry of its row in the tables of its kind
   std::uint32_t material = 0;  ///< in the tables of its kind
   double temperature_K = 0.0;  ///< that its row is of
+  int surfaceClass = 0;        ///< of what is solid (surface_classes.hpp)
 };
 
 /// What a program needs of the surfaces that it draws: the solid ones, or the transparent ones.

@@ -1,2 +1,3 @@
-// One triangle that covers the film.
-void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, 0.5, 1.0); }
+// One triangle that covers the film, at the depth of the class that is drawn.
+uniform float classDepth = 0.5;
+void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, gl_VertexID == 2 ? 3.0 : -1.0, classDepth, 1.0); }

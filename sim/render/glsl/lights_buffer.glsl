@@ -1,7 +1,7 @@
 //@use sim/radiometry/glsl/sun_disc.glsl
 // A body's row of lights: how many can matter to it, then their place or direction in the body frame with their radius, and their number;
 // places that are left over have the number -1. Beside the
-// number: first and count of the casters that can shade the body from it.
+// number: first and count of the casters that can shade the body from it, and the square of the distance beyond which that does not matter.
 layout(std430, binding = 5) readonly buffer Lights { vec4 lights[]; };
 
 // Of a material's components three at a time: columns at a node for a light, and lobes.
@@ -39,7 +39,7 @@ LightHere lightAt(int entry, bool sun) {
     lightDistance2_ = d2;
   }
   here.factor = here.number < 0 ? 0.0 : isSurface_ * (sun ? share * max(cosLight, 0.0) : pointIrradianceFactor(cosLight, d2, light.w));
-  if (here.factor > 0.0) here.factor *= shareSeen(lights[entry + 1], here.to, sun ? kFar : d - light.w);
+  if (here.factor > 0.0 && d2 < lights[entry + 1].w) here.factor *= shareSeen(lights[entry + 1], here.to, sun ? kFar : d - light.w);
   if (sun) here.air = airToSun(air_, height_);
   else here.air = airToLight(air_, height_, dot(up_, here.to), d);
   return here;

@@ -1,10 +1,9 @@
-// The solid scene: what the visibility pass found, once per pixel, into the channels (direct) or the spectral image (buffered).
+// The solid scene of one class: what the visibility pass found, once per pixel, into the channels (direct) or the spectral image (buffered).
 layout(binding = 0) uniform usampler2D visibility;
 //@use sim/render/glsl/shading.glsl
 
 void main() {
   uvec2 id = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).xy;
-  if (view.earth.z > 0.0 && float(draws[id.x].table.w) != view.earth.z) discard;
   lookAt(id, gl_FragCoord.xy);
   clearTargets();
   integrate();

@@ -41,7 +41,7 @@ Real nodeRadiance(int i) { return pathSeen(i, air_, selfRadiance(i)) + reflected
 void lookAt(uvec2 id, vec2 pixel) {
   prepareRay(pixel);
   // What meets no body and goes down ends at the ground.
-  float ground = GROUND >= 0 && id.x == 0u ? groundRange(view.up.w, sinElevation_, view.earth.x) : kFar;
+  float ground = SURFACES > 0 && GROUND >= 0 && id.x == 0u ? groundRange(view.up.w, sinElevation_, view.earth.x) : kFar;
   draw_ = draws[ground < kFar ? uint(max(GROUND, 0)) : id.x];
   vec3 d = inBody(draw_, ray_);
   isSurface_ = id.x == 0u && ground >= kFar ? 0.0 : 1.0;
@@ -52,7 +52,7 @@ void lookAt(uvec2 id, vec2 pixel) {
   point_ = vec3(0.0);
   uv_ = vec2(0.0);
   range_ = max(ground, 1.0e-6);
-  if (id.x != 0u) {
+  if (SURFACES > 0 && id.x != 0u) {
     vec3 q = pointOnPlane(draw_);
     Meeting m = meet(id.y, q, d);
     vec4 a = vertices[m.corner.x], b = vertices[m.corner.y], c = vertices[m.corner.z];

@@ -18,17 +18,18 @@ bool meetsTree(int at, int end, vec3 origin, vec3 direction, float farthest, flo
   vec3 inverse = 1.0 / safe;
   bool met = false;
   while (at < end) {
-    uvec4 low = trees[at], high = trees[at + 1];
-    vec3 a = (uintBitsToFloat(low.xyz) - origin) * inverse, b = (uintBitsToFloat(high.xyz) - origin) * inverse;
-    vec3 enter = min(a, b), leave = max(a, b);
-    float from = max(max(enter.x, enter.y), max(enter.z, 0.0)), to = min(min(leave.x, leave.y), min(leave.z, farthest));
-    bool missed = from > to + 1.0e-6 * max(from, abs(to));  // with room for the rounding of differences and products
-    if (missed) {
-      at = int(low.w);
-      continue;
+    // Boxes until one with triangles: llvmpipe runs the body of a loop once where it has nothing to do, so boxes don't pay for triangles.
+    int count = 0;
+    while (at < end && count == 0) {
+      uvec4 low = trees[at], high = trees[at + 1];
+      vec3 a = (uintBitsToFloat(low.xyz) - origin) * inverse, b = (uintBitsToFloat(high.xyz) - origin) * inverse;
+      vec3 enter = min(a, b), leave = max(a, b);
+      float from = max(max(enter.x, enter.y), max(enter.z, 0.0)), to = min(min(leave.x, leave.y), min(leave.z, farthest));
+      bool missed = from > to + 1.0e-6 * max(from, abs(to));  // with room for the rounding of differences and products
+      at = missed ? int(low.w) : at + 2;
+      count = missed ? 0 : int(high.w);
     }
-    at += 2;
-    for (int last = at + 3 * int(high.w); at < last; at += 3) {
+    for (int last = at + 3 * count; at < last; at += 3) {
       vec3 corner = uintBitsToFloat(trees[at].xyz);
       vec3 e1 = uintBitsToFloat(trees[at + 1].xyz) - corner, e2 = uintBitsToFloat(trees[at + 2].xyz) - corner;
       vec3 p = cross(direction, e2), q = origin - corner, r = cross(q, e1);

@@ -102,7 +102,7 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
   for (auto& w : workers) w.get();
   ++viewsDone_;
   for (size_t g = 0; g < groups; ++g) glTextureSubImage2D(into.colour(g).name(), 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, channels[g].data());
-  if (hasTruth()) truthProgram_.run(into);
+  if (hasTruth()) truthProgram_.run(into, pixelClasses().all());
 }
 
 }  // namespace pitviper

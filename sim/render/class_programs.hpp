@@ -1,0 +1,26 @@
+#pragma once
+// The shading of a picture: a program for each class of surfaces, each over its own pixels.
+#include <functional>
+
+#include "sim/render/shading_program.hpp"
+#include "sim/render/surface_classes.hpp"
+
+namespace pitviper {
+
+class ClassPrograms {
+ public:
+  ClassPrograms() = default;
+  /// `slots`: of a program for all solid surfaces; `targets`: as ShadingProgram's, from the first colour on.
+  ClassPrograms(const ShaderLibrary& library, const ShaderSlots& slots, const RenderTables& tables, const std::vector<SurfaceClass>& classes,
+                const std::vector<std::string>& targets);
+  /// `set`: sets uniforms of each.
+  void run(RenderTarget& into, const PixelClasses& pixels, const std::function<void(const ShadingProgram&)>& set = {}) const;
+  void addTo(std::vector<NamedProgram>& all) const;
+  /// Of the class of most text.
+  std::string text() const;
+
+ private:
+  std::vector<ShadingProgram> programs_;  ///< of each class
+};
+
+}  // namespace pitviper

@@ -1,0 +1,27 @@
+#include "sim/render/pixel_classes.hpp"
+
+#include <epoxy/gl.h>
+
+#include "sim/gl/context.hpp"
+
+namespace pitviper {
+
+PixelClasses::PixelClasses(const ShaderLibrary& library, const ShaderSlots& slots)
+    : program_(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/classes.frag.glsl", slots)) {}
+
+void PixelClasses::find(const RenderTarget& visibility) {
+  found_ = nullptr;
+  for (const RenderTarget& t : targets_)
+    if (t.width() == visibility.width() && t.height() == visibility.height()) found_ = &t;
+  if (!found_) found_ = &targets_.emplace_back(visibility.width(), visibility.height(), std::vector<PixelFormat>{}, true);
+  found_->bind();
+  visibility.colour(0).bind(0);
+  glEnable(GL_DEPTH_TEST);
+  glDepthFunc(GL_ALWAYS);
+  glDepthMask(GL_TRUE);
+  program_.use();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_DEPTH_TEST);
+}
+
+}  // namespace pitviper

@@ -1,0 +1,39 @@
+#pragma once
+// Which class each pixel of a picture is of, kept as depth: a pass over the whole film that is tested against it shades the pixels of one class alone.
+// Source: deferred shading's usual material depth; measured on llvmpipe, where every branch runs both ways and only depth or stencil skip.
+#include <deque>
+
+#include "sim/gl/objects.hpp"
+
+namespace pitviper {
+
+/// Pixels that a pass draws.
+struct ChosenPixels {
+  const RenderTarget& classes;
+  float depth;   ///< of the class that is drawn ...
+  bool below;    ///< ... or all classes below that depth
+};
+
+class PixelClasses {
+ public:
+  /// So many can be told apart; the first is what is behind all surfaces.
+  static constexpr std::size_t kMost = 14;
+  /// `slots`: those of shading.
+  PixelClasses(const ShaderLibrary& library, const ShaderSlots& slots);
+  /// Of what was drawn last. Buffers and the view are bound.
+  void find(const RenderTarget& visibility);
+  ChosenPixels only(std::size_t surfaceClass) const { return {*found_, depthOf(surfaceClass), false}; }
+  /// Surfaces: all classes but the first.
+  ChosenPixels surfaces() const { return {*found_, 0.5f * (depthOf(0) + depthOf(kMost - 1)), true}; }
+  /// All that is drawn: nothing but what a view of one body leaves out.
+  ChosenPixels all() const { return {*found_, 0.5f * (depthOf(0) + 1.0f), true}; }
+  /// Exact in single precision. The first class lies behind the others, and what no class has behind it.
+  static float depthOf(std::size_t surfaceClass) { return surfaceClass == 0 ? 15.0f / 16.0f : static_cast<float>(surfaceClass) / 16.0f; }
+
+ private:
+  Program program_;
+  std::deque<RenderTarget> targets_;
+  const RenderTarget* found_ = nullptr;
+};
+
+}  // namespace pitviper
