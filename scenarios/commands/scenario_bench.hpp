@@ -9,8 +9,8 @@ namespace pitviper {
 struct ScenarioRate {
   std::string camera;
   int nodes = 0, channels = 0, frames = 0;
-  double seconds = 0.0;           ///< of a frame: median
-  double yardstickSeconds = 0.0;  ///< of the yardstick's frame between
+  double seconds = 0.0;                      ///< of a frame: median
+  double yardstickSeconds = 0.0;             ///< of the yardstick's frame between
   std::map<std::string, double> parts = {};  ///< seconds of each part of a frame
 };
 

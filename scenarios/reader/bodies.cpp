@@ -226,8 +226,7 @@ void Builder::readSurfaces(const Record& r, Entity& entity) {
     const Value& map = r.value("parts");
     for (size_t i = 0; i < map.entries.size(); ++i) {
       const auto& [name, value] = map.entries[i];
-      if (std::find(names.begin(), names.end(), name) == names.end())
-        throw unknownWord(map.keyPlaces[i], "this shape has no part", name, names, "remove it");
+      if (std::find(names.begin(), names.end(), name) == names.end()) throw unknownWord(map.keyPlaces[i], "this shape has no part", name, names, "remove it");
       const Record part(value, tables::part());
       if (!parts.emplace(name, Given{part.find("material"), part.find("temperature")}).second)
         throw UserError(map.keyPlaces[i], "a second entry for part '" + name + "'", "one", "remove one");

@@ -225,10 +225,10 @@ void Builder::readCameras(const Record& scenario) {
         else if (word == "area") c.truth.area = true;
         else if (word == "solid_angles") c.truth.solidAngles = true;
         else if (word == "pixel_solid_angle") c.truth.pixelSolidAngle = true;
-        else
-          throw unknownWord(t.where, "there is no truth layer", word, names);
+        else throw unknownWord(t.where, "there is no truth layer", word, names);
       }
     planned(c.outputs, c.spectral, c.where);
+    c.outlineAccuracy = c.spectral.reference ? 0.0 : c.spectral.accuracy;
     if (r.given("stages"))
       for (const Value& s : r.value("stages").items) {
         c.stages.push_back(readStage(s, c));

@@ -13,7 +13,8 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
       camera_(camera),
       plan_(planFor(simulation, {&camera, nullptr}, planning)),
       scattering_(simulation, camera, plan_),
-      ways_(simulation, plan_) {
+      ways_(simulation, plan_),
+      lines_(zoomedLines(simulation, camera.zoomedSamples, camera.outlineAccuracy)) {
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
   const double area_m2 = camera.pinhole.apertureArea_m2();
   if (camera.spectral.reference) {
@@ -113,7 +114,7 @@ CameraImage CameraRenderer::finish() {
   Subpixels image(plan_, view_, pass_->finishReadback());
   {
     const TimedPart part("small bodies");
-    addSmallBodies(image, *pass_, simulation_, state_, small_, present_, camera_.zoomedSamples, wanted_.get());
+    addSmallBodies(image, *pass_, simulation_, state_, small_, present_, lines_, wanted_.get());
   }
   {
     const TimedPart part("lamps in view");

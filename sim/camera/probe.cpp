@@ -47,7 +47,8 @@ ProbeMeter::ProbeMeter(const Simulation& simulation, const Probe& probe, const S
       normal_(glm::normalize(probe.normal)),
       plan_(planFor(simulation, {nullptr, &probe})),
       ways_(simulation, plan_),
-      all_(simulation.entities.size(), 1) {
+      all_(simulation.entities.size(), 1),
+      lines_(zoomedLines(simulation, Camera{}.zoomedSamples, probe.spectral.reference ? 0.0 : plan_.accuracy)) {
   pass_ = probe.spectral.reference ? std::make_unique<ReferencePass>(simulation, plan_, library, scene, false, 1.0)
                                    : makeScenePass(simulation, plan_, library, scene, false, 1.0);
 }
@@ -60,7 +61,7 @@ void ProbeMeter::addSurroundings(const WorldState& state, std::vector<double>& s
     pass_->draw(v, state, drawn);
     pass_->startReadback();
     Subpixels image(plan_, v, pass_->finishReadback());
-    addSmallBodies(image, *pass_, simulation_, state, small, all_, Camera{}.zoomedSamples);
+    addSmallBodies(image, *pass_, simulation_, state, small, all_, lines_);
     for (int y = 0; y < v.height; ++y)
       for (int x = 0; x < v.width; ++x) {
         const glm::dvec3 ray = v.ray(x + 0.5, y + 0.5);

@@ -26,7 +26,8 @@ class ProbeMeter {
   Plan plan_;
   std::unique_ptr<ScenePass> pass_;
   WaysToLights ways_;
-  std::vector<char> all_;  ///< flags of all entities
+  std::vector<char> all_;   ///< flags of all entities
+  std::vector<int> lines_;  ///< across each small body
 };
 
 }  // namespace pitviper

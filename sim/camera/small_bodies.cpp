@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <glm/gtc/constants.hpp>
 #include <map>
 #include <memory>
 
@@ -116,7 +117,7 @@ void takeTruth(Subpixels& image, const RawImage& zoomed, const Share& share, dou
   image.setTruth(pixel, truth);
 }
 
-/// With 256 across the bounding sphere the area of a silhouette is sampled to about 0.1 %; at least 8 a subpixel.
+/// At least 8 a subpixel.
 int zoomedSize(double extent, int samples) {
   int size = samples;
   while (size < 8.0 * extent && size < 4096) size *= 2;
@@ -192,33 +193,61 @@ std::shared_ptr<const std::vector<char>> marksOf(const Subpixels& image, const V
   return marks;
 }
 
-/// A solid body that nothing transparent is near: where it shows it takes the place of what is behind it.
-void drawSolid(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, int entity, const std::vector<char>& drawn, int samples,
-               const std::vector<char>* only, FineSubpixels& fine) {
-  View z = zoomedView(sim, state, image.view(), entity, zoomedSize(extentOf(sim, state, image.view(), entity), samples));
-  if (only) {
-    z.wanted = marksOf(image, z, *only);
-    if (!anyOf(*z.wanted)) return;
+/// Solid bodies that nothing transparent is near: where one shows it takes the place of what is behind it.
+class SolidBodies {
+ public:
+  /// `only`: subpixels that are wanted, or null.
+  SolidBodies(Subpixels& image, const Simulation& sim, const WorldState& state, const std::vector<int>& bodies, const std::vector<int>& lines,
+              const std::vector<char>* only)
+      : image_(image), only_(only) {
+    for (int e : bodies) {
+      View z = zoomedView(sim, state, image.view(), e, zoomedSize(extentOf(sim, state, image.view(), e), lines[static_cast<size_t>(e)]));
+      if (only) {
+        z.wanted = marksOf(image, z, *only);
+        if (!anyOf(*z.wanted)) continue;
+      }
+      views_.push_back(z);
+    }
+    std::stable_sort(views_.begin(), views_.end(), [](const View& x, const View& y) { return x.width < y.width; });
   }
-  pass.draw(z, state, drawn);
-  pass.startReadback(true);
-  const RawImage zoomed = pass.finishReadback();
-  gather(image, z, zoomed,
-         sharesOf(
-             image, z, zoomed, [&](size_t q) { return zoomed.entity[q] == entity && (!only || (*z.wanted)[q]) ? static_cast<std::uint32_t>(q) : kNone; },
-             [](int) { return true; }),
-         fine);
-}
+  /// `drawn`: what may hide them, themselves too.
+  void draw(ScenePass& pass, const WorldState& state, const std::vector<char>& drawn, FineSubpixels& fine) const {
+    for (auto first = views_.begin(); first != views_.end();) {
+      const auto last = std::find_if(first, views_.end(), [&](const View& z) { return z.width != first->width; });
+      if (pass.drawsTiles()) {
+        const auto zoomed = pass.drawTiles({first, last}, state, drawn);
+        for (auto z = first; z != last; ++z) add(*z, zoomed[static_cast<size_t>(z - first)], fine);
+      } else {
+        for (auto z = first; z != last; ++z) {
+          pass.draw(*z, state, drawn);
+          pass.startReadback(true);
+          add(*z, pass.finishReadback(), fine);
+        }
+      }
+      first = last;
+    }
+  }
+
+ private:
+  void add(const View& z, const RawImage& zoomed, FineSubpixels& fine) const {
+    const auto own = [&](size_t q) { return zoomed.entity[q] == z.onlyEntity && (!only_ || (*z.wanted)[q]) ? static_cast<std::uint32_t>(q) : kNone; };
+    gather(image_, z, zoomed, sharesOf(image_, z, zoomed, own, [](int) { return true; }), fine);
+  }
+  Subpixels& image_;
+  const std::vector<char>* only_;
+  std::vector<View> views_;  ///< by size
+};
 
 /// Bodies that are seen through something or that something is seen through, all in their places in every picture. A direction is sampled by the
 /// finest view that looks at it: a small hot thing behind a large puff by its own, not by the puff's.
 class MixedBodies {
  public:
-  MixedBodies(const Simulation& sim, const WorldState& state, const View& v, const std::vector<int>& bodies, int samples)
+  MixedBodies(const Simulation& sim, const WorldState& state, const View& v, const std::vector<int>& bodies, const std::vector<int>& lines)
       : sim_(sim), state_(state), bodies_(bodies) {
     std::stable_sort(bodies_.begin(), bodies_.end(), [&](int x, int y) { return extentOf(sim, state, v, x) < extentOf(sim, state, v, y); });
     for (int e : bodies_) {
       const bool medium = sim.mediumOf(sim.entities[static_cast<size_t>(e)]) != nullptr;
+      const int samples = lines[static_cast<size_t>(e)];
       views_.push_back(zoomedView(sim, state, v, e, zoomedSize(extentOf(sim, state, v, e), medium ? samples / 2 : samples)));
       views_.back().onlyEntity = -1;
     }
@@ -324,8 +353,47 @@ std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state
   return small;
 }
 
+namespace {
+
+/// A body that is the same all over, and reflects the same into all directions: what is small on it is its outline.
+bool isEven(const Simulation& sim, const Entity& e) {
+  const auto plain = [](const auto& modifiers) { return std::all_of(modifiers.begin(), modifiers.end(), [](int texture) { return texture < 0; }); };
+  for (const Surface& s : e.surfaces) {
+    const Material& m = sim.materialOf(s);
+    if (s.temperatureTexture >= 0 || s.temperature_K != e.surfaces.front().temperature_K || s.material != e.surfaces.front().material) return false;
+    if (m.states || m.hemisphericalVaries() || !plain(m.modifiers) || (m.given && m.given->modifier >= 0)) return false;
+    for (const auto& r : m.reflections)
+      if (!r->lobe().file.empty() || r->axes()[0].angle != Angle::None) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
+  constexpr double kPart = 0.125;
+  constexpr int kFewest = 16;
+  std::vector<int> lines;
+  for (const Entity& e : sim.entities) {
+    lines.push_back(most);
+    if (accuracy <= 0.0 || !isEven(sim, e)) continue;
+    double surface = 0.0;
+    for (const auto& t : e.mesh->triangles) {
+      const glm::dvec3 a = e.mesh->positions[t.x];
+      surface += 0.5 * glm::length(glm::cross(glm::dvec3(e.mesh->positions[t.y]) - a, glm::dvec3(e.mesh->positions[t.z]) - a));
+    }
+    const double across = 2.0 * static_cast<double>(e.boundingRadius_m), area = 0.25 * surface, outline = glm::pi<double>() * across;
+    // h = across / lines in the law, solved for them.
+    const double needed = area > 0.0 ? across * std::cbrt(outline * 0.0724 / std::pow(kPart * accuracy * area, 2.0)) : INFINITY;
+    int enough = kFewest;
+    while (enough < needed && enough < most) enough *= 2;
+    lines.back() = std::min(enough, most);
+  }
+  return lines;
+}
+
 void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small,
-                    const std::vector<char>& present, int zoomedSamples, const std::vector<char>* wanted) {
+                    const std::vector<char>& present, const std::vector<int>& lines, const std::vector<char>* wanted) {
   const View& v = image.view();
   std::vector<int> bodies;
   std::vector<char> others = present;
@@ -338,15 +406,14 @@ void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, co
 
   // Each zoomed view shows what the others hide, and directions are shared out among them: their order does not matter.
   std::vector<char> solids = others;
-  std::vector<int> together;
+  std::vector<int> together, apart;
   for (size_t i = 0; i < bodies.size(); ++i) {
     solids[static_cast<size_t>(bodies[i])] = !mixed[i];
-    if (mixed[i]) together.push_back(bodies[i]);
+    (mixed[i] ? together : apart).push_back(bodies[i]);
   }
   FineSubpixels fine;
-  for (size_t i = 0; i < bodies.size(); ++i)
-    if (!mixed[i]) drawSolid(image, pass, sim, state, bodies[i], solids, zoomedSamples, wanted, fine);
-  MixedBodies(sim, state, v, together, zoomedSamples).draw(image, pass, others, wanted, fine);
+  SolidBodies(image, sim, state, apart, lines, wanted).draw(pass, state, solids, fine);
+  MixedBodies(sim, state, v, together, lines).draw(image, pass, others, wanted, fine);
   put(image, fine);
 }
 

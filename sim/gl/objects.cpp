@@ -81,6 +81,12 @@ void Buffer::upload(const void* data, std::size_t bytes) {
 
 void Buffer::bindStorage(unsigned index) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, index, name_); }
 void Buffer::bindUniform(unsigned index) const { glBindBufferBase(GL_UNIFORM_BUFFER, index, name_); }
+void Buffer::bindStoragePart(unsigned index, std::size_t first, std::size_t bytes) const {
+  glBindBufferRange(GL_SHADER_STORAGE_BUFFER, index, name_, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes));
+}
+void Buffer::bindUniformPart(unsigned index, std::size_t first, std::size_t bytes) const {
+  glBindBufferRange(GL_UNIFORM_BUFFER, index, name_, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes));
+}
 void Buffer::bindTexture(unsigned unit, int floatsPerTexel) const {
   if (texture_ == 0u) {
     GLint limit = 0;
@@ -155,12 +161,29 @@ RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>
 }
 
 void RenderTarget::select(std::size_t first, std::size_t count) {
+  if (selected_ == std::pair(first, count)) return;
+  selected_ = {first, count};
   std::vector<GLenum> buffers(first, GL_NONE);
   for (std::size_t i = first; i < first + count; ++i) buffers.push_back(GL_COLOR_ATTACHMENT0 + static_cast<GLenum>(i));
   glNamedFramebufferDrawBuffers(name_, static_cast<GLsizei>(buffers.size()), buffers.data());
 }
 
-void RenderTarget::shareDepth(const RenderTarget& other) { glNamedFramebufferTexture(name_, GL_DEPTH_ATTACHMENT, other.depth().name(), 0); }
+void RenderTarget::shareDepth(const RenderTarget& other) {
+  if (sharedDepth_ == other.depth().name()) return;
+  sharedDepth_ = other.depth().name();
+  glNamedFramebufferTexture(name_, GL_DEPTH_ATTACHMENT, sharedDepth_, 0);
+}
+
+void RenderTarget::setPart(const glm::ivec4& part) const {
+  const bool whole = part.z == 0;
+  glViewport(part.x, part.y, whole ? width_ : part.z, whole ? height_ : part.w);
+  if (whole) {
+    glDisable(GL_SCISSOR_TEST);
+  } else {
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(part.x, part.y, part.z, part.w);
+  }
+}
 
 void RenderTarget::copyFrom(const RenderTarget& other) {
   for (std::size_t i = 0; i < colours_.size(); ++i)

@@ -2,6 +2,7 @@
 // Owners of GL objects: program, buffer, texture, framebuffer, timer, readback. All need a current GlContext.
 #include <cstddef>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <initializer_list>
 #include <optional>
 #include <span>
@@ -70,6 +71,9 @@ class Buffer {
   }
   void bindStorage(unsigned index) const;
   void bindUniform(unsigned index) const;
+  /// A part of it [bytes], which begins at a multiple of 256.
+  void bindStoragePart(unsigned index, std::size_t first, std::size_t bytes) const;
+  void bindUniformPart(unsigned index, std::size_t first, std::size_t bytes) const;
   void bindElements() const;
   /// As a texture of floats, one or four to a texel, read by texelFetch.
   void bindTexture(unsigned unit, int floatsPerTexel) const;
@@ -111,6 +115,8 @@ class RenderTarget {
   void select(std::size_t first, std::size_t count);
   /// Tests against another target's depth (of the same size) from now on; it must outlive this one's use.
   void shareDepth(const RenderTarget& other);
+  /// Whole target, or a part: corner and size.
+  void setPart(const glm::ivec4& part) const;
   /// Copies all colours of a target of the same size and formats.
   void copyFrom(const RenderTarget& other);
   const Texture2D& colour(std::size_t i) const { return colours_[i]; }
@@ -125,6 +131,8 @@ class RenderTarget {
   std::vector<Texture2D> colours_;
   std::optional<Texture2D> depth_;
   int width_ = 0, height_ = 0;
+  std::pair<std::size_t, std::size_t> selected_{0, 0};  ///< first, count; none: all
+  unsigned sharedDepth_ = 0;
 };
 
 /// Square depth textures of one size, single precision, drawn one at a time and read together.

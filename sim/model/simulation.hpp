@@ -59,7 +59,8 @@ struct Camera {
   double near_m = 0.1;
   int samples = 1;             ///< n: n x n subpixels
   double smallBody_px = 16.0;  ///< bodies smaller than this are drawn by their own zoomed view
-  int zoomedSamples = 256;     ///< at least so many across it; a medium, which fades towards its silhouette, half as many
+  int zoomedSamples = 256;     ///< at most so many across it, unless it has more subpixels; a medium, which fades towards its silhouette, half as many
+  double outlineAccuracy = 0.0;  ///< to which the areas of small bodies are asked for, by fewer; 0: zoomedSamples
   SpectralSampling spectral;
   std::vector<FilmPlace> learnt;  ///< lines of sight that its plan must hold for besides those it draws: where an audit found more than was asked
   std::string plan;               ///< text of a plan to draw with, as written by another run; empty: one is made

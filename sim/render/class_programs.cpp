@@ -19,6 +19,10 @@ void ClassPrograms::run(RenderTarget& into, const PixelClasses& pixels, const st
   }
 }
 
+void ClassPrograms::run(RenderTarget& into, const PixelClasses& pixels, const glm::ivec4& part, const std::set<std::size_t>& classes) const {
+  for (std::size_t c : classes) programs_[c].run(into, pixels.only(c), part);
+}
+
 void ClassPrograms::addTo(std::vector<NamedProgram>& all) const {
   for (const ShadingProgram& p : programs_) all.push_back({"shading", p.text()});
 }

@@ -1,6 +1,7 @@
 #pragma once
 // The shading of a picture: a program for each class of surfaces, each over its own pixels.
 #include <functional>
+#include <set>
 
 #include "sim/render/shading_program.hpp"
 #include "sim/render/surface_classes.hpp"
@@ -15,6 +16,8 @@ class ClassPrograms {
                 const std::vector<std::string>& targets);
   /// `set`: sets uniforms of each.
   void run(RenderTarget& into, const PixelClasses& pixels, const std::function<void(const ShadingProgram&)>& set = {}) const;
+  /// Of some classes, over a part of the picture (corner, size).
+  void run(RenderTarget& into, const PixelClasses& pixels, const glm::ivec4& part, const std::set<std::size_t>& classes) const;
   void addTo(std::vector<NamedProgram>& all) const;
   /// Of the class of most text.
   std::string text() const;

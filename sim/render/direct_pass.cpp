@@ -38,6 +38,11 @@ void DirectPass::shade(RenderTarget& into, const RenderTarget&) {
   programs_.run(into, pixelClasses());
 }
 
+void DirectPass::shadeTile(RenderTarget& into, const glm::ivec4& part, const std::set<std::size_t>& classes) {
+  weights_.bindUniform(2);
+  programs_.run(into, pixelClasses(), part, classes);
+}
+
 std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
                                          bool truth, double apertureArea_m2) {
   if (simulation.mode == RenderMode::Buffered || simulation.hasTransparent())

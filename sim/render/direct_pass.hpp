@@ -11,9 +11,11 @@ class DirectPass final : public ScenePass {
              double apertureArea_m2);
   std::string shadingText() const override { return programs_.text(); }
   std::vector<NamedProgram> programs() const override;
+  bool drawsTiles() const override { return true; }
 
  private:
   void shade(RenderTarget& into, const RenderTarget& visibility) override;
+  void shadeTile(RenderTarget& into, const glm::ivec4& part, const std::set<std::size_t>& classes) override;
   ClassPrograms programs_;
   Buffer weights_;
 };

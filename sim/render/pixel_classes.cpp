@@ -10,6 +10,22 @@ PixelClasses::PixelClasses(const ShaderLibrary& library, const ShaderSlots& slot
     : program_(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/classes.frag.glsl", slots)) {}
 
 void PixelClasses::find(const RenderTarget& visibility) {
+  begin(visibility);
+  drawPart(glm::ivec4(0));
+  end();
+}
+
+void PixelClasses::drawPart(const glm::ivec4& part) const {
+  found_->setPart(part);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void PixelClasses::end() const {
+  found_->setPart(glm::ivec4(0));
+  glDisable(GL_DEPTH_TEST);
+}
+
+void PixelClasses::begin(const RenderTarget& visibility) {
   found_ = nullptr;
   for (const RenderTarget& t : targets_)
     if (t.width() == visibility.width() && t.height() == visibility.height()) found_ = &t;
@@ -20,8 +36,6 @@ void PixelClasses::find(const RenderTarget& visibility) {
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_TRUE);
   program_.use();
-  glDrawArrays(GL_TRIANGLES, 0, 3);
-  glDisable(GL_DEPTH_TEST);
 }
 
 }  // namespace pitviper

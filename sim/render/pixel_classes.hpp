@@ -10,8 +10,8 @@ namespace pitviper {
 /// Pixels that a pass draws.
 struct ChosenPixels {
   const RenderTarget& classes;
-  float depth;   ///< of the class that is drawn ...
-  bool below;    ///< ... or all classes below that depth
+  float depth;  ///< of the class that is drawn ...
+  bool below;   ///< ... or all classes below that depth
 };
 
 class PixelClasses {
@@ -22,6 +22,10 @@ class PixelClasses {
   PixelClasses(const ShaderLibrary& library, const ShaderSlots& slots);
   /// Of what was drawn last. Buffers and the view are bound.
   void find(const RenderTarget& visibility);
+  /// The same part by part (corner, size), with views of their own.
+  void begin(const RenderTarget& visibility);
+  void drawPart(const glm::ivec4& part) const;
+  void end() const;
   ChosenPixels only(std::size_t surfaceClass) const { return {*found_, depthOf(surfaceClass), false}; }
   /// Surfaces: all classes but the first.
   ChosenPixels surfaces() const { return {*found_, 0.5f * (depthOf(0) + depthOf(kMost - 1)), true}; }

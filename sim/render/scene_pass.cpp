@@ -3,27 +3,20 @@
 #include <epoxy/gl.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "sim/gl/context.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/render/view_data.hpp"
 
 namespace pitviper {
 namespace {
 
-/// Mirrors Draw of sim/render/glsl/draws.glsl (std430).
-struct GpuDraw {
-  glm::vec4 row[3];
-  glm::uvec4 table;
-  glm::vec4 state;
-  glm::vec4 fine;
-};
-static_assert(sizeof(GpuDraw) == 96);
-
-/// Mirrors ViewBlock of sim/render/glsl/view_block.glsl (std140).
-struct GpuView {
-  glm::vec4 pixel, film, depth, up, earth, sun, aperture, east, north;
-};
+/// Alignment of parts of buffers that every driver takes [bytes].
+constexpr std::size_t kAligned = 256;
+/// Tiles are drawn so many pixels a side at a time.
+constexpr int kTilePicture_px = 2048;
 
 /// The same plan at one wavelength: what the reference needs of tables is which part each draw is.
 Plan outline(const Plan& plan) {
@@ -112,68 +105,34 @@ void ScenePass::setState(const WorldState& state) {
   if (air_) air_->begin();
   const TimedPart shadows("shadow maps");
   if (shadows_) shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_->shadowMatters(e, l, state); });
+  uploadLights(state);
 }
 
-void ScenePass::uploadView(const View& v, const WorldState& state) {
-  if (const TimedPart part("air"); air_) air_->update(v, state);
-  const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
-  GpuView g;
-  g.pixel = {v.tanPerPixelX, v.tanPerPixelY, v.axisX, v.axisY};
-  const double halfX = 0.5 * v.width, halfY = 0.5 * v.height;
-  g.film = {1.0 / (halfX * v.tanPerPixelX), 1.0 / (halfY * v.tanPerPixelY), v.axisX / halfX - 1.0, v.axisY / halfY - 1.0};
-  g.depth = {v.near_m, v.onlyEntity >= 0 ? 0.5 * glm::length(v.depthCentre - v.position) / v.depthRadius_m : 0.0, 0.0, 0.0};
-  g.up = glm::vec4(cameraFromLocal * simulation_.frame.up(v.position), simulation_.frame.height(v.position));
-  g.earth = {simulation_.frame.earthRadius_m(), simulation_.air ? simulation_.air->top_m() : physics::kFar, v.onlyEntity + 1, 0.0};
-  g.sun = glm::vec4(simulation_.sun ? cameraFromLocal * simulation_.sun->toSun : glm::dvec3(0.0), 0.0);
-  g.aperture = {apertureArea_m2_, v.pixelTan2, 0.0, 0.0};
-  g.east = glm::vec4(cameraFromLocal * glm::dvec3(1, 0, 0), 0.0);
-  g.north = glm::vec4(cameraFromLocal * glm::dvec3(0, 1, 0), 0.0);
-  view_.upload(&g, sizeof g);
-}
-
-void ScenePass::uploadDraws(const View& v, const WorldState& state) {
-  const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
+void ScenePass::uploadLights(const WorldState& state) {
   const size_t stride = 2 * static_cast<size_t>(plan_.lightCount) + 1;
-  std::vector<GpuDraw> draws;
   std::vector<glm::vec4> lights((state.entities.size() + 1) * stride, glm::vec4(0.0f));
-  for (size_t d = 0; d < tables_.draws.size(); ++d) {
-    const DrawItem& item = tables_.draws[d];
-    GpuDraw g{};
-    const Pose pose = item.entity < 0 ? Pose{v.position, {1, 0, 0, 0}} : state.entities[static_cast<size_t>(item.entity)];
+  const bool few = plan_.lightCount <= kFewLights;
+  for (size_t r = 0; plan_.lightCount > 0 && r <= state.entities.size(); ++r) {
+    // The first row is the ground's, which lamps don't light. Few lights have a place each, many are listed one after the other: lights_few.glsl,
+    // lights_many.glsl.
+    const bool body = r > 0;
+    const size_t e = body ? r - 1 : 0;
+    const Pose pose = body ? state.entities[e] : Pose{};
     const glm::dmat3 bodyFromLocal = glm::transpose(glm::mat3_cast(pose.orientation));
-    const glm::dmat3 bodyFromCamera = bodyFromLocal * v.localFromCamera;
-    const glm::dvec3 origin = cameraFromLocal * (pose.position - v.position);
-    for (int r = 0; r < 3; ++r) g.row[r] = glm::vec4(bodyFromCamera[0][r], bodyFromCamera[1][r], bodyFromCamera[2][r], origin[r]);
-    const Surface* s = item.kind == DrawKind::Ground ? &*simulation_.ground
-                       : item.entity < 0             ? nullptr
-                                                     : &simulation_.entities[static_cast<size_t>(item.entity)].surfaces[static_cast<size_t>(item.surface)];
-    g.table = {item.row, item.material, s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u, static_cast<unsigned>(item.entity + 1)};
-    const size_t lightRow = static_cast<size_t>(item.entity + 1);
-    const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
-    g.state = {item.entity >= 0 ? item.temperature_K : s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(lightRow), fromCentre};
-    g.fine = {origin.z - static_cast<double>(static_cast<float>(origin.z)), PixelClasses::depthOf(static_cast<size_t>(item.surfaceClass)), 0.0, 0.0};
-    glm::vec4* row = &lights[lightRow * stride];
-    const bool ground = item.kind == DrawKind::Ground;
-    if (plan_.lightCount > 0 && (item.entity >= 0 || ground) && row->x == 0.0f) {  // once for all surfaces of a body
-      // Few lights have a place each, many are listed one after the other: lights_few.glsl, lights_many.glsl.
-      const bool few = plan_.lightCount <= kFewLights;
-      auto add = [&](const glm::dvec3& place, double radius_m, size_t number, bool matters, double shadowReach2_m2) {
-        if (!few && !matters) return;
-        const size_t k = few ? number : static_cast<size_t>(row->x);
-        row[2 * k + 1] = glm::vec4(place, radius_m);
-        const auto casters = shadows_ && matters && !ground ? shadows_->castersOf(static_cast<size_t>(item.entity), number) : ShadowPass::Range{};
-        row[2 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, shadowReach2_m2);
-        row->x += 1.0f;
-      };
-      for (size_t l = 0; l < simulation_.lights.size(); ++l)
-        add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l,
-            !ground && ((truth_ && l == 0) || relevance_->matters(static_cast<size_t>(item.entity), l, state)),
-            ground ? 0.0 : relevance_->shadowReach2_m2(static_cast<size_t>(item.entity), l, state));
-      if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true, physics::kFar);
-    }
-    draws.push_back(g);
+    glm::vec4* row = &lights[r * stride];
+    auto add = [&](const glm::dvec3& place, double radius_m, size_t number, bool matters, double shadowReach2_m2) {
+      if (!few && !matters) return;
+      const size_t k = few ? number : static_cast<size_t>(row->x);
+      row[2 * k + 1] = glm::vec4(place, radius_m);
+      const auto casters = shadows_ && matters && body ? shadows_->castersOf(e, number) : ShadowPass::Range{};
+      row[2 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, shadowReach2_m2);
+      row->x += 1.0f;
+    };
+    for (size_t l = 0; l < simulation_.lights.size(); ++l)
+      add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l,
+          body && ((truth_ && l == 0) || relevance_->matters(e, l, state)), body ? relevance_->shadowReach2_m2(e, l, state) : 0.0);
+    if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true, physics::kFar);
   }
-  draws_.upload(draws);
   lights_.upload(lights);
 }
 
@@ -199,10 +158,14 @@ void ScenePass::bindBuffers() const {
 
 void ScenePass::draw(const View& v, const WorldState& state, const std::vector<char>& drawn) {
   current_ = &targetsFor(v.width, v.height);
-  uploadView(v, state);
+  if (const TimedPart part("air"); air_) air_->update(v, state);
   {
     const TimedPart part("draws");
-    uploadDraws(v, state);
+    const GpuView data = viewData(simulation_, v, apertureArea_m2_);
+    view_.upload(&data, sizeof data);
+    std::vector<GpuDraw> draws;
+    for (size_t d = 0; d < tables_.draws.size(); ++d) draws.push_back(drawData(simulation_, tables_, d, v, state));
+    draws_.upload(draws);
     bindBuffers();
   }
   {
@@ -217,14 +180,127 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   pixelClasses_->find(current_->visibility);
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
-  if (partial_) {
-    current_->shading.select(0, current_->shading.colourCount());
-    current_->shading.bind();
-    const GLfloat zero[4] = {0, 0, 0, 0};
-    for (size_t i = 0; i < current_->shading.colourCount(); ++i) glClearBufferfv(GL_COLOR, static_cast<GLint>(i), zero);
-  }
+  if (partial_) clearShading();
   shade(current_->shading, current_->visibility);
   checkGl("drawing a frame");
+}
+
+void ScenePass::clearShading() {
+  current_->shading.select(0, current_->shading.colourCount());
+  current_->shading.bind();
+  const GLfloat zero[4] = {0, 0, 0, 0};
+  for (size_t i = 0; i < current_->shading.colourCount(); ++i) glClearBufferfv(GL_COLOR, static_cast<GLint>(i), zero);
+}
+
+/// A tile of a picture, and the numbers of what is drawn in it: pixels see places in this list.
+struct ScenePass::Tile {
+  const View* view = nullptr;
+  glm::ivec4 part{0};  ///< lower left corner, size
+  std::vector<std::uint32_t> draws;
+  std::vector<SolidPass::Candidate> candidates;
+  std::size_t firstDraw = 0;  ///< in the buffer
+};
+
+std::vector<RawImage> ScenePass::drawTiles(const std::vector<View>& views, const WorldState& state, const std::vector<char>& drawn) {
+  std::vector<RawImage> images;
+  const int most = std::max(kTilePicture_px / views.front().width, 1) * std::max(kTilePicture_px / views.front().width, 1);
+  for (size_t first = 0; first < views.size(); first += static_cast<size_t>(most)) {
+    auto tiles = tilesOf(std::span(views).subspan(first, std::min(static_cast<size_t>(most), views.size() - first)), state, drawn);
+    drawTilePicture(tiles, state);
+    startReadback(true);
+    const auto pixels = readback_.wait();
+    for (const Tile& t : tiles) images.push_back(cut(pixels, t));
+  }
+  return images;
+}
+
+/// Side by side in a square whose side in tiles is a power of two: few sizes of picture are ever made.
+std::vector<ScenePass::Tile> ScenePass::tilesOf(std::span<const View> views, const WorldState& state, const std::vector<char>& drawn) {
+  const int size = views.front().width;
+  int across = 1;
+  while (across * across < static_cast<int>(views.size())) across *= 2;
+  current_ = &targetsFor(across * size, across * size);
+  std::vector<Tile> tiles;
+  std::vector<GpuDraw> draws;
+  std::vector<unsigned char> blocks(views.size() * kAligned);
+  for (size_t i = 0; i < views.size(); ++i) {
+    Tile t;
+    t.view = &views[i];
+    t.part = {static_cast<int>(i) % across * size, static_cast<int>(i) / across * size, size, size};
+    t.draws.push_back(0);
+    if (tables_.ground >= 0) t.draws.push_back(static_cast<std::uint32_t>(tables_.ground));  // the second of all draws, and of a tile's
+    t.candidates = solids_.candidatesIn(views[i], state, drawn);
+    for (SolidPass::Candidate& c : t.candidates) {
+      t.draws.push_back(c.draw);
+      c.draw = static_cast<std::uint32_t>(t.draws.size()) - 1;
+    }
+    while (draws.size() * sizeof(GpuDraw) % kAligned != 0) draws.emplace_back();
+    t.firstDraw = draws.size();
+    for (std::uint32_t d : t.draws) draws.push_back(drawData(simulation_, tables_, d, views[i], state));
+    const GpuView block = viewData(simulation_, views[i], apertureArea_m2_, {t.part.x, t.part.y});
+    std::memcpy(&blocks[i * kAligned], &block, sizeof block);
+    tiles.push_back(std::move(t));
+  }
+  tileViews_.upload(blocks);
+  tileDraws_.upload(draws);
+  return tiles;
+}
+
+void ScenePass::bindTile(const std::vector<Tile>& tiles, size_t i) const {
+  tileViews_.bindUniformPart(0, i * kAligned, sizeof(GpuView));
+  tileDraws_.bindStoragePart(2, tiles[i].firstDraw * sizeof(GpuDraw), tiles[i].draws.size() * sizeof(GpuDraw));
+}
+
+void ScenePass::drawTilePicture(const std::vector<Tile>& tiles, const WorldState& state) {
+  bindBuffers();
+  {
+    const TimedPart part("visibility");
+    solids_.clear(current_->visibility);
+    for (size_t i = 0; i < tiles.size(); ++i) {
+      bindTile(tiles, i);
+      solids_.drawPart(tiles[i].part, tiles[i].candidates);
+    }
+  }
+  const TimedPart part("shading");
+  pixelClasses_->begin(current_->visibility);
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    bindTile(tiles, i);
+    pixelClasses_->drawPart(tiles[i].part);
+  }
+  pixelClasses_->end();
+  current_->visibility.colour(0).bind(0);
+  clearShading();
+  for (size_t i = 0; i < tiles.size(); ++i) {
+    if (air_) {
+      air_->update(*tiles[i].view, state);
+      air_->bind();
+    }
+    bindTile(tiles, i);
+    std::set<size_t> classes;
+    for (std::uint32_t d : tiles[i].draws)
+      if (tables_.draws[d].entity == tiles[i].view->onlyEntity) classes.insert(static_cast<size_t>(tables_.draws[d].surfaceClass));
+    shadeTile(current_->shading, tiles[i].part, classes);
+  }
+  checkGl("drawing small bodies");
+}
+
+RawImage ScenePass::cut(const Readback::Pixels& picture, const Tile& t) const {
+  RawImage image;
+  image.width = t.part.z;
+  image.height = t.part.w;
+  const auto across = static_cast<size_t>(current_->shading.width()), width = static_cast<size_t>(t.part.z);
+  const auto rows = [&](const auto& from, auto& to, size_t each) {
+    for (int y = 0; y < t.part.w; ++y) {
+      const auto begin = from.begin() + static_cast<long>(each * (static_cast<size_t>(t.part.y + y) * across + static_cast<size_t>(t.part.x)));
+      to.insert(to.end(), begin, begin + static_cast<long>(each * width));
+    }
+  };
+  std::vector<std::uint32_t> identity;
+  rows(picture.identity, identity, 2);
+  for (size_t i = 0; i < identity.size(); i += 2) image.entity.push_back(tables_.draws[t.draws[identity[i]]].entity);
+  for (size_t i = 0; i < picture.colours.size(); ++i)
+    rows(picture.colours[i], (i < static_cast<size_t>(plan_.groupCount()) ? image.groups : image.truth).emplace_back(), 4);
+  return image;
 }
 
 void ScenePass::startReadback(bool identity) {

@@ -4,6 +4,8 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <set>
+#include <span>
 
 #include "sim/model/view.hpp"
 #include "sim/render/air_on_gpu.hpp"
@@ -37,6 +39,10 @@ class ScenePass {
   void setState(const WorldState& state);
   /// `drawn`: one flag per entity; the others are left out (small bodies have views of their own).
   void draw(const View& view, const WorldState& state, const std::vector<char>& drawn);
+  /// Whether views can be drawn as tiles.
+  virtual bool drawsTiles() const { return false; }
+  /// Views of one size from one place, each of its own body (View::onlyEntity), as tiles of a picture that is read back as a whole.
+  std::vector<RawImage> drawTiles(const std::vector<View>& views, const WorldState& state, const std::vector<char>& drawn);
   /// Starts copying the last drawn image.
   void startReadback(bool identity = false);
   RawImage finishReadback();
@@ -55,6 +61,8 @@ class ScenePass {
   /// Shades what `visibility` shows into `into`: channel groups first, then truth. Buffers, textures and state are bound;
   /// the target is not. Where only one entity is shaded the target has been cleared.
   virtual void shade(RenderTarget& into, const RenderTarget& visibility) = 0;
+  /// The same for one part (corner, size) of the target, where pixels of these classes are; cleared, and its depth is for the classes.
+  virtual void shadeTile(RenderTarget&, const glm::ivec4&, const std::set<std::size_t>&) {}
   /// Only one entity is shaded: what was cleared stays elsewhere.
   bool isPartial() const { return partial_; }
   /// The tables follow other temperatures than before.
@@ -74,8 +82,6 @@ class ScenePass {
   /// Names of the channel targets, and of the truth targets, in order.
   std::vector<std::string> channelTargets() const;
   static std::vector<std::string> truthTargets() { return {"truthGeometry", "truthNormal", "truthIdentity"}; }
-  void uploadView(const View& view, const WorldState& state);
-  void uploadDraws(const View& view, const WorldState& state);
   void bindBuffers() const;
   RenderTarget& visibilityFor(int width, int height) { return targetsFor(width, height).visibility; }
   std::shared_ptr<const GpuScene> sharedScene() const { return scene_; }
@@ -84,6 +90,13 @@ class ScenePass {
   struct Targets {
     RenderTarget visibility, shading;
   };
+  struct Tile;
+  void uploadLights(const WorldState& state);
+  void clearShading();
+  std::vector<Tile> tilesOf(std::span<const View> views, const WorldState& state, const std::vector<char>& drawn);
+  void bindTile(const std::vector<Tile>& tiles, std::size_t i) const;
+  void drawTilePicture(const std::vector<Tile>& tiles, const WorldState& state);
+  RawImage cut(const Readback::Pixels& picture, const Tile& tile) const;
   Targets& targetsFor(int width, int height);
   /// What tables are made for.
   const Plan& tabled() const { return outline_ ? *outline_ : plan_; }
@@ -103,7 +116,7 @@ class ScenePass {
   std::unique_ptr<AirOnGpu> air_;  ///< null: none, or not on the GPU
   Shading how_;
   std::unique_ptr<ShadowPass> shadows_;  ///< where the plan has them
-  Buffer nodes_, draws_, lights_, view_;
+  Buffer nodes_, draws_, lights_, view_, tileViews_, tileDraws_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;
   bool partial_ = false;

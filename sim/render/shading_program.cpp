@@ -43,18 +43,20 @@ ShadingProgram::ShadingProgram(const ShaderLibrary& library, ShaderSlots slots, 
   program_ = fragments ? Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), shading) : Program(shading);
 }
 
-void ShadingProgram::run(RenderTarget& into, const ChosenPixels& chosen) const {
+void ShadingProgram::run(RenderTarget& into, const ChosenPixels& chosen, const glm::ivec4& part) const {
   program_.use();
   glUniform1f(program_.uniform("classDepth"), chosen.depth);
   if (stage_ == ShadingStage::Fragment) {
     into.select(firstColour_, colours_);
     into.shareDepth(chosen.classes);
     into.bind();
+    into.setPart(part);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     glDepthFunc(chosen.below ? GL_GREATER : GL_EQUAL);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDisable(GL_DEPTH_TEST);
+    into.setPart(glm::ivec4(0));
     return;
   }
   glUniform1i(program_.uniform("below"), chosen.below);
@@ -62,7 +64,9 @@ void ShadingProgram::run(RenderTarget& into, const ChosenPixels& chosen) const {
   for (std::size_t i = 0; i < colours_; ++i)
     glBindImageTexture(static_cast<GLuint>(i), into.colour(firstColour_ + i).name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);  // what was drawn into these textures, and read from them, comes first
-  glDispatchCompute((static_cast<GLuint>(into.width()) + kGroup - 1) / kGroup, (static_cast<GLuint>(into.height()) + kGroup - 1) / kGroup, 1);
+  const glm::uvec2 size = part.z > 0 ? glm::uvec2(part.z, part.w) : glm::uvec2(into.width(), into.height());
+  glUniform4i(program_.uniform("part"), part.x, part.y, static_cast<int>(size.x), static_cast<int>(size.y));
+  glDispatchCompute((size.x + kGroup - 1) / kGroup, (size.y + kGroup - 1) / kGroup, 1);
   glMemoryBarrier(GL_FRAMEBUFFER_BARRIER_BIT | GL_TEXTURE_FETCH_BARRIER_BIT | GL_TEXTURE_UPDATE_BARRIER_BIT | GL_PIXEL_BUFFER_BARRIER_BIT);
 }
 

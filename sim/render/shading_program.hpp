@@ -27,8 +27,8 @@ class ShadingProgram {
   /// Uniforms may be set between use() and run().
   void use() const { program_.use(); }
   int uniform(const char* name) const { return program_.uniform(name); }
-  /// Buffers and textures are bound; binds and selects its colours of the target, whose depth becomes the classes'.
-  void run(RenderTarget& into, const ChosenPixels& chosen) const;
+  /// Buffers and textures are bound; binds and selects its colours of the target, whose depth becomes the classes'. `part`: corner and size; of size 0: all.
+  void run(RenderTarget& into, const ChosenPixels& chosen, const glm::ivec4& part = glm::ivec4(0)) const;
 
  private:
   ShadingStage stage_ = ShadingStage::Fragment;

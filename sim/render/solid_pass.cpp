@@ -130,7 +130,8 @@ void SolidPass::drawHidden(const std::vector<Candidate>& dense) {
   }
 }
 
-void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& state, const std::vector<char>& drawn) {
+void SolidPass::clear(RenderTarget& target) {
+  target_ = &target;
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   target.bind();
   glDisable(GL_BLEND);
@@ -141,7 +142,23 @@ void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& stat
   const GLfloat farthest = 0.0f;
   glClearBufferuiv(GL_COLOR, 0, nothing);
   glClearBufferfv(GL_DEPTH, 0, &farthest);
+}
 
+void SolidPass::drawPart(const glm::ivec4& part, const std::vector<Candidate>& candidates) const {
+  target_->setPart(part);
+  glEnable(GL_DEPTH_TEST);
+  glEnable(GL_CLIP_DISTANCE0);
+  glEnable(GL_DEPTH_CLAMP);
+  for (const Candidate& c : candidates) drawOne(c);
+  glDisable(GL_CLIP_DISTANCE0);
+  glDisable(GL_DEPTH_CLAMP);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_CULL_FACE);
+  target_->setPart(glm::ivec4(0));
+}
+
+void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& state, const std::vector<char>& drawn) {
+  clear(target);
   std::vector<Candidate> dense;
   std::vector<std::vector<Candidate>> groups;  // of one small mesh, where the nearest of them stands
   std::map<std::pair<std::uint32_t, bool>, size_t> groupOf;

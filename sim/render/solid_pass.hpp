@@ -15,7 +15,7 @@ class SolidPass {
   /// Clears the target and fills it. Draws, view and meshes are bound.
   void draw(RenderTarget& target, const View& view, const WorldState& state, const std::vector<char>& drawn);
 
- private:
+  /// Something that may show.
   struct Candidate {
     std::uint32_t draw = 0, first = 0, triangles = 0;
     std::vector<std::pair<std::uint32_t, std::uint32_t>> shown;  ///< first and count of what of them may show; empty: all
@@ -25,6 +25,11 @@ class SolidPass {
     double distance_m = 0.0;
   };
   std::vector<Candidate> candidatesIn(const View& view, const WorldState& state, const std::vector<char>& drawn) const;
+  /// Part by part: clears a target, then draws what may show in a part of it (corner, size) in views of one body each.
+  void clear(RenderTarget& target);
+  void drawPart(const glm::ivec4& part, const std::vector<Candidate>& candidates) const;
+
+ private:
   void drawOne(const Candidate& c) const;
   void drawTriangles(const Program& program, const Candidate& shape, std::uint32_t first, std::uint32_t count, std::size_t instances) const;
   void cutOff(Candidate& c, const View& view, const Pose& pose, const MeshPart& part) const;
@@ -36,6 +41,7 @@ class SolidPass {
   Program single_, instanced_, box_;
   Buffer instances_;
   std::vector<GlName<deleteQuery>> queries_;
+  const RenderTarget* target_ = nullptr;
 };
 
 }  // namespace pitviper

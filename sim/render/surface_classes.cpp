@@ -17,6 +17,7 @@ SurfaceClass classOf(const DrawItem& item, const Simulation& sim, const SurfaceT
   }
   c.tabulated = m.counts[0] > 1;
   c.states = m.state[0] >= 0;
+  c.modifiers |= c.states;  // read as they are
   const Surface& surface =
       item.kind == DrawKind::Ground ? *sim.ground : sim.entities[static_cast<size_t>(item.entity)].surfaces[static_cast<size_t>(item.surface)];
   c.temperatureTextures = surface.temperatureTexture >= 0;
@@ -24,12 +25,8 @@ SurfaceClass classOf(const DrawItem& item, const Simulation& sim, const SurfaceT
 }
 
 SurfaceClass both(const SurfaceClass& a, const SurfaceClass& b) {
-  return {false,
-          a.modifiers || b.modifiers,
-          a.temperatureTextures || b.temperatureTextures,
-          a.lobes || b.lobes,
-          a.tabulated || b.tabulated,
-          a.states || b.states};
+  return {
+      false, a.modifiers || b.modifiers, a.temperatureTextures || b.temperatureTextures, a.lobes || b.lobes, a.tabulated || b.tabulated, a.states || b.states};
 }
 
 }  // namespace
@@ -58,8 +55,6 @@ void addClassSlots(const SurfaceClass& own, const RenderTables& tables, ShaderSl
     // The background's row is its radiance.
     slots.files["surface"] = folder + (tables.solid.general || !tables.solid.lit ? "surface_unlit.glsl" : "surface_simple.glsl");
     slots.files["lights"] = folder + "lights_none.glsl";
-    slots.constants["LOBES"] = 0;
-    return;
   }
   if (!own.lobes) {
     slots.constants["LOBES"] = 0;

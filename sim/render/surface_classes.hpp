@@ -9,10 +9,10 @@ namespace pitviper {
 /// What shading takes beyond the plainest surface; what is behind all surfaces is the plainest of all, and the first class.
 struct SurfaceClass {
   bool sky = false;
-  bool modifiers = false;            ///< textures of reflection or emission
+  bool modifiers = false;  ///< textures of reflection or emission
   bool temperatureTextures = false;
   bool lobes = false;
-  bool tabulated = false;            ///< reflection over angles
+  bool tabulated = false;  ///< reflection over angles
   bool states = false;
   bool operator==(const SurfaceClass&) const = default;
 };

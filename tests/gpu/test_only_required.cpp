@@ -92,6 +92,12 @@ struct Built {
   Simulation sim;
   Plan plan;
   std::unique_ptr<ScenePass> pass;
+  /// Of programs: those of several classes of surfaces are of one kind.
+  std::set<std::string> kinds() const {
+    std::set<std::string> all;
+    for (const NamedProgram& p : programs) all.insert(p.name);
+    return all;
+  }
   std::vector<NamedProgram> programs;
 };
 
@@ -307,8 +313,22 @@ TEST(OnlyRequired, TransparentThings) {
   EXPECT_NE(dynamic_cast<const BufferedPass*>(all.pass.get()), nullptr);
   EXPECT_NE(dynamic_cast<const DirectPass*>(none.pass.get()), nullptr);
   expectGone(all, none, {"spectrum0"});
-  EXPECT_EQ(none.programs.size(), 2u) << "shadow maps and shading";
-  EXPECT_EQ(all.programs.size(), 8u);
+  EXPECT_EQ(none.kinds().size(), 2u) << "shadow maps and shading";
+  EXPECT_EQ(all.kinds().size(), 8u);
+}
+
+// A program for each class of surfaces has what these need: the sky no light, textures where there are some, lobes and tables over angles likewise.
+TEST(OnlyRequired, EachClassHasItsOwn) {
+  const Built b(opaque());
+  const auto having = [&](const std::string& text) {
+    return std::count_if(b.programs.begin(), b.programs.end(), [&](const NamedProgram& p) { return p.name == "shading" && p.text.find(text) != std::string::npos; });
+  };
+  EXPECT_EQ(b.count("shading"), 6) << "sky; the ground that air lies on; the textured, temperature too; the plain one with a texture; the one over angles; the glossy one";
+  EXPECT_EQ(having("LightHere lightAt("), 5);
+  EXPECT_EQ(having("Real phongLobe("), 1);
+  EXPECT_EQ(having("float angleOf("), 1);
+  EXPECT_EQ(having("int planckEntry_") + having("planckFromConstants(nodes.node[i].z"), 1);
+  EXPECT_EQ(having("float textureValue("), 2);
 }
 
 TEST(OnlyRequired, TruthLayers) {
@@ -340,10 +360,12 @@ TEST(OnlyRequired, BarestProgram) {
   Features f = opaque();
   f.air = f.sun = f.lamp = f.ambient = f.truth = f.temperatureTexture = f.modifier = f.angular = f.phong = f.reflection = f.visible = false;
   const Built bare(f);
-  ASSERT_EQ(bare.programs.size(), 1u);
-  EXPECT_EQ(readsOf(bare.programs[0].text),
+  EXPECT_EQ(bare.kinds(), std::set<std::string>{"shading"});
+  EXPECT_EQ(readsOf(bare.programs.back().text),
             (std::set<std::string>{"visibility", "ViewBlock", "NodeBlock", "rows", "Draws", "Vertices", "Indices"}));
-  const std::set<std::string> all = readsOf(Built(opaque()).programs[1].text);
+  std::set<std::string> all;
+  for (const NamedProgram& p : Built(opaque()).programs)
+    if (p.name == "shading") all.merge(readsOf(p.text));
   for (const char* name : {"hemispherical", "columns", "Materials", "Texels", "TextureShapes", "Lights", "Shadows", "Trees", "shadowMaps", "AirBlock",
                            "airAmounts", "airRadiance"})
     EXPECT_TRUE(all.count(name)) << name;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/camera/small_bodies.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -147,6 +148,58 @@ TEST(SmallBodies, GlintIsNotMissed) {
            glossySphere(accuracy, azimuth, 100.0) - glossySphere(accuracy, azimuth, 1e-6), 0.5 * 20.0 * 2.0 * 2.0 / 4.0 * std::cos(0.5 * between), 0.015,
            "1/n of the lobe's width; 256 facets around; zoomed view");
   }
+}
+
+/// Spheres of 0.1 to 0.4 m a kilometre away, some before others.
+std::string spheres(int count) {
+  std::string all = "entities:\n";
+  for (int i = 0; i < count; ++i)
+    all += "- {name: s" + std::to_string(i) + ", shape: {model: sphere, radius: " + std::to_string(0.1 + 0.3 * i / count) + " m}, material: " +
+           (i % 3 == 0 ? "glossy" : "plain") + ", temperature: " + std::to_string(300 + 10 * i) + " K, position: [" + std::to_string(0.5 * i) + " m, " +
+           std::to_string(std::fmod(3.7 * i, 11.0) - 5.0) + " m, " + std::to_string(std::fmod(5.3 * i, 9.0) - 4.0) + " m]}\n";
+  return all;
+}
+
+// Direct mode draws bodies as tiles of one picture, buffered mode one by one.
+TEST(SmallBodies, AsTilesAsOneByOne) {
+  const std::string rest =
+      "sun: {azimuth: 60 deg, elevation: 30 deg, temperature: 5772 K}\natmosphere: {extinction: 0.1 /km, temperature: 280 K}\nmaterials: {plain: {components: [{reflection: "
+      "lambertian, reflectance: 0.2}]}, glossy: {components: [{reflection: phong, reflectance: 0.3, exponent: 9}]}}\n" +
+      spheres(37) +
+      "cameras: [{name: c, film: {width: 48, height: 48}, field_of_view: 1 deg, aperture: 20 mm, position: [1000 m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], truth: [range, entity], "
+      "spectral: {samples: 4}, channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n";
+  const Frame tiles = renderFrame(scene("render: {mode: direct}\n" + rest)), alone = renderFrame(scene("render: {mode: buffered}\n" + rest));
+  EXPECT_EQ(layer(tiles, "truth.entity").pixels, layer(alone, "truth.entity").pixels);
+  double worst = 0.0;
+  for (size_t p = 0; p < tiles.layers[0].pixels.size(); ++p) {
+    const auto a = static_cast<double>(layer(tiles, "mw.radiance").pixels[p]), b = static_cast<double>(layer(alone, "mw.radiance").pixels[p]);
+    worst = std::max(worst, std::abs(a / b - 1.0));
+  }
+  bound("37 small bodies as tiles against one by one, worst pixel", worst, 2e-6, "single precision in another order");
+}
+
+// Where an accuracy is asked for, lines across a body are as many as its area takes.
+TEST(SmallBodies, LinesFollowTheAccuracy) {
+  const auto sphere = [](double accuracy) {
+    return scene((accuracy > 0.0 ? "accuracy: " + std::to_string(100.0 * accuracy) + " %\n" : "") +
+                 "entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: blackbody, temperature: 600 K}]\ncameras: [{name: c, film: {width: 33, height: "
+                 "33}, field_of_view: 2 deg, aperture: 20 mm, position: [2000 m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n");
+  };
+  const Simulation any = sphere(0.0);
+  int last = 16;
+  for (double accuracy : {0.1, 0.03, 0.01, 0.003, 0.001}) {
+    const int lines = zoomedLines(any, 4096, accuracy)[0];
+    EXPECT_GE(lines, last);
+    last = lines;
+    const CameraImage image = renderImage(sphere(accuracy));
+    double total = 0.0;
+    for (size_t p = 0; p < image.slots[0].size(); ++p) total += image.slots[0][p] * image.solidAngles->plain_sr[p];
+    // 3 sigma of an eighth of it; the mesh of 64 segments lacks 0.1 % of the circle's area (its outline's corners lie on it).
+    figure("flux of a sphere of a pixel asked for to " + std::to_string(100.0 * accuracy) + " %", total, blackBodyBand(3, 5, 600) * kPi / 4e6,
+           0.375 * accuracy + 5e-3, "pi r^2 / R^2; outline of the mesh 0.5 %, 3 sigma of the lines");
+  }
+  EXPECT_EQ(last, 512);  // 0.61 / lines^1.5 < 0.001 / 8
+  EXPECT_EQ(zoomedLines(any, 256, 0.0)[0], 256);
 }
 
 }  // namespace

@@ -1,0 +1,74 @@
+// Shadows of lamps are looked for to the distance at which they matter at the accuracy asked for, and not beyond: near by they are there, far off what is
+// lit though it should be dark is less than its part of the accuracy.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sim/render/light_relevance.hpp"
+#include "tests/support/figures.hpp"
+#include "tests/support/print.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+namespace {
+
+struct Kind {
+  const char* name;
+  const char* material;
+  const char* temperature;
+};
+
+// A row, and tables: textures of reflection and temperature, a lobe, an emissivity of its own.
+constexpr Kind kKinds[] = {{"grey", "{components: [{reflection: lambertian, reflectance: 0.3}]}", "300 K"},
+                           {"textured and glossy",
+                            "{components: [{reflection: lambertian, reflectance: 0.3, modifier: {rows: [[0.4, 1], [1, 0.4]]}}, {reflection: phong, "
+                            "reflectance: 0.2, exponent: 10}]}",
+                            "{rows: [[290 K, 310 K], [310 K, 290 K]]}"},
+                           {"of little emission", "{components: [{reflection: lambertian, reflectance: 0.3}], emission: {emissivity: 0.1}}", "300 K"}};
+
+/// Radiance of a plate `distance_m` below a lamp, a screen before the lamp; another, nearby, keeps lamps in the plan.
+double plate(const Kind& kind, double distance_m, bool shadows, double level, const std::string& light) {
+  const Simulation sim =
+      scene(std::string("accuracy: 5 %\nrender: {shadows: ") + (shadows ? "true" : "false") + "}\n" + light + "materials: {m: " + kind.material +
+            ", black: {components: [{reflection: lambertian, reflectance: 0.01}]}}\nlights: [{name: lamp, intensity: {blackbody: 2500 K, area: 0.001 m2}, "
+            "visible: false, level: [[-1 s, " +
+            print("%g", level) + "], [1 s, " + print("%g", level) + "]], position: [0 m, 0 m, " + print("%.9g", distance_m) +
+            " m]}, {name: near, intensity: {blackbody: 2500 K, area: 2e-6 m2}, visible: false, position: [0 m, 0 m, 0.3 m]}]\nentities:\n- {name: plate, "
+            "shape: {model: plate, width: 1 m, height: 1 m}, material: m, temperature: " +
+            kind.temperature +
+            ", heading: 0 deg, pitch: 90 deg, position: [0 m, 0 m, 0 m]}\n- {name: screen, shape: {model: plate, width: 40 m, height: 40 m}, material: black, "
+            "temperature: 300 K, "
+            "heading: 0 deg, pitch: 90 deg, position: [0 m, 0 m, " +
+            print("%.9g", 0.9 * distance_m) +
+            " m]}\ncameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 10 deg, aperture: 10 mm, position: [1.5 m, 0 m, 0.3 m], look_at: plate, "
+            "channels: [{name: mw, response: "
+            "{band: [3.6 um, 4.6 um]}}]}]\n");
+  const Frame f = renderFrame(sim);
+  return at(layer(f, "mw.radiance"), f, 4, 4);
+}
+
+TEST(LampShadows, ReachAsFarAsTheyMatter) {
+  constexpr double kAccuracy = 0.05;
+  for (const char* light : {"", "ambient: {temperature: 280 K}\n"})
+    for (const Kind& kind : kKinds) {
+      int shaded = 0, open = 0;
+      double worst = 0.0;
+      for (double distance : {0.5, 4.0, 16.0, 48.0, 64.0, 96.0, 128.0, 192.0, 256.0, 384.0}) {
+        const double lit = plate(kind, distance, false, 1.0, light), dark = plate(kind, distance, true, 0.0, light),
+                     drawn = plate(kind, distance, true, 1.0, light);
+        if (std::abs(drawn - dark) < 1e-4 * (lit - dark) + 2e-6 * dark) {
+          ++shaded;
+        } else {
+          ++open;
+          worst = std::max(worst, (drawn - dark) / dark);
+        }
+      }
+      EXPECT_GT(shaded, 0) << kind.name << ": at the shortest distance the lamp is a good part of the pixel";
+      EXPECT_GT(open, 0) << kind.name << ": at the longest it is nothing";
+      bound(std::string("light of a lamp that no shadow was looked for, ") + kind.name + (*light ? ", beside ambient light" : "") + ", of the pixel", worst,
+            LightRelevance::kShadowShare * kAccuracy / 2.0 * 1.001, "kShadowShare of 5 %, half for each of two lamps");
+    }
+}
+
+}  // namespace
+}  // namespace pitviper::test
