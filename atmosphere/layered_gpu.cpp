@@ -80,6 +80,7 @@ std::vector<AirRow> LayeredOnGpu::fill() const {
     for (size_t n = next++; n < rows.size(); n = next++) {
       const int e = static_cast<int>(n) % grid_.elevations;
       AirLine line{grid_.sineAt(e), grid_.acrossAt(static_cast<int>(n) / grid_.elevations), false};
+      line.reachesSpace = !simulation_.ground || grid_.sineAt(std::min(e + 1, grid_.elevations - 1)) >= horizon;
       line.meetsHorizon = simulation_.ground && line.sine < horizon && grid_.sineAt(e + 1) >= horizon;
       rows[n] = rows_.at(line);
     }

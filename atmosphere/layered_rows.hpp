@@ -4,6 +4,7 @@
 
 #include "atmosphere/layered_grid.hpp"
 #include "sim/model/sunlit_air.hpp"
+#include "sim/radiance/node_air.hpp"
 
 namespace pitviper {
 
@@ -12,6 +13,7 @@ struct AirLine {
   double sine = 0.0;          ///< of its elevation
   double across = 0.0;        ///< as AirGrid::acrossLow
   bool meetsHorizon = false;  ///< the next row above is over the horizon: towards space it has what the horizon has
+  bool reachesSpace = true;   ///< false: nothing is asked of it beyond the grid's ranges
 };
 
 /// Entries by range.
@@ -44,15 +46,16 @@ class AirRows {
   const std::vector<double>& asymmetries() const { return asymmetry_; }
 
  private:
-  double planck(size_t node, double temperature_K) const;
+  NodeRadiance sentAlong(const SunlitAir& line) const;
+  void writeRadiance(const NodeRadiance& sent, double cosScatter, AirRow& row) const;
   double entryOf(double sine) const;
   std::vector<double> asymmetriesOf() const;
   const Simulation& simulation_;
   const Plan& plan_;
   bool perChannel_;
   int vectors_ = 1, values_ = 0, parts_ = 1;
-  std::vector<std::vector<double>> logPlanck_;  ///< per node, over the inverse of the temperature
-  std::vector<double> sunIrradiance_;           ///< per node
+  NodeAir air_;
+  std::vector<double> sunIrradiance_;  ///< per node
   std::vector<double> asymmetry_, black_;
   AirGrid grid_;
 };

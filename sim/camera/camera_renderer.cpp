@@ -6,6 +6,12 @@
 #include "sim/plan/planner.hpp"
 
 namespace pitviper {
+namespace {
+
+/// From so many subpixels on, programs of its own for each class of surfaces are worth the tenths of a second that a driver takes to compile them.
+constexpr int kWorthClasses = 64 * 64;
+
+}  // namespace
 
 CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
                                const std::function<void(double)>& planning)
@@ -22,9 +28,11 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
     pass_ = reference_.get();
     return;
   }
-  if (simulation.mode == RenderMode::Buffered || transparent) buffered_ = std::make_unique<BufferedPass>(simulation, plan_, library, scene, truth, area_m2);
+  const bool classes = camera.pinhole.width * camera.samples * camera.pinhole.height * camera.samples >= kWorthClasses;
+  if (simulation.mode == RenderMode::Buffered || transparent)
+    buffered_ = std::make_unique<BufferedPass>(simulation, plan_, library, scene, truth, area_m2, classes);
   // Its program is made at the start even where the first frame needs the other: none may be late for want of a compiler.
-  if (simulation.mode != RenderMode::Buffered) direct_ = std::make_unique<DirectPass>(simulation, plan_, library, scene, truth, area_m2);
+  if (simulation.mode != RenderMode::Buffered) direct_ = std::make_unique<DirectPass>(simulation, plan_, library, scene, truth, area_m2, classes);
   pass_ = buffered_ ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
 }
 
@@ -122,7 +130,7 @@ CameraImage CameraRenderer::finish() {
   }
   const TimedPart part("resolve");
   if (reference_) reference_->endPicture();
-  CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples);
+  CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples, filmWeights_);
   resolved.slotOfOutput = plan_.slotOfOutput;
   resolved.solidAngles = solidAngles_;
   resolved.exposure_s = cameraAt(camera_, state_).exposure_s;

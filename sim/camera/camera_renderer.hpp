@@ -48,6 +48,7 @@ class CameraRenderer {
   Plan plan_;
   ScatteringCheck scattering_;
   WaysToLights ways_;
+  FilmWeights filmWeights_;
   std::vector<int> lines_;                    ///< across each small body
   std::unique_ptr<ReferencePass> reference_;  ///< instead of the other two
   std::unique_ptr<DirectPass> direct_;        ///< both where auto has to choose frame by frame

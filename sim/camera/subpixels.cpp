@@ -21,58 +21,71 @@ void Subpixels::add(size_t s, size_t p, double value) {
   sums[s] += value;
 }
 
-double Subpixels::projectedSolidAngle_sr(int x, int y) const {
+namespace {
+
+double projectedSolidAngle_sr(const View& view, int x, int y) {
   // As Pinhole's: 3-point Gauss-Legendre in each direction, of cos^4(psi).
   static const double at[3] = {0.5 - 0.3872983346207417, 0.5, 0.5 + 0.3872983346207417}, weight[3] = {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0};
   double sum = 0.0;
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 3; ++j) {
-      const glm::dvec3 r = view_.ray(x + at[i], y + at[j]);
+      const glm::dvec3 r = view.ray(x + at[i], y + at[j]);
       const double l2 = glm::dot(r, r);
       sum += weight[i] * weight[j] / (l2 * l2);
     }
-  return view_.tanPerPixelX * view_.tanPerPixelY * sum;
+  return view.tanPerPixelX * view.tanPerPixelY * sum;
 }
 
-CameraImage Subpixels::resolve(const Pinhole& pinhole, int samples) const {
+}  // namespace
+
+double Subpixels::projectedSolidAngle_sr(int x, int y) const { return pitviper::projectedSolidAngle_sr(view_, x, y); }
+
+void FilmWeights::follow(const View& v, int samples) {
+  const std::vector<double> key{static_cast<double>(v.width), static_cast<double>(v.height), v.tanPerPixelX, v.tanPerPixelY, v.axisX, v.axisY,
+                                static_cast<double>(samples)};
+  if (key == key_) return;
+  key_ = key;
+  const auto columns = static_cast<size_t>(v.width / samples), rows = static_cast<size_t>(v.height / samples);
+  subpixel_sr_.clear();
+  pixel_sr_.assign(columns * rows, 0.0);
+  for (int y = 0; y < v.height; ++y)
+    for (int x = 0; x < v.width; ++x) {
+      subpixel_sr_.push_back(projectedSolidAngle_sr(v, x, y));
+      pixel_sr_[(rows - 1 - static_cast<size_t>(y / samples)) * columns + static_cast<size_t>(x / samples)] += subpixel_sr_.back();
+    }
+}
+
+CameraImage Subpixels::resolve(const Pinhole& pinhole, int samples, FilmWeights& weights) const {
   CameraImage image;
   image.width = pinhole.width;
   image.height = pinhole.height;
   const size_t width = static_cast<size_t>(pinhole.width), pixels = width * static_cast<size_t>(pinhole.height);
   image.slots.assign(slotCount_, std::vector<double>(pixels, 0.0));
   auto pixelOf = [&](int x, int y) { return static_cast<size_t>(pinhole.height - 1 - y / samples) * width + static_cast<size_t>(x / samples); };
-  std::vector<double> total, weights;
-  if (samples > 1) {
-    total.assign(pixels, 0.0);
-    for (int y = 0; y < view_.height; ++y)
-      for (int x = 0; x < view_.width; ++x) {
-        weights.push_back(projectedSolidAngle_sr(x, y));
-        total[pixelOf(x, y)] += weights.back();
-      }
-  }
-  // Slot by slot: what is written stays in the cache.
+  if (samples > 1) weights.follow(view_, samples);
+  // Slot by slot and row by row: what is written stays in the cache.
   for (size_t s = 0; s < slotCount_; ++s) {
     const float* from = raw_.groups[s / 4].data() + s % 4;
-    std::vector<double>& to = image.slots[s];
     for (int y = 0; y < view_.height; ++y) {
-      const size_t row = index(0, y);
+      double* out = &image.slots[s][pixelOf(0, y)];
+      const float* in = from + 4 * index(0, y);
       if (samples == 1) {
-        double* out = &to[pixelOf(0, y)];
-        for (size_t x = 0; x < width; ++x) out[x] = static_cast<double>(from[4 * (row + x)]);
-      } else {
-        for (int x = 0; x < view_.width; ++x)
-          to[pixelOf(x, y)] += weights[row + static_cast<size_t>(x)] * static_cast<double>(from[4 * (row + static_cast<size_t>(x))]);
+        for (size_t x = 0; x < width; ++x) out[x] = static_cast<double>(in[4 * x]);
+        continue;
       }
+      const double* weight = &weights.subpixel_sr()[index(0, y)];
+      for (size_t x = 0; x < width; ++x)
+        for (int k = 0; k < samples; ++k, in += 4, ++weight) out[x] += *weight * static_cast<double>(*in);
     }
   }
   for (const auto& [p, sums] : added_) {
     const int x = static_cast<int>(p % static_cast<size_t>(view_.width)), y = static_cast<int>(p / static_cast<size_t>(view_.width));
-    const double weight = samples == 1 ? 1.0 : projectedSolidAngle_sr(x, y);
+    const double weight = samples == 1 ? 1.0 : weights.subpixel_sr()[p];
     for (size_t s = 0; s < slotCount_; ++s) image.slots[s][pixelOf(x, y)] += weight * sums[s];
   }
   if (samples > 1)
     for (auto& slot : image.slots)
-      for (size_t p = 0; p < pixels; ++p) slot[p] /= total[p];
+      for (size_t p = 0; p < pixels; ++p) slot[p] /= weights.pixel_sr()[p];
   if (!hasTruth()) return image;
   image.truth.resize(pixels);
   for (int row = 0; row < pinhole.height; ++row)

@@ -12,6 +12,18 @@
 
 namespace pitviper {
 
+/// Projected solid angles of a film's subpixels: worked out once, and again where the projection changes.
+class FilmWeights {
+ public:
+  /// Of a camera's own view, samples x samples subpixels.
+  void follow(const View& view, int samples);
+  const std::vector<double>& subpixel_sr() const { return subpixel_sr_; }  ///< row 0 at the bottom
+  const std::vector<double>& pixel_sr() const { return pixel_sr_; }        ///< sums over pixels, row 0 at the top
+
+ private:
+  std::vector<double> key_, subpixel_sr_, pixel_sr_;
+};
+
 class Subpixels {
  public:
   /// Takes what a pass drew for `view` (the camera's own view, samples x samples subpixels).
@@ -28,8 +40,8 @@ class Subpixels {
   bool hasTruth() const { return !raw_.truth.empty(); }
   void setTruth(size_t pixel, const TruthPixel& truth) { truth_[pixel] = truth; }
 
-  /// Mean over samples x samples subpixels, weighted by projected solid angle (flux adds up); truth from the middle one.
-  CameraImage resolve(const Pinhole& pinhole, int samples) const;
+  /// Mean over samples x samples subpixels, weighted by projected solid angle (flux adds up); truth from the middle one. `weights`: brought up to date.
+  CameraImage resolve(const Pinhole& pinhole, int samples, FilmWeights& weights) const;
 
  private:
   View view_;

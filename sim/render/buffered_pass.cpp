@@ -64,8 +64,8 @@ ShaderSlots integration(const Plan& plan, int first, int count, std::vector<floa
 }  // namespace
 
 BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
-                           double apertureArea_m2)
-    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Buffered) {
+                           double apertureArea_m2, bool classes)
+    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Buffered, classes) {
   const int perBatch = std::min(4 * kMostTargets, plan.nodeCount());
   targets_ = (perBatch + 3) / 4;
   ShaderSlots slots = shadingSlots();

@@ -11,7 +11,7 @@ namespace pitviper {
 class BufferedPass final : public ScenePass {
  public:
   BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
-               double apertureArea_m2);
+               double apertureArea_m2, bool classes = true);
   std::string shadingText() const override { return shade_.text(); }
   std::vector<NamedProgram> programs() const override;
 

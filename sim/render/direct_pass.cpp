@@ -6,8 +6,8 @@
 namespace pitviper {
 
 DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
-                       double apertureArea_m2)
-    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Direct) {
+                       double apertureArea_m2, bool classes)
+    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Direct, classes) {
   checkUniformSize(tables().weights.size() * sizeof(float), "the channels' spectral weights");
   ShaderSlots slots = shadingSlots();
   slots.files["truth"] = truth ? "sim/render/glsl/truth_layers.glsl" : "sim/render/glsl/truth_none.glsl";
@@ -46,8 +46,8 @@ void DirectPass::shadeTile(RenderTarget& into, const glm::ivec4& part, const std
 std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
                                          bool truth, double apertureArea_m2) {
   if (simulation.mode == RenderMode::Buffered || simulation.hasTransparent())
-    return std::make_unique<BufferedPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2);
-  return std::make_unique<DirectPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2);
+    return std::make_unique<BufferedPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2, true);
+  return std::make_unique<DirectPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2, true);
 }
 
 }  // namespace pitviper

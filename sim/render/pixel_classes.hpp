@@ -16,8 +16,6 @@ struct ChosenPixels {
 
 class PixelClasses {
  public:
-  /// So many can be told apart; the first is what is behind all surfaces.
-  static constexpr std::size_t kMost = 14;
   /// `slots`: those of shading.
   PixelClasses(const ShaderLibrary& library, const ShaderSlots& slots);
   /// Of what was drawn last. Buffers and the view are bound.
@@ -27,11 +25,9 @@ class PixelClasses {
   void drawPart(const glm::ivec4& part) const;
   void end() const;
   ChosenPixels only(std::size_t surfaceClass) const { return {*found_, depthOf(surfaceClass), false}; }
-  /// Surfaces: all classes but the first.
-  ChosenPixels surfaces() const { return {*found_, 0.5f * (depthOf(0) + depthOf(kMost - 1)), true}; }
   /// All that is drawn: nothing but what a view of one body leaves out.
   ChosenPixels all() const { return {*found_, 0.5f * (depthOf(0) + 1.0f), true}; }
-  /// Exact in single precision. The first class lies behind the others, and what no class has behind it.
+  /// Exact in single precision, of up to 15 classes. The first lies behind the others, and what no class has behind it.
   static float depthOf(std::size_t surfaceClass) { return surfaceClass == 0 ? 15.0f / 16.0f : static_cast<float>(surfaceClass) / 16.0f; }
 
  private:

@@ -31,7 +31,7 @@ Plan outline(const Plan& plan) {
 }  // namespace
 
 ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
-                     double apertureArea_m2, Shading shading)
+                     double apertureArea_m2, Shading shading, bool classes)
     : simulation_(simulation),
       plan_(plan),
       scene_(std::move(scene)),
@@ -39,7 +39,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       apertureArea_m2_(apertureArea_m2),
       outline_(shading == Shading::Reference ? std::optional(outline(plan)) : std::nullopt),
       tables_(makeTables(simulation, tabled())),
-      surfaceClasses_(sortIntoClasses(tables_, simulation)),
+      surfaceClasses_(sortIntoClasses(tables_, simulation, classes)),
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
       relevance_(std::in_place, simulation, tabled(), tables_),

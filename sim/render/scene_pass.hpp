@@ -55,9 +55,9 @@ class ScenePass {
  protected:
   /// Direct: in the shader, so that air is integrated over the channels beforehand; buffered: after it; reference: not on the GPU at all.
   enum class Shading { Direct, Buffered, Reference };
-  /// The simulation and the plan must outlive it. `shading`: where the spectral integral is done.
+  /// The simulation and the plan must outlive it. `shading`: where the spectral integral is done; `classes`: each class of surfaces by a program of its own.
   ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
-            double apertureArea_m2, Shading shading);
+            double apertureArea_m2, Shading shading, bool classes);
   /// Shades what `visibility` shows into `into`: channel groups first, then truth. Buffers, textures and state are bound;
   /// the target is not. Where only one entity is shaded the target has been cleared.
   virtual void shade(RenderTarget& into, const RenderTarget& visibility) = 0;

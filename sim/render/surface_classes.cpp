@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "sim/render/pixel_classes.hpp"
-
 namespace pitviper {
 namespace {
 
@@ -31,18 +29,16 @@ SurfaceClass both(const SurfaceClass& a, const SurfaceClass& b) {
 
 }  // namespace
 
-std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation& sim) {
+std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation& sim, bool apart) {
+  if (!apart) return {{.modifiers = true, .temperatureTextures = true, .lobes = true, .tabulated = true, .states = true}};
+  constexpr SurfaceClass kPlain{};
   std::vector<SurfaceClass> classes{{.sky = true}};
   for (DrawItem& item : tables.draws) {
     if (item.kind != DrawKind::Solid && item.kind != DrawKind::Ground) continue;
     const SurfaceClass own = classOf(item, sim, tables.solid);
-    auto at = std::find(classes.begin() + 1, classes.end(), own);
-    if (at == classes.end() && classes.size() == PixelClasses::kMost) {
-      at = classes.end() - 1;  // the last takes all further ones
-      *at = both(*at, own);
-    } else if (at == classes.end()) {
-      at = classes.insert(classes.end(), own);
-    }
+    auto at = std::find_if(classes.begin() + 1, classes.end(), [&](const SurfaceClass& c) { return (c == kPlain) == (own == kPlain); });
+    if (at == classes.end()) at = classes.insert(classes.end(), own);
+    else *at = both(*at, own);
     item.surfaceClass = static_cast<int>(at - classes.begin());
   }
   return classes;

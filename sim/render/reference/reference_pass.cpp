@@ -17,7 +17,7 @@ namespace pitviper {
 
 ReferencePass::ReferencePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                              double apertureArea_m2)
-    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Reference),
+    : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Reference, false),
       simulation_(simulation),
       spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes)) {
   if (!truth) return;

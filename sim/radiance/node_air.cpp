@@ -1,0 +1,132 @@
+#include "sim/radiance/node_air.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+namespace pitviper {
+namespace {
+
+/// Temperatures of air anywhere [K] and entries over their inverse.
+constexpr double kColdest_K = 140.0, kWarmest_K = 400.0;
+constexpr Eigen::Index kTemperatures = 256;
+
+Eigen::MatrixXd matrixOf(const std::vector<AirAmounts>& amounts) {
+  Eigen::MatrixXd all(kMostAirAmounts, static_cast<Eigen::Index>(amounts.size()));
+  for (Eigen::Index s = 0; s < all.cols(); ++s) all.col(s) = Eigen::Map<const Eigen::VectorXd>(amounts[static_cast<size_t>(s)].amount.data(), kMostAirAmounts);
+  return all;
+}
+
+/// `left`: exp(-x).
+void lose(const Eigen::ArrayXd& x, const Eigen::ArrayXd& left, Eigen::ArrayXd& lost) {
+  lost = 1.0 - x * (1.0 / 8.0);
+  for (double n : {7.0, 6.0, 5.0, 4.0, 3.0, 2.0}) lost = 1.0 - x * lost * (1.0 / n);
+  lost = (x < 0.125).select(x * lost, 1.0 - left);
+}
+
+Eigen::Map<Eigen::ArrayXXd> sized(std::vector<double>& all, Eigen::Index nodes, Eigen::Index stations) {
+  all.assign(static_cast<size_t>(nodes * stations), 0.0);
+  return {all.data(), nodes, stations};
+}
+
+}  // namespace
+
+struct NodeAir::Tables {
+  std::span<const SpectralNode> nodes;
+  Eigen::MatrixXd extinction, molecules, haze;  ///< [node][absorber]
+  Eigen::ArrayXd source;
+  Eigen::ArrayXXd logPlanck;  ///< [node], over the inverse of the temperature
+
+  void planck(double temperature_K, Eigen::ArrayXd& into) const {
+    if (!(temperature_K > 0.0)) {
+      into.setZero(source.size());
+      return;
+    }
+    const double t = (1.0 / temperature_K - 1.0 / kWarmest_K) / (1.0 / kColdest_K - 1.0 / kWarmest_K) * (kTemperatures - 1);
+    if (!(t >= 0.0 && t <= kTemperatures - 1)) {
+      into.resize(source.size());
+      for (Eigen::Index i = 0; i < into.size(); ++i) into[i] = nodes[static_cast<size_t>(i)].planck(temperature_K);
+      return;
+    }
+    const Eigen::Index k = std::min(static_cast<Eigen::Index>(t), kTemperatures - 2);
+    const double f = t - static_cast<double>(k);
+    into = ((1.0 - f) * logPlanck.col(k) + f * logPlanck.col(k + 1)).exp();
+  }
+};
+
+NodeAir::NodeAir(std::span<const SpectralNode> all) {
+  const auto nodes = static_cast<Eigen::Index>(all.size());
+  Tables t;
+  t.nodes = all;
+  t.extinction.resize(nodes, kMostAirAmounts);
+  t.molecules = t.haze = t.extinction;
+  t.source.resize(nodes);
+  t.logPlanck.resize(nodes, kTemperatures);
+  const auto row = [](const auto& coefficients) { return Eigen::Map<const Eigen::RowVectorXd>(coefficients.data(), kMostAirAmounts); };
+  for (Eigen::Index i = 0; i < nodes; ++i) {
+    const SpectralNode& n = all[static_cast<size_t>(i)];
+    t.extinction.row(i) = row(n.air.extinction), t.molecules.row(i) = row(n.air.molecules), t.haze.row(i) = row(n.air.haze);
+    t.source[i] = n.air.source;
+    for (Eigen::Index k = 0; k < kTemperatures; ++k) {
+      const double inverse = 1.0 / kWarmest_K + (1.0 / kColdest_K - 1.0 / kWarmest_K) * static_cast<double>(k) / (kTemperatures - 1);
+      t.logPlanck(i, k) = std::log(std::max(n.planck(1.0 / inverse), 1e-300));
+    }
+  }
+  tables_ = std::make_shared<const Tables>(std::move(t));
+}
+
+std::vector<double> NodeAir::planck(double temperature_K) const {
+  Eigen::ArrayXd all;
+  tables_->planck(temperature_K, all);
+  return {all.begin(), all.end()};
+}
+
+std::vector<double> lostOf(std::span<const double> x) {
+  const Eigen::ArrayXd from = Eigen::Map<const Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size())), left = (-from).exp();
+  Eigen::ArrayXd all;
+  lose(from, left, all);
+  return {all.begin(), all.end()};
+}
+
+// Each step as AirLight::emitted() and AirLight::reaching() have it, and their limits.
+NodeRadiance NodeAir::along(const SunlitAir& air) const {
+  const Tables& t = *tables_;
+  const auto stations = static_cast<Eigen::Index>(air.stations.size()), nodes = t.source.size();
+  NodeRadiance out;
+  const Eigen::MatrixXd powered = matrixOf(air.powered);
+  auto depth = sized(out.depth, nodes, stations), thermal = sized(out.thermal, nodes, stations);
+  depth.matrix().noalias() = t.extinction * powered;
+  Eigen::ArrayXd seen = (-depth.col(0)).exp(), before, source, d, left, gone, share;  // with room of their own for all steps
+  t.planck(air.stations[0].temperature_K, before);
+  before += t.source;
+  for (Eigen::Index s = 1; s < stations; ++s) {
+    d = (depth.col(s) - depth.col(s - 1)).max(0.0);
+    left = (-d).exp();
+    lose(d, left, gone);
+    t.planck(air.stations[static_cast<size_t>(s)].temperature_K, source);
+    source += t.source;
+    thermal.col(s) =
+        thermal.col(s - 1) + seen * (before * gone + (source - before) * (d < 1e-3).select(d * (0.5 - d * (1.0 / 3.0)), (gone - d * left) / d.max(1e-3)));
+    seen *= left;
+    before.swap(source);
+  }
+  if (air.lit.empty()) return out;
+  const Eigen::ArrayXXd small = (t.molecules * powered).array(), large = (t.haze * powered).array(), both = (t.extinction * matrixOf(air.both)).array();
+  auto molecules = sized(out.molecules, nodes, stations), haze = sized(out.haze, nodes, stations);
+  for (Eigen::Index s = 1; s < stations; ++s) {
+    molecules.col(s) = molecules.col(s - 1);
+    haze.col(s) = haze.col(s - 1);
+    const double here = air.lit[static_cast<size_t>(s - 1)], there = air.lit[static_cast<size_t>(s)], sun = 0.5 * (here + there);
+    if (!(sun > 0.0)) continue;
+    const auto near = both.col(here > 0.0 ? s - 1 : s), far = both.col(there > 0.0 ? s : s - 1);
+    d = (far - near).abs();
+    left = (-d).exp();
+    lose(d, left, gone);
+    share = sun * (-near.min(far)).exp() * (d < 1e-8).select(1.0 - 0.5 * d, gone / d.max(1e-8));
+    molecules.col(s) += (small.col(s) - small.col(s - 1)).max(0.0) * share;
+    haze.col(s) += (large.col(s) - large.col(s - 1)).max(0.0) * share;
+  }
+  return out;
+}
+
+}  // namespace pitviper
