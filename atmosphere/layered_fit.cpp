@@ -109,6 +109,111 @@ constexpr double kProbeTables = 0.2;
 /// They are made for this where no accuracy is asked for.
 constexpr double kUsualAccuracy = 0.01;
 
+/// A line of sight as a grid's tables have it.
+struct TabledLine {
+  const AirGrid& grid;
+  const AirRows& rows;  ///< of the grid
+  AirLine line;
+  double end_m;     ///< physics::kFar: towards space
+  double length_m;  ///< of the air on it
+};
+
+/// What tables lose on a line of sight, relative to the pixel: found beside what is right.
+class LineLoss {
+ public:
+  LineLoss(const Simulation& simulation, const Plan& plan, const TabledLine& own, const std::vector<double>& radiance, const std::vector<double>& floor)
+      : simulation_(simulation),
+        plan_(plan),
+        own_(own),
+        radiance_(radiance),
+        floor_(floor),
+        reader_(simulation, plan, own.rows, own.rows.cosScatterOf(own.line)),
+        stations_(own.rows.stationsOf(own.line)),
+        ranges_(upTo(stations_, {own.end_m})),
+        right_(reader_.at(own.rows.at(own.line, ranges_), ranges_.size() - 1, own.length_m)) {}
+
+  /// Between the line's own height and sun and those of the grid, which views share.
+  void ofSharing(const AirGrid& exact, const AirRows& any, std::vector<double>& into) const {
+    AirRows rows = any;
+    rows.begin(exact);
+    const auto alone = upTo(rows.stationsOf(own_.line), {own_.end_m});
+    const double air_m = own_.end_m >= physics::kFar ? physics::kFar : own_.end_m - alone.front();
+    if (air_m > 0.0) note(into, right_, Reader(simulation_, plan_, rows, rows.cosScatterOf(own_.line)).at(rows.at(own_.line, alone), alone.size() - 1, air_m));
+  }
+
+  /// Half a step below and above.
+  void ofElevations(const AirTableSize& size, std::vector<double>& into) const {
+    const AirGrid& grid = own_.grid;
+    const double horizon = grid.horizon(simulation_.frame.earthRadius_m());
+    const double half = 0.5 * (spreadOf(grid.high) - spreadOf(grid.low)) / (size.elevations - 1), x = spreadOf(own_.line.sine);
+    const auto beside = [&](double spread) {
+      const double clamped = std::clamp(spread, -1.0, 1.0);
+      return AirLine{clamped * std::abs(clamped), own_.line.across, false};
+    };
+    AirLine below = beside(x - half);
+    const AirLine above = beside(x + half);
+    below.meetsHorizon = simulation_.ground && below.sine < horizon && above.sine >= horizon;
+    // A line to space starts where its own air does.
+    const auto rangesOf = [&](const AirLine& l) {
+      const auto all = own_.rows.stationsOf(l);
+      return upTo(all, {own_.length_m >= physics::kFar ? physics::kFar : all.front() + own_.length_m});
+    };
+    const auto rangesBelow = rangesOf(below), rangesAbove = rangesOf(above);
+    note(into,
+         reader_.between(own_.rows.at(below, rangesBelow), rangesBelow.size() - 1, own_.rows.at(above, rangesAbove), rangesAbove.size() - 1, own_.length_m),
+         right_);
+  }
+
+  /// Between two entries, and added up in steps.
+  void ofRanges(std::vector<double>& into) const {
+    const AirGrid& grid = own_.grid;
+    const double entry = stations_.front();
+    if (own_.length_m < physics::kFar) {
+      const double entryAt = std::log1p(own_.length_m / grid.scale_m) * grid.entriesPerLog();
+      const auto rangeAt = [&](double t) { return entry + grid.scale_m * std::expm1(t / grid.entriesPerLog()); };
+      // Before the first of them everything is as near to the eye as it is.
+      const double share = std::min(0.5, entryAt), before = rangeAt(entryAt - share), after = rangeAt(entryAt - share + 1.0);
+      const auto three = upTo(stations_, {before, own_.end_m, after});
+      const AirRow row = own_.rows.at(own_.line, three);
+      const size_t n = three.size();
+      if (after > own_.end_m && own_.end_m > before)
+        note(into, reader_.between(row, n - 3, row, n - 1, own_.length_m, share), reader_.at(row, n - 2, own_.length_m));
+    }
+    AirGrid fine = grid;
+    fine.ranges = kFiner * (grid.ranges - 1) + 1;
+    const auto fineRanges = upTo(fine.rangesFrom(entry), {own_.end_m});
+    note(into, right_, reader_.at(own_.rows.at(own_.line, fineRanges), fineRanges.size() - 1, own_.length_m));
+  }
+
+  /// Half a step to each side, or the view's middle.
+  void ofAzimuths(const AirTableSize& size, std::vector<double>& into) const {
+    const AirGrid& grid = own_.grid;
+    const size_t last = ranges_.size() - 1;
+    const auto turned = [&](double across) { return own_.rows.at({own_.line.sine, across, false}, ranges_); };
+    if (size.azimuths == 1) return note(into, reader_.at(turned(grid.acrossLow), last, own_.length_m), right_);
+    const double step = 0.5 * (grid.acrossHigh - grid.acrossLow) / (size.azimuths - 1), most = std::sqrt(std::max(1.0 - grid.sunSine * grid.sunSine, 0.0));
+    const double middle = std::clamp(own_.line.across, std::min(step - most, 0.0), std::max(most - step, 0.0));
+    note(into, reader_.between(turned(std::max(middle - step, -most)), last, turned(std::min(middle + step, most)), last, own_.length_m),
+         reader_.at(turned(middle), last, own_.length_m));
+  }
+
+ private:
+  void note(std::vector<double>& into, const Seen& found, const Seen& than) const {
+    for (size_t s = 0; s < floor_.size(); ++s) {
+      const double behind = right_.passed[s] > kOpaque ? std::max(radiance_[s] - right_.air[s], 0.0) / right_.passed[s] : 0.0;
+      const double all = std::max(std::max(radiance_[s], right_.air[s]), floor_[s]);
+      if (all > 0.0) into[s] += std::abs(found.air[s] - than.air[s] + behind * (found.passed[s] - than.passed[s])) / all;
+    }
+  }
+  const Simulation& simulation_;
+  const Plan& plan_;
+  TabledLine own_;
+  const std::vector<double>&radiance_, &floor_;
+  Reader reader_;
+  std::vector<double> stations_, ranges_;
+  Seen right_;
+};
+
 }  // namespace
 
 AirTableSize affordable(AirTableSize size, const Simulation& simulation, const Plan& plan) {
@@ -160,8 +265,7 @@ AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, con
 }
 
 AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& size) const {
-  const size_t slots = floor_.size();
-  const std::vector<double> none(slots, 0.0);
+  const std::vector<double> none(floor_.size(), 0.0);
   Lost lost{none, none, none, none};
   View view = cameraView(camera_, *sample.state, camera_.samples);
   view.position = sample.origin;  // limits move the eye
@@ -175,78 +279,17 @@ AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& 
     if (glm::length(level) > 1e-6)
       line.across = std::clamp(glm::dot(glm::normalize(level), sun), std::min(grid.viewLow, grid.acrossLow), std::max(grid.viewHigh, grid.acrossHigh));
   }
-  const auto stations = rows.stationsOf(line);
-  const double entry = stations.front(), end = sample.range_m, length = end >= physics::kFar ? physics::kFar : end - entry;
+  const double length = sample.range_m >= physics::kFar ? physics::kFar : sample.range_m - rows.stationsOf(line).front();
   if (!(length > 0.0)) return lost;
-  const Reader reader(simulation_, plan_, rows, rows.cosScatterOf(line));
-  const auto ranges = upTo(stations, {end});
-  const size_t last = ranges.size() - 1;
-  const AirRow own = rows.at(line, ranges);
-  const Seen right = reader.at(own, last, length);
-  const auto note = [&](std::vector<double>& into, const Seen& found, const Seen& than) {
-    for (size_t s = 0; s < slots; ++s) {
-      const double behind = right.passed[s] > kOpaque ? std::max(sample.radiance[s] - right.air[s], 0.0) / right.passed[s] : 0.0;
-      const double all = std::max(std::max(sample.radiance[s], right.air[s]), floor_[s]);
-      if (all > 0.0) into[s] += std::abs(found.air[s] - than.air[s] + behind * (found.passed[s] - than.passed[s])) / all;
-    }
-  };
-  // Heights and suns that share tables.
+  const LineLoss own(simulation_, plan_, {grid, rows, line, sample.range_m, length}, sample.radiance, floor_);
   AirGrid exact = grid;
-  exact.height_m = simulation_.frame.height(view.position);
+  exact.height_m = exact.highest_m = simulation_.frame.height(view.position);
+  if (exact.height_m == grid.height_m) exact.highest_m = grid.highest_m;
   if (plan_.terms.scatteredSun) exact.sunSine = glm::dot(simulation_.sun->toSun, up);
-  if (!(exact == grid)) {
-    AirRows exactRows = rows_;
-    exactRows.begin(exact);
-    const auto alone = upTo(exactRows.stationsOf(line), {end});
-    const double air_m = end >= physics::kFar ? physics::kFar : end - alone.front();
-    if (air_m > 0.0)
-      note(lost.shared, right, Reader(simulation_, plan_, exactRows, exactRows.cosScatterOf(line)).at(exactRows.at(line, alone), alone.size() - 1, air_m));
-  }
-  // Elevations: half a step below and above.
-  const double radius = simulation_.frame.earthRadius_m(), horizon = grid.horizon(radius);
-  const double half = 0.5 * (spreadOf(grid.high) - spreadOf(grid.low)) / (size.elevations - 1), x = spreadOf(line.sine);
-  const auto beside = [&](double spread) {
-    const double clamped = std::clamp(spread, -1.0, 1.0);
-    return AirLine{clamped * std::abs(clamped), line.across, false};
-  };
-  AirLine below = beside(x - half);
-  const AirLine above = beside(x + half);
-  below.meetsHorizon = simulation_.ground && below.sine < horizon && above.sine >= horizon;
-  // A line to space starts where its own air does.
-  const auto rangesOf = [&](const AirLine& l) {
-    const auto all = rows.stationsOf(l);
-    return upTo(all, {length >= physics::kFar ? physics::kFar : all.front() + length});
-  };
-  const auto rangesBelow = rangesOf(below), rangesAbove = rangesOf(above);
-  note(lost.elevation, reader.between(rows.at(below, rangesBelow), rangesBelow.size() - 1, rows.at(above, rangesAbove), rangesAbove.size() - 1, length), right);
-  // Ranges: between two entries, and added up in steps.
-  if (length < physics::kFar) {
-    const double entryAt = std::log1p(length / grid.scale_m) * grid.entriesPerLog();
-    const auto rangeAt = [&](double t) { return entry + grid.scale_m * std::expm1(t / grid.entriesPerLog()); };
-    // Before the first of them everything is as near to the eye as it is.
-    const double share = std::min(0.5, entryAt), before = rangeAt(entryAt - share), after = rangeAt(entryAt - share + 1.0);
-    auto three = upTo(stations, {before, end, after});
-    const AirRow row = rows.at(line, three);
-    const size_t n = three.size();
-    if (after > end && end > before) note(lost.range, reader.between(row, n - 3, row, n - 1, length, share), reader.at(row, n - 2, length));
-  }
-  AirGrid fine = grid;
-  fine.ranges = kFiner * (grid.ranges - 1) + 1;
-  const auto fineRanges = upTo(fine.rangesFrom(entry), {end});
-  note(lost.range, right, reader.at(rows.at(line, fineRanges), fineRanges.size() - 1, length));
-  // Azimuths: half a step to each side, or the view's middle.
-  if (plan_.terms.scatteredSun) {
-    const auto turned = [&](double across) { return rows.at({line.sine, across, false}, ranges); };
-    if (size.azimuths == 1) {
-      note(lost.azimuth, reader.at(turned(grid.acrossLow), last, length), right);
-    } else {
-      const double step = 0.5 * (grid.acrossHigh - grid.acrossLow) / (size.azimuths - 1), most = std::sqrt(std::max(1.0 - grid.sunSine * grid.sunSine, 0.0));
-      const double middle = std::clamp(line.across, std::min(step - most, 0.0), std::max(most - step, 0.0));
-      const AirRow here = turned(middle);
-      note(lost.azimuth, reader.between(turned(std::max(middle - step, -most)), last, turned(std::min(middle + step, most)), last, length),
-           reader.at(here, last, length));
-    }
-  }
+  if (!(exact == grid)) own.ofSharing(exact, rows_, lost.shared);
+  own.ofElevations(size, lost.elevation);
+  own.ofRanges(lost.range);
+  if (plan_.terms.scatteredSun) own.ofAzimuths(size, lost.azimuth);
   return lost;
 }
 

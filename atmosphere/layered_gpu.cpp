@@ -12,6 +12,8 @@ namespace {
 constexpr double kNothing = 1e-30;
 /// Ways to lamps have so many pieces (tests/gpu/test_ways_to_lamps.cpp).
 constexpr int kPieces = 3;
+/// What sines of elevation may differ by in single precision.
+constexpr double kRoom = 1e-6;
 
 }  // namespace
 
@@ -73,14 +75,14 @@ void LayeredOnGpu::update(const View& view, const WorldState& state) {
 
 /// [azimuth][elevation]
 std::vector<AirRow> LayeredOnGpu::fill() const {
-  const double horizon = grid_.horizon(simulation_.frame.earthRadius_m());
+  const double horizon = grid_.horizon(simulation_.frame.earthRadius_m()), lowest = grid_.lowestHorizon(simulation_.frame.earthRadius_m());
   std::vector<AirRow> rows(static_cast<size_t>(grid_.azimuths * grid_.elevations));
   std::atomic<size_t> next{0};
   auto work = [&] {
     for (size_t n = next++; n < rows.size(); n = next++) {
       const int e = static_cast<int>(n) % grid_.elevations;
       AirLine line{grid_.sineAt(e), grid_.acrossAt(static_cast<int>(n) / grid_.elevations), false};
-      line.reachesSpace = !simulation_.ground || grid_.sineAt(std::min(e + 1, grid_.elevations - 1)) >= horizon;
+      line.reachesSpace = !simulation_.ground || grid_.sineAt(std::min(e + 1, grid_.elevations - 1)) >= lowest - kRoom;
       line.meetsHorizon = simulation_.ground && line.sine < horizon && grid_.sineAt(e + 1) >= horizon;
       rows[n] = rows_.at(line);
     }

@@ -136,10 +136,18 @@ std::vector<double> AirGrid::rangesFrom(double entry_m) const {
   return all;
 }
 
-double AirGrid::horizon(double earthRadius_m) const {
+namespace {
+
+double horizonFrom(double height_m, double earthRadius_m) {
   const double above = std::max(height_m, 0.0);
   return -std::sqrt(above * (2.0 * earthRadius_m + above)) / (earthRadius_m + above);
 }
+
+}  // namespace
+
+double AirGrid::horizon(double earthRadius_m) const { return horizonFrom(height_m, earthRadius_m); }
+
+double AirGrid::lowestHorizon(double earthRadius_m) const { return horizonFrom(highest_m, earthRadius_m); }
 
 std::vector<double> depthsToSun(const Simulation& simulation, const Plan& plan) {
   const double sine = std::max(glm::dot(simulation.sun->toSun, simulation.frame.up(glm::dvec3(0.0))), kLowestSun);
@@ -162,7 +170,9 @@ AirGrid airGrid(const Simulation& simulation, const Plan& plan, const AirTableSi
   AirGrid g;
   g.elevations = size.elevations;
   g.ranges = size.ranges;
-  g.height_m = share > 0.0 ? snapped(height, powerOfTwoBelow(share * std::min(kSameHeight_m, kPartOfHeight * std::max(std::abs(height), kLowest_m)))) : height;
+  const double step = share > 0.0 ? powerOfTwoBelow(share * std::min(kSameHeight_m, kPartOfHeight * std::max(std::abs(height), kLowest_m))) : 0.0;
+  g.height_m = snapped(height, step);
+  g.highest_m = g.height_m + 0.5 * step;
   const auto [low, high] = elevationsIn(view, up);
   std::tie(g.low, g.high) = widened(low, high, -1.0, 1.0);
   g.farthest_m = std::exp2(0.5 * std::ceil(2.0 * std::log2(farthestIn(simulation, view, state))));

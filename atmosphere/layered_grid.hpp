@@ -12,7 +12,7 @@ namespace pitviper {
 double spreadOf(double sine);
 
 struct AirGrid {
-  double height_m = 0.0;
+  double height_m = 0.0, highest_m = 0.0;    ///< of the eye, in steps, and the highest of the eyes that share it
   double sunSine = 0.0;                      ///< of the sun's elevation
   double low = 0.0, high = 0.0;              ///< sines of elevation
   double acrossLow = 0.0, acrossHigh = 0.0;  ///< cosine of the azimuth to the sun times the sun's horizontal part; alike where there is one azimuth
@@ -28,6 +28,8 @@ struct AirGrid {
   std::vector<double> rangesFrom(double entry_m) const;
   /// Sine of the elevation at which the sphere of the earth begins.
   double horizon(double earthRadius_m) const;
+  /// The lowest, of the highest eye.
+  double lowestHorizon(double earthRadius_m) const;
   bool operator==(const AirGrid&) const = default;
 };
 

@@ -13,7 +13,7 @@ struct AirLine {
   double sine = 0.0;          ///< of its elevation
   double across = 0.0;        ///< as AirGrid::acrossLow
   bool meetsHorizon = false;  ///< the next row above is over the horizon: towards space it has what the horizon has
-  bool reachesSpace = true;   ///< false: nothing is asked of it beyond the grid's ranges
+  bool reachesSpace = true;   ///< false: nothing is asked of it beyond the grid's ranges, its last entry says nothing
 };
 
 /// Entries by range.

@@ -50,7 +50,7 @@ ProbeMeter::ProbeMeter(const Simulation& simulation, const Probe& probe, const S
       all_(simulation.entities.size(), 1),
       lines_(zoomedLines(simulation, Camera{}.zoomedSamples, probe.spectral.reference ? 0.0 : plan_.accuracy)) {
   pass_ = probe.spectral.reference ? std::make_unique<ReferencePass>(simulation, plan_, library, scene, false, 1.0)
-                                   : makeScenePass(simulation, plan_, library, scene, false, 1.0);
+                                   : makeScenePass(simulation, plan_, library, scene, false, 1.0, false);
 }
 
 void ProbeMeter::addSurroundings(const WorldState& state, std::vector<double>& sums) {

@@ -8,6 +8,7 @@
 #include <memory>
 
 #include "sim/model/ray_hits.hpp"
+#include "sim/model/shadow_casters.hpp"
 
 namespace pitviper {
 namespace {
@@ -215,8 +216,7 @@ class SolidBodies {
     for (auto first = views_.begin(); first != views_.end();) {
       const auto last = std::find_if(first, views_.end(), [&](const View& z) { return z.width != first->width; });
       if (pass.drawsTiles()) {
-        const auto zoomed = pass.drawTiles({first, last}, state, drawn);
-        for (auto z = first; z != last; ++z) add(*z, zoomed[static_cast<size_t>(z - first)], fine);
+        pass.drawTiles({first, last}, state, drawn, [&](size_t i, const RawImage& zoomed) { add(*(first + static_cast<long>(i)), zoomed, fine); });
       } else {
         for (auto z = first; z != last; ++z) {
           pass.draw(*z, state, drawn);
@@ -355,8 +355,10 @@ std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state
 
 namespace {
 
-/// A body that is the same all over, and reflects the same into all directions: what is small on it is its outline.
+/// An opaque convex body that is the same all over, and reflects the same into all directions: what is small on it is its outline.
 bool isEven(const Simulation& sim, const Entity& e) {
+  const SelfShadow self = selfShadow(e, true);
+  if (sim.isTransparent(e) || (self != SelfShadow::Never && self != SelfShadow::Inside)) return false;
   const auto plain = [](const auto& modifiers) { return std::all_of(modifiers.begin(), modifiers.end(), [](int texture) { return texture < 0; }); };
   for (const Surface& s : e.surfaces) {
     const Material& m = sim.materialOf(s);
@@ -374,15 +376,17 @@ std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
   constexpr double kPart = 0.125;
   constexpr int kFewest = 16;
   std::vector<int> lines;
+  std::map<const Mesh*, double> surfaces_m2;
   for (const Entity& e : sim.entities) {
     lines.push_back(most);
     if (accuracy <= 0.0 || !isEven(sim, e)) continue;
-    double surface = 0.0;
-    for (const auto& t : e.mesh->triangles) {
-      const glm::dvec3 a = e.mesh->positions[t.x];
-      surface += 0.5 * glm::length(glm::cross(glm::dvec3(e.mesh->positions[t.y]) - a, glm::dvec3(e.mesh->positions[t.z]) - a));
-    }
-    const double across = 2.0 * static_cast<double>(e.boundingRadius_m), area = 0.25 * surface, outline = glm::pi<double>() * across;
+    const auto [known, fresh] = surfaces_m2.try_emplace(e.mesh.get(), 0.0);
+    if (fresh)
+      for (const auto& t : e.mesh->triangles) {
+        const glm::dvec3 a = e.mesh->positions[t.x];
+        known->second += 0.5 * glm::length(glm::cross(glm::dvec3(e.mesh->positions[t.y]) - a, glm::dvec3(e.mesh->positions[t.z]) - a));
+      }
+    const double across = 2.0 * static_cast<double>(e.boundingRadius_m), area = 0.25 * known->second, outline = glm::pi<double>() * across;
     // h = across / lines in the law, solved for them.
     const double needed = area > 0.0 ? across * std::cbrt(outline * 0.0724 / std::pow(kPart * accuracy * area, 2.0)) : INFINITY;
     int enough = kFewest;

@@ -1,6 +1,8 @@
 #include "sim/gl/shader_assembler.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <regex>
 #include <set>
 #include <stdexcept>
@@ -120,7 +122,8 @@ std::string planNumbers(const std::string& name, std::span<const float> numbers,
   const size_t count = numbers.size() / 4;
   const std::string declared = "vec4 " + name + "[" + std::to_string(count) + "]";
   if (count == 0) return "";
-  if (count > kMostConstants) return "layout(std140, binding = " + std::to_string(binding) + ") uniform " + name + "Block { " + declared + "; };\n";
+  const bool finite = std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); });  // what is not has no literal
+  if (count > kMostConstants || !finite) return "layout(std140, binding = " + std::to_string(binding) + ") uniform " + name + "Block { " + declared + "; };\n";
   std::string text = "const " + declared + " = vec4[](\n";
   for (size_t i = 0; i < 4 * count; ++i) {
     char digits[32];

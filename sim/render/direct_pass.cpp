@@ -44,10 +44,10 @@ void DirectPass::shadeTile(RenderTarget& into, const glm::ivec4& part, const std
 }
 
 std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
-                                         bool truth, double apertureArea_m2) {
+                                         bool truth, double apertureArea_m2, bool classes) {
   if (simulation.mode == RenderMode::Buffered || simulation.hasTransparent())
-    return std::make_unique<BufferedPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2, true);
-  return std::make_unique<DirectPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2, true);
+    return std::make_unique<BufferedPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2, classes);
+  return std::make_unique<DirectPass>(simulation, plan, library, std::move(scene), truth, apertureArea_m2, classes);
 }
 
 }  // namespace pitviper

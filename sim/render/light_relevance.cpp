@@ -52,7 +52,8 @@ class Bounds {
     const size_t nodes = plan_.nodes.size(), each = static_cast<size_t>(4 * t.vectors), states = static_cast<size_t>(g.state[1]);
     const double coldest_K = surface.temperatureTexture >= 0 ? rangeOf(sim_, surface.temperatureTexture).first : d.temperature_K;
     const double emitted = g.kinds[2] == 1 ? 1.0 : std::max(rangeOf(sim_, g.transmission[2]).first, 0.0);
-    std::vector<double> bound;
+    std::vector<double> bound, greatest;  // of each component's texture
+    for (const auto& c : g.components) greatest.push_back(std::max(rangeOf(sim_, c[1]).second, 0.0));
     for (size_t i = 0; i < nodes; ++i) {
       const auto ends = [&](const std::vector<float>& table, size_t first, size_t entries, size_t place) {
         double low = INFINITY, high = 0.0;
@@ -66,7 +67,7 @@ class Bounds {
       for (size_t k = 0; k < material.reflections.size(); ++k) {
         const size_t place = 4 * (k / 3) + k % 3;
         const double own = ends(t.columns, g.counts[3], states * g.counts[0] * g.counts[1], place).second * material.reflections[k]->lobe().maximum;
-        most += own * std::max(rangeOf(sim_, g.components[k][1]).second, 0.0);
+        most += own * greatest[k];
         byAmbient = std::max(byAmbient, reflectionOf(own, ends(t.hemispherical, g.kinds[3], states * g.counts[2], place).first));
       }
       const double self = emitted * ends(t.hemispherical, g.kinds[3], states * g.counts[2], 3).first * plan_.nodes[i].planck(coldest_K);

@@ -25,7 +25,7 @@ class PixelClasses {
   void drawPart(const glm::ivec4& part) const;
   void end() const;
   ChosenPixels only(std::size_t surfaceClass) const { return {*found_, depthOf(surfaceClass), false}; }
-  /// All that is drawn: nothing but what a view of one body leaves out.
+  /// All but what a view of one body leaves out.
   ChosenPixels all() const { return {*found_, 0.5f * (depthOf(0) + 1.0f), true}; }
   /// Exact in single precision, of up to 15 classes. The first lies behind the others, and what no class has behind it.
   static float depthOf(std::size_t surfaceClass) { return surfaceClass == 0 ? 15.0f / 16.0f : static_cast<float>(surfaceClass) / 16.0f; }

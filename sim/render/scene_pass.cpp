@@ -2,6 +2,7 @@
 
 #include <epoxy/gl.h>
 
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -15,8 +16,8 @@ namespace {
 
 /// Alignment of parts of buffers that every driver takes [bytes].
 constexpr std::size_t kAligned = 256;
-/// Tiles are drawn so many pixels a side at a time.
-constexpr int kTilePicture_px = 2048;
+/// Tiles are drawn in pictures of so many pixels a side at most, or of one tile.
+constexpr int kTilePicture_px = 1024;
 
 /// The same plan at one wavelength: what the reference needs of tables is which part each draw is.
 Plan outline(const Plan& plan) {
@@ -201,25 +202,25 @@ struct ScenePass::Tile {
   std::size_t firstDraw = 0;  ///< in the buffer
 };
 
-std::vector<RawImage> ScenePass::drawTiles(const std::vector<View>& views, const WorldState& state, const std::vector<char>& drawn) {
-  std::vector<RawImage> images;
-  const int most = std::max(kTilePicture_px / views.front().width, 1) * std::max(kTilePicture_px / views.front().width, 1);
-  for (size_t first = 0; first < views.size(); first += static_cast<size_t>(most)) {
-    auto tiles = tilesOf(std::span(views).subspan(first, std::min(static_cast<size_t>(most), views.size() - first)), state, drawn);
+void ScenePass::drawTiles(const std::vector<View>& views, const WorldState& state, const std::vector<char>& drawn,
+                          const std::function<void(std::size_t, const RawImage&)>& take) {
+  const auto across = std::bit_floor(static_cast<unsigned>(std::max(kTilePicture_px / views.front().width, 1)));
+  const size_t most = static_cast<size_t>(across) * across;
+  for (size_t first = 0; first < views.size(); first += most) {
+    const auto tiles = tilesOf(std::span(views).subspan(first, std::min(most, views.size() - first)), state, drawn);
     drawTilePicture(tiles, state);
     startReadback(true);
     const auto pixels = readback_.wait();
-    for (const Tile& t : tiles) images.push_back(cut(pixels, t));
+    for (size_t i = 0; i < tiles.size(); ++i) take(first + i, cut(pixels, tiles[i]));
   }
-  return images;
 }
 
-/// Side by side in a square whose side in tiles is a power of two: few sizes of picture are ever made.
+/// Side by side, in rows and columns of which there are powers of two: few sizes of picture are ever made.
 std::vector<ScenePass::Tile> ScenePass::tilesOf(std::span<const View> views, const WorldState& state, const std::vector<char>& drawn) {
   const int size = views.front().width;
-  int across = 1;
-  while (across * across < static_cast<int>(views.size())) across *= 2;
-  current_ = &targetsFor(across * size, across * size);
+  int across = 1, rows = 1;
+  while (across * rows < static_cast<int>(views.size())) (across > rows ? rows : across) *= 2;
+  current_ = &targetsFor(across * size, rows * size);
   std::vector<Tile> tiles;
   std::vector<GpuDraw> draws;
   std::vector<unsigned char> blocks(views.size() * kAligned);

@@ -2,6 +2,7 @@
 // What every mode of drawing shares: a visibility pass (which triangle each pixel sees), then spectral shading once per visible pixel.
 // Speed does not depend on how much is hidden. Direct mode and buffered mode differ in what shading leaves behind.
 #include <deque>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
@@ -41,8 +42,9 @@ class ScenePass {
   void draw(const View& view, const WorldState& state, const std::vector<char>& drawn);
   /// Whether views can be drawn as tiles.
   virtual bool drawsTiles() const { return false; }
-  /// Views of one size from one place, each of its own body (View::onlyEntity), as tiles of a picture that is read back as a whole.
-  std::vector<RawImage> drawTiles(const std::vector<View>& views, const WorldState& state, const std::vector<char>& drawn);
+  /// Views of one size from one place, each of its own body (View::onlyEntity), as tiles of pictures that are read back as a whole; `take`(view, image).
+  void drawTiles(const std::vector<View>& views, const WorldState& state, const std::vector<char>& drawn,
+                 const std::function<void(std::size_t, const RawImage&)>& take);
   /// Starts copying the last drawn image.
   void startReadback(bool identity = false);
   RawImage finishReadback();
@@ -123,8 +125,8 @@ class ScenePass {
   Readback readback_;
 };
 
-/// A pass in the mode the scenario asks for.
+/// A pass in the mode the scenario asks for. `classes`: as ScenePass's.
 std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
-                                         bool truth, double apertureArea_m2);
+                                         bool truth, double apertureArea_m2, bool classes = true);
 
 }  // namespace pitviper

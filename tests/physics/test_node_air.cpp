@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "atmosphere/layered_grid.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_air.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -57,6 +58,53 @@ TEST(NodeAir, AsNodeByNode) {
 TEST(NodeAir, WhatIsLost) {
   for (double x : {0.0, 1e-12, 1e-3, 0.1249, 0.1251, 3.0, 800.0})
     EXPECT_NEAR(lostOf(std::vector<double>(3, x))[1], physics::oneMinusExp(x), 1e-15 + 1e-14 * x) << x;
+}
+
+// An eye a little higher than its tables' step sees past their horizon: rows below that one are asked for the sky.
+TEST(NodeAir, SkyJustBelowTheTablesHorizon) {
+  double worst = 0.0;
+  for (const char* height : {"10.24 m", "10.01 m", "9.77 m", "3.13 m"})
+    for (const char* field : {"0.03 deg", "0.5 deg"}) {
+      const auto picture = [&](const char* accuracy) {
+        const Frame f = renderFrame(scene(
+            std::string("accuracy: ") + accuracy +
+            "\natmosphere: hazy_us76\nsun: {azimuth: 200 deg, elevation: 30 deg, temperature: 5772 K}\ncameras: [{name: c, film: {width: 64, height: 4}, "
+            "field_of_view: " +
+            field + ", aperture: 10 mm, position: [0 m, 0 m, " + height +
+            "], heading: 0 deg, pitch: -0.1 deg, roll: 90 deg, channels: [{name: vis, response: {band: [0.5 um, 0.7 um]}}, {name: lw, response: {band: [8 um, "
+            "12 um]}}]}]\n"));
+        return std::pair(layer(f, "vis.radiance").pixels, layer(f, "lw.radiance").pixels);
+      };
+      const auto planned = picture("5 %"), exact = picture("reference");
+      for (size_t p = 0; p < exact.first.size(); ++p) {
+        worst = std::max(worst, static_cast<double>(std::abs(planned.first[p] / exact.first[p] - 1.0f)));
+        worst = std::max(worst, static_cast<double>(std::abs(planned.second[p] / exact.second[p] - 1.0f)));
+      }
+    }
+  bound("horizon of the sea from 3 to 10 m up, asked to 5 %, worst pixel", worst, 0.05, "the accuracy asked for");
+}
+
+// No eye that shares a grid sees below the horizon that its rows are made for; below the grid's own some do.
+TEST(NodeAir, LowestHorizonOfAGrid) {
+  const Simulation sim = scene(
+      "accuracy: 5 %\natmosphere: hazy_us76\ncameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 1 deg, aperture: 10 mm, position: [0 m, 0 m, 10 "
+      "m], "
+      "heading: 0 deg, channels: [{name: lw, response: {band: [8 um, 12 um]}}]}]\n");
+  Plan plan = makePlan(sim, sim.cameras[0].outputs, sim.cameras[0].spectral, {});
+  plan.accuracy = 0.05;
+  const WorldState state = advance(sim, 0.0);
+  const double radius = sim.frame.earthRadius_m();
+  int below = 0;
+  for (double height = 0.03; height < 9000.0; height *= 1.037) {
+    View view = cameraView(sim.cameras[0], state, 1);
+    view.position.z = height;
+    const AirGrid grid = airGrid(sim, plan, {65, 97}, view, state);
+    AirGrid own = grid;
+    own.height_m = sim.frame.height(view.position);
+    EXPECT_LE(grid.lowestHorizon(radius), own.horizon(radius)) << height;
+    below += own.horizon(radius) < grid.horizon(radius);
+  }
+  EXPECT_GT(below, 50);
 }
 
 }  // namespace

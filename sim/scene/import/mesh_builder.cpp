@@ -57,15 +57,7 @@ void MeshBuilder::add(vtkPolyData* data, const CheckedFile& checked, const std::
   // Every triangle has three vertices: more than that many can only be unused ones.
   if (mesh_.positions.size() + static_cast<std::size_t>(points) > 3 * kMostImportedTriangles)
     throw ImportFailure{{file_}, "the mesh has too many vertices", "at most " + std::to_string(3 * kMostImportedTriangles), "simplify the mesh"};
-  for (vtkIdType i = 0; i < points; ++i) {
-    double p[3], n[9] = {}, t[9] = {};
-    data->GetPoint(i, p);
-    if (normals != nullptr) normals->GetTuple(i, n);
-    if (uv != nullptr) t[0] = uv->GetComponent(i, 0), t[1] = uv->GetComponent(i, 1);
-    mesh_.positions.emplace_back(p[0], p[1], p[2]);
-    mesh_.normals.emplace_back(n[0], n[1], n[2]);
-    mesh_.uv.emplace_back(t[0], t[1]);
-  }
+  addPoints(data, normals, uv);
 
   const auto checkedCells = [&](vtkCellArray* cells, auto&& perCell) {
     vtkIdType count = 0;
@@ -106,6 +98,18 @@ void MeshBuilder::add(vtkPolyData* data, const CheckedFile& checked, const std::
   }
   allNormals_ = allNormals_ && normals != nullptr;
   allUv_ = allUv_ && uv != nullptr;
+}
+
+void MeshBuilder::addPoints(vtkPolyData* data, vtkDataArray* normals, vtkDataArray* uv) {
+  for (vtkIdType i = 0; i < data->GetNumberOfPoints(); ++i) {
+    double p[3], n[9] = {}, t[9] = {};
+    data->GetPoint(i, p);
+    if (normals != nullptr) normals->GetTuple(i, n);
+    if (uv != nullptr) t[0] = uv->GetComponent(i, 0), t[1] = uv->GetComponent(i, 1);
+    mesh_.positions.emplace_back(p[0], p[1], p[2]);
+    mesh_.normals.emplace_back(n[0], n[1], n[2]);
+    mesh_.uv.emplace_back(t[0], t[1]);
+  }
 }
 
 void MeshBuilder::addTriangle(long long a, long long b, long long c, std::uint32_t part) {

@@ -7,6 +7,7 @@
 #include "sim/scene/import/checks.hpp"
 #include "sim/scene/mesh.hpp"
 
+class vtkDataArray;
 class vtkPolyData;
 
 namespace pitviper {
@@ -26,6 +27,7 @@ class MeshBuilder {
   Mesh take();
 
  private:
+  void addPoints(vtkPolyData* data, vtkDataArray* normals, vtkDataArray* uv);
   void addTriangle(long long a, long long b, long long c, std::uint32_t part);
   std::uint32_t partNumber(const std::string& name);
 
