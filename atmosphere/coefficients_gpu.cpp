@@ -18,7 +18,7 @@ CoefficientsOnGpu::CoefficientsOnGpu(const Plan& plan, int vectors) : vectors_(v
 
 void CoefficientsOnGpu::addSlots(ShaderSlots& slots) const {
   slots.constants["AIR_VECTORS"] = vectors_;
-  slots.generated["air_extinction"] = planNumbers("airExtinction", numbers_, kBinding);
+  slots.generated["air_extinction"] = planNumbers("airExtinction", numbers_, kBinding, slots.constants["WRITTEN_OUT"] != 0);
 }
 
 void CoefficientsOnGpu::bind() const { block_.bindUniform(kBinding); }

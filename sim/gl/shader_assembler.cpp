@@ -117,13 +117,14 @@ class Assembler {
 
 }  // namespace
 
-std::string planNumbers(const std::string& name, std::span<const float> numbers, int binding) {
+std::string planNumbers(const std::string& name, std::span<const float> numbers, int binding, bool writtenOut) {
   constexpr size_t kMostConstants = 256;
   const size_t count = numbers.size() / 4;
   const std::string declared = "vec4 " + name + "[" + std::to_string(count) + "]";
   if (count == 0) return "";
   const bool finite = std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); });  // what is not has no literal
-  if (count > kMostConstants || !finite) return "layout(std140, binding = " + std::to_string(binding) + ") uniform " + name + "Block { " + declared + "; };\n";
+  if (count > kMostConstants || !finite || !writtenOut)
+    return "layout(std140, binding = " + std::to_string(binding) + ") uniform " + name + "Block { " + declared + "; };\n";
   std::string text = "const " + declared + " = vec4[](\n";
   for (size_t i = 0; i < 4 * count; ++i) {
     char digits[32];

@@ -42,9 +42,10 @@ struct ShaderSlots {
   std::vector<std::string> extensions;           ///< GLSL extensions the program requires
 };
 
-/// Declares the array of vec4 `name`, numbers that are a plan's own, four to an entry: as constants, which cost drivers without a GPU a fifth of what they
-/// cost from a buffer, or, where they are many, as a uniform block at `binding` that holds them.
-std::string planNumbers(const std::string& name, std::span<const float> numbers, int binding);
+/// Declares the array of vec4 `name`, numbers that are a plan's own, four to an entry: as constants where each is read by a number that is written out (from
+/// a buffer they cost drivers without a GPU five times as much; but an array that a loop goes through these copy for every pixel), or else, or where they
+/// are many, as a uniform block at `binding` that holds them.
+std::string planNumbers(const std::string& name, std::span<const float> numbers, int binding, bool writtenOut);
 
 AssembledShader assembleShader(const ShaderLibrary& library, const std::string& mainPath, const ShaderSlots& slots);
 

@@ -19,7 +19,7 @@ DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const Sha
     integral.insert(integral.rfind('}'), own);
   }
   slots.generated["integrate"] = integral;
-  slots.generated["weights"] = planNumbers("weights", tables().weights, 2);
+  slots.generated["weights"] = planNumbers("weights", tables().weights, 2, tables().writtenOut);
   auto targets = channelTargets();
   if (truth)
     for (const auto& name : truthTargets()) targets.push_back(name);

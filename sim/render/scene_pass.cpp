@@ -16,6 +16,8 @@ namespace {
 
 /// Alignment of parts of buffers that every driver takes [bytes].
 constexpr std::size_t kAligned = 256;
+/// Places for many lights, at least: with so many Mesa keeps the loop over those that shine; written out (up to 32), one would cost as much as all.
+constexpr int kLightPlaces = 33;
 /// Tiles are drawn in pictures of so many pixels a side at most, or of one tile.
 constexpr int kTilePicture_px = 1024;
 
@@ -58,6 +60,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
 ShaderSlots ScenePass::shadingSlots() const {
   ShaderSlots slots;
   slots.files["path"] = "sim/render/glsl/path_none.glsl";
+  slots.constants["WRITTEN_OUT"] = how_ == Shading::Direct && tables_.writtenOut ? 1 : 0;
   if (air_) air_->addSlots(slots);
   addSurfaceSlots(tables_.solid, plan_.terms.solid, plan_, slots);
   slots.files["shadow"] = ShadowPass::slotFile(plan_);
@@ -69,6 +72,7 @@ ShaderSlots ScenePass::shadingSlots() const {
   slots.constants["GROUPS"] = plan_.groupCount();
   slots.constants["LIGHTS"] = plan_.lightCount;
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
+  slots.constants["LIGHT_PLACES"] = std::max(plan_.lightCount, kLightPlaces);
   slots.constants["SUN"] = simulation_.sun && plan_.lightCount > 0 ? 1 : 0;
   slots.constants["GROUND"] = tables_.ground;
   slots.constants["SURFACES"] = 1;

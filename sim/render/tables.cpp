@@ -287,7 +287,8 @@ void writeIntegral(RenderTables& t, const Plan& plan) {
   for (int g = 0; g < plan.groupCount(); ++g) targets << "  channels" << g << " = vec4(0.0);\n";
   targets << "}\n";
   text << "void integrate() {\n  Real radiance;\n";
-  const bool written = plan.nodeCount() * (1 + (plan.terms.lights ? plan.lightCount * t.solid.vectors : 0)) <= kMostWrittenOut;
+  t.writtenOut = plan.nodeCount() * (1 + (plan.terms.lights ? plan.lightCount * t.solid.vectors : 0)) <= kMostWrittenOut;
+  const bool written = t.writtenOut;
   size_t at = 0;
   for (const Loop& loop : written ? loopsOf(plan, true) : integrationLoops(plan)) {
     const std::string i = written ? "{i}" : "i";

@@ -61,6 +61,7 @@ struct RenderTables {
   std::vector<float> ambient;  ///< vec4 per node; empty without a dome's light, or where all rows hold it
   std::vector<float> weights;  ///< vec4s in the order of the integration text
   std::string integrateText;   ///< body of the spectral integral
+  bool writtenOut = false;     ///< without loops over nodes
   std::string targetsText;     ///< how the channel targets begin
 };
 

@@ -1,10 +1,10 @@
 // Many point lights and, as the last one where SUN is 1, the sun; see lights_few.glsl. A body's row lists those that can matter to it; of
 // them a point keeps the ones that shine on its face.
 //@use sim/render/glsl/lights_buffer.glsl
-Vec3 lightFactor_[LIGHTS * COMPONENT_VECTORS];   // irradiance per unit intensity x lobe of each component [1/m2]
-AirPath lightAir_[LIGHTS];   // both legs
-Vec3 toLight_[LIGHTS];
-int lightNumber_[LIGHTS];
+Vec3 lightFactor_[LIGHT_PLACES * COMPONENT_VECTORS];   // irradiance per unit intensity x lobe of each component [1/m2]
+AirPath lightAir_[LIGHT_PLACES];   // both legs
+Vec3 toLight_[LIGHT_PLACES];
+int lightNumber_[LIGHT_PLACES];
 int shining_;
 
 Vec3 toLight(int l) { return toLight_[l]; }
