@@ -95,6 +95,8 @@ const std::map<std::string, Command>& commands() {
         "  --factor NAME        this factor only: centre, overdraw, channels, wavelengths, lights, film, layers, shading, blend\n"
         "  --frames N           frames to time in each row, 10 or more (default 60; fewer of slow ones)\n"
         "  --out FOLDER         also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing\n"
+        "\nWith --scenario: seconds a frame of each camera, drawing and readback, no files; beside them the yardstick, and where the time of a frame goes,\n"
+        "part by part: what updates tables and shadow maps, what is seen, shading, readback and so on.\n"
         "\nWith --accuracy: the scenario's first camera at accuracies of 10 to 0.1 %, at 4 to 340 even samples and at 16 Gauss points a channel, against\n"
         "the reference (double precision on the CPU, every wavelength; slow). Prints frames a second and the error of each channel's pixels,\n"
         "|L - Lref| / max(Lref, 1e-3 x the 99th percentile of Lref), and as a temperature difference. The error is that of spectral sampling, tables,\n"

@@ -71,7 +71,8 @@ int planCommand(const Arguments& arguments) {
     else std::printf("%s\n", planText(told).c_str());
     if (o.has("--shaders")) {
       const auto pass = makeScenePass(sim, plan, shaderLibrary(), std::make_shared<const GpuScene>(sim), eye.camera && eye.camera->truth.any(), 1.0);
-      std::printf("%s\n", pass->shadingText().c_str());
+      for (const NamedProgram& p : pass->programs())
+        if (p.name == "shading") std::printf("%s\n", p.text.c_str());
     }
   };
   for (const Camera& one : sim.cameras) {

@@ -33,14 +33,7 @@ class Assembler {
 
   void file(const std::string& path) {
     if (!used_.insert(path).second) return;
-    std::vector<Line> lines;
-    std::string_view text = library_.text(path);
-    while (!text.empty()) {
-      const size_t end = text.find('\n');
-      lines.push_back({std::string(text.substr(0, end)), path + ":" + std::to_string(lines.size() + 1)});
-      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-    }
-    write(lines);
+    write(linesOf(library_.text(path), [&](size_t number) { return path + ":" + std::to_string(number); }));
   }
 
   AssembledShader take() { return std::move(out_); }
@@ -49,6 +42,18 @@ class Assembler {
   struct Line {
     std::string text, from;
   };
+
+  /// `placeOf`(number, from 1 on).
+  template <class PlaceOf>
+  static std::vector<Line> linesOf(std::string_view text, const PlaceOf& placeOf) {
+    std::vector<Line> lines;
+    while (!text.empty()) {
+      const size_t end = text.find('\n');
+      lines.push_back({std::string(text.substr(0, end)), placeOf(lines.size() + 1)});
+      text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
+    }
+    return lines;
+  }
 
   void write(std::span<const Line> lines) {
     for (size_t n = 0; n < lines.size(); ++n) {
@@ -70,16 +75,8 @@ class Assembler {
   }
 
   void slot(const std::string& name, const std::string& from) {
-    if (const auto own = slots_.generated.find(name); own != slots_.generated.end()) {
-      std::string_view text = own->second;
-      std::vector<Line> lines;
-      while (!text.empty()) {
-        const size_t end = text.find('\n');
-        lines.push_back({std::string(text.substr(0, end)), "generated " + name});
-        text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-      }
-      return write(lines);
-    }
+    if (const auto own = slots_.generated.find(name); own != slots_.generated.end())
+      return write(linesOf(own->second, [&](size_t) { return "generated " + name; }));
     const auto chosen = slots_.files.find(name);
     if (chosen == slots_.files.end()) throw std::logic_error(from + ": no file chosen for shader slot '" + name + "'");
     file(chosen->second);

@@ -83,8 +83,9 @@ CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& f
   plan.lines = kLast;
   plan.parts.clear();
   plan.predictedError.clear();
+  const double shadows = plan.terms.shadows && !sim.lights.empty() ? kShadowShare * plan.accuracy : 0.0;
   for (size_t s = 0; s < found.size(); ++s) {
-    plan.parts.push_back({kMargin * found[s].largest, tables[s], found[s].dropped, kPrecision, extreme[s].largest});
+    plan.parts.push_back({kMargin * found[s].largest, tables[s], found[s].dropped + shadows, kPrecision, extreme[s].largest});
     plan.predictedError.push_back(plan.parts.back().sum());
   }
   return last;

@@ -12,7 +12,6 @@ class BufferedPass final : public ScenePass {
  public:
   BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                double apertureArea_m2, bool classes = true);
-  std::string shadingText() const override { return shade_.text(); }
   std::vector<NamedProgram> programs() const override;
 
   /// Null where nothing in the scenario is transparent.

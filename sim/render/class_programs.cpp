@@ -27,11 +27,4 @@ void ClassPrograms::addTo(std::vector<NamedProgram>& all) const {
   for (const ShadingProgram& p : programs_) all.push_back({"shading", p.text()});
 }
 
-std::string ClassPrograms::text() const {
-  std::string longest;
-  for (const ShadingProgram& p : programs_)
-    if (p.text().size() > longest.size()) longest = p.text();
-  return longest;
-}
-
 }  // namespace pitviper

@@ -19,8 +19,6 @@ class ClassPrograms {
   /// Of some classes, over a part of the picture (corner, size).
   void run(RenderTarget& into, const PixelClasses& pixels, const glm::ivec4& part, const std::set<std::size_t>& classes) const;
   void addTo(std::vector<NamedProgram>& all) const;
-  /// Of the class of most text.
-  std::string text() const;
 
  private:
   std::vector<ShadingProgram> programs_;  ///< of each class

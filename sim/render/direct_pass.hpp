@@ -9,7 +9,6 @@ class DirectPass final : public ScenePass {
  public:
   DirectPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
              double apertureArea_m2, bool classes = true);
-  std::string shadingText() const override { return programs_.text(); }
   std::vector<NamedProgram> programs() const override;
   bool drawsTiles() const override { return true; }
 

@@ -21,83 +21,92 @@ std::pair<double, double> rangeOf(const Simulation& sim, int texture) {
   return {static_cast<double>(*low), static_cast<double>(*high)};
 }
 
-/// Most of a point light's intensity that a surface sends on at each node, by the radiance that it has itself, at its least: f_max / S.
-class Bounds {
- public:
-  Bounds(const Simulation& sim, const Plan& plan, const RenderTables& tables) : sim_(sim), plan_(plan), tables_(tables) {}
-
-  std::vector<double> of(const DrawItem& d) const {
-    const SurfaceTables& t = d.kind == DrawKind::Layer ? tables_.layer : tables_.solid;
-    const Surface& surface = sim_.entities[static_cast<size_t>(d.entity)].surfaces[static_cast<size_t>(d.surface)];
-    return t.general ? ofTables(d, t, surface) : ofRow(d, t, sim_.materialOf(surface));
+/// Least and largest value of a table at a node, of `entries` from `first` on.
+std::pair<double, double> endsOf(const std::vector<float>& table, size_t first, size_t entries, size_t each, size_t nodes, size_t node, size_t place) {
+  double low = INFINITY, high = 0.0;
+  for (size_t e = 0; e < entries; ++e) {
+    const double value = static_cast<double>(table[4 * first + (e * nodes + node) * each + place]);
+    low = std::min(low, value), high = std::max(high, value);
   }
+  return {low, high};
+}
 
- private:
-  std::vector<double> ofRow(const DrawItem& d, const SurfaceTables& t, const Material& material) const {
-    std::vector<double> bound;
-    for (size_t i = 0; i < plan_.nodes.size(); ++i) {
-      const float* row = &t.rows[4 * static_cast<size_t>(t.vectors) * (d.row + i)];
-      double most = 0.0;
-      for (size_t k = 0; k < material.reflections.size(); ++k) most += static_cast<double>(row[4 * (k / 3) + k % 3]) * material.reflections[k]->lobe().maximum;
-      bound.push_back(reflectionOf(most, static_cast<double>(row[3])));
-    }
-    return bound;
-  }
-
-  /// Of tables over angles and states, and of textures, their ends. Beside what the surface emits at its coldest there is what it reflects of ambient light:
-  /// of that and of the lamp each component takes its share, whatever the textures say, so that the greatest ratio of a component is that of all.
-  std::vector<double> ofTables(const DrawItem& d, const SurfaceTables& t, const Surface& surface) const {
-    const Material& material = sim_.materialOf(surface);
-    const GpuMaterial& g = t.materials[d.material];
-    const size_t nodes = plan_.nodes.size(), each = static_cast<size_t>(4 * t.vectors), states = static_cast<size_t>(g.state[1]);
-    const double coldest_K = surface.temperatureTexture >= 0 ? rangeOf(sim_, surface.temperatureTexture).first : d.temperature_K;
-    const double emitted = g.kinds[2] == 1 ? 1.0 : std::max(rangeOf(sim_, g.transmission[2]).first, 0.0);
-    std::vector<double> bound, greatest;  // of each component's texture
-    for (const auto& c : g.components) greatest.push_back(std::max(rangeOf(sim_, c[1]).second, 0.0));
-    for (size_t i = 0; i < nodes; ++i) {
-      const auto ends = [&](const std::vector<float>& table, size_t first, size_t entries, size_t place) {
-        double low = INFINITY, high = 0.0;
-        for (size_t e = 0; e < entries; ++e) {
-          const double value = static_cast<double>(table[4 * first + (e * nodes + i) * each + place]);
-          low = std::min(low, value), high = std::max(high, value);
-        }
-        return std::pair(low, high);
-      };
-      double most = 0.0, byAmbient = 0.0;
-      for (size_t k = 0; k < material.reflections.size(); ++k) {
-        const size_t place = 4 * (k / 3) + k % 3;
-        const double own = ends(t.columns, g.counts[3], states * g.counts[0] * g.counts[1], place).second * material.reflections[k]->lobe().maximum;
-        most += own * greatest[k];
-        byAmbient = std::max(byAmbient, reflectionOf(own, ends(t.hemispherical, g.kinds[3], states * g.counts[2], place).first));
-      }
-      const double self = emitted * ends(t.hemispherical, g.kinds[3], states * g.counts[2], 3).first * plan_.nodes[i].planck(coldest_K);
-      const double ambient = plan_.terms.ambient ? plan_.nodes[i].mean(*sim_.ambient) : 0.0;
-      bound.push_back(std::min(reflectionOf(most, self), ambient > 0.0 ? byAmbient / ambient : most > 0.0 ? INFINITY : 0.0));
-    }
-    return bound;
-  }
-
-  const Simulation& sim_;
-  const Plan& plan_;
-  const RenderTables& tables_;
-};
+const SurfaceTables& tablesOf(const RenderTables& tables, const DrawItem& d) { return d.kind == DrawKind::Layer ? tables.layer : tables.solid; }
 
 }  // namespace
 
 LightRelevance::LightRelevance(const Simulation& simulation, const Plan& plan, const RenderTables& tables)
-    : simulation_(simulation), accuracy_(plan.accuracy), ratio_(simulation.entities.size() * simulation.lights.size(), 0.0) {
-  const Bounds bounds(simulation, plan, tables);
-  for (const DrawItem& d : tables.draws) {
-    if ((d.kind != DrawKind::Solid && d.kind != DrawKind::Layer) || simulation.lights.empty()) continue;
-    if (!(d.kind == DrawKind::Layer ? tables.layer : tables.solid).lit) continue;
-    const auto bound = bounds.of(d);
-    for (size_t l = 0; l < simulation.lights.size(); ++l) {
-      double& worst = ratio_[static_cast<size_t>(d.entity) * simulation.lights.size() + l];
-      for (size_t i = 0; i < bound.size(); ++i)
-        if (const double intensity = plan.nodes[i].mean(simulation.lights[l].intensity); intensity > 0.0 && bound[i] > 0.0)
-          worst = std::max(worst, intensity * bound[i]);
-    }
+    : simulation_(simulation), nodes_(simulation.lights.empty() ? std::vector<SpectralNode>{} : plan.nodes), accuracy_(plan.accuracy) {
+  for (const auto& light : simulation.lights)
+    for (const SpectralNode& n : nodes_) intensity_.push_back(n.mean(light.intensity));
+  for (size_t d = 0; d < tables.draws.size() && !simulation.lights.empty(); ++d) {
+    const DrawKind kind = tables.draws[d].kind;
+    if ((kind == DrawKind::Solid || kind == DrawKind::Layer) && tablesOf(tables, tables.draws[d]).lit) parts_.push_back(partOf(plan, tables, d));
   }
+  follow(tables);
+}
+
+/// Of tables over angles and states, and of textures, their ends. Beside what the surface emits at its coldest there is what it reflects of ambient light:
+/// of that and of the lamp each component takes its share, whatever the textures say, so that the greatest ratio of a component is that of all.
+LightRelevance::Part LightRelevance::partOf(const Plan& plan, const RenderTables& tables, std::size_t draw) const {
+  const DrawItem& d = tables.draws[draw];
+  const SurfaceTables& t = tablesOf(tables, d);
+  const Surface& surface = simulation_.entities[static_cast<size_t>(d.entity)].surfaces[static_cast<size_t>(d.surface)];
+  const auto& reflections = simulation_.materialOf(surface).reflections;
+  const size_t each = static_cast<size_t>(4 * t.vectors);
+  Part part;
+  part.draw = draw;
+  part.most.assign(nodes_.size(), 0.0);
+  const auto placeOf = [](size_t k) { return 4 * (k / 3) + k % 3; };
+  if (!t.general) {
+    for (size_t i = 0; i < nodes_.size(); ++i)
+      for (size_t k = 0; k < reflections.size(); ++k)
+        part.most[i] += static_cast<double>(t.rows[each * (d.row + i) + placeOf(k)]) * reflections[k]->lobe().maximum;
+    return part;
+  }
+  const GpuMaterial& g = t.materials[d.material];
+  const size_t states = static_cast<size_t>(g.state[1]);
+  if (surface.temperatureTexture >= 0) part.coldest_K = rangeOf(simulation_, surface.temperatureTexture).first;
+  const double emitted = g.kinds[2] == 1 ? 1.0 : std::max(rangeOf(simulation_, g.transmission[2]).first, 0.0);
+  std::vector<double> greatest;  // of each component's texture
+  for (const auto& c : g.components) greatest.push_back(std::max(rangeOf(simulation_, c[1]).second, 0.0));
+  for (size_t i = 0; i < nodes_.size(); ++i) {
+    const auto hemispherical = [&](size_t place) { return endsOf(t.hemispherical, g.kinds[3], states * g.counts[2], each, nodes_.size(), i, place).first; };
+    double byAmbient = 0.0;
+    for (size_t k = 0; k < reflections.size(); ++k) {
+      const double own =
+          endsOf(t.columns, g.counts[3], states * g.counts[0] * g.counts[1], each, nodes_.size(), i, placeOf(k)).second * reflections[k]->lobe().maximum;
+      part.most[i] += own * greatest[k];
+      byAmbient = std::max(byAmbient, reflectionOf(own, hemispherical(placeOf(k))));
+    }
+    const double ambient = plan.terms.ambient ? nodes_[i].mean(*simulation_.ambient) : 0.0;
+    part.emissivity.push_back(emitted * hemispherical(3));
+    part.byAmbient.push_back(ambient > 0.0 ? byAmbient / ambient : part.most[i] > 0.0 ? INFINITY : 0.0);
+  }
+  return part;
+}
+
+double LightRelevance::reflection(const Part& part, std::size_t node, const RenderTables& tables) const {
+  const DrawItem& d = tables.draws[part.draw];
+  if (part.emissivity.empty()) {
+    const SurfaceTables& t = tablesOf(tables, d);
+    return reflectionOf(part.most[node], static_cast<double>(t.rows[4 * static_cast<size_t>(t.vectors) * (d.row + node) + 3]));
+  }
+  return std::min(reflectionOf(part.most[node], part.emissivity[node] * nodes_[node].planck(part.coldest_K.value_or(d.temperature_K))), part.byAmbient[node]);
+}
+
+void LightRelevance::follow(const RenderTables& tables) {
+  const size_t lights = simulation_.lights.size();
+  ratio_.assign(simulation_.entities.size() * lights, 0.0);
+  for (const Part& part : parts_)
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+      const double reflected = reflection(part, i, tables);
+      for (size_t l = 0; l < lights && reflected > 0.0; ++l)
+        if (const double intensity = intensity_[l * nodes_.size() + i]; intensity > 0.0) {
+          double& worst = ratio_[static_cast<size_t>(tables.draws[part.draw].entity) * lights + l];
+          worst = std::max(worst, intensity * reflected);
+        }
+    }
 }
 
 double LightRelevance::nearest2_m2(std::size_t entity, std::size_t light, const WorldState& state) const {

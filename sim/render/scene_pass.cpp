@@ -45,7 +45,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       surfaceClasses_(sortIntoClasses(tables_, simulation, classes)),
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
-      relevance_(std::in_place, simulation, tabled(), tables_),
+      relevance_(simulation, tabled(), tables_),
       how_(shading) {
   if (plan.terms.air && shading != Shading::Reference) air_ = simulation.air->onGpu(simulation, plan, shading == Shading::Direct);
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
@@ -96,20 +96,23 @@ std::vector<std::string> ScenePass::channelTargets() const {
 }
 
 void ScenePass::setState(const WorldState& state) {
-  const TimedPart part("tables");
-  if (updateTemperatures(tables_, simulation_, tabled(), state)) {
-    solid_.update(tables_.solid);
-    relevance_.emplace(simulation_, tabled(), tables_);
-    onTemperatures();
+  {
+    const TimedPart part("tables");
+    if (updateTemperatures(tables_, simulation_, tabled(), state)) {
+      solid_.update(tables_.solid);
+      relevance_.follow(tables_);
+      onTemperatures();
+    }
   }
+  if (const TimedPart part("shadow maps"); shadows_)
+    shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_.shadowMatters(e, l, state); });
+  const TimedPart part("tables");
   std::vector<float> block = tables_.node;
   const auto lights = lightTable(simulation_, tabled(), state);
   block.insert(block.end(), lights.begin(), lights.end());
   block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
   nodes_.upload(block);
   if (air_) air_->begin();
-  const TimedPart shadows("shadow maps");
-  if (shadows_) shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_->shadowMatters(e, l, state); });
   uploadLights(state);
 }
 
@@ -135,7 +138,7 @@ void ScenePass::uploadLights(const WorldState& state) {
     };
     for (size_t l = 0; l < simulation_.lights.size(); ++l)
       add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l,
-          body && ((truth_ && l == 0) || relevance_->matters(e, l, state)), body ? relevance_->shadowReach2_m2(e, l, state) : 0.0);
+          body && ((truth_ && l == 0) || relevance_.matters(e, l, state)), body ? relevance_.shadowReach2_m2(e, l, state) : 0.0);
     if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true, physics::kFar);
   }
   lights_.upload(lights);

@@ -48,8 +48,6 @@ class ScenePass {
   /// Starts copying the last drawn image.
   void startReadback(bool identity = false);
   RawImage finishReadback();
-  /// Text of the program that shades what is solid; empty where none does.
-  virtual std::string shadingText() const { return ""; }
   /// What a picture is drawn with besides the visibility pass, in order: shadow maps, shading, truth, transparent things, integration.
   virtual std::vector<NamedProgram> programs() const;
   const RenderTables& tables() const { return tables_; }
@@ -114,7 +112,7 @@ class ScenePass {
   std::optional<PixelClasses> pixelClasses_;  ///< made with the tables
   SurfaceBuffers solid_;
   SolidPass solids_;
-  std::optional<LightRelevance> relevance_;
+  LightRelevance relevance_;
   std::unique_ptr<AirOnGpu> air_;  ///< null: none, or not on the GPU
   Shading how_;
   std::unique_ptr<ShadowPass> shadows_;  ///< where the plan has them

@@ -8,6 +8,7 @@
 #include "sim/camera/small_bodies.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
@@ -200,6 +201,41 @@ TEST(SmallBodies, LinesFollowTheAccuracy) {
   }
   EXPECT_EQ(last, 512);  // 0.61 / lines^1.5 < 0.001 / 8
   EXPECT_EQ(zoomedLines(any, 256, 0.0)[0], 256);
+}
+
+// The law that chooses lines: over directions, areas are off by sqrt(0.0724 P h^3) / A. A box shows its three visible faces, and each edge twice in its outline.
+TEST(SmallBodies, AreaIsAsGoodAsItsLines) {
+  const glm::dvec3 size(2.0, 1.4, 0.8);
+  constexpr double kRange_m = 20000.0;
+  for (int lines : {16, 32, 64}) {
+    double squares = 0.0;
+    constexpr int kDirections = 40;
+    for (int n = 0; n < kDirections; ++n) {
+      // Evenly over the sphere, by the golden angle.
+      const double z = 1.0 - (2.0 * n + 1.0) / kDirections, turn = 2.399963229728653 * n, r = std::sqrt(1.0 - z * z);
+      const glm::dvec3 to(r * std::cos(turn), r * std::sin(turn), z);
+      const glm::dvec3 at = kRange_m * to;
+      Simulation sim = scene(
+          "background: {temperature: 0 K}\nentities: [{name: b, shape: {model: box, length: 2 m, width: 1.4 m, height: 0.8 m}, material: blackbody, temperature: "
+          "600 K, heading: 0 deg, position: [0 m, 0 m, 0 m]}]\ncameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 0.06 deg, aperture: 20 mm, position: [" +
+          print("%.9g", at.x) + " m, " + print("%.9g", at.y) + " m, " + print("%.9g", at.z) +
+          " m], look_at: [0 m, 0 m, 0 m], channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n");
+      sim.cameras[0].zoomedSamples = lines;
+      const CameraImage image = renderImage(sim);
+      double total = 0.0;
+      for (size_t p = 0; p < image.slots[0].size(); ++p) total += image.slots[0][p] * image.solidAngles->plain_sr[p];
+      // Heading 0 points the body's length north, along y.
+      const glm::dvec3 axes(size.y, size.x, size.z), n2 = glm::abs(to);
+      const double area = axes.y * axes.z * n2.x + axes.z * axes.x * n2.y + axes.x * axes.y * n2.z;
+      double outline = 0.0;
+      for (int k = 0; k < 3; ++k) outline += 2.0 * axes[k] * std::sqrt(1.0 - n2[k] * n2[k]);
+      const double spacing = glm::length(size) * 1.02 / lines;
+      const double error = total / (blackBodyBand(3, 5, 600) * area / kRange_m / kRange_m) - 1.0;
+      squares += std::pow(error * area / std::sqrt(0.0724 * outline * std::pow(spacing, 3.0)), 2.0);
+    }
+    figure("areas of a box from 40 directions on " + std::to_string(lines) + " lines, mean square by the law", squares / kDirections, 1.0, 0.7,
+           "sqrt(0.0724 P h^3) / A; 3 sigma of a mean of 40 squares");
+  }
 }
 
 }  // namespace
