@@ -1,11 +1,13 @@
 #pragma once
-// Turns a detector channel into outputs: which spectral kernel a quantity needs and what its integral is multiplied by.
+// What a channel's light is told as: which spectral kernel a quantity needs and what its integral is multiplied by. One row registers a quantity.
 // Source: Duvenhage 2006 sections 4.5 and 4.7 (steps 6 and 7); focal-plane irradiance E = pi L tau_o / (4 F^2) cos^4 psi.
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "sim/model/channel.hpp"
+#include "sim/parameters/registry.hpp"
 #include "sim/scene/camera.hpp"
 
 namespace pitviper {
@@ -23,24 +25,38 @@ struct Detector {
   Spectrum optics{1.0};                       ///< transmission of the camera's optics
   std::optional<Spectrum> quantumEfficiency;  ///< photoelectrons per photon
   std::optional<Gain> gain;
-  Spectrum photopic;  ///< V(lambda)
+  std::function<Spectrum()> photopic;  ///< V(lambda), where it is asked for
 };
 
-struct QuantityInfo {
+/// What stands before it: nothing (a probe's plane), or a camera.
+struct Collector {
+  double apertureArea_m2 = 0.0, pixelArea_m2 = 0.0, exposure_s = 0.0;
+  Collector() = default;
+  Collector(const Pinhole& p, double exposure) : apertureArea_m2(p.apertureArea_m2()), pixelArea_m2(p.pitchX_m * p.pitchY_m), exposure_s(exposure) {}
+};
+
+struct Quantity {
   std::string name;
   std::string unit;
   std::string meaning;
-  bool probe = false;  ///< also for a probe (its own meaning there)
+  /// Changes the kernel and factors of an output that has the channel's response for a kernel and a factor of 1. UserError where the channel lacks what
+  /// it takes.
+  std::function<void(const Detector&, const Collector&, ChannelOutput&)> form;
+  bool probe = false;  ///< also of a probe: it takes no collector
 };
 
-/// Every quantity a channel can be asked for.
-const std::vector<QuantityInfo>& quantities();
-std::vector<std::string> quantityNames();
-std::vector<std::string> probeQuantityNames();
+Registry<Quantity>& quantities();
+/// Of a camera, or of a probe.
+std::vector<std::string> quantityNames(bool ofProbe);
+/// `quantity`: one of these.
+ChannelOutput makeOutput(const Detector& detector, const std::string& quantity, const Collector& collector);
 
-/// UserError where the quantity needs something the channel does not have (quantum efficiency, gain, exposure).
-ChannelOutput makeOutput(const Detector& detector, const std::string& quantity, const Pinhole& pinhole, double exposure_s);
-/// A probe's output: irradiance [W/m2], photon irradiance or illuminance on a plane.
-ChannelOutput makeProbeOutput(const Detector& detector, const std::string& quantity);
+/// In-band figures of the light that arrives, and of the detector behind the optics.
+std::vector<Quantity> apertureQuantities();
+std::vector<Quantity> detectorQuantities();
+/// k(lambda) = lambda / (h c) [photons/J], linear in wavelength.
+Spectrum photonsPerJoule();
+/// 683 lm/W V(lambda) times the response.
+Spectrum photometric(const Detector& detector);
 
 }  // namespace pitviper

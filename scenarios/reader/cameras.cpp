@@ -103,6 +103,8 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
     throw UserError(list.where, "no channel", "at least one channel with name and response", "add '- {name: mw, response: {band: [3 um, 5 um]}}'");
   std::map<std::string, Location> names;
   std::vector<ChannelOutput> outputs;
+  const Collector collector = pinhole ? Collector(*pinhole, exposure_s) : Collector();
+  const auto allowed = quantityNames(!pinhole);
   for (const Value& v : list.items) {
     const Record r(v, tables::channel());
     Detector d;
@@ -115,7 +117,6 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
       d.quantumEfficiency = bounded(spectra_, r.value("quantum_efficiency"), "", "quantum efficiency", 0.0, 1.0, Outside::Zero);
     if (r.given("gain")) d.gain = readGain(r.value("gain"));
     std::vector<std::pair<std::string, Location>> wanted;
-    const auto allowed = pinhole ? quantityNames() : probeQuantityNames();
     if (r.given("output") && r.value("output").kind == Value::Kind::List && r.value("output").items.empty())
       throw UserError(r.where("output"), "output is an empty list", "at least one quantity", "write 'output: radiance'");
     if (!r.given("output")) {
@@ -128,16 +129,16 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
     for (const auto& [quantity, where] : wanted) {
       if (std::find(allowed.begin(), allowed.end(), quantity) == allowed.end())
         throw unknownWord(where, pinhole ? "a camera has no quantity" : "a probe has no quantity", quantity, allowed);
-      if (quantity == "luminance" || quantity == "illuminance" || quantity == "focal_illuminance") {
+      d.where = where;
+      d.photopic = [this, &place = where] {
         Value photopic;
         photopic.kind = Value::Kind::Scalar;
-        photopic.where = where;
+        photopic.where = place;
         photopic.text = "cie_y";
-        d.photopic = spectra_.read(photopic, "", "V(lambda)", Outside::Zero);
-      }
-      d.where = where;
+        return spectra_.read(photopic, "", "V(lambda)", Outside::Zero);
+      };
       keepOutput(
-          outputs, [&] { return pinhole ? makeOutput(d, quantity, *pinhole, exposure_s) : makeProbeOutput(d, quantity); }, where);
+          outputs, [&, &q = quantity] { return makeOutput(d, q, collector); }, where);
       for (size_t i = 0; i + 1 < outputs.size(); ++i)
         if (outputs[i].layer() == outputs.back().layer())
           throw UserError(where, "'" + quantity + "' twice in channel '" + d.channel + "'", "each quantity once", "remove one");

@@ -153,7 +153,7 @@ std::string keyReference() {
   out +=
       "### Quantities\n\nWhat a channel's `output` can be. S is the response, L the radiance at the aperture.\n\n| quantity | unit | meaning | probe "
       "|\n|---|---|---|---|\n";
-  for (const auto& q : quantities()) out += "| `" + q.name + "` | " + q.unit + " | " + q.meaning + " | " + (q.probe ? "yes" : "") + " |\n";
+  for (const auto& q : quantities().all()) out += "| `" + q.name + "` | " + q.unit + " | " + q.meaning + " | " + (q.probe ? "yes" : "") + " |\n";
   return out;
 }
 

@@ -10,7 +10,7 @@
 
 namespace pitviper {
 
-/// Model: has a `name` and a list of `parameters`.
+/// Model: has a `name`, and nearly always a list of `parameters`.
 template <class Model>
 class Registry {
  public:
@@ -22,7 +22,8 @@ class Registry {
   /// tell. True, so that a constant can be made of it.
   bool add(Model model) {
     if (find(model.name)) fault_ = "two " + kind_ + " models are called '" + model.name + "'";
-    if (model.parameters.empty()) fault_ = "the " + kind_ + " model '" + model.name + "' has no table of parameters";
+    if constexpr (requires { model.parameters; })
+      if (model.parameters.empty()) fault_ = "the " + kind_ + " model '" + model.name + "' has no table of parameters";
     models_.push_back(std::move(model));
     return true;
   }

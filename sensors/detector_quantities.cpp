@@ -1,0 +1,63 @@
+// Quantities of a pixel behind the optics.
+#include "sensors/quantity.hpp"
+
+namespace pitviper {
+namespace {
+
+void flux(const Detector& d, const Collector& c, ChannelOutput& o) {
+  o.perEtendue = true;
+  // A constant transmission is a factor, not a kernel: flux and radiance then share their spectral integral.
+  o.scale = c.apertureArea_m2;
+  if (d.optics.isConstant()) o.scale *= d.optics(1.0);
+  else o.kernel = o.kernel * d.optics;
+}
+
+void focalIrradiance(const Detector& d, const Collector& c, ChannelOutput& o) {
+  flux(d, c, o);
+  o.scale /= c.pixelArea_m2;
+}
+
+void focalIlluminance(const Detector& d, const Collector& c, ChannelOutput& o) {
+  o.kernel = photometric(d);
+  focalIrradiance(d, c, o);
+}
+
+void exposure(const Detector& d, const Collector& c, ChannelOutput& o) {
+  if (!(c.exposure_s > 0.0))
+    throw UserError(d.where, "'" + o.quantity + "' needs an exposure time", "'exposure' of the camera or sensor, such as '2 ms'", "add 'exposure: 2 ms' to it");
+  flux(d, c, o);
+  o.perExposure = true;
+}
+
+void photons(const Detector& d, const Collector& c, ChannelOutput& o) {
+  exposure(d, c, o);
+  o.kernel = o.kernel * photonsPerJoule();
+}
+
+void electrons(const Detector& d, const Collector& c, ChannelOutput& o) {
+  exposure(d, c, o);
+  if (!d.quantumEfficiency)
+    throw UserError(d.where, "'electrons' needs a quantum efficiency", "'quantum_efficiency' of the channel, a number or a spectrum",
+                    "add 'quantum_efficiency: 0.8'");
+  o.kernel = o.kernel * *d.quantumEfficiency * photonsPerJoule();
+}
+
+void volts(const Detector& d, const Collector& c, ChannelOutput& o) {
+  if (!d.gain) throw UserError(d.where, "'volts' needs a gain", "'gain' of the channel in V/W or V/(W/m2)", "add 'gain: 2e6 V/W'");
+  flux(d, c, o);
+  o.scale *= d.gain->volts / (d.gain->perIrradiance ? c.pixelArea_m2 : 1.0);
+}
+
+}  // namespace
+
+std::vector<Quantity> detectorQuantities() {
+  return {{"flux", "W", "pixel flux behind the optics", flux},
+          {"focal_irradiance", "W/m2", "irradiance on the film, flux per pixel area", focalIrradiance},
+          {"focal_illuminance", "lx", "illuminance on the film", focalIlluminance},
+          {"exposure", "J", "flux times exposure time", exposure},
+          {"photons", "photon", "photons on the pixel during the exposure", photons},
+          {"electrons", "electron", "photoelectrons during the exposure (needs quantum_efficiency)", electrons},
+          {"volts", "V", "gain times flux or focal-plane irradiance (needs gain)", volts}};
+}
+
+}  // namespace pitviper
