@@ -87,8 +87,7 @@ std::vector<AirMark> marksOf(const Value& air) {
   return marks;
 }
 
-std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder,
-                                          const std::function<Spectrum(const Value&, const Parameter&)>& spectrum) {
+std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder, const SpectrumOf& spectrum) {
   const ParameterTable all = anyAirTable();
   const std::string asked = Record(air, all).text("model");
   if (asked == "none") return makeNoAir();
@@ -96,10 +95,8 @@ std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesyste
   refuseForeignKeys(air, model);
   const ParameterTable table = airTable(model);
   const Record record(air, table);
-  std::map<std::string, Spectrum> spectra;
-  for (const Parameter& p : model.parameters)
-    if (p.type == ParameterType::Spectrum && record.given(p.key)) spectra.emplace(p.key, spectrum(record.value(p.key), p));
-  return model.make({record, spectra, folder});
+  const auto spectra = spectraOf(model.parameters, record, spectrum);
+  return model.make({{record, spectra}, folder});
 }
 
 }  // namespace pitviper

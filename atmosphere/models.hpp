@@ -6,6 +6,7 @@
 #include <map>
 
 #include "sim/model/atmosphere.hpp"
+#include "sim/parameters/model_record.hpp"
 #include "sim/parameters/registry.hpp"
 #include "sim/parameters/table.hpp"
 #include "sim/radiometry/spectrum.hpp"
@@ -13,10 +14,8 @@
 namespace pitviper {
 
 /// An air as a scenario or the library has it: a record of the model's table, its spectra read.
-struct AirRecord {
-  const Record& record;
-  const std::map<std::string, Spectrum>& spectra;  ///< of the parameters that are spectra, where given
-  std::filesystem::path folder;                    ///< that the files it names are relative to
+struct AirRecord : ModelRecord {
+  std::filesystem::path folder;  ///< that the files it names are relative to
 };
 
 struct AirModel {
@@ -48,8 +47,7 @@ std::vector<AirMark> marksOf(const Value& air);
 
 /// The air that keys describe; none where `model` says so. `spectrum`: reads a spectrum's value as its parameter says. Errors: UserError, also where the keys
 /// are of several models, of none, or one of them is of another model.
-std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder,
-                                          const std::function<Spectrum(const Value&, const Parameter&)>& spectrum);
+std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder, const SpectrumOf& spectrum);
 
 AirModel homogeneousModel();
 AirModel layeredModel();

@@ -58,18 +58,18 @@ ParameterTable anyComponentTable() {
   return t;
 }
 
-ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const std::function<Spectrum(const Value&, const Parameter&)>& spectrum) {
+ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum) {
   Fingerprint f;
   f.add(model.name);
-  std::map<std::string, Spectrum> spectra;
+  auto spectra = spectraOf(model.parameters, record, spectrum);
   for (const Parameter& p : model.parameters) {
     f.add(p.key).add(record.has(p.key));
     if (!record.has(p.key)) continue;
-    if (p.type == ParameterType::Spectrum) addTo(f, spectra.emplace(p.key, spectrum(record.value(p.key), p)).first->second);
+    if (p.type == ParameterType::Spectrum) addTo(f, spectra.at(p.key));
     else addTo(f, record.value(p.key));
   }
   return [&model, &record, spectra = std::move(spectra), f = std::move(f)](double state) {
-    auto component = model.make({record, spectra, state});
+    auto component = model.make({{record, spectra}, state});
     Fingerprint own = f;
     component->setFingerprint(own.add(state).bytes());
     return component;

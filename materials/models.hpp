@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/model/component.hpp"
+#include "sim/parameters/model_record.hpp"
 #include "sim/parameters/registry.hpp"
 #include "sim/parameters/table.hpp"
 #include "sim/radiometry/spectrum.hpp"
@@ -16,11 +17,8 @@
 namespace pitviper {
 
 /// A component as a scenario has it: a record of the model's table, its spectra read.
-struct ComponentRecord {
-  const Record& record;
-  const std::map<std::string, Spectrum>& spectra;  ///< of the parameters that are spectra, where given
-  double state = 0.0;                              ///< of its model's state parameter
-  const Spectrum& spectrum(const std::string& key) const { return spectra.at(key); }
+struct ComponentRecord : ModelRecord {
+  double state = 0.0;  ///< of its model's state parameter
 };
 
 /// A parameter that a texture may drive over a surface: a number, or a texture of them.
@@ -54,6 +52,6 @@ ParameterTable anyComponentTable();
 using ComponentMaker = std::function<std::shared_ptr<const ReflectionComponent>(double state)>;
 
 /// Reads a component but for its state. `record` must outlive what it returns. `spectrum`: reads a spectrum's value as its parameter says.
-ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const std::function<Spectrum(const Value&, const Parameter&)>& spectrum);
+ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum);
 
 }  // namespace pitviper

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "materials/lights.hpp"
 #include "scenarios/assets/make_aircraft.hpp"
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
@@ -317,24 +318,17 @@ void Builder::readEntities(const Record& scenario) {
 void Builder::readLights(const Record& scenario) {
   if (!scenario.given("lights")) return;
   for (const Value& v : scenario.value("lights").items) {
-    const Record r(v, tables::light());
+    const LightModel& model = askedLight(v);
+    const ParameterTable table = tables::light(model);
+    const Record r(v, table);
     PointLight l;
     l.name = r.text("name");
     checkUnique(r.value("name"), lightNames_, "light");
-    l.intensity = bounded(spectra_, r.value("intensity"), "W/(sr um)", "intensity", 0.0, INFINITY);
     l.radius_m = r.number("radius");
     l.visible = r.boolean("visible");
-    if (r.given("level"))
-      for (const Value& row : r.value("level").items) {
-        if (row.kind != Value::Kind::List || row.items.size() != 2) throw UserError(row.where, "not a row [time, factor]", "[0.5 s, 1]", "write two values");
-        const double t = readNumber(row.items[0], "s", "time"), f = readNumber(row.items[1], "", "factor");
-        if (!(f >= 0.0 && f <= 1e6))
-          throw UserError(row.items[1].where, "a factor of a light's level is out of range (" + row.items[1].text.substr(0, 40) + ")", "0 to 1e6",
-                          "correct the row");
-        if (!l.level.empty() && t <= l.level.back().first)
-          throw UserError(row.items[0].where, "the times of a light's level do not rise", "each row later than the one before", "sort the rows");
-        l.level.emplace_back(t, f);
-      }
+    const auto spectra =
+        spectraOf(model.parameters, r, [&](const Value& s, const Parameter& p) { return bounded(spectra_, s, p.unit, p.key, p.minimum, p.maximum); });
+    model.make({r, spectra}, l);
     const Placement p = readPlacement(r, false);
     l.motion = p.motion;
     l.parent = p.carrier;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "materials/media.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
 #include "sim/parameters/spectrum_value.hpp"
@@ -50,7 +51,7 @@ class Builder {
   std::shared_ptr<const Material> readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra);
   /// `what`: "emissivity" or "transmittance".
   ViewSpectrum readViewSpectrum(const Record& r, const char* what, const std::string& material, const SpectrumReader& spectra);
-  void readMedium(const Record& r, Material& material, const SpectrumReader& spectra) const;
+  Medium readMedium(const MediumModel& model, const Record& r, const std::string& material, const SpectrumReader& spectra) const;
   /// Adds it to a material, and to each of its entries where a texture drives its state or that of one before.
   void readComponent(const Value& value, const SpectrumReader& spectra, Material& material, std::vector<std::shared_ptr<const Material>>& entries);
   int readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest);

@@ -177,26 +177,17 @@ ViewSpectrum Builder::readViewSpectrum(const Record& r, const char* what, const 
   return v;
 }
 
-void Builder::readMedium(const Record& r, Material& m, const SpectrumReader& spectra) const {
-  if (!r.given("absorption")) {
-    if (r.given("radiance"))
-      throw UserError(r.where("radiance"), "a material with 'radiance' that is no medium", "'absorption' beside it, or no 'radiance'",
-                      "add 'absorption: 0.1 /m', or remove it");
-    return;
-  }
-  for (const char* key : {"components", "emission", "transmission"})
-    if (r.given(key))
-      throw UserError(r.where(key), std::string("a medium with '") + key + "'", "a surface, or a medium ('absorption' and 'radiance')",
-                      "remove it, or 'absorption'; a body with both is two entities");
-  Medium medium;
-  medium.absorption_per_m = bounded(spectra, r.value("absorption"), "1/m", "absorption coefficient of material '" + m.name.substr(0, 60) + "'", 0.0, 1e9);
-  if (r.given("radiance"))
-    medium.radiance = bounded(spectra, r.value("radiance"), "W/(m2 sr um)", "radiance of material '" + m.name.substr(0, 60) + "'", 0.0, INFINITY);
-  m.medium = std::move(medium);
+Medium Builder::readMedium(const MediumModel& model, const Record& r, const std::string& material, const SpectrumReader& spectra) const {
+  const auto read = spectraOf(model.parameters, r, [&](const Value& v, const Parameter& p) {
+    return bounded(spectra, v, p.unit, p.key + " of material '" + material.substr(0, 60) + "'", p.minimum, p.maximum);
+  });
+  return model.make({r, read});
 }
 
 std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra) {
-  const Record r(value, tables::material());
+  const MediumModel* medium = tables::mediumOf(value);
+  const ParameterTable table = medium ? tables::medium(*medium) : tables::material();
+  const Record r(value, table);
   if (simulation_.materials.size() >= kMostMaterials)
     throw UserError(value.where, "more than " + std::to_string(kMostMaterials) + " materials", "fewer",
                     "give alike materials a name under 'materials:' and use it more than once");
@@ -204,12 +195,15 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
   m->name = name;
   m->where = value.where;
   if (r.given("source")) m->provenance = r.text("source");
+  if (medium) {
+    m->medium = readMedium(*medium, r, name, spectra);
+    return m;
+  }
   std::vector<std::shared_ptr<const Material>> entries;
   if (r.given("components"))
     for (const Value& c : r.value("components").items) readComponent(c, spectra, *m, entries);
   if (r.given("emission")) m->given = readViewSpectrum(Record(r.value("emission"), tables::emission()), "emissivity", name, spectra);
   if (r.given("transmission")) m->transmission = readViewSpectrum(Record(r.value("transmission"), tables::transmission()), "transmittance", name, spectra);
-  readMedium(r, *m, spectra);
   for (auto& e : entries) {
     auto entry = std::make_shared<Material>(*e);
     entry->given = m->given;

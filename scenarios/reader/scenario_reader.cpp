@@ -149,7 +149,7 @@ Simulation readScenario(const std::filesystem::path& file, const std::vector<std
 
 std::string keyReference() {
   std::string out;
-  for (const auto* table : tables::all()) out += describe(*table) + "\n";
+  for (const ParameterTable& table : tables::all()) out += describe(table) + "\n";
   out +=
       "### Quantities\n\nWhat a channel's `output` can be. S is the response, L the radiance at the aperture.\n\n| quantity | unit | meaning | probe "
       "|\n|---|---|---|---|\n";

@@ -171,13 +171,35 @@ const ParameterTable& ambient() {
 const ParameterTable& material() {
   static const ParameterTable t{
       "material",
-      "A surface: reflection components, an emission and a transmission; or a medium that fills a closed body (gas, smoke): `absorption`, "
-      "and its temperature in the entity. Also the form of materials/library/<name>.yaml.",
-      {text("description", "what it is"), text("source", "where the figures come from"), list("components", "reflection components; none: black", 0, 64),
-       map("emission", "given emissivity; without it 1 - reflectance - transmittance (Kirchhoff)"),
-       map("transmission", "what is behind is seen through it; needs buffered mode"),
-       spectrum("absorption", "1/m", "of a medium: absorption coefficient; optical depth is its product with the path length inside the body"),
-       spectrum("radiance", "W/(m2 sr um)", "of a medium: further radiance at great depth, for instance scattered sunlight")}};
+      "A surface: reflection components, an emission and a transmission; or a medium that fills a closed body, by `medium` (below). Also the form of "
+      "materials/library/<name>.yaml.",
+      {
+          text("description", "what it is"),
+          text("source", "where the figures come from"),
+          list("components", "reflection components; none: black", 0, 64),
+          map("emission", "given emissivity; without it 1 - reflectance - transmittance (Kirchhoff)"),
+          map("transmission", "what is behind is seen through it; needs buffered mode"),
+      }};
+  return t;
+}
+
+const MediumModel* mediumOf(const Value& value) {
+  const MediumModel* medium = value.kind == Value::Kind::Map ? askedMedium(value) : nullptr;
+  if (const Value* radiance = value.find("radiance"); radiance && !medium)
+    throw UserError(radiance->where, "a material with 'radiance' that is no medium", "'absorption' beside it, or no 'radiance'",
+                    "add 'absorption: 0.1 /m', or remove it");
+  for (const char* key : {"components", "emission", "transmission"})
+    if (const Value* given = value.find(key); given && medium)
+      throw UserError(given->where, std::string("a medium with '") + key + "'", "a surface, or a medium",
+                      "remove it, or what makes it a medium; a body with both is two entities");
+  return medium;
+}
+
+ParameterTable medium(const MediumModel& model) {
+  ParameterTable t{"material: " + model.name,
+                   model.description,
+                   {text("medium", "`" + model.name + "`" + (model.name == "gas" ? ", or left out" : "")), material().parameters[0], material().parameters[1]}};
+  t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
   return t;
 }
 
@@ -210,17 +232,14 @@ const ParameterTable& transmission() {
   return t;
 }
 
-const ParameterTable& light() {
-  static const ParameterTable t = [] {
-    ParameterTable x{"light",
-                     "A point light (flare, beacon, lamp).",
-                     {required(text("name", "unique name")), required(spectrum("intensity", "W/(sr um)", "spectral radiant intensity")),
-                      withDefault(within(number("radius", "m", "distances to it are bounded below by this"), 1e-6, 1e6), "0.05 m"),
-                      withDefault(boolean("visible", "adds its own flux to the pixel it is seen in"), "true"),
-                      list("level", "rows [time, factor]: intensity over time, linear between, dark outside", 1, 100000)}};
-    addPlacement(x.parameters, false);
-    return x;
-  }();
+ParameterTable light(const LightModel& model) {
+  ParameterTable t{"light: " + model.name,
+                   model.description,
+                   {required(text("name", "unique name")), text("model", "`" + model.name + "`" + (model.name == "lamp" ? ", or left out" : ""))}};
+  t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
+  t.parameters.push_back(withDefault(within(number("radius", "m", "distances to it are bounded below by this"), 1e-6, 1e6), "0.05 m"));
+  t.parameters.push_back(withDefault(boolean("visible", "adds its own flux to the pixel it is seen in"), "true"));
+  addPlacement(t.parameters, false);
   return t;
 }
 
@@ -379,33 +398,23 @@ const ParameterTable& probe() {
   return t;
 }
 
-std::vector<const ParameterTable*> all() {
-  static const std::vector<ParameterTable> components = [] {
-    std::vector<ParameterTable> tables;
-    for (const ReflectionModel& m : reflectionModels().all()) tables.push_back(componentTable(m));
-    return tables;
-  }();
-  static const std::vector<ParameterTable> airs = [] {
-    std::vector<ParameterTable> tables;
-    tables.push_back(commonAirTable());
-    for (const AirModel& m : airModels().all()) tables.push_back(airTable(m));
-    return tables;
-  }();
-  std::vector<const ParameterTable*> tables{&scenario(), &render(), &origin(), &time(), &limits()};
-  for (const ParameterTable& t : airs) tables.push_back(&t);
-  tables.insert(tables.end(), {&airLibrary(), &background(), &ground(), &sun(), &ambient(), &spectrumTable(), &material()});
-  for (const ParameterTable& t : components) tables.push_back(&t);
-  static const std::vector<ParameterTable> live = [] {
-    std::vector<ParameterTable> each;
-    for (const StageModel& m : stageModels().all()) each.push_back(stageTable(m));
-    for (const CommandModel& m : commandModels().all()) each.push_back(commandTable(m));
-    for (const SinkModel& m : sinkModels().all()) each.push_back(sinkTable(m));
-    return each;
-  }();
-  tables.insert(tables.end(), {&angleAxisTable(), &texture(), &emission(), &transmission(), &light(), &entity(), &part(), &shape(), &waypoint(), &geodetic(),
-                               &camera(), &film(), &channel(), &spectral(), &spectralImage(), &sensor(), &probe()});
-  for (const ParameterTable& t : live) tables.push_back(&t);
-  return tables;
+std::vector<ParameterTable> all() {
+  std::vector<ParameterTable> every{scenario(), render(), origin(), time(), limits(), commonAirTable()};
+  const auto addAll = [&every](const auto& registry, const auto& tableOf) {
+    for (const auto& model : registry.all()) every.push_back(tableOf(model));
+  };
+  addAll(airModels(), airTable);
+  for (const auto& t : {airLibrary(), background(), ground(), sun(), ambient(), spectrumTable(), material()}) every.push_back(t);
+  addAll(reflectionModels(), componentTable);
+  addAll(mediumModels(), medium);
+  for (const auto& t : {angleAxisTable(), texture(), emission(), transmission()}) every.push_back(t);
+  addAll(lightModels(), light);
+  for (const auto& t : {entity(), part(), shape(), waypoint(), geodetic(), camera(), film(), channel(), spectral(), spectralImage(), sensor(), probe()})
+    every.push_back(t);
+  addAll(stageModels(), stageTable);
+  addAll(commandModels(), commandTable);
+  addAll(sinkModels(), sinkTable);
+  return every;
 }
 
 }  // namespace pitviper::tables

@@ -2,6 +2,8 @@
 // The parameter tables of a scenario: what the reader accepts is what the key reference says.
 #include <vector>
 
+#include "materials/lights.hpp"
+#include "materials/media.hpp"
 #include "sim/parameters/table.hpp"
 
 namespace pitviper::tables {
@@ -17,10 +19,13 @@ const ParameterTable& ground();
 const ParameterTable& sun();
 const ParameterTable& ambient();
 const ParameterTable& material();
+ParameterTable medium(const MediumModel& model);
+/// The medium that a material's map asks for, or null. Errors: UserError where it is a surface too.
+const MediumModel* mediumOf(const Value& material);
 const ParameterTable& texture();
 const ParameterTable& emission();
 const ParameterTable& transmission();
-const ParameterTable& light();
+ParameterTable light(const LightModel& model);
 const ParameterTable& entity();
 const ParameterTable& part();
 const ParameterTable& shape();
@@ -35,6 +40,6 @@ const ParameterTable& sensor();
 const ParameterTable& probe();
 
 /// All of them and the spectrum, in the order of the key reference.
-std::vector<const ParameterTable*> all();
+std::vector<ParameterTable> all();
 
 }  // namespace pitviper::tables

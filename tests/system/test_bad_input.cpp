@@ -339,7 +339,7 @@ std::vector<Bad> badScenarios() {
       {"MediumWithEmission", "materials: {gas: {absorption: 1 /m, emission: @@{emissivity: 0.1}}}\n", {"a medium with 'emission'"}},
       {"MediumWithTransmission", "materials: {gas: {absorption: 1 /m, transmission: @@{transmittance: 0.1}}}\n", {"a medium with 'transmission'"}},
       {"RadianceWithoutAbsorption", "materials: {gas: {radiance: @@1 W/(m2 sr um)}}\n", {"'radiance' that is no medium", "absorption"}},
-      {"NegativeAbsorption", "materials: {gas: {absorption: @@-1 /m}}\n", {"absorption coefficient", "leaves its range"}},
+      {"NegativeAbsorption", "materials: {gas: {absorption: @@-1 /m}}\n", {"absorption of material", "leaves its range"}},
       {"NegativeRadianceOfAMedium", "materials: {gas: {absorption: 1 /m, radiance: @@-1 W/(m2 sr um)}}\n", {"radiance", "leaves its range"}},
       {"AbsorptionWithoutUnit", "materials: {gas: {absorption: @@1}}\n", {"absorption", "no unit"}},
       {"MediumDoesNotCoverTheBand",
