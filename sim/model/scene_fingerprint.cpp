@@ -3,11 +3,20 @@
 namespace pitviper {
 namespace {
 
+// What goes in is bound member by member: a new one does not compile until somebody has said whether pictures depend on it. Names, places in files and
+// what follows from other members stay out.
+
 void addTo(Fingerprint& f, const ViewSpectrum& v) {
-  f.all(v.viewAngle_rad).all(v.factor).all(v.table.wavelength_um).all(v.table.values).add(v.modifier);
-  f.add(static_cast<int>(v.table.view.angle)).add(v.table.view.count).add(v.table.view.last_rad);
-  pitviper::addTo(f, v.spectrum);
+  const auto& [spectrum, viewAngle_rad, factor, table, modifier] = v;
+  const auto& [wavelength_um, view, values] = table;
+  const auto& [angle, count, last_rad] = view;
+  f.all(viewAngle_rad).all(factor).all(wavelength_um).all(values).add(modifier).add(static_cast<int>(angle)).add(count).add(last_rad);
+  pitviper::addTo(f, spectrum);
 }
+
+void addTo(Fingerprint& f, const Sun& s);
+void addTo(Fingerprint& f, const Medium& m);
+void addTo(Fingerprint& f, const MaterialStates& s);
 
 template <class T>
 void addTo(Fingerprint& f, const std::optional<T>& value) {
@@ -17,32 +26,61 @@ void addTo(Fingerprint& f, const std::optional<T>& value) {
   else addTo(f, *value);
 }
 
+void addTo(Fingerprint& f, const Mesh& m) {
+  const auto& [positions, normals, uv, triangles, parts, closed, heightField] = m;
+  f.all(positions).all(normals).all(uv).all(triangles).add(closed);
+  for (const auto& [name, firstTriangle, triangleCount] : parts) f.add(name).add(firstTriangle).add(triangleCount);
+}
+
 void addTo(Fingerprint& f, const Entity& e) {
-  const Mesh& m = *e.mesh;
-  f.add(e.name).all(m.positions).all(m.normals).all(m.uv).all(m.triangles).add(m.closed);
-  for (const MeshPart& p : m.parts) f.add(p.name).add(p.firstTriangle).add(p.triangleCount);
-  f.add(static_cast<int>(e.form.kind)).add(e.form.size).add(e.parent);
-  for (const Surface& s : e.surfaces) f.add(s.meshPart).add(s.material).add(s.temperature_K).add(s.temperatureTexture);
-  pitviper::addTo(f, e.motion);
+  const auto& [name, mesh, form, surfaces, motion, parent, boundingCentre, boundingRadius_m, meshFile, metresPerUnit] = e;
+  f.add(name);
+  addTo(f, *mesh);
+  const auto& [kind, size] = form;
+  f.add(static_cast<int>(kind)).add(size).add(parent);
+  for (const auto& [meshPart, material, temperature_K, temperatureTexture] : surfaces) f.add(meshPart).add(material).add(temperature_K).add(temperatureTexture);
+  pitviper::addTo(f, motion);
 }
 
 void addTo(Fingerprint& f, const PointLight& l) {
-  f.add(l.name).add(l.radius_m).add(l.visible).add(l.parent);
-  pitviper::addTo(f, l.intensity);
-  pitviper::addTo(f, l.motion);
-  f.add(static_cast<double>(l.level.size()));
-  for (const auto& [time_s, factor] : l.level) f.add(time_s).add(factor);
+  const auto& [name, intensity, radius_m, visible, motion, parent, level] = l;
+  f.add(name).add(radius_m).add(visible).add(parent);
+  pitviper::addTo(f, intensity);
+  pitviper::addTo(f, motion);
+  f.add(static_cast<double>(level.size()));
+  for (const auto& [time_s, factor] : level) f.add(time_s).add(factor);
+}
+
+void addTo(Fingerprint& f, const Sun& s) {
+  const auto& [toSun, irradiance] = s;
+  f.add(toSun);
+  pitviper::addTo(f, irradiance);
+}
+
+void addTo(Fingerprint& f, const Medium& m) {
+  const auto& [absorption_per_m, radiance] = m;
+  pitviper::addTo(f, absorption_per_m);
+  addTo(f, radiance);
+}
+
+void addTo(Fingerprint& f, const MaterialStates& s) {
+  const auto& [texture, low, high, entries] = s;
+  f.add(texture).add(low).add(high).add(static_cast<double>(entries.size()));
+  for (const auto& entry : entries) pitviper::addTo(f, *entry);
 }
 
 void addTo(Fingerprint& f, const std::vector<ChannelOutput>& outputs) {
   f.add(static_cast<double>(outputs.size()));
-  for (const ChannelOutput& o : outputs) {
-    f.add(o.channel).add(o.quantity).add(o.scale).add(o.perEtendue).add(o.perExposure);
-    pitviper::addTo(f, o.kernel);
+  for (const auto& [channel, quantity, unit, where, kernel, scale, perEtendue, perExposure, bandLow_um, bandHigh_um, cut] : outputs) {
+    f.add(channel).add(quantity).add(scale).add(perEtendue).add(perExposure);
+    pitviper::addTo(f, kernel);
   }
 }
 
-void addTo(Fingerprint& f, const SpectralSampling& s) { f.add(s.samples).add(static_cast<int>(s.spacing)).add(s.shared).add(s.accuracy).add(s.reference); }
+void addTo(Fingerprint& f, const SpectralSampling& s) {
+  const auto& [samples, spacing, shared, accuracy, reference] = s;
+  f.add(samples).add(static_cast<int>(spacing)).add(shared).add(accuracy).add(reference);
+}
 
 }  // namespace
 
@@ -65,64 +103,61 @@ void addTo(Fingerprint& f, const Motion& m) {
 }
 
 void addTo(Fingerprint& f, const Material& m) {
-  f.add(static_cast<double>(m.reflections.size())).all(m.modifiers);
-  for (const auto& r : m.reflections) f.add(r->fingerprint());
-  addTo(f, m.given);
-  addTo(f, m.transmission);
-  f.add(m.states.has_value());
-  if (m.states) {
-    f.add(m.states->texture).add(m.states->low).add(m.states->high).add(static_cast<double>(m.states->entries.size()));
-    for (const auto& entry : m.states->entries) addTo(f, *entry);
-  }
-  f.add(m.medium.has_value());
-  if (!m.medium) return;
-  addTo(f, m.medium->absorption_per_m);
-  addTo(f, m.medium->radiance);
+  const auto& [name, provenance, where, reflections, modifiers, given, transmission, medium, states] = m;
+  f.add(static_cast<double>(reflections.size())).all(modifiers);
+  for (const auto& r : reflections) f.add(r->fingerprint());
+  addTo(f, given);
+  addTo(f, transmission);
+  addTo(f, states);
+  addTo(f, medium);
 }
 
 void addTo(Fingerprint& f, const Simulation& sim) {
-  f.add(static_cast<double>(sim.seed)).add(static_cast<int>(sim.mode)).add(sim.shadows);
-  const Geodetic& o = sim.frame.origin();
-  f.add(o.latitude_rad).add(o.longitude_rad).add(o.height_m);
-  f.add(sim.time.start_s).add(sim.time.step_s).add(sim.time.frames);
-  const Limits& l = sim.limits;
-  f.add(l.nearest_m).add(l.farthest_m).add(l.coldest_K).add(l.hottest_K).add(l.lightLevel);
-  for (const Texture& t : sim.textures) f.all(t.texels).add(t.width).add(t.repeats);
-  for (const auto& m : sim.materials) addTo(f, *m);
-  f.add(static_cast<double>(sim.entities.size()));
-  for (const Entity& e : sim.entities) addTo(f, e);
-  f.add(static_cast<double>(sim.lights.size()));
-  for (const PointLight& p : sim.lights) addTo(f, p);
-  f.add(sim.sun.has_value());
-  if (sim.sun) {
-    f.add(sim.sun->toSun);
-    addTo(f, sim.sun->irradiance);
-  }
-  addTo(f, sim.ambient);
-  addTo(f, sim.background);
-  f.add(sim.ground.has_value());
-  if (sim.ground) f.add(sim.ground->material).add(sim.ground->temperature_K);
-  f.add(sim.air != nullptr);
-  if (sim.air) sim.air->addTo(f);
-  f.add(static_cast<double>(sim.commands.size()));
-  for (const Command& c : sim.commands) f.add(c.at_s).add(c.words);
+  const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, textures, materials, entities, lights, sun, ambient, background,
+               ground, air, cameras, probes, commands, sinks] = sim;
+  f.add(static_cast<double>(seed)).add(static_cast<int>(mode)).add(shadows);
+  const auto& [latitude_rad, longitude_rad, height_m] = frame.origin();
+  f.add(latitude_rad).add(longitude_rad).add(height_m);
+  const auto& [start_s, step_s, frames] = time;
+  f.add(start_s).add(step_s).add(frames);
+  const auto& [nearest_m, farthest_m, coldest_K, hottest_K, lightLevel] = limits;
+  f.add(nearest_m).add(farthest_m).add(coldest_K).add(hottest_K).add(lightLevel);
+  for (const auto& [title, width, height, texels, repeats] : textures) f.all(texels).add(width).add(repeats);
+  for (const auto& m : materials) addTo(f, *m);
+  f.add(static_cast<double>(entities.size()));
+  for (const Entity& e : entities) addTo(f, e);
+  f.add(static_cast<double>(lights.size()));
+  for (const PointLight& p : lights) addTo(f, p);
+  addTo(f, sun);
+  addTo(f, ambient);
+  addTo(f, background);
+  f.add(ground.has_value());
+  if (ground) f.add(ground->material).add(ground->temperature_K);
+  f.add(air != nullptr);
+  if (air) air->addTo(f);
+  f.add(static_cast<double>(commands.size()));
+  for (const auto& [at_s, words, change] : commands) f.add(at_s).add(words);
 }
 
 void addTo(Fingerprint& f, const Camera& c) {
-  const Pinhole& p = c.pinhole;
-  f.add(c.name).add(p.width).add(p.height).add(p.focalLength_m).add(p.pitchX_m).add(p.pitchY_m).add(p.apertureDiameter_m);
-  addTo(f, c.mount.motion);
-  f.add(c.mount.carrier).add(c.mount.lookAtEntity).add(c.mount.looksAtPoint).add(c.mount.lookAtPoint);
-  f.add(c.exposure_s).add(c.near_m).add(c.samples).add(c.smallBody_px).add(c.truth.any()).add(c.truth.solidAngles);
-  for (const FilmPlace& l : c.learnt) f.add(l.frame).add(l.column).add(l.row);
-  addTo(f, c.spectral);
-  addTo(f, c.outputs);
+  const auto& [name, where, pinhole, mount, exposure_s, near_m, samples, smallBody_px, zoomedSamples, outlineAccuracy, spectral, learnt, plan, planFile,
+               outputs, stages, spectralImage, truth] = c;
+  const auto& [width, height, focalLength_m, pitchX_m, pitchY_m, apertureDiameter_m] = pinhole;
+  f.add(name).add(width).add(height).add(focalLength_m).add(pitchX_m).add(pitchY_m).add(apertureDiameter_m);
+  const auto& [motion, carrier, lookAtEntity, looksAtPoint, lookAtPoint] = mount;
+  addTo(f, motion);
+  f.add(carrier).add(lookAtEntity).add(looksAtPoint).add(lookAtPoint);
+  f.add(exposure_s).add(near_m).add(samples).add(smallBody_px).add(truth.any()).add(truth.solidAngles);
+  for (const auto& [number, column, row] : learnt) f.add(number).add(column).add(row);
+  addTo(f, spectral);
+  addTo(f, outputs);
 }
 
 void addTo(Fingerprint& f, const Probe& p) {
-  f.add(p.name).add(p.position).add(p.normal).add(p.resolution);
-  addTo(f, p.spectral);
-  addTo(f, p.outputs);
+  const auto& [name, where, position, normal, resolution, spectral, outputs] = p;
+  f.add(name).add(position).add(normal).add(resolution);
+  addTo(f, spectral);
+  addTo(f, outputs);
 }
 
 }  // namespace pitviper
