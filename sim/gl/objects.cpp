@@ -81,24 +81,21 @@ void Buffer::upload(const void* data, std::size_t bytes) {
 
 void Buffer::bindStorage(unsigned index) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, index, name_); }
 void Buffer::bindUniform(unsigned index) const { glBindBufferBase(GL_UNIFORM_BUFFER, index, name_); }
-void Buffer::bindStoragePart(unsigned index, std::size_t first, std::size_t bytes) const {
-  glBindBufferRange(GL_SHADER_STORAGE_BUFFER, index, name_, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes));
-}
 void Buffer::bindUniformPart(unsigned index, std::size_t first, std::size_t bytes) const {
   glBindBufferRange(GL_UNIFORM_BUFFER, index, name_, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes));
 }
-void Buffer::bindTexture(unsigned unit, int floatsPerTexel) const {
+void Buffer::bindTexture(unsigned unit, int perTexel, bool whole) const {
   if (texture_ == 0u) {
     GLint limit = 0;
     glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &limit);
-    const std::size_t texels = bytes_ / sizeof(float) / static_cast<std::size_t>(floatsPerTexel);
+    const std::size_t texels = bytes_ / sizeof(float) / static_cast<std::size_t>(perTexel);
     if (texels > static_cast<std::size_t>(limit))
       throw GlError("a table of " + std::to_string(texels) + " entries is asked for, this driver's buffer textures hold " + std::to_string(limit) +
                     "; use fewer spectral samples or smaller material tables");
     GLuint n = 0;
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &n);
     texture_ = GlName<deleteTexture>(n);
-    glTextureBuffer(n, floatsPerTexel == 4 ? GL_RGBA32F : GL_R32F, name_);
+    glTextureBuffer(n, whole ? perTexel == 4 ? GL_RGBA32UI : GL_R32UI : perTexel == 4 ? GL_RGBA32F : GL_R32F, name_);
   }
   glBindTextureUnit(unit, texture_);
 }

@@ -72,11 +72,10 @@ class Buffer {
   void bindStorage(unsigned index) const;
   void bindUniform(unsigned index) const;
   /// A part of it [bytes], which begins at a multiple of 256.
-  void bindStoragePart(unsigned index, std::size_t first, std::size_t bytes) const;
   void bindUniformPart(unsigned index, std::size_t first, std::size_t bytes) const;
   void bindElements() const;
-  /// As a texture of floats, one or four to a texel, read by texelFetch.
-  void bindTexture(unsigned unit, int floatsPerTexel) const;
+  /// As a texture of floats or of whole numbers, one or four to a texel, read by texelFetch.
+  void bindTexture(unsigned unit, int perTexel, bool whole = false) const;
   void bindPack() const;
   void download(void* into, std::size_t bytes) const;
   std::size_t bytes() const { return bytes_; }

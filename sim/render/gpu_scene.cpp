@@ -91,11 +91,11 @@ std::shared_ptr<const ShadowTrees> GpuScene::shadowTrees(const Simulation& simul
 
 void GpuScene::bind() const {
   glBindVertexArray(vertexArray_);
-  vertices_.bindStorage(0);
-  indices_.bindStorage(1);
+  vertices_.bindTexture(6, 4);
+  indices_.bindTexture(7, 1, true);
   indices_.bindElements();
-  textureShapes_.bindStorage(8);
-  texels_.bindStorage(9);
+  textureShapes_.bindTexture(11, 4, true);
+  texels_.bindTexture(12, 1);
 }
 
 }  // namespace pitviper

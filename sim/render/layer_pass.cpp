@@ -12,6 +12,9 @@
 namespace pitviper {
 namespace {
 
+/// The spectral image below, a texture each from here on.
+constexpr int kUnderUnit = 22;
+
 Pose poseOf(const WorldState& state, int entity) { return state.entities[static_cast<size_t>(entity)]; }
 
 }  // namespace
@@ -27,7 +30,7 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
   if (fetch) base.extensions.emplace_back("GL_EXT_shader_framebuffer_fetch");
   for (int t = 0; t < targets; ++t) {
     declared << "layout(location = " << t << ") " << (fetch ? "inout" : "out") << " vec4 spectrum" << t << ";\n";
-    if (!fetch) declared << "layout(binding = " << 8 + t << ") uniform sampler2D under" << t << ";\n";
+    if (!fetch) declared << "layout(binding = " << kUnderUnit + t << ") uniform sampler2D under" << t << ";\n";
   }
   blend << "void blend() {\n  float radiance[" << 4 * targets << "];\n";
   for (int t = 0; t < targets; ++t) {
@@ -160,7 +163,7 @@ void LayerPass::blend(const Over& over) {
     over.spectrum.bind();
     const RenderTarget& under = copy ? *copy : over.spectrum;
     if (path_ != BlendPath::FramebufferFetch)
-      for (size_t t = 0; t < under.colourCount(); ++t) under.colour(t).bind(static_cast<unsigned>(8 + t));
+      for (size_t t = 0; t < under.colourCount(); ++t) under.colour(t).bind(static_cast<unsigned>(kUnderUnit + t));
     if (path_ == BlendPath::TextureBarrier) glTextureBarrier();
     const Program& program = !run.medium ? layer_ : first.group >= 0 ? group_ : volume_;
     program.use();
@@ -275,8 +278,8 @@ void LayerPass::drawThickness(const LayerPiece& piece, const Over& over) {
                  reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * 12));
   glBlendEquation(GL_FUNC_ADD);
   glDisable(GL_BLEND);
-  target.colour(0).bind(6);
-  target.colour(1).bind(7);
+  target.colour(0).bind(17);
+  target.colour(1).bind(19);
 }
 
 }  // namespace pitviper

@@ -155,9 +155,9 @@ ScenePass::Targets& ScenePass::targetsFor(int width, int height) {
 
 void ScenePass::bindBuffers() const {
   scene_->bind();
-  draws_.bindStorage(2);
+  draws_.bindTexture(8, 4, true);
   solid_.bind();
-  lights_.bindStorage(5);
+  lights_.bindTexture(9, 4);
   if (air_) air_->bind();
   view_.bindUniform(0);
   nodes_.bindUniform(1);
@@ -242,10 +242,10 @@ std::vector<ScenePass::Tile> ScenePass::tilesOf(std::span<const View> views, con
       t.draws.push_back(c.draw);
       c.draw = static_cast<std::uint32_t>(t.draws.size()) - 1;
     }
-    while (draws.size() * sizeof(GpuDraw) % kAligned != 0) draws.emplace_back();
     t.firstDraw = draws.size();
     for (std::uint32_t d : t.draws) draws.push_back(drawData(simulation_, tables_, d, views[i], state));
-    const GpuView block = viewData(simulation_, views[i], apertureArea_m2_, {t.part.x, t.part.y});
+    GpuView block = viewData(simulation_, views[i], apertureArea_m2_, {t.part.x, t.part.y});
+    block.depth.z = static_cast<float>(t.firstDraw);
     std::memcpy(&blocks[i * kAligned], &block, sizeof block);
     tiles.push_back(std::move(t));
   }
@@ -254,25 +254,25 @@ std::vector<ScenePass::Tile> ScenePass::tilesOf(std::span<const View> views, con
   return tiles;
 }
 
-void ScenePass::bindTile(const std::vector<Tile>& tiles, size_t i) const {
+void ScenePass::bindTile(size_t i) const {
   tileViews_.bindUniformPart(0, i * kAligned, sizeof(GpuView));
-  tileDraws_.bindStoragePart(2, tiles[i].firstDraw * sizeof(GpuDraw), tiles[i].draws.size() * sizeof(GpuDraw));
 }
 
 void ScenePass::drawTilePicture(const std::vector<Tile>& tiles, const WorldState& state) {
   bindBuffers();
+  tileDraws_.bindTexture(8, 4, true);
   {
     const TimedPart part("visibility");
     solids_.clear(current_->visibility);
     for (size_t i = 0; i < tiles.size(); ++i) {
-      bindTile(tiles, i);
+      bindTile(i);
       solids_.drawPart(tiles[i].part, tiles[i].candidates);
     }
   }
   const TimedPart part("shading");
   pixelClasses_->begin(current_->visibility);
   for (size_t i = 0; i < tiles.size(); ++i) {
-    bindTile(tiles, i);
+    bindTile(i);
     pixelClasses_->drawPart(tiles[i].part);
   }
   pixelClasses_->end();
@@ -283,7 +283,7 @@ void ScenePass::drawTilePicture(const std::vector<Tile>& tiles, const WorldState
       air_->update(*tiles[i].view, state);
       air_->bind();
     }
-    bindTile(tiles, i);
+    bindTile(i);
     std::set<size_t> classes;
     for (std::uint32_t d : tiles[i].draws)
       if (tables_.draws[d].entity == tiles[i].view->onlyEntity) classes.insert(static_cast<size_t>(tables_.draws[d].surfaceClass));

@@ -94,7 +94,7 @@ class ScenePass {
   void uploadLights(const WorldState& state);
   void clearShading();
   std::vector<Tile> tilesOf(std::span<const View> views, const WorldState& state, const std::vector<char>& drawn);
-  void bindTile(const std::vector<Tile>& tiles, std::size_t i) const;
+  void bindTile(std::size_t i) const;
   void drawTilePicture(const std::vector<Tile>& tiles, const WorldState& state);
   RawImage cut(const Readback::Pixels& picture, const Tile& tile) const;
   Targets& targetsFor(int width, int height);

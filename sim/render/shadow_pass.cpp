@@ -165,7 +165,7 @@ void ShadowPass::setState(const WorldState& state, const std::function<bool(std:
 }
 
 void ShadowPass::bind() const {
-  shadows_.bindStorage(4);
+  shadows_.bindTexture(13, 4, true);
   trees_->bind();
   layers_.bind(16);
 }

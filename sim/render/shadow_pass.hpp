@@ -27,7 +27,7 @@ class ShadowPass {
 
   /// Finds who can shade whom, and draws the maps that have changed. `matters(entity, light)`: false where it is not worth asking.
   void setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters);
-  /// Buffers and maps; unit 16 and storage 4 and 10.
+  /// Buffers and maps; units 13, 14 and 16.
   void bind() const;
   /// Those that can shade an entity from a light (the sun is the last).
   struct Range {

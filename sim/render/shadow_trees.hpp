@@ -19,7 +19,7 @@ class ShadowTrees {
     bool casts() const { return end > first; }
   };
   const Body& of(std::size_t entity) const { return bodies_[entity]; }
-  void bind() const { nodes_.bindStorage(10); }
+  void bind() const { nodes_.bindTexture(14, 4, true); }
 
  private:
   std::vector<Body> bodies_;

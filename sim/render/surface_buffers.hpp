@@ -23,7 +23,7 @@ class SurfaceBuffers {
       columns_.bindTexture(3, 4);
     }
     transmittance_.bindTexture(4, 1);
-    materials_.bindStorage(6);
+    materials_.bindTexture(10, 4, true);
   }
 
  private:

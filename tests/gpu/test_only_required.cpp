@@ -142,7 +142,7 @@ TEST(OnlyRequired, Lights) {
     less.sun = less.lamp = false;
     const Built with(f), without(less);
     expectGone(with, without,
-               {"lightAt", "buffer Lights", "nodeLight", "Real lobeOf(", "Vec3 lobes(", "0.159154943091895", "uniform samplerBuffer columns",
+               {"lightAt", "samplerBuffer lights", "nodeLight", "Real lobeOf(", "Vec3 lobes(", "0.159154943091895", "uniform samplerBuffer columns",
                 "reflectionColumns", "shareSeen", "meetsTree", "shadowMaps", "angleOf"});
     EXPECT_EQ(with.count("shadow maps"), 1);
     EXPECT_EQ(without.count("shadow maps"), 0);
@@ -160,7 +160,7 @@ TEST(OnlyRequired, Lights) {
   const Built with(plain), without(dark);
   EXPECT_EQ(with.tables().solid.rows.size(), 4 * with.nodes() * with.tables().draws.size());
   EXPECT_EQ(without.tables().solid.rows.size(), without.nodes() * without.tables().draws.size());
-  expectGone(with, without, {"Materials", "lobeOf"});
+  expectGone(with, without, {"usamplerBuffer materials", "lobeOf"});
 }
 
 // Surfaces that reflect nothing ask for no light, unless truth layers show its geometry.
@@ -203,7 +203,7 @@ TEST(OnlyRequired, Textures) {
   expectGone(all, plain, {"textureValue(texture, uv_)"});
   f.temperatureTexture = false;
   const Built none(f);
-  expectGone(all, none, {"textureValue", "Texels", "TextureShapes"});
+  expectGone(all, none, {"textureValue", "samplerBuffer texels", "usamplerBuffer textureShapes"});
 }
 
 // Of plain surfaces, whose rows hold the dome's light, the plan has to ask for it by itself.
@@ -264,7 +264,7 @@ TEST(OnlyRequired, Shadows) {
     Features less = f;
     less.shadows = false;
     const Built with(f), without(less);
-    expectGone(with, without, {"shadowMaps", "meetsTree", "Trees", "mapSays"});
+    expectGone(with, without, {"shadowMaps", "meetsTree", "usamplerBuffer trees", "mapSays"});
     EXPECT_EQ(with.count("shadow maps"), 1);
     EXPECT_EQ(without.count("shadow maps"), 0);
     EXPECT_TRUE(without.holds("lightAt")) << "light stays";
@@ -362,11 +362,11 @@ TEST(OnlyRequired, BarestProgram) {
   const Built bare(f);
   EXPECT_EQ(bare.kinds(), std::set<std::string>{"shading"});
   EXPECT_EQ(readsOf(bare.programs.back().text),
-            (std::set<std::string>{"visibility", "ViewBlock", "NodeBlock", "rows", "Draws", "Vertices", "Indices"}));
+            (std::set<std::string>{"visibility", "ViewBlock", "NodeBlock", "rows", "draws", "vertices", "indices"}));
   std::set<std::string> all;
   for (const NamedProgram& p : Built(opaque()).programs)
     if (p.name == "shading") all.merge(readsOf(p.text));
-  for (const char* name : {"hemispherical", "columns", "Materials", "Texels", "TextureShapes", "Lights", "Shadows", "Trees", "shadowMaps", "AirBlock",
+  for (const char* name : {"hemispherical", "columns", "materials", "texels", "textureShapes", "lights", "shadows", "trees", "shadowMaps", "AirBlock",
                            "airAmounts", "airRadiance"})
     EXPECT_TRUE(all.count(name)) << name;
   const RenderTables& t = bare.tables();

@@ -15,6 +15,6 @@ void main() {
   int axis = side % 3;
   float across = positive ? 1.0 : 0.0;
   vec3 at = axis == 0 ? vec3(across, uv) : axis == 1 ? vec3(uv.y, across, uv.x) : vec3(uv, across);
-  project(draws[drawIndex], mix(low, high, at));
+  project(drawAt(uint(drawIndex)), mix(low, high, at));
   gl_ClipDistance[0] = gl_Position.w;  // llvmpipe clips at it where GL_CLIP_DISTANCE0 is off, too
 }

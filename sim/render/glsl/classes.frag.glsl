@@ -10,6 +10,6 @@ void main() {
     prepareRay(gl_FragCoord.xy);
     if (groundRange(view.up.w, sinElevation_, view.earth.x) < kFar) id.x = uint(max(GROUND, 0));
   }
-  bool leftOut = view.earth.z > 0.0 && float(draws[id.x].table.w) != view.earth.z;
-  gl_FragDepth = leftOut ? 1.0 : draws[id.x].fine.y;
+  bool leftOut = view.earth.z > 0.0 && float(drawTexel(id.x, 3).w) != view.earth.z;
+  gl_FragDepth = leftOut ? 1.0 : drawMember(id.x, 5).y;
 }

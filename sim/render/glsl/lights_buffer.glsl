@@ -2,7 +2,8 @@
 // A body's row of lights: how many can matter to it, then their place or direction in the body frame with their radius, and their number;
 // places that are left over have the number -1. Beside the
 // number: first and count of the casters that can shade the body from it, and the square of the distance beyond which that does not matter.
-layout(std430, binding = 5) readonly buffer Lights { vec4 lights[]; };
+layout(binding = 9) uniform samplerBuffer lights;
+vec4 lightTexel(int at) { return texelFetch(lights, at); }
 
 // Of a material's components three at a time: columns at a node for a light, and lobes.
 Vec3 reflectionColumns(int i, int l, int v);
@@ -19,8 +20,8 @@ struct LightHere {
 
 LightHere lightAt(int entry, bool sun) {
   LightHere here;
-  vec4 light = lights[entry];
-  here.number = int(lights[entry + 1].x);
+  vec4 light = lightTexel(entry), listed = lightTexel(entry + 1);
+  here.number = int(listed.x);
   vec3 line = sun ? light.xyz : light.xyz - point_;
   float share = 1.0;
   if (SUN_SETS > 0 && sun) {  // the part of the sun's disc above the point's own horizon stands for the sun
@@ -39,7 +40,7 @@ LightHere lightAt(int entry, bool sun) {
     lightDistance2_ = d2;
   }
   here.factor = here.number < 0 ? 0.0 : isSurface_ * (sun ? share * max(cosLight, 0.0) : pointIrradianceFactor(cosLight, d2, light.w));
-  if (here.factor > 0.0 && d2 < lights[entry + 1].w) here.factor *= shareSeen(lights[entry + 1], here.to, sun ? kFar : d - light.w);
+  if (here.factor > 0.0 && d2 < listed.w) here.factor *= shareSeen(listed, here.to, sun ? kFar : d - light.w);
   if (sun) here.air = airToSun(air_, height_);
   else here.air = airToLight(air_, height_, dot(up_, here.to), d);
   return here;

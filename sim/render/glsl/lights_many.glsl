@@ -14,9 +14,9 @@ void prepareLights() {
   lightDistance2_ = 1.0;
   shining_ = 0;
   int row = int(draw_.state.z) * (2 * LIGHTS + 1);
-  int count = int(lights[row].x);
+  int count = int(lightTexel(row).x);
   for (int k = 0; k < count; ++k) {
-    LightHere here = lightAt(row + 2 * k + 1, int(lights[row + 2 * k + 2].x) >= LIGHTS - SUN);
+    LightHere here = lightAt(row + 2 * k + 1, int(lightTexel(row + 2 * k + 2).x) >= LIGHTS - SUN);
     if (!(here.factor > 0.0)) continue;
     toLight_[shining_] = here.to;
     for (int v = 0; v < COMPONENT_VECTORS; ++v) lightFactor_[shining_ * COMPONENT_VECTORS + v] = here.factor * lobes(here.to, v);

@@ -6,7 +6,13 @@ struct MaterialShape {
   ivec4 transmission;  // texture of T or -1; first entry of the transmittances; texture of E or -1
   ivec4 state;         // texture of its state or -1; entries
   vec4 stateScale;     // state of the first entry; entries per unit of it
-  ivec4 component[COMPONENTS];  // of R1, R2, ...: its lobe, from 1 on, or 0; its texture or -1
-  vec4 lobe[COMPONENTS];        // what that takes
 };
-layout(std430, binding = 6) readonly buffer Materials { MaterialShape materials[]; };
+// Behind these six, of R1, R2, ...: (its lobe, from 1 on, or 0; its texture or -1), then what the lobe of each takes.
+layout(binding = 10) uniform usamplerBuffer materials;
+uvec4 materialTexel(uint material, int member) { return texelFetch(materials, (6 + 2 * COMPONENTS) * int(material) + member); }
+ivec2 componentOf(uint material, int k) { return ivec2(materialTexel(material, 6 + k).xy); }
+vec4 lobeOfComponent(uint material, int k) { return uintBitsToFloat(materialTexel(material, 6 + COMPONENTS + k)); }
+MaterialShape materialAt(uint material) {
+  return MaterialShape(materialTexel(material, 0), materialTexel(material, 1), uintBitsToFloat(materialTexel(material, 2)), ivec4(materialTexel(material, 3)),
+                       ivec4(materialTexel(material, 4)), uintBitsToFloat(materialTexel(material, 5)));
+}

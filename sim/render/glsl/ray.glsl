@@ -28,15 +28,15 @@ vec3 pointOnPlane(Draw draw) {
 struct Meeting {
   float along;
   vec3 weight;
-  uvec3 corner;
+  ivec3 corner;    // in the buffer of vertices
   vec3 geometric;  // normal, not of unit length
 };
 
 Meeting meet(uint triangle, vec3 q, vec3 d) {
   Meeting m;
-  uint t = 3u * triangle;
-  m.corner = 2u * uvec3(indices[t], indices[t + 1u], indices[t + 2u]);
-  vec3 a = vertices[m.corner.x].xyz, e1 = vertices[m.corner.y].xyz - a, e2 = vertices[m.corner.z].xyz - a;
+  int t = 3 * int(triangle);
+  m.corner = 2 * ivec3(texelFetch(indices, t).x, texelFetch(indices, t + 1).x, texelFetch(indices, t + 2).x);
+  vec3 a = texelFetch(vertices, m.corner.x).xyz, e1 = texelFetch(vertices, m.corner.y).xyz - a, e2 = texelFetch(vertices, m.corner.z).xyz - a;
   vec3 p = cross(d, e2), s = q - a, r = cross(s, e1);
   float det = dot(e1, p);
   float inverse = det != 0.0 ? 1.0 / det : 0.0;

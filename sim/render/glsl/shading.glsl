@@ -42,7 +42,7 @@ void lookAt(uvec2 id, vec2 pixel) {
   prepareRay(pixel);
   // What meets no body and goes down ends at the ground.
   float ground = SURFACES > 0 && GROUND >= 0 && id.x == 0u ? groundRange(view.up.w, sinElevation_, view.earth.x) : kFar;
-  draw_ = draws[ground < kFar ? uint(max(GROUND, 0)) : id.x];
+  draw_ = drawAt(ground < kFar ? uint(max(GROUND, 0)) : id.x);
   vec3 d = inBody(draw_, ray_);
   isSurface_ = id.x == 0u && ground >= kFar ? 0.0 : 1.0;
   toViewer_ = -d / rayLength_;
@@ -55,13 +55,13 @@ void lookAt(uvec2 id, vec2 pixel) {
   if (SURFACES > 0 && id.x != 0u) {
     vec3 q = pointOnPlane(draw_);
     Meeting m = meet(id.y, q, d);
-    vec4 a = vertices[m.corner.x], b = vertices[m.corner.y], c = vertices[m.corner.z];
-    vec4 na = vertices[m.corner.x + 1u], nb = vertices[m.corner.y + 1u], nc = vertices[m.corner.z + 1u];
+    float ua = texelFetch(vertices, m.corner.x).w, ub = texelFetch(vertices, m.corner.y).w, uc = texelFetch(vertices, m.corner.z).w;
+    vec4 na = texelFetch(vertices, m.corner.x + 1), nb = texelFetch(vertices, m.corner.y + 1), nc = texelFetch(vertices, m.corner.z + 1);
     vec3 w = m.weight;
     facet_ = m.geometric;
     point_ = q + m.along * d;
     range_ = max((planeOf(draw_) + m.along) * rayLength_, 1.0e-6);
-    uv_ = vec2(w.x * a.w + w.y * b.w + w.z * c.w, w.x * na.w + w.y * nb.w + w.z * nc.w);
+    uv_ = vec2(w.x * ua + w.y * ub + w.z * uc, w.x * na.w + w.y * nb.w + w.z * nc.w);
     vec3 n = w.x * na.xyz + w.y * nb.xyz + w.z * nc.xyz;
     if (dot(m.geometric, d) > 0.0) n = -n;  // seen from behind
     normal_ = normalize(n);

@@ -6,8 +6,16 @@ struct Shadow {
   ivec4 what;    // map or -1; first and end of the caster's tree; 0 another body, or 1 + how it shades itself
   vec4 fine;     // rounding of the map's depth; a texel's size in depth; distance by which a ray leaves its own body; depth 0 to 1 where even, or 0 [m]
 };
-layout(std430, binding = 4) readonly buffer Shadows { Shadow shadows[]; };
-layout(std430, binding = 10) readonly buffer Trees { uvec4 trees[]; };
+layout(binding = 13) uniform usamplerBuffer shadows;
+layout(binding = 14) uniform usamplerBuffer trees;
+
+uvec4 shadowTexel(int number, int member) { return texelFetch(shadows, 9 * number + member); }
+vec4 shadowRow(int number, int member) { return uintBitsToFloat(shadowTexel(number, member)); }
+Shadow shadowAt(int number) {
+  return Shadow(vec4[4](shadowRow(number, 0), shadowRow(number, 1), shadowRow(number, 2), shadowRow(number, 3)),
+                vec4[3](shadowRow(number, 4), shadowRow(number, 5), shadowRow(number, 6)), ivec4(shadowTexel(number, 7)), shadowRow(number, 8));
+}
+vec3 treeFloats(int at) { return uintBitsToFloat(texelFetch(trees, at).xyz); }
 layout(binding = 16) uniform sampler2DArray shadowMaps;
 const int kNever = 1, kInside = 2, kOneSided = 3, kOpen = 4;  // 1 + SelfShadow
 
@@ -21,7 +29,7 @@ bool meetsTree(int at, int end, vec3 origin, vec3 direction, float farthest, flo
     // Boxes until one with triangles: llvmpipe runs the body of a loop once where it has nothing to do, so boxes don't pay for triangles.
     int count = 0;
     while (at < end && count == 0) {
-      uvec4 low = trees[at], high = trees[at + 1];
+      uvec4 low = texelFetch(trees, at), high = texelFetch(trees, at + 1);
       vec3 a = (uintBitsToFloat(low.xyz) - origin) * inverse, b = (uintBitsToFloat(high.xyz) - origin) * inverse;
       vec3 enter = min(a, b), leave = max(a, b);
       float from = max(max(enter.x, enter.y), max(enter.z, 0.0)), to = min(min(leave.x, leave.y), min(leave.z, farthest));
@@ -30,8 +38,8 @@ bool meetsTree(int at, int end, vec3 origin, vec3 direction, float farthest, flo
       count = missed ? 0 : int(high.w);
     }
     for (int last = at + 3 * count; at < last; at += 3) {
-      vec3 corner = uintBitsToFloat(trees[at].xyz);
-      vec3 e1 = uintBitsToFloat(trees[at + 1].xyz) - corner, e2 = uintBitsToFloat(trees[at + 2].xyz) - corner;
+      vec3 corner = treeFloats(at);
+      vec3 e1 = treeFloats(at + 1) - corner, e2 = treeFloats(at + 2) - corner;
       vec3 p = cross(direction, e2), q = origin - corner, r = cross(q, e1);
       float det = dot(e1, p);
       float inverseDet = det != 0.0 ? 1.0 / det : 0.0;
@@ -83,7 +91,7 @@ int mapSays(Shadow s, vec3 facet) {
 }
 
 bool stops(int number, vec3 toLight, float farthest) {
-  Shadow s = shadows[number];
+  Shadow s = shadowAt(number);
   vec3 facet = normalize(facet_);
   float outside = dot(facet, toViewer_) >= 0.0 ? 1.0 : -1.0, lightSide = dot(facet, toLight) >= 0.0 ? 1.0 : -1.0;
   int kind = s.what.w;

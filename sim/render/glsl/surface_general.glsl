@@ -25,9 +25,9 @@ float surfaceTemperature();
 void prepareTemperature();
 
 void prepareSurface() {
-  material_ = materials[draw_.table.y];
+  material_ = materialAt(draw_.table.y);
   for (int v = 0; v < COMPONENT_VECTORS; ++v)
-    modifier_[v] = vec3(modifierAt(material_.component[3 * v].y), modifierAt(material_.component[3 * v + 1].y), modifierAt(material_.component[3 * v + 2].y));
+    for (int k = 0; k < 3; ++k) modifier_[v][k] = modifierAt(componentOf(draw_.table.y, 3 * v + k).y);
   emissionModifier_ = modifierAt(material_.transmission.z);
   state_ = 0;
   stateMix_ = 0.0;

@@ -7,7 +7,7 @@ uniform int firstTriangle;
 
 void main() {
   prepareRay(gl_FragCoord.xy);
-  Draw body = draws[drawIndex];
+  Draw body = drawAt(uint(drawIndex));
   Meeting m = meet(uint(firstTriangle + gl_PrimitiveID), pointOnPlane(body), inBody(body, ray_));
   float t = min(m.along, endOfRay(body)), sense = gl_FrontFacing ? -1.0 : 1.0;
   sums = vec4(sense * t, sense, 0.0, 0.0);

@@ -4,6 +4,6 @@
 uniform int drawIndex;
 
 void main() {
-  project(draws[drawIndex], vertices[2 * gl_VertexID].xyz);
+  project(drawAt(uint(drawIndex)), texelFetch(vertices, 2 * gl_VertexID).xyz);
   gl_ClipDistance[0] = gl_Position.w;  // a medium begins at the camera, not at the near plane
 }

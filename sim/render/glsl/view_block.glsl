@@ -2,7 +2,7 @@
 layout(std140, binding = 0) uniform ViewBlock {
   vec4 pixel;     // tangent per pixel x, y; film position of the axis (pixels from the lower left)
   vec4 film;      // 2 / (width tanX), 2 / (height tanY), clip offset x, y
-  vec4 depth;     // near [m]; 0: reversed depth near / z, or the scale of depth around a body's centre
+  vec4 depth;     // near [m]; 0: reversed depth near / z, or the scale of depth around a body's centre; first of its draws in the buffer
   vec4 up;        // local up in the camera frame; height of the camera [m]
   vec4 earth;     // earth radius, top of the air [m]; the entity + 1 to be shaded alone, or 0: all and the background
   vec4 sun;       // direction of the sun in the camera frame

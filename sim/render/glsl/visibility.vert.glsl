@@ -3,4 +3,4 @@
 //@use sim/render/glsl/project.glsl
 //@slot drawn
 
-void main() { project(draws[drawnHere()], vertices[2 * gl_VertexID].xyz); }
+void main() { project(drawAt(uint(drawnHere())), texelFetch(vertices, 2 * gl_VertexID).xyz); }

@@ -5,8 +5,8 @@
 //@use sim/render/glsl/volume_ray.glsl
 //@use sim/render/glsl/node_block.glsl
 layout(binding = 5) uniform samplerBuffer media;      // (absorption [1/m], source radiance, 0, 0) per node
-layout(binding = 6) uniform sampler2D thicknessSums;  // of a meshed body
-layout(binding = 7) uniform sampler2D thicknessBounds;
+layout(binding = 17) uniform sampler2D thicknessSums;  // of a meshed body
+layout(binding = 19) uniform sampler2D thicknessBounds;
 uniform int form;      // 0 mesh, 1 ellipsoid, 2 cone
 uniform vec3 formSize;
 uniform int mediumRow;
@@ -31,7 +31,7 @@ Real blended(Real behind, int i) {
 
 void main() {
   prepareRay(gl_FragCoord.xy);
-  Draw body = draws[drawIndex];
+  Draw body = drawAt(uint(drawIndex));
   vec3 d = inBody(body, ray_), q = pointOnPlane(body);
   float start = -planeOf(body);  // the camera
   float end = endOfRay(body);

@@ -49,14 +49,14 @@ Real blended(Real behind, int i) {
 
 void main() {
   prepareRay(gl_FragCoord.xy);
-  Draw first = draws[memberDraw[0]];
+  Draw first = drawAt(uint(memberDraw[0]));
   float start = -planeOf(first);  // the camera
   float end = endOfRay(first);
   cuts_ = 0;
   met_ = 0;
   int turn = -1;
   for (int k = 0; k < count; ++k) {
-    Draw body = draws[memberDraw[k]];
+    Draw body = drawAt(uint(memberDraw[k]));
     vec3 d = inBody(body, ray_), q = pointOnPlane(body);
     vec2 chord = memberForm[k] == 1 ? ellipsoidChord(q, d, memberSize[k]) : coneChord(q, d, memberSize[k].x, memberSize[k].y, memberSize[k].z);
     float shift = (first.row2.w - body.row2.w) + (first.fine.x - body.fine.x);

@@ -10,7 +10,7 @@ float endOfRay(Draw body) {
   uvec2 id = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).xy;
   float end = kFar - planeOf(body);
   if (id.x != 0u) {
-    Draw solid = draws[id.x];
+    Draw solid = drawAt(id.x);
     Meeting m = meet(id.y, pointOnPlane(solid), inBody(solid, ray_));
     end = min(end, m.along + ((body.row2.w - solid.row2.w) + (body.fine.x - solid.fine.x)));
   } else {
