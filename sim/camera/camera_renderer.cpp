@@ -4,6 +4,7 @@
 #include "sim/camera/visible_lights.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/plan/planner.hpp"
+#include "sim/render/shadow_demand.hpp"
 
 namespace pitviper {
 namespace {
@@ -78,7 +79,10 @@ void CameraRenderer::begin(const WorldState& state) {
   if (direct_ && buffered_) pass_ = seesTransparent() ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
   if (reference_) reference_->beginPicture(viewsOfPicture());
   if (isBuffered() && buffered_->layers()) buffered_->layers()->beginPicture();
-  pass_->setState(state_);
+  pass_->setState(state_, [this](size_t e, size_t l) {
+    const double zoomed = small_[e] && present_[e] ? static_cast<double>(lines_[e]) * lines_[e] : 0.0;
+    return shadowedSubpixels(simulation_, state_, view_, e, l) + zoomed;
+  });
   pass_->draw(view_, state_, drawn);
   pass_->startReadback();
 }

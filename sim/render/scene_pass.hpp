@@ -37,7 +37,7 @@ class ScenePass {
   ScenePass& operator=(const ScenePass&) = delete;
 
   /// Uploads what changes with time: light levels, temperatures; draws shadow maps.
-  void setState(const WorldState& state);
+  void setState(const WorldState& state, const ShadowPass::Asked& asked = {});
   /// `drawn`: one flag per entity; the others are left out (small bodies have views of their own).
   void draw(const View& view, const WorldState& state, const std::vector<char>& drawn);
   /// Whether views can be drawn as tiles.

@@ -113,7 +113,7 @@ bool ShadowPass::isNearLine(std::size_t caster, std::size_t receiver, std::size_
   return glm::dot(beside, beside) <= both * both;
 }
 
-void ShadowPass::setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters) {
+void ShadowPass::setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters, const Asked& asked) {
   const auto lights = static_cast<size_t>(lightCount_);
   std::vector<GpuShadow> shadows;
   ranges_.assign(state.entities.size() * lights, {});
@@ -137,7 +137,7 @@ void ShadowPass::setState(const WorldState& state, const std::function<bool(std:
         const ShadowBox box{body.low, body.high};
         if (c != r && !mayShade(box, boxes_[r], axes, origin, place)) continue;
         // Of the inside of a convex body, seldom seen, rays are enough.
-        const Map* map = c == r && body.self == SelfShadow::Inside ? nullptr : &mapOf(c, l, place);
+        const Map* map = (c == r && body.self == SelfShadow::Inside) || raysCostLess(c, l, asked) ? nullptr : &mapOf(c, l, place);
         const bool mapped = map && map->layer >= 0 && map->projection;
         GpuShadow g{};
         double noise = 0.0;

@@ -25,8 +25,10 @@ class ShadowPass {
   /// Shader file of the slot `shadow`.
   static std::string slotFile(const Plan& plan);
 
-  /// Finds who can shade whom, and draws the maps that have changed. `matters(entity, light)`: false where it is not worth asking.
-  void setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters);
+  /// Finds who can shade whom, and draws the maps that have changed. `matters(entity, light)`: false where it is not worth asking. `asked(caster, light)`:
+  /// so many pixels may; where they are few, rays tell all of them. Without it casters have maps.
+  using Asked = std::function<double(std::size_t, std::size_t)>;
+  void setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters, const Asked& asked = {});
   /// Buffers and maps; units 13, 14 and 16.
   void bind() const;
   /// Those that can shade an entity from a light (the sun is the last).
@@ -40,6 +42,8 @@ class ShadowPass {
   /// A map's texels a side; of a mesh of fewer triangles than kDense rays cost less than a map.
   static constexpr int kTexels = 1024;
   static constexpr std::uint32_t kDense = 64;
+  /// A map costs as much as the rays of so many pixels, and a part of one more for each triangle (llvmpipe; found on first_light and sixteen).
+  static constexpr double kRaysPerMap = 5000.0, kRaysPerTriangle = 0.3;
   /// Maps of 4 MiB each; further casters are left to rays.
   static constexpr int kMostMaps = 64;
   struct Map {
@@ -49,6 +53,9 @@ class ShadowPass {
   };
   /// Whether a caster's bounding sphere comes near the lines from a receiver's to a light, in the local frame: all that most pairs cost.
   bool isNearLine(std::size_t caster, std::size_t receiver, std::size_t light, const WorldState& state, const std::vector<glm::dvec3>& centre) const;
+  bool raysCostLess(std::size_t caster, std::size_t light, const Asked& asked) const {
+    return asked && asked(caster, light) < kRaysPerMap + kRaysPerTriangle * trees_->of(caster).triangles;
+  }
   LightPlace lightFor(std::size_t caster, std::size_t light, const WorldState& state) const;
   Map& mapOf(std::size_t caster, std::size_t light, const LightPlace& place);
   void draw(std::size_t caster, const Map& map);

@@ -6,7 +6,9 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "sim/render/direct_pass.hpp"
+#include "sim/radiometry/constants.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
+#include "sim/render/shadow_demand.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -20,7 +22,9 @@ struct Tally {
   void operator+=(const Tally& t) { pixels += t.pixels, wrong += t.wrong, shaded += t.shaded; }
 };
 
-Tally tally(const Simulation& sim, int stride = 1) {
+enum class By { Maps, RaysAlone };
+
+Tally tally(const Simulation& sim, int stride = 1, By by = By::Maps) {
   needContext();
   const Camera& camera = sim.cameras[0];
   const Plan plan = makePlan(sim, camera.outputs, camera.spectral, camera.where);
@@ -31,7 +35,7 @@ Tally tally(const Simulation& sim, int stride = 1) {
   const View view = cameraView(camera, state, 1);
   auto gpu = std::make_shared<const GpuScene>(sim);
   const auto pass = makeScenePass(sim, plan, shaderLibrary(), gpu, true, camera.pinhole.apertureArea_m2());
-  pass->setState(state);
+  pass->setState(state, by == By::Maps ? ShadowPass::Asked() : [](size_t, size_t) { return 0.0; });
   pass->draw(view, state, std::vector<char>(sim.entities.size(), 1));
   pass->startReadback();
   const RawImage raw = pass->finishReadback();
@@ -64,7 +68,7 @@ TEST(ShadowsAgainstDouble, AHundredRandomScenes) {
   auto place = [&](double reach, double low, double high) {
     return "[" + number(within(-reach, reach)) + " m, " + number(within(-reach, reach)) + " m, " + number(within(low, high)) + " m]";
   };
-  Tally all;
+  Tally all, byRays;
   for (int n = 0; n < 100; ++n) {
     std::string y = "materials: {m: {components: [{reflection: lambertian, reflectance: 0.6}]}}\nambient: {temperature: 200 K}\n";
     if (n % 3 != 1) y += "sun: {azimuth: " + number(within(0, 360)) + " deg, elevation: " + number(within(3, 90)) + " deg, temperature: 5772 K}\n";
@@ -86,11 +90,15 @@ TEST(ShadowsAgainstDouble, AHundredRandomScenes) {
            ", heading: " + number(within(0, 360)) + " deg, pitch: " + number(within(-80, 80)) + " deg, roll: " + number(within(-180, 180)) + " deg}\n";
     }
     y += kFilm + std::string("field_of_view: 40 deg, position: ") + place(15, 8, 20) + ", look_at: [0 m, 0 m, 1 m]}\n";
-    all += tally(scene(y), 2);
+    const Simulation sim = scene(y);
+    all += tally(sim, 2);
+    if (n % 7 == 3) byRays += tally(sim, 2, By::RaysAlone);
   }
   EXPECT_GT(all.shaded, all.pixels / 20);
   bound("100 random scenes, share of pixels lit otherwise than by exact shadow rays", static_cast<double>(all.wrong) / static_cast<double>(all.pixels), 5e-4,
         "parts thinner than a map's texel; outlines in single precision; " + std::to_string(all.pixels) + " pixels, " + std::to_string(all.shaded) + " shaded");
+  EXPECT_GT(byRays.shaded, byRays.pixels / 20);
+  bound("14 of them by rays without maps", static_cast<double>(byRays.wrong) / static_cast<double>(byRays.pixels), 5e-4, "outlines in single precision");
 }
 
 // Terrain 50 km wide: hills in front of a low sun, near by and over its whole width.
@@ -126,6 +134,28 @@ TEST(ShadowsAgainstDouble, PanesInShade) {
   EXPECT_GT(t.shaded, 200);
   bound("panes in shade, share of pixels lit otherwise than by exact shadow rays", static_cast<double>(t.wrong) / static_cast<double>(t.pixels), 5e-4,
         "outlines in single precision; " + std::to_string(t.pixels) + " pixels, " + std::to_string(t.shaded) + " shaded");
+}
+
+// Where few pixels may ask for a shadow there is no map: a ball and its shadow from afar, and from within.
+TEST(ShadowDemand, FollowsWhatIsSeen) {
+  const Simulation sim = scene(
+      "sun: {azimuth: 90 deg, elevation: 0 deg, temperature: 5772 K}\nlights: [{name: l, intensity: 1 W/(sr um), position: [0 m, 0 m, 4 m]}]\nentities: [{name: b, "
+      "shape: {model: sphere, radius: 1 m}, material: blackbody, temperature: 300 K}]\n" +
+      std::string(kFilm) + "field_of_view: 40 deg, position: [0 m, -100 m, 0 m], look_at: [0 m, 0 m, 0 m]}\n");
+  const WorldState state = advance(sim, 0.0);
+  View view = cameraView(sim.cameras[0], state, 1);
+  const double tangent = 2.0 * std::tan(20.0 * kPi / 180.0) / 64.0;
+  // Beside the ray away from the sun, and from the lamp 4 m above it.
+  figure("subpixels of a ball of 1 m at 100 m and of its shadow", shadowedSubpixels(sim, state, view, 0, 1), kPi / std::pow(100.0 * tangent, 2.0), 5e-3,
+         "pi r^2 / d^2; the bounding ball is a thousandth wider");
+  view.position = {-300.0, -100.0, 0.0};
+  figure("the same with the shadow 100 m off, the ball 316 m", shadowedSubpixels(sim, state, view, 0, 1), kPi / std::pow(100.0 * tangent, 2.0), 5e-3,
+         "pi r^2 / d^2; the bounding ball is a thousandth wider");
+  view.position = {0.0, -100.0, -8.0};
+  figure("the same of a lamp, 8 m below", shadowedSubpixels(sim, state, view, 0, 0), kPi * std::pow(12.0 / 3.0 / (100.0 * tangent), 2.0), 5e-3,
+         "its shadow is wider by 12 / 3; the bounding ball is a thousandth wider");
+  view.position = {-300.0, -1.5, 0.0};
+  EXPECT_EQ(shadowedSubpixels(sim, state, view, 0, 1), 64.0 * 64.0) << "in the shadow, or nearly";
 }
 
 }  // namespace
