@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sim/gl/context.hpp"
+#include "sim/model/clear_facets.hpp"
 
 namespace pitviper {
 namespace {
@@ -18,6 +19,9 @@ struct GpuShadow {
   glm::vec4 fine;
 };
 static_assert(sizeof(GpuShadow) == 144);
+
+/// Added to that where clear facets are known.
+constexpr int kClear = 8;
 
 /// Half a unit in the last place of a float.
 constexpr double kRounding = 6e-8;
@@ -96,6 +100,24 @@ void ShadowPass::draw(std::size_t caster, const Map& map) {
   glDisable(GL_DEPTH_CLAMP);
 }
 
+bool ShadowPass::knowsClear(std::size_t entity, const glm::dvec3& toSun) {
+  const Entity& e = simulation_.entities[entity];
+  const std::uint32_t first = scene_->firstTriangle(static_cast<int>(entity));  // bodies of one mesh share its bits
+  const auto [known, fresh] = clearFor_.try_emplace(first, toSun);
+  if (!fresh) return known->second == toSun;
+  const size_t triangles = e.mesh->triangles.size();
+  if (!e.motion.waypoints().empty() || e.parent >= 0 || triangles < kFewestFacets || triangles > kMostFacets) {
+    known->second = glm::dvec3(NAN);
+    return false;
+  }
+  const std::vector<char> clear = clearFacets(*e.mesh, toSun);
+  clear_.resize(std::max<size_t>(clear_.size(), (first + clear.size()) / 32 + 1), 0);
+  for (size_t n = 0; n < clear.size(); ++n)
+    if (clear[n]) clear_[(first + n) / 32] |= 1u << (first + n) % 32;
+  clearFacets_ = Buffer();
+  return true;
+}
+
 bool ShadowPass::isNearLine(std::size_t caster, std::size_t receiver, std::size_t light, const WorldState& state, const std::vector<glm::dvec3>& centre) const {
   // Bounding spheres of floats, hence the room.
   const double both =
@@ -154,18 +176,21 @@ void ShadowPass::setState(const WorldState& state, const std::function<bool(std:
         // Rounding of a place in the receiver: it stays on its facet's plane to a few units of the last place of its coordinates.
         g.fine = {noise, mapped ? map->projection->texelDepth : 0.0, c == r ? 8.0 * kRounding * reach : 0.0,
                   mapped && place.sun ? 1.0 / glm::length(glm::dvec3(map->projection->row[2])) : 0.0};
-        g.what = {mapped ? map->layer : -1, body.first, body.end, kindOf(c == r, body.self)};
+        const bool clear = c == r && place.sun && knowsClear(c, place.at);
+        g.what = {mapped ? map->layer : -1, body.first, body.end, kindOf(c == r, body.self) | (clear ? kClear : 0)};
         shadows.push_back(g);
       }
       ranges_[r * lights + l] = {first, static_cast<std::uint32_t>(shadows.size()) - first};
     }
   }
   shadows_.upload(shadows);
+  if (!clearFacets_) clearFacets_.upload(clear_);
   checkGl("drawing shadow maps");
 }
 
 void ShadowPass::bind() const {
   shadows_.bindTexture(13, 4, true);
+  clearFacets_.bindTexture(15, 1, true);
   trees_->bind();
   layers_.bind(16);
 }

@@ -29,7 +29,7 @@ class ShadowPass {
   /// so many pixels may; where they are few, rays tell all of them. Without it casters have maps.
   using Asked = std::function<double(std::size_t, std::size_t)>;
   void setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters, const Asked& asked = {});
-  /// Buffers and maps; units 13, 14 and 16.
+  /// Buffers and maps; units 13 to 16.
   void bind() const;
   /// Those that can shade an entity from a light (the sun is the last).
   struct Range {
@@ -43,6 +43,8 @@ class ShadowPass {
   static constexpr int kTexels = 1024;
   static constexpr std::uint32_t kDense = 64;
   /// A map costs as much as the rays of so many pixels, and a part of one more for each triangle (llvmpipe; found on first_light and sixteen).
+  /// Clear facets are found once for bodies of so many triangles (0.2 to 0.4 us each).
+  static constexpr std::size_t kFewestFacets = 1024, kMostFacets = 4'000'000;
   static constexpr double kRaysPerMap = 5000.0, kRaysPerTriangle = 0.3;
   /// Maps of 4 MiB each; further casters are left to rays.
   static constexpr int kMostMaps = 64;
@@ -59,6 +61,8 @@ class ShadowPass {
   LightPlace lightFor(std::size_t caster, std::size_t light, const WorldState& state) const;
   Map& mapOf(std::size_t caster, std::size_t light, const LightPlace& place);
   void draw(std::size_t caster, const Map& map);
+  /// Whether it is known which facets of a body the body itself leaves clear of the sun: of a still one for which that is worth finding out.
+  bool knowsClear(std::size_t entity, const glm::dvec3& toSun);
 
   const Simulation& simulation_;
   std::shared_ptr<const GpuScene> scene_;
@@ -70,7 +74,9 @@ class ShadowPass {
   int layersTaken_ = 0;
   std::vector<ShadowBox> boxes_;  ///< of whole meshes
   std::vector<Range> ranges_;
-  Buffer shadows_;
+  std::map<std::uint32_t, glm::dvec3> clearFor_;  ///< of still bodies: the direction to the sun that facets are clear in
+  std::vector<std::uint32_t> clear_;              ///< a bit for each of the scene's triangles
+  Buffer shadows_, clearFacets_;
 };
 
 }  // namespace pitviper

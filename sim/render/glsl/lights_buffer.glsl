@@ -8,6 +8,7 @@ vec4 lightTexel(int at) { return texelFetch(lights, at); }
 // Of a material's components three at a time: columns at a node for a light, and lobes.
 Vec3 reflectionColumns(int i, int l, int v);
 Vec3 lobes(Vec3 toLight, int v);
+bool wholeSun_;  // it is the sun, and all of it above the point's horizon
 //@slot shadow
 
 // What the point sees of a light.
@@ -24,10 +25,12 @@ LightHere lightAt(int entry, bool sun) {
   here.number = int(listed.x);
   vec3 line = sun ? light.xyz : light.xyz - point_;
   float share = 1.0;
+  wholeSun_ = sun;
   if (SUN_SETS > 0 && sun) {  // the part of the sun's disc above the point's own horizon stands for the sun
     float x = sunAboveHorizon(height_, sunElevation_, view.earth.x), cosine = sqrt(max(1.0 - sunElevation_ * sunElevation_, 1.0e-6));
     float rise = sunRise(x) * sunRadius();
     share = sunShare(x);
+    wholeSun_ = share >= 1.0;
     line = normalize(line + rise / cosine * up_);
     sunElevation_ += rise * cosine;
   }

@@ -21,6 +21,7 @@ float range_;
 float height_;    // of the point [m]
 float sunElevation_; // sine of it at the point
 float isSurface_; // 0 for the background
+uint triangle_;
 float lightCos_, lightDistance2_;  // of the first light (truth)
 
 //@slot outputs
@@ -42,6 +43,7 @@ void lookAt(uvec2 id, vec2 pixel) {
   prepareRay(pixel);
   // What meets no body and goes down ends at the ground.
   float ground = SURFACES > 0 && GROUND >= 0 && id.x == 0u ? groundRange(view.up.w, sinElevation_, view.earth.x) : kFar;
+  triangle_ = id.y;
   draw_ = drawAt(ground < kFar ? uint(max(GROUND, 0)) : id.x);
   vec3 d = inBody(draw_, ray_);
   isSurface_ = id.x == 0u && ground >= kFar ? 0.0 : 1.0;

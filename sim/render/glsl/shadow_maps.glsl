@@ -3,11 +3,12 @@
 struct Shadow {
   vec4 map[4];   // rows: map from receiver; (texels, texels, depth, 1) x w
   vec4 body[3];  // rows: caster from receiver [m]
-  ivec4 what;    // map or -1; first and end of the caster's tree; 0 another body, or 1 + how it shades itself
+  ivec4 what;    // map or -1; first and end of the caster's tree; 0 another body, or 1 + how it shades itself; 8 more: its clear facets are known
   vec4 fine;     // rounding of the map's depth; a texel's size in depth; distance by which a ray leaves its own body; depth 0 to 1 where even, or 0 [m]
 };
 layout(binding = 13) uniform usamplerBuffer shadows;
 layout(binding = 14) uniform usamplerBuffer trees;
+layout(binding = 15) uniform usamplerBuffer clearFacets;  // a bit for each triangle: nothing of its body shades it from the sun
 
 uvec4 shadowTexel(int number, int member) { return texelFetch(shadows, 9 * number + member); }
 vec4 shadowRow(int number, int member) { return uintBitsToFloat(shadowTexel(number, member)); }
@@ -94,9 +95,10 @@ bool stops(int number, vec3 toLight, float farthest) {
   Shadow s = shadowAt(number);
   vec3 facet = normalize(facet_);
   float outside = dot(facet, toViewer_) >= 0.0 ? 1.0 : -1.0, lightSide = dot(facet, toLight) >= 0.0 ? 1.0 : -1.0;
-  int kind = s.what.w;
+  int kind = s.what.w & 7;
   if (kind == kInside && outside > 0.0) return false;
   bool away = outside != lightSide;  // the light is behind the facet, though not behind the surface that it stands for
+  if (s.what.w >= 8 && wholeSun_ && !away && (texelFetch(clearFacets, int(triangle_ >> 5)).x >> (triangle_ & 31u) & 1u) != 0u) return false;
   bool oneSided = kind == kInside || kind == kOneSided || (kind == kOpen && away);
   if (s.what.x >= 0 && !away) {
     int says = mapSays(s, facet);
