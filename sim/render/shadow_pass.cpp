@@ -11,14 +11,15 @@
 namespace pitviper {
 namespace {
 
-/// Mirrors Shadow of sim/render/glsl/shadow_maps.glsl (std430).
+/// Mirrors Shadow of sim/render/glsl/shadow_maps.glsl.
 struct GpuShadow {
   glm::vec4 map[4];
   glm::vec4 body[3];
   glm::ivec4 what;
   glm::vec4 fine;
+  glm::vec4 ball;
 };
-static_assert(sizeof(GpuShadow) == 144);
+static_assert(sizeof(GpuShadow) == 160);
 
 /// Added to that where clear facets are known.
 constexpr int kClear = 8;
@@ -178,6 +179,7 @@ void ShadowPass::setState(const WorldState& state, const std::function<bool(std:
                   mapped && place.sun ? 1.0 / glm::length(glm::dvec3(map->projection->row[2])) : 0.0};
         const bool clear = c == r && place.sun && knowsClear(c, place.at);
         g.what = {mapped ? map->layer : -1, body.first, body.end, kindOf(c == r, body.self) | (clear ? kClear : 0)};
+        g.ball = glm::vec4(glm::transpose(axes) * (box.centre() - origin), box.radius_m());
         shadows.push_back(g);
       }
       ranges_[r * lights + l] = {first, static_cast<std::uint32_t>(shadows.size()) - first};

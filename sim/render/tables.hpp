@@ -9,7 +9,7 @@
 
 namespace pitviper {
 
-/// Mirrors MaterialShape of sim/render/glsl/materials.glsl (std430), which ends with so many components as its program has.
+/// Mirrors MaterialShape of sim/render/glsl/materials.glsl, which ends with so many components as its program has.
 struct GpuMaterial {
   std::array<std::uint32_t, 4> counts{}, kinds{};
   std::array<float, 4> scale{};

@@ -9,7 +9,7 @@
 
 namespace pitviper {
 
-/// Mirrors Draw of sim/render/glsl/draws.glsl (std430).
+/// Mirrors Draw of sim/render/glsl/draws.glsl.
 struct GpuDraw {
   glm::vec4 row[3];
   glm::uvec4 table;

@@ -78,7 +78,7 @@ TEST(ClearFacets, NothingShadesThem) {
         EXPECT_LE(t.clear, t.lit + t.lit / 100) << "no more than rays find lit";
         // Nearly all of what a high sun sees of the ground, and of a convex body but along its limb.
         if (mesh == ball || (mesh == terrain && elevation > 80.0)) {
-          EXPECT_GE(t.clear, t.lit - t.lit / (mesh == ball ? 15 : 50));
+          EXPECT_GE(t.clear, t.lit - t.lit / 10);
         }
       }
   EXPECT_GT(all.points, 10000);

@@ -5,16 +5,17 @@ struct Shadow {
   vec4 body[3];  // rows: caster from receiver [m]
   ivec4 what;    // map or -1; first and end of the caster's tree; 0 another body, or 1 + how it shades itself; 8 more: its clear facets are known
   vec4 fine;     // rounding of the map's depth; a texel's size in depth; distance by which a ray leaves its own body; depth 0 to 1 where even, or 0 [m]
+  vec4 ball;     // around the caster, in the receiver's body axes [m]
 };
 layout(binding = 13) uniform usamplerBuffer shadows;
 layout(binding = 14) uniform usamplerBuffer trees;
 layout(binding = 15) uniform usamplerBuffer clearFacets;  // a bit for each triangle: nothing of its body shades it from the sun
 
-uvec4 shadowTexel(int number, int member) { return texelFetch(shadows, 9 * number + member); }
+uvec4 shadowTexel(int number, int member) { return texelFetch(shadows, 10 * number + member); }
 vec4 shadowRow(int number, int member) { return uintBitsToFloat(shadowTexel(number, member)); }
 Shadow shadowAt(int number) {
   return Shadow(vec4[4](shadowRow(number, 0), shadowRow(number, 1), shadowRow(number, 2), shadowRow(number, 3)),
-                vec4[3](shadowRow(number, 4), shadowRow(number, 5), shadowRow(number, 6)), ivec4(shadowTexel(number, 7)), shadowRow(number, 8));
+                vec4[3](shadowRow(number, 4), shadowRow(number, 5), shadowRow(number, 6)), ivec4(shadowTexel(number, 7)), shadowRow(number, 8), shadowRow(number, 9));
 }
 vec3 treeFloats(int at) { return uintBitsToFloat(texelFetch(trees, at).xyz); }
 layout(binding = 16) uniform sampler2DArray shadowMaps;
@@ -91,6 +92,22 @@ int mapSays(Shadow s, vec3 facet) {
   return farthest < -(noise + 2.0 * (steep + s.fine.y)) ? -1 : 0;
 }
 
+// Facets that face the whole sun and that their own body leaves clear, seen from their outside.
+bool isClear_;
+void prepareClear(vec3 toLight) {
+  isClear_ = wholeSun_ && dot(facet_, toViewer_) >= 0.0 && dot(facet_, toLight) >= 0.0 &&
+             (texelFetch(clearFacets, int(triangle_ >> 5)).x >> (triangle_ & 31u) & 1u) != 0u;
+}
+
+// False where a caster cannot stand before the light: its ball beside the line or behind, or it is the point's own body and leaves it clear.
+bool mayStop(int number, vec3 toLight) {
+  vec4 ball = shadowRow(number, 9);
+  vec3 to = ball.xyz - point_;
+  float along = dot(to, toLight), reach = ball.w * 1.0001;
+  bool own = shadowTexel(number, 7).w >= 8u;
+  return !(own && isClear_) && along >= -reach && dot(to, to) - along * along <= reach * reach * 1.0001;
+}
+
 bool stops(int number, vec3 toLight, float farthest) {
   Shadow s = shadowAt(number);
   vec3 facet = normalize(facet_);
@@ -98,7 +115,6 @@ bool stops(int number, vec3 toLight, float farthest) {
   int kind = s.what.w & 7;
   if (kind == kInside && outside > 0.0) return false;
   bool away = outside != lightSide;  // the light is behind the facet, though not behind the surface that it stands for
-  if (s.what.w >= 8 && wholeSun_ && !away && (texelFetch(clearFacets, int(triangle_ >> 5)).x >> (triangle_ & 31u) & 1u) != 0u) return false;
   bool oneSided = kind == kInside || kind == kOneSided || (kind == kOpen && away);
   if (s.what.x >= 0 && !away) {
     int says = mapSays(s, facet);
@@ -115,7 +131,11 @@ bool stops(int number, vec3 toLight, float farthest) {
 float shareSeen(vec4 listed, vec3 toLight, float farthest) {
   int first = int(listed.y), last = first + int(listed.z);
   float seen = 1.0;
-  for (int k = first; k < last && seen > 0.0; ++k)
-    if (stops(k, toLight, farthest)) seen = 0.0;
+  prepareClear(toLight);
+  // llvmpipe runs a loop's body once where no pixel has anything to do in it: those that cannot stop the light are passed over by themselves.
+  for (int k = first; k < last && seen > 0.0; ++k) {
+    while (k < last && !mayStop(k, toLight)) ++k;
+    if (k < last && stops(k, toLight, farthest)) seen = 0.0;
+  }
   return seen;
 }
