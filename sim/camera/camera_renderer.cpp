@@ -4,7 +4,6 @@
 #include "sim/camera/visible_lights.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/plan/planner.hpp"
-#include "sim/render/shadow_demand.hpp"
 
 namespace pitviper {
 namespace {
@@ -79,10 +78,10 @@ void CameraRenderer::begin(const WorldState& state) {
   if (direct_ && buffered_) pass_ = seesTransparent() ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
   if (reference_) reference_->beginPicture(viewsOfPicture());
   if (isBuffered() && buffered_->layers()) buffered_->layers()->beginPicture();
-  pass_->setState(state_, [this](size_t e, size_t l) {
-    const double zoomed = small_[e] && present_[e] ? static_cast<double>(lines_[e]) * lines_[e] : 0.0;
-    return shadowedSubpixels(simulation_, state_, view_, e, l) + zoomed;
-  });
+  std::vector<double> zoomed(present_.size(), 0.0);
+  for (size_t e = 0; e < zoomed.size(); ++e) zoomed[e] = small_[e] ? static_cast<double>(lines_[e]) * lines_[e] : 0.0;
+  const ShadowDemand demand{view_, present_, zoomed};
+  pass_->setState(state_, &demand);
   pass_->draw(view_, state_, drawn);
   pass_->startReadback();
 }

@@ -95,7 +95,7 @@ std::vector<std::string> ScenePass::channelTargets() const {
   return names;
 }
 
-void ScenePass::setState(const WorldState& state, const ShadowPass::Asked& asked) {
+void ScenePass::setState(const WorldState& state, const ShadowDemand* demand) {
   {
     const TimedPart part("tables");
     if (updateTemperatures(tables_, simulation_, tabled(), state)) {
@@ -105,7 +105,7 @@ void ScenePass::setState(const WorldState& state, const ShadowPass::Asked& asked
     }
   }
   if (const TimedPart part("shadow maps"); shadows_)
-    shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_.shadowMatters(e, l, state); }, asked);
+    shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_.shadowMatters(e, l, state); }, demand);
   const TimedPart part("tables");
   std::vector<float> block = tables_.node;
   const auto lights = lightTable(simulation_, tabled(), state);

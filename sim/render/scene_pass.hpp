@@ -36,8 +36,8 @@ class ScenePass {
   ScenePass(const ScenePass&) = delete;
   ScenePass& operator=(const ScenePass&) = delete;
 
-  /// Uploads what changes with time: light levels, temperatures; draws shadow maps.
-  void setState(const WorldState& state, const ShadowPass::Asked& asked = {});
+  /// Uploads what changes with time: light levels, temperatures; draws shadow maps. `demand`: as ShadowPass's; what is not drawn then has no shadows.
+  void setState(const WorldState& state, const ShadowDemand* demand = nullptr);
   /// `drawn`: one flag per entity; the others are left out (small bodies have views of their own).
   void draw(const View& view, const WorldState& state, const std::vector<char>& drawn);
   /// Whether views can be drawn as tiles.

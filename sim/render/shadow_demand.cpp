@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/radiometry/constants.hpp"
-
 namespace pitviper {
 
-double shadowedSubpixels(const Simulation& sim, const WorldState& state, const View& view, std::size_t caster, std::size_t light) {
+double shadowedSubpixels(const Simulation& sim, const WorldState& state, const View& view, std::size_t caster, const ShadowBox& box, std::size_t light,
+                         double nearest_m) {
+  const double all = static_cast<double>(view.width) * view.height, radius = box.radius_m();
   const Pose& pose = state.entities[caster];
-  const double all = static_cast<double>(view.width) * view.height, radius = static_cast<double>(sim.entities[caster].boundingRadius_m);
-  const glm::dvec3 centre = pose.position + pose.orientation * glm::dvec3(sim.entities[caster].boundingCentre);
+  const glm::dvec3 centre = pose.position + pose.orientation * box.centre(), size = box.high - box.low;
   const bool sun = light == sim.lights.size();
   const glm::dvec3 from = sun ? sim.sun->toSun : state.lights[light] - centre;
   const double away = glm::length(from);
@@ -18,9 +17,16 @@ double shadowedSubpixels(const Simulation& sim, const WorldState& state, const V
   // What it shades lies on and around a ray away from the light, which from a lamp widens.
   const glm::dvec3 line = -from / away;
   const double along = std::max(glm::dot(view.position - centre, line), 0.0);
-  const double wide = sun ? radius : radius * (away + along) / (away - radius), nearest = glm::length(view.position - centre - along * line);
-  if (!(nearest > 2.0 * wide)) return all;
-  return std::min(kPi * wide * wide / (nearest * nearest * view.tanPerPixelX * view.tanPerPixelY), all);
+  const double wider = sun ? 1.0 : (away + along) / (away - radius);
+  const double nearest = std::max(glm::length(view.position - centre - along * line), nearest_m);
+  if (!(nearest > 2.0 * wider * radius)) return all;
+  const double area_m2 = 0.5 * (size.x * size.y + size.y * size.z + size.z * size.x) * wider * wider;
+  return std::min(area_m2 / (nearest * nearest * view.tanPerPixelX * view.tanPerPixelY), all);
+}
+
+double distanceTo(const ShadowBox& box, const Pose& body, const glm::dvec3& place) {
+  const glm::dvec3 at = glm::conjugate(body.orientation) * (place - body.position);
+  return glm::length(at - glm::clamp(at, box.low, box.high));
 }
 
 }  // namespace pitviper

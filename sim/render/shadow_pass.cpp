@@ -52,6 +52,15 @@ ShadowPass::ShadowPass(const Simulation& simulation, const Plan& plan, std::shar
   ranges_.assign(simulation.entities.size() * static_cast<size_t>(lightCount_), {});
 }
 
+bool ShadowPass::raysCostLess(std::size_t c, std::size_t r, std::size_t l, const WorldState& state, const ShadowDemand* demand) const {
+  if (!demand) return false;
+  const ShadowTrees::Body& body = trees_->of(c);
+  const double asked = demand->zoomed[r] > 0.0 ? demand->zoomed[r]
+                                               : shadowedSubpixels(simulation_, state, demand->view, c, {body.low, body.high}, l,
+                                                                   distanceTo(boxes_[r], state.entities[r], demand->view.position));
+  return asked < kRaysPerMap + kRaysPerTriangle * body.triangles;
+}
+
 LightPlace ShadowPass::lightFor(std::size_t caster, std::size_t light, const WorldState& state) const {
   const Pose& pose = state.entities[caster];
   const glm::dmat3 bodyFromLocal = glm::transpose(glm::mat3_cast(pose.orientation));
@@ -136,7 +145,7 @@ bool ShadowPass::isNearLine(std::size_t caster, std::size_t receiver, std::size_
   return glm::dot(beside, beside) <= both * both;
 }
 
-void ShadowPass::setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters, const Asked& asked) {
+void ShadowPass::setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters, const ShadowDemand* demand) {
   const auto lights = static_cast<size_t>(lightCount_);
   std::vector<GpuShadow> shadows;
   ranges_.assign(state.entities.size() * lights, {});
@@ -146,7 +155,7 @@ void ShadowPass::setState(const WorldState& state, const std::function<bool(std:
   for (size_t l = 0; l < lights; ++l) {
     if (l < simulation_.lights.size() && !(state.lightLevels[l] > 0.0)) continue;
     for (size_t r = 0; r < state.entities.size(); ++r) {
-      if (simulation_.mediumOf(simulation_.entities[r]) || !matters(r, l)) continue;
+      if (simulation_.mediumOf(simulation_.entities[r]) || (demand && !demand->drawn[r]) || !matters(r, l)) continue;
       const Pose& receiver = state.entities[r];
       const auto first = static_cast<std::uint32_t>(shadows.size());
       for (size_t c = 0; c < state.entities.size(); ++c) {
@@ -160,7 +169,7 @@ void ShadowPass::setState(const WorldState& state, const std::function<bool(std:
         const ShadowBox box{body.low, body.high};
         if (c != r && !mayShade(box, boxes_[r], axes, origin, place)) continue;
         // Of the inside of a convex body, seldom seen, rays are enough.
-        const Map* map = (c == r && body.self == SelfShadow::Inside) || raysCostLess(c, l, asked) ? nullptr : &mapOf(c, l, place);
+        const Map* map = (c == r && body.self == SelfShadow::Inside) || raysCostLess(c, r, l, state, demand) ? nullptr : &mapOf(c, l, place);
         const bool mapped = map && map->layer >= 0 && map->projection;
         GpuShadow g{};
         double noise = 0.0;

@@ -13,6 +13,7 @@
 #include "sim/gl/objects.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/render/gpu_scene.hpp"
+#include "sim/render/shadow_demand.hpp"
 #include "sim/render/shadow_reach.hpp"
 #include "sim/render/shadow_trees.hpp"
 
@@ -25,10 +26,9 @@ class ShadowPass {
   /// Shader file of the slot `shadow`.
   static std::string slotFile(const Plan& plan);
 
-  /// Finds who can shade whom, and draws the maps that have changed. `matters(entity, light)`: false where it is not worth asking. `asked(caster, light)`:
-  /// so many pixels may; where they are few, rays tell all of them. Without it casters have maps.
-  using Asked = std::function<double(std::size_t, std::size_t)>;
-  void setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters, const Asked& asked = {});
+  /// Finds who can shade whom, and draws the maps that have changed. `matters(entity, light)`: false where it is not worth asking. `demand`: what looks at
+  /// them; where few pixels do, rays tell all of them. Null: anything may, and casters have maps.
+  void setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters, const ShadowDemand* demand = nullptr);
   /// Buffers and maps; units 13 to 16.
   void bind() const;
   /// Those that can shade an entity from a light (the sun is the last).
@@ -55,9 +55,8 @@ class ShadowPass {
   };
   /// Whether a caster's bounding sphere comes near the lines from a receiver's to a light, in the local frame: all that most pairs cost.
   bool isNearLine(std::size_t caster, std::size_t receiver, std::size_t light, const WorldState& state, const std::vector<glm::dvec3>& centre) const;
-  bool raysCostLess(std::size_t caster, std::size_t light, const Asked& asked) const {
-    return asked && asked(caster, light) < kRaysPerMap + kRaysPerTriangle * trees_->of(caster).triangles;
-  }
+  /// Where a receiver asks for a caster's shadow.
+  bool raysCostLess(std::size_t caster, std::size_t receiver, std::size_t light, const WorldState& state, const ShadowDemand* demand) const;
   LightPlace lightFor(std::size_t caster, std::size_t light, const WorldState& state) const;
   Map& mapOf(std::size_t caster, std::size_t light, const LightPlace& place);
   void draw(std::size_t caster, const Map& map);

@@ -35,7 +35,11 @@ Tally tally(const Simulation& sim, int stride = 1, By by = By::Maps) {
   const View view = cameraView(camera, state, 1);
   auto gpu = std::make_shared<const GpuScene>(sim);
   const auto pass = makeScenePass(sim, plan, shaderLibrary(), gpu, true, camera.pinhole.apertureArea_m2());
-  pass->setState(state, by == By::Maps ? ShadowPass::Asked() : [](size_t, size_t) { return 0.0; });
+  // One subpixel of each body is few enough for rays.
+  const std::vector<char> drawn(sim.entities.size(), 1);
+  const std::vector<double> few(sim.entities.size(), 1.0);
+  const ShadowDemand demand{view, drawn, few};
+  pass->setState(state, by == By::Maps ? nullptr : &demand);
   pass->draw(view, state, std::vector<char>(sim.entities.size(), 1));
   pass->startReadback();
   const RawImage raw = pass->finishReadback();
@@ -145,17 +149,22 @@ TEST(ShadowDemand, FollowsWhatIsSeen) {
   const WorldState state = advance(sim, 0.0);
   View view = cameraView(sim.cameras[0], state, 1);
   const double tangent = 2.0 * std::tan(20.0 * kPi / 180.0) / 64.0;
-  // Beside the ray away from the sun, and from the lamp 4 m above it.
-  figure("subpixels of a ball of 1 m at 100 m and of its shadow", shadowedSubpixels(sim, state, view, 0, 1), kPi / std::pow(100.0 * tangent, 2.0), 5e-3,
-         "pi r^2 / d^2; the bounding ball is a thousandth wider");
+  const ShadowBox box{glm::dvec3(-1.0), glm::dvec3(1.0)};  // of its mesh: on average over directions 6 m2 wide
+  const auto asked = [&](size_t light, double nearest_m) { return shadowedSubpixels(sim, state, view, 0, box, light, nearest_m); };
+  const auto expect = [&](const char* what, double found, double range_m, double wider) {
+    figure(what, found, 6.0 * wider * wider / std::pow(range_m * tangent, 2.0), 1e-12, "a quarter of the box's surface by range squared");
+  };
+  expect("subpixels of a box of 2 m at 100 m and of its shadow", asked(1, 0.0), 100.0, 1.0);
   view.position = {-300.0, -100.0, 0.0};
-  figure("the same with the shadow 100 m off, the ball 316 m", shadowedSubpixels(sim, state, view, 0, 1), kPi / std::pow(100.0 * tangent, 2.0), 5e-3,
-         "pi r^2 / d^2; the bounding ball is a thousandth wider");
+  expect("the same with the shadow 100 m off, the box 316 m", asked(1, 0.0), 100.0, 1.0);
+  expect("the same on what begins at 150 m", asked(1, 150.0), 150.0, 1.0);
   view.position = {0.0, -100.0, -8.0};
-  figure("the same of a lamp, 8 m below", shadowedSubpixels(sim, state, view, 0, 0), kPi * std::pow(12.0 / 3.0 / (100.0 * tangent), 2.0), 5e-3,
-         "its shadow is wider by 12 / 3; the bounding ball is a thousandth wider");
+  expect("the same of a lamp 4 m off, 8 m below", asked(0, 0.0), 100.0, 12.0 / (4.0 - std::sqrt(3.0)));
   view.position = {-300.0, -1.5, 0.0};
-  EXPECT_EQ(shadowedSubpixels(sim, state, view, 0, 1), 64.0 * 64.0) << "in the shadow, or nearly";
+  EXPECT_EQ(asked(1, 0.0), 64.0 * 64.0) << "in the shadow, or nearly";
+  const Pose turned{{10.0, 0.0, 0.0}, glm::angleAxis(0.5 * kPi, glm::dvec3(0.0, 0.0, 1.0))};
+  EXPECT_NEAR(distanceTo({{-1.0, -2.0, -3.0}, {1.0, 2.0, 3.0}}, turned, {15.0, 1.0, 7.0}), 5.0, 1e-12) << "3 m beside it and 4 above";
+  EXPECT_EQ(distanceTo({{-1.0, -2.0, -3.0}, {1.0, 2.0, 3.0}}, turned, {11.9, 0.9, 2.0}), 0.0);
 }
 
 }  // namespace
