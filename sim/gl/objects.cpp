@@ -101,6 +101,15 @@ void Buffer::bindTexture(unsigned unit, int perTexel, bool whole) const {
 }
 void Buffer::bindPack() const { glBindBuffer(GL_PIXEL_PACK_BUFFER, name_); }
 void Buffer::download(void* into, std::size_t bytes) const { glGetNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(bytes), into); }
+void Buffer::bindVertices() const {
+  glBindVertexBuffer(0, name_, 0, 4 * sizeof(float));
+  glVertexAttribFormat(0, 3, GL_FLOAT, GL_FALSE, 0);
+  glVertexAttribIFormat(1, 1, GL_UNSIGNED_INT, 3 * sizeof(float));
+  for (GLuint attribute : {0u, 1u}) {
+    glVertexAttribBinding(attribute, 0);
+    glEnableVertexAttribArray(attribute);
+  }
+}
 void Buffer::bindElements() const { glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, name_); }
 
 Texture2D::Texture2D(int width, int height, PixelFormat format) : width_(width), height_(height) {

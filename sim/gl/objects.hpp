@@ -74,6 +74,8 @@ class Buffer {
   /// A part of it [bytes], which begins at a multiple of 256.
   void bindUniformPart(unsigned index, std::size_t first, std::size_t bytes) const;
   void bindElements() const;
+  /// Of the bound vertex array, for each vertex: attribute 0, three floats, and 1, a whole number behind them.
+  void bindVertices() const;
   /// As a texture of floats or of whole numbers, one or four to a texel, read by texelFetch.
   void bindTexture(unsigned unit, int perTexel, bool whole = false) const;
   void bindPack() const;

@@ -46,11 +46,39 @@ std::vector<MeshRun> runsOf(const Mesh& mesh) {
   return runs;
 }
 
+/// Mirrors sim/render/glsl/drawn_vertices.glsl.
+struct DrawnVertex {
+  glm::vec3 position;
+  std::uint32_t triangle;
+};
+
+/// Corners in turn so that the last of each triangle is a vertex that no other has for its last: its own, or a copy.
+void appendDrawn(const Mesh& mesh, std::uint32_t first, std::vector<DrawnVertex>& drawn, std::vector<std::uint32_t>& corners) {
+  const auto base = static_cast<std::uint32_t>(drawn.size());
+  for (const glm::vec3& p : mesh.positions) drawn.push_back({p, 0});
+  std::vector<char> taken(mesh.positions.size(), 0);
+  for (std::uint32_t n = 0; n < mesh.triangles.size(); ++n) {
+    const glm::uvec3& t = mesh.triangles[n];
+    int last = 2;
+    while (last >= 0 && taken[t[last]]) --last;
+    std::uint32_t own = base + t[std::max(last, 0)];
+    if (last < 0) {
+      own = static_cast<std::uint32_t>(drawn.size());
+      drawn.push_back({mesh.positions[t[last = 0]], 0});
+    } else {
+      taken[t[last]] = 1;
+    }
+    drawn[own].triangle = first + n;
+    corners.insert(corners.end(), {base + t[(last + 1) % 3], base + t[(last + 2) % 3], own});
+  }
+}
+
 }  // namespace
 
 GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
   std::vector<glm::vec4> vertices;
-  std::vector<std::uint32_t> indices;
+  std::vector<std::uint32_t> indices, corners;
+  std::vector<DrawnVertex> drawn;
   std::map<const Mesh*, std::uint32_t> placed;
   std::map<const Mesh*, std::shared_ptr<const std::vector<MeshRun>>> runs;
   for (const auto& entity : sim.entities) {
@@ -69,7 +97,10 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
     }
     for (const auto& t : mesh.triangles)
       for (int k = 0; k < 3; ++k) indices.push_back(base + t[k]);
+    appendDrawn(mesh, at->second, drawn, corners);
   }
+  drawn_.upload(drawn);
+  corners_.upload(corners);
   vertices_.upload(vertices);
   indices_.upload(indices);
 
@@ -93,7 +124,8 @@ void GpuScene::bind() const {
   glBindVertexArray(vertexArray_);
   vertices_.bindTexture(6, 4);
   indices_.bindTexture(7, 1, true);
-  indices_.bindElements();
+  corners_.bindElements();
+  drawn_.bindVertices();
   textureShapes_.bindTexture(11, 4, true);
   texels_.bindTexture(12, 1);
 }

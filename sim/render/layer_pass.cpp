@@ -265,7 +265,6 @@ void LayerPass::drawThickness(const LayerPiece& piece, const Over& over) {
   thickness_.use();
   setMedium(thickness_, piece);
   const std::uint32_t first = scene_->firstTriangle(item.entity);
-  glUniform1i(thickness_.uniform("firstTriangle"), static_cast<int>(first));
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
   glEnable(GL_CLIP_DISTANCE0);

@@ -71,8 +71,8 @@ std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const W
 void SolidPass::drawOne(const Candidate& c) const {
   single_.use();
   glUniform1i(single_.uniform("drawIndex"), static_cast<int>(c.draw));
-  if (c.shown.empty()) drawTriangles(single_, c, c.first, c.triangles, 1);
-  for (const auto& [first, count] : c.shown) drawTriangles(single_, c, first, count, 1);
+  if (c.shown.empty()) drawTriangles(c, c.first, c.triangles, 1);
+  for (const auto& [first, count] : c.shown) drawTriangles(c, first, count, 1);
 }
 
 /// Runs of a large mesh that lie wholly outside the view are left out: a driver without a GPU takes 80 ns for a vertex that nobody sees.
@@ -91,10 +91,9 @@ void SolidPass::cutOff(Candidate& c, const View& v, const Pose& pose, const Mesh
   for (const auto& s : c.shown) c.triangles += s.second;
 }
 
-void SolidPass::drawTriangles(const Program& program, const Candidate& c, std::uint32_t first, std::uint32_t count, std::size_t instances) const {
+void SolidPass::drawTriangles(const Candidate& c, std::uint32_t first, std::uint32_t count, std::size_t instances) const {
   if (c.cull) glEnable(GL_CULL_FACE);
   else glDisable(GL_CULL_FACE);
-  glUniform1i(program.uniform("firstTriangle"), static_cast<int>(first));
   glDrawElementsInstanced(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT,
                           reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * 12), static_cast<GLsizei>(instances));
 }
@@ -192,7 +191,7 @@ void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& stat
     }
     instanced_.use();
     glUniform1i(instanced_.uniform("firstInstance"), firstInstance);
-    drawTriangles(instanced_, group.front(), group.front().first, group.front().triangles, group.size());
+    drawTriangles(group.front(), group.front().first, group.front().triangles, group.size());
     firstInstance += static_cast<int>(group.size());
   }
   if (asked < kWorthAsking) {

@@ -31,7 +31,7 @@ class SolidPass {
 
  private:
   void drawOne(const Candidate& c) const;
-  void drawTriangles(const Program& program, const Candidate& shape, std::uint32_t first, std::uint32_t count, std::size_t instances) const;
+  void drawTriangles(const Candidate& shape, std::uint32_t first, std::uint32_t count, std::size_t instances) const;
   void cutOff(Candidate& c, const View& view, const Pose& pose, const MeshPart& part) const;
   void drawHidden(const std::vector<Candidate>& dense);
 

@@ -1,5 +1,5 @@
 layout(location = 0) out uvec2 identity;  // draw (0 is the background), triangle
-uniform int firstTriangle;
+flat in uint triangle;
 //@slot drawn
 
-void main() { identity = uvec2(uint(drawIndex), uint(firstTriangle + gl_PrimitiveID)); }
+void main() { identity = uvec2(uint(drawIndex), triangle); }

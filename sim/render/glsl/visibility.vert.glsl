@@ -1,6 +1,9 @@
 // Which surface each pixel sees.
-//@use sim/render/glsl/geometry_buffers.glsl
 //@use sim/render/glsl/project.glsl
+//@use sim/render/glsl/drawn_vertices.glsl
 //@slot drawn
 
-void main() { project(drawAt(uint(drawnHere())), texelFetch(vertices, 2 * gl_VertexID).xyz); }
+void main() {
+  triangle = triangleHere;
+  project(drawAt(uint(drawnHere())), position);
+}
