@@ -1,5 +1,6 @@
 // Cameras, their channels, and probes.
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "scenarios/reader/builder.hpp"
@@ -32,6 +33,21 @@ Gain readGain(const Value& v) {
 bool tooLarge(const Camera& c) {
   const double columns = static_cast<double>(c.pinhole.width) * c.samples, rows = static_cast<double>(c.pinhole.height) * c.samples;
   return columns > 16384 || rows > 16384 || columns * rows > 16384.0 * 4096.0;
+}
+
+void readSamples(const Value& value, Camera& c) {
+  constexpr int kAuto = 2, kMost = 16;
+  const bool word = value.kind == Value::Kind::Scalar;
+  c.sharesShading = word && value.text == "auto";
+  int number = 0;
+  const auto [end, error] = std::from_chars(value.text.data(), value.text.data() + value.text.size(), number);
+  const bool isNumber = word && error == std::errc() && end == value.text.data() + value.text.size();
+  if (!c.sharesShading && !(isNumber && number >= 1 && number <= kMost))
+    throw UserError(value.where,
+                    isNumber ? "samples is out of range (" + value.text.substr(0, 40) + ")"
+                             : "samples is " + (word ? "neither auto nor a whole number ('" + value.text.substr(0, 40) + "')" : std::string(value.kindName())),
+                    "'auto', or 1 to 16", "write 'samples: 2' or 'samples: auto'");
+  c.samples = c.sharesShading ? kAuto : number;
 }
 
 }  // namespace
@@ -160,7 +176,7 @@ void Builder::readCameras(const Record& scenario) {
     Pinhole& p = c.pinhole;
     p.width = static_cast<int>(film.integer("width"));
     p.height = static_cast<int>(film.integer("height"));
-    c.samples = static_cast<int>(r.integer("samples"));
+    readSamples(r.value("samples"), c);
     if (tooLarge(c))
       throw UserError(r.where("film"),
                       "a picture of " + std::to_string(p.width) + "x" + std::to_string(p.height) + " pixels with " + std::to_string(c.samples) + "x" +

@@ -315,7 +315,7 @@ const ParameterTable& camera() {
          required(within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3)),
          spectrum("optics", "", "transmission of the optics, 0..1; 0 outside its table, as a response is"),
          within(number("exposure", "s", "exposure time"), 1e-12, 1e6), withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
-         withDefault(integer("samples", "n: n x n subpixels per pixel", 1, 16), "1"),
+         withDefault(any("samples", "n: n x n subpixels per pixel, 1 to 16; or auto: 2 x 2, shaded one by one only where they or neighbouring pixels differ (in direct mode)"), "1"),
          withDefault(within(number("small_bodies", "",
                                    "bodies spanning fewer pixels are drawn by a zoomed view of their own and keep their intensity at any range (0: draw all as "
                                    "they fall on pixels)"),

@@ -65,6 +65,7 @@ void CameraRenderer::begin(const WorldState& state) {
   state_ = state;
   view_ = cameraView(camera_, state, camera_.samples);
   view_.wanted = wanted_;
+  view_.grouped = camera_.sharesShading ? camera_.samples : 1;
   if (const Pinhole now = cameraAt(camera_, state).pinhole; now.focalLength_m != focalLength_m_) {
     solidAngles_ = std::make_shared<const Pinhole::SolidAngles>(now.solidAngles());
     focalLength_m_ = now.focalLength_m;

@@ -1,6 +1,7 @@
 #include "sim/camera/small_bodies.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/gtc/constants.hpp>
@@ -27,17 +28,19 @@ double extentOf(const Simulation& sim, const WorldState& state, const View& v, i
 }
 
 /// From the same place, turned so that the entity's bounding sphere fills the picture, and rolled by an angle that no edge of a scene
-/// shares, so that silhouettes are sampled evenly (an edge along the grid would be off by up to a whole row).
+/// shares, so that silhouettes are sampled evenly (an edge along the grid would be off by up to a whole row), nor does its middle lie on a place of the grid
+/// that one shares with it: what is round would be off all around alike.
 View zoomedView(const Simulation& sim, const WorldState& state, const View& v, int entity, int size) {
-  constexpr double kRoll_rad = 0.3926;
+  constexpr double kRoll_rad = 0.3926, kAcross = 0.31, kUp = 0.17;
   const double radius = sim.entities[static_cast<size_t>(entity)].boundingRadius_m;
   const glm::dvec3 centre = centreOf(sim, state, entity), line = centre - v.position;
   const double distance = glm::length(line);
   View z = v;
   z.width = z.height = size;
   z.localFromCamera = localFromCamera({v.position, orientationAlong(line, kRoll_rad)});
-  z.tanPerPixelX = z.tanPerPixelY = 2.04 * radius / std::sqrt(distance * distance - radius * radius) / size;
-  z.axisX = z.axisY = 0.5 * size;
+  z.tanPerPixelX = z.tanPerPixelY = 2.04 * radius / std::sqrt(distance * distance - radius * radius) / (size - 2.0 * kAcross);
+  z.axisX = 0.5 * size + kAcross;
+  z.axisY = 0.5 * size + kUp;
   z.onlyEntity = entity;
   z.zoomed = true;
   z.depthCentre = centre;
@@ -165,22 +168,23 @@ void gather(Subpixels& image, const View& z, const RawImage& zoomed, const Share
   for (const auto& [p, share] : shares) {
     if (share.covered <= 0.0) continue;
     const int x = static_cast<int>(p % static_cast<size_t>(v.width)), y = static_cast<int>(p / static_cast<size_t>(v.width));
-    const double whole = isInside(v, z, zoomFromMain, x, y) ? share.looked : image.projectedSolidAngle_sr(x, y);
+    const double whole = image.projectedSolidAngle_sr(x, y);
     Fine& f = fine[p];
     f.sum.resize(image.slotCount(), 0.0);
-    f.covered += share.covered;
-    f.whole = std::max(f.whole, whole);
-    for (size_t s = 0; s < f.sum.size(); ++s) f.sum[s] += share.sum[s];
-    takeTruth(image, zoomed, share, whole, p);
+    f.whole = whole;
+    // Samples fall to one side or the other of a subpixel's edge: all of them are all of it, and no more than finer views have left.
+    const double all = isInside(v, z, zoomFromMain, x, y) ? whole / share.looked : 1.0;
+    const double each = std::min(all, std::max(whole - f.covered, 0.0) / share.covered);
+    f.covered += each * share.covered;
+    for (size_t s = 0; s < f.sum.size(); ++s) f.sum[s] += each * share.sum[s];
+    takeTruth(image, zoomed, share, whole / all, p);
   }
 }
 
 /// The image keeps what it has in the rest of a subpixel: a mean of radiances, none of which is below 0.
 void put(Subpixels& image, const FineSubpixels& fine) {
-  for (const auto& [p, f] : fine) {
-    const double whole = std::max(f.whole, f.covered);  // samples fall to one side or the other of a subpixel's edge
-    for (size_t s = 0; s < f.sum.size(); ++s) image.add(s, p, (f.sum[s] - f.covered * image.slot(s, p)) / whole);
-  }
+  for (const auto& [p, f] : fine)
+    for (size_t s = 0; s < f.sum.size(); ++s) image.add(s, p, (f.sum[s] - f.covered * image.slot(s, p)) / f.whole);
 }
 
 bool anyOf(const std::vector<char>& flags) {
@@ -373,7 +377,7 @@ bool isEven(const Simulation& sim, const Entity& e) {
 }  // namespace
 
 std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
-  constexpr double kPart = 0.125;
+  constexpr double kPart = 0.25;
   constexpr int kFewest = 16;
   std::vector<int> lines;
   std::map<const Mesh*, double> surfaces_m2;
@@ -390,7 +394,8 @@ std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
     // h = across / lines in the law, solved for them.
     const double needed = area > 0.0 ? across * std::cbrt(outline * 0.0724 / std::pow(kPart * accuracy * area, 2.0)) : INFINITY;
     int enough = kFewest;
-    while (enough < needed && enough < most) enough *= 2;
+    // Few sizes, for bodies of one size are drawn together: 16, 24, 32, 48 ...
+    while (enough < needed && enough < most) enough += std::has_single_bit(static_cast<unsigned>(enough)) ? enough / 2 : enough / 3;
     lines.back() = std::min(enough, most);
   }
   return lines;

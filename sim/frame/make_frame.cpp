@@ -145,6 +145,7 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   const Pinhole& p = eye.pinhole;
   addOptics(frame, p, eye.exposure_s);
   add("pitviper.samples", camera.samples);
+  if (camera.sharesShading) add("pitviper.samples_shared", "where neighbouring pixels are alike");
   addMode(frame, camera.spectral);
   const Pose& pose = eye.pose;
   const Geodetic g = sim.frame.toGeodetic(pose.position);

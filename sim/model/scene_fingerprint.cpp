@@ -140,7 +140,7 @@ void addTo(Fingerprint& f, const Simulation& sim) {
 }
 
 void addTo(Fingerprint& f, const Camera& c) {
-  const auto& [name, where, pinhole, mount, exposure_s, near_m, samples, smallBody_px, zoomedSamples, outlineAccuracy, spectral, learnt, plan, planFile,
+  const auto& [name, where, pinhole, mount, exposure_s, near_m, samples, sharesShading, smallBody_px, zoomedSamples, outlineAccuracy, spectral, learnt, plan, planFile,
                outputs, stages, spectralImage, truth] = c;
   const auto& [width, height, focalLength_m, pitchX_m, pitchY_m, apertureDiameter_m] = pinhole;
   f.add(name).add(width).add(height).add(focalLength_m).add(pitchX_m).add(pitchY_m).add(apertureDiameter_m);

@@ -13,6 +13,7 @@ class DirectPass final : public ScenePass {
   bool drawsTiles() const override { return true; }
 
  private:
+  bool sharesShading() const override { return true; }
   void shade(RenderTarget& into, const RenderTarget& visibility) override;
   void shadeTile(RenderTarget& into, const glm::ivec4& part, const std::set<std::size_t>& classes) override;
   ClassPrograms programs_;

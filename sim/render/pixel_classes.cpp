@@ -9,8 +9,10 @@ namespace pitviper {
 PixelClasses::PixelClasses(const ShaderLibrary& library, const ShaderSlots& slots)
     : program_(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/classes.frag.glsl", slots)) {}
 
-void PixelClasses::find(const RenderTarget& visibility) {
+void PixelClasses::find(const RenderTarget& visibility, const Texture2D* bends, int grouped) {
   begin(visibility);
+  if (bends) bends->bind(19);
+  glUniform1i(program_.uniform("grouped"), bends ? grouped : 0);
   drawPart(glm::ivec4(0));
   end();
 }
@@ -36,6 +38,7 @@ void PixelClasses::begin(const RenderTarget& visibility) {
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_TRUE);
   program_.use();
+  glUniform1i(program_.uniform("grouped"), 0);
 }
 
 }  // namespace pitviper

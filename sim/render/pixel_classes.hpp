@@ -18,8 +18,8 @@ class PixelClasses {
  public:
   /// `slots`: those of shading.
   PixelClasses(const ShaderLibrary& library, const ShaderSlots& slots);
-  /// Of what was drawn last. Buffers and the view are bound.
-  void find(const RenderTarget& visibility);
+  /// Of what was drawn last. Buffers and the view are bound. `bends`: of pixels of grouped x grouped subpixels those that have 0 are left out.
+  void find(const RenderTarget& visibility, const Texture2D* bends = nullptr, int grouped = 0);
   /// The same part by part (corner, size), with views of their own.
   void begin(const RenderTarget& visibility);
   void drawPart(const glm::ivec4& part) const;

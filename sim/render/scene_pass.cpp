@@ -20,6 +20,9 @@ constexpr std::size_t kAligned = 256;
 constexpr int kLightPlaces = 33;
 /// Tiles are drawn in pictures of so many pixels a side at most, or of one tile.
 constexpr int kTilePicture_px = 1024;
+/// Where an accuracy is asked for, pixels that bend by more than so many times it are shaded subpixel by subpixel: across an edge the middle is off by half
+/// of that at most.
+constexpr double kBendShare = 2.0, kUsualAccuracy = 0.01;
 
 /// The same plan at one wavelength: what the reference needs of tables is which part each draw is.
 Plan outline(const Plan& plan) {
@@ -37,6 +40,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
                      double apertureArea_m2, Shading shading, bool classes)
     : simulation_(simulation),
       plan_(plan),
+      library_(library),
       scene_(std::move(scene)),
       truth_(truth),
       apertureArea_m2_(apertureArea_m2),
@@ -105,7 +109,8 @@ void ScenePass::setState(const WorldState& state, const ShadowDemand* demand) {
     }
   }
   if (const TimedPart part("shadow maps"); shadows_)
-    shadows_->setState(state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_.shadowMatters(e, l, state); }, demand);
+    shadows_->setState(
+        state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_.shadowMatters(e, l, state); }, demand);
   const TimedPart part("tables");
   std::vector<float> block = tables_.node;
   const auto lights = lightTable(simulation_, tabled(), state);
@@ -137,8 +142,8 @@ void ScenePass::uploadLights(const WorldState& state) {
       row->x += 1.0f;
     };
     for (size_t l = 0; l < simulation_.lights.size(); ++l)
-      add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l,
-          body && ((truth_ && l == 0) || relevance_.matters(e, l, state)), body ? relevance_.shadowReach2_m2(e, l, state) : 0.0);
+      add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l, body && ((truth_ && l == 0) || relevance_.matters(e, l, state)),
+          body ? relevance_.shadowReach2_m2(e, l, state) : 0.0);
     if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true, physics::kFar);
   }
   lights_.upload(lights);
@@ -185,12 +190,36 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
     beforeShading(v, state, drawn);
   }
   const TimedPart part("shading");
-  pixelClasses_->find(current_->visibility);
+  pixelClasses_->find(current_->visibility, shadeTogether(v), v.grouped);
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
   if (partial_) clearShading();
   shade(current_->shading, current_->visibility);
   checkGl("drawing a frame");
+}
+
+/// Pixels of several subpixels, each once; which of them need more. Null where each subpixel is shaded by itself.
+const Texture2D* ScenePass::shadeTogether(const View& v) {
+  if (v.grouped < 2 || v.onlyEntity >= 0 || !sharesShading()) return nullptr;
+  if (!shared_)
+    shared_.emplace(library_, plan_.groupCount(), current_->shading.colourCount(), kBendShare * (plan_.accuracy > 0.0 ? plan_.accuracy : kUsualAccuracy));
+  View whole = v;
+  whole.width /= v.grouped, whole.height /= v.grouped;
+  whole.tanPerPixelX *= v.grouped, whole.tanPerPixelY *= v.grouped;
+  whole.axisX /= v.grouped, whole.axisY /= v.grouped;
+  Targets& pixels = targetsFor(whole.width, whole.height);
+  shared_->findMiddles(current_->visibility, pixels.visibility, v.grouped);
+  const GpuView data = viewData(simulation_, whole, apertureArea_m2_);
+  pixelView_.upload(&data, sizeof data);
+  pixelView_.bindUniform(0);
+  pixelClasses_->find(pixels.visibility);
+  pixels.visibility.colour(0).bind(0);
+  partial_ = false;
+  shade(pixels.shading, pixels.visibility);
+  shared_->findBends(current_->visibility, pixels.visibility, pixels.shading, v.grouped);
+  shared_->spread(pixels.shading, current_->shading, v.grouped);
+  view_.bindUniform(0);
+  return &shared_->bends();
 }
 
 void ScenePass::clearShading() {
@@ -254,9 +283,7 @@ std::vector<ScenePass::Tile> ScenePass::tilesOf(std::span<const View> views, con
   return tiles;
 }
 
-void ScenePass::bindTile(size_t i) const {
-  tileViews_.bindUniformPart(0, i * kAligned, sizeof(GpuView));
-}
+void ScenePass::bindTile(size_t i) const { tileViews_.bindUniformPart(0, i * kAligned, sizeof(GpuView)); }
 
 void ScenePass::drawTilePicture(const std::vector<Tile>& tiles, const WorldState& state) {
   bindBuffers();

@@ -15,6 +15,7 @@
 #include "sim/render/pixel_classes.hpp"
 #include "sim/render/shading_program.hpp"
 #include "sim/render/shadow_pass.hpp"
+#include "sim/render/shared_shading.hpp"
 #include "sim/render/solid_pass.hpp"
 #include "sim/render/surface_buffers.hpp"
 #include "sim/render/surface_classes.hpp"
@@ -55,7 +56,8 @@ class ScenePass {
  protected:
   /// Direct: in the shader, so that air is integrated over the channels beforehand; buffered: after it; reference: not on the GPU at all.
   enum class Shading { Direct, Buffered, Reference };
-  /// The simulation and the plan must outlive it. `shading`: where the spectral integral is done; `classes`: each class of surfaces by a program of its own.
+  /// The simulation, the plan and the library must outlive it. `shading`: where the spectral integral is done; `classes`: each class of surfaces by a program
+  /// of its own.
   ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
             double apertureArea_m2, Shading shading, bool classes);
   /// Shades what `visibility` shows into `into`: channel groups first, then truth. Buffers, textures and state are bound;
@@ -67,6 +69,8 @@ class ScenePass {
   bool isPartial() const { return partial_; }
   /// The tables follow other temperatures than before.
   virtual void onTemperatures() {}
+  /// Of a view whose pixels may be shaded together, those that need not be shaded one by one. Of which it is true in some modes only.
+  virtual bool sharesShading() const { return false; }
   /// What a mode has to make ready for a view, its solid scene drawn.
   virtual void beforeShading(const View&, const WorldState&, const std::vector<char>&) {}
 
@@ -93,6 +97,7 @@ class ScenePass {
   struct Tile;
   void uploadLights(const WorldState& state);
   void clearShading();
+  const Texture2D* shadeTogether(const View& view);
   std::vector<Tile> tilesOf(std::span<const View> views, const WorldState& state, const std::vector<char>& drawn);
   void bindTile(std::size_t i) const;
   void drawTilePicture(const std::vector<Tile>& tiles, const WorldState& state);
@@ -103,12 +108,14 @@ class ScenePass {
 
   const Simulation& simulation_;
   const Plan& plan_;
+  const ShaderLibrary& library_;
   std::shared_ptr<const GpuScene> scene_;
   bool truth_;
   double apertureArea_m2_;
   std::optional<Plan> outline_;  ///< reference: the same plan at one wavelength
   RenderTables tables_;
   std::vector<SurfaceClass> surfaceClasses_;
+  std::optional<SharedShading> shared_;       ///< made when first needed
   std::optional<PixelClasses> pixelClasses_;  ///< made with the tables
   SurfaceBuffers solid_;
   SolidPass solids_;
@@ -116,7 +123,7 @@ class ScenePass {
   std::unique_ptr<AirOnGpu> air_;  ///< null: none, or not on the GPU
   Shading how_;
   std::unique_ptr<ShadowPass> shadows_;  ///< where the plan has them
-  Buffer nodes_, draws_, lights_, view_, tileViews_, tileDraws_;
+  Buffer nodes_, draws_, lights_, view_, pixelView_, tileViews_, tileDraws_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;
   bool partial_ = false;

@@ -19,6 +19,7 @@ std::vector<Camera> spectralPasses(const Camera& camera) {
   auto width = [&](int bin) { return bins.edge_um[static_cast<size_t>(bin) + 1] - bins.edge_um[static_cast<size_t>(bin)]; };
   Camera pass = camera;
   pass.truth = {};
+  pass.sharesShading = false;
   std::vector<Camera> passes;
   for (int first = 0, end = 0; first < bins.count(); first = end) {
     // The bins share their wavelengths (one loop in the shader), by width: the narrowest, first, gets `samples`, no other twice as many.

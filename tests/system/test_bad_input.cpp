@@ -259,8 +259,9 @@ std::vector<Bad> badScenarios() {
       {"ZeroFrames", "time: {frames: @@0}\n", {"frames is out of range (0)"}},
       {"NegativeFilm", film("{width: @@-640, height: 8, pitch: 20 um}"), {"width is out of range (-640)", "1 to 16384"}},
       {"FilmOfABillion", film("{width: 8, height: @@1000000000, pitch: 20 um}"), {"height is out of range (1000000000)"}},
+      {"SamplesInWords", film("{width: 8, height: 8, pitch: 20 um}", "@@many"), {"neither auto nor a whole number", "1 to 16"}},
       {"ABillionSamples", film("{width: 8, height: 8, pitch: 20 um}", "@@1000000000"), {"samples is out of range (1000000000)", "1 to 16"}},
-      {"CountBeyondAnyInteger", film("{width: 8, height: 8, pitch: 20 um}", "@@99999999999999999999"), {"not a whole number"}},
+      {"CountBeyondAnyInteger", film("{width: 8, height: 8, pitch: 20 um}", "@@99999999999999999999"), {"nor a whole number"}},
       {"TooManySubpixels", film("@@{width: 16384, height: 16384, pitch: 20 um}"), {"67 million"}},
       {"HostileSegments", shape("{model: sphere, radius: 1 m, segments: @@1000000}"), {"segments is out of range", "8 to 2048"}},
       // Names.

@@ -1,7 +1,9 @@
-// The class of what each pixel sees, as depth; 1 for what a view of one body leaves out.
+// The class of what each pixel sees, as depth; 1 for what a view of one body leaves out, and for what has been shaded with others.
 layout(binding = 0) uniform usampler2D visibility;
 //@use sim/radiometry/glsl/ground.glsl
 //@constants
+layout(binding = 19) uniform sampler2D bends;  // of pixels of grouped x grouped subpixels: 0 where all of these have been shaded
+uniform int grouped;  // 0: none
 //@use sim/render/glsl/ray.glsl
 
 void main() {
@@ -11,5 +13,6 @@ void main() {
     if (groundRange(view.up.w, sinElevation_, view.earth.x) < kFar) id.x = uint(max(GROUND, 0));
   }
   bool leftOut = view.earth.z > 0.0 && float(drawTexel(id.x, 3).w) != view.earth.z;
+  if (grouped > 0) leftOut = leftOut || texelFetch(bends, ivec2(gl_FragCoord.xy) / grouped, 0).x == 0.0;
   gl_FragDepth = leftOut ? 1.0 : drawMember(id.x, 5).y;
 }

@@ -1,0 +1,2 @@
+// Subpixels get what their pixel has.
+//@slot spread

@@ -1,0 +1,29 @@
+#pragma once
+// Pixels shaded once for all of their subpixels, where that is enough: what each sees near its middle is shaded first; then, subpixel by subpixel, those
+// pixels whose subpixels see different parts, or whose radiance bends from neighbour to neighbour, in some channel, by more than a share of itself.
+// Source: adaptive supersampling after Whitted 1980; the bend in place of the contrast, so that slopes, of which the middle is the mean, need nothing.
+#include "sim/gl/objects.hpp"
+
+namespace pitviper {
+
+class SharedShading {
+ public:
+  /// `groups`: channel groups of four; the target's colours beyond, truth, don't count. `threshold`: the share.
+  SharedShading(const ShaderLibrary& library, int groups, std::size_t colours, double threshold);
+  /// Of a picture of grouped x grouped subpixels a pixel.
+  void findMiddles(const RenderTarget& subpixels, RenderTarget& pixels, int grouped);
+  /// Which of the shaded pixels are not enough.
+  void findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const RenderTarget& shaded, int grouped);
+  /// 1 for these, as findBends() left it.
+  const Texture2D& bends() const { return bends_->colour(0); }
+  /// Gives subpixels what their pixels have.
+  void spread(const RenderTarget& shaded, RenderTarget& into, int grouped) const;
+
+ private:
+  int groups_;
+  double threshold_;
+  Program middles_, find_, spread_;
+  std::optional<RenderTarget> bends_;
+};
+
+}  // namespace pitviper

@@ -1,0 +1,69 @@
+// Subpixels shaded as one where neighbouring pixels are alike (samples: auto): against the same picture shaded subpixel by subpixel, and against a finer one.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/figures.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+namespace {
+
+std::string hills(const std::string& samples, const std::string& more = "") {
+  return "atmosphere: hazy_us76\nsun: {azimuth: 250 deg, elevation: 25 deg, temperature: 5772 K}\nmaterials: {soil: {components: [{reflection: lambertian, "
+         "reflectance: 0.3}]}, paint: {components: [{reflection: phong, reflectance: 0.3, exponent: 15}]}}\n"
+         "entities:\n- {name: ground, shape: {model: terrain, size: 8 km, relief: 500 m, columns: 60, terrain_seed: 3}, material: soil, temperature: 295 K}\n"
+         "- {name: jet, shape: {model: jet}, material: paint, temperature: 320 K, position: [100 m, 0 m, 700 m], heading: 60 deg}\n"
+         "cameras: [{name: c, film: {width: 96, height: 96}, field_of_view: 6 deg, aperture: 20 mm, small_bodies: 0, position: [-500 m, -600 m, 1000 m], "
+         "look_at: jet, "
+         "samples: " +
+         samples + ", spectral: {samples: 4}, channels: [{name: mw, response: {band: [3.6 um, 4.6 um]}}, {name: vis, response: {band: [0.5 um, 0.7 um]}}]}]\n" +
+         more;
+}
+
+double relative(float a, float b) { return std::abs(static_cast<double>(a) / static_cast<double>(b) - 1.0); }
+
+TEST(SharedShading, IsOnceOrFourTimes) {
+  // Sampled evenly: one plan for all. Without an accuracy pixels are held to 1 %.
+  const Frame shared = renderFrame(scene(hills("auto"))), once = renderFrame(scene(hills("1"))), four = renderFrame(scene(hills("2"))),
+              fine = renderFrame(scene(hills("8")));
+  size_t pixels = 0, alike = 0, asOnce = 0, farOff = 0;
+  for (const char* name : {"mw.radiance", "vis.radiance"}) {
+    const auto &s = layer(shared, name).pixels, &one = layer(once, name).pixels, &all = layer(four, name).pixels, &best = layer(fine, name).pixels;
+    double squares = 0.0, squaresOfFour = 0.0;
+    for (size_t p = 0; p < s.size(); ++p) {
+      ++pixels;
+      const bool lone = relative(s[p], one[p]) < 1e-4 && relative(s[p], all[p]) > 2e-7;
+      alike += lone || relative(s[p], all[p]) <= 2e-7;
+      asOnce += lone;
+      farOff += relative(s[p], all[p]) > 0.01;
+      squares += std::pow(relative(s[p], best[p]), 2.0);
+      squaresOfFour += std::pow(relative(all[p], best[p]), 2.0);
+    }
+    bound(std::string(name) + ", root mean square off 8 x 8 by that of 2 x 2", std::sqrt(squares / squaresOfFour), 1.05, "no worse than 2 x 2");
+  }
+  const double all = static_cast<double>(pixels);
+  std::printf("shaded once: %.1f %% of pixels\n", 100.0 * static_cast<double>(asOnce) / all);
+  EXPECT_GT(static_cast<double>(asOnce), 0.3 * all) << "else nothing is saved";
+  bound("pixels that are neither their middle nor the mean of their subpixels", 1.0 - static_cast<double>(alike) / all, 0.03,
+        "middles on a neighbouring facet: a subpixel's triangle stands for the pixel's");
+  bound("pixels off 2 x 2 by more than the accuracy", static_cast<double>(farOff) / all, 0.002,
+        "an edge between middles that bend less than twice the accuracy");
+}
+
+// What is even is what it is, and what is transparent is shaded as ever.
+TEST(SharedShading, ClosedFormAndBufferedMode) {
+  const std::string wall =
+      "entities: [{name: w, shape: {model: plate, width: 9 m, height: 9 m}, material: blackbody, temperature: 350 K}]\ncameras: [{name: c, film: {width: 16, "
+      "height: "
+      "16}, field_of_view: 1 deg, aperture: 20 mm, samples: auto, position: [20 m, 0 m, 0 m], look_at: w, channels: [{name: lw, response: {band: [8 um, 12 "
+      "um]}}]}]\n";
+  const Frame even = renderFrame(scene(wall));
+  figure("a wall shaded once a pixel [W/(m2 sr)]", at(layer(even, "lw.radiance"), even, 3, 12), blackBodyBand(8, 12, 350), 2e-6, "Planck, single precision");
+  const std::string mode = "render: {mode: buffered}\n";
+  EXPECT_EQ(layer(renderFrame(scene(hills("auto", mode))), "vis.radiance").pixels, layer(renderFrame(scene(hills("2", mode))), "vis.radiance").pixels);
+}
+
+}  // namespace
+}  // namespace pitviper::test
