@@ -173,13 +173,10 @@ const ParameterTable& material() {
       "material",
       "A surface: reflection components, an emission and a transmission; or a medium that fills a closed body, by `medium` (below). Also the form of "
       "materials/library/<name>.yaml.",
-      {
-          text("description", "what it is"),
-          text("source", "where the figures come from"),
-          list("components", "reflection components; none: black", 0, 64),
-          map("emission", "given emissivity; without it 1 - reflectance - transmittance (Kirchhoff)"),
-          map("transmission", "what is behind is seen through it; needs buffered mode"),
-      }};
+      {text("description", "what it is"), text("source", "where the figures come from"), list("components", "reflection components; none: black", 0, 64),
+       map("emission", "given emissivity; without it 1 - reflectance - transmittance (Kirchhoff)"),
+       map("transmission", "what is behind is seen through it; needs buffered mode"), text("medium", "what fills the body: then the keys below"),
+       any("absorption", "of a gas, see below"), any("radiance", "of a gas, see below")}};
   return t;
 }
 
@@ -315,7 +312,10 @@ const ParameterTable& camera() {
          required(within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3)),
          spectrum("optics", "", "transmission of the optics, 0..1; 0 outside its table, as a response is"),
          within(number("exposure", "s", "exposure time"), 1e-12, 1e6), withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
-         withDefault(any("samples", "n: n x n subpixels per pixel, 1 to 16; or auto: 2 x 2, shaded one by one only where they or neighbouring pixels differ (in direct mode)"), "1"),
+         withDefault(any("samples",
+                         "n: n x n subpixels per pixel, 1 to 16; or auto: 2 x 2, shaded one by one only where they see different parts or neighbouring pixels "
+                         "differ; what is narrower than a pixel within a part may be missed (direct mode)"),
+                     "1"),
          withDefault(within(number("small_bodies", "",
                                    "bodies spanning fewer pixels are drawn by a zoomed view of their own and keep their intensity at any range (0: draw all as "
                                    "they fall on pixels)"),

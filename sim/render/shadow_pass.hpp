@@ -42,9 +42,9 @@ class ShadowPass {
   /// A map's texels a side; of a mesh of fewer triangles than kDense rays cost less than a map.
   static constexpr int kTexels = 1024;
   static constexpr std::uint32_t kDense = 64;
-  /// A map costs as much as the rays of so many pixels, and a part of one more for each triangle (llvmpipe; found on first_light and sixteen).
   /// Clear facets are found once for bodies of so many triangles (0.2 to 0.4 us each).
   static constexpr std::size_t kFewestFacets = 1024, kMostFacets = 4'000'000;
+  /// A map costs as much as the rays of so many pixels, and a part of one more for each triangle (llvmpipe; found on first_light and sixteen).
   static constexpr double kRaysPerMap = 5000.0, kRaysPerTriangle = 0.3;
   /// Maps of 4 MiB each; further casters are left to rays.
   static constexpr int kMostMaps = 64;

@@ -19,7 +19,7 @@ bool bendsIn(sampler2D pixels, ivec2 p) {
     most = max(most, max(a, b));
     bend = max(bend, abs(a + b - 2.0 * here));
   }
-  return any(greaterThan(bend, threshold * most));
+  return !all(lessThanEqual(bend, threshold * most));
 }
 
 void main() {

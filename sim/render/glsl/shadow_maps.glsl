@@ -103,9 +103,11 @@ void prepareClear(vec3 toLight) {
 bool mayStop(int number, vec3 toLight) {
   vec4 ball = shadowRow(number, 9);
   vec3 to = ball.xyz - point_;
-  float along = dot(to, toLight), reach = ball.w * 1.0001;
+  // The difference itself, not that of its squares: of a caster far off these would have lost all digits of its size. With room for the rounding of both.
+  float along = dot(to, toLight), reach = ball.w * 1.0001 + 4.0e-6 * length(to);
+  vec3 beside = to - along * toLight;
   bool own = shadowTexel(number, 7).w >= 8u;
-  return !(own && isClear_) && along >= -reach && dot(to, to) - along * along <= reach * reach * 1.0001;
+  return !(own && isClear_) && along >= -reach && dot(beside, beside) <= reach * reach;
 }
 
 bool stops(int number, vec3 toLight, float farthest) {
