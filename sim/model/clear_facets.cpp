@@ -52,6 +52,9 @@ std::vector<Seen> seenFrom(const Mesh& mesh, const glm::dvec3& toLight) {
   return all;
 }
 
+/// So many pairs of triangles are looked at, at most: a second or so.
+constexpr double kMostPairs = 4e8;
+
 /// Triangles by square cells of the light's view, about as many as triangles.
 class Cells {
  public:
@@ -61,8 +64,19 @@ class Cells {
     for (const Seen& s : all) low_ = glm::min(low_, s.low), high = glm::max(high, s.high);
     across_ = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(all.size()))), 1, 4096);
     each_ = glm::max((high - low_) / static_cast<double>(across_), glm::dvec2(1e-300));
+    // Long triangles side by side lie over each other's cells by the thousand, and a cell may hold nearly all of them.
+    double entries = 0.0;
+    for (const Seen& s : all) {
+      const glm::dvec2 size = glm::dvec2(cellOf(s.high) - cellOf(s.low)) + 1.0;
+      entries += size.x * size.y;
+    }
+    if (entries > kMostPairs / 16.0) return;
     first_.assign(static_cast<size_t>(across_ * across_) + 1, 0);
     for (const Seen& s : all) eachCell(s, [&](size_t c) { ++first_[c + 1]; });
+    double pairs = 0.0;
+    for (std::uint32_t members : first_) pairs += static_cast<double>(members) * members;
+    if (pairs > kMostPairs) return;
+    affordable_ = true;
     for (size_t c = 1; c < first_.size(); ++c) first_[c] += first_[c - 1];
     members_.resize(first_.back());
     std::vector<std::uint32_t> at(first_.begin(), first_.end() - 1);
@@ -70,16 +84,19 @@ class Cells {
   }
   template <class Visit>
   void eachCell(const Seen& s, const Visit& visit) const {
-    const auto cell = [this](const glm::dvec2& p) { return glm::clamp(glm::ivec2((p - low_) / each_), glm::ivec2(0), glm::ivec2(across_ - 1)); };
-    const glm::ivec2 a = cell(s.low), b = cell(s.high);
+    const glm::ivec2 a = cellOf(s.low), b = cellOf(s.high);
     for (int y = a.y; y <= b.y; ++y)
       for (int x = a.x; x <= b.x; ++x) visit(static_cast<size_t>(y * across_ + x));
   }
+  /// False: there would be too much to look at.
+  bool affordable() const { return affordable_; }
   const std::uint32_t* begin(size_t cell) const { return members_.data() + first_[cell]; }
   const std::uint32_t* end(size_t cell) const { return members_.data() + first_[cell + 1]; }
 
  private:
+  glm::ivec2 cellOf(const glm::dvec2& p) const { return glm::clamp(glm::ivec2((p - low_) / each_), glm::ivec2(0), glm::ivec2(across_ - 1)); }
   int across_ = 1;
+  bool affordable_ = false;
   glm::dvec2 low_, each_;
   std::vector<std::uint32_t> first_, members_;
 };
@@ -106,6 +123,7 @@ std::vector<char> clearFacets(const Mesh& mesh, const glm::dvec3& toLight) {
   std::vector<char> clear(all.size(), 0);
   if (all.empty()) return clear;
   const Cells cells(all);
+  if (!cells.affordable()) return clear;
   constexpr size_t kEach = 4096;
   std::atomic<size_t> next{0};
   const auto work = [&] {

@@ -104,5 +104,19 @@ TEST(ClearFacets, UnderARoof) {
   EXPECT_EQ(std::count(below.begin(), below.end(), 1), 0) << "their backs";
 }
 
+// Meshes on which every pair would have to be looked at: nothing is known of them, at once.
+TEST(ClearFacets, FansAndSmallDetails) {
+  const Mesh fan = makeDisc(1.0, 200000);
+  const std::vector<char> ofFan = clearFacets(fan, {1.0, 0.0, 0.0});
+  EXPECT_EQ(std::count(ofFan.begin(), ofFan.end(), 1), 0);
+  Mesh detail = makeTerrain(TerrainShape{.size_m = 1.0, .columns = 200, .relief_m = 0.1, .seed = 2});
+  const Mesh far = makePlate(1.0, 1.0);
+  const auto base = static_cast<std::uint32_t>(detail.positions.size());
+  for (const auto& p : far.positions) detail.positions.push_back(p + glm::vec3(1e6f, 1e6f, 0.0f));
+  for (const auto& t : far.triangles) detail.triangles.push_back(t + base);
+  const std::vector<char> clear = clearFacets(detail, {0.0, 0.0, 1.0});
+  EXPECT_EQ(std::count(clear.begin(), clear.end(), 1), 0);
+}
+
 }  // namespace
 }  // namespace pitviper::test
