@@ -91,7 +91,7 @@ void Buffer::bindTexture(unsigned unit, int perTexel, bool whole) const {
     const std::size_t texels = bytes_ / sizeof(float) / static_cast<std::size_t>(perTexel);
     if (texels > static_cast<std::size_t>(limit))
       throw GlError("a table of " + std::to_string(texels) + " entries is asked for, this driver's buffer textures hold " + std::to_string(limit) +
-                    "; use fewer spectral samples or smaller material tables");
+                    "; use smaller meshes, textures or tables of materials, or fewer spectral samples");
     GLuint n = 0;
     glCreateTextures(GL_TEXTURE_BUFFER, 1, &n);
     texture_ = GlName<deleteTexture>(n);

@@ -20,8 +20,8 @@ constexpr std::size_t kAligned = 256;
 constexpr int kLightPlaces = 33;
 /// Tiles are drawn in pictures of so many pixels a side at most, or of one tile.
 constexpr int kTilePicture_px = 1024;
-/// Where an accuracy is asked for, pixels that bend by more than so many times it are shaded subpixel by subpixel: across an edge the middle is off by half
-/// of that at most.
+/// Where an accuracy is asked for, pixels that bend by more than so many times it are shaded subpixel by subpixel: an edge between two middles bends by as
+/// much as there is between its sides, and the middle is off by half of that at most.
 constexpr double kBendShare = 2.0, kUsualAccuracy = 0.01;
 
 /// The same plan at one wavelength: what the reference needs of tables is which part each draw is.

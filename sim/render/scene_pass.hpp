@@ -69,7 +69,7 @@ class ScenePass {
   bool isPartial() const { return partial_; }
   /// The tables follow other temperatures than before.
   virtual void onTemperatures() {}
-  /// Of a view whose pixels may be shaded together, those that need not be shaded one by one. Of which it is true in some modes only.
+  /// Whether this mode can shade several pixels as one where a view allows it (View::grouped).
   virtual bool sharesShading() const { return false; }
   /// What a mode has to make ready for a view, its solid scene drawn.
   virtual void beforeShading(const View&, const WorldState&, const std::vector<char>&) {}
