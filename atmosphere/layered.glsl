@@ -5,6 +5,7 @@
 layout(std140, binding = 3) uniform AirBlock {
   vec4 grid;       // root of the first elevation's sine, entries per unit of it; scale of ranges [m], entries per unit of ln(1 + range / scale)
   vec4 azimuth;    // first cosine of the azimuth to the sun times the sun's horizontal part, entries per unit of it; number of elevations, of ranges
+  vec4 more;       // number of azimuths
   vec4 heights;    // bottom [m], entries per root of a metre; sine of the first sun elevation, 1 / step to the next
   vec4 exponent[AIR_VECTORS];
   vec4 asymmetry[AIR_ASYMMETRIES];
@@ -195,8 +196,8 @@ vec4 airValue(AirPath p, int texel, int count, vec4 g) {
     if (AIR_AZIMUTHS > 1) {
       // The sun's height over far air depends on the azimuth it is seen under.
       float across = (c - sinElevation_ * dot(view.up.xyz, view.sun.xyz)) * inversesqrt(max(1.0 - sinElevation_ * sinElevation_, 1.0e-8));
-      float z = clamp((across - air.azimuth.x) * air.azimuth.y, 0.0, float(AIR_AZIMUTHS - 1));
-      int a = min(int(z), AIR_AZIMUTHS - 2);
+      float z = clamp((across - air.azimuth.x) * air.azimuth.y, 0.0, air.more.x - 1.0);
+      int a = min(int(z), int(air.more.x) - 2);
       molecules = mix(airPart(p, a, 1, texel, count), airPart(p, a + 1, 1, texel, count), z - float(a));
       haze = mix(airPart(p, a, 2, texel, count), airPart(p, a + 1, 2, texel, count), z - float(a));
     }

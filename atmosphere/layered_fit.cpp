@@ -43,7 +43,12 @@ struct Seen {
 class Reader {
  public:
   Reader(const Simulation& simulation, const Plan& plan, const AirRows& rows, double cosScatter)
-      : plan_(plan), rows_(rows), powers_(simulation.air->exponents()), cosScatter_(cosScatter) {}
+      : plan_(plan), rows_(rows), powers_(simulation.air->exponents()), cosScatter_(cosScatter), black_(rows.black()) {}
+  /// Of rows of two heights, mixed.
+  Reader(const Simulation& simulation, const Plan& plan, const AirRows& rows, const AirRows& others, double share, double cosScatter)
+      : Reader(simulation, plan, rows, cosScatter) {
+    for (size_t i = 0; i < black_.size(); ++i) black_[i] += share * (others.black()[i] - black_[i]);
+  }
 
   /// Between two entries, a share of the way to the second. `length_m`: of the air before it.
   Seen between(const AirRow& a, size_t columnA, const AirRow& b, size_t columnB, double length_m, double share = 0.5) const {
@@ -58,7 +63,7 @@ class Reader {
     for (size_t i = 0; i < plan_.nodes.size(); ++i) {
       double depth = 0.0;
       for (size_t k = 0; k < powers_.size(); ++k) depth += plan_.nodes[i].air.extinction[k] * u[k];
-      const double tau = std::exp(-depth), black = rows_.black()[i] * physics::oneMinusExp(depth);
+      const double tau = std::exp(-depth), black = black_[i] * physics::oneMinusExp(depth);
       for (size_t s = 0; s < slots; ++s) {
         seen.air[s] += plan_.weight[s][i] * black;
         seen.passed[s] += plan_.weight[s][i] * tau;
@@ -79,6 +84,7 @@ class Reader {
   const AirRows& rows_;
   std::span<const double> powers_;
   double cosScatter_;
+  std::vector<double> black_;
 };
 
 /// Those of rising ranges before an end, and the ends.
@@ -132,20 +138,27 @@ class LineLoss {
         ranges_(upTo(stations_, {own.end_m})),
         right_(reader_.at(own.rows.at(own.line, ranges_), ranges_.size() - 1, own.length_m)) {}
 
-  /// Between the line's own height and sun and those of the grid, which views share.
-  void ofSharing(const AirGrid& exact, const AirRows& any, std::vector<double>& into) const {
-    AirRows rows = any;
-    rows.begin(exact);
-    const auto alone = upTo(rows.stationsOf(own_.line), {own_.end_m});
-    const double air_m = own_.end_m >= physics::kFar ? physics::kFar : own_.end_m - alone.front();
-    if (air_m > 0.0) note(into, right_, Reader(simulation_, plan_, rows, rows.cosScatterOf(own_.line)).at(rows.at(own_.line, alone), alone.size() - 1, air_m));
+  /// Between the line's own height and sun and those of the tables, which views share.
+  void ofSharing(const AirGrids& tables, const AirGrid& exact, const AirRows& any, std::vector<double>& into) const {
+    AirRows right = any, below = any, above = any;
+    right.begin(exact), below.begin(tables.below), above.begin(tables.above);
+    const auto rangesOf = [&](const AirRows& rows) {
+      const auto all = rows.stationsOf(own_.line);
+      return upTo(all, {own_.length_m >= physics::kFar ? physics::kFar : all.front() + own_.length_m});
+    };
+    const auto here = rangesOf(right), low = rangesOf(below), high = rangesOf(above);
+    const double cosScatter = right.cosScatterOf(own_.line);
+    note(into,
+         Reader(simulation_, plan_, below, above, tables.share, cosScatter)
+             .between(below.at(own_.line, low), low.size() - 1, above.at(own_.line, high), high.size() - 1, own_.length_m, tables.share),
+         Reader(simulation_, plan_, right, cosScatter).at(right.at(own_.line, here), here.size() - 1, own_.length_m));
   }
 
   /// Half a step below and above.
-  void ofElevations(const AirTableSize& size, std::vector<double>& into) const {
+  void ofElevations(std::vector<double>& into) const {
     const AirGrid& grid = own_.grid;
     const double horizon = grid.horizon(simulation_.frame.earthRadius_m());
-    const double half = 0.5 * (spreadOf(grid.high) - spreadOf(grid.low)) / (size.elevations - 1), x = spreadOf(own_.line.sine);
+    const double half = 0.5 * grid.places.step, x = spreadOf(own_.line.sine);
     const auto beside = [&](double spread) {
       const double clamped = std::clamp(spread, -1.0, 1.0);
       return AirLine{clamped * std::abs(clamped), own_.line.across, false};
@@ -169,8 +182,8 @@ class LineLoss {
     const AirGrid& grid = own_.grid;
     const double entry = stations_.front();
     if (own_.length_m < physics::kFar) {
-      const double entryAt = std::log1p(own_.length_m / grid.scale_m) * grid.entriesPerLog();
-      const auto rangeAt = [&](double t) { return entry + grid.scale_m * std::expm1(t / grid.entriesPerLog()); };
+      const double entryAt = std::log1p(own_.length_m / grid.places.scale_m) * grid.entriesPerLog();
+      const auto rangeAt = [&](double t) { return entry + grid.places.scale_m * std::expm1(t / grid.entriesPerLog()); };
       // Before the first of them everything is as near to the eye as it is.
       const double share = std::min(0.5, entryAt), before = rangeAt(entryAt - share), after = rangeAt(entryAt - share + 1.0);
       const auto three = upTo(stations_, {before, own_.end_m, after});
@@ -180,18 +193,18 @@ class LineLoss {
         note(into, reader_.between(row, n - 3, row, n - 1, own_.length_m, share), reader_.at(row, n - 2, own_.length_m));
     }
     AirGrid fine = grid;
-    fine.ranges = kFiner * (grid.ranges - 1) + 1;
+    fine.places.ranges = kFiner * (grid.places.ranges - 1) + 1;
     const auto fineRanges = upTo(fine.rangesFrom(entry), {own_.end_m});
     note(into, right_, reader_.at(own_.rows.at(own_.line, fineRanges), fineRanges.size() - 1, own_.length_m));
   }
 
   /// Half a step to each side, or the view's middle.
-  void ofAzimuths(const AirTableSize& size, std::vector<double>& into) const {
+  void ofAzimuths(std::vector<double>& into) const {
     const AirGrid& grid = own_.grid;
     const size_t last = ranges_.size() - 1;
     const auto turned = [&](double across) { return own_.rows.at({own_.line.sine, across, false}, ranges_); };
-    if (size.azimuths == 1) return note(into, reader_.at(turned(grid.acrossLow), last, own_.length_m), right_);
-    const double step = 0.5 * (grid.acrossHigh - grid.acrossLow) / (size.azimuths - 1), most = std::sqrt(std::max(1.0 - grid.sunSine * grid.sunSine, 0.0));
+    if (grid.azimuths == 1) return note(into, reader_.at(turned(grid.firstAcross), last, own_.length_m), right_);
+    const double step = 0.5 * grid.places.stepAcross, most = std::sqrt(std::max(1.0 - grid.places.sunSine * grid.places.sunSine, 0.0));
     const double middle = std::clamp(own_.line.across, std::min(step - most, 0.0), std::max(most - step, 0.0));
     note(into, reader_.between(turned(std::max(middle - step, -most)), last, turned(std::min(middle + step, most)), last, own_.length_m),
          reader_.at(turned(middle), last, own_.length_m));
@@ -264,32 +277,36 @@ AirTableFit::AirTableFit(const Simulation& simulation, const Camera& camera, con
   }
 }
 
+View AirTableFit::viewOf(const Sample& sample) const {
+  View view = cameraView(camera_, *sample.state, camera_.samples);
+  view.position = sample.origin;  // limits move the eye
+  return view;
+}
+
 AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& size) const {
   const std::vector<double> none(floor_.size(), 0.0);
   Lost lost{none, none, none, none};
-  View view = cameraView(camera_, *sample.state, camera_.samples);
-  view.position = sample.origin;  // limits move the eye
-  const AirGrid grid = airGrid(simulation_, plan_, size, view, *sample.state);
+  const View view = viewOf(sample);
+  const AirGrids tables = airGrids(simulation_, plan_, size, view, *sample.state);
+  AirGrid grid = tables.below;
+  grid.places.height_m = grid.places.highest_m = simulation_.frame.height(view.position);
   AirRows rows = rows_;
   rows.begin(grid);
   const glm::dvec3 up = simulation_.frame.up(view.position);
   AirLine line{glm::dot(sample.direction, up), 0.0, false};
   if (plan_.terms.scatteredSun) {
     const glm::dvec3 level = sample.direction - line.sine * up, sun = simulation_.sun->toSun - glm::dot(simulation_.sun->toSun, up) * up;
-    if (glm::length(level) > 1e-6)
-      line.across = std::clamp(glm::dot(glm::normalize(level), sun), std::min(grid.viewLow, grid.acrossLow), std::max(grid.viewHigh, grid.acrossHigh));
+    if (glm::length(level) > 1e-6) line.across = std::clamp(glm::dot(glm::normalize(level), sun), grid.viewLow, grid.viewHigh);
   }
   const double length = sample.range_m >= physics::kFar ? physics::kFar : sample.range_m - rows.stationsOf(line).front();
   if (!(length > 0.0)) return lost;
   const LineLoss own(simulation_, plan_, {grid, rows, line, sample.range_m, length}, sample.radiance, floor_);
   AirGrid exact = grid;
-  exact.height_m = exact.highest_m = simulation_.frame.height(view.position);
-  if (exact.height_m == grid.height_m) exact.highest_m = grid.highest_m;
-  if (plan_.terms.scatteredSun) exact.sunSine = glm::dot(simulation_.sun->toSun, up);
-  if (!(exact == grid)) own.ofSharing(exact, rows_, lost.shared);
-  own.ofElevations(size, lost.elevation);
+  if (plan_.terms.scatteredSun) exact.places.sunSine = glm::dot(simulation_.sun->toSun, up);
+  own.ofSharing(tables, exact, rows_, lost.shared);
+  own.ofElevations(lost.elevation);
   own.ofRanges(lost.range);
-  if (plan_.terms.scatteredSun) own.ofAzimuths(size, lost.azimuth);
+  if (plan_.terms.scatteredSun) own.ofAzimuths(lost.azimuth);
   return lost;
 }
 
@@ -321,12 +338,18 @@ std::pair<AirTableSize, AirTableLoss> AirTableFit::within(double accuracy) const
   const double share = kShare * accuracy;
   AirTableSize size = kLeast;
   size.sunDepth = plan_.air.sunDepth;
+  for (const Sample& s : samples_) {
+    const auto [over, across] = widthsOf(simulation_, viewOf(s));
+    size.over = std::max(size.over, over), size.across = std::max(size.across, across);
+  }
   if (nearest_m_ < physics::kFar) size.near_m = kNear * nearest_m_;
   AirTableLoss loss = lossOf(size);
   for (int tries = 1; tries < kTries; ++tries) {
     AirTableSize next{finer(size.elevations, largestOf(loss.elevations), share, kMost.elevations),
                       finer(size.ranges, largestOf(loss.ranges), share, kMost.ranges),
                       finer(size.azimuths, largestOf(loss.azimuths), share, kMost.azimuths),
+                      size.over,
+                      size.across,
                       size.near_m,
                       size.same,
                       size.sunDepth};

@@ -41,6 +41,7 @@ class AirTableFit {
   struct Lost {
     std::vector<double> elevation, range, azimuth, shared;
   };
+  View viewOf(const Sample& sample) const;
   Lost lostOn(const Sample& sample, const AirTableSize& size) const;
 
   const Simulation& simulation_;

@@ -15,6 +15,12 @@ constexpr int kPieces = 3;
 /// What sines of elevation may differ by in single precision.
 constexpr double kRoom = 1e-6;
 
+/// Places on a lattice, told apart whatever they were counted from.
+std::pair<long long, long long> keyOf(double across, double sine) {
+  constexpr double kFine = 1099511627776.0;  // 2^40
+  return {std::llround(across * kFine), std::llround(sine * kFine)};
+}
+
 }  // namespace
 
 LayeredOnGpu::LayeredOnGpu(const Simulation& simulation, const Plan& plan, bool perChannel)
@@ -62,47 +68,88 @@ void LayeredOnGpu::addHeights(std::vector<float>& out) const {
   }
 }
 
-void LayeredOnGpu::update(const View& view, const WorldState& state) {
-  if (!first_ && view.position == position_ && holds(grid_, simulation_, plan_, view, state)) return;
-  const AirGrid grid = airGrid(simulation_, plan_, plan_.air, view, state);
-  first_ = false;
-  position_ = view.position;
-  if (grid == grid_) return;
-  grid_ = grid;
-  rows_.begin(grid_);
-  upload(fill());
+void LayeredOnGpu::begin() {
+  first_ = true;
+  for (Rows& r : kept_) {
+    std::erase_if(r.at, [](const auto& row) { return !row.second.used; });
+    for (auto& [where, row] : r.at) row.used = false;
+  }
+  kept_.remove_if([](const Rows& r) { return r.at.empty(); });
 }
 
-/// [azimuth][elevation]
-std::vector<AirRow> LayeredOnGpu::fill() const {
-  const double horizon = grid_.horizon(simulation_.frame.earthRadius_m()), lowest = grid_.lowestHorizon(simulation_.frame.earthRadius_m());
-  std::vector<AirRow> rows(static_cast<size_t>(grid_.azimuths * grid_.elevations));
+void LayeredOnGpu::update(const View& view, const WorldState& state) {
+  if (!first_ && view.position == position_ && holds(grids_.below, simulation_, plan_, view, state)) return;
+  first_ = false;
+  position_ = view.position;
+  const AirGrids grids = airGrids(simulation_, plan_, plan_.air, view, state);
+  const Rows& below = rowsOf(grids.below);
+  const Rows& above = grids.share > 0.0 ? rowsOf(grids.above) : below;
+  if (grids == grids_) return;
+  grids_ = grids;
+  upload(below, above);
+}
+
+LayeredOnGpu::Rows& LayeredOnGpu::rowsOf(const AirGrid& grid) {
+  auto known = std::find_if(kept_.begin(), kept_.end(), [&](const Rows& r) { return r.places == grid.places; });
+  if (known == kept_.end()) {
+    known = kept_.emplace(kept_.end());
+    known->places = grid.places;
+  }
+  fill(*known, grid);
+  return *known;
+}
+
+/// Those that it has not yet.
+void LayeredOnGpu::fill(Rows& rows, const AirGrid& grid) {
+  const double radius = simulation_.frame.earthRadius_m(), horizon = grid.horizon(radius), lowest = grid.lowestHorizon(radius);
+  std::vector<std::pair<AirLine, AirRow*>> missing;
+  for (int a = 0; a < grid.azimuths; ++a)
+    for (int e = 0; e < grid.elevations; ++e) {
+      AirLine line{grid.sineAt(e), grid.acrossAt(a), false};
+      const auto [at, fresh] = rows.at.try_emplace(keyOf(line.across, line.sine));
+      at->second.used = true;
+      if (!fresh) continue;
+      line.reachesSpace = !simulation_.ground || grid.sineAt(e + 1) >= lowest - kRoom;
+      line.meetsHorizon = simulation_.ground && line.sine < horizon && grid.sineAt(e + 1) >= horizon;
+      missing.emplace_back(line, &at->second.row);
+    }
+  if (missing.empty()) return;
+  rows_.begin(grid);
+  rows.black = rows_.black();
   std::atomic<size_t> next{0};
   auto work = [&] {
-    for (size_t n = next++; n < rows.size(); n = next++) {
-      const int e = static_cast<int>(n) % grid_.elevations;
-      AirLine line{grid_.sineAt(e), grid_.acrossAt(static_cast<int>(n) / grid_.elevations), false};
-      line.reachesSpace = !simulation_.ground || grid_.sineAt(std::min(e + 1, grid_.elevations - 1)) >= lowest - kRoom;
-      line.meetsHorizon = simulation_.ground && line.sine < horizon && grid_.sineAt(e + 1) >= horizon;
-      rows[n] = rows_.at(line);
-    }
+    for (size_t n = next++; n < missing.size(); n = next++) *missing[n].second = rows_.at(missing[n].first);
   };
   std::vector<std::future<void>> others;
   for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
   work();
   for (auto& o : others) o.get();
-  return rows;
 }
 
-void LayeredOnGpu::upload(const std::vector<AirRow>& rows) {
-  const auto columns = static_cast<size_t>(rows_.columns()), parts = static_cast<size_t>(rows_.parts()), values = static_cast<size_t>(rows_.values());
+namespace {
+
+template <class T>
+void mix(std::vector<T>& into, const std::vector<T>& a, const std::vector<T>& b, double share) {
+  const T of = static_cast<T>(share);
+  const size_t from = into.size();
+  into.resize(from + a.size());
+  for (size_t i = 0; i < a.size(); ++i) into[from + i] = a[i] + of * (b[i] - a[i]);
+}
+
+}  // namespace
+
+void LayeredOnGpu::upload(const Rows& below, const Rows& above) {
+  const AirGrid& grid = grids_.below;
   std::vector<float> amounts, radiance;
-  amounts.reserve(static_cast<size_t>(grid_.elevations) * rows.front().amounts.size() + heights_.size());
-  radiance.reserve(rows.size() * columns * parts * values);
-  // Amounts are those of the first azimuth: of all.
-  for (int e = 0; e < grid_.elevations; ++e)
-    amounts.insert(amounts.end(), rows[static_cast<size_t>(e)].amounts.begin(), rows[static_cast<size_t>(e)].amounts.end());
-  for (const AirRow& row : rows) radiance.insert(radiance.end(), row.radiance.begin(), row.radiance.end());
+  std::vector<double> black;
+  mix(black, below.black, above.black, grids_.share);
+  for (int a = 0; a < grid.azimuths; ++a)
+    for (int e = 0; e < grid.elevations; ++e) {
+      const RowKey at = keyOf(grid.acrossAt(a), grid.sineAt(e));
+      const AirRow &low = below.at.at(at).row, &high = above.at.at(at).row;
+      if (a == 0) mix(amounts, low.amounts, high.amounts, grids_.share);  // of all azimuths
+      mix(radiance, low.radiance, high.radiance, grids_.share);
+    }
   amounts.insert(amounts.end(), heights_.begin(), heights_.end());
   amounts_.upload(amounts);
   radiance_.upload(radiance);
@@ -111,17 +158,16 @@ void LayeredOnGpu::upload(const std::vector<AirRow>& rows) {
   auto put = [&block](std::initializer_list<double> v) {
     for (double x : v) block.push_back(static_cast<float>(x));
   };
-  const double from = spreadOf(grid_.low), width = spreadOf(grid_.high) - from;
-  put({from, (grid_.elevations - 1) / width, grid_.scale_m, grid_.entriesPerLog()});
-  put({grid_.acrossLow, grid_.azimuths > 1 ? (grid_.azimuths - 1) / std::max(grid_.acrossHigh - grid_.acrossLow, 1e-12) : 0.0,
-       static_cast<double>(grid_.elevations), static_cast<double>(grid_.ranges)});
+  put({grid.first, 1.0 / grid.places.step, grid.places.scale_m, grid.entriesPerLog()});
+  put({grid.firstAcross, grid.azimuths > 1 ? 1.0 / grid.places.stepAcross : 0.0, static_cast<double>(grid.elevations),
+       static_cast<double>(grid.places.ranges)});
+  put({static_cast<double>(grid.azimuths), 0.0, 0.0, 0.0});
   put({SunLegs::kBottom_m, (SunLegs::kHeights - 1) / std::sqrt(simulation_.air->top_m() - SunLegs::kBottom_m), plan_.sunLegs ? plan_.sunLegs->firstSine() : 0.0,
        plan_.sunLegs ? 1.0 / plan_.sunLegs->step() : 0.0});
   const auto powers = simulation_.air->exponents();
   const auto absorbers = static_cast<size_t>(4 * rows_.vectors());
   for (size_t k = 0; k < absorbers; ++k) put({k < powers.size() ? powers[k] : 1.0});
   for (double g : rows_.asymmetries()) put({g});
-  const auto& black = rows_.black();
   for (size_t i = 0; i < (plan_.nodes.size() + 3) / 4 * 4; ++i) put({i < black.size() ? black[i] : 0.0});
   block_.upload(block);
 }

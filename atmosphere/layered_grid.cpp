@@ -15,9 +15,14 @@ constexpr double kFirstSky_m = 100.0, kLastSky_m = 2e6;
 /// Part of a range to the next place on the way to space where there are so many ranges: at 1.6 um a black body of air halves within 12 K, some 2 km.
 constexpr double kSkyStep = 0.08;
 constexpr int kRanges = 97;
+/// Times the rows of the widest view that was planned for: one that sees still more has as many, farther apart.
+constexpr double kMostRows = 4.0;
 
-/// At 1 %: steps of heights [m] and of azimuths (cosines) that share tables. Haze thins by 0.1 % in a metre; near the ground no more than a part of the height.
-constexpr double kSameHeight_m = 0.5, kSameAzimuth = 0.02, kPartOfHeight = 0.05, kLowest_m = 0.02;
+/// At 1 %: a step of azimuths (cosines) that share tables.
+constexpr double kSameAzimuth = 0.02;
+/// And between two heights whose tables are mixed [m]: of air that thins by e in a kilometre their mean is off by 1e-3. Near the ground, where the way to the
+/// horizon changes with it, no more than a part of the height and a little.
+constexpr double kHeightStep_m = 64.0, kPartOfHeight = 0.25, kLowest_m = 2.0;
 /// Part of the accuracy that the sun's elevation may take between two of its steps.
 constexpr double kSunShare = 0.03;
 /// What a view sees is widened to whole steps of about so much of itself.
@@ -118,20 +123,20 @@ double sunStep(double accuracy, double depth, double sine) { return powerOfTwoBe
 double spreadOf(double sine) { return std::copysign(std::sqrt(std::abs(sine)), sine); }
 
 double AirGrid::sineAt(int elevation) const {
-  const double x = spreadOf(low) + (spreadOf(high) - spreadOf(low)) * elevation / (elevations - 1);
+  const double x = std::clamp(first + places.step * elevation, -1.0, 1.0);
   return x * std::abs(x);
 }
 
-double AirGrid::acrossAt(int azimuth) const { return azimuths == 1 ? acrossLow : acrossLow + (acrossHigh - acrossLow) * azimuth / (azimuths - 1); }
+double AirGrid::acrossAt(int azimuth) const { return firstAcross + places.stepAcross * azimuth; }
 
-double AirGrid::entriesPerLog() const { return (ranges - 1) / std::log1p(farthest_m / scale_m); }
+double AirGrid::entriesPerLog() const { return (places.ranges - 1) / std::log1p(places.farthest_m / places.scale_m); }
 
 std::vector<double> AirGrid::rangesFrom(double entry_m) const {
   std::vector<double> all;
-  for (int r = 0; r < ranges; ++r) all.push_back(entry_m + scale_m * std::expm1(r / entriesPerLog()));
+  for (int r = 0; r < places.ranges; ++r) all.push_back(entry_m + places.scale_m * std::expm1(r / entriesPerLog()));
   // Beyond the scene, as far as space: the sky's emission needs places there, the table doesn't.
-  const double step = 1.0 + kSkyStep * kRanges / ranges;
-  for (double r = step * std::max(farthest_m, kFirstSky_m); r < kLastSky_m; r *= step) all.push_back(entry_m + r);
+  const double step = 1.0 + kSkyStep * kRanges / places.ranges;
+  for (double r = step * std::max(places.farthest_m, kFirstSky_m); r < kLastSky_m; r *= step) all.push_back(entry_m + r);
   all.push_back(physics::kFar);
   return all;
 }
@@ -145,9 +150,9 @@ double horizonFrom(double height_m, double earthRadius_m) {
 
 }  // namespace
 
-double AirGrid::horizon(double earthRadius_m) const { return horizonFrom(height_m, earthRadius_m); }
+double AirGrid::horizon(double earthRadius_m) const { return horizonFrom(places.height_m, earthRadius_m); }
 
-double AirGrid::lowestHorizon(double earthRadius_m) const { return horizonFrom(highest_m, earthRadius_m); }
+double AirGrid::lowestHorizon(double earthRadius_m) const { return horizonFrom(places.highest_m, earthRadius_m); }
 
 std::vector<double> depthsToSun(const Simulation& simulation, const Plan& plan) {
   const double sine = std::max(glm::dot(simulation.sun->toSun, simulation.frame.up(glm::dvec3(0.0))), kLowestSun);
@@ -164,40 +169,108 @@ std::vector<double> depthsToSun(const Simulation& simulation, const Plan& plan) 
   return sum;
 }
 
-AirGrid airGrid(const Simulation& simulation, const Plan& plan, const AirTableSize& size, const View& view, const WorldState& state) {
+namespace {
+
+/// Heights that have tables: closer together near the ground, then evenly. Both sides of the ground are alike.
+class HeightSteps {
+ public:
+  /// Mixing leaves an error that grows with the step's square.
+  explicit HeightSteps(double share) : part_(std::sqrt(share) * kPartOfHeight), even_m_(std::sqrt(share) * kHeightStep_m) {}
+  double stepOf(double height_m) const { return std::copysign(countTo(std::abs(height_m)), height_m); }
+  double heightAt(double step) const {
+    const double s = std::abs(step), turn = countTo(turn_m());
+    return std::copysign(s <= turn ? kLowest_m * std::expm1(s * part_) : turn_m() + (s - turn) * even_m_, step);
+  }
+
+ private:
+  double turn_m() const { return std::max(kHeightStep_m / kPartOfHeight - kLowest_m, 0.0); }
+  double countTo(double above_m) const {
+    const double low = std::min(above_m, turn_m());
+    return std::log1p(low / kLowest_m) / part_ + (above_m - low) / even_m_;
+  }
+  double part_, even_m_;
+};
+
+/// Places from `first` on, `count` of them.
+struct Lattice {
+  double first, step;
+  int count;
+};
+
+/// Those that hold a range. At fixed places where so many are to cover `over`: what a view that turns sees anew are a few more. One that sees much more than
+/// was planned for has as many, farther apart.
+Lattice latticeOf(double low, double high, int count, double over) {
+  const Lattice own{low, (high - low) / (count - 1), count};
+  if (!(over > 0.0)) return own;
+  const double step = over / (count - 1), from = std::floor(low / step), to = std::max(std::ceil(high / step), from + 1.0);
+  if (to - from + 1.0 > kMostRows * count) return own;
+  return {from * step, step, static_cast<int>(to - from) + 1};
+}
+
+/// The grid of a view but for its height.
+AirGrid windowOf(const Simulation& simulation, const Plan& plan, const AirTableSize& size, const View& view, const WorldState& state) {
   const glm::dvec3 up = simulation.frame.up(view.position);
-  const double share = size.same * plan.accuracy / 0.01, height = simulation.frame.height(view.position);
+  const double share = size.same * plan.accuracy / 0.01;
   AirGrid g;
-  g.elevations = size.elevations;
-  g.ranges = size.ranges;
-  const double step = share > 0.0 ? powerOfTwoBelow(share * std::min(kSameHeight_m, kPartOfHeight * std::max(std::abs(height), kLowest_m))) : 0.0;
-  g.height_m = snapped(height, step);
-  g.highest_m = g.height_m + 0.5 * step;
-  const auto [low, high] = elevationsIn(view, up);
-  std::tie(g.low, g.high) = widened(low, high, -1.0, 1.0);
-  g.farthest_m = std::exp2(0.5 * std::ceil(2.0 * std::log2(farthestIn(simulation, view, state))));
-  g.scale_m = size.near_m > 0.0 ? std::min(size.near_m, kScale * g.farthest_m) : kScale * g.farthest_m;
+  g.places.ranges = size.ranges;
+  const auto seen = elevationsIn(view, up);
+  std::tie(g.low, g.high) = widened(seen.first, seen.second, -1.0, 1.0);
+  const Lattice rows = latticeOf(spreadOf(g.low), spreadOf(g.high), size.elevations, size.over);
+  g.first = rows.first, g.places.step = rows.step, g.elevations = rows.count;
+  g.places.farthest_m = std::exp2(0.5 * std::ceil(2.0 * std::log2(farthestIn(simulation, view, state))));
+  g.places.scale_m = size.near_m > 0.0 ? std::min(size.near_m, kScale * g.places.farthest_m) : kScale * g.places.farthest_m;
   if (!plan.terms.scatteredSun) return g;
   const double sine = glm::dot(simulation.sun->toSun, up);
-  g.sunSine = share > 0.0 ? snapped(sine, sunStep(size.same * plan.accuracy, size.sunDepth, sine)) : sine;
+  g.places.sunSine = share > 0.0 ? snapped(sine, sunStep(size.same * plan.accuracy, size.sunDepth, sine)) : sine;
   const Across across(view, up, simulation.sun->toSun);
-  const double most = std::sqrt(std::max(1.0 - g.sunSine * g.sunSine, 0.0));
+  const double most = std::sqrt(std::max(1.0 - g.places.sunSine * g.places.sunSine, 0.0));
   const auto [viewLow, viewHigh] = across.all();
   // No farther than towards the sun and away from it: beyond, scattering angles have no cosine.
   std::tie(g.viewLow, g.viewHigh) = widened(viewLow, viewHigh, -most, most);
-  g.azimuths = size.azimuths;
-  if (g.azimuths > 1) g.acrossLow = g.viewLow, g.acrossHigh = g.viewHigh;
-  else g.acrossLow = g.acrossHigh = std::clamp(snapped(across.of(axisOf(view)), share * kSameAzimuth), -most, most);
+  if (size.azimuths > 1) {
+    const Lattice azimuths = latticeOf(g.viewLow, g.viewHigh, size.azimuths, size.across);
+    g.firstAcross = azimuths.first, g.places.stepAcross = azimuths.step, g.azimuths = azimuths.count;
+    return g;
+  }
+  g.firstAcross =
+      std::clamp(share > 0.0 ? snapped(across.of(axisOf(view)), std::max(share * kSameAzimuth, size.across)) : across.of(axisOf(view)), -most, most);
   return g;
+}
+
+}  // namespace
+
+std::pair<double, double> widthsOf(const Simulation& simulation, const View& view) {
+  const glm::dvec3 up = simulation.frame.up(view.position);
+  const auto [low, high] = elevationsIn(view, up);
+  const auto [from, to] = simulation.sun ? Across(view, up, simulation.sun->toSun).all() : std::pair(0.0, 0.0);
+  return {spreadOf(high) - spreadOf(low), to - from};
+}
+
+AirGrids airGrids(const Simulation& simulation, const Plan& plan, const AirTableSize& size, const View& view, const WorldState& state) {
+  AirGrids grids;
+  grids.below = grids.above = windowOf(simulation, plan, size, view, state);
+  AirPlaces &below = grids.below.places, &above = grids.above.places;
+  const double height = simulation.frame.height(view.position), share = size.same * plan.accuracy / 0.01;
+  if (!(share > 0.0)) {
+    below.height_m = below.highest_m = above.height_m = above.highest_m = height;
+    return grids;
+  }
+  const HeightSteps steps(share);
+  const double at = steps.stepOf(height), low = std::floor(at);
+  below.height_m = steps.heightAt(low);
+  below.highest_m = above.height_m = steps.heightAt(low + 1.0);
+  above.highest_m = steps.heightAt(low + 2.0);
+  grids.share = std::clamp((height - below.height_m) / (above.height_m - below.height_m), 0.0, 1.0);
+  return grids;
 }
 
 bool holds(const AirGrid& grid, const Simulation& simulation, const Plan& plan, const View& narrower, const WorldState& state) {
   const glm::dvec3 up = simulation.frame.up(narrower.position);
   const auto [low, high] = elevationsIn(narrower, up);
-  if (low < grid.low || high > grid.high || farthestIn(simulation, narrower, state) > grid.farthest_m) return false;
+  if (low < grid.low || high > grid.high || farthestIn(simulation, narrower, state) > grid.places.farthest_m) return false;
   if (!plan.terms.scatteredSun) return true;
   const auto [acrossLow, acrossHigh] = Across(narrower, up, simulation.sun->toSun).all();
-  const double most = std::sqrt(std::max(1.0 - grid.sunSine * grid.sunSine, 0.0));
+  const double most = std::sqrt(std::max(1.0 - grid.places.sunSine * grid.places.sunSine, 0.0));
   return std::max(acrossLow, -most) >= grid.viewLow && std::min(acrossHigh, most) <= grid.viewHigh;
 }
 

@@ -27,7 +27,7 @@ AirRows::AirRows(const Simulation& simulation, const Plan& plan, bool perChannel
 
 void AirRows::begin(const AirGrid& grid) {
   grid_ = grid;
-  const AirRay here{std::min(grid_.height_m, simulation_.air->top_m()), 1.0, simulation_.frame.earthRadius_m()};
+  const AirRay here{std::min(grid_.places.height_m, simulation_.air->top_m()), 1.0, simulation_.frame.earthRadius_m()};
   const double temperature_K = simulation_.air->stationsAt(here, std::array{0.0}).front().temperature_K;
   black_ = air_.planck(temperature_K);
 }
@@ -54,23 +54,23 @@ std::vector<double> AirRows::asymmetriesOf() const {
 }
 
 double AirRows::entryOf(double sine) const {
-  const double height = grid_.height_m, top = simulation_.air->top_m(), radius = simulation_.frame.earthRadius_m();
+  const double height = grid_.places.height_m, top = simulation_.air->top_m(), radius = simulation_.frame.earthRadius_m();
   if (!(height > top)) return 0.0;
   const double b = (radius + height) * sine, q2 = (top - height) * (2.0 * radius + top + height), root = b * b + q2;
   return std::min(root <= 0.0 || b >= 0.0 ? physics::kFar : -q2 / (std::sqrt(root) - b), 1e12);
 }
 
 double AirRows::cosScatterOf(const AirLine& line) const {
-  return line.sine * grid_.sunSine + std::sqrt(std::max(1.0 - line.sine * line.sine, 0.0)) * line.across;
+  return line.sine * grid_.places.sunSine + std::sqrt(std::max(1.0 - line.sine * line.sine, 0.0)) * line.across;
 }
 
 AirRow AirRows::at(const AirLine& line) const {
   std::vector<double> places = stationsOf(line);
-  if (!line.reachesSpace) places.erase(places.begin() + grid_.ranges, places.end() - 1);
+  if (!line.reachesSpace) places.erase(places.begin() + grid_.places.ranges, places.end() - 1);
   AirRow row = at(line, places);
   // The places between the scene and space have no entries.
   const auto keep = [&](std::vector<float>& all, size_t each) {
-    const auto ranges = static_cast<std::ptrdiff_t>(static_cast<size_t>(grid_.ranges) * each);
+    const auto ranges = static_cast<std::ptrdiff_t>(static_cast<size_t>(grid_.places.ranges) * each);
     all.erase(all.begin() + ranges, all.end() - static_cast<std::ptrdiff_t>(each));
   };
   keep(row.amounts, static_cast<size_t>(4 * vectors_));
@@ -91,10 +91,10 @@ void endOn(NodeRadiance& line, const NodeRadiance& horizon, size_t nodes) {
 
 AirRow AirRows::at(const AirLine& asked, std::span<const double> ranges) const {
   const Atmosphere& path = *simulation_.air;
-  const double height = grid_.height_m, radius = simulation_.frame.earthRadius_m();
+  const double height = grid_.places.height_m, radius = simulation_.frame.earthRadius_m();
   const auto lineAt = [&](double sine) {
     RaySun sun;
-    if (plan_.terms.scatteredSun) sun = {grid_.sunSine, cosScatterOf({sine, asked.across, false})};
+    if (plan_.terms.scatteredSun) sun = {grid_.places.sunSine, cosScatterOf({sine, asked.across, false})};
     const AirRay along{height, sine, radius};
     return SunlitAir(path, along, path.stationsAt(along, ranges), plan_.terms.scatteredSun ? plan_.sunLegs.get() : nullptr, sun);
   };
@@ -113,7 +113,8 @@ AirRow AirRows::at(const AirLine& asked, std::span<const double> ranges) const {
                                               : line.stations[r].amounts;
     for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) row.amounts.push_back(static_cast<float>(logOf(a.amount[k] / length_km)));
   }
-  writeRadiance(sent, cosScatterOf(asked), row);
+  // Places of a lattice may lie beyond the sun's own azimuth, where angles have no cosine.
+  writeRadiance(sent, std::clamp(cosScatterOf(asked), -1.0, 1.0), row);
   return row;
 }
 

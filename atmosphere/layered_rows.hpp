@@ -11,7 +11,7 @@ namespace pitviper {
 /// A line of sight of a table.
 struct AirLine {
   double sine = 0.0;          ///< of its elevation
-  double across = 0.0;        ///< as AirGrid::acrossLow
+  double across = 0.0;        ///< as AirGrid::firstAcross
   bool meetsHorizon = false;  ///< the next row above is over the horizon: towards space it has what the horizon has
   bool reachesSpace = true;   ///< false: nothing is asked of it beyond the grid's ranges, its last entry says nothing
 };
@@ -39,7 +39,7 @@ class AirRows {
   int vectors() const { return vectors_; }  ///< four absorbers each
   int values() const { return values_; }
   int parts() const { return parts_; }
-  int columns() const { return grid_.ranges + 1; }
+  int columns() const { return grid_.places.ranges + 1; }
   /// Per node: radiance of a black body of the air's temperature at the camera.
   const std::vector<double>& black() const { return black_; }
   /// Of haze, per value; padded to vec4.

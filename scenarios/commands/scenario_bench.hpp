@@ -9,12 +9,13 @@ namespace pitviper {
 struct ScenarioRate {
   std::string camera;
   int nodes = 0, channels = 0, frames = 0;
-  double seconds = 0.0;                      ///< of a frame: median
+  double seconds = 0.0;                      ///< of a frame: mean
+  double slow = 0.0;                         ///< 95 % of frames take no longer [s]
   double yardstickSeconds = 0.0;             ///< of the yardstick's frame between
   std::map<std::string, double> parts = {};  ///< seconds of each part of a frame
 };
 
-/// Every camera over the scenario's time, at least one round of frames each.
+/// Every camera over the scenario's frames one after the other, from the first again where there are not so many.
 std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes, int frames);
 
 std::string rateTable(const std::vector<ScenarioRate>& rates);

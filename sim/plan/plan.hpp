@@ -44,6 +44,8 @@ struct PredictedParts {
 struct AirTableSize {
   int elevations = 0, ranges = 0;
   int azimuths = 1;        ///< of scattered sunlight
+  double over = 0.0;       ///< so many elevations cover so much of the signed root of their sine, at places that stay; 0: what a view sees
+  double across = 0.0;     ///< and so many azimuths so much of their cosine times the sun's horizontal part
   double near_m = 0.0;     ///< ranges lie evenly up to about here, beyond in their logarithm; 0 or beyond a thousandth of the farthest: up to there
   double same = 1.0;       ///< views share tables whose heights and suns lie within this of the usual steps (air_grid.cpp)
   double sunDepth = 10.0;  ///< of the air on the way from the ground to the sun, at most of the channels, for the sunlight that gets through

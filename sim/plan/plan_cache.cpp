@@ -119,7 +119,7 @@ std::string writePlanned(const Plan& plan) {
   w.all(plan.predictedError);
   for (const PredictedParts& p : plan.parts) w.all(std::array{p.wavelengths, p.tables, p.dropped, p.precision, p.extremes});
   for (int n : {plan.air.elevations, plan.air.ranges, plan.air.azimuths}) w.put(static_cast<size_t>(n));
-  w.put(plan.air.near_m), w.put(plan.air.same), w.put(plan.air.sunDepth);
+  w.put(plan.air.over), w.put(plan.air.across), w.put(plan.air.near_m), w.put(plan.air.same), w.put(plan.air.sunDepth);
   w.put(static_cast<size_t>(plan.lines));
   w.all(plan.fineCount);
   w.put(plan.shares.size());
@@ -168,7 +168,7 @@ bool readPlanned(const std::string& text, Plan& into) {
     plan.parts.push_back({p[0], p[1], p[2], p[3], p[4]});
   }
   for (int* n : {&plan.air.elevations, &plan.air.ranges, &plan.air.azimuths}) *n = static_cast<int>(r.count(kMostEntries));
-  plan.air.near_m = r.number(), plan.air.same = r.number(), plan.air.sunDepth = r.number();
+  plan.air.over = r.number(), plan.air.across = r.number(), plan.air.near_m = r.number(), plan.air.same = r.number(), plan.air.sunDepth = r.number();
   plan.lines = static_cast<int>(r.count(kMostMembers));
   plan.fineCount.clear();
   for (double n : r.all(kMostSlots)) plan.fineCount.push_back(static_cast<int>(n));

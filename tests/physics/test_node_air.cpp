@@ -98,11 +98,13 @@ TEST(NodeAir, LowestHorizonOfAGrid) {
   for (double height = 0.03; height < 9000.0; height *= 1.037) {
     View view = cameraView(sim.cameras[0], state, 1);
     view.position.z = height;
-    const AirGrid grid = airGrid(sim, plan, {65, 97}, view, state);
-    AirGrid own = grid;
-    own.height_m = sim.frame.height(view.position);
-    EXPECT_LE(grid.lowestHorizon(radius), own.horizon(radius)) << height;
-    below += own.horizon(radius) < grid.horizon(radius);
+    const AirGrids grids = airGrids(sim, plan, {65, 97}, view, state);
+    AirGrid own = grids.below;
+    own.places.height_m = sim.frame.height(view.position);
+    EXPECT_LE(grids.below.places.height_m, own.places.height_m * (1.0 + 1e-12));
+    EXPECT_GE(grids.above.places.height_m, own.places.height_m * (1.0 - 1e-12));
+    for (const AirGrid& grid : {grids.below, grids.above}) EXPECT_LE(grid.lowestHorizon(radius), own.horizon(radius)) << height;
+    below += own.horizon(radius) < grids.below.horizon(radius);
   }
   EXPECT_GT(below, 50);
 }
