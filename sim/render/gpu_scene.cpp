@@ -24,28 +24,6 @@ BodyBox boxOf(const Mesh& mesh, const BodyForm& form) {
   return {box.low - margin, box.high + margin};
 }
 
-/// Triangles in a run, and of a mesh that is worth cutting up.
-constexpr std::uint32_t kRun = 512, kWorthRuns = 8192;
-
-std::vector<MeshRun> runsOf(const Mesh& mesh) {
-  std::vector<MeshRun> runs;
-  if (mesh.triangles.size() < kWorthRuns) return runs;
-  for (const MeshPart& part : mesh.parts)
-    for (std::uint32_t done = 0; done < part.triangleCount; done += kRun) {
-      MeshRun run{part.firstTriangle + done, std::min(kRun, part.triangleCount - done), {}, 0.0};
-      glm::dvec3 low(INFINITY), high(-INFINITY);
-      for (std::uint32_t t = run.first; t < run.first + run.count; ++t)
-        for (int k = 0; k < 3; ++k) {
-          const glm::dvec3 p(mesh.positions[mesh.triangles[t][k]]);
-          low = glm::min(low, p), high = glm::max(high, p);
-        }
-      run.centre = 0.5 * (low + high);
-      run.radius_m = 0.5 * glm::length(high - low) * (1.0 + 1e-9);
-      runs.push_back(run);
-    }
-  return runs;
-}
-
 /// Mirrors sim/render/glsl/drawn_vertices.glsl.
 struct DrawnVertex {
   glm::vec3 position;
@@ -53,11 +31,12 @@ struct DrawnVertex {
 };
 
 /// Corners in turn so that the last of each triangle is a vertex that no other has for its last: its own, or a copy.
-void appendDrawn(const Mesh& mesh, std::uint32_t first, std::vector<DrawnVertex>& drawn, std::vector<std::uint32_t>& corners) {
+void appendDrawn(const Mesh& mesh, const std::vector<std::uint32_t>& order, std::uint32_t first, std::vector<DrawnVertex>& drawn,
+                 std::vector<std::uint32_t>& corners) {
   const auto base = static_cast<std::uint32_t>(drawn.size());
   for (const glm::vec3& p : mesh.positions) drawn.push_back({p, 0});
   std::vector<char> taken(mesh.positions.size(), 0);
-  for (std::uint32_t n = 0; n < mesh.triangles.size(); ++n) {
+  for (std::uint32_t n : order) {
     const glm::uvec3& t = mesh.triangles[n];
     int last = 2;
     while (last >= 0 && taken[t[last]]) --last;
@@ -80,15 +59,15 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
   std::vector<std::uint32_t> indices, corners;
   std::vector<DrawnVertex> drawn;
   std::map<const Mesh*, std::uint32_t> placed;
-  std::map<const Mesh*, std::shared_ptr<const std::vector<MeshRun>>> runs;
+  std::map<const Mesh*, std::shared_ptr<const ClusteredMesh>> clustered;
   for (const auto& entity : sim.entities) {
     const Mesh& mesh = *entity.mesh;
     const auto [at, fresh] = placed.try_emplace(&mesh, static_cast<std::uint32_t>(indices.size() / 3));
     firstTriangle_.push_back(at->second);
     boxes_.push_back(boxOf(mesh, entity.form));
-    auto& cut = runs[&mesh];
-    if (!cut) cut = std::make_shared<const std::vector<MeshRun>>(runsOf(mesh));
-    runs_.push_back(cut);
+    auto& own = clustered[&mesh];
+    if (!own) own = std::make_shared<const ClusteredMesh>(clustersOf(mesh));
+    clustered_.push_back(own);
     if (!fresh) continue;
     const auto base = static_cast<std::uint32_t>(vertices.size() / 2);
     for (size_t i = 0; i < mesh.positions.size(); ++i) {
@@ -97,7 +76,7 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
     }
     for (const auto& t : mesh.triangles)
       for (int k = 0; k < 3; ++k) indices.push_back(base + t[k]);
-    appendDrawn(mesh, at->second, drawn, corners);
+    appendDrawn(mesh, own->order, at->second, drawn, corners);
   }
   drawn_.upload(drawn);
   corners_.upload(corners);

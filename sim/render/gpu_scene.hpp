@@ -5,19 +5,13 @@
 
 #include "sim/gl/objects.hpp"
 #include "sim/model/simulation.hpp"
+#include "sim/render/mesh_clusters.hpp"
 
 namespace pitviper {
 
 /// In body axes [m].
 struct BodyBox {
   glm::dvec3 low{0.0}, high{0.0};
-};
-
-/// Neighbouring triangles of a large mesh, and a sphere about them (body axes) [m].
-struct MeshRun {
-  std::uint32_t first = 0, count = 0;  ///< of the mesh
-  glm::dvec3 centre{0.0};
-  double radius_m = 0.0;
 };
 
 class ShadowTrees;
@@ -31,8 +25,8 @@ class GpuScene {
   /// Around the entity's mesh and true form, a little larger, so that no line of sight through it slips past.
   const BodyBox& box(int entity) const { return boxes_[static_cast<size_t>(entity)]; }
 
-  /// Parts of an entity's mesh that may be out of a view each by itself; none where the mesh is small.
-  const std::vector<MeshRun>& runs(int entity) const { return *runs_[static_cast<size_t>(entity)]; }
+  /// Of an entity's mesh as it is drawn; none where it is small.
+  const std::vector<MeshCluster>& clusters(int entity) const { return clustered_[static_cast<size_t>(entity)]->clusters; }
 
   /// Of the simulation it was made for; made when first asked for.
   std::shared_ptr<const ShadowTrees> shadowTrees(const Simulation& simulation) const;
@@ -43,7 +37,7 @@ class GpuScene {
   VertexArray vertexArray_;
   std::vector<std::uint32_t> firstTriangle_;
   std::vector<BodyBox> boxes_;
-  std::vector<std::shared_ptr<const std::vector<MeshRun>>> runs_;  ///< per entity, shared by those with the same mesh
+  std::vector<std::shared_ptr<const ClusteredMesh>> clustered_;  ///< per entity, shared by those with the same mesh
   mutable std::shared_ptr<const ShadowTrees> shadowTrees_;
 };
 
