@@ -1,5 +1,7 @@
 #include "atmosphere/coefficients_gpu.hpp"
 
+#include <algorithm>
+
 #include "sim/gl/context.hpp"
 
 namespace pitviper {
@@ -9,9 +11,18 @@ constexpr int kBinding = 4;
 
 }  // namespace
 
-CoefficientsOnGpu::CoefficientsOnGpu(const Plan& plan, int vectors) : vectors_(vectors) {
-  for (const SpectralNode& n : plan.nodes)
-    for (size_t k = 0; k < static_cast<size_t>(4 * vectors); ++k) numbers_.push_back(static_cast<float>(n.air.extinction[k]));
+CoefficientsOnGpu::CoefficientsOnGpu(const Plan& plan, int vectors, const std::optional<AirAmounts>& most) : vectors_(vectors) {
+  for (const SpectralNode& n : plan.nodes) {
+    const size_t from = numbers_.size(), count = static_cast<size_t>(4 * vectors);
+    for (size_t k = 0; k < count; ++k) numbers_.push_back(static_cast<float>(n.air.extinction[k]));
+    if (!most) continue;
+    std::vector<std::pair<double, size_t>> depths;
+    for (size_t k = 0; k < count; ++k) depths.emplace_back(n.air.extinction[k] * most->amount[k], k);
+    std::sort(depths.begin(), depths.end());
+    double left = kThinShare * plan.accuracy;
+    for (const auto& [depth, k] : depths)
+      if ((left -= depth) >= 0.0) numbers_[from + k] = 0.0f;
+  }
   checkUniformSize(numbers_.size() * sizeof(float), "the air's coefficients");
   block_.upload(numbers_);
 }

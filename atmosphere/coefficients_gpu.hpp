@@ -1,5 +1,7 @@
 #pragma once
 // Extinction coefficients of a plan's nodes as shaders read them: airExtinction[node * AIR_VECTORS + vector].
+#include <optional>
+
 #include "sim/gl/objects.hpp"
 #include "sim/plan/plan.hpp"
 
@@ -8,7 +10,9 @@ namespace pitviper {
 class CoefficientsOnGpu {
  public:
   /// `vectors`: of four absorbers each. Throws GlError where they do not fit into a uniform block.
-  CoefficientsOnGpu(const Plan& plan, int vectors);
+  /// `most`: to their powers, amounts that no way through the air exceeds. What adds less to the depth of it than a part of the accuracy is 0, which a
+  /// compiler leaves out; empty: nothing is.
+  CoefficientsOnGpu(const Plan& plan, int vectors, const std::optional<AirAmounts>& most = {});
   void addSlots(ShaderSlots& slots) const;
   void bind() const;
 

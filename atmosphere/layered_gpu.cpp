@@ -6,6 +6,8 @@
 #include <future>
 #include <thread>
 
+#include "sim/radiometry/physics.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -21,10 +23,17 @@ std::pair<long long, long long> keyOf(double across, double sine) {
   return {std::llround(across * kFine), std::llround(sine * kFine)};
 }
 
+/// More than any way through the air holds: three times one along the ground to space, to their powers.
+AirAmounts longestWay(const Simulation& simulation) {
+  AirAmounts most = simulation.air->amounts({SunLegs::kBottom_m, 0.0, simulation.frame.earthRadius_m()}, physics::kFar);
+  for (double& a : most.amount) a *= 3.0;
+  return simulation.air->powered(most);
+}
+
 }  // namespace
 
 LayeredOnGpu::LayeredOnGpu(const Simulation& simulation, const Plan& plan, bool perChannel)
-    : simulation_(simulation), plan_(plan), perChannel_(perChannel), rows_(simulation, plan, perChannel), coefficients_(plan, rows_.vectors()) {
+    : simulation_(simulation), plan_(plan), perChannel_(perChannel), rows_(simulation, plan, perChannel), coefficients_(plan, rows_.vectors(), longestWay(simulation)) {
   if (plan.lightCount > 0) addHeights(heights_);  // ways on to them
 }
 

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <future>
+#include <iterator>
 #include <thread>
 
 namespace pitviper {
@@ -14,6 +15,7 @@ namespace {
 /// A triangle as the light sees it: corners counter-clockwise, how near they come to it.
 struct Seen {
   std::array<glm::dvec2, 3> corner;
+  std::array<double, 3> height;  ///< of the corners, along the way to the light
   glm::dvec2 low, high;
   double nearest = 0.0, farthest = 0.0;  ///< along the way to the light
   bool faces = false;
@@ -30,26 +32,47 @@ bool outsideAnEdge(const Seen& a, const Seen& b) {
   return false;
 }
 
-std::vector<Seen> seenFrom(const Mesh& mesh, const glm::dvec3& toLight) {
+/// How far a corner of b lies above the plane of a (sign), in units of a's area.
+double above(const Seen& a, const Seen& b, size_t corner) {
+  const glm::dvec2 &p = b.corner[corner], &o = a.corner[0];
+  const double area = turn(o, a.corner[1], a.corner[2]), x = turn(o, p, a.corner[2]), y = turn(o, a.corner[1], p);
+  return (b.height[corner] - a.height[0]) * area - x * (a.height[1] - a.height[0]) - y * (a.height[2] - a.height[0]);
+}
+
+/// Whether the plane of one of them parts them so that b is nowhere nearer to the light. Rounding is a corner of itself: what touches does not count.
+bool liesBehind(const Seen& b, const Seen& a) {
+  constexpr double kRounding = 1e-12;
+  const auto room = [](const Seen& plane, const Seen& other) {
+    const double reach = std::max({std::abs(plane.nearest), std::abs(plane.farthest), std::abs(other.nearest), std::abs(other.farthest)});
+    return kRounding * reach * turn(plane.corner[0], plane.corner[1], plane.corner[2]);
+  };
+  bool under = true, over = true;
+  for (size_t k = 0; k < 3; ++k) {
+    under = under && above(a, b, k) <= room(a, b);
+    over = over && above(b, a, k) >= -room(b, a);
+  }
+  return under || over;
+}
+
+void addSeen(const Occluder& body, const glm::dvec3& toLight, std::vector<Seen>& all) {
   const glm::dvec3 u = glm::normalize(glm::cross(toLight, std::abs(toLight.x) < 0.7 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0))), v = glm::cross(toLight, u);
-  std::vector<Seen> all;
-  all.reserve(mesh.triangles.size());
-  for (const glm::uvec3& t : mesh.triangles) {
+  all.reserve(all.size() + body.mesh.triangles.size());
+  for (const glm::uvec3& t : body.mesh.triangles) {
     Seen s;
     s.low = glm::dvec2(INFINITY), s.high = glm::dvec2(-INFINITY), s.nearest = -INFINITY, s.farthest = INFINITY;
     for (int k = 0; k < 3; ++k) {
-      const glm::dvec3 p(mesh.positions[t[k]]);
+      const glm::dvec3 p = body.axes * glm::dvec3(body.mesh.positions[t[k]]) + body.origin;
       const glm::dvec2 at(glm::dot(p, u), glm::dot(p, v));
       const double along = glm::dot(p, toLight);
       s.corner[static_cast<size_t>(k)] = at;
+      s.height[static_cast<size_t>(k)] = along;
       s.low = glm::min(s.low, at), s.high = glm::max(s.high, at);
       s.nearest = std::max(s.nearest, along), s.farthest = std::min(s.farthest, along);
     }
     s.faces = turn(s.corner[0], s.corner[1], s.corner[2]) > 0.0;
-    if (!s.faces) std::swap(s.corner[1], s.corner[2]);
+    if (!s.faces) std::swap(s.corner[1], s.corner[2]), std::swap(s.height[1], s.height[2]);
     all.push_back(s);
   }
-  return all;
 }
 
 /// So many pairs of triangles are looked at, at most: a second or so.
@@ -110,7 +133,7 @@ bool isClear(const std::vector<Seen>& all, const Cells& cells, size_t number) {
       const Seen& other = all[*n];
       if (*n == number || !(other.nearest > own.farthest)) continue;
       if (other.low.x >= own.high.x || other.high.x <= own.low.x || other.low.y >= own.high.y || other.high.y <= own.low.y) continue;
-      clear = outsideAnEdge(own, other) || outsideAnEdge(other, own);
+      clear = outsideAnEdge(own, other) || outsideAnEdge(other, own) || liesBehind(other, own);
     }
   });
   return clear;
@@ -118,22 +141,37 @@ bool isClear(const std::vector<Seen>& all, const Cells& cells, size_t number) {
 
 }  // namespace
 
-std::vector<char> clearFacets(const Mesh& mesh, const glm::dvec3& toLight) {
-  const std::vector<Seen> all = seenFrom(mesh, toLight);
-  std::vector<char> clear(all.size(), 0);
+std::vector<char> clearFacets(const Mesh& mesh, const glm::dvec3& toLight, std::span<const Occluder> others) {
+  std::vector<Seen> all;
+  addSeen({mesh}, toLight, all);
+  const size_t own = all.size();
+  std::vector<char> clear(own, 0);
   if (all.empty()) return clear;
+  Seen whole = all.front();
+  for (const Seen& s : all) {
+    whole.low = glm::min(whole.low, s.low), whole.high = glm::max(whole.high, s.high);
+    whole.farthest = std::min(whole.farthest, s.farthest);
+  }
+  for (const Occluder& o : others) {
+    std::vector<Seen> theirs;
+    addSeen(o, toLight, theirs);
+    // What lies beside all of the mesh or behind it shades none of it.
+    std::copy_if(theirs.begin(), theirs.end(), std::back_inserter(all), [&](const Seen& s) {
+      return s.nearest > whole.farthest && s.low.x < whole.high.x && s.high.x > whole.low.x && s.low.y < whole.high.y && s.high.y > whole.low.y;
+    });
+  }
   const Cells cells(all);
   if (!cells.affordable()) return clear;
   constexpr size_t kEach = 4096;
   std::atomic<size_t> next{0};
   const auto work = [&] {
-    for (size_t first = next.fetch_add(kEach); first < all.size(); first = next.fetch_add(kEach))
-      for (size_t n = first; n < std::min(first + kEach, all.size()); ++n) clear[n] = isClear(all, cells, n);
+    for (size_t first = next.fetch_add(kEach); first < own; first = next.fetch_add(kEach))
+      for (size_t n = first; n < std::min(first + kEach, own); ++n) clear[n] = isClear(all, cells, n);
   };
-  std::vector<std::future<void>> others;
-  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
+  std::vector<std::future<void>> threads;
+  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) threads.push_back(std::async(std::launch::async, work));
   work();
-  for (auto& o : others) o.get();
+  for (auto& t : threads) t.get();
   return clear;
 }
 

@@ -59,6 +59,10 @@ constexpr double kDark = 1e-3;
 constexpr std::size_t kBrightPercent = 97;
 /// Of the accuracy, the part that shadows of lamps may take: they are looked for where the lamp is more than that of the pixel.
 constexpr double kShadowShare = 0.02;
+/// And the part that lamps may take which are left out where they add less.
+constexpr double kLampShare = 0.01;
+/// And the part that what absorbs next to nothing may take.
+constexpr double kThinShare = 0.002;
 /// What counts as dark in any film [W/(m2 sr um)]: to a pixel of 1e-9 m2 sr a micrometre of it sends a photon in five hours.
 constexpr double kDarkest = 1e-14;
 /// The floor of a channel whose bright pixels have so much; `kernel`: its integral over wavelength, which is the sum of its weights.

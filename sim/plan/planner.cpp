@@ -83,9 +83,10 @@ CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& f
   plan.lines = kLast;
   plan.parts.clear();
   plan.predictedError.clear();
-  const double shadows = plan.terms.shadows && !sim.lights.empty() ? kShadowShare * plan.accuracy : 0.0;
+  const double lamps = sim.lights.empty() ? 0.0 : (kLampShare + (plan.terms.shadows ? kShadowShare : 0.0)) * plan.accuracy;
+  const double thin = plan.terms.air ? kThinShare * plan.accuracy : 0.0;
   for (size_t s = 0; s < found.size(); ++s) {
-    plan.parts.push_back({kMargin * found[s].largest, tables[s], found[s].dropped + shadows, kPrecision, extreme[s].largest});
+    plan.parts.push_back({kMargin * found[s].largest, tables[s], found[s].dropped + lamps + thin, kPrecision, extreme[s].largest});
     plan.predictedError.push_back(plan.parts.back().sum());
   }
   return last;

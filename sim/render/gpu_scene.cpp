@@ -56,13 +56,14 @@ void appendDrawn(const Mesh& mesh, const std::vector<std::uint32_t>& order, std:
 
 GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
   std::vector<glm::vec4> vertices;
-  std::vector<std::uint32_t> indices, corners;
+  std::vector<glm::uvec4> indices;
+  std::vector<std::uint32_t> corners;
   std::vector<DrawnVertex> drawn;
   std::map<const Mesh*, std::uint32_t> placed;
   std::map<const Mesh*, std::shared_ptr<const ClusteredMesh>> clustered;
   for (const auto& entity : sim.entities) {
     const Mesh& mesh = *entity.mesh;
-    const auto [at, fresh] = placed.try_emplace(&mesh, static_cast<std::uint32_t>(indices.size() / 3));
+    const auto [at, fresh] = placed.try_emplace(&mesh, static_cast<std::uint32_t>(indices.size()));
     firstTriangle_.push_back(at->second);
     boxes_.push_back(boxOf(mesh, entity.form));
     auto& own = clustered[&mesh];
@@ -74,8 +75,7 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
       vertices.emplace_back(mesh.positions[i], mesh.uv[i].x);
       vertices.emplace_back(mesh.normals[i], mesh.uv[i].y);
     }
-    for (const auto& t : mesh.triangles)
-      for (int k = 0; k < 3; ++k) indices.push_back(base + t[k]);
+    for (const auto& t : mesh.triangles) indices.emplace_back(base + t, 0u);
     appendDrawn(mesh, own->order, at->second, drawn, corners);
   }
   drawn_.upload(drawn);
@@ -102,7 +102,7 @@ std::shared_ptr<const ShadowTrees> GpuScene::shadowTrees(const Simulation& simul
 void GpuScene::bind() const {
   glBindVertexArray(vertexArray_);
   vertices_.bindTexture(6, 4);
-  indices_.bindTexture(7, 1, true);
+  indices_.bindTexture(7, 4, true);
   corners_.bindElements();
   drawn_.bindVertices();
   textureShapes_.bindTexture(11, 4, true);

@@ -36,7 +36,12 @@ const SurfaceTables& tablesOf(const RenderTables& tables, const DrawItem& d) { r
 }  // namespace
 
 LightRelevance::LightRelevance(const Simulation& simulation, const Plan& plan, const RenderTables& tables)
-    : simulation_(simulation), nodes_(simulation.lights.empty() ? std::vector<SpectralNode>{} : plan.nodes), accuracy_(plan.accuracy) {
+    : simulation_(simulation),
+      nodes_(simulation.lights.empty() ? std::vector<SpectralNode>{} : plan.nodes),
+      accuracy_(plan.accuracy),
+      weight_(plan.weight),
+      floor_(plan.darkFloors()) {
+  if (!simulation.lights.empty()) sunshine_ = sunshineOf(plan);
   for (const auto& light : simulation.lights)
     for (const SpectralNode& n : nodes_) intensity_.push_back(n.mean(light.intensity));
   for (size_t d = 0; d < tables.draws.size() && !simulation.lights.empty(); ++d) {
@@ -57,6 +62,8 @@ LightRelevance::Part LightRelevance::partOf(const Plan& plan, const RenderTables
   Part part;
   part.draw = draw;
   part.most.assign(nodes_.size(), 0.0);
+  part.alike =
+      std::all_of(reflections.begin(), reflections.end(), [](const auto& r) { return r->lobe().function.empty() && r->axes()[0].angle == Angle::None; });
   const auto placeOf = [](size_t k) { return 4 * (k / 3) + k % 3; };
   if (!t.general) {
     for (size_t i = 0; i < nodes_.size(); ++i)
@@ -90,23 +97,55 @@ double LightRelevance::reflection(const Part& part, std::size_t node, const Rend
   const DrawItem& d = tables.draws[part.draw];
   if (part.emissivity.empty()) {
     const SurfaceTables& t = tablesOf(tables, d);
-    return reflectionOf(part.most[node], static_cast<double>(t.rows[4 * static_cast<size_t>(t.vectors) * (d.row + node) + 3]));
+    return reflectionOf(part.most[node], static_cast<double>(t.rows[t.selfAt(d.row, node)]));
   }
   return std::min(reflectionOf(part.most[node], part.emissivity[node] * nodes_[node].planck(part.coldest_K.value_or(d.temperature_K))), part.byAmbient[node]);
+}
+
+double LightRelevance::greatest(const std::vector<double>& most, const std::vector<double>& self, size_t light) const {
+  const double* intensity = &intensity_[light * nodes_.size()];
+  double worst = 0.0;
+  if (!(accuracy_ > 0.0)) {
+    for (size_t i = 0; i < nodes_.size(); ++i) worst = std::max(worst, reflectionOf(most[i] * intensity[i], self[i]));
+    return worst;
+  }
+  for (size_t s = 0; s < weight_.size(); ++s) {
+    double sent = 0.0, own = 0.0;
+    for (size_t i = 0; i < nodes_.size(); ++i) sent += weight_[s][i] * most[i] * intensity[i], own += weight_[s][i] * self[i];
+    worst = std::max(worst, reflectionOf(sent, std::max(own, floor_[s])));
+  }
+  return worst;
 }
 
 void LightRelevance::follow(const RenderTables& tables) {
   const size_t lights = simulation_.lights.size();
   ratio_.assign(simulation_.entities.size() * lights, 0.0);
-  for (const Part& part : parts_)
-    for (size_t i = 0; i < nodes_.size(); ++i) {
-      const double reflected = reflection(part, i, tables);
-      for (size_t l = 0; l < lights && reflected > 0.0; ++l)
-        if (const double intensity = intensity_[l * nodes_.size() + i]; intensity > 0.0) {
-          double& worst = ratio_[static_cast<size_t>(tables.draws[part.draw].entity) * lights + l];
-          worst = std::max(worst, intensity * reflected);
-        }
+  inSunshine_ = ratio_;
+  for (const Part& part : parts_) {
+    std::vector<double> self(nodes_.size(), 0.0), sunlit;
+    for (size_t i = 0; i < nodes_.size(); ++i)
+      if (const double reflected = reflection(part, i, tables); reflected > 0.0) self[i] = part.most[i] / reflected;
+    sunlit = self;
+    for (size_t i = 0; part.alike && !sunshine_.empty() && i < nodes_.size(); ++i) sunlit[i] += part.most[i] * sunshine_[i];
+    for (size_t l = 0; l < lights; ++l) {
+      const size_t at = static_cast<size_t>(tables.draws[part.draw].entity) * lights + l;
+      ratio_[at] = std::max(ratio_[at], greatest(part.most, self, l));
+      inSunshine_[at] = std::max(inSunshine_[at], greatest(part.most, sunlit, l));
     }
+  }
+}
+
+/// On a facet that lies as kSunlit says and whose normals turn away from it.
+std::vector<double> LightRelevance::sunshineOf(const Plan& plan) const {
+  if (!simulation_.sun || !plan.terms.lights) return {};
+  const double sine = glm::dot(simulation_.sun->toSun, simulation_.frame.up(glm::dvec3(0.0)));
+  if (simulation_.overEarth() && !(sine > kSunlit)) return {};
+  AirAmounts way;
+  if (simulation_.air) way = simulation_.air->powered(simulation_.air->amounts({0.0, sine, simulation_.frame.earthRadius_m()}, physics::kFar));
+  std::vector<double> all;
+  for (const SpectralNode& n : nodes_)
+    all.push_back(0.5 * kSunlit * n.mean(simulation_.sun->irradiance) * (simulation_.air ? std::exp(-Atmosphere::depthOf(n.air, way)) : 1.0));
+  return all;
 }
 
 double LightRelevance::nearest2_m2(std::size_t entity, std::size_t light, const WorldState& state) const {
@@ -117,9 +156,12 @@ double LightRelevance::nearest2_m2(std::size_t entity, std::size_t light, const 
   return nearest * nearest;
 }
 
+double LightRelevance::reach2_m2(std::size_t entity, std::size_t light, const WorldState& state, bool sunlit) const {
+  return std::min(strength_m2(entity, light, state, sunlit) / share(std::max(kRounding, kLampShare * accuracy_)), physics::kFar);
+}
+
 bool LightRelevance::matters(std::size_t entity, std::size_t light, const WorldState& state) const {
-  const double strength = strength_m2(entity, light, state);
-  return strength > 0.0 && strength / nearest2_m2(entity, light, state) >= share(kRounding);
+  return nearest2_m2(entity, light, state) <= reach2_m2(entity, light, state);
 }
 
 double LightRelevance::shadowReach2_m2(std::size_t entity, std::size_t light, const WorldState& state) const {

@@ -46,7 +46,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       apertureArea_m2_(apertureArea_m2),
       outline_(shading == Shading::Reference ? std::optional(outline(plan)) : std::nullopt),
       tables_(makeTables(simulation, tabled())),
-      surfaceClasses_(sortIntoClasses(tables_, simulation, classes)),
+      surfaceClasses_(sortIntoClasses(tables_, simulation, plan, classes)),
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
       relevance_(simulation, tabled(), tables_),
@@ -55,10 +55,21 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
   ShaderSlots slots;
   slots.constants["GROUND"] = tables_.ground;
+  const bool demand = classes && lightsVary(plan);
+  slots.files["light_demand"] = std::string("sim/render/glsl/") + (demand ? "light_demand.glsl" : "light_demand_none.glsl");
+  slots.files["shadow_list"] = std::string("sim/render/glsl/") + (plan.terms.shadows ? "shadow_list.glsl" : "shadow_list_none.glsl");
+  addLightConstants(slots);
   pixelClasses_.emplace(library, slots);
   if (shading != Shading::Reference)
     checkUniformSize((tables_.node.size() + tables_.ambient.size() + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float),
                      "the spectral nodes");
+}
+
+void ScenePass::addLightConstants(ShaderSlots& slots) const {
+  slots.constants["LIGHTS"] = plan_.lightCount;
+  slots.constants["FEW_LIGHTS"] = kFewLights;
+  slots.constants["SUN"] = simulation_.sun && plan_.lightCount > 0 ? 1 : 0;
+  slots.constants["SUN_SETS"] = simulation_.overEarth() ? 1 : 0;
 }
 
 ShaderSlots ScenePass::shadingSlots() const {
@@ -73,14 +84,13 @@ ShaderSlots ScenePass::shadingSlots() const {
                                                                                     : "surface_unlit.glsl");
   slots.files["transmission"] = "sim/render/glsl/transmission_none.glsl";
   slots.constants["NODES"] = how_ == Shading::Reference ? 1 : plan_.nodeCount();
+  slots.constants["NODE_TEXELS"] = how_ == Shading::Reference ? 1 : (plan_.nodeCount() + 3) / 4;
   slots.constants["GROUPS"] = plan_.groupCount();
-  slots.constants["LIGHTS"] = plan_.lightCount;
+  addLightConstants(slots);
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
   slots.constants["LIGHT_PLACES"] = std::max(plan_.lightCount, kLightPlaces);
-  slots.constants["SUN"] = simulation_.sun && plan_.lightCount > 0 ? 1 : 0;
   slots.constants["GROUND"] = tables_.ground;
   slots.constants["SURFACES"] = 1;
-  slots.constants["SUN_SETS"] = simulation_.overEarth() ? 1 : 0;
   // Of four lights a vec4 at each node [W/(sr um)], the sun as irradiance; and radiance of the dome.
   slots.generated["light_nodes"] = plan_.lightCount > 0 ? "  vec4 nodeLight[NODES * LIGHT_GROUPS];\n" : "";
   slots.generated["ambient_nodes"] = tables_.ambient.empty() ? "" : "  vec4 nodeAmbient[NODES];\n";
@@ -122,7 +132,7 @@ void ScenePass::setState(const WorldState& state, const ShadowDemand* demand) {
 }
 
 void ScenePass::uploadLights(const WorldState& state) {
-  const size_t stride = 2 * static_cast<size_t>(plan_.lightCount) + 1;
+  const size_t stride = 3 * static_cast<size_t>(plan_.lightCount) + 1;
   std::vector<glm::vec4> lights((state.entities.size() + 1) * stride, glm::vec4(0.0f));
   const bool few = plan_.lightCount <= kFewLights;
   for (size_t r = 0; plan_.lightCount > 0 && r <= state.entities.size(); ++r) {
@@ -133,18 +143,20 @@ void ScenePass::uploadLights(const WorldState& state) {
     const Pose pose = body ? state.entities[e] : Pose{};
     const glm::dmat3 bodyFromLocal = glm::transpose(glm::mat3_cast(pose.orientation));
     glm::vec4* row = &lights[r * stride];
-    auto add = [&](const glm::dvec3& place, double radius_m, size_t number, bool matters, double shadowReach2_m2) {
+    auto add = [&](const glm::dvec3& place, double radius_m, size_t number, bool matters, double shadowReach2_m2, const glm::vec4& reach2_m2) {
       if (!few && !matters) return;
       const size_t k = few ? number : static_cast<size_t>(row->x);
-      row[2 * k + 1] = glm::vec4(place, radius_m);
+      row[3 * k + 1] = glm::vec4(place, radius_m);
       const auto casters = shadows_ && matters && body ? shadows_->castersOf(e, number) : ShadowPass::Range{};
-      row[2 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, shadowReach2_m2);
+      row[3 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, shadowReach2_m2);
+      row[3 * k + 3] = reach2_m2;
       row->x += 1.0f;
     };
     for (size_t l = 0; l < simulation_.lights.size(); ++l)
       add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l, body && ((truth_ && l == 0) || relevance_.matters(e, l, state)),
-          body ? relevance_.shadowReach2_m2(e, l, state) : 0.0);
-    if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true, physics::kFar);
+          body ? relevance_.shadowReach2_m2(e, l, state) : 0.0,
+          body ? glm::vec4(relevance_.reach2_m2(e, l, state), relevance_.reach2_m2(e, l, state, true), 0.0, 0.0) : glm::vec4(0.0));
+    if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true, physics::kFar, glm::vec4(static_cast<float>(physics::kFar)));
   }
   lights_.upload(lights);
 }
@@ -313,7 +325,8 @@ void ScenePass::drawTilePicture(const std::vector<Tile>& tiles, const WorldState
     bindTile(i);
     std::set<size_t> classes;
     for (std::uint32_t d : tiles[i].draws)
-      if (tables_.draws[d].entity == tiles[i].view->onlyEntity) classes.insert(static_cast<size_t>(tables_.draws[d].surfaceClass));
+      if (tables_.draws[d].entity == tiles[i].view->onlyEntity)
+        for (int c : {tables_.draws[d].surfaceClass, tables_.draws[d].everyLight}) classes.insert(static_cast<size_t>(c));
     shadeTile(current_->shading, tiles[i].part, classes);
   }
   checkGl("drawing small bodies");

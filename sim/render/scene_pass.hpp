@@ -83,6 +83,7 @@ class ScenePass {
   const PixelClasses& pixelClasses() const { return *pixelClasses_; }
   /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
   ShaderSlots shadingSlots() const;
+  void addLightConstants(ShaderSlots& slots) const;
   /// Names of the channel targets, and of the truth targets, in order.
   std::vector<std::string> channelTargets() const;
   static std::vector<std::string> truthTargets() { return {"truthGeometry", "truthNormal", "truthIdentity"}; }

@@ -110,22 +110,50 @@ void ShadowPass::draw(std::size_t caster, const Map& map) {
   glDisable(GL_DEPTH_CLAMP);
 }
 
-bool ShadowPass::knowsClear(std::size_t entity, const glm::dvec3& toSun) {
+bool ShadowPass::staysStill(std::size_t entity) const {
   const Entity& e = simulation_.entities[entity];
-  const std::uint32_t first = scene_->firstTriangle(static_cast<int>(entity));  // bodies of one mesh share its bits
-  const auto [known, fresh] = clearFor_.try_emplace(first, toSun);
-  if (!fresh) return known->second == toSun;
-  const size_t triangles = e.mesh->triangles.size();
-  if (!e.motion.waypoints().empty() || e.parent >= 0 || triangles < kFewestFacets || triangles > kMostFacets) {
-    known->second = glm::dvec3(NAN);
-    return false;
-  }
-  const std::vector<char> clear = clearFacets(*e.mesh, toSun);
+  return e.motion.waypoints().empty() && e.parent < 0;
+}
+
+ShadowPass::Relative ShadowPass::relative(const Pose& own, const Pose& other) {
+  const glm::dmat3 ownFromLocal = glm::transpose(glm::mat3_cast(own.orientation));
+  return {ownFromLocal * glm::mat3_cast(other.orientation), ownFromLocal * (other.position - own.position)};
+}
+
+ShadowPass::Clear ShadowPass::findClear(std::size_t receiver, const glm::dvec3& toSun, const WorldState& state) {
+  const Mesh& mesh = *simulation_.entities[receiver].mesh;
+  size_t triangles = mesh.triangles.size();
+  if (!staysStill(receiver) || triangles < kFewestFacets || triangles > kMostFacets) return {};
+  Clear found{toSun, {{receiver, {}}}};
+  const auto sharesMesh = [&](const Entity& e) { return e.mesh.get() == &mesh; };
+  std::vector<Occluder> others;
+  if (std::count_if(simulation_.entities.begin(), simulation_.entities.end(), sharesMesh) == 1)
+    for (size_t c = 0; c < simulation_.entities.size(); ++c) {
+      const Mesh& theirs = *simulation_.entities[c].mesh;
+      if (c == receiver || !staysStill(c) || !trees_->of(c).casts() || triangles + theirs.triangles.size() > kMostFacets) continue;
+      triangles += theirs.triangles.size();
+      const Relative at = relative(state.entities[receiver], state.entities[c]);
+      others.push_back({theirs, at.axes, at.origin});
+      found.casters[c] = at;
+    }
+  const std::vector<char> clear = clearFacets(mesh, toSun, others);
+  const std::uint32_t first = scene_->firstTriangle(static_cast<int>(receiver));
   clear_.resize(std::max<size_t>(clear_.size(), (first + clear.size()) / 32 + 1), 0);
   for (size_t n = 0; n < clear.size(); ++n)
     if (clear[n]) clear_[(first + n) / 32] |= 1u << (first + n) % 32;
   clearFacets_ = Buffer();
-  return true;
+  return found;
+}
+
+bool ShadowPass::leavesClear(std::size_t caster, std::size_t receiver, const glm::dvec3& toSun, const WorldState& state) {
+  const std::uint32_t first = scene_->firstTriangle(static_cast<int>(receiver));
+  auto known = clearOf_.find(first);
+  if (known == clearOf_.end()) known = clearOf_.emplace(first, findClear(receiver, toSun, state)).first;
+  const Clear& clear = known->second;
+  if (clear.toSun != toSun) return false;
+  if (caster == receiver) return true;
+  const auto at = clear.casters.find(caster);
+  return at != clear.casters.end() && at->second == relative(state.entities[receiver], state.entities[caster]);
 }
 
 bool ShadowPass::isNearLine(std::size_t caster, std::size_t receiver, std::size_t light, const WorldState& state, const std::vector<glm::dvec3>& centre) const {
@@ -186,7 +214,7 @@ void ShadowPass::setState(const WorldState& state, const std::function<bool(std:
         // Rounding of a place in the receiver: it stays on its facet's plane to a few units of the last place of its coordinates.
         g.fine = {noise, mapped ? map->projection->texelDepth : 0.0, c == r ? 8.0 * kRounding * reach : 0.0,
                   mapped && place.sun ? 1.0 / glm::length(glm::dvec3(map->projection->row[2])) : 0.0};
-        const bool clear = c == r && place.sun && knowsClear(c, place.at);
+        const bool clear = place.sun && leavesClear(c, r, lightFor(r, l, state).at, state);
         g.what = {mapped ? map->layer : -1, body.first, body.end, kindOf(c == r, body.self) | (clear ? kClear : 0)};
         g.ball = glm::vec4(glm::transpose(axes) * (box.centre() - origin), box.radius_m());
         shadows.push_back(g);

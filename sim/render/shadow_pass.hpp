@@ -60,8 +60,22 @@ class ShadowPass {
   LightPlace lightFor(std::size_t caster, std::size_t light, const WorldState& state) const;
   Map& mapOf(std::size_t caster, std::size_t light, const LightPlace& place);
   void draw(std::size_t caster, const Map& map);
-  /// Whether it is known which facets of a body the body itself leaves clear of the sun: of a still one for which that is worth finding out.
-  bool knowsClear(std::size_t entity, const glm::dvec3& toSun);
+  /// Where one body's axes lie in another's.
+  struct Relative {
+    glm::dmat3 axes{1.0};  ///< the other's from its own
+    glm::dvec3 origin{0.0};
+    bool operator==(const Relative&) const = default;
+  };
+  /// The facets of a still body that it and other still bodies leave clear of the sun.
+  struct Clear {
+    glm::dvec3 toSun{NAN};  ///< body axes; none are known for another
+    std::map<std::size_t, Relative> casters;
+  };
+  /// Whether a caster shades none of the facets of a body that are marked clear.
+  bool leavesClear(std::size_t caster, std::size_t receiver, const glm::dvec3& toSun, const WorldState& state);
+  Clear findClear(std::size_t receiver, const glm::dvec3& toSun, const WorldState& state);
+  bool staysStill(std::size_t entity) const;
+  static Relative relative(const Pose& own, const Pose& other);
 
   const Simulation& simulation_;
   std::shared_ptr<const GpuScene> scene_;
@@ -73,8 +87,8 @@ class ShadowPass {
   int layersTaken_ = 0;
   std::vector<ShadowBox> boxes_;  ///< of whole meshes
   std::vector<Range> ranges_;
-  std::map<std::uint32_t, glm::dvec3> clearFor_;  ///< of still bodies: the direction to the sun that facets are clear in
-  std::vector<std::uint32_t> clear_;              ///< a bit for each of the scene's triangles
+  std::map<std::uint32_t, Clear> clearOf_;  ///< by first triangle: bodies of one mesh share their bits
+  std::vector<std::uint32_t> clear_;        ///< a bit for each of the scene's triangles
   Buffer shadows_, clearFacets_;
 };
 

@@ -7,7 +7,7 @@ namespace pitviper {
 
 class SurfaceBuffers {
  public:
-  explicit SurfaceBuffers(const SurfaceTables& tables) : general_(tables.general), perRowEntry_(tables.floatsPerRowEntry()) {
+  explicit SurfaceBuffers(const SurfaceTables& tables) : general_(tables.general) {
     update(tables);
     hemispherical_.upload(tables.hemispherical);
     columns_.upload(tables.columns);
@@ -17,7 +17,7 @@ class SurfaceBuffers {
   /// What follows temperatures.
   void update(const SurfaceTables& tables) { rows_.upload(tables.rows); }
   void bind() const {
-    rows_.bindTexture(1, perRowEntry_);
+    rows_.bindTexture(1, 4);
     if (general_) {
       hemispherical_.bindTexture(2, 4);
       columns_.bindTexture(3, 4);
@@ -28,7 +28,6 @@ class SurfaceBuffers {
 
  private:
   bool general_;
-  int perRowEntry_;
   Buffer rows_, hemispherical_, columns_, transmittance_, materials_;
 };
 

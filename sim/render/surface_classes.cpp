@@ -1,15 +1,35 @@
 #include "sim/render/surface_classes.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pitviper {
 namespace {
 
+/// Whether all columns are albedo / pi to rounding.
+bool isLambertian(const GpuMaterial& m, const SurfaceTables& t) {
+  constexpr float kRounding = 1e-6f, kInversePi = 0.31830989f;
+  if (!t.lit || !t.general) return true;
+  if (m.counts[0] > 1 || m.counts[2] > 1) return false;
+  const std::size_t all = static_cast<std::size_t>(m.state[1]) * t.nodes * static_cast<std::size_t>(t.vectors);
+  for (std::size_t n = 0; n < 4 * all; ++n) {
+    if (n % 4 == 3) continue;
+    const float column = t.columns[4 * m.counts[3] + n], albedo = kInversePi * t.hemispherical[4 * m.kinds[3] + n];
+    if (std::abs(column - albedo) > kRounding * std::abs(column)) return false;
+  }
+  return true;
+}
+
 SurfaceClass classOf(const DrawItem& item, const Simulation& sim, const SurfaceTables& tables) {
   SurfaceClass c;
   const GpuMaterial& m = tables.materials[item.material];
-  c.modifiers = std::max(m.transmission[0], m.transmission[2]) >= 0;
-  for (const auto& component : m.components) {
+  c.emissionModifiers = m.transmission[2] >= 0;
+  c.modifiers = c.emissionModifiers || m.transmission[0] >= 0;
+  c.viewAngles = m.counts[2] > 1;
+  c.columns = !isLambertian(m, tables);
+  for (std::size_t k = 0; k < m.components.size(); ++k) {
+    const auto& component = m.components[k];
+    if (component[2] != 0) c.components = static_cast<int>(k) + 1;
     c.lobes |= component[0] > 0;
     c.modifiers |= component[1] >= 0;
   }
@@ -22,27 +42,59 @@ SurfaceClass classOf(const DrawItem& item, const Simulation& sim, const SurfaceT
   return c;
 }
 
-SurfaceClass both(const SurfaceClass& a, const SurfaceClass& b) {
-  return {
-      false, a.modifiers || b.modifiers, a.temperatureTextures || b.temperatureTextures, a.lobes || b.lobes, a.tabulated || b.tabulated, a.states || b.states};
+SurfaceClass both(SurfaceClass a, const SurfaceClass& b) {
+  a.modifiers |= b.modifiers;
+  a.emissionModifiers |= b.emissionModifiers;
+  a.viewAngles |= b.viewAngles;
+  a.columns |= b.columns;
+  a.components = std::max(a.components, b.components);
+  a.temperatureTextures |= b.temperatureTextures;
+  a.lobes |= b.lobes;
+  a.tabulated |= b.tabulated;
+  a.states |= b.states;
+  return a;
+}
+
+/// Which of the kinds that have a program of their own: the plainest, those with textures alone, all others.
+int kindOf(const SurfaceClass& c) {
+  if (c.viewAngles || c.columns || c.lobes || c.tabulated || c.states) return 2;
+  return c.modifiers || c.temperatureTextures ? 1 : 0;
 }
 
 }  // namespace
 
-std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation& sim, bool apart) {
-  if (!apart) return {{.modifiers = true, .temperatureTextures = true, .lobes = true, .tabulated = true, .states = true}};
-  constexpr SurfaceClass kPlain{};
+std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation& sim, const Plan& plan, bool apart) {
+  if (!apart)
+    return {{.modifiers = true,
+             .emissionModifiers = true,
+             .viewAngles = true,
+             .columns = true,
+             .components = 3 * tables.solid.vectors,
+             .temperatureTextures = true,
+             .lobes = true,
+             .tabulated = true,
+             .states = true}};
   std::vector<SurfaceClass> classes{{.sky = true}};
   for (DrawItem& item : tables.draws) {
     if (item.kind != DrawKind::Solid && item.kind != DrawKind::Ground) continue;
     const SurfaceClass own = classOf(item, sim, tables.solid);
-    auto at = std::find_if(classes.begin() + 1, classes.end(), [&](const SurfaceClass& c) { return (c == kPlain) == (own == kPlain); });
+    auto at = std::find_if(classes.begin() + 1, classes.end(), [&](const SurfaceClass& c) { return kindOf(c) == kindOf(own); });
     if (at == classes.end()) at = classes.insert(classes.end(), own);
     else *at = both(*at, own);
-    item.surfaceClass = static_cast<int>(at - classes.begin());
+    item.surfaceClass = item.everyLight = static_cast<int>(at - classes.begin());
   }
+  if (!lightsVary(plan)) return classes;
+  const std::size_t all = classes.size();
+  for (std::size_t c = 1; c < all; ++c) {
+    classes.push_back(classes[c]);
+    classes.back().sunAlone = true;
+  }
+  for (DrawItem& item : tables.draws)
+    if (item.surfaceClass > 0) item.surfaceClass += static_cast<int>(all) - 1;
   return classes;
 }
+
+bool lightsVary(const Plan& plan) { return plan.terms.lights && plan.lightCount > 0 && (plan.terms.shadows || plan.lightCount > 1); }
 
 void addClassSlots(const SurfaceClass& own, const RenderTables& tables, ShaderSlots& slots) {
   const std::string folder = "sim/render/glsl/";
@@ -52,12 +104,21 @@ void addClassSlots(const SurfaceClass& own, const RenderTables& tables, ShaderSl
     slots.files["surface"] = folder + (tables.solid.general || !tables.solid.lit ? "surface_unlit.glsl" : "surface_simple.glsl");
     slots.files["lights"] = folder + "lights_none.glsl";
   }
+  if (own.sunAlone) {
+    slots.files["lights"] = folder + (slots.constants["SUN"] > 0 ? "lights_sun.glsl" : "lights_none.glsl");
+    slots.files["shadow"] = folder + "shadow_none.glsl";
+  }
   if (!own.lobes) {
     slots.constants["LOBES"] = 0;
     if (tables.solid.lit) slots.generated["lobes"] = "Real lobeOf(int kind, Vec4 parameters, Vec3 toLight) { return 1.0; }\n";
   }
   if (!own.states) slots.constants["STATES"] = 0;
-  if (!own.tabulated && tables.solid.lit) slots.files["columns"] = folder + "columns_plain.glsl";
+  slots.constants["USED_COMPONENTS"] = own.components;
+  slots.constants["EMISSION_MODIFIERS"] = own.emissionModifiers ? 1 : 0;
+  slots.constants["TRANSMISSION_MODIFIERS"] = 0;
+  slots.constants["VIEW_ANGLES"] = own.viewAngles ? 1 : 0;
+  if (tables.solid.lit && !own.columns) slots.files["columns"] = folder + "columns_albedo.glsl";
+  else if (!own.tabulated && tables.solid.lit) slots.files["columns"] = folder + "columns_plain.glsl";
   if (!own.modifiers) slots.files["modifiers"] = folder + "modifiers_none.glsl";
   if (!own.temperatureTextures) slots.files["temperature"] = folder + "temperature_uniform.glsl";
 }

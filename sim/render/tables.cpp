@@ -147,7 +147,7 @@ void appendMaterial(SurfaceTables& t, const Material& m, const std::set<std::pai
   for (size_t k = 0; k < m.reflections.size(); ++k) {
     const Lobe& lobe = m.reflections[k]->lobe();
     const auto at = lobes.find({lobe.file, lobe.function});
-    g.components[k] = {at == lobes.end() ? 0 : static_cast<std::int32_t>(std::distance(lobes.begin(), at)) + 1, m.modifiers[k], 0, 0};
+    g.components[k] = {at == lobes.end() ? 0 : static_cast<std::int32_t>(std::distance(lobes.begin(), at)) + 1, m.modifiers[k], 1, 0};
     for (int c = 0; c < 4; ++c) g.lobes[k][static_cast<size_t>(c)] = static_cast<float>(lobe.parameters[c]);
   }
   g.transmission[0] = m.transmission ? m.transmission->modifier : -1;
@@ -189,20 +189,17 @@ float selfOf(const SurfaceTables& t, const Simulation& sim, const Plan& plan, co
 
 /// The row of a surface, or of the background, which shines by itself (null).
 std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& plan, const Surface* surface) {
-  const auto floats = static_cast<size_t>(t.floatsPerRowEntry() * t.texelsPerRowEntry());
-  const auto at = static_cast<std::uint32_t>(t.rows.size() / floats);
-  for (const SpectralNode& n : plan.nodes) {
-    if (!surface) {
-      const size_t self = t.rows.size() + (floats > 1 ? 3 : 0);
-      t.rows.insert(t.rows.end(), floats, 0.0f);
-      t.rows[self] = static_cast<float>(n.mean([&](double w) { return sim.background(w); }));
-      continue;
-    }
-    const float self = selfOf(t, sim, plan, n, *surface, surface->temperature_K);
-    if (floats == 1) t.rows.push_back(self);
-    else
-      appendComponents(t.rows, t, sim.materialOf(*surface), static_cast<double>(self),
+  const size_t begin = t.rows.size(), nodes = plan.nodes.size();
+  const auto at = static_cast<std::uint32_t>(begin / (t.packed() ? 4 : 4 * static_cast<size_t>(t.vectors)));
+  if (surface && !t.packed())
+    for (const SpectralNode& n : plan.nodes)
+      appendComponents(t.rows, t, sim.materialOf(*surface), 0.0,
                        [&](const ReflectionComponent& r) { return n.mean([&](double w) { return r.column(w, 0.0, 0.0); }); });
+  t.rows.resize(begin + 4 * t.texelsOfRow(), 0.0f);
+  for (size_t i = 0; i < nodes; ++i) {
+    const SpectralNode& n = plan.nodes[i];
+    t.rows[t.selfAt(at, i)] =
+        surface ? selfOf(t, sim, plan, n, *surface, surface->temperature_K) : static_cast<float>(n.mean([&](double w) { return sim.background(w); }));
   }
   return at;
 }
@@ -223,11 +220,12 @@ void appendPlanck(SurfaceTables& t, const Simulation& sim, const Plan& plan) {
   coldest = std::max(coldest, 1.0);
   hottest = std::max(hottest, coldest * (1.0 + 1e-6));
   const double first = 1.0 / hottest, step = (1.0 / coldest - first) / (kPlanckEntries - 1);
-  t.planckAt = static_cast<long long>(t.rows.size());
-  t.rows.push_back(static_cast<float>(first));
-  t.rows.push_back(static_cast<float>(1.0 / step));
-  for (int k = 0; k < kPlanckEntries; ++k)
+  t.planckAt = static_cast<long long>(t.rows.size() / 4);
+  t.rows.insert(t.rows.end(), {static_cast<float>(first), static_cast<float>(1.0 / step), 0.0f, 0.0f});
+  for (int k = 0; k < kPlanckEntries; ++k) {
     for (const SpectralNode& n : plan.nodes) t.rows.push_back(static_cast<float>(n.planck(1.0 / (first + step * k))));
+    t.rows.resize((t.rows.size() + 3) / 4 * 4, 0.0f);
+  }
 }
 
 float sourceOf(const Medium& medium, const SpectralNode& n, double temperature_K) {
@@ -366,7 +364,8 @@ void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, con
   slots.constants["STATES"] = tables.states ? 1 : 0;
   slots.constants["LOBES"] = tables.lit ? static_cast<long long>(terms.lobes.size()) : 0;
   slots.constants["COMPONENT_VECTORS"] = tables.vectors;
-  slots.constants["COMPONENTS"] = 3 * tables.vectors;
+  slots.constants["COMPONENTS"] = slots.constants["USED_COMPONENTS"] = 3 * tables.vectors;
+  slots.constants["EMISSION_MODIFIERS"] = slots.constants["TRANSMISSION_MODIFIERS"] = slots.constants["VIEW_ANGLES"] = 1;
   file("lights", "lights_none");
   if (tables.lit) slots.files["lights"] = lightsFile(plan);
   file("columns", !tables.lit ? "columns_none" : tables.tabulated ? "columns_tabulated" : "columns_plain");
@@ -382,6 +381,7 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   RenderTables t;
   t.solid.general = plan.terms.solid.isGeneral();
   t.layer.general = plan.terms.layer.isGeneral();
+  t.solid.nodes = t.layer.nodes = plan.nodes.size();
   t.solid.lit = plan.terms.lights;
   t.layer.lit = plan.terms.lights && plan.terms.layer.reflects;
   for (const auto& m : sim.materials) {
@@ -444,11 +444,10 @@ bool updateTemperatures(RenderTables& tables, const Simulation& sim, const Plan&
     changed = true;
     const Entity& entity = sim.entities[static_cast<size_t>(d.entity)];
     SurfaceTables& t = d.kind == DrawKind::Layer ? tables.layer : tables.solid;
-    const auto floats = static_cast<size_t>(t.floatsPerRowEntry() * t.texelsPerRowEntry());
     for (size_t i = 0; i < plan.nodes.size(); ++i) {
       const SpectralNode& n = plan.nodes[i];
       if (d.kind == DrawKind::Medium) tables.media[4 * (d.row + i) + 1] = sourceOf(*sim.mediumOf(entity), n, now_K);
-      else t.rows[floats * (d.row + i) + (floats > 1 ? 3 : 0)] = selfOf(t, sim, plan, n, entity.surfaces[static_cast<size_t>(d.surface)], now_K);
+      else t.rows[t.selfAt(d.row, i)] = selfOf(t, sim, plan, n, entity.surfaces[static_cast<size_t>(d.surface)], now_K);
     }
   }
   return changed;

@@ -27,27 +27,33 @@ struct DrawItem {
   DrawKind kind = DrawKind::Background;
   int entity = -1;
   int surface = -1;
-  std::uint32_t row = 0;       ///< first entry of its row in the tables of its kind
+  std::uint32_t row = 0;       ///< of its row in the tables of its kind: first texel (packed), else first node's entry
   std::uint32_t material = 0;  ///< in the tables of its kind
   double temperature_K = 0.0;  ///< that its row is of
   int surfaceClass = 0;        ///< of what is solid (surface_classes.hpp)
+  int everyLight = 0;          ///< the class for where lamps or shadows matter; the same where there is one
 };
 
 /// What a program needs of the surfaces that it draws: the solid ones, or the transparent ones.
 struct SurfaceTables {
-  bool general = false;              ///< angular tables, modifiers or temperature textures
-  bool tabulated = false;            ///< some reflection component is a table over angles
-  bool lit = false;                  ///< there are lights for them to reflect
-  bool states = false;               ///< some material has states
+  bool general = false;    ///< angular tables, modifiers or temperature textures
+  bool tabulated = false;  ///< some reflection component is a table over angles
+  bool lit = false;        ///< there are lights for them to reflect
+  bool states = false;     ///< some material has states
+  std::size_t nodes = 0;
   int vectors = 1;                   ///< so many vec4 hold a material's components at a node: (R1, R2, R3, S), (R4, R5, R6, 0) ...
-  std::vector<float> rows;           ///< simple: these per node, unlit S alone; general: Planck radiance per node
-  long long planckAt = -1;           ///< general: entry of `rows` where Planck radiance is tabulated over the inverse of the temperature, or -1
+  std::vector<float> rows;           ///< vec4s; simple: these per node, unlit S alone; general: Planck radiance per node
+  long long planckAt = -1;           ///< general: texel of `rows` where Planck radiance is tabulated over the inverse of the temperature, or -1
   std::vector<float> hemispherical;  ///< (D1, D2, D3, given emissivity), (D4, D5, D6, 0) ... per state, view angle and node
   std::vector<float> columns;        ///< lit: (R1, R2, R3, 0) ... per state, angle 2, angle 1 and node
   std::vector<float> transmittance;  ///< per view angle and node
   std::vector<GpuMaterial> materials;
-  int floatsPerRowEntry() const { return general || !lit ? 1 : 4; }  ///< of a texel
-  int texelsPerRowEntry() const { return general || !lit ? 1 : vectors; }
+  bool packed() const { return general || !lit; }  ///< a number a node, four of them to a texel
+  std::size_t texelsOfRow() const { return packed() ? (nodes + 3) / 4 : nodes * static_cast<std::size_t>(vectors); }
+  /// Where in `rows` is what a surface sends by itself.
+  std::size_t selfAt(std::uint32_t row, std::size_t node) const {
+    return packed() ? 4 * std::size_t{row} + node : 4 * static_cast<std::size_t>(vectors) * (row + node) + 3;
+  }
   /// The materials as the shader reads them.
   std::vector<std::uint32_t> packedMaterials() const;
 };

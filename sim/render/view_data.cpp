@@ -35,7 +35,8 @@ GpuDraw drawData(const Simulation& simulation, const RenderTables& tables, std::
   g.table = {item.row, item.material, s ? static_cast<unsigned>(s->temperatureTexture + 1) : 0u, static_cast<unsigned>(item.entity + 1)};
   const double fromCentre = (cameraFromLocal * (pose.position - v.depthCentre)).z;
   g.state = {item.entity >= 0 ? item.temperature_K : s ? s->temperature_K : 0.0, item.surface + 1, static_cast<double>(item.entity + 1), fromCentre};
-  g.fine = {origin.z - static_cast<double>(static_cast<float>(origin.z)), PixelClasses::depthOf(static_cast<size_t>(item.surfaceClass)), 0.0, 0.0};
+  g.fine = {origin.z - static_cast<double>(static_cast<float>(origin.z)), PixelClasses::depthOf(static_cast<size_t>(item.surfaceClass)),
+            PixelClasses::depthOf(static_cast<size_t>(item.everyLight)), 0.0};
   return g;
 }
 

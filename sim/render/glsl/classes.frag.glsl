@@ -5,6 +5,7 @@ layout(binding = 0) uniform usampler2D visibility;
 layout(binding = 19) uniform sampler2D bends;  // of pixels of grouped x grouped subpixels: 0 where all of these have been shaded
 uniform int grouped;  // 0: none
 //@use sim/render/glsl/ray.glsl
+//@slot light_demand
 
 void main() {
   uvec2 id = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).xy;
@@ -14,5 +15,6 @@ void main() {
   }
   bool leftOut = view.earth.z > 0.0 && float(drawTexel(id.x, 3).w) != view.earth.z;
   if (grouped > 0) leftOut = leftOut || texelFetch(bends, ivec2(gl_FragCoord.xy) / grouped, 0).x == 0.0;
-  gl_FragDepth = leftOut ? 1.0 : drawMember(id.x, 5).y;
+  vec2 own = drawMember(id.x, 5).yz;  // of its class, and that of its class with every light
+  gl_FragDepth = leftOut ? 1.0 : own.x != own.y && needsAll(id, gl_FragCoord.xy) ? own.y : own.x;
 }

@@ -6,5 +6,5 @@ flat out uvec2 seen;
 
 void main() {
   seen = layers[gl_VertexID / 3];
-  project(drawAt(seen.x), texelFetch(vertices, 2 * int(texelFetch(indices, 3 * int(seen.y) + gl_VertexID % 3).x)).xyz);
+  project(drawAt(seen.x), texelFetch(vertices, 2 * int(texelFetch(indices, int(seen.y))[gl_VertexID % 3])).xyz);
 }

@@ -1,9 +1,5 @@
 //@use sim/radiometry/glsl/sun_disc.glsl
-// A body's row of lights: how many can matter to it, then their place or direction in the body frame with their radius, and their number;
-// places that are left over have the number -1. Beside the
-// number: first and count of the casters that can shade the body from it, and the square of the distance beyond which that does not matter.
-layout(binding = 9) uniform samplerBuffer lights;
-vec4 lightTexel(int at) { return texelFetch(lights, at); }
+//@use sim/render/glsl/light_list.glsl
 
 // Of a material's components three at a time: columns at a node for a light, and lobes.
 Vec3 reflectionColumns(int i, int l, int v);

@@ -19,10 +19,10 @@ Vec3 toLight(int l) {
 void prepareLights() {
   lightCos_ = 0.0;
   lightDistance2_ = 1.0;
-  int row = int(draw_.state.z) * (2 * LIGHTS + 1);
+  int row = lightRow(draw_);
 //@each l LIGHTS
   {
-    LightHere here = lightAt(row + 2 * {l} + 1, {l} >= LIGHTS - SUN);  // lights that don't matter have a place, and no strength
+    LightHere here = lightAt(lightEntry(row, {l}), {l} >= LIGHTS - SUN);  // lights that don't matter have a place, and no strength
     toLight{l}_ = here.to;
 //@each v COMPONENT_VECTORS
     lightFactor{l}_{v} = here.factor > 0.0 ? here.factor * lobes(here.to, {v}) : vec3(0.0);

@@ -13,10 +13,10 @@ void prepareLights() {
   lightCos_ = 0.0;
   lightDistance2_ = 1.0;
   shining_ = 0;
-  int row = int(draw_.state.z) * (2 * LIGHTS + 1);
+  int row = lightRow(draw_);
   int count = int(lightTexel(row).x);
   for (int k = 0; k < count; ++k) {
-    LightHere here = lightAt(row + 2 * k + 1, int(lightTexel(row + 2 * k + 2).x) >= LIGHTS - SUN);
+    LightHere here = lightAt(lightEntry(row, k), int(lightTexel(lightEntry(row, k) + 1).x) >= LIGHTS - SUN);
     if (!(here.factor > 0.0)) continue;
     toLight_[shining_] = here.to;
     for (int v = 0; v < COMPONENT_VECTORS; ++v) lightFactor_[shining_ * COMPONENT_VECTORS + v] = here.factor * lobes(here.to, v);

@@ -34,8 +34,7 @@ struct Meeting {
 
 Meeting meet(uint triangle, vec3 q, vec3 d) {
   Meeting m;
-  int t = 3 * int(triangle);
-  m.corner = 2 * ivec3(texelFetch(indices, t).x, texelFetch(indices, t + 1).x, texelFetch(indices, t + 2).x);
+  m.corner = 2 * ivec3(texelFetch(indices, int(triangle)).xyz);
   vec3 a = texelFetch(vertices, m.corner.x).xyz, e1 = texelFetch(vertices, m.corner.y).xyz - a, e2 = texelFetch(vertices, m.corner.z).xyz - a;
   vec3 p = cross(d, e2), s = q - a, r = cross(s, e1);
   float det = dot(e1, p);

@@ -1,5 +1,6 @@
 // What of a light a point sees: 0 where an opaque body stands between, else 1. Depth maps decide where they can, rays where they cannot; see
 // sim/render/shadow_pass.hpp. All in the caster's body axes.
+//@use sim/render/glsl/shadow_list.glsl
 struct Shadow {
   vec4 map[4];   // rows: map from receiver; (texels, texels, depth, 1) x w
   vec4 body[3];  // rows: caster from receiver [m]
@@ -7,12 +8,7 @@ struct Shadow {
   vec4 fine;     // rounding of the map's depth; a texel's size in depth; distance by which a ray leaves its own body; depth 0 to 1 where even, or 0 [m]
   vec4 ball;     // around the caster, in the receiver's body axes [m]
 };
-layout(binding = 13) uniform usamplerBuffer shadows;
 layout(binding = 14) uniform usamplerBuffer trees;
-layout(binding = 15) uniform usamplerBuffer clearFacets;  // a bit for each triangle: nothing of its body shades it from the sun
-
-uvec4 shadowTexel(int number, int member) { return texelFetch(shadows, 10 * number + member); }
-vec4 shadowRow(int number, int member) { return uintBitsToFloat(shadowTexel(number, member)); }
 Shadow shadowAt(int number) {
   return Shadow(vec4[4](shadowRow(number, 0), shadowRow(number, 1), shadowRow(number, 2), shadowRow(number, 3)),
                 vec4[3](shadowRow(number, 4), shadowRow(number, 5), shadowRow(number, 6)), ivec4(shadowTexel(number, 7)), shadowRow(number, 8), shadowRow(number, 9));
@@ -90,24 +86,6 @@ int mapSays(Shadow s, vec3 facet) {
   if (s.fine.w > 0.0) stopsWithin_ = 2.0 * (noise + steep + s.fine.y - nearest) * s.fine.w;
   // Stopped for sure only by something that is no part of the surface around the point: farther off than it can rise in two texels.
   return farthest < -(noise + 2.0 * (steep + s.fine.y)) ? -1 : 0;
-}
-
-// Facets that face the whole sun and that their own body leaves clear, seen from their outside.
-bool isClear_;
-void prepareClear(vec3 toLight) {
-  isClear_ = wholeSun_ && dot(facet_, toViewer_) >= 0.0 && dot(facet_, toLight) >= 0.0 &&
-             (texelFetch(clearFacets, int(triangle_ >> 5)).x >> (triangle_ & 31u) & 1u) != 0u;
-}
-
-// False where a caster cannot stand before the light: its ball beside the line or behind, or it is the point's own body and leaves it clear.
-bool mayStop(int number, vec3 toLight) {
-  vec4 ball = shadowRow(number, 9);
-  vec3 to = ball.xyz - point_;
-  // The difference itself, not that of its squares: of a caster far off these would have lost all digits of its size. With room for the rounding of both.
-  float along = dot(to, toLight), reach = ball.w * 1.0001 + 4.0e-6 * length(to);
-  vec3 beside = to - along * toLight;
-  bool own = shadowTexel(number, 7).w >= 8u;
-  return !(own && isClear_) && along >= -reach && dot(beside, beside) <= reach * reach;
 }
 
 bool stops(int number, vec3 toLight, float farthest) {

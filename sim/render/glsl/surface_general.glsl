@@ -1,7 +1,6 @@
 // Materials with tables over angles, modifier textures or temperature textures: components are put together per fragment.
 //@use sim/render/glsl/materials.glsl
 //@use sim/radiometry/glsl/arc_tangent.glsl
-layout(binding = 1) uniform samplerBuffer rows;           // Planck radiance per temperature and node
 layout(binding = 2) uniform samplerBuffer hemispherical;  // (D1, D2, D3, emissivity of modifiers of 1), (D4 ... by view angle and node
 MaterialShape material_;
 vec3 modifier_[COMPONENT_VECTORS];  // of the components
@@ -27,8 +26,8 @@ void prepareTemperature();
 void prepareSurface() {
   material_ = materialAt(draw_.table.y);
   for (int v = 0; v < COMPONENT_VECTORS; ++v)
-    for (int k = 0; k < 3; ++k) modifier_[v][k] = modifierAt(componentOf(draw_.table.y, 3 * v + k).y);
-  emissionModifier_ = modifierAt(material_.transmission.z);
+    for (int k = 0; k < 3; ++k) modifier_[v][k] = 3 * v + k < USED_COMPONENTS ? modifierAt(componentOf(draw_.table.y, 3 * v + k).y) : 1.0;
+  emissionModifier_ = EMISSION_MODIFIERS > 0 ? modifierAt(material_.transmission.z) : 1.0;
   state_ = 0;
   stateMix_ = 0.0;
   if (STATES > 0 && material_.state.x >= 0) {
@@ -36,15 +35,25 @@ void prepareSurface() {
     state_ = min(int(stateMix_), material_.state.y - 2);
     stateMix_ -= float(state_);
   }
-  viewMix_ = clamp(angleFromChord(normal_, toViewer_) * material_.scale.z, 0.0, float(material_.counts.z - 1u));
+  viewMix_ = VIEW_ANGLES > 0 ? clamp(angleFromChord(normal_, toViewer_) * material_.scale.z, 0.0, float(material_.counts.z - 1u)) : 0.0;
   int j = int(min(uint(viewMix_), max(material_.counts.z, 2u) - 2u));
   viewMix_ -= float(j);
   viewEntry_ = j;
-  transmissionModifier_ = modifierAt(material_.transmission.x);
+  transmissionModifier_ = TRANSMISSION_MODIFIERS > 0 ? modifierAt(material_.transmission.x) : 1.0;
   view0_ = int(material_.kinds.w) + (state_ * int(material_.counts.z) + j) * NODES * COMPONENT_VECTORS;
   view1_ = material_.counts.z > 1u ? view0_ + NODES * COMPONENT_VECTORS : view0_;
   temperature_ = surfaceTemperature();
   prepareTemperature();
+}
+
+// (D1, D2, D3, given emissivity) or what follows it.
+vec4 hemisphericalByView(int at) {
+  vec4 first = texelFetch(hemispherical, view0_ + at);
+  return VIEW_ANGLES > 0 ? mix(first, texelFetch(hemispherical, view1_ + at), viewMix_) : first;
+}
+vec4 hemisphericalAt(int at) {
+  vec4 d = hemisphericalByView(at);
+  return STATES == 0 ? d : mix(d, hemisphericalByView(at + nextState(int(material_.counts.z) * NODES * COMPONENT_VECTORS)), stateMix_);
 }
 
 //@slot columns
@@ -54,14 +63,6 @@ void prepareSurface() {
 //@slot transmission
 
 //@slot ambient
-
-// (D1, D2, D3, given emissivity) or what follows it.
-vec4 hemisphericalAt(int at) {
-  vec4 d = mix(texelFetch(hemispherical, view0_ + at), texelFetch(hemispherical, view1_ + at), viewMix_);
-  if (STATES == 0) return d;
-  at += nextState(int(material_.counts.z) * NODES * COMPONENT_VECTORS);
-  return mix(d, mix(texelFetch(hemispherical, view0_ + at), texelFetch(hemispherical, view1_ + at), viewMix_), stateMix_);
-}
 
 Real selfRadiance(int i) {
   vec4 d = hemisphericalAt(i * COMPONENT_VECTORS);

@@ -1,0 +1,43 @@
+// Whether what a pixel sees takes the program that has every light and its shadows: near a lamp, or where something may stand before the sun. Elsewhere one
+// with the sun alone does.
+//@use sim/radiometry/glsl/sun_disc.glsl
+//@use sim/render/glsl/light_list.glsl
+vec3 point_, facet_, toViewer_;
+uint triangle_;
+bool wholeSun_;
+//@slot shadow_list
+
+const float kSunlit = 0.3;  // as in sim/render/light_relevance.hpp
+bool sunlit_;
+
+// Of a light's entry; says besides whether the facet is in full sunshine.
+bool sunMayBeHidden(int entry, float range) {
+  vec3 toSun = lightTexel(entry).xyz, up;
+  float height = heightAt(range, up);
+  wholeSun_ = SUN_SETS == 0 || sunShare(sunAboveHorizon(height, dot(up, view.sun.xyz), view.earth.x)) >= 1.0;
+  bool may = mayBeHidden(lightTexel(entry + 1), toSun);
+  sunlit_ = !may && wholeSun_ && dot(facet_, toViewer_) >= 0.0 && dot(facet_, toSun) >= kSunlit * length(facet_);
+  return may;
+}
+
+bool needsAll(uvec2 id, vec2 pixel) {
+  prepareRay(pixel);
+  Draw draw = drawAt(id.x);
+  vec3 d = inBody(draw, ray_), q = pointOnPlane(draw);
+  Meeting m = meet(id.y, q, d);
+  point_ = q + m.along * d;
+  facet_ = m.geometric;
+  toViewer_ = -d / rayLength_;
+  triangle_ = id.y;
+  sunlit_ = false;
+  // The sun is the last of a row.
+  int row = lightRow(draw), lamps = (LIGHTS > FEW_LIGHTS ? int(lightTexel(row).x) : LIGHTS) - SUN;
+  bool all = SUN > 0 && sunMayBeHidden(lightEntry(row, lamps), max((planeOf(draw) + m.along) * rayLength_, 1.0e-6));
+  for (int k = 0; k < lamps; ++k) {
+    int entry = lightEntry(row, k);
+    vec3 line = lightTexel(entry).xyz - point_;
+    vec2 reach2 = lightTexel(entry + 2).xy;
+    all = all || (lightTexel(entry + 1).x >= 0.0 && dot(line, line) < (sunlit_ ? reach2.y : reach2.x));
+  }
+  return all;
+}

@@ -1,0 +1,2 @@
+// Nothing casts shadows.
+bool mayBeHidden(vec4 listed, vec3 toLight) { return false; }
