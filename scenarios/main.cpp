@@ -27,7 +27,7 @@ const std::map<std::string, Command>& commands() {
       {"run",
        {runCommand, "render a scenario to calibrated EXR frames",
         "pitviper run SCENARIO.yaml [--out FOLDER] [--frames A:B] [--set path.to.key=value]... [--preview]\n             [--preview-range "
-        "LAYER=LOW:HIGH]... [--overwrite]\n\n"
+        "LAYER=LOW:HIGH]... [--overwrite] [--timing]\n\n"
         "Renders the scenario's frames: one EXR per camera and frame in FOLDER (default 'out'), named <camera>_<frame>.exr,\n"
         "with a float layer <channel>.<quantity> per output and truth.* layers; probes write <probe>.csv; a camera with 'spectral_image:'\n"
         "also writes <camera>_<frame>_spectral.exr for pitviper integrate.\n\n"
@@ -39,7 +39,9 @@ const std::map<std::string, Command>& commands() {
         "  --preview        also a PNG per frame: every channel with colour bar and unit\n"
         "  --preview-range LAYER=LOW:HIGH  ends of a layer's colour bar, in its unit (implies --preview); repeatable. Without it the bar\n"
         "                   runs from the 0.5 to the 99.8 percentile, and is bent where a few bright things would hide the rest\n\n"
-        "  --overwrite      also replaces files of other scenarios, and files that are not of this program\n\n"
+        "  --overwrite      also replaces files of other scenarios, and files that are not of this program\n"
+        "  --timing         says at the end where the time went: visibility, shadows, air, shading, readback, files; drawing then waits for each\n"
+        "                   part, which makes it somewhat slower\n\n"
         "Files of the same names are replaced where they are of the same scenario (its text, what it extends, --set); another's is refused before\n"
         "anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"
         "On a terminal a bar shows how far it is; elsewhere lines come on stderr, the first after 3 s, each next after as long again as all before.\n"

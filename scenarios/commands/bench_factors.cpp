@@ -62,7 +62,7 @@ BenchFactor layers() {
 
 /// All of them matter, but for the last rows: one that does, and fifteen that can't.
 BenchFactor lights() {
-  BenchFactor f = varied("lights", "lights", {0, 1, 4, 16}, 1, [](BenchSetting& s, int v) { s.lights = v; });
+  BenchFactor f = varied("lights", "lights", {0, 1, 4, 16, 100, 1000}, 1, [](BenchSetting& s, int v) { s.lights = v; });
   for (size_t mode = 0; mode < 2; ++mode) {
     BenchVariant v = f.variants[2 + mode];  // one light
     v.value = "1 of 16";
@@ -110,13 +110,15 @@ std::vector<BenchFactor> benchFactors() {
       "overdraw", "overdraw", {1, 2, 3, 4, 5, 6, 7}, 1,
       [](BenchSetting& s, int v) {
         s.overdraw = v;
-        s.densePlates = true;
+        s.triangles = 8000;
       },
       true));
   all.push_back(varied("channels", "channels", {1, 4, 16}, 16, [](BenchSetting& s, int v) { s.channels = v; }));
   all.push_back(varied("wavelengths", "wavelengths", {4, 8, 16, 32, 64, 128, 340}, 16, [](BenchSetting& s, int v) { s.wavelengths = v; }));
   all.push_back(lights());
-  all.push_back(varied("film", "pixels a side", {64, 128, 256, 512, 1024}, 256, [](BenchSetting& s, int v) { s.film_px = v; }));
+  all.push_back(varied("film", "pixels a side", {64, 128, 256, 512, 1024, 2048}, 256, [](BenchSetting& s, int v) { s.film_px = v; }));
+  all.push_back(varied("bodies", "bodies before the wall", {0, 1, 10, 100, 1000}, 0, [](BenchSetting& s, int v) { s.bodies = v; }));
+  all.push_back(varied("triangles", "triangles of the wall", {2, 1000, 10'000, 100'000, 1'000'000, 10'000'000}, 2, [](BenchSetting& s, int v) { s.triangles = v; }));
   all.push_back(layers());
   all.push_back(shading());
   all.push_back(blend());

@@ -52,6 +52,12 @@ std::string scenarioText(const BenchSetting& s) {
   for (int hidden = s.overdraw - 1; hidden >= 1; --hidden) addPlate(y, "hidden" + std::to_string(hidden), -hidden, "wall", 290.0);
   for (int layer = 1; layer <= s.layers; ++layer) addPlate(y, "layer" + std::to_string(layer), layer, "layer", 280.0);
   addPlate(y, "wall", 0.0, "wall", 300.0);
+  const int across = static_cast<int>(std::ceil(std::sqrt(s.bodies)));
+  for (int i = 0; i < s.bodies; ++i) {
+    const double each = 0.9 * 106.0 / across, middle = 0.5 * (across - 1);
+    y << "  - {name: body" << i << ", shape: {model: sphere, radius: " << std::min(0.3 * each, 3.0) << " m, segments: 32}, material: wall, temperature: "
+      << 310 + i % 40 << " K, position: [20 m, " << (i % across - middle) * each << " m, " << (i / across - middle) * each << " m]}\n";
+  }
   y << "cameras:\n  - name: c\n    film: {width: " << s.film_px << ", height: " << s.film_px << "}\n    field_of_view: 20 deg\n    aperture: 50 mm\n"
     << "    position: [300 m, 0 m, 0 m]\n    look_at: wall\n    spectral: {samples: " << s.wavelengths << ", spacing: even, shared: true}\n    channels:\n";
   for (int c = 0; c < s.channels; ++c)
@@ -63,9 +69,14 @@ std::string scenarioText(const BenchSetting& s) {
 
 Simulation benchSimulation(const BenchSetting& setting) {
   Simulation sim = readScenarioText(scenarioText(setting), "bench", ".", {}, findLibraries());
-  if (setting.densePlates) {
-    const auto mesh = std::make_shared<const Mesh>(makePlate(kPlate_m, kPlate_m, 80, 50));
-    for (Entity& e : sim.entities) e.mesh = mesh;
+  if (setting.triangles > 2) {
+    const int across = std::max(static_cast<int>(std::lround(std::sqrt(0.5 * setting.triangles))), 1);
+    const auto mesh = std::make_shared<const Mesh>(makePlate(kPlate_m, kPlate_m, across, across));
+    for (Entity& e : sim.entities)
+      if (e.name.starts_with("wall") || e.name.starts_with("hidden")) {
+        e.mesh = mesh;
+        for (Surface& s : e.surfaces) s.meshPart = 0;
+      }
   }
   return sim;
 }

@@ -19,7 +19,8 @@ struct BenchSetting {
   int channels = 16, wavelengths = 16, lights = 1;
   int farLights = 0;         ///< further ones, a thousand kilometres away: they light every pixel by less than single precision can tell
   int overdraw = 1;          ///< plates behind one another, the visible one last in the file: the worst order
-  bool densePlates = false;  ///< of 8000 triangles instead of two
+  int triangles = 2;         ///< of each plate, about
+  int bodies = 0;            ///< spheres of 2000 triangles before the wall, in rows, each 15 pixels wide or less
   int layers = 0;            ///< transparent plates before the wall
   LayerKind layerKind = LayerKind::Emitting;
   bool air = true;

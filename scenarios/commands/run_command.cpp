@@ -2,12 +2,14 @@
 #include <cmath>
 #include <cstdio>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/progress.hpp"
+#include "scenarios/commands/run_timing.hpp"
 #include "scenarios/commands/run_total.hpp"
 #include "scenarios/commands/seen_report.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
@@ -15,6 +17,7 @@
 #include "sim/frame/frame_files.hpp"
 #include "sim/frame/spectral_image.hpp"
 #include "sim/gl/context.hpp"
+#include "sim/gl/timing.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/parameters/table.hpp"
@@ -303,7 +306,14 @@ void auditFrames(Simulation& sim) {
 int runCommand(const Arguments& arguments) {
   const Options o(
       "run", arguments,
-      {{"--out"}, {"--frames"}, {"--set", true, true}, {"--preview", false}, {"--preview-range", true, true}, {"--overwrite", false}, {"--plan", true, true}},
+      {{"--out"},
+       {"--frames"},
+       {"--set", true, true},
+       {"--preview", false},
+       {"--preview-range", true, true},
+       {"--overwrite", false},
+       {"--plan", true, true},
+       {"--timing", false}},
       1, 1);
   Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
   refuseBeyondMemory(sim);
@@ -334,6 +344,9 @@ int runCommand(const Arguments& arguments) {
     progress.phase("preparing");
     ProbeTables probes(sim);
     RunTotal total;
+    Stopwatch writing;
+    std::optional<Timing> timing;
+    if (o.has("--timing")) timing.emplace();
     const auto sinks = sinksOf();
     for (const auto& placed : sinks) placed.sink->start();
     const RunReport report = runFrames(
@@ -342,7 +355,9 @@ int runCommand(const Arguments& arguments) {
           noteOrder(*f, told);
           noteLimits(*f, toldOfLimits);
           noteScattering(*f, told);
-          for (const auto& placed : sinks) placed.sink->take(f);
+          writing.time([&] {
+            for (const auto& placed : sinks) placed.sink->take(f);
+          });
           total.add(*f);
           progress.step();
         },
@@ -368,6 +383,7 @@ int runCommand(const Arguments& arguments) {
     if (!sim.probes.empty()) done += (done.empty() ? "" : " and ") + count(sim.probes.size(), "probe table");
     std::printf("%s in %s (%s), %s\n%s%s", done.c_str(), out.string().c_str(), context.limits().renderer.c_str(),
                 RunTotal::pace(frames, progress.elapsed_s()).c_str(), total.expected().c_str(), auditText(report).c_str());
+    if (timing) std::printf("%s", timingText(timing->seconds(), writing.seconds(), frames).c_str());
     return 0;
   }
 }

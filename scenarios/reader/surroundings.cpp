@@ -109,6 +109,7 @@ void Builder::readAccuracy(const Record& scenario) {
     return;
   }
   const Value& v = scenario.value("accuracy");
+  if (v.text == "none") return;
   if (v.text == "reference") {
     accuracy_.reference = true;
     return;
@@ -116,7 +117,7 @@ void Builder::readAccuracy(const Record& scenario) {
   const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
   const auto share = q && !q->unit.empty() ? convert(*q, "") : std::nullopt;
   if (!share || !(*share >= kLeastAccuracy && *share <= kMostAccuracy))
-    throw UserError(v.where, "accuracy '" + v.text.substr(0, 40) + "' is neither a share nor 'reference'", "0.05 % to 20 %, or 'reference'",
+    throw UserError(v.where, "accuracy '" + v.text.substr(0, 40) + "' is neither a share nor 'none' nor 'reference'", "0.05 % to 20 %, 'none' or 'reference'",
                     "write 'accuracy: 1 %'");
   accuracy_.accuracy = *share;
 }

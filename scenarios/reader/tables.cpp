@@ -59,7 +59,8 @@ const ParameterTable& scenario() {
        map("render", "how it is drawn"),
        text("accuracy",
             "relative error of a pixel that the plan may spend on wavelengths, tables and terms left out, `1 %` for example, or `reference`: every wavelength "
-            "in double precision on the CPU, slow; without it: 1 % in layered air and air from tables, else as each camera's `spectral` says"),
+            "in double precision on the CPU, slow; `none`: as each camera's `spectral` says, nothing left out; without it: 1 % in layered air and air from "
+            "tables, else none"),
        within(number("audit", "",
                      "pixels a frame that are worked out by the reference as well, and held against it: 0.1 is one in each tenth frame, 0 none; without it as "
                      "many as cost about a twentieth of the time"),

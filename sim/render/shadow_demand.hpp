@@ -21,4 +21,8 @@ double shadowedSubpixels(const Simulation& simulation, const WorldState& state, 
 /// From a place to a body's box, 0 inside [m].
 double distanceTo(const ShadowBox& box, const Pose& body, const glm::dvec3& place);
 
+/// From an eye to where the shadow of a caster (ball) falls on a height field, about; infinite where it passes by [m].
+double distanceToShadow(const Simulation& simulation, const WorldState& state, const glm::dvec3& eye, const glm::dvec3& centre, double radius_m,
+                        std::size_t light, std::size_t field);
+
 }  // namespace pitviper

@@ -55,9 +55,14 @@ ShadowPass::ShadowPass(const Simulation& simulation, const Plan& plan, std::shar
 bool ShadowPass::raysCostLess(std::size_t c, std::size_t r, std::size_t l, const WorldState& state, const ShadowDemand* demand) const {
   if (!demand) return false;
   const ShadowTrees::Body& body = trees_->of(c);
-  const double asked = demand->zoomed[r] > 0.0 ? demand->zoomed[r]
-                                               : shadowedSubpixels(simulation_, state, demand->view, c, {body.low, body.high}, l,
-                                                                   distanceTo(boxes_[r], state.entities[r], demand->view.position));
+  const View& view = demand->view;
+  const ShadowBox box{body.low, body.high};
+  double nearest_m = distanceTo(boxes_[r], state.entities[r], view.position);
+  if (c != r && simulation_.entities[r].mesh->heightField) {
+    const Pose& pose = state.entities[c];
+    nearest_m = std::max(nearest_m, distanceToShadow(simulation_, state, view.position, pose.position + pose.orientation * box.centre(), box.radius_m(), l, r));
+  }
+  const double asked = demand->zoomed[r] > 0.0 ? demand->zoomed[r] : shadowedSubpixels(simulation_, state, view, c, box, l, nearest_m);
   return asked < kRaysPerMap + kRaysPerTriangle * body.triangles;
 }
 

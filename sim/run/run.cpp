@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <future>
+#include <optional>
 
 #include "sim/camera/probe.hpp"
 #include "sim/frame/make_frame.hpp"
+#include "sim/gl/timing.hpp"
 #include "sim/model/world.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/run/spectral_renderer.hpp"
@@ -13,6 +15,7 @@ namespace pitviper {
 
 RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRange& range, const FrameTaker& frames, const ProbeSink& probes,
                     const RunProgress& progress, bool stopsAtBroken) {
+  std::optional<TimedPart> preparing("preparing");
   auto scene = std::make_shared<const GpuScene>(sim);
   std::vector<Camera> cameras;  // which the renderers look at: it is not to grow
   for (const Camera& camera : sim.cameras) cameras.push_back(drawnCamera(camera));
@@ -34,6 +37,7 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
   for (size_t p = 0; probes && p < sim.probes.size(); ++p) meters.push_back(std::make_unique<ProbeMeter>(sim, sim.probes[p], library, scene));
   std::future<void> handing;  // its destructor waits, so nothing it uses goes first
   auto wait = [&handing] {
+    const TimedPart part("waiting for files");
     if (handing.valid()) handing.get();
   };
   auto hand = [&](Frame drawn) {
@@ -42,13 +46,22 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
     handing = std::async(std::launch::async, [&frames, frame] { frames(frame); });
   };
   auto isBroken = [&] { return std::any_of(auditors.begin(), auditors.end(), [](const Auditor& a) { return !a.broken().empty(); }); };
+  preparing.reset();
   for (int number = range.first; number <= range.last && !(stopsAtBroken && isBroken()); ++number) {
     const WorldState state = advance(sim, sim.time.at(number));
     for (size_t c = 0; c < renderers.size(); ++c) {
       renderers[c]->begin(state);
       CameraImage image = renderers[c]->finish();
-      auditors[c].look(state, number, image, number == range.first);
-      hand(makeFrame(sim, sim.cameras[c], image, state, number, chains[c].get()));
+      {
+        const TimedPart part("audit");
+        auditors[c].look(state, number, image, number == range.first);
+      }
+      std::optional<Frame> made;
+      {
+        const TimedPart part("frame");
+        made = makeFrame(sim, sim.cameras[c], image, state, number, chains[c].get());
+      }
+      hand(std::move(*made));
       if (spectral[c]) hand(spectral[c]->render(state, number));
     }
     for (size_t p = 0; p < meters.size(); ++p) probes({sim.probes[p], number, state.time_s, meters[p]->read(state)});

@@ -5,6 +5,8 @@
 #include <cmath>
 
 #include "sim/plan/planner.hpp"
+#include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -53,7 +55,7 @@ TEST(LampShadows, ReachAsFarAsTheyMatter) {
     for (const Kind& kind : kKinds) {
       int shaded = 0, open = 0;
       double worst = 0.0;
-      for (double distance : {0.5, 4.0, 16.0, 48.0, 64.0, 96.0, 128.0, 192.0, 256.0, 384.0}) {
+      for (double distance : {0.5, 4.0, 48.0, 57.0, 68.0, 80.0, 96.0, 114.0, 136.0, 162.0, 192.0, 228.0, 272.0, 384.0}) {
         const double lit = plate(kind, distance, false, 1.0, light), dark = plate(kind, distance, true, 0.0, light),
                      drawn = plate(kind, distance, true, 1.0, light);
         if (std::abs(drawn - dark) < 1e-4 * (lit - dark) + 2e-6 * dark) {
@@ -68,6 +70,36 @@ TEST(LampShadows, ReachAsFarAsTheyMatter) {
       bound(std::string("light of a lamp that no shadow was looked for, ") + kind.name + (*light ? ", beside ambient light" : "") + ", of the pixel", worst,
             kShadowShare * kAccuracy / 2.0 * 1.001, "kShadowShare of 5 %, half for each of two lamps");
     }
+}
+
+// A lamp that is left out is a hundredth of the accuracy at most. Expected: of a grey plate, albedo 0.3, the reflection of an isotropic lamp straight above, by
+// the inverse square law, beside its emission; the plate's middle, 0.3 of Planck's law integrated over the band.
+TEST(LampShadows, LampsReachAsFarAsTheyMatter) {
+  constexpr double kAccuracy = 0.05, kLow_um = 3.6, kHigh_um = 4.6;
+  double lamp_W_sr = 0.0, own = 0.0;
+  constexpr int kSteps = 2000;
+  for (int n = 0; n < kSteps; ++n) {
+    const double um = kLow_um + (n + 0.5) * (kHigh_um - kLow_um) / kSteps, step = (kHigh_um - kLow_um) / kSteps;
+    lamp_W_sr += 0.001 * physics::planckRadiance(um, 2500.0) * step;
+    own += 0.7 * physics::planckRadiance(um, 300.0) * step;
+  }
+  int kept = 0, left = 0;
+  double worst = 0.0, off = 0.0;
+  for (double distance : {4.0, 48.0, 68.0, 96.0, 114.0, 136.0, 162.0, 192.0, 384.0}) {
+    const double dark = plate(kKinds[0], distance, false, 0.0, ""), found = plate(kKinds[0], distance, false, 1.0, "") - dark;
+    const double expected = 0.3 / kPi * lamp_W_sr / (distance * distance);
+    if (found > 0.0) {
+      ++kept;
+      off = std::max(off, std::abs(found - expected) / dark);
+    } else {
+      ++left;
+      worst = std::max(worst, expected / own);
+    }
+  }
+  EXPECT_GT(kept, 2);
+  EXPECT_GT(left, 1);
+  bound("light of a lamp that was left out, of the pixel", worst, kLampShare * kAccuracy / 2.0 * 1.001, "kLampShare of 5 %, half for each of two lamps");
+  bound("light of one that was not, off by, of the pixel", off, kAccuracy, "the accuracy asked for");
 }
 
 // Plans say so beforehand.

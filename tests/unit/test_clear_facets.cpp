@@ -104,6 +104,35 @@ TEST(ClearFacets, UnderARoof) {
   EXPECT_EQ(std::count(below.begin(), below.end(), 1), 0) << "their backs";
 }
 
+// Two sheets of unlike facets, one 25 m over the other: seen along a slant, their facets reach past each other, but planes part them. A third body stands over
+// the upper one.
+TEST(ClearFacets, OtherBodies) {
+  const Mesh upper = makeTerrain(TerrainShape{.size_m = 2000.0, .columns = 60, .relief_m = 40.0, .seed = 4});
+  const Mesh lower = makeTerrain(TerrainShape{.size_m = 6000.0, .columns = 30, .relief_m = 20.0, .seed = 9});
+  const Mesh roof = makeBox(100.0, 100.0, 1.0);
+  const glm::dvec3 sun = sunAt(200.0, 28.0), down(0.0, 0.0, -60.0), corner(100.0, -200.0, 150.0);
+  const auto count = [](const std::vector<char>& clear) { return std::count(clear.begin(), clear.end(), 1); };
+  const std::vector<char> alone = clearFacets(upper, sun), over = clearFacets(upper, sun, std::vector<Occluder>{{lower, glm::dmat3(1.0), down}}),
+                          under = clearFacets(lower, sun, std::vector<Occluder>{{upper, glm::dmat3(1.0), -down}}),
+                          roofed = clearFacets(upper, sun, std::vector<Occluder>{{lower, glm::dmat3(1.0), down}, {roof, glm::dmat3(1.0), corner}});
+  EXPECT_EQ(count(over), count(alone)) << "what lies below shades nothing";
+  // Its shadow, 100 m wide and longer, on facets of 33 m: of (100 + 33)^2 / 33^2 cells or so, two facets each.
+  const long lost = count(over) - count(roofed);
+  EXPECT_GT(lost, 12);
+  EXPECT_LT(lost, 80);
+  // Of the lower sheet what the upper one covers as the sun sees it: 2000 m square of 6000.
+  EXPECT_GT(count(under), 1400);
+  EXPECT_LT(count(under), 1620);
+  // The shadow lies where it falls: behind the roof, as far as its height by the sun's.
+  for (size_t t = 0; t < roofed.size(); ++t) {
+    if (!over[t] || roofed[t]) continue;
+    glm::dvec3 middle(0.0);
+    for (int k = 0; k < 3; ++k) middle += glm::dvec3(upper.positions[upper.triangles[t][k]]) / 3.0;
+    const glm::dvec3 up = middle + sun * ((corner.z - middle.z) / sun.z);
+    EXPECT_LT(std::max(std::abs(up.x - corner.x), std::abs(up.y - corner.y)), 50.0 + 40.0);
+  }
+}
+
 // Meshes on which every pair would have to be looked at: nothing is known of them, at once.
 TEST(ClearFacets, FansAndSmallDetails) {
   const Mesh fan = makeDisc(1.0, 200000);
