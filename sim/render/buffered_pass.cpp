@@ -128,7 +128,7 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
       const GLfloat zero[4] = {0, 0, 0, 0};
       for (size_t t = 0; t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), zero);
     }
-    shade_.run(spectrum, pixelClasses(), [&](const ShadingProgram& p) { glUniform1i(p.uniform("firstNode"), batches_[b].firstNode); });
+    shade_.run(spectrum, pixelClasses(), classesInView(), [&](const ShadingProgram& p) { glUniform1i(p.uniform("firstNode"), batches_[b].firstNode); });
     if (layers_ && !layers_->isEmpty()) {
       const TimedPart part("transparent");
       spectrum.shareDepth(visibility);

@@ -11,15 +11,16 @@ ClassPrograms::ClassPrograms(const ShaderLibrary& library, const ShaderSlots& sl
   }
 }
 
-void ClassPrograms::run(RenderTarget& into, const PixelClasses& pixels, const std::function<void(const ShadingProgram&)>& set) const {
-  for (std::size_t c = 0; c < programs_.size(); ++c) {
+void ClassPrograms::run(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes,
+                        const std::function<void(const ShadingProgram&)>& set) const {
+  for (std::size_t c : classes) {
     programs_[c].use();
     if (set) set(programs_[c]);
     programs_[c].run(into, pixels.only(c));
   }
 }
 
-void ClassPrograms::run(RenderTarget& into, const PixelClasses& pixels, const glm::ivec4& part, const std::set<std::size_t>& classes) const {
+void ClassPrograms::run(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes, const glm::ivec4& part) const {
   for (std::size_t c : classes) programs_[c].run(into, pixels.only(c), part);
 }
 

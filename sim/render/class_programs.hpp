@@ -14,10 +14,11 @@ class ClassPrograms {
   /// `slots`: of a program for all solid surfaces; `targets`: as ShadingProgram's, from the first colour on.
   ClassPrograms(const ShaderLibrary& library, const ShaderSlots& slots, const RenderTables& tables, const std::vector<SurfaceClass>& classes,
                 const std::vector<std::string>& targets);
-  /// `set`: sets uniforms of each.
-  void run(RenderTarget& into, const PixelClasses& pixels, const std::function<void(const ShadingProgram&)>& set = {}) const;
-  /// Of some classes, over a part of the picture (corner, size).
-  void run(RenderTarget& into, const PixelClasses& pixels, const glm::ivec4& part, const std::set<std::size_t>& classes) const;
+  /// Of some classes. `set`: sets uniforms of each.
+  void run(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes,
+           const std::function<void(const ShadingProgram&)>& set = {}) const;
+  /// Over a part of the picture (corner, size).
+  void run(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes, const glm::ivec4& part) const;
   void addTo(std::vector<NamedProgram>& all) const;
 
  private:

@@ -35,12 +35,12 @@ std::vector<NamedProgram> DirectPass::programs() const {
 
 void DirectPass::shade(RenderTarget& into, const RenderTarget&) {
   weights_.bindUniform(2);
-  programs_.run(into, pixelClasses());
+  programs_.run(into, pixelClasses(), classesInView());
 }
 
 void DirectPass::shadeTile(RenderTarget& into, const glm::ivec4& part, const std::set<std::size_t>& classes) {
   weights_.bindUniform(2);
-  programs_.run(into, pixelClasses(), part, classes);
+  programs_.run(into, pixelClasses(), classes, part);
 }
 
 std::unique_ptr<ScenePass> makeScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,

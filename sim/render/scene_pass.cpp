@@ -135,6 +135,7 @@ void ScenePass::uploadLights(const WorldState& state) {
   const size_t stride = 3 * static_cast<size_t>(plan_.lightCount) + 1;
   std::vector<glm::vec4> lights((state.entities.size() + 1) * stride, glm::vec4(0.0f));
   const bool few = plan_.lightCount <= kFewLights;
+  sunAlone_.assign(state.entities.size(), 1);
   for (size_t r = 0; plan_.lightCount > 0 && r <= state.entities.size(); ++r) {
     // The first row is the ground's, which lamps don't light. Few lights have a place each, many are listed one after the other: lights_few.glsl,
     // lights_many.glsl.
@@ -148,6 +149,7 @@ void ScenePass::uploadLights(const WorldState& state) {
       const size_t k = few ? number : static_cast<size_t>(row->x);
       row[3 * k + 1] = glm::vec4(place, radius_m);
       const auto casters = shadows_ && matters && body ? shadows_->castersOf(e, number) : ShadowPass::Range{};
+      if (body && matters && (casters.count > 0 || number < simulation_.lights.size())) sunAlone_[e] = 0;
       row[3 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, shadowReach2_m2);
       row[3 * k + 3] = reach2_m2;
       row->x += 1.0f;
@@ -156,7 +158,8 @@ void ScenePass::uploadLights(const WorldState& state) {
       add(bodyFromLocal * (state.lights[l] - pose.position), simulation_.lights[l].radius_m, l, body && ((truth_ && l == 0) || relevance_.matters(e, l, state)),
           body ? relevance_.shadowReach2_m2(e, l, state) : 0.0,
           body ? glm::vec4(relevance_.reach2_m2(e, l, state), relevance_.reach2_m2(e, l, state, true), 0.0, 0.0) : glm::vec4(0.0));
-    if (simulation_.sun) add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true, physics::kFar, glm::vec4(static_cast<float>(physics::kFar)));
+    if (simulation_.sun)
+      add(bodyFromLocal * simulation_.sun->toSun, 0.0, simulation_.lights.size(), true, physics::kFar, glm::vec4(static_cast<float>(physics::kFar)));
   }
   lights_.upload(lights);
 }
@@ -202,12 +205,30 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
     beforeShading(v, state, drawn);
   }
   const TimedPart part("shading");
+  findClassesIn(v, state, drawn);
   pixelClasses_->find(current_->visibility, shadeTogether(v), v.grouped);
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
   if (partial_) clearShading();
   shade(current_->shading, current_->visibility);
   checkGl("drawing a frame");
+}
+
+/// A pass over the film costs something where a class has no pixels, too.
+void ScenePass::findClassesIn(const View& v, const WorldState& state, const std::vector<char>& drawn) {
+  classesInView_ = {0};
+  for (const DrawItem& d : tables_.draws) {
+    const auto add = [&](bool sunAlone) {
+      classesInView_.insert(static_cast<size_t>(d.surfaceClass));
+      if (!sunAlone) classesInView_.insert(static_cast<size_t>(d.everyLight));
+    };
+    if (d.kind == DrawKind::Ground) add(true);
+    if (d.kind != DrawKind::Solid) continue;
+    const auto e = static_cast<size_t>(d.entity);
+    const Pose& pose = state.entities[e];
+    const Entity& entity = simulation_.entities[e];
+    if (drawn[e] && mayShow(v, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m)) add(sunAlone_[e] != 0);
+  }
 }
 
 /// Pixels of several subpixels, each once; which of them need more. Null where each subpixel is shaded by itself.

@@ -79,6 +79,8 @@ class ScenePass {
   bool hasTruth() const { return truth_; }
   /// Classes of what is solid.
   const std::vector<SurfaceClass>& surfaceClasses() const { return surfaceClasses_; }
+  /// Those that the current view may show.
+  const std::set<std::size_t>& classesInView() const { return classesInView_; }
   /// Of the picture's pixels, found before shade().
   const PixelClasses& pixelClasses() const { return *pixelClasses_; }
   /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
@@ -97,6 +99,7 @@ class ScenePass {
   };
   struct Tile;
   void uploadLights(const WorldState& state);
+  void findClassesIn(const View& view, const WorldState& state, const std::vector<char>& drawn);
   void clearShading();
   const Texture2D* shadeTogether(const View& view);
   std::vector<Tile> tilesOf(std::span<const View> views, const WorldState& state, const std::vector<char>& drawn);
@@ -116,6 +119,8 @@ class ScenePass {
   std::optional<Plan> outline_;  ///< reference: the same plan at one wavelength
   RenderTables tables_;
   std::vector<SurfaceClass> surfaceClasses_;
+  std::set<std::size_t> classesInView_;
+  std::vector<char> sunAlone_;                ///< one flag per entity: no lamp and no shadow matters to any of it
   std::optional<SharedShading> shared_;       ///< made when first needed
   std::optional<PixelClasses> pixelClasses_;  ///< made with the tables
   SurfaceBuffers solid_;

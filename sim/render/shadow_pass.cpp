@@ -24,6 +24,8 @@ static_assert(sizeof(GpuShadow) == 160);
 /// Added to that where clear facets are known.
 constexpr int kClear = 8;
 
+/// Directions that differ by less are the same: over a kilometre a micrometre.
+constexpr double kSameLight = 1e-9;
 /// Half a unit in the last place of a float.
 constexpr double kRounding = 6e-8;
 
@@ -76,7 +78,8 @@ LightPlace ShadowPass::lightFor(std::size_t caster, std::size_t light, const Wor
 ShadowPass::Map& ShadowPass::mapOf(std::size_t caster, std::size_t light, const LightPlace& place) {
   Map& map = maps_[{caster, light}];
   if (trees_->of(caster).triangles < kDense) return map;
-  const bool drawn = map.layer >= 0 && map.projection && map.light.at == place.at;
+  // Rounding of a body's attitude is no other light.
+  const bool drawn = map.layer >= 0 && map.projection && glm::length(map.light.at - place.at) <= kSameLight * glm::length(place.at);
   if (drawn) return map;
   if (map.layer < 0 && layersTaken_ == layers_.count()) return map;
   map.light = place;

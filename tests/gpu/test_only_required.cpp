@@ -392,7 +392,7 @@ TEST(OnlyRequired, WhatNoChannelWouldNotice) {
   EXPECT_TRUE(both.plan.terms.lights && both.plan.terms.shadows && both.plan.terms.scatteredSun);
   EXPECT_FALSE(longWave.plan.terms.lights || longWave.plan.terms.shadows || longWave.plan.terms.scatteredSun);
   EXPECT_EQ(longWave.plan.lightCount, 0);
-  expectGone(both, longWave, {"lightAt", "nodeLight", "shareSeen", "shadowMaps", "const int AIR_PARTS = 3;", "uniform samplerBuffer columns"});
+  expectGone(both, longWave, {"lightAt", "nodeLight", "shareSeen", "shadowMaps", "const int AIR_PARTS = 3;", "Vec3 reflectionColumns("});
   EXPECT_EQ(both.count("shadow maps"), 1);
   EXPECT_EQ(longWave.count("shadow maps"), 0);
   // With both channels the sun is looked for in the visible one's loop alone.
