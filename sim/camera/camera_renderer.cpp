@@ -66,6 +66,7 @@ void CameraRenderer::begin(const WorldState& state) {
   view_ = cameraView(camera_, state, camera_.samples);
   view_.wanted = wanted_;
   view_.grouped = camera_.sharesShading ? camera_.samples : 1;
+  view_.subpixels = camera_.samples;
   if (const Pinhole now = cameraAt(camera_, state).pinhole; now.focalLength_m != focalLength_m_) {
     solidAngles_ = std::make_shared<const Pinhole::SolidAngles>(now.solidAngles());
     focalLength_m_ = now.focalLength_m;
@@ -74,6 +75,7 @@ void CameraRenderer::begin(const WorldState& state) {
   present_.assign(simulation_.entities.size(), 1);
   if (camera_.mount.carrier >= 0) present_[static_cast<size_t>(camera_.mount.carrier)] = 0;
   small_ = findSmallBodies(simulation_, state_, view_, camera_.smallBody_px * camera_.samples);
+  view_.kept = smallBodiesIn(simulation_, state_, view_, small_, present_);
   std::vector<char> drawn(present_);
   for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = present_[e] && !small_[e];
   if (direct_ && buffered_) pass_ = seesTransparent() ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();

@@ -401,6 +401,28 @@ std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
   return lines;
 }
 
+glm::ivec4 smallBodiesIn(const Simulation& sim, const WorldState& state, const View& v, const std::vector<char>& small, const std::vector<char>& present) {
+  // Half the side of a square that fits a picture of the ball turned by any angle, and a subpixel for rounding.
+  constexpr double kHalf = 0.75, kRoom = 2.0;
+  glm::dvec2 low(INFINITY), high(-INFINITY);
+  for (size_t e = 0; e < small.size(); ++e) {
+    const int entity = static_cast<int>(e);
+    const double extent = extentOf(sim, state, v, entity);
+    if (!small[e] || !present[e] || !mayShow(v, centreOf(sim, state, entity), static_cast<double>(sim.entities[e].boundingRadius_m)) || !std::isfinite(extent))
+      continue;
+    const glm::dvec2 at = filmPosition(v, glm::transpose(v.localFromCamera) * (centreOf(sim, state, entity) - v.position));
+    // Off the axis a ball's picture is longer.
+    const glm::dvec2 off((at.x - v.axisX) * v.tanPerPixelX, (at.y - v.axisY) * v.tanPerPixelY);
+    const double reach = kHalf * extent * (1.0 + glm::dot(off, off)) + kRoom;
+    low = glm::min(low, at - reach), high = glm::max(high, at + reach);
+  }
+  const glm::ivec2 size(v.width, v.height);
+  if (!(low.x < high.x) || high.x <= 0.0 || high.y <= 0.0 || low.x >= size.x || low.y >= size.y) return glm::ivec4(0);
+  const glm::ivec2 first = glm::clamp(glm::ivec2(glm::floor(low)), glm::ivec2(0), size - 1),
+                   last = glm::clamp(glm::ivec2(glm::ceil(high)), glm::ivec2(1), size);
+  return {first, last - first};
+}
+
 void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small,
                     const std::vector<char>& present, const std::vector<int>& lines, const std::vector<char>* wanted) {
   const View& v = image.view();

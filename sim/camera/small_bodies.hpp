@@ -18,6 +18,10 @@ std::vector<char> findSmallBodies(const Simulation& simulation, const WorldState
 /// diameter D, A = S / 4 on average over directions (Cauchy) and P = pi D at most.
 std::vector<int> zoomedLines(const Simulation& simulation, int most, double accuracy);
 
+/// The part of a view (corner, size) in which small bodies may show, with their views' corners; of no size where none does.
+glm::ivec4 smallBodiesIn(const Simulation& simulation, const WorldState& state, const View& view, const std::vector<char>& small,
+                         const std::vector<char>& present);
+
 /// Draws every small body that may show and adds it to the image. `present`: all entities that can be seen or hide (small ones too).
 /// `lines`: as zoomedLines(). `wanted`: one flag per subpixel, or null for all. The image must hold everything but the small bodies; since each
 /// zoomed view shows what the others hide, their order does not matter.

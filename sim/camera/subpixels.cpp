@@ -1,5 +1,7 @@
 #include "sim/camera/subpixels.hpp"
 
+#include <stdexcept>
+
 namespace pitviper {
 
 TruthPixel truthAt(const RawImage& raw, size_t p) {
@@ -10,7 +12,15 @@ TruthPixel truthAt(const RawImage& raw, size_t p) {
 Subpixels::Subpixels(const Plan& plan, const View& view, RawImage raw) : view_(view), slotCount_(static_cast<size_t>(plan.slotCount)), raw_(std::move(raw)) {}
 
 double Subpixels::slot(size_t s, size_t p) const {
-  const double drawn = static_cast<double>(raw_.groups[s / 4][4 * p + s % 4]);
+  double drawn = 0.0;
+  if (raw_.subpixels == 1) {
+    drawn = static_cast<double>(raw_.groups[s / 4][4 * p + s % 4]);
+  } else {
+    const auto width = static_cast<size_t>(view_.width);
+    const int x = static_cast<int>(p % width) - raw_.kept.x, y = static_cast<int>(p / width) - raw_.kept.y;
+    if (x < 0 || y < 0 || x >= raw_.kept.z || y >= raw_.kept.w) throw std::logic_error("a subpixel that was not kept");
+    drawn = static_cast<double>(raw_.keptGroups[s / 4][4 * (static_cast<size_t>(y) * static_cast<size_t>(raw_.kept.z) + static_cast<size_t>(x)) + s % 4]);
+  }
   const auto more = added_.find(p);
   return more == added_.end() ? drawn : drawn + more->second[s];
 }
@@ -55,13 +65,28 @@ void FilmWeights::follow(const View& v, int samples) {
     }
 }
 
-CameraImage Subpixels::resolve(const Pinhole& pinhole, int samples, FilmWeights& weights) const {
-  CameraImage image;
-  image.width = pinhole.width;
-  image.height = pinhole.height;
-  const size_t width = static_cast<size_t>(pinhole.width), pixels = width * static_cast<size_t>(pinhole.height);
-  image.slots.assign(slotCount_, std::vector<double>(pixels, 0.0));
-  auto pixelOf = [&](int x, int y) { return static_cast<size_t>(pinhole.height - 1 - y / samples) * width + static_cast<size_t>(x / samples); };
+/// What the GPU has resolved, and what was added since.
+void Subpixels::takePixels(CameraImage& image, int samples) const {
+  const size_t width = static_cast<size_t>(image.width), rows = static_cast<size_t>(image.height);
+  for (size_t s = 0; s < slotCount_; ++s) {
+    const float* in = raw_.groups[s / 4].data() + s % 4;
+    for (size_t row = rows; row-- > 0;)
+      for (size_t x = 0; x < width; ++x, in += 4) image.slots[s][row * width + x] = static_cast<double>(*in);
+  }
+  for (const auto& [p, sums] : added_) {
+    const int x = static_cast<int>(p % static_cast<size_t>(view_.width)), y = static_cast<int>(p / static_cast<size_t>(view_.width));
+    double all = 0.0;
+    for (int j = 0; j < samples; ++j)
+      for (int i = 0; i < samples; ++i) all += projectedSolidAngle_sr(x / samples * samples + i, y / samples * samples + j);
+    const double weight = projectedSolidAngle_sr(x, y) / all;
+    const size_t pixel = (rows - 1 - static_cast<size_t>(y / samples)) * width + static_cast<size_t>(x / samples);
+    for (size_t s = 0; s < slotCount_; ++s) image.slots[s][pixel] += weight * sums[s];
+  }
+}
+
+void Subpixels::takeSubpixels(CameraImage& image, int samples, FilmWeights& weights) const {
+  const size_t width = static_cast<size_t>(image.width), pixels = width * static_cast<size_t>(image.height);
+  auto pixelOf = [&](int x, int y) { return static_cast<size_t>(image.height - 1 - y / samples) * width + static_cast<size_t>(x / samples); };
   if (samples > 1) weights.follow(view_, samples);
   // Slot by slot and row by row: what is written stays in the cache.
   for (size_t s = 0; s < slotCount_; ++s) {
@@ -86,14 +111,31 @@ CameraImage Subpixels::resolve(const Pinhole& pinhole, int samples, FilmWeights&
   if (samples > 1)
     for (auto& slot : image.slots)
       for (size_t p = 0; p < pixels; ++p) slot[p] /= weights.pixel_sr()[p];
+}
+
+/// The subpixel that truth is of.
+size_t Subpixels::middleOf(size_t pixel, int samples) const {
+  const int columns = view_.width / samples, row = static_cast<int>(pixel) / columns, column = static_cast<int>(pixel) % columns;
+  return index(column * samples + samples / 2, (view_.height / samples - 1 - row) * samples + samples / 2);
+}
+
+CameraImage Subpixels::resolve(const Pinhole& pinhole, int samples, FilmWeights& weights) const {
+  CameraImage image;
+  image.width = pinhole.width;
+  image.height = pinhole.height;
+  const size_t width = static_cast<size_t>(pinhole.width), pixels = width * static_cast<size_t>(pinhole.height);
+  image.slots.assign(slotCount_, std::vector<double>(pixels, 0.0));
+  const bool resolved = raw_.subpixels > 1;
+  if (resolved) takePixels(image, samples);
+  else takeSubpixels(image, samples, weights);
   if (!hasTruth()) return image;
   image.truth.resize(pixels);
-  for (int row = 0; row < pinhole.height; ++row)
-    for (int column = 0; column < pinhole.width; ++column) {
-      const size_t p = index(column * samples + samples / 2, (pinhole.height - 1 - row) * samples + samples / 2);
-      const auto replaced = truth_.find(p);
-      image.truth[static_cast<size_t>(row) * width + static_cast<size_t>(column)] = replaced == truth_.end() ? truthAt(raw_, p) : replaced->second;
-    }
+  for (size_t p = 0; p < pixels; ++p) {
+    const size_t middle = middleOf(p, samples);
+    const auto replaced = truth_.find(middle);
+    image.truth[p] = replaced != truth_.end() ? replaced->second
+                                              : truthAt(raw_, resolved ? (static_cast<size_t>(pinhole.height) - 1 - p / width) * width + p % width : middle);
+  }
   return image;
 }
 

@@ -26,13 +26,14 @@ class FilmWeights {
 
 class Subpixels {
  public:
-  /// Takes what a pass drew for `view` (the camera's own view, samples x samples subpixels).
+  /// Takes what a pass drew for `view` (the camera's own view, samples x samples subpixels), resolved or not. Of what was resolved integrals are those of
+  /// View::kept alone.
   Subpixels(const Plan& plan, const View& view, RawImage raw);
 
   const View& view() const { return view_; }
   size_t index(int x, int y) const { return static_cast<size_t>(y) * static_cast<size_t>(view_.width) + static_cast<size_t>(x); }
   size_t slotCount() const { return slotCount_; }
-  double slot(size_t s, size_t pixel) const;
+  double slot(size_t s, size_t subpixel) const;
   /// Adds to a subpixel's integrals, in double precision: a faint target must not drown in the rounding of its background.
   void add(size_t s, size_t pixel, double value);
   /// Integral of cos(psi) dOmega over a subpixel [sr].
@@ -44,6 +45,9 @@ class Subpixels {
   CameraImage resolve(const Pinhole& pinhole, int samples, FilmWeights& weights) const;
 
  private:
+  void takePixels(CameraImage& image, int samples) const;
+  void takeSubpixels(CameraImage& image, int samples, FilmWeights& weights) const;
+  size_t middleOf(size_t pixel, int samples) const;
   View view_;
   size_t slotCount_;
   RawImage raw_;

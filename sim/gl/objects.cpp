@@ -237,22 +237,33 @@ void drawFullScreen(const RenderTarget& target, const Program& program, const st
   checkGl("drawing a full screen");
 }
 
-void Readback::copy(Buffer& into, const RenderTarget& from, unsigned attachment, unsigned format, unsigned type, std::size_t bytes) {
+void Readback::copy(Buffer& into, const RenderTarget& from, unsigned attachment, unsigned format, unsigned type, const glm::ivec4& part,
+                    std::size_t bytesEach) {
+  const std::size_t bytes = static_cast<std::size_t>(part.z) * static_cast<std::size_t>(part.w) * bytesEach;
   if (into.bytes() != bytes) into.upload(nullptr, bytes);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, from.name());
   glReadBuffer(attachment);
   into.bindPack();
-  glReadPixels(0, 0, from.width(), from.height(), format, type, nullptr);
+  glReadPixels(part.x, part.y, part.z, part.w, format, type, nullptr);
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
 }
 
 void Readback::start(const RenderTarget& target, std::size_t count, const RenderTarget* identityOf) {
-  pixels_ = static_cast<size_t>(target.width()) * static_cast<size_t>(target.height());
+  const glm::ivec4 whole(0, 0, target.width(), target.height());
+  if (identityOf) copy(identity_, *identityOf, GL_COLOR_ATTACHMENT0, GL_RG_INTEGER, GL_UNSIGNED_INT, whole, 8);
+  start(target, 0, count, whole);
   hasIdentity_ = identityOf != nullptr;
+}
+
+void Readback::start(const RenderTarget& target, std::size_t first, std::size_t count, const glm::ivec4& part) {
+  pixels_ = static_cast<size_t>(part.z) * static_cast<size_t>(part.w);
+  hasIdentity_ = false;
+  // A driver without a GPU copies on this thread: beside threads that still draw it would take several times as long.
+  if (currentLimits().software) glFinish();
   colours_.resize(count);
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  for (size_t i = 0; i < count; ++i) copy(colours_[i], target, GL_COLOR_ATTACHMENT0 + static_cast<unsigned>(i), GL_RGBA, GL_FLOAT, pixels_ * 16);
-  if (identityOf) copy(identity_, *identityOf, GL_COLOR_ATTACHMENT0, GL_RG_INTEGER, GL_UNSIGNED_INT, pixels_ * 8);
+  for (size_t i = 0; i < count; ++i) copy(colours_[i], target, GL_COLOR_ATTACHMENT0 + static_cast<unsigned>(first + i), GL_RGBA, GL_FLOAT, part, 16);
+  if (fence_) glDeleteSync(static_cast<GLsync>(fence_));
   fence_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
   glFlush();
 }

@@ -161,6 +161,8 @@ class Readback {
   /// Begins copying colour attachments [0, count) as RGBA floats; of another target of the same size, if given, the first colour as pairs of whole
   /// numbers.
   void start(const RenderTarget& target, std::size_t count, const RenderTarget* identityOf = nullptr);
+  /// Of a part (corner, size), colours [first, first + count).
+  void start(const RenderTarget& target, std::size_t first, std::size_t count, const glm::ivec4& part);
   struct Pixels {
     std::vector<std::vector<float>> colours;  ///< each width * height * 4
     std::vector<std::uint32_t> identity;      ///< width * height * 2, or empty
@@ -172,7 +174,7 @@ class Readback {
   Readback& operator=(Readback&&) = default;
 
  private:
-  void copy(Buffer& into, const RenderTarget& from, unsigned attachment, unsigned format, unsigned type, std::size_t bytes);
+  void copy(Buffer& into, const RenderTarget& from, unsigned attachment, unsigned format, unsigned type, const glm::ivec4& part, std::size_t bytesEach);
   std::vector<Buffer> colours_;
   Buffer identity_;
   bool hasIdentity_ = false;

@@ -22,6 +22,8 @@ struct View {
   glm::dvec3 depthCentre{0.0};                      ///< with onlyEntity: depth has its digits around this place (local frame) ...
   double depthRadius_m = 1.0;                       ///< ... within this distance
   std::shared_ptr<const std::vector<char>> wanted;  ///< one flag per pixel, row 0 at the bottom: the others need no colour; null: all do
+  int subpixels = 1;                                ///< so many by so many are a pixel of a camera, and only its pixels are read back ...
+  glm::ivec4 kept{0};                               ///< ... but for this part (corner, size), in which each is
   int grouped = 1;                                  ///< so many by so many pixels may be shaded as one where they are alike
   double pixelTan2 = 0.0;                           ///< (tangent per whole pixel)^2, for the truth layer of the fragment's area
 

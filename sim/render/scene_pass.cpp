@@ -206,17 +206,30 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   }
   const TimedPart part("shading");
   findClassesIn(v, state, drawn);
-  pixelClasses_->find(current_->visibility, shadeTogether(v), v.grouped);
+  const auto shared = shadeTogether(v);
+  pixelClasses_->find(current_->visibility, shared ? &shared->bends : nullptr, v.grouped);
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
   if (partial_) clearShading();
   shade(current_->shading, current_->visibility);
+  drawn_ = v;
+  resolved_ = truthOf_ = nullptr;
+  if (v.subpixels > 1 && how_ != Shading::Reference) {
+    const TimedPart resolving("resolve");
+    const auto groups = static_cast<size_t>(plan_.groupCount());
+    if (!resolve_) resolve_.emplace(library_, shared ? groups : current_->shading.colourCount(), groups);
+    resolved_ = &resolve_->run(current_->shading, v, shared ? &*shared : nullptr);
+    if (shared && truth_) truthOf_ = &shared->shaded;
+  }
   checkGl("drawing a frame");
 }
 
 /// A pass over the film costs something where a class has no pixels, too.
 void ScenePass::findClassesIn(const View& v, const WorldState& state, const std::vector<char>& drawn) {
   classesInView_ = {0};
+  // Of the first picture all: a driver compiles what is left of a program when it is first used, and no later frame is to wait for that.
+  for (size_t c = 1; !warm_ && c < surfaceClasses_.size(); ++c) classesInView_.insert(c);
+  warm_ = true;
   for (const DrawItem& d : tables_.draws) {
     const auto add = [&](bool sunAlone) {
       classesInView_.insert(static_cast<size_t>(d.surfaceClass));
@@ -232,8 +245,8 @@ void ScenePass::findClassesIn(const View& v, const WorldState& state, const std:
 }
 
 /// Pixels of several subpixels, each once; which of them need more. Null where each subpixel is shaded by itself.
-const Texture2D* ScenePass::shadeTogether(const View& v) {
-  if (v.grouped < 2 || v.onlyEntity >= 0 || !sharesShading()) return nullptr;
+std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
+  if (v.grouped < 2 || v.onlyEntity >= 0 || !sharesShading()) return {};
   if (!shared_)
     shared_.emplace(library_, plan_.groupCount(), current_->shading.colourCount(), kBendShare * (plan_.accuracy > 0.0 ? plan_.accuracy : kUsualAccuracy));
   View whole = v;
@@ -250,9 +263,10 @@ const Texture2D* ScenePass::shadeTogether(const View& v) {
   partial_ = false;
   shade(pixels.shading, pixels.visibility);
   shared_->findBends(current_->visibility, pixels.visibility, pixels.shading, v.grouped);
-  shared_->spread(pixels.shading, current_->shading, v.grouped);
+  if (v.subpixels != v.grouped) shared_->spread(pixels.shading, current_->shading, v.grouped, glm::ivec4(0));
+  else if (v.kept.z > 0) shared_->spread(pixels.shading, current_->shading, v.grouped, v.kept);
   view_.bindUniform(0);
-  return &shared_->bends();
+  return SharedPixels{pixels.shading, shared_->bends()};
 }
 
 void ScenePass::clearShading() {
@@ -278,6 +292,7 @@ void ScenePass::drawTiles(const std::vector<View>& views, const WorldState& stat
   for (size_t first = 0; first < views.size(); first += most) {
     const auto tiles = tilesOf(std::span(views).subspan(first, std::min(most, views.size() - first)), state, drawn);
     drawTilePicture(tiles, state);
+    resolved_ = truthOf_ = nullptr;
     startReadback(true);
     const auto pixels = readback_.wait();
     for (size_t i = 0; i < tiles.size(); ++i) take(first + i, cut(pixels, tiles[i]));
@@ -374,15 +389,25 @@ RawImage ScenePass::cut(const Readback::Pixels& picture, const Tile& t) const {
 
 void ScenePass::startReadback(bool identity) {
   const TimedPart part("readback");
-  readback_.start(current_->shading, current_->shading.colourCount(), identity ? &current_->visibility : nullptr);
+  const auto groups = static_cast<size_t>(plan_.groupCount());
+  const RenderTarget& picture = resolved_ ? *resolved_ : current_->shading;
+  readback_.start(picture, picture.colourCount(), identity ? &current_->visibility : nullptr);
+  if (truthOf_) truthReadback_.start(*truthOf_, groups, truthTargets().size(), {0, 0, picture.width(), picture.height()});
+  if (resolved_ && drawn_.kept.z > 0) keptReadback_.start(current_->shading, 0, groups, drawn_.kept);
 }
 
 RawImage ScenePass::finishReadback() {
   const TimedPart part("readback");
   auto pixels = readback_.wait();
   RawImage image;
-  image.width = current_->shading.width();
-  image.height = current_->shading.height();
+  image.width = (resolved_ ? *resolved_ : current_->shading).width();
+  image.height = (resolved_ ? *resolved_ : current_->shading).height();
+  if (resolved_) {
+    image.subpixels = drawn_.subpixels;
+    image.kept = drawn_.kept;
+    if (drawn_.kept.z > 0) image.keptGroups = keptReadback_.wait().colours;
+    if (truthOf_) image.truth = truthReadback_.wait().colours;
+  }
   for (size_t i = 0; i < pixels.identity.size(); i += 2) image.entity.push_back(tables_.draws[pixels.identity[i]].entity);
   for (size_t i = 0; i < pixels.colours.size(); ++i)
     (i < static_cast<size_t>(plan_.groupCount()) ? image.groups : image.truth).push_back(std::move(pixels.colours[i]));

@@ -13,6 +13,7 @@
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/light_relevance.hpp"
 #include "sim/render/pixel_classes.hpp"
+#include "sim/render/resolve_pass.hpp"
 #include "sim/render/shading_program.hpp"
 #include "sim/render/shadow_pass.hpp"
 #include "sim/render/shared_shading.hpp"
@@ -23,9 +24,12 @@
 
 namespace pitviper {
 
-/// Integrals of kernel x radiance per subpixel, as read back. Row 0 is the bottom.
+/// Integrals of kernel x radiance per subpixel, or per pixel (View::subpixels), as read back. Row 0 is the bottom.
 struct RawImage {
   int width = 0, height = 0;
+  int subpixels = 1;   ///< so many by so many of the view were resolved into each
+  glm::ivec4 kept{0};  ///< corner and size of a part that is there subpixel by subpixel as well
+  std::vector<std::vector<float>> keptGroups;
   std::vector<std::vector<float>> groups;  ///< four slots each, RGBA
   std::vector<std::vector<float>> truth;   ///< three layers of RGBA where asked for
   std::vector<int> entity;                 ///< what each pixel sees, -1 the background. Empty unless asked for
@@ -101,7 +105,7 @@ class ScenePass {
   void uploadLights(const WorldState& state);
   void findClassesIn(const View& view, const WorldState& state, const std::vector<char>& drawn);
   void clearShading();
-  const Texture2D* shadeTogether(const View& view);
+  std::optional<SharedPixels> shadeTogether(const View& view);
   std::vector<Tile> tilesOf(std::span<const View> views, const WorldState& state, const std::vector<char>& drawn);
   void bindTile(std::size_t i) const;
   void drawTilePicture(const std::vector<Tile>& tiles, const WorldState& state);
@@ -132,8 +136,12 @@ class ScenePass {
   Buffer nodes_, draws_, lights_, view_, pixelView_, tileViews_, tileDraws_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;
-  bool partial_ = false;
-  Readback readback_;
+  bool partial_ = false, warm_ = false;
+  std::optional<ResolvePass> resolve_;      ///< made when first needed
+  const RenderTarget* truthOf_ = nullptr;   ///< where truth is by itself
+  const RenderTarget* resolved_ = nullptr;  ///< of the last drawn image, where it was
+  View drawn_;
+  Readback readback_, keptReadback_, truthReadback_;
 };
 
 /// A pass in the mode the scenario asks for. `classes`: as ScenePass's.

@@ -20,12 +20,14 @@ std::string spreadText(std::size_t colours) {
   return declared + "void main() {\n  ivec2 p = ivec2(gl_FragCoord.xy) / grouped;\n" + copied + "}\n";
 }
 
-void drawAll(const Program& program, const RenderTarget& into, int grouped) {
+void drawAll(const Program& program, const RenderTarget& into, int grouped, const glm::ivec4& part = glm::ivec4(0)) {
   into.bind();
+  into.setPart(part);
   program.use();
   glUniform1i(program.uniform("grouped"), grouped);
   glDisable(GL_DEPTH_TEST);
   glDrawArrays(GL_TRIANGLES, 0, 3);
+  into.setPart(glm::ivec4(0));
 }
 
 }  // namespace
@@ -57,10 +59,10 @@ void SharedShading::findBends(const RenderTarget& subpixels, const RenderTarget&
   drawAll(find_, *bends_, grouped);
 }
 
-void SharedShading::spread(const RenderTarget& shaded, RenderTarget& into, int grouped) const {
+void SharedShading::spread(const RenderTarget& shaded, RenderTarget& into, int grouped, const glm::ivec4& part) const {
   for (std::size_t i = 0; i < shaded.colourCount(); ++i) shaded.colour(i).bind(kColours + static_cast<unsigned>(i));
   into.select(0, into.colourCount());
-  drawAll(spread_, into, grouped);
+  drawAll(spread_, into, grouped, part);
 }
 
 }  // namespace pitviper

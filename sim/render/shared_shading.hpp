@@ -16,8 +16,8 @@ class SharedShading {
   void findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const RenderTarget& shaded, int grouped);
   /// 1 for these, as findBends() left it.
   const Texture2D& bends() const { return bends_->colour(0); }
-  /// Gives subpixels what their pixels have.
-  void spread(const RenderTarget& shaded, RenderTarget& into, int grouped) const;
+  /// Gives subpixels what their pixels have; of a part (corner, size), or of all.
+  void spread(const RenderTarget& shaded, RenderTarget& into, int grouped, const glm::ivec4& part) const;
 
  private:
   int groups_;
