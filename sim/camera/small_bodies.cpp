@@ -36,6 +36,8 @@ View zoomedView(const Simulation& sim, const WorldState& state, const View& v, i
   const glm::dvec3 centre = centreOf(sim, state, entity), line = centre - v.position;
   const double distance = glm::length(line);
   View z = v;
+  z.subpixels = z.grouped = 1;
+  z.kept = glm::ivec4(0);
   z.width = z.height = size;
   z.localFromCamera = localFromCamera({v.position, orientationAlong(line, kRoll_rad)});
   z.tanPerPixelX = z.tanPerPixelY = 2.04 * radius / std::sqrt(distance * distance - radius * radius) / (size - 2.0 * kAcross);
