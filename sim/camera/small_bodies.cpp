@@ -404,8 +404,9 @@ std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
 }
 
 glm::ivec4 smallBodiesIn(const Simulation& sim, const WorldState& state, const View& v, const std::vector<char>& small, const std::vector<char>& present) {
-  // Half the side of a square that fits a picture of the ball turned by any angle, and a subpixel for rounding.
-  constexpr double kHalf = 0.75, kRoom = 2.0;
+  // Half the diagonal of the square picture of the ball that zoomedView() makes, by the ball: 1.02 x 16 / 15.38 / sqrt(2) where it has fewest lines, its
+  // middle shifted; and two subpixels.
+  constexpr double kHalf = 0.8, kRoom = 2.0;
   glm::dvec2 low(INFINITY), high(-INFINITY);
   for (size_t e = 0; e < small.size(); ++e) {
     const int entity = static_cast<int>(e);

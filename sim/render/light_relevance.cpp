@@ -62,13 +62,17 @@ LightRelevance::Part LightRelevance::partOf(const Plan& plan, const RenderTables
   Part part;
   part.draw = draw;
   part.most.assign(nodes_.size(), 0.0);
-  part.alike =
+  const bool alike =
       std::all_of(reflections.begin(), reflections.end(), [](const auto& r) { return r->lobe().function.empty() && r->axes()[0].angle == Angle::None; });
+  if (alike) part.component.assign(reflections.size(), std::vector<double>(nodes_.size(), 0.0));
   const auto placeOf = [](size_t k) { return 4 * (k / 3) + k % 3; };
   if (!t.general) {
     for (size_t i = 0; i < nodes_.size(); ++i)
-      for (size_t k = 0; k < reflections.size(); ++k)
-        part.most[i] += static_cast<double>(t.rows[each * (d.row + i) + placeOf(k)]) * reflections[k]->lobe().maximum;
+      for (size_t k = 0; k < reflections.size(); ++k) {
+        const double own = static_cast<double>(t.rows[each * (d.row + i) + placeOf(k)]) * reflections[k]->lobe().maximum;
+        part.most[i] += own;
+        if (alike) part.component[k][i] = own;
+      }
     return part;
   }
   const GpuMaterial& g = t.materials[d.material];
@@ -77,6 +81,7 @@ LightRelevance::Part LightRelevance::partOf(const Plan& plan, const RenderTables
   const double emitted = g.kinds[2] == 1 ? 1.0 : std::max(rangeOf(simulation_, g.transmission[2]).first, 0.0);
   std::vector<double> greatest;  // of each component's texture
   for (const auto& c : g.components) greatest.push_back(std::max(rangeOf(simulation_, c[1]).second, 0.0));
+  if (states > 1) part.component.clear();
   for (size_t i = 0; i < nodes_.size(); ++i) {
     const auto hemispherical = [&](size_t place) { return endsOf(t.hemispherical, g.kinds[3], states * g.counts[2], each, nodes_.size(), i, place).first; };
     double byAmbient = 0.0;
@@ -84,6 +89,7 @@ LightRelevance::Part LightRelevance::partOf(const Plan& plan, const RenderTables
       const double own =
           endsOf(t.columns, g.counts[3], states * g.counts[0] * g.counts[1], each, nodes_.size(), i, placeOf(k)).second * reflections[k]->lobe().maximum;
       part.most[i] += own * greatest[k];
+      if (!part.component.empty()) part.component[k][i] = own;
       byAmbient = std::max(byAmbient, reflectionOf(own, hemispherical(placeOf(k))));
     }
     const double ambient = plan.terms.ambient ? nodes_[i].mean(*simulation_.ambient) : 0.0;
@@ -102,17 +108,24 @@ double LightRelevance::reflection(const Part& part, std::size_t node, const Rend
   return std::min(reflectionOf(part.most[node], part.emissivity[node] * nodes_[node].planck(part.coldest_K.value_or(d.temperature_K))), part.byAmbient[node]);
 }
 
-double LightRelevance::greatest(const std::vector<double>& most, const std::vector<double>& self, size_t light) const {
+double LightRelevance::ratioOf(const std::vector<double>& most, const std::vector<double>& self, size_t light, size_t at) const {
   const double* intensity = &intensity_[light * nodes_.size()];
+  if (!(accuracy_ > 0.0)) return reflectionOf(most[at] * intensity[at], self[at]);
+  double sent = 0.0, own = 0.0;
+  for (size_t i = 0; i < nodes_.size(); ++i) sent += weight_[at][i] * most[i] * intensity[i], own += weight_[at][i] * self[i];
+  return reflectionOf(sent, std::max(own, floor_[at]));
+}
+
+double LightRelevance::inSunshineOf(const Part& part, size_t light, size_t slot) const {
+  if (sunshine_.empty() || part.component.empty()) return INFINITY;
   double worst = 0.0;
-  if (!(accuracy_ > 0.0)) {
-    for (size_t i = 0; i < nodes_.size(); ++i) worst = std::max(worst, reflectionOf(most[i] * intensity[i], self[i]));
-    return worst;
-  }
-  for (size_t s = 0; s < weight_.size(); ++s) {
-    double sent = 0.0, own = 0.0;
-    for (size_t i = 0; i < nodes_.size(); ++i) sent += weight_[s][i] * most[i] * intensity[i], own += weight_[s][i] * self[i];
-    worst = std::max(worst, reflectionOf(sent, std::max(own, floor_[s])));
+  for (const auto& f : part.component) {
+    double lamp = 0.0, sun = 0.0;
+    for (size_t i = 0; i < nodes_.size(); ++i) {
+      const double own = weight_[slot][i] * f[i];
+      lamp += own * intensity_[light * nodes_.size() + i], sun += own * sunshine_[i];
+    }
+    worst = std::max(worst, reflectionOf(lamp, sun));
   }
   return worst;
 }
@@ -122,20 +135,21 @@ void LightRelevance::follow(const RenderTables& tables) {
   ratio_.assign(simulation_.entities.size() * lights, 0.0);
   inSunshine_ = ratio_;
   for (const Part& part : parts_) {
-    std::vector<double> self(nodes_.size(), 0.0), sunlit;
+    std::vector<double> self(nodes_.size(), 0.0);
     for (size_t i = 0; i < nodes_.size(); ++i)
       if (const double reflected = reflection(part, i, tables); reflected > 0.0) self[i] = part.most[i] / reflected;
-    sunlit = self;
-    for (size_t i = 0; part.alike && !sunshine_.empty() && i < nodes_.size(); ++i) sunlit[i] += part.most[i] * sunshine_[i];
     for (size_t l = 0; l < lights; ++l) {
       const size_t at = static_cast<size_t>(tables.draws[part.draw].entity) * lights + l;
-      ratio_[at] = std::max(ratio_[at], greatest(part.most, self, l));
-      inSunshine_[at] = std::max(inSunshine_[at], greatest(part.most, sunlit, l));
+      for (size_t k = 0; k < (accuracy_ > 0.0 ? weight_.size() : nodes_.size()); ++k) {
+        const double inShade = ratioOf(part.most, self, l, k);
+        ratio_[at] = std::max(ratio_[at], inShade);
+        inSunshine_[at] = std::max(inSunshine_[at], accuracy_ > 0.0 ? std::min(inShade, inSunshineOf(part, l, k)) : inShade);
+      }
     }
   }
 }
 
-/// On a facet that lies as kSunlit says and whose normals turn away from it.
+/// On a place that lies as kSunlit says.
 std::vector<double> LightRelevance::sunshineOf(const Plan& plan) const {
   if (!simulation_.sun || !plan.terms.lights) return {};
   const double sine = glm::dot(simulation_.sun->toSun, simulation_.frame.up(glm::dvec3(0.0)));
@@ -144,7 +158,7 @@ std::vector<double> LightRelevance::sunshineOf(const Plan& plan) const {
   if (simulation_.air) way = simulation_.air->powered(simulation_.air->amounts({0.0, sine, simulation_.frame.earthRadius_m()}, physics::kFar));
   std::vector<double> all;
   for (const SpectralNode& n : nodes_)
-    all.push_back(0.5 * kSunlit * n.mean(simulation_.sun->irradiance) * (simulation_.air ? std::exp(-Atmosphere::depthOf(n.air, way)) : 1.0));
+    all.push_back(kSunlit * n.mean(simulation_.sun->irradiance) * (simulation_.air ? std::exp(-Atmosphere::depthOf(n.air, way)) : 1.0));
   return all;
 }
 

@@ -7,8 +7,7 @@
 
 namespace pitviper {
 
-/// Cosine between a facet and the sun from which on it is in full sunshine; sim/render/glsl/light_demand.glsl has it too. Its normals may turn from it by
-/// as much as makes that half.
+/// Cosine between a normal and the sun from which on a place is in full sunshine; sim/render/glsl/light_demand.glsl has it too.
 constexpr double kSunlit = 0.3;
 
 class LightRelevance {
@@ -33,11 +32,11 @@ class LightRelevance {
   /// What a lit part reflects and emits at each node, whatever its temperature.
   struct Part {
     std::size_t draw = 0;
-    std::vector<double> most;         ///< of a point light's intensity sent on, f_max [1/sr]
-    std::vector<double> emissivity;   ///< least, of tables over angles and of textures; empty: a row holds the radiance by itself
-    std::vector<double> byAmbient;    ///< with `emissivity`: f_max by the ambient light that the part reflects, at its least [m2 sr um/W]; no dome: infinite
-    bool alike = false;               ///< reflects alike to all sides
-    std::optional<double> coldest_K;  ///< of a texture of temperatures
+    std::vector<double> most;        ///< of a point light's intensity sent on, f_max [1/sr]
+    std::vector<double> emissivity;  ///< least, of tables over angles and of textures; empty: a row holds the radiance by itself
+    std::vector<double> byAmbient;   ///< with `emissivity`: f_max by the ambient light that the part reflects, at its least [m2 sr um/W]; no dome: infinite
+    std::vector<std::vector<double>> component;  ///< what each sends on, where all do so alike to all sides [1/sr]; else empty
+    std::optional<double> coldest_K;             ///< of a texture of temperatures
   };
   Part partOf(const Plan& plan, const RenderTables& tables, std::size_t draw) const;
   /// f_max / S at a node, S: the radiance that the part has by itself.
@@ -49,8 +48,10 @@ class LightRelevance {
     return state.lightLevels[light] > 0.0 ? state.lightLevels[light] * (sunlit ? inSunshine_ : ratio_)[at] : 0.0;
   }
   std::vector<double> sunshineOf(const Plan& plan) const;
-  /// Of a part at each node: f_max, and the radiance that it has by itself; the greatest of f_max I / S.
-  double greatest(const std::vector<double>& most, const std::vector<double>& self, std::size_t light) const;
+  /// Of a part at each node: f_max, and the radiance that it has by itself; f_max I / S of a channel, or of a node without an accuracy.
+  double ratioOf(const std::vector<double>& most, const std::vector<double>& self, std::size_t light, std::size_t at) const;
+  /// The same beside what the part reflects of sunshine, whatever its textures say: of each component lamp and sun take the same share.
+  double inSunshineOf(const Part& part, std::size_t light, std::size_t slot) const;
   const Simulation& simulation_;
   std::vector<SpectralNode> nodes_;
   double accuracy_;

@@ -46,7 +46,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       apertureArea_m2_(apertureArea_m2),
       outline_(shading == Shading::Reference ? std::optional(outline(plan)) : std::nullopt),
       tables_(makeTables(simulation, tabled())),
-      surfaceClasses_(sortIntoClasses(tables_, simulation, plan, classes)),
+      surfaceClasses_(sortIntoClasses(tables_, simulation, plan, truth, classes)),
       solid_(tables_.solid),
       solids_(simulation, tables_, *scene_, library),
       relevance_(simulation, tabled(), tables_),
@@ -55,7 +55,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
   ShaderSlots slots;
   slots.constants["GROUND"] = tables_.ground;
-  const bool demand = classes && lightsVary(plan);
+  const bool demand = classes && lightsVary(plan, simulation, truth);
   slots.files["light_demand"] = std::string("sim/render/glsl/") + (demand ? "light_demand.glsl" : "light_demand_none.glsl");
   slots.files["shadow_list"] = std::string("sim/render/glsl/") + (plan.terms.shadows ? "shadow_list.glsl" : "shadow_list_none.glsl");
   addLightConstants(slots);

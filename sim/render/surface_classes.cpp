@@ -63,7 +63,7 @@ int kindOf(const SurfaceClass& c) {
 
 }  // namespace
 
-std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation& sim, const Plan& plan, bool apart) {
+std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation& sim, const Plan& plan, bool truth, bool apart) {
   if (!apart)
     return {{.modifiers = true,
              .emissionModifiers = true,
@@ -83,7 +83,7 @@ std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation
     else *at = both(*at, own);
     item.surfaceClass = item.everyLight = static_cast<int>(at - classes.begin());
   }
-  if (!lightsVary(plan)) return classes;
+  if (!lightsVary(plan, sim, truth)) return classes;
   const std::size_t all = classes.size();
   for (std::size_t c = 1; c < all; ++c) {
     classes.push_back(classes[c]);
@@ -94,7 +94,9 @@ std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation
   return classes;
 }
 
-bool lightsVary(const Plan& plan) { return plan.terms.lights && plan.lightCount > 0 && (plan.terms.shadows || plan.lightCount > 1); }
+bool lightsVary(const Plan& plan, const Simulation& sim, bool truth) {
+  return (sim.sun || !truth) && plan.terms.lights && plan.lightCount > 0 && (plan.terms.shadows || plan.lightCount > 1);
+}
 
 void addClassSlots(const SurfaceClass& own, const RenderTables& tables, ShaderSlots& slots) {
   const std::string folder = "sim/render/glsl/";

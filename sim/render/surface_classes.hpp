@@ -27,10 +27,11 @@ struct SurfaceClass {
 
 /// Classes of what is solid, the sky first, and in each solid draw the numbers of its own (DrawItem::surfaceClass, everyLight). `apart`: false puts all into
 /// one, of which each pixel costs as the costliest, but which takes a driver no longer to compile than a single program.
-std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation& simulation, const Plan& plan, bool apart);
+std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation& simulation, const Plan& plan, bool truth, bool apart);
 
-/// Whether some pixels of a plan's pictures may need no lamps and no shadows where others do.
-bool lightsVary(const Plan& plan);
+/// Whether some pixels of a plan's pictures may need no lamps and no shadows where others do. Truth tells of the first lamp, whatever it adds; only the
+/// program with the sun does.
+bool lightsVary(const Plan& plan, const Simulation& simulation, bool truth);
 
 /// Changes the slots of a program for all solid surfaces into those of one class.
 void addClassSlots(const SurfaceClass& own, const RenderTables& tables, ShaderSlots& slots);

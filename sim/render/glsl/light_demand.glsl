@@ -10,13 +10,14 @@ bool wholeSun_;
 const float kSunlit = 0.3;  // as in sim/render/light_relevance.hpp
 bool sunlit_;
 
-// Of a light's entry; says besides whether the facet is in full sunshine.
-bool sunMayBeHidden(int entry, float range) {
+// Of a light's entry; says besides whether the point is in full sunshine. Of a sun that is partly set the direction is another: who may hide it is not asked.
+bool sunMayBeHidden(int entry, vec3 normal, float range) {
+  vec4 listed = lightTexel(entry + 1);
   vec3 toSun = lightTexel(entry).xyz, up;
   float height = heightAt(range, up);
   wholeSun_ = SUN_SETS == 0 || sunShare(sunAboveHorizon(height, dot(up, view.sun.xyz), view.earth.x)) >= 1.0;
-  bool may = mayBeHidden(lightTexel(entry + 1), toSun);
-  sunlit_ = !may && wholeSun_ && dot(facet_, toViewer_) >= 0.0 && dot(facet_, toSun) >= kSunlit * length(facet_);
+  bool may = wholeSun_ ? mayBeHidden(listed, toSun) : listed.z > 0.0;
+  sunlit_ = !may && wholeSun_ && dot(normal, toSun) >= kSunlit * length(normal);
   return may;
 }
 
@@ -31,8 +32,11 @@ bool needsAll(uvec2 id, vec2 pixel) {
   triangle_ = id.y;
   sunlit_ = false;
   // The sun is the last of a row.
+  vec3 normal = m.weight.x * texelFetch(vertices, m.corner.x + 1).xyz + m.weight.y * texelFetch(vertices, m.corner.y + 1).xyz +
+                m.weight.z * texelFetch(vertices, m.corner.z + 1).xyz;
+  if (dot(facet_, d) > 0.0) normal = -normal;
   int row = lightRow(draw), lamps = (LIGHTS > FEW_LIGHTS ? int(lightTexel(row).x) : LIGHTS) - SUN;
-  bool all = SUN > 0 && sunMayBeHidden(lightEntry(row, lamps), max((planeOf(draw) + m.along) * rayLength_, 1.0e-6));
+  bool all = SUN > 0 && sunMayBeHidden(lightEntry(row, lamps), normal, max((planeOf(draw) + m.along) * rayLength_, 1.0e-6));
   for (int k = 0; k < lamps; ++k) {
     int entry = lightEntry(row, k);
     vec3 line = lightTexel(entry).xyz - point_;
