@@ -14,10 +14,12 @@ namespace {
 constexpr int kColumns = 16, kRows = 12;
 
 /// A tilted plate with a temperature texture, and a ball of a pixel or so; a field of view in which a subpixel's weight changes by a factor of two.
-Frame picture(int samples, int finer, bool ball) {
+Frame picture(int samples, int finer, bool ball, const std::string& mode = "direct") {
   const std::string film = print("{width: %d, height: %d, pitch: %.17g um}", kColumns * finer, kRows * finer, 60.0 / finer);
   return renderFrame(scene(
-      "entities:\n- {name: plate, shape: {model: plate, width: 30 m, height: 30 m}, material: blackbody, temperature: {rows: [[280 K, 340 K, 290 K], [300 K, "
+      "render: {mode: " + mode +
+      "}\nentities:\n- {name: plate, shape: {model: plate, width: 30 m, height: 30 m}, material: blackbody, temperature: {rows: [[280 K, 340 K, 290 K], [300 "
+      "K, "
       "285 "
       "K, 360 K]]}, heading: 25 deg, position: [0 m, 0 m, 0 m]}\n" +
       std::string(ball ? "- {name: ball, shape: {model: sphere, radius: 0.2 m}, material: blackbody, temperature: 500 K, position: [2 m, 1 m, 0.7 m]}\n" : "") +
@@ -57,8 +59,8 @@ TEST(Resolve, MeansWeightedByProjectedSolidAngle) {
 }
 
 /// Of the ball alone, over the picture; one of less than 16 pixels is drawn by a view of its own.
-double flux(int samples, int finer) {
-  const Frame with = picture(samples, finer, true), without = picture(samples, finer, false);
+double flux(int samples, int finer, const std::string& mode = "direct") {
+  const Frame with = picture(samples, finer, true, mode), without = picture(samples, finer, false, mode);
   Pinhole film;
   film.width = kColumns * finer, film.height = kRows * finer;
   film.focalLength_m = 0.6e-3, film.pitchX_m = film.pitchY_m = 60e-6 / finer;
@@ -75,6 +77,7 @@ TEST(Resolve, SmallBodiesKeepTheirFlux) {
   for (int samples : {2, 4})
     bound(print("flux of a body below a pixel with %d x %d subpixels against a finer film", samples, samples), std::abs(flux(samples, 1) / whole - 1.0), 2e-3,
           "what it hides, a slope, is the mean of one subpixel or another");
+  bound("the same in buffered mode, which has no tiles, against direct", std::abs(flux(2, 1, "buffered") / flux(2, 1) - 1.0), 1e-5, "single precision");
 }
 
 }  // namespace

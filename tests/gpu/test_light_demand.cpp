@@ -1,0 +1,64 @@
+// Pixels that take a program with the sun alone, where no lamp reaches and nothing may stand before the sun, against the reference: films of 64 x 64 have such
+// programs. Each scene is one in which leaving lights or shadows out would show.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/support/figures.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+namespace {
+
+/// The largest difference of a layer from the reference's, by the reference's largest value.
+double worst(const std::string& scenario, const std::string& name) {
+  const Frame planned = renderFrame(scene("accuracy: 1 %\n" + scenario)), exact = renderFrame(scene("accuracy: reference\n" + scenario));
+  const auto &a = layer(planned, name), &b = layer(exact, name);
+  double most = 0.0, off = 0.0;
+  for (int row = 0; row < 64; ++row)
+    for (int column = 0; column < 64; ++column) {
+      const double is = static_cast<double>(at(a, planned, column, row)), should = static_cast<double>(at(b, exact, column, row));
+      most = std::max(most, std::abs(should));
+      off = std::max(off, std::abs(is - should));
+    }
+  return off / most;
+}
+
+const char* kFilm = "film: {width: 64, height: 64, pitch: 24 um}, focal_length: 1.8 mm, aperture: 1.8 mm";
+
+// A pole 6 km before a wall; of the sun's disc a part is above the horizon, which stands higher than its middle.
+TEST(LightDemand, ShadowOfASunPartlySet) {
+  const std::string scenario =
+      std::string(
+          "origin: {latitude: 0 deg, longitude: 0 deg, height: 0 m}\natmosphere: clear_us76\nsun: {azimuth: 180 deg, elevation: -0.35 deg, "
+          "temperature: 5772 K}\nentities: [{name: pole, shape: {model: box, length: 20 m, width: 20 m, height: 40 m}, material: "
+          "grey_aircraft_paint, temperature: 300 K, position: [0 m, -6000 m, 60 m]}, {name: wall, shape: {model: plate, width: 200 m, "
+          "height: 100 m}, material: grey_aircraft_paint, temperature: 300 K, position: [0 m, 0 m, 50 m], heading: 180 deg}]\n"
+          "cameras: [{name: c, position: [60 m, -120 m, 60 m], heading: -26 deg, pitch: 0 deg, ") +
+      kFilm + ", channels: [{name: sw, response: {band: [1.5 um, 1.8 um]}}]}]\n";
+  bound("shadow of a pole in a sun partly set, of the brightest pixel", worst(scenario, "sw.radiance"), 0.01, "the accuracy asked for");
+}
+
+std::string lamps(const std::string& sun, const std::string& truth) {
+  return sun +
+         "lights: [{name: weak, intensity: {wavelength: um, unit: W/(sr um), outside: zero, values: [[1, 0.5], [13, 0.5]]}, position: [4 m, 55 m, 3 m]}, "
+         "{name: "
+         "strong, intensity: {wavelength: um, unit: W/(sr um), outside: zero, values: [[1, 30], [13, 30]]}, position: [-15 m, 70 m, 3 m]}]\nentities: [{name: "
+         "hills, shape: {model: terrain, size: 400 m, relief: 6 m, columns: 80, terrain_seed: 4}, material: dry_grass, temperature: 294 K, position: [0 m, 60 "
+         "m, -3 m]}, {name: ball, shape: {model: sphere, radius: 4 m}, material: grey_aircraft_paint, temperature: 300 K, position: [-6 m, 60 m, 5 m]}]\n"
+         "cameras: [{name: c, position: [0 m, 0 m, 25 m], heading: 1 deg, pitch: -16 deg, " +
+         kFilm + truth + ", channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}}]}]\n";
+}
+
+// Two lamps over hills, in sunshine and without: their reach, and the truth of the first, which is there where its light does not matter.
+TEST(LightDemand, LampsAndTheirTruth) {
+  const std::string truth = ", truth: [solid_angles]", sun = "sun: {azimuth: 200 deg, elevation: 35 deg, temperature: 5772 K}\n";
+  for (const auto& [words, day] : {std::pair("in sunshine", sun), std::pair("without a sun", std::string())}) {
+    bound(std::string("lamps over hills ") + words + ", of the brightest pixel", worst(lamps(day, ""), "mw.radiance"), 0.01, "the accuracy asked for");
+    bound(std::string("solid angle from the first lamp ") + words + ", of the largest", worst(lamps(day, truth), "truth.solid_angle_from_light"), 1e-4,
+          "single precision of a grazing facet");
+  }
+}
+
+}  // namespace
+}  // namespace pitviper::test
