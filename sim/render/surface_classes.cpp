@@ -55,9 +55,12 @@ SurfaceClass both(SurfaceClass a, const SurfaceClass& b) {
   return a;
 }
 
+/// Bodies that mostly shade themselves: a second program takes a driver as long to compile as their pixels would gain in many frames.
+constexpr int kCostly = 2;
+
 /// Which of the kinds that have a program of their own: the plainest, those with textures alone, all others.
 int kindOf(const SurfaceClass& c) {
-  if (c.viewAngles || c.columns || c.lobes || c.tabulated || c.states) return 2;
+  if (c.viewAngles || c.columns || c.lobes || c.tabulated || c.states) return kCostly;
   return c.modifiers || c.temperatureTextures ? 1 : 0;
 }
 
@@ -85,12 +88,14 @@ std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation
   }
   if (!lightsVary(plan, sim, truth)) return classes;
   const std::size_t all = classes.size();
+  std::vector<int> alone{0};
   for (std::size_t c = 1; c < all; ++c) {
+    alone.push_back(static_cast<int>(kindOf(classes[c]) < kCostly ? classes.size() : c));
+    if (alone.back() == static_cast<int>(c)) continue;
     classes.push_back(classes[c]);
     classes.back().sunAlone = true;
   }
-  for (DrawItem& item : tables.draws)
-    if (item.surfaceClass > 0) item.surfaceClass += static_cast<int>(all) - 1;
+  for (DrawItem& item : tables.draws) item.surfaceClass = alone[static_cast<std::size_t>(item.surfaceClass)];
   return classes;
 }
 

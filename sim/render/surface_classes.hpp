@@ -1,7 +1,7 @@
 #pragma once
 // Classes of surfaces: what shades a surface is a program that has what its class needs, and nothing else. Costly materials cost their own pixels. What is
-// behind all surfaces is a class, the plainest surfaces are one, those with textures whose albedo is the same at all angles, and all others together; each of
-// them once with every light and its shadows, and once with the sun alone. More would gain little, and each takes a driver a tenth of a second or more to
+// behind all surfaces is a class, the plainest surfaces are one, those with textures whose albedo is the same at all angles, and all others together; the
+// first two once with every light and its shadows, and once with the sun alone. More would gain little, and each takes a driver a tenth of a second or more to
 // compile.
 #include <vector>
 
