@@ -34,7 +34,6 @@ class LayeredOnGpu final : public AirOnGpu {
     AirPlaces places;
     std::vector<double> black;  ///< per node
     std::map<RowKey, Row> at;
-    bool used = true;
   };
   void addHeights(std::vector<float>& amounts) const;
   Rows& rowsOf(const AirGrid& grid);

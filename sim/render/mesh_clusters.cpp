@@ -58,8 +58,8 @@ void cut(const Mesh& mesh, std::uint32_t first, std::uint32_t count, ClusteredMe
 }  // namespace
 
 bool MeshCluster::facesAway(const glm::dvec3& eye) const {
-  // Of every point of the ball the line from the eye makes at most a right angle with every normal: the axis is no farther than that less the cone's half
-  // angle from the line to the centre, less the ball's own.
+  // A triangle through p faces away where (p - eye) . n >= 0: for all normals of the cone where (p - eye) . axis >= sin(half angle) |p - eye|. That difference
+  // falls from the centre on by no more than the way gone, so it holds all over the ball where it is the ball's radius at the centre. The margin is rounding.
   const glm::dvec3 line = centre - eye;
   return spread <= 1.0 && glm::dot(line, axis) >= spread * glm::length(line) + radius_m * (1.0 + 1e-6);
 }

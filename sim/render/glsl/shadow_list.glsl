@@ -12,15 +12,15 @@ void prepareClear(vec3 toLight) {
              (texelFetch(clearFacets, int(triangle_ >> 5)).x >> (triangle_ & 31u) & 1u) != 0u;
 }
 
-// False where a caster cannot stand before the light: its ball beside the line or behind, or it is the point's own body and leaves it clear.
+// False where a caster cannot stand before the light: its ball beside the line or behind, or it stands still and leaves the facet clear.
 bool mayStop(int number, vec3 toLight) {
   vec4 ball = shadowRow(number, 9);
   vec3 to = ball.xyz - point_;
   // The difference itself, not that of its squares: of a caster far off these would have lost all digits of its size. With room for the rounding of both.
   float along = dot(to, toLight), reach = ball.w * 1.0001 + 4.0e-6 * length(to);
   vec3 beside = to - along * toLight;
-  bool own = shadowTexel(number, 7).w >= 8u;
-  return !(own && isClear_) && along >= -reach && dot(beside, beside) <= reach * reach;
+  bool leavesClear = shadowTexel(number, 7).w >= 8u;  // the facets that are marked
+  return !(leavesClear && isClear_) && along >= -reach && dot(beside, beside) <= reach * reach;
 }
 
 // listed: of a body's row of lights, (light, first caster, casters).
