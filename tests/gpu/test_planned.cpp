@@ -141,5 +141,20 @@ TEST_F(Planned, PerMilleInKelvin) {
           "of a body at 300 K, worst pixel");
 }
 
+// Air from a library is drawn to 1 % where nothing is said, and not planned at all where none is asked for; other words are mistakes.
+TEST(NotPlanned, NoAccuracy) {
+  const auto camera = [](const std::string& words) {
+    return scene(words +
+                 "atmosphere: clear_us76\ncameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 10 mm, position: [0 m, 0 m, 10 m], "
+                 "heading: "
+                 "0 deg, channels: [{name: lw, response: {band: [8 um, 12 um]}}]}]\n")
+        .cameras[0];
+  };
+  EXPECT_EQ(camera("").spectral.accuracy, 0.01);
+  EXPECT_EQ(camera("accuracy: none\n").spectral.accuracy, 0.0);
+  EXPECT_FALSE(camera("accuracy: none\n").spectral.reference);
+  EXPECT_THROW(camera("accuracy: nothing\n"), UserError);
+}
+
 }  // namespace
 }  // namespace pitviper::test
