@@ -246,6 +246,7 @@ void Builder::readCameras(const Record& scenario) {
       }
     planned(c.outputs, c.spectral, c.where);
     c.outlineAccuracy = c.spectral.reference ? 0.0 : c.spectral.accuracy;
+    c.textureAccuracy = c.spectral.reference ? kFinestTextures : c.spectral.accuracy;
     if (r.given("stages"))
       for (const Value& s : r.value("stages").items) {
         c.stages.push_back(readStage(s, c));

@@ -10,6 +10,8 @@ namespace {
 
 /// From so many subpixels on, programs of its own for each class of surfaces are worth the tenths of a second that a driver takes to compile them.
 constexpr int kWorthClasses = 64 * 64;
+/// What the reference asks of bright parts where no accuracy is.
+constexpr double kReferenceParts = 0.002;
 
 }  // namespace
 
@@ -20,7 +22,11 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
       plan_(planFor(simulation, {&camera, nullptr}, planning)),
       scattering_(simulation, camera, plan_),
       ways_(simulation, plan_),
-      lines_(zoomedLines(simulation, camera.zoomedSamples, camera.outlineAccuracy)) {
+      lines_(zoomedLines(simulation, camera.zoomedSamples, camera.outlineAccuracy)),
+      hotParts_(simulation, plan_,
+                camera.outlineAccuracy > 0.0 ? camera.outlineAccuracy
+                : camera.spectral.reference  ? kReferenceParts
+                                             : 0.0) {
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
   const double area_m2 = camera.pinhole.apertureArea_m2();
   if (camera.spectral.reference) {
@@ -52,7 +58,7 @@ void CameraRenderer::setProgress(std::function<void(double)> progress) {
 
 /// The camera's own and those of its small bodies.
 int CameraRenderer::viewsOfPicture() const {
-  int views = 1;
+  int views = 1 + static_cast<int>(parts_.size());
   for (size_t e = 0; e < small_.size(); ++e) {
     const Pose& pose = state_.entities[e];
     const Entity& entity = simulation_.entities[e];
@@ -75,7 +81,8 @@ void CameraRenderer::begin(const WorldState& state) {
   present_.assign(simulation_.entities.size(), 1);
   if (camera_.mount.carrier >= 0) present_[static_cast<size_t>(camera_.mount.carrier)] = 0;
   small_ = findSmallBodies(simulation_, state_, view_, camera_.smallBody_px * camera_.samples);
-  view_.kept = smallBodiesIn(simulation_, state_, view_, small_, present_);
+  parts_ = hotParts_.inView(state_, view_, camera_.smallBody_px * camera_.samples, small_, present_);
+  view_.kept = smallBodiesIn(simulation_, state_, view_, small_, present_, parts_);
   std::vector<char> drawn(present_);
   for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = present_[e] && !small_[e];
   if (direct_ && buffered_) pass_ = seesTransparent() ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
@@ -128,7 +135,7 @@ CameraImage CameraRenderer::finish() {
   Subpixels image(plan_, view_, pass_->finishReadback());
   {
     const TimedPart part("small bodies");
-    addSmallBodies(image, *pass_, simulation_, state_, small_, present_, lines_, wanted_.get());
+    addSmallBodies(image, *pass_, simulation_, state_, small_, present_, lines_, parts_, wanted_.get());
   }
   {
     const TimedPart part("lamps in view");

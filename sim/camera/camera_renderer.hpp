@@ -3,6 +3,7 @@
 #include <functional>
 #include <memory>
 
+#include "sim/camera/hot_parts.hpp"
 #include "sim/camera/subpixels.hpp"
 #include "sim/camera/visible_lights.hpp"
 #include "sim/render/buffered_pass.hpp"
@@ -49,7 +50,9 @@ class CameraRenderer {
   ScatteringCheck scattering_;
   WaysToLights ways_;
   FilmWeights filmWeights_;
-  std::vector<int> lines_;                    ///< across each small body
+  std::vector<int> lines_;  ///< across each small body
+  HotParts hotParts_;
+  std::vector<Ball> parts_;                   ///< bright ones of the picture
   std::unique_ptr<ReferencePass> reference_;  ///< instead of the other two
   std::unique_ptr<DirectPass> direct_;        ///< both where auto has to choose frame by frame
   std::unique_ptr<BufferedPass> buffered_;

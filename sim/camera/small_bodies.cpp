@@ -14,27 +14,19 @@
 namespace pitviper {
 namespace {
 
-glm::dvec3 centreOf(const Simulation& sim, const WorldState& state, int entity) {
+Ball ballOf(const Simulation& sim, const WorldState& state, int entity) {
   const auto e = static_cast<size_t>(entity);
-  return state.entities[e].position + state.entities[e].orientation * glm::dvec3(sim.entities[e].boundingCentre);
+  return {entity, state.entities[e].position + state.entities[e].orientation * glm::dvec3(sim.entities[e].boundingCentre),
+          static_cast<double>(sim.entities[e].boundingRadius_m)};
 }
 
-/// Diameter of an entity's bounding sphere [subpixels of the view]; infinite where it comes near the camera's plane.
-double extentOf(const Simulation& sim, const WorldState& state, const View& v, int entity) {
-  const glm::dvec3 p = glm::transpose(v.localFromCamera) * (centreOf(sim, state, entity) - v.position);
-  const double radius = sim.entities[static_cast<size_t>(entity)].boundingRadius_m, depth = -p.z;
-  if (depth <= 4.0 * radius + v.near_m || radius <= 0.0) return INFINITY;
-  return 2.0 * radius / depth / std::min(v.tanPerPixelX, v.tanPerPixelY);
-}
-
-/// From the same place, turned so that the entity's bounding sphere fills the picture, and rolled by an angle that no edge of a scene
+/// From the same place, turned so that a ball fills the picture, and rolled by an angle that no edge of a scene
 /// shares, so that silhouettes are sampled evenly (an edge along the grid would be off by up to a whole row), nor does its middle lie on a place of the grid
 /// that one shares with it: what is round would be off all around alike.
-View zoomedView(const Simulation& sim, const WorldState& state, const View& v, int entity, int size) {
+View zoomedView(const Ball& ball, const View& v, int size) {
   constexpr double kRoll_rad = 0.3926, kAcross = 0.31, kUp = 0.17;
-  const double radius = sim.entities[static_cast<size_t>(entity)].boundingRadius_m;
-  const glm::dvec3 centre = centreOf(sim, state, entity), line = centre - v.position;
-  const double distance = glm::length(line);
+  const glm::dvec3 line = ball.centre - v.position;
+  const double distance = glm::length(line), radius = ball.radius_m;
   View z = v;
   z.subpixels = z.grouped = 1;
   z.kept = glm::ivec4(0);
@@ -43,9 +35,9 @@ View zoomedView(const Simulation& sim, const WorldState& state, const View& v, i
   z.tanPerPixelX = z.tanPerPixelY = 2.04 * radius / std::sqrt(distance * distance - radius * radius) / (size - 2.0 * kAcross);
   z.axisX = 0.5 * size + kAcross;
   z.axisY = 0.5 * size + kUp;
-  z.onlyEntity = entity;
+  z.onlyEntity = ball.entity;
   z.zoomed = true;
-  z.depthCentre = centre;
+  z.depthCentre = ball.centre;
   z.depthRadius_m = 1.02 * radius;
   return z;
 }
@@ -130,6 +122,14 @@ int zoomedSize(double extent, int samples) {
   return size;
 }
 
+/// So many lines or some more, of few sizes, for bodies of one size are drawn together and pictures are kept by size: 16, 24, 32, 48 ...
+int evenSize(double lines) {
+  constexpr int kFewest = 16, kMost = 4096;
+  int size = kFewest;
+  while (size < lines && size < kMost) size += std::has_single_bit(static_cast<unsigned>(size)) ? size / 2 : size / 3;
+  return size;
+}
+
 /// Flags, in order, the bodies that are transparent or overlap one that is, directly or through others.
 std::vector<char> overlapTransparent(const Simulation& sim, const WorldState& state, const View& v, const std::vector<int>& bodies) {
   std::vector<char> mixed(bodies.size(), 0);
@@ -137,9 +137,10 @@ std::vector<char> overlapTransparent(const Simulation& sim, const WorldState& st
   std::vector<glm::dvec3> line;
   std::vector<double> sine;  // of the angular radius
   for (size_t i = 0; i < bodies.size(); ++i) {
-    const glm::dvec3 to = centreOf(sim, state, bodies[i]) - v.position;
+    const Ball ball = ballOf(sim, state, bodies[i]);
+    const glm::dvec3 to = ball.centre - v.position;
     line.push_back(glm::normalize(to));
-    sine.push_back(static_cast<double>(sim.entities[static_cast<size_t>(bodies[i])].boundingRadius_m) / glm::length(to));
+    sine.push_back(ball.radius_m / glm::length(to));
     if (!sim.isTransparent(sim.entities[static_cast<size_t>(bodies[i])])) continue;
     mixed[i] = 1;
     open.push_back(i);
@@ -208,7 +209,7 @@ class SolidBodies {
               const std::vector<char>* only)
       : image_(image), only_(only) {
     for (int e : bodies) {
-      View z = zoomedView(sim, state, image.view(), e, zoomedSize(extentOf(sim, state, image.view(), e), lines[static_cast<size_t>(e)]));
+      View z = zoomedView(ballOf(sim, state, e), image.view(), zoomedSize(extentOf(ballOf(sim, state, e), image.view()), lines[static_cast<size_t>(e)]));
       if (only) {
         z.wanted = marksOf(image, z, *only);
         if (!anyOf(*z.wanted)) continue;
@@ -244,23 +245,29 @@ class SolidBodies {
   std::vector<View> views_;  ///< by size
 };
 
-/// Bodies that are seen through something or that something is seen through, all in their places in every picture. A direction is sampled by the
-/// finest view that looks at it: a small hot thing behind a large puff by its own, not by the puff's.
+/// Bodies that are seen through something or that something is seen through, all in their places in every picture, and bright parts of large bodies. A
+/// direction is sampled by the finest view that looks at it: a small hot thing behind a large puff by its own, not by the puff's.
 class MixedBodies {
  public:
-  MixedBodies(const Simulation& sim, const WorldState& state, const View& v, const std::vector<int>& bodies, const std::vector<int>& lines)
-      : sim_(sim), state_(state), bodies_(bodies) {
-    std::stable_sort(bodies_.begin(), bodies_.end(), [&](int x, int y) { return extentOf(sim, state, v, x) < extentOf(sim, state, v, y); });
-    for (int e : bodies_) {
-      const bool medium = sim.mediumOf(sim.entities[static_cast<size_t>(e)]) != nullptr;
-      const int samples = lines[static_cast<size_t>(e)];
-      views_.push_back(zoomedView(sim, state, v, e, zoomedSize(extentOf(sim, state, v, e), medium ? samples / 2 : samples)));
+  /// `small`: which entities have a view of their own, these or others.
+  MixedBodies(const Simulation& sim, const WorldState& state, const View& v, const std::vector<int>& bodies, const std::vector<int>& lines,
+              const std::vector<Ball>& parts, const std::vector<char>& small)
+      : sim_(sim), state_(state), bodies_(bodies), small_(small) {
+    std::vector<Ball> balls = parts;
+    for (int e : bodies) balls.push_back(ballOf(sim, state, e));
+    std::stable_sort(balls.begin(), balls.end(), [&](const Ball& x, const Ball& y) { return extentOf(x, v) < extentOf(y, v); });
+    for (const Ball& ball : balls) {
+      const bool part = !isOne(ball.entity), medium = sim.mediumOf(sim.entities[static_cast<size_t>(ball.entity)]) != nullptr;
+      const int most = lines[static_cast<size_t>(ball.entity)], samples = medium ? most / 2 : most;
+      views_.push_back(zoomedView(ball, v, part ? evenSize(2.0 * ball.radius_m * ball.lines_per_m) : zoomedSize(extentOf(ball, v), samples)));
       views_.back().onlyEntity = -1;
+      whole_.push_back(part);
     }
   }
-  /// `others`: what else is in the picture.
-  void draw(Subpixels& image, ScenePass& pass, std::vector<char> drawn, const std::vector<char>* only, FineSubpixels& fine) const {
-    for (int e : bodies_) drawn[static_cast<size_t>(e)] = 1;
+  /// `others`: what else is in the picture; `all`: what may show at all, that is in the pictures of parts.
+  void draw(Subpixels& image, ScenePass& pass, std::vector<char> others, const std::vector<char>& all, const std::vector<char>* only,
+            FineSubpixels& fine) const {
+    for (int e : bodies_) others[static_cast<size_t>(e)] = 1;
     for (size_t i = 0; i < views_.size(); ++i) {
       View z = views_[i];
       std::vector<std::uint32_t> colour = colours(z, sets(image, i));
@@ -271,36 +278,38 @@ class MixedBodies {
       }
       z.wanted = wanted(colour);
       if (!anyOf(*z.wanted)) continue;
-      pass.draw(z, state_, drawn);
+      pass.draw(z, state_, whole_[i] ? all : others);
       pass.startReadback(true);
       const RawImage zoomed = pass.finishReadback();
-      const auto isOne = [&](int e) { return std::find(bodies_.begin(), bodies_.end(), e) != bodies_.end(); };
-      gather(image, z, zoomed,
-             sharesOf(
-                 image, z, zoomed, [&](size_t q) { return colour[q]; }, isOne),
-             fine);
+      const auto colourOf = [&](size_t q) { return whole_[i] && colour[q] != kNone && hasOwnView(zoomed.entity[colour[q]]) ? kNone : colour[q]; };
+      gather(image, z, zoomed, sharesOf(image, z, zoomed, colourOf, [&](int e) { return isOne(e); }), fine);
     }
   }
 
  private:
-  /// Which of the bodies a ray meets, whatever hides them: one bit each, the first again after 64.
+  /// Of a sample that counts whatever it meets.
+  static constexpr std::uint64_t kAny = std::uint64_t{1} << 63;
+  bool isOne(int e) const { return std::find(bodies_.begin(), bodies_.end(), e) != bodies_.end(); }
+  bool hasOwnView(int e) const { return e >= 0 && small_[static_cast<size_t>(e)] && !isOne(e); }
+  /// Which of the bodies a ray meets, whatever hides them: one bit each, the first again after 63.
   std::uint64_t setOf(const View& z, double x, double y) const {
     const glm::dvec3 ray = z.ray(x, y), direction = z.localFromCamera * ray / glm::length(ray);
     std::uint64_t set = 0;
     for (size_t b = 0; b < bodies_.size(); ++b)
-      if (meetsBody(sim_, state_, z.position, direction, z.near_m * glm::length(ray), bodies_[b])) set |= std::uint64_t{1} << b % 64;
+      if (meetsBody(sim_, state_, z.position, direction, z.near_m * glm::length(ray), bodies_[b])) set |= std::uint64_t{1} << b % 63;
     return set;
   }
-  /// What each sample of a view meets, none where a finer view has it.
+  /// What each sample of a view meets; none where a finer view has it, as it has all that meets a body, or all where it is of a part.
   std::vector<std::uint64_t> sets(const Subpixels& image, size_t index) const {
     const View& z = views_[index];
     std::vector<std::uint64_t> all(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
     eachSample(image, z, [&](size_t q, size_t, double, double) {
       const double x = static_cast<double>(q % static_cast<size_t>(z.width)) + 0.5, y = static_cast<double>(q / static_cast<size_t>(z.width)) + 0.5;
       const glm::dvec3 direction = z.localFromCamera * z.ray(x, y);
+      const std::uint64_t set = setOf(z, x, y);
       for (size_t j = 0; j < index; ++j)
-        if (looksAt(views_[j], direction)) return;
-      all[q] = setOf(z, x, y);
+        if ((set != 0 || whole_[j]) && looksAt(views_[j], direction)) return;
+      all[q] = set | (whole_[index] ? kAny : 0);
     });
     return all;
   }
@@ -323,7 +332,7 @@ class MixedBodies {
       neighbours(q, [&](size_t n) { border |= set[n] != set[q]; });
       for (int corner = 0; border && clear && corner < 4; ++corner)
         clear = setOf(z, static_cast<double>(q % width) + 0.5 + ((corner & 1) ? kMargin_px : -kMargin_px),
-                      static_cast<double>(q / width) + 0.5 + ((corner & 2) ? kMargin_px : -kMargin_px)) == set[q];
+                      static_cast<double>(q / width) + 0.5 + ((corner & 2) ? kMargin_px : -kMargin_px)) == (set[q] & ~kAny);
       if (clear) colour[q] = static_cast<std::uint32_t>(q);
       else outline.push_back(q);
     }
@@ -347,15 +356,17 @@ class MixedBodies {
   }
   const Simulation& sim_;
   const WorldState& state_;
-  std::vector<int> bodies_;  ///< the smallest first
-  std::vector<View> views_;
+  std::vector<int> bodies_;
+  std::vector<char> small_;
+  std::vector<View> views_;  ///< the smallest first
+  std::vector<char> whole_;  ///< of each: it is a part's, and all it sees counts
 };
 
 }  // namespace
 
 std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state, const View& v, double limit) {
   std::vector<char> small(sim.entities.size(), 0);
-  for (size_t e = 0; e < sim.entities.size(); ++e) small[e] = extentOf(sim, state, v, static_cast<int>(e)) < limit;
+  for (size_t e = 0; e < sim.entities.size(); ++e) small[e] = extentOf(ballOf(sim, state, static_cast<int>(e)), v) < limit;
   return small;
 }
 
@@ -380,7 +391,6 @@ bool isEven(const Simulation& sim, const Entity& e) {
 
 std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
   constexpr double kPart = 0.25;
-  constexpr int kFewest = 16;
   std::vector<int> lines;
   std::map<const Mesh*, double> surfaces_m2;
   for (const Entity& e : sim.entities) {
@@ -395,25 +405,24 @@ std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
     const double across = 2.0 * static_cast<double>(e.boundingRadius_m), area = 0.25 * known->second, outline = glm::pi<double>() * across;
     // h = across / lines in the law, solved for them.
     const double needed = area > 0.0 ? across * std::cbrt(outline * 0.0724 / std::pow(kPart * accuracy * area, 2.0)) : INFINITY;
-    int enough = kFewest;
-    // Few sizes, for bodies of one size are drawn together: 16, 24, 32, 48 ...
-    while (enough < needed && enough < most) enough += std::has_single_bit(static_cast<unsigned>(enough)) ? enough / 2 : enough / 3;
-    lines.back() = std::min(enough, most);
+    lines.back() = std::min(evenSize(needed), most);
   }
   return lines;
 }
 
-glm::ivec4 smallBodiesIn(const Simulation& sim, const WorldState& state, const View& v, const std::vector<char>& small, const std::vector<char>& present) {
+glm::ivec4 smallBodiesIn(const Simulation& sim, const WorldState& state, const View& v, const std::vector<char>& small, const std::vector<char>& present,
+                         const std::vector<Ball>& parts) {
   // Half the diagonal of the square picture of the ball that zoomedView() makes, by the ball: 1.02 x 16 / 15.38 / sqrt(2) where it has fewest lines, its
   // middle shifted; and two subpixels.
   constexpr double kHalf = 0.8, kRoom = 2.0;
+  std::vector<Ball> balls = parts;
+  for (size_t e = 0; e < small.size(); ++e)
+    if (small[e] && present[e]) balls.push_back(ballOf(sim, state, static_cast<int>(e)));
   glm::dvec2 low(INFINITY), high(-INFINITY);
-  for (size_t e = 0; e < small.size(); ++e) {
-    const int entity = static_cast<int>(e);
-    const double extent = extentOf(sim, state, v, entity);
-    if (!small[e] || !present[e] || !mayShow(v, centreOf(sim, state, entity), static_cast<double>(sim.entities[e].boundingRadius_m)) || !std::isfinite(extent))
-      continue;
-    const glm::dvec2 at = filmPosition(v, glm::transpose(v.localFromCamera) * (centreOf(sim, state, entity) - v.position));
+  for (const Ball& ball : balls) {
+    const double extent = extentOf(ball, v);
+    if (!mayShow(v, ball.centre, ball.radius_m) || !std::isfinite(extent)) continue;
+    const glm::dvec2 at = filmPosition(v, glm::transpose(v.localFromCamera) * (ball.centre - v.position));
     // Off the axis a ball's picture is longer.
     const glm::dvec2 off((at.x - v.axisX) * v.tanPerPixelX, (at.y - v.axisY) * v.tanPerPixelY);
     const double reach = kHalf * extent * (1.0 + glm::dot(off, off)) + kRoom;
@@ -427,14 +436,15 @@ glm::ivec4 smallBodiesIn(const Simulation& sim, const WorldState& state, const V
 }
 
 void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small,
-                    const std::vector<char>& present, const std::vector<int>& lines, const std::vector<char>* wanted) {
+                    const std::vector<char>& present, const std::vector<int>& lines, const std::vector<Ball>& parts, const std::vector<char>* wanted) {
   const View& v = image.view();
   std::vector<int> bodies;
   std::vector<char> others = present;
   for (size_t e = 0; e < small.size(); ++e) {
     if (!small[e] || !present[e]) continue;
     others[e] = 0;
-    if (mayShow(v, centreOf(sim, state, static_cast<int>(e)), sim.entities[e].boundingRadius_m)) bodies.push_back(static_cast<int>(e));
+    const Ball ball = ballOf(sim, state, static_cast<int>(e));
+    if (mayShow(v, ball.centre, ball.radius_m)) bodies.push_back(static_cast<int>(e));
   }
   const std::vector<char> mixed = overlapTransparent(sim, state, v, bodies);
 
@@ -447,7 +457,7 @@ void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, co
   }
   FineSubpixels fine;
   SolidBodies(image, sim, state, apart, lines, wanted).draw(pass, state, solids, fine);
-  MixedBodies(sim, state, v, together, lines).draw(image, pass, others, wanted, fine);
+  MixedBodies(sim, state, v, together, lines, parts, small).draw(image, pass, others, present, wanted, fine);
   put(image, fine);
 }
 

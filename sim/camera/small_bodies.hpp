@@ -4,6 +4,7 @@
 // range:  sum over pixels of (L - L_background) w_pix = tau(R) (I - L_background A_projected) / R^2.
 #include <vector>
 
+#include "sim/camera/hot_parts.hpp"
 #include "sim/camera/subpixels.hpp"
 
 namespace pitviper {
@@ -18,14 +19,15 @@ std::vector<char> findSmallBodies(const Simulation& simulation, const WorldState
 /// diameter D, A = S / 4 on average over directions (Cauchy) and P = pi D at most.
 std::vector<int> zoomedLines(const Simulation& simulation, int most, double accuracy);
 
-/// The part of a view (corner, size) in which small bodies may show, with their views' corners; of no size where none does.
+/// The part of a view (corner, size) in which small bodies and bright parts may show, with their views' corners; of no size where none does.
 glm::ivec4 smallBodiesIn(const Simulation& simulation, const WorldState& state, const View& view, const std::vector<char>& small,
-                         const std::vector<char>& present);
+                         const std::vector<char>& present, const std::vector<Ball>& parts = {});
 
 /// Draws every small body that may show and adds it to the image. `present`: all entities that can be seen or hide (small ones too).
-/// `lines`: as zoomedLines(). `wanted`: one flag per subpixel, or null for all. The image must hold everything but the small bodies; since each
-/// zoomed view shows what the others hide, their order does not matter.
+/// `lines`: as zoomedLines(). `parts`: of other bodies, to be sampled as finely. `wanted`: one flag per subpixel, or null for all. The image must hold
+/// everything but the small bodies; since each zoomed view shows what the others hide, their order does not matter.
 void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& simulation, const WorldState& state, const std::vector<char>& small,
-                    const std::vector<char>& present, const std::vector<int>& lines, const std::vector<char>* wanted = nullptr);
+                    const std::vector<char>& present, const std::vector<int>& lines, const std::vector<Ball>& parts = {},
+                    const std::vector<char>* wanted = nullptr);
 
 }  // namespace pitviper

@@ -117,6 +117,7 @@ Texture2D::Texture2D(int width, int height, PixelFormat format) : width_(width),
   glCreateTextures(GL_TEXTURE_2D, 1, &n);
   name_ = GlName<deleteTexture>(n);
   const GLenum internal = format == PixelFormat::Rgba32f  ? GL_RGBA32F
+                          : format == PixelFormat::Rg32f  ? GL_RG32F
                           : format == PixelFormat::R32f   ? GL_R32F
                           : format == PixelFormat::Rg32ui ? GL_RG32UI
                                                           : GL_DEPTH_COMPONENT32F;

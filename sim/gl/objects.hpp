@@ -89,7 +89,7 @@ class Buffer {
   std::size_t bytes_ = 0;
 };
 
-enum class PixelFormat { Rgba32f, R32f, Rg32ui, Depth32f };
+enum class PixelFormat { Rgba32f, Rg32f, R32f, Rg32ui, Depth32f };
 
 class Texture2D {
  public:

@@ -56,6 +56,7 @@ Hit hitAt(const Entity& entity, std::pair<int, int> place, std::uint32_t triangl
   hit.normal = ray.localFromBody * glm::normalize(m.entering ? n : -n);
   const glm::dvec3 a(mesh.positions[i.x]);
   hit.facet = ray.localFromBody * glm::normalize(glm::cross(glm::dvec3(mesh.positions[i.y]) - a, glm::dvec3(mesh.positions[i.z]) - a));
+  hit.triangle = triangle;
   hit.uv = w.x * glm::dvec2(mesh.uv[i.x]) + w.y * glm::dvec2(mesh.uv[i.y]) + w.z * glm::dvec2(mesh.uv[i.z]);
   return hit;
 }
@@ -106,6 +107,19 @@ RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3
   }
   std::erase_if(hits.stretches, [](const Stretch& s) { return s.leave <= s.enter; });
   return hits;
+}
+
+Footprint footprintOf(const Simulation& sim, const WorldState& state, const Hit& hit, const glm::dvec3& ray, const glm::dvec3& across, const glm::dvec3& up) {
+  const Mesh& mesh = *sim.entities[static_cast<size_t>(hit.entity)].mesh;
+  const glm::dmat3 bodyFromLocal = glm::transpose(glm::mat3_cast(state.entities[static_cast<size_t>(hit.entity)].orientation));
+  const glm::uvec3 i = mesh.triangles[hit.triangle];
+  const glm::dvec3 a(mesh.positions[i.x]), e1 = glm::dvec3(mesh.positions[i.y]) - a, e2 = glm::dvec3(mesh.positions[i.z]) - a;
+  const glm::dvec2 uv1 = glm::dvec2(mesh.uv[i.y]) - glm::dvec2(mesh.uv[i.x]), uv2 = glm::dvec2(mesh.uv[i.z]) - glm::dvec2(mesh.uv[i.x]);
+  const double lengths = hit.distance / glm::length(ray);
+  const auto moved = [&](const glm::dvec3& step) {
+    return physics::uvStep(bodyFromLocal * step, bodyFromLocal * ray, lengths, glm::cross(e1, e2), e1, e2, uv1, uv2);
+  };
+  return {moved(across), moved(up)};
 }
 
 bool meetsBody(const Simulation& sim, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest, int index) {

@@ -14,6 +14,8 @@ struct Hit {
   glm::dvec2 uv{0.0};
   glm::dvec3 facet{0.0, 0.0, 1.0};  ///< unit normal of the triangle itself, outward
   bool front = true;                ///< seen from outside
+  std::uint32_t triangle = 0;       ///< of the entity's mesh
+  Footprint footprint{};            ///< what a pixel covers; 0 where that does not matter
 };
 
 /// A stretch of the ray inside a medium [m].
@@ -35,6 +37,10 @@ size_t surfaceOf(const Entity& entity, std::uint32_t triangle);
 /// `drawn`: one flag per entity, or null for all; `transparentOnly`: opaque surfaces neither show nor hide.
 RayHits castRay(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest,
                 const std::vector<char>* drawn = nullptr, bool transparentOnly = false);
+
+/// What a pixel covers of a hit's texture coordinates: `ray` of any length through its middle, `across` and `up` from there to the next, local frame.
+Footprint footprintOf(const Simulation& simulation, const WorldState& state, const Hit& hit, const glm::dvec3& ray, const glm::dvec3& across,
+                      const glm::dvec3& up);
 
 /// Whether a ray meets an entity at all, whatever hides it.
 bool meetsBody(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest, int entity);

@@ -122,7 +122,7 @@ void addTo(Fingerprint& f, const Simulation& sim) {
   f.add(start_s).add(step_s).add(frames);
   const auto& [nearest_m, farthest_m, coldest_K, hottest_K, lightLevel] = limits;
   f.add(nearest_m).add(farthest_m).add(coldest_K).add(hottest_K).add(lightLevel);
-  for (const auto& [title, width, height, texels, repeats] : textures) f.all(texels).add(width).add(repeats);
+  for (const auto& [title, width, height, texels, repeats, levels] : textures) f.all(texels).add(width).add(repeats);
   for (const auto& m : materials) addTo(f, *m);
   f.add(static_cast<double>(entities.size()));
   for (const Entity& e : entities) addTo(f, e);
@@ -140,8 +140,8 @@ void addTo(Fingerprint& f, const Simulation& sim) {
 }
 
 void addTo(Fingerprint& f, const Camera& c) {
-  const auto& [name, where, pinhole, mount, exposure_s, near_m, samples, sharesShading, smallBody_px, zoomedSamples, outlineAccuracy, spectral, learnt, plan, planFile,
-               outputs, stages, spectralImage, truth] = c;
+  const auto& [name, where, pinhole, mount, exposure_s, near_m, samples, sharesShading, smallBody_px, zoomedSamples, outlineAccuracy, textureAccuracy, spectral,
+               learnt, plan, planFile, outputs, stages, spectralImage, truth] = c;
   const auto& [width, height, focalLength_m, pitchX_m, pitchY_m, apertureDiameter_m] = pinhole;
   f.add(name).add(width).add(height).add(focalLength_m).add(pitchX_m).add(pitchY_m).add(apertureDiameter_m);
   const auto& [motion, carrier, lookAtEntity, looksAtPoint, lookAtPoint] = mount;

@@ -76,6 +76,7 @@ struct Plan {
   std::vector<std::vector<double>> weight;  ///< [slot][node]
   AirTableSize air;
   double accuracy = 0.0;               ///< relative error asked for; 0: none was
+  double textureAccuracy = 0.0;        ///< to which textures are read over what a pixel covers of them; 0: at single places
   std::vector<double> predictedError;  ///< [slot]: largest relative error expected; empty where nothing was measured
   std::vector<PredictedParts> parts;   ///< [slot]: what it is made of
   int lines = 0;                       ///< lines of sight it was measured on

@@ -141,6 +141,7 @@ Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress
   const Location& where = eye.camera ? eye.camera->where : eye.probe->where;
   Plan plan = makePlan(sim, outputs, sampling, where);
   // The truth layers show the first light's geometry.
+  plan.textureAccuracy = eye.camera ? eye.camera->textureAccuracy : sampling.reference ? kFinestTextures : sampling.accuracy;
   const bool keepLights = eye.camera && eye.camera->truth.solidAngles;
   if (!keepLights && !plan.terms.solid.reflects && !plan.terms.layer.reflects) dropLights(plan);
   if (sampling.reference || sampling.shared) {

@@ -51,7 +51,20 @@ class Teller {
     return at;
   }
 
-  double modifier(int texture, const Hit& hit) const { return texture < 0 ? 1.0 : textureValue(sim_.textures[static_cast<size_t>(texture)], hit.uv); }
+  double modifier(int texture, const Hit& hit) const { return texture < 0 ? 1.0 : moments(texture, hit).mean; }
+
+  TextureMoments moments(int texture, const Hit& hit) const {
+    return textureMoments(sim_.textures[static_cast<size_t>(texture)], hit.uv, hit.footprint, scene_.taps);
+  }
+
+  /// Temperatures of a surface and the share of each: two where a pixel covers several texels.
+  std::vector<std::pair<double, double>> temperaturesOf(const Surface& s, const Hit& hit) const {
+    if (s.temperatureTexture < 0) return {{line_.temperature_K > 0.0 && hit.entity >= 0 ? line_.temperature_K : temperatureAt(sim_, scene_.state, hit), 1.0}};
+    const TextureMoments m = moments(s.temperatureTexture, hit);
+    const glm::dvec3 two = physics::twoTemperatures(m.mean, m.second, m.third);
+    if (two.x == two.y) return {{two.x, 1.0}};
+    return {{two.x, 1.0 - two.z}, {two.y, two.z}};
+  }
 
   void segment(const AirPlace& near, const AirPlace& far) {
     inside_.clear();
@@ -97,27 +110,26 @@ class Teller {
     const Surface& s = surfaceAt(sim_, hit);
     std::vector<double> modifiers;
     for (int texture : m.modifiers) modifiers.push_back(modifier(texture, hit));
-    const bool textured = s.temperatureTexture >= 0;
-    const double temperature_K = textured                                       ? textureValue(sim_.textures[static_cast<size_t>(s.temperatureTexture)], hit.uv)
-                                 : line_.temperature_K > 0.0 && hit.entity >= 0 ? line_.temperature_K
-                                                                                : temperatureAt(sim_, scene_.state, hit);
-    if ((m.transmission ? scene_.terms.layer : scene_.terms.solid).isGeneral()) {
-      const double angle = viewAngle(hit);
+    const bool textured = s.temperatureTexture >= 0, general = (m.transmission ? scene_.terms.layer : scene_.terms.solid).isGeneral();
+    const double angle = viewAngle(hit);
+    for (const auto& [temperature_K, part] : temperaturesOf(s, hit)) {
+      if (!general) {
+        add(TermKind::Emission, part, {Factor::emission(m, temperature_K)});
+        continue;
+      }
       const Factor black = Factor::planck(temperature_K, !textured);
       if (m.given || !m.hasModifiers()) {
-        add(TermKind::Emission, m.given ? modifier(m.given->modifier, hit) : 1.0, {black, Factor::emissivity(m, angle)});
-      } else {
-        // Kirchhoff: 1 - reflectance - transmittance, each with its texture.
-        add(TermKind::Emission, 1.0, {black});
-        for (size_t k = 0; k < m.reflections.size(); ++k) add(TermKind::Emission, -modifiers[k], {black, Factor::hemispherical(*m.reflections[k], angle)});
-        if (m.transmission) add(TermKind::Emission, -modifier(m.transmission->modifier, hit), {black, Factor::transmittance(m, angle)});
+        add(TermKind::Emission, part * (m.given ? modifier(m.given->modifier, hit) : 1.0), {black, Factor::emissivity(m, angle)});
+        continue;
       }
-      for (size_t k = 0; scene_.terms.ambient && k < m.reflections.size(); ++k)
-        add(TermKind::Ambient, modifiers[k], {Factor::ambient(), Factor::hemispherical(*m.reflections[k], angle)});
-    } else {
-      add(TermKind::Emission, 1.0, {Factor::emission(m, temperature_K)});
-      if (scene_.terms.ambient) add(TermKind::Ambient, 1.0, {Factor::dome(m)});
+      // Kirchhoff: 1 - reflectance - transmittance, each with its texture.
+      add(TermKind::Emission, part, {black});
+      for (size_t k = 0; k < m.reflections.size(); ++k) add(TermKind::Emission, -part * modifiers[k], {black, Factor::hemispherical(*m.reflections[k], angle)});
+      if (m.transmission) add(TermKind::Emission, -part * modifier(m.transmission->modifier, hit), {black, Factor::transmittance(m, angle)});
     }
+    if (scene_.terms.ambient && !general) add(TermKind::Ambient, 1.0, {Factor::dome(m)});
+    for (size_t k = 0; scene_.terms.ambient && general && k < m.reflections.size(); ++k)
+      add(TermKind::Ambient, modifiers[k], {Factor::ambient(), Factor::hemispherical(*m.reflections[k], angle)});
     reflected(hit, m, modifiers, place);
   }
 
@@ -178,16 +190,6 @@ void lampAlong(const RadianceScene& scene, const LineOfSight& line, std::size_t 
   wayAlong(scene, line, range, sink);
   const std::array shine{Factor::light(scene.simulation.lights[light])};
   sink.term({TermKind::LampsInView, level / (range * range * pixel_sr), shine, nullptr, -1, static_cast<int>(light)});
-}
-
-double textureValue(const Texture& t, glm::dvec2 uv) {
-  const double x = uv.x * t.width - 0.5, y = uv.y * t.height - 0.5;
-  const double cx = std::floor(x), cy = std::floor(y), fx = x - cx, fy = y - cy;
-  auto at = [&](double i, double j) {
-    auto wrap = [&t](double k, int n) { return static_cast<size_t>(t.repeats ? k - std::floor(k / n) * n : std::clamp(k, 0.0, n - 1.0)); };
-    return static_cast<double>(t.texels[wrap(j, t.height) * static_cast<size_t>(t.width) + wrap(i, t.width)]);
-  };
-  return (1 - fy) * ((1 - fx) * at(cx, cy) + fx * at(cx + 1, cy)) + fy * ((1 - fx) * at(cx, cy + 1) + fx * at(cx + 1, cy + 1));
 }
 
 }  // namespace pitviper

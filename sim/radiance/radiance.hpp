@@ -96,6 +96,7 @@ struct RadianceScene {
   std::function<double(const Hit&, std::size_t light, const LightLeg&)> lit;
   /// Places at which the air is looked at, besides those where something begins; 0: as many as the reference needs.
   int airPlaces = 0;
+  TextureTaps taps{};  ///< of hits that know what a pixel covers
 };
 
 void radianceAlong(const RadianceScene& scene, const LineOfSight& line, TermSink& sink);
@@ -105,8 +106,5 @@ void wayAlong(const RadianceScene& scene, const LineOfSight& line, double range_
 
 /// A light itself, seen at its distance through all that lies before it: one term, of an intensity of 1 / solid angle [sr] of a pixel.
 void lampAlong(const RadianceScene& scene, const LineOfSight& line, std::size_t light, double pixel_sr, TermSink& sink);
-
-/// What a texture has at a place, bilinear as the shader reads it.
-double textureValue(const Texture& texture, glm::dvec2 uv);
 
 }  // namespace pitviper

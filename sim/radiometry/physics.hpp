@@ -9,6 +9,7 @@ using Real = double;
 using Vec2 = glm::dvec2;
 using Vec3 = glm::dvec3;
 using Vec4 = glm::dvec4;
+using glm::cross;
 using glm::dot;
 using std::exp;
 using std::floor;
@@ -26,6 +27,7 @@ constexpr Real kFar = 1e30;
 #include "sim/radiometry/glsl/arc_tangent.glsl"
 #include "sim/radiometry/glsl/chord.glsl"
 #include "sim/radiometry/glsl/exponential.glsl"
+#include "sim/radiometry/glsl/footprint.glsl"
 #include "sim/radiometry/glsl/geometry.glsl"
 #include "sim/radiometry/glsl/ground.glsl"
 #include "sim/radiometry/glsl/medium.glsl"

@@ -52,6 +52,11 @@ void appendDrawn(const Mesh& mesh, const std::vector<std::uint32_t>& order, std:
   }
 }
 
+/// As textures.glsl reads it.
+glm::uvec4 shapeOf(std::size_t first, int width, int height, std::size_t last) {
+  return {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(width), static_cast<std::uint32_t>(height), static_cast<std::uint32_t>(last)};
+}
+
 }  // namespace
 
 GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
@@ -85,11 +90,21 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
 
   std::vector<glm::uvec4> shapes;
   std::vector<float> texels;
-  for (const auto& t : sim.textures) {
-    shapes.emplace_back(static_cast<std::uint32_t>(texels.size()), static_cast<std::uint32_t>(t.width), static_cast<std::uint32_t>(t.height),
-                        t.repeats ? 1u : 0u);
+  // Shapes of the textures first, then of their levels; see textures.glsl.
+  std::size_t shape = sim.textures.size();
+  for (const Texture& t : sim.textures) {
+    shapes.push_back(shapeOf(texels.size(), t.width, t.height, (t.repeats ? 1u : 0u) + 2 * t.levels.size() + 64 * shape));
     texels.insert(texels.end(), t.texels.begin(), t.texels.end());
+    shape += t.levels.size();
   }
+  std::vector<glm::vec4> levels;
+  for (const Texture& t : sim.textures)
+    for (const TextureLevel& l : t.levels) {
+      shapes.push_back(shapeOf(levels.size(), l.width, l.height, 0));
+      for (std::size_t k = 0; k < l.mean.size(); ++k)
+        levels.emplace_back(l.mean[k], l.second.empty() ? 0.0f : l.second[k], l.third.empty() ? 0.0f : l.third[k], 0.0f);
+    }
+  levels_.upload(levels);
   textureShapes_.upload(shapes);
   texels_.upload(texels);
 }
@@ -107,6 +122,7 @@ void GpuScene::bind() const {
   drawn_.bindVertices();
   textureShapes_.bindTexture(11, 4, true);
   texels_.bindTexture(12, 1);
+  levels_.bindTexture(30, 4);
 }
 
 }  // namespace pitviper

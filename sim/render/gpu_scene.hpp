@@ -32,8 +32,8 @@ class GpuScene {
   std::shared_ptr<const ShadowTrees> shadowTrees(const Simulation& simulation) const;
 
  private:
-  Buffer vertices_, indices_, textureShapes_, texels_;  ///< read by programs
-  Buffer drawn_, corners_;                              ///< drawn: the last corner of a triangle carries its number
+  Buffer vertices_, indices_, textureShapes_, texels_, levels_;  ///< read by programs
+  Buffer drawn_, corners_;                                       ///< drawn: the last corner of a triangle carries its number
   VertexArray vertexArray_;
   std::vector<std::uint32_t> firstTriangle_;
   std::vector<BodyBox> boxes_;

@@ -17,6 +17,13 @@ void PixelClasses::find(const RenderTarget& visibility, const Texture2D* bends, 
   end();
 }
 
+void PixelClasses::findWithLight(const RenderTarget& visibility) {
+  begin(visibility, true);
+  light_ = found_;
+  drawPart(glm::ivec4(0));
+  end();
+}
+
 void PixelClasses::drawPart(const glm::ivec4& part) const {
   found_->setPart(part);
   glDrawArrays(GL_TRIANGLES, 0, 3);
@@ -27,16 +34,19 @@ void PixelClasses::end() const {
   glDisable(GL_DEPTH_TEST);
 }
 
-void PixelClasses::begin(const RenderTarget& visibility) {
+void PixelClasses::begin(const RenderTarget& visibility, bool withLight) {
   found_ = nullptr;
   for (const RenderTarget& t : targets_)
-    if (t.width() == visibility.width() && t.height() == visibility.height()) found_ = &t;
-  if (!found_) found_ = &targets_.emplace_back(visibility.width(), visibility.height(), std::vector<PixelFormat>{}, true);
+    if (t.width() == visibility.width() && t.height() == visibility.height() && (t.colourCount() > 0) == withLight) found_ = &t;
+  if (!found_)
+    found_ = &targets_.emplace_back(visibility.width(), visibility.height(),
+                                    withLight ? std::vector<PixelFormat>{PixelFormat::Rg32f} : std::vector<PixelFormat>{}, true);
   found_->bind();
   visibility.colour(0).bind(0);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_TRUE);
+  glDisable(GL_BLEND);
   program_.use();
   glUniform1i(program_.uniform("grouped"), 0);
 }

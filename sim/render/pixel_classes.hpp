@@ -20,8 +20,12 @@ class PixelClasses {
   PixelClasses(const ShaderLibrary& library, const ShaderSlots& slots);
   /// Of what was drawn last. Buffers and the view are bound. `bends`: of pixels of grouped x grouped subpixels those that have 0 are left out.
   void find(const RenderTarget& visibility, const Texture2D* bends = nullptr, int grouped = 0);
+  /// The same, and what their light depends on: smoothness().
+  void findWithLight(const RenderTarget& visibility);
+  /// As the last findWithLight() left it: (light, 1 / depth [1/m]) where a pixel's radiance is smooth where these are, but for its textures; else (-1, 0).
+  const Texture2D& smoothness() const { return light_->colour(0); }
   /// The same part by part (corner, size), with views of their own.
-  void begin(const RenderTarget& visibility);
+  void begin(const RenderTarget& visibility) { begin(visibility, false); }
   void drawPart(const glm::ivec4& part) const;
   void end() const;
   ChosenPixels only(std::size_t surfaceClass) const { return {*found_, depthOf(surfaceClass), false}; }
@@ -31,9 +35,10 @@ class PixelClasses {
   static float depthOf(std::size_t surfaceClass) { return surfaceClass == 0 ? 15.0f / 16.0f : static_cast<float>(surfaceClass) / 16.0f; }
 
  private:
+  void begin(const RenderTarget& visibility, bool withLight);
   Program program_;
   std::deque<RenderTarget> targets_;
-  const RenderTarget* found_ = nullptr;
+  const RenderTarget *found_ = nullptr, *light_ = nullptr;
 };
 
 }  // namespace pitviper

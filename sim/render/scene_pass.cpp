@@ -248,7 +248,8 @@ void ScenePass::findClassesIn(const View& v, const WorldState& state, const std:
 std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   if (v.grouped < 2 || v.onlyEntity >= 0 || !sharesShading()) return {};
   if (!shared_)
-    shared_.emplace(library_, plan_.groupCount(), current_->shading.colourCount(), kBendShare * (plan_.accuracy > 0.0 ? plan_.accuracy : kUsualAccuracy));
+    shared_.emplace(library_, plan_.groupCount(), current_->shading.colourCount(), kBendShare * (plan_.accuracy > 0.0 ? plan_.accuracy : kUsualAccuracy),
+                    plan_.textureAccuracy > 0.0);
   View whole = v;
   whole.width /= v.grouped, whole.height /= v.grouped;
   whole.tanPerPixelX *= v.grouped, whole.tanPerPixelY *= v.grouped;
@@ -258,11 +259,11 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   const GpuView data = viewData(simulation_, whole, apertureArea_m2_);
   pixelView_.upload(&data, sizeof data);
   pixelView_.bindUniform(0);
-  pixelClasses_->find(pixels.visibility);
+  pixelClasses_->findWithLight(pixels.visibility);
   pixels.visibility.colour(0).bind(0);
   partial_ = false;
   shade(pixels.shading, pixels.visibility);
-  shared_->findBends(current_->visibility, pixels.visibility, pixels.shading, v.grouped);
+  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_->smoothness(), pixels.shading, v.grouped);
   if (v.subpixels != v.grouped) shared_->spread(pixels.shading, current_->shading, v.grouped, glm::ivec4(0));
   else if (v.kept.z > 0) shared_->spread(pixels.shading, current_->shading, v.grouped, v.kept);
   view_.bindUniform(0);

@@ -6,7 +6,7 @@ namespace pitviper {
 namespace {
 
 /// The pixels' colours, a texture each from here on; what subpixels see.
-constexpr unsigned kColours = 22, kSubpixels = 18;
+constexpr unsigned kColours = 22, kSubpixels = 18, kSmoothness = 17;
 
 /// Colours copied one to one.
 std::string spreadText(std::size_t colours) {
@@ -32,9 +32,11 @@ void drawAll(const Program& program, const RenderTarget& into, int grouped, cons
 
 }  // namespace
 
-SharedShading::SharedShading(const ShaderLibrary& library, int groups, std::size_t colours, double threshold) : groups_(groups), threshold_(threshold) {
+SharedShading::SharedShading(const ShaderLibrary& library, int groups, std::size_t colours, double threshold, bool filtered)
+    : groups_(groups), threshold_(threshold) {
   ShaderSlots slots;
   slots.constants["GROUPS"] = groups;
+  slots.constants["FILTERED"] = filtered ? 1 : 0;
   const AssembledShader everywhere = assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots);
   middles_ = Program(everywhere, assembleShader(library, "sim/render/glsl/pixel_middle.frag.glsl", slots));
   find_ = Program(everywhere, assembleShader(library, "sim/render/glsl/pixel_bends.frag.glsl", slots));
@@ -48,11 +50,12 @@ void SharedShading::findMiddles(const RenderTarget& subpixels, RenderTarget& pix
   drawAll(middles_, pixels, grouped);
 }
 
-void SharedShading::findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const RenderTarget& shaded, int grouped) {
+void SharedShading::findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const Texture2D& smoothness, const RenderTarget& shaded, int grouped) {
   if (!bends_ || bends_->width() != pixels.width() || bends_->height() != pixels.height())
     bends_.emplace(pixels.width(), pixels.height(), std::vector<PixelFormat>{PixelFormat::R32f}, false);
   pixels.colour(0).bind(0);
   subpixels.colour(0).bind(kSubpixels);
+  smoothness.bind(kSmoothness);
   for (int g = 0; g < groups_; ++g) shaded.colour(static_cast<std::size_t>(g)).bind(kColours + static_cast<unsigned>(g));
   find_.use();
   glUniform1f(find_.uniform("threshold"), static_cast<float>(threshold_));

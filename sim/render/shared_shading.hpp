@@ -1,6 +1,7 @@
 #pragma once
 // Pixels shaded once for all of their subpixels, where that is enough: what each sees near its middle is shaded first; then, subpixel by subpixel, those
-// pixels whose subpixels see different parts, or whose radiance bends from neighbour to neighbour, in some channel, by more than a share of itself.
+// pixels whose subpixels see different parts, or whose radiance bends from neighbour to neighbour, in some channel, by more than a share of itself. Not
+// where only textures can make it bend, which are read over whole pixels: light and 1 / depth don't.
 // Source: adaptive supersampling after Whitted 1980; the bend in place of the contrast, so that slopes, of which the middle is the mean, need nothing.
 #include "sim/gl/objects.hpp"
 
@@ -8,12 +9,13 @@ namespace pitviper {
 
 class SharedShading {
  public:
-  /// `groups`: channel groups of four; the target's colours beyond, truth, don't count. `threshold`: the share.
-  SharedShading(const ShaderLibrary& library, int groups, std::size_t colours, double threshold);
+  /// `groups`: channel groups of four; the target's colours beyond, truth, don't count. `threshold`: the share; `filtered`: textures are read over whole
+  /// pixels.
+  SharedShading(const ShaderLibrary& library, int groups, std::size_t colours, double threshold, bool filtered);
   /// Of a picture of grouped x grouped subpixels a pixel.
   void findMiddles(const RenderTarget& subpixels, RenderTarget& pixels, int grouped);
   /// Which of the shaded pixels are not enough.
-  void findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const RenderTarget& shaded, int grouped);
+  void findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const Texture2D& smoothness, const RenderTarget& shaded, int grouped);
   /// 1 for these, as findBends() left it.
   const Texture2D& bends() const { return bends_->colour(0); }
   /// Gives subpixels what their pixels have; of a part (corner, size), or of all.

@@ -125,7 +125,23 @@ void appendHemispherical(SurfaceTables& t, const Material& m, int views, const P
   }
 }
 
-void appendMaterial(SurfaceTables& t, const Material& m, const std::set<std::pair<std::string, std::string>>& lobes, const Plan& plan) {
+/// Factor and summand that make one texture's values out of another's; none where no two do. Shares of two covers, say, are 1 together: one is read.
+std::optional<std::pair<float, float>> imageOf(const Simulation& sim, int from, int to) {
+  if (from < 0 || to < 0) return {};
+  const Texture &a = sim.textures[static_cast<size_t>(from)], &b = sim.textures[static_cast<size_t>(to)];
+  if (a.width != b.width || a.height != b.height || a.repeats != b.repeats) return {};
+  const auto [low, high] = std::minmax_element(a.texels.begin(), a.texels.end());
+  const auto at = [&](auto where) { return static_cast<double>(b.texels[static_cast<size_t>(where - a.texels.begin())]); };
+  const double first = static_cast<double>(*low), last = static_cast<double>(*high), factor = last > first ? (at(high) - at(low)) / (last - first) : 0.0,
+               summand = at(low) - factor * first;
+  constexpr double kRounding = 3e-7;
+  const double scale = std::max(std::abs(at(low)), std::abs(at(high)));
+  for (size_t k = 0; k < a.texels.size(); ++k)
+    if (std::abs(factor * static_cast<double>(a.texels[k]) + summand - static_cast<double>(b.texels[k])) > kRounding * scale) return {};
+  return std::pair{static_cast<float>(factor), static_cast<float>(summand)};
+}
+
+void appendMaterial(SurfaceTables& t, const Simulation& sim, const Material& m, const std::set<std::pair<std::string, std::string>>& lobes, const Plan& plan) {
   GpuMaterial g{};
   const auto axes = materialAxes(m);
   const int views = m.hemisphericalVaries() ? viewAngles(m) : 1;
@@ -144,10 +160,16 @@ void appendMaterial(SurfaceTables& t, const Material& m, const std::set<std::pai
   g.scale[2] = views > 1 ? static_cast<float>((views - 1) / (0.5 * kPi)) : 0.0f;
   g.components.assign(3 * static_cast<size_t>(t.vectors), {0, -1, 0, 0});
   g.lobes.resize(g.components.size());
+  g.images.resize(g.components.size());
   for (size_t k = 0; k < m.reflections.size(); ++k) {
     const Lobe& lobe = m.reflections[k]->lobe();
     const auto at = lobes.find({lobe.file, lobe.function});
     g.components[k] = {at == lobes.end() ? 0 : static_cast<std::int32_t>(std::distance(lobes.begin(), at)) + 1, m.modifiers[k], 1, 0};
+    const auto image = k > 0 ? imageOf(sim, m.modifiers[k - 1], m.modifiers[k]) : std::nullopt;
+    if (image) {
+      g.components[k][3] = 1;
+      g.images[k] = {image->first, image->second, 0.0f, 0.0f};
+    }
     for (int c = 0; c < 4; ++c) g.lobes[k][static_cast<size_t>(c)] = static_cast<float>(lobe.parameters[c]);
   }
   g.transmission[0] = m.transmission ? m.transmission->modifier : -1;
@@ -339,6 +361,7 @@ std::vector<std::uint32_t> SurfaceTables::packedMaterials() const {
     put(m.counts), put(m.kinds), put(m.scale), put(m.transmission), put(m.state), put(m.stateScale);
     for (const auto& c : m.components) put(c);
     for (const auto& l : m.lobes) put(l);
+    for (const auto& i : m.images) put(i);
   }
   return words;
 }
@@ -370,6 +393,12 @@ void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, con
   if (tables.lit) slots.files["lights"] = lightsFile(plan);
   file("columns", !tables.lit ? "columns_none" : tables.tabulated ? "columns_tabulated" : "columns_plain");
   file("temperature", !terms.temperatureTextures ? "temperature_uniform" : tables.planckAt >= 0 ? "temperature_tabulated" : "temperature_textured");
+  file("footprint", plan.textureAccuracy > 0.0 ? "footprint_pixel" : "footprint_none");
+  slots.constants["FILTERED"] = plan.textureAccuracy > 0.0 ? 1 : 0;
+  const TextureTaps taps = tapsFor(plan.textureAccuracy);
+  slots.constants["TAPS_PER_TEN_TEXELS"] = taps.perTenTexels;
+  slots.constants["TAPS_ACROSS"] = taps.mostAcross;
+  slots.constants["TAPS_ALONG"] = taps.mostAlong;
   file("modifiers", terms.modifiers ? "modifiers_textured" : "modifiers_none");
   file("ambient", plan.terms.ambient ? "ambient_dome" : "ambient_none");
   if (tables.planckAt < 0) return;
@@ -392,10 +421,10 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   for (const auto& m : sim.materials) {
     SurfaceTables& kind = m->transmission ? t.layer : t.solid;
     at.push_back(static_cast<std::uint32_t>(kind.materials.size()));
-    if (!m->medium) appendMaterial(kind, *m, (m->transmission ? plan.terms.layer : plan.terms.solid).lobes, plan);
+    if (!m->medium) appendMaterial(kind, sim, *m, (m->transmission ? plan.terms.layer : plan.terms.solid).lobes, plan);
   }
   const auto background = static_cast<std::uint32_t>(t.solid.materials.size());
-  appendMaterial(t.solid, Material{}, {}, plan);  // black: its row is its radiance
+  appendMaterial(t.solid, sim, Material{}, {}, plan);  // black: its row is its radiance
 
   t.draws.push_back({DrawKind::Background, -1, -1, appendRow(t.solid, sim, plan, nullptr), background});
   if (sim.ground) {

@@ -15,7 +15,8 @@ struct GpuMaterial {
   std::array<float, 4> scale{};
   std::array<std::int32_t, 4> transmission{}, state{};
   std::array<float, 4> stateScale{};
-  std::vector<std::array<std::int32_t, 4>> components;
+  std::vector<std::array<std::int32_t, 4>> components;  ///< lobe + 1, texture or -1, 1 where there is one, 1 where its texture is an image of the last one's
+  std::vector<std::array<float, 4>> images;             ///< of the last one's texture: factor, then what is added
   std::vector<std::array<float, 4>> lobes;
 };
 

@@ -11,16 +11,9 @@
 #include "sim/scene/geodesy.hpp"
 #include "sim/scene/mesh.hpp"
 #include "sim/scene/motion.hpp"
+#include "sim/scene/texture.hpp"
 
 namespace pitviper {
-
-/// One channel of floats, row 0 at v = 0 (bottom), read bilinearly; beyond its edges held, or repeated.
-struct Texture {
-  std::string name;
-  int width = 0, height = 0;
-  std::vector<float> texels;
-  bool repeats = false;
-};
 
 /// A part of a mesh as it is in a scenario.
 struct Surface {

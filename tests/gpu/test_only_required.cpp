@@ -200,7 +200,7 @@ TEST(OnlyRequired, Textures) {
   f.modifier = false;
   const Built plain(f);
   EXPECT_TRUE(plain.holds("textureValue(")) << "of the temperature";
-  expectGone(all, plain, {"textureValue(texture, uv_)"});
+  expectGone(all, plain, {"modifierAt(int texture) { return texture < 0"});
   f.temperatureTexture = false;
   const Built none(f);
   expectGone(all, none, {"textureValue", "samplerBuffer texels", "usamplerBuffer textureShapes"});

@@ -48,7 +48,8 @@ double worstError(const Simulation& sim, const Plan& plan, const Sight& sight, c
   const Camera& camera = sim.cameras[0];
   SpectralSampling all = camera.spectral;
   all.reference = true;
-  const Plan fine = makePlan(sim, camera.outputs, all, camera.where);
+  Plan fine = makePlan(sim, camera.outputs, all, camera.where);
+  fine.textureAccuracy = plan.textureAccuracy;
   const std::vector<char> present(1, 1);
   double worst = 0.0;
   for (const double range_m : {550.0, 1500.0, 5e3, 12e3, 19e3})

@@ -33,7 +33,8 @@ std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan
   camera.pinhole.width = camera.pinhole.height = size;
   SpectralSampling all = camera.spectral;
   all.reference = true;
-  const Plan fine = makePlan(sim, camera.outputs, all, camera.where);
+  Plan fine = makePlan(sim, camera.outputs, all, camera.where);
+  fine.textureAccuracy = plan.textureAccuracy;
   auto gpu = std::make_shared<const GpuScene>(sim);
   const auto pass = makeScenePass(sim, plan, shaderLibrary(), gpu, true, camera.pinhole.apertureArea_m2());
   std::vector<char> present(sim.entities.size(), 1);

@@ -5,6 +5,8 @@ layout(binding = 0) uniform usampler2D visibility;
 layout(binding = 19) uniform sampler2D bends;  // of pixels of grouped x grouped subpixels: 0 where all of these have been shaded
 uniform int grouped;  // 0: none
 //@use sim/render/glsl/ray.glsl
+// What a pixel's light depends on where the sun alone shines on a Lambertian surface, and 1 / depth, which is even over a plane; else (-1, 0).
+layout(location = 0) out vec2 smoothness;
 //@slot light_demand
 
 void main() {
@@ -16,5 +18,7 @@ void main() {
   bool leftOut = view.earth.z > 0.0 && float(drawTexel(id.x, 3).w) != view.earth.z;
   if (grouped > 0) leftOut = leftOut || texelFetch(bends, ivec2(gl_FragCoord.xy) / grouped, 0).x == 0.0;
   vec2 own = drawMember(id.x, 5).yz;  // of its class, and that of its class with every light
-  gl_FragDepth = leftOut ? 1.0 : own.x != own.y && needsAll(id, gl_FragCoord.xy) ? own.y : own.x;
+  bool all = own.x != own.y && needsAll(id, gl_FragCoord.xy);
+  gl_FragDepth = leftOut ? 1.0 : all ? own.y : own.x;
+  smoothness = own.x == own.y || all ? vec2(-1.0, 0.0) : lightAndDepth_;
 }

@@ -1,2 +1,3 @@
 // One program a class.
+vec2 lightAndDepth_;
 bool needsAll(uvec2 id, vec2 pixel) { return false; }

@@ -7,11 +7,13 @@ struct MaterialShape {
   ivec4 state;         // texture of its state or -1; entries
   vec4 stateScale;     // state of the first entry; entries per unit of it
 };
-// Behind these six, of R1, R2, ...: (its lobe, from 1 on, or 0; its texture or -1), then what the lobe of each takes.
+// Behind these six, of R1, R2, ...: (its lobe, from 1 on, or 0; its texture or -1; whether it is one; 1 where the texture is an
+// image of the last one's), then what the lobe of each takes, then (factor, summand) of each image.
 layout(binding = 10) uniform usamplerBuffer materials;
-uvec4 materialTexel(uint material, int member) { return texelFetch(materials, (6 + 2 * COMPONENTS) * int(material) + member); }
-ivec2 componentOf(uint material, int k) { return ivec2(materialTexel(material, 6 + k).xy); }
+uvec4 materialTexel(uint material, int member) { return texelFetch(materials, (6 + 3 * COMPONENTS) * int(material) + member); }
+ivec4 componentOf(uint material, int k) { return ivec4(materialTexel(material, 6 + k)); }
 vec4 lobeOfComponent(uint material, int k) { return uintBitsToFloat(materialTexel(material, 6 + COMPONENTS + k)); }
+vec2 imageOfComponent(uint material, int k) { return uintBitsToFloat(materialTexel(material, 6 + 2 * COMPONENTS + k)).xy; }
 MaterialShape materialAt(uint material) {
   return MaterialShape(materialTexel(material, 0), materialTexel(material, 1), uintBitsToFloat(materialTexel(material, 2)), ivec4(materialTexel(material, 3)),
                        ivec4(materialTexel(material, 4)), uintBitsToFloat(materialTexel(material, 5)));

@@ -1,11 +1,13 @@
+//@constants
 // 1 where a pixel shaded once is not enough: its subpixels see different parts, or its radiance bends, in some channel, by more than a share of the
-// brightest around: across an edge of light or shade by as much as there is between its sides, in what is smooth hardly at all.
+// brightest around (or, where textures are read over whole pixels, its light does): across an edge of light or shade by as much as there is between its sides, in what is smooth hardly at all.
 layout(location = 0) out float bends;
 layout(binding = 0) uniform usampler2D visibility;  // of pixels
 layout(binding = 18) uniform usampler2D subpixels;
 //@each g GROUPS
 layout(binding = 22 + {g}) uniform sampler2D pixels{g};
 //@end
+layout(binding = 17) uniform sampler2D smoothness;  // see classes.frag.glsl
 uniform int grouped;
 uniform float threshold;
 
@@ -22,15 +24,32 @@ bool bendsIn(sampler2D pixels, ivec2 p) {
   return !all(lessThanEqual(bend, threshold * most));
 }
 
+// A ridge before what lies behind it is a step in 1 / depth; what bends less does not show in the light.
+const float kRidge = 0.1;
+
+bool lightBends(ivec2 p) {
+  vec2 here = texelFetch(smoothness, p, 0).xy;
+  bool bends = here.x < 0.0;
+  for (int k = 0; k < 4; ++k) {
+    ivec2 step = ivec2(k == 0 ? 0 : 1, k == 0 ? 1 : k - 2);
+    vec2 a = texelFetch(smoothness, clamp(p - step, ivec2(0), last_), 0).xy, b = texelFetch(smoothness, clamp(p + step, ivec2(0), last_), 0).xy;
+    vec2 most = max(here, max(a, b)), bend = abs(a + b - 2.0 * here);
+    bends = bends || min(a.x, b.x) < 0.0 || bend.x > threshold * most.x || bend.y > kRidge * most.y;
+  }
+  return bends;
+}
+
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
   last_ = textureSize(visibility, 0) - 1;
   uint draw = texelFetch(visibility, p, 0).x;
-  bool enough = true;
+  bool same = true;
   for (int y = 0; y < grouped; ++y)
-    for (int x = 0; x < grouped; ++x) enough = enough && texelFetch(subpixels, grouped * p + ivec2(x, y), 0).x == draw;
+    for (int x = 0; x < grouped; ++x) same = same && texelFetch(subpixels, grouped * p + ivec2(x, y), 0).x == draw;
+  bool smoothly = true;
 //@each g GROUPS
-  enough = enough && !bendsIn(pixels{g}, p);
+  smoothly = smoothly && !bendsIn(pixels{g}, p);
 //@end
+  bool enough = same && (smoothly || (FILTERED == 1 && !lightBends(p)));
   bends = enough ? 0.0 : 1.0;
 }

@@ -29,6 +29,7 @@ struct Meeting {
   float along;
   vec3 weight;
   ivec3 corner;    // in the buffer of vertices
+  vec3 side1, side2;
   vec3 geometric;  // normal, not of unit length
 };
 
@@ -42,6 +43,8 @@ Meeting meet(uint triangle, vec3 q, vec3 d) {
   float v = clamp(dot(s, p) * inverse, 0.0, 1.0);
   float w = clamp(dot(d, r) * inverse, 0.0, 1.0 - v);
   m.weight = vec3(1.0 - v - w, v, w);
+  m.side1 = e1;
+  m.side2 = e2;
   m.geometric = cross(e1, e2);
   // On the triangle's plane: its digits are those of the place, not of a triangle that may be 200 km long. On edge no farther than its corners.
   float facing = dot(m.geometric, d), d2 = dot(d, d);

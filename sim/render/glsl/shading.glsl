@@ -3,6 +3,7 @@
 //@use sim/radiometry/glsl/planck.glsl
 //@use sim/radiometry/glsl/geometry.glsl
 //@use sim/radiometry/glsl/ground.glsl
+//@use sim/radiometry/glsl/footprint.glsl
 //@constants
 //@use sim/render/glsl/ray.glsl
 //@use sim/render/glsl/node_block.glsl
@@ -15,7 +16,7 @@ vec3 toViewer_;   // unit, body frame
 vec3 point_;      // body frame [m]
 vec3 facet_;      // outward normal of the triangle itself, not of unit length, body frame
 vec3 up_;         // up at the point, body frame
-vec2 uv_;
+vec2 uv_, uvAcross_, uvUp_;  // at the point; over the sides of the pixel
 float cosView_;
 float range_;
 float height_;    // of the point [m]
@@ -52,7 +53,7 @@ void lookAt(uvec2 id, vec2 pixel) {
   facet_ = toViewer_;
   cosView_ = 1.0;
   point_ = vec3(0.0);
-  uv_ = vec2(0.0);
+  uv_ = uvAcross_ = uvUp_ = vec2(0.0);
   range_ = max(ground, 1.0e-6);
   if (SURFACES > 0 && id.x != 0u) {
     vec3 q = pointOnPlane(draw_);
@@ -64,6 +65,10 @@ void lookAt(uvec2 id, vec2 pixel) {
     point_ = q + m.along * d;
     range_ = max((planeOf(draw_) + m.along) * rayLength_, 1.0e-6);
     uv_ = vec2(w.x * ua + w.y * ub + w.z * uc, w.x * na.w + w.y * nb.w + w.z * nc.w);
+    float depth = planeOf(draw_) + m.along;
+    vec2 uv1 = vec2(ub - ua, nb.w - na.w), uv2 = vec2(uc - ua, nc.w - na.w);
+    uvAcross_ = uvStep(inBody(draw_, vec3(view.pixel.x, 0.0, 0.0)), d, depth, m.geometric, m.side1, m.side2, uv1, uv2);
+    uvUp_ = uvStep(inBody(draw_, vec3(0.0, view.pixel.y, 0.0)), d, depth, m.geometric, m.side1, m.side2, uv1, uv2);
     vec3 n = w.x * na.xyz + w.y * nb.xyz + w.z * nc.xyz;
     if (dot(m.geometric, d) > 0.0) n = -n;  // seen from behind
     normal_ = normalize(n);

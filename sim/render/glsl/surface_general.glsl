@@ -25,8 +25,9 @@ void prepareTemperature();
 
 void prepareSurface() {
   material_ = materialAt(draw_.table.y);
+  float last = 1.0;
   for (int v = 0; v < COMPONENT_VECTORS; ++v)
-    for (int k = 0; k < 3; ++k) modifier_[v][k] = 3 * v + k < USED_COMPONENTS ? modifierAt(componentOf(draw_.table.y, 3 * v + k).y) : 1.0;
+    for (int k = 0; k < 3; ++k) modifier_[v][k] = last = 3 * v + k < USED_COMPONENTS ? modifierOf(3 * v + k, last) : 1.0;
   emissionModifier_ = EMISSION_MODIFIERS > 0 ? modifierAt(material_.transmission.z) : 1.0;
   state_ = 0;
   stateMix_ = 0.0;

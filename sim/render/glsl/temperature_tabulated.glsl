@@ -2,17 +2,23 @@
 // temperature. The table begins with the first inverse and entries per inverse.
 //@use sim/render/glsl/textures.glsl
 //@use sim/render/glsl/packed_rows.glsl
-float surfaceTemperature() { return draw_.table.z > 0u ? textureValue(int(draw_.table.z) - 1, uv_) : draw_.state.x; }
-int planckEntry_;
-float planckMix_;
+vec3 temperatures_;  // two, and the share of the second
+float surfaceTemperature() {
+  temperatures_ = draw_.table.z > 0u ? temperaturesOf(int(draw_.table.z) - 1) : vec3(draw_.state.x);
+  return mix(temperatures_.x, temperatures_.y, draw_.table.z > 0u ? temperatures_.z : 0.0);
+}
+ivec2 planckEntry_;
+vec2 planckMix_;
 void prepareTemperature() {
   vec2 scale = texelFetch(rows, PLANCK_AT).xy;
-  float at = clamp((1.0 / temperature_ - scale.x) * scale.y, 0.0, float(PLANCK_ENTRIES - 1));
-  int entry = int(min(at, float(PLANCK_ENTRIES - 2)));
-  planckMix_ = at - float(entry);
+  vec2 at = clamp((1.0 / temperatures_.xy - scale.x) * scale.y, 0.0, float(PLANCK_ENTRIES - 1));
+  ivec2 entry = ivec2(min(at, float(PLANCK_ENTRIES - 2)));
+  planckMix_ = at - vec2(entry);
   planckEntry_ = PLANCK_AT + 1 + entry * NODE_TEXELS;
 }
+Real planckAt(int entry, float share, int i) { return mix(rowAt(entry, i), rowAt(entry + NODE_TEXELS, i), share); }
 Real sourceRadiance(int i) {
   if (draw_.table.z == 0u) return rowAt(int(draw_.table.x), i);
-  return mix(rowAt(planckEntry_, i), rowAt(planckEntry_ + NODE_TEXELS, i), planckMix_);
+  Real first = planckAt(planckEntry_.x, planckMix_.x, i);
+  return FILTERED == 0 ? first : mix(first, planckAt(planckEntry_.y, planckMix_.y, i), temperatures_.z);
 }

@@ -1,8 +1,14 @@
 // Some part has a temperature texture: Planck's law per fragment there.
 //@use sim/render/glsl/textures.glsl
 //@use sim/render/glsl/packed_rows.glsl
-float surfaceTemperature() { return draw_.table.z > 0u ? textureValue(int(draw_.table.z) - 1, uv_) : draw_.state.x; }
+vec3 temperatures_;  // two, and the share of the second
+float surfaceTemperature() {
+  temperatures_ = draw_.table.z > 0u ? temperaturesOf(int(draw_.table.z) - 1) : vec3(draw_.state.x);
+  return mix(temperatures_.x, temperatures_.y, draw_.table.z > 0u ? temperatures_.z : 0.0);
+}
 void prepareTemperature() {}
 Real sourceRadiance(int i) {
-  return draw_.table.z == 0u ? rowAt(int(draw_.table.x), i) : planckFromConstants(nodes.node[i].z, nodes.node[i].w, temperature_);
+  if (draw_.table.z == 0u) return rowAt(int(draw_.table.x), i);
+  Real first = planckFromConstants(nodes.node[i].z, nodes.node[i].w, temperatures_.x);
+  return FILTERED == 0 ? first : mix(first, planckFromConstants(nodes.node[i].z, nodes.node[i].w, temperatures_.y), temperatures_.z);
 }

@@ -28,7 +28,7 @@ ReferenceShader::ReferenceShader(const Simulation& simulation, const Plan& plan,
       spectra_(spectra ? std::move(spectra) : std::make_shared<const NodeSpectra>(simulation, plan.nodes)) {}
 
 RadianceScene ReferenceShader::scene() const {
-  RadianceScene s{simulation_, plan_.terms, plan_.sunLegs.get(), state_, {}, 0};
+  RadianceScene s{simulation_, plan_.terms, plan_.sunLegs.get(), state_, {}, 0, tapsFor(plan_.textureAccuracy)};
   if (plan_.terms.shadows)
     s.lit = [this](const Hit& hit, size_t light, const LightLeg& leg) {
       const double radius_m = light < simulation_.lights.size() ? simulation_.lights[light].radius_m : 0.0;
@@ -47,6 +47,7 @@ double ReferenceShader::nearest_m(double x, double y) const { return view_.near_
 ReferencePixel ReferenceShader::pixel(int x, int y, NodeSum& sum) const {
   LineOfSight line = lineThrough(x + 0.5, y + 0.5);
   line.hits = castRay(simulation_, state_, line.origin, line.direction, nearest_m(x + 0.5, y + 0.5), &drawn_);
+  addFootprints(line, x + 0.5, y + 0.5);
   return shade(line, sum);
 }
 
@@ -68,7 +69,17 @@ LineOfSight ReferenceShader::line(int x, int y, const SeenTriangle& seen) const 
     hits.layers = std::move(all.layers);
     hits.stretches = std::move(all.stretches);
   }
+  addFootprints(line, x + 0.5, y + 0.5);
   return line;
+}
+
+void ReferenceShader::addFootprints(LineOfSight& line, double x, double y) const {
+  if (!(plan_.textureAccuracy > 0.0) || simulation_.textures.empty()) return;
+  const glm::dmat3& turned = view_.localFromCamera;
+  const glm::dvec3 ray = turned * view_.ray(x, y), across = turned * glm::dvec3(view_.tanPerPixelX, 0.0, 0.0),
+                   up = turned * glm::dvec3(0.0, view_.tanPerPixelY, 0.0);
+  if (line.hits.solid.entity >= 0) line.hits.solid.footprint = footprintOf(simulation_, state_, line.hits.solid, ray, across, up);
+  for (Hit& h : line.hits.layers) h.footprint = footprintOf(simulation_, state_, h, ray, across, up);
 }
 
 std::size_t ReferenceShader::things(const RayHits& hits) {

@@ -47,6 +47,8 @@ class ReferenceShader {
  private:
   RadianceScene scene() const;
   LineOfSight lineThrough(double x, double y) const;
+  /// What a pixel, whose middle is there, covers of the textures it sees.
+  void addFootprints(LineOfSight& line, double x, double y) const;
   double nearest_m(double x, double y) const;
   const Simulation& simulation_;
   const Plan& plan_;

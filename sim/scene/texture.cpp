@@ -1,0 +1,153 @@
+#include "sim/scene/texture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+namespace {
+
+/// What a cell of n evenly over m has of each of those: first, and weights that add up to 1.
+struct Parts {
+  int first = 0;
+  std::vector<double> weight;
+};
+
+std::vector<Parts> partsOf(int m, int n) {
+  std::vector<Parts> all(static_cast<size_t>(n));
+  for (int i = 0; i < n; ++i) {
+    const double from = static_cast<double>(i) * m / n, to = (i + 1.0) * m / n;
+    Parts& p = all[static_cast<size_t>(i)];
+    p.first = static_cast<int>(from);
+    for (int k = p.first; k < m && static_cast<double>(k) < to - 1e-9; ++k)
+      p.weight.push_back((std::min(to, k + 1.0) - std::max(from, static_cast<double>(k))) * n / m);
+  }
+  return all;
+}
+
+TextureLevel halved(const TextureLevel& from, bool moments) {
+  TextureLevel l;
+  l.width = (from.width + 1) / 2;
+  l.height = (from.height + 1) / 2;
+  const auto columns = partsOf(from.width, l.width), rows = partsOf(from.height, l.height);
+  for (const Parts& y : rows)
+    for (const Parts& x : columns) {
+      const auto over = [&](const auto& value) {
+        double sum = 0.0;
+        for (size_t j = 0; j < y.weight.size(); ++j)
+          for (size_t i = 0; i < x.weight.size(); ++i)
+            sum += y.weight[j] * x.weight[i] * value((static_cast<size_t>(y.first) + j) * static_cast<size_t>(from.width) + static_cast<size_t>(x.first) + i);
+        return sum;
+      };
+      const double mean = over([&](size_t t) { return static_cast<double>(from.mean[t]); });
+      l.mean.push_back(static_cast<float>(mean));
+      if (!moments) continue;
+      const auto own = [](const std::vector<float>& m, size_t t) { return m.empty() ? 0.0 : static_cast<double>(m[t]); };
+      l.second.push_back(static_cast<float>(over([&](size_t t) {
+        const double d = static_cast<double>(from.mean[t]) - mean;
+        return own(from.second, t) + d * d;
+      })));
+      l.third.push_back(static_cast<float>(over([&](size_t t) {
+        const double d = static_cast<double>(from.mean[t]) - mean;
+        return own(from.third, t) + d * (3.0 * own(from.second, t) + d * d);
+      })));
+    }
+  return l;
+}
+
+/// The four texels about a place, and their weights.
+struct Corners {
+  std::array<size_t, 4> texel;
+  std::array<double, 4> weight;
+};
+
+Corners cornersOf(int width, int height, bool repeats, glm::dvec2 at) {
+  at -= 0.5;
+  const glm::dvec2 cell = glm::floor(at), f = at - cell;
+  const auto held = [repeats](double k, int n) { return static_cast<size_t>(repeats ? k - std::floor(k / n) * n : std::clamp(k, 0.0, n - 1.0)); };
+  const size_t x0 = held(cell.x, width), x1 = held(cell.x + 1, width), y0 = held(cell.y, height) * static_cast<size_t>(width),
+               y1 = held(cell.y + 1, height) * static_cast<size_t>(width);
+  return {{y0 + x0, y0 + x1, y1 + x0, y1 + x1}, {(1 - f.x) * (1 - f.y), f.x * (1 - f.y), (1 - f.x) * f.y, f.x * f.y}};
+}
+
+double bilinear(const std::vector<float>& texels, const Corners& c) {
+  double sum = 0.0;
+  for (size_t k = 0; k < 4; ++k) sum += c.weight[k] * static_cast<double>(texels[c.texel[k]]);
+  return sum;
+}
+
+/// What is read between the middles of texels, over the square of each: two Gauss points a side of each quarter take a cube of what is straight exactly.
+TextureLevel cellsOf(const Texture& t, bool moments) {
+  constexpr double kGauss = 0.28867513459481287;
+  constexpr std::array kAt{0.25 - 0.5 * kGauss, 0.25 + 0.5 * kGauss, 0.75 - 0.5 * kGauss, 0.75 + 0.5 * kGauss};
+  TextureLevel cells{t.width, t.height, {}, {}, {}};
+  for (int y = 0; y < t.height; ++y)
+    for (int x = 0; x < t.width; ++x) {
+      const double middle = static_cast<double>(t.texels[static_cast<size_t>(y) * static_cast<size_t>(t.width) + static_cast<size_t>(x)]);
+      double s1 = 0.0, s2 = 0.0, s3 = 0.0;
+      for (double v : kAt)
+        for (double u : kAt) {
+          const double d = bilinear(t.texels, cornersOf(t.width, t.height, t.repeats, {x + u, y + v})) - middle;
+          s1 += d / 16.0, s2 += d * d / 16.0, s3 += d * d * d / 16.0;
+        }
+      cells.mean.push_back(static_cast<float>(middle + s1));
+      if (!moments) continue;
+      cells.second.push_back(static_cast<float>(s2 - s1 * s1));
+      cells.third.push_back(static_cast<float>(s3 - 3.0 * s1 * s2 + 2.0 * s1 * s1 * s1));
+    }
+  return cells;
+}
+
+}  // namespace
+
+void makeLevels(Texture& t, bool moments) {
+  t.levels.clear();
+  if (t.width == 1 && t.height == 1) return;
+  const TextureLevel own = cellsOf(t, moments);
+  for (const TextureLevel* from = &own; from->width > 1 || from->height > 1; from = &t.levels.back()) {
+    TextureLevel next = halved(*from, moments);
+    t.levels.push_back(std::move(next));
+  }
+}
+
+TextureTaps tapsFor(double accuracy) {
+  if (accuracy >= 0.05) return {7, 1, 8};
+  if (accuracy >= 0.005) return {8, 2, 8};
+  if (accuracy >= 0.0005) return {10, 3, 16};
+  return {14, 6, 32};
+}
+
+double textureValue(const Texture& t, glm::dvec2 uv) { return bilinear(t.texels, cornersOf(t.width, t.height, t.repeats, uv * glm::dvec2(t.width, t.height))); }
+
+TextureMoments textureMoments(const Texture& t, glm::dvec2 uv, const Footprint& footprint, const TextureTaps& asked) {
+  const glm::dvec2 size(t.width, t.height), middle = uv * size;
+  const physics::Taps taps = physics::tapsOf(footprint.across * size, footprint.up * size, 0.1 * asked.perTenTexels, asked.mostAcross, asked.mostAlong,
+                                             static_cast<int>(t.levels.size()));
+  const TextureLevel* level = taps.level > 0 ? &t.levels[static_cast<size_t>(taps.level) - 1] : nullptr;
+  const int width = level ? level->width : t.width, height = level ? level->height : t.height;
+  const std::vector<float>& mean = level ? level->mean : t.texels;
+  const double from = textureValue(t, uv);
+  double s1 = 0.0, s2 = 0.0, s3 = 0.0;
+  for (int j = 0; j < taps.acrossCount; ++j)
+    for (int i = 0; i < taps.alongCount; ++i) {
+      const glm::dvec2 at = middle + (i + 0.5 - 0.5 * taps.alongCount) * taps.along + (j + 0.5 - 0.5 * taps.acrossCount) * taps.across;
+      const Corners c = cornersOf(width, height, t.repeats, at / size * glm::dvec2(width, height));
+      if (!level) {
+        const double d = bilinear(mean, c) - from;
+        s1 += d, s2 += d * d, s3 += d * d * d;
+        continue;
+      }
+      for (size_t k = 0; k < 4; ++k) {
+        const double d = static_cast<double>(mean[c.texel[k]]) - from;
+        const double second = level->second.empty() ? 0.0 : static_cast<double>(level->second[c.texel[k]]),
+                     third = level->third.empty() ? 0.0 : static_cast<double>(level->third[c.texel[k]]);
+        s1 += c.weight[k] * d, s2 += c.weight[k] * (second + d * d), s3 += c.weight[k] * (third + d * (3.0 * second + d * d));
+      }
+    }
+  const double n = taps.alongCount * taps.acrossCount, m = s1 / n;
+  return {from + m, s2 / n - m * m, s3 / n - 3.0 * m * s2 / n + 2.0 * m * m * m};
+}
+
+}  // namespace pitviper
