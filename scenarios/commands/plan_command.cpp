@@ -41,6 +41,21 @@ double bytesOf(const RenderTables& t) {
   return static_cast<double>(floats * sizeof(float));
 }
 
+/// The plan beside those of three times and a third of its accuracy: what is bought next, and what less would save.
+std::string ladderOf(const Simulation& sim, const Camera& camera, const Plan& plan, double subpixels) {
+  constexpr double kStep = 3.0, kLeast = 0.1;
+  std::vector<Plan> plans;
+  Camera other = camera;
+  other.plan.clear();
+  for (double accuracy : {plan.accuracy / kStep, plan.accuracy, plan.accuracy * kStep}) {
+    if (accuracy == plan.accuracy) plans.push_back(plan);
+    if (accuracy == plan.accuracy || accuracy > kLeast * (1.0 + 1e-9)) continue;
+    other.spectral.accuracy = other.textureAccuracy = accuracy;
+    plans.push_back(planFor(sim, {&other, nullptr}));
+  }
+  return ladderText(plans, plan.accuracy, subpixels);
+}
+
 }  // namespace
 
 int planCommand(const Arguments& arguments) {
@@ -68,7 +83,7 @@ int planCommand(const Arguments& arguments) {
                     describe(sim.limits)};
     if (yardstick > 0.0) told.framesPerSecond = predictedRate(plan, subpixels, yardstick, buffered);
     if (o.has("--json")) json += (json.empty() ? "" : ", ") + planJson(told);
-    else std::printf("%s\n", planText(told).c_str());
+    else std::printf("%s%s\n", planText(told).c_str(), eye.camera && plan.accuracy > 0.0 ? ladderOf(sim, *eye.camera, plan, subpixels).c_str() : "");
     if (o.has("--shaders")) {
       const auto pass = makeScenePass(sim, plan, shaderLibrary(), std::make_shared<const GpuScene>(sim), eye.camera && eye.camera->truth.any(), 1.0);
       for (const NamedProgram& p : pass->programs())

@@ -151,6 +151,26 @@ std::string planText(const PlannedEye& eye) {
   return out;
 }
 
+std::string ladderText(const std::vector<Plan>& plans, double asked, double subpixels) {
+  std::string out = print("\n  %-10s %6s %16s %18s %10s %10s %18s\n", "accuracy", "nodes", "tables of air", "places a texture", "parts of", "predicted", "million terms");
+  out += print("  %-10s %6s %16s %18s %10s %10s %18s\n", "", "", "", "across x along", "intensity", "error", "a frame");
+  const auto termsOf = [&](const Plan& p) { return 1e-6 * subpixels * (costOf(p).lit + costOf(p).unlit); };
+  const Plan* last = nullptr;
+  bool more = false;
+  for (const Plan& p : plans) {
+    const TextureTaps taps = tapsFor(p.textureAccuracy);
+    const std::string air = p.air.elevations > 0 ? std::to_string(p.air.elevations) + "x" + std::to_string(p.air.ranges) + "x" + std::to_string(p.air.azimuths) : "none";
+    const double worst = p.predictedError.empty() ? 0.0 : *std::max_element(p.predictedError.begin(), p.predictedError.end());
+    out += print("  %-10s %6d %16s %18s", (percent(p.accuracy) + " %").c_str(), p.nodeCount(), air.c_str(),
+                 (std::to_string(taps.mostAcross) + "x" + std::to_string(taps.mostAlong)).c_str());
+    out += print(" %10s %10s %18.3g%s\n", (percent(0.25 * p.accuracy) + " %").c_str(), (percent(worst) + " %").c_str(), termsOf(p), p.accuracy == asked ? "  this plan" : "");
+    if (last && p.accuracy >= asked) more |= p.nodeCount() < last->nodeCount() || !(p.air == last->air) || tapsFor(last->textureAccuracy).mostAcross != taps.mostAcross;
+    last = &p;
+  }
+  if (!more) out += "  nothing is left to buy by asking less\n";
+  return out;
+}
+
 std::string planJson(const PlannedEye& eye) {
   const Plan& plan = eye.plan;
   const auto names = slotNames(plan, eye.outputs);

@@ -30,6 +30,9 @@ struct NodeCost {
 };
 NodeCost costOf(const Plan& plan);
 
+/// A line of `plan` for each of some accuracies: what the budget buys there, and what a frame costs for it. The plan's own among them.
+std::string ladderText(const std::vector<Plan>& plans, double asked, double subpixels);
+
 std::string planText(const PlannedEye& eye);
 /// One JSON object.
 std::string planJson(const PlannedEye& eye);

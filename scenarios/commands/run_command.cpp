@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/geometry_report.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/commands/run_timing.hpp"
@@ -286,6 +287,12 @@ std::string auditText(const RunReport& report) {
       text += line;
     }
     text += "\n";
+    if (t.whole.empty()) continue;
+    sorted = t.whole;
+    std::sort(sorted.begin(), sorted.end());
+    std::snprintf(line, sizeof line, "  %s: with its geometry, against 32x32 places a pixel: median %.2g %%, largest %.2g %% (standard error up to %.2g %%)\n",
+                  camera.c_str(), 100.0 * sorted[sorted.size() / 2], 100.0 * sorted.back(), 100.0 * t.wholeError);
+    text += line;
   }
   return text;
 }
@@ -406,6 +413,7 @@ int checkCommand(const Arguments& arguments) {
     std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
                 count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),
                 count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths").c_str());
+    std::printf("%s", geometryText(sim, drawn, plan).c_str());
     for (const ScatteredAgain& s : ScatteringCheck(sim, c, plan).at(advance(sim, sim.time.at(0))))
       if (s.factor > kWorthSaying) sayScatteredAgain(c.name, s.channel, s.factor);
     if (!c.spectralImage) continue;

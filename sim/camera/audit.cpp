@@ -22,14 +22,6 @@ constexpr double kMost = 16.0;
 /// Pixels among which the one is looked for that sees what the fewest do.
 constexpr int kDoubts = 256;
 
-/// Counter-based: the same numbers for the same (seed, frame, number), whatever was drawn before. Source: Steele, Lea and Flood 2014 (SplitMix64).
-std::uint64_t mixed(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15u;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-  return x ^ (x >> 31);
-}
-
 }  // namespace
 
 int auditedPixels(double perFrame, int frame) {
@@ -48,7 +40,7 @@ double affordablePixels(const Simulation& sim, const Camera& camera, const Plan&
 }
 
 Auditor::Auditor(const Simulation& simulation, const Camera& camera, const Plan& planned, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene)
-    : simulation_(simulation), camera_(camera), library_(library), scene_(std::move(scene)), asked_(planned.accuracy) {
+    : simulation_(simulation), camera_(camera), library_(library), scene_(std::move(scene)), asked_(planned.accuracy), planned_(planned), asDrawn_(camera) {
   perFrame_ = camera.spectral.reference ? 0.0 : simulation.audit >= 0.0 ? simulation.audit : affordablePixels(simulation, camera, planned);
   camera_.spectral = {};
   camera_.spectral.reference = true;
@@ -115,6 +107,8 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
     audit.median = errors[errors.size() / 2];
     audit.largest = errors.back();
   }
+  // One for each of those that the scenario asks for, or a single one.
+  for (std::size_t k = 0; asked_ > 0.0 && k < (simulation_.audit > 0.0 ? pixels.size() : 1); ++k) lookAtWhole(state, pixels[k], image);
   tally_.pixels += count;
   ++tally_.frames;
   tally_.asked = asked_;
@@ -124,6 +118,22 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
       for (int x = 0; x < camera_.samples; ++x)
         broken_.push_back(
             {frame, pixels[k] % camera_.pinhole.width + (x + 0.5) / camera_.samples, pixels[k] / camera_.pinhole.width + (y + 0.5) / camera_.samples});
+}
+
+void Auditor::lookAtWhole(const WorldState& state, int pixel, const CameraImage& image) {
+  if (!whole_) whole_ = std::make_unique<WholePixels>(simulation_, asDrawn_, planned_, seed_ ^ 3);
+  const auto whole = whole_->look(state, pixel);
+  if (!whole) return;
+  const int column = pixel % image.width, row = pixel / image.width;
+  for (std::size_t s = 0; s < whole->mean.size(); ++s) {
+    double brightest = whole->mean[s];
+    for (int y = std::max(row - 1, 0); y <= std::min(row + 1, image.height - 1); ++y)
+      for (int x = std::max(column - 1, 0); x <= std::min(column + 1, image.width - 1); ++x)
+        brightest = std::max(brightest, image.slots[s][static_cast<std::size_t>(y * image.width + x)]);
+    if (!(brightest > 0.0)) continue;
+    tally_.whole.push_back(std::abs(image.slots[s][static_cast<std::size_t>(pixel)] - whole->mean[s]) / brightest);
+    tally_.wholeError = std::max(tally_.wholeError, whole->error[s] / brightest);
+  }
 }
 
 }  // namespace pitviper

@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "sim/camera/camera_renderer.hpp"
+#include "sim/camera/whole_pixel.hpp"
 
 namespace pitviper {
 
@@ -19,6 +20,9 @@ struct AuditTally {
   double largest = 0.0;        ///< of random and doubtful ones
   std::string channel;         ///< where it was
   double asked = 0.0;          ///< 0: nothing was
+  /// |L - Lwhole| / max(Lwhole, brightest within one pixel) of pixels looked at, every channel's: with its geometry (WholePixels).
+  std::vector<double> whole;
+  double wholeError = 0.0;  ///< standard error of the worst of these
 };
 
 class Auditor {
@@ -35,6 +39,7 @@ class Auditor {
 
  private:
   std::vector<int> pixelsOf(int count, int frame, std::uint64_t stream) const;
+  void lookAtWhole(const WorldState& state, int pixel, const CameraImage& image);
   int doubtful(const WorldState& state, int frame) const;
 
   const Simulation& simulation_;
@@ -43,6 +48,9 @@ class Auditor {
   std::shared_ptr<const GpuScene> scene_;
   double perFrame_ = 0.0, asked_ = 0.0;
   std::uint64_t seed_ = 0;
+  Plan planned_;
+  Camera asDrawn_;
+  std::unique_ptr<WholePixels> whole_;
   std::unique_ptr<CameraRenderer> reference_;  ///< once it is needed
   std::vector<FilmPlace> broken_;
   AuditTally tally_;

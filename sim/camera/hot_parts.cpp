@@ -90,7 +90,7 @@ std::vector<Ball> HotParts::inView(const WorldState& state, const View& v, doubl
     const Pose& pose = state.entities[e];
     for (std::size_t p = 0; p < parts_[e].size(); ++p) {
       const Part& part = parts_[e][p];
-      Ball ball{static_cast<int>(e), pose.position + pose.orientation * part.centre, part.radius_m};
+      Ball ball{static_cast<int>(e), part.surface, pose.position + pose.orientation * part.centre, part.radius_m};
       const double extent = extentOf(ball, v);
       if (!(extent < limit) || !mayShow(v, ball.centre, ball.radius_m)) continue;
       const double h = 2.0 * part.radius_m / extent, outline = 2.0 * glm::pi<double>() * part.radius_m;
@@ -101,7 +101,7 @@ std::vector<Ball> HotParts::inView(const WorldState& state, const View& v, doubl
       for (auto other = balls.begin(); other != balls.end();) {
         const glm::dvec3 line = other->centre - ball.centre;
         const double apart = glm::length(line), around = std::max(0.5 * (apart + ball.radius_m + other->radius_m), std::max(ball.radius_m, other->radius_m));
-        Ball both{ball.entity, ball.centre, around, std::max(ball.lines_per_m, other->lines_per_m)};
+        Ball both{ball.entity, ball.surface, ball.centre, around, std::max(ball.lines_per_m, other->lines_per_m)};
         if (apart > 0.0) both.centre += line / apart * std::clamp(around - ball.radius_m, 0.0, apart);
         if (other->entity != ball.entity || apart >= ball.radius_m + other->radius_m || !(extentOf(both, v) < limit)) {
           ++other;

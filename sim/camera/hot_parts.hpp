@@ -12,6 +12,7 @@ namespace pitviper {
 /// What a zoomed view looks at [local frame, m].
 struct Ball {
   int entity = -1;
+  int surface = -1;  ///< of the entity, where a part of it is meant
   glm::dvec3 centre{0.0};
   double radius_m = 0.0;
   double lines_per_m = 0.0;  ///< across it, as finely as it has to be sampled

@@ -16,7 +16,7 @@ namespace {
 
 Ball ballOf(const Simulation& sim, const WorldState& state, int entity) {
   const auto e = static_cast<size_t>(entity);
-  return {entity, state.entities[e].position + state.entities[e].orientation * glm::dvec3(sim.entities[e].boundingCentre),
+  return {entity, -1, state.entities[e].position + state.entities[e].orientation * glm::dvec3(sim.entities[e].boundingCentre),
           static_cast<double>(sim.entities[e].boundingRadius_m)};
 }
 

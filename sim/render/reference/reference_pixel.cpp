@@ -51,6 +51,12 @@ ReferencePixel ReferenceShader::pixel(int x, int y, NodeSum& sum) const {
   return shade(line, sum);
 }
 
+ReferencePixel ReferenceShader::place(double x, double y, NodeSum& sum) const {
+  LineOfSight line = lineThrough(x, y);
+  line.hits = castRay(simulation_, state_, line.origin, line.direction, nearest_m(x, y), &drawn_);
+  return shade(line, sum);
+}
+
 ReferencePixel ReferenceShader::pixel(int x, int y) const {
   NodeSum sum(*spectra_);
   return pixel(x, y, sum);

@@ -34,6 +34,8 @@ class ReferenceShader {
   /// The centre of pixel (x, y), counted from the lower left: what a ray meets.
   ReferencePixel pixel(int x, int y, NodeSum& sum) const;
   ReferencePixel pixel(int x, int y) const;
+  /// One place of the film [pixels from the lower left]: textures are read there, not over a pixel.
+  ReferencePixel place(double x, double y, NodeSum& sum) const;
   /// The line of sight of the same, given which triangle it sees; and what comes along a line.
   LineOfSight line(int x, int y, const SeenTriangle& seen) const;
   ReferencePixel shade(const LineOfSight& line, NodeSum& sum) const;
