@@ -32,8 +32,7 @@ std::string geometryText(const Simulation& sim, const Camera& c, const Plan& pla
   if (plan.accuracy > 0.0 && edgeError(enough, kBlock) > plan.accuracy)
     text += "; no samples bring these to " + percent(plan.accuracy) + ": the nearest is " + percent(edgeError(enough, kBlock)) + ", with samples " +
             std::to_string(enough);
-  else if (plan.accuracy > 0.0 && enough > c.samples)
-    text += "; " + percent(plan.accuracy) + " of these takes samples " + std::to_string(enough);
+  else if (plan.accuracy > 0.0 && enough > c.samples) text += "; " + percent(plan.accuracy) + " of these takes samples " + std::to_string(enough);
   text += "\n";
   if (c.outlineAccuracy > 0.0 || c.spectral.reference) return text;
   HotParts parts(sim, plan, kWorthSaying * 4.0);
@@ -52,7 +51,8 @@ std::string geometryText(const Simulation& sim, const Camera& c, const Plan& pla
       std::snprintf(line, sizeof line,
                     "    %s: %.2g pixels wide in frame %d: its outline leaves the body's intensity off by more than %s; 'samples: %d', or an 'accuracy', which "
                     "samples such parts by themselves\n",
-                    name.substr(0, 120).c_str(), extentOf(b, view) / c.samples, frame, percent(kWorthSaying).c_str(), std::min(2 * c.samples + 2, kMostSamples));
+                    name.substr(0, 120).c_str(), extentOf(b, view) / c.samples, frame, percent(kWorthSaying).c_str(),
+                    std::min(2 * c.samples + 2, kMostSamples));
       text += line;
     }
   }

@@ -122,7 +122,7 @@ void addTo(Fingerprint& f, const Simulation& sim) {
   f.add(start_s).add(step_s).add(frames);
   const auto& [nearest_m, farthest_m, coldest_K, hottest_K, lightLevel] = limits;
   f.add(nearest_m).add(farthest_m).add(coldest_K).add(hottest_K).add(lightLevel);
-  for (const auto& [title, width, height, texels, repeats, levels] : textures) f.all(texels).add(width).add(repeats);
+  for (const auto& [title, width, height, texels, repeats, cells, levels] : textures) f.all(texels).add(width).add(repeats);
   for (const auto& m : materials) addTo(f, *m);
   f.add(static_cast<double>(entities.size()));
   for (const Entity& e : entities) addTo(f, e);

@@ -90,20 +90,24 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
 
   std::vector<glm::uvec4> shapes;
   std::vector<float> texels;
-  // Shapes of the textures first, then of their levels; see textures.glsl.
+  // Shapes of the textures first, then of their levels, those of cells before the others; see textures.glsl.
   std::size_t shape = sim.textures.size();
   for (const Texture& t : sim.textures) {
+    shape += t.cells.mean.empty() ? 0 : 1;
     shapes.push_back(shapeOf(texels.size(), t.width, t.height, (t.repeats ? 1u : 0u) + 2 * t.levels.size() + 64 * shape));
     texels.insert(texels.end(), t.texels.begin(), t.texels.end());
     shape += t.levels.size();
   }
   std::vector<glm::vec4> levels;
-  for (const Texture& t : sim.textures)
-    for (const TextureLevel& l : t.levels) {
-      shapes.push_back(shapeOf(levels.size(), l.width, l.height, 0));
-      for (std::size_t k = 0; k < l.mean.size(); ++k)
-        levels.emplace_back(l.mean[k], l.second.empty() ? 0.0f : l.second[k], l.third.empty() ? 0.0f : l.third[k], 0.0f);
-    }
+  const auto append = [&](const TextureLevel& l, const std::vector<float>& own) {
+    shapes.push_back(shapeOf(levels.size(), l.width, l.height, 0));
+    for (std::size_t k = 0; k < l.mean.size(); ++k)
+      levels.emplace_back(l.mean[k], l.second.empty() ? 0.0f : l.second[k], l.third.empty() ? 0.0f : l.third[k], own[k]);
+  };
+  for (const Texture& t : sim.textures) {
+    if (!t.cells.mean.empty()) append(t.cells, t.texels);
+    for (const TextureLevel& l : t.levels) append(l, l.mean);
+  }
   levels_.upload(levels);
   textureShapes_.upload(shapes);
   texels_.upload(texels);

@@ -104,12 +104,12 @@ TextureLevel cellsOf(const Texture& t, bool moments) {
 
 void makeLevels(Texture& t, bool moments) {
   t.levels.clear();
-  if (t.width == 1 && t.height == 1) return;
-  const TextureLevel own = cellsOf(t, moments);
+  TextureLevel own = cellsOf(t, moments);
   for (const TextureLevel* from = &own; from->width > 1 || from->height > 1; from = &t.levels.back()) {
     TextureLevel next = halved(*from, moments);
     t.levels.push_back(std::move(next));
   }
+  if (moments) t.cells = std::move(own);
 }
 
 TextureTaps tapsFor(double accuracy) {
@@ -125,25 +125,27 @@ TextureMoments textureMoments(const Texture& t, glm::dvec2 uv, const Footprint& 
   const glm::dvec2 size(t.width, t.height), middle = uv * size;
   const physics::Taps taps = physics::tapsOf(footprint.across * size, footprint.up * size, 0.1 * asked.perTenTexels, asked.mostAcross, asked.mostAlong,
                                              static_cast<int>(t.levels.size()));
-  const TextureLevel* level = taps.level > 0 ? &t.levels[static_cast<size_t>(taps.level) - 1] : nullptr;
+  const TextureLevel* level = taps.level > 0 ? &t.levels[static_cast<size_t>(taps.level) - 1] : t.cells.mean.empty() ? nullptr : &t.cells;
   const int width = level ? level->width : t.width, height = level ? level->height : t.height;
-  const std::vector<float>& mean = level ? level->mean : t.texels;
+  // Of the texture itself a few places may by chance all be its brightest ones: as far as the pixel covers its texels, what lies over their squares is taken.
+  const double spread = taps.level > 0 ? 1.0
+                        : level        ? std::min(glm::length(taps.along) * taps.alongCount, 1.0) * std::min(glm::length(taps.across) * taps.acrossCount, 1.0)
+                                       : 0.0;
   const double from = textureValue(t, uv);
   double s1 = 0.0, s2 = 0.0, s3 = 0.0;
   for (int j = 0; j < taps.acrossCount; ++j)
     for (int i = 0; i < taps.alongCount; ++i) {
       const glm::dvec2 at = middle + (i + 0.5 - 0.5 * taps.alongCount) * taps.along + (j + 0.5 - 0.5 * taps.acrossCount) * taps.across;
       const Corners c = cornersOf(width, height, t.repeats, at / size * glm::dvec2(width, height));
-      if (!level) {
-        const double d = bilinear(mean, c) - from;
-        s1 += d, s2 += d * d, s3 += d * d * d;
-        continue;
+      if (spread < 1.0) {
+        const double d = bilinear(t.texels, c) - from, part = 1.0 - spread;
+        s1 += part * d, s2 += part * d * d, s3 += part * d * d * d;
       }
-      for (size_t k = 0; k < 4; ++k) {
-        const double d = static_cast<double>(mean[c.texel[k]]) - from;
+      for (size_t k = 0; spread > 0.0 && k < 4; ++k) {
+        const double d = static_cast<double>(level->mean[c.texel[k]]) - from, part = spread * c.weight[k];
         const double second = level->second.empty() ? 0.0 : static_cast<double>(level->second[c.texel[k]]),
                      third = level->third.empty() ? 0.0 : static_cast<double>(level->third[c.texel[k]]);
-        s1 += c.weight[k] * d, s2 += c.weight[k] * (second + d * d), s3 += c.weight[k] * (third + d * (3.0 * second + d * d));
+        s1 += part * d, s2 += part * (second + d * d), s3 += part * (third + d * (3.0 * second + d * d));
       }
     }
   const double n = taps.alongCount * taps.acrossCount, m = s1 / n;

@@ -1,6 +1,6 @@
 // Textures over what a pixel covers of them. See sim/scene/texture.cpp, which does the same in double precision.
 //@use sim/radiometry/glsl/footprint.glsl
-layout(binding = 30) uniform samplerBuffer levels;  // mean, second and third central moment of what a texel of a level covers
+layout(binding = 30) uniform samplerBuffer levels;  // mean, second and third central moment of what a texel of a level covers; its own value
 
 // The places of a pixel in a texture.
 struct Places {
@@ -48,25 +48,28 @@ float textureValue(int texture) {
 }
 
 // Moments about `from` of what a texel covers, from those about its mean.
-vec3 momentsAbout(float from, int texel) {
-  vec3 m = texelFetch(levels, texel).xyz;
-  float d = m.x - from;
-  return vec3(d, m.y + d * d, m.z + d * (3.0 * m.y + d * d));
+vec3 momentsAbout(float from, vec4 texel) {
+  float d = texel.x - from;
+  return vec3(d, texel.y + d * d, texel.z + d * (3.0 * texel.y + d * d));
 }
 
-// Two temperatures and the share of the second: twoTemperatures().
+// Two temperatures and the share of the second: twoTemperatures(). Of temperatures the texture itself is among the levels.
 vec3 temperaturesOf(int texture) {
   Places p = placesOf(texture);
-  vec3 sum = vec3(0.0);
-  float from = p.fine ? texelAt(placeAt(p, 0).texel.x) : texelFetch(levels, placeAt(p, 0).texel.x).x;
-  for (int n = 0; n < (p.fine ? p.count : 0); ++n) {
-    Corners c = placeAt(p, n);
-    float d = bilinear(texelsAt(c.texel) - from, c.f);
-    sum += vec3(d, d * d, d * d * d);
+  int first = int(texelFetch(textureShapes, texture).w >> 6);
+  float spread = 1.0;
+  if (p.fine) {
+    p.shape = ivec4(texelFetch(textureShapes, first - 1));
+    spread = min(length(p.along) * float(p.alongCount), 1.0) * min(length(p.across) * float(p.count / max(p.alongCount, 1)), 1.0);
   }
-  for (int n = 0; n < (p.fine ? 0 : p.count); ++n) {
+  vec3 sum = vec3(0.0);
+  float from = texelFetch(levels, placeAt(p, 0).texel.x).x;
+  for (int n = 0; n < p.count; ++n) {
     Corners c = placeAt(p, n);
-    sum += mix(mix(momentsAbout(from, c.texel.x), momentsAbout(from, c.texel.y), c.f.x), mix(momentsAbout(from, c.texel.z), momentsAbout(from, c.texel.w), c.f.x), c.f.y);
+    vec4 t00 = texelFetch(levels, c.texel.x), t10 = texelFetch(levels, c.texel.y), t01 = texelFetch(levels, c.texel.z), t11 = texelFetch(levels, c.texel.w);
+    float d = bilinear(vec4(t00.w, t10.w, t01.w, t11.w) - from, c.f);
+    vec3 all = mix(mix(momentsAbout(from, t00), momentsAbout(from, t10), c.f.x), mix(momentsAbout(from, t01), momentsAbout(from, t11), c.f.x), c.f.y);
+    sum += mix(vec3(d, d * d, d * d * d), all, spread);
   }
   sum /= float(max(p.count, 1));
   return twoTemperatures(from + sum.x, sum.y - sum.x * sum.x, sum.z - 3.0 * sum.x * sum.y + 2.0 * sum.x * sum.x * sum.x);
