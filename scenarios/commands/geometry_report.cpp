@@ -49,10 +49,10 @@ std::string geometryText(const Simulation& sim, const Camera& c, const Plan& pla
       if (!named.insert(name).second) continue;
       char line[400];
       std::snprintf(line, sizeof line,
-                    "    %s: %.2g pixels wide in frame %d: its outline leaves the body's intensity off by more than %s; 'samples: %d', or an 'accuracy', which "
-                    "samples such parts by themselves\n",
+                    "    %s: %.2g pixels wide in frame %d: its outline leaves the body's intensity off by more than %s; %san 'accuracy' samples such parts by "
+                    "themselves\n",
                     name.substr(0, 120).c_str(), extentOf(b, view) / c.samples, frame, percent(kWorthSaying).c_str(),
-                    std::min(2 * c.samples + 2, kMostSamples));
+                    c.samples < kMostSamples ? "more 'samples' help, and " : "");
       text += line;
     }
   }

@@ -103,7 +103,7 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
   if (texels > kMostTexels)
     throw UserError(r.where(), "the textures of this scenario have more than " + std::to_string(kMostTexels) + " pixels together", "fewer",
                     "make them smaller");
-  makeLevels(t, unit == "K");
+  if (unit != "m") makeLevels(t, unit == "K");  // heights become a mesh
   simulation_.textures.push_back(std::move(t));
   return static_cast<int>(simulation_.textures.size()) - 1;
 }

@@ -17,6 +17,8 @@ constexpr double kPart = 0.05;
 /// takes. Estimates for llvmpipe on two cores (the README has what audits cost
 /// there); elsewhere the part is another.
 constexpr double kFrame = 0.2e6, kSubpixel = 5.0, kNode = 0.28, kWavelength = 60.0, kPlainWavelength = 2.0, kVisibility = 0.3;
+/// Rays of WholePixels.
+constexpr double kWholePlaces = 1024.0;
 /// More would be a second reference run.
 constexpr double kMost = 16.0;
 /// Pixels among which the one is looked for that sees what the fewest do.
@@ -35,7 +37,8 @@ double affordablePixels(const Simulation& sim, const Camera& camera, const Plan&
   const double frame = kFrame + subpixels * (kSubpixel + kNode * plan.nodeCount());
   double wavelengths = 0.0;
   for (int count : plan.fineCount) wavelengths += count;
-  const double pixel = n * n * wavelengths * (plan.terms.air && sim.air->traits().variesAlongWay ? kWavelength : kPlainWavelength);
+  const double pixel =
+      (n * n * wavelengths + kWholePlaces * plan.nodeCount()) * (plan.terms.air && sim.air->traits().variesAlongWay ? kWavelength : kPlainWavelength);
   return std::min(kPart * frame / (kVisibility * frame + pixel), kMost);
 }
 
@@ -82,6 +85,7 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
   const int doubt = doubtful(state, frame);
   if (doubt >= 0) pixels.push_back(doubt);
   reference_->setWanted(pixels);
+  reference_->setParts(image.parts);
   const CameraImage exact = reference_->render(state);
   std::vector<char> isBroken(pixels.size(), 0);
   for (size_t o = 0; o < camera_.outputs.size(); ++o) {

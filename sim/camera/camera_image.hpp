@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/camera/hot_parts.hpp"
 #include "sim/plan/scattered_again.hpp"
 #include "sim/scene/camera.hpp"
 
@@ -37,6 +38,7 @@ struct CameraImage {
   double accuracy = 0.0;                       ///< from the plan, and so its error per slot
   std::vector<double> predictedError;          ///< empty where nothing was measured
   std::string plan;                            ///< its fingerprint
+  std::vector<Ball> parts;                     ///< bright ones that had views of their own
   std::vector<SlotAudit> audit;                ///< per slot; empty: not audited
 };
 

@@ -81,7 +81,7 @@ void CameraRenderer::begin(const WorldState& state) {
   present_.assign(simulation_.entities.size(), 1);
   if (camera_.mount.carrier >= 0) present_[static_cast<size_t>(camera_.mount.carrier)] = 0;
   small_ = findSmallBodies(simulation_, state_, view_, camera_.smallBody_px * camera_.samples);
-  parts_ = hotParts_.inView(state_, view_, camera_.smallBody_px * camera_.samples, small_, present_);
+  parts_ = given_ ? *given_ : hotParts_.inView(state_, view_, camera_.smallBody_px * camera_.samples, small_, present_);
   view_.kept = smallBodiesIn(simulation_, state_, view_, small_, present_, parts_);
   std::vector<char> drawn(present_);
   for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = present_[e] && !small_[e];
@@ -91,9 +91,21 @@ void CameraRenderer::begin(const WorldState& state) {
   std::vector<double> zoomed(present_.size(), 0.0);
   for (size_t e = 0; e < zoomed.size(); ++e) zoomed[e] = small_[e] ? static_cast<double>(lines_[e]) * lines_[e] : 0.0;
   const ShadowDemand demand{view_, present_, zoomed};
+  warmUp(demand, drawn);
   pass_->setState(state_, &demand);
   pass_->draw(view_, state_, drawn);
   pass_->startReadback();
+}
+
+/// A driver compiles what is left of a program when it is first used: of a moving scene no later frame, in which something transparent comes into view or
+/// leaves it, is to wait for that.
+void CameraRenderer::warmUp(const ShadowDemand& demand, const std::vector<char>& drawn) {
+  if (!direct_ || !buffered_ || warm_ || simulation_.time.frames < 2) return;
+  warm_ = true;
+  const TimedPart part("preparing");
+  ScenePass& other = pass_ == buffered_.get() ? static_cast<ScenePass&>(*direct_) : *buffered_;
+  other.setState(state_, &demand);
+  other.draw(view_, state_, drawn);
 }
 
 void CameraRenderer::setWanted(const std::vector<int>& pixels) {
@@ -152,6 +164,7 @@ CameraImage CameraRenderer::finish() {
   resolved.accuracy = plan_.accuracy;
   resolved.predictedError = plan_.predictedError;
   resolved.plan = plan_.fingerprint;
+  resolved.parts = parts_;
   return resolved;
 }
 

@@ -37,11 +37,14 @@ class CameraRenderer {
   const Plan& plan() const { return plan_; }
   /// Reference mode: called now and then on the drawing thread with the share of the picture that is done, 0 to 1. The other modes never call it.
   void setProgress(std::function<void(double share)> progress);
+  /// The bright parts of the next pictures, as another plan chose them: a picture is held against one of the same views.
+  void setParts(std::vector<Ball> parts) { given_ = std::move(parts); }
   /// Of the mode that the last frame was drawn in.
   bool isBuffered() const { return buffered_ && pass_ == buffered_.get(); }
 
  private:
   bool seesTransparent() const;
+  void warmUp(const ShadowDemand& demand, const std::vector<char>& drawn);
   int viewsOfPicture() const;
   WorldState lampsInView() const;
   const Simulation& simulation_;
@@ -52,6 +55,8 @@ class CameraRenderer {
   FilmWeights filmWeights_;
   std::vector<int> lines_;  ///< across each small body
   HotParts hotParts_;
+  std::optional<std::vector<Ball>> given_;
+  bool warm_ = false;                         ///< both passes have drawn
   std::vector<Ball> parts_;                   ///< bright ones of the picture
   std::unique_ptr<ReferencePass> reference_;  ///< instead of the other two
   std::unique_ptr<DirectPass> direct_;        ///< both where auto has to choose frame by frame

@@ -10,8 +10,8 @@ namespace {
 
 /// Of the accuracy, what one part may take.
 constexpr double kShare = 0.25;
-/// Subpixels around a part: the diagonal of one, and some.
-constexpr double kRoom = 1.5;
+/// Diagonals of a subpixel around a part: one, and some.
+constexpr double kRoom = 1.06;
 
 double meanOf(const Texture& t) {
   return std::accumulate(t.texels.begin(), t.texels.end(), 0.0, [](double sum, float v) { return sum + static_cast<double>(v); }) /
@@ -99,7 +99,7 @@ std::vector<Ball> HotParts::inView(const WorldState& state, const View& v, doubl
       const double weight = weightOf(parts_[e], p, state.temperatures_K[e]);
       if (std::min(std::sqrt(0.0724 * outline * h * h * h) / part.area_m2, 1.0) * weight <= kShare * accuracy_) continue;
       // Subpixels that see anything of it lie wholly in its view: what the picture has there is replaced as a whole.
-      ball.radius_m += kRoom * h;
+      ball.radius_m += kRoom * h * std::hypot(v.tanPerPixelX, v.tanPerPixelY) / std::min(v.tanPerPixelX, v.tanPerPixelY);
       ball.lines_per_m = 1.0 / std::min(std::cbrt(std::pow(kShare * accuracy_ * part.area_m2 / weight, 2.0) / (0.0724 * outline)), h);
       // One view for parts that lie in each other, unless it would be too large.
       for (auto other = balls.begin(); other != balls.end();) {

@@ -12,7 +12,7 @@ namespace pitviper {
 /// Means over a pixel, and what they may be off by.
 struct WholePixel {
   std::vector<double> mean;   ///< [slot], as CameraImage::slots
-  std::vector<double> error;  ///< standard error of the mean, by halves of the places
+  std::vector<double> error;  ///< standard error of the mean, by quarters of the places
 };
 
 class WholePixels {

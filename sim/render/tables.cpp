@@ -134,8 +134,10 @@ std::optional<std::pair<float, float>> imageOf(const Simulation& sim, int from, 
   const auto at = [&](auto where) { return static_cast<double>(b.texels[static_cast<size_t>(where - a.texels.begin())]); };
   const double first = static_cast<double>(*low), last = static_cast<double>(*high), factor = last > first ? (at(high) - at(low)) / (last - first) : 0.0,
                summand = at(low) - factor * first;
-  constexpr double kRounding = 3e-7;
+  constexpr double kRounding = 3e-7, kLargest = 4.0;
   const double scale = std::max(std::abs(at(low)), std::abs(at(high)));
+  // Two large numbers that nearly cancel leave few digits.
+  if (std::abs(factor) * std::max(std::abs(first), std::abs(last)) > kLargest * scale) return {};
   for (size_t k = 0; k < a.texels.size(); ++k)
     if (std::abs(factor * static_cast<double>(a.texels[k]) + summand - static_cast<double>(b.texels[k])) > kRounding * scale) return {};
   return std::pair{static_cast<float>(factor), static_cast<float>(summand)};

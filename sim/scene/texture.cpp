@@ -127,9 +127,11 @@ TextureMoments textureMoments(const Texture& t, glm::dvec2 uv, const Footprint& 
                                              static_cast<int>(t.levels.size()));
   const TextureLevel* level = taps.level > 0 ? &t.levels[static_cast<size_t>(taps.level) - 1] : t.cells.mean.empty() ? nullptr : &t.cells;
   const int width = level ? level->width : t.width, height = level ? level->height : t.height;
-  // Of the texture itself a few places may by chance all be its brightest ones: as far as the pixel covers its texels, what lies over their squares is taken.
+  // Of the texture itself a few places may by chance all be its brightest ones: what lies over the squares of texels is taken as the pixel grows to one, and
+  // nothing of it below half of one, where the squares would bring in what the pixel does not see.
+  const auto share = [](double texels) { return std::clamp(2.0 * texels - 1.0, 0.0, 1.0); };
   const double spread = taps.level > 0 ? 1.0
-                        : level        ? std::min(glm::length(taps.along) * taps.alongCount, 1.0) * std::min(glm::length(taps.across) * taps.acrossCount, 1.0)
+                        : level        ? share(glm::length(taps.along) * taps.alongCount) * share(glm::length(taps.across) * taps.acrossCount)
                                        : 0.0;
   const double from = textureValue(t, uv);
   double s1 = 0.0, s2 = 0.0, s3 = 0.0;

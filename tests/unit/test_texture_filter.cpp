@@ -96,6 +96,31 @@ TEST(TextureFilter, TwoTemperatures) {
   EXPECT_EQ(even.y, 300.0);
 }
 
+// A pixel of less than half a texel beside a hot one: what it does not see is not in it. (Squares of texels were mixed in at any size.)
+TEST(TextureFilter, NoHaloBesideWhatIsHot) {
+  Texture t;
+  t.width = 8, t.height = 1;
+  for (float k : {1000.0f, 1000.0f, 1000.0f, 300.0f, 300.0f, 300.0f, 300.0f, 300.0f}) t.texels.push_back(k);
+  makeLevels(t, true);
+  for (double width : {0.01, 0.1, 0.3, 0.45})
+    for (double x : {3.8, 4.2, 5.0}) {
+      const TextureMoments m = textureMoments(t, {x / 8.0, 0.5}, {{width / 8.0, 0.0}, {0.0, width}}, tapsFor(0.01));
+      EXPECT_NEAR(m.mean, 300.0, 1e-9) << width << " at " << x;
+      EXPECT_NEAR(m.second, 0.0, 1e-9) << width << " at " << x;
+    }
+}
+
+// Footprints of any length, edge on and none at all.
+TEST(TextureFilter, AnyFootprint) {
+  const Texture t = noise(33, 7, 280.0, 300.0, 9, true);
+  for (double size : {0.0, 1e-30, 1e-3, 1.0, 1e6, 1e30})
+    for (const Footprint& f : {Footprint{{size, 0.0}, {0.0, size}}, Footprint{{size, 0.0}, {size, 0.0}}, Footprint{{size, size}, {-size, 1e-9}}}) {
+      const TextureMoments m = textureMoments(t, {0.3, 0.4}, f, tapsFor(0.01));
+      EXPECT_TRUE(m.mean > 279.9 && m.mean < 300.1) << size << ": " << m.mean;
+      EXPECT_TRUE(m.second > -1e-6 && m.second < 101.0) << size << ": " << m.second;
+    }
+}
+
 // Random textures under random footprints, from parts of a texel to half the texture, square and grazing: noise, whose texels have nothing to do with each
 // other, and fields 16 texels wide.
 TEST(TextureFilter, AgainstBruteForce) {

@@ -25,7 +25,13 @@ struct Taps {
 // `perTexel`: places a texel, at least; so many across and along, at most. `beside` keeps pixels of a whole number of texels, which are common, off the
 // places where the choice changes: single and double precision choose alike.
 PHYSICS Taps tapsOf(Vec2 a, Vec2 b, Real perTexel, Real mostAcross, Real mostAlong, int lastLevel) {
-  const Real beside = 1.03;
+  const Real beside = 1.03, endless = 1.0e6;
+  // Fourth powers of what is seen edge on have no place in single precision; the last level is read there in any case.
+  Real longest = max(dot(a, a), dot(b, b));
+  if (longest > endless * endless) {
+    a = a * (endless / sqrt(longest));
+    b = b * (endless / sqrt(longest));
+  }
   Real xx = a.x * a.x + b.x * b.x, yy = a.y * a.y + b.y * b.y, xy = a.x * a.y + b.x * b.y, area = a.x * b.y - a.y * b.x;
   Real difference = xx - yy, root = sqrt(difference * difference + 4.0 * xy * xy), large = 0.5 * (xx + yy + root);
   Real length1 = sqrt(large), length2 = large > 0.0 ? (area < 0.0 ? -area : area) / length1 : 0.0;
@@ -56,5 +62,5 @@ PHYSICS Vec3 twoTemperatures(Real mean, Real variance, Real third) {
   // Of a large skew the difference loses its digits: (1 - s / r) (1 + s / r) = 1 / r^2.
   if (skew > 1.0) upper = 0.5 / (reach * reach * (1.0 + skew / reach));
   Real high = skew < 0.0 ? 1.0 / (reach - skew) : skew + reach;
-  return Vec3(mean - spread / high, mean + spread * high, upper);
+  return Vec3(max(mean - spread / high, 0.0), mean + spread * high, upper);
 }

@@ -60,10 +60,15 @@ vec3 temperaturesOf(int texture) {
   float spread = 1.0;
   if (p.fine) {
     p.shape = ivec4(texelFetch(textureShapes, first - 1));
-    spread = min(length(p.along) * float(p.alongCount), 1.0) * min(length(p.across) * float(p.count / max(p.alongCount, 1)), 1.0);
+    vec2 width = vec2(length(p.along) * float(p.alongCount), length(p.across) * float(p.count / max(p.alongCount, 1)));
+    vec2 share = clamp(2.0 * width - 1.0, 0.0, 1.0);
+    spread = share.x * share.y;
   }
   vec3 sum = vec3(0.0);
-  float from = texelFetch(levels, placeAt(p, 0).texel.x).x;
+  // About the value of a place itself: of a texel beside it the powers would swallow what is left of the pixel's own spread.
+  Corners begin = placeAt(p, 0);
+  float from = bilinear(vec4(texelFetch(levels, begin.texel.x).w, texelFetch(levels, begin.texel.y).w, texelFetch(levels, begin.texel.z).w,
+                             texelFetch(levels, begin.texel.w).w), begin.f);
   for (int n = 0; n < p.count; ++n) {
     Corners c = placeAt(p, n);
     vec4 t00 = texelFetch(levels, c.texel.x), t10 = texelFetch(levels, c.texel.y), t01 = texelFetch(levels, c.texel.z), t11 = texelFetch(levels, c.texel.w);

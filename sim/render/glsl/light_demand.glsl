@@ -9,7 +9,7 @@ bool wholeSun_;
 
 const float kSunlit = 0.3;  // as in sim/render/light_relevance.hpp
 bool sunlit_;
-vec2 lightAndDepth_;  // cosine to the sun, or 0; 1 / depth
+vec2 lightAndDepth_;  // cosine to the sun, or -1; 1 / depth
 
 // Of a light's entry; says besides whether the point is in full sunshine. Of a sun that is partly set the direction is another: who may hide it is not asked.
 bool sunMayBeHidden(int entry, vec3 normal, float range) {
@@ -20,7 +20,7 @@ bool sunMayBeHidden(int entry, vec3 normal, float range) {
   bool may = wholeSun_ ? mayBeHidden(listed, toSun) : listed.z > 0.0;
   float towards = dot(normal, toSun) * inversesqrt(max(dot(normal, normal), 1.0e-30));
   sunlit_ = !may && wholeSun_ && towards >= kSunlit;
-  lightAndDepth_.x = max(towards, 0.0);
+  lightAndDepth_.x = towards > 0.0 ? towards : -1.0;  // turned away: nothing to tell one side from the other by
   return may;
 }
 
@@ -34,7 +34,7 @@ bool needsAll(uvec2 id, vec2 pixel) {
   toViewer_ = -d / rayLength_;
   triangle_ = id.y;
   sunlit_ = false;
-  lightAndDepth_ = vec2(0.0, 1.0 / max(planeOf(draw) + m.along, 1.0e-6));
+  lightAndDepth_ = vec2(-1.0, 1.0 / max(planeOf(draw) + m.along, 1.0e-6));
   // The sun is the last of a row.
   vec3 normal = m.weight.x * texelFetch(vertices, m.corner.x + 1).xyz + m.weight.y * texelFetch(vertices, m.corner.y + 1).xyz +
                 m.weight.z * texelFetch(vertices, m.corner.z + 1).xyz;

@@ -24,8 +24,8 @@ bool bendsIn(sampler2D pixels, ivec2 p) {
   return !all(lessThanEqual(bend, threshold * most));
 }
 
-// A ridge before what lies behind it is a step in 1 / depth; what bends less does not show in the light.
-const float kRidge = 0.1;
+// A ridge before what lies behind it is a step in 1 / depth; a smaller one, within one part, is taken for the slope of the ground.
+const float kRidge = 0.03;
 
 bool lightBends(ivec2 p) {
   vec2 here = texelFetch(smoothness, p, 0).xy;
