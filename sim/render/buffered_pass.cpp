@@ -15,15 +15,14 @@ namespace {
 constexpr int kMostTargets = 8;
 
 /// The spectral image of a batch of nodes: names, and the body that fills it. Which batch is a uniform, so that one program
-/// serves all; nodes beyond the last repeat it and are not integrated.
-std::vector<std::string> writeSpectrum(ShaderSlots& slots, int targets) {
+/// serves all, unless there is one alone (`nodes`, else 0); nodes beyond the last repeat it and are not integrated.
+std::vector<std::string> writeSpectrum(ShaderSlots& slots, int targets, int nodes) {
   std::ostringstream declared, body;
   declared << "uniform int firstNode;\nvoid clearTargets() {}\n";
-  body << "void integrate() {\n  float radiance[" << 4 * targets << "];\n  for (int i = 0; i < " << 4 * targets
-       << "; ++i) radiance[i] = nodeRadiance(min(firstNode + i, NODES - 1));\n";
-  for (int t = 0; t < targets; ++t)
-    body << "  spectrum" << t << " = vec4(radiance[" << 4 * t << "], radiance[" << 4 * t + 1 << "], radiance[" << 4 * t + 2 << "], radiance[" << 4 * t + 3
-         << "]);\n";
+  body << "void integrate() {\n";
+  for (int i = 0; i < 4 * targets; ++i)
+    body << "  spectrum" << i / 4 << "[" << i % 4 << "] = nodeRadiance("
+         << (nodes > 0 ? std::to_string(std::min(i, nodes - 1)) : "min(firstNode + " + std::to_string(i) + ", NODES - 1)") << ");\n";
   body << "}\n";
   slots.generated["targets"] = declared.str();
   slots.generated["integrate"] = body.str();
@@ -68,10 +67,11 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
     : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Buffered, classes) {
   const int perBatch = std::min(4 * kMostTargets, plan.nodeCount());
   targets_ = (perBatch + 3) / 4;
-  ShaderSlots slots = shadingSlots();
+  const bool writtenOut = plan.nodeCount() == perBatch && tables().writtenOut;
+  ShaderSlots slots = shadingSlots(writtenOut);
   slots.generated["weights"] = "";  // shading itself integrates nothing
   slots.files["truth"] = "sim/render/glsl/truth_none.glsl";
-  const auto spectrum = writeSpectrum(slots, targets_);
+  const auto spectrum = writeSpectrum(slots, targets_, writtenOut ? plan.nodeCount() : 0);
   shade_ = ClassPrograms(library, slots, tables(), surfaceClasses(), spectrum);
   for (int first = 0; first < plan.nodeCount(); first += perBatch) {
     const int count = std::min(perBatch, plan.nodeCount() - first);
@@ -115,8 +115,37 @@ void BufferedPass::onTemperatures() {
   if (layers_) layers_->updateTemperatures();
 }
 
+void BufferedPass::leaveOut(RenderTarget& visibility) {
+  if (!drawsOver()) return;
+  pixelClasses().cover(visibility);
+  covered_ = true;
+}
+
 void BufferedPass::beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) {
+  covered_ = false;
   if (layers_) layers_->order(view, state, drawn);
+}
+
+void BufferedPass::integrate(const Batch& batch, RenderTarget& into, const RenderTarget& spectrum, bool adds) const {
+  const TimedPart part("integration");
+  into.select(0, static_cast<size_t>(plan().groupCount()));
+  const ChosenPixels chosen = pixelClasses().all();
+  into.shareDepth(chosen.classes);
+  into.bind();
+  for (size_t t = 0; t < spectrum.colourCount(); ++t) spectrum.colour(t).bind(static_cast<unsigned>(8 + t));
+  batch.weights.bindUniform(2);
+  if (adds) {
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+  }
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(GL_GREATER);
+  batch.integrate.use();
+  glUniform1f(batch.integrate.uniform("classDepth"), chosen.depth);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_DEPTH_TEST);
+  glDisable(GL_BLEND);
 }
 
 void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
@@ -129,26 +158,20 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
       for (size_t t = 0; t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), zero);
     }
     shade_.run(spectrum, pixelClasses(), classesInView(), [&](const ShadingProgram& p) { glUniform1i(p.uniform("firstNode"), batches_[b].firstNode); });
-    if (layers_ && !layers_->isEmpty()) {
+    if (drawsOver()) {
+      if (isOfWholePixels()) {
+        if (!before_ || before_->width() != into.width() || before_->height() != into.height())
+          before_.emplace(into.width(), into.height(), std::vector<PixelFormat>(groups, PixelFormat::Rgba32f), false);
+        integrate(batches_[b], *before_, spectrum, b > 0);
+      }
       const TimedPart part("transparent");
       spectrum.shareDepth(visibility);
-      layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode});
+      layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode, .covered = covered_});
       bindBuffers();
       visibility.colour(0).bind(0);
     }
 
-    const TimedPart part("integration");
-    into.select(0, groups);
-    into.bind();
-    for (size_t t = 0; t < spectrum.colourCount(); ++t) spectrum.colour(t).bind(static_cast<unsigned>(8 + t));
-    batches_[b].weights.bindUniform(2);
-    if (b > 0) {
-      glEnable(GL_BLEND);
-      glBlendFunc(GL_ONE, GL_ONE);
-    }
-    batches_[b].integrate.use();
-    glDrawArrays(GL_TRIANGLES, 0, 3);
-    glDisable(GL_BLEND);
+    integrate(batches_[b], into, spectrum, b > 0);
   }
   if (hasTruth()) truth_.run(into, pixelClasses().all());
 }

@@ -21,6 +21,12 @@ class BufferedPass final : public ScenePass {
   void shade(RenderTarget& into, const RenderTarget& visibility) override;
   void onTemperatures() override;
   void beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) override;
+  bool sharesShading() const override { return true; }
+  bool drawsOver() const { return layers_ && !layers_->isEmpty(); }
+  const RenderTarget* withoutTransparent() const override { return drawsOver() ? &*before_ : nullptr; }
+  void leaveOut(RenderTarget& visibility) override;
+  struct Batch;
+  void integrate(const Batch& batch, RenderTarget& into, const RenderTarget& spectrum, bool adds) const;
   RenderTarget& spectrumFor(const RenderTarget& visibility);
 
   struct Batch {
@@ -32,8 +38,10 @@ class BufferedPass final : public ScenePass {
   ClassPrograms shade_;
   ShadingProgram truth_;
   std::unique_ptr<LayerPass> layers_;
-  int targets_ = 0;  ///< RGBA targets of the spectral image
+  bool covered_ = false;  ///< the depth of what is seen is that of what is drawn over
+  int targets_ = 0;       ///< RGBA targets of the spectral image
   std::deque<RenderTarget> spectra_;
+  std::optional<RenderTarget> before_;  ///< channels of whole pixels
 };
 
 }  // namespace pitviper

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <sstream>
 
 #include "sim/gl/context.hpp"
@@ -17,37 +18,57 @@ constexpr int kUnderUnit = 22;
 
 Pose poseOf(const WorldState& state, int entity) { return state.entities[static_cast<size_t>(entity)]; }
 
+/// Levels of surfaces, up to which waiting before each costs less than shading what depth hides.
+constexpr std::size_t kFewLevels = 64;
+
+/// What is drawn in few runs (a medium is one by itself) is better read as a texture: drivers without a GPU shade every pixel where the target is fetched,
+/// hidden or not, and else those alone that pass.
+BlendPath pathOfFew(BlendPath path) {
+  const auto offered = offeredBlendPaths();
+  const char* wish = std::getenv("PITVIPER_BLEND");
+  const bool free = currentLimits().software && (!wish || !*wish) && std::find(offered.begin(), offered.end(), BlendPath::TextureBarrier) != offered.end();
+  return free ? BlendPath::TextureBarrier : path;
+}
+
+/// The spectral image, in and out by framebuffer fetch, or read as a texture; each of its nodes blended.
+void addBlend(ShaderSlots& slots, BlendPath path, int targets, int nodes) {
+  std::ostringstream declared, blend;
+  declared << "uniform int firstNode;\n";
+  const bool fetch = path == BlendPath::FramebufferFetch, written = slots.constants.at("WRITTEN_OUT") != 0;
+  if (fetch) slots.extensions.emplace_back("GL_EXT_shader_framebuffer_fetch");
+  blend << "void blend() {\n";
+  for (int t = 0; t < targets; ++t) {
+    const std::string n = std::to_string(t);
+    declared << "layout(location = " << n << ") " << (fetch ? "inout" : "out") << " vec4 spectrum" << n << ";\n";
+    if (!fetch) declared << "layout(binding = " << kUnderUnit + t << ") uniform sampler2D under" << n << ";\n";
+    blend << "  vec4 u" << n << " = " << (fetch ? "spectrum" + n : "texelFetch(under" + n + ", ivec2(gl_FragCoord.xy), 0)") << ";\n";
+  }
+  blend << "  for (int k = 0; k < layersHere(); ++k) {\n    prepareLayer(k);\n";
+  for (int i = 0; i < 4 * targets; ++i) {
+    const std::string node = written ? std::to_string(std::min(i, nodes - 1)) : "min(firstNode + " + std::to_string(i) + ", NODES - 1)";
+    blend << "    u" << i / 4 << "[" << i % 4 << "] = blended(u" << i / 4 << "[" << i % 4 << "], " << node << ");\n";
+  }
+  blend << "  }\n";
+  for (int t = 0; t < targets; ++t) blend << "  spectrum" << t << " = u" << t << ";\n";
+  blend << "}\n";
+  slots.generated["targets"] = declared.str();
+  slots.generated["blend"] = blend.str();
+}
+
 }  // namespace
 
 LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const RenderTables& tables, std::shared_ptr<const GpuScene> scene,
                      const ShaderLibrary& library, const ShaderSlots& slots, int targets)
-    : simulation_(simulation), tables_(tables), scene_(std::move(scene)), path_(chooseBlendPath()), buffers_(tables.layer) {
+    : simulation_(simulation),
+      tables_(tables),
+      scene_(std::move(scene)),
+      path_(chooseBlendPath()),
+      fewPath_(pathOfFew(path_)),
+      surfacePath_(path_),
+      buffers_(tables.layer) {
   ShaderSlots base = slots;
-  // The spectral image: in and out by framebuffer fetch, or read as a texture.
-  std::ostringstream declared, blend;
-  declared << "uniform int firstNode;\n";
-  const bool fetch = path_ == BlendPath::FramebufferFetch;
-  if (fetch) base.extensions.emplace_back("GL_EXT_shader_framebuffer_fetch");
-  for (int t = 0; t < targets; ++t) {
-    declared << "layout(location = " << t << ") " << (fetch ? "inout" : "out") << " vec4 spectrum" << t << ";\n";
-    if (!fetch) declared << "layout(binding = " << kUnderUnit + t << ") uniform sampler2D under" << t << ";\n";
-  }
-  blend << "void blend() {\n  float radiance[" << 4 * targets << "];\n";
-  for (int t = 0; t < targets; ++t) {
-    blend << "  vec4 u" << t << " = ";
-    if (fetch) blend << "spectrum" << t << ";\n";
-    else blend << "texelFetch(under" << t << ", ivec2(gl_FragCoord.xy), 0);\n";
-    for (int k = 0; k < 4; ++k) blend << "  radiance[" << 4 * t + k << "] = u" << t << "[" << k << "];\n";
-  }
-  blend << "  for (int i = 0; i < " << 4 * targets << "; ++i) radiance[i] = blended(radiance[i], min(firstNode + i, NODES - 1));\n";
-  for (int t = 0; t < targets; ++t)
-    blend << "  spectrum" << t << " = vec4(radiance[" << 4 * t << "], radiance[" << 4 * t + 1 << "], radiance[" << 4 * t + 2 << "], radiance[" << 4 * t + 3
-          << "]);\n";
-  blend << "}\n";
-  base.generated["targets"] = declared.str();
   base.generated["outputs"] = "";
   base.generated["integrate"] = "";
-  base.generated["blend"] = blend.str();
   base.files["truth"] = "sim/render/glsl/truth_none.glsl";
   base.files["ground"] = simulation.ground ? "sim/render/glsl/ground_hides.glsl" : "sim/render/glsl/ground_none.glsl";
   base.files["ground_end"] = simulation.ground ? "sim/render/glsl/ground_end.glsl" : "sim/render/glsl/ground_endless.glsl";
@@ -62,9 +83,16 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
                                      : t.emits || t.reflects ? "surface_unlit.glsl"
                                                              : "surface_filter.glsl");
     own.files["transmission"] = folder + (tables.layer.general ? "transmission_general.glsl" : "transmission_plain.glsl");
-    layer_ = Program(assembleShader(library, folder + "layer.vert.glsl", own), assembleShader(library, folder + "layer.frag.glsl", own));
+    const auto programOf = [&](BlendPath path) {
+      ShaderSlots with = own;
+      addBlend(with, path, targets, plan.nodeCount());
+      return Program(assembleShader(library, folder + "layer.vert.glsl", with), assembleShader(library, folder + "layer.frag.glsl", with));
+    };
+    layer_ = programOf(path_);
+    if (fewPath_ != path_) fewLayers_ = programOf(fewPath_);
   }
   if (plan.terms.media) {
+    addBlend(base, fewPath_, targets, plan.nodeCount());
     volume_ = Program(assembleShader(library, "sim/render/glsl/box.vert.glsl", base), assembleShader(library, "sim/render/glsl/volume.frag.glsl", base));
     int formed = 0, meshed = 0;
     for (const Entity& e : simulation.entities)
@@ -84,8 +112,11 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
 
 std::vector<NamedProgram> LayerPass::programs() const {
   std::vector<NamedProgram> all;
-  for (const auto& [name, program] :
-       {std::pair{"transparent surfaces", &layer_}, {"media", &volume_}, {"media in each other", &group_}, {"thickness of media", &thickness_}})
+  for (const auto& [name, program] : {std::pair{"transparent surfaces", &layer_},
+                                      {"few transparent surfaces", &fewLayers_},
+                                      {"media", &volume_},
+                                      {"media in each other", &group_},
+                                      {"thickness of media", &thickness_}})
     if (!program->text().empty()) all.push_back({name, program->text()});
   return all;
 }
@@ -132,6 +163,7 @@ void LayerPass::order(const View& view, const WorldState& state, const std::vect
     faults_->add(order_);
   }
 
+  surfacePath_ = order_.levels.size() <= kFewLevels ? fewPath_ : path_;
   // Where the target is read in order of drawing, only the change between surfaces and media cuts a run; elsewhere each level does.
   runs_.clear();
   std::vector<glm::uvec2> sorted;
@@ -139,7 +171,7 @@ void LayerPass::order(const View& view, const WorldState& state, const std::vect
     for (std::uint32_t i = order_.levels[level]; i < order_.levels[level + 1]; ++i) {
       const LayerPiece& piece = pieces_[order_.pieces[i]];
       sorted.emplace_back(piece.draw, piece.triangle);
-      const bool fresh = runs_.empty() || runs_.back().medium || piece.medium || (path_ != BlendPath::FramebufferFetch && i == order_.levels[level]);
+      const bool fresh = runs_.empty() || runs_.back().medium || piece.medium || (surfacePath_ != BlendPath::FramebufferFetch && i == order_.levels[level]);
       if (fresh) runs_.push_back({piece.medium, i, 0});
       ++runs_.back().count;
     }
@@ -154,18 +186,19 @@ RenderTarget& LayerPass::sizedLike(std::deque<RenderTarget>& pool, const RenderT
 
 void LayerPass::blend(const Over& over) {
   if (isEmpty()) return;
-  RenderTarget* copy = path_ == BlendPath::PingPong ? &sizedLike(copies_, over.spectrum, over.spectrum.colourCount()) : nullptr;
   for (const Run& run : runs_) {
     const LayerPiece& first = pieces_[order_.pieces[run.first]];
     if (run.medium && first.group < 0 && simulation_.entities[static_cast<size_t>(tables_.draws[first.draw].entity)].form.kind == BodyForm::Kind::Mesh)
       drawThickness(first, over);
+    const BlendPath path = run.medium ? fewPath_ : surfacePath_;
+    RenderTarget* copy = path == BlendPath::PingPong ? &sizedLike(copies_, over.spectrum, over.spectrum.colourCount()) : nullptr;
     if (copy) copy->copyFrom(over.spectrum);
     over.spectrum.bind();
     const RenderTarget& under = copy ? *copy : over.spectrum;
-    if (path_ != BlendPath::FramebufferFetch)
+    if (path != BlendPath::FramebufferFetch)
       for (size_t t = 0; t < under.colourCount(); ++t) under.colour(t).bind(static_cast<unsigned>(kUnderUnit + t));
-    if (path_ == BlendPath::TextureBarrier) glTextureBarrier();
-    const Program& program = !run.medium ? layer_ : first.group >= 0 ? group_ : volume_;
+    if (path == BlendPath::TextureBarrier) glTextureBarrier();
+    const Program& program = !run.medium ? (surfacePath_ == path_ ? layer_ : fewLayers_) : first.group >= 0 ? group_ : volume_;
     program.use();
     glUniform1i(program.uniform("firstNode"), over.firstNode);
     if (run.medium) drawMedium(first, over);
@@ -197,6 +230,22 @@ void setMedium(const Program& program, const LayerPiece& piece) { glUniform1i(pr
 
 }  // namespace
 
+/// What is before and behind a solid is worked out by the shader; depth only tells what is covered.
+void LayerPass::beginMedium(bool covered) const {
+  if (covered) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_NOTEQUAL);
+    glDepthRange(1.0, 1.0);
+  } else {
+    glDisable(GL_DEPTH_TEST);
+  }
+  glDisable(GL_CLIP_DISTANCE0);
+  glEnable(GL_DEPTH_CLAMP);  // the back of the box may lie anywhere
+  glEnable(GL_CULL_FACE);
+  glCullFace(GL_FRONT);
+}
+
 void LayerPass::setGroup(const std::vector<std::uint32_t>& draws) const {
   std::vector<GLint> forms, rows, numbers;
   std::vector<glm::vec3> sizes;
@@ -222,11 +271,7 @@ void LayerPass::drawMedium(const LayerPiece& piece, const Over& over) {
   media_.bindTexture(5, 4);
   over.visibility.colour(0).bind(0);
   setMedium(program, piece);
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_CLIP_DISTANCE0);
-  glEnable(GL_DEPTH_CLAMP);  // the back of the box may lie anywhere
-  glEnable(GL_CULL_FACE);
-  glCullFace(GL_FRONT);
+  beginMedium(over.covered);
   auto drawBox = [&](const glm::vec3& low, const glm::vec3& high) {
     glUniform3f(program.uniform("low"), low.x, low.y, low.z);
     glUniform3f(program.uniform("high"), high.x, high.y, high.z);
@@ -251,6 +296,7 @@ void LayerPass::drawMedium(const LayerPiece& piece, const Over& over) {
     drawBox(piece.low, piece.high);
   }
   glCullFace(GL_BACK);
+  glDepthRange(0.0, 1.0);
 }
 
 void LayerPass::drawThickness(const LayerPiece& piece, const Over& over) {

@@ -16,7 +16,7 @@ namespace pitviper {
 class LayerPass {
  public:
   /// All but the library must outlive it. `targets`: RGBA targets of the spectral image. `slots`: path, lights and constants of the
-  /// plan's shading programs.
+  /// plan's shading programs; nodes are named by numbers where they say so.
   LayerPass(const Simulation& simulation, const Plan& plan, const RenderTables& tables, std::shared_ptr<const GpuScene> scene, const ShaderLibrary& library,
             const ShaderSlots& slots, int targets);
 
@@ -32,6 +32,7 @@ class LayerPass {
     RenderTarget& spectrum;          ///< with the visibility pass' depth attached
     const RenderTarget& visibility;  ///< identity and depth of the solid scene
     int firstNode = 0;
+    bool covered = false;  ///< the nearest depth of all stands where nothing is to be drawn
   };
   /// Draws, view, lights and nodes are bound; changes the bound surface tables and the blend, cull and depth state's settings.
   void blend(const Over& over);
@@ -49,6 +50,7 @@ class LayerPass {
   };
   void drawLayers(const Run& run, const Over& over);
   void drawMedium(const LayerPiece& piece, const Over& over);
+  void beginMedium(bool covered) const;
   void setGroup(const std::vector<std::uint32_t>& draws) const;
   void drawThickness(const LayerPiece& piece, const Over& over);
   RenderTarget& sizedLike(std::deque<RenderTarget>& pool, const RenderTarget& target, std::size_t colours) const;
@@ -56,10 +58,10 @@ class LayerPass {
   const Simulation& simulation_;
   const RenderTables& tables_;
   std::shared_ptr<const GpuScene> scene_;
-  BlendPath path_;
+  BlendPath path_, fewPath_, surfacePath_;  ///< of many surfaces; of media and few surfaces; of surfaces now
   SurfaceBuffers buffers_;
   Buffer sorted_, media_;
-  Program layer_, volume_, group_, thickness_;
+  Program layer_, fewLayers_, volume_, group_, thickness_;
   std::vector<LayerPiece> pieces_;
   std::vector<std::vector<std::uint32_t>> groups_;
   LayerOrder order_;

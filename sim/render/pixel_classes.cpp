@@ -5,9 +5,15 @@
 #include "sim/gl/context.hpp"
 
 namespace pitviper {
+namespace {
+
+constexpr unsigned kClasses = 18;
+
+}  // namespace
 
 PixelClasses::PixelClasses(const ShaderLibrary& library, const ShaderSlots& slots)
-    : program_(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/classes.frag.glsl", slots)) {}
+    : program_(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/classes.frag.glsl", slots)),
+      cover_(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/cover.frag.glsl", slots)) {}
 
 void PixelClasses::find(const RenderTarget& visibility, const Texture2D* bends, int grouped) {
   begin(visibility);
@@ -32,6 +38,20 @@ void PixelClasses::drawPart(const glm::ivec4& part) const {
 void PixelClasses::end() const {
   found_->setPart(glm::ivec4(0));
   glDisable(GL_DEPTH_TEST);
+}
+
+void PixelClasses::cover(RenderTarget& visibility) const {
+  found_->depth().bind(kClasses);
+  visibility.bind();
+  glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_ALWAYS);
+  glDisable(GL_BLEND);
+  cover_.use();
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_DEPTH_TEST);
+  glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
 void PixelClasses::begin(const RenderTarget& visibility, bool withLight) {

@@ -28,6 +28,8 @@ class PixelClasses {
   void begin(const RenderTarget& visibility) { begin(visibility, false); }
   void drawPart(const glm::ivec4& part) const;
   void end() const;
+  /// Gives what was left out the nearest depth of all in `visibility`, so that nothing is drawn over it.
+  void cover(RenderTarget& visibility) const;
   ChosenPixels only(std::size_t surfaceClass) const { return {*found_, depthOf(surfaceClass), false}; }
   /// All but what a view of one body leaves out.
   ChosenPixels all() const { return {*found_, 0.5f * (depthOf(0) + 1.0f), true}; }
@@ -36,7 +38,7 @@ class PixelClasses {
 
  private:
   void begin(const RenderTarget& visibility, bool withLight);
-  Program program_;
+  Program program_, cover_;
   std::deque<RenderTarget> targets_;
   const RenderTarget *found_ = nullptr, *light_ = nullptr;
 };

@@ -72,10 +72,10 @@ void ScenePass::addLightConstants(ShaderSlots& slots) const {
   slots.constants["SUN_SETS"] = simulation_.overEarth() ? 1 : 0;
 }
 
-ShaderSlots ScenePass::shadingSlots() const {
+ShaderSlots ScenePass::shadingSlots(bool writtenOut) const {
   ShaderSlots slots;
   slots.files["path"] = "sim/render/glsl/path_none.glsl";
-  slots.constants["WRITTEN_OUT"] = how_ == Shading::Direct && tables_.writtenOut ? 1 : 0;
+  slots.constants["WRITTEN_OUT"] = writtenOut ? 1 : 0;
   if (air_) air_->addSlots(slots);
   addSurfaceSlots(tables_.solid, plan_.terms.solid, plan_, slots);
   slots.files["shadow"] = ShadowPass::slotFile(plan_);
@@ -179,7 +179,7 @@ void ScenePass::bindBuffers() const {
   solid_.bind();
   lights_.bindTexture(9, 4);
   if (air_) air_->bind();
-  view_.bindUniform(0);
+  (wholePixels_ ? pixelView_ : view_).bindUniform(0);
   nodes_.bindUniform(1);
   if (shadows_) shadows_->bind();
 }
@@ -208,6 +208,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   findClassesIn(v, state, drawn);
   const auto shared = shadeTogether(v);
   pixelClasses_->find(current_->visibility, shared ? &shared->bends : nullptr, v.grouped);
+  if (shared) leaveOut(current_->visibility);
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
   if (partial_) clearShading();
@@ -258,14 +259,16 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   shared_->findMiddles(current_->visibility, pixels.visibility, v.grouped);
   const GpuView data = viewData(simulation_, whole, apertureArea_m2_);
   pixelView_.upload(&data, sizeof data);
+  wholePixels_ = true;
   pixelView_.bindUniform(0);
   pixelClasses_->findWithLight(pixels.visibility);
   pixels.visibility.colour(0).bind(0);
   partial_ = false;
   shade(pixels.shading, pixels.visibility);
-  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_->smoothness(), pixels.shading, v.grouped);
+  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_->smoothness(), pixels.shading, withoutTransparent(), v.grouped);
   if (v.subpixels != v.grouped) shared_->spread(pixels.shading, current_->shading, v.grouped, glm::ivec4(0));
   else if (v.kept.z > 0) shared_->spread(pixels.shading, current_->shading, v.grouped, v.kept);
+  wholePixels_ = false;
   view_.bindUniform(0);
   return SharedPixels{pixels.shading, shared_->bends()};
 }

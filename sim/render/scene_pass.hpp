@@ -71,12 +71,17 @@ class ScenePass {
   virtual void shadeTile(RenderTarget&, const glm::ivec4&, const std::set<std::size_t>&) {}
   /// Only one entity is shaded: what was cleared stays elsewhere.
   bool isPartial() const { return partial_; }
+  bool isOfWholePixels() const { return wholePixels_; }
   /// The tables follow other temperatures than before.
   virtual void onTemperatures() {}
   /// Whether this mode can shade several pixels as one where a view allows it (View::grouped).
   virtual bool sharesShading() const { return false; }
   /// What a mode has to make ready for a view, its solid scene drawn.
   virtual void beforeShading(const View&, const WorldState&, const std::vector<char>&) {}
+  /// The channels that whole pixels had before transparent things were drawn over them; null where there are none.
+  virtual const RenderTarget* withoutTransparent() const { return nullptr; }
+  /// Pixels that have been shaded as one are left out of what is shaded from here on, of this picture.
+  virtual void leaveOut(RenderTarget&) {}
 
   const Plan& plan() const { return plan_; }
   const AirOnGpu* air() const { return air_.get(); }
@@ -88,7 +93,8 @@ class ScenePass {
   /// Of the picture's pixels, found before shade().
   const PixelClasses& pixelClasses() const { return *pixelClasses_; }
   /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
-  ShaderSlots shadingSlots() const;
+  /// `writtenOut`: nodes are named by numbers, none by a loop.
+  ShaderSlots shadingSlots(bool writtenOut) const;
   void addLightConstants(ShaderSlots& slots) const;
   /// Names of the channel targets, and of the truth targets, in order.
   std::vector<std::string> channelTargets() const;
@@ -137,6 +143,7 @@ class ScenePass {
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;
   bool partial_ = false, warm_ = false;
+  bool wholePixels_ = false;                ///< pixels are shaded, not their subpixels
   std::optional<ResolvePass> resolve_;      ///< made when first needed
   const RenderTarget* truthOf_ = nullptr;   ///< where truth is by itself
   const RenderTarget* resolved_ = nullptr;  ///< of the last drawn image, where it was

@@ -6,7 +6,7 @@ namespace pitviper {
 namespace {
 
 /// The pixels' colours, a texture each from here on; what subpixels see.
-constexpr unsigned kColours = 22, kSubpixels = 18, kSmoothness = 17;
+constexpr unsigned kColours = 22, kSubpixels = 18, kSmoothness = 17, kBefore = 26;
 
 /// Colours copied one to one.
 std::string spreadText(std::size_t colours) {
@@ -46,19 +46,32 @@ SharedShading::SharedShading(const ShaderLibrary& library, int groups, std::size
 
 void SharedShading::findMiddles(const RenderTarget& subpixels, RenderTarget& pixels, int grouped) {
   subpixels.colour(0).bind(0);
+  subpixels.depth().bind(kSubpixels);
+  pixels.bind();
+  middles_.use();
+  glUniform1i(middles_.uniform("grouped"), grouped);
   glDisable(GL_BLEND);
-  drawAll(middles_, pixels, grouped);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_TRUE);
+  glDepthFunc(GL_ALWAYS);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_DEPTH_TEST);
 }
 
-void SharedShading::findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const Texture2D& smoothness, const RenderTarget& shaded, int grouped) {
+void SharedShading::findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const Texture2D& smoothness, const RenderTarget& shaded,
+                              const RenderTarget* before, int grouped) {
   if (!bends_ || bends_->width() != pixels.width() || bends_->height() != pixels.height())
     bends_.emplace(pixels.width(), pixels.height(), std::vector<PixelFormat>{PixelFormat::R32f}, false);
   pixels.colour(0).bind(0);
   subpixels.colour(0).bind(kSubpixels);
   smoothness.bind(kSmoothness);
-  for (int g = 0; g < groups_; ++g) shaded.colour(static_cast<std::size_t>(g)).bind(kColours + static_cast<unsigned>(g));
+  for (int g = 0; g < groups_; ++g) {
+    shaded.colour(static_cast<std::size_t>(g)).bind(kColours + static_cast<unsigned>(g));
+    if (before) before->colour(static_cast<std::size_t>(g)).bind(kBefore + static_cast<unsigned>(g));
+  }
   find_.use();
   glUniform1f(find_.uniform("threshold"), static_cast<float>(threshold_));
+  glUniform1i(find_.uniform("drawnOver"), before != nullptr);
   drawAll(find_, *bends_, grouped);
 }
 

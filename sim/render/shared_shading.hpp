@@ -12,10 +12,11 @@ class SharedShading {
   /// `groups`: channel groups of four; the target's colours beyond, truth, don't count. `threshold`: the share; `filtered`: textures are read over whole
   /// pixels.
   SharedShading(const ShaderLibrary& library, int groups, std::size_t colours, double threshold, bool filtered);
-  /// Of a picture of grouped x grouped subpixels a pixel.
+  /// Of a picture of grouped x grouped subpixels a pixel: what they see, and its depth.
   void findMiddles(const RenderTarget& subpixels, RenderTarget& pixels, int grouped);
-  /// Which of the shaded pixels are not enough.
-  void findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const Texture2D& smoothness, const RenderTarget& shaded, int grouped);
+  /// Which of the shaded pixels are not enough. `before`: the same without what transparent things add to it; null where there are none.
+  void findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const Texture2D& smoothness, const RenderTarget& shaded, const RenderTarget* before,
+                 int grouped);
   /// 1 for these, as findBends() left it.
   const Texture2D& bends() const { return bends_->colour(0); }
   /// Gives subpixels what their pixels have; of a part (corner, size), or of all.

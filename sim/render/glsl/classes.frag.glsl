@@ -20,5 +20,5 @@ void main() {
   vec2 own = drawMember(id.x, 5).yz;  // of its class, and that of its class with every light
   bool all = own.x != own.y && needsAll(id, gl_FragCoord.xy);
   gl_FragDepth = leftOut ? 1.0 : all ? own.y : own.x;
-  smoothness = own.x == own.y || all ? vec2(-1.0, 0.0) : lightAndDepth_;
+  smoothness = own.x == own.y || !smooth_ ? vec2(-1.0, 0.0) : lightAndDepth_;
 }

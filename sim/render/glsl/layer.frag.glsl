@@ -6,6 +6,10 @@ flat in uvec2 seen;
 //@use sim/render/glsl/shading.glsl
 //@slot ground
 
+// One thing of its own.
+int layersHere() { return 1; }
+void prepareLayer(int k) {}
+
 Real blended(Real behind, int i) {
   Real t = transmittance(i);
   Real own = (1.0 - t) * pathRadiance(i, air_) + pathTransmittance(i, air_) * selfRadiance(i) + reflectedLight(i);

@@ -8,7 +8,9 @@ bool wholeSun_;
 //@slot shadow_list
 
 const float kSunlit = 0.3;  // as in sim/render/light_relevance.hpp
-bool sunlit_;
+// Of its reach, squared, within which a lamp may make a picture bend: farther off it adds less than the accuracy.
+const float kBends = 0.01;
+bool sunlit_, smooth_;
 vec2 lightAndDepth_;  // cosine to the sun, or -1; 1 / depth
 
 // Of a light's entry; says besides whether the point is in full sunshine. Of a sun that is partly set the direction is another: who may hide it is not asked.
@@ -40,12 +42,16 @@ bool needsAll(uvec2 id, vec2 pixel) {
                 m.weight.z * texelFetch(vertices, m.corner.z + 1).xyz;
   if (dot(facet_, d) > 0.0) normal = -normal;
   int row = lightRow(draw), lamps = (LIGHTS > FEW_LIGHTS ? int(lightTexel(row).x) : LIGHTS) - SUN;
-  bool all = SUN > 0 && sunMayBeHidden(lightEntry(row, lamps), normal, max((planeOf(draw) + m.along) * rayLength_, 1.0e-6));
+  bool hidden = SUN > 0 && sunMayBeHidden(lightEntry(row, lamps), normal, max((planeOf(draw) + m.along) * rayLength_, 1.0e-6));
+  bool all = hidden;
+  smooth_ = !hidden;
   for (int k = 0; k < lamps; ++k) {
     int entry = lightEntry(row, k);
     vec3 line = lightTexel(entry).xyz - point_;
     vec2 reach2 = lightTexel(entry + 2).xy;
-    all = all || (lightTexel(entry + 1).x >= 0.0 && dot(line, line) < (sunlit_ ? reach2.y : reach2.x));
+    bool matters = lightTexel(entry + 1).x >= 0.0;
+    all = all || (matters && dot(line, line) < (sunlit_ ? reach2.y : reach2.x));
+    smooth_ = smooth_ && !(matters && dot(line, line) < kBends * (sunlit_ ? reach2.y : reach2.x));
   }
   return all;
 }

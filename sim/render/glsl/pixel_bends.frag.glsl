@@ -7,11 +7,17 @@ layout(binding = 18) uniform usampler2D subpixels;
 //@each g GROUPS
 layout(binding = 22 + {g}) uniform sampler2D pixels{g};
 //@end
+//@each g GROUPS
+layout(binding = 26 + {g}) uniform sampler2D before{g};
+//@end
 layout(binding = 17) uniform sampler2D smoothness;  // see classes.frag.glsl
 uniform int grouped;
 uniform float threshold;
+uniform bool drawnOver;  // something transparent is, what was there before in these
 
 ivec2 last_;
+
+bool bendsBy(vec4 bend, vec4 most) { return !all(lessThanEqual(bend, threshold * most)); }
 
 bool bendsIn(sampler2D pixels, ivec2 p) {
   vec4 here = texelFetch(pixels, p, 0), most = here, bend = vec4(0.0);
@@ -21,7 +27,19 @@ bool bendsIn(sampler2D pixels, ivec2 p) {
     most = max(most, max(a, b));
     bend = max(bend, abs(a + b - 2.0 * here));
   }
-  return !all(lessThanEqual(bend, threshold * most));
+  return bendsBy(bend, most);
+}
+
+// What transparent things have added or taken away, against what is left.
+bool changeBendsIn(sampler2D pixels, sampler2D before, ivec2 p) {
+  vec4 here = texelFetch(pixels, p, 0), most = here, change = here - texelFetch(before, p, 0), bend = vec4(0.0);
+  for (int k = 0; k < 4; ++k) {
+    ivec2 step = ivec2(k == 0 ? 0 : 1, k == 0 ? 1 : k - 2), back = clamp(p - step, ivec2(0), last_), on = clamp(p + step, ivec2(0), last_);
+    vec4 a = texelFetch(pixels, back, 0), b = texelFetch(pixels, on, 0);
+    most = max(most, max(a, b));
+    bend = max(bend, abs(a - texelFetch(before, back, 0) + b - texelFetch(before, on, 0) - 2.0 * change));
+  }
+  return bendsBy(bend, most);
 }
 
 // A ridge before what lies behind it is a step in 1 / depth; a smaller one, within one part, is taken for the slope of the ground.
@@ -50,6 +68,12 @@ void main() {
 //@each g GROUPS
   smoothly = smoothly && !bendsIn(pixels{g}, p);
 //@end
-  bool enough = same && (smoothly || (FILTERED == 1 && !lightBends(p)));
+  bool evenly = true;
+  if (drawnOver) {
+//@each g GROUPS
+    evenly = evenly && !changeBendsIn(pixels{g}, before{g}, p);
+//@end
+  }
+  bool enough = same && (smoothly || (FILTERED == 1 && evenly && !lightBends(p)));
   bends = enough ? 0.0 : 1.0;
 }

@@ -17,6 +17,10 @@ float sunElevation_;
 //@slot path
 AirPath near_, far_;  // from the camera to where the ray enters and leaves
 
+// One thing of its own.
+int layersHere() { return 1; }
+void prepareLayer(int k) {}
+
 Real blended(Real behind, int i) {
   vec2 medium = texelFetch(media, mediumRow + i).xy;
   Real depth = medium.x * pathLength_;

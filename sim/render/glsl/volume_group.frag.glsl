@@ -15,6 +15,7 @@ uniform vec3 memberSize[GROUP];
 uniform int memberRow[GROUP];
 
 float sunElevation_;
+float plane_;                // of the first one
 vec2 way_[GROUP];            // of each member that the ray meets: t along the ray from the plane of the first one's origin
 int row_[GROUP];
 int met_;
@@ -22,26 +23,37 @@ float cut_[2 * GROUP];       // borders, falling
 int cuts_;
 
 //@slot path
-AirPath near_[2 * GROUP];    // from the camera to a border, and on to the one before it in the list
-AirPath far_[2 * GROUP];
+// Between two borders, the farthest pair first.
+int piece_;
+float length_;   // [m]
+AirPath near_;   // from the camera to the nearer border
+AirPath far_;    // and on to the other
+
+int layersHere() { return cuts_ - 1; }
+
+void prepareLayer(int c) {
+  piece_ = c;
+  length_ = (cut_[c] - cut_[c + 1]) * rayLength_;
+  float range = max((plane_ + cut_[c + 1]) * rayLength_, 0.0);
+  vec3 upThere;
+  float height = heightAt(range, upThere);
+  near_ = airFromCamera(range);
+  far_ = airBeyond(near_, range, height, dot(upThere, ray_) / rayLength_, length_);
+}
 
 Real blended(Real behind, int i) {
-  Real radiance = behind;
-  for (int c = 0; c + 1 < cuts_; ++c) {
-    Real depth = 0.0, emitted = 0.0;
-    for (int k = 0; k < met_; ++k) {
-      if (!(way_[k].x <= cut_[c + 1] && way_[k].y >= cut_[c])) continue;
-      vec2 medium = texelFetch(media, row_[k] + i).xy;
-      Real own = medium.x * (cut_[c] - cut_[c + 1]) * rayLength_;
-      depth += own;
-      emitted += own * medium.y;
-    }
-    if (!(depth > 0.0)) continue;
-    Real air = pathDepth(i, near_[c], far_[c]);
-    Real before = pathRadiance(i, near_[c]), tau = pathTransmittance(i, near_[c]), inside = pathInside(i, near_[c], far_[c]);
-    radiance = decay(depth) * (radiance - (before + inside)) + mediumRadiance(depth, air, before, inside, tau, emitted / depth);
+  Real depth = 0.0, emitted = 0.0;
+  for (int k = 0; k < met_; ++k) {
+    if (!(way_[k].x <= cut_[piece_ + 1] && way_[k].y >= cut_[piece_])) continue;
+    vec2 medium = texelFetch(media, row_[k] + i).xy;
+    Real own = medium.x * length_;
+    depth += own;
+    emitted += own * medium.y;
   }
-  return radiance;
+  if (!(depth > 0.0)) return behind;
+  Real air = pathDepth(i, near_, far_);
+  Real before = pathRadiance(i, near_), tau = pathTransmittance(i, near_), inside = pathInside(i, near_, far_);
+  return decay(depth) * (behind - (before + inside)) + mediumRadiance(depth, air, before, inside, tau, emitted / depth);
 }
 
 //@slot targets
@@ -76,12 +88,6 @@ void main() {
   }
   if (turn != member) discard;
   sunElevation_ = 0.0;
-  for (int c = 0; c + 1 < cuts_; ++c) {
-    float range = max((planeOf(first) + cut_[c + 1]) * rayLength_, 0.0);
-    vec3 upThere;
-    float height = heightAt(range, upThere);
-    near_[c] = airFromCamera(range);
-    far_[c] = airBeyond(near_[c], range, height, dot(upThere, ray_) / rayLength_, (cut_[c] - cut_[c + 1]) * rayLength_);
-  }
+  plane_ = planeOf(first);
   blend();
 }

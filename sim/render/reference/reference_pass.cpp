@@ -21,7 +21,7 @@ ReferencePass::ReferencePass(const Simulation& simulation, const Plan& plan, con
       simulation_(simulation),
       spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes)) {
   if (!truth) return;
-  ShaderSlots slots = shadingSlots();
+  ShaderSlots slots = shadingSlots(false);
   slots.generated["weights"] = "";
   slots.files["truth"] = "sim/render/glsl/truth_layers.glsl";
   slots.generated["targets"] = "void clearTargets() {}\n";
