@@ -69,7 +69,7 @@ TEST(LayeredAir, PlannedTablesLoseNoMoreThanTheyAreSaidTo) {
   }
 }
 
-// A camera that climbs slowly: neighbouring frames share tables, and still none depends on those drawn before it.
+// A camera that climbs and sinks again: neighbouring frames share tables, the next are made ahead, and still none depends on those drawn before it.
 TEST(LayeredAir, NoFrameDependsOnThoseBeforeIt) {
   const auto sim = scene(
       "atmosphere: hazy_us76\nsun: {azimuth: 60 deg, elevation: 20 deg, temperature: 5772 K}\ntime: {rate: 10 Hz, frames: 12}\naccuracy: 1 %\naudit: "
@@ -77,7 +77,7 @@ TEST(LayeredAir, NoFrameDependsOnThoseBeforeIt) {
       "  - {name: ground, shape: {model: plate, width: 40 km, height: 40 km}, material: dry_grass, temperature: 290 K, pitch: 90 deg}\n"
       "  - {name: lift, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: concrete, temperature: 290 K, motion: [{time: 0 s, position: [0 "
       "m, 0 m, "
-      "50 m]}, {time: 2 s, position: [3 m, 1 m, 54 m], heading: 2 deg}]}\n"
+      "50 m]}, {time: 0.6 s, position: [3 m, 1 m, 95 m], heading: 2 deg}, {time: 1.2 s, position: [4 m, 1 m, 60 m], heading: 2 deg}]}\n"
       "cameras: [{name: c, film: {width: 24, height: 24}, field_of_view: 12 deg, aperture: 5 mm, attached_to: lift, channels: [{name: a, response: {band: [3.7 "
       "um, "
       "4.8 um]}}, {name: b, response: {band: [0.5 um, 0.7 um]}}]}]\n");
