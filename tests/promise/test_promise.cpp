@@ -134,7 +134,10 @@ TEST(Promise, PredictedIsWorthItsName) {
   for (const PromiseFigures& f : promiseFigures(theRun().cells)) {
     // 98 of 100 cells; of a few, one may be above.
     EXPECT_GE(f.foreseen * f.cells, std::min(0.98 * f.cells, f.cells - 1.0)) << "asked " << f.asked;
-    EXPECT_LE(f.margin, 5.0) << "asked " << f.asked;
+    // The median of a handful says nothing of that of many.
+    if (f.cells >= 8) {
+      EXPECT_LE(f.margin, 5.0) << "asked " << f.asked;
+    }
   }
 }
 
