@@ -118,15 +118,9 @@ const Run& theRun() {
 TEST(Promise, NoPixelIsFartherFromTheReferenceThanAsked) {
   int compared = 0, leftOut = 0;
   for (const PromiseScene& s : theRun().scenes) compared += s.pixels, leftOut += s.leftOut;
-  // A plan that says beforehand that it cannot reach what is asked (tables of air at their largest, the sun at the horizon) is held to what it says.
-  double said = 0.0;
-  for (const PromiseCell& c : theRun().cells) {
-    said += c.predicted > c.asked ? 1.0 : 0.0;
-    EXPECT_LE(c.found, std::max(c.asked, c.predicted))
-        << "seed " << c.seed << ", " << c.channel << ", frame " << c.worst.frame << ", pixel " << c.worst.column << ", " << c.worst.row << ": "
-        << c.worst.planned << " for " << c.worst.reference << ", predicted " << c.predicted;
-  }
-  EXPECT_LE(said, std::max(1.0, 0.02 * static_cast<double>(theRun().cells.size()))) << "plans that cannot reach what is asked are few";
+  for (const PromiseCell& c : theRun().cells)
+    EXPECT_LE(c.found, c.asked) << "seed " << c.seed << ", " << c.channel << ", frame " << c.worst.frame << ", pixel " << c.worst.column << ", " << c.worst.row
+                                << ": " << c.worst.planned << " for " << c.worst.reference << ", predicted " << c.predicted;
   EXPECT_GT(compared, leftOut) << "outlines of transparent things are a small part of pictures";
 }
 
@@ -134,10 +128,7 @@ TEST(Promise, PredictedIsWorthItsName) {
   for (const PromiseFigures& f : promiseFigures(theRun().cells)) {
     // 98 of 100 cells; of a few, one may be above.
     EXPECT_GE(f.foreseen * f.cells, std::min(0.98 * f.cells, f.cells - 1.0)) << "asked " << f.asked;
-    // The median of a handful says nothing of that of many.
-    if (f.cells >= 8) {
-      EXPECT_LE(f.margin, 5.0) << "asked " << f.asked;
-    }
+    EXPECT_LE(f.margin, 5.0) << "asked " << f.asked;
   }
 }
 
