@@ -25,15 +25,14 @@ class BufferedPass final : public ScenePass {
   bool drawsOver() const { return layers_ && !layers_->isEmpty(); }
   const RenderTarget* withoutTransparent() const override { return drawsOver() ? &*before_ : nullptr; }
   void leaveOut(RenderTarget& visibility) override;
-  struct Batch;
-  void integrate(const Batch& batch, RenderTarget& into, const RenderTarget& spectrum, bool adds) const;
-  RenderTarget& spectrumFor(const RenderTarget& visibility);
-
   struct Batch {
     int firstNode = 0;
     Program integrate;
     Buffer weights;
   };
+  void integrate(const Batch& batch, RenderTarget& into, const RenderTarget& spectrum, bool adds) const;
+  RenderTarget& spectrumFor(const RenderTarget& visibility);
+
   std::vector<Batch> batches_;
   ClassPrograms shade_;
   ShadingProgram truth_;

@@ -18,7 +18,7 @@ constexpr int kUnderUnit = 22;
 
 Pose poseOf(const WorldState& state, int entity) { return state.entities[static_cast<size_t>(entity)]; }
 
-/// Levels of surfaces, up to which waiting before each costs less than shading what depth hides.
+/// With fewer levels of surfaces than this, waiting before each costs less than shading what depth hides.
 constexpr std::size_t kFewLevels = 64;
 
 /// What is drawn in few runs (a medium is one by itself) is better read as a texture: drivers without a GPU shade every pixel where the target is fetched,

@@ -8,7 +8,8 @@ bool wholeSun_;
 //@slot shadow_list
 
 const float kSunlit = 0.3;  // as in sim/render/light_relevance.hpp
-// Of its reach, squared, within which a lamp may make a picture bend: farther off it adds less than the accuracy.
+// Of its reach, squared, within which a lamp may make a picture bend: it is kLampShare (sim/render/light_relevance.hpp), so that farther off a lamp adds less
+// than the accuracy, half of what a bend is.
 const float kBends = 0.01;
 bool sunlit_, smooth_;
 vec2 lightAndDepth_;  // cosine to the sun, or -1; 1 / depth
