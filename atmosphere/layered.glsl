@@ -8,7 +8,7 @@ layout(std140, binding = 3) uniform AirBlock {
   vec4 more;       // number of azimuths
   vec4 heights;    // bottom [m], entries per root of a metre; sine of the first sun elevation, 1 / step to the next
   vec4 exponent[AIR_VECTORS];
-  vec4 asymmetry[AIR_ASYMMETRIES];
+  vec4 asymmetry[AIR_VALUES];  // of nodes, or of channels
   vec4 black[AIR_BLACKS];  // of nodes: radiance of a black body of the air's temperature at the camera
 } air;
 //@slot air_extinction
@@ -179,27 +179,27 @@ Real pathTransmittance(int i, AirPath p) { return exp(-airDepth(i, p)); }
 
 Real pathDepth(int i, AirPath near, AirPath far) { return max(airDepth(i, far) - airDepth(i, near), 0.0); }
 
-// Between the four entries of a table of `count` texels in each part; of one azimuth.
-vec4 airPart(AirPath p, int azimuth, int part, int texel, int count) {
-  int size = AIR_PARTS * count, low = (azimuth * airElevations() * (airRanges() + 1) + p.cell) * size + part * count + texel, step = p.next * size, high = low + (airRanges() + 1) * size;
+// Four nodes or channels between the four entries of a table; of one azimuth.
+vec4 airPart(AirPath p, int azimuth, int part, int four) {
+  int size = AIR_PARTS * AIR_VALUES, low = (azimuth * airElevations() * (airRanges() + 1) + p.cell) * size + part * AIR_VALUES + four, step = p.next * size, high = low + (airRanges() + 1) * size;
   return mix(mix(texelFetch(airRadiance, low), texelFetch(airRadiance, low + step), p.mixed.y),
              mix(texelFetch(airRadiance, high), texelFetch(airRadiance, high + step), p.mixed.y), p.mixed.x);
 }
 
 // Emission less that of air of one temperature, and sunlight scattered by molecules and haze, each with its phase function [1/sr].
-vec4 airValue(AirPath p, int texel, int count, vec4 g) {
-  vec4 sum = airPart(p, 0, 0, texel, count);
+vec4 airValue(AirPath p, int four) {
+  vec4 sum = airPart(p, 0, 0, four);
   if (AIR_PARTS > 1) {
     float c = dot(ray_, view.sun.xyz) / rayLength_;
-    vec4 chord = 1.0 + g * g - 2.0 * g * c;
-    vec4 molecules = airPart(p, 0, 1, texel, count), haze = airPart(p, 0, 2, texel, count);
+    vec4 g = air.asymmetry[four], chord = 1.0 + g * g - 2.0 * g * c;
+    vec4 molecules = airPart(p, 0, 1, four), haze = airPart(p, 0, 2, four);
     if (AIR_AZIMUTHS > 1) {
       // The sun's height over far air depends on the azimuth it is seen under.
       float across = (c - sinElevation_ * dot(view.up.xyz, view.sun.xyz)) * inversesqrt(max(1.0 - sinElevation_ * sinElevation_, 1.0e-8));
       float z = clamp((across - air.azimuth.x) * air.azimuth.y, 0.0, air.more.x - 1.0);
       int a = min(int(z), int(air.more.x) - 2);
-      molecules = mix(airPart(p, a, 1, texel, count), airPart(p, a + 1, 1, texel, count), z - float(a));
-      haze = mix(airPart(p, a, 2, texel, count), airPart(p, a + 1, 2, texel, count), z - float(a));
+      molecules = mix(airPart(p, a, 1, four), airPart(p, a + 1, 1, four), z - float(a));
+      haze = mix(airPart(p, a, 2, four), airPart(p, a + 1, 2, four), z - float(a));
     }
     sum += 0.0596831037 * (1.0 + c * c) * molecules + 0.0795774715 * (1.0 - g * g) * inversesqrt(chord) / chord * haze;
   }

@@ -5,4 +5,4 @@ Real pathSeen(int i, AirPath p, Real radiance) {
   Real depth = airDepth(i, p);
   return radiance * exp(-depth) + airBlack(i, depth);
 }
-vec4 channelAir(int group, AirPath p) { return airValue(p, group, GROUPS, air.asymmetry[group]); }
+vec4 channelAir(int group, AirPath p) { return airValue(p, group); }

@@ -45,7 +45,7 @@ void LayeredOnGpu::addSlots(ShaderSlots& slots) const {
   slots.constants["AIR_SUNS"] = plan_.sunLegs ? SunLegs::kElevations : 0;
   slots.constants["AIR_PIECES"] = kPieces;
   slots.constants["AIR_PARTS"] = rows_.parts();
-  slots.constants["AIR_ASYMMETRIES"] = (rows_.values() + 3) / 4;
+  slots.constants["AIR_VALUES"] = rows_.values() / 4;
   slots.constants["AIR_BLACKS"] = (plan_.nodeCount() + 3) / 4;
 }
 
@@ -185,7 +185,7 @@ void LayeredOnGpu::bind() const {
   block_.bindUniform(3);
   coefficients_.bind();
   amounts_.bindTexture(20, 4);
-  radiance_.bindTexture(21, perChannel_ ? 4 : 1);
+  radiance_.bindTexture(21, 4);
 }
 
 }  // namespace pitviper

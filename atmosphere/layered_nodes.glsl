@@ -1,6 +1,6 @@
 //@use atmosphere/layered.glsl
 // Path radiance of each node: for what is seen through something, and for buffered mode.
-Real airRest(int i, AirPath p) { return airValue(p, i, NODES, vec4(air.asymmetry[i / 4][i % 4])).x; }
+Real airRest(int i, AirPath p) { return airValue(p, i / 4)[i % 4]; }
 Real pathRadiance(int i, AirPath p) { return airBlack(i, airDepth(i, p)) + airRest(i, p); }
 Real pathInside(int i, AirPath near, AirPath far) {
   return pathTransmittance(i, near) * airBlack(i, pathDepth(i, near, far)) + airRest(i, far) - airRest(i, near);

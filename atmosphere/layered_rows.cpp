@@ -19,7 +19,7 @@ double logOf(double v) { return std::log(std::max(v, kNothing)); }
 AirRows::AirRows(const Simulation& simulation, const Plan& plan, bool perChannel)
     : simulation_(simulation), plan_(plan), perChannel_(perChannel), air_(plan.nodes) {
   vectors_ = (static_cast<int>(simulation.air->exponents().size()) + 3) / 4;
-  values_ = perChannel ? 4 * plan.groupCount() : plan.nodeCount();
+  values_ = perChannel ? 4 * plan.groupCount() : (plan.nodeCount() + 3) / 4 * 4;
   parts_ = plan.terms.scatteredSun ? 3 : 1;
   for (const SpectralNode& n : plan.nodes) sunIrradiance_.push_back(plan.terms.scatteredSun ? n.mean(simulation.sun->irradiance) : 0.0);
   asymmetry_ = asymmetriesOf();
@@ -34,7 +34,7 @@ void AirRows::begin(const AirGrid& grid) {
 
 /// Per node, or per channel as its nodes' sunlight is scattered.
 std::vector<double> AirRows::asymmetriesOf() const {
-  std::vector<double> asymmetry(static_cast<size_t>((values_ + 3) / 4 * 4), 0.0);
+  std::vector<double> asymmetry(static_cast<size_t>(values_), 0.0);
   if (!perChannel_) {
     for (size_t i = 0; i < plan_.nodes.size(); ++i) asymmetry[i] = plan_.nodes[i].air.asymmetry;
     return asymmetry;

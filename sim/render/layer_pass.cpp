@@ -30,8 +30,8 @@ BlendPath pathOfFew(BlendPath path) {
   return free ? BlendPath::TextureBarrier : path;
 }
 
-/// The spectral image, in and out by framebuffer fetch, or read as a texture; each of its nodes blended.
-void addBlend(ShaderSlots& slots, BlendPath path, int targets, int nodes) {
+/// The spectral image, in and out by framebuffer fetch, or read as a texture; its nodes blended one by one, or four by four.
+void addBlend(ShaderSlots& slots, BlendPath path, int targets, int nodes, bool byFour) {
   std::ostringstream declared, blend;
   declared << "uniform int firstNode;\n";
   const bool fetch = path == BlendPath::FramebufferFetch, written = slots.constants.at("WRITTEN_OUT") != 0;
@@ -44,7 +44,11 @@ void addBlend(ShaderSlots& slots, BlendPath path, int targets, int nodes) {
     blend << "  vec4 u" << n << " = " << (fetch ? "spectrum" + n : "texelFetch(under" + n + ", ivec2(gl_FragCoord.xy), 0)") << ";\n";
   }
   blend << "  for (int k = 0; k < layersHere(); ++k) {\n    prepareLayer(k);\n";
-  for (int i = 0; i < 4 * targets; ++i) {
+  for (int t = 0; t < targets && byFour; ++t) {
+    const std::string four = written ? std::to_string(std::min(t, (nodes - 1) / 4)) : "min(firstNode / 4 + " + std::to_string(t) + ", (NODES - 1) / 4)";
+    blend << "    u" << t << " = blendedFour(u" << t << ", " << four << ");\n";
+  }
+  for (int i = 0; i < 4 * targets && !byFour; ++i) {
     const std::string node = written ? std::to_string(std::min(i, nodes - 1)) : "min(firstNode + " + std::to_string(i) + ", NODES - 1)";
     blend << "    u" << i / 4 << "[" << i % 4 << "] = blended(u" << i / 4 << "[" << i % 4 << "], " << node << ");\n";
   }
@@ -85,14 +89,14 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
     own.files["transmission"] = folder + (tables.layer.general ? "transmission_general.glsl" : "transmission_plain.glsl");
     const auto programOf = [&](BlendPath path) {
       ShaderSlots with = own;
-      addBlend(with, path, targets, plan.nodeCount());
+      addBlend(with, path, targets, plan.nodeCount(), false);
       return Program(assembleShader(library, folder + "layer.vert.glsl", with), assembleShader(library, folder + "layer.frag.glsl", with));
     };
     layer_ = programOf(path_);
     if (fewPath_ != path_) fewLayers_ = programOf(fewPath_);
   }
   if (plan.terms.media) {
-    addBlend(base, fewPath_, targets, plan.nodeCount());
+    addBlend(base, fewPath_, targets, plan.nodeCount(), true);
     volume_ = Program(assembleShader(library, "sim/render/glsl/box.vert.glsl", base), assembleShader(library, "sim/render/glsl/volume.frag.glsl", base));
     int formed = 0, meshed = 0;
     for (const Entity& e : simulation.entities)
@@ -178,10 +182,10 @@ void LayerPass::order(const View& view, const WorldState& state, const std::vect
   sorted_.upload(sorted);
 }
 
-RenderTarget& LayerPass::sizedLike(std::deque<RenderTarget>& pool, const RenderTarget& target, std::size_t colours) const {
+RenderTarget& LayerPass::sizedLike(std::deque<RenderTarget>& pool, const RenderTarget& target, std::size_t colours, bool depth) const {
   for (auto& t : pool)
     if (t.width() == target.width() && t.height() == target.height()) return t;
-  return pool.emplace_back(target.width(), target.height(), std::vector<PixelFormat>(colours, PixelFormat::Rgba32f), false);
+  return pool.emplace_back(target.width(), target.height(), std::vector<PixelFormat>(colours, PixelFormat::Rgba32f), depth);
 }
 
 void LayerPass::blend(const Over& over) {
@@ -246,6 +250,18 @@ void LayerPass::beginMedium(bool covered) const {
   glCullFace(GL_FRONT);
 }
 
+/// Pixels that one box has worked out are left alone by the others: marked as covered in a depth of the group's own.
+void LayerPass::beginGroup(const Over& over) {
+  RenderTarget& own = sizedLike(groupDepths_, over.spectrum, 0, true);
+  own.bind();
+  glDepthMask(GL_TRUE);
+  glClearDepth(0.0);
+  glClear(GL_DEPTH_BUFFER_BIT);
+  if (over.covered) over.covered->cover(own);
+  over.spectrum.shareDepth(own);
+  over.spectrum.bind();
+}
+
 void LayerPass::setGroup(const std::vector<std::uint32_t>& draws) const {
   std::vector<GLint> forms, rows, numbers;
   std::vector<glm::vec3> sizes;
@@ -270,8 +286,10 @@ void LayerPass::drawMedium(const LayerPiece& piece, const Over& over) {
   const Program& program = piece.group >= 0 ? group_ : volume_;
   media_.bindTexture(5, 4);
   over.visibility.colour(0).bind(0);
+  if (piece.group >= 0) beginGroup(over);
+  program.use();
   setMedium(program, piece);
-  beginMedium(over.covered);
+  beginMedium(over.covered || piece.group >= 0);
   auto drawBox = [&](const glm::vec3& low, const glm::vec3& high) {
     glUniform3f(program.uniform("low"), low.x, low.y, low.z);
     glUniform3f(program.uniform("high"), high.x, high.y, high.z);
@@ -280,14 +298,15 @@ void LayerPass::drawMedium(const LayerPiece& piece, const Over& over) {
   if (piece.group >= 0) {
     const auto& draws = groups_[static_cast<size_t>(piece.group)];
     setGroup(draws);
+    glDepthMask(GL_TRUE);
     for (size_t k = 0; k < draws.size(); ++k) {
       // A ray that meets a member must find its box, whatever the rasteriser's steps (1/256 of a pixel): the others leave it to that one.
       const BodyBox& box = scene_->box(tables_.draws[draws[k]].entity);
       const glm::dvec3 margin = 0.01 * (box.high - box.low);
       glUniform1i(program.uniform("drawIndex"), static_cast<int>(draws[k]));
-      glUniform1i(program.uniform("member"), static_cast<int>(k));
       drawBox(box.low - margin, box.high + margin);
     }
+    over.spectrum.shareDepth(over.visibility);
   } else {
     const glm::vec3 size(form.size);
     glUniform3f(program.uniform("formSize"), size.x, size.y, size.z);

@@ -8,6 +8,7 @@
 #include "sim/gl/blend_path.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/layer_order.hpp"
+#include "sim/render/pixel_classes.hpp"
 #include "sim/render/shading_program.hpp"
 #include "sim/render/surface_buffers.hpp"
 
@@ -32,7 +33,7 @@ class LayerPass {
     RenderTarget& spectrum;          ///< with the visibility pass' depth attached
     const RenderTarget& visibility;  ///< identity and depth of the solid scene
     int firstNode = 0;
-    bool covered = false;  ///< the nearest depth of all stands where nothing is to be drawn
+    const PixelClasses* covered = nullptr;  ///< what they leave out has the nearest depth of all, and nothing is to be drawn over it
   };
   /// Draws, view, lights and nodes are bound; changes the bound surface tables and the blend, cull and depth state's settings.
   void blend(const Over& over);
@@ -51,9 +52,10 @@ class LayerPass {
   void drawLayers(const Run& run, const Over& over);
   void drawMedium(const LayerPiece& piece, const Over& over);
   void beginMedium(bool covered) const;
+  void beginGroup(const Over& over);
   void setGroup(const std::vector<std::uint32_t>& draws) const;
   void drawThickness(const LayerPiece& piece, const Over& over);
-  RenderTarget& sizedLike(std::deque<RenderTarget>& pool, const RenderTarget& target, std::size_t colours) const;
+  RenderTarget& sizedLike(std::deque<RenderTarget>& pool, const RenderTarget& target, std::size_t colours, bool depth = false) const;
 
   const Simulation& simulation_;
   const RenderTables& tables_;
@@ -67,7 +69,7 @@ class LayerPass {
   LayerOrder order_;
   std::optional<OrderFaults> faults_;
   std::vector<Run> runs_;
-  std::deque<RenderTarget> copies_, thicknesses_;
+  std::deque<RenderTarget> copies_, thicknesses_, groupDepths_;
 };
 
 }  // namespace pitviper

@@ -256,12 +256,17 @@ float sourceOf(const Medium& medium, const SpectralNode& n, double temperature_K
   return static_cast<float>(n.mean([&](double w) { return medium.source(w, temperature_K); }));
 }
 
+/// Where a medium's source radiance of a node stands; its absorption is four before.
+size_t sourceAt(std::uint32_t row, size_t node) { return 4 * row + 8 * (node / 4) + 4 + node % 4; }
+
 std::uint32_t appendMedium(RenderTables& t, const Plan& plan, const Medium& medium, const Surface& surface) {
-  const auto at = static_cast<std::uint32_t>(t.media.size() / 4);
-  for (const SpectralNode& n : plan.nodes)
-    t.media.insert(t.media.end(),
-                   {static_cast<float>(n.absorption_per_m[static_cast<size_t>(surface.material)]), sourceOf(medium, n, surface.temperature_K), 0.0f, 0.0f});
-  return at;
+  const auto row = static_cast<std::uint32_t>(t.media.size() / 4);
+  t.media.resize(t.media.size() + 8 * ((plan.nodes.size() + 3) / 4), 0.0f);
+  for (size_t i = 0; i < plan.nodes.size(); ++i) {
+    t.media[sourceAt(row, i) - 4] = static_cast<float>(plan.nodes[i].absorption_per_m[static_cast<size_t>(surface.material)]);
+    t.media[sourceAt(row, i)] = sourceOf(medium, plan.nodes[i], surface.temperature_K);
+  }
+  return row;
 }
 
 /// Nodes that feed the same groups of channels.
@@ -477,7 +482,7 @@ bool updateTemperatures(RenderTables& tables, const Simulation& sim, const Plan&
     SurfaceTables& t = d.kind == DrawKind::Layer ? tables.layer : tables.solid;
     for (size_t i = 0; i < plan.nodes.size(); ++i) {
       const SpectralNode& n = plan.nodes[i];
-      if (d.kind == DrawKind::Medium) tables.media[4 * (d.row + i) + 1] = sourceOf(*sim.mediumOf(entity), n, now_K);
+      if (d.kind == DrawKind::Medium) tables.media[sourceAt(d.row, i)] = sourceOf(*sim.mediumOf(entity), n, now_K);
       else t.rows[t.selfAt(d.row, i)] = selfOf(t, sim, plan, n, entity.surfaces[static_cast<size_t>(d.surface)], now_K);
     }
   }

@@ -63,7 +63,7 @@ struct RenderTables {
   std::vector<DrawItem> draws;
   int ground = -1;             ///< its draw, where the scene has one
   SurfaceTables solid, layer;  ///< the background's material is the last solid one
-  std::vector<float> media;    ///< vec4 (absorption [1/m], source radiance, 0, 0) per node
+  std::vector<float> media;    ///< of four nodes each: absorption [1/m]; source radiance
   std::vector<float> node;     ///< vec4 per node: extinction, source radiance, c2 / lambda, c1L / lambda^5
   std::vector<float> ambient;  ///< vec4 per node; empty without a dome's light, or where all rows hold it
   std::vector<float> weights;  ///< vec4s in the order of the integration text

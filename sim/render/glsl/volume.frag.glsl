@@ -4,7 +4,7 @@
 //@constants
 //@use sim/render/glsl/volume_ray.glsl
 //@use sim/render/glsl/node_block.glsl
-layout(binding = 5) uniform samplerBuffer media;      // (absorption [1/m], source radiance, 0, 0) per node
+layout(binding = 5) uniform samplerBuffer media;      // of four nodes: absorption [1/m]; source radiance
 layout(binding = 17) uniform sampler2D thicknessSums;  // of a meshed body
 layout(binding = 19) uniform sampler2D thicknessBounds;
 uniform int form;      // 0 mesh, 1 ellipsoid, 2 cone
@@ -21,13 +21,18 @@ AirPath near_, far_;  // from the camera to where the ray enters and leaves
 int layersHere() { return 1; }
 void prepareLayer(int k) {}
 
-Real blended(Real behind, int i) {
-  vec2 medium = texelFetch(media, mediumRow + i).xy;
-  Real depth = medium.x * pathLength_;
-  Real air = pathDepth(i, near_, far_);
-  Real before = pathRadiance(i, near_), tau = pathTransmittance(i, near_), inside = pathInside(i, near_, far_);
-  Real own = mediumRadiance(depth, air, before, inside, tau, medium.y);
-  return decay(depth) * (behind - (before + inside)) + own;
+vec4 blendedFour(vec4 behind, int four) {
+  vec4 depth = texelFetch(media, mediumRow + 2 * four) * pathLength_, source = texelFetch(media, mediumRow + 2 * four + 1), result;
+//@each j 4
+  {
+    int i = min(4 * four + {j}, NODES - 1);
+    Real air = pathDepth(i, near_, far_);
+    Real before = pathRadiance(i, near_), tau = pathTransmittance(i, near_), inside = pathInside(i, near_, far_);
+    Real own = mediumRadiance(depth[{j}], air, before, inside, tau, source[{j}]);
+    result[{j}] = decay(depth[{j}]) * (behind[{j}] - (before + inside)) + own;
+  }
+//@end
+  return result;
 }
 
 //@slot targets

@@ -5,10 +5,10 @@
 //@constants
 //@use sim/render/glsl/volume_ray.glsl
 //@use sim/render/glsl/node_block.glsl
-layout(binding = 5) uniform samplerBuffer media;  // (absorption [1/m], source radiance, 0, 0) per node
-// Each member's box is drawn; a pixel is worked out in the box of the first member that its ray meets.
+layout(binding = 5) uniform samplerBuffer media;  // of four nodes: absorption [1/m]; source radiance
+// Each member's box is drawn; a pixel is worked out in the first that it lies in, for all of them, and marked by depth before it is.
+layout(early_fragment_tests) in;
 uniform int count;
-uniform int member;  // whose box this is
 uniform int memberDraw[GROUP];
 uniform int memberForm[GROUP];
 uniform vec3 memberSize[GROUP];
@@ -41,19 +41,25 @@ void prepareLayer(int c) {
   far_ = airBeyond(near_, range, height, dot(upThere, ray_) / rayLength_, length_);
 }
 
-Real blended(Real behind, int i) {
-  Real depth = 0.0, emitted = 0.0;
+// Four nodes at once. No branch: what they have in common is then read once for all of them.
+vec4 blendedFour(vec4 behind, int four) {
+  vec4 depth = vec4(0.0), emitted = vec4(0.0), result;
   for (int k = 0; k < met_; ++k) {
     if (!(way_[k].x <= cut_[piece_ + 1] && way_[k].y >= cut_[piece_])) continue;
-    vec2 medium = texelFetch(media, row_[k] + i).xy;
-    Real own = medium.x * length_;
+    vec4 own = texelFetch(media, row_[k] + 2 * four) * length_;
     depth += own;
-    emitted += own * medium.y;
+    emitted += own * texelFetch(media, row_[k] + 2 * four + 1);
   }
-  if (!(depth > 0.0)) return behind;
-  Real air = pathDepth(i, near_, far_);
-  Real before = pathRadiance(i, near_), tau = pathTransmittance(i, near_), inside = pathInside(i, near_, far_);
-  return decay(depth) * (behind - (before + inside)) + mediumRadiance(depth, air, before, inside, tau, emitted / depth);
+//@each j 4
+  {
+    int i = min(4 * four + {j}, NODES - 1);
+    Real air = pathDepth(i, near_, far_);
+    Real before = pathRadiance(i, near_), tau = pathTransmittance(i, near_), inside = pathInside(i, near_, far_);
+    Real own = mediumRadiance(depth[{j}], air, before, inside, tau, emitted[{j}] / max(depth[{j}], 1.0e-30));
+    result[{j}] = depth[{j}] > 0.0 ? decay(depth[{j}]) * (behind[{j}] - (before + inside)) + own : behind[{j}];
+  }
+//@end
+  return result;
 }
 
 //@slot targets
@@ -66,7 +72,6 @@ void main() {
   float end = endOfRay(first);
   cuts_ = 0;
   met_ = 0;
-  int turn = -1;
   for (int k = 0; k < count; ++k) {
     Draw body = drawAt(uint(memberDraw[k]));
     vec3 d = inBody(body, ray_), q = pointOnPlane(body);
@@ -74,7 +79,6 @@ void main() {
     float shift = (first.row2.w - body.row2.w) + (first.fine.x - body.fine.x);
     vec2 way = vec2(max(chord.x + shift, start), min(chord.y + shift, end));
     if (!(chord.y > chord.x && way.y > way.x)) continue;
-    if (turn < 0) turn = k;
     way_[met_] = way;
     row_[met_] = memberRow[k];
     ++met_;
@@ -86,7 +90,7 @@ void main() {
       ++cuts_;
     }
   }
-  if (turn != member) discard;
+  if (met_ == 0) discard;
   sunElevation_ = 0.0;
   plane_ = planeOf(first);
   blend();
