@@ -24,16 +24,21 @@ std::string percent(double part) {
 
 double edgeError(int samples, int pixels) { return std::sqrt(0.0724 * pixels / std::pow(samples, 3.0)) / (pixels * pixels); }
 
-std::string geometryText(const Simulation& sim, const Camera& c, const Plan& plan) {
-  std::string text = "    edges: samples " + std::to_string(c.samples) + " leave a pixel that one crosses off by " + percent(edgeError(c.samples, 1)) +
-                     " of the contrast beside it (1 sigma), means of 4x4 pixels by " + percent(edgeError(c.samples, kBlock));
+std::string edgeText(const Camera& c, double accuracy) {
+  std::string text = "edges: samples " + (c.sharesShading ? "auto" : std::to_string(c.samples)) + " leave a pixel that one crosses off by " +
+                     percent(edgeError(c.samples, 1)) + " of the contrast beside it (1 sigma), means of 4x4 pixels by " + percent(edgeError(c.samples, kBlock));
+  if (accuracy <= 0.0) return text;
   int enough = 1;
-  while (enough < kMostSamples && edgeError(enough, kBlock) > plan.accuracy) ++enough;
-  if (plan.accuracy > 0.0 && edgeError(enough, kBlock) > plan.accuracy)
-    text += "; no samples bring these to " + percent(plan.accuracy) + ": the nearest is " + percent(edgeError(enough, kBlock)) + ", with samples " +
-            std::to_string(enough);
-  else if (plan.accuracy > 0.0 && enough > c.samples) text += "; " + percent(plan.accuracy) + " of these takes samples " + std::to_string(enough);
-  text += "\n";
+  while (enough < kMostSamples && edgeError(enough, kBlock) > accuracy) ++enough;
+  if (edgeError(enough, kBlock) > accuracy)
+    return text + "; no samples bring these to " + percent(accuracy) + ": the nearest is " + percent(edgeError(enough, kBlock)) + ", with samples " +
+           std::to_string(enough);
+  if (enough > c.samples) text += "; " + percent(accuracy) + " of these takes samples " + std::to_string(enough);
+  return text;
+}
+
+std::string geometryText(const Simulation& sim, const Camera& c, const Plan& plan) {
+  std::string text = "    " + edgeText(c, plan.accuracy) + "\n";
   if (c.outlineAccuracy > 0.0 || c.spectral.reference) return text;
   HotParts parts(sim, plan, kWorthSaying * 4.0);
   std::set<std::string> named;

@@ -80,7 +80,8 @@ int planCommand(const Arguments& arguments) {
                     bytesOf(makeTables(sim, plan)),
                     buffered,
                     plan.terms.air && plan.air.elevations > 0,
-                    describe(sim.limits)};
+                    describe(sim.limits),
+                    eye.camera};
     if (yardstick > 0.0) told.framesPerSecond = predictedRate(plan, subpixels, yardstick, buffered);
     if (o.has("--json")) json += (json.empty() ? "" : ", ") + planJson(told);
     else std::printf("%s%s\n", planText(told).c_str(), eye.camera && plan.accuracy > 0.0 ? ladderOf(sim, *eye.camera, plan, subpixels).c_str() : "");

@@ -5,6 +5,7 @@
 #include <cstdarg>
 #include <cstdio>
 
+#include "scenarios/commands/geometry_report.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/tables.hpp"
 
@@ -135,6 +136,11 @@ std::string planText(const PlannedEye& eye) {
     out += "  " + padded("", widest, false) + "   of it wavelengths " + percent(p.wavelengths) + ", tables " + percent(p.tables) + ", terms left out " +
            percent(p.dropped) + ", precision " + percent(p.precision) + "; at the extremes " + percent(p.extremes) + "\n";
   }
+  if (eye.camera) {
+    out += "  beside it geometry, " + edgeText(*eye.camera, plan.accuracy);
+    if (eye.camera->outlineAccuracy > 0.0) out += "; the intensity of a small body or bright part by " + percent(0.25 * plan.accuracy) + " % (1 sigma)";
+    out += "\n";
+  }
   if (plan.lines > 0)
     out += print("\n  found on %d lines of sight that no fit has seen: at most %.2g %% of pixels lie above their largest error (95 %%)\n", plan.lines,
                  300.0 / plan.lines);
@@ -152,19 +158,23 @@ std::string planText(const PlannedEye& eye) {
 }
 
 std::string ladderText(const std::vector<Plan>& plans, double asked, double subpixels) {
-  std::string out = print("\n  %-10s %6s %16s %18s %10s %10s %18s\n", "accuracy", "nodes", "tables of air", "places a texture", "parts of", "predicted", "million terms");
+  std::string out =
+      print("\n  %-10s %6s %16s %18s %10s %10s %18s\n", "accuracy", "nodes", "tables of air", "places a texture", "parts of", "predicted", "million terms");
   out += print("  %-10s %6s %16s %18s %10s %10s %18s\n", "", "", "", "across x along", "intensity", "error", "a frame");
   const auto termsOf = [&](const Plan& p) { return 1e-6 * subpixels * (costOf(p).lit + costOf(p).unlit); };
   const Plan* last = nullptr;
   bool more = false;
   for (const Plan& p : plans) {
     const TextureTaps taps = tapsFor(p.textureAccuracy);
-    const std::string air = p.air.elevations > 0 ? std::to_string(p.air.elevations) + "x" + std::to_string(p.air.ranges) + "x" + std::to_string(p.air.azimuths) : "none";
+    const std::string air =
+        p.air.elevations > 0 ? std::to_string(p.air.elevations) + "x" + std::to_string(p.air.ranges) + "x" + std::to_string(p.air.azimuths) : "none";
     const double worst = p.predictedError.empty() ? 0.0 : *std::max_element(p.predictedError.begin(), p.predictedError.end());
     out += print("  %-10s %6d %16s %18s", (percent(p.accuracy) + " %").c_str(), p.nodeCount(), air.c_str(),
                  (std::to_string(taps.mostAcross) + "x" + std::to_string(taps.mostAlong)).c_str());
-    out += print(" %10s %10s %18.3g%s\n", (percent(0.25 * p.accuracy) + " %").c_str(), (percent(worst) + " %").c_str(), termsOf(p), p.accuracy == asked ? "  this plan" : "");
-    if (last && p.accuracy >= asked) more |= p.nodeCount() < last->nodeCount() || !(p.air == last->air) || tapsFor(last->textureAccuracy).mostAcross != taps.mostAcross;
+    out += print(" %10s %10s %18.3g%s\n", (percent(0.25 * p.accuracy) + " %").c_str(), (percent(worst) + " %").c_str(), termsOf(p),
+                 p.accuracy == asked ? "  this plan" : "");
+    if (last && p.accuracy >= asked)
+      more |= p.nodeCount() < last->nodeCount() || !(p.air == last->air) || tapsFor(last->textureAccuracy).mostAcross != taps.mostAcross;
     last = &p;
   }
   if (!more) out += "  nothing is left to buy by asking less\n";
@@ -191,6 +201,7 @@ std::string planJson(const PlannedEye& eye) {
   out += print("], \"nodes_lit\": %d, \"nodes_unlit\": %d, \"subpixels\": %.0f, \"transparent\": %s, \"planning_s\": %.4g, \"table_bytes\": %.0f", cost.lit,
                cost.unlit, eye.subpixels, eye.buffered ? "true" : "false", eye.seconds, eye.tableBytes);
   if (eye.framesPerSecond > 0.0) out += print(", \"predicted_frames_per_s\": %.4g", eye.framesPerSecond);
+  if (eye.camera) out += print(", \"edges\": {\"pixel\": %.4g, \"mean_of_4x4\": %.4g}", edgeError(eye.camera->samples, 1), edgeError(eye.camera->samples, 4));
   if (!eye.limits.empty()) out += ", \"limits\": " + quoted(eye.limits);
   return out + "}";
 }

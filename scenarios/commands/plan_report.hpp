@@ -18,6 +18,7 @@ struct PlannedEye {
   bool buffered = false;         ///< something transparent may be in view
   bool airTables = false;        ///< layered air: the GPU reads it from tables
   std::string limits;            ///< of the scenario, in words; empty: none
+  const Camera* camera = nullptr;  ///< null: a probe
 };
 
 /// The name of each slot: the channels it feeds, "mw" or "mw+lw"; where a channel has several slots, with its quantities: "mw.radiance",

@@ -35,8 +35,20 @@ bool tooLarge(const Camera& c) {
   return columns > 16384 || rows > 16384 || columns * rows > 16384.0 * 4096.0;
 }
 
+constexpr int kAuto = 2;
+
+/// Where an accuracy is asked for, pixels have subpixels where that needs them, and those of the reference it is held against all of them; pictures at exact
+/// wavelengths are of pixels' middles.
+void setSamples(Camera& c) {
+  c.sharesShading = c.spectral.accuracy > 0.0 && !c.spectral.reference;
+  c.samples = c.sharesShading || c.spectral.reference ? kAuto : 1;
+  if (!tooLarge(c)) return;
+  c.sharesShading = false;
+  c.samples = 1;
+}
+
 void readSamples(const Value& value, Camera& c) {
-  constexpr int kAuto = 2, kMost = 16;
+  constexpr int kMost = 16;
   const bool word = value.kind == Value::Kind::Scalar;
   c.sharesShading = word && value.text == "auto";
   int number = 0;
@@ -176,7 +188,9 @@ void Builder::readCameras(const Record& scenario) {
     Pinhole& p = c.pinhole;
     p.width = static_cast<int>(film.integer("width"));
     p.height = static_cast<int>(film.integer("height"));
-    readSamples(r.value("samples"), c);
+    c.spectral = readSpectral(r);
+    if (r.given("samples")) readSamples(r.value("samples"), c);
+    else setSamples(c);
     if (tooLarge(c))
       throw UserError(r.where("film"),
                       "a picture of " + std::to_string(p.width) + "x" + std::to_string(p.height) + " pixels with " + std::to_string(c.samples) + "x" +
@@ -204,7 +218,6 @@ void Builder::readCameras(const Record& scenario) {
     if (r.given("exposure")) c.exposure_s = r.number("exposure");
     c.near_m = r.number("near");
     c.smallBody_px = r.number("small_bodies");
-    c.spectral = readSpectral(r);
 
     const Placement place = readPlacement(r, true);
     c.mount.motion = place.motion;

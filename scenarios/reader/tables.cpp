@@ -314,10 +314,9 @@ const ParameterTable& camera() {
          required(within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3)),
          spectrum("optics", "", "transmission of the optics, 0..1; 0 outside its table, as a response is"),
          within(number("exposure", "s", "exposure time"), 1e-12, 1e6), withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
-         withDefault(any("samples",
-                         "n: n x n subpixels per pixel, 1 to 16; or auto: 2 x 2, shaded one by one only where they see different parts or neighbouring pixels "
-                         "differ; a shadow or a glint narrower than a pixel within a part may be missed"),
-                     "1"),
+         any("samples",
+             "n: n x n subpixels per pixel, 1 to 16; or auto: 2 x 2, shaded one by one only where they see different parts or neighbouring pixels "
+             "differ; a shadow or a glint narrower than a pixel within a part may be missed. Without this key: auto where an accuracy is asked for (the reference: 2), else 1"),
          withDefault(within(number("small_bodies", "",
                                    "bodies spanning fewer pixels are drawn by a zoomed view of their own and keep their intensity at any range (0: draw all as "
                                    "they fall on pixels)"),

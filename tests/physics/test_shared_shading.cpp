@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/reader/scenario_reader.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 
@@ -80,4 +81,22 @@ TEST(SharedShadingOfAWall, IsPlancksLaw) {
 }
 
 }  // namespace
+TEST(SharedShading, IsTheDefaultWhereAnAccuracyIsAskedFor) {
+  const auto read = [](const std::string& more) {
+    return readScenarioText(more +
+                                "cameras: [{name: c, film: {width: 4, height: 4}, aperture: 1 mm, field_of_view: 1 deg, heading: 0 deg, position: [0 m, 0 m, "
+                                "0 m], channels: [{name: lw, response: {band: [8 um, 12 um]}}]}]\n",
+                            "test.yaml", ".", {}, {})
+        .cameras.at(0);
+  };
+  EXPECT_TRUE(read("accuracy: 1 %\n").sharesShading);
+  EXPECT_EQ(read("accuracy: 1 %\n").samples, 2);
+  EXPECT_FALSE(read("accuracy: reference\n").sharesShading);
+  EXPECT_EQ(read("accuracy: reference\n").samples, 2);
+  for (const char* exact : {"", "accuracy: none\n"}) {
+    EXPECT_FALSE(read(exact).sharesShading) << exact;
+    EXPECT_EQ(read(exact).samples, 1) << exact;
+  }
+}
+
 }  // namespace pitviper::test

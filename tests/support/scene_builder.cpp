@@ -21,7 +21,11 @@ bool onSoftware() { return context().limits().software; }
 
 Simulation scene(const std::string& yaml) {
   const std::filesystem::path home = PITVIPER_SOURCE_DIR;
-  return readScenarioText(yaml, "test.yaml", home / "scenarios", {}, {home / "materials/library", home / "atmosphere/library", home / "sensors/library"});
+  Simulation sim =
+      readScenarioText(yaml, "test.yaml", home / "scenarios", {}, {home / "materials/library", home / "atmosphere/library", home / "sensors/library"});
+  if (yaml.find("samples:") == std::string::npos)
+    for (Camera& c : sim.cameras) c.samples = 1, c.sharesShading = false;
+  return sim;
 }
 
 CameraImage renderImage(const Simulation& sim, int frame) {

@@ -7,7 +7,8 @@
 
 namespace pitviper::test {
 
-/// A simulation from YAML text (libraries of the source tree).
+/// A simulation from YAML text (libraries of the source tree). Cameras whose text says nothing of samples look at pixels' middles alone: most tests hold
+/// radiance along lines of sight against each other.
 Simulation scene(const std::string& yaml);
 
 /// One GL context for the whole test program.
