@@ -67,6 +67,7 @@ void ChannelFit::tighten(double factor, const Sights& sights) {
   holds_ = false;
   SpectralProblem problem = sights.problem(grid_, absorbers_, floor_, seen_);
   seen_ = sights.size();
+  look(ProductSet(problem));
   training_.insert(training_.end(), problem.products.begin(), problem.products.end());
   fit(std::move(problem));
 }

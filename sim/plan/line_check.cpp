@@ -190,7 +190,8 @@ std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& of
     for (const LineSums& l : sums) {
       const double size = std::max(std::abs(l.exact[s]), floor[s]), difference = std::abs(l.planned[s] - l.exact[s]);
       f.errors.push_back(size > 0.0 ? difference / size : difference > 0.0 ? INFINITY : 0.0);
-      if (size > 0.0) f.dropped = std::max(f.dropped, std::abs(l.dropped[s]) / size);
+      f.left.push_back(size > 0.0 ? std::abs(l.dropped[s]) / size : 0.0);
+      f.dropped = std::max(f.dropped, f.left.back());
     }
     if (f.errors.empty()) continue;
     std::vector<double> sorted = f.errors;

@@ -13,6 +13,7 @@ struct LineFigures {
   double largest = 0.0, median = 0.0;
   double dropped = 0.0;        ///< the most that terms make up which the plan leaves out
   std::vector<double> errors;  ///< of each line
+  std::vector<double> left;    ///< of each line: what terms make up which the plan leaves out
 };
 
 /// A plan with the spectra that lines have in common at its nodes. Both must outlive it.

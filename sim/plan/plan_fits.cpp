@@ -18,6 +18,8 @@ constexpr int kFirst = 240, kCheck = 360, kChecks = 6;
 constexpr int kSecond = 400, kTighter = 4;
 constexpr double kHeld = 0.6, kLearnt = 0.3;
 constexpr double kTightened = 0.5;
+/// Of the accuracy: more of it in terms that a plan leaves out teaches that they are there.
+constexpr double kNoticed = 0.05;
 /// Below, air and the textures of usual scenes send no thermal light to speak of.
 constexpr double kThermal_um = 1.2;
 
@@ -78,6 +80,7 @@ void CheckedLines::add(const std::vector<SightRay>& more, const std::vector<Line
     f.largest = std::max(f.largest, theirs[s].largest);
     f.dropped = std::max(f.dropped, theirs[s].dropped);
     f.errors.insert(f.errors.end(), theirs[s].errors.begin(), theirs[s].errors.end());
+    f.left.insert(f.left.end(), theirs[s].left.begin(), theirs[s].left.end());
   }
 }
 
@@ -111,7 +114,7 @@ void PlanFits::tighten(const CheckedLines& checked, const std::vector<size_t>& s
   std::set<size_t> missed;
   for (size_t s : slots)
     for (size_t n = 0; n < checked.lines.size(); ++n)
-      if (checked.figures[s].errors[n] > kLearnt * plan_.accuracy) missed.insert(n);
+      if (checked.figures[s].errors[n] > kLearnt * plan_.accuracy || checked.figures[s].left[n] > kNoticed * plan_.accuracy) missed.insert(n);
   for (size_t n : missed) sights_.add(checked.lines[n]);
   forAll(slots, [&](size_t s) { fits_[s]->tighten(kTightened, sights_); });
 }

@@ -103,8 +103,7 @@ std::vector<const ChannelOutput*> slotsOf(const Plan& plan, const std::vector<Ch
 /// Groups of wavelengths within plan.accuracy, terms that nobody would notice left out, and what all that is off by.
 void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const NodesOfPlan& fine, bool keepLights, Plan& plan,
              const PlanProgress& progress) {
-  auto seed = static_cast<unsigned long long>(sim.seed);
-  SightRays rays(sim, eye, seed);
+  SightRays rays(sim, eye, static_cast<unsigned long long>(sim.seed));
   // Fits take most of the time, the last lines and tables the rest; what is done again comes out of that.
   double from = 0.05, to = 0.6;
   const auto tell = [&](double share) {
@@ -114,22 +113,35 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
   tell(0.02);
   const std::vector<double> floor = filmFloors(sim, fine, rays);
   const int airPlaces = airPlacesFor(sim, fine, rays, plan.accuracy, floor), lastPlaces = std::max(airPlaces, kUsualPlaces);
-  PlanFits fits(sim, eye, plan, slotsOf(plan, outputs), fine, rays, floor, airPlaces, tellFits);
   const Terms all = plan.terms;
   const int lights = plan.lightCount;
-  std::vector<size_t> missed;
-  for (int attempt = 0; attempt == 0 || !missed.empty(); ++attempt) {
-    tell(to);
-    fits.takeNodes(plan);
+  const auto seed = static_cast<unsigned long long>(sim.seed);
+  unsigned long long batch = kLastSeed;  // lines of another are new to every fit
+  // True where it holds on lines that no fit has seen, or all was tried.
+  const auto fitWith = [&](int places) {
+    PlanFits fits(sim, eye, plan, slotsOf(plan, outputs), fine, rays, floor, places, tellFits);
+    for (int attempt = 0;; ++attempt, batch ^= kNextSeed * static_cast<unsigned long long>(attempt)) {
+      tell(to);
+      fits.takeNodes(plan);
+      plan.terms = all;
+      plan.lightCount = lights;
+      dropTerms(plan, keepLights);
+      const CheckedLines last = predict(sim, eye, fine, rays, floor, lastPlaces, seed ^ batch, plan);
+      std::vector<size_t> missed;
+      for (size_t s = 0; s < plan.parts.size(); ++s)
+        if (plan.parts[s].sum() - plan.parts[s].tables > plan.accuracy - std::min(plan.parts[s].tables, kMended * plan.accuracy)) missed.push_back(s);
+      from = 0.75, to = 0.9;
+      if (missed.empty()) return true;
+      if (attempt == kAgain) return false;
+      fits.learn(last, missed);
+    }
+  };
+  // What is still missed may lie between the places where fits look at the air.
+  if (!fitWith(airPlaces) && airPlaces < lastPlaces) {
     plan.terms = all;
     plan.lightCount = lights;
-    dropTerms(plan, keepLights);
-    const CheckedLines last = predict(sim, eye, fine, rays, floor, lastPlaces, seed ^= attempt == 0 ? kLastSeed : kNextSeed, plan);
-    missed.clear();
-    for (size_t s = 0; s < plan.parts.size() && attempt < kAgain; ++s)
-      if (plan.parts[s].sum() - plan.parts[s].tables > plan.accuracy - std::min(plan.parts[s].tables, kMended * plan.accuracy)) missed.push_back(s);
-    from = 0.75, to = 0.9;
-    if (!missed.empty()) fits.learn(last, missed);
+    batch = ~kLastSeed;
+    fitWith(lastPlaces);
   }
 }
 

@@ -49,7 +49,7 @@ PromisePixel placeOf(size_t n, const std::vector<std::vector<char>>& left, int w
 
 }  // namespace
 
-PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const std::vector<double>& accuracies) {
+PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const std::vector<double>& accuracies, bool automatic) {
   static const OwnCache plans;
   plans.forget();
   needContext();
@@ -61,6 +61,7 @@ PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const 
   Camera& camera = sim.cameras[0];
   keepRadianceAlone(camera);
   camera.zoomedSamples = kZoomedSamples;
+  if (automatic) camera.samples = 2, camera.sharesShading = true;
   const auto gpu = std::make_shared<const GpuScene>(sim);
   std::vector<WorldState> states;
   std::vector<std::vector<char>> left;
@@ -111,6 +112,8 @@ PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const 
       if (!errors.empty()) {
         const auto worst = static_cast<size_t>(std::max_element(errors.begin(), errors.end()) - errors.begin());
         cell.found = errors[worst];
+        cell.beyond =
+            static_cast<double>(std::count_if(errors.begin(), errors.end(), [&](double e) { return e > accuracy; })) / static_cast<double>(errors.size());
         cell.worst = placeOf(worst, left, camera.pinhole.width);
         cell.worst.planned = pixels[c][worst];
         cell.worst.reference = reference[c].values()[worst];

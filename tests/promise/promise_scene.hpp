@@ -19,6 +19,7 @@ struct PromiseCell {
   double ofWavelengths = 0.0, ofTables = 0.0;  ///< parts of what is predicted
   double extremes = 0.0;                       ///< reported apart
   double found = 0.0;                          ///< largest of |L - Lref| / max(Lref, 1e-3 x 99th percentile of Lref); infinite where a pixel is not a number
+  double beyond = 0.0;                         ///< share of pixels that are farther off than asked
   int groups = 0, wavelengths = 0;
   PromisePixel worst;
 };
@@ -33,7 +34,7 @@ struct PromiseScene {
   std::vector<PromiseCell> cells;
 };
 
-/// Throws UserError where the scenario is refused. Plans are not shared with any other call.
-PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const std::vector<double>& accuracies);
+/// Throws UserError where the scenario is refused. Plans are not shared with any other call. `automatic`: with samples: auto, against all of 2 x 2 subpixels.
+PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const std::vector<double>& accuracies, bool automatic = false);
 
 }  // namespace pitviper::test

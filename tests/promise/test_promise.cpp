@@ -4,6 +4,7 @@
 //   PITVIPER_PROMISE_ACCURACY=10,1   in per cent (1 for all and 10 and 0.1 for every fifth unless given)
 //   PITVIPER_PROMISE_WAVELENGTHS=N   bands are narrowed until a reference has so many at most (300 unless given; 0: as they are drawn)
 //   PITVIPER_PROMISE_FILES=a.yaml:b.yaml   these scenarios instead
+//   PITVIPER_PROMISE_AUTO=N          scenarios drawn with samples: auto (4 unless given)
 //   PITVIPER_PROMISE_OUT=FOLDER      for promise.csv, promise.md and the scenarios of broken promises (the build folder unless given)
 #include <gtest/gtest.h>
 
@@ -18,6 +19,7 @@
 #include "sim/parameters/error.hpp"
 #include "tests/promise/promise_report.hpp"
 #include "tests/promise/random_scenario.hpp"
+#include "tests/support/figures.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -56,11 +58,11 @@ int mostWavelengths() {
 }
 
 /// A scenario of a seed that the reader accepts.
-PromiseScene sceneOf(std::uint64_t seed, const std::vector<double>& asked) {
+PromiseScene sceneOf(std::uint64_t seed, const std::vector<double>& asked, bool automatic = false) {
   for (int attempt = 0;; ++attempt) {
     const std::string text = randomScenario({seed, attempt, mostWavelengths()});
     try {
-      return keepPromise(seed, text, asked);
+      return keepPromise(seed, text, asked, automatic);
     } catch (const UserError& e) {
       std::fprintf(stderr, "seed %llu, attempt %d: refused: %s\n", static_cast<unsigned long long>(seed), attempt, e.what());
       if (attempt + 1 == kAttempts) throw;
@@ -130,6 +132,26 @@ TEST(Promise, PredictedIsWorthItsName) {
     EXPECT_GE(f.foreseen * f.cells, std::min(0.98 * f.cells, f.cells - 1.0)) << "asked " << f.asked;
     EXPECT_LE(f.margin, 5.0) << "asked " << f.asked;
   }
+}
+
+// What shares its shading against all of its subpixels: a glint or a shadow that no pixel's middle shows may be missed, in one pixel of a hundred.
+TEST(Promise, SharedSubpixelsAreWithinWhatIsAskedNearlyAllOver) {
+  const int scenes = static_cast<int>(number("PITVIPER_PROMISE_AUTO", 4));
+  const auto first = static_cast<std::uint64_t>(number("PITVIPER_PROMISE_SEED", static_cast<long long>(kSeed)));
+  double beyond = 0.0;
+  int cells = 0;
+  for (int k = 0; k < scenes; ++k) {
+    const PromiseScene s = sceneOf(first + static_cast<std::uint64_t>(k), {0.01}, true);
+    for (const PromiseCell& c : s.cells) {
+      beyond += c.beyond;
+      ++cells;
+      if (c.beyond > 0.0)
+        std::fprintf(stderr, "seed %llu, %s: %.2g %% of pixels beyond (at most %.2g %%), worst %d, %d in frame %d: %g for %g\n",
+                     static_cast<unsigned long long>(s.seed), c.channel.c_str(), 100.0 * c.beyond, 100.0 * c.found, c.worst.column, c.worst.row, c.worst.frame,
+                     c.worst.planned, c.worst.reference);
+    }
+  }
+  bound("random scenes with samples: auto at 1 %: pixels farther from all of their subpixels", beyond / std::max(cells, 1), 0.01, "geometry is asked of 99 %");
 }
 
 TEST(Promise, NoRadianceBelowZero) {
