@@ -8,17 +8,17 @@
 
 namespace pitviper {
 
-void writeFrame(const std::filesystem::path& folder, const Frame& frame, const MayReplace& mayReplace) {
-  writeFrameFile(folder / (frameFileStem(frame) + ".exr"), frame, mayReplace);
+void writeFrame(const std::filesystem::path& folder, const Frame& frame, const MayReplace& mayReplace, ExrCompression compression) {
+  writeFrameFile(folder / (frameFileStem(frame) + ".exr"), frame, mayReplace, compression);
 }
 
-void writeFrameFile(const std::filesystem::path& file, const Frame& frame, const MayReplace& mayReplace) {
+void writeFrameFile(const std::filesystem::path& file, const Frame& frame, const MayReplace& mayReplace, ExrCompression compression) {
   ExrImage image;
   image.width = frame.width;
   image.height = frame.height;
   for (const auto& l : frame.layers) image.layers.push_back({l.name, l.pixels});
   image.attributes = frame.attributes;
-  writeExr(file, image, mayReplace);
+  writeExr(file, image, mayReplace, compression);
 }
 
 void writePreview(const std::filesystem::path& folder, const Frame& frame, const PreviewRanges& ranges, const MayReplace& mayReplace) {

@@ -39,11 +39,15 @@ struct ExrImage {
 /// The numbers in an attribute however it was stored: a list, a single number, or a string of them. Nothing if it is other text.
 std::optional<std::vector<double>> numbersOf(const Attribute& attribute);
 
-/// Scan-line file, 32-bit float channels, ZIP compression; the same image gives the same bytes. Written atomically.
+/// How pixels are packed. ZIP, without loss, takes a fifth to two fifths less room and 13 to 27 times as long (frames of sixteen and first_light: 97 and 33 ms
+/// for 3.6 and 2.5); runs of equal bytes, the fast way that EXR has, find none in floats.
+enum class ExrCompression { None, Zip };
+
+/// Scan-line file, 32-bit float channels; the same image gives the same bytes. Written atomically.
 /// Errors: OutputError if it cannot be stored; std::invalid_argument if the image breaks the shapes and names above, is empty, is
 /// over 32768 on a side or has more than 1024 layers (a caller's bug, not a user's).
 /// `mayReplace`: as of writeFileAtomically.
-void writeExr(const std::filesystem::path& path, const ExrImage& image, const MayReplace& mayReplace = {});
+void writeExr(const std::filesystem::path& path, const ExrImage& image, const MayReplace& mayReplace = {}, ExrCompression compression = ExrCompression::None);
 
 /// Reads a single-part scan-line file of any compression; half and integer channels become float. The data window is the image.
 /// Layers and attributes come sorted by name. Attributes of types string, double, float, int, v3d and v3f are returned, others and

@@ -88,9 +88,9 @@ void insert(Imf::Header& header, const Attribute& attribute) {
   else header.insert(name, Imf::StringAttribute(joinNumbers(list)));
 }
 
-std::string encode(const ExrImage& image) {
+std::string encode(const ExrImage& image, ExrCompression compression) {
   Imf::Header header(image.width, image.height);
-  header.compression() = Imf::ZIP_COMPRESSION;
+  header.compression() = compression == ExrCompression::Zip ? Imf::ZIP_COMPRESSION : Imf::NO_COMPRESSION;
   header.zipCompressionLevel() = 4;  // OpenEXR's default since 3.1.3, named so that a later default keeps our bytes
   for (const Attribute& attribute : image.attributes) insert(header, attribute);
   Imf::FrameBuffer frame;
@@ -112,11 +112,11 @@ std::string encode(const ExrImage& image) {
 
 }  // namespace
 
-void writeExr(const std::filesystem::path& path, const ExrImage& image, const MayReplace& mayReplace) {
+void writeExr(const std::filesystem::path& path, const ExrImage& image, const MayReplace& mayReplace, ExrCompression compression) {
   check(image);
   std::string bytes;
   try {
-    bytes = encode(image);
+    bytes = encode(image, compression);
   } catch (const std::exception& failure) {
     throw OutputError(path, std::string("cannot encode the image: ") + failure.what(), 0, "free memory or make a smaller image");
   }
