@@ -236,7 +236,7 @@ TEST_F(ExrFile, ADataWindowAwayFromTheOriginIsTheImage) {
   ExrImage image = sample();
   image.height = 16;
   for (FloatLayer& layer : image.layers) layer.pixels.resize(37 * 16);
-  writeExr(folder_ / "a.exr", image);
+  writeExr(folder_ / "a.exr", image, {}, ExrCompression::Zip);  // blocks of 16 lines
   std::string bytes = slurp(folder_ / "a.exr");
   const std::int32_t window[4] = {-5, 7, 31, 22};
   bytes = withValue(bytes, std::string("dataWindow\0box2i\0", 17), std::string_view(reinterpret_cast<const char*>(window), 16));
