@@ -18,7 +18,7 @@ long long fromEnvironment(const char* name, long long otherwise) {
   return text == nullptr ? otherwise : std::atoll(text);
 }
 
-const int kScenarios = static_cast<int>(fromEnvironment("PITVIPER_FUZZ", 800));
+const int kScenarios = static_cast<int>(fromEnvironment("PITVIPER_FUZZ", 2000));
 const int kMeshes = static_cast<int>(fromEnvironment("PITVIPER_FUZZ_MESHES", kScenarios / 20));
 const auto kSeed = static_cast<std::uint64_t>(fromEnvironment("PITVIPER_FUZZ_SEED", 1));
 
