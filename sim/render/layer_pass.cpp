@@ -300,7 +300,7 @@ void LayerPass::drawMedium(const LayerPiece& piece, const Over& over) {
     setGroup(draws);
     glDepthMask(GL_TRUE);
     for (size_t k = 0; k < draws.size(); ++k) {
-      // A ray that meets a member must find its box, whatever the rasteriser's steps (1/256 of a pixel): the others leave it to that one.
+      // A ray that meets a member must find its box, whatever the rasteriser's steps (1/256 of a pixel).
       const BodyBox& box = scene_->box(tables_.draws[draws[k]].entity);
       const glm::dvec3 margin = 0.01 * (box.high - box.low);
       glUniform1i(program.uniform("drawIndex"), static_cast<int>(draws[k]));

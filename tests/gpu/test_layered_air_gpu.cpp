@@ -69,7 +69,7 @@ TEST(LayeredAir, PlannedTablesLoseNoMoreThanTheyAreSaidTo) {
   }
 }
 
-// A camera that climbs and sinks again: neighbouring frames share tables, the next are made ahead, and still none depends on those drawn before it.
+// A camera that climbs and sinks again: neighbouring frames share tables, and still none depends on those drawn before it.
 TEST(LayeredAir, NoFrameDependsOnThoseBeforeIt) {
   const auto sim = scene(
       "atmosphere: hazy_us76\nsun: {azimuth: 60 deg, elevation: 20 deg, temperature: 5772 K}\ntime: {rate: 10 Hz, frames: 12}\naccuracy: 1 %\naudit: "
