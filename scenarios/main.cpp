@@ -40,7 +40,7 @@ const std::map<std::string, Command>& commands() {
         "  --preview-range LAYER=LOW:HIGH  ends of a layer's colour bar, in its unit (implies --preview); repeatable. Without it the bar\n"
         "                   runs from the 0.5 to the 99.8 percentile, and is bent where a few bright things would hide the rest\n\n"
         "  --overwrite      also replaces files of other scenarios, and files that are not of this program\n"
-        "  --timing         says at the end where the time went: visibility, shadows, air, shading, readback, files; drawing then waits for each\n"
+        "  --timing         says at the end where the time of frames after the first went: visibility, shadows, air, shading, readback, files; drawing then waits for each\n"
         "                   part, which makes it somewhat slower\n\n"
         "Files of the same names are replaced where they are of the same scenario (its text, what it extends, --set); another's is refused before\n"
         "anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"

@@ -21,11 +21,8 @@ class Stopwatch {
   double seconds_ = 0.0;
 };
 
-/// A line a part, the longest first, in ms a frame and of what a frame takes; preparation by itself [s]. `parts`: of sim/gl/timing.hpp, all frames of a run;
-/// `files_s`: what writing took beside them.
+/// A line a part, the longest first, in ms a frame and of what a frame takes, of all frames but the first; preparation and the first frame by themselves
+/// [s]. `parts`: of runFrames(); `files_s`: what writing took beside them.
 std::string timingText(const std::map<std::string, double>& parts, double files_s, int frames);
-
-/// The part that is no frame's.
-inline constexpr const char* kPreparing = "preparing";
 
 }  // namespace pitviper

@@ -37,10 +37,13 @@ bool staysOutside(const Simulation& sim) {
   return true;
 }
 
+/// An ellipsoid's mesh has its corners on it; others are looked at, which takes long.
+Bulk bulkOfEntity(const Entity& entity) { return entity.form.kind == BodyForm::Kind::Ellipsoid ? Bulk::Convex : bulkOf(entity.mesh); }
+
 }  // namespace
 
 SelfShadow selfShadow(const Entity& entity, bool whole) {
-  const Bulk bulk = bulkOf(entity.mesh);
+  const Bulk bulk = bulkOfEntity(entity);
   if (bulk == Bulk::Flat) return SelfShadow::Never;
   if (bulk == Bulk::Convex) return SelfShadow::Inside;
   return (entity.mesh->closed && whole) || entity.mesh->heightField ? SelfShadow::OneSided : SelfShadow::Open;
@@ -78,7 +81,7 @@ bool canHaveShadows(const Simulation& sim) {
     }
   if (!casts || !reflects) return false;
   if (sim.entities.size() > 1) return true;
-  const Bulk bulk = bulkOf(sim.entities[0].mesh);
+  const Bulk bulk = bulkOfEntity(sim.entities[0]);
   return !(bulk == Bulk::Flat || (bulk == Bulk::Convex && staysOutside(sim)));
 }
 

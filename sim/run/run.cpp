@@ -15,7 +15,7 @@ namespace pitviper {
 
 RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const RunRange& range, const FrameTaker& frames, const ProbeSink& probes,
                     const RunProgress& progress, bool stopsAtBroken) {
-  std::optional<TimedPart> preparing("preparing");
+  std::optional<TimedPart> once(kPreparingPart);
   auto scene = std::make_shared<const GpuScene>(sim);
   std::vector<Camera> cameras;  // which the renderers look at: it is not to grow
   for (const Camera& camera : sim.cameras) cameras.push_back(drawnCamera(camera));
@@ -46,7 +46,8 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
     handing = std::async(std::launch::async, [&frames, frame] { frames(frame); });
   };
   auto isBroken = [&] { return std::any_of(auditors.begin(), auditors.end(), [](const Auditor& a) { return !a.broken().empty(); }); };
-  preparing.reset();
+  once.reset();
+  once.emplace(kFirstFramePart);
   for (int number = range.first; number <= range.last && !(stopsAtBroken && isBroken()); ++number) {
     const WorldState state = advance(sim, sim.time.at(number));
     for (size_t c = 0; c < renderers.size(); ++c) {
@@ -65,6 +66,7 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
       if (spectral[c]) hand(spectral[c]->render(state, number));
     }
     for (size_t p = 0; p < meters.size(); ++p) probes({sim.probes[p], number, state.time_s, meters[p]->read(state)});
+    once.reset();
   }
   wait();
   RunReport report;

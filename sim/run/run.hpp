@@ -35,6 +35,10 @@ struct RunReport {
   std::map<std::string, std::string> plans;  ///< text of each camera's plan (Camera::plan); none in reference mode
 };
 
+/// Parts of a run's time (sim/gl/timing.hpp) that no later frame takes: what comes before the first frame, and that frame, in which programs are compiled
+/// and what stays is made.
+inline constexpr const char *kPreparingPart = "preparing", *kFirstFramePart = "first frame";
+
 /// Renders the frames of all cameras, and audits them (Simulation::audit). With `stopsAtBroken` it ends after the first tick in which an audit
 /// found more than was asked. While one frame is handed to the sink on a thread of its own, the next is drawn; frames
 /// arrive in order, one at a time. An exception of the sink ends the run and is thrown here. Returns what audits found.
