@@ -36,7 +36,7 @@ void addTo(Fingerprint& f, const Value& v) {
 }  // namespace
 
 Registry<ReflectionModel>& reflectionModels() {
-  static Registry<ReflectionModel> all("reflection", {lambertianModel(), phongModel(), tabulatedModel()});
+  static Registry<ReflectionModel> all("reflection", {lambertianModel(), phongModel(), tabulatedModel(), microfacetModel()});
   return all;
 }
 
@@ -58,7 +58,7 @@ ParameterTable anyComponentTable() {
   return t;
 }
 
-ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum) {
+ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum, const SubstanceOf& substance) {
   Fingerprint f;
   f.add(model.name);
   auto spectra = spectraOf(model.parameters, record, spectrum);
@@ -68,11 +68,16 @@ ComponentMaker componentMaker(const ReflectionModel& model, const Record& record
     if (p.type == ParameterType::Spectrum) addTo(f, spectra.at(p.key));
     else addTo(f, record.value(p.key));
   }
-  return [&model, &record, spectra = std::move(spectra), f = std::move(f)](double state) {
-    auto component = model.make({{record, spectra}, state});
-    Fingerprint own = f;
-    component->setFingerprint(own.add(state).bytes());
-    return component;
+  return [&model, &record, spectrum, substance, spectra = std::move(spectra), f = std::move(f)](double state) {
+    const ComponentRecord own{{record, spectra}, state, spectrum, substance};
+    MadeReflection made;
+    if (model.makeAll) made = model.makeAll(own);
+    else made.component = model.make(own);
+    Fingerprint whole = f;
+    whole.add(state).add(made.within.bytes());
+    made.component->setFingerprint(whole.bytes());
+    if (made.beneath) made.beneath->setFingerprint(whole.add("beneath").bytes());
+    return made;
   };
 }
 

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "materials/refractive_index.hpp"
 #include "sim/model/component.hpp"
+#include "sim/model/view_spectrum.hpp"
 #include "sim/parameters/model_record.hpp"
 #include "sim/parameters/registry.hpp"
 #include "sim/parameters/table.hpp"
@@ -19,6 +21,16 @@ namespace pitviper {
 /// A component as a scenario has it: a record of the model's table, its spectra read.
 struct ComponentRecord : ModelRecord {
   double state = 0.0;  ///< of its model's state parameter
+  SpectrumOf spectrumOf = {};    ///< for spectra within its parameters
+  SubstanceOf substanceOf = {};  ///< for named substances
+};
+
+/// What a model makes of a record.
+struct MadeReflection {
+  std::shared_ptr<ReflectionComponent> component;
+  std::shared_ptr<ReflectionComponent> beneath;   ///< what lies under it and reflects too; null: nothing
+  std::shared_ptr<const ViewModel> transmission;  ///< what the whole lets through; null: nothing
+  Fingerprint within;                             ///< of what its parameters name besides what they say
 };
 
 /// A parameter that a texture may drive over a surface: a number, or a texture of them.
@@ -39,6 +51,8 @@ struct ReflectionModel {
   std::optional<StateParameter> state = {};
   /// Path and text of its lobe's body, where that is not compiled in with this folder.
   std::pair<std::string, std::string> shader = {};
+  /// Instead of `make`, where there is more to it than one component.
+  std::function<MadeReflection(const ComponentRecord&)> makeAll = {};
 };
 
 Registry<ReflectionModel>& reflectionModels();
@@ -49,9 +63,9 @@ ParameterTable componentTable(const ReflectionModel& model);
 ParameterTable anyComponentTable();
 
 /// Makes a component of a state.
-using ComponentMaker = std::function<std::shared_ptr<const ReflectionComponent>(double state)>;
+using ComponentMaker = std::function<MadeReflection(double state)>;
 
 /// Reads a component but for its state. `record` must outlive what it returns. `spectrum`: reads a spectrum's value as its parameter says.
-ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum);
+ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum, const SubstanceOf& substance);
 
 }  // namespace pitviper

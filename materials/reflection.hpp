@@ -23,8 +23,12 @@ struct BrdfTable {
 std::shared_ptr<ReflectionComponent> makeTabulated(BrdfTable table);
 
 struct ReflectionModel;
+struct ParameterTable;
 ReflectionModel lambertianModel();
 ReflectionModel phongModel();
 ReflectionModel tabulatedModel();
+ReflectionModel microfacetModel();
+/// A layer of a stack of films.
+const ParameterTable& filmLayerTable();
 
 }  // namespace pitviper

@@ -54,6 +54,8 @@ class Builder {
   Medium readMedium(const MediumModel& model, const Record& r, const std::string& material, const SpectrumReader& spectra) const;
   /// Adds it to a material, and to each of its entries where a texture drives its state or that of one before.
   void readComponent(const Value& value, const SpectrumReader& spectra, Material& material, std::vector<std::shared_ptr<const Material>>& entries);
+  /// A file of materials/substances as a tree.
+  Value substanceNamed(const std::string& name, const Location& asked) const;
   int readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest);
   // bodies.cpp
   struct Placement {

@@ -116,18 +116,30 @@ void Builder::readComponent(const Value& value, const SpectrumReader& spectra, M
   if (model.share && (componentShares_[model.name] += model.share(record)) > 1.0 + 1e-9)
     throw UserError(record.where(), "more components of the kind '" + model.name + "' than a scenario may hold", "fewer, or smaller ones",
                     "give alike materials one name under 'materials:', or thin their tables out");
-  const ComponentMaker make = componentMaker(model, record, [&](const Value& v, const Parameter& p) {
-    return bounded(spectra, v, p.unit, p.key + " of material '" + m.name.substr(0, 60) + "'", p.minimum, p.maximum);
-  });
+  const ComponentMaker make = componentMaker(
+      model, record,
+      // Kept by what is made; `m` is not.
+      [spectra, name = m.name.substr(0, 60)](const Value& v, const Parameter& p) {
+        return bounded(spectra, v, p.unit, p.key + " of material '" + name + "'", p.minimum, p.maximum);
+      },
+      [this](const std::string& name, const Location& asked) { return substanceNamed(name, asked); });
   const Value* modifier = value.find("modifier");
-  m.modifiers.push_back(modifier ? readTexture(*modifier, "", "a modifier", 0.0, 1.0) : -1);
+  const int texture = modifier ? readTexture(*modifier, "", "a modifier", 0.0, 1.0) : -1;
   const Value* state = model.state ? value.find(model.state->key) : nullptr;
+  const auto addTo = [&](Material& to, double number) {
+    const MadeReflection made = make(number);
+    for (const auto& component : {made.component, made.beneath})
+      if (component) to.reflections.push_back(component), to.modifiers.push_back(texture);
+    if (!made.transmission) return;
+    if (to.transmission)
+      throw UserError(record.where(), "a second component of material '" + m.name.substr(0, 60) + "' lets light through", "one pane", "remove one");
+    to.transmission.emplace().model = made.transmission;
+  };
   const auto add = [&](const std::function<double(size_t)>& stateOf) {
-    m.reflections.push_back(make(stateOf(0)));
+    addTo(m, stateOf(0));
     for (size_t k = 0; k < entries.size(); ++k) {
       auto entry = std::make_shared<Material>(*entries[k]);
-      entry->reflections.push_back(make(stateOf(k)));
-      entry->modifiers = m.modifiers;
+      addTo(*entry, stateOf(k));
       entries[k] = std::move(entry);
     }
   };
@@ -153,6 +165,9 @@ void Builder::readComponent(const Value& value, const SpectrumReader& spectra, M
   entries.assign(static_cast<size_t>(model.state->entries), std::make_shared<const Material>(m));
   const double last = static_cast<double>(entries.size() - 1);
   m.states = states;
+  if (m.transmission)
+    throw UserError(state->where, "a pane whose '" + model.state->key + "' is a texture", "a number, or a body that is not transparent",
+                    "several panes of different thickness do the same");
   add([&](size_t k) { return states.low + (states.high - states.low) * static_cast<double>(k) / last; });
 }
 
@@ -204,11 +219,13 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
   if (r.given("components"))
     for (const Value& c : r.value("components").items) readComponent(c, spectra, *m, entries);
   if (r.given("emission")) m->given = readViewSpectrum(Record(r.value("emission"), tables::emission()), "emissivity", name, spectra);
+  if (r.given("transmission") && m->transmission)
+    throw UserError(r.where("transmission"), "a 'transmission' beside a pane that has its own", "one of them", "remove one");
   if (r.given("transmission")) m->transmission = readViewSpectrum(Record(r.value("transmission"), tables::transmission()), "transmittance", name, spectra);
   for (auto& e : entries) {
     auto entry = std::make_shared<Material>(*e);
     entry->given = m->given;
-    entry->transmission = m->transmission;
+    if (r.given("transmission")) entry->transmission = m->transmission;
     e = std::move(entry);
   }
   if (m->states) m->states->entries = entries;
@@ -225,6 +242,16 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
                           (m->given ? " + emissivity" : "") + " <= 1, at every wavelength, view angle and texel",
                       "lower a component");
   return m;
+}
+
+Value Builder::substanceNamed(const std::string& name, const Location& asked) const {
+  const auto folder = libraries_.materials.parent_path() / "substances", file = folder / (name + ".yaml");
+  std::error_code ignored;
+  if (name.find('/') == std::string::npos && name.size() <= 100 && std::filesystem::is_regular_file(file, ignored)) return loadYaml(file, asked);
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored)) names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  throw unknownWord(asked, "there is no substance", name, names, "write its index: a number, or a map with n and k or a formula");
 }
 
 void Builder::readMaterials(const Record& scenario) {

@@ -3,6 +3,7 @@
 #include "atmosphere/models.hpp"
 #include "materials/angle_tables.hpp"
 #include "materials/models.hpp"
+#include "materials/reflection.hpp"
 #include "sensors/quantity.hpp"
 #include "sensors/stages.hpp"
 #include "sim/parameters/spectrum_value.hpp"
@@ -408,7 +409,7 @@ std::vector<ParameterTable> all() {
   for (const auto& t : {airLibrary(), background(), ground(), sun(), ambient(), spectrumTable(), material()}) every.push_back(t);
   addAll(reflectionModels(), componentTable);
   addAll(mediumModels(), medium);
-  for (const auto& t : {angleAxisTable(), texture(), emission(), transmission()}) every.push_back(t);
+  for (const auto& t : {filmLayerTable(), refractiveIndexTable(), angleAxisTable(), texture(), emission(), transmission()}) every.push_back(t);
   addAll(lightModels(), light);
   for (const auto& t : {entity(), part(), shape(), waypoint(), geodetic(), camera(), film(), channel(), spectral(), spectralImage(), sensor(), probe()})
     every.push_back(t);

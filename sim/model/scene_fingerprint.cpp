@@ -7,11 +7,12 @@ namespace {
 // what follows from other members stay out.
 
 void addTo(Fingerprint& f, const ViewSpectrum& v) {
-  const auto& [spectrum, viewAngle_rad, factor, table, modifier] = v;
+  const auto& [spectrum, viewAngle_rad, factor, table, model, modifier] = v;
   const auto& [wavelength_um, view, values] = table;
   const auto& [angle, count, last_rad] = view;
   f.all(viewAngle_rad).all(factor).all(wavelength_um).all(values).add(modifier).add(static_cast<int>(angle)).add(count).add(last_rad);
   pitviper::addTo(f, spectrum);
+  f.add(model ? model->fingerprint() : std::string());
 }
 
 void addTo(Fingerprint& f, const Sun& s);

@@ -5,6 +5,7 @@
 namespace pitviper {
 
 double ViewSpectrum::at(double wavelength_um, double angle) const {
+  if (model) return model->at(wavelength_um, angle);
   if (tabulated()) {
     const auto& x = table.wavelength_um;
     if (wavelength_um < x.front() || wavelength_um > x.back())
@@ -29,6 +30,7 @@ double ViewSpectrum::at(double wavelength_um, double angle) const {
 }
 
 std::vector<double> ViewSpectrum::knots_rad() const {
+  if (model) return model->knots_rad();
   if (!tabulated()) return viewAngle_rad;
   std::vector<double> all;
   for (int j = 0; j < table.view.count; ++j) all.push_back(table.view.at(j));

@@ -86,8 +86,10 @@ LightRelevance::Part LightRelevance::partOf(const Plan& plan, const RenderTables
     const auto hemispherical = [&](size_t place) { return endsOf(t.hemispherical, g.kinds[3], states * g.counts[2], each, nodes_.size(), i, place).first; };
     double byAmbient = 0.0;
     for (size_t k = 0; k < reflections.size(); ++k) {
-      const double own =
-          endsOf(t.columns, g.counts[3], states * g.counts[0] * g.counts[1], each, nodes_.size(), i, placeOf(k)).second * reflections[k]->lobe().maximum;
+      const auto mostIn = [&](size_t first, size_t entries) { return endsOf(t.columns, first, states * entries, each, nodes_.size(), i, placeOf(k)).second; };
+      double own = mostIn(g.counts[3], size_t{g.counts[0]} * g.counts[1]);
+      if (g.second[0] > 1) own = std::max(own, mostIn(g.second[3], size_t{g.second[0]} * g.second[1]));
+      own *= reflections[k]->lobe().maximum;
       part.most[i] += own * greatest[k];
       if (!part.component.empty()) part.component[k][i] = own;
       byAmbient = std::max(byAmbient, reflectionOf(own, hemispherical(placeOf(k))));

@@ -12,9 +12,18 @@
 namespace pitviper {
 namespace {
 
-/// A component's column at angles on the axes of its material.
-double columnAt(const ReflectionComponent& r, double w, double angle1, double angle2, const std::array<AngleAxis, 2>& axes) {
-  // Its own axes, in the order of the material's.
+using AxisPair = std::array<AngleAxis, 2>;
+
+/// The angles that a material's tables of columns run over, and which of the two each component stands in.
+struct MaterialAxes {
+  std::array<AxisPair, 2> table;
+  std::vector<std::size_t> tableOf;
+  bool hasSecond() const { return table[1][0].count > 1; }
+};
+
+/// A component's column at angles on a table's axes.
+double columnAt(const ReflectionComponent& r, double w, double angle1, double angle2, const AxisPair& axes) {
+  // Its own axes, in the order of the table's.
   const auto own = r.axes();
   const auto pick = [&](Angle a) { return a == Angle::None ? 0.0 : a == axes[0].angle ? angle1 : angle2; };
   return r.column(w, pick(own[0].angle), pick(own[1].angle));
@@ -24,7 +33,7 @@ double columnAt(const ReflectionComponent& r, double w, double angle1, double an
 template <class ValueOf>
 void appendComponents(std::vector<float>& into, const SurfaceTables& t, const Material& m, double last, const ValueOf& valueOf) {
   for (size_t v = 0; v < static_cast<size_t>(t.vectors); ++v) {
-    for (size_t k = 3 * v; k < 3 * v + 3; ++k) into.push_back(k < m.reflections.size() ? static_cast<float>(valueOf(*m.reflections[k])) : 0.0f);
+    for (size_t k = 3 * v; k < 3 * v + 3; ++k) into.push_back(k < m.reflections.size() ? static_cast<float>(valueOf(k)) : 0.0f);
     into.push_back(v == 0 ? static_cast<float>(last) : 0.0f);
   }
 }
@@ -59,28 +68,41 @@ AngleAxis commonAxis(const Material& m, const std::vector<AngleAxis>& axes) {
                   "steps of which all are multiples of one step, 1/1024 of the longest axis or more", "give their axes the same 'count' and 'last'");
 }
 
-/// The angles a material's tables run over: at most two, shared by its components.
-std::array<AngleAxis, 2> materialAxes(const Material& m) {
-  std::array<std::vector<AngleAxis>, 2> found;
-  for (const auto& r : m.reflections)
-    for (const auto& axis : r->axes()) {
-      if (axis.angle == Angle::None) continue;
-      size_t k = 0;
-      while (k < 2 && !found[k].empty() && found[k].front().angle != axis.angle) ++k;
-      if (k == 2)
-        throw UserError(m.where, "the tables of material '" + m.name + "' run over more than two angles together",
-                        "at most two different angles in one material", "bring its components to the same two angles");
-      found[k].push_back(axis);
+/// Two tables of up to two angles each: a component stands in the first that has its angles, or room for them.
+MaterialAxes materialAxes(const Material& m) {
+  std::array<std::array<std::vector<AngleAxis>, 2>, 2> found;
+  MaterialAxes all;
+  for (const auto& r : m.reflections) {
+    std::size_t table = 0;
+    for (; table < 2; ++table) {
+      auto with = found[table];
+      const auto own = r->axes();
+      const bool fits = std::all_of(own.begin(), own.end(), [&](const AngleAxis& axis) {
+        if (axis.angle == Angle::None) return true;
+        size_t k = 0;
+        while (k < 2 && !with[k].empty() && with[k].front().angle != axis.angle) ++k;
+        if (k < 2) with[k].push_back(axis);
+        return k < 2;
+      });
+      if (!fits) continue;
+      found[table] = std::move(with);
+      break;
     }
-  std::array<AngleAxis, 2> axes;
-  for (size_t k = 0; k < 2; ++k)
-    if (!found[k].empty()) axes[k] = commonAxis(m, found[k]);
-  if (static_cast<long long>(axes[0].count) * axes[1].count > kMostEntries)
-    throw UserError(
-        m.where,
-        "the tables of material '" + m.name + "' have " + std::to_string(static_cast<long long>(axes[0].count) * axes[1].count) + " pairs of angles together",
-        "at most " + std::to_string(kMostEntries), "give them fewer entries");
-  return axes;
+    if (table == 2)
+      throw UserError(m.where, "the tables of material '" + m.name + "' run over more than two pairs of angles together",
+                      "components over at most two different pairs of angles in one material", "bring its components to the same angles");
+    all.tableOf.push_back(table);
+  }
+  long long pairs = 0;
+  for (std::size_t table = 0; table < 2; ++table) {
+    for (size_t k = 0; k < 2; ++k)
+      if (!found[table][k].empty()) all.table[table][k] = commonAxis(m, found[table][k]);
+    pairs += static_cast<long long>(all.table[table][0].count) * all.table[table][1].count;
+  }
+  if (pairs > kMostEntries + 1)
+    throw UserError(m.where, "the tables of material '" + m.name + "' have " + std::to_string(pairs) + " pairs of angles together",
+                    "at most " + std::to_string(kMostEntries), "give them fewer entries");
+  return all;
 }
 
 /// Entries of the grid of view angles: the fewest from kViewAngles on that have all angles at which the material bends among them.
@@ -99,12 +121,15 @@ int viewAngles(const Material& m) {
 double viewAngle(int entry, int views) { return views > 1 ? 0.5 * kPi * entry / (views - 1) : 0.0; }
 
 /// By angle 2, angle 1 and node.
-void appendColumns(SurfaceTables& t, const Material& m, const std::array<AngleAxis, 2>& axes, const Plan& plan) {
-  for (int j2 = 0; t.lit && j2 < axes[1].count; ++j2)
-    for (int j1 = 0; j1 < axes[0].count; ++j1)
+void appendColumns(SurfaceTables& t, const Material& m, const MaterialAxes& axes, std::size_t table, const Plan& plan) {
+  const AxisPair& own = axes.table[table];
+  for (int j2 = 0; t.lit && j2 < own[1].count; ++j2)
+    for (int j1 = 0; j1 < own[0].count; ++j1)
       for (const SpectralNode& n : plan.nodes)
-        appendComponents(t.columns, t, m, 0.0,
-                         [&](const ReflectionComponent& r) { return n.mean([&](double w) { return columnAt(r, w, axes[0].at(j1), axes[1].at(j2), axes); }); });
+        appendComponents(t.columns, t, m, 0.0, [&](std::size_t k) {
+          if (axes.tableOf[k] != table) return 0.0;
+          return n.mean([&](double w) { return columnAt(*m.reflections[k], w, own[0].at(j1), own[1].at(j2), own); });
+        });
 }
 
 /// By view angle and node.
@@ -120,7 +145,7 @@ void appendHemispherical(SurfaceTables& t, const Material& m, int views, const P
         return left;
       });
       appendComponents(t.hemispherical, t, m, emissivity,
-                       [&](const ReflectionComponent& r) { return n.mean([&](double w) { return r.hemispherical(w, angle); }); });
+                       [&](std::size_t k) { return n.mean([&](double w) { return m.reflections[k]->hemispherical(w, angle); }); });
     }
   }
 }
@@ -145,7 +170,8 @@ std::optional<std::pair<float, float>> imageOf(const Simulation& sim, int from, 
 
 void appendMaterial(SurfaceTables& t, const Simulation& sim, const Material& m, const std::set<std::pair<std::string, std::string>>& lobes, const Plan& plan) {
   GpuMaterial g{};
-  const auto axes = materialAxes(m);
+  const MaterialAxes allAxes = materialAxes(m);
+  const AxisPair& axes = allAxes.table[0];
   const int views = m.hemisphericalVaries() ? viewAngles(m) : 1;
   t.tabulated |= axes[0].count > 1;
   g.counts[0] = static_cast<std::uint32_t>(axes[0].count);
@@ -184,6 +210,17 @@ void appendMaterial(SurfaceTables& t, const Simulation& sim, const Material& m, 
     g.stateScale = {static_cast<float>(m.states->low), static_cast<float>((entries - 1) / (m.states->high - m.states->low)), 0.0f, 0.0f};
     t.states = true;
   }
+  if (allAxes.hasSecond()) {
+    const AxisPair& second = allAxes.table[1];
+    // Behind the first table of all states.
+    const auto first = t.columns.size() / 4 + (t.lit ? static_cast<std::size_t>(g.state[1]) * static_cast<std::size_t>(axes[0].count * axes[1].count) *
+                                                           plan.nodes.size() * static_cast<std::size_t>(t.vectors)
+                                                     : 0);
+    g.second = {static_cast<std::uint32_t>(second[0].count), static_cast<std::uint32_t>(second[1].count),
+                static_cast<std::uint32_t>(second[0].angle) + 8 * static_cast<std::uint32_t>(second[1].angle), static_cast<std::uint32_t>(first)};
+    for (size_t k = 0; k < 2; ++k) g.stateScale[2 + k] = second[k].count > 1 ? static_cast<float>((second[k].count - 1) / second[k].last_rad) : 0.0f;
+    t.second = true;
+  }
   t.materials.push_back(std::move(g));
   if (m.transmission)
     for (int j = 0; j < views; ++j)
@@ -195,10 +232,9 @@ void appendMaterial(SurfaceTables& t, const Simulation& sim, const Material& m, 
     entries.clear();
     for (const auto& entry : m.states->entries) entries.push_back(entry.get());
   }
-  for (const Material* entry : entries) {
-    appendColumns(t, *entry, axes, plan);
-    appendHemispherical(t, *entry, views, plan);
-  }
+  for (std::size_t table = 0; table < (allAxes.hasSecond() ? 2 : 1); ++table)
+    for (const Material* entry : entries) appendColumns(t, *entry, allAxes, table, plan);
+  for (const Material* entry : entries) appendHemispherical(t, *entry, views, plan);
 }
 
 /// What a surface of a temperature sends by itself (simple: emission and the dome's light), or the black body of its temperature (general).
@@ -218,7 +254,7 @@ std::uint32_t appendRow(SurfaceTables& t, const Simulation& sim, const Plan& pla
   if (surface && !t.packed())
     for (const SpectralNode& n : plan.nodes)
       appendComponents(t.rows, t, sim.materialOf(*surface), 0.0,
-                       [&](const ReflectionComponent& r) { return n.mean([&](double w) { return r.column(w, 0.0, 0.0); }); });
+                       [&](std::size_t k) { return n.mean([&](double w) { return sim.materialOf(*surface).reflections[k]->column(w, 0.0, 0.0); }); });
   t.rows.resize(begin + 4 * t.texelsOfRow(), 0.0f);
   for (size_t i = 0; i < nodes; ++i) {
     const SpectralNode& n = plan.nodes[i];
@@ -365,7 +401,7 @@ std::vector<std::uint32_t> SurfaceTables::packedMaterials() const {
     for (auto v : four) words.push_back(std::bit_cast<std::uint32_t>(v));
   };
   for (const GpuMaterial& m : materials) {
-    put(m.counts), put(m.kinds), put(m.scale), put(m.transmission), put(m.state), put(m.stateScale);
+    put(m.counts), put(m.kinds), put(m.scale), put(m.transmission), put(m.state), put(m.stateScale), put(m.second);
     for (const auto& c : m.components) put(c);
     for (const auto& l : m.lobes) put(l);
     for (const auto& i : m.images) put(i);
@@ -394,6 +430,7 @@ void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, con
   slots.constants["STATES"] = tables.states ? 1 : 0;
   slots.constants["LOBES"] = tables.lit ? static_cast<long long>(terms.lobes.size()) : 0;
   slots.constants["COMPONENT_VECTORS"] = tables.vectors;
+  slots.constants["COLUMN_TABLES"] = tables.second ? 2 : 1;
   slots.constants["COMPONENTS"] = slots.constants["USED_COMPONENTS"] = 3 * tables.vectors;
   slots.constants["EMISSION_MODIFIERS"] = slots.constants["TRANSMISSION_MODIFIERS"] = slots.constants["VIEW_ANGLES"] = 1;
   file("lights", "lights_none");

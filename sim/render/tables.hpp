@@ -15,6 +15,7 @@ struct GpuMaterial {
   std::array<float, 4> scale{};
   std::array<std::int32_t, 4> transmission{}, state{};
   std::array<float, 4> stateScale{};
+  std::array<std::uint32_t, 4> second{1, 1, 0, 0};
   std::vector<std::array<std::int32_t, 4>> components;  ///< lobe + 1, texture or -1, 1 where there is one, 1 where its texture is an image of the last one's
   std::vector<std::array<float, 4>> images;             ///< of the last one's texture: factor, then what is added
   std::vector<std::array<float, 4>> lobes;
@@ -39,6 +40,7 @@ struct DrawItem {
 struct SurfaceTables {
   bool general = false;    ///< angular tables, modifiers or temperature textures
   bool tabulated = false;  ///< some reflection component is a table over angles
+  bool second = false;     ///< some material's components run over more angles than one table has
   bool lit = false;        ///< there are lights for them to reflect
   bool states = false;     ///< some material has states
   std::size_t nodes = 0;
@@ -46,7 +48,7 @@ struct SurfaceTables {
   std::vector<float> rows;           ///< vec4s; simple: these per node, unlit S alone; general: Planck radiance per node
   long long planckAt = -1;           ///< general: texel of `rows` where Planck radiance is tabulated over the inverse of the temperature, or -1
   std::vector<float> hemispherical;  ///< (D1, D2, D3, given emissivity), (D4, D5, D6, 0) ... per state, view angle and node
-  std::vector<float> columns;        ///< lit: (R1, R2, R3, 0) ... per state, angle 2, angle 1 and node
+  std::vector<float> columns;        ///< lit: (R1, R2, R3, 0) ... per state, angle 2, angle 1 and node; then a material's second table, if any
   std::vector<float> transmittance;  ///< per view angle and node
   std::vector<GpuMaterial> materials;
   bool packed() const { return general || !lit; }  ///< a number a node, four of them to a texel

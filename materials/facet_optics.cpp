@@ -1,0 +1,267 @@
+#include "materials/facet_optics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <tuple>
+
+#include "sim/model/scene_fingerprint.hpp"
+#include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
+#include "sim/radiometry/quadrature.hpp"
+
+namespace pitviper {
+namespace physics {
+#define PHYSICS inline
+#include "materials/microfacet.glsl"
+#include "materials/slopes.glsl"
+#undef PHYSICS
+}  // namespace physics
+
+namespace {
+
+constexpr double kQuarter = 0.5 * kPi;
+/// Wavelengths that are kept: about 20 MB.
+constexpr std::size_t kMostRows = 4096;
+/// Steps between a facet's angles until reading linearly is off by no more than this, at most.
+constexpr double kAngleError = 2e-4;
+constexpr int kMostFacetAngles = 361;
+constexpr double kTypicalFilm_um = 0.5;
+
+double angleAt(int entry, int count) { return kQuarter * entry / (count - 1); }
+
+/// 2 integral f cos sin over the hemisphere, f linear between its entries.
+double cosineMean(const std::vector<double>& f) {
+  static const auto weights = [](size_t n) {
+    // Exact for hats: Gauss points within each cell.
+    std::vector<double> w(n, 0.0);
+    const auto rule = gaussLegendre(4, 0.0, 1.0);
+    for (size_t j = 0; j + 1 < n; ++j)
+      for (const auto& u : rule) {
+        const double a = kQuarter * (static_cast<double>(j) + u.x) / static_cast<double>(n - 1), x = u.weight * kQuarter / static_cast<double>(n - 1);
+        w[j] += (1.0 - u.x) * x * std::sin(2.0 * a);
+        w[j + 1] += u.x * x * std::sin(2.0 * a);
+      }
+    return w;
+  }(FacetOptics::kViews);
+  return std::inner_product(f.begin(), f.end(), weights.begin(), 0.0);
+}
+
+/// integral lobe cos(theta_l) dw_l by half vectors drawn as the slopes are distributed, split among a facet's angles of incidence:
+/// dw_l = 4 (v.h) dw_h; D cos(theta_h) dw_h = du dphi / (2 pi) with tan^2 = a^2 u / (1 - u), or -a^2 ln(1 - u) for normal slopes.
+std::vector<FacetShares> sharesOf(Slopes slopes, double a, int angles) {
+  constexpr int kRings = 64, kTurns = 96;
+  const auto rings = gaussLegendre(kRings, 0.0, 1.0);
+  std::vector<FacetShares> all;
+  for (int v = 0; v < FacetOptics::kViews; ++v) {
+    const double angle = std::min(angleAt(v, FacetOptics::kViews), kQuarter - 1e-5);
+    const glm::dvec3 view(std::sin(angle), 0.0, std::cos(angle));
+    std::vector<double> row(static_cast<size_t>(angles), 0.0);
+    for (const auto& u : rings) {
+      const double tan2 = slopes == Slopes::Trowbridge ? a * a * u.x / (1.0 - u.x) : -a * a * std::log1p(-u.x), c = 1.0 / std::sqrt(1.0 + tan2),
+                   s = std::sqrt(tan2) * c;
+      const double d = slopes == Slopes::Trowbridge ? a * a / (kPi * std::pow(c * c * (a * a + tan2), 2.0))
+                                                    : std::exp(-tan2 / (a * a)) / (kPi * a * a * std::pow(c, 4.0));
+      for (int k = 0; k < kTurns; ++k) {
+        const double phi = kPi * (k + 0.5) / kTurns;  // both sides of the plane of view are alike
+        const glm::dvec3 h(s * std::cos(phi), s * std::sin(phi), c);
+        const double vh = glm::dot(view, h);
+        if (vh <= 0.0) continue;
+        const glm::dvec3 light = 2.0 * vh * h - view;
+        if (light.z <= 0.0) continue;
+        const double weight = u.weight / kTurns * facetLobeAt(slopes, a, light, view) * light.z * 4.0 * vh / (d * c);
+        const double x = std::acos(std::min(vh, 1.0)) / kQuarter * (angles - 1);
+        const size_t j = std::min(static_cast<size_t>(x), static_cast<size_t>(angles - 2));
+        row[j] += weight * (1.0 - (x - static_cast<double>(j)));
+        row[j + 1] += weight * (x - static_cast<double>(j));
+      }
+    }
+    // Quadrature of grazing views: no facets return more than there is.
+    const double sum = std::max(1.0, std::accumulate(row.begin(), row.end(), 0.0));
+    for (double& x : row) x /= sum;
+    const auto some = [](double x) { return x > 0.0; };
+    const auto first = std::find_if(row.begin(), row.end(), some), last = std::find_if(row.rbegin(), row.rend(), some).base();
+    all.push_back({static_cast<size_t>(first - row.begin()), first < last ? std::vector<double>(first, last) : std::vector<double>()});
+  }
+  return all;
+}
+
+/// The same for all of one roughness: states by the dozen share them.
+std::shared_ptr<const std::vector<FacetShares>> knownShares(Slopes slopes, double roughness, int angles) {
+  static std::mutex mutex;
+  static std::map<std::tuple<int, double, int>, std::shared_ptr<const std::vector<FacetShares>>> all;
+  const std::lock_guard lock(mutex);
+  auto& own = all[{static_cast<int>(slopes), roughness, angles}];
+  if (!own) own = std::make_shared<const std::vector<FacetShares>>(sharesOf(slopes, roughness, angles));
+  return own;
+}
+
+}  // namespace
+
+Lobe facetLobe(Slopes slopes, double a) {
+  // cos(theta_l) times it is at most D(0) / (2 a): where both directions graze.
+  return {slopes == Slopes::Trowbridge ? "materials/microfacet.glsl" : "materials/slopes.glsl",
+          slopes == Slopes::Trowbridge ? "trowbridgeLobe" : "slopeLobe",
+          {a, 0.0, 0.0, 0.0},
+          1.0 / (2.0 * kPi * a * a * a),
+          // As wide in the mirrored direction as a cosine of this power: exp(-alpha^2 / (4 a^2)).
+          std::max(0.0, 0.5 / (a * a) - 1.0)};
+}
+
+double facetLobeAt(Slopes slopes, double a, const glm::dvec3& light, const glm::dvec3& view) {
+  const glm::dvec4 parameters(a, 0.0, 0.0, 0.0);
+  return slopes == Slopes::Trowbridge ? physics::trowbridgeLobe(parameters, {0, 0, 1}, light, view) : physics::slopeLobe(parameters, {0, 0, 1}, light, view);
+}
+
+double byAngle(const std::vector<double>& values, double angle) {
+  const double x = std::clamp(angle / kQuarter, 0.0, 1.0) * static_cast<double>(values.size() - 1);
+  const size_t j = std::min(static_cast<size_t>(x), values.size() - 2);
+  return values[j] + (x - static_cast<double>(j)) * (values[j + 1] - values[j]);
+}
+
+FacetOptics::FacetOptics(FacetSpec spec) : spec_(std::move(spec)), low_um_(spec_.beneath.validLow_um()), high_um_(spec_.beneath.validHigh_um()) {
+  for (const auto* films : {&spec_.layers, &spec_.back})
+    for (const FilmSpec& f : *films) low_um_ = std::max(low_um_, f.index.validLow_um()), high_um_ = std::min(high_um_, f.index.validHigh_um());
+  if (spec_.pigment) low_um_ = std::max(low_um_, spec_.pigment->validLow()), high_um_ = std::min(high_um_, spec_.pigment->validHigh());
+  if (low_um_ > high_um_) return;  // its makers refuse it
+  chooseAngles();
+  share_ = knownShares(spec_.slopes, spec_.roughness, facetAngles_);
+  for (const FacetShares& view : *share_) lost_.push_back(std::max(0.0, 1.0 - std::accumulate(view.share.begin(), view.share.end(), 0.0)));
+  mostLost_ = cosineMean(lost_);
+}
+
+void FacetOptics::chooseAngles() {
+  constexpr int kWavelengths = 24;
+  for (facetAngles_ = 46;; facetAngles_ = 2 * facetAngles_ - 1) {
+    angleError_ = 0.0;
+    for (int i = 0; i <= kWavelengths; ++i) {
+      const double low = std::clamp(0.3, low_um_, high_um_), high = std::clamp(30.0, low_um_, high_um_);
+      const double w = std::clamp(low * std::pow(high / low, i / double(kWavelengths)), low_um_, high_um_);
+      auto layers = layersAt(spec_.layers, w);
+      // All states of a surface have the same angles.
+      for (size_t k = 0; k < layers.size(); ++k)
+        if (spec_.layers[k].varies) layers[k].thickness_um = kTypicalFilm_um;
+      const auto n = spec_.beneath(w);
+      double before = filmPower(layers, n, w, 0.0).reflectance;
+      for (int j = 0; j + 1 < facetAngles_; ++j) {
+        const double next = filmPower(layers, n, w, std::sin(angleAt(j + 1, facetAngles_))).reflectance,
+                     middle = filmPower(layers, n, w, std::sin(0.5 * (angleAt(j, facetAngles_) + angleAt(j + 1, facetAngles_)))).reflectance;
+        angleError_ = std::max(angleError_, std::abs(middle - 0.5 * (before + next)));
+        before = next;
+      }
+    }
+    if (angleError_ <= kAngleError || 2 * facetAngles_ - 1 > kMostFacetAngles) return;
+  }
+}
+
+std::vector<FilmLayer> FacetOptics::layersAt(const std::vector<FilmSpec>& films, double w) const {
+  std::vector<FilmLayer> layers;
+  for (const FilmSpec& f : films) layers.push_back({f.index(w), f.thickness_um, f.coherent});
+  return layers;
+}
+
+FacetRow FacetOptics::rowAt(double w) const {
+  FacetRow row;
+  const auto n = spec_.beneath(w);
+  std::vector<FilmLayer> layers = layersAt(spec_.layers, w);
+  std::complex<double> last = n;
+  if (spec_.paneThickness_um) {
+    layers.push_back({n, *spec_.paneThickness_um, false});
+    for (const FilmLayer& l : layersAt(spec_.back, w)) layers.push_back(l);
+    last = 1.0;
+  }
+  // What a facet lets in of what it does not reflect, at the views.
+  std::vector<double> passed(kViews, 0.0);
+  for (int j = 0; j < facetAngles_; ++j) row.facet.push_back(filmPower(layers, last, w, std::sin(angleAt(j, facetAngles_))).reflectance);
+  const bool goesIn = spec_.pigment || spec_.paneThickness_um;
+  for (int v = 0; goesIn && v < kViews; ++v) {
+    const FilmPower p = filmPower(layers, last, w, std::sin(std::min(angleAt(v, kViews), kQuarter - 1e-6)));
+    passed[static_cast<size_t>(v)] = p.reflectance < 1.0 ? std::min(1.0, p.transmittance / (1.0 - p.reflectance)) : 0.0;
+  }
+  std::vector<double> atViews;
+  for (int v = 0; v < kViews; ++v) {
+    const FacetShares& seen = (*share_)[static_cast<size_t>(v)];
+    const double sent = std::inner_product(seen.share.begin(), seen.share.end(), row.facet.begin() + static_cast<std::ptrdiff_t>(seen.first), 0.0);
+    // Smooth faces lose at grazing views alone, less than is worth a component: counted as if their lobe sent it on.
+    row.hemispherical.push_back(mostLost_ > kWorthBeneath ? sent : sent / (1.0 - lost_[static_cast<size_t>(v)]));
+    atViews.push_back(byAngle(row.facet, angleAt(v, kViews)));
+  }
+  // What facets send on to other facets: as much as they lose, reflected once more at least. Source: Kulla and Conty, SIGGRAPH courses 2017.
+  double again = 0.0;
+  if (mostLost_ > kWorthBeneath) {
+    const double mean = cosineMean(atViews), kept = 1.0 - mostLost_;
+    again = mean * mean * kept / (1.0 - mean * mostLost_);
+    row.again = again / (kPi * mostLost_);
+  }
+  for (int v = 0; v < kViews; ++v) {
+    const auto k = static_cast<size_t>(v);
+    row.beneath.push_back(again * lost_[k]);
+    row.through.push_back(passed[k] * std::max(0.0, 1.0 - row.hemispherical[k] - row.beneath[k]));
+  }
+  if (spec_.paneThickness_um) row.transmitted = row.through;
+  if (spec_.pigment) {
+    // f = T(in) T(out) rho / (pi n^2 (1 - rho R)), R the hemispherical reflectance from inside: what does not come out and is not absorbed on the way.
+    const double albedo = (*spec_.pigment)(w), n2 = n.real() * n.real(), mean = cosineMean(row.through);
+    row.scattered = albedo / kPi;
+    if (!spec_.pigmentApparent) {
+      std::vector<double> absorbed;
+      for (int v = 0; v < kViews; ++v) {
+        const FilmPower p = filmPowerFromBeneath(layers, n.real(), w, std::sin(angleAt(v, kViews)));
+        absorbed.push_back(std::clamp(1.0 - p.reflectance - p.transmittance, 0.0, 1.0));
+      }
+      const double back = std::clamp(1.0 - mean / n2 - cosineMean(absorbed), 0.0, 1.0);
+      row.scattered = albedo / (kPi * n2 * (1.0 - albedo * back));
+    }
+    for (size_t k = 0; k < row.beneath.size(); ++k) row.beneath[k] += kPi * row.scattered * mean * row.through[k];
+  }
+  return row;
+}
+
+std::shared_ptr<const FacetRow> FacetOptics::at(double w) const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = rows_.find(w); found != rows_.end()) return found->second;
+  }
+  auto row = std::make_shared<const FacetRow>(rowAt(w));
+  const std::lock_guard lock(mutex_);
+  if (rows_.size() >= kMostRows) rows_.clear();
+  return rows_[w] = row;
+}
+
+std::vector<double> FacetOptics::knots_um() const {
+  std::vector<double> all = spec_.beneath.knots_um();
+  const auto add = [&all](const std::vector<double>& more) { all.insert(all.end(), more.begin(), more.end()); };
+  double path_um = 0.0;  // of what interferes, both ways
+  for (const auto* films : {&spec_.layers, &spec_.back})
+    for (const FilmSpec& f : *films) {
+      add(f.index.knots_um());
+      if (!f.coherent || f.thickness_um == 0.0) continue;
+      double most = 0.0;
+      for (int i = 0; i <= 32; ++i)
+        most = std::max(most, f.index(std::clamp(low_um_ * std::pow(high_um_ / low_um_, i / 32.0), low_um_, high_um_)).real());
+      path_um += 2.0 * most * f.thickness_um;
+    }
+  // A fringe between two of them: rules of sixteen points see it.
+  for (double order = std::ceil(path_um / high_um_); path_um > 0.0 && order <= path_um / low_um_; order += 1.0)
+    if (order > 0.0) all.push_back(path_um / order);
+  if (spec_.pigment) add(spec_.pigment->knots());
+  std::erase_if(all, [&](double w) { return w < low_um_ || w > high_um_; });
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+void FacetOptics::addTo(Fingerprint& f) const {
+  spec_.beneath.addTo(f);
+  for (const auto* films : {&spec_.layers, &spec_.back}) {
+    f.add(static_cast<double>(films->size()));
+    for (const FilmSpec& film : *films) {
+      film.index.addTo(f);
+      f.add(film.thickness_um).add(film.coherent);
+    }
+  }
+  f.add(spec_.roughness).add(static_cast<int>(spec_.slopes)).add(spec_.pigmentApparent).add(spec_.paneThickness_um.value_or(-1.0)).add(spec_.pigment.has_value());
+  if (spec_.pigment) pitviper::addTo(f, *spec_.pigment);
+}
+
+}  // namespace pitviper
