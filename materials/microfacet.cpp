@@ -1,4 +1,5 @@
 // Facets of a substance given by its refractive index, bare or under thin films; what scatters beneath them; panes.
+#include <algorithm>
 #include <cmath>
 
 #include "materials/facet_optics.hpp"
@@ -12,6 +13,7 @@ namespace {
 constexpr double kQuarter = 0.5 * kPi;
 /// Entries of what several facets return and of what scatters beneath, over both angles: smooth.
 constexpr int kBeneathAngles = 46;
+static_assert((FacetOptics::kViews - 1) % (kBeneathAngles - 1) == 0);
 /// A layer's faces interfere by themselves where it is thinner: beyond, no channel of a sensor resolves its fringes.
 constexpr double kCoherent_um = 10.0;
 constexpr double kMostCoherent_um = 100.0, kMostThickness_um = 1e6;
@@ -48,8 +50,16 @@ class Beneath final : public ReflectionComponent {
   }
   double column(double w, double in, double out) const override {
     const auto row = optics_->at(w);
-    return row->again * byAngle(optics_->lost(), in) * byAngle(optics_->lost(), out) +
-           (row->scattered > 0.0 ? row->scattered * byAngle(row->through, in) * byAngle(row->through, out) : 0.0);
+    // Linear between the entries of its own axes.
+    const auto at = [](const std::vector<double>& views, double angle) {
+      constexpr size_t kEach = (FacetOptics::kViews - 1) / (kBeneathAngles - 1);
+      const double x = std::clamp(angle / kQuarter, 0.0, 1.0) * (kBeneathAngles - 1);
+      const size_t j = std::min(static_cast<size_t>(x), static_cast<size_t>(kBeneathAngles - 2));
+      const double f = x - static_cast<double>(j);
+      return (1.0 - f) * views[kEach * j] + f * views[kEach * (j + 1)];
+    };
+    const auto both = [&](const std::vector<double>& views) { return at(views, in) * at(views, out); };
+    return row->again * both(optics_->lost()) + (row->scattered > 0.0 ? row->scattered * both(row->through) : 0.0);
   }
   double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w)->beneath, angle); }
   bool hemisphericalVaries() const override { return true; }

@@ -74,5 +74,24 @@ TEST(MaterialTablesOnGpu, NarrowLobe) {
         "angles from single precision vectors, 1e-7 rad of steps of 0.009 rad, and single precision");
 }
 
+// Facets, films, what lies beneath them: tables over two pairs of angles in one material, a film's thickness from a texture, a pane.
+TEST(MaterialTablesOnGpu, FilmedFacets) {
+  const std::string kFilm = "layers: [{index: 2.2, thickness: 700 nm}]}";
+  for (const std::string& component :
+       {std::string("{reflection: microfacet, index: aluminium, roughness: 0.3}"),
+        std::string("{reflection: microfacet, index: 1.5, roughness: 0.2, pigment: 0.5, layers: [{index: {n: 2.2, k: 0.01}, thickness: 700 nm}]}"),
+        std::string("{reflection: microfacet, index: aluminium, roughness: 0.2, layers: [{index: {n: 2.2, k: 0.1}}], film_thickness: {rows: [[0.1 um, 0.4 um], "
+                    "[0.3 um, 0.9 um]]}}"),
+        "{reflection: microfacet, index: 1.5, roughness: 0.2, " + kFilm +
+            ", {reflection: table, wavelength: [3 um, 5 um], angles: [{angle: incidence, count: 3, last: 60 deg}, {angle: view, count: 3, last: 60 deg}], values: "
+            "[[[0.03, 0.03], [0.05, 0.04], [0.01, 0.02]], [[0.03, 0.01], [0.05, 0.04], [0.01, 0.02]], [[0.03, 0.03], [0.05, 0.04], [0.01, 0.02]]]}",
+        std::string("{reflection: microfacet, index: {n: 1.5, k: 1e-5}, roughness: 0.1, thickness: 4 mm, layers: [{index: 2.2, thickness: 400 nm}]}")}) {
+    const Worst w = compare(scene(sphere("{components: [" + component + "]}", kLights)), 1);
+    EXPECT_GT(w.covered, 700);
+    bound("GPU against CPU double, 99 of 100 pixels, " + component.substr(0, 80), w.percentile99, 1e-4, "single precision; grids of 1 and 2 deg on both sides");
+    bound("GPU against CPU double, worst pixel", w.error, 1e-3, "on a triangle's edge the two take normals of one or the other");
+  }
+}
+
 }  // namespace
 }  // namespace pitviper::test
