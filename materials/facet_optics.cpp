@@ -60,8 +60,8 @@ std::vector<FacetShares> sharesOf(Slopes slopes, double a, int angles) {
     for (const auto& u : rings) {
       const double tan2 = slopes == Slopes::Trowbridge ? a * a * u.x / (1.0 - u.x) : -a * a * std::log1p(-u.x), c = 1.0 / std::sqrt(1.0 + tan2),
                    s = std::sqrt(tan2) * c;
-      const double d = slopes == Slopes::Trowbridge ? a * a / (kPi * std::pow(c * c * (a * a + tan2), 2.0))
-                                                    : std::exp(-tan2 / (a * a)) / (kPi * a * a * std::pow(c, 4.0));
+      const double d =
+          slopes == Slopes::Trowbridge ? a * a / (kPi * std::pow(c * c * (a * a + tan2), 2.0)) : std::exp(-tan2 / (a * a)) / (kPi * a * a * std::pow(c, 4.0));
       for (int k = 0; k < kTurns; ++k) {
         const double phi = kPi * (k + 0.5) / kTurns;  // both sides of the plane of view are alike
         const glm::dvec3 h(s * std::cos(phi), s * std::sin(phi), c);
@@ -237,8 +237,7 @@ std::vector<double> FacetOptics::knots_um() const {
       add(f.index.knots_um());
       if (!f.coherent || f.thickness_um == 0.0) continue;
       double most = 0.0;
-      for (int i = 0; i <= 32; ++i)
-        most = std::max(most, f.index(std::clamp(low_um_ * std::pow(high_um_ / low_um_, i / 32.0), low_um_, high_um_)).real());
+      for (int i = 0; i <= 32; ++i) most = std::max(most, f.index(std::clamp(low_um_ * std::pow(high_um_ / low_um_, i / 32.0), low_um_, high_um_)).real());
       path_um += 2.0 * most * f.thickness_um;
     }
   // A fringe between two of them: rules of sixteen points see it.
@@ -260,7 +259,11 @@ void FacetOptics::addTo(Fingerprint& f) const {
       f.add(film.thickness_um).add(film.coherent);
     }
   }
-  f.add(spec_.roughness).add(static_cast<int>(spec_.slopes)).add(spec_.pigmentApparent).add(spec_.paneThickness_um.value_or(-1.0)).add(spec_.pigment.has_value());
+  f.add(spec_.roughness)
+      .add(static_cast<int>(spec_.slopes))
+      .add(spec_.pigmentApparent)
+      .add(spec_.paneThickness_um.value_or(-1.0))
+      .add(spec_.pigment.has_value());
   if (spec_.pigment) pitviper::addTo(f, *spec_.pigment);
 }
 

@@ -28,10 +28,10 @@ struct FacetSpec {
   RefractiveIndex beneath{Spectrum(1.5), Spectrum(0.0)};
   double roughness = 0.1;  ///< root of twice the mean square slope along one direction
   Slopes slopes = Slopes::Trowbridge;
-  std::optional<Spectrum> pigment;       ///< albedo of what scatters beneath; of a real index n
-  bool pigmentApparent = false;          ///< the albedo is that of what comes out per what goes in, inner reflections and all
+  std::optional<Spectrum> pigment;         ///< albedo of what scatters beneath; of a real index n
+  bool pigmentApparent = false;            ///< the albedo is that of what comes out per what goes in, inner reflections and all
   std::optional<double> paneThickness_um;  ///< light goes through to another face
-  std::vector<FilmSpec> back;            ///< on that face, from the pane outwards
+  std::vector<FilmSpec> back;              ///< on that face, from the pane outwards
 };
 
 /// Everything at one wavelength: by equally spaced angles from 0 to 90 degrees.

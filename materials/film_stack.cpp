@@ -17,9 +17,9 @@ struct Medium {
   Complex index;
   double thickness_um;
   bool coherent;
-  Complex across = 0.0;            ///< component across the faces
-  Complex once = 0.0;              ///< of a wave, on its way from face to face: never larger than 1, however thick nothing overflows
-  Complex admittance[2] = {};      ///< what joins the fields at a face: of the electric field across the plane of incidence, of the magnetic one
+  Complex across = 0.0;        ///< component across the faces
+  Complex once = 0.0;          ///< of a wave, on its way from face to face: never larger than 1, however thick nothing overflows
+  Complex admittance[2] = {};  ///< what joins the fields at a face: of the electric field across the plane of incidence, of the magnetic one
 };
 
 void prepare(std::vector<Medium>& media, double wavelength_um, double along) {

@@ -1,98 +1,16 @@
 // Facets of a substance given by its refractive index, bare or under thin films; what scatters beneath them; panes.
-#include <algorithm>
-#include <cmath>
-
-#include "materials/facet_optics.hpp"
-#include "materials/models.hpp"
+#include "materials/facet_components.hpp"
 #include "materials/reflection.hpp"
-#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
 
-constexpr double kQuarter = 0.5 * kPi;
-/// Entries of what several facets return and of what scatters beneath, over both angles: smooth.
-constexpr int kBeneathAngles = 46;
-static_assert((FacetOptics::kViews - 1) % (kBeneathAngles - 1) == 0);
 /// A layer's faces interfere by themselves where it is thinner: beyond, no channel of a sensor resolves its fringes.
 constexpr double kCoherent_um = 10.0;
 constexpr double kMostCoherent_um = 100.0, kMostThickness_um = 1e6;
 constexpr size_t kMostLayers = 64;
 /// Each takes some 50 ms to prepare.
 constexpr double kMostFacets = 64.0;
-
-/// The facets' own mirror images: a facet's reflectance over the difference angle x the lobe.
-class Facets final : public ReflectionComponent {
- public:
-  explicit Facets(std::shared_ptr<const FacetOptics> optics)
-      : ReflectionComponent(facetLobe(optics->spec().slopes, optics->spec().roughness)), optics_(std::move(optics)) {}
-  std::array<AngleAxis, 2> axes() const override { return {AngleAxis{Angle::Difference, optics_->facetAngles(), kQuarter}, AngleAxis{}}; }
-  double column(double w, double angle, double) const override { return byAngle(optics_->at(w)->facet, angle); }
-  double lobeAt(const glm::dvec3& l, const glm::dvec3& v) const override {
-    return facetLobeAt(optics_->spec().slopes, optics_->spec().roughness, l, v);
-  }
-  double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w)->hemispherical, angle); }
-  bool hemisphericalVaries() const override { return true; }
-  std::vector<double> knots_um() const override { return optics_->knots_um(); }
-  double validLow_um() const override { return optics_->validLow_um(); }
-  double validHigh_um() const override { return optics_->validHigh_um(); }
-
- private:
-  std::shared_ptr<const FacetOptics> optics_;
-};
-
-/// What comes back by way of several facets, or from beneath them: products of a function of either direction.
-class Beneath final : public ReflectionComponent {
- public:
-  explicit Beneath(std::shared_ptr<const FacetOptics> optics) : optics_(std::move(optics)) {}
-  std::array<AngleAxis, 2> axes() const override {
-    return {AngleAxis{Angle::Incidence, kBeneathAngles, kQuarter}, AngleAxis{Angle::View, kBeneathAngles, kQuarter}};
-  }
-  double column(double w, double in, double out) const override {
-    const auto row = optics_->at(w);
-    // Linear between the entries of its own axes.
-    const auto at = [](const std::vector<double>& views, double angle) {
-      constexpr size_t kEach = (FacetOptics::kViews - 1) / (kBeneathAngles - 1);
-      const double x = std::clamp(angle / kQuarter, 0.0, 1.0) * (kBeneathAngles - 1);
-      const size_t j = std::min(static_cast<size_t>(x), static_cast<size_t>(kBeneathAngles - 2));
-      const double f = x - static_cast<double>(j);
-      return (1.0 - f) * views[kEach * j] + f * views[kEach * (j + 1)];
-    };
-    const auto both = [&](const std::vector<double>& views) { return at(views, in) * at(views, out); };
-    return row->again * both(optics_->lost()) + (row->scattered > 0.0 ? row->scattered * both(row->through) : 0.0);
-  }
-  double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w)->beneath, angle); }
-  bool hemisphericalVaries() const override { return true; }
-  std::vector<double> knots_um() const override { return optics_->knots_um(); }
-  double validLow_um() const override { return optics_->validLow_um(); }
-  double validHigh_um() const override { return optics_->validHigh_um(); }
-
- private:
-  std::shared_ptr<const FacetOptics> optics_;
-};
-
-class Pane final : public ViewModel {
- public:
-  explicit Pane(std::shared_ptr<const FacetOptics> optics) : optics_(std::move(optics)) {
-    Fingerprint f;
-    optics_->addTo(f);
-    fingerprint_ = f.bytes();
-  }
-  double at(double w, double angle) const override { return byAngle(optics_->at(w)->transmitted, angle); }
-  std::vector<double> knots_um() const override { return optics_->knots_um(); }
-  std::vector<double> knots_rad() const override {
-    std::vector<double> all;
-    for (int v = 0; v < FacetOptics::kViews; ++v) all.push_back(kQuarter * v / (FacetOptics::kViews - 1));
-    return all;
-  }
-  double validLow_um() const override { return optics_->validLow_um(); }
-  double validHigh_um() const override { return optics_->validHigh_um(); }
-  const std::string& fingerprint() const override { return fingerprint_; }
-
- private:
-  std::shared_ptr<const FacetOptics> optics_;
-  std::string fingerprint_;
-};
 
 std::vector<FilmSpec> readLayers(const ComponentRecord& r, const char* key, bool& statesUsed) {
   std::vector<FilmSpec> all;
@@ -132,16 +50,9 @@ MadeReflection makeFacets(const ComponentRecord& r) {
   if (!spec.back.empty() && !spec.paneThickness_um)
     throw UserError(r.record.where("back"), "films on the back of what is no pane", "'back' with 'thickness'", "add the pane's 'thickness', or remove it");
   if (spec.pigment && spec.paneThickness_um)
-    throw UserError(r.record.where("thickness"), "a pane with a pigment: what scatters cannot be seen through here", "one of 'pigment' and 'thickness'", "remove one");
-  const auto optics = std::make_shared<const FacetOptics>(std::move(spec));
-  if (optics->validLow_um() > optics->validHigh_um())
-    throw UserError(r.record.where(), "the substances of this stack have no wavelength in common", "ranges that overlap", "extend one");
-  MadeReflection made;
-  made.component = std::make_shared<Facets>(optics);
-  if (optics->hasBeneath()) made.beneath = std::make_shared<Beneath>(optics);
-  if (optics->spec().paneThickness_um) made.transmission = std::make_shared<Pane>(optics);
-  optics->addTo(made.within);
-  return made;
+    throw UserError(r.record.where("thickness"), "a pane with a pigment: what scatters cannot be seen through here", "one of 'pigment' and 'thickness'",
+                    "remove one");
+  return facetComponents(std::move(spec), r.record.where());
 }
 
 }  // namespace
@@ -157,24 +68,26 @@ const ParameterTable& filmLayerTable() {
 }
 
 ReflectionModel microfacetModel() {
-  return {"microfacet",
-          "Facets that mirror, by Fresnel's formulas, bare or under thin films: polished and rough metals, glass, paint under its clear coat, coated panes. Light that "
-          "several facets return is in it, so that what does not absorb loses nothing.",
-          {required(any("index", "refractive index of the substance beneath the films: a number, the name of a substance, or a map of n and k or a formula")),
-           required(within(number("roughness", "", "root of twice the facets' mean square slope along one direction: 0.005 polished, 0.3 matt"), 0.002, 1)),
-           withDefault(choice("slopes", {"ggx", "normal"}, "how slopes are distributed: Trowbridge and Reitz's long tails, or normally"), "ggx"),
-           list("layers", "films on it, from outside in", 0, kMostLayers),
-           within(spectrum("pigment", "", "albedo of what scatters beneath the face, in a substance of real index"), 0, 1),
-           withDefault(choice("pigment_is", {"body", "apparent"},
-                              "what the albedo counts: each scattering from within, whose light the face returns in part, or all that comes out of what went in"),
-                       "body"),
-           within(number("thickness", "um", "of a pane: light goes through it to another face, powers added"), 0, 1e6),
-           list("back", "films on the pane's other face, from the pane outwards", 0, kMostLayers)},
-          {},
-          [](const Record&) { return 1.0 / kMostFacets; },
-          StateParameter{"film_thickness", "um", "of the layer that gives none", 0.0, kMostCoherent_um, 0.0, 33},
-          {},
-          makeFacets};
+  return {
+      "microfacet",
+      "Facets that mirror, by Fresnel's formulas, bare or under thin films: polished and rough metals, glass, paint under its clear coat, coated panes. Light "
+      "that "
+      "several facets return is in it, so that what does not absorb loses nothing.",
+      {required(any("index", "refractive index of the substance beneath the films: a number, the name of a substance, or a map of n and k or a formula")),
+       required(within(number("roughness", "", "root of twice the facets' mean square slope along one direction: 0.005 polished, 0.3 matt"), 0.002, 1)),
+       withDefault(choice("slopes", {"ggx", "normal"}, "how slopes are distributed: Trowbridge and Reitz's long tails, or normally"), "ggx"),
+       list("layers", "films on it, from outside in", 0, kMostLayers),
+       within(spectrum("pigment", "", "albedo of what scatters beneath the face, in a substance of real index"), 0, 1),
+       withDefault(choice("pigment_is", {"body", "apparent"},
+                          "what the albedo counts: each scattering from within, whose light the face returns in part, or all that comes out of what went in"),
+                   "body"),
+       within(number("thickness", "um", "of a pane: light goes through it to another face, powers added"), 0, 1e6),
+       list("back", "films on the pane's other face, from the pane outwards", 0, kMostLayers)},
+      {},
+      [](const Record&) { return 1.0 / kMostFacets; },
+      StateParameter{"film_thickness", "um", "of the layer that gives none", 0.0, kMostCoherent_um, 0.0, 33},
+      {},
+      makeFacets};
 }
 
 }  // namespace pitviper

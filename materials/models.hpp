@@ -20,7 +20,7 @@ namespace pitviper {
 
 /// A component as a scenario has it: a record of the model's table, its spectra read.
 struct ComponentRecord : ModelRecord {
-  double state = 0.0;  ///< of its model's state parameter
+  double state = 0.0;            ///< of its model's state parameter
   SpectrumOf spectrumOf = {};    ///< for spectra within its parameters
   SubstanceOf substanceOf = {};  ///< for named substances
 };

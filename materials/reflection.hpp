@@ -28,6 +28,7 @@ ReflectionModel lambertianModel();
 ReflectionModel phongModel();
 ReflectionModel tabulatedModel();
 ReflectionModel microfacetModel();
+ReflectionModel seaModel();
 /// A layer of a stack of films.
 const ParameterTable& filmLayerTable();
 

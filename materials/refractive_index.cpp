@@ -26,11 +26,11 @@ std::vector<std::vector<double>> rowsOf(const Value& rows, size_t columns, const
 }
 
 const ParameterTable& oscillatorTable() {
-  static const ParameterTable t{"drude_lorentz",
-                                "Free and bound electrons: (n + ik)^2 = constant + sum of f plasma^2 / (resonance^2 - E^2 - i E width), in eV.",
-                                {withDefault(atLeast(number("constant", "", "of all resonances beyond"), 0), "1"),
-                                 required(above(number("plasma", "", "plasma energy [eV]"), 0)),
-                                 required(list("terms", "rows [f, width in eV, resonance in eV]; a resonance of 0 is Drude's free electrons", 1, 64))}};
+  static const ParameterTable t{
+      "drude_lorentz",
+      "Free and bound electrons: (n + ik)^2 = constant + sum of f plasma^2 / (resonance^2 - E^2 - i E width), in eV.",
+      {withDefault(atLeast(number("constant", "", "of all resonances beyond"), 0), "1"), required(above(number("plasma", "", "plasma energy [eV]"), 0)),
+       required(list("terms", "rows [f, width in eV, resonance in eV]; a resonance of 0 is Drude's free electrons", 1, 64))}};
   return t;
 }
 
@@ -161,7 +161,8 @@ const ParameterTable& refractiveIndexTable() {
   static const ParameterTable t{
       "refractive index",
       "n + ik of a substance: a number (it does not absorb), the name of one in materials/substances, or a map of these keys.",
-      {within(spectrum("n", "", "its real part"), 0, kLargestIndex), within(spectrum("k", "", "its imaginary part, above 0 where it absorbs (0 unless given)"), 0, kLargestIndex),
+      {within(spectrum("n", "", "its real part"), 0, kLargestIndex),
+       within(spectrum("k", "", "its imaginary part, above 0 where it absorbs (0 unless given)"), 0, kLargestIndex),
        list("cauchy", "a, b, c ... of n = a + b / lambda^2 + c / lambda^4 ..., lambda in um", 1, 8),
        list("sellmeier", "rows [B, C in um2] of n^2 = constant + sum of B lambda^2 / (lambda^2 - C)", 1, 16),
        withDefault(number("constant", "", "of Sellmeier's formula"), "1"), map("drude_lorentz", "free and bound electrons"),
@@ -177,7 +178,8 @@ RefractiveIndex readRefractiveIndex(const Value& value, const SpectrumOf& spectr
     return index;
   }
   const std::string word = readText(value, "refractive index");
-  const bool number = !word.empty() && (std::isdigit(static_cast<unsigned char>(word.front())) || word.front() == '-' || word.front() == '+' || word.front() == '.');
+  const bool number =
+      !word.empty() && (std::isdigit(static_cast<unsigned char>(word.front())) || word.front() == '-' || word.front() == '+' || word.front() == '.');
   if (number) {
     RefractiveIndex index(Spectrum(readNumber(value, "", "refractive index")), Spectrum(0.0));
     check(index, value.where);

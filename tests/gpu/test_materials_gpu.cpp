@@ -83,7 +83,8 @@ TEST(MaterialTablesOnGpu, FilmedFacets) {
         std::string("{reflection: microfacet, index: aluminium, roughness: 0.2, layers: [{index: {n: 2.2, k: 0.1}}], film_thickness: {rows: [[0.1 um, 0.4 um], "
                     "[0.3 um, 0.9 um]]}}"),
         "{reflection: microfacet, index: 1.5, roughness: 0.2, " + kFilm +
-            ", {reflection: table, wavelength: [3 um, 5 um], angles: [{angle: incidence, count: 3, last: 60 deg}, {angle: view, count: 3, last: 60 deg}], values: "
+            ", {reflection: table, wavelength: [3 um, 5 um], angles: [{angle: incidence, count: 3, last: 60 deg}, {angle: view, count: 3, last: 60 deg}], "
+            "values: "
             "[[[0.03, 0.03], [0.05, 0.04], [0.01, 0.02]], [[0.03, 0.01], [0.05, 0.04], [0.01, 0.02]], [[0.03, 0.03], [0.05, 0.04], [0.01, 0.02]]]}",
         std::string("{reflection: microfacet, index: {n: 1.5, k: 1e-5}, roughness: 0.1, thickness: 4 mm, layers: [{index: 2.2, thickness: 400 nm}]}")}) {
     const Worst w = compare(scene(sphere("{components: [" + component + "]}", kLights)), 1);

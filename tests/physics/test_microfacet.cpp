@@ -14,9 +14,10 @@ namespace {
 
 std::shared_ptr<const Material> material(const std::string& components) {
   static std::vector<Simulation> kept;
-  kept.push_back(scene("materials: {m: {components: [" + components +
-                       "]}}\ncameras: [{name: c, film: {width: 1, height: 1}, field_of_view: 1 deg, aperture: 20 mm, position: [1 m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], "
-                       "channels: [{name: v, response: {band: [0.6 um, 0.62 um]}}]}]\n"));
+  kept.push_back(
+      scene("materials: {m: {components: [" + components +
+            "]}}\ncameras: [{name: c, film: {width: 1, height: 1}, field_of_view: 1 deg, aperture: 20 mm, position: [1 m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], "
+            "channels: [{name: v, response: {band: [0.6 um, 0.62 um]}}]}]\n"));
   return kept.back().materials.front();
 }
 
@@ -89,7 +90,8 @@ TEST(Microfacet, PictureOfAGlint) {
     const Frame f = renderFrame(scene(
         accuracy + "materials: {m: {components: [" + component +
         "]}}\nsun: {azimuth: 90 deg, elevation: 30 deg, irradiance: 100 W/(m2 um)}\nentities: [{name: p, shape: {model: plate, width: 40 m, height: 40 m}, "
-        "material: m, temperature: 0 K}]\ncameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 0.02 deg, aperture: 20 mm, position: [8.660254 m, 0 m, "
+        "material: m, temperature: 0 K}]\ncameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 0.02 deg, aperture: 20 mm, position: [8.660254 m, 0 "
+        "m, "
         "-5 m], look_at: [0 m, 0 m, 0 m], channels: [{name: vis, response: {band: [0.6 um, 0.62 um]}}]}]\n"));
     return at(layer(f, "vis.radiance"), f, 4, 4);
   };
@@ -110,7 +112,8 @@ TEST(Microfacet, PictureOfAGlint) {
   const auto off = [&](const std::string& accuracy) {
     const Frame f = renderFrame(scene(
         accuracy +
-        "materials: {m: {components: [{reflection: microfacet, index: 1.5, roughness: 0.01, slopes: normal, pigment: 0.7}]}}\nsun: {azimuth: 90 deg, elevation: "
+        "materials: {m: {components: [{reflection: microfacet, index: 1.5, roughness: 0.01, slopes: normal, pigment: 0.7}]}}\nsun: {azimuth: 90 deg, "
+        "elevation: "
         "30 deg, irradiance: 100 W/(m2 um)}\nentities: [{name: p, shape: {model: plate, width: 40 m, height: 40 m}, material: m, temperature: 0 "
         "K}]\ncameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 0.02 deg, aperture: 20 mm, position: [8.660254 m, 0 m, 5 m], look_at: [0 m, 0 m, "
         "0 m], channels: [{name: vis, response: {band: [0.6 um, 0.62 um]}}]}]\n"));
@@ -125,10 +128,11 @@ TEST(Microfacet, PictureOfAGlint) {
 TEST(Microfacet, EnclosureIsFlat) {
   for (const std::string& text : {kGold, kPlastic, kFilm, kRough, kPane})
     for (const char* accuracy : {"", "accuracy: 1 %\n"}) {
-      const Frame f = renderFrame(scene(std::string(accuracy) + "materials: {m: {components: [" + text +
-                                        "]}}\nbackground: {temperature: 600 K}\nambient: {temperature: 600 K}\nentities: [{name: b, shape: {model: sphere, radius: 1 "
-                                        "m, segments: 64}, material: m, temperature: 600 K}]\ncameras: [{name: c, film: {width: 33, height: 33}, field_of_view: 12 deg, aperture: 20 mm, "
-                                        "position: [10 m, 0 m, 0 m], look_at: b, channels: [{name: mw, response: {band: [2 um, 2.4 um]}}]}]\n"));
+      const Frame f = renderFrame(scene(
+          std::string(accuracy) + "materials: {m: {components: [" + text +
+          "]}}\nbackground: {temperature: 600 K}\nambient: {temperature: 600 K}\nentities: [{name: b, shape: {model: sphere, radius: 1 "
+          "m, segments: 64}, material: m, temperature: 600 K}]\ncameras: [{name: c, film: {width: 33, height: 33}, field_of_view: 12 deg, aperture: 20 mm, "
+          "position: [10 m, 0 m, 0 m], look_at: b, channels: [{name: mw, response: {band: [2 um, 2.4 um]}}]}]\n"));
       const double expected = blackBodyBand(2.0, 2.4, 600.0);
       double worst = 0.0;
       for (float x : layer(f, "mw.radiance").pixels) worst = std::max(worst, std::abs(static_cast<double>(x) / expected - 1.0));
@@ -161,7 +165,8 @@ TEST(Microfacet, MistakesAreNamed) {
   has("{reflection: microfacet, index: golt, roughness: 0.1}", "did you mean 'gold'");
   has("{reflection: microfacet, index: {table: [[1, 1.5], [2, 1.5, 0]]}, roughness: 0.1}", "without three numbers");
   has("{reflection: microfacet, index: {sellmeier: [[1, 0.01]]}, roughness: 0.1}", "range");
-  has("{reflection: microfacet, index: {table: [[1, 1.5, 0], [2, 1.5, 0]]}, roughness: 0.1, layers: [{index: {table: [[3, 1.5, 0], [4, 1.5, 0]]}, thickness: 1 um}]}",
+  has("{reflection: microfacet, index: {table: [[1, 1.5, 0], [2, 1.5, 0]]}, roughness: 0.1, layers: [{index: {table: [[3, 1.5, 0], [4, 1.5, 0]]}, thickness: 1 "
+      "um}]}",
       "no wavelength in common");
 }
 

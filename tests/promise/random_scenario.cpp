@@ -168,6 +168,7 @@ class Composer {
 
   /// A library material, or now and then one with a spectrum of its own.
   std::string opaque() {
+    if (dice_.chance(0.12)) return facets();
     if (!dice_.chance(0.15)) return dice_.of(kOpaque);
     Text name, row;
     name << "own_" << ++materialCount_;
@@ -177,7 +178,33 @@ class Composer {
     materials_ += row << "}]}\n";
     return name;
   }
+  /// Metal, glass over a pigment, or either under films, of any roughness.
+  std::string facets() {
+    Text name, row;
+    name << "facets_" << ++materialCount_;
+    row << "  " << std::string(name) << ": {components: [{reflection: microfacet, roughness: " << dice_.byFactor(0.02, 0.8)
+        << ", slopes: " << (dice_.chance(0.7) ? "ggx" : "normal") << ", index: ";
+    if (dice_.chance(0.5)) row << (dice_.chance(0.5) ? "titanium" : "{n: 0.6, k: 6}");
+    else row << dice_.between(1.3, 2.5) << ", pigment: " << table(0.0, 0.9);
+    if (dice_.chance(0.6)) {
+      row << ", layers: [";
+      for (int k = dice_.below(3); k >= 0; --k)
+        row << "{index: {n: " << dice_.between(1.3, 3.5) << ", k: " << (dice_.chance(0.5) ? 0.0 : dice_.byFactor(1e-3, 3.0))
+            << "}, thickness: " << dice_.byFactor(10.0, 3000.0) << " nm}" << (k > 0 ? ", " : "]");
+    }
+    materials_ += row << "}]}\n";
+    return name;
+  }
   std::string pane() {
+    if (dice_.chance(0.15)) {
+      Text name, row;
+      name << "coated_" << ++materialCount_;
+      row << "  " << std::string(name) << ": {components: [{reflection: microfacet, roughness: 0.02, index: {n: " << dice_.between(1.4, 4.0)
+          << ", k: " << dice_.byFactor(1e-8, 1e-5) << "}, thickness: " << dice_.between(1.0, 8.0) << " mm, layers: [{index: " << dice_.between(1.3, 2.4)
+          << ", thickness: " << dice_.byFactor(50.0, 2000.0) << " nm}]}]}\n";
+      materials_ += row;
+      return name;
+    }
     if (!dice_.chance(0.25)) return dice_.of(kPanes);
     Text name, row;
     name << "pane_" << ++materialCount_;

@@ -40,7 +40,7 @@ FilmPower byMatrix(const std::vector<FilmLayer>& layers, std::complex<double> be
     Wide b = 1.0L, c = admittance(substrate);
     for (size_t k = last; k-- > 0;) {
       const Wide n(layers[k].index.real(), layers[k].index.imag()), phase = kTurn * n * cosineIn(n) * static_cast<long double>(layers[k].thickness_um / w),
-                 own = admittance(n), i(0.0L, 1.0L);
+                                                                    own = admittance(n), i(0.0L, 1.0L);
       const Wide nextB = std::cos(phase) * b - i * std::sin(phase) / own * c, nextC = -i * own * std::sin(phase) * b + std::cos(phase) * c;
       b = nextB, c = nextC;
     }
@@ -79,10 +79,11 @@ TEST(FilmStack, IsTheTransferMatrix) {
 TEST(FilmStack, ClosedForms) {
   // A quarter wave of n1 on n2: ((n2 - n1^2) / (n2 + n1^2))^2. Source: Macleod, Thin-Film Optical Filters, section 3.1.
   const double n1 = 1.38, n2 = 1.52, expected = std::pow((n2 - n1 * n1) / (n2 + n1 * n1), 2.0);
-  figure("magnesium fluoride's quarter wave on crown glass", filmPower({{n1, 0.55 / (4.0 * n1), true}}, n2, 0.55, 0.0).reflectance, expected, 1e-12, "closed form");
-  // A half wave is as if it were not there.
-  figure("a half wave of titanium dioxide on glass", filmPower({{2.3, 0.55 / (2.0 * 2.3), true}}, 1.52, 0.55, 0.0).reflectance, std::pow(0.52 / 2.52, 2.0), 1e-12,
+  figure("magnesium fluoride's quarter wave on crown glass", filmPower({{n1, 0.55 / (4.0 * n1), true}}, n2, 0.55, 0.0).reflectance, expected, 1e-12,
          "closed form");
+  // A half wave is as if it were not there.
+  figure("a half wave of titanium dioxide on glass", filmPower({{2.3, 0.55 / (2.0 * 2.3), true}}, 1.52, 0.55, 0.0).reflectance, std::pow(0.52 / 2.52, 2.0),
+         1e-12, "closed form");
   // Fresnel by Brewster's angle: r_p = 0, r_s = (1 - n^2) / (1 + n^2).
   figure("glass at Brewster's angle", filmPower({}, 1.5, 0.55, 1.5 / std::sqrt(3.25)).reflectance, 0.5 * std::pow(1.25 / 3.25, 2.0), 1e-12, "closed form");
   // Metals at normal incidence: ((n - 1)^2 + k^2) / ((n + 1)^2 + k^2).
@@ -91,12 +92,14 @@ TEST(FilmStack, ClosedForms) {
   const double n = 1.33, d = 0.5, w = 0.6, sine = std::sin(0.7), ci = std::cos(0.7), ct = std::sqrt(1.0 - sine * sine / (n * n)),
                s2 = std::pow(std::sin(2.0 * kPi * n * d * ct / w), 2.0);
   double airy = 0.0;
-  for (double r : {(ci - n * ct) / (ci + n * ct), (n * ci - ct) / (n * ci + ct)}) airy += 0.5 * 4.0 * r * r * s2 / (std::pow(1.0 - r * r, 2.0) + 4.0 * r * r * s2);
+  for (double r : {(ci - n * ct) / (ci + n * ct), (n * ci - ct) / (n * ci + ct)})
+    airy += 0.5 * 4.0 * r * r * s2 / (std::pow(1.0 - r * r, 2.0) + 4.0 * r * r * s2);
   figure("a soap film at 40 degrees", filmPower({{n, d, true}}, 1.0, w, sine).reflectance, airy, 1e-12, "Airy's sum");
   // A thick pane without absorption: 2 R / (1 + R) for each polarisation, at normal incidence.
   const double face = std::pow(0.5 / 2.5, 2.0);
   figure("a thick pane of glass, reflectance", filmPower({{1.5, 4000.0, false}}, 1.0, 0.55, 0.0).reflectance, 2.0 * face / (1.0 + face), 1e-12, "closed form");
-  figure("a thick pane of glass, transmittance", filmPower({{1.5, 4000.0, false}}, 1.0, 0.55, 0.0).transmittance, (1.0 - face) / (1.0 + face), 1e-12, "closed form");
+  figure("a thick pane of glass, transmittance", filmPower({{1.5, 4000.0, false}}, 1.0, 0.55, 0.0).transmittance, (1.0 - face) / (1.0 + face), 1e-12,
+         "closed form");
   // One that absorbs: T = (1 - R)^2 a / (1 - R^2 a^2), a = exp(-4 pi k d / lambda).
   const std::complex<double> smoky(1.5, 1e-5);
   const double a = std::exp(-4.0 * kPi * 1e-5 * 4000.0 / 0.55), R = (0.25 + 1e-10) / (6.25 + 1e-10);
