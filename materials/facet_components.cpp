@@ -19,9 +19,9 @@ class Facets final : public ReflectionComponent {
   explicit Facets(std::shared_ptr<const FacetOptics> optics)
       : ReflectionComponent(facetLobe(optics->spec().slopes, optics->spec().roughness)), optics_(std::move(optics)) {}
   std::array<AngleAxis, 2> axes() const override { return {AngleAxis{Angle::Difference, optics_->facetAngles(), kQuarter}, AngleAxis{}}; }
-  double column(double w, double angle, double) const override { return byAngle(optics_->at(w)->facet, angle); }
+  double column(double w, double angle, double) const override { return byAngle(optics_->at(w).facet, angle); }
   double lobeAt(const glm::dvec3& l, const glm::dvec3& v) const override { return facetLobeAt(optics_->spec().slopes, optics_->spec().roughness, l, v); }
-  double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w)->hemispherical, angle); }
+  double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w).hemispherical, angle); }
   bool hemisphericalVaries() const override { return true; }
   std::vector<double> knots_um() const override { return optics_->knots_um(); }
   double validLow_um() const override { return optics_->validLow_um(); }
@@ -39,7 +39,7 @@ class Beneath final : public ReflectionComponent {
     return {AngleAxis{Angle::Incidence, kBeneathAngles, kQuarter}, AngleAxis{Angle::View, kBeneathAngles, kQuarter}};
   }
   double column(double w, double in, double out) const override {
-    const auto row = optics_->at(w);
+    const FacetRow& row = optics_->at(w);
     // Linear between the entries of its own axes.
     const auto at = [](const std::vector<double>& views, double angle) {
       constexpr size_t kEach = (FacetOptics::kViews - 1) / (kBeneathAngles - 1);
@@ -49,9 +49,9 @@ class Beneath final : public ReflectionComponent {
       return (1.0 - f) * views[kEach * j] + f * views[kEach * (j + 1)];
     };
     const auto both = [&](const std::vector<double>& views) { return at(views, in) * at(views, out); };
-    return row->again * both(optics_->lost()) + (row->scattered > 0.0 ? row->scattered * both(row->through) : 0.0);
+    return row.again * both(optics_->lost()) + (row.scattered > 0.0 ? row.scattered * both(row.through) : 0.0);
   }
-  double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w)->beneath, angle); }
+  double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w).beneath, angle); }
   bool hemisphericalVaries() const override { return true; }
   std::vector<double> knots_um() const override { return optics_->knots_um(); }
   double validLow_um() const override { return optics_->validLow_um(); }
@@ -68,7 +68,7 @@ class Pane final : public ViewModel {
     optics_->addTo(f);
     fingerprint_ = f.bytes();
   }
-  double at(double w, double angle) const override { return byAngle(optics_->at(w)->transmitted, angle); }
+  double at(double w, double angle) const override { return byAngle(optics_->at(w).transmitted, angle); }
   std::vector<double> knots_um() const override { return optics_->knots_um(); }
   std::vector<double> knots_rad() const override {
     std::vector<double> all;

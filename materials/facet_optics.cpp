@@ -1,6 +1,7 @@
 #include "materials/facet_optics.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <numeric>
 #include <tuple>
@@ -45,6 +46,11 @@ double cosineMean(const std::vector<double>& f) {
     return w;
   }(FacetOptics::kViews);
   return std::inner_product(f.begin(), f.end(), weights.begin(), 0.0);
+}
+
+std::uint64_t nextNumber() {
+  static std::atomic<std::uint64_t> last{0};
+  return ++last;
 }
 
 /// integral lobe cos(theta_l) dw_l by half vectors drawn as the slopes are distributed, split among a facet's angles of incidence:
@@ -119,7 +125,8 @@ double byAngle(const std::vector<double>& values, double angle) {
   return values[j] + (x - static_cast<double>(j)) * (values[j + 1] - values[j]);
 }
 
-FacetOptics::FacetOptics(FacetSpec spec) : spec_(std::move(spec)), low_um_(spec_.beneath.validLow_um()), high_um_(spec_.beneath.validHigh_um()) {
+FacetOptics::FacetOptics(FacetSpec spec)
+    : spec_(std::move(spec)), low_um_(spec_.beneath.validLow_um()), high_um_(spec_.beneath.validHigh_um()), number_(nextNumber()) {
   for (const auto* films : {&spec_.layers, &spec_.back})
     for (const FilmSpec& f : *films) low_um_ = std::max(low_um_, f.index.validLow_um()), high_um_ = std::min(high_um_, f.index.validHigh_um());
   if (spec_.pigment) low_um_ = std::max(low_um_, spec_.pigment->validLow()), high_um_ = std::min(high_um_, spec_.pigment->validHigh());
@@ -217,15 +224,28 @@ FacetRow FacetOptics::rowAt(double w) const {
   return row;
 }
 
-std::shared_ptr<const FacetRow> FacetOptics::at(double w) const {
+const FacetRow& FacetOptics::at(double w) const {
+  // Tables are filled wavelength by wavelength.
+  struct Last {
+    std::uint64_t number = 0;
+    double wavelength_um = 0.0;
+    std::shared_ptr<const FacetRow> row;
+  };
+  thread_local Last last;
+  if (last.number == number_ && last.wavelength_um == w) return *last.row;
+  std::shared_ptr<const FacetRow> row;
   {
     const std::lock_guard lock(mutex_);
-    if (const auto found = rows_.find(w); found != rows_.end()) return found->second;
+    if (const auto found = rows_.find(w); found != rows_.end()) row = found->second;
   }
-  auto row = std::make_shared<const FacetRow>(rowAt(w));
-  const std::lock_guard lock(mutex_);
-  if (rows_.size() >= kMostRows) rows_.clear();
-  return rows_[w] = row;
+  if (!row) {
+    row = std::make_shared<const FacetRow>(rowAt(w));
+    const std::lock_guard lock(mutex_);
+    if (rows_.size() >= kMostRows) rows_.clear();
+    rows_[w] = row;
+  }
+  last = {number_, w, std::move(row)};
+  return *last.row;
 }
 
 std::vector<double> FacetOptics::knots_um() const {

@@ -1,5 +1,6 @@
 #pragma once
 // A rough face under thin films: what its facets, what lies beneath, and what goes through return and let pass, wavelength by wavelength.
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -57,7 +58,8 @@ class FacetOptics {
   /// Hemispherical mean of what facets send on to each other, from which it has a component of its own.
   static constexpr double kWorthBeneath = 1e-3;
   explicit FacetOptics(FacetSpec spec);
-  std::shared_ptr<const FacetRow> at(double wavelength_um) const;
+  /// Holds until this thread asks for another.
+  const FacetRow& at(double wavelength_um) const;
   const FacetSpec& spec() const { return spec_; }
   /// Share of an ideal mirror's light that one facet alone does not send on, by view angle.
   const std::vector<double>& lost() const { return lost_; }
@@ -80,6 +82,7 @@ class FacetOptics {
   int facetAngles_ = 46;
   std::shared_ptr<const std::vector<FacetShares>> share_;  ///< by view
   std::vector<double> lost_;
+  std::uint64_t number_;  ///< no other has it
   mutable std::mutex mutex_;
   mutable std::map<double, std::shared_ptr<const FacetRow>> rows_;
 };

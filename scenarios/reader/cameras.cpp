@@ -126,6 +126,36 @@ void Builder::planned(const std::vector<ChannelOutput>& outputs, const SpectralS
   makePlan(simulation_, outputs, quick, where);
 }
 
+namespace {
+
+/// A camera's channels, and an eye's after them.
+Value channelsOf(const Record& camera) {
+  Value all;
+  all.kind = Value::Kind::List;
+  all.where = camera.where();
+  if (camera.given("channels")) all = camera.value("channels");
+  if (!camera.given("eye") || !camera.boolean("eye")) return all;
+  for (const char* name : {"X", "Y", "Z"}) {
+    Value channel;
+    channel.kind = Value::Kind::Map;
+    channel.where = camera.where("eye");
+    const std::pair<const char*, std::string> keys[] = {
+        {"name", name}, {"response", std::string("cie_") + static_cast<char>(std::tolower(name[0]))}, {"output", "tristimulus"}};
+    for (const auto& [key, text] : keys) {
+      Value scalar;
+      scalar.kind = Value::Kind::Scalar;
+      scalar.where = channel.where;
+      scalar.text = text;
+      channel.entries.emplace_back(key, std::move(scalar));
+      channel.keyPlaces.push_back(channel.where);
+    }
+    all.items.push_back(std::move(channel));
+  }
+  return all;
+}
+
+}  // namespace
+
 std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s) {
   if (list.items.empty())
     throw UserError(list.where, "no channel", "at least one channel with name and response", "add '- {name: mw, response: {band: [3 um, 5 um]}}'");
@@ -243,7 +273,9 @@ void Builder::readCameras(const Record& scenario) {
 
     Spectrum optics(1.0);
     if (r.given("optics")) optics = bounded(spectra_, r.value("optics"), "", "optics transmission", 0.0, 1.0, Outside::Zero);
-    c.outputs = readChannels(r.value("channels"), &optics, &p, c.exposure_s);
+    if (!r.given("channels") && !(r.given("eye") && r.boolean("eye")))
+      throw UserError(v.where, "a camera without channels", "'channels', or 'eye: true'", "add '- {name: mw, response: {band: [3 um, 5 um]}}' under 'channels:'");
+    c.outputs = readChannels(channelsOf(r), &optics, &p, c.exposure_s);
     if (r.given("truth"))
       for (const Value& t : r.value("truth").items) {
         static const std::vector<std::string> names{"range", "entity", "temperature", "normal", "area", "solid_angles", "pixel_solid_angle"};

@@ -144,12 +144,12 @@ void drawFrame(Rgb8Image& canvas, int x0, int y0, int x1, int y1) {
 }
 
 void drawPixels(Rgb8Image& canvas, int x0, int y0, int factor, int width, int height, const std::vector<float>& pixels, const ColourMap& map,
-                const Scale& scale) {
+                const Scale& scale, const std::vector<Rgb8>& colours) {
   std::size_t i = 0;
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const float value = pixels[i++];
-      const Rgb8 colour = std::isfinite(value) ? map(static_cast<float>(scale.position(value))) : notFinite;
+    for (int x = 0; x < width; ++x, ++i) {
+      const float value = pixels[i];
+      const Rgb8 colour = !std::isfinite(value) ? notFinite : colours.empty() ? map(static_cast<float>(scale.position(value))) : colours[i];
       const int left = x0 + x * factor, top = y0 + y * factor;
       canvas.fill(left, top, left + factor, top + factor, colour);
     }
@@ -259,6 +259,7 @@ Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, c
   if (width < 1 || height < 1 || width > maxSide || height > maxSide) throw std::invalid_argument("makePreview: a side is not in 1..8192");
   if (pixels.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
     throw std::invalid_argument("makePreview: pixels are not width * height");
+  if (!options.colours.empty() && options.colours.size() != pixels.size()) throw std::invalid_argument("makePreview: colours are not width * height");
   const ColourMap& map = colourMap(options.colourMap);
   if (options.range) {
     const auto [low, high] = *options.range;
@@ -285,7 +286,7 @@ Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, c
                     strongText);
   }
   const int pictureTop = bodyTop + (bodyHeight - pictureHeight) / 2;
-  drawPixels(canvas, measure.margin, pictureTop, factor, width, height, pixels, map, scale);
+  drawPixels(canvas, measure.margin, pictureTop, factor, width, height, pixels, map, scale, options.colours);
   drawFrame(canvas, measure.margin, pictureTop, measure.margin + pictureWidth, pictureTop + pictureHeight);
   drawBar(canvas, measure.margin + pictureWidth + measure.gap, bodyTop, bodyTop + bodyHeight, text, measure, map, scale);
   return canvas;

@@ -120,34 +120,46 @@ int viewAngles(const Material& m) {
 
 double viewAngle(int entry, int views) { return views > 1 ? 0.5 * kPi * entry / (views - 1) : 0.0; }
 
+/// Means over a node of what a material's components are at each of some places; wavelength by wavelength, as what takes long to work out belongs to one.
+/// `at(component, wavelength_um, place)`.
+template <class At>
+std::vector<double> meansOver(const SpectralNode& node, std::size_t places, std::size_t components, const At& at) {
+  std::vector<double> sums(places * components, 0.0);
+  for (const SpectralNode::Member& m : node.members)
+    for (std::size_t k = 0; k < components; ++k)
+      for (std::size_t place = 0; place < places; ++place) sums[place * components + k] += m.share * at(k, m.wavelength_um, place);
+  return sums;
+}
+
 /// By angle 2, angle 1 and node.
 void appendColumns(SurfaceTables& t, const Material& m, const MaterialAxes& axes, std::size_t table, const Plan& plan) {
+  if (!t.lit) return;
   const AxisPair& own = axes.table[table];
-  for (int j2 = 0; t.lit && j2 < own[1].count; ++j2)
-    for (int j1 = 0; j1 < own[0].count; ++j1)
-      for (const SpectralNode& n : plan.nodes)
-        appendComponents(t.columns, t, m, 0.0, [&](std::size_t k) {
-          if (axes.tableOf[k] != table) return 0.0;
-          return n.mean([&](double w) { return columnAt(*m.reflections[k], w, own[0].at(j1), own[1].at(j2), own); });
-        });
+  const auto along = static_cast<std::size_t>(own[0].count), cells = along * static_cast<std::size_t>(own[1].count);
+  std::vector<std::vector<double>> means;
+  for (const SpectralNode& n : plan.nodes)
+    means.push_back(meansOver(n, cells, m.reflections.size(), [&](std::size_t k, double w, std::size_t cell) {
+      if (axes.tableOf[k] != table) return 0.0;
+      return columnAt(*m.reflections[k], w, own[0].at(static_cast<int>(cell % along)), own[1].at(static_cast<int>(cell / along)), own);
+    }));
+  for (std::size_t cell = 0; cell < cells; ++cell)
+    for (const auto& mean : means) appendComponents(t.columns, t, m, 0.0, [&](std::size_t k) { return mean[cell * m.reflections.size() + k]; });
 }
 
 /// By view angle and node.
 void appendHemispherical(SurfaceTables& t, const Material& m, int views, const Plan& plan) {
-  for (int j = 0; j < views; ++j) {
-    const double angle = viewAngle(j, views);
-    for (const SpectralNode& n : plan.nodes) {
+  const std::size_t parts = m.reflections.size() + 1;
+  std::vector<std::vector<double>> means;
+  for (const SpectralNode& n : plan.nodes)
+    means.push_back(meansOver(n, static_cast<std::size_t>(views), parts, [&](std::size_t k, double w, std::size_t view) {
+      const double angle = viewAngle(static_cast<int>(view), views);
+      if (k + 1 < parts) return m.reflections[k]->hemispherical(w, angle);
       // In double precision: what a good window emits is nearly all digits of 1 less than what it lets through and reflects.
-      const double emissivity = n.mean([&](double w) {
-        if (m.given) return m.given->at(w, angle);
-        double left = 1.0 - m.transmittance(w, angle);
-        for (const auto& r : m.reflections) left -= r->hemispherical(w, angle);
-        return left;
-      });
-      appendComponents(t.hemispherical, t, m, emissivity,
-                       [&](std::size_t k) { return n.mean([&](double w) { return m.reflections[k]->hemispherical(w, angle); }); });
-    }
-  }
+      return m.emissivity(w, angle);
+    }));
+  for (std::size_t view = 0; view < static_cast<std::size_t>(views); ++view)
+    for (const auto& mean : means)
+      appendComponents(t.hemispherical, t, m, mean[view * parts + parts - 1], [&](std::size_t k) { return mean[view * parts + k]; });
 }
 
 /// Factor and summand that make one texture's values out of another's; none where no two do. Shares of two covers, say, are 1 together: one is read.

@@ -5,6 +5,7 @@
 //   PITVIPER_PROMISE_WAVELENGTHS=N   bands are narrowed until a reference has so many at most (300 unless given; 0: as they are drawn)
 //   PITVIPER_PROMISE_FILES=a.yaml:b.yaml   these scenarios instead
 //   PITVIPER_PROMISE_AUTO=N          scenarios drawn with samples: auto (4 unless given)
+//   PITVIPER_PROMISE_KEEP=FOLDER     for the scenarios as they are drawn (nowhere unless given)
 //   PITVIPER_PROMISE_OUT=FOLDER      for promise.csv, promise.md and the scenarios of broken promises (the build folder unless given)
 #include <gtest/gtest.h>
 
@@ -61,6 +62,7 @@ int mostWavelengths() {
 PromiseScene sceneOf(std::uint64_t seed, const std::vector<double>& asked, bool automatic = false) {
   for (int attempt = 0;; ++attempt) {
     const std::string text = randomScenario({seed, attempt, mostWavelengths()});
+    if (const std::string kept = setting("PITVIPER_PROMISE_KEEP"); !kept.empty()) std::ofstream(std::filesystem::path(kept) / (std::to_string(seed) + ".yaml")) << text;
     try {
       return keepPromise(seed, text, asked, automatic);
     } catch (const UserError& e) {
