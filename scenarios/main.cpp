@@ -120,6 +120,16 @@ const std::map<std::string, Command>& commands() {
         "  --range KM       of the only path in a tape7 whose cards have none\n"
         "  --out FOLDER     also NAME.csv, FILE_run<N>.csv or FILE_air.csv, every column over wavelength in W/(m2 sr um) or W/(m2 um), and a chart of\n"
         "                   the same name (PNG, needs VTK), in FOLDER; created if missing\n"}},
+      {"material",
+       {materialCommand, "what a surface or a substance of the library, or of a file, is: tables, charts, a sphere of it",
+        "pitviper material [NAME|FILE] [--out FOLDER]\n\n"
+        "Without an argument: the library's materials and substances. NAME: one of them; FILE.yaml: a material of your own (what stands below its name\n"
+        "under 'materials:'). Prints reflectance, emissivity and transmittance by wavelength and view angle.\n"
+        "FILE of others: refractiveindex.info's YAML, or a spectrum in two columns (ECOSTRESS, USGS): prints it as a substance or a material, to be\n"
+        "kept in a file of its own.\n\n"
+        "  --out FOLDER     also NAME.png, charts of spectra, emissivity by angle and reflection of light from 45 degrees (needs VTK), and\n"
+        "                   NAME_sphere.png, a sphere of it under a sun and a dome of daylight as an eye sees it (of materials without data there:\n"
+        "                   at 320 K in the infrared), in FOLDER; created if missing\n"}},
       {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
   };
   return all;

@@ -16,6 +16,7 @@ int integrateCommand(const Arguments& arguments);
 int benchCommand(const Arguments& arguments);
 int planCommand(const Arguments& arguments);
 int atmosphereCommand(const Arguments& arguments);
+int materialCommand(const Arguments& arguments);
 int keysCommand(const Arguments& arguments);
 
 /// Every shader file compiled into the program.

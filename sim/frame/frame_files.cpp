@@ -49,7 +49,8 @@ void writePreviewFile(const std::filesystem::path& file, const Frame& frame, con
     options.unit = l.unit;
     if (const auto range = ranges.find(l.name); range != ranges.end()) options.range = range->second;
     if (seen && &l == eye[1]) {
-      const double white = options.range ? options.range->second : automaticRange(l.pixels).second;
+      // The brightest that a screen shows of its strongest primary, so that no lamp's colour is cut.
+      const double white = options.range ? options.range->second : automaticRange(strongestPrimary(eye[0]->pixels, l.pixels, eye[2]->pixels)).second;
       options.title = frame.camera + "  sRGB, not adapted  " + time;
       options.range = {0.0, white};
       options.colourMap = "grey";

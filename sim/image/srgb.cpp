@@ -26,4 +26,14 @@ std::vector<Rgb8> srgbPixels(const std::vector<float>& x, const std::vector<floa
   return all;
 }
 
+std::vector<float> strongestPrimary(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z) {
+  std::vector<float> all;
+  all.reserve(y.size());
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const glm::dvec3 c = linearSrgb({x[i], y[i], z[i]});
+    all.push_back(static_cast<float>(std::max({c.x, c.y, c.z})));
+  }
+  return all;
+}
+
 }  // namespace pitviper

@@ -17,4 +17,7 @@ Rgb8 srgbPixel(const glm::dvec3& linear);
 /// A picture of pixels in cd/m2, `white` of them the screen's. Nothing is adapted: what is lit by an orange lamp is orange.
 std::vector<Rgb8> srgbPixels(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z, double white);
 
+/// The largest of each pixel's linear components [cd/m2].
+std::vector<float> strongestPrimary(const std::vector<float>& x, const std::vector<float>& y, const std::vector<float>& z);
+
 }  // namespace pitviper

@@ -1,0 +1,205 @@
+// pitviper material: what a named surface or substance is, in words, tables, charts and a picture; spectra and optical constants of others as YAML.
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <sstream>
+
+#include "scenarios/commands/charts.hpp"
+#include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/material_import.hpp"
+#include "scenarios/commands/options.hpp"
+#include "scenarios/reader/scenario_reader.hpp"
+#include "scenarios/reader/yaml_tree.hpp"
+#include "sim/camera/camera_renderer.hpp"
+#include "sim/frame/frame_files.hpp"
+#include "sim/frame/make_frame.hpp"
+#include "sim/gl/context.hpp"
+#include "sim/image/atomic_file.hpp"
+#include "sim/parameters/error.hpp"
+#include "sim/parameters/read_file.hpp"
+#include "sim/radiometry/constants.hpp"
+
+namespace pitviper {
+namespace {
+
+constexpr double kDegree = kPi / 180.0;
+constexpr double kViews_deg[] = {0.0, 45.0, 75.0, 85.0};
+constexpr double kTable_um[] = {0.35, 0.45, 0.55, 0.65, 0.9, 1.06, 1.6, 2.2, 3.5, 4.0, 4.6, 8.0, 9.5, 10.6, 12.0, 14.0, 20.0};
+
+std::string line(const char* format, auto... values) {
+  char text[240];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+/// A sphere of the material on its own: under a sun and a dome of daylight for an eye where it has data there, else as hot as a body that radiates most in
+/// the middle of its infrared.
+std::string sceneOf(const std::string& material, const std::string& materials, bool eye, double low_um, double high_um) {
+  std::string scene = "accuracy: 1 %\n" + materials;
+  if (eye)
+    scene +=
+        "sun: {azimuth: 60 deg, elevation: 40 deg, irradiance: {product: [\"0.4 W/(m2 um)\", cie_d65]}}\n"
+        "ambient: {radiance: {product: [\"0.3 W/(m2 sr um)\", cie_d65]}}\nbackground: {radiance: {product: [\"0.03 W/(m2 sr um)\", cie_d65]}}\n";
+  else scene += "ambient: {temperature: 280 K}\nbackground: {temperature: 250 K}\n";
+  scene += "entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " + material +
+           ", temperature: 320 K}]\ncameras: [{name: sphere, film: {width: 256, height: 256}, field_of_view: 12.5 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], "
+           "look_at: s, ";
+  return scene + (eye ? "eye: true}]\n" : line("channels: [{name: ir, response: {band: [%.6g um, %.6g um]}}]}]\n", low_um, high_um));
+}
+
+struct Shown {
+  Simulation simulation;
+  std::shared_ptr<const Material> material;
+  bool eye = false;
+};
+
+Shown shown(const std::string& name, const std::string& materials, const Libraries& libraries) {
+  const auto made = [&](bool eye, double low, double high) {
+    Shown s{readScenarioText(sceneOf(name, materials, eye, low, high), "material " + name, ".", {}, libraries), nullptr, eye};
+    s.material = s.simulation.materials[static_cast<size_t>(s.simulation.entities[0].surfaces[0].material)];
+    return s;
+  };
+  // Its range says what it can be seen in: any band it surely has, to find out.
+  std::string why;
+  for (const auto& [low, high] : {std::pair{3.0, 3.01}, std::pair{1.0, 1.01}, std::pair{0.6, 0.61}, std::pair{10.0, 10.01}}) {
+    try {
+      const Shown first = made(false, low, high);
+      const double from = first.material->validLow_um(), to = first.material->validHigh_um();
+      // All that the observer's functions span.
+      if (from <= 0.3601 && to >= 0.8303) return made(true, 0, 0);
+      const double begin = std::max(from, 3.0), end = std::min(to, 5.0);
+      return begin < end ? made(false, begin, end) : made(false, from, std::min(to, 1.2 * from));
+    } catch (const UserError& e) {
+      why = e.what();
+      if (why.find("has no data for channel") == std::string::npos) throw;
+    }
+  }
+  throw UserError({}, "the material '" + name + "' has no data between 0.6 and 10 um", "a surface with data there", why);
+}
+
+std::string describe(const Material& m, const std::string& description) {
+  std::string out = description.empty() ? "" : description + "\n";
+  if (!m.provenance.empty()) out += "source: " + m.provenance + "\n";
+  out += line("%.4g to %.4g um; %zu component%s", m.validLow_um(), m.validHigh_um(), m.reflections.size(), m.reflections.size() == 1 ? "" : "s");
+  for (const auto& r : m.reflections) {
+    const auto axes = r->axes();
+    const int entries = axes[0].count * axes[1].count;
+    out += (&r == &m.reflections.front() ? ": " : ", ") + (r->lobe().function.empty() ? std::string("no lobe") : r->lobe().function) +
+           (entries > 1 ? line(" x a table of %d angles", entries) : std::string());
+  }
+  out += "\n\n| wavelength [um] | reflectance at 0 deg | 45 | 75 | 85 | emissivity at 0 deg | 45 | 75 | 85 |";
+  out += m.transmission ? " transmittance at 0 deg | 45 | 75 | 85 |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" : "\n|---|---|---|---|---|---|---|---|---|\n";
+  for (double w : kTable_um) {
+    if (w < m.validLow_um() || w > m.validHigh_um()) continue;
+    out += line("| %.4g |", w);
+    for (double v : kViews_deg) out += line(" %.4f |", m.reflectance(w, v * kDegree));
+    for (double v : kViews_deg) out += line(" %.4f |", m.emissivity(w, v * kDegree));
+    for (double v : kViews_deg)
+      if (m.transmission) out += line(" %.4f |", m.transmittance(w, v * kDegree));
+    out += "\n";
+  }
+  return out;
+}
+
+std::vector<Chart> chartsOf(const Material& m, const std::string& name) {
+  const double low = std::max(m.validLow_um(), 0.3), high = std::min(m.validHigh_um(), 30.0);
+  constexpr int kPoints = 800;
+  Chart spectra{name + ": spectra at normal view", "wavelength [um]", "", true, false, true, {}, {}, {}};
+  spectra.series = {{"reflectance", {}, {}}, {"emissivity", {}, {}}};
+  if (m.transmission) spectra.series.push_back({"transmittance", {}, {}});
+  for (int i = 0; i <= kPoints; ++i) {
+    const double w = std::clamp(low * std::pow(high / low, i / double(kPoints)), low, high);
+    const double values[] = {m.reflectance(w, 0.0), m.emissivity(w, 0.0), m.transmittance(w, 0.0)};
+    for (size_t k = 0; k < spectra.series.size(); ++k) spectra.series[k].x.push_back(w), spectra.series[k].y.push_back(values[k]);
+  }
+  Chart views{name + ": emissivity by view angle", "view angle [deg]", "emissivity", false, false, true, {}, {}, {}};
+  Chart lobes{name + ": light from 45 deg", "view angle in its plane [deg]", "BRDF [1/sr]", false, true, false, {}, {}, {}};
+  const glm::dvec3 light(-std::sin(45.0 * kDegree), 0.0, std::cos(45.0 * kDegree));
+  for (double w : {0.55, 1.6, 4.0, 10.0}) {
+    if (w < m.validLow_um() || w > m.validHigh_um()) continue;
+    Series byView{line("%.3g um", w), {}, {}}, byLobe = byView;
+    for (int i = 0; i <= 178; ++i) byView.x.push_back(0.5 * i), byView.y.push_back(m.emissivity(w, 0.5 * i * kDegree));
+    for (int i = -356; i <= 356; ++i) {
+      const double v = 0.25 * i * kDegree;
+      double f = 0.0;
+      for (const auto& r : m.reflections) f += r->brdf(w, light, {std::sin(v), 0.0, std::cos(v)});
+      byLobe.x.push_back(0.25 * i), byLobe.y.push_back(f);
+    }
+    views.series.push_back(byView);
+    lobes.series.push_back(byLobe);
+  }
+  return {spectra, views, lobes};
+}
+
+void draw(const Shown& s, const std::string& name, const std::filesystem::path& out) {
+  const GlContext context;
+  const auto scene = std::make_shared<const GpuScene>(s.simulation);
+  CameraRenderer renderer(s.simulation, s.simulation.cameras[0], shaderLibrary(), scene);
+  const WorldState state = advance(s.simulation, 0.0);
+  const Frame frame = makeFrame(s.simulation, s.simulation.cameras[0], renderer.render(state), state, 0, nullptr);
+  writePreviewFile(out / (name + "_sphere.png"), frame, {});
+}
+
+std::string descriptionOf(const std::filesystem::path& file) {
+  const Value tree = loadYaml(file, {file.string(), 0, 0, -1});
+  const Value* text = tree.find("description");
+  return text ? text->text : "";
+}
+
+void list(const Libraries& libraries) {
+  for (const auto& [title, folder] : {std::pair{"materials", libraries.materials}, std::pair{"substances (what 'index:' names)", libraries.materials.parent_path() / "substances"}}) {
+    std::vector<std::filesystem::path> files;
+    for (const auto& entry : std::filesystem::directory_iterator(folder))
+      if (entry.path().extension() == ".yaml") files.push_back(entry.path());
+    std::sort(files.begin(), files.end());
+    std::printf("%s:\n", title);
+    for (const auto& file : files) {
+      std::printf("  %-28s %s\n", file.stem().string().c_str(), descriptionOf(file).c_str());
+    }
+  }
+}
+
+}  // namespace
+
+int materialCommand(const Arguments& arguments) {
+  const Options o("material", arguments, {{"--out"}}, 0, 1);
+  const Libraries libraries = findLibraries();
+  if (o.words().empty()) {
+    if (o.has("--out")) throw UserError({"--out", 0, 0, -1}, "of which material?", "material NAME|FILE --out FOLDER", "name it");
+    list(libraries);
+    return 0;
+  }
+  const std::string& word = o.words()[0];
+  const std::filesystem::path file = word;
+  std::error_code ignored;
+  std::string name = word, materials, description;
+  if (std::filesystem::is_regular_file(file, ignored)) {
+    if (const auto imported = importedYaml(file)) {
+      std::printf("%s", imported->c_str());
+      return 0;
+    }
+    description = descriptionOf(file);
+    name = file.stem().string();
+    materials = "materials:\n  " + name + ":\n";
+    std::istringstream text(readFileStart(file, 1 << 22));
+    for (std::string row; std::getline(text, row);) materials += "    " + row + "\n";
+  } else if (const auto own = libraries.materials / (word + ".yaml"); std::filesystem::is_regular_file(own, ignored)) {
+    description = descriptionOf(own);
+  } else if (const auto substance = libraries.materials.parent_path() / "substances" / (word + ".yaml"); std::filesystem::is_regular_file(substance, ignored)) {
+    materials = "materials: {" + word + "_facets: {components: [{reflection: microfacet, index: " + word + ", roughness: 0.05}]}}\n";
+    name = word + "_facets";
+    description = descriptionOf(substance) + "; as facets of roughness 0.05";
+  }
+  const Shown s = shown(name, materials, libraries);
+  if (s.material->medium) throw UserError({}, "'" + name + "' is a medium", "a surface", "'check' of a scenario shows what media do");
+  std::printf("%s: %s", name.c_str(), describe(*s.material, description).c_str());
+  if (!o.has("--out")) return 0;
+  const std::filesystem::path out = o.value("--out");
+  ensureWritableFolder(out);
+  drawCharts(chartsOf(*s.material, name), 3, out / (name + ".png"));
+  draw(s, name, out);
+  std::printf("\n%s and %s written\n", (out / (name + ".png")).string().c_str(), (out / (name + "_sphere.png")).string().c_str());
+  return 0;
+}
+
+}  // namespace pitviper
