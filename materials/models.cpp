@@ -36,7 +36,7 @@ void addTo(Fingerprint& f, const Value& v) {
 }  // namespace
 
 Registry<ReflectionModel>& reflectionModels() {
-  static Registry<ReflectionModel> all("reflection", {lambertianModel(), phongModel(), tabulatedModel(), microfacetModel(), seaModel()});
+  static Registry<ReflectionModel> all("reflection", {lambertianModel(), phongModel(), tabulatedModel(), microfacetModel(), seaModel(), spectralPhongModel()});
   return all;
 }
 

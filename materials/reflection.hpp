@@ -29,6 +29,7 @@ ReflectionModel phongModel();
 ReflectionModel tabulatedModel();
 ReflectionModel microfacetModel();
 ReflectionModel seaModel();
+ReflectionModel spectralPhongModel();
 /// A layer of a stack of films.
 const ParameterTable& filmLayerTable();
 

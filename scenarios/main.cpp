@@ -40,7 +40,8 @@ const std::map<std::string, Command>& commands() {
         "  --preview-range LAYER=LOW:HIGH  ends of a layer's colour bar, in its unit (implies --preview); repeatable. Without it the bar\n"
         "                   runs from the 0.5 to the 99.8 percentile, and is bent where a few bright things would hide the rest\n\n"
         "  --overwrite      also replaces files of other scenarios, and files that are not of this program\n"
-        "  --timing         says at the end where the time of frames after the first went: visibility, shadows, air, shading, readback, files; drawing then waits for each\n"
+        "  --timing         says at the end where the time of frames after the first went: visibility, shadows, air, shading, readback, files; drawing then "
+        "waits for each\n"
         "                   part, which makes it somewhat slower\n\n"
         "Files of the same names are replaced where they are of the same scenario (its text, what it extends, --set); another's is refused before\n"
         "anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"
@@ -68,7 +69,8 @@ const std::map<std::string, Command>& commands() {
         "  --shaders  also the text of the shading program\n"}},
       {"info",
        {infoCommand, "what is in a frame, or what this machine draws with",
-        "pitviper info [FILE.exr [--at COLUMN,ROW [--terms SCENARIO.yaml [--set path.to.key=value]...]]]\n\nLayers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver, its "
+        "pitviper info [FILE.exr [--at COLUMN,ROW [--terms SCENARIO.yaml [--set path.to.key=value]...]]]\n\nLayers with unit, minimum, mean and maximum, and "
+        "all attributes. Without a file: the driver, its "
         "limits, and the way\n"
         "in which transparent things are blended (fetch, barrier or ping_pong; PITVIPER_BLEND chooses another).\n\n"
         "  --at COLUMN,ROW  the values of one pixel with their units; (0,0) is the top left\n"
@@ -98,7 +100,9 @@ const std::map<std::string, Command>& commands() {
         "                       shading, blend\n"
         "  --frames N           frames to time in each row, 10 or more (default 60; fewer of slow ones)\n"
         "  --out FOLDER         also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing\n"
-        "\nWith --scenario: time of a frame of each camera, the frames in their order, drawing and readback, no files; beside them the yardstick, and where the time of a frame goes,\n"
+        "\nWith --phong: tables of 200 entries of spectral Phong lobes against the formula, error and time, as in the paper that proposed them.\n"
+        "\nWith --scenario: time of a frame of each camera, the frames in their order, drawing and readback, no files; beside them the yardstick, and where "
+        "the time of a frame goes,\n"
         "part by part: what updates tables and shadow maps, what is seen, shading, readback and so on.\n"
         "\nWith --accuracy: the scenario's first camera at accuracies of 10 to 0.1 %, at 4 to 340 even samples and at 16 Gauss points a channel, against\n"
         "the reference (double precision on the CPU, every wavelength; slow). Prints frames a second and the error of each channel's pixels,\n"

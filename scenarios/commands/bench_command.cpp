@@ -6,6 +6,7 @@
 #include "scenarios/commands/bench_report.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
+#include "scenarios/commands/phong_bench.hpp"
 #include "scenarios/commands/scenario_bench.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
@@ -78,7 +79,13 @@ int scenarioCommand(const Options& o) {
 }  // namespace
 
 int benchCommand(const Arguments& arguments) {
-  const Options o("bench", arguments, {{"--frames"}, {"--factor"}, {"--out"}, {"--accuracy"}, {"--scenario"}, {"--size"}, {"--set", true, true}}, 0, 0);
+  const Options o("bench", arguments,
+                  {{"--frames"}, {"--factor"}, {"--out"}, {"--accuracy"}, {"--scenario"}, {"--size"}, {"--set", true, true}, {"--phong", false}}, 0, 0);
+  if (o.has("--phong")) {
+    if (arguments.size() > 1) throw UserError({"pitviper bench", 0, 0, -1}, "--phong with other options", "it alone", "remove them");
+    std::printf("%s", phongBench().c_str());
+    return 0;
+  }
   if (o.has("--accuracy")) return accuracyCommand(o);
   if (o.has("--size")) throw UserError({"pitviper bench", 0, 0, -1}, "--size goes with --accuracy", "a scenario", "remove it, or add --accuracy");
   if (o.has("--scenario")) return scenarioCommand(o);

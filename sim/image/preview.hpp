@@ -14,7 +14,7 @@ struct PreviewOptions {
   std::string unit;                                ///< UTF-8, above the colour bar
   std::string colourMap = "thermal";               ///< a name of colour_map.hpp
   std::optional<std::pair<double, double>> range;  ///< values of the bar's ends; none: chosen by automaticRange
-  std::vector<Rgb8> colours;                       ///< of the pixels, instead of the colour map's; empty: none
+  std::vector<Rgb8> colours = {};                  ///< of the pixels, instead of the colour map's; empty: none
 };
 
 /// The 0.5 and 99.8 percentile of the finite pixels; smallest to largest where these coincide; never empty. Where that would leave the
