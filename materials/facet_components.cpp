@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kQuarter = 0.5 * kPi;
 /// Entries of what several facets return and of what scatters beneath, over both angles: smooth.
-constexpr int kBeneathAngles = 46;
+constexpr int kBeneathAngles = 31;
 static_assert((FacetOptics::kViews - 1) % (kBeneathAngles - 1) == 0);
 
 /// The facets' own mirror images: a facet's reflectance over the difference angle x the lobe.

@@ -53,52 +53,23 @@ std::uint64_t nextNumber() {
   return ++last;
 }
 
-/// integral lobe cos(theta_l) dw_l by half vectors drawn as the slopes are distributed, split among a facet's angles of incidence:
-/// dw_l = 4 (v.h) dw_h; D cos(theta_h) dw_h = du dphi / (2 pi) with tan^2 = a^2 u / (1 - u), or -a^2 ln(1 - u) for normal slopes.
-std::vector<FacetShares> sharesOf(Slopes slopes, double a, int angles) {
-  constexpr int kRings = 64, kTurns = 96;
-  const auto rings = gaussLegendre(kRings, 0.0, 1.0);
-  std::vector<FacetShares> all;
-  for (int v = 0; v < FacetOptics::kViews; ++v) {
-    const double angle = std::min(angleAt(v, FacetOptics::kViews), kQuarter - 1e-5);
-    const glm::dvec3 view(std::sin(angle), 0.0, std::cos(angle));
-    std::vector<double> row(static_cast<size_t>(angles), 0.0);
-    for (const auto& u : rings) {
-      const double tan2 = slopes == Slopes::Trowbridge ? a * a * u.x / (1.0 - u.x) : -a * a * std::log1p(-u.x), c = 1.0 / std::sqrt(1.0 + tan2),
-                   s = std::sqrt(tan2) * c;
-      const double d =
-          slopes == Slopes::Trowbridge ? a * a / (kPi * std::pow(c * c * (a * a + tan2), 2.0)) : std::exp(-tan2 / (a * a)) / (kPi * a * a * std::pow(c, 4.0));
-      for (int k = 0; k < kTurns; ++k) {
-        const double phi = kPi * (k + 0.5) / kTurns;  // both sides of the plane of view are alike
-        const glm::dvec3 h(s * std::cos(phi), s * std::sin(phi), c);
-        const double vh = glm::dot(view, h);
-        if (vh <= 0.0) continue;
-        const glm::dvec3 light = 2.0 * vh * h - view;
-        if (light.z <= 0.0) continue;
-        const double weight = u.weight / kTurns * facetLobeAt(slopes, a, light, view) * light.z * 4.0 * vh / (d * c);
-        const double x = std::acos(std::min(vh, 1.0)) / kQuarter * (angles - 1);
-        const size_t j = std::min(static_cast<size_t>(x), static_cast<size_t>(angles - 2));
-        row[j] += weight * (1.0 - (x - static_cast<double>(j)));
-        row[j + 1] += weight * (x - static_cast<double>(j));
-      }
-    }
-    // Quadrature of grazing views: no facets return more than there is.
-    const double sum = std::max(1.0, std::accumulate(row.begin(), row.end(), 0.0));
-    for (double& x : row) x /= sum;
-    const auto some = [](double x) { return x > 0.0; };
-    const auto first = std::find_if(row.begin(), row.end(), some), last = std::find_if(row.rbegin(), row.rend(), some).base();
-    all.push_back({static_cast<size_t>(first - row.begin()), first < last ? std::vector<double>(first, last) : std::vector<double>()});
-  }
+/// What ideal mirrors send on; quadrature of grazing views must not make more of it than there is.
+std::vector<AngleShares> sharesOf(Slopes slopes, double a, int angles) {
+  auto all = lobeShares([&](const glm::dvec3& l, const glm::dvec3& v) { return facetLobeAt(slopes, a, l, v); },
+                        slopes == Slopes::Trowbridge ? Sampled::Trowbridge : Sampled::NormalSlopes, a, Angle::Difference, angles);
+  for (AngleShares& view : all)
+    if (const double sum = view.sum(); sum > 1.0)
+      for (double& x : view.share) x /= sum;
   return all;
 }
 
 /// The same for all of one roughness: states by the dozen share them.
-std::shared_ptr<const std::vector<FacetShares>> knownShares(Slopes slopes, double roughness, int angles) {
+std::shared_ptr<const std::vector<AngleShares>> knownShares(Slopes slopes, double roughness, int angles) {
   static std::mutex mutex;
-  static std::map<std::tuple<int, double, int>, std::shared_ptr<const std::vector<FacetShares>>> all;
+  static std::map<std::tuple<int, double, int>, std::shared_ptr<const std::vector<AngleShares>>> all;
   const std::lock_guard lock(mutex);
   auto& own = all[{static_cast<int>(slopes), roughness, angles}];
-  if (!own) own = std::make_shared<const std::vector<FacetShares>>(sharesOf(slopes, roughness, angles));
+  if (!own) own = std::make_shared<const std::vector<AngleShares>>(sharesOf(slopes, roughness, angles));
   return own;
 }
 
@@ -119,12 +90,6 @@ double facetLobeAt(Slopes slopes, double a, const glm::dvec3& light, const glm::
   return slopes == Slopes::Trowbridge ? physics::trowbridgeLobe(parameters, {0, 0, 1}, light, view) : physics::slopeLobe(parameters, {0, 0, 1}, light, view);
 }
 
-double byAngle(const std::vector<double>& values, double angle) {
-  const double x = std::clamp(angle / kQuarter, 0.0, 1.0) * static_cast<double>(values.size() - 1);
-  const size_t j = std::min(static_cast<size_t>(x), values.size() - 2);
-  return values[j] + (x - static_cast<double>(j)) * (values[j + 1] - values[j]);
-}
-
 FacetOptics::FacetOptics(FacetSpec spec)
     : spec_(std::move(spec)), low_um_(spec_.beneath.validLow_um()), high_um_(spec_.beneath.validHigh_um()), number_(nextNumber()) {
   for (const auto* films : {&spec_.layers, &spec_.back})
@@ -133,7 +98,7 @@ FacetOptics::FacetOptics(FacetSpec spec)
   if (low_um_ > high_um_) return;  // its makers refuse it
   chooseAngles();
   share_ = knownShares(spec_.slopes, spec_.roughness, facetAngles_);
-  for (const FacetShares& view : *share_) lost_.push_back(std::max(0.0, 1.0 - std::accumulate(view.share.begin(), view.share.end(), 0.0)));
+  for (const AngleShares& view : *share_) lost_.push_back(std::max(0.0, 1.0 - view.sum()));
   mostLost_ = cosineMean(lost_);
 }
 
@@ -187,8 +152,7 @@ FacetRow FacetOptics::rowAt(double w) const {
   }
   std::vector<double> atViews;
   for (int v = 0; v < kViews; ++v) {
-    const FacetShares& seen = (*share_)[static_cast<size_t>(v)];
-    const double sent = std::inner_product(seen.share.begin(), seen.share.end(), row.facet.begin() + static_cast<std::ptrdiff_t>(seen.first), 0.0);
+    const double sent = (*share_)[static_cast<size_t>(v)].of(row.facet);
     // Smooth faces lose at grazing views alone, less than is worth a component: counted as if their lobe sent it on.
     row.hemispherical.push_back(mostLost_ > kWorthBeneath ? sent : sent / (1.0 - lost_[static_cast<size_t>(v)]));
     atViews.push_back(byAngle(row.facet, angleAt(v, kViews)));

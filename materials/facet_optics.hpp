@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "materials/film_stack.hpp"
+#include "materials/lobe_shares.hpp"
 #include "materials/refractive_index.hpp"
 #include "sim/model/component.hpp"
 
@@ -46,15 +47,9 @@ struct FacetRow {
   double scattered = 0.0;             ///< f of what scatters beneath = scattered x through(in) through(out) [1/sr]
 };
 
-/// Of a facet's angles of incidence, from one on, in what a view angle sees.
-struct FacetShares {
-  std::size_t first = 0;
-  std::vector<double> share;
-};
-
 class FacetOptics {
  public:
-  static constexpr int kViews = 91;
+  static constexpr int kViews = kShareViews;
   /// Hemispherical mean of what facets send on to each other, from which it has a component of its own.
   static constexpr double kWorthBeneath = 1e-3;
   explicit FacetOptics(FacetSpec spec);
@@ -80,7 +75,7 @@ class FacetOptics {
   FacetSpec spec_;
   double low_um_, high_um_, mostLost_ = 0.0, angleError_ = 0.0;
   int facetAngles_ = 46;
-  std::shared_ptr<const std::vector<FacetShares>> share_;  ///< by view
+  std::shared_ptr<const std::vector<AngleShares>> share_;  ///< by view
   std::vector<double> lost_;
   std::uint64_t number_;  ///< no other has it
   mutable std::mutex mutex_;
@@ -90,8 +85,5 @@ class FacetOptics {
 /// The lobe of facets that reflect everything.
 Lobe facetLobe(Slopes slopes, double roughness);
 double facetLobeAt(Slopes slopes, double roughness, const glm::dvec3& light, const glm::dvec3& view);
-
-/// Linear between equally spaced entries from 0 to 90 degrees.
-double byAngle(const std::vector<double>& values, double angle_rad);
 
 }  // namespace pitviper

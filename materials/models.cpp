@@ -36,7 +36,8 @@ void addTo(Fingerprint& f, const Value& v) {
 }  // namespace
 
 Registry<ReflectionModel>& reflectionModels() {
-  static Registry<ReflectionModel> all("reflection", {lambertianModel(), phongModel(), tabulatedModel(), microfacetModel(), seaModel(), spectralPhongModel()});
+  static Registry<ReflectionModel> all("reflection", {lambertianModel(), phongModel(), tabulatedModel(), microfacetModel(), seaModel(), spectralPhongModel(),
+                                                      wardModel(), sandfordRobertsonModel()});
   return all;
 }
 

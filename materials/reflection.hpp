@@ -30,6 +30,8 @@ ReflectionModel tabulatedModel();
 ReflectionModel microfacetModel();
 ReflectionModel seaModel();
 ReflectionModel spectralPhongModel();
+ReflectionModel wardModel();
+ReflectionModel sandfordRobertsonModel();
 /// A layer of a stack of films.
 const ParameterTable& filmLayerTable();
 

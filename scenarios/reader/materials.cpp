@@ -9,6 +9,7 @@
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
+#include "sim/image/exr.hpp"
 #include "sim/image/png.hpp"
 #include "sim/radiometry/constants.hpp"
 
@@ -62,15 +63,36 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
   for (const char* key : {"minimum", "maximum"})
     if (r.given("rows") && r.given(key)) throw UserError(r.where(key), std::string("a '") + key + "' beside rows", "rows carry their own values", "remove it");
   auto quantity = [&](const char* key, double otherwise) { return r.given(key) ? readNumber(r.value(key), unit, key) : otherwise; };
-  if (r.given("file")) {
+  std::filesystem::path path = r.given("file") ? std::filesystem::path(r.text("file")) : std::filesystem::path();
+  if (path.is_relative() && !path.empty()) path = spectra_.files().base / path;
+  const bool exr = path.extension() == ".exr";
+  std::error_code ignored;
+  if (!path.empty() && !std::filesystem::is_regular_file(path, ignored))
+    throw UserError(r.where("file"), "cannot read the file '" + path.string() + "'", "a grey PNG or an EXR",
+                    "check the name; it is relative to the scenario's folder");
+  for (const char* key : {"minimum", "maximum"})
+    if (exr && r.given(key)) throw UserError(r.where(key), std::string("a '") + key + "' of an EXR file", "its own values", "remove it");
+  if (r.given("layer") && !exr) throw UserError(r.where("layer"), "a 'layer' of what is no EXR file", "an EXR file", "remove it");
+  if (exr) {
+    const ExrImage image = readExr(path);
+    const FloatLayer* layer = r.given("layer") ? image.find(r.text("layer")) : image.layers.size() == 1 ? &image.layers.front() : nullptr;
+    if (!layer) {
+      std::vector<std::string> names;
+      for (const FloatLayer& l : image.layers) names.push_back(l.name);
+      if (r.given("layer")) throw unknownWord(r.where("layer"), "the file has no layer", r.text("layer"), names);
+      throw UserError(r.where("file"), "an EXR file of " + std::to_string(names.size()) + " layers", "'layer: ...', one of " + listed(names), "add it");
+    }
+    t.name = path.string();
+    t.width = image.width;
+    t.height = image.height;
+    // Row 0 of a texture is its lowest.
+    for (int y = t.height - 1; y >= 0; --y)
+      t.texels.insert(t.texels.end(), layer->pixels.begin() + static_cast<std::ptrdiff_t>(y) * t.width,
+                      layer->pixels.begin() + static_cast<std::ptrdiff_t>(y + 1) * t.width);
+  } else if (r.given("file")) {
     if (!unit.empty() && !(r.given("minimum") && r.given("maximum")))
       throw UserError(r.where(), "a texture of " + std::string(name) + " without 'minimum' and 'maximum'",
                       "what black and white stand for, in " + std::string(unit), "add both");
-    std::filesystem::path path = r.text("file");
-    if (path.is_relative()) path = spectra_.files().base / path;
-    std::error_code ignored;
-    if (!std::filesystem::is_regular_file(path, ignored))
-      throw UserError(r.where("file"), "cannot read the file '" + path.string() + "'", "a grey PNG", "check the name; it is relative to the scenario's folder");
     const GreyImage image = readPngGrey(path);
     const double low = quantity("minimum", 0.0), high = quantity("maximum", 1.0);
     t.name = path.string();

@@ -205,10 +205,12 @@ ParameterTable medium(const MediumModel& model) {
 const ParameterTable& texture() {
   static const ParameterTable t{
       "texture",
-      "A grey PNG (8 or 16 bit, read linearly) or inline rows, bottom row last, stretched over u and v from 0 to 1; bilinear between pixel centres. "
+      "A grey PNG (8 or 16 bit, read linearly), a layer of an OpenEXR file, or inline rows, bottom row last, stretched over u and v from 0 to 1; bilinear "
+      "between pixel centres. "
       "Where an accuracy is asked for it is read over what a pixel covers of it, and a temperature gives the mean of what that sends.",
-      {text("file", "PNG file"), list("rows", "rows of numbers from top to bottom", 1, 4096),
-       any("minimum", "of a file: value of black (a quantity in the texture's unit)"), any("maximum", "of a file: value of white"),
+      {text("file", "PNG or EXR file; an EXR's values are in the texture's unit (K, um, or 1)"), text("layer", "of an EXR file with several"),
+       list("rows", "rows of numbers from top to bottom", 1, 4096), any("minimum", "of a PNG file: value of black (a quantity in the texture's unit)"),
+       any("maximum", "of a PNG file: value of white"),
        withDefault(choice("edges", {"hold", "repeat"}, "beyond its edges; repeat where it goes round a sphere or cylinder (u runs round, v from end to end)"),
                    "hold")}};
   return t;
@@ -317,7 +319,8 @@ const ParameterTable& camera() {
          within(number("exposure", "s", "exposure time"), 1e-12, 1e6), withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
          any("samples",
              "n: n x n subpixels per pixel, 1 to 16; or auto: 2 x 2, shaded one by one only where they see different parts or neighbouring pixels "
-             "differ; a shadow or a glint narrower than a pixel within a part may be missed. Without this key: auto where an accuracy is asked for (the reference: 2), else 1"),
+             "differ; a shadow or a glint narrower than a pixel within a part may be missed. Without this key: auto where an accuracy is asked for (the "
+             "reference: 2), else 1"),
          withDefault(within(number("small_bodies", "",
                                    "bodies spanning fewer pixels are drawn by a zoomed view of their own and keep their intensity at any range (0: draw all as "
                                    "they fall on pixels)"),

@@ -249,9 +249,10 @@ class Mutator {
 };
 
 /// What a library file stands for, by its folder and, of a sensor's, its unit.
-enum class Role { Scenario, Material, Air, Response, Light, Sun };
+enum class Role { Scenario, Material, Substance, Air, Response, Light, Sun };
 
 Role roleOf(const fs::path& file) {
+  if (file.parent_path().filename() == "substances") return Role::Substance;
   if (file.parent_path().filename() != "library") return Role::Scenario;
   const std::string owner = file.parent_path().parent_path().filename().string();
   if (owner != "sensors") return owner == "materials" ? Role::Material : Role::Air;
@@ -263,10 +264,12 @@ Role roleOf(const fs::path& file) {
 /// The smallest scenario that reads the library file called "mutant".
 std::string userOf(Role role) {
   const char* response = role == Role::Response ? "mutant" : "{band: [2.5 um, 2.6 um]}";
-  const char* first = role == Role::Air     ? "atmosphere: mutant\n"
-                      : role == Role::Light ? "lights: [{name: l, intensity: mutant}]\n"
-                      : role == Role::Sun   ? "sun: {azimuth: 0 deg, elevation: 40 deg, irradiance: mutant}\n"
-                                            : "";
+  const char* first = role == Role::Air ? "atmosphere: mutant\n"
+                      // No body has it: each has a range of its own.
+                      : role == Role::Substance ? "materials: {m: {components: [{reflection: microfacet, index: mutant, roughness: 0.1}]}}\n"
+                      : role == Role::Light     ? "lights: [{name: l, intensity: mutant}]\n"
+                      : role == Role::Sun       ? "sun: {azimuth: 0 deg, elevation: 40 deg, irradiance: mutant}\n"
+                                                : "";
   return std::string(first) +
          "entities: [{name: p, shape: {model: box, length: 1 m, width: 1 m, height: 1 m}, material: " + (role == Role::Material ? "mutant" : "{}") +
          ", temperature: 300 K}]\ncameras: [{name: c, film: {width: 8, height: 8, pitch: 20 um}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: "
@@ -278,10 +281,10 @@ std::string userOf(Role role) {
 /// Copies of the shipped libraries with a place for the damaged file beside its neighbours.
 Libraries copyLibraries(const fs::path& root, const fs::path& folder) {
   const Libraries copies{folder / "materials", folder / "atmosphere", folder / "sensors"};
-  for (const fs::path& copy : {copies.materials, copies.atmosphere, copies.sensors}) {
+  for (const fs::path& copy : {copies.materials, copies.atmosphere, copies.sensors, folder / "substances"}) {
     fs::remove_all(copy);
     fs::create_directories(copy);
-    for (const auto& entry : fs::directory_iterator(root / copy.filename() / "library"))
+    for (const auto& entry : fs::directory_iterator(copy.filename() == "substances" ? root / "materials/substances" : root / copy.filename() / "library"))
       if (entry.path().extension() == ".yaml" || entry.path().extension() == ".air") fs::copy_file(entry.path(), copy / entry.path().filename());
   }
   return copies;
@@ -351,6 +354,8 @@ class Run {
     switch (role) {
       case Role::Material:
         return libraries_.materials / "mutant.yaml";
+      case Role::Substance:
+        return folder_ / "substances/mutant.yaml";
       case Role::Air:
         return libraries_.atmosphere / "mutant.yaml";
       case Role::Response:
@@ -402,7 +407,7 @@ class Run {
 
 std::vector<fs::path> shippedFiles(const fs::path& root) {
   std::vector<fs::path> files;
-  for (const char* folder : {"scenarios", "materials/library", "atmosphere/library", "sensors/library"})
+  for (const char* folder : {"scenarios", "materials/library", "materials/substances", "atmosphere/library", "sensors/library"})
     for (const auto& entry : fs::directory_iterator(root / folder))
       if (entry.path().extension() == ".yaml") files.push_back(entry.path());
   // Scenarios exercise most of the reader: each stands in the list four times.

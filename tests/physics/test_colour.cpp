@@ -54,7 +54,8 @@ TEST(Colour, ColorCheckerUnderThreeLights) {
   int number = 0;
   std::vector<std::string> names;
   for (const auto& [name, values] : patches) {
-    materials += "  m" + std::to_string(number) + ": {components: [{reflection: lambertian, reflectance: {wavelength: um, unit: \"1\", outside: hold, values: [";
+    materials +=
+        "  m" + std::to_string(number) + ": {components: [{reflection: lambertian, reflectance: {wavelength: um, unit: \"1\", outside: hold, values: [";
     // The patches' wavelengths are those of air.
     for (size_t k = 0; k < at.size(); ++k) materials += print("%s[%.6f, %.9g]", k ? ", " : "", 1e-3 * at[k] * 1.000277, values[k]);
     materials += "]}}]}\n";
@@ -67,21 +68,22 @@ TEST(Colour, ColorCheckerUnderThreeLights) {
     const char *name, *spectrum, *column;
   };
   for (const Light& light : {Light{"D65", "cie_d65", "D65"}, Light{"A", "cie_a", "A"}, Light{"low-pressure sodium", "sodium_low_pressure", ""}}) {
-    const Frame f = renderFrame(scene("accuracy: reference\nrender: {shadows: false}\n" + materials + "sun: {azimuth: 90 deg, elevation: 0 deg, irradiance: {product: [\"3.14159265358979 W/(m2 um)\", " + light.spectrum +
-                                      "]}}\n" + entities +
-                                      "cameras: [{name: c, film: {width: 60, height: 40}, field_of_view: 3.4336 deg, aperture: 20 mm, position: [100 m, 2.5 m, 1.5 m], "
-                                      "look_at: [0 m, 2.5 m, 1.5 m], eye: true}]\n"));
+    const Frame f = renderFrame(
+        scene("accuracy: reference\nrender: {shadows: false}\n" + materials +
+              "sun: {azimuth: 90 deg, elevation: 0 deg, irradiance: {product: [\"3.14159265358979 W/(m2 um)\", " + light.spectrum + "]}}\n" + entities +
+              "cameras: [{name: c, film: {width: 60, height: 40}, field_of_view: 3.4336 deg, aperture: 20 mm, position: [100 m, 2.5 m, 1.5 m], "
+              "look_at: [0 m, 2.5 m, 1.5 m], eye: true}]\n"));
     double worst = 0.0;
     for (int k = 0; k < number; ++k) {
       const auto& rho = patches[names[static_cast<size_t>(k)]];
       double xyz[3] = {};
       const auto add = [&](double nm, double e) {
         int c = 0;
-        for (const char* bar : {"xbar", "ybar", "zbar"}) xyz[c++] += 683.0 * 1e-3 * e * linear(observer["wavelength_nm"], observer[bar], nm) * linear(at, rho, nm);
+        for (const char* bar : {"xbar", "ybar", "zbar"})
+          xyz[c++] += 683.0 * 1e-3 * e * linear(observer["wavelength_nm"], observer[bar], nm) * linear(at, rho, nm);
       };
       if (*light.column)
-        for (int nm = 360; nm <= 780; ++nm)
-          add(nm, linear(lights["wavelength_nm"], lights[light.column], nm) / 100.0);
+        for (int nm = 360; nm <= 780; ++nm) add(nm, linear(lights["wavelength_nm"], lights[light.column], nm) / 100.0);
       else add(588.995, 2e3 / 3.0), add(589.592, 1e3 / 3.0);  // 1 um of the relative spectrum, in nm
       const int column = 5 + 10 * (k % 6), row = 35 - 10 * (k / 6);
       int c = 0;

@@ -151,10 +151,12 @@ TEST(Ground, MistakesAreRefused) {
 // A lamp beyond the bulge of the earth is hidden by it; one before it, or standing on a body, is not.
 TEST(Ground, HidesLamps) {
   const auto brightest = [](const char* mode, double z_m, const std::string& more) {
-    const Frame f = renderFrame(scene(std::string(mode) + "ground: {temperature: 290 K}\nlights: [{name: la, intensity: 1e9 W/(sr um), position: [0 m, 100 km, " +
-                                      print("%.9g", z_m) + " m]}]\n" + more +
-                                      "cameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 1 deg, aperture: 5 mm, position: [0 m, 0 m, 100 m], look_at: [0 m, "
-                                      "100 km, " + print("%.9g", z_m) + " m], channels: [{name: lw, response: {band: [8 um, 12 um]}}]}]\n"));
+    const Frame f =
+        renderFrame(scene(std::string(mode) + "ground: {temperature: 290 K}\nlights: [{name: la, intensity: 1e9 W/(sr um), position: [0 m, 100 km, " +
+                          print("%.9g", z_m) + " m]}]\n" + more +
+                          "cameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 1 deg, aperture: 5 mm, position: [0 m, 0 m, 100 m], look_at: [0 m, "
+                          "100 km, " +
+                          print("%.9g", z_m) + " m], channels: [{name: lw, response: {band: [8 um, 12 um]}}]}]\n"));
     const auto& p = layer(f, "lw.radiance").pixels;
     return static_cast<double>(*std::max_element(p.begin(), p.end()));
   };
@@ -162,9 +164,11 @@ TEST(Ground, HidesLamps) {
     // 100 km off the sphere lies 784 m below the level plane; from 100 m up it hides what is more than some 325 m below that.
     EXPECT_LT(brightest(mode, -770.0, ""), 100.0) << mode;
     EXPECT_GT(brightest(mode, 100.0, ""), 1e4) << mode;
-    EXPECT_GT(brightest(mode, -770.0, "materials: {m: {components: [{reflection: lambertian, reflectance: 0.1}]}}\nentities: [{name: wall, shape: {model: plate, width: 9 km, "
-                                      "height: 9 km}, material: m, temperature: 290 K, heading: 180 deg, position: [0 m, 101 km, -770 m]}]\n"),
-              1e4)
+    EXPECT_GT(
+        brightest(mode, -770.0,
+                  "materials: {m: {components: [{reflection: lambertian, reflectance: 0.1}]}}\nentities: [{name: wall, shape: {model: plate, width: 9 km, "
+                  "height: 9 km}, material: m, temperature: 290 K, heading: 180 deg, position: [0 m, 101 km, -770 m]}]\n"),
+        1e4)
         << mode << "a body is seen before the ground, and so is what stands before it";
   }
 }
@@ -173,11 +177,15 @@ TEST(Ground, HidesLamps) {
 TEST(Near, HidesNoLampsByDepth) {
   const auto brightest = [](const char* mode, double depth_m) {
     // A pane of wall across the line to a lamp 45 degrees off the axis.
-    const std::string wall = "materials: {m: {components: [{reflection: lambertian, reflectance: 0.1}]}}\nentities: [{name: wall, shape: {model: plate, width: 20 cm, height: "
-                             "20 cm}, material: m, temperature: 20 K, heading: 180 deg, position: [" + print("%.9g m, %.9g m, 0 m", depth_m, depth_m) + "]}]\n";
-    const Frame f = renderFrame(scene(std::string(mode) + wall + "lights: [{name: la, intensity: 1 W/(sr um), position: [10 m, 10 m, 0 m]}]\n"
-                                      "cameras: [{name: c, film: {width: 33, height: 33}, field_of_view: 110 deg, aperture: 5 mm, near: 1 m, look_at: [0 m, 1 m, 0 m], "
-                                      "position: [0 m, 0 m, 0 m], channels: [{name: lw, response: {band: [8 um, 12 um]}}]}]\n"));
+    const std::string wall =
+        "materials: {m: {components: [{reflection: lambertian, reflectance: 0.1}]}}\nentities: [{name: wall, shape: {model: plate, width: 20 cm, height: "
+        "20 cm}, material: m, temperature: 20 K, heading: 180 deg, position: [" +
+        print("%.9g m, %.9g m, 0 m", depth_m, depth_m) + "]}]\n";
+    const Frame f =
+        renderFrame(scene(std::string(mode) + wall +
+                          "lights: [{name: la, intensity: 1 W/(sr um), position: [10 m, 10 m, 0 m]}]\n"
+                          "cameras: [{name: c, film: {width: 33, height: 33}, field_of_view: 110 deg, aperture: 5 mm, near: 1 m, look_at: [0 m, 1 m, 0 m], "
+                          "position: [0 m, 0 m, 0 m], channels: [{name: lw, response: {band: [8 um, 12 um]}}]}]\n"));
     const auto& p = layer(f, "lw.radiance").pixels;
     return static_cast<double>(*std::max_element(p.begin(), p.end()));
   };

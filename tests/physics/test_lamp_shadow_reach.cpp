@@ -105,12 +105,15 @@ TEST(LampShadows, LampsReachAsFarAsTheyMatter) {
 // Plans say so beforehand.
 TEST(LampShadows, WhatIsNotLookedForIsPredicted) {
   const auto dropped = [](const char* shadows) {
-    const Simulation sim = scene(
-        std::string("accuracy: 5 %\nrender: {shadows: ") + shadows +
-        "}\nlights: [{name: lamp, intensity: {blackbody: 2500 K, area: 1 m2}, visible: false, position: [0 m, 0 m, 3 m]}]\nentities: [{name: ball, shape: {model: "
-        "sphere, radius: 1 m}, material: {components: [{reflection: lambertian, reflectance: 0.3}]}, temperature: 300 K}, {name: screen, "
-        "shape: {model: plate, width: 1 m, height: 1 m}, material: blackbody, temperature: 300 K, position: [0 m, 3 m, 2 m]}]\ncameras: [{name: c, film: {width: 8, "
-        "height: 8}, field_of_view: 10 deg, aperture: 10 mm, position: [9 m, 0 m, 3 m], look_at: ball, channels: [{name: mw, response: {band: [3.6 um, 4.6 um]}}]}]\n");
+    const Simulation sim =
+        scene(std::string("accuracy: 5 %\nrender: {shadows: ") + shadows +
+              "}\nlights: [{name: lamp, intensity: {blackbody: 2500 K, area: 1 m2}, visible: false, position: [0 m, 0 m, 3 m]}]\nentities: [{name: ball, "
+              "shape: {model: "
+              "sphere, radius: 1 m}, material: {components: [{reflection: lambertian, reflectance: 0.3}]}, temperature: 300 K}, {name: screen, "
+              "shape: {model: plate, width: 1 m, height: 1 m}, material: blackbody, temperature: 300 K, position: [0 m, 3 m, 2 m]}]\ncameras: [{name: c, film: "
+              "{width: 8, "
+              "height: 8}, field_of_view: 10 deg, aperture: 10 mm, position: [9 m, 0 m, 3 m], look_at: ball, channels: [{name: mw, response: {band: [3.6 um, "
+              "4.6 um]}}]}]\n");
     return planFor(sim, {&sim.cameras[0], nullptr}).parts[0].dropped;
   };
   figure("predicted of shadows of lamps at 5 %", dropped("true") - dropped("false"), kShadowShare * 0.05, 1e-9, "kShadowShare of the accuracy");

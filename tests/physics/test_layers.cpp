@@ -133,9 +133,10 @@ TEST(Layers, SpacingAtAKilometre) {
 /// A window in front of a black wall of 400 K, turned by an angle, seen along the x axis at 10 m.
 double throughWindow(const std::string& material, double turn_deg, const std::string& more = "", double eyeX = -10.0) {
   const Eye eye{{eyeX, 0, 0}, {0, 0, 0}, 0.02, 5};
-  const auto sim = scene(more + "entities:\n  - {name: w, shape: {model: plate, width: 4 m, height: 4 m}, heading: " + text(90.0 + turn_deg) + " deg, material: " +
-                         material + ", temperature: 300 K}\n  - {name: wall, shape: {model: plate, width: 50 m, height: 50 m}, material: blackbody, " +
-                         "temperature: 400 K, position: [" + text(eyeX < 0 ? 20.0 : -20.0) + " m, 0 m, 0 m]}\n" + eye.yaml(kLw, "    small_bodies: 0\n"));
+  const auto sim =
+      scene(more + "entities:\n  - {name: w, shape: {model: plate, width: 4 m, height: 4 m}, heading: " + text(90.0 + turn_deg) +
+            " deg, material: " + material + ", temperature: 300 K}\n  - {name: wall, shape: {model: plate, width: 50 m, height: 50 m}, material: blackbody, " +
+            "temperature: 400 K, position: [" + text(eyeX < 0 ? 20.0 : -20.0) + " m, 0 m, 0 m]}\n" + eye.yaml(kLw, "    small_bodies: 0\n"));
   const Frame f = renderFrame(sim);
   return at(f.layers[0], f, 2, 2);
 }
@@ -165,10 +166,10 @@ TEST(Layers, EmissivityIsWhatIsLeftUnlessGiven) {
   figure("window of rho 0.2, tau 0.5 [W/(m2 sr)]", throughWindow("{" + grey + ", transmission: {transmittance: 0.5}}", 0.0, ambient),
          0.5 * B(400) + 0.3 * B(300) + 0.2 * B(280), 1e-5, "eps = 1 - rho - tau");
   figure("window of rho 0.2, tau 0.5, eps 0.1 given [W/(m2 sr)]",
-         throughWindow("{" + grey + ", transmission: {transmittance: 0.5}, emission: {emissivity: 0.1}}", 0.0, ambient), 0.5 * B(400) + 0.1 * B(300) + 0.2 * B(280),
-         1e-5, "eps as given");
-  figure("filter that neither emits nor reflects [W/(m2 sr)]", throughWindow("{transmission: {transmittance: 0.25}, emission: {emissivity: 0}}", 0.0), 0.25 * B(400),
-         1e-5, "T B(wall)");
+         throughWindow("{" + grey + ", transmission: {transmittance: 0.5}, emission: {emissivity: 0.1}}", 0.0, ambient),
+         0.5 * B(400) + 0.1 * B(300) + 0.2 * B(280), 1e-5, "eps as given");
+  figure("filter that neither emits nor reflects [W/(m2 sr)]", throughWindow("{transmission: {transmittance: 0.25}, emission: {emissivity: 0}}", 0.0),
+         0.25 * B(400), 1e-5, "T B(wall)");
   figure("clear window [W/(m2 sr)]", throughWindow("{transmission: {transmittance: 1}}", 0.0), B(400), 1e-5, "B(wall)");
   figure("transmittance 0 [W/(m2 sr)]", throughWindow("{transmission: {transmittance: 0}}", 0.0), B(300), 1e-5, "B(window)");
   figure("mirrored side, emissivity by angle [W/(m2 sr)]",
@@ -201,13 +202,16 @@ TEST(Layers, LitPaneInAir) {
   const double g = 0.02, n = 20.0, rhoD = 0.3, rhoS = 0.2, t = 0.4;
   for (double lampX : {4.0, -4.0}) {
     const Eye eye{{12, 0, 0}, {0, 0, 0}, 0.02, 5};
-    const auto sim = scene(
-        "atmosphere: {extinction: " + text(g) + " /m, temperature: 280 K}\n"
-        "lights: [{name: lamp, intensity: 50 W/(sr um), visible: false, position: [" + text(lampX) + " m, 3 m, 0 m]}]\n"
-        "entities:\n  - {name: w, shape: {model: plate, width: 4 m, height: 4 m}, temperature: 0 K, material: {transmission: {transmittance: 0.4}, "
-        "components: [{reflection: lambertian, reflectance: 0.3}, {reflection: phong, reflectance: 0.2, exponent: 20}]}}\n"
-        "  - {name: wall, shape: {model: plate, width: 50 m, height: 50 m}, material: blackbody, temperature: 330 K, position: [-8 m, 0 m, 0 m]}\n" +
-        eye.yaml(kLw, "    small_bodies: 0\n"));
+    const auto sim =
+        scene("atmosphere: {extinction: " + text(g) +
+              " /m, temperature: 280 K}\n"
+              "lights: [{name: lamp, intensity: 50 W/(sr um), visible: false, position: [" +
+              text(lampX) +
+              " m, 3 m, 0 m]}]\n"
+              "entities:\n  - {name: w, shape: {model: plate, width: 4 m, height: 4 m}, temperature: 0 K, material: {transmission: {transmittance: 0.4}, "
+              "components: [{reflection: lambertian, reflectance: 0.3}, {reflection: phong, reflectance: 0.2, exponent: 20}]}}\n"
+              "  - {name: wall, shape: {model: plate, width: 50 m, height: 50 m}, material: blackbody, temperature: 330 K, position: [-8 m, 0 m, 0 m]}\n" +
+              eye.yaml(kLw, "    small_bodies: 0\n"));
     const Frame f = renderFrame(sim);
     const double d = 5.0, cosine = 0.8;  // mirrored light makes acos(0.8) with the viewer, who looks along the normal
     const double brdf = rhoD / kPi + rhoS * (n + 2.0) / (2.0 * kPi) * std::pow(cosine, n);
@@ -243,7 +247,8 @@ TEST(Layers, IsothermalEnclosureWithPanesAndMedia) {
       "  - {name: a, shape: {model: sphere, radius: 1 m}, material: glassy, temperature: 350 K, position: [-6 m, 1 m, 0 m]}\n"
       "  - {name: b, shape: {model: cone, radius: 1 m, length: 3 m}, material: smoke, temperature: 350 K, position: [-7 m, -2 m, 0 m], heading: 20 deg}\n"
       "  - {name: c, shape: {model: ellipsoid, length: 3 m, width: 2 m, height: 1 m}, material: thin, temperature: 350 K, position: [-5 m, 0 m, 1 m]}\n"
-      "  - {name: d, shape: {model: box, length: 3 m, width: 2 m, height: 1 m}, material: smoke, temperature: 350 K, position: [-9 m, 1 m, -2 m], heading: 33 deg}\n"
+      "  - {name: d, shape: {model: box, length: 3 m, width: 2 m, height: 1 m}, material: smoke, temperature: 350 K, position: [-9 m, 1 m, -2 m], heading: 33 "
+      "deg}\n"
       "  - {name: e, shape: {model: plate, width: 6 m, height: 1 m}, material: glassy, temperature: 350 K, position: [-4 m, 0 m, -0.7 m], heading: 60 deg}\n"
       "  - {name: f, shape: {model: sphere, radius: 0.5 m}, material: titanium, temperature: 350 K, position: [-9 m, 1 m, -1.5 m]}\n"
       "  - {name: g, shape: {model: box, length: 20 m, width: 20 m, height: 20 m}, material: thin, temperature: 350 K, heading: 15 deg}\n"
@@ -268,8 +273,8 @@ struct Placed {
   double heading = 90.0, pitch = 0.0, width = 1.0, height = 1.0, transmittance = 1.0, kelvin = 300.0;
   std::string yaml() const {
     return "  - {name: " + name + ", shape: {model: plate, width: " + text(width) + " m, height: " + text(height) + " m}, heading: " + text(heading) +
-           " deg, pitch: " + text(pitch) + " deg, position: " + text(place) + ", temperature: " + text(kelvin) + " K, material: " +
-           (transmittance > 0.0 ? "{transmission: {transmittance: " + text(transmittance) + "}}" : "blackbody") + "}\n";
+           " deg, pitch: " + text(pitch) + " deg, position: " + text(place) + ", temperature: " + text(kelvin) +
+           " K, material: " + (transmittance > 0.0 ? "{transmission: {transmittance: " + text(transmittance) + "}}" : "blackbody") + "}\n";
   }
 };
 
@@ -319,16 +324,21 @@ TEST(Layers, LargePaneObliquelyAmongSmallOnes) {
     for (double off : {-0.6, 0.6}) {
       const Placed small{.name = "small", .place = {depth + off, at, 0.5}, .width = 0.8, .height = 0.8, .transmittance = 0.5, .kelvin = 330};
       for (unsigned shuffle : {1u, 4u})
-        bound(std::string("small pane ") + (off < 0.0 ? "before" : "behind") + " the " + (side < 0.0 ? "near" : "far") + " end of an oblique window, worst pixel",
-              worstOf(eye, {window, small}, shuffle), 1e-5, "march; rays through the edges left out");
+        bound(
+            std::string("small pane ") + (off < 0.0 ? "before" : "behind") + " the " + (side < 0.0 ? "near" : "far") + " end of an oblique window, worst pixel",
+            worstOf(eye, {window, small}, shuffle), 1e-5, "march; rays through the edges left out");
     }
   }
   // Many small ones on both sides, and a larger pane behind all.
   std::vector<Placed> all{window, {.name = "back", .place = {40, 0, 0}, .width = 12, .height = 12, .transmittance = 0.8, .kelvin = 390}};
   for (int i = 0; i < 14; ++i) {
     const double y = -3.6 + 7.2 * i / 13.0, depth = 20.0 + y * std::tan(38.66 * kPi / 180.0);
-    all.push_back({.name = "s" + std::to_string(i), .place = {depth + (i % 2 ? 0.9 : -0.9), y, -1.0 + 0.15 * i}, .width = 0.9, .height = 1.4,
-                   .transmittance = 0.4 + 0.03 * i, .kelvin = 250.0 + 15.0 * i});
+    all.push_back({.name = "s" + std::to_string(i),
+                   .place = {depth + (i % 2 ? 0.9 : -0.9), y, -1.0 + 0.15 * i},
+                   .width = 0.9,
+                   .height = 1.4,
+                   .transmittance = 0.4 + 0.03 * i,
+                   .kelvin = 250.0 + 15.0 * i});
   }
   for (unsigned shuffle : {1u, 2u, 3u}) bound("14 small panes along an oblique window, worst pixel", worstOf(eye, all, shuffle), 1e-5, "march");
 }
@@ -340,7 +350,10 @@ TEST(Layers, RingAndCrossing) {
   // Three strips along the sides of a triangle, one end of each nearer: pitch turns a strip's far end up.
   for (int i = 0; i < 3; ++i) {
     const double turn = 2.0 * kPi * i / 3.0;
-    ring.push_back({.name = "r" + std::to_string(i), .place = glm::dvec3(20.0, 0.9 * std::cos(turn), 0.9 * std::sin(turn)), .transmittance = 0.5, .kelvin = 300.0 + 60.0 * i});
+    ring.push_back({.name = "r" + std::to_string(i),
+                    .place = glm::dvec3(20.0, 0.9 * std::cos(turn), 0.9 * std::sin(turn)),
+                    .transmittance = 0.5,
+                    .kelvin = 300.0 + 60.0 * i});
   }
   std::string y = "background: {temperature: 280 K}\nentities:\n";
   for (int i = 0; i < 3; ++i)
@@ -356,7 +369,8 @@ TEST(Layers, RingAndCrossing) {
 
   const std::vector<Placed> cross{{.name = "a", .place = {20, 0, 0}, .heading = 50, .width = 6, .height = 4, .transmittance = 0.5, .kelvin = 400},
                                   {.name = "b", .place = {20, 0, 0}, .heading = 130, .width = 6, .height = 4, .transmittance = 0.25, .kelvin = 320}};
-  const Frame g = renderFrame(scene("background: {temperature: 280 K}\nentities:\n" + cross[0].yaml() + cross[1].yaml() + eye.yaml(kLw, "    small_bodies: 0\n")));
+  const Frame g =
+      renderFrame(scene("background: {temperature: 280 K}\nentities:\n" + cross[0].yaml() + cross[1].yaml() + eye.yaml(kLw, "    small_bodies: 0\n")));
   int neither = 0;
   for (int row = 0; row < g.height; ++row)
     for (int column = 0; column < g.width; ++column) {
@@ -397,8 +411,9 @@ TEST(Layers, AcrossTheNearPlane) {
                                 {.name = "before", .place = {2, -0.2, 0}, .width = 0.6, .height = 0.6, .transmittance = 0.3, .kelvin = 420},
                                 {.name = "behind", .place = {6, 0.6, 0.3}, .width = 0.8, .height = 1, .transmittance = 0.6, .kelvin = 290}};
   bound("pane along the line of sight, past the camera, worst pixel", worstOf(eye, all, 1), 1e-5, "march; edges left out");
-  const Frame f = renderFrame(scene("background: {temperature: 280 K}\nentities:\n" +
-                                    Placed{.name = "near", .place = {0.05, 0, 0}, .transmittance = 0.5, .kelvin = 400}.yaml() + eye.yaml(kLw, "    small_bodies: 0\n")));
+  const Frame f =
+      renderFrame(scene("background: {temperature: 280 K}\nentities:\n" +
+                        Placed{.name = "near", .place = {0.05, 0, 0}, .transmittance = 0.5, .kelvin = 400}.yaml() + eye.yaml(kLw, "    small_bodies: 0\n")));
   bound("pane nearer than the near plane is not drawn", worstError(f, [](int, int) { return B(280); }), 1e-6, "near: 0.1 m");
 }
 

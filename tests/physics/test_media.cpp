@@ -45,23 +45,29 @@ TEST(Media, SlabEquationOnExactChords) {
           for (int column = 0; column < 24; ++column) longest = std::max(longest, w.clouds[0].depthOf(w.eye.ray(column, row)));
         w.clouds[0].absorption = depth / longest;
         // The rim, where a chord is short because of the rounding of two long numbers: below 2 % of the longest.
-        const double worst = worstError(renderFrame(scene(w.yaml())), [&](int column, int row) {
-          const Line ray = w.eye.ray(column, row);
-          const double s = w.clouds[0].depthOf(ray);
-          if (w.atEdge(column, row) || (background == 0.0 && s < 0.02 * depth)) return kNone;
-          return B(400) * -std::expm1(-s) + B(background) * std::exp(-s);
-        }, &covered);
+        const double worst = worstError(
+            renderFrame(scene(w.yaml())),
+            [&](int column, int row) {
+              const Line ray = w.eye.ray(column, row);
+              const double s = w.clouds[0].depthOf(ray);
+              if (w.atEdge(column, row) || (background == 0.0 && s < 0.02 * depth)) return kNone;
+              return B(400) * -std::expm1(-s) + B(background) * std::exp(-s);
+            },
+            &covered);
         (background > 0.0 ? warm : cold) = std::max(background > 0.0 ? warm : cold, worst);
       }
     EXPECT_GT(covered, 30) << name;
-    bound(name + ", optical depth 1e-6 to 100, nothing behind, worst pixel", cold, 2e-4, "slab equation on chords found by bisection; single precision of the chord");
-    bound(name + ", optical depth 1e-6 to 100, 300 K behind, worst pixel", warm, 5e-5, "slab equation on chords found by bisection; 1 cm of a 3 m body is seen");
+    bound(name + ", optical depth 1e-6 to 100, nothing behind, worst pixel", cold, 2e-4,
+          "slab equation on chords found by bisection; single precision of the chord");
+    bound(name + ", optical depth 1e-6 to 100, 300 K behind, worst pixel", warm, 5e-5,
+          "slab equation on chords found by bisection; 1 cm of a 3 m body is seen");
   }
 }
 
 // The middle ray runs exactly along the axis: parallel to the whole side.
 TEST(Media, ExactlyAlongTheAxis) {
-  for (const auto& [name, body] : {std::pair<std::string, Cloud>{"frustum", cone(1, 0.5, 4)}, {"cone", cone(1, 0, 4)}, {"box", box(4, 2, 2)}, {"ellipsoid", ellipsoid(4, 2, 2)}})
+  for (const auto& [name, body] :
+       {std::pair<std::string, Cloud>{"frustum", cone(1, 0.5, 4)}, {"cone", cone(1, 0, 4)}, {"box", box(4, 2, 2)}, {"ellipsoid", ellipsoid(4, 2, 2)}})
     for (double heading : {90.0, 270.0}) {
       World w{.eye = {{0, 0, 0}, {1, 0, 0}, 1.0, 9}};
       w.clouds = {of(placed(body, {20, 0, 0}, heading), 0.3)};
@@ -71,8 +77,11 @@ TEST(Media, ExactlyAlongTheAxis) {
 
 TEST(Media, FarAwayChordsKeepTheirDigits) {
   for (double range : {1e5, 2e6})
-    for (const auto& [name, body] : {std::pair<std::string, Cloud>{"sphere", sphere(5)}, {"ellipsoid", ellipsoid(12, 6, 8)}, {"cylinder", cylinder(3, 10)},
-                                     {"cone", cone(4, 1, 10)}, {"box", box(8, 6, 5)}}) {
+    for (const auto& [name, body] : {std::pair<std::string, Cloud>{"sphere", sphere(5)},
+                                     {"ellipsoid", ellipsoid(12, 6, 8)},
+                                     {"cylinder", cylinder(3, 10)},
+                                     {"cone", cone(4, 1, 10)},
+                                     {"box", box(8, 6, 5)}}) {
       World w{.eye = {{0, 0, 0}, {1, 0, 0}, 12.0 / range * 180.0 / kPi, 24}};
       w.clouds = {of(placed(body, {range, 0, 0}, 50, 20), 0.05)};
       const double worst = worstError(renderFrame(scene(w.yaml())), [&](int column, int row) {
@@ -93,7 +102,8 @@ TEST(Media, ClosedMeshes) {
     for (double k : {1e-4, 0.7, 20.0}) {
       World w{.background_K = 300.0};
       w.clouds = {of(placed(brick, {20, -0.5, -0.5}, heading, 25), k)};
-      bound("brick of an .obj file, heading " + text(heading) + " deg, k " + text(k) + "/m, worst pixel", w.worst(), 1e-5, "slab equation on the brick's chords");
+      bound("brick of an .obj file, heading " + text(heading) + " deg, k " + text(k) + "/m, worst pixel", w.worst(), 1e-5,
+            "slab equation on the brick's chords");
       w.clouds = {of(placed(u, {20, -0.5, -0.5}, heading, 10), k)};
       bound("U of an .obj file, heading " + text(heading) + " deg, k " + text(k) + "/m, worst pixel", w.worst(), 2e-4,
             "lengths of both arms add up; a side seen at 1.4 deg is met to 1e-5 m in single precision");
@@ -141,7 +151,8 @@ TEST(Media, SolidsInsideBeforeAndBehind) {
       World w{.eye = {{0, 0, 0}, {1, 0, 0}, 25.0, 24}, .background_K = 260.0};
       w.clouds = {of(placed(body, {20, 0, 0}, 70, 15), 0.4)};
       w.walls = {{.x = x, .kelvin = 330, .low = -0.7}};
-      bound("solid plate at " + text(x) + " m, " + name + " around 20 m, worst pixel", w.worst(), 3e-5, "only the part before the plate counts; short chords at the rim");
+      bound("solid plate at " + text(x) + " m, " + name + " around 20 m, worst pixel", w.worst(), 3e-5,
+            "only the part before the plate counts; short chords at the rim");
       w.extinction = 0.05, w.air_K = 285, w.background_K = 0.0;
       w.walls.push_back({.x = 45, .kelvin = 310});
       bound("the same in air, worst pixel", w.worst(), 3e-5, "march; short chords at the rim");
@@ -182,8 +193,9 @@ TEST(Media, NoMediumInTheLimit) {
     w.clouds = {of(placed(sphere(2), {15, 0, 0}), k), of(placed(box(3, 3, 2), {16, 1, 0}, 30, 20), k)};
     w.walls = {{.x = 30, .kelvin = 350}};
     const Frame without = renderFrame(scene(w.yaml(false))), with = renderFrame(scene(w.yaml()));
-    bound("medium of " + text(k) + "/m against none, worst pixel", worstError(with, [&](int column, int row) { return at(without.layers[0], without, column, row); }),
-          4e-7, "single precision of air before and inside");
+    bound("medium of " + text(k) + "/m against none, worst pixel",
+          worstError(with, [&](int column, int row) { return at(without.layers[0], without, column, row); }), 4e-7,
+          "single precision of air before and inside");
   }
 }
 
@@ -196,22 +208,26 @@ TEST(Media, AirWithATop) {
     const auto sim = scene("background: {temperature: 250 K}\natmosphere: {extinction: " + text(extinction) + " /m, temperature: 285 K, top: " + text(top) +
                            " m}\nentities:\n" + cloud.yaml("c") + eye.yaml(kLw, "    small_bodies: 0\n"));
     int covered = 0;
-    const double worst = worstError(renderFrame(sim), [&](int column, int row) {
-      const Line ray = eye.ray(column, row);
-      std::vector<Fog> fogs;
-      for (const auto& s : cloud.stretches(ray)) fogs.push_back({s, cloud.absorption, cloud.source()});
-      // The top: by bisection on the height, which falls or rises along the whole way here.
-      const double end = 1e6;
-      auto below = [&](double s) { return glm::length(ray.at(s) + glm::dvec3(0, 0, radius)) - radius < top; };
-      double a = 0.0, b = end;
-      const bool from = below(0.0);
-      for (int i = 0; i < 80; ++i) (below(0.5 * (a + b)) == from ? a : b) = 0.5 * (a + b);
-      fogs.push_back({from ? Stretch{0.0, a} : Stretch{a, end}, extinction, B(285)});
-      return march(end, B(250), fogs, {});
-    }, &covered);
+    const double worst = worstError(
+        renderFrame(sim),
+        [&](int column, int row) {
+          const Line ray = eye.ray(column, row);
+          std::vector<Fog> fogs;
+          for (const auto& s : cloud.stretches(ray)) fogs.push_back({s, cloud.absorption, cloud.source()});
+          // The top: by bisection on the height, which falls or rises along the whole way here.
+          const double end = 1e6;
+          auto below = [&](double s) { return glm::length(ray.at(s) + glm::dvec3(0, 0, radius)) - radius < top; };
+          double a = 0.0, b = end;
+          const bool from = below(0.0);
+          for (int i = 0; i < 80; ++i) (below(0.5 * (a + b)) == from ? a : b) = 0.5 * (a + b);
+          fogs.push_back({from ? Stretch{0.0, a} : Stretch{a, end}, extinction, B(285)});
+          return march(end, B(250), fogs, {});
+        },
+        &covered);
     bound(name + ", worst pixel", worst, allowed, source);
   };
-  run("medium below the top, seen upwards", {{0, 0, 100}, {900, 0, 500}, 20, 24}, {900, 0, 500}, 120, 2e-5, "march with a height at every step; height in single precision");
+  run("medium below the top, seen upwards", {{0, 0, 100}, {900, 0, 500}, 20, 24}, {900, 0, 500}, 120, 2e-5,
+      "march with a height at every step; height in single precision");
   run("medium above the top, seen from below", {{0, 0, 100}, {3000, 0, 2500}, 12, 24}, {3000, 0, 2500}, 300, 2e-5, "march with a height at every step");
   run("camera inside a medium below the top", {{0, 0, 300}, {900, 0, 700}, 60, 24}, {20, 10, 320}, 150, 2e-5, "march with a height at every step");
 }
@@ -233,7 +249,8 @@ TEST(Media, AirEndsInsideTheMedium) {
     fogs.push_back({{0.0, a}, 1e-3, B(285)});
     return march(1e6, B(250), fogs, {});
   });
-  bound("air whose top lies within the medium (depths 0.15 and 0.6), worst pixel", worst, 0.02, "second order in the two optical depths: air spread evenly inside");
+  bound("air whose top lies within the medium (depths 0.15 and 0.6), worst pixel", worst, 0.02,
+        "second order in the two optical depths: air spread evenly inside");
 }
 
 // --- several ---------------------------------------------------------------------------------------------------------------------------
@@ -276,13 +293,15 @@ TEST(Media, SixteenChannelsInSeveralBatches) {
   auto planck = [](double um, double kelvin) { return 1.191042972397e8 / std::pow(um, 5) / std::expm1(14387.768775 / (um * kelvin)); };
   std::string channels = "[";
   for (int c = 0; c < 16; ++c)
-    channels += (c ? ", " : "") + std::string("{name: c") + std::to_string(c) + ", response: {band: [" + text(3.0 + 0.5 * c) + " um, " + text(3.7 + 0.5 * c) + " um]}}";
+    channels +=
+        (c ? ", " : "") + std::string("{name: c") + std::to_string(c) + ", response: {band: [" + text(3.0 + 0.5 * c) + " um, " + text(3.7 + 0.5 * c) + " um]}}";
   channels += "]";
   for (const std::string spectral : {"{samples: 6}", "{samples: 40, shared: true}"}) {
     const Eye eye{{0, 0, 0}, {1, 0, 0}, 0.5, 5};
     const auto sim = scene(
         "background: {temperature: 300 K}\natmosphere: {extinction: 0.01 /m, temperature: 280 K}\n"
-        "materials: {gas: {absorption: {wavelength: um, unit: /m, values: [[2, 0.1], [13, 1.2]]}, radiance: {wavelength: um, unit: W/(m2 sr um), values: [[2, 8], [13, "
+        "materials: {gas: {absorption: {wavelength: um, unit: /m, values: [[2, 0.1], [13, 1.2]]}, radiance: {wavelength: um, unit: W/(m2 sr um), values: [[2, "
+        "8], [13, "
         "0]]}}}\nentities:\n"
         "  - {name: c, shape: {model: sphere, radius: 1 m}, material: gas, temperature: 500 K, position: [10 m, 0 m, 0 m]}\n"
         "  - {name: p, shape: {model: plate, width: 9 m, height: 9 m}, material: blackbody, temperature: 350 K, position: [20 m, 0 m, 0 m]}\n" +
@@ -319,11 +338,12 @@ TEST(Media, FurtherRadiance) {
 TEST(Media, ThinSphereFlux) {
   const double k = 1e-5, r = 1.0, range = 50.0, air = 0.01;
   for (double extinction : {0.0, air}) {
-    const auto sim = scene((extinction > 0.0 ? "atmosphere: {extinction: " + text(extinction) + " /m}\n" : std::string()) +
-                           "entities: [{name: c, shape: {model: sphere, radius: 1 m}, material: {absorption: " + text(k) +
-                           " /m}, temperature: 400 K, position: [50 m, 0 m, 0 m]}]\n"
-                           "cameras:\n  - {name: c, film: {width: 64, height: 64}, field_of_view: 2.6 deg, aperture: 20 mm, position: [0 m, 0 m, 0 m], look_at: [1 m, 0 m, 0 m], "
-                           "samples: 2, small_bodies: 0, channels: [{name: lw, response: {band: [8 um, 12 um]}, output: irradiance}]}\n");
+    const auto sim = scene(
+        (extinction > 0.0 ? "atmosphere: {extinction: " + text(extinction) + " /m}\n" : std::string()) +
+        "entities: [{name: c, shape: {model: sphere, radius: 1 m}, material: {absorption: " + text(k) +
+        " /m}, temperature: 400 K, position: [50 m, 0 m, 0 m]}]\n"
+        "cameras:\n  - {name: c, film: {width: 64, height: 64}, field_of_view: 2.6 deg, aperture: 20 mm, position: [0 m, 0 m, 0 m], look_at: [1 m, 0 m, 0 m], "
+        "samples: 2, small_bodies: 0, channels: [{name: lw, response: {band: [8 um, 12 um]}, output: irradiance}]}\n");
     figure("optically thin sphere, irradiance" + std::string(extinction > 0.0 ? " through air" : "") + " [W/m2]", sum(layer(renderFrame(sim), "lw.irradiance")),
            4.0 / 3.0 * kPi * r * r * r * k * B(400) / (range * range) * std::exp(-extinction * range), 1e-3,
            "4/3 pi r3 k B tau/R2; near side, its own depth, silhouette on subpixels");

@@ -43,7 +43,7 @@ TEST(Microfacet, HemisphericalIsTheIntegral) {
           for (const auto& r : m->reflections) sum += r->brdf(w, light, view) * kPi / (kElevations * kAzimuths);
         }
       figure(print("rho at %.0f deg of ", degrees) + text.substr(0, 60), m->reflectance(w, angle), sum, 4e-3,
-             "uniform sums over 320,000 directions; tables of 1 and 2 deg");
+             "uniform sums over 320,000 directions; tables of 1 and 3 deg");
     }
   }
 }
@@ -121,7 +121,7 @@ TEST(Microfacet, PictureOfAGlint) {
   };
   for (const char* accuracy : {"", "accuracy: 1 %\n", "accuracy: reference\n"})
     figure(std::string("pigment beneath glass [W/(m2 sr)], ") + (*accuracy ? accuracy : "sampled"), off(accuracy), 2.0 * std::cos(theta) * body,
-           *accuracy ? 0.01 : 1e-3, "interfaced Lambertian, PHYSICS 4; angles linear between 2 degrees");
+           *accuracy ? 0.01 : 1e-3, "interfaced Lambertian, PHYSICS 4; angles linear between 3 degrees");
 }
 
 // In an enclosure of one temperature, everything shines as a black body, at any angle.

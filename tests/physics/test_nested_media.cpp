@@ -30,7 +30,8 @@ double radianceOf(const std::vector<Slab>& slabs, double low_um, double high_um)
 
 std::string world(const std::string& materials, const std::string& entities, const std::string& more = "") {
   return "materials:\n" + materials + "entities:\n" + entities + more +
-         "cameras:\n  - name: c\n    film: {width: 31, height: 31}\n    field_of_view: 8 deg\n    small_bodies: 0\n    aperture: 10 mm\n    position: [0 m, 0 m, 0 m]\n    heading: "
+         "cameras:\n  - name: c\n    film: {width: 31, height: 31}\n    field_of_view: 8 deg\n    small_bodies: 0\n    aperture: 10 mm\n    position: [0 m, 0 "
+         "m, 0 m]\n    heading: "
          "0 deg\n"
          "    channels: [{name: mw, response: {band: [4 um, 5 um]}}]\n";
 }

@@ -13,10 +13,13 @@ namespace {
 // F/2, 100 um pixels, radiance 3 W/(m2 sr um) everywhere, band 4 to 5 um, optics 0.8 falling to 0.6, efficiency 0.5.
 TEST(Quantities, FollowTheirDefinitions) {
   const auto sim = scene(
-      "background: {radiance: 3 W/(m2 sr um)}\ncameras:\n  - name: c\n    film: {width: 5, height: 5, pitch: 100 um}\n    focal_length: 100 mm\n    aperture: 50 mm\n"
-      "    optics: {wavelength: um, unit: \"1\", values: [[4, 0.8], [5, 0.6]]}\n    exposure: 4 ms\n    position: [0 m, 0 m, 0 m]\n    heading: 0 deg\n    channels:\n"
+      "background: {radiance: 3 W/(m2 sr um)}\ncameras:\n  - name: c\n    film: {width: 5, height: 5, pitch: 100 um}\n    focal_length: 100 mm\n    aperture: "
+      "50 mm\n"
+      "    optics: {wavelength: um, unit: \"1\", values: [[4, 0.8], [5, 0.6]]}\n    exposure: 4 ms\n    position: [0 m, 0 m, 0 m]\n    heading: 0 deg\n    "
+      "channels:\n"
       "      - {name: a, response: {band: [4 um, 5 um], value: 0.9}, quantum_efficiency: 0.5, gain: 2e6 V/W,\n"
-      "         output: [radiance, radiance_per_um, photon_radiance, irradiance, photon_irradiance, flux, focal_irradiance, exposure, photons, electrons, volts]}\n"
+      "         output: [radiance, radiance_per_um, photon_radiance, irradiance, photon_irradiance, flux, focal_irradiance, exposure, photons, electrons, "
+      "volts]}\n"
       "      - {name: b, response: {band: [4 um, 5 um], value: 0.9}, gain: 40 V/(W/m2), output: volts}\n");
   const Frame f = renderFrame(sim);
   auto value = [&](const char* name) { return at(layer(f, name), f, 2, 2); };
@@ -42,7 +45,8 @@ TEST(Quantities, FollowTheirDefinitions) {
 // One watt at 555 nm is 683 lumens; an equal-energy spectrum weighs the integral of V(lambda).
 TEST(Quantities, Photometric) {
   const auto sim = scene(
-      "background: {radiance: 1000 W/(m2 sr um)}\ncameras:\n  - name: c\n    film: {width: 5, height: 5, pitch: 100 um}\n    focal_length: 100 mm\n    aperture: 50 mm\n"
+      "background: {radiance: 1000 W/(m2 sr um)}\ncameras:\n  - name: c\n    film: {width: 5, height: 5, pitch: 100 um}\n    focal_length: 100 mm\n    "
+      "aperture: 50 mm\n"
       "    position: [0 m, 0 m, 0 m]\n    heading: 0 deg\n    channels:\n"
       "      - {name: green, response: {band: [0.555 um, 0.5553 um]}, output: [radiance, luminance, illuminance, focal_illuminance]}\n"
       "      - {name: all, response: {band: [0.36 um, 0.83 um]}, output: luminance}\n      - {name: y, response: cie_y}\n");
@@ -51,15 +55,18 @@ TEST(Quantities, Photometric) {
   figure("luminance per radiance at 555 nm [lm/W]", value("green.luminance") / value("green.radiance"), 683.0, 1e-4, "maximum luminous efficacy");
   figure("illuminance per luminance on axis [sr]", value("green.illuminance") / value("green.luminance"), 1e-6, 2e-6, "projected solid angle of the pixel");
   figure("film illuminance per luminance", value("green.focal_illuminance") / value("green.luminance"), kPi / 16.0, 2e-6, "pi/(4 F2), F/2");
-  figure("luminance of an equal-energy spectrum [cd/m2]", value("all.luminance"), 683.0 * 1000.0 * 0.10685662, 2e-3, "integral of V: 106.857 nm (CIE 1931, 5 nm); 16 Gauss points");
+  figure("luminance of an equal-energy spectrum [cd/m2]", value("all.luminance"), 683.0 * 1000.0 * 0.10685662, 2e-3,
+         "integral of V: 106.857 nm (CIE 1931, 5 nm); 16 Gauss points");
   figure("observer as a response", value("y.radiance") * 683.0, value("all.luminance"), 2e-3, "the same table two ways");
 }
 
 // A mesh file is the shape it holds: the jet as OBJ against the jet built in.
 TEST(Meshes, AFileIsTheShapeItHolds) {
   auto picture = [](const std::string& shape) {
-    return renderFrame(scene("entities: [{name: j, shape: " + shape + ", material: blackbody, temperature: 300 K, heading: 30 deg, pitch: 10 deg}]\n"
-                             "cameras: [{name: c, film: {width: 64, height: 48}, field_of_view: 12 deg, aperture: 20 mm, position: [90 m, 0 m, 9 m], look_at: j, truth: [entity, normal],"
+    return renderFrame(scene("entities: [{name: j, shape: " + shape +
+                             ", material: blackbody, temperature: 300 K, heading: 30 deg, pitch: 10 deg}]\n"
+                             "cameras: [{name: c, film: {width: 64, height: 48}, field_of_view: 12 deg, aperture: 20 mm, position: [90 m, 0 m, 9 m], look_at: "
+                             "j, truth: [entity, normal],"
                              " channels: [{name: a, response: {band: [8 um, 12 um]}}]}]\n"));
   };
   const Frame built = picture("{model: jet}"), read = picture("{model: mesh, file: assets/jet.obj, unit: 1 m}");

@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "scenarios/commands/commands.hpp"
-#include "sim/render/direct_pass.hpp"
 #include "sim/camera/small_bodies.hpp"
+#include "sim/render/direct_pass.hpp"
 #include "sim/scene/triangle_tree.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -273,9 +273,10 @@ TEST(Shadows, OfACasterFarOff) {
   const auto floor = [&](double range_m) {
     const glm::dvec3 to(std::sin(azimuth) * std::cos(elevation), std::cos(azimuth) * std::cos(elevation), std::sin(elevation));
     const glm::dvec3 at = range_m * to;
-    const Picture p = draw(scene("sun: {azimuth: 40 deg, elevation: 60 deg, temperature: 5772 K}\n" + std::string(kGrey) + "entities:\n" + ground(40.0) +
-                                 "  - {name: box, shape: {model: box, length: 2 m, width: 2 m, height: 2 m}, material: m, temperature: 0 K, position: [" + number(at.x) +
-                                 " m, " + number(at.y) + " m, " + number(at.z) + " m]}\n" + camera(128, 12.0, "[0 m, 0 m, 100 m]", "[0.01 m, 0 m, 0 m]")));
+    const Picture p =
+        draw(scene("sun: {azimuth: 40 deg, elevation: 60 deg, temperature: 5772 K}\n" + std::string(kGrey) + "entities:\n" + ground(40.0) +
+                   "  - {name: box, shape: {model: box, length: 2 m, width: 2 m, height: 2 m}, material: m, temperature: 0 K, position: [" + number(at.x) +
+                   " m, " + number(at.y) + " m, " + number(at.z) + " m]}\n" + camera(128, 12.0, "[0 m, 0 m, 100 m]", "[0.01 m, 0 m, 0 m]")));
     long dark = 0;
     for (float l : p.radiance) dark += l == 0.0f;
     return static_cast<double>(dark);

@@ -155,19 +155,22 @@ TEST(SmallBodies, GlintIsNotMissed) {
 std::string spheres(int count) {
   std::string all = "entities:\n";
   for (int i = 0; i < count; ++i)
-    all += "- {name: s" + std::to_string(i) + ", shape: {model: sphere, radius: " + std::to_string(0.1 + 0.3 * i / count) + " m}, material: " +
-           (i % 3 == 0 ? "glossy" : "plain") + ", temperature: " + std::to_string(300 + 10 * i) + " K, position: [" + std::to_string(0.5 * i) + " m, " +
-           std::to_string(std::fmod(3.7 * i, 11.0) - 5.0) + " m, " + std::to_string(std::fmod(5.3 * i, 9.0) - 4.0) + " m]}\n";
+    all += "- {name: s" + std::to_string(i) + ", shape: {model: sphere, radius: " + std::to_string(0.1 + 0.3 * i / count) +
+           " m}, material: " + (i % 3 == 0 ? "glossy" : "plain") + ", temperature: " + std::to_string(300 + 10 * i) + " K, position: [" +
+           std::to_string(0.5 * i) + " m, " + std::to_string(std::fmod(3.7 * i, 11.0) - 5.0) + " m, " + std::to_string(std::fmod(5.3 * i, 9.0) - 4.0) +
+           " m]}\n";
   return all;
 }
 
 // Direct mode draws bodies as tiles of one picture, buffered mode one by one.
 TEST(SmallBodies, AsTilesAsOneByOne) {
   const std::string rest =
-      "sun: {azimuth: 60 deg, elevation: 30 deg, temperature: 5772 K}\natmosphere: {extinction: 0.1 /km, temperature: 280 K}\nmaterials: {plain: {components: [{reflection: "
+      "sun: {azimuth: 60 deg, elevation: 30 deg, temperature: 5772 K}\natmosphere: {extinction: 0.1 /km, temperature: 280 K}\nmaterials: {plain: {components: "
+      "[{reflection: "
       "lambertian, reflectance: 0.2}]}, glossy: {components: [{reflection: phong, reflectance: 0.3, exponent: 9}]}}\n" +
       spheres(37) +
-      "cameras: [{name: c, film: {width: 48, height: 48}, field_of_view: 1 deg, aperture: 20 mm, position: [1000 m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], truth: [range, entity], "
+      "cameras: [{name: c, film: {width: 48, height: 48}, field_of_view: 1 deg, aperture: 20 mm, position: [1000 m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], "
+      "truth: [range, entity], "
       "spectral: {samples: 4}, channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n";
   const Frame tiles = renderFrame(scene("render: {mode: direct}\n" + rest)), alone = renderFrame(scene("render: {mode: buffered}\n" + rest));
   EXPECT_EQ(layer(tiles, "truth.entity").pixels, layer(alone, "truth.entity").pixels);
@@ -182,9 +185,11 @@ TEST(SmallBodies, AsTilesAsOneByOne) {
 // Where an accuracy is asked for, lines across a body are as many as its area takes.
 TEST(SmallBodies, LinesFollowTheAccuracy) {
   const auto sphere = [](double accuracy) {
-    return scene((accuracy > 0.0 ? "accuracy: " + std::to_string(100.0 * accuracy) + " %\n" : "") +
-                 "entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: blackbody, temperature: 600 K}]\ncameras: [{name: c, film: {width: 33, height: "
-                 "33}, field_of_view: 2 deg, aperture: 20 mm, position: [2000 m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n");
+    return scene(
+        (accuracy > 0.0 ? "accuracy: " + std::to_string(100.0 * accuracy) + " %\n" : "") +
+        "entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: blackbody, temperature: 600 K}]\ncameras: [{name: c, film: {width: 33, height: "
+        "33}, field_of_view: 2 deg, aperture: 20 mm, position: [2000 m, 0 m, 0 m], look_at: [0 m, 0 m, 0 m], channels: [{name: mw, response: {band: [3 um, 5 "
+        "um]}}]}]\n");
   };
   const Simulation any = sphere(0.0);
   int last = 16;
@@ -203,7 +208,8 @@ TEST(SmallBodies, LinesFollowTheAccuracy) {
   EXPECT_EQ(zoomedLines(any, 256, 0.0)[0], 256);
 }
 
-// The law that chooses lines: over directions, areas are off by no more than sqrt(0.0724 P h^3) / A. A box shows its three visible faces, and each edge twice in its outline.
+// The law that chooses lines: over directions, areas are off by no more than sqrt(0.0724 P h^3) / A. A box shows its three visible faces, and each edge twice
+// in its outline.
 TEST(SmallBodies, AreaIsAsGoodAsItsLines) {
   const glm::dvec3 size(2.0, 1.4, 0.8);
   constexpr double kRange_m = 20000.0;
@@ -216,8 +222,10 @@ TEST(SmallBodies, AreaIsAsGoodAsItsLines) {
       const glm::dvec3 to(r * std::cos(turn), r * std::sin(turn), z);
       const glm::dvec3 at = kRange_m * to;
       Simulation sim = scene(
-          "background: {temperature: 0 K}\nentities: [{name: b, shape: {model: box, length: 2 m, width: 1.4 m, height: 0.8 m}, material: blackbody, temperature: "
-          "600 K, heading: 0 deg, position: [0 m, 0 m, 0 m]}]\ncameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 0.06 deg, aperture: 20 mm, position: [" +
+          "background: {temperature: 0 K}\nentities: [{name: b, shape: {model: box, length: 2 m, width: 1.4 m, height: 0.8 m}, material: blackbody, "
+          "temperature: "
+          "600 K, heading: 0 deg, position: [0 m, 0 m, 0 m]}]\ncameras: [{name: c, film: {width: 9, height: 9}, field_of_view: 0.06 deg, aperture: 20 mm, "
+          "position: [" +
           print("%.9g", at.x) + " m, " + print("%.9g", at.y) + " m, " + print("%.9g", at.z) +
           " m], look_at: [0 m, 0 m, 0 m], channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n");
       sim.cameras[0].zoomedSamples = lines;

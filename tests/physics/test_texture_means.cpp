@@ -61,11 +61,12 @@ TEST(TextureMeans, OfWhatTexelsSend) {
 // Texels much larger than pixels, 700 K apart: powers of the difference must not swallow what is left within a pixel in single precision.
 TEST(TextureMeans, LargeTexelsOfHotAndCold) {
   const auto picture = [](const std::string& accuracy) {
-    return renderImage(scene("accuracy: " + accuracy +
-                             "\nbackground: {temperature: 0 K}\nentities:\n  - {name: p, shape: {model: plate, width: 60 m, height: 60 m}, material: blackbody, temperature: "
-                             "{rows: [[300 K, 1000 K, 300 K, 300 K], [300 K, 300 K, 1000 K, 300 K], [1000 K, 300 K, 300 K, 300 K], [300 K, 300 K, 300 K, 1000 K]]}, "
-                             "position: [0 m, 1000 m, 0 m], heading: 200 deg}\ncameras:\n  - {name: c, film: {width: 64, height: 64}, field_of_view: 2 deg, aperture: 20 mm, "
-                             "position: [0 m, 0 m, 0 m], heading: 0 deg,\n     channels: [{name: mw, response: {band: [3.7 um, 4.9 um]}}]}\n"));
+    return renderImage(
+        scene("accuracy: " + accuracy +
+              "\nbackground: {temperature: 0 K}\nentities:\n  - {name: p, shape: {model: plate, width: 60 m, height: 60 m}, material: blackbody, temperature: "
+              "{rows: [[300 K, 1000 K, 300 K, 300 K], [300 K, 300 K, 1000 K, 300 K], [1000 K, 300 K, 300 K, 300 K], [300 K, 300 K, 300 K, 1000 K]]}, "
+              "position: [0 m, 1000 m, 0 m], heading: 200 deg}\ncameras:\n  - {name: c, film: {width: 64, height: 64}, field_of_view: 2 deg, aperture: 20 mm, "
+              "position: [0 m, 0 m, 0 m], heading: 0 deg,\n     channels: [{name: mw, response: {band: [3.7 um, 4.9 um]}}]}\n"));
   };
   const CameraImage planned = picture("1 %"), exact = picture("reference");
   double worst = 0.0;
