@@ -188,6 +188,7 @@ std::optional<EnergyExcess> energyExcess(const Material& m, std::span<const Text
     for (double angle : angles) {
       const Parts parts = partsAt(m, w, angle);
       const double sum = product(parts, modifiers.greatest());
+      if (!std::isfinite(sum)) return EnergyExcess{sum, w, angle};
       if (sum <= 1.0 + kTolerance) continue;
       if (sum > worst.sum) worst = {sum, w, angle};
       if (modifiers.together()) continue;

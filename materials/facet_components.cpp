@@ -94,6 +94,7 @@ MadeReflection facetComponents(FacetSpec spec, const Location& where) {
   made.component = std::make_shared<Facets>(optics);
   if (optics->hasBeneath()) made.beneath = std::make_shared<Beneath>(optics);
   if (optics->spec().paneThickness_um) made.transmission = std::make_shared<Pane>(optics);
+  made.statesPerUnit = optics->statesPerUm();
   optics->addTo(made.within);
   return made;
 }

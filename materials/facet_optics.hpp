@@ -61,6 +61,8 @@ class FacetOptics {
   int facetAngles() const { return facetAngles_; }
   /// Of linear reading between a facet's angles, the largest seen.
   double angleError() const { return angleError_; }
+  /// So many thicknesses resolve the fringes of the film whose thickness is a state; 0: there is none.
+  double statesPerUm() const;
   bool hasBeneath() const { return spec_.pigment || mostLost_ > kWorthBeneath; }
   double validLow_um() const { return low_um_; }
   double validHigh_um() const { return high_um_; }

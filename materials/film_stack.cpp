@@ -54,6 +54,11 @@ FilmPower coherentRun(const Run& run, int polarisation) {
   while (j-- > 0) {
     const auto [own, through] = face(j);
     const Complex once = run.at(j + 1).once, twice = r * once * once, left = 1.0 + own * twice;
+    // At grazing incidence itself a face mirrors whatever lies beneath.
+    if (left == 0.0) {
+      r = own, t = 0.0;
+      continue;
+    }
     t = through * t * once / left;
     r = (own + twice) / left;
   }

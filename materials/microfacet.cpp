@@ -1,4 +1,7 @@
 // Facets of a substance given by its refractive index, bare or under thin films; what scatters beneath them; panes.
+#include <algorithm>
+#include <cmath>
+
 #include "materials/facet_components.hpp"
 #include "materials/reflection.hpp"
 
@@ -36,6 +39,22 @@ std::vector<FilmSpec> readLayers(const ComponentRecord& r, const char* key, bool
   return all;
 }
 
+/// Light scattered within is given back by n^2 of a substance that does not absorb.
+void refuseDarkBinder(const FacetSpec& spec, const Location& where) {
+  constexpr double kDark = 0.02;
+  constexpr int kPlaces = 400;
+  const double low = std::max(spec.beneath.validLow_um(), spec.pigment->validLow()), high = std::min(spec.beneath.validHigh_um(), spec.pigment->validHigh());
+  for (int i = 0; low < high && i <= kPlaces; ++i) {
+    const double w = std::clamp(low * std::pow(high / low, i / double(kPlaces)), low, high);
+    const auto n = spec.beneath(w);
+    if ((*spec.pigment)(w) > 0.0 && (n.imag() > kDark || n.real() < 1.0))
+      throw UserError(where,
+                      "a pigment within a substance that absorbs (n + ik = " + std::to_string(n.real()) + " + " + std::to_string(n.imag()) + "i at " +
+                          std::to_string(w) + " um)",
+                      "n of 1 or more and k up to 0.02 where the pigment is above 0", "let the pigment end there, or write 'pigment_is: apparent'");
+  }
+}
+
 MadeReflection makeFacets(const ComponentRecord& r) {
   FacetSpec spec{{}, readRefractiveIndex(r.record.value("index"), r.spectrumOf, r.substanceOf), r.record.number("roughness"), {}, {}, false, {}, {}};
   bool statesUsed = false;
@@ -46,6 +65,7 @@ MadeReflection makeFacets(const ComponentRecord& r) {
   spec.slopes = r.record.text("slopes") == "normal" ? Slopes::Normal : Slopes::Trowbridge;
   if (r.record.given("pigment")) spec.pigment = r.spectrum("pigment");
   spec.pigmentApparent = r.record.text("pigment_is") == "apparent";
+  if (spec.pigment && !spec.pigmentApparent) refuseDarkBinder(spec, r.record.where("pigment"));
   if (r.record.given("thickness")) spec.paneThickness_um = r.record.number("thickness");
   if (!spec.back.empty() && !spec.paneThickness_um)
     throw UserError(r.record.where("back"), "films on the back of what is no pane", "'back' with 'thickness'", "add the pane's 'thickness', or remove it");

@@ -30,6 +30,7 @@ struct MadeReflection {
   std::shared_ptr<ReflectionComponent> component;
   std::shared_ptr<ReflectionComponent> beneath;   ///< what lies under it and reflects too; null: nothing
   std::shared_ptr<const ViewModel> transmission;  ///< what the whole lets through; null: nothing
+  double statesPerUnit = 0.0;                     ///< so many states, per unit of it, resolve what it does; 0: as many as the model has
   Fingerprint within;                             ///< of what its parameters name besides what they say
 };
 

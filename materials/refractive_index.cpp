@@ -88,8 +88,9 @@ RefractiveIndex ofMap(const Value& value, const SpectrumOf& spectrumOf) {
 
 /// Looked at where it bends, between, and all over its range.
 void check(const RefractiveIndex& index, const Location& where) {
-  std::vector<double> all = index.knots_um();
   const double low = index.validLow_um(), high = index.validHigh_um();
+  if (low > high) throw UserError(where, "a refractive index whose n and k have no wavelength in common", "ranges that overlap", "extend one");
+  std::vector<double> all = index.knots_um();
   constexpr int kPlaces = 400;
   for (int i = 0; i <= kPlaces; ++i) all.push_back(std::clamp(low * std::pow(high / low, i / double(kPlaces)), low, high));
   for (double w : all) {
@@ -185,6 +186,7 @@ RefractiveIndex readRefractiveIndex(const Value& value, const SpectrumOf& spectr
     check(index, value.where);
     return index;
   }
+  if (!substanceOf) throw UserError(value.where, "a substance whose index is the name of another", "n and k, or a formula", "copy the other's index");
   const Value file = substanceOf(word, value.where);
   const Value* index = file.find("index");
   if (!index) throw UserError(file.where, "a substance without an 'index'", "'index: ...'", "add it");

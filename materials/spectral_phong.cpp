@@ -24,7 +24,7 @@ class SpectralPhong final : public ReflectionComponent {
     // Beyond its last entry the widest lobe is below 1e-8 of its height.
     const double last = std::min(kQuarter, std::acos(std::exp(-18.4 / std::max(low_, 1e-3)))), step = std::sqrt(8.0 * kBend / std::max(high_, 1.0));
     angles_ = {Angle::Specular, std::clamp(static_cast<int>(std::ceil(last / step)) + 1, kFewestAngles, kMostAngles), last};
-    steps_ = high_ > low_ ? 24 : 1;
+    steps_ = (high_ + 1.0) / (low_ + 1.0) > 1.0 + 1e-9 ? 24 : 1;
     for (int k = 0; k <= (steps_ > 1 ? steps_ : 0); ++k) {
       const PhongAlbedo albedo(exponentAt(k));
       for (int j = 0; j <= kViews; ++j) albedo_.push_back(albedo.at(kQuarter * j / kViews));

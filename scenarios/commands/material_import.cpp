@@ -38,13 +38,14 @@ std::vector<std::vector<double>> rowsOf(const std::string& text, size_t columns,
       throw UserError(where, "a row of " + std::to_string(row.size()) + " numbers", std::to_string(columns) + ", as its type says", "correct it");
     rows.push_back(std::move(row));
   }
+  if (rows.empty()) throw UserError(where, "no numbers", "rows of numbers", "fill them in");
   return rows;
 }
 
 std::string table(const std::vector<std::vector<double>>& rows) {
   std::string out = "[";
   for (size_t k = 0; k < rows.size(); ++k) {
-    out += (k ? (k % 6 ? ", [" : ",\n     [") : "[");
+    out += (k ? (k % 6 ? ", [" : ",\n         [") : "[");
     for (size_t c = 0; c < rows[k].size(); ++c) out += (c ? ", " : "") + shortNumber(rows[k][c]);
     out += "]";
   }
@@ -69,12 +70,19 @@ std::string ofDatabase(const Value& tree, const std::filesystem::path& file) {
     } else if (type->text == "tabulated n" || type->text == "tabulated k") {
       out += std::string("  ") + type->text.back() + ": {wavelength: um, unit: \"1\", values: " + table(rowsOf(need("data").text, 2, part.where)) + "}\n";
     } else if (type->text == "formula 1" || type->text == "formula 2" || type->text == "formula 5") {
-      const auto c = rowsOf(need("coefficients").text, [&] {
-        std::istringstream in(need("coefficients").text);
-        size_t n = 0;
-        for (double v; in >> v;) ++n;
-        return n;
-      }(), part.where).front();
+      const auto c =
+          rowsOf(
+              need("coefficients").text,
+              [&] {
+                std::istringstream in(need("coefficients").text);
+                size_t n = 0;
+                for (double v; in >> v;) ++n;
+                if (n % 2 == 0)
+                  throw UserError(part.where, std::to_string(n) + " coefficients", "an odd number: a constant, then pairs", "complete the last pair");
+                return n;
+              }(),
+              part.where)
+              .front();
       const auto range = rowsOf((part.find("wavelength_range") ? need("wavelength_range") : need("range")).text, 2, part.where).front();
       if (type->text == "formula 5") {
         // n = c1 + sum c_i lambda^c_(i+1): Cauchy's where the powers are -2, -4 ...
@@ -100,6 +108,9 @@ std::string ofDatabase(const Value& tree, const std::filesystem::path& file) {
   return out;
 }
 
+/// What is below is a channel that was taken out (USGS: -1.23e34).
+constexpr double kDeleted = -1.0;
+
 /// Two columns below lines of words.
 std::optional<std::string> ofColumns(const std::string& text, const std::filesystem::path& file) {
   std::istringstream in(text);
@@ -111,23 +122,25 @@ std::optional<std::string> ofColumns(const std::string& text, const std::filesys
     double w = 0.0, v = 0.0;
     std::string more;
     if (cells >> w >> v && !(cells >> more)) {
-      rows.push_back({w, v});
+      if (v > kDeleted) rows.push_back({w, v});
       continue;
     }
     if (!rows.empty() && line.find_first_not_of(" \t\r") != std::string::npos) return std::nullopt;
     ++words;
     if (line.rfind("Name:", 0) == 0) name = line.substr(5);
     if (line.rfind("Y Units:", 0) == 0) unit = line;
+    if (line.rfind("X Units:", 0) == 0 && line.find("icromet") == std::string::npos && line.find("um") == std::string::npos)
+      throw UserError({file.string(), words, 1, -1}, "wavelengths that are not in micrometres (" + line + ")", "micrometres", "convert them");
   }
   if (rows.size() < 2 || words == 0) return std::nullopt;
-  if (rows.front()[0] > rows.back()[0]) rows.assign(rows.rbegin(), rows.rend());
+  if (rows.front()[0] > rows.back()[0]) std::reverse(rows.begin(), rows.end());
   double most = 0.0;
   for (const auto& r : rows) most = std::max(most, r[1]);
   const bool percent = unit.find("ercent") != std::string::npos || most > 1.5;
   for (auto& r : rows) r[1] = std::clamp(percent ? 0.01 * r[1] : r[1], 0.0, 1.0);
   const size_t first = name.find_first_not_of(' ');
   return "description: " + quoted(first == std::string::npos ? file.stem().string() : name.substr(first)) + "\nsource: " + quoted(file.filename().string()) +
-         "\ncomponents:\n  - reflection: lambertian\n    reflectance:\n      wavelength: um\n      unit: \"1\"\n      outside: error\n      values:\n    " +
+         "\ncomponents:\n  - reflection: lambertian\n    reflectance:\n      wavelength: um\n      unit: \"1\"\n      outside: error\n      values:\n        " +
          table(rows) + "\n";
 }
 

@@ -148,6 +148,7 @@ void Builder::readComponent(const Value& value, const SpectrumReader& spectra, M
   const Value* modifier = value.find("modifier");
   const int texture = modifier ? readTexture(*modifier, "", "a modifier", 0.0, 1.0) : -1;
   const Value* state = model.state ? value.find(model.state->key) : nullptr;
+  const bool textured = state && state->kind == Value::Kind::Map;
   const auto addTo = [&](Material& to, double number) {
     const MadeReflection made = make(number);
     for (const auto& component : {made.component, made.beneath})
@@ -155,7 +156,11 @@ void Builder::readComponent(const Value& value, const SpectrumReader& spectra, M
     if (!made.transmission) return;
     if (to.transmission)
       throw UserError(record.where(), "a second component of material '" + m.name.substr(0, 60) + "' lets light through", "one pane", "remove one");
+    if (textured)
+      throw UserError(state->where, "a pane whose '" + model.state->key + "' is a texture", "a number, or a body that is not transparent",
+                      "several panes of different thickness do the same");
     to.transmission.emplace().model = made.transmission;
+    to.transmission->modifier = texture;
   };
   const auto add = [&](const std::function<double(size_t)>& stateOf) {
     addTo(m, stateOf(0));
@@ -165,7 +170,7 @@ void Builder::readComponent(const Value& value, const SpectrumReader& spectra, M
       entries[k] = std::move(entry);
     }
   };
-  if (!state || state->kind != Value::Kind::Map) {
+  if (!textured) {
     double number = model.state ? model.state->usual : 0.0;
     if (state) number = readNumber(*state, model.state->unit, model.state->key);
     if (state && !(number >= model.state->low && number <= model.state->high))
@@ -183,13 +188,17 @@ void Builder::readComponent(const Value& value, const SpectrumReader& spectra, M
   states.low = static_cast<double>(*low);
   // A texture of one value is a number: an end beside it that nothing reaches.
   states.high = *high > *low ? static_cast<double>(*high) : states.low + std::max(1e-6 * std::abs(states.low), 1e-9);
+  constexpr double kMostStates = 129.0;
+  const double wanted = std::ceil((states.high - states.low) * make(states.low).statesPerUnit) + 1.0;
+  if (wanted > kMostStates)
+    throw UserError(state->where,
+                    "a texture of '" + model.state->key + "' from " + briefNumber(states.low) + " to " + briefNumber(states.high) + " " + model.state->unit +
+                        ", which takes " + briefNumber(wanted) + " states to see each fringe",
+                    "a range that " + briefNumber(kMostStates) + " states resolve", "split the surface into parts of smaller ranges");
   // The components before it are the same in all of its states.
-  entries.assign(static_cast<size_t>(model.state->entries), std::make_shared<const Material>(m));
+  entries.assign(static_cast<size_t>(std::max(wanted, static_cast<double>(model.state->entries))), std::make_shared<const Material>(m));
   const double last = static_cast<double>(entries.size() - 1);
   m.states = states;
-  if (m.transmission)
-    throw UserError(state->where, "a pane whose '" + model.state->key + "' is a texture", "a number, or a body that is not transparent",
-                    "several panes of different thickness do the same");
   add([&](size_t k) { return states.low + (states.high - states.low) * static_cast<double>(k) / last; });
 }
 

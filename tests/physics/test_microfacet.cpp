@@ -141,6 +141,55 @@ TEST(Microfacet, EnclosureIsFlat) {
     }
 }
 
+// All that comes out of what goes in comes back: PHYSICS 4.
+TEST(Microfacet, ApparentPigmentIsWhatComesOut) {
+  const auto white = material("{reflection: microfacet, index: 1.5, roughness: 0.1, pigment: 1, pigment_is: apparent}");
+  for (double degrees : {0.0, 45.0, 80.0})
+    figure(print("a white apparent pigment beneath glass, %.0f deg", degrees), white->reflectance(0.6, degrees * kPi / 180.0), 1.0, 1e-9, "energy");
+}
+
+// Nothing of no thickness on nothing, up to grazing incidence itself.
+TEST(Microfacet, AFilmOfNoThicknessIsNone) {
+  const auto m = material("{reflection: microfacet, index: 1, roughness: 0.3, layers: [{index: 1.33, thickness: 0 um}]}");
+  for (int degrees = 0; degrees < 89; ++degrees) EXPECT_NEAR(m->reflectance(0.6, degrees * kPi / 180.0), 0.0, 1e-3) << degrees;
+  EXPECT_TRUE(std::isfinite(m->reflectance(0.6, 0.5 * kPi)));
+}
+
+double seenPlate(const std::string& component, const std::string& more = "") {
+  const Frame f = renderFrame(scene(
+      "accuracy: none\nmaterials: {m: {components: [" + component +
+      "]}}\nambient: {radiance: \"1 W/(m2 sr um)\"}\nbackground: {radiance: \"3 W/(m2 sr um)\"}\nentities: [{name: p, shape: {model: plate, width: 40 m, "
+      "height: 40 m}, material: "
+      "m, "
+      "temperature: 0 K}]\ncameras: [{name: c, film: {width: 3, height: 3}, field_of_view: 0.02 deg, aperture: 20 mm, position: [10 m, 0 m, 0 m], look_at: p, "
+      "channels: [{name: c, response: {band: [" +
+      (more.empty() ? std::string("0.448 um, 0.452 um") : more) + "]}}]}]\n"));
+  return at(layer(f, "c.radiance"), f, 1, 1);
+}
+
+// A thickness out of a texture between its states, against the same thickness by a number.
+TEST(Microfacet, StatesResolveFringes) {
+  const std::string film = "{reflection: microfacet, index: aluminium, roughness: 0.1, layers: [{index: {n: 2.4, k: 0.05}}], film_thickness: ";
+  const double bare = seenPlate("{reflection: microfacet, index: aluminium, roughness: 0.1}");
+  double worst = 0.0;
+  int k = 0;
+  for (double um : {0.151, 0.253, 0.317, 0.389, 0.444}) {
+    // The middle of a row of two is halfway, on a state or between two.
+    const double half = 0.0531 + 0.0123 * k++;
+    const double got = seenPlate(film + print("{rows: [[%.9g um, %.9g um]]}}", um - half, um + half)), want = seenPlate(film + print("%.9g um}", um));
+    worst = std::max(worst, std::abs(got - want) / bare);
+  }
+  EXPECT_GT(worst, 1e-6);
+  bound("a film's thickness from a texture against the same by a number, of the bare metal", worst, 0.02, "an eighth of 0.4 rad squared at 0.45 um");
+}
+
+// Half of a pane: half of what it lets through and half of what it mirrors; the rest is black.
+TEST(Microfacet, APanesModifierIsItsShare) {
+  const std::string pane = "{reflection: microfacet, index: 4, roughness: 0.01, thickness: 1 mm";
+  figure("half of a pane over 3 W/(m2 sr um) under 1 [W/(m2 sr)]", seenPlate(pane + ", modifier: {rows: [[0.5, 0.5]]}}"), 0.5 * seenPlate(pane + "}"), 1e-6,
+         "linear");
+}
+
 std::string refusal(const std::string& component) {
   try {
     material(component);
@@ -162,6 +211,14 @@ TEST(Microfacet, MistakesAreNamed) {
   has("{reflection: microfacet, index: 1.5, roughness: 0.1, layers: [{index: 1.4, thickness: -5 nm}]}", "thickness");
   has("{reflection: microfacet, index: 1.5, roughness: 0.1, layers: [{index: 1.4}]}", "without a thickness");
   has("{reflection: microfacet, index: 1.5, roughness: 0.1, film_thickness: 100 nm}", "no layer takes");
+  has("{reflection: microfacet, index: 1.5, thickness: 1 mm, roughness: 0.1, layers: [{index: ito}], film_thickness: {rows: [[1 nm, 100 nm]]}}",
+      "a pane whose");
+  has("{reflection: microfacet, index: 1.5, roughness: 0.1, layers: [{index: 2}], film_thickness: {rows: [[0 um, 50 um]]}}", "split the surface");
+  has("{reflection: microfacet, index: silica_film, roughness: 0.1, pigment: 0.3}", "absorbs");
+  has("{reflection: microfacet, index: {n: {wavelength: um, unit: \"1\", values: [[1, 1.5], [2, 1.5]]}, k: {wavelength: um, unit: \"1\", values: [[3, 0], [4, "
+      "0]]}}, "
+      "roughness: 0.1}",
+      "no wavelength in common");
   has("{reflection: microfacet, index: golt, roughness: 0.1}", "did you mean 'gold'");
   has("{reflection: microfacet, index: {table: [[1, 1.5], [2, 1.5, 0]]}, roughness: 0.1}", "without three numbers");
   has("{reflection: microfacet, index: {sellmeier: [[1, 0.01]]}, roughness: 0.1}", "range");

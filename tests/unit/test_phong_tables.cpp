@@ -74,6 +74,12 @@ TEST(SpectralPhong, IsPhongAtEachWavelength) {
     figure(print("BRDF 0.1 rad off the mirror at %g um", w), m->reflections[0]->brdf(w, l, v),
            0.2 / kPi + rho * (n + 2.0) / (2.0 * kPi) * std::pow(std::cos(0.1), n), 1e-9, "the formula");
   }
+  // Exponents that differ by rounding alone.
+  EXPECT_NEAR(
+      material(
+          "{reflection: spectral_phong, diffuse: 0.1, specular: 0.5, exponent: {wavelength: um, unit: \"1\", values: [[0.3, 7], [1, 7.0000000000000009]]}}")
+          ->reflectance(0.5, 0.0),
+      0.6, 1e-6);
   EXPECT_THROW(material("{reflection: spectral_phong, diffuse: 0.5, specular: 0.6, exponent: 10}"), UserError);
 }
 
