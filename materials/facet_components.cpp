@@ -13,28 +13,33 @@ constexpr double kQuarter = 0.5 * kPi;
 constexpr int kBeneathAngles = 31;
 static_assert((FacetOptics::kViews - 1) % (kBeneathAngles - 1) == 0);
 
-/// The facets' own mirror images: a facet's reflectance over the difference angle x the lobe.
-class Facets final : public ReflectionComponent {
+class PartOfFace : public ReflectionComponent {
  public:
-  explicit Facets(std::shared_ptr<const FacetOptics> optics)
-      : ReflectionComponent(facetLobe(optics->spec().slopes, optics->spec().roughness)), optics_(std::move(optics)) {}
-  std::array<AngleAxis, 2> axes() const override { return {AngleAxis{Angle::Difference, optics_->facetAngles(), kQuarter}, AngleAxis{}}; }
-  double column(double w, double angle, double) const override { return byAngle(optics_->at(w).facet, angle); }
-  double lobeAt(const glm::dvec3& l, const glm::dvec3& v) const override { return facetLobeAt(optics_->spec().slopes, optics_->spec().roughness, l, v); }
-  double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w).hemispherical, angle); }
+  PartOfFace(Lobe lobe, std::shared_ptr<const FacetOptics> optics) : ReflectionComponent(std::move(lobe)), optics_(std::move(optics)) {}
   bool hemisphericalVaries() const override { return true; }
   std::vector<double> knots_um() const override { return optics_->knots_um(); }
   double validLow_um() const override { return optics_->validLow_um(); }
   double validHigh_um() const override { return optics_->validHigh_um(); }
 
- private:
+ protected:
   std::shared_ptr<const FacetOptics> optics_;
 };
 
-/// What comes back by way of several facets, or from beneath them: products of a function of either direction.
-class Beneath final : public ReflectionComponent {
+/// The facets' own mirror images: a facet's reflectance over the difference angle x the lobe.
+class Facets final : public PartOfFace {
  public:
-  explicit Beneath(std::shared_ptr<const FacetOptics> optics) : optics_(std::move(optics)) {}
+  explicit Facets(const std::shared_ptr<const FacetOptics>& optics) : PartOfFace(facetLobe(optics->spec().slopes, optics->spec().roughness), optics) {}
+  std::array<AngleAxis, 2> axes() const override { return {AngleAxis{Angle::Difference, optics_->facetAngles(), kQuarter}, AngleAxis{}}; }
+  double column(double w, double angle, double) const override { return byAngle(optics_->at(w).facet, angle); }
+  double lobeAt(const glm::dvec3& l, const glm::dvec3& v) const override { return facetLobeAt(optics_->spec().slopes, optics_->spec().roughness, l, v); }
+  double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w).hemispherical, angle); }
+  double angleError() const override { return optics_->angleError(); }
+};
+
+/// What comes back by way of several facets, or from beneath them: products of a function of either direction.
+class Beneath final : public PartOfFace {
+ public:
+  explicit Beneath(const std::shared_ptr<const FacetOptics>& optics) : PartOfFace({}, optics) {}
   std::array<AngleAxis, 2> axes() const override {
     return {AngleAxis{Angle::Incidence, kBeneathAngles, kQuarter}, AngleAxis{Angle::View, kBeneathAngles, kQuarter}};
   }
@@ -52,13 +57,6 @@ class Beneath final : public ReflectionComponent {
     return row.again * both(optics_->lost()) + (row.scattered > 0.0 ? row.scattered * both(row.through) : 0.0);
   }
   double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w).beneath, angle); }
-  bool hemisphericalVaries() const override { return true; }
-  std::vector<double> knots_um() const override { return optics_->knots_um(); }
-  double validLow_um() const override { return optics_->validLow_um(); }
-  double validHigh_um() const override { return optics_->validHigh_um(); }
-
- private:
-  std::shared_ptr<const FacetOptics> optics_;
 };
 
 class Pane final : public ViewModel {

@@ -71,10 +71,11 @@ std::vector<AngleShares> sharesOf(Slopes slopes, double a, int angles) {
 /// The same for all of one roughness: states by the dozen share them.
 std::shared_ptr<const std::vector<AngleShares>> knownShares(Slopes slopes, double roughness, int angles) {
   static std::mutex mutex;
-  static std::map<std::tuple<int, double, int>, std::shared_ptr<const std::vector<AngleShares>>> all;
+  static std::map<std::tuple<int, double, int>, std::weak_ptr<const std::vector<AngleShares>>> all;
   const std::lock_guard lock(mutex);
-  auto& own = all[{static_cast<int>(slopes), roughness, angles}];
-  if (!own) own = std::make_shared<const std::vector<AngleShares>>(sharesOf(slopes, roughness, angles));
+  auto& known = all[{static_cast<int>(slopes), roughness, angles}];
+  auto own = known.lock();
+  if (!own) known = own = std::make_shared<const std::vector<AngleShares>>(sharesOf(slopes, roughness, angles));
   return own;
 }
 
@@ -102,6 +103,7 @@ FacetOptics::FacetOptics(FacetSpec spec)
     for (const FilmSpec& f : *films) low_um_ = std::max(low_um_, f.index.validLow_um()), high_um_ = std::min(high_um_, f.index.validHigh_um());
   if (spec_.pigment) low_um_ = std::max(low_um_, spec_.pigment->validLow()), high_um_ = std::min(high_um_, spec_.pigment->validHigh());
   if (low_um_ > high_um_) return;  // its makers refuse it
+  statesPerUm_ = findStates();
   chooseAngles();
   share_ = knownShares(spec_.slopes, spec_.roughness, facetAngles_);
   for (const AngleShares& view : *share_) lost_.push_back(std::max(0.0, 1.0 - view.sum()));
@@ -109,31 +111,26 @@ FacetOptics::FacetOptics(FacetSpec spec)
 }
 
 void FacetOptics::chooseAngles() {
-  if (statesPerUm() > 0.0) {
-    facetAngles_ = kStateAngles;
-    return;
-  }
+  const double low = std::clamp(0.3, low_um_, high_um_), high = std::clamp(30.0, low_um_, high_um_);
   constexpr int kWavelengths = 24;
-  for (facetAngles_ = 46;; facetAngles_ = 2 * facetAngles_ - 1) {
+  for (facetAngles_ = statesPerUm_ > 0.0 ? kStateAngles : 46;; facetAngles_ = 2 * facetAngles_ - 1) {
     angleError_ = 0.0;
     for (int i = 0; i <= kWavelengths; ++i) {
-      const double low = std::clamp(0.3, low_um_, high_um_), high = std::clamp(30.0, low_um_, high_um_);
-      const double w = std::clamp(low * std::pow(high / low, i / double(kWavelengths)), low_um_, high_um_);
-      const auto layers = layersAt(spec_.layers, w);
-      const auto n = spec_.beneath(w);
-      double before = filmPower(layers, n, w, 0.0).reflectance;
+      const double w = std::clamp(low * std::pow(high / low, i / double(kWavelengths)), low, high);
+      const Stack stack = stackAt(w);
+      const auto at = [&](double angle) { return filmPower(stack.layers, stack.last, w, std::sin(angle)).reflectance; };
+      double before = at(0.0);
       for (int j = 0; j + 1 < facetAngles_; ++j) {
-        const double next = filmPower(layers, n, w, std::sin(angleAt(j + 1, facetAngles_))).reflectance,
-                     middle = filmPower(layers, n, w, std::sin(0.5 * (angleAt(j, facetAngles_) + angleAt(j + 1, facetAngles_)))).reflectance;
+        const double next = at(angleAt(j + 1, facetAngles_)), middle = at(0.5 * (angleAt(j, facetAngles_) + angleAt(j + 1, facetAngles_)));
         angleError_ = std::max(angleError_, std::abs(middle - 0.5 * (before + next)));
         before = next;
       }
     }
-    if (angleError_ <= kAngleError || 2 * facetAngles_ - 1 > kMostFacetAngles) return;
+    if (statesPerUm_ > 0.0 || angleError_ <= kAngleError || 2 * facetAngles_ - 1 > kMostFacetAngles) return;
   }
 }
 
-double FacetOptics::statesPerUm() const {
+double FacetOptics::findStates() const {
   double most = 0.0;
   for (const auto* films : {&spec_.layers, &spec_.back})
     for (const FilmSpec& f : *films)
@@ -150,16 +147,19 @@ std::vector<FilmLayer> FacetOptics::layersAt(const std::vector<FilmSpec>& films,
   return layers;
 }
 
+FacetOptics::Stack FacetOptics::stackAt(double w) const {
+  Stack stack{layersAt(spec_.layers, w), spec_.beneath(w)};
+  if (!spec_.paneThickness_um) return stack;
+  stack.layers.push_back({stack.last, *spec_.paneThickness_um, false});
+  for (const FilmLayer& l : layersAt(spec_.back, w)) stack.layers.push_back(l);
+  stack.last = 1.0;
+  return stack;
+}
+
 FacetRow FacetOptics::rowAt(double w) const {
   FacetRow row;
   const auto n = spec_.beneath(w);
-  std::vector<FilmLayer> layers = layersAt(spec_.layers, w);
-  std::complex<double> last = n;
-  if (spec_.paneThickness_um) {
-    layers.push_back({n, *spec_.paneThickness_um, false});
-    for (const FilmLayer& l : layersAt(spec_.back, w)) layers.push_back(l);
-    last = 1.0;
-  }
+  const auto& [layers, last] = stackAt(w);
   // What a facet lets in of what it does not reflect, at the views.
   std::vector<double> passed(kViews, 0.0);
   const int perView = (facetAngles_ - 1) % (kViews - 1) == 0 ? (facetAngles_ - 1) / (kViews - 1) : 0;
@@ -177,7 +177,7 @@ FacetRow FacetOptics::rowAt(double w) const {
   for (int v = 0; v < kViews; ++v) {
     const double sent = (*share_)[static_cast<size_t>(v)].of(row.facet);
     // Smooth faces lose at grazing views alone, less than is worth a component: counted as if their lobe sent it on.
-    row.hemispherical.push_back(mostLost_ > kWorthBeneath ? sent : sent / (1.0 - lost_[static_cast<size_t>(v)]));
+    row.hemispherical.push_back(mostLost_ > kWorthBeneath || lost_[static_cast<size_t>(v)] >= 1.0 ? sent : sent / (1.0 - lost_[static_cast<size_t>(v)]));
     atViews.push_back(byAngle(row.facet, angleAt(v, kViews)));
   }
   // What facets send on to other facets: as much as they lose, reflected once more at least. Source: Kulla and Conty, SIGGRAPH courses 2017.
@@ -229,7 +229,7 @@ const FacetRow& FacetOptics::at(double w) const {
   if (!row) {
     row = std::make_shared<const FacetRow>(rowAt(w));
     const std::lock_guard lock(mutex_);
-    if (rows_.size() >= (statesPerUm() > 0.0 ? kStateRows : kMostRows)) rows_.clear();
+    if (rows_.size() >= (statesPerUm_ > 0.0 ? kStateRows : kMostRows)) rows_.clear();
     rows_[w] = row;
   }
   last = {number_, w, std::move(row)};

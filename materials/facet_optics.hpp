@@ -62,7 +62,7 @@ class FacetOptics {
   /// Of linear reading between a facet's angles, the largest seen.
   double angleError() const { return angleError_; }
   /// So many thicknesses resolve the fringes of the film whose thickness is a state; 0: there is none.
-  double statesPerUm() const;
+  double statesPerUm() const { return statesPerUm_; }
   bool hasBeneath() const { return spec_.pigment || mostLost_ > kWorthBeneath; }
   double validLow_um() const { return low_um_; }
   double validHigh_um() const { return high_um_; }
@@ -72,10 +72,17 @@ class FacetOptics {
  private:
   FacetRow rowAt(double wavelength_um) const;
   std::vector<FilmLayer> layersAt(const std::vector<FilmSpec>& films, double wavelength_um) const;
+  /// All that a facet has on and in it, down to the half space at its end.
+  struct Stack {
+    std::vector<FilmLayer> layers;
+    std::complex<double> last;
+  };
+  Stack stackAt(double wavelength_um) const;
+  double findStates() const;
   void chooseAngles();
 
   FacetSpec spec_;
-  double low_um_, high_um_, mostLost_ = 0.0, angleError_ = 0.0;
+  double low_um_, high_um_, mostLost_ = 0.0, angleError_ = 0.0, statesPerUm_ = 0.0;
   int facetAngles_ = 46;
   std::shared_ptr<const std::vector<AngleShares>> share_;  ///< by view
   std::vector<double> lost_;

@@ -18,6 +18,7 @@ constexpr double kMostFacets = 64.0;
 std::vector<FilmSpec> readLayers(const ComponentRecord& r, const char* key, bool& statesUsed) {
   std::vector<FilmSpec> all;
   if (!r.record.given(key)) return all;
+  const bool textured = r.record.given("film_thickness") && r.record.value("film_thickness").kind == Value::Kind::Map;
   for (const Value& value : r.record.value(key).items) {
     const Record own(value, filmLayerTable());
     FilmSpec film{readRefractiveIndex(own.value("index"), r.spectrumOf, r.substanceOf), 0.0, true, false};
@@ -29,7 +30,7 @@ std::vector<FilmSpec> readLayers(const ComponentRecord& r, const char* key, bool
       statesUsed = true;
     }
     film.thickness_um = given ? own.number("thickness") : r.state;
-    film.varies = !given;
+    film.varies = !given && textured;
     film.coherent = own.given("coherent") ? own.boolean("coherent") : film.thickness_um <= kCoherent_um;
     if (film.coherent && film.thickness_um > kMostCoherent_um)
       throw UserError(own.where("coherent"), "a coherent layer of " + std::to_string(film.thickness_um) + " um", "up to 100 um",

@@ -35,6 +35,8 @@ class SpectralPhong final : public ReflectionComponent {
     const double n = exponent_(w), c = std::cos(std::min(angle, angles_.last_rad));
     return diffuse_(w) / kPi + specular_(w) * (n + 2.0) / (2.0 * kPi) * (c > 0.0 ? std::pow(c, n) : 0.0);
   }
+  /// n step^2 / 8 of the peak of the narrowest lobe: where exponents lie far apart, more than kBend.
+  double angleError() const override { return high_ * std::pow(angles_.at(1), 2.0) / 8.0; }
   double hemispherical(double w, double angle) const override {
     const double n = exponent_(w),
                  along = steps_ > 1 ? std::clamp(std::log((n + 1.0) / (low_ + 1.0)) / std::log((high_ + 1.0) / (low_ + 1.0)), 0.0, 1.0) * steps_ : 0.0;

@@ -41,9 +41,10 @@ std::string sceneOf(const std::string& material, const std::string& materials, b
         "sun: {azimuth: 60 deg, elevation: 40 deg, irradiance: {product: [\"0.4 W/(m2 um)\", cie_d65]}}\n"
         "ambient: {radiance: {product: [\"0.3 W/(m2 sr um)\", cie_d65]}}\nbackground: {radiance: {product: [\"0.03 W/(m2 sr um)\", cie_d65]}}\n";
   else scene += "ambient: {temperature: 280 K}\nbackground: {temperature: 250 K}\n";
-  scene += "entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " + material +
-           ", temperature: 320 K}]\ncameras: [{name: sphere, film: {width: 256, height: 256}, field_of_view: 12.5 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], "
-           "look_at: s, ";
+  scene +=
+      "entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " + material +
+      ", temperature: 320 K}]\ncameras: [{name: sphere, film: {width: 256, height: 256}, field_of_view: 12.5 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], "
+      "look_at: s, ";
   return scene + (eye ? "eye: true}]\n" : line("channels: [{name: ir, response: {band: [%.6g um, %.6g um]}}]}]\n", low_um, high_um));
 }
 
@@ -85,10 +86,12 @@ std::string describe(const Material& m, const std::string& description) {
     const auto axes = r->axes();
     const int entries = axes[0].count * axes[1].count;
     out += (&r == &m.reflections.front() ? ": " : ", ") + (r->lobe().function.empty() ? std::string("no lobe") : r->lobe().function) +
-           (entries > 1 ? line(" x a table of %d angles", entries) : std::string());
+           (entries > 1 ? line(" x a table of %d angles", entries) : std::string()) +
+           (r->angleError() > 0.0 ? line(" (linear between them, off by %.2g at most)", r->angleError()) : std::string());
   }
   out += "\n\n| wavelength [um] | reflectance at 0 deg | 45 | 75 | 85 | emissivity at 0 deg | 45 | 75 | 85 |";
-  out += m.transmission ? " transmittance at 0 deg | 45 | 75 | 85 |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n" : "\n|---|---|---|---|---|---|---|---|---|\n";
+  out += m.transmission ? " transmittance at 0 deg | 45 | 75 | 85 |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
+                        : "\n|---|---|---|---|---|---|---|---|---|\n";
   for (double w : kTable_um) {
     if (w < m.validLow_um() || w > m.validHigh_um()) continue;
     out += line("| %.4g |", w);
@@ -147,7 +150,8 @@ std::string descriptionOf(const std::filesystem::path& file) {
 }
 
 void list(const Libraries& libraries) {
-  for (const auto& [title, folder] : {std::pair{"materials", libraries.materials}, std::pair{"substances (what 'index:' names)", libraries.materials.parent_path() / "substances"}}) {
+  for (const auto& [title, folder] :
+       {std::pair{"materials", libraries.materials}, std::pair{"substances (what 'index:' names)", libraries.materials.parent_path() / "substances"}}) {
     std::vector<std::filesystem::path> files;
     for (const auto& entry : std::filesystem::directory_iterator(folder))
       if (entry.path().extension() == ".yaml") files.push_back(entry.path());

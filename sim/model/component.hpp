@@ -57,6 +57,8 @@ class ReflectionComponent {
   virtual double column(double wavelength_um, double angle1_rad, double angle2_rad) const = 0;
   virtual std::array<AngleAxis, 2> axes() const { return {}; }
   const Lobe& lobe() const { return lobe_; }
+  /// Of reading column() linearly between the entries of its axes: the largest found, of what a mirror returns; 0 where it is such a table itself.
+  virtual double angleError() const { return 0.0; }
   /// The lobe's value for directions in a frame whose z is the normal.
   virtual double lobeAt(const glm::dvec3& light, const glm::dvec3& view) const;
   /// Directional-hemispherical reflectance for a view angle: integral of BRDF cos(theta_l) over the hemisphere.
