@@ -134,7 +134,8 @@ std::string planText(const PlannedEye& eye) {
     if (s >= plan.parts.size()) continue;
     const PredictedParts& p = plan.parts[s];
     out += "  " + padded("", widest, false) + "   of it wavelengths " + percent(p.wavelengths) + ", tables " + percent(p.tables) + ", terms left out " +
-           percent(p.dropped) + ", precision " + percent(p.precision) + "; at the extremes " + percent(p.extremes) + "\n";
+           percent(p.dropped) + ", precision " + percent(p.precision) +
+           (plan.surroundingsLoss.empty() ? "" : ", light from all around " + percent(p.surroundings)) + "; at the extremes " + percent(p.extremes) + "\n";
   }
   if (eye.camera) {
     out += "  beside it geometry, " + edgeText(*eye.camera, plan.accuracy);

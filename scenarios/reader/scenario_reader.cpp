@@ -117,10 +117,10 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     b.readAtmosphere(r);
     b.readBackground(r);
     b.readSun(r);
-    b.readAmbient(r);
     b.readAccuracy(r);
     b.readMaterials(r);
     b.readGround(r);
+    b.readAmbient(r);
     b.readEntities(r);
     if (sim.mode == RenderMode::Direct && sim.hasTransparent())
       throw UserError(Record(r.value("render"), tables::render()).where("mode"), "direct mode cannot draw what is seen through something transparent",

@@ -176,6 +176,9 @@ void Builder::readAmbient(const Record& scenario) {
                     "add 'atmosphere: hazy_us76', or give a temperature or radiance");
   try {
     simulation_.ambient = meanSky(simulation_.air, simulation_.sun, simulation_.background, 0.0, simulation_.frame.earthRadius_m());
+    simulation_.surroundings =
+        skyAndGround(simulation_.air, simulation_.sun, simulation_.background, simulation_.materials[static_cast<size_t>(simulation_.ground->material)],
+                     simulation_.ground->temperature_K, simulation_.frame.earthRadius_m());
   } catch (const OutsideSpectrum& e) {
     throw UserError(r.where("from"), std::string("the sky needs the sun and the background wherever the air has data: ") + e.what(),
                     "spectra from 0.4 to 14.2 um", "extend the table, or declare 'outside: hold' or 'outside: zero' if that is true");

@@ -237,10 +237,15 @@ double ReflectionComponent::brdf(double wavelength_um, const glm::dvec3& l, cons
   return column(wavelength_um, angleBetween(a[0].angle, l, v), angleBetween(a[1].angle, l, v)) * lobeAt(l, v);
 }
 
-double ReflectionComponent::hemispherical(double wavelength_um, double viewAngle_rad) const {
-  auto grid = axes();
+std::array<AngleAxis, 2> ReflectionComponent::integrationAxes(bool bends) const {
   // A lobe counts as an axis about the mirrored direction, in steps of its width; cos^n is below 1e-17 at 9 / sqrt(n).
-  if (const Lobe& own = lobe(); !own.file.empty()) grid = {AngleAxis{Angle::Specular, 49, std::min(0.5 * kPi, 9.0 / std::sqrt(own.exponent + 1.0))}, grid[0]};
+  if (const Lobe& own = lobe(); !own.file.empty()) return {AngleAxis{Angle::Specular, 49, std::min(0.5 * kPi, 9.0 / std::sqrt(own.exponent + 1.0))},
+            bends ? axes()[0] : AngleAxis{}};
+  return axes();
+}
+
+double ReflectionComponent::hemispherical(double wavelength_um, double viewAngle_rad) const {
+  const auto grid = integrationAxes();
   const glm::dvec3 view(std::sin(viewAngle_rad), 0.0, std::cos(viewAngle_rad));
   double sum = 0.0;
   integrateHemisphere(grid, viewAngle_rad, [&](const LightSample& s) { sum += s.weight * brdf(wavelength_um, s.light, view); });

@@ -63,6 +63,8 @@ class ReflectionComponent {
   virtual double lobeAt(const glm::dvec3& light, const glm::dvec3& view) const;
   /// Directional-hemispherical reflectance for a view angle: integral of BRDF cos(theta_l) over the hemisphere.
   virtual double hemispherical(double wavelength_um, double viewAngle_rad) const;
+  /// Axes by which an integral over all light, for a view, finds a lobe as narrow as this one's; `bends`: and where its column bends under the lobe.
+  std::array<AngleAxis, 2> integrationAxes(bool bends = true) const;
   /// The whole BRDF [1/sr].
   double brdf(double wavelength_um, const glm::dvec3& light, const glm::dvec3& view) const;
   /// True where hemispherical() changes with the view angle.

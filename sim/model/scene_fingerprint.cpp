@@ -114,7 +114,7 @@ void addTo(Fingerprint& f, const Material& m) {
 }
 
 void addTo(Fingerprint& f, const Simulation& sim) {
-  const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, textures, materials, entities, lights, sun, ambient, background,
+  const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, textures, materials, entities, lights, sun, ambient, surroundings, background,
                ground, air, cameras, probes, commands, sinks] = sim;
   f.add(static_cast<double>(seed)).add(static_cast<int>(mode)).add(shadows);
   const auto& [latitude_rad, longitude_rad, height_m] = frame.origin();
@@ -131,6 +131,8 @@ void addTo(Fingerprint& f, const Simulation& sim) {
   for (const PointLight& p : lights) addTo(f, p);
   addTo(f, sun);
   addTo(f, ambient);
+  f.add(surroundings != nullptr);
+  if (surroundings) surroundings->addTo(f);
   addTo(f, background);
   f.add(ground.has_value());
   if (ground) f.add(ground->material).add(ground->temperature_K);

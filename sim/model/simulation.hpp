@@ -12,6 +12,7 @@
 #include "sim/model/material.hpp"
 #include "sim/model/sink.hpp"
 #include "sim/model/stage.hpp"
+#include "sim/model/surroundings.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectral_rule.hpp"
 #include "sim/scene/camera.hpp"
@@ -120,7 +121,8 @@ struct Simulation {
   std::vector<Entity> entities;
   std::vector<PointLight> lights;
   std::optional<Sun> sun;
-  std::optional<Spectrum> ambient;  ///< radiance of a uniform dome [W/(m2 sr um)]
+  std::optional<Spectrum> ambient;  ///< radiance of a uniform dome, or the surroundings' mean [W/(m2 sr um)]
+  std::shared_ptr<const Surroundings> surroundings;  ///< of ambient light by direction; null: a uniform dome's
   Spectrum background;              ///< radiance behind everything [W/(m2 sr um)]
   std::optional<Surface> ground;    ///< of the earth's sphere, where lines of sight end that meet no body and go down
   std::shared_ptr<const Atmosphere> air;

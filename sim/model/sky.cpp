@@ -1,7 +1,9 @@
 #include "sim/model/sky.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "sim/model/surroundings.hpp"
 #include "sim/model/sunlit_air.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -13,21 +15,156 @@ namespace {
 constexpr int kElevations = 6, kAzimuths = 6;
 /// Places on a line of sight: closer together near its beginning, where most of what is seen lies.
 constexpr double kRanges_m[] = {0.0, 50.0, 200.0, 600.0, 1500.0, 3e3, 5e3, 8e3, 12e3, 18e3, 28e3, 50e3, 100e3, physics::kFar};
+/// Of a line that ends at the ground, parts of its length.
+constexpr double kParts[] = {0.0, 0.02, 0.06, 0.13, 0.22, 0.32, 0.43, 0.55, 0.67, 0.79, 0.9, 1.0};
+/// Between the heights at which the sky is known it is linear.
+constexpr double kHeights_m[] = {0.0, 100.0, 500.0, 1500.0, 3e3, 5e3, 8e3, 12e3, 18e3, 27e3, 40e3, 60e3};
+/// The sun is no longer seen by any air.
+constexpr double kNight = -0.35;
 
-}  // namespace
+/// Air on a line, and how it turns sunlight.
+struct Sightline {
+  SunlitAir air;
+  double cosScatter;
 
-Spectrum meanSky(const std::shared_ptr<const Atmosphere>& of, const std::optional<Sun>& sun, const Spectrum& background, double height_m,
-                 double earthRadius_m) {
-  struct Direction {
-    SunlitAir air;
-    double weight, cosScatter;
+  struct Sent {
+    double radiance, depth;
   };
-  const Atmosphere& path = *of;
-  const auto legs = sun ? SunLegs::of(of, sun->toSun.z, earthRadius_m) : nullptr;
-  std::vector<Direction> directions;
+  /// What it sends at a wavelength, and all it takes from what lies behind.
+  Sent at(const AirNode& node, double um, double irradiance) const {
+    std::vector<double> source;
+    for (const AirStation& s : air.stations) source.push_back(s.temperature_K > 0.0 ? physics::planckRadiance(um, s.temperature_K) : 0.0);
+    const AirRadiance sent = airRadiance(node, air, source);
+    double radiance = sent.thermal.back();
+    if (!sent.molecules.empty())
+      radiance += irradiance * (rayleighPhase(cosScatter) * sent.molecules.back() + henyeyGreensteinPhase(cosScatter, node.asymmetry) * sent.haze.back());
+    return {radiance, sent.depth.back()};
+  }
+};
+
+class SkyAround final : public Surroundings {
+ public:
+  SkyAround(std::shared_ptr<const Atmosphere> air, const std::optional<Sun>& sun, const Spectrum& background, std::shared_ptr<const Material> ground,
+            double ground_K, double earthRadius_m, bool sunlit)
+      : Surroundings({std::begin(kHeights_m), std::end(kHeights_m)}, gridsFor(earthRadius_m, sunlit ? &*sun : nullptr)),
+        air_(std::move(air)),
+        sun_(sun),
+        background_(background),
+        ground_(std::move(ground)),
+        ground_K_(ground_K),
+        earthRadius_m_(earthRadius_m),
+        lines_(grids().size()) {
+    if (sunlit) legs_ = SunLegs::of(air_, sun_->toSun.z, earthRadius_m_);
+  }
+
+  std::vector<double> radiance(double um, std::size_t height) const override {
+    const AirNode node = air_->node(um);
+    const double irradiance = legs_ ? sun_->irradiance(um) : 0.0;
+    const DirectionGrid& grid = grids()[height];
+    const double behind = background_(um), falls = groundIrradiance(um, node, irradiance);
+    const int half = grid.azimuths / 2;
+    std::vector<double> own;
+    for (const Line& line : linesAt(height)) {
+      const Sightline::Sent sent = line.sight.at(node, um, irradiance);
+      double end = behind;
+      if (line.groundAngle_rad >= 0.0)
+        end = ground_->emissivity(um, line.groundAngle_rad) * physics::planckRadiance(um, ground_K_) + ground_->reflectance(um, line.groundAngle_rad) / kPi * falls;
+      own.push_back(sent.radiance + end * std::exp(-sent.depth));
+    }
+    std::vector<double> all;
+    for (int ring = 0; ring < grid.above + grid.below; ++ring)
+      for (int a = 0; a < grid.azimuths; ++a) all.push_back(own[static_cast<size_t>(ring * (half + 1) + (a <= half ? a : grid.azimuths - a))]);
+    return all;
+  }
+
+  void addTo(Fingerprint& f) const override { f.add(std::string_view("sky and ground")); }  // the scenario's other parts say the rest
+
+ private:
+  struct Line {
+    Sightline sight;
+    double groundAngle_rad;  ///< between it and the vertical where it meets the ground; below 0: it does not
+  };
+
+  static std::vector<DirectionGrid> gridsFor(double earthRadius_m, const Sun* sun) {
+    std::vector<DirectionGrid> all;
+    for (double h : kHeights_m) {
+      DirectionGrid grid;
+      if (sun) grid.turn_rad = std::atan2(sun->toSun.y, sun->toSun.x);
+      else grid.azimuths = 1;
+      grid.horizon_rad = -std::acos(earthRadius_m / (earthRadius_m + h));
+      all.push_back(grid);
+    }
+    return all;
+  }
+
+  /// Of each ring, from the sun's azimuth on round to the opposite: the other side is the same.
+  const std::vector<Line>& linesAt(std::size_t height) const {
+    const std::lock_guard lock(busy_);
+    std::vector<Line>& lines = lines_[height];
+    if (!lines.empty()) return lines;
+    const DirectionGrid& grid = grids()[height];
+    for (int ring = 0; ring < grid.above + grid.below; ++ring)
+      for (int a = 0; a <= grid.azimuths / 2; ++a)
+        lines.push_back(lineTo(grid, ring, grid.direction(static_cast<size_t>(ring * grid.azimuths + a)), heights_m()[height]));
+    return lines;
+  }
+
+  Line lineTo(const DirectionGrid& grid, int ring, const glm::dvec3& direction, double height_m) const {
+    RaySun seen;
+    if (legs_) seen = {sun_->toSun.z, glm::dot(direction, sun_->toSun)};
+    const bool up = ring < grid.above;
+    AirRay ray{height_m, direction.z, earthRadius_m_};
+    if (up) return {{SunlitAir(*air_, ray, air_->stationsAt(ray, kRanges_m), legs_.get(), seen), seen.cosScatter}, -1.0};
+    // At the horizon itself a line just touches.
+    const double range = std::min(physics::groundRange(height_m, direction.z - 1e-9, earthRadius_m_), std::sqrt(height_m * (height_m + 2.0 * earthRadius_m_)) + 1.0);
+    std::vector<double> ranges;
+    for (double part : kParts) ranges.push_back(part * std::max(range, 1e-3));
+    const double sine = std::clamp(-((earthRadius_m_ + height_m) * direction.z + range) / earthRadius_m_, 0.0, 1.0);
+    return {{SunlitAir(*air_, ray, air_->stationsAt(ray, ranges), legs_.get(), seen), seen.cosScatter}, std::acos(sine)};
+  }
+
+  /// On the ground, of the sun and of the mean sky [W/(m2 um)].
+  double groundIrradiance(double um, const AirNode& node, double irradiance) const {
+    if (ground_->reflections.empty()) return 0.0;
+    {
+      const std::lock_guard lock(busy_);
+      if (const auto at = falls_.find(um); at != falls_.end()) return at->second;
+    }
+    double falls = 0.0;
+    for (const auto& [line, weight] : skyLines()) {
+      const Sightline::Sent sent = line.at(node, um, irradiance);
+      falls += kPi * weight * (sent.radiance + background_(um) * std::exp(-sent.depth));
+    }
+    if (legs_) {
+      const RisenSun risen = risenSun(0.0, sun_->toSun.z, earthRadius_m_);
+      if (risen.share > 0.0)
+        falls += irradiance * risen.share * std::max(risen.sinElevation, 0.0) * air_->transmittance(node, legs_->at(0.0, risen.sinElevation));
+    }
+    const std::lock_guard lock(busy_);
+    return falls_.try_emplace(um, falls).first->second;
+  }
+
+  const std::vector<std::pair<Sightline, double>>& skyLines() const;
+
+  std::shared_ptr<const Atmosphere> air_;
+  std::optional<Sun> sun_;
+  Spectrum background_;
+  std::shared_ptr<const Material> ground_;
+  double ground_K_, earthRadius_m_;
+  std::shared_ptr<const SunLegs> legs_;
+  mutable std::mutex busy_;
+  mutable std::vector<std::vector<Line>> lines_;
+  mutable std::map<double, double> falls_;
+  mutable std::vector<std::pair<Sightline, double>> skyLines_;
+};
+
+/// Lines to the sky from height 0 with their weights, of sum 1, in its mean by the cosine to the zenith.
+std::vector<std::pair<Sightline, double>> linesOfMean(const Atmosphere& air, const std::optional<Sun>& sun, const SunLegs* legs, double height_m,
+                                                      double earthRadius_m) {
+  std::vector<std::pair<Sightline, double>> lines;
   for (const QuadratureNode& node : gaussLegendre(kElevations, 0.0, 1.0)) {
     const AirRay ray{height_m, node.x, earthRadius_m};
-    const auto stations = path.stationsAt(ray, kRanges_m);
+    const auto stations = air.stationsAt(ray, kRanges_m);
     const int azimuths = sun ? kAzimuths : 1;
     for (int a = 0; a < azimuths; ++a) {
       RaySun seen;
@@ -35,33 +172,46 @@ Spectrum meanSky(const std::shared_ptr<const Atmosphere>& of, const std::optiona
         const double across = std::sqrt((1.0 - node.x * node.x) * std::max(1.0 - sun->toSun.z * sun->toSun.z, 0.0));
         seen = {sun->toSun.z, node.x * sun->toSun.z + across * std::cos(kPi * (a + 0.5) / azimuths)};
       }
-      directions.push_back({SunlitAir(path, ray, stations, legs.get(), seen), 2.0 * node.x * node.weight / azimuths, seen.cosScatter});
+      lines.push_back({{SunlitAir(air, ray, stations, legs, seen), seen.cosScatter}, 2.0 * node.x * node.weight / azimuths});
     }
   }
+  return lines;
+}
+
+const std::vector<std::pair<Sightline, double>>& SkyAround::skyLines() const {
+  const std::lock_guard lock(busy_);
+  if (skyLines_.empty()) skyLines_ = linesOfMean(*air_, legs_ ? sun_ : std::nullopt, legs_.get(), 0.0, earthRadius_m_);
+  return skyLines_;
+}
+
+}  // namespace
+
+Spectrum meanSky(const std::shared_ptr<const Atmosphere>& of, const std::optional<Sun>& sun, const Spectrum& background, double height_m,
+                 double earthRadius_m) {
+  const auto legs = sun ? SunLegs::of(of, sun->toSun.z, earthRadius_m) : nullptr;
+  const auto lines = linesOfMean(*of, sun, legs.get(), height_m, earthRadius_m);
   Spectrum::Table table;
   table.name = "the sky of the air";
-  table.wavelength_um = path.knots_um();
+  table.wavelength_um = of->knots_um();
   for (double w : table.wavelength_um) {
-    const AirNode node = path.node(w);
+    const AirNode node = of->node(w);
     const double irradiance = sun ? sun->irradiance(w) : 0.0, behind = background(w);
     double sum = 0.0;
-    std::vector<double> source(std::size(kRanges_m));
-    for (const Direction& d : directions) {
-      for (size_t s = 0; s < source.size(); ++s) {
-        const double t = d.air.stations[s].temperature_K;
-        source[s] = t > 0.0 ? physics::planckRadiance(w, t) : 0.0;
-      }
-      const AirRadiance sent = airRadiance(node, d.air, source);
-      double radiance = sent.thermal.back() + behind * std::exp(-sent.depth.back());
-      if (sun)
-        radiance += irradiance * (rayleighPhase(d.cosScatter) * sent.molecules.back() + henyeyGreensteinPhase(d.cosScatter, node.asymmetry) * sent.haze.back());
-      sum += d.weight * radiance;
+    for (const auto& [line, weight] : lines) {
+      const Sightline::Sent sent = line.at(node, w, irradiance);
+      sum += weight * (sent.radiance + behind * std::exp(-sent.depth));
     }
     table.value.push_back(sum);
   }
   Spectrum sky(std::move(table));
   sky.setProvenance("mean of the sky of this scenario's air");
   return sky;
+}
+
+std::shared_ptr<const Surroundings> skyAndGround(std::shared_ptr<const Atmosphere> air, const std::optional<Sun>& sun, const Spectrum& background,
+                                                 std::shared_ptr<const Material> ground, double ground_K, double earthRadius_m) {
+  const bool sunlit = sun && air->traits().scattersSun && sun->toSun.z > kNight;
+  return std::make_shared<SkyAround>(std::move(air), sun, background, std::move(ground), ground_K, earthRadius_m, sunlit);
 }
 
 }  // namespace pitviper

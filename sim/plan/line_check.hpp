@@ -18,7 +18,7 @@ struct LineFigures {
 
 /// A plan with the spectra that lines have in common at its nodes. Both must outlive it.
 struct NodesOfPlan {
-  NodesOfPlan(const Simulation& simulation, const Plan& of) : plan(of), spectra(simulation, of.nodes) {}
+  NodesOfPlan(const Simulation& simulation, const Plan& of) : plan(of), spectra(simulation, of.nodes, of.terms.surroundings) {}
   const Plan& plan;
   NodeSpectra spectra;
 };

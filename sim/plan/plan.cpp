@@ -53,6 +53,7 @@ SpectralNode nodeAt(const Simulation& sim, double wavelength_um) {
 Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where) {
   Plan plan;
   plan.terms = termsOf(sim);
+  if (plan.terms.surroundings != 0 && !sampling.reference) plan.terms = withSurroundings(plan.terms, plan.surroundings);
   plan.lightCount = static_cast<int>(sim.lights.size()) + (sim.sun ? 1 : 0);
 
   if (plan.terms.air && sim.air->traits().scattersSun && sim.sun)

@@ -36,8 +36,9 @@ struct PredictedParts {
   double tables = 0.0;       ///< between entries of tables
   double dropped = 0.0;      ///< terms left out
   double precision = 0.0;    ///< single precision
+  double surroundings = 0.0; ///< ambient light by so many harmonics
   double extremes = 0.0;     ///< by itself: largest on the lines at the extremes, of wavelengths alone
-  double sum() const { return wavelengths + tables + dropped + precision; }
+  double sum() const { return wavelengths + tables + dropped + precision + surroundings; }
 };
 
 /// Entries of the tables that the GPU reads air from; 0: none.
@@ -84,6 +85,8 @@ struct Plan {
   std::vector<int> fineCount;          ///< [slot]: wavelengths of the reference
   std::vector<TermShare> shares;       ///< what was looked at to keep or drop terms; empty where no accuracy was asked for
   Terms terms;
+  int surroundings = kMostHarmonicOrder;   ///< ambient light by direction, as Terms::surroundings has it
+  std::vector<double> surroundingsLoss;    ///< [slot]: what that loses on the lines it was chosen on; empty: nobody has looked
   int lightCount = 0;                      ///< point lights and, last, the sun
   std::shared_ptr<const SunLegs> sunLegs;  ///< layered air in sunlight
 

@@ -27,8 +27,11 @@ constexpr double kDropped = 0.05;
 /// Single precision on the GPU over a whole pixel: 2.8e-6 of a formula and 1e-5 of tables (tests/gpu/test_float_against_double.cpp), 5e-5 found in random
 /// scenes.
 constexpr double kPrecision = 6e-5;
+/// Of the accuracy, the part that ambient light may lose by being told with fewer harmonics, on the largest of so many lines (times kMargin: half of it).
+constexpr double kSurroundingsShare = 0.25;
+constexpr int kSurroundingsLines = 160;
 /// Seeds of the last lines lie apart from those of the fit, and of the last ones before.
-constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u, kNextSeed = 0xd1b54a32d192ed03u;
+constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u, kNextSeed = 0xd1b54a32d192ed03u, kSurroundingsSeed = 0x8cb92ba72f3d8dd7u;
 
 void dropLights(Plan& plan) {
   plan.terms.lights = plan.terms.shadows = false;
@@ -46,6 +49,7 @@ void dropTerms(Plan& plan, bool keepLights) {
   for (int k = 0; k < kTermKinds; ++k) anywhere(static_cast<TermKind>(k));
   plan.terms.scatteredSun = plan.terms.scatteredSun && anywhere(TermKind::ScatteredSun);
   plan.terms.ambient = plan.terms.ambient && anywhere(TermKind::Ambient);
+  if (plan.terms.surroundings != 0) plan.terms = withSurroundings(plan.terms, plan.terms.ambient ? plan.surroundings : 0);
   for (NodeBlock& b : plan.blocks) {
     b.lit = keepLights;
     for (int s : b.slots) b.lit |= seen(TermKind::Sun, static_cast<size_t>(s)) || seen(TermKind::Lights, static_cast<size_t>(s));
@@ -86,10 +90,31 @@ CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& f
   const double lamps = sim.lights.empty() ? 0.0 : (kLampShare + (plan.terms.shadows ? kShadowShare : 0.0)) * plan.accuracy;
   const double thin = plan.terms.air ? kThinShare * plan.accuracy : 0.0;
   for (size_t s = 0; s < found.size(); ++s) {
-    plan.parts.push_back({kMargin * found[s].largest, tables[s], found[s].dropped + lamps + thin, kPrecision, extreme[s].largest});
+    plan.parts.push_back({kMargin * found[s].largest, tables[s], found[s].dropped + lamps + thin, kPrecision,
+                          plan.surroundingsLoss.empty() ? 0.0 : kMargin * plan.surroundingsLoss[s], extreme[s].largest});
     plan.predictedError.push_back(plan.parts.back().sum());
   }
   return last;
+}
+
+/// Ambient light by direction costs: the fewest harmonics, or none but the mean, that lose no more than a part of the accuracy; else as many as there are.
+/// Returns the fine wavelengths with as many.
+std::unique_ptr<const Plan> chooseSurroundings(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays, Plan& plan) {
+  auto chosen = std::make_unique<Plan>(fine.plan);
+  if (plan.terms.surroundings == 0) return chosen;
+  const std::vector<double> floor = filmFloors(sim, fine, rays);
+  std::vector<SightRay> lines = rays.overFilm(kSurroundingsLines);
+  for (SightRay& ray : rays.ofSmallBodies(kSurroundingsLines / 2)) lines.push_back(std::move(ray));
+  const bool free = plan.accuracy > 0.0;
+  for (plan.surroundings = free ? 0 : kMostHarmonicOrder;; plan.surroundings += plan.surroundings == 0 ? 2 : 1) {
+    chosen->terms = withSurroundings(fine.plan.terms, plan.surroundings);
+    const auto found = checkLines(sim, NodesOfPlan(sim, *chosen), fine, lines, kUsualPlaces, floor);
+    plan.surroundingsLoss.clear();
+    for (const LineFigures& f : found) plan.surroundingsLoss.push_back(f.largest);
+    if (plan.surroundings == kMostHarmonicOrder ||
+        *std::max_element(plan.surroundingsLoss.begin(), plan.surroundingsLoss.end()) <= kSurroundingsShare * plan.accuracy)
+      return chosen;
+  }
 }
 
 /// Of each slot, the output it is of.
@@ -172,8 +197,10 @@ Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress
     SpectralSampling exact;
     exact.reference = true;
     Plan fine = makePlan(sim, outputs, exact, where);
-    fine.terms = all;
-    const NodesOfPlan exactNodes(sim, fine);
+    fine.terms = withSurroundings(all, all.surroundings != 0 ? Terms::kWhole : 0);
+    SightRays looks(sim, eye, static_cast<unsigned long long>(sim.seed) ^ kSurroundingsSeed);
+    const auto chosen = chooseSurroundings(sim, NodesOfPlan(sim, fine), looks, plan);
+    const NodesOfPlan exactNodes(sim, *chosen);
     if (plan.accuracy > 0.0) {
       fitPlan(sim, eye, outputs, exactNodes, keepLights, plan, progress);
     } else {

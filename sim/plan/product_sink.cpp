@@ -4,6 +4,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "sim/model/harmonic_response.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -12,6 +13,8 @@ namespace {
 /// Black bodies of the air and of textures stand at steps; below kShort_um, where a step changes the shape of their spectra, at finer ones.
 constexpr double kStep_K = 4.0, kFineStep_K = 1.0, kShort_um = 3.0;
 constexpr double kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
+/// Directions of the surroundings' light in half a turn.
+constexpr double kElevationSteps = 12.0, kAzimuthSteps = 4.0;
 
 /// The factor at one of the steps.
 Factor stepped(Factor f) {
@@ -105,6 +108,19 @@ void ProductSink::addFactor(const ProductTerm& term, std::span<const Factor> res
   with(Factor::planck(step_K_ * (low + 1.0), true), at - low);
 }
 
+/// What matters here is its spectrum: light that is even enough about the normal or, where a lobe is, the mirrored direction, and reflected as all light is.
+static std::array<Factor, 2> evenly(const Simulation& sim, const Factor& f) {
+  const auto& component = *static_cast<const ReflectionComponent*>(f.of);
+  const SurfaceView& v = *f.seen;
+  const double cosine = std::clamp(glm::dot(v.normal, v.toViewer), 0.0, 1.0);
+  const glm::dvec3 to = HarmonicResponse::isPlain(component) ? v.normal : 2.0 * cosine * v.normal - v.toViewer;
+  const auto step = [](double angle, double steps) { return kPi / steps * std::round(angle * steps / kPi); };
+  const auto place = sim.surroundings->placeAt(v.height_m);
+  return {Factor::around(step(std::asin(std::clamp(to.z, -1.0, 1.0)), kElevationSteps), step(std::atan2(to.y, to.x), kAzimuthSteps),
+                         place.height + (place.share > 0.5 ? 1 : 0)),
+          stepped(Factor::hemispherical(component, std::acos(cosine)))};
+}
+
 void ProductSink::term(const Term& t) {
   ProductTerm term;
   term.tag = static_cast<int>(t.kind);
@@ -112,7 +128,8 @@ void ProductSink::term(const Term& t) {
   term.coefficient = t.coefficient;
   if (!t.air && herePath_ < 0) herePath_ = pathOf(here_, 0.0);
   term.path = t.air ? pathOf(*t.air, 0.0) : herePath_;
-  addFactor(term, t.factors);
+  if (t.factors.size() == 1 && t.factors.front().kind == Factor::Kind::Reflected) addFactor(term, evenly(sim_, t.factors.front()));
+  else addFactor(term, t.factors);
 }
 
 void ProductSink::pane(const Factor& transmittance, double modifier) { panes_.push_back({book_.spectrum(stepped(transmittance), sim_), modifier}); }

@@ -1,5 +1,8 @@
 #include "sim/radiance/factor.hpp"
 
+#include <cmath>
+#include <stdexcept>
+
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -53,6 +56,17 @@ double valueOf(const Simulation& sim, const Factor& f, double w) {
       return sim.sun->irradiance(w);
     case Factor::Kind::Ambient:
       return (*sim.ambient)(w);
+    case Factor::Kind::Reflected:
+      throw std::logic_error("what a surface reflects of its surroundings has no value of its own");
+    case Factor::Kind::Around: {
+      // A_l / pi of degrees 0 to 2: 1, 2/3, 1/4.
+      const Harmonics& light = sim.surroundings->light(w, static_cast<std::size_t>(f.z)).harmonics;
+      Harmonics y;
+      realHarmonics({std::cos(f.x) * std::cos(f.y), std::cos(f.x) * std::sin(f.y), std::sin(f.x)}, 2, y);
+      double sum = 0.0;
+      for (std::size_t c = 0; c < 9; ++c) sum += (c == 0 ? 1.0 : c < 4 ? 2.0 / 3.0 : 0.25) * light[c] * y[c];
+      return sum;
+    }
     case Factor::Kind::Background:
       return sim.background(w);
     case Factor::Kind::Medium:

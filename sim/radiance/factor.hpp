@@ -6,6 +6,12 @@
 
 namespace pitviper {
 
+/// From where a surface is looked at, in the scenario's axes.
+struct SurfaceView {
+  glm::dvec3 normal{0.0, 0.0, 1.0}, toViewer{0.0, 0.0, 1.0};
+  double height_m = 0.0;  ///< of the body's origin: whose surroundings it has
+};
+
 struct Factor {
   enum class Kind {
     Planck,         ///< black body at x [K]
@@ -18,6 +24,8 @@ struct Factor {
     Light,          ///< intensity of a point light
     Sun,            ///< irradiance
     Ambient,
+    Reflected,  ///< of a reflection component: what it sends of the surroundings' light to a view; a NodeSpectra has it
+    Around,     ///< irradiance / pi from the surroundings on a plane whose normal has elevation x and azimuth y, at their height of number z
     Background,
     Medium  ///< source radiance of a medium at x [K]
   };
@@ -25,14 +33,18 @@ struct Factor {
   const void* of = nullptr;
   double x = 0.0, y = 0.0;
   bool lasting = true;  ///< other lines have it too: worth keeping
+  double z = 0.0;
+  const SurfaceView* seen = nullptr;  ///< of Reflected, while its term is told
 
   /// The same spectrum.
-  bool operator==(const Factor& o) const { return kind == o.kind && of == o.of && x == o.x && y == o.y; }
+  bool operator==(const Factor& o) const { return kind == o.kind && of == o.of && x == o.x && y == o.y && z == o.z && seen == o.seen; }
   auto operator<=>(const Factor& o) const {
     if (const auto c = kind <=> o.kind; c != 0) return std::partial_ordering(c);
     if (of != o.of) return std::less<>()(of, o.of) ? std::partial_ordering::less : std::partial_ordering::greater;
     if (const auto c = x <=> o.x; c != 0) return c;
-    return y <=> o.y;
+    if (const auto c = y <=> o.y; c != 0) return c;
+    if (seen != o.seen) return std::less<>()(seen, o.seen) ? std::partial_ordering::less : std::partial_ordering::greater;
+    return z <=> o.z;
   }
 
   static Factor planck(double temperature_K, bool lasting) { return {Kind::Planck, nullptr, temperature_K, 0.0, lasting}; }
@@ -45,6 +57,10 @@ struct Factor {
   static Factor light(const PointLight& l) { return {Kind::Light, &l}; }
   static Factor sun() { return {Kind::Sun}; }
   static Factor ambient() { return {Kind::Ambient}; }
+  static Factor reflected(const ReflectionComponent& r, const SurfaceView& seen) { return {Kind::Reflected, &r, 0.0, 0.0, false, 0.0, &seen}; }
+  static Factor around(double elevation_rad, double azimuth_rad, std::size_t height) {
+    return {Kind::Around, nullptr, elevation_rad, azimuth_rad, true, static_cast<double>(height)};
+  }
   static Factor background() { return {Kind::Background}; }
   static Factor medium(const Medium& m, double temperature_K) { return {Kind::Medium, &m, temperature_K}; }
 };

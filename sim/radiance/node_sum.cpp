@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sim/radiometry/constants.hpp"
+#include "sim/radiance/node_surroundings.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -47,7 +48,8 @@ void weigh(std::span<const double> coefficient, const AirAmounts& amounts, std::
 
 }  // namespace
 
-NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes) : simulation_(simulation), nodes_(nodes) {
+NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, int surroundings) : simulation_(simulation), nodes_(nodes) {
+  if (simulation.surroundings) surroundings_ = std::make_shared<const NodeSurroundings>(simulation, nodes, surroundings);
   const size_t used = simulation.air ? simulation.air->exponents().size() : 0;
   extinction_ = coefficientsOf(nodes, used, &AirNode::extinction);
   molecules_ = coefficientsOf(nodes, used, &AirNode::molecules);
@@ -78,6 +80,7 @@ void NodeSpectra::planck(double temperature_K, std::span<double> into) const {
 }
 
 std::vector<double> NodeSpectra::of(const Factor& factor) const {
+  if (factor.kind == Factor::Kind::Reflected) return surroundings_->reflected(*static_cast<const ReflectionComponent*>(factor.of), *factor.seen);
   std::vector<double> all;
   all.reserve(nodes_.size());
   for (const SpectralNode& n : nodes_) all.push_back(n.mean([&](double w) { return valueOf(simulation_, factor, w); }));

@@ -12,16 +12,19 @@
 
 namespace pitviper {
 
+class NodeSurroundings;
+
 /// What lines have in common at some nodes; may be shared between threads.
 class NodeSpectra {
  public:
-  /// Both must outlive it.
-  NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes);
+  /// Both must outlive it. `surroundings`: as Terms::surroundings.
+  NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, int surroundings = Terms::kWhole);
   const Simulation& simulation() const { return simulation_; }
   std::span<const SpectralNode> nodes() const { return nodes_; }
   /// Black body of a temperature of the air per node, in place; between 140 and 400 K by a table (tests/unit/test_node_sum.cpp has its error).
   void planck(double temperature_K, std::span<double> into) const;
   std::vector<double> of(const Factor& factor) const;
+  const NodeSurroundings* surroundings() const { return surroundings_.get(); }
   /// What an amount of air takes from a line, and scatters by molecules and by haze: [amount][node].
   std::span<const double> extinction() const { return extinction_; }
   std::span<const double> molecules() const { return molecules_; }
@@ -31,6 +34,7 @@ class NodeSpectra {
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
   std::vector<double> extinction_, molecules_, haze_;
+  std::shared_ptr<const NodeSurroundings> surroundings_;  ///< null: a uniform dome's
   std::vector<double> planck_, slope_;  ///< [temperature][node], and by kelvin; empty without layered air
 };
 

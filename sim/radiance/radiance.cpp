@@ -80,6 +80,10 @@ class Teller {
     sink_.segment({near, far, inside_, scene_.terms.air, air_.sunlit(), air_.cosScatter(), dark_});
   }
 
+  /// Of the body that it belongs to; the ground lies at 0.
+  double heightOf(const Hit& hit) const {
+    return hit.entity < 0 ? 0.0 : sim_.frame.height(scene_.state.entities[static_cast<size_t>(hit.entity)].position);
+  }
   double viewAngle(const Hit& hit) const { return std::acos(std::clamp(-glm::dot(hit.normal, line_.direction), 0.0, 1.0)); }
 
   void pane(const Hit& hit) {
@@ -128,8 +132,10 @@ class Teller {
       if (m.transmission) add(TermKind::Emission, -part * modifier(m.transmission->modifier, hit), {black, Factor::transmittance(m, angle)});
     }
     if (scene_.terms.ambient && !general) add(TermKind::Ambient, 1.0, {Factor::dome(m)});
+    const SurfaceView seen{hit.normal, -line_.direction, scene_.terms.surroundings != 0 ? heightOf(hit) : 0.0};
     for (size_t k = 0; scene_.terms.ambient && general && k < m.reflections.size(); ++k)
-      add(TermKind::Ambient, modifiers[k], {Factor::ambient(), Factor::hemispherical(*m.reflections[k], angle)});
+      if (scene_.terms.surroundings != 0) add(TermKind::Ambient, modifiers[k], {Factor::reflected(*m.reflections[k], seen)});
+      else add(TermKind::Ambient, modifiers[k], {Factor::ambient(), Factor::hemispherical(*m.reflections[k], angle)});
     reflected(hit, m, modifiers, place);
   }
 

@@ -31,6 +31,12 @@ Terms termsOf(const Simulation& sim) {
     if (sim.mediumOf(e)) continue;
     for (const auto& s : e.surfaces) add(sim.materialOf(s).transmission ? t.layer : t.solid, sim.materialOf(s), s);
   }
+  return withSurroundings(t, t.ambient && sim.surroundings ? Terms::kWhole : 0);
+}
+
+Terms withSurroundings(Terms t, int degree) {
+  t.surroundings = degree;
+  for (SurfaceTerms* s : {&t.solid, &t.layer}) s->surroundings = degree != 0 && s->reflects;
   return t;
 }
 

@@ -16,21 +16,27 @@ struct SurfaceTerms {
   bool angular = false;  ///< tables over angles, or an emissivity or transmittance that changes with view angle
   bool modifiers = false;
   bool temperatureTextures = false;
+  bool surroundings = false;  ///< they reflect light that is not the same from all around
   std::set<std::pair<std::string, std::string>> lobes;  ///< shader file and function of each angular lobe
   /// Emission is a product of averages over a group of wavelengths; else the average of a product, one row of a table.
-  bool isGeneral() const { return angular || modifiers || temperatureTextures; }
+  bool isGeneral() const { return angular || modifiers || temperatureTextures || surroundings; }
 };
 
 /// Terms of the radiance equation that a scene has.
 struct Terms {
+  static constexpr int kWhole = -1;
   bool air = false;           ///< extinction and path radiance
   bool scatteredSun = false;  ///< sunlight that the air scatters, and the sky's by it
   bool lights = false;        ///< point lights or the sun
   bool ambient = false;
+  int surroundings = 0;       ///< ambient light by direction, by harmonics of degrees up to this; kWhole: in full; 0: its mean, a uniform dome
   bool shadows = false;       ///< of the lights
   SurfaceTerms solid, layer;  ///< opaque and transparent surfaces
   bool media = false;         ///< bodies filled with an emitting medium
 };
+
+/// The same with the surroundings up to another degree.
+Terms withSurroundings(Terms terms, int degree);
 
 Terms termsOf(const Simulation& simulation);
 

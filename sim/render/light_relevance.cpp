@@ -94,7 +94,7 @@ LightRelevance::Part LightRelevance::partOf(const Plan& plan, const RenderTables
       if (!part.component.empty()) part.component[k][i] = own;
       byAmbient = std::max(byAmbient, reflectionOf(own, hemispherical(placeOf(k))));
     }
-    const double ambient = plan.terms.ambient ? nodes_[i].mean(*simulation_.ambient) : 0.0;
+    const double ambient = plan.terms.ambient && plan.terms.surroundings == 0 ? nodes_[i].mean(*simulation_.ambient) : 0.0;
     part.emissivity.push_back(emitted * hemispherical(3));
     part.byAmbient.push_back(ambient > 0.0 ? byAmbient / ambient : part.most[i] > 0.0 ? INFINITY : 0.0);
   }

@@ -9,7 +9,6 @@
 #include "sim/gl/context.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/radiometry/physics.hpp"
-#include "sim/render/view_data.hpp"
 
 namespace pitviper {
 namespace {
@@ -52,6 +51,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       relevance_(simulation, tabled(), tables_),
       how_(shading) {
   if (plan.terms.air && shading != Shading::Reference) air_ = simulation.air->onGpu(simulation, plan, shading == Shading::Direct);
+  if (tables_.around) around_.emplace(simulation, *tables_.around, plan.nodes.size());
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
   ShaderSlots slots;
   slots.constants["GROUND"] = tables_.ground;
@@ -93,6 +93,7 @@ ShaderSlots ScenePass::shadingSlots(bool writtenOut) const {
   slots.constants["SURFACES"] = 1;
   // Of four lights a vec4 at each node [W/(sr um)], the sun as irradiance; and radiance of the dome.
   slots.generated["light_nodes"] = plan_.lightCount > 0 ? "  vec4 nodeLight[NODES * LIGHT_GROUPS];\n" : "";
+  if (around_) SurroundingsBuffer::addConstants(simulation_, slots);
   slots.generated["ambient_nodes"] = tables_.ambient.empty() ? "" : "  vec4 nodeAmbient[NODES];\n";
   return slots;
 }
@@ -128,7 +129,14 @@ void ScenePass::setState(const WorldState& state, const ShadowDemand* demand) {
   block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
   nodes_.upload(block);
   if (air_) air_->begin();
+  if (around_) around_->setState(state);
   uploadLights(state);
+}
+
+GpuDraw ScenePass::drawOf(std::size_t draw, const View& view, const WorldState& state) const {
+  GpuDraw data = drawData(simulation_, tables_, draw, view, state);
+  if (around_) data.fine.w = around_->placeOf(tables_.draws[draw].entity);
+  return data;
 }
 
 void ScenePass::uploadLights(const WorldState& state) {
@@ -179,6 +187,7 @@ void ScenePass::bindBuffers() const {
   solid_.bind();
   lights_.bindTexture(9, 4);
   if (air_) air_->bind();
+  if (around_) around_->bind();
   (wholePixels_ ? pixelView_ : view_).bindUniform(0);
   nodes_.bindUniform(1);
   if (shadows_) shadows_->bind();
@@ -192,7 +201,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
     const GpuView data = viewData(simulation_, v, apertureArea_m2_);
     view_.upload(&data, sizeof data);
     std::vector<GpuDraw> draws;
-    for (size_t d = 0; d < tables_.draws.size(); ++d) draws.push_back(drawData(simulation_, tables_, d, v, state));
+    for (size_t d = 0; d < tables_.draws.size(); ++d) draws.push_back(drawOf(d, v, state));
     draws_.upload(draws);
     bindBuffers();
   }
@@ -324,7 +333,7 @@ std::vector<ScenePass::Tile> ScenePass::tilesOf(std::span<const View> views, con
       c.draw = static_cast<std::uint32_t>(t.draws.size()) - 1;
     }
     t.firstDraw = draws.size();
-    for (std::uint32_t d : t.draws) draws.push_back(drawData(simulation_, tables_, d, views[i], state));
+    for (std::uint32_t d : t.draws) draws.push_back(drawOf(d, views[i], state));
     GpuView block = viewData(simulation_, views[i], apertureArea_m2_, {t.part.x, t.part.y});
     block.depth.z = static_cast<float>(t.firstDraw);
     std::memcpy(&blocks[i * kAligned], &block, sizeof block);

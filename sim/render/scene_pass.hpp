@@ -20,7 +20,9 @@
 #include "sim/render/solid_pass.hpp"
 #include "sim/render/surface_buffers.hpp"
 #include "sim/render/surface_classes.hpp"
+#include "sim/render/surroundings_buffer.hpp"
 #include "sim/render/tables.hpp"
+#include "sim/render/view_data.hpp"
 
 namespace pitviper {
 
@@ -108,6 +110,7 @@ class ScenePass {
     RenderTarget visibility, shading;
   };
   struct Tile;
+  GpuDraw drawOf(std::size_t draw, const View& view, const WorldState& state) const;
   void uploadLights(const WorldState& state);
   void findClassesIn(const View& view, const WorldState& state, const std::vector<char>& drawn);
   void clearShading();
@@ -136,6 +139,7 @@ class ScenePass {
   SurfaceBuffers solid_;
   SolidPass solids_;
   LightRelevance relevance_;
+  std::optional<SurroundingsBuffer> around_;  ///< where ambient light has directions
   std::unique_ptr<AirOnGpu> air_;  ///< null: none, or not on the GPU
   Shading how_;
   std::unique_ptr<ShadowPass> shadows_;  ///< where the plan has them

@@ -35,6 +35,7 @@ SurfaceClass classOf(const DrawItem& item, const Simulation& sim, const SurfaceT
   }
   c.tabulated = m.counts[0] > 1;
   c.states = m.state[0] >= 0;
+  c.around = m.response[2] > 1;
   c.modifiers |= c.states;  // read as they are
   const Surface& surface =
       item.kind == DrawKind::Ground ? *sim.ground : sim.entities[static_cast<size_t>(item.entity)].surfaces[static_cast<size_t>(item.surface)];
@@ -52,6 +53,7 @@ SurfaceClass both(SurfaceClass a, const SurfaceClass& b) {
   a.lobes |= b.lobes;
   a.tabulated |= b.tabulated;
   a.states |= b.states;
+  a.around |= b.around;
   return a;
 }
 
@@ -60,7 +62,7 @@ constexpr int kCostly = 2;
 
 /// Which of the kinds that have a program of their own: the plainest, those with textures alone, all others.
 int kindOf(const SurfaceClass& c) {
-  if (c.viewAngles || c.columns || c.lobes || c.tabulated || c.states) return kCostly;
+  if (c.viewAngles || c.columns || c.lobes || c.tabulated || c.states || c.around) return kCostly;
   return c.modifiers || c.temperatureTextures ? 1 : 0;
 }
 
@@ -76,7 +78,8 @@ std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation
              .temperatureTextures = true,
              .lobes = true,
              .tabulated = true,
-             .states = true}};
+             .states = true,
+             .around = true}};
   std::vector<SurfaceClass> classes{{.sky = true}};
   for (DrawItem& item : tables.draws) {
     if (item.kind != DrawKind::Solid && item.kind != DrawKind::Ground) continue;
@@ -120,6 +123,7 @@ void addClassSlots(const SurfaceClass& own, const RenderTables& tables, ShaderSl
     if (tables.solid.lit) slots.generated["lobes"] = "Real lobeOf(int kind, Vec4 parameters, Vec3 toLight) { return 1.0; }\n";
   }
   if (!own.states) slots.constants["STATES"] = 0;
+  if (!own.around && slots.constants.contains("AROUND_PLAIN")) slots.constants["AROUND_PLAIN"] = 1;
   slots.constants["USED_COMPONENTS"] = own.components;
   slots.constants["EMISSION_MODIFIERS"] = own.emissionModifiers ? 1 : 0;
   slots.constants["TRANSMISSION_MODIFIERS"] = 0;

@@ -22,6 +22,7 @@ struct SurfaceClass {
   bool lobes = false;
   bool tabulated = false;  ///< reflection over angles
   bool states = false;
+  bool around = false;  ///< what they send of light from all around depends on the view
   bool operator==(const SurfaceClass&) const = default;
 };
 

@@ -2,12 +2,15 @@
 // The tables a plan's program reads, made in double precision: node constants, weights, material and temperature rows.
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "sim/gl/shader_assembler.hpp"
 #include "sim/plan/plan.hpp"
 
 namespace pitviper {
+
+class NodeSurroundings;
 
 /// Mirrors MaterialShape of sim/render/glsl/materials.glsl, which ends with so many components as its program has.
 struct GpuMaterial {
@@ -16,6 +19,7 @@ struct GpuMaterial {
   std::array<std::int32_t, 4> transmission{}, state{};
   std::array<float, 4> stateScale{};
   std::array<std::uint32_t, 4> second{1, 1, 0, 0};
+  std::array<std::uint32_t, 4> response{0, 0, 1, 0};
   std::vector<std::array<std::int32_t, 4>> components;  ///< lobe + 1, texture or -1, 1 where there is one, 1 where its texture is an image of the last one's
   std::vector<std::array<float, 4>> images;             ///< of the last one's texture: factor, then what is added
   std::vector<std::array<float, 4>> lobes;
@@ -62,6 +66,7 @@ struct SurfaceTables {
 };
 
 struct RenderTables {
+  std::shared_ptr<const NodeSurroundings> around;  ///< null without ambient light by direction
   std::vector<DrawItem> draws;
   int ground = -1;             ///< its draw, where the scene has one
   SurfaceTables solid, layer;  ///< the background's material is the last solid one

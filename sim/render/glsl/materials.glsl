@@ -7,15 +7,16 @@ struct MaterialShape {
   ivec4 state;         // texture of its state or -1; entries
   vec4 stateScale;     // state of the first entry; entries per unit of it; of the second table of columns: entries per radian along its angles 1 and 2
   uvec4 second;        // of the second table of columns: entries along its angles 1 and 2; both angles, 8 angle 2 + angle 1; first entry
+  uvec4 response;      // to light from all around: first entry; how many textures; view angles; for each texture 4 bits, a component that has it
 };
-// Behind these seven, of R1, R2, ...: (its lobe, from 1 on, or 0; its texture or -1; whether it is one; 1 where the texture is an
+// Behind these eight, of R1, R2, ...: (its lobe, from 1 on, or 0; its texture or -1; whether it is one; 1 where the texture is an
 // image of the last one's), then what the lobe of each takes, then (factor, summand) of each image.
 layout(binding = 10) uniform usamplerBuffer materials;
-uvec4 materialTexel(uint material, int member) { return texelFetch(materials, (7 + 3 * COMPONENTS) * int(material) + member); }
-ivec4 componentOf(uint material, int k) { return ivec4(materialTexel(material, 7 + k)); }
-vec4 lobeOfComponent(uint material, int k) { return uintBitsToFloat(materialTexel(material, 7 + COMPONENTS + k)); }
-vec2 imageOfComponent(uint material, int k) { return uintBitsToFloat(materialTexel(material, 7 + 2 * COMPONENTS + k)).xy; }
+uvec4 materialTexel(uint material, int member) { return texelFetch(materials, (8 + 3 * COMPONENTS) * int(material) + member); }
+ivec4 componentOf(uint material, int k) { return ivec4(materialTexel(material, 8 + k)); }
+vec4 lobeOfComponent(uint material, int k) { return uintBitsToFloat(materialTexel(material, 8 + COMPONENTS + k)); }
+vec2 imageOfComponent(uint material, int k) { return uintBitsToFloat(materialTexel(material, 8 + 2 * COMPONENTS + k)).xy; }
 MaterialShape materialAt(uint material) {
   return MaterialShape(materialTexel(material, 0), materialTexel(material, 1), uintBitsToFloat(materialTexel(material, 2)), ivec4(materialTexel(material, 3)),
-                       ivec4(materialTexel(material, 4)), uintBitsToFloat(materialTexel(material, 5)), materialTexel(material, 6));
+                       ivec4(materialTexel(material, 4)), uintBitsToFloat(materialTexel(material, 5)), materialTexel(material, 6), materialTexel(material, 7));
 }

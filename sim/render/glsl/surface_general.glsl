@@ -22,6 +22,7 @@ int nextState(int each) { return material_.state.y > 1 ? each : 0; }
 
 float surfaceTemperature();
 void prepareTemperature();
+void prepareAmbient();
 
 void prepareSurface() {
   material_ = materialAt(draw_.table.y);
@@ -45,6 +46,7 @@ void prepareSurface() {
   view1_ = material_.counts.z > 1u ? view0_ + NODES * COMPONENT_VECTORS : view0_;
   temperature_ = surfaceTemperature();
   prepareTemperature();
+  prepareAmbient();
 }
 
 // (D1, D2, D3, given emissivity) or what follows it.

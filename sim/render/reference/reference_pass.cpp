@@ -19,7 +19,7 @@ ReferencePass::ReferencePass(const Simulation& simulation, const Plan& plan, con
                              double apertureArea_m2)
     : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Reference, false),
       simulation_(simulation),
-      spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes)) {
+      spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms.surroundings)) {
   if (!truth) return;
   ShaderSlots slots = shadingSlots(false);
   slots.generated["weights"] = "";

@@ -25,7 +25,7 @@ ReferenceShader::ReferenceShader(const Simulation& simulation, const Plan& plan,
       drawn_(drawn),
       transparent_(simulation.hasTransparent()),
       shadows_(simulation),
-      spectra_(spectra ? std::move(spectra) : std::make_shared<const NodeSpectra>(simulation, plan.nodes)) {}
+      spectra_(spectra ? std::move(spectra) : std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms.surroundings)) {}
 
 RadianceScene ReferenceShader::scene() const {
   RadianceScene s{simulation_, plan_.terms, plan_.sunLegs.get(), state_, {}, 0, tapsFor(plan_.textureAccuracy)};

@@ -1,0 +1,73 @@
+#pragma once
+// What shines on a scene from all around: radiance by direction, at heights. Axes: those of the scenario's local frame.
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "sim/model/atmosphere.hpp"
+#include "sim/model/direction_grid.hpp"
+#include "sim/model/material.hpp"
+#include "sim/radiometry/spectrum.hpp"
+#include "sim/scene/scene.hpp"
+
+namespace pitviper {
+
+class Surroundings {
+ public:
+  virtual ~Surroundings() = default;
+  /// One for each height at which it is known, rising; between two its light is linear, beyond them held.
+  const std::vector<DirectionGrid>& grids() const { return grids_; }
+  /// Between the height of a number and the next, so far on.
+  struct Place {
+    std::size_t height = 0;
+    double share = 0.0;
+    auto operator<=>(const Place&) const = default;
+  };
+  Place placeAt(double height_m) const;
+  /// At the entries of the grid of one of the heights [W/(m2 sr um)], in single precision, and its harmonics; kept.
+  struct Light {
+    std::vector<float> radiance;
+    Harmonics harmonics;
+  };
+  const Light& light(double wavelength_um, std::size_t height) const;
+  const std::vector<Harmonics>& projection(std::size_t height) const;
+  virtual void addTo(Fingerprint& f) const = 0;
+
+ protected:
+  virtual std::vector<double> radiance(double wavelength_um, std::size_t height) const = 0;
+  Surroundings(std::vector<double> heights_m, std::vector<DirectionGrid> grids) : heights_m_(std::move(heights_m)), grids_(std::move(grids)) {}
+  const std::vector<double>& heights_m() const { return heights_m_; }
+
+ private:
+  std::vector<double> heights_m_;
+  std::vector<DirectionGrid> grids_;
+  mutable std::mutex busy_;
+  mutable std::map<std::size_t, std::vector<Harmonics>> projections_;
+  mutable std::map<std::pair<std::size_t, double>, Light> kept_;
+};
+
+/// The sky of layered air by elevation and azimuth, and the ground below: emission of the air, sunlight it scatters once, the background behind it; ground of a
+/// temperature that reflects the sun and the mean of the sky as a diffuse surface of its directional reflectance, seen through the air. Without the sun's disc.
+/// Heights up to 60 km; Source of the terms: sim/model/sunlit_air.hpp.
+std::shared_ptr<const Surroundings> skyAndGround(std::shared_ptr<const Atmosphere> air, const std::optional<Sun>& sun, const Spectrum& background,
+                                                 std::shared_ptr<const Material> ground, double ground_K, double earthRadius_m);
+
+/// Sums of some spectra, the same at all heights.
+class MixedSurroundings final : public Surroundings {
+ public:
+  /// share[entry][spectrum].
+  MixedSurroundings(const DirectionGrid& grid, std::vector<Spectrum> spectra, std::vector<std::vector<double>> share)
+      : Surroundings({0.0}, {grid}), spectra_(std::move(spectra)), share_(std::move(share)) {}
+  void addTo(Fingerprint& f) const override;
+  /// Mean over all directions, as a table.
+  Spectrum mean() const;
+
+ private:
+  std::vector<double> radiance(double wavelength_um, std::size_t height) const override;
+  std::vector<Spectrum> spectra_;
+  std::vector<std::vector<double>> share_;
+};
+
+}  // namespace pitviper

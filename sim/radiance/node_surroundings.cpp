@@ -1,0 +1,283 @@
+#include "sim/radiance/node_surroundings.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/radiometry/constants.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Part of each node's norm that its patterns may leave out.
+constexpr double kLeftOut = 1e-5;
+/// Points a side of each cell of a grid where light is summed over the whole sphere.
+constexpr int kPoints = 3;
+/// Lobes narrower than cos^n of this, and tables about a mirrored direction or a half vector, are summed about where they are.
+constexpr double kNarrow = 30.0;
+/// Entries of a view angle's table of directional-hemispherical reflectances, as the shaders have them.
+constexpr int kViews = 180;
+
+glm::dvec3 acrossOf(const glm::dvec3& normal, const glm::dvec3& view) {
+  const glm::dvec3 flat = view - glm::dot(view, normal) * normal;
+  if (glm::length(flat) > 1e-9) return glm::normalize(flat);
+  return glm::normalize(glm::cross(normal, std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
+}
+
+bool isNarrow(const ReflectionComponent& r) {
+  if (!r.lobe().file.empty() && r.lobe().exponent > kNarrow) return true;
+  const auto axes = r.axes();
+  return std::any_of(axes.begin(), axes.end(), [](const AngleAxis& a) { return a.angle == Angle::Specular || a.angle == Angle::Half || a.angle == Angle::Difference; });
+}
+
+}  // namespace
+
+/// Of one of the surroundings' heights. Node by node as sums of a few directional patterns.
+struct NodeSurroundings::Height {
+  Eigen::MatrixXd pattern;           ///< [pattern, entry of the grid]
+  Eigen::MatrixXd mix;               ///< [node, pattern]
+  std::vector<Harmonics> harmonics;  ///< by node
+  DirectionGrid grid;
+  std::vector<DirectionGrid::Sample> samples;  ///< where it is in full
+  Eigen::MatrixXd atSamples;                   ///< [pattern, sample]
+};
+
+NodeSurroundings::~NodeSurroundings() = default;
+
+NodeSurroundings::NodeSurroundings(const Simulation& simulation, std::span<const SpectralNode> nodes, int degree)
+    : simulation_(simulation), nodes_(nodes), degree_(degree) {}
+
+const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) const {
+  const std::lock_guard lock(busy_);
+  auto& kept = heights_[number];
+  if (kept) return *kept;
+  kept = std::make_unique<Height>();
+  Height& h = *kept;
+  const Surroundings& around = *simulation_.surroundings;
+  h.grid = around.grids()[number];
+  const auto entries = static_cast<Eigen::Index>(h.grid.size()), count = static_cast<Eigen::Index>(nodes_.size());
+  Eigen::MatrixXd light = Eigen::MatrixXd::Zero(entries, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    Harmonics sum{};
+    for (const auto& m : nodes_[static_cast<size_t>(i)].members) {
+      const Surroundings::Light& own = around.light(m.wavelength_um, number);
+      light.col(i) += m.share * Eigen::Map<const Eigen::VectorXf>(own.radiance.data(), entries).cast<double>();
+      for (size_t c = 0; c < sum.size(); ++c) sum[c] += m.share * own.harmonics[c];
+    }
+    h.harmonics.push_back(sum);
+  }
+  // The node that is told worst becomes a pattern, until none is told badly (Gram and Schmidt with pivots).
+  Eigen::MatrixXd left = light;
+  for (Eigen::Index i = 0; i < count; ++i)
+    if (const double norm = light.col(i).norm(); norm > 0.0) left.col(i) /= norm;
+  std::vector<Eigen::VectorXd> patterns;
+  while (static_cast<Eigen::Index>(patterns.size()) < std::min(count, entries)) {
+    Eigen::Index worst = 0;
+    const double most = left.colwise().norm().maxCoeff(&worst);
+    if (most <= kLeftOut) break;
+    const Eigen::VectorXd pattern = left.col(worst) / most;
+    left -= pattern * (pattern.transpose() * left);
+    patterns.push_back(pattern);
+  }
+  h.pattern.resize(static_cast<Eigen::Index>(patterns.size()), entries);
+  for (size_t p = 0; p < patterns.size(); ++p) h.pattern.row(static_cast<Eigen::Index>(p)) = patterns[p];
+  h.mix = (h.pattern * light).transpose();
+  if (degree_ != Terms::kWhole) return h;
+  h.samples = h.grid.samples(kPoints);
+  h.atSamples.resize(h.pattern.rows(), static_cast<Eigen::Index>(h.samples.size()));
+  for (size_t s = 0; s < h.samples.size(); ++s) {
+    Eigen::VectorXd here = Eigen::VectorXd::Zero(h.pattern.rows());
+    for (size_t k = 0; k < 4; ++k) here += h.samples[s].reading.weight[k] * h.pattern.col(static_cast<Eigen::Index>(h.samples[s].reading.at[k]));
+    h.atSamples.col(static_cast<Eigen::Index>(s)) = here;
+  }
+  return h;
+}
+
+NodeSurroundings::Light NodeSurroundings::lightAt(const Surroundings::Place& place) const {
+  const std::size_t count = nodes_.size();
+  Light light;
+  light.harmonics.assign(count, Harmonics{});
+  std::size_t entries = 0;
+  double horizon_rad = 0.0;
+  for (std::size_t part = 0; part < 2; ++part) {
+    const double share = part == 0 ? 1.0 - place.share : place.share;
+    if (share == 0.0) continue;
+    const Height& h = height(place.height + part);
+    entries = h.grid.size();
+    light.rest.resize(entries * count, 0.0);
+    horizon_rad += share * h.grid.horizon_rad;
+    for (std::size_t i = 0; i < count; ++i)
+      for (int c = 0; c < harmonicCount(degree_); ++c) light.harmonics[i][static_cast<size_t>(c)] += share * h.harmonics[i][static_cast<size_t>(c)];
+    const Eigen::MatrixXd radiance = h.mix * h.pattern;
+    for (std::size_t g = 0; g < entries; ++g)
+      for (std::size_t i = 0; i < count; ++i) light.rest[g * count + i] += share * radiance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g));
+  }
+  light.grid = height(place.height).grid;
+  light.grid.horizon_rad = horizon_rad;
+  for (std::size_t g = 0; g < entries; ++g) {
+    Harmonics y;
+    realHarmonics(light.grid.direction(g), kMostHarmonicOrder, y);
+    for (std::size_t i = 0; i < count; ++i)
+      for (int c = 0; c < harmonicCount(degree_); ++c) light.rest[g * count + i] -= light.harmonics[i][static_cast<size_t>(c)] * y[static_cast<size_t>(c)];
+  }
+  return light;
+}
+
+const std::vector<std::vector<double>>& NodeSurroundings::columns(const ReflectionComponent& r) const {
+  const std::lock_guard lock(busy_);
+  auto& kept = columns_[&r];
+  if (kept) return *kept;
+  kept = std::make_unique<std::vector<std::vector<double>>>();
+  for (const SpectralNode& n : nodes_) {
+    std::vector<double> sum(columnEntries(r), 0.0);
+    for (const auto& m : n.members) {
+      const std::vector<double> own = columnsAt(r, m.wavelength_um);
+      for (size_t e = 0; e < sum.size(); ++e) sum[e] += m.share * own[e];
+    }
+    kept->push_back(std::move(sum));
+  }
+  return *kept;
+}
+
+std::vector<double> NodeSurroundings::hemispherical(const ReflectionComponent& r, double angle) const {
+  const auto entry = [&](int number) {
+    {
+      const std::lock_guard lock(busy_);
+      if (const auto at = hemispherical_.find({&r, number}); at != hemispherical_.end()) return at->second;
+    }
+    std::vector<double> own;
+    for (const SpectralNode& n : nodes_) own.push_back(n.mean([&](double w) { return r.hemispherical(w, 0.5 * kPi * number / kViews); }));
+    const std::lock_guard lock(busy_);
+    return hemispherical_.try_emplace({&r, number}, std::move(own)).first->second;
+  };
+  if (!r.hemisphericalVaries()) return entry(0);
+  if (degree_ == Terms::kWhole) {
+    std::vector<double> own;
+    for (const SpectralNode& n : nodes_) own.push_back(n.mean([&](double w) { return r.hemispherical(w, angle); }));
+    return own;
+  }
+  const double x = std::clamp(angle / (0.5 * kPi), 0.0, 1.0) * kViews;
+  const int low = std::min(static_cast<int>(x), kViews - 1);
+  std::vector<double> a = entry(low);
+  const std::vector<double> b = entry(low + 1);
+  for (size_t i = 0; i < a.size(); ++i) a[i] += (x - low) * (b[i] - a[i]);
+  return a;
+}
+
+const NodeSurroundings::Responses& NodeSurroundings::responses(const ReflectionComponent& r) const {
+  const auto& columns = this->columns(r);
+  const std::lock_guard lock(busy_);
+  auto& kept = responses_[&r];
+  if (kept) return *kept;
+  kept = std::make_unique<Responses>();
+  const HarmonicResponse own(r, degree_);
+  kept->views = own.views();
+  for (int j = 0; j < kept->views; ++j)
+    for (size_t i = 0; i < nodes_.size(); ++i) kept->at.push_back(own.at(j, columns[i]));
+  return *kept;
+}
+
+std::vector<double> NodeSurroundings::reflected(const ReflectionComponent& r, const SurfaceView& view) const {
+  if (degree_ == Terms::kWhole) return inFull(r, view);
+  if (degree_ > 0) return byHarmonics(r, view);
+  std::vector<double> all = hemispherical(r, std::acos(std::clamp(glm::dot(view.normal, view.toViewer), 0.0, 1.0)));
+  for (size_t i = 0; i < all.size(); ++i) all[i] *= nodes_[i].mean(*simulation_.ambient);
+  return all;
+}
+
+std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, const SurfaceView& view) const {
+  const double cosine = std::clamp(glm::dot(view.normal, view.toViewer), 0.0, 1.0), angle = std::acos(cosine);
+  const glm::dvec3 across = acrossOf(view.normal, view.toViewer), mirrored = 2.0 * cosine * view.normal - view.toViewer;
+  const Responses& own = responses(r);
+  const std::vector<double> whole = hemispherical(r, angle);
+  const auto place = simulation_.surroundings->placeAt(view.height_m);
+  std::array<Harmonics, kPlaneTurns.size()> y;
+  for (size_t k = 0; k < y.size(); ++k)
+    realHarmonics(std::cos(kPi * kPlaneTurns[k]) * view.normal + std::sin(kPi * kPlaneTurns[k]) * across, kMostHarmonicOrder, y[k]);
+  Harmonics beyond;
+  realHarmonics(mirrored, kMostHarmonicOrder, beyond);
+  const double x = angle / (0.5 * kPi) * (own.views - 1);
+  const auto low = static_cast<size_t>(std::min(x, std::max(own.views - 2.0, 0.0)));
+  const double more = own.views > 1 ? x - static_cast<double>(low) : 0.0;
+  std::vector<double> all(nodes_.size(), 0.0);
+  for (size_t part = 0; part < 2; ++part) {
+    const double share = part == 0 ? 1.0 - place.share : place.share;
+    if (share == 0.0) continue;
+    const Height& h = height(place.height + part);
+    const DirectionGrid::Reading reading = h.grid.at(mirrored);
+    for (size_t i = 0; i < all.size(); ++i) {
+      const Harmonics& light = h.harmonics[i];
+      const Response &a = own.at[low * nodes_.size() + i], &b = own.at[(own.views > 1 ? low + 1 : low) * nodes_.size() + i];
+      const auto weight = [&](int k) { return a[static_cast<size_t>(k)] + more * (b[static_cast<size_t>(k)] - a[static_cast<size_t>(k)]); };
+      double sum = whole[i] * light[0] / std::sqrt(4.0 * kPi);
+      for (int l = 1; l <= degree_; ++l)
+        for (int k = 0; k <= l; ++k) {
+          double of = 0.0;
+          for (int c = l * l; c < (l + 1) * (l + 1); ++c) of += light[static_cast<size_t>(c)] * y[static_cast<size_t>(k)][static_cast<size_t>(c)];
+          sum += weight(planeWeightAt(l, k)) * of;
+        }
+      if (own.views > 1) {
+        double rest = 0.0;
+        for (size_t k = 0; k < 4; ++k) rest += reading.weight[k] * h.mix.row(static_cast<Eigen::Index>(i)).dot(h.pattern.col(static_cast<Eigen::Index>(reading.at[k])));
+        for (int c = 0; c < harmonicCount(degree_); ++c) rest -= light[static_cast<size_t>(c)] * beyond[static_cast<size_t>(c)];
+        sum += weight(kPlaneWeights) * rest;
+      }
+      all[i] += share * sum;
+    }
+  }
+  return all;
+}
+
+std::vector<double> NodeSurroundings::inFull(const ReflectionComponent& r, const SurfaceView& view) const {
+  const double cosine = std::clamp(glm::dot(view.normal, view.toViewer), 1e-6, 1.0), angle = std::acos(cosine);
+  const glm::dvec3 across = acrossOf(view.normal, view.toViewer), aside = glm::cross(view.normal, across);
+  const glm::dvec3 own(std::sqrt(1.0 - cosine * cosine), 0.0, cosine);
+  const std::vector<std::vector<double>>& columns = this->columns(r);
+  const std::vector<double> whole = hemispherical(r, angle);
+  const auto place = simulation_.surroundings->placeAt(view.height_m);
+  const bool narrow = isNarrow(r), plain = HarmonicResponse::isPlain(r);
+  std::vector<double> all(nodes_.size(), 0.0);
+  for (size_t part = 0; part < 2; ++part) {
+    const double share = part == 0 ? 1.0 - place.share : place.share;
+    if (share == 0.0) continue;
+    const Height& h = height(place.height + part);
+    // By entry of the column and, last, for light of 1: what uniform light is off by is put right, so that it is exact.
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(h.pattern.rows() + 1, static_cast<Eigen::Index>(columnEntries(r)));
+    const auto add = [&](const glm::dvec3& light, double weight, const auto& here) {
+      const ColumnReading reading = plain ? ColumnReading{{}, {1.0}} : readColumn(r, light, own);
+      for (size_t e = 0; e < 4; ++e) {
+        if (reading.weight[e] == 0.0) continue;
+        auto to = sums.col(static_cast<Eigen::Index>(reading.at[e]));
+        to.head(h.pattern.rows()) += weight * reading.weight[e] * here;
+        to(h.pattern.rows()) += weight * reading.weight[e];
+      }
+    };
+    if (narrow) {
+      integrateHemisphere(r.integrationAxes(false), angle, [&](const LightSample& s) {
+        const double weight = s.weight * r.lobeAt(s.light, own);
+        if (weight == 0.0) return;
+        Eigen::VectorXd here = Eigen::VectorXd::Zero(h.pattern.rows());
+        for (const double side : {s.light.y, -s.light.y}) {
+          const DirectionGrid::Reading at = h.grid.at(s.light.x * across + side * aside + s.light.z * view.normal);
+          for (size_t k = 0; k < 4; ++k) here += 0.5 * at.weight[k] * h.pattern.col(static_cast<Eigen::Index>(at.at[k]));
+        }
+        add(s.light, weight, here);
+      });
+    } else {
+      for (size_t s = 0; s < h.samples.size(); ++s) {
+        const glm::dvec3& d = h.samples[s].direction;
+        const glm::dvec3 light(glm::dot(d, across), glm::dot(d, aside), glm::dot(d, view.normal));
+        if (light.z > 0.0) add(light, h.samples[s].solidAngle * light.z * (plain ? 1.0 : r.lobeAt(light, own)), h.atSamples.col(static_cast<Eigen::Index>(s)));
+      }
+    }
+    for (size_t i = 0; i < all.size(); ++i) {
+      const Eigen::Map<const Eigen::VectorXd> column(columns[i].data(), static_cast<Eigen::Index>(columns[i].size()));
+      const Eigen::VectorXd of = sums * column;
+      const double found = h.mix.row(static_cast<Eigen::Index>(i)).dot(of.head(h.pattern.rows()));
+      all[i] += share * (found + (whole[i] - of(h.pattern.rows())) * h.harmonics[i][0] / std::sqrt(4.0 * kPi));
+    }
+  }
+  return all;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,59 @@
+#pragma once
+// The surroundings' light at some nodes, and what surfaces send of it to a view: in full, or by harmonics as the shaders do.
+#include <map>
+#include <memory>
+#include <mutex>
+#include <span>
+
+#include "sim/model/harmonic_response.hpp"
+#include "sim/model/spectral_node.hpp"
+#include "sim/radiance/factor.hpp"
+#include "sim/radiance/terms.hpp"
+
+namespace pitviper {
+
+/// May be shared between threads.
+class NodeSurroundings {
+ public:
+  /// `degree`: as Terms::surroundings. All must outlive it.
+  NodeSurroundings(const Simulation& simulation, std::span<const SpectralNode> nodes, int degree);
+  ~NodeSurroundings();
+  int degree() const { return degree_; }
+
+  /// What shines on a place, as the shaders read it.
+  struct Light {
+    DirectionGrid grid;                ///< its horizon and its turn
+    std::vector<Harmonics> harmonics;  ///< by node, up to the degree
+    std::vector<double> rest;          ///< [entry of the grid][node]: what these leave
+  };
+  Light lightAt(const Surroundings::Place& place) const;
+
+  /// Means over the nodes of what a component sends [W/(m2 sr um)], a modifier at 1.
+  std::vector<double> reflected(const ReflectionComponent& component, const SurfaceView& view) const;
+  /// By view angle and node.
+  struct Responses {
+    int views = 1;
+    std::vector<Response> at;
+  };
+  const Responses& responses(const ReflectionComponent& component) const;
+
+ private:
+  struct Height;
+  const Height& height(std::size_t number) const;
+  std::vector<double> inFull(const ReflectionComponent& component, const SurfaceView& view) const;
+  std::vector<double> byHarmonics(const ReflectionComponent& component, const SurfaceView& view) const;
+  const std::vector<std::vector<double>>& columns(const ReflectionComponent& component) const;
+  /// At nodes, for a view angle: read from a table as the shaders do, or itself.
+  std::vector<double> hemispherical(const ReflectionComponent& component, double viewAngle_rad) const;
+
+  const Simulation& simulation_;
+  std::span<const SpectralNode> nodes_;
+  int degree_;
+  mutable std::mutex busy_;
+  mutable std::map<std::size_t, std::unique_ptr<Height>> heights_;
+  mutable std::map<const ReflectionComponent*, std::unique_ptr<Responses>> responses_;
+  mutable std::map<const ReflectionComponent*, std::unique_ptr<std::vector<std::vector<double>>>> columns_;
+  mutable std::map<std::pair<const ReflectionComponent*, int>, std::vector<double>> hemispherical_;
+};
+
+}  // namespace pitviper

@@ -1,0 +1,108 @@
+// Light from all around by spherical harmonics (sim/model/harmonic_response.hpp): L = rho mean(L_in) + sum of w_lk L_l(a_k) + D rest(mirrored view).
+// Of a place: the elevation of its horizon and the azimuth of its grid's first entries [turns]; by node 25 coefficients in seven vec4; by entry of its grid the rest at the nodes, four to a texel.
+//@use sim/render/glsl/view_block.glsl
+//@use sim/radiometry/glsl/harmonics.glsl
+layout(binding = 31) uniform samplerBuffer surroundings;
+int around_;  // where that of the body's place begins
+const int kDirections = AROUND_PLAIN == 1 ? 1 : 5;
+Harmonics4 to0_, to1_, to2_, to3_, to4_;  // at the directions a_k
+ivec4 restAt_;
+vec4 restMix_;
+int response0_, response1_;
+float responseMix_;
+
+// From the body's frame to the scenario's.
+vec3 localOf(vec3 v) {
+  vec3 c = draw_.row0.xyz * v.x + draw_.row1.xyz * v.y + draw_.row2.xyz * v.z;
+  return vec3(dot(view.east.xyz, c), dot(view.north.xyz, c), dot(cross(view.east.xyz, view.north.xyz), c));
+}
+
+// Entries of the grid about a direction: sim/model/direction_grid.cpp.
+void prepareRest(vec3 d) {
+  vec2 place = texelFetch(surroundings, around_).xy;
+  float horizon = place.x;
+  float elevation = atan(d.z, length(d.xy));
+  bool up = elevation >= horizon;
+  int rings = up ? AROUND_ABOVE : AROUND_BELOW;
+  float whole = up ? 1.5707963 - horizon : 1.5707963 + horizon;
+  float x = sqrt(clamp(abs(elevation - horizon) / whole, 0.0, 1.0)) * float(rings - 1);
+  int ring = min(int(x), rings - 2);
+  float across = x - float(ring);
+  float turn = AROUND_AZIMUTHS > 1 ? atan(d.y, d.x) * 0.15915494 - place.y : 0.0;
+  turn = (turn - floor(turn)) * float(AROUND_AZIMUTHS);
+  int first = min(int(turn), AROUND_AZIMUTHS - 1);
+  float round = turn - float(first);
+  int next = first + 1 == AROUND_AZIMUTHS ? 0 : first + 1;
+  int row = (ring + (up ? 0 : AROUND_ABOVE)) * AROUND_AZIMUTHS;
+  restAt_ = around_ + 1 + 7 * NODES + NODE_TEXELS * ivec4(row + first, row + next, row + AROUND_AZIMUTHS + first, row + AROUND_AZIMUTHS + next);
+  restMix_ = vec4((1.0 - across) * (1.0 - round), (1.0 - across) * round, across * (1.0 - round), across * round);
+}
+
+void prepareAmbient() {
+  around_ = int(draw_.fine.w);
+  vec3 normal = localOf(normal_);
+  to0_ = harmonicsAt(normal);
+  if (AROUND_PLAIN == 1) return;
+  vec3 viewer = localOf(toViewer_), flat_ = viewer - dot(viewer, normal) * normal;
+  float size = length(flat_);
+  // Straight from above there is no plane, and nothing that asks for one.
+  vec3 across = size > 1.0e-6 ? flat_ / size : normalize(cross(normal, abs(normal.z) < 0.9 ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0)));
+  to1_ = harmonicsAt(0.30901699 * normal + 0.95105652 * across);
+  to2_ = harmonicsAt(-0.80901699 * normal + 0.58778525 * across);
+  to3_ = harmonicsAt(0.80901699 * normal + 0.58778525 * across);
+  to4_ = harmonicsAt(-0.30901699 * normal + 0.95105652 * across);
+  prepareRest(2.0 * dot(normal, viewer) * normal - viewer);
+  float last = float(material_.response.z - 1u);
+  float x = min(angleFromChord(normal_, toViewer_) * 0.63661977, 1.0) * last;
+  int low = min(int(x), max(int(last) - 1, 0));
+  responseMix_ = x - float(low);
+  response0_ = int(material_.response.x) + 4 * NODES * low;
+  response1_ = response0_ + (last > 0.0 ? 4 * NODES : 0);
+}
+
+vec4 responseByView(int at) { return mix(texelFetch(hemispherical, response0_ + at), texelFetch(hemispherical, response1_ + at), responseMix_); }
+vec4 responseAt(int at) {
+  vec4 own = responseByView(at);
+  return STATES == 0 ? own : mix(own, responseByView(at + nextState(int(material_.response.y * material_.response.z) * NODES * 4)), stateMix_);
+}
+
+Real reflectedAmbient(Real reflectance, int i) {
+  int at = around_ + 1 + 7 * i;
+  LightHarmonics light;
+  light.first = texelFetch(surroundings, at);
+  light.second = texelFetch(surroundings, at + 1);
+  light.third = texelFetch(surroundings, at + 2);
+  if (AROUND_DEGREE > 2) light.fourth = texelFetch(surroundings, at + 3);
+  if (AROUND_DEGREE > 3) {
+    light.fifth = texelFetch(surroundings, at + 4);
+    light.sixth = texelFetch(surroundings, at + 5);
+    light.last = texelFetch(surroundings, at + 6).x;
+  }
+  Real sum = reflectance * 0.28209479 * light.first.x;
+  // Matt surfaces: A_l / pi is 2/3, 1/4, 0, -1/24.
+  if (AROUND_PLAIN == 1) {
+    sum += reflectance * (0.66666667 * ofDegree1(light, to0_) + 0.25 * ofDegree2(light, to0_));
+    if (AROUND_DEGREE > 3) sum -= reflectance * 0.04166667 * ofDegree4(light, to0_);
+    return max(isSurface_ * sum, 0.0);
+  }
+  vec4 rest = restMix_.x * texelFetch(surroundings, restAt_.x + i / 4) + restMix_.y * texelFetch(surroundings, restAt_.y + i / 4) +
+              restMix_.z * texelFetch(surroundings, restAt_.z + i / 4) + restMix_.w * texelFetch(surroundings, restAt_.w + i / 4);
+  vec4 q0 = vec4(0.0, ofDegree1(light, to0_), ofDegree1(light, to1_), ofDegree2(light, to0_));
+  vec4 q1 = vec4(ofDegree2(light, to1_), ofDegree2(light, to2_), 0.0, 0.0), q2 = vec4(0.0), q3 = vec4(0.0, 0.0, 0.0, rest[i % 4]);
+  if (AROUND_DEGREE > 2) {
+    q1.zw = vec2(ofDegree3(light, to0_), ofDegree3(light, to1_));
+    q2.xy = vec2(ofDegree3(light, to2_), ofDegree3(light, to3_));
+  }
+  if (AROUND_DEGREE > 3) {
+    q2.zw = vec2(ofDegree4(light, to0_), ofDegree4(light, to1_));
+    q3.xyz = vec3(ofDegree4(light, to2_), ofDegree4(light, to3_), ofDegree4(light, to4_));
+  }
+  int each = int(material_.response.z) * NODES * 4, place = 4 * i;
+  for (uint g = 0u; g < material_.response.y; ++g, place += each) {
+    int k = int((material_.response.w >> (4u * g)) & 15u);
+    Real own = dot(responseAt(place), q0) + dot(responseAt(place + 1), q1) + dot(responseAt(place + 3), q3);
+    if (AROUND_DEGREE > 2) own += dot(responseAt(place + 2), q2);
+    sum += own * modifier_[k / 3][k % 3];
+  }
+  return isSurface_ * sum;
+}

@@ -1,0 +1,37 @@
+#pragma once
+// The surroundings' light at the places of a scene's bodies, as the shaders read it (sim/render/glsl/ambient_around.glsl).
+#include <vector>
+
+#include "sim/gl/objects.hpp"
+#include "sim/gl/shader_assembler.hpp"
+#include "sim/model/world.hpp"
+#include "sim/radiance/node_surroundings.hpp"
+
+namespace pitviper {
+
+class SurroundingsBuffer {
+ public:
+  /// Both must outlive it.
+  SurroundingsBuffer(const Simulation& simulation, const NodeSurroundings& light, std::size_t nodes) : simulation_(simulation), light_(light), nodes_(nodes) {}
+  /// Bodies are where a state has them.
+  void setState(const WorldState& state);
+  /// Where the light of an entity begins; -1: of the ground, and of whatever has none.
+  float placeOf(int entity) const { return entity < 0 ? at_.back() : at_[static_cast<std::size_t>(entity)]; }
+  void bind() const { buffer_.bindTexture(31, 4); }
+  static void addConstants(const Simulation& simulation, ShaderSlots& slots);
+
+ private:
+  /// Steps between two heights of the surroundings: a height within one has the light of its nearest, which moves that by 1e-4 of their difference.
+  static constexpr double kSteps = 4096.0;
+  Surroundings::Place placed(double height_m) const;
+  void append(const Surroundings::Place& place, std::vector<float>& into) const;
+
+  const Simulation& simulation_;
+  const NodeSurroundings& light_;
+  std::size_t nodes_;
+  std::vector<Surroundings::Place> places_;  ///< of all entities and, last, of the ground
+  std::vector<float> at_;
+  Buffer buffer_;
+};
+
+}  // namespace pitviper
