@@ -8,6 +8,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/material_import.hpp"
 #include "scenarios/commands/options.hpp"
+#include "scenarios/commands/surroundings_loss.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/camera/camera_renderer.hpp"
@@ -46,6 +47,18 @@ std::string sceneOf(const std::string& material, const std::string& materials, b
       ", temperature: 320 K}]\ncameras: [{name: sphere, film: {width: 256, height: 256}, field_of_view: 12.5 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], "
       "look_at: s, ";
   return scene + (eye ? "eye: true}]\n" : line("channels: [{name: ir, response: {band: [%.6g um, %.6g um]}}]}]\n", low_um, high_um));
+}
+
+/// Under a sky by day.
+std::string lossOf(const std::string& material, const std::string& materials, const Material& m, const Libraries& libraries) {
+  const double low = std::max(m.validLow_um(), 0.41), high = std::min(m.validHigh_um(), 14.0);
+  if (!(high > low)) return "";
+  const std::string scene = materials +
+                            "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
+                            "ground: {material: soil, temperature: 295 K}\nentities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " +
+                            material + ", temperature: 300 K}]\ncameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], look_at: s, " +
+                            line("channels: [{name: c, response: {band: [%.6g um, %.6g um]}}]}]\n", low, low + 0.1 * (high - low));
+  return surroundingsLoss(readScenarioText(scene, "material " + material, ".", {}, libraries));
 }
 
 struct Shown {
@@ -197,6 +210,7 @@ int materialCommand(const Arguments& arguments) {
   const Shown s = shown(name, materials, libraries);
   if (s.material->medium) throw UserError({}, "'" + name + "' is a medium", "a surface", "'check' of a scenario shows what media do");
   std::printf("%s: %s", name.c_str(), describe(*s.material, description).c_str());
+  std::printf("%s", lossOf(name, materials, *s.material, libraries).c_str());
   if (!o.has("--out")) return 0;
   const std::filesystem::path out = o.value("--out");
   ensureWritableFolder(out);

@@ -2,8 +2,9 @@
 // What a reflection component sends to a view of light from all around: its kernel f cos(theta_l) in spherical harmonics, and what these can't hold as light
 // from the mirrored direction.
 //
-// Law: L = rho_dh mean(L_in) + sum over l = 1..order, k of w_lk(view) L_l(a_k) + D(view) (L_in - its harmonics)(mirrored view), a_k in the plane of view.
-// D is what the next four degrees of the kernel have in common with those of a mirror's: rho of a mirror, nothing of a matt surface. Uniform light is exact.
+// Law: L = rho_dh mean(L_in) + sum over l = 1..order, k of w_lk(view) L_l(a_k) + D(view) R_sigma(mirrored view), a_k in the plane of view; R_sigma: L_in less
+// its harmonics, blurred by exp(kappa (cos - 1)), kappa = 1/sigma^2. D and sigma are those of D exp(-l (l + 1) sigma^2 / 2), which a blurred mirror has, that
+// has two bands of the kernel's further degrees: rho and 0 of a mirror; of a matt surface D is nothing. Uniform light is exact.
 // Source: Lindsay and Agu 2005, section 3 (T_lm by view), with Ramamoorthi and Hanrahan's convolution; the mirrored remainder is this project's own.
 #include <memory>
 #include <vector>
@@ -24,9 +25,12 @@ ColumnReading readColumn(const ReflectionComponent& component, const glm::dvec3&
 /// The column at all entries at a wavelength.
 std::vector<double> columnsAt(const ReflectionComponent& component, double wavelength_um);
 
-/// Degree by degree and direction by direction as planeWeightAt(), then D: a vec4 and three more.
+/// Degree by degree and direction by direction as planeWeightAt(), then D: a vec4 and three more. In the place of w_00, which is told by the reflectance,
+/// stands D times the number of the blur, between those of kBlurs_rad.
 constexpr int kResponses = kPlaneWeights + 1;
 using Response = std::array<double, kResponses>;
+
+constexpr std::array<double, 5> kBlurs_rad = {0.0, 0.035, 0.07, 0.14, 0.28};
 
 class HarmonicResponse {
  public:
@@ -35,13 +39,14 @@ class HarmonicResponse {
   /// View angles, evenly from 0 to 90 deg; 1 where the kernel is the same for all.
   static constexpr int kViews = 91;
   int views() const { return static_cast<int>(weights_.size()); }
-  /// For a column's values at its entries. w_00 is 0: the directional-hemispherical reflectance is in its place.
+  /// For a column's values at its entries.
   Response at(int view, std::span<const double> columns) const;
   /// Is there anything but what depends on the normal alone?
   static bool isPlain(const ReflectionComponent& component);
 
  private:
-  std::vector<std::vector<std::pair<std::size_t, Response>>> weights_;  ///< by view: entries that it has something of
+  int order_;
+  std::vector<std::vector<std::pair<std::size_t, Response>>> weights_;  ///< by view: entries that it has something of; of both bands first and last
 };
 
 }  // namespace pitviper

@@ -37,6 +37,33 @@ const Surroundings::Light& Surroundings::light(double wavelength_um, std::size_t
   return kept_.try_emplace({height, wavelength_um}, std::move(sum)).first->second;
 }
 
+const std::vector<float>& Surroundings::blur(std::size_t height, double sigma_rad) const {
+  const std::lock_guard lock(busy_);
+  const auto [at, isNew] = blurs_.try_emplace({height, sigma_rad});
+  if (!isNew) return at->second;
+  const DirectionGrid& grid = grids_[height];
+  const std::size_t size = grid.size();
+  const double kappa = 1.0 / (sigma_rad * sigma_rad);
+  // Beyond 7 sigma nothing is left.
+  const double nearest = std::cos(std::min(7.0 * sigma_rad, kPi));
+  const auto samples = grid.samples(2);
+  at->second.assign(size * size, 0.0f);
+  for (std::size_t g = 0; g < size; ++g) {
+    const glm::dvec3 middle = grid.direction(g);
+    std::vector<double> row(size, 0.0);
+    double whole = 0.0;
+    for (const DirectionGrid::Sample& s : samples) {
+      const double cosine = glm::dot(middle, s.direction);
+      if (cosine < nearest) continue;
+      const double weight = s.solidAngle * std::exp(kappa * (cosine - 1.0));
+      whole += weight;
+      for (std::size_t k = 0; k < 4; ++k) row[s.reading.at[k]] += weight * s.reading.weight[k];
+    }
+    for (std::size_t h = 0; h < size; ++h) at->second[g * size + h] = static_cast<float>(row[h] / whole);
+  }
+  return at->second;
+}
+
 std::vector<double> MixedSurroundings::radiance(double wavelength_um, std::size_t) const {
   std::vector<double> values, all;
   for (const Spectrum& s : spectra_) values.push_back(s(wavelength_um));

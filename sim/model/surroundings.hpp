@@ -33,6 +33,8 @@ class Surroundings {
   };
   const Light& light(double wavelength_um, std::size_t height) const;
   const std::vector<Harmonics>& projection(std::size_t height) const;
+  /// What blurs values on the grid, by exp((cos - 1) / sigma^2) over the sphere: [entry][entry], each row of sum 1; kept.
+  const std::vector<float>& blur(std::size_t height, double sigma_rad) const;
   virtual void addTo(Fingerprint& f) const = 0;
 
  protected:
@@ -45,6 +47,7 @@ class Surroundings {
   std::vector<DirectionGrid> grids_;
   mutable std::mutex busy_;
   mutable std::map<std::size_t, std::vector<Harmonics>> projections_;
+  mutable std::map<std::pair<std::size_t, double>, std::vector<float>> blurs_;
   mutable std::map<std::pair<std::size_t, double>, Light> kept_;
 };
 

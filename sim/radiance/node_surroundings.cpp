@@ -40,12 +40,31 @@ struct NodeSurroundings::Height {
   DirectionGrid grid;
   std::vector<DirectionGrid::Sample> samples;  ///< where it is in full
   Eigen::MatrixXd atSamples;                   ///< [pattern, sample]
+  std::array<Eigen::MatrixXd, kBlurs_rad.size()> rest;  ///< by blur, [pattern, entry]: what harmonics leave of it
 };
 
 NodeSurroundings::~NodeSurroundings() = default;
 
 NodeSurroundings::NodeSurroundings(const Simulation& simulation, std::span<const SpectralNode> nodes, int degree)
     : simulation_(simulation), nodes_(nodes), degree_(degree) {}
+
+/// What the harmonics of its patterns leave of them, and the same blurred.
+void NodeSurroundings::tellRest(const Surroundings& around, std::size_t number, Height& h) const {
+  const auto entries = h.pattern.cols(), used = static_cast<Eigen::Index>(harmonicCount(degree_));
+  const std::vector<Harmonics>& each = around.projection(number);
+  Eigen::MatrixXd projection(entries, used), harmonics(used, entries);
+  for (Eigen::Index g = 0; g < entries; ++g) {
+    Harmonics y;
+    realHarmonics(h.grid.direction(static_cast<size_t>(g)), kMostHarmonicOrder, y);
+    for (Eigen::Index c = 0; c < used; ++c) projection(g, c) = each[static_cast<size_t>(g)][static_cast<size_t>(c)], harmonics(c, g) = y[static_cast<size_t>(c)];
+  }
+  h.rest[0] = h.pattern - h.pattern * projection * harmonics;
+  for (size_t b = 1; b < h.rest.size(); ++b) {
+    const std::vector<float>& blur = around.blur(number, kBlurs_rad[b]);
+    // Row by row in the table: its transpose as Eigen lays it out.
+    h.rest[b] = h.rest[0] * Eigen::Map<const Eigen::MatrixXf>(blur.data(), entries, entries).cast<double>();
+  }
+}
 
 const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) const {
   const std::lock_guard lock(busy_);
@@ -82,6 +101,7 @@ const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) con
   h.pattern.resize(static_cast<Eigen::Index>(patterns.size()), entries);
   for (size_t p = 0; p < patterns.size(); ++p) h.pattern.row(static_cast<Eigen::Index>(p)) = patterns[p];
   h.mix = (h.pattern * light).transpose();
+  if (degree_ > 0) tellRest(around, number, h);
   if (degree_ != Terms::kWhole) return h;
   h.samples = h.grid.samples(kPoints);
   h.atSamples.resize(h.pattern.rows(), static_cast<Eigen::Index>(h.samples.size()));
@@ -97,28 +117,21 @@ NodeSurroundings::Light NodeSurroundings::lightAt(const Surroundings::Place& pla
   const std::size_t count = nodes_.size();
   Light light;
   light.harmonics.assign(count, Harmonics{});
-  std::size_t entries = 0;
-  double horizon_rad = 0.0;
+  light.grid = height(place.height).grid;
+  light.grid.horizon_rad = 0.0;
+  for (auto& rest : light.rest) rest.assign(light.grid.size() * count, 0.0);
   for (std::size_t part = 0; part < 2; ++part) {
     const double share = part == 0 ? 1.0 - place.share : place.share;
     if (share == 0.0) continue;
     const Height& h = height(place.height + part);
-    entries = h.grid.size();
-    light.rest.resize(entries * count, 0.0);
-    horizon_rad += share * h.grid.horizon_rad;
+    light.grid.horizon_rad += share * h.grid.horizon_rad;
     for (std::size_t i = 0; i < count; ++i)
       for (int c = 0; c < harmonicCount(degree_); ++c) light.harmonics[i][static_cast<size_t>(c)] += share * h.harmonics[i][static_cast<size_t>(c)];
-    const Eigen::MatrixXd radiance = h.mix * h.pattern;
-    for (std::size_t g = 0; g < entries; ++g)
-      for (std::size_t i = 0; i < count; ++i) light.rest[g * count + i] += share * radiance(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g));
-  }
-  light.grid = height(place.height).grid;
-  light.grid.horizon_rad = horizon_rad;
-  for (std::size_t g = 0; g < entries; ++g) {
-    Harmonics y;
-    realHarmonics(light.grid.direction(g), kMostHarmonicOrder, y);
-    for (std::size_t i = 0; i < count; ++i)
-      for (int c = 0; c < harmonicCount(degree_); ++c) light.rest[g * count + i] -= light.harmonics[i][static_cast<size_t>(c)] * y[static_cast<size_t>(c)];
+    for (std::size_t b = 0; b < light.rest.size(); ++b) {
+      const Eigen::MatrixXd rest = h.mix * h.rest[b];
+      for (std::size_t g = 0; g < light.grid.size(); ++g)
+        for (std::size_t i = 0; i < count; ++i) light.rest[b][g * count + i] += share * rest(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g));
+    }
   }
   return light;
 }
@@ -194,8 +207,6 @@ std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, 
   std::array<Harmonics, kPlaneTurns.size()> y;
   for (size_t k = 0; k < y.size(); ++k)
     realHarmonics(std::cos(kPi * kPlaneTurns[k]) * view.normal + std::sin(kPi * kPlaneTurns[k]) * across, kMostHarmonicOrder, y[k]);
-  Harmonics beyond;
-  realHarmonics(mirrored, kMostHarmonicOrder, beyond);
   const double x = angle / (0.5 * kPi) * (own.views - 1);
   const auto low = static_cast<size_t>(std::min(x, std::max(own.views - 2.0, 0.0)));
   const double more = own.views > 1 ? x - static_cast<double>(low) : 0.0;
@@ -216,11 +227,15 @@ std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, 
           for (int c = l * l; c < (l + 1) * (l + 1); ++c) of += light[static_cast<size_t>(c)] * y[static_cast<size_t>(k)][static_cast<size_t>(c)];
           sum += weight(planeWeightAt(l, k)) * of;
         }
-      if (own.views > 1) {
-        double rest = 0.0;
-        for (size_t k = 0; k < 4; ++k) rest += reading.weight[k] * h.mix.row(static_cast<Eigen::Index>(i)).dot(h.pattern.col(static_cast<Eigen::Index>(reading.at[k])));
-        for (int c = 0; c < harmonicCount(degree_); ++c) rest -= light[static_cast<size_t>(c)] * beyond[static_cast<size_t>(c)];
-        sum += weight(kPlaneWeights) * rest;
+      if (const double d = weight(kPlaneWeights); d > 0.0) {
+        const double blur = std::clamp(weight(0) / d, 0.0, static_cast<double>(kBlurs_rad.size() - 1));
+        const auto sharper = std::min(static_cast<size_t>(blur), kBlurs_rad.size() - 2);
+        for (size_t step = 0; step < 2; ++step) {
+          double rest = 0.0;
+          for (size_t k = 0; k < 4; ++k)
+            rest += reading.weight[k] * h.mix.row(static_cast<Eigen::Index>(i)).dot(h.rest[sharper + step].col(static_cast<Eigen::Index>(reading.at[k])));
+          sum += d * (step == 0 ? 1.0 - (blur - static_cast<double>(sharper)) : blur - static_cast<double>(sharper)) * rest;
+        }
       }
       all[i] += share * sum;
     }

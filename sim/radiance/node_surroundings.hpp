@@ -24,7 +24,7 @@ class NodeSurroundings {
   struct Light {
     DirectionGrid grid;                ///< its horizon and its turn
     std::vector<Harmonics> harmonics;  ///< by node, up to the degree
-    std::vector<double> rest;          ///< [entry of the grid][node]: what these leave
+    std::array<std::vector<double>, kBlurs_rad.size()> rest;  ///< [blur][entry of the grid][node]: what these leave
   };
   Light lightAt(const Surroundings::Place& place) const;
 
@@ -40,6 +40,7 @@ class NodeSurroundings {
  private:
   struct Height;
   const Height& height(std::size_t number) const;
+  void tellRest(const Surroundings& around, std::size_t number, Height& height) const;
   std::vector<double> inFull(const ReflectionComponent& component, const SurfaceView& view) const;
   std::vector<double> byHarmonics(const ReflectionComponent& component, const SurfaceView& view) const;
   const std::vector<std::vector<double>>& columns(const ReflectionComponent& component) const;

@@ -39,14 +39,16 @@ void SurroundingsBuffer::append(const Surroundings::Place& place, std::vector<fl
     for (double v : h) put(v);
     fill();
   }
-  for (std::size_t g = 0; g < light.rest.size() / nodes_; ++g) {
-    for (std::size_t i = 0; i < nodes_; ++i) put(light.rest[g * nodes_ + i]);
-    fill();
-  }
+  for (const auto& rest : light.rest)
+    for (std::size_t g = 0; g < rest.size() / nodes_; ++g) {
+      for (std::size_t i = 0; i < nodes_; ++i) put(rest[g * nodes_ + i]);
+      fill();
+    }
 }
 
 void SurroundingsBuffer::addConstants(const Simulation& simulation, ShaderSlots& slots) {
   const DirectionGrid& grid = simulation.surroundings->grids().front();
+  slots.constants["AROUND_BLURS"] = static_cast<long long>(kBlurs_rad.size());
   slots.constants["AROUND_ABOVE"] = grid.above;
   slots.constants["AROUND_BELOW"] = grid.below;
   slots.constants["AROUND_AZIMUTHS"] = grid.azimuths;

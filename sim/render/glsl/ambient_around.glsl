@@ -1,5 +1,6 @@
-// Light from all around by spherical harmonics (sim/model/harmonic_response.hpp): L = rho mean(L_in) + sum of w_lk L_l(a_k) + D rest(mirrored view).
-// Of a place: the elevation of its horizon and the azimuth of its grid's first entries [turns]; by node 25 coefficients in seven vec4; by entry of its grid the rest at the nodes, four to a texel.
+// Light from all around by spherical harmonics (sim/model/harmonic_response.hpp): L = rho mean(L_in) + sum of w_lk L_l(a_k) + D rest_blur(mirrored view).
+// Of a place: the elevation of its horizon and the azimuth of its grid's first entries [turns]; by node 25 coefficients in seven vec4; by blur and entry of its grid the rest at the
+// nodes, four to a texel.
 //@use sim/render/glsl/view_block.glsl
 //@use sim/radiometry/glsl/harmonics.glsl
 layout(binding = 31) uniform samplerBuffer surroundings;
@@ -8,6 +9,11 @@ const int kDirections = AROUND_PLAIN == 1 ? 1 : 5;
 Harmonics4 to0_, to1_, to2_, to3_, to4_;  // at the directions a_k
 ivec4 restAt_;
 vec4 restMix_;
+int restOf_, sharper_;  // the texel of nodes that has been read, and about which blur
+vec4 restNear_, restFar_;
+//@each i AROUND_KEPT
+float mean{i}_, shaped{i}_;  // what the reflectance multiplies at a node, and what it doesn't
+//@end
 int response0_, response1_;
 float responseMix_;
 
@@ -38,7 +44,7 @@ void prepareRest(vec3 d) {
   restMix_ = vec4((1.0 - across) * (1.0 - round), (1.0 - across) * round, across * (1.0 - round), across * round);
 }
 
-void prepareAmbient() {
+void prepareDirections() {
   around_ = int(draw_.fine.w);
   vec3 normal = localOf(normal_);
   to0_ = harmonicsAt(normal);
@@ -52,6 +58,7 @@ void prepareAmbient() {
   to3_ = harmonicsAt(0.80901699 * normal + 0.58778525 * across);
   to4_ = harmonicsAt(-0.30901699 * normal + 0.95105652 * across);
   prepareRest(2.0 * dot(normal, viewer) * normal - viewer);
+  restOf_ = -1;
   float last = float(material_.response.z - 1u);
   float x = min(angleFromChord(normal_, toViewer_) * 0.63661977, 1.0) * last;
   int low = min(int(x), max(int(last) - 1, 0));
@@ -66,7 +73,25 @@ vec4 responseAt(int at) {
   return STATES == 0 ? own : mix(own, responseByView(at + nextState(int(material_.response.y * material_.response.z) * NODES * 4)), stateMix_);
 }
 
-Real reflectedAmbient(Real reflectance, int i) {
+// What the harmonics leave of the light from the mirrored direction, between two blurs: four nodes are read at once, about the blur of the first.
+float restAt(float blur, int i) {
+  float x = clamp(blur, 0.0, float(AROUND_BLURS - 1));
+  if (restOf_ != i / 4) {
+    restOf_ = i / 4;
+    sharper_ = min(int(x), AROUND_BLURS - 2);
+    int each = (AROUND_ABOVE + AROUND_BELOW) * AROUND_AZIMUTHS * NODE_TEXELS;
+    ivec4 at = restAt_ + sharper_ * each + restOf_;
+    restNear_ = restMix_.x * texelFetch(surroundings, at.x) + restMix_.y * texelFetch(surroundings, at.y) + restMix_.z * texelFetch(surroundings, at.z) +
+                restMix_.w * texelFetch(surroundings, at.w);
+    at += each;
+    restFar_ = restMix_.x * texelFetch(surroundings, at.x) + restMix_.y * texelFetch(surroundings, at.y) + restMix_.z * texelFetch(surroundings, at.z) +
+               restMix_.w * texelFetch(surroundings, at.w);
+  }
+  return mix(restNear_[i % 4], restFar_[i % 4], x - float(sharper_));
+}
+
+// Of node i: x times the reflectance, and y besides.
+vec2 aroundAt(int i) {
   int at = around_ + 1 + 7 * i;
   LightHarmonics light;
   light.first = texelFetch(surroundings, at);
@@ -78,17 +103,15 @@ Real reflectedAmbient(Real reflectance, int i) {
     light.sixth = texelFetch(surroundings, at + 5);
     light.last = texelFetch(surroundings, at + 6).x;
   }
-  Real sum = reflectance * 0.28209479 * light.first.x;
+  float mean = 0.28209479 * light.first.x, sum = 0.0;
   // Matt surfaces: A_l / pi is 2/3, 1/4, 0, -1/24.
   if (AROUND_PLAIN == 1) {
-    sum += reflectance * (0.66666667 * ofDegree1(light, to0_) + 0.25 * ofDegree2(light, to0_));
-    if (AROUND_DEGREE > 3) sum -= reflectance * 0.04166667 * ofDegree4(light, to0_);
-    return max(isSurface_ * sum, 0.0);
+    mean += 0.66666667 * ofDegree1(light, to0_) + 0.25 * ofDegree2(light, to0_);
+    if (AROUND_DEGREE > 3) mean -= 0.04166667 * ofDegree4(light, to0_);
+    return vec2(isSurface_ * mean, 0.0);
   }
-  vec4 rest = restMix_.x * texelFetch(surroundings, restAt_.x + i / 4) + restMix_.y * texelFetch(surroundings, restAt_.y + i / 4) +
-              restMix_.z * texelFetch(surroundings, restAt_.z + i / 4) + restMix_.w * texelFetch(surroundings, restAt_.w + i / 4);
   vec4 q0 = vec4(0.0, ofDegree1(light, to0_), ofDegree1(light, to1_), ofDegree2(light, to0_));
-  vec4 q1 = vec4(ofDegree2(light, to1_), ofDegree2(light, to2_), 0.0, 0.0), q2 = vec4(0.0), q3 = vec4(0.0, 0.0, 0.0, rest[i % 4]);
+  vec4 q1 = vec4(ofDegree2(light, to1_), ofDegree2(light, to2_), 0.0, 0.0), q2 = vec4(0.0), q3 = vec4(0.0);
   if (AROUND_DEGREE > 2) {
     q1.zw = vec2(ofDegree3(light, to0_), ofDegree3(light, to1_));
     q2.xy = vec2(ofDegree3(light, to2_), ofDegree3(light, to3_));
@@ -99,10 +122,33 @@ Real reflectedAmbient(Real reflectance, int i) {
   }
   int each = int(material_.response.z) * NODES * 4, place = 4 * i;
   for (uint g = 0u; g < material_.response.y; ++g, place += each) {
+    if (g > 0u) restOf_ = -1;
     int k = int((material_.response.w >> (4u * g)) & 15u);
-    Real own = dot(responseAt(place), q0) + dot(responseAt(place + 1), q1) + dot(responseAt(place + 3), q3);
+    vec4 r0 = responseAt(place), r3 = responseAt(place + 3);
+    float own = dot(r0, q0) + dot(responseAt(place + 1), q1) + dot(r3, q3);
+    if (r3.w > 0.0) own += r3.w * restAt(r0.x / r3.w, i);
     if (AROUND_DEGREE > 2) own += dot(responseAt(place + 2), q2);
     sum += own * modifier_[k / 3][k % 3];
   }
-  return isSurface_ * sum;
+  if (material_.response.y > 1u) restOf_ = -1;
+  return isSurface_ * vec2(mean, sum);
+}
+
+// Nodes that are written out one by one would each hold all of the above: these are looked at beforehand, in a loop.
+void prepareAmbient() {
+  prepareDirections();
+  for (int i = 0; i < AROUND_KEPT; ++i) {
+    vec2 own = aroundAt(i);
+//@each i AROUND_KEPT
+    if (i == {i}) mean{i}_ = own.x, shaped{i}_ = own.y;
+//@end
+  }
+}
+
+Real reflectedAmbient(Real reflectance, int i) {
+//@each i AROUND_KEPT
+  if (i == {i}) return reflectance * mean{i}_ + shaped{i}_;
+//@end
+  vec2 own = AROUND_KEPT > 0 ? vec2(0.0) : aroundAt(i);
+  return reflectance * own.x + own.y;
 }
