@@ -37,7 +37,7 @@ void addTo(Fingerprint& f, const Value& v) {
 
 Registry<ReflectionModel>& reflectionModels() {
   static Registry<ReflectionModel> all("reflection", {lambertianModel(), phongModel(), tabulatedModel(), microfacetModel(), seaModel(), spectralPhongModel(),
-                                                      wardModel(), sandfordRobertsonModel()});
+                                                      wardModel(), sandfordRobertsonModel(), beardMaxwellModel()});
   return all;
 }
 

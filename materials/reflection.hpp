@@ -32,6 +32,7 @@ ReflectionModel seaModel();
 ReflectionModel spectralPhongModel();
 ReflectionModel wardModel();
 ReflectionModel sandfordRobertsonModel();
+ReflectionModel beardMaxwellModel();
 /// A layer of a stack of films.
 const ParameterTable& filmLayerTable();
 

@@ -22,8 +22,8 @@ std::vector<SurfaceView> viewsOf() {
   for (double tilt : {0.0, 45.0, 90.0, 135.0})
     for (int turn = 0; turn < (tilt > 0.0 ? 4 : 1); ++turn) {
       const double t = tilt * kDegree, a = (20.0 + 90.0 * turn) * kDegree;
-      const glm::dvec3 normal(std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)), x(std::cos(t) * std::cos(a), std::cos(t) * std::sin(a), -std::sin(t)),
-          y = glm::cross(normal, x);
+      const glm::dvec3 normal(std::sin(t) * std::cos(a), std::sin(t) * std::sin(a), std::cos(t)),
+          x(std::cos(t) * std::cos(a), std::cos(t) * std::sin(a), -std::sin(t)), y = glm::cross(normal, x);
       for (double view : {5.0, 30.0, 55.0, 75.0, 85.0})
         for (double around : {30.0, 160.0, 275.0}) {
           const double v = view * kDegree, p = around * kDegree;

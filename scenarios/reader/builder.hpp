@@ -31,10 +31,11 @@ class Builder {
   void readAtmosphere(const Record& scenario);
   void readBackground(const Record& scenario);
   void readSun(const Record& scenario);
-  void readAmbient(const Record& scenario);
   void readMaterials(const Record& scenario);
   /// After materials and air.
   void readGround(const Record& scenario);
+  /// After the ground.
+  void readAmbient(const Record& scenario);
   void readEntities(const Record& scenario);
   void readLights(const Record& scenario);
   void readCameras(const Record& scenario);
@@ -83,6 +84,9 @@ class Builder {
   static Spectrum bounded(const SpectrumReader& spectra, const Value& value, std::string_view unit, std::string_view name, double low, double high,
                           Outside outside = Outside::Error);
   Spectrum blackOrGiven(const Record& r, const char* what) const;
+  // ambient.cpp
+  std::shared_ptr<const MixedSurroundings> gradientOf(const Record& ambient) const;
+  std::shared_ptr<const MixedSurroundings> mapOf(const Record& ambient) const;
 
   SpectralSampling accuracy_;  ///< of cameras without a sampling of their own
   Simulation& simulation_;

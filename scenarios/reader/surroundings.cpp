@@ -1,4 +1,4 @@
-// Origin, time, air, background, sun and ambient light.
+// Origin, time, air, background, ground and sun.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -160,29 +160,6 @@ void Builder::readGround(const Record& scenario) {
   if (!r.given("temperature") && !(ground.temperature_K > 0.0))
     throw UserError(r.where(), "a ground without a temperature, under air that has none", "a temperature", "add 'temperature: 288 K'");
   simulation_.ground = ground;
-}
-
-void Builder::readAmbient(const Record& scenario) {
-  if (!scenario.given("ambient")) return;
-  const Record r(scenario.value("ambient"), tables::ambient());
-  if (!r.given("from")) {
-    simulation_.ambient = blackOrGiven(r, "ambient");
-    return;
-  }
-  for (const char* key : {"temperature", "radiance"})
-    if (r.given(key)) throw UserError(r.where(key), "ambient light from the sky has its own radiance", "'from' alone", std::string("remove '") + key + "'");
-  if (!simulation_.air->traits().liesOnGround)
-    throw UserError(r.where("from"), "ambient light from the sky needs layered air", "a library air or a table under 'atmosphere'",
-                    "add 'atmosphere: hazy_us76', or give a temperature or radiance");
-  try {
-    simulation_.ambient = meanSky(simulation_.air, simulation_.sun, simulation_.background, 0.0, simulation_.frame.earthRadius_m());
-    simulation_.surroundings =
-        skyAndGround(simulation_.air, simulation_.sun, simulation_.background, simulation_.materials[static_cast<size_t>(simulation_.ground->material)],
-                     simulation_.ground->temperature_K, simulation_.frame.earthRadius_m());
-  } catch (const OutsideSpectrum& e) {
-    throw UserError(r.where("from"), std::string("the sky needs the sun and the background wherever the air has data: ") + e.what(),
-                    "spectra from 0.4 to 14.2 um", "extend the table, or declare 'outside: hold' or 'outside: zero' if that is true");
-  }
 }
 
 void Builder::readSun(const Record& scenario) {

@@ -70,7 +70,7 @@ const ParameterTable& scenario() {
        map("background", "what is behind everything (0 K unless given), seen through the air"),
        map("ground", "the earth's surface where bodies end: under layered air it is always there, black unless this says otherwise"),
        map("sun", "direction and irradiance"),
-       map("ambient", "radiance of a uniform dome that lights all surfaces"),
+       map("ambient", "what lights all surfaces from all around"),
        map("materials", "name: material; library materials need not be listed"),
        list("lights", "spectral point lights", 0, 1024),
        list("entities", "bodies", 0, 4096),
@@ -163,10 +163,50 @@ const ParameterTable& sun() {
 const ParameterTable& ambient() {
   static const ParameterTable t{
       "ambient",
-      "One of the three.",
+      "One of these. `temperature` and `radiance` light from everywhere alike; the others by direction: a plan tells them by their mean or by 9, 16 or 25 "
+      "spherical "
+      "harmonics, with what these leave of the mirrored direction, and says what that loses; the reference takes all of it. Bodies do not hide it from each "
+      "other.",
       {within(number("temperature", "K", "black dome"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance"),
        choice("from", {"sky"},
-              "layered air: the mean of its sky, weighted by the cosine to the zenith, at height 0: its emission, sunlight it scatters once, the background")}};
+              "layered air: its sky by elevation and azimuth and the ground below, as seen at each body's height: emission of the air, sunlight it scatters "
+              "once, the background; the ground in the sun and under the mean sky, seen through the air"),
+       list("gradient", "light by elevation alone, linear between entries, held beyond the first and the last", 1, 64),
+       map("map", "a picture of all directions")}};
+  return t;
+}
+
+const ParameterTable& gradientEntry() {
+  static const ParameterTable t = [] {
+    ParameterTable own{"gradient entry", "An elevation, and a temperature or a radiance. Two at one elevation are a step.", background().parameters};
+    own.parameters.insert(own.parameters.begin(),
+                          required(within(number("elevation", "rad", "above the horizon; entries rise"), -kHalfTurn / 2, kHalfTurn / 2)));
+    return own;
+  }();
+  return t;
+}
+
+const ParameterTable& environmentMap() {
+  static const ParameterTable t{
+      "map",
+      "An EXR of all directions, in layers by wavelength, or in red, green and blue (layers R, G, B), which are raised to spectra under the main light.",
+      {required(text("file", "EXR file")),
+       withDefault(
+           choice("layout", {"latitude_longitude", "cube"},
+                  "latitude_longitude: rows from zenith to nadir, the middle column towards `heading`, to the right clockwise; cube: six square faces in a "
+                  "row: ahead, right, behind, left, up, down, seen from within, up at their tops (of up: behind; of down: ahead)"),
+           "latitude_longitude"),
+       withDefault(within(number("heading", "rad", "of the middle column or the first face, clockwise from north"), -2 * kHalfTurn, 2 * kHalfTurn), "0 deg"),
+       withDefault(within(number("scale", "", "of its values"), 0.0, 1e9), "1"),
+       spectrum("light", "W/(m2 sr um)", "main light of a map in colours: what a pixel of (1, 1, 1) sends; such a map has light from 0.36 to 0.83 um"),
+       list("layers", "layers by wavelength, in W/(m2 sr um), linear between; no light is known beyond the first and the last", 2, 256)}};
+  return t;
+}
+
+const ParameterTable& environmentLayer() {
+  static const ParameterTable t{"map layer",
+                                "A layer of an environment map.",
+                                {required(text("name", "its name in the file")), required(within(number("wavelength", "um", "that it is at"), 0.1, 1000.0))}};
   return t;
 }
 
@@ -410,7 +450,9 @@ std::vector<ParameterTable> all() {
     for (const auto& model : registry.all()) every.push_back(tableOf(model));
   };
   addAll(airModels(), airTable);
-  for (const auto& t : {airLibrary(), background(), ground(), sun(), ambient(), spectrumTable(), material()}) every.push_back(t);
+  for (const auto& t :
+       {airLibrary(), background(), ground(), sun(), ambient(), gradientEntry(), environmentMap(), environmentLayer(), spectrumTable(), material()})
+    every.push_back(t);
   addAll(reflectionModels(), componentTable);
   addAll(mediumModels(), medium);
   for (const auto& t : {filmLayerTable(), refractiveIndexTable(), angleAxisTable(), texture(), emission(), transmission()}) every.push_back(t);

@@ -18,6 +18,9 @@ const ParameterTable& background();
 const ParameterTable& ground();
 const ParameterTable& sun();
 const ParameterTable& ambient();
+const ParameterTable& gradientEntry();
+const ParameterTable& environmentMap();
+const ParameterTable& environmentLayer();
 const ParameterTable& material();
 ParameterTable medium(const MediumModel& model);
 /// The medium that a material's map asks for, or null. Errors: UserError where it is a surface too.

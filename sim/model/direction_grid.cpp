@@ -25,7 +25,8 @@ DirectionGrid::Reading DirectionGrid::at(const glm::dvec3& d) const {
   const double e = std::atan2(d.z, std::hypot(d.x, d.y));
   const bool up = e >= horizon_rad;
   const int rings = up ? above : below;
-  const double x = std::sqrt(std::clamp(up ? (e - horizon_rad) / (0.5 * kPi - horizon_rad) : (horizon_rad - e) / (0.5 * kPi + horizon_rad), 0.0, 1.0)) * (rings - 1);
+  const double x =
+      std::sqrt(std::clamp(up ? (e - horizon_rad) / (0.5 * kPi - horizon_rad) : (horizon_rad - e) / (0.5 * kPi + horizon_rad), 0.0, 1.0)) * (rings - 1);
   const int ring = std::min(static_cast<int>(x), rings - 2);
   const double across = x - ring;
   double turn = azimuths > 1 ? (std::atan2(d.y, d.x) - turn_rad) / (2.0 * kPi) * azimuths : 0.0;

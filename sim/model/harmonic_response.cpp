@@ -11,8 +11,8 @@ namespace {
 
 /// Degrees beyond the order by which a mirror is told, and those by which its blur is.
 constexpr int kTelling = 4, kFirstBlurring = 14, kLastBlurring = 18;
-/// Part of a kernel that is no mirror's: its further degrees would say nothing of a width.
-constexpr double kNone = 1e-6;
+/// Where the first band has less of the reflectance, there is no lobe that harmonics could not hold: one of 0.35 rad has so much.
+constexpr double kNone = 0.05;
 /// Grazing views, where some kernels have no end [rad].
 constexpr double kLastView = 89.9 / 180.0 * kPi;
 
@@ -75,7 +75,7 @@ HarmonicResponse::HarmonicResponse(const ReflectionComponent& component, int ord
   for (int j = 0; j < views; ++j) {
     const double angle = views > 1 ? std::min(0.5 * kPi * j / (views - 1), kLastView) : 0.0;
     const glm::dvec3 view(std::sin(angle), 0.0, std::cos(angle)), mirrored(-view.x, 0.0, view.z);
-    std::map<std::size_t, Response> even;  // coefficients of Y_lm at planeWeightAt(l, m), and D
+    std::map<std::size_t, Weights> even;  // coefficients of Y_lm at planeWeightAt(l, m), and D
     integrateHemisphere(grid, angle, [&](const LightSample& s) {
       const double own = s.weight * component.lobeAt(s.light, view);
       if (own == 0.0) return;
@@ -89,8 +89,10 @@ HarmonicResponse::HarmonicResponse(const ReflectionComponent& component, int ord
       const ColumnReading r = readColumn(component, s.light, view);
       for (std::size_t e = 0; e < 4; ++e) {
         if (r.weight[e] == 0.0) continue;
-        Response& to = even.try_emplace(r.at[e], Response{}).first->second;
+        Weights& into = even.try_emplace(r.at[e]).first->second;
+        Response& to = into.of;
         const double w = own * r.weight[e];
+        into.albedo += w;
         for (int l = 1; l <= order; ++l)
           for (int m = 0; m <= l; ++m) to[static_cast<size_t>(planeWeightAt(l, m))] += w * y[static_cast<size_t>(l * l + l + m)];
         to.back() += w * like / whole;
@@ -100,25 +102,28 @@ HarmonicResponse::HarmonicResponse(const ReflectionComponent& component, int ord
     auto& at = weights_.emplace_back();
     for (const auto& [entry, sums] : even) {
       std::array<double, kPlaneWeights> half;
-      std::copy_n(sums.begin(), kPlaneWeights, half.begin());
+      std::copy_n(sums.of.begin(), kPlaneWeights, half.begin());
       half.front() = 0.0;
       const auto turned = planeWeights(half);
       Response r{};
       std::copy(turned.begin(), turned.end(), r.begin());
-      r.front() = views > 1 ? sums.front() : 0.0;
-      r.back() = views > 1 ? sums.back() : 0.0;
-      at.emplace_back(entry, r);
+      r.front() = views > 1 ? sums.of.front() : 0.0;
+      r.back() = views > 1 ? sums.of.back() : 0.0;
+      at.emplace_back(entry, Weights{r, sums.albedo});
     }
   }
 }
 
 Response HarmonicResponse::at(int view, std::span<const double> columns) const {
   Response sum{};
-  for (const auto& [entry, weights] : weights_[static_cast<std::size_t>(view)])
-    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += columns[entry] * weights[k];
+  double albedo = 0.0;
+  for (const auto& [entry, weights] : weights_[static_cast<std::size_t>(view)]) {
+    for (std::size_t k = 0; k < sum.size(); ++k) sum[k] += columns[entry] * weights.of[k];
+    albedo += columns[entry] * weights.albedo;
+  }
   const double near = sum.back(), far = sum.front();
   sum.front() = sum.back() = 0.0;
-  if (!(near > kNone)) return sum;
+  if (!(near > kNone * albedo)) return sum;
   // l (l + 1) in the middle of each band, by its terms' weights.
   const double first = meanOf(order_ + 1, order_ + kTelling), last = meanOf(kFirstBlurring, kLastBlurring);
   const double most = kBlurs_rad.back(), sigma2 = far > 0.0 ? std::clamp(2.0 * std::log(near / far) / (last - first), 0.0, most * most) : most * most;

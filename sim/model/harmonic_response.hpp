@@ -46,7 +46,12 @@ class HarmonicResponse {
 
  private:
   int order_;
-  std::vector<std::vector<std::pair<std::size_t, Response>>> weights_;  ///< by view: entries that it has something of; of both bands first and last
+  /// Of an entry: what Response has, of the two bands of degrees first and last; and its part of the reflectance.
+  struct Weights {
+    Response of{};
+    double albedo = 0.0;
+  };
+  std::vector<std::vector<std::pair<std::size_t, Weights>>> weights_;  ///< by view: entries that it has something of
 };
 
 }  // namespace pitviper

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/model/surroundings.hpp"
 #include "sim/model/sunlit_air.hpp"
+#include "sim/model/surroundings.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/quadrature.hpp"
@@ -68,7 +68,8 @@ class SkyAround final : public Surroundings {
       const Sightline::Sent sent = line.sight.at(node, um, irradiance);
       double end = behind;
       if (line.groundAngle_rad >= 0.0)
-        end = ground_->emissivity(um, line.groundAngle_rad) * physics::planckRadiance(um, ground_K_) + ground_->reflectance(um, line.groundAngle_rad) / kPi * falls;
+        end = ground_->emissivity(um, line.groundAngle_rad) * physics::planckRadiance(um, ground_K_) +
+              ground_->reflectance(um, line.groundAngle_rad) / kPi * falls;
       own.push_back(sent.radiance + end * std::exp(-sent.depth));
     }
     std::vector<double> all;
@@ -116,7 +117,8 @@ class SkyAround final : public Surroundings {
     AirRay ray{height_m, direction.z, earthRadius_m_};
     if (up) return {{SunlitAir(*air_, ray, air_->stationsAt(ray, kRanges_m), legs_.get(), seen), seen.cosScatter}, -1.0};
     // At the horizon itself a line just touches.
-    const double range = std::min(physics::groundRange(height_m, direction.z - 1e-9, earthRadius_m_), std::sqrt(height_m * (height_m + 2.0 * earthRadius_m_)) + 1.0);
+    const double range =
+        std::min(physics::groundRange(height_m, direction.z - 1e-9, earthRadius_m_), std::sqrt(height_m * (height_m + 2.0 * earthRadius_m_)) + 1.0);
     std::vector<double> ranges;
     for (double part : kParts) ranges.push_back(part * std::max(range, 1e-3));
     const double sine = std::clamp(-((earthRadius_m_ + height_m) * direction.z + range) / earthRadius_m_, 0.0, 1.0);

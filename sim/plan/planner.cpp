@@ -27,9 +27,10 @@ constexpr double kDropped = 0.05;
 /// Single precision on the GPU over a whole pixel: 2.8e-6 of a formula and 1e-5 of tables (tests/gpu/test_float_against_double.cpp), 5e-5 found in random
 /// scenes.
 constexpr double kPrecision = 6e-5;
-/// Of the accuracy, the part that ambient light may lose by being told with fewer harmonics, on the largest of so many lines (times kMargin: half of it).
-constexpr double kSurroundingsShare = 0.25;
-constexpr int kSurroundingsLines = 160;
+/// Of the accuracy, the part that ambient light may lose by being told with fewer harmonics, on the largest of so many lines of the film, and half as many of
+/// small bodies. It changes evenly over surfaces, and needs no margin.
+constexpr double kSurroundingsShare = 0.4;
+constexpr int kSurroundingsLines = 240;
 /// Seeds of the last lines lie apart from those of the fit, and of the last ones before.
 constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u, kNextSeed = 0xd1b54a32d192ed03u, kSurroundingsSeed = 0x8cb92ba72f3d8dd7u;
 
@@ -91,7 +92,7 @@ CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& f
   const double thin = plan.terms.air ? kThinShare * plan.accuracy : 0.0;
   for (size_t s = 0; s < found.size(); ++s) {
     plan.parts.push_back({kMargin * found[s].largest, tables[s], found[s].dropped + lamps + thin, kPrecision,
-                          plan.surroundingsLoss.empty() ? 0.0 : kMargin * plan.surroundingsLoss[s], extreme[s].largest});
+                          plan.surroundingsLoss.empty() ? 0.0 : plan.surroundingsLoss[s], extreme[s].largest});
     plan.predictedError.push_back(plan.parts.back().sum());
   }
   return last;

@@ -7,6 +7,7 @@
 #include "sim/model/light_legs.hpp"
 #include "sim/model/sunlit_air.hpp"
 #include "sim/model/world.hpp"
+#include "sim/radiance/factor.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectral_rule.hpp"
@@ -134,16 +135,23 @@ ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n
   const Material& material = sim_.materialOf(surface);
   const double reflectance = material.reflectance(um, 0.0), cosine = glm::dot(line.end->normal, sim_.frame.up(line.end->point));
   const double height = sim_.frame.height(line.end->point), from = depthAbove(column, height), leg = Atmosphere::depthOf(node.air, line.toSun);
-  const double dome = sim_.ambient ? kPi * (*sim_.ambient)(um) : 0.0;
+  const double dome = kPi * ambientOn(line.end->normal, height, um);
   const TwoStream::Fluxes flux = layer.at(from);
   parts.own +=
       through * (material.emissivity(um, 0.0) * physics::planckRadiance(um, line.end_K) + reflectance / kPi * (e0 * line.sun.factor * std::exp(-leg) + dome));
   // A dome that the scenario has lights every side alike; else half of what is level, by how the surface lies.
-  const double around = sim_.ambient ? flux.down : 0.5 * (1.0 + cosine) * flux.down + 0.5 * (1.0 - cosine) * flux.up;
+  const double around = sim_.ambient && !sim_.surroundings ? flux.down : 0.5 * (1.0 + cosine) * flux.down + 0.5 * (1.0 - cosine) * flux.up;
   const double falls = around + std::max(flux.beam - std::exp(-leg), 0.0) * line.sun.factor;
   parts.more += through * reflectance / kPi * std::max(e0 * falls - dome, 0.0);
   parts.scattering += sumOver(node.air.molecules, line.toSun) + sumOver(node.air.haze, line.toSun);
   return parts;
+}
+
+/// Irradiance over pi that the scenario's ambient light gives a surface.
+double ScatteringCheck::ambientOn(const glm::dvec3& normal, double height_m, double um) const {
+  if (!sim_.surroundings) return sim_.ambient ? (*sim_.ambient)(um) : 0.0;
+  const auto place = sim_.surroundings->placeAt(height_m);
+  return valueOf(sim_, Factor::around(std::asin(std::clamp(normal.z, -1.0, 1.0)), std::atan2(normal.y, normal.x), place.height), um);
 }
 
 std::vector<ScatteredAgain> ScatteringCheck::at(const WorldState& state) const {

@@ -44,6 +44,7 @@ class ScatteringCheck {
   };
   double depthAbove(const Column& column, double height_m) const;
   std::vector<Line> linesOver(const WorldState& state, std::optional<Hit>& below) const;
+  double ambientOn(const glm::dvec3& normal, double height_m, double wavelength_um) const;
   Parts partsOf(const Channel& channel, std::size_t node, const Line& line, const std::optional<Hit>& below, const AirAmounts& slant) const;
 
   const Simulation& sim_;

@@ -27,7 +27,8 @@ glm::dvec3 acrossOf(const glm::dvec3& normal, const glm::dvec3& view) {
 bool isNarrow(const ReflectionComponent& r) {
   if (!r.lobe().file.empty() && r.lobe().exponent > kNarrow) return true;
   const auto axes = r.axes();
-  return std::any_of(axes.begin(), axes.end(), [](const AngleAxis& a) { return a.angle == Angle::Specular || a.angle == Angle::Half || a.angle == Angle::Difference; });
+  return std::any_of(axes.begin(), axes.end(),
+                     [](const AngleAxis& a) { return a.angle == Angle::Specular || a.angle == Angle::Half || a.angle == Angle::Difference; });
 }
 
 }  // namespace
@@ -38,8 +39,8 @@ struct NodeSurroundings::Height {
   Eigen::MatrixXd mix;               ///< [node, pattern]
   std::vector<Harmonics> harmonics;  ///< by node
   DirectionGrid grid;
-  std::vector<DirectionGrid::Sample> samples;  ///< where it is in full
-  Eigen::MatrixXd atSamples;                   ///< [pattern, sample]
+  std::vector<DirectionGrid::Sample> samples;           ///< where it is in full
+  Eigen::MatrixXd atSamples;                            ///< [pattern, sample]
   std::array<Eigen::MatrixXd, kBlurs_rad.size()> rest;  ///< by blur, [pattern, entry]: what harmonics leave of it
 };
 
@@ -56,7 +57,8 @@ void NodeSurroundings::tellRest(const Surroundings& around, std::size_t number, 
   for (Eigen::Index g = 0; g < entries; ++g) {
     Harmonics y;
     realHarmonics(h.grid.direction(static_cast<size_t>(g)), kMostHarmonicOrder, y);
-    for (Eigen::Index c = 0; c < used; ++c) projection(g, c) = each[static_cast<size_t>(g)][static_cast<size_t>(c)], harmonics(c, g) = y[static_cast<size_t>(c)];
+    for (Eigen::Index c = 0; c < used; ++c)
+      projection(g, c) = each[static_cast<size_t>(g)][static_cast<size_t>(c)], harmonics(c, g) = y[static_cast<size_t>(c)];
   }
   h.rest[0] = h.pattern - h.pattern * projection * harmonics;
   for (size_t b = 1; b < h.rest.size(); ++b) {
@@ -216,6 +218,7 @@ std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, 
     if (share == 0.0) continue;
     const Height& h = height(place.height + part);
     const DirectionGrid::Reading reading = h.grid.at(mirrored);
+    std::size_t four = nodes_.size(), sharper = 0;
     for (size_t i = 0; i < all.size(); ++i) {
       const Harmonics& light = h.harmonics[i];
       const Response &a = own.at[low * nodes_.size() + i], &b = own.at[(own.views > 1 ? low + 1 : low) * nodes_.size() + i];
@@ -228,13 +231,15 @@ std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, 
           sum += weight(planeWeightAt(l, k)) * of;
         }
       if (const double d = weight(kPlaneWeights); d > 0.0) {
+        // Four nodes have the two blurs about the first one's.
         const double blur = std::clamp(weight(0) / d, 0.0, static_cast<double>(kBlurs_rad.size() - 1));
-        const auto sharper = std::min(static_cast<size_t>(blur), kBlurs_rad.size() - 2);
+        if (i / 4 != four) four = i / 4, sharper = std::min(static_cast<size_t>(blur), kBlurs_rad.size() - 2);
         for (size_t step = 0; step < 2; ++step) {
           double rest = 0.0;
           for (size_t k = 0; k < 4; ++k)
             rest += reading.weight[k] * h.mix.row(static_cast<Eigen::Index>(i)).dot(h.rest[sharper + step].col(static_cast<Eigen::Index>(reading.at[k])));
-          sum += d * (step == 0 ? 1.0 - (blur - static_cast<double>(sharper)) : blur - static_cast<double>(sharper)) * rest;
+          const double further = blur - static_cast<double>(sharper);
+          sum += d * (step == 0 ? 1.0 - further : further) * rest;
         }
       }
       all[i] += share * sum;

@@ -22,8 +22,8 @@ class NodeSurroundings {
 
   /// What shines on a place, as the shaders read it.
   struct Light {
-    DirectionGrid grid;                ///< its horizon and its turn
-    std::vector<Harmonics> harmonics;  ///< by node, up to the degree
+    DirectionGrid grid;                                       ///< its horizon and its turn
+    std::vector<Harmonics> harmonics;                         ///< by node, up to the degree
     std::array<std::vector<double>, kBlurs_rad.size()> rest;  ///< [blur][entry of the grid][node]: what these leave
   };
   Light lightAt(const Surroundings::Place& place) const;

@@ -12,6 +12,7 @@
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/hemisphere.hpp"
 #include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"
 
@@ -64,8 +65,7 @@ TEST(Library, ReflectsAlikeBothWays) {
                  byLight = axes[0].angle == Angle::Incidence || axes[1].angle == Angle::Incidence;
       if (byView && !byLight) continue;  // windows by tables over the view angle: cones about the mirrored direction
       for (int i = 0; i < 300; ++i) {
-        const auto direction = [](double a, double b) { return glm::normalize(glm::dvec3(std::cos(a) * b, std::sin(a) * b, 1.02 - b)); };
-        const glm::dvec3 l = direction(0.37 * i, 0.5 + 0.499 * std::sin(1.3 * i)), v = direction(1.91 * i, 0.5 + 0.499 * std::sin(2.7 * i));
+        const auto [l, v] = directionPair(i);
         const double f = r->brdf(1.6, l, v), g = r->brdf(1.6, v, l);
         worst = std::max(worst, std::abs(f - g) / std::max(1e-6, f + g));
       }

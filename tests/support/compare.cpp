@@ -29,6 +29,9 @@ Worst compare(const Simulation& sim, const Plan& plan, int stride, double floor)
   pass.draw(view, state, std::vector<char>(sim.entities.size(), 1));
   pass.startReadback();
   const RawImage raw = pass.finishReadback();
+  // One for all pixels: what they have in common is worked out once.
+  const std::vector<char> all(sim.entities.size(), 1);
+  const ReferenceShader shader(sim, plan, view, state, all);
   Worst worst;
   struct Pair {
     double got, want;
@@ -37,7 +40,7 @@ Worst compare(const Simulation& sim, const Plan& plan, int stride, double floor)
   for (int y = 0; y < view.height; y += stride)
     for (int x = 0; x < view.width; x += stride) {
       const size_t p = static_cast<size_t>(y * view.width + x);
-      const ReferencePixel reference = referencePixel(sim, plan, view, state, x, y);
+      const ReferencePixel reference = shader.pixel(x, y);
       const TruthPixel truth = truthAt(raw, p);
       if (static_cast<int>(truth.entity) != reference.entity + 1 || static_cast<int>(truth.part) != reference.surface + 1) {
         ++worst.missed;

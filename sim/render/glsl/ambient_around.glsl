@@ -3,6 +3,7 @@
 // nodes, four to a texel.
 //@use sim/render/glsl/view_block.glsl
 //@use sim/radiometry/glsl/harmonics.glsl
+//@use sim/radiometry/glsl/arc_tangent.glsl
 layout(binding = 31) uniform samplerBuffer surroundings;
 int around_;  // where that of the body's place begins
 const int kDirections = AROUND_PLAIN == 1 ? 1 : 5;
@@ -23,18 +24,25 @@ vec3 localOf(vec3 v) {
   return vec3(dot(view.east.xyz, c), dot(view.north.xyz, c), dot(cross(view.east.xyz, view.north.xyz), c));
 }
 
+// From x towards y, -pi to pi.
+float azimuthOf(vec3 d) {
+  float turn = arcTangent(abs(d.y) / max(abs(d.x), 1.0e-12));
+  turn = d.x < 0.0 ? 3.1415927 - turn : turn;
+  return d.y < 0.0 ? -turn : turn;
+}
+
 // Entries of the grid about a direction: sim/model/direction_grid.cpp.
 void prepareRest(vec3 d) {
   vec2 place = texelFetch(surroundings, around_).xy;
   float horizon = place.x;
-  float elevation = atan(d.z, length(d.xy));
+  float flat_ = length(d.xy), elevation = sign(d.z) * arcTangent(abs(d.z) / max(flat_, 1.0e-9));
   bool up = elevation >= horizon;
   int rings = up ? AROUND_ABOVE : AROUND_BELOW;
   float whole = up ? 1.5707963 - horizon : 1.5707963 + horizon;
   float x = sqrt(clamp(abs(elevation - horizon) / whole, 0.0, 1.0)) * float(rings - 1);
   int ring = min(int(x), rings - 2);
   float across = x - float(ring);
-  float turn = AROUND_AZIMUTHS > 1 ? atan(d.y, d.x) * 0.15915494 - place.y : 0.0;
+  float turn = AROUND_AZIMUTHS > 1 ? azimuthOf(d) * 0.15915494 - place.y : 0.0;
   turn = (turn - floor(turn)) * float(AROUND_AZIMUTHS);
   int first = min(int(turn), AROUND_AZIMUTHS - 1);
   float round = turn - float(first);
@@ -57,7 +65,7 @@ void prepareDirections() {
   to2_ = harmonicsAt(-0.80901699 * normal + 0.58778525 * across);
   to3_ = harmonicsAt(0.80901699 * normal + 0.58778525 * across);
   to4_ = harmonicsAt(-0.30901699 * normal + 0.95105652 * across);
-  prepareRest(2.0 * dot(normal, viewer) * normal - viewer);
+  prepareRest(2.0 * clamp(dot(normal, viewer), 0.0, 1.0) * normal - viewer);
   restOf_ = -1;
   float last = float(material_.response.z - 1u);
   float x = min(angleFromChord(normal_, toViewer_) * 0.63661977, 1.0) * last;
