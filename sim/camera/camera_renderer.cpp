@@ -2,6 +2,7 @@
 
 #include "sim/camera/small_bodies.hpp"
 #include "sim/camera/visible_lights.hpp"
+#include "sim/camera/zoomed_lines.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/plan/planner.hpp"
 

@@ -4,6 +4,7 @@
 
 #include "sim/camera/small_bodies.hpp"
 #include "sim/camera/visible_lights.hpp"
+#include "sim/camera/zoomed_lines.hpp"
 #include "sim/model/light_legs.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/radiometry/physics.hpp"

@@ -12,13 +12,6 @@ namespace pitviper {
 /// One flag per entity: true where its bounding sphere spans fewer subpixels than the limit and stands in front of the camera.
 std::vector<char> findSmallBodies(const Simulation& simulation, const WorldState& state, const View& view, double limit_subpixels);
 
-/// Lines across each entity's bounding sphere when it is small: `most`, or fewer where an accuracy is asked for and the body is even (convex, one
-/// material and temperature, no textures, no reflection that depends on angles; opaque, or of gas): as many as the area of its outline takes to be known, on average, to a
-/// quarter of it. The same for the reference that a camera is held against: audits don't see it. Law: an area A of outline P on a grid of spacing h is off by
-/// sqrt(0.0724 P h^3) / A (1 sigma; Source: Gundersen and Jensen 1987, J. Microscopy 147, 229, after Matheron); of a convex mesh of surface S in a sphere of
-/// diameter D, A = S / 4 on average over directions (Cauchy) and P = pi D at most.
-std::vector<int> zoomedLines(const Simulation& simulation, int most, double accuracy);
-
 /// The part of a view (corner, size) in which small bodies and bright parts may show, with their views' corners; of no size where none does.
 glm::ivec4 smallBodiesIn(const Simulation& simulation, const WorldState& state, const View& view, const std::vector<char>& small,
                          const std::vector<char>& present, const std::vector<Ball>& parts = {});

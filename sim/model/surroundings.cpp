@@ -45,7 +45,7 @@ const std::vector<float>& Surroundings::blur(std::size_t height, double sigma_ra
   const std::size_t size = grid.size();
   const double kappa = 1.0 / (sigma_rad * sigma_rad);
   // Beyond 7 sigma nothing is left.
-  const double nearest = std::cos(std::min(7.0 * sigma_rad, kPi));
+  const double nearest = sigma_rad < 0.0 ? 0.0 : std::cos(std::min(7.0 * sigma_rad, kPi));
   const auto samples = grid.samples(2);
   at->second.assign(size * size, 0.0f);
   for (std::size_t g = 0; g < size; ++g) {
@@ -55,7 +55,7 @@ const std::vector<float>& Surroundings::blur(std::size_t height, double sigma_ra
     for (const DirectionGrid::Sample& s : samples) {
       const double cosine = glm::dot(middle, s.direction);
       if (cosine < nearest) continue;
-      const double weight = s.solidAngle * std::exp(kappa * (cosine - 1.0));
+      const double weight = s.solidAngle * (sigma_rad < 0.0 ? cosine : std::exp(kappa * (cosine - 1.0)));
       whole += weight;
       for (std::size_t k = 0; k < 4; ++k) row[s.reading.at[k]] += weight * s.reading.weight[k];
     }

@@ -33,7 +33,8 @@ class Surroundings {
   };
   const Light& light(double wavelength_um, std::size_t height) const;
   const std::vector<Harmonics>& projection(std::size_t height) const;
-  /// What blurs values on the grid, by exp((cos - 1) / sigma^2) over the sphere: [entry][entry], each row of sum 1; kept.
+  /// What blurs values on the grid, by exp((cos - 1) / sigma^2) over the sphere, or where sigma is below 0 by a cosine, as matt surfaces do: [entry][entry],
+  /// each row of sum 1; kept.
   const std::vector<float>& blur(std::size_t height, double sigma_rad) const;
   virtual void addTo(Fingerprint& f) const = 0;
 

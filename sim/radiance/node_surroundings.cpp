@@ -39,9 +39,9 @@ struct NodeSurroundings::Height {
   Eigen::MatrixXd mix;               ///< [node, pattern]
   std::vector<Harmonics> harmonics;  ///< by node
   DirectionGrid grid;
-  std::vector<DirectionGrid::Sample> samples;           ///< where it is in full
-  Eigen::MatrixXd atSamples;                            ///< [pattern, sample]
-  std::array<Eigen::MatrixXd, kBlurs_rad.size()> rest;  ///< by blur, [pattern, entry]: what harmonics leave of it
+  std::vector<DirectionGrid::Sample> samples;  ///< where it is in full
+  Eigen::MatrixXd atSamples;                   ///< [pattern, sample]
+  std::array<Eigen::MatrixXd, kRests> rest;    ///< by blur, [pattern, entry]: what harmonics leave of it
 };
 
 NodeSurroundings::~NodeSurroundings() = default;
@@ -62,7 +62,7 @@ void NodeSurroundings::tellRest(const Surroundings& around, std::size_t number, 
   }
   h.rest[0] = h.pattern - h.pattern * projection * harmonics;
   for (size_t b = 1; b < h.rest.size(); ++b) {
-    const std::vector<float>& blur = around.blur(number, kBlurs_rad[b]);
+    const std::vector<float>& blur = around.blur(number, b == kCosine ? -1.0 : kBlurs_rad[b]);
     // Row by row in the table: its transpose as Eigen lays it out.
     h.rest[b] = h.rest[0] * Eigen::Map<const Eigen::MatrixXf>(blur.data(), entries, entries).cast<double>();
   }
@@ -217,7 +217,7 @@ std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, 
     const double share = part == 0 ? 1.0 - place.share : place.share;
     if (share == 0.0) continue;
     const Height& h = height(place.height + part);
-    const DirectionGrid::Reading reading = h.grid.at(mirrored);
+    const DirectionGrid::Reading reading = h.grid.at(mirrored), level = h.grid.at(view.normal);
     std::size_t four = nodes_.size(), sharper = 0;
     for (size_t i = 0; i < all.size(); ++i) {
       const Harmonics& light = h.harmonics[i];
@@ -230,6 +230,11 @@ std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, 
           for (int c = l * l; c < (l + 1) * (l + 1); ++c) of += light[static_cast<size_t>(c)] * y[static_cast<size_t>(k)][static_cast<size_t>(c)];
           sum += weight(planeWeightAt(l, k)) * of;
         }
+      // Of what is no lobe, a matt surface's share of the rest.
+      double matt = 0.0;
+      for (size_t k = 0; k < 4; ++k)
+        matt += level.weight[k] * h.mix.row(static_cast<Eigen::Index>(i)).dot(h.rest[kCosine].col(static_cast<Eigen::Index>(level.at[k])));
+      sum += (whole[i] - std::max(weight(kPlaneWeights), 0.0)) * matt;
       if (const double d = weight(kPlaneWeights); d > 0.0) {
         // Four nodes have the two blurs about the first one's.
         const double blur = std::clamp(weight(0) / d, 0.0, static_cast<double>(kBlurs_rad.size() - 1));

@@ -20,11 +20,13 @@ class NodeSurroundings {
   ~NodeSurroundings();
   int degree() const { return degree_; }
 
+  static constexpr std::size_t kCosine = kBlurs_rad.size(), kRests = kCosine + 1;
   /// What shines on a place, as the shaders read it.
   struct Light {
-    DirectionGrid grid;                                       ///< its horizon and its turn
-    std::vector<Harmonics> harmonics;                         ///< by node, up to the degree
-    std::array<std::vector<double>, kBlurs_rad.size()> rest;  ///< [blur][entry of the grid][node]: what these leave
+    DirectionGrid grid;                ///< its horizon and its turn
+    std::vector<Harmonics> harmonics;  ///< by node, up to the degree
+    /// [blur][entry of the grid][node]: what these leave, by the blurs of lobes and, last, by a matt surface's cosine.
+    std::array<std::vector<double>, kRests> rest;
   };
   Light lightAt(const Surroundings::Place& place) const;
 

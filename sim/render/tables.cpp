@@ -5,9 +5,9 @@
 #include <cmath>
 #include <sstream>
 
+#include "sim/radiance/node_surroundings.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
-#include "sim/radiance/node_surroundings.hpp"
 #include "sim/render/material_tables.hpp"
 
 namespace pitviper {
@@ -220,7 +220,10 @@ void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, con
   slots.constants["TAPS_ACROSS"] = taps.mostAcross;
   slots.constants["TAPS_ALONG"] = taps.mostAlong;
   file("modifiers", terms.modifiers ? "modifiers_textured" : "modifiers_none");
-  file("ambient", !plan.terms.ambient ? "ambient_none" : plan.terms.surroundings > 0 ? "ambient_around" : "ambient_dome");
+  // In full it is not told on the GPU at all: what is drawn there is truth.
+  file("ambient", !plan.terms.ambient || plan.terms.surroundings == Terms::kWhole ? "ambient_none"
+                  : plan.terms.surroundings > 0                                   ? "ambient_around"
+                                                                                  : "ambient_dome");
   if (plan.terms.surroundings > 0) {
     const auto any = std::any_of(tables.materials.begin(), tables.materials.end(), [](const GpuMaterial& m) { return m.response[2] > 1; });
     slots.constants["AROUND_DEGREE"] = plan.terms.surroundings;

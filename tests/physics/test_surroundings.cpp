@@ -114,6 +114,32 @@ TEST(Surroundings, MirrorsShowIt) {
   }
 }
 
+// A map of (1, 1, 1) is its main light to an eye; a red one has its luminance's share of red and no blue.
+TEST(Surroundings, ColoursAreRaisedToSpectra) {
+  const TemporaryFolder folder;
+  const auto xyz = [&](const std::string& ambient) {
+    const Frame f = renderFrame(scene("accuracy: none\nmaterials: {m: {components: [{reflection: lambertian, reflectance: 0.5}]}}\n" + ambient +
+                                      "entities: [{name: b, shape: {model: plate, width: 9 m, height: 9 m}, material: m, temperature: 0 K}]\n"
+                                      "cameras: [{name: c, film: {width: 1, height: 1}, field_of_view: 1 deg, aperture: 20 mm, position: [10 m, 0 m, 0 m], "
+                                      "look_at: b, eye: true}]\n"));
+    return glm::dvec3(sum(layer(f, "X.tristimulus")), sum(layer(f, "Y.tristimulus")), sum(layer(f, "Z.tristimulus")));
+  };
+  const auto mapOfOne = [&](const std::string& name, const glm::dvec3& rgb) {
+    ExrImage image;
+    image.width = 16, image.height = 8;
+    for (int k = 0; k < 3; ++k) image.layers.push_back({std::string(1, "RGB"[k]), std::vector<float>(128, static_cast<float>(rgb[k]))});
+    writeExr(folder.path() / name, image);
+    return "ambient: {map: {file: " + (folder.path() / name).string() + ", light: {product: [\"0.1 W/(m2 sr um)\", cie_d65]}}}\n";
+  };
+  const glm::dvec3 white = xyz(mapOfOne("white.exr", glm::dvec3(1.0))), light = xyz("ambient: {radiance: {product: [\"0.1 W/(m2 sr um)\", cie_d65]}}\n"),
+                   red = xyz(mapOfOne("red.exr", glm::dvec3(1.0, 0.0, 0.0)));
+  for (int k = 0; k < 3; ++k)
+    figure(print("%c of a white map under D65 [cd/m2]", "XYZ"[k]), white[k], light[k], 2e-3, "its main light; sums over 1 nm against 16 Gauss points");
+  EXPECT_GT(red.x, red.y);
+  EXPECT_LT(red.z, 0.3 * red.y);
+  EXPECT_LT(red.y, 0.5 * white.y);
+}
+
 const std::string kSky =
     "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\nground: {material: soil, temperature: 295 "
     "K}\n";

@@ -1,6 +1,6 @@
 // Light from all around by spherical harmonics (sim/model/harmonic_response.hpp): L = rho mean(L_in) + sum of w_lk L_l(a_k) + D rest_blur(mirrored view).
-// Of a place: the elevation of its horizon and the azimuth of its grid's first entries [turns]; by node 25 coefficients in seven vec4; by blur and entry of its grid the rest at the
-// nodes, four to a texel.
+// Of a place: the elevation of its horizon and the azimuth of its grid's first entries [turns]; by node 25 coefficients in seven vec4; by blur (the last: by a cosine) and entry of its
+// grid the rest at the nodes, four to a texel.
 //@use sim/render/glsl/view_block.glsl
 //@use sim/radiometry/glsl/harmonics.glsl
 //@use sim/radiometry/glsl/arc_tangent.glsl
@@ -10,6 +10,9 @@ const int kDirections = AROUND_PLAIN == 1 ? 1 : 5;
 Harmonics4 to0_, to1_, to2_, to3_, to4_;  // at the directions a_k
 ivec4 restAt_;
 vec4 restMix_;
+ivec4 mattAt_;
+vec4 mattMix_, matt_;
+int mattOf_;
 int restOf_, sharper_;  // the texel of nodes that has been read, and about which blur
 vec4 restNear_, restFar_;
 //@each i AROUND_KEPT
@@ -32,7 +35,7 @@ float azimuthOf(vec3 d) {
 }
 
 // Entries of the grid about a direction: sim/model/direction_grid.cpp.
-void prepareRest(vec3 d) {
+void placesOf(vec3 d, out ivec4 places, out vec4 shares) {
   vec2 place = texelFetch(surroundings, around_).xy;
   float horizon = place.x;
   float flat_ = length(d.xy), elevation = sign(d.z) * arcTangent(abs(d.z) / max(flat_, 1.0e-9));
@@ -48,14 +51,17 @@ void prepareRest(vec3 d) {
   float round = turn - float(first);
   int next = first + 1 == AROUND_AZIMUTHS ? 0 : first + 1;
   int row = (ring + (up ? 0 : AROUND_ABOVE)) * AROUND_AZIMUTHS;
-  restAt_ = around_ + 1 + 7 * NODES + NODE_TEXELS * ivec4(row + first, row + next, row + AROUND_AZIMUTHS + first, row + AROUND_AZIMUTHS + next);
-  restMix_ = vec4((1.0 - across) * (1.0 - round), (1.0 - across) * round, across * (1.0 - round), across * round);
+  places = around_ + 1 + 7 * NODES + NODE_TEXELS * ivec4(row + first, row + next, row + AROUND_AZIMUTHS + first, row + AROUND_AZIMUTHS + next);
+  shares = vec4((1.0 - across) * (1.0 - round), (1.0 - across) * round, across * (1.0 - round), across * round);
 }
 
 void prepareDirections() {
   around_ = int(draw_.fine.w);
   vec3 normal = localOf(normal_);
   to0_ = harmonicsAt(normal);
+  placesOf(normal, mattAt_, mattMix_);
+  mattAt_ += AROUND_BLURS * (AROUND_ABOVE + AROUND_BELOW) * AROUND_AZIMUTHS * NODE_TEXELS;
+  mattOf_ = -1;
   if (AROUND_PLAIN == 1) return;
   vec3 viewer = localOf(toViewer_), flat_ = viewer - dot(viewer, normal) * normal;
   float size = length(flat_);
@@ -65,7 +71,7 @@ void prepareDirections() {
   to2_ = harmonicsAt(-0.80901699 * normal + 0.58778525 * across);
   to3_ = harmonicsAt(0.80901699 * normal + 0.58778525 * across);
   to4_ = harmonicsAt(-0.30901699 * normal + 0.95105652 * across);
-  prepareRest(2.0 * clamp(dot(normal, viewer), 0.0, 1.0) * normal - viewer);
+  placesOf(2.0 * clamp(dot(normal, viewer), 0.0, 1.0) * normal - viewer, restAt_, restMix_);
   restOf_ = -1;
   float last = float(material_.response.z - 1u);
   float x = min(angleFromChord(normal_, toViewer_) * 0.63661977, 1.0) * last;
@@ -98,6 +104,16 @@ float restAt(float blur, int i) {
   return mix(restNear_[i % 4], restFar_[i % 4], x - float(sharper_));
 }
 
+// What the harmonics leave of the light on a matt surface; four nodes are read at once.
+float mattAt(int i) {
+  if (mattOf_ != i / 4) {
+    mattOf_ = i / 4;
+    matt_ = mattMix_.x * texelFetch(surroundings, mattAt_.x + mattOf_) + mattMix_.y * texelFetch(surroundings, mattAt_.y + mattOf_) +
+            mattMix_.z * texelFetch(surroundings, mattAt_.z + mattOf_) + mattMix_.w * texelFetch(surroundings, mattAt_.w + mattOf_);
+  }
+  return matt_[i % 4];
+}
+
 // Of node i: x times the reflectance, and y besides.
 vec2 aroundAt(int i) {
   int at = around_ + 1 + 7 * i;
@@ -111,7 +127,7 @@ vec2 aroundAt(int i) {
     light.sixth = texelFetch(surroundings, at + 5);
     light.last = texelFetch(surroundings, at + 6).x;
   }
-  float mean = 0.28209479 * light.first.x, sum = 0.0;
+  float matt = mattAt(i), mean = 0.28209479 * light.first.x + matt, sum = 0.0;
   // Matt surfaces: A_l / pi is 2/3, 1/4, 0, -1/24.
   if (AROUND_PLAIN == 1) {
     mean += 0.66666667 * ofDegree1(light, to0_) + 0.25 * ofDegree2(light, to0_);
@@ -134,7 +150,8 @@ vec2 aroundAt(int i) {
     int k = int((material_.response.w >> (4u * g)) & 15u);
     vec4 r0 = responseAt(place), r3 = responseAt(place + 3);
     float own = dot(r0, q0) + dot(responseAt(place + 1), q1) + dot(r3, q3);
-    if (r3.w > 0.0) own += r3.w * restAt(r0.x / r3.w, i);
+    // Of what is no lobe, a matt surface's share of the rest.
+    if (r3.w > 0.0) own += r3.w * (restAt(r0.x / r3.w, i) - matt);
     if (AROUND_DEGREE > 2) own += dot(responseAt(place + 2), q2);
     sum += own * modifier_[k / 3][k % 3];
   }

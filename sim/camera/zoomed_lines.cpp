@@ -1,0 +1,61 @@
+#include "sim/camera/zoomed_lines.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <map>
+
+#include "sim/model/shadow_casters.hpp"
+
+namespace pitviper {
+namespace {
+
+/// A convex body that is the same all over, and opaque and reflects the same into all directions, or of gas, which ends as a solid does or thins out
+/// towards its outline: what is small on it is its outline.
+bool isEven(const Simulation& sim, const Entity& e) {
+  const SelfShadow self = selfShadow(e, true);
+  if (sim.mediumOf(e)) return self == SelfShadow::Never || self == SelfShadow::Inside;
+  if (sim.isTransparent(e) || (self != SelfShadow::Never && self != SelfShadow::Inside)) return false;
+  const auto plain = [](const auto& modifiers) { return std::all_of(modifiers.begin(), modifiers.end(), [](int texture) { return texture < 0; }); };
+  for (const Surface& s : e.surfaces) {
+    const Material& m = sim.materialOf(s);
+    if (s.temperatureTexture >= 0 || s.temperature_K != e.surfaces.front().temperature_K || s.material != e.surfaces.front().material) return false;
+    if (m.states || m.hemisphericalVaries() || !plain(m.modifiers) || (m.given && m.given->modifier >= 0)) return false;
+    for (const auto& r : m.reflections)
+      if (!r->lobe().file.empty() || r->axes()[0].angle != Angle::None) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+int evenSize(double lines) {
+  constexpr int kFewest = 16, kMost = 4096;
+  int size = kFewest;
+  while (size < lines && size < kMost) size += std::has_single_bit(static_cast<unsigned>(size)) ? size / 2 : size / 3;
+  return size;
+}
+
+std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
+  constexpr double kPart = 0.25;
+  std::vector<int> lines;
+  std::map<const Mesh*, double> surfaces_m2;
+  for (const Entity& e : sim.entities) {
+    lines.push_back(most);
+    if (accuracy <= 0.0 || !isEven(sim, e)) continue;
+    const auto [known, fresh] = surfaces_m2.try_emplace(e.mesh.get(), 0.0);
+    if (fresh)
+      for (const auto& t : e.mesh->triangles) {
+        const glm::dvec3 a = e.mesh->positions[t.x];
+        known->second += 0.5 * glm::length(glm::cross(glm::dvec3(e.mesh->positions[t.y]) - a, glm::dvec3(e.mesh->positions[t.z]) - a));
+      }
+    const double across = 2.0 * static_cast<double>(e.boundingRadius_m), area = 0.25 * known->second, outline = glm::pi<double>() * across;
+    // h = across / lines in the law, solved for them.
+    const double needed = area > 0.0 ? across * std::cbrt(outline * 0.0724 / std::pow(kPart * accuracy * area, 2.0)) : INFINITY;
+    lines.back() = std::min(evenSize(needed), most);
+  }
+  return lines;
+}
+
+}  // namespace pitviper
