@@ -55,7 +55,7 @@ class Diffuse final : public ReflectionComponent {
 class Glint final : public ReflectionComponent {
  public:
   explicit Glint(Paint paint)
-      : ReflectionComponent({kShader, "sandfordGlintLobe", paint.parameters(), 100.0 / (4.0 * kPi * paint.width * paint.width),
+      : ReflectionComponent({kShader, "sandfordGlintLobe", paint.parameters(), 200.0 / (4.0 * kPi * paint.width * paint.width),
                              std::max(0.0, 0.5 / (paint.width * paint.width) - 1.0)}),
         paint_(std::move(paint)) {
     shares_ =

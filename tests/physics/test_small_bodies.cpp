@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "sim/camera/small_bodies.hpp"
+#include "sim/camera/zoomed_lines.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
