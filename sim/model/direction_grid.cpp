@@ -21,6 +21,15 @@ glm::dvec3 DirectionGrid::direction(std::size_t entry) const {
   return {std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)};
 }
 
+DirectionGrid DirectionGrid::finer() const {
+  constexpr int kRings = 49, kRound = 48;
+  DirectionGrid all = *this;
+  all.above = std::max(above, kRings);
+  all.below = std::max(below, kRings);
+  if (azimuths > 1) all.azimuths = azimuths * std::max((kRound + azimuths - 1) / azimuths, 1);
+  return all;
+}
+
 DirectionGrid::Reading DirectionGrid::at(const glm::dvec3& d) const {
   const double e = std::atan2(d.z, std::hypot(d.x, d.y));
   const bool up = e >= horizon_rad;

@@ -15,6 +15,9 @@ struct DirectionGrid {
   double turn_rad = 0.0;     ///< azimuth of the first entries
   double horizon_rad = 0.0;  ///< elevation of the horizon: at heights, below 0
 
+  /// One on which degrees up to 4 are nearly linear between entries (4 deg at most in elevation, 7.5 deg in azimuth); its rings and azimuths have this one's
+  /// among them.
+  DirectionGrid finer() const;
   std::size_t size() const { return static_cast<std::size_t>((above + below) * azimuths); }
   double elevation_rad(int ring) const;
   glm::dvec3 direction(std::size_t entry) const;

@@ -2,9 +2,13 @@
 // What a reflection component sends to a view of light from all around: its kernel f cos(theta_l) in spherical harmonics, and what these can't hold as light
 // from the mirrored direction.
 //
-// Law: L = rho_dh mean(L_in) + sum over l = 1..order, k of w_lk(view) L_l(a_k) + D(view) R_sigma(mirrored view), a_k in the plane of view; R_sigma: L_in less
-// its harmonics, blurred by exp(kappa (cos - 1)), kappa = 1/sigma^2. D and sigma are those of D exp(-l (l + 1) sigma^2 / 2), which a blurred mirror has, that
-// has two bands of the kernel's further degrees: rho and 0 of a mirror; of a matt surface D is nothing. Uniform light is exact.
+// Law: L = rho_dh mean(L_in) + sum over l = 1..order, k of w_lk(view) L_l(a_k) + D(view) R_sigma(aim), a_k in the plane of view; R_sigma: L_in less its
+// harmonics, blurred by exp(kappa (cos - 1)), kappa = 1/sigma^2. A lobe is told as one of Gauss about its aim, in the plane of view near the mirrored
+// direction, of variance v (1 + s) along that plane and v (1 - s) across. Of its further degrees' moments J_0(k r), J_1 cos(psi), J_2 cos(2 psi), k^2 = l (l +
+// 1) (Wigner's d^l_m0), J_1's is 0 at the aim, J_2's over J_0's is I_1(z)/I_0(z), z = s v k^2 / 2, and J_0's is D exp(-v k^2 / 2) I_0(z): two bands tell D and
+// v. Light of the open changes with elevation above all, so sigma^2 is v (1 + s cos(2 psi)), psi from the plane of view to the vertical at the aim. Of sharp
+// lobes, for which v is next to nothing beside l (l + 1), R is the blurred light itself less its mean, and w_lk leaves out what R then has of degree l, D
+// exp(-l (l + 1) v / 2): R is read between directions, where harmonics bend more than light does. Uniform light is exact; of a matt surface D is nothing.
 // Source: Lindsay and Agu 2005, section 3 (T_lm by view), with Ramamoorthi and Hanrahan's convolution; the mirrored remainder is this project's own.
 #include <memory>
 #include <vector>
@@ -26,21 +30,34 @@ ColumnReading readColumn(const ReflectionComponent& component, const glm::dvec3&
 std::vector<double> columnsAt(const ReflectionComponent& component, double wavelength_um);
 
 /// Degree by degree and direction by direction as planeWeightAt(), then D: a vec4 and three more. In the place of w_00, which is told by the reflectance,
-/// stands D times the number of the blur, between those of kBlurs_rad.
+/// stands D times the number of the blur.
 constexpr int kResponses = kPlaneWeights + 1;
 using Response = std::array<double, kResponses>;
 
-constexpr std::array<double, 5> kBlurs_rad = {0.0, 0.035, 0.07, 0.14, 0.28};
+/// Blurs by number: none, then variances from this on that double.
+constexpr double kFirstBlur_rad = 0.005;
+constexpr int kBlurs = 14;
+double blurOf_rad(int number);
+double blurNumber(double variance);
 
 class HarmonicResponse {
  public:
-  /// For orders 2 to kMostHarmonicOrder: higher degrees have weights of 0.
-  HarmonicResponse(const ReflectionComponent& component, int order);
+  /// For orders 2 to kMostHarmonicOrder: higher degrees have weights of 0. Aims are those of `usual`, values of a column.
+  HarmonicResponse(const ReflectionComponent& component, int order, std::span<const double> usual);
   /// View angles, evenly from 0 to 90 deg; 1 where the kernel is the same for all.
   static constexpr int kViews = 91;
   int views() const { return static_cast<int>(weights_.size()); }
   /// For a column's values at its entries.
   Response at(int view, std::span<const double> columns) const;
+  struct Aim {
+    double tilt_rad = 0.0;  ///< from the mirrored direction towards the normal
+    double stretch = 0.0;   ///< s
+    int band = 0;           ///< of degrees, by which its blur is told
+    double variance = 0.0;  ///< v
+  };
+  const Aim& aim(int view) const { return aims_[static_cast<std::size_t>(view)]; }
+  /// Is R of its lobe, where it has one, the light itself?
+  bool isSharp() const { return isSharp_; }
   /// Is there anything but what depends on the normal alone?
   static bool isPlain(const ReflectionComponent& component);
 
@@ -52,6 +69,17 @@ class HarmonicResponse {
     double albedo = 0.0;
   };
   std::vector<std::vector<std::pair<std::size_t, Weights>>> weights_;  ///< by view: entries that it has something of
+  std::vector<Aim> aims_;
+  std::vector<std::array<double, kPlaneWeights>> zonal_;  ///< by view: plane weights of 1 in each degree about the aim
+  bool isSharp_ = false;
 };
+
+/// Where a lobe is aimed at, and how much further on the number of its blur is for light that changes along the vertical (z).
+struct AimedLobe {
+  glm::dvec3 direction;
+  double further;
+};
+/// `across`: the view's part along the surface, of length 1.
+AimedLobe aimedAt(const HarmonicResponse::Aim& aim, double viewAngle_rad, const glm::dvec3& normal, const glm::dvec3& across);
 
 }  // namespace pitviper

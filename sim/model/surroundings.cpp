@@ -37,31 +37,57 @@ const Surroundings::Light& Surroundings::light(double wavelength_um, std::size_t
   return kept_.try_emplace({height, wavelength_um}, std::move(sum)).first->second;
 }
 
-const std::vector<float>& Surroundings::blur(std::size_t height, double sigma_rad) const {
+const Surroundings::Blur& Surroundings::blur(std::size_t height, double sigma_rad) const {
   const std::lock_guard lock(busy_);
   const auto [at, isNew] = blurs_.try_emplace({height, sigma_rad});
-  if (!isNew) return at->second;
-  const DirectionGrid& grid = grids_[height];
-  const std::size_t size = grid.size();
-  const double kappa = 1.0 / (sigma_rad * sigma_rad);
-  // Beyond 7 sigma nothing is left.
-  const double nearest = sigma_rad < 0.0 ? 0.0 : std::cos(std::min(7.0 * sigma_rad, kPi));
-  const auto samples = grid.samples(2);
-  at->second.assign(size * size, 0.0f);
-  for (std::size_t g = 0; g < size; ++g) {
-    const glm::dvec3 middle = grid.direction(g);
-    std::vector<double> row(size, 0.0);
-    double whole = 0.0;
-    for (const DirectionGrid::Sample& s : samples) {
-      const double cosine = glm::dot(middle, s.direction);
-      if (cosine < nearest) continue;
-      const double weight = s.solidAngle * (sigma_rad < 0.0 ? cosine : std::exp(kappa * (cosine - 1.0)));
-      whole += weight;
-      for (std::size_t k = 0; k < 4; ++k) row[s.reading.at[k]] += weight * s.reading.weight[k];
-    }
-    for (std::size_t h = 0; h < size; ++h) at->second[g * size + h] = static_cast<float>(row[h] / whole);
+  Blur& blur = at->second;
+  if (!isNew) return blur;
+  const DirectionGrid &grid = grids_[height], finer = grid.finer();
+  const std::size_t size = grid.size(), rings = static_cast<std::size_t>(finer.above + finer.below), round = static_cast<std::size_t>(finer.azimuths),
+                    phases = round / static_cast<std::size_t>(grid.azimuths);
+  // Of the kernel's Legendre series, which goes over from degree to degree as spherical Bessel functions do. A cosine: Ramamoorthi and Hanrahan 2001.
+  const double variance = sigma_rad * sigma_rad, opposite = sigma_rad > 0.0 ? std::exp(-2.0 / variance) : 0.0;
+  blur.ofDegree = {1.0, 2.0 / 3.0, 0.25, 0.0, -1.0 / 24.0};
+  if (sigma_rad >= 0.0) {
+    blur.ofDegree[1] = (1.0 + opposite) / (1.0 - opposite) - variance;
+    for (size_t l = 1; l + 1 < blur.ofDegree.size(); ++l)
+      blur.ofDegree[l + 1] = blur.ofDegree[l - 1] - (2.0 * static_cast<double>(l) + 1.0) * variance * blur.ofDegree[l];
   }
-  return at->second;
+  blur.shares.assign(rings * phases * size, 0.0);
+  // Wide ones by a rule of the whole sphere, which knows the grid's cells; narrow ones along a spiral of the golden angle, no two points at one elevation.
+  constexpr double kWide_rad = 0.15;
+  const bool wide = sigma_rad < 0.0 || sigma_rad > kWide_rad;
+  const std::vector<DirectionGrid::Sample> samples = wide ? grid.samples(3) : std::vector<DirectionGrid::Sample>{};
+  const int count = sigma_rad == 0.0 ? 1 : 1500;
+  const double golden = kPi * (3.0 - std::sqrt(5.0));
+  for (std::size_t r = 0; r < rings; ++r)
+    for (std::size_t phase = 0; phase < phases; ++phase) {
+      const glm::dvec3 middle = finer.direction(r * round + phase);
+      double* row = blur.shares.data() + (r * phases + phase) * size;
+      const auto add = [&](const DirectionGrid::Reading& reading, double weight) {
+        for (std::size_t e = 0; e < 4; ++e) row[reading.at[e]] += weight * reading.weight[e];
+      };
+      if (wide) {
+        double whole = 0.0;
+        for (const DirectionGrid::Sample& s : samples) {
+          const double cosine = glm::dot(middle, s.direction), weight = s.solidAngle * (sigma_rad < 0.0 ? cosine : std::exp((cosine - 1.0) / variance));
+          if (weight > 0.0) add(s.reading, weight), whole += weight;
+        }
+        for (std::size_t h = 0; h < size; ++h) row[h] /= whole;
+        continue;
+      }
+      const glm::dvec3 aside = glm::normalize(glm::cross(middle, std::abs(middle.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0))),
+                       up = glm::cross(aside, middle);
+      for (int k = 0; k < count; ++k) {
+        const double cosine = count == 1 ? 1.0 : 1.0 + variance * std::log1p((k + 0.5) / count * (opposite - 1.0));
+        const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0)), turn = golden * k;
+        glm::dvec3 to = cosine * middle + sine * (std::cos(turn) * aside + std::sin(turn) * up);
+        // The horizon is seen from the side that its ring is of.
+        if (count == 1) to.z += r < static_cast<std::size_t>(finer.above) ? 1e-9 : -1e-9;
+        add(grid.at(to), 1.0 / count);
+      }
+    }
+  return blur;
 }
 
 std::vector<double> MixedSurroundings::radiance(double wavelength_um, std::size_t) const {

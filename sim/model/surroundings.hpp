@@ -33,9 +33,14 @@ class Surroundings {
   };
   const Light& light(double wavelength_um, std::size_t height) const;
   const std::vector<Harmonics>& projection(std::size_t height) const;
-  /// What blurs values on the grid, by exp((cos - 1) / sigma^2) over the sphere, or where sigma is below 0 by a cosine, as matt surfaces do: [entry][entry],
-  /// each row of sum 1; kept.
-  const std::vector<float>& blur(std::size_t height, double sigma_rad) const;
+  /// What blurs values on the grid onto its finer one, by exp((cos - 1) / sigma^2) over the sphere, or by a cosine, as matt surfaces do: of [finer ring][finer
+  /// azimuth up to the second of the grid], shares of [ring][azimuth], of sum 1; kept. All around it goes on the same.
+  struct Blur {
+    std::vector<double> shares;
+    std::array<double, kMostHarmonicOrder + 1> ofDegree;  ///< what is left of harmonics
+  };
+  static constexpr double kByCosine = -1.0;
+  const Blur& blur(std::size_t height, double sigma_rad) const;
   virtual void addTo(Fingerprint& f) const = 0;
 
  protected:
@@ -48,7 +53,7 @@ class Surroundings {
   std::vector<DirectionGrid> grids_;
   mutable std::mutex busy_;
   mutable std::map<std::size_t, std::vector<Harmonics>> projections_;
-  mutable std::map<std::pair<std::size_t, double>, std::vector<float>> blurs_;
+  mutable std::map<std::pair<std::size_t, double>, Blur> blurs_;
   mutable std::map<std::pair<std::size_t, double>, Light> kept_;
 };
 

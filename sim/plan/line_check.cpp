@@ -57,21 +57,30 @@ std::vector<double> droppedOf(const Plan& plan, const Terms& all, const NodeSum&
   return lost;
 }
 
-/// Tells a line once to both.
-class BothSums final : public TermSink {
+/// Tells a line once to all.
+class AllSums final : public TermSink {
  public:
-  BothSums(NodeSum& first, NodeSum& second) : first_(first), second_(second) {}
-  void restart() override { first_.restart(), second_.restart(); }
-  void term(const Term& t) override { first_.term(t), second_.term(t); }
-  void segment(const Segment& s) override { first_.segment(s), second_.segment(s); }
-  void pane(const Factor& transmittance, double modifier) override { first_.pane(transmittance, modifier), second_.pane(transmittance, modifier); }
+  explicit AllSums(std::vector<std::unique_ptr<NodeSum>>& sums) : sums_(sums) {}
+  void restart() override {
+    for (auto& sum : sums_) sum->restart();
+  }
+  void term(const Term& t) override {
+    for (auto& sum : sums_) sum->term(t);
+  }
+  void segment(const Segment& s) override {
+    for (auto& sum : sums_) sum->segment(s);
+  }
+  void pane(const Factor& transmittance, double modifier) override {
+    for (auto& sum : sums_) sum->pane(transmittance, modifier);
+  }
 
  private:
-  NodeSum &first_, &second_;
+  std::vector<std::unique_ptr<NodeSum>>& sums_;
 };
 
 struct LineSums {
-  std::vector<double> planned, exact, dropped;
+  std::vector<double> exact;
+  std::vector<std::vector<double>> planned, dropped;  ///< by plan
 };
 
 /// Calls work(next) on as many threads as the machine has; next() gives each number from 0 on once.
@@ -165,41 +174,52 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
   return kTried[std::size(kTried) - 1];
 }
 
-std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& ofPlan, const NodesOfPlan& ofFine, const std::vector<SightRay>& lines, int places,
-                                    const std::vector<double>& floor) {
-  const Plan &plan = ofPlan.plan, &fine = ofFine.plan;
+std::vector<std::vector<LineFigures>> checkLines(const Simulation& sim, std::span<const NodesOfPlan* const> plans, const NodesOfPlan& ofFine,
+                                                 const std::vector<SightRay>& lines, int places, const std::vector<double>& floor) {
+  const Plan& fine = ofFine.plan;
   const ShadowCaster shadows(sim);
   std::vector<LineSums> sums(lines.size());
   onAllThreads(lines.size(), [&](const auto& next) {
-    NodeSum planned(ofPlan.spectra), exact(ofFine.spectra);
-    BothSums both(planned, exact);
-    planned.keepParts();
+    std::vector<std::unique_ptr<NodeSum>> own;  // of the plans and, last, in full
+    for (const NodesOfPlan* plan : plans) own.push_back(std::make_unique<NodeSum>(plan->spectra)), own.back()->keepParts();
+    own.push_back(std::make_unique<NodeSum>(ofFine.spectra));
+    AllSums all(own);
     for (size_t n = next(); n < lines.size(); n = next()) {
       const SightRay& ray = lines[n];
       const RadianceScene scene = sceneOf(sim, fine, shadows, ray, places);
-      planned.begin();
-      exact.begin();
-      radianceAlong(scene, ray.line, both);
-      if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), ray.pixel_sr, both);
-      sums[n] = {slotsOf(plan, planned.radiance()), slotsOf(fine, exact.radiance()), droppedOf(plan, fine.terms, planned)};
+      for (auto& sum : own) sum->begin();
+      radianceAlong(scene, ray.line, all);
+      if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), ray.pixel_sr, all);
+      sums[n].exact = slotsOf(fine, own.back()->radiance());
+      for (size_t p = 0; p < plans.size(); ++p) {
+        sums[n].planned.push_back(slotsOf(plans[p]->plan, own[p]->radiance()));
+        sums[n].dropped.push_back(droppedOf(plans[p]->plan, fine.terms, *own[p]));
+      }
     }
   });
-  std::vector<LineFigures> figures(plan.weight.size());
-  for (size_t s = 0; s < figures.size(); ++s) {
-    LineFigures& f = figures[s];
-    for (const LineSums& l : sums) {
-      const double size = std::max(std::abs(l.exact[s]), floor[s]), difference = std::abs(l.planned[s] - l.exact[s]);
-      f.errors.push_back(size > 0.0 ? difference / size : difference > 0.0 ? INFINITY : 0.0);
-      f.left.push_back(size > 0.0 ? std::abs(l.dropped[s]) / size : 0.0);
-      f.dropped = std::max(f.dropped, f.left.back());
+  std::vector<std::vector<LineFigures>> figures(plans.size(), std::vector<LineFigures>(fine.weight.size()));
+  for (size_t p = 0; p < plans.size(); ++p)
+    for (size_t s = 0; s < figures[p].size(); ++s) {
+      LineFigures& f = figures[p][s];
+      for (const LineSums& l : sums) {
+        const double size = std::max(std::abs(l.exact[s]), floor[s]), difference = std::abs(l.planned[p][s] - l.exact[s]);
+        f.errors.push_back(size > 0.0 ? difference / size : difference > 0.0 ? INFINITY : 0.0);
+        f.left.push_back(size > 0.0 ? std::abs(l.dropped[p][s]) / size : 0.0);
+        f.dropped = std::max(f.dropped, f.left.back());
+      }
+      if (f.errors.empty()) continue;
+      std::vector<double> sorted = f.errors;
+      std::sort(sorted.begin(), sorted.end());
+      f.largest = sorted.back();
+      f.median = sorted[sorted.size() / 2];
     }
-    if (f.errors.empty()) continue;
-    std::vector<double> sorted = f.errors;
-    std::sort(sorted.begin(), sorted.end());
-    f.largest = sorted.back();
-    f.median = sorted[sorted.size() / 2];
-  }
   return figures;
+}
+
+std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines, int places,
+                                    const std::vector<double>& floor) {
+  const NodesOfPlan* const one[] = {&plan};
+  return std::move(checkLines(sim, one, fine, lines, places, floor).front());
 }
 
 }  // namespace pitviper

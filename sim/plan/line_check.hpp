@@ -1,5 +1,6 @@
 #pragma once
 // What a plan's wavelengths are off by on lines of sight: its nodes against the fine grid, both summed by the radiance equation in double precision.
+#include <span>
 #include <vector>
 
 #include "sim/plan/plan.hpp"
@@ -37,5 +38,8 @@ int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRay
 /// both sides, so that only wavelengths differ. Terms are those of `fine`; `plan` may leave kinds of terms out, all of them or by node.
 std::vector<LineFigures> checkLines(const Simulation& simulation, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines,
                                     int places, const std::vector<double>& floor);
+/// Of several plans at once.
+std::vector<std::vector<LineFigures>> checkLines(const Simulation& simulation, std::span<const NodesOfPlan* const> plans, const NodesOfPlan& fine,
+                                                 const std::vector<SightRay>& lines, int places, const std::vector<double>& floor);
 
 }  // namespace pitviper

@@ -29,7 +29,7 @@ constexpr double kDropped = 0.05;
 constexpr double kPrecision = 6e-5;
 /// Of the accuracy, the part that ambient light may lose by being told with fewer harmonics, on the largest of so many lines of the film, and half as many of
 /// small bodies. It changes evenly over surfaces, and needs no margin.
-constexpr double kSurroundingsShare = 0.4;
+constexpr double kSurroundingsShare = 0.4, kNoWorse = 1.1;
 constexpr int kSurroundingsLines = 240;
 /// Seeds of the last lines lie apart from those of the fit, and of the last ones before.
 constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u, kNextSeed = 0xd1b54a32d192ed03u, kSurroundingsSeed = 0x8cb92ba72f3d8dd7u;
@@ -106,16 +106,41 @@ std::unique_ptr<const Plan> chooseSurroundings(const Simulation& sim, const Node
   const std::vector<double> floor = filmFloors(sim, fine, rays);
   std::vector<SightRay> lines = rays.overFilm(kSurroundingsLines);
   for (SightRay& ray : rays.ofSmallBodies(kSurroundingsLines / 2)) lines.push_back(std::move(ray));
-  const bool free = plan.accuracy > 0.0;
-  for (plan.surroundings = free ? 0 : kMostHarmonicOrder;; plan.surroundings += plan.surroundings == 0 ? 2 : 1) {
-    chosen->terms = withSurroundings(fine.plan.terms, plan.surroundings);
-    const auto found = checkLines(sim, NodesOfPlan(sim, *chosen), fine, lines, kUsualPlaces, floor);
-    plan.surroundingsLoss.clear();
-    for (const LineFigures& f : found) plan.surroundingsLoss.push_back(f.largest);
-    if (plan.surroundings == kMostHarmonicOrder ||
-        *std::max_element(plan.surroundingsLoss.begin(), plan.surroundingsLoss.end()) <= kSurroundingsShare * plan.accuracy)
-      return chosen;
-  }
+  for (int n = 0; n < kSurroundingsLines / 2; ++n) lines.push_back(rays.ofCombination());  // a canopy may be few pixels
+  struct Tried {
+    int degree;
+    std::vector<double> loss;
+    double largest;
+  };
+  std::vector<Tried> all;
+  const auto look = [&](std::initializer_list<int> degrees) {
+    std::vector<Plan> plans;
+    std::vector<std::unique_ptr<NodesOfPlan>> nodes;
+    std::vector<const NodesOfPlan*> each;
+    plans.reserve(degrees.size());
+    for (const int degree : degrees) {
+      plans.push_back(fine.plan);
+      plans.back().terms = withSurroundings(fine.plan.terms, degree);
+      nodes.push_back(std::make_unique<NodesOfPlan>(sim, plans.back()));
+      each.push_back(nodes.back().get());
+    }
+    const auto found = checkLines(sim, each, fine, lines, kUsualPlaces, floor);
+    for (size_t d = 0; d < degrees.size(); ++d) {
+      all.push_back({degrees.begin()[d], {}, 0.0});
+      for (const LineFigures& f : found[d]) all.back().loss.push_back(f.largest), all.back().largest = std::max(all.back().largest, f.largest);
+    }
+  };
+  const auto isEnough = [&](const Tried& t) { return t.largest <= kSurroundingsShare * plan.accuracy; };
+  if (plan.accuracy > 0.0) look({0, 2});
+  if (std::none_of(all.begin(), all.end(), isEnough)) look({3, kMostHarmonicOrder});
+  // Where none is good enough, more must be worth it.
+  double least = INFINITY;
+  for (const Tried& t : all) least = std::min(least, t.largest);
+  const Tried& taken = *std::find_if(all.begin(), all.end(), [&](const Tried& t) { return isEnough(t) || t.largest <= kNoWorse * least; });
+  plan.surroundings = taken.degree;
+  plan.surroundingsLoss = taken.loss;
+  chosen->terms = withSurroundings(fine.plan.terms, taken.degree);
+  return chosen;
 }
 
 /// Of each slot, the output it is of.
@@ -127,9 +152,8 @@ std::vector<const ChannelOutput*> slotsOf(const Plan& plan, const std::vector<Ch
 }
 
 /// Groups of wavelengths within plan.accuracy, terms that nobody would notice left out, and what all that is off by.
-void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const NodesOfPlan& fine, bool keepLights, Plan& plan,
-             const PlanProgress& progress) {
-  SightRays rays(sim, eye, static_cast<unsigned long long>(sim.seed));
+void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const NodesOfPlan& fine, bool keepLights, SightRays& rays,
+             Plan& plan, const PlanProgress& progress) {
   // Fits take most of the time, the last lines and tables the rest; what is done again comes out of that.
   double from = 0.05, to = 0.6;
   const auto tell = [&](double share) {
@@ -155,7 +179,10 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
       const CheckedLines last = predict(sim, eye, fine, rays, floor, lastPlaces, seed ^ batch, plan);
       std::vector<size_t> missed;
       for (size_t s = 0; s < plan.parts.size(); ++s)
-        if (plan.parts[s].sum() - plan.parts[s].tables > plan.accuracy - std::min(plan.parts[s].tables, kMended * plan.accuracy)) missed.push_back(s);
+        // Finer groups help neither tables nor harmonics beyond what those may lose.
+        if (const PredictedParts& p = plan.parts[s]; p.sum() - p.tables - p.surroundings > plan.accuracy - std::min(p.tables, kMended * plan.accuracy) -
+                                                                                               std::min(p.surroundings, kSurroundingsShare * plan.accuracy))
+          missed.push_back(s);
       from = 0.75, to = 0.9;
       if (missed.empty()) return true;
       if (attempt == kAgain) return false;
@@ -199,15 +226,16 @@ Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress
     exact.reference = true;
     Plan fine = makePlan(sim, outputs, exact, where);
     fine.terms = withSurroundings(all, all.surroundings != 0 ? Terms::kWhole : 0);
-    SightRays looks(sim, eye, static_cast<unsigned long long>(sim.seed) ^ kSurroundingsSeed);
+    const auto seed = static_cast<unsigned long long>(sim.seed);
+    SightRays looks(sim, eye, seed ^ kSurroundingsSeed);
     const auto chosen = chooseSurroundings(sim, NodesOfPlan(sim, fine), looks, plan);
+    SightRays rays(sim, eye, seed);
     const NodesOfPlan exactNodes(sim, *chosen);
     if (plan.accuracy > 0.0) {
-      fitPlan(sim, eye, outputs, exactNodes, keepLights, plan, progress);
+      fitPlan(sim, eye, outputs, exactNodes, keepLights, rays, plan, progress);
     } else {
       for (const auto& w : fine.weight) plan.fineCount.push_back(static_cast<int>(std::count_if(w.begin(), w.end(), [](double v) { return v != 0.0; })));
-      SightRays rays(sim, eye, static_cast<unsigned long long>(sim.seed));
-      predict(sim, eye, exactNodes, rays, filmFloors(sim, exactNodes, rays), kUsualPlaces, static_cast<unsigned long long>(sim.seed) ^ kLastSeed, plan);
+      predict(sim, eye, exactNodes, rays, filmFloors(sim, exactNodes, rays), kUsualPlaces, seed ^ kLastSeed, plan);
     }
     plan.terms = all;
     writeCachedPlan(key, plan);

@@ -15,6 +15,8 @@ constexpr double kLeftOut = 1e-5;
 constexpr int kPoints = 3;
 /// Lobes narrower than cos^n of this, and tables about a mirrored direction or a half vector, are summed about where they are.
 constexpr double kNarrow = 30.0;
+/// Steps of their axes, at least.
+constexpr int kSteps = 24;
 /// Entries of a view angle's table of directional-hemispherical reflectances, as the shaders have them.
 constexpr int kViews = 180;
 
@@ -38,10 +40,21 @@ struct NodeSurroundings::Height {
   Eigen::MatrixXd pattern;           ///< [pattern, entry of the grid]
   Eigen::MatrixXd mix;               ///< [node, pattern]
   std::vector<Harmonics> harmonics;  ///< by node
-  DirectionGrid grid;
+  std::size_t number = 0;
+  DirectionGrid grid, finer;
   std::vector<DirectionGrid::Sample> samples;  ///< where it is in full
   Eigen::MatrixXd atSamples;                   ///< [pattern, sample]
-  std::array<Eigen::MatrixXd, kRests> rest;    ///< by blur, [pattern, entry]: what harmonics leave of it
+  /// [pattern, entry of the finer grid]: what harmonics up to a degree (or, sharp, the mean) leave, by blur; made when asked for.
+  const Eigen::MatrixXd& rest(const Surroundings& around, int degree, bool sharp, std::size_t wanted) const {
+    const std::size_t at = wanted + (sharp ? kRests : 0);
+    std::call_once(isTold[at], [&] { rests[at] = tellRest(around, sharp ? 0 : degree, wanted); });
+    return rests[at];
+  }
+
+ private:
+  Eigen::MatrixXd tellRest(const Surroundings& around, int degree, std::size_t wanted) const;
+  mutable std::array<Eigen::MatrixXd, 2 * kRests> rests;
+  mutable std::array<std::once_flag, 2 * kRests> isTold;
 };
 
 NodeSurroundings::~NodeSurroundings() = default;
@@ -49,23 +62,67 @@ NodeSurroundings::~NodeSurroundings() = default;
 NodeSurroundings::NodeSurroundings(const Simulation& simulation, std::span<const SpectralNode> nodes, int degree)
     : simulation_(simulation), nodes_(nodes), degree_(degree) {}
 
-/// What the harmonics of its patterns leave of them, and the same blurred.
-void NodeSurroundings::tellRest(const Surroundings& around, std::size_t number, Height& h) const {
-  const auto entries = h.pattern.cols(), used = static_cast<Eigen::Index>(harmonicCount(degree_));
+Eigen::MatrixXd NodeSurroundings::Height::tellRest(const Surroundings& around, int degree, std::size_t wanted) const {
+  const auto entries = pattern.cols(), patterns = pattern.rows(), used = static_cast<Eigen::Index>(harmonicCount(degree));
+  const Eigen::Index round = grid.azimuths, rings = grid.above + grid.below, told = finer.above + finer.below, phases = finer.azimuths / round;
+  const Surroundings::Blur& blur = around.blur(number, wanted == kCosine ? Surroundings::kByCosine : blurOf_rad(static_cast<int>(wanted)));
   const std::vector<Harmonics>& each = around.projection(number);
-  Eigen::MatrixXd projection(entries, used), harmonics(used, entries);
-  for (Eigen::Index g = 0; g < entries; ++g) {
+  Eigen::MatrixXd lost = Eigen::MatrixXd::Zero(patterns, used);
+  for (Eigen::Index g = 0; g < entries; ++g)
+    for (Eigen::Index c = 0; c < used; ++c) lost.col(c) += each[static_cast<size_t>(g)][static_cast<size_t>(c)] * pattern.col(g);
+  for (Eigen::Index c = 0; c < used; ++c) lost.col(c) *= blur.ofDegree[static_cast<size_t>(std::sqrt(static_cast<double>(c)))];
+  Eigen::MatrixXd left(patterns, static_cast<Eigen::Index>(finer.size()));
+  for (Eigen::Index g = 0; g < left.cols(); ++g) {
     Harmonics y;
-    realHarmonics(h.grid.direction(static_cast<size_t>(g)), kMostHarmonicOrder, y);
-    for (Eigen::Index c = 0; c < used; ++c)
-      projection(g, c) = each[static_cast<size_t>(g)][static_cast<size_t>(c)], harmonics(c, g) = y[static_cast<size_t>(c)];
+    realHarmonics(finer.direction(static_cast<size_t>(g)), kMostHarmonicOrder, y);
+    left.col(g) = -lost * Eigen::Map<const Eigen::VectorXd>(y.data(), used);
   }
-  h.rest[0] = h.pattern - h.pattern * projection * harmonics;
-  for (size_t b = 1; b < h.rest.size(); ++b) {
-    const std::vector<float>& blur = around.blur(number, b == kCosine ? -1.0 : kBlurs_rad[b]);
-    // Row by row in the table: its transpose as Eigen lays it out.
-    h.rest[b] = h.rest[0] * Eigen::Map<const Eigen::MatrixXf>(blur.data(), entries, entries).cast<double>();
+  // Patterns' azimuths by rings; for each turn between what is read and what is told.
+  Eigen::MatrixXd from(patterns * round, rings);
+  for (Eigen::Index p = 0; p < patterns; ++p)
+    for (Eigen::Index g = 0; g < entries; ++g) from(p * round + g % round, g / round) = pattern(p, g);
+  using Strides = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
+  for (Eigen::Index phase = 0; phase < phases; ++phase) {
+    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(patterns * round, told);
+    for (Eigen::Index turn = 0; turn < round; ++turn) {
+      const Eigen::MatrixXd shares = Eigen::Map<const Eigen::MatrixXd, 0, Strides>(blur.shares.data() + phase * entries + turn, rings, told,
+                                                                                   Strides(phases * entries, round));  // [ring read, ring told]
+      if (shares.isZero(0.0)) continue;
+      const Eigen::MatrixXd all = from * shares;
+      for (Eigen::Index p = 0; p < patterns; ++p) {
+        sum.middleRows(p * round, round - turn) += all.middleRows(p * round + turn, round - turn);
+        sum.middleRows(p * round + round - turn, turn) += all.middleRows(p * round, turn);
+      }
+    }
+    for (Eigen::Index p = 0; p < patterns; ++p)
+      for (Eigen::Index r = 0; r < told; ++r)
+        for (Eigen::Index a = 0; a < round; ++a) left(p, (r * round + a) * phases + phase) += sum(p * round + a, r);
   }
+  return left;
+}
+
+NodeSurroundings::Blurs NodeSurroundings::blursInUse(bool sharp) const {
+  double least = kBlurs, most = -1.0;
+  const auto look = [&](const Material& m) {
+    for (const auto& r : m.reflections) {
+      const Responses& own = responses(*r);
+      if (own.isSharp != sharp) continue;
+      for (size_t j = 0; j < own.aims.size(); ++j)
+        for (size_t i = 0; i < nodes_.size(); ++i) {
+          const Response& at = own.at[j * nodes_.size() + i];
+          if (!(at.back() > 0.0)) continue;
+          const double number = at.front() / at.back(), stretch = std::abs(own.aims[j].stretch);
+          least = std::min(least, number + std::log2(1.0 - stretch)), most = std::max(most, number + std::log2(1.0 + stretch));
+        }
+    }
+  };
+  for (const auto& m : simulation_.materials) {
+    if (!m->states) look(*m);
+    else
+      for (const auto& entry : m->states->entries) look(*entry);
+  }
+  const int first = std::clamp(static_cast<int>(std::floor(least)), 0, kBlurs - 2);
+  return most < 0.0 ? Blurs{} : Blurs{first, std::clamp(static_cast<int>(std::ceil(most)), first + 1, kBlurs - 1) - first + 1};
 }
 
 const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) const {
@@ -76,6 +133,8 @@ const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) con
   Height& h = *kept;
   const Surroundings& around = *simulation_.surroundings;
   h.grid = around.grids()[number];
+  h.number = number;
+  h.finer = h.grid.finer();
   const auto entries = static_cast<Eigen::Index>(h.grid.size()), count = static_cast<Eigen::Index>(nodes_.size());
   Eigen::MatrixXd light = Eigen::MatrixXd::Zero(entries, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -103,7 +162,6 @@ const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) con
   h.pattern.resize(static_cast<Eigen::Index>(patterns.size()), entries);
   for (size_t p = 0; p < patterns.size(); ++p) h.pattern.row(static_cast<Eigen::Index>(p)) = patterns[p];
   h.mix = (h.pattern * light).transpose();
-  if (degree_ > 0) tellRest(around, number, h);
   if (degree_ != Terms::kWhole) return h;
   h.samples = h.grid.samples(kPoints);
   h.atSamples.resize(h.pattern.rows(), static_cast<Eigen::Index>(h.samples.size()));
@@ -119,18 +177,28 @@ NodeSurroundings::Light NodeSurroundings::lightAt(const Surroundings::Place& pla
   const std::size_t count = nodes_.size();
   Light light;
   light.harmonics.assign(count, Harmonics{});
-  light.grid = height(place.height).grid;
+  light.grid = height(place.height).finer;
   light.grid.horizon_rad = 0.0;
-  for (auto& rest : light.rest) rest.assign(light.grid.size() * count, 0.0);
+  struct Rest {
+    bool sharp;
+    std::size_t blur;
+  };
+  std::vector<Rest> rests;
+  for (const bool sharp : {false, true}) {
+    const Blurs blurs = blursInUse(sharp);
+    for (int b = 0; b < blurs.count; ++b) rests.push_back({sharp, static_cast<size_t>(blurs.first + b)});
+  }
+  rests.push_back({false, kCosine});
+  light.rest.assign(rests.size(), std::vector<double>(light.grid.size() * count, 0.0));
   for (std::size_t part = 0; part < 2; ++part) {
     const double share = part == 0 ? 1.0 - place.share : place.share;
     if (share == 0.0) continue;
     const Height& h = height(place.height + part);
-    light.grid.horizon_rad += share * h.grid.horizon_rad;
+    light.grid.horizon_rad += share * h.finer.horizon_rad;
     for (std::size_t i = 0; i < count; ++i)
       for (int c = 0; c < harmonicCount(degree_); ++c) light.harmonics[i][static_cast<size_t>(c)] += share * h.harmonics[i][static_cast<size_t>(c)];
     for (std::size_t b = 0; b < light.rest.size(); ++b) {
-      const Eigen::MatrixXd rest = h.mix * h.rest[b];
+      const Eigen::MatrixXd rest = h.mix * h.rest(*simulation_.surroundings, degree_, rests[b].sharp, rests[b].blur);
       for (std::size_t g = 0; g < light.grid.size(); ++g)
         for (std::size_t i = 0; i < count; ++i) light.rest[b][g * count + i] += share * rest(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g));
     }
@@ -185,8 +253,13 @@ const NodeSurroundings::Responses& NodeSurroundings::responses(const ReflectionC
   auto& kept = responses_[&r];
   if (kept) return *kept;
   kept = std::make_unique<Responses>();
-  const HarmonicResponse own(r, degree_);
+  std::vector<double> usual(columns.front().size(), 0.0);
+  for (const auto& column : columns)
+    for (size_t e = 0; e < usual.size(); ++e) usual[e] += column[e];
+  const HarmonicResponse own(r, degree_, usual);
   kept->views = own.views();
+  kept->isSharp = own.isSharp();
+  for (int j = 0; j < kept->views; ++j) kept->aims.push_back(own.aim(j));
   for (int j = 0; j < kept->views; ++j)
     for (size_t i = 0; i < nodes_.size(); ++i) kept->at.push_back(own.at(j, columns[i]));
   return *kept;
@@ -202,22 +275,26 @@ std::vector<double> NodeSurroundings::reflected(const ReflectionComponent& r, co
 
 std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, const SurfaceView& view) const {
   const double cosine = std::clamp(glm::dot(view.normal, view.toViewer), 0.0, 1.0), angle = std::acos(cosine);
-  const glm::dvec3 across = acrossOf(view.normal, view.toViewer), mirrored = 2.0 * cosine * view.normal - view.toViewer;
+  const glm::dvec3 across = acrossOf(view.normal, view.toViewer);
   const Responses& own = responses(r);
   const std::vector<double> whole = hemispherical(r, angle);
-  const auto place = simulation_.surroundings->placeAt(view.height_m);
+  const Surroundings& around = *simulation_.surroundings;
+  const auto place = around.placeAt(view.height_m);
   std::array<Harmonics, kPlaneTurns.size()> y;
   for (size_t k = 0; k < y.size(); ++k)
     realHarmonics(std::cos(kPi * kPlaneTurns[k]) * view.normal + std::sin(kPi * kPlaneTurns[k]) * across, kMostHarmonicOrder, y[k]);
   const double x = angle / (0.5 * kPi) * (own.views - 1);
   const auto low = static_cast<size_t>(std::min(x, std::max(own.views - 2.0, 0.0)));
   const double more = own.views > 1 ? x - static_cast<double>(low) : 0.0;
+  const HarmonicResponse::Aim &a0 = own.aims[low], &a1 = own.aims[own.views > 1 ? low + 1 : low];
+  const AimedLobe aimed =
+      aimedAt({a0.tilt_rad + more * (a1.tilt_rad - a0.tilt_rad), a0.stretch + more * (a1.stretch - a0.stretch), 0}, angle, view.normal, across);
   std::vector<double> all(nodes_.size(), 0.0);
   for (size_t part = 0; part < 2; ++part) {
     const double share = part == 0 ? 1.0 - place.share : place.share;
     if (share == 0.0) continue;
     const Height& h = height(place.height + part);
-    const DirectionGrid::Reading reading = h.grid.at(mirrored), level = h.grid.at(view.normal);
+    const DirectionGrid::Reading reading = h.finer.at(aimed.direction), level = h.finer.at(view.normal);
     std::size_t four = nodes_.size(), sharper = 0;
     for (size_t i = 0; i < all.size(); ++i) {
       const Harmonics& light = h.harmonics[i];
@@ -233,18 +310,21 @@ std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, 
       // Of what is no lobe, a matt surface's share of the rest.
       double matt = 0.0;
       for (size_t k = 0; k < 4; ++k)
-        matt += level.weight[k] * h.mix.row(static_cast<Eigen::Index>(i)).dot(h.rest[kCosine].col(static_cast<Eigen::Index>(level.at[k])));
+        matt +=
+            level.weight[k] * h.mix.row(static_cast<Eigen::Index>(i)).dot(h.rest(around, degree_, false, kCosine).col(static_cast<Eigen::Index>(level.at[k])));
       sum += (whole[i] - std::max(weight(kPlaneWeights), 0.0)) * matt;
       if (const double d = weight(kPlaneWeights); d > 0.0) {
         // Four nodes have the two blurs about the first one's.
-        const double blur = std::clamp(weight(0) / d, 0.0, static_cast<double>(kBlurs_rad.size() - 1));
-        if (i / 4 != four) four = i / 4, sharper = std::min(static_cast<size_t>(blur), kBlurs_rad.size() - 2);
+        const double blur = std::clamp(weight(0) / d + aimed.further, 0.0, kBlurs - 1.0);
+        if (i / 4 != four) four = i / 4, sharper = std::min(static_cast<size_t>(blur), kBlurs - std::size_t{2});
         for (size_t step = 0; step < 2; ++step) {
-          double rest = 0.0;
+          double left = 0.0;
           for (size_t k = 0; k < 4; ++k)
-            rest += reading.weight[k] * h.mix.row(static_cast<Eigen::Index>(i)).dot(h.rest[sharper + step].col(static_cast<Eigen::Index>(reading.at[k])));
+            left +=
+                reading.weight[k] *
+                h.mix.row(static_cast<Eigen::Index>(i)).dot(h.rest(around, degree_, own.isSharp, sharper + step).col(static_cast<Eigen::Index>(reading.at[k])));
           const double further = blur - static_cast<double>(sharper);
-          sum += d * (step == 0 ? 1.0 - further : further) * rest;
+          sum += d * (step == 0 ? 1.0 - further : further) * left;
         }
       }
       all[i] += share * sum;
@@ -278,7 +358,11 @@ std::vector<double> NodeSurroundings::inFull(const ReflectionComponent& r, const
       }
     };
     if (narrow) {
-      integrateHemisphere(r.integrationAxes(false), angle, [&](const LightSample& s) {
+      // Light jumps at the horizon: tables of few entries are looked at more closely.
+      auto axes = r.integrationAxes(false);
+      for (AngleAxis& a : axes)
+        if (a.count > 1) a.count = 1 + (a.count - 1) * std::max(kSteps / (a.count - 1), 1);
+      integrateHemisphere(axes, angle, [&](const LightSample& s) {
         const double weight = s.weight * r.lobeAt(s.light, own);
         if (weight == 0.0) return;
         Eigen::VectorXd here = Eigen::VectorXd::Zero(h.pattern.rows());

@@ -20,13 +20,20 @@ class NodeSurroundings {
   ~NodeSurroundings();
   int degree() const { return degree_; }
 
-  static constexpr std::size_t kCosine = kBlurs_rad.size(), kRests = kCosine + 1;
+  static constexpr std::size_t kCosine = kBlurs, kRests = kCosine + 1;
+  /// Numbers of blurs between which lobes of all materials are, by any light; count 0: there are none.
+  struct Blurs {
+    int first = 0, count = 0;
+  };
+  /// Of sharp lobes, or of the others.
+  Blurs blursInUse(bool sharp) const;
   /// What shines on a place, as the shaders read it.
   struct Light {
-    DirectionGrid grid;                ///< its horizon and its turn
+    DirectionGrid grid;                ///< the finer one, its horizon and its turn
     std::vector<Harmonics> harmonics;  ///< by node, up to the degree
-    /// [blur][entry of the grid][node]: what these leave, by the blurs of lobes and, last, by a matt surface's cosine.
-    std::array<std::vector<double>, kRests> rest;
+    /// [blur][entry of the grid][node]: what these leave, by the blurs in use; all but the mean, by those of sharp lobes; what harmonics leave, by a matt
+    /// surface's cosine.
+    std::vector<std::vector<double>> rest;
   };
   Light lightAt(const Surroundings::Place& place) const;
 
@@ -36,13 +43,14 @@ class NodeSurroundings {
   struct Responses {
     int views = 1;
     std::vector<Response> at;
+    std::vector<HarmonicResponse::Aim> aims;  ///< by view angle
+    bool isSharp = false;
   };
   const Responses& responses(const ReflectionComponent& component) const;
 
  private:
   struct Height;
   const Height& height(std::size_t number) const;
-  void tellRest(const Surroundings& around, std::size_t number, Height& height) const;
   std::vector<double> inFull(const ReflectionComponent& component, const SurfaceView& view) const;
   std::vector<double> byHarmonics(const ReflectionComponent& component, const SurfaceView& view) const;
   const std::vector<std::vector<double>>& columns(const ReflectionComponent& component) const;

@@ -169,31 +169,47 @@ std::optional<std::pair<float, float>> imageOf(const Simulation& sim, int from, 
   return std::pair{static_cast<float>(factor), static_cast<float>(summand)};
 }
 
-/// Components whose textures are the same answer light from all around as one: their sums by state, texture, view angle and node.
+/// Components whose textures are the same, and are sharp or not, answer light from all around as one: by state, texture and view angle their mean aim, and
+/// their sums by node.
 std::array<std::uint32_t, 4> responsesOf(const std::vector<const Material*>& entries, const NodeSurroundings& around, std::size_t nodes,
                                          std::vector<float>& into) {
   const Material& first = *entries.front();
   std::vector<std::size_t> groups;  // the first component of each
+  const auto areAlike = [&](std::size_t a, std::size_t b) {
+    return first.modifiers[a] == first.modifiers[b] && around.responses(*first.reflections[a]).isSharp == around.responses(*first.reflections[b]).isSharp;
+  };
   for (std::size_t k = 0; k < first.reflections.size(); ++k)
-    if (std::none_of(groups.begin(), groups.end(), [&](std::size_t g) { return first.modifiers[g] == first.modifiers[k]; })) groups.push_back(k);
+    if (std::none_of(groups.begin(), groups.end(), [&](std::size_t g) { return areAlike(g, k); })) groups.push_back(k);
   if (groups.size() > 8 || first.reflections.size() > 16)
     throw UserError(first.where, "material '" + first.name + "' has too many textured components for light from all around",
                     "up to 8 textures of components, and 16 components", "split its surface, or give 'ambient' one radiance");
   const bool plain = std::all_of(first.reflections.begin(), first.reflections.end(), [](const auto& r) { return HarmonicResponse::isPlain(*r); });
   const int views = plain ? 1 : HarmonicResponse::kViews;
+  constexpr double kNearlyNone = 1e-12;  // where none has a lobe, aims still go on evenly
+  const auto put = [&](double v) { into.push_back(static_cast<float>(v)); };
   for (const Material* entry : entries)
-    for (std::size_t g : groups)
-      for (int j = 0; j < views; ++j)
-        for (std::size_t i = 0; i < nodes; ++i) {
-          Response sum{};
-          for (std::size_t k = g; k < first.reflections.size(); ++k) {
-            if (first.modifiers[k] != first.modifiers[g]) continue;
-            const auto& own = around.responses(*entry->reflections[k]);
-            const Response& at = own.at[static_cast<std::size_t>(own.views > 1 ? j : 0) * nodes + i];
-            for (std::size_t c = 0; c < sum.size(); ++c) sum[c] += at[c];
+    for (std::size_t g : groups) {
+      std::vector<const NodeSurroundings::Responses*> parts;
+      for (std::size_t k = g; k < first.reflections.size(); ++k)
+        if (areAlike(g, k)) parts.push_back(&around.responses(*entry->reflections[k]));
+      for (int j = 0; j < views; ++j) {
+        std::vector<Response> sums(nodes, Response{});
+        HarmonicResponse::Aim aim;
+        double lobes = 0.0;
+        for (const auto* part : parts) {
+          const auto view = static_cast<std::size_t>(part->views > 1 ? j : 0);
+          for (std::size_t i = 0; i < nodes; ++i) {
+            const Response& at = part->at[view * nodes + i];
+            for (std::size_t c = 0; c < at.size(); ++c) sums[i][c] += at[c];
+            const double weight = at.back() + kNearlyNone;
+            aim.tilt_rad += weight * part->aims[view].tilt_rad, aim.stretch += weight * part->aims[view].stretch, lobes += weight;
           }
-          for (double v : sum) into.push_back(static_cast<float>(v));
         }
+        put(aim.tilt_rad / lobes), put(aim.stretch / lobes), put(parts.front()->isSharp ? 1.0 : 0.0), put(0.0);
+        for (const Response& sum : sums)
+          for (double v : sum) put(v);
+      }
+    }
   std::uint32_t packed = 0;
   for (std::size_t g = 0; g < groups.size(); ++g) packed |= static_cast<std::uint32_t>(groups[g]) << (4 * g);
   return {0, static_cast<std::uint32_t>(groups.size()), static_cast<std::uint32_t>(views), packed};

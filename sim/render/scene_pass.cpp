@@ -93,7 +93,7 @@ ShaderSlots ScenePass::shadingSlots(bool writtenOut) const {
   slots.constants["SURFACES"] = 1;
   // Of four lights a vec4 at each node [W/(sr um)], the sun as irradiance; and radiance of the dome.
   slots.generated["light_nodes"] = plan_.lightCount > 0 ? "  vec4 nodeLight[NODES * LIGHT_GROUPS];\n" : "";
-  if (around_) SurroundingsBuffer::addConstants(simulation_, slots);
+  if (around_) around_->addConstants(slots);
   slots.constants["AROUND_KEPT"] = writtenOut ? plan_.nodeCount() : 0;
   slots.generated["ambient_nodes"] = tables_.ambient.empty() ? "" : "  vec4 nodeAmbient[NODES];\n";
   return slots;

@@ -46,9 +46,13 @@ void SurroundingsBuffer::append(const Surroundings::Place& place, std::vector<fl
     }
 }
 
-void SurroundingsBuffer::addConstants(const Simulation& simulation, ShaderSlots& slots) {
-  const DirectionGrid& grid = simulation.surroundings->grids().front();
-  slots.constants["AROUND_BLURS"] = static_cast<long long>(kBlurs_rad.size());
+void SurroundingsBuffer::addConstants(ShaderSlots& slots) const {
+  const DirectionGrid grid = simulation_.surroundings->grids().front().finer();
+  const NodeSurroundings::Blurs wide = light_.blursInUse(false), sharp = light_.blursInUse(true);
+  slots.constants["AROUND_FIRST"] = wide.first;
+  slots.constants["AROUND_BLURS"] = wide.count;
+  slots.constants["AROUND_SHARP_FIRST"] = sharp.first;
+  slots.constants["AROUND_SHARP_BLURS"] = sharp.count;
   slots.constants["AROUND_ABOVE"] = grid.above;
   slots.constants["AROUND_BELOW"] = grid.below;
   slots.constants["AROUND_AZIMUTHS"] = grid.azimuths;

@@ -18,11 +18,11 @@ class SurroundingsBuffer {
   /// Where the light of an entity begins; -1: of the ground, and of whatever has none.
   float placeOf(int entity) const { return entity < 0 ? at_.back() : at_[static_cast<std::size_t>(entity)]; }
   void bind() const { buffer_.bindTexture(31, 4); }
-  static void addConstants(const Simulation& simulation, ShaderSlots& slots);
+  void addConstants(ShaderSlots& slots) const;
 
  private:
-  /// Steps between two heights of the surroundings: a height within one has the light of its nearest, which moves that by 1e-4 of their difference.
-  static constexpr double kSteps = 4096.0;
+  /// Steps between two heights of the surroundings: a height within one has the light of its nearest, which moves that by 1e-3 of their difference.
+  static constexpr double kSteps = 512.0;
   Surroundings::Place placed(double height_m) const;
   void append(const Surroundings::Place& place, std::vector<float>& into) const;
 

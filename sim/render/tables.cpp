@@ -226,6 +226,9 @@ void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, con
                                                                                   : "ambient_dome");
   if (plan.terms.surroundings > 0) {
     const auto any = std::any_of(tables.materials.begin(), tables.materials.end(), [](const GpuMaterial& m) { return m.response[2] > 1; });
+    std::uint32_t groups = 1;
+    for (const GpuMaterial& m : tables.materials) groups = std::max(groups, m.response[1]);
+    slots.constants["AROUND_GROUPS"] = groups;
     slots.constants["AROUND_DEGREE"] = plan.terms.surroundings;
     slots.constants["AROUND_PLAIN"] = any ? 0 : 1;
   }

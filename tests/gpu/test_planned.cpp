@@ -119,8 +119,8 @@ TEST_P(Planned, PercentHolds) {
       bound(what + "error of planned wavelengths, worst pixel", spectral.back(), 0.01, "asked for; every wavelength in double precision");
       bound(what + "error of the picture, worst pixel", drawn.back(), 0.01, "the same; " + std::to_string(plan.blocks[s].count) + " nodes");
       bound(what + "predicted error but for light from all around", plan.predictedError[s] - plan.parts[s].surroundings, 0.01, "asked for");
-      // Panes that mirror a visible horizon are told by harmonics and one blur: a miss that the plan says (README, limits). 1.3 % with the chase's canopy.
-      bound(what + "predicted loss of light from all around", plan.parts[s].surroundings, 0.02, "1 % is asked for");
+      // Where panes mirror a visible horizon at grazing angles the plan says so: both together are 1.2 % in the cockpit (README, limits).
+      bound(what + "predicted loss of light from all around", plan.parts[s].surroundings, 0.01, "asked for");
       ratios.push_back(plan.predictedError[s] / std::max(drawn.back(), 1e-9));
     }
   }

@@ -1,15 +1,16 @@
-// Light from all around by spherical harmonics (sim/model/harmonic_response.hpp): L = rho mean(L_in) + sum of w_lk L_l(a_k) + D rest_blur(mirrored view).
-// Of a place: the elevation of its horizon and the azimuth of its grid's first entries [turns]; by node 25 coefficients in seven vec4; by blur (the last: by a cosine) and entry of its
-// grid the rest at the nodes, four to a texel.
+// Light from all around by spherical harmonics (sim/model/harmonic_response.hpp): L = rho mean(L_in) + sum of w_lk L_l(a_k) + D rest_blur(aim).
+// Of a place: the elevation of its horizon and the azimuth of its grid's first entries [turns]; by node 25 coefficients in seven vec4; by blur (of lobes, of sharp lobes, by a cosine)
+// and entry of its grid the rest at the nodes, four to a texel.
 //@use sim/render/glsl/view_block.glsl
 //@use sim/radiometry/glsl/harmonics.glsl
 //@use sim/radiometry/glsl/arc_tangent.glsl
 layout(binding = 31) uniform samplerBuffer surroundings;
 int around_;  // where that of the body's place begins
-const int kDirections = AROUND_PLAIN == 1 ? 1 : 5;
+const int blurEntries = (AROUND_ABOVE + AROUND_BELOW) * AROUND_AZIMUTHS * NODE_TEXELS;
 Harmonics4 to0_, to1_, to2_, to3_, to4_;  // at the directions a_k
-ivec4 restAt_;
-vec4 restMix_;
+ivec4 restAt_[AROUND_GROUPS];  // of each group's aim
+vec4 restMix_[AROUND_GROUPS];
+float further_[AROUND_GROUPS], most_[AROUND_GROUPS];  // from the number of a blur to that of its table, up to the last
 ivec4 mattAt_;
 vec4 mattMix_, matt_;
 int mattOf_;
@@ -55,12 +56,20 @@ void placesOf(vec3 d, out ivec4 places, out vec4 shares) {
   shares = vec4((1.0 - across) * (1.0 - round), (1.0 - across) * round, across * (1.0 - round), across * round);
 }
 
+int responsesOfGroup() { return int(material_.response.z) * (4 * NODES + 1); }
+vec4 responseByView(int at) { return mix(texelFetch(hemispherical, response0_ + at), texelFetch(hemispherical, response1_ + at), responseMix_); }
+// By view angle: an aim, then four of each node.
+vec4 responseAt(int at) {
+  vec4 own = responseByView(at);
+  return STATES == 0 ? own : mix(own, responseByView(at + nextState(int(material_.response.y) * responsesOfGroup())), stateMix_);
+}
+
 void prepareDirections() {
   around_ = int(draw_.fine.w);
   vec3 normal = localOf(normal_);
   to0_ = harmonicsAt(normal);
   placesOf(normal, mattAt_, mattMix_);
-  mattAt_ += AROUND_BLURS * (AROUND_ABOVE + AROUND_BELOW) * AROUND_AZIMUTHS * NODE_TEXELS;
+  mattAt_ += (AROUND_BLURS + AROUND_SHARP_BLURS) * blurEntries;
   mattOf_ = -1;
   if (AROUND_PLAIN == 1) return;
   vec3 viewer = localOf(toViewer_), flat_ = viewer - dot(viewer, normal) * normal;
@@ -71,35 +80,40 @@ void prepareDirections() {
   to2_ = harmonicsAt(-0.80901699 * normal + 0.58778525 * across);
   to3_ = harmonicsAt(0.80901699 * normal + 0.58778525 * across);
   to4_ = harmonicsAt(-0.30901699 * normal + 0.95105652 * across);
-  placesOf(2.0 * clamp(dot(normal, viewer), 0.0, 1.0) * normal - viewer, restAt_, restMix_);
   restOf_ = -1;
   float last = float(material_.response.z - 1u);
   float x = min(angleFromChord(normal_, toViewer_) * 0.63661977, 1.0) * last;
   int low = min(int(x), max(int(last) - 1, 0));
   responseMix_ = x - float(low);
-  response0_ = int(material_.response.x) + 4 * NODES * low;
-  response1_ = response0_ + (last > 0.0 ? 4 * NODES : 0);
+  response0_ = int(material_.response.x) + (4 * NODES + 1) * low;
+  response1_ = response0_ + (last > 0.0 ? 4 * NODES + 1 : 0);
+  float cosine = clamp(dot(normal, viewer), 0.0, 1.0), sine = sqrt(1.0 - cosine * cosine), aside = normal.x * across.y - normal.y * across.x;
+  for (int g = 0; g < AROUND_GROUPS; ++g) {
+    if (g >= int(material_.response.y)) break;
+    // Tilt and stretch of its lobe, and is it sharp?
+    vec3 aim = responseAt(g * responsesOfGroup()).xyz;
+    float ct = cos(aim.x), st = sin(aim.x), c = cosine * ct + sine * st, s = sine * ct - cosine * st;
+    placesOf(c * normal - s * across, restAt_[g], restMix_[g]);
+    float along = c * across.z + s * normal.z, both = along * along + aside * aside;
+    bool sharp_ = aim.z > 0.5;
+    if (sharp_) restAt_[g] += AROUND_BLURS * blurEntries;
+    most_[g] = float((sharp_ ? AROUND_SHARP_BLURS : AROUND_BLURS) - 1);
+    further_[g] = (both > 1.0e-12 ? log2(1.0 + aim.y * (along * along - aside * aside) / both) : 0.0) - float(sharp_ ? AROUND_SHARP_FIRST : AROUND_FIRST);
+  }
 }
 
-vec4 responseByView(int at) { return mix(texelFetch(hemispherical, response0_ + at), texelFetch(hemispherical, response1_ + at), responseMix_); }
-vec4 responseAt(int at) {
-  vec4 own = responseByView(at);
-  return STATES == 0 ? own : mix(own, responseByView(at + nextState(int(material_.response.y * material_.response.z) * NODES * 4)), stateMix_);
-}
-
-// What the harmonics leave of the light from the mirrored direction, between two blurs: four nodes are read at once, about the blur of the first.
-float restAt(float blur, int i) {
-  float x = clamp(blur, 0.0, float(AROUND_BLURS - 1));
+// What the harmonics leave of the light about a group's aim, between two blurs: four nodes are read at once, about the blur of the first.
+float restAt(int g, float blur, int i) {
+  float x = clamp(blur + further_[g], 0.0, most_[g]);
   if (restOf_ != i / 4) {
     restOf_ = i / 4;
-    sharper_ = min(int(x), AROUND_BLURS - 2);
-    int each = (AROUND_ABOVE + AROUND_BELOW) * AROUND_AZIMUTHS * NODE_TEXELS;
-    ivec4 at = restAt_ + sharper_ * each + restOf_;
-    restNear_ = restMix_.x * texelFetch(surroundings, at.x) + restMix_.y * texelFetch(surroundings, at.y) + restMix_.z * texelFetch(surroundings, at.z) +
-                restMix_.w * texelFetch(surroundings, at.w);
-    at += each;
-    restFar_ = restMix_.x * texelFetch(surroundings, at.x) + restMix_.y * texelFetch(surroundings, at.y) + restMix_.z * texelFetch(surroundings, at.z) +
-               restMix_.w * texelFetch(surroundings, at.w);
+    sharper_ = min(int(x), int(most_[g]) - 1);
+    ivec4 at = restAt_[g] + sharper_ * blurEntries + restOf_;
+    restNear_ = restMix_[g].x * texelFetch(surroundings, at.x) + restMix_[g].y * texelFetch(surroundings, at.y) + restMix_[g].z * texelFetch(surroundings, at.z) +
+                restMix_[g].w * texelFetch(surroundings, at.w);
+    at += blurEntries;
+    restFar_ = restMix_[g].x * texelFetch(surroundings, at.x) + restMix_[g].y * texelFetch(surroundings, at.y) + restMix_[g].z * texelFetch(surroundings, at.z) +
+               restMix_[g].w * texelFetch(surroundings, at.w);
   }
   return mix(restNear_[i % 4], restFar_[i % 4], x - float(sharper_));
 }
@@ -144,14 +158,15 @@ vec2 aroundAt(int i) {
     q2.zw = vec2(ofDegree4(light, to0_), ofDegree4(light, to1_));
     q3.xyz = vec3(ofDegree4(light, to2_), ofDegree4(light, to3_), ofDegree4(light, to4_));
   }
-  int each = int(material_.response.z) * NODES * 4, place = 4 * i;
-  for (uint g = 0u; g < material_.response.y; ++g, place += each) {
-    if (g > 0u) restOf_ = -1;
-    int k = int((material_.response.w >> (4u * g)) & 15u);
+  int each = responsesOfGroup(), place = 4 * i + 1;
+  for (int g = 0; g < AROUND_GROUPS; ++g, place += each) {
+    if (g >= int(material_.response.y)) break;
+    if (g > 0) restOf_ = -1;
+    int k = int((material_.response.w >> uint(4 * g)) & 15u);
     vec4 r0 = responseAt(place), r3 = responseAt(place + 3);
     float own = dot(r0, q0) + dot(responseAt(place + 1), q1) + dot(r3, q3);
     // Of what is no lobe, a matt surface's share of the rest.
-    if (r3.w > 0.0) own += r3.w * (restAt(r0.x / r3.w, i) - matt);
+    if (r3.w > 0.0) own += r3.w * (restAt(g, r0.x / r3.w, i) - matt);
     if (AROUND_DEGREE > 2) own += dot(responseAt(place + 2), q2);
     sum += own * modifier_[k / 3][k % 3];
   }
