@@ -95,6 +95,7 @@ bool hasPattern(const Simulation& sim, const Surface& s) {
   const Material& m = sim.materialOf(s);
   std::vector<int> textures = m.modifiers;
   textures.push_back(s.temperatureTexture);
+  if (m.states) textures.push_back(m.states->texture);
   if (m.given) textures.push_back(m.given->modifier);
   if (m.transmission) textures.push_back(m.transmission->modifier);
   return std::any_of(textures.begin(), textures.end(), [&](int t) { return t >= 0 && sim.textures[static_cast<size_t>(t)].texels.size() > 1; });
@@ -252,10 +253,13 @@ void Builder::readSurfaces(const Record& r, Entity& entity) {
       double mean = 0.0;
       for (float t : texels) mean += static_cast<double>(t);
       s.temperature_K = mean / static_cast<double>(texels.size());
+      const auto [low, high] = std::minmax_element(texels.begin(), texels.end());
+      checkTemperatures(s.material, static_cast<double>(*low), static_cast<double>(*high), temperature->where);
     } else {
       s.temperature_K = readNumber(*temperature, "K", "temperature");
       if (s.temperature_K < 0.0 || s.temperature_K > 1e5)
         throw UserError(temperature->where, "temperature is out of range (" + temperature->text.substr(0, 40) + ")", "0 to 100000 K", "correct it");
+      checkTemperatures(s.material, s.temperature_K, s.temperature_K, temperature->where);
     }
     if (hasPattern(simulation_, s) && !hasUv(*entity.mesh, i))
       throw UserError(s.temperatureTexture >= 0 ? temperature->where : material->where,

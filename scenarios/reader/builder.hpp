@@ -54,6 +54,9 @@ class Builder {
   ViewSpectrum readViewSpectrum(const Record& r, const char* what, const std::string& material, const SpectrumReader& spectra);
   Medium readMedium(const MediumModel& model, const Record& r, const std::string& material, const SpectrumReader& spectra) const;
   /// Adds it to a material, and to each of its entries where a texture drives its state or that of one before.
+  /// A surface's components at rising temperatures.
+  void readTemperatureStates(const Value& list, const SpectrumReader& spectra, Material& material);
+  void checkTemperatures(int material, double low_K, double high_K, const Location& where) const;
   void readComponent(const Value& value, const SpectrumReader& spectra, Material& material, std::vector<std::shared_ptr<const Material>>& entries);
   /// A file of materials/substances as a tree.
   Value substanceNamed(const std::string& name, const Location& asked) const;

@@ -249,6 +249,12 @@ std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const 
   std::vector<std::shared_ptr<const Material>> entries;
   if (r.given("components"))
     for (const Value& c : r.value("components").items) readComponent(c, spectra, *m, entries);
+  if (r.given("temperatures")) {
+    for (const char* key : {"components", "emission", "transmission"})
+      if (r.given(key)) throw UserError(r.where(key), std::string("'") + key + "' beside 'temperatures'", "one of them", "remove it");
+    readTemperatureStates(r.value("temperatures"), spectra, *m);
+    entries = m->states->entries;
+  }
   if (r.given("emission")) m->given = readViewSpectrum(Record(r.value("emission"), tables::emission()), "emissivity", name, spectra);
   if (r.given("transmission") && m->transmission)
     throw UserError(r.where("transmission"), "a 'transmission' beside a pane that has its own", "one of them", "remove one");

@@ -159,6 +159,7 @@ void Builder::readGround(const Record& scenario) {
   ground.temperature_K = r.given("temperature") ? r.number("temperature") : simulation_.air->groundTemperature_K();
   if (!r.given("temperature") && !(ground.temperature_K > 0.0))
     throw UserError(r.where(), "a ground without a temperature, under air that has none", "a temperature", "add 'temperature: 288 K'");
+  checkTemperatures(ground.material, ground.temperature_K, ground.temperature_K, r.given("temperature") ? r.where("temperature") : r.where());
   simulation_.ground = ground;
 }
 

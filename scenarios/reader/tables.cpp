@@ -216,9 +216,18 @@ const ParameterTable& material() {
       "A surface: reflection components, an emission and a transmission; or a medium that fills a closed body, by `medium` (below). Also the form of "
       "materials/library/<name>.yaml.",
       {text("description", "what it is"), text("source", "where the figures come from"), list("components", "reflection components; none: black", 0, 64),
+       list("temperatures", "instead of components: the surface at rising temperatures, between which it is linear; its own temperature picks", 2, 64),
        map("emission", "given emissivity; without it 1 - reflectance - transmittance (Kirchhoff)"),
        map("transmission", "what is behind is seen through it; needs buffered mode"), text("medium", "what fills the body: then the keys below"),
        any("absorption", "of a gas, see below"), any("radiance", "of a gas, see below")}};
+  return t;
+}
+
+const ParameterTable& temperatureState() {
+  static const ParameterTable t{"material temperature",
+                                "A surface at a temperature: what it emits is 1 - reflectance there. All have the same models in the same order.",
+                                {required(within(number("temperature", "K", "of the surface"), 1.0, 1e5)),
+                                 required(list("components", "reflection components, without textures; none: black", 0, 16))}};
   return t;
 }
 
@@ -227,7 +236,7 @@ const MediumModel* mediumOf(const Value& value) {
   if (const Value* radiance = value.find("radiance"); radiance && !medium)
     throw UserError(radiance->where, "a material with 'radiance' that is no medium", "'absorption' beside it, or no 'radiance'",
                     "add 'absorption: 0.1 /m', or remove it");
-  for (const char* key : {"components", "emission", "transmission"})
+  for (const char* key : {"components", "temperatures", "emission", "transmission"})
     if (const Value* given = value.find(key); given && medium)
       throw UserError(given->where, std::string("a medium with '") + key + "'", "a surface, or a medium",
                       "remove it, or what makes it a medium; a body with both is two entities");
@@ -451,7 +460,7 @@ std::vector<ParameterTable> all() {
   };
   addAll(airModels(), airTable);
   for (const auto& t :
-       {airLibrary(), background(), ground(), sun(), ambient(), gradientEntry(), environmentMap(), environmentLayer(), spectrumTable(), material()})
+       {airLibrary(), background(), ground(), sun(), ambient(), gradientEntry(), environmentMap(), environmentLayer(), spectrumTable(), material(), temperatureState()})
     every.push_back(t);
   addAll(reflectionModels(), componentTable);
   addAll(mediumModels(), medium);

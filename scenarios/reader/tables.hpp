@@ -22,6 +22,7 @@ const ParameterTable& gradientEntry();
 const ParameterTable& environmentMap();
 const ParameterTable& environmentLayer();
 const ParameterTable& material();
+const ParameterTable& temperatureState();
 ParameterTable medium(const MediumModel& model);
 /// The medium that a material's map asks for, or null. Errors: UserError where it is a surface too.
 const MediumModel* mediumOf(const Value& material);

@@ -14,10 +14,11 @@ namespace pitviper {
 
 struct Material;
 
-/// A state of a surface that a texture drives (wetness, thickness of a film): between two entries, which lie evenly over it, the surface is linear.
+/// A state of a surface that a texture drives (wetness, thickness of a film), or its temperature: between two entries, which lie evenly over it, the surface is
+/// linear.
 struct MaterialStates {
-  int texture = -1;
-  double low = 0.0, high = 1.0;                          ///< of the texture's values: states of the first and the last entry
+  int texture = -1;                                      ///< -1: its temperature [K]
+  double low = 0.0, high = 1.0;                          ///< of what drives it: states of the first and the last entry
   std::vector<std::shared_ptr<const Material>> entries;  ///< two or more, with the same axes, lobes and textures, without states of their own
 };
 

@@ -102,7 +102,11 @@ class Teller {
     if (!m.states) return surface(hit, m, place);
     const MaterialStates& states = *m.states;
     const double last = static_cast<double>(states.entries.size() - 1);
-    const double x = std::clamp((modifier(states.texture, hit) - states.low) / (states.high - states.low), 0.0, 1.0) * last,
+    double state = 0.0;
+    if (states.texture >= 0) state = modifier(states.texture, hit);
+    else
+      for (const auto& [temperature_K, part] : temperaturesOf(surfaceAt(sim_, hit), hit)) state += part * temperature_K;
+    const double x = std::clamp((state - states.low) / (states.high - states.low), 0.0, 1.0) * last,
                  low = std::min(std::floor(x), last - 1.0);
     share_ = 1.0 - (x - low);
     surface(hit, *states.entries[static_cast<size_t>(low)], place);

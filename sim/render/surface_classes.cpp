@@ -34,7 +34,7 @@ SurfaceClass classOf(const DrawItem& item, const Simulation& sim, const SurfaceT
     c.modifiers |= component[1] >= 0;
   }
   c.tabulated = m.counts[0] > 1;
-  c.states = m.state[0] >= 0;
+  c.states = m.state[1] > 1;
   c.around = m.response[2] > 1;
   c.modifiers |= c.states;  // read as they are
   const Surface& surface =

@@ -44,8 +44,8 @@ std::vector<PromiseFigures> promiseFigures(const std::vector<PromiseCell>& cells
       found.push_back(c.found / asked);
       held += c.found <= asked;
       foreseen += c.predicted >= c.found;
-      // Nothing to be off by: whatever is predicted is no margin.
-      if (c.found > 0.0) margin.push_back(c.predicted / c.found);
+      // Nothing to be off by: whatever is predicted is no margin. Next to nothing is a twentieth of what is asked.
+      if (c.found > 0.0) margin.push_back(c.predicted / std::max(c.found, 0.05 * c.asked));
     }
     f.scenes = static_cast<int>(scenes.size());
     const ErrorFigures figures = figuresOf(found);

@@ -17,7 +17,7 @@ struct PromiseFigures {
   double median = 0.0, percentile99 = 0.0, worst = 0.0;  ///< of found / asked
   double held = 0.0;                                     ///< share of cells with found <= asked
   double foreseen = 0.0;                                 ///< share of cells with predicted >= found
-  double margin = 0.0;                                   ///< median of predicted / found
+  double margin = 0.0;                                   ///< median of predicted / found, or a twentieth of what is asked where that is more
 };
 /// One per accuracy, coarse ones first.
 std::vector<PromiseFigures> promiseFigures(const std::vector<PromiseCell>& cells);

@@ -4,7 +4,7 @@ struct MaterialShape {
   uvec4 kinds;         // angle 1, angle 2; 1 where the emissivity follows Kirchhoff; first hemispherical entry
   vec4 scale;          // entries per radian along angle 1, angle 2, view angle
   ivec4 transmission;  // texture of T or -1; first entry of the transmittances; texture of E or -1
-  ivec4 state;         // texture of its state or -1; entries
+  ivec4 state;         // texture of its state, or -1: its temperature; entries
   vec4 stateScale;     // state of the first entry; entries per unit of it; of the second table of columns: entries per radian along its angles 1 and 2
   uvec4 second;        // of the second table of columns: entries along its angles 1 and 2; both angles, 8 angle 2 + angle 1; first entry
   uvec4 response;      // to light from all around: first entry; how many textures; view angles; for each texture 4 bits, a component that has it

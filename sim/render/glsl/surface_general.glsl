@@ -30,10 +30,12 @@ void prepareSurface() {
   for (int v = 0; v < COMPONENT_VECTORS; ++v)
     for (int k = 0; k < 3; ++k) modifier_[v][k] = last = 3 * v + k < USED_COMPONENTS ? modifierOf(3 * v + k, last) : 1.0;
   emissionModifier_ = EMISSION_MODIFIERS > 0 ? modifierAt(material_.transmission.z) : 1.0;
+  temperature_ = surfaceTemperature();
   state_ = 0;
   stateMix_ = 0.0;
-  if (STATES > 0 && material_.state.x >= 0) {
-    stateMix_ = clamp((modifierAt(material_.state.x) - material_.stateScale.x) * material_.stateScale.y, 0.0, float(material_.state.y - 1));
+  if (STATES > 0 && material_.state.y > 1) {
+    float drives = material_.state.x >= 0 ? modifierAt(material_.state.x) : temperature_;
+    stateMix_ = clamp((drives - material_.stateScale.x) * material_.stateScale.y, 0.0, float(material_.state.y - 1));
     state_ = min(int(stateMix_), material_.state.y - 2);
     stateMix_ -= float(state_);
   }
@@ -44,7 +46,6 @@ void prepareSurface() {
   transmissionModifier_ = TRANSMISSION_MODIFIERS > 0 ? modifierAt(material_.transmission.x) : 1.0;
   view0_ = int(material_.kinds.w) + (state_ * int(material_.counts.z) + j) * NODES * COMPONENT_VECTORS;
   view1_ = material_.counts.z > 1u ? view0_ + NODES * COMPONENT_VECTORS : view0_;
-  temperature_ = surfaceTemperature();
   prepareTemperature();
   prepareAmbient();
 }
