@@ -57,7 +57,7 @@ std::string lossOf(const std::string& material, const std::string& materials, co
                             "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
                             "ground: {material: soil, temperature: 295 K}\nentities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " +
                             material + ", temperature: 300 K}]\ncameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], look_at: s, " +
-                            line("channels: [{name: c, response: {band: [%.6g um, %.6g um]}}]}]\n", low, low + 0.1 * (high - low));
+                            line("channels: [{name: c, response: {band: [%.6g um, %.6g um]}}]}]\n", low, high);
   return surroundingsLoss(readScenarioText(scene, "material " + material, ".", {}, libraries));
 }
 

@@ -459,8 +459,8 @@ std::vector<ParameterTable> all() {
     for (const auto& model : registry.all()) every.push_back(tableOf(model));
   };
   addAll(airModels(), airTable);
-  for (const auto& t :
-       {airLibrary(), background(), ground(), sun(), ambient(), gradientEntry(), environmentMap(), environmentLayer(), spectrumTable(), material(), temperatureState()})
+  for (const auto& t : {airLibrary(), background(), ground(), sun(), ambient(), gradientEntry(), environmentMap(), environmentLayer(), spectrumTable(),
+                        material(), temperatureState()})
     every.push_back(t);
   addAll(reflectionModels(), componentTable);
   addAll(mediumModels(), medium);

@@ -66,7 +66,7 @@ double varianceOf(double logRatio, double stretch, double first, double last) {
   double low = 0.0, high = blurOf_rad(kBlurs - 1) * blurOf_rad(kBlurs - 1);
   const auto at = [&](double v) { return 0.5 * v * (last - first) + logBessel0(0.5 * stretch * v * first) - logBessel0(0.5 * stretch * v * last); };
   if (!(at(high) > logRatio)) return high;
-  for (int k = 0; k < 40; ++k) {
+  for (int k = 0; k < 26; ++k) {
     const double middle = 0.5 * (low + high);
     (at(middle) < logRatio ? low : high) = middle;
   }

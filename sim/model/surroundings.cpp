@@ -90,6 +90,21 @@ const Surroundings::Blur& Surroundings::blur(std::size_t height, double sigma_ra
   return blur;
 }
 
+const HarmonicResponse& Surroundings::response(const ReflectionComponent& component, int order, std::span<const double> usual_um) const {
+  {
+    const std::lock_guard lock(busy_);
+    if (const auto at = responses_.find({&component, order}); at != responses_.end()) return *at->second;
+  }
+  std::vector<double> usual(columnEntries(component), 0.0);
+  for (const double w : usual_um) {
+    const std::vector<double> own = columnsAt(component, std::clamp(w, component.validLow_um(), component.validHigh_um()));
+    for (size_t e = 0; e < usual.size(); ++e) usual[e] += own[e];
+  }
+  auto made = std::make_unique<const HarmonicResponse>(component, order, usual);
+  const std::lock_guard lock(busy_);
+  return *responses_.try_emplace({&component, order}, std::move(made)).first->second;
+}
+
 std::vector<double> MixedSurroundings::radiance(double wavelength_um, std::size_t) const {
   std::vector<double> values, all;
   for (const Spectrum& s : spectra_) values.push_back(s(wavelength_um));

@@ -4,10 +4,12 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "sim/model/atmosphere.hpp"
 #include "sim/model/direction_grid.hpp"
+#include "sim/model/harmonic_response.hpp"
 #include "sim/model/material.hpp"
 #include "sim/radiometry/spectrum.hpp"
 #include "sim/scene/scene.hpp"
@@ -41,6 +43,8 @@ class Surroundings {
   };
   static constexpr double kByCosine = -1.0;
   const Blur& blur(std::size_t height, double sigma_rad) const;
+  /// How a component answers it; kept. Its aims are those of the column's mean over some wavelengths, always the same.
+  const HarmonicResponse& response(const ReflectionComponent& component, int order, std::span<const double> usual_um) const;
   virtual void addTo(Fingerprint& f) const = 0;
 
  protected:
@@ -55,6 +59,7 @@ class Surroundings {
   mutable std::map<std::size_t, std::vector<Harmonics>> projections_;
   mutable std::map<std::pair<std::size_t, double>, Blur> blurs_;
   mutable std::map<std::pair<std::size_t, double>, Light> kept_;
+  mutable std::map<std::pair<const ReflectionComponent*, int>, std::unique_ptr<const HarmonicResponse>> responses_;
 };
 
 /// The sky of layered air by elevation and azimuth, and the ground below: emission of the air, sunlight it scatters once, the background behind it; ground of a

@@ -6,7 +6,7 @@ namespace pitviper {
 namespace {
 
 /// A change of the planner makes old plans strangers.
-constexpr double kPlannerVersion = 75;
+constexpr double kPlannerVersion = 76;
 
 }  // namespace
 

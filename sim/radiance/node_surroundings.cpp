@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "sim/radiometry/constants.hpp"
 
@@ -24,6 +25,19 @@ glm::dvec3 acrossOf(const glm::dvec3& normal, const glm::dvec3& view) {
   const glm::dvec3 flat = view - glm::dot(view, normal) * normal;
   if (glm::length(flat) > 1e-9) return glm::normalize(flat);
   return glm::normalize(glm::cross(normal, std::abs(normal.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0)));
+}
+
+/// Wavelengths that stand for all that a scene is looked at by: of each band the middles of its thirds.
+std::vector<double> lookedAt_um(const Simulation& sim) {
+  constexpr int kEach = 3;
+  std::set<double> all;
+  const auto add = [&](const std::vector<ChannelOutput>& outputs) {
+    for (const ChannelOutput& o : outputs)
+      for (int k = 0; k < kEach; ++k) all.insert(o.bandLow_um + (o.bandHigh_um - o.bandLow_um) * (k + 0.5) / kEach);
+  };
+  for (const auto& c : sim.cameras) add(c.outputs);
+  for (const auto& p : sim.probes) add(p.outputs);
+  return {all.begin(), all.end()};
 }
 
 bool isNarrow(const ReflectionComponent& r) {
@@ -60,7 +74,7 @@ struct NodeSurroundings::Height {
 NodeSurroundings::~NodeSurroundings() = default;
 
 NodeSurroundings::NodeSurroundings(const Simulation& simulation, std::span<const SpectralNode> nodes, int degree)
-    : simulation_(simulation), nodes_(nodes), degree_(degree) {}
+    : simulation_(simulation), nodes_(nodes), degree_(degree), usual_um_(lookedAt_um(simulation)) {}
 
 Eigen::MatrixXd NodeSurroundings::Height::tellRest(const Surroundings& around, int degree, std::size_t wanted) const {
   const auto entries = pattern.cols(), patterns = pattern.rows(), used = static_cast<Eigen::Index>(harmonicCount(degree));
@@ -253,10 +267,7 @@ const NodeSurroundings::Responses& NodeSurroundings::responses(const ReflectionC
   auto& kept = responses_[&r];
   if (kept) return *kept;
   kept = std::make_unique<Responses>();
-  std::vector<double> usual(columns.front().size(), 0.0);
-  for (const auto& column : columns)
-    for (size_t e = 0; e < usual.size(); ++e) usual[e] += column[e];
-  const HarmonicResponse own(r, degree_, usual);
+  const HarmonicResponse& own = simulation_.surroundings->response(r, degree_, usual_um_);
   kept->views = own.views();
   kept->isSharp = own.isSharp();
   for (int j = 0; j < kept->views; ++j) kept->aims.push_back(own.aim(j));

@@ -60,6 +60,7 @@ class NodeSurroundings {
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
   int degree_;
+  std::vector<double> usual_um_;  ///< by which lobes are aimed, whatever the nodes
   mutable std::mutex busy_;
   mutable std::map<std::size_t, std::unique_ptr<Height>> heights_;
   mutable std::map<const ReflectionComponent*, std::unique_ptr<Responses>> responses_;

@@ -82,16 +82,29 @@ double bilinear(const std::vector<float>& texels, const Corners& c) {
 TextureLevel cellsOf(const Texture& t, bool moments) {
   constexpr double kGauss = 0.28867513459481287;
   constexpr std::array kAt{0.25 - 0.5 * kGauss, 0.25 + 0.5 * kGauss, 0.75 - 0.5 * kGauss, 0.75 + 0.5 * kGauss};
+  const auto held = [&t](int k, int n) { return static_cast<size_t>(t.repeats ? (k + n) % n : std::clamp(k, 0, n - 1)); };
   TextureLevel cells{t.width, t.height, {}, {}, {}};
   for (int y = 0; y < t.height; ++y)
     for (int x = 0; x < t.width; ++x) {
-      const double middle = static_cast<double>(t.texels[static_cast<size_t>(y) * static_cast<size_t>(t.width) + static_cast<size_t>(x)]);
-      double s1 = 0.0, s2 = 0.0, s3 = 0.0;
-      for (double v : kAt)
-        for (double u : kAt) {
-          const double d = bilinear(t.texels, cornersOf(t.width, t.height, t.repeats, {x + u, y + v})) - middle;
-          s1 += d / 16.0, s2 += d * d / 16.0, s3 += d * d * d / 16.0;
+      // A texel and the eight about it, less itself.
+      std::array<std::array<double, 3>, 3> near;
+      const auto at = [&](int i, int j) { return static_cast<double>(t.texels[held(y + j, t.height) * static_cast<size_t>(t.width) + held(x + i, t.width)]); };
+      const double middle = at(0, 0);
+      bool even = true;
+      for (int j = 0; j < 3; ++j)
+        for (int i = 0; i < 3; ++i) {
+          double& n = near[static_cast<size_t>(j)][static_cast<size_t>(i)];
+          n = at(i - 1, j - 1) - middle;
+          even = even && n == 0.0;
         }
+      double s1 = 0.0, s2 = 0.0, s3 = 0.0;
+      for (size_t k = 0; !even && k < 16; ++k) {
+        const double u = kAt[k % 4], v = kAt[k / 4];
+        const size_t i = u < 0.5 ? 0 : 1, j = v < 0.5 ? 0 : 1;
+        const double fx = u < 0.5 ? u + 0.5 : u - 0.5, fy = v < 0.5 ? v + 0.5 : v - 0.5;
+        const double d = (1.0 - fy) * ((1.0 - fx) * near[j][i] + fx * near[j][i + 1]) + fy * ((1.0 - fx) * near[j + 1][i] + fx * near[j + 1][i + 1]);
+        s1 += d / 16.0, s2 += d * d / 16.0, s3 += d * d * d / 16.0;
+      }
       cells.mean.push_back(static_cast<float>(middle + s1));
       if (!moments) continue;
       cells.second.push_back(static_cast<float>(s2 - s1 * s1));

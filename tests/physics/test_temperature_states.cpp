@@ -18,8 +18,8 @@ double emissivityAt(double kelvin) { return kelvin < 500.0 ? 0.2 + 0.1 * (kelvin
 std::string plate(const std::string& temperature, const std::string& more = "", const std::string& size = "2 m") {
   return kSurface + more +
          "time: {rate: 10 Hz, frames: 2}\n"
-         "entities: [{name: p, shape: {model: plate, width: " + size + ", height: " + size + "}, material: m, temperature: " +
-         temperature +
+         "entities: [{name: p, shape: {model: plate, width: " +
+         size + ", height: " + size + "}, material: m, temperature: " + temperature +
          "}]\n"
          "cameras: [{name: c, film: {width: 16, height: 16}, field_of_view: 4 deg, aperture: 20 mm, position: [10 m, 0 m, 0 m], look_at: p, "
          "channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n";
@@ -68,7 +68,8 @@ TEST(TemperatureStates, MistakesAreNamed) {
   for (const auto& [text, kelvin, part] :
        {std::tuple<std::string, std::string, std::string>{"temperatures: [" + b + ", " + a + "]", "400 K", "do not rise"},
         {"temperatures: [" + a + ", " + phong + "]", "400 K", "others in kind"},
-        {"temperatures: [" + a + ", {temperature: 431.7 K, components: [{reflection: lambertian, reflectance: 0.8}]}, " + b + "]", "400 K", "steps of one size"},
+        {"temperatures: [" + a + ", {temperature: 431.7 K, components: [{reflection: lambertian, reflectance: 0.8}]}, " + b + "]", "400 K",
+         "steps of one size"},
         {"temperatures: [" + a + ", " + b + "]", "1000 K", "is not known"},
         {"temperatures: [" + a + ", " + b + "]", "{rows: [[350 K], [250 K]]}", "is not known"},
         {"temperatures: [" + a + ", " + b + "], components: []", "400 K", "beside 'temperatures'"},
