@@ -79,6 +79,10 @@ void Buffer::upload(const void* data, std::size_t bytes) {
   if (bytes > 0 && data) glNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(bytes), data);
 }
 
+void Buffer::uploadPart(std::size_t first, const void* data, std::size_t bytes) {
+  glNamedBufferSubData(name_, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes), data);
+}
+
 void Buffer::bindStorage(unsigned index) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, index, name_); }
 void Buffer::bindUniform(unsigned index) const { glBindBufferBase(GL_UNIFORM_BUFFER, index, name_); }
 void Buffer::bindUniformPart(unsigned index, std::size_t first, std::size_t bytes) const {

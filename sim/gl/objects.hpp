@@ -69,6 +69,8 @@ class Buffer {
   void upload(const std::vector<T>& data) {
     upload(data.data(), data.size() * sizeof(T));
   }
+  /// Replaces a part [bytes] of what it has.
+  void uploadPart(std::size_t first, const void* data, std::size_t bytes);
   void bindStorage(unsigned index) const;
   void bindUniform(unsigned index) const;
   /// A part of it [bytes], which begins at a multiple of 256.

@@ -65,6 +65,10 @@ struct NodeSurroundings::Height {
     return rests[at];
   }
 
+  /// Of the blurs in use, at nodes; made when asked for.
+  mutable std::vector<float> atNodes;
+  mutable std::once_flag areTold;
+
  private:
   Eigen::MatrixXd tellRest(const Surroundings& around, int degree, std::size_t wanted) const;
   mutable std::array<Eigen::MatrixXd, 2 * kRests> rests;
@@ -187,35 +191,45 @@ const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) con
   return h;
 }
 
-NodeSurroundings::Light NodeSurroundings::lightAt(const Surroundings::Place& place) const {
-  const std::size_t count = nodes_.size();
-  Light light;
-  light.harmonics.assign(count, Harmonics{});
-  light.grid = height(place.height).finer;
-  light.grid.horizon_rad = 0.0;
-  struct Rest {
-    bool sharp;
-    std::size_t blur;
-  };
-  std::vector<Rest> rests;
-  for (const bool sharp : {false, true}) {
-    const Blurs blurs = blursInUse(sharp);
-    for (int b = 0; b < blurs.count; ++b) rests.push_back({sharp, static_cast<size_t>(blurs.first + b)});
-  }
-  rests.push_back({false, kCosine});
-  light.rest.assign(rests.size(), std::vector<double>(light.grid.size() * count, 0.0));
-  for (std::size_t part = 0; part < 2; ++part) {
-    const double share = part == 0 ? 1.0 - place.share : place.share;
-    if (share == 0.0) continue;
-    const Height& h = height(place.height + part);
-    light.grid.horizon_rad += share * h.finer.horizon_rad;
-    for (std::size_t i = 0; i < count; ++i)
-      for (int c = 0; c < harmonicCount(degree_); ++c) light.harmonics[i][static_cast<size_t>(c)] += share * h.harmonics[i][static_cast<size_t>(c)];
-    for (std::size_t b = 0; b < light.rest.size(); ++b) {
-      const Eigen::MatrixXd rest = h.mix * h.rest(*simulation_.surroundings, degree_, rests[b].sharp, rests[b].blur);
-      for (std::size_t g = 0; g < light.grid.size(); ++g)
-        for (std::size_t i = 0; i < count; ++i) light.rest[b][g * count + i] += share * rest(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g));
+const std::vector<float>& NodeSurroundings::restsOf(const Height& h) const {
+  std::call_once(h.areTold, [&] {
+    struct Rest {
+      bool sharp;
+      std::size_t blur;
+    };
+    std::vector<Rest> rests;
+    for (const bool sharp : {false, true}) {
+      const Blurs blurs = blursInUse(sharp);
+      for (int b = 0; b < blurs.count; ++b) rests.push_back({sharp, static_cast<size_t>(blurs.first + b)});
     }
+    rests.push_back({false, kCosine});
+    const std::size_t padded = (nodes_.size() + 3) / 4 * 4, entries = h.finer.size();
+    h.atNodes.assign(rests.size() * entries * padded, 0.0f);
+    for (std::size_t b = 0; b < rests.size(); ++b) {
+      const Eigen::MatrixXd all = h.mix * h.rest(*simulation_.surroundings, degree_, rests[b].sharp, rests[b].blur);
+      for (std::size_t g = 0; g < entries; ++g)
+        for (std::size_t i = 0; i < nodes_.size(); ++i)
+          h.atNodes[(b * entries + g) * padded + i] = static_cast<float>(all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g)));
+    }
+  });
+  return h.atNodes;
+}
+
+NodeSurroundings::Light NodeSurroundings::lightAt(const Surroundings::Place& place) const {
+  const Height &low = height(place.height), &high = height(place.height + (place.share > 0.0 ? 1 : 0));
+  const double share = place.share;
+  Light light;
+  light.grid = low.finer;
+  light.grid.horizon_rad = (1.0 - share) * low.finer.horizon_rad + share * high.finer.horizon_rad;
+  light.harmonics.assign(nodes_.size(), Harmonics{});
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (std::size_t c = 0; c < static_cast<std::size_t>(harmonicCount(degree_)); ++c)
+      light.harmonics[i][c] = (1.0 - share) * low.harmonics[i][c] + share * high.harmonics[i][c];
+  light.rest = restsOf(low);
+  if (share > 0.0) {
+    const std::vector<float>& above = restsOf(high);
+    const auto mix = static_cast<float>(share);
+    for (std::size_t k = 0; k < above.size(); ++k) light.rest[k] += mix * (above[k] - light.rest[k]);
   }
   return light;
 }

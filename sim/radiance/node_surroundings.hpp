@@ -31,9 +31,9 @@ class NodeSurroundings {
   struct Light {
     DirectionGrid grid;                ///< the finer one, its horizon and its turn
     std::vector<Harmonics> harmonics;  ///< by node, up to the degree
-    /// [blur][entry of the grid][node]: what these leave, by the blurs in use; all but the mean, by those of sharp lobes; what harmonics leave, by a matt
-    /// surface's cosine.
-    std::vector<std::vector<double>> rest;
+    /// [blur][entry of the grid][node], nodes filled up to fours: what these leave, by the blurs in use; all but the mean, by those of sharp lobes; what
+    /// harmonics leave, by a matt surface's cosine.
+    std::vector<float> rest;
   };
   Light lightAt(const Surroundings::Place& place) const;
 
@@ -51,6 +51,7 @@ class NodeSurroundings {
  private:
   struct Height;
   const Height& height(std::size_t number) const;
+  const std::vector<float>& restsOf(const Height& height) const;
   std::vector<double> inFull(const ReflectionComponent& component, const SurfaceView& view) const;
   std::vector<double> byHarmonics(const ReflectionComponent& component, const SurfaceView& view) const;
   const std::vector<std::vector<double>>& columns(const ReflectionComponent& component) const;

@@ -51,7 +51,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       relevance_(simulation, tabled(), tables_),
       how_(shading) {
   if (plan.terms.air && shading != Shading::Reference) air_ = simulation.air->onGpu(simulation, plan, shading == Shading::Direct);
-  if (tables_.around) around_.emplace(simulation, *tables_.around, plan.nodes.size());
+  if (tables_.around) around_.emplace(simulation, *tables_.around);
   if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
   ShaderSlots slots;
   slots.constants["GROUND"] = tables_.ground;

@@ -1,7 +1,9 @@
 #include "sim/render/surroundings_buffer.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "sim/radiometry/constants.hpp"
 
@@ -19,31 +21,44 @@ void SurroundingsBuffer::setState(const WorldState& state) {
   places.push_back(placed(0.0));
   if (places == places_) return;
   places_ = std::move(places);
-  at_.clear();
-  std::vector<float> all;
-  std::map<Surroundings::Place, float> known;
-  for (const auto& place : places_) {
-    const auto [at, isNew] = known.try_emplace(place, static_cast<float>(all.size() / 4));
-    if (isNew) append(place, all);
-    at_.push_back(at->second);
+  // Places that stay keep their slots; others go where there is room.
+  const std::set<Surroundings::Place> wanted(places_.begin(), places_.end());
+  std::map<Surroundings::Place, std::size_t> slotOf;
+  for (std::size_t k = 0; k < slots_.size(); ++k) {
+    if (slots_[k] && wanted.contains(*slots_[k])) slotOf[*slots_[k]] = k;
+    else slots_[k].reset();
   }
-  buffer_.upload(all);
+  const bool grows = wanted.size() > slots_.size();
+  if (grows) slots_.resize(wanted.size()), slotOf.clear(), std::fill(slots_.begin(), slots_.end(), std::nullopt);
+  std::vector<float> all;
+  std::size_t free = 0;
+  for (const auto& place : wanted) {
+    if (slotOf.contains(place)) continue;
+    while (slots_[free]) ++free;
+    slots_[free] = place;
+    slotOf[place] = free;
+    const std::vector<float> own = told(place);
+    size_ = own.size();
+    if (grows) all.insert(all.end(), own.begin(), own.end());
+    else buffer_.uploadPart(free * size_ * sizeof(float), own.data(), size_ * sizeof(float));
+  }
+  if (grows) buffer_.upload(all);
+  at_.clear();
+  for (const auto& place : places_) at_.push_back(static_cast<float>(slotOf[place] * (size_ / 4)));
 }
 
-void SurroundingsBuffer::append(const Surroundings::Place& place, std::vector<float>& into) const {
+std::vector<float> SurroundingsBuffer::told(const Surroundings::Place& place) const {
   const NodeSurroundings::Light light = light_.lightAt(place);
-  const auto put = [&](double v) { into.push_back(static_cast<float>(v)); };
-  const auto fill = [&] { into.resize((into.size() + 3) / 4 * 4, 0.0f); };
+  std::vector<float> all;
+  const auto put = [&](double v) { all.push_back(static_cast<float>(v)); };
+  const auto fill = [&] { all.resize((all.size() + 3) / 4 * 4, 0.0f); };
   put(light.grid.horizon_rad), put(light.grid.turn_rad / (2.0 * kPi)), fill();
   for (const Harmonics& h : light.harmonics) {
     for (double v : h) put(v);
     fill();
   }
-  for (const auto& rest : light.rest)
-    for (std::size_t g = 0; g < rest.size() / nodes_; ++g) {
-      for (std::size_t i = 0; i < nodes_; ++i) put(rest[g * nodes_ + i]);
-      fill();
-    }
+  all.insert(all.end(), light.rest.begin(), light.rest.end());
+  return all;
 }
 
 void SurroundingsBuffer::addConstants(ShaderSlots& slots) const {

@@ -1,5 +1,6 @@
 #pragma once
 // The surroundings' light at the places of a scene's bodies, as the shaders read it (sim/render/glsl/ambient_around.glsl).
+#include <optional>
 #include <vector>
 
 #include "sim/gl/objects.hpp"
@@ -12,7 +13,7 @@ namespace pitviper {
 class SurroundingsBuffer {
  public:
   /// Both must outlive it.
-  SurroundingsBuffer(const Simulation& simulation, const NodeSurroundings& light, std::size_t nodes) : simulation_(simulation), light_(light), nodes_(nodes) {}
+  SurroundingsBuffer(const Simulation& simulation, const NodeSurroundings& light) : simulation_(simulation), light_(light) {}
   /// Bodies are where a state has them.
   void setState(const WorldState& state);
   /// Where the light of an entity begins; -1: of the ground, and of whatever has none.
@@ -24,13 +25,15 @@ class SurroundingsBuffer {
   /// Steps between two heights of the surroundings: a height within one has the light of its nearest, which moves that by 1e-3 of their difference.
   static constexpr double kSteps = 512.0;
   Surroundings::Place placed(double height_m) const;
-  void append(const Surroundings::Place& place, std::vector<float>& into) const;
+  /// What the shaders read of a place.
+  std::vector<float> told(const Surroundings::Place& place) const;
 
   const Simulation& simulation_;
   const NodeSurroundings& light_;
-  std::size_t nodes_;
   std::vector<Surroundings::Place> places_;  ///< of all entities and, last, of the ground
   std::vector<float> at_;
+  std::size_t size_ = 0;                                   ///< of a slot, in floats
+  std::vector<std::optional<Surroundings::Place>> slots_;  ///< of the buffer, all of one size
   Buffer buffer_;
 };
 

@@ -29,7 +29,8 @@ TEST(TemperatureStates, EmissivityFollows) {
   for (const char* accuracy : {"", "accuracy: reference\n"})
     for (double t : {300.0, 350.0, 500.0, 640.0, 1100.0}) {
       const Frame f = renderFrame(scene(plate(std::to_string(t) + " K", accuracy)));
-      figure("emissivity 0.2 at 300 K to 0.6 at 1100 K, plate of " + std::to_string(static_cast<int>(t)) + " K" + (*accuracy ? ", reference" : "") + " [W/(m2 sr)]",
+      figure("emissivity 0.2 at 300 K to 0.6 at 1100 K, plate of " + std::to_string(static_cast<int>(t)) + " K" + (*accuracy ? ", reference" : "") +
+                 " [W/(m2 sr)]",
              at(layer(f, "mw.radiance"), f, 8, 8), emissivityAt(t) * blackBodyBand(3.0, 5.0, t), 3e-5, "linear in temperature; single precision");
     }
 }
