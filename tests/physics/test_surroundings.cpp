@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "scenarios/commands/commands.hpp"
 #include "sim/image/exr.hpp"
 #include "sim/model/environment_map.hpp"
 #include "sim/model/world.hpp"
@@ -255,6 +256,29 @@ TEST(Surroundings, LossIsPredicted) {
     std::printf("  predicted %.3g, of it light from all around %.3g with degree %d; found %.3g\n", plan.predictedError.front(), plan.parts.front().surroundings,
                 plan.surroundings, found);
   }
+}
+
+// Bodies that climb, meet in a place and part again: their light is that of where they are, whatever was drawn before.
+TEST(SurroundingsOnGpu, BodiesThatClimb) {
+  needContext();
+  const auto mover = [](const char* name, double y, double from, double to) {
+    return print(
+        "{name: %s, shape: {model: sphere, radius: 140 m}, material: m, temperature: 300 K, motion: [{time: 0 s, position: [0 m, %g m, %g m]}, "
+        "{time: 0.4 s, position: [0 m, %g m, %g m]}]}",
+        name, y, from, y, to);
+  };
+  const Simulation sim = scene(
+      "accuracy: none\n" + kSky + "time: {rate: 10 Hz, frames: 5}\nmaterials: {m: {components: [" + kMetal + "]}}\nentities: [" + mover("a", 350, 200, 1000) +
+      ", " + mover("b", 0, 1000, 200) + ", " + mover("c", -350, 600, 600) +
+      "]\ncameras: [{name: c, film: {width: 24, height: 96}, field_of_view: 20 deg, aperture: 20 mm, position: [4 km, 0 m, 600 m], look_at: [0 m, 0 m, 600 "
+      "m], small_bodies: 0, spectral: {samples: 3}, channels: [{name: a, response: {band: [3.5 um, 4 um]}}]}]\n");
+  const auto gpu = std::make_shared<const GpuScene>(sim);
+  CameraRenderer one(sim, sim.cameras[0], shaderLibrary(), gpu);
+  for (const double t : {0.0, 0.1, 0.2, 0.4, 0.3, 0.0}) {
+    CameraRenderer fresh(sim, sim.cameras[0], shaderLibrary(), gpu);
+    EXPECT_EQ(one.render(advance(sim, t)).slots, fresh.render(advance(sim, t)).slots) << t << " s";
+  }
+  EXPECT_NE(one.render(advance(sim, 0.0)).slots, one.render(advance(sim, 0.4)).slots);
 }
 
 }  // namespace
