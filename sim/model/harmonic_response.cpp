@@ -51,7 +51,7 @@ double logBessel0(double x) {
                        t * (0.00225319 + t * (-0.00157565 + t * (0.00916281 + t * (-0.02057706 + t * (0.02635537 + t * (-0.01647633 + t * 0.00392377))))))));
 }
 
-/// z of I_1(z)/I_0(z), the slope of logBessel0. Start: Best and Fisher 1981.
+/// z of I_1(z)/I_0(z), the slope of logBessel0, within 1 % up to 0.98. Source: Best and Fisher 1981.
 double inverseBesselRatio(double r) {
   r = std::clamp(r, -0.98, 0.98);
   const double a = std::abs(r);
@@ -279,7 +279,7 @@ HarmonicResponse::HarmonicResponse(const ReflectionComponent& component, int ord
   isSharp_ = std::all_of(aims_.begin(), aims_.end(), [](const Aim& a) { return a.variance * (1.0 + std::abs(a.stretch)) < kSharp_rad * kSharp_rad; });
 }
 
-Response HarmonicResponse::at(int view, std::span<const double> columns) const {
+Response HarmonicResponse::at(int view, std::span<const double> columns, bool sharp) const {
   Response sum{};
   double albedo = 0.0;
   for (const auto& [entry, weights] : weights_[static_cast<std::size_t>(view)]) {
@@ -294,7 +294,7 @@ Response HarmonicResponse::at(int view, std::span<const double> columns) const {
   const double variance = varianceOf(far > 0.0 ? std::log(near / far) : HUGE_VAL, stretch, first, bandOf(aim.band));
   sum.back() = near * std::exp(0.5 * first * variance - logBessel0(0.5 * stretch * variance * first));
   sum.front() = sum.back() * blurNumber(variance);
-  if (isSharp_)
+  if (sharp)
     for (int l = 1; l <= order_; ++l)
       for (int k = 0; k <= l; ++k) {
         const auto c = static_cast<size_t>(planeWeightAt(l, k));

@@ -2,13 +2,18 @@
 // What a reflection component sends to a view of light from all around: its kernel f cos(theta_l) in spherical harmonics, and what these can't hold as light
 // from the mirrored direction.
 //
-// Law: L = rho_dh mean(L_in) + sum over l = 1..order, k of w_lk(view) L_l(a_k) + D(view) R_sigma(aim), a_k in the plane of view; R_sigma: L_in less its
-// harmonics, blurred by exp(kappa (cos - 1)), kappa = 1/sigma^2. A lobe is told as one of Gauss about its aim, in the plane of view near the mirrored
-// direction, of variance v (1 + s) along that plane and v (1 - s) across. Of its further degrees' moments J_0(k r), J_1 cos(psi), J_2 cos(2 psi), k^2 = l (l +
-// 1) (Wigner's d^l_m0), J_1's is 0 at the aim, J_2's over J_0's is I_1(z)/I_0(z), z = s v k^2 / 2, and J_0's is D exp(-v k^2 / 2) I_0(z): two bands tell D and
-// v. Light of the open changes with elevation above all, so sigma^2 is v (1 + s cos(2 psi)), psi from the plane of view to the vertical at the aim. Of sharp
-// lobes, for which v is next to nothing beside l (l + 1), R is the blurred light itself less its mean, and w_lk leaves out what R then has of degree l, D
-// exp(-l (l + 1) v / 2): R is read between directions, where harmonics bend more than light does. Uniform light is exact; of a matt surface D is nothing.
+// Law: L = rho_dh mean(L_in) + sum over l = 1..order, k of w_lk(view) L_l(a_k) + D(view) R(aim), a_k in the plane of view.
+//
+// R is L_in less its harmonics up to the order, blurred by exp((cos - 1) / sigma^2). A lobe is told as one of Gauss about its aim, in the plane of
+// view near the mirrored direction, of variance v (1 + s) along that plane and v (1 - s) across [rad2]. Of its further degrees' moments J_m(k r)
+// cos(m psi), k^2 = l (l + 1), for which Wigner's d^l_m0 stand on the sphere:
+//   J_1's is 0 at the aim; J_2's over J_0's is I_1(z) / I_0(z), z = s v k^2 / 2; J_0's is D exp(-v k^2 / 2) I_0(z), and two bands tell D and v.
+// Light of the open changes with elevation above all: sigma^2 is v (1 + s cos(2 psi)), psi from the plane of view to the vertical at the aim.
+//
+// Of sharp lobes, whose v is next to nothing beside 1 / (l (l + 1)), R is the blurred light itself less its mean, and w_lk leaves out what R then has
+// of degree l, D exp(-l (l + 1) v / 2): R is read between directions, where harmonics bend more than light does.
+//
+// Uniform light is exact; of a matt surface D is nothing. Lobes of other shapes (cut off by the surface, with long tails) are what is lost.
 // Source: Lindsay and Agu 2005, section 3 (T_lm by view), with Ramamoorthi and Hanrahan's convolution; the mirrored remainder is this project's own.
 #include <memory>
 #include <vector>
@@ -47,8 +52,8 @@ class HarmonicResponse {
   /// View angles, evenly from 0 to 90 deg; 1 where the kernel is the same for all.
   static constexpr int kViews = 91;
   int views() const { return static_cast<int>(weights_.size()); }
-  /// For a column's values at its entries.
-  Response at(int view, std::span<const double> columns) const;
+  /// For a column's values at its entries. `sharp`: R is to be the light itself; else what harmonics leave, which any lobe can be told by.
+  Response at(int view, std::span<const double> columns, bool sharp) const;
   struct Aim {
     double tilt_rad = 0.0;  ///< from the mirrored direction towards the normal
     double stretch = 0.0;   ///< s
@@ -56,7 +61,7 @@ class HarmonicResponse {
     double variance = 0.0;  ///< v
   };
   const Aim& aim(int view) const { return aims_[static_cast<std::size_t>(view)]; }
-  /// Is R of its lobe, where it has one, the light itself?
+  /// May R of its lobe, where it has one, be the light itself?
   bool isSharp() const { return isSharp_; }
   /// Is there anything but what depends on the normal alone?
   static bool isPlain(const ReflectionComponent& component);

@@ -121,9 +121,9 @@ Eigen::MatrixXd NodeSurroundings::Height::tellRest(const Surroundings& around, i
 
 NodeSurroundings::Blurs NodeSurroundings::blursInUse(bool sharp) const {
   double least = kBlurs, most = -1.0;
-  const auto look = [&](const Material& m) {
-    for (const auto& r : m.reflections) {
-      const Responses& own = responses(*r);
+  const auto look = [&](const Material& m, const Material& state) {
+    for (size_t k = 0; k < state.reflections.size(); ++k) {
+      const Responses& own = responses(m, state, k);
       if (own.isSharp != sharp) continue;
       for (size_t j = 0; j < own.aims.size(); ++j)
         for (size_t i = 0; i < nodes_.size(); ++i) {
@@ -135,9 +135,9 @@ NodeSurroundings::Blurs NodeSurroundings::blursInUse(bool sharp) const {
     }
   };
   for (const auto& m : simulation_.materials) {
-    if (!m->states) look(*m);
+    if (!m->states) look(*m, *m);
     else
-      for (const auto& entry : m->states->entries) look(*entry);
+      for (const auto& entry : m->states->entries) look(*m, *entry);
   }
   const int first = std::clamp(static_cast<int>(std::floor(least)), 0, kBlurs - 2);
   return most < 0.0 ? Blurs{} : Blurs{first, std::clamp(static_cast<int>(std::ceil(most)), first + 1, kBlurs - 1) - first + 1};
@@ -276,17 +276,28 @@ std::vector<double> NodeSurroundings::hemispherical(const ReflectionComponent& r
 }
 
 const NodeSurroundings::Responses& NodeSurroundings::responses(const ReflectionComponent& r) const {
+  return responses(r, simulation_.surroundings->response(r, degree_, usual_um_).isSharp());
+}
+
+const NodeSurroundings::Responses& NodeSurroundings::responses(const Material& material, const Material& state, std::size_t component) const {
+  const auto sharp = [&](const Material& m) { return simulation_.surroundings->response(*m.reflections[component], degree_, usual_um_).isSharp(); };
+  const bool all = material.states ? std::all_of(material.states->entries.begin(), material.states->entries.end(), [&](const auto& e) { return sharp(*e); })
+                                   : sharp(material);
+  return responses(*state.reflections[component], all);
+}
+
+const NodeSurroundings::Responses& NodeSurroundings::responses(const ReflectionComponent& r, bool sharp) const {
   const auto& columns = this->columns(r);
+  const HarmonicResponse& own = simulation_.surroundings->response(r, degree_, usual_um_);
   const std::lock_guard lock(busy_);
-  auto& kept = responses_[&r];
+  auto& kept = responses_[{&r, sharp}];
   if (kept) return *kept;
   kept = std::make_unique<Responses>();
-  const HarmonicResponse& own = simulation_.surroundings->response(r, degree_, usual_um_);
   kept->views = own.views();
-  kept->isSharp = own.isSharp();
+  kept->isSharp = sharp;
   for (int j = 0; j < kept->views; ++j) kept->aims.push_back(own.aim(j));
   for (int j = 0; j < kept->views; ++j)
-    for (size_t i = 0; i < nodes_.size(); ++i) kept->at.push_back(own.at(j, columns[i]));
+    for (size_t i = 0; i < nodes_.size(); ++i) kept->at.push_back(own.at(j, columns[i], sharp));
   return *kept;
 }
 

@@ -47,6 +47,8 @@ class NodeSurroundings {
     bool isSharp = false;
   };
   const Responses& responses(const ReflectionComponent& component) const;
+  /// Those of a component of a material in one of its states (or the material itself), told as sharp only where it is so in all of them: shaders mix states.
+  const Responses& responses(const Material& material, const Material& state, std::size_t component) const;
 
  private:
   struct Height;
@@ -64,7 +66,8 @@ class NodeSurroundings {
   std::vector<double> usual_um_;  ///< by which lobes are aimed, whatever the nodes
   mutable std::mutex busy_;
   mutable std::map<std::size_t, std::unique_ptr<Height>> heights_;
-  mutable std::map<const ReflectionComponent*, std::unique_ptr<Responses>> responses_;
+  const Responses& responses(const ReflectionComponent& component, bool sharp) const;
+  mutable std::map<std::pair<const ReflectionComponent*, bool>, std::unique_ptr<Responses>> responses_;
   mutable std::map<const ReflectionComponent*, std::unique_ptr<std::vector<std::vector<double>>>> columns_;
   mutable std::map<std::pair<const ReflectionComponent*, int>, std::vector<double>> hemispherical_;
 };

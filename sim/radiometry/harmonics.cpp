@@ -29,15 +29,6 @@ void realHarmonics(const glm::dvec3& d, int order, std::span<double> into) {
   }
 }
 
-void legendreTimes(double x, int order, std::span<double> into) {
-  double before = 0.0, p = 1.0;
-  for (int l = 0; l <= order; ++l) {
-    into[static_cast<size_t>(l)] = (2 * l + 1) * p;
-    const double next = ((2 * l + 1) * x * p - l * before) / (l + 1);
-    before = p, p = next;
-  }
-}
-
 namespace {
 
 /// For each degree the inverse of Y_lm(a_k), row by row.

@@ -18,9 +18,6 @@ using Harmonics = std::array<double, kMostHarmonics>;
 /// All up to an order at a unit vector; Y_lm stands at l l + l + m.
 void realHarmonics(const glm::dvec3& direction, int order, std::span<double> into);
 
-/// (2l + 1) P_l(x) for l = 0 to order.
-void legendreTimes(double x, int order, std::span<double> into);
-
 /// What is even in y, of degree l: sum over k = 0..l of w_k Z_l(a_k) with directions a_k in the plane y = 0, at these angles from z towards x. The first is z
 /// itself, so that what is symmetrical about z has a weight for it alone.
 constexpr std::array<double, kMostHarmonicOrder + 1> kPlaneTurns = {0.0, 2.0 / 5.0, 4.0 / 5.0, 1.0 / 5.0, 3.0 / 5.0};  ///< of half a turn

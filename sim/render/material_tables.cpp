@@ -171,12 +171,12 @@ std::optional<std::pair<float, float>> imageOf(const Simulation& sim, int from, 
 
 /// Components whose textures are the same, and are sharp or not, answer light from all around as one: by state, texture and view angle their mean aim, and
 /// their sums by node.
-std::array<std::uint32_t, 4> responsesOf(const std::vector<const Material*>& entries, const NodeSurroundings& around, std::size_t nodes,
-                                         std::vector<float>& into) {
+std::array<std::uint32_t, 4> responsesOf(const Material& material, const std::vector<const Material*>& entries, const NodeSurroundings& around,
+                                         std::size_t nodes, std::vector<float>& into) {
   const Material& first = *entries.front();
   std::vector<std::size_t> groups;  // the first component of each
   const auto areAlike = [&](std::size_t a, std::size_t b) {
-    return first.modifiers[a] == first.modifiers[b] && around.responses(*first.reflections[a]).isSharp == around.responses(*first.reflections[b]).isSharp;
+    return first.modifiers[a] == first.modifiers[b] && around.responses(material, first, a).isSharp == around.responses(material, first, b).isSharp;
   };
   for (std::size_t k = 0; k < first.reflections.size(); ++k)
     if (std::none_of(groups.begin(), groups.end(), [&](std::size_t g) { return areAlike(g, k); })) groups.push_back(k);
@@ -191,7 +191,7 @@ std::array<std::uint32_t, 4> responsesOf(const std::vector<const Material*>& ent
     for (std::size_t g : groups) {
       std::vector<const NodeSurroundings::Responses*> parts;
       for (std::size_t k = g; k < first.reflections.size(); ++k)
-        if (areAlike(g, k)) parts.push_back(&around.responses(*entry->reflections[k]));
+        if (areAlike(g, k)) parts.push_back(&around.responses(material, *entry, k));
       for (int j = 0; j < views; ++j) {
         std::vector<Response> sums(nodes, Response{});
         HarmonicResponse::Aim aim;
@@ -277,7 +277,7 @@ void appendMaterial(SurfaceTables& t, const Simulation& sim, const Material& m, 
     for (const auto& entry : m.states->entries) entries.push_back(entry.get());
   }
   std::vector<float> responses;
-  if (around && t.general && !m.reflections.empty()) g.response = responsesOf(entries, *around, plan.nodes.size(), responses);
+  if (around && t.general && !m.reflections.empty()) g.response = responsesOf(m, entries, *around, plan.nodes.size(), responses);
   t.materials.push_back(std::move(g));
   if (m.transmission)
     for (int j = 0; j < views; ++j)
