@@ -136,7 +136,7 @@ void ScenePass::setState(const WorldState& state, const ShadowDemand* demand) {
 
 GpuDraw ScenePass::drawOf(std::size_t draw, const View& view, const WorldState& state) const {
   GpuDraw data = drawData(simulation_, tables_, draw, view, state);
-  if (around_) data.fine.w = around_->placeOf(tables_.draws[draw].entity);
+  if (around_) data.fine.w = around_->slotOf(tables_.draws[draw].entity);
   return data;
 }
 

@@ -9,16 +9,30 @@
 
 namespace pitviper {
 
-Surroundings::Place SurroundingsBuffer::placed(double height_m) const {
-  Surroundings::Place place = simulation_.surroundings->placeAt(height_m);
-  place.share = std::round(place.share * kSteps) / kSteps;
-  return place;
+SurroundingsBuffer::SurroundingsBuffer(const Simulation& simulation, const NodeSurroundings& light) : simulation_(simulation), light_(light) {
+  for (const Entity& e : simulation.entities)
+    reflects_.push_back(std::any_of(e.surfaces.begin(), e.surfaces.end(), [&](const Surface& s) { return !simulation.materialOf(s).reflections.empty(); }));
+}
+
+std::vector<Surroundings::Place> SurroundingsBuffer::placesOf(const WorldState& state, double steps) const {
+  const auto placed = [&](double height_m) {
+    Surroundings::Place place = simulation_.surroundings->placeAt(height_m);
+    place.share = std::round(place.share * steps) / steps;
+    return place;
+  };
+  const Surroundings::Place ground = placed(0.0);
+  std::vector<Surroundings::Place> places;
+  for (std::size_t e = 0; e < state.entities.size(); ++e)
+    places.push_back(reflects_[e] ? placed(simulation_.frame.height(state.entities[e].position)) : ground);
+  places.push_back(ground);
+  return places;
 }
 
 void SurroundingsBuffer::setState(const WorldState& state) {
-  std::vector<Surroundings::Place> places;
-  for (const Pose& pose : state.entities) places.push_back(placed(simulation_.frame.height(pose.position)));
-  places.push_back(placed(0.0));
+  double steps = kMostSteps;
+  std::vector<Surroundings::Place> places = placesOf(state, steps);
+  if (size_ == 0) size_ = told(places.back()).size();
+  for (; steps > 1.0 && std::set(places.begin(), places.end()).size() * size_ * sizeof(float) > kMostBytes; places = placesOf(state, steps)) steps /= 2.0;
   if (places == places_) return;
   places_ = std::move(places);
   // Places that stay keep their slots; others go where there is room.
@@ -38,13 +52,12 @@ void SurroundingsBuffer::setState(const WorldState& state) {
     slots_[free] = place;
     slotOf[place] = free;
     const std::vector<float> own = told(place);
-    size_ = own.size();
     if (grows) all.insert(all.end(), own.begin(), own.end());
     else buffer_.uploadPart(free * size_ * sizeof(float), own.data(), size_ * sizeof(float));
   }
   if (grows) buffer_.upload(all);
   at_.clear();
-  for (const auto& place : places_) at_.push_back(static_cast<float>(slotOf[place] * (size_ / 4)));
+  for (const auto& place : places_) at_.push_back(slotOf[place]);
 }
 
 std::vector<float> SurroundingsBuffer::told(const Surroundings::Place& place) const {

@@ -1,12 +1,13 @@
 // Light from all around by spherical harmonics (sim/model/harmonic_response.hpp): L = rho mean(L_in) + sum of w_lk L_l(a_k) + D rest_blur(aim).
-// Of a place: the elevation of its horizon and the azimuth of its grid's first entries [turns]; by node 25 coefficients in seven vec4; by blur (of lobes, of sharp lobes, by a cosine)
-// and entry of its grid the rest at the nodes, four to a texel.
+// Of a place, a slot: the elevation of its horizon and the azimuth of its grid's first entries [turns]; by node 25 coefficients in seven vec4; by blur
+// (of lobes, of sharp lobes, by a cosine) and entry of its grid the rest at the nodes, four to a texel.
 //@use sim/render/glsl/view_block.glsl
 //@use sim/radiometry/glsl/harmonics.glsl
 //@use sim/radiometry/glsl/arc_tangent.glsl
 layout(binding = 31) uniform samplerBuffer surroundings;
 int around_;  // where that of the body's place begins
 const int blurEntries = (AROUND_ABOVE + AROUND_BELOW) * AROUND_AZIMUTHS * NODE_TEXELS;
+const int slotTexels = 1 + 7 * NODES + (AROUND_BLURS + AROUND_SHARP_BLURS + 1) * blurEntries;
 Harmonics4 to0_, to1_, to2_, to3_, to4_;  // at the directions a_k
 ivec4 restAt_[AROUND_GROUPS];  // of each group's aim
 vec4 restMix_[AROUND_GROUPS];
@@ -65,7 +66,7 @@ vec4 responseAt(int at) {
 }
 
 void prepareDirections() {
-  around_ = int(draw_.fine.w);
+  around_ = int(draw_.fine.w) * slotTexels;
   vec3 normal = localOf(normal_);
   to0_ = harmonicsAt(normal);
   placesOf(normal, mattAt_, mattMix_);
