@@ -146,8 +146,8 @@ ReflectionModel beardMaxwellModel() {
             throw UserError(r.record.where("diffuse"), "pi (diffuse + 4 volume) is " + std::to_string(paint.bodyAlbedo(w, kQuarter)) + " at grazing views",
                             "at most 1 at every wavelength", "lower one");
         MadeReflection made;
-        made.component = std::make_shared<Facets>(paint);
-        made.beneath = std::make_shared<Body>(paint);
+        made.components.push_back(std::make_shared<Facets>(paint));
+        made.components.push_back(std::make_shared<Body>(paint));
         return made;
       }};
 }

@@ -89,8 +89,8 @@ MadeReflection facetComponents(FacetSpec spec, const Location& where) {
   if (optics->validLow_um() > optics->validHigh_um())
     throw UserError(where, "the substances of this stack have no wavelength in common", "ranges that overlap", "extend one");
   MadeReflection made;
-  made.component = std::make_shared<Facets>(optics);
-  if (optics->hasBeneath()) made.beneath = std::make_shared<Beneath>(optics);
+  made.components.push_back(std::make_shared<Facets>(optics));
+  if (optics->hasBeneath()) made.components.push_back(std::make_shared<Beneath>(optics));
   if (optics->spec().paneThickness_um) made.transmission = std::make_shared<Pane>(optics);
   made.statesPerUnit = optics->statesPerUm();
   optics->addTo(made.within);

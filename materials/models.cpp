@@ -37,7 +37,7 @@ void addTo(Fingerprint& f, const Value& v) {
 
 Registry<ReflectionModel>& reflectionModels() {
   static Registry<ReflectionModel> all("reflection", {lambertianModel(), phongModel(), tabulatedModel(), microfacetModel(), seaModel(), spectralPhongModel(),
-                                                      wardModel(), sandfordRobertsonModel(), beardMaxwellModel()});
+                                                      wardModel(), sandfordRobertsonModel(), beardMaxwellModel(), measuredModel()});
   return all;
 }
 
@@ -59,7 +59,8 @@ ParameterTable anyComponentTable() {
   return t;
 }
 
-ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum, const SubstanceOf& substance) {
+ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum, const SubstanceOf& substance,
+                              const std::filesystem::path& base) {
   Fingerprint f;
   f.add(model.name);
   auto spectra = spectraOf(model.parameters, record, spectrum);
@@ -69,15 +70,14 @@ ComponentMaker componentMaker(const ReflectionModel& model, const Record& record
     if (p.type == ParameterType::Spectrum) addTo(f, spectra.at(p.key));
     else addTo(f, record.value(p.key));
   }
-  return [&model, &record, spectrum, substance, spectra = std::move(spectra), f = std::move(f)](double state) {
-    const ComponentRecord own{{record, spectra}, state, spectrum, substance};
+  return [&model, &record, spectrum, substance, base, spectra = std::move(spectra), f = std::move(f)](double state) {
+    const ComponentRecord own{{record, spectra}, state, spectrum, substance, base};
     MadeReflection made;
     if (model.makeAll) made = model.makeAll(own);
-    else made.component = model.make(own);
+    else made.components.push_back(model.make(own));
     Fingerprint whole = f;
     whole.add(state).add(made.within.bytes());
-    made.component->setFingerprint(whole.bytes());
-    if (made.beneath) made.beneath->setFingerprint(whole.add("beneath").bytes());
+    for (const auto& component : made.components) component->setFingerprint(whole.add("component").bytes());
     return made;
   };
 }

@@ -1,6 +1,7 @@
 #pragma once
 // Reflection models as rooms: a file pair each (.cpp, and .glsl where it has a lobe) with its table of parameters; a row in models.cpp registers it.
 // From the table come reading, units, ranges, the key reference and the fingerprint.
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <memory>
@@ -23,15 +24,16 @@ struct ComponentRecord : ModelRecord {
   double state = 0.0;            ///< of its model's state parameter
   SpectrumOf spectrumOf = {};    ///< for spectra within its parameters
   SubstanceOf substanceOf = {};  ///< for named substances
+  std::filesystem::path base = {};  ///< where relative names of files begin
 };
 
 /// What a model makes of a record.
 struct MadeReflection {
-  std::shared_ptr<ReflectionComponent> component;
-  std::shared_ptr<ReflectionComponent> beneath;   ///< what lies under it and reflects too; null: nothing
+  std::vector<std::shared_ptr<ReflectionComponent>> components;  ///< one or more: facets and what lies beneath them, parts of a table over three angles
   std::shared_ptr<const ViewModel> transmission;  ///< what the whole lets through; null: nothing
   double statesPerUnit = 0.0;                     ///< so many states, per unit of it, resolve what it does; 0: as many as the model has
   Fingerprint within;                             ///< of what its parameters name besides what they say
+  std::vector<std::string> notes;                 ///< what was changed or left out of what the user gave
 };
 
 /// A parameter that a texture may drive over a surface: a number, or a texture of them.
@@ -66,7 +68,9 @@ ParameterTable anyComponentTable();
 /// Makes a component of a state.
 using ComponentMaker = std::function<MadeReflection(double state)>;
 
-/// Reads a component but for its state. `record` must outlive what it returns. `spectrum`: reads a spectrum's value as its parameter says.
-ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum, const SubstanceOf& substance);
+/// Reads a component but for its state. `record` must outlive what it returns. `spectrum`: reads a spectrum's value as its parameter says; `base`: where relative
+/// names of files begin.
+ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum, const SubstanceOf& substance,
+                              const std::filesystem::path& base);
 
 }  // namespace pitviper

@@ -136,8 +136,8 @@ ReflectionModel sandfordRobertsonModel() {
               throw UserError(r.record.where("diffuse"), "emissivity and diffuse reflectance are more than 1 together", "at most 1 at every wavelength",
                               "lower one");
             MadeReflection made;
-            made.component = std::make_shared<Glint>(paint);
-            made.beneath = std::make_shared<Diffuse>(paint);
+            made.components.push_back(std::make_shared<Glint>(paint));
+            made.components.push_back(std::make_shared<Diffuse>(paint));
             return made;
           }};
 }

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/commands.hpp"
@@ -56,7 +55,9 @@ std::string lossOf(const std::string& material, const std::string& materials, co
   const std::string scene = materials +
                             "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
                             "ground: {material: soil, temperature: 295 K}\nentities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " +
-                            material + ", temperature: 300 K}]\ncameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], look_at: s, " +
+                            material +
+                            ", temperature: 300 K}]\ncameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [10 m, 0 "
+                            "m, 0 m], look_at: s, " +
                             line("channels: [{name: c, response: {band: [%.6g um, %.6g um]}}]}]\n", low, high);
   return surroundingsLoss(readScenarioText(scene, "material " + material, ".", {}, libraries));
 }
@@ -94,13 +95,23 @@ Shown shown(const std::string& name, const std::string& materials, const Librari
 std::string describe(const Material& m, const std::string& description) {
   std::string out = description.empty() ? "" : description + "\n";
   if (!m.provenance.empty()) out += "source: " + m.provenance + "\n";
+  for (const std::string& note : m.notes) out += "note: " + note + "\n";
   out += line("%.4g to %.4g um; %zu component%s", m.validLow_um(), m.validHigh_um(), m.reflections.size(), m.reflections.size() == 1 ? "" : "s");
-  for (const auto& r : m.reflections) {
-    const auto axes = r->axes();
-    const int entries = axes[0].count * axes[1].count;
-    out += (&r == &m.reflections.front() ? ": " : ", ") + (r->lobe().function.empty() ? std::string("no lobe") : r->lobe().function) +
-           (entries > 1 ? line(" x a table of %d angles", entries) : std::string()) +
-           (r->angleError() > 0.0 ? line(" (linear between them, off by %.2g at most)", r->angleError()) : std::string());
+  const char* before = ": ";
+  for (size_t k = 0; k < m.reflections.size();) {
+    const auto told = [](const ReflectionComponent& r) {
+      const auto axes = r.axes();
+      const int entries = axes[0].count * axes[1].count;
+      return (r.lobe().function.empty() ? std::string("no lobe") : r.lobe().function) +
+             (entries > 1 ? line(" x a table of %d angles", entries) : std::string()) +
+             (r.angleError() > 0.0 ? line(" (linear between them, off by %.2g at most)", r.angleError()) : std::string());
+    };
+    const std::string own = told(*m.reflections[k]);
+    size_t alike = 1;
+    while (k + alike < m.reflections.size() && told(*m.reflections[k + alike]) == own) ++alike;
+    out += before + (alike > 1 ? line("%zu of ", alike) : std::string()) + own;
+    before = ", ";
+    k += alike;
   }
   out += "\n\n| wavelength [um] | reflectance at 0 deg | 45 | 75 | 85 | emissivity at 0 deg | 45 | 75 | 85 |";
   out += m.transmission ? " transmittance at 0 deg | 45 | 75 | 85 |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n"
@@ -156,6 +167,13 @@ void draw(const Shown& s, const std::string& name, const std::filesystem::path& 
   writePreviewFile(out / (name + "_sphere.png"), frame, {});
 }
 
+/// As YAML.
+std::string asYaml(const std::string& text) {
+  std::string out = "'";
+  for (char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
 std::string descriptionOf(const std::filesystem::path& file) {
   const Value tree = loadYaml(file, {file.string(), 0, 0, -1});
   const Value* text = tree.find("description");
@@ -197,9 +215,7 @@ int materialCommand(const Arguments& arguments) {
     }
     description = descriptionOf(file);
     name = file.stem().string();
-    materials = "materials:\n  " + name + ":\n";
-    std::istringstream text(readFileStart(file, 1 << 22));
-    for (std::string row; std::getline(text, row);) materials += "    " + row + "\n";
+    materials = "materials: {" + asYaml(name) + ": {file: " + asYaml(std::filesystem::absolute(file).string()) + "}}\n";
   } else if (const auto own = libraries.materials / (word + ".yaml"); std::filesystem::is_regular_file(own, ignored)) {
     description = descriptionOf(own);
   } else if (const auto substance = libraries.materials.parent_path() / "substances" / (word + ".yaml"); std::filesystem::is_regular_file(substance, ignored)) {

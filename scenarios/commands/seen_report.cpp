@@ -176,6 +176,8 @@ std::string doubts(const Simulation& sim) {
     const std::string doubt = doubtAboutUnit(high - low, e.metresPerUnit, e.meshFile);
     if (!doubt.empty() && told.insert(e.meshFile + doubt).second) out += "note: mesh of '" + e.name + "' (" + e.meshFile + ") is " + doubt + "\n";
   }
+  for (const auto& m : sim.materials)
+    for (const std::string& note : m->notes) out += "note: material '" + m->name + "': " + note + "\n";
   return out;
 }
 

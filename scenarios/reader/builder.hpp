@@ -50,6 +50,7 @@ class Builder {
   // materials.cpp
   int materialNamed(const Value& asked);
   std::shared_ptr<const Material> readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra);
+  std::shared_ptr<const Material> readMaterialFile(const Value& value, const std::string& name);
   /// `what`: "emissivity" or "transmittance".
   ViewSpectrum readViewSpectrum(const Record& r, const char* what, const std::string& material, const SpectrumReader& spectra);
   Medium readMedium(const MediumModel& model, const Record& r, const std::string& material, const SpectrumReader& spectra) const;

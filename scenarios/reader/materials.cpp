@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <utility>
 
 #include "materials/angle_tables.hpp"
 #include "materials/energy.hpp"
@@ -144,15 +145,15 @@ void Builder::readComponent(const Value& value, const SpectrumReader& spectra, M
       [spectra, name = m.name.substr(0, 60)](const Value& v, const Parameter& p) {
         return bounded(spectra, v, p.unit, p.key + " of material '" + name + "'", p.minimum, p.maximum);
       },
-      [this](const std::string& name, const Location& asked) { return substanceNamed(name, asked); });
+      [this](const std::string& name, const Location& asked) { return substanceNamed(name, asked); }, spectra.files().base);
   const Value* modifier = value.find("modifier");
   const int texture = modifier ? readTexture(*modifier, "", "a modifier", 0.0, 1.0) : -1;
   const Value* state = model.state ? value.find(model.state->key) : nullptr;
   const bool textured = state && state->kind == Value::Kind::Map;
   const auto addTo = [&](Material& to, double number) {
     const MadeReflection made = make(number);
-    for (const auto& component : {made.component, made.beneath})
-      if (component) to.reflections.push_back(component), to.modifiers.push_back(texture);
+    for (const auto& component : made.components) to.reflections.push_back(component), to.modifiers.push_back(texture);
+    to.notes.insert(to.notes.end(), made.notes.begin(), made.notes.end());
     if (!made.transmission) return;
     if (to.transmission)
       throw UserError(record.where(), "a second component of material '" + m.name.substr(0, 60) + "' lets light through", "one pane", "remove one");
@@ -231,7 +232,24 @@ Medium Builder::readMedium(const MediumModel& model, const Record& r, const std:
   return model.make({r, read});
 }
 
+std::shared_ptr<const Material> Builder::readMaterialFile(const Value& value, const std::string& name) {
+  const Record r(value, tables::material());
+  const Location& where = r.where("file");
+  if (value.entries.size() > 1) throw UserError(where, "a material of a file and of its own at once", "'file' alone", "move the other keys into the file");
+  std::filesystem::path path = r.text("file");
+  if (path.is_relative()) path = spectra_.files().base / path;
+  const Value tree = loadYaml(path, where);
+  if (tree.kind == Value::Kind::Map && tree.find("file"))
+    throw UserError(tree.where, "a material's file that names another", "the material itself", "name that file instead");
+  // What it names is relative to it.
+  const SpectrumReader before = std::exchange(spectra_, spectra_.in(path.parent_path()));
+  auto material = readMaterial(tree, name, spectra_);
+  spectra_ = before;
+  return material;
+}
+
 std::shared_ptr<const Material> Builder::readMaterial(const Value& value, const std::string& name, const SpectrumReader& spectra) {
+  if (value.kind == Value::Kind::Map && value.find("file")) return readMaterialFile(value, name);
   const MediumModel* medium = tables::mediumOf(value);
   const ParameterTable table = medium ? tables::medium(*medium) : tables::material();
   const Record r(value, table);

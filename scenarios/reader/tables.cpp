@@ -215,7 +215,9 @@ const ParameterTable& material() {
       "material",
       "A surface: reflection components, an emission and a transmission; or a medium that fills a closed body, by `medium` (below). Also the form of "
       "materials/library/<name>.yaml.",
-      {text("description", "what it is"), text("source", "where the figures come from"), list("components", "reflection components; none: black", 0, 64),
+      {text("description", "what it is"), text("source", "where the figures come from"),
+       text("file", "instead of all others: a YAML file with the material; what it names is relative to it"),
+       list("components", "reflection components; none: black", 0, 64),
        list("temperatures", "instead of components: the surface at rising temperatures, between which it is linear; its own temperature picks", 2, 64),
        map("emission", "given emissivity; without it 1 - reflectance - transmittance (Kirchhoff)"),
        map("transmission", "what is behind is seen through it; needs buffered mode"), text("medium", "what fills the body: then the keys below"),

@@ -31,19 +31,20 @@ const std::vector<QuadratureNode>& unitRule(size_t n) {
 /// dw_l = sin(turn) dturn dphi; of half vectors 4 (v.h) dw_h. Source: Walter et al. 2007 (Jacobian of the half vector).
 class Rings {
  public:
-  Rings(const std::array<AngleAxis, 2>& axes, double viewAngle, const std::function<void(const LightSample&)>& visit)
-      : view_(std::sin(viewAngle), 0.0, std::cos(viewAngle)), viewAngle_(viewAngle), visit_(visit) {
+  Rings(const std::array<AngleAxis, 2>& axes, double viewAngle, const std::function<void(const LightSample&)>& visit, int azimuths)
+      : view_(std::sin(viewAngle), 0.0, std::cos(viewAngle)), viewAngle_(viewAngle), visit_(visit), azimuths_(azimuths) {
     first_ = rank(axes[1].angle) > rank(axes[0].angle) ? 1 : 0;
     polar_ = axes[first_];
     if (rank(polar_.angle) == 0) polar_ = {Angle::Incidence, 1, 0.0};
     other_ = axes[1 - first_];
     crossed_ = rank(other_.angle) > 0;
     for (size_t k = 0; k < 2; ++k) viewAxis_[k] = axes[k].angle == Angle::View;
-    twice_ = polar_.angle == Angle::Half || polar_.angle == Angle::Difference ? 2.0 : 1.0;
+    half_ = polar_.angle == Angle::Half || polar_.angle == Angle::HalfRoot;
+    twice_ = half_ || polar_.angle == Angle::Difference ? 2.0 : 1.0;
     tilt_ = polar_.angle == Angle::Incidence ? 0.0 : viewAngle;
     const double s = view_.x, c = view_.z;
-    if (other_.angle == Angle::Difference && polar_.angle != Angle::Half) otherScale_ = 2.0;
-    if (polar_.angle == Angle::Half && other_.angle == Angle::Difference) turnScale_ = 0.5;
+    if (other_.angle == Angle::Difference && !half_) otherScale_ = 2.0;
+    if (half_ && other_.angle == Angle::Difference) turnScale_ = 0.5;
     otherTilt_ = polar_.angle == Angle::Specular && other_.angle == Angle::Difference ? 2.0 * viewAngle : viewAngle;
     if (crossed_)
       for (int j = 0; j < other_.count; ++j) sineOfHalfEntry_.push_back(std::sin(0.5 * otherScale_ * std::min(other_.at(j), kPi / otherScale_)));
@@ -54,7 +55,7 @@ class Rings {
   void run() {
     const double end = 0.5 * kPi + tilt_;
     addEdge(0.5 * kPi - tilt_, true);  // from here on the horizon cuts the rings
-    for (int j = 0; j < polar_.count; ++j) addEdge(twice_ * polar_.at(j), false);
+    for (int j = 0; j < polar_.count; ++j) addEdge(twice_ * (polar_.angle == Angle::HalfRoot ? halfOfRoot(polar_.at(j)) : polar_.at(j)), false);
     if (crossed_)
       for (int j = 0; j < other_.count; ++j) addTangents(other_.at(j));
     std::erase_if(edges_, [&](const Edge& e) { return !(e.turn > 0.0 && e.turn < end); });
@@ -93,6 +94,7 @@ class Rings {
       case Angle::Specular:
         return 3;
       case Angle::Half:
+      case Angle::HalfRoot:
         return 4;
     }
     return 0;
@@ -159,12 +161,14 @@ class Rings {
     cuts_.assign(1, 0.0);
     const Law law = crossed_ ? lawAt(turn) : Law{0.0, 0.0};
     if (crossed_) addCrossings(law, last);
+    for (int k = 1; k < azimuths_; ++k)
+      if (const double phi = kPi * k / azimuths_; phi < last) cuts_.push_back(phi);
     cuts_.push_back(last);
     std::sort(cuts_.begin(), cuts_.end());
     const double own = turn / twice_, sine = std::sin(own), cosine = std::cos(own), sineOfTurn = std::sin(turn), cosineOfTurn = std::cos(turn);
     LightSample sample;
     sample.angle = {viewAxis_[0] ? viewAngle_ : 0.0, viewAxis_[1] ? viewAngle_ : 0.0};
-    if (!viewAxis_[first_]) sample.angle[first_] = own;
+    if (!viewAxis_[first_]) sample.angle[first_] = polar_.angle == Angle::HalfRoot ? rootOfHalf(own) : own;
     for (size_t i = 0; i + 1 < cuts_.size(); ++i) {
       const double width = cuts_[i + 1] - cuts_[i];
       if (width <= 0.0) continue;
@@ -173,7 +177,7 @@ class Rings {
       for (const auto& u : unitRule(points)) {
         const double half = std::sin(0.5 * (cuts_[i] + width * u.x)), cosPhi = 1.0 - 2.0 * half * half, sinPhi = 2.0 * half * std::sqrt(1.0 - half * half);
         double jacobian = sineOfTurn;
-        if (polar_.angle == Angle::Half) {
+        if (half_) {
           const glm::dvec3 h(sine * cosPhi, sine * sinPhi, cosine);
           const double vh = glm::dot(view_, h);
           sample.light = 2.0 * vh * h - view_;
@@ -192,9 +196,10 @@ class Rings {
   glm::dvec3 view_, pole_{0.0, 0.0, 1.0}, side_{1.0, 0.0, 0.0};
   double viewAngle_;
   const std::function<void(const LightSample&)>& visit_;
+  int azimuths_;
   size_t first_ = 0;
   AngleAxis polar_, other_;
-  bool crossed_ = false;
+  bool crossed_ = false, half_ = false;
   std::array<bool, 2> viewAxis_{};
   double twice_ = 1.0, tilt_ = 0.0;
   /// The law for the other axis: k = otherScale x entry, of turnScale x turn, from a direction at otherTilt from the pole.
@@ -205,6 +210,10 @@ class Rings {
 };
 
 }  // namespace
+
+double halfOfRoot(double root_rad) { return root_rad * root_rad / (0.5 * kPi); }
+
+double rootOfHalf(double half_rad) { return std::sqrt(half_rad * 0.5 * kPi); }
 
 double angleBetween(Angle kind, const glm::dvec3& l, const glm::dvec3& v) {
   auto between = [](const glm::dvec3& a, const glm::dvec3& b) { return 2.0 * std::asin(std::min(1.0, 0.5 * glm::length(a - b))); };
@@ -220,14 +229,16 @@ double angleBetween(Angle kind, const glm::dvec3& l, const glm::dvec3& v) {
       return between(glm::dvec3(-l.x, -l.y, l.z), v);
     case Angle::Half:
       return between(n, glm::normalize(l + v));
+    case Angle::HalfRoot:
+      return rootOfHalf(between(n, glm::normalize(l + v)));
     case Angle::Difference:
       return between(l, glm::normalize(l + v));
   }
   return 0.0;
 }
 
-void integrateHemisphere(const std::array<AngleAxis, 2>& axes, double viewAngle_rad, const std::function<void(const LightSample&)>& visit) {
-  Rings(axes, std::clamp(viewAngle_rad, 0.0, 0.5 * kPi), visit).run();
+void integrateHemisphere(const std::array<AngleAxis, 2>& axes, double viewAngle_rad, const std::function<void(const LightSample&)>& visit, int azimuths) {
+  Rings(axes, std::clamp(viewAngle_rad, 0.0, 0.5 * kPi), visit, azimuths).run();
 }
 
 double ReflectionComponent::lobeAt(const glm::dvec3&, const glm::dvec3&) const { return 1.0; }
@@ -239,8 +250,8 @@ double ReflectionComponent::brdf(double wavelength_um, const glm::dvec3& l, cons
 
 std::array<AngleAxis, 2> ReflectionComponent::integrationAxes(bool bends) const {
   // A lobe counts as an axis about the mirrored direction, in steps of its width; cos^n is below 1e-17 at 9 / sqrt(n).
-  if (const Lobe& own = lobe(); !own.file.empty()) return {AngleAxis{Angle::Specular, 49, std::min(0.5 * kPi, 9.0 / std::sqrt(own.exponent + 1.0))},
-            bends ? axes()[0] : AngleAxis{}};
+  if (const Lobe& own = lobe(); !own.file.empty())
+    return {AngleAxis{Angle::Specular, 49, std::min(0.5 * kPi, 9.0 / std::sqrt(own.exponent + 1.0))}, bends ? axes()[0] : AngleAxis{}};
   return axes();
 }
 

@@ -13,8 +13,11 @@
 namespace pitviper {
 
 /// Angles a table can run over [rad]: incidence and view from the normal, specular between view and mirrored light direction, half
-/// between normal and half vector, difference between light and half vector.
-enum class Angle { None = 0, Incidence = 1, View = 2, Specular = 3, Half = 4, Difference = 5 };
+/// between normal and half vector, difference between light and half vector; root: sqrt(half x 90 deg), whose even steps crowd about the mirrored direction.
+enum class Angle { None = 0, Incidence = 1, View = 2, Specular = 3, Half = 4, Difference = 5, HalfRoot = 6 };
+/// The half angle of a root of it, and back.
+double halfOfRoot(double root_rad);
+double rootOfHalf(double half_rad);
 
 /// Unit vectors towards the light and the viewer in a frame whose z is the normal, and the angle of a kind between them.
 double angleBetween(Angle kind, const glm::dvec3& light, const glm::dvec3& view);
@@ -37,8 +40,9 @@ struct LightSample {
 /// integral f(l) cos(theta_l) dw_l over the hemisphere = sum of weight f(light) over the visited samples, for an f that is smooth between
 /// the entries of the axes and the same on both sides of the plane of view (x z; the viewer at sin, 0, cos of the view angle).
 /// Polar coordinates about the direction that an axis is measured from, Gauss points between all entries of both axes and the horizon: a
-/// lobe as narrow as its table counts in full. Relative error below 1e-5 for one axis, 1e-3 for two.
-void integrateHemisphere(const std::array<AngleAxis, 2>& axes, double viewAngle_rad, const std::function<void(const LightSample&)>& visit);
+/// lobe as narrow as its table counts in full. Relative error below 1e-5 for one axis, 1e-3 for two. `azimuths`: so many even pieces, at least, of half a turn
+/// about the pole, for an f that bends at azimuths.
+void integrateHemisphere(const std::array<AngleAxis, 2>& axes, double viewAngle_rad, const std::function<void(const LightSample&)>& visit, int azimuths = 1);
 
 /// The part of a component that is a formula of directions: one .glsl body, float on the GPU, double in C++.
 struct Lobe {
@@ -64,7 +68,7 @@ class ReflectionComponent {
   /// Directional-hemispherical reflectance for a view angle: integral of BRDF cos(theta_l) over the hemisphere.
   virtual double hemispherical(double wavelength_um, double viewAngle_rad) const;
   /// Axes by which an integral over all light, for a view, finds a lobe as narrow as this one's; `bends`: and where its column bends under the lobe.
-  std::array<AngleAxis, 2> integrationAxes(bool bends = true) const;
+  virtual std::array<AngleAxis, 2> integrationAxes(bool bends = true) const;
   /// The whole BRDF [1/sr].
   double brdf(double wavelength_um, const glm::dvec3& light, const glm::dvec3& view) const;
   /// True where hemispherical() changes with the view angle.

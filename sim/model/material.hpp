@@ -25,6 +25,7 @@ struct MaterialStates {
 struct Material {
   std::string name;
   std::string provenance;
+  std::vector<std::string> notes;  ///< what was changed or left out of what the user gave
   Location where;
   std::vector<std::shared_ptr<const ReflectionComponent>> reflections;
   std::vector<int> modifiers;                ///< texture index or -1, one per reflection

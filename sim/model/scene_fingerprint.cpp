@@ -104,7 +104,7 @@ void addTo(Fingerprint& f, const Motion& m) {
 }
 
 void addTo(Fingerprint& f, const Material& m) {
-  const auto& [name, provenance, where, reflections, modifiers, given, transmission, medium, states] = m;
+  const auto& [name, provenance, notes, where, reflections, modifiers, given, transmission, medium, states] = m;
   f.add(static_cast<double>(reflections.size())).all(modifiers);
   for (const auto& r : reflections) f.add(r->fingerprint());
   addTo(f, given);

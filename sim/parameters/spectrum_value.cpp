@@ -4,7 +4,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "sim/parameters/read_file.hpp"
+#include "sim/parameters/csv_table.hpp"
 #include "sim/parameters/readable_text.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -280,60 +280,19 @@ Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std:
 }
 
 Spectrum readSpectrumCsv(const std::filesystem::path& file, std::string_view unit, Outside outside, const Location& askedAt) {
-  std::istringstream in(readWholeFile(file,
+  const CsvTable table = readCsvTable(file,
                                       {.what = "a CSV file with a spectrum of at most " + std::to_string(kMostSpectrumRows) + " rows",
                                        .mostBytes = kLargestCsvBytes,
                                        .fix = "check the name; it is relative to the scenario's folder",
                                        .fixLarge = "thin the table out"},
-                                      askedAt));
-  std::string line, axisUnit, valueUnit;
-  Location where{file.string(), 0, 1, -1};
-  Location unitPlace[2];
+                                      kMostSpectrumRows, askedAt);
+  if (table.columns.size() != 2)
+    throw UserError(table.columns.back().where, table.columns.size() < 2 ? "a table of one column" : "a table of more than two columns",
+                    "two columns separated by one comma", "keep wavelength and value only");
   std::vector<Row> rows;
-  bool haveHeader = false;
-  while (std::getline(in, line)) {
-    ++where.line;
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (line.empty() || line[0] == '#') continue;
-    const size_t comma = line.find(',');
-    if (comma == std::string::npos || line.find(',', comma + 1) != std::string::npos)
-      throw UserError(where, comma == std::string::npos ? "a row of one column" : "a row of more than two columns", "two columns separated by one comma",
-                      "keep wavelength and value only");
-    const std::string cell[2] = {line.substr(0, comma), line.substr(comma + 1)};
-    if (!haveHeader) {
-      std::string* units[2] = {&axisUnit, &valueUnit};
-      for (int c = 0; c < 2; ++c) {
-        const size_t open = cell[c].find('['), close = cell[c].rfind(']');
-        unitPlace[c] = where;
-        unitPlace[c].column = static_cast<int>((c == 0 ? 0 : comma + 1) + (open == std::string::npos ? 0 : open)) + 1;
-        if (open == std::string::npos || close == std::string::npos || close < open)
-          throw UserError(unitPlace[c], "the header names no unit in column " + std::to_string(c + 1), "a header such as 'wavelength [um], transmittance [1]'",
-                          "write the units in brackets");
-        *units[c] = cell[c].substr(open + 1, close - open - 1);
-      }
-      haveHeader = true;
-      continue;
-    }
-    Row row;
-    row.where = where;
-    double* into[2] = {&row.x, &row.y};
-    for (int c = 0; c < 2; ++c) {
-      const auto q = splitQuantity(cell[c]);
-      if (!q || !q->unit.empty()) {
-        Location at = where;
-        at.column = c == 0 ? 1 : static_cast<int>(comma) + 2;
-        throw UserError(at, "not a finite number: " + tokenOf(cell[c]), "a number", "correct or remove the line");
-      }
-      *into[c] = q->value;
-    }
-    rows.push_back(row);
-    if (rows.size() > kMostSpectrumRows)
-      throw UserError(where, "the table goes on after " + std::to_string(kMostSpectrumRows) + " rows", "at most that many", "thin the table out");
-  }
-  if (!haveHeader)
-    throw UserError(Location{file.string(), 1, 1, -1}, "the file is empty", "a header and rows", "write 'wavelength [um], value [1]' and rows under it");
-  const Location whole{file.string(), 1, 1, -1};
-  return fromRows(std::move(rows), axisUnit, unitPlace[0], valueUnit, unitPlace[1], unit, outside, "this table", whole);
+  for (std::size_t k = 0; k < table.rows(); ++k) rows.push_back({table.at(k, 0), table.at(k, 1), table.whereOf(k)});
+  return fromRows(std::move(rows), table.columns[0].unit, table.columns[0].where, table.columns[1].unit, table.columns[1].where, unit, outside, "this table",
+                  Location{table.file, 1, 1, -1});
 }
 
 }  // namespace pitviper

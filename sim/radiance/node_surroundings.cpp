@@ -44,7 +44,7 @@ bool isNarrow(const ReflectionComponent& r) {
   if (!r.lobe().file.empty() && r.lobe().exponent > kNarrow) return true;
   const auto axes = r.axes();
   return std::any_of(axes.begin(), axes.end(),
-                     [](const AngleAxis& a) { return a.angle == Angle::Specular || a.angle == Angle::Half || a.angle == Angle::Difference; });
+                     [](const AngleAxis& a) { return a.angle != Angle::None && a.angle != Angle::Incidence && a.angle != Angle::View; });
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ double columnAt(const ReflectionComponent& r, double w, double angle1, double an
   return r.column(w, pick(own[0].angle), pick(own[1].angle));
 }
 
-constexpr const char* kAngleNames[] = {"none", "incidence", "view", "specular", "half", "difference"};
+constexpr const char* kAngleNames[] = {"none", "incidence", "view", "specular", "half", "difference", "root of half"};
 /// Cells of an axis that several components share, and entries of the two axes together: 1024 x 1024 of 16 wavelengths are 256 MB.
 constexpr int kMostCells = 1024;
 constexpr long long kMostEntries = 1025LL * 1025LL;

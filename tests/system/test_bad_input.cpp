@@ -385,7 +385,7 @@ std::vector<Bad> badScenarios() {
       {"CsvWithoutUnit", csvResponse, {"names no unit in column 2"}, {{"table.csv", "wavelength [um],@@response\n3,0\n4,1\n"}}},
       {"CsvDoesNotRise", csvResponse, {"do not rise"}, {{"table.csv", "# made by hand\nwavelength [um],response [1]\n3,0\n4,1\n@@3.9,1\n"}}},
       {"CsvWithNan", csvResponse, {"not a finite number: 'nan'"}, {{"table.csv", "wavelength [um],response [1]\n3,0\n4,@@nan\n"}}},
-      {"CsvOfThreeColumns", csvResponse, {"more than two columns"}, {{"table.csv", "wavelength [um],response [1]\n@@3,0,0\n"}}},
+      {"CsvOfThreeColumns", csvResponse, {"a row of 3 cells"}, {{"table.csv", "wavelength [um],response [1]\n@@3,0,0\n"}}},
       {"MeshMissing", shape("{model: mesh, file: @@nothing.obj, unit: 1 m}"), {"nothing.obj", "cannot read the file"}},
       {"MeshWithNan", meshScene, {"'nan' is not a finite number"}, {{"body.obj", "v 0 0 0\nv 1 @@nan 0\nv 0 1 0\nf 1 2 3\n"}}},
       {"TextureRowsUneven", entity("material: {}, temperature: {rows: [[300 K, 310 K], @@[300 K]]}"), {"a texture row has 1 entries"}},

@@ -56,7 +56,7 @@ std::string violation(const Use& use) {
                                                                           {"GeographicLib/", {"sim/scene/"}},
                                                                           {"OpenEXR/", {"sim/image/"}},
                                                                           {"Imf", {"sim/image/"}},
-                                                                          {"Eigen/", {"sim/plan/", "sim/radiance/"}},
+                                                                          {"Eigen/", {"sim/plan/", "sim/radiance/", "materials/"}},
                                                                           {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}},
                                                                           {"epoxy/", {"sim/gl/", "sim/render/", "sim/camera/", "scenarios/commands/bench"}}};
     for (const auto& [library, allowed] : homes) {

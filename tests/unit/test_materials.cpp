@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "materials/energy.hpp"
+#include "materials/brdf_table.hpp"
 #include "materials/reflection.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/render/tables.hpp"

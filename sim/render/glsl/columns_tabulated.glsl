@@ -9,6 +9,7 @@ float angleOf(uint kind, Vec3 l) {
   if (kind == 3u) return angleFromChord(reflect(-l, normal_), toViewer_);
   if (kind == 4u) return angleFromChord(normal_, normalize(l + toViewer_));
   if (kind == 5u) return angleFromChord(l, normalize(l + toViewer_));
+  if (kind == 6u) return sqrt(angleFromChord(normal_, normalize(l + toViewer_)) * 1.57079632679490);
   return 0.0;
 }
 
