@@ -32,34 +32,48 @@ std::string line(const char* format, auto... values) {
   return text;
 }
 
+/// As YAML.
+std::string asYaml(const std::string& text) {
+  std::string out = "'";
+  for (char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
+  return out + "'";
+}
+
+/// A material as a scenario names it.
+struct Named {
+  std::string name;
+  std::string materials = {};         ///< what the scenario has to say of it
+  std::string temperature = "320 K";  ///< at which it is known
+  std::string description = {};
+};
+
 /// A sphere of the material on its own: under a sun and a dome of daylight for an eye where it has data there, else as hot as a body that radiates most in
 /// the middle of its infrared.
-std::string sceneOf(const std::string& material, const std::string& materials, bool eye, double low_um, double high_um) {
-  std::string scene = "accuracy: 1 %\n" + materials;
+std::string sceneOf(const Named& own, bool eye, double low_um, double high_um) {
+  std::string scene = "accuracy: 1 %\n" + own.materials;
   if (eye)
     scene +=
         "sun: {azimuth: 60 deg, elevation: 40 deg, irradiance: {product: [\"0.4 W/(m2 um)\", cie_d65]}}\n"
         "ambient: {radiance: {product: [\"0.3 W/(m2 sr um)\", cie_d65]}}\nbackground: {radiance: {product: [\"0.03 W/(m2 sr um)\", cie_d65]}}\n";
   else scene += "ambient: {temperature: 280 K}\nbackground: {temperature: 250 K}\n";
-  scene +=
-      "entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " + material +
-      ", temperature: 320 K}]\ncameras: [{name: sphere, film: {width: 256, height: 256}, field_of_view: 12.5 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], "
-      "look_at: s, ";
+  scene += "entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " + asYaml(own.name) + ", temperature: " + own.temperature +
+           "}]\ncameras: [{name: sphere, film: {width: 256, height: 256}, field_of_view: 12.5 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], "
+           "look_at: s, ";
   return scene + (eye ? "eye: true}]\n" : line("channels: [{name: ir, response: {band: [%.6g um, %.6g um]}}]}]\n", low_um, high_um));
 }
 
 /// Under a sky by day.
-std::string lossOf(const std::string& material, const std::string& materials, const Material& m, const Libraries& libraries) {
+std::string lossOf(const Named& own, const Material& m, const Libraries& libraries) {
   const double low = std::max(m.validLow_um(), 0.41), high = std::min(m.validHigh_um(), 14.0);
   if (!(high > low)) return "";
-  const std::string scene = materials +
+  const std::string scene = own.materials +
                             "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
                             "ground: {material: soil, temperature: 295 K}\nentities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " +
-                            material +
-                            ", temperature: 300 K}]\ncameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [10 m, 0 "
+                            asYaml(own.name) + ", temperature: " + own.temperature +
+                            "}]\ncameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [10 m, 0 "
                             "m, 0 m], look_at: s, " +
                             line("channels: [{name: c, response: {band: [%.6g um, %.6g um]}}]}]\n", low, high);
-  return surroundingsLoss(readScenarioText(scene, "material " + material, ".", {}, libraries));
+  return surroundingsLoss(readScenarioText(scene, "material " + own.name, ".", {}, libraries));
 }
 
 struct Shown {
@@ -68,9 +82,9 @@ struct Shown {
   bool eye = false;
 };
 
-Shown shown(const std::string& name, const std::string& materials, const Libraries& libraries) {
+Shown shown(const Named& own, const Libraries& libraries) {
   const auto made = [&](bool eye, double low, double high) {
-    Shown s{readScenarioText(sceneOf(name, materials, eye, low, high), "material " + name, ".", {}, libraries), nullptr, eye};
+    Shown s{readScenarioText(sceneOf(own, eye, low, high), "material " + own.name, ".", {}, libraries), nullptr, eye};
     s.material = s.simulation.materials[static_cast<size_t>(s.simulation.entities[0].surfaces[0].material)];
     return s;
   };
@@ -89,7 +103,7 @@ Shown shown(const std::string& name, const std::string& materials, const Librari
       if (why.find("has no data for channel") == std::string::npos) throw;
     }
   }
-  throw UserError({}, "the material '" + name + "' has no data between 0.6 and 10 um", "a surface with data there", why);
+  throw UserError({}, "the material '" + own.name + "' has no data between 0.6 and 10 um", "a surface with data there", why);
 }
 
 std::string describe(const Material& m, const std::string& description) {
@@ -123,6 +137,25 @@ std::string describe(const Material& m, const std::string& description) {
     for (double v : kViews_deg) out += line(" %.4f |", m.emissivity(w, v * kDegree));
     for (double v : kViews_deg)
       if (m.transmission) out += line(" %.4f |", m.transmittance(w, v * kDegree));
+    out += "\n";
+  }
+  return out;
+}
+
+/// Of one that changes with temperature: what it emits, at each.
+std::string byTemperature(const Material& m) {
+  if (!m.states || m.states->texture >= 0) return "";
+  const auto& entries = m.states->entries;
+  std::string out = "\nWhat it emits along its normal changes with its temperature; above is the first.\n| wavelength [um] |", rule = "\n|---|";
+  for (size_t k = 0; k < entries.size(); ++k) {
+    out += line(" %.4g K |", m.states->low + (m.states->high - m.states->low) * static_cast<double>(k) / static_cast<double>(entries.size() - 1));
+    rule += "---|";
+  }
+  out += rule + "\n";
+  for (double w : kTable_um) {
+    if (w < m.validLow_um() || w > m.validHigh_um()) continue;
+    out += line("| %.4g |", w);
+    for (const auto& entry : entries) out += line(" %.4f |", entry->emissivity(w, 0.0));
     out += "\n";
   }
   return out;
@@ -167,17 +200,22 @@ void draw(const Shown& s, const std::string& name, const std::filesystem::path& 
   writePreviewFile(out / (name + "_sphere.png"), frame, {});
 }
 
-/// As YAML.
-std::string asYaml(const std::string& text) {
-  std::string out = "'";
-  for (char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
-  return out + "'";
-}
-
 std::string descriptionOf(const std::filesystem::path& file) {
   const Value tree = loadYaml(file, {file.string(), 0, 0, -1});
   const Value* text = tree.find("description");
   return text ? text->text : "";
+}
+
+/// Of a material's file.
+Named namedOf(const std::filesystem::path& file) {
+  Named own;
+  own.name = file.stem().string();
+  own.description = descriptionOf(file);
+  const Value tree = loadYaml(file, {file.string(), 0, 0, -1});
+  const Value* states = tree.find("temperatures");
+  if (states && !states->items.empty())
+    if (const Value* first = states->items.front().find("temperature")) own.temperature = first->text;
+  return own;
 }
 
 void list(const Libraries& libraries) {
@@ -207,32 +245,32 @@ int materialCommand(const Arguments& arguments) {
   const std::string& word = o.words()[0];
   const std::filesystem::path file = word;
   std::error_code ignored;
-  std::string name = word, materials, description;
+  Named own{word};
   if (std::filesystem::is_regular_file(file, ignored)) {
     if (const auto imported = importedYaml(file)) {
       std::printf("%s", imported->c_str());
       return 0;
     }
-    description = descriptionOf(file);
-    name = file.stem().string();
-    materials = "materials: {" + asYaml(name) + ": {file: " + asYaml(std::filesystem::absolute(file).string()) + "}}\n";
-  } else if (const auto own = libraries.materials / (word + ".yaml"); std::filesystem::is_regular_file(own, ignored)) {
-    description = descriptionOf(own);
+    own = namedOf(file);
+    own.materials = "materials: {" + asYaml(own.name) + ": {file: " + asYaml(std::filesystem::absolute(file).string()) + "}}\n";
+  } else if (const auto known = libraries.materials / (word + ".yaml"); std::filesystem::is_regular_file(known, ignored)) {
+    own = namedOf(known);
   } else if (const auto substance = libraries.materials.parent_path() / "substances" / (word + ".yaml"); std::filesystem::is_regular_file(substance, ignored)) {
-    materials = "materials: {" + word + "_facets: {components: [{reflection: microfacet, index: " + word + ", roughness: 0.05}]}}\n";
-    name = word + "_facets";
-    description = descriptionOf(substance) + "; as facets of roughness 0.05";
+    own.name = word + "_facets";
+    own.materials = "materials: {" + own.name + ": {components: [{reflection: microfacet, index: " + word + ", roughness: 0.05}]}}\n";
+    own.description = descriptionOf(substance) + "; as facets of roughness 0.05";
   }
-  const Shown s = shown(name, materials, libraries);
-  if (s.material->medium) throw UserError({}, "'" + name + "' is a medium", "a surface", "'check' of a scenario shows what media do");
-  std::printf("%s: %s", name.c_str(), describe(*s.material, description).c_str());
-  std::printf("%s", lossOf(name, materials, *s.material, libraries).c_str());
+  const Shown s = shown(own, libraries);
+  if (s.material->medium) throw UserError({}, "'" + own.name + "' is a medium", "a surface", "'check' of a scenario shows what media do");
+  std::printf("%s: %s", own.name.c_str(), describe(*s.material, own.description).c_str());
+  std::printf("%s", byTemperature(*s.material).c_str());
+  std::printf("%s", lossOf(own, *s.material, libraries).c_str());
   if (!o.has("--out")) return 0;
   const std::filesystem::path out = o.value("--out");
   ensureWritableFolder(out);
-  drawCharts(chartsOf(*s.material, name), 3, out / (name + ".png"));
-  draw(s, name, out);
-  std::printf("\n%s and %s written\n", (out / (name + ".png")).string().c_str(), (out / (name + "_sphere.png")).string().c_str());
+  drawCharts(chartsOf(*s.material, own.name), 3, out / (own.name + ".png"));
+  draw(s, own.name, out);
+  std::printf("\n%s and %s written\n", (out / (own.name + ".png")).string().c_str(), (out / (own.name + "_sphere.png")).string().c_str());
   return 0;
 }
 

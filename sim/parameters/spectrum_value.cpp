@@ -117,8 +117,13 @@ const ParameterTable& spectrumTable() {
   static const ParameterTable table{
       "spectrum",
       "Where a key takes a spectrum, write a quantity (`0.2 /km`: the same at all wavelengths), the name of a library spectrum "
-      "(`insb_mwir`), or a map with one of `values`, `file`, `library`, `band`, `blackbody`, `product`.",
+      "(`insb_mwir`), or a map with one of `values` (and `lines`), `file`, `library`, `band`, `blackbody`, `product`.",
       {list("values", "rows [wavelength, value], rising; piecewise linear", 1, kMostSpectrumRows),
+       list("lines",
+            "spikes besides or instead of `values`, 0 outside: rows [wavelength, integral over it in `unit` x that of the wavelength], rising; each a triangle "
+            "of "
+            "1e-5 of its wavelength at half height",
+            1, 4096),
        text("wavelength", "unit of the first column: um, nm, or 1/cm for wavenumbers (vacuum)"), text("unit", "unit of the values"),
        choice("outside", {"zero", "hold", "error"}, "what it is outside its table (a response: zero; others: error)"),
        text("file", "CSV with two columns and a header that names their units: `wavelength [um], value [1]`"), text("library", "name of a library spectrum"),
@@ -193,6 +198,49 @@ Spectrum SpectrumReader::readLibrary(const std::string& word, const Location& wh
 
 namespace {
 
+std::vector<Row> rowsOf(const Value& list, std::string_view name) {
+  std::vector<Row> rows;
+  for (const Value& row : list.items) {
+    if (row.kind != Value::Kind::List || row.items.size() != 2)
+      throw UserError(
+          row.where,
+          "a table row of " + std::string(name) + " is " + (row.kind == Value::Kind::List ? "a list of " + std::to_string(row.items.size()) : row.kindName()),
+          "two numbers [wavelength, value]", "write [3.5, 0.82]");
+    rows.push_back({plainNumber(row.items[0], name), plainNumber(row.items[1], name), row.where});
+  }
+  return rows;
+}
+
+/// Lines upon a table that is 0 outside: triangles over it, of the lines' own integrals. A product with anything smooth over a line is its value there.
+std::vector<Row> withLines(std::vector<Row> table, const std::vector<Row>& lines, std::string_view name) {
+  constexpr double kHalfWidth = 1e-5;  // of the wavelength: below any smooth spectrum's, above rounding
+  if (table.size() == 1) table.push_back({table.front().x * (1.0 + kHalfWidth), table.front().y, table.front().where});
+  const auto smooth = [&](double x) {
+    if (table.empty() || x < table.front().x || x > table.back().x) return 0.0;
+    const auto above = std::upper_bound(table.begin() + 1, table.end() - 1, x, [](double a, const Row& r) { return a < r.x; });
+    const Row &a = *(above - 1), &b = *above;
+    return a.y + (b.y - a.y) * (x - a.x) / (b.x - a.x);
+  };
+  std::vector<Row> all;
+  double last = -INFINITY;
+  for (const Row& line : lines) {
+    const double width = kHalfWidth * line.x, low = line.x - width, high = line.x + width;
+    if (!(line.x > 0.0 && low > last))
+      throw UserError(line.where, "lines of " + std::string(name) + " that do not rise, or are less than 2e-5 of their wavelength apart", "rising wavelengths",
+                      "sort them, and add up those that are as good as one");
+    all.push_back({low, smooth(low), line.where});
+    all.push_back({line.x, smooth(line.x) + line.y / width, line.where});
+    all.push_back({high, smooth(high), line.where});
+    last = high;
+  }
+  for (const Row& row : table) {
+    const bool covered = std::any_of(lines.begin(), lines.end(), [&](const Row& line) { return std::abs(row.x / line.x - 1.0) <= 1.001 * kHalfWidth; });
+    if (!covered) all.push_back(row);
+  }
+  std::sort(all.begin(), all.end(), [](const Row& a, const Row& b) { return a.x < b.x; });
+  return all;
+}
+
 Spectrum readValues(const Record& r, std::string_view unit, std::string_view name, Outside beyond) {
   if (!r.given("wavelength"))
     throw UserError(r.where(), "the table of " + std::string(name) + " has no unit for its first column", "'wavelength: um', 'nm' or '1/cm'",
@@ -201,13 +249,14 @@ Spectrum readValues(const Record& r, std::string_view unit, std::string_view nam
     throw UserError(r.where(), "the table of " + std::string(name) + " has no unit for its values",
                     unit.empty() ? "'unit: \"1\"'" : "'unit: " + std::string(unit) + "'", "add it");
   std::vector<Row> rows;
-  for (const Value& row : r.value("values").items) {
-    if (row.kind != Value::Kind::List || row.items.size() != 2)
-      throw UserError(
-          row.where,
-          "a table row of " + std::string(name) + " is " + (row.kind == Value::Kind::List ? "a list of " + std::to_string(row.items.size()) : row.kindName()),
-          "two numbers [wavelength, value]", "write [3.5, 0.82]");
-    rows.push_back({plainNumber(row.items[0], name), plainNumber(row.items[1], name), row.where});
+  if (r.given("values")) rows = rowsOf(r.value("values"), name);
+  if (r.given("lines")) {
+    if (!convert({1.0, r.text("wavelength")}, "um"))
+      throw UserError(r.where("wavelength"), "lines of " + std::string(name) + " by wavenumber", "'wavelength: um' or 'nm'", "give their wavelengths");
+    if (r.given("outside") && beyond != Outside::Zero)
+      throw UserError(r.where("outside"), "lines of a spectrum that goes on outside its table", "'outside: zero'", "remove it");
+    beyond = Outside::Zero;
+    rows = withLines(std::move(rows), rowsOf(r.value("lines"), name), name);
   }
   return fromRows(std::move(rows), r.text("wavelength"), r.where("wavelength"), r.text("unit"), r.where("unit"), unit, beyond, name, r.where());
 }
@@ -230,19 +279,19 @@ Spectrum readBlackBody(const Record& r, std::string_view unit, std::string_view 
 
 Spectrum SpectrumReader::readMap(const Value& value, std::string_view unit, std::string_view name, Outside outside, int depth) const {
   const Record r(value, spectrumTable());
-  static const char* const kinds[] = {"values", "file", "library", "band", "blackbody", "product", "power"};
+  static const char* const kinds[] = {"values", "lines", "file", "library", "band", "blackbody", "product", "power"};
   std::vector<std::string> given;
   for (const char* k : kinds)
-    if (r.given(k)) given.emplace_back(k);
+    if (r.given(k) && !(std::string_view(k) == "lines" && r.given("values"))) given.emplace_back(k);
   if (given.size() != 1)
     throw UserError(value.where,
                     std::string(name) + (given.empty() ? " says nothing of its values" : " is given in " + std::to_string(given.size()) + " ways at once"),
-                    "one of values, file, library, band, blackbody, product, power", given.empty() ? "add one of them" : "keep one of them");
+                    "one of values, lines, file, library, band, blackbody, product, power", given.empty() ? "add one of them" : "keep one of them");
   const std::string& kind = given.front();
   const Outside beyond = outsideOf(value, outside);
   const double scale = r.given("scale") ? r.number("scale") : 1.0;
   Spectrum s;
-  if (kind == "values") {
+  if (kind == "values" || kind == "lines") {
     s = readValues(r, unit, name, beyond);
   } else if (kind == "file") {
     std::filesystem::path path = r.text("file");

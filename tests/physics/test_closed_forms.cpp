@@ -165,6 +165,34 @@ TEST(ClosedForms, PointLightInCoarsePixels) {
          "I cos/R2");
 }
 
+// A lamp of lines upon a smooth part: E = sum of P r(lambda) and integral of the smooth part, each as if it were alone.
+TEST(ClosedForms, CompositeSpectrum) {
+  for (const char* accuracy : {"", "accuracy: 0.1 %\n"}) {
+    const auto sim = scene(
+        accuracy +
+        std::string("materials: {m: {components: [{reflection: lambertian, reflectance: {wavelength: nm, unit: \"1\", values: [[400, 0.1], [700, 0.7]]}}]}}\n"
+                    "lights: [{name: lamp, position: [0 m, 0 m, 10 m], intensity: {wavelength: nm, unit: W/(sr nm), values: [[450, 0.02], [650, 0.06]], lines: "
+                    "[[546.1, 5], "
+                    "[577, 2], [579.1, 2.5]]}}]\n"
+                    "entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: m, temperature: 1 K, pitch: 90 deg}]\n"
+                    "cameras: [{name: c, film: {width: 1, height: 1}, field_of_view: 0.01 deg, aperture: 5 mm, position: [0 m, 1 m, 20 m], look_at: [0 m, 0 m, "
+                    "0 m], channels: "
+                    "[{name: v, response: {wavelength: nm, unit: \"1\", values: [[500, 0.2], [600, 1]]}}]}]\n"));
+    const auto reflectance = [](double nm) { return 0.1 + 0.6 * (nm - 400.0) / 300.0; };
+    const auto response = [](double nm) { return 0.2 + 0.8 * (nm - 500.0) / 100.0; };
+    double sum = 0.0;
+    for (const auto& [nm, power] : {std::pair{546.1, 5.0}, std::pair{577.0, 2.0}, std::pair{579.1, 2.5}}) sum += power * reflectance(nm) * response(nm);
+    constexpr int kSteps = 2000;  // Simpson's rule, exact for cubes
+    for (int i = 0; i <= kSteps; ++i) {
+      const double nm = 500.0 + 100.0 * i / kSteps, smooth = 0.02 + 0.04 * (nm - 450.0) / 200.0;
+      sum += (i == 0 || i == kSteps ? 1.0 : i % 2 ? 4.0 : 2.0) / 3.0 * 100.0 / kSteps * smooth * reflectance(nm) * response(nm);
+    }
+    const Frame f = renderFrame(sim);
+    figure(std::string("a lamp of three lines upon a smooth part on a wall [W/(m2 sr)]") + (*accuracy ? ", 0.1 %" : ""), at(layer(f, "v.radiance"), f, 0, 0),
+           sum / 100.0 / kPi, *accuracy ? 1e-3 : 2e-5, "sum of lines and integral over pi R^2");
+  }
+}
+
 // Everything at one temperature: whatever the materials, the picture is a black body's.
 TEST(ClosedForms, IsothermalEnclosure) {
   const auto sim = scene(

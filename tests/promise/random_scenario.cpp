@@ -73,7 +73,8 @@ double binsBetween(double low_um, double high_um) {
 
 class Composer {
  public:
-  explicit Composer(const ScenarioDraw& draw) : draw_(draw), dice_(draw.seed, static_cast<std::uint64_t>(draw.attempt)) {}
+  explicit Composer(const ScenarioDraw& draw)
+      : draw_(draw), dice_(draw.seed, static_cast<std::uint64_t>(draw.attempt)), more_(draw.seed, 1000 + static_cast<std::uint64_t>(draw.attempt)) {}
 
   std::string compose() {
     placeEye();
@@ -143,24 +144,34 @@ class Composer {
       out << "sun: {azimuth: " << dice_.between(0.0, 360.0) << " deg, elevation: " << (dice_.chance(0.35) ? dice_.between(-1.0, 3.0) : dice_.between(3.0, 89.0))
           << " deg, " << (dice_.chance(0.7) ? "temperature: 5772 K" : "irradiance: {library: solar_e490}") << "}\n";
     if (dice_.chance(0.6)) {
-      if (layered_ && dice_.chance(0.7)) out << "ambient: {from: sky}\n";
+      if (more_.chance(0.2)) out << gradient();
+      else if (layered_ && dice_.chance(0.7)) out << "ambient: {from: sky}\n";
       else out << "ambient: {temperature: " << dice_.between(220.0, 300.0) << " K}\n";
     }
     return out;
   }
 
+  std::string gradient() {
+    Text out;
+    out << "ambient: {gradient: [{elevation: -90 deg, temperature: " << more_.between(250.0, 310.0)
+        << " K}, {elevation: 0 deg, temperature: " << more_.between(250.0, 310.0) << " K}, ";
+    if (more_.chance(0.5)) out << "{elevation: 0 deg, temperature: " << more_.between(200.0, 290.0) << " K}, ";
+    return out << "{elevation: 90 deg, temperature: " << more_.between(180.0, 260.0) << " K}]}\n";
+  }
+
   /// A spectrum over all that channels see, half of them with edges of a nanometre.
-  std::string table(double least, double most) {
+  std::string table(double least, double most) { return table(least, most, dice_); }
+  static std::string table(double least, double most, RandomDice& dice) {
     std::vector<double> at = {0.3, 15.0};
-    for (int k = dice_.below(7); k >= 0; --k) at.push_back(dice_.byFactor(0.4, 14.0));
+    for (int k = dice.below(7); k >= 0; --k) at.push_back(dice.byFactor(0.4, 14.0));
     std::sort(at.begin(), at.end());
-    const bool steps = dice_.chance(0.5);
+    const bool steps = dice.chance(0.5);
     Text out;
     out << "{wavelength: um, unit: \"1\", values: [";
     double last = 0.0;
     for (size_t k = 0; k < at.size(); ++k) {
       if (steps && k > 0 && at[k] - at[k - 1] > 2e-3) out << "[" << at[k] - 1e-3 << ", " << last << "], ";
-      last = dice_.between(least, most);
+      last = dice.between(least, most);
       out << "[" << at[k] << ", " << last << (k + 1 < at.size() ? "], " : "]");
     }
     return out << "]}";
@@ -168,6 +179,7 @@ class Composer {
 
   /// A library material, or now and then one with a spectrum of its own.
   std::string opaque() {
+    if (more_.chance(0.15)) return more_.chance(0.35) ? byTemperature() : lobed();
     if (dice_.chance(0.12)) return facets();
     if (!dice_.chance(0.15)) return dice_.of(kOpaque);
     Text name, row;
@@ -176,6 +188,46 @@ class Composer {
         << ", reflectance: " << table(0.0, 0.95);
     if (dice_.chance(0.3)) row << ", modifier: {rows: [[" << dice_.unit() << ", " << dice_.unit() << "], [" << dice_.unit() << ", " << dice_.unit() << "]]}";
     materials_ += row << "}]}\n";
+    return name;
+  }
+  /// Of models that the library has few of.
+  std::string lobed() {
+    Text name, row;
+    name << "lobed_" << ++materialCount_;
+    row << "  " << std::string(name) << ": {components: [{reflection: ";
+    const std::string form = more_.chance(0.3) ? ", form: published" : "";
+    switch (more_.below(5)) {
+      case 0:
+        row << "ward, reflectance: " << more_.between(0.05, 0.9) << ", roughness: " << more_.byFactor(0.05, 0.6);
+        break;
+      case 1:
+        row << "sandford_robertson, emissivity: " << more_.between(0.2, 0.6) << ", diffuse: " << more_.between(0.05, 0.35)
+            << ", grazing: " << more_.between(0.05, 0.6) << ", width: " << more_.byFactor(0.05, 0.8) << form;
+        break;
+      case 2:
+        row << "beard_maxwell, n: " << more_.between(1.3, 3.0) << ", k: " << more_.byFactor(0.01, 3.0) << ", scan: " << more_.byFactor(1e-4, 5e-3)
+            << ", width: " << more_.byFactor(0.1, 0.5) << ", tau: " << more_.between(10.0, 60.0) << " deg, omega: " << more_.between(10.0, 60.0)
+            << " deg, diffuse: " << more_.between(0.0, 0.08) << ", volume: " << more_.between(0.0, 0.03);
+        break;
+      case 3:
+        row << "sea, wind: " << more_.between(1.0, 14.0) << " m/s";
+        break;
+      default:
+        row << "spectral_phong, diffuse: " << more_.between(0.05, 0.4) << ", specular: " << more_.between(0.1, 0.5)
+            << ", exponent: {wavelength: um, unit: \"1\", values: [[0.3, " << more_.byFactor(3.0, 300.0) << "], [15, " << more_.byFactor(3.0, 3000.0) << "]]}";
+    }
+    materials_ += row << "}]}\n";
+    return name;
+  }
+  /// Three temperatures, over all that bodies may have.
+  std::string byTemperature() {
+    Text name, row;
+    name << "warmed_" << ++materialCount_;
+    row << "  " << std::string(name) << ": {temperatures: [";
+    for (double kelvin : {150.0, 1900.0, 3650.0})
+      row << (kelvin > 150.0 ? ", " : "") << "{temperature: " << kelvin << " K, components: [{reflection: lambertian, reflectance: " << table(0.0, 0.95, more_)
+          << "}]}";
+    materials_ += row << "]}\n";
     return name;
   }
   /// Metal, glass over a pigment, or either under films, of any roughness.
@@ -392,6 +444,7 @@ class Composer {
   static constexpr int kLibraryResponse = 1400;
   ScenarioDraw draw_;
   RandomDice dice_;
+  RandomDice more_;  ///< of what came later: other scenes stay as they were
   double range_m_ = 1.0, field_rad_ = 1.0, size_m_ = 1.0, fieldAtTarget_m_ = 1.0, rise_ = 0.0, first_m_ = 0.0;
   Place eye_, target_;
   bool ground_ = false, layered_ = false, dome_ = false;

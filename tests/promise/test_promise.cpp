@@ -62,7 +62,8 @@ int mostWavelengths() {
 PromiseScene sceneOf(std::uint64_t seed, const std::vector<double>& asked, bool automatic = false) {
   for (int attempt = 0;; ++attempt) {
     const std::string text = randomScenario({seed, attempt, mostWavelengths()});
-    if (const std::string kept = setting("PITVIPER_PROMISE_KEEP"); !kept.empty()) std::ofstream(std::filesystem::path(kept) / (std::to_string(seed) + ".yaml")) << text;
+    if (const std::string kept = setting("PITVIPER_PROMISE_KEEP"); !kept.empty())
+      std::ofstream(std::filesystem::path(kept) / (std::to_string(seed) + ".yaml")) << text;
     try {
       return keepPromise(seed, text, asked, automatic);
     } catch (const UserError& e) {
@@ -168,10 +169,38 @@ TEST(RandomScenario, IsTheSameForTheSameSeedAndHasAllKinds) {
     EXPECT_NE(text, randomScenario({seed, 1, 300}));
     all += text;
   }
-  for (const char* word :
-       {"clear_us76",   "hazy_mls", "extinction", "visibility",     "from: sky",      "solar_e490",     "sapphire_dome", "oil_smoke",       "afterburner_plume",
-        "w3",           "w0b",      "lamp1",      "level",          "motion",         "frames: 3",      "samples: 2",    "small_bodies: 0", "ground",
-        "transmission", "modifier", "c2",         "elevation: -0.", "shadows: false", "mode: buffered", "rows"})
+  for (const char* word : {"clear_us76",
+                           "hazy_mls",
+                           "extinction",
+                           "visibility",
+                           "from: sky",
+                           "solar_e490",
+                           "sapphire_dome",
+                           "oil_smoke",
+                           "afterburner_plume",
+                           "w3",
+                           "w0b",
+                           "lamp1",
+                           "level",
+                           "motion",
+                           "frames: 3",
+                           "samples: 2",
+                           "small_bodies: 0",
+                           "ground",
+                           "transmission",
+                           "modifier",
+                           "c2",
+                           "elevation: -0.",
+                           "shadows: false",
+                           "mode: buffered",
+                           "rows",
+                           "temperatures",
+                           "gradient",
+                           "ward",
+                           "sandford_robertson",
+                           "beard_maxwell",
+                           "spectral_phong",
+                           "wind"})
     EXPECT_NE(all.find(word), std::string::npos) << word;
 }
 
