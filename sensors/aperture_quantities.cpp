@@ -34,7 +34,8 @@ std::vector<Quantity> apertureQuantities() {
           {"radiance_per_um", "W/(m2 sr um)", "the same divided by the integral of S", radiancePerUm},
           {"photon_radiance", "photon/(s m2 sr)", "in-band photon radiance at the aperture", photonRadiance},
           {"luminance", "cd/m2", "683 lm/W times the integral of S V L", luminance},
-          {"tristimulus", "cd/m2", "683 lm/W times the integral of S L: X, Y or Z where S is one of the CIE 1931 functions (`eye: true` is all three)", tristimulus},
+          {"tristimulus", "cd/m2", "683 lm/W times the integral of S L: X, Y or Z where S is one of the CIE 1931 functions (`eye: true` is all three)",
+           tristimulus},
           {"irradiance", "W/m2", "irradiance on the aperture from the pixel's field; of a probe: on its plane", onPlane<radiance>, true},
           {"photon_irradiance", "photon/(s m2)", "the same in photons", onPlane<photonRadiance>, true},
           {"illuminance", "lx", "the same with V(lambda)", onPlane<luminance>, true}};

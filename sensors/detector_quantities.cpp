@@ -42,6 +42,21 @@ void electrons(const Detector& d, const Collector& c, ChannelOutput& o) {
   o.kernel = o.kernel * *d.quantumEfficiency * photonsPerJoule();
 }
 
+/// Photoelectrons, which the detector's stage makes counts of.
+void counts(const Detector& d, const Collector& c, ChannelOutput& o) {
+  if (!c.hasDetector)
+    throw UserError(d.where, "'" + o.quantity + "' needs a detector", "a camera with 'stage: detector' among its 'stages'",
+                    "add '- {stage: detector, full_well: 7e6}' under 'stages:'");
+  electrons(d, c, o);
+  o.detected = true;
+}
+
+/// By the counts where a detector makes some, else by the radiance at the aperture.
+void apparentTemperature(const Detector& d, const Collector& c, ChannelOutput& o) {
+  if (c.hasDetector) counts(d, c, o);
+  o.asTemperature = true;
+}
+
 void volts(const Detector& d, const Collector& c, ChannelOutput& o) {
   if (!d.gain) throw UserError(d.where, "'volts' needs a gain", "'gain' of the channel in V/W or V/(W/m2)", "add 'gain: 2e6 V/W'");
   flux(d, c, o);
@@ -57,6 +72,9 @@ std::vector<Quantity> detectorQuantities() {
           {"exposure", "J", "flux times exposure time", exposure},
           {"photons", "photon", "photons on the pixel during the exposure", photons},
           {"electrons", "electron", "photoelectrons during the exposure (needs quantum_efficiency)", electrons},
+          {"counts", "count", "what the detector's stage makes of the photoelectrons (needs quantum_efficiency, exposure and `stage: detector`)", counts},
+          {"apparent_temperature", "K", "temperature of a black body that gives the same counts, or, without a detector's stage, the same radiance",
+           apparentTemperature},
           {"volts", "V", "gain times flux or focal-plane irradiance (needs gain)", volts}};
 }
 

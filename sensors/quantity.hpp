@@ -31,6 +31,7 @@ struct Detector {
 /// What stands before it: nothing (a probe's plane), or a camera.
 struct Collector {
   double apertureArea_m2 = 0.0, pixelArea_m2 = 0.0, exposure_s = 0.0;
+  bool hasDetector = false;  ///< a stage makes counts
   Collector() = default;
   Collector(const Pinhole& p, double exposure) : apertureArea_m2(p.apertureArea_m2()), pixelArea_m2(p.pitchX_m * p.pitchY_m), exposure_s(exposure) {}
 };

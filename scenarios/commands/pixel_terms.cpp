@@ -50,6 +50,9 @@ std::string nameOf(const Part& part, const Simulation& sim) {
   return name;
 }
 
+/// Before a detector, and before temperatures.
+std::string linearUnit(const ChannelOutput& o) { return o.detected ? "electron" : o.asTemperature ? "W/(m2 sr)" : o.unit; }
+
 /// Of each channel the first output that the frame has a layer of, in its unit.
 std::vector<size_t> toldOutputs(const ExrImage& frame, const Camera& camera) {
   std::vector<size_t> told;
@@ -90,7 +93,7 @@ void printPixelTerms(const ExrImage& frame, const std::string& file, int column,
   const std::vector<double> all = valuesOf({});
 
   std::printf("camera %s, frame %d, pixel %d,%d: every wavelength, in double precision\n\n%-44s", camera.name.c_str(), number, column, row, "");
-  for (size_t o : outputs) std::printf(" %26s", (camera.outputs[o].layer() + " [" + camera.outputs[o].unit + "]").c_str());
+  for (size_t o : outputs) std::printf(" %26s", (camera.outputs[o].layer() + " [" + linearUnit(camera.outputs[o]) + "]").c_str());
   std::printf("\n");
   const auto print = [&](const std::string& name, const std::vector<double>& values) {
     std::printf("%-44s", name.c_str());

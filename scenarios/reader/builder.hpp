@@ -75,7 +75,9 @@ class Builder {
   void readSurfaces(const Record& r, Entity& entity);
   int entityNamed(const Value& asked) const;
   // cameras.cpp
-  std::vector<ChannelOutput> readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s);
+  std::vector<ChannelOutput> readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s, bool hasDetector = false);
+  /// Its kernel is as it will be.
+  static void tellTemperature(ChannelOutput& output);
   Spectrum readResponse(const Record& channel) const;
   void keepOutput(std::vector<ChannelOutput>& outputs, const std::function<ChannelOutput()>& make, const Location& where) const;
   void planned(const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where);

@@ -128,6 +128,17 @@ void Builder::planned(const std::vector<ChannelOutput>& outputs, const SpectralS
 
 namespace {
 
+/// Is there a stage that makes counts? (Their order and keys are read later.)
+bool hasDetector(const Record& camera) {
+  if (!camera.given("stages")) return false;
+  const auto& all = camera.value("stages").items;
+  return std::any_of(all.begin(), all.end(), [](const Value& v) {
+    const Value* name = v.find("stage");
+    const StageModel* model = name ? stageModels().named(name->text) : nullptr;
+    return model && model->isDetector;
+  });
+}
+
 /// A camera's channels, and an eye's after them.
 Value channelsOf(const Record& camera) {
   Value all;
@@ -156,12 +167,13 @@ Value channelsOf(const Record& camera) {
 
 }  // namespace
 
-std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s) {
+std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s, bool hasDetector) {
   if (list.items.empty())
     throw UserError(list.where, "no channel", "at least one channel with name and response", "add '- {name: mw, response: {band: [3 um, 5 um]}}'");
   std::map<std::string, Location> names;
   std::vector<ChannelOutput> outputs;
-  const Collector collector = pinhole ? Collector(*pinhole, exposure_s) : Collector();
+  Collector collector = pinhole ? Collector(*pinhole, exposure_s) : Collector();
+  collector.hasDetector = hasDetector;
   const auto allowed = quantityNames(!pinhole);
   for (const Value& v : list.items) {
     const Record r(v, tables::channel());
@@ -203,6 +215,10 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
     }
   }
   return outputs;
+}
+
+void Builder::tellTemperature(ChannelOutput& output) {
+  if (output.asTemperature) output.temperature = std::make_shared<BandTemperature>(output.kernel, output.bandLow_um, output.bandHigh_um);
 }
 
 void Builder::readCameras(const Record& scenario) {
@@ -274,8 +290,9 @@ void Builder::readCameras(const Record& scenario) {
     Spectrum optics(1.0);
     if (r.given("optics")) optics = bounded(spectra_, r.value("optics"), "", "optics transmission", 0.0, 1.0, Outside::Zero);
     if (!r.given("channels") && !(r.given("eye") && r.boolean("eye")))
-      throw UserError(v.where, "a camera without channels", "'channels', or 'eye: true'", "add '- {name: mw, response: {band: [3 um, 5 um]}}' under 'channels:'");
-    c.outputs = readChannels(channelsOf(r), &optics, &p, c.exposure_s);
+      throw UserError(v.where, "a camera without channels", "'channels', or 'eye: true'",
+                      "add '- {name: mw, response: {band: [3 um, 5 um]}}' under 'channels:'");
+    c.outputs = readChannels(channelsOf(r), &optics, &p, c.exposure_s, hasDetector(r));
     if (r.given("truth"))
       for (const Value& t : r.value("truth").items) {
         static const std::vector<std::string> names{"range", "entity", "temperature", "normal", "area", "solid_angles", "pixel_solid_angle"};
@@ -290,11 +307,20 @@ void Builder::readCameras(const Record& scenario) {
         else throw unknownWord(t.where, "there is no truth layer", word, names);
       }
     planned(c.outputs, c.spectral, c.where);
+    for (ChannelOutput& o : c.outputs) tellTemperature(o);
     c.outlineAccuracy = c.spectral.reference ? 0.0 : c.spectral.accuracy;
     c.textureAccuracy = c.spectral.reference ? kFinestTextures : c.spectral.accuracy;
     if (r.given("stages"))
       for (const Value& s : r.value("stages").items) {
         c.stages.push_back(readStage(s, c));
+        const StageChoice& own = c.stages.back();
+        const auto isBefore = [&](const StageChoice& other) { return &other != &own && other.onPixels && (!own.onPixels || other.detector); };
+        if (std::any_of(c.stages.begin(), c.stages.end(), isBefore))
+          throw UserError(s.where,
+                          own.detector   ? "a second detector"
+                          : own.onPixels ? "a stage of the film after its detector"
+                                         : "optics after the detector",
+                          "the order in which light meets them", "move it to the front, or remove it");
         const Camera drawn = drawnCamera(c);
         if (tooLarge(drawn) || !drawn.pinhole.isFlat())
           throw UserError(s.where,

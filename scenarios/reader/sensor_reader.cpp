@@ -70,7 +70,10 @@ void Builder::readSensor(const Record& r, const Pinhole& image, double exposure_
   if (r.given("optics")) optics = bounded(spectra_, r.value("optics"), "", "optics transmission", 0.0, 1.0, Outside::Zero);
   sensor.outputs = readChannels(r.value("channels"), &optics, &sensor.pinhole, sensor.exposure_s);
   // One by one: no pass has to hold them all. Finds kernels that are zero or that no spectrum covers.
-  for (const auto& output : sensor.outputs) planned({output}, {}, output.where);
+  for (auto& output : sensor.outputs) {
+    planned({output}, {}, output.where);
+    tellTemperature(output);
+  }
 }
 
 Sensor readSensor(const std::filesystem::path& file, const Pinhole& image, double exposure_s, const Libraries& libraries) {

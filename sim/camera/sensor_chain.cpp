@@ -3,17 +3,14 @@
 namespace pitviper {
 
 SensorChain::SensorChain(const Camera& camera, const ShaderLibrary& library)
-    : camera_(camera), pictures_{camera.outputs, cellsOf(camera), marginOf(camera), {}, {}} {
-  const Camera drawn = drawnCamera(camera);
-  width_ = drawn.pinhole.width;
-  height_ = drawn.pinhole.height;
-  for (size_t o = 0; o < camera.outputs.size(); ++o)
-    for (auto* targets : {&pictures_.now, &pictures_.next}) targets->emplace_back(width_, height_, std::vector{PixelFormat::R32f}, false);
-  for (const StageChoice& s : camera.stages) stages_.push_back(s.make(library));
+    : camera_(camera),
+      cells_(camera.outputs, drawnCamera(camera).pinhole.width, drawnCamera(camera).pinhole.height, cellsOf(camera), marginOf(camera)),
+      pixels_(camera.outputs, camera.pinhole.width, camera.pinhole.height, 1, 0) {
+  for (const StageChoice& s : camera.stages) (s.onPixels ? ofPixels_ : ofCells_).push_back(s.make(library));
 }
 
 std::vector<float> SensorChain::resolved(const std::vector<float>& cells, const std::vector<double>& weights, bool addsUp) const {
-  const int n = pictures_.cells, margin = pictures_.margin_px;
+  const int n = cells_.cells, margin = cells_.margin_px;
   std::vector<float> pixels;
   pixels.reserve(static_cast<size_t>(camera_.pinhole.width) * static_cast<size_t>(camera_.pinhole.height));
   for (int row = 0; row < camera_.pinhole.height; ++row)
@@ -21,7 +18,7 @@ std::vector<float> SensorChain::resolved(const std::vector<float>& cells, const 
       double sum = 0.0, weight = 0.0;
       for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
-          const size_t at = static_cast<size_t>((row + margin) * n + j) * static_cast<size_t>(width_) + static_cast<size_t>((column + margin) * n + i);
+          const size_t at = static_cast<size_t>((row + margin) * n + j) * static_cast<size_t>(cells_.width) + static_cast<size_t>((column + margin) * n + i);
           sum += (addsUp ? 1.0 : weights[at]) * static_cast<double>(cells[at]);
           weight += weights[at];
         }
@@ -31,20 +28,18 @@ std::vector<float> SensorChain::resolved(const std::vector<float>& cells, const 
 }
 
 std::vector<std::vector<float>> SensorChain::run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick) {
-  for (size_t o = 0; o < drawn.size(); ++o) pictures_.now[o].colour(0).upload(drawn[o]);
-  for (const auto& stage : stages_) stage->run(tick, pictures_);
+  for (size_t o = 0; o < drawn.size(); ++o) cells_.values(o) = drawn[o];
+  for (const auto& stage : ofCells_) stage->run(tick, cells_);
+  for (size_t o = 0; o < drawn.size(); ++o) pixels_.values(o) = resolved(cells_.values(o), cellWeights, camera_.outputs[o].perEtendue);
+  for (const auto& stage : ofPixels_) stage->run(tick, pixels_);
   std::vector<std::vector<float>> pixels;
-  std::vector<float> cells;
-  for (size_t o = 0; o < drawn.size(); ++o) {
-    pictures_.now[o].colour(0).download(cells);
-    pixels.push_back(resolved(cells, cellWeights, camera_.outputs[o].perEtendue));
-  }
+  for (size_t o = 0; o < drawn.size(); ++o) pixels.push_back(pixels_.values(o));
   return pixels;
 }
 
 std::size_t SensorChain::middleCell(int column, int row) const {
-  const int n = pictures_.cells, margin = pictures_.margin_px;
-  return static_cast<size_t>((row + margin) * n + n / 2) * static_cast<size_t>(width_) + static_cast<size_t>((column + margin) * n + n / 2);
+  const int n = cells_.cells, margin = cells_.margin_px;
+  return static_cast<size_t>((row + margin) * n + n / 2) * static_cast<size_t>(cells_.width) + static_cast<size_t>((column + margin) * n + n / 2);
 }
 
 }  // namespace pitviper

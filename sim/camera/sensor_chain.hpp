@@ -1,6 +1,7 @@
 #pragma once
-// Runs a camera's stages over what was drawn of it, on the GPU, and brings cells together into its pixels.
+// Runs a camera's stages over what was drawn of it: those of the optics on cells, then, cells brought together into pixels, those of the detector.
 #include <memory>
+#include <optional>
 
 #include "sim/camera/sensor_stage.hpp"
 
@@ -19,9 +20,8 @@ class SensorChain {
  private:
   std::vector<float> resolved(const std::vector<float>& cells, const std::vector<double>& weights, bool addsUp) const;
   const Camera& camera_;
-  SensorPictures pictures_;
-  int width_, height_;  ///< cells
-  std::vector<std::unique_ptr<SensorStage>> stages_;
+  SensorPictures cells_, pixels_;
+  std::vector<std::unique_ptr<SensorStage>> ofCells_, ofPixels_;
 };
 
 }  // namespace pitviper

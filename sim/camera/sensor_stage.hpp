@@ -1,5 +1,6 @@
 #pragma once
-// The contract of a sensor's stage: what optics, a detector or electronics make of a camera's pictures, which stay on the GPU from one to the next.
+// The contract of a sensor's stage: what optics, a detector or electronics make of a camera's pictures.
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -12,21 +13,38 @@ namespace pitviper {
 struct SensorTick {
   int frame = 0;
   double time_s = 0.0, exposure_s = 0.0;
+  std::uint64_t seed = 0;  ///< of the scenario and this camera
 };
 
-/// A picture of each of a camera's outputs in its unit, on cells: row 0 is the film's top, with the margin around it.
-struct SensorPictures {
+/// A picture of each of a camera's outputs in its unit, on cells: row 0 is the film's top, with the margin around it. They are where a stage wants them, on
+/// the GPU or in memory, and moved only where the next one wants them elsewhere.
+class SensorPictures {
+ public:
+  /// `outputs` must outlive it. Needs a current GlContext only where a stage asks for pictures on the GPU.
+  SensorPictures(const std::vector<ChannelOutput>& ofOutputs, int columns, int rows, int cellsOfPixel, int marginAround_px)
+      : outputs(ofOutputs), width(columns), height(rows), cells(cellsOfPixel), margin_px(marginAround_px), values_(ofOutputs.size()) {}
   const std::vector<ChannelOutput>& outputs;
-  int cells = 1, margin_px = 0;  ///< cells a side of a pixel; pixels around the film
-  std::vector<RenderTarget> now, next;
-  /// What a stage has drawn becomes what the next one takes.
-  void advance() { std::swap(now, next); }
+  const int width, height;     ///< cells
+  const int cells, margin_px;  ///< cells a side of a pixel; pixels around the film
+
+  /// In memory, row by row, to be read and written.
+  std::vector<float>& values(std::size_t output);
+  /// On the GPU: a stage reads `now` and draws `next`; advance() makes that the pictures.
+  const Texture2D& now(std::size_t output);
+  RenderTarget& next(std::size_t output);
+  void advance() { std::swap(now_, next_); }
+
+ private:
+  void toGpu();
+  std::vector<std::vector<float>> values_;
+  std::vector<RenderTarget> now_, next_;
+  bool onGpu_ = false;
 };
 
 class SensorStage {
  public:
   virtual ~SensorStage() = default;
-  /// Takes `now`, leaves its pictures there (SensorPictures::advance()).
+  /// Makes its pictures of those there are.
   virtual void run(const SensorTick& tick, SensorPictures& pictures) = 0;
 };
 

@@ -104,6 +104,7 @@ IntegratedFrame integrateSpectralImage(const SpectralImage& image, const std::ve
     FrameLayer layer{o.layer(), o.unit, std::vector<float>(value.size())};
     const double scale = o.scale * (o.perExposure ? exposure_s : 1.0);
     for (size_t p = 0; p < value.size(); ++p) layer.pixels[p] = static_cast<float>(scale * value[p] * (o.perEtendue ? solidAngles.projected_sr[p] : 1.0));
+    if (o.temperature) toApparentTemperatures(layer.pixels, o, solidAngles.projected_sr, exposure_s);
     frame.layers.push_back(std::move(layer));
     frame.attributes.push_back({"binning_error." + o.layer(), std::vector<double>{result.binning.back().median, result.binning.back().maximum}});
   }

@@ -96,6 +96,13 @@ Frame startFrame(const Camera& camera, const WorldState& state, int number) {
 
 namespace {
 
+/// Of its own for each camera, whatever else there is.
+std::uint64_t noiseSeed(const Simulation& sim, const Camera& camera) {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+  for (unsigned char c : camera.name) hash = (hash ^ c) * 0x100000001b3u;
+  return hash ^ (static_cast<std::uint64_t>(sim.seed) * 0x9e3779b97f4a7c15u);
+}
+
 std::vector<float> valuesOf(const ChannelOutput& output, size_t o, const CameraImage& image) {
   const auto& slot = image.slots[static_cast<size_t>(image.slotOfOutput[o])];
   const double scale = output.scale * (output.perExposure ? image.exposure_s : 1.0);
@@ -106,9 +113,17 @@ std::vector<float> valuesOf(const ChannelOutput& output, size_t o, const CameraI
 
 }  // namespace
 
+void toApparentTemperatures(std::vector<float>& values, const ChannelOutput& output, const std::vector<double>& projected_sr, double exposure_s) {
+  const double scale = output.scale * (output.perExposure ? exposure_s : 1.0);
+  for (size_t p = 0; p < values.size(); ++p)
+    values[p] = static_cast<float>((*output.temperature)(static_cast<double>(values[p]) / (scale * (output.perEtendue ? projected_sr[p] : 1.0))));
+}
+
 void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image) {
-  for (size_t o = 0; o < camera.outputs.size(); ++o)
+  for (size_t o = 0; o < camera.outputs.size(); ++o) {
     frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, valuesOf(camera.outputs[o], o, image)});
+    if (camera.outputs[o].temperature) toApparentTemperatures(frame.layers.back().pixels, camera.outputs[o], image.solidAngles->projected_sr, image.exposure_s);
+  }
 }
 
 void addOptics(Frame& frame, const Pinhole& p, double exposure_s) {
@@ -176,8 +191,15 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   if (chain) {
     std::vector<std::vector<float>> drawn;
     for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(camera.outputs[o], o, image));
-    auto pixels = chain->run(drawn, image.solidAngles->projected_sr, {number, state.time_s, image.exposure_s});
-    for (size_t o = 0; o < camera.outputs.size(); ++o) frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, std::move(pixels[o])});
+    auto pixels = chain->run(drawn, image.solidAngles->projected_sr, {number, state.time_s, image.exposure_s, noiseSeed(sim, camera)});
+    std::vector<double> projected_sr;
+    for (size_t o = 0; o < camera.outputs.size(); ++o) {
+      if (camera.outputs[o].temperature) {
+        if (projected_sr.empty()) projected_sr = cameraAt(camera, state).pinhole.solidAngles().projected_sr;
+        toApparentTemperatures(pixels[o], camera.outputs[o], projected_sr, image.exposure_s);
+      }
+      frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, std::move(pixels[o])});
+    }
   } else {
     addOutputs(frame, camera, image);
   }

@@ -13,6 +13,9 @@ namespace pitviper {
 Frame makeFrame(const Simulation& simulation, const Camera& camera, const CameraImage& image, const WorldState& state, int number,
                 SensorChain* chain = nullptr);
 
+/// Values of an output that is told as an apparent temperature, in its linear unit, become temperatures [K].
+void toApparentTemperatures(std::vector<float>& values, const ChannelOutput& output, const std::vector<double>& projected_sr, double exposure_s);
+
 /// The same in steps, for a frame drawn in several passes: no layers; the layers of a pass's outputs; the metadata, last.
 Frame startFrame(const Camera& camera, const WorldState& state, int number);
 void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image);

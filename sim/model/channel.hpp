@@ -1,7 +1,9 @@
 #pragma once
 // The contract of a sensor channel's output: a spectral kernel and the factor that turns its integral into a quantity.
+#include <memory>
 #include <string>
 
+#include "sim/model/band_temperature.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/radiometry/spectrum.hpp"
 
@@ -18,6 +20,9 @@ struct ChannelOutput {
   Spectrum kernel;
   double scale = 1.0;
   bool perEtendue = false, perExposure = false;
+  bool detected = false;                                    ///< photoelectrons that a detector makes counts of
+  bool asTemperature = false;                               ///< then told as the temperature of a black body whose kernel integral is as large
+  std::shared_ptr<const BandTemperature> temperature = {};  ///< of its kernel, where it is
   double bandLow_um = 0.0, bandHigh_um = 0.0;
   std::string cut;  ///< what of its response is left out for want of data, in words; empty: nothing (coverage.hpp)
   std::string layer() const { return channel + "." + quantity; }

@@ -72,7 +72,8 @@ void addTo(Fingerprint& f, const MaterialStates& s) {
 
 void addTo(Fingerprint& f, const std::vector<ChannelOutput>& outputs) {
   f.add(static_cast<double>(outputs.size()));
-  for (const auto& [channel, quantity, unit, where, kernel, scale, perEtendue, perExposure, bandLow_um, bandHigh_um, cut] : outputs) {
+  for (const auto& [channel, quantity, unit, where, kernel, scale, perEtendue, perExposure, detected, asTemperature, temperature, bandLow_um, bandHigh_um,
+                    cut] : outputs) {
     f.add(channel).add(quantity).add(scale).add(perEtendue).add(perExposure);
     pitviper::addTo(f, kernel);
   }
@@ -114,8 +115,8 @@ void addTo(Fingerprint& f, const Material& m) {
 }
 
 void addTo(Fingerprint& f, const Simulation& sim) {
-  const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, textures, materials, entities, lights, sun, ambient, surroundings, background,
-               ground, air, cameras, probes, commands, sinks] = sim;
+  const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, textures, materials, entities, lights, sun, ambient, surroundings,
+               background, ground, air, cameras, probes, commands, sinks] = sim;
   f.add(static_cast<double>(seed)).add(static_cast<int>(mode)).add(shadows);
   const auto& [latitude_rad, longitude_rad, height_m] = frame.origin();
   f.add(latitude_rad).add(longitude_rad).add(height_m);
