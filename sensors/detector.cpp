@@ -1,24 +1,13 @@
 // The detector: photoelectrons and dark current as they are counted, what read-out adds, the well, and the converter.
 #include <cmath>
-#include <thread>
 
 #include "sensors/noise_source.hpp"
+#include "sensors/side_by_side.hpp"
 #include "sensors/stages.hpp"
 #include "sim/camera/sensor_stage.hpp"
 
 namespace pitviper {
 namespace {
-
-/// Bands of rows side by side.
-template <class OfRow>
-void overRows(int rows, const OfRow& ofRow) {
-  const int workers = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, 16);
-  std::vector<std::jthread> threads;
-  for (int w = 0; w < workers; ++w)
-    threads.emplace_back([&, w] {
-      for (int row = rows * w / workers; row < rows * (w + 1) / workers; ++row) ofRow(row);
-    });
-}
 
 class DetectorStage final : public SensorStage {
  public:
@@ -75,7 +64,7 @@ class DetectorStage final : public SensorStage {
     const double whole = law_.sigmaT > 0.0 ? law_.sigmaT * source(NoiseEffect::Frame).normal(0) : 0.0;
     std::vector<double> columns(static_cast<std::size_t>(width), whole);
     for (int x = 0; law_.sigmaTh > 0.0 && x < width; ++x) columns[static_cast<std::size_t>(x)] += law_.sigmaTh * ofColumn.normal(static_cast<std::uint32_t>(x));
-    overRows(height, [&](int y) {
+    const auto exposeRow = [&](int y) {
       const double row = law_.sigmaTv > 0.0 ? law_.sigmaTv * ofRow.normal(static_cast<std::uint32_t>(y)) : 0.0;
       for (int x = 0; x < width; ++x) {
         const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
@@ -89,6 +78,9 @@ class DetectorStage final : public SensorStage {
         const double count = std::clamp(std::floor(law_.gain * electrons + law_.offset + 0.5), 0.0, most);
         picture[at] = static_cast<float>(asElectrons ? ((count - law_.offset) / law_.gain - darkMean) / law_.fillFactor : count);
       }
+    };
+    sideBySide(height, [&](int first, int last) {
+      for (int y = first; y < last; ++y) exposeRow(y);
     });
   }
 

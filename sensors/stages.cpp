@@ -11,7 +11,7 @@ constexpr int kMostMargin_px = 256, kMostCells = 16;
 }  // namespace
 
 Registry<StageModel>& stageModels() {
-  static Registry<StageModel> all("stage", {detectorModel()});
+  static Registry<StageModel> all("stage", {pointSpreadModel(), detectorModel()});
   return all;
 }
 

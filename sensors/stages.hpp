@@ -17,6 +17,7 @@ struct StageModel {
   std::vector<std::pair<std::string, std::string>> shaders = {};
 };
 
+StageModel pointSpreadModel();
 StageModel detectorModel();
 
 Registry<StageModel>& stageModels();

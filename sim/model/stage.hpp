@@ -11,6 +11,7 @@
 namespace pitviper {
 
 class SensorStage;
+struct ChannelOutput;
 class ShaderLibrary;
 struct Camera;
 
@@ -38,6 +39,8 @@ struct StageChoice {
   int cells = 1;                             ///< cells a side of a pixel that it needs
   bool onPixels = false;                     ///< of the detector: it takes the film's own pixels, after every stage that takes cells
   std::optional<DetectorLaw> detector = {};  ///< it makes counts of photoelectrons
+  /// Contrast it leaves of a channel's pattern of this frequency on the film [1/m]; none: all.
+  std::function<double(const ChannelOutput& output, double frequency_per_m)> transfer = {};
   std::function<std::unique_ptr<SensorStage>(const ShaderLibrary&)> make = {};
 };
 

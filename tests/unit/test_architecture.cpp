@@ -56,7 +56,8 @@ std::string violation(const Use& use) {
                                                                           {"GeographicLib/", {"sim/scene/"}},
                                                                           {"OpenEXR/", {"sim/image/"}},
                                                                           {"Imf", {"sim/image/"}},
-                                                                          {"Eigen/", {"sim/plan/", "sim/radiance/", "materials/"}},
+                                                                          {"Eigen/", {"sim/plan/", "sim/radiance/", "materials/", "sensors/"}},
+                                                                          {"unsupported/Eigen/", {"sensors/"}},
                                                                           {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}},
                                                                           {"epoxy/", {"sim/gl/", "sim/render/", "sim/camera/", "scenarios/commands/bench"}}};
     for (const auto& [library, allowed] : homes) {

@@ -1,0 +1,24 @@
+#pragma once
+// Pictures spread by a kernel, in double precision: what is dim beside what is a million times brighter stays as it is.
+#include <complex>
+#include <vector>
+
+#include "sensors/optical_transfer.hpp"
+
+namespace pitviper {
+
+class Convolution {
+ public:
+  /// For pictures of this size. Cells within the kernel's reach of an edge are given what lies on the other side: a margin.
+  Convolution(const SpreadKernel& kernel, int width, int height);
+  /// Row by row, in place.
+  void apply(std::vector<float>& picture) const;
+
+ private:
+  using Complex = std::complex<double>;
+  void transform(std::vector<Complex>& plane, bool back) const;
+  int width_, height_, columns_, rows_;  ///< of the picture; of the transform
+  std::vector<double> transfer_;         ///< of the kernel, real as it is even, over the number of cells of the transform
+};
+
+}  // namespace pitviper

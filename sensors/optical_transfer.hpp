@@ -1,0 +1,32 @@
+#pragma once
+// What a lens makes of a point: its optical transfer function, and from it shares of light on cells of the film.
+#include <functional>
+#include <vector>
+
+namespace pitviper {
+
+/// OTF of a circular aperture of radius 1 with a central obscuration of radius `obscuration`, `defocus_waves` of defocus at its edge, for pupils shifted by
+/// `shift` (0 to 2; frequency = shift / (2 lambda F)): real, 1 at 0.
+///   OTF(s) = 1/A integral over both pupils of cos(4 pi W s x) dx dy, by chords in y.
+/// Source: H. H. Hopkins, Proc. R. Soc. A 231, 91 (1955); unaberrated and unobscured it is 2/pi (acos(s/2) - s/2 sqrt(1 - s^2/4)).
+double apertureTransfer(double shift, double obscuration, double defocus_waves);
+
+/// Factor of a wavefront that is off by `rms_waves`: 1 - (W / 0.18)^2 (1 - 4 (nu - 1/2)^2), nu of the cut-off. Source: R. R. Shannon, The Art and Science of
+/// Optical Design (1997). Valid to 0.18 waves, at which contrast vanishes at half the cut-off.
+double wavefrontTransfer(double nu, double rms_waves);
+constexpr double kMostWavefront_waves = 0.18;
+
+/// Shares of the light of a cell that fall on it and its neighbours, of square cells, spread evenly within.
+struct SpreadKernel {
+  int reach = 0;              ///< cells to each side
+  std::vector<double> share;  ///< (2 reach + 1)^2, row by row
+  double sum() const;
+  double at(int i, int j) const { return share[static_cast<std::size_t>((j + reach) * (2 * reach + 1) + i + reach)]; }
+};
+
+/// `transfer`: real and even, by frequency along x and y [1/m]; nothing beyond `cutoff`. Shares are those of a point spread function that the cell it comes
+/// from and the cell it falls on average.
+///   share(i, j) = c^2 integral of OTF(f) sinc^2(c f_x) sinc^2(c f_y) cos(2 pi c (i f_x + j f_y)) d2f
+SpreadKernel spreadKernel(const std::function<double(double fx, double fy)>& transfer, double cutoff_per_m, double cell_m, int reach);
+
+}  // namespace pitviper

@@ -1,0 +1,165 @@
+// The lens: a point spread function by diffraction, wavefront, defocus, blur and jitter, of each channel its own.
+#include <cmath>
+#include <map>
+
+#include "sensors/convolution.hpp"
+#include "sensors/stages.hpp"
+#include "sim/camera/sensor_stage.hpp"
+#include "sim/radiometry/constants.hpp"
+
+namespace pitviper {
+namespace {
+
+constexpr int kMostReach_cells = 128;
+
+struct Lens {
+  bool diffraction = true;
+  double fNumber = 1.0;
+  double obscuration = 0.0;   ///< of the aperture's diameter
+  double wavefront_m = 0.0;   ///< rms
+  double defocus_m = 0.0;     ///< of the film along the axis
+  double blur_m = 0.0;        ///< of Gauss, rms along one direction on the film, with jitter
+  double veilingGlare = 0.0;  ///< share of the light that is spread evenly
+  double cell_m = 0.0;
+  double leastShare = 0.99;  ///< of light within the kernel
+
+  double cutoff_per_m(double wavelength_um) const { return diffraction ? 1.0 / (wavelength_um * 1e-6 * fNumber) : blurCutoff_per_m(); }
+  /// Where Gauss is 1e-9.
+  double blurCutoff_per_m() const { return std::sqrt(2.0 * 20.7) / (2.0 * kPi * blur_m); }
+  double transfer(double wavelength_um, double frequency_per_m) const {
+    const double f = frequency_per_m, w = wavelength_um * 1e-6;
+    double value = std::exp(-2.0 * kPi * kPi * blur_m * blur_m * f * f);
+    if (!diffraction) return value;
+    const double nu = f * w * fNumber;  // of the cut-off
+    if (nu >= 1.0) return 0.0;
+    value *= apertureTransfer(2.0 * nu, obscuration, defocus_m / (8.0 * fNumber * fNumber * w));
+    return wavefront_m > 0.0 ? value * wavefrontTransfer(nu, wavefront_m / w) : value;
+  }
+};
+
+/// Wavelengths within a kernel and their shares, of light that is even over it.
+std::vector<std::pair<double, double>> wavelengthsOf(const ChannelOutput& output) {
+  constexpr int kWavelengths = 24;
+  std::vector<std::pair<double, double>> all;
+  double sum = 0.0;
+  for (int k = 0; k < kWavelengths; ++k) {
+    const double w = output.bandLow_um + (output.bandHigh_um - output.bandLow_um) * (k + 0.5) / kWavelengths, share = output.kernel(w);
+    if (share > 0.0) all.emplace_back(w, share), sum += share;
+  }
+  if (all.empty()) all.emplace_back(0.5 * (output.bandLow_um + output.bandHigh_um), 1.0), sum = 1.0;
+  for (auto& [w, share] : all) share /= sum;
+  return all;
+}
+
+double transferOf(const Lens& lens, const ChannelOutput& output, double frequency_per_m) {
+  double sum = 0.0;
+  for (const auto& [w, share] : wavelengthsOf(output)) sum += share * lens.transfer(w, frequency_per_m);
+  return sum;
+}
+
+SpreadKernel kernelOf(const Lens& lens, const ChannelOutput& output) {
+  const auto waves = wavelengthsOf(output);
+  double cutoff = 0.0;
+  for (const auto& [w, share] : waves) cutoff = std::max(cutoff, lens.cutoff_per_m(w));
+  if (lens.blur_m > 0.0) cutoff = std::min(cutoff, lens.blurCutoff_per_m());
+  constexpr int kEntries = 2000;
+  std::vector<double> table;
+  for (int k = 0; k <= kEntries; ++k) table.push_back(transferOf(lens, output, cutoff * k / kEntries));
+  const auto transfer = [&](double fx, double fy) {
+    const double x = std::sqrt(fx * fx + fy * fy) / cutoff * kEntries;
+    const auto k = static_cast<std::size_t>(x);
+    return k >= kEntries ? 0.0 : table[k] + (table[k + 1] - table[k]) * (x - static_cast<double>(k));
+  };
+  for (int reach = 2;; reach = std::min(2 * reach, kMostReach_cells)) {
+    SpreadKernel kernel = spreadKernel(transfer, cutoff, lens.cell_m, reach);
+    if (kernel.sum() >= lens.leastShare || reach == kMostReach_cells) return kernel;
+  }
+}
+
+class PointSpreadStage final : public SensorStage {
+ public:
+  PointSpreadStage(std::vector<SpreadKernel> kernels, double glare) : kernels_(std::move(kernels)), glare_(glare) {}
+  void run(const SensorTick&, SensorPictures& pictures) override {
+    for (std::size_t o = 0; o < kernels_.size(); ++o) {
+      if (spread_.size() <= o) spread_.emplace_back(kernels_[o], pictures.width, pictures.height);
+      std::vector<float>& picture = pictures.values(o);
+      double mean = 0.0;
+      for (float v : picture) mean += static_cast<double>(v) / static_cast<double>(picture.size());
+      spread_[o].apply(picture);
+      // What the kernel does not hold lies evenly over the film.
+      const double within = 1.0 - glare_, veil = mean * (glare_ + within * std::max(0.0, 1.0 - kernels_[o].sum()));
+      for (float& v : picture) v = static_cast<float>(within * static_cast<double>(v) + veil);
+    }
+  }
+
+ private:
+  std::vector<SpreadKernel> kernels_;
+  double glare_;
+  std::vector<Convolution> spread_;
+};
+
+StageChoice readPointSpread(const Record& r, const Camera& camera) {
+  Lens lens;
+  const Pinhole& p = camera.pinhole;
+  if (std::abs(p.pitchX_m / p.pitchY_m - 1.0) > 1e-9)
+    throw UserError(r.where(), "a point spread function on pixels that are not square", "'pitch' without 'pitch_y'", "remove pitch_y, or the stage");
+  StageChoice choice;
+  choice.cells = static_cast<int>(r.integer("cells"));
+  lens.fNumber = p.focalLength_m / p.apertureDiameter_m;
+  lens.diffraction = r.boolean("diffraction");
+  lens.obscuration = r.number("obscuration");
+  lens.wavefront_m = r.number("wavefront_error");
+  lens.defocus_m = r.number("defocus");
+  lens.blur_m = std::hypot(r.number("blur"), p.focalLength_m * r.number("jitter"));
+  lens.veilingGlare = r.number("veiling_glare");
+  lens.cell_m = p.pitchX_m / choice.cells;
+  lens.leastShare = 1.0 - r.number("beyond");
+  for (const char* key : {"obscuration", "wavefront_error", "defocus"})
+    if (!lens.diffraction && r.number(key) > 0.0)
+      throw UserError(r.where(key), std::string("'") + key + "' of a lens that does not diffract", "'diffraction: true'", "remove one of them");
+  constexpr double kNarrow = 0.1;  // of a cell: beyond, shares are as good as those of none
+  if (!lens.diffraction && lens.blur_m < kNarrow * lens.cell_m)
+    throw UserError(r.where(), "a point spread function of no width", "'diffraction: true', or a 'blur' or 'jitter' of a tenth of a cell or more",
+                    "give one, or remove the stage");
+  std::vector<SpreadKernel> kernels;
+  std::map<std::string, SpreadKernel> made;  // outputs of one channel differ in factors of wavelength alone
+  for (const ChannelOutput& o : camera.outputs) {
+    if (lens.wavefront_m > kMostWavefront_waves * o.bandLow_um * 1e-6)
+      throw UserError(r.where("wavefront_error"), "a wavefront error of more than 0.18 waves in channel '" + o.channel + "'",
+                      "at most " + std::to_string(kMostWavefront_waves * o.bandLow_um) + " um", "lower it, or say it as 'blur'");
+    auto at = made.find(o.layer());
+    if (at == made.end()) at = made.emplace(o.layer(), kernelOf(lens, o)).first;
+    kernels.push_back(at->second);
+    choice.margin_px = std::max(choice.margin_px, (kernels.back().reach + choice.cells - 1) / choice.cells);
+    if (kernels.back().sum() < lens.leastShare - 0.05)
+      throw UserError(r.where(), "a point spread function that is wider than 128 cells in channel '" + o.channel + "'", "most of its light within them",
+                      "lower 'cells', defocus or blur");
+  }
+  if (2 * choice.margin_px > std::max(p.width, p.height))
+    throw UserError(r.where(), "a point spread function wider than the film: " + std::to_string(choice.margin_px) + " pixels to each side",
+                    "half the film at most", "let more of it go into the even veil ('beyond'), or enlarge the film");
+  choice.transfer = [lens](const ChannelOutput& o, double frequency_per_m) { return (1.0 - lens.veilingGlare) * transferOf(lens, o, frequency_per_m); };
+  choice.make = [kernels, glare = lens.veilingGlare](const ShaderLibrary&) { return std::make_unique<PointSpreadStage>(kernels, glare); };
+  return choice;
+}
+
+}  // namespace
+
+StageModel pointSpreadModel() {
+  return {
+      "point_spread",
+      "What the lens makes of points: diffraction at the aperture, wavelength by wavelength within a channel (for light that is even over it), with wavefront "
+      "error, defocus, blur and jitter, on cells of a pixel. What it sends farther than its kernel reaches is an even veil.",
+      {withDefault(boolean("diffraction", "at a circular aperture of the camera's F number"), "true"),
+       withDefault(within(number("obscuration", "", "of the aperture, by diameter"), 0, 0.9), "0"),
+       withDefault(within(number("wavefront_error", "m", "rms, after Shannon; up to 0.18 waves"), 0, 1e-3), "0 um"),
+       withDefault(within(number("defocus", "m", "of the film along the axis"), 0, 1), "0 um"),
+       withDefault(within(number("blur", "m", "of Gauss on the film, rms along one direction"), 0, 1), "0 um"),
+       withDefault(within(number("jitter", "rad", "of the line of sight within an exposure, rms along one direction"), 0, 0.1), "0 rad"),
+       withDefault(within(number("veiling_glare", "", "share of the light that the lens spreads evenly"), 0, 0.9), "0"),
+       withDefault(integer("cells", "cells a side of a pixel", 1, 16), "2"),
+       withDefault(within(above(number("beyond", "", "share of a point's light that may go into the veil rather than lie where it is"), 0), 0, 0.2), "0.01")},
+      readPointSpread};
+}
+
+}  // namespace pitviper
