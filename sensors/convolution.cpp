@@ -21,55 +21,101 @@ int smoothFrom(int n) {
 }  // namespace
 
 Convolution::Convolution(const SpreadKernel& kernel, int width, int height)
-    : width_(width), height_(height), columns_(smoothFrom(std::max(width, 2 * kernel.reach + 1))), rows_(smoothFrom(std::max(height, 2 * kernel.reach + 1))) {
-  std::vector<Complex> plane(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
+    : width_(width),
+      height_(height),
+      columns_(smoothFrom(std::max(width, 2 * kernel.reach + 1))),
+      rows_(smoothFrom((std::max(height, 2 * kernel.reach + 1) + 1) / 2) * 2),  // rows go in pairs
+      half_(columns_ / 2 + 1) {
+  std::vector<double> own(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   for (int j = -kernel.reach; j <= kernel.reach; ++j)
     for (int i = -kernel.reach; i <= kernel.reach; ++i)
-      plane[static_cast<std::size_t>((j + rows_) % rows_) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>((i + columns_) % columns_)] =
+      own[static_cast<std::size_t>((j + rows_) % rows_) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>((i + columns_) % columns_)] =
           kernel.at(i, j);
-  transform(plane, false);
-  for (const Complex& c : plane) transfer_.push_back(c.real() / static_cast<double>(plane.size()));
+  for (const Complex& c : spectrum(own)) transfer_.push_back(c.real() / static_cast<double>(own.size()));
 }
 
-/// Rows, then columns; neither way scaled.
-void Convolution::transform(std::vector<Complex>& plane, bool back) const {
-  const auto columns = static_cast<std::size_t>(columns_), rows = static_cast<std::size_t>(rows_);
-  const auto one = [back](Eigen::FFT<double>& fft, Complex* into, const Complex* from, int n) {
-    if (back) fft.inv(into, from, n);
-    else fft.fwd(into, from, n);
-  };
-  const auto plan = [] { return Eigen::FFT<double>(Eigen::FFT<double>::impl_type(), Eigen::FFT<double>::Unscaled); };
-  sideBySide(rows_, [&](int first, int last) {
-    auto fft = plan();
-    std::vector<Complex> row(columns);
-    for (int y = first; y < last; ++y) {
-      Complex* own = plane.data() + static_cast<std::size_t>(y) * columns;
-      one(fft, row.data(), own, columns_);
-      std::copy(row.begin(), row.end(), own);
+namespace {
+
+using Fft = Eigen::FFT<double>;
+Fft unscaled() { return Fft(Fft::impl_type(), Fft::Unscaled); }
+
+}  // namespace
+
+std::vector<Convolution::Complex> Convolution::spectrum(const std::vector<double>& plane) const {
+  const auto columns = static_cast<std::size_t>(columns_), half = static_cast<std::size_t>(half_);
+  std::vector<Complex> all(half * static_cast<std::size_t>(rows_));
+  // Two rows in one: the first is the even part of what comes out, the second the odd.
+  sideBySide(rows_ / 2, [&](int first, int last) {
+    auto fft = unscaled();
+    std::vector<Complex> from(columns), into(columns);
+    for (auto pair = static_cast<std::size_t>(first); pair < static_cast<std::size_t>(last); ++pair) {
+      const double *a = plane.data() + 2 * pair * columns, *b = a + columns;
+      for (std::size_t x = 0; x < columns; ++x) from[x] = {a[x], b[x]};
+      fft.fwd(into.data(), from.data(), columns_);
+      for (std::size_t x = 0; x < half; ++x) {
+        const Complex z = into[x], w = std::conj(into[x == 0 ? 0 : columns - x]);
+        all[2 * pair * half + x] = 0.5 * (z + w);
+        all[(2 * pair + 1) * half + x] = Complex(0.0, -0.5) * (z - w);
+      }
     }
   });
-  sideBySide(columns_, [&](int first, int last) {
-    auto fft = plan();
-    std::vector<Complex> from(rows), into(rows);
-    for (int x = first; x < last; ++x) {
-      for (std::size_t y = 0; y < rows; ++y) from[y] = plane[y * columns + static_cast<std::size_t>(x)];
-      one(fft, into.data(), from.data(), rows_);
-      for (std::size_t y = 0; y < rows; ++y) plane[y * columns + static_cast<std::size_t>(x)] = into[y];
+  this->columns(all, false);
+  return all;
+}
+
+std::vector<double> Convolution::plane(std::vector<Complex> spectrum) const {
+  columns(spectrum, true);
+  const auto columns = static_cast<std::size_t>(columns_), half = static_cast<std::size_t>(half_);
+  std::vector<double> all(columns * static_cast<std::size_t>(rows_));
+  sideBySide(rows_ / 2, [&](int first, int last) {
+    auto fft = unscaled();
+    std::vector<Complex> from(columns), into(columns);
+    for (auto pair = static_cast<std::size_t>(first); pair < static_cast<std::size_t>(last); ++pair) {
+      const Complex *a = spectrum.data() + 2 * pair * half, *b = a + half;
+      for (std::size_t x = 0; x < columns; ++x) {
+        const std::size_t at = x < half ? x : columns - x;
+        const Complex p = x < half ? a[at] : std::conj(a[at]), q = x < half ? b[at] : std::conj(b[at]);
+        from[x] = p + Complex(-q.imag(), q.real());
+      }
+      fft.inv(into.data(), from.data(), columns_);
+      for (std::size_t x = 0; x < columns; ++x) all[2 * pair * columns + x] = into[x].real(), all[(2 * pair + 1) * columns + x] = into[x].imag();
+    }
+  });
+  return all;
+}
+
+void Convolution::columns(std::vector<Complex>& spectrum, bool back) const {
+  constexpr int kTogether = 8;  // as many of a row as one line of a cache holds twice
+  const auto half = static_cast<std::size_t>(half_), rows = static_cast<std::size_t>(rows_);
+  sideBySide((half_ + kTogether - 1) / kTogether, [&](int first, int last) {
+    auto fft = unscaled();
+    std::vector<Complex> from(rows * kTogether), into(rows);
+    for (int block = first; block < last; ++block) {
+      const auto begin = static_cast<std::size_t>(block) * kTogether, count = std::min<std::size_t>(kTogether, half - begin);
+      for (std::size_t y = 0; y < rows; ++y)
+        for (std::size_t x = 0; x < count; ++x) from[x * rows + y] = spectrum[y * half + begin + x];
+      for (std::size_t x = 0; x < count; ++x) {
+        if (back) fft.inv(into.data(), from.data() + x * rows, rows_);
+        else fft.fwd(into.data(), from.data() + x * rows, rows_);
+        std::copy(into.begin(), into.end(), from.begin() + static_cast<std::ptrdiff_t>(x * rows));
+      }
+      for (std::size_t y = 0; y < rows; ++y)
+        for (std::size_t x = 0; x < count; ++x) spectrum[y * half + begin + x] = from[x * rows + y];
     }
   });
 }
 
 void Convolution::apply(std::vector<float>& picture) const {
   const auto columns = static_cast<std::size_t>(columns_), width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
-  std::vector<Complex> plane(transfer_.size());
+  std::vector<double> whole(columns * static_cast<std::size_t>(rows_));
   // Beyond the picture its edge goes on.
   for (std::size_t y = 0; y < static_cast<std::size_t>(rows_); ++y)
-    for (std::size_t x = 0; x < columns; ++x) plane[y * columns + x] = static_cast<double>(picture[std::min(y, height - 1) * width + std::min(x, width - 1)]);
-  transform(plane, false);
-  for (std::size_t k = 0; k < plane.size(); ++k) plane[k] *= transfer_[k];
-  transform(plane, true);
+    for (std::size_t x = 0; x < columns; ++x) whole[y * columns + x] = static_cast<double>(picture[std::min(y, height - 1) * width + std::min(x, width - 1)]);
+  std::vector<Complex> all = spectrum(whole);
+  for (std::size_t k = 0; k < all.size(); ++k) all[k] *= transfer_[k];
+  whole = plane(std::move(all));
   for (std::size_t y = 0; y < height; ++y)
-    for (std::size_t x = 0; x < width; ++x) picture[y * width + x] = static_cast<float>(std::max(0.0, plane[y * columns + x].real()));
+    for (std::size_t x = 0; x < width; ++x) picture[y * width + x] = static_cast<float>(std::max(0.0, whole[y * columns + x]));
 }
 
 }  // namespace pitviper

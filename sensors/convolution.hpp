@@ -16,9 +16,12 @@ class Convolution {
 
  private:
   using Complex = std::complex<double>;
-  void transform(std::vector<Complex>& plane, bool back) const;
-  int width_, height_, columns_, rows_;  ///< of the picture; of the transform
-  std::vector<double> transfer_;         ///< of the kernel, real as it is even, over the number of cells of the transform
+  /// Half of each row's spectrum, row by row; and back. Neither way scaled.
+  std::vector<Complex> spectrum(const std::vector<double>& plane) const;
+  std::vector<double> plane(std::vector<Complex> spectrum) const;
+  void columns(std::vector<Complex>& spectrum, bool back) const;
+  int width_, height_, columns_, rows_, half_;  ///< of the picture; of the transform, and of half a row's spectrum
+  std::vector<double> transfer_;                ///< of the kernel, real as it is even, over the number of cells of the transform
 };
 
 }  // namespace pitviper

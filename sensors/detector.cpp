@@ -14,16 +14,22 @@ class DetectorStage final : public SensorStage {
   explicit DetectorStage(const DetectorLaw& law) : law_(law) {}
 
   void run(const SensorTick& tick, SensorPictures& pictures) override {
-    std::uint32_t channel = 0;
-    std::string before;
+    std::vector<std::pair<std::string, std::vector<float>>> read;  // counts by channel: they and what is told of them are of one read-out
     for (std::size_t o = 0; o < pictures.outputs.size(); ++o) {
       const ChannelOutput& output = pictures.outputs[o];
       if (!output.detected) continue;
-      // Counts and what is told of them are of one read-out.
-      if (!before.empty() && output.channel != before) ++channel;
-      before = output.channel;
-      const Fixed& fixed = fixedOf(channel, tick.seed, pictures.width, pictures.height);
-      expose(pictures.values(o), fixed, channel, tick, pictures.width, pictures.height, output.asTemperature);
+      auto own = std::find_if(read.begin(), read.end(), [&](const auto& r) { return r.first == output.channel; });
+      if (own == read.end()) {
+        const auto channel = static_cast<std::uint32_t>(read.size());
+        read.emplace_back(output.channel, pictures.values(o));
+        own = read.end() - 1;
+        expose(own->second, fixedOf(channel, tick.seed, pictures.width, pictures.height), channel, tick, pictures.width, pictures.height);
+      }
+      std::vector<float>& picture = pictures.values(o);
+      picture = own->second;
+      if (!output.asTemperature) continue;
+      const double dark = law_.darkCurrent_per_s * tick.exposure_s;
+      for (float& v : picture) v = static_cast<float>(((static_cast<double>(v) - law_.offset) / law_.gain - dark) / law_.fillFactor);
     }
   }
 
@@ -55,7 +61,7 @@ class DetectorStage final : public SensorStage {
     return f;
   }
 
-  void expose(std::vector<float>& picture, const Fixed& fixed, std::uint32_t channel, const SensorTick& tick, int width, int height, bool asElectrons) const {
+  void expose(std::vector<float>& picture, const Fixed& fixed, std::uint32_t channel, const SensorTick& tick, int width, int height) const {
     const auto frame = static_cast<std::uint32_t>(tick.frame) + 1;
     const auto source = [&](NoiseEffect e) { return NoiseSource(tick.seed, channel, frame, e); };
     const NoiseSource shot = source(NoiseEffect::Shot), read = source(NoiseEffect::Read), ofRow = source(NoiseEffect::Row),
@@ -75,8 +81,7 @@ class DetectorStage final : public SensorStage {
         if (fixed.bad[at] > 0) electrons = fixed.bad[at] == 1 ? 0.0 : law_.fullWell;
         electrons += static_cast<double>(fixed.dark[at]) + row + columns[static_cast<std::size_t>(x)];
         if (law_.sigmaTvh > 0.0) electrons += law_.sigmaTvh * read.normal(place);
-        const double count = std::clamp(std::floor(law_.gain * electrons + law_.offset + 0.5), 0.0, most);
-        picture[at] = static_cast<float>(asElectrons ? ((count - law_.offset) / law_.gain - darkMean) / law_.fillFactor : count);
+        picture[at] = static_cast<float>(std::clamp(std::floor(law_.gain * electrons + law_.offset + 0.5), 0.0, most));
       }
     };
     sideBySide(height, [&](int first, int last) {

@@ -83,6 +83,14 @@ class PointSpreadStage final : public SensorStage {
     for (std::size_t o = 0; o < kernels_.size(); ++o) {
       if (spread_.size() <= o) spread_.emplace_back(kernels_[o], pictures.width, pictures.height);
       std::vector<float>& picture = pictures.values(o);
+      // Counts and what is told of them begin as the same photoelectrons.
+      std::size_t same = 0;
+      while (same < o && !(pictures.outputs[same].detected && pictures.outputs[o].detected && pictures.outputs[same].channel == pictures.outputs[o].channel))
+        ++same;
+      if (same < o) {
+        picture = pictures.values(same);
+        continue;
+      }
       double mean = 0.0;
       for (float v : picture) mean += static_cast<double>(v) / static_cast<double>(picture.size());
       spread_[o].apply(picture);

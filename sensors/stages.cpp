@@ -21,6 +21,7 @@ StageChoice readStage(const Value& value, const Camera& camera) {
   const StageModel& model = askedModel(stageModels(), value, "stage");
   const ParameterTable table = stageTable(model);
   StageChoice choice = model.read(Record(value, table), camera);
+  choice.name = model.name;
   if (choice.margin_px < 0 || choice.margin_px > kMostMargin_px || choice.cells < 1 || choice.cells > kMostCells)
     throw UserError(value.where,
                     "stage '" + model.name + "' needs " + std::to_string(choice.margin_px) + " pixels around the film and " + std::to_string(choice.cells) +

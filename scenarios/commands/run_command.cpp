@@ -13,6 +13,7 @@
 #include "scenarios/commands/run_timing.hpp"
 #include "scenarios/commands/run_total.hpp"
 #include "scenarios/commands/seen_report.hpp"
+#include "scenarios/commands/sensor_report.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/frame/file_owner.hpp"
 #include "sim/frame/frame_files.hpp"
@@ -413,7 +414,7 @@ int checkCommand(const Arguments& arguments) {
     std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
                 count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),
                 count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths").c_str());
-    std::printf("%s", geometryText(sim, drawn, plan).c_str());
+    std::printf("%s%s", sensorText(c).c_str(), geometryText(sim, drawn, plan).c_str());
     for (const ScatteredAgain& s : ScatteringCheck(sim, c, plan).at(advance(sim, sim.time.at(0))))
       if (s.factor > kWorthSaying) sayScatteredAgain(c.name, s.channel, s.factor);
     if (!c.spectralImage) continue;

@@ -1,12 +1,14 @@
 #include "sim/camera/sensor_chain.hpp"
 
+#include "sim/gl/timing.hpp"
+
 namespace pitviper {
 
 SensorChain::SensorChain(const Camera& camera, const ShaderLibrary& library)
     : camera_(camera),
       cells_(camera.outputs, drawnCamera(camera).pinhole.width, drawnCamera(camera).pinhole.height, cellsOf(camera), marginOf(camera)),
       pixels_(camera.outputs, camera.pinhole.width, camera.pinhole.height, 1, 0) {
-  for (const StageChoice& s : camera.stages) (s.onPixels ? ofPixels_ : ofCells_).push_back(s.make(library));
+  for (const StageChoice& s : camera.stages) (s.onPixels ? ofPixels_ : ofCells_).push_back({"sensor: " + s.name, s.make(library)});
 }
 
 std::vector<float> SensorChain::resolved(const std::vector<float>& cells, const std::vector<double>& weights, bool addsUp) const {
@@ -29,12 +31,24 @@ std::vector<float> SensorChain::resolved(const std::vector<float>& cells, const 
 
 std::vector<std::vector<float>> SensorChain::run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick) {
   for (size_t o = 0; o < drawn.size(); ++o) cells_.values(o) = drawn[o];
-  for (const auto& stage : ofCells_) stage->run(tick, cells_);
+  run(ofCells_, tick, cells_);
   for (size_t o = 0; o < drawn.size(); ++o) pixels_.values(o) = resolved(cells_.values(o), cellWeights, camera_.outputs[o].perEtendue);
-  for (const auto& stage : ofPixels_) stage->run(tick, pixels_);
+  run(ofPixels_, tick, pixels_);
   std::vector<std::vector<float>> pixels;
   for (size_t o = 0; o < drawn.size(); ++o) pixels.push_back(pixels_.values(o));
   return pixels;
+}
+
+void SensorChain::run(const std::vector<Named>& stages, const SensorTick& tick, SensorPictures& pictures) {
+  for (const Named& s : stages) {
+    const TimedPart part(s.part.c_str());
+    s.stage->run(tick, pictures);
+  }
+}
+
+const std::vector<double>& SensorChain::projectedSolidAngles(const Pinhole& pinhole) {
+  if (!projected_ || projected_->first != pinhole.focalLength_m) projected_.emplace(pinhole.focalLength_m, pinhole.solidAngles().projected_sr);
+  return projected_->second;
 }
 
 std::size_t SensorChain::middleCell(int column, int row) const {

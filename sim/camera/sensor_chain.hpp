@@ -14,6 +14,8 @@ class SensorChain {
   /// `drawn`: of each output a picture of drawnCamera(), row by row from the top, in its unit; `cellWeights`: projected solid angle of each of
   /// its cells, which means of intensive outputs are weighted by (those per etendue add up). Returns pictures of the camera's own pixels.
   std::vector<std::vector<float>> run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick);
+  /// Projected solid angles of the camera's own pixels, whose pinhole may turn and zoom.
+  const std::vector<double>& projectedSolidAngles(const Pinhole& pinhole);
   /// The cell in the middle of a pixel of the camera, in pictures of drawnCamera().
   std::size_t middleCell(int column, int row) const;
 
@@ -21,7 +23,13 @@ class SensorChain {
   std::vector<float> resolved(const std::vector<float>& cells, const std::vector<double>& weights, bool addsUp) const;
   const Camera& camera_;
   SensorPictures cells_, pixels_;
-  std::vector<std::unique_ptr<SensorStage>> ofCells_, ofPixels_;
+  std::optional<std::pair<double, std::vector<double>>> projected_;  ///< of a focal length
+  struct Named {
+    std::string part;  ///< for timing
+    std::unique_ptr<SensorStage> stage;
+  };
+  static void run(const std::vector<Named>& stages, const SensorTick& tick, SensorPictures& pictures);
+  std::vector<Named> ofCells_, ofPixels_;
 };
 
 }  // namespace pitviper

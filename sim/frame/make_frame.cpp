@@ -192,12 +192,9 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
     std::vector<std::vector<float>> drawn;
     for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(camera.outputs[o], o, image));
     auto pixels = chain->run(drawn, image.solidAngles->projected_sr, {number, state.time_s, image.exposure_s, noiseSeed(sim, camera)});
-    std::vector<double> projected_sr;
     for (size_t o = 0; o < camera.outputs.size(); ++o) {
-      if (camera.outputs[o].temperature) {
-        if (projected_sr.empty()) projected_sr = cameraAt(camera, state).pinhole.solidAngles().projected_sr;
-        toApparentTemperatures(pixels[o], camera.outputs[o], projected_sr, image.exposure_s);
-      }
+      if (camera.outputs[o].temperature)
+        toApparentTemperatures(pixels[o], camera.outputs[o], chain->projectedSolidAngles(cameraAt(camera, state).pinhole), image.exposure_s);
       frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, std::move(pixels[o])});
     }
   } else {

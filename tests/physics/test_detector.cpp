@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "sensors/figures.hpp"
 #include "sim/model/stage.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
@@ -175,6 +176,38 @@ TEST(Detector, ApparentTemperature) {
   const double step = 1.2e7 / 16383.0;
   figure("its spread, the NETD [K]", std::sqrt(kelvin.variance), std::sqrt(electrons + 9e4 + step * step / 12.0) / slope, 0.06,
          "shot, read and rounding over dN/dT; slope by Wien's law");
+}
+
+// What `check` says of a camera by its design against what its frames show.
+TEST(Detector, DesignFiguresAreFound) {
+  const std::string law = "full_well: 2e6, bits: 14, read_noise: 500, dark_current: 1e7 /s, row_noise: 200, prnu: 0.002, dsnu: 300";
+  const std::string film = "time: {rate: 60 Hz, frames: 32}\n";
+  const Simulation warm = field(law, "counts", 301.0, film), cool = field(law, "counts", 299.0, film), middle = field(law, "counts", 300.0, film);
+  const SensorFigures f = figuresOf(middle.cameras[0], middle.cameras[0].outputs[1]);
+  ASSERT_TRUE(f.detected);
+  figure("IFOV [rad]", f.ifov_rad, 1.5e-4, 1e-12, "15 um over 100 mm");
+  // rms over 32 frames of each pixel, and of the pixels' means.
+  std::vector<double> sums(kSide * kSide, 0.0), squares = sums;
+  double slope = 0.0;
+  for (int t = 0; t < 32; ++t) {
+    const auto counts = pixels(renderFrame(middle, t), "mw.counts");
+    for (size_t p = 0; p < counts.size(); ++p) sums[p] += counts[p], squares[p] += counts[p] * counts[p];
+    slope += 0.5 * (momentsOf(pixels(renderFrame(warm, t), "mw.counts")).mean - momentsOf(pixels(renderFrame(cool, t), "mw.counts")).mean) / 32.0;
+  }
+  double temporal = 0.0;
+  for (size_t p = 0; p < sums.size(); ++p) temporal += (squares[p] - sums[p] * sums[p] / 32.0) / 31.0 / static_cast<double>(sums.size());
+  figure("NETD from frame to frame, of frames' own [mK]", 1e3 * std::sqrt(temporal) / slope, 1e3 * f.detected->netd_K, 0.02,
+         "32 frames of 4096 pixels; rows are 64 a frame");
+  for (double& v : sums) v /= 32.0;
+  figure("NETD with what is fixed [mK]", 1e3 * std::sqrt(temporal + momentsOf(sums).variance - temporal / 32.0) / slope, 1e3 * f.detected->netdWithFixed_K,
+         0.03, "4096 pixels' own responses");
+  const auto saturated = [&](double kelvin) {
+    int full = 0;
+    for (double v : pixels(renderFrame(field(law, "counts", kelvin)), "mw.counts")) full += v >= 16350.0;  // read noise comes after the well
+    return full / 4096.0;
+  };
+  bound("pixels that are full 2 K below saturation", saturated(f.detected->saturation_K - 2.0), 0.01, "PRNU of 0.2 %");
+  bound("pixels that are not 2 K above", 1.0 - saturated(f.detected->saturation_K + 2.0), 0.01, "PRNU of 0.2 %");
 }
 
 TEST(Detector, RefusesWhatIsNone) {

@@ -1,0 +1,40 @@
+#include "scenarios/commands/sensor_report.hpp"
+
+#include <cstdio>
+#include <set>
+
+#include "sensors/figures.hpp"
+
+namespace pitviper {
+namespace {
+
+std::string print(const char* format, auto... values) {
+  char text[300];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+}  // namespace
+
+std::string sensorText(const Camera& camera) {
+  if (camera.stages.empty()) return "";
+  std::string out;
+  std::set<std::string> told;
+  for (int pass = 0; pass < 2; ++pass)  // of a channel's outputs the one that is detected
+    for (const ChannelOutput& o : camera.outputs) {
+      if ((pass == 0 && !o.detected) || !told.insert(o.channel).second) continue;
+      const SensorFigures f = figuresOf(camera, o);
+      out += print("    %s: %.3g urad a pixel, MTF %.2f at Nyquist (lens and pixel)", o.channel.c_str(), 1e6 * f.ifov_rad, f.mtfAtNyquist);
+      if (const auto& d = f.detected) {
+        out += print(", %.3g electrons at 300 K, NETD %.3g mK", d->electronsAt300K, 1e3 * d->netd_K);
+        if (d->netdWithFixed_K > 1.01 * d->netd_K) out += print(" (%.3g with fixed pattern)", 1e3 * d->netdWithFixed_K);
+        out += ", most of it " + d->limitedBy;
+        out += d->saturation_K > 0.0 ? print(", saturated at %.4g K", d->saturation_K) : ", never saturated";
+        out += print(", %.3g W/m2 on one pixel as its noise", d->noiseEquivalent_W_m2);
+      }
+      out += "\n";
+    }
+  return out;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,12 @@
+#pragma once
+// What `check` says of a camera's lens and detector.
+#include <string>
+
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+/// A line for each of its channels; empty for a camera without stages.
+std::string sensorText(const Camera& camera);
+
+}  // namespace pitviper

@@ -1,0 +1,28 @@
+#pragma once
+// What a sensor is worth, by its design: the figures that engineers compare.
+#include <optional>
+#include <string>
+
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+/// On the axis.
+struct SensorFigures {
+  double ifov_rad = 0.0;      ///< a pixel's pitch over the focal length
+  double mtfAtNyquist = 1.0;  ///< lens and pixel, at half a cycle a pixel
+  struct Detected {
+    double electronsAt300K = 0.0;
+    double netd_K = 0.0;                ///< at 300 K: rms noise of a pixel from frame to frame over d signal/dT
+    double netdWithFixed_K = 0.0;       ///< with what is fixed over the film: PRNU, DSNU, rows, columns
+    double saturation_K = 0.0;          ///< a black body that fills the well or the converter; 0: hotter than 20000 K
+    double noiseEquivalent_W_m2 = 0.0;  ///< irradiance on the aperture, even over the channel's band and all on one pixel, whose signal is the noise at 300 K
+    std::string limitedBy;              ///< the largest of the noises at 300 K
+  };
+  std::optional<Detected> detected;  ///< of an output that a detector makes counts of
+};
+
+/// Of one of a camera's outputs.
+SensorFigures figuresOf(const Camera& camera, const ChannelOutput& output);
+
+}  // namespace pitviper
