@@ -20,8 +20,13 @@ ParameterTable stageTable(const StageModel& model) { return tableOf(model, "stag
 StageChoice readStage(const Value& value, const Camera& camera) {
   const StageModel& model = askedModel(stageModels(), value, "stage");
   const ParameterTable table = stageTable(model);
-  StageChoice choice = model.read(Record(value, table), camera);
+  const Record record(value, table);
+  StageChoice choice = model.read(record, camera);
   choice.name = model.name;
+  Fingerprint f;
+  f.add(model.name);
+  for (const Parameter& p : model.parameters) f.add(p.key).add(record.has(p.key) ? record.value(p.key).text : std::string());
+  choice.fingerprint = f.bytes();
   if (choice.margin_px < 0 || choice.margin_px > kMostMargin_px || choice.cells < 1 || choice.cells > kMostCells)
     throw UserError(value.where,
                     "stage '" + model.name + "' needs " + std::to_string(choice.margin_px) + " pixels around the film and " + std::to_string(choice.cells) +

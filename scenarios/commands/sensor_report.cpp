@@ -26,11 +26,14 @@ std::string sensorText(const Camera& camera) {
       const SensorFigures f = figuresOf(camera, o);
       out += print("    %s: %.3g urad a pixel, MTF %.2f at Nyquist (lens and pixel)", o.channel.c_str(), 1e6 * f.ifov_rad, f.mtfAtNyquist);
       if (const auto& d = f.detected) {
-        out += print(", %.3g electrons at 300 K, NETD %.3g mK", d->electronsAt300K, 1e3 * d->netd_K);
-        if (d->netdWithFixed_K > 1.01 * d->netd_K) out += print(" (%.3g with fixed pattern)", 1e3 * d->netdWithFixed_K);
-        out += ", most of it " + d->limitedBy;
-        out += d->saturation_K > 0.0 ? print(", saturated at %.4g K", d->saturation_K) : ", never saturated";
-        out += print(", %.3g W/m2 on one pixel as its noise", d->noiseEquivalent_W_m2);
+        const bool seesHeat = d->electronsAt300K >= 1.0;
+        if (seesHeat) {
+          out += print(", %.3g electrons at 300 K, NETD %.3g mK", d->electronsAt300K, 1e3 * d->netd_K);
+          if (d->netdWithFixed_K > 1.01 * d->netd_K) out += print(" (%.3g with fixed pattern)", 1e3 * d->netdWithFixed_K);
+          out += ", most of it " + d->limitedBy;
+          out += d->saturation_K > 0.0 ? print(", saturated at %.4g K", d->saturation_K) : ", never saturated";
+        }
+        out += print(", %.3g W/m2 on one pixel as its noise%s", d->noiseEquivalent_W_m2, seesHeat ? "" : " in the dark");
       }
       out += "\n";
     }

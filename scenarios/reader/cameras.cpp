@@ -128,6 +128,40 @@ void Builder::planned(const std::vector<ChannelOutput>& outputs, const SpectralS
 
 namespace {
 
+/// A camera's keys, and a sensor's where it has none of its own.
+Value withSensor(const Value& camera, const Libraries& libraries, const std::filesystem::path& base) {
+  const Value* asked = camera.kind == Value::Kind::Map ? camera.find("sensor") : nullptr;
+  if (!asked) return camera;
+  std::filesystem::path file;
+  if (asked->kind == Value::Kind::Map) {
+    file = Record(*asked, tables::sensorFile()).text("file");
+    if (file.is_relative()) file = base / file;
+  } else {
+    const std::string name = readText(*asked, "sensor");
+    file = libraries.sensors / (name + ".yaml");
+    std::error_code ignored;
+    if (name.find('/') != std::string::npos || name.size() > 100 || !std::filesystem::is_regular_file(file, ignored)) {
+      std::vector<std::string> names;
+      for (const auto& entry : std::filesystem::directory_iterator(libraries.sensors, ignored))
+        if (entry.path().extension() == ".yaml" && loadYaml(entry.path(), asked->where).find("camera")) names.push_back(entry.path().stem().string());
+      std::sort(names.begin(), names.end());
+      throw unknownWord(asked->where, "there is no sensor", name, names, "write 'sensor: {file: mine.yaml}', or its keys here");
+    }
+  }
+  const Value tree = loadYaml(file, asked->where);
+  const Record sensor(tree, tables::cameraPreset());
+  Value merged = camera;
+  const Value& preset = asMap(sensor.value("camera"), "a sensor's 'camera'");
+  for (std::size_t k = 0; k < preset.entries.size(); ++k) {
+    if (preset.entries[k].first == "sensor") throw UserError(preset.keyPlaces[k], "a sensor that names another", "a camera's own keys", "write them here");
+    // Of a projection two of three say all: one's own field of view leaves out the sensor's focal length.
+    if (camera.find(preset.entries[k].first) || (preset.entries[k].first == "focal_length" && camera.find("field_of_view"))) continue;
+    merged.entries.push_back(preset.entries[k]);
+    merged.keyPlaces.push_back(preset.keyPlaces[k]);
+  }
+  return merged;
+}
+
 /// Is there a stage that makes counts? (Their order and keys are read later.)
 bool hasDetector(const Record& camera) {
   if (!camera.given("stages")) return false;
@@ -223,7 +257,8 @@ void Builder::tellTemperature(ChannelOutput& output) {
 
 void Builder::readCameras(const Record& scenario) {
   if (!scenario.given("cameras")) return;
-  for (const Value& v : scenario.value("cameras").items) {
+  for (const Value& written : scenario.value("cameras").items) {
+    const Value v = withSensor(written, libraries_, base_);
     const Record r(v, tables::camera());
     Camera c;
     c.name = r.text("name");

@@ -362,7 +362,8 @@ const ParameterTable& camera() {
     ParameterTable x{
         "camera",
         "A pinhole projection with a real aperture; up to 16 channels.",
-        {required(text("name", "unique name; begins the file names")), required(map("film", "pixels")),
+        {required(text("name", "unique name; begins the file names")),
+         any("sensor", "a library sensor's name, or {file: ...}: its keys hold where the camera has none of its own"), required(map("film", "pixels")),
          within(number("focal_length", "m", "with `pitch` of the film"), 1e-6, 1e4),
          within(number("field_of_view", "rad", "horizontal, instead of focal length (then 50 mm) or of pitch"), 1e-9, 3.1),
          required(within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3)),
@@ -386,6 +387,20 @@ const ParameterTable& camera() {
     addPlacement(x.parameters, true);
     return x;
   }();
+  return t;
+}
+
+const ParameterTable& sensorFile() {
+  static const ParameterTable t{
+      "sensor of a camera", "A sensor in a file of its own.", {required(text("file", "YAML with a key `camera`, relative to the scenario"))}};
+  return t;
+}
+
+const ParameterTable& cameraPreset() {
+  static const ParameterTable t{
+      "sensor file",
+      "What a camera's `sensor` names; also the form of sensors/library/<name>.yaml of those that are cameras.",
+      {text("description", "what it is"), text("source", "where the figures come from"), required(map("camera", "any keys of a camera"))}};
   return t;
 }
 
@@ -468,7 +483,8 @@ std::vector<ParameterTable> all() {
   addAll(mediumModels(), medium);
   for (const auto& t : {filmLayerTable(), refractiveIndexTable(), angleAxisTable(), texture(), emission(), transmission()}) every.push_back(t);
   addAll(lightModels(), light);
-  for (const auto& t : {entity(), part(), shape(), waypoint(), geodetic(), camera(), film(), channel(), spectral(), spectralImage(), sensor(), probe()})
+  for (const auto& t :
+       {entity(), part(), shape(), waypoint(), geodetic(), camera(), cameraPreset(), film(), channel(), spectral(), spectralImage(), sensor(), probe()})
     every.push_back(t);
   addAll(stageModels(), stageTable);
   addAll(commandModels(), commandTable);

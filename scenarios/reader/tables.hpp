@@ -36,6 +36,8 @@ const ParameterTable& shape();
 const ParameterTable& waypoint();
 const ParameterTable& geodetic();
 const ParameterTable& camera();
+const ParameterTable& sensorFile();
+const ParameterTable& cameraPreset();
 const ParameterTable& film();
 const ParameterTable& channel();
 const ParameterTable& spectral();

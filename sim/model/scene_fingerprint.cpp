@@ -155,6 +155,7 @@ void addTo(Fingerprint& f, const Camera& c) {
   for (const auto& [number, column, row] : learnt) f.add(number).add(column).add(row);
   addTo(f, spectral);
   addTo(f, outputs);
+  for (const StageChoice& s : stages) f.add(s.fingerprint);
 }
 
 void addTo(Fingerprint& f, const Probe& p) {

@@ -36,6 +36,7 @@ struct DetectorLaw {
 /// A stage of a camera; its contract is in sim/camera/sensor_stage.hpp.
 struct StageChoice {
   std::string name = {};
+  std::string fingerprint = {};              ///< of all that it was asked for
   int margin_px = 0;                         ///< how far beyond a pixel it looks: so much is drawn around the film
   int cells = 1;                             ///< cells a side of a pixel that it needs
   bool onPixels = false;                     ///< of the detector: it takes the film's own pixels, after every stage that takes cells

@@ -210,6 +210,32 @@ TEST(Detector, DesignFiguresAreFound) {
   bound("pixels that are not 2 K above", 1.0 - saturated(f.detected->saturation_K + 2.0), 0.01, "PRNU of 0.2 %");
 }
 
+// Cameras of the library by their design, beside the figures that their kinds are sold with.
+TEST(Detector, LibrarySensorsAreOfTheirKind) {
+  const auto figures = [](const std::string& name) {
+    const Simulation sim = scene("cameras: [{name: c, sensor: " + name + ", position: [0 m, 0 m, 0 m], heading: 0 deg}]\n");
+    for (const ChannelOutput& o : sim.cameras[0].outputs)
+      if (o.detected) return figuresOf(sim.cameras[0], o);
+    throw std::runtime_error(name);
+  };
+  for (const auto& [name, best_K, worst_K] :
+       {std::tuple{"insb_640x512", 0.012, 0.025}, std::tuple{"mct_320x256", 0.010, 0.025}, std::tuple{"microbolometer_640x480_17um", 0.035, 0.050},
+        std::tuple{"microbolometer_640x512_12um", 0.040, 0.060}}) {
+    const auto f = figures(name);
+    bound(std::string(name) + ", NETD [K]", f.detected->netd_K, worst_K, "data sheets of its kind");
+    EXPECT_GT(f.detected->netd_K, best_K) << name;
+    EXPECT_GT(f.detected->saturation_K, 320.0) << name;
+  }
+  for (const char* name : {"ingaas_640x512", "silicon_1440x1080"}) EXPECT_GT(figures(name).mtfAtNyquist, 0.3) << name;
+  // One's own keys come first.
+  const Simulation own = scene(
+      "cameras: [{name: c, sensor: insb_640x512, film: {width: 32, height: 20, pitch: 15 um}, field_of_view: 1 deg, exposure: 3 ms, position: [0 m, 0 m, 0 m], "
+      "heading: 0 deg}]\n");
+  EXPECT_EQ(own.cameras[0].pinhole.width, 32);
+  EXPECT_NEAR(own.cameras[0].pinhole.focalLength_m, 32 * 15e-6 / (2.0 * std::tan(0.5 * kPi / 180.0)), 1e-9);
+  EXPECT_EQ(own.cameras[0].exposure_s, 3e-3);
+}
+
 TEST(Detector, RefusesWhatIsNone) {
   const auto refusal = [](const std::string& law, const std::string& output = "counts") -> std::string {
     try {
