@@ -148,6 +148,7 @@ StageModel detectorModel() {
         choice.make = [law = *choice.detector](const ShaderLibrary&) { return std::make_unique<DetectorStage>(law); };
         return choice;
       },
+      {},
       true};
 }
 

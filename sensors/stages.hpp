@@ -12,9 +12,9 @@ struct StageModel {
   std::vector<Parameter> parameters;  ///< besides `stage`
   /// Margin, cells and what makes it. The camera has its outputs. Errors: UserError.
   std::function<StageChoice(const Record&, const Camera&)> read;
-  bool isDetector = false;  ///< it makes counts
   /// Paths and texts of its shader files, where those are not compiled in with this folder.
   std::vector<std::pair<std::string, std::string>> shaders = {};
+  bool isDetector = false;  ///< it makes counts
 };
 
 StageModel pointSpreadModel();
