@@ -103,7 +103,7 @@ DetectorLaw readLaw(const Record& r) {
     throw UserError(r.where("offset"), "an offset of " + std::to_string(law.offset) + " counts of " + std::to_string(law.bits) + " bits",
                     "below " + std::to_string(static_cast<int>(law.mostCount())), "lower it, or give more bits");
   law.gain = r.given("gain") ? r.number("gain") : (law.mostCount() - law.offset) / law.fullWell;
-  if (!(law.gain * law.fullWell >= 1.0))
+  if (!(law.gain * law.fullWell >= 1.0 - 1e-9))
     throw UserError(r.where(r.given("gain") ? "gain" : "full_well"), "a full well is less than a count", "gain x full_well of 1 or more", "raise one of them");
   law.darkCurrent_per_s = r.number("dark_current");
   if (r.given("temperature") != r.given("dark_reference"))

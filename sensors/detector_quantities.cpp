@@ -37,7 +37,7 @@ void photons(const Detector& d, const Collector& c, ChannelOutput& o) {
 void electrons(const Detector& d, const Collector& c, ChannelOutput& o) {
   exposure(d, c, o);
   if (!d.quantumEfficiency)
-    throw UserError(d.where, "'electrons' needs a quantum efficiency", "'quantum_efficiency' of the channel, a number or a spectrum",
+    throw UserError(d.where, "'" + o.quantity + "' needs a quantum efficiency", "'quantum_efficiency' of the channel, a number or a spectrum",
                     "add 'quantum_efficiency: 0.8'");
   o.kernel = o.kernel * *d.quantumEfficiency * photonsPerJoule();
 }

@@ -12,9 +12,10 @@ SensorFigures figuresOf(const Camera& camera, const ChannelOutput& output) {
   const Pinhole& p = camera.pinhole;
   SensorFigures figures;
   figures.ifov_rad = p.pitchX_m / p.focalLength_m;
-  figures.mtfAtNyquist = 2.0 / kPi;  // sinc(1/2) of a whole pixel
+  figures.mtfAtNyquist = figures.drawnMtf = 2.0 / kPi;  // sinc(1/2) of a whole pixel
   const DetectorLaw* law = nullptr;
   for (const StageChoice& s : camera.stages) {
+    if (s.drawnTransfer) figures.drawnMtf *= s.drawnTransfer(output, 0.5 / p.pitchX_m);
     if (s.transfer) figures.mtfAtNyquist *= s.transfer(output, 0.5 / p.pitchX_m);
     if (s.detector) law = &*s.detector;
   }

@@ -11,6 +11,7 @@ namespace pitviper {
 struct SensorFigures {
   double ifov_rad = 0.0;      ///< a pixel's pitch over the focal length
   double mtfAtNyquist = 1.0;  ///< lens and pixel, at half a cycle a pixel
+  double drawnMtf = 1.0;      ///< the same of what is drawn, on cells
   struct Detected {
     double electronsAt300K = 0.0;
     double netd_K = 0.0;                ///< at 300 K: rms noise of a pixel from frame to frame over d signal/dT

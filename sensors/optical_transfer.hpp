@@ -21,12 +21,18 @@ struct SpreadKernel {
   int reach = 0;              ///< cells to each side
   std::vector<double> share;  ///< (2 reach + 1)^2, row by row
   double sum() const;
+  /// Contrast it leaves of a pattern of so many cycles a cell, cells being what they are.
+  double transfer(double cyclesPerCell) const;
   double at(int i, int j) const { return share[static_cast<std::size_t>((j + reach) * (2 * reach + 1) + i + reach)]; }
 };
 
-/// `transfer`: real and even, by frequency along x and y [1/m]; nothing beyond `cutoff`. Shares are those of a point spread function that the cell it comes
-/// from and the cell it falls on average.
-///   share(i, j) = c^2 integral of OTF(f) sinc^2(c f_x) sinc^2(c f_y) cos(2 pi c (i f_x + j f_y)) d2f
+/// A pattern of half a cycle a pixel of two cells has no alias then.
+constexpr double kSampled = 0.75;
+
+/// `transfer`: real and even, by frequency along x and y [1/m]; nothing beyond `cutoff`. Cells are means of what falls on them before it is spread.
+///   share(i, j) = c^2 integral of OTF(f) s(f) cos(2 pi c (i f_x + j f_y)) d2f
+/// Where cells are fine enough to sample the point spread function (c cutoff <= kSampled; all shares together are then 1), s is 1: the means before stand for
+/// those after. Where they are coarser, s = sinc^2(c f_x) sinc^2(c f_y): light lies evenly on the cell it comes from, and is averaged over the one it falls on.
 SpreadKernel spreadKernel(const std::function<double(double fx, double fy)>& transfer, double cutoff_per_m, double cell_m, int reach);
 
 }  // namespace pitviper

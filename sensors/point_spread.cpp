@@ -1,4 +1,5 @@
 // The lens: a point spread function by diffraction, wavefront, defocus, blur and jitter, of each channel its own.
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -15,14 +16,23 @@ constexpr int kMostReach_cells = 128;
 struct Lens {
   bool diffraction = true;
   double fNumber = 1.0;
-  double obscuration = 0.0;   ///< of the aperture's diameter
-  double wavefront_m = 0.0;   ///< rms
-  double defocus_m = 0.0;     ///< of the film along the axis
-  double blur_m = 0.0;        ///< of Gauss, rms along one direction on the film, with jitter
+  double obscuration = 0.0;  ///< of the aperture's diameter
+  double wavefront_m = 0.0;  ///< rms
+  double defocus_m = 0.0;    ///< of the film along the axis
+  double still_m = 0.0;      ///< blur of Gauss, rms along one direction on the film
+  double jitter_rad = 0.0;
+  double blur_m = 0.0;        ///< both
   double veilingGlare = 0.0;  ///< share of the light that is spread evenly
+  double focalLength_m = 1.0, aperture_m = 1.0, pitch_m = 1.0;
+  int cells = 1;
   double cell_m = 0.0;
   double leastShare = 0.99;  ///< of light within the kernel
 
+  void zoom(double focal_m) {
+    focalLength_m = focal_m;
+    fNumber = focal_m / aperture_m;
+    blur_m = std::hypot(still_m, focal_m * jitter_rad);
+  }
   double cutoff_per_m(double wavelength_um) const { return diffraction ? 1.0 / (wavelength_um * 1e-6 * fNumber) : blurCutoff_per_m(); }
   /// Where Gauss is 1e-9.
   double blurCutoff_per_m() const { return std::sqrt(2.0 * 20.7) / (2.0 * kPi * blur_m); }
@@ -57,11 +67,14 @@ double transferOf(const Lens& lens, const ChannelOutput& output, double frequenc
   return sum;
 }
 
-SpreadKernel kernelOf(const Lens& lens, const ChannelOutput& output) {
+SpreadKernel kernelOf(const Lens& lens, const ChannelOutput& output, int mostReach = kMostReach_cells) {
   const auto waves = wavelengthsOf(output);
   double cutoff = 0.0;
   for (const auto& [w, share] : waves) cutoff = std::max(cutoff, lens.cutoff_per_m(w));
   if (lens.blur_m > 0.0) cutoff = std::min(cutoff, lens.blurCutoff_per_m());
+  const bool isSampled = cutoff * lens.cell_m <= kSampled;
+  constexpr double kFar = 40.0;  // cycles a cell: beyond what kernels of coarser cells look at
+  if (!isSampled) cutoff = std::min(cutoff, kFar / lens.cell_m);
   constexpr int kEntries = 2000;
   std::vector<double> table;
   for (int k = 0; k <= kEntries; ++k) table.push_back(transferOf(lens, output, cutoff * k / kEntries));
@@ -70,16 +83,17 @@ SpreadKernel kernelOf(const Lens& lens, const ChannelOutput& output) {
     const auto k = static_cast<std::size_t>(x);
     return k >= kEntries ? 0.0 : table[k] + (table[k + 1] - table[k]) * (x - static_cast<double>(k));
   };
-  for (int reach = 2;; reach = std::min(2 * reach, kMostReach_cells)) {
+  for (int reach = std::min(2, mostReach);; reach = std::min(2 * reach, mostReach)) {
     SpreadKernel kernel = spreadKernel(transfer, cutoff, lens.cell_m, reach);
-    if (kernel.sum() >= lens.leastShare || reach == kMostReach_cells) return kernel;
+    if (kernel.sum() >= lens.leastShare || reach == mostReach) return kernel;
   }
 }
 
 class PointSpreadStage final : public SensorStage {
  public:
-  PointSpreadStage(std::vector<SpreadKernel> kernels, double glare) : kernels_(std::move(kernels)), glare_(glare) {}
-  void run(const SensorTick&, SensorPictures& pictures) override {
+  PointSpreadStage(const Lens& lens, std::vector<SpreadKernel> kernels) : lens_(lens), cells_(lens.cells), kernels_(std::move(kernels)) {}
+  void run(const SensorTick& tick, SensorPictures& pictures) override {
+    follow(tick, pictures);
     for (std::size_t o = 0; o < kernels_.size(); ++o) {
       if (spread_.size() <= o) spread_.emplace_back(kernels_[o], pictures.width, pictures.height);
       std::vector<float>& picture = pictures.values(o);
@@ -95,14 +109,26 @@ class PointSpreadStage final : public SensorStage {
       for (float v : picture) mean += static_cast<double>(v) / static_cast<double>(picture.size());
       spread_[o].apply(picture);
       // What the kernel does not hold lies evenly over the film.
-      const double within = 1.0 - glare_, veil = mean * (glare_ + within * std::max(0.0, 1.0 - kernels_[o].sum()));
+      const double within = 1.0 - lens_.veilingGlare, veil = mean * (lens_.veilingGlare + within * std::max(0.0, 1.0 - kernels_[o].sum()));
       for (float& v : picture) v = static_cast<float>(within * static_cast<double>(v) + veil);
     }
   }
 
  private:
+  /// Another stage may ask for finer cells, and a lens zooms. Kernels stay within the margin that there is.
+  void follow(const SensorTick& tick, const SensorPictures& pictures) {
+    const double focal = tick.focalLength_m > 0.0 ? tick.focalLength_m : lens_.focalLength_m;
+    if (pictures.cells == cells_ && std::abs(focal / lens_.focalLength_m - 1.0) < 1e-9) return;
+    cells_ = pictures.cells;
+    lens_.zoom(focal);
+    lens_.cell_m = lens_.pitch_m / cells_;
+    kernels_.clear(), spread_.clear();
+    for (const ChannelOutput& o : pictures.outputs) kernels_.push_back(kernelOf(lens_, o, std::min(kMostReach_cells, pictures.margin_px * cells_)));
+  }
+
+  Lens lens_;
+  int cells_;
   std::vector<SpreadKernel> kernels_;
-  double glare_;
   std::vector<Convolution> spread_;
 };
 
@@ -113,12 +139,16 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
     throw UserError(r.where(), "a point spread function on pixels that are not square", "'pitch' without 'pitch_y'", "remove pitch_y, or the stage");
   StageChoice choice;
   choice.cells = static_cast<int>(r.integer("cells"));
-  lens.fNumber = p.focalLength_m / p.apertureDiameter_m;
+  lens.cells = choice.cells;
+  lens.aperture_m = p.apertureDiameter_m;
+  lens.pitch_m = p.pitchX_m;
   lens.diffraction = r.boolean("diffraction");
   lens.obscuration = r.number("obscuration");
   lens.wavefront_m = r.number("wavefront_error");
   lens.defocus_m = r.number("defocus");
-  lens.blur_m = std::hypot(r.number("blur"), p.focalLength_m * r.number("jitter"));
+  lens.still_m = r.number("blur");
+  lens.jitter_rad = r.number("jitter");
+  lens.zoom(p.focalLength_m);
   lens.veilingGlare = r.number("veiling_glare");
   lens.cell_m = p.pitchX_m / choice.cells;
   lens.leastShare = 1.0 - r.number("beyond");
@@ -130,6 +160,8 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
     throw UserError(r.where(), "a point spread function of no width", "'diffraction: true', or a 'blur' or 'jitter' of a tenth of a cell or more",
                     "give one, or remove the stage");
   std::vector<SpreadKernel> kernels;
+  std::vector<std::string> names;
+  for (const ChannelOutput& o : camera.outputs) names.push_back(o.layer());
   std::map<std::string, SpreadKernel> made;  // outputs of one channel differ in factors of wavelength alone
   for (const ChannelOutput& o : camera.outputs) {
     if (lens.wavefront_m > kMostWavefront_waves * o.bandLow_um * 1e-6)
@@ -139,15 +171,20 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
     if (at == made.end()) at = made.emplace(o.layer(), kernelOf(lens, o)).first;
     kernels.push_back(at->second);
     choice.margin_px = std::max(choice.margin_px, (kernels.back().reach + choice.cells - 1) / choice.cells);
-    if (kernels.back().sum() < lens.leastShare - 0.05)
+    if (kernels.back().sum() < lens.leastShare - 1e-3)
       throw UserError(r.where(), "a point spread function that is wider than 128 cells in channel '" + o.channel + "'", "most of its light within them",
                       "lower 'cells', defocus or blur");
   }
-  if (2 * choice.margin_px > std::max(p.width, p.height))
+  constexpr int kLeast_px = 2;  // of the smallest kernel
+  if (choice.margin_px > kLeast_px && 2 * choice.margin_px > std::max(p.width, p.height))
     throw UserError(r.where(), "a point spread function wider than the film: " + std::to_string(choice.margin_px) + " pixels to each side",
                     "half the film at most", "let more of it go into the even veil ('beyond'), or enlarge the film");
   choice.transfer = [lens](const ChannelOutput& o, double frequency_per_m) { return (1.0 - lens.veilingGlare) * transferOf(lens, o, frequency_per_m); };
-  choice.make = [kernels, glare = lens.veilingGlare](const ShaderLibrary&) { return std::make_unique<PointSpreadStage>(kernels, glare); };
+  choice.drawnTransfer = [lens, kernels, names](const ChannelOutput& o, double frequency_per_m) {
+    const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), o.layer()) - names.begin());
+    return at < kernels.size() ? (1.0 - lens.veilingGlare) * kernels[at].transfer(frequency_per_m * lens.cell_m) : 1.0;
+  };
+  choice.make = [lens, kernels](const ShaderLibrary&) { return std::make_unique<PointSpreadStage>(lens, kernels); };
   return choice;
 }
 

@@ -1,5 +1,6 @@
 #include "scenarios/commands/sensor_report.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <set>
 
@@ -25,6 +26,7 @@ std::string sensorText(const Camera& camera) {
       if ((pass == 0 && !o.detected) || !told.insert(o.channel).second) continue;
       const SensorFigures f = figuresOf(camera, o);
       out += print("    %s: %.3g urad a pixel, MTF %.2f at Nyquist (lens and pixel)", o.channel.c_str(), 1e6 * f.ifov_rad, f.mtfAtNyquist);
+      if (std::abs(f.drawnMtf - f.mtfAtNyquist) > 0.02) out += print("; %.2f on its cells: more 'cells' would mend that", f.drawnMtf);
       if (const auto& d = f.detected) {
         const bool seesHeat = d->electronsAt300K >= 1.0;
         if (seesHeat) {

@@ -155,7 +155,8 @@ Value withSensor(const Value& camera, const Libraries& libraries, const std::fil
   for (std::size_t k = 0; k < preset.entries.size(); ++k) {
     if (preset.entries[k].first == "sensor") throw UserError(preset.keyPlaces[k], "a sensor that names another", "a camera's own keys", "write them here");
     // Of a projection two of three say all: one's own field of view leaves out the sensor's focal length.
-    if (camera.find(preset.entries[k].first) || (preset.entries[k].first == "focal_length" && camera.find("field_of_view"))) continue;
+    const std::string& key = preset.entries[k].first;
+    if (camera.find(key) || (key == "focal_length" && camera.find("field_of_view")) || (key == "field_of_view" && camera.find("focal_length"))) continue;
     merged.entries.push_back(preset.entries[k]);
     merged.keyPlaces.push_back(preset.keyPlaces[k]);
   }

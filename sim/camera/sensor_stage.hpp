@@ -13,6 +13,7 @@ namespace pitviper {
 struct SensorTick {
   int frame = 0;
   double time_s = 0.0, exposure_s = 0.0;
+  double focalLength_m = 0.0;  ///< at this time; 0: the camera's own
   std::uint64_t seed = 0;  ///< of the scenario and this camera
 };
 

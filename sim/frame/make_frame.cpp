@@ -42,9 +42,11 @@ void addTruth(Frame& frame, const Camera& camera, const CameraImage& image, cons
     add("normal_north", "1", [](const TruthPixel& p) { return p.normal[1]; });
     add("normal_up", "1", [](const TruthPixel& p) { return p.normal[2]; });
   }
-  if (t.area) add("area", "m2", [](const TruthPixel& p) { return p.area_m2; });
+  // What was drawn are cells of pixels.
+  const float cells = chain ? static_cast<float>(cellsOf(camera) * cellsOf(camera)) : 1.0f;
+  if (t.area) add("area", "m2", [cells](const TruthPixel& p) { return cells * p.area_m2; });
   if (t.solidAngles) {
-    add("solid_angle_from_light", "sr", [](const TruthPixel& p) { return p.solidAngleFromLight_sr; });
+    add("solid_angle_from_light", "sr", [cells](const TruthPixel& p) { return cells * p.solidAngleFromLight_sr; });
     add("solid_angle_of_aperture", "sr", [](const TruthPixel& p) { return p.solidAngleOfAperture_sr; });
   }
 }
@@ -191,7 +193,8 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   if (chain) {
     std::vector<std::vector<float>> drawn;
     for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(camera.outputs[o], o, image));
-    auto pixels = chain->run(drawn, image.solidAngles->projected_sr, {number, state.time_s, image.exposure_s, noiseSeed(sim, camera)});
+    auto pixels = chain->run(drawn, image.solidAngles->projected_sr,
+                             {number, state.time_s, image.exposure_s, cameraAt(camera, state).pinhole.focalLength_m, noiseSeed(sim, camera)});
     for (size_t o = 0; o < camera.outputs.size(); ++o) {
       if (camera.outputs[o].temperature)
         toApparentTemperatures(pixels[o], camera.outputs[o], chain->projectedSolidAngles(cameraAt(camera, state).pinhole), image.exposure_s);

@@ -24,6 +24,7 @@ BandTemperature::BandTemperature(const Spectrum& kernel, double low_um, double h
 double BandTemperature::operator()(double integral) const {
   if (!(integral > 0.0) || log_.size() < 2 || std::log(integral) < log_.front()) return 0.0;
   const double x = std::log(integral);
+  if (x >= log_.back()) return kHottest_K;
   const auto above = std::clamp<std::ptrdiff_t>(std::upper_bound(log_.begin(), log_.end(), x) - log_.begin(), 1, static_cast<std::ptrdiff_t>(log_.size()) - 1);
   const auto k = static_cast<std::size_t>(above);
   return 1.0 / (inverse_[k - 1] + (inverse_[k] - inverse_[k - 1]) * (x - log_[k - 1]) / (log_[k] - log_[k - 1]));
@@ -38,7 +39,7 @@ double BandTemperature::integral(double temperature_K) const {
 }
 
 double BandTemperature::slope(double temperature_K) const {
-  const double step = 0.02 * temperature_K;
+  const double step = 1e-3 * temperature_K;
   return (integral(temperature_K + step) - integral(temperature_K - step)) / (2.0 * step);
 }
 

@@ -43,6 +43,8 @@ struct StageChoice {
   std::optional<DetectorLaw> detector = {};  ///< it makes counts of photoelectrons
   /// Contrast it leaves of a channel's pattern of this frequency on the film [1/m]; none: all.
   std::function<double(const ChannelOutput& output, double frequency_per_m)> transfer = {};
+  /// The same of what its cells make of it.
+  std::function<double(const ChannelOutput& output, double frequency_per_m)> drawnTransfer = {};
   std::function<std::unique_ptr<SensorStage>(const ShaderLibrary&)> make = {};
 };
 

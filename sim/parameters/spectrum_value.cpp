@@ -214,6 +214,9 @@ std::vector<Row> rowsOf(const Value& list, std::string_view name) {
 /// Lines upon a table that is 0 outside: triangles over it, of the lines' own integrals. A product with anything smooth over a line is its value there.
 std::vector<Row> withLines(std::vector<Row> table, const std::vector<Row>& lines, std::string_view name) {
   constexpr double kHalfWidth = 1e-5;  // of the wavelength: below any smooth spectrum's, above rounding
+  for (std::size_t k = 1; k < table.size(); ++k)
+    if (!(table[k].x > table[k - 1].x))
+      throw UserError(table[k].where, "the wavelengths of " + std::string(name) + " do not rise", "each wavelength above the one before", "sort the table");
   if (table.size() == 1) table.push_back({table.front().x * (1.0 + kHalfWidth), table.front().y, table.front().where});
   const auto smooth = [&](double x) {
     if (table.empty() || x < table.front().x || x > table.back().x) return 0.0;
@@ -237,6 +240,10 @@ std::vector<Row> withLines(std::vector<Row> table, const std::vector<Row>& lines
     const bool covered = std::any_of(lines.begin(), lines.end(), [&](const Row& line) { return std::abs(row.x / line.x - 1.0) <= 1.001 * kHalfWidth; });
     if (!covered) all.push_back(row);
   }
+  // Where lines lie beyond it, the table ends in steps.
+  constexpr double kStep = 1e-9;
+  if (!table.empty() && lines.front().x < table.front().x * (1.0 - kHalfWidth)) all.push_back({table.front().x * (1.0 - kStep), 0.0, table.front().where});
+  if (!table.empty() && lines.back().x > table.back().x * (1.0 + kHalfWidth)) all.push_back({table.back().x * (1.0 + kStep), 0.0, table.back().where});
   std::sort(all.begin(), all.end(), [](const Row& a, const Row& b) { return a.x < b.x; });
   return all;
 }

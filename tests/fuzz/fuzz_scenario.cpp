@@ -249,7 +249,7 @@ class Mutator {
 };
 
 /// What a library file stands for, by its folder and, of a sensor's, its unit.
-enum class Role { Scenario, Material, Substance, Air, Response, Light, Sun };
+enum class Role { Scenario, Material, Substance, Air, Response, Light, Sun, Camera };
 
 Role roleOf(const fs::path& file) {
   if (file.parent_path().filename() == "substances") return Role::Substance;
@@ -257,12 +257,14 @@ Role roleOf(const fs::path& file) {
   const std::string owner = file.parent_path().parent_path().filename().string();
   if (owner != "sensors") return owner == "materials" ? Role::Material : Role::Air;
   const std::string text = readAll(file);
+  if (text.find("\ncamera:") != std::string::npos) return Role::Camera;
   if (text.find("W/(sr um)") != std::string::npos) return Role::Light;
   return text.find("W/(m2 um)") != std::string::npos ? Role::Sun : Role::Response;
 }
 
 /// The smallest scenario that reads the library file called "mutant".
 std::string userOf(Role role) {
+  if (role == Role::Camera) return "cameras: [{name: c, sensor: mutant, heading: 0 deg, position: [9 m, 0 m, 0 m]}]\n";
   const char* response = role == Role::Response ? "mutant" : "{band: [2.5 um, 2.6 um]}";
   const char* first = role == Role::Air ? "atmosphere: mutant\n"
                       // No body has it: each has a range of its own.
@@ -361,6 +363,7 @@ class Run {
       case Role::Response:
       case Role::Light:
       case Role::Sun:
+      case Role::Camera:
         return libraries_.sensors / "mutant.yaml";
       case Role::Scenario:
         break;

@@ -193,6 +193,26 @@ TEST(ClosedForms, CompositeSpectrum) {
   }
 }
 
+// Lines beyond a table's ends leave it as it is.
+TEST(ClosedForms, LinesBeyondATable) {
+  const auto lamp = [](const std::string& spectrum) {
+    return scene("lights: [{name: l, position: [0 m, 0 m, 0 m], intensity: {wavelength: nm, unit: W/(sr nm), " + spectrum +
+                 "}}]\ncameras: [{name: c, film: {width: 2, height: 2}, field_of_view: 1 deg, aperture: 5 mm, position: [9 m, 0 m, 0 m], look_at: [0 m, 1 m, 0 "
+                 "m], channels: "
+                 "[{name: v, response: {band: [0.5 um, 0.6 um]}}]}]\n")
+        .lights[0]
+        .intensity;
+  };
+  figure("intensity of a lamp of two lines beyond a flat part [W/sr]", lamp("values: [[400, 1], [700, 1]], lines: [[365, 10], [852, 4]]").integral(0.3, 0.9),
+         314.0, 1e-6, "300 and the lines' own");
+  try {
+    (void)lamp("values: [[700, 1], [400, 1]], lines: [[500, 10]]");
+    FAIL();
+  } catch (const UserError& e) {
+    EXPECT_NE(std::string(e.what()).find("do not rise"), std::string::npos) << e.what();
+  }
+}
+
 // Everything at one temperature: whatever the materials, the picture is a black body's.
 TEST(ClosedForms, IsothermalEnclosure) {
   const auto sim = scene(

@@ -169,6 +169,11 @@ TEST(Detector, ApparentTemperature) {
   double worst = 0.0;
   for (double v : pixels(f, "mw.apparent_temperature")) worst = std::max(worst, std::abs(v - 312.5));
   bound("apparent temperature of a black body of 312.5 K over 60 deg off [K]", worst, 2e-4, "a table of 1 % steps; single precision");
+  const BandTemperature band(Spectrum::band(3.0, 5.0), 3.0, 5.0);
+  EXPECT_EQ(band(1e12), 20000.0);
+  const BandTemperature swir(Spectrum::band(1.0, 1.7), 1.0, 1.7);
+  figure("dL/dT of 1.0-1.7 um at 300 K [W/(m2 sr K)]", swir.slope(300.0), (blackBodyBand(1.0, 1.7, 300.1) - blackBodyBand(1.0, 1.7, 299.9)) / 0.2, 2e-2,
+         "a table of 1 % steps");
   const Frame counted = renderFrame(field("full_well: 1.2e7, bits: 14, read_noise: 300", "apparent_temperature"));
   const Moments kelvin = momentsOf(pixels(counted, "mw.apparent_temperature"));
   const double electrons = momentsOf(pixels(counted, "mw.electrons")).mean, slope = electrons * 0.0375;  // d ln N / dT at 300 K: about c2 / (lambda T^2)
