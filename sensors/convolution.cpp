@@ -8,6 +8,9 @@
 namespace pitviper {
 namespace {
 
+using Fft = Eigen::FFT<double>;
+Fft unscaled() { return Fft(Fft::impl_type(), Fft::Unscaled); }
+
 /// Of factors 2, 3 and 5.
 int smoothFrom(int n) {
   for (;; ++n) {
@@ -33,13 +36,6 @@ Convolution::Convolution(const SpreadKernel& kernel, int width, int height)
           kernel.at(i, j);
   for (const Complex& c : spectrum(own)) transfer_.push_back(c.real() / static_cast<double>(own.size()));
 }
-
-namespace {
-
-using Fft = Eigen::FFT<double>;
-Fft unscaled() { return Fft(Fft::impl_type(), Fft::Unscaled); }
-
-}  // namespace
 
 std::vector<Convolution::Complex> Convolution::spectrum(const std::vector<double>& plane) const {
   const auto columns = static_cast<std::size_t>(columns_), half = static_cast<std::size_t>(half_);

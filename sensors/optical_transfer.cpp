@@ -43,19 +43,17 @@ double wavefrontTransfer(double nu, double rms_waves) {
 
 double SpreadKernel::sum() const { return std::accumulate(share.begin(), share.end(), 0.0); }
 
-double SpreadKernel::transfer(double turns) const {
+double SpreadKernel::transfer(double cyclesPerCell) const {
   double sum = 0.0;
   for (int j = -reach; j <= reach; ++j)
-    for (int i = -reach; i <= reach; ++i) sum += at(i, j) * std::cos(2.0 * kPi * turns * i);
+    for (int i = -reach; i <= reach; ++i) sum += at(i, j) * std::cos(2.0 * kPi * cyclesPerCell * i);
   return sum;
 }
 
 SpreadKernel spreadKernel(const std::function<double(double, double)>& transfer, double cutoff_per_m, double cell_m, int reach) {
-  // Even in both: a quarter of the plane, Gauss points in pieces that follow the cosines of the farthest cell.
-  // Cells far wider than the point spread function: sinc^2 has left 1e-4 of it by then, and the rest of it comes to nothing.
-  constexpr double kMostTurns = 32.0;
   const bool isSampled = cutoff_per_m * cell_m <= kSampled;
-  cutoff_per_m = std::min(cutoff_per_m, kMostTurns / cell_m);
+  cutoff_per_m = std::min(cutoff_per_m, kMostCycles / cell_m);
+  // Even in both: a quarter of the plane, Gauss points in pieces that follow the cosines of the farthest cell.
   const double turns = cutoff_per_m * cell_m * (reach + 1);
   const int pieces = std::max(1, static_cast<int>(std::ceil(turns)));
   std::vector<double> f, weight;

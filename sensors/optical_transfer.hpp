@@ -28,8 +28,12 @@ struct SpreadKernel {
 
 /// A pattern of half a cycle a pixel of two cells has no alias then.
 constexpr double kSampled = 0.75;
+/// Beyond so many cycles a cell nothing is looked at: cells are then far wider than the point spread function, and a hundredth of a cell's light may be told as
+/// its neighbours'. A whole number, at which sinc is 0, so that all shares together stay 1.
+constexpr double kMostCycles = 32.0;
 
 /// `transfer`: real and even, by frequency along x and y [1/m]; nothing beyond `cutoff`. Cells are means of what falls on them before it is spread.
+/// Frequencies up to kMostCycles a cell count.
 ///   share(i, j) = c^2 integral of OTF(f) s(f) cos(2 pi c (i f_x + j f_y)) d2f
 /// Where cells are fine enough to sample the point spread function (c cutoff <= kSampled; all shares together are then 1), s is 1: the means before stand for
 /// those after. Where they are coarser, s = sinc^2(c f_x) sinc^2(c f_y): light lies evenly on the cell it comes from, and is averaged over the one it falls on.

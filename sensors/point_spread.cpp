@@ -1,7 +1,6 @@
 // The lens: a point spread function by diffraction, wavefront, defocus, blur and jitter, of each channel its own.
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "sensors/convolution.hpp"
 #include "sensors/stages.hpp"
@@ -33,6 +32,10 @@ struct Lens {
     fNumber = focal_m / aperture_m;
     blur_m = std::hypot(still_m, focal_m * jitter_rad);
   }
+  void setCells(int cellsOfPixel) {
+    cells = cellsOfPixel;
+    cell_m = pitch_m / cellsOfPixel;
+  }
   double cutoff_per_m(double wavelength_um) const { return diffraction ? 1.0 / (wavelength_um * 1e-6 * fNumber) : blurCutoff_per_m(); }
   /// Where Gauss is 1e-9.
   double blurCutoff_per_m() const { return std::sqrt(2.0 * 20.7) / (2.0 * kPi * blur_m); }
@@ -47,10 +50,13 @@ struct Lens {
   }
 };
 
-/// Wavelengths within a kernel and their shares, of light that is even over it.
-std::vector<std::pair<double, double>> wavelengthsOf(const ChannelOutput& output) {
+/// Wavelengths within a kernel and their shares.
+using Waves = std::vector<std::pair<double, double>>;
+
+/// Of light that is even over an output's kernel.
+Waves wavesOf(const ChannelOutput& output) {
   constexpr int kWavelengths = 24;
-  std::vector<std::pair<double, double>> all;
+  Waves all;
   double sum = 0.0;
   for (int k = 0; k < kWavelengths; ++k) {
     const double w = output.bandLow_um + (output.bandHigh_um - output.bandLow_um) * (k + 0.5) / kWavelengths, share = output.kernel(w);
@@ -61,25 +67,23 @@ std::vector<std::pair<double, double>> wavelengthsOf(const ChannelOutput& output
   return all;
 }
 
-double transferOf(const Lens& lens, const ChannelOutput& output, double frequency_per_m) {
+double transferOf(const Lens& lens, const Waves& waves, double frequency_per_m) {
   double sum = 0.0;
-  for (const auto& [w, share] : wavelengthsOf(output)) sum += share * lens.transfer(w, frequency_per_m);
+  for (const auto& [w, share] : waves) sum += share * lens.transfer(w, frequency_per_m);
   return sum;
 }
 
-SpreadKernel kernelOf(const Lens& lens, const ChannelOutput& output, int mostReach = kMostReach_cells) {
-  const auto waves = wavelengthsOf(output);
+SpreadKernel kernelOf(const Lens& lens, const ChannelOutput& output, int mostReach) {
+  const Waves waves = wavesOf(output);
   double cutoff = 0.0;
   for (const auto& [w, share] : waves) cutoff = std::max(cutoff, lens.cutoff_per_m(w));
   if (lens.blur_m > 0.0) cutoff = std::min(cutoff, lens.blurCutoff_per_m());
-  const bool isSampled = cutoff * lens.cell_m <= kSampled;
-  constexpr double kFar = 40.0;  // cycles a cell: beyond what kernels of coarser cells look at
-  if (!isSampled) cutoff = std::min(cutoff, kFar / lens.cell_m);
   constexpr int kEntries = 2000;
+  const double last = std::min(cutoff, std::sqrt(2.0) * kMostCycles / lens.cell_m);
   std::vector<double> table;
-  for (int k = 0; k <= kEntries; ++k) table.push_back(transferOf(lens, output, cutoff * k / kEntries));
+  for (int k = 0; k <= kEntries; ++k) table.push_back(transferOf(lens, waves, last * k / kEntries));
   const auto transfer = [&](double fx, double fy) {
-    const double x = std::sqrt(fx * fx + fy * fy) / cutoff * kEntries;
+    const double x = std::sqrt(fx * fx + fy * fy) / last * kEntries;
     const auto k = static_cast<std::size_t>(x);
     return k >= kEntries ? 0.0 : table[k] + (table[k + 1] - table[k]) * (x - static_cast<double>(k));
   };
@@ -89,20 +93,32 @@ SpreadKernel kernelOf(const Lens& lens, const ChannelOutput& output, int mostRea
   }
 }
 
+/// The first of a camera's outputs that is spread as this one is: counts and what is told of them begin as the same photoelectrons.
+std::size_t firstAlike(const std::vector<ChannelOutput>& outputs, std::size_t o) {
+  for (std::size_t k = 0; outputs[o].detected && k < o; ++k)
+    if (outputs[k].detected && outputs[k].channel == outputs[o].channel) return k;
+  return o;
+}
+
+std::vector<SpreadKernel> kernelsOf(const Lens& lens, const std::vector<ChannelOutput>& outputs, int mostReach) {
+  std::vector<SpreadKernel> all;
+  for (std::size_t o = 0; o < outputs.size(); ++o) {
+    const std::size_t alike = firstAlike(outputs, o);
+    all.push_back(alike < o ? all[alike] : kernelOf(lens, outputs[o], mostReach));
+  }
+  return all;
+}
+
 class PointSpreadStage final : public SensorStage {
  public:
-  PointSpreadStage(const Lens& lens, std::vector<SpreadKernel> kernels) : lens_(lens), cells_(lens.cells), kernels_(std::move(kernels)) {}
+  PointSpreadStage(const Lens& lens, std::vector<SpreadKernel> kernels) : lens_(lens), kernels_(std::move(kernels)) {}
   void run(const SensorTick& tick, SensorPictures& pictures) override {
     follow(tick, pictures);
     for (std::size_t o = 0; o < kernels_.size(); ++o) {
       if (spread_.size() <= o) spread_.emplace_back(kernels_[o], pictures.width, pictures.height);
       std::vector<float>& picture = pictures.values(o);
-      // Counts and what is told of them begin as the same photoelectrons.
-      std::size_t same = 0;
-      while (same < o && !(pictures.outputs[same].detected && pictures.outputs[o].detected && pictures.outputs[same].channel == pictures.outputs[o].channel))
-        ++same;
-      if (same < o) {
-        picture = pictures.values(same);
+      if (const std::size_t alike = firstAlike(pictures.outputs, o); alike < o) {
+        picture = pictures.values(alike);
         continue;
       }
       double mean = 0.0;
@@ -118,16 +134,14 @@ class PointSpreadStage final : public SensorStage {
   /// Another stage may ask for finer cells, and a lens zooms. Kernels stay within the margin that there is.
   void follow(const SensorTick& tick, const SensorPictures& pictures) {
     const double focal = tick.focalLength_m > 0.0 ? tick.focalLength_m : lens_.focalLength_m;
-    if (pictures.cells == cells_ && std::abs(focal / lens_.focalLength_m - 1.0) < 1e-9) return;
-    cells_ = pictures.cells;
+    if (pictures.cells == lens_.cells && std::abs(focal / lens_.focalLength_m - 1.0) < 1e-9) return;
     lens_.zoom(focal);
-    lens_.cell_m = lens_.pitch_m / cells_;
-    kernels_.clear(), spread_.clear();
-    for (const ChannelOutput& o : pictures.outputs) kernels_.push_back(kernelOf(lens_, o, std::min(kMostReach_cells, pictures.margin_px * cells_)));
+    lens_.setCells(pictures.cells);
+    spread_.clear();
+    kernels_ = kernelsOf(lens_, pictures.outputs, std::min(kMostReach_cells, pictures.margin_px * lens_.cells));
   }
 
   Lens lens_;
-  int cells_;
   std::vector<SpreadKernel> kernels_;
   std::vector<Convolution> spread_;
 };
@@ -139,9 +153,9 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
     throw UserError(r.where(), "a point spread function on pixels that are not square", "'pitch' without 'pitch_y'", "remove pitch_y, or the stage");
   StageChoice choice;
   choice.cells = static_cast<int>(r.integer("cells"));
-  lens.cells = choice.cells;
   lens.aperture_m = p.apertureDiameter_m;
   lens.pitch_m = p.pitchX_m;
+  lens.setCells(choice.cells);
   lens.diffraction = r.boolean("diffraction");
   lens.obscuration = r.number("obscuration");
   lens.wavefront_m = r.number("wavefront_error");
@@ -150,7 +164,6 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
   lens.jitter_rad = r.number("jitter");
   lens.zoom(p.focalLength_m);
   lens.veilingGlare = r.number("veiling_glare");
-  lens.cell_m = p.pitchX_m / choice.cells;
   lens.leastShare = 1.0 - r.number("beyond");
   for (const char* key : {"obscuration", "wavefront_error", "defocus"})
     if (!lens.diffraction && r.number(key) > 0.0)
@@ -159,30 +172,25 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
   if (!lens.diffraction && lens.blur_m < kNarrow * lens.cell_m)
     throw UserError(r.where(), "a point spread function of no width", "'diffraction: true', or a 'blur' or 'jitter' of a tenth of a cell or more",
                     "give one, or remove the stage");
-  std::vector<SpreadKernel> kernels;
-  std::vector<std::string> names;
-  for (const ChannelOutput& o : camera.outputs) names.push_back(o.layer());
-  std::map<std::string, SpreadKernel> made;  // outputs of one channel differ in factors of wavelength alone
-  for (const ChannelOutput& o : camera.outputs) {
+  for (const ChannelOutput& o : camera.outputs)
     if (lens.wavefront_m > kMostWavefront_waves * o.bandLow_um * 1e-6)
       throw UserError(r.where("wavefront_error"), "a wavefront error of more than 0.18 waves in channel '" + o.channel + "'",
                       "at most " + std::to_string(kMostWavefront_waves * o.bandLow_um) + " um", "lower it, or say it as 'blur'");
-    auto at = made.find(o.layer());
-    if (at == made.end()) at = made.emplace(o.layer(), kernelOf(lens, o)).first;
-    kernels.push_back(at->second);
-    choice.margin_px = std::max(choice.margin_px, (kernels.back().reach + choice.cells - 1) / choice.cells);
-    if (kernels.back().sum() < lens.leastShare - 1e-3)
-      throw UserError(r.where(), "a point spread function that is wider than 128 cells in channel '" + o.channel + "'", "most of its light within them",
-                      "lower 'cells', defocus or blur");
+  const std::vector<SpreadKernel> kernels = kernelsOf(lens, camera.outputs, kMostReach_cells);
+  for (std::size_t o = 0; o < kernels.size(); ++o) {
+    choice.margin_px = std::max(choice.margin_px, (kernels[o].reach + choice.cells - 1) / choice.cells);
+    if (kernels[o].sum() < lens.leastShare - 1e-3)
+      throw UserError(r.where(), "a point spread function that is wider than 128 cells in channel '" + camera.outputs[o].channel + "'",
+                      "most of its light within them", "lower 'cells', defocus or blur");
   }
   constexpr int kLeast_px = 2;  // of the smallest kernel
   if (choice.margin_px > kLeast_px && 2 * choice.margin_px > std::max(p.width, p.height))
     throw UserError(r.where(), "a point spread function wider than the film: " + std::to_string(choice.margin_px) + " pixels to each side",
                     "half the film at most", "let more of it go into the even veil ('beyond'), or enlarge the film");
-  choice.transfer = [lens](const ChannelOutput& o, double frequency_per_m) { return (1.0 - lens.veilingGlare) * transferOf(lens, o, frequency_per_m); };
-  choice.drawnTransfer = [lens, kernels, names](const ChannelOutput& o, double frequency_per_m) {
-    const auto at = static_cast<std::size_t>(std::find(names.begin(), names.end(), o.layer()) - names.begin());
-    return at < kernels.size() ? (1.0 - lens.veilingGlare) * kernels[at].transfer(frequency_per_m * lens.cell_m) : 1.0;
+  const double within = 1.0 - lens.veilingGlare;
+  choice.transfer = [lens, within](const ChannelOutput& o, double frequency_per_m) { return within * transferOf(lens, wavesOf(o), frequency_per_m); };
+  choice.drawnTransfer = [lens, within](const ChannelOutput& o, double frequency_per_m) {
+    return within * kernelOf(lens, o, kMostReach_cells).transfer(frequency_per_m * lens.cell_m);
   };
   choice.make = [lens, kernels](const ShaderLibrary&) { return std::make_unique<PointSpreadStage>(lens, kernels); };
   return choice;

@@ -74,6 +74,20 @@ TEST(PointSpread, SharesOfADiffractedPoint) {
   }
 }
 
+// Cells far wider than what the lens resolves: nearly all of a cell's light stays on it, and what leaves it is not lost.
+TEST(PointSpread, CoarseCellsKeepTheirLight) {
+  for (double cells : {3.0, 30.0, 300.0}) {  // lambda F in a cell
+    const double cutoff = 1.0, cell_m = cells;
+    const SpreadKernel k = spreadKernel([&](double fx, double fy) { return apertureTransfer(2.0 * std::hypot(fx, fy) / cutoff, 0.0, 0.0); }, cutoff, cell_m, 8);
+    // Beyond a circle of radius r a point sends 2 / (pi v), v = pi r / (lambda F); corners lie farther.
+    const double beyond = 2.0 / (kPi * kPi * 8.5 * cells);
+    bound(print("light of a cell of %g lambda F lost or made, beyond what leaves 17 x 17 cells", cells), std::abs(1.0 - k.sum() - 0.9 * beyond),
+          0.15 * beyond + 2e-4, "2 / (pi v), and corners; frequencies to 32 cycles a cell");
+    // Evenly from the cell, over its edges: 0.8 / cells or so, logarithms apart.
+    EXPECT_GT(k.at(0, 0), 1.0 - 1.5 / cells - 0.01) << "what frequencies beyond 32 cycles a cell would bring back";
+  }
+}
+
 /// One pixel of 15 um is 1.5e-4 rad. `kelvin` of a disc far away, `side` of it [m] at 1 km.
 Simulation pointScene(double x_px, double y_px, const std::string& stages, int side = 65) {
   return scene(
