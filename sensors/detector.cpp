@@ -1,5 +1,9 @@
-// The detector: photoelectrons and dark current as they are counted, what read-out adds, the well, and the converter.
+// The detector: photoelectrons and dark current as they are counted, what read-out adds, the well, and the converter (DetectorLaw).
+// Source: EMVA Standard 1288, release 4.0 (linear camera model: shot noise, dark signal that doubles with temperature, gain, DSNU, PRNU); the components of
+// noise by frame, row and column: J. D'Agostino and C. Webb, Proc. SPIE 1488, 110 (1991).
+#include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sensors/noise_source.hpp"
 #include "sensors/side_by_side.hpp"
@@ -20,7 +24,7 @@ class DetectorStage final : public SensorStage {
       if (!output.detected) continue;
       auto own = std::find_if(read.begin(), read.end(), [&](const auto& r) { return r.first == output.channel; });
       if (own == read.end()) {
-        const auto channel = static_cast<std::uint32_t>(read.size());
+        const std::uint32_t channel = numberOf(output.channel);
         read.emplace_back(output.channel, pictures.values(o));
         own = read.end() - 1;
         expose(own->second, fixedOf(channel, tick.seed, pictures.width, pictures.height), channel, tick, pictures.width, pictures.height);
@@ -40,8 +44,14 @@ class DetectorStage final : public SensorStage {
     std::vector<std::uint8_t> bad;  ///< 1: dead, 2: hot
   };
 
+  /// Of its name alone, whatever other channels there are: 24 bits of FNV-1a.
+  static std::uint32_t numberOf(const std::string& channel) {
+    std::uint32_t hash = 0x811c9dc5u;
+    for (unsigned char c : channel) hash = (hash ^ c) * 0x01000193u;
+    return (hash >> 24) ^ (hash & 0xffffffu);
+  }
+
   const Fixed& fixedOf(std::uint32_t channel, std::uint64_t seed, int width, int height) {
-    if (channel >= fixed_.size()) fixed_.resize(channel + 1);
     Fixed& f = fixed_[channel];
     if (!f.response.empty()) return f;
     const auto source = [&](NoiseEffect e) { return NoiseSource(seed, channel, 0, e); };
@@ -90,7 +100,7 @@ class DetectorStage final : public SensorStage {
   }
 
   DetectorLaw law_;
-  std::vector<Fixed> fixed_;  ///< by channel
+  std::map<std::uint32_t, Fixed> fixed_;  ///< by channel
 };
 
 DetectorLaw readLaw(const Record& r) {

@@ -13,11 +13,11 @@ std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::a
 
 class NoiseSource {
  public:
-  /// `output`: of several of one camera; `frame` 0 for what is fixed.
-  NoiseSource(std::uint64_t seed, std::uint32_t output, std::uint32_t frame, NoiseEffect effect)
+  /// `channel`: below 2^24, of several of one camera; `frame` 0 for what is fixed.
+  NoiseSource(std::uint64_t seed, std::uint32_t channel, std::uint32_t frame, NoiseEffect effect)
       : key_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32)},
         frame_(frame),
-        effect_(static_cast<std::uint32_t>(effect) | (output << 8)) {}
+        effect_(static_cast<std::uint32_t>(effect) | (channel << 8)) {}
   /// In (0, 1), the `draw`-th of a place.
   double uniform(std::uint32_t place, std::uint32_t draw = 0) const;
   /// Of mean 0 and variance 1 (Box and Muller).

@@ -158,6 +158,17 @@ TEST(Detector, NoiseIsTheFramesOwn) {
   const auto third = pixels(renderFrame(sim, 3), "mw.counts");
   EXPECT_EQ(third, pixels(renderFrame(sim, 3), "mw.counts"));
   EXPECT_NE(third, pixels(renderFrame(sim, 2), "mw.counts"));
+  // Another channel beside it changes nothing, and has noise of its own.
+  const auto channels = [&](const std::string& which) {
+    return renderFrame(scene(
+        "seed: 11\nbackground: {temperature: 300 K}\ncameras: [{name: c, film: {width: 64, height: 64, pitch: 15 um}, focal_length: 100 mm, aperture: 25 mm, "
+        "exposure: 4 ms, position: [0 m, 0 m, 0 m], heading: 0 deg, stages: [{stage: detector, " +
+        law + "}], channels: [" + which + "]}]\n"));
+  };
+  const std::string b = "{name: b, response: {band: [3.5 um, 4.9 um]}, quantum_efficiency: 0.8, output: counts}", a = "{name: a" + b.substr(8);
+  const Frame both = channels(a + ", " + b);
+  EXPECT_EQ(pixels(both, "b.counts"), pixels(channels(b), "b.counts"));
+  EXPECT_NE(pixels(both, "b.counts"), pixels(both, "a.counts"));
 }
 
 // A black body's apparent temperature is its own, off the axis too; by counts within what their noise and steps are.
