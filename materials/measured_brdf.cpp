@@ -153,7 +153,8 @@ MeasuredGrid alikeBothWays(const MeasuredGrid& g, Change& change) {
   return to;
 }
 
-/// The share of what both directions can see that is missing. What is missing, or one cannot see, is as at the next smaller second angle.
+/// The share of what both directions can see that is missing. What is missing, or one cannot see, is as at the next smaller second angle; at the first of
+/// them, as at the next that is there.
 double fillHoles(MeasuredGrid& g) {
   const Shape shape(g);
   std::size_t seen = 0, holes = 0;
@@ -165,8 +166,9 @@ double fillHoles(MeasuredGrid& g) {
       seen += isSeen;
       holes += isSeen && std::isnan(v);
       if (!std::isnan(v)) continue;
-      for (std::size_t k = j + 1; std::isnan(v) && k < shape.second && j == 0; ++k) v = g.values[shape.at(p, k, i, w)];
       if (j > 0) v = g.values[shape.at(p, j - 1, i, w)];
+      else
+        for (std::size_t k = 1; std::isnan(v) && k < shape.second; ++k) v = g.values[shape.at(p, k, i, w)];
       if (std::isnan(v) && i > 0) v = g.values[shape.at(p, j, i - 1, w)];
       if (std::isnan(v)) v = 0.0;
     }
@@ -365,9 +367,12 @@ MeasuredBrdf measuredBrdf(MeasuredGrid grid, int mostAzimuths, const Location& w
   }
   std::vector<Lobe> lobes;
   for (std::size_t k = 0; k < brdf.parts.size(); ++k) lobes.push_back(azimuthLobe(brdf, kind, k));
-  brdf.albedos = albedosOf(brdf.parts, [&](const glm::dvec3& light, const glm::dvec3& view, std::vector<double>& shares) {
-    for (std::size_t k = 0; k < lobes.size(); ++k) shares[k] = azimuthLobeAt(kind, lobes[k], light, view);
-  }, 2 * std::max(1, static_cast<int>(lobes.size()) - 1));
+  brdf.albedos = albedosOf(
+      brdf.parts,
+      [&](const glm::dvec3& light, const glm::dvec3& view, std::vector<double>& shares) {
+        for (std::size_t k = 0; k < lobes.size(); ++k) shares[k] = azimuthLobeAt(kind, lobes[k], light, view);
+      },
+      2 * std::max(1, static_cast<int>(lobes.size()) - 1));
   boundEnergy(brdf, where);
   return brdf;
 }
