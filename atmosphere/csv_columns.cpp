@@ -35,7 +35,7 @@ const std::vector<Kind>& kinds() {
   return all;
 }
 
-std::string quoted(std::string_view text) { return tokenOf(text); }
+std::string inQuotes(std::string_view text) { return tokenOf(text); }
 
 /// Blanks as underscores, so that "path radiance [..]" and "path_radiance_.." are alike.
 std::string plain(std::string_view text) {
@@ -92,22 +92,22 @@ Column columnOf(const Cell& cell, Location where) {
     if (kind.meaning == Meaning::Transmittance || kind.meaning == Meaning::PathRadiance) {
       column.range_km = takeRange(rest);
       if (column.range_km && !(*column.range_km > 0.0))
-        throw UserError(where, "the range in " + quoted(cell.text) + " is not above zero", "a range as in " + std::string(kind.name) + "_5km",
+        throw UserError(where, "the range in " + inQuotes(cell.text) + " is not above zero", "a range as in " + std::string(kind.name) + "_5km",
                         "correct the name of the column");
     }
     if (!bracketed) unit = rest;
     if ((bracketed && !rest.empty()) || (kind.units.empty() && !unit.empty() && unit != "1"))
-      throw UserError(where, quoted(cell.text) + " is not understood behind '" + kind.name + "'",
+      throw UserError(where, inQuotes(cell.text) + " is not understood behind '" + kind.name + "'",
                       kind.units.empty() ? "transmittance, or transmittance_5km" : unitsOf(kind), "correct the name of the column");
     if (kind.units.empty()) return column;
-    if (unit.empty()) throw UserError(where, quoted(cell.text) + " has no unit", unitsOf(kind), "write the unit behind the name");
+    if (unit.empty()) throw UserError(where, inQuotes(cell.text) + " has no unit", unitsOf(kind), "write the unit behind the name");
     const auto found = std::find_if(kind.units.begin(), kind.units.end(), [&](const Unit& u) { return plain(u.name) == unit; });
-    if (found == kind.units.end()) throw UserError(where, quoted(cell.text) + " has an unknown unit", unitsOf(kind), "convert the column");
+    if (found == kind.units.end()) throw UserError(where, inQuotes(cell.text) + " has an unknown unit", unitsOf(kind), "convert the column");
     column.scale = found->scale;
     column.perWavenumber = found->perWavenumber;
     return column;
   }
-  throw UserError(where, "unknown column " + quoted(cell.text),
+  throw UserError(where, "unknown column " + inQuotes(cell.text),
                   "wavelength, wavenumber, range, transmittance, extinction, path_radiance or source_radiance, with units", "rename the column, or remove it");
 }
 
@@ -145,7 +145,7 @@ std::vector<Column> columnsOf(std::string_view header, const Location& line) {
       if (other.meaning == c.meaning && (other.range_km.has_value() == c.range_km.has_value()) &&
           std::abs(other.range_km.value_or(1.0) - c.range_km.value_or(1.0)) < 1e-9 * c.range_km.value_or(1.0))
         throw UserError({line.file, line.line, cell.column, -1},
-                        c.range_km ? "the range of " + quoted(cell.text) + " comes twice" : "the column " + quoted(cell.text) + " comes twice", "each once",
+                        c.range_km ? "the range of " + inQuotes(cell.text) + " comes twice" : "the column " + inQuotes(cell.text) + " comes twice", "each once",
                         "remove one of the columns");
     columns.push_back(std::move(c));
   }
@@ -177,7 +177,7 @@ std::vector<Column> columnsOf(std::string_view header, const Location& line) {
     const bool known = std::any_of(columns.begin(), columns.end(), [&](const Column& t) {
       return t.meaning == Meaning::Transmittance && t.range_km && std::abs(*t.range_km - *c->range_km) < 1e-9 * *c->range_km;
     });
-    if (!known) refuse(c, quoted(c->name) + " is for a range without a transmittance", "a range that has one", "add the transmittance of this range");
+    if (!known) refuse(c, inQuotes(c->name) + " is for a range without a transmittance", "a range that has one", "add the transmittance of this range");
   }
   return columns;
 }

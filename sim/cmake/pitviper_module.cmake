@@ -5,7 +5,8 @@
 #   .glsl files directly in it are compiled into the library as text: see sim/gl/shader_source.hpp.
 find_program(PITVIPER_CCACHE ccache)
 if(PITVIPER_CCACHE)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${PITVIPER_CCACHE})
+  # What it needs to know of precompiled headers: they hold no __DATE__ and their macros are what the options say.
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros ${PITVIPER_CCACHE})
   set(CMAKE_C_COMPILER_LAUNCHER ${PITVIPER_CCACHE})
 endif()
 
@@ -14,7 +15,7 @@ target_include_directories(pitviper_options INTERFACE ${CMAKE_SOURCE_DIR})
 target_compile_options(pitviper_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
-  target_compile_options(pitviper_options INTERFACE -Wno-restrict)  # false alarms on std::string (GCC bug 105651)
+  target_compile_options(pitviper_options INTERFACE -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds)  # false alarms on std::string (GCC bug 105651)
 endif()
 if(PITVIPER_SANITIZE)
   target_compile_options(pitviper_options INTERFACE
@@ -22,6 +23,18 @@ if(PITVIPER_SANITIZE)
     -Wno-maybe-uninitialized)  # false alarms in the standard library under sanitizers (GCC bug 105562)
   target_link_options(pitviper_options INTERFACE -fsanitize=address,undefined)
 endif()
+
+# The standard library and glm, which nearly every file includes, are read once for all: a third of the time of a build from nothing. A file still names what
+# it uses. One for each way in which modules are optimised.
+foreach(way pv_headers pv_headers_quick)
+  file(WRITE ${CMAKE_BINARY_DIR}/${way}.cpp "// What modules have in common is in its precompiled header.\n")
+  add_library(${way} STATIC ${CMAKE_BINARY_DIR}/${way}.cpp)
+  target_link_libraries(${way} PRIVATE pitviper_options ${GLM_TARGET})
+  target_compile_options(${way} PRIVATE -fpch-preprocess)
+  target_precompile_headers(${way} PRIVATE <algorithm> <array> <cmath> <cstdint> <cstdio> <filesystem> <functional> <map> <memory> <optional> <set> <span> <stdexcept>
+    <string> <string_view> <utility> <variant> <vector> <glm/glm.hpp> <glm/gtc/quaternion.hpp>)
+endforeach()
+target_compile_options(pv_headers_quick PRIVATE $<$<CONFIG:Release>:-O1>)
 
 function(pitviper_module name)
   cmake_parse_arguments(M "QUICK" "FOLDER" "DEPENDS;LIBRARIES" ${ARGN})
@@ -46,7 +59,11 @@ function(pitviper_module name)
   endif()
   add_library(${name} STATIC ${sources})
   target_link_libraries(${name} PUBLIC pitviper_options ${M_DEPENDS} PRIVATE ${M_LIBRARIES})
+  target_compile_options(${name} PRIVATE -fpch-preprocess)
   if(M_QUICK)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+    target_precompile_headers(${name} REUSE_FROM pv_headers_quick)
+  else()
+    target_precompile_headers(${name} REUSE_FROM pv_headers)
   endif()
 endfunction()

@@ -13,6 +13,7 @@
 #include <set>
 
 #include "scenarios/assets/make_aircraft.hpp"
+#include "sim/radiometry/constants.hpp"
 #include "sim/scene/mesh_cache.hpp"
 #include "sim/scene/mesh_import.hpp"
 #include "sim/scene/mesh_tools.hpp"
@@ -22,7 +23,6 @@
 namespace pitviper {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 
 /// Regular polygon of n corners inscribed in a circle, over the circle: the closed form of every cap and wall below.
 double polygonArea(double radius, int n) { return 0.5 * n * radius * radius * std::sin(2.0 * kPi / n); }
