@@ -4,7 +4,8 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
-#include "sim/frame/frame_files.hpp"
+#include "sim/frame/file_formats.hpp"
+#include "sim/frame/frame_picture.hpp"
 #include "sim/frame/integrate.hpp"
 #include "sim/image/atomic_file.hpp"
 
@@ -44,7 +45,7 @@ int integrateCommand(const Arguments& arguments) {
   frame.attributes.push_back({"pitviper.sensor", sensor.name});
   frame.attributes.push_back({"pitviper.sensor_sha256", sensor.sha256});
   ensureWritableFolder(out.parent_path().empty() ? fs::path(".") : out.parent_path());
-  writeFrameFile(out, frame);
+  writeExrFile(out, frame, {});
   std::printf("%-32s %-18s error of %zu bins alone: median, maximum over pixels\n", "layer", "unit", image.bins.size());
   for (size_t l = 0; l < frame.layers.size(); ++l)
     std::printf("%-32s %-18s %s, %s\n", frame.layers[l].name.c_str(), frame.layers[l].unit.c_str(), percent(result.binning[l].median).c_str(),

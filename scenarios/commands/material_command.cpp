@@ -11,7 +11,7 @@
 #include "scenarios/reader/scenario_reader.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/camera/camera_renderer.hpp"
-#include "sim/frame/frame_files.hpp"
+#include "sim/frame/frame_picture.hpp"
 #include "sim/frame/make_frame.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
@@ -197,7 +197,7 @@ void draw(const Shown& s, const std::string& name, const std::filesystem::path& 
   CameraRenderer renderer(s.simulation, s.simulation.cameras[0], shaderLibrary(), scene);
   const WorldState state = advance(s.simulation, 0.0);
   const Frame frame = makeFrame(s.simulation, s.simulation.cameras[0], renderer.render(state), state, 0, nullptr);
-  writePreviewFile(out / (name + "_sphere.png"), frame, {});
+  writePreviewFile(out / (name + "_sphere.png"), frame);
 }
 
 std::string descriptionOf(const std::filesystem::path& file) {

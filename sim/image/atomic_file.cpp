@@ -146,7 +146,7 @@ class Temporary {
   }
 
   std::filesystem::path name_;
-  const std::filesystem::path& target_;
+  const std::filesystem::path target_;
   int descriptor_ = -1;
   bool kept_ = false;
 };
@@ -169,11 +169,45 @@ void writeAll(int descriptor, std::string_view bytes, const std::filesystem::pat
   }
 }
 
-void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes, const MayReplace& mayReplace) {
+namespace {
+
+void refuseUnfit(const std::filesystem::path& path) {
   if (path.filename().empty() || path.filename() == "." || path.filename() == "..") throw OutputError(path, "is not a file name", 0, "give a file name");
   // A rename over a device, a pipe or a folder would destroy it.
   struct stat existing = {};
   if (::stat(path.c_str(), &existing) == 0 && !S_ISREG(existing.st_mode)) throw OutputError(path, "exists and is not a regular file", 0, "choose another name");
+}
+
+}  // namespace
+
+class GrowingFile::Temporary : public pitviper::Temporary {
+  using pitviper::Temporary::Temporary;
+};
+
+GrowingFile::GrowingFile(const std::filesystem::path& path) : path_(path) {
+  refuseUnfit(path);
+  file_ = std::make_unique<Temporary>(path);
+}
+
+GrowingFile::~GrowingFile() = default;
+
+void GrowingFile::append(std::string_view bytes) {
+  try {
+    writeAll(file_->descriptor(), bytes, path_);
+  } catch (const OutputError&) {
+    if (::ftruncate(file_->descriptor(), static_cast<off_t>(size_)) != 0 || ::lseek(file_->descriptor(), 0, SEEK_END) < 0) file_.reset();
+    throw;
+  }
+  size_ += bytes.size();
+}
+
+void GrowingFile::keep(const MayReplace& mayReplace) {
+  if (!file_) throw OutputError(path_, "cannot finish the file", EIO);
+  file_->keep(mayReplace);
+}
+
+void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes, const MayReplace& mayReplace) {
+  refuseUnfit(path);
   Temporary temporary(path);
   writeAll(temporary.descriptor(), bytes, path);
   temporary.keep(mayReplace);

@@ -2,6 +2,7 @@
 // Output files appear under their final name only when whole.
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -24,6 +25,26 @@ using MayReplace = std::function<void(const std::filesystem::path&)>;
 /// whole, at every moment.
 /// Errors: OutputError, and what `mayReplace` throws; then neither the temporary nor a changed `path` is left.
 void writeFileAtomically(const std::filesystem::path& path, std::string_view bytes, const MayReplace& mayReplace = {});
+
+/// A file that grows while a program runs: under a temporary name in the same folder, which goes with the object, until keep().
+class GrowingFile {
+ public:
+  /// Errors: OutputError.
+  explicit GrowingFile(const std::filesystem::path& path);
+  ~GrowingFile();
+  GrowingFile(const GrowingFile&) = delete;
+  GrowingFile& operator=(const GrowingFile&) = delete;
+  /// All of `bytes`, or none of them. Errors: OutputError.
+  void append(std::string_view bytes);
+  /// Gives it its name. Errors: OutputError, and what `mayReplace` throws.
+  void keep(const MayReplace& mayReplace = {});
+
+ private:
+  class Temporary;
+  std::unique_ptr<Temporary> file_;
+  std::filesystem::path path_;
+  std::size_t size_ = 0;
+};
 
 /// What processes that were killed left in `folder`. Files that a living process is writing stay.
 void removeAbandonedTemporaries(const std::filesystem::path& folder);

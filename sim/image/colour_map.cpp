@@ -26,6 +26,11 @@ const ColourMap& grey() {
   return map;
 }
 
+const ColourMap& blackHot() {
+  static const ColourMap map({{255, 255, 255}, {0, 0, 0}});
+  return map;
+}
+
 std::uint8_t mix(std::uint8_t a, std::uint8_t b, float t) {
   const float low = a, high = b;
   return static_cast<std::uint8_t>(std::lround(low + (high - low) * t));
@@ -44,10 +49,11 @@ Rgb8 ColourMap::operator()(float value) const {
 
 const ColourMap& colourMap(std::string_view name) {
   if (name == "thermal") return thermal();
-  if (name == "grey") return grey();
+  if (name == "white_hot") return grey();
+  if (name == "black_hot") return blackHot();
   throw std::invalid_argument("no colour map is named '" + std::string(name) + "'");
 }
 
-std::vector<std::string> colourMapNames() { return {"thermal", "grey"}; }
+std::vector<std::string> colourMapNames() { return {"thermal", "white_hot", "black_hot"}; }
 
 }  // namespace pitviper

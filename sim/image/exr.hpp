@@ -17,18 +17,26 @@ struct FloatLayer {
   std::vector<float> pixels;
 };
 
-/// Stored as EXR string, double, int and v3d (a list of 3). EXR has no list of doubles of other lengths; such a list is a
-/// string of numbers separated by spaces, exact to the last bit, and comes back as that string: see numbersOf.
+/// Stored as EXR string, double, int, floatvector (a curve) and v3d (a list of 3). EXR has no list of doubles of other lengths; such a list is a
+/// string of numbers separated by spaces, exact to the last bit, and comes back as that string: see numbersOf. Standard attributes (OpenEXR, "Standard
+/// Optional Attributes") have the types that other programs look for: worldToCamera (16 numbers) is an m44f, framesPerSecond a rational, expTime and aperture
+/// are floats.
 struct Attribute {
   std::string name;  ///< 1 to 255 bytes, unique, none of EXR's own names
-  std::variant<std::string, double, int, std::vector<double>> value;
+  std::variant<std::string, double, int, std::vector<double>, std::vector<float>> value;
 };
+
+/// A file with this attribute has channels R, G and B for people, which are no layers of it.
+inline constexpr const char* kPictureAttribute = "pitviper.picture";
 
 struct ExrImage {
   int width = 0;
   int height = 0;
   std::vector<FloatLayer> layers;
   std::vector<Attribute> attributes;
+  /// What programs show that know nothing of the layers: linear sRGB, three values a pixel; or empty. Written in half precision as R, G and B, never read
+  /// back. kPictureAttribute has to say what it is.
+  std::vector<float> picture = {};
 
   /// The layer of that name, or null.
   const FloatLayer* find(std::string_view name) const;

@@ -27,13 +27,16 @@ struct KnownType {
   std::string_view name;
   std::int64_t size;
 };
-constexpr std::array<KnownType, 11> knownTypes = {{{"box2i", 16},
+constexpr std::array<KnownType, 14> knownTypes = {{{"box2i", 16},
                                                    {"chlist", -1},
                                                    {"compression", 1},
                                                    {"double", 8},
                                                    {"float", 4},
+                                                   {"floatvector", -1},
                                                    {"int", 4},
                                                    {"lineOrder", 1},
+                                                   {"m44f", 64},
+                                                   {"rational", 8},
                                                    {"string", -1},
                                                    {"v2f", 8},
                                                    {"v3d", 24},
@@ -99,6 +102,8 @@ class Walk {
     if (known == knownTypes.end()) {
       bytes_[typeAt] = '?';
     } else if (known->size >= 0 && known->size != size) {
+      fail("attribute '" + std::string(called) + "' has a size other than its type; the file is damaged");
+    } else if (type == "floatvector" && size % 4 != 0) {
       fail("attribute '" + std::string(called) + "' has a size other than its type; the file is damaged");
     } else if (called == "channels" && type == "chlist") {
       channelList(next);

@@ -1,11 +1,14 @@
 #include <ImfChannelList.h>
 #include <ImfDoubleAttribute.h>
 #include <ImfFloatAttribute.h>
+#include <ImfFloatVectorAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfInputFile.h>
 #include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
+#include <ImfRationalAttribute.h>
 #include <ImfStringAttribute.h>
 #include <ImfVecAttribute.h>
 
@@ -44,6 +47,8 @@ class MemoryReader : public Imf::IStream {
   std::uint64_t at_ = 0;
 };
 
+std::vector<double> numbersIn(const Imath::M44f& m) { return {m.getValue(), m.getValue() + 16}; }
+
 template <class V>
 std::vector<double> listOf(const V& v) {
   return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
@@ -61,6 +66,9 @@ std::vector<Attribute> readAttributes(const Imf::Header& header) {
     else if (const auto* whole = dynamic_cast<const Imf::IntAttribute*>(&stored)) found.push_back({name, whole->value()});
     else if (const auto* v3d = dynamic_cast<const Imf::V3dAttribute*>(&stored)) found.push_back({name, listOf(v3d->value())});
     else if (const auto* v3f = dynamic_cast<const Imf::V3fAttribute*>(&stored)) found.push_back({name, listOf(v3f->value())});
+    else if (const auto* curve = dynamic_cast<const Imf::FloatVectorAttribute*>(&stored)) found.push_back({name, curve->value()});
+    else if (const auto* ratio = dynamic_cast<const Imf::RationalAttribute*>(&stored)) found.push_back({name, static_cast<double>(ratio->value())});
+    else if (const auto* m44 = dynamic_cast<const Imf::M44fAttribute*>(&stored)) found.push_back({name, numbersIn(m44->value())});
   }
   return found;
 }
@@ -76,7 +84,10 @@ ExrImage decode(const std::string& bytes) {
   image.attributes = readAttributes(header);
   const std::size_t width = static_cast<std::size_t>(image.width);
   const std::size_t count = width * static_cast<std::size_t>(image.height);
-  for (auto i = header.channels().begin(); i != header.channels().end(); ++i) image.layers.push_back({i.name(), std::vector<float>(count)});
+  const bool hasPicture = image.findAttribute(kPictureAttribute) != nullptr;
+  const auto isOfPicture = [hasPicture](std::string_view name) { return hasPicture && (name == "R" || name == "G" || name == "B"); };
+  for (auto i = header.channels().begin(); i != header.channels().end(); ++i)
+    if (!isOfPicture(i.name())) image.layers.push_back({i.name(), std::vector<float>(count)});
   Imf::FrameBuffer frame;
   for (FloatLayer& layer : image.layers)
     frame.insert(layer.name, Imf::Slice::Make(Imf::FLOAT, layer.pixels.data(), window, sizeof(float), sizeof(float) * width));
@@ -101,6 +112,7 @@ std::optional<std::vector<double>> numbersOf(const Attribute& attribute) {
   if (const auto* list = std::get_if<std::vector<double>>(&attribute.value)) return *list;
   if (const auto* real = std::get_if<double>(&attribute.value)) return std::vector<double>{*real};
   if (const auto* whole = std::get_if<int>(&attribute.value)) return std::vector<double>{static_cast<double>(*whole)};
+  if (const auto* curve = std::get_if<std::vector<float>>(&attribute.value)) return std::vector<double>(curve->begin(), curve->end());
   const std::string& text = std::get<std::string>(attribute.value);
   std::vector<double> numbers;
   const char* at = text.data();

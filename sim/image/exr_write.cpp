@@ -1,10 +1,15 @@
 #include <ImfChannelList.h>
 #include <ImfDoubleAttribute.h>
+#include <ImfFloatAttribute.h>
+#include <ImfFloatVectorAttribute.h>
 #include <ImfFrameBuffer.h>
 #include <ImfHeader.h>
 #include <ImfIO.h>
 #include <ImfIntAttribute.h>
+#include <ImfMatrixAttribute.h>
 #include <ImfOutputFile.h>
+#include <ImfRational.h>
+#include <ImfRationalAttribute.h>
 #include <ImfStringAttribute.h>
 #include <ImfVecAttribute.h>
 
@@ -56,7 +61,9 @@ void check(const ExrImage& image) {
   if (image.layers.empty() || image.layers.size() > static_cast<std::size_t>(exr::maxChannels))
     throw std::invalid_argument("writeExr: the number of layers is not in 1..1024");
   const std::size_t count = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
+  if (!image.picture.empty() && image.picture.size() != 3 * count) throw std::invalid_argument("writeExr: the picture is not 3 * width * height");
   std::set<std::string_view> layers, attributes;
+  if (!image.picture.empty()) layers = {"R", "G", "B"};
   for (const FloatLayer& layer : image.layers) {
     checkName(layer.name, layers, "layer");
     if (layer.pixels.size() != count) throw std::invalid_argument("writeExr: layer '" + layer.name + "' is not width * height");
@@ -78,11 +85,32 @@ std::string joinNumbers(const std::vector<double>& numbers) {
   return text;
 }
 
+/// Those that other programs know by name and type.
+bool insertStandard(Imf::Header& header, const Attribute& attribute) {
+  const char* name = attribute.name.c_str();
+  const auto* number = std::get_if<double>(&attribute.value);
+  const auto* list = std::get_if<std::vector<double>>(&attribute.value);
+  if (attribute.name == "worldToCamera" && list && list->size() == 16) {
+    Imath::M44f matrix;
+    for (int k = 0; k < 16; ++k) matrix[k / 4][k % 4] = static_cast<float>((*list)[static_cast<std::size_t>(k)]);
+    header.insert(name, Imf::M44fAttribute(matrix));
+  } else if (attribute.name == "framesPerSecond" && number) {
+    header.insert(name, Imf::RationalAttribute(Imf::Rational(*number)));
+  } else if ((attribute.name == "expTime" || attribute.name == "aperture") && number) {
+    header.insert(name, Imf::FloatAttribute(static_cast<float>(*number)));
+  } else {
+    return false;
+  }
+  return true;
+}
+
 void insert(Imf::Header& header, const Attribute& attribute) {
+  if (insertStandard(header, attribute)) return;
   const char* name = attribute.name.c_str();
   if (const auto* text = std::get_if<std::string>(&attribute.value)) header.insert(name, Imf::StringAttribute(*text));
   else if (const auto* number = std::get_if<double>(&attribute.value)) header.insert(name, Imf::DoubleAttribute(*number));
   else if (const auto* whole = std::get_if<int>(&attribute.value)) header.insert(name, Imf::IntAttribute(*whole));
+  else if (const auto* curve = std::get_if<std::vector<float>>(&attribute.value)) header.insert(name, Imf::FloatVectorAttribute(*curve));
   else if (const auto& list = std::get<std::vector<double>>(attribute.value); list.size() == 3)
     header.insert(name, Imf::V3dAttribute(Imath::V3d(list[0], list[1], list[2])));
   else header.insert(name, Imf::StringAttribute(joinNumbers(list)));
@@ -100,6 +128,12 @@ std::string encode(const ExrImage& image, ExrCompression compression) {
     // The library takes one pointer type for reading and writing; it only reads from this one.
     char* base = const_cast<char*>(reinterpret_cast<const char*>(layer.pixels.data()));
     frame.insert(layer.name, Imf::Slice(Imf::FLOAT, base, sizeof(float), rowBytes));
+  }
+  std::vector<half> picture(image.picture.begin(), image.picture.end());
+  for (std::size_t k = 0; k < 3 && !picture.empty(); ++k) {
+    constexpr std::array<const char*, 3> names = {"R", "G", "B"};
+    header.channels().insert(names[k], Imf::Channel(Imf::HALF));
+    frame.insert(names[k], Imf::Slice(Imf::HALF, reinterpret_cast<char*>(picture.data() + k), 3 * sizeof(half), 3 * sizeof(half) * static_cast<std::size_t>(image.width)));
   }
   MemoryWriter stream;
   {

@@ -165,8 +165,8 @@ bool encode(Job& job) {
   png_set_write_fn(job.png, &job, onWrite, onFlush);
   png_set_compression_level(job.png, 6);
   png_set_filter(job.png, PNG_FILTER_TYPE_BASE, PNG_ALL_FILTERS);
-  png_set_IHDR(job.png, job.info, job.width, job.height, 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
-  png_set_sRGB(job.png, job.info, PNG_sRGB_INTENT_RELATIVE);
+  png_set_IHDR(job.png, job.info, job.width, job.height, job.bits, job.colour, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  if (job.colour == PNG_COLOR_TYPE_RGB) png_set_sRGB(job.png, job.info, PNG_sRGB_INTENT_RELATIVE);
   if (!job.texts.empty()) png_set_text(job.png, job.info, job.texts.data(), static_cast<int>(job.texts.size()));
   png_write_info(job.png, job.info);
   png_write_image(job.png, job.rows.data());
@@ -176,16 +176,9 @@ bool encode(Job& job) {
 
 }  // namespace
 
-void writePng(const std::filesystem::path& path, const Rgb8Image& picture, const std::map<std::string, std::string>& texts, const MayReplace& mayReplace) {
-  const int limit = static_cast<int>(maxSide);
-  if (picture.width < 1 || picture.height < 1 || picture.width > limit || picture.height > limit)
-    throw std::invalid_argument("writePng: a side is not in 1..16384");
-  const std::size_t rowBytes = 3 * static_cast<std::size_t>(picture.width);
-  if (picture.rgb.size() != rowBytes * static_cast<std::size_t>(picture.height)) throw std::invalid_argument("writePng: rgb is not 3 * width * height");
-  Job job;
-  job.width = static_cast<png_uint_32>(picture.width);
-  job.height = static_cast<png_uint_32>(picture.height);
-  job.pixels = picture.rgb;
+namespace {
+
+void write(const std::filesystem::path& path, Job& job, std::size_t rowBytes, const std::map<std::string, std::string>& texts, const MayReplace& mayReplace) {
   for (const auto& [keyword, text] : texts) {
     png_text entry = {};
     entry.compression = PNG_TEXT_COMPRESSION_NONE;
@@ -202,6 +195,37 @@ void writePng(const std::filesystem::path& path, const Rgb8Image& picture, const
   png_destroy_write_struct(&job.png, &job.info);
   if (!whole) throw OutputError(path, std::string("cannot encode the picture: ") + job.message.data(), 0, "free memory or make a smaller picture");
   writeFileAtomically(path, job.bytes, mayReplace);
+}
+
+/// Of a picture of `count` values, `each` of them a pixel.
+Job jobOf(int width, int height, std::size_t count, std::size_t each, int bits, int colour) {
+  const int limit = static_cast<int>(maxSide);
+  if (width < 1 || height < 1 || width > limit || height > limit) throw std::invalid_argument("writePng: a side is not in 1..16384");
+  if (count != each * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) throw std::invalid_argument("writePng: values are not width * height");
+  Job job;
+  job.width = static_cast<png_uint_32>(width);
+  job.height = static_cast<png_uint_32>(height);
+  job.bits = bits;
+  job.colour = colour;
+  return job;
+}
+
+}  // namespace
+
+void writePng(const std::filesystem::path& path, const Rgb8Image& picture, const std::map<std::string, std::string>& texts, const MayReplace& mayReplace) {
+  Job job = jobOf(picture.width, picture.height, picture.rgb.size(), 3, 8, PNG_COLOR_TYPE_RGB);
+  job.pixels = picture.rgb;
+  write(path, job, 3 * static_cast<std::size_t>(picture.width), texts, mayReplace);
+}
+
+void writePngGrey(const std::filesystem::path& path, int width, int height, const std::vector<std::uint16_t>& codes,
+                  const std::map<std::string, std::string>& texts, const MayReplace& mayReplace) {
+  Job job = jobOf(width, height, codes.size(), 1, 16, PNG_COLOR_TYPE_GRAY);
+  for (const std::uint16_t code : codes) {  // big-endian
+    job.pixels.push_back(static_cast<png_byte>(code >> 8));
+    job.pixels.push_back(static_cast<png_byte>(code & 0xff));
+  }
+  write(path, job, 2 * static_cast<std::size_t>(width), texts, mayReplace);
 }
 
 std::optional<std::string> readPngText(const std::filesystem::path& path, std::string_view keyword) {

@@ -1,5 +1,6 @@
 #pragma once
 // PNG files: pictures for people, and grey maps as textures.
+#include <cstdint>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -26,6 +27,10 @@ struct GreyImage {
 /// `texts`: keywords (1 to 79 letters) and what they say, kept in the file. `mayReplace`: as of writeFileAtomically.
 void writePng(const std::filesystem::path& path, const Rgb8Image& picture, const std::map<std::string, std::string>& texts = {},
               const MayReplace& mayReplace = {});
+
+/// 16-bit grey codes; otherwise as writePng.
+void writePngGrey(const std::filesystem::path& path, int width, int height, const std::vector<std::uint16_t>& codes,
+                  const std::map<std::string, std::string>& texts = {}, const MayReplace& mayReplace = {});
 
 /// What a keyword says, from before the pixels. Nothing where it isn't there, or the file is no PNG. Never throws but std::bad_alloc.
 std::optional<std::string> readPngText(const std::filesystem::path& path, std::string_view keyword);

@@ -11,6 +11,7 @@
 
 #include "sim/image/colour_map.hpp"
 #include "sim/image/draw_text.hpp"
+#include "sim/image/picture_scale.hpp"
 #include "sim/image/ticks.hpp"
 
 namespace pitviper {
@@ -43,17 +44,6 @@ Extent extentOf(const std::vector<float>& pixels) {
   return extent;
 }
 
-/// Narrower than this is rounding of float values (2^-24), not a picture.
-bool isEmpty(double low, double high) { return high - low <= 4e-7 * std::max(std::abs(low), std::abs(high)); }
-
-std::pair<double, double> widened(double low, double high) {
-  if (!isEmpty(low, high)) return {low, high};
-  if (low == 0 && high == 0) return {0, 1};
-  const double middle = 0.5 * low + 0.5 * high;
-  const double margin = 0.01 * std::abs(middle);
-  return {middle - margin, middle + margin};
-}
-
 std::string shortened(const Font& font, std::string text, int size_px, int room) {
   if (font.width(text, size_px) <= room) return text;
   while (!text.empty() && font.width(text + "…", size_px) > room) {
@@ -63,32 +53,8 @@ std::string shortened(const Font& font, std::string text, int size_px, int room)
   return text + "…";
 }
 
-/// Where a value stands on the colour bar, 0 at the bottom to 1. Linear; or, where a few very bright or dark things would leave the bulk
-/// of a picture in one colour, asinh: linear over the bulk, logarithmic far from it.
-class Scale {
- public:
-  Scale(double low, double high) : low_(low), high_(high) {}
-  Scale(double low, double high, double centre, double spread)
-      : low_(low), high_(high), centre_(centre), spread_(spread), bottom_(std::asinh((low - centre) / spread)), top_(std::asinh((high - centre) / spread)) {}
-
-  double position(double value) const {
-    if (spread_ <= 0.0) return (value - low_) / (high_ - low_);
-    return (std::asinh((value - centre_) / spread_) - bottom_) / (top_ - bottom_);
-  }
-  double value(double position) const {
-    if (spread_ <= 0.0) return low_ + position * (high_ - low_);
-    return centre_ + spread_ * std::sinh(bottom_ + position * (top_ - bottom_));
-  }
-  bool isLinear() const { return spread_ <= 0.0; }
-  double low() const { return low_; }
-  double high() const { return high_; }
-
- private:
-  double low_, high_, centre_ = 0.0, spread_ = 0.0, bottom_ = 0.0, top_ = 1.0;
-};
-
 /// Values to three digits at even places of a bent scale, each apart from its neighbours.
-Ticks bentTicks(const Scale& scale) {
+Ticks bentTicks(const PictureScale& scale) {
   Ticks ticks;
   for (double position : {0.04, 0.2, 0.36, 0.52, 0.68, 0.84, 0.97}) {
     const double exact = scale.value(position), step = std::abs(scale.value(position + 0.03) - scale.value(position - 0.03));
@@ -110,15 +76,15 @@ struct BarText {
   Ticks ticks;
 };
 
-BarText barText(const PreviewOptions& options, const Extent& extent, const Scale& scale) {
+BarText barText(const PreviewOptions& options, const Extent& extent, const PictureScale& scale) {
   BarText text;
   const double low = scale.low(), high = scale.high();
   text.ticks = scale.isLinear() ? chooseTicks(low, high) : bentTicks(scale);
   text.unit = powerText(text.ticks.power);
   if (!text.unit.empty() && !options.unit.empty()) text.unit += ' ';
   text.unit += options.unit;
-  if (extent.any() && extent.most > high && !isEmpty(high, extent.most)) text.mostNote = "max " + shortNumber(extent.most);
-  if (extent.any() && extent.least < low && !isEmpty(extent.least, low)) text.leastNote = "min " + shortNumber(extent.least);
+  if (extent.any() && extent.most > high && !isNearlySame(high, extent.most)) text.mostNote = "max " + shortNumber(extent.most);
+  if (extent.any() && extent.least < low && !isNearlySame(extent.least, low)) text.leastNote = "min " + shortNumber(extent.least);
   return text;
 }
 
@@ -144,7 +110,7 @@ void drawFrame(Rgb8Image& canvas, int x0, int y0, int x1, int y1) {
 }
 
 void drawPixels(Rgb8Image& canvas, int x0, int y0, int factor, int width, int height, const std::vector<float>& pixels, const ColourMap& map,
-                const Scale& scale, const std::vector<Rgb8>& colours) {
+                const PictureScale& scale, const std::vector<Rgb8>& colours) {
   std::size_t i = 0;
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x, ++i) {
@@ -164,7 +130,7 @@ void drawArrow(Rgb8Image& canvas, int x0, int width, int base, int height, bool 
   }
 }
 
-void drawBar(Rgb8Image& canvas, int x0, int top, int bottom, const BarText& text, const Measures& measure, const ColourMap& map, const Scale& scale) {
+void drawBar(Rgb8Image& canvas, int x0, int top, int bottom, const BarText& text, const Measures& measure, const ColourMap& map, const PictureScale& scale) {
   const Font& font = plainFont();
   const int labelsAt = x0 + measure.bar + measure.tick + measure.text / 3;
   const int rise = measure.text * 36 / 100;  // half the height of digits in DejaVu Sans
@@ -199,74 +165,41 @@ void drawBar(Rgb8Image& canvas, int x0, int top, int bottom, const BarText& text
   }
 }
 
+/// Room for any note, so that the pictures of a run have one size.
 int columnWidth(const BarText& text, const Measures& measure) {
   const Font& font = plainFont();
-  int labels = std::max(font.width(text.mostNote, measure.text), font.width(text.leastNote, measure.text));
+  int labels = font.width("max −8.88e−88", measure.text);
   for (const std::string& label : text.ticks.labels) labels = std::max(labels, font.width(label, measure.text));
   const int beside = measure.bar + measure.tick + measure.text / 3 + labels;
   return std::max(beside, font.width(text.unit, measure.text));
 }
 
-}  // namespace
-
-namespace {
-
-/// Percentiles of the finite pixels.
-struct Spread {
-  double low = 0.0, p10 = 0.0, p50 = 0.0, p90 = 0.0, high = 1.0;
-  bool isEven = true;  ///< low and high coincide
-};
-
-Spread spreadOf(const std::vector<float>& pixels) {
-  std::vector<float> finite;
-  finite.reserve(pixels.size());
-  std::copy_if(pixels.begin(), pixels.end(), std::back_inserter(finite), [](float v) { return std::isfinite(v); });
-  if (finite.empty()) return {};
-  const auto percentile = [&](double part) {
-    const auto i = static_cast<std::ptrdiff_t>(std::lround(part * static_cast<double>(finite.size() - 1)));
-    std::nth_element(finite.begin(), finite.begin() + i, finite.end());
-    return static_cast<double>(finite[static_cast<std::size_t>(i)]);
-  };
-  Spread s{percentile(0.005), percentile(0.1), percentile(0.5), percentile(0.9), percentile(0.998), false};
-  if (!isEmpty(s.low, s.high)) return s;
-  // A small hot target on an even background lies wholly outside the percentiles, and is what matters.
-  const auto [least, most] = std::minmax_element(finite.begin(), finite.end());
-  std::tie(s.low, s.high) = widened(*least, *most);
-  s.isEven = true;
-  return s;
+PictureScale scaleFor(const std::vector<float>& pixels, const PreviewOptions& options) {
+  if (options.scale) return *options.scale;
+  if (options.range) return PictureScale::between(options.range->first, options.range->second);
+  return PictureScale::of(pixels);
 }
 
-Scale scaleFor(const std::vector<float>& pixels, const PreviewOptions& options) {
-  if (options.range) {
-    const auto [low, high] = widened(options.range->first, options.range->second);
-    return {low, high};
-  }
-  const Spread s = spreadOf(pixels);
-  const double bulk = 0.5 * (s.p90 - s.p10);
-  // Linear would give the middle four fifths of the pixels less than an eighth of the bar.
-  if (s.isEven || isEmpty(s.p10, s.p90) || s.high - s.low < 16.0 * bulk) return {s.low, s.high};
-  return {s.low, s.high, s.p50, 2.0 * bulk};
-}
+int even(int length) { return length + length % 2; }
 
-}  // namespace
-
-std::pair<double, double> automaticRange(const std::vector<float>& pixels) {
-  const Spread s = spreadOf(pixels);
-  return {s.low, s.high};
-}
-
-Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, const PreviewOptions& options) {
+void check(int width, int height, const std::vector<float>& pixels, const PreviewOptions& options) {
   if (width < 1 || height < 1 || width > maxSide || height > maxSide) throw std::invalid_argument("makePreview: a side is not in 1..8192");
   if (pixels.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
     throw std::invalid_argument("makePreview: pixels are not width * height");
   if (!options.colours.empty() && options.colours.size() != pixels.size()) throw std::invalid_argument("makePreview: colours are not width * height");
-  const ColourMap& map = colourMap(options.colourMap);
   if (options.range) {
     const auto [low, high] = *options.range;
     if (!std::isfinite(low) || !std::isfinite(high) || low > high || !std::isfinite(high - low))
       throw std::invalid_argument("makePreview: the range is not finite or falls");
   }
-  const Scale scale = scaleFor(pixels, options);
+}
+
+}  // namespace
+
+Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, const PreviewOptions& options) {
+  check(width, height, pixels, options);
+  const ColourMap& map = colourMap(options.colourMap);
+  const PictureScale scale = scaleFor(pixels, options);
 
   const int longer = std::max(width, height);
   const int factor = (minLongerSide + longer - 1) / longer;
@@ -277,8 +210,8 @@ Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, c
   const int titleHeight = options.title.empty() ? 0 : measure.title + measure.text;
   const int bodyHeight = std::max(pictureHeight, std::max(minBarHeight, 14 * measure.text));
 
-  Rgb8Image canvas(measure.margin + pictureWidth + measure.gap + column + measure.margin, measure.margin + titleHeight + bodyHeight + measure.margin,
-                   background);
+  Rgb8Image canvas(even(measure.margin + pictureWidth + measure.gap + column + measure.margin),
+                   even(measure.margin + titleHeight + bodyHeight + measure.margin), background);
   const int bodyTop = measure.margin + titleHeight;
   if (!options.title.empty()) {
     const int room = canvas.width - 2 * measure.margin;
@@ -289,6 +222,13 @@ Rgb8Image makePreview(int width, int height, const std::vector<float>& pixels, c
   drawPixels(canvas, measure.margin, pictureTop, factor, width, height, pixels, map, scale, options.colours);
   drawFrame(canvas, measure.margin, pictureTop, measure.margin + pictureWidth, pictureTop + pictureHeight);
   drawBar(canvas, measure.margin + pictureWidth + measure.gap, bodyTop, bodyTop + bodyHeight, text, measure, map, scale);
+  return canvas;
+}
+
+Rgb8Image makePlainPreview(int width, int height, const std::vector<float>& pixels, const PreviewOptions& options) {
+  check(width, height, pixels, options);
+  Rgb8Image canvas(even(width), even(height), {0, 0, 0});
+  drawPixels(canvas, 0, 0, 1, width, height, pixels, colourMap(options.colourMap), scaleFor(pixels, options), options.colours);
   return canvas;
 }
 

@@ -22,10 +22,10 @@ class Sink {
   /// Before the first frame: what must be there is made. Called on the thread that draws.
   virtual void start() {}
   virtual void take(const std::shared_ptr<const Frame>& frame) = 0;
-  /// After the last frame.
-  virtual void finish() {}
-  /// The file that it would write for a frame of this camera, number and kind (as of Frame); empty: none.
-  virtual std::filesystem::path fileOf(const std::string&, int, const std::string&) const { return {}; }
+  /// After the last frame. `progress`: called where it takes long, with the share that is done; or empty.
+  virtual void finish(const std::function<void(double share)>&) {}
+  /// The files that it would write for a frame of this camera, number and kind (as of Frame): those that say whose they are. One may be of many frames.
+  virtual std::vector<std::filesystem::path> filesOf(const std::string&, int, const std::string&) const { return {}; }
 };
 
 /// Where a run puts what it writes.

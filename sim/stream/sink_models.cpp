@@ -16,7 +16,7 @@ std::filesystem::path readFolder(const Record& r) {
 }
 
 Registry<SinkModel>& sinkModels() {
-  static Registry<SinkModel> all("sink", {filesSink(), previewsSink()});
+  static Registry<SinkModel> all("sink", {filesSink(), previewsSink(), sheetSink(), videoSink(), truthSink()});
   return all;
 }
 
@@ -36,11 +36,19 @@ SinkChoice readSink(const Value& value, const Simulation& simulation) {
   return {value.where, model.read(Record(map, table), simulation)};
 }
 
-SinkChoice sinkNamed(const std::string& name, const Simulation& simulation) {
-  Value word;
-  word.kind = Value::Kind::Scalar;
-  word.text = name;
-  return readSink(word, simulation);
+SinkChoice sinkNamed(const std::string& name, const Simulation& simulation, const std::vector<std::pair<std::string, std::string>>& keys) {
+  Value map;
+  map.kind = Value::Kind::Map;
+  const auto add = [&](const std::string& key, const std::string& text) {
+    Value word;
+    word.kind = Value::Kind::Scalar;
+    word.text = text;
+    map.entries.emplace_back(key, word);
+    map.keyPlaces.emplace_back();
+  };
+  add("sink", name);
+  for (const auto& [key, text] : keys) add(key, text);
+  return readSink(map, simulation);
 }
 
 }  // namespace pitviper

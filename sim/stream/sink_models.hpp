@@ -24,13 +24,13 @@ std::filesystem::path readFolder(const Record& record);
 
 /// From what a user wrote: a map, or its name alone. Every mistake is a UserError.
 SinkChoice readSink(const Value& value, const Simulation& simulation);
-/// The same as if it had been written by its name.
-SinkChoice sinkNamed(const std::string& name, const Simulation& simulation);
-
-/// Previews with ranges as of writePreview().
-std::unique_ptr<Sink> makePreviewsSink(const SinkPlace& place, const std::map<std::string, std::pair<double, double>>& ranges);
+/// The same as if it had been written by its name, with these keys.
+SinkChoice sinkNamed(const std::string& name, const Simulation& simulation, const std::vector<std::pair<std::string, std::string>>& keys = {});
 
 SinkModel filesSink();
 SinkModel previewsSink();
+SinkModel sheetSink();
+SinkModel videoSink();
+SinkModel truthSink();
 
 }  // namespace pitviper

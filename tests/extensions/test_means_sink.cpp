@@ -27,7 +27,7 @@ class MeansSink final : public Sink {
       text_ += std::to_string(frame->number) + "," + l.name + "," + std::to_string(factor_ * sum / static_cast<double>(l.pixels.size())) + "\n";
     }
   }
-  void finish() override { writeFileAtomically(place_.folder / "means.csv", text_, place_.mayReplace); }
+  void finish(const std::function<void(double)>&) override { writeFileAtomically(place_.folder / "means.csv", text_, place_.mayReplace); }
 
  private:
   SinkPlace place_;

@@ -1,6 +1,7 @@
 // Radiances from 1e-30 to 1e9 W/(m2 sr um) through every mode, through files and previews; counts to 1e22; spectra that are zero, or one line.
 #include "scenarios/commands/commands.hpp"
-#include "sim/frame/frame_files.hpp"
+#include "sim/frame/file_formats.hpp"
+#include "sim/frame/frame_picture.hpp"
 #include "sim/frame/integrate.hpp"
 #include "sim/image/exr.hpp"
 #include "sim/parameters/error.hpp"
@@ -26,13 +27,13 @@ TEST(Radiance, FromFaintToBlinding) {
       drawn.add(middle(mode + background(radiance) + Look{}.yaml()), want, radiance);
     const Frame f = finiteFrame(background(radiance) + Look{}.yaml());
     const auto file = std::filesystem::path(folder.put("f.exr", ""));
-    writeFrameFile(file, f);
+    writeExrFile(file, f, {});
     written.add(static_cast<double>(readExr(file).layers.at(0).pixels.at(12)), middleOf(f), radiance);
     writePreviewFile(folder.put("f.png", ""), f);
 
     const Simulation sim = scene(background(radiance) + Look{.more = "spectral_image: {band: [8 um, 12 um], bins: 4}, "}.yaml());
     SpectralRenderer renderer(sim, sim.cameras.at(0), shaderLibrary(), std::make_shared<const GpuScene>(sim));
-    writeFrameFile(file, renderer.render(advance(sim, 0.0), 0));
+    writeExrFile(file, renderer.render(advance(sim, 0.0), 0), {});
     const SpectralImage image = readSpectralImage(file);
     const IntegratedFrame i = integrateSpectralImage(image, sim.cameras[0].outputs, image.pinhole, 0.0);
     integrated.add(static_cast<double>(i.frame.layers.at(0).pixels.at(12)), want, radiance);

@@ -6,7 +6,7 @@
 #include "atmosphere/tabulated_csv.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
-#include "sim/frame/frame_files.hpp"
+#include "sim/frame/file_formats.hpp"
 #include "sim/frame/integrate.hpp"
 #include "sim/image/exr.hpp"
 #include "sim/parameters/error.hpp"
@@ -188,7 +188,7 @@ TEST_F(NotANumber, InASpectralImage) {
   Frame frame = renderer.render(advance(sim, 0.0), 0);
   for (float bad : {NAN, INFINITY, -INFINITY}) {
     frame.layers.at(1).pixels.at(7) = bad;
-    writeFrameFile(file, frame);
+    writeExrFile(file, frame, {});
     const std::string message = refusal([&] {
       const SpectralImage image = readSpectralImage(file);
       integrateSpectralImage(image, sim.cameras[0].outputs, image.pinhole, 0.0);

@@ -8,7 +8,7 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
-#include "sim/frame/frame_files.hpp"
+#include "sim/frame/file_formats.hpp"
 #include "sim/frame/integrate.hpp"
 #include "sim/run/spectral_renderer.hpp"
 #include "tests/support/figures.hpp"
@@ -28,7 +28,7 @@ class SpectralImages : public ::testing::Test {
   SpectralImage imageOf(const Simulation& sim) const {
     needContext();
     SpectralRenderer renderer(sim, sim.cameras.at(0), shaderLibrary(), std::make_shared<const GpuScene>(sim));
-    writeFrameFile(folder_ / "image.exr", renderer.render(advance(sim, 0.0), 0));
+    writeExrFile(folder_ / "image.exr", renderer.render(advance(sim, 0.0), 0), {});
     return readSpectralImage(folder_ / "image.exr");
   }
   IntegratedFrame integrated(const SpectralImage& image, const std::string& sensor) const {

@@ -536,7 +536,7 @@ TEST(ColourMaps, ClampAndNames) {
     EXPECT_EQ(map(2), map(1));
     EXPECT_EQ(map(std::nanf("")), map(0));
   }
-  EXPECT_EQ(colourMap("grey")(0.5f), (Rgb8{128, 128, 128}));
+  EXPECT_EQ(colourMap("white_hot")(0.5f), (Rgb8{128, 128, 128}));
   EXPECT_THROW(colourMap("no such map"), std::invalid_argument);
 }
 
@@ -607,16 +607,17 @@ TEST(Preview, RangeIsNeverEmpty) {
   const float nan = std::nanf("");
   const std::vector<std::vector<float>> images = {{}, {nan, nan}, {0, 0, 0}, {300, 300}, {-5}, {300, 300.00003f}, {3e38f, -3e38f}, {1e-45f}};
   for (const std::vector<float>& pixels : images) {
-    const auto [low, high] = automaticRange(pixels);
-    EXPECT_LT(low, high);
-    EXPECT_TRUE(std::isfinite(low) && std::isfinite(high));
+    const PictureScale scale = PictureScale::of(pixels);
+    EXPECT_LT(scale.low(), scale.high());
+    EXPECT_TRUE(std::isfinite(scale.low()) && std::isfinite(scale.high()));
   }
   std::vector<float> target(100000, 1.0f);
   target[5] = 9.0f;  // a hot point, outside the percentiles
-  EXPECT_EQ(automaticRange(target), (std::pair<double, double>{1.0, 9.0}));
+  const auto ends = [](const PictureScale& scale) { return std::pair(scale.low(), scale.high()); };
+  EXPECT_EQ(ends(PictureScale::of(target)), (std::pair<double, double>{1.0, 9.0}));
   std::vector<float> ramp;
   for (int i = 0; i <= 1000; ++i) ramp.push_back(static_cast<float>(i));
-  EXPECT_EQ(automaticRange(ramp), (std::pair<double, double>{5.0, 998.0}));
+  EXPECT_EQ(ends(PictureScale::of(ramp)), (std::pair<double, double>{5.0, 998.0}));
 }
 
 int countOf(const Rgb8Image& picture, Rgb8 colour) {
@@ -631,11 +632,11 @@ TEST(Preview, PixelsBecomeSquaresAndNanMagenta) {
   pixels[0] = std::nanf("");
   pixels[1] = std::numeric_limits<float>::infinity();
   pixels[2] = 2.0f;
-  const Rgb8Image picture = makePreview(100, 60, pixels, {"title", "K", "grey", std::pair{0.0, 4.0}});
+  const Rgb8Image picture = makePreview(100, 60, pixels, {"title", "K", "white_hot", std::nullopt, std::pair{0.0, 4.0}});
   EXPECT_GT(picture.width, 600);
   EXPECT_EQ(countOf(picture, {255, 0, 255}), 2 * 6 * 6);
   EXPECT_GE(countOf(picture, {128, 128, 128}), 6 * 6);
-  EXPECT_EQ(picture.rgb, makePreview(100, 60, pixels, {"title", "K", "grey", std::pair{0.0, 4.0}}).rgb);
+  EXPECT_EQ(picture.rgb, makePreview(100, 60, pixels, {"title", "K", "white_hot", std::nullopt, std::pair{0.0, 4.0}}).rgb);
 }
 
 TEST(Preview, AnyShapeAndValuesGiveAPicture) {

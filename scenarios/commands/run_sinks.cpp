@@ -1,0 +1,135 @@
+#include "scenarios/commands/run_sinks.hpp"
+
+#include <algorithm>
+
+#include "sim/frame/file_owner.hpp"
+#include "sim/frame/spectral_image.hpp"
+#include "sim/image/colour_map.hpp"
+#include "sim/parameters/table.hpp"
+#include "sim/parameters/units.hpp"
+#include "sim/stream/sink_models.hpp"
+
+namespace pitviper {
+namespace {
+
+Location ofOption(const std::string& option) { return {option, 0, 0, -1}; }
+
+/// "layer=a:b" in the layer's unit.
+PreviewRanges previewRanges(const Options& o, const Simulation& sim) {
+  PreviewRanges ranges;
+  for (const auto& text : o.values("--preview-range")) {
+    const Location where = ofOption("--preview-range " + text);
+    const size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
+    if (equals == std::string::npos || colon == std::string::npos)
+      throw UserError(where, "not a range", "layer=low:high", "write --preview-range lw.radiance=28:45");
+    const std::string layer = text.substr(0, equals);
+    std::vector<std::string> layers;
+    for (const auto& c : sim.cameras)
+      for (const auto& out : c.outputs) layers.push_back(out.layer());
+    if (std::find(layers.begin(), layers.end(), layer) == layers.end()) throw unknownWord(where, "there is no layer", layer, layers);
+    auto number = [&](const std::string& t) {
+      const auto q = splitQuantity(t);
+      if (!q || !q->unit.empty())
+        throw UserError(where, "'" + t + "' is not a number", "numbers in the layer's own unit", "write --preview-range " + layer + "=28:45");
+      return q->value;
+    };
+    ranges[layer] = {number(text.substr(equals + 1, colon - equals - 1)), number(text.substr(colon + 1))};
+    if (!(ranges[layer].first < ranges[layer].second)) throw UserError(where, "the range does not rise", "low:high", "swap its ends");
+  }
+  return ranges;
+}
+
+/// What a run would write, and who: more names than this are not held against each other.
+constexpr size_t kMostNames = 200000;
+
+/// Kinds of frames of a camera.
+std::vector<const char*> kindsOf(const Camera& c) { return c.spectralImage ? std::vector<const char*>{"", kSpectralKind} : std::vector<const char*>{""}; }
+
+}  // namespace
+
+std::vector<OptionSpec> pictureOptions() {
+  return {{"--preview", false}, {"--preview-range", true, true}, {"--video"}, {"--sheet", false}, {"--scale"}, {"--palette"}, {"--plain", false}, {"--truth", false}};
+}
+
+PictureWish readPictureWish(const Options& o, const Simulation& sim) {
+  PictureWish wish;
+  wish.style.ranges = previewRanges(o, sim);
+  wish.style.ownScale = true;
+  if (o.has("--scale")) readScale(o.value("--scale"), ofOption("--scale " + o.value("--scale")), wish.style);
+  if (o.has("--palette")) {
+    std::vector<std::string> names = colourMapNames();
+    names.insert(names.begin(), "auto");
+    wish.style.palette = o.value("--palette");
+    if (std::find(names.begin(), names.end(), wish.style.palette) == names.end())
+      throw unknownWord(ofOption("--palette " + wish.style.palette), "there is no palette", wish.style.palette, names);
+  }
+  wish.style.plain = o.has("--plain");
+  wish.style.truth = o.has("--truth");
+  wish.sheet = o.has("--sheet");
+  if (o.has("--video")) {
+    wish.video = o.value("--video");
+    readVideoName(wish.video, ofOption("--video " + wish.video));
+  }
+  const bool ofStyle = !wish.style.ranges.empty() || o.has("--scale") || o.has("--palette") || wish.style.plain || wish.style.truth;
+  wish.previews = o.has("--preview") || (ofStyle && !wish.sheet && wish.video.empty());
+  // Of one film one scale: frames that differ in brightness are to look so.
+  if (!o.has("--scale") && (wish.sheet || !wish.video.empty())) wish.style.ownScale = false;
+  return wish;
+}
+
+std::vector<PlacedSink> makeSinks(const Simulation& sim, const SinkPlace& place, const PictureWish& pictures) {
+  std::vector<PlacedSink> sinks;
+  for (const SinkChoice& choice : sim.sinks) sinks.push_back({choice.make(sim, place), choice.where});
+  if (sim.sinks.empty()) {
+    sinks.push_back({sinkNamed("files", sim).make(sim, place), {}});
+    if (std::any_of(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.truth.targets; }))
+      sinks.push_back({sinkNamed("truth", sim).make(sim, place), {}});
+  }
+  if (!pictures.any()) return sinks;
+  std::vector<std::unique_ptr<PictureUser>> users;
+  if (pictures.previews) users.push_back(previewFiles(place));
+  if (pictures.sheet) users.push_back(contactSheets(place));
+  if (!pictures.video.empty()) users.push_back(videoFiles(sim, place, pictures.video, 0.0));
+  sinks.push_back({makePictureSink(pictures.style, std::move(users), place), ofOption(pictures.previews ? "--preview" : pictures.sheet ? "--sheet" : "--video")});
+  return sinks;
+}
+
+void refuseClashes(const Simulation& sim, const RunRange& range, const OwnFiles& own, const std::vector<PlacedSink>& sinks) {
+  std::map<std::string, std::pair<const PlacedSink*, std::string>> files;  // who writes it, and of which camera
+  const auto clash = [](const Location& where, const std::filesystem::path& file) {
+    throw UserError(where, "two sinks write '" + file.string() + "', or one writes into it as a folder", "sinks whose files lie apart",
+                    "give this one a 'folder:' of its own, or remove it");
+  };
+  for (const auto& file : own) files[file.lexically_normal().string()] = {nullptr, ""};
+  // One file may be of many frames of a camera, but of one camera and sink alone.
+  for (int number = range.first; number <= range.last && files.size() < kMostNames; ++number)
+    for (const Camera& c : sim.cameras)
+      for (const PlacedSink& placed : sinks)
+        for (const char* kind : kindsOf(c))
+          for (const auto& file : placed.sink->filesOf(c.name, number, kind)) {
+            const std::pair<const PlacedSink*, std::string> who{&placed, c.name};
+            const auto [at, isNew] = files.emplace(file.lexically_normal().string(), who);
+            if (!isNew && at->second != who) clash(placed.where, file);
+          }
+  for (const PlacedSink& placed : sinks)
+    for (const Camera& c : sim.cameras)
+      for (const auto& file : placed.sink->filesOf(c.name, range.first, "")) {
+        const auto name = file.lexically_normal();
+        for (auto above = name.parent_path(); !above.empty() && above != above.root_path(); above = above.parent_path())
+          if (files.count(above.string())) clash(placed.where, above);
+      }
+}
+
+void refuseForeignFiles(const Simulation& sim, const RunRange& range, const OwnFiles& own, const std::vector<PlacedSink>& sinks) {
+  std::filesystem::path last;
+  for (int number = range.first; number <= range.last; ++number)
+    for (const Camera& c : sim.cameras)
+      for (const PlacedSink& placed : sinks)
+        for (const char* kind : kindsOf(c))
+          for (const auto& file : placed.sink->filesOf(c.name, number, kind))
+            if (file != std::exchange(last, file)) refuseForeignFile(file, sim);
+  for (const auto& file : own)
+    if (file.extension() != ".plan") refuseForeignFile(file, sim);
+}
+
+}  // namespace pitviper
