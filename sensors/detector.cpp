@@ -1,109 +1,33 @@
 // The detector: photoelectrons and dark current as they are counted, what read-out adds, the well, and the converter (DetectorLaw).
 // Source: EMVA Standard 1288, release 4.0 (linear camera model: shot noise, dark signal that doubles with temperature, gain, DSNU, PRNU); the components of
 // noise by frame, row and column: J. D'Agostino and C. Webb, Proc. SPIE 1488, 110 (1991).
-#include <algorithm>
 #include <cmath>
-#include <map>
 
-#include "sensors/noise_source.hpp"
-#include "sensors/side_by_side.hpp"
+#include "sensors/detector_stage.hpp"
+#include "sensors/signal_memory.hpp"
 #include "sensors/stages.hpp"
-#include "sim/camera/sensor_stage.hpp"
+#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
 
-class DetectorStage final : public SensorStage {
- public:
-  explicit DetectorStage(const DetectorLaw& law) : law_(law) {}
+const ParameterTable& correctionTable() {
+  static const ParameterTable t{"correction of a detector",
+                                "Two-point correction of pixels' offsets and gains at time 0, from black bodies.",
+                                {withDefault(within(above(number("low", "K", "of the colder one"), 0), 0, 20000), "290 K"),
+                                 withDefault(within(above(number("high", "K", "of the hotter one"), 0), 0, 20000), "310 K"),
+                                 withDefault(integer("frames", "that each is averaged over", 1, 1000000), "64")}};
+  return t;
+}
 
-  void run(const SensorTick& tick, SensorPictures& pictures) override {
-    std::vector<std::pair<std::string, std::vector<float>>> read;  // counts by channel: they and what is told of them are of one read-out
-    for (std::size_t o = 0; o < pictures.outputs.size(); ++o) {
-      const ChannelOutput& output = pictures.outputs[o];
-      if (!output.detected) continue;
-      auto own = std::find_if(read.begin(), read.end(), [&](const auto& r) { return r.first == output.channel; });
-      if (own == read.end()) {
-        const std::uint32_t channel = numberOf(output.channel);
-        read.emplace_back(output.channel, pictures.values(o));
-        own = read.end() - 1;
-        expose(own->second, fixedOf(channel, tick.seed, pictures.width, pictures.height), channel, tick, pictures.width, pictures.height);
-      }
-      std::vector<float>& picture = pictures.values(o);
-      picture = own->second;
-      if (!output.asTemperature) continue;
-      const double dark = law_.darkCurrent_per_s * tick.exposure_s;
-      for (float& v : picture) v = static_cast<float>(((static_cast<double>(v) - law_.offset) / law_.gain - dark) / law_.fillFactor);
-    }
-  }
+DetectorLaw::Correction readCorrection(const Record& detector) {
+  const Record r(detector.value("correction"), correctionTable());
+  const DetectorLaw::Correction c{r.number("low"), r.number("high"), static_cast<int>(r.integer("frames"))};
+  if (!(c.low_K < c.high_K)) throw UserError(r.where(), "a correction whose black bodies do not rise", "'low' below 'high'", "swap them");
+  return c;
+}
 
- private:
-  /// What is the same in all frames.
-  struct Fixed {
-    std::vector<float> response, dark;
-    std::vector<std::uint8_t> bad;  ///< 1: dead, 2: hot
-  };
-
-  /// Of its name alone, whatever other channels there are: 24 bits of FNV-1a.
-  static std::uint32_t numberOf(const std::string& channel) {
-    std::uint32_t hash = 0x811c9dc5u;
-    for (unsigned char c : channel) hash = (hash ^ c) * 0x01000193u;
-    return (hash >> 24) ^ (hash & 0xffffffu);
-  }
-
-  const Fixed& fixedOf(std::uint32_t channel, std::uint64_t seed, int width, int height) {
-    Fixed& f = fixed_[channel];
-    if (!f.response.empty()) return f;
-    const auto source = [&](NoiseEffect e) { return NoiseSource(seed, channel, 0, e); };
-    const NoiseSource gain = source(NoiseEffect::Gain), pixel = source(NoiseEffect::FixedPixel), row = source(NoiseEffect::FixedRow),
-                      column = source(NoiseEffect::FixedColumn), bad = source(NoiseEffect::BadPixel);
-    for (int y = 0; y < height; ++y)
-      for (int x = 0; x < width; ++x) {
-        const auto at = static_cast<std::uint32_t>(y * width + x);
-        f.response.push_back(static_cast<float>(1.0 + (law_.prnu > 0.0 ? law_.prnu * gain.normal(at) : 0.0)));
-        double dark = law_.sigmaVh > 0.0 ? law_.sigmaVh * pixel.normal(at) : 0.0;
-        if (law_.sigmaV > 0.0) dark += law_.sigmaV * row.normal(static_cast<std::uint32_t>(y));
-        if (law_.sigmaH > 0.0) dark += law_.sigmaH * column.normal(static_cast<std::uint32_t>(x));
-        f.dark.push_back(static_cast<float>(dark));
-        const double u = law_.badPixels > 0.0 ? bad.uniform(at) : 1.0;
-        f.bad.push_back(u >= law_.badPixels ? 0 : u < 0.5 * law_.badPixels ? 1 : 2);
-      }
-    return f;
-  }
-
-  void expose(std::vector<float>& picture, const Fixed& fixed, std::uint32_t channel, const SensorTick& tick, int width, int height) const {
-    const auto frame = static_cast<std::uint32_t>(tick.frame) + 1;
-    const auto source = [&](NoiseEffect e) { return NoiseSource(tick.seed, channel, frame, e); };
-    const NoiseSource shot = source(NoiseEffect::Shot), read = source(NoiseEffect::Read), ofRow = source(NoiseEffect::Row),
-                      ofColumn = source(NoiseEffect::Column);
-    const double darkMean = law_.darkCurrent_per_s * tick.exposure_s, most = law_.mostCount();
-    const double whole = law_.sigmaT > 0.0 ? law_.sigmaT * source(NoiseEffect::Frame).normal(0) : 0.0;
-    std::vector<double> columns(static_cast<std::size_t>(width), whole);
-    for (int x = 0; law_.sigmaTh > 0.0 && x < width; ++x) columns[static_cast<std::size_t>(x)] += law_.sigmaTh * ofColumn.normal(static_cast<std::uint32_t>(x));
-    const auto exposeRow = [&](int y) {
-      const double row = law_.sigmaTv > 0.0 ? law_.sigmaTv * ofRow.normal(static_cast<std::uint32_t>(y)) : 0.0;
-      for (int x = 0; x < width; ++x) {
-        const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-        const auto place = static_cast<std::uint32_t>(at);
-        const double mean = std::max(0.0, law_.fillFactor * static_cast<double>(fixed.response[at]) * static_cast<double>(picture[at])) + darkMean;
-        // What the well holds is what is counted; read-out adds to what it says.
-        double electrons = std::min(shot.poisson(mean, place), law_.fullWell);
-        if (fixed.bad[at] > 0) electrons = fixed.bad[at] == 1 ? 0.0 : law_.fullWell;
-        electrons += static_cast<double>(fixed.dark[at]) + row + columns[static_cast<std::size_t>(x)];
-        if (law_.sigmaTvh > 0.0) electrons += law_.sigmaTvh * read.normal(place);
-        picture[at] = static_cast<float>(std::clamp(std::floor(law_.gain * electrons + law_.offset + 0.5), 0.0, most));
-      }
-    };
-    sideBySide(height, [&](int first, int last) {
-      for (int y = first; y < last; ++y) exposeRow(y);
-    });
-  }
-
-  DetectorLaw law_;
-  std::map<std::uint32_t, Fixed> fixed_;  ///< by channel
-};
-
-DetectorLaw readLaw(const Record& r) {
+DetectorLaw readLaw(const Record& r, const Camera& camera) {
   DetectorLaw law;
   law.fillFactor = r.number("fill_factor");
   law.fullWell = r.number("full_well");
@@ -120,10 +44,29 @@ DetectorLaw readLaw(const Record& r) {
     throw UserError(r.where(), "a detector's 'temperature' and 'dark_reference' go together",
                     "the detector's temperature, and that at which dark_current is meant", "give both or neither");
   if (r.given("temperature")) law.darkCurrent_per_s *= std::exp2((r.number("temperature") - r.number("dark_reference")) / r.number("dark_doubling"));
-  law.sigmaTvh = r.number("read_noise"), law.sigmaTv = r.number("row_noise"), law.sigmaTh = r.number("column_noise"), law.sigmaT = r.number("frame_noise");
+  law.sigmaTvh = std::hypot(r.number("read_noise"), r.number("reset_noise"));
+  law.sigmaTv = r.number("row_noise"), law.sigmaTh = r.number("column_noise"), law.sigmaT = r.number("frame_noise");
   law.sigmaVh = r.number("dsnu"), law.sigmaV = r.number("fixed_row_noise"), law.sigmaH = r.number("fixed_column_noise");
   law.prnu = r.number("prnu");
+  law.nonlinearity = r.number("nonlinearity");
   law.badPixels = r.number("bad_pixels");
+  law.badTogether = static_cast<int>(r.integer("bad_cluster"));
+  law.flickerCorner_Hz = r.number("flicker_corner");
+  if (law.flickerCorner_Hz > 0.0 && !(law.sigmaTvh > 0.0))
+    throw UserError(r.where("flicker_corner"), "a corner of 1/f noise without white noise to meet", "'read_noise' or 'reset_noise'", "give one, or remove it");
+  law.crosstalk = r.number("crosstalk");
+  law.lag = r.number("lag");
+  law.timeConstant_s = r.number("time_constant");
+  law.lineTime_s = r.number("line_time");
+  law.offsetDrift_per_s = r.number("offset_drift");
+  law.gainDrift_per_s = r.number("gain_drift");
+  if (r.given("correction")) law.correction = readCorrection(r);
+  // Pixels that are read as one: their charges add up, and what differs from one to the next goes together as independent.
+  law.darkCurrent_per_s *= camera.binning * camera.binning;
+  law.sigmaVh *= camera.binning, law.offsetDrift_per_s *= camera.binning;
+  law.prnu /= camera.binning, law.gainDrift_per_s /= camera.binning;
+  const std::string agc = r.text("agc");
+  law.agc = agc == "linear" ? Agc::Linear : agc == "plateau" ? Agc::Plateau : Agc::Percentile;
   return law;
 }
 
@@ -135,7 +78,7 @@ StageModel detectorModel() {
   return {
       "detector",
       "Photoelectrons become counts: shot noise of light and dark current, fixed and temporal noise, the full well and the converter. Noises are in electrons "
-      "rms, named as in EMVA 1288 and in the three-dimensional noise model. For the quantities `counts` and `apparent_temperature`; others stay ideal. A "
+      "rms, named as in EMVA 1288 and in the three-dimensional noise model. For the quantities `counts`, `apparent_temperature`, `snr` and `display`; others stay ideal. A "
       "frame's noise depends on seed, camera, frame and pixel alone.",
       {required(within(number("full_well", "", "electrons that a pixel holds"), 1, 1e12)), withDefault(integer("bits", "of the converter", 1, 16), "14"),
        within(above(number("gain", "", "counts per electron; unless given a full well is the highest count"), 0), 0, 1e6),
@@ -145,17 +88,35 @@ StageModel detectorModel() {
        within(above(number("temperature", "K", "of the detector"), 0), 0, 1000),
        within(above(number("dark_reference", "K", "temperature at which dark_current is meant"), 0), 0, 1000),
        withDefault(within(above(number("dark_doubling", "K", "warming that doubles it"), 0), 0, 1000), "8 K"),
-       electronsOf("read_noise", "sigma_tvh: of each pixel and frame, with reset (kTC) noise"), electronsOf("row_noise", "sigma_tv: of each row and frame"),
+       electronsOf("read_noise", "sigma_tvh: of each pixel and frame"), electronsOf("reset_noise", "kTC noise of each pixel and frame, besides read noise"),
+       withDefault(within(number("flicker_corner", "Hz", "where 1/f noise is as dense as read and reset noise"), 0, 1e6), "0 Hz"),
+       electronsOf("row_noise", "sigma_tv: of each row and frame"),
        electronsOf("column_noise", "sigma_th: of each column and frame"), electronsOf("frame_noise", "sigma_t: of each frame"),
-       electronsOf("dsnu", "sigma_vh: of each pixel, the same in all frames, after correction"), electronsOf("fixed_row_noise", "sigma_v: of each row"),
+       electronsOf("dsnu", "sigma_vh: of each pixel, the same in all frames; with `correction` before it, else what one has left"), electronsOf("fixed_row_noise", "sigma_v: of each row"),
        electronsOf("fixed_column_noise", "sigma_h: of each column"),
-       withDefault(within(number("prnu", "", "of pixels' response, relative, after correction"), 0, 0.5), "0"),
-       withDefault(within(number("bad_pixels", "", "share of pixels, half of them dead, half hot"), 0, 1), "0")},
-      [](const Record& r, const Camera&) {
+       withDefault(within(number("prnu", "", "of pixels' response, relative; as dsnu"), 0, 0.5), "0"),
+       withDefault(within(number("nonlinearity", "", "of pixels' own bends, rms at a full well, relative: what a correction cannot take away"), 0, 0.2), "0"),
+       map("correction", "two-point correction: low, high, frames"),
+       withDefault(within(number("offset_drift", "1/s", "electrons a second by which pixels go apart after time 0, rms"), 0, 1e9), "0 /s"),
+       withDefault(within(number("gain_drift", "1/s", "the same of their response, relative"), 0, 1), "0 /s"),
+       withDefault(within(number("bad_pixels", "", "share of pixels, half of them dead, half hot"), 0, 1), "0"),
+       withDefault(integer("bad_cluster", "of them so many side by side", 1, 100), "1"),
+       withDefault(within(number("crosstalk", "", "share of a pixel's photoelectrons that each of the four beside it gets"), 0, 0.2), "0"),
+       withDefault(within(number("lag", "", "share of a frame's signal that is left in the next"), 0, 0.9), "0"),
+       withDefault(within(number("time_constant", "s", "of a bolometer: its signal follows the light so slowly"), 0, 10), "0 s"),
+       withDefault(within(number("line_time", "s", "rolling read-out: each row is exposed so much later than the one above, the middle of the film at the frame's time"),
+                          0, 1), "0 s"),
+       withDefault(choice("agc", {"linear", "percentile", "plateau"}, "how `display` maps counts to a screen's codes"), "percentile")},
+      [](const Record& r, const Camera& camera) {
         StageChoice choice;
         choice.onPixels = true;
-        choice.detector = readLaw(r);
-        choice.make = [law = *choice.detector](const ShaderLibrary&) { return std::make_unique<DetectorStage>(law); };
+        choice.detector = readLaw(r, camera);
+        choice.warmUp_frames = [law = *choice.detector](double step_s) { return static_cast<int>(memoryWeights(law, step_s).size()) - 1; };
+        if (const double part = choice.detector->crosstalk; part > 0.0)
+          choice.transfer = choice.drawnTransfer = [part, pitch = camera.pinhole.pitchX_m](const ChannelOutput&, double frequency_per_m) {
+            return 1.0 - 2.0 * part * (1.0 - std::cos(2.0 * kPi * frequency_per_m * pitch));
+          };
+        choice.make = [law = *choice.detector](const ShaderLibrary&) { return makeDetectorStage(law); };
         return choice;
       },
       {},

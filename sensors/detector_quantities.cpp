@@ -5,7 +5,7 @@ namespace pitviper {
 namespace {
 
 void flux(const Detector& d, const Collector& c, ChannelOutput& o) {
-  o.perEtendue = true;
+  o.perEtendue = o.behindOptics = true;
   // A constant transmission is a factor, not a kernel: flux and radiance then share their spectral integral.
   o.scale = c.apertureArea_m2;
   if (d.optics.isConstant()) o.scale *= d.optics(1.0);
@@ -57,6 +57,17 @@ void apparentTemperature(const Detector& d, const Collector& c, ChannelOutput& o
   o.asTemperature = true;
 }
 
+/// What the detector tells of its photoelectrons besides counts.
+void signalToNoise(const Detector& d, const Collector& c, ChannelOutput& o) {
+  counts(d, c, o);
+  o.asSignalToNoise = true;
+}
+
+void display(const Detector& d, const Collector& c, ChannelOutput& o) {
+  counts(d, c, o);
+  o.asDisplay = true;
+}
+
 void volts(const Detector& d, const Collector& c, ChannelOutput& o) {
   if (!d.gain) throw UserError(d.where, "'volts' needs a gain", "'gain' of the channel in V/W or V/(W/m2)", "add 'gain: 2e6 V/W'");
   flux(d, c, o);
@@ -75,6 +86,8 @@ std::vector<Quantity> detectorQuantities() {
           {"counts", "count", "what the detector's stage makes of the photoelectrons (needs quantum_efficiency, exposure and `stage: detector`)", counts},
           {"apparent_temperature", "K", "temperature of a black body that gives the same counts, or, without a detector's stage, the same radiance",
            apparentTemperature},
+          {"snr", "1", "mean photoelectrons of light over the noise of a frame, without what is fixed (needs what counts need)", signalToNoise},
+          {"display", "code", "counts as 256 codes for a screen, by the detector's `agc`: for people, no measurements", display},
           {"volts", "V", "gain times flux or focal-plane irradiance (needs gain)", volts}};
 }
 

@@ -25,8 +25,8 @@ std::array<double, 2> NoiseSource::pair(std::uint32_t place, std::uint32_t draw)
 
 double NoiseSource::uniform(std::uint32_t place, std::uint32_t draw) const { return pair(place, draw)[0]; }
 
-double NoiseSource::normal(std::uint32_t place) const {
-  const auto [u, v] = pair(place, 0);
+double NoiseSource::normal(std::uint32_t place, std::uint32_t draw) const {
+  const auto [u, v] = pair(place, draw);
   return std::sqrt(-2.0 * std::log(u)) * std::cos(2.0 * kPi * v);
 }
 

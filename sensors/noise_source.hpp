@@ -7,7 +7,7 @@
 namespace pitviper {
 
 /// What a number is for.
-enum class NoiseEffect : std::uint32_t { Shot, Read, Row, Column, Frame, FixedPixel, FixedRow, FixedColumn, Gain, BadPixel };
+enum class NoiseEffect : std::uint32_t { Shot, Read, Row, Column, Frame, FixedPixel, FixedRow, FixedColumn, Gain, BadPixel, Flicker, Bend, OffsetDrift, GainDrift, Correction };
 
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
@@ -21,7 +21,7 @@ class NoiseSource {
   /// In (0, 1), the `draw`-th of a place.
   double uniform(std::uint32_t place, std::uint32_t draw = 0) const;
   /// Of mean 0 and variance 1 (Box and Muller).
-  double normal(std::uint32_t place) const;
+  double normal(std::uint32_t place, std::uint32_t draw = 0) const;
   /// Counts of independent events of this mean. Up to 1e7 exactly distributed (inversion below 10; above, transformed rejection: W. Hoermann,
   /// Insurance: Mathematics and Economics 12, 39 (1993), PTRS), beyond normal, whose skewness is below 3e-4.
   double poisson(double mean, std::uint32_t place) const;

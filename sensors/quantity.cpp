@@ -31,6 +31,7 @@ ChannelOutput makeOutput(const Detector& d, const std::string& quantity, const C
   o.kernel = d.response;
   o.bandLow_um = d.response.supportLow();
   o.bandHigh_um = d.response.supportHigh();
+  o.curves = std::make_shared<const ChannelCurves>(ChannelCurves{d.response, d.optics, d.quantumEfficiency});
   q.form(d, collector, o);
   return o;
 }

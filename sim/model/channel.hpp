@@ -1,6 +1,7 @@
 #pragma once
 // The contract of a sensor channel's output: a spectral kernel and the factor that turns its integral into a quantity.
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "sim/model/band_temperature.hpp"
@@ -8,6 +9,13 @@
 #include "sim/radiometry/spectrum.hpp"
 
 namespace pitviper {
+
+/// What a channel's kernel is made of, for those who read its frames.
+struct ChannelCurves {
+  Spectrum response;                                ///< dimensionless
+  Spectrum optics{1.0};                             ///< transmission of the camera's optics
+  std::optional<Spectrum> quantumEfficiency = {};   ///< photoelectrons per photon
+};
 
 /// pixel value = scale x integral of kernel(lambda) L(lambda) dlambda [x projected solid angle of the pixel, where perEtendue] [x exposure time, where
 /// perExposure].
@@ -20,10 +28,13 @@ struct ChannelOutput {
   Spectrum kernel;
   double scale = 1.0;
   bool perEtendue = false, perExposure = false;
+  bool behindOptics = false;                                ///< of the light on the film: lenses take from it and add to it
   bool detected = false;                                    ///< photoelectrons that a detector makes counts of
   bool asTemperature = false;                               ///< then told as the temperature of a black body whose kernel integral is as large
-  std::shared_ptr<const BandTemperature> temperature = {};  ///< of its kernel, where it is
+  bool asSignalToNoise = false, asDisplay = false;          ///< of what is detected: its mean over its noise; codes for a screen
+  std::shared_ptr<const BandTemperature> temperature = {};  ///< of its kernel, where that is asked for (asTemperature, detected)
   double bandLow_um = 0.0, bandHigh_um = 0.0;
+  std::shared_ptr<const ChannelCurves> curves = {};  ///< in the frame's header; none: nothing
   std::string cut;  ///< what of its response is left out for want of data, in words; empty: nothing (coverage.hpp)
   std::string layer() const { return channel + "." + quantity; }
 };

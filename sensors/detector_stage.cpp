@@ -1,0 +1,147 @@
+#include "sensors/detector_stage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "sensors/display_codes.hpp"
+#include "sensors/fixed_pattern.hpp"
+#include "sensors/flicker_noise.hpp"
+#include "sensors/noise_source.hpp"
+#include "sensors/side_by_side.hpp"
+#include "sensors/signal_memory.hpp"
+
+namespace pitviper {
+namespace {
+
+/// What pixels share with the four beside them: at the film's edges what would leave it stays.
+void share(std::vector<float>& picture, double part, int width, int height) {
+  if (!(part > 0.0)) return;
+  const std::vector<float> before = picture;
+  const auto at = [&](int x, int y) {
+    return static_cast<double>(before[static_cast<std::size_t>(std::clamp(y, 0, height - 1)) * static_cast<std::size_t>(width) +
+                                      static_cast<std::size_t>(std::clamp(x, 0, width - 1))]);
+  };
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      picture[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] =
+          static_cast<float>((1.0 - 4.0 * part) * at(x, y) + part * (at(x - 1, y) + at(x + 1, y) + at(x, y - 1) + at(x, y + 1)));
+}
+
+class DetectorStage final : public SensorStage {
+ public:
+  explicit DetectorStage(const DetectorLaw& law) : law_(law) {}
+
+  void run(const SensorTick& tick, SensorPictures& pictures) override {
+    struct Read {
+      std::string channel;
+      std::vector<float> counts, signalToNoise;
+    };
+    std::vector<Read> read;  // counts by channel: they and what is told of them are of one read-out
+    for (std::size_t o = 0; o < pictures.outputs.size(); ++o) {
+      const ChannelOutput& output = pictures.outputs[o];
+      if (!output.detected) continue;
+      auto own = std::find_if(read.begin(), read.end(), [&](const auto& r) { return r.channel == output.channel; });
+      if (own == read.end()) {
+        read.push_back({output.channel, pictures.values(o), {}});
+        own = read.end() - 1;
+        const bool wanted = std::any_of(pictures.outputs.begin(), pictures.outputs.end(),
+                                        [&](const ChannelOutput& other) { return other.asSignalToNoise && other.channel == output.channel; });
+        expose(own->counts, wanted ? &own->signalToNoise : nullptr, output, pictures.ownLight.empty() ? 0.0 : pictures.ownLight[o], tick, pictures.width, pictures.height);
+      }
+      std::vector<float>& picture = pictures.values(o);
+      picture = output.asSignalToNoise ? own->signalToNoise : own->counts;
+      if (output.asDisplay) toDisplayCodes(picture, law_);
+      if (!output.asTemperature) continue;
+      const double dark = law_.darkCurrent_per_s * tick.exposure_s, lens = pictures.ownLight.empty() ? 0.0 : pictures.ownLight[o];
+      for (float& v : picture) v = static_cast<float>(((static_cast<double>(v) - law_.offset) / law_.gain - dark) / law_.fillFactor - lens);
+    }
+  }
+
+ private:
+  /// `own`: electrons of the sensor's own light, which a correction has before it too.
+  const FixedPattern& patternOf(const ChannelOutput& output, double own, std::uint32_t channel, const SensorTick& tick, int width, int height) {
+    FixedPattern& f = patterns_[channel];
+    if (!f.response.empty()) return f;
+    f = fixedPattern(law_, tick.seed, channel, width, height);
+    if (!law_.correction) return f;
+    const auto electronsAt = [&](double kelvin) {
+      return law_.fillFactor * (own + output.scale * (output.perExposure ? tick.exposure_s : 1.0) * tick.axis_sr * output.temperature->integral(kelvin));
+    };
+    const double dark = law_.darkCurrent_per_s * tick.exposure_s, low = electronsAt(law_.correction->low_K), high = electronsAt(law_.correction->high_K);
+    const auto noise = [&](double signal) { return std::sqrt(signal + dark + law_.sigmaTvh * law_.sigmaTvh); };
+    learnCorrection(f, law_, tick.seed, channel, low, high, noise(low), noise(high));
+    return f;
+  }
+
+  void expose(std::vector<float>& picture, std::vector<float>* signalToNoise, const ChannelOutput& output, double own, const SensorTick& tick, int width,
+              int height) {
+    const std::uint32_t channel = channelNumber(output.channel);
+    const FixedPattern& fixed = patternOf(output, own, channel, tick, width, height);
+    share(picture, law_.crosstalk, width, height);
+    if (law_.lag > 0.0 || law_.timeConstant_s > 0.0) memory_.apply(channel, tick.frame, memoryWeights(law_, tick.step_s), picture);
+    const std::vector<float>* flicker = nullptr;
+    const double octave = flickerOctave(law_, tick.step_s);
+    if (octave > 0.0) flicker = &flicker_.try_emplace(channel, tick.seed, channel, picture.size()).first->second.at(tick.frame);
+    const auto frame = static_cast<std::uint32_t>(tick.frame) + 1;
+    const auto source = [&](NoiseEffect e) { return NoiseSource(tick.seed, channel, frame, e); };
+    const NoiseSource shot = source(NoiseEffect::Shot), read = source(NoiseEffect::Read), ofRow = source(NoiseEffect::Row),
+                      ofColumn = source(NoiseEffect::Column);
+    const double darkMean = law_.darkCurrent_per_s * tick.exposure_s, most = law_.mostCount();
+    const double whole = law_.sigmaT > 0.0 ? law_.sigmaT * source(NoiseEffect::Frame).normal(0) : 0.0;
+    const auto square = [](double x) { return x * x; };
+    const double variance = square(law_.sigmaTvh) + square(law_.sigmaTv) + square(law_.sigmaTh) + square(law_.sigmaT) +
+                            FlickerNoise::kOctaves * square(octave) + 1.0 / (12.0 * square(law_.gain));
+    if (signalToNoise) signalToNoise->resize(picture.size());
+    std::vector<double> columns(static_cast<std::size_t>(width), whole);
+    for (int x = 0; law_.sigmaTh > 0.0 && x < width; ++x) columns[static_cast<std::size_t>(x)] += law_.sigmaTh * ofColumn.normal(static_cast<std::uint32_t>(x));
+    const auto exposeRow = [&](int y) {
+      const double row = law_.sigmaTv > 0.0 ? law_.sigmaTv * ofRow.normal(static_cast<std::uint32_t>(y)) : 0.0;
+      for (int x = 0; x < width; ++x) {
+        const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+        const auto place = static_cast<std::uint32_t>(at);
+        const double ideal = law_.fillFactor * static_cast<double>(picture[at]);
+        double response = static_cast<double>(fixed.response[at]), dark = static_cast<double>(fixed.dark[at]);
+        if (!fixed.gainDrift.empty()) response += static_cast<double>(fixed.gainDrift[at]) * tick.time_s;
+        if (!fixed.darkDrift.empty()) dark += static_cast<double>(fixed.darkDrift[at]) * tick.time_s;
+        double signal = response * ideal;
+        if (!fixed.bend.empty()) signal += static_cast<double>(fixed.bend[at]) * ideal * ideal;
+        const double mean = std::max(0.0, signal) + darkMean;
+        if (signalToNoise) (*signalToNoise)[at] = static_cast<float>(std::max(0.0, signal) / std::sqrt(mean + variance));
+        // What the well holds is what is counted; read-out adds to what it says.
+        double electrons = std::min(shot.poisson(mean, place), law_.fullWell);
+        if (fixed.bad[at] > 0) electrons = fixed.bad[at] == 1 ? 0.0 : law_.fullWell;
+        electrons += dark + row + columns[static_cast<std::size_t>(x)];
+        if (law_.sigmaTvh > 0.0) electrons += law_.sigmaTvh * read.normal(place);
+        if (flicker) electrons += octave * static_cast<double>((*flicker)[at]);
+        // The correction knows the mean dark signal as what there is without light.
+        if (!fixed.gain.empty()) electrons = static_cast<double>(fixed.gain[at]) * (electrons - darkMean) + static_cast<double>(fixed.offset[at]) + darkMean;
+        picture[at] = static_cast<float>(std::clamp(std::floor(law_.gain * electrons + law_.offset + 0.5), 0.0, most));
+      }
+    };
+    sideBySide(height, [&](int first, int last) {
+      for (int y = first; y < last; ++y) exposeRow(y);
+    });
+  }
+
+  DetectorLaw law_;
+  std::map<std::uint32_t, FixedPattern> patterns_;  ///< by channel
+  std::map<std::uint32_t, FlickerNoise> flicker_;
+  SignalMemory memory_;
+};
+
+}  // namespace
+
+std::uint32_t channelNumber(const std::string& channel) {
+  std::uint32_t hash = 0x811c9dc5u;  // FNV-1a
+  for (unsigned char c : channel) hash = (hash ^ c) * 0x01000193u;
+  return (hash >> 24) ^ (hash & 0xffffffu);
+}
+
+double flickerOctave(const DetectorLaw& law, double step_s) {
+  return law.flickerCorner_Hz > 0.0 ? law.sigmaTvh * std::sqrt(2.0 * law.flickerCorner_Hz * step_s * std::log(2.0)) : 0.0;
+}
+
+std::unique_ptr<SensorStage> makeDetectorStage(const DetectorLaw& law) { return std::make_unique<DetectorStage>(law); }
+
+}  // namespace pitviper

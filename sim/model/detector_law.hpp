@@ -1,0 +1,45 @@
+#pragma once
+// How a detector makes counts of photoelectrons, as a scenario asks for it.
+#include <algorithm>
+#include <optional>
+
+namespace pitviper {
+
+/// How `display` maps counts to the 256 codes of a screen: for people only.
+enum class Agc { Linear, Percentile, Plateau };
+
+/// count = round(gain x min(well, electrons) + offset), 0 to 2^bits - 1. Noises are standard deviations [electron], named as in EMVA 1288 and in the
+/// three-dimensional noise model (t: from frame to frame, v: from row to row, h: from column to column).
+struct DetectorLaw {
+  double fillFactor = 1.0;
+  double darkCurrent_per_s = 0.0;  ///< [electron/s]
+  double fullWell = 1e6;           ///< [electron]
+  double gain = 0.01;              ///< [count/electron]
+  double offset = 0.0;             ///< [count]
+  int bits = 14;
+  double sigmaTvh = 0.0, sigmaTv = 0.0, sigmaTh = 0.0, sigmaT = 0.0;  ///< temporal: read and reset noise, of rows, of columns, of the frame
+  double flickerCorner_Hz = 0.0;                                     ///< where 1/f noise is as dense as sigmaTvh; 0: none
+  double sigmaVh = 0.0, sigmaV = 0.0, sigmaH = 0.0;                   ///< fixed: of pixels (DSNU), rows, columns
+  double prnu = 0.0;                                                  ///< of the response, relative
+  double nonlinearity = 0.0;                                          ///< of pixels' own bends, rms at a full well, relative
+  double badPixels = 0.0;                                             ///< share that is dead or hot, half and half
+  int badTogether = 1;                                                ///< so many side by side
+  double crosstalk = 0.0;                                             ///< of a pixel's photoelectrons, to each of the four beside it
+  double lag = 0.0;                                                   ///< of a frame's signal that is left in the next
+  double timeConstant_s = 0.0;                                        ///< of a bolometer's warming; 0: none
+  double lineTime_s = 0.0;                                            ///< a row is exposed so much later than the one above it; 0: all at once
+  /// Two-point correction at time 0: offsets and gains of pixels, learnt from black bodies by averages over frames.
+  struct Correction {
+    double low_K = 290.0, high_K = 310.0;
+    int frames = 64;
+  };
+  std::optional<Correction> correction = {};
+  double offsetDrift_per_s = 0.0;  ///< rms over pixels, in electrons a second since time 0
+  double gainDrift_per_s = 0.0;    ///< the same, relative
+  Agc agc = Agc::Percentile;
+  double mostCount() const { return static_cast<double>((1 << bits) - 1); }
+  /// Electrons at which it no longer tells: the well is full, or the highest count.
+  double saturation() const { return std::min(fullWell, (mostCount() - offset) / gain); }
+};
+
+}  // namespace pitviper
