@@ -1,6 +1,7 @@
 #include "sensors/optical_transfer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 
@@ -50,40 +51,79 @@ double SpreadKernel::transfer(double cyclesPerCell) const {
   return sum;
 }
 
+namespace {
+
+/// A quarter of the plane of frequencies, as all is even in both.
+struct Frequencies {
+  std::vector<double> f, weight;
+  /// Gauss points in pieces that follow the cosines of a cell so far away.
+  Frequencies(double cutoff_per_m, double farthest_m) {
+    const int pieces = std::max(1, static_cast<int>(std::ceil(cutoff_per_m * farthest_m)));
+    for (int p = 0; p < pieces; ++p)
+      for (const QuadratureNode& q : gaussLegendre(8, cutoff_per_m * p / pieces, cutoff_per_m * (p + 1) / pieces)) f.push_back(q.x), weight.push_back(q.weight);
+  }
+  /// 4 integral of g(fx, fy) cos(2 pi fx a) cos(2 pi fy b) for a and b of a list each: [b][a].
+  template <class Of>
+  std::vector<double> cosines(const Of& g, const std::vector<double>& places_m) const {
+    const std::size_t n = f.size(), count = places_m.size();
+    std::vector<double> plane(n * n), cosine(count * n), rows(count * n, 0.0), all;
+    for (std::size_t y = 0; y < n; ++y)
+      for (std::size_t x = 0; x < n; ++x) plane[y * n + x] = g(f[x], f[y]) * weight[x] * weight[y];
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t x = 0; x < n; ++x) cosine[i * n + x] = 2.0 * std::cos(2.0 * kPi * places_m[i] * f[x]);
+    for (std::size_t i = 0; i < count; ++i)
+      for (std::size_t y = 0; y < n; ++y) rows[i * n + y] = std::inner_product(&cosine[i * n], &cosine[i * n] + n, &plane[y * n], 0.0);
+    for (std::size_t j = 0; j < count; ++j)
+      for (std::size_t i = 0; i < count; ++i) all.push_back(std::inner_product(&cosine[j * n], &cosine[j * n] + n, &rows[i * n], 0.0));
+    return all;
+  }
+};
+
+double sinc(double x) { return std::abs(x) > 1e-8 ? std::sin(kPi * x) / (kPi * x) : 1.0; }
+
+}  // namespace
+
 SpreadKernel spreadKernel(const std::function<double(double, double)>& transfer, double cutoff_per_m, double cell_m, int reach) {
   const bool isSampled = cutoff_per_m * cell_m <= kSampled;
   cutoff_per_m = std::min(cutoff_per_m, kMostCycles / cell_m);
-  // Even in both: a quarter of the plane, Gauss points in pieces that follow the cosines of the farthest cell.
-  const double turns = cutoff_per_m * cell_m * (reach + 1);
-  const int pieces = std::max(1, static_cast<int>(std::ceil(turns)));
-  std::vector<double> f, weight;
-  for (int p = 0; p < pieces; ++p)
-    for (const QuadratureNode& q : gaussLegendre(8, cutoff_per_m * p / pieces, cutoff_per_m * (p + 1) / pieces)) f.push_back(q.x), weight.push_back(q.weight);
-  const auto averaged = [&](double x) {
-    const double a = kPi * cell_m * x, s = a > 1e-8 && !isSampled ? std::sin(a) / a : 1.0;
-    return s * s;
-  };
-  const std::size_t n = f.size(), cells = static_cast<std::size_t>(reach) + 1;
-  std::vector<double> plane(n * n), cosine(cells * n);
-  for (std::size_t y = 0; y < n; ++y)
-    for (std::size_t x = 0; x < n; ++x) plane[y * n + x] = transfer(f[x], f[y]) * weight[x] * weight[y] * averaged(f[x]) * averaged(f[y]);
-  for (std::size_t i = 0; i < cells; ++i)
-    for (std::size_t x = 0; x < n; ++x) cosine[i * n + x] = 2.0 * cell_m * std::cos(2.0 * kPi * cell_m * static_cast<double>(i) * f[x]);
-  std::vector<double> rows(cells * n, 0.0);
-  for (std::size_t i = 0; i < cells; ++i)
-    for (std::size_t y = 0; y < n; ++y)
-      for (std::size_t x = 0; x < n; ++x) rows[i * n + y] += cosine[i * n + x] * plane[y * n + x];
+  std::vector<double> places;
+  for (int i = 0; i <= reach; ++i) places.push_back(cell_m * i);
+  const auto averaged = [&](double f) { return isSampled ? 1.0 : sinc(cell_m * f) * sinc(cell_m * f); };
+  const std::vector<double> quarter = Frequencies(cutoff_per_m, cell_m * (reach + 1))
+                                          .cosines([&](double fx, double fy) { return cell_m * cell_m * transfer(fx, fy) * averaged(fx) * averaged(fy); }, places);
   SpreadKernel kernel;
   kernel.reach = reach;
-  kernel.share.assign((2 * cells - 1) * (2 * cells - 1), 0.0);
-  for (int j = 0; j <= reach; ++j)
-    for (int i = 0; i <= reach; ++i) {
-      double sum = 0.0;
-      for (std::size_t y = 0; y < n; ++y) sum += cosine[static_cast<std::size_t>(j) * n + y] * rows[static_cast<std::size_t>(i) * n + y];
-      for (int a : {i, -i})
-        for (int b : {j, -j}) kernel.share[static_cast<std::size_t>((b + reach) * (2 * reach + 1) + a + reach)] = sum;
-    }
+  for (int j = -reach; j <= reach; ++j)
+    for (int i = -reach; i <= reach; ++i) kernel.share.push_back(quarter[static_cast<std::size_t>(std::abs(j) * (reach + 1) + std::abs(i))]);
   return kernel;
+}
+
+PointResponse::PointResponse(const std::function<double(double, double)>& transfer, double cutoff_per_m, double cell_m, int reach) : reach_(reach) {
+  // So that between entries a cubic is good to 1e-3 of what little the highest frequencies leave.
+  constexpr double kEntriesACycle = 11.0, kMostEntries = 1500.0;
+  const double cutoff = std::min(cutoff_per_m, kMostCycles / cell_m);
+  steps_ = static_cast<int>(std::clamp(std::ceil(kEntriesACycle * cutoff * cell_m), 4.0, std::max(4.0, kMostEntries / (reach + 1))));
+  side_ = (reach + 1) * steps_ + 3;
+  std::vector<double> places;
+  for (int i = 0; i < side_; ++i) places.push_back(cell_m * i / steps_);
+  table_ = Frequencies(cutoff, cell_m * (reach + 2))
+               .cosines([&](double fx, double fy) { return cell_m * cell_m * transfer(fx, fy) * sinc(cell_m * fx) * sinc(cell_m * fy); }, places);
+}
+
+double PointResponse::share(double x, double y) const {
+  const double u = std::abs(x) * steps_, v = std::abs(y) * steps_;
+  const int i = static_cast<int>(u), j = static_cast<int>(v);
+  if (i + 2 >= side_ || j + 2 >= side_) return 0.0;
+  // Lagrange's cubic through four neighbours each way.
+  const auto weights = [](double t) {
+    return std::array<double, 4>{-t * (t - 1.0) * (t - 2.0) / 6.0, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0, -(t + 1.0) * t * (t - 2.0) / 2.0,
+                                 (t + 1.0) * t * (t - 1.0) / 6.0};
+  };
+  const auto a = weights(u - i), b = weights(v - j);
+  double sum = 0.0;
+  for (int q = 0; q < 4; ++q)
+    for (int p = 0; p < 4; ++p) sum += a[static_cast<std::size_t>(p)] * b[static_cast<std::size_t>(q)] * entry(i + p - 1, j + q - 1);
+  return sum;
 }
 
 }  // namespace pitviper

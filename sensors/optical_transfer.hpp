@@ -1,5 +1,6 @@
 #pragma once
 // What a lens makes of a point: its optical transfer function, and from it shares of light on cells of the film.
+#include <cstdlib>
 #include <functional>
 #include <vector>
 
@@ -38,5 +39,20 @@ constexpr double kMostCycles = 32.0;
 /// Where cells are fine enough to sample the point spread function (c cutoff <= kSampled; all shares together are then 1), s is 1: the means before stand for
 /// those after. Where they are coarser, s = sinc^2(c f_x) sinc^2(c f_y): light lies evenly on the cell it comes from, and is averaged over the one it falls on.
 SpreadKernel spreadKernel(const std::function<double(double fx, double fy)>& transfer, double cutoff_per_m, double cell_m, int reach);
+
+/// Share of a point's light that falls on a cell, by how far the cell's middle is from the point: the point spread function averaged over the cell, once.
+///   share(x, y) = c^2 integral of OTF(f) sinc(c f_x) sinc(c f_y) cos(2 pi c (x f_x + y f_y)) d2f, x and y in cells
+/// Frequencies up to kMostCycles a cell count. Tabulated, cubic between entries.
+class PointResponse {
+ public:
+  PointResponse(const std::function<double(double fx, double fy)>& transfer, double cutoff_per_m, double cell_m, int reach);
+  int reach() const { return reach_; }  ///< cells to each side of the point's own
+  double share(double x, double y) const;
+
+ private:
+  double entry(int i, int j) const { return table_[static_cast<std::size_t>(std::abs(j)) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(std::abs(i))]; }
+  int reach_, steps_, side_;  ///< entries a cell; a side of the quarter that is kept
+  std::vector<double> table_;
+};
 
 }  // namespace pitviper

@@ -1,6 +1,7 @@
 // The lens: a point spread function by diffraction, wavefront, defocus, blur and jitter, of each channel its own.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sensors/convolution.hpp"
 #include "sensors/stages.hpp"
@@ -73,22 +74,33 @@ double transferOf(const Lens& lens, const Waves& waves, double frequency_per_m) 
   return sum;
 }
 
-SpreadKernel kernelOf(const Lens& lens, const ChannelOutput& output, int mostReach) {
-  const Waves waves = wavesOf(output);
-  double cutoff = 0.0;
-  for (const auto& [w, share] : waves) cutoff = std::max(cutoff, lens.cutoff_per_m(w));
-  if (lens.blur_m > 0.0) cutoff = std::min(cutoff, lens.blurCutoff_per_m());
-  constexpr int kEntries = 2000;
-  const double last = std::min(cutoff, std::sqrt(2.0) * kMostCycles / lens.cell_m);
-  std::vector<double> table;
-  for (int k = 0; k <= kEntries; ++k) table.push_back(transferOf(lens, waves, last * k / kEntries));
-  const auto transfer = [&](double fx, double fy) {
-    const double x = std::sqrt(fx * fx + fy * fy) / last * kEntries;
+/// The OTF of an output's light, round, as a table over frequency.
+class Transfer {
+ public:
+  Transfer(const Lens& lens, const ChannelOutput& output) {
+    const Waves waves = wavesOf(output);
+    for (const auto& [w, share] : waves) cutoff_ = std::max(cutoff_, lens.cutoff_per_m(w));
+    if (lens.blur_m > 0.0) cutoff_ = std::min(cutoff_, lens.blurCutoff_per_m());
+    last_ = std::min(cutoff_, std::sqrt(2.0) * kMostCycles / lens.cell_m);
+    for (int k = 0; k <= kEntries; ++k) table_.push_back(transferOf(lens, waves, last_ * k / kEntries));
+  }
+  double cutoff_per_m() const { return cutoff_; }
+  double operator()(double fx, double fy) const {
+    const double x = std::sqrt(fx * fx + fy * fy) / last_ * kEntries;
     const auto k = static_cast<std::size_t>(x);
-    return k >= kEntries ? 0.0 : table[k] + (table[k + 1] - table[k]) * (x - static_cast<double>(k));
-  };
+    return k >= kEntries ? 0.0 : table_[k] + (table_[k + 1] - table_[k]) * (x - static_cast<double>(k));
+  }
+
+ private:
+  static constexpr int kEntries = 2000;
+  double cutoff_ = 0.0, last_ = 0.0;
+  std::vector<double> table_;
+};
+
+SpreadKernel kernelOf(const Lens& lens, const ChannelOutput& output, int mostReach) {
+  const Transfer transfer(lens, output);
   for (int reach = std::min(2, mostReach);; reach = std::min(2 * reach, mostReach)) {
-    SpreadKernel kernel = spreadKernel(transfer, cutoff, lens.cell_m, reach);
+    SpreadKernel kernel = spreadKernel(transfer, transfer.cutoff_per_m(), lens.cell_m, reach);
     if (kernel.sum() >= lens.leastShare || reach == mostReach) return kernel;
   }
 }
@@ -109,11 +121,32 @@ std::vector<SpreadKernel> kernelsOf(const Lens& lens, const std::vector<ChannelO
   return all;
 }
 
+/// The fewest cells of a pixel on which contrast at half a cycle a pixel is the lens's own, in all channels; at most so many that pictures still fit.
+int fewestCells(Lens lens, const Camera& camera) {
+  constexpr int kMost = 4;
+  constexpr double kOff = 0.01;
+  const double nyquist = 0.5 / lens.pitch_m;
+  for (int cells = 1; cells < kMost; ++cells) {
+    lens.setCells(cells);
+    const auto isGood = [&](const ChannelOutput& o) {
+      const Transfer transfer(lens, o);
+      // Light that lies evenly on its cell, or stands in its middle, and is averaged over a pixel of cells.
+      const SpreadKernel kernel = kernelOf(lens, o, kMostReach_cells);
+      const double x = nyquist * lens.cell_m, ofCells = std::sin(kPi * x * cells) / (cells * std::sin(kPi * x)), own = 2.0 / kPi;
+      return std::abs(kernel.transfer(x) * ofCells * std::sin(kPi * x) / (kPi * x) - transfer(nyquist, 0.0) * own) <= kOff;
+    };
+    if (std::all_of(camera.outputs.begin(), camera.outputs.end(), isGood)) return cells;
+  }
+  return kMost;
+}
+
 class PointSpreadStage final : public SensorStage {
  public:
   PointSpreadStage(const Lens& lens, std::vector<SpreadKernel> kernels) : lens_(lens), kernels_(std::move(kernels)) {}
   void run(const SensorTick& tick, SensorPictures& pictures) override {
     follow(tick, pictures);
+    const std::vector<SensorPoint> points = std::move(pictures.points);
+    pictures.points.clear();
     for (std::size_t o = 0; o < kernels_.size(); ++o) {
       if (spread_.size() <= o) spread_.emplace_back(kernels_[o], pictures.width, pictures.height);
       std::vector<float>& picture = pictures.values(o);
@@ -127,10 +160,39 @@ class PointSpreadStage final : public SensorStage {
       // What the kernel does not hold lies evenly over the film.
       const double within = 1.0 - lens_.veilingGlare, veil = mean * (lens_.veilingGlare + within * std::max(0.0, 1.0 - kernels_[o].sum()));
       for (float& v : picture) v = static_cast<float>(within * static_cast<double>(v) + veil);
+      addPoints(points, o, pictures, picture);
     }
   }
 
  private:
+  /// Points at their own places: shares of each on the cells around it, the rest evenly.
+  void addPoints(const std::vector<SensorPoint>& points, std::size_t o, const SensorPictures& pictures, std::vector<float>& picture) {
+    std::vector<double> sum;
+    const double within = 1.0 - lens_.veilingGlare;
+    double veil = 0.0;
+    for (const SensorPoint& p : points) {
+      if (p.output != o) continue;
+      if (sum.empty()) sum.assign(picture.begin(), picture.end());
+      auto& response = responses_[o];
+      if (!response) {
+        const Transfer transfer(lens_, pictures.outputs[o]);
+        response = std::make_unique<PointResponse>(transfer, transfer.cutoff_per_m(), lens_.cell_m, kernels_[o].reach);
+      }
+      const int column = static_cast<int>(std::floor(p.column)), row = static_cast<int>(std::floor(p.row)), reach = response->reach();
+      double all = 0.0;
+      for (int y = row - reach; y <= row + reach; ++y)
+        for (int x = column - reach; x <= column + reach; ++x) {
+          const double share = within * response->share(x + 0.5 - p.column, y + 0.5 - p.row);
+          all += share;
+          if (x < 0 || y < 0 || x >= pictures.width || y >= pictures.height) continue;
+          const auto cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(pictures.width) + static_cast<std::size_t>(x);
+          sum[cell] += share * pictures.inCell(p, cell);
+        }
+      veil += std::max(0.0, 1.0 - all) * pictures.inCell(p, picture.size() / 2) / static_cast<double>(picture.size());
+    }
+    for (std::size_t c = 0; c < sum.size(); ++c) picture[c] = static_cast<float>(std::max(0.0, sum[c] + veil));
+  }
+
   /// Another stage may ask for finer cells, and a lens zooms. Kernels stay within the margin that there is.
   void follow(const SensorTick& tick, const SensorPictures& pictures) {
     const double focal = tick.focalLength_m > 0.0 ? tick.focalLength_m : lens_.focalLength_m;
@@ -138,12 +200,14 @@ class PointSpreadStage final : public SensorStage {
     lens_.zoom(focal);
     lens_.setCells(pictures.cells);
     spread_.clear();
+    responses_.clear();
     kernels_ = kernelsOf(lens_, pictures.outputs, std::min(kMostReach_cells, pictures.margin_px * lens_.cells));
   }
 
   Lens lens_;
   std::vector<SpreadKernel> kernels_;
   std::vector<Convolution> spread_;
+  std::map<std::size_t, std::unique_ptr<PointResponse>> responses_;  ///< by output, once there are points
 };
 
 StageChoice readPointSpread(const Record& r, const Camera& camera) {
@@ -152,7 +216,7 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
   if (std::abs(p.pitchX_m / p.pitchY_m - 1.0) > 1e-9)
     throw UserError(r.where(), "a point spread function on pixels that are not square", "'pitch' without 'pitch_y'", "remove pitch_y, or the stage");
   StageChoice choice;
-  choice.cells = static_cast<int>(r.integer("cells"));
+  choice.cells = r.given("cells") ? static_cast<int>(r.number("cells")) : 1;
   lens.aperture_m = p.apertureDiameter_m;
   lens.pitch_m = p.pitchX_m;
   lens.setCells(choice.cells);
@@ -176,6 +240,10 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
     if (lens.wavefront_m > kMostWavefront_waves * o.bandLow_um * 1e-6)
       throw UserError(r.where("wavefront_error"), "a wavefront error of more than 0.18 waves in channel '" + o.channel + "'",
                       "at most " + std::to_string(kMostWavefront_waves * o.bandLow_um) + " um", "lower it, or say it as 'blur'");
+  if (!r.given("cells")) {
+    choice.cells = fewestCells(lens, camera);
+    lens.setCells(choice.cells);
+  }
   const std::vector<SpreadKernel> kernels = kernelsOf(lens, camera.outputs, kMostReach_cells);
   for (std::size_t o = 0; o < kernels.size(); ++o) {
     choice.margin_px = std::max(choice.margin_px, (kernels[o].reach + choice.cells - 1) / choice.cells);
@@ -191,6 +259,12 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
   choice.transfer = [lens, within](const ChannelOutput& o, double frequency_per_m) { return within * transferOf(lens, wavesOf(o), frequency_per_m); };
   choice.drawnTransfer = [lens, within](const ChannelOutput& o, double frequency_per_m) {
     return within * kernelOf(lens, o, kMostReach_cells).transfer(frequency_per_m * lens.cell_m);
+  };
+  choice.takesPoints = true;
+  choice.pixelShare = [lens, within](const ChannelOutput& o, double x, double y) {
+    const Transfer transfer(lens, o);
+    const int reach = static_cast<int>(std::ceil(std::max(std::abs(x), std::abs(y))));
+    return within * PointResponse(transfer, transfer.cutoff_per_m(), lens.pitch_m, reach).share(x, y);
   };
   choice.make = [lens, kernels](const ShaderLibrary&) { return std::make_unique<PointSpreadStage>(lens, kernels); };
   return choice;
@@ -210,7 +284,7 @@ StageModel pointSpreadModel() {
        withDefault(within(number("blur", "m", "of Gauss on the film, rms along one direction"), 0, 1), "0 um"),
        withDefault(within(number("jitter", "rad", "of the line of sight within an exposure, rms along one direction"), 0, 0.1), "0 rad"),
        withDefault(within(number("veiling_glare", "", "share of the light that the lens spreads evenly"), 0, 0.9), "0"),
-       withDefault(integer("cells", "cells a side of a pixel", 1, 16), "2"),
+       within(number("cells", "", "cells a side of a pixel, 1 to 16; unless given the fewest, up to 4, that leave contrast at half a cycle a pixel within 0.01"), 1, 16),
        withDefault(within(above(number("beyond", "", "share of a point's light that may go into the veil rather than lie where it is"), 0), 0, 0.2), "0.01")},
       readPointSpread};
 }

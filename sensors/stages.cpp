@@ -8,10 +8,16 @@ namespace {
 /// Far more than any point spread function that a film holds.
 constexpr int kMostMargin_px = 256, kMostCells = 16;
 
+void addTo(Fingerprint& f, const Value& value) {
+  f.add(value.text);
+  for (const Value& item : value.items) addTo(f, item);
+  for (const auto& [key, item] : value.entries) f.add(key), addTo(f, item);
+}
+
 }  // namespace
 
 Registry<StageModel>& stageModels() {
-  static Registry<StageModel> all("stage", {pointSpreadModel(), detectorModel()});
+  static Registry<StageModel> all("stage", {distortionModel(), pointSpreadModel(), vignettingModel(), lensEmissionModel(), detectorModel()});
   return all;
 }
 
@@ -25,7 +31,10 @@ StageChoice readStage(const Value& value, const Camera& camera) {
   choice.name = model.name;
   Fingerprint f;
   f.add(model.name);
-  for (const Parameter& p : model.parameters) f.add(p.key).add(record.has(p.key) ? record.value(p.key).text : std::string());
+  for (const Parameter& p : model.parameters) {
+    f.add(p.key);
+    if (record.has(p.key)) addTo(f, record.value(p.key));
+  }
   choice.fingerprint = f.bytes();
   if (choice.margin_px < 0 || choice.margin_px > kMostMargin_px || choice.cells < 1 || choice.cells > kMostCells)
     throw UserError(value.where,

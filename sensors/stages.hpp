@@ -17,7 +17,10 @@ struct StageModel {
   bool isDetector = false;  ///< it makes counts
 };
 
+StageModel distortionModel();
 StageModel pointSpreadModel();
+StageModel vignettingModel();
+StageModel lensEmissionModel();
 StageModel detectorModel();
 
 Registry<StageModel>& stageModels();

@@ -86,20 +86,22 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
   if (doubt >= 0) pixels.push_back(doubt);
   reference_->setWanted(pixels);
   reference_->setParts(image.parts);
-  const CameraImage exact = reference_->render(state);
+  CameraImage exact = reference_->render(state), drawn = image;
+  putPointsIntoPixels(exact);
+  putPointsIntoPixels(drawn);
   std::vector<char> isBroken(pixels.size(), 0);
   for (size_t o = 0; o < camera_.outputs.size(); ++o) {
     const auto slot = static_cast<size_t>(image.slotOfOutput[o]);
     image.audit.resize(std::max(image.audit.size(), slot + 1));
     if (image.audit[slot].pixels > 0) continue;  // another output of the same kernel
-    std::vector<double> sorted = image.slots[slot], errors;
+    std::vector<double> sorted = drawn.slots[slot], errors;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() * 99 / 100), sorted.end());
     const double floor = std::max(kDark * sorted[sorted.size() * 99 / 100], reference_->plan().darkFloors()[static_cast<size_t>(exact.slotOfOutput[o])]);
     SlotAudit& audit = image.audit[slot];
     for (size_t k = 0; k < pixels.size(); ++k) {
       const auto p = static_cast<size_t>(pixels[k]);
       const double want = exact.slots[static_cast<size_t>(exact.slotOfOutput[o])][p], size = std::max(std::abs(want), floor);
-      const double error = size > 0.0 ? std::abs(image.slots[slot][p] - want) / size : 0.0;
+      const double error = size > 0.0 ? std::abs(drawn.slots[slot][p] - want) / size : 0.0;
       if (static_cast<int>(k) < count) errors.push_back(error);
       else audit.doubt = error;
       isBroken[k] = static_cast<char>(isBroken[k] || (asked_ > 0.0 && error > asked_));
@@ -112,7 +114,7 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
     audit.largest = errors.back();
   }
   // One for each of those that the scenario asks for, or a single one.
-  for (std::size_t k = 0; asked_ > 0.0 && k < (simulation_.audit > 0.0 ? pixels.size() : 1); ++k) lookAtWhole(state, pixels[k], image);
+  for (std::size_t k = 0; asked_ > 0.0 && k < (simulation_.audit > 0.0 ? pixels.size() : 1); ++k) lookAtWhole(state, pixels[k], drawn);
   tally_.pixels += count;
   ++tally_.frames;
   tally_.asked = asked_;

@@ -25,6 +25,14 @@ struct SlotAudit {
   double doubt = -1.0;  ///< of the pixel that sees what few do; below 0: none was looked at
 };
 
+/// Light of what is smaller than a subpixel, where it falls.
+struct FilmPoint {
+  double column = 0.0, row = 0.0;  ///< pixels of the picture from its top left corner
+  int slot = 0;
+  int pixel = 0;  ///< that it is in (row by row from the top), all of what it stands for
+  double flux = 0.0;  ///< kernel unit x W/m2 on the aperture: radiance times projected solid angle; what it hides taken away
+};
+
 /// What leaves the renderer: integrals of kernel x radiance per slot and pixel, row 0 at the top.
 struct CameraImage {
   int width = 0, height = 0;
@@ -39,7 +47,13 @@ struct CameraImage {
   std::vector<double> predictedError;          ///< empty where nothing was measured
   std::string plan;                            ///< its fingerprint
   std::vector<Ball> parts;                     ///< bright ones that had views of their own
+  std::vector<FilmPoint> points;               ///< besides `slots`: of a camera with pointsApart
+  int exposureParts = 1;                       ///< times that it is a mean of
+  double exposureMotion_px = 0.0, exposureError = 0.0;  ///< as of ExposureParts
   std::vector<SlotAudit> audit;                ///< per slot; empty: not audited
 };
+
+/// Points become part of the pixels that they are in, and there are none any more.
+void putPointsIntoPixels(CameraImage& image);
 
 }  // namespace pitviper

@@ -146,6 +146,7 @@ WorldState CameraRenderer::lampsInView() const {
 
 CameraImage CameraRenderer::finish() {
   Subpixels image(plan_, view_, pass_->finishReadback());
+  if (camera_.pointsApart) image.keepPoints();
   {
     const TimedPart part("small bodies");
     addSmallBodies(image, *pass_, simulation_, state_, small_, present_, lines_, parts_, wanted_.get());

@@ -29,9 +29,15 @@ std::vector<float> SensorChain::resolved(const std::vector<float>& cells, const 
   return pixels;
 }
 
-std::vector<std::vector<float>> SensorChain::run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick) {
+std::vector<std::vector<float>> SensorChain::run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
+                                                 std::vector<SensorPoint> points) {
   for (size_t o = 0; o < drawn.size(); ++o) cells_.values(o) = drawn[o];
+  cells_.points = std::move(points);
+  cells_.cellWeights = &cellWeights;
   run(ofCells_, tick, cells_);
+  cells_.cellWeights = nullptr;
+  pixels_.ownLight.clear();
+  for (const ChannelOutput& o : camera_.outputs) pixels_.ownLight.push_back(ownLightOf(camera_, o, tick.axis_sr, tick.exposure_s));
   for (size_t o = 0; o < drawn.size(); ++o) pixels_.values(o) = resolved(cells_.values(o), cellWeights, camera_.outputs[o].perEtendue);
   run(ofPixels_, tick, pixels_);
   std::vector<std::vector<float>> pixels;

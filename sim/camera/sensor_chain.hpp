@@ -12,8 +12,10 @@ class SensorChain {
   /// Both must outlive it; the camera has stages. Needs a current GlContext.
   SensorChain(const Camera& camera, const ShaderLibrary& library);
   /// `drawn`: of each output a picture of drawnCamera(), row by row from the top, in its unit; `cellWeights`: projected solid angle of each of
-  /// its cells, which means of intensive outputs are weighted by (those per etendue add up). Returns pictures of the camera's own pixels.
-  std::vector<std::vector<float>> run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick);
+  /// its cells, which means of intensive outputs are weighted by (those per etendue add up); `points`: what is smaller than a cell, for stages that take it
+  /// (drawnCamera() has pointsApart). Returns pictures of the camera's own pixels.
+  std::vector<std::vector<float>> run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
+                                      std::vector<SensorPoint> points = {});
   /// Projected solid angles of the camera's own pixels, whose pinhole may turn and zoom.
   const std::vector<double>& projectedSolidAngles(const Pinhole& pinhole);
   /// The cell in the middle of a pixel of the camera, in pictures of drawnCamera().

@@ -13,8 +13,17 @@ namespace pitviper {
 struct SensorTick {
   int frame = 0;
   double time_s = 0.0, exposure_s = 0.0;
+  double step_s = 1.0;      ///< from frame to frame
+  double axis_sr = 0.0;     ///< projected solid angle of a pixel of the film on the axis, at this time
   double focalLength_m = 0.0;  ///< at this time; 0: the camera's own
   std::uint64_t seed = 0;  ///< of the scenario and this camera
+};
+
+/// Light of what is smaller than a cell.
+struct SensorPoint {
+  double column = 0.0, row = 0.0;  ///< cells from the top left corner of the pictures, margin and all
+  std::size_t output = 0;
+  double value = 0.0;  ///< in the output's unit; of outputs that are means over a cell times its projected solid angle
 };
 
 /// A picture of each of a camera's outputs in its unit, on cells: row 0 is the film's top, with the margin around it. They are where a stage wants them, on
@@ -27,6 +36,15 @@ class SensorPictures {
   const std::vector<ChannelOutput>& outputs;
   const int width, height;     ///< cells
   const int cells, margin_px;  ///< cells a side of a pixel; pixels around the film
+
+  /// Not in the pictures yet: the first stage that takes points puts them there. Others may move them.
+  std::vector<SensorPoint> points;
+  /// Projected solid angle of each cell [sr]; null: not told.
+  const std::vector<double>* cellWeights = nullptr;
+  /// Of each output what the sensor itself has sent to a pixel on the axis, in its unit; empty: nothing.
+  std::vector<double> ownLight;
+  /// What a share of a point's value is in a cell.
+  double inCell(const SensorPoint& p, std::size_t cell) const { return outputs[p.output].perEtendue || !cellWeights ? p.value : p.value / (*cellWeights)[cell]; }
 
   /// In memory, row by row, to be read and written.
   std::vector<float>& values(std::size_t output);

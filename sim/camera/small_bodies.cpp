@@ -1,26 +1,25 @@
 #include "sim/camera/small_bodies.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <numeric>
+#include <optional>
 
 #include "sim/camera/zoomed_lines.hpp"
 #include "sim/model/ray_hits.hpp"
 
 namespace pitviper {
-namespace {
-
 Ball ballOf(const Simulation& sim, const WorldState& state, int entity) {
   const auto e = static_cast<size_t>(entity);
   return {entity, -1, state.entities[e].position + state.entities[e].orientation * glm::dvec3(sim.entities[e].boundingCentre),
           static_cast<double>(sim.entities[e].boundingRadius_m)};
 }
 
-/// From the same place, turned so that a ball fills the picture, and rolled by an angle that no edge of a scene
-/// shares, so that silhouettes are sampled evenly (an edge along the grid would be off by up to a whole row), nor does its middle lie on a place of the grid
+/// Rolled so that silhouettes are sampled evenly (an edge along the grid would be off by up to a whole row), nor does its middle lie on a place of the grid
 /// that one shares with it: what is round would be off all around alike.
 View zoomedView(const Ball& ball, const View& v, int size) {
   constexpr double kRoll_rad = 0.3926, kAcross = 0.31, kUp = 0.17;
@@ -41,18 +40,30 @@ View zoomedView(const Ball& ball, const View& v, int size) {
   return z;
 }
 
+namespace {
+
+/// Sums over samples of weight times place, from a subpixel's middle: x, y, x^2, x y, y^2.
+using Moments = std::array<double, 5>;
+
+void addMoments(Moments& m, const glm::dvec2& at, double weight) {
+  const Moments one{at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y};
+  for (size_t k = 0; k < m.size(); ++k) m[k] += weight * one[k];
+}
+
 /// What zoomed samples say of one subpixel of the image.
 struct Share {
   double looked = 0.0;   ///< projected solid angle of all zoomed samples in it [sr]
   double covered = 0.0;  ///< of those that count: what they see takes the place of what the image has there
   std::vector<double> sum;
+  Moments placed{};              ///< of those that count, by their solid angle
+  std::vector<Moments> moments;  ///< by slot, by what they send; empty where no points are kept
   double shown = 0.0;  ///< of those whose surface is a small body's
   size_t sample = 0;   ///< one of them
   double cosPsi = 1.0;
 };
 using Shares = std::map<size_t, Share>;
 
-/// Calls visit(zoomed pixel, subpixel, projected solid angle, cosine to the image's axis) for each zoomed sample that falls into the image.
+/// Calls visit(zoomed pixel, subpixel, projected solid angle, cosine to the image's axis, place from the subpixel's middle) for each zoomed sample that falls into the image.
 template <class Visit>
 void eachSample(const Subpixels& image, const View& z, const Visit& visit) {
   const View& v = image.view();
@@ -66,7 +77,7 @@ void eachSample(const Subpixels& image, const View& z, const Visit& visit) {
       const double l2 = glm::dot(ray, ray), cosPsi = -seen.z / std::sqrt(l2);
       const double etendue = z.tanPerPixelX * z.tanPerPixelY / (l2 * std::sqrt(l2)) * cosPsi;
       visit(static_cast<size_t>(j) * static_cast<size_t>(z.width) + static_cast<size_t>(i), image.index(static_cast<int>(at.x), static_cast<int>(at.y)),
-            etendue, cosPsi);
+            etendue, cosPsi, glm::dvec2(at.x - std::floor(at.x) - 0.5, at.y - std::floor(at.y) - 0.5));
     }
 }
 
@@ -77,7 +88,7 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 template <class ColourOf, class IsShown>
 Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, const ColourOf& colourOf, const IsShown& isShown) {
   Shares shares;
-  eachSample(image, z, [&](size_t q, size_t p, double etendue, double cosPsi) {
+  eachSample(image, z, [&](size_t q, size_t p, double etendue, double cosPsi, const glm::dvec2& off) {
     Share& share = shares[p];
     share.looked += etendue;
     const std::uint32_t from = colourOf(q);
@@ -85,6 +96,11 @@ Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, c
     share.covered += etendue;
     share.sum.resize(image.slotCount(), 0.0);
     for (size_t s = 0; s < image.slotCount(); ++s) share.sum[s] += etendue * static_cast<double>(zoomed.groups[s / 4][4 * from + s % 4]);
+    if (image.keepsPoints()) {
+      share.moments.resize(image.slotCount());
+      addMoments(share.placed, off, etendue);
+      for (size_t s = 0; s < image.slotCount(); ++s) addMoments(share.moments[s], off, etendue * static_cast<double>(zoomed.groups[s / 4][4 * from + s % 4]));
+    }
     if (!isShown(zoomed.entity[from])) return;
     share.shown += etendue;
     share.sample = from;
@@ -154,6 +170,8 @@ struct Fine {
   double covered = 0.0;  ///< projected solid angle [sr]
   double whole = 0.0;    ///< of the subpixel
   std::vector<double> sum;
+  Moments placed{};  ///< as of Share
+  std::vector<Moments> moments;
 };
 using FineSubpixels = std::map<size_t, Fine>;
 
@@ -172,12 +190,64 @@ void gather(Subpixels& image, const View& z, const RawImage& zoomed, const Share
     const double each = std::min(all, std::max(whole - f.covered, 0.0) / share.covered);
     f.covered += each * share.covered;
     for (size_t s = 0; s < f.sum.size(); ++s) f.sum[s] += each * share.sum[s];
+    f.moments.resize(share.moments.size());
+    for (size_t k = 0; k < f.placed.size(); ++k) {
+      f.placed[k] += each * share.placed[k];
+      for (size_t s = 0; s < share.moments.size(); ++s) f.moments[s][k] += each * share.moments[s][k];
+    }
     takeTruth(image, zoomed, share, whole / all, p);
+  }
+}
+
+/// Where the light of some samples is: its middle, and the spread around it.
+struct Place {
+  glm::dvec2 middle{0.0};
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+};
+
+/// Of sums over samples and their moments, none where these are of no place within a subpixel: what is brighter and what is darker than the rest may cancel.
+std::optional<Place> placeOf(double sum, const Moments& m) {
+  if (!(std::abs(sum) > 0.0)) return std::nullopt;
+  const Place p{{m[0] / sum, m[1] / sum}, m[2] / sum - m[0] * m[0] / (sum * sum), m[3] / sum - m[0] * m[1] / (sum * sum), m[4] / sum - m[1] * m[1] / (sum * sum)};
+  constexpr double kHalf = 0.5, kMostSpread = 0.25;  // of a subpixel
+  const bool good = std::abs(p.middle.x) <= kHalf && std::abs(p.middle.y) <= kHalf && p.xx >= 0.0 && p.yy >= 0.0 && p.xx <= kMostSpread && p.yy <= kMostSpread &&
+                    p.xy * p.xy <= p.xx * p.yy * (1.0 + 1e-9);
+  return good ? std::optional(p) : std::nullopt;
+}
+
+/// What a subpixel's small bodies send beyond what the image has there, as points that have its middle and its spread.
+void putPoints(Subpixels& image, size_t subpixel, const Fine& f) {
+  const auto width = static_cast<size_t>(image.view().width);
+  const glm::dvec2 corner(static_cast<double>(subpixel % width), static_cast<double>(subpixel / width));
+  const Place whole = placeOf(f.covered, f.placed).value_or(Place{});
+  for (size_t s = 0; s < f.sum.size(); ++s) {
+    const double behind = image.slot(s, subpixel), flux = f.sum[s] - f.covered * behind;
+    if (flux == 0.0) continue;
+    Moments m = f.moments[s];
+    for (size_t k = 0; k < m.size(); ++k) m[k] -= behind * f.placed[k];
+    const Place p = placeOf(flux, m).value_or(whole);
+    const glm::dvec2 at = corner + 0.5 + p.middle;
+    // Principal axes of the spread; two points along each, root 2 of its deviation off, have the same.
+    const double mean = 0.5 * (p.xx + p.yy), off = std::sqrt(0.25 * (p.xx - p.yy) * (p.xx - p.yy) + p.xy * p.xy), angle = 0.5 * std::atan2(2.0 * p.xy, p.xx - p.yy);
+    constexpr double kNoSpread = 1e-3;  // of a subpixel squared
+    if (mean + off < kNoSpread) {
+      image.addPoint(at, subpixel, s, flux);
+      continue;
+    }
+    const glm::dvec2 along = std::sqrt(2.0 * std::max(mean + off, 0.0)) * glm::dvec2(std::cos(angle), std::sin(angle)),
+                     across = std::sqrt(2.0 * std::max(mean - off, 0.0)) * glm::dvec2(-std::sin(angle), std::cos(angle));
+    for (const glm::dvec2& step : {along, -along, across, -across}) image.addPoint(at + step, subpixel, s, 0.25 * flux);
   }
 }
 
 /// The image keeps what it has in the rest of a subpixel: a mean of radiances, none of which is below 0.
 void put(Subpixels& image, const FineSubpixels& fine) {
+  // More are no point: on so many subpixels a picture is as good.
+  constexpr size_t kMostPoints = 16;
+  if (image.keepsPoints() && fine.size() <= kMostPoints) {
+    for (const auto& [p, f] : fine) putPoints(image, p, f);
+    return;
+  }
   for (const auto& [p, f] : fine)
     for (size_t s = 0; s < f.sum.size(); ++s) image.add(s, p, (f.sum[s] - f.covered * image.slot(s, p)) / f.whole);
 }
@@ -189,7 +259,7 @@ bool anyOf(const std::vector<char>& flags) {
 /// The samples of a zoomed view that fall into some subpixels.
 std::shared_ptr<const std::vector<char>> marksOf(const Subpixels& image, const View& z, const std::vector<char>& subpixels) {
   auto marks = std::make_shared<std::vector<char>>(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
-  eachSample(image, z, [&](size_t q, size_t p, double, double) { (*marks)[q] = subpixels[p]; });
+  eachSample(image, z, [&](size_t q, size_t p, double, double, const glm::dvec2&) { (*marks)[q] = subpixels[p]; });
   return marks;
 }
 
@@ -338,7 +408,7 @@ class MixedBodies {
   std::vector<std::uint64_t> sets(const Subpixels& image, size_t index) const {
     const View& z = views_[index];
     std::vector<std::uint64_t> all(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
-    eachSample(image, z, [&](size_t q, size_t, double, double) {
+    eachSample(image, z, [&](size_t q, size_t, double, double, const glm::dvec2&) {
       const double x = static_cast<double>(q % static_cast<size_t>(z.width)) + 0.5, y = static_cast<double>(q / static_cast<size_t>(z.width)) + 0.5;
       const glm::dvec3 direction = z.localFromCamera * z.ray(x, y);
       const std::uint64_t set = setOf(z, x, y);

@@ -9,6 +9,11 @@
 
 namespace pitviper {
 
+/// What bounds a body now.
+Ball ballOf(const Simulation& simulation, const WorldState& state, int entity);
+/// From the same place as a view, turned so that a ball fills the picture of size x size lines, and rolled by an angle that no edge of a scene shares.
+View zoomedView(const Ball& ball, const View& view, int size);
+
 /// One flag per entity: true where its bounding sphere spans fewer subpixels than the limit and stands in front of the camera.
 std::vector<char> findSmallBodies(const Simulation& simulation, const WorldState& state, const View& view, double limit_subpixels);
 

@@ -128,6 +128,10 @@ CameraImage Subpixels::resolve(const Pinhole& pinhole, int samples, FilmWeights&
   const bool resolved = raw_.subpixels > 1;
   if (resolved) takePixels(image, samples);
   else takeSubpixels(image, samples, weights);
+  for (const FilmPoint& p : points_) {
+    const int x = p.pixel % view_.width / samples, y = pinhole.height - 1 - p.pixel / view_.width / samples;
+    image.points.push_back({p.column / samples, pinhole.height - p.row / samples, p.slot, y * pinhole.width + x, p.flux});
+  }
   if (!hasTruth()) return image;
   image.truth.resize(pixels);
   for (size_t p = 0; p < pixels; ++p) {

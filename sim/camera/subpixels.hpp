@@ -36,6 +36,13 @@ class Subpixels {
   double slot(size_t s, size_t subpixel) const;
   /// Adds to a subpixel's integrals, in double precision: a faint target must not drown in the rounding of its background.
   void add(size_t s, size_t pixel, double value);
+  /// What is smaller than a subpixel is told as points (CameraImage::points), not added to one.
+  void keepPoints() { keepsPoints_ = true; }
+  bool keepsPoints() const { return keepsPoints_; }
+  /// `at`: subpixels from the lower left corner; `subpixel`: in which what it stands for is; `flux`: radiance times projected solid angle, of a slot.
+  void addPoint(const glm::dvec2& at, size_t subpixel, size_t s, double flux) {
+    points_.push_back({at.x, at.y, static_cast<int>(s), static_cast<int>(subpixel), flux});
+  }
   /// Integral of cos(psi) dOmega over a subpixel [sr].
   double projectedSolidAngle_sr(int x, int y) const;
   bool hasTruth() const { return !raw_.truth.empty(); }
@@ -52,6 +59,8 @@ class Subpixels {
   size_t slotCount_;
   RawImage raw_;
   std::map<size_t, std::vector<double>> added_;  ///< subpixels that got something, by slot
+  bool keepsPoints_ = false;
+  std::vector<FilmPoint> points_;                ///< in subpixels from the lower left corner
   std::map<size_t, TruthPixel> truth_;           ///< truth that replaces the pass's own
 };
 

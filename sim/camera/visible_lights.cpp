@@ -64,7 +64,11 @@ void addVisibleLights(Subpixels& image, const WaysToLights& ways, const Simulati
     const int x = static_cast<int>(at.x), y = static_cast<int>(at.y);
     // As radiance: the flux divided by the aperture and the subpixel's projected solid angle.
     const auto sums = apparentIntensity(sim, plan, state, l, v.position, way);
-    for (size_t s = 0; s < sums.size(); ++s) image.add(s, image.index(x, y), sums[s] * (-p.z / range) / (range * range) / image.projectedSolidAngle_sr(x, y));
+    const double perIntensity = (-p.z / range) / (range * range), area_sr = image.projectedSolidAngle_sr(x, y);
+    for (size_t s = 0; s < sums.size(); ++s) {
+      if (image.keepsPoints()) image.addPoint(at, image.index(x, y), s, sums[s] * perIntensity);
+      else image.add(s, image.index(x, y), sums[s] * perIntensity / area_sr);
+    }
   }
 }
 

@@ -72,8 +72,8 @@ void addTo(Fingerprint& f, const MaterialStates& s) {
 
 void addTo(Fingerprint& f, const std::vector<ChannelOutput>& outputs) {
   f.add(static_cast<double>(outputs.size()));
-  for (const auto& [channel, quantity, unit, where, kernel, scale, perEtendue, perExposure, detected, asTemperature, temperature, bandLow_um, bandHigh_um,
-                    cut] : outputs) {
+  for (const auto& [channel, quantity, unit, where, kernel, scale, perEtendue, perExposure, behindOptics, detected, asTemperature, asSignalToNoise, asDisplay,
+                    temperature, bandLow_um, bandHigh_um, curves, cut] : outputs) {
     f.add(channel).add(quantity).add(scale).add(perEtendue).add(perExposure);
     pitviper::addTo(f, kernel);
   }
@@ -120,7 +120,7 @@ void addTo(Fingerprint& f, const Simulation& sim) {
   f.add(static_cast<double>(seed)).add(static_cast<int>(mode)).add(shadows);
   const auto& [latitude_rad, longitude_rad, height_m] = frame.origin();
   f.add(latitude_rad).add(longitude_rad).add(height_m);
-  const auto& [start_s, step_s, frames] = time;
+  const auto& [start_s, step_s, frames, epoch_s] = time;
   f.add(start_s).add(step_s).add(frames);
   const auto& [nearest_m, farthest_m, coldest_K, hottest_K, lightLevel] = limits;
   f.add(nearest_m).add(farthest_m).add(coldest_K).add(hottest_K).add(lightLevel);
@@ -144,7 +144,7 @@ void addTo(Fingerprint& f, const Simulation& sim) {
 }
 
 void addTo(Fingerprint& f, const Camera& c) {
-  const auto& [name, where, pinhole, mount, exposure_s, near_m, samples, sharesShading, smallBody_px, zoomedSamples, outlineAccuracy, textureAccuracy, spectral,
+  const auto& [name, where, pinhole, mount, exposure_s, near_m, samples, motionBlur, exposureParts, pointsApart, binning, window, sharesShading, smallBody_px, zoomedSamples, outlineAccuracy, textureAccuracy, spectral,
                learnt, plan, planFile, outputs, stages, spectralImage, truth] = c;
   const auto& [width, height, focalLength_m, pitchX_m, pitchY_m, apertureDiameter_m] = pinhole;
   f.add(name).add(width).add(height).add(focalLength_m).add(pitchX_m).add(pitchY_m).add(apertureDiameter_m);

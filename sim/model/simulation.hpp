@@ -41,6 +41,8 @@ struct SpectralBins {
 struct TruthLayers {
   bool range = false, entity = false, normal = false, temperature = false, area = false, solidAngles = false;
   bool pixelSolidAngle = false;  ///< of the camera alone: nothing is drawn for it
+  bool terms = false;            ///< what each channel's light is made of, in double precision (sim/frame/truth_terms.hpp)
+  bool targets = false;          ///< a row for each body and lamp (sim/frame/truth_table.hpp)
   /// What has to be drawn.
   bool any() const { return range || entity || normal || temperature || area || solidAngles; }
 };
@@ -59,6 +61,11 @@ struct Camera {
   double exposure_s = 0.0;
   double near_m = 0.1;
   int samples = 1;               ///< n: n x n subpixels
+  bool motionBlur = false;       ///< what moves while it exposes is drawn at several times of it
+  int exposureParts = 0;         ///< so many; 0: by the accuracy (sim/camera/exposure_parts.hpp)
+  bool pointsApart = false;      ///< what is smaller than a subpixel is not drawn but told as points: stages take them
+  int binning = 1;               ///< so many by so many of the detector's own pixels are read as one of `pinhole`
+  std::optional<glm::ivec4> window;  ///< of the film that is read out: left, top, width, height [pixels]
   bool sharesShading = false;    ///< those of a pixel are shaded as one where neighbouring pixels are alike
   double smallBody_px = 16.0;    ///< bodies smaller than this are drawn by their own zoomed view
   int zoomedSamples = 256;       ///< at most so many across it, unless it has more subpixels; a medium, which fades towards its silhouette, half as many
@@ -89,6 +96,7 @@ struct TimeAxis {
   double start_s = 0.0;
   double step_s = 1.0;
   int frames = 1;
+  std::optional<double> epoch_s = {};  ///< UTC of time 0, seconds since 1970 without leap seconds; none: nothing said
   double at(int frame) const { return start_s + step_s * frame; }
 };
 

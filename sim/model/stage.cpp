@@ -27,8 +27,49 @@ Camera drawnCamera(const Camera& camera) {
   drawn.pinhole.pitchY_m /= cells;
   drawn.samples = (camera.samples + cells - 1) / cells;
   drawn.smallBody_px *= cells;
+  drawn.pointsApart = std::any_of(camera.stages.begin(), camera.stages.end(), [](const StageChoice& s) { return s.takesPoints; });
   drawn.stages.clear();
   return drawn;
+}
+
+int warmUpOf(const Camera& camera, double step_s) {
+  int frames = 0;
+  for (const StageChoice& s : camera.stages)
+    if (s.warmUp_frames) frames += s.warmUp_frames(step_s);
+  return frames;
+}
+
+double pixelShareOf(const Camera& camera, const ChannelOutput& output, double x, double y) {
+  const auto lens = [&](double u, double v) {
+    for (const StageChoice& s : camera.stages)
+      if (s.pixelShare) return s.pixelShare(output, u, v);
+    return std::abs(u) < 0.5 && std::abs(v) < 0.5 ? 1.0 : 0.0;
+  };
+  const DetectorLaw* law = detectorOf(camera);
+  if (!law || !(law->crosstalk > 0.0)) return lens(x, y);
+  return (1.0 - 4.0 * law->crosstalk) * lens(x, y) + law->crosstalk * (lens(x - 1.0, y) + lens(x + 1.0, y) + lens(x, y - 1.0) + lens(x, y + 1.0));
+}
+
+double ownLightOf(const Camera& camera, const ChannelOutput& output, double axis_sr, double exposure_s) {
+  double sum = 0.0;
+  for (const StageChoice& s : camera.stages)
+    if (s.ownLight) sum += s.ownLight(output, axis_sr) * (output.perExposure ? exposure_s : 1.0);
+  return sum;
+}
+
+const DetectorLaw* detectorOf(const Camera& camera) {
+  for (const StageChoice& s : camera.stages)
+    if (s.detector) return &*s.detector;
+  return nullptr;
+}
+
+glm::dvec2 placeOnFilm(const Camera& camera, double focalLength_m, const glm::dvec2& column_row) {
+  const Pinhole& p = camera.pinhole;
+  const glm::dvec2 middle(0.5 * p.width, 0.5 * p.height), pitch(p.pitchX_m, -p.pitchY_m);
+  glm::dvec2 film = (column_row - middle) * pitch;
+  for (const StageChoice& s : camera.stages)
+    if (s.place) film = s.place(film, focalLength_m);
+  return film / pitch + middle;
 }
 
 }  // namespace pitviper

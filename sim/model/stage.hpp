@@ -1,12 +1,14 @@
 #pragma once
 // A sensor's stages as a scenario asks for them: what becomes of a camera's pictures after the spectral integral.
-#include <algorithm>
 #include <functional>
+#include <glm/glm.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "sim/model/detector_law.hpp"
 
 namespace pitviper {
 
@@ -14,24 +16,6 @@ class SensorStage;
 struct ChannelOutput;
 class ShaderLibrary;
 struct Camera;
-
-/// How a detector makes counts: count = round(gain x min(well, electrons) + offset), 0 to 2^bits - 1. Noises are standard deviations [electron], named as
-/// in EMVA 1288 and in the three-dimensional noise model (t: from frame to frame, v: from row to row, h: from column to column).
-struct DetectorLaw {
-  double fillFactor = 1.0;
-  double darkCurrent_per_s = 0.0;  ///< [electron/s]
-  double fullWell = 1e6;           ///< [electron]
-  double gain = 0.01;              ///< [count/electron]
-  double offset = 0.0;             ///< [count]
-  int bits = 14;
-  double sigmaTvh = 0.0, sigmaTv = 0.0, sigmaTh = 0.0, sigmaT = 0.0;  ///< temporal: read noise, of rows, of columns, of the frame
-  double sigmaVh = 0.0, sigmaV = 0.0, sigmaH = 0.0;                   ///< fixed: of pixels (DSNU), rows, columns
-  double prnu = 0.0;                                                  ///< of the response, relative
-  double badPixels = 0.0;                                             ///< share that is dead or hot, half and half
-  double mostCount() const { return static_cast<double>((1 << bits) - 1); }
-  /// Electrons at which it no longer tells: the well is full, or the highest count.
-  double saturation() const { return std::min(fullWell, (mostCount() - offset) / gain); }
-};
 
 /// A stage of a camera; its contract is in sim/camera/sensor_stage.hpp.
 struct StageChoice {
@@ -46,6 +30,15 @@ struct StageChoice {
   /// The same of what its cells make of it.
   std::function<double(const ChannelOutput& output, double frequency_per_m)> drawnTransfer = {};
   std::function<std::unique_ptr<SensorStage>(const ShaderLibrary&)> make = {};
+  /// Frames before one that it has to have seen, of a camera with so many seconds from frame to frame; none: none.
+  std::function<int(double step_s)> warmUp_frames = {};
+  bool takesPoints = false;  ///< what is smaller than a cell comes to it as points (SensorPoint), at their places
+  /// Share of a point's light that falls on a pixel whose middle is so far from it [pixels]; none: all of it on the pixel it is in.
+  std::function<double(const ChannelOutput& output, double x, double y)> pixelShare = {};
+  /// What the sensor itself sends to a pixel of this projected solid angle on the axis, in the output's unit (without exposure time); none: nothing.
+  std::function<double(const ChannelOutput& output, double axis_sr)> ownLight = {};
+  /// Where on the film light falls that a pinhole would send there: both from the axis, right and up [m]; none: there.
+  std::function<glm::dvec2(const glm::dvec2& film_m, double focalLength_m)> place = {};
 };
 
 /// The camera whose pictures its stages take: with their margins around its film, and as many cells a pixel as any of them needs. Without stages itself.
@@ -53,5 +46,14 @@ Camera drawnCamera(const Camera& camera);
 /// Of all its stages: margins add up, the finest cells count.
 int marginOf(const Camera& camera);
 int cellsOf(const Camera& camera);
+/// Frames that its stages have to have seen before the first that counts.
+int warmUpOf(const Camera& camera, double step_s);
+/// Share of a point's light on a pixel whose middle is so far from it [pixels]: of its lens, and of what its detector's pixels share.
+double pixelShareOf(const Camera& camera, const ChannelOutput& output, double x = 0.0, double y = 0.0);
+/// Of all its stages, in the output's unit.
+double ownLightOf(const Camera& camera, const ChannelOutput& output, double axis_sr, double exposure_s);
+const DetectorLaw* detectorOf(const Camera& camera);  ///< or null
+/// Where a place of the picture that a pinhole would draw [pixels from the top left corner] is in that of its stages.
+glm::dvec2 placeOnFilm(const Camera& camera, double focalLength_m, const glm::dvec2& column_row);
 
 }  // namespace pitviper

@@ -99,31 +99,65 @@ Simulation pointScene(double x_px, double y_px, const std::string& stages, int s
       "channels: [{name: lw, response: {band: [9.99 um, 10.01 um]}, output: flux}]}]\n");
 }
 
-// A star in the middle of a pixel, on its edge and in its corner, through 10 um F/2 on cells of a third of a pixel: its share of that pixel.
+/// Share of a square pixel of 15 um at (x, y) off its middle [pixels], 10 um F/2: integral of OTF sinc sinc cos cos.
+double shareOfPixel(double x, double y) {
+  const double cutoff = 1.0 / (10e-6 * 2.0), pitch = 15e-6;
+  static const auto nodes = gaussLegendre(96, 0.0, cutoff);
+  const auto sinc = [&](double f) { return f > 0.0 ? std::sin(kPi * f * pitch) / (kPi * f * pitch) : 1.0; };
+  double sum = 0.0;
+  for (const auto& a : nodes)
+    for (const auto& b : nodes)
+      sum += 4.0 * a.weight * b.weight * ofCircle(std::min(2.0, 2.0 * std::hypot(a.x, b.x) / cutoff)) * sinc(a.x) * sinc(b.x) * std::cos(2.0 * kPi * a.x * x * pitch) *
+             std::cos(2.0 * kPi * b.x * y * pitch);
+  return sum * pitch * pitch;
+}
+
+// A star in the middle of a pixel, on its edge and in its corner, through 10 um F/2 on cells of a pixel: its share of that pixel.
 TEST(PointSpread, APixelsShareOfAStar) {
-  const double wavelength_m = 10e-6, fNumber = 2.0, cutoff = 1.0 / (wavelength_m * fNumber), pitch = 15e-6;
-  // Share of a square pixel at (x, y) off its middle: integral of OTF sinc sinc cos cos.
-  const auto share = [&](double x, double y) {
-    double sum = 0.0;
-    const auto nodes = gaussLegendre(96, 0.0, cutoff);
-    const auto sinc = [&](double f) { return f > 0.0 ? std::sin(kPi * f * pitch) / (kPi * f * pitch) : 1.0; };
-    for (const auto& a : nodes)
-      for (const auto& b : nodes)
-        sum += 4.0 * a.weight * b.weight * apertureTransfer(2.0 * std::hypot(a.x, b.x) / cutoff, 0.0, 0.0) * sinc(a.x) * sinc(b.x) *
-               std::cos(2.0 * kPi * a.x * x) * std::cos(2.0 * kPi * b.x * y);
-    return sum * pitch * pitch;
+  for (const auto& [x, y, name] : {std::tuple{0.0, 0.0, "centred"}, std::tuple{0.5, 0.0, "on its edge"}, std::tuple{0.5, 0.5, "in its corner"},
+                                   std::tuple{0.13, -0.29, "anywhere"}}) {
+    for (int cells : {1, 2, 3}) {
+      const auto flux = [&](const std::string& stages) {
+        const Frame f = renderFrame(pointScene(x, y, stages));
+        return std::pair{at(layer(f, "lw.flux"), f, 32, 32), sum(layer(f, "lw.flux"))};
+      };
+      const auto [ignored, all] = flux("");
+      const auto [middle, spread] = flux(print("stages: [{stage: point_spread, cells: %d, beyond: 0.02}], ", cells));
+      figure(print("share of a pixel of 15 um, 10 um F/2, a star %s, %d cells", name, cells), middle / all, shareOfPixel(x, y), 1e-3,
+             "its flux is that of the pixel it is in: cos^4 differs by 4e-6 a pixel");
+      EXPECT_LE(spread, all * 1.0001);
+      // Beyond a circle of radius r a point sends 2 / (pi v) of its light: what the film cannot hold.
+      EXPECT_GE(spread, all * 0.97);
+    }
+  }
+}
+
+// A body of a fifth of a pixel is a star with the same light, wherever in a pixel it is; one of a pixel is its points one by one.
+TEST(PointSpread, SmallBodiesFallWhereTheyAre) {
+  const auto shareOf = [](double x_px, double radius_m) {
+    const Frame f = renderFrame(scene(
+        "background: {temperature: 3 K}\nmaterials: {m: {components: []}}\nentities: [{name: p, shape: {model: sphere, radius: " + std::to_string(radius_m) +
+        " m}, material: m, temperature: 900 K, position: [1000 m, " + std::to_string(x_px * 0.15) +
+        " m, 0 m]}]\ncameras: [{name: c, film: {width: 65, height: 65, pitch: 15 um}, focal_length: 100 mm, aperture: 50 mm, position: [0 m, 0 m, 0 m], heading: 90 deg, "
+        "stages: [{stage: point_spread, cells: 2, beyond: 0.02}], channels: [{name: lw, response: {band: [9.99 um, 10.01 um]}, output: flux}]}]\n"));
+    return at(layer(f, "lw.flux"), f, 32, 32) / sum(layer(f, "lw.flux"));
   };
-  for (const auto& [x, y, name] :
-       {std::tuple{0.0, 0.0, "centred"}, std::tuple{1.0 / 3.0, 0.0, "a third off"}, std::tuple{1.0 / 3.0, 1.0 / 3.0, "a third off both ways"}}) {
-    const auto flux = [&](const std::string& stages) {
-      const Frame f = renderFrame(pointScene(x, y, stages));
-      return std::pair{at(layer(f, "lw.flux"), f, 32, 32), sum(layer(f, "lw.flux"))};
-    };
-    const auto [whole, all] = flux("");
-    const auto [middle, spread] = flux("stages: [{stage: point_spread, cells: 3, beyond: 0.02}], ");
-    figure(print("share of a pixel of 15 um, 10 um F/2, a star %s", name), middle / whole, share(x * pitch, y * pitch), 0.025,
-           "a star is where its cell is, and as wide: midpoints of three cells of 5 um stand for the pixel");
-    EXPECT_LE(spread, all * 1.0001);
+  // Of an even disc: the mean of a star's shares over it.
+  const auto ofDisc = [](double x, double radius_px) {
+    double sum = 0.0;
+    constexpr int kTurns = 12;
+    for (const QuadratureNode& q : gaussLegendre(4, 0.0, 1.0))  // of r^2
+      for (int k = 0; k < kTurns; ++k) {
+        const double r = radius_px * std::sqrt(q.x), angle = 2.0 * kPi * (k + 0.5) / kTurns;
+        sum += q.weight / kTurns * shareOfPixel(x + r * std::cos(angle), r * std::sin(angle));
+      }
+    return sum;
+  };
+  const Frame star = renderFrame(pointScene(0.0, 0.0, "stages: [{stage: point_spread, cells: 2, beyond: 0.02}], "));
+  const double onFilm = at(layer(star, "lw.flux"), star, 32, 32) / sum(layer(star, "lw.flux")) / shareOfPixel(0.0, 0.0);  // what its far light leaves it
+  for (double x : {0.0, 0.21, 0.5}) {
+    figure(print("share of a body of a fifth of a pixel, %.2g off the middle", x), shareOf(x, 0.015), onFilm * ofDisc(x, 0.1), 1e-3, "points with its middle and its spread");
+    figure(print("share of a body of a pixel, %.2g off the middle", x), shareOf(x, 0.075), onFilm * ofDisc(x, 0.5), 5e-3, "the same; a sphere's edge on 256 lines");
   }
 }
 
