@@ -1,0 +1,143 @@
+#include "sim/camera/exposure_parts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "sim/model/ray_hits.hpp"
+
+namespace pitviper {
+namespace {
+
+constexpr int kMostParts = 256;
+constexpr double kAskedOtherwise = 0.01;
+
+/// Where a place of the world is on the film [pixels]; none behind it.
+std::optional<glm::dvec2> filmOf(const View& v, const glm::dvec3& place) {
+  const glm::dvec3 p = glm::transpose(v.localFromCamera) * (place - v.position);
+  if (-p.z < v.near_m) return std::nullopt;
+  return filmPosition(v, p);
+}
+
+/// How far anything in view goes on the film from the first of these times to the last [pixels]: what a grid of lines meets at the middle one, and middles of bodies.
+double motionOf(const Simulation& sim, const Camera& camera, const std::array<double, 3>& times_s) {
+  std::vector<WorldState> states;
+  std::vector<View> views;
+  for (double t : times_s) {
+    states.push_back(advance(sim, t));
+    views.push_back(cameraView(camera, states.back(), 1));
+  }
+  double most = 0.0;
+  // A place of a body's own axes, or of the world.
+  const auto follow = [&](int entity, const glm::dvec3& own) {
+    std::array<std::optional<glm::dvec2>, 3> at;
+    for (std::size_t k = 0; k < at.size(); ++k) {
+      const Pose* pose = entity >= 0 ? &states[k].entities[static_cast<std::size_t>(entity)] : nullptr;
+      at[k] = filmOf(views[k], pose ? pose->position + pose->orientation * own : own);
+      if (!at[k]) return;
+    }
+    const auto inView = [&](const glm::dvec2& p) { return p.x > -1.0 && p.y > -1.0 && p.x < views[1].width + 1.0 && p.y < views[1].height + 1.0; };
+    if (inView(*at[0]) || inView(*at[1]) || inView(*at[2])) most = std::max(most, glm::length(*at[1] - *at[0]) + glm::length(*at[2] - *at[1]));
+  };
+  std::vector<char> drawn(sim.entities.size(), 1);
+  if (camera.mount.carrier >= 0) drawn[static_cast<std::size_t>(camera.mount.carrier)] = 0;
+  const View& v = views[1];
+  constexpr int kLines = 12;
+  constexpr double kFar_m = 1e7;
+  for (int j = 0; j < kLines; ++j)
+    for (int i = 0; i < kLines; ++i) {
+      const glm::dvec3 ray = v.ray((i + 0.5) * v.width / kLines, (j + 0.5) * v.height / kLines), direction = v.localFromCamera * ray / glm::length(ray);
+      const RayHits hits = castRay(sim, states[1], v.position, direction, v.near_m * glm::length(ray), &drawn);
+      if (hits.solid.entity < 0) {
+        follow(-1, v.position + kFar_m * direction);
+        continue;
+      }
+      const Pose& pose = states[1].entities[static_cast<std::size_t>(hits.solid.entity)];
+      follow(hits.solid.entity, glm::inverse(pose.orientation) * (hits.solid.point - pose.position));
+    }
+  for (std::size_t e = 0; e < sim.entities.size(); ++e)
+    if (drawn[e]) follow(static_cast<int>(e), glm::dvec3(sim.entities[e].boundingCentre));
+  for (std::size_t l = 0; l < sim.lights.size(); ++l) {
+    if (!sim.lights[l].visible) continue;
+    std::array<std::optional<glm::dvec2>, 3> at;
+    for (std::size_t k = 0; k < at.size(); ++k) at[k] = filmOf(views[k], states[k].lights[l]);
+    if (at[0] && at[1] && at[2] && lightIsInView(sim, states[1], views[1], l))
+      most = std::max(most, glm::length(*at[1] - *at[0]) + glm::length(*at[2] - *at[1]));
+  }
+  return most;
+}
+
+}  // namespace
+
+ExposureParts exposureParts(const Simulation& sim, const Camera& camera, double time_s) {
+  const DetectorLaw* law = detectorOf(camera);
+  const double line_s = law ? law->lineTime_s : 0.0, exposure_s = camera.motionBlur ? cameraAt(camera, advance(sim, time_s)).exposure_s : 0.0;
+  ExposureParts parts;
+  parts.times_s = {time_s};
+  if (!(line_s > 0.0) && !(exposure_s > 0.0)) return parts;
+  const int cells = cellsOf(camera), margin = marginOf(camera), rows = (camera.pinhole.height + 2 * margin) * cells;
+  const auto rowTime = [&](int row) { return time_s + ((row + 0.5) / cells - margin - 0.5 * camera.pinhole.height) * line_s; };
+  const double first = rowTime(0) - 0.5 * exposure_s, last = rowTime(rows - 1) + 0.5 * exposure_s, asked = camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise;
+  parts.motion_px = motionOf(sim, camera, {first, time_s, last});
+  const bool addsUp = exposure_s > 0.0;
+  int count = camera.exposureParts;
+  if (count == 0) {
+    const double wanted = addsUp ? std::sqrt(parts.motion_px / (4.0 * asked)) : parts.motion_px / (4.0 * asked);
+    count = static_cast<int>(std::clamp(std::ceil(wanted), 1.0, static_cast<double>(kMostParts)));
+  }
+  parts.error = parts.motion_px / (4.0 * count * (addsUp ? count : 1));
+  if (count == 1) return parts;
+  const double step = (last - first) / count;
+  parts.times_s.clear();
+  for (int k = 0; k < count; ++k) parts.times_s.push_back(first + (k + 0.5) * step);
+  if (!(line_s > 0.0)) return parts;
+  for (int k = 0; k < count; ++k) {
+    std::vector<double>& weights = parts.rowWeights.emplace_back();
+    for (int row = 0; row < rows; ++row) {
+      const double t = rowTime(row);
+      if (addsUp) {  // the part of the row's exposure that is nearest to this time
+        const double from = std::max(t - 0.5 * exposure_s, first + k * step), to = std::min(t + 0.5 * exposure_s, first + (k + 1) * step);
+        weights.push_back(std::max(0.0, to - from) / exposure_s);
+      } else {
+        const double at = std::clamp((t - first) / step - 0.5, 0.0, count - 1.0);
+        weights.push_back(std::max(0.0, 1.0 - std::abs(at - k)));
+      }
+    }
+  }
+  return parts;
+}
+
+CameraImage renderExposure(CameraRenderer& renderer, const Simulation& sim, const Camera& camera, double time_s,
+                           const std::function<void(const WorldState&, CameraImage&)>& looked) {
+  const ExposureParts parts = exposureParts(sim, camera, time_s);
+  const std::size_t count = parts.times_s.size(), middle = count / 2;
+  CameraImage mean;
+  std::vector<FilmPoint> points;
+  for (std::size_t k = 0; k < count; ++k) {
+    const WorldState state = advance(sim, parts.times_s[k]);
+    CameraImage image = renderer.render(state);
+    if (k == middle && looked) looked(state, image);
+    if (count == 1) return image;
+    const auto width = static_cast<std::size_t>(image.width);
+    const auto weight = [&](std::size_t row) { return parts.rowWeights.empty() ? 1.0 / static_cast<double>(count) : parts.rowWeights[k][row]; };
+    for (auto& slot : image.slots)
+      for (std::size_t p = 0; p < slot.size(); ++p) slot[p] *= weight(p / width);
+    for (FilmPoint p : image.points) {
+      p.flux *= weight(static_cast<std::size_t>(p.pixel) / width);
+      if (p.flux != 0.0) points.push_back(p);
+    }
+    if (k > 0)
+      for (std::size_t s = 0; s < image.slots.size(); ++s)
+        for (std::size_t p = 0; p < image.slots[s].size(); ++p) image.slots[s][p] += mean.slots[s][p];
+    std::vector<std::vector<double>> sums = std::move(image.slots);
+    if (k == middle || k == 0) mean = std::move(image);
+    mean.slots = std::move(sums);
+  }
+  mean.points = std::move(points);
+  mean.exposureParts = static_cast<int>(count);
+  mean.exposureMotion_px = parts.motion_px;
+  mean.exposureError = parts.error;
+  return mean;
+}
+
+}  // namespace pitviper

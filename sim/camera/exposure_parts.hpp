@@ -1,0 +1,30 @@
+#pragma once
+// An exposure as several pictures of one frame: what moves while a film, or one row of it after the other, is exposed.
+#include <functional>
+#include <vector>
+
+#include "sim/camera/camera_renderer.hpp"
+
+namespace pitviper {
+
+/// A frame's exposure lies around its time t: from t - T/2 to t + T/2; of a rolling read-out row r of the film begins (r - middle row) line times later.
+/// It is a mean of pictures at K times, evenly over all of that: each counts for the times nearest to it; where rows are exposed at one time only (no motion blur),
+/// a row lies between the two nearest. Law of K: what moves by m pixels in all is off by at most m / (4 K^2) of its contrast where the light of an
+/// exposure is added up, m / (4 K) where rows lie between two pictures (a pixel's share of a moving edge is linear but where the edge enters and leaves it;
+/// the midpoint rule's error there).
+struct ExposureParts {
+  std::vector<double> times_s;
+  std::vector<std::vector<double>> rowWeights;  ///< of each time, for each row of the picture; empty: all alike
+  double motion_px = 0.0;                       ///< over all of it, of the film's pixels
+  double error = 0.0;                           ///< expected, of the contrast
+};
+
+/// `camera`: the film's; the pictures are drawnCamera()'s. One part, at the frame's time, unless the camera has motion blur or its detector a line time.
+ExposureParts exposureParts(const Simulation& simulation, const Camera& camera, double time_s);
+
+/// Draws the parts with a renderer of drawnCamera() and takes their mean; truth is of the part in the middle. `looked`: gets that part's own picture, before; what
+/// it adds to the picture of an audit is kept.
+CameraImage renderExposure(CameraRenderer& renderer, const Simulation& simulation, const Camera& camera, double time_s,
+                           const std::function<void(const WorldState&, CameraImage&)>& looked = {});
+
+}  // namespace pitviper
