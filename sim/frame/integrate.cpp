@@ -48,7 +48,7 @@ BinningError errorOf(const std::vector<double>& value, const std::vector<double>
 /// What is said anew of the integrated frame.
 bool isReplaced(const std::string& name) {
   for (const char* n : {"pitviper.version", "pitviper.focal_length_m", "pitviper.pitch_x_m", "pitviper.pitch_y_m", "pitviper.aperture_m",
-                        "pitviper.aperture_area_m2", "pitviper.exposure_s", "pitviper.spectral_image", "pitviper.sensor", "pitviper.sensor_sha256"})
+                        "pitviper.aperture_area_m2", "pitviper.exposure_s", "pitviper.spectral_image", "pitviper.sensor", "pitviper.sensor_sha256", "expTime", "aperture"})
     if (name == n) return true;
   return false;
 }
@@ -104,7 +104,7 @@ IntegratedFrame integrateSpectralImage(const SpectralImage& image, const std::ve
     FrameLayer layer{o.layer(), o.unit, std::vector<float>(value.size())};
     const double scale = o.scale * (o.perExposure ? exposure_s : 1.0);
     for (size_t p = 0; p < value.size(); ++p) layer.pixels[p] = static_cast<float>(scale * value[p] * (o.perEtendue ? solidAngles.projected_sr[p] : 1.0));
-    if (o.temperature) toApparentTemperatures(layer.pixels, o, solidAngles.projected_sr, exposure_s);
+    if (o.asTemperature) toApparentTemperatures(layer.pixels, o, solidAngles.projected_sr, exposure_s);
     frame.layers.push_back(std::move(layer));
     frame.attributes.push_back({"binning_error." + o.layer(), std::vector<double>{result.binning.back().median, result.binning.back().maximum}});
   }

@@ -7,6 +7,8 @@
 
 #include "sim/frame/file_owner.hpp"
 #include "sim/frame/limits_check.hpp"
+#include "sim/frame/sensor_header.hpp"
+#include "sim/frame/truth_table.hpp"
 #include "sim/frame/version.hpp"
 #include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -124,7 +126,7 @@ void toApparentTemperatures(std::vector<float>& values, const ChannelOutput& out
 void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image) {
   for (size_t o = 0; o < camera.outputs.size(); ++o) {
     frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, valuesOf(camera.outputs[o], o, image)});
-    if (camera.outputs[o].temperature) toApparentTemperatures(frame.layers.back().pixels, camera.outputs[o], image.solidAngles->projected_sr, image.exposure_s);
+    if (camera.outputs[o].asTemperature) toApparentTemperatures(frame.layers.back().pixels, camera.outputs[o], image.solidAngles->projected_sr, image.exposure_s);
   }
 }
 
@@ -161,6 +163,8 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   const CameraState eye = cameraAt(camera, state);
   const Pinhole& p = eye.pinhole;
   addOptics(frame, p, eye.exposure_s);
+  addStandard(frame, sim, camera, eye);
+  addSensor(frame, camera, eye);
   add("pitviper.samples", camera.samples);
   if (camera.sharesShading) add("pitviper.samples_shared", "where neighbouring pixels are alike");
   addMode(frame, camera.spectral);
@@ -188,15 +192,73 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   if (const std::string outside = outsideLimits(sim, camera, state); !outside.empty()) add("pitviper.outside_limits", outside);
 }
 
-Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number, SensorChain* chain) {
+namespace {
+
+/// Points of a picture in the units of the outputs that have their slots.
+std::vector<SensorPoint> pointsOf(const Camera& camera, const CameraImage& image) {
+  std::vector<SensorPoint> points;
+  for (const FilmPoint& p : image.points)
+    for (size_t o = 0; o < camera.outputs.size(); ++o)
+      if (image.slotOfOutput[o] == p.slot)
+        points.push_back({p.column, p.row, o, camera.outputs[o].scale * (camera.outputs[o].perExposure ? image.exposure_s : 1.0) * p.flux});
+  return points;
+}
+
+/// The part of the film that is read out; places in what is said of it follow.
+void cutOut(Frame& frame, const glm::ivec4& window) {
+  const auto left = static_cast<size_t>(window.x), top = static_cast<size_t>(window.y), width = static_cast<size_t>(window.z), height = static_cast<size_t>(window.w);
+  for (FrameLayer& l : frame.layers) {
+    std::vector<float> part;
+    part.reserve(width * height);
+    for (size_t row = top; row < top + height; ++row) {
+      const auto first = l.pixels.begin() + static_cast<std::ptrdiff_t>(row * static_cast<size_t>(frame.width) + left);
+      part.insert(part.end(), first, first + static_cast<std::ptrdiff_t>(width));
+    }
+    l.pixels = std::move(part);
+  }
+  frame.width = window.z;
+  frame.height = window.w;
+  for (Attribute& a : frame.attributes)
+    if (auto* list = std::get_if<std::vector<double>>(&a.value); list && a.name.ends_with(".range_column_row")) (*list)[1] -= window.x, (*list)[2] -= window.y;
+  for (TargetRow& t : frame.targets) {
+    for (double* x : {&t.column, &t.left, &t.right}) *x -= window.x;
+    for (double* y : {&t.row, &t.top, &t.bottom}) *y -= window.y;
+  }
+  frame.attributes.push_back({"pitviper.window", std::vector<double>{static_cast<double>(window.x), static_cast<double>(window.y), static_cast<double>(window.z),
+                                                                      static_cast<double>(window.w)}});
+}
+
+/// Of the axis: the middle of the film, wherever the part is that is read out.
+void addAxis(Frame& frame, const Camera& camera) {
+  frame.attributes.push_back({"pitviper.axis_column", 0.5 * camera.pinhole.width - (camera.window ? camera.window->x : 0)});
+  frame.attributes.push_back({"pitviper.axis_row", 0.5 * camera.pinhole.height - (camera.window ? camera.window->y : 0)});
+}
+
+}  // namespace
+
+namespace {
+
+SensorTick sensorTick(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number) {
+  const Pinhole now = cameraAt(camera, state).pinhole;
+  return {number,          state.time_s, image.exposure_s, sim.time.step_s, now.projectedSolidAngle_sr(now.width / 2, now.height / 2), now.focalLength_m,
+          noiseSeed(sim, camera)};
+}
+
+}  // namespace
+
+std::vector<std::vector<float>> sensed(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number, SensorChain& chain) {
+  std::vector<std::vector<float>> drawn;
+  for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(camera.outputs[o], o, image));
+  return chain.run(drawn, image.solidAngles->projected_sr, sensorTick(sim, camera, image, state, number), pointsOf(camera, image));
+}
+
+Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number, SensorChain* chain,
+                std::vector<TargetRow> targets, std::vector<FrameLayer> terms) {
   Frame frame = startFrame(camera, state, number);
   if (chain) {
-    std::vector<std::vector<float>> drawn;
-    for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(camera.outputs[o], o, image));
-    auto pixels = chain->run(drawn, image.solidAngles->projected_sr,
-                             {number, state.time_s, image.exposure_s, cameraAt(camera, state).pinhole.focalLength_m, noiseSeed(sim, camera)});
+    auto pixels = sensed(sim, camera, image, state, number, *chain);
     for (size_t o = 0; o < camera.outputs.size(); ++o) {
-      if (camera.outputs[o].temperature)
+      if (camera.outputs[o].asTemperature)
         toApparentTemperatures(pixels[o], camera.outputs[o], chain->projectedSolidAngles(cameraAt(camera, state).pinhole), image.exposure_s);
       frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, std::move(pixels[o])});
     }
@@ -204,11 +266,21 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
     addOutputs(frame, camera, image);
   }
   addTruth(frame, camera, image, cameraAt(camera, state).pinhole, chain);
+  for (FrameLayer& l : terms) frame.layers.push_back(std::move(l));
+  frame.targets = std::move(targets);
   addMetadata(frame, sim, camera, state);
+  addAxis(frame, camera);
   addAccuracy(frame, camera, image);
   addAudit(frame, camera, image);
   for (const ScatteredAgain& s : image.scatteredAgain) frame.attributes.push_back({"pitviper.scattered_again." + s.channel, s.factor});
   if (!image.transparentOrder.empty()) frame.attributes.push_back({"pitviper.transparent_order", image.transparentOrder});
+  if (image.exposureParts > 1) {
+    frame.attributes.push_back({"pitviper.exposure_parts", image.exposureParts});
+    frame.attributes.push_back({"pitviper.exposure_motion_px", image.exposureMotion_px});
+    frame.attributes.push_back({"pitviper.exposure_error", image.exposureError});
+  }
+  if (camera.window) cutOut(frame, *camera.window);
+  finishTargets(frame, camera);
   return frame;
 }
 

@@ -95,8 +95,11 @@ NodeSum::NodeSum(const NodeSpectra& spectra) : spectra_(spectra), count_(spectra
 
 void NodeSum::begin() {
   radiance_.assign(count_, 0.0);
-  if (keepsParts_)
+  if (watched_ >= 0) ofEntity_.assign(count_, 0.0);
+  if (keepsParts_) {
     for (auto& p : parts_) p.assign(count_, 0.0);
+    ofLamp_.assign(spectra_.simulation().lights.size(), std::vector<double>(count_, 0.0));
+  }
   restart();
 }
 
@@ -116,7 +119,8 @@ const std::vector<double>& NodeSum::values(const Factor& factor) {
 }
 
 void NodeSum::term(const Term& term) {
-  if (!takes(term.part())) return;
+  const bool taken = takes(term.part()), watched = watched_ >= 0 && term.entity == watched_;
+  if (!taken && !watched) return;
   std::vector<double> product(count_, term.coefficient);
   for (const Factor& f : term.factors) {
     const std::vector<double>& v = values(f);
@@ -125,7 +129,10 @@ void NodeSum::term(const Term& term) {
   for (size_t i = 0; i < count_; ++i) {
     if (product[i] == 0.0) continue;
     const double air = term.air ? std::exp(-Atmosphere::depthOf(spectra_.nodes()[i].air, *term.air)) : near_.passed[i];
-    send(term.kind, i, product[i] * panes_[i] * air * (mediaDepth_[i] > 0.0 ? std::exp(-mediaDepth_[i]) : 1.0));
+    const double sent = product[i] * panes_[i] * air * (mediaDepth_[i] > 0.0 ? std::exp(-mediaDepth_[i]) : 1.0);
+    if (taken) send(term.kind, i, sent);
+    if (watched) ofEntity_[i] += sent;
+    if (keepsParts_ && taken && term.kind == TermKind::Lights) ofLamp_[static_cast<size_t>(term.light)][i] += sent;
   }
 }
 
@@ -182,11 +189,12 @@ void NodeSum::segment(const Segment& s) {
   std::vector<const std::vector<double>*> sources;
   for (const MediumInside& m : s.media) sources.push_back(&values(Factor::medium(*m.medium, m.temperature_K)));
   for (size_t i = 0; i < count_; ++i) {
-    double x = 0.0, emitted = 0.0;
+    double x = 0.0, emitted = 0.0, ofWatched = 0.0;
     for (size_t m = 0; m < s.media.size(); ++m) {
       const double own = nodes[i].absorption_per_m[static_cast<size_t>(s.media[m].material)] * s.media[m].length_m;
       x += own;
       emitted += own * (*sources[m])[i];
+      if (s.media[m].entity == watched_) ofWatched += own * (*sources[m])[i];
     }
     const double before = mediaDepth_[i];
     mediaDepth_[i] += x;
@@ -195,6 +203,7 @@ void NodeSum::segment(const Segment& s) {
     if (!(d > 0.0)) continue;
     const double reaching = panes_[i] * (before > 0.0 ? std::exp(-before) : 1.0), seen = reaching * (s.air ? near_.passed[i] : 1.0);
     const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * (x > 0.0 ? std::exp(-x) : 1.0), lost = lostOf(d, left);
+    if (watched_ >= 0 && x > 0.0) ofEntity_[i] += seen * ofWatched / d * lost;
     if (media && x > 0.0) send(TermKind::Media, i, seen * emitted / d * lost);
     if (air && y > 0.0) {
       const double near = near_.black[i] + nodes[i].air.source, far = far_.black[i] + nodes[i].air.source;

@@ -53,7 +53,12 @@ class NodeSum final : public TermSink {
   std::span<const double> radiance() const { return radiance_; }
   /// By kind of term, in the order of TermKind, where keepParts() was called: [kind][node].
   std::span<const double> part(TermKind kind) const { return parts_[static_cast<size_t>(kind)]; }
+  /// Of light of a lamp that surfaces reflect, where keepParts() was called.
+  std::span<const double> ofLamp(size_t light) const { return ofLamp_[light]; }
   void keepParts() { keepsParts_ = true; }
+  /// Of what this entity sends or reflects, surface or medium, where watchEntity() was called; of all terms, whatever setOnly() says.
+  std::span<const double> ofEntity() const { return ofEntity_; }
+  void watchEntity(int entity) { watched_ = entity; }
   /// Sums from here on are of this part alone; without one of all.
   void setOnly(const std::optional<Part>& only) { only_ = only; }
   /// The parts that lines had since watchParts() was called.
@@ -83,11 +88,13 @@ class NodeSum final : public TermSink {
   const NodeSpectra& spectra_;
   size_t count_;
   bool keepsParts_ = false;
+  int watched_ = -1;
   std::optional<Part> only_;
   bool watches_ = false;
   std::set<Part> met_;
-  std::vector<double> radiance_;
+  std::vector<double> radiance_, ofEntity_;
   std::array<std::vector<double>, kTermKinds> parts_;
+  std::vector<std::vector<double>> ofLamp_;
   std::vector<double> panes_, mediaDepth_;  ///< on the way so far
   At near_, far_;
   std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_;

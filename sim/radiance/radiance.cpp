@@ -73,7 +73,7 @@ class Teller {
       if (!(s.enter < middle && s.leave > middle)) continue;
       const Entity& body = sim_.entities[static_cast<size_t>(s.entity)];
       const Surface& surface = body.surfaces.front();
-      inside_.push_back({sim_.mediumOf(body), surface.material,
+      inside_.push_back({sim_.mediumOf(body), s.entity, surface.material,
                          line_.temperature_K > 0.0 ? line_.temperature_K : scene_.state.temperatures_K[static_cast<size_t>(s.entity)][0],
                          far.range_m - near.range_m});
     }

@@ -52,7 +52,7 @@ struct AirPlace {
 /// A body of gas or smoke on a stretch of the way.
 struct MediumInside {
   const Medium* medium = nullptr;
-  int material = 0;
+  int entity = -1, material = 0;
   double temperature_K = 0.0;
   double length_m = 0.0;
 };

@@ -5,7 +5,9 @@
 #include <optional>
 
 #include "sim/camera/probe.hpp"
+#include "sim/camera/exposure_parts.hpp"
 #include "sim/frame/make_frame.hpp"
+#include "sim/frame/truth_table.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/model/world.hpp"
 #include "sim/plan/plan_cache.hpp"
@@ -22,6 +24,7 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
   std::vector<std::unique_ptr<CameraRenderer>> renderers;
   std::vector<std::unique_ptr<SensorChain>> chains;  // null for a camera without stages
   std::vector<Auditor> auditors;
+  std::vector<std::unique_ptr<TruthMeter>> truth;  // null for a camera that asks for none of it
   std::vector<std::unique_ptr<SpectralRenderer>> spectral;  // null for a camera without a spectral image
   for (const auto& camera : sim.cameras) {
     const auto planning = [&](double share) {
@@ -31,6 +34,7 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
     if (progress.picture) renderers.back()->setProgress(progress.picture);
     auditors.emplace_back(sim, cameras[auditors.size()], renderers.back()->plan(), library, scene);
     chains.push_back(camera.stages.empty() ? nullptr : std::make_unique<SensorChain>(camera, library));
+    truth.push_back(camera.truth.targets || camera.truth.terms ? std::make_unique<TruthMeter>(sim, camera) : nullptr);
     spectral.push_back(camera.spectralImage ? std::make_unique<SpectralRenderer>(sim, camera, library, scene) : nullptr);
   }
   std::vector<std::unique_ptr<ProbeMeter>> meters;
@@ -48,19 +52,31 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
   auto isBroken = [&] { return std::any_of(auditors.begin(), auditors.end(), [](const Auditor& a) { return !a.broken().empty(); }); };
   once.reset();
   once.emplace(kFirstFramePart);
+  // Detectors that remember see the frames before the first, which nobody gets.
+  for (size_t c = 0; c < renderers.size(); ++c) {
+    const TimedPart part("frames before the first");
+    for (int number = range.first - warmUpOf(sim.cameras[c], sim.time.step_s); number < range.first; ++number)
+      sensed(sim, sim.cameras[c], renderExposure(*renderers[c], sim, sim.cameras[c], sim.time.at(number)), advance(sim, sim.time.at(number)), number, *chains[c]);
+  }
   for (int number = range.first; number <= range.last && !(stopsAtBroken && isBroken()); ++number) {
     const WorldState state = advance(sim, sim.time.at(number));
     for (size_t c = 0; c < renderers.size(); ++c) {
-      renderers[c]->begin(state);
-      CameraImage image = renderers[c]->finish();
-      {
+      const Camera& camera = sim.cameras[c];
+      const CameraImage image = renderExposure(*renderers[c], sim, camera, state.time_s, [&](const WorldState& then, CameraImage& drawn) {
         const TimedPart part("audit");
-        auditors[c].look(state, number, image, number == range.first);
+        auditors[c].look(then, number, drawn, number == range.first);
+      });
+      std::vector<TargetRow> targets;
+      std::vector<FrameLayer> terms;
+      if (truth[c]) {
+        const TimedPart part("truth");
+        if (camera.truth.targets) targets = truth[c]->targets(state);
+        if (camera.truth.terms) terms = truth[c]->terms(state);
       }
       std::optional<Frame> made;
       {
         const TimedPart part("frame");
-        made = makeFrame(sim, sim.cameras[c], image, state, number, chains[c].get());
+        made = makeFrame(sim, camera, image, state, number, chains[c].get(), std::move(targets), std::move(terms));
       }
       hand(std::move(*made));
       if (spectral[c]) hand(spectral[c]->render(state, number));

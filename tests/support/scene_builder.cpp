@@ -6,7 +6,9 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/gl/context.hpp"
+#include "sim/camera/exposure_parts.hpp"
 #include "sim/camera/probe.hpp"
+#include "sim/frame/truth_table.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -33,15 +35,26 @@ CameraImage renderImage(const Simulation& sim, int frame) {
   auto gpu = std::make_shared<const GpuScene>(sim);
   const Camera drawn = drawnCamera(sim.cameras.at(0));
   CameraRenderer renderer(sim, drawn, shaderLibrary(), gpu);
-  return renderer.render(advance(sim, sim.time.at(frame)));
+  return renderExposure(renderer, sim, sim.cameras.at(0), sim.time.at(frame));
 }
 
 Frame renderFrame(const Simulation& sim, int frame) {
   const Camera& camera = sim.cameras.at(0);
-  const CameraImage image = renderImage(sim, frame);
   std::optional<SensorChain> chain;
+  needContext();
   if (!camera.stages.empty()) chain.emplace(camera, shaderLibrary());
-  return makeFrame(sim, camera, image, advance(sim, sim.time.at(frame)), frame, chain ? &*chain : nullptr);
+  for (int before = frame - warmUpOf(camera, sim.time.step_s); before < frame; ++before)
+    sensed(sim, camera, renderImage(sim, before), advance(sim, sim.time.at(before)), before, *chain);
+  const CameraImage image = renderImage(sim, frame);
+  const WorldState state = advance(sim, sim.time.at(frame));
+  std::vector<TargetRow> targets;
+  std::vector<FrameLayer> terms;
+  if (camera.truth.targets || camera.truth.terms) {
+    const TruthMeter meter(sim, camera);
+    if (camera.truth.targets) targets = meter.targets(state);
+    if (camera.truth.terms) terms = meter.terms(state);
+  }
+  return makeFrame(sim, camera, image, state, frame, chain ? &*chain : nullptr, std::move(targets), std::move(terms));
 }
 
 const FrameLayer& layer(const Frame& frame, const std::string& name) {

@@ -49,7 +49,7 @@ TEST(NodeSum, AirAndGasOnOneSegment) {
   NodeSum sum(one.spectra);
   sum.keepParts();
   const auto gas = std::find_if(one.sim.materials.begin(), one.sim.materials.end(), [](const auto& m) { return m->medium.has_value(); });
-  const MediumInside inside{&*(*gas)->medium, static_cast<int>(gas - one.sim.materials.begin()), 900.0, 400.0};
+  const MediumInside inside{&*(*gas)->medium, 0, static_cast<int>(gas - one.sim.materials.begin()), 900.0, 400.0};
   AirPlace near, far;
   far.range_m = 400.0, far.powered.amount[0] = 400.0;
   sum.begin();

@@ -1,0 +1,410 @@
+#include "sim/frame/truth_table.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <future>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "sim/camera/small_bodies.hpp"
+#include "sim/camera/visible_lights.hpp"
+#include "sim/camera/zoomed_lines.hpp"
+#include "sim/model/world.hpp"
+#include "sim/plan/planner.hpp"
+#include "sim/render/reference/reference_pixel.hpp"
+#include "sim/render/reference/zoomed_tile.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Times between which rates are differences.
+constexpr double kApart_s = 1e-3;
+
+/// Each worker takes the next piece until there are none.
+template <class OfPiece>
+void eachPiece(int pieces, const OfPiece& ofPiece) {
+  std::atomic<int> next{0};
+  const auto work = [&] {
+    for (int piece = next++; piece < pieces; piece = next++) ofPiece(piece);
+  };
+  std::vector<std::future<void>> workers;
+  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) workers.push_back(std::async(std::launch::async, work));
+  work();
+  for (auto& w : workers) w.get();
+}
+
+std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance) {
+  std::vector<double> slots(static_cast<std::size_t>(plan.slotCount), 0.0);
+  for (std::size_t s = 0; s < slots.size(); ++s)
+    for (std::size_t i = 0; i < plan.nodes.size(); ++i) slots[s] += plan.weight[s][i] * radiance[i];
+  return slots;
+}
+
+bool meets(const RayHits& hits, int entity) {
+  return hits.solid.entity == entity || std::any_of(hits.layers.begin(), hits.layers.end(), [&](const Hit& h) { return h.entity == entity; }) ||
+         std::any_of(hits.stretches.begin(), hits.stretches.end(), [&](const Stretch& s) { return s.entity == entity; });
+}
+
+bool isRadiance(const ChannelOutput& o) { return o.quantity == "radiance"; }
+
+/// The radiance of each channel, and what a detector counts.
+std::vector<ChannelOutput> measuredOutputs(const Camera& camera) {
+  std::vector<ChannelOutput> outputs;
+  std::set<std::string> channels;
+  for (const ChannelOutput& o : camera.outputs) {
+    if (!channels.insert(o.channel).second || !o.curves) continue;
+    ChannelOutput radiance;
+    radiance.channel = o.channel;
+    radiance.quantity = "radiance";
+    radiance.unit = "W/(m2 sr)";
+    radiance.where = o.where;
+    radiance.kernel = o.curves->response;
+    radiance.bandLow_um = o.curves->response.supportLow();
+    radiance.bandHigh_um = o.curves->response.supportHigh();
+    radiance.curves = o.curves;
+    outputs.push_back(radiance);
+    for (const ChannelOutput& other : camera.outputs)
+      if (other.detected && other.channel == o.channel) {
+        outputs.push_back(other);
+        break;
+      }
+  }
+  return outputs;
+}
+
+Camera measuredCamera(const Camera& camera) {
+  Camera measured = camera;
+  measured.outputs = measuredOutputs(camera);
+  measured.plan.clear();
+  measured.stages.clear();
+  return measured;
+}
+
+}  // namespace
+
+TruthMeter::TruthMeter(const Simulation& simulation, const Camera& camera)
+    : simulation_(simulation),
+      camera_(camera),
+      measured_(measuredCamera(camera)),
+      lines_(zoomedLines(simulation, camera.zoomedSamples, camera.outlineAccuracy)),
+      present_(simulation.entities.size(), 1),
+      plan_(planFor(simulation, {&measured_, nullptr})),
+      spectra_(std::make_shared<const NodeSpectra>(simulation, plan_.nodes, plan_.terms.surroundings)) {
+  if (camera.mount.carrier >= 0) present_[static_cast<std::size_t>(camera.mount.carrier)] = 0;
+  for (std::size_t o = 0; o < measured_.outputs.size(); ++o)
+    if (isRadiance(measured_.outputs[o])) radianceOf_.push_back(o);
+}
+
+TargetRow TruthMeter::placed(const std::string& name, const char* kind, const WorldState& state, const glm::dvec3& now, const glm::dvec3& before,
+                             const glm::dvec3& after) const {
+  const WorldState earlier = advance(simulation_, state.time_s - kApart_s), later = advance(simulation_, state.time_s + kApart_s);
+  TargetRow row;
+  row.name = name;
+  row.kind = kind;
+  row.left = row.top = row.right = row.bottom = row.column = row.row = NAN;
+  const CameraState eye = cameraAt(camera_, state);
+  const glm::dvec3 line = now - eye.pose.position, lineBefore = before - cameraAt(camera_, earlier).pose.position,
+                   lineAfter = after - cameraAt(camera_, later).pose.position;
+  row.range_m = glm::length(line);
+  row.rangeRate_m_s = (glm::length(lineAfter) - glm::length(lineBefore)) / (2.0 * kApart_s);
+  const glm::dmat3 local = localFromCamera(eye.pose);
+  if (glm::length(lineAfter) > 0.0 && glm::length(lineBefore) > 0.0) {
+    const glm::dvec3 turn = (glm::normalize(lineAfter) - glm::normalize(lineBefore)) / (2.0 * kApart_s);
+    row.sightRight_rad_s = glm::dot(turn, local[0]);
+    row.sightUp_rad_s = glm::dot(turn, local[1]);
+  }
+  const glm::dvec3 seen = glm::transpose(local) * line;
+  if (seen.z < 0.0) {
+    const Pinhole& p = eye.pinhole;
+    const glm::dvec2 at = placeOnFilm(camera_, p.focalLength_m, {0.5 * p.width + seen.x / -seen.z * p.focalLength_m / p.pitchX_m,
+                                                                 0.5 * p.height - seen.y / -seen.z * p.focalLength_m / p.pitchY_m});
+    row.column = at.x;
+    row.row = at.y;
+  }
+  return row;
+}
+
+void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, const std::vector<double>& total, const std::vector<double>& contrast, double body_sr,
+                             const WorldState& state) const {
+  const CameraState eye = cameraAt(camera_, state);
+  const Pinhole& p = eye.pinhole;
+  const double pixel_sr = p.projectedSolidAngle_sr(p.width / 2, p.height / 2), range2 = row.range_m * row.range_m;
+  const DetectorLaw* law = detectorOf(camera_);
+  for (std::size_t r : radianceOf_) {
+    const auto slot = static_cast<std::size_t>(plan_.slotOfOutput[r]);
+    TargetRow::Channel c;
+    c.channel = measured_.outputs[r].channel;
+    c.unit = "W/sr";
+    c.own = own[slot], c.total = total[slot], c.contrast = contrast[slot];
+    c.signalToNoise = NAN;
+    const auto detected = std::find_if(measured_.outputs.begin(), measured_.outputs.end(), [&](const ChannelOutput& o) { return o.detected && o.channel == c.channel; });
+    if (law && detected != measured_.outputs.end() && range2 > 0.0) {
+      const auto counted = static_cast<std::size_t>(plan_.slotOfOutput[static_cast<std::size_t>(detected - measured_.outputs.begin())]);
+      const double perFlux = law->fillFactor * detected->scale * eye.exposure_s;  // electrons of kernel integral x sr
+      // All of it in one pixel where it is smaller than one, but for what the lens spreads; else a pixel's part of its face.
+      const double pixels = std::max(body_sr / pixel_sr, 1.0 / pixelShareOf(camera_, *detected)), signal = perFlux * contrast[counted] / range2 / pixels;
+      const double behind = body_sr > 0.0 ? perFlux * pixel_sr * (total[counted] - contrast[counted]) / range2 / body_sr : 0.0;
+      const double own_e = law->fillFactor * ownLightOf(camera_, *detected, pixel_sr, eye.exposure_s), dark = law->darkCurrent_per_s * eye.exposure_s;
+      const auto square = [](double x) { return x * x; };
+      const double variance = std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark + square(law->sigmaTvh) + square(law->sigmaTv) + square(law->sigmaTh) +
+                              square(law->sigmaT) + 1.0 / (12.0 * square(law->gain));
+      c.signalToNoise = signal / std::sqrt(variance);
+    }
+    row.channels.push_back(c);
+  }
+}
+
+void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) const {
+  const auto e = static_cast<std::size_t>(entity);
+  const View film = cameraView(camera_, state, 1);
+  const Ball ball = ballOf(simulation_, state, entity);
+  const auto slots = static_cast<std::size_t>(plan_.slotCount);
+  const glm::dvec3 ahead = glm::transpose(film.localFromCamera) * (ball.centre - film.position);
+  if (glm::length(ahead) <= 1.01 * ball.radius_m) {
+    const std::vector<double> none(slots, NAN);
+    row.visible = NAN;
+    addChannels(row, none, none, none, 0.0, state);
+    return;
+  }
+  std::vector<double> own(slots, 0.0), total = own, contrast = own;
+  if (!mayShow(film, ball.centre, ball.radius_m)) {
+    addChannels(row, own, total, contrast, 0.0, state);
+    return;
+  }
+  const int size = simulation_.mediumOf(simulation_.entities[e]) ? std::max(lines_[e] / 2, 16) : lines_[e];
+  View z = zoomedView(ball, film, size);
+  z.onlyEntity = -1;
+  const CameraState eye = cameraAt(camera_, state);
+  const glm::dmat3 filmFromZoom = glm::transpose(film.localFromCamera) * z.localFromCamera;
+  std::vector<char> others = present_;
+  others[e] = 0;
+  const ReferenceShader with(simulation_, plan_, z, state, present_, spectra_), without(simulation_, plan_, z, state, others, spectra_);
+  const auto lineOf = [&](int x, int y, const std::vector<char>& drawn) {
+    const glm::dvec3 ray = z.ray(x + 0.5, y + 0.5);
+    LineOfSight line{z.position, z.localFromCamera * ray / glm::length(ray), {}, 0.0};
+    line.hits = castRay(simulation_, state, line.origin, line.direction, z.near_m * glm::length(ray), &drawn);
+    return line;
+  };
+  /// The place on the film, distorted; none behind it.
+  const auto placeOf = [&](int x, int y) -> std::optional<glm::dvec2> {
+    const glm::dvec3 seen = filmFromZoom * z.ray(x + 0.5, y + 0.5);
+    if (seen.z >= 0.0) return std::nullopt;
+    const glm::dvec2 at = filmPosition(film, seen);
+    return placeOnFilm(camera_, eye.pinhole.focalLength_m, {at.x, film.height - at.y});
+  };
+  const glm::ivec4 window = camera_.window.value_or(glm::ivec4(0, 0, film.width, film.height));
+  const auto isOnFilm = [&](const glm::dvec2& at) {
+    return at.x >= window.x && at.y >= window.y && at.x < window.x + window.z && at.y < window.y + window.w;
+  };
+  double whole_sr = 0.0, seen_sr = 0.0;
+  std::mutex meeting;
+  const int columns = (size + ZoomedTile::kSize - 1) / ZoomedTile::kSize;
+  eachPiece(columns * columns, [&](int piece) {
+    NodeSum sum(*spectra_), behind(*spectra_);
+    sum.watchEntity(entity);
+    std::vector<double> ownHere(slots, 0.0), totalHere = ownHere, contrastHere = ownHere;
+    double wholeHere = 0.0, seenHere = 0.0, left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
+    const auto solidAngle = [&](int x, int y) {
+      const glm::dvec3 ray = z.ray(x + 0.5, y + 0.5);
+      return z.tanPerPixelX * z.tanPerPixelY / std::pow(glm::dot(ray, ray), 1.5);
+    };
+    ZoomedTile tile(
+        [&](int x, int y) -> std::size_t {
+          const glm::dvec3 ray = z.ray(x + 0.5, y + 0.5);
+          if (!meetsBody(simulation_, state, z.position, z.localFromCamera * ray / glm::length(ray), z.near_m * glm::length(ray), entity)) return 0;
+          wholeHere += solidAngle(x, y);
+          const auto at = placeOf(x, y);
+          if (!at) return 0;
+          left = std::min(left, at->x), right = std::max(right, at->x), top = std::min(top, at->y), bottom = std::max(bottom, at->y);
+          const LineOfSight line = lineOf(x, y, present_);
+          if (!isOnFilm(*at) || !meets(line.hits, entity)) return 0;
+          return (with.looks(line) * 31 + without.looks(lineOf(x, y, others))) | 1u;
+        },
+        [&](int x, int y) {
+          std::vector<double> all = with.shade(lineOf(x, y, present_), sum).slots;
+          const std::vector<double> ofBody = slotsOf(plan_, sum.ofEntity()), other = without.shade(lineOf(x, y, others), behind).slots;
+          all.insert(all.end(), ofBody.begin(), ofBody.end());
+          all.insert(all.end(), other.begin(), other.end());
+          return all;
+        });
+    const int x = piece % columns * ZoomedTile::kSize, y = piece / columns * ZoomedTile::kSize;
+    tile.fill(x, y, std::min(ZoomedTile::kSize, size - x), std::min(ZoomedTile::kSize, size - y), [&](int i, int j, const std::vector<double>& all) {
+      const double sr = solidAngle(i, j);
+      seenHere += sr;
+      for (std::size_t s = 0; s < slots; ++s) {
+        totalHere[s] += sr * all[s];
+        ownHere[s] += sr * all[slots + s];
+        contrastHere[s] += sr * (all[s] - all[2 * slots + s]);
+      }
+    });
+    const std::scoped_lock lock(meeting);
+    whole_sr += wholeHere, seen_sr += seenHere;
+    if (left <= right) {
+      row.left = std::fmin(row.left, left), row.right = std::fmax(row.right, right);
+      row.top = std::fmin(row.top, top), row.bottom = std::fmax(row.bottom, bottom);
+    }
+    for (std::size_t s = 0; s < slots; ++s) own[s] += ownHere[s], total[s] += totalHere[s], contrast[s] += contrastHere[s];
+  });
+  row.visible = whole_sr > 0.0 ? seen_sr / whole_sr : 0.0;
+  const double range2 = row.range_m * row.range_m;
+  for (auto* sums : {&own, &total, &contrast})
+    for (double& v : *sums) v *= range2;
+  addChannels(row, own, total, contrast, seen_sr, state);
+}
+
+void TruthMeter::addLamp(TargetRow& row, std::size_t light, const WorldState& state) const {
+  const View film = cameraView(camera_, state, 1);
+  const glm::dvec3 line = state.lights[light] - film.position;
+  const double range = glm::length(line);
+  const glm::dvec3 seen = glm::transpose(film.localFromCamera) * line;
+  std::vector<double> sums(static_cast<std::size_t>(plan_.slotCount), 0.0);
+  if (-seen.z >= film.near_m && lightIsInView(simulation_, state, film, light)) {
+    const auto way = WaysToLights(simulation_, plan_).from(state, present_, film.position, line / range, range, film.near_m * range / -seen.z);
+    if (!way.empty()) {
+      sums = apparentIntensity(simulation_, plan_, state, light, film.position, way);
+      row.visible = 1.0;
+    }
+    row.left = row.right = row.column;
+    row.top = row.bottom = row.row;
+  }
+  addChannels(row, sums, sums, sums, 0.0, state);
+}
+
+std::vector<TargetRow> TruthMeter::targets(const WorldState& state) const {
+  std::vector<TargetRow> rows;
+  const WorldState earlier = advance(simulation_, state.time_s - kApart_s), later = advance(simulation_, state.time_s + kApart_s);
+  for (std::size_t e = 0; e < simulation_.entities.size(); ++e) {
+    if (!present_[e]) continue;
+    const int entity = static_cast<int>(e);
+    const Entity& body = simulation_.entities[e];
+    rows.push_back(placed(body.name, simulation_.mediumOf(body) ? "medium" : "body", state, ballOf(simulation_, state, entity).centre,
+                          ballOf(simulation_, earlier, entity).centre, ballOf(simulation_, later, entity).centre));
+    addBody(rows.back(), entity, state);
+  }
+  for (std::size_t l = 0; l < simulation_.lights.size(); ++l) {
+    if (!simulation_.lights[l].visible) continue;
+    rows.push_back(placed(simulation_.lights[l].name, "lamp", state, state.lights[l], earlier.lights[l], later.lights[l]));
+    addLamp(rows.back(), l, state);
+  }
+  return rows;
+}
+
+std::vector<FrameLayer> TruthMeter::terms(const WorldState& state) const {
+  const View film = cameraView(camera_, state, 1);
+  const ReferenceShader shader(simulation_, plan_, film, state, present_, spectra_);
+  constexpr const char* kNames[kTermKinds] = {"emission", "ambient", "sun", "lamps", "air_emission", "scattered_sun", "background", "media", "lamps_in_view"};
+  const std::size_t lamps = simulation_.lights.size(), parts = kTermKinds + lamps,
+                    pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
+  std::vector<std::vector<float>> layers(radianceOf_.size() * parts, std::vector<float>(pixels, 0.0f));
+  eachPiece(film.height, [&](int y) {
+    NodeSum sum(*spectra_);
+    sum.keepParts();
+    for (int x = 0; x < film.width; ++x) {
+      shader.pixel(x, y, sum);
+      const std::size_t at = static_cast<std::size_t>(film.height - 1 - y) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(x);
+      for (std::size_t part = 0; part < parts; ++part) {
+        if (part == static_cast<std::size_t>(TermKind::Lights)) continue;  // lamp by lamp
+        const auto radiance = part < kTermKinds ? sum.part(static_cast<TermKind>(part)) : sum.ofLamp(part - kTermKinds);
+        const std::vector<double> slots = slotsOf(plan_, radiance);
+        for (std::size_t c = 0; c < radianceOf_.size(); ++c)
+          layers[c * parts + part][at] = static_cast<float>(slots[static_cast<std::size_t>(plan_.slotOfOutput[radianceOf_[c]])]);
+      }
+    }
+  });
+  const WaysToLights ways(simulation_, plan_);
+  const Pinhole now = cameraAt(camera_, state).pinhole;
+  for (std::size_t l = 0; l < lamps; ++l) {
+    if (!lightIsInView(simulation_, state, film, l)) continue;
+    const glm::dvec3 line = state.lights[l] - film.position, seen = glm::transpose(film.localFromCamera) * line;
+    const double range = glm::length(line);
+    const auto way = ways.from(state, present_, film.position, line / range, range, film.near_m * range / -seen.z);
+    if (way.empty()) continue;
+    const glm::dvec2 at = filmPosition(film, seen);
+    const int column = static_cast<int>(at.x), row = film.height - 1 - static_cast<int>(at.y);
+    const auto sums = apparentIntensity(simulation_, plan_, state, l, film.position, way);
+    const double perIntensity = -seen.z / range / (range * range) / now.projectedSolidAngle_sr(column, row);
+    for (std::size_t c = 0; c < radianceOf_.size(); ++c)
+      layers[c * parts + static_cast<std::size_t>(TermKind::LampsInView)][static_cast<std::size_t>(row) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(column)] +=
+          static_cast<float>(perIntensity * sums[static_cast<std::size_t>(plan_.slotOfOutput[radianceOf_[c]])]);
+  }
+  // By the scene, not by what is in view: all frames have the same layers.
+  const auto mayHave = [&](std::size_t part) {
+    const Terms t = termsOf(simulation_);
+    switch (part < kTermKinds ? static_cast<TermKind>(part) : TermKind::Lights) {
+      case TermKind::Ambient: return t.ambient;
+      case TermKind::Sun: return simulation_.sun.has_value();
+      case TermKind::AirEmission: return t.air;
+      case TermKind::ScatteredSun: return t.scatteredSun;
+      case TermKind::Media: return t.media;
+      case TermKind::LampsInView: return std::any_of(simulation_.lights.begin(), simulation_.lights.end(), [](const PointLight& l) { return l.visible; });
+      default: return true;
+    }
+  };
+  std::vector<FrameLayer> told;
+  for (std::size_t c = 0; c < radianceOf_.size(); ++c)
+    for (std::size_t part = 0; part < parts; ++part) {
+      std::vector<float>& layer = layers[c * parts + part];
+      if (part == static_cast<std::size_t>(TermKind::Lights) || !mayHave(part)) continue;
+      const std::string name = part < kTermKinds ? std::string(kNames[part]) : "lamp." + simulation_.lights[part - kTermKinds].name;
+      told.push_back({"truth.terms." + measured_.outputs[radianceOf_[c]].channel + "." + name, "W/(m2 sr)", std::move(layer)});
+    }
+  return told;
+}
+
+void finishTargets(Frame& frame, const Camera& camera) {
+  const DetectorLaw* law = detectorOf(camera);
+  for (TargetRow& t : frame.targets) {
+    for (TargetRow::Channel& c : t.channels) {
+      const auto counts = std::find_if(frame.layers.begin(), frame.layers.end(), [&](const FrameLayer& l) { return l.name == c.channel + ".counts"; });
+      if (!law || counts == frame.layers.end() || std::isnan(t.left)) continue;
+      c.saturated = 0;
+      const float full = static_cast<float>(std::min(law->mostCount(), std::floor(law->gain * law->fullWell + law->offset + 0.5)));
+      // A pixel around, which the lens reaches.
+      const int left = std::max(0, static_cast<int>(t.left) - 1), right = std::min(frame.width - 1, static_cast<int>(t.right) + 1),
+                top = std::max(0, static_cast<int>(t.top) - 1), bottom = std::min(frame.height - 1, static_cast<int>(t.bottom) + 1);
+      for (int y = top; y <= bottom; ++y)
+        for (int x = left; x <= right; ++x) c.saturated += counts->pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)] >= full;
+    }
+    const std::string name = "target." + t.name + ".";
+    frame.attributes.push_back({name + "place", std::vector<double>{t.column, t.row, t.left, t.top, t.right, t.bottom}});
+    frame.attributes.push_back({name + "sight", std::vector<double>{t.range_m, t.rangeRate_m_s, t.sightRight_rad_s, t.sightUp_rad_s, t.visible}});
+    for (const TargetRow::Channel& c : t.channels)
+      frame.attributes.push_back({name + c.channel, std::vector<double>{c.own, c.total, c.contrast, c.signalToNoise, static_cast<double>(c.saturated)}});
+  }
+}
+
+std::string targetTableHead(const std::vector<TargetRow>& rows) {
+  std::string text =
+      "frame,time [s],name,kind,column,row,left,top,right,bottom,range [m],range rate [m/s],sight right [rad/s],sight up [rad/s],visible";
+  if (!rows.empty())
+    for (const TargetRow::Channel& c : rows.front().channels)
+      text += "," + c.channel + ".own [" + c.unit + "]," + c.channel + ".total [" + c.unit + "]," + c.channel + ".contrast [" + c.unit + "]," + c.channel + ".snr," +
+              c.channel + ".saturated";
+  return text + "\n";
+}
+
+std::string targetTable(const Frame& frame) {
+  std::string text;
+  const auto add = [&text](double value) {
+    char cell[40];
+    std::snprintf(cell, sizeof cell, ",%.9g", value);
+    text += std::isnan(value) ? "," : cell;
+  };
+  for (const TargetRow& t : frame.targets) {
+    text += std::to_string(frame.number);
+    add(frame.time_s);
+    text += "," + t.name + "," + t.kind;
+    for (double v : {t.column, t.row, t.left, t.top, t.right, t.bottom, t.range_m, t.rangeRate_m_s, t.sightRight_rad_s, t.sightUp_rad_s, t.visible}) add(v);
+    for (const TargetRow::Channel& c : t.channels) {
+      for (double v : {c.own, c.total, c.contrast, c.signalToNoise}) add(v);
+      text += c.saturated < 0 ? "," : "," + std::to_string(c.saturated);
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace pitviper

@@ -1,0 +1,53 @@
+#pragma once
+// What is true of a camera's targets at a time, and what its light is made of, pixel by pixel: by the radiance equation in double precision, at the wavelengths
+// of a plan, along lines of sight of its own. Nothing is drawn for it.
+#include <memory>
+
+#include "sim/frame/frame.hpp"
+#include "sim/plan/plan.hpp"
+#include "sim/radiance/node_sum.hpp"
+
+namespace pitviper {
+
+class TruthMeter {
+ public:
+  /// `camera`: the film's, which asks for targets or terms. Makes a plan of its own where the channels' radiances are not among its outputs. Both must outlive it.
+  TruthMeter(const Simulation& simulation, const Camera& camera);
+
+  /// A row for each body but the camera's carrier, and for each lamp that can be seen. Intensities of a body: over lines of a square grid over its bounding
+  /// sphere, as fine as a picture's zoomed views at the same accuracy; worked out where they bend, linear between within 2e-5. `own`: emission and
+  /// reflection of its surfaces or its medium, through all that lies before it; `total`: all light along lines that meet it before anything opaque; `contrast`:
+  /// that less what these lines would have without it. Each times range squared. A camera within a body's sphere gets NaN.
+  std::vector<TargetRow> targets(const WorldState& state) const;
+
+  /// Layers `truth.terms.<channel>.<part>` [W/(m2 sr)] at pixels' middles, before the sensor's stages: emission, ambient, sun, lamp.<name> (light of that lamp that
+  /// surfaces reflect), air_emission, scattered_sun, background, media, lamps_in_view; those that the scene can have. Their sum is the channel's radiance.
+  std::vector<FrameLayer> terms(const WorldState& state) const;
+
+ private:
+  TargetRow placed(const std::string& name, const char* kind, const WorldState& state, const glm::dvec3& now, const glm::dvec3& before, const glm::dvec3& after) const;
+  void addBody(TargetRow& row, int entity, const WorldState& state) const;
+  void addLamp(TargetRow& row, std::size_t light, const WorldState& state) const;
+  /// Of kernel integrals times range squared, in the order of Plan::slotCount.
+  void addChannels(TargetRow& row, const std::vector<double>& own, const std::vector<double>& total, const std::vector<double>& contrast, double body_sr,
+                   const WorldState& state) const;
+
+  const Simulation& simulation_;
+  const Camera& camera_;
+  Camera measured_;  ///< with radiances of its channels, and what is detected
+  std::vector<std::size_t> radianceOf_;  ///< of each channel, an output of it
+  std::vector<int> lines_;
+  std::vector<char> present_;
+  Plan plan_;
+  std::shared_ptr<const NodeSpectra> spectra_;
+};
+
+/// What a frame's pixels say of its targets (those that are full), and their rows as attributes `target.<name>.`: `place` [column, row, left, top, right, bottom],
+/// `sight` [range, its rate, turning to the right and up, share that is visible], and of each channel `<channel>` [own, total, contrast, signal to noise, full pixels].
+void finishTargets(Frame& frame, const Camera& camera);
+
+/// Rows as a table: a line of names and units, and for each row a line.
+std::string targetTableHead(const std::vector<TargetRow>& rows);
+std::string targetTable(const Frame& frame);
+
+}  // namespace pitviper
