@@ -26,10 +26,11 @@ const std::map<std::string, Command>& commands() {
   static const std::map<std::string, Command> all = {
       {"run",
        {runCommand, "render a scenario to calibrated EXR frames",
-        "pitviper run SCENARIO.yaml [--out FOLDER] [--frames A:B] [--set path.to.key=value]... [--preview]\n             [--preview-range "
+        "pitviper run SCENARIO.yaml [--out FOLDER] [--frames A:B] [--set path.to.key=value]... [--preview]\n             [--video FILE.mp4] [--sheet] [--report] [--scale run|frame|LOW:HIGH] [--palette NAME] [--plain] [--truth]\n             [--preview-range "
         "LAYER=LOW:HIGH]... [--overwrite] [--timing]\n\n"
         "Renders the scenario's frames: one EXR per camera and frame in FOLDER (default 'out'), named <camera>_<frame>.exr,\n"
-        "with a float layer <channel>.<quantity> per output and truth.* layers; probes write <probe>.csv; a camera with 'spectral_image:'\n"
+        "with a float layer <channel>.<quantity> per output, truth.* layers and a grey picture for programs that know nothing of layers; other formats by\n"
+        "'sinks: [{sink: files, format: tiff}]'; probes write <probe>.csv; a camera with 'spectral_image:'\n"
         "also writes <camera>_<frame>_spectral.exr for pitviper integrate.\n\n"
         "  --out FOLDER     where to write; created if missing\n"
         "  --frames A:B     frames A to B only, both included (or one: A); counted from 0: --frames 0:9 draws ten\n"
@@ -37,6 +38,14 @@ const std::map<std::string, Command>& commands() {
         "                   --set entities.jet.temperature='300 K'; list items by number or by their name; repeatable\n"
         "  --plan FILE      draws a camera with the plan of another run, FOLDER/CAMERA.plan: the same scenario and plan give the same bytes; repeatable\n"
         "  --preview        also a PNG per frame: every channel with colour bar and unit\n"
+        "  --video FILE.mp4 also a film of the previews (of several cameras one each, FILE_<camera>.mp4); by ffmpeg\n"
+        "  --sheet          also <camera>_sheet.png: up to twenty pictures of the first layer, evenly over the run\n"
+        "  --report         also report.html: scenario, plans, sensors, sheet, what its layers and targets do over time, notes; all in one file\n"
+        "  --scale WHICH    of colour bars. frame: each picture its own (previews unless given); run: one for all, drawn when the run ends (films and sheets\n"
+        "                   unless given); LOW:HIGH: these ends, in the layers' unit\n"
+        "  --palette NAME   thermal, white_hot, black_hot; auto: white_hot below 0.9 um, else thermal\n"
+        "  --plain          pixels alone, one to one: no bar, no words\n"
+        "  --truth          truth layers too\n"
         "  --preview-range LAYER=LOW:HIGH  ends of a layer's colour bar, in its unit (implies --preview); repeatable. Without it the bar\n"
         "                   runs from the 0.5 to the 99.8 percentile, and is bent where a few bright things would hide the rest\n\n"
         "  --overwrite      also replaces files of other scenarios, and files that are not of this program\n"
@@ -134,6 +143,18 @@ const std::map<std::string, Command>& commands() {
         "  --out FOLDER     also NAME.png, charts of spectra, emissivity by angle and reflection of light from 45 degrees (needs VTK), and\n"
         "                   NAME_sphere.png, a sphere of it under a sun and a dome of daylight as an eye sees it (of materials without data there:\n"
         "                   at 320 K in the infrared), in FOLDER; created if missing\n"}},
+      {"measure",
+       {measureCommand, "a camera on a lab bench: SiTF, NETD, noise, MTF, gain, well, point response from its pictures, beside its design",
+        "pitviper measure NAME|CAMERA.yaml [--frames N] [--film N] [--set key=value]... [--out FOLDER]\n\n"
+        "Draws flat fields, levels from dark to full, a slanted edge (ISO 12233), a point in a pixel's middle, edge and corner, and four-bar targets through a\n"
+        "camera of the library, or one in a file with a key 'camera', whose channels have 'output: counts'; and measures from these pictures alone: SiTF, NETD, the\n"
+        "seven components of three-dimensional noise with their standard errors, gain by photon transfer, full well, linearity, MTF, a pixel's share of a star, the\n"
+        "bars' contrast and an MRTD-like figure (the difference at which a bar has 2.25 times its noise over its own pixels and 0.2 s). Flat fields are at 300 K, or\n"
+        "where the detector is half full if 300 K give it next to nothing.\n\n"
+        "  --frames N       of each flat field (default 64)\n"
+        "  --film N         a side of the square in the film's middle that is measured (default 128)\n"
+        "  --set key=value  a key of the camera: --set exposure='2 ms'\n"
+        "  --out FOLDER     also NAME.html, a page with charts (needs VTK), NAME.csv and the charts; created if missing\n"}},
       {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
   };
   return all;

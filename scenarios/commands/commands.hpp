@@ -17,6 +17,7 @@ int benchCommand(const Arguments& arguments);
 int planCommand(const Arguments& arguments);
 int atmosphereCommand(const Arguments& arguments);
 int materialCommand(const Arguments& arguments);
+int measureCommand(const Arguments& arguments);
 int keysCommand(const Arguments& arguments);
 
 /// Every shader file compiled into the program.

@@ -19,6 +19,11 @@ std::string textOf(const Attribute& a) {
   if (const auto* d = std::get_if<double>(&a.value)) return std::snprintf(buffer, sizeof buffer, "%.9g", *d), buffer;
   if (const auto* i = std::get_if<int>(&a.value)) return std::to_string(*i);
   std::string all;
+  if (const auto* curve = std::get_if<std::vector<float>>(&a.value)) {
+    if (curve->empty()) return "no values";
+    std::snprintf(buffer, sizeof buffer, "%zu values, %.6g ... %.6g", curve->size(), static_cast<double>(curve->front()), static_cast<double>(curve->back()));
+    return buffer;
+  }
   for (double v : std::get<std::vector<double>>(a.value)) {
     std::snprintf(buffer, sizeof buffer, "%.12g", v);
     all += (all.empty() ? "" : " ") + std::string(buffer);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <vector>
 
 namespace pitviper {
 namespace {
@@ -21,6 +22,9 @@ void RunTotal::add(const Frame& f) {
   for (const Attribute& a : f.attributes) {
     if (a.name == "pitviper.mode") seen.mode = std::get<std::string>(a.value);
     if (a.name == "pitviper.accuracy") seen.accuracy = std::get<double>(a.value);
+    if (a.name == "pitviper.exposure_parts") seen.parts = std::max(seen.parts, std::get<int>(a.value));
+    if (a.name == "pitviper.exposure_motion_px") seen.motion_px = std::max(seen.motion_px, std::get<double>(a.value));
+    if (a.name == "pitviper.exposure_error") seen.partError = std::max(seen.partError, std::get<double>(a.value));
     if (!a.name.starts_with(kError)) continue;
     double& error = seen.error[a.name.substr(kError.size())];
     error = std::max(error, std::get<double>(a.value));
@@ -40,7 +44,35 @@ std::string RunTotal::expected() const {
     for (const auto& [channel, error] : seen.error) errors += (errors.empty() ? "" : ", ") + channel + " " + print("%.2g %%", 100.0 * error);
     if (!errors.empty()) text += "; expected error at most " + errors;
     else if (seen.mode == "sampled") text += "; no accuracy asked for, no error expected";
+    if (seen.parts > 1)
+      text += "; exposures in up to " + std::to_string(seen.parts) + " parts (" + print("%.3g pixels", seen.motion_px) + " of motion; " +
+              print("%.2g %%", 100.0 * seen.partError) + " of an edge's contrast at most)";
     text += "\n";
+  }
+  return text;
+}
+
+std::string auditText(const RunReport& report) {
+  std::string text;
+  for (const auto& [camera, t] : report.audits) {
+    std::vector<double> sorted = t.errors;
+    std::sort(sorted.begin(), sorted.end());
+    char line[256];
+    std::snprintf(line, sizeof line, "  %s: audited %d pixel%s of %d frame%s against the reference: median %.2g %%, largest %.2g %% (%s)", camera.c_str(),
+                  t.pixels, t.pixels == 1 ? "" : "s", t.frames, t.frames == 1 ? "" : "s", 100.0 * sorted[sorted.size() / 2], 100.0 * t.largest,
+                  t.channel.c_str());
+    text += line;
+    if (t.asked > 0.0) {
+      std::snprintf(line, sizeof line, " of %.2g %% asked%s", 100.0 * t.asked, t.largest > t.asked ? ": MORE THAN ASKED, those frames say so" : "");
+      text += line;
+    }
+    text += "\n";
+    if (t.whole.empty()) continue;
+    sorted = t.whole;
+    std::sort(sorted.begin(), sorted.end());
+    std::snprintf(line, sizeof line, "  %s: with its geometry, against 32x32 places a pixel: median %.2g %%, largest %.2g %% (standard error up to %.2g %%)\n",
+                  camera.c_str(), 100.0 * sorted[sorted.size() / 2], 100.0 * sorted.back(), 100.0 * t.wholeError);
+    text += line;
   }
   return text;
 }

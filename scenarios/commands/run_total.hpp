@@ -3,7 +3,7 @@
 #include <map>
 #include <string>
 
-#include "sim/frame/frame.hpp"
+#include "sim/run/run.hpp"
 
 namespace pitviper {
 
@@ -20,9 +20,14 @@ class RunTotal {
   struct Seen {
     std::string mode;
     double accuracy = 0.0;
+    int parts = 1;                ///< of an exposure, the most
+    double motion_px = 0.0, partError = 0.0;
     std::map<std::string, double> error;  ///< by channel, the largest
   };
   std::map<std::string, Seen> cameras_;
 };
+
+/// A line a camera that was audited.
+std::string auditText(const RunReport& report);
 
 }  // namespace pitviper

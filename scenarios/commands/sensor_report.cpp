@@ -17,14 +17,14 @@ std::string print(const char* format, auto... values) {
 
 }  // namespace
 
-std::string sensorText(const Camera& camera) {
+std::string sensorText(const Camera& camera, double step_s) {
   if (camera.stages.empty()) return "";
   std::string out;
   std::set<std::string> told;
   for (int pass = 0; pass < 2; ++pass)  // of a channel's outputs the one that is detected
     for (const ChannelOutput& o : camera.outputs) {
       if ((pass == 0 && !o.detected) || !told.insert(o.channel).second) continue;
-      const SensorFigures f = figuresOf(camera, o);
+      const SensorFigures f = figuresOf(camera, o, step_s);
       out += print("    %s: %.3g urad a pixel, MTF %.2f at Nyquist (lens and pixel)", o.channel.c_str(), 1e6 * f.ifov_rad, f.mtfAtNyquist);
       if (std::abs(f.drawnMtf - f.mtfAtNyquist) > 0.02) out += print("; %.2f on its cells: more 'cells' would mend that", f.drawnMtf);
       if (const auto& d = f.detected) {

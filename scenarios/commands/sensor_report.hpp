@@ -6,7 +6,7 @@
 
 namespace pitviper {
 
-/// A line for each of its channels; empty for a camera without stages.
-std::string sensorText(const Camera& camera);
+/// A line for each of its channels; empty for a camera without stages. `step_s`: from frame to frame.
+std::string sensorText(const Camera& camera, double step_s);
 
 }  // namespace pitviper

@@ -1,5 +1,6 @@
 // Cameras, their channels, and probes.
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <cmath>
 
@@ -33,6 +34,52 @@ Gain readGain(const Value& v) {
 bool tooLarge(const Camera& c) {
   const double columns = static_cast<double>(c.pinhole.width) * c.samples, rows = static_cast<double>(c.pinhole.height) * c.samples;
   return columns > 16384 || rows > 16384 || columns * rows > 16384.0 * 4096.0;
+}
+
+/// Frames that are drawn before the first for a detector's memory.
+constexpr int kMostWarmUp = 256;
+
+/// Of F number, focal length and aperture any two say the third; three must agree.
+void readAperture(const Record& r, Pinhole& p) {
+  if (!r.given("aperture") && !r.given("f_number"))
+    throw UserError(r.where(), "a camera without an aperture", "'aperture', its diameter, or 'f_number'", "add 'aperture: 25 mm' or 'f_number: 4'");
+  const bool ownFocal = r.given("focal_length");
+  if (r.given("aperture")) p.apertureDiameter_m = r.number("aperture");
+  if (!r.given("f_number")) return;
+  const double fNumber = r.number("f_number");
+  if (!r.given("aperture")) {
+    p.apertureDiameter_m = p.focalLength_m / fNumber;
+    return;
+  }
+  constexpr double kAgree = 0.005;  // figures are given to two or three digits
+  const double own = p.focalLength_m / p.apertureDiameter_m;
+  if (std::abs(own / fNumber - 1.0) > kAgree)
+    throw UserError(r.where("f_number"),
+                    "an F number of " + r.value("f_number").text + ", and " + (ownFocal ? "focal length" : "field of view and pitch") + " over aperture is " + std::to_string(own),
+                    "three that agree, or two of them", "remove one");
+}
+
+/// Pixels that are read as one, and the part of the film that is read.
+void readReadOut(const Record& film, Camera& c) {
+  Pinhole& p = c.pinhole;
+  c.binning = static_cast<int>(film.integer("binning"));
+  if (p.width % c.binning || p.height % c.binning)
+    throw UserError(film.where("binning"), "a film that its binning does not divide", "a width and height that are multiples of it", "change one");
+  p.width /= c.binning, p.height /= c.binning;
+  p.pitchX_m *= c.binning, p.pitchY_m *= c.binning;
+  if (!film.given("window")) return;
+  const Value& list = film.value("window");
+  std::array<int, 4> w{};
+  for (std::size_t k = 0; k < w.size(); ++k) {
+    const double number = readNumber(list.items[k], "", "the window");
+    if (!(number >= 0.0 && number <= 16384.0) || number != std::floor(number))
+      throw UserError(list.items[k].where, "a window of no whole pixels", "[left, top, width, height] in whole pixels", "correct it");
+    w[k] = static_cast<int>(number);
+  }
+  if (w[2] < 1 || w[3] < 1 || w[0] + w[2] > p.width || w[1] + w[3] > p.height)
+    throw UserError(list.where, "a window that is not within the film's " + std::to_string(p.width) + "x" + std::to_string(p.height) + " pixels",
+                    "[left, top, width, height] within it", "correct it");
+  c.window = glm::ivec4(w[0], w[1], w[2], w[3]);
 }
 
 constexpr int kAuto = 2;
@@ -156,7 +203,9 @@ Value withSensor(const Value& camera, const Libraries& libraries, const std::fil
     if (preset.entries[k].first == "sensor") throw UserError(preset.keyPlaces[k], "a sensor that names another", "a camera's own keys", "write them here");
     // Of a projection two of three say all: one's own field of view leaves out the sensor's focal length.
     const std::string& key = preset.entries[k].first;
-    if (camera.find(key) || (key == "focal_length" && camera.find("field_of_view")) || (key == "field_of_view" && camera.find("focal_length"))) continue;
+    if (camera.find(key) || (key == "focal_length" && camera.find("field_of_view")) || (key == "field_of_view" && camera.find("focal_length")) ||
+        (key == "aperture" && camera.find("f_number")) || (key == "f_number" && camera.find("aperture")))
+      continue;
     merged.entries.push_back(preset.entries[k]);
     merged.keyPlaces.push_back(preset.keyPlaces[k]);
   }
@@ -253,7 +302,7 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
 }
 
 void Builder::tellTemperature(ChannelOutput& output) {
-  if (output.asTemperature) output.temperature = std::make_shared<BandTemperature>(output.kernel, output.bandLow_um, output.bandHigh_um);
+  if (output.asTemperature || output.detected) output.temperature = std::make_shared<BandTemperature>(output.kernel, output.bandLow_um, output.bandHigh_um);
 }
 
 void Builder::readCameras(const Record& scenario) {
@@ -278,7 +327,6 @@ void Builder::readCameras(const Record& scenario) {
                       "a picture of " + std::to_string(p.width) + "x" + std::to_string(p.height) + " pixels with " + std::to_string(c.samples) + "x" +
                           std::to_string(c.samples) + " subpixels",
                       "at most 67 million subpixels, 16384 on a side", "lower film or samples");
-    p.apertureDiameter_m = r.number("aperture");
     const int ways = (r.given("focal_length") ? 1 : 0) + (r.given("field_of_view") ? 1 : 0) + (film.given("pitch") ? 1 : 0);
     if (ways != 2 && !(ways == 1 && r.given("field_of_view")))
       throw UserError(r.where(), ways == 3 ? "focal length, pitch and field of view together say too much" : "the projection is not determined",
@@ -293,11 +341,17 @@ void Builder::readCameras(const Record& scenario) {
       p.pitchX_m = film.given("pitch") ? film.number("pitch") : p.focalLength_m * tangent / p.width;
     }
     p.pitchY_m = film.given("pitch_y") ? film.number("pitch_y") : p.pitchX_m;
+    readAperture(r, p);
+    readReadOut(film, c);
     if (!p.isFlat())
       throw UserError(r.where("film"), "the field of view is wider than a flat film can hold", "below 176 deg",
                       "use a longer focal length, or several cameras");
 
     if (r.given("exposure")) c.exposure_s = r.number("exposure");
+    c.motionBlur = r.boolean("motion_blur");
+    if (r.given("exposure_parts")) c.exposureParts = static_cast<int>(r.number("exposure_parts"));
+    if (c.motionBlur && !(c.exposure_s > 0.0))
+      throw UserError(r.where("motion_blur"), "motion within an exposure of no time", "'exposure' of the camera, such as '5 ms'", "add it, or remove motion_blur");
     c.near_m = r.number("near");
     c.smallBody_px = r.number("small_bodies");
 
@@ -331,7 +385,8 @@ void Builder::readCameras(const Record& scenario) {
     c.outputs = readChannels(channelsOf(r), &optics, &p, c.exposure_s, hasDetector(r));
     if (r.given("truth"))
       for (const Value& t : r.value("truth").items) {
-        static const std::vector<std::string> names{"range", "entity", "temperature", "normal", "area", "solid_angles", "pixel_solid_angle"};
+        static const std::vector<std::string> names{"range", "entity",           "temperature", "normal", "area",
+                                                    "solid_angles", "pixel_solid_angle", "terms",       "targets"};
         const std::string word = readText(t, "truth");
         if (word == "range") c.truth.range = true;
         else if (word == "entity") c.truth.entity = true;
@@ -340,6 +395,8 @@ void Builder::readCameras(const Record& scenario) {
         else if (word == "area") c.truth.area = true;
         else if (word == "solid_angles") c.truth.solidAngles = true;
         else if (word == "pixel_solid_angle") c.truth.pixelSolidAngle = true;
+        else if (word == "terms") c.truth.terms = true;
+        else if (word == "targets") c.truth.targets = true;
         else throw unknownWord(t.where, "there is no truth layer", word, names);
       }
     planned(c.outputs, c.spectral, c.where);
@@ -357,6 +414,9 @@ void Builder::readCameras(const Record& scenario) {
                           : own.onPixels ? "a stage of the film after its detector"
                                          : "optics after the detector",
                           "the order in which light meets them", "move it to the front, or remove it");
+        if (const int frames = warmUpOf(c, simulation_.time.step_s); frames > kMostWarmUp)
+          throw UserError(s.where, "a detector that remembers " + std::to_string(frames) + " frames", "at most " + std::to_string(kMostWarmUp),
+                          "lower its time constant or lag, or the frame rate");
         const Camera drawn = drawnCamera(c);
         if (tooLarge(drawn) || !drawn.pinhole.isFlat())
           throw UserError(s.where,

@@ -107,7 +107,8 @@ const ParameterTable& time() {
                                 "",
                                 {withDefault(within(number("start", "s", "time of frame 0"), -kLongestTime_s, kLongestTime_s), "0 s"),
                                  withDefault(within(number("rate", "Hz", "frames per second"), 1e-6, 1e9), "30 Hz"),
-                                 withDefault(integer("frames", "number of frames", 1, 10000000), "1")}};
+                                 withDefault(integer("frames", "number of frames", 1, 10000000), "1"),
+                                 text("date", "UTC of time 0, such as 2026-06-21T12:00:00, for the headers of frames")}};
   return t;
 }
 
@@ -366,9 +367,15 @@ const ParameterTable& camera() {
          any("sensor", "a library sensor's name, or {file: ...}: its keys hold where the camera has none of its own"), required(map("film", "pixels")),
          within(number("focal_length", "m", "with `pitch` of the film"), 1e-6, 1e4),
          within(number("field_of_view", "rad", "horizontal, instead of focal length (then 50 mm) or of pitch"), 1e-9, 3.1),
-         required(within(number("aperture", "m", "diameter of the entrance pupil"), 1e-9, 1e3)),
+         within(number("aperture", "m", "diameter of the entrance pupil; needed unless `f_number` tells it"), 1e-9, 1e3),
+         within(number("f_number", "", "focal length over aperture (an ideal, aplanatic lens: the film gets pi L / (4 F^2) on the axis); with either the other "
+                       "follows, with both all three must agree"),
+                0.5, 1e4),
          spectrum("optics", "", "transmission of the optics, 0..1; 0 outside its table, as a response is"),
-         within(number("exposure", "s", "exposure time"), 1e-12, 1e6), withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
+         within(number("exposure", "s", "exposure time, around the frame's time"), 1e-12, 1e6),
+         withDefault(boolean("motion_blur", "what moves while it exposes is drawn at several times of the exposure"), "false"),
+         within(number("exposure_parts", "", "so many times, 1 to 256; unless given as many as the accuracy (1 % where none is asked for) takes"), 1, 256),
+         withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
          any("samples",
              "n: n x n subpixels per pixel, 1 to 16; or auto: 2 x 2, shaded one by one only where they see different parts or neighbouring pixels "
              "differ; a shadow or a glint narrower than a pixel within a part may be missed. Without this key: auto where an accuracy is asked for (the "
@@ -382,7 +389,11 @@ const ParameterTable& camera() {
          boolean("eye", "adds the channels X, Y and Z of the CIE 1931 observer in cd/m2; previews show them as one picture in sRGB"),
          list("stages", "what its optics, detector and electronics do to its pictures, in this order", 0, 32),
          map("spectral_image", "also writes <camera>_<frame>_spectral.exr, which `pitviper integrate` takes"),
-         list("truth", "extra layers: range, entity, temperature, normal, area, solid_angles, pixel_solid_angle (of each pixel's field, sr)", 0, 7),
+         list("truth",
+              "extra layers: range, entity, temperature, normal, area, solid_angles, pixel_solid_angle (of each pixel's field, sr), terms (what each channel's "
+              "light is made of, worked out in double precision: slow); and targets: place, range, intensity, contrast, signal to noise of each body and lamp, in "
+              "the frame and in <camera>_truth.csv",
+              0, 9),
          any("look_at", "name of an entity, or a position [x, y, z]")}};
     addPlacement(x.parameters, true);
     return x;
@@ -409,7 +420,10 @@ const ParameterTable& film() {
       "film",
       "",
       {required(integer("width", "pixels", 1, 16384)), required(integer("height", "pixels", 1, 16384)), within(number("pitch", "m", "pixel pitch"), 1e-9, 1),
-       within(number("pitch_y", "m", "vertical pitch where different"), 1e-9, 1)}};
+       within(number("pitch_y", "m", "vertical pitch where different"), 1e-9, 1),
+       withDefault(integer("binning", "so many by so many pixels are read as one: width, height and pitch are the detector's own; charges add up before read-out", 1, 16),
+                   "1"),
+       list("window", "[left, top, width, height] of what is read out [pixels of the picture]; all of the film is drawn", 4, 4)}};
   return t;
 }
 

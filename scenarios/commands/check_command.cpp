@@ -1,0 +1,74 @@
+#include <cstdio>
+#include <set>
+
+#include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/geometry_report.hpp"
+#include "scenarios/commands/options.hpp"
+#include "scenarios/commands/run_notes.hpp"
+#include "scenarios/commands/run_total.hpp"
+#include "scenarios/commands/seen_report.hpp"
+#include "scenarios/commands/sensor_report.hpp"
+#include "scenarios/reader/scenario_reader.hpp"
+#include "sim/gl/context.hpp"
+#include "sim/plan/planner.hpp"
+#include "sim/render/tables.hpp"
+#include "sim/run/memory_need.hpp"
+#include "sim/run/run.hpp"
+#include "sim/run/spectral_renderer.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Pixels that `check --audit` looks at in each of its frames, where the scenario does not say.
+constexpr double kCheckedPixels = 16.0;
+
+/// Draws the first, the middle and the last frame, holds some of their pixels against the reference, and writes nothing.
+void auditFrames(Simulation& sim) {
+  const GlContext context;
+  if (!(sim.audit > 0.0)) sim.audit = kCheckedPixels;
+  std::set<int> frames = {0, sim.time.frames / 2, sim.time.frames - 1};
+  for (int frame : frames) std::printf("frame %d\n%s", frame, auditText(runFrames(sim, shaderLibrary(), {frame, frame}, [](const auto&) {})).c_str());
+}
+
+}  // namespace
+
+int checkCommand(const Arguments& arguments) {
+  const Options o("check", arguments, {{"--set", true, true}, {"--audit", false}}, 1, 1);
+  Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
+  refuseBeyondMemory(sim);
+  Notes notes;
+  size_t triangles = 0;
+  for (const auto& e : sim.entities) triangles += e.mesh->triangles.size();
+  auto count = [](size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); };
+  std::printf("%s: good. %s, %s, %s (%s), %s, %s, %s\n", o.words()[0].c_str(), count(static_cast<size_t>(sim.time.frames), "frame", "frames").c_str(),
+              count(sim.cameras.size(), "camera", "cameras").c_str(), count(sim.entities.size(), "entity", "entities").c_str(),
+              count(triangles, "triangle", "triangles").c_str(), count(sim.lights.size(), "light", "lights").c_str(),
+              count(sim.materials.size(), "material", "materials").c_str(), count(sim.probes.size(), "probe", "probes").c_str());
+  for (const auto& c : sim.cameras) {
+    const Camera drawn = drawnCamera(c);
+    const Plan plan = planFor(sim, {&drawn, nullptr});
+    makeTables(sim, plan);  // what only the tables can find wrong
+    std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
+                count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),
+                count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths").c_str());
+    std::printf("%s%s", sensorText(c, sim.time.step_s).c_str(), geometryText(sim, drawn, plan).c_str());
+    for (const ScatteredAgain& s : ScatteringCheck(sim, c, plan).at(advance(sim, sim.time.at(0))))
+      if (s.factor > kWorthSaying) sayScatteredAgain(c.name, s.channel, s.factor, notes);
+    if (!c.spectralImage) continue;
+    const auto passes = spectralPasses(c);
+    for (const auto& pass : passes) makeTables(sim, makePlan(sim, pass.outputs, pass.spectral, pass.where));
+    std::printf("    spectral image: %d bins, %.6g to %.6g um, in %s\n", c.spectralImage->count(), c.spectralImage->edge_um.front(),
+                c.spectralImage->edge_um.back(), count(passes.size(), "pass", "passes").c_str());
+  }
+  const SeenReport seen = reportSeen(sim);
+  std::printf("%s", seen.text.c_str());
+  std::fflush(stdout);  // before the notes, where both go to one place
+  std::fprintf(stderr, "%s", seen.notes.c_str());
+  noteCuts(sim, notes);
+  noteSampling(sim, notes);
+  noteNear(sim, sim.time.at(0), notes);
+  if (o.has("--audit")) auditFrames(sim);
+  return 0;
+}
+
+}  // namespace pitviper

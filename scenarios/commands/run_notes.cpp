@@ -1,0 +1,110 @@
+#include "scenarios/commands/run_notes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "sim/model/world.hpp"
+#include "sim/plan/plan.hpp"
+#include "sim/plan/sampling_check.hpp"
+
+namespace pitviper {
+namespace {
+
+std::string print(const char* format, auto... values) {
+  char text[800];
+  std::snprintf(text, sizeof text, format, values...);
+  return text;
+}
+
+}  // namespace
+
+void Notes::say(const std::string& text) {
+  std::fprintf(stderr, "note: %s\n", text.c_str());
+  all_.push_back(text);
+}
+
+void noteSampling(const Simulation& sim, Notes& said) {
+  for (const Camera& c : sim.cameras) {
+    if (c.spectral.reference || c.spectral.accuracy > 0.0) continue;  // planned for the gas
+    const auto notes = checkSampling(sim, makePlan(sim, c.outputs, c.spectral, c.where), c.outputs, 0.01);
+    if (notes.empty()) continue;
+    const SamplingNote& n = notes.front();
+    said.say(print("camera %s: %d spectral samples are %.2g %% off for the emission of %.2g m of '%s' in channel %s; raise spectral.samples, such as "
+                 "{samples: 64, spacing: even}%s",
+                 c.name.c_str(), c.spectral.samples, 100.0 * n.error, n.thickness_m, n.medium.c_str(), n.channel.c_str(),
+                 notes.size() > 1 ? " (the worst of several)" : ""));
+  }
+}
+
+void noteNear(const Simulation& sim, double time_s, Notes& notes) {
+  const WorldState state = advance(sim, time_s);
+  for (const Camera& c : sim.cameras) {
+    const glm::dvec3 eye = cameraAt(c, state).pose.position;
+    for (size_t e = 0; e < sim.entities.size(); ++e) {
+      const Entity& body = sim.entities[e];
+      const Pose& pose = state.entities[e];
+      const glm::dvec3 centre = pose.position + pose.orientation * glm::dvec3(body.boundingCentre);
+      if (static_cast<int>(e) == c.mount.carrier || sim.mediumOf(body) || glm::length(eye - centre) > static_cast<double>(body.boundingRadius_m) + c.near_m)
+        continue;
+      const glm::dvec3 at = glm::inverse(pose.orientation) * (eye - pose.position);
+      double nearest = INFINITY;
+      for (const glm::vec3& p : body.mesh->positions) nearest = std::min(nearest, glm::length(glm::dvec3(p) - at));
+      if (nearest >= c.near_m) continue;
+      notes.say(print("camera %s: part of '%s' is %.2g m away, nearer than its near (%.2g m), and is not drawn; set near: %.1g mm", c.name.c_str(),
+                   body.name.c_str(), nearest, c.near_m, std::max(1e3 * nearest / 10.0, 0.1)));
+    }
+  }
+}
+
+void noteCuts(const Simulation& sim, Notes& notes) {
+  std::set<std::string> told;
+  auto note = [&](const std::string& owner, const std::vector<ChannelOutput>& outputs) {
+    for (const ChannelOutput& o : outputs)
+      if (!o.cut.empty() && told.insert(owner + o.channel).second)
+        notes.say(print("%s, channel '%s': %s", owner.c_str(), o.channel.c_str(), o.cut.c_str()));
+  };
+  for (const Camera& c : sim.cameras) note("camera " + c.name, c.outputs);
+  for (const Probe& p : sim.probes) note("probe " + p.name, p.outputs);
+}
+
+void sayScatteredAgain(const std::string& camera, const std::string& channel, double factor, Notes& notes) {
+  notes.say(print("camera %s, channel %s: light that the air scatters more than once is left out; with it pixels would be about %.2g times as bright "
+               "(two-stream estimate: good to a factor of two or so)",
+               camera.c_str(), channel.c_str(), factor));
+}
+
+/// Once per camera: what of a picture's transparent things is not in its right order.
+void FrameNotes::order(const Frame& f) {
+  for (const auto& a : f.attributes) {
+    if (a.name != "pitviper.transparent_order") continue;
+    const std::string order = std::get<std::string>(a.value);
+    if (order != "exact" && told_.insert(f.camera).second)
+      notes_.say(print("camera %s, frame %d: the order of transparent things is %s; of two that pass through each other one is drawn over the other",
+                   f.camera.c_str(), f.number, order.c_str()));
+  }
+}
+
+/// Once per camera and channel.
+void FrameNotes::scattering(const Frame& f) {
+  const std::string begin = "pitviper.scattered_again.";
+  for (const auto& a : f.attributes)
+    if (a.name.rfind(begin, 0) == 0 && std::get<double>(a.value) > kWorthSaying && told_.insert(f.camera + "/" + a.name).second)
+      sayScatteredAgain(f.camera, a.name.substr(begin.size()), std::get<double>(a.value), notes_);
+}
+
+/// Once a run: what the plan was not made for.
+void FrameNotes::limits(const Frame& f) {
+  for (const auto& a : f.attributes)
+    if (a.name == "pitviper.outside_limits" && told_.insert("limits").second)
+      notes_.say(print("camera %s, frame %d is outside the scenario's limits: %s; pixels may be off by more than the accuracy asked for",
+                   f.camera.c_str(), f.number, std::get<std::string>(a.value).c_str()));
+}
+
+void FrameNotes::look(const Frame& frame) {
+  order(frame);
+  limits(frame);
+  scattering(frame);
+}
+
+}  // namespace pitviper

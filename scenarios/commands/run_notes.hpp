@@ -1,0 +1,46 @@
+#pragma once
+// What a run has to say of a scenario and its frames, for people.
+#include <set>
+#include <string>
+#include <vector>
+
+#include "sim/frame/frame.hpp"
+#include "sim/model/simulation.hpp"
+
+namespace pitviper {
+
+class Notes {
+ public:
+  /// A line "note: ..." on stderr, kept.
+  void say(const std::string& text);
+  const std::vector<std::string>& all() const { return all_; }
+
+ private:
+  std::vector<std::string> all_;
+};
+
+/// One line for each camera whose wavelengths miss the bands of a gas by more than a per cent.
+void noteSampling(const Simulation& simulation, Notes& notes);
+/// One line for each camera that begins with part of a body nearer than it draws: a dome in front of it, for instance.
+void noteNear(const Simulation& simulation, double time_s, Notes& notes);
+/// One line for each channel whose response ends before its own end, where the scene has no data.
+void noteCuts(const Simulation& simulation, Notes& notes);
+/// By so much light scattered more than once must brighten a channel to be worth a word.
+constexpr double kWorthSaying = 1.1;
+void sayScatteredAgain(const std::string& camera, const std::string& channel, double factor, Notes& notes);
+
+/// What frames say of themselves, each thing once.
+class FrameNotes {
+ public:
+  explicit FrameNotes(Notes& notes) : notes_(notes) {}
+  void look(const Frame& frame);
+
+ private:
+  void order(const Frame& frame);
+  void scattering(const Frame& frame);
+  void limits(const Frame& frame);
+  Notes& notes_;
+  std::set<std::string> told_;
+};
+
+}  // namespace pitviper
