@@ -1,6 +1,7 @@
 #include "sensors/convolution.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <unsupported/Eigen/FFT>
 
 #include "sensors/side_by_side.hpp"
@@ -10,6 +11,20 @@ namespace {
 
 using Fft = Eigen::FFT<double>;
 Fft unscaled() { return Fft(Fft::impl_type(), Fft::Unscaled); }
+
+/// Longer ones are faster by spectra.
+constexpr int kLongest = 24;
+
+/// The kernel along a row, and along a column, if all of it is their product.
+std::vector<double> factorOf(const SpreadKernel& k) {
+  if (k.reach > kLongest || !(k.at(0, 0) > 0.0)) return {};
+  for (int j = 0; j <= k.reach; ++j)
+    for (int i = 0; i <= k.reach; ++i)
+      if (std::abs(k.at(i, j) * k.at(0, 0) - k.at(i, 0) * k.at(0, j)) > 1e-9 * k.at(0, 0) * k.at(0, 0)) return {};
+  std::vector<double> along;
+  for (int i = 0; i <= k.reach; ++i) along.push_back(k.at(i, 0) / std::sqrt(k.at(0, 0)));
+  return along;
+}
 
 /// Of factors 2, 3 and 5.
 int smoothFrom(int n) {
@@ -24,11 +39,13 @@ int smoothFrom(int n) {
 }  // namespace
 
 Convolution::Convolution(const SpreadKernel& kernel, int width, int height)
-    : width_(width),
+    : along_(factorOf(kernel)),
+      width_(width),
       height_(height),
       columns_(smoothFrom(std::max(width, 2 * kernel.reach + 1))),
       rows_(smoothFrom((std::max(height, 2 * kernel.reach + 1) + 1) / 2) * 2),  // rows go in pairs
       half_(columns_ / 2 + 1) {
+  if (!along_.empty()) return;
   std::vector<double> own(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_));
   for (int j = -kernel.reach; j <= kernel.reach; ++j)
     for (int i = -kernel.reach; i <= kernel.reach; ++i)
@@ -101,7 +118,39 @@ void Convolution::columns(std::vector<Complex>& spectrum, bool back) const {
   });
 }
 
+void Convolution::applyAlong(std::vector<float>& picture) const {
+  const int reach = static_cast<int>(along_.size()) - 1;
+  const auto width = static_cast<std::size_t>(width_), padded = width + 2 * static_cast<std::size_t>(reach);
+  std::vector<double> rows(picture.size());
+  sideBySide(height_, [&](int first, int last) {
+    std::vector<double> row(padded);
+    for (auto y = static_cast<std::size_t>(first); y < static_cast<std::size_t>(last); ++y) {
+      for (std::size_t x = 0; x < padded; ++x)
+        row[x] = static_cast<double>(picture[y * width + static_cast<std::size_t>(std::clamp(static_cast<int>(x) - reach, 0, width_ - 1))]);
+      const double* middle = row.data() + reach;
+      double* out = &rows[y * width];
+      for (std::size_t x = 0; x < width; ++x) out[x] = along_[0] * middle[x];
+      for (int k = 1; k <= reach; ++k)
+        for (std::size_t x = 0; x < width; ++x) out[x] += along_[static_cast<std::size_t>(k)] * (middle[static_cast<std::ptrdiff_t>(x) - k] + middle[x + static_cast<std::size_t>(k)]);
+    }
+  });
+  sideBySide(height_, [&](int first, int last) {
+    std::vector<double> sum(width);
+    for (int y = first; y < last; ++y) {
+      const auto rowAt = [&](int at) { return &rows[static_cast<std::size_t>(std::clamp(at, 0, height_ - 1)) * width]; };
+      const double* own = rowAt(y);
+      for (std::size_t x = 0; x < width; ++x) sum[x] = along_[0] * own[x];
+      for (int k = 1; k <= reach; ++k) {
+        const double *above = rowAt(y - k), *below = rowAt(y + k);
+        for (std::size_t x = 0; x < width; ++x) sum[x] += along_[static_cast<std::size_t>(k)] * (above[x] + below[x]);
+      }
+      for (std::size_t x = 0; x < width; ++x) picture[static_cast<std::size_t>(y) * width + x] = static_cast<float>(std::max(0.0, sum[x]));
+    }
+  });
+}
+
 void Convolution::apply(std::vector<float>& picture) const {
+  if (!along_.empty()) return applyAlong(picture);
   const auto columns = static_cast<std::size_t>(columns_), width = static_cast<std::size_t>(width_), height = static_cast<std::size_t>(height_);
   std::vector<double> whole(columns * static_cast<std::size_t>(rows_));
   // Beyond the picture its edge goes on.

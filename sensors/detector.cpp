@@ -64,7 +64,7 @@ DetectorLaw readLaw(const Record& r, const Camera& camera) {
   // Pixels that are read as one: their charges add up, and what differs from one to the next goes together as independent.
   law.darkCurrent_per_s *= camera.binning * camera.binning;
   law.sigmaVh *= camera.binning, law.offsetDrift_per_s *= camera.binning;
-  law.prnu /= camera.binning, law.gainDrift_per_s /= camera.binning;
+  law.prnu /= camera.binning, law.gainDrift_per_s /= camera.binning, law.crosstalk /= camera.binning;
   const std::string agc = r.text("agc");
   law.agc = agc == "linear" ? Agc::Linear : agc == "plateau" ? Agc::Plateau : Agc::Percentile;
   return law;
@@ -80,7 +80,7 @@ StageModel detectorModel() {
       "Photoelectrons become counts: shot noise of light and dark current, fixed and temporal noise, the full well and the converter. Noises are in electrons "
       "rms, named as in EMVA 1288 and in the three-dimensional noise model. For the quantities `counts`, `apparent_temperature`, `snr` and `display`; others stay ideal. A "
       "frame's noise depends on seed, camera, frame and pixel alone.",
-      {required(within(number("full_well", "", "electrons that a pixel holds"), 1, 1e12)), withDefault(integer("bits", "of the converter", 1, 16), "14"),
+      {required(within(number("full_well", "", "electrons that a pixel, or those that are read as one, hold"), 1, 1e12)), withDefault(integer("bits", "of the converter", 1, 16), "14"),
        within(above(number("gain", "", "counts per electron; unless given a full well is the highest count"), 0), 0, 1e6),
        withDefault(within(number("offset", "", "counts that stand for no electrons"), 0, 65535), "0"),
        withDefault(within(above(number("fill_factor", "", "share of a pixel that takes light"), 0), 0, 1), "1"),
@@ -116,7 +116,14 @@ StageModel detectorModel() {
           choice.transfer = choice.drawnTransfer = [part, pitch = camera.pinhole.pitchX_m](const ChannelOutput&, double frequency_per_m) {
             return 1.0 - 2.0 * part * (1.0 - std::cos(2.0 * kPi * frequency_per_m * pitch));
           };
-        choice.make = [law = *choice.detector](const ShaderLibrary&) { return makeDetectorStage(law); };
+        const Pinhole& p = camera.pinhole;
+        DetectorDesign design{camera.exposure_s, p.projectedSolidAngle_sr(p.width / 2, p.height / 2), {}};
+        design.ownLight = [stages = camera.stages, design](const ChannelOutput& o) {
+          Camera before;
+          before.stages = stages;
+          return ownLightOf(before, o, design.axis_sr, design.exposure_s);
+        };
+        choice.make = [law = *choice.detector, design](const ShaderLibrary&) { return makeDetectorStage(law, design); };
         return choice;
       },
       {},

@@ -7,14 +7,21 @@ namespace {
 void flux(const Detector& d, const Collector& c, ChannelOutput& o) {
   o.perEtendue = o.behindOptics = true;
   // A constant transmission is a factor, not a kernel: flux and radiance then share their spectral integral.
-  o.scale = c.apertureArea_m2;
+  o.scale = o.onFilmScale = c.apertureArea_m2;
+  o.onFilm = o.kernel;
   if (d.optics.isConstant()) o.scale *= d.optics(1.0);
   else o.kernel = o.kernel * d.optics;
 }
 
+/// What the film makes of its light, wherever that comes from.
+void weigh(ChannelOutput& o, const Spectrum& by) {
+  o.kernel = o.kernel * by;
+  o.onFilm = o.onFilm * by;
+}
+
 void focalIrradiance(const Detector& d, const Collector& c, ChannelOutput& o) {
   flux(d, c, o);
-  o.scale /= c.pixelArea_m2;
+  o.scale /= c.pixelArea_m2, o.onFilmScale /= c.pixelArea_m2;
 }
 
 void focalIlluminance(const Detector& d, const Collector& c, ChannelOutput& o) {
@@ -31,7 +38,7 @@ void exposure(const Detector& d, const Collector& c, ChannelOutput& o) {
 
 void photons(const Detector& d, const Collector& c, ChannelOutput& o) {
   exposure(d, c, o);
-  o.kernel = o.kernel * photonsPerJoule();
+  weigh(o, photonsPerJoule());
 }
 
 void electrons(const Detector& d, const Collector& c, ChannelOutput& o) {
@@ -39,7 +46,7 @@ void electrons(const Detector& d, const Collector& c, ChannelOutput& o) {
   if (!d.quantumEfficiency)
     throw UserError(d.where, "'" + o.quantity + "' needs a quantum efficiency", "'quantum_efficiency' of the channel, a number or a spectrum",
                     "add 'quantum_efficiency: 0.8'");
-  o.kernel = o.kernel * *d.quantumEfficiency * photonsPerJoule();
+  weigh(o, *d.quantumEfficiency * photonsPerJoule());
 }
 
 /// Photoelectrons, which the detector's stage makes counts of.
@@ -71,7 +78,8 @@ void display(const Detector& d, const Collector& c, ChannelOutput& o) {
 void volts(const Detector& d, const Collector& c, ChannelOutput& o) {
   if (!d.gain) throw UserError(d.where, "'volts' needs a gain", "'gain' of the channel in V/W or V/(W/m2)", "add 'gain: 2e6 V/W'");
   flux(d, c, o);
-  o.scale *= d.gain->volts / (d.gain->perIrradiance ? c.pixelArea_m2 : 1.0);
+  const double factor = d.gain->volts / (d.gain->perIrradiance ? c.pixelArea_m2 : 1.0);
+  o.scale *= factor, o.onFilmScale *= factor;
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ void share(std::vector<float>& picture, double part, int width, int height) {
 
 class DetectorStage final : public SensorStage {
  public:
-  explicit DetectorStage(const DetectorLaw& law) : law_(law) {}
+  DetectorStage(const DetectorLaw& law, DetectorDesign design) : law_(law), design_(std::move(design)) {}
 
   void run(const SensorTick& tick, SensorPictures& pictures) override {
     struct Read {
@@ -47,51 +47,50 @@ class DetectorStage final : public SensorStage {
         own = read.end() - 1;
         const bool wanted = std::any_of(pictures.outputs.begin(), pictures.outputs.end(),
                                         [&](const ChannelOutput& other) { return other.asSignalToNoise && other.channel == output.channel; });
-        expose(own->counts, wanted ? &own->signalToNoise : nullptr, output, pictures.ownLight.empty() ? 0.0 : pictures.ownLight[o], tick, pictures.width, pictures.height);
+        expose(own->counts, wanted ? &own->signalToNoise : nullptr, output, tick, pictures.width, pictures.height);
       }
       std::vector<float>& picture = pictures.values(o);
       picture = output.asSignalToNoise ? own->signalToNoise : own->counts;
       if (output.asDisplay) toDisplayCodes(picture, law_);
       if (!output.asTemperature) continue;
-      const double dark = law_.darkCurrent_per_s * tick.exposure_s, lens = pictures.ownLight.empty() ? 0.0 : pictures.ownLight[o];
-      for (float& v : picture) v = static_cast<float>(((static_cast<double>(v) - law_.offset) / law_.gain - dark) / law_.fillFactor - lens);
+      const double dark = law_.darkCurrent_per_s * tick.exposure_s;
+      const std::vector<float>* lens = o < pictures.ownLight.size() && !pictures.ownLight[o].empty() ? &pictures.ownLight[o] : nullptr;
+      for (std::size_t p = 0; p < picture.size(); ++p)
+        picture[p] = static_cast<float>(((static_cast<double>(picture[p]) - law_.offset) / law_.gain - dark) / law_.fillFactor - (lens ? static_cast<double>((*lens)[p]) : 0.0));
     }
   }
 
  private:
-  /// `own`: electrons of the sensor's own light, which a correction has before it too.
-  const FixedPattern& patternOf(const ChannelOutput& output, double own, std::uint32_t channel, const SensorTick& tick, int width, int height) {
+  /// Learnt with the camera's own lens and exposure, whatever commands make of them: a frame's counts depend on no other.
+  const FixedPattern& patternOf(const ChannelOutput& output, std::uint32_t channel, const SensorTick& tick, int width, int height) {
     FixedPattern& f = patterns_[channel];
     if (!f.response.empty()) return f;
     f = fixedPattern(law_, tick.seed, channel, width, height);
     if (!law_.correction) return f;
     const auto electronsAt = [&](double kelvin) {
-      return law_.fillFactor * (own + output.scale * (output.perExposure ? tick.exposure_s : 1.0) * tick.axis_sr * output.temperature->integral(kelvin));
+      return law_.fillFactor * (design_.ownLight(output) + output.scale * design_.exposure_s * design_.axis_sr * output.temperature->integral(kelvin));
     };
-    const double dark = law_.darkCurrent_per_s * tick.exposure_s, low = electronsAt(law_.correction->low_K), high = electronsAt(law_.correction->high_K);
+    const double dark = law_.darkCurrent_per_s * design_.exposure_s, low = electronsAt(law_.correction->low_K), high = electronsAt(law_.correction->high_K);
     const auto noise = [&](double signal) { return std::sqrt(signal + dark + law_.sigmaTvh * law_.sigmaTvh); };
     learnCorrection(f, law_, tick.seed, channel, low, high, noise(low), noise(high));
     return f;
   }
 
-  void expose(std::vector<float>& picture, std::vector<float>* signalToNoise, const ChannelOutput& output, double own, const SensorTick& tick, int width,
-              int height) {
+  void expose(std::vector<float>& picture, std::vector<float>* signalToNoise, const ChannelOutput& output, const SensorTick& tick, int width, int height) {
     const std::uint32_t channel = channelNumber(output.channel);
-    const FixedPattern& fixed = patternOf(output, own, channel, tick, width, height);
+    const FixedPattern& fixed = patternOf(output, channel, tick, width, height);
     share(picture, law_.crosstalk, width, height);
     if (law_.lag > 0.0 || law_.timeConstant_s > 0.0) memory_.apply(channel, tick.frame, memoryWeights(law_, tick.step_s), picture);
     const std::vector<float>* flicker = nullptr;
-    const double octave = flickerOctave(law_, tick.step_s);
+    const double octave = std::sqrt(law_.flickerVariance(tick.step_s));
     if (octave > 0.0) flicker = &flicker_.try_emplace(channel, tick.seed, channel, picture.size()).first->second.at(tick.frame);
     const auto frame = static_cast<std::uint32_t>(tick.frame) + 1;
     const auto source = [&](NoiseEffect e) { return NoiseSource(tick.seed, channel, frame, e); };
-    const NoiseSource shot = source(NoiseEffect::Shot), read = source(NoiseEffect::Read), ofRow = source(NoiseEffect::Row),
+    const NoiseSource shot = source(NoiseEffect::Shot), ofRow = source(NoiseEffect::Row),
                       ofColumn = source(NoiseEffect::Column);
     const double darkMean = law_.darkCurrent_per_s * tick.exposure_s, most = law_.mostCount();
     const double whole = law_.sigmaT > 0.0 ? law_.sigmaT * source(NoiseEffect::Frame).normal(0) : 0.0;
-    const auto square = [](double x) { return x * x; };
-    const double variance = square(law_.sigmaTvh) + square(law_.sigmaTv) + square(law_.sigmaTh) + square(law_.sigmaT) +
-                            FlickerNoise::kOctaves * square(octave) + 1.0 / (12.0 * square(law_.gain));
+    const double variance = law_.readoutVariance(tick.step_s);
     if (signalToNoise) signalToNoise->resize(picture.size());
     std::vector<double> columns(static_cast<std::size_t>(width), whole);
     for (int x = 0; law_.sigmaTh > 0.0 && x < width; ++x) columns[static_cast<std::size_t>(x)] += law_.sigmaTh * ofColumn.normal(static_cast<std::uint32_t>(x));
@@ -109,10 +108,11 @@ class DetectorStage final : public SensorStage {
         const double mean = std::max(0.0, signal) + darkMean;
         if (signalToNoise) (*signalToNoise)[at] = static_cast<float>(std::max(0.0, signal) / std::sqrt(mean + variance));
         // What the well holds is what is counted; read-out adds to what it says.
-        double electrons = std::min(shot.poisson(mean, place), law_.fullWell);
+        const NoiseSource::Drawn drawn = shot.poissonAndNormal(mean, place);
+        double electrons = std::min(drawn.count, law_.fullWell);
         if (fixed.bad[at] > 0) electrons = fixed.bad[at] == 1 ? 0.0 : law_.fullWell;
         electrons += dark + row + columns[static_cast<std::size_t>(x)];
-        if (law_.sigmaTvh > 0.0) electrons += law_.sigmaTvh * read.normal(place);
+        electrons += law_.sigmaTvh * drawn.normal;
         if (flicker) electrons += octave * static_cast<double>((*flicker)[at]);
         // The correction knows the mean dark signal as what there is without light.
         if (!fixed.gain.empty()) electrons = static_cast<double>(fixed.gain[at]) * (electrons - darkMean) + static_cast<double>(fixed.offset[at]) + darkMean;
@@ -125,6 +125,7 @@ class DetectorStage final : public SensorStage {
   }
 
   DetectorLaw law_;
+  DetectorDesign design_;
   std::map<std::uint32_t, FixedPattern> patterns_;  ///< by channel
   std::map<std::uint32_t, FlickerNoise> flicker_;
   SignalMemory memory_;
@@ -138,10 +139,6 @@ std::uint32_t channelNumber(const std::string& channel) {
   return (hash >> 24) ^ (hash & 0xffffffu);
 }
 
-double flickerOctave(const DetectorLaw& law, double step_s) {
-  return law.flickerCorner_Hz > 0.0 ? law.sigmaTvh * std::sqrt(2.0 * law.flickerCorner_Hz * step_s * std::log(2.0)) : 0.0;
-}
-
-std::unique_ptr<SensorStage> makeDetectorStage(const DetectorLaw& law) { return std::make_unique<DetectorStage>(law); }
+std::unique_ptr<SensorStage> makeDetectorStage(const DetectorLaw& law, const DetectorDesign& design) { return std::make_unique<DetectorStage>(law, design); }
 
 }  // namespace pitviper

@@ -1,5 +1,6 @@
 #pragma once
 // The detector at work: pictures of photoelectrons become counts.
+#include <functional>
 #include <memory>
 
 #include "sim/camera/sensor_stage.hpp"
@@ -9,9 +10,13 @@ namespace pitviper {
 
 /// Of 24 bits, of a channel's name alone, whatever other channels there are.
 std::uint32_t channelNumber(const std::string& channel);
-/// Standard deviation of 1/f noise of FlickerNoise's unit octaves [electron].
-double flickerOctave(const DetectorLaw& law, double step_s);
 
-std::unique_ptr<SensorStage> makeDetectorStage(const DetectorLaw& law);
+/// The camera that it was designed for: what its correction was learnt with.
+struct DetectorDesign {
+  double exposure_s = 0.0, axis_sr = 0.0;
+  std::function<double(const ChannelOutput&)> ownLight;  ///< of its lens and housing, electrons on the axis
+};
+
+std::unique_ptr<SensorStage> makeDetectorStage(const DetectorLaw& law, const DetectorDesign& design);
 
 }  // namespace pitviper

@@ -78,6 +78,14 @@ class DistortionStage final : public SensorStage {
     const double cell = pitch_m_ / pictures.cells / focal;
     const glm::dvec2 middle(0.5 * pictures.width, 0.5 * pictures.height);
     sources_.resize(static_cast<std::size_t>(pictures.width) * static_cast<std::size_t>(pictures.height));
+    // What the scenario's own focal length allows another may not: a lens that zooms out.
+    const glm::dvec2 corner = 0.5 * glm::dvec2(pictures.width - 2 * pictures.margin_px * pictures.cells, pictures.height - 2 * pictures.margin_px * pictures.cells) * cell;
+    const glm::dvec2 from = brown_.inverse(corner), reach = 0.5 * glm::dvec2(pictures.width, pictures.height) * cell;
+    bool folds = !(glm::length(brown_(from) - corner) < 1e-9) || !(std::abs(from.x) <= reach.x + cell && std::abs(from.y) <= reach.y + cell);
+    for (int k = 1; k <= 64 && !folds; ++k) folds = !(brown_.rises(glm::length(from) * k / 64) > 0.0);
+    if (folds)
+      throw UserError({"stage 'distortion'", 0, 0, -1}, "at a focal length of " + std::to_string(1e3 * focal) + " mm the distortion folds the picture over, or needs more than was drawn around the film",
+                      "coefficients that hold for every focal length that commands set", "lower them, or zoom less far out");
     sideBySide(pictures.height, [&](int first, int last) {
       for (int y = first; y < last; ++y)
         for (int x = 0; x < pictures.width; ++x) {

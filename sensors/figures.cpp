@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "sensors/detector_stage.hpp"
-#include "sensors/flicker_noise.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -44,7 +42,7 @@ SensorFigures figuresOf(const Camera& camera, const ChannelOutput& output, doubl
                                      {"shot noise of dark current", dark, false},
                                      {"shot noise of the lens's own light", own, false},
                                      {"read noise", square(law->sigmaTvh), false},
-                                     {"1/f noise", FlickerNoise::kOctaves * square(flickerOctave(*law, step_s)), false},
+                                     {"1/f noise", DetectorLaw::kFlickerOctaves * law->flickerVariance(step_s), false},
                                      {"noise of rows", square(law->sigmaTv), false},
                                      {"noise of columns", square(law->sigmaTh), false},
                                      {"noise of frames", square(law->sigmaT), false},

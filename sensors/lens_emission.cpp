@@ -5,6 +5,7 @@
 // Source: E. L. Dereniak and G. D. Boreman, Infrared Detectors and Systems (1996), cold shields.
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sensors/stages.hpp"
 #include "sim/camera/sensor_stage.hpp"
@@ -17,27 +18,29 @@ struct Warm {
   double lens_K = 0.0, around_K = 0.0;
   std::optional<double> emissivity;  ///< of the lens; none: 1 - its transmission
   double aroundEmissivity = 1.0;
-  double around = 0.0;  ///< etendue around the lens's, of the lens's on the axis
+  double stop = 0.0;  ///< F number of the cone that is open; 0: the lens's
+  double pixelArea_m2 = 0.0, aperture_m = 1.0;
 
-  /// Of an output for a pixel with a projected solid angle, and for one on the axis.
+  /// Of an output, by projected solid angle of a pixel.
   double lens(const ChannelOutput& o) const {
     return integral(o, lens_K, [&](double w) { return emissivity ? *emissivity : 1.0 - o.curves->optics(w); });
   }
-  double housing(const ChannelOutput& o) const { return around > 0.0 ? around * integral(o, around_K, [&](double) { return aroundEmissivity; }) : 0.0; }
+  /// The same on the axis, around the lens. A pixel's solid angle there says how long the lens is now: area / f^2.
+  double housing(const ChannelOutput& o, double axis_sr) const {
+    if (!(stop > 0.0)) return 0.0;
+    const double fNumber2 = pixelArea_m2 / axis_sr / (aperture_m * aperture_m), around = std::max(0.0, fNumber2 / (stop * stop) - 1.0);
+    return around * integral(o, around_K, [&](double) { return aroundEmissivity; });
+  }
 
  private:
-  /// scale x integral of K e B: the kernel has the optics in it, or the scale has.
+  /// scale x integral of K e B.
   template <class Emissivity>
   static double integral(const ChannelOutput& o, double kelvin, const Emissivity& e) {
     const Spectrum body(Spectrum::BlackBody{kelvin, 1.0});
-    std::vector<double> knots = o.kernel.knots();
+    std::vector<double> knots = o.onFilm.knots();
     for (double w : o.curves->optics.knots()) knots.push_back(w);
     std::sort(knots.begin(), knots.end());
-    const auto of = [&](double w) {
-      const double tau = o.curves->optics(w);
-      return tau > 0.0 ? o.kernel(w) / tau * e(w) * body(w) : 0.0;
-    };
-    return o.scale * integrate(of, o.bandLow_um, o.bandHigh_um, knots);
+    return o.onFilmScale * integrate([&](double w) { return o.onFilm(w) * e(w) * body(w); }, o.curves->response.supportLow(), o.curves->response.supportHigh(), knots);
   }
 };
 
@@ -48,8 +51,11 @@ class LensEmissionStage final : public SensorStage {
     for (std::size_t o = 0; o < pictures.outputs.size(); ++o) {
       const ChannelOutput& output = pictures.outputs[o];
       if (!output.behindOptics || !pictures.cellWeights) continue;
-      const double time = output.perExposure ? tick.exposure_s : 1.0, lens = time * warm_.lens(output),
-                   around = time * warm_.housing(output) * tick.axis_sr / (pictures.cells * pictures.cells);
+      if (tick.axis_sr != knownFor_sr_) known_.clear(), knownFor_sr_ = tick.axis_sr;
+      const auto [at, isNew] = known_.try_emplace(o, 0.0, 0.0);
+      if (isNew) at->second = {warm_.lens(output), warm_.housing(output, tick.axis_sr)};
+      const double time = output.perExposure ? tick.exposure_s : 1.0, lens = time * at->second.first,
+                   around = time * at->second.second * tick.axis_sr / (pictures.cells * pictures.cells);
       std::vector<float>& picture = pictures.values(o);
       for (std::size_t c = 0; c < picture.size(); ++c) picture[c] = static_cast<float>(static_cast<double>(picture[c]) + lens * (*pictures.cellWeights)[c] + around);
     }
@@ -57,6 +63,8 @@ class LensEmissionStage final : public SensorStage {
 
  private:
   Warm warm_;
+  double knownFor_sr_ = 0.0;
+  std::map<std::size_t, std::pair<double, double>> known_;  ///< by output
 };
 
 }  // namespace
@@ -82,11 +90,13 @@ StageModel lensEmissionModel() {
               if (stop > fNumber * (1.0 + 1e-9))
                 throw UserError(r.where("stop_f_number"), "a cold stop that cuts into the lens's cone", "at most its F number, " + std::to_string(fNumber),
                                 "lower it, or narrow the aperture to what the stop leaves");
-              warm.around = (fNumber / stop) * (fNumber / stop) - 1.0;
+              warm.stop = stop;
             }
+            warm.pixelArea_m2 = camera.pinhole.pitchX_m * camera.pinhole.pitchY_m;
+            warm.aperture_m = camera.pinhole.apertureDiameter_m;
             StageChoice choice;
             choice.ownLight = [warm](const ChannelOutput& o, double axis_sr) {
-              return o.behindOptics ? axis_sr * (warm.lens(o) + warm.housing(o)) : 0.0;
+              return o.behindOptics ? axis_sr * (warm.lens(o) + warm.housing(o, axis_sr)) : 0.0;
             };
             choice.make = [warm](const ShaderLibrary&) { return std::make_unique<LensEmissionStage>(warm); };
             return choice;

@@ -11,6 +11,9 @@ enum class NoiseEffect : std::uint32_t { Shot, Read, Row, Column, Frame, FixedPi
 
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
+/// Of a uniform number in (0, 1): the normal one that as many lie below. Source: M. J. Wichura, Applied Statistics 37, 477 (1988), AS 241, PPND16, good to 1e-15.
+double normalQuantile(double u);
+
 class NoiseSource {
  public:
   /// `channel`: below 2^24, of several of one camera; `frame` 0 for what is fixed.
@@ -22,9 +25,15 @@ class NoiseSource {
   double uniform(std::uint32_t place, std::uint32_t draw = 0) const;
   /// Of mean 0 and variance 1 (Box and Muller).
   double normal(std::uint32_t place, std::uint32_t draw = 0) const;
-  /// Counts of independent events of this mean. Up to 1e7 exactly distributed (inversion below 10; above, transformed rejection: W. Hoermann,
-  /// Insurance: Mathematics and Economics 12, 39 (1993), PTRS), beyond normal, whose skewness is below 3e-4.
+  /// Counts of independent events of this mean. Up to 1e4 exactly distributed (inversion below 10; above, transformed rejection: W. Hoermann,
+  /// Insurance: Mathematics and Economics 12, 39 (1993), PTRS), beyond by normal numbers bent to the same skewness (Cornish and Fisher 1938): the fourth
+  /// cumulant, 1e-4 of the square of the second, is what they lack.
   double poisson(double mean, std::uint32_t place) const;
+  /// The same, and beside it a normal number of its own, for one that both are wanted of.
+  struct Drawn {
+    double count, normal;
+  };
+  Drawn poissonAndNormal(double mean, std::uint32_t place) const;
 
  private:
   std::array<double, 2> pair(std::uint32_t place, std::uint32_t draw) const;

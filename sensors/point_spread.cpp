@@ -216,7 +216,7 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
   if (std::abs(p.pitchX_m / p.pitchY_m - 1.0) > 1e-9)
     throw UserError(r.where(), "a point spread function on pixels that are not square", "'pitch' without 'pitch_y'", "remove pitch_y, or the stage");
   StageChoice choice;
-  choice.cells = r.given("cells") ? static_cast<int>(r.number("cells")) : 1;
+  choice.cells = r.given("cells") ? static_cast<int>(r.integer("cells")) : 1;
   lens.aperture_m = p.apertureDiameter_m;
   lens.pitch_m = p.pitchX_m;
   lens.setCells(choice.cells);
@@ -261,10 +261,12 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
     return within * kernelOf(lens, o, kMostReach_cells).transfer(frequency_per_m * lens.cell_m);
   };
   choice.takesPoints = true;
-  choice.pixelShare = [lens, within](const ChannelOutput& o, double x, double y) {
-    const Transfer transfer(lens, o);
+  choice.pixelShare = [lens, within](const ChannelOutput& o, double focal_m, double x, double y) {
+    Lens zoomed = lens;
+    zoomed.zoom(focal_m);
+    const Transfer transfer(zoomed, o);
     const int reach = static_cast<int>(std::ceil(std::max(std::abs(x), std::abs(y))));
-    return within * PointResponse(transfer, transfer.cutoff_per_m(), lens.pitch_m, reach).share(x, y);
+    return within * PointResponse(transfer, transfer.cutoff_per_m(), zoomed.pitch_m, reach).share(x, y);
   };
   choice.make = [lens, kernels](const ShaderLibrary&) { return std::make_unique<PointSpreadStage>(lens, kernels); };
   return choice;
@@ -284,7 +286,7 @@ StageModel pointSpreadModel() {
        withDefault(within(number("blur", "m", "of Gauss on the film, rms along one direction"), 0, 1), "0 um"),
        withDefault(within(number("jitter", "rad", "of the line of sight within an exposure, rms along one direction"), 0, 0.1), "0 rad"),
        withDefault(within(number("veiling_glare", "", "share of the light that the lens spreads evenly"), 0, 0.9), "0"),
-       within(number("cells", "", "cells a side of a pixel, 1 to 16; unless given the fewest, up to 4, that leave contrast at half a cycle a pixel within 0.01"), 1, 16),
+       integer("cells", "cells a side of a pixel; unless given the fewest, up to 4, that leave contrast at half a cycle a pixel within 0.01", 1, 16),
        withDefault(within(above(number("beyond", "", "share of a point's light that may go into the veil rather than lie where it is"), 0), 0, 0.2), "0.01")},
       readPointSpread};
 }

@@ -15,11 +15,11 @@ struct Vignette {
 
 class VignettingStage final : public SensorStage {
  public:
-  VignettingStage(const Vignette& vignette, double pitch_m, double focalLength_m) : vignette_(vignette), pitch_m_(pitch_m), focal_m_(focalLength_m) {}
+  VignettingStage(const Vignette& vignette, const Pinhole& pinhole) : vignette_(vignette), pinhole_(pinhole) {}
   void run(const SensorTick& tick, SensorPictures& pictures) override {
-    const double cell = pitch_m_ / pictures.cells / (tick.focalLength_m > 0.0 ? tick.focalLength_m : focal_m_);
+    const double perFocal = 1.0 / (pictures.cells * (tick.focalLength_m > 0.0 ? tick.focalLength_m : pinhole_.focalLength_m));
     const auto passed = [&](double column, double row) {
-      const double x = (column - 0.5 * pictures.width) * cell, y = (row - 0.5 * pictures.height) * cell;
+      const double x = (column - 0.5 * pictures.width) * pinhole_.pitchX_m * perFocal, y = (row - 0.5 * pictures.height) * pinhole_.pitchY_m * perFocal;
       return vignette_(x * x + y * y);
     };
     for (SensorPoint& p : pictures.points)
@@ -35,7 +35,7 @@ class VignettingStage final : public SensorStage {
 
  private:
   Vignette vignette_;
-  double pitch_m_, focal_m_;
+  Pinhole pinhole_;
 };
 
 Parameter coefficient(const char* key) { return withDefault(within(number(key, "", "of tan^2 of the angle from the axis, to this power"), -1e4, 1e4), "0"); }
@@ -53,7 +53,7 @@ StageModel vignettingModel() {
             const Vignette vignette{r.number("v1"), r.number("v2"), r.number("v3")};
             if (!(vignette.v1 < 0.0 || vignette.v2 < 0.0 || vignette.v3 < 0.0))
               throw UserError(r.where(), "a vignetting that takes nothing away", "one of v1, v2 and v3 below 0", "give one, or remove the stage");
-            choice.make = [vignette, p = camera.pinhole](const ShaderLibrary&) { return std::make_unique<VignettingStage>(vignette, p.pitchX_m, p.focalLength_m); };
+            choice.make = [vignette, p = camera.pinhole](const ShaderLibrary&) { return std::make_unique<VignettingStage>(vignette, p); };
             return choice;
           }};
 }

@@ -30,7 +30,7 @@ constexpr const char* kStyle =
     "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:72em;padding:0 1.5em;color:#1c2330;background:#fff}"
     "h1{font-size:1.5em;margin:0 0 .3em}h2{font-size:1.15em;margin:1.8em 0 .5em;border-bottom:1px solid #d8dce3;padding-bottom:.2em}"
     "table{border-collapse:collapse;margin:.6em 0}td,th{border:1px solid #d8dce3;padding:.25em .7em;text-align:right;font-variant-numeric:tabular-nums}"
-    "td:first-child,th:first-child{text-align:left}th{background:#f2f4f7;font-weight:600}pre{background:#f6f7f9;padding:.8em 1em;overflow:auto;font-size:13px}"
+    "td:first-child,th:first-child{text-align:left}th{background:#f2f4f7;font-weight:600}pre{background:#f6f7f9;padding:.8em 1em;overflow:auto;font-size:13px;white-space:pre-wrap}"
     "img{max-width:100%;height:auto;border:1px solid #d8dce3}figure{margin:.8em 0}figcaption{color:#5a6372;font-size:.9em}";
 
 }  // namespace

@@ -237,7 +237,7 @@ class Bench {
   std::array<double, 7> designComponents() const {
     const double signal = design_.electronsAt300K, lens = own_ - law_.darkCurrent_per_s * camera_.exposure_s;
     const auto square = [](double x) { return x * x; };
-    const double octave = law_.flickerCorner_Hz > 0.0 ? square(law_.sigmaTvh) * 2.0 * law_.flickerCorner_Hz * options_.step_s * std::log(2.0) : 0.0;
+    const double octave = law_.flickerVariance(options_.step_s);
     // Octaves that are faster than the frames taken; slower ones stand still.
     const double fast = std::min(12.0, std::log2(static_cast<double>(options_.frames)));
     const double tvh = signal + own_ + square(law_.sigmaTvh) + fast * octave + 1.0 / (12.0 * square(law_.gain));
@@ -368,7 +368,7 @@ class Bench {
   /// A star in the middle of a pixel, on its edge and in its corner.
   void points() {
     tell("a point", 0.65);
-    const double room = law_.saturation() - own_, share = std::max(pixelShareOf(camera_, output_), 1e-3);
+    const double room = law_.saturation() - own_, share = std::max(pixelShareOf(camera_, output_, camera_.pinhole.focalLength_m), 1e-3);
     // Even over the band: half a well on its pixel.
     const double all = output_.kernel.integral(output_.bandLow_um, output_.bandHigh_um),
                  perIntensity = law_.fillFactor * output_.scale * camera_.exposure_s * all / (kFar_m * kFar_m), watts = 0.5 * room / share / perIntensity;
@@ -455,7 +455,7 @@ class Bench {
   /// Once for each distance.
   double reachShare(double x, double y) {
     const auto [at, isNew] = shares_.try_emplace({std::min(std::abs(x), std::abs(y)), std::max(std::abs(x), std::abs(y))}, 0.0);
-    if (isNew) at->second = pixelShareOf(camera_, output_, x, y);
+    if (isNew) at->second = pixelShareOf(camera_, output_, camera_.pinhole.focalLength_m, x, y);
     return at->second;
   }
 

@@ -12,6 +12,7 @@
 #include "sim/frame/version.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
+#include "sim/parameters/read_file.hpp"
 
 namespace pitviper {
 namespace {
@@ -43,6 +44,17 @@ int wholeOption(const Options& o, const char* name, int otherwise, int least, in
   return static_cast<int>(a);
 }
 
+constexpr const char* kTableHead = "channel,figure,unit,design,measured,standard error\n";
+
+/// Only what it has written itself is written again.
+void refuseOthers(const fs::path& file, const std::string& begins) {
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return;
+  const std::string start = readFileStart(file, 400);
+  if (start.find(begins) == std::string::npos)
+    throw UserError({file.string(), 0, 0, -1}, "is there already and was not written by measure", "a folder without such a file", "give another --out");
+}
+
 }  // namespace
 
 int measureCommand(const Arguments& arguments) {
@@ -56,6 +68,12 @@ int measureCommand(const Arguments& arguments) {
   options.frames = wholeOption(o, "--frames", options.frames, 4, 4096);
   options.film_px = wholeOption(o, "--film", options.film_px, 64, 1024);
   for (const std::string& change : o.values("--set")) options.changes.push_back("cameras.bench." + change);
+  const std::string name = isFile ? file.stem().string() : word;
+  const fs::path out = o.value("--out");
+  if (!out.empty()) {
+    refuseOthers(out / (name + ".csv"), kTableHead);
+    refuseOthers(out / (name + ".html"), std::string("pitviper ") + kVersion + " measure");
+  }
   const GlContext context;
   std::vector<BenchResult> results;
   {
@@ -63,12 +81,10 @@ int measureCommand(const Arguments& arguments) {
     results = measureCamera(options, [&](const std::string& what, double share) { progress.phase(what, share); });
     progress.withdraw();
   }
-  const std::string name = isFile ? file.stem().string() : word;
-  const fs::path out = o.value("--out");
   HtmlPage page(name + " on the bench", std::string("pitviper ") + kVersion + " measure");
   page.paragraph(print("%d frames of each flat field, %d x %d pixels in the middle of the film, %g frames a second. Measured: from the pictures alone. Design: from the camera's own figures.",
                        options.frames, options.film_px, options.film_px, 1.0 / options.step_s));
-  std::string csv = "channel,figure,unit,design,measured,standard error\n";
+  std::string csv = kTableHead;
   for (const BenchResult& r : results) {
     std::printf("%s, %s: %d frames of %d x %d pixels, flat fields at %.4g K\n", name.c_str(), r.channel.c_str(), options.frames, options.film_px, options.film_px,
                 r.temperature_K);

@@ -25,6 +25,7 @@ void RunTotal::add(const Frame& f) {
     if (a.name == "pitviper.exposure_parts") seen.parts = std::max(seen.parts, std::get<int>(a.value));
     if (a.name == "pitviper.exposure_motion_px") seen.motion_px = std::max(seen.motion_px, std::get<double>(a.value));
     if (a.name == "pitviper.exposure_error") seen.partError = std::max(seen.partError, std::get<double>(a.value));
+    if (a.name == "pitviper.exposure_streak_error") seen.streakError = std::max(seen.streakError, std::get<double>(a.value));
     if (!a.name.starts_with(kError)) continue;
     double& error = seen.error[a.name.substr(kError.size())];
     error = std::max(error, std::get<double>(a.value));
@@ -46,7 +47,8 @@ std::string RunTotal::expected() const {
     else if (seen.mode == "sampled") text += "; no accuracy asked for, no error expected";
     if (seen.parts > 1)
       text += "; exposures in up to " + std::to_string(seen.parts) + " parts (" + print("%.3g pixels", seen.motion_px) + " of motion; " +
-              print("%.2g %%", 100.0 * seen.partError) + " of an edge's contrast at most)";
+              print("%.2g %%", 100.0 * seen.partError) + " of an edge's contrast at most" +
+              (seen.streakError > 0.0 ? ", " + print("%.2g %%", 100.0 * seen.streakError) + " of a small body's streak" : "") + ")";
     text += "\n";
   }
   return text;

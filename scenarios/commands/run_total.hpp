@@ -21,7 +21,7 @@ class RunTotal {
     std::string mode;
     double accuracy = 0.0;
     int parts = 1;                ///< of an exposure, the most
-    double motion_px = 0.0, partError = 0.0;
+    double motion_px = 0.0, partError = 0.0, streakError = 0.0;
     std::map<std::string, double> error;  ///< by channel, the largest
   };
   std::map<std::string, Seen> cameras_;

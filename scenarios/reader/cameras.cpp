@@ -349,7 +349,7 @@ void Builder::readCameras(const Record& scenario) {
 
     if (r.given("exposure")) c.exposure_s = r.number("exposure");
     c.motionBlur = r.boolean("motion_blur");
-    if (r.given("exposure_parts")) c.exposureParts = static_cast<int>(r.number("exposure_parts"));
+    if (r.given("exposure_parts")) c.exposureParts = static_cast<int>(r.integer("exposure_parts"));
     if (c.motionBlur && !(c.exposure_s > 0.0))
       throw UserError(r.where("motion_blur"), "motion within an exposure of no time", "'exposure' of the camera, such as '5 ms'", "add it, or remove motion_blur");
     c.near_m = r.number("near");

@@ -374,7 +374,7 @@ const ParameterTable& camera() {
          spectrum("optics", "", "transmission of the optics, 0..1; 0 outside its table, as a response is"),
          within(number("exposure", "s", "exposure time, around the frame's time"), 1e-12, 1e6),
          withDefault(boolean("motion_blur", "what moves while it exposes is drawn at several times of the exposure"), "false"),
-         within(number("exposure_parts", "", "so many times, 1 to 256; unless given as many as the accuracy (1 % where none is asked for) takes"), 1, 256),
+         integer("exposure_parts", "so many times; unless given as many as the accuracy (1 % where none is asked for) takes", 1, 256),
          withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
          any("samples",
              "n: n x n subpixels per pixel, 1 to 16; or auto: 2 x 2, shaded one by one only where they see different parts or neighbouring pixels "

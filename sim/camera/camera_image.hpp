@@ -49,7 +49,7 @@ struct CameraImage {
   std::vector<Ball> parts;                     ///< bright ones that had views of their own
   std::vector<FilmPoint> points;               ///< besides `slots`: of a camera with pointsApart
   int exposureParts = 1;                       ///< times that it is a mean of
-  double exposureMotion_px = 0.0, exposureError = 0.0;  ///< as of ExposureParts
+  double exposureMotion_px = 0.0, exposureError = 0.0, streakError = 0.0;  ///< as of ExposureParts
   std::vector<SlotAudit> audit;                ///< per slot; empty: not audited
 };
 

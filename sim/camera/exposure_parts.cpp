@@ -20,7 +20,8 @@ std::optional<glm::dvec2> filmOf(const View& v, const glm::dvec3& place) {
 }
 
 /// How far anything in view goes on the film from the first of these times to the last [pixels]: what a grid of lines meets at the middle one, and middles of bodies.
-double motionOf(const Simulation& sim, const Camera& camera, const std::array<double, 3>& times_s) {
+/// `small`: of what is smaller than two pixels alone.
+double motionOf(const Simulation& sim, const Camera& camera, const std::array<double, 3>& times_s, double& small) {
   std::vector<WorldState> states;
   std::vector<View> views;
   for (double t : times_s) {
@@ -29,15 +30,18 @@ double motionOf(const Simulation& sim, const Camera& camera, const std::array<do
   }
   double most = 0.0;
   // A place of a body's own axes, or of the world.
-  const auto follow = [&](int entity, const glm::dvec3& own) {
+  const auto follow = [&](int entity, const glm::dvec3& own) -> double {
     std::array<std::optional<glm::dvec2>, 3> at;
     for (std::size_t k = 0; k < at.size(); ++k) {
       const Pose* pose = entity >= 0 ? &states[k].entities[static_cast<std::size_t>(entity)] : nullptr;
       at[k] = filmOf(views[k], pose ? pose->position + pose->orientation * own : own);
-      if (!at[k]) return;
+      if (!at[k]) return 0.0;
     }
     const auto inView = [&](const glm::dvec2& p) { return p.x > -1.0 && p.y > -1.0 && p.x < views[1].width + 1.0 && p.y < views[1].height + 1.0; };
-    if (inView(*at[0]) || inView(*at[1]) || inView(*at[2])) most = std::max(most, glm::length(*at[1] - *at[0]) + glm::length(*at[2] - *at[1]));
+    if (!inView(*at[0]) && !inView(*at[1]) && !inView(*at[2])) return 0.0;
+    const double way = glm::length(*at[1] - *at[0]) + glm::length(*at[2] - *at[1]);
+    most = std::max(most, way);
+    return way;
   };
   std::vector<char> drawn(sim.entities.size(), 1);
   if (camera.mount.carrier >= 0) drawn[static_cast<std::size_t>(camera.mount.carrier)] = 0;
@@ -56,15 +60,20 @@ double motionOf(const Simulation& sim, const Camera& camera, const std::array<do
       follow(hits.solid.entity, glm::inverse(pose.orientation) * (hits.solid.point - pose.position));
     }
   for (std::size_t e = 0; e < sim.entities.size(); ++e)
-    if (drawn[e]) follow(static_cast<int>(e), glm::dvec3(sim.entities[e].boundingCentre));
+    if (drawn[e]) {
+      constexpr double kSmall_px = 2.0;
+      const double way = follow(static_cast<int>(e), glm::dvec3(sim.entities[e].boundingCentre)),
+                   range = glm::length(states[1].entities[e].position - v.position), size = 2.0 * static_cast<double>(sim.entities[e].boundingRadius_m) / range / v.tanPerPixelX;
+      if (size < kSmall_px) small = std::max(small, way);
+    }
   for (std::size_t l = 0; l < sim.lights.size(); ++l) {
     if (!sim.lights[l].visible) continue;
     std::array<std::optional<glm::dvec2>, 3> at;
     for (std::size_t k = 0; k < at.size(); ++k) at[k] = filmOf(views[k], states[k].lights[l]);
     if (at[0] && at[1] && at[2] && lightIsInView(sim, states[1], views[1], l))
-      most = std::max(most, glm::length(*at[1] - *at[0]) + glm::length(*at[2] - *at[1]));
+      small = std::max(small, glm::length(*at[1] - *at[0]) + glm::length(*at[2] - *at[1]));
   }
-  return most;
+  return std::max(most, small);
 }
 
 }  // namespace
@@ -78,14 +87,16 @@ ExposureParts exposureParts(const Simulation& sim, const Camera& camera, double 
   const int cells = cellsOf(camera), margin = marginOf(camera), rows = (camera.pinhole.height + 2 * margin) * cells;
   const auto rowTime = [&](int row) { return time_s + ((row + 0.5) / cells - margin - 0.5 * camera.pinhole.height) * line_s; };
   const double first = rowTime(0) - 0.5 * exposure_s, last = rowTime(rows - 1) + 0.5 * exposure_s, asked = camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise;
-  parts.motion_px = motionOf(sim, camera, {first, time_s, last});
+  parts.motion_px = motionOf(sim, camera, {first, time_s, last}, parts.smallMotion_px);
   const bool addsUp = exposure_s > 0.0;
   int count = camera.exposureParts;
   if (count == 0) {
-    const double wanted = addsUp ? std::sqrt(parts.motion_px / (4.0 * asked)) : parts.motion_px / (4.0 * asked);
+    constexpr double kPicturesAPixel = 4.0;
+    const double wanted = addsUp ? std::max(std::sqrt(parts.motion_px / (4.0 * asked)), kPicturesAPixel * parts.smallMotion_px) : parts.motion_px / (4.0 * asked);
     count = static_cast<int>(std::clamp(std::ceil(wanted), 1.0, static_cast<double>(kMostParts)));
   }
   parts.error = parts.motion_px / (4.0 * count * (addsUp ? count : 1));
+  parts.streakError = addsUp ? std::min(1.0, parts.smallMotion_px / count) : 0.0;
   if (count == 1) return parts;
   const double step = (last - first) / count;
   parts.times_s.clear();
@@ -137,6 +148,7 @@ CameraImage renderExposure(CameraRenderer& renderer, const Simulation& sim, cons
   mean.exposureParts = static_cast<int>(count);
   mean.exposureMotion_px = parts.motion_px;
   mean.exposureError = parts.error;
+  mean.streakError = parts.streakError;
   return mean;
 }
 

@@ -11,12 +11,15 @@ namespace pitviper {
 /// It is a mean of pictures at K times, evenly over all of that: each counts for the times nearest to it; where rows are exposed at one time only (no motion blur),
 /// a row lies between the two nearest. Law of K: what moves by m pixels in all is off by at most m / (4 K^2) of its contrast where the light of an
 /// exposure is added up, m / (4 K) where rows lie between two pictures (a pixel's share of a moving edge is linear but where the edge enters and leaves it;
-/// the midpoint rule's error there).
+/// the midpoint rule's error there). What is smaller than a pixel leaves n or n + 1 pictures in each pixel of its way, n = K / m of m pixels: off by m / K at most; four
+/// pictures a pixel at least are drawn of it.
 struct ExposureParts {
   std::vector<double> times_s;
   std::vector<std::vector<double>> rowWeights;  ///< of each time, for each row of the picture; empty: all alike
   double motion_px = 0.0;                       ///< over all of it, of the film's pixels
-  double error = 0.0;                           ///< expected, of the contrast
+  double smallMotion_px = 0.0;                  ///< of what is smaller than two pixels: lamps, small bodies
+  double error = 0.0;                           ///< expected, of an edge's contrast
+  double streakError = 0.0;                     ///< the same of the streak that a small thing leaves, of its own brightness
 };
 
 /// `camera`: the film's; the pictures are drawnCamera()'s. One part, at the frame's time, unless the camera has motion blur or its detector a line time.

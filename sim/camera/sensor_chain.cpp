@@ -1,5 +1,7 @@
 #include "sim/camera/sensor_chain.hpp"
 
+#include <algorithm>
+
 #include "sim/gl/timing.hpp"
 
 namespace pitviper {
@@ -31,13 +33,12 @@ std::vector<float> SensorChain::resolved(const std::vector<float>& cells, const 
 
 std::vector<std::vector<float>> SensorChain::run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
                                                  std::vector<SensorPoint> points) {
+  calibrate(cellWeights, tick);
   for (size_t o = 0; o < drawn.size(); ++o) cells_.values(o) = drawn[o];
   cells_.points = std::move(points);
   cells_.cellWeights = &cellWeights;
   run(ofCells_, tick, cells_);
   cells_.cellWeights = nullptr;
-  pixels_.ownLight.clear();
-  for (const ChannelOutput& o : camera_.outputs) pixels_.ownLight.push_back(ownLightOf(camera_, o, tick.axis_sr, tick.exposure_s));
   for (size_t o = 0; o < drawn.size(); ++o) pixels_.values(o) = resolved(cells_.values(o), cellWeights, camera_.outputs[o].perEtendue);
   run(ofPixels_, tick, pixels_);
   std::vector<std::vector<float>> pixels;
@@ -52,9 +53,42 @@ void SensorChain::run(const std::vector<Named>& stages, const SensorTick& tick, 
   }
 }
 
-const std::vector<double>& SensorChain::projectedSolidAngles(const Pinhole& pinhole) {
-  if (!projected_ || projected_->first != pinhole.focalLength_m) projected_.emplace(pinhole.focalLength_m, pinhole.solidAngles().projected_sr);
-  return projected_->second;
+void SensorChain::calibrate(const std::vector<double>& cellWeights, const SensorTick& tick) {
+  if (tick.focalLength_m == calibratedFocal_m_ && tick.exposure_s == calibratedExposure_s_) return;
+  calibratedFocal_m_ = tick.focalLength_m, calibratedExposure_s_ = tick.exposure_s;
+  const std::size_t count = camera_.outputs.size();
+  seen_.assign(count, {});
+  pixels_.ownLight.assign(count, {});
+  const bool asked = std::any_of(camera_.outputs.begin(), camera_.outputs.end(), [](const ChannelOutput& o) { return o.asTemperature && o.perEtendue; });
+  if (!asked) return;
+  const auto unitOf = [&](std::size_t o) { return camera_.outputs[o].scale * (camera_.outputs[o].perExposure ? tick.exposure_s : 1.0); };
+  const auto through = [&](const std::vector<double>& radiance) {
+    for (std::size_t o = 0; o < count; ++o) {
+      const ChannelOutput& output = camera_.outputs[o];
+      std::vector<float>& cells = cells_.values(o);
+      cells.clear();
+      for (double sr : cellWeights) cells.push_back(static_cast<float>(radiance[o] * unitOf(o) * (output.perEtendue ? sr : 1.0)));
+    }
+    cells_.points.clear();
+    cells_.cellWeights = &cellWeights;
+    run(ofCells_, tick, cells_);
+    cells_.cellWeights = nullptr;
+    std::vector<std::vector<float>> pixels;
+    for (std::size_t o = 0; o < count; ++o) pixels.push_back(resolved(cells_.values(o), cellWeights, camera_.outputs[o].perEtendue));
+    return pixels;
+  };
+  // Nothing at all; then an even field, ten times as bright as the sensor's own light so that their difference has its digits.
+  pixels_.ownLight = through(std::vector<double>(count, 0.0));
+  std::vector<double> radiance;
+  for (std::size_t o = 0; o < count; ++o) {
+    const auto middle = pixels_.ownLight[o].size() / 2;
+    const double own = static_cast<double>(pixels_.ownLight[o][middle]);
+    radiance.push_back(own > 0.0 ? 10.0 * own / (unitOf(o) * tick.axis_sr) : 1.0 / unitOf(o));
+  }
+  const auto lit = through(radiance);
+  for (std::size_t o = 0; o < count; ++o)
+    for (std::size_t p = 0; p < lit[o].size(); ++p)
+      seen_[o].push_back((static_cast<double>(lit[o][p]) - static_cast<double>(pixels_.ownLight[o][p])) / (unitOf(o) * radiance[o]));
 }
 
 std::size_t SensorChain::middleCell(int column, int row) const {

@@ -16,8 +16,9 @@ class SensorChain {
   /// (drawnCamera() has pointsApart). Returns pictures of the camera's own pixels.
   std::vector<std::vector<float>> run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
                                       std::vector<SensorPoint> points = {});
-  /// Projected solid angles of the camera's own pixels, whose pinhole may turn and zoom.
-  const std::vector<double>& projectedSolidAngles(const Pinhole& pinhole);
+  /// Of an output per etendue: what an even field of radiance gives each pixel, as a projected solid angle, through all of the optics; as a calibration would find it. Of the last
+  /// tick that was run.
+  const std::vector<double>& seenSolidAngles(std::size_t output) const { return seen_[output]; }
   /// The cell in the middle of a pixel of the camera, in pictures of drawnCamera().
   std::size_t middleCell(int column, int row) const;
 
@@ -25,7 +26,10 @@ class SensorChain {
   std::vector<float> resolved(const std::vector<float>& cells, const std::vector<double>& weights, bool addsUp) const;
   const Camera& camera_;
   SensorPictures cells_, pixels_;
-  std::optional<std::pair<double, std::vector<double>>> projected_;  ///< of a focal length
+  /// What even fields and none give, at a focal length and exposure: for those outputs that are told as temperatures.
+  void calibrate(const std::vector<double>& cellWeights, const SensorTick& tick);
+  double calibratedFocal_m_ = -1.0, calibratedExposure_s_ = -1.0;
+  std::vector<std::vector<double>> seen_;
   struct Named {
     std::string part;  ///< for timing
     std::unique_ptr<SensorStage> stage;

@@ -41,8 +41,8 @@ class SensorPictures {
   std::vector<SensorPoint> points;
   /// Projected solid angle of each cell [sr]; null: not told.
   const std::vector<double>* cellWeights = nullptr;
-  /// Of each output what the sensor itself has sent to a pixel on the axis, in its unit; empty: nothing.
-  std::vector<double> ownLight;
+  /// Of each output what the sensor itself has sent to each pixel, in its unit; empty: nothing, or not asked for.
+  std::vector<std::vector<float>> ownLight;
   /// What a share of a point's value is in a cell.
   double inCell(const SensorPoint& p, std::size_t cell) const { return outputs[p.output].perEtendue || !cellWeights ? p.value : p.value / (*cellWeights)[cell]; }
 

@@ -18,6 +18,7 @@ struct FileOptions {
 struct FileFormat {
   std::string name;       ///< what `format:` says
   std::string extension;  ///< of the file that says whose it is
+  std::string beside;     ///< of one beside it; empty: none
   std::string description;
   /// `file` has that extension; others of the format lie beside it. Errors: OutputError.
   void (*write)(const std::filesystem::path& file, const Frame& frame, const FileOptions& options);

@@ -61,7 +61,9 @@ std::optional<Owner> ownerInText(const std::filesystem::path& file) {
 std::optional<Owner> ownerOf(const std::filesystem::path& file) {
   const std::string kind = file.extension().string();
   if (kind == ".csv") return ownerInTable(file);
+  // What has no place for words is of whom the file beside it says.
   if (kind == ".tif") return ownerInText(std::filesystem::path(file).replace_extension(".json"));
+  if (kind == ".img") return ownerInText(std::filesystem::path(file).replace_extension(".hdr"));
   if (kind == ".json" || kind == ".raw" || kind == ".hdr" || kind == ".mp4" || kind == ".html") return ownerInText(file);
   const auto text = [&](const char* name, const char* ofFits) {
     return kind == ".png" ? readPngText(file, name) : kind == ".fits" ? readFitsText(file, ofFits) : readExrText(file, name);

@@ -183,8 +183,10 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
     const glm::dvec3 x = cameraFromLocal * (state.entities[e].position - pose.position);
     std::vector<double> seen = {glm::length(x), NAN, NAN};  // behind the camera: no place in the picture
     if (x.z < 0.0) {
-      seen[1] = 0.5 * p.width + x.x / -x.z * p.focalLength_m / p.pitchX_m;
-      seen[2] = 0.5 * p.height - x.y / -x.z * p.focalLength_m / p.pitchY_m;
+      const glm::dvec2 at = placeOnFilm(camera, p.focalLength_m, {0.5 * p.width + x.x / -x.z * p.focalLength_m / p.pitchX_m,
+                                                                  0.5 * p.height - x.y / -x.z * p.focalLength_m / p.pitchY_m});
+      seen[1] = at.x;
+      seen[2] = at.y;
     }
     add("entity." + std::to_string(e + 1) + ".name", sim.entities[e].name);
     add("entity." + std::to_string(e + 1) + ".range_column_row", seen);
@@ -259,7 +261,7 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
     auto pixels = sensed(sim, camera, image, state, number, *chain);
     for (size_t o = 0; o < camera.outputs.size(); ++o) {
       if (camera.outputs[o].asTemperature)
-        toApparentTemperatures(pixels[o], camera.outputs[o], chain->projectedSolidAngles(cameraAt(camera, state).pinhole), image.exposure_s);
+        toApparentTemperatures(pixels[o], camera.outputs[o], chain->seenSolidAngles(o), image.exposure_s);
       frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, std::move(pixels[o])});
     }
   } else {
@@ -278,9 +280,10 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
     frame.attributes.push_back({"pitviper.exposure_parts", image.exposureParts});
     frame.attributes.push_back({"pitviper.exposure_motion_px", image.exposureMotion_px});
     frame.attributes.push_back({"pitviper.exposure_error", image.exposureError});
+    if (image.streakError > 0.0) frame.attributes.push_back({"pitviper.exposure_streak_error", image.streakError});
   }
   if (camera.window) cutOut(frame, *camera.window);
-  finishTargets(frame, camera);
+  finishTargets(frame, camera, sim.time.step_s);
   return frame;
 }
 

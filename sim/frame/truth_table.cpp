@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <future>
-#include <mutex>
 #include <set>
 #include <thread>
 
@@ -22,6 +21,14 @@ namespace {
 
 /// Times between which rates are differences.
 constexpr double kApart_s = 1e-3;
+
+/// Where no accuracy is asked for, and of the reference, which has none.
+constexpr double kAskedOtherwise = 0.002;
+/// Lines across a body for 1 %, and between two of them where what they meet changes: an area of a thirtieth of its diameter is then off by 1 % (see zoomedLines()).
+constexpr double kLinesAtOnePercent = 128.0;
+constexpr int kWithin = 6;
+/// What lies between places that are worked out may be off by, of what is asked.
+constexpr double kLinearOfAccuracy = 0.04;
 
 /// Each worker takes the next piece until there are none.
 template <class OfPiece>
@@ -89,7 +96,8 @@ TruthMeter::TruthMeter(const Simulation& simulation, const Camera& camera)
     : simulation_(simulation),
       camera_(camera),
       measured_(measuredCamera(camera)),
-      lines_(zoomedLines(simulation, camera.zoomedSamples, camera.outlineAccuracy)),
+      asked_(camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise),
+      lines_(std::clamp(kLinesAtOnePercent * std::pow(0.01 / asked_, 2.0 / 3.0), 48.0, 256.0)),
       present_(simulation.entities.size(), 1),
       plan_(planFor(simulation, {&measured_, nullptr})),
       spectra_(std::make_shared<const NodeSpectra>(simulation, plan_.nodes, plan_.terms.surroundings)) {
@@ -145,12 +153,10 @@ void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, con
       const auto counted = static_cast<std::size_t>(plan_.slotOfOutput[static_cast<std::size_t>(detected - measured_.outputs.begin())]);
       const double perFlux = law->fillFactor * detected->scale * eye.exposure_s;  // electrons of kernel integral x sr
       // All of it in one pixel where it is smaller than one, but for what the lens spreads; else a pixel's part of its face.
-      const double pixels = std::max(body_sr / pixel_sr, 1.0 / pixelShareOf(camera_, *detected)), signal = perFlux * contrast[counted] / range2 / pixels;
+      const double pixels = std::max(body_sr / pixel_sr, 1.0 / pixelShareOf(camera_, *detected, p.focalLength_m)), signal = perFlux * contrast[counted] / range2 / pixels;
       const double behind = body_sr > 0.0 ? perFlux * pixel_sr * (total[counted] - contrast[counted]) / range2 / body_sr : 0.0;
       const double own_e = law->fillFactor * ownLightOf(camera_, *detected, pixel_sr, eye.exposure_s), dark = law->darkCurrent_per_s * eye.exposure_s;
-      const auto square = [](double x) { return x * x; };
-      const double variance = std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark + square(law->sigmaTvh) + square(law->sigmaTv) + square(law->sigmaTh) +
-                              square(law->sigmaT) + 1.0 / (12.0 * square(law->gain));
+      const double variance = std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark + law->readoutVariance(simulation_.time.step_s);
       c.signalToNoise = signal / std::sqrt(variance);
     }
     row.channels.push_back(c);
@@ -170,11 +176,12 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
     return;
   }
   std::vector<double> own(slots, 0.0), total = own, contrast = own;
-  if (!mayShow(film, ball.centre, ball.radius_m)) {
+  // With all that is drawn around the film: a lens may bring it in.
+  if (!mayShow(cameraView(drawnCamera(camera_), state, 1), ball.centre, ball.radius_m)) {
     addChannels(row, own, total, contrast, 0.0, state);
     return;
   }
-  const int size = simulation_.mediumOf(simulation_.entities[e]) ? std::max(lines_[e] / 2, 16) : lines_[e];
+  const int size = evenSize(lines_);
   View z = zoomedView(ball, film, size);
   z.onlyEntity = -1;
   const CameraState eye = cameraAt(camera_, state);
@@ -182,73 +189,124 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
   std::vector<char> others = present_;
   others[e] = 0;
   const ReferenceShader with(simulation_, plan_, z, state, present_, spectra_), without(simulation_, plan_, z, state, others, spectra_);
-  const auto lineOf = [&](int x, int y, const std::vector<char>& drawn) {
-    const glm::dvec3 ray = z.ray(x + 0.5, y + 0.5);
+  const auto lineThrough = [&](double x, double y, const std::vector<char>& drawn) {
+    const glm::dvec3 ray = z.ray(x, y);
     LineOfSight line{z.position, z.localFromCamera * ray / glm::length(ray), {}, 0.0};
     line.hits = castRay(simulation_, state, line.origin, line.direction, z.near_m * glm::length(ray), &drawn);
     return line;
   };
-  /// The place on the film, distorted; none behind it.
-  const auto placeOf = [&](int x, int y) -> std::optional<glm::dvec2> {
-    const glm::dvec3 seen = filmFromZoom * z.ray(x + 0.5, y + 0.5);
-    if (seen.z >= 0.0) return std::nullopt;
-    const glm::dvec2 at = filmPosition(film, seen);
+  const auto lineOf = [&](int x, int y, const std::vector<char>& drawn) { return lineThrough(x + 0.5, y + 0.5, drawn); };
+  const auto slotsThrough = [&](double x, double y, NodeSum& sum, NodeSum& behind) {
+    std::vector<double> all = with.shade(lineThrough(x, y, present_), sum).slots;
+    const std::vector<double> ofBody = slotsOf(plan_, sum.ofEntity()), other = without.shade(lineThrough(x, y, others), behind).slots;
+    all.insert(all.end(), ofBody.begin(), ofBody.end());
+    all.insert(all.end(), other.begin(), other.end());
+    return all;
+  };
+  /// Where a direction before the film is on it, distorted.
+  const auto onFilm = [&](const glm::dvec3& direction) {
+    const glm::dvec2 at = filmPosition(film, direction);
     return placeOnFilm(camera_, eye.pinhole.focalLength_m, {at.x, film.height - at.y});
   };
   const glm::ivec4 window = camera_.window.value_or(glm::ivec4(0, 0, film.width, film.height));
   const auto isOnFilm = [&](const glm::dvec2& at) {
     return at.x >= window.x && at.y >= window.y && at.x < window.x + window.z && at.y < window.y + window.w;
   };
-  double whole_sr = 0.0, seen_sr = 0.0;
-  std::mutex meeting;
+  double whole_sr = 0.0, visible_sr = 0.0, seen_sr = 0.0;
   const int columns = (size + ZoomedTile::kSize - 1) / ZoomedTile::kSize;
+  struct Sums {
+    std::vector<double> own, total, contrast;
+    double whole = 0.0, visible = 0.0, seen = 0.0, left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
+  };
+  std::vector<Sums> pieces(static_cast<std::size_t>(columns * columns));
   eachPiece(columns * columns, [&](int piece) {
     NodeSum sum(*spectra_), behind(*spectra_);
     sum.watchEntity(entity);
     std::vector<double> ownHere(slots, 0.0), totalHere = ownHere, contrastHere = ownHere;
-    double wholeHere = 0.0, seenHere = 0.0, left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
+    double wholeHere = 0.0, visibleHere = 0.0, seenHere = 0.0, left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
     const auto solidAngle = [&](int x, int y) {
       const glm::dvec3 ray = z.ray(x + 0.5, y + 0.5);
       return z.tanPerPixelX * z.tanPerPixelY / std::pow(glm::dot(ray, ray), 1.5);
     };
+    // What a line of a place between the grid's meets: 0 where that is not this body, on the film.
+    const auto thingsAt = [&](double x, double y) -> std::size_t {
+      const glm::dvec3 ray = z.ray(x, y), direction = z.localFromCamera * ray / glm::length(ray);
+      const double near = z.near_m * glm::length(ray);
+      if (!meetsBody(simulation_, state, z.position, direction, near, entity)) return 0;
+      const glm::dvec3 seen = filmFromZoom * ray;
+      if (seen.z >= 0.0) return 0;
+      const glm::dvec2 at = onFilm(seen);
+      if (!isOnFilm(at)) return 0;
+      const RayHits hits = castRay(simulation_, state, z.position, direction, near, &present_);
+      return meets(hits, entity) ? ReferenceShader::things(hits) : 0;
+    };
+    const int x0 = piece % columns * ZoomedTile::kSize, y0 = piece / columns * ZoomedTile::kSize, w = std::min(ZoomedTile::kSize, size - x0),
+              h = std::min(ZoomedTile::kSize, size - y0);
+    std::vector<std::size_t> things(static_cast<std::size_t>(w * h), 0);
+    std::vector<std::vector<double>> seen(things.size());
+    const auto indexOf = [&](int x, int y) { return static_cast<std::size_t>((y - y0) * w + (x - x0)); };
     ZoomedTile tile(
         [&](int x, int y) -> std::size_t {
           const glm::dvec3 ray = z.ray(x + 0.5, y + 0.5);
           if (!meetsBody(simulation_, state, z.position, z.localFromCamera * ray / glm::length(ray), z.near_m * glm::length(ray), entity)) return 0;
           wholeHere += solidAngle(x, y);
-          const auto at = placeOf(x, y);
-          if (!at) return 0;
-          left = std::min(left, at->x), right = std::max(right, at->x), top = std::min(top, at->y), bottom = std::max(bottom, at->y);
-          const LineOfSight line = lineOf(x, y, present_);
-          if (!isOnFilm(*at) || !meets(line.hits, entity)) return 0;
-          return (with.looks(line) * 31 + without.looks(lineOf(x, y, others))) | 1u;
+          if (const glm::dvec3 place = filmFromZoom * ray; place.z < 0.0) {
+            const glm::dvec2 at = onFilm(place);
+            left = std::min(left, at.x), right = std::max(right, at.x), top = std::min(top, at.y), bottom = std::max(bottom, at.y);
+          }
+          const std::size_t met = thingsAt(x + 0.5, y + 0.5);
+          things[indexOf(x, y)] = met;
+          if (met != 0) visibleHere += solidAngle(x, y);
+          return met == 0 ? 0 : met * 31 + ReferenceShader::things(lineOf(x, y, others).hits);
         },
-        [&](int x, int y) {
-          std::vector<double> all = with.shade(lineOf(x, y, present_), sum).slots;
-          const std::vector<double> ofBody = slotsOf(plan_, sum.ofEntity()), other = without.shade(lineOf(x, y, others), behind).slots;
-          all.insert(all.end(), ofBody.begin(), ofBody.end());
-          all.insert(all.end(), other.begin(), other.end());
-          return all;
-        });
-    const int x = piece % columns * ZoomedTile::kSize, y = piece / columns * ZoomedTile::kSize;
-    tile.fill(x, y, std::min(ZoomedTile::kSize, size - x), std::min(ZoomedTile::kSize, size - y), [&](int i, int j, const std::vector<double>& all) {
-      const double sr = solidAngle(i, j);
+        [&](int x, int y) { return slotsThrough(x + 0.5, y + 0.5, sum, behind); }, kLinearOfAccuracy * asked_);
+    tile.fill(x0, y0, w, h, [&](int x, int y, const std::vector<double>& all) { seen[indexOf(x, y)] = all; });
+    const auto add = [&](const std::vector<double>& all, double sr) {
       seenHere += sr;
       for (std::size_t s = 0; s < slots; ++s) {
         totalHere[s] += sr * all[s];
         ownHere[s] += sr * all[slots + s];
         contrastHere[s] += sr * (all[s] - all[2 * slots + s]);
       }
-    });
-    const std::scoped_lock lock(meeting);
-    whole_sr += wholeHere, seen_sr += seenHere;
-    if (left <= right) {
-      row.left = std::fmin(row.left, left), row.right = std::fmax(row.right, right);
-      row.top = std::fmin(row.top, top), row.bottom = std::fmax(row.bottom, bottom);
-    }
-    for (std::size_t s = 0; s < slots; ++s) own[s] += ownHere[s], total[s] += totalHere[s], contrast[s] += contrastHere[s];
+    };
+    for (int y = y0; y < y0 + h; ++y)
+      for (int x = x0; x < x0 + w; ++x) {
+        const std::size_t met = things[indexOf(x, y)];
+        bool isEdge = false;
+        const auto eachNeighbour = [&](const auto& visit) {
+          for (int j = std::max(y - 1, y0); j <= std::min(y + 1, y0 + h - 1); ++j)
+            for (int i = std::max(x - 1, x0); i <= std::min(x + 1, x0 + w - 1); ++i) visit(indexOf(i, j));
+        };
+        eachNeighbour([&](std::size_t k) { isEdge |= things[k] != met; });
+        if (!isEdge) {
+          if (met != 0) add(seen[indexOf(x, y)], solidAngle(x, y));
+          continue;
+        }
+        // Where a small hot part ends, areas are what counts: many lines say which, each has the light of a neighbour that meets the same.
+        const double sr = solidAngle(x, y) / (kWithin * kWithin);
+        for (int j = 0; j < kWithin; ++j)
+          for (int i = 0; i < kWithin; ++i) {
+            const std::size_t here = thingsAt(x + (i + 0.5) / kWithin, y + (j + 0.5) / kWithin);
+            if (here == 0) continue;
+            const std::vector<double>* light = nullptr;
+            if (here == met) light = &seen[indexOf(x, y)];
+            else eachNeighbour([&](std::size_t k) { light = !light && things[k] == here ? &seen[k] : light; });
+            if (light) add(*light, sr);
+            else add(slotsThrough(x + (i + 0.5) / kWithin, y + (j + 0.5) / kWithin, sum, behind), sr);
+          }
+      }
+    pieces[static_cast<std::size_t>(piece)] = {ownHere, totalHere, contrastHere, wholeHere, visibleHere, seenHere, left, top, right, bottom};
   });
-  row.visible = whole_sr > 0.0 ? seen_sr / whole_sr : 0.0;
+  // In their order, whichever was done first: the same bits every time.
+  for (const Sums& p : pieces) {
+    whole_sr += p.whole, visible_sr += p.visible, seen_sr += p.seen;
+    if (p.left <= p.right) {
+      row.left = std::fmin(row.left, p.left), row.right = std::fmax(row.right, p.right);
+      row.top = std::fmin(row.top, p.top), row.bottom = std::fmax(row.bottom, p.bottom);
+    }
+    for (std::size_t s = 0; s < slots; ++s) own[s] += p.own[s], total[s] += p.total[s], contrast[s] += p.contrast[s];
+  }
+  row.visible = whole_sr > 0.0 ? visible_sr / whole_sr : 0.0;
   const double range2 = row.range_m * row.range_m;
   for (auto* sums : {&own, &total, &contrast})
     for (double& v : *sums) v *= range2;
@@ -261,7 +319,9 @@ void TruthMeter::addLamp(TargetRow& row, std::size_t light, const WorldState& st
   const double range = glm::length(line);
   const glm::dvec3 seen = glm::transpose(film.localFromCamera) * line;
   std::vector<double> sums(static_cast<std::size_t>(plan_.slotCount), 0.0);
-  if (-seen.z >= film.near_m && lightIsInView(simulation_, state, film, light)) {
+  const glm::ivec4 window = camera_.window.value_or(glm::ivec4(0, 0, film.width, film.height));
+  const bool isOnFilm = row.column >= window.x && row.row >= window.y && row.column < window.x + window.z && row.row < window.y + window.w;
+  if (isOnFilm && -seen.z >= film.near_m && lightIsInView(simulation_, state, cameraView(drawnCamera(camera_), state, 1), light)) {
     const auto way = WaysToLights(simulation_, plan_).from(state, present_, film.position, line / range, range, film.near_m * range / -seen.z);
     if (!way.empty()) {
       sums = apparentIntensity(simulation_, plan_, state, light, film.position, way);
@@ -277,9 +337,9 @@ std::vector<TargetRow> TruthMeter::targets(const WorldState& state) const {
   std::vector<TargetRow> rows;
   const WorldState earlier = advance(simulation_, state.time_s - kApart_s), later = advance(simulation_, state.time_s + kApart_s);
   for (std::size_t e = 0; e < simulation_.entities.size(); ++e) {
-    if (!present_[e]) continue;
-    const int entity = static_cast<int>(e);
     const Entity& body = simulation_.entities[e];
+    if (!present_[e] || body.mesh->heightField) continue;
+    const int entity = static_cast<int>(e);
     rows.push_back(placed(body.name, simulation_.mediumOf(body) ? "medium" : "body", state, ballOf(simulation_, state, entity).centre,
                           ballOf(simulation_, earlier, entity).centre, ballOf(simulation_, later, entity).centre));
     addBody(rows.back(), entity, state);
@@ -354,14 +414,17 @@ std::vector<FrameLayer> TruthMeter::terms(const WorldState& state) const {
   return told;
 }
 
-void finishTargets(Frame& frame, const Camera& camera) {
+void finishTargets(Frame& frame, const Camera& camera, double step_s) {
   const DetectorLaw* law = detectorOf(camera);
   for (TargetRow& t : frame.targets) {
     for (TargetRow::Channel& c : t.channels) {
       const auto counts = std::find_if(frame.layers.begin(), frame.layers.end(), [&](const FrameLayer& l) { return l.name == c.channel + ".counts"; });
       if (!law || counts == frame.layers.end() || std::isnan(t.left)) continue;
       c.saturated = 0;
-      const float full = static_cast<float>(std::min(law->mostCount(), std::floor(law->gain * law->fullWell + law->offset + 0.5)));
+      // A full well says what it holds, and read-out adds its noise.
+      constexpr double kSigmas = 4.0;
+      const double noise = kSigmas * law->gain * std::sqrt(law->readoutVariance(step_s)) + 1.0;
+      const float full = static_cast<float>(std::min(law->mostCount(), std::floor(law->gain * law->fullWell + law->offset + 0.5) - noise));
       // A pixel around, which the lens reaches.
       const int left = std::max(0, static_cast<int>(t.left) - 1), right = std::min(frame.width - 1, static_cast<int>(t.right) + 1),
                 top = std::max(0, static_cast<int>(t.top) - 1), bottom = std::min(frame.height - 1, static_cast<int>(t.bottom) + 1);

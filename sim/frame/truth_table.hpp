@@ -14,8 +14,8 @@ class TruthMeter {
   /// `camera`: the film's, which asks for targets or terms. Makes a plan of its own where the channels' radiances are not among its outputs. Both must outlive it.
   TruthMeter(const Simulation& simulation, const Camera& camera);
 
-  /// A row for each body but the camera's carrier, and for each lamp that can be seen. Intensities of a body: over lines of a square grid over its bounding
-  /// sphere, as fine as a picture's zoomed views at the same accuracy; worked out where they bend, linear between within 2e-5. `own`: emission and
+  /// A row for each body but terrain and the camera's carrier, and for each lamp that can be seen. Intensities of a body: over lines of a square grid over its
+  /// bounding sphere, 128 across at 1 %, six times as many where what they meet changes; worked out where they bend, linear between within a twenty-fifth of the accuracy. `own`: emission and
   /// reflection of its surfaces or its medium, through all that lies before it; `total`: all light along lines that meet it before anything opaque; `contrast`:
   /// that less what these lines would have without it. Each times range squared. A camera within a body's sphere gets NaN.
   std::vector<TargetRow> targets(const WorldState& state) const;
@@ -36,7 +36,8 @@ class TruthMeter {
   const Camera& camera_;
   Camera measured_;  ///< with radiances of its channels, and what is detected
   std::vector<std::size_t> radianceOf_;  ///< of each channel, an output of it
-  std::vector<int> lines_;
+  double asked_;  ///< accuracy
+  double lines_;  ///< across a body
   std::vector<char> present_;
   Plan plan_;
   std::shared_ptr<const NodeSpectra> spectra_;
@@ -44,7 +45,7 @@ class TruthMeter {
 
 /// What a frame's pixels say of its targets (those that are full), and their rows as attributes `target.<name>.`: `place` [column, row, left, top, right, bottom],
 /// `sight` [range, its rate, turning to the right and up, share that is visible], and of each channel `<channel>` [own, total, contrast, signal to noise, full pixels].
-void finishTargets(Frame& frame, const Camera& camera);
+void finishTargets(Frame& frame, const Camera& camera, double step_s);
 
 /// Rows as a table: a line of names and units, and for each row a line.
 std::string targetTableHead(const std::vector<TargetRow>& rows);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <map>
 #include <stdexcept>
@@ -77,6 +78,12 @@ class MemoryFile {
     else addList(a);
   }
 
+  /// What the library says of what went wrong.
+  std::string failure() const {
+    char words[FLEN_STATUS] = "";
+    fits_get_errstatus(status_, words);
+    return words;
+  }
   /// Empty where something went wrong.
   std::string bytes() {
     close();
@@ -88,11 +95,22 @@ class MemoryFile {
     // FITS 4.0 section 4.2.1: printable ASCII only.
     for (char& c : text)
       if (c < 32 || c > 126) c = '?';
+    constexpr std::size_t kLongestName = 50;
+    if (name.size() > kLongestName) {
+      fits_write_comment(file_, (name + " = " + text).c_str(), &status_);
+      return;
+    }
     if (text.size() > 60) fits_write_key_longwarn(file_, &status_);
     fits_update_key_longstr(file_, name.c_str(), text.c_str(), nullptr, &status_);
   }
   void addNumber(const std::string& name, double value) {
-    if (std::isfinite(value)) fits_update_key_dbl(file_, name.c_str(), value, -15, nullptr, &status_);
+    // A card has 80 letters: "HIERARCH ", the name, " = ", a number of so many digits and its exponent. What is too long for that is told in words.
+    const int digits = name.size() <= 8 ? 15 : std::min(15, 80 - 9 - static_cast<int>(name.size()) - 3 - 8);
+    if (digits < 6) {
+      char number[40];
+      std::snprintf(number, sizeof number, "%.15g", value);
+      fits_write_comment(file_, (name + " = " + number).c_str(), &status_);
+    } else if (std::isfinite(value)) fits_update_key_dbl(file_, name.c_str(), value, -digits, nullptr, &status_);
     else addText(name, std::isnan(value) ? "nan" : "inf");  // section 4.2.4 has no such numbers
   }
   template <class List>
@@ -129,7 +147,7 @@ void writeFits(const std::filesystem::path& path, int width, int height, const s
   }
   file.tables(keywords);
   const std::string bytes = file.bytes();
-  if (bytes.empty()) throw OutputError(path, "cannot encode the FITS file", 0, "free memory, or write fewer layers");
+  if (bytes.empty()) throw OutputError(path, "cannot encode the FITS file: " + file.failure(), 0, "shorten names, free memory, or write fewer layers");
   writeFileAtomically(path, bytes, mayReplace);
 }
 

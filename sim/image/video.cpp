@@ -119,7 +119,7 @@ class VideoWriter::Encoder {
     // One thread and bitexact: the same pictures give the same bytes.
     const std::vector<std::string> words = {"ffmpeg", "-v",       "error",   "-f",       "rawvideo", "-pix_fmt",   "rgb24",  "-s",        size,
                                             "-r",     rate,       "-i",      "pipe:0",   "-an",      "-c:v",       "libx264", "-preset",  "veryfast",
-                                            "-crf",   "16",       "-threads", "1",       "-g",       every,        "-pix_fmt", "yuv420p",  "-vf",
+                                            "-crf",   "16",       "-threads", "1",       "-sc_threshold", "0", "-g",       every,        "-pix_fmt", "yuv420p",  "-vf",
                                             "scale=out_color_matrix=bt709:out_range=tv", "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1",
                                             "-fflags", "+bitexact", "-flags:v", "+bitexact", "-metadata", said, "-movflags",
                                             "frag_keyframe+empty_moov+default_base_moof", "-f", "mp4", "pipe:1"};

@@ -29,6 +29,8 @@ struct ChannelOutput {
   double scale = 1.0;
   bool perEtendue = false, perExposure = false;
   bool behindOptics = false;                                ///< of the light on the film: lenses take from it and add to it
+  Spectrum onFilm;                                          ///< then the kernel of light that does not pass the optics
+  double onFilmScale = 1.0;                                 ///< as `scale`
   bool detected = false;                                    ///< photoelectrons that a detector makes counts of
   bool asTemperature = false;                               ///< then told as the temperature of a black body whose kernel integral is as large
   bool asSignalToNoise = false, asDisplay = false;          ///< of what is detected: its mean over its noise; codes for a screen

@@ -1,6 +1,7 @@
 #pragma once
 // How a detector makes counts of photoelectrons, as a scenario asks for it.
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace pitviper {
@@ -37,6 +38,13 @@ struct DetectorLaw {
   double offsetDrift_per_s = 0.0;  ///< rms over pixels, in electrons a second since time 0
   double gainDrift_per_s = 0.0;    ///< the same, relative
   Agc agc = Agc::Percentile;
+  static constexpr int kFlickerOctaves = 12;
+  /// Of 1/f noise, in one octave of frequencies, at so many seconds from frame to frame [electron^2]: 2 sigma^2 (f_c / f_s) ln 2.
+  double flickerVariance(double step_s) const { return 2.0 * sigmaTvh * sigmaTvh * flickerCorner_Hz * step_s * std::log(2.0); }
+  /// Of read-out from frame to frame, 1/f noise and the converter's steps included [electron^2].
+  double readoutVariance(double step_s) const {
+    return sigmaTvh * sigmaTvh + sigmaTv * sigmaTv + sigmaTh * sigmaTh + sigmaT * sigmaT + kFlickerOctaves * flickerVariance(step_s) + 1.0 / (12.0 * gain * gain);
+  }
   double mostCount() const { return static_cast<double>((1 << bits) - 1); }
   /// Electrons at which it no longer tells: the well is full, or the highest count.
   double saturation() const { return std::min(fullWell, (mostCount() - offset) / gain); }

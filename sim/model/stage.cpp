@@ -39,10 +39,10 @@ int warmUpOf(const Camera& camera, double step_s) {
   return frames;
 }
 
-double pixelShareOf(const Camera& camera, const ChannelOutput& output, double x, double y) {
+double pixelShareOf(const Camera& camera, const ChannelOutput& output, double focalLength_m, double x, double y) {
   const auto lens = [&](double u, double v) {
     for (const StageChoice& s : camera.stages)
-      if (s.pixelShare) return s.pixelShare(output, u, v);
+      if (s.pixelShare) return s.pixelShare(output, focalLength_m, u, v);
     return std::abs(u) < 0.5 && std::abs(v) < 0.5 ? 1.0 : 0.0;
   };
   const DetectorLaw* law = detectorOf(camera);

@@ -33,8 +33,8 @@ struct StageChoice {
   /// Frames before one that it has to have seen, of a camera with so many seconds from frame to frame; none: none.
   std::function<int(double step_s)> warmUp_frames = {};
   bool takesPoints = false;  ///< what is smaller than a cell comes to it as points (SensorPoint), at their places
-  /// Share of a point's light that falls on a pixel whose middle is so far from it [pixels]; none: all of it on the pixel it is in.
-  std::function<double(const ChannelOutput& output, double x, double y)> pixelShare = {};
+  /// Share of a point's light that falls on a pixel whose middle is so far from it [pixels], at a focal length; none: all of it on the pixel it is in.
+  std::function<double(const ChannelOutput& output, double focalLength_m, double x, double y)> pixelShare = {};
   /// What the sensor itself sends to a pixel of this projected solid angle on the axis, in the output's unit (without exposure time); none: nothing.
   std::function<double(const ChannelOutput& output, double axis_sr)> ownLight = {};
   /// Where on the film light falls that a pinhole would send there: both from the axis, right and up [m]; none: there.
@@ -49,7 +49,7 @@ int cellsOf(const Camera& camera);
 /// Frames that its stages have to have seen before the first that counts.
 int warmUpOf(const Camera& camera, double step_s);
 /// Share of a point's light on a pixel whose middle is so far from it [pixels]: of its lens, and of what its detector's pixels share.
-double pixelShareOf(const Camera& camera, const ChannelOutput& output, double x = 0.0, double y = 0.0);
+double pixelShareOf(const Camera& camera, const ChannelOutput& output, double focalLength_m, double x = 0.0, double y = 0.0);
 /// Of all its stages, in the output's unit.
 double ownLightOf(const Camera& camera, const ChannelOutput& output, double axis_sr, double exposure_s);
 const DetectorLaw* detectorOf(const Camera& camera);  ///< or null

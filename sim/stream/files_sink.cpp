@@ -13,7 +13,9 @@ class FilesSink final : public Sink {
   void start() override { ensureWritableFolder(place_.folder); }
   void take(const std::shared_ptr<const Frame>& frame) override { format_.write(place_.folder / (frameFileStem(*frame) + format_.extension), *frame, options_); }
   std::vector<std::filesystem::path> filesOf(const std::string& camera, int number, const std::string& kind) const override {
-    return {place_.folder / (frameFileStem(camera, number, kind) + format_.extension)};
+    std::vector<std::filesystem::path> files{place_.folder / (frameFileStem(camera, number, kind) + format_.extension)};
+    if (!format_.beside.empty()) files.push_back(place_.folder / (frameFileStem(camera, number, kind) + format_.beside));
+    return files;
   }
 
  private:

@@ -5,7 +5,6 @@
 #include <complex>
 #include <numeric>
 
-#include "sensors/detector_stage.hpp"
 #include "sensors/flicker_noise.hpp"
 #include "sensors/signal_memory.hpp"
 #include "sim/model/stage.hpp"
@@ -74,6 +73,20 @@ TEST(DetectorMemory, AFrameIsTheSameAloneAndInARun) {
   EXPECT_NE(runs[0][3], runs[0][4]);
 }
 
+// A correction is learnt with the camera's own lens and exposure, whatever commands make of them meanwhile.
+TEST(DetectorMemory, ACorrectionIsTheCamerasOwn) {
+  const Simulation sim = field("full_well: 7e6, read_noise: 300, correction: {}, prnu: 0.02, nonlinearity: 0.02", "counts", 300.0,
+                               "time: {rate: 50 Hz, frames: 4}\ncommands: [{command: look, at: 0.03 s, camera: c, field_of_view: 1.5 deg}]\n");
+  needContext();
+  std::vector<std::vector<float>> last;
+  for (int first : {0, 3})
+    runFrames(sim, shaderLibrary(), {first, 3}, [&](const std::shared_ptr<const Frame>& f) {
+      if (f->number == 3) last.push_back(layer(*f, "mw.counts").pixels);
+    });
+  ASSERT_EQ(last.size(), 2u);
+  EXPECT_EQ(last[0], last[1]);
+}
+
 // A periodogram over 2048 frames of 256 pixels: as much in each octave, and as dense as white read noise at the corner.
 TEST(DetectorMemory, FlickerNoiseFallsAsOneOverF) {
   constexpr int kFrames = 2048, kPixels = 256;
@@ -101,7 +114,7 @@ TEST(DetectorMemory, FlickerNoiseFallsAsOneOverF) {
           "a sum of held octaves ripples; 64 pixels");
   // The corner: where it is as dense as the white noise, 2 sigma^2 a cycle a frame.
   const DetectorLaw law{.sigmaTvh = 50.0, .flickerCorner_Hz = 4.0};
-  const double step = 0.02, octave = flickerOctave(law, step);
+  const double step = 0.02, octave = std::sqrt(law.flickerVariance(step));
   figure("density of 1/f noise at its corner by that of white noise", octave * octave / (std::log(2.0) * 4.0 * step) / (2.0 * 50.0 * 50.0), 1.0, 1e-12, "by definition");
   FlickerNoise again(3, 7, kPixels);
   EXPECT_EQ(std::vector<float>(noise.at(777)), again.at(777)) << "of a frame's number alone";

@@ -106,6 +106,13 @@ TEST(ExposureParts, ALampLeavesAStreak) {
   const auto [still, peak] = flux("");
   const auto [streak, along] = flux("motion_blur: true, exposure_parts: 64, ");
   figure("light of a lamp that moves by ten pixels, of the same at rest", streak, still, 2e-3, "energy");
+  const Simulation lamp = scene(
+      "time: {rate: 50 Hz, frames: 3}\nbackground: {temperature: 3 K}\nlights: [{name: l, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 1], [5, 1]]}, motion: [{time: -1 s, position: [1000 m, 150 m, "
+      "0.1 m]}, {time: 1 s, position: [1000 m, -150 m, 0.1 m]}]}]\ncameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, focal_length: 100 mm, aperture: 25 mm, exposure: 10 ms, motion_blur: true, "
+      "position: [0 m, 0 m, 0 m], heading: 90 deg, channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, output: flux}]}]\n");
+  const ExposureParts parts = exposureParts(lamp, lamp.cameras[0], 0.0);
+  EXPECT_GE(parts.times_s.size(), 40u) << "four a pixel of ten";
+  EXPECT_NEAR(parts.streakError, 0.25, 0.01);
   EXPECT_LT(along, 0.25 * peak) << "it is on ten pixels";
   EXPECT_GT(along, 0.05 * peak);
 }

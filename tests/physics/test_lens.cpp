@@ -94,6 +94,11 @@ TEST(Lens, Vignetting) {
       EXPECT_NEAR(at(layer(f, "mw.radiance"), f, c, r) / at(layer(plain, "mw.radiance"), plain, c, r), 1.0, 1e-6);
     }
   bound("vignetting of each pixel against its polynomial", worst, 1e-6, "single precision");
+  const Frame oblong = renderFrame(scene(
+      "background: {temperature: 300 K}\ncameras: [{name: c, film: {width: 33, height: 33, pitch: 20 um, pitch_y: 10 um}, focal_length: 1 mm, aperture: 0.5 mm, position: [0 m, 0 m, 0 m], heading: 0 deg, "
+      "stages: [{stage: vignetting, v1: -1}], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, output: flux}]}]\n"));
+  figure("vignetting of the top middle pixel of half height", at(layer(oblong, "mw.flux"), oblong, 16, 0) / at(layer(oblong, "mw.flux"), oblong, 16, 16), (1.0 - 0.16 * 0.16) / std::pow(1.0 + 0.16 * 0.16, 2.0),
+         1e-4, "1 - tan^2, cos^4");
 }
 
 // A film in a cold dewar behind a warm lens: pi / (4 F^2) of what the lens sends, and what the housing sends around it as far as the stop is open.
@@ -132,6 +137,32 @@ TEST(Lens, ApparentTemperatureKnowsTheLens) {
   double mean = 0.0;
   for (float v : layer(f, "lw.apparent_temperature").pixels) mean += static_cast<double>(v) / 1024.0;
   figure("apparent temperature of a black body of 310 K behind a lens of 330 K", mean, 310.0, 2e-4, "shot noise over the root of 1024 pixels");
+}
+
+// The same over a wide film, behind whatever takes light away and adds to it off the axis.
+TEST(Lens, ApparentTemperatureOverTheFilm) {
+  for (const char* stages : {"{stage: distortion, k1: -0.3}", "{stage: vignetting, v1: -1}", "{stage: lens_emission, temperature: 300 K, emissivity: 0.3, stop_f_number: 1}",
+                             "{stage: distortion, k1: -0.2}, {stage: point_spread, diffraction: false, blur: 20 um}, {stage: vignetting, v1: -0.5}, {stage: lens_emission, temperature: 320 K, emissivity: 0.1}"}) {
+    const Frame f = renderFrame(scene("background: {temperature: 300 K}\n" + wide(std::string("stages: [") + stages + ", {stage: detector, full_well: 2e9, bits: 16}]",
+                                                                               "{name: lw, response: {band: [8 um, 9 um]}, quantum_efficiency: 0.6, output: [apparent_temperature]}")));
+    double worst = 0.0;
+    for (float v : layer(f, "lw.apparent_temperature").pixels) worst = std::max(worst, std::abs(static_cast<double>(v) - 300.0));
+    bound(std::string("apparent temperature of a black body of 300 K off over the film [K], ") + stages, worst, 0.1, "steps of a count and shot noise");
+  }
+}
+
+// A lens that zooms: the housing has what the cone leaves of the stop, at every focal length.
+TEST(Lens, ItsHousingFollowsTheZoom) {
+  const auto flux = [](const std::string& focal, const std::string& commands) {
+    const Frame f = renderFrame(scene("background: {temperature: 3 K}\ncameras: [{name: c, film: {width: 16, height: 16, pitch: 15 um}, focal_length: " + focal +
+                                      ", aperture: 25 mm, position: [0 m, 0 m, 0 m], heading: 0 deg, stages: [{stage: lens_emission, temperature: 300 K, emissivity: 0, stop_f_number: 1}], channels: [{name: lw, "
+                                      "response: {band: [8 um, 9 um]}, output: focal_irradiance}]}]\n" + commands));
+    return at(layer(f, "lw.focal_irradiance"), f, 8, 8);
+  };
+  const double angle = 2.0 * std::atan(0.5 * 16 * 15e-6 / 0.15);
+  const double zoomed = flux("100 mm", print("commands: [{command: look, at: 0 s, camera: c, field_of_view: %.12g rad}]\n", angle)), own = flux("150 mm", "");
+  figure("irradiance of a housing at F/6 after a zoom from F/4 [W/m2]", zoomed, own, 1e-5, "the same lens");
+  figure("the same by its cone [W/m2]", own, 0.25 * kPi * blackBodyBand(8, 9, 300) * (1.0 - 1.0 / 36.0), 1e-4, "pi B / 4 (1 / F_stop^2 - 1 / F^2)");
 }
 
 TEST(Lens, FNumberFocalLengthAndAperture) {

@@ -5,6 +5,7 @@
 
 #include "sim/frame/truth_table.hpp"
 #include "sim/model/stage.hpp"
+#include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
@@ -90,6 +91,30 @@ TEST(TruthTable, SharesAndRates) {
   EXPECT_GT(row(f, "wall").channels[0].total, 0.0);
   const double hidden = 0.5 * kPi * 4.0 * 0.81 * (blackBodyBand(3.6, 4.9, 400.0) - blackBodyBand(3.6, 4.9, 290.0));
   figure("contrast of a wall as warm as what is behind it, but for half a ball [W/sr]", row(f, "wall").channels[0].contrast, -hidden, 0.02, "what it hides, at its own range");
+}
+
+// The same bits every time, however many work at it.
+TEST(TruthTable, IsTheSameEveryTime) {
+  const Simulation sim = scene("background: {temperature: 290 K}\nmaterials: {m: {components: [{reflection: lambertian, reflectance: 0.3}]}}\nentities: [{name: ball, shape: {model: sphere, radius: 2 m}, material: m, "
+                               "temperature: 400 K, position: [300 m, 0 m, 0 m]}]\n" + camera(""));
+  needContext();
+  const TruthMeter meter(sim, sim.cameras[0]);
+  const WorldState state = advance(sim, 0.0);
+  const double first = meter.targets(state)[0].channels[0].own;
+  for (int k = 0; k < 8; ++k) EXPECT_EQ(meter.targets(state)[0].channels[0].own, first);
+}
+
+// What a lens brings onto the film from beyond a pinhole's is on it.
+TEST(TruthTable, FollowsTheLens) {
+  const Frame f = renderFrame(scene("background: {temperature: 3 K}\nmaterials: {m: {components: []}}\nentities: [{name: ball, shape: {model: sphere, radius: 5 m}, material: m, temperature: 500 K, position: [1000 m, 0 m, 262 m]}]\n"
+                                    "cameras: [{name: c, film: {width: 64, height: 48, pitch: 20 um}, focal_length: 2 mm, aperture: 1 mm, position: [0 m, 0 m, 0 m], heading: 90 deg, truth: [targets], stages: [{stage: distortion, "
+                                    "k1: -0.4}], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}}]}]\n"));
+  const TargetRow& t = row(f, "ball");
+  const double r = 0.262, rd = r * (1.0 - 0.4 * r * r);
+  EXPECT_NEAR(t.row, 24.0 - rd * 100.0, 1e-3);
+  ASSERT_LT(t.row, 24.0);
+  EXPECT_GT(t.row, -2.0);
+  EXPECT_EQ(t.visible > 0.0, t.bottom > 0.0);
 }
 
 // A lamp is its own intensity times the air's transmittance.

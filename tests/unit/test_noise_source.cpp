@@ -45,10 +45,20 @@ TEST(NoiseSource, NormalNumbersAre) {
   bound("share beyond 3 off 0.0027", std::abs(beyond / n - 0.0026998), 4.0 * std::sqrt(0.0027 / n), "4 standard errors");
 }
 
+// Abramowitz and Stegun, table 26; Wichura's own check values.
+TEST(NoiseSource, NormalQuantiles) {
+  EXPECT_EQ(normalQuantile(0.5), 0.0);
+  EXPECT_NEAR(normalQuantile(0.975), 1.959963984540054, 1e-14);
+  EXPECT_NEAR(normalQuantile(0.25), -0.6744897501960817, 1e-15);
+  EXPECT_NEAR(normalQuantile(0.001), -3.090232306167814, 1e-14);
+  EXPECT_NEAR(normalQuantile(1e-20), -9.262340089798408, 1e-13);
+  for (double u : {1e-12, 1e-4, 0.07, 0.0751, 0.3, 0.9, 0.99999}) EXPECT_NEAR(0.5 * std::erfc(-normalQuantile(u) / std::sqrt(2.0)) / u, 1.0, 1e-12) << u;
+}
+
 // Every way a count is drawn: all three moments of Poisson's law are its mean.
 TEST(NoiseSource, CountsArePoissons) {
   const double n = kDraws;
-  for (double mean : {0.3, 4.0, 9.9, 10.1, 35.0, 1000.0, 3e5, 2e7}) {
+  for (double mean : {0.3, 4.0, 9.9, 10.1, 35.0, 1000.0, 9999.0, 10001.0, 3e5, 2e7}) {
     const NoiseSource source(7, 0, 3, NoiseEffect::Shot);
     std::vector<double> all;
     for (std::uint32_t k = 0; k < kDraws; ++k) all.push_back(source.poisson(mean, k));

@@ -3,14 +3,6 @@
 #include <cmath>
 
 namespace pitviper {
-namespace {
-
-/// What a middle may be off by and still count as between the corners, relative to it: a twenty-fifth of the least error that can be asked for (0.05 %), and
-/// an error of second order is greatest there.
-constexpr double kLinear = 2e-5;
-
-}  // namespace
-
 const std::vector<double>& ZoomedTile::at(int x, int y) {
   auto& place = seen_[index(x, y)];
   if (!place) place = slotsAt_(x, y);
@@ -31,7 +23,7 @@ bool ZoomedTile::isLinear(int x0, int y0, int x1, int y1) {
   const double u = static_cast<double>(xm - x0) / (x1 - x0), v = static_cast<double>(ym - y0) / (y1 - y0);
   for (std::size_t s = 0; s < m.size(); ++s) {
     const double between = (1 - v) * ((1 - u) * a[s] + u * b[s]) + v * ((1 - u) * c[s] + u * d[s]);
-    if (std::abs(between - m[s]) > kLinear * std::abs(m[s])) return false;
+    if (std::abs(between - m[s]) > linear_ * std::abs(m[s])) return false;
   }
   return true;
 }
