@@ -7,13 +7,11 @@
 #include <map>
 #include <stdexcept>
 
-#include "scenarios/commands/commands.hpp"
-#include "scenarios/reader/scenario_reader.hpp"
+#include "scenarios/commands/bench_setup.hpp"
 #include "sensors/edge_transfer.hpp"
 #include "sensors/figures.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/radiometry/constants.hpp"
-#include "sim/run/run.hpp"
 
 namespace pitviper {
 namespace {
@@ -24,92 +22,10 @@ std::string print(const char* format, auto... values) {
   return text;
 }
 
-/// A side of a pixel, for targets with edges: on cells of a half or a third of it some each.
-constexpr int kSubpixels = 4;
-/// Everything is a kilometre away, in empty space, before a cold background.
-constexpr double kFar_m = 1000.0;
-
-/// A picture of counts as numbers.
-using Counts = std::vector<float>;
-
-/// One camera before one target, and its frames of a channel's counts.
-class Setup {
- public:
-  /// `samples`: subpixels a side, for targets with edges.
-  Setup(const BenchOptions& options, const std::string& target, int frames, int samples = 1, const std::string& commands = "") {
-    simulation_ = readScenarioText(
-        print("name: bench\nseed: %lld\ntime: {rate: %.9g Hz, frames: %d}\nbackground: {temperature: 3 K}\nmaterials: {black: {components: []}}\n", options.seed,
-              1.0 / options.step_s, frames) +
-            target + print("cameras:\n- name: bench\n  position: [0 m, 0 m, 0 m]\n  heading: 90 deg\n  samples: %d\n", samples) + options.camera + commands,
-        "bench", options.base, options.changes, findLibraries());
-    Camera& c = simulation_.cameras.front();
-    c.window.reset();
-    c.truth = {};
-    c.spectralImage.reset();
-    c.spectral.accuracy = 0.0;  // every wavelength of its own sampling
-    c.motionBlur = false;
-    c.pinhole.width = std::min(c.pinhole.width, options.film_px);
-    c.pinhole.height = std::min(c.pinhole.height, options.film_px);
-    simulation_.audit = 0.0;
-  }
-  const Simulation& simulation() const { return simulation_; }
-  const Camera& camera() const { return simulation_.cameras.front(); }
-
-  /// Calls of(frame's number, counts of a layer) for each.
-  template <class Of>
-  void each(const std::string& layer, const Of& of) const {
-    runFrames(simulation_, shaderLibrary(), {0, simulation_.time.frames - 1}, [&](const std::shared_ptr<const Frame>& f) {
-      for (const FrameLayer& l : f->layers)
-        if (l.name == layer) of(f->number, l.pixels);
-    });
-  }
-
- private:
-  Simulation simulation_;
-};
-
-std::string plate(const char* name, double left_m, double right_m, double halfHeight_m, double kelvin, double roll_deg = 0.0, double range_m = kFar_m) {
-  // A plate faces along x; seen from the west its y runs to the left.
-  return print("  - {name: %s, shape: {model: plate, width: %.9g m, height: %.9g m}, material: black, temperature: %.9g K, position: [%.9g m, %.9g m, 0 m], heading: 270 deg, "
-               "roll: %.9g deg}\n",
-               name, right_m - left_m, 2.0 * halfHeight_m, kelvin, range_m, -0.5 * (left_m + right_m), roll_deg);
-}
-
 double meanOf(const Counts& c) {
   double sum = 0.0;
   for (float v : c) sum += static_cast<double>(v);
   return sum / static_cast<double>(c.size());
-}
-
-/// Pixels that are far from what those around them say in the mean of a flat field: by more than ten times what half of all are off.
-std::vector<char> badPixels(const std::vector<double>& mean) {
-  std::vector<double> off, sorted = mean;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(sorted.size() / 2), sorted.end());
-  const double median = sorted[sorted.size() / 2];
-  for (double v : mean) off.push_back(std::abs(v - median));
-  sorted = off;
-  std::nth_element(sorted.begin(), sorted.begin() + static_cast<long>(sorted.size() / 2), sorted.end());
-  const double most = std::max(10.0 * sorted[sorted.size() / 2], 1.0);
-  std::vector<char> bad;
-  for (double o : off) bad.push_back(o > most);
-  return bad;
-}
-
-/// Each of them becomes the mean of the good ones around it, as a camera's own electronics would have it.
-template <class Picture>
-void mend(Picture& picture, const std::vector<char>& bad, int width) {
-  const int height = static_cast<int>(bad.size()) / width;
-  for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) {
-      const auto at = static_cast<std::size_t>(y * width + x);
-      if (!bad[at]) continue;
-      double sum = 0.0;
-      int count = 0;
-      for (int j = std::max(0, y - 1); j <= std::min(height - 1, y + 1); ++j)
-        for (int i = std::max(0, x - 1); i <= std::min(width - 1, x + 1); ++i)
-          if (!bad[static_cast<std::size_t>(j * width + i)]) sum += static_cast<double>(picture[static_cast<std::size_t>(j * width + i)]), ++count;
-      if (count > 0) picture[at] = static_cast<typename Picture::value_type>(sum / count);
-    }
 }
 
 /// A least-squares line.

@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 
+#include "sim/camera/light_places.hpp"
 #include "sim/camera/zoomed_lines.hpp"
 #include "sim/model/ray_hits.hpp"
 
@@ -41,14 +42,6 @@ View zoomedView(const Ball& ball, const View& v, int size) {
 }
 
 namespace {
-
-/// Sums over samples of weight times place, from a subpixel's middle: x, y, x^2, x y, y^2.
-using Moments = std::array<double, 5>;
-
-void addMoments(Moments& m, const glm::dvec2& at, double weight) {
-  const Moments one{at.x, at.y, at.x * at.x, at.x * at.y, at.y * at.y};
-  for (size_t k = 0; k < m.size(); ++k) m[k] += weight * one[k];
-}
 
 /// What zoomed samples say of one subpixel of the image.
 struct Share {
@@ -199,22 +192,6 @@ void gather(Subpixels& image, const View& z, const RawImage& zoomed, const Share
   }
 }
 
-/// Where the light of some samples is: its middle, and the spread around it.
-struct Place {
-  glm::dvec2 middle{0.0};
-  double xx = 0.0, xy = 0.0, yy = 0.0;
-};
-
-/// Of sums over samples and their moments, none where these are of no place within a subpixel: what is brighter and what is darker than the rest may cancel.
-std::optional<Place> placeOf(double sum, const Moments& m) {
-  if (!(std::abs(sum) > 0.0)) return std::nullopt;
-  const Place p{{m[0] / sum, m[1] / sum}, m[2] / sum - m[0] * m[0] / (sum * sum), m[3] / sum - m[0] * m[1] / (sum * sum), m[4] / sum - m[1] * m[1] / (sum * sum)};
-  constexpr double kHalf = 0.5, kMostSpread = 0.25;  // of a subpixel
-  const bool good = std::abs(p.middle.x) <= kHalf && std::abs(p.middle.y) <= kHalf && p.xx >= 0.0 && p.yy >= 0.0 && p.xx <= kMostSpread && p.yy <= kMostSpread &&
-                    p.xy * p.xy <= p.xx * p.yy * (1.0 + 1e-9);
-  return good ? std::optional(p) : std::nullopt;
-}
-
 /// What a subpixel's small bodies send beyond what the image has there, as points that have its middle and its spread.
 void putPoints(Subpixels& image, size_t subpixel, const Fine& f) {
   const auto width = static_cast<size_t>(image.view().width);
@@ -227,16 +204,8 @@ void putPoints(Subpixels& image, size_t subpixel, const Fine& f) {
     for (size_t k = 0; k < m.size(); ++k) m[k] -= behind * f.placed[k];
     const Place p = placeOf(flux, m).value_or(whole);
     const glm::dvec2 at = corner + 0.5 + p.middle;
-    // Principal axes of the spread; two points along each, root 2 of its deviation off, have the same.
-    const double mean = 0.5 * (p.xx + p.yy), off = std::sqrt(0.25 * (p.xx - p.yy) * (p.xx - p.yy) + p.xy * p.xy), angle = 0.5 * std::atan2(2.0 * p.xy, p.xx - p.yy);
-    constexpr double kNoSpread = 1e-3;  // of a subpixel squared
-    if (mean + off < kNoSpread) {
-      image.addPoint(at, subpixel, s, flux);
-      continue;
-    }
-    const glm::dvec2 along = std::sqrt(2.0 * std::max(mean + off, 0.0)) * glm::dvec2(std::cos(angle), std::sin(angle)),
-                     across = std::sqrt(2.0 * std::max(mean - off, 0.0)) * glm::dvec2(-std::sin(angle), std::cos(angle));
-    for (const glm::dvec2& step : {along, -along, across, -across}) image.addPoint(at + step, subpixel, s, 0.25 * flux);
+    const std::vector<glm::dvec2> steps = pointsOf(p);
+    for (const glm::dvec2& step : steps) image.addPoint(at + step, subpixel, s, flux / static_cast<double>(steps.size()));
   }
 }
 

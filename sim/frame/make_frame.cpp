@@ -8,7 +8,7 @@
 #include "sim/frame/file_owner.hpp"
 #include "sim/frame/limits_check.hpp"
 #include "sim/frame/sensor_header.hpp"
-#include "sim/frame/truth_table.hpp"
+#include "sim/frame/target_rows.hpp"
 #include "sim/frame/version.hpp"
 #include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <cstdio>
 #include <future>
 #include <set>
 #include <thread>
@@ -412,62 +411,6 @@ std::vector<FrameLayer> TruthMeter::terms(const WorldState& state) const {
       told.push_back({"truth.terms." + measured_.outputs[radianceOf_[c]].channel + "." + name, "W/(m2 sr)", std::move(layer)});
     }
   return told;
-}
-
-void finishTargets(Frame& frame, const Camera& camera, double step_s) {
-  const DetectorLaw* law = detectorOf(camera);
-  for (TargetRow& t : frame.targets) {
-    for (TargetRow::Channel& c : t.channels) {
-      const auto counts = std::find_if(frame.layers.begin(), frame.layers.end(), [&](const FrameLayer& l) { return l.name == c.channel + ".counts"; });
-      if (!law || counts == frame.layers.end() || std::isnan(t.left)) continue;
-      c.saturated = 0;
-      // A full well says what it holds, and read-out adds its noise.
-      constexpr double kSigmas = 4.0;
-      const double noise = kSigmas * law->gain * std::sqrt(law->readoutVariance(step_s)) + 1.0;
-      const float full = static_cast<float>(std::min(law->mostCount(), std::floor(law->gain * law->fullWell + law->offset + 0.5) - noise));
-      // A pixel around, which the lens reaches.
-      const int left = std::max(0, static_cast<int>(t.left) - 1), right = std::min(frame.width - 1, static_cast<int>(t.right) + 1),
-                top = std::max(0, static_cast<int>(t.top) - 1), bottom = std::min(frame.height - 1, static_cast<int>(t.bottom) + 1);
-      for (int y = top; y <= bottom; ++y)
-        for (int x = left; x <= right; ++x) c.saturated += counts->pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)] >= full;
-    }
-    const std::string name = "target." + t.name + ".";
-    frame.attributes.push_back({name + "place", std::vector<double>{t.column, t.row, t.left, t.top, t.right, t.bottom}});
-    frame.attributes.push_back({name + "sight", std::vector<double>{t.range_m, t.rangeRate_m_s, t.sightRight_rad_s, t.sightUp_rad_s, t.visible}});
-    for (const TargetRow::Channel& c : t.channels)
-      frame.attributes.push_back({name + c.channel, std::vector<double>{c.own, c.total, c.contrast, c.signalToNoise, static_cast<double>(c.saturated)}});
-  }
-}
-
-std::string targetTableHead(const std::vector<TargetRow>& rows) {
-  std::string text =
-      "frame,time [s],name,kind,column,row,left,top,right,bottom,range [m],range rate [m/s],sight right [rad/s],sight up [rad/s],visible";
-  if (!rows.empty())
-    for (const TargetRow::Channel& c : rows.front().channels)
-      text += "," + c.channel + ".own [" + c.unit + "]," + c.channel + ".total [" + c.unit + "]," + c.channel + ".contrast [" + c.unit + "]," + c.channel + ".snr," +
-              c.channel + ".saturated";
-  return text + "\n";
-}
-
-std::string targetTable(const Frame& frame) {
-  std::string text;
-  const auto add = [&text](double value) {
-    char cell[40];
-    std::snprintf(cell, sizeof cell, ",%.9g", value);
-    text += std::isnan(value) ? "," : cell;
-  };
-  for (const TargetRow& t : frame.targets) {
-    text += std::to_string(frame.number);
-    add(frame.time_s);
-    text += "," + t.name + "," + t.kind;
-    for (double v : {t.column, t.row, t.left, t.top, t.right, t.bottom, t.range_m, t.rangeRate_m_s, t.sightRight_rad_s, t.sightUp_rad_s, t.visible}) add(v);
-    for (const TargetRow::Channel& c : t.channels) {
-      for (double v : {c.own, c.total, c.contrast, c.signalToNoise}) add(v);
-      text += c.saturated < 0 ? "," : "," + std::to_string(c.saturated);
-    }
-    text += "\n";
-  }
-  return text;
 }
 
 }  // namespace pitviper

@@ -2,7 +2,7 @@
 #include <map>
 
 #include "sim/frame/file_owner.hpp"
-#include "sim/frame/truth_table.hpp"
+#include "sim/frame/target_rows.hpp"
 #include "sim/stream/sink_models.hpp"
 
 namespace pitviper {

@@ -102,6 +102,7 @@ TEST_F(Commands, ExrinfoReadsAFrame) {
   if (run("command -v exrinfo").code != 0) GTEST_SKIP() << "exrinfo (Debian package openexr) is not installed";
   ASSERT_EQ(pitviper("run " + scenario("far_jet.yaml") + " --frames 0 --out " + folder_.string()).code, 0);
   for (const auto& entry : fs::directory_iterator(folder_)) {
+    if (entry.path().extension() != ".exr") continue;  // a plan lies beside it
     const Result r = run("exrinfo -v " + entry.path().string());
     EXPECT_EQ(r.code, 0) << r.output;
     EXPECT_NE(r.output.find("radiance"), std::string::npos);

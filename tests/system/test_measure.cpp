@@ -41,7 +41,7 @@ TEST(Measure, FindsTheDesignInPictures) {
                                         "  channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: counts}]\n  stages:\n  - {stage: point_spread, wavefront_error: 0.2 um}\n"
                                         "  - {stage: detector, full_well: 6e6, bits: 14, offset: 200, read_noise: 500, row_noise: 400, column_noise: 300, frame_noise: 250, dsnu: 600, fixed_row_noise: 350, "
                                         "fixed_column_noise: 300, prnu: 0.001, bad_pixels: 0.001}\n");
-  const Result r = pitviper("measure " + camera + " --film 96 --frames 32 --out " + (folder.path() / "out").string());
+  const Result r = pitviper("measure " + camera + " --film 80 --frames 16 --out " + (folder.path() / "out").string());
   ASSERT_TRUE(r.code == 0 || r.output.find("libvtk9") != std::string::npos) << r.output;
   if (r.code != 0) GTEST_SKIP() << "built without VTK";
   std::ifstream in(folder.path() / "out/mine.csv");
