@@ -15,12 +15,13 @@ Fft unscaled() { return Fft(Fft::impl_type(), Fft::Unscaled); }
 /// Longer ones are faster by spectra.
 constexpr int kLongest = 24;
 
-/// The kernel along a row, and along a column, if all of it is their product.
+/// The kernel along a row, and along a column, if all of it is their product: to what a transfer function's table leaves of that.
 std::vector<double> factorOf(const SpreadKernel& k) {
+  constexpr double kProduct = 1e-5;
   if (k.reach > kLongest || !(k.at(0, 0) > 0.0)) return {};
   for (int j = 0; j <= k.reach; ++j)
     for (int i = 0; i <= k.reach; ++i)
-      if (std::abs(k.at(i, j) * k.at(0, 0) - k.at(i, 0) * k.at(0, j)) > 1e-9 * k.at(0, 0) * k.at(0, 0)) return {};
+      if (std::abs(k.at(i, j) * k.at(0, 0) - k.at(i, 0) * k.at(0, j)) > kProduct * k.at(0, 0) * k.at(0, 0)) return {};
   std::vector<double> along;
   for (int i = 0; i <= k.reach; ++i) along.push_back(k.at(i, 0) / std::sqrt(k.at(0, 0)));
   return along;

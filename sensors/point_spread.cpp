@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include "sensors/convolution.hpp"
 #include "sensors/stages.hpp"
@@ -261,12 +262,19 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
     return within * kernelOf(lens, o, kMostReach_cells).transfer(frequency_per_m * lens.cell_m);
   };
   choice.takesPoints = true;
-  choice.pixelShare = [lens, within](const ChannelOutput& o, double focal_m, double x, double y) {
-    Lens zoomed = lens;
-    zoomed.zoom(focal_m);
-    const Transfer transfer(zoomed, o);
-    const int reach = static_cast<int>(std::ceil(std::max(std::abs(x), std::abs(y))));
-    return within * PointResponse(transfer, transfer.cutoff_per_m(), zoomed.pitch_m, reach).share(x, y);
+  // Tables are made once for each output and focal length: near ones, or far ones once those are asked for.
+  const auto known = std::make_shared<std::map<std::tuple<std::string, double, int>, PointResponse>>();
+  choice.pixelShare = [lens, within, known](const ChannelOutput& o, double focal_m, double x, double y) {
+    constexpr int kNear = 2;
+    const int needed = static_cast<int>(std::ceil(std::max(std::abs(x), std::abs(y)))), reach = needed <= kNear ? kNear : (needed + 31) / 32 * 32;
+    auto at = known->find({o.layer(), focal_m, reach});
+    if (at == known->end()) {
+      Lens zoomed = lens;
+      zoomed.zoom(focal_m);
+      const Transfer transfer(zoomed, o);
+      at = known->emplace(std::tuple(o.layer(), focal_m, reach), PointResponse(transfer, transfer.cutoff_per_m(), zoomed.pitch_m, reach)).first;
+    }
+    return within * at->second.share(x, y);
   };
   choice.make = [lens, kernels](const ShaderLibrary&) { return std::make_unique<PointSpreadStage>(lens, kernels); };
   return choice;
