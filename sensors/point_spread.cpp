@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "sensors/convolution.hpp"
+#include "sensors/side_by_side.hpp"
 #include "sensors/stages.hpp"
 #include "sim/camera/sensor_stage.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -166,11 +167,15 @@ class PointSpreadStage final : public SensorStage {
   }
 
  private:
-  /// Points at their own places: shares of each on the cells around it, the rest evenly.
+  /// Points at their own places: shares of each on the cells around it, and what falls farther away.
   void addPoints(const std::vector<SensorPoint>& points, std::size_t o, const SensorPictures& pictures, std::vector<float>& picture) {
     std::vector<double> sum;
     const double within = 1.0 - lens_.veilingGlare;
     double veil = 0.0;
+    // Each looks at all cells: of many points on large pictures the far light lies evenly, as that of cells does.
+    constexpr double kMostSteps = 2e7;
+    const auto own = std::count_if(points.begin(), points.end(), [&](const SensorPoint& p) { return p.output == o; });
+    const bool tails = lens_.diffraction && static_cast<double>(own) * static_cast<double>(picture.size()) <= kMostSteps;
     for (const SensorPoint& p : points) {
       if (p.output != o) continue;
       if (sum.empty()) sum.assign(picture.begin(), picture.end());
@@ -189,9 +194,26 @@ class PointSpreadStage final : public SensorStage {
           const auto cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(pictures.width) + static_cast<std::size_t>(x);
           sum[cell] += share * pictures.inCell(p, cell);
         }
-      veil += std::max(0.0, 1.0 - all) * pictures.inCell(p, picture.size() / 2) / static_cast<double>(picture.size());
+      const double far = std::max(0.0, within - all);
+      veil += (1.0 - within + (tails ? 0.0 : far)) * pictures.inCell(p, picture.size() / 2) / static_cast<double>(picture.size());
+      if (tails) addTail(p, far, reach, column, row, pictures, sum);
     }
     for (std::size_t c = 0; c < sum.size(); ++c) picture[c] = static_cast<float>(std::max(0.0, sum[c] + veil));
+  }
+
+  /// What diffraction sends beyond a square of cells around a point falls off as the cube of the distance from it (an edge of the aperture; J. W. Goodman, Introduction to
+  /// Fourier Optics, of Airy's pattern averaged over its rings): c / r^3, whose integral beyond a square of half a side a is 4 sqrt(2) c / a.
+  static void addTail(const SensorPoint& p, double far, int reach, int column, int row, const SensorPictures& pictures, std::vector<double>& sum) {
+    const double c = far * (reach + 0.5) / (4.0 * std::sqrt(2.0));
+    sideBySide(pictures.height, [&](int first, int last) {
+      for (int y = first; y < last; ++y)
+        for (int x = 0; x < pictures.width; ++x) {
+          if (std::abs(x - column) <= reach && std::abs(y - row) <= reach) continue;
+          const double dx = x + 0.5 - p.column, dy = y + 0.5 - p.row, r2 = dx * dx + dy * dy;
+          const auto cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(pictures.width) + static_cast<std::size_t>(x);
+          sum[cell] += c / (r2 * std::sqrt(r2)) * pictures.inCell(p, cell);
+        }
+    });
   }
 
   /// Another stage may ask for finer cells, and a lens zooms. Kernels stay within the margin that there is.

@@ -132,6 +132,20 @@ TEST(PointSpread, APixelsShareOfAStar) {
   }
 }
 
+// Beyond the kernel a star's light falls off as the cube of the distance: what lies within circles against Airy's pattern.
+TEST(PointSpread, FarLightOfAStar) {
+  const Frame plain = renderFrame(pointScene(0.0, 0.0, "")), f = renderFrame(pointScene(0.0, 0.0, "stages: [{stage: point_spread, cells: 2, beyond: 0.05}], "));
+  for (double radius_px : {12.0, 20.0, 30.0}) {
+    double within = 0.0;
+    for (int y = 0; y < 65; ++y)
+      for (int x = 0; x < 65; ++x)
+        if (std::hypot(x - 32, y - 32) <= radius_px) within += at(layer(f, "lw.flux"), f, x, y);
+    const double v = kPi * radius_px * 15.0 / 20.0;
+    figure(print("light of a star within %g pixels, 10 um F/2, a kernel of 95 %% of it", radius_px), within / sum(layer(plain, "lw.flux")),
+           1.0 - std::pow(std::cyl_bessel_j(0.0, v), 2.0) - std::pow(std::cyl_bessel_j(1.0, v), 2.0), 3e-3, "Rayleigh 1881; a circle of whole pixels; rings averaged");
+  }
+}
+
 // A body of a fifth of a pixel is a star with the same light, wherever in a pixel it is; one of a pixel is its points one by one.
 TEST(PointSpread, SmallBodiesFallWhereTheyAre) {
   const auto shareOf = [](double x_px, double radius_m) {
