@@ -2,8 +2,6 @@
 #include <fitsio.h>
 #include <gtest/gtest.h>
 #include <tiffio.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <array>
 #include <cmath>
@@ -14,6 +12,7 @@
 
 #include "sim/image/exr.hpp"
 #include "sim/image/png.hpp"
+#include "tests/support/run_program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace pitviper::test {
@@ -21,20 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Result {
-  int code = -1;
-  std::string output;
-};
-Result run(const std::string& line) {
-  Result r;
-  FILE* pipe = popen((line + " 2>&1").c_str(), "r");
-  std::array<char, 4096> buffer{};
-  while (size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) r.output.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  r.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-  return r;
-}
-Result pitviper(const std::string& arguments) { return run(std::string("PITVIPER_HOME=") + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM + " " + arguments); }
 bool has(const std::string& program) { return run("command -v " + program).code == 0; }
 std::string bytes(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);

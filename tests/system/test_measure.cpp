@@ -1,32 +1,16 @@
 // The lab bench as a user runs it: what it measures from pictures against the camera's design.
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <sstream>
 
+#include "tests/support/run_program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace pitviper::test {
 namespace {
-
-struct Result {
-  int code = -1;
-  std::string output;
-};
-Result pitviper(const std::string& arguments) {
-  Result r;
-  FILE* pipe = popen((std::string("PITVIPER_HOME=") + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM + " " + arguments + " 2>&1").c_str(), "r");
-  std::array<char, 4096> buffer{};
-  while (size_t n = fread(buffer.data(), 1, buffer.size(), pipe)) r.output.append(buffer.data(), n);
-  const int status = pclose(pipe);
-  r.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128;
-  return r;
-}
 
 struct Row {
   double design = 0.0, measured = 0.0, error = 0.0;
