@@ -183,7 +183,7 @@ int runCommand(const Arguments& arguments) {
     const std::string summary = done + " in " + out.string() + " (" + context.limits().renderer + "), " + RunTotal::pace(frames, progress.elapsed_s()) + "\n" +
                                 total.expected() + auditText(report);
     std::fputs(summary.c_str(), stdout);
-    if (page) page->write(out, pictures.video, {summary, notes, report}, place.mayReplace);
+    if (page) page->write(out, pictures.video, {summary, notes}, place.mayReplace);
     if (timing) std::printf("%s", timingText(timing->seconds(), writing.seconds(), frames).c_str());
     return 0;
   }

@@ -6,7 +6,8 @@
 
 #include "scenarios/commands/run_notes.hpp"
 #include "sim/image/atomic_file.hpp"
-#include "sim/run/run.hpp"
+#include "sim/frame/frame.hpp"
+#include "sim/model/simulation.hpp"
 
 namespace pitviper {
 
@@ -17,7 +18,6 @@ class RunReportPage {
   struct Said {
     std::string summary;  ///< the run's last lines
     const Notes& notes;
-    const RunReport& report;
   };
   /// Puts in what lies in the folder: contact sheets, a film. Errors: OutputError.
   void write(const std::filesystem::path& folder, const std::string& video, const Said& said, const MayReplace& mayReplace) const;

@@ -105,16 +105,14 @@ TruthMeter::TruthMeter(const Simulation& simulation, const Camera& camera)
     if (isRadiance(measured_.outputs[o])) radianceOf_.push_back(o);
 }
 
-TargetRow TruthMeter::placed(const std::string& name, const char* kind, const WorldState& state, const glm::dvec3& now, const glm::dvec3& before,
-                             const glm::dvec3& after) const {
-  const WorldState earlier = advance(simulation_, state.time_s - kApart_s), later = advance(simulation_, state.time_s + kApart_s);
+TargetRow TruthMeter::placed(const std::string& name, const char* kind, const Moment& now, const Moment& before, const Moment& after) const {
   TargetRow row;
   row.name = name;
   row.kind = kind;
   row.left = row.top = row.right = row.bottom = row.column = row.row = NAN;
-  const CameraState eye = cameraAt(camera_, state);
-  const glm::dvec3 line = now - eye.pose.position, lineBefore = before - cameraAt(camera_, earlier).pose.position,
-                   lineAfter = after - cameraAt(camera_, later).pose.position;
+  const CameraState eye = cameraAt(camera_, now.state);
+  const glm::dvec3 line = now.place - eye.pose.position, lineBefore = before.place - cameraAt(camera_, before.state).pose.position,
+                   lineAfter = after.place - cameraAt(camera_, after.state).pose.position;
   row.range_m = glm::length(line);
   row.rangeRate_m_s = (glm::length(lineAfter) - glm::length(lineBefore)) / (2.0 * kApart_s);
   const glm::dmat3 local = localFromCamera(eye.pose);
@@ -339,13 +337,13 @@ std::vector<TargetRow> TruthMeter::targets(const WorldState& state) const {
     const Entity& body = simulation_.entities[e];
     if (!present_[e] || body.mesh->heightField) continue;
     const int entity = static_cast<int>(e);
-    rows.push_back(placed(body.name, simulation_.mediumOf(body) ? "medium" : "body", state, ballOf(simulation_, state, entity).centre,
-                          ballOf(simulation_, earlier, entity).centre, ballOf(simulation_, later, entity).centre));
+    rows.push_back(placed(body.name, simulation_.mediumOf(body) ? "medium" : "body", {state, ballOf(simulation_, state, entity).centre},
+                          {earlier, ballOf(simulation_, earlier, entity).centre}, {later, ballOf(simulation_, later, entity).centre}));
     addBody(rows.back(), entity, state);
   }
   for (std::size_t l = 0; l < simulation_.lights.size(); ++l) {
     if (!simulation_.lights[l].visible) continue;
-    rows.push_back(placed(simulation_.lights[l].name, "lamp", state, state.lights[l], earlier.lights[l], later.lights[l]));
+    rows.push_back(placed(simulation_.lights[l].name, "lamp", {state, state.lights[l]}, {earlier, earlier.lights[l]}, {later, later.lights[l]}));
     addLamp(rows.back(), l, state);
   }
   return rows;

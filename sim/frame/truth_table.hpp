@@ -25,7 +25,12 @@ class TruthMeter {
   std::vector<FrameLayer> terms(const WorldState& state) const;
 
  private:
-  TargetRow placed(const std::string& name, const char* kind, const WorldState& state, const glm::dvec3& now, const glm::dvec3& before, const glm::dvec3& after) const;
+  /// Where something is at a time, a little before and a little after.
+  struct Moment {
+    const WorldState& state;
+    glm::dvec3 place;
+  };
+  TargetRow placed(const std::string& name, const char* kind, const Moment& now, const Moment& before, const Moment& after) const;
   void addBody(TargetRow& row, int entity, const WorldState& state) const;
   void addLamp(TargetRow& row, std::size_t light, const WorldState& state) const;
   /// Of kernel integrals times range squared, in the order of Plan::slotCount.
