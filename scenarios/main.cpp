@@ -155,6 +155,7 @@ const std::map<std::string, Command>& commands() {
         "  --film N         a side of the square in the film's middle that is measured (default 128)\n"
         "  --set key=value  a key of the camera: --set exposure='2 ms'\n"
         "  --out FOLDER     also NAME.html, a page with charts (needs VTK), NAME.csv and the charts; created if missing\n"}},
+      {"stream", {streamCommand, "frames at a fixed rate to hardware and other programs, and commands from them", "pitviper stream SCENARIO.yaml\n"}},
       {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
   };
   return all;

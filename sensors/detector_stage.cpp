@@ -56,7 +56,7 @@ class DetectorStage final : public SensorStage {
       const double dark = law_.darkCurrent_per_s * tick.exposure_s;
       const std::vector<float>* lens = o < pictures.ownLight.size() && !pictures.ownLight[o].empty() ? &pictures.ownLight[o] : nullptr;
       for (std::size_t p = 0; p < picture.size(); ++p)
-        picture[p] = static_cast<float>(((static_cast<double>(picture[p]) - law_.offset) / law_.gain - dark) / law_.fillFactor - (lens ? static_cast<double>((*lens)[p]) : 0.0));
+        picture[p] = static_cast<float>(((static_cast<double>(picture[p]) - law_.offset) / (law_.gain * tick.gain) - dark) / law_.fillFactor - (lens ? static_cast<double>((*lens)[p]) : 0.0));
     }
   }
 
@@ -88,7 +88,7 @@ class DetectorStage final : public SensorStage {
     const auto source = [&](NoiseEffect e) { return NoiseSource(tick.seed, channel, frame, e); };
     const NoiseSource shot = source(NoiseEffect::Shot), ofRow = source(NoiseEffect::Row),
                       ofColumn = source(NoiseEffect::Column);
-    const double darkMean = law_.darkCurrent_per_s * tick.exposure_s, most = law_.mostCount();
+    const double darkMean = law_.darkCurrent_per_s * tick.exposure_s, most = law_.mostCount(), gain = law_.gain * tick.gain;
     const double whole = law_.sigmaT > 0.0 ? law_.sigmaT * source(NoiseEffect::Frame).normal(0) : 0.0;
     const double variance = law_.readoutVariance(tick.step_s);
     if (signalToNoise) signalToNoise->resize(picture.size());
@@ -116,7 +116,7 @@ class DetectorStage final : public SensorStage {
         if (flicker) electrons += octave * static_cast<double>((*flicker)[at]);
         // The correction knows the mean dark signal as what there is without light.
         if (!fixed.gain.empty()) electrons = static_cast<double>(fixed.gain[at]) * (electrons - darkMean) + static_cast<double>(fixed.offset[at]) + darkMean;
-        picture[at] = static_cast<float>(std::clamp(std::floor(law_.gain * electrons + law_.offset + 0.5), 0.0, most));
+        picture[at] = static_cast<float>(std::clamp(std::floor(gain * electrons + law_.offset + 0.5), 0.0, most));
       }
     };
     sideBySide(height, [&](int first, int last) {

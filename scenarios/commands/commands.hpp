@@ -18,6 +18,7 @@ int planCommand(const Arguments& arguments);
 int atmosphereCommand(const Arguments& arguments);
 int materialCommand(const Arguments& arguments);
 int measureCommand(const Arguments& arguments);
+int streamCommand(const Arguments& arguments);
 int keysCommand(const Arguments& arguments);
 
 /// Every shader file compiled into the program.

@@ -1,6 +1,7 @@
 #include "scenarios/commands/process.hpp"
 
 #include <fcntl.h>
+#include <malloc.h>
 #include <pthread.h>
 #include <unistd.h>
 
@@ -9,9 +10,12 @@
 #include <cstdio>
 #include <cstring>
 #include <exception>
+#include <functional>
+#include <mutex>
 #include <new>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/readable_text.hpp"
@@ -52,6 +56,9 @@ void openClosedStreams() {
   ::_exit(128 + number);
 }
 
+std::mutex gEnding;
+std::function<void()> gEndsItself;
+
 /// A thread takes the signals: it may do what a signal handler may not.
 void watchSignals() {
   sigset_t watched;
@@ -67,9 +74,13 @@ void watchSignals() {
   try {
     std::thread([watched] {
       int number = 0;
-      while (sigwait(&watched, &number) != 0) {
+      for (;;) {
+        while (sigwait(&watched, &number) != 0) {
+        }
+        const std::lock_guard lock(gEnding);
+        if (!gEndsItself) endBySignal(number);
+        std::exchange(gEndsItself, nullptr)();  // once: the next one ends it at once
       }
-      endBySignal(number);
     }).detach();
   } catch (const std::exception&) {
     pthread_sigmask(SIG_UNBLOCK, &watched, nullptr);  // the system's own way of ending is better than none
@@ -93,13 +104,31 @@ void watchSignals() {
   std::abort();
 }
 
+/// A stream that tens of megabytes of pictures go through each second would give them back to the system after every frame, which then hands them out again page by
+/// page, cleared: half of a frame's time at 640 x 512. They are kept.
+void keepMemory() {
+  mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that it takes
+  mallopt(M_TRIM_THRESHOLD, 1 << 30);
+}
+
 }  // namespace
 
 void prepareProcess() {
+  keepMemory();
   openClosedStreams();
   std::signal(SIGXFSZ, SIG_IGN);
   std::set_terminate(endByException);
   watchSignals();
+}
+
+EndsItself::EndsItself(std::function<void()> end) {
+  const std::lock_guard lock(gEnding);
+  gEndsItself = std::move(end);
+}
+
+EndsItself::~EndsItself() {
+  const std::lock_guard lock(gEnding);
+  gEndsItself = nullptr;
 }
 
 void tell(const char* message) { writeToStderr(readable(message) + "\n"); }

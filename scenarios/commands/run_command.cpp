@@ -75,19 +75,6 @@ OwnFiles ownFiles(const Simulation& sim, const std::filesystem::path& folder, bo
 /// Times that a run starts over with what its audits found.
 constexpr int kMostStarts = 3;
 
-/// `--plan FILE`: each is the plan of the camera that it is named after.
-void readPlans(const Options& o, Simulation& sim) {
-  for (const std::string& name : o.values("--plan")) {
-    const std::filesystem::path file = name;
-    const Location where{name, 0, 0, -1};
-    const auto camera = std::find_if(sim.cameras.begin(), sim.cameras.end(), [&](const Camera& c) { return c.name == file.stem().string(); });
-    if (camera == sim.cameras.end())
-      throw UserError(where, "a plan of no camera of this scenario", "a file named after a camera, CAMERA.plan", "name the .plan file that a run wrote");
-    camera->plan = readWholeFile(file, {}, where);
-    camera->planFile = name;
-  }
-}
-
 /// The lines that audits found to be off by more than was asked become part of what the plan must hold for.
 void learn(const RunReport& report, Simulation& sim, int start, Notes& notes) {
   for (Camera& c : sim.cameras) {

@@ -5,6 +5,7 @@
 #include "sim/frame/file_owner.hpp"
 #include "sim/frame/spectral_image.hpp"
 #include "sim/image/colour_map.hpp"
+#include "sim/parameters/read_file.hpp"
 #include "sim/parameters/table.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/stream/sink_models.hpp"
@@ -77,6 +78,18 @@ PictureWish readPictureWish(const Options& o, const Simulation& sim) {
   return wish;
 }
 
+void readPlans(const Options& o, Simulation& sim) {
+  for (const std::string& name : o.values("--plan")) {
+    const std::filesystem::path file = name;
+    const Location where{name, 0, 0, -1};
+    const auto camera = std::find_if(sim.cameras.begin(), sim.cameras.end(), [&](const Camera& c) { return c.name == file.stem().string(); });
+    if (camera == sim.cameras.end())
+      throw UserError(where, "a plan of no camera of this scenario", "a file named after a camera, CAMERA.plan", "name the .plan file that a run wrote");
+    camera->plan = readWholeFile(file, {}, where);
+    camera->planFile = name;
+  }
+}
+
 std::vector<PlacedSink> makeSinks(const Simulation& sim, const SinkPlace& place, const PictureWish& pictures) {
   std::vector<PlacedSink> sinks;
   for (const SinkChoice& choice : sim.sinks) sinks.push_back({choice.make(sim, place), choice.where});
@@ -85,6 +98,12 @@ std::vector<PlacedSink> makeSinks(const Simulation& sim, const SinkPlace& place,
     if (std::any_of(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.truth.targets; }))
       sinks.push_back({sinkNamed("truth", sim).make(sim, place), {}});
   }
+  for (PlacedSink& placed : makePictures(sim, place, pictures)) sinks.push_back(std::move(placed));
+  return sinks;
+}
+
+std::vector<PlacedSink> makePictures(const Simulation& sim, const SinkPlace& place, const PictureWish& pictures) {
+  std::vector<PlacedSink> sinks;
   if (!pictures.any()) return sinks;
   std::vector<std::unique_ptr<PictureUser>> users;
   if (pictures.previews) users.push_back(previewFiles(place));

@@ -31,6 +31,10 @@ PictureWish readPictureWish(const Options& options, const Simulation& simulation
 
 /// Those of the scenario, or files; and the pictures wished for.
 std::vector<PlacedSink> makeSinks(const Simulation& simulation, const SinkPlace& place, const PictureWish& pictures);
+/// The pictures wished for alone.
+std::vector<PlacedSink> makePictures(const Simulation& simulation, const SinkPlace& place, const PictureWish& pictures);
+/// `--plan FILE`: each is the plan of the camera that it is named after. Errors: UserError.
+void readPlans(const Options& options, Simulation& simulation);
 
 /// Files that a run writes besides its sinks'.
 using OwnFiles = std::vector<std::filesystem::path>;

@@ -121,9 +121,30 @@ void Builder::readLimits(const Record& scenario) {
     throw UserError(r.where(), "limits without any", "'range', 'temperature' or 'light'", "write 'limits: {range: [100 m, 20 km]}', or remove 'limits'");
 }
 
+namespace {
+
+double readShare(const Value& v) {
+  const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
+  const auto share = q && !q->unit.empty() ? convert(*q, "") : std::nullopt;
+  if (!share || !(*share >= kLeastAccuracy && *share <= kMostAccuracy))
+    throw UserError(v.where, "accuracy '" + v.text.substr(0, 40) + "' is neither a share nor 'none' nor 'reference'", "0.05 % to 20 %, 'none' or 'reference'",
+                    "write 'accuracy: 1 %'");
+  return *share;
+}
+
+}  // namespace
+
 void Builder::readAccuracy(const Record& scenario) {
   if (!scenario.given("accuracy")) {
     accuracy_.accuracy = simulation_.air->traits().isBanded ? kUsualAccuracy : 0.0;
+    return;
+  }
+  if (scenario.value("accuracy").kind == Value::Kind::Map) {
+    const Record r(scenario.value("accuracy"), tables::accuracy());
+    accuracy_.atMost = readShare(r.value("at_most"));
+    accuracy_.accuracy = r.given("asked") ? readShare(r.value("asked")) : std::min(kUsualAccuracy, accuracy_.atMost);
+    if (accuracy_.accuracy > accuracy_.atMost)
+      throw UserError(r.where("at_most"), "the accuracy asked for is coarser than at most", "'at_most' of no less than 'asked'", "raise 'at_most'");
     return;
   }
   const Value& v = scenario.value("accuracy");
@@ -132,12 +153,7 @@ void Builder::readAccuracy(const Record& scenario) {
     accuracy_.reference = true;
     return;
   }
-  const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
-  const auto share = q && !q->unit.empty() ? convert(*q, "") : std::nullopt;
-  if (!share || !(*share >= kLeastAccuracy && *share <= kMostAccuracy))
-    throw UserError(v.where, "accuracy '" + v.text.substr(0, 40) + "' is neither a share nor 'none' nor 'reference'", "0.05 % to 20 %, 'none' or 'reference'",
-                    "write 'accuracy: 1 %'");
-  accuracy_.accuracy = *share;
+  accuracy_.accuracy = readShare(v);
 }
 
 /// A map with either temperature or radiance.

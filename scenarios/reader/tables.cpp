@@ -58,10 +58,10 @@ const ParameterTable& scenario() {
        map("time", "first frame, rate and number of frames"),
        map("limits", "what may come besides the scenario's own times, where poses and levels come live"),
        map("render", "how it is drawn"),
-       text("accuracy",
+       any("accuracy",
             "relative error of a pixel that the plan may spend on wavelengths, tables and terms left out, `1 %` for example, or `reference`: every wavelength "
             "in double precision on the CPU, slow; `none`: as each camera's `spectral` says, nothing left out; without it: 1 % in layered air and air from "
-            "tables, else none"),
+            "tables, else none. A map says besides what a stream may fall back to: `{asked: 1 %, at_most: 3 %}`"),
        within(number("audit", "",
                      "pixels a frame that are worked out by the reference as well, and held against it: 0.1 is one in each tenth frame, 0 none; without it as "
                      "many as cost about a twentieth of the time"),
@@ -119,6 +119,15 @@ const ParameterTable& limits() {
       {list("range", "[nearest, farthest] between a camera and a body in view, such as [100 m, 20 km]", 2, 2),
        list("temperature", "[coldest, hottest] of a body, such as [250 K, 900 K]; temperature textures count as they are", 2, 2),
        within(above(number("light", "", "greatest level of a point light"), 0.0), 0.0, 1e6)}};
+  return t;
+}
+
+const ParameterTable& accuracy() {
+  static const ParameterTable t{"accuracy",
+                                "What a stream may trade for its rate: it begins with the accuracy asked for, draws coarser where it would be late, in steps of two, and "
+                                "says so on each frame; plans and programs for all of them are made before the first frame. Whatever is not a stream draws as asked.",
+                                {text("asked", "as `accuracy` itself; unless given 1 %, or `at_most` if that is less"),
+                                 required(text("at_most", "the coarsest, such as 3 %"))}};
   return t;
 }
 
@@ -485,7 +494,7 @@ const ParameterTable& probe() {
 }
 
 std::vector<ParameterTable> all() {
-  std::vector<ParameterTable> every{scenario(), render(), origin(), time(), limits(), commonAirTable()};
+  std::vector<ParameterTable> every{scenario(), render(), origin(), time(), limits(), accuracy(), commonAirTable()};
   const auto addAll = [&every](const auto& registry, const auto& tableOf) {
     for (const auto& model : registry.all()) every.push_back(tableOf(model));
   };

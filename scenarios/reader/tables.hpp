@@ -13,6 +13,7 @@ const ParameterTable& render();
 const ParameterTable& origin();
 const ParameterTable& time();
 const ParameterTable& limits();
+const ParameterTable& accuracy();
 const ParameterTable& airLibrary();
 const ParameterTable& background();
 const ParameterTable& ground();

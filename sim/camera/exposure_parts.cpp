@@ -21,11 +21,11 @@ std::optional<glm::dvec2> filmOf(const View& v, const glm::dvec3& place) {
 
 /// How far anything in view goes on the film from the first of these times to the last [pixels]: what a grid of lines meets at the middle one, and middles of bodies.
 /// `small`: of what is smaller than two pixels alone.
-double motionOf(const Simulation& sim, const Camera& camera, const std::array<double, 3>& times_s, double& small) {
+double motionOf(const Simulation& sim, const Camera& camera, const StateAt& stateAt, const std::array<double, 3>& times_s, double& small) {
   std::vector<WorldState> states;
   std::vector<View> views;
   for (double t : times_s) {
-    states.push_back(advance(sim, t));
+    states.push_back(stateAt(t));
     views.push_back(cameraView(camera, states.back(), 1));
   }
   double most = 0.0;
@@ -78,16 +78,16 @@ double motionOf(const Simulation& sim, const Camera& camera, const std::array<do
 
 }  // namespace
 
-ExposureParts exposureParts(const Simulation& sim, const Camera& camera, double time_s) {
+ExposureParts exposureParts(const Simulation& sim, const Camera& camera, const StateAt& stateAt, double time_s) {
   const DetectorLaw* law = detectorOf(camera);
-  const double line_s = law ? law->lineTime_s : 0.0, exposure_s = camera.motionBlur ? cameraAt(camera, advance(sim, time_s)).exposure_s : 0.0;
+  const double line_s = law ? law->lineTime_s : 0.0, exposure_s = camera.motionBlur ? cameraAt(camera, stateAt(time_s)).exposure_s : 0.0;
   ExposureParts parts;
   parts.times_s = {time_s};
   if (!(line_s > 0.0) && !(exposure_s > 0.0)) return parts;
   const int cells = cellsOf(camera), margin = marginOf(camera), rows = (camera.pinhole.height + 2 * margin) * cells;
   const auto rowTime = [&](int row) { return time_s + ((row + 0.5) / cells - margin - 0.5 * camera.pinhole.height) * line_s; };
   const double first = rowTime(0) - 0.5 * exposure_s, last = rowTime(rows - 1) + 0.5 * exposure_s, asked = camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise;
-  parts.motion_px = motionOf(sim, camera, {first, time_s, last}, parts.smallMotion_px);
+  parts.motion_px = motionOf(sim, camera, stateAt, {first, time_s, last}, parts.smallMotion_px);
   const bool addsUp = exposure_s > 0.0;
   int count = camera.exposureParts;
   if (count == 0) {
@@ -120,12 +120,16 @@ ExposureParts exposureParts(const Simulation& sim, const Camera& camera, double 
 
 CameraImage renderExposure(CameraRenderer& renderer, const Simulation& sim, const Camera& camera, double time_s,
                            const std::function<void(const WorldState&, CameraImage&)>& looked) {
-  const ExposureParts parts = exposureParts(sim, camera, time_s);
+  const StateAt stateAt = [&sim](double t) { return advance(sim, t); };
+  return renderParts(renderer, exposureParts(sim, camera, stateAt, time_s), stateAt, looked);
+}
+
+CameraImage renderParts(CameraRenderer& renderer, const ExposureParts& parts, const StateAt& stateAt, const std::function<void(const WorldState&, CameraImage&)>& looked) {
   const std::size_t count = parts.times_s.size(), middle = count / 2;
   CameraImage mean;
   std::vector<FilmPoint> points;
   for (std::size_t k = 0; k < count; ++k) {
-    const WorldState state = advance(sim, parts.times_s[k]);
+    const WorldState state = stateAt(parts.times_s[k]);
     CameraImage image = renderer.render(state);
     if (k == middle && looked) looked(state, image);
     if (count == 1) return image;

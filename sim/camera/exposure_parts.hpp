@@ -23,11 +23,14 @@ struct ExposureParts {
 };
 
 /// `camera`: the film's; the pictures are drawnCamera()'s. One part, at the frame's time, unless the camera has motion blur or its detector a line time.
-ExposureParts exposureParts(const Simulation& simulation, const Camera& camera, double time_s);
+ExposureParts exposureParts(const Simulation& simulation, const Camera& camera, const StateAt& stateAt, double time_s);
 
 /// Draws the parts with a renderer of drawnCamera() and takes their mean; truth is of the part in the middle. `looked`: gets that part's own picture, before; what
 /// it adds to the picture of an audit is kept.
 CameraImage renderExposure(CameraRenderer& renderer, const Simulation& simulation, const Camera& camera, double time_s,
                            const std::function<void(const WorldState&, CameraImage&)>& looked = {});
+/// The same of a world that is not the scenario's alone.
+CameraImage renderParts(CameraRenderer& renderer, const ExposureParts& parts, const StateAt& stateAt,
+                        const std::function<void(const WorldState&, CameraImage&)>& looked = {});
 
 }  // namespace pitviper

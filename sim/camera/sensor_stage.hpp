@@ -17,6 +17,7 @@ struct SensorTick {
   double axis_sr = 0.0;     ///< projected solid angle of a pixel of the film on the axis, at this time
   double focalLength_m = 0.0;  ///< at this time; 0: the camera's own
   std::uint64_t seed = 0;  ///< of the scenario and this camera
+  double gain = 1.0;       ///< factor of the detector's own, at this time
 };
 
 /// Light of what is smaller than a cell.

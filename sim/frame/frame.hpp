@@ -1,8 +1,10 @@
 #pragma once
 // A calibrated frame: what leaves the renderer, with everything needed to use it without the scenario at hand.
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sim/frame/frame_stamp.hpp"
 #include "sim/image/exr.hpp"
 
 namespace pitviper {
@@ -42,6 +44,7 @@ struct Frame {
   std::vector<FrameLayer> layers;  ///< channels first, then truth
   std::vector<Attribute> attributes;
   std::vector<TargetRow> targets;  ///< where the camera's `truth` asks for them
+  std::optional<FrameStamp> stamp;  ///< of a stream's frames
 };
 
 /// "<camera>_00012" or "<camera>_00012_<kind>": the name of a frame's files without extension.

@@ -241,9 +241,10 @@ void addAxis(Frame& frame, const Camera& camera) {
 namespace {
 
 SensorTick sensorTick(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number) {
-  const Pinhole now = cameraAt(camera, state).pinhole;
+  const CameraState eye = cameraAt(camera, state);
+  const Pinhole& now = eye.pinhole;
   return {number,          state.time_s, image.exposure_s, sim.time.step_s, now.projectedSolidAngle_sr(now.width / 2, now.height / 2), now.focalLength_m,
-          noiseSeed(sim, camera)};
+          noiseSeed(sim, camera), eye.gain};
 }
 
 }  // namespace
@@ -283,7 +284,7 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
     if (image.streakError > 0.0) frame.attributes.push_back({"pitviper.exposure_streak_error", image.streakError});
   }
   if (camera.window) cutOut(frame, *camera.window);
-  finishTargets(frame, camera, sim.time.step_s);
+  finishTargets(frame, camera, sim.time.step_s, cameraAt(camera, state).gain);
   return frame;
 }
 

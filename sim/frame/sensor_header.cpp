@@ -86,23 +86,23 @@ void addCalibration(Frame& frame, const Camera& camera, const CameraState& eye, 
     addTable("radiance", radiances);
     return;
   }
-  const double dark = law->darkCurrent_per_s * eye.exposure_s;
+  const double gain = law->gain * eye.gain, dark = law->darkCurrent_per_s * eye.exposure_s;
   const double axis_sr = p.projectedSolidAngle_sr(p.width / 2, p.height / 2), perIntegral = law->fillFactor * o.scale * eye.exposure_s * axis_sr;
   const double own = law->fillFactor * ownLightOf(camera, o, axis_sr, eye.exposure_s) + dark;
   if (!o.asTemperature && !o.asSignalToNoise && !o.asDisplay) {
     // Of light even over the response: integral of S L over integral of kernel L.
     const double perElectron = o.curves->response.integral(o.bandLow_um, o.bandHigh_um) / o.kernel.integral(o.bandLow_um, o.bandHigh_um) / perIntegral;
-    add("gain_count_per_electron", law->gain);
+    add("gain_count_per_electron", gain);
     add("offset_count", law->offset);
     add("dark_electrons", dark);
     add("fill_factor", law->fillFactor);
     add("own_electrons", own - dark);
-    add("radiance_per_count", perElectron / law->gain);
-    add("radiance_at_0", -(law->offset / law->gain + own) * perElectron);
+    add("radiance_per_count", perElectron / gain);
+    add("radiance_at_0", -(law->offset / gain + own) * perElectron);
   }
   const std::vector<double> all = temperatures(band, std::max(0.0, law->saturation() - own) / perIntegral);
   std::vector<double> counts;
-  for (double t : all) counts.push_back(law->gain * (perIntegral * band.integral(t) + own) + law->offset);
+  for (double t : all) counts.push_back(gain * (perIntegral * band.integral(t) + own) + law->offset);
   addTable("temperature_K", all);
   addTable("count", counts);
 }

@@ -6,7 +6,7 @@
 
 namespace pitviper {
 
-void finishTargets(Frame& frame, const Camera& camera, double step_s) {
+void finishTargets(Frame& frame, const Camera& camera, double step_s, double gain) {
   const DetectorLaw* law = detectorOf(camera);
   for (TargetRow& t : frame.targets) {
     for (TargetRow::Channel& c : t.channels) {
@@ -15,8 +15,8 @@ void finishTargets(Frame& frame, const Camera& camera, double step_s) {
       c.saturated = 0;
       // A full well says what it holds, and read-out adds its noise.
       constexpr double kSigmas = 4.0;
-      const double noise = kSigmas * law->gain * std::sqrt(law->readoutVariance(step_s)) + 1.0;
-      const float full = static_cast<float>(std::min(law->mostCount(), std::floor(law->gain * law->fullWell + law->offset + 0.5) - noise));
+      const double noise = kSigmas * gain * law->gain * std::sqrt(law->readoutVariance(step_s)) + 1.0;
+      const float full = static_cast<float>(std::min(law->mostCount(), std::floor(gain * law->gain * law->fullWell + law->offset + 0.5) - noise));
       // A pixel around, which the lens reaches.
       const int left = std::max(0, static_cast<int>(t.left) - 1), right = std::min(frame.width - 1, static_cast<int>(t.right) + 1),
                 top = std::max(0, static_cast<int>(t.top) - 1), bottom = std::min(frame.height - 1, static_cast<int>(t.bottom) + 1);

@@ -7,7 +7,8 @@ namespace pitviper {
 
 /// What a frame's pixels say of its targets (those that are full), and their rows as attributes `target.<name>.`: `place` [column, row, left, top, right, bottom],
 /// `sight` [range, its rate, turning to the right and up, share that is visible], and of each channel `<channel>` [own, total, contrast, signal to noise, full pixels].
-void finishTargets(Frame& frame, const Camera& camera, double step_s);
+/// `gain`: factor of the detector's own, at that time.
+void finishTargets(Frame& frame, const Camera& camera, double step_s, double gain);
 
 /// Rows as a table: a line of names and units, and for each row a line.
 std::string targetTableHead(const std::vector<TargetRow>& rows);

@@ -22,12 +22,14 @@ struct Courses {
   std::map<std::string, Course<glm::dvec3>> cameraPositions;     ///< by name, as of CameraChange
   std::map<std::string, Course<glm::dquat>> cameraOrientations;
   std::map<std::string, Course<double>> focalLengths_m, exposures_s;
+  std::map<std::string, Course<double>> gains;  ///< factors of the detector's own
 };
 
 /// A command's time and a frame's are the same where they lie within this part of a tick: sums of steps round.
 constexpr double kSameTick = 1e-6;
 
-/// From its time on until another says otherwise.
+/// From its time on until another says otherwise. One that was sent for a time before the tick that takes it holds from that tick on, its courses as of its
+/// own time: a body that moves is where it has got to since.
 struct Command {
   double at_s = 0.0;
   std::string words;  ///< what it depends on: two with the same words are the same

@@ -80,7 +80,7 @@ void addTo(Fingerprint& f, const std::vector<ChannelOutput>& outputs) {
 }
 
 void addTo(Fingerprint& f, const SpectralSampling& s) {
-  const auto& [samples, spacing, shared, accuracy, reference] = s;
+  const auto& [samples, spacing, shared, accuracy, reference, atMost] = s;  // atMost: of streams, whose pictures are of one accuracy each
   f.add(samples).add(static_cast<int>(spacing)).add(shared).add(accuracy).add(reference);
 }
 

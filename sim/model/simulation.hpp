@@ -27,6 +27,7 @@ struct SpectralSampling {
   bool shared = false;     ///< one set of nodes for all channels, over the union of their bands
   double accuracy = 0.0;   ///< relative error that the plan may spend: it chooses wavelengths, terms and tables; 0: as the above says
   bool reference = false;  ///< every wavelength of the fine grid, in double precision on the CPU
+  double atMost = 0.0;     ///< the error that a stream may fall back to where it cannot hold its rate; 0: none but `accuracy`
 };
 
 /// Neighbouring bins of wavelength, each averaged with Gauss points.

@@ -1,5 +1,6 @@
 #include "sim/model/world.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 namespace pitviper {
@@ -41,6 +42,7 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
   for (const auto& [camera, course] : courses.cameraOrientations) state.cameras[camera].orientation = course(time_s);
   for (const auto& [camera, course] : courses.focalLengths_m) state.cameras[camera].focalLength_m = course(time_s);
   for (const auto& [camera, course] : courses.exposures_s) state.cameras[camera].exposure_s = course(time_s);
+  for (const auto& [camera, course] : courses.gains) state.cameras[camera].gain = course(time_s);
   return state;
 }
 
@@ -67,11 +69,11 @@ void World::apply(const Command& command, int tick) {
   if (at_s < since_s_) throw std::invalid_argument("a command for tick " + std::to_string(tick) + ", and a later one has had some");
   since_s_ = at_s;
   next_ = carryOut(simulation_, next_, at_s, courses_);
-  command.change(courses_, at_s);
+  command.change(courses_, std::min(command.at_s, at_s));
 }
 
 WorldState World::at(double time_s) const {
-  if (time_s < since_s_) throw std::invalid_argument("a time before the last command");
+  if (time_s < since_s_ - simulation_.time.step_s) throw std::invalid_argument("a time before the last command");
   Courses courses = courses_;
   carryOut(simulation_, next_, time_s, courses);
   return stateOf(simulation_, courses, time_s);
@@ -80,9 +82,10 @@ WorldState World::at(double time_s) const {
 CameraState cameraAt(const Camera& camera, const WorldState& state) {
   const auto found = state.cameras.find(camera.name);
   const CameraChange* change = found == state.cameras.end() ? nullptr : &found->second;
-  CameraState at{poseOf(camera.mount, change, state), camera.pinhole, camera.exposure_s};
+  CameraState at{poseOf(camera.mount, change, state), camera.pinhole, camera.exposure_s, 1.0};
   if (change && change->focalLength_m) at.pinhole.focalLength_m = *change->focalLength_m;
   if (change && change->exposure_s) at.exposure_s = *change->exposure_s;
+  if (change && change->gain) at.gain = *change->gain;
   return at;
 }
 

@@ -1,10 +1,14 @@
 #pragma once
 // Where everything is at a time: what the scenario says of it, and what commands have changed.
 #include <cmath>
+#include <functional>
 
 #include "sim/model/simulation.hpp"
 
 namespace pitviper {
+
+/// The world over simulation time [s], whoever changes it.
+using StateAt = std::function<WorldState(double time_s)>;
 
 /// As the scenario has it, its own commands carried out.
 WorldState advance(const Simulation& simulation, double time_s);
@@ -16,8 +20,9 @@ class World {
   /// From the beginning of a tick (frame number) on. Commands of one tick hold in the order in which they came, after the scenario's own.
   /// Throws std::invalid_argument where a later tick has had one: what was drawn stays.
   void apply(const Command& command, int tick);
-  /// At a time not before the last command's tick, also within the exposure of a tick; before it std::invalid_argument.
+  /// At a time not before the last command's tick; commands of a tick hold for all of its exposure, which begins up to a step before. Earlier: std::invalid_argument.
   WorldState at(double time_s) const;
+  const Simulation& simulation() const { return simulation_; }
 
  private:
   const Simulation& simulation_;
@@ -31,6 +36,7 @@ struct CameraState {
   Pose pose;  ///< local frame; body axes: x is the line of sight, y left, z up
   Pinhole pinhole;
   double exposure_s = 0.0;
+  double gain = 1.0;  ///< factor of its detector's
 };
 CameraState cameraAt(const Camera& camera, const WorldState& state);
 

@@ -59,6 +59,7 @@ struct CameraChange {
   std::optional<glm::dvec3> position;     ///< in the local frame or in its carrier's
   std::optional<glm::dquat> orientation;  ///< the same; it looks along its x axis
   std::optional<double> focalLength_m, exposure_s;
+  std::optional<double> gain;  ///< factor of its detector's
 };
 
 /// Everything that changes, at one time: poses in the local frame.

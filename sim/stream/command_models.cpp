@@ -20,7 +20,7 @@ int named(const Record& r, const char* key, const std::vector<T>& all) {
 }  // namespace
 
 Registry<CommandModel>& commandModels() {
-  static Registry<CommandModel> all("command", {moveCommand(), lookCommand(), temperatureCommand(), lightCommand()});
+  static Registry<CommandModel> all("command", {moveCommand(), lookCommand(), temperatureCommand(), lightCommand(), triggerCommand(), gainCommand()});
   return all;
 }
 
@@ -35,6 +35,21 @@ Command readCommand(const Value& value, const Simulation& simulation, double now
   const ParameterTable table = commandTable(model);
   const Record r(value, table);
   return {r.given("at") ? r.number("at") : now_s, wordsOf(value), model.read(r, simulation)};
+}
+
+Command commandOf(const std::vector<std::pair<std::string, std::string>>& words, const std::string& from, const Simulation& simulation, double now_s) {
+  Value map;
+  map.kind = Value::Kind::Map;
+  map.where.file = from;
+  for (const auto& [key, text] : words) {
+    Value word;
+    word.kind = Value::Kind::Scalar;
+    word.text = text;
+    word.where = map.where;
+    map.entries.emplace_back(key, word);
+    map.keyPlaces.push_back(map.where);
+  }
+  return readCommand(map, simulation, now_s);
 }
 
 int entityOf(const Record& r, const Simulation& sim) { return named(r, "entity", sim.entities); }

@@ -22,6 +22,9 @@ ParameterTable commandTable(const CommandModel& model);
 /// From what a user wrote; where it does not say when, from `now_s` on. Every mistake is a UserError.
 Command readCommand(const Value& value, const Simulation& simulation, double now_s);
 
+/// The same from keys and their values; `from`: who says so, for messages.
+Command commandOf(const std::vector<std::pair<std::string, std::string>>& words, const std::string& from, const Simulation& simulation, double now_s);
+
 /// The index of what a key names. UserError where there is no such thing.
 int entityOf(const Record& record, const Simulation& simulation);
 int lightOf(const Record& record, const Simulation& simulation);
@@ -31,5 +34,7 @@ CommandModel moveCommand();
 CommandModel temperatureCommand();
 CommandModel lightCommand();
 CommandModel lookCommand();
+CommandModel triggerCommand();
+CommandModel gainCommand();
 
 }  // namespace pitviper

@@ -46,7 +46,7 @@ class ContactSheets final : public PictureUser {
     c.texts = pictureTexts(frame);
     c.tiles.push_back({caption, resized(picture)});
     if (c.tiles.size() < 2 * kMostTiles) return;
-    for (std::size_t i = 0; 2 * i < c.tiles.size(); ++i) c.tiles[i] = std::move(c.tiles[2 * i]);
+    for (std::size_t i = 1; 2 * i < c.tiles.size(); ++i) c.tiles[i] = std::move(c.tiles[2 * i]);  // the first stays: moved onto itself it would be empty
     c.tiles.resize((c.tiles.size() + 1) / 2);
     c.step *= 2;
   }

@@ -32,5 +32,7 @@ SinkModel previewsSink();
 SinkModel sheetSink();
 SinkModel videoSink();
 SinkModel truthSink();
+SinkModel sharedMemorySink();
+SinkModel gigeSink();
 
 }  // namespace pitviper

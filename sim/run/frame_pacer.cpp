@@ -1,0 +1,125 @@
+#include "sim/run/frame_pacer.hpp"
+
+#include <chrono>
+
+#include "sim/stream/clock/wall_clock.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Of std::chrono::steady_clock, which is the monotonic one here.
+std::chrono::steady_clock::time_point momentOf(std::int64_t monotonic) { return std::chrono::steady_clock::time_point(std::chrono::nanoseconds(monotonic)); }
+
+}  // namespace
+
+FramePacer::FramePacer(LatePolicy policy, bool holds, StreamAccount& account, HandOver handOver)
+    : policy_(policy), holds_(holds), account_(account), handOver_(std::move(handOver)), last_(account.cameras()) {
+  if (holds_ || policy_ == LatePolicy::Repeat) thread_ = std::thread([this] { serve(); });
+}
+
+FramePacer::~FramePacer() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    ends_ = true;
+    expected_.clear();
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void FramePacer::expect(const PacedFrame& frame) {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    expected_.push_back(frame);
+  }
+  wake_.notify_all();
+}
+
+void FramePacer::put(PacedFrame p) {
+  if (!thread_.joinable()) {
+    if (!p.frame) account_.dropped(p.camera);
+    else leave(p);
+    return;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+    // One that is no longer expected has been repeated, or dropped, in its place.
+    for (PacedFrame& e : expected_)
+      if (e.camera == p.camera && e.tick == p.tick) {
+        e = std::move(p);
+        if (!e.frame) e.begun_ns = -1;  // it will not come
+        break;
+      }
+  }
+  wake_.notify_all();
+}
+
+void FramePacer::leave(PacedFrame& p) {
+  const std::int64_t now = monotonic_ns();
+  const bool late = p.due_ns > 0 && !holds_ && now > p.due_ns;
+  // One that is held leaves as its time comes: it is late where it was not there by then.
+  const bool lateHeld = p.due_ns > 0 && holds_ && p.made_ns > p.due_ns;
+  if ((late || lateHeld) && policy_ == LatePolicy::Drop) {
+    account_.dropped(p.camera);
+    return;
+  }
+  account_.sent(p.camera, *p.frame->stamp, {p.tick_ns, p.begun_ns, p.made_ns, now, late || lateHeld, false});
+  if (thread_.joinable()) last_[p.camera] = p.frame;
+  handOver_(p.frame);
+}
+
+void FramePacer::repeat(const PacedFrame& missing) {
+  if (!last_[missing.camera]) {
+    account_.dropped(missing.camera);
+    return;
+  }
+  auto again = std::make_shared<Frame>(*last_[missing.camera]);
+  again->stamp->sequence = missing.tick;
+  again->stamp->due_tai_ns = taiOf_ns(missing.due_ns);
+  const std::int64_t now = monotonic_ns();
+  account_.sent(missing.camera, *again->stamp, {missing.tick_ns, now, now, now, false, true});
+  handOver_(again);
+}
+
+void FramePacer::serve() {
+  std::unique_lock lock(mutex_);
+  for (;;) {
+    wake_.wait(lock, [this] { return ends_ || !expected_.empty(); });
+    if (expected_.empty()) return;
+    const std::int64_t due = expected_.front().due_ns;
+    const auto isThere = [this] { return expected_.empty() || expected_.front().frame || expected_.front().begun_ns < 0; };
+    if (policy_ == LatePolicy::Send || due == 0) wake_.wait(lock, [&] { return ends_ || isThere(); });
+    else wake_.wait_until(lock, momentOf(due), [&] { return ends_ || isThere(); });
+    if (expected_.empty()) continue;
+    PacedFrame next = expected_.front();
+    lock.unlock();
+    try {
+      if (next.frame) {
+        if (holds_ && due > 0) sleepUntil_ns(due);
+        leave(next);
+      } else if (policy_ == LatePolicy::Repeat) {
+        sleepUntil_ns(due);
+        repeat(next);
+      } else {
+        account_.dropped(next.camera);
+      }
+    } catch (...) {
+      const std::lock_guard again(mutex_);
+      failure_ = std::current_exception();
+    }
+    lock.lock();
+    if (!expected_.empty()) expected_.pop_front();
+    emptied_.notify_all();
+  }
+}
+
+void FramePacer::finish() {
+  std::unique_lock lock(mutex_);
+  if (thread_.joinable()) emptied_.wait(lock, [this] { return expected_.empty() || failure_; });
+  if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
+}
+
+}  // namespace pitviper

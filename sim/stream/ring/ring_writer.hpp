@@ -1,0 +1,48 @@
+#pragma once
+// The writer's side of frames in shared memory. Layout and rules: pitviper_stream.h beside this.
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sim/frame/frame.hpp"
+#include "sim/stream/ring/pitviper_stream.h"
+
+namespace pitviper {
+
+struct RingLayer {
+  std::string name, unit;
+  bool isCounts = false;        ///< whole numbers up to `maximum`, else floats as they are
+  std::uint16_t maximum = 65535;
+};
+
+struct RingDesign {
+  std::string name;  ///< of the object: "/pitviper.tracker"
+  std::string scenario, camera;
+  int width = 0, height = 0, slots = 8;
+  double rate_hz = 0.0;  ///< 0: lockstep
+  std::vector<RingLayer> layers;  ///< at most PITVIPER_STREAM_LAYERS
+};
+
+/// Why a name is none; empty: it is one.
+std::string wrongRingName(const std::string& name);
+
+class RingWriter {
+ public:
+  /// Takes the place of one whose writer is no more. Errors: std::runtime_error (another process writes it, no memory), one line.
+  explicit RingWriter(const RingDesign& design);
+  /// Readers are told that the stream has ended; the object goes when the last of them has left it.
+  ~RingWriter();
+  RingWriter(const RingWriter&) = delete;
+  RingWriter& operator=(const RingWriter&) = delete;
+  /// Never waits. The frame has the design's layers and size, or they stay dark.
+  void publish(const Frame& frame);
+  std::uint64_t published() const;
+
+ private:
+  pitviper_stream_header& header() const { return *static_cast<pitviper_stream_header*>(at_); }
+  RingDesign design_;
+  void* at_ = nullptr;
+  std::size_t bytes_ = 0;
+};
+
+}  // namespace pitviper
