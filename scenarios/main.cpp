@@ -155,7 +155,56 @@ const std::map<std::string, Command>& commands() {
         "  --film N         a side of the square in the film's middle that is measured (default 128)\n"
         "  --set key=value  a key of the camera: --set exposure='2 ms'\n"
         "  --out FOLDER     also NAME.html, a page with charts (needs VTK), NAME.csv and the charts; created if missing\n"}},
-      {"stream", {streamCommand, "frames at a fixed rate to hardware and other programs, and commands from them", "pitviper stream SCENARIO.yaml\n"}},
+      {"stream", {streamCommand, "frames at a fixed rate to hardware and other programs, and commands from them", 
+        "pitviper stream SCENARIO.yaml [--clock CLOCK] [--rate 'R Hz'] [--frames N | --duration 'T s' | --endless] [--late WHAT] [--delay 'D ms'] [--hold]\n"
+        "                [--shared-memory /NAME] [--gige ADDRESS] [--gstreamer PIPELINE]... [--projector DISPLAY]... [--commands PLACE] [--cigi PLACE]\n"
+        "                [--out FOLDER] [--set path.to.key=value]... [--plan CAMERA.plan]... [pictures as of run]\n"
+        "pitviper stream --self-test [--rate 'R Hz'] [--duration 'T s']\n"
+        "\n"
+        "Frames of every camera at a fixed rate to other programs and to hardware, and commands from them. Plans and programs are made before the first frame. Without a way\n"
+        "for frames (here, or in the scenario's 'sinks') they go to shared memory /pitviper. Ends after the scenario's frames, or as asked; SIGINT and SIGTERM end it after the frame it\n"
+        "is at. Prints at the end what became of every frame, and its times; exit code 3 if one is unaccounted for.\n"
+        "\n"
+        "Clock\n"
+        "  --clock real-time    tick n begins n periods after the first, by the machine's monotonic clock (default)\n"
+        "  --clock lockstep     simulated time moves when a host says so, by --commands or --cigi; frames are those of run, bit for bit\n"
+        "  --clock free         as fast as it goes\n"
+        "  --clock trigger      each pulse is a tick: a software trigger of --gige, or {\"pulse\": true} by --commands\n"
+        "  --clock vsync        each picture that the first --projector shows is a tick\n"
+        "  --rate 'R Hz'        in place of the scenario's 'time.rate'\n"
+        "  --frames N, --duration 'T s', --endless\n"
+        "                       in place of the scenario's 'time.frames'; lockstep has no end unless given one\n"
+        "  --delay 'D ms'       a frame is due so long after its tick began (default: a period)\n"
+        "  --hold               and leaves then, not before: constant delay\n"
+        "  --late send          what is not there when it is due is sent as soon as it is (default) ...\n"
+        "  --late drop          ... is not sent ...\n"
+        "  --late repeat        ... or the picture before is sent in its place. A tick that is over before it could be begun is dropped, or repeated\n"
+        "  --fifo P, --cores LIST\n"
+        "                       SCHED_FIFO priority, 1 to 99, and cores of the thread that draws, where the system lets it\n"
+        "  'accuracy: {asked: 1 %, at_most: 3 %}' in the scenario: where the rate does not hold it draws coarser, up to that; frames say to what\n"
+        "\n"
+        "Frames to\n"
+        "  --shared-memory /NAME  POSIX shared memory, of this user alone; sim/stream/ring/pitviper_stream.h says what is in it and is the reader in C\n"
+        "  --gige ADDRESS       each camera as a machine-vision camera, compatible with GVCP/GVSP, tested with Aravis, at this IPv4 address of the machine and those after it;\n"
+        "                       clients set exposure and gain, and trigger. More of it: 'sink: gige' in the scenario\n"
+        "  --gstreamer PIPELINE a pipeline of the first camera (again: of the next) after 'appsrc', GRAY16_LE, as for gst-launch-1.0: 'videoconvert ! autovideosink'\n"
+        "  --projector DISPLAY  of the first camera (again: the next): 'window', or the number of a monitor that it fills; 16 bits, the high byte in red and the low one in green\n"
+        "  --projector-table FILE.csv\n"
+        "                       instead grey of 8 bits by a table that was measured: columns 'code [1], level [1]'\n"
+        "  and --preview, --sheet, --video and so on as of run, and the scenario's sinks: what is slow has a queue, and skips frames in real time\n"
+        "\n"
+        "Commands from (on this machine alone unless an address is given; what is malformed, stale or impossible is counted, ignored and told once a kind)\n"
+        "  --commands PLACE     lines of JSON at a TCP port (7380, 0.0.0.0:7380) or a Unix socket (/tmp/pitviper.sock), with the words of a scenario's 'commands':\n"
+        "                       {\"command\": \"move\", \"entity\": \"jet\", \"position\": [\"0 m\", \"1 km\", \"500 m\"]}, look, temperature, light, trigger, gain; with \"at\" for a time; \"id\" asks for an\n"
+        "                       answer; \"host_frame\" comes back with the frame. {\"step\": 1} in lockstep, {\"run\": false} stops and {\"run\": true} starts real time, {\"follow\": true} asks\n"
+        "                       for a line a frame, {\"status\": true}, {\"pulse\": true}, {\"end\": true}\n"
+        "  --stale 'T s'        commands for a time so long ago are not carried out (default 1 s); younger ones are taken on to the frame's time\n"
+        "  --cigi PLACE         CIGI 3.3 at a UDP port (8004, 0.0.0.0:8004), Start of Frame back; IG mode standby stops, operate starts; in lockstep each IG Control is a step.\n"
+        "                       What has which number: scenarios/README.md\n"
+        "  scenarios/clients has a tracker, readers and a CIGI host\n"
+        "\n"
+        "  --out FOLDER         stream.json and stream.html, with a chart; created if missing\n"
+        "  --self-test          what each way takes on this machine, without drawing: 640x512 pixels at 60 Hz for 5 s each, in a table\n"}},
       {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
   };
   return all;
@@ -165,7 +214,7 @@ void printHelp() {
   std::printf("pitviper: infrared and optronic sensor scenes in calibrated units\n\nusage: pitviper COMMAND ...\n\n");
   for (const auto& [name, c] : commands()) std::printf("  %-10s %s\n", name.c_str(), c.summary);
   std::printf("  %-10s %s\n", "test", "build and run every test (the pitviper script)");
-  std::printf("\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input, 130 and 143 ended by a signal.\n");
+  std::printf("\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input, 3 frames of a stream unaccounted for, 130 and 143 ended by a signal.\n");
 }
 
 int run(Arguments arguments) {

@@ -10,6 +10,7 @@
 #include "sensors/noise_source.hpp"
 #include "sensors/side_by_side.hpp"
 #include "sensors/signal_memory.hpp"
+#include "sensors/wide_loops.hpp"
 
 namespace pitviper {
 namespace {
@@ -26,6 +27,20 @@ void share(std::vector<float>& picture, double part, int width, int height) {
     for (int x = 0; x < width; ++x)
       picture[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)] =
           static_cast<float>((1.0 - 4.0 * part) * at(x, y) + part * (at(x - 1, y) + at(x + 1, y) + at(x, y - 1) + at(x, y + 1)));
+}
+
+/// What a row of electrons is as counts: round(gain x electrons + offset) within 0 and `most`, a whole number.
+PITVIPER_WIDE void toCounts(const double* electrons, double gain, double offset, double most, float* counts, int width) {
+  for (int x = 0; x < width; ++x) {
+    const double value = gain * electrons[x] + offset + 0.5, kept = value > 0.0 ? (value < most ? value : most) : 0.0;
+    counts[x] = static_cast<float>(static_cast<std::int32_t>(kept));  // of what is not negative that is its floor
+  }
+}
+
+/// A row's electrons from what the wells have counted: what the well holds, dark signal, and read-out's noise.
+PITVIPER_WIDE void readOut(const double* counted, const double* normal, const float* dark, const double* column, double fullWell, double row, double noise, double* electrons, int width) {
+  for (int x = 0; x < width; ++x)
+    electrons[x] = (counted[x] < fullWell ? counted[x] : fullWell) + (static_cast<double>(dark[x]) + row + column[x]) + noise * normal[x];
 }
 
 class DetectorStage final : public SensorStage {
@@ -94,33 +109,39 @@ class DetectorStage final : public SensorStage {
     if (signalToNoise) signalToNoise->resize(picture.size());
     std::vector<double> columns(static_cast<std::size_t>(width), whole);
     for (int x = 0; law_.sigmaTh > 0.0 && x < width; ++x) columns[static_cast<std::size_t>(x)] += law_.sigmaTh * ofColumn.normal(static_cast<std::uint32_t>(x));
-    const auto exposeRow = [&](int y) {
+    struct Row {
+      std::vector<double> count, normal;
+    };
+    const auto exposeRow = [&](int y, Row& drawn) {
       const double row = law_.sigmaTv > 0.0 ? law_.sigmaTv * ofRow.normal(static_cast<std::uint32_t>(y)) : 0.0;
+      const auto from = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
       for (int x = 0; x < width; ++x) {
-        const auto at = static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
-        const auto place = static_cast<std::uint32_t>(at);
+        const auto at = from + static_cast<std::size_t>(x);
         const double ideal = law_.fillFactor * static_cast<double>(picture[at]);
-        double response = static_cast<double>(fixed.response[at]), dark = static_cast<double>(fixed.dark[at]);
+        double response = static_cast<double>(fixed.response[at]);
         if (!fixed.gainDrift.empty()) response += static_cast<double>(fixed.gainDrift[at]) * tick.time_s;
-        if (!fixed.darkDrift.empty()) dark += static_cast<double>(fixed.darkDrift[at]) * tick.time_s;
         double signal = response * ideal;
         if (!fixed.bend.empty()) signal += static_cast<double>(fixed.bend[at]) * ideal * ideal;
         const double mean = std::max(0.0, signal) + darkMean;
         if (signalToNoise) (*signalToNoise)[at] = static_cast<float>(std::max(0.0, signal) / std::sqrt(mean + variance));
-        // What the well holds is what is counted; read-out adds to what it says.
-        const NoiseSource::Drawn drawn = shot.poissonAndNormal(mean, place);
-        double electrons = std::min(drawn.count, law_.fullWell);
-        if (fixed.bad[at] > 0) electrons = fixed.bad[at] == 1 ? 0.0 : law_.fullWell;
-        electrons += dark + row + columns[static_cast<std::size_t>(x)];
-        electrons += law_.sigmaTvh * drawn.normal;
-        if (flicker) electrons += octave * static_cast<double>((*flicker)[at]);
-        // The correction knows the mean dark signal as what there is without light.
-        if (!fixed.gain.empty()) electrons = static_cast<double>(fixed.gain[at]) * (electrons - darkMean) + static_cast<double>(fixed.offset[at]) + darkMean;
-        picture[at] = static_cast<float>(std::clamp(std::floor(gain * electrons + law_.offset + 0.5), 0.0, most));
+        drawn.count[static_cast<std::size_t>(x)] = mean;
       }
+      shot.poissonAndNormal(static_cast<std::uint32_t>(from), drawn.count, drawn.normal);
+      // What the well holds is what is counted; read-out adds to what it says.
+      for (std::size_t x = 0; x < drawn.count.size(); ++x)
+        if (const int bad = fixed.bad[from + x]; bad > 0) drawn.count[x] = bad == 1 ? 0.0 : law_.fullWell;
+      std::vector<double>& electrons = drawn.count;
+      readOut(drawn.count.data(), drawn.normal.data(), &fixed.dark[from], columns.data(), law_.fullWell, row, law_.sigmaTvh, electrons.data(), width);
+      for (std::size_t x = 0; !fixed.darkDrift.empty() && x < electrons.size(); ++x) electrons[x] += static_cast<double>(fixed.darkDrift[from + x]) * tick.time_s;
+      for (std::size_t x = 0; flicker && x < electrons.size(); ++x) electrons[x] += octave * static_cast<double>((*flicker)[from + x]);
+      // The correction knows the mean dark signal as what there is without light.
+      for (std::size_t x = 0; !fixed.gain.empty() && x < electrons.size(); ++x)
+        electrons[x] = static_cast<double>(fixed.gain[from + x]) * (electrons[x] - darkMean) + static_cast<double>(fixed.offset[from + x]) + darkMean;
+      toCounts(electrons.data(), gain, law_.offset, most, &picture[from], width);
     };
     sideBySide(height, [&](int first, int last) {
-      for (int y = first; y < last; ++y) exposeRow(y);
+      Row drawn{std::vector<double>(static_cast<std::size_t>(width)), std::vector<double>(static_cast<std::size_t>(width))};
+      for (int y = first; y < last; ++y) exposeRow(y, drawn);
     });
   }
 

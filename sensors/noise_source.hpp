@@ -3,6 +3,7 @@
 // Philox 4x32-10. Source: J. K. Salmon et al., "Parallel random numbers: as easy as 1, 2, 3", SC'11, with its constants.
 #include <array>
 #include <cstdint>
+#include <span>
 
 namespace pitviper {
 
@@ -13,6 +14,8 @@ std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::a
 
 /// Of a uniform number in (0, 1): the normal one that as many lie below. Source: M. J. Wichura, Applied Statistics 37, 477 (1988), AS 241, PPND16, good to 1e-15.
 double normalQuantile(double u);
+/// The same of each, in place: same bits, several at a time.
+void normalQuantiles(std::span<double> u);
 
 class NoiseSource {
  public:
@@ -34,6 +37,8 @@ class NoiseSource {
     double count, normal;
   };
   Drawn poissonAndNormal(double mean, std::uint32_t place) const;
+  /// The same of places on end from `first` on: same bits, several at a time. `mean` becomes the counts. Both have as many.
+  void poissonAndNormal(std::uint32_t first, std::span<double> mean, std::span<double> normal) const;
 
  private:
   std::array<double, 2> pair(std::uint32_t place, std::uint32_t draw) const;

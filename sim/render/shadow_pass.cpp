@@ -26,6 +26,8 @@ constexpr int kClear = 8;
 
 /// Directions that differ by less are the same: over a kilometre a micrometre.
 constexpr double kSameLight = 1e-9;
+/// Where a sun is that has a place: whoever looks from there sees the same faces.
+constexpr double kFarSun_m = 1e11;
 /// Half a unit in the last place of a float.
 constexpr double kRounding = 6e-8;
 
@@ -108,11 +110,32 @@ void ShadowPass::draw(std::size_t caster, const Map& map) {
   for (int r = 0; r < 4; ++r) rows[r] = glm::vec4(map.projection->row[r]);
   glUniform4fv(program_.uniform("mapFromBody"), 4, &rows[0].x);
   glUniform1f(program_.uniform("texels"), static_cast<float>(kTexels));
+  // Of a whole closed body the faces that look away lie behind others, everywhere: clusters of them are left out. (Not face by face: which way a narrow one looks is decided on the
+  // map's grid, and may be decided wrongly.)
+  const glm::dvec3 eye = map.light.sun ? kFarSun_m * glm::normalize(map.light.at) : map.light.at;
+  const bool half = entity.mesh->closed && !simulation_.isTransparent(entity) && glm::length(eye - glm::dvec3(entity.boundingCentre)) > 1.0001 * static_cast<double>(entity.boundingRadius_m);
+  const std::uint32_t base = scene_->firstTriangle(static_cast<int>(caster));
+  const auto drawRun = [](std::uint32_t first, std::uint32_t count) {
+    if (count > 0) glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT, reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * 12));
+  };
   for (const Surface& s : entity.surfaces) {
     if (simulation_.materialOf(s).isTransparent()) continue;
     const MeshPart& part = entity.mesh->parts[s.meshPart];
-    const std::uintptr_t first = scene_->firstTriangle(static_cast<int>(caster)) + part.firstTriangle;
-    glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(part.triangleCount * 3), GL_UNSIGNED_INT, reinterpret_cast<const void*>(first * 12));
+    const std::uint32_t end = part.firstTriangle + part.triangleCount;
+    std::uint32_t first = 0, count = 0;  // of what is drawn at once
+    bool any = false;
+    for (const MeshCluster& run : scene_->clusters(static_cast<int>(caster))) {
+      if (!half || run.first < part.firstTriangle || run.first >= end) continue;
+      any = true;
+      if (run.facesAway(eye)) continue;
+      if (first + count != base + run.first) {
+        drawRun(first, count);
+        first = base + run.first, count = 0;
+      }
+      count += run.count;
+    }
+    if (any) drawRun(first, count);
+    else drawRun(base + part.firstTriangle, part.triangleCount);
   }
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_DEPTH_CLAMP);

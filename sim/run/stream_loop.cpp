@@ -96,7 +96,7 @@ class StreamLoop {
       const CameraImage image = line.finish();
       // While the processor works out what the sensor makes of this picture the next may be drawn already, if its time has come.
       std::optional<Job> following;
-      const bool overlaps = realTime() && isDue(*current);
+      const bool overlaps = wish_.clock != StreamClock::Lockstep && isDue(*current);
       if (overlaps && (following = next(&*current))) begin(*following);
       put(*current, line, image);
       if (!overlaps && (following = next(&*current))) begin(*following);
@@ -160,6 +160,7 @@ class StreamLoop {
   /// Whether the tick after this camera's last has begun, or another camera of this tick is to come.
   bool isDue(const Job& job) const {
     if (job.camera + 1 < lines_.size()) return true;
+    if (wish_.clock == StreamClock::Free) return true;
     if (wish_.outsideClock) return false;
     return inbox_.isRunning() && monotonic_ns() >= beginOf(job.tick->number + 1);
   }

@@ -13,11 +13,16 @@
 namespace {
 
 const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image",  "sim/gl",    "sim/scene",  "sim/model",
-                                         "sim/radiance",   "sim/plan",       "sim/render", "sim/render/reference", "sim/camera", "sim/frame", "sim/stream", "sim/run"};
+                                         "sim/radiance",   "sim/plan",       "sim/render", "sim/render/reference", "sim/camera", "sim/frame",
+                                         "sim/stream/clock", "sim/stream/on_demand", "sim/stream/ring", "sim/stream/gige", "sim/stream/cigi", "sim/stream/gstreamer",
+                                         "sim/stream/projector", "sim/stream", "sim/run"};
 
 int levelOf(const std::string& path) {
-  for (size_t i = kOrder.size(); i-- > 0;)  // a folder in another before that one
-    if (path.rfind(kOrder[i] + "/", 0) == 0) return static_cast<int>(i);
+  int level = -1;
+  size_t longest = 0;  // a folder in another is itself, not that one
+  for (size_t i = 0; i < kOrder.size(); ++i)
+    if (path.rfind(kOrder[i] + "/", 0) == 0 && kOrder[i].size() > longest) level = static_cast<int>(i), longest = kOrder[i].size();
+  if (level >= 0) return level;
   for (const char* m : {"materials/", "atmosphere/", "sensors/"})
     if (path.rfind(m, 0) == 0) return 100;
   if (path.rfind("scenarios/", 0) == 0) return 200;
@@ -59,7 +64,10 @@ std::string violation(const Use& use) {
                                                                           {"Eigen/", {"sim/plan/", "sim/radiance/", "materials/", "sensors/"}},
                                                                           {"unsupported/Eigen/", {"sensors/"}},
                                                                           {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}},
-                                                                          {"epoxy/", {"sim/gl/", "sim/render/", "sim/camera/", "scenarios/commands/bench"}}};
+                                                                          {"epoxy/", {"sim/gl/", "sim/render/", "sim/camera/", "scenarios/commands/bench", "sim/stream/projector/"}},
+                                                                          {"GLFW/", {"sim/stream/projector/"}},
+                                                                          {"X11/", {"sim/stream/projector/"}},
+                                                                          {"gst/", {"sim/stream/gstreamer/"}}};
     for (const auto& [library, allowed] : homes) {
       if (use.included.rfind(library, 0) != 0) continue;
       for (const auto& home : allowed)

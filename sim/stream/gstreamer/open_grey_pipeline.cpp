@@ -4,7 +4,7 @@
 #include <stdexcept>
 
 #include "sim/parameters/error.hpp"
-#include "sim/stream/gstreamer/on_demand.hpp"
+#include "sim/stream/on_demand/on_demand.hpp"
 
 namespace pitviper {
 

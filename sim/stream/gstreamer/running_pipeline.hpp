@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "sim/stream/gstreamer/gstreamer_module.hpp"
-#include "sim/stream/gstreamer/own_thread.hpp"
+#include "sim/stream/on_demand/own_thread.hpp"
 #include "sim/stream/gstreamer/parsed_pipeline.hpp"
 
 namespace pitviper {

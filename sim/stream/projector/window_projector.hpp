@@ -2,7 +2,7 @@
 // A projector: a window on a thread of its own.
 #include <memory>
 
-#include "sim/stream/gstreamer/own_thread.hpp"
+#include "sim/stream/on_demand/own_thread.hpp"
 #include "sim/stream/projector/frame_mailbox.hpp"
 #include "sim/stream/projector/projector_module.hpp"
 

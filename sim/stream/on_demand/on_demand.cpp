@@ -1,4 +1,4 @@
-#include "sim/stream/gstreamer/on_demand.hpp"
+#include "sim/stream/on_demand/on_demand.hpp"
 
 #include <dlfcn.h>
 
