@@ -43,7 +43,8 @@ class Frame:
         self._record = np.frombuffer(ring._map, FRAME, 1, self._at)[0]
 
     def __getattr__(self, name):
-        return self._record[name]
+        value = self._record[name]
+        return value.item() if value.shape == () else value
 
     def __getitem__(self, layer):
         """uint16 counts, or float32 in the layer's unit; [height, width], row 0 at the top."""

@@ -1,5 +1,6 @@
 #include "sim/run/frame_pacer.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 #include "sim/stream/clock/wall_clock.hpp"
@@ -46,13 +47,13 @@ void FramePacer::put(PacedFrame p) {
   {
     const std::lock_guard lock(mutex_);
     if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
-    // One that is no longer expected has been repeated, or dropped, in its place.
-    for (PacedFrame& e : expected_)
-      if (e.camera == p.camera && e.tick == p.tick) {
-        e = std::move(p);
-        if (!e.frame) e.begun_ns = -1;  // it will not come
-        break;
-      }
+    const auto own = std::find_if(expected_.begin(), expected_.end(), [&](const PacedFrame& e) { return e.camera == p.camera && e.tick == p.tick; });
+    if (own != expected_.end()) {
+      *own = std::move(p);
+      if (!own->frame) own->begun_ns = -1;  // it will not come
+    } else if (p.frame) {
+      last_[p.camera] = p.frame;  // something else has been sent in its place: it is what the next repetition shows
+    }
   }
   wake_.notify_all();
 }
@@ -67,16 +68,24 @@ void FramePacer::leave(PacedFrame& p) {
     return;
   }
   account_.sent(p.camera, *p.frame->stamp, {p.tick_ns, p.begun_ns, p.made_ns, now, late || lateHeld, false});
-  if (thread_.joinable()) last_[p.camera] = p.frame;
+  if (thread_.joinable()) {
+    const std::lock_guard lock(mutex_);
+    last_[p.camera] = p.frame;
+  }
   handOver_(p.frame);
 }
 
 void FramePacer::repeat(const PacedFrame& missing) {
-  if (!last_[missing.camera]) {
+  std::shared_ptr<const Frame> before;
+  {
+    const std::lock_guard lock(mutex_);
+    before = last_[missing.camera];
+  }
+  if (!before) {
     account_.dropped(missing.camera);
     return;
   }
-  auto again = std::make_shared<Frame>(*last_[missing.camera]);
+  auto again = std::make_shared<Frame>(*before);
   again->stamp->sequence = missing.tick;
   again->stamp->due_tai_ns = taiOf_ns(missing.due_ns);
   const std::int64_t now = monotonic_ns();

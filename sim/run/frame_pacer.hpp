@@ -45,7 +45,7 @@ class FramePacer {
   std::mutex mutex_;
   std::condition_variable wake_, emptied_;
   std::deque<PacedFrame> expected_;  ///< what comes, in order, not there yet or not due
-  std::vector<std::shared_ptr<const Frame>> last_;  ///< sent, by camera
+  std::vector<std::shared_ptr<const Frame>> last_;  ///< the newest of each camera
   std::exception_ptr failure_;
   bool ends_ = false;
   std::thread thread_;
