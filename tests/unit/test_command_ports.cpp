@@ -28,7 +28,7 @@ entities:
   - {name: jet, shape: {model: sphere, radius: 5 m}, material: grey_aircraft_paint, temperature: 300 K, position: [0 m, 1 km, 0 m]}
   - {name: pod, attached_to: jet, shape: {model: sphere, radius: 0.5 m}, material: grey_aircraft_paint, temperature: 310 K, position: [1 m, 2 m, 0 m]}
 lights:
-  - {name: flare, model: lamp, intensity: {temperature: 2000 K}, radius: 5 cm, position: [0 m, 1 km, 10 m], level: [[0 s, 0], [0.1 s, 1], [1 s, 0]]}
+  - {name: flare, model: lamp, intensity: {library: mtv_flare, scale: 1}, radius: 5 cm, position: [0 m, 1 km, 10 m], level: [[0 s, 0], [0.1 s, 1], [1 s, 0]]}
 cameras:
   - name: eye
     position: [0 m, 0 m, 0 m]
@@ -99,7 +99,7 @@ TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
       {R"(nonsense)", "not a JSON object"},
       {R"([1, 2])", "not a JSON object"},
       {R"({"command": "blow"})", "there is no command"},
-      {R"({"command": "move", "entity": "jte", "position": ["1 m", "2 m", "3 m"]})", "did you mean 'jet'"},
+      {R"({"command": "move", "entity": "jte", "position": ["1 m", "2 m", "3 m"]})", "there is no entity"},
       {R"({"command": "temperature", "entity": "jet", "value": 300})", "unit"},
       {R"({"command": "gain", "camera": "eye", "factor": 0})", "factor"},
       {R"({"command": "light", "light": "flare", "level": "bright"})", "level"},
@@ -338,7 +338,7 @@ TEST(CigiPort, AnswersItsHostAndCountsTheRest) {
   std::uint32_t number = 0;
   std::memcpy(&number, answer + 8, 4);
   EXPECT_EQ(number, 17u);
-  std::memcpy(&number, answer + 20, 4);
+  std::memcpy(&number, answer + 16, 4);
   EXPECT_EQ(number, 5u) << "the host's frame";
   control(4);  // out of order
   control(5);  // again: its answer may be lost
