@@ -34,6 +34,16 @@ class _Time(ctypes.Structure):
     _fields_ = [("s", ctypes.c_long), ("ns", ctypes.c_long)]
 
 
+def _lives(process):
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        pass
+    return True
+
+
 class Frame:
     """One frame in place: its record's fields as attributes, its layers by name."""
 
@@ -71,7 +81,7 @@ class Ring:
             try:
                 with open("/dev/shm/" + name.lstrip("/"), "rb") as file:
                     self._map = mmap.mmap(file.fileno(), 0, mmap.MAP_SHARED, mmap.PROT_READ)
-                if len(self._map) >= HEADER.itemsize and self._map[:8] == b"pitviper":
+                if len(self._map) >= HEADER.itemsize and self._map[:8] == b"pitviper" and _lives(int(np.frombuffer(self._map, HEADER, 1)[0]["writer_pid"])):
                     break
                 raise FileNotFoundError(name)
             except (FileNotFoundError, ValueError):
@@ -85,15 +95,14 @@ class Ring:
         self.width, self.height = int(self._head["width"]), int(self._head["height"])
         self.camera, self.scenario = self._head["camera"].decode(), self._head["scenario"].decode()
         self.layers = {layer["name"].decode(): layer for layer in self._head["layer"][: self._head["layers"]]}
-        self._wake = self._map.size() and HEADER.fields["wake"][1]
-        self._wake_address = np.frombuffer(self._map, np.uint8).ctypes.data + self._wake
+        self._wake_address = np.frombuffer(self._map, np.uint8).ctypes.data + HEADER.fields["wake"][1]
         self._next, self.lost = int(self._head["published"]), 0
 
     def next(self, timeout_s=None):
         """The next frame; None where none comes in time, or the stream has ended (`ended`)."""
         until = None if timeout_s is None else time.monotonic() + timeout_s
         while True:
-            wake, published = int(self._head["wake"]), int(self._head["published"])
+            wake, ended, published = int(self._head["wake"]), self.ended, int(self._head["published"])  # in this order: a last frame is not missed
             while self._next < published:
                 oldest = max(0, published - self._slots + 1)
                 if self._next < oldest:
@@ -104,8 +113,8 @@ class Ring:
                 if frame.held():
                     return frame
                 self.lost += 1
-            left = 1.0 if until is None else until - time.monotonic()
-            if self.ended or left <= 0.0:
+            left = 1.0 if until is None else min(1.0, until - time.monotonic())
+            if ended or left <= 0.0:
                 return None
             if _FUTEX:
                 _libc.syscall(_FUTEX, ctypes.c_void_p(self._wake_address), 0, ctypes.c_uint(wake), ctypes.byref(_Time(int(left), int(left % 1 * 1e9))), None, 0)
@@ -114,7 +123,8 @@ class Ring:
 
     @property
     def ended(self):
-        return bool(self._head["ended"])
+        """Said by the writer, or it was killed."""
+        return bool(self._head["ended"]) or not _lives(int(self._head["writer_pid"]))
 
     def __iter__(self):
         while (frame := self.next()) is not None:
@@ -129,9 +139,8 @@ if __name__ == "__main__":
     options.add_argument("--wait", type=float, default=10.0, metavar="S", help="how long to wait for the stream to begin")
     options.add_argument("--quiet", action="store_true", help="the last line alone")
     asked = options.parse_args()
-    ring, count, delays = Ring(asked.name, asked.wait), 0, []
+    ring, count = Ring(asked.name, asked.wait), 0
     print(f"{ring.scenario}, camera {ring.camera}, {ring.width} x {ring.height}, layers {', '.join(ring.layers)}")
-    tai_minus_utc = None
     for frame in ring:
         count += 1
         if not asked.quiet:

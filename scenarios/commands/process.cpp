@@ -19,6 +19,7 @@
 
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/readable_text.hpp"
+#include "sim/stream/ring/ring_writer.hpp"
 
 namespace pitviper {
 namespace {
@@ -49,6 +50,7 @@ void openClosedStreams() {
 
 [[noreturn]] void endBySignal(int number) {
   removeOpenTemporaries();
+  removeOpenRings();
   const char* const name = number == SIGINT ? "SIGINT" : number == SIGTERM ? "SIGTERM" : "SIGHUP";
   // A progress bar stands on the terminal's line.
   writeToStderr(std::string(::isatty(STDERR_FILENO) != 0 ? "\n" : "") + "pitviper: ended by " + name +

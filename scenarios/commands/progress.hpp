@@ -33,6 +33,7 @@ struct ProgressPace {
 class Progress {
  public:
   /// Off a terminal lines go to `line` (stderr unless given).
+  /// `total` 0: nobody knows.
   Progress(std::string what, int total, ProgressPace pace = {}, std::function<void(const std::string&)> line = {});
   ~Progress();
   Progress(const Progress&) = delete;

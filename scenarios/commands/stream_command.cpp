@@ -63,6 +63,9 @@ std::vector<int> coresOf(const Options& o) {
   return cores;
 }
 
+/// Frames are numbered by an int.
+constexpr double kMostTicks = 2e9;
+
 StreamWish wishOf(const Options& o, const Simulation& sim) {
   StreamWish wish;
   wish.clock = word<StreamClock>(o, "--clock", "real-time", {{"real-time", StreamClock::RealTime}, {"lockstep", StreamClock::Lockstep}, {"free", StreamClock::Free}, {"trigger", StreamClock::Lockstep}, {"vsync", StreamClock::RealTime}});
@@ -72,10 +75,10 @@ StreamWish wishOf(const Options& o, const Simulation& sim) {
     throw UserError({"--frames, --duration, --endless", 0, 0, -1}, "more than one of them", "one, or none", "remove the others");
   if (o.has("--frames")) {
     const auto [a, b] = readRange(o.value("--frames"), "--frames");
-    if (a != b || a < 1 || a > 2000000000) throw UserError(ofOption(o, "--frames"), "no number of frames", "a whole number from 1", "write --frames 6000");
+    if (a != b || a < 1 || static_cast<double>(a) > kMostTicks) throw UserError(ofOption(o, "--frames"), "no number of frames", "a whole number from 1", "write --frames 6000");
     wish.ticks = static_cast<std::uint64_t>(a);
   }
-  if (o.has("--duration")) wish.ticks = static_cast<std::uint64_t>(std::max(1.0, std::round(quantity(o, "--duration", "s", 0.0, 1e8, "60 s") / sim.time.step_s)));
+  if (o.has("--duration")) wish.ticks = static_cast<std::uint64_t>(std::clamp(std::round(quantity(o, "--duration", "s", 0.0, 1e8, "60 s") / sim.time.step_s), 1.0, kMostTicks));
   if (o.has("--endless") || (wish.clock == StreamClock::Lockstep && !o.has("--frames") && !o.has("--duration"))) wish.ticks = 0;
   if (o.has("--delay")) wish.delay_ns = std::llround(1e9 * quantity(o, "--delay", "s", 1e-6, 10.0, "20 ms"));
   wish.holds = o.has("--hold");
@@ -135,7 +138,7 @@ std::string statusOf(const Simulation& sim, double time_s, const std::vector<Pla
   nlohmann::ordered_json j = {{"status", true}, {"scenario", sim.name}, {"time_s", time_s}, {"commands", inbox.counts()}};
   for (const PlacedSink& placed : sinks)
     for (const SinkCounts& s : placed.sink->counts()) j["sinks"].push_back({{"sink", s.sink}, {"taken", s.taken}, {"passed_on", s.passedOn}, {"skipped", s.skipped}});
-  return j.dump();
+  return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace
@@ -163,10 +166,16 @@ int streamCommand(const Arguments& arguments) {
   refuseBeyondMemory(sim);
   readPlans(o, sim);
   StreamWish wish = wishOf(o, sim);
+  const auto needs = [&](const char* option, const char* other) {
+    if (o.has(option) && !o.has(other)) throw UserError({option, 0, 0, -1}, std::string("it does nothing without ") + other, std::string("both, or none"), std::string("add ") + other + ", or remove it");
+  };
+  needs("--projector-table", "--projector");
+  needs("--stale", "--commands");
+  for (const char* option : {"--delay", "--hold", "--late"})
+    if (o.has(option) && wish.clock != StreamClock::RealTime)
+      throw UserError({option, 0, 0, -1}, "frames of this clock are never late", "'--clock real-time', or 'vsync'", std::string("remove ") + option);
   const bool byTrigger = o.value("--clock") == "trigger", bySwap = o.value("--clock") == "vsync";
   if (bySwap && !o.has("--projector")) throw UserError({"--clock vsync", 0, 0, -1}, "there is no display whose clock it could be", "'--projector'", "add --projector 0");
-  if (byTrigger && !o.has("--gige") && sim.sinks.empty() && !o.has("--commands"))
-    throw UserError({"--clock trigger", 0, 0, -1}, "nobody could trigger", "'--gige ADDRESS', or '--commands PLACE' for its pulses", "add --gige 127.0.0.1");
   if (wish.clock == StreamClock::Lockstep && !byTrigger && !o.has("--commands") && !o.has("--cigi"))
     throw UserError({"--clock lockstep", 0, 0, -1}, "nobody could let the clock go on", "'--commands PLACE' or '--cigi PLACE' for the host that holds it", "add --commands 7380, or use --clock free");
   const PictureWish pictures = readPictureWish(o, sim);
@@ -180,6 +189,8 @@ int streamCommand(const Arguments& arguments) {
   std::atomic<double> now_s{sim.time.start_s};
   std::atomic<bool> streams{false};
   const auto sinks = sinksOf(o, sim, place, pictures, loses);
+  if (byTrigger && !o.has("--commands") && std::none_of(sinks.begin(), sinks.end(), [](const PlacedSink& s) { return dynamic_cast<ControllableSink*>(s.sink.get()) != nullptr; }))
+    throw UserError({"--clock trigger", 0, 0, -1}, "nobody could trigger", "'--gige ADDRESS', or '--commands PLACE' for its pulses", "add --gige 127.0.0.1");
   if (writes) {
     const RunRange range{0, static_cast<int>(std::clamp<std::uint64_t>(wish.ticks, 1, 100000)) - 1};
     OwnFiles own;
@@ -190,10 +201,13 @@ int streamCommand(const Arguments& arguments) {
   }
   Notes notes;
   noteCuts(sim, notes);
+  for (const Camera& c : sim.cameras)
+    if (c.spectralImage) notes.say("camera " + c.name + ": its spectral image is drawn by run, not by a stream");
+  if (!sim.probes.empty()) notes.say("probes are read by run, not by a stream");
   std::vector<ControllableSink*> pulsed;  // complete before the stream begins
   std::vector<std::unique_ptr<CommandPort>> ports;
   if (o.has("--commands")) {
-    JsonPortWish json{o.value("--commands"), 1.0, [&now_s] { return now_s.load(); }, {}, [&] {
+    JsonPortWish json{o.value("--commands"), wish.clock == StreamClock::Lockstep && !byTrigger, 1.0, [&now_s] { return now_s.load(); }, {}, [&] {
                         if (byTrigger) inbox.step({});
                         if (streams)
                           for (ControllableSink* device : pulsed) device->pulse();
@@ -230,7 +244,7 @@ int streamCommand(const Arguments& arguments) {
   for (const auto& port : ports) heard.push_back(port.get());
   const EndsItself ending([&inbox] { inbox.end(); });
   std::optional<Progress> progress;
-  progress.emplace(sim.name, static_cast<int>(std::min<std::uint64_t>(wish.ticks, 2000000000)));
+  progress.emplace(sim.name, static_cast<int>(wish.ticks));
   progress->phase("preparing");
   StreamResult result;
   result.report = streamFrames(

@@ -254,7 +254,7 @@ Way throughJson(const Simulation& sim) {
       if (got == sizeof answer) return false;
     }
   };
-  Way way = throughPort("JSON lines: a move and a step, there and back", sim, [&](CommandInbox& inbox) { return openJsonPort({path, 1.0, {}, {}, {}}, sim, inbox); }, ask, connectTo, 2000);
+  Way way = throughPort("JSON lines: a move and a step, there and back", sim, [&](CommandInbox& inbox) { return openJsonPort({path, true, 1.0, {}, {}, {}}, sim, inbox); }, ask, connectTo, 2000);
   close(s);
   return way;
 }

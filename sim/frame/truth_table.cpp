@@ -330,9 +330,10 @@ void TruthMeter::addLamp(TargetRow& row, std::size_t light, const WorldState& st
   addChannels(row, sums, sums, sums, 0.0, state);
 }
 
-std::vector<TargetRow> TruthMeter::targets(const WorldState& state) const {
+std::vector<TargetRow> TruthMeter::targets(const WorldState& state, const StateAt& stateAt) const {
   std::vector<TargetRow> rows;
-  const WorldState earlier = advance(simulation_, state.time_s - kApart_s), later = advance(simulation_, state.time_s + kApart_s);
+  const auto at = [&](double t) { return stateAt ? stateAt(t) : advance(simulation_, t); };
+  const WorldState earlier = at(state.time_s - kApart_s), later = at(state.time_s + kApart_s);
   for (std::size_t e = 0; e < simulation_.entities.size(); ++e) {
     const Entity& body = simulation_.entities[e];
     if (!present_[e] || body.mesh->heightField) continue;

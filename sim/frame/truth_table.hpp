@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "sim/frame/frame.hpp"
+#include "sim/model/world.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
 
@@ -18,7 +19,7 @@ class TruthMeter {
   /// bounding sphere, 128 across at 1 %, six times as many where what they meet changes; worked out where they bend, linear between within a twenty-fifth of the accuracy. `own`: emission and
   /// reflection of its surfaces or its medium, through all that lies before it; `total`: all light along lines that meet it before anything opaque; `contrast`:
   /// that less what these lines would have without it. Each times range squared. A camera within a body's sphere gets NaN.
-  std::vector<TargetRow> targets(const WorldState& state) const;
+  std::vector<TargetRow> targets(const WorldState& state, const StateAt& stateAt = {}) const;
 
   /// Layers `truth.terms.<channel>.<part>` [W/(m2 sr)] at pixels' middles, before the sensor's stages: emission, ambient, sun, lamp.<name> (light of that lamp that
   /// surfaces reflect), air_emission, scattered_sun, background, media, lamps_in_view; those that the scene can have. Their sum is the channel's radiance.

@@ -20,7 +20,7 @@ class World {
   /// From the beginning of a tick (frame number) on. Commands of one tick hold in the order in which they came, after the scenario's own.
   /// Throws std::invalid_argument where a later tick has had one: what was drawn stays.
   void apply(const Command& command, int tick);
-  /// At a time not before the last command's tick; commands of a tick hold for all of its exposure, which begins up to a step before. Earlier: std::invalid_argument.
+  /// Of the last command's tick, or later. Earlier, as within an exposure that began before: what commands have set since holds there too.
   WorldState at(double time_s) const;
   const Simulation& simulation() const { return simulation_; }
 

@@ -27,12 +27,17 @@ void AccuracyDial::turn(std::size_t rung, std::int64_t now_ns) {
   ++turns_;
 }
 
-void AccuracyDial::look(std::int64_t work_ns, bool isLate, std::int64_t now_ns) {
-  ++frames_[rung_];
-  work_ns_[rung_] += kNewest * (static_cast<double>(work_ns) - work_ns_[rung_]);
+void AccuracyDial::look(std::size_t drawn, std::int64_t work_ns, bool isLate, std::int64_t now_ns) {
+  ++frames_[drawn];
+  const double before = work_ns_[drawn];
+  work_ns_[drawn] += kNewest * (static_cast<double>(work_ns) - before);
+  // More or less in view is so for all of them: what the others take goes with the one that is drawn.
+  if (before > 0.0)
+    for (std::size_t r = 0; r < work_ns_.size(); ++r)
+      if (r != drawn) work_ns_[r] *= work_ns_[drawn] / before;
+  if (drawn != rung_) return;  // begun before the dial turned
   over_ = std::max(0, over_ + (isLate || static_cast<double>(work_ns) > kFull * period_ns_ ? 1 : -1));
   if (over_ >= kTooLong && rung_ + 1 < work_ns_.size()) turn(rung_ + 1, now_ns);
-  // What a finer one takes was measured when less, or more, was in view: it goes with the rung that is drawn now.
   else if (rung_ > 0 && over_ == 0 && now_ns - turned_ns_ > wait_ns_ && work_ns_[rung_ - 1] < kRoom * period_ns_) turn(rung_ - 1, now_ns);
 }
 

@@ -9,8 +9,8 @@ class AccuracyDial {
  public:
   /// `work_ns`: what a tick takes of each rung, measured before the first; the first rung is the finest. Begins with the finest that is expected to hold.
   AccuracyDial(std::vector<double> work_ns, std::int64_t period_ns);
-  /// What a tick took, of the rung it was drawn to, not counting waiting; whether it was late.
-  void look(std::int64_t work_ns, bool isLate, std::int64_t now_ns);
+  /// What a tick took that was drawn to a rung, not counting waiting; whether it was late.
+  void look(std::size_t drawn, std::int64_t work_ns, bool isLate, std::int64_t now_ns);
   std::size_t rung() const { return rung_; }
   const std::vector<std::uint64_t>& frames() const { return frames_; }
   std::uint64_t turns() const { return turns_; }

@@ -8,8 +8,7 @@ namespace pitviper {
 
 BareTimer::BareTimer(std::int64_t first_ns, std::int64_t period_ns) {
   thread_ = std::thread([this, first_ns, period_ns] {
-    for (std::int64_t next = first_ns; !ends_;) {
-      sleepUntil_ns(next);
+    for (std::int64_t next = first_ns; sleepUntil_ns(next, [this] { return ends_.load(); });) {
       const std::int64_t late = monotonic_ns() - next;
       lateness_.add(late);
       if (10 * late > period_ns) ++late_;

@@ -77,12 +77,12 @@ CameraImage CameraLine::finish(std::optional<int> audited, bool isFirst) {
   return image;
 }
 
-Frame CameraLine::frame(const CameraImage& image, const WorldState& state, int number) {
+Frame CameraLine::frame(const CameraImage& image, const WorldState& state, int number, const StateAt& stateAt) {
   std::vector<TargetRow> targets;
   std::vector<FrameLayer> terms;
   if (truth_) {
     const TimedPart part("truth");
-    if (camera_.truth.targets) targets = truth_->targets(state);
+    if (camera_.truth.targets) targets = truth_->targets(state, stateAt);
     if (camera_.truth.terms) terms = truth_->terms(state);
   }
   const TimedPart part("frame");

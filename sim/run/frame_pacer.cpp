@@ -13,9 +13,13 @@ std::chrono::steady_clock::time_point momentOf(std::int64_t monotonic) { return 
 
 }  // namespace
 
-FramePacer::FramePacer(LatePolicy policy, bool holds, StreamAccount& account, HandOver handOver)
-    : policy_(policy), holds_(holds), account_(account), handOver_(std::move(handOver)), last_(account.cameras()) {
-  if (holds_ || policy_ == LatePolicy::Repeat) thread_ = std::thread([this] { serve(); });
+FramePacer::FramePacer(LatePolicy policy, bool holds, StreamAccount& account, HandOver handOver, TickOver tickOver, const ThreadWish& thread)
+    : policy_(policy), holds_(holds), account_(account), handOver_(std::move(handOver)), tickOver_(std::move(tickOver)), last_(account.cameras()) {
+  if (holds_ || policy_ == LatePolicy::Repeat)
+    thread_ = std::thread([this, thread] {
+      askFor(thread);  // what is refused is refused to the one that draws too, which tells it
+      serve();
+    });
 }
 
 FramePacer::~FramePacer() {
@@ -40,8 +44,9 @@ void FramePacer::expect(const PacedFrame& frame) {
 
 void FramePacer::put(PacedFrame p) {
   if (!thread_.joinable()) {
-    if (!p.frame) account_.dropped(p.camera);
+    if (!p.frame) drop(p);
     else leave(p);
+    tell(p);
     return;
   }
   {
@@ -58,13 +63,22 @@ void FramePacer::put(PacedFrame p) {
   wake_.notify_all();
 }
 
+void FramePacer::drop(const PacedFrame& p) {
+  account_.dropped(p.camera);
+  if (p.done) ++p.done->dropped;
+}
+
+void FramePacer::tell(const PacedFrame& p) {
+  if (p.isLast && p.done && tickOver_) tickOver_(*p.done);
+}
+
 void FramePacer::leave(PacedFrame& p) {
   const std::int64_t now = monotonic_ns();
   const bool late = p.due_ns > 0 && !holds_ && now > p.due_ns;
   // One that is held leaves as its time comes: it is late where it was not there by then.
   const bool lateHeld = p.due_ns > 0 && holds_ && p.made_ns > p.due_ns;
   if ((late || lateHeld) && policy_ == LatePolicy::Drop) {
-    account_.dropped(p.camera);
+    drop(p);
     return;
   }
   account_.sent(p.camera, *p.frame->stamp, {p.tick_ns, p.begun_ns, p.made_ns, now, late || lateHeld, false});
@@ -82,7 +96,7 @@ void FramePacer::repeat(const PacedFrame& missing) {
     before = last_[missing.camera];
   }
   if (!before) {
-    account_.dropped(missing.camera);
+    drop(missing);
     return;
   }
   auto again = std::make_shared<Frame>(*before);
@@ -113,8 +127,9 @@ void FramePacer::serve() {
         sleepUntil_ns(due);
         repeat(next);
       } else {
-        account_.dropped(next.camera);
+        drop(next);
       }
+      tell(next);
     } catch (...) {
       const std::lock_guard again(mutex_);
       failure_ = std::current_exception();

@@ -7,6 +7,8 @@
 #include <thread>
 
 #include "sim/run/stream_account.hpp"
+#include "sim/stream/clock/wall_clock.hpp"
+#include "sim/stream/command_inbox.hpp"
 
 namespace pitviper {
 
@@ -19,13 +21,17 @@ struct PacedFrame {
   std::uint64_t tick = 0;
   std::shared_ptr<Frame> frame;
   std::int64_t tick_ns = 0, due_ns = 0, begun_ns = 0, made_ns = 0;  ///< monotonic; due 0: never late
+  std::shared_ptr<TickDone> done;  ///< shared by the frames of a tick
+  bool isLast = false;             ///< of its tick
 };
 
 class FramePacer {
  public:
   using HandOver = std::function<void(const std::shared_ptr<const Frame>&)>;
+  using TickOver = std::function<void(const TickDone&)>;
   /// `holds`: no frame leaves before it is due. Frames are handed over by a thread of its own where it holds or repeats, else within put().
-  FramePacer(LatePolicy policy, bool holds, StreamAccount& account, HandOver handOver);
+  /// `thread`: of its own thread, as far as the system lets it. `tickOver`: called when the last frame of a tick has left, or was dropped.
+  FramePacer(LatePolicy policy, bool holds, StreamAccount& account, HandOver handOver, TickOver tickOver = {}, const ThreadWish& thread = {});
   ~FramePacer();
   /// In the order of ticks, and of cameras within one.
   void put(PacedFrame frame);
@@ -38,10 +44,13 @@ class FramePacer {
   void serve();
   void leave(PacedFrame& frame);
   void repeat(const PacedFrame& missing);
+  void drop(const PacedFrame& frame);
+  void tell(const PacedFrame& frame);
   LatePolicy policy_;
   bool holds_;
   StreamAccount& account_;
   HandOver handOver_;
+  TickOver tickOver_;
   std::mutex mutex_;
   std::condition_variable wake_, emptied_;
   std::deque<PacedFrame> expected_;  ///< what comes, in order, not there yet or not due

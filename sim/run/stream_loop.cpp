@@ -54,6 +54,7 @@ struct Tick {
   StateAt stateAt;
   std::uint64_t hostFrame = 0;
   std::int64_t newestCommand_ns = -1;
+  std::shared_ptr<TickDone> done;
 };
 
 /// A camera's turn in a tick.
@@ -61,6 +62,7 @@ struct Job {
   std::shared_ptr<const Tick> tick;
   std::size_t camera = 0;
   std::int64_t begun_ns = 0;
+  std::size_t rung = 0;  ///< of accuracy
 };
 
 class StreamLoop {
@@ -68,7 +70,11 @@ class StreamLoop {
   StreamLoop(const Simulation& sim, const ShaderLibrary& library, const StreamWish& wish, CommandInbox& inbox, const std::vector<Sink*>& sinks,
              const std::vector<CommandPort*>& ports, const RunProgress& progress, const std::function<void(std::uint64_t)>& ticked)
       : sim_(sim), wish_(wish), inbox_(inbox), sinks_(sinks), ports_(ports), ticked_(ticked), world_(sim), account_(namesOf(sim)),
-        pacer_(realTime() ? wish.late : LatePolicy::Send, realTime() && wish.holds, account_, [this](const std::shared_ptr<const Frame>& f) { handOver(f); }) {
+        pacer_(realTime() ? wish.late : LatePolicy::Send, realTime() && wish.holds, account_, [this](const std::shared_ptr<const Frame>& f) { handOver(f); },
+               [this](const TickDone& done) {
+                 for (CommandPort* port : ports_) port->tickDone(done);
+               },
+               wish.thread) {
     report_.refused = askFor(wish.thread);
     period_ns_ = nanoseconds(sim.time.step_s);
     delay_ns_ = wish.delay_ns > 0 ? wish.delay_ns : period_ns_;
@@ -159,6 +165,7 @@ class StreamLoop {
 
   /// Whether the tick after this camera's last has begun, or another camera of this tick is to come.
   bool isDue(const Job& job) const {
+    if (lines_[job.camera]->camera().truth.targets) return false;  // rates of targets are the world's at their tick
     if (job.camera + 1 < lines_.size()) return true;
     if (wish_.clock == StreamClock::Free) return true;
     if (wish_.outsideClock) return false;
@@ -175,45 +182,52 @@ class StreamLoop {
     tick->number = *number;
     tick->begins_ns = !realTime() ? monotonic_ns() : wish_.outsideClock ? outside_ns_ : beginOf(*number);
     tick->due_ns = realTime() ? tick->begins_ns + delay_ns_ : 0;
-    for (std::size_t c = 0; c < lines_.size(); ++c) pacer_.expect({c, *number, nullptr, tick->begins_ns, tick->due_ns});
+    std::vector<PacedFrame> expected;
+    for (std::size_t c = 0; c < lines_.size(); ++c) expected.push_back({c, *number, nullptr, tick->begins_ns, tick->due_ns, 0, 0, nullptr, c + 1 == lines_.size()});
     if (realTime()) report_.start.add(monotonic_ns() - tick->begins_ns);
     obey(*tick);
+    tick->done = doneOf(tick->number);
+    if (wish_.clock == StreamClock::Lockstep && step_ && step_->ticks == 0) tick->done->ticket = step_->ticket;
+    for (PacedFrame& e : expected) {
+      e.done = tick->done;
+      pacer_.expect(e);
+    }
     tick->state = world_.at(timeOf(*number));
     tick->stateAt = [this](double t) { return world_.at(t); };
     return Job{tick, 0};
   }
 
+  std::shared_ptr<TickDone> doneOf(std::uint64_t number) const {
+    return std::make_shared<TickDone>(TickDone{number, hostFrame_, wish_.firstFrame + static_cast<int>(number), timeOf(number), {}, 0});
+  }
+
   void obey(Tick& tick) {
     const double time_s = timeOf(tick.number);
-    constexpr std::size_t kMostWaiting = 65536;
+    constexpr std::size_t kMostWaiting = 16384;
     for (LiveCommand& c : inbox_.take()) {
       if (std::isnan(c.command.at_s)) c.command.at_s = time_s;
-      if (waiting_.size() >= kMostWaiting) {
-        inbox_.refuse("too many for later", "more than " + std::to_string(kMostWaiting) + " commands wait for their time");
-        continue;
-      }
-      waiting_.push_back(std::move(c));
+      if (waiting_.size() >= kMostWaiting) inbox_.refuse("too many for later", "more than " + std::to_string(kMostWaiting) + " commands wait for their time");
+      else waiting_.emplace(c.command.at_s, std::move(c));
     }
     // Those for later wait; the others hold in the order of their times, and of their arrival.
-    std::stable_sort(waiting_.begin(), waiting_.end(), [](const LiveCommand& a, const LiveCommand& b) { return a.command.at_s < b.command.at_s; });
-    const double until_s = time_s + kSameTick * sim_.time.step_s;
-    auto due = waiting_.begin();
-    for (; due != waiting_.end() && due->command.at_s <= until_s; ++due) {
-      world_.apply(due->command, wish_.firstFrame + static_cast<int>(tick.number));
-      tick.newestCommand_ns = std::max(tick.newestCommand_ns, due->received_ns);
-      hostFrame_ = std::max(hostFrame_, due->hostFrame);
+    const auto later = waiting_.upper_bound(time_s + kSameTick * sim_.time.step_s);
+    for (auto due = waiting_.begin(); due != later; ++due) {
+      const LiveCommand& c = due->second;
+      world_.apply(c.command, wish_.firstFrame + static_cast<int>(tick.number));
+      if (c.received_ns < lastCommand_ns_) continue;
+      lastCommand_ns_ = c.received_ns;
+      if (c.hostFrame) hostFrame_ = c.hostFrame;
     }
-    waiting_.erase(waiting_.begin(), due);
-    if (tick.newestCommand_ns >= 0) lastCommand_ns_ = tick.newestCommand_ns;
+    waiting_.erase(waiting_.begin(), later);
     tick.newestCommand_ns = lastCommand_ns_;
-    if (step_) hostFrame_ = std::max(hostFrame_, step_->hostFrame);
+    if (step_ && step_->hostFrame) hostFrame_ = step_->hostFrame;
     tick.hostFrame = hostFrame_;
   }
 
   /// The number of the next tick to be drawn, once it has begun.
   std::optional<std::uint64_t> waitForTick() {
-    if (isOver()) return std::nullopt;
-    if (wish_.clock == StreamClock::Free) return inbox_.isEnding() ? std::nullopt : std::optional(ticks_++);
+    if (isOver() || inbox_.isEnding()) return std::nullopt;  // also within a step of many ticks
+    if (wish_.clock == StreamClock::Free) return ticks_++;
     if (wish_.clock == StreamClock::Lockstep) {
       while (!step_ || step_->ticks == 0) {
         step_.reset();
@@ -239,15 +253,16 @@ class StreamLoop {
       }
       const std::int64_t begins = beginOf(ticks_), now = monotonic_ns();
       if (now >= begins + period_ns_) {  // wholly gone: time does not wait
+        const auto done = doneOf(ticks_);
         for (std::size_t c = 0; c < lines_.size(); ++c) {
-          const PacedFrame gone{c, ticks_, nullptr, begins, begins + delay_ns_};
+          const PacedFrame gone{c, ticks_, nullptr, begins, begins + delay_ns_, 0, 0, done, c + 1 == lines_.size()};
           pacer_.expect(gone);
           pacer_.put(gone);
         }
         ++ticks_;
         continue;
       }
-      sleepUntil_ns(begins);
+      if (!sleepUntil_ns(begins, [this] { return inbox_.isEnding() || !inbox_.isRunning(); })) continue;
       return ticks_++;
     }
   }
@@ -256,7 +271,7 @@ class StreamLoop {
 
   void begin(Job& job) {
     CameraLine& line = *lines_[job.camera];
-    if (realTime()) line.setRung(dials_[job.camera].rung());
+    if (realTime()) line.setRung(job.rung = dials_[job.camera].rung());
     job.begun_ns = monotonic_ns();
     line.begin(job.tick->stateAt, job.tick->state.time_s);
   }
@@ -264,24 +279,21 @@ class StreamLoop {
   void put(const Job& job, CameraLine& line, const CameraImage& image) {
     const Tick& tick = *job.tick;
     // The next frame may be begun already, with another rung: what is told of this one comes with its image.
-    auto frame = std::make_shared<Frame>(line.frame(image, tick.state, wish_.firstFrame + static_cast<int>(tick.number)));
+    auto frame = std::make_shared<Frame>(line.frame(image, tick.state, wish_.firstFrame + static_cast<int>(tick.number), tick.stateAt));
     const std::int64_t made = monotonic_ns();
     frame->stamp = stampOf(*frame, line.camera(), image, tick, job, made);
     if (realTime()) {
       const std::int64_t work = made - std::max(job.begun_ns, lastMade_ns_);
-      dials_[job.camera].look(work, made > tick.due_ns, made);
+      dials_[job.camera].look(job.rung, work, made > tick.due_ns, made);
     }
     lastMade_ns_ = made;
     drawn_ns_ += made - job.begun_ns;
-    pacer_.put({job.camera, tick.number, frame, tick.begins_ns, tick.due_ns, job.begun_ns, made});
-    if (job.camera + 1 < lines_.size()) return;
-    TickDone done{tick.number, tick.hostFrame, wish_.firstFrame + static_cast<int>(tick.number), tick.state.time_s, {}};
-    if (wish_.clock == StreamClock::Lockstep && step_ && step_->ticks == 0) {
-      done.ticket = step_->ticket;
-      report_.answer.add(monotonic_ns() - stepped_ns_ - drawn_ns_);
-    }
-    for (CommandPort* port : ports_) port->tickDone(done);
-    if (tick.number == std::min<std::uint64_t>(100, wish_.ticks / 10)) report_.memoryBefore_kB = residentMemory_kB();
+    const bool isLast = job.camera + 1 == lines_.size();
+    pacer_.put({job.camera, tick.number, frame, tick.begins_ns, tick.due_ns, job.begun_ns, made, tick.done, isLast});
+    if (!isLast) return;
+    if (tick.done->ticket) report_.answer.add(monotonic_ns() - stepped_ns_ - drawn_ns_);
+    constexpr std::uint64_t kSettled = 100;
+    if (report_.memoryBefore_kB == 0 && tick.number >= (wish_.ticks > 0 ? std::min(kSettled, wish_.ticks / 10) : kSettled)) report_.memoryBefore_kB = residentMemory_kB();
     if (ticked_) ticked_(tick.number);
   }
 
@@ -296,6 +308,7 @@ class StreamLoop {
     s.renderEnd_tai_ns = taiOf_ns(made);
     s.due_tai_ns = tick.due_ns > 0 ? taiOf_ns(tick.due_ns) : 0;
     s.poseAge_ns = tick.newestCommand_ns >= 0 ? job.begun_ns - tick.newestCommand_ns : -1;
+    s.gain = cameraAt(camera, tick.state).gain;
     s.accuracy = image.accuracy;
     for (double e : image.predictedError) s.predictedError = std::max(s.predictedError, e);
     const AttributeLook look(frame);
@@ -327,7 +340,7 @@ class StreamLoop {
   FramePacer pacer_;
   std::vector<std::unique_ptr<CameraLine>> lines_;
   std::vector<AccuracyDial> dials_;
-  std::vector<LiveCommand> waiting_;
+  std::multimap<double, LiveCommand> waiting_;  ///< by their times
   std::int64_t period_ns_ = 0, delay_ns_ = 0, first_ns_ = 0, outside_ns_ = 0, lastMade_ns_ = 0, lastCommand_ns_ = -1, stepped_ns_ = 0, drawn_ns_ = 0;
   std::uint64_t ticks_ = 0, hostFrame_ = 0;
   std::optional<Step> step_;

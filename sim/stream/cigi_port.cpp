@@ -52,6 +52,7 @@ class CigiPort final : public CommandPort {
   void tickDone(const TickDone& tick) override {
     const std::lock_guard lock(mutex_);
     frame_.igFrame = static_cast<std::uint32_t>(tick.sequence);
+    frame_.hostFrame = steps_ ? static_cast<std::uint32_t>(tick.hostFrame) : newest_;
     sendFrame();
   }
 
@@ -79,15 +80,15 @@ class CigiPort final : public CommandPort {
     {
       const std::lock_guard lock(mutex_);
       const bool sameHost = hasHost_ && from.sin_addr.s_addr == host_.sin_addr.s_addr && from.sin_port == host_.sin_port;
-      const auto ahead = static_cast<std::int32_t>(control.hostFrame - frame_.hostFrame);
+      const auto ahead = static_cast<std::int32_t>(control.hostFrame - newest_);
       if (sameHost && ahead <= 0 && ahead > -kOldest) {
-        inbox_.refuse("stale CIGI", "host frame " + std::to_string(control.hostFrame) + " after " + std::to_string(frame_.hostFrame));
-        if (ahead == 0) sendFrame();  // it may not have had the answer
+        inbox_.refuse("stale CIGI", "host frame " + std::to_string(control.hostFrame) + " after " + std::to_string(newest_));
+        if (ahead == 0 && frame_.hostFrame == newest_) sendFrame();  // it may not have had the answer; where that is yet to come it will
         return;
       }
       host_ = from;
       hasHost_ = true;
-      frame_.hostFrame = control.hostFrame;
+      newest_ = control.hostFrame;
       frame_.mode = control.mode;
     }
     if (message.notServed > 0) inbox_.refuse("CIGI packets not served", std::to_string(message.notServed) + " in a message");
@@ -96,8 +97,12 @@ class CigiPort final : public CommandPort {
     for (Command& c : commands) inbox_.put({std::move(c), received, control.hostFrame});
     const bool operates = control.mode == CigiMode::Operate;
     if (!steps_) return inbox_.setRunning(operates);
-    if (operates) return inbox_.step({1, control.hostFrame, 0});
+    if (operates) {
+      inbox_.step({1, control.hostFrame, 0});
+      return;
+    }
     const std::lock_guard lock(mutex_);
+    frame_.hostFrame = newest_;
     sendFrame();
   }
 
@@ -119,6 +124,7 @@ class CigiPort final : public CommandPort {
   sockaddr_in host_{};
   bool hasHost_ = false;
   CigiStartOfFrame frame_;
+  std::uint32_t newest_ = 0;  ///< host frame
   std::int64_t began_ns_ = 0;
   std::atomic<bool> ends_{false};
   std::thread thread_;

@@ -32,6 +32,11 @@ glm::dquat turned(const glm::dvec3& rate_rad_s, double time_s) {
   return rate > 0.0 ? glm::angleAxis(rate * time_s, rate_rad_s / rate) : glm::dquat(1.0, 0.0, 0.0, 0.0);
 }
 
+/// The axes that a rate is told in, as directions of the local frame, or of the carrier's.
+glm::dquat axesOf(const CigiRate& rate, bool isFree, const glm::dquat& own) {
+  return rate.ownAxes ? own : isFree ? northWestUp() : glm::dquat(1.0, 0.0, 0.0, 0.0);
+}
+
 }  // namespace
 
 void CigiWorld::translate(const std::vector<CigiChange>& changes, std::vector<Command>& commands, const Refuse& refuse) {
@@ -84,9 +89,13 @@ void CigiWorld::of(const CigiEntityPose& p, std::vector<Command>& commands, cons
   const glm::dvec3 position = p.attached ? p.position : frame.toLocal(p.geodetic);
   const glm::dquat orientation =
       p.attached ? p.orientation : glm::normalize(glm::inverse(glm::quat_cast(frame.ecefFromLocal())) * p.orientation);
-  commands.push_back(now([=](Courses& courses, double) {
-    courses.positions[e] = [=](double) { return position; };
-    courses.orientations[e] = [=](double) { return orientation; };
+  const auto rate = rates_.find(e);
+  const CigiRate goesOn = rate == rates_.end() ? CigiRate{} : rate->second;
+  const glm::dquat axes = axesOf(goesOn, parent < 0, orientation);
+  const glm::dvec3 velocity = axes * goesOn.linear_m_s, turning = axes * goesOn.angular_rad_s;
+  commands.push_back(now([=](Courses& courses, double at_s) {
+    courses.positions[e] = [=](double t) { return position + (t - at_s) * velocity; };
+    courses.orientations[e] = [=](double t) { return turned(turning, t - at_s) * orientation; };
   }));
 }
 
@@ -96,12 +105,12 @@ void CigiWorld::of(const CigiRate& r, std::vector<Command>& commands, const Refu
   if (e < 0) return;
   const Entity& body = simulation_.entities[static_cast<std::size_t>(e)];
   // Of a body by itself the axes are north, west, up at its place; over the way that a rate holds the local frame's are as good (0.01 degree a kilometre).
-  const bool world = !r.ownAxes && body.parent < 0;
-  commands.push_back(now([=, motion = body.motion, name = body.name](Courses& courses, double at_s) {
+  rates_[e] = r;
+  commands.push_back(now([=, motion = body.motion, free = body.parent < 0](Courses& courses, double at_s) {
     const Pose own = motion.at(at_s);
     const glm::dvec3 p = at(courses.positions, e, at_s, own.position);
     const glm::dquat q = at(courses.orientations, e, at_s, own.orientation);
-    const glm::dquat axes = r.ownAxes ? q : world ? northWestUp() : glm::dquat(1.0, 0.0, 0.0, 0.0);
+    const glm::dquat axes = axesOf(r, free, q);
     const glm::dvec3 velocity = axes * r.linear_m_s, turning = axes * r.angular_rad_s;
     courses.positions[e] = [=](double t) { return p + (t - at_s) * velocity; };
     courses.orientations[e] = [=](double t) { return turned(turning, t - at_s) * q; };

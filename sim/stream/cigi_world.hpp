@@ -41,6 +41,7 @@ class CigiWorld {
   void worded(const std::vector<std::pair<std::string, std::string>>& words, std::vector<Command>& commands, const Refuse&) const;
 
   const Simulation& simulation_;
+  std::map<int, CigiRate> rates_;  ///< that go on from each pose, by entity
   std::map<int, CigiOffsets> viewOffsets_, partOffsets_;  ///< given so far, by camera and by entity
 };
 

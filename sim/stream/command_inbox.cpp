@@ -1,6 +1,7 @@
 #include "sim/stream/command_inbox.hpp"
 
 #include <chrono>
+#include <utility>
 
 namespace pitviper {
 
@@ -17,13 +18,18 @@ bool CommandInbox::put(LiveCommand command) {
   return false;
 }
 
-void CommandInbox::step(const Step& step) {
+bool CommandInbox::step(const Step& step) {
   {
     const std::lock_guard lock(mutex_);
-    if (steps_.size() < kMost) steps_.push_back(step);
-    ++counts_["steps"];
+    if (steps_.size() < kMost) {
+      steps_.push_back(step);
+      ++counts_["steps"];
+      wake_.notify_one();
+      return true;
+    }
   }
-  wake_.notify_one();
+  refuse("too many at once", "more than " + std::to_string(kMost) + " steps wait");
+  return false;
 }
 
 void CommandInbox::setRunning(bool runs) {
@@ -56,6 +62,14 @@ void CommandInbox::count(const std::string& kind) {
   ++counts_[kind];
 }
 
+void CommandInbox::endAfterSteps() {
+  {
+    const std::lock_guard lock(mutex_);
+    endsAfter_ = true;
+  }
+  wake_.notify_all();
+}
+
 std::vector<LiveCommand> CommandInbox::take() {
   const std::lock_guard lock(mutex_);
   return std::exchange(commands_, {});
@@ -63,7 +77,7 @@ std::vector<LiveCommand> CommandInbox::take() {
 
 std::optional<Step> CommandInbox::waitForStep(std::int64_t timeout_ns) {
   std::unique_lock lock(mutex_);
-  wake_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), [this] { return ends_ || !steps_.empty(); });
+  wake_.wait_for(lock, std::chrono::nanoseconds(timeout_ns), [this] { return ends_ || endsAfter_ || !steps_.empty(); });
   if (ends_ || steps_.empty()) return std::nullopt;
   const Step first = steps_.front();
   steps_.erase(steps_.begin());
@@ -77,7 +91,7 @@ bool CommandInbox::isRunning() const {
 
 bool CommandInbox::isEnding() const {
   const std::lock_guard lock(mutex_);
-  return ends_;
+  return ends_ || (endsAfter_ && steps_.empty());
 }
 
 std::map<std::string, std::uint64_t> CommandInbox::counts() const {

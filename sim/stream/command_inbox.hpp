@@ -34,10 +34,12 @@ class CommandInbox {
 
   /// False where too many wait: it is counted and gone.
   bool put(LiveCommand command);
-  void step(const Step& step);
+  /// False where too many wait: it is counted and gone.
+  bool step(const Step& step);
   void setRunning(bool runs);
-  /// The stream is to end after the frame it is at.
+  /// The stream is to end after the frame it is at; or after the steps that wait.
   void end();
+  void endAfterSteps();
   /// A packet or line that is ignored: counted by its kind ("malformed", "stale"), told once. `says`: what was wrong with this one.
   void refuse(const std::string& kind, const std::string& says);
   /// Counted, without being told.
@@ -51,22 +53,23 @@ class CommandInbox {
   std::map<std::string, std::uint64_t> counts() const;
 
  private:
-  static constexpr std::size_t kMost = 65536;
+  static constexpr std::size_t kMost = 16384;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::function<void(const std::string&)> log_;
   std::vector<LiveCommand> commands_;
   std::vector<Step> steps_;
   std::map<std::string, std::uint64_t> counts_;
-  bool runs_ = true, ends_ = false;
+  bool runs_ = true, ends_ = false, endsAfter_ = false;
 };
 
-/// A tick whose frames are out.
+/// A tick that is over: its frames are out, or were dropped.
 struct TickDone {
   std::uint64_t sequence = 0, hostFrame = 0;
   int frame = 0;
   double time_s = 0.0;
   std::optional<std::uint64_t> ticket;  ///< of the step that this tick ends
+  int dropped = 0;                      ///< frames that were not sent
 };
 
 }  // namespace pitviper

@@ -15,7 +15,7 @@ class CommandPort {
   virtual ~CommandPort() = default;
   /// Where it listens, in words.
   virtual std::string place() const = 0;
-  /// A frame is out, and all frames of a tick are. Never waits; from whatever thread hands frames over.
+  /// A frame is out, and a tick is over: its frames have been before. Neither waits; from whatever thread hands frames over.
   virtual void frameOut(const Frame&) {}
   virtual void tickDone(const TickDone&) {}
 };
@@ -25,6 +25,7 @@ class CommandPort {
 /// `{"status": true}`; `"id"` asks for an answer, `"host_frame"` is given back with the frame. Errors: UserError.
 struct JsonPortWish {
   std::string address;
+  bool steps = false;                 ///< the clock is a host's
   double stale_s = 1.0;               ///< what is for a time so long ago is not carried out
   std::function<double()> now_s;      ///< simulation time of the newest tick
   std::function<std::string()> status;  ///< a JSON object

@@ -1,4 +1,5 @@
 // Cameras as machine-vision cameras on the network: stock clients open them.
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -44,7 +45,7 @@ class GigeSink final : public Sink, public ControllableSink {
     int k = 0;
     for (const Camera& c : simulation_.cameras)
       if (wish_.camera.empty() || wish_.camera == c.name) {
-        Device d{addressAfter(wish_.address, k++, wish_.where), StreamCoder(c, wish_.layer, wish_.range, wish_.where), nullptr, 0, 1.0};
+        Device d{addressAfter(wish_.address, k++, wish_.where), StreamCoder(c, wish_.layer, wish_.range, wish_.where), nullptr, std::make_shared<std::atomic<std::uint64_t>>(0)};
         devices_.emplace(c.name, std::move(d));
       }
   }
@@ -76,7 +77,7 @@ class GigeSink final : public Sink, public ControllableSink {
           calls.exposure = [this, name = c.name](double us) { controls_.command({{"command", "look"}, {"camera", name}, {"exposure", number(us, " us")}}); };
         if (detectorOf(c))
           calls.gain = [this, name = c.name](double dB) {
-            constexpr double kDecibelsOfTen = 20.0;  // of a voltage
+            constexpr double kDecibelsOfTen = 20.0;
             controls_.command({{"command", "gain"}, {"camera", name}, {"factor", number(std::pow(10.0, dB / kDecibelsOfTen), "")}});
           };
         else s.gainMax_dB = 0.0;
@@ -96,8 +97,7 @@ class GigeSink final : public Sink, public ControllableSink {
     const auto found = devices_.find(frame->camera);
     if (found == devices_.end() || !frame->kind.empty()) return;
     Device& d = found->second;
-    ++d.taken;
-    // Pictures go round: one that nobody holds any more is written again.
+    ++*d.taken;
     auto picture = std::make_shared<GigePicture>();
     StreamPicture coded;
     d.coder.code(*frame, coded);
@@ -108,9 +108,22 @@ class GigeSink final : public Sink, public ControllableSink {
     picture->timestamp_ns = taiOf_ns(monotonic_ns());
     picture->simulation_ns = s.time_ns;
     picture->exposure_us = 1e-3 * static_cast<double>(s.exposureEnd_ns - s.exposureStart_ns);
+    constexpr double kDecibelsOfTen = 20.0;  // of a voltage
+    picture->gain_dB = kDecibelsOfTen * std::log10(s.gain);
     picture->radianceScale = coded.gain, picture->radianceOffset = coded.offset;
     picture->flags = (s.isLate ? 1u : 0u) | (s.isRepeated ? 2u : 0u) | (s.isOutsideLimits ? 4u : 0u) | (coded.outside > 0 ? 8u : 0u);
     d.device->publish(picture);
+  }
+  /// What is on its way has left, or is given up.
+  void finish(const std::function<void(double)>&) override {
+    constexpr int kTries = 100;
+    constexpr std::int64_t kStep_ns = 5000000;
+    const auto busy = [](const SinkCounts& s) { return s.passedOn + s.skipped < s.taken; };
+    for (int k = 0; k < kTries; ++k) {
+      const auto all = counts();
+      if (std::none_of(all.begin(), all.end(), busy)) return;
+      sleepUntil_ns(monotonic_ns() + kStep_ns);
+    }
   }
   bool neverWaits() const override { return true; }
 
@@ -118,7 +131,8 @@ class GigeSink final : public Sink, public ControllableSink {
     std::vector<SinkCounts> all;
     for (const auto& [camera, d] : devices_) {
       const GigeCounts c = d.device ? d.device->counts() : GigeCounts{};
-      all.push_back({"camera " + camera + " at " + d.address, d.taken, c.pictures, d.taken - std::min(d.taken, c.pictures),
+      const std::uint64_t taken = *d.taken;
+      all.push_back({"camera " + camera + " at " + d.address, taken, c.pictures, c.skipped + c.cut + c.withoutConsumer + c.withoutTrigger,
                      {{"pictures without a client", c.withoutConsumer}, {"waiting for a trigger", c.withoutTrigger}, {"overtaken by newer ones", c.skipped}, {"cut short", c.cut},
                       {"packets", c.packets}, {"sent again", c.resent}, {"resends not served", c.resendsNotServed}, {"triggers", c.triggers}, {"triggers missed", c.triggersMissed},
                       {"requests", c.commands}, {"malformed", c.malformed}, {"refused", c.refused}, {"throttled", c.throttled}, {"heartbeats lost", c.heartbeatsLost}}});
@@ -131,8 +145,7 @@ class GigeSink final : public Sink, public ControllableSink {
     std::string address;
     StreamCoder coder;
     std::unique_ptr<GigeDevice> device;
-    std::uint64_t taken = 0;
-    double gain = 1.0;
+    std::shared_ptr<std::atomic<std::uint64_t>> taken;
   };
   const Simulation& simulation_;
   GigeWish wish_;

@@ -1,3 +1,5 @@
+#include <atomic>
+
 #include "sim/stream/gstreamer/open_grey_pipeline.hpp"
 #include "sim/stream/pipeline_sinks.hpp"
 #include "sim/stream/stream_picture.hpp"
@@ -32,7 +34,7 @@ class GstreamerSink final : public Sink {
   StreamCoder coder_;
   StreamPicture picture_;
   std::unique_ptr<GreyPipeline> pipeline_;
-  std::uint64_t taken_ = 0;
+  std::atomic<std::uint64_t> taken_{0};
 };
 
 }  // namespace

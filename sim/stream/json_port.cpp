@@ -13,6 +13,7 @@
 #include <cmath>
 #include <cstring>
 #include <list>
+#include <set>
 #include <thread>
 
 #include "sim/model/simulation.hpp"
@@ -27,7 +28,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kLongestLine = 64 << 10, kMostClients = 64, kMostWaiting = 4 << 20;
+constexpr std::size_t kLongestLine = 64 << 10, kMostClients = 64, kMostWaiting = 4 << 20, kMostTickets = 1024;
 
 struct Client {
   int socket = -1;
@@ -59,7 +60,7 @@ class JsonPort final : public CommandPort {
 
   void frameOut(const Frame& frame) override {
     const std::lock_guard lock(mutex_);
-    if (!frame.kind.empty()) return;
+    if (!frame.kind.empty() || std::none_of(clients_.begin(), clients_.end(), [](const Client& c) { return c.follows || !c.tickets.empty(); })) return;
     Json j = {{"camera", frame.camera}};
     if (const auto& s = frame.stamp) {
       if (!std::isnan(s->column_px)) j["target"] = {s->column_px, s->row_px};
@@ -73,7 +74,7 @@ class JsonPort final : public CommandPort {
       if (s->isRepeated) j["repeated"] = true;
       if (s->isOutsideLimits) j["outside_limits"] = true;
     }
-    cameras_.push_back(std::move(j));
+    cameras_.emplace_back(frame.stamp ? frame.stamp->sequence : 0, std::move(j));
   }
 
   void tickDone(const TickDone& tick) override {
@@ -87,12 +88,15 @@ class JsonPort final : public CommandPort {
       if (line.empty()) {
         Json j = {{"frame", tick.frame}, {"sequence", tick.sequence}, {"time_s", tick.time_s}};
         if (tick.hostFrame) j["host_frame"] = tick.hostFrame;
-        j["cameras"] = cameras_;
+        j["cameras"] = Json::array();
+        for (const auto& [sequence, camera] : cameras_)
+          if (sequence == tick.sequence) j["cameras"].push_back(camera);
+        if (tick.dropped > 0) j["dropped"] = tick.dropped;
         line = j.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
       }
       send(c, line);
     }
-    cameras_.clear();
+    std::erase_if(cameras_, [&](const auto& c) { return c.first <= tick.sequence; });
   }
 
  private:
@@ -180,28 +184,28 @@ class JsonPort final : public CommandPort {
     clients_.back().number = ++connections_;
   }
 
+  /// One buffer a turn: who sends without end waits for the others as they for it.
   void receive(Client& c) {
     char buffer[16 << 10];
-    for (;;) {
-      const ssize_t count = recv(c.socket, buffer, sizeof buffer, 0);
-      if (count < 0 && errno == EINTR) continue;
-      if (count < 0 && (errno == EAGAIN || errno == EWOULDBLOCK)) break;
-      if (count <= 0) {
-        const std::lock_guard lock(mutex_);
-        c.gone = true;
-        break;
-      }
-      c.in.append(buffer, static_cast<std::size_t>(count));
-      std::size_t from = 0;
-      for (std::size_t end = 0; (end = c.in.find('\n', from)) != std::string::npos; from = end + 1) handle(c, std::string_view(c.in).substr(from, end - from));
-      c.in.erase(0, from);
-      if (c.in.size() > kLongestLine) {
-        inbox_.refuse("too long a line", "more than " + std::to_string(kLongestLine) + " bytes; the connection is closed");
-        const std::lock_guard lock(mutex_);
-        c.gone = true;
-        break;
-      }
+    const ssize_t count = recv(c.socket, buffer, sizeof buffer, 0);
+    if (count < 0 && (errno == EINTR || errno == EAGAIN || errno == EWOULDBLOCK)) return;
+    if (count <= 0) return hangUp(c);
+    c.in.append(buffer, static_cast<std::size_t>(count));
+    std::size_t from = 0;
+    for (std::size_t end = 0; (end = c.in.find('\n', from)) != std::string::npos && !ends_; from = end + 1) {
+      handle(c, std::string_view(c.in).substr(from, end - from));
+      const std::lock_guard lock(mutex_);
+      if (c.gone) return;
     }
+    c.in.erase(0, from);
+    if (c.in.size() <= kLongestLine) return;
+    inbox_.refuse("too long a line", "more than " + std::to_string(kLongestLine) + " bytes; the connection is closed");
+    hangUp(c);
+  }
+
+  void hangUp(Client& c) {
+    const std::lock_guard lock(mutex_);
+    c.gone = true;
   }
 
   void answer(Client& c, const Json& j) {
@@ -245,10 +249,7 @@ class JsonPort final : public CommandPort {
     Json id;
     try {
       if (text.size() > kLongestLine) throw UserError(where, "a line of more than 64 kB", "a command a line", "split it");
-      int deepest = 0;
-      const Json j = Json::parse(text, [&](int depth, Json::parse_event_t, Json&) { return (deepest = std::max(deepest, depth)) < 64; }, false);
-      if (j.is_discarded() || !j.is_object() || deepest >= 64)
-        throw UserError(where, "not a JSON object", R"(a line such as {"command": "light", "light": "flare", "level": 0})", "send one object a line");
+      const Json j = parsed(text, where);
       if (j.contains("id")) id = j["id"];
       handle(c, j, where, received);
       if (!id.is_null()) answer(c, {{"id", id}, {"ok", true}});
@@ -258,7 +259,28 @@ class JsonPort final : public CommandPort {
       Json reply = {{"error", readable(e.what())}};
       if (!id.is_null()) reply["id"] = id;
       answer(c, reply);
+    } catch (const std::exception& e) {
+      inbox_.refuse("malformed lines", e.what());
+      answer(c, {{"error", readable(e.what())}});
     }
+  }
+
+  static Json parsed(std::string_view text, const Location& where) {
+    constexpr std::size_t kDeepest = 64;
+    std::vector<std::set<std::string>> keys;
+    std::string twice;
+    bool tooDeep = false;
+    const auto look = [&](int, Json::parse_event_t event, Json& value) {
+      if (event == Json::parse_event_t::object_start) keys.emplace_back();
+      else if (event == Json::parse_event_t::object_end && !keys.empty()) keys.pop_back();
+      else if (event == Json::parse_event_t::key && !keys.empty() && !keys.back().insert(value.get<std::string>()).second) twice = value.get<std::string>();
+      return !(tooDeep |= keys.size() > kDeepest);
+    };
+    Json j = Json::parse(text, look, false);
+    if (j.is_discarded() || !j.is_object() || tooDeep)
+      throw UserError(where, "not a JSON object", R"(a line such as {"command": "light", "light": "flare", "level": 0})", "send one object a line");
+    if (!twice.empty()) throw UserError(where, "key '" + twice + "' stands there twice", "each key once", "remove one");
+    return j;
   }
 
   static bool flag(const Json& j, const char* key, const Location& where) {
@@ -266,9 +288,10 @@ class JsonPort final : public CommandPort {
     return j[key].get<bool>();
   }
 
+  /// All of it is read before any of it is carried out.
   void handle(Client& c, Json j, const Location& where, std::int64_t received) {
     j.erase("id");
-    std::uint64_t hostFrame = 0;
+    std::uint64_t hostFrame = 0, ticks = 0;
     if (j.contains("host_frame")) {
       if (!j["host_frame"].is_number_unsigned()) throw UserError(where, "'host_frame' is no whole number", "a number that rises", "count your frames from 1");
       hostFrame = j["host_frame"].get<std::uint64_t>();
@@ -277,24 +300,49 @@ class JsonPort final : public CommandPort {
         isStale_ = true;
         throw UserError(where, "host frame " + std::to_string(hostFrame) + " after " + std::to_string(c.hostFrame), "numbers that rise", "send commands in their order");
       }
-      c.hostFrame = hostFrame;
     }
-    const bool stepped = j.contains("step");
-    std::uint64_t ticks = 0;
-    if (stepped) {
+    if (j.contains("step")) {
       constexpr std::uint64_t kMostTicks = 1000000000;
+      if (!wish_.steps) throw UserError(where, "a step of a clock that nobody holds", "'--clock lockstep'", "start the stream with it, or ask for lines with {\"follow\": true}");
       if (!j["step"].is_number_unsigned() || j["step"].get<std::uint64_t>() < 1 || j["step"].get<std::uint64_t>() > kMostTicks)
         throw UserError(where, "'step' is no number of ticks", "a whole number from 1", R"(write {"step": 1})");
       ticks = j["step"].get<std::uint64_t>();
       j.erase("step");
+      const std::lock_guard lock(mutex_);
+      if (c.tickets.size() >= kMostTickets) throw UserError(where, "too many steps that wait", "at most " + std::to_string(kMostTickets), "read the frames' lines");
     }
-    for (const char* key : {"run", "end", "follow", "pulse", "status"}) {
-      if (!j.contains(key)) continue;
-      const std::string word = key;
-      const bool on = flag(j, key, where);
-      j.erase(key);
+    std::vector<std::pair<std::string, bool>> flags;
+    for (const char* key : {"run", "follow", "pulse", "status", "end"})
+      if (j.contains(key)) {
+        flags.emplace_back(key, flag(j, key, where));
+        j.erase(key);
+      }
+    std::optional<Command> command;
+    if (!j.empty()) {
+      command = readCommand(valueOf(j, where), simulation_, NAN);
+      command->words.clear();  // nobody compares those of a stream
+      if (wish_.now_s && command->at_s < wish_.now_s() - wish_.stale_s) {
+        isStale_ = true;
+        throw UserError(where, "a command for " + std::to_string(command->at_s) + " s, and it is " + std::to_string(wish_.now_s()) + " s",
+                        "at most " + std::to_string(wish_.stale_s) + " s ago", "send it sooner, or without 'at'");
+      }
+    }
+    if (hostFrame) c.hostFrame = hostFrame;
+    if (command) inbox_.put({std::move(*command), received, hostFrame});
+    if (ticks > 0) {
+      const Step step{ticks, hostFrame, ++tickets_};
+      {
+        const std::lock_guard lock(mutex_);
+        c.tickets.push_back(step.ticket);
+      }
+      if (!inbox_.step(step)) {
+        const std::lock_guard lock(mutex_);
+        c.tickets.pop_back();
+      }
+    }
+    for (const auto& [word, on] : flags) {
       if (word == "run") inbox_.setRunning(on);
-      else if (word == "end" && on) inbox_.end();
+      else if (word == "end" && on) inbox_.endAfterSteps();
       else if (word == "pulse" && on && wish_.pulse) wish_.pulse();
       else if (word == "status" && on) answer(c, wish_.status ? Json::parse(wish_.status(), nullptr, false) : Json::object());
       else if (word == "follow") {
@@ -302,23 +350,6 @@ class JsonPort final : public CommandPort {
         c.follows = on;
       }
     }
-    if (!j.empty()) {
-      const Value value = valueOf(j, where);
-      Command command = readCommand(value, simulation_, NAN);
-      if (wish_.now_s && command.at_s < wish_.now_s() - wish_.stale_s) {
-        isStale_ = true;
-        throw UserError(where, "a command for " + std::to_string(command.at_s) + " s, and it is " + std::to_string(wish_.now_s()) + " s",
-                        "at most " + std::to_string(wish_.stale_s) + " s ago", "send it sooner, or without 'at'");
-      }
-      inbox_.put({std::move(command), received, hostFrame});
-    }
-    if (!stepped) return;
-    Step step{ticks, hostFrame, ++tickets_};
-    {
-      const std::lock_guard lock(mutex_);
-      c.tickets.push_back(step.ticket);
-    }
-    inbox_.step(step);
   }
 
   JsonPortWish wish_;
@@ -328,7 +359,7 @@ class JsonPort final : public CommandPort {
   std::string path_;
   std::mutex mutex_;  ///< clients_, cameras_
   std::list<Client> clients_;
-  std::vector<Json> cameras_;  ///< of the tick
+  std::vector<std::pair<std::uint64_t, Json>> cameras_;  ///< of ticks that are not over, by their numbers
   std::uint64_t connections_ = 0, tickets_ = 0;
   bool isStale_ = false;
   std::atomic<bool> ends_{false};

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <atomic>
+
 #include "sim/stream/pipeline_sinks.hpp"
 #include "sim/stream/projector/open_projector.hpp"
 #include "sim/stream/stream_picture.hpp"
@@ -27,9 +30,10 @@ class WindowSink final : public ProjectorSink {
   std::vector<SinkCounts> counts() const override {
     if (!projector_) return {{"projector", 0, 0, 0, {}}};
     const ProjectorCounts c = projector_->counts();
+    const std::uint64_t taken = taken_;
     char rate[80];
     std::snprintf(rate, sizeof rate, "projector at %.2f Hz%s", projector_->rate_hz(), projector_->isPaced() ? " (by a timer: this display holds no swap)" : "");
-    return {{rate, taken_, c.shown, taken_ - std::min(taken_, c.shown), {{"swaps", c.swaps}}}};
+    return {{rate, taken, c.shown, taken - std::min(taken, c.shown), {{"swaps", c.swaps}}}};
   }
   std::optional<std::int64_t> nextSwap() override {
     if (!projector_->waitSwap(swap_, kLongest_ns)) return std::nullopt;
@@ -50,7 +54,7 @@ class WindowSink final : public ProjectorSink {
   StreamPicture picture_;
   std::unique_ptr<Projector> projector_;
   ProjectorSwap swap_;
-  std::uint64_t taken_ = 0;
+  std::atomic<std::uint64_t> taken_{0};
 };
 
 }  // namespace

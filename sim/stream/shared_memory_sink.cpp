@@ -12,7 +12,8 @@ namespace {
 
 class SharedMemorySink final : public Sink {
  public:
-  SharedMemorySink(const Simulation& simulation, std::string name, int slots) : simulation_(simulation), name_(std::move(name)), slots_(slots) {}
+  SharedMemorySink(const Simulation& simulation, std::string name, int slots, Location where)
+      : simulation_(simulation), name_(std::move(name)), slots_(slots), where_(std::move(where)) {}
 
   void start() override {
     for (const Camera& c : simulation_.cameras) {
@@ -20,11 +21,18 @@ class SharedMemorySink final : public Sink {
       d.width = c.window ? c.window->z : c.pinhole.width;
       d.height = c.window ? c.window->w : c.pinhole.height;
       const DetectorLaw* law = detectorOf(c);
+      if (c.outputs.size() > PITVIPER_STREAM_LAYERS)
+        throw UserError(where_, "camera '" + c.name + "' has " + std::to_string(c.outputs.size()) + " layers", "at most " + std::to_string(PITVIPER_STREAM_LAYERS) + " in shared memory",
+                        "ask for fewer outputs, or split it into two cameras");
       for (const ChannelOutput& o : c.outputs) {
         const bool counts = isCounts(c, o);
-        d.layers.push_back({o.layer(), o.unit, counts, static_cast<std::uint16_t>(law && !o.asDisplay ? law->mostCount() : 65535.0)});
+        d.layers.push_back({o.layer(), o.unit, counts, !o.asDisplay, static_cast<std::uint16_t>(law && !o.asDisplay ? law->mostCount() : 65535.0)});
       }
-      rings_.emplace(c.name, std::make_unique<RingWriter>(d));
+      try {
+        rings_.emplace(c.name, std::make_unique<RingWriter>(d));
+      } catch (const std::runtime_error& e) {
+        throw UserError(where_, e.what());
+      }
       names_[c.name] = d.name;
     }
   }
@@ -43,6 +51,7 @@ class SharedMemorySink final : public Sink {
   const Simulation& simulation_;
   std::string name_;
   int slots_;
+  Location where_;
   std::map<std::string, std::unique_ptr<RingWriter>> rings_;
   std::map<std::string, std::string> names_;
 };
@@ -59,8 +68,8 @@ SinkModel sharedMemorySink() {
             const std::string name = r.text("name");
             if (const std::string wrong = wrongRingName(name); !wrong.empty())
               throw UserError(r.where("name"), "'" + name + "' is no name of shared memory", wrong, "write 'name: /pitviper'");
-            return [name, slots = static_cast<int>(r.integer("slots"))](const Simulation& simulation, const SinkPlace&) -> std::unique_ptr<Sink> {
-              return std::make_unique<SharedMemorySink>(simulation, name, slots);
+            return [name, slots = static_cast<int>(r.integer("slots")), where = r.where()](const Simulation& simulation, const SinkPlace&) -> std::unique_ptr<Sink> {
+              return std::make_unique<SharedMemorySink>(simulation, name, slots, where);
             };
           }};
 }

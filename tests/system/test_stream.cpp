@@ -203,6 +203,18 @@ TEST_F(Stream, CommandsBeyondTheLimitsAreCarriedOutAndMarked) {
   EXPECT_NE(stream.result().output.find("outside the scenario's limits"), std::string::npos) << stream.result().output;
 }
 
+TEST_F(Stream, ClientsThatFollowHearOfTheirOwnFrames) {
+  if (!hasPython()) GTEST_SKIP() << "needs /usr/bin/python3 with numpy";
+  // Held frames leave from another thread than draws them: each line is of its own tick all the same. A step of a clock that nobody holds is a mistake.
+  folder_.put("follow.py", "from pitviper_commands import Commands\nc = Commands('" + socket() + "')\ntry: c.send(step=1, id=1); c.read(); assert False\nexcept ValueError as e: assert 'nobody holds' in str(e)\n"
+                           "c.send(follow=True)\nfor k in range(20):\n  said = c.read()\n  assert len(said['cameras']) + said.get('dropped', 0) == 1, said\n"
+                           "  assert said['cameras'] == [] or abs(said['cameras'][0]['exposure_ns'][0] - (said['time_s'] * 1e9 - 1e6)) < 10, said\nc.send(end=True); print('followed')\n");
+  Background stream("stream " + file() + " --rate '50 Hz' --endless --hold --commands " + socket() + " --shared-memory " + ring("follow"));
+  const Result r = run(client("follow.py"));
+  EXPECT_NE(r.output.find("followed"), std::string::npos) << r.output;
+  EXPECT_EQ(stream.result().code, 0) << stream.result().output;
+}
+
 TEST_F(Stream, ACigiHostHoldsTheClock) {
   if (!has("/usr/bin/python3")) GTEST_SKIP() << "needs python3";
   const int port = 20000 + getpid() % 20000;
@@ -313,6 +325,9 @@ TEST_F(Stream, MistakesAreSaidInOneLine) {
       {"--projector tv", "no display"},             {"--fifo 100", "no priority"},
       {"--cores 0,x", "no list of cores"},          {"--delay '0 ms'", "no such quantity"},
       {"--gstreamer a --gstreamer b", "more of them than cameras"},
+      {"--stale '1 s'", "does nothing without --commands"},
+      {"--projector-table a.csv", "does nothing without --projector"},
+      {"--clock free --hold", "never late"},
   };
   for (const auto& [options, says] : wrong) {
     const Result r = pitviper("stream " + scene + " " + options);

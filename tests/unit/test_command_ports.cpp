@@ -79,7 +79,7 @@ TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
   CommandInbox inbox([&](const std::string& line) { log.push_back(line); });
   const std::string path = ownSocket("json");
   double now = 5.0;
-  const auto port = openJsonPort({path, 1.0, [&] { return now; }, {}, {}}, sim, inbox);
+  const auto port = openJsonPort({path, true, 1.0, [&] { return now; }, {}, {}}, sim, inbox);
   struct stat status {};
   ASSERT_EQ(::stat(path.c_str(), &status), 0);
   EXPECT_EQ(status.st_mode & 0777u, 0600u);
@@ -107,6 +107,8 @@ TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
       {R"({"step": 0})", "step"},
       {R"({"step": -3})", "step"},
       {R"({"run": 1})", "true or false"},
+      {R"({"end": true, "comand": "x"})", "command"},  // nothing of it is carried out
+      {R"({"command": "gain", "camera": "eye", "factor": 2, "factor": 3})", "twice"},
       {R"({"command": "light", "light": "flare", "level": 1, "at": "1 s"})", "a command for 1"},  // 4 s ago
   };
   for (const auto& [text, says] : wrong) {
@@ -116,6 +118,7 @@ TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
     EXPECT_NE(answer.find(says), std::string::npos) << text << " said " << answer;
   }
   EXPECT_TRUE(inbox.take().empty());
+  EXPECT_FALSE(inbox.isEnding());
   EXPECT_EQ(inbox.counts()["malformed lines"], wrong.size() - 1);
   EXPECT_EQ(inbox.counts()["stale"], 1u);
   EXPECT_EQ(log.size(), 2u) << "once a kind";
@@ -131,6 +134,12 @@ TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
   const auto said = nlohmann::json::parse(c.line());
   EXPECT_EQ(said["frame"], 3);
   EXPECT_EQ(said["host_frame"], 9);
+  // Steps before an end are taken.
+  c.send("{\"step\": 2}\n{\"end\": true, \"id\": 4}\n");
+  EXPECT_EQ(c.line(), R"({"id":4,"ok":true})");
+  EXPECT_FALSE(inbox.isEnding());
+  EXPECT_EQ(inbox.waitForStep(1000000)->ticks, 2u);
+  EXPECT_TRUE(inbox.isEnding());
   // A line without end closes the connection, and nothing else.
   Client hostile(path);
   hostile.send(std::string(70000, 'x'));
@@ -143,7 +152,7 @@ TEST(JsonPort, RandomBytesNeitherStopItNorChangeAnything) {
   const Simulation sim = aScene();
   CommandInbox inbox;
   const std::string path = ownSocket("fuzz");
-  const auto port = openJsonPort({path, 1.0, {}, {}, {}}, sim, inbox);
+  const auto port = openJsonPort({path, true, 1.0, {}, {}, {}}, sim, inbox);
   std::mt19937 random(1);
   const std::string good = R"({"id": 1, "command": "move", "entity": "jet", "position": ["10 m", "20 m", "30 m"], "at": "1 s", "host_frame": 3})";
   const char* const asked = std::getenv("PITVIPER_FUZZ");
@@ -247,6 +256,9 @@ TEST(CigiWorld, PutsBodiesWhereTheHostHasThem) {
   const glm::dvec3 turned = world.at(at_s + 0.5).entities[0].orientation * glm::dvec3(1.0, 0.0, 0.0);
   EXPECT_NEAR(turned.y, -std::cos(roll), 2e-4);
   EXPECT_NEAR(turned.z, -std::sin(roll), 2e-4);
+  // A pose without a rate goes on as the last one said: what comes between two messages is extrapolated.
+  s = tell({jet});
+  EXPECT_NEAR(world.at(sim.time.at(tick) + 0.1).entities[0].position.x - s.entities[0].position.x, 20.0, 1e-6);
   // Parts, components, views.
   CigiPart pod;
   pod.entity = 1, pod.part = 1, pod.enabled = true;

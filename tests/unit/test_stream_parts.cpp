@@ -84,7 +84,7 @@ std::vector<Left> paced(LatePolicy policy, bool holds, const std::vector<int>& a
   });
   for (std::size_t k = 0; k < after_ms.size(); ++k) {
     const std::int64_t tick = first + static_cast<std::int64_t>(k) * kPeriod;
-    PacedFrame p{0, k, nullptr, tick, tick + kPeriod, tick, 0};
+    PacedFrame p{0, k, nullptr, tick, tick + kPeriod, tick, 0, nullptr, true};
     pacer.expect(p);
     if (after_ms[k] >= 0) {
       sleepUntil_ns(tick + after_ms[k] * kMs);
@@ -152,9 +152,9 @@ TEST(AccuracyDial, TurnsCoarserWhereTicksTakeTooLongAndFinerWhereThereIsRoom) {
   EXPECT_EQ(dial.rung(), 0u);
   std::int64_t now = 0;
   const auto ticks = [&](int count, std::int64_t work) {
-    for (int k = 0; k < count; ++k) dial.look(work, work > kPeriod, now += kPeriod);
+    for (int k = 0; k < count; ++k) dial.look(dial.rung(), work, work > kPeriod, now += kPeriod);
   };
-  dial.look(30000000, true, now += kPeriod);
+  dial.look(0, 30000000, true, now += kPeriod);
   EXPECT_EQ(dial.rung(), 0u) << "one slow frame is no reason";
   ticks(200, 6000000);
   EXPECT_EQ(dial.rung(), 0u);
@@ -167,10 +167,16 @@ TEST(AccuracyDial, TurnsCoarserWhereTicksTakeTooLongAndFinerWhereThereIsRoom) {
   AccuracyDial slow({12e6, 9e6}, kPeriod);
   EXPECT_EQ(slow.rung(), 1u) << "it begins with what holds";
   AccuracyDial back({7e6, 4e6}, kPeriod);
-  for (int k = 0; k < 4; ++k) back.look(10500000, true, now += kPeriod);
+  for (int k = 0; k < 4; ++k) back.look(back.rung(), 10500000, true, now += kPeriod);
   EXPECT_EQ(back.rung(), 1u);
-  for (int k = 0; k < 2000; ++k) back.look(4000000, false, now += kPeriod);
+  for (int k = 0; k < 2000; ++k) back.look(back.rung(), 4000000, false, now += kPeriod);
   EXPECT_EQ(back.rung(), 0u) << "there is room again";
+  // An overload that raises what the finer one takes, and ends: it comes back.
+  AccuracyDial loaded({6e6, 3e6}, kPeriod);
+  for (int k = 0; k < 40; ++k) loaded.look(loaded.rung(), loaded.rung() == 0 ? 24000000 : 12000000, true, now += kPeriod);
+  EXPECT_EQ(loaded.rung(), 1u);
+  for (int k = 0; k < 3000; ++k) loaded.look(loaded.rung(), loaded.rung() == 0 ? 6000000 : 3000000, false, now += kPeriod);
+  EXPECT_EQ(loaded.rung(), 0u);
 }
 
 Frame numbered(int number, int width, int height) {
@@ -186,7 +192,7 @@ Frame numbered(int number, int width, int height) {
 }
 
 RingDesign ringDesign(const std::string& name, int width, int height) {
-  return {name, "s", "c", width, height, 4, 50.0, {{"a.counts", "count", true, 16383}, {"a.radiance", "W/(m2 sr)", false, 65535}}};
+  return {name, "s", "c", width, height, 4, 50.0, {{"a.counts", "count", true, true, 16383}, {"a.radiance", "W/(m2 sr)", false, false, 65535}}};
 }
 
 std::string ownRing(const char* what) { return "/pitviper.test." + std::to_string(getpid()) + "." + what; }

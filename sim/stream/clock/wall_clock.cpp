@@ -40,6 +40,17 @@ void sleepUntil_ns(std::int64_t monotonic) {
   }
 }
 
+bool sleepUntil_ns(std::int64_t monotonic, const std::function<bool()>& ends) {
+  constexpr std::int64_t kLook_ns = 50000000;
+  for (std::int64_t now = monotonic_ns(); monotonic - now > kLook_ns; now = monotonic_ns()) {
+    if (ends()) return false;
+    sleepUntil_ns(now + kLook_ns);
+  }
+  if (ends()) return false;
+  sleepUntil_ns(monotonic);
+  return true;
+}
+
 std::string askFor(const ThreadWish& wish) {
   std::string refused;
   if (!wish.cores.empty()) {

@@ -1,6 +1,7 @@
 #pragma once
 // The wall clock, which is the stream's business alone.
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,8 @@ std::int64_t monotonic_ns();
 std::int64_t taiOf_ns(std::int64_t monotonic_ns);
 /// Until a moment of the monotonic clock, also if signals interrupt.
 void sleepUntil_ns(std::int64_t monotonic_ns);
+/// The same; looks every 50 ms whether it is to end, and is false then.
+bool sleepUntil_ns(std::int64_t monotonic_ns, const std::function<bool()>& ends);
 
 /// How the system is to treat the calling thread.
 struct ThreadWish {

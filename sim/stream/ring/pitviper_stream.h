@@ -24,6 +24,7 @@
 #include <errno.h>
 #include <fcntl.h>
 #include <linux/futex.h>
+#include <signal.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -66,7 +67,7 @@ struct pitviper_stream_header {
   uint64_t slot_bytes, total_bytes;
   uint32_t slots, layers, width, height;
   int64_t writer_pid;
-  double rate_hz; /* 0: lockstep */
+  double rate_hz; /* of simulation time */
   char program[32], scenario[128], camera[64];
   struct pitviper_stream_layer layer[PITVIPER_STREAM_LAYERS];
   /* What changes. */
@@ -101,7 +102,7 @@ struct pitviper_stream {
   int ended;
 };
 
-/* 0, or -1 and errno (EPROTO: of another version, or no stream). Reading begins with the next frame that comes. */
+/* 0, or -1 and errno (ENOENT: none, or its writer is no more; EPROTO: of another version, or no stream). Reading begins with the next frame that comes. */
 static inline int pitviper_stream_open(struct pitviper_stream* s, const char* name) {
   struct stat status;
   int file;
@@ -125,6 +126,11 @@ static inline int pitviper_stream_open(struct pitviper_stream* s, const char* na
     errno = EPROTO;
     return -1;
   }
+  if (h->ended || (kill((pid_t)h->writer_pid, 0) != 0 && errno == ESRCH)) {
+    munmap(at, (size_t)status.st_size);
+    errno = ENOENT;
+    return -1;
+  }
   s->header = h;
   s->next = __atomic_load_n(&h->published, __ATOMIC_ACQUIRE);
   return 0;
@@ -143,10 +149,13 @@ static inline const struct pitviper_stream_frame* pitviper_stream_slot(const str
 static inline const struct pitviper_stream_frame* pitviper_stream_next(struct pitviper_stream* s, int timeout_ms) {
   struct timespec now, left;
   int64_t until = 0, t;
+  unsigned slices = 0;
   clock_gettime(CLOCK_MONOTONIC, &now);
   until = (int64_t)now.tv_sec * 1000000000 + now.tv_nsec + (int64_t)timeout_ms * 1000000;
   for (;;) {
     const uint32_t wake = __atomic_load_n(&s->header->wake, __ATOMIC_ACQUIRE);
+    /* Before `published`: a last frame is not missed. */
+    const uint32_t ended = __atomic_load_n(&s->header->ended, __ATOMIC_ACQUIRE);
     const uint64_t published = __atomic_load_n(&s->header->published, __ATOMIC_ACQUIRE);
     while (s->next < published) {
       /* The slot that is written next is not safe to begin with. */
@@ -157,11 +166,13 @@ static inline const struct pitviper_stream_frame* pitviper_stream_next(struct pi
       if (__atomic_load_n(&f->lock, __ATOMIC_ACQUIRE) == 2 * s->next + 2) return ++s->next, f;
       s->lost += 1, s->next += 1;
     }
-    if (__atomic_load_n(&s->header->ended, __ATOMIC_ACQUIRE)) return s->ended = 1, (const struct pitviper_stream_frame*)NULL;
+    /* A writer that was killed cannot say so: who waits looks for it once a second. */
+    if (ended || (slices > 1 && kill((pid_t)s->header->writer_pid, 0) != 0 && errno == ESRCH)) return s->ended = 1, (const struct pitviper_stream_frame*)NULL;
     clock_gettime(CLOCK_MONOTONIC, &now);
     t = until - ((int64_t)now.tv_sec * 1000000000 + now.tv_nsec);
     if (timeout_ms >= 0 && t <= 0) return NULL;
-    if (timeout_ms < 0) t = 1000000000;
+    if (timeout_ms < 0 || t > 1000000000) t = 1000000000;
+    ++slices;
     left.tv_sec = (time_t)(t / 1000000000), left.tv_nsec = (long)(t % 1000000000);
     syscall(SYS_futex, &s->header->wake, FUTEX_WAIT, wake, &left, NULL, 0);
   }

@@ -6,6 +6,8 @@
 #include <cctype>
 #include <climits>
 #include <cstring>
+#include <mutex>
+#include <set>
 #include <stdexcept>
 
 #include "sim/frame/version.hpp"
@@ -40,6 +42,9 @@ void removeAbandoned(const std::string& name) {
   shm_unlink(name.c_str());
 }
 
+std::mutex gOpen;
+std::set<std::string> gOpenRings;
+
 double numberOf(const Frame& frame, const std::string& name, double otherwise) {
   for (const Attribute& a : frame.attributes)
     if (a.name == name)
@@ -48,6 +53,11 @@ double numberOf(const Frame& frame, const std::string& name, double otherwise) {
 }
 
 }  // namespace
+
+void removeOpenRings() {
+  const std::lock_guard lock(gOpen);
+  for (const std::string& name : gOpenRings) shm_unlink(name.c_str());
+}
 
 std::string wrongRingName(const std::string& name) {
   if (name.size() < 2 || name[0] != '/' || name.size() > NAME_MAX) return "a slash and up to 254 letters";
@@ -102,17 +112,23 @@ RingWriter::RingWriter(const RingDesign& design) : design_(design) {
     const RingLayer& l = design_.layers[k];
     copyText(h.layer[k].name, l.name);
     copyText(h.layer[k].unit, l.unit);
-    copyText(h.layer[k].radiance_unit, l.isCounts ? "W/(m2 sr)" : "");
+    copyText(h.layer[k].radiance_unit, l.isCounts && l.isRadiance ? "W/(m2 sr)" : "");
     h.layer[k].type = l.isCounts ? PITVIPER_UINT16 : PITVIPER_FLOAT32;
     h.layer[k].maximum = l.maximum;
     h.layer[k].offset = offsets[k];
   }
   __atomic_thread_fence(__ATOMIC_RELEASE);
   std::memcpy(h.magic, PITVIPER_STREAM_MAGIC, sizeof h.magic);  // last: who sees it sees the rest
+  const std::lock_guard lock(gOpen);
+  gOpenRings.insert(design_.name);
 }
 
 RingWriter::~RingWriter() {
   shm_unlink(design_.name.c_str());
+  {
+    const std::lock_guard lock(gOpen);
+    gOpenRings.erase(design_.name);
+  }
   pitviper_stream_header& h = header();
   __atomic_store_n(&h.ended, 1u, __ATOMIC_RELEASE);
   __atomic_fetch_add(&h.wake, 1u, __ATOMIC_RELEASE);
@@ -120,7 +136,7 @@ RingWriter::~RingWriter() {
   munmap(at_, bytes_);
 }
 
-std::uint64_t RingWriter::published() const { return header().published; }
+std::uint64_t RingWriter::published() const { return __atomic_load_n(&header().published, __ATOMIC_ACQUIRE); }
 
 void RingWriter::publish(const Frame& frame) {
   pitviper_stream_header& h = header();
