@@ -178,7 +178,7 @@ const std::map<std::string, Command>& commands() {
         "  --hold               and leaves then, not before: constant delay\n"
         "  --late send          what is not there when it is due is sent as soon as it is (default) ...\n"
         "  --late drop          ... is not sent ...\n"
-        "  --late repeat        ... or the picture before is sent in its place. A tick that is over before it could be begun is dropped, or repeated\n"
+        "  --late repeat        ... or the picture before is sent in its place. A tick that could not be begun within a period (or the delay less one) is dropped, or repeated\n"
         "  --fifo P, --cores LIST\n"
         "                       SCHED_FIFO priority, 1 to 99, and cores of the thread that draws, where the system lets it\n"
         "  'accuracy: {asked: 1 %, at_most: 3 %}' in the scenario: where the rate does not hold it draws coarser, up to that; frames say to what\n"

@@ -80,7 +80,8 @@ std::uint32_t GigeReader::ask(std::uint16_t command, std::uint32_t address, std:
     while (poll(&fd, 1, kAnswer_ms) > 0) {
       const ssize_t count = recv(control_, in.data(), in.size(), 0);
       if (count < static_cast<ssize_t>(kGvcpHead) + 4 || wire16(&in[6]) != request_) {
-        if (count >= static_cast<ssize_t>(kGvcpHead) && wire16(&in[6]) == request_ && wire16(&in[0]) != 0) throw std::runtime_error("the camera refuses a register");
+        if (count >= static_cast<ssize_t>(kGvcpHead) && wire16(&in[6]) == request_ && wire16(&in[0]) != 0)
+          throw std::runtime_error("the camera refuses a register");
         continue;
       }
       if (wire16(&in[0]) != 0) throw std::runtime_error("the camera refuses register " + std::to_string(address));

@@ -68,17 +68,24 @@ constexpr double kMostTicks = 2e9;
 
 StreamWish wishOf(const Options& o, const Simulation& sim) {
   StreamWish wish;
-  wish.clock = word<StreamClock>(o, "--clock", "real-time", {{"real-time", StreamClock::RealTime}, {"lockstep", StreamClock::Lockstep}, {"free", StreamClock::Free}, {"trigger", StreamClock::Lockstep}, {"vsync", StreamClock::RealTime}});
+  wish.clock = word<StreamClock>(o, "--clock", "real-time",
+                                 {{"real-time", StreamClock::RealTime},
+                                  {"lockstep", StreamClock::Lockstep},
+                                  {"free", StreamClock::Free},
+                                  {"trigger", StreamClock::Lockstep},
+                                  {"vsync", StreamClock::RealTime}});
   wish.late = word<LatePolicy>(o, "--late", "send", {{"send", LatePolicy::Send}, {"drop", LatePolicy::Drop}, {"repeat", LatePolicy::Repeat}});
   wish.ticks = static_cast<std::uint64_t>(sim.time.frames);
   if (o.has("--frames") + o.has("--duration") + o.has("--endless") > 1)
     throw UserError({"--frames, --duration, --endless", 0, 0, -1}, "more than one of them", "one, or none", "remove the others");
   if (o.has("--frames")) {
     const auto [a, b] = readRange(o.value("--frames"), "--frames");
-    if (a != b || a < 1 || static_cast<double>(a) > kMostTicks) throw UserError(ofOption(o, "--frames"), "no number of frames", "a whole number from 1", "write --frames 6000");
+    if (a != b || a < 1 || static_cast<double>(a) > kMostTicks)
+      throw UserError(ofOption(o, "--frames"), "no number of frames", "a whole number from 1", "write --frames 6000");
     wish.ticks = static_cast<std::uint64_t>(a);
   }
-  if (o.has("--duration")) wish.ticks = static_cast<std::uint64_t>(std::clamp(std::round(quantity(o, "--duration", "s", 0.0, 1e8, "60 s") / sim.time.step_s), 1.0, kMostTicks));
+  if (o.has("--duration"))
+    wish.ticks = static_cast<std::uint64_t>(std::clamp(std::round(quantity(o, "--duration", "s", 0.0, 1e8, "60 s") / sim.time.step_s), 1.0, kMostTicks));
   if (o.has("--endless") || (wish.clock == StreamClock::Lockstep && !o.has("--frames") && !o.has("--duration"))) wish.ticks = 0;
   if (o.has("--delay")) wish.delay_ns = std::llround(1e9 * quantity(o, "--delay", "s", 1e-6, 10.0, "20 ms"));
   wish.holds = o.has("--hold");
@@ -95,7 +102,8 @@ StreamWish wishOf(const Options& o, const Simulation& sim) {
 ProjectorWish projectorOf(const Options& o, const std::string& text) {
   ProjectorWish wish;
   const bool number = !text.empty() && text.size() < 4 && text.find_first_not_of("0123456789") == std::string::npos;
-  if (!number && text != "window") throw UserError({"--projector " + text, 0, 0, -1}, "no display", "'window', or the number of a monitor from 0", "write --projector 0");
+  if (!number && text != "window")
+    throw UserError({"--projector " + text, 0, 0, -1}, "no display", "'window', or the number of a monitor from 0", "write --projector 0");
   if (number) wish.monitor = std::stoi(text);
   if (o.has("--projector-table")) wish.levels = readProjectorTable(o.value("--projector-table"));
   return wish;
@@ -137,15 +145,36 @@ std::vector<PlacedSink> sinksOf(const Options& o, const Simulation& sim, const S
 std::string statusOf(const Simulation& sim, double time_s, const std::vector<PlacedSink>& sinks, const CommandInbox& inbox) {
   nlohmann::ordered_json j = {{"status", true}, {"scenario", sim.name}, {"time_s", time_s}, {"commands", inbox.counts()}};
   for (const PlacedSink& placed : sinks)
-    for (const SinkCounts& s : placed.sink->counts()) j["sinks"].push_back({{"sink", s.sink}, {"taken", s.taken}, {"passed_on", s.passedOn}, {"skipped", s.skipped}});
+    for (const SinkCounts& s : placed.sink->counts())
+      j["sinks"].push_back({{"sink", s.sink}, {"taken", s.taken}, {"passed_on", s.passedOn}, {"skipped", s.skipped}});
   return j.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace
 
 int streamCommand(const Arguments& arguments) {
-  std::vector<OptionSpec> specs{{"--clock"},         {"--rate"},     {"--frames"}, {"--duration"}, {"--endless", false}, {"--late"}, {"--delay"}, {"--hold", false}, {"--fifo"}, {"--cores"},
-                                {"--shared-memory"}, {"--gige"}, {"--gstreamer", true, true}, {"--projector", true, true}, {"--projector-table"}, {"--commands"}, {"--cigi"},   {"--stale"},    {"--out"},            {"--set", true, true}, {"--plan", true, true}, {"--overwrite", false}};
+  std::vector<OptionSpec> specs{{"--clock"},
+                                {"--rate"},
+                                {"--frames"},
+                                {"--duration"},
+                                {"--endless", false},
+                                {"--late"},
+                                {"--delay"},
+                                {"--hold", false},
+                                {"--fifo"},
+                                {"--cores"},
+                                {"--shared-memory"},
+                                {"--gige"},
+                                {"--gstreamer", true, true},
+                                {"--projector", true, true},
+                                {"--projector-table"},
+                                {"--commands"},
+                                {"--cigi"},
+                                {"--stale"},
+                                {"--out"},
+                                {"--set", true, true},
+                                {"--plan", true, true},
+                                {"--overwrite", false}};
   for (const OptionSpec& spec : pictureOptions()) specs.push_back(spec);
   specs.push_back({"--self-test", false});
   const Options o("stream", arguments, specs, 0, 1);
@@ -162,12 +191,15 @@ int streamCommand(const Arguments& arguments) {
     overrides.push_back("time.rate=" + o.value("--rate"));
   }
   Simulation sim = readScenario(o.words()[0], overrides, findLibraries());
-  if (sim.cameras.empty()) throw UserError({sim.file, 0, 0, -1}, "a scenario without cameras", "one camera at least: its frames are the stream", "add 'cameras:'");
+  if (sim.cameras.empty())
+    throw UserError({sim.file, 0, 0, -1}, "a scenario without cameras", "one camera at least: its frames are the stream", "add 'cameras:'");
   refuseBeyondMemory(sim);
   readPlans(o, sim);
   StreamWish wish = wishOf(o, sim);
   const auto needs = [&](const char* option, const char* other) {
-    if (o.has(option) && !o.has(other)) throw UserError({option, 0, 0, -1}, std::string("it does nothing without ") + other, std::string("both, or none"), std::string("add ") + other + ", or remove it");
+    if (o.has(option) && !o.has(other))
+      throw UserError({option, 0, 0, -1}, std::string("it does nothing without ") + other, std::string("both, or none"),
+                      std::string("add ") + other + ", or remove it");
   };
   needs("--projector-table", "--projector");
   needs("--stale", "--commands");
@@ -175,9 +207,11 @@ int streamCommand(const Arguments& arguments) {
     if (o.has(option) && wish.clock != StreamClock::RealTime)
       throw UserError({option, 0, 0, -1}, "frames of this clock are never late", "'--clock real-time', or 'vsync'", std::string("remove ") + option);
   const bool byTrigger = o.value("--clock") == "trigger", bySwap = o.value("--clock") == "vsync";
-  if (bySwap && !o.has("--projector")) throw UserError({"--clock vsync", 0, 0, -1}, "there is no display whose clock it could be", "'--projector'", "add --projector 0");
+  if (bySwap && !o.has("--projector"))
+    throw UserError({"--clock vsync", 0, 0, -1}, "there is no display whose clock it could be", "'--projector'", "add --projector 0");
   if (wish.clock == StreamClock::Lockstep && !byTrigger && !o.has("--commands") && !o.has("--cigi"))
-    throw UserError({"--clock lockstep", 0, 0, -1}, "nobody could let the clock go on", "'--commands PLACE' or '--cigi PLACE' for the host that holds it", "add --commands 7380, or use --clock free");
+    throw UserError({"--clock lockstep", 0, 0, -1}, "nobody could let the clock go on", "'--commands PLACE' or '--cigi PLACE' for the host that holds it",
+                    "add --commands 7380, or use --clock free");
   const PictureWish pictures = readPictureWish(o, sim);
   const std::filesystem::path out = o.value("--out", "out");
   SinkPlace place{out, {}};
@@ -189,7 +223,8 @@ int streamCommand(const Arguments& arguments) {
   std::atomic<double> now_s{sim.time.start_s};
   std::atomic<bool> streams{false};
   const auto sinks = sinksOf(o, sim, place, pictures, loses);
-  if (byTrigger && !o.has("--commands") && std::none_of(sinks.begin(), sinks.end(), [](const PlacedSink& s) { return dynamic_cast<ControllableSink*>(s.sink.get()) != nullptr; }))
+  if (byTrigger && !o.has("--commands") &&
+      std::none_of(sinks.begin(), sinks.end(), [](const PlacedSink& s) { return dynamic_cast<ControllableSink*>(s.sink.get()) != nullptr; }))
     throw UserError({"--clock trigger", 0, 0, -1}, "nobody could trigger", "'--gige ADDRESS', or '--commands PLACE' for its pulses", "add --gige 127.0.0.1");
   if (writes) {
     const RunRange range{0, static_cast<int>(std::clamp<std::uint64_t>(wish.ticks, 1, 100000)) - 1};
@@ -207,7 +242,12 @@ int streamCommand(const Arguments& arguments) {
   std::vector<ControllableSink*> pulsed;  // complete before the stream begins
   std::vector<std::unique_ptr<CommandPort>> ports;
   if (o.has("--commands")) {
-    JsonPortWish json{o.value("--commands"), wish.clock == StreamClock::Lockstep && !byTrigger, 1.0, [&now_s] { return now_s.load(); }, {}, [&] {
+    JsonPortWish json{o.value("--commands"),
+                      wish.clock == StreamClock::Lockstep && !byTrigger,
+                      1.0,
+                      [&now_s] { return now_s.load(); },
+                      {},
+                      [&] {
                         if (byTrigger) inbox.step({});
                         if (streams)
                           for (ControllableSink* device : pulsed) device->pulse();

@@ -47,15 +47,21 @@ std::vector<std::vector<std::string>> timesOf(const StreamReport& r) {
 }
 
 Json jsonOf(const Durations& d) {
-  return {{"count", d.count()},          {"mean_ms", 1e-6 * d.mean_ns()},           {"deviation_ms", 1e-6 * d.deviation_ns()}, {"p50_ms", 1e-6 * d.quantile_ns(0.5)},
-          {"p99_ms", 1e-6 * d.quantile_ns(0.99)}, {"p99_9_ms", 1e-6 * d.quantile_ns(0.999)}, {"max_ms", 1e-6 * d.most_ns()}};
+  return {{"count", d.count()},
+          {"mean_ms", 1e-6 * d.mean_ns()},
+          {"deviation_ms", 1e-6 * d.deviation_ns()},
+          {"p50_ms", 1e-6 * d.quantile_ns(0.5)},
+          {"p99_ms", 1e-6 * d.quantile_ns(0.99)},
+          {"p99_9_ms", 1e-6 * d.quantile_ns(0.999)},
+          {"max_ms", 1e-6 * d.most_ns()}};
 }
 
 double percent(std::uint64_t part, std::uint64_t whole) { return whole > 0 ? 100.0 * static_cast<double>(part) / static_cast<double>(whole) : 0.0; }
 
 std::string bareTimerText(const StreamReport& r) {
-  return print("a bare timer in the same time, which only wakes: late by more than a tenth of a period %llu times of %llu (%.2f %%)", static_cast<unsigned long long>(r.bareTimerLate),
-               static_cast<unsigned long long>(r.bareTimer.count()), percent(r.bareTimerLate, r.bareTimer.count()));
+  return print("a bare timer in the same time, which only wakes: late by more than a tenth of a period %llu times of %llu (%.2f %%)",
+               static_cast<unsigned long long>(r.bareTimerLate), static_cast<unsigned long long>(r.bareTimer.count()),
+               percent(r.bareTimerLate, r.bareTimer.count()));
 }
 
 std::string countsOf(const SinkCounts& s) {
@@ -95,12 +101,14 @@ std::uint64_t StreamResult::unaccounted() const {
 std::string streamSummary(const StreamResult& result) {
   const StreamReport& r = result.report;
   std::string text = std::to_string(r.ticks) + (r.ticks == 1 ? " tick in " : " ticks in ") + print("%.2f s", r.seconds) +
-                     (r.period_ns > 0 ? print(" at %.6g Hz", 1e9 / static_cast<double>(r.period_ns)) : print(", %.1f a second", static_cast<double>(r.ticks) / std::max(r.seconds, 1e-9))) +
+                     (r.period_ns > 0 ? print(" at %.6g Hz", 1e9 / static_cast<double>(r.period_ns))
+                                      : print(", %.1f a second", static_cast<double>(r.ticks) / std::max(r.seconds, 1e-9))) +
                      " (" + result.renderer + ")\n";
   for (const CameraAccount& a : r.cameras) {
     text += "  " + a.camera + ": " + std::to_string(a.onTime) + (r.period_ns > 0 ? " on time, " : " sent");
     if (r.period_ns > 0)
-      text += std::to_string(a.late) + print(" late (%.2f %%), ", percent(a.late, r.ticks)) + std::to_string(a.dropped) + " dropped, " + std::to_string(a.repeated) + " repeated";
+      text += std::to_string(a.late) + print(" late (%.2f %%), ", percent(a.late, r.ticks)) + std::to_string(a.dropped) + " dropped, " +
+              std::to_string(a.repeated) + " repeated";
     if (a.outsideLimits > 0) text += ", " + std::to_string(a.outsideLimits) + " outside the scenario's limits";
     text += "\n";
   }
@@ -121,19 +129,31 @@ std::string streamSummary(const StreamResult& result) {
     return n;
   }();
   if (r.period_ns > 0 && percent(behind, r.ticks * std::max<std::uint64_t>(1, r.cameras.size())) > 10.0)
-    text += print("  this machine does not hold %.6g Hz: drawing takes %s ms in the mean; frames were %s. Lower the film, the rate or the accuracy, or allow 'accuracy: {at_most: ...}'\n",
-                  1e9 / static_cast<double>(r.period_ns), milliseconds(r.cameras.front().drawing.mean_ns()).c_str(),
-                  result.late == "send" ? "sent late or dropped" : result.late == "drop" ? "dropped" : "repeated");
+    text += print(
+        "  this machine does not hold %.6g Hz: drawing takes %s ms in the mean; frames were %s. Lower the film, the rate or the accuracy, or allow 'accuracy: "
+        "{at_most: ...}'\n",
+        1e9 / static_cast<double>(r.period_ns), milliseconds(r.cameras.front().drawing.mean_ns()).c_str(),
+        result.late == "send"   ? "sent late or dropped"
+        : result.late == "drop" ? "dropped"
+                                : "repeated");
   return text;
 }
 
 std::string streamJson(const StreamResult& result) {
   const StreamReport& r = result.report;
   Json j = {{"scenario", result.scenario}, {"renderer", result.renderer}, {"ticks", r.ticks}, {"seconds", r.seconds}, {"unaccounted", result.unaccounted()}};
-  if (r.period_ns > 0) j["rate_hz"] = 1e9 / static_cast<double>(r.period_ns), j["due_after_ms"] = 1e-6 * static_cast<double>(r.delay_ns), j["late_frames_are"] = result.late;
+  if (r.period_ns > 0)
+    j["rate_hz"] = 1e9 / static_cast<double>(r.period_ns), j["due_after_ms"] = 1e-6 * static_cast<double>(r.delay_ns), j["late_frames_are"] = result.late;
   for (const CameraAccount& a : r.cameras)
-    j["cameras"][a.camera] = {{"on_time", a.onTime},           {"late", a.late},         {"dropped", a.dropped},        {"repeated", a.repeated}, {"outside_limits", a.outsideLimits},
-                              {"period", jsonOf(a.period)},    {"delay", jsonOf(a.delay)}, {"drawing", jsonOf(a.drawing)}, {"frame_there_to_sent", jsonOf(a.handing)}};
+    j["cameras"][a.camera] = {{"on_time", a.onTime},
+                              {"late", a.late},
+                              {"dropped", a.dropped},
+                              {"repeated", a.repeated},
+                              {"outside_limits", a.outsideLimits},
+                              {"period", jsonOf(a.period)},
+                              {"delay", jsonOf(a.delay)},
+                              {"drawing", jsonOf(a.drawing)},
+                              {"frame_there_to_sent", jsonOf(a.handing)}};
   if (r.start.count() > 0) j["tick_begins_late"] = jsonOf(r.start);
   if (r.answer.count() > 0) j["step_to_frames_out_less_drawing"] = jsonOf(r.answer);
   if (r.bareTimer.count() > 0) j["bare_timer_late"] = jsonOf(r.bareTimer), j["bare_timer_late"]["late_by_more_than_a_tenth"] = r.bareTimerLate;
@@ -159,7 +179,8 @@ void writeStreamReport(const StreamResult& result, const std::string& mark, cons
   page.heading("Frames");
   std::vector<std::vector<std::string>> rows;
   for (const CameraAccount& a : r.cameras)
-    rows.push_back({a.camera, std::to_string(a.onTime), std::to_string(a.late), std::to_string(a.dropped), std::to_string(a.repeated), std::to_string(a.outsideLimits)});
+    rows.push_back(
+        {a.camera, std::to_string(a.onTime), std::to_string(a.late), std::to_string(a.dropped), std::to_string(a.repeated), std::to_string(a.outsideLimits)});
   page.table({"camera", "on time", "late", "dropped", "repeated", "outside limits"}, rows);
   page.heading("Times [ms]");
   rows = timesOf(r);
@@ -182,7 +203,8 @@ void writeStreamReport(const StreamResult& result, const std::string& mark, cons
       shares.x.push_back(1e-6 * a.period.quantile_ns(q));
       shares.y.push_back(1.0 - q);
     }
-    if (a.period.count() > 1) charts.push_back({"Share of periods longer than, " + a.camera, "sent to sent [ms]", "share", false, true, false, {shares}, {}, {}});
+    if (a.period.count() > 1)
+      charts.push_back({"Share of periods longer than, " + a.camera, "sent to sent [ms]", "share", false, true, false, {shares}, {}, {}});
   }
   if (!charts.empty()) {
     const std::filesystem::path png = folder / ".stream_charts.png";

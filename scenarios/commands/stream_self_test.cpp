@@ -35,8 +35,10 @@ const char* const kAddress = "127.0.0.9";
 Simulation benchOf(const SelfTestWish& w) {
   char text[900];
   std::snprintf(text, sizeof text,
-                "name: self_test\ntime: {rate: %.9g Hz}\nentities:\n  - {name: ball, shape: {model: sphere, radius: 1 m}, temperature: 300 K, material: grey_aircraft_paint}\n"
-                "cameras:\n  - name: bench\n    position: [100 m, 0 m, 0 m]\n    look_at: ball\n    film: {width: %d, height: %d, pitch: 15 um}\n    focal_length: 100 mm\n    aperture: 25 mm\n    exposure: 1 ms\n"
+                "name: self_test\ntime: {rate: %.9g Hz}\nentities:\n  - {name: ball, shape: {model: sphere, radius: 1 m}, temperature: 300 K, material: "
+                "grey_aircraft_paint}\n"
+                "cameras:\n  - name: bench\n    position: [100 m, 0 m, 0 m]\n    look_at: ball\n    film: {width: %d, height: %d, pitch: 15 um}\n    "
+                "focal_length: 100 mm\n    aperture: 25 mm\n    exposure: 1 ms\n"
                 "    channels:\n      - {name: mw, response: {band: [3.7 um, 4.8 um]}, quantum_efficiency: insb_mwir, output: counts}\n"
                 "    stages:\n      - {stage: detector, full_well: 6.5e6, bits: 16}\n",
                 w.rate_hz, w.width, w.height);
@@ -51,7 +53,8 @@ std::vector<std::shared_ptr<const Frame>> picturesOf(const SelfTestWish& w) {
     frame->camera = "bench";
     frame->width = w.width, frame->height = w.height;
     FrameLayer layer{"mw.counts", "count", {}};
-    const double angle = 2.0 * M_PI * static_cast<double>(k) / kPictures, x = w.width * (0.5 + 0.3 * std::cos(angle)), y = w.height * (0.5 + 0.3 * std::sin(angle));
+    const double angle = 2.0 * M_PI * static_cast<double>(k) / kPictures, x = w.width * (0.5 + 0.3 * std::cos(angle)),
+                 y = w.height * (0.5 + 0.3 * std::sin(angle));
     std::uint32_t noise = 1;
     for (int row = 0; row < w.height; ++row)
       for (int column = 0; column < w.width; ++column) {
@@ -204,8 +207,8 @@ Way throughPipeline(const SelfTestWish& w, const Simulation& sim, const std::vec
 }
 
 /// Commands there, an answer back: the loop's part is a thread that takes each step at once.
-Way throughPort(const std::string& name, const Simulation& sim, const std::function<std::unique_ptr<CommandPort>(CommandInbox&)>& open, const std::function<bool()>& ask,
-                const std::function<void()>& connect, int rounds) {
+Way throughPort(const std::string& name, const Simulation& sim, const std::function<std::unique_ptr<CommandPort>(CommandInbox&)>& open,
+                const std::function<bool()>& ask, const std::function<void()>& connect, int rounds) {
   Way way{name, 0, 0, 0, 0, {}, {}, ""};
   CommandInbox inbox;
   const auto port = open(inbox);
@@ -243,7 +246,8 @@ Way throughJson(const Simulation& sim) {
     if (connect(s, reinterpret_cast<const sockaddr*>(&at), sizeof at) != 0) throw std::runtime_error(std::string("no socket: ") + std::strerror(errno));
   };
   const auto ask = [&] {
-    const std::string line = R"({"command": "move", "entity": "ball", "position": ["1 m", "2 m", "3 m"], "step": 1})" "\n";
+    const std::string line = R"({"command": "move", "entity": "ball", "position": ["1 m", "2 m", "3 m"], "step": 1})"
+                             "\n";
     if (send(s, line.data(), line.size(), MSG_NOSIGNAL) != static_cast<ssize_t>(line.size())) return false;
     char answer[4096];
     for (std::size_t got = 0;;) {
@@ -254,7 +258,12 @@ Way throughJson(const Simulation& sim) {
       if (got == sizeof answer) return false;
     }
   };
-  Way way = throughPort("JSON lines: a move and a step, there and back", sim, [&](CommandInbox& inbox) { return openJsonPort({path, true, 1.0, {}, {}, {}}, sim, inbox); }, ask, connectTo, 2000);
+  Way way = throughPort(
+      "JSON lines: a move and a step, there and back", sim,
+      [&](CommandInbox& inbox) {
+        return openJsonPort({path, true, 1.0, {}, {}, {}}, sim, inbox);
+      },
+      ask, connectTo, 2000);
   close(s);
   return way;
 }
@@ -284,7 +293,8 @@ Way throughCigi(const Simulation& sim) {
     return recv(s, answer, sizeof answer, 0) == kStartOfFrame;
   };
   const std::string place = std::to_string(ntohs(at.sin_port));
-  Way way = throughPort("CIGI 3.3: IG Control and Start of Frame", sim, [&](CommandInbox& inbox) { return openCigiPort(place, true, sim, inbox); }, ask, [] {}, 2000);
+  Way way = throughPort(
+      "CIGI 3.3: IG Control and Start of Frame", sim, [&](CommandInbox& inbox) { return openCigiPort(place, true, sim, inbox); }, ask, [] {}, 2000);
   close(s);
   return way;
 }
@@ -295,9 +305,11 @@ int streamSelfTest(const SelfTestWish& wish) {
   const Simulation sim = benchOf(wish);
   const auto pictures = picturesOf(wish);
   char text[300];
-  std::snprintf(text, sizeof text, "%d x %d pixels of 16 bits, %.6g Hz, %.6g s each, pictures made before; sender and reader on this machine\n", wish.width, wish.height, wish.rate_hz, wish.duration_s);
+  std::snprintf(text, sizeof text, "%d x %d pixels of 16 bits, %.6g Hz, %.6g s each, pictures made before; sender and reader on this machine\n", wish.width,
+                wish.height, wish.rate_hz, wish.duration_s);
   std::fputs(text, stdout);
-  std::vector<std::vector<std::string>> rows{{"", "sent", "received", "counted as lost", "wrong", "delay p50 [ms]", "p99", "p99.9", "largest", "period's deviation [ms]"}};
+  std::vector<std::vector<std::string>> rows{
+      {"", "sent", "received", "counted as lost", "wrong", "delay p50 [ms]", "p99", "p99.9", "largest", "period's deviation [ms]"}};
   std::uint64_t unaccounted = 0;
   const auto add = [&](const Way& way, bool isFrames) {
     const auto ms = [](double ns) {
@@ -305,8 +317,9 @@ int streamSelfTest(const SelfTestWish& wish) {
       std::snprintf(number, sizeof number, "%.3f", 1e-6 * ns);
       return std::string(number);
     };
-    rows.push_back({way.name, std::to_string(way.sent), std::to_string(way.received), std::to_string(way.counted), std::to_string(way.wrong), ms(way.delay.quantile_ns(0.5)),
-                    ms(way.delay.quantile_ns(0.99)), ms(way.delay.quantile_ns(0.999)), ms(way.delay.most_ns()), isFrames ? ms(way.period.deviation_ns()) : ""});
+    rows.push_back({way.name, std::to_string(way.sent), std::to_string(way.received), std::to_string(way.counted), std::to_string(way.wrong),
+                    ms(way.delay.quantile_ns(0.5)), ms(way.delay.quantile_ns(0.99)), ms(way.delay.quantile_ns(0.999)), ms(way.delay.most_ns()),
+                    isFrames ? ms(way.period.deviation_ns()) : ""});
     unaccounted += way.wrong + (way.sent > way.received + way.counted ? way.sent - way.received - way.counted : 0);
   };
   add(throughSharedMemory(wish, sim, pictures), true);

@@ -9,7 +9,8 @@ struct SelfTestWish {
   double rate_hz = 60.0, duration_s = 5.0;  ///< of each transport
 };
 
-/// Prints a table. Returns 0, or 3 where a frame of shared memory or of the network was neither received nor counted as lost. Errors: UserError, std::runtime_error.
+/// Prints a table. Returns 0, or 3 where a frame of shared memory or of the network was neither received nor counted as lost. Errors: UserError,
+/// std::runtime_error.
 int streamSelfTest(const SelfTestWish& wish);
 
 }  // namespace pitviper

@@ -16,7 +16,7 @@ struct FrameStamp {
   std::int64_t poseAge_ns = -1;                               ///< between the arrival of the last command that it has and renderStart; -1: it has none
   std::uint64_t dropped = 0, late = 0, repeated = 0;          ///< frames of this stream so far, this one counted
   bool isLate = false, isRepeated = false, isOutsideLimits = false;
-  double gain = 1.0;  ///< factor of its detector's
+  double gain = 1.0;                            ///< factor of its detector's
   double accuracy = 0.0, predictedError = 0.0;  ///< relative: asked of its plan (0: none asked), and what that expects of the worst channel
   glm::dvec3 position_ecef_m{0.0};
   glm::dquat orientation_ecef{1.0, 0.0, 0.0, 0.0};  ///< of the camera's body axes: x is the line of sight, y left, z up

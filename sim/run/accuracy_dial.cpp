@@ -7,9 +7,9 @@ namespace {
 
 // Of a period: above the first a tick leaves no room for what the system does besides; a finer rung must fit into the second.
 constexpr double kFull = 0.95, kRoom = 0.8;
-constexpr int kTooLong = 3;                               // ticks more than those that fitted: one slow frame is no reason
+constexpr int kTooLong = 3;                                                   // ticks more than those that fitted: one slow frame is no reason
 constexpr std::int64_t kShortest_ns = 2000000000, kLongest_ns = 60000000000;  // between a turn and one to a finer rung
-constexpr double kNewest = 0.1;                           // share of the newest tick in the running mean
+constexpr double kNewest = 0.1;                                               // share of the newest tick in the running mean
 
 }  // namespace
 

@@ -21,7 +21,7 @@ class AccuracyDial {
   std::vector<std::uint64_t> frames_;
   double period_ns_;
   std::size_t rung_ = 0;
-  int over_ = 0;               ///< ticks on end, nearly, that took too long
+  int over_ = 0;  ///< ticks on end, nearly, that took too long
   std::int64_t turned_ns_ = 0, wait_ns_;
   std::uint64_t turns_ = 0;
 };

@@ -32,7 +32,8 @@ class CameraLine {
   void begin(const StateAt& stateAt, double time_s);
   /// Its picture. `number`: of the frame; given it is audited (`isFirst`: of its run).
   CameraImage finish(std::optional<int> audited = {}, bool isFirst = false);
-  /// What the sensor makes of it, with all that is said of it. In the order of the frames. `stateAt`: for rates of targets; unless given the scenario's own world.
+  /// What the sensor makes of it, with all that is said of it. In the order of the frames. `stateAt`: for rates of targets; unless given the scenario's own
+  /// world.
   Frame frame(const CameraImage& image, const WorldState& state, int number, const StateAt& stateAt = {});
 
   const Camera& camera() const { return camera_; }

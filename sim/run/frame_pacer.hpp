@@ -21,8 +21,8 @@ struct PacedFrame {
   std::uint64_t tick = 0;
   std::shared_ptr<Frame> frame;
   std::int64_t tick_ns = 0, due_ns = 0, begun_ns = 0, made_ns = 0;  ///< monotonic; due 0: never late
-  std::shared_ptr<TickDone> done;  ///< shared by the frames of a tick
-  bool isLast = false;             ///< of its tick
+  std::shared_ptr<TickDone> done;                                   ///< shared by the frames of a tick
+  bool isLast = false;                                              ///< of its tick
 };
 
 class FramePacer {
@@ -53,7 +53,7 @@ class FramePacer {
   TickOver tickOver_;
   std::mutex mutex_;
   std::condition_variable wake_, emptied_;
-  std::deque<PacedFrame> expected_;  ///< what comes, in order, not there yet or not due
+  std::deque<PacedFrame> expected_;                 ///< what comes, in order, not there yet or not due
   std::vector<std::shared_ptr<const Frame>> last_;  ///< the newest of each camera
   std::exception_ptr failure_;
   bool ends_ = false;

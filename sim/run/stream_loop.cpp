@@ -69,12 +69,20 @@ class StreamLoop {
  public:
   StreamLoop(const Simulation& sim, const ShaderLibrary& library, const StreamWish& wish, CommandInbox& inbox, const std::vector<Sink*>& sinks,
              const std::vector<CommandPort*>& ports, const RunProgress& progress, const std::function<void(std::uint64_t)>& ticked)
-      : sim_(sim), wish_(wish), inbox_(inbox), sinks_(sinks), ports_(ports), ticked_(ticked), world_(sim), account_(namesOf(sim)),
-        pacer_(realTime() ? wish.late : LatePolicy::Send, realTime() && wish.holds, account_, [this](const std::shared_ptr<const Frame>& f) { handOver(f); },
-               [this](const TickDone& done) {
-                 for (CommandPort* port : ports_) port->tickDone(done);
-               },
-               wish.thread) {
+      : sim_(sim),
+        wish_(wish),
+        inbox_(inbox),
+        sinks_(sinks),
+        ports_(ports),
+        ticked_(ticked),
+        world_(sim),
+        account_(namesOf(sim)),
+        pacer_(
+            realTime() ? wish.late : LatePolicy::Send, realTime() && wish.holds, account_, [this](const std::shared_ptr<const Frame>& f) { handOver(f); },
+            [this](const TickDone& done) {
+              for (CommandPort* port : ports_) port->tickDone(done);
+            },
+            wish.thread) {
     report_.refused = askFor(wish.thread);
     period_ns_ = nanoseconds(sim.time.step_s);
     delay_ns_ = wish.delay_ns > 0 ? wish.delay_ns : period_ns_;
@@ -120,7 +128,8 @@ class StreamLoop {
     for (std::size_t c = 0; c < account_.cameras(); ++c) report_.cameras.push_back(account_.of(c));
     for (std::size_t c = 0; c < dials_.size(); ++c)
       if (lines_[c]->rungs() > 1) {
-        for (std::size_t r = 0; r < lines_[c]->rungs(); ++r) report_.rungs.push_back({lines_[c]->camera().name, lines_[c]->accuracyOf(r), dials_[c].frames()[r]});
+        for (std::size_t r = 0; r < lines_[c]->rungs(); ++r)
+          report_.rungs.push_back({lines_[c]->camera().name, lines_[c]->accuracyOf(r), dials_[c].frames()[r]});
         report_.turns += dials_[c].turns();
       }
     report_.seconds = 1e-9 * static_cast<double>(monotonic_ns() - start);
@@ -183,7 +192,8 @@ class StreamLoop {
     tick->begins_ns = !realTime() ? monotonic_ns() : wish_.outsideClock ? outside_ns_ : beginOf(*number);
     tick->due_ns = realTime() ? tick->begins_ns + delay_ns_ : 0;
     std::vector<PacedFrame> expected;
-    for (std::size_t c = 0; c < lines_.size(); ++c) expected.push_back({c, *number, nullptr, tick->begins_ns, tick->due_ns, 0, 0, nullptr, c + 1 == lines_.size()});
+    for (std::size_t c = 0; c < lines_.size(); ++c)
+      expected.push_back({c, *number, nullptr, tick->begins_ns, tick->due_ns, 0, 0, nullptr, c + 1 == lines_.size()});
     if (realTime()) report_.start.add(monotonic_ns() - tick->begins_ns);
     obey(*tick);
     tick->done = doneOf(tick->number);
@@ -252,7 +262,8 @@ class StreamLoop {
         return ticks_++;
       }
       const std::int64_t begins = beginOf(ticks_), now = monotonic_ns();
-      if (now >= begins + period_ns_) {  // wholly gone: time does not wait
+      // Wholly gone, and what began now would not be there when it is due: time does not wait.
+      if (now >= begins + std::max(period_ns_, delay_ns_ - period_ns_)) {
         const auto done = doneOf(ticks_);
         for (std::size_t c = 0; c < lines_.size(); ++c) {
           const PacedFrame gone{c, ticks_, nullptr, begins, begins + delay_ns_, 0, 0, done, c + 1 == lines_.size()};
@@ -293,7 +304,8 @@ class StreamLoop {
     if (!isLast) return;
     if (tick.done->ticket) report_.answer.add(monotonic_ns() - stepped_ns_ - drawn_ns_);
     constexpr std::uint64_t kSettled = 100;
-    if (report_.memoryBefore_kB == 0 && tick.number >= (wish_.ticks > 0 ? std::min(kSettled, wish_.ticks / 10) : kSettled)) report_.memoryBefore_kB = residentMemory_kB();
+    if (report_.memoryBefore_kB == 0 && tick.number >= (wish_.ticks > 0 ? std::min(kSettled, wish_.ticks / 10) : kSettled))
+      report_.memoryBefore_kB = residentMemory_kB();
     if (ticked_) ticked_(tick.number);
   }
 
@@ -315,11 +327,13 @@ class StreamLoop {
     s.isOutsideLimits = look.find<std::string>("pitviper.outside_limits") != nullptr;
     if (const auto* p = look.find<std::vector<double>>("pitviper.pose_ecef_m")) s.position_ecef_m = {(*p)[0], (*p)[1], (*p)[2]};
     if (const auto* q = look.find<std::vector<double>>("pitviper.orientation_ecef_wxyz")) s.orientation_ecef = glm::dquat((*q)[0], (*q)[1], (*q)[2], (*q)[3]);
-    if (const auto* g = look.find<std::vector<double>>("pitviper.pose_geodetic_deg_deg_m")) s.latitude_deg = (*g)[0], s.longitude_deg = (*g)[1], s.height_m = (*g)[2];
+    if (const auto* g = look.find<std::vector<double>>("pitviper.pose_geodetic_deg_deg_m"))
+      s.latitude_deg = (*g)[0], s.longitude_deg = (*g)[1], s.height_m = (*g)[2];
     s.sight_ecef = s.orientation_ecef * glm::dvec3(1.0, 0.0, 0.0);
     const int target = camera.mount.lookAtEntity >= 0 ? camera.mount.lookAtEntity : 0;
     s.column_px = s.row_px = NAN;
-    if (const auto* seen = look.find<std::vector<double>>("entity." + std::to_string(target + 1) + ".range_column_row")) s.column_px = (*seen)[1], s.row_px = (*seen)[2];
+    if (const auto* seen = look.find<std::vector<double>>("entity." + std::to_string(target + 1) + ".range_column_row"))
+      s.column_px = (*seen)[1], s.row_px = (*seen)[2];
     return s;
   }
 
@@ -354,9 +368,9 @@ std::uint64_t StreamReport::unaccounted() const {
   return missing;
 }
 
-StreamReport streamFrames(const Simulation& simulation, const ShaderLibrary& library, const StreamWish& wish, CommandInbox& inbox, const std::vector<Sink*>& sinks,
-                          const std::vector<CommandPort*>& ports, const RunProgress& progress, const std::function<void()>& ready,
-                          const std::function<void(std::uint64_t)>& ticked) {
+StreamReport streamFrames(const Simulation& simulation, const ShaderLibrary& library, const StreamWish& wish, CommandInbox& inbox,
+                          const std::vector<Sink*>& sinks, const std::vector<CommandPort*>& ports, const RunProgress& progress,
+                          const std::function<void()>& ready, const std::function<void(std::uint64_t)>& ticked) {
   StreamLoop loop(simulation, library, wish, inbox, sinks, ports, progress, ticked);
   if (ready) ready();
   return loop.run();

@@ -8,9 +8,9 @@
 
 #include "sim/run/frame_pacer.hpp"
 #include "sim/run/run.hpp"
+#include "sim/stream/clock/wall_clock.hpp"
 #include "sim/stream/command_inbox.hpp"
 #include "sim/stream/command_port.hpp"
-#include "sim/stream/clock/wall_clock.hpp"
 
 namespace pitviper {
 
@@ -28,7 +28,7 @@ struct StreamWish {
   std::int64_t delay_ns = 0;  ///< of real time: a frame is due so long after its tick began; 0: a period
   bool holds = false;         ///< and leaves then, not before: its delay is constant
   LatePolicy late = LatePolicy::Send;
-  ThreadWish thread;          ///< of the one that draws
+  ThreadWish thread;  ///< of the one that draws
   /// A clock from outside in real time's place: waits for a tick, and says when it began; none where it has stopped. Its period is about the scenario's.
   std::function<std::optional<std::int64_t>(std::uint64_t tick)> outsideClock;
 };
@@ -40,7 +40,7 @@ struct RungUse {
 };
 
 struct StreamReport {
-  std::uint64_t ticks = 0;  ///< of the clock, drawn or not
+  std::uint64_t ticks = 0;                   ///< of the clock, drawn or not
   std::int64_t period_ns = 0, delay_ns = 0;  ///< 0: not of real time
   std::vector<CameraAccount> cameras;
   Durations start, poseAge;  ///< how late ticks begin; see FrameStamp
@@ -52,13 +52,13 @@ struct StreamReport {
   std::string refused;         ///< of the thread's wishes
   double seconds = 0.0;
   std::int64_t memoryBefore_kB = 0, memoryAfter_kB = 0;  ///< resident: after a tenth of the ticks, or 100; at the end
-  std::uint64_t unaccounted() const;  ///< ticks of cameras that became nothing: never, or the program is wrong
+  std::uint64_t unaccounted() const;                     ///< ticks of cameras that became nothing: never, or the program is wrong
 };
 
-/// Draws until the ticks are done, `inbox` says to end, or a sink throws. `sinks`: of those that wait nobody (Sink::neverWaits) or have a queue. The simulation's own audits are
-/// not made. `ready`: called when all plans and programs are there, before the first tick.
-StreamReport streamFrames(const Simulation& simulation, const ShaderLibrary& library, const StreamWish& wish, CommandInbox& inbox, const std::vector<Sink*>& sinks,
-                          const std::vector<CommandPort*>& ports, const RunProgress& progress = {}, const std::function<void()>& ready = {},
-                          const std::function<void(std::uint64_t tick)>& ticked = {});
+/// Draws until the ticks are done, `inbox` says to end, or a sink throws. `sinks`: of those that wait nobody (Sink::neverWaits) or have a queue. The
+/// simulation's own audits are not made. `ready`: called when all plans and programs are there, before the first tick.
+StreamReport streamFrames(const Simulation& simulation, const ShaderLibrary& library, const StreamWish& wish, CommandInbox& inbox,
+                          const std::vector<Sink*>& sinks, const std::vector<CommandPort*>& ports, const RunProgress& progress = {},
+                          const std::function<void()>& ready = {}, const std::function<void(std::uint64_t tick)>& ticked = {});
 
 }  // namespace pitviper

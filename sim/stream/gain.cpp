@@ -9,7 +9,8 @@ CommandModel gainCommand() {
   const auto read = [](const Record& r, const Simulation& sim) -> decltype(Command::change) {
     const Camera& camera = sim.cameras[static_cast<size_t>(cameraOf(r, sim))];
     if (!detectorOf(camera))
-      throw UserError(r.where("camera"), "camera '" + camera.name + "' has no detector", "a camera with 'stages: [{stage: detector, ...}]'", "name another, or add one");
+      throw UserError(r.where("camera"), "camera '" + camera.name + "' has no detector", "a camera with 'stages: [{stage: detector, ...}]'",
+                      "name another, or add one");
     return [name = camera.name, factor = r.number("factor")](Courses& courses, double) { courses.gains[name] = [factor](double) { return factor; }; };
   };
   return {"gain", "Counts per electron of a camera's detector, as a factor of its own; what frames say of their calibration follows.", keys, read};

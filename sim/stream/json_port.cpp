@@ -18,10 +18,10 @@
 
 #include "sim/model/simulation.hpp"
 #include "sim/parameters/readable_text.hpp"
+#include "sim/stream/clock/wall_clock.hpp"
 #include "sim/stream/command_models.hpp"
 #include "sim/stream/command_port.hpp"
 #include "sim/stream/json_value.hpp"
-#include "sim/stream/clock/wall_clock.hpp"
 
 namespace pitviper {
 namespace {
@@ -101,18 +101,20 @@ class JsonPort final : public CommandPort {
 
  private:
   [[noreturn]] void fail(const std::string& what) const {
-    throw UserError({"--commands " + wish_.address, 0, 0, -1}, what + " (" + std::strerror(errno) + ")", "a free port, or a path for a socket", "choose another, or end what has it");
+    throw UserError({"--commands " + wish_.address, 0, 0, -1}, what + " (" + std::strerror(errno) + ")", "a free port, or a path for a socket",
+                    "choose another, or end what has it");
   }
 
   void listen() {
     if (wish_.address.find('/') != std::string::npos) {
       sockaddr_un at{};
       at.sun_family = AF_UNIX;
-      if (wish_.address.size() >= sizeof at.sun_path) throw UserError({"--commands " + wish_.address, 0, 0, -1}, "the path is too long", "up to 107 letters", "choose a shorter one");
+      if (wish_.address.size() >= sizeof at.sun_path)
+        throw UserError({"--commands " + wish_.address, 0, 0, -1}, "the path is too long", "up to 107 letters", "choose a shorter one");
       std::memcpy(at.sun_path, wish_.address.c_str(), wish_.address.size());
       listener_ = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
       // One that nobody listens at any more is in the way.
-      struct stat status{};
+      struct stat status {};
       if (lstat(wish_.address.c_str(), &status) == 0) {
         const int probe = socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0);
         const bool dead = S_ISSOCK(status.st_mode) && connect(probe, reinterpret_cast<sockaddr*>(&at), sizeof at) != 0 && errno == ECONNREFUSED;
@@ -284,7 +286,8 @@ class JsonPort final : public CommandPort {
   }
 
   static bool flag(const Json& j, const char* key, const Location& where) {
-    if (!j[key].is_boolean()) throw UserError(where, std::string("'") + key + "' is not true or false", "true or false", std::string("write {\"") + key + "\": true}");
+    if (!j[key].is_boolean())
+      throw UserError(where, std::string("'") + key + "' is not true or false", "true or false", std::string("write {\"") + key + "\": true}");
     return j[key].get<bool>();
   }
 
@@ -298,18 +301,22 @@ class JsonPort final : public CommandPort {
       j.erase("host_frame");
       if (hostFrame < c.hostFrame) {
         isStale_ = true;
-        throw UserError(where, "host frame " + std::to_string(hostFrame) + " after " + std::to_string(c.hostFrame), "numbers that rise", "send commands in their order");
+        throw UserError(where, "host frame " + std::to_string(hostFrame) + " after " + std::to_string(c.hostFrame), "numbers that rise",
+                        "send commands in their order");
       }
     }
     if (j.contains("step")) {
       constexpr std::uint64_t kMostTicks = 1000000000;
-      if (!wish_.steps) throw UserError(where, "a step of a clock that nobody holds", "'--clock lockstep'", "start the stream with it, or ask for lines with {\"follow\": true}");
+      if (!wish_.steps)
+        throw UserError(where, "a step of a clock that nobody holds", "'--clock lockstep'",
+                        "start the stream with it, or ask for lines with {\"follow\": true}");
       if (!j["step"].is_number_unsigned() || j["step"].get<std::uint64_t>() < 1 || j["step"].get<std::uint64_t>() > kMostTicks)
         throw UserError(where, "'step' is no number of ticks", "a whole number from 1", R"(write {"step": 1})");
       ticks = j["step"].get<std::uint64_t>();
       j.erase("step");
       const std::lock_guard lock(mutex_);
-      if (c.tickets.size() >= kMostTickets) throw UserError(where, "too many steps that wait", "at most " + std::to_string(kMostTickets), "read the frames' lines");
+      if (c.tickets.size() >= kMostTickets)
+        throw UserError(where, "too many steps that wait", "at most " + std::to_string(kMostTickets), "read the frames' lines");
     }
     std::vector<std::pair<std::string, bool>> flags;
     for (const char* key : {"run", "follow", "pulse", "status", "end"})
@@ -376,7 +383,8 @@ SocketPlace readSocketPlace(const std::string& text, const std::string& option) 
   in_addr ignored{};
   const bool digits = !port.empty() && port.size() <= 5 && port.find_first_not_of("0123456789") == std::string::npos;
   if (!digits || inet_pton(AF_INET, place.host.c_str(), &ignored) != 1 || (place.port = std::stoi(port)) < 1 || place.port > 65535)
-    throw UserError({option + " " + text, 0, 0, -1}, "no place to listen at", "a port from 1 to 65535, or an IPv4 address and a port, 127.0.0.1:7380", "write " + option + " 7380");
+    throw UserError({option + " " + text, 0, 0, -1}, "no place to listen at", "a port from 1 to 65535, or an IPv4 address and a port, 127.0.0.1:7380",
+                    "write " + option + " 7380");
   return place;
 }
 

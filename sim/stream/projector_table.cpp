@@ -17,7 +17,8 @@ std::vector<std::uint8_t> readProjectorTable(const std::string& file) {
     const double code = t.at(row, 0), level = t.at(row, 1);
     const bool rises = row == 0 ? code == 0.0 : code > t.at(row - 1, 0);
     if (!rises || code > kMostCode || code != std::floor(code))
-      throw UserError(t.whereOf(row), "codes that do not rise from 0 in whole numbers to 65535 at most", "the first 0, each more than the one before", "sort them");
+      throw UserError(t.whereOf(row), "codes that do not rise from 0 in whole numbers to 65535 at most", "the first 0, each more than the one before",
+                      "sort them");
     if (!(level >= 0.0 && level <= kMostLevel)) throw UserError(t.whereOf(row), "a level beyond what a screen takes", "0 to 255", "correct it");
     for (std::size_t c = levels.size(); c <= static_cast<std::size_t>(code); ++c) {
       const double before = row == 0 ? 0.0 : t.at(row - 1, 0), share = row == 0 ? 1.0 : (static_cast<double>(c) - before) / (code - before);

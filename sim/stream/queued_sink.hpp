@@ -14,7 +14,8 @@ namespace pitviper {
 
 class QueuedSink final : public Sink {
  public:
-  /// `name`: of what is behind it, for counts. `skips`: a frame that finds the queue full is left out and counted; else take() waits for room: nothing is lost in lockstep.
+  /// `name`: of what is behind it, for counts. `skips`: a frame that finds the queue full is left out and counted; else take() waits for room: nothing is lost
+  /// in lockstep.
   QueuedSink(std::unique_ptr<Sink> sink, std::string name, bool skips, std::size_t length = 16);
   ~QueuedSink() override;
   void start() override { sink_->start(); }
@@ -22,7 +23,9 @@ class QueuedSink final : public Sink {
   void finish(const std::function<void(double share)>& progress) override;
   bool neverWaits() const override { return skips_; }
   std::vector<SinkCounts> counts() const override;
-  std::vector<std::filesystem::path> filesOf(const std::string& camera, int number, const std::string& kind) const override { return sink_->filesOf(camera, number, kind); }
+  std::vector<std::filesystem::path> filesOf(const std::string& camera, int number, const std::string& kind) const override {
+    return sink_->filesOf(camera, number, kind);
+  }
 
  private:
   void serve();

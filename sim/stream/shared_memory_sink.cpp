@@ -22,8 +22,8 @@ class SharedMemorySink final : public Sink {
       d.height = c.window ? c.window->w : c.pinhole.height;
       const DetectorLaw* law = detectorOf(c);
       if (c.outputs.size() > PITVIPER_STREAM_LAYERS)
-        throw UserError(where_, "camera '" + c.name + "' has " + std::to_string(c.outputs.size()) + " layers", "at most " + std::to_string(PITVIPER_STREAM_LAYERS) + " in shared memory",
-                        "ask for fewer outputs, or split it into two cameras");
+        throw UserError(where_, "camera '" + c.name + "' has " + std::to_string(c.outputs.size()) + " layers",
+                        "at most " + std::to_string(PITVIPER_STREAM_LAYERS) + " in shared memory", "ask for fewer outputs, or split it into two cameras");
       for (const ChannelOutput& o : c.outputs) {
         const bool counts = isCounts(c, o);
         d.layers.push_back({o.layer(), o.unit, counts, !o.asDisplay, static_cast<std::uint16_t>(law && !o.asDisplay ? law->mostCount() : 65535.0)});
@@ -60,7 +60,8 @@ class SharedMemorySink final : public Sink {
 
 SinkModel sharedMemorySink() {
   return {"shared_memory",
-          "Frames in POSIX shared memory, of this user alone: all channels, counts as 16-bit whole numbers, the rest as floats, with what there is to say of each frame. "
+          "Frames in POSIX shared memory, of this user alone: all channels, counts as 16-bit whole numbers, the rest as floats, with what there is to say of "
+          "each frame. "
           "sim/stream/ring/pitviper_stream.h is its description, and all that a reader in C needs; scenarios/clients has readers.",
           {withDefault(text("name", "of the object; of several cameras each has its name behind it"), "/pitviper"),
            withDefault(integer("slots", "frames that it holds", 2, 4096), "8")},
@@ -68,7 +69,8 @@ SinkModel sharedMemorySink() {
             const std::string name = r.text("name");
             if (const std::string wrong = wrongRingName(name); !wrong.empty())
               throw UserError(r.where("name"), "'" + name + "' is no name of shared memory", wrong, "write 'name: /pitviper'");
-            return [name, slots = static_cast<int>(r.integer("slots")), where = r.where()](const Simulation& simulation, const SinkPlace&) -> std::unique_ptr<Sink> {
+            return [name, slots = static_cast<int>(r.integer("slots")), where = r.where()](const Simulation& simulation,
+                                                                                           const SinkPlace&) -> std::unique_ptr<Sink> {
               return std::make_unique<SharedMemorySink>(simulation, name, slots, where);
             };
           }};

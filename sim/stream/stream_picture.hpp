@@ -22,8 +22,8 @@ using StreamRange = std::optional<std::pair<double, double>>;
 
 class StreamCoder {
  public:
-  /// `layer`: of the camera's channels; empty: its first counts, or else its first. Counts go out as they are; others over `range`, by which the whole stream is told: unless given
-  /// from the smallest of the first frame, or 0, to twice its largest. Errors: UserError at `where` for a layer that is not there.
+  /// `layer`: of the camera's channels; empty: its first counts, or else its first. Counts go out as they are; others over `range`, by which the whole stream
+  /// is told: unless given from the smallest of the first frame, or 0, to twice its largest. Errors: UserError at `where` for a layer that is not there.
   StreamCoder(const Camera& camera, const std::string& layer, const StreamRange& range, const Location& where);
   int width() const { return width_; }
   int height() const { return height_; }

@@ -70,18 +70,25 @@ class Requests {
 
  private:
   std::uint32_t place() {
-    constexpr std::uint32_t kPlaces[] = {0x0, 0x48, 0xE8, 0x200, 0x3FC, 0x934, 0x938, 0x944, 0x960, 0xA00, 0xD00, 0xD04, 0xD08, 0xD18, 0xD1C, 0x9800, 0xA000, 0xA008, 0xA010, 0xA018, 0xA020,
-                                         0xA028, 0xA030, 0xA040, 0xA048, 0xA080, 0xA100, 0x10000, 0x15000, 0x1FFFC, 0xFFFFFFFC};
+    constexpr std::uint32_t kPlaces[] = {0x0,    0x48,   0xE8,   0x200,  0x3FC,  0x934,   0x938,   0x944,   0x960,     0xA00,  0xD00,
+                                         0xD04,  0xD08,  0xD18,  0xD1C,  0x9800, 0xA000,  0xA008,  0xA010,  0xA018,    0xA020, 0xA028,
+                                         0xA030, 0xA040, 0xA048, 0xA080, 0xA100, 0x10000, 0x15000, 0x1FFFC, 0xFFFFFFFC};
     return below(4) ? kPlaces[below(std::size(kPlaces))] : below(3) ? static_cast<std::uint32_t>(below(0x18000)) : static_cast<std::uint32_t>(random_());
   }
   std::uint32_t value() {
     switch (below(6)) {
-      case 0: return 0;
-      case 1: return 1;
-      case 2: return 2;
-      case 3: return static_cast<std::uint32_t>(below(65536));
-      case 4: return kOwn;
-      default: return static_cast<std::uint32_t>(random_());
+      case 0:
+        return 0;
+      case 1:
+        return 1;
+      case 2:
+        return 2;
+      case 3:
+        return static_cast<std::uint32_t>(below(65536));
+      case 4:
+        return kOwn;
+      default:
+        return static_cast<std::uint32_t>(random_());
     }
   }
   std::mt19937_64 random_;

@@ -25,10 +25,13 @@ bool has(const std::string& program) { return run("command -v " + program).code 
 /// A hot ball that goes across, as a detector counts it.
 std::string scenario(const std::string& more = "") {
   return "name: ball\nseed: 3\ntime: {rate: 50 Hz, frames: 8}\nbackground: {temperature: 290 K}\nmaterials: {m: {components: []}}\n"
-         "entities:\n- {name: ball, shape: {model: sphere, radius: 2 m}, material: m, temperature: 305 K, motion: [{time: 0 s, position: [1000 m, -3 m, 0 m]}, {time: 1 s, position: [1000 m, 30 m, 0 m]}]}\n"
+         "entities:\n- {name: ball, shape: {model: sphere, radius: 2 m}, material: m, temperature: 305 K, motion: [{time: 0 s, position: [1000 m, -3 m, 0 m]}, "
+         "{time: 1 s, position: [1000 m, 30 m, 0 m]}]}\n"
          "limits: {range: [500 m, 2 km], temperature: [250 K, 400 K]}\n"
-         "cameras:\n- {name: eye, film: {width: 40, height: 30, pitch: 15 um}, focal_length: 50 mm, f_number: 2, exposure: 2 ms, position: [0 m, 0 m, 0 m], heading: 90 deg, "
-         "stages: [{stage: detector, full_well: 7e6, offset: 100, bits: 14, read_noise: 300}], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: [counts, radiance]}]}\n" +
+         "cameras:\n- {name: eye, film: {width: 40, height: 30, pitch: 15 um}, focal_length: 50 mm, f_number: 2, exposure: 2 ms, position: [0 m, 0 m, 0 m], "
+         "heading: 90 deg, "
+         "stages: [{stage: detector, full_well: 7e6, offset: 100, bits: 14, read_noise: 300}], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, "
+         "quantum_efficiency: 0.8, output: [counts, radiance]}]}\n" +
          more;
 }
 
@@ -60,7 +63,9 @@ class Stream : public ::testing::Test {
     std::ifstream in(out() / "stream.json");
     return nlohmann::json::parse(in, nullptr, false);
   }
-  std::string client(const std::string& name) const { return "cd " + folder_.path().string() + " && PYTHONPATH=" PITVIPER_SOURCE_DIR "/scenarios/clients timeout 50 /usr/bin/python3 " + name; }
+  std::string client(const std::string& name) const {
+    return "cd " + folder_.path().string() + " && PYTHONPATH=" PITVIPER_SOURCE_DIR "/scenarios/clients timeout 50 /usr/bin/python3 " + name;
+  }
   bool hasPython() const { return run("/usr/bin/python3 -c 'import numpy'").code == 0; }
   TemporaryFolder folder_;
 };
@@ -79,13 +84,16 @@ TEST_F(Stream, LockstepGivesTheFramesOfARun) {
   const std::string scene = file();
   const Result whole = pitviper("run " + scene + " --out " + out().string());
   ASSERT_EQ(whole.code, 0) << whole.output;
-  folder_.put("steps.py",
-              "import sys\nfrom pitviper_commands import Commands\nfrom pitviper_ring import Ring\nc = Commands('" + socket() + "'); r = Ring('" + ring("lockstep") + "', 60)\n"
-              "for k in range(8):\n  said = c.step(host_frame=k + 1)\n  f = r.next(30)\n  assert said['frame'] == k and said['host_frame'] == k + 1, said\n  assert f.sequence == k and f.host_frame == k + 1 and f.held()\n"
-              "  assert f.flags == 0 and abs(f.time_ns - k * 20000000) < 2 and abs(f.exposure_end_ns - f.exposure_start_ns - 2000000) < 2\n"
-              "  f['mw.counts'].tofile(f'counts_{k}.raw'); f['mw.radiance'].tofile(f'radiance_{k}.raw')\n"
-              "  assert abs(f.radiance('mw.counts').mean() / f['mw.radiance'].mean() - 1) < 0.1, 'the calibration of counts'  # it is of light that is even over the band, and a body at 290 K is not\n"
-              "c.send(end=True)\nprint('stepped')\n");
+  folder_.put("steps.py", "import sys\nfrom pitviper_commands import Commands\nfrom pitviper_ring import Ring\nc = Commands('" + socket() + "'); r = Ring('" +
+                              ring("lockstep") +
+                              "', 60)\n"
+                              "for k in range(8):\n  said = c.step(host_frame=k + 1)\n  f = r.next(30)\n  assert said['frame'] == k and said['host_frame'] == "
+                              "k + 1, said\n  assert f.sequence == k and f.host_frame == k + 1 and f.held()\n"
+                              "  assert f.flags == 0 and abs(f.time_ns - k * 20000000) < 2 and abs(f.exposure_end_ns - f.exposure_start_ns - 2000000) < 2\n"
+                              "  f['mw.counts'].tofile(f'counts_{k}.raw'); f['mw.radiance'].tofile(f'radiance_{k}.raw')\n"
+                              "  assert abs(f.radiance('mw.counts').mean() / f['mw.radiance'].mean() - 1) < 0.1, 'the calibration of counts'  # it is of light "
+                              "that is even over the band, and a body at 290 K is not\n"
+                              "c.send(end=True)\nprint('stepped')\n");
   Background stream("stream " + scene + " --clock lockstep --commands " + socket() + " --shared-memory " + ring("lockstep"));
   const Result steps = run(client("steps.py"));
   EXPECT_NE(steps.output.find("stepped"), std::string::npos) << steps.output;
@@ -178,8 +186,9 @@ TEST_F(Stream, AReaderThatIsKilledDisturbsNobody) {
 
 TEST_F(Stream, ASignalEndsItAfterTheFrameItIsAt) {
   const std::string log = (folder_.path() / "log").string();
-  const Result r = run("PITVIPER_HOME=" PITVIPER_SOURCE_DIR " " PITVIPER_PROGRAM " stream " + file() + " --endless --shared-memory " + ring("signal") + " > " + log +
-                       " 2>&1 & p=$!; for k in $(seq 600); do grep -q '^streaming' " + log + " && break; sleep 0.1; done; sleep 0.3; kill -TERM $p; wait $p; echo code $?");
+  const Result r =
+      run("PITVIPER_HOME=" PITVIPER_SOURCE_DIR " " PITVIPER_PROGRAM " stream " + file() + " --endless --shared-memory " + ring("signal") + " > " + log +
+          " 2>&1 & p=$!; for k in $(seq 600); do grep -q '^streaming' " + log + " && break; sleep 0.1; done; sleep 0.3; kill -TERM $p; wait $p; echo code $?");
   std::stringstream text;
   text << std::ifstream(log).rdbuf();
   EXPECT_NE(r.output.find("code 0"), std::string::npos) << text.str() << r.output;
@@ -188,14 +197,18 @@ TEST_F(Stream, ASignalEndsItAfterTheFrameItIsAt) {
 
 TEST_F(Stream, CommandsBeyondTheLimitsAreCarriedOutAndMarked) {
   if (!hasPython()) GTEST_SKIP() << "needs /usr/bin/python3 with numpy";
-  folder_.put("far.py", "from pitviper_commands import Commands\nfrom pitviper_ring import Ring, OUTSIDE_LIMITS\nc = Commands('" + socket() + "'); r = Ring('" + ring("limits") + "', 60)\n"
-                        "c.step(); a = r.next(30); assert a.flags == 0\n"
-                        "said = c.step(command='temperature', entity='ball', value='800 K'); b = r.next(30)\nassert b.flags & OUTSIDE_LIMITS and said['cameras'][0]['outside_limits'], said\n"
-                        "assert b['mw.counts'].max() > 2 * a['mw.counts'].max(), 'it was carried out'\n"
-                        "gain = b.gain[0]; c.step(command='gain', camera='eye', factor=2); d = r.next(30); assert abs(d.gain[0] / gain - 0.5) < 1e-9\n"
-                        "c.send(command='look', camera='eye', exposure='4 ms'); c.step(); e = r.next(30); assert abs(e.exposure_s - 0.004) < 1e-12 and e.pose_age_ns >= 0\n"
-                        "try: c.step(command='temperature', entity='bal', value='1 K'); assert False\nexcept ValueError as mistake: assert 'did you mean' in str(mistake)\n"
-                        "c.send(end=True); print('marked')\n");
+  folder_.put(
+      "far.py",
+      "from pitviper_commands import Commands\nfrom pitviper_ring import Ring, OUTSIDE_LIMITS\nc = Commands('" + socket() + "'); r = Ring('" + ring("limits") +
+          "', 60)\n"
+          "c.step(); a = r.next(30); assert a.flags == 0\n"
+          "said = c.step(command='temperature', entity='ball', value='800 K'); b = r.next(30)\nassert b.flags & OUTSIDE_LIMITS and "
+          "said['cameras'][0]['outside_limits'], said\n"
+          "assert b['mw.counts'].max() > 2 * a['mw.counts'].max(), 'it was carried out'\n"
+          "gain = b.gain[0]; c.step(command='gain', camera='eye', factor=2); d = r.next(30); assert abs(d.gain[0] / gain - 0.5) < 1e-9\n"
+          "c.send(command='look', camera='eye', exposure='4 ms'); c.step(); e = r.next(30); assert abs(e.exposure_s - 0.004) < 1e-12 and e.pose_age_ns >= 0\n"
+          "try: c.step(command='temperature', entity='bal', value='1 K'); assert False\nexcept ValueError as mistake: assert 'did you mean' in str(mistake)\n"
+          "c.send(end=True); print('marked')\n");
   Background stream("stream " + file() + " --clock lockstep --commands " + socket() + " --shared-memory " + ring("limits"));
   const Result r = run(client("far.py"));
   EXPECT_NE(r.output.find("marked"), std::string::npos) << r.output;
@@ -206,9 +219,12 @@ TEST_F(Stream, CommandsBeyondTheLimitsAreCarriedOutAndMarked) {
 TEST_F(Stream, ClientsThatFollowHearOfTheirOwnFrames) {
   if (!hasPython()) GTEST_SKIP() << "needs /usr/bin/python3 with numpy";
   // Held frames leave from another thread than draws them: each line is of its own tick all the same. A step of a clock that nobody holds is a mistake.
-  folder_.put("follow.py", "from pitviper_commands import Commands\nc = Commands('" + socket() + "')\ntry: c.send(step=1, id=1); c.read(); assert False\nexcept ValueError as e: assert 'nobody holds' in str(e)\n"
-                           "c.send(follow=True)\nfor k in range(20):\n  said = c.read()\n  assert len(said['cameras']) + said.get('dropped', 0) == 1, said\n"
-                           "  assert said['cameras'] == [] or abs(said['cameras'][0]['exposure_ns'][0] - (said['time_s'] * 1e9 - 1e6)) < 10, said\nc.send(end=True); print('followed')\n");
+  folder_.put("follow.py",
+              "from pitviper_commands import Commands\nc = Commands('" + socket() +
+                  "')\ntry: c.send(step=1, id=1); c.read(); assert False\nexcept ValueError as e: assert 'nobody holds' in str(e)\n"
+                  "c.send(follow=True)\nfor k in range(20):\n  said = c.read()\n  assert len(said['cameras']) + said.get('dropped', 0) == 1, said\n"
+                  "  assert said['cameras'] == [] or abs(said['cameras'][0]['exposure_ns'][0] - (said['time_s'] * 1e9 - 1e6)) < 10, said\nc.send(end=True); "
+                  "print('followed')\n");
   Background stream("stream " + file() + " --rate '50 Hz' --endless --hold --commands " + socket() + " --shared-memory " + ring("follow"));
   const Result r = run(client("follow.py"));
   EXPECT_NE(r.output.find("followed"), std::string::npos) << r.output;
@@ -218,13 +234,15 @@ TEST_F(Stream, ClientsThatFollowHearOfTheirOwnFrames) {
 TEST_F(Stream, ACigiHostHoldsTheClock) {
   if (!has("/usr/bin/python3")) GTEST_SKIP() << "needs python3";
   const int port = 20000 + getpid() % 20000;
-  const std::string text = scenario() ;
-  Background stream("stream " + folder_.put("ball.yaml", text) + " --clock lockstep --frames 30 --cigi " + std::to_string(port) + " --shared-memory " + ring("cigi"));
+  const std::string text = scenario();
+  Background stream("stream " + folder_.put("ball.yaml", text) + " --clock lockstep --frames 30 --cigi " + std::to_string(port) + " --shared-memory " +
+                    ring("cigi"));
   pitviper_stream s{};
   ASSERT_TRUE(openRing(s, ring("cigi")));
   const Result host = run("/usr/bin/python3 " PITVIPER_SOURCE_DIR "/scenarios/clients/cigi_host.py 127.0.0.1:" + std::to_string(port) + " --help");
   EXPECT_EQ(host.code, 0) << host.output;
-  const Result r = run("timeout 50 /usr/bin/python3 " PITVIPER_SOURCE_DIR "/scenarios/clients/cigi_host.py 127.0.0.1:" + std::to_string(port) + " --frames 30 --timeout 30");
+  const Result r =
+      run("timeout 50 /usr/bin/python3 " PITVIPER_SOURCE_DIR "/scenarios/clients/cigi_host.py 127.0.0.1:" + std::to_string(port) + " --frames 30 --timeout 30");
   EXPECT_EQ(stream.result().code, 0) << stream.result().output << r.output;
   EXPECT_NE(stream.result().output.find("30 sent"), std::string::npos) << stream.result().output << r.output;
   pitviper_stream_close(&s);
@@ -277,9 +295,12 @@ TEST_F(Stream, AProjectorShowsSixteenBitsInTwoColours) {
   if (!has("Xvfb") || !has("xwd")) GTEST_SKIP() << "needs xvfb and x11-apps";
   const std::string display = ":" + std::to_string(100 + getpid() % 800), xwd = (folder_.path() / "screen.xwd").string();
   // The last frame stays on the screen while it is read.
-  const Result r = run("Xvfb " + display + " -screen 0 320x240x24 > /dev/null 2>&1 & x=$!; sleep 1; (DISPLAY=" + display + " PITVIPER_HOME=" PITVIPER_SOURCE_DIR " " PITVIPER_PROGRAM " stream " + file() +
-                       " --endless --projector window --clock vsync --shared-memory " + ring("projector") + " & p=$!; "
-                       "sleep 4; xwd -display " + display + " -root -silent -out " + xwd + "; kill -TERM $p; wait $p; echo code $?); kill $x");
+  const Result r = run("Xvfb " + display + " -screen 0 320x240x24 > /dev/null 2>&1 & x=$!; sleep 1; (DISPLAY=" + display +
+                       " PITVIPER_HOME=" PITVIPER_SOURCE_DIR " " PITVIPER_PROGRAM " stream " + file() +
+                       " --endless --projector window --clock vsync --shared-memory " + ring("projector") +
+                       " & p=$!; "
+                       "sleep 4; xwd -display " +
+                       display + " -root -silent -out " + xwd + "; kill -TERM $p; wait $p; echo code $?); kill $x");
   if (r.output.find("swap") == std::string::npos) GTEST_SKIP() << "no display: " << r.output;
   EXPECT_NE(r.output.find("unaccounted for: 0"), std::string::npos) << r.output;
   std::ifstream in(xwd, std::ios::binary);
@@ -315,15 +336,24 @@ TEST_F(Stream, SelfTestCountsAllItSends) {
 TEST_F(Stream, MistakesAreSaidInOneLine) {
   const std::string scene = file();
   const std::vector<std::pair<std::string, std::string>> wrong = {
-      {"--clock sundial", "--clock has no"},        {"--clock lockstep", "nobody could let the clock go on"},
-      {"--clock vsync", "no display whose clock"},  {"--clock trigger", "nobody could trigger"},
-      {"--late never", "--late has no"},            {"--rate 100", "no such quantity"},
-      {"--rate '-1 Hz'", "no such quantity"},       {"--frames 0", "no number of frames"},
-      {"--frames 3 --endless", "more than one"},    {"--commands 99999", "no place to listen at"},
-      {"--cigi 1.2.3:5", "no place to listen at"},  {"--gige 300.1.1.1", "no IPv4 address"},
-      {"--gige 8.8.8.8", "8.8.8.8"},                {"--shared-memory nosplash", "no name of shared memory"},
-      {"--projector tv", "no display"},             {"--fifo 100", "no priority"},
-      {"--cores 0,x", "no list of cores"},          {"--delay '0 ms'", "no such quantity"},
+      {"--clock sundial", "--clock has no"},
+      {"--clock lockstep", "nobody could let the clock go on"},
+      {"--clock vsync", "no display whose clock"},
+      {"--clock trigger", "nobody could trigger"},
+      {"--late never", "--late has no"},
+      {"--rate 100", "no such quantity"},
+      {"--rate '-1 Hz'", "no such quantity"},
+      {"--frames 0", "no number of frames"},
+      {"--frames 3 --endless", "more than one"},
+      {"--commands 99999", "no place to listen at"},
+      {"--cigi 1.2.3:5", "no place to listen at"},
+      {"--gige 300.1.1.1", "no IPv4 address"},
+      {"--gige 8.8.8.8", "8.8.8.8"},
+      {"--shared-memory nosplash", "no name of shared memory"},
+      {"--projector tv", "no display"},
+      {"--fifo 100", "no priority"},
+      {"--cores 0,x", "no list of cores"},
+      {"--delay '0 ms'", "no such quantity"},
       {"--gstreamer a --gstreamer b", "more of them than cameras"},
       {"--stale '1 s'", "does nothing without --commands"},
       {"--projector-table a.csv", "does nothing without --projector"},

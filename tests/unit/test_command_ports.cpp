@@ -71,7 +71,9 @@ class Client {
   int socket_;
 };
 
-std::string ownSocket(const char* what) { return (std::filesystem::temp_directory_path() / ("pitviper_test." + std::to_string(getpid()) + "." + what)).string(); }
+std::string ownSocket(const char* what) {
+  return (std::filesystem::temp_directory_path() / ("pitviper_test." + std::to_string(getpid()) + "." + what)).string();
+}
 
 TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
   const Simulation sim = aScene();
@@ -85,7 +87,8 @@ TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
   EXPECT_EQ(status.st_mode & 0777u, 0600u);
   Client c(path);
   ASSERT_TRUE(c.connected);
-  c.send(R"({"id": 7, "command": "move", "entity": "jet", "position": ["10 m", "20 m", "30 m"]})" "\n");
+  c.send(R"({"id": 7, "command": "move", "entity": "jet", "position": ["10 m", "20 m", "30 m"]})"
+         "\n");
   EXPECT_EQ(c.line(), R"({"id":7,"ok":true})");
   auto taken = inbox.take();
   ASSERT_EQ(taken.size(), 1u);
@@ -123,12 +126,14 @@ TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
   EXPECT_EQ(inbox.counts()["stale"], 1u);
   EXPECT_EQ(log.size(), 2u) << "once a kind";
   // Numbers of frames rise.
-  c.send(R"({"id": 1, "host_frame": 9, "step": 1})" "\n");
+  c.send(R"({"id": 1, "host_frame": 9, "step": 1})"
+         "\n");
   EXPECT_EQ(c.line(), R"({"id":1,"ok":true})");
   const auto step = inbox.waitForStep(1000000000);
   ASSERT_TRUE(step);
   EXPECT_EQ(step->hostFrame, 9u);
-  c.send(R"({"host_frame": 8, "step": 1})" "\n");
+  c.send(R"({"host_frame": 8, "step": 1})"
+         "\n");
   EXPECT_NE(c.line().find("numbers that rise"), std::string::npos);
   port->tickDone({0, 9, 3, 0.03, step->ticket});
   const auto said = nlohmann::json::parse(c.line());
@@ -144,7 +149,8 @@ TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
   Client hostile(path);
   hostile.send(std::string(70000, 'x'));
   EXPECT_EQ(hostile.line(), "");
-  c.send(R"({"id": 2})" "\n");
+  c.send(R"({"id": 2})"
+         "\n");
   EXPECT_EQ(c.line(), R"({"id":2,"ok":true})");
 }
 
@@ -180,7 +186,8 @@ TEST(JsonPort, RandomBytesNeitherStopItNorChangeAnything) {
     world.apply(l.command, 100 + tick++);
   }
   EXPECT_TRUE(std::isfinite(world.at(1000.0).entities[0].position.x));
-  EXPECT_EQ(world.at(1000.0).entities[1].position - world.at(1000.0).entities[0].position, world.at(0.0 + 999.0).entities[1].position - world.at(999.0).entities[0].position);
+  EXPECT_EQ(world.at(1000.0).entities[1].position - world.at(1000.0).entities[0].position,
+            world.at(0.0 + 999.0).entities[1].position - world.at(999.0).entities[0].position);
 }
 
 TEST(Commands, AFlareGoesOffWhenItIsTriggered) {
@@ -227,7 +234,8 @@ TEST(CigiWorld, PutsBodiesWhereTheHostHasThem) {
   jet.geodetic = {36.01 * M_PI / 180.0, -6.0 * M_PI / 180.0, 600.0};
   // The north-west-up axes there, turned to the east.
   const double lat = jet.geodetic.latitude_rad, lon = jet.geodetic.longitude_rad;
-  const glm::dvec3 up(std::cos(lat) * std::cos(lon), std::cos(lat) * std::sin(lon), std::sin(lat)), east(-std::sin(lon), std::cos(lon), 0.0), north = glm::cross(up, east);
+  const glm::dvec3 up(std::cos(lat) * std::cos(lon), std::cos(lat) * std::sin(lon), std::sin(lat)), east(-std::sin(lon), std::cos(lon), 0.0),
+      north = glm::cross(up, east);
   const double roll = M_PI / 6.0;
   const glm::dvec3 left = std::cos(roll) * north + std::sin(roll) * up, top = glm::cross(east, left);
   jet.orientation = glm::quat_cast(glm::dmat3(east, left, top));

@@ -13,9 +13,9 @@
 #include "sim/run/frame_pacer.hpp"
 #include "sim/stream/clock/durations.hpp"
 #include "sim/stream/clock/wall_clock.hpp"
+#include "sim/stream/projector_table.hpp"
 #include "sim/stream/queued_sink.hpp"
 #include "sim/stream/ring/ring_writer.hpp"
-#include "sim/stream/projector_table.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -40,7 +40,8 @@ TEST(Durations, AreThoseOfTheSortedList) {
   EXPECT_EQ(d.most_ns(), all.back());
   EXPECT_EQ(d.least_ns(), all.front());
   // A bin is 2^(1/128) wide: half of it is 0.27 %; neighbours in the list are nearer.
-  for (double q : {0.01, 0.5, 0.9, 0.99, 0.999}) EXPECT_NEAR(d.quantile_ns(q) / all[static_cast<std::size_t>(std::ceil(q * static_cast<double>(all.size()))) - 1], 1.0, 0.006) << q;
+  for (double q : {0.01, 0.5, 0.9, 0.99, 0.999})
+    EXPECT_NEAR(d.quantile_ns(q) / all[static_cast<std::size_t>(std::ceil(q * static_cast<double>(all.size()))) - 1], 1.0, 0.006) << q;
 }
 
 TEST(Durations, ALongCourseKeepsItsSumInAConstantMemory) {
@@ -80,7 +81,8 @@ std::vector<Left> paced(LatePolicy policy, bool holds, const std::vector<int>& a
   const std::int64_t first = monotonic_ns() + kPeriod;
   FramePacer pacer(policy, holds, account, [&](const std::shared_ptr<const Frame>& f) {
     const std::lock_guard lock(mutex);
-    left.push_back({f->stamp->sequence, f->stamp->isLate, f->stamp->isRepeated, monotonic_ns(), first + static_cast<std::int64_t>(f->stamp->sequence + 1) * kPeriod});
+    left.push_back(
+        {f->stamp->sequence, f->stamp->isLate, f->stamp->isRepeated, monotonic_ns(), first + static_cast<std::int64_t>(f->stamp->sequence + 1) * kPeriod});
   });
   for (std::size_t k = 0; k < after_ms.size(); ++k) {
     const std::int64_t tick = first + static_cast<std::int64_t>(k) * kPeriod;
@@ -184,7 +186,8 @@ Frame numbered(int number, int width, int height) {
   f.camera = "c";
   f.number = number;
   f.width = width, f.height = height;
-  f.layers.push_back({"a.counts", "count", std::vector<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), static_cast<float>(number % 60000))});
+  f.layers.push_back(
+      {"a.counts", "count", std::vector<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), static_cast<float>(number % 60000))});
   f.layers.push_back({"a.radiance", "W/(m2 sr)", std::vector<float>(f.layers[0].pixels.size(), 0.5f * static_cast<float>(number))});
   f.attributes.push_back({"calibration.a.counts.radiance_per_count", 0.25});
   f.attributes.push_back({"calibration.a.counts.radiance_at_0", -3.0});
@@ -333,7 +336,8 @@ TEST(ProjectorTable, IsStraightBetweenItsRows) {
   EXPECT_EQ(levels[50], 60);
   EXPECT_EQ(levels[150], 183);  // 182.5
   EXPECT_EQ(levels[200], 255);
-  for (const char* wrong : {"code [1], level [1]\n5, 1\n", "code [1], level [1]\n0, 1\n0, 2\n", "code [1], level [1]\n0, 1\n9, 256\n", "a [1], b [1]\n0, 1\n1, 2\n", "code [1], level [1]\n0, 1\n70000, 2\n"}) {
+  for (const char* wrong : {"code [1], level [1]\n5, 1\n", "code [1], level [1]\n0, 1\n0, 2\n", "code [1], level [1]\n0, 1\n9, 256\n",
+                            "a [1], b [1]\n0, 1\n1, 2\n", "code [1], level [1]\n0, 1\n70000, 2\n"}) {
     write(wrong);
     EXPECT_THROW(readProjectorTable(file.string()), UserError) << wrong;
   }

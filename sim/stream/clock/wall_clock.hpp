@@ -18,7 +18,7 @@ bool sleepUntil_ns(std::int64_t monotonic_ns, const std::function<bool()>& ends)
 
 /// How the system is to treat the calling thread.
 struct ThreadWish {
-  int fifoPriority = 0;   ///< of SCHED_FIFO, 1 to 99; 0: as others
+  int fifoPriority = 0;    ///< of SCHED_FIFO, 1 to 99; 0: as others
   std::vector<int> cores;  ///< that it may run on; empty: any
 };
 /// What could not be had and why; empty: all was.

@@ -38,7 +38,8 @@ void removeAbandoned(const std::string& name) {
   if (!is) throw std::runtime_error("shared memory " + name + " is there already and is no stream's; expected a free name; fix: choose another");
   const bool lives = !h.ended && h.writer_pid > 0 && h.writer_pid <= INT_MAX && (kill(static_cast<pid_t>(h.writer_pid), 0) == 0 || errno == EPERM);
   if (lives)
-    throw std::runtime_error("shared memory " + name + " is written by process " + std::to_string(h.writer_pid) + "; expected a free name; fix: end that stream, or choose another name");
+    throw std::runtime_error("shared memory " + name + " is written by process " + std::to_string(h.writer_pid) +
+                             "; expected a free name; fix: end that stream, or choose another name");
   shm_unlink(name.c_str());
 }
 
@@ -62,7 +63,8 @@ void removeOpenRings() {
 std::string wrongRingName(const std::string& name) {
   if (name.size() < 2 || name[0] != '/' || name.size() > NAME_MAX) return "a slash and up to 254 letters";
   for (std::size_t k = 1; k < name.size(); ++k)
-    if (!std::isalnum(static_cast<unsigned char>(name[k])) && name[k] != '.' && name[k] != '_' && name[k] != '-') return "letters, digits, '.', '_' and '-' after one slash";
+    if (!std::isalnum(static_cast<unsigned char>(name[k])) && name[k] != '.' && name[k] != '_' && name[k] != '-')
+      return "letters, digits, '.', '_' and '-' after one slash";
   return name == "/." || name == "/.." ? "a name" : "";
 }
 

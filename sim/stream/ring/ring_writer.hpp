@@ -11,8 +11,8 @@ namespace pitviper {
 
 struct RingLayer {
   std::string name, unit;
-  bool isCounts = false;        ///< whole numbers up to `maximum`, else floats as they are
-  bool isRadiance = false;      ///< of counts: frames say what they are in radiance
+  bool isCounts = false;    ///< whole numbers up to `maximum`, else floats as they are
+  bool isRadiance = false;  ///< of counts: frames say what they are in radiance
   std::uint16_t maximum = 65535;
 };
 
@@ -20,7 +20,7 @@ struct RingDesign {
   std::string name;  ///< of the object: "/pitviper.tracker"
   std::string scenario, camera;
   int width = 0, height = 0, slots = 8;
-  double rate_hz = 0.0;  ///< of simulation time
+  double rate_hz = 0.0;           ///< of simulation time
   std::vector<RingLayer> layers;  ///< at most PITVIPER_STREAM_LAYERS
 };
 
