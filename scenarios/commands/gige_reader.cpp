@@ -113,7 +113,8 @@ void GigeReader::read(const std::atomic<bool>& ends, const std::function<void(st
       const int kind = in[4] & 0x0f;
       const std::size_t number = wire32(&in[4]) & 0xffffffu;
       if (id != block) {
-        if (block != 0 && got != 0) ++incomplete_;
+        // Blocks are 1 to 65535 and 1 again: those between two are gone whole.
+        if (block != 0) incomplete_ += static_cast<std::uint64_t>((id + 65535 - block) % 65535 - 1) + (got != 0 ? 1 : 0);
         block = id, got = 0;
       }
       if (kind == kLeader) continue;

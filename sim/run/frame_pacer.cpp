@@ -82,6 +82,7 @@ void FramePacer::leave(PacedFrame& p) {
     return;
   }
   account_.sent(p.camera, *p.frame->stamp, {p.tick_ns, p.begun_ns, p.made_ns, now, late || lateHeld, false});
+  if (late || lateHeld) p.frame->attributes.push_back({"pitviper.stream.late_s", 1e-9 * static_cast<double>(now - p.due_ns)});
   if (thread_.joinable()) {
     const std::lock_guard lock(mutex_);
     last_[p.camera] = p.frame;
@@ -101,6 +102,7 @@ void FramePacer::repeat(const PacedFrame& missing) {
   }
   auto again = std::make_shared<Frame>(*before);
   again->stamp->sequence = missing.tick;
+  again->attributes.push_back({"pitviper.stream.repeated_as", std::to_string(missing.tick)});
   again->stamp->due_tai_ns = taiOf_ns(missing.due_ns);
   const std::int64_t now = monotonic_ns();
   account_.sent(missing.camera, *again->stamp, {missing.tick_ns, now, now, now, false, true});

@@ -293,6 +293,10 @@ class StreamLoop {
     auto frame = std::make_shared<Frame>(line.frame(image, tick.state, wish_.firstFrame + static_cast<int>(tick.number), tick.stateAt));
     const std::int64_t made = monotonic_ns();
     frame->stamp = stampOf(*frame, line.camera(), image, tick, job, made);
+    // For files; what the pacer finds it adds.
+    frame->attributes.push_back({"pitviper.stream.sequence", std::to_string(tick.number)});
+    if (tick.hostFrame) frame->attributes.push_back({"pitviper.stream.host_frame", std::to_string(tick.hostFrame)});
+    if (frame->stamp->poseAge_ns >= 0) frame->attributes.push_back({"pitviper.stream.pose_age_s", 1e-9 * static_cast<double>(frame->stamp->poseAge_ns)});
     if (realTime()) {
       const std::int64_t work = made - std::max(job.begun_ns, lastMade_ns_);
       dials_[job.camera].look(job.rung, work, made > tick.due_ns, made);

@@ -77,7 +77,7 @@ struct Left {
 std::vector<Left> paced(LatePolicy policy, bool holds, const std::vector<int>& after_ms, StreamAccount& account) {
   std::vector<Left> left;
   std::mutex mutex;
-  constexpr std::int64_t kPeriod = 40000000, kMs = 1000000;  // wide, so that a slow machine is not late
+  constexpr std::int64_t kPeriod = 200000000, kMs = 1000000;  // wide, so that a slow machine is not late
   const std::int64_t first = monotonic_ns() + kPeriod;
   FramePacer pacer(policy, holds, account, [&](const std::shared_ptr<const Frame>& f) {
     const std::lock_guard lock(mutex);
@@ -101,8 +101,8 @@ std::vector<Left> paced(LatePolicy policy, bool holds, const std::vector<int>& a
   return left;
 }
 
-// Frame 2 comes 60 ms after its tick, 20 ms after it was due; frame 4 is never drawn.
-const std::vector<int> kSome = {5, 5, 60, 25, -1, 5};
+// Frame 2 comes 300 ms after its tick, 100 ms after it was due; frame 4 is never drawn.
+const std::vector<int> kSome = {5, 5, 300, 105, -1, 5};
 
 TEST(FramePacer, SendsLateFramesLateAndSaysSo) {
   StreamAccount account({"c"});
