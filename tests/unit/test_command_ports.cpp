@@ -370,11 +370,15 @@ TEST(CigiPort, AnswersItsHostAndCountsTheRest) {
     for (auto& b : junk) b = static_cast<std::uint8_t>(random());
     sendto(s, junk, random() % sizeof junk, 0, reinterpret_cast<const sockaddr*>(&own), sizeof own);
   }
-  control(6);
-  step = inbox.waitForStep(5000000000);
+  // What a slow machine's socket has no room for is lost, as datagrams may be: a host asks again.
+  step.reset();
+  for (int k = 0; k < 100 && !step; ++k) {
+    control(6);
+    step = inbox.waitForStep(200000000);
+  }
   ASSERT_TRUE(step);
   EXPECT_EQ(step->hostFrame, 6u);
-  EXPECT_EQ(inbox.counts()["stale CIGI"], 2u);
+  EXPECT_GE(inbox.counts()["stale CIGI"], 2u);
   EXPECT_GT(inbox.counts()["malformed CIGI"], 0u);
   EXPECT_FALSE(inbox.waitForStep(1000000)) << "nothing else was a step";
   cigi.reset();
