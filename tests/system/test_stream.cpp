@@ -315,7 +315,7 @@ TEST_F(Stream, APipelineGetsTheCounts) {
 }
 
 TEST_F(Stream, AProjectorShowsSixteenBitsInTwoColours) {
-  if (!has("Xvfb") || !has("xwd")) GTEST_SKIP() << "needs xvfb and x11-apps";
+  if (!has("Xvfb") || !has("xwd") || !has("pkill")) GTEST_SKIP() << "needs xvfb, x11-apps and procps";
   const std::string display = ":" + std::to_string(100 + getpid() % 800), xwd = (folder_.path() / "screen.xwd").string();
   const Result server = run("(Xvfb " + display + " -screen 0 320x240x24 > /dev/null 2>&1 & echo $!)");
   const Background stream("stream " + file() + " --endless --projector window --clock vsync --shared-memory " + ring("projector"), "DISPLAY=" + display);
