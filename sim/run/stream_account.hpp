@@ -23,7 +23,7 @@ struct CameraAccount {
 class StreamAccount {
  public:
   explicit StreamAccount(const std::vector<std::string>& cameras);
-  /// Before it is handed over, so that its stamp counts itself; times are of the monotonic clock, `due_ns` 0: there is none.
+  /// Before it is handed over, so that its stamp counts itself; times are of the monotonic clock.
   struct Sending {
     std::int64_t tick_ns = 0, begun_ns = 0, made_ns = 0, sent_ns = 0;
     bool isLate = false, isRepeated = false;

@@ -57,11 +57,6 @@ void CommandInbox::refuse(const std::string& kind, const std::string& says) {
   if (first && log_) log_("commands: " + kind + ": " + says + " (others of the kind are only counted)");
 }
 
-void CommandInbox::count(const std::string& kind) {
-  const std::lock_guard lock(mutex_);
-  ++counts_[kind];
-}
-
 void CommandInbox::endAfterSteps() {
   {
     const std::lock_guard lock(mutex_);

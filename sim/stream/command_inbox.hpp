@@ -42,8 +42,6 @@ class CommandInbox {
   void endAfterSteps();
   /// A packet or line that is ignored: counted by its kind ("malformed", "stale"), told once. `says`: what was wrong with this one.
   void refuse(const std::string& kind, const std::string& says);
-  /// Counted, without being told.
-  void count(const std::string& kind);
 
   std::vector<LiveCommand> take();
   /// Waits for a step; none where the stream is to end or the time is over.

@@ -3,20 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/frame/frame_number.hpp"
 #include "sim/image/grey_codes.hpp"
 #include "sim/parameters/table.hpp"
 
 namespace pitviper {
-namespace {
-
-double numberOf(const Frame& frame, const std::string& name, double otherwise) {
-  for (const Attribute& a : frame.attributes)
-    if (a.name == name)
-      if (const double* value = std::get_if<double>(&a.value)) return *value;
-  return otherwise;
-}
-
-}  // namespace
 
 bool isCounts(const Camera& camera, const ChannelOutput& output) {
   return detectorOf(camera) && output.detected && !output.asTemperature && !output.asSignalToNoise;

@@ -201,7 +201,10 @@ TEST_F(Stream, CommandsBeyondTheLimitsAreCarriedOutAndMarked) {
       "far.py",
       "from pitviper_commands import Commands\nfrom pitviper_ring import Ring, OUTSIDE_LIMITS\nc = Commands('" + socket() + "'); r = Ring('" + ring("limits") +
           "', 60)\n"
-          "c.step(); a = r.next(30); assert a.flags == 0\n"
+          "c.step(); a = r.next(30); assert a.flags == 0\nlight = a['mw.counts'].mean() - 100  # less the offset, which no gain turns up\n"
+          "c.step(command='gain', camera='eye', factor=1.5); g = r.next(30)\nassert abs((g['mw.counts'].mean() - 100) / light - 1.5) < 0.002, 'noise of a mean "
+          "of 1200 pixels is 3e-4'\n"
+          "c.step(command='gain', camera='eye', factor=1); a = r.next(30)\n"
           "said = c.step(command='temperature', entity='ball', value='800 K'); b = r.next(30)\nassert b.flags & OUTSIDE_LIMITS and "
           "said['cameras'][0]['outside_limits'], said\n"
           "assert b['mw.counts'].max() > 2 * a['mw.counts'].max(), 'it was carried out'\n"

@@ -10,6 +10,7 @@
 #include <set>
 #include <stdexcept>
 
+#include "sim/frame/frame_number.hpp"
 #include "sim/frame/version.hpp"
 #include "sim/image/grey_codes.hpp"
 #include "sim/stream/clock/wall_clock.hpp"
@@ -45,13 +46,6 @@ void removeAbandoned(const std::string& name) {
 
 std::mutex gOpen;
 std::set<std::string> gOpenRings;
-
-double numberOf(const Frame& frame, const std::string& name, double otherwise) {
-  for (const Attribute& a : frame.attributes)
-    if (a.name == name)
-      if (const double* value = std::get_if<double>(&a.value)) return *value;
-  return otherwise;
-}
 
 }  // namespace
 
