@@ -22,7 +22,6 @@ class World {
   void apply(const Command& command, int tick);
   /// Of the last command's tick, or later. Earlier, as within an exposure that began before: what commands have set since holds there too.
   WorldState at(double time_s) const;
-  const Simulation& simulation() const { return simulation_; }
 
  private:
   const Simulation& simulation_;
