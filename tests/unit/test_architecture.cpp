@@ -12,7 +12,7 @@
 
 namespace {
 
-const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image",  "sim/gl",    "sim/scene",  "sim/model",
+const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image",  "sim/gl",    "sim/scene",  "sim/flight", "sim/model",
                                          "sim/radiance",   "sim/plan",       "sim/render", "sim/render/reference", "sim/camera", "sim/frame",
                                          "sim/stream/clock", "sim/stream/on_demand", "sim/stream/ring", "sim/stream/gige", "sim/stream/cigi", "sim/stream/gstreamer",
                                          "sim/stream/projector", "sim/stream", "sim/run"};

@@ -1,0 +1,55 @@
+#include "sim/flight/ballistic.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sim/flight/flight_error.hpp"
+
+namespace pitviper {
+namespace {
+
+void check(bool good, const char* option, double value, const char* expected, const char* fix) {
+  if (!good) throw FlightError(option, std::to_string(value), expected, fix);
+}
+
+}  // namespace
+
+Ballistic::Ballistic(BallisticOptions options) : options_(std::move(options)) {
+  const BallisticOptions& o = options_;
+  check(std::isfinite(o.mass_kg) && o.mass_kg > 0.0, "mass_kg", o.mass_kg, "a mass above 0", "give the mass at launch");
+  check(o.burntShare >= 0.0 && o.burntShare <= 0.99, "burntShare", o.burntShare, "0 to 0.99", "leave some mass: a case or ash");
+  check(std::isfinite(o.ignition_s) && o.ignition_s >= 0.0, "ignition_s", o.ignition_s, "a time since launch", "give 0 or more");
+  check(std::isfinite(o.burnTime_s) && o.burnTime_s >= 0.0 && (o.burntShare == 0.0 || o.burnTime_s > 0.0), "burnTime_s", o.burnTime_s, "a time above 0",
+        "say how long it burns");
+  check(std::isfinite(o.burnExponent) && o.burnExponent >= 1.0, "burnExponent", o.burnExponent, "1 or more", "1 burns evenly, 3 as a shrinking grain");
+  check(std::isfinite(o.area_m2) && o.area_m2 >= 0.0, "area_m2", o.area_m2, "an area", "give that of the cross-section");
+  checkCurve("drag", o.drag);
+  checkCurve("areaFactor", o.areaFactor);
+  if (o.ballisticCoefficient_kg_m2) {
+    check(std::isfinite(*o.ballisticCoefficient_kg_m2) && *o.ballisticCoefficient_kg_m2 > 0.0, "ballisticCoefficient_kg_m2", *o.ballisticCoefficient_kg_m2,
+          "a number above 0", "it is mass / (drag coefficient x area)");
+    if (o.area_m2 > 0.0 || !o.drag.empty())
+      throw FlightError("ballisticCoefficient_kg_m2", "given with an area or a drag coefficient", "one way to give drag", "leave one out");
+  }
+}
+
+double Ballistic::mass_kg(double time_s) const {
+  if (options_.burntShare == 0.0) return options_.mass_kg;
+  const double left = 1.0 - std::clamp((time_s - options_.ignition_s) / options_.burnTime_s, 0.0, 1.0);
+  return options_.mass_kg * (1.0 - options_.burntShare * (1.0 - std::pow(left, options_.burnExponent)));
+}
+
+double Ballistic::dragArea_m2(double time_s, double mach) const {
+  const double still =
+      options_.ballisticCoefficient_kg_m2 ? options_.mass_kg / *options_.ballisticCoefficient_kg_m2 : options_.area_m2 * curveAt(options_.drag, mach);
+  return still * curveAt(options_.areaFactor, time_s, 1.0);
+}
+
+std::vector<double> Ballistic::breaks_s() const {
+  std::vector<double> times;
+  if (options_.burntShare > 0.0) times = {options_.ignition_s, options_.ignition_s + options_.burnTime_s};
+  for (const CurvePoint& p : options_.areaFactor) times.push_back(p.x);
+  return times;
+}
+
+}  // namespace pitviper
