@@ -26,7 +26,7 @@ const std::map<std::string, Command>& commands() {
   static const std::map<std::string, Command> all = {
       {"run",
        {runCommand, "render a scenario to calibrated EXR frames",
-        "pitviper run SCENARIO.yaml [--out FOLDER] [--frames A:B] [--set path.to.key=value]... [--preview]\n             [--video FILE.mp4] [--sheet] [--report] [--scale run|frame|LOW:HIGH] [--palette NAME] [--plain] [--truth]\n             [--preview-range "
+        "pitviper run SCENARIO.yaml [--out FOLDER] [--frames A:B] [--set path.to.key=value]... [--root FOLDER]... [--preview]\n             [--video FILE.mp4] [--sheet] [--report] [--scale run|frame|LOW:HIGH] [--palette NAME] [--plain] [--truth]\n             [--preview-range "
         "LAYER=LOW:HIGH]... [--overwrite] [--timing]\n\n"
         "Renders the scenario's frames: one EXR per camera and frame in FOLDER (default 'out'), named <camera>_<frame>.exr,\n"
         "with a float layer <channel>.<quantity> per output, truth.* layers and a grey picture for programs that know nothing of layers; other formats by\n"
@@ -35,8 +35,11 @@ const std::map<std::string, Command>& commands() {
         "  --out FOLDER     where to write; created if missing\n"
         "  --frames A:B     frames A to B only, both included (or one: A); counted from 0: --frames 0:9 draws ten\n"
         "  --set PATH=VALUE replaces or adds a value: --set cameras.0.samples=2, --set cameras.seeker.exposure='1 ms',\n"
-        "                   --set entities.jet.temperature='300 K'; list items by number or by their name; repeatable\n"
+        "                   --set entities.jet.temperature='300 K'; list items by number or by their name; repeatable;\n"
+        "                   --set parameters.speed='300 m/s' a parameter of the scenario\n"
+        "  --root FOLDER    a folder, besides the scenario's own, from which it may include and extend files; repeatable\n"
         "  --plan FILE      draws a camera with the plan of another run, FOLDER/CAMERA.plan: the same scenario and plan give the same bytes; repeatable\n"
+        "  --poses FILE     CAMERA_poses.csv, as a run with a gimbal leaves it: the camera looks where that says, frame by frame; repeatable\n"
         "  --preview        also a PNG per frame: every channel with colour bar and unit\n"
         "  --video FILE.mp4 also a film of the previews (of several cameras one each, FILE_<camera>.mp4); by ffmpeg\n"
         "  --sheet          also <camera>_sheet.png: up to twenty pictures of the first layer, evenly over the run\n"
@@ -52,40 +55,42 @@ const std::map<std::string, Command>& commands() {
         "  --timing         says at the end where the time of frames after the first went: visibility, shadows, air, shading, readback, files; drawing then "
         "waits for each\n"
         "                   part, which makes it somewhat slower\n\n"
-        "Files of the same names are replaced where they are of the same scenario (its text, what it extends, --set); another's is refused before\n"
+        "Files of the same names are replaced where they are of the same scenario (its text, what it extends and includes, --set); another's is refused before\n"
         "anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"
         "On a terminal a bar shows how far it is; elsewhere lines come on stderr, the first after 3 s, each next after as long again as all before.\n"
         "The last lines sum up: frames, time, frames a second, and for each camera what its plan expects to be off by at most.\n"}},
       {"check",
        {checkCommand, "validate a scenario, render nothing",
-        "pitviper check SCENARIO.yaml [--set path.to.key=value]... [--audit]\n\nReads everything the scenario names and reports the first mistake as "
+        "pitviper check SCENARIO.yaml [--set path.to.key=value]... [--root FOLDER]... [--audit]\n\nReads everything the scenario names and reports the first mistake as "
         "file:line:col with "
         "the fix (exit code 2).\nThen tells what each camera sees in the first, the middle and the last frame: a line a body (many alike in one) with its "
         "size,\n"
         "range, size in pixels, and whether it is out of view, behind the camera, hidden by another or smaller than a pixel; 'hidden' is\n"
         "found by rays to a few dozen places on the body. Meshes whose size smells of another unit than the one given are noted.\n\n"
+        "  --root FOLDER    as of run\n"
         "  --audit          also draws those frames, works 16 pixels of each (or as many as the scenario's 'audit' says) out by the reference,\n"
         "                   and tells how far they are from it; writes nothing\n"}},
       {"plan",
        {planCommand, "what a scenario's accuracy makes of it: terms, wavelengths, predicted error",
-        "pitviper plan SCENARIO.yaml [--set path.to.key=value]... [--json] [--speed] [--shaders]\n\n"
+        "pitviper plan SCENARIO.yaml [--set path.to.key=value]... [--root FOLDER]... [--json] [--speed] [--shaders]\n\n"
         "Per camera and probe: how much of a pixel each term can be in each channel, which are kept and which dropped; into how many\n"
         "groups of wavelengths each channel's integral goes, of how many the reference has, and the error predicted for lines of sight the\n"
         "groups were not fitted to. 'accuracy: 1 %' in the scenario, or --set accuracy='0.1 %', asks for another. Plans are kept by content in\n"
         "$XDG_CACHE_HOME/pitviper (or ~/.cache/pitviper).\n\n"
+        "  --root FOLDER  as of run\n"
         "  --json     for programs: a list with an object per camera and probe\n"
         "  --speed    also predicted frames a second, from a measured yardstick\n"
         "  --shaders  also the text of the shading program\n"}},
       {"info",
        {infoCommand, "what is in a frame, or what this machine draws with",
-        "pitviper info [FILE.exr [--at COLUMN,ROW [--terms SCENARIO.yaml [--set path.to.key=value]...]]]\n\nLayers with unit, minimum, mean and maximum, and "
+        "pitviper info [FILE.exr [--at COLUMN,ROW [--terms SCENARIO.yaml [--set path.to.key=value]... [--root FOLDER]...]]]\n\nLayers with unit, minimum, mean and maximum, and "
         "all attributes. Without a file: the driver, its "
         "limits, and the way\n"
         "in which transparent things are blended (fetch, barrier or ping_pong; PITVIPER_BLEND chooses another).\n\n"
         "  --at COLUMN,ROW  the values of one pixel with their units; (0,0) is the top left\n"
         "  --terms SCENARIO.yaml  what that pixel is made of: emission, each light's reflection, the dome's, the air's emission, scattered sunlight,\n"
         "                   media and lamps in view, by the body that sends it, worked out in double precision at every wavelength; the scenario must be\n"
-        "                   the one that the frame was drawn from, with the same --set, and its tables and meshes as they were\n"}},
+        "                   the one that the frame was drawn from, with the same --set and --root, and its tables and meshes as they were\n"}},
       {"integrate",
        {integrateCommand, "apply another sensor to a spectral image",
         "pitviper integrate FILE_spectral.exr SENSOR.yaml [--out FILE.exr] [--preview]\n\n"
@@ -99,9 +104,9 @@ const std::map<std::string, Command>& commands() {
       {"bench",
        {benchCommand, "speed of this machine beside a fixed yardstick",
         "pitviper bench [--factor NAME] [--frames N] [--out FOLDER]\n"
-        "pitviper bench --scenario SCENARIO.yaml [--frames N] [--set path.to.key=value]...\npitviper bench --accuracy SCENARIO.yaml [--size N] [--frames N] "
+        "pitviper bench --scenario SCENARIO.yaml [--frames N] [--set path.to.key=value]... [--root FOLDER]...\npitviper bench --accuracy SCENARIO.yaml [--size N] [--frames N] "
         "[--set "
-        "path.to.key=value]... [--out FOLDER]\n\n"
+        "path.to.key=value]... [--root FOLDER]... [--out FOLDER]\n\n"
         "Times direct and buffered mode on a wall that fills the film (256x256, 16 channels, 16 wavelengths, one light, thermal emission, air\n"
         "on both legs), then with one factor varied at a time, in rounds that alternate with a bare loop over 16 wavelengths, the yardstick.\n"
         "Prints tables: milliseconds, million pixels and frames a second, speed by the yardstick, time by the centre. Takes some minutes.\n\n"
@@ -110,7 +115,7 @@ const std::map<std::string, Command>& commands() {
         "  --frames N           frames to time in each row, 10 or more (default 60; fewer of slow ones)\n"
         "  --out FOLDER         also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing\n"
         "\nWith --phong: tables of 200 entries of spectral Phong lobes against the formula, error and time, as in the paper that proposed them.\n"
-        "\nWith --scenario: time of a frame of each camera, the frames in their order, drawing and readback, no files; beside them the yardstick, and where "
+        "\nWith --scenario: time of a frame of each camera, the frames in their order, drawing and readback, no files (with a gimbal its sensor and tracker too); beside them the yardstick, and where "
         "the time of a frame goes,\n"
         "part by part: what updates tables and shadow maps, what is seen, shading, readback and so on.\n"
         "\nWith --accuracy: the scenario's first camera at accuracies of 10 to 0.1 %, at 4 to 340 even samples and at 16 Gauss points a channel, against\n"
@@ -120,6 +125,7 @@ const std::map<std::string, Command>& commands() {
         "  --size N             columns of the film, its field of view kept\n"
         "  --frames N           frames, spread over the scenario's time (default 3)\n"
         "  --set path=value     as of run, such as --set cameras.seeker.samples=1\n"
+        "  --root FOLDER        as of run\n"
         "  --out FOLDER         also write accuracy.csv and a chart, accuracy.png (needs VTK)\n"}},
       {"atmosphere",
        {atmosphereCommand, "what air there is in the library, in a MODTRAN tape7 or in a CSV file, as tables and charts",
@@ -158,7 +164,7 @@ const std::map<std::string, Command>& commands() {
       {"stream", {streamCommand, "frames at a fixed rate to hardware and other programs, and commands from them", 
         "pitviper stream SCENARIO.yaml [--clock CLOCK] [--rate 'R Hz'] [--frames N | --duration 'T s' | --endless] [--late WHAT] [--delay 'D ms'] [--hold]\n"
         "                [--shared-memory /NAME] [--gige ADDRESS] [--gstreamer PIPELINE]... [--projector DISPLAY]... [--commands PLACE] [--cigi PLACE]\n"
-        "                [--out FOLDER] [--set path.to.key=value]... [--plan CAMERA.plan]... [pictures as of run]\n"
+        "                [--out FOLDER] [--set path.to.key=value]... [--root FOLDER]... [--plan CAMERA.plan]... [--poses CAMERA_poses.csv]... [pictures as of run]\n"
         "pitviper stream --self-test [--rate 'R Hz'] [--duration 'T s']\n"
         "\n"
         "Frames of every camera at a fixed rate to other programs and to hardware, and commands from them. Plans and programs are made before the first frame. Without a way\n"
@@ -204,6 +210,7 @@ const std::map<std::string, Command>& commands() {
         "  scenarios/clients has a tracker, readers and a CIGI host\n"
         "\n"
         "  --out FOLDER         stream.json and stream.html, with a chart; created if missing\n"
+        "  --root FOLDER        as of run\n"
         "  --self-test          what each way takes on this machine, without drawing: 640x512 pixels at 60 Hz for 5 s each, in a table\n"}},
       {"keys", {keysCommand, "the reference of every scenario key (Markdown)", "pitviper keys\n\nPrints the key reference as in scenarios/README.md.\n"}},
   };

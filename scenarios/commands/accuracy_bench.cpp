@@ -60,7 +60,7 @@ void resizeFilm(Pinhole& p, int columns) {
 }
 
 AccuracyReport measureAccuracy(const AccuracyRequest& request) {
-  Simulation sim = readScenario(request.scenario, request.changes, findLibraries());
+  Simulation sim = readScenario(request.scenario, request.changes, findLibraries(), request.roots);
   if (sim.cameras.empty()) throw UserError({request.scenario, 0, 0, -1}, "the scenario has no camera", "at least one", "choose another scenario");
   sim.cameras.resize(1);
   Camera& camera = sim.cameras[0];

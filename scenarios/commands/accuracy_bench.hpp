@@ -1,5 +1,6 @@
 #pragma once
 // Speed against accuracy of a scenario: its first camera at a ladder of accuracies and of even sampling, against the reference.
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -36,6 +37,7 @@ std::vector<AccuracySetting> accuracyLadder();
 struct AccuracyRequest {
   std::string scenario;
   std::vector<std::string> changes;  ///< as of `run --set`
+  std::vector<std::filesystem::path> roots = {};  ///< as of `run --root`
   int size_px = 0;                   ///< columns of the film, its field of view kept; 0: as it is
   int frames = 3;                    ///< spread over the scenario's time
 };

@@ -54,7 +54,7 @@ std::vector<char> outlinePixels(const Simulation& sim, const Camera& camera, con
   if (!sim.hasTransparent()) return marked;
   // Small bodies are drawn by lines all over a pixel: some of those may lie on an outline.
   for (size_t e = 0; e < sim.entities.size(); ++e) {
-    if (!drawn[e]) continue;
+    if (!drawn[e] || !state.isThere(e)) continue;
     const glm::dvec3 to = state.entities[e].position + state.entities[e].orientation * glm::dvec3(sim.entities[e].boundingCentre) - view.position;
     const glm::dvec3 d = glm::transpose(view.localFromCamera) * to;
     const double radius_m = static_cast<double>(sim.entities[e].boundingRadius_m), pixel_rad = view.tanPerPixelX * camera.samples;

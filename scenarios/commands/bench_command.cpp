@@ -51,6 +51,7 @@ int accuracyCommand(const Options& o) {
   AccuracyRequest request;
   request.scenario = o.value("--accuracy");
   request.changes = o.values("--set");
+  request.roots = rootsOf(o);
   request.size_px = wholeNumber(o, "--size", 0, 8, 4096, "a number of columns");
   request.frames = wholeNumber(o, "--frames", 3, 1, 1000, "a number of frames to compare");
   const std::filesystem::path out = o.value("--out");
@@ -71,7 +72,7 @@ int scenarioCommand(const Options& o) {
   for (const char* other : {"--factor", "--out"})
     if (o.has(other)) throw UserError({"pitviper bench", 0, 0, -1}, std::string(other) + " says nothing to --scenario", "one of the two", "remove one");
   const GlContext context;
-  const auto rates = timeScenario(o.value("--scenario"), o.values("--set"), framesWanted(o));
+  const auto rates = timeScenario(o.value("--scenario"), o.values("--set"), rootsOf(o), framesWanted(o));
   std::printf("%s\n%s", context.limits().renderer.c_str(), rateTable(rates).c_str());
   return 0;
 }
@@ -80,7 +81,7 @@ int scenarioCommand(const Options& o) {
 
 int benchCommand(const Arguments& arguments) {
   const Options o("bench", arguments,
-                  {{"--frames"}, {"--factor"}, {"--out"}, {"--accuracy"}, {"--scenario"}, {"--size"}, {"--set", true, true}, {"--phong", false}}, 0, 0);
+                  {{"--frames"}, {"--factor"}, {"--out"}, {"--accuracy"}, {"--scenario"}, {"--size"}, {"--set", true, true}, rootOption(), {"--phong", false}}, 0, 0);
   if (o.has("--phong")) {
     if (arguments.size() > 1) throw UserError({"pitviper bench", 0, 0, -1}, "--phong with other options", "it alone", "remove them");
     std::printf("%s", phongBench().c_str());
@@ -90,6 +91,7 @@ int benchCommand(const Arguments& arguments) {
   if (o.has("--size")) throw UserError({"pitviper bench", 0, 0, -1}, "--size goes with --accuracy", "a scenario", "remove it, or add --accuracy");
   if (o.has("--scenario")) return scenarioCommand(o);
   if (o.has("--set")) throw UserError({"pitviper bench", 0, 0, -1}, "--set goes with --accuracy or --scenario", "a scenario", "remove it, or add one");
+  if (o.has("--root")) throw UserError({"pitviper bench", 0, 0, -1}, "--root goes with --accuracy or --scenario", "a scenario", "remove it, or add one");
   const int frames = framesWanted(o);
   std::vector<BenchFactor> factors = factorsWanted(o);
   const std::filesystem::path out = o.value("--out");

@@ -2,6 +2,7 @@
 
 #include <dlfcn.h>
 
+#include <cmath>
 #include <stdexcept>
 
 #include "scenarios/commands/charts/charts_module.hpp"
@@ -22,23 +23,25 @@ std::filesystem::path modulePath() {
   return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / kChartsModule;
 }
 
-ChartsFunction loadModule() {
+void* fromModule(const char* function) {
   const std::filesystem::path module = modulePath();
   if (std::error_code ignored; !std::filesystem::exists(module, ignored))
     throw UserError({"charts", 0, 0, -1}, "the charts module " + module.string() + " is missing", "a build with VTK",
                     "install the package libvtk9-dev and build again, or ask for no chart");
   // Never closed: VTK's factories would be left pointing into it.
   void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* symbol = handle == nullptr ? nullptr : dlsym(handle, kChartsFunction);
+  void* symbol = handle == nullptr ? nullptr : dlsym(handle, function);
   if (symbol == nullptr) {
     const char* reason = dlerror();
     throw UserError({"charts", 0, 0, -1}, std::string("the charts module cannot be loaded (") + (reason != nullptr ? reason : "unknown") + ")",
                     "VTK's libraries", "install the package libvtk9.1 (to build: libvtk9-dev), or ask for no chart");
   }
-  return reinterpret_cast<ChartsFunction>(symbol);
+  return symbol;
 }
 
 }  // namespace
+
+void requireCharts() { fromModule(kChartsFunction); }
 
 void setChartsFolder(const std::filesystem::path& folder) { chartsFolder() = folder; }
 
@@ -48,9 +51,22 @@ void drawCharts(const std::vector<Chart>& charts, int columns, const std::filesy
     for (const Series& s : c.series)
       if (s.x.size() != s.y.size()) throw std::invalid_argument("series '" + s.name + "' of chart '" + c.title + "' has unequal x and y");
   ChartsReply reply;
-  loadModule()(&charts, columns, &reply);
+  reinterpret_cast<ChartsFunction>(fromModule(kChartsFunction))(&charts, columns, &reply);
   if (!reply.failure.empty()) throw std::runtime_error("the chart " + png.string() + " could not be drawn: " + reply.failure);
   writePng(png, reply.picture);
+}
+
+void drawTrajectories(const FlownScene& scene, const std::filesystem::path& png, const std::map<std::string, std::string>& texts, const MayReplace& mayReplace) {
+  bool any = false;
+  for (const FlownPath& p : scene.paths) {
+    if (p.time_s.size() != p.position_m.size()) throw std::invalid_argument("path '" + p.name + "' has unequal times and positions");
+    for (const glm::dvec3& at : p.position_m) any = any || std::isfinite(at.x + at.y + at.z);
+  }
+  if (!any) throw std::invalid_argument("no path to draw");
+  ChartsReply reply;
+  reinterpret_cast<TrajectoriesFunction>(fromModule(kTrajectoriesFunction))(&scene, &reply);
+  if (!reply.failure.empty()) throw std::runtime_error("the picture " + png.string() + " could not be drawn: " + reply.failure);
+  writePng(png, reply.picture, texts, mayReplace);
 }
 
 }  // namespace pitviper

@@ -31,6 +31,9 @@ struct Chart {
 /// std::runtime_error if drawing failed.
 void drawCharts(const std::vector<Chart>& charts, int columns, const std::filesystem::path& png);
 
+/// Errors: UserError if the module is missing or cannot be loaded.
+void requireCharts();
+
 /// Where the module libpitviper_charts.so lies; without this call, next to the executable.
 void setChartsFolder(const std::filesystem::path& folder);
 

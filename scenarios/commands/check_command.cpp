@@ -33,8 +33,8 @@ void auditFrames(Simulation& sim) {
 }  // namespace
 
 int checkCommand(const Arguments& arguments) {
-  const Options o("check", arguments, {{"--set", true, true}, {"--audit", false}}, 1, 1);
-  Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
+  const Options o("check", arguments, {{"--set", true, true}, rootOption(), {"--audit", false}}, 1, 1);
+  Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries(), rootsOf(o));
   refuseBeyondMemory(sim);
   Notes notes;
   size_t triangles = 0;
@@ -51,6 +51,7 @@ int checkCommand(const Arguments& arguments) {
     std::printf("  camera %s: %dx%d, %s from %s, %s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
                 count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),
                 count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths").c_str());
+    if (c.follower) std::printf("    %s\n", c.follower->words.c_str());
     std::printf("%s%s", sensorText(c, sim.time.step_s).c_str(), geometryText(sim, drawn, plan).c_str());
     for (const ScatteredAgain& s : ScatteringCheck(sim, c, plan).at(advance(sim, sim.time.at(0))))
       if (s.factor > kWorthSaying) sayScatteredAgain(c.name, s.channel, s.factor, notes);

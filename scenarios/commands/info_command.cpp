@@ -84,7 +84,7 @@ void printMachine() {
 }  // namespace
 
 int infoCommand(const Arguments& arguments) {
-  const Options o("info", arguments, {{"--at"}, {"--terms"}, {"--set", true, true}}, 0, 1);
+  const Options o("info", arguments, {{"--at"}, {"--terms"}, {"--set", true, true}, rootOption()}, 0, 1);
   if (o.words().empty()) {
     if (o.has("--at")) throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "a pixel of no file", "info FILE.exr --at COLUMN,ROW", "name the file");
     printMachine();
@@ -94,6 +94,8 @@ int infoCommand(const Arguments& arguments) {
     throw UserError({"--terms " + o.value("--terms"), 0, 0, -1}, "parts of no pixel", "info FILE.exr --at COLUMN,ROW --terms SCENARIO.yaml", "add --at");
   if (o.has("--set") && !o.has("--terms"))
     throw UserError({"--set", 0, 0, -1}, "a change of no scenario", "--set beside --terms SCENARIO.yaml", "add --terms, or remove --set");
+  if (o.has("--root") && !o.has("--terms"))
+    throw UserError({"--root", 0, 0, -1}, "a folder for parts of no scenario", "--root beside --terms SCENARIO.yaml", "add --terms, or remove --root");
   const ExrImage image = readExr(o.words()[0]);
   if (o.has("--at")) {
     std::string text = o.value("--at");
@@ -105,7 +107,7 @@ int infoCommand(const Arguments& arguments) {
       throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "outside the picture",
                       "column 0 to " + std::to_string(image.width - 1) + ", row 0 to " + std::to_string(image.height - 1), "choose a pixel of it");
     if (o.has("--terms")) {
-      printPixelTerms(image, o.words()[0], static_cast<int>(x), static_cast<int>(y), o.value("--terms"), o.values("--set"));
+      printPixelTerms(image, o.words()[0], static_cast<int>(x), static_cast<int>(y), o.value("--terms"), o.values("--set"), rootsOf(o));
       return 0;
     }
     for (const auto& layer : image.layers)

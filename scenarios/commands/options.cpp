@@ -57,6 +57,16 @@ std::vector<std::string> Options::values(const std::string& name) const {
   return found == values_.end() ? std::vector<std::string>{} : found->second;
 }
 
+const OptionSpec& rootOption() {
+  static const OptionSpec spec{"--root", true, true};
+  return spec;
+}
+
+std::vector<std::filesystem::path> rootsOf(const Options& options) {
+  const auto names = options.values("--root");
+  return {names.begin(), names.end()};
+}
+
 std::pair<long long, long long> readRange(const std::string& text, const std::string& option) {
   auto number = [&](std::string_view t) {
     long long v = 0;

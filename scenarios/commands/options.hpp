@@ -1,5 +1,6 @@
 #pragma once
 // Command-line options: --name value, flags and positional words; anything unknown is a user's mistake.
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -27,6 +28,10 @@ class Options {
   std::map<std::string, std::vector<std::string>> values_;
   std::vector<std::string> words_;
 };
+
+/// `--root FOLDER`, repeatable: folders from which a scenario may take parts, besides its own. For the list of a command's options.
+const OptionSpec& rootOption();
+std::vector<std::filesystem::path> rootsOf(const Options& options);
 
 /// "a:b" or "a" as whole numbers; UserError otherwise.
 std::pair<long long, long long> readRange(const std::string& text, const std::string& option);

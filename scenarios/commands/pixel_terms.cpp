@@ -42,6 +42,19 @@ Camera cameraOf(const ExrImage& frame, const std::string& file, const Simulation
                   "name the frame's own scenario");
 }
 
+/// Where the frame says that its camera was.
+Pose poseOf(const ExrImage& frame, const Simulation& sim, const std::string& file) {
+  const auto numbers = [&](const char* name, std::size_t count) {
+    const Attribute* a = frame.findAttribute(name);
+    const auto* values = a ? std::get_if<std::vector<double>>(&a->value) : nullptr;
+    if (!values || values->size() != count)
+      throw UserError({file, 0, 0, -1}, std::string("a frame without '") + name + "'", "a frame as a run wrote it", "draw the frame again");
+    return *values;
+  };
+  const auto p = numbers("pitviper.pose_local_m", 3), q = numbers("pitviper.orientation_ecef_wxyz", 4);
+  return {{p[0], p[1], p[2]}, glm::normalize(glm::inverse(glm::quat_cast(sim.frame.ecefFromLocal())) * glm::dquat(q[0], q[1], q[2], q[3]))};
+}
+
 std::string nameOf(const Part& part, const Simulation& sim) {
   std::string name = pitviper::nameOf(part.kind);
   if (part.light >= 0)
@@ -65,8 +78,8 @@ std::vector<size_t> toldOutputs(const ExrImage& frame, const Camera& camera) {
 }  // namespace
 
 void printPixelTerms(const ExrImage& frame, const std::string& file, int column, int row, const std::string& scenario,
-                     const std::vector<std::string>& changes) {
-  const Simulation sim = readScenario(scenario, changes, findLibraries());
+                     const std::vector<std::string>& changes, const std::vector<std::filesystem::path>& roots) {
+  const Simulation sim = readScenario(scenario, changes, findLibraries(), roots);
   if (textAttribute(frame, kScenarioHash) != sim.sha256 || textAttribute(frame, kScenarioContent) != sim.content)
     throw UserError({file, 0, 0, -1}, "not a frame of '" + scenario + "' as it is now", "the scenario that the frame was drawn from, with the same --set",
                     "name that one, or draw the frame again");
@@ -74,7 +87,8 @@ void printPixelTerms(const ExrImage& frame, const std::string& file, int column,
   const GlContext context;
   CameraRenderer renderer(sim, camera, shaderLibrary(), std::make_shared<const GpuScene>(sim));
   const int number = wholeAttribute(frame, "pitviper.frame");
-  const WorldState state = advance(sim, sim.time.at(number));
+  WorldState state = advance(sim, sim.time.at(number));
+  if (camera.follower) state = pointed(std::move(state), camera, poseOf(frame, sim, file));
   const size_t pixel = static_cast<size_t>(row) * static_cast<size_t>(frame.width) + static_cast<size_t>(column);
   const auto outputs = toldOutputs(frame, camera);
   const auto valuesOf = [&](const std::optional<Part>& part) {

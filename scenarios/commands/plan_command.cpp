@@ -59,8 +59,8 @@ std::string ladderOf(const Simulation& sim, const Camera& camera, const Plan& pl
 }  // namespace
 
 int planCommand(const Arguments& arguments) {
-  const Options o("plan", arguments, {{"--set", true, true}, {"--json", false}, {"--speed", false}, {"--shaders", false}}, 1, 1);
-  const Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
+  const Options o("plan", arguments, {{"--set", true, true}, rootOption(), {"--json", false}, {"--speed", false}, {"--shaders", false}}, 1, 1);
+  const Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries(), rootsOf(o));
   std::optional<GlContext> context;
   if (o.has("--speed") || o.has("--shaders")) context.emplace();
   const double yardstick = o.has("--speed") ? yardstickRate() : 0.0;
@@ -80,7 +80,8 @@ int planCommand(const Arguments& arguments) {
                     bytesOf(makeTables(sim, plan)),
                     buffered,
                     plan.terms.air && plan.air.elevations > 0,
-                    describe(sim.limits),
+                    eye.camera && eye.camera->follower ? (sim.limits.any() ? describe(sim.limits) + "; " : std::string()) + eye.camera->follower->words + ": its whole field"
+                                                       : describe(sim.limits),
                     eye.camera};
     if (yardstick > 0.0) told.framesPerSecond = predictedRate(plan, subpixels, yardstick, buffered);
     if (o.has("--json")) json += (json.empty() ? "" : ", ") + planJson(told);

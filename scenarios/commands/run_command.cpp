@@ -4,7 +4,9 @@
 #include <optional>
 
 #include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/history_files.hpp"
 #include "scenarios/commands/options.hpp"
+#include "scenarios/commands/pose_files.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/commands/run_notes.hpp"
 #include "scenarios/commands/run_report_page.hpp"
@@ -64,9 +66,12 @@ class ProbeTables {
 };
 
 /// What a run writes besides its sinks' files.
-OwnFiles ownFiles(const Simulation& sim, const std::filesystem::path& folder, bool report) {
-  OwnFiles files;
-  for (const Camera& c : sim.cameras) files.push_back(folder / (c.name + ".plan"));
+OwnFiles ownFiles(const Simulation& sim, const std::filesystem::path& folder, bool report, const HistoryWish& history) {
+  OwnFiles files = HistoryFiles::filesIn(folder, history);
+  for (const Camera& c : sim.cameras) {
+    files.push_back(folder / (c.name + ".plan"));
+    if (leavesPoses(c)) files.push_back(posesFileIn(folder, c));
+  }
   for (const Probe& p : sim.probes) files.push_back(folder / ProbeTables::fileOf(p.name));
   if (report) files.push_back(RunReportPage::fileIn(folder));
   return files;
@@ -93,13 +98,16 @@ void learn(const RunReport& report, Simulation& sim, int start, Notes& notes) {
 }  // namespace
 
 int runCommand(const Arguments& arguments) {
-  std::vector<OptionSpec> specs{{"--out"}, {"--frames"}, {"--set", true, true}, {"--overwrite", false}, {"--plan", true, true}, {"--timing", false}, {"--report", false}};
+  std::vector<OptionSpec> specs{{"--out"}, {"--frames"}, {"--set", true, true}, rootOption(), {"--overwrite", false}, {"--plan", true, true}, {"--poses", true, true}, {"--timing", false}, {"--report", false}};
   for (const OptionSpec& spec : pictureOptions()) specs.push_back(spec);
+  for (const OptionSpec& spec : historyOptions()) specs.push_back(spec);
   const Options o("run", arguments, specs, 1, 1);
-  Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries());
+  Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries(), rootsOf(o));
   refuseBeyondMemory(sim);
   readPlans(o, sim);
+  replayPoses(o, sim);
   const RunRange range = framesWanted(o, sim);
+  const HistoryWish history = readHistoryWish(o, sim);
   PictureWish pictures = readPictureWish(o, sim);
   if (o.has("--report") && !pictures.sheet) {
     pictures.sheet = true;
@@ -108,9 +116,9 @@ int runCommand(const Arguments& arguments) {
   const std::filesystem::path out = o.value("--out", "out");
   SinkPlace place{out, {}};
   const auto sinksOf = [&] { return makeSinks(sim, place, pictures); };
-  refuseClashes(sim, range, ownFiles(sim, out, o.has("--report")), sinksOf());
+  refuseClashes(sim, range, ownFiles(sim, out, o.has("--report"), history), sinksOf());
   if (!o.has("--overwrite")) {
-    refuseForeignFiles(sim, range, ownFiles(sim, out, o.has("--report")), sinksOf());
+    refuseForeignFiles(sim, range, ownFiles(sim, out, o.has("--report"), history), sinksOf());
     // And again for each: another run may have put it there meanwhile.
     place.mayReplace = [&sim](const std::filesystem::path& file) { refuseForeignFile(file, sim); };
   }
@@ -119,6 +127,7 @@ int runCommand(const Arguments& arguments) {
   noteCuts(sim, notes);
   noteSampling(sim, notes);
   noteNear(sim, sim.time.at(range.first), notes);
+  notePointing(sim, range.first, notes);
   const GlContext context;
   const int frames = range.last - range.first + 1;
   const auto spectral = static_cast<size_t>(std::count_if(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.spectralImage.has_value(); }));
@@ -129,6 +138,8 @@ int runCommand(const Arguments& arguments) {
     ProbeTables probes(sim);
     std::optional<RunReportPage> page;
     if (o.has("--report")) page.emplace(sim);
+    std::optional<HistoryFiles> flown;
+    if (history.tables || history.picture) flown.emplace(sim, out, history);
     RunTotal total;
     Stopwatch writing;
     std::optional<Timing> timing;
@@ -151,7 +162,10 @@ int runCommand(const Arguments& arguments) {
           if (sim.cameras.empty() && &r.probe == &sim.probes.back()) progress.step();
         },
         {[&](double share) { progress.within(share); },
-         [&](const Camera& c, double share) { progress.phase(share < 1.0 ? "planning camera " + c.name : "preparing", share < 1.0 ? share : 0.0); }},
+         [&](const Camera& c, double share) { progress.phase(share < 1.0 ? "planning camera " + c.name : "preparing", share < 1.0 ? share : 0.0); },
+         [&](const Camera& c, const Frame& frame, const WorldState& world, const Pose& pose) {
+           if (flown) flown->look(c, frame, world, pose);
+         }},
         attempt < kMostStarts);
     if (!report.broken.empty() && attempt < kMostStarts) {
       learn(report, sim, attempt + 1, notes);
@@ -160,7 +174,15 @@ int runCommand(const Arguments& arguments) {
     progress.phase("pictures");
     for (const auto& placed : sinks) placed.sink->finish([&](double share) { progress.phase("pictures", share); });
     probes.write(out, place.mayReplace);
+    for (const Camera& c : sim.cameras)
+      if (leavesPoses(c)) writePoses(out, sim, c, report.poses.at(c.name), place.mayReplace);
     for (const auto& [camera, plan] : report.plans) writeFileAtomically(out / (camera + ".plan"), plan);
+    std::optional<HistoryReport> told;
+    if (flown) {
+      for (int number = range.first; sim.cameras.empty() && number <= range.last; ++number) flown->look(number, advance(sim, sim.time.at(number)));
+      told = flown->write(sim.name, place.mayReplace);
+      if (history.mustDraw && !told->whyNoPicture.empty()) notes.say("no picture of the trajectories: " + told->whyNoPicture);
+    }
     progress.finish();
     auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
     std::string done;
@@ -170,7 +192,7 @@ int runCommand(const Arguments& arguments) {
     const std::string summary = done + " in " + out.string() + " (" + context.limits().renderer + "), " + RunTotal::pace(frames, progress.elapsed_s()) + "\n" +
                                 total.expected() + auditText(report);
     std::fputs(summary.c_str(), stdout);
-    if (page) page->write(out, pictures.video, {summary, notes}, place.mayReplace);
+    if (page) page->write(out, pictures.video, {summary, notes, told ? &*told : nullptr, history.tables}, place.mayReplace);
     if (timing) std::printf("%s", timingText(timing->seconds(), writing.seconds(), frames).c_str());
     return 0;
   }

@@ -45,7 +45,7 @@ void noteNear(const Simulation& sim, double time_s, Notes& notes) {
       const Entity& body = sim.entities[e];
       const Pose& pose = state.entities[e];
       const glm::dvec3 centre = pose.position + pose.orientation * glm::dvec3(body.boundingCentre);
-      if (static_cast<int>(e) == c.mount.carrier || sim.mediumOf(body) || glm::length(eye - centre) > static_cast<double>(body.boundingRadius_m) + c.near_m)
+      if (static_cast<int>(e) == c.mount.carrier || !state.isThere(e) || sim.mediumOf(body) || glm::length(eye - centre) > static_cast<double>(body.boundingRadius_m) + c.near_m)
         continue;
       const glm::dvec3 at = glm::inverse(pose.orientation) * (eye - pose.position);
       double nearest = INFINITY;

@@ -11,6 +11,7 @@
 #include "sim/frame/file_owner.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/plan/planner.hpp"
+#include "sim/radiometry/constants.hpp"
 #include "sim/stream/picture_sink.hpp"
 
 namespace pitviper {
@@ -52,6 +53,28 @@ void RunReportPage::add(const Frame& frame) {
   }
 }
 
+void RunReportPage::tellFlown(HtmlPage& page, const Said& said) {
+  page.heading("What was flown");
+  const HistoryReport& flown = *said.flown;
+  if (!flown.picture.empty()) page.picture(flown.picture, "Trajectories: balls at equal times, shadows on the floor, the closest approach and lines of sight then");
+  else if (!flown.whyNoPicture.empty()) page.paragraph("No picture of the trajectories: " + flown.whyNoPicture);
+  if (!flown.encounters.empty()) {
+    std::vector<std::vector<std::string>> rows;
+    constexpr std::size_t kMostRows = 40;  // more is read in the table beside the page
+    for (const Encounter& e : flown.encounters) {
+      if (rows.size() >= kMostRows) break;
+      rows.push_back({e.kind == "camera" ? "camera " + e.body : e.body, e.target, print("%.4g", e.distance_m), print("%.6g", e.time_s), e.passed ? "yes" : "no", print("%.4g", e.relativeSpeed_m_s),
+                      std::isfinite(e.aspect_rad) ? print("%.1f", e.aspect_rad * 180.0 / kPi) : "", e.end});
+    }
+    page.table({"who", "to", "closest approach [m]", "at [s]", "passed", "relative speed [m/s]", "aspect [deg]", "flight ended by"}, rows);
+    if (flown.encounters.size() > rows.size()) page.paragraph("and " + std::to_string(flown.encounters.size() - rows.size()) + " more");
+    page.paragraph("Not passed: the least distance of the time looked at, at one of its ends. Aspect: between the target's nose and where the other comes from (a camera: is), 0 head-on, 180 from behind.");
+  }
+  if (!said.tables) return;
+  page.link("history.csv", "history.csv: positions, velocities, accelerations, attitudes and rates, tick by tick");
+  if (!flown.encounters.empty()) page.link("encounters.csv", "encounters.csv: closest approaches with positions");
+}
+
 void RunReportPage::write(const std::filesystem::path& folder, const std::string& video, const Said& said, const MayReplace& mayReplace) const {
   const Simulation& sim = simulation_;
   HtmlPage page(sim.name, ownerMark(sim));
@@ -60,6 +83,7 @@ void RunReportPage::write(const std::filesystem::path& folder, const std::string
     page.heading("Notes and warnings");
     for (const std::string& note : said.notes.all()) page.paragraph(note);
   }
+  if (said.flown) tellFlown(page, said);
   for (const Camera& c : sim.cameras) {
     page.heading("Camera " + c.name);
     if (std::error_code ignored; std::filesystem::exists(folder / contactSheetOf(c.name), ignored))

@@ -4,12 +4,15 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/commands/history_files.hpp"
 #include "scenarios/commands/run_notes.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/frame/frame.hpp"
 #include "sim/model/simulation.hpp"
 
 namespace pitviper {
+
+class HtmlPage;
 
 class RunReportPage {
  public:
@@ -18,12 +21,15 @@ class RunReportPage {
   struct Said {
     std::string summary;  ///< the run's last lines
     const Notes& notes;
+    const HistoryReport* flown = nullptr;  ///< null: nothing moves, or it is not to be told
+    bool tables = false;                   ///< history.csv is there
   };
   /// Puts in what lies in the folder: contact sheets, a film. Errors: OutputError.
   void write(const std::filesystem::path& folder, const std::string& video, const Said& said, const MayReplace& mayReplace) const;
   static std::filesystem::path fileIn(const std::filesystem::path& folder) { return folder / "report.html"; }
 
  private:
+  static void tellFlown(HtmlPage& page, const Said& said);
   struct Course {
     std::string unit;
     std::vector<double> time_s, least, mean, most;

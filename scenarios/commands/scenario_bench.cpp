@@ -10,6 +10,7 @@
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/camera/camera_renderer.hpp"
 #include "sim/gl/timing.hpp"
+#include "sim/run/camera_line.hpp"
 
 namespace pitviper {
 namespace {
@@ -18,16 +19,33 @@ namespace {
 constexpr double kNominalRate = 6e6;
 }  // namespace
 
-std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes, int frames) {
-  const Simulation sim = readScenario(scenario, changes, findLibraries());
+std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes,
+                                       const std::vector<std::filesystem::path>& roots, int frames) {
+  const Simulation sim = readScenario(scenario, changes, findLibraries(), roots);
   const auto scene = std::make_shared<const GpuScene>(sim);
   Yardstick yardstick;
   std::vector<ScenarioRate> rates;
   Progress progress("bench", frames * static_cast<int>(sim.cameras.size()));
   for (const Camera& camera : sim.cameras) {
-    CameraRenderer renderer(sim, camera, shaderLibrary(), scene);
+    const StateAt world = [&sim](double t) { return advance(sim, t); };
+    // Of a camera that a gimbal points a frame is the whole loop: its picture, its sensor, what it finds in that; one frame after the other, none again.
+    std::unique_ptr<CameraLine> loop;
+    if (camera.follower) loop = std::make_unique<CameraLine>(sim, camera, shaderLibrary(), scene, std::function<void(double)>());
+    const auto alone = loop ? nullptr : std::make_unique<CameraRenderer>(sim, camera, shaderLibrary(), scene);
+    const CameraRenderer& renderer = loop ? loop->renderer() : *alone;
+    int next = 0;
     // One after the other, as they follow in a run: what has not changed is not made again.
-    auto draw = [&](int k) { renderer.render(advance(sim, sim.time.at(k % sim.time.frames))); };
+    auto draw = [&](int k) {
+      if (!loop) {
+        alone->render(world(sim.time.at(k % sim.time.frames)));
+        return;
+      }
+      const double time_s = sim.time.at(next);
+      loop->begin(world, time_s, next);
+      const CameraImage image = loop->finish();
+      loop->frame(image, world(time_s), next++);
+      loop->takePoses();
+    };
     draw(0);  // the driver compiles
     timed([&] { yardstick.draw(); });
     std::vector<double> own, bare;

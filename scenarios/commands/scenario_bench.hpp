@@ -1,5 +1,6 @@
 #pragma once
 // Frames a second of a scenario as it is: drawn, read back and resolved in memory, no files; beside the yardstick.
+#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
@@ -16,7 +17,8 @@ struct ScenarioRate {
 };
 
 /// Every camera over the scenario's frames one after the other, from the first again where there are not so many.
-std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes, int frames);
+std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes,
+                                       const std::vector<std::filesystem::path>& roots, int frames);
 
 std::string rateTable(const std::vector<ScenarioRate>& rates);
 

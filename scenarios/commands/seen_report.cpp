@@ -136,6 +136,8 @@ class Report {
       return line.bodies.size() > 1 ? std::string("others") : e < 0 ? std::string("another") : sim_.entities[static_cast<size_t>(e)].name;
     };
     switch (s.sight) {
+      case Sight::Absent:
+        return "not there";
       case Sight::Carrier:
         return "carries the camera";
       case Sight::Behind:

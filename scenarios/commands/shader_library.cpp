@@ -11,6 +11,7 @@ std::span<const ShaderText> pv_radiometry_shaders();
 std::span<const ShaderText> pv_render_shaders();
 std::span<const ShaderText> pv_camera_shaders();
 std::span<const ShaderText> pv_materials_shaders();
+std::span<const ShaderText> pv_fields_shaders();
 std::span<const ShaderText> pv_atmosphere_shaders();
 
 const ShaderLibrary& shaderLibrary() {
@@ -20,6 +21,7 @@ const ShaderLibrary& shaderLibrary() {
     l.add(pv_render_shaders());
     l.add(pv_camera_shaders());
     l.add(pv_materials_shaders());
+    l.add(pv_fields_shaders());
     l.add(pv_atmosphere_shaders());
     for (const StageModel& m : stageModels().all())
       for (const auto& [path, text] : m.shaders) l.add(std::array{ShaderText{path, text}});

@@ -2,11 +2,14 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/history_files.hpp"
 #include "scenarios/commands/options.hpp"
+#include "scenarios/commands/pose_files.hpp"
 #include "scenarios/commands/process.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/commands/run_notes.hpp"
@@ -172,8 +175,11 @@ int streamCommand(const Arguments& arguments) {
                                 {"--cigi"},
                                 {"--stale"},
                                 {"--out"},
+                                {"--history", false},
                                 {"--set", true, true},
+                                rootOption(),
                                 {"--plan", true, true},
+                                {"--poses", true, true},
                                 {"--overwrite", false}};
   for (const OptionSpec& spec : pictureOptions()) specs.push_back(spec);
   specs.push_back({"--self-test", false});
@@ -190,11 +196,12 @@ int streamCommand(const Arguments& arguments) {
     quantity(o, "--rate", "Hz", 1e-3, 1e6, "100 Hz");
     overrides.push_back("time.rate=" + o.value("--rate"));
   }
-  Simulation sim = readScenario(o.words()[0], overrides, findLibraries());
+  Simulation sim = readScenario(o.words()[0], overrides, findLibraries(), rootsOf(o));
   if (sim.cameras.empty())
     throw UserError({sim.file, 0, 0, -1}, "a scenario without cameras", "one camera at least: its frames are the stream", "add 'cameras:'");
   refuseBeyondMemory(sim);
   readPlans(o, sim);
+  replayPoses(o, sim);
   StreamWish wish = wishOf(o, sim);
   const auto needs = [&](const char* option, const char* other) {
     if (o.has(option) && !o.has(other))
@@ -203,6 +210,7 @@ int streamCommand(const Arguments& arguments) {
   };
   needs("--projector-table", "--projector");
   needs("--stale", "--commands");
+  needs("--history", "--out");
   for (const char* option : {"--delay", "--hold", "--late"})
     if (o.has(option) && wish.clock != StreamClock::RealTime)
       throw UserError({option, 0, 0, -1}, "frames of this clock are never late", "'--clock real-time', or 'vsync'", std::string("remove ") + option);
@@ -216,6 +224,7 @@ int streamCommand(const Arguments& arguments) {
   const std::filesystem::path out = o.value("--out", "out");
   SinkPlace place{out, {}};
   if (!o.has("--overwrite")) place.mayReplace = [&sim](const std::filesystem::path& file) { refuseForeignFile(file, sim); };
+  const HistoryWish history{o.has("--history"), false, false};
   const bool writes = o.has("--out") || !sim.sinks.empty() || pictures.any();
   const bool loses = wish.clock == StreamClock::RealTime;
   // Threads of sinks and ports use what stands before them.
@@ -229,7 +238,12 @@ int streamCommand(const Arguments& arguments) {
   if (writes) {
     const RunRange range{0, static_cast<int>(std::clamp<std::uint64_t>(wish.ticks, 1, 100000)) - 1};
     OwnFiles own;
-    if (o.has("--out")) own = {out / "stream.json", out / "stream.html"};
+    if (o.has("--out")) {
+      own = {out / "stream.json", out / "stream.html"};
+      for (const Camera& c : sim.cameras)
+        if (leavesPoses(c)) own.push_back(posesFileIn(out, c));
+      for (const auto& file : HistoryFiles::filesIn(out, history)) own.push_back(file);
+    }
     refuseClashes(sim, range, own, sinks);
     if (!o.has("--overwrite")) refuseForeignFiles(sim, range, own, sinks);
     ensureWritableFolder(out);
@@ -283,13 +297,23 @@ int streamCommand(const Arguments& arguments) {
   std::vector<CommandPort*> heard;
   for (const auto& port : ports) heard.push_back(port.get());
   const EndsItself ending([&inbox] { inbox.end(); });
+  std::map<std::string, GrowingFile> poses;
+  if (o.has("--out"))
+    for (const Camera& c : sim.cameras)
+      if (leavesPoses(c)) poses.try_emplace(c.name, posesFileIn(out, c)).first->second.append(tableMark(sim) + c.follower->recordHeader);
+  wish.poses = [&poses](const Camera& c, const std::string& lines) {
+    if (const auto file = poses.find(c.name); file != poses.end()) file->second.append(lines);
+  };
+  std::optional<HistoryFiles> flown;
+  if (history.tables) flown.emplace(sim, out, history);
   std::optional<Progress> progress;
   progress.emplace(sim.name, static_cast<int>(wish.ticks));
   progress->phase("preparing");
   StreamResult result;
   result.report = streamFrames(
       sim, shaderLibrary(), wish, inbox, taking, heard,
-      {{}, [&](const Camera& c, double share) { progress->phase(share < 1.0 ? "planning camera " + c.name : "preparing", share < 1.0 ? share : 0.0); }},
+      {{}, [&](const Camera& c, double share) { progress->phase(share < 1.0 ? "planning camera " + c.name : "preparing", share < 1.0 ? share : 0.0); },
+       flown ? [&flown](const Camera& c, const Frame& frame, const WorldState& world, const Pose& pose) { flown->look(c, frame, world, pose); } : decltype(RunProgress::drawn)()},
       [&] {
         std::string places;
         for (const PlacedSink& placed : sinks)
@@ -305,6 +329,8 @@ int streamCommand(const Arguments& arguments) {
       });
   streams = false;
   progress->phase("finishing");
+  for (auto& [camera, file] : poses) file.keep(place.mayReplace);
+  if (flown) flown->write(sim.name, place.mayReplace);
   for (const PlacedSink& placed : sinks) placed.sink->finish({});
   for (const PlacedSink& placed : sinks)
     for (const SinkCounts& s : placed.sink->counts()) result.sinks.push_back(s);

@@ -5,6 +5,7 @@
 #include "materials/lights.hpp"
 #include "scenarios/assets/make_aircraft.hpp"
 #include "scenarios/reader/builder.hpp"
+#include "scenarios/reader/flights.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/scene/mesh_axes.hpp"
@@ -21,53 +22,6 @@ constexpr std::size_t kMostSceneTriangles = 10000000;
 /// A ground's reach unless given: the horizon from 12.5 km up.
 constexpr double kUsualGround_m = 4e5;
 }  // namespace
-
-glm::dvec3 Builder::positionOf(const Record& r, bool required) const {
-  const auto given = readPosition(r, simulation_.frame);
-  if (!given && required) throw UserError(r.where(), "no position", "'position: [0 m, 0 m, 100 m]', 'geodetic' or 'motion'", "add it");
-  return given.value_or(glm::dvec3(0.0));
-}
-
-Builder::Placement Builder::readPlacement(const Record& r, bool attitude) {
-  Placement p;
-  if (r.given("attached_to")) {
-    p.carrier = entityNamed(r.value("attached_to"));
-    if (r.given("geodetic"))
-      throw UserError(r.where("geodetic"), "a geodetic position of something attached to a body", "'position' in the body's axes", "use 'position'");
-  }
-  if (r.given("motion")) {
-    if (r.given("position") || r.given("geodetic")) throw UserError(r.where("motion"), "a position and a motion", "one of the two", "remove one");
-    for (const char* key : {"heading", "pitch", "roll"})
-      if (attitude && r.given(key))
-        throw UserError(r.where(key), std::string("a ") + key + " and a motion", "the attitude in the waypoints, or along the path",
-                        std::string("move '") + key + "' into the waypoints");
-    std::vector<Waypoint> waypoints;
-    for (const Value& v : r.value("motion").items) {
-      const Record w(v, tables::waypoint());
-      Waypoint point;
-      point.time_s = w.number("time");
-      point.position = positionOf(w, true);
-      if (w.given("pitch") && !w.given("heading"))
-        throw UserError(w.where("pitch"), "a waypoint with a pitch but no heading", "both, or neither (then it follows the path)", "add 'heading:'");
-      if (w.given("heading")) point.attitude = readAttitude(w, p.carrier >= 0);
-      if (w.given("roll")) point.roll_rad = w.number("roll");
-      // 1 ns: velocities stay finite however far apart the positions are.
-      if (!waypoints.empty() && point.time_s < waypoints.back().time_s + 1e-9)
-        throw UserError(w.where("time"), "the times of a motion do not rise", "each waypoint later than the one before", "sort the waypoints");
-      waypoints.push_back(point);
-    }
-    p.motion = Motion(std::move(waypoints), r.text("interpolation") == "linear" ? Motion::Interpolation::Linear : Motion::Interpolation::Smooth);
-    return p;
-  }
-  Pose fixed;
-  fixed.position = positionOf(r, false);
-  if (attitude) {
-    // Not turned: the body's x, y, z are east, north, up (or the carrier's own axes).
-    if (const auto given = readAttitude(r, p.carrier >= 0)) fixed.orientation = orientationFrom(*given);
-  }
-  p.motion = Motion(fixed);
-  return p;
-}
 
 int Builder::entityNamed(const Value& asked) const {
   const std::string name = readText(asked, "entity");
@@ -246,7 +200,7 @@ void Builder::readSurfaces(const Record& r, Entity& entity) {
     s.meshPart = static_cast<std::uint32_t>(i);
     if (!materials.count(material)) materials[material] = materialNamed(*material);
     s.material = materials[material];
-    if (temperature->kind == Value::Kind::Map) {
+    if (temperature->kind == Value::Kind::Map && !isCourse(*temperature) && !isRecovery(*temperature)) {
       if (!textures.count(temperature)) textures[temperature] = readTexture(*temperature, "K", "temperature", 0.0, 1e5);
       s.temperatureTexture = textures[temperature];
       const auto& texels = simulation_.textures[static_cast<size_t>(s.temperatureTexture)].texels;
@@ -256,10 +210,7 @@ void Builder::readSurfaces(const Record& r, Entity& entity) {
       const auto [low, high] = std::minmax_element(texels.begin(), texels.end());
       checkTemperatures(s.material, static_cast<double>(*low), static_cast<double>(*high), temperature->where);
     } else {
-      s.temperature_K = readNumber(*temperature, "K", "temperature");
-      if (s.temperature_K < 0.0 || s.temperature_K > 1e5)
-        throw UserError(temperature->where, "temperature is out of range (" + temperature->text.substr(0, 40) + ")", "0 to 100000 K", "correct it");
-      checkTemperatures(s.material, s.temperature_K, s.temperature_K, temperature->where);
+      readTemperature(*temperature, static_cast<int>(simulation_.entities.size()), static_cast<int>(i), s);
     }
     if (hasPattern(simulation_, s) && !hasUv(*entity.mesh, i))
       throw UserError(s.temperatureTexture >= 0 ? temperature->where : material->where,
@@ -276,7 +227,7 @@ void Builder::checkMedium(const Record& r, const Entity& e) const {
   if (filled == e.surfaces.end()) return;
   const std::string name = "'" + e.name.substr(0, 60) + "'";
   for (const Surface& s : e.surfaces) {
-    if (s.material != filled->material || s.temperature_K != filled->temperature_K)
+    if (s.material != filled->material || s.temperature_K != filled->temperature_K || s.temperature != filled->temperature)
       throw UserError(r.where("parts"), "the parts of " + name + " differ, and '" + material(*filled)->name.substr(0, 60) + "' is a medium",
                       "one material and temperature for a body that a medium fills", "remove 'parts', or make two entities of it");
     if (s.temperatureTexture >= 0)
@@ -308,15 +259,20 @@ void Builder::readEntities(const Record& scenario) {
                       "simplify meshes, or lower 'segments' and 'columns'");
     readSurfaces(r, e);
     checkMedium(r, e);
-    const Placement p = readPlacement(r, true);
+    const Placement p = readPlacement(r, Mover::Entity);
     e.motion = p.motion;
     e.parent = p.carrier;
+    e.lifetime = p.lifetime;
+    e.flight = p.flight;
+    if (p.fliesLater) fliesLater_[static_cast<int>(simulation_.entities.size())] = &v;
     const BoundingSphere sphere = boundingSphere(*e.mesh);
     e.boundingCentre = glm::vec3(sphere.center);
     e.boundingRadius_m = static_cast<float>(sphere.radius_m);
     entityIndex_[e.name] = static_cast<int>(simulation_.entities.size());
     simulation_.entities.push_back(std::move(e));
   }
+  flyAll();
+  readRecoveries();
 }
 
 void Builder::readLights(const Record& scenario) {
@@ -333,9 +289,11 @@ void Builder::readLights(const Record& scenario) {
     const auto spectra =
         spectraOf(model.parameters, r, [&](const Value& s, const Parameter& p) { return bounded(spectra_, s, p.unit, p.key, p.minimum, p.maximum); });
     model.make({r, spectra}, l);
-    const Placement p = readPlacement(r, false);
+    Placement p = readPlacement(r, Mover::Light);
+    if (p.fliesLater) flyNow(r, Mover::Light, p);
     l.motion = p.motion;
     l.parent = p.carrier;
+    l.lifetime = p.lifetime;
     simulation_.lights.push_back(std::move(l));
   }
 }

@@ -13,6 +13,8 @@
 
 namespace pitviper {
 
+enum class Species;
+
 /// A number for a message: six digits at most.
 std::string briefNumber(double v);
 
@@ -26,6 +28,7 @@ class Builder {
   void readOrigin(const Record& scenario);
   void readTime(const Record& scenario);
   void readLimits(const Record& scenario);
+  void readAirMotion(const Record& scenario);
   /// After everything that can be narrow in wavelength: air and materials.
   void readAccuracy(const Record& scenario);
   void readAtmosphere(const Record& scenario);
@@ -38,6 +41,10 @@ class Builder {
   void readAmbient(const Record& scenario);
   void readEntities(const Record& scenario);
   void readLights(const Record& scenario);
+  /// After entities and the air; flares add lights.
+  void readPlumes(const Record& scenario);
+  void readSmokes(const Record& scenario);
+  void readFlares(const Record& scenario);
   void readCameras(const Record& scenario);
   void readProbes(const Record& scenario);
   /// After everything that they can change.
@@ -62,13 +69,26 @@ class Builder {
   /// A file of materials/substances as a tree.
   Value substanceNamed(const std::string& name, const Location& asked) const;
   int readTexture(const Value& value, std::string_view unit, std::string_view name, double lowest, double highest);
-  // bodies.cpp
+  // moving.cpp
   struct Placement {
     Motion motion;
     int carrier = -1;
+    Lifetime lifetime;
+    std::shared_ptr<const FlightRecord> flight;
+    bool fliesLater = false;  ///< its motion depends on others: flyAll() works it out
   };
-  Placement readPlacement(const Record& r, bool attitude);
-  glm::dvec3 positionOf(const Record& r, bool required) const;
+  enum class Mover { Entity, Light, Camera };
+  Placement readPlacement(const Record& r, Mover mover);
+  /// A flight of something whose carrier and target have their motions; it is then its own.
+  void flyNow(const Record& r, Mover mover, Placement& placement) const;
+  /// Motions of the entities that fly, targets and carriers first. Errors: UserError for those that wait for each other.
+  void flyAll();
+  /// After flyAll(): temperatures that follow from motions.
+  void readRecoveries();
+  /// A temperature that is not a texture: a number, a course, or one that readRecoveries() works out.
+  void readTemperature(const Value& value, int entity, int surface, Surface& s);
+  int targetNamed(const Value& asked) const;
+  // bodies.cpp
   std::shared_ptr<const Mesh> shapeOf(const Value& value, BodyForm& form);
   std::shared_ptr<const Mesh> readShape(const Value& value, BodyForm& form);
   void checkMedium(const Record& entity, const Entity& e) const;
@@ -82,6 +102,20 @@ class Builder {
   void keepOutput(std::vector<ChannelOutput>& outputs, const std::function<ChannelOutput()>& make, const Location& where) const;
   void planned(const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where);
   SpectralSampling readSpectral(const Record& r);
+  // plumes.cpp
+  /// With the levels that it needs between two temperatures.
+  FieldGas gasOf(Species species, double low_K, double high_K);
+  void readJets(const Record& r, FieldBody& body);
+  void readGrid(const Record& r, FieldBody& body);
+  /// Within `life`, the times at which an entity is there.
+  void whileThere(int entity, Lifetime& life, const Record& r) const;
+  // smokes.cpp
+  /// A material of a field's gas, made once by each name.
+  int fieldMaterial(const std::string& name, const std::string& source, const std::function<Medium()>& make);
+  /// Of a smoke by name; `where`: who asks.
+  int smokeMaterial(const std::string& name, const Location& where);
+  /// How much warmer the air is than the standard atmosphere's.
+  double airWarmer_K() const;
   // sensor_reader.cpp
   SpectralBins readSpectralBins(const Record& r, const Pinhole& pinhole);
 
@@ -106,6 +140,16 @@ class Builder {
   std::map<std::string, const Value*> materialValues_;
   std::map<std::string, Location> entityNames_, lightNames_, cameraNames_;
   std::map<std::string, int> entityIndex_;
+  std::map<std::string, int> fieldMaterials_;
+  std::map<std::array<double, 3>, FieldGas> gases_;  ///< by species and temperatures
+  std::map<std::string, Location> smokeNames_;
+  bool hasOrigin_ = false;
+  std::map<int, const Value*> fliesLater_;  ///< entities, as they were written
+  struct Recovery {
+    int entity, surface;
+    const Value* value;
+  };
+  std::vector<Recovery> recoveries_;
   std::map<std::string, std::pair<std::shared_ptr<const Mesh>, BodyForm>> shapes_;
 };
 

@@ -7,9 +7,11 @@
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
+#include "sensors/gimbal/gimbal_choice.hpp"
 #include "sensors/quantity.hpp"
 #include "sensors/stages.hpp"
 #include "sim/model/coverage.hpp"
+#include "sim/parameters/time_course.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/plan/plan.hpp"
 
@@ -80,6 +82,20 @@ void readReadOut(const Record& film, Camera& c) {
     throw UserError(list.where, "a window that is not within the film's " + std::to_string(p.width) + "x" + std::to_string(p.height) + " pixels",
                     "[left, top, width, height] within it", "correct it");
   c.window = glm::ivec4(w[0], w[1], w[2], w[3]);
+}
+
+/// Focal lengths over time, of a film so wide [m]; empty where they stay.
+TimeCourse focalLengths(const Record& r, double width_m) {
+  if (r.given("focal_length")) {
+    const TimeCourse given = r.course("focal_length");
+    if (!given.isConstant()) return given;
+  }
+  if (!r.given("field_of_view")) return {};
+  const TimeCourse angles = r.course("field_of_view");
+  if (angles.isConstant()) return {};
+  std::vector<TimeCourse::Point> points = angles.points();
+  for (TimeCourse::Point& p : points) p.value = 0.5 * width_m / std::tan(0.5 * p.value);
+  return TimeCourse(std::move(points), angles.interpolation(), angles.outside());
 }
 
 constexpr int kAuto = 2;
@@ -332,22 +348,32 @@ void Builder::readCameras(const Record& scenario) {
       throw UserError(r.where(), ways == 3 ? "focal length, pitch and field of view together say too much" : "the projection is not determined",
                       "focal_length and film.pitch; or field_of_view with one of them (or alone: 50 mm)",
                       ways == 3 ? "remove one" : "add 'field_of_view: 5 deg' or 'focal_length' and 'pitch'");
-    const double tangent = r.given("field_of_view") ? 2.0 * std::tan(0.5 * r.number("field_of_view")) : 0.0;
+    // What changes over time is as of the first frame here.
+    const double first_s = simulation_.time.at(0);
+    const double tangent = r.given("field_of_view") ? 2.0 * std::tan(0.5 * r.course("field_of_view").at(first_s)) : 0.0;
     if (film.given("pitch") && r.given("field_of_view")) {
       p.pitchX_m = film.number("pitch");
       p.focalLength_m = p.pitchX_m * p.width / tangent;
     } else {
-      p.focalLength_m = r.given("focal_length") ? r.number("focal_length") : 0.05;
+      p.focalLength_m = r.given("focal_length") ? r.course("focal_length").at(first_s) : 0.05;
       p.pitchX_m = film.given("pitch") ? film.number("pitch") : p.focalLength_m * tangent / p.width;
     }
     p.pitchY_m = film.given("pitch_y") ? film.number("pitch_y") : p.pitchX_m;
     readAperture(r, p);
     readReadOut(film, c);
-    if (!p.isFlat())
+    c.focalLengthOverTime_m = focalLengths(r, p.focalLength_m * tangent);
+    Pinhole widest = p;
+    if (!c.focalLengthOverTime_m.empty())
+      widest.focalLength_m = c.focalLengthOverTime_m.range(first_s, simulation_.time.at(simulation_.time.frames - 1)).first;
+    if (!widest.isFlat())
       throw UserError(r.where("film"), "the field of view is wider than a flat film can hold", "below 176 deg",
                       "use a longer focal length, or several cameras");
 
-    if (r.given("exposure")) c.exposure_s = r.number("exposure");
+    if (r.given("exposure")) {
+      const TimeCourse exposure = r.course("exposure");
+      c.exposure_s = exposure.at(first_s);
+      if (!exposure.isConstant()) c.exposureOverTime_s = exposure;
+    }
     c.motionBlur = r.boolean("motion_blur");
     if (r.given("exposure_parts")) c.exposureParts = static_cast<int>(r.integer("exposure_parts"));
     if (c.motionBlur && !(c.exposure_s > 0.0))
@@ -355,12 +381,14 @@ void Builder::readCameras(const Record& scenario) {
     c.near_m = r.number("near");
     c.smallBody_px = r.number("small_bodies");
 
-    const Placement place = readPlacement(r, true);
+    Placement place = readPlacement(r, Mover::Camera);
+    if (place.fliesLater) flyNow(r, Mover::Camera, place);
     c.mount.motion = place.motion;
     c.mount.carrier = place.carrier;
     if (r.given("look_at")) {
       for (const char* key : {"heading", "pitch", "roll"})
-        if (r.given(key)) throw UserError(r.where(key), std::string("a ") + key + " and a look_at", "one of the two", "remove one");
+        if (r.given(key) && !r.given("gimbal"))  // whose base they turn
+          throw UserError(r.where(key), std::string("a ") + key + " and a look_at", "one of the two", "remove one");
       const Value& target = r.value("look_at");
       if (target.kind == Value::Kind::List || (target.kind == Value::Kind::Scalar && target.text.find(',') != std::string::npos)) {
         c.mount.looksAtPoint = true;
@@ -368,8 +396,10 @@ void Builder::readCameras(const Record& scenario) {
         if (!(glm::length(c.mount.lookAtPoint) <= 1e9))
           throw UserError(target.where, "look_at is more than a million km away", "metres from the origin", "check the unit");
       } else {
-        c.mount.lookAtEntity = entityNamed(target);
-        if (c.mount.lookAtEntity == c.mount.carrier)
+        const auto light = std::find_if(simulation_.lights.begin(), simulation_.lights.end(), [&](const PointLight& l) { return l.name == target.text; });
+        if (light != simulation_.lights.end() && entityNames_.count(target.text) == 0) c.mount.lookAtLight = static_cast<int>(light - simulation_.lights.begin());
+        else c.mount.lookAtEntity = entityNamed(target);
+        if (c.mount.lookAtEntity >= 0 && c.mount.lookAtEntity == c.mount.carrier)
           throw UserError(target.where, "a camera looks at the body that carries it", "another body", "change look_at");
       }
     } else if (!r.given("heading") && !r.given("pitch") && !r.given("motion") && c.mount.carrier < 0) {
@@ -401,6 +431,8 @@ void Builder::readCameras(const Record& scenario) {
       }
     planned(c.outputs, c.spectral, c.where);
     for (ChannelOutput& o : c.outputs) tellTemperature(o);
+    if (r.given("gimbal"))
+      c.follower = readGimbal(r.value("gimbal"), simulation_, c, r.given("look_at") ? r.where("look_at") : r.where("gimbal"));
     c.outlineAccuracy = c.spectral.reference ? 0.0 : c.spectral.accuracy;
     c.textureAccuracy = c.spectral.reference ? kFinestTextures : c.spectral.accuracy;
     if (r.given("stages"))

@@ -3,11 +3,9 @@
 #include <openssl/sha.h>
 
 #include <cstdlib>
-#include <set>
-#include <string_view>
 
 #include "scenarios/reader/builder.hpp"
-#include "scenarios/reader/move_files.hpp"
+#include "scenarios/reader/expand.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sensors/quantity.hpp"
@@ -39,68 +37,15 @@ Libraries findLibraries() {
                   "set PITVIPER_HOME to it");
 }
 
-namespace {
-
-/// Whether a path leads from a folder to somewhere below the folder above it, by its words and where links on the way lead.
-bool isNear(const std::filesystem::path& folder, const std::filesystem::path& name) {
-  if (name.empty() || name.is_absolute()) return false;
-  if (name.has_parent_path() && name.extension() != ".yaml" && name.extension() != ".yml") return false;  // elsewhere nothing but scenarios is read
-  const auto plain = name.lexically_normal();
-  int up = 0;
-  for (const auto& part : plain) up += part == "..";
-  if (up > 1) return false;
-  std::error_code failed;
-  const auto here = std::filesystem::canonical(folder.empty() ? std::filesystem::path(".") : folder, failed);
-  if (failed) return false;
-  const auto at = std::filesystem::weakly_canonical(here / plain, failed).lexically_relative(here.parent_path());
-  return !failed && !at.empty() && *at.begin() != "..";
-}
-
-/// `extends: other.yaml`: the other's keys hold where the tree has none.
-void extend(Value& tree, const std::filesystem::path& base, std::string& identity) {
-  const Value* from = tree.find("extends");
-  if (tree.kind != Value::Kind::Map || !from) return;
-  const std::filesystem::path name = from->text;
-  if (from->kind != Value::Kind::Scalar || !isNear(base, name))
-    throw UserError(from->where, "not the name of a scenario near this one",
-                    "a relative path to a .yaml file below the folder that holds this scenario's own folder",
-                    "write 'extends: first_light.yaml', 'extends: base/scene.yaml' or 'extends: ../common/scene.yaml'");
-  std::string text;
-  Value other = loadYaml(base / name, from->where, &text);
-  if (other.kind != Value::Kind::Map)
-    throw UserError(other.where, "a scenario is " + std::string(other.kindName()), "a map of keys", "see scenarios/README.md");
-  if (const Value* further = other.find("extends"))
-    throw UserError(further->where, "a scenario that is extended extends another itself", "one that is whole", "name that one, or write its keys here");
-  identity += "\n--extends\n" + text;
-  if (name.has_parent_path()) moveFiles(other, name.parent_path());
-  tree.entries.reserve(tree.entries.size() + other.entries.size());  // `own` looks at the keys: they must stay where they are
-  std::set<std::string_view> own;
-  for (const auto& [key, value] : tree.entries) own.insert(key);
-  for (size_t k = 0; k < other.entries.size(); ++k)
-    if (own.count(other.entries[k].first) == 0) {  // a key twice in the other stays twice: the reader tells
-      tree.entries.push_back(other.entries[k]);
-      tree.keyPlaces.push_back(other.keyPlaces[k]);
-    }
-}
-
-}  // namespace
-
 Simulation readScenarioText(const std::string& text, const std::string& fileName, const std::filesystem::path& base, const std::vector<std::string>& overrides,
-                            const Libraries& libraries) {
-  Value tree = parseYaml(text, fileName);
-  std::string identity = text;
-  extend(tree, base, identity);
-  for (const auto& o : overrides) {
-    applyOverride(tree, o);
-    identity += "\n--set " + o;
-  }
-  if (const Value* e = tree.find("extends"); e && e->where.file.starts_with("--set"))
-    throw UserError(e->where, "what a scenario extends cannot be set from outside", "other keys", "write 'extends' into the file");
+                            const Libraries& libraries, const std::vector<std::filesystem::path>& roots) {
+  const ExpandedScenario expanded = expandScenario(text, fileName, base, overrides, libraries, roots);
+  const Value& tree = expanded.tree;
   const Record r(tree, tables::scenario());
   Simulation sim;
   sim.file = fileName;
   sim.name = r.given("name") ? r.text("name") : std::filesystem::path(fileName).stem().string();
-  sim.sha256 = sha256(identity);
+  sim.sha256 = sha256(expanded.identity);
   sim.seed = r.integer("seed");
   if (r.given("audit")) sim.audit = r.number("audit");
   Builder b(sim, base, libraries);
@@ -114,6 +59,7 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     b.readOrigin(r);
     b.readTime(r);
     b.readLimits(r);
+    b.readAirMotion(r);
     b.readAtmosphere(r);
     b.readBackground(r);
     b.readSun(r);
@@ -122,6 +68,9 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     b.readGround(r);
     b.readAmbient(r);
     b.readEntities(r);
+    b.readPlumes(r);
+    b.readSmokes(r);
+    b.readFlares(r);
     if (sim.mode == RenderMode::Direct && sim.hasTransparent())
       throw UserError(Record(r.value("render"), tables::render()).where("mode"), "direct mode cannot draw what is seen through something transparent",
                       "'auto' or 'buffered' in a scenario with a transmission or a medium", "write 'mode: auto'");
@@ -141,10 +90,11 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
   return sim;
 }
 
-Simulation readScenario(const std::filesystem::path& file, const std::vector<std::string>& overrides, const Libraries& libraries) {
+Simulation readScenario(const std::filesystem::path& file, const std::vector<std::string>& overrides, const Libraries& libraries,
+                        const std::vector<std::filesystem::path>& roots) {
   std::string text;
   loadYaml(file, {file.string(), 0, 0, -1}, &text);
-  return readScenarioText(text, file.string(), file.parent_path(), overrides, libraries);
+  return readScenarioText(text, file.string(), file.parent_path(), overrides, libraries, roots);
 }
 
 std::string keyReference() {

@@ -14,12 +14,14 @@ struct Libraries {
 };
 Libraries findLibraries();
 
-/// Reads, checks and builds; nothing is rendered. `overrides` are "path.to.key=value". Every mistake is a UserError.
-Simulation readScenario(const std::filesystem::path& file, const std::vector<std::string>& overrides, const Libraries& libraries);
+/// Reads, checks and builds; nothing is rendered. `overrides` are "path.to.key=value"; `roots` further folders whose files it may include and extend. Every
+/// mistake is a UserError.
+Simulation readScenario(const std::filesystem::path& file, const std::vector<std::string>& overrides, const Libraries& libraries,
+                        const std::vector<std::filesystem::path>& roots = {});
 
 /// The same from text in memory; relative files are looked for in `base`.
 Simulation readScenarioText(const std::string& text, const std::string& fileName, const std::filesystem::path& base, const std::vector<std::string>& overrides,
-                            const Libraries& libraries);
+                            const Libraries& libraries, const std::vector<std::filesystem::path>& roots = {});
 
 /// scenarios/README.md's key reference.
 std::string keyReference();

@@ -4,9 +4,15 @@
 #include "materials/angle_tables.hpp"
 #include "materials/models.hpp"
 #include "materials/reflection.hpp"
+#include "sensors/gimbal/gimbal_choice.hpp"
 #include "sensors/quantity.hpp"
 #include "sensors/stages.hpp"
+#include "scenarios/reader/flares.hpp"
+#include "scenarios/reader/flights.hpp"
+#include "scenarios/reader/plumes.hpp"
+#include "scenarios/reader/smokes.hpp"
 #include "sim/parameters/spectrum_value.hpp"
+#include "sim/parameters/time_course.hpp"
 #include "sim/scene/placement.hpp"
 #include "sim/stream/command_models.hpp"
 #include "sim/stream/sink_models.hpp"
@@ -25,11 +31,20 @@ void addPlacement(std::vector<Parameter>& p, bool attitude, double mostTurn = kM
   for (auto& own : positionParameters()) p.push_back(std::move(own));
   if (attitude)
     for (auto& own : attitudeParameters(mostTurn)) p.push_back(std::move(own));
-  p.push_back(list("motion", "waypoints; orientation follows the path unless a waypoint gives one", 1, 100000));
+  p.push_back(any("motion",
+                  "waypoints, whose orientation follows the path unless a waypoint gives one; or a map with `model`: waypoints, route, csv, ballistic or missile"));
   p.push_back(withDefault(choice("interpolation", {"smooth", "linear"}, "between waypoints: cubic with continuous velocity, or straight"), "smooth"));
+  p.push_back(any("ends", "what its motion does before its first and after its last point: hold, go_on, loop or vanish, or a map of `before` and `after`"));
+  p.push_back(map("spin", "turning about an axis of its own, on top of its attitude"));
   p.push_back(text("attached_to",
                    "name of an entity that carries it: positions are then in that body's axes. A camera does not see its carrier: attach one behind a dome to "
                    "the aircraft, not to the dome"));
+}
+
+/// From when to when it is there.
+void addLifetime(std::vector<Parameter>& p) {
+  p.push_back(within(number("begin", "s", "from then on it is there: seen, in the way of light, casting shadows; always unless given"), -kLongestTime_s, kLongestTime_s));
+  p.push_back(within(number("end", "s", "at that time it no longer is"), -kLongestTime_s, kLongestTime_s));
 }
 
 /// A spectrum over view angle: emissivity, transmittance.
@@ -52,7 +67,11 @@ const ParameterTable& scenario() {
        text("description", "one or two sentences"),
        text("extends",
             "a scenario whose keys hold where this one has none: the same scene with other cameras. A path relative to this file, within the folder above its "
-            "own; files that it names are found from its own folder"),
+            "own, in a folder of `--root` or in a library; files that it names are found from its own folder"),
+       any("include",
+           "a file, or a list of files, whose keys are put under this one's: maps key by key, own keys first; lists joined, the included first (not `sinks`). "
+           "Below the scenario's folder, in a folder of `--root` or in a library"),
+       map("parameters", "name: value, for `$name` anywhere else in this file and in those that it includes here"),
        withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL), "1"),
        map("origin", "where the local east-north-up frame stands on the earth"),
        map("time", "first frame, rate and number of frames"),
@@ -67,6 +86,7 @@ const ParameterTable& scenario() {
                      "many as cost about a twentieth of the time"),
               0.0, 1e6),
        any("atmosphere", "the air: `none`, the name of a library air, or a map"),
+       map("wind", "where the air goes to, for what flies in it"),
        map("background", "what is behind everything (0 K unless given), seen through the air"),
        map("ground", "the earth's surface where bodies end: under layered air it is always there, black unless this says otherwise"),
        map("sun", "direction and irradiance"),
@@ -74,10 +94,31 @@ const ParameterTable& scenario() {
        map("materials", "name: material; library materials need not be listed"),
        list("lights", "spectral point lights", 0, 1024),
        list("entities", "bodies", 0, 4096),
+       list("plumes", "exhaust of engines, motors and nozzles", 0, 256),
+       list("smokes", "trails of smoke, let out by bodies or at places", 0, 256),
+       list("flares", "decoys that entities eject: a light, a burning cloud, smoke", 0, 256),
        list("cameras", "sensors", 0, 64),
        list("probes", "irradiance meters", 0, 256),
        list("commands", "changes from a time on: bodies moved, cameras turned, temperatures, lights", 0, 4096),
        list("sinks", "where frames go; `[files]` unless given", 1, 64)}};
+  return t;
+}
+
+const ParameterTable& entryOfList() {
+  static const ParameterTable t{"entry of a list",
+                                "Any entry that is a map, as of `entities`, `lights`, `cameras`, `channels`, `motion`.",
+                                {map("repeat", "the entry stands several times"),
+                                 text("include", "the entries of a file stand here: those of its list, or the one that its map is; beside it nothing but `with` and `repeat`"),
+                                 map("with", "name: value, parameters of that file")}};
+  return t;
+}
+
+const ParameterTable& repeat() {
+  static const ParameterTable t{
+      "repeat",
+      "An entry as often as it says. Names that do not hold the number get `_0`, `_1`, ...",
+      {required(integer("count", "how often; 0: never", 0, 4096)), withDefault(text("as", "the name of its number, from 0: `$i`"), "i"),
+       map("every", "what is added from each to the next, in the form of the entry: `{position: [10 m, 0 m, 0 m], motion: {time: 0.3 s}}`; keys that the entry has")}};
   return t;
 }
 
@@ -303,6 +344,7 @@ ParameterTable light(const LightModel& model) {
   t.parameters.push_back(withDefault(within(number("radius", "m", "distances to it are bounded below by this"), 1e-6, 1e6), "0.05 m"));
   t.parameters.push_back(withDefault(boolean("visible", "adds its own flux to the pixel it is seen in"), "true"));
   addPlacement(t.parameters, false);
+  addLifetime(t.parameters);
   return t;
 }
 
@@ -312,8 +354,10 @@ const ParameterTable& entity() {
                      "A body: shape, surface, place.",
                      {required(text("name", "unique name")), required(map("shape", "what it looks like")),
                       any("material", "of all parts without one of their own: a name, or a material written out"),
-                      any("temperature", "of all parts without one of their own: a number or a texture"), map("parts", "part name: material and temperature")}};
+                      any("temperature", "of all parts without one of their own: a number, a course (a number over time), a texture, or a map with `recovery`"),
+                      map("parts", "part name: material and temperature")}};
     addPlacement(x.parameters, true);
+    addLifetime(x.parameters);
     return x;
   }();
   return t;
@@ -321,7 +365,7 @@ const ParameterTable& entity() {
 
 const ParameterTable& part() {
   static const ParameterTable t{
-      "part", "", {any("material", "name of a material, or one written out"), any("temperature", "a temperature, or a texture in K")}};
+      "part", "", {any("material", "name of a material, or one written out"), any("temperature", "a number, a course, a texture in K, or a map with `recovery`")}};
   return t;
 }
 
@@ -361,7 +405,9 @@ const ParameterTable& waypoint() {
   static const ParameterTable t = [] {
     ParameterTable x{"waypoint", "", {required(within(number("time", "s", "rising"), -kLongestTime_s, kLongestTime_s))}};
     addPlacement(x.parameters, true, 2 * kHalfTurn);
-    std::erase_if(x.parameters, [](const Parameter& p) { return p.key == "motion" || p.key == "interpolation" || p.key == "attached_to"; });
+    std::erase_if(x.parameters, [](const Parameter& p) {
+      return p.key == "motion" || p.key == "interpolation" || p.key == "attached_to" || p.key == "ends" || p.key == "spin";
+    });
     return x;
   }();
   return t;
@@ -374,14 +420,17 @@ const ParameterTable& camera() {
         "A pinhole projection with a real aperture; up to 16 channels.",
         {required(text("name", "unique name; begins the file names")),
          any("sensor", "a library sensor's name, or {file: ...}: its keys hold where the camera has none of its own"), required(map("film", "pixels")),
-         within(number("focal_length", "m", "with `pitch` of the film"), 1e-6, 1e4),
-         within(number("field_of_view", "rad", "horizontal, instead of focal length (then 50 mm) or of pitch"), 1e-9, 3.1),
+         within(course("focal_length", "m", "with `pitch` of the film"), 1e-6, 1e4),
+         within(course("field_of_view", "rad",
+                       "horizontal, instead of focal length (then 50 mm) or of pitch; over time it zooms: the focal length goes evenly from row to row, pitch and "
+                       "aperture stay"),
+                1e-9, 3.1),
          within(number("aperture", "m", "diameter of the entrance pupil; needed unless `f_number` tells it"), 1e-9, 1e3),
          within(number("f_number", "", "focal length over aperture (an ideal, aplanatic lens: the film gets pi L / (4 F^2) on the axis); with either the other "
                        "follows, with both all three must agree"),
                 0.5, 1e4),
          spectrum("optics", "", "transmission of the optics, 0..1; 0 outside its table, as a response is"),
-         within(number("exposure", "s", "exposure time, around the frame's time"), 1e-12, 1e6),
+         within(course("exposure", "s", "exposure time, around the frame's time"), 1e-12, 1e6),
          withDefault(boolean("motion_blur", "what moves while it exposes is drawn at several times of the exposure"), "false"),
          integer("exposure_parts", "so many times; unless given as many as the accuracy (1 % where none is asked for) takes", 1, 256),
          withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
@@ -403,7 +452,8 @@ const ParameterTable& camera() {
               "light is made of, worked out in double precision: slow); and targets: place, range, intensity, contrast, signal to noise of each body and lamp, in "
               "the frame and in <camera>_truth.csv",
               0, 9),
-         any("look_at", "name of an entity, or a position [x, y, z]")}};
+         any("look_at", "name of an entity or a light, or a position [x, y, z]; with a `gimbal` its target, and heading, pitch and roll are of the gimbal's base"),
+         map("gimbal", "two axes that follow what it looks at, within their limits")}};
     addPlacement(x.parameters, true);
     return x;
   }();
@@ -494,7 +544,7 @@ const ParameterTable& probe() {
 }
 
 std::vector<ParameterTable> all() {
-  std::vector<ParameterTable> every{scenario(), render(), origin(), time(), limits(), accuracy(), commonAirTable()};
+  std::vector<ParameterTable> every{scenario(), entryOfList(), repeat(), render(), origin(), time(), limits(), accuracy(), commonAirTable()};
   const auto addAll = [&every](const auto& registry, const auto& tableOf) {
     for (const auto& model : registry.all()) every.push_back(tableOf(model));
   };
@@ -507,8 +557,11 @@ std::vector<ParameterTable> all() {
   for (const auto& t : {filmLayerTable(), refractiveIndexTable(), angleAxisTable(), texture(), emission(), transmission()}) every.push_back(t);
   addAll(lightModels(), light);
   for (const auto& t :
-       {entity(), part(), shape(), waypoint(), geodetic(), camera(), cameraPreset(), film(), channel(), spectral(), spectralImage(), sensor(), probe()})
+       {courseTable(), entity(), part(), recovery(), shape(), waypoint(), ends(), spin(), motionWaypoints(), motionRoute(), routePoint(), motionCsv(), motionBallistic(),
+        motionMissile(), wind(), geodetic(), camera(), cameraPreset(), film(), channel(), spectral(), spectralImage(), sensor(), probe()})
     every.push_back(t);
+  for (const auto& t : gimbalTables()) every.push_back(t);
+  for (const auto& t : {plume(), plumeNozzle(), plumeSpecies(), plumeGrid(), plumeArrays(), smoke(), flare(), flareDirection(), flareSequence()}) every.push_back(t);
   addAll(stageModels(), stageTable);
   addAll(commandModels(), commandTable);
   addAll(sinkModels(), sinkTable);

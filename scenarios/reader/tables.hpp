@@ -9,6 +9,8 @@
 namespace pitviper::tables {
 
 const ParameterTable& scenario();
+const ParameterTable& entryOfList();
+const ParameterTable& repeat();
 const ParameterTable& render();
 const ParameterTable& origin();
 const ParameterTable& time();

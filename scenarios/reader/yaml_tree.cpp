@@ -207,10 +207,10 @@ Value parseYaml(const std::string& text, const std::string& fileName) {
   }
 }
 
-Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::string* textOut) {
+Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::string* textOut, const std::string& shown) {
   std::string text = readWholeFile(
       file, {.what = "a readable YAML file", .mostBytes = kLargestYamlBytes, .fix = "check the name", .fixLarge = "put large tables into CSV files"}, askedAt);
-  Value tree = parseYaml(text, file.string());
+  Value tree = parseYaml(text, shown.empty() ? file.string() : shown);
   if (textOut) *textOut = std::move(text);
   return tree;
 }

@@ -18,8 +18,8 @@ constexpr std::size_t kMostYamlNodes = 500000;
 /// the limits. Duplicate keys are kept: the tables refuse them with a better message.
 Value parseYaml(const std::string& text, const std::string& fileName);
 
-/// Reads a file; `askedAt` is where its name was written (for a missing file).
-Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::string* textOut = nullptr);
+/// Reads a file; `askedAt` is where its name was written (for a missing file), `shown` its name in places where that is another.
+Value loadYaml(const std::filesystem::path& file, const Location& askedAt, std::string* textOut = nullptr, const std::string& shown = "");
 
 /// "path.to.key=value" applied to a tree: list items by number (from 0) or by their `name`. The value is YAML.
 /// UserError where the path leads nowhere.

@@ -91,17 +91,22 @@ void FollowLoop::advance(Course& course, const FollowTick& now) const {
 }
 
 PoseRow FollowLoop::tick(const FollowTick& now) {
-  if (!record_.empty() && !(now.time_s > course_.last.time_s)) throw std::invalid_argument("gimbal: ticks that do not rise");
+  if (row_ && !(now.time_s > course_.last.time_s)) throw std::invalid_argument("gimbal: ticks that do not rise");
   PoseRow row;
   if (replay_ != nullptr) {
     row = replay_->ofFrame(now.frame);
     row.driver = GimbalDriver::Poses;
     course_.last = now;
+    row_ = row;
     record_.push_back(row);
     return row;
   }
-  if (record_.empty()) begin(now);
-  else advance(course_, now);
+  if (!row_) {
+    begin(now);
+  } else {
+    before_ = course_;
+    advance(course_, now);
+  }
   const glm::dvec2 angle = course_.gimbal.angle_rad;
   row.time_s = now.time_s;
   row.frame = now.frame;
@@ -111,22 +116,43 @@ PoseRow FollowLoop::tick(const FollowTick& now) {
   if (options_.driver == GimbalDriver::Centroid) {
     row.locked = tracker_.locked();
     if (seen_)
-      if (const auto at = filmOf(options_.film, glm::conjugate(believed(now, angle)) * *seen_)) tracker_.expectAt(*at);
+      if (const auto at = filmOf(filmAt(now), glm::conjugate(believed(now, angle)) * *seen_)) tracker_.expectAt(*at);
   } else {
     const Line& line = course_.lines.front();
     glm::dvec2 demanded = demandOfLine(line, anglesAt(line, now.carrier), now.time_s);
     demanded.x = azimuthNear(options_.gimbal.limits, demanded.x, angle.x);
     row.locked = beyondLimits(options_.gimbal.limits, demanded) == glm::dvec2(0.0);
   }
+  row_ = row;
   record_.push_back(row);
   return row;
 }
 
+Pinhole FollowLoop::filmAt(const FollowTick& at) const {
+  Pinhole film = options_.film;
+  if (at.focalLength_m > 0.0) film.focalLength_m = at.focalLength_m;
+  return film;
+}
+
+Pose FollowLoop::replayedAt(double time_s) const {
+  const std::vector<PoseRow>& rows = replay_->rows;
+  const auto after = std::lower_bound(rows.begin(), rows.end(), time_s, [](const PoseRow& row, double t) { return row.time_s < t; });
+  if (after == rows.begin()) return rows.front().pose;
+  if (after == rows.end()) return rows.back().pose;
+  if (after->time_s == time_s) return after->pose;
+  const PoseRow& before = *(after - 1);
+  const double share = (time_s - before.time_s) / (after->time_s - before.time_s);
+  return {glm::mix(before.pose.position, after->pose.position, share), glm::normalize(glm::slerp(before.pose.orientation, after->pose.orientation, share))};
+}
+
 Pose FollowLoop::during(const FollowTick& then) const {
-  if (record_.empty() || !(then.time_s >= course_.last.time_s)) throw std::invalid_argument("gimbal: a time before the last tick");
-  if (replay_ != nullptr || then.time_s == course_.last.time_s) return record_.back().pose;
-  Course course = course_;
-  advance(course, then);
+  if (!row_) throw std::invalid_argument("gimbal: a time before there was a tick");
+  if (then.time_s == course_.last.time_s) return row_->pose;
+  if (replay_ != nullptr) return replayedAt(then.time_s);
+  const bool isBefore = then.time_s < course_.last.time_s;
+  Course course = isBefore && before_ ? *before_ : course_;
+  // An exposure that began before the last tick but one is longer than a frame: what it saw of that time is told as of its end.
+  if (then.time_s > course.last.time_s) advance(course, then);
   return {then.cameraPosition, sight(then, course.gimbal.angle_rad)};
 }
 
@@ -143,25 +169,25 @@ void FollowLoop::demandAlong(const glm::dvec3& direction, double from_s, bool is
 }
 
 Centroid FollowLoop::look(std::span<const float> picture) {
-  if (record_.empty()) throw std::invalid_argument("gimbal: a picture before the first tick");
+  if (!row_) throw std::invalid_argument("gimbal: a picture before the first tick");
   const Centroid c = tracker_.look(picture, options_.film.width, options_.film.height);
   if (!c.found) return c;
-  seen_ = believed(course_.last, course_.gimbal.angle_rad) * directionOfFilm(options_.film, c.at_px);
+  seen_ = believed(course_.last, course_.gimbal.angle_rad) * directionOfFilm(filmAt(course_.last), c.at_px);
   demandAlong(*seen_, course_.last.time_s + options_.latency_s, true);
   return c;
 }
 
-void FollowLoop::command(const glm::dvec2& angles) {
+void FollowLoop::command(const glm::dvec2& angles, double from_s) {
   if (!std::isfinite(angles.x) || !std::isfinite(angles.y)) throw std::invalid_argument("gimbal: a command that is no direction");
-  if (record_.empty()) throw std::invalid_argument("gimbal: a command before the first tick");
-  demand({course_.last.time_s, directionOf(angles), true, false});
+  if (!row_) throw std::invalid_argument("gimbal: a command before the first tick");
+  demand({std::max(course_.last.time_s, from_s), directionOf(angles), true, false});
 }
 
-void FollowLoop::commandAlong(const glm::dvec3& direction) {
+void FollowLoop::commandAlong(const glm::dvec3& direction, double from_s) {
   const double length = glm::length(direction);
   if (!(length > 0.0) || !std::isfinite(length)) throw std::invalid_argument("gimbal: a command that is no direction");
-  if (record_.empty()) throw std::invalid_argument("gimbal: a command before the first tick");
-  demandAlong(direction, course_.last.time_s, false);
+  if (!row_) throw std::invalid_argument("gimbal: a command before the first tick");
+  demandAlong(direction, std::max(course_.last.time_s, from_s), false);
 }
 
 }  // namespace pitviper

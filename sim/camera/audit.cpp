@@ -69,7 +69,7 @@ int Auditor::doubtful(const WorldState& state, int frame) const {
   for (int pixel : pixelsOf(kDoubts, frame, 2)) {
     const int n = camera_.samples, column = pixel % camera_.pinhole.width, row = camera_.pinhole.height - 1 - pixel / camera_.pinhole.width;
     const glm::dvec3 ray = view.ray((column + 0.5) * n, (row + 0.5) * n);
-    const RayHits hits = castRay(simulation_, state, view.position, view.localFromCamera * ray / glm::length(ray), view.near_m * glm::length(ray), &drawn);
+    const RayHits hits = castRay(simulation_, state, view.position, view.localFromCamera * ray / glm::length(ray), view.near_m * glm::length(ray), &drawn, false, kPlannedFieldSteps);
     const auto [at, isNew] = seen.try_emplace(ReferenceShader::things(hits), 0, pixel);
     ++at->second.first;
   }
@@ -119,11 +119,12 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
   ++tally_.frames;
   tally_.asked = asked_;
   if (own == 0) image.audit.clear();
+  const std::optional<Pose> pose = camera_.follower ? std::optional(cameraAt(camera_, state).pose) : std::nullopt;
   for (size_t k = 0; k < pixels.size(); ++k)
     for (int y = 0; isBroken[k] && y < camera_.samples; ++y)
       for (int x = 0; x < camera_.samples; ++x)
         broken_.push_back(
-            {frame, pixels[k] % camera_.pinhole.width + (x + 0.5) / camera_.samples, pixels[k] / camera_.pinhole.width + (y + 0.5) / camera_.samples});
+            {frame, pixels[k] % camera_.pinhole.width + (x + 0.5) / camera_.samples, pixels[k] / camera_.pinhole.width + (y + 0.5) / camera_.samples, pose});
 }
 
 void Auditor::lookAtWhole(const WorldState& state, int pixel, const CameraImage& image) {

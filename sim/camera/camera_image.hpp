@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/camera/camera_pointer.hpp"
 #include "sim/camera/hot_parts.hpp"
 #include "sim/plan/scattered_again.hpp"
 #include "sim/scene/camera.hpp"
@@ -51,6 +52,7 @@ struct CameraImage {
   int exposureParts = 1;                       ///< times that it is a mean of
   double exposureMotion_px = 0.0, exposureError = 0.0, streakError = 0.0;  ///< as of ExposureParts
   std::vector<SlotAudit> audit;                ///< per slot; empty: not audited
+  std::optional<CameraPointing> pointing;      ///< of a camera with a follower
 };
 
 /// Points become part of the pixels that they are in, and there are none any more.

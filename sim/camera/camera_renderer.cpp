@@ -4,6 +4,8 @@
 #include "sim/camera/visible_lights.hpp"
 #include "sim/camera/zoomed_lines.hpp"
 #include "sim/gl/timing.hpp"
+#include "sim/model/field_lines.hpp"
+#include "sim/model/field_states.hpp"
 #include "sim/plan/planner.hpp"
 
 namespace pitviper {
@@ -44,6 +46,8 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
 }
 
 bool CameraRenderer::seesTransparent() const {
+  for (size_t f = 0; f < simulation_.fields.size(); ++f)
+    if (const FieldState* field = fieldOf(state_, f); field && !fieldLines(view_, *field).isEmpty()) return true;
   for (size_t e = 0; e < present_.size(); ++e) {
     const Entity& entity = simulation_.entities[e];
     if (!present_[e] || !simulation_.isTransparent(entity)) continue;
@@ -69,7 +73,11 @@ int CameraRenderer::viewsOfPicture() const {
 }
 
 void CameraRenderer::begin(const WorldState& state) {
+  if (scattered_.valid()) scattered_.wait();  // of a picture that nobody finished
   state_ = state;
+  // Five lines of sight take as long as a thirtieth of a small picture: while this thread hands triangles over. Fields work out their states as they are asked.
+  const bool aside = scattering_.looks() && simulation_.fields.empty();
+  if (aside) scattered_ = std::async(std::launch::async, [this] { return scattering_.at(state_); });
   view_ = cameraView(camera_, state, camera_.samples);
   view_.wanted = wanted_;
   view_.grouped = camera_.sharesShading ? camera_.samples : 1;
@@ -80,6 +88,7 @@ void CameraRenderer::begin(const WorldState& state) {
   }
   // The carrier would be seen from inside: a camera does not see the body it rides on.
   present_.assign(simulation_.entities.size(), 1);
+  for (size_t e = 0; e < present_.size(); ++e) present_[e] = state.isThere(e);
   if (camera_.mount.carrier >= 0) present_[static_cast<size_t>(camera_.mount.carrier)] = 0;
   small_ = findSmallBodies(simulation_, state_, view_, camera_.smallBody_px * camera_.samples);
   parts_ = given_ ? *given_ : hotParts_.inView(state_, view_, camera_.smallBody_px * camera_.samples, small_, present_);
@@ -162,7 +171,7 @@ CameraImage CameraRenderer::finish() {
   resolved.solidAngles = solidAngles_;
   resolved.exposure_s = cameraAt(camera_, state_).exposure_s;
   if (isBuffered() && buffered_->layers()) resolved.transparentOrder = buffered_->layers()->describeOrder();
-  resolved.scatteredAgain = scattering_.at(state_);
+  resolved.scatteredAgain = scattered_.valid() ? scattered_.get() : scattering_.at(state_);
   resolved.accuracy = plan_.accuracy;
   resolved.predictedError = plan_.predictedError;
   resolved.plan = plan_.fingerprint;

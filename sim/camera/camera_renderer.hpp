@@ -1,6 +1,7 @@
 #pragma once
 // Draws one camera of a simulation at a time: everything between a world state and an image of integrals.
 #include <functional>
+#include <future>
 #include <memory>
 
 #include "sim/camera/hot_parts.hpp"
@@ -69,6 +70,7 @@ class CameraRenderer {
   std::shared_ptr<const std::vector<char>> wanted_;  ///< one flag per subpixel, row 0 at the bottom; null: all
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles_;
   double focalLength_m_ = 0.0;  ///< that these are of
+  std::future<std::vector<ScatteredAgain>> scattered_;  ///< of the picture that was begun; its destructor waits, so nothing it uses goes first
 };
 
 }  // namespace pitviper

@@ -51,7 +51,7 @@ double motionOf(const Simulation& sim, const Camera& camera, const StateAt& stat
   for (int j = 0; j < kLines; ++j)
     for (int i = 0; i < kLines; ++i) {
       const glm::dvec3 ray = v.ray((i + 0.5) * v.width / kLines, (j + 0.5) * v.height / kLines), direction = v.localFromCamera * ray / glm::length(ray);
-      const RayHits hits = castRay(sim, states[1], v.position, direction, v.near_m * glm::length(ray), &drawn);
+      const RayHits hits = castRay(sim, states[1], v.position, direction, v.near_m * glm::length(ray), &drawn, false, 0);
       if (hits.solid.entity < 0) {
         follow(-1, v.position + kFar_m * direction);
         continue;
@@ -60,7 +60,7 @@ double motionOf(const Simulation& sim, const Camera& camera, const StateAt& stat
       follow(hits.solid.entity, glm::inverse(pose.orientation) * (hits.solid.point - pose.position));
     }
   for (std::size_t e = 0; e < sim.entities.size(); ++e)
-    if (drawn[e]) {
+    if (drawn[e] && states[1].isThere(e)) {
       constexpr double kSmall_px = 2.0;
       const double way = follow(static_cast<int>(e), glm::dvec3(sim.entities[e].boundingCentre)),
                    range = glm::length(states[1].entities[e].position - v.position), size = 2.0 * static_cast<double>(sim.entities[e].boundingRadius_m) / range / v.tanPerPixelX;

@@ -88,7 +88,7 @@ double HotParts::weightOf(const std::vector<Part>& parts, std::size_t which, con
 std::vector<Ball> HotParts::inView(const WorldState& state, const View& v, double limit, const std::vector<char>& small, const std::vector<char>& present) {
   std::vector<Ball> balls;
   for (std::size_t e = 0; e < parts_.size(); ++e) {
-    if (!present[e] || small[e] || parts_[e].empty()) continue;
+    if (!present[e] || !state.isThere(e) || small[e] || parts_[e].empty()) continue;
     const Pose& pose = state.entities[e];
     for (std::size_t p = 0; p < parts_[e].size(); ++p) {
       const Part& part = parts_[e][p];

@@ -13,8 +13,9 @@ SensorChain::SensorChain(const Camera& camera, const ShaderLibrary& library)
   for (const StageChoice& s : camera.stages) (s.onPixels ? ofPixels_ : ofCells_).push_back({"sensor: " + s.name, s.make(library)});
 }
 
-std::vector<float> SensorChain::resolved(const std::vector<float>& cells, const std::vector<double>& weights, bool addsUp) const {
+std::vector<float> SensorChain::resolved(std::vector<float> cells, const std::vector<double>& weights, bool addsUp) const {
   const int n = cells_.cells, margin = cells_.margin_px;
+  if (n == 1 && margin == 0) return cells;  // each is its own mean
   std::vector<float> pixels;
   pixels.reserve(static_cast<size_t>(camera_.pinhole.width) * static_cast<size_t>(camera_.pinhole.height));
   for (int row = 0; row < camera_.pinhole.height; ++row)
@@ -31,18 +32,18 @@ std::vector<float> SensorChain::resolved(const std::vector<float>& cells, const 
   return pixels;
 }
 
-std::vector<std::vector<float>> SensorChain::run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
+std::vector<std::vector<float>> SensorChain::run(std::vector<std::vector<float>> drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
                                                  std::vector<SensorPoint> points) {
   calibrate(cellWeights, tick);
-  for (size_t o = 0; o < drawn.size(); ++o) cells_.values(o) = drawn[o];
+  for (size_t o = 0; o < drawn.size(); ++o) cells_.values(o) = std::move(drawn[o]);
   cells_.points = std::move(points);
   cells_.cellWeights = &cellWeights;
   run(ofCells_, tick, cells_);
   cells_.cellWeights = nullptr;
-  for (size_t o = 0; o < drawn.size(); ++o) pixels_.values(o) = resolved(cells_.values(o), cellWeights, camera_.outputs[o].perEtendue);
+  for (size_t o = 0; o < drawn.size(); ++o) pixels_.values(o) = resolved(std::move(cells_.values(o)), cellWeights, camera_.outputs[o].perEtendue);
   run(ofPixels_, tick, pixels_);
   std::vector<std::vector<float>> pixels;
-  for (size_t o = 0; o < drawn.size(); ++o) pixels.push_back(pixels_.values(o));
+  for (size_t o = 0; o < drawn.size(); ++o) pixels.push_back(std::move(pixels_.values(o)));
   return pixels;
 }
 

@@ -14,7 +14,7 @@ class SensorChain {
   /// `drawn`: of each output a picture of drawnCamera(), row by row from the top, in its unit; `cellWeights`: projected solid angle of each of
   /// its cells, which means of intensive outputs are weighted by (those per etendue add up); `points`: what is smaller than a cell, for stages that take it
   /// (drawnCamera() has pointsApart). Returns pictures of the camera's own pixels.
-  std::vector<std::vector<float>> run(const std::vector<std::vector<float>>& drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
+  std::vector<std::vector<float>> run(std::vector<std::vector<float>> drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
                                       std::vector<SensorPoint> points = {});
   /// Of an output per etendue: what an even field of radiance gives each pixel, as a projected solid angle, through all of the optics; as a calibration would find it. Of the last
   /// tick that was run.
@@ -23,7 +23,7 @@ class SensorChain {
   std::size_t middleCell(int column, int row) const;
 
  private:
-  std::vector<float> resolved(const std::vector<float>& cells, const std::vector<double>& weights, bool addsUp) const;
+  std::vector<float> resolved(std::vector<float> cells, const std::vector<double>& weights, bool addsUp) const;
   const Camera& camera_;
   SensorPictures cells_, pixels_;
   /// What even fields and none give, at a focal length and exposure: for those outputs that are told as temperatures.

@@ -11,6 +11,8 @@
 
 #include "sim/camera/light_places.hpp"
 #include "sim/camera/zoomed_lines.hpp"
+#include "sim/model/field_lines.hpp"
+#include "sim/model/field_states.hpp"
 #include "sim/model/ray_hits.hpp"
 
 namespace pitviper {
@@ -48,6 +50,7 @@ struct Share {
   double looked = 0.0;   ///< projected solid angle of all zoomed samples in it [sr]
   double covered = 0.0;  ///< of those that count: what they see takes the place of what the image has there
   std::vector<double> sum;
+  std::vector<double> under;     ///< what the image has there, sampled as finely; empty: its mean over the subpixel
   Moments placed{};              ///< of those that count, by their solid angle
   std::vector<Moments> moments;  ///< by slot, by what they send; empty where no points are kept
   double shown = 0.0;  ///< of those whose surface is a small body's
@@ -78,8 +81,10 @@ void eachSample(const Subpixels& image, const View& z, const Visit& visit) {
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 /// By subpixel. `colourOf(q)`: the sample whose colour a sample has (itself, nearly always), or kNone; `isShown(entity)`: of what surface truth is.
+/// `under`: the same view of what the image holds, or null.
 template <class ColourOf, class IsShown>
-Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, const ColourOf& colourOf, const IsShown& isShown) {
+Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, const ColourOf& colourOf, const IsShown& isShown,
+                const RawImage* under = nullptr) {
   Shares shares;
   eachSample(image, z, [&](size_t q, size_t p, double etendue, double cosPsi, const glm::dvec2& off) {
     Share& share = shares[p];
@@ -89,6 +94,10 @@ Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, c
     share.covered += etendue;
     share.sum.resize(image.slotCount(), 0.0);
     for (size_t s = 0; s < image.slotCount(); ++s) share.sum[s] += etendue * static_cast<double>(zoomed.groups[s / 4][4 * from + s % 4]);
+    if (under) {
+      share.under.resize(image.slotCount(), 0.0);
+      for (size_t s = 0; s < image.slotCount(); ++s) share.under[s] += etendue * static_cast<double>(under->groups[s / 4][4 * q + s % 4]);
+    }
     if (image.keepsPoints()) {
       share.moments.resize(image.slotCount());
       addMoments(share.placed, off, etendue);
@@ -131,7 +140,23 @@ int zoomedSize(double extent, int samples) {
   return size;
 }
 
-/// Flags, in order, the bodies that are transparent or overlap one that is, directly or through others.
+/// Whether some part of a field may show in the same pixels: its mean over them is not what the body hides.
+bool nearField(const Simulation& sim, const WorldState& state, const Ball& ball, const View& v) {
+  for (size_t f = 0; f < sim.fields.size(); ++f) {
+    const FieldState* field = fieldOf(state, f);
+    if (!field) continue;
+    const FieldLines lines = fieldLines(v, *field);
+    if (lines.isEmpty()) continue;
+    const glm::dvec3 p = glm::transpose(v.localFromCamera) * (ball.centre - v.position);
+    if (!(-p.z > ball.radius_m)) return true;
+    const glm::dvec2 at = filmPosition(v, p);
+    const double pixels = ball.radius_m / -p.z / std::min(v.tanPerPixelX, v.tanPerPixelY) + 1.0;
+    if (at.x + pixels > lines.low.x && at.y + pixels > lines.low.y && at.x - pixels < lines.high.x && at.y - pixels < lines.high.y) return true;
+  }
+  return false;
+}
+
+/// Flags, in order, the bodies that are transparent or overlap one that is, directly or through others, or show beside a field.
 std::vector<char> overlapTransparent(const Simulation& sim, const WorldState& state, const View& v, const std::vector<int>& bodies) {
   std::vector<char> mixed(bodies.size(), 0);
   std::vector<size_t> open;
@@ -142,7 +167,7 @@ std::vector<char> overlapTransparent(const Simulation& sim, const WorldState& st
     const glm::dvec3 to = ball.centre - v.position;
     line.push_back(glm::normalize(to));
     sine.push_back(ball.radius_m / glm::length(to));
-    if (!sim.isTransparent(sim.entities[static_cast<size_t>(bodies[i])])) continue;
+    if (!sim.isTransparent(sim.entities[static_cast<size_t>(bodies[i])]) && !nearField(sim, state, ball, v)) continue;
     mixed[i] = 1;
     open.push_back(i);
   }
@@ -163,6 +188,7 @@ struct Fine {
   double covered = 0.0;  ///< projected solid angle [sr]
   double whole = 0.0;    ///< of the subpixel
   std::vector<double> sum;
+  std::vector<double> under;  ///< what the image has where they are
   Moments placed{};  ///< as of Share
   std::vector<Moments> moments;
 };
@@ -177,12 +203,16 @@ void gather(Subpixels& image, const View& z, const RawImage& zoomed, const Share
     const double whole = image.projectedSolidAngle_sr(x, y);
     Fine& f = fine[p];
     f.sum.resize(image.slotCount(), 0.0);
+    f.under.resize(image.slotCount(), 0.0);
     f.whole = whole;
     // Samples fall to one side or the other of a subpixel's edge: all of them are all of it, and no more than finer views have left.
     const double all = isInside(v, z, zoomFromMain, x, y) ? whole / share.looked : 1.0;
     const double each = std::min(all, std::max(whole - f.covered, 0.0) / share.covered);
     f.covered += each * share.covered;
-    for (size_t s = 0; s < f.sum.size(); ++s) f.sum[s] += each * share.sum[s];
+    for (size_t s = 0; s < f.sum.size(); ++s) {
+      f.sum[s] += each * share.sum[s];
+      f.under[s] += each * (share.under.empty() ? share.covered * image.slot(s, p) : share.under[s]);
+    }
     f.moments.resize(share.moments.size());
     for (size_t k = 0; k < f.placed.size(); ++k) {
       f.placed[k] += each * share.placed[k];
@@ -198,7 +228,7 @@ void putPoints(Subpixels& image, size_t subpixel, const Fine& f) {
   const glm::dvec2 corner(static_cast<double>(subpixel % width), static_cast<double>(subpixel / width));
   const Place whole = placeOf(f.covered, f.placed).value_or(Place{});
   for (size_t s = 0; s < f.sum.size(); ++s) {
-    const double behind = image.slot(s, subpixel), flux = f.sum[s] - f.covered * behind;
+    const double behind = f.covered > 0.0 ? f.under[s] / f.covered : 0.0, flux = f.sum[s] - f.under[s];
     if (flux == 0.0) continue;
     Moments m = f.moments[s];
     for (size_t k = 0; k < m.size(); ++k) m[k] -= behind * f.placed[k];
@@ -209,7 +239,7 @@ void putPoints(Subpixels& image, size_t subpixel, const Fine& f) {
   }
 }
 
-/// The image keeps what it has in the rest of a subpixel: a mean of radiances, none of which is below 0.
+/// The image keeps what it has in the rest of a subpixel. Where that is its mean, it is a mean of radiances, none of which is below 0.
 void put(Subpixels& image, const FineSubpixels& fine) {
   // More are no point: on so many subpixels a picture is as good.
   constexpr size_t kMostPoints = 16;
@@ -218,7 +248,7 @@ void put(Subpixels& image, const FineSubpixels& fine) {
     return;
   }
   for (const auto& [p, f] : fine)
-    for (size_t s = 0; s < f.sum.size(); ++s) image.add(s, p, (f.sum[s] - f.covered * image.slot(s, p)) / f.whole);
+    for (size_t s = 0; s < f.sum.size(); ++s) image.add(s, p, (f.sum[s] - f.under[s]) / f.whole);
 }
 
 bool anyOf(const std::vector<char>& flags) {
@@ -305,6 +335,7 @@ class MixedBodies {
   /// `others`: what else is in the picture; `all`: what may show at all, that is in the pictures of parts.
   void draw(Subpixels& image, ScenePass& pass, std::vector<char> others, const std::vector<char>& all, const std::vector<char>* only,
             FineSubpixels& fine) const {
+    const std::vector<char> without = others;
     for (int e : bodies_) others[static_cast<size_t>(e)] = 1;
     for (size_t i = 0; i < views_.size(); ++i) {
       View z = views_[i];
@@ -319,8 +350,14 @@ class MixedBodies {
       pass.draw(z, state_, whole_[i] ? all : others);
       pass.startReadback(true);
       const RawImage zoomed = pass.finishReadback();
+      std::optional<RawImage> under;
+      if (!whole_[i] && !sim_.fields.empty()) {  // a field varies within a subpixel: what the body hides is not its mean
+        pass.draw(z, state_, without);
+        pass.startReadback();
+        under = pass.finishReadback();
+      }
       const auto colourOf = [&](size_t q) { return whole_[i] && colour[q] != kNone && hasOwnView(zoomed.entity[colour[q]]) ? kNone : colour[q]; };
-      gather(image, z, zoomed, sharesOf(image, z, zoomed, colourOf, [&](int e) { return isOne(e); }), fine);
+      gather(image, z, zoomed, sharesOf(image, z, zoomed, colourOf, [&](int e) { return isOne(e); }, under ? &*under : nullptr), fine);
     }
   }
 
@@ -440,7 +477,7 @@ class MixedBodies {
 
 std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state, const View& v, double limit) {
   std::vector<char> small(sim.entities.size(), 0);
-  for (size_t e = 0; e < sim.entities.size(); ++e) small[e] = extentOf(ballOf(sim, state, static_cast<int>(e)), v) < limit;
+  for (size_t e = 0; e < sim.entities.size(); ++e) small[e] = state.isThere(e) && extentOf(ballOf(sim, state, static_cast<int>(e)), v) < limit;
   return small;
 }
 

@@ -20,7 +20,8 @@ bool isEven(const Simulation& sim, const Entity& e) {
   const auto plain = [](const auto& modifiers) { return std::all_of(modifiers.begin(), modifiers.end(), [](int texture) { return texture < 0; }); };
   for (const Surface& s : e.surfaces) {
     const Material& m = sim.materialOf(s);
-    if (s.temperatureTexture >= 0 || s.temperature_K != e.surfaces.front().temperature_K || s.material != e.surfaces.front().material) return false;
+    const Surface& first = e.surfaces.front();
+    if (s.temperatureTexture >= 0 || s.temperature_K != first.temperature_K || s.temperature != first.temperature || s.material != first.material) return false;
     if (m.states || m.hemisphericalVaries() || !plain(m.modifiers) || (m.given && m.given->modifier >= 0)) return false;
     for (const auto& r : m.reflections)
       if (!r->lobe().file.empty() || r->axes()[0].angle != Angle::None) return false;

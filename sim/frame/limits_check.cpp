@@ -32,7 +32,7 @@ std::string outsideLimits(const Simulation& sim, const Camera& camera, const Wor
     const Pose& pose = state.entities[e];
     const glm::dvec3 centre = pose.position + pose.orientation * glm::dvec3(body.boundingCentre);
     const auto radius = static_cast<double>(body.boundingRadius_m);
-    if (static_cast<int>(e) == camera.mount.carrier || !mayShow(view, centre, radius)) continue;
+    if (static_cast<int>(e) == camera.mount.carrier || !state.isThere(e) || !mayShow(view, centre, radius)) continue;
     const double range = glm::length(centre - view.position);
     if (limits.farthest_m > 0.0 && range - radius > limits.farthest_m)
       found.push_back(body.name + " at " + metres(range - radius) + ", planned to " + metres(limits.farthest_m));

@@ -181,8 +181,9 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   const glm::dmat3 cameraFromLocal = glm::transpose(localFromCamera(pose));
   for (size_t e = 0; e < sim.entities.size(); ++e) {
     const glm::dvec3 x = cameraFromLocal * (state.entities[e].position - pose.position);
-    std::vector<double> seen = {glm::length(x), NAN, NAN};  // behind the camera: no place in the picture
-    if (x.z < 0.0) {
+    // Behind the camera: no place in the picture; not there: no range either.
+    std::vector<double> seen = {state.isThere(e) ? glm::length(x) : NAN, NAN, NAN};
+    if (x.z < 0.0 && state.isThere(e)) {
       const glm::dvec2 at = placeOnFilm(camera, p.focalLength_m, {0.5 * p.width + x.x / -x.z * p.focalLength_m / p.pitchX_m,
                                                                   0.5 * p.height - x.y / -x.z * p.focalLength_m / p.pitchY_m});
       seen[1] = at.x;
@@ -252,7 +253,7 @@ SensorTick sensorTick(const Simulation& sim, const Camera& camera, const CameraI
 std::vector<std::vector<float>> sensed(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number, SensorChain& chain) {
   std::vector<std::vector<float>> drawn;
   for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(camera.outputs[o], o, image));
-  return chain.run(drawn, image.solidAngles->projected_sr, sensorTick(sim, camera, image, state, number), pointsOf(camera, image));
+  return chain.run(std::move(drawn), image.solidAngles->projected_sr, sensorTick(sim, camera, image, state, number), pointsOf(camera, image));
 }
 
 Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number, SensorChain* chain,

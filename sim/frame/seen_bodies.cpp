@@ -78,7 +78,7 @@ class Looker {
     for (int j = 0; j < kGrid; ++j)
       for (int i = 0; i < kGrid; ++i) {
         const glm::dvec3 r = view_.localFromCamera * glm::normalize(view_.ray((i + 0.5) * view_.width / kGrid, (j + 0.5) * view_.height / kGrid));
-        const RayHits hits = castRay(sim_, state_, view_.position, r, view_.near_m, &present_);
+        const RayHits hits = castRay(sim_, state_, view_.position, r, view_.near_m, &present_, false, 0);
         auto note = [&](int e) { onFilm_[static_cast<size_t>(e)] = 1; };
         if (hits.solid.entity >= 0) note(hits.solid.entity);
         for (const Hit& h : hits.layers) note(h.entity);
@@ -141,6 +141,10 @@ class Looker {
     s.range_m = glm::length(centre - view_.position);
     if (s.range_m < radius)
       for (const glm::dvec3& p : look.places) s.range_m = std::min(s.range_m, glm::length(pose.position + pose.orientation * p - view_.position));
+    if (!state_.isThere(e)) {
+      s.sight = Sight::Absent;
+      return s;
+    }
     if (static_cast<int>(e) == carrier_) {
       s.sight = Sight::Carrier;
       return s;
@@ -171,7 +175,7 @@ class Looker {
       if (at.x < 0.0 || at.y < 0.0 || at.x > view_.width || at.y > view_.height) continue;
       ++within;
       const double range = glm::length(line);
-      const RayHits hits = castRay(sim_, state_, view_.position, line / range, view_.near_m, &candidates);
+      const RayHits hits = castRay(sim_, state_, view_.position, line / range, view_.near_m, &candidates, false, 0);
       if (hits.solid.entity >= 0 && hits.solid.entity != static_cast<int>(e) && hits.solid.distance < range * (1.0 - kSame)) {
         ++hidden;
         ++hiders[hits.solid.entity];

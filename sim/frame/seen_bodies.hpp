@@ -7,6 +7,7 @@
 namespace pitviper {
 
 enum class Sight {
+  Absent,     ///< not there at that time
   Carrier,    ///< carries the camera, which does not see it
   Behind,     ///< all of it behind the camera
   OutOfView,  ///< beside the film

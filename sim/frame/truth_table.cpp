@@ -234,7 +234,7 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
       if (seen.z >= 0.0) return 0;
       const glm::dvec2 at = onFilm(seen);
       if (!isOnFilm(at)) return 0;
-      const RayHits hits = castRay(simulation_, state, z.position, direction, near, &present_);
+      const RayHits hits = castRay(simulation_, state, z.position, direction, near, &present_, false, 0);
       return meets(hits, entity) ? ReferenceShader::things(hits) : 0;
     };
     const int x0 = piece % columns * ZoomedTile::kSize, y0 = piece / columns * ZoomedTile::kSize, w = std::min(ZoomedTile::kSize, size - x0),
@@ -336,7 +336,7 @@ std::vector<TargetRow> TruthMeter::targets(const WorldState& state, const StateA
   const WorldState earlier = at(state.time_s - kApart_s), later = at(state.time_s + kApart_s);
   for (std::size_t e = 0; e < simulation_.entities.size(); ++e) {
     const Entity& body = simulation_.entities[e];
-    if (!present_[e] || body.mesh->heightField) continue;
+    if (!present_[e] || !state.isThere(e) || body.mesh->heightField) continue;
     const int entity = static_cast<int>(e);
     rows.push_back(placed(body.name, simulation_.mediumOf(body) ? "medium" : "body", {state, ballOf(simulation_, state, entity).centre},
                           {earlier, ballOf(simulation_, earlier, entity).centre}, {later, ballOf(simulation_, later, entity).centre}));

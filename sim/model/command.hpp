@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "sim/scene/motion.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace pitviper {
 
@@ -23,6 +24,7 @@ struct Courses {
   std::map<std::string, Course<glm::dquat>> cameraOrientations;
   std::map<std::string, Course<double>> focalLengths_m, exposures_s;
   std::map<std::string, Course<double>> gains;  ///< factors of the detector's own
+  std::map<std::string, std::vector<Pointing>> pointings;  ///< of cameras on gimbals: the newest (addPointing)
 };
 
 /// A command's time and a frame's are the same where they lie within this part of a tick: sums of steps round.

@@ -2,13 +2,19 @@
 
 #include <algorithm>
 
+#include "sim/model/atmosphere.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 
-double Medium::source(double wavelength_um, double temperature_K) const {
-  return physics::planckRadiance(wavelength_um, temperature_K) + (radiance ? (*radiance)(wavelength_um) : 0.0);
+double Medium::source(double wavelength_um, double temperature_K, double gain) const {
+  const double black = physics::planckRadiance(wavelength_um, temperature_K);
+  return (albedo ? 1.0 - (*albedo)(wavelength_um) : 1.0) * black + (radiance ? gain * (*radiance)(wavelength_um) : 0.0);
+}
+
+double Medium::scattered(double wavelength_um, double cosScatter) const {
+  return albedo ? (*albedo)(wavelength_um) * henyeyGreensteinPhase(cosScatter, asymmetry ? (*asymmetry)(wavelength_um) : 0.0) : 0.0;
 }
 
 double Material::reflectance(double wavelength_um, double angle) const {

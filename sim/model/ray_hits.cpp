@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/field_states.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/scene/triangle_tree.hpp"
 
@@ -72,11 +73,11 @@ size_t surfaceOf(const Entity& entity, std::uint32_t triangle) {
 }
 
 RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest,
-                const std::vector<char>* drawn, bool transparentOnly) {
+                const std::vector<char>* drawn, bool transparentOnly, int fieldSteps) {
   RayHits hits;
   for (size_t e = 0; e < sim.entities.size(); ++e) {
     const Entity& entity = sim.entities[e];
-    if ((drawn && !(*drawn)[e]) || (transparentOnly && !sim.isTransparent(entity))) continue;
+    if ((drawn && !(*drawn)[e]) || !state.isThere(e) || (transparentOnly && !sim.isTransparent(entity))) continue;
     const Pose& pose = state.entities[e];
     const glm::dmat3 localFromBody = glm::mat3_cast(pose.orientation), bodyFromLocal = glm::transpose(localFromBody);
     const BodyRay ray{localFromBody, bodyFromLocal * (origin - pose.position), bodyFromLocal * direction};
@@ -106,7 +107,23 @@ RayHits castRay(const Simulation& sim, const WorldState& state, const glm::dvec3
     s.leave = std::min(s.leave, hits.solid.distance);
   }
   std::erase_if(hits.stretches, [](const Stretch& s) { return s.leave <= s.enter; });
+  hits.slabs = slabsAlong(sim, state, origin, direction, hits.solid.distance, fieldSteps);
   return hits;
+}
+
+std::vector<Slab> slabsAlong(const Simulation& sim, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double range_m,
+                             int fieldSteps) {
+  std::vector<Slab> slabs;
+  std::vector<FieldStep> steps;
+  for (size_t f = 0; fieldSteps > 0 && f < sim.fields.size(); ++f) {
+    const FieldState* field = fieldOf(state, f);
+    if (!field) continue;
+    steps.clear();
+    field->along({origin, direction, 0.0, std::min(range_m, physics::kFar)}, fieldSteps, steps);
+    for (const FieldStep& s : steps)
+      if (s.leave_m > s.enter_m) slabs.push_back({static_cast<int>(f), s});
+  }
+  return slabs;
 }
 
 Footprint footprintOf(const Simulation& sim, const WorldState& state, const Hit& hit, const glm::dvec3& ray, const glm::dvec3& across, const glm::dvec3& up) {
@@ -123,6 +140,7 @@ Footprint footprintOf(const Simulation& sim, const WorldState& state, const Hit&
 }
 
 bool meetsBody(const Simulation& sim, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest, int index) {
+  if (!state.isThere(static_cast<size_t>(index))) return false;
   const Entity& entity = sim.entities[static_cast<size_t>(index)];
   const Pose& pose = state.entities[static_cast<size_t>(index)];
   const glm::dvec3 to = pose.position + pose.orientation * glm::dvec3(entity.boundingCentre) - origin;

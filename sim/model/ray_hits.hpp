@@ -24,19 +24,31 @@ struct Stretch {
   double enter = 0.0, leave = 0.0;
 };
 
+/// A step of the ray in a field.
+struct Slab {
+  int field = -1;  ///< index into Simulation::fields
+  FieldStep step;
+};
+
 struct RayHits {
   Hit solid;                       ///< the nearest opaque surface; entity -1: none
   std::vector<Hit> layers;         ///< transparent surfaces before it, in no order
   std::vector<Stretch> stretches;  ///< of media, cut off at it
+  std::vector<Slab> slabs;         ///< of fields, cut off at it; field by field, each rising
 };
 
 /// The surface of an entity that a triangle of its mesh belongs to.
 size_t surfaceOf(const Entity& entity, std::uint32_t triangle);
 
 /// direction of unit length; surfaces nearer than `nearest` are not seen. Source: Moeller and Trumbore 1997.
-/// `drawn`: one flag per entity, or null for all; `transparentOnly`: opaque surfaces neither show nor hide.
+/// `drawn`: one flag per entity, or null for all; `transparentOnly`: opaque surfaces neither show nor hide. `fieldSteps`: of a field at most; 0: fields are
+/// left out.
 RayHits castRay(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double nearest,
-                const std::vector<char>* drawn = nullptr, bool transparentOnly = false);
+                const std::vector<char>* drawn = nullptr, bool transparentOnly = false, int fieldSteps = kReferenceFieldSteps);
+
+/// The steps of a line in all fields, as far as a range [m].
+std::vector<Slab> slabsAlong(const Simulation& simulation, const WorldState& state, const glm::dvec3& origin, const glm::dvec3& direction, double range_m,
+                             int fieldSteps);
 
 /// What a pixel covers of a hit's texture coordinates: `ray` of any length through its middle, `across` and `up` from there to the next, local frame.
 Footprint footprintOf(const Simulation& simulation, const WorldState& state, const Hit& hit, const glm::dvec3& ray, const glm::dvec3& across,

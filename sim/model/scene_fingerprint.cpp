@@ -33,23 +33,32 @@ void addTo(Fingerprint& f, const Mesh& m) {
   for (const auto& [name, firstTriangle, triangleCount] : parts) f.add(name).add(firstTriangle).add(triangleCount);
 }
 
+void addTo(Fingerprint& f, const Lifetime& l) {
+  const auto& [begin_s, end_s] = l;
+  f.add(begin_s).add(end_s);
+}
+
 void addTo(Fingerprint& f, const Entity& e) {
-  const auto& [name, mesh, form, surfaces, motion, parent, boundingCentre, boundingRadius_m, meshFile, metresPerUnit] = e;
+  const auto& [name, mesh, form, surfaces, motion, parent, boundingCentre, boundingRadius_m, meshFile, metresPerUnit, lifetime, flight] = e;
+  addTo(f, lifetime);
   f.add(name);
   addTo(f, *mesh);
   const auto& [kind, size] = form;
   f.add(static_cast<int>(kind)).add(size).add(parent);
-  for (const auto& [meshPart, material, temperature_K, temperatureTexture] : surfaces) f.add(meshPart).add(material).add(temperature_K).add(temperatureTexture);
+  for (const auto& [meshPart, material, temperature_K, temperatureTexture, temperature] : surfaces) {
+    f.add(meshPart).add(material).add(temperature_K).add(temperatureTexture);
+    pitviper::addTo(f, temperature);
+  }
   pitviper::addTo(f, motion);
 }
 
 void addTo(Fingerprint& f, const PointLight& l) {
-  const auto& [name, intensity, radius_m, visible, motion, parent, level] = l;
+  const auto& [name, intensity, radius_m, visible, motion, parent, level, lifetime] = l;
+  addTo(f, lifetime);
   f.add(name).add(radius_m).add(visible).add(parent);
   pitviper::addTo(f, intensity);
   pitviper::addTo(f, motion);
-  f.add(static_cast<double>(level.size()));
-  for (const auto& [time_s, factor] : level) f.add(time_s).add(factor);
+  pitviper::addTo(f, level);
 }
 
 void addTo(Fingerprint& f, const Sun& s) {
@@ -59,9 +68,11 @@ void addTo(Fingerprint& f, const Sun& s) {
 }
 
 void addTo(Fingerprint& f, const Medium& m) {
-  const auto& [absorption_per_m, radiance] = m;
+  const auto& [absorption_per_m, radiance, albedo, asymmetry] = m;
   pitviper::addTo(f, absorption_per_m);
   addTo(f, radiance);
+  addTo(f, albedo);
+  addTo(f, asymmetry);
 }
 
 void addTo(Fingerprint& f, const MaterialStates& s) {
@@ -102,6 +113,12 @@ void addTo(Fingerprint& f, const Motion& m) {
     f.add(w.time_s).add(w.position).add(w.roll_rad).add(w.attitude.has_value());
     if (w.attitude) f.add(w.attitude->heading_rad).add(w.attitude->pitch_rad).add(w.attitude->roll_rad);
   }
+  f.add(static_cast<int>(m.before())).add(static_cast<int>(m.after())).add(m.path() != nullptr).add(m.spin().has_value());
+  if (m.path()) m.path()->addTo(f);
+  if (!m.spin()) return;
+  const auto& [axis, rate_rad_s, from_s, angle_rad] = *m.spin();
+  f.add(axis).add(rate_rad_s).add(from_s);
+  addTo(f, angle_rad);
 }
 
 void addTo(Fingerprint& f, const Material& m) {
@@ -115,7 +132,7 @@ void addTo(Fingerprint& f, const Material& m) {
 }
 
 void addTo(Fingerprint& f, const Simulation& sim) {
-  const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, textures, materials, entities, lights, sun, ambient, surroundings,
+  const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, wind_m_s, textures, materials, entities, lights, fields, sun, ambient, surroundings,
                background, ground, air, cameras, probes, commands, sinks] = sim;
   f.add(static_cast<double>(seed)).add(static_cast<int>(mode)).add(shadows);
   const auto& [latitude_rad, longitude_rad, height_m] = frame.origin();
@@ -123,13 +140,22 @@ void addTo(Fingerprint& f, const Simulation& sim) {
   const auto& [start_s, step_s, frames, epoch_s] = time;
   f.add(start_s).add(step_s).add(frames);
   const auto& [nearest_m, farthest_m, coldest_K, hottest_K, lightLevel] = limits;
-  f.add(nearest_m).add(farthest_m).add(coldest_K).add(hottest_K).add(lightLevel);
+  f.add(nearest_m).add(farthest_m).add(coldest_K).add(hottest_K).add(lightLevel).add(wind_m_s);
   for (const auto& [title, width, height, texels, repeats, cells, levels] : textures) f.all(texels).add(width).add(repeats);
   for (const auto& m : materials) addTo(f, *m);
   f.add(static_cast<double>(entities.size()));
   for (const Entity& e : entities) addTo(f, e);
   f.add(static_cast<double>(lights.size()));
   for (const PointLight& p : lights) addTo(f, p);
+  f.add(static_cast<double>(fields.size()));
+  for (const auto& [title, where, gases, source] : fields) {
+    f.add(static_cast<double>(gases.size()));
+    for (const auto& [gas, levels] : gases) {
+      f.add(static_cast<double>(levels.size()));
+      for (const auto& [temperature_K, material] : levels) f.add(temperature_K).add(material);
+    }
+    source->addTo(f);
+  }
   addTo(f, sun);
   addTo(f, ambient);
   f.add(surroundings != nullptr);
@@ -144,15 +170,22 @@ void addTo(Fingerprint& f, const Simulation& sim) {
 }
 
 void addTo(Fingerprint& f, const Camera& c) {
-  const auto& [name, where, pinhole, mount, exposure_s, near_m, samples, motionBlur, exposureParts, pointsApart, binning, window, sharesShading, smallBody_px, zoomedSamples, outlineAccuracy, textureAccuracy, spectral,
-               learnt, plan, planFile, outputs, stages, spectralImage, truth] = c;
+  const auto& [name, where, pinhole, mount, exposure_s, focalLengthOverTime_m, exposureOverTime_s, near_m, samples, motionBlur, exposureParts, pointsApart, binning, window, sharesShading, smallBody_px, zoomedSamples, outlineAccuracy, textureAccuracy, spectral,
+               learnt, plan, planFile, outputs, stages, spectralImage, truth, follower] = c;
   const auto& [width, height, focalLength_m, pitchX_m, pitchY_m, apertureDiameter_m] = pinhole;
   f.add(name).add(width).add(height).add(focalLength_m).add(pitchX_m).add(pitchY_m).add(apertureDiameter_m);
-  const auto& [motion, carrier, lookAtEntity, looksAtPoint, lookAtPoint] = mount;
+  addTo(f, focalLengthOverTime_m);
+  addTo(f, exposureOverTime_s);
+  const auto& [motion, carrier, lookAtEntity, lookAtLight, looksAtPoint, lookAtPoint] = mount;
   addTo(f, motion);
-  f.add(carrier).add(lookAtEntity).add(looksAtPoint).add(lookAtPoint);
+  f.add(carrier).add(lookAtEntity).add(lookAtLight).add(looksAtPoint).add(lookAtPoint);
   f.add(exposure_s).add(near_m).add(samples).add(smallBody_px).add(truth.any()).add(truth.solidAngles);
-  for (const auto& [number, column, row] : learnt) f.add(number).add(column).add(row);
+  for (const auto& [number, column, row, pose] : learnt) {
+    f.add(number).add(column).add(row).add(pose.has_value());
+    if (pose) f.add(pose->position).add(pose->orientation);
+  }
+  f.add(follower.has_value());
+  if (follower) f.add(follower->fingerprint);
   addTo(f, spectral);
   addTo(f, outputs);
   for (const StageChoice& s : stages) f.add(s.fingerprint);

@@ -9,6 +9,8 @@
 #include "sim/model/atmosphere.hpp"
 #include "sim/model/channel.hpp"
 #include "sim/model/command.hpp"
+#include "sim/model/field.hpp"
+#include "sim/model/follower.hpp"
 #include "sim/model/material.hpp"
 #include "sim/model/sink.hpp"
 #include "sim/model/stage.hpp"
@@ -52,6 +54,7 @@ struct TruthLayers {
 struct FilmPlace {
   int frame = 0;
   double column = 0.0, row = 0.0;
+  std::optional<Pose> pose = {};  ///< of a camera that something points, at that time
 };
 
 struct Camera {
@@ -60,6 +63,7 @@ struct Camera {
   Pinhole pinhole;
   Mount mount;
   double exposure_s = 0.0;
+  TimeCourse focalLengthOverTime_m, exposureOverTime_s;  ///< empty: as above; else above is what holds at the first frame
   double near_m = 0.1;
   int samples = 1;               ///< n: n x n subpixels
   bool motionBlur = false;       ///< what moves while it exposes is drawn at several times of it
@@ -80,6 +84,7 @@ struct Camera {
   std::vector<StageChoice> stages;            ///< of its sensor, after the spectral integral
   std::optional<SpectralBins> spectralImage;  ///< written beside the frame
   TruthLayers truth;
+  std::optional<FollowerChoice> follower;  ///< what points it, besides its mount; none: its mount
 };
 
 /// Irradiance on a plane at a point: layers as a camera's outputs with kernels for irradiance.
@@ -125,10 +130,12 @@ struct Simulation {
   LocalFrame frame;
   TimeAxis time;
   Limits limits;
+  glm::dvec3 wind_m_s{0.0};  ///< where the air goes, local frame
   std::vector<Texture> textures;
   std::vector<std::shared_ptr<const Material>> materials;
   std::vector<Entity> entities;
   std::vector<PointLight> lights;
+  std::vector<FieldBody> fields;  ///< jets, smoke, clouds
   std::optional<Sun> sun;
   std::optional<Spectrum> ambient;  ///< radiance of a uniform dome, or the surroundings' mean [W/(m2 sr um)]
   std::shared_ptr<const Surroundings> surroundings;  ///< of ambient light by direction; null: a uniform dome's
@@ -150,7 +157,7 @@ struct Simulation {
     return std::any_of(e.surfaces.begin(), e.surfaces.end(), [this](const Surface& s) { return materialOf(s).isTransparent(); });
   }
   bool hasTransparent() const {
-    return std::any_of(entities.begin(), entities.end(), [this](const Entity& e) { return isTransparent(e); });
+    return !fields.empty() || std::any_of(entities.begin(), entities.end(), [this](const Entity& e) { return isTransparent(e); });
   }
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "sim/model/field_states.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -25,42 +27,95 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
   const auto carried = [&state](int carrier, const Pose& own) { return carrier >= 0 ? composed(state.entities[static_cast<size_t>(carrier)], own) : own; };
   for (const Entity& e : sim.entities) {  // a parent comes before its children
     const int index = static_cast<int>(state.entities.size());
+    const bool there = e.presentAt(time_s) && (e.parent < 0 || state.isThere(static_cast<size_t>(e.parent)));
+    if (!there) state.absent.resize(sim.entities.size(), 0);
+    if (!there) state.absent[static_cast<size_t>(index)] = 1;
     Pose own = e.motion.at(time_s);
     own.position = valueOf(courses.positions, index, time_s, [&] { return own.position; });
     own.orientation = valueOf(courses.orientations, index, time_s, [&] { return own.orientation; });
     state.entities.push_back(carried(e.parent, own));
     std::vector<double>& temperatures = state.temperatures_K.emplace_back();
     for (const Surface& s : e.surfaces)
-      temperatures.push_back(valueOf(courses.temperatures_K, std::pair(index, static_cast<int>(temperatures.size())), time_s, [&] { return s.temperature_K; }));
+      temperatures.push_back(valueOf(courses.temperatures_K, std::pair(index, static_cast<int>(temperatures.size())), time_s, [&] { return s.temperatureAt_K(time_s); }));
   }
   for (const PointLight& l : sim.lights) {
     const int index = static_cast<int>(state.lights.size());
     state.lights.push_back(carried(l.parent, l.motion.at(time_s)).position);
-    state.lightLevels.push_back(valueOf(courses.lightLevels, index, time_s, [&] { return l.levelAt(time_s); }));
+    const bool there = l.presentAt(time_s) && (l.parent < 0 || state.isThere(static_cast<size_t>(l.parent)));
+    state.lightLevels.push_back(there ? valueOf(courses.lightLevels, index, time_s, [&] { return l.levelAt(time_s); }) : 0.0);
+  }
+  for (const Camera& c : sim.cameras) {
+    if (!c.focalLengthOverTime_m.empty()) state.cameras[c.name].focalLength_m = c.focalLengthOverTime_m.at(time_s);
+    if (!c.exposureOverTime_s.empty()) state.cameras[c.name].exposure_s = c.exposureOverTime_s.at(time_s);
   }
   for (const auto& [camera, course] : courses.cameraPositions) state.cameras[camera].position = course(time_s);
   for (const auto& [camera, course] : courses.cameraOrientations) state.cameras[camera].orientation = course(time_s);
   for (const auto& [camera, course] : courses.focalLengths_m) state.cameras[camera].focalLength_m = course(time_s);
   for (const auto& [camera, course] : courses.exposures_s) state.cameras[camera].exposure_s = course(time_s);
   for (const auto& [camera, course] : courses.gains) state.cameras[camera].gain = course(time_s);
+  for (const auto& [camera, pointings] : courses.pointings) state.cameras[camera].pointings = pointings;
+  if (!sim.fields.empty()) state.fields = std::make_shared<const FieldStates>(sim, state);
   return state;
 }
 
-Pose poseOf(const Mount& mount, const CameraChange* change, const WorldState& state) {
+const CameraChange* changeOf(const Camera& camera, const WorldState& state) {
+  const auto found = state.cameras.find(camera.name);
+  return found == state.cameras.end() ? nullptr : &found->second;
+}
+
+/// As it is carried, wherever it looks.
+Pose baseOf(const Mount& mount, const CameraChange* change, const WorldState& state) {
   Pose pose = mount.motion.at(state.time_s);
   if (change && change->position) pose.position = *change->position;
   if (change && change->orientation) pose.orientation = *change->orientation;
-  if (mount.carrier >= 0) pose = composed(state.entities[static_cast<size_t>(mount.carrier)], pose);
+  return mount.carrier >= 0 ? composed(state.entities[static_cast<size_t>(mount.carrier)], pose) : pose;
+}
+
+std::optional<glm::dvec3> targetOf(const Mount& mount, const WorldState& state) {
+  if (mount.looksAtPoint) return mount.lookAtPoint;
+  if (mount.lookAtLight >= 0) return state.lights[static_cast<size_t>(mount.lookAtLight)];
+  if (mount.lookAtEntity >= 0) return state.entities[static_cast<size_t>(mount.lookAtEntity)].position;
+  return std::nullopt;
+}
+
+Pose poseOf(const Mount& mount, const CameraChange* change, const WorldState& state) {
+  if (change && change->pose) return *change->pose;
+  Pose pose = baseOf(mount, change, state);
   if (change && change->orientation) return pose;
-  if (mount.lookAtEntity >= 0 || mount.looksAtPoint) {
-    const glm::dvec3 target = mount.looksAtPoint ? mount.lookAtPoint : state.entities[static_cast<size_t>(mount.lookAtEntity)].position;
-    const glm::dvec3 line = target - pose.position;
+  if (const auto target = targetOf(mount, state)) {
+    const glm::dvec3 line = *target - pose.position;
     if (glm::dot(line, line) > 0.0) pose.orientation = orientationAlong(line);
   }
   return pose;
 }
 
 }  // namespace
+
+glm::dvec3 velocityOf(const Simulation& sim, int entity, double time_s) {
+  const Entity& e = sim.entities[static_cast<size_t>(entity)];
+  const glm::dvec3 own = e.motion.velocityAt(time_s);
+  if (e.parent < 0) return own;
+  const Pose carrier = poseOf(sim, e.parent, time_s);
+  // What the carrier's turning adds: a hundredth of a millisecond apart, its turns are straight lines and rounding of a pose is far below.
+  constexpr double kApart_s = 1e-5;
+  const glm::dvec3 at = e.motion.at(time_s).position;
+  const glm::dvec3 turned = poseOf(sim, e.parent, time_s + kApart_s).orientation * at - poseOf(sim, e.parent, time_s - kApart_s).orientation * at;
+  return velocityOf(sim, e.parent, time_s) + carrier.orientation * own + turned / (2.0 * kApart_s);
+}
+
+Pose poseOf(const Simulation& sim, int entity, double time_s) {
+  const Entity& e = sim.entities[static_cast<size_t>(entity)];
+  const Pose own = e.motion.at(time_s);
+  return e.parent >= 0 ? composed(poseOf(sim, e.parent, time_s), own) : own;
+}
+
+Lifetime lifetimeOf(const Simulation& sim, int entity) {
+  const Entity& e = sim.entities[static_cast<size_t>(entity)];
+  Lifetime all = e.parent >= 0 ? lifetimeOf(sim, e.parent) : Lifetime{};
+  all.begin_s = std::max({all.begin_s, e.lifetime.begin_s, e.motion.before() == AtEnd::Vanish ? e.motion.begin_s() : -INFINITY});
+  all.end_s = std::min({all.end_s, e.lifetime.end_s, e.motion.after() == AtEnd::Vanish ? e.motion.end_s() : INFINITY});
+  return all;
+}
 
 WorldState advance(const Simulation& simulation, double time_s) { return World(simulation).at(time_s); }
 
@@ -79,13 +134,34 @@ WorldState World::at(double time_s) const {
 }
 
 CameraState cameraAt(const Camera& camera, const WorldState& state) {
-  const auto found = state.cameras.find(camera.name);
-  const CameraChange* change = found == state.cameras.end() ? nullptr : &found->second;
+  const CameraChange* change = changeOf(camera, state);
   CameraState at{poseOf(camera.mount, change, state), camera.pinhole, camera.exposure_s, 1.0};
   if (change && change->focalLength_m) at.pinhole.focalLength_m = *change->focalLength_m;
   if (change && change->exposure_s) at.exposure_s = *change->exposure_s;
   if (change && change->gain) at.gain = *change->gain;
   return at;
+}
+
+FollowerTick followerTick(const Camera& camera, const WorldState& state, int frame) {
+  const CameraChange* change = changeOf(camera, state);
+  FollowerTick tick{frame, state.time_s, baseOf(camera.mount, change, state), targetOf(camera.mount, state), 0.0, {}};
+  if (camera.mount.lookAtEntity >= 0 && !state.isThere(static_cast<size_t>(camera.mount.lookAtEntity))) tick.target.reset();
+  if (change && change->focalLength_m) tick.focalLength_m = *change->focalLength_m;
+  if (change) tick.pointings = change->pointings;
+  return tick;
+}
+
+void addPointing(Courses& courses, const std::string& camera, Pointing pointing) {
+  std::vector<Pointing>& all = courses.pointings[camera];
+  pointing.number = all.empty() ? 1 : all.back().number + 1;
+  constexpr size_t kMost = 64;  // between two ticks: more are not told apart
+  if (all.size() >= kMost) all.erase(all.begin());
+  all.push_back(pointing);
+}
+
+WorldState pointed(WorldState state, const Camera& camera, const Pose& pose) {
+  state.cameras[camera.name].pose = pose;
+  return state;
 }
 
 }  // namespace pitviper

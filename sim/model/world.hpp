@@ -13,6 +13,13 @@ using StateAt = std::function<WorldState(double time_s)>;
 /// As the scenario has it, its own commands carried out.
 WorldState advance(const Simulation& simulation, double time_s);
 
+/// Of an entity as its scenario moves it, whatever commands say: pose in the local frame, velocity [m/s] of its origin there, what its carrier's flight and
+/// turning add included.
+Pose poseOf(const Simulation& simulation, int entity, double time_s);
+glm::dvec3 velocityOf(const Simulation& simulation, int entity, double time_s);
+/// Before and after which it is not there, for its own sake or its carriers'; infinite where nothing says so.
+Lifetime lifetimeOf(const Simulation& simulation, int entity);
+
 /// A world that takes further commands while it runs; what it keeps does not grow with their number. The simulation must outlive it.
 class World {
  public:
@@ -38,5 +45,12 @@ struct CameraState {
   double gain = 1.0;  ///< factor of its detector's
 };
 CameraState cameraAt(const Camera& camera, const WorldState& state);
+
+/// What a camera's follower is told of a time.
+FollowerTick followerTick(const Camera& camera, const WorldState& state, int frame);
+/// With a camera where its follower says.
+WorldState pointed(WorldState state, const Camera& camera, const Pose& pose);
+/// A command to a camera's follower; its number is given here.
+void addPointing(Courses& courses, const std::string& camera, Pointing pointing);
 
 }  // namespace pitviper

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <set>
 
+#include "sim/parameters/time_course.hpp"
 #include "sim/parameters/units.hpp"
 
 namespace pitviper {
@@ -88,6 +89,10 @@ void check(const Parameter& p, const Value& v) {
     case ParameterType::Number:
       checkRange(p, readNumber(v, p.unit, p.key), v);
       break;
+    case ParameterType::Course:
+      if (isCourse(v) || v.kind != Value::Kind::Scalar) readCourse(v, p.unit, p.key, p.minimum, p.maximum);
+      else checkRange(p, readNumber(v, p.unit, p.key), v);
+      break;
     case ParameterType::Integer:
       checkRange(p, static_cast<double>(readInteger(v, p.key)), v);
       break;
@@ -130,6 +135,8 @@ const char* typeName(const Parameter& p) {
   switch (p.type) {
     case ParameterType::Number:
       return "number";
+    case ParameterType::Course:
+      return "number or course";
     case ParameterType::Integer:
       return "integer";
     case ParameterType::Boolean:
@@ -155,6 +162,7 @@ const char* typeName(const Parameter& p) {
 }  // namespace
 
 Parameter number(std::string k, std::string u, std::string d) { return make(std::move(k), ParameterType::Number, std::move(u), std::move(d)); }
+Parameter course(std::string k, std::string u, std::string d) { return make(std::move(k), ParameterType::Course, std::move(u), std::move(d)); }
 Parameter integer(std::string k, std::string d, long long lo, long long hi) {
   return within(make(std::move(k), ParameterType::Integer, "", std::move(d)), static_cast<double>(lo), static_cast<double>(hi));
 }
@@ -258,6 +266,7 @@ Location Record::where(std::string_view key) const {
   return v ? v->where : value_->where;
 }
 double Record::number(std::string_view key) const { return readNumber(value(key), parameter(key).unit, key); }
+TimeCourse Record::course(std::string_view key) const { return readCourse(value(key), parameter(key).unit, key); }
 long long Record::integer(std::string_view key) const { return readInteger(value(key), key); }
 bool Record::boolean(std::string_view key) const { return readBoolean(value(key), key); }
 std::string Record::text(std::string_view key) const { return readText(value(key), key); }

@@ -12,7 +12,9 @@
 
 namespace pitviper {
 
-enum class ParameterType { Number, Integer, Boolean, Text, Choice, Vector, List, Map, Spectrum, Any };
+class TimeCourse;
+
+enum class ParameterType { Number, Course, Integer, Boolean, Text, Choice, Vector, List, Map, Spectrum, Any };
 
 struct Parameter {
   std::string key;
@@ -31,6 +33,8 @@ struct Parameter {
 
 /// Short ways to write a table.
 Parameter number(std::string key, std::string unit, std::string description);
+/// A number, or a number over time (sim/parameters/time_course.hpp).
+Parameter course(std::string key, std::string unit, std::string description);
 Parameter integer(std::string key, std::string description, long long minimum, long long maximum);
 Parameter boolean(std::string key, std::string description);
 Parameter text(std::string key, std::string description);
@@ -64,6 +68,7 @@ class Record {
   bool has(std::string_view key) const;       ///< given, or has a default
   bool given(std::string_view key) const;     ///< written by the user
   double number(std::string_view key) const;  ///< in the table's unit
+  TimeCourse course(std::string_view key) const;  ///< the same, of a number or a course
   long long integer(std::string_view key) const;
   bool boolean(std::string_view key) const;
   std::string text(std::string_view key) const;

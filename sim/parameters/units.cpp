@@ -43,6 +43,15 @@ const std::map<std::string, Unit, std::less<>>& namedUnits() {
     m["Hz"] = base({{S, -1}});
     m["kHz"] = base({{S, -1}}, 1e3);
     m["kn"] = base({{M, 1}, {S, -1}}, 1852.0 / 3600.0);
+    // Kilogram and newton from watt, metre and second.
+    m["kg"] = base({{W, 1}, {S, 3}, {M, -2}});
+    m["g"] = base({{W, 1}, {S, 3}, {M, -2}}, 1e-3);
+    m["N"] = base({{W, 1}, {S, 1}, {M, -1}});
+    m["kN"] = base({{W, 1}, {S, 1}, {M, -1}}, 1e3);
+    m["Pa"] = base({{W, 1}, {S, 1}, {M, -3}});
+    m["hPa"] = base({{W, 1}, {S, 1}, {M, -3}}, 1e2);
+    m["kPa"] = base({{W, 1}, {S, 1}, {M, -3}}, 1e3);
+    m["atm"] = base({{W, 1}, {S, 1}, {M, -3}}, 101325.0);
     m["K"] = base({{K, 1}});
     m["mK"] = base({{K, 1}}, 1e-3);
     m["degC"] = base({{K, 1}});

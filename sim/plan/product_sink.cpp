@@ -13,6 +13,8 @@ namespace {
 /// Black bodies of the air and of textures stand at steps; below kShort_um, where a step changes the shape of their spectra, at finer ones.
 constexpr double kStep_K = 4.0, kFineStep_K = 1.0, kShort_um = 3.0;
 constexpr double kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
+/// Hot gases: steps of 1 % in temperature, between which a black body is straight to 0.2 % where c2 / (lambda T) is 12.
+constexpr double kHotStep = 0.01;
 /// Directions of the surroundings' light in half a turn.
 constexpr double kElevationSteps = 12.0, kAzimuthSteps = 4.0;
 
@@ -66,8 +68,12 @@ Sight ProductSink::finish() {
 }
 
 /// Through the media so far, and a part of those of the segment being told.
-int ProductSink::pathOf(const AirAmounts& powered, double ownPart) {
+int ProductSink::pathOf(const AirAmounts& powered, double ownPart, std::pair<int, double> more) {
   SightPath path{powered, media_m_};
+  if (more.second > 0.0) {
+    path.media_m.resize(sim_.materials.size(), 0.0);
+    path.media_m[static_cast<size_t>(more.first)] += more.second;
+  }
   if (!inside_m_.empty() && ownPart > 0.0) {
     path.media_m.resize(inside_m_.size(), 0.0);
     for (size_t m = 0; m < inside_m_.size(); ++m) path.media_m[m] += ownPart * inside_m_[m];
@@ -172,20 +178,65 @@ void ProductSink::emission(const Segment& s) {
     both(book_.spectrum("air's own", [](const FineGrid& g, size_t i) { return g.air[i].source; }), near, far, TermKind::AirEmission);
   }
   if (s.media.empty()) return;
+  emissionOfMedia(s);
+}
+
+/// About how much a unit of a medium absorbs: the mean of its bends.
+double ProductSink::strengthOf(int material) {
+  const auto [at, isNew] = strength_.try_emplace(material, 0.0);
+  if (!isNew) return at->second;
+  const Spectrum& absorption = sim_.materials[static_cast<size_t>(material)]->medium->absorption_per_m;
+  const std::vector<double> knots = absorption.knots();
+  double sum = 0.0;
+  for (double w : knots) sum += absorption(w);
+  const double middle = 0.5 * (std::max(absorption.validLow(), 1.0) + std::min(absorption.validHigh(), 14.0));
+  return at->second = knots.empty() ? absorption(std::clamp(middle, absorption.validLow(), absorption.validHigh())) : sum / static_cast<double>(knots.size());
+}
+
+void ProductSink::emissionOfMedia(const Segment& s) {
   AirAmounts middle;
   for (size_t k = 0; k < kMostAirAmounts; ++k) middle.amount[k] = 0.5 * (s.near.powered.amount[k] + s.far.powered.amount[k]);
-  double total_m = 0.0;
-  for (const MediumInside& m : s.media) total_m += m.length_m;
-  // Several in each other: each sends its share by length, which only their fit is for.
-  const int near = pathOf(middle, 0.0), far = pathOf(middle, 1.0);
-  for (const MediumInside& m : s.media) {
-    const int source = book_.spectrum(Factor::medium(*m.medium, m.temperature_K), sim_);
+  double total = 0.0;
+  for (const MediumInside& m : s.media) total += strengthOf(m.material) * m.length_m;
+  if (!(total > 0.0)) return;
+  // Several in each other: each sends its share by strength, which only their fit is for.
+  const auto addSource = [&](int spectrum, double share, int near, int far) {
     for (const auto& [path, sign] : {std::pair{near, 1.0}, {far, -1.0}}) {
       ProductTerm t;
       t.tag = static_cast<int>(TermKind::Media);
-      t.spectrum[0] = source, t.path = path, t.coefficient = sign * m.length_m / total_m;
-      add(t);
+      t.spectrum[0] = spectrum, t.path = path, t.coefficient = sign * share;
+      if (share > 0.0) add(t);
     }
+  };
+  const int near = pathOf(middle, 0.0), far = pathOf(middle, 1.0);
+  std::map<double, double> black;  // share of what is a black body of a temperature: gases of a field
+  for (const MediumInside& m : s.media) {
+    const double share = strengthOf(m.material) * m.length_m / total;
+    if (m.lasting) {
+      addSource(book_.spectrum(m.source(), sim_), share, near, far);
+      continue;
+    }
+    if (!m.medium->albedo && !m.medium->radiance) {
+      black[m.temperature_K] += share;
+      continue;
+    }
+    const double stepped_K = step_K_ * std::max(std::round(m.temperature_K / step_K_), 1.0);
+    addSource(book_.spectrum(Factor::medium(*m.medium, stepped_K, 0.0), sim_), share, near, far);
+    if (m.medium->radiance && m.gain > 0.0)
+      addSource(book_.spectrum("radiance " + std::to_string(m.material),
+                               [medium = m.medium](const FineGrid& g, size_t i) { return (*medium->radiance)(g.wavelength_um[i]); }),
+                share * m.gain, near, far);
+    if (!(m.sun > 0.0)) continue;
+    const int scatter = book_.spectrum(Factor::mediumSun(*m.medium, kCosineStep * std::round(s.cosScatter / kCosineStep)), sim_);
+    const AirAmounts& way = s.sunAir ? *s.sunAir : middle;
+    const std::pair before{m.material, m.sunAmount};
+    addSource(scatter, share * m.sun, pathOf(way, 0.0, before), pathOf(way, 1.0, before));
+  }
+  for (const auto& [temperature_K, share] : black) {
+    // Between two of temperatures that lie evenly in their logarithm.
+    const double at = std::log(std::max(temperature_K, 1.0)) / kHotStep, low = std::floor(at);
+    for (const auto& [step, part] : {std::pair{low, 1.0 - (at - low)}, {low + 1.0, at - low}})
+      addSource(book_.spectrum(Factor::planck(std::exp(kHotStep * step), true), sim_), share * part, near, far);
   }
 }
 

@@ -24,16 +24,20 @@ class ProductSink final : public TermSink {
   void pane(const Factor& transmittance, double modifier) override;
 
  private:
-  int pathOf(const AirAmounts& powered, double ownPart);
+  /// `more`: so much of a material besides.
+  int pathOf(const AirAmounts& powered, double ownPart, std::pair<int, double> more = {0, 0.0});
   void add(ProductTerm term);
   void addFactor(const ProductTerm& term, std::span<const Factor> rest);
   void emission(const Segment& segment);
+  void emissionOfMedia(const Segment& segment);
+  double strengthOf(int material);
   void scattered(const Segment& segment);
 
   const Simulation& sim_;
   SightBook& book_;
   double step_K_;  ///< between temperatures of black bodies
   Sight sight_;
+  std::map<int, double> strength_;  ///< of materials
   std::vector<size_t> scatterers_;    ///< absorbers of the air that scatter
   AirAmounts here_;                   ///< from the eye to the place reached, raised to their powers
   std::vector<double> media_m_;       ///< on the way so far, by material; empty: none

@@ -38,7 +38,9 @@ std::vector<SamplingNote> checkSampling(const Simulation& sim, const Plan& plan,
   for (const Entity& e : sim.entities) {
     const Medium* medium = sim.mediumOf(e);
     if (!medium || medium->absorption_per_m.isConstant()) continue;
-    const double temperature_K = e.surfaces.front().temperature_K;
+    const Surface& s = e.surfaces.front();
+    // Over the scenario's times: where it is hottest it shines most.
+    const double temperature_K = s.temperature.empty() ? s.temperature_K : s.temperature.range(sim.time.at(0), sim.time.at(sim.time.frames - 1)).second;
     for (size_t o = 0; o < outputs.size(); ++o) {
       // Where the gas does not shine to speak of (smoke at 290 K in the visible), its error matters to nobody.
       if (kSecondRadiation_umK / (outputs[o].kernel.supportHigh() * temperature_K) > kWien) continue;

@@ -83,7 +83,7 @@ std::vector<ScatteringCheck::Line> ScatteringCheck::linesOver(const WorldState& 
   std::vector<char> drawn(sim_.entities.size(), 1);
   if (camera_.mount.carrier >= 0) drawn[static_cast<size_t>(camera_.mount.carrier)] = 0;
   const auto endOf = [&](const glm::dvec3& direction) -> std::optional<Hit> {
-    const RayHits hits = castRay(sim_, state, place, direction, camera_.near_m, &drawn);
+    const RayHits hits = castRay(sim_, state, place, direction, camera_.near_m, &drawn, false, 0);
     return hits.solid.entity >= 0 ? hits.solid : groundHit(sim_, place, direction);
   };
   below = endOf(-up);

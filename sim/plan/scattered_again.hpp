@@ -23,6 +23,7 @@ class ScatteringCheck {
   /// Channels that the sun lights and in which the depth is above 0.2, at a time: five lines of sight over the film, two-stream fluxes of the whole
   /// column of air over the ground that lies below the camera. Shadows are not asked for. Within a factor of 2 or so (tests/physics/test_scattered_again.cpp).
   std::vector<ScatteredAgain> at(const WorldState& state) const;
+  bool looks() const { return !channels_.empty(); }  ///< false: at() has nothing to say, whenever
   static constexpr double kMatters = 0.2;
 
  private:

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "sim/model/field_states.hpp"
 #include "sim/model/glint.hpp"
 #include "sim/model/ground.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -15,6 +16,9 @@ namespace {
 constexpr int kSurvey = 3000, kAimedSurvey = 600;
 /// Where in a subpixel its line goes through: not its very middle, where lines of a symmetrical scene run along edges of meshes and miss both sides.
 constexpr double kInColumn = 0.4871, kInRow = 0.5113;
+/// Frames whose states are kept, and those that are looked at where there are fields.
+constexpr size_t kMostStates = 256;
+constexpr int kFieldFrames = 96;
 /// Tries to hit on something that is in view at a time.
 constexpr int kTries = 24;
 /// Frames at which bodies and lamps are looked for at their nearest and farthest.
@@ -33,28 +37,58 @@ constexpr size_t kGlintLamps = 8;
 /// Nothing is lower than this [m].
 constexpr double kGround_m = -100.0;
 
+const FollowerChoice* followerOf(const Eye& eye) { return eye.camera && eye.camera->follower ? &*eye.camera->follower : nullptr; }
+
 }  // namespace
 
 SightRays::SightRays(const Simulation& simulation, const Eye& eye, unsigned long long seed)
     : simulation_(simulation), eye_(eye), dice_(seed), drawn_(simulation.entities.size(), 1) {
   if (eye.camera && eye.camera->mount.carrier >= 0) drawn_[static_cast<size_t>(eye.camera->mount.carrier)] = 0;
+  findLifetimes();
   for (size_t e = 0; e < simulation.entities.size(); ++e)
     for (size_t s = 0; drawn_[e] && s < simulation.entities[e].surfaces.size(); ++s) surfaces_.emplace_back(e, s);
 }
 
-std::shared_ptr<const WorldState> SightRays::stateAt(int frame) {
-  if (frame != frame_ || !state_) {
-    state_ = std::make_shared<const WorldState>(advance(simulation_, simulation_.time.at(frame)));
-    frame_ = frame;
+void SightRays::findLifetimes() {
+  const TimeAxis& time = simulation_.time;
+  const double last = time.frames - 1;
+  for (size_t e = 0; e < simulation_.entities.size(); ++e) {
+    const Lifetime l = lifetimeOf(simulation_, static_cast<int>(e));
+    // A frame's time within it, or the nearest before.
+    const auto frame = [&](double t) { return static_cast<int>(std::clamp(std::floor((t - time.start_s) / time.step_s + kSameTick), -1.0, last + 1.0)); };
+    lifetimes_.emplace_back(std::max(frame(l.begin_s), 0), std::min(frame(l.end_s), time.frames - 1));
   }
-  return state_;
 }
 
-void SightRays::cast(SightRay& ray) const { ray.line.hits = castRay(simulation_, *ray.state, ray.line.origin, ray.line.direction, ray.nearest_m, &drawn_); }
+/// A random one of those in which a surface may be there.
+int SightRays::frameWith(size_t surface) {
+  const auto [first, last] = lifetimes_[surfaces_[surface].first];
+  return last < first ? std::min(first, simulation_.time.frames - 1) : first + static_cast<int>(dice_.below(static_cast<size_t>(last - first) + 1));
+}
 
+std::shared_ptr<const WorldState> SightRays::stateAt(int frame) {
+  if (const auto known = states_.find(frame); known != states_.end()) return known->second;
+  if (states_.size() >= kMostStates) states_.clear();
+  return states_[frame] = std::make_shared<const WorldState>(advance(simulation_, simulation_.time.at(frame)));
+}
+
+/// Any; where there are fields, which take time to work out, one of so many as are kept.
+int SightRays::someFrame() {
+  const int frames = simulation_.time.frames, frame = static_cast<int>(dice_.below(static_cast<size_t>(frames)));
+  if (simulation_.fields.empty() || frames <= kFieldFrames) return frame;
+  return static_cast<int>(static_cast<long long>(frame) * kFieldFrames / frames) * (frames - 1) / (kFieldFrames - 1);
+}
+
+void SightRays::cast(SightRay& ray) const { ray.line.hits = castRay(simulation_, *ray.state, ray.line.origin, ray.line.direction, ray.nearest_m, &drawn_, false, kPlannedFieldSteps); }
+
+/// Of a camera that a gimbal points: half where its mount looks, half anywhere in the gimbal's field.
 SightRay SightRays::startAt(int frame) {
   SightRay ray;
   ray.state = stateAt(frame);
+  if (const FollowerChoice* follower = followerOf(eye_); follower && dice_.unit() < 0.5) {
+    const double across = dice_.unit(), up = dice_.unit();
+    point(ray, follower->anywhere(followerTick(*eye_.camera, *ray.state, frame), {across, up}));
+  }
   if (!eye_.camera) {
     ray.line.origin = eye_.probe->position;
     ray.pixel_sr = 4.0 / (static_cast<double>(eye_.probe->resolution) * eye_.probe->resolution);
@@ -66,6 +100,22 @@ SightRay SightRays::startAt(int frame) {
   ray.pixel_sr = at.pinhole.pitchX_m * at.pinhole.pitchY_m / (across * across);
   ray.nearest_m = eye_.camera->near_m;
   return ray;
+}
+
+void SightRays::point(SightRay& ray, const Pose& pose) const { ray.state = std::make_shared<const WorldState>(pointed(*ray.state, *eye_.camera, pose)); }
+
+/// So that the camera sees a line somewhere on its film, if its gimbal can.
+bool SightRays::turnToward(SightRay& ray, int frame, const glm::dvec3& line) {
+  const FollowerChoice* follower = followerOf(eye_);
+  if (!follower) return false;
+  const FollowerTick tick = followerTick(*eye_.camera, *ray.state, frame);
+  const auto onAxis = follower->toward(tick, line);
+  if (!onAxis) return false;
+  const Pinhole p = cameraAt(*eye_.camera, *ray.state).pinhole;
+  const double right = p.tanX(dice_.unit() * p.width), up = p.tanY(dice_.unit() * p.height);
+  const auto aside = follower->toward(tick, onAxis->orientation * glm::dvec3(1.0, right, -up));
+  point(ray, aside ? *aside : *onAxis);
+  return inView(ray, line);
 }
 
 SightRay SightRays::cameraRay(int frame, size_t column, size_t row) {
@@ -99,6 +149,7 @@ SightRay SightRays::filmRay(int frame) {
 
 SightRay SightRays::through(const FilmPlace& place) {
   SightRay ray = startAt(place.frame);
+  if (place.pose) point(ray, *place.pose);
   const CameraState at = cameraAt(*eye_.camera, *ray.state);
   const Pinhole& p = at.pinhole;
   const double n = eye_.camera->samples;
@@ -110,7 +161,7 @@ SightRay SightRays::through(const FilmPlace& place) {
   return ray;
 }
 
-SightRay SightRays::fromFilm() { return filmRay(static_cast<int>(dice_.below(static_cast<size_t>(simulation_.time.frames)))); }
+SightRay SightRays::fromFilm() { return filmRay(someFrame()); }
 
 std::vector<SightRay> SightRays::overFilm(int count, std::optional<int> only) {
   std::vector<SightRay> lines;
@@ -159,17 +210,43 @@ bool SightRays::inView(const SightRay& ray, const glm::dvec3& direction) const {
 std::optional<SightRay> SightRays::aimedAt(int frame, size_t surface, bool withinLimits) {
   SightRay ray = startAt(frame);
   ray.fromFilm = false;
+  if (!ray.state->isThere(surfaces_[surface].first)) return {};
   const glm::dvec3 line = placeOn(*ray.state, surface) - ray.line.origin;
-  if (!(glm::length(line) > 0.0) || !inView(ray, line)) return {};
+  if (!(glm::length(line) > 0.0) || (!inView(ray, line) && !turnToward(ray, frame, line))) return {};
   ray.line.direction = glm::normalize(line);
   if (withinLimits && simulation_.limits.any() && dice_.unit() < 0.5) stretch(ray, glm::length(line));
   cast(ray);
   return ray;
 }
 
+/// Through a random place of a field, in view at a frame.
+std::optional<SightRay> SightRays::aimedAtField(int frame, size_t number) {
+  SightRay ray = startAt(frame);
+  ray.fromFilm = false;
+  const FieldState* field = fieldOf(*ray.state, number);
+  if (!field || field->elements.empty()) return {};
+  const FieldElement& e = field->elements[dice_.below(field->elements.size())];
+  const glm::dvec3 off(2.0 * dice_.unit() - 1.0, 2.0 * dice_.unit() - 1.0, 2.0 * dice_.unit() - 1.0);
+  const glm::dvec3 place = field->origin + field->localFromField * glm::clamp(e.centre + 0.7 * e.radius_m * off, field->low, field->high);
+  const glm::dvec3 line = place - ray.line.origin;
+  if (!(glm::length(line) > 0.0) || (!inView(ray, line) && !turnToward(ray, frame, line))) return {};
+  ray.line.direction = glm::normalize(line);
+  cast(ray);
+  return ray.line.hits.slabs.empty() ? std::nullopt : std::optional(std::move(ray));
+}
+
 SightRay SightRays::aimed() {
-  for (int tries = 0; tries < kTries && !surfaces_.empty(); ++tries)
-    if (auto ray = aimedAt(static_cast<int>(dice_.below(static_cast<size_t>(simulation_.time.frames))), dice_.below(surfaces_.size()))) return *ray;
+  // A field is as much as a body.
+  const size_t things = surfaces_.size() + simulation_.fields.size();
+  for (int tries = 0; tries < kTries && !simulation_.fields.empty(); ++tries) {
+    const size_t thing = dice_.below(things);
+    if (thing < surfaces_.size()) break;
+    if (auto ray = aimedAtField(someFrame(), thing - surfaces_.size())) return *ray;
+  }
+  for (int tries = 0; tries < kTries && !surfaces_.empty(); ++tries) {
+    const size_t surface = dice_.below(surfaces_.size());
+    if (auto ray = aimedAt(frameWith(surface), surface)) return *ray;
+  }
   return fromFilm();
 }
 
@@ -186,11 +263,11 @@ std::vector<SightRay> SightRays::ofSmallBodies(int count) {
   if (!eye_.camera || surfaces_.empty()) return lines;
   const int last = simulation_.time.frames - 1, frames = std::min(simulation_.time.frames, kSmallFrames);
   for (int k = 0; k < frames; ++k) {
-    const int frame = k == 0 ? 0 : k == 1 ? last : static_cast<int>(dice_.below(static_cast<size_t>(last) + 1));
+    const int frame = k == 0 ? 0 : k == 1 ? last : someFrame();
     const SightRay start = startAt(frame);
     std::vector<size_t> small;
     for (size_t s = 0; s < surfaces_.size(); ++s)
-      if (isSmall(start, simulation_.entities[surfaces_[s].first], start.state->entities[surfaces_[s].first])) small.push_back(s);
+      if (start.state->isThere(surfaces_[s].first) && isSmall(start, simulation_.entities[surfaces_[s].first], start.state->entities[surfaces_[s].first])) small.push_back(s);
     for (int n = 0; !small.empty() && n < count / frames; ++n)
       for (int tries = 0; tries < kTries; ++tries)
         if (auto ray = aimedAt(frame, small[dice_.below(small.size())], false)) {
@@ -230,6 +307,8 @@ SightRays::Candidate SightRays::candidate(SightRay ray) const {
   c.things.emplace_back(hits.solid.entity, hits.solid.surface);
   for (const Hit& h : hits.layers) c.things.emplace_back(h.entity, h.surface);
   for (const Stretch& s : hits.stretches) c.things.emplace_back(s.entity, -1);
+  for (size_t k = 0; k < hits.slabs.size(); ++k)
+    if (k == 0 || hits.slabs[k].field != hits.slabs[k - 1].field) c.things.emplace_back(-2 - hits.slabs[k].field, -1);
   std::sort(c.things.begin() + 1, c.things.end());
   return c;
 }
@@ -248,11 +327,14 @@ void SightRays::survey() {
     const int frame = n % 20 == 0                                    ? 0
                       : n % 20 == 10                                 ? last
                       : n % 10 == 5 && !simulation_.commands.empty() ? frameOf(simulation_.commands[dice_.below(simulation_.commands.size())].at_s)
-                                                                     : static_cast<int>(dice_.below(static_cast<size_t>(last) + 1));
+                                                                     : someFrame();
     candidates_.push_back(candidate(filmRay(frame)));
   }
   for (int n = 0; n < kAimedSurvey && !surfaces_.empty(); ++n)
-    if (auto ray = aimedAt(static_cast<int>(dice_.below(static_cast<size_t>(last) + 1)), static_cast<size_t>(n) % surfaces_.size()))
+    if (auto ray = aimedAt(frameWith(static_cast<size_t>(n) % surfaces_.size()), static_cast<size_t>(n) % surfaces_.size()))
+      candidates_.push_back(candidate(std::move(*ray)));
+  for (size_t n = 0; n < static_cast<size_t>(kAimedSurvey) && !simulation_.fields.empty(); ++n)
+    if (auto ray = aimedAtField(someFrame(), n % simulation_.fields.size()))
       candidates_.push_back(candidate(std::move(*ray)));
   std::map<std::vector<std::pair<int, int>>, size_t> placeOf;
   for (size_t c = 0; c < candidates_.size(); ++c) {
@@ -277,7 +359,9 @@ std::vector<SightRay> SightRays::lamps(int frame) {
     SightRay ray = startAt(frame);
     const glm::dvec3 line = ray.state->lights[l] - ray.line.origin;
     const double most = simulation_.limits.lightLevel;
-    if (!simulation_.lights[l].visible || !(std::max(ray.state->lightLevels[l], most) > 0.0) || !(glm::length(line) > 0.0) || !inView(ray, line)) continue;
+    if (!simulation_.lights[l].visible || !(std::max(ray.state->lightLevels[l], most) > 0.0) || !(glm::length(line) > 0.0) ||
+        (!inView(ray, line) && !turnToward(ray, frame, line)))
+      continue;
     ray.line.direction = glm::normalize(line);
     ray.lamp = static_cast<int>(l);
     ray.fromFilm = false;
@@ -300,15 +384,32 @@ std::vector<SightRay> SightRays::lamps(int frame) {
 std::vector<int> SightRays::framesOfLevels() const {
   std::vector<int> frames;
   for (const Command& c : simulation_.commands) frames.push_back(frameOf(c.at_s));
-  for (const PointLight& light : simulation_.lights)
-    for (const auto& [time_s, level] : light.level)
-      for (int before : {0, 1}) frames.push_back(std::max(frameOf(time_s) - before, 0));
+  const auto around = [&](double time_s) {
+    for (int before : {0, 1}) frames.push_back(std::max(frameOf(time_s) - before, 0));
+  };
+  for (const PointLight& light : simulation_.lights) {
+    if (!light.level.empty())
+      for (double time_s : light.level.bends_s(-INFINITY, simulation_.time.at(simulation_.time.frames - 1), kMostLevels)) around(time_s);
+    for (double end_s : {light.lifetime.begin_s, light.lifetime.end_s})
+      if (std::isfinite(end_s)) around(end_s);
+  }
   std::sort(frames.begin(), frames.end());
   frames.erase(std::unique(frames.begin(), frames.end()), frames.end());
   // Of very many some, evenly.
   std::vector<int> some;
   for (size_t k = 0; k < std::min(frames.size(), kMostLevels); ++k) some.push_back(frames[k * frames.size() / std::min(frames.size(), kMostLevels)]);
   return some;
+}
+
+/// Those in which a surface is hottest and coldest.
+std::vector<int> SightRays::framesOfTemperatures(const Surface& surface) const {
+  if (surface.temperature.empty()) return {};
+  const TimeAxis& time = simulation_.time;
+  std::vector<double> times = surface.temperature.bends_s(time.at(0), time.at(time.frames - 1), kMostLevels);
+  times.insert(times.end(), {time.at(0), time.at(time.frames - 1)});
+  const auto less = [&](double a, double b) { return surface.temperature.at(a) < surface.temperature.at(b); };
+  const auto [coldest, hottest] = std::minmax_element(times.begin(), times.end(), less);
+  return {frameOf(*coldest), frameOf(*hottest)};
 }
 
 const std::vector<SightRay>& SightRays::extremes() {
@@ -386,7 +487,8 @@ void SightRays::findNearAndFar() {
       if (d < e.nearest) e.nearest = d, e.nearestFrame = frame;
       if (d > e.farthest) e.farthest = d, e.farthestFrame = frame;
     };
-    for (size_t e = 0; e < bodies.size(); ++e) look(bodies[e], start.state->entities[e].position);
+    for (size_t e = 0; e < bodies.size(); ++e)
+      if (start.state->isThere(e)) look(bodies[e], start.state->entities[e].position);
     for (size_t l = 0; l < lights.size(); ++l) look(lights[l], start.state->lights[l]);
   }
   std::vector<int> lampFrames = {0, frames / 2, frames - 1};
@@ -398,24 +500,31 @@ void SightRays::findNearAndFar() {
     for (SightRay& r : lamps(frame)) extremes_.push_back(std::move(r));
   for (size_t s = 0; s < surfaces_.size(); ++s) {
     const Extent& e = bodies[surfaces_[s].first];
-    for (int frame : {e.nearestFrame, e.farthestFrame})
+    std::vector<int> which = {e.nearestFrame, e.farthestFrame};
+    for (int frame : framesOfTemperatures(simulation_.entities[surfaces_[s].first].surfaces[surfaces_[s].second])) which.push_back(frame);
+    for (int frame : which)
       if (auto ray = aimedAt(frame, s)) extremes_.push_back(std::move(*ray));
   }
 }
 
 /// What lines of a combination have extremes of.
-std::array<double, 7> SightRays::figuresOf(const SightRay& r) const {
+std::array<double, 9> SightRays::figuresOf(const SightRay& r) const {
   const RayHits& h = r.line.hits;
   const double cosView = h.solid.entity >= 0 ? -glm::dot(h.solid.normal, r.line.direction) : 0.0;
   double media_m = 0.0, texel_K = 0.0;
   for (const Stretch& s : h.stretches) media_m += s.leave - s.enter;
+  double field = 0.0, field_K = 0.0;  // of what a line passes: the first gas's amount, the hottest part of it
+  for (const Slab& s : h.slabs) {
+    field += s.step.amount[0];
+    field_K = std::max(field_K, s.step.temperature_K);
+  }
   if (h.solid.entity >= 0) {
     const Surface& s = simulation_.entities[static_cast<size_t>(h.solid.entity)].surfaces[static_cast<size_t>(h.solid.surface)];
     if (s.temperatureTexture >= 0) texel_K = textureValue(simulation_.textures[static_cast<size_t>(s.temperatureTexture)], h.solid.uv);
   }
   const double up = glm::dot(r.line.direction, simulation_.frame.up(r.line.origin));
   const double toSun = simulation_.sun ? glm::dot(r.line.direction, simulation_.sun->toSun) : 0.0;
-  return {h.solid.entity >= 0 ? h.solid.distance : 0.0, cosView, media_m, texel_K, up, std::abs(up), toSun};
+  return {h.solid.entity >= 0 ? h.solid.distance : 0.0, cosView, media_m, texel_K, up, std::abs(up), toSun, field, field_K};
 }
 
 void SightRays::findExtremes() {

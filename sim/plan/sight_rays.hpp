@@ -1,6 +1,7 @@
 #pragma once
 // Random lines of sight of a camera or a probe, over a scenario's time: as its film draws them, aimed at bodies, and those at the extremes.
 #include <array>
+#include <map>
 #include <memory>
 #include <optional>
 #include <random>
@@ -71,19 +72,26 @@ class SightRays {
     std::vector<std::pair<int, int>> things;  ///< entity and surface, -1 for a medium; sorted
   };
   std::shared_ptr<const WorldState> stateAt(int frame);
+  int someFrame();
   SightRay startAt(int frame);
+  void point(SightRay& ray, const Pose& pose) const;
+  bool turnToward(SightRay& ray, int frame, const glm::dvec3& line);
   SightRay filmRay(int frame);
   SightRay cameraRay(int frame, std::size_t column, std::size_t row);
   SightRay probeRay(int frame);
   std::optional<SightRay> aimedAt(int frame, size_t surface, bool withinLimits = true);
+  std::optional<SightRay> aimedAtField(int frame, size_t field);
   bool isSmall(const SightRay& ray, const Entity& entity, const Pose& pose) const;
   std::vector<SightRay> lamps(int frame);
   std::vector<int> framesOfLevels() const;
+  std::vector<int> framesOfTemperatures(const Surface& surface) const;
+  void findLifetimes();
+  int frameWith(std::size_t surface);
   void cast(SightRay& ray) const;
   int frameOf(double time_s) const;
   void survey();
   void findNearAndFar();
-  std::array<double, 7> figuresOf(const SightRay& ray) const;
+  std::array<double, 9> figuresOf(const SightRay& ray) const;
   void findExtremes();
   /// Where a light glints most on a surface (entity and surface), about; none where it does not.
   std::optional<SightRay> glint(const std::vector<size_t>& combination, std::pair<int, int> surface, size_t light);
@@ -98,11 +106,11 @@ class SightRays {
   Dice dice_;
   std::vector<char> drawn_;                          ///< one flag per entity: a camera does not see the body it rides on
   std::vector<std::pair<size_t, size_t>> surfaces_;  ///< entity and surface
+  std::vector<std::pair<int, int>> lifetimes_;       ///< first and last frame in which an entity may be there; last < first: in none
   std::vector<Candidate> candidates_;
   std::vector<std::vector<size_t>> combinations_;  ///< candidates of each
   std::vector<SightRay> extremes_;
-  int frame_ = -1;
-  std::shared_ptr<const WorldState> state_;  ///< of the frame asked for last
+  std::map<int, std::shared_ptr<const WorldState>> states_;  ///< by frame, some
 };
 
 }  // namespace pitviper

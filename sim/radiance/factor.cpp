@@ -69,8 +69,12 @@ double valueOf(const Simulation& sim, const Factor& f, double w) {
     }
     case Factor::Kind::Background:
       return sim.background(w);
-    case Factor::Kind::Medium:
-      return static_cast<const Medium*>(f.of)->source(w, f.x);
+    case Factor::Kind::Medium: {
+      const auto& medium = *static_cast<const Medium*>(f.of);
+      return medium.source(w, f.x, f.y) + (medium.albedo && sim.ambient ? medium.albedoAt(w) * (*sim.ambient)(w) : 0.0);
+    }
+    case Factor::Kind::MediumSun:
+      return static_cast<const Medium*>(f.of)->scattered(w, f.x) * sim.sun->irradiance(w);
   }
   return 0.0;
 }

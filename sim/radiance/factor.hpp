@@ -27,7 +27,8 @@ struct Factor {
     Reflected,  ///< of a reflection component: what it sends of the surroundings' light to a view; a NodeSpectra has it
     Around,     ///< irradiance / pi from the surroundings on a plane whose normal has elevation x and azimuth y, at their height of number z
     Background,
-    Medium  ///< source radiance of a medium at x [K]
+    Medium,    ///< source radiance of a medium at x [K], y times its own; light that it scatters from all around
+    MediumSun  ///< sunlight that a medium turns towards the eye, x the cosine of the angle [W/(m2 sr um)]
   };
   Kind kind = Kind::Background;
   const void* of = nullptr;
@@ -62,7 +63,10 @@ struct Factor {
     return {Kind::Around, nullptr, elevation_rad, azimuth_rad, true, static_cast<double>(height)};
   }
   static Factor background() { return {Kind::Background}; }
-  static Factor medium(const Medium& m, double temperature_K) { return {Kind::Medium, &m, temperature_K}; }
+  static Factor medium(const Medium& m, double temperature_K, double gain = 1.0, bool lasting = true) {
+    return {Kind::Medium, &m, temperature_K, gain, lasting};
+  }
+  static Factor mediumSun(const Medium& m, double cosScatter) { return {Kind::MediumSun, &m, cosScatter, 0.0, false}; }
 };
 
 /// Its value at a wavelength [of its kind: W/(m2 sr um), 1, 1/sr, W/(sr um), W/(m2 um)].

@@ -161,6 +161,39 @@ const std::vector<double>& NodeSum::hazePhase(double cosScatter) {
   return hazePhase_;
 }
 
+/// What the media of a segment send per node [W/(m2 sr um)]: their own, and sunlight scattered once, through air and through what lies before the sun.
+std::vector<std::vector<double>> NodeSum::sourcesOf(const Segment& s) {
+  std::vector<std::vector<double>> all;
+  if (s.dark) return std::vector<std::vector<double>>(s.media.size(), std::vector<double>(count_, 0.0));
+  std::vector<double> black, sunAir;  // of one temperature: the gases of a field share it
+  double blackOf_K = -1.0;
+  const auto nodes = spectra_.nodes();
+  for (const MediumInside& m : s.media) {
+    if (m.lasting || m.medium->albedo || m.medium->radiance) {
+      all.push_back(values(m.source()));
+    } else {
+      if (m.temperature_K != blackOf_K) {
+        black.resize(count_);
+        spectra_.planck(m.temperature_K, black);
+        blackOf_K = m.temperature_K;
+      }
+      all.push_back(black);
+    }
+    if (!(m.sun > 0.0)) continue;
+    if (s.sunAir && sunAir.empty()) {
+      std::vector<double> near(count_);
+      sunAir.resize(count_);
+      weigh(spectra_.extinction(), *s.sunAir, sunAir);
+      weigh(spectra_.extinction(), s.near.powered, near);
+      for (size_t i = 0; i < count_; ++i) sunAir[i] = std::exp(std::min(near[i] - sunAir[i], 0.0));
+    }
+    const std::vector<double>& turned = values(Factor::mediumSun(*m.medium, s.cosScatter));
+    for (size_t i = 0; i < count_; ++i)
+      all.back()[i] += m.sun * turned[i] * (s.sunAir ? sunAir[i] : 1.0) * std::exp(-m.sunAmount * nodes[i].absorption_per_m[static_cast<size_t>(m.material)]);
+  }
+  return all;
+}
+
 // J = (x S + y B) / (x + y) with S of the media and B of the air, B linear in depth from one end to the other:
 //   integral of J exp(-t) dt = J_near (1 - exp(-d)) + (J_far - J_near) g(d), d = x + y.
 void NodeSum::segment(const Segment& s) {
@@ -186,15 +219,14 @@ void NodeSum::segment(const Segment& s) {
   }
   const bool media = !s.media.empty() && takes({TermKind::Media}), air = s.air && takes({TermKind::AirEmission}),
              turned = sunlit && takes({TermKind::ScatteredSun});
-  std::vector<const std::vector<double>*> sources;
-  for (const MediumInside& m : s.media) sources.push_back(&values(Factor::medium(*m.medium, m.temperature_K)));
+  const auto sources = sourcesOf(s);
   for (size_t i = 0; i < count_; ++i) {
     double x = 0.0, emitted = 0.0, ofWatched = 0.0;
     for (size_t m = 0; m < s.media.size(); ++m) {
       const double own = nodes[i].absorption_per_m[static_cast<size_t>(s.media[m].material)] * s.media[m].length_m;
       x += own;
-      emitted += own * (*sources[m])[i];
-      if (s.media[m].entity == watched_) ofWatched += own * (*sources[m])[i];
+      emitted += own * sources[m][i];
+      if (s.media[m].entity == watched_) ofWatched += own * sources[m][i];
     }
     const double before = mediaDepth_[i];
     mediaDepth_[i] += x;

@@ -82,6 +82,7 @@ class NodeSum final : public TermSink {
     std::vector<double> depth, passed, black, sunDepth, sunPassed;
   };
   void place(const AirPlace& at, const AirAmounts* both, At& out);
+  std::vector<std::vector<double>> sourcesOf(const Segment& segment);
   /// Of haze, per node; lines of one sun mostly ask for the same angle again.
   const std::vector<double>& hazePhase(double cosScatter);
 

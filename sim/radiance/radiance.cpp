@@ -15,7 +15,9 @@ namespace {
 class Teller {
  public:
   Teller(const RadianceScene& scene, const LineOfSight& line, double end_m, TermSink& sink)
-      : scene_(scene), sim_(scene.simulation), line_(line), sink_(sink), air_(scene, line, placesOf(line, end_m)) {}
+      : scene_(scene), sim_(scene.simulation), line_(line), sink_(sink), air_(scene, line, placesOf(line, end_m)) {
+    if (sim_.sun) cosScatter_ = glm::dot(line.direction, sim_.sun->toSun);
+  }
 
   /// As far as its end, where something solid may be met; `shining` or only what lies on the way.
   void run(bool shining, const Hit* solid = nullptr) {
@@ -45,6 +47,7 @@ class Teller {
     std::vector<double> at = {0.0, end_m};
     for (const Hit& h : line.hits.layers) at.push_back(h.distance);
     for (const auto& s : line.hits.stretches) at.insert(at.end(), {s.enter, s.leave});
+    for (const auto& s : line.hits.slabs) at.insert(at.end(), {s.step.enter_m, s.step.leave_m});
     std::erase_if(at, [&](double r) { return !(r >= 0.0 && r <= end_m); });
     std::sort(at.begin(), at.end());
     at.erase(std::unique(at.begin(), at.end()), at.end());
@@ -77,7 +80,32 @@ class Teller {
                          line_.temperature_K > 0.0 ? line_.temperature_K : scene_.state.temperatures_K[static_cast<size_t>(s.entity)][0],
                          far.range_m - near.range_m});
     }
-    sink_.segment({near, far, inside_, scene_.terms.air, air_.sunlit(), air_.cosScatter(), dark_});
+    const bool scatters = addFields(middle, far.range_m - near.range_m);
+    AirAmounts toSun;
+    if (scatters && scene_.terms.air)
+      toSun = sim_.air->powered(air_.amounts(near) + sunHere(sim_, line_.origin + middle * line_.direction).air);
+    sink_.segment({near, far, inside_, scene_.terms.air, air_.sunlit(), cosScatter_, dark_, scatters && scene_.terms.air ? &toSun : nullptr});
+  }
+
+  /// What fields have on a stretch; whether sunlight falls on some of it that scatters.
+  bool addFields(double middle_m, double length_m) {
+    bool scatters = false;
+    for (const Slab& slab : line_.hits.slabs) {
+      const FieldStep& s = slab.step;
+      if (!(s.enter_m < middle_m && s.leave_m > middle_m)) continue;
+      const double share = length_m / (s.leave_m - s.enter_m);
+      const std::vector<FieldGas>& gases = sim_.fields[static_cast<size_t>(slab.field)].gases;
+      for (size_t g = 0; g < gases.size(); ++g) {
+        if (!(s.amount[g] > 0.0)) continue;
+        gases[g].at(s.temperature_K, [&](int material, double part) {
+          const Medium& medium = *sim_.materials[static_cast<size_t>(material)]->medium;
+          const double sun = medium.albedo && sim_.sun ? s.sun : 0.0;
+          scatters |= sun > 0.0;
+          inside_.push_back({&medium, -1, material, s.temperature_K, share * part * s.amount[g], false, s.gain, sun, s.sunAmount});
+        });
+      }
+    }
+    return scatters;
   }
 
   /// Of the body that it belongs to; the ground lies at 0.
@@ -172,6 +200,7 @@ class Teller {
   TermSink& sink_;
   AirPlaces air_;
   std::vector<MediumInside> inside_;
+  double cosScatter_ = 0.0;
   bool dark_ = false;
   int entity_ = -1;     ///< of the surface that is told
   double share_ = 1.0;  ///< of the state that is told

@@ -49,12 +49,17 @@ struct AirPlace {
   double sun = 0.0;            ///< share of its disc that reaches it
 };
 
-/// A body of gas or smoke on a stretch of the way.
+/// A body of gas or smoke on a stretch of the way, or a gas of a field at one of its temperatures.
 struct MediumInside {
   const Medium* medium = nullptr;
   int entity = -1, material = 0;
   double temperature_K = 0.0;
-  double length_m = 0.0;
+  double length_m = 0.0;   ///< of a field: amount
+  bool lasting = true;     ///< other lines meet it at this temperature
+  double gain = 1.0;       ///< factor of Medium::radiance
+  double sun = 0.0;        ///< share of the sun that reaches it, but for the air and for what follows
+  double sunAmount = 0.0;  ///< of the same medium on the way to the sun
+  Factor source() const { return Factor::medium(*medium, temperature_K, gain, lasting); }
 };
 
 /// A part of the way with nothing but air and media in it.
@@ -64,6 +69,7 @@ struct Segment {
   bool air = false, sunlit = false;  ///< whether there is air, and sunlight for it to scatter
   double cosScatter = 0.0;           ///< between the line and the direction to the sun
   bool dark = false;                 ///< only what it lets through is asked for
+  const AirAmounts* sunAir = nullptr;  ///< from the eye to `near` and on to the sun, powered, where media scatter its light; null: no air
 };
 
 /// Takes a line of sight in the order from the eye outwards.

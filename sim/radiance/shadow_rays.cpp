@@ -25,7 +25,7 @@ bool ShadowCaster::lit(const WorldState& state, const Hit& from, const glm::dvec
   for (size_t e = 0; e < bodies_.size(); ++e) {
     const Body& body = bodies_[e];
     const bool self = static_cast<int>(e) == from.entity;
-    if (!body.casts || (self && (body.self == SelfShadow::Never || (body.self == SelfShadow::Inside && from.front)))) continue;
+    if (!body.casts || !state.isThere(e) || (self && (body.self == SelfShadow::Never || (body.self == SelfShadow::Inside && from.front)))) continue;
     const bool oneSided = self && (body.self != SelfShadow::Open || lightSide != outside);
     // Off the facet to the light's side: neither it nor what lies in its plane stands in the way.
     glm::dvec3 origin = from.point + kRounding * (glm::length(from.point) + from.distance) * lightSide * from.facet;

@@ -25,6 +25,7 @@ Terms termsOf(const Simulation& sim) {
   t.lights = !sim.lights.empty() || sim.sun;
   t.ambient = sim.ambient && !sim.ambient->isZero();
   t.shadows = canHaveShadows(sim);
+  t.fields = !sim.fields.empty();
   if (sim.ground) add(t.solid, sim.materialOf(*sim.ground), *sim.ground);
   for (const auto& e : sim.entities) {
     t.media |= sim.mediumOf(e) != nullptr;

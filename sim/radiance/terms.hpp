@@ -33,6 +33,7 @@ struct Terms {
   bool shadows = false;       ///< of the lights
   SurfaceTerms solid, layer;  ///< opaque and transparent surfaces
   bool media = false;         ///< bodies filled with an emitting medium
+  bool fields = false;        ///< media that vary through their bodies
 };
 
 /// The same with the surroundings up to another degree.

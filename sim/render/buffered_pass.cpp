@@ -85,7 +85,7 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
     batch.weights.upload(weights);
     batches_.push_back(std::move(batch));
   }
-  if (plan.terms.layer.any || plan.terms.media) layers_ = std::make_unique<LayerPass>(simulation, plan, tables(), sharedScene(), library, slots, targets_);
+  if (plan.terms.layer.any || plan.terms.media || plan.terms.fields) layers_ = std::make_unique<LayerPass>(simulation, plan, tables(), sharedScene(), library, slots, targets_);
   if (!truth) return;
   slots.files["truth"] = "sim/render/glsl/truth_layers.glsl";
   slots.generated["targets"] = "void clearTargets() {}\n";

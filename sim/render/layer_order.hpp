@@ -15,6 +15,7 @@ struct LayerPiece {
   std::uint32_t triangle = 0;  ///< in the shared index buffer; unused for a medium
   bool medium = false;
   int group = -1;        ///< of media that are blended together: media_groups.hpp
+  int field = -1;        ///< index into Simulation::fields: the piece is that field, a medium; draw and triangle are unused
   glm::dvec3 corner[3];  ///< of a triangle
   /// Of a medium: its box in its own axes, and where these stand.
   glm::dvec3 low{0.0}, high{0.0}, origin{0.0};

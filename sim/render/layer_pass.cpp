@@ -59,6 +59,31 @@ void addBlend(ShaderSlots& slots, BlendPath path, int targets, int nodes, bool b
   slots.generated["blend"] = blend.str();
 }
 
+/// The same for fields: several lines through a pixel, each blended over what is behind, their mean is what the pixel has.
+void addBlendOfLines(ShaderSlots& slots, BlendPath path, int targets, int nodes) {
+  addBlend(slots, path, targets, nodes, true);
+  std::string& blend = slots.generated["blend"];
+  std::ostringstream text;
+  const bool fetch = path == BlendPath::FramebufferFetch, written = slots.constants.at("WRITTEN_OUT") != 0;
+  text << "void blend() {\n";
+  for (int t = 0; t < targets; ++t)
+    text << "  vec4 u" << t << " = " << (fetch ? "spectrum" + std::to_string(t) : "texelFetch(under" + std::to_string(t) + ", ivec2(gl_FragCoord.xy), 0)")
+         << ", s" << t << " = outside_ * u" << t << ";\n";
+  text << "  for (int l = 0; l < linesHere(); ++l) {\n    prepareLine(l);\n";
+  for (int t = 0; t < targets; ++t) text << "    vec4 v" << t << " = u" << t << ";\n";
+  text << "    for (int k = 0; k < layersHere(); ++k) {\n      prepareLayer(k);\n";
+  for (int t = 0; t < targets; ++t) {
+    const std::string four = written ? std::to_string(std::min(t, (nodes - 1) / 4)) : "min(firstNode / 4 + " + std::to_string(t) + ", (NODES - 1) / 4)";
+    text << "      v" << t << " = blendedFour(v" << t << ", " << four << ");\n";
+  }
+  text << "    }\n";
+  for (int t = 0; t < targets; ++t) text << "    s" << t << " += share_ * v" << t << ";\n";
+  text << "  }\n";
+  for (int t = 0; t < targets; ++t) text << "  spectrum" << t << " = s" << t << ";\n";
+  text << "}\n";
+  blend = text.str();
+}
+
 }  // namespace
 
 LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const RenderTables& tables, std::shared_ptr<const GpuScene> scene,
@@ -95,6 +120,11 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
     layer_ = programOf(path_);
     if (fewPath_ != path_) fewLayers_ = programOf(fewPath_);
   }
+  if (plan.terms.fields) {
+    ShaderSlots own = base;
+    addBlendOfLines(own, fewPath_, targets, plan.nodeCount());
+    fields_ = std::make_unique<FieldDraws>(simulation, plan, library, own);
+  }
   if (plan.terms.media) {
     addBlend(base, fewPath_, targets, plan.nodeCount(), true);
     volume_ = Program(assembleShader(library, "sim/render/glsl/box.vert.glsl", base), assembleShader(library, "sim/render/glsl/volume.frag.glsl", base));
@@ -122,6 +152,7 @@ std::vector<NamedProgram> LayerPass::programs() const {
                                       {"media in each other", &group_},
                                       {"thickness of media", &thickness_}})
     if (!program->text().empty()) all.push_back({name, program->text()});
+  if (fields_) fields_->addPrograms(all);
   return all;
 }
 
@@ -136,7 +167,7 @@ void LayerPass::order(const View& view, const WorldState& state, const std::vect
   for (size_t d = 1; d < tables_.draws.size(); ++d) {
     const DrawItem& item = tables_.draws[d];
     const auto e = static_cast<size_t>(item.entity);
-    if ((item.kind != DrawKind::Layer && item.kind != DrawKind::Medium) || !drawn[e]) continue;
+    if ((item.kind != DrawKind::Layer && item.kind != DrawKind::Medium) || !drawn[e] || !state.isThere(e)) continue;
     const Entity& entity = simulation_.entities[e];
     const Pose pose = poseOf(state, item.entity);
     if (!mayShow(view, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m)) continue;
@@ -161,6 +192,7 @@ void LayerPass::order(const View& view, const WorldState& state, const std::vect
     }
   }
   joinMedia(pieces_, groups_);
+  if (fields_) fields_->place(view, state, pieces_);
   order_ = orderLayers(view, pieces_);
   if (!order_.pieces.empty()) {
     if (!faults_) faults_.emplace();
@@ -192,7 +224,7 @@ void LayerPass::blend(const Over& over) {
   if (isEmpty()) return;
   for (const Run& run : runs_) {
     const LayerPiece& first = pieces_[order_.pieces[run.first]];
-    if (run.medium && first.group < 0 && simulation_.entities[static_cast<size_t>(tables_.draws[first.draw].entity)].form.kind == BodyForm::Kind::Mesh)
+    if (run.medium && first.field < 0 && first.group < 0 && simulation_.entities[static_cast<size_t>(tables_.draws[first.draw].entity)].form.kind == BodyForm::Kind::Mesh)
       drawThickness(first, over);
     const BlendPath path = run.medium ? fewPath_ : surfacePath_;
     RenderTarget* copy = path == BlendPath::PingPong ? &sizedLike(copies_, over.spectrum, over.spectrum.colourCount()) : nullptr;
@@ -202,6 +234,10 @@ void LayerPass::blend(const Over& over) {
     if (path != BlendPath::FramebufferFetch)
       for (size_t t = 0; t < under.colourCount(); ++t) under.colour(t).bind(static_cast<unsigned>(kUnderUnit + t));
     if (path == BlendPath::TextureBarrier) glTextureBarrier();
+    if (first.field >= 0) {
+      drawField(first, over);
+      continue;
+    }
     const Program& program = !run.medium ? (surfacePath_ == path_ ? layer_ : fewLayers_) : first.group >= 0 ? group_ : volume_;
     program.use();
     glUniform1i(program.uniform("firstNode"), over.firstNode);
@@ -278,6 +314,21 @@ void LayerPass::setGroup(const std::vector<std::uint32_t>& draws) const {
   glUniform1iv(group_.uniform("memberForm"), n, forms.data());
   glUniform1iv(group_.uniform("memberRow"), n, rows.data());
   glUniform3fv(group_.uniform("memberSize"), n, &sizes[0].x);
+}
+
+void LayerPass::drawField(const LayerPiece& piece, const Over& over) {
+  const Program& program = fields_->use(piece.field);
+  over.visibility.colour(0).bind(0);
+  glUniform1i(program.uniform("firstNode"), over.firstNode);
+  beginMedium(over.covered != nullptr);
+  glDisable(GL_CULL_FACE);
+  const glm::ivec4 rect = fields_->rectOf(piece.field);
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(rect.x, rect.y, rect.z, rect.w);
+  glDrawArrays(GL_TRIANGLES, 0, 3);
+  glDisable(GL_SCISSOR_TEST);
+  glCullFace(GL_BACK);
+  glDepthRange(0.0, 1.0);
 }
 
 void LayerPass::drawMedium(const LayerPiece& piece, const Over& over) {

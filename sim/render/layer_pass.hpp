@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "sim/gl/blend_path.hpp"
+#include "sim/render/field_draws.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/layer_order.hpp"
 #include "sim/render/pixel_classes.hpp"
@@ -51,6 +52,7 @@ class LayerPass {
   };
   void drawLayers(const Run& run, const Over& over);
   void drawMedium(const LayerPiece& piece, const Over& over);
+  void drawField(const LayerPiece& piece, const Over& over);
   void beginMedium(bool covered) const;
   void beginGroup(const Over& over);
   void setGroup(const std::vector<std::uint32_t>& draws) const;
@@ -63,6 +65,7 @@ class LayerPass {
   BlendPath path_, fewPath_, surfacePath_;  ///< of many surfaces; of media and few surfaces; of surfaces now
   SurfaceBuffers buffers_;
   Buffer sorted_, media_;
+  std::unique_ptr<FieldDraws> fields_;  ///< null: none
   Program layer_, fewLayers_, volume_, group_, thickness_;
   std::vector<LayerPiece> pieces_;
   std::vector<std::vector<std::uint32_t>> groups_;

@@ -251,7 +251,7 @@ void ScenePass::findClassesIn(const View& v, const WorldState& state, const std:
     const auto e = static_cast<size_t>(d.entity);
     const Pose& pose = state.entities[e];
     const Entity& entity = simulation_.entities[e];
-    if (drawn[e] && mayShow(v, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m)) add(sunAlone_[e] != 0);
+    if (drawn[e] && state.isThere(e) && mayShow(v, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m)) add(sunAlone_[e] != 0);
   }
 }
 

@@ -143,7 +143,7 @@ void ShadowPass::draw(std::size_t caster, const Map& map) {
 
 bool ShadowPass::staysStill(std::size_t entity) const {
   const Entity& e = simulation_.entities[entity];
-  return e.motion.waypoints().empty() && e.parent < 0;
+  return e.motion.isStill() && e.parent < 0 && e.lifetime.isEndless();
 }
 
 ShadowPass::Relative ShadowPass::relative(const Pose& own, const Pose& other) {
@@ -214,12 +214,12 @@ void ShadowPass::setState(const WorldState& state, const std::function<bool(std:
   for (size_t l = 0; l < lights; ++l) {
     if (l < simulation_.lights.size() && !(state.lightLevels[l] > 0.0)) continue;
     for (size_t r = 0; r < state.entities.size(); ++r) {
-      if (simulation_.mediumOf(simulation_.entities[r]) || (demand && !demand->drawn[r]) || !matters(r, l)) continue;
+      if (!state.isThere(r) || simulation_.mediumOf(simulation_.entities[r]) || (demand && !demand->drawn[r]) || !matters(r, l)) continue;
       const Pose& receiver = state.entities[r];
       const auto first = static_cast<std::uint32_t>(shadows.size());
       for (size_t c = 0; c < state.entities.size(); ++c) {
         const ShadowTrees::Body& body = trees_->of(c);
-        if (!body.casts() || (c == r ? body.self == SelfShadow::Never : !isNearLine(c, r, l, state, centre))) continue;
+        if (!body.casts() || !state.isThere(c) || (c == r ? body.self == SelfShadow::Never : !isNearLine(c, r, l, state, centre))) continue;
         const Pose& caster = state.entities[c];
         const glm::dmat3 casterFromLocal = glm::transpose(glm::mat3_cast(caster.orientation));
         const glm::dmat3 axes = c == r ? glm::dmat3(1.0) : casterFromLocal * glm::mat3_cast(receiver.orientation);

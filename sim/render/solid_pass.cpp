@@ -40,7 +40,7 @@ std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const W
   for (size_t d = 1; d < tables_.draws.size(); ++d) {
     const DrawItem& item = tables_.draws[d];
     const auto e = static_cast<size_t>(item.entity);
-    if (item.kind != DrawKind::Solid || !drawn[e]) continue;
+    if (item.kind != DrawKind::Solid || !drawn[e] || !state.isThere(e)) continue;
     const Entity& entity = simulation_.entities[e];
     const Pose& pose = state.entities[e];
     const glm::dvec3 centre = pose.position + pose.orientation * glm::dvec3(entity.boundingCentre);

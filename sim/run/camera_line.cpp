@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/frame/make_frame.hpp"
+#include "sim/frame/pointing_header.hpp"
 #include "sim/gl/timing.hpp"
 
 namespace pitviper {
@@ -38,15 +39,22 @@ CameraLine::CameraLine(const Simulation& simulation, const Camera& camera, const
   auditor_ = std::make_unique<Auditor>(simulation, *rungs_[0].drawn, rungs_[0].renderer->plan(), library, scene);
   if (!camera.stages.empty()) chain_ = std::make_unique<SensorChain>(camera, library);
   if (camera.truth.targets || camera.truth.terms) truth_ = std::make_unique<TruthMeter>(simulation, camera);
+  if (camera.follower) pointer_ = std::make_unique<CameraPointer>(simulation, camera);
 }
 
 void CameraLine::warmUp(int first) {
   const TimedPart part("frames before the first");
   const auto scenarios = [this](double t) { return advance(simulation_, t); };
-  for (int number = first - warmUpOf(camera_, simulation_.time.step_s); number < first; ++number) {
+  const int frames = warmUpOf(camera_, simulation_.time.step_s);
+  for (int number = (looksAtItsPictures() ? 0 : first) - frames; number < first; ++number) {
     const double time_s = simulation_.time.at(number);
-    begin(scenarios, time_s);
-    sensed(simulation_, camera_, finish(), scenarios(time_s), number, *chain_);
+    // Before its first tick it stands where it starts.
+    const bool ticks = !pointer_ || (number >= 0 && pointer_->remembers());
+    if (!ticks) pointer_->tickTo(scenarios, pointer_->remembers() ? 0 : std::max(first, 0));
+    begin(ticks ? StateAt(scenarios) : pointer_->around(scenarios), time_s, ticks ? std::optional(number) : std::nullopt);
+    const CameraImage image = finish();
+    if (looksAtItsPictures()) seen(image, stateAt_(time_s), number, {}, {});
+    else sensed(simulation_, camera_, image, stateAt_(time_s), number, *chain_);
   }
 }
 
@@ -59,11 +67,16 @@ void CameraLine::prepare(const StateAt& stateAt, double time_s) {
   rung_ = before;
 }
 
-void CameraLine::begin(const StateAt& stateAt, double time_s) {
+void CameraLine::begin(const StateAt& stateAt, double time_s, std::optional<int> number) {
   stateAt_ = stateAt;
+  isPointed_ = pointer_ && number;
+  if (isPointed_) {
+    pointer_->tickTo(stateAt, *number);
+    stateAt_ = pointer_->around(stateAt);
+  }
   time_s_ = time_s;
-  parts_ = exposureParts(simulation_, camera_, stateAt, time_s);
-  if (parts_.times_s.size() == 1) renderer().begin(stateAt(parts_.times_s[0]));
+  parts_ = exposureParts(simulation_, camera_, stateAt_, time_s);
+  if (parts_.times_s.size() == 1) renderer().begin(stateAt_(parts_.times_s[0]));
 }
 
 CameraImage CameraLine::finish(std::optional<int> audited, bool isFirst) {
@@ -71,22 +84,41 @@ CameraImage CameraLine::finish(std::optional<int> audited, bool isFirst) {
     const TimedPart part("audit");
     auditor_->look(then, *audited, drawn, isFirst);
   };
-  if (parts_.times_s.size() > 1) return renderParts(renderer(), parts_, stateAt_, audited ? look : std::function<void(const WorldState&, CameraImage&)>());
-  CameraImage image = renderer().finish();
-  if (audited) look(stateAt_(parts_.times_s[0]), image);
+  CameraImage image;
+  if (parts_.times_s.size() > 1) {
+    image = renderParts(renderer(), parts_, stateAt_, audited ? look : std::function<void(const WorldState&, CameraImage&)>());
+  } else {
+    image = renderer().finish();
+    if (audited) look(stateAt_(parts_.times_s[0]), image);
+  }
+  if (isPointed_) image.pointing = pointer_->pointing();
   return image;
 }
 
-Frame CameraLine::frame(const CameraImage& image, const WorldState& state, int number, const StateAt& stateAt) {
+Frame CameraLine::seen(const CameraImage& image, const WorldState& state, int number, std::vector<TargetRow> targets, std::vector<FrameLayer> terms) {
+  std::optional<TimedPart> part("frame");
+  Frame frame = makeFrame(simulation_, camera_, image, state, number, chain_.get(), std::move(targets), std::move(terms));
+  if (!image.pointing) return frame;
+  CameraPointing pointing = *image.pointing;
+  if (looksAtItsPictures()) {
+    part.emplace("centroid");
+    pointing.tracked = pointer_->look(frame.layers[*camera_.follower->output].pixels);
+  }
+  addPointing(frame, pointing);
+  return frame;
+}
+
+Frame CameraLine::frame(const CameraImage& image, const WorldState& world, int number, const StateAt& others) {
+  const WorldState state = image.pointing ? pointed(world, camera_, image.pointing->followed.pose) : world;
   std::vector<TargetRow> targets;
   std::vector<FrameLayer> terms;
   if (truth_) {
     const TimedPart part("truth");
-    if (camera_.truth.targets) targets = truth_->targets(state, stateAt);
+    const StateAt scenarios = [this](double t) { return advance(simulation_, t); };
+    if (camera_.truth.targets) targets = truth_->targets(state, image.pointing ? pointer_->around(others ? others : scenarios) : others);
     if (camera_.truth.terms) terms = truth_->terms(state);
   }
-  const TimedPart part("frame");
-  return makeFrame(simulation_, camera_, image, state, number, chain_.get(), std::move(targets), std::move(terms));
+  return seen(image, state, number, std::move(targets), std::move(terms));
 }
 
 }  // namespace pitviper

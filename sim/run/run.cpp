@@ -47,10 +47,13 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
   for (int number = range.first; number <= range.last && !(stopsAtBroken && isBroken()); ++number) {
     const WorldState state = stateAt(sim.time.at(number));
     for (size_t c = 0; c < lines.size(); ++c) {
-      lines[c]->begin(stateAt, state.time_s);
+      lines[c]->begin(stateAt, state.time_s, number);
       const CameraImage image = lines[c]->finish(number, number == range.first);
-      hand(lines[c]->frame(image, state, number));
-      if (spectral[c]) hand(spectral[c]->render(state, number));
+      Frame drawn = lines[c]->frame(image, state, number);
+      if (progress.drawn)
+        progress.drawn(lines[c]->camera(), drawn, state, image.pointing ? image.pointing->followed.pose : cameraAt(lines[c]->camera(), state).pose);
+      hand(std::move(drawn));
+      if (spectral[c]) hand(spectral[c]->render(image.pointing ? pointed(state, lines[c]->camera(), image.pointing->followed.pose) : state, number));
     }
     for (size_t p = 0; p < meters.size(); ++p) probes({sim.probes[p], number, state.time_s, meters[p]->read(state)});
     once.reset();
@@ -62,6 +65,7 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
     const Auditor& auditor = line->auditor();
     if (!auditor.broken().empty()) report.broken[name] = auditor.broken();
     if (auditor.tally().pixels > 0) report.audits[name] = auditor.tally();
+    if (line->camera().follower) report.poses[name] = line->camera().follower->recordHeader + line->takePoses();
     if (!line->camera().spectral.reference) report.plans[name] = writePlanned(line->renderer().plan());
   }
   return report;

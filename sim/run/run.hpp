@@ -6,6 +6,7 @@
 
 #include "sim/camera/audit.hpp"
 #include "sim/frame/frame.hpp"
+#include "sim/model/world.hpp"
 
 namespace pitviper {
 
@@ -25,6 +26,8 @@ struct ProbeReading {
 struct RunProgress {
   std::function<void(double share)> picture;
   std::function<void(const Camera& camera, double share)> planning;  ///< 1: made
+  /// Every frame of a camera's channels, with the world of its tick and where the camera looked: before it is handed over.
+  std::function<void(const Camera& camera, const Frame& frame, const WorldState& world, const Pose& pose)> drawn = {};
 };
 using ProbeSink = std::function<void(const ProbeReading&)>;
 
@@ -32,6 +35,7 @@ using ProbeSink = std::function<void(const ProbeReading&)>;
 struct RunReport {
   std::map<std::string, std::vector<FilmPlace>> broken;  ///< where it was more than was asked
   std::map<std::string, AuditTally> audits;
+  std::map<std::string, std::string> poses;  ///< of each camera with a follower the record: from the scenario's first frame on
   std::map<std::string, std::string> plans;  ///< text of each camera's plan (Camera::plan); none in reference mode
 };
 

@@ -47,6 +47,19 @@ class AttributeLook {
   std::map<std::string_view, const decltype(Attribute::value)*> byName_;
 };
 
+/// What points a camera and came without a time is of the time since the tick before, whose frame the host has answered: it is seen in this tick already, as what
+/// a camera finds in its own pictures.
+decltype(Command::change) pointingSince(decltype(Command::change) change, double before_s) {
+  return [change = std::move(change), before_s](Courses& courses, double at_s) {
+    std::map<std::string, std::uint64_t> newest;
+    for (const auto& [camera, pointings] : courses.pointings) newest[camera] = pointings.back().number;
+    change(courses, at_s);
+    for (auto& [camera, pointings] : courses.pointings)
+      for (Pointing& p : pointings)
+        if (p.number > newest[camera]) p.at_s = before_s;
+  };
+}
+
 struct Tick {
   std::uint64_t number = 0;
   std::int64_t begins_ns = 0, due_ns = 0;
@@ -75,6 +88,7 @@ class StreamLoop {
         sinks_(sinks),
         ports_(ports),
         ticked_(ticked),
+        drawnFrame_(progress.drawn),
         world_(sim),
         account_(namesOf(sim)),
         pacer_(
@@ -110,7 +124,7 @@ class StreamLoop {
       const CameraImage image = line.finish();
       // While the processor works out what the sensor makes of this picture the next may be drawn already, if its time has come.
       std::optional<Job> following;
-      const bool overlaps = wish_.clock != StreamClock::Lockstep && isDue(*current);
+      const bool overlaps = wish_.clock != StreamClock::Lockstep && !waitsForItself(*current) && isDue(*current);
       if (overlaps && (following = next(&*current))) begin(*following);
       put(*current, line, image);
       if (!overlaps && (following = next(&*current))) begin(*following);
@@ -181,6 +195,9 @@ class StreamLoop {
     return inbox_.isRunning() && monotonic_ns() >= beginOf(job.tick->number + 1);
   }
 
+  /// Where the camera looks next is not known before this picture has been looked at.
+  bool waitsForItself(const Job& job) const { return lines_.size() == 1 && lines_[job.camera]->looksAtItsPictures(); }
+
   /// The next camera of the tick, or the first of the next tick, for which it waits; none: the end.
   std::optional<Job> next(const Job* before) {
     if (before && before->camera + 1 < lines_.size()) return Job{before->tick, before->camera + 1};
@@ -215,7 +232,10 @@ class StreamLoop {
     const double time_s = timeOf(tick.number);
     constexpr std::size_t kMostWaiting = 16384;
     for (LiveCommand& c : inbox_.take()) {
-      if (std::isnan(c.command.at_s)) c.command.at_s = time_s;
+      if (std::isnan(c.command.at_s)) {
+        c.command.at_s = time_s;
+        if (tick.number > 0) c.command.change = pointingSince(std::move(c.command.change), timeOf(tick.number - 1));
+      }
       if (waiting_.size() >= kMostWaiting) inbox_.refuse("too many for later", "more than " + std::to_string(kMostWaiting) + " commands wait for their time");
       else waiting_.emplace(c.command.at_s, std::move(c));
     }
@@ -284,13 +304,19 @@ class StreamLoop {
     CameraLine& line = *lines_[job.camera];
     if (realTime()) line.setRung(job.rung = dials_[job.camera].rung());
     job.begun_ns = monotonic_ns();
-    line.begin(job.tick->stateAt, job.tick->state.time_s);
+    line.begin(job.tick->stateAt, job.tick->state.time_s, wish_.firstFrame + static_cast<int>(job.tick->number));
   }
 
   void put(const Job& job, CameraLine& line, const CameraImage& image) {
     const Tick& tick = *job.tick;
     // The next frame may be begun already, with another rung: what is told of this one comes with its image.
     auto frame = std::make_shared<Frame>(line.frame(image, tick.state, wish_.firstFrame + static_cast<int>(tick.number), tick.stateAt));
+    if (line.camera().follower) {
+      const std::string poses = line.takePoses();
+      if (wish_.poses) wish_.poses(line.camera(), poses);
+    }
+    if (drawnFrame_)
+      drawnFrame_(line.camera(), *frame, tick.state, image.pointing ? image.pointing->followed.pose : cameraAt(line.camera(), tick.state).pose);
     const std::int64_t made = monotonic_ns();
     frame->stamp = stampOf(*frame, line.camera(), image, tick, job, made);
     // For files; what the pacer finds it adds.
@@ -352,6 +378,7 @@ class StreamLoop {
   const std::vector<Sink*>& sinks_;
   const std::vector<CommandPort*>& ports_;
   const std::function<void(std::uint64_t)>& ticked_;
+  const decltype(RunProgress::drawn) drawnFrame_;
   StreamReport report_;
   World world_;
   StreamAccount account_;

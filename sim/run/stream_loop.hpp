@@ -29,6 +29,7 @@ struct StreamWish {
   bool holds = false;         ///< and leaves then, not before: its delay is constant
   LatePolicy late = LatePolicy::Send;
   ThreadWish thread;  ///< of the one that draws
+  std::function<void(const Camera& camera, const std::string& lines)> poses;  ///< takes each tick's lines of the record of what points a camera; or empty
   /// A clock from outside in real time's place: waits for a tick, and says when it began; none where it has stopped. Its period is about the scenario's.
   std::function<std::optional<std::int64_t>(std::uint64_t tick)> outsideClock;
 };

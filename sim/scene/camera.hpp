@@ -38,7 +38,8 @@ struct Pinhole {
 struct Mount {
   Motion motion;          ///< in the local frame, or in the carrier's body frame
   int carrier = -1;       ///< entity index, or -1
-  int lookAtEntity = -1;  ///< entity index, or -1: along the motion's own x axis
+  int lookAtEntity = -1;  ///< entity index, or -1
+  int lookAtLight = -1;   ///< index of a point light, or -1; of nothing to look at: along the motion's own x axis
   bool looksAtPoint = false;
   glm::dvec3 lookAtPoint{0.0};
 };

@@ -6,9 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "sim/parameters/time_course.hpp"
 #include "sim/radiometry/spectrum.hpp"
 #include "sim/scene/body_form.hpp"
 #include "sim/scene/geodesy.hpp"
+#include "sim/scene/flight_record.hpp"
+#include "sim/scene/lifetime.hpp"
 #include "sim/scene/mesh.hpp"
 #include "sim/scene/motion.hpp"
 #include "sim/scene/texture.hpp"
@@ -19,8 +22,10 @@ namespace pitviper {
 struct Surface {
   std::uint32_t meshPart = 0;
   int material = 0;  ///< index into Simulation::materials
-  double temperature_K = 0.0;
+  double temperature_K = 0.0;   ///< where it changes over time that of the scenario's first frame; of a texture its mean
   int temperatureTexture = -1;  ///< index into Simulation::textures (K), or -1
+  TimeCourse temperature;       ///< [K] over time; empty: temperature_K always
+  double temperatureAt_K(double time_s) const { return temperature.empty() ? temperature_K : temperature.at(time_s); }
 };
 
 struct Entity {
@@ -34,6 +39,10 @@ struct Entity {
   float boundingRadius_m = 0.0f;
   std::string meshFile;        ///< as the scenario names it, of a mesh from a file; else empty
   double metresPerUnit = 0.0;  ///< that its unit and scale give
+  Lifetime lifetime;
+  std::shared_ptr<const FlightRecord> flight;  ///< of one that flies, as it was worked out; null: none
+  /// Whether it is there at all, as far as it says itself: a child is absent with its parent (WorldState::isThere).
+  bool presentAt(double time_s) const { return lifetime.has(time_s) && motion.presentAt(time_s); }
 };
 
 /// Point light: intensity(lambda) x level(t) [W/(sr um)].
@@ -44,8 +53,10 @@ struct PointLight {
   bool visible = true;     ///< adds its own flux to the pixel it is seen in
   Motion motion;
   int parent = -1;
-  std::vector<std::pair<double, double>> level;  ///< (time_s, factor), linear between, 0 outside; empty: 1 always
-  double levelAt(double time_s) const;
+  TimeCourse level;  ///< factor over time, usually 0 outside; empty: 1 always
+  Lifetime lifetime;
+  bool presentAt(double time_s) const { return lifetime.has(time_s) && motion.presentAt(time_s); }
+  double levelAt(double time_s) const { return level.empty() ? 1.0 : level.at(time_s); }
 };
 
 /// Directional light. toSun is a unit vector in the local frame; irradiance on a plane facing it [W/(m2 um)].
@@ -54,13 +65,25 @@ struct Sun {
   Spectrum irradiance;
 };
 
+/// A direction that a camera on a gimbal is commanded to look.
+struct Pointing {
+  std::uint64_t number = 0;  ///< of this camera's, from 1
+  double at_s = 0.0;         ///< from then on
+  bool inBase = false;       ///< in the axes that its angles are of; else in the local frame
+  glm::dvec3 direction{1.0, 0.0, 0.0};
+};
+
 /// What of a camera is not as the scenario has it.
 struct CameraChange {
   std::optional<glm::dvec3> position;     ///< in the local frame or in its carrier's
   std::optional<glm::dquat> orientation;  ///< the same; it looks along its x axis
   std::optional<double> focalLength_m, exposure_s;
   std::optional<double> gain;  ///< factor of its detector's
+  std::vector<Pointing> pointings;  ///< the newest, oldest first, of one on a gimbal
+  std::optional<Pose> pose;         ///< in the local frame, of what points it: goes before position, orientation and mount
 };
+
+class FieldStates;  // sim/model/field_states.hpp
 
 /// Everything that changes, at one time: poses in the local frame.
 struct WorldState {
@@ -68,8 +91,11 @@ struct WorldState {
   std::vector<Pose> entities;
   std::vector<std::vector<double>> temperatures_K;  ///< per entity and surface; of a surface with a temperature texture its mean
   std::vector<glm::dvec3> lights;
-  std::vector<double> lightLevels;
+  std::vector<double> lightLevels;                  ///< of a light that is not there 0
+  std::vector<char> absent;                         ///< per entity: neither seen nor in the way of anything; none: all are there
+  bool isThere(std::size_t entity) const { return entity >= absent.size() || !absent[entity]; }
   std::map<std::string, CameraChange> cameras;  ///< by name, of those that commands have changed
+  std::shared_ptr<const FieldStates> fields;        ///< of media that vary through their bodies; null: none
 };
 
 /// Pose of a child given in its parent's body frame.

@@ -118,6 +118,11 @@ bool Trajectory::presentAt(double time_s) const {
   return true;
 }
 
+void Trajectory::addTo(Fingerprint& f) const {
+  f.add(static_cast<int>(before_)).add(static_cast<int>(after_)).add(static_cast<int>(interpolation_)).add(static_cast<double>(points_->size()));
+  for (const TrajectoryPoint& p : *points_) f.add(p.time_s).add(p.position).add(p.velocity).add(p.acceleration).add(p.orientation);
+}
+
 Trajectory Trajectory::withEnds(AtEnd before, AtEnd after) const {
   Trajectory other = *this;
   other.before_ = before;

@@ -10,9 +10,6 @@
 
 namespace pitviper {
 
-/// What lies beyond the ends of a path.
-enum class AtEnd { Hold, GoOn, Loop, Vanish };
-
 /// Local east-north-up frame [m, m/s, m/s2]; orientation as in Pose.
 struct TrajectoryPoint {
   double time_s = 0.0;
@@ -43,6 +40,8 @@ class Trajectory {
   AtEnd after() const { return after_; }
   const std::vector<TrajectoryPoint>& points() const { return *points_; }
   Trajectory withEnds(AtEnd before, AtEnd after) const;
+  Interpolation interpolation() const { return interpolation_; }
+  void addTo(Fingerprint& f) const;
 
  private:
   struct Place;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/model/world.hpp"
 #include "sim/stream/command_models.hpp"
 
 namespace pitviper {
@@ -143,10 +144,25 @@ void CigiWorld::of(const CigiView& v, std::vector<Command>& commands, const Refu
     offsets.take(v.offsets);
     const glm::dquat axes = camera.mount.carrier >= 0 ? glm::dquat(1.0, 0.0, 0.0, 0.0) : northWestUp();
     const bool moves = offsets.forward_m || offsets.left_m || offsets.up_m, turns = offsets.yaw_rad || offsets.pitch_rad || offsets.roll_rad;
-    commands.push_back(now([=, name = camera.name, given = offsets](Courses& courses, double) {
+    // A gimbal is demanded to look there.
+    const bool gimbal = turns && camera.follower.has_value();
+    if (gimbal) {
+      try {
+        requireTakesCommands(camera, {"CIGI", 0, 0, -1});
+      } catch (const UserError& e) {
+        refuse(e.what());
+        continue;
+      }
+    }
+    commands.push_back(now([=, name = camera.name, mount = camera.mount, given = offsets](Courses& courses, double at_s) {
       const Pose pose{axes * given.position(), axes * given.orientation()};
+      if (gimbal) {
+        const glm::dvec3 sight = pose.orientation * glm::dvec3(1, 0, 0);
+        const bool carried = mount.carrier >= 0;
+        addPointing(courses, name, {0, at_s, carried, carried ? glm::conjugate(mount.motion.at(at_s).orientation) * sight : sight});
+      }
       if (moves) courses.cameraPositions[name] = [=](double) { return pose.position; };
-      if (turns) courses.cameraOrientations[name] = [=](double) { return pose.orientation; };
+      if (turns && !gimbal) courses.cameraOrientations[name] = [=](double) { return pose.orientation; };
     }));
   }
 }

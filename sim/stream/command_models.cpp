@@ -20,7 +20,7 @@ int named(const Record& r, const char* key, const std::vector<T>& all) {
 }  // namespace
 
 Registry<CommandModel>& commandModels() {
-  static Registry<CommandModel> all("command", {moveCommand(), lookCommand(), temperatureCommand(), lightCommand(), triggerCommand(), gainCommand()});
+  static Registry<CommandModel> all("command", {moveCommand(), lookCommand(), pointCommand(), temperatureCommand(), lightCommand(), triggerCommand(), gainCommand()});
   return all;
 }
 

@@ -30,10 +30,14 @@ int entityOf(const Record& record, const Simulation& simulation);
 int lightOf(const Record& record, const Simulation& simulation);
 int cameraOf(const Record& record, const Simulation& simulation);
 
+/// That a camera's follower takes commands. Errors: UserError at a key that would point it.
+void requireTakesCommands(const Camera& camera, const Location& where);
+
 CommandModel moveCommand();
 CommandModel temperatureCommand();
 CommandModel lightCommand();
 CommandModel lookCommand();
+CommandModel pointCommand();
 CommandModel triggerCommand();
 CommandModel gainCommand();
 

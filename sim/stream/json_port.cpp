@@ -40,6 +40,13 @@ struct Client {
   std::vector<std::uint64_t> tickets;  ///< of steps that it waits for
 };
 
+/// What points the camera, where something does.
+void addGimbal(Json& j, const Frame& frame) {
+  constexpr std::string_view kPrefix = "pitviper.gimbal.";
+  for (const Attribute& a : frame.attributes)
+    if (a.name.starts_with(kPrefix)) std::visit([&](const auto& v) { j["gimbal"][a.name.substr(kPrefix.size())] = v; }, a.value);
+}
+
 class JsonPort final : public CommandPort {
  public:
   JsonPort(const JsonPortWish& wish, const Simulation& simulation, CommandInbox& inbox) : wish_(wish), simulation_(simulation), inbox_(inbox) {
@@ -70,6 +77,7 @@ class JsonPort final : public CommandPort {
       j["accuracy"] = s->accuracy;
       j["predicted_error"] = s->predictedError;
       j["pose_age_ns"] = s->poseAge_ns;
+      addGimbal(j, frame);
       if (s->isLate) j["late"] = true;
       if (s->isRepeated) j["repeated"] = true;
       if (s->isOutsideLimits) j["outside_limits"] = true;

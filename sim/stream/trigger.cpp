@@ -12,7 +12,7 @@ CommandModel triggerCommand() {
       throw UserError(r.where("light"), "light '" + light.name + "' has no course that could begin", "a light with 'level: [[0 s, 0], [0.2 s, 1], ...]'",
                       "give it one, or use 'command: light' with a level");
     return [l, light](Courses& courses, double at_s) {
-      courses.lightLevels[l] = [light, at_s](double t) { return light.levelAt(light.level.front().first + t - at_s); };
+      courses.lightLevels[l] = [light, at_s](double t) { return light.levelAt(light.level.begin_s() + t - at_s); };
     };
   };
   return {"trigger", "Begins the course of a point light's level now, whatever it did before: a flare goes off.", keys, read};

@@ -10,6 +10,8 @@
 
 #include "scenarios/commands/accuracy_error.hpp"
 #include "scenarios/commands/accuracy_renderings.hpp"
+#include "sim/model/world.hpp"
+#include "tests/promise/random_dice.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
@@ -67,6 +69,11 @@ PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const 
   std::vector<std::vector<char>> left;
   for (int f = 0; f < sim.time.frames; ++f) {
     states.push_back(advance(sim, sim.time.at(f)));
+    RandomDice dice(seed + 977 * static_cast<std::uint64_t>(f));
+    if (camera.follower && dice.chance(0.6)) {  // wherever its gimbal may look
+      const double across = dice.between(0.0, 1.0), up = dice.between(0.0, 1.0);
+      states.back() = pointed(states.back(), camera, camera.follower->anywhere(followerTick(camera, states.back(), f), {across, up}));
+    }
     left.push_back(outlinePixels(sim, camera, states.back()));
     out.leftOut += static_cast<int>(std::count(left.back().begin(), left.back().end(), 1));
   }

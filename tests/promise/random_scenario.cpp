@@ -433,7 +433,14 @@ class Composer {
     if (frames_ > 1 && !dome_ && dice_.chance(0.3))
       out << "    motion: [{time: 0 s, position: " << eye_ << "}, {time: 2 s, position: " << along(dice_.between(-0.5, 0.5) * first_m_) << "}]\n";
     else out << "    position: " << eye_ << "\n";
-    out << "    look_at: " << target_ << "\n    channels:\n";
+    out << "    look_at: " << target_ << "\n";
+    // Of its own dice: other scenes stay as they were. Its base looks north, where the target about is.
+    if (RandomDice(draw_.seed ^ 0x67696d62616cu).chance(0.15)) {
+      const double level = std::atan2(target_.z - eye_.z, std::hypot(target_.x - eye_.x, target_.y - eye_.y)) / kDegree;
+      out << "    heading: 0 deg\n    gimbal: {driver: truth, lag: 50 ms, azimuth: 40 deg, elevation: [" << std::max(-90.0, level - 12.0) << " deg, " << std::min(90.0, level + 12.0)
+          << " deg]}\n";
+    }
+    out << "    channels:\n";
     const int channels = 1 + dice_.weighted({0.4, 0.4, 0.2});
     for (int c = 0; c < channels; ++c)
       out << "      - {name: c" << c << ", response: " << response(draw_.mostWavelengths / channels) << ", output: radiance}\n";

@@ -70,9 +70,7 @@ TEST_F(PlanCommand, AScenarioExtendsAnother) {
   EXPECT_EQ(run("run other.yaml --out out").first, 0);
   EXPECT_TRUE(fs::exists(folder_ / "out/d_00000.exr"));
   put("further.yaml", "extends: other.yaml\n");
-  const auto [badCode, bad] = run("check further.yaml");
-  EXPECT_EQ(badCode, 2);
-  EXPECT_TRUE(has(bad, "other.yaml:1:10: a scenario that is extended extends another itself")) << bad;
+  EXPECT_EQ(run("check further.yaml").first, 0);
   put("nowhere.yaml", "extends: nothing.yaml\n");
   EXPECT_TRUE(has(run("check nowhere.yaml").second, "nowhere.yaml:1:10: cannot read the file"));
   put("above.yaml", "extends: ../../base.yaml\n");

@@ -64,6 +64,7 @@ std::string violation(const Use& use) {
                                                                           {"Eigen/", {"sim/plan/", "sim/radiance/", "materials/", "sensors/"}},
                                                                           {"unsupported/Eigen/", {"sensors/"}},
                                                                           {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}},
+                                                                          {"openvdb/", {"sim/scene/import_vdb/"}},
                                                                           {"epoxy/", {"sim/gl/", "sim/render/", "sim/camera/", "scenarios/commands/bench", "sim/stream/projector/"}},
                                                                           {"GLFW/", {"sim/stream/projector/"}},
                                                                           {"X11/", {"sim/stream/projector/"}},

@@ -63,7 +63,7 @@ TEST(Camera, PixelSolidAnglesAreTheRectangles) {
 
 TEST(Light, LevelsAreDarkOutside) {
   PointLight l;
-  l.level = {{1.0, 0.0}, {2.0, 4.0}};
+  l.level = TimeCourse({{1.0, 0.0}, {2.0, 4.0}}, TimeCourse::Interpolation::Linear, TimeCourse::Outside::Zero);
   EXPECT_EQ(l.levelAt(0.9), 0.0);
   EXPECT_EQ(l.levelAt(1.5), 2.0);
   EXPECT_EQ(l.levelAt(2.1), 0.0);

@@ -11,7 +11,7 @@ namespace {
 std::vector<std::pair<int, int>> seenThrough(const Simulation& sim, const WorldState& state, const View& view, const std::vector<char>& drawn, double x,
                                              double y) {
   const glm::dvec3 ray = view.ray(x, y);
-  const RayHits hits = castRay(sim, state, view.position, view.localFromCamera * ray / glm::length(ray), view.near_m * glm::length(ray), &drawn, true);
+  const RayHits hits = castRay(sim, state, view.position, view.localFromCamera * ray / glm::length(ray), view.near_m * glm::length(ray), &drawn, true, 0);
   std::vector<std::pair<int, int>> all;
   for (const Hit& h : hits.layers) all.emplace_back(h.entity, h.surface);
   for (const Stretch& s : hits.stretches) all.emplace_back(s.entity, -1);

@@ -81,14 +81,14 @@ void ReferencePass::shade(RenderTarget& into, const RenderTarget& visibility) {
           const auto line = lineAt(x, y);
           return line ? shader.looks(*line) : 0;
         },
-        [&](int x, int y) { return shader.shade(*lineAt(x, y), sum).slots; });
+        [&](int x, int y) { return shader.shadeOver(*lineAt(x, y), x, y, sum).slots; });
     for (int piece = next++; piece < pieces; piece = next++) {
       if (zoomed) {
         const int x = piece % columns * ZoomedTile::kSize, y = piece / columns * ZoomedTile::kSize;
         tile.fill(x, y, std::min(ZoomedTile::kSize, width - x), std::min(ZoomedTile::kSize, height - y), put);
       } else {
         for (int x = 0; x < width; ++x)
-          if (const auto line = lineAt(x, piece)) put(x, piece, shader.shade(*line, sum).slots);
+          if (const auto line = lineAt(x, piece)) put(x, piece, shader.shadeOver(*line, x, piece, sum).slots);
       }
       // More views than were announced: the picture is as good as done.
       if (tells && progress_) progress_(std::min((viewsDone_ + std::min(1.0, static_cast<double>(next) / pieces)) / views_, 1.0));

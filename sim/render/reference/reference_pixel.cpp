@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/field_states.hpp"
 #include "sim/model/glint.hpp"
 #include "sim/model/ground.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -25,7 +26,11 @@ ReferenceShader::ReferenceShader(const Simulation& simulation, const Plan& plan,
       drawn_(drawn),
       transparent_(simulation.hasTransparent()),
       shadows_(simulation),
-      spectra_(spectra ? std::move(spectra) : std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms.surroundings)) {}
+      spectra_(spectra ? std::move(spectra) : std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms.surroundings)) {
+  for (size_t f = 0; f < simulation.fields.size(); ++f)
+    if (const FieldState* field = fieldOf(state, f))
+      if (const FieldLines lines = fieldLines(view, *field); !lines.isEmpty()) fields_.push_back(lines);
+}
 
 RadianceScene ReferenceShader::scene() const {
   RadianceScene s{simulation_, plan_.terms, plan_.sunLegs.get(), state_, {}, 0, tapsFor(plan_.textureAccuracy)};
@@ -48,7 +53,7 @@ ReferencePixel ReferenceShader::pixel(int x, int y, NodeSum& sum) const {
   LineOfSight line = lineThrough(x + 0.5, y + 0.5);
   line.hits = castRay(simulation_, state_, line.origin, line.direction, nearest_m(x + 0.5, y + 0.5), &drawn_);
   addFootprints(line, x + 0.5, y + 0.5);
-  return shade(line, sum);
+  return shadeOver(std::move(line), x, y, sum);
 }
 
 ReferencePixel ReferenceShader::place(double x, double y, NodeSum& sum) const {
@@ -68,12 +73,13 @@ LineOfSight ReferenceShader::line(int x, int y, const SeenTriangle& seen) const 
   if (seen.entity >= 0) hits.solid = hitOf(simulation_, state_, line.origin, line.direction, seen.entity, seen.triangle);
   if (transparent_) {
     // What is transparent, before the solid surface that is known already.
-    RayHits all = castRay(simulation_, state_, line.origin, line.direction, nearest_m(x + 0.5, y + 0.5), &drawn_, true);
+    RayHits all = castRay(simulation_, state_, line.origin, line.direction, nearest_m(x + 0.5, y + 0.5), &drawn_, true, 0);
     std::erase_if(all.layers, [&](const Hit& h) { return h.distance > hits.solid.distance; });
     for (Stretch& s : all.stretches) s.leave = std::min(s.leave, hits.solid.distance);
     std::erase_if(all.stretches, [](const Stretch& s) { return s.leave <= s.enter; });
     hits.layers = std::move(all.layers);
     hits.stretches = std::move(all.stretches);
+    hits.slabs = slabsAlong(simulation_, state_, line.origin, line.direction, hits.solid.distance, kReferenceFieldSteps);
   }
   addFootprints(line, x + 0.5, y + 0.5);
   return line;
@@ -93,6 +99,8 @@ std::size_t ReferenceShader::things(const RayHits& hits) {
   std::size_t all = 0x9e3779b97f4a7c15u ^ one(hits.solid.entity, hits.solid.surface) * 3;
   for (const Hit& h : hits.layers) all += one(h.entity, h.surface) * 0xff51afd7ed558ccdu;
   for (const Stretch& s : hits.stretches) all += one(s.entity, -2) * 0xc4ceb9fe1a85ec53u;
+  for (size_t k = 0; k < hits.slabs.size(); ++k)  // a field's steps follow each other
+    if (k == 0 || hits.slabs[k].field != hits.slabs[k - 1].field) all += one(hits.slabs[k].field, -3) * 0x9fb21c651e98df25u;
   return all | 1u;
 }
 
@@ -137,6 +145,31 @@ ReferencePixel ReferenceShader::shade(const LineOfSight& line, NodeSum& sum) con
   for (size_t s = 0; s < pixel.slots.size(); ++s)
     for (size_t i = 0; i < plan_.nodes.size(); ++i) pixel.slots[s] += plan_.weight[s][i] * pixel.radiance[i];
   return pixel;
+}
+
+ReferencePixel ReferenceShader::shadeOver(LineOfSight line, int x, int y, NodeSum& sum) const {
+  const PixelLines lines = pixelLines(fields_, x, y, kReferenceLines);
+  if (lines.within.size() == 1 && lines.outside == 0.0) return shade(line, sum);
+  ReferencePixel whole;
+  const auto add = [&](double share) {
+    ReferencePixel one = shade(line, sum);
+    if (whole.slots.empty()) {
+      whole = one;
+      for (double& v : whole.slots) v = 0.0;
+      for (double& v : whole.radiance) v = 0.0;
+    }
+    for (size_t s = 0; s < whole.slots.size(); ++s) whole.slots[s] += share * one.slots[s];
+    for (size_t i = 0; i < whole.radiance.size(); ++i) whole.radiance[i] += share * one.radiance[i];
+  };
+  line.hits.slabs.clear();
+  add(lines.outside);
+  for (const FilmLine& through : lines.within) {
+    // What is solid is where the pixel's middle sees it.
+    const LineOfSight beside = lineThrough(through.at.x, through.at.y);
+    line.hits.slabs = slabsAlong(simulation_, state_, beside.origin, beside.direction, line.hits.solid.distance, kReferenceFieldSteps);
+    add(through.share);
+  }
+  return whole;
 }
 
 ReferencePixel referencePixel(const Simulation& sim, const Plan& plan, const View& view, const WorldState& state, int x, int y) {

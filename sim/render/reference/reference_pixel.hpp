@@ -3,6 +3,7 @@
 // table between is that of black bodies of air (NodeSpectra). For the reference mode, audits and tests.
 #include <vector>
 
+#include "sim/model/field_lines.hpp"
 #include "sim/model/view.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
@@ -39,6 +40,8 @@ class ReferenceShader {
   /// The line of sight of the same, given which triangle it sees; and what comes along a line.
   LineOfSight line(int x, int y, const SeenTriangle& seen) const;
   ReferencePixel shade(const LineOfSight& line, NodeSum& sum) const;
+  /// The same of a pixel whose middle the line goes through: over several lines through the fields that it passes, where they are finer than it.
+  ReferencePixel shadeOver(LineOfSight line, int x, int y, NodeSum& sum) const;
   /// The same number, not 0, for lines that meet the same surface through the same panes and media.
   static std::size_t things(const RayHits& hits);
   /// The same number, not 0, for lines between which radiance changes smoothly: the same things, lit by the same lights, which glint about as strongly.
@@ -58,6 +61,7 @@ class ReferenceShader {
   const WorldState& state_;
   const std::vector<char>& drawn_;
   bool transparent_;
+  std::vector<FieldLines> fields_;  ///< of those that are there
   ShadowCaster shadows_;
   std::shared_ptr<const NodeSpectra> spectra_;
 };

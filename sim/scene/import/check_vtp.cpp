@@ -1,4 +1,4 @@
-// VTK XML PolyData: the tags' nesting, what kind of file it is, and declared counts against the file's size. The arrays
+// VTK XML PolyData and ImageData: the tags' nesting, what kind of file it is, and declared counts against the file's size. The arrays
 // themselves (base64, compressed) are left to the reader and checked after it.
 #include <algorithm>
 
@@ -14,11 +14,11 @@ constexpr double kMostItemsPerByte = 1032.0;
 
 class VtpCheck {
  public:
-  VtpCheck(const std::string& file, std::string_view text) : file_(file), text_(text) {}
+  VtpCheck(const std::string& file, std::string_view text, const std::string& type) : file_(file), text_(text), type_(type) {}
 
   void run() {
     std::vector<std::string> open;
-    bool isPolyData = false;
+    bool isType = false;
     for (std::size_t at = text_.find('<'); at != text_.npos; at = text_.find('<', at)) {
       if (text_.substr(at, 4) == "<!--") {
         at = ended(at, text_.find("-->", at));
@@ -37,9 +37,9 @@ class VtpCheck {
           fail(at, "the tag <" + shown(name) + "> closes nothing", open.empty() ? "nothing" : "</" + open.back() + ">");
         open.pop_back();
       } else {
-        if (open.empty() && name != "VTKFile") fail(at, "the file is no VTK XML file", "<VTKFile type=\"PolyData\" ...>");
-        if (name == "VTKFile") isPolyData = attribute(tag, "type") == "PolyData";
-        if (name == "VTKFile" && !isPolyData) fail(at, "the file holds no PolyData", "type=\"PolyData\"");
+        if (open.empty() && name != "VTKFile") fail(at, "the file is no VTK XML file", "<VTKFile type=\"" + type_ + "\" ...>");
+        if (name == "VTKFile") isType = attribute(tag, "type") == type_;
+        if (name == "VTKFile" && !isType) fail(at, "the file holds no " + type_, "type=\"" + type_ + "\"");
         checkCounts(at, tag);
         if (name == "AppendedData") return;  // what follows may be raw bytes
         if (tag[tag.size() - 2] != '/') open.push_back(name);
@@ -47,7 +47,7 @@ class VtpCheck {
       }
       at = end;
     }
-    if (!isPolyData) fail(0, "the file is no VTK XML file", "<VTKFile type=\"PolyData\" ...>");
+    if (!isType) fail(0, "the file is no VTK XML file", "<VTKFile type=\"" + type_ + "\" ...>");
     if (!open.empty()) fail(text_.size(), "the file ends within <" + shown(open.back()) + ">", "</" + open.back() + ">");
   }
 
@@ -94,13 +94,16 @@ class VtpCheck {
 
   std::string file_;
   std::string_view text_;
+  std::string type_;
 };
 
 }  // namespace
 
 CheckedFile checkVtp(const std::string& file, std::string_view bytes) {
-  VtpCheck(file, bytes).run();
+  VtpCheck(file, bytes, "PolyData").run();
   return {};
 }
+
+void checkVti(const std::string& file, std::string_view bytes) { VtpCheck(file, bytes, "ImageData").run(); }
 
 }  // namespace pitviper

@@ -28,6 +28,7 @@ CheckedFile checkObj(const std::string& file, std::string_view text);
 CheckedFile checkStl(const std::string& file, std::string_view bytes);
 CheckedFile checkPly(const std::string& file, std::string_view bytes);
 CheckedFile checkVtp(const std::string& file, std::string_view bytes);
+void checkVti(const std::string& file, std::string_view bytes);
 /// .gltf and .glb. The canonical copy has no images, textures and materials: nothing but the buffers is read.
 CheckedFile checkGltf(const ImportRequest& request);
 

@@ -1,11 +1,13 @@
-// The module's border: one C function, no exceptions out.
+// The module's border: two C functions, no exceptions out.
 #include <cctype>
 #include <filesystem>
 #include <new>
 
 #include "sim/scene/import/checks.hpp"
+#include "sim/scene/import/grid_reply.hpp"
 #include "sim/scene/import/import_failure.hpp"
 #include "sim/scene/import/import_reply.hpp"
+#include "sim/scene/import/vti_reader.hpp"
 #include "sim/scene/import/vtk_readers.hpp"
 
 namespace pitviper {
@@ -47,5 +49,18 @@ extern "C" __attribute__((visibility("default"))) void pitviperImportMesh(const 
     failed({request.file}, "reading this file takes too much memory", "at most 1 GiB and sixteen times its size", "simplify the mesh");
   } catch (const std::exception& problem) {
     failed({request.file}, std::string("the reader failed on this file (") + problem.what() + ")", "a sound file", "");
+  }
+}
+
+extern "C" __attribute__((visibility("default"))) void pitviperImportGrid(const pitviper::GridRequest& request, pitviper::GridReply* reply) {
+  try {
+    pitviper::checkVti(request.file, request.bytes);
+    reply->grid = pitviper::readVti(request);
+  } catch (const pitviper::ImportFailure& failure) {
+    *reply = {{}, true, failure.where, failure.wrong, failure.expected, failure.fix};
+  } catch (const std::bad_alloc&) {
+    *reply = {{}, true, {request.file}, "reading this file takes too much memory", "at most 1 GiB and sixteen times its size", "thin the grid out"};
+  } catch (const std::exception& problem) {
+    *reply = {{}, true, {request.file}, std::string("the reader failed on this file (") + problem.what() + ")", "a sound file", ""};
   }
 }

@@ -10,7 +10,6 @@
 #include <vtkMultiBlockDataSet.h>
 #include <vtkNew.h>
 #include <vtkOBJReader.h>
-#include <vtkOutputWindow.h>
 #include <vtkPLYReader.h>
 #include <vtkPointData.h>
 #include <vtkPolyData.h>
@@ -22,6 +21,7 @@
 #include <filesystem>
 #include <string_view>
 
+#include "sim/scene/import/complaints.hpp"
 #include "sim/scene/import/import_failure.hpp"
 #include "sim/scene/import/memory_file.hpp"
 #include "sim/scene/import/mesh_builder.hpp"
@@ -29,32 +29,8 @@
 namespace pitviper {
 namespace {
 
-/// Takes what VTK would print. Observing ErrorEvent on a reader would miss the objects it uses inside.
-class Complaints : public vtkOutputWindow {
- public:
-  static Complaints* New();
-  vtkTypeMacro(Complaints, vtkOutputWindow) void DisplayText(const char* text) override { note(text); }
-  void DisplayErrorText(const char* text) override { note(text); }
-  void DisplayWarningText(const char* text) override { note(text); }
-  void DisplayGenericWarningText(const char* text) override { note(text); }
-  void DisplayDebugText(const char*) override {}
-
-  std::string first;
-
- private:
-  /// Keeps what follows the source's file name and the object's address: "ERROR: In F, line N\nvtkX (0x..): what".
-  void note(const char* text) {
-    if (!first.empty() || text == nullptr) return;
-    first = text;
-    if (const std::size_t object = first.find("): "); object != first.npos) first.erase(0, object + 3);
-    while (!first.empty() && static_cast<unsigned char>(first.back()) <= 32) first.pop_back();
-    if (first.empty()) first = "unknown error";
-  }
-};
-vtkStandardNewMacro(Complaints)
-
-    template <class Reader>
-    void readOne(const std::string& name, const CheckedFile& checked, MeshBuilder& builder) {
+template <class Reader>
+void readOne(const std::string& name, const CheckedFile& checked, MeshBuilder& builder) {
   vtkNew<Reader> reader;
   reader->SetFileName(name.c_str());
   reader->Update();
@@ -97,14 +73,15 @@ void readGltf(const MemoryFile& copy, const CheckedFile& checked, MeshBuilder& b
   builder.turnFromGltf();
 }
 
-/// Where the XML parser stopped, if that is what is said: "Error parsing XML in stream at line 7, column 3, ...".
+}  // namespace
+
+vtkStandardNewMacro(Complaints)
+
 Location placeIn(const std::string& file, const std::string& complaint) {
   int line = 0, column = -1;
   if (std::sscanf(complaint.c_str(), "Error parsing XML in stream at line %d, column %d", &line, &column) != 2) return {file};
   return {file, line, column + 1};
 }
-
-}  // namespace
 
 Mesh readWithVtk(const std::string& file, const std::string& extension, std::string_view bytes, const CheckedFile& checked) {
   vtkLogger::SetStderrVerbosity(vtkLogger::VERBOSITY_OFF);

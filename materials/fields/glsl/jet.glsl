@@ -1,0 +1,49 @@
+// One round free jet, as materials/fields/free_jet.hpp has it, in excess over the air around. Shared by GLSL (float) and C++ (double).
+
+// Profile over radius: 1 up to a core's border, a Gaussian's shoulder of this width beyond, its centre fallen where the shape is below 0.
+PHYSICS Real jetProfile(Real shape, Real width, Real nozzleRadius, Real r) {
+  Real beyond = r - nozzleRadius * max(shape, 0.0);
+  Real x = width > 0.0 ? beyond / width : 10.0;
+  Real f = beyond > 0.0 ? exp(-min(x * x, 80.0)) : 1.0;  // exp(-80): a normal number in single precision, and nothing
+  return f / (1.0 - min(shape, 0.0));
+}
+
+// Where x lies among the rows (x, shapeU, widthU, shapeZ). scale: 1/rowScale, 1/rowLogRatio, coreLength, 1/farLogRatio.
+PHYSICS Real jetRow(Real x, Vec4 scale, Real coreRow) {
+  return x < scale.z ? log(1.0 + x * scale.x) * scale.y : coreRow + log(x / scale.z) * scale.w;
+}
+
+// Mixture fraction and excess speed, as parts of those at the nozzle, at a radius. row: (x, shapeU, widthU, shapeZ).
+PHYSICS Vec2 jetMixture(Vec4 row, Real nozzleRadius, Real r) {
+  Real widthZ = row.z * sqrt(1.0 + 0.428571428571429 * (1.0 - 1.0 / (1.0 - min(row.y, 0.0))));
+  return Vec2(jetProfile(row.w, widthZ, nozzleRadius, r), jetProfile(row.y, row.z, nozzleRadius, r));
+}
+
+// Temperature [K] there. flow: ambient temperature, excess speed, ambient speed, excess enthalpy - cpExcess x ambient temperature; heat: cp, cpExcess.
+PHYSICS Real jetTemperature(Vec2 mixture, Vec4 flow, Vec4 heat) {
+  Real excess = flow.y * mixture.y;
+  return flow.x + (flow.w * mixture.x - excess * (0.5 * excess + flow.z)) / (heat.x + heat.y * mixture.x);
+}
+
+// Steps along a line, as a measure that rises with t: sigma = arsinh((t - nearest)/scale), even where the line passes the nozzle far away and geometric from
+// the nozzle where it runs along the axis. scale: t of the closest approach to the nozzle, 1/scale.
+PHYSICS Real jetSigma(Real t, Vec2 scale) {
+  Real x = (t - scale.x) * scale.y;
+  Real a = log(max(x, -x) + sqrt(x * x + 1.0));
+  return x < 0.0 ? -a : a;
+}
+
+// The same with the uniform core passed in fewer steps: sigma at the knots (enter, core, core's end, leave), and what a unit of sigma counts within it.
+PHYSICS Real jetMeasure(Real sigma, Vec4 knots, Real inCore) {
+  Real s = min(max(sigma, knots.x), knots.w);
+  return min(s, knots.y) - knots.x + inCore * (min(max(s, knots.y), knots.z) - knots.y) + max(s, knots.z) - knots.z;
+}
+
+// Its inverse: t.
+PHYSICS Real jetPlace(Real measure, Vec4 knots, Real inCore, Vec2 scale) {
+  Real before = knots.y - knots.x;
+  Real within = inCore * (knots.z - knots.y);
+  Real s = measure < before ? knots.x + measure : measure < before + within ? knots.y + (measure - before) / inCore : knots.z + (measure - before - within);
+  Real e = exp(s);
+  return scale.x + 0.5 * (e - 1.0 / e) / scale.y;
+}

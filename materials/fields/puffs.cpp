@@ -1,0 +1,114 @@
+#include "materials/fields/puffs.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "materials/fields/puff_physics.hpp"
+
+namespace pitviper {
+namespace {
+
+glm::dvec3 chordOf(const Puff& p, const glm::dvec3& origin, const glm::dvec3& direction) {
+  const double squash = p.radius_m / p.length_m() - 1.0;
+  return physics::puffChord(physics::puffScaled(origin - p.centre, p.axis, squash, p.radius_m), physics::puffScaled(direction, p.axis, squash, p.radius_m));
+}
+
+double densityOf(const Puff& p) { return kPuffNorm / (p.radius_m * p.radius_m * p.length_m()); }
+
+double reachOf(const Puff& p) { return std::max(p.radius_m, p.length_m()); }
+
+/// Whether a line passes within a puff's bounding sphere.
+bool passes(const Puff& p, const glm::dvec3& origin, const glm::dvec3& direction) {
+  const glm::dvec3 to = p.centre - origin;
+  const double along = glm::dot(to, direction), reach = reachOf(p);
+  return glm::dot(to, to) - along * along < reach * reach;
+}
+
+}  // namespace
+
+double puffColumn(const Puff& p, const glm::dvec3& origin, const glm::dvec3& direction, double from_m, double to_m) {
+  return densityOf(p) * physics::puffColumn(chordOf(p, origin, direction), from_m, to_m);
+}
+
+void shadeTowards(const glm::dvec3& toSun, std::vector<Puff>& puffs) {
+  for (Puff& p : puffs) {
+    p.sunAmount = 0.0;
+    for (const Puff& other : puffs)
+      if (passes(other, p.centre, toSun)) p.sunAmount += other.amount[0] * puffColumn(other, p.centre, toSun, 0.0, physics::kFar);
+  }
+}
+
+PuffsState::PuffsState(std::vector<Puff> puffs) : puffs_(std::move(puffs)) {
+  origin = puffs_.front().centre;
+  low = glm::dvec3(physics::kFar);
+  high = -low;
+  auto numbers = std::make_shared<FieldTexels>();
+  finest_m = physics::kFar;
+  for (const Puff& p : puffs_) {
+    const glm::dvec3 centre = p.centre - origin;
+    const double reach = reachOf(p);
+    elements.push_back({centre, reach, static_cast<int>(numbers->texel.size())});
+    // An ellipsoid's box: along each axis e, sqrt(R^2 + (L^2 - R^2) (axis.e)^2).
+    const double own = p.radius_m * p.radius_m, drawn = p.length_m() * p.length_m() - own;
+    const glm::dvec3 half = glm::sqrt(glm::dvec3(own) + drawn * p.axis * p.axis);
+    low = glm::min(low, centre - half);
+    high = glm::max(high, centre + half);
+    finest_m = std::min(finest_m, 0.5 * std::min(p.radius_m, p.length_m()));  // half of it across: its profile falls to a half within 0.42 of it
+    const double density = densityOf(p);
+    numbers->texel.emplace_back(glm::vec3(centre), static_cast<float>(p.radius_m));
+    numbers->texel.emplace_back(glm::vec3(p.axis), static_cast<float>(p.radius_m / p.length_m() - 1.0));
+    numbers->texel.emplace_back(glm::dvec4(p.amount[0], p.amount[1], p.amount[2], p.amount[3]) * density);
+    numbers->texel.emplace_back(glm::dvec4(p.temperature_K, p.gain, p.sun, p.sunAmount));
+  }
+  texels = std::move(numbers);
+}
+
+void PuffsState::along(const FieldLine& line, int steps, std::vector<FieldStep>& out) const {
+  out.clear();
+  struct Met {
+    const Puff* puff;
+    glm::dvec3 chord;
+  };
+  std::vector<Met> met;
+  double enter = physics::kFar, leave = -physics::kFar;
+  for (const Puff& p : puffs_) {
+    if (!passes(p, line.origin, line.direction)) continue;
+    const glm::dvec3 chord = chordOf(p, line.origin, line.direction);
+    const double from = std::max(chord.x - chord.y, line.nearest_m), to = std::min(chord.x + chord.y, line.farthest_m);
+    if (!(chord.y > 0.0 && to > from)) continue;
+    met.push_back({&p, chord});
+    enter = std::min(enter, from);
+    leave = std::max(leave, to);
+  }
+  if (met.empty() || steps < 1) return;
+  const int count = static_cast<int>(std::clamp(std::ceil((leave - enter) / (0.25 * finest_m)), 1.0, static_cast<double>(steps)));
+  for (int k = 0; k < count; ++k) {
+    FieldStep step;
+    step.enter_m = enter + (leave - enter) * k / count;
+    step.leave_m = k + 1 == count ? leave : enter + (leave - enter) * (k + 1) / count;
+    double weight = 0.0, heat = 0.0, gained = 0.0, lit = 0.0, shade = 0.0;
+    for (const Met& m : met) {
+      const Puff& p = *m.puff;
+      const double column = densityOf(p) * physics::puffColumn(m.chord, step.enter_m, step.leave_m);
+      if (!(column > 0.0)) continue;
+      double own = 0.0;
+      for (std::size_t g = 0; g < kMostPuffGases; ++g) {
+        step.amount[g] += column * p.amount[g];
+        own += column * p.amount[g];
+      }
+      weight += own;
+      heat += own * p.temperature_K;
+      gained += own * p.gain;
+      lit += own * p.sun;
+      shade += own * p.sunAmount;
+    }
+    if (!(weight > 0.0)) continue;
+    step.temperature_K = heat / weight;
+    step.gain = gained / weight;
+    step.sun = lit / weight;
+    step.sunAmount = shade / weight;
+    out.push_back(step);
+  }
+}
+
+}  // namespace pitviper

@@ -1,0 +1,233 @@
+// Flares that entities eject: each is a light, a burning cloud and, of most types, smoke.
+#include "scenarios/reader/flares.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "materials/fields/flares.hpp"
+#include "materials/fields/smoke.hpp"
+#include "scenarios/reader/builder.hpp"
+#include "sim/flight/flight_error.hpp"
+#include "sim/model/world.hpp"
+#include "sim/scene/placement.hpp"
+
+namespace pitviper {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+/// Seconds that a flare's smoke is seen, and how it leaves: warm, and slower than the flare by what the air has taken of it. Chosen.
+constexpr double kSmokeLifetime_s = 30.0, kSmoke_K = 450.0, kSmokeShare = 0.3, kOfCloud = 0.6;
+constexpr int kSmokePuffs = 150;
+/// As many as lights of a scenario.
+constexpr std::size_t kMostFlares = 1024;
+
+std::vector<std::string> flareNames() {
+  std::vector<std::string> names;
+  for (const FlareType& t : flareTypes()) names.emplace_back(t.name);
+  return names;
+}
+
+/// Unit vector in body axes.
+glm::dvec3 readDirection(const Record& r) {
+  if (!r.given("direction")) return {0.0, 0.0, -1.0};
+  const Value& v = r.value("direction");
+  if (v.kind == Value::Kind::Map) {
+    const Record angles(v, tables::flareDirection());
+    const double azimuth = angles.number("azimuth"), elevation = angles.number("elevation");
+    return {std::cos(elevation) * std::cos(azimuth), -std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+  }
+  const glm::dvec3 d = readVector(v, "", "direction");
+  const double length = glm::length(d);
+  if (!(length > 0.0) || !std::isfinite(length))
+    throw UserError(v.where, "a direction of no length", "three numbers that are not all 0, in body axes (x forward, y left, z up)", "'[0, 0, -1]' is down");
+  return d / length;
+}
+
+}  // namespace
+
+namespace tables {
+
+const ParameterTable& flare() {
+  static const ParameterTable t = [] {
+    std::string known;
+    for (const FlareType& type : flareTypes()) known += (known.empty() ? "`" : "; `") + std::string(type.name) + "`: " + std::string(type.description);
+    return ParameterTable{
+        "flare",
+        "A decoy: it flies on with its carrier's velocity and that of its ejection, slowed down by drag as it burns away, and falls; it shines weaker in a "
+        "fast "
+        "stream of air and at height. It lights what is near it, as a light of its name, which cameras can look at; is seen as a burning cloud; and leaves "
+        "smoke.",
+        {required(text("name", "unique among lights")), required(choice("type", flareNames(), known)),
+         text("from", "name of the entity that ejects it, as the scenario moves it; without it, it starts from its position at rest"),
+         required(within(number("time", "s", "of ejection"), -kLongestTime_s, kLongestTime_s)),
+         within(vector3("position", "m", "in the entity's body axes (x forward, y left, z up), [0, 0, 0] unless given; without `from` east, north, up"),
+                -kFarthest_m, kFarthest_m),
+         any("direction", "of ejection in the same axes: [x, y, z], or {azimuth, elevation}; down unless given"),
+         withDefault(within(number("speed", "m/s", "of ejection"), 0.0, 500.0), "30 m/s"),
+         map("sequence", "several of them, one after the other; they are called `<name>_0`, `<name>_1`, ..."),
+         withDefault(within(number("intensity", "", "factor on the type's intensity; the cloud's area goes with it"), 1e-3, 1e3), "1"),
+         atLeast(spectrum("spectrum", "W/(sr um)", "instead of the type's spectrum: radiant intensity standing still at sea level"), 0.0),
+         within(above(number("burn_time", "s", "instead of the type's"), 0.0), 0.05, 600.0),
+         within(above(number("mass", "kg", "instead of the type's"), 0.0), 1e-3, 100.0),
+         within(number("drag_area", "m2", "instead of the type's: drag coefficient times area"), 0.0, 10.0),
+         any("smoke", "`true`: as its type has it; `false`: none; or a smoke's name"), withDefault(boolean("light", "lights what is near it"), "true")}};
+  }();
+  return t;
+}
+
+const ParameterTable& flareDirection() {
+  static const ParameterTable t{
+      "direction of a flare",
+      "In the axes of what ejects it.",
+      {withDefault(within(number("azimuth", "rad", "clockwise from forward, seen from above: 90 deg is right"), -2 * kPi, 2 * kPi), "0 deg"),
+       withDefault(within(number("elevation", "rad", "-90 deg is down"), -kPi / 2, kPi / 2), "-90 deg")}};
+  return t;
+}
+
+const ParameterTable& flareSequence() {
+  static const ParameterTable t{
+      "sequence of flares",
+      "",
+      {required(integer("count", "how many", 1, 256)), required(within(number("interval", "s", "from each to the next"), 0.0, 3600.0)),
+       withDefault(boolean("alternate", "every second goes to the other side: y of position and direction change sign"), "false")}};
+  return t;
+}
+
+}  // namespace tables
+
+void Builder::readFlares(const Record& scenario) {
+  if (!scenario.given("flares")) return;
+  std::size_t all = 0;
+  for (const Value& v : scenario.value("flares").items) {
+    const Record r(v, tables::flare());
+    FlareType type = *findFlareType(r.text("type"));
+    const bool several = r.given("sequence");
+    if (several) checkUnique(r.value("name"), smokeNames_, "flare");  // its lights are called otherwise
+    if (r.given("burn_time")) {
+      const double factor = r.number("burn_time") / type.burn_s;
+      type.burn_s *= factor;
+      type.rise_s *= std::min(factor, 1.0);
+      type.fall_s *= std::min(factor, 1.0);
+    }
+    if (r.given("mass")) type.mass_kg = r.number("mass");
+    if (r.given("drag_area")) type.dragArea_m2 = r.number("drag_area");
+
+    const std::string name = r.text("name");
+    const double factor = r.number("intensity");
+    Spectrum intensity = flareIntensity(type);
+    double area = factor * flareArea_m2(type);
+    if (r.given("spectrum")) {
+      intensity = bounded(spectra_, r.value("spectrum"), "W/(sr um)", "spectrum of flare '" + name.substr(0, 60) + "'", 0.0, 1e12);
+      area = factor * areaOf_m2(intensity, type.temperature_K);
+      if (!(area > 0.0))
+        throw UserError(r.where("spectrum"), "a flare's spectrum of nothing from 1 to 14 um", "one that has something there: the cloud's size follows from it",
+                        "widen its table, or take a light for a lamp");
+    }
+    intensity = intensity * factor;
+    const bool own = r.given("spectrum") || factor != 1.0;
+    const int gas =
+        fieldMaterial(own ? "flare '" + name + "'" : "flare " + std::string(type.name), std::string(type.source), [&] { return flareGas(intensity); });
+
+    std::string smoke(type.smoke);
+    double yield = type.smokeYield;
+    if (const Value* asked = r.find("smoke")) {
+      const std::string word = readText(*asked, "smoke");
+      if (word == "false") smoke.clear();
+      else if (word != "true") {
+        smoke = word;
+        yield = std::max(yield, type.smoke.empty() ? 0.8 : 0.0);
+      } else if (smoke.empty())
+        throw UserError(asked->where, "a flare of the type '" + std::string(type.name) + "' leaves no smoke to speak of", "'false', or a smoke's name",
+                        "remove it");
+    }
+    const int smokeIs = smoke.empty() ? -1 : smokeMaterial(smoke, r.where("smoke"));
+
+    const int carrier = r.given("from") ? entityNamed(r.value("from")) : -1;
+    if (carrier < 0 && !r.given("position")) throw UserError(r.where(), "a flare from nowhere", "'from' (an entity), or a 'position'", "add 'from: <entity>'");
+    int count = 1;
+    double interval_s = 0.0;
+    bool alternate = false;
+    if (several) {
+      const Record sequence(r.value("sequence"), tables::flareSequence());
+      count = static_cast<int>(sequence.integer("count"));
+      interval_s = sequence.number("interval");
+      alternate = sequence.boolean("alternate");
+    }
+    const glm::dvec3 direction = readDirection(r), position = r.given("position") ? r.vector("position") : glm::dvec3(0.0);
+    all += static_cast<std::size_t>(count);
+    if (all > kMostFlares)
+      throw UserError(r.where(several ? "sequence" : "name"), "more than " + std::to_string(kMostFlares) + " flares with these", "fewer", "lower 'count'");
+    for (int k = 0; k < count; ++k) {
+      const double time_s = r.number("time") + k * interval_s;
+      const glm::dvec3 side(1.0, alternate && k % 2 == 1 ? -1.0 : 1.0, 1.0);
+      Value called = r.value("name");
+      if (several) called.text += "_" + std::to_string(k);
+      checkUnique(called, lightNames_, "light");
+      Pose pose;
+      glm::dvec3 velocity(0.0);
+      if (carrier >= 0) {
+        if (!advance(simulation_, time_s).isThere(static_cast<std::size_t>(carrier)))
+          throw UserError(r.where("from"),
+                          "'" + r.text("from").substr(0, 60) + "' isn't there at " + briefNumber(time_s) + " s, when it should eject '" + called.text + "'",
+                          "a time within its lifetime", "change 'time'");
+        pose = poseOf(simulation_, carrier, time_s);
+        velocity = velocityOf(simulation_, carrier, time_s);
+      }
+      FlightWorld world;
+      world.frame = simulation_.frame;
+      world.coriolis = hasOrigin_;
+      if (glm::length(simulation_.wind_m_s) > 0.0) world.wind = {{0.0, simulation_.wind_m_s}};
+      FlareFlight flown{Trajectory({TrajectoryPoint{}}), {}, 0.0, 0.0};
+      try {
+        flown = flyFlare(type, launchFrom(time_s, pose, velocity, side * position, r.number("speed") * (side * direction)), world);
+      } catch (const FlightError& e) {
+        throw UserError(r.where(), "flare '" + called.text + "' cannot fly: " + e.wrong, "drag that takes its speed in a millisecond or more",
+                        "raise 'mass', or lower 'drag_area' or 'burn_time'");
+      }
+      const auto path = std::make_shared<const Trajectory>(flown.path);
+
+      FlareCloudOptions cloud;
+      cloud.path = path;
+      cloud.level = flown.level;
+      cloud.area_m2 = area;
+      cloud.depth = type.depth;
+      cloud.glow_s = type.glow_s;
+      cloud.spread_m_s = type.spread_m_s;
+      cloud.lit_s = flown.lit_s;
+      cloud.wind_m_s = simulation_.wind_m_s;
+      cloud.airWarmer_K = airWarmer_K();
+      const auto source = std::make_shared<FlareCloud>(cloud);
+      simulation_.fields.push_back({called.text, r.where(), {{"burning cloud", {{300.0, gas}}}}, source});
+
+      if (r.boolean("light")) {
+        PointLight light;
+        light.name = called.text;
+        light.intensity = intensity;
+        light.radius_m = std::sqrt(area / kPi);
+        light.visible = false;  // its cloud is
+        light.motion = Motion(flown.path);
+        light.level = flown.level;
+        light.lifetime = {flown.lit_s, flown.out_s};
+        simulation_.lights.push_back(std::move(light));
+      }
+
+      if (smokeIs < 0 || !(yield > 0.0)) continue;
+      SmokeOptions o;
+      o.path = path;
+      o.begin_s = flown.lit_s;
+      o.end_s = flown.out_s;
+      const double burnt = type.burntShare > 0.0 ? type.burntShare : 1.0;
+      o.rate_kg_s = TimeCourse(type.mass_kg * burnt * yield / type.burn_s);
+      o.radius_m = kOfCloud * source->radius_m();
+      o.temperature_K = kSmoke_K;
+      o.share = kSmokeShare;
+      o.lifetime_s = kSmokeLifetime_s;
+      o.mostPuffs = kSmokePuffs;
+      o.wind_m_s = simulation_.wind_m_s;
+      o.airWarmer_K = airWarmer_K();
+      simulation_.fields.push_back({called.text + " smoke", r.where(), {{"smoke", {{300.0, smokeIs}}}}, std::make_shared<SmokeSource>(o)});
+    }
+  }
+}
+
+}  // namespace pitviper

@@ -1,0 +1,6 @@
+#pragma once
+#include "sim/parameters/table.hpp"
+
+namespace pitviper::tables {
+const ParameterTable& smoke();
+}
