@@ -12,7 +12,7 @@
 namespace pitviper {
 namespace {
 
-constexpr std::array kCounts{2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64};
+constexpr std::array kCounts{6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64};
 constexpr int kMany = 160;
 /// Times and, at each, lines from each eye that are looked at; eyes.
 constexpr int kTimes = 6, kLines = 5;
@@ -47,7 +47,9 @@ int fieldSteps(const Simulation& sim, const Plan& plan, std::size_t number) {
     for (const glm::dvec3& eye : eyes)
       for (int l = 0; l < kLines; ++l) {
         const FieldElement& e = field->elements[dice.below(field->elements.size())];
-        const auto off = [&] { return 1.2 * dice.unit() - 0.6; };
+        // Near its middle, where a jet's core is, as well as anywhere.
+        const double reach = l % 2 == 0 ? 0.6 : 0.03;
+        const auto off = [&] { return reach * (2.0 * dice.unit() - 1.0); };
         const glm::dvec3 place = glm::clamp(e.centre + e.radius_m * glm::dvec3(off(), off(), off()), field->low, field->high);
         const glm::dvec3 line = field->origin + field->localFromField * place - eye;
         if (!(glm::length(line) > 0.0)) continue;
