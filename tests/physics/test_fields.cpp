@@ -61,8 +61,8 @@ TEST(Fields, IntensityAtAnyRange) {
 
     worst = std::max(worst, std::abs(intensity / want - 1.0));
   }
-  bound("intensity of a thin puff of 1.2 m from 100 m to 500 km, worst", worst, 1e-2,
-        "k M B; the accuracy that a camera has which asks for none: lines lie 3/8 of its support's radius apart");
+  bound("intensity of a thin puff of 1.2 m from 100 m to 500 km, worst", worst, 3e-3,
+        "k M B; lines across a pixel lie a quarter of its support's radius apart at most");
 }
 
 // Sunlight scattered once by a thin puff: L = E albedo p(cos) k column.

@@ -58,7 +58,9 @@ int linesHere() { return lines_; }
 
 // A line of the pixel: what it meets.
 void prepareLine(int l) {
-  prepareRay(from_ + cell_ * (vec2(float(l % across_), float(l / across_)) + 0.5));
+  // Columns and rows each shifted by the golden ratio: what is thinner than their distance and lies along them is met by its share of lines, not by all or none.
+  vec2 place = vec2(float(l % across_), float(l / across_));
+  prepareRay(from_ + cell_ * (place + fract(vec2(0.5) + 0.6180339887 * place.yx)));
   d_ = inBody(field_, ray_);
   q_ = pointOnPlane(field_);
   perT_ = rayLength_;
@@ -96,7 +98,11 @@ void prepareLayer(int k) {
   {
     vec4 gas = texelFetch(fieldSpectra, {g});  // first texel of its levels, number of levels, first texel of what else it has
     int low = 0, last = int(gas.y) - 2;
-    for (int i = 1; i <= last; ++i) low += temperature >= texelFetch(fieldSpectra, GASES + LEVELS * {g} + i).x ? 1 : 0;
+    for (int i = 1; i <= last; i += 4) {
+      vec4 at4 = vec4(texelFetch(fieldSpectra, GASES + LEVELS * {g} + i).x, texelFetch(fieldSpectra, GASES + LEVELS * {g} + min(i + 1, last)).x,
+                      texelFetch(fieldSpectra, GASES + LEVELS * {g} + min(i + 2, last)).x, texelFetch(fieldSpectra, GASES + LEVELS * {g} + min(i + 3, last)).x);
+      low += int(temperature >= at4.x) + int(i < last && temperature >= at4.y) + int(i + 1 < last && temperature >= at4.z) + int(i + 2 < last && temperature >= at4.w);
+    }
     float at = texelFetch(fieldSpectra, GASES + LEVELS * {g} + low).x, next = texelFetch(fieldSpectra, GASES + LEVELS * {g} + low + 1).x;
     levelMix{g}_ = last < 0 ? 0.0 : clamp((temperature - at) / (next - at), 0.0, 1.0);
     level{g}_ = int(gas.x) + low * FOURS;
@@ -164,7 +170,10 @@ void main() {
   start_ = -planeOf(field_);  // the camera
   bool fine = linesApart < 1.0;
   vec2 size = fine ? high - low : vec2(1.0);
-  ivec2 count = fine ? clamp(ivec2(ceil(size / linesApart)), ivec2(1), ivec2(MOST_LINES)) : ivec2(1);
+  // llvmpipe ends all loops of a pixel after 65535 rounds in all (LP_MAX_TGSI_LOOP_ITERATIONS), without a word: fewer lines before that.
+  float rounds = float(listed_ + FIELD_STEPS * (1 + listed_ + GASES * (LEVELS / 4 + 1)) + 1);
+  int most = clamp(int(sqrt(60000.0 / rounds)), 1, MOST_LINES);
+  ivec2 count = fine ? clamp(ivec2(ceil(size / linesApart)), ivec2(1), ivec2(most)) : ivec2(1);
   from_ = fine ? low : corner;
   cell_ = size / vec2(count);
   across_ = count.x;
