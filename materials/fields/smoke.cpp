@@ -127,6 +127,7 @@ struct SmokeSource::Trail {
   static constexpr double kLongest = 12.0, kOfWay = 0.25, kBend = 0.15, kPiece = 0.5;
   static constexpr double kGrowth = 1.25;  // of the radius within a piece
   static constexpr double kOfLife = 1.0 / 10.0;
+  static constexpr double kNone_s = 1e-9;
   static constexpr double kShortest_s = 1e-5;  // nothing moves a tenth of a finest radius within it
 
   SmokeParcel at(double t) const { return smoke.parcel(world, t); }
@@ -163,6 +164,7 @@ struct SmokeSource::Trail {
 
   /// A cell of the grid in time, as far as it lies within the trail. False: too many pieces.
   bool cut(double cellFrom, double cellTo, double from, double to, const SmokeParcel& a, const SmokeParcel& b) {
+    if (!(to - from > kNone_s)) return true;  // the trail ends on the grid, but for rounding: no half of what is left lies within it
     const double half = 0.5 * (cellFrom + cellTo);
     if (half <= from || half >= to) return half <= from ? cut(half, cellTo, from, to, a, b) : cut(cellFrom, half, from, to, a, b);
     const double middle = 0.5 * (from + to);
@@ -202,7 +204,7 @@ struct SmokeSource::Trail {
 
 std::shared_ptr<const FieldState> SmokeSource::at(const FieldWorld& world) const {
   const double youngest = std::min(world.time_s, options_.end_s), oldest = std::max(options_.begin_s, world.time_s - options_.lifetime_s);
-  if (!(youngest - oldest > 1e-9)) return nullptr;
+  if (!(youngest - oldest > Trail::kNone_s)) return nullptr;
   Trail trail{*this, world, oldest, youngest};
   trail.build();
   std::vector<Puff>& puffs = trail.puffs;
