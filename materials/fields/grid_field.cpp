@@ -36,7 +36,7 @@ class GridState : public FieldState {
     low = g.first;
     high = g.first + glm::dvec3(g.nodes - 1) * g.spacing;
     finest_m = std::min({g.spacing.x, g.spacing.y, g.spacing.z});
-    elements.push_back({0.5 * (low + high), 0.5 * glm::length(high - low) * 1.001, 0});
+    elements.push_back({0.5 * (low + high), 0.5 * glm::length(high - low) * 1.001, 0, finest_m, 0, {}});
     const std::size_t gases = g.perMetre.size(), wide = gases > 3 ? 2 : 1, count = g.temperature_K.size();
     auto all = std::make_shared<FieldTexels>();
     auto& t = all->texel;
@@ -45,13 +45,13 @@ class GridState : public FieldState {
     t.emplace_back(1.0 / g.spacing, g.nodes.y);
     t.emplace_back(high, g.nodes.z);
     // What weighs temperatures: each gas by the most of it that there is.
-    std::array<float, 8> share{};
+    std::array<float, 8> weight{};
     for (std::size_t i = 0; i < gases; ++i) {
       const float most = *std::max_element(g.perMetre[i].begin(), g.perMetre[i].end());
-      share[i] = most > 0.0f ? 1.0f / most : 0.0f;
+      weight[i] = most > 0.0f ? 1.0f / most : 0.0f;
     }
-    t.emplace_back(share[0], share[1], share[2], 0.0f);
-    t.emplace_back(share[3], share[4], share[5], share[6]);
+    t.emplace_back(weight[0], weight[1], weight[2], 0.0f);
+    t.emplace_back(weight[3], weight[4], weight[5], weight[6]);
     t.emplace_back(static_cast<float>(wide), 0.0f, 0.0f, 0.0f);
     const auto gas = [&](std::size_t i, std::size_t node) { return i < gases ? g.perMetre[i][node] : 0.0f; };
     for (std::size_t n = 0; n < count; ++n) {
@@ -72,7 +72,7 @@ class GridState : public FieldState {
     if (!(chord.y > chord.x) || !(at.leave_ > at.enter_) || steps < 1) return;
     double from = at.enter_;
     for (int i = 0; i < steps; ++i) {
-      const double to = at.fieldCut(0, (i + 1.0) / steps);
+      const double to = at.fieldCut((i + 1.0) / steps);
       at.amountLow_ = at.amountHigh_ = glm::dvec4(0.0);
       at.weight_ = at.heat_ = 0.0;
       at.fieldAdd(0, from, to);

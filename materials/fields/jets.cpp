@@ -23,7 +23,7 @@ class JetLine {
   explicit JetLine(const std::vector<glm::dvec4>& texels) : texels_(texels) {}
   Vec3 q_{0.0}, d_{1.0, 0.0, 0.0};
   Real perT_ = 1.0, enter_ = 0.0, leave_ = 0.0;
-  Vec4 amountLow_{0.0}, amountHigh_{0.0};
+  Vec4 amountLow_{0.0};
   Real weight_ = 0.0, heat_ = 0.0;
   const Vec4& fieldTexel(int i) const { return texels_[static_cast<std::size_t>(i)]; }
 #include "materials/fields/glsl/jets.field.glsl"
@@ -40,7 +40,9 @@ constexpr double kAtmosphere_Pa = 101325.0;   // amounts of gases are per this
 constexpr double kOutside = 2.63;             // exp(-2.63^2) = 0.001
 constexpr double kFadedFrom = 0.8;            // of the length
 constexpr double kFinest = 1.0 / 3.0;         // of a nozzle's radius: lines so far apart see a top hat's width to some percent, and its sum well
-constexpr int kPieces = 6;                    // of a jet, ever longer: pixels ask those alone that are near
+constexpr double kFinestOfWidth = 0.5;        // of a Gaussian's width: what is hot of it is narrower than its gas
+constexpr int kPieces = kFieldKinds;                    // of a jet, ever longer: lines lie closer together in those that are finer
+constexpr double kAlong = 0.3;                // of the way from the nozzle: over that it changes along itself
 constexpr int kLooks = 64;
 constexpr int kCones = 4;              // jets.field.glsl
 constexpr std::size_t kMostKept = 64;  // 4 s of a ramp at 15 frames a second; 10 kB each
@@ -81,54 +83,60 @@ std::array<glm::dvec2, kCones> boundsOf(const std::vector<glm::dvec2>& outline, 
   return cones;
 }
 
+bool isMolecule(Species s) { return s == Species::CO2 || s == Species::H2O || s == Species::CO; }
+
+/// Molecules come in the proportions of the nozzle; particles each by itself, by density.
+std::vector<int> mixturesOf(const std::vector<Species>& species) {
+  std::vector<int> mixture;
+  int next = std::any_of(species.begin(), species.end(), isMolecule) ? 1 : 0;
+  for (Species s : species) mixture.push_back(isMolecule(s) ? 0 : next++);
+  return mixture;
+}
+
 class JetsState : public FieldState {
  public:
-  JetsState(const FreeJet& jet, double length_m, double presence, const std::vector<glm::dvec3>& nozzles, const std::vector<Species>& species) {
+  JetsState(const FreeJet& jet, double length_m, double presence, const std::vector<glm::dvec3>& nozzles, const std::vector<Species>& species)
+      : mixture_(mixturesOf(species)), gases_(species.size()) {
     const JetConstants& k = jet.constants();
     length_m = std::min(length_m, k.length_m);
     const int count = static_cast<int>(nozzles.size());
     auto& t = own_;
     const auto border = [length_m](int piece) {
       const double part = static_cast<double>(piece) / kPieces;
-      return static_cast<double>(static_cast<float>(length_m * part * part));  // as the shader has it
+      return length_m * part * part;
     };
-    for (int j = 0; j < count; ++j)
-      for (int s = 0; s < kPieces; ++s) {
-        t.emplace_back(nozzles[static_cast<std::size_t>(j)], 2 * (count * kPieces - j * kPieces - s));
-        t.emplace_back(border(s), border(s + 1), 0.0, 0.0);
-      }
+    for (int j = 0; j < count; ++j) t.emplace_back(nozzles[static_cast<std::size_t>(j)], count - j);
     const double faded = kFadedFrom * length_m;
     t.emplace_back(k.radius_m, length_m, faded, 1.0 / (length_m - faded));
     t.emplace_back(1.0 / k.rowScale_m, 1.0 / k.rowLogRatio, k.coreLength_m, 1.0 / k.farLogRatio);
-    t.emplace_back(k.coreRow, k.rowCount - 2, presence, count * kPieces);
+    t.emplace_back(k.coreRow, k.rowCount - 2, presence, count);
     t.emplace_back(k.ambientTemperature_K, k.excessSpeed_m_s, k.ambientSpeed_m_s, k.excessEnthalpy_J_kg - k.cpExcess_J_kgK * k.ambientTemperature_K);
     t.emplace_back(k.cp_J_kgK, k.cpExcess_J_kgK, k.moles_mol_kg, k.molesExcess_mol_kg);
     // Excess of a mole fraction: (a + b Z)/(m + n Z) - a/m = Z (b - a n/m)/(m + n Z). Density = pressure/(R T (m + n Z)).
-    const double pressure_atm = k.pressure_Pa / kAtmosphere_Pa, perKelvin = k.pressure_Pa / kGasConstant, share = k.molesExcess_mol_kg / k.moles_mol_kg;
-    std::array<double, 8> perMole{}, perDensity{};
+    const double pressure_atm = k.pressure_Pa / kAtmosphere_Pa, perKelvin = k.pressure_Pa / kGasConstant, dilution = k.molesExcess_mol_kg / k.moles_mol_kg;
+    glm::dvec4 moles(0.0), densities(0.0);
     for (std::size_t i = 0; i < species.size(); ++i) {
+      (isMolecule(species[i]) ? moles : densities)[mixture_[i]] = 1.0;
       switch (species[i]) {
         case Species::CO2:
-          perMole[i] = pressure_atm * std::max(0.0, k.co2Excess_mol_kg - k.co2_mol_kg * share);
+          share[i] = pressure_atm * std::max(0.0, k.co2Excess_mol_kg - k.co2_mol_kg * dilution);
           break;
         case Species::H2O:
-          perMole[i] = pressure_atm * std::max(0.0, k.h2oExcess_mol_kg - k.h2o_mol_kg * share);
+          share[i] = pressure_atm * std::max(0.0, k.h2oExcess_mol_kg - k.h2o_mol_kg * dilution);
           break;
         case Species::CO:
-          perMole[i] = pressure_atm * k.coExcess_mol_kg;
+          share[i] = pressure_atm * k.coExcess_mol_kg;
           break;
         case Species::Soot:
-          perDensity[i] = perKelvin * k.soot_m3_kg;
+          share[i] = perKelvin * k.soot_m3_kg;
           break;
         case Species::Alumina:
-          perDensity[i] = perKelvin * k.alumina;
+          share[i] = perKelvin * k.alumina;
           break;
       }
     }
-    for (std::size_t i = 0; i < 8; i += 4) {
-      t.emplace_back(perMole[i], perMole[i + 1], perMole[i + 2], perMole[i + 3]);
-      t.emplace_back(perDensity[i], perDensity[i + 1], perDensity[i + 2], perDensity[i + 3]);
-    }
+    t.push_back(moles);
+    t.push_back(densities);
     std::vector<glm::dvec2> outline;
     for (const JetRow& row : jet.rows()) {
       const double x = std::min(row.x_m, length_m);
@@ -140,7 +148,7 @@ class JetsState : public FieldState {
     t.emplace_back(cones[0].x, cones[0].y, cones[1].x, cones[1].y);
     t.emplace_back(cones[2].x, cones[2].y, cones[3].x, cones[3].y);
     const double coreLength = std::min(k.coreLength_m, length_m);
-    t.emplace_back(coreLength, jet.at(coreLength).coreZ_m, species.size() > 4 ? 1.0 : 0.0, kPieces);
+    t.emplace_back(coreLength, jet.at(coreLength).coreZ_m, 0.0, 0.0);
     for (const JetRow& row : jet.rows()) t.emplace_back(row.x_m, row.shapeU, row.widthU_m, row.shapeZ);
 
     const auto radiusAt = [&](double x) {
@@ -161,14 +169,16 @@ class JetsState : public FieldState {
         const double from = border(s), to = border(s + 1);
         double wide = 0.0;
         for (int i = 0; i <= kLooks; ++i) wide = std::max(wide, radiusAt(from + (to - from) * i / kLooks));
-        elements.push_back({at + glm::dvec3(0.5 * (from + to), 0.0, 0.0), std::hypot(0.5 * (to - from), wide) * (1.0 + 2.0 / kLooks), 2 * (j * kPieces + s)});
+        const double fine = std::max(kFinest * k.radius_m, kFinestOfWidth * jet.at(from).widthZ_m);
+        elements.push_back({at + glm::dvec3(0.5 * (from + to), 0.0, 0.0), std::hypot(0.5 * (to - from), wide) * (1.0 + 2.0 / kLooks), j, fine, s,
+                            glm::dvec3(std::max(2.0 * k.radius_m, kAlong * 0.5 * (from + to)), 0.0, 0.0)});
       }
     }
     finest_m = kFinest * k.radius_m;
     auto single = std::make_shared<FieldTexels>();
     for (const glm::dvec4& v : t) single->texel.emplace_back(v);
     texels = single;
-    gases_ = species.size();
+    nozzles_ = count;
   }
 
   void along(const FieldLine& line, int steps, std::vector<FieldStep>& out) const override {
@@ -178,28 +188,28 @@ class JetsState : public FieldState {
     at.d_ = line.direction * localFromField;
     at.enter_ = physics::kFar, at.leave_ = -physics::kFar;
     int first = -1;
-    for (const FieldElement& e : elements) {
-      const glm::dvec2 chord = at.fieldChord(e.texel);
+    for (int j = 0; j < nozzles_; ++j) {
+      const glm::dvec2 chord = at.fieldChord(j);
       if (!(chord.y > chord.x)) continue;
-      if (first < 0) first = e.texel;
+      if (first < 0) first = j;
       at.enter_ = std::min(at.enter_, chord.x);
       at.leave_ = std::max(at.leave_, chord.y);
     }
     at.enter_ = std::max(at.enter_, line.nearest_m);
     at.leave_ = std::min(at.leave_, line.farthest_m);
     if (first < 0 || steps < 1 || !(at.leave_ > at.enter_)) return;
+    at.fieldLine(first, steps);
     double from = at.enter_;
     for (int i = 0; i < steps; ++i) {
-      const double to = at.fieldCut(first, (i + 1.0) / steps);
-      at.amountLow_ = at.amountHigh_ = glm::dvec4(0.0);
+      const double to = at.fieldCut((i + 1.0) / steps);
+      at.amountLow_ = glm::dvec4(0.0);
       at.weight_ = at.heat_ = 0.0;
-      for (const FieldElement& e : elements) at.fieldAdd(e.texel, from, to);
+      for (int j = 0; j < nozzles_; ++j) at.fieldAdd(j, from, to);
       if (at.weight_ > 0.0) {
         FieldStep step;
         step.enter_m = from;
         step.leave_m = to;
-        for (int g = 0; g < 4; ++g)
-          step.amount[static_cast<std::size_t>(g)] = at.amountLow_[g], step.amount[static_cast<std::size_t>(g + 4)] = at.amountHigh_[g];
+        for (std::size_t g = 0; g < gases_; ++g) step.amount[g] = share[g] * at.amountLow_[mixture_[g]];
         step.temperature_K = at.heat_ / at.weight_;
         out.push_back(step);
       }
@@ -209,7 +219,9 @@ class JetsState : public FieldState {
 
  private:
   std::vector<glm::dvec4> own_;
+  std::vector<int> mixture_;
   std::size_t gases_ = 0;
+  int nozzles_ = 0;
 };
 
 }  // namespace
@@ -253,6 +265,8 @@ JetsSource::JetsSource(JetsSetup setup) : setup_(std::move(setup)), kept_(std::m
 }
 
 JetsSource::~JetsSource() = default;
+
+std::vector<int> JetsSource::mixtures() const { return mixturesOf(setup_.species()); }
 
 double JetsSource::throttleAt(double time_s) const {
   if (!setup_.life.has(time_s)) return 0.0;

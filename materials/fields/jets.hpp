@@ -44,6 +44,7 @@ class JetsSource : public FieldSource {
 
   std::shared_ptr<const FieldState> at(const FieldWorld& world) const override;
   std::string shader() const override { return "materials/fields/glsl/jets.field.glsl"; }
+  std::vector<int> mixtures() const override;
   void addTo(Fingerprint& fingerprint) const override;
   glm::dvec2 temperatures_K() const override;
 

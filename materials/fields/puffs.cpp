@@ -47,13 +47,15 @@ PuffsState::PuffsState(std::vector<Puff> puffs) : puffs_(std::move(puffs)) {
   for (const Puff& p : puffs_) {
     const glm::dvec3 centre = p.centre - origin;
     const double reach = reachOf(p);
-    elements.push_back({centre, reach, static_cast<int>(numbers->texel.size())});
+    // Half of it across: its profile falls to a half within 0.42 of it.
+    elements.push_back({centre, reach, static_cast<int>(numbers->texel.size()), 0.5 * std::min(p.radius_m, p.length_m()),
+                        static_cast<int>(elements.size() * kFieldKinds / puffs_.size()), 0.5 * p.length_m() * p.axis});
     // An ellipsoid's box: along each axis e, sqrt(R^2 + (L^2 - R^2) (axis.e)^2).
     const double own = p.radius_m * p.radius_m, drawn = p.length_m() * p.length_m() - own;
     const glm::dvec3 half = glm::sqrt(glm::dvec3(own) + drawn * p.axis * p.axis);
     low = glm::min(low, centre - half);
     high = glm::max(high, centre + half);
-    finest_m = std::min(finest_m, 0.5 * std::min(p.radius_m, p.length_m()));  // half of it across: its profile falls to a half within 0.42 of it
+    finest_m = std::min(finest_m, elements.back().finest_m);
     const double density = densityOf(p);
     numbers->texel.emplace_back(glm::vec3(centre), static_cast<float>(p.radius_m));
     numbers->texel.emplace_back(glm::vec3(p.axis), static_cast<float>(p.radius_m / p.length_m() - 1.0));

@@ -61,7 +61,10 @@ struct FieldStep {
 struct FieldElement {
   glm::dvec3 centre{0.0};
   double radius_m = 0.0;
-  int texel = 0;
+  int texel = 0;                ///< of several neighbours it may be the same
+  double finest_m = 0.0;        ///< the least length over which it changes across a line: pixels wider than this look at it along several lines
+  int kind = 0;                 ///< below kFieldKinds: those alike in how many steps lines through them need
+  glm::dvec3 drawnOut_m{0.0};   ///< its axis, as long as that over which it changes along it; 0: the same all around
 };
 
 /// Numbers that a field's shader reads; immutable, so that the same pointer is the same content.
@@ -77,9 +80,11 @@ class FieldState {
   glm::dvec3 origin{0.0};
   glm::dmat3 localFromField{1.0};
   glm::dvec3 low{0.0}, high{0.0};  ///< box in field axes; nothing is outside
-  double finest_m = 0.0;           ///< the least length over which it changes across a line: pixels wider than this look at it along several lines
+  double finest_m = 0.0;           ///< the least of its elements
   std::vector<FieldElement> elements;
   std::shared_ptr<const FieldTexels> texels;
+  /// Of a unit of what the shader adds up, how much of each gas it is: see FieldSource::mixtures().
+  std::array<double, kMostGases> share{1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0, 1.0};
   /// `steps` of them at most, rising; nothing where the line misses it. In double, by the same formulas as its shader.
   virtual void along(const FieldLine& line, int steps, std::vector<FieldStep>& out) const = 0;
 };
@@ -102,6 +107,8 @@ class FieldSource {
   virtual std::shared_ptr<const FieldState> at(const FieldWorld& world) const = 0;
   /// Its file for the slot `field` of sim/render/glsl/volume_field.frag.glsl, which says what is in it.
   virtual std::string shader() const = 0;
+  /// Of each gas, the amount of the shader's that it is a part of: gases that always come in the same proportions cost no more than one. Empty: each its own.
+  virtual std::vector<int> mixtures() const { return {}; }
   virtual void addTo(Fingerprint& fingerprint) const = 0;
   /// Temperatures that it may have [K], for the tables of its gases.
   virtual glm::dvec2 temperatures_K() const = 0;
@@ -113,6 +120,8 @@ struct FieldBody {
   std::vector<FieldGas> gases;
   std::shared_ptr<const FieldSource> source;
 };
+
+constexpr int kFieldKinds = 8;
 
 /// Steps along a line: of the reference, of the planner's lines; of pictures by their accuracy.
 constexpr int kReferenceFieldSteps = 96, kPlannedFieldSteps = 8;

@@ -9,6 +9,8 @@ namespace {
 /// Parts of the finest length that lines lie apart at most. A Gaussian profile sampled every 0.83 sigma is integrated to 1e-12 (Poisson's summation); the
 /// finest length of a puff is 1.66 of its sigma.
 constexpr double kApart = 0.5;
+/// The same for pictures: every 1.33 sigma, 3e-5 of the integral.
+constexpr double kFewApart = 0.8;
 /// A rectangle grows by a part of itself and by so many pixels: rounding in single precision.
 constexpr double kMargin = 0.02, kMargin_px = 1e-4;
 
@@ -80,10 +82,17 @@ FieldLines fieldLines(const View& view, const FieldState& field) {
   return all;
 }
 
-FieldLines elementLines(const View& view, const FieldState& field, const FieldElement& element) {
+ElementLines elementLines(const View& view, const FieldState& field, const FieldElement& element) {
+  ElementLines lines;
   FieldLines found = kNothing;
-  if (!ofSphere(view, field, element, found)) return {glm::dvec2(0.0), glm::dvec2(view.width, view.height), 1.0};
-  return cutToFilm(view, found);
+  if (ofSphere(view, field, element, found)) lines.on = cutToFilm(view, found);
+  else lines.on = {glm::dvec2(0.0), glm::dvec2(view.width, view.height), 1.0};
+  const glm::dvec3 to = field.origin + field.localFromField * element.centre - view.position, axis = field.localFromField * element.drawnOut_m;
+  const double range = std::max(glm::length(to), view.near_m), pixel = std::min(view.tanPerPixelX, view.tanPerPixelY) * range;
+  const double aside = glm::length(axis - glm::dot(axis, to) / (range * range) * to);
+  lines.across = pixel / (kFewApart * element.finest_m);
+  lines.perPixel = lines.across * pixel / (kFewApart * std::max(aside, element.finest_m));
+  return lines;
 }
 
 PixelLines pixelLines(std::span<const FieldLines> fields, int x, int y, int most) {

@@ -14,8 +14,13 @@ struct FieldLines {
   bool isEmpty() const { return !(high.x > low.x && high.y > low.y); }
 };
 FieldLines fieldLines(const View& view, const FieldState& field);
-/// The rectangle around one of its elements.
-FieldLines elementLines(const View& view, const FieldState& field, const FieldElement& element);
+/// The rectangle around one of its elements, and how many lines see it as it is.
+struct ElementLines {
+  FieldLines on;
+  double across = 0.0;    ///< over a pixel's breadth, lines beside each other where it changes fastest
+  double perPixel = 0.0;  ///< over a whole pixel: fewer where it is drawn out
+};
+ElementLines elementLines(const View& view, const FieldState& field, const FieldElement& element);
 
 /// A line through a pixel and the share of the pixel that it stands for.
 struct FilmLine {

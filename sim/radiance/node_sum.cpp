@@ -11,8 +11,8 @@
 namespace pitviper {
 namespace {
 
-/// Temperatures of air anywhere [K], 1 K apart: between two the cubic that has their values and slopes (Hermite's).
-constexpr int kColdest_K = 140, kWarmest_K = 400;
+/// Temperatures of air anywhere [K], and of gas that burns.
+constexpr double kColdest_K = 140.0, kWarmest_K = 400.0, kAirStep_K = 1.0, kHottest_K = 3500.0, kGasStep_K = 5.0;
 /// What lets less through than this sends nothing that anybody sees.
 constexpr double kOpaque = 45.0;
 
@@ -54,29 +54,55 @@ NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralN
   extinction_ = coefficientsOf(nodes, used, &AirNode::extinction);
   molecules_ = coefficientsOf(nodes, used, &AirNode::molecules);
   haze_ = coefficientsOf(nodes, used, &AirNode::haze);
-  if (!simulation.air || !simulation.air->traits().variesAlongWay) return;
-  for (int t = kColdest_K; t <= kWarmest_K; ++t)
+  if (!simulation.fields.empty()) ofGas_.make(nodes, kWarmest_K, kHottest_K, kGasStep_K);
+  if (!simulation.fields.empty() || (simulation.air && simulation.air->traits().variesAlongWay)) ofAir_.make(nodes, kColdest_K, kWarmest_K, kAirStep_K);
+  for (const FieldBody& field : simulation.fields)
+    for (const FieldGas& gas : field.gases)
+      for (const FieldGas::Level& level : gas.levels) {
+        const Medium& m = *simulation.materials[static_cast<size_t>(level.material)]->medium;
+        if (!m.albedo && !m.radiance) continue;
+        MediumRows& rows = mediumRows_[level.material];
+        if (!rows.thermal.empty()) continue;
+        for (const SpectralNode& n : nodes) {
+          rows.thermal.push_back(n.mean([&](double w) { return 1.0 - m.albedoAt(w); }));
+          rows.radiance.push_back(m.radiance ? n.mean(*m.radiance) : 0.0);
+          rows.around.push_back(m.albedo && simulation.ambient ? n.mean([&](double w) { return m.albedoAt(w) * (*simulation.ambient)(w); }) : 0.0);
+          rows.sunlight.push_back(m.albedo && simulation.sun ? n.mean([&](double w) { return m.albedoAt(w) * simulation.sun->irradiance(w); }) : 0.0);
+          rows.asymmetry.push_back(m.asymmetry ? n.mean(*m.asymmetry) : 0.0);
+        }
+      }
+}
+
+void NodeSpectra::Planck::make(std::span<const SpectralNode> nodes, double first, double last, double step) {
+  first_K = first, step_K = step;
+  const int count = static_cast<int>(std::lround((last - first) / step));
+  for (int k = 0; k <= count; ++k) {
+    const double t = first + step * k;
     for (const SpectralNode& n : nodes) {
-      planck_.push_back(n.planck(t));
+      value.push_back(n.planck(t));
       // dB/dT = B x / (T (1 - exp(-x))), x = c2 / (lambda T).
-      slope_.push_back(n.mean([t](double w) {
+      slope.push_back(step * n.mean([t](double w) {
         const double x = kSecondRadiation_umK / (w * t);
         return physics::planckRadiance(w, t) * x / (t * physics::oneMinusExp(x));
       }));
     }
+  }
+}
+
+bool NodeSpectra::Planck::at(double temperature_K, std::span<double> into) const {
+  const size_t n = into.size(), count = n > 0 ? value.size() / n : 0;
+  const double t = (temperature_K - first_K) / step_K;
+  if (count == 0 || !(t >= 0.0 && t <= static_cast<double>(count - 1))) return false;
+  const auto low = std::min(static_cast<size_t>(t), count - 2);
+  const double u = t - static_cast<double>(low), v = 1.0 - u;
+  const double p0 = v * v * (1.0 + 2.0 * u), p1 = u * u * (1.0 + 2.0 * v), s0 = u * v * v, s1 = -u * u * v;
+  for (size_t i = 0, k = low * n; i < n; ++i, ++k) into[i] = p0 * value[k] + p1 * value[k + n] + s0 * slope[k] + s1 * slope[k + n];
+  return true;
 }
 
 void NodeSpectra::planck(double temperature_K, std::span<double> into) const {
-  if (planck_.empty() || !(temperature_K >= kColdest_K && temperature_K <= kWarmest_K)) {
-    for (size_t i = 0; i < nodes_.size(); ++i) into[i] = nodes_[i].planck(temperature_K);
-    return;
-  }
-  const double t = temperature_K - kColdest_K;
-  const auto low = std::min(static_cast<size_t>(t), static_cast<size_t>(kWarmest_K - kColdest_K - 1));
-  const double u = t - static_cast<double>(low), v = 1.0 - u;
-  const double p0 = v * v * (1.0 + 2.0 * u), p1 = u * u * (1.0 + 2.0 * v), s0 = u * v * v, s1 = -u * u * v;
-  const size_t n = nodes_.size(), at = low * n;
-  for (size_t i = 0; i < n; ++i) into[i] = p0 * planck_[at + i] + p1 * planck_[at + n + i] + s0 * slope_[at + i] + s1 * slope_[at + n + i];
+  if (ofAir_.at(temperature_K, into) || ofGas_.at(temperature_K, into)) return;
+  for (size_t i = 0; i < nodes_.size(); ++i) into[i] = nodes_[i].planck(temperature_K);
 }
 
 std::vector<double> NodeSpectra::of(const Factor& factor) const {
@@ -161,6 +187,17 @@ const std::vector<double>& NodeSum::hazePhase(double cosScatter) {
   return hazePhase_;
 }
 
+/// What a medium turns of sunlight, per extinction: kept for the line, whose angle is the same all along.
+const std::vector<double>& NodeSum::turnedBy(const MediumInside& m, double cosScatter) {
+  const NodeSpectra::MediumRows* rows = spectra_.mediumRows(m.material);
+  if (!rows) return values(Factor::mediumSun(*m.medium, cosScatter));
+  if (cosScatter != turnedAt_) turnedOf_.clear();
+  turnedAt_ = cosScatter;
+  std::vector<double>& turned = turnedOf_[m.material];
+  for (size_t i = turned.size(); i < count_; ++i) turned.push_back(rows->sunlight[i] * henyeyGreensteinPhase(cosScatter, rows->asymmetry[i]));
+  return turned;
+}
+
 /// What the media of a segment send per node [W/(m2 sr um)]: their own, and sunlight scattered once, through air and through what lies before the sun.
 std::vector<std::vector<double>> NodeSum::sourcesOf(const Segment& s) {
   std::vector<std::vector<double>> all;
@@ -169,7 +206,8 @@ std::vector<std::vector<double>> NodeSum::sourcesOf(const Segment& s) {
   double blackOf_K = -1.0;
   const auto nodes = spectra_.nodes();
   for (const MediumInside& m : s.media) {
-    if (m.lasting || m.medium->albedo || m.medium->radiance) {
+    const NodeSpectra::MediumRows* rows = spectra_.mediumRows(m.material);
+    if (m.lasting || (!rows && (m.medium->albedo || m.medium->radiance))) {
       all.push_back(values(m.source()));
     } else {
       if (m.temperature_K != blackOf_K) {
@@ -178,6 +216,7 @@ std::vector<std::vector<double>> NodeSum::sourcesOf(const Segment& s) {
         blackOf_K = m.temperature_K;
       }
       all.push_back(black);
+      for (size_t i = 0; rows && i < count_; ++i) all.back()[i] = rows->thermal[i] * black[i] + m.gain * rows->radiance[i] + rows->around[i];
     }
     if (!(m.sun > 0.0)) continue;
     if (s.sunAir && sunAir.empty()) {
@@ -187,7 +226,7 @@ std::vector<std::vector<double>> NodeSum::sourcesOf(const Segment& s) {
       weigh(spectra_.extinction(), s.near.powered, near);
       for (size_t i = 0; i < count_; ++i) sunAir[i] = std::exp(std::min(near[i] - sunAir[i], 0.0));
     }
-    const std::vector<double>& turned = values(Factor::mediumSun(*m.medium, s.cosScatter));
+    const std::vector<double>& turned = turnedBy(m, s.cosScatter);
     for (size_t i = 0; i < count_; ++i)
       all.back()[i] += m.sun * turned[i] * (s.sunAir ? sunAir[i] : 1.0) * std::exp(-m.sunAmount * nodes[i].absorption_per_m[static_cast<size_t>(m.material)]);
   }

@@ -21,7 +21,7 @@ class NodeSpectra {
   NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, int surroundings = Terms::kWhole);
   const Simulation& simulation() const { return simulation_; }
   std::span<const SpectralNode> nodes() const { return nodes_; }
-  /// Black body of a temperature of the air per node, in place; between 140 and 400 K by a table (tests/unit/test_node_sum.cpp has its error).
+  /// Black body of a temperature per node, in place: of the air's, and of gas where there are fields, by tables (tests/unit/test_node_sum.cpp has their error).
   void planck(double temperature_K, std::span<double> into) const;
   std::vector<double> of(const Factor& factor) const;
   const NodeSurroundings* surroundings() const { return surroundings_.get(); }
@@ -29,13 +29,31 @@ class NodeSpectra {
   std::span<const double> extinction() const { return extinction_; }
   std::span<const double> molecules() const { return molecules_; }
   std::span<const double> haze() const { return haze_; }
+  /// Of a field's gas that has more than absorption, per node: part of its extinction that emits, own radiance, ambient light and, for a phase function of 1,
+  /// sunlight that it scatters, asymmetry. Each averaged by itself, as pictures have it. Null of all other materials.
+  struct MediumRows {
+    std::vector<double> thermal, radiance, around, sunlight, asymmetry;
+  };
+  const MediumRows* mediumRows(int material) const {
+    const auto at = mediumRows_.find(material);
+    return at == mediumRows_.end() ? nullptr : &at->second;
+  }
 
  private:
+  /// Temperatures evenly apart: between two the cubic that has their values and slopes (Hermite's).
+  struct Planck {
+    double first_K = 0.0, step_K = 1.0;
+    std::vector<double> value, slope;  ///< [temperature][node], and by step
+    void make(std::span<const SpectralNode> nodes, double first_K, double last_K, double step_K);
+    bool at(double temperature_K, std::span<double> into) const;
+  };
+
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
   std::vector<double> extinction_, molecules_, haze_;
   std::shared_ptr<const NodeSurroundings> surroundings_;  ///< null: a uniform dome's
-  std::vector<double> planck_, slope_;  ///< [temperature][node], and by kelvin; empty without layered air
+  Planck ofAir_, ofGas_;
+  std::map<int, MediumRows> mediumRows_;
 };
 
 /// Radiance per node of one line after the other. One for each thread.
@@ -85,6 +103,7 @@ class NodeSum final : public TermSink {
   std::vector<std::vector<double>> sourcesOf(const Segment& segment);
   /// Of haze, per node; lines of one sun mostly ask for the same angle again.
   const std::vector<double>& hazePhase(double cosScatter);
+  const std::vector<double>& turnedBy(const MediumInside& medium, double cosScatter);
 
   const NodeSpectra& spectra_;
   size_t count_;
@@ -100,6 +119,8 @@ class NodeSum final : public TermSink {
   At near_, far_;
   std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_;
   double hazePhaseOf_ = 2.0;              ///< cosine that hazePhase_ is for
+  double turnedAt_ = 2.0;                  ///< cosine that turnedOf_ is for
+  std::map<int, std::vector<double>> turnedOf_;  ///< of each material
   const AirPlace* sunKnownAt_ = nullptr;  ///< near_ has the way on to the sun from there
   const AirPlace* here_ = nullptr;        ///< the place reached: near_ is its
   std::map<Factor, std::vector<double>> kept_;

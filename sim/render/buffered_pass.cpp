@@ -166,7 +166,7 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
       }
       const TimedPart part("transparent");
       spectrum.shareDepth(visibility);
-      layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode, .covered = covered_ ? &pixelClasses() : nullptr});
+      layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode, .view = view(), .covered = covered_ ? &pixelClasses() : nullptr});
       bindBuffers();
       visibility.colour(0).bind(0);
     }

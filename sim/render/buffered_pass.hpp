@@ -24,6 +24,7 @@ class BufferedPass final : public ScenePass {
   bool sharesShading() const override { return true; }
   bool drawsOver() const { return layers_ && !layers_->isEmpty(); }
   const RenderTarget* withoutTransparent() const override { return drawsOver() ? &*before_ : nullptr; }
+  bool transparentIsAveraged() const override { return drawsOver() && layers_->isOfFields(); }
   void leaveOut(RenderTarget& visibility) override;
   struct Batch {
     int firstNode = 0;

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "sim/model/field_states.hpp"
@@ -12,30 +13,29 @@ namespace pitviper {
 namespace {
 
 /// Edge of a tile [pixels]: lists stay short, and few pixels wait for a neighbour's. Larger where a picture would have too many.
-constexpr int kTile_px = 16, kMostTilesAcross = 128;
+constexpr int kTile_px = 8, kMostTilesAcross = 128;
+/// A field whose depth is less than this part of the way to it has one stretch of air across it: as kEven of its shader.
+constexpr double kEven = 0.1;
 
 }  // namespace
 
-FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, const ShaderSlots& slots)
-    : simulation_(simulation), bodies_(simulation.fields.size()) {
-  for (size_t f = 0; f < bodies_.size(); ++f) {
+FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, const ShaderSlots& slots) : simulation_(simulation) {
+  const auto steps = fieldSteps(simulation, plan);
+  for (size_t f = 0; f < simulation.fields.size(); ++f) {
     const FieldBody& field = simulation.fields[f];
-    Body& body = bodies_[f];
-    body.tables = makeFieldTables(simulation, plan, field);
-    body.spectra.upload(body.tables.texels);
+    Body& body = bodies_.emplace_back(simulation, plan, field);
     ShaderSlots own = slots;
     own.files["field"] = field.source->shader();
-    own.constants["GASES"] = body.tables.gases;
-    own.constants["LEVELS"] = body.tables.levels;
+    own.constants["MIXTURES"] = body.tables.mixtures;
+    own.constants["LEVEL_FOURS"] = body.tables.levelFours;
     own.constants["FOURS"] = body.tables.fours;
     own.constants["SCATTERS"] = body.tables.scatters ? 1 : 0;
     own.constants["BLACK_AT"] = body.tables.blackAt;
     own.constants["BLACK_ENTRIES"] = kBlackEntries;
-    body.steps = fieldSteps(simulation, plan, f);
-    own.constants["FIELD_STEPS"] = body.steps;
-    own.constants["MOST_LINES"] = fieldLinesAcross(plan.accuracy);
-    const std::string key = field.source->shader() + " " + std::to_string(body.tables.gases) + " " + std::to_string(body.tables.levels) + " " +
-                            std::to_string(body.tables.blackAt) + " " + std::to_string(body.steps) + (body.tables.scatters ? " scatters" : "");
+    body.steps = steps[f];
+    own.constants["MOST_LINES"] = fieldLinesAtMost(plan.accuracy);
+    std::string key = field.source->shader();
+    for (const char* name : {"MIXTURES", "LEVEL_FOURS", "BLACK_AT", "SCATTERS"}) key += " " + std::to_string(own.constants[name]);
     auto [at, isNew] = programs_.try_emplace(key);
     if (isNew)
       at->second = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", own),
@@ -50,50 +50,82 @@ void FieldDraws::listTiles(const View& view, const FieldState& field, Body& body
   const int tile = std::max(kTile_px, (std::max(size.x, size.y) + kMostTilesAcross - 1) / kMostTilesAcross);
   const glm::ivec2 tiles = (size + tile - 1) / tile;
   body.grid = {low.x, low.y, tiles.x, tile};
-  std::vector<std::vector<std::uint32_t>> lists(static_cast<size_t>(tiles.x) * static_cast<size_t>(tiles.y));
+  struct List {
+    std::vector<std::uint32_t> texel;
+    float across = 0.0f, perPixel = 0.0f;
+    int steps = 1;
+  };
+  std::vector<List> lists(static_cast<size_t>(tiles.x) * static_cast<size_t>(tiles.y));
   for (const FieldElement& e : field.elements) {
-    const FieldLines lines = elementLines(view, field, e);
-    if (lines.isEmpty()) continue;
-    const glm::ivec2 from = glm::clamp((glm::ivec2(glm::floor(lines.low)) - low) / tile, glm::ivec2(0), tiles - 1);
-    const glm::ivec2 to = glm::clamp((glm::ivec2(glm::ceil(lines.high)) - low) / tile, glm::ivec2(0), tiles - 1);
+    if (body.steps[static_cast<size_t>(e.kind)] == 0) continue;
+    const ElementLines lines = elementLines(view, field, e);
+    if (lines.on.isEmpty()) continue;
+    const glm::ivec2 from = glm::clamp((glm::ivec2(glm::floor(lines.on.low)) - low) / tile, glm::ivec2(0), tiles - 1);
+    const glm::ivec2 to = glm::clamp((glm::ivec2(glm::ceil(lines.on.high)) - low) / tile, glm::ivec2(0), tiles - 1);
     for (int y = from.y; y <= to.y; ++y)
-      for (int x = from.x; x <= to.x; ++x) lists[static_cast<size_t>(y * tiles.x + x)].push_back(static_cast<std::uint32_t>(e.texel));
+      for (int x = from.x; x <= to.x; ++x) {
+        List& list = lists[static_cast<size_t>(y * tiles.x + x)];
+        if (list.texel.empty() || list.texel.back() != static_cast<std::uint32_t>(e.texel)) list.texel.push_back(static_cast<std::uint32_t>(e.texel));
+        list.across = std::max(list.across, static_cast<float>(lines.across));
+        list.perPixel = std::max(list.perPixel, static_cast<float>(lines.perPixel));
+        list.steps = std::max(list.steps, body.steps[static_cast<size_t>(e.kind)]);
+      }
   }
-  std::vector<std::uint32_t> words(2 * lists.size());
+  std::vector<std::uint32_t> words(5 * lists.size());
   for (size_t t = 0; t < lists.size(); ++t) {
-    words[2 * t] = static_cast<std::uint32_t>(words.size());
-    words[2 * t + 1] = static_cast<std::uint32_t>(lists[t].size());
-    words.insert(words.end(), lists[t].begin(), lists[t].end());
+    words[5 * t] = static_cast<std::uint32_t>(words.size());
+    words[5 * t + 1] = static_cast<std::uint32_t>(lists[t].texel.size());
+    words[5 * t + 2] = std::bit_cast<std::uint32_t>(lists[t].across);
+    words[5 * t + 3] = std::bit_cast<std::uint32_t>(lists[t].perPixel);
+    words[5 * t + 4] = static_cast<std::uint32_t>(lists[t].steps);
+    words.insert(words.end(), lists[t].texel.begin(), lists[t].texel.end());
   }
   body.tiles.upload(words);
 }
 
 void FieldDraws::place(const View& view, const WorldState& state, std::vector<LayerPiece>& pieces) {
-  const glm::dmat3 cameraFromLocal = glm::transpose(view.localFromCamera);
   for (size_t f = 0; f < bodies_.size(); ++f) {
     Body& body = bodies_[f];
-    body.lines = {};
     const FieldState* field = fieldOf(state, f);
-    if (!field || field->elements.empty()) continue;
-    body.lines = fieldLines(view, *field);
-    if (body.lines.isEmpty()) continue;
+    body.state = field && !field->elements.empty() ? field : nullptr;
+    if (!body.state || fieldLines(view, *field).isEmpty()) continue;
     if (body.uploaded != field->texels) {
       body.texels.upload(field->texels->texel);
       body.uploaded = field->texels;
     }
-    listTiles(view, *field, body);
-    const glm::dmat3 fieldFromCamera = glm::transpose(field->localFromField) * view.localFromCamera;
-    const glm::dvec3 origin = cameraFromLocal * (field->origin - view.position);
-    for (int r = 0; r < 3; ++r) body.row[r] = glm::vec4(fieldFromCamera[0][r], fieldFromCamera[1][r], fieldFromCamera[2][r], origin[r]);
-    body.fine = static_cast<float>(origin.z - static_cast<double>(static_cast<float>(origin.z)));
+    if (body.tables.mix(field->share)) body.spectra.upload(body.tables.texels);
+    const glm::dmat3 cameraFromLocal = glm::transpose(view.localFromCamera);
     LayerPiece piece;
     piece.medium = true;
     piece.field = static_cast<int>(f);
     piece.low = field->low;
     piece.high = field->high;
-    piece.origin = origin;
+    piece.origin = cameraFromLocal * (field->origin - view.position);
     piece.cameraFromBody = cameraFromLocal * field->localFromField;
     pieces.push_back(piece);
+  }
+}
+
+void FieldDraws::look(const View& view) {
+  const glm::dmat3 cameraFromLocal = glm::transpose(view.localFromCamera);
+  for (Body& body : bodies_) {
+    body.lines = {};
+    if (!body.state) continue;
+    const FieldState& field = *body.state;
+    body.lines = fieldLines(view, field);
+    if (body.lines.isEmpty()) continue;
+    listTiles(view, field, body);
+    double nearest = INFINITY, farthest = 0.0;
+    for (const FieldElement& e : field.elements) {
+      const double to = glm::length(field.origin + field.localFromField * e.centre - view.position);
+      nearest = std::min(nearest, to - e.radius_m);
+      farthest = std::max(farthest, to + e.radius_m);
+    }
+    body.range = farthest - nearest < kEven * nearest ? glm::vec2(nearest, farthest) : glm::vec2(0.0f);
+    const glm::dmat3 fieldFromCamera = glm::transpose(field.localFromField) * view.localFromCamera;
+    const glm::dvec3 origin = cameraFromLocal * (field.origin - view.position);
+    for (int r = 0; r < 3; ++r) body.row[r] = glm::vec4(fieldFromCamera[0][r], fieldFromCamera[1][r], fieldFromCamera[2][r], origin[r]);
+    body.fine = static_cast<float>(origin.z - static_cast<double>(static_cast<float>(origin.z)));
   }
 }
 
@@ -115,7 +147,8 @@ const Program& FieldDraws::use(int field) {
   glUniform1f(program.uniform("fieldFine"), body.fine);
   const glm::vec2 low(body.lines.low), high(body.lines.high);
   glUniform4f(program.uniform("fieldRect"), low.x, low.y, high.x, high.y);
-  glUniform1f(program.uniform("linesApart"), static_cast<float>(body.lines.apart_px));
+  glUniform2f(program.uniform("fieldRange"), body.range.x, body.range.y);
+  glUniform4fv(program.uniform("gasLevels"), static_cast<GLsizei>(body.tables.temperatures.size()), &body.tables.temperatures[0].x);
   glUniform4i(program.uniform("tileGrid"), body.grid.x, body.grid.y, body.grid.z, body.grid.w);
   glUniform4f(program.uniform("planckRange"), body.tables.firstInverse_K, body.tables.entriesPerInverse, 0.0f, 0.0f);
   return program;

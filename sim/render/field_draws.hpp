@@ -1,5 +1,7 @@
 #pragma once
 // Fields of a view on the GPU: their numbers, which tiles of the picture each of their parts may show in, and the programs that draw them.
+#include <array>
+#include <deque>
 #include <map>
 #include <memory>
 #include <string>
@@ -15,10 +17,12 @@ namespace pitviper {
 
 class FieldDraws {
  public:
-  /// All but the library must outlive it. `slots`: of programs that blend over the spectral image, the slot `blend` for lines (addBlend()).
+  /// All but the library must outlive it. `slots`: of programs that blend over the spectral image, the slot `targets` of addTargets().
   FieldDraws(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, const ShaderSlots& slots);
-  /// What of them is in view; adds a piece of each to be sorted.
+  /// What of them is in view; adds a piece of each to be sorted. The state must last while they are drawn.
   void place(const View& view, const WorldState& state, std::vector<LayerPiece>& pieces);
+  /// How they are drawn from here on: for the pixels of this view, which sees the same.
+  void look(const View& view);
   /// The program of a field that is in view, in use, its buffers and uniforms set but `firstNode`.
   const Program& use(int field);
   /// The part of the picture that it may show in (corner, size) [pixels].
@@ -27,22 +31,25 @@ class FieldDraws {
 
  private:
   struct Body {
+    Body(const Simulation& simulation, const Plan& plan, const FieldBody& field) : tables(simulation, plan, field) {}
     FieldTables tables;
-    int steps = 1;
+    std::array<int, kFieldKinds> steps{};  ///< by kind of element
     Buffer spectra, texels, tiles;
     const Program* program = nullptr;
     std::shared_ptr<const FieldTexels> uploaded;
+    const FieldState* state = nullptr;  ///< null: not there
     // Of the view.
     FieldLines lines;
     glm::vec4 row[3];
     float fine = 0.0f;
+    glm::vec2 range{0.0f};
     glm::ivec4 grid{0};
   };
   void listTiles(const View& view, const FieldState& field, Body& body);
 
   const Simulation& simulation_;
   std::map<std::string, Program> programs_;
-  std::vector<Body> bodies_;
+  std::deque<Body> bodies_;
 };
 
 }  // namespace pitviper

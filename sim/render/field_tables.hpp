@@ -7,19 +7,35 @@
 
 namespace pitviper {
 
-/// Texels: of each gas one (first texel of its levels, their number, first texel of what else it has); of each gas `levels` temperatures [K]; the levels'
-/// absorption per amount, rows of `fours`; of each gas and four nodes five (thermal share, own radiance, ambient light scattered, sunlight scattered for a
-/// phase function of 1, asymmetry), where any gas has more than absorption; `kBlackEntries` rows of Planck radiance, evenly over 1 / T.
-struct FieldTables {
+/// Texels: of each mixture one (first texel of its levels, their number, first texel of what else it has); of each mixture 4 `levelFours` temperatures [K]; the
+/// levels' absorption per amount, rows of `fours`; of each mixture and four nodes five (thermal share, own radiance, ambient light scattered, sunlight scattered
+/// for a phase function of 1, asymmetry), where any has more than absorption; `kBlackEntries` rows of Planck radiance, evenly over 1 / T.
+/// A mixture: gases that a field's shader adds up as one, by FieldState::share.
+class FieldTables {
+ public:
+  FieldTables(const Simulation& simulation, const Plan& plan, const FieldBody& field);
+  /// True where the texels changed with the shares of the gases.
+  bool mix(const std::array<double, kMostGases>& share);
+
   std::vector<glm::vec4> texels;
-  int gases = 0, levels = 1, fours = 0, blackAt = 0;
-  bool scatters = false;     ///< some gas has more than absorption
+  std::vector<glm::vec4> temperatures;  ///< of each mixture `levelFours`, ended by some far above any
+  int mixtures = 0, levelFours = 1, fours = 0, blackAt = 0;
+  bool scatters = false;  ///< some gas has more than absorption
   float firstInverse_K = 0.0f, entriesPerInverse = 1.0f;
+
+ private:
+  struct Mixture {
+    std::vector<size_t> gases;
+    std::vector<double> temperature_K;                   ///< all that one of them has
+    std::vector<std::vector<std::vector<double>>> rows;  ///< of each gas at each: absorption at the nodes
+    size_t at = 0;                                       ///< first texel of its rows
+  };
+  std::vector<Mixture> mixed_;
+  std::array<double, kMostGases> share_{};
 };
 constexpr int kBlackEntries = 384;
-FieldTables makeFieldTables(const Simulation& simulation, const Plan& plan, const FieldBody& field);
 
-/// Lines across a pixel each way, at most.
-int fieldLinesAcross(double accuracy);
+/// Lines through a pixel at most.
+int fieldLinesAtMost(double accuracy);
 
 }  // namespace pitviper

@@ -59,29 +59,21 @@ void addBlend(ShaderSlots& slots, BlendPath path, int targets, int nodes, bool b
   slots.generated["blend"] = blend.str();
 }
 
-/// The same for fields: several lines through a pixel, each blended over what is behind, their mean is what the pixel has.
-void addBlendOfLines(ShaderSlots& slots, BlendPath path, int targets, int nodes) {
-  addBlend(slots, path, targets, nodes, true);
-  std::string& blend = slots.generated["blend"];
-  std::ostringstream text;
+/// The spectral image as programs of fields name it, four nodes of each target.
+void addTargets(ShaderSlots& slots, BlendPath path, int targets, int nodes) {
+  std::ostringstream declared;
+  declared << "uniform int firstNode;\n";
   const bool fetch = path == BlendPath::FramebufferFetch, written = slots.constants.at("WRITTEN_OUT") != 0;
-  text << "void blend() {\n";
-  for (int t = 0; t < targets; ++t)
-    text << "  vec4 u" << t << " = " << (fetch ? "spectrum" + std::to_string(t) : "texelFetch(under" + std::to_string(t) + ", ivec2(gl_FragCoord.xy), 0)")
-         << ", s" << t << " = outside_ * u" << t << ";\n";
-  text << "  for (int l = 0; l < linesHere(); ++l) {\n    prepareLine(l);\n";
-  for (int t = 0; t < targets; ++t) text << "    vec4 v" << t << " = u" << t << ";\n";
-  text << "    for (int k = 0; k < layersHere(); ++k) {\n      prepareLayer(k);\n";
+  if (fetch) slots.extensions.emplace_back("GL_EXT_shader_framebuffer_fetch");
   for (int t = 0; t < targets; ++t) {
-    const std::string four = written ? std::to_string(std::min(t, (nodes - 1) / 4)) : "min(firstNode / 4 + " + std::to_string(t) + ", (NODES - 1) / 4)";
-    text << "      v" << t << " = blendedFour(v" << t << ", " << four << ");\n";
+    const std::string n = std::to_string(t);
+    declared << "layout(location = " << n << ") " << (fetch ? "inout" : "out") << " vec4 spectrum" << n << ";\n";
+    if (!fetch) declared << "layout(binding = " << kUnderUnit + t << ") uniform sampler2D under" << n << ";\n";
+    declared << "vec4 spectrumBelow" << n << "() { return " << (fetch ? "spectrum" + n : "texelFetch(under" + n + ", ivec2(gl_FragCoord.xy), 0)") << "; }\n";
   }
-  text << "    }\n";
-  for (int t = 0; t < targets; ++t) text << "    s" << t << " += share_ * v" << t << ";\n";
-  text << "  }\n";
-  for (int t = 0; t < targets; ++t) text << "  spectrum" << t << " = s" << t << ";\n";
-  text << "}\n";
-  blend = text.str();
+  declared << "int fourOf(int target) { return min(" << (written ? "" : "firstNode / 4 + ") << "target, " << (nodes - 1) / 4 << "); }\n";
+  slots.generated["targets"] = declared.str();
+  slots.constants["TARGETS"] = targets;
 }
 
 }  // namespace
@@ -122,7 +114,7 @@ LayerPass::LayerPass(const Simulation& simulation, const Plan& plan, const Rende
   }
   if (plan.terms.fields) {
     ShaderSlots own = base;
-    addBlendOfLines(own, fewPath_, targets, plan.nodeCount());
+    addTargets(own, fewPath_, targets, plan.nodeCount());
     fields_ = std::make_unique<FieldDraws>(simulation, plan, library, own);
   }
   if (plan.terms.media) {
@@ -222,6 +214,7 @@ RenderTarget& LayerPass::sizedLike(std::deque<RenderTarget>& pool, const RenderT
 
 void LayerPass::blend(const Over& over) {
   if (isEmpty()) return;
+  if (fields_ && over.firstNode == 0) fields_->look(over.view);
   for (const Run& run : runs_) {
     const LayerPiece& first = pieces_[order_.pieces[run.first]];
     if (run.medium && first.field < 0 && first.group < 0 && simulation_.entities[static_cast<size_t>(tables_.draws[first.draw].entity)].form.kind == BodyForm::Kind::Mesh)
@@ -322,7 +315,7 @@ void LayerPass::drawField(const LayerPiece& piece, const Over& over) {
   glUniform1i(program.uniform("firstNode"), over.firstNode);
   beginMedium(over.covered != nullptr);
   glDisable(GL_CULL_FACE);
-  const glm::ivec4 rect = fields_->rectOf(piece.field);
+  const glm::ivec4 rect = glm::max(fields_->rectOf(piece.field), glm::ivec4(0));
   glEnable(GL_SCISSOR_TEST);
   glScissor(rect.x, rect.y, rect.z, rect.w);
   glDrawArrays(GL_TRIANGLES, 0, 3);

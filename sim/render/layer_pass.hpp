@@ -1,6 +1,7 @@
 #pragma once
 // The ordered pass of buffered mode: transparent surfaces and bodies of emitting media, back to front over the spectral image of the
 // solid scene, each node blended by its own transmittance. Source: Duvenhage 2006 section 5.3.2; PHYSICS section 2.
+#include <algorithm>
 #include <deque>
 #include <memory>
 #include <optional>
@@ -28,12 +29,17 @@ class LayerPass {
   /// Sorts what of `drawn` is in view.
   void order(const View& view, const WorldState& state, const std::vector<char>& drawn);
   bool isEmpty() const { return order_.pieces.empty(); }
+  /// Nothing but fields is in view.
+  bool isOfFields() const {
+    return std::all_of(pieces_.begin(), pieces_.end(), [](const LayerPiece& p) { return p.field >= 0; });
+  }
 
   /// What a blend goes over.
   struct Over {
     RenderTarget& spectrum;          ///< with the visibility pass' depth attached
     const RenderTarget& visibility;  ///< identity and depth of the solid scene
     int firstNode = 0;
+    const View& view;  ///< that it is a picture of
     const PixelClasses* covered = nullptr;  ///< what they leave out has the nearest depth of all, and nothing is to be drawn over it
   };
   /// Draws, view, lights and nodes are bound; changes the bound surface tables and the blend, cull and depth state's settings.

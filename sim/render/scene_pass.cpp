@@ -222,6 +222,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
   if (partial_) clearShading();
+  shadedView_ = v;
   shade(current_->shading, current_->visibility);
   drawn_ = v;
   resolved_ = truthOf_ = nullptr;
@@ -274,8 +275,12 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   pixelClasses_->findWithLight(pixels.visibility);
   pixels.visibility.colour(0).bind(0);
   partial_ = false;
+  shadedView_ = whole;
   shade(pixels.shading, pixels.visibility);
-  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_->smoothness(), pixels.shading, withoutTransparent(), v.grouped);
+  // What is averaged already bends as little as what is behind it.
+  const RenderTarget* before = withoutTransparent();
+  const bool averaged = before && transparentIsAveraged();
+  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_->smoothness(), averaged ? *before : pixels.shading, averaged ? nullptr : before, v.grouped);
   if (v.subpixels != v.grouped) shared_->spread(pixels.shading, current_->shading, v.grouped, glm::ivec4(0));
   else if (v.kept.z > 0) shared_->spread(pixels.shading, current_->shading, v.grouped, v.kept);
   wholePixels_ = false;

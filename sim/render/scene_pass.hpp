@@ -74,6 +74,8 @@ class ScenePass {
   /// Only one entity is shaded: what was cleared stays elsewhere.
   bool isPartial() const { return partial_; }
   bool isOfWholePixels() const { return wholePixels_; }
+  /// What is shaded is a picture of.
+  const View& view() const { return shadedView_; }
   /// The tables follow other temperatures than before.
   virtual void onTemperatures() {}
   /// Whether this mode can shade several pixels as one where a view allows it (View::grouped).
@@ -82,6 +84,8 @@ class ScenePass {
   virtual void beforeShading(const View&, const WorldState&, const std::vector<char>&) {}
   /// The channels that whole pixels had before transparent things were drawn over them; null where there are none.
   virtual const RenderTarget* withoutTransparent() const { return nullptr; }
+  /// What is transparent in view is drawn over whole pixels as it is on average over each.
+  virtual bool transparentIsAveraged() const { return false; }
   /// Pixels that have been shaded as one are left out of what is shaded from here on, of this picture.
   virtual void leaveOut(RenderTarget&) {}
 
@@ -148,6 +152,7 @@ class ScenePass {
   Targets* current_ = nullptr;
   bool partial_ = false, warm_ = false;
   bool wholePixels_ = false;                ///< pixels are shaded, not their subpixels
+  View shadedView_;
   std::optional<ResolvePass> resolve_;      ///< made when first needed
   const RenderTarget* truthOf_ = nullptr;   ///< where truth is by itself
   const RenderTarget* resolved_ = nullptr;  ///< of the last drawn image, where it was

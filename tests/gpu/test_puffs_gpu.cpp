@@ -65,7 +65,7 @@ void main() {
     leave_ = max(leave_, chord.y);
   }
   if (first < 0) { c = vec4(0.0); return; }
-  float from = fieldCut(first, step_ / 3.0), to = fieldCut(first, (step_ + 1.0) / 3.0);
+  float from = fieldCut(step_ / 3.0), to = fieldCut((step_ + 1.0) / 3.0);
   for (int e = 0; e < int(elements); ++e) fieldAdd(4 * e, from, to);
   c = what < 0.5 ? amountLow_ : vec4(heat_ / 1000.0, gained_, lit_, shade_);
 }

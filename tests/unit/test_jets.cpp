@@ -368,7 +368,7 @@ TEST(Jets, StandAtTheirNozzlesInTheFlowOfFlight) {
   EXPECT_NEAR(glm::length(state->origin - nozzle), 0.0, 1e-9);
   EXPECT_NEAR(glm::length(state->localFromField[0] + forward), 0.0, 1e-9);
   EXPECT_NEAR(glm::determinant(state->localFromField), 1.0, 1e-12);
-  EXPECT_NEAR(glm::length(state->origin + state->localFromField * (state->elements[6].centre - state->elements[0].centre) -
+  EXPECT_NEAR(glm::length(state->origin + state->localFromField * (state->elements[kFieldKinds].centre - state->elements[0].centre) -
                           (path(2.0).position + turned * setup.nozzles[1])),
               0.0, 1e-9);
   // The state for 230 m/s at that height has the same texels.

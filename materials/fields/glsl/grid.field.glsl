@@ -21,7 +21,9 @@ Vec2 fieldChord(int at) {
   return t.y > t.x ? t : Vec2(0.0, 0.0);
 }
 
-Real fieldCut(int at, Real s) { return s <= 0.0 ? enter_ : s >= 1.0 ? leave_ : enter_ + s * (leave_ - enter_); }
+void fieldLine(int at, int steps) {}
+
+Real fieldCut(Real s) { return s <= 0.0 ? enter_ : s >= 1.0 ? leave_ : enter_ + s * (leave_ - enter_); }
 
 Vec4 gridAlongX(int texel) { return fieldTexel(texel) + gridPart_.x * (fieldTexel(texel + gridX_) - fieldTexel(texel)); }
 

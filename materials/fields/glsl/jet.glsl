@@ -33,17 +33,8 @@ PHYSICS Real jetSigma(Real t, Vec2 scale) {
   return x < 0.0 ? -a : a;
 }
 
-// The same with the uniform core passed in fewer steps: sigma at the knots (enter, core, core's end, leave), and what a unit of sigma counts within it.
-PHYSICS Real jetMeasure(Real sigma, Vec4 knots, Real inCore) {
-  Real s = min(max(sigma, knots.x), knots.w);
-  return min(s, knots.y) - knots.x + inCore * (min(max(s, knots.y), knots.z) - knots.y) + max(s, knots.z) - knots.z;
-}
-
 // Its inverse: t.
-PHYSICS Real jetPlace(Real measure, Vec4 knots, Real inCore, Vec2 scale) {
-  Real before = knots.y - knots.x;
-  Real within = inCore * (knots.z - knots.y);
-  Real s = measure < before ? knots.x + measure : measure < before + within ? knots.y + (measure - before) / inCore : knots.z + (measure - before - within);
-  Real e = exp(s);
+PHYSICS Real jetPlace(Real sigma, Vec2 scale) {
+  Real e = exp(sigma);
   return scale.x + 0.5 * (e - 1.0 / e) / scale.y;
 }

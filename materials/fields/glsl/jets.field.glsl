@@ -1,26 +1,27 @@
 // The jets of one plume: equal nozzles side by side, all along +x of the field. Where they overlap, mixture and excess speed add, to 1 at most: right where the
 // excess is small, as it is where they have grown together.
-//   Texels. An element is a piece of one nozzle's jet: the nozzle's place, how far on the first of what all share is; from and to which x, 0, 0. Then of all:
+//   Texels. An element is a nozzle: its place, how far on the first of what all share is. Then of all:
 //     0 radius, length, where it begins to fade, 1/(length - that)     1 1/rowScale, 1/rowLogRatio, coreLength, 1/farLogRatio
-//     2 coreRow, rowCount - 2, strength, elements                      3 flow, 4 cp, cpExcess, moles, molesExcess: see jet.glsl
-//     5, 6 amounts of the first four gases per mole, and per density/pressure [1/K]; 7, 8 of the next four
-//     9, 10 radii at both ends of four cones that bound it             11 length and end radius of the core, whether there are more than four gases, pieces of a nozzle
+//     2 coreRow, rowCount - 2, strength, nozzles                       3 flow, 4 cp, cpExcess, moles, molesExcess: see jet.glsl
+//     5 which of the amounts are moles, 6 which are density/pressure [1/K]: 1 there
+//     7, 8 radii at both ends of four cones that bound it              9 length and end radius of the core
 //     then the rows.
 //@use sim/radiometry/glsl/chord.glsl
 //@use materials/fields/glsl/jet.glsl
 
-// Of the line at hand, of the first two nozzles that it meets: knots, measure within the core, scale; and from where to where.
-Vec3 jetsPoint_ = Vec3(0.0), jetsDirection_ = Vec3(0.0);
-Vec4 jetsKnotsA_ = Vec4(0.0), jetsKnotsB_ = Vec4(0.0);
-Vec3 jetsMapA_ = Vec3(0.0), jetsMapB_ = Vec3(0.0);
-Vec2 jetsEnds_ = Vec2(0.0), jetsMeasures_ = Vec2(0.0);
-int jetsAt_ = -1, jetsMet_ = 0;
-Vec2 jetsMixture_ = Vec2(0.0);  // of a step, of all nozzles so far
+// Of the line at hand, in sigma: its ends; where it enters and leaves the uniform cores of two nozzles at most, and how many steps end there. t and scale of
+// sigma; steps.
+Vec2 jetsEnds_ = Vec2(0.0);
+Vec4 jetsKnots_ = Vec4(0.0);
+Vec4 jetsSteps_ = Vec4(0.0);
+Vec3 jetsMap_ = Vec3(0.0);
+Vec3 jetsMixture_ = Vec3(0.0);  // of a step, of all nozzles so far: mixture fraction, excess speed, what has not faded of the first
 
-// Of a whole jet.
-Vec2 jetsChord(int own, Vec3 place) {
-  Vec4 first = fieldTexel(own + 9);
-  Vec4 second = fieldTexel(own + 10);
+Vec2 fieldChord(int at) {
+  Vec4 place = fieldTexel(at);
+  int own = at + int(place.w);
+  Vec4 first = fieldTexel(own + 7);
+  Vec4 second = fieldTexel(own + 8);
   Real middle = 0.5 * fieldTexel(own).y;
   Vec3 p = q_ - Vec3(place.x + middle, place.y, place.z);
   Vec2 a = coneChord(p, d_, middle, first.x, first.y);
@@ -31,116 +32,111 @@ Vec2 jetsChord(int own, Vec3 place) {
   return Vec2(max(max(a.x, b.x), max(c.x, e.x)), min(min(a.y, b.y), min(c.y, e.y)));
 }
 
-Vec2 fieldChord(int at) {
-  Vec4 head = fieldTexel(at);
-  Vec4 piece = fieldTexel(at + 1);
-  Real x = q_.x - head.x;
-  Vec2 slab = Vec2(-kFar, kFar);
-  if (d_.x != 0.0) {
-    Real a = (piece.x - x) / d_.x;
-    Real b = (piece.y - x) / d_.x;
-    slab = Vec2(min(a, b), max(a, b));
-  } else if (x < piece.x || x > piece.y) {
-    return Vec2(0.0, 0.0);
-  }
-  Vec2 whole = jetsChord(at + int(head.w), Vec3(head.x, head.y, head.z));
-  return Vec2(max(whole.x, slab.x), min(whole.y, slab.y));
+// Takes the cores in the order of the line, parts that overlap once.
+Vec4 jetsCores(Vec4 cores, Vec2 next) {
+  if (!(next.y > next.x)) return cores;
+  if (!(cores.y > cores.x)) return Vec4(next.x, next.y, cores.z, cores.w);
+  Vec2 first = next.x < cores.x ? next : Vec2(cores.x, cores.y);
+  Vec2 second = next.x < cores.x ? Vec2(cores.x, cores.y) : next;
+  return Vec4(first.x, first.y, max(second.x, first.y), max(second.y, first.y));
 }
 
-Real jetsMeasure(Real t) {
-  Real sum = jetMeasure(jetSigma(t, Vec2(jetsMapA_.y, jetsMapA_.z)), jetsKnotsA_, jetsMapA_.x) / max(jetMeasure(jetsKnotsA_.w, jetsKnotsA_, jetsMapA_.x), 1.0e-20);
-  if (jetsMet_ > 1) sum += jetMeasure(jetSigma(t, Vec2(jetsMapB_.y, jetsMapB_.z)), jetsKnotsB_, jetsMapB_.x) / max(jetMeasure(jetsKnotsB_.w, jetsKnotsB_, jetsMapB_.x), 1.0e-20);
-  return sum;
-}
-
-void jetsLine(int at) {
-  jetsPoint_ = q_;
-  jetsDirection_ = d_;
-  jetsEnds_ = Vec2(enter_, leave_);
-  jetsAt_ = at;
-  jetsMet_ = 0;
+// How a line from enter_ to leave_ is cut: evenly in sigma, of its nozzle or of a place between several, but that steps end where cores do, which have an
+// eighth of them at most: nothing changes within.
+void fieldLine(int at, int steps) {
   int own = at + int(fieldTexel(at).w);
-  int elements = int(fieldTexel(own + 2).w);
+  int nozzles = int(fieldTexel(own + 2).w);
   Vec4 size = fieldTexel(own);
-  Vec4 core = fieldTexel(own + 11);
-  int pieces = int(core.w);
-  for (int j = 0; j < elements; j += pieces) {
-    if (jetsMet_ > 1) continue;
-    Vec4 head = fieldTexel(own - 2 * elements + 2 * j);
-    Vec2 chord = jetsChord(own, Vec3(head.x, head.y, head.z));
+  Vec4 core = fieldTexel(own + 9);
+  Real low = kFar;
+  Real high = -kFar;
+  Real wide = 0.0;
+  Vec4 cores = Vec4(leave_, leave_, leave_, leave_);
+  for (int j = 0; j < nozzles; ++j) {
+    Vec4 head = fieldTexel(own - nozzles + j);
+    Vec2 chord = fieldChord(own - nozzles + j);
     if (!(chord.y > chord.x)) continue;
     Vec3 p = q_ - Vec3(head.x, head.y, head.z);
-    Vec2 within = coneChord(p - Vec3(0.5 * core.x, 0.0, 0.0), d_, 0.5 * core.x, size.x, core.y);
     Real nearest = -dot(p, d_) / dot(d_, d_);
     Vec3 there = p + nearest * d_;
-    Vec2 scale = Vec2(nearest, perT_ / sqrt(dot(there, there) + 4.0 * size.x * size.x));
-    bool isMet = within.y > within.x;
-    Vec4 knots;
-    knots.x = jetSigma(chord.x, scale);
-    knots.w = jetSigma(chord.y, scale);
-    knots.y = isMet ? min(max(jetSigma(within.x, scale), knots.x), knots.w) : knots.w;
-    knots.z = isMet ? min(max(jetSigma(within.y, scale), knots.y), knots.w) : knots.w;
-    // An eighth of the steps at most: nothing changes within it.
-    Real inside = knots.z - knots.y;
-    Real outside = knots.y - knots.x + knots.w - knots.z;
-    Real inCore = inside > 0.0 ? min(1.0, max(outside / (7.0 * inside), 1.0e-3)) : 1.0;
-    Vec3 map = Vec3(inCore, scale.x, scale.y);
-    if (jetsMet_ == 0) {
-      jetsKnotsA_ = knots;
-      jetsMapA_ = map;
-    } else {
-      jetsKnotsB_ = knots;
-      jetsMapB_ = map;
-    }
-    jetsMet_ += 1;
+    low = min(low, nearest);
+    high = max(high, nearest);
+    wide = max(wide, sqrt(dot(there, there) + 4.0 * size.x * size.x) / perT_);
+    Vec2 within = coneChord(p - Vec3(0.5 * core.x, 0.0, 0.0), d_, 0.5 * core.x, size.x, core.y);
+    if (within.y > within.x) cores = jetsCores(cores, Vec2(max(within.x, enter_), min(within.y, leave_)));
   }
-  if (jetsMet_ == 1) jetsMeasures_ = Vec2(jetMeasure(jetSigma(enter_, Vec2(jetsMapA_.y, jetsMapA_.z)), jetsKnotsA_, jetsMapA_.x),
-                                       jetMeasure(jetSigma(leave_, Vec2(jetsMapA_.y, jetsMapA_.z)), jetsKnotsA_, jetsMapA_.x));
-  if (jetsMet_ > 1) jetsMeasures_ = Vec2(jetsMeasure(enter_), jetsMeasure(leave_));
+  Vec2 scale = high >= low ? Vec2(0.5 * (low + high), 1.0 / max(wide, 0.5 * (high - low))) : Vec2(0.5 * (enter_ + leave_), 1.0 / max(leave_ - enter_, 1.0e-6));
+  jetsEnds_ = Vec2(jetSigma(enter_, scale), jetSigma(leave_, scale));
+  Vec4 k = Vec4(jetSigma(cores.x, scale), jetSigma(cores.y, scale), jetSigma(cores.z, scale), jetSigma(cores.w, scale));
+  Real inside = k.y - k.x + k.w - k.z;
+  Real outside = jetsEnds_.y - jetsEnds_.x - inside;
+  Real inCore = inside > 0.0 ? min(1.0, max(outside / (7.0 * inside), 1.0e-3)) : 1.0;
+  Real per = Real(steps) / max(outside + inCore * inside, 1.0e-20);
+  // Each stretch has a step at least where there are enough.
+  Real least = steps > 5 ? 1.0 : 0.0;
+  Vec4 n;
+  n.x = floor(per * (k.x - jetsEnds_.x) + 0.5);
+  if (k.x > jetsEnds_.x) n.x = max(n.x, least);
+  n.y = max(floor(per * (k.x - jetsEnds_.x + inCore * (k.y - k.x)) + 0.5), n.x + (k.y > k.x ? least : 0.0));
+  n.z = max(floor(per * (k.z - jetsEnds_.x - (1.0 - inCore) * (k.y - k.x)) + 0.5), n.y + (k.z > k.y && k.w > k.z ? least : 0.0));
+  n.w = max(floor(per * (k.w - jetsEnds_.x - (1.0 - inCore) * inside) + 0.5), n.z + (k.w > k.z ? least : 0.0));
+  // What is behind the last core has what is left, and a step at least.
+  if (jetsEnds_.y > k.w) n.w = min(n.w, Real(steps) - least);
+  n.z = min(n.z, n.w - (k.w > k.z ? least : 0.0));
+  n.y = min(n.y, n.z);
+  n.x = min(n.x, n.y - (k.y > k.x ? least : 0.0));
+  jetsKnots_ = k;
+  jetsSteps_ = n;
+  jetsMap_ = Vec3(scale.x, scale.y, Real(steps));
 }
 
-Real fieldCut(int at, Real s) {
+Real fieldCut(Real s) {
   if (s <= 0.0) return enter_;
   if (s >= 1.0) return leave_;
-  if (jetsAt_ != at || jetsPoint_ != q_ || jetsDirection_ != d_ || jetsEnds_ != Vec2(enter_, leave_)) jetsLine(at);
-  Real wanted = jetsMeasures_.x + s * (jetsMeasures_.y - jetsMeasures_.x);
-  if (jetsMet_ == 0 || !(jetsMeasures_.y > jetsMeasures_.x)) return enter_ + s * (leave_ - enter_);
-  if (jetsMet_ == 1) return min(max(jetPlace(wanted, jetsKnotsA_, jetsMapA_.x, Vec2(jetsMapA_.y, jetsMapA_.z)), enter_), leave_);
-  // Two nozzles: halving, then a straight line through what is left.
-  Vec2 low = Vec2(enter_, jetsMeasures_.x);
-  Vec2 high = Vec2(leave_, jetsMeasures_.y);
-  for (int k = 0; k < 7; ++k) {
-    Real middle = 0.5 * (low.x + high.x);
-    Real there = jetsMeasure(middle);
-    if (there < wanted) low = Vec2(middle, there);
-    else high = Vec2(middle, there);
+  Real x = floor(s * jetsMap_.z + 0.5);
+  Vec2 n = Vec2(0.0, jetsSteps_.x);
+  Vec2 k = Vec2(jetsEnds_.x, jetsKnots_.x);
+  if (x > jetsSteps_.x) {
+    n = Vec2(jetsSteps_.x, jetsSteps_.y);
+    k = Vec2(jetsKnots_.x, jetsKnots_.y);
   }
-  return low.x + (high.x - low.x) * (high.y > low.y ? (wanted - low.y) / (high.y - low.y) : 0.5);
+  if (x > jetsSteps_.y) {
+    n = Vec2(jetsSteps_.y, jetsSteps_.z);
+    k = Vec2(jetsKnots_.y, jetsKnots_.z);
+  }
+  if (x > jetsSteps_.z) {
+    n = Vec2(jetsSteps_.z, jetsSteps_.w);
+    k = Vec2(jetsKnots_.z, jetsKnots_.w);
+  }
+  if (x > jetsSteps_.w) {
+    n = Vec2(jetsSteps_.w, jetsMap_.z);
+    k = Vec2(jetsKnots_.w, jetsEnds_.y);
+  }
+  Real sigma = n.y > n.x ? k.x + (k.y - k.x) * (x - n.x) / (n.y - n.x) : k.y;
+  return min(max(jetPlace(sigma, Vec2(jetsMap_.x, jetsMap_.y)), enter_), leave_);
 }
 
 void fieldAdd(int at, Real from, Real to) {
   Vec4 head = fieldTexel(at);
-  Vec4 piece = fieldTexel(at + 1);
   int own = at + int(head.w);
   Vec3 p = q_ + (0.5 * (from + to)) * d_ - Vec3(head.x, head.y, head.z);
   Vec4 size = fieldTexel(own);
-  if (p.x < piece.x || p.x >= piece.y) return;
+  if (p.x < 0.0 || p.x >= size.y) return;
   Vec4 counts = fieldTexel(own + 2);
   int i = int(min(max(jetRow(p.x, fieldTexel(own + 1), counts.x), 0.0), counts.y));
-  Vec4 a = fieldTexel(own + 12 + i);
-  Vec4 b = fieldTexel(own + 13 + i);
+  Vec4 a = fieldTexel(own + 10 + i);
+  Vec4 b = fieldTexel(own + 11 + i);
   Vec4 row = a + (p.x - a.x) / (b.x - a.x) * (b - a);
   Real left = min((size.y - p.x) * size.w, 1.0);
   Real present = counts.z * left * left * (3.0 - 2.0 * left);
-  Vec2 here = present * jetMixture(row, size.x, sqrt(p.y * p.y + p.z * p.z));
-  jetsMixture_ = weight_ > 0.0 ? Vec2(min(jetsMixture_.x + here.x, 1.0), min(jetsMixture_.y + here.y, 1.0)) : here;
+  Vec2 here = jetMixture(row, size.x, sqrt(p.y * p.y + p.z * p.z));
+  jetsMixture_ = (weight_ > 0.0 ? jetsMixture_ : Vec3(0.0)) + Vec3(here.x, here.y, present * here.x);
+  jetsMixture_ = Vec3(min(jetsMixture_.x, 1.0), min(jetsMixture_.y, 1.0), min(jetsMixture_.z, 1.0));
   // Of all nozzles together, anew with each.
   Vec4 heat = fieldTexel(own + 4);
-  Real temperature = jetTemperature(jetsMixture_, fieldTexel(own + 3), heat);
-  weight_ = jetsMixture_.x * (to - from) * perT_;
+  Real temperature = jetTemperature(Vec2(jetsMixture_.x, jetsMixture_.y), fieldTexel(own + 3), heat);
+  weight_ = jetsMixture_.z * (to - from) * perT_;
   heat_ = weight_ * temperature;
   Real moles = weight_ / (heat.z + heat.w * jetsMixture_.x);
-  Real density = moles / temperature;
-  amountLow_ = moles * fieldTexel(own + 5) + density * fieldTexel(own + 6);
-  if (fieldTexel(own + 11).z > 0.0) amountHigh_ = moles * fieldTexel(own + 7) + density * fieldTexel(own + 8);
+  amountLow_ = moles * fieldTexel(own + 5) + (moles / temperature) * fieldTexel(own + 6);
 }

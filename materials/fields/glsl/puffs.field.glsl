@@ -13,7 +13,9 @@ vec2 fieldChord(int at) {
   return vec2(chord.x - chord.y, chord.x + chord.y);
 }
 
-float fieldCut(int at, float s) { return mix(enter_, leave_, s); }
+void fieldLine(int at, int steps) {}
+
+float fieldCut(float s) { return mix(enter_, leave_, s); }
 
 void fieldAdd(int at, float from, float to) {
   float column = perT_ * puffColumn(puffOn_(at), from, to);

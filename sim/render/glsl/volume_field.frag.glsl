@@ -1,20 +1,25 @@
 // A medium that varies through its body over the spectral image: see sim/model/field.hpp. A pixel looks along several lines where the field is finer than it;
-// each line is cut into steps, the farthest first, and each step blended as an even layer: mediumRadiance(). Which elements a pixel may meet is listed by tiles.
+// each line is cut into steps, the farthest first, each blended as an even layer (sim/radiometry/glsl/medium.glsl). Which elements a pixel may meet is listed by
+// tiles. Air is worked out for a stretch of many steps where it is nearly even on it.
 //@use sim/radiometry/glsl/medium.glsl
 //@constants
 //@use sim/render/glsl/volume_ray.glsl
 //@use sim/render/glsl/node_block.glsl
 layout(binding = 5) uniform samplerBuffer fieldSpectra;  // sim/render/field_tables.hpp says what is where
 layout(binding = 17) uniform samplerBuffer fieldTexels;  // of the field's own shader
-layout(binding = 19) uniform usamplerBuffer fieldTiles;  // of each tile: first of its list, length; then the lists: texels of elements
+layout(binding = 19) uniform usamplerBuffer fieldTiles;  // of each tile: first of its list, length, lines across a pixel, lines a pixel (floats), steps; then the lists: texels of elements
 uniform vec4 fieldRow0;  // of a Draw: from camera to field axes
 uniform vec4 fieldRow1;
 uniform vec4 fieldRow2;
 uniform float fieldFine;
-uniform vec4 fieldRect;      // nothing shows outside: low, high [pixels]
-uniform float linesApart;    // [pixels]
-uniform ivec4 tileGrid;      // first pixel x, y; tiles across; pixels a side
-uniform vec4 planckRange;    // first 1 / T, entries per unit of it
+uniform vec4 fieldRect;    // nothing shows outside: low, high [pixels]
+uniform vec2 fieldRange;   // from the camera to its nearest and farthest [m], where it is so far that the air across it is nearly even; else 0, 0
+uniform ivec4 tileGrid;    // first pixel x, y; tiles across; pixels a side
+uniform vec4 planckRange;  // first 1 / T, entries per unit of it
+uniform vec4 gasLevels[MIXTURES * LEVEL_FOURS];  // temperatures of levels [K], ended by some far above any
+
+/// Air is nearly even on a stretch shorter than this part of the way to it: what its optical depth d there makes of exp(-d) is told by three terms to 2e-4.
+const float kEven = 0.1;
 
 vec4 fieldTexel(int i) { return texelFetch(fieldTexels, i); }
 float sunElevation_;
@@ -24,7 +29,7 @@ vec3 d_;
 float perT_;
 float enter_;
 float leave_;
-// Sums over a step: amounts of gases; a weight, and what it weighs: temperature, factor of own radiance, share of the sun, amount towards the sun.
+// Sums over a step: amounts of mixtures; a weight, and what it weighs: temperature, factor of own radiance, share of the sun, amount towards the sun.
 vec4 amountLow_;
 vec4 amountHigh_;
 float weight_;
@@ -34,39 +39,74 @@ float lit_;
 float shade_;
 //@slot field
 
+//@slot targets
 //@slot path
-AirPath near_, far_;  // from the camera to a step's ends
-AirPath sunlit_;      // from the camera to the step and on to the sun
 Draw field_;
-int list_, listed_, first_;  // the tile's elements; texel of the first that the line meets
-int lines_, across_;
-vec2 from_, cell_;           // of lines [pixels]
-float share_, outside_;
-float start_, end_;
-int steps_;
-float cosScatter_, phaseSun_;
+int list_, listed_, first_, cuts_;  // the tile's elements, and steps of its lines; texel of the first that the line meets
+uvec2 met_;                  // of the first 64 of the list, those that the line meets
+int lines_, turn_;           // of the pixel; steps of the lattice that they lie on
+vec2 from_, size_;           // of what they cover [pixels]
+float start_;
+int steps_, together_;       // steps of a line; of a stretch of air
+float cosScatter_;
 float gain_, sun_, sunAmount_;
 int black_;
 float blackMix_;
-//@each g GASES
+//@each g MIXTURES
 int level{g}_;
 float levelMix{g}_;
 float amount{g}_;
 //@end
 
-int linesHere() { return lines_; }
+// Air of a stretch, four nodes each: transmittance to its near end, optical depth and radiance on it, path radiance to its near end, transmittance on to the sun.
+vec2 stretch_;      // [m] from the camera
+float low_, high_;  // of a step, parts of the stretch
+//@each t TARGETS
+vec4 tau{t}_, depth{t}_, inside{t}_, before{t}_, sunlit{t}_;
+//@end
+
+float partOf(float t) { return clamp(((planeOf(field_) + t) * rayLength_ - stretch_.x) / max(stretch_.y - stretch_.x, 1.0e-6), 0.0, 1.0); }
+
+void setAir(float nearest, float farthest) {
+  stretch_ = vec2(max(nearest, 0.0), max(farthest, 0.0));
+  vec3 upThere;
+  float height = heightAt(stretch_.x, upThere);
+  sunElevation_ = dot(view.sun.xyz, upThere);
+  AirPath near = airFromCamera(stretch_.x), far = airBeyond(near, stretch_.x, height, dot(upThere, ray_) / rayLength_, stretch_.y - stretch_.x), toSun = near;
+  if (SCATTERS > 0) toSun = airToSun(near, height);
+//@each t TARGETS
+//@each j 4
+  {
+    int i = min(4 * fourOf({t}) + {j}, NODES - 1);
+    tau{t}_[{j}] = pathTransmittance(i, near);
+    depth{t}_[{j}] = pathDepth(i, near, far);
+    inside{t}_[{j}] = pathInside(i, near, far);
+    before{t}_[{j}] = pathRadiance(i, near);
+    if (SCATTERS > 0) sunlit{t}_[{j}] = pathTransmittance(i, toSun);
+  }
+//@end
+//@end
+}
+
+// The part of a stretch's radiance that comes from before a place on it, (1 - exp(-depth u))/(1 - exp(-depth)): exact at its ends, else to the square of the depth.
+vec4 partBefore(float u, vec4 depth) { return u * (1.0 + 0.5 * (1.0 - u) * depth); }
+
+// meanDecay(), of exp(-x) that is known.
+vec4 meanOf(vec4 x, vec4 decayed) {
+  vec4 series = 1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 * (1.0 - x / 6.0))));
+  return mix((1.0 - decayed) / max(x, vec4(0.1)), series, lessThan(x, vec4(0.125)));
+}
 
 // A line of the pixel: what it meets.
 void prepareLine(int l) {
-  // Columns and rows each shifted by the golden ratio: what is thinner than their distance and lies along them is met by its share of lines, not by all or none.
-  vec2 place = vec2(float(l % across_), float(l / across_));
-  prepareRay(from_ + cell_ * (place + fract(vec2(0.5) + 0.6180339887 * place.yx)));
+  prepareRay(from_ + size_ * vec2((float(l) + 0.5) / float(lines_), fract((float((l * turn_) % lines_) + 0.5) / float(lines_))));
   d_ = inBody(field_, ray_);
   q_ = pointOnPlane(field_);
   perT_ = rayLength_;
   enter_ = kFar;
   leave_ = -kFar;
   first_ = -1;
+  met_ = uvec2(0u);
   for (int e = 0; e < listed_; ++e) {
     int at = int(texelFetch(fieldTiles, list_ + e).x);
     vec2 chord = fieldChord(at);
@@ -74,37 +114,47 @@ void prepareLine(int l) {
     if (first_ < 0) first_ = at;
     enter_ = min(enter_, chord.x);
     leave_ = max(leave_, chord.y);
+    if (e < 32) met_.x |= 1u << uint(e);
+    else if (e < 64) met_.y |= 1u << uint(e - 32);
   }
   enter_ = max(enter_, start_);
   leave_ = min(leave_, endOfRay(field_));
-  steps_ = leave_ > enter_ && first_ >= 0 ? FIELD_STEPS : 0;
+  steps_ = leave_ > enter_ && first_ >= 0 ? cuts_ : 0;
+  if (steps_ > 0) fieldLine(first_, steps_);
   cosScatter_ = dot(ray_, view.sun.xyz) / rayLength_;
+  together_ = fieldRange.y > 0.0 || (leave_ - enter_) * rayLength_ < kEven * (planeOf(field_) + enter_) * rayLength_ ? max(steps_, 1) : 1;
 }
 
-int layersHere() { return steps_; }
+void addMet(int from, uint met, float enter, float leave) {
+  while (met != 0u) {
+    int e = findLSB(met);
+    met &= met - 1u;
+    fieldAdd(int(texelFetch(fieldTiles, list_ + from + e).x), enter, leave);
+  }
+}
 
-void prepareLayer(int k) {
-  float count = float(steps_), from = fieldCut(first_, (count - 1.0 - float(k)) / count), to = fieldCut(first_, (count - float(k)) / count);
+void prepareStep(float from, float to) {
   amountLow_ = vec4(0.0);
   amountHigh_ = vec4(0.0);
   weight_ = heat_ = gained_ = lit_ = shade_ = 0.0;
-  for (int e = 0; e < listed_; ++e) fieldAdd(int(texelFetch(fieldTiles, list_ + e).x), from, to);
+  addMet(0, met_.x, from, to);
+  addMet(32, met_.y, from, to);
+  for (int e = 64; e < listed_; ++e) fieldAdd(int(texelFetch(fieldTiles, list_ + e).x), from, to);
   float inverse = weight_ > 0.0 ? 1.0 / weight_ : 0.0, temperature = weight_ > 0.0 ? heat_ * inverse : 300.0;
   gain_ = gained_ * inverse;
   sun_ = lit_ * inverse;
   sunAmount_ = shade_ * inverse;
-//@each g GASES
+//@each g MIXTURES
   amount{g}_ = {g} < 4 ? amountLow_[{g} % 4] : amountHigh_[{g} % 4];
   {
     vec4 gas = texelFetch(fieldSpectra, {g});  // first texel of its levels, number of levels, first texel of what else it has
-    int low = 0, last = int(gas.y) - 2;
-    for (int i = 1; i <= last; i += 4) {
-      vec4 at4 = vec4(texelFetch(fieldSpectra, GASES + LEVELS * {g} + i).x, texelFetch(fieldSpectra, GASES + LEVELS * {g} + min(i + 1, last)).x,
-                      texelFetch(fieldSpectra, GASES + LEVELS * {g} + min(i + 2, last)).x, texelFetch(fieldSpectra, GASES + LEVELS * {g} + min(i + 3, last)).x);
-      low += int(temperature >= at4.x) + int(i < last && temperature >= at4.y) + int(i + 1 < last && temperature >= at4.z) + int(i + 2 < last && temperature >= at4.w);
-    }
-    float at = texelFetch(fieldSpectra, GASES + LEVELS * {g} + low).x, next = texelFetch(fieldSpectra, GASES + LEVELS * {g} + low + 1).x;
-    levelMix{g}_ = last < 0 ? 0.0 : clamp((temperature - at) / (next - at), 0.0, 1.0);
+    float passed = -1.0;
+//@each v LEVEL_FOURS
+    passed += dot(vec4(greaterThanEqual(vec4(temperature), gasLevels[{g} * LEVEL_FOURS + {v}])), vec4(1.0));
+//@end
+    int low = int(clamp(passed, 0.0, max(gas.y - 2.0, 0.0)));
+    float at = texelFetch(fieldSpectra, MIXTURES + 4 * LEVEL_FOURS * {g} + low).x, next = texelFetch(fieldSpectra, MIXTURES + 4 * LEVEL_FOURS * {g} + low + 1).x;
+    levelMix{g}_ = gas.y < 2.0 ? 0.0 : clamp((temperature - at) / (next - at), 0.0, 1.0);
     level{g}_ = int(gas.x) + low * FOURS;
   }
 //@end
@@ -112,19 +162,16 @@ void prepareLayer(int k) {
   int entry = min(int(place), BLACK_ENTRIES - 2);
   black_ = BLACK_AT + entry * FOURS;
   blackMix_ = place - float(entry);
-  float range = max((planeOf(field_) + from) * rayLength_, 0.0);
-  vec3 upThere;
-  float height = heightAt(range, upThere);
-  sunElevation_ = dot(view.sun.xyz, upThere);
-  near_ = airFromCamera(range);
-  far_ = airBeyond(near_, range, height, dot(upThere, ray_) / rayLength_, (to - from) * rayLength_);
-  sunlit_ = SCATTERS > 0 ? airToSun(near_, height) : near_;
+  low_ = partOf(from);
+  high_ = partOf(to);
 }
 
-vec4 blendedFour(vec4 behind, int four) {
+// A step: what comes from behind, less what air alone would show to its far end, is what the result is to its near end.
+//   y' = y exp(-a) + I E(a + g)/E(g) + tau S a E(a + g),   E(x) = (1 - exp(-x))/x: as mediumRadiance() has it, I radiance of the air on the step.
+vec4 stepped(vec4 behind, vec4 tau, vec4 airDepth, vec4 inside, vec4 sunlit, int four) {
   vec4 black = mix(texelFetch(fieldSpectra, black_ + four), texelFetch(fieldSpectra, black_ + FOURS + four), blackMix_);
-  vec4 depth = vec4(0.0), emitted = vec4(0.0), turned = vec4(0.0), result;
-//@each g GASES
+  vec4 depth = vec4(0.0), emitted = vec4(0.0), turned = vec4(0.0);
+//@each g MIXTURES
   {
     vec4 each = mix(texelFetch(fieldSpectra, level{g}_ + four), texelFetch(fieldSpectra, level{g}_ + FOURS + four), levelMix{g}_), own = each * amount{g}_;
     depth += own;
@@ -141,44 +188,81 @@ vec4 blendedFour(vec4 behind, int four) {
     }
   }
 //@end
-  vec4 inverse = 1.0 / max(depth, vec4(1.0e-30));
-//@each j 4
-  {
-    int i = min(4 * four + {j}, NODES - 1);
-    Real air = pathDepth(i, near_, far_);
-    Real before = pathRadiance(i, near_), tau = pathTransmittance(i, near_), inside = pathInside(i, near_, far_);
-    Real own = mediumRadiance(depth[{j}], air, before, inside, tau, emitted[{j}] * inverse[{j}]);
-    if (SCATTERS > 0) own += pathTransmittance(i, sunlit_) * turned[{j}] * meanDecay(depth[{j}] + air);
-    result[{j}] = depth[{j}] > 0.0 ? decay(depth[{j}]) * (behind[{j}] - (before + inside)) + own : behind[{j}];
-  }
-//@end
-  return result;
+  vec4 beside = airDepth * (high_ - low_), passed = exp(-min(depth, vec4(80.0))), clear = exp(-min(beside, vec4(80.0)));
+  vec4 mean = meanOf(depth + beside, passed * clear), upTo = airDepth * low_, fallen = 1.0 - upTo * (1.0 - 0.5 * upTo);
+  vec4 light = inside * (partBefore(high_, airDepth) - partBefore(low_, airDepth));
+  return passed * behind + light * mean / meanOf(beside, clear) + fallen * mean * (tau * emitted + sunlit * turned);
 }
 
-//@slot targets
-//@slot blend
+// Points of a lattice of Fibonacci's, as many as wanted or a few more: their rows and columns are all different, and no two are near each other.
+void setLattice(float wanted) {
+  int before = 1;
+  lines_ = 1;
+  for (int k = 0; k < 12; ++k) {
+    if (float(lines_) >= wanted) break;
+    int next = lines_ + before;
+    before = lines_;
+    lines_ = next;
+  }
+  turn_ = before;
+}
 
 void main() {
   vec2 corner = gl_FragCoord.xy - 0.5, low = max(fieldRect.xy, corner), high = min(fieldRect.zw, corner + 1.0);
   if (!(high.x > low.x && high.y > low.y)) discard;
   ivec2 tile = (ivec2(gl_FragCoord.xy) - tileGrid.xy) / tileGrid.w;
-  int row = 2 * (tile.y * tileGrid.z + tile.x);
+  int row = 5 * (tile.y * tileGrid.z + tile.x);
   list_ = int(texelFetch(fieldTiles, row).x);
   listed_ = int(texelFetch(fieldTiles, row + 1).x);
   if (listed_ == 0) discard;
+  cuts_ = int(texelFetch(fieldTiles, row + 4).x);
   field_ = Draw(fieldRow0, fieldRow1, fieldRow2, uvec4(0u), vec4(0.0), vec4(fieldFine, 0.0, 0.0, 0.0));
   start_ = -planeOf(field_);  // the camera
-  bool fine = linesApart < 1.0;
-  vec2 size = fine ? high - low : vec2(1.0);
-  // llvmpipe ends all loops of a pixel after 65535 rounds in all (LP_MAX_TGSI_LOOP_ITERATIONS), without a word: fewer lines before that.
-  float rounds = float(listed_ + FIELD_STEPS * (1 + listed_ + GASES * (LEVELS / 4 + 1)) + 1);
-  int most = clamp(int(sqrt(60000.0 / rounds)), 1, MOST_LINES);
-  ivec2 count = fine ? clamp(ivec2(ceil(size / linesApart)), ivec2(1), ivec2(most)) : ivec2(1);
+  float across = uintBitsToFloat(texelFetch(fieldTiles, row + 2).x), perPixel = uintBitsToFloat(texelFetch(fieldTiles, row + 3).x);
+  bool fine = across > 1.0;
+  size_ = fine ? high - low : vec2(1.0);
   from_ = fine ? low : corner;
-  cell_ = size / vec2(count);
-  across_ = count.x;
-  lines_ = count.x * count.y;
-  share_ = cell_.x * cell_.y;
-  outside_ = max(1.0 - size.x * size.y, 0.0);
-  blend();
+  // llvmpipe ends all loops of a pixel after 65535 rounds in all (LP_MAX_TGSI_LOOP_ITERATIONS), without a word: fewer lines before that.
+  float most = clamp(60000.0 / float(listed_ + cuts_ * (1 + listed_) + 1), 1.0, float(MOST_LINES));
+  setLattice(fine ? min(max(perPixel * size_.x * size_.y, 1.5 * across * max(size_.x, size_.y)), most) : 1.0);
+  if (float(lines_) > most && turn_ < lines_) {
+    int fewer = lines_ - turn_;
+    lines_ = turn_;
+    turn_ = fewer;
+  }
+  float share = size_.x * size_.y / float(lines_), outside = max(1.0 - size_.x * size_.y, 0.0);
+//@each t TARGETS
+  vec4 under{t}_ = spectrumBelow{t}(), sum{t} = outside * under{t}_;
+//@end
+  if (fieldRange.y > 0.0) {
+    prepareRay(corner + 0.5);
+    setAir(fieldRange.x, fieldRange.y);
+  }
+  for (int l = 0; l < lines_; ++l) {
+    prepareLine(l);
+//@each t TARGETS
+    vec4 line{t} = under{t}_;
+//@end
+    float to = leave_;
+    for (int k = 0; k < steps_; ++k) {
+      float from = fieldCut((float(steps_) - 1.0 - float(k)) / float(steps_));
+      bool opens = k % together_ == 0, closes = k % together_ == together_ - 1;
+      if (opens && !(fieldRange.y > 0.0)) setAir((planeOf(field_) + (together_ > 1 ? enter_ : from)) * rayLength_, (planeOf(field_) + to) * rayLength_);
+      prepareStep(from, to);
+//@each t TARGETS
+      {
+        vec4 beyond = opens ? before{t}_ + inside{t}_ * partBefore(high_, depth{t}_) : vec4(0.0);
+        vec4 y = stepped(line{t} - beyond, tau{t}_, depth{t}_, inside{t}_, sunlit{t}_, fourOf({t}));
+        line{t} = closes ? y + before{t}_ + inside{t}_ * partBefore(low_, depth{t}_) : y;
+      }
+//@end
+      to = from;
+    }
+//@each t TARGETS
+    sum{t} += share * line{t};
+//@end
+  }
+//@each t TARGETS
+  spectrum{t} = sum{t};
+//@end
 }
