@@ -30,12 +30,11 @@ FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const Sha
     own.constants["LEVEL_FOURS"] = body.tables.levelFours;
     own.constants["FOURS"] = body.tables.fours;
     own.constants["SCATTERS"] = body.tables.scatters ? 1 : 0;
-    own.constants["BLACK_AT"] = body.tables.blackAt;
     own.constants["BLACK_ENTRIES"] = kBlackEntries;
     body.steps = steps[f];
     own.constants["MOST_LINES"] = fieldLinesAtMost(plan.accuracy);
     std::string key = field.source->shader();
-    for (const char* name : {"MIXTURES", "LEVEL_FOURS", "BLACK_AT", "SCATTERS"}) key += " " + std::to_string(own.constants[name]);
+    for (const char* name : {"MIXTURES", "LEVEL_FOURS", "SCATTERS"}) key += " " + std::to_string(own.constants[name]);
     auto [at, isNew] = programs_.try_emplace(key);
     if (isNew)
       at->second = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", own),
@@ -150,7 +149,7 @@ const Program& FieldDraws::use(int field) {
   glUniform2f(program.uniform("fieldRange"), body.range.x, body.range.y);
   glUniform4fv(program.uniform("gasLevels"), static_cast<GLsizei>(body.tables.temperatures.size()), &body.tables.temperatures[0].x);
   glUniform4i(program.uniform("tileGrid"), body.grid.x, body.grid.y, body.grid.z, body.grid.w);
-  glUniform4f(program.uniform("planckRange"), body.tables.firstInverse_K, body.tables.entriesPerInverse, 0.0f, 0.0f);
+  glUniform4f(program.uniform("planckRange"), body.tables.firstInverse_K, body.tables.entriesPerInverse, static_cast<float>(body.tables.blackAt), 0.0f);
   return program;
 }
 

@@ -15,7 +15,7 @@ uniform float fieldFine;
 uniform vec4 fieldRect;    // nothing shows outside: low, high [pixels]
 uniform vec2 fieldRange;   // from the camera to its nearest and farthest [m], where it is so far that the air across it is nearly even; else 0, 0
 uniform ivec4 tileGrid;    // first pixel x, y; tiles across; pixels a side
-uniform vec4 planckRange;  // first 1 / T, entries per unit of it
+uniform vec4 planckRange;  // first 1 / T, entries per unit of it, texel of the first
 uniform vec4 gasLevels[MIXTURES * LEVEL_FOURS];  // temperatures of levels [K], ended by some far above any
 
 /// Air is nearly even on a stretch shorter than this part of the way to it: what its optical depth d there makes of exp(-d) is told by three terms to 2e-4.
@@ -160,7 +160,7 @@ void prepareStep(float from, float to) {
 //@end
   float place = clamp((1.0 / temperature - planckRange.x) * planckRange.y, 0.0, float(BLACK_ENTRIES - 1));
   int entry = min(int(place), BLACK_ENTRIES - 2);
-  black_ = BLACK_AT + entry * FOURS;
+  black_ = int(planckRange.z) + entry * FOURS;
   blackMix_ = place - float(entry);
   low_ = partOf(from);
   high_ = partOf(to);
@@ -234,10 +234,7 @@ void main() {
 //@each t TARGETS
   vec4 under{t}_ = spectrumBelow{t}(), sum{t} = outside * under{t}_;
 //@end
-  if (fieldRange.y > 0.0) {
-    prepareRay(corner + 0.5);
-    setAir(fieldRange.x, fieldRange.y);
-  }
+  bool once = fieldRange.y > 0.0, hasAir = false;
   for (int l = 0; l < lines_; ++l) {
     prepareLine(l);
 //@each t TARGETS
@@ -247,7 +244,11 @@ void main() {
     for (int k = 0; k < steps_; ++k) {
       float from = fieldCut((float(steps_) - 1.0 - float(k)) / float(steps_));
       bool opens = k % together_ == 0, closes = k % together_ == together_ - 1;
-      if (opens && !(fieldRange.y > 0.0)) setAir((planeOf(field_) + (together_ > 1 ? enter_ : from)) * rayLength_, (planeOf(field_) + to) * rayLength_);
+      if (opens && !hasAir) {
+        float toIt = planeOf(field_);
+        setAir(once ? fieldRange.x : (toIt + (together_ > 1 ? enter_ : from)) * rayLength_, once ? fieldRange.y : (toIt + to) * rayLength_);
+        hasAir = once;
+      }
       prepareStep(from, to);
 //@each t TARGETS
       {
