@@ -31,8 +31,8 @@ const std::array<EnginePreset, 7> kPresets{{
     {.name = "turbofan_military",
      .description = "Low-bypass fighter turbofan without afterburner, 49 kN",
      .source = "General Electric F404-GE-402 data sheet: 11,000 lbf, 0.81 lb/(lbf h), 146 lb/s of air. Soot 0.1 g/kg, CO 1 g/kg of fuel: chosen, soot within "
-               "0.03-0.72 g/kg (Mazaheri, Johnson and Morawska, Environ. Sci. Technol. 43 (2009) 441). Efficiency: Mattingly, Elements of Gas Turbine "
-               "Propulsion (1996), table 6-2. Idle: chosen",
+               "the 0.03-0.72 g/kg of all particles (PM2.5) behind airliners (Mazaheri, Johnson and Morawska, Environ. Sci. Technol. 43 (2009) 441). "
+               "Efficiency: Mattingly, Elements of Gas Turbine Propulsion (1996), table 6-2. Idle: chosen",
      .thrust_N = 11000.0 * kPoundForce_N,
      .airFlow_kg_s = 146.0 * kPound_kg,
      .fuelFlow_kg_s = fuel_kg_s(0.81, 11000.0),

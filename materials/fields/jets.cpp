@@ -14,6 +14,7 @@
 namespace pitviper {
 namespace physics {
 #define PHYSICS inline
+#include "materials/fields/glsl/cuts.glsl"
 #include "materials/fields/glsl/jet.glsl"
 #undef PHYSICS
 

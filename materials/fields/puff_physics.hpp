@@ -4,6 +4,7 @@
 
 namespace pitviper::physics {
 #define PHYSICS inline
+#include "materials/fields/glsl/cuts.glsl"
 #include "materials/fields/glsl/puff.glsl"
 #undef PHYSICS
 }  // namespace pitviper::physics

@@ -24,6 +24,26 @@ bool passes(const Puff& p, const glm::dvec3& origin, const glm::dvec3& direction
   return glm::dot(to, to) - along * along < reach * reach;
 }
 
+/// Where steps along a line end: finer near the first puff, the youngest and smallest of a trail. As its shader has it.
+class PuffCuts {
+ public:
+  PuffCuts(const Puff& head, const FieldLine& line, double enter_m, double leave_m) : enter_m_(enter_m), leave_m_(leave_m) {
+    const glm::dvec3 to = head.centre - line.origin;
+    const double nearest = glm::dot(to, line.direction);
+    scale_ = {nearest, 1.0 / std::sqrt(std::max(glm::dot(to, to) - nearest * nearest, 0.0) + head.radius_m * head.radius_m)};
+    ends_ = {physics::cutSigma(enter_m, scale_), physics::cutSigma(leave_m, scale_)};
+  }
+  double at(double part) const {
+    if (part <= 0.0) return enter_m_;
+    if (part >= 1.0) return leave_m_;
+    return std::clamp(physics::cutPlace(ends_.x + (ends_.y - ends_.x) * part, scale_), enter_m_, leave_m_);
+  }
+
+ private:
+  double enter_m_, leave_m_;
+  glm::dvec2 scale_{0.0}, ends_{0.0};
+};
+
 }  // namespace
 
 double puffColumn(const Puff& p, const glm::dvec3& origin, const glm::dvec3& direction, double from_m, double to_m) {
@@ -84,10 +104,11 @@ void PuffsState::along(const FieldLine& line, int steps, std::vector<FieldStep>&
   }
   if (met.empty() || steps < 1) return;
   const int count = static_cast<int>(std::clamp(std::ceil((leave - enter) / (0.25 * finest_m)), 1.0, static_cast<double>(steps)));
+  const PuffCuts cuts(puffs_.front(), line, enter, leave);
   for (int k = 0; k < count; ++k) {
     FieldStep step;
-    step.enter_m = enter + (leave - enter) * k / count;
-    step.leave_m = k + 1 == count ? leave : enter + (leave - enter) * (k + 1) / count;
+    step.enter_m = cuts.at(static_cast<double>(k) / count);
+    step.leave_m = cuts.at((k + 1.0) / count);
     double weight = 0.0, heat = 0.0, gained = 0.0, lit = 0.0, shade = 0.0;
     for (const Met& m : met) {
       const Puff& p = *m.puff;

@@ -237,8 +237,12 @@ class Sorter {
     if (shared.empty()) return;
     const auto depths = depthsOf(prints_[i], prints_[j], shared);
     if (!depths) return;
-    crossing_ += pass(prints_[i], prints_[j], shared);
-    const double a = 0.5 * (depths->a.x + depths->a.y), b = 0.5 * (depths->b.x + depths->b.y);
+    const bool crosses = pass(prints_[i], prints_[j], shared);
+    crossing_ += crosses;
+    // Of fields in each other what is brightest or thickest is about their origins: a nozzle, the newest of a trail.
+    const LayerPiece &one = pieces_[prints_[i].piece], &other = pieces_[prints_[j].piece];
+    const bool byOrigin = crosses && one.field >= 0 && other.field >= 0;
+    const double a = byOrigin ? -one.origin.z : 0.5 * (depths->a.x + depths->a.y), b = byOrigin ? -other.origin.z : 0.5 * (depths->b.x + depths->b.y);
     // Rounding does not decide: what is equally deep is drawn in the order given.
     const bool equal = std::abs(a - b) <= 1e-13 * std::max(a, b);
     const bool first = equal ? prints_[i].piece < prints_[j].piece : a > b;

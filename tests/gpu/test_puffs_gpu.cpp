@@ -65,6 +65,7 @@ void main() {
     leave_ = max(leave_, chord.y);
   }
   if (first < 0) { c = vec4(0.0); return; }
+  fieldLine(first, 3);
   float from = fieldCut(step_ / 3.0), to = fieldCut((step_ + 1.0) / 3.0);
   for (int e = 0; e < int(elements); ++e) fieldAdd(4 * e, from, to);
   c = what < 0.5 ? amountLow_ : vec4(heat_ / 1000.0, gained_, lit_, shade_);
@@ -93,14 +94,12 @@ void main() {
           const glm::dvec3 q(-10.0, (x + 0.5 - 32.0) / 6.0, (y + 0.5 - 32.0) / 6.0), d(2.0, 0.01 * (y + 0.5 - 32.0), 0.01 * (x + 0.5 - 32.0));
           const glm::dvec3 direction = glm::normalize(d);
           // Its parts are of the union of chords too; none is left out here, all being much longer than the puffs are fine.
-          double enter = 1e30, leave = -1e30;
           std::vector<FieldStep> all;
-          state.along({q + state.origin, direction, -1e3, 1e3}, 1, all);
+          state.along({q + state.origin, direction, -1e3, 1e3}, 3, all);
           std::array<double, 4> want{};
           if (!all.empty()) {
-            enter = all.front().enter_m;
-            leave = all.front().leave_m;
-            const double from = enter + (leave - enter) * step / 3.0, to = enter + (leave - enter) * (step + 1) / 3.0;
+            ASSERT_EQ(all.size(), 3u);
+            const double from = all[static_cast<std::size_t>(step)].enter_m, to = all[static_cast<std::size_t>(step)].leave_m;
             for (const Puff& p : puffs) {
               const double column = puffColumn(p, q + state.origin, direction, from, to),
                            weight = column * (p.amount[0] + p.amount[1] + p.amount[2] + p.amount[3]);

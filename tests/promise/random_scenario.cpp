@@ -74,12 +74,17 @@ double binsBetween(double low_um, double high_um) {
 class Composer {
  public:
   explicit Composer(const ScenarioDraw& draw)
-      : draw_(draw), dice_(draw.seed, static_cast<std::uint64_t>(draw.attempt)), more_(draw.seed, 1000 + static_cast<std::uint64_t>(draw.attempt)) {}
+      : draw_(draw),
+        dice_(draw.seed, static_cast<std::uint64_t>(draw.attempt)),
+        more_(draw.seed, 1000 + static_cast<std::uint64_t>(draw.attempt)),
+        field_(draw.seed, 2000 + static_cast<std::uint64_t>(draw.attempt)) {}
 
   std::string compose() {
     placeEye();
+    kind_ = static_cast<Kind>(field_.weighted({0.65, 0.2, 0.08, 0.07}));
+    if (kind_ != Kind::None) draw_.mostWavelengths = std::min(draw_.mostWavelengths, kWithFields), frames_ = std::min(frames_, 2);
     const std::string air = atmosphere(), light = lightFromAbove(), ground = ground_ ? groundPlate() : "", bodies = cluster(), things = row(),
-                      lamps = lampsNearby(), eye = camera();
+                      lamps = lampsNearby(), field = fields(), eye = camera();
     Text all;
     all << "name: promise_" << draw_.seed << "\nseed: " << draw_.seed << "\ntime: {rate: 1 Hz, frames: " << frames_ << "}\n";
     if (dice_.chance(0.2)) all << (dice_.chance(0.5) ? "render: {shadows: false}\n" : "render: {mode: buffered}\n");
@@ -87,6 +92,7 @@ class Composer {
     if (!materials_.empty()) all << "materials:\n" << materials_;
     all << "entities:\n" << ground << bodies << things;
     if (!lamps.empty()) all << "lights:\n" << lamps;
+    all << field;
     return all << eye;
   }
 
@@ -361,6 +367,7 @@ class Composer {
   std::string row() {
     Text out;
     const int count = dice_.weighted({0.25, 0.25, 0.2, 0.15, 0.15});
+    hasRow_ = count > 0;
     first_m_ = 0.03 * range_m_;
     const double last_m = range_m_ - 2.5 * size_m_, slot_m = (last_m - first_m_) / std::max(count, 1);
     for (int k = 0; k < count; ++k) {
@@ -412,6 +419,139 @@ class Composer {
     return out;
   }
 
+  /// On the film, across the line of sight [m].
+  double acrossFilm_m(double distance_m) const { return distance_m * 2.0 * std::tan(0.5 * field_rad_); }
+  /// Near the line of sight, above ground.
+  Place inView(double distance_m, double share, double lowest_m) {
+    const Place on = along(distance_m);
+    const double off_m = share * acrossFilm_m(distance_m);
+    return {on.x + field_.between(-off_m, off_m), on.y, std::max(on.z + field_.between(-off_m, off_m), lowest_m)};
+  }
+
+  /// Exhaust, a trail or flares, of their own dice: other scenes stay as they were. One a scene, and behind what stands in a row: a picture blends a field as
+  /// a whole, before or behind what passes through it.
+  std::string fields() {
+    switch (kind_) {
+      case Kind::Plume:
+        return plume();
+      case Kind::Smoke:
+        return smoke();
+      case Kind::Flare:
+        return flare();
+      default:
+        return "";
+    }
+  }
+
+  std::string species() {
+    Text out;
+    out << "{co2: " << field_.between(0.01, 0.15) << ", h2o: " << field_.between(0.01, 0.3);
+    if (field_.chance(0.3)) out << ", co: " << field_.between(0.0, 0.3);
+    if (field_.chance(0.4)) out << ", soot: " << field_.byFactor(1e-7, 1e-3);
+    if (field_.chance(0.15)) out << ", alumina: " << field_.between(0.0, 0.4);
+    return out << "}";
+  }
+
+  /// Nozzles of a fifth of a pixel to ten pixels.
+  std::string plume() {
+    constexpr const char* kEngines[] = {"turbofan_military", "turbofan_afterburner", "small_turbojet",   "turboshaft",
+                                        "aluminised_motor",  "reduced_smoke_motor",  "double_base_motor"};
+    constexpr double kEngine_m = 0.5;  // about, of all of them
+    const bool onBody = field_.chance(0.4), looksDown = ground_ && rise_ < -0.02;
+    // The finer a jet is, the more lines the reference looks along in each of its pixels: it covers fewer of them.
+    const double nozzles_px = field_.byFactor(0.2, 10.0), length_px = field_.byFactor(2.0, 4.0 + 12.0 * nozzles_px);
+    double distance_m = range_m_ * (hasRow_ ? field_.between(1.0, 1.3) : field_.between(0.6, 1.3)),
+           diameter_m = nozzles_px * acrossFilm_m(distance_m) / kFilm_px;
+    if (onBody) distance_m = range_m_, diameter_m = nozzles_px * fieldAtTarget_m_ / kFilm_px;
+    // An engine has its size: where it may stand anywhere, its distance is chosen instead.
+    const bool engine = field_.chance(0.6) && (onBody ? diameter_m > 0.2 && diameter_m < 2.0 : !looksDown || diameter_m > 0.5);
+    if (engine) {
+      diameter_m = kEngine_m;
+      if (!onBody && !looksDown) distance_m = kEngine_m / nozzles_px * kFilm_px / (2.0 * std::tan(0.5 * field_rad_));
+    }
+    diameter_m = std::clamp(diameter_m, 0.002, 50.0);
+    double length_m = std::clamp(length_px * acrossFilm_m(distance_m) / kFilm_px, 3.0 * diameter_m, 200.0 * diameter_m);
+    Text out;
+    out << "plumes:\n  - {name: p, ";
+    const Place aside{0.0, 0.0, 2.0 * diameter_m};
+    const bool pair = field_.chance(0.25);
+    Place at, way;
+    if (onBody) {
+      if (hasRow_) length_m = std::min(length_m, 1.5 * size_m_);
+      at = {-0.3 * size_m_, 0.0, 0.0};
+      way = {-1.0, field_.between(-0.3, 0.3), field_.between(-0.3, 0.3)};
+      out << "on: b0";
+    } else {
+      if (hasRow_) distance_m = std::max(distance_m, range_m_ + 0.4 * length_m - 1.5 * size_m_);
+      way = {field_.between(-1.0, 1.0), field_.between(hasRow_ ? 0.0 : -1.0, 1.0), field_.between(-0.5, 0.5)};
+      if (hasRow_) way.x = std::copysign(1.0, way.x), way.y *= 0.3;
+      at = inView(distance_m, 0.25, ground_ ? diameter_m : -1e9);
+      const double back_m = 0.3 * length_m / std::max(std::hypot(std::hypot(way.x, way.y), way.z), 1e-3);
+      at = {at.x - back_m * way.x, at.y - back_m * way.y, std::max(at.z - back_m * way.z, ground_ ? diameter_m : -1e9)};
+      if (hasRow_) at.y = std::max(at.y, along(distance_m).y);
+    }
+    if (pair) out << (onBody ? ", " : "") << "nozzles: [" << at << ", " << Place{at.x + aside.x, at.y + aside.y, at.z + aside.z} << "]";
+    else out << (onBody ? ", " : "") << "position: " << at;
+    out << ", direction: [" << way.x << ", " << way.y << ", " << way.z << "], ";
+    if (engine) out << "engine: " << field_.of(kEngines) << ", begin: -1 s";
+    else
+      out << "nozzle: {diameter: " << diameter_m << " m, temperature: " << field_.between(400.0, 2800.0) << " K, speed: " << field_.byFactor(20.0, 2500.0)
+          << " m/s, species: " << species() << "}";
+    if (nozzles_px < 1.0 || field_.chance(0.7)) out << ", length: " << std::max(length_m, 0.02) << " m";
+    if (field_.chance(0.2)) out << ", throttle: " << field_.between(0.1, 1.0);
+    else if (field_.chance(0.2)) out << ", throttle: [[0 s, " << field_.between(0.2, 1.0) << "], [2 s, " << field_.between(0.2, 1.0) << "]]";
+    out << "}\n";
+    if (field_.chance(0.3)) out << wind(field_.between(0.0, 360.0));
+    return out;
+  }
+
+  std::string wind(double from_deg) {
+    Text out;
+    return out << "wind: {speed: " << field_.byFactor(1.0, 15.0) << " m/s, direction: " << from_deg << " deg}\n";
+  }
+
+  /// Drifting with the wind, or blown out, over a part of the film.
+  std::string smoke() {
+    constexpr const char* kSmokes[] = {"white_phosphorus", "fog_oil", "mtv", "alumina", "soot"};
+    double distance_m = range_m_ * field_.between(hasRow_ ? 1.0 : 0.6, 1.5);
+    const double length_m = acrossFilm_m(distance_m) * field_.byFactor(0.15, 1.5), speed_m_s = field_.byFactor(1.0, 15.0);
+    const double lasts_s = std::clamp(length_m / speed_m_s, 0.2, 100.0), radius_m = std::clamp(length_m * field_.byFactor(0.01, 0.15), 0.005, 100.0);
+    if (hasRow_) distance_m = std::max(distance_m, range_m_ + 0.5 * length_m - size_m_);
+    const double east = field_.chance(0.5) ? 1.0 : -1.0;
+    Place at = inView(distance_m, 0.2, ground_ ? radius_m : -1e9);
+    at.x -= 0.5 * east * std::min(length_m, speed_m_s * lasts_s);
+    Text out;
+    out << "wind: {speed: " << speed_m_s << " m/s, direction: " << (east > 0.0 ? 270.0 : 90.0) + field_.between(-20.0, 20.0) << " deg}\n";
+    out << "smokes:\n  - {name: s, ";
+    if (field_.chance(0.75)) out << "smoke: " << field_.of(kSmokes);
+    else out << "extinction: " << field_.byFactor(50.0, 2000.0) << " m2/kg, albedo: " << field_.unit() << ", asymmetry: " << field_.between(-0.3, 0.9);
+    // An optical depth of 0.1 to 30 where a kilogram hides 1000 m2.
+    out << ", position: " << at << ", rate: " << field_.byFactor(0.1, 30.0) * speed_m_s * 2.0 * radius_m / 1000.0 << " kg/s, begin: " << -lasts_s
+        << " s, radius: " << radius_m << " m, lifetime: " << std::max(lasts_s * field_.between(0.5, 3.0), 0.2) << " s, puffs: " << 8 + field_.below(150);
+    if (field_.chance(0.5)) out << ", temperature: " << field_.byFactor(300.0, 1500.0) << " K";
+    if (field_.chance(0.4)) out << ", dissipation: " << field_.byFactor(1e-5, 1e-2) << " m2/s3, diffusivity: " << field_.byFactor(0.1, 10.0) << " m2/s";
+    if (field_.chance(0.4))
+      out << ", velocity: [" << east * field_.between(0.0, speed_m_s) << " m/s, 0 m/s, " << field_.between(0.0, 0.3 * speed_m_s) << " m/s]";
+    return out << "}\n";
+  }
+
+  std::string flare() {
+    constexpr const char* kTypes[] = {"mtv", "spectrally_matched", "pyrophoric"};
+    // They are 0.2 m across, drawn out to some metres, and fly 30 m in a second.
+    double distance_m = field_.byFactor(5.0, 300.0) / (2.0 * std::tan(0.5 * field_rad_));
+    if (ground_ && rise_ < -0.02) distance_m = std::min(distance_m, range_m_);
+    if (hasRow_) distance_m = std::max(distance_m, range_m_ + 20.0);
+    const Place at = inView(distance_m, 0.2, ground_ ? 1.0 : -1e9);
+    Text out;
+    out << "flares:\n  - {name: f, type: " << field_.of(kTypes) << ", time: " << (frames_ > 1 ? field_.between(-1.0, 1.0) : field_.between(-1.0, -0.1))
+        << " s, position: " << at << ", direction: [" << field_.between(-1.0, 1.0) << ", " << field_.between(hasRow_ ? 0.0 : -1.0, 1.0) << ", "
+        << field_.between(0.1, 1.0) << "], speed: " << std::min(0.3 * acrossFilm_m(distance_m), 40.0) << " m/s";
+    if (field_.chance(0.3)) out << ", smoke: " << (field_.chance(0.7) ? "false" : "soot");
+    if (field_.chance(0.3)) out << ", sequence: {count: 2, interval: 0.3 s}";
+    if (field_.chance(0.3)) out << ", light: false";
+    return out << "}\n";
+  }
+
   std::string response(int wavelengths) {
     Text out;
     if (dice_.chance(0.1) && wavelengths >= kLibraryResponse) return dice_.of(kResponses);
@@ -437,8 +577,8 @@ class Composer {
     // Of its own dice: other scenes stay as they were. Its base looks north, where the target about is.
     if (RandomDice(draw_.seed ^ 0x67696d62616cu).chance(0.15)) {
       const double level = std::atan2(target_.z - eye_.z, std::hypot(target_.x - eye_.x, target_.y - eye_.y)) / kDegree;
-      out << "    heading: 0 deg\n    gimbal: {driver: truth, lag: 50 ms, azimuth: 40 deg, elevation: [" << std::max(-90.0, level - 12.0) << " deg, " << std::min(90.0, level + 12.0)
-          << " deg]}\n";
+      out << "    heading: 0 deg\n    gimbal: {driver: truth, lag: 50 ms, azimuth: 40 deg, elevation: [" << std::max(-90.0, level - 12.0) << " deg, "
+          << std::min(90.0, level + 12.0) << " deg]}\n";
     }
     out << "    channels:\n";
     const int channels = 1 + dice_.weighted({0.4, 0.4, 0.2});
@@ -451,7 +591,13 @@ class Composer {
   static constexpr int kLibraryResponse = 1400;
   ScenarioDraw draw_;
   RandomDice dice_;
-  RandomDice more_;  ///< of what came later: other scenes stay as they were
+  RandomDice more_;   ///< of what came later: other scenes stay as they were
+  RandomDice field_;  ///< of fields
+  /// Wavelengths of the reference in scenes with fields: each pixel of these is a hundred steps along up to some hundred lines.
+  static constexpr int kWithFields = 40;
+  enum class Kind { None, Plume, Smoke, Flare };
+  Kind kind_ = Kind::None;
+  bool hasRow_ = false;
   double range_m_ = 1.0, field_rad_ = 1.0, size_m_ = 1.0, fieldAtTarget_m_ = 1.0, rise_ = 0.0, first_m_ = 0.0;
   Place eye_, target_;
   bool ground_ = false, layered_ = false, dome_ = false;

@@ -200,7 +200,18 @@ TEST(RandomScenario, IsTheSameForTheSameSeedAndHasAllKinds) {
                            "sandford_robertson",
                            "beard_maxwell",
                            "spectral_phong",
-                           "wind"})
+                           "sea, wind",
+                           "plumes",
+                           "nozzles",
+                           "on: b0",
+                           "turboshaft",
+                           "reduced_smoke_motor",
+                           "alumina: ",
+                           "smokes",
+                           "fog_oil",
+                           "flares",
+                           "pyrophoric",
+                           "sequence"})
     EXPECT_NE(all.find(word), std::string::npos) << word;
 }
 

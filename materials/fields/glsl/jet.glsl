@@ -24,17 +24,3 @@ PHYSICS Real jetTemperature(Vec2 mixture, Vec4 flow, Vec4 heat) {
   Real excess = flow.y * mixture.y;
   return flow.x + (flow.w * mixture.x - excess * (0.5 * excess + flow.z)) / (heat.x + heat.y * mixture.x);
 }
-
-// Steps along a line, as a measure that rises with t: sigma = arsinh((t - nearest)/scale), even where the line passes the nozzle far away and geometric from
-// the nozzle where it runs along the axis. scale: t of the closest approach to the nozzle, 1/scale.
-PHYSICS Real jetSigma(Real t, Vec2 scale) {
-  Real x = (t - scale.x) * scale.y;
-  Real a = log(max(x, -x) + sqrt(x * x + 1.0));
-  return x < 0.0 ? -a : a;
-}
-
-// Its inverse: t.
-PHYSICS Real jetPlace(Real sigma, Vec2 scale) {
-  Real e = exp(sigma);
-  return scale.x + 0.5 * (e - 1.0 / e) / scale.y;
-}

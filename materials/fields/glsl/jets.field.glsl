@@ -8,6 +8,7 @@
 //     then the rows.
 //@use sim/radiometry/glsl/chord.glsl
 //@use materials/fields/glsl/jet.glsl
+//@use materials/fields/glsl/cuts.glsl
 
 // Of the line at hand, in sigma: its ends; where it enters and leaves the uniform cores of two nozzles at most, and how many steps end there. t and scale of
 // sigma; steps.
@@ -66,8 +67,8 @@ void fieldLine(int at, int steps) {
     if (within.y > within.x) cores = jetsCores(cores, Vec2(max(within.x, enter_), min(within.y, leave_)));
   }
   Vec2 scale = high >= low ? Vec2(0.5 * (low + high), 1.0 / max(wide, 0.5 * (high - low))) : Vec2(0.5 * (enter_ + leave_), 1.0 / max(leave_ - enter_, 1.0e-6));
-  jetsEnds_ = Vec2(jetSigma(enter_, scale), jetSigma(leave_, scale));
-  Vec4 k = Vec4(jetSigma(cores.x, scale), jetSigma(cores.y, scale), jetSigma(cores.z, scale), jetSigma(cores.w, scale));
+  jetsEnds_ = Vec2(cutSigma(enter_, scale), cutSigma(leave_, scale));
+  Vec4 k = Vec4(cutSigma(cores.x, scale), cutSigma(cores.y, scale), cutSigma(cores.z, scale), cutSigma(cores.w, scale));
   Real inside = k.y - k.x + k.w - k.z;
   Real outside = jetsEnds_.y - jetsEnds_.x - inside;
   Real inCore = inside > 0.0 ? min(1.0, max(outside / (7.0 * inside), 1.0e-3)) : 1.0;
@@ -113,7 +114,7 @@ Real fieldCut(Real s) {
     k = Vec2(jetsKnots_.w, jetsEnds_.y);
   }
   Real sigma = n.y > n.x ? k.x + (k.y - k.x) * (x - n.x) / (n.y - n.x) : k.y;
-  return min(max(jetPlace(sigma, Vec2(jetsMap_.x, jetsMap_.y)), enter_), leave_);
+  return min(max(cutPlace(sigma, Vec2(jetsMap_.x, jetsMap_.y)), enter_), leave_);
 }
 
 void fieldAdd(int at, Real from, Real to) {
