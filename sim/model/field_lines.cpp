@@ -9,8 +9,8 @@ namespace {
 /// Parts of the finest length that lines lie apart at most. A Gaussian profile sampled every 0.83 sigma is integrated to 1e-12 (Poisson's summation); the
 /// finest length of a puff is 1.66 of its sigma.
 constexpr double kApart = 0.5;
-/// The same for pictures: every 1.33 sigma, 3e-5 of the integral.
-constexpr double kFewApart = 0.8;
+/// The same for pictures: every sigma of a Gaussian, 1e-8 of its integral; what ends, as puffs do, 2e-3 of it.
+constexpr double kFewApart = 0.6;
 /// A rectangle grows by a part of itself and by so many pixels: rounding in single precision.
 constexpr double kMargin = 0.02, kMargin_px = 1e-4;
 

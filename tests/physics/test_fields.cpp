@@ -58,7 +58,6 @@ TEST(Fields, IntensityAtAnyRange) {
         intensity += at(frame.layers.front(), frame, x, y) * sim.cameras[0].pinhole.solidAngle_sr(x, y) * range * range;
     // 2e-5 of optical depth at most: 1 - exp(-d) is within 1e-5 of d.
     const double want = blackBodyBand(3.0, 5.0, kKelvin) * kAbsorption * kAmount;
-
     worst = std::max(worst, std::abs(intensity / want - 1.0));
   }
   bound("intensity of a thin puff of 1.2 m from 100 m to 500 km, worst", worst, 3e-3,

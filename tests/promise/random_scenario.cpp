@@ -452,22 +452,26 @@ class Composer {
     return out << "}";
   }
 
-  /// Nozzles of a fifth of a pixel to ten pixels.
+  /// Nozzles of two fifths of a pixel to ten pixels.
   std::string plume() {
-    constexpr const char* kEngines[] = {"turbofan_military", "turbofan_afterburner", "small_turbojet",   "turboshaft",
-                                        "aluminised_motor",  "reduced_smoke_motor",  "double_base_motor"};
-    constexpr double kEngine_m = 0.5;  // about, of all of them
+    struct Engine {
+      const char* name;
+      double diameter_m;  // of its stream, about
+    };
+    constexpr Engine kEngines[] = {{"turbofan_military", 0.5}, {"turbofan_afterburner", 0.6}, {"small_turbojet", 0.35},   {"turboshaft", 0.5},
+                                   {"aluminised_motor", 0.12}, {"reduced_smoke_motor", 0.12}, {"double_base_motor", 0.12}};
+    const Engine engine = field_.of(kEngines);
     const bool onBody = field_.chance(0.4), looksDown = ground_ && rise_ < -0.02;
     // The finer a jet is, the more lines the reference looks along in each of its pixels: it covers fewer of them.
-    const double nozzles_px = field_.byFactor(0.2, 10.0), length_px = field_.byFactor(2.0, 4.0 + 12.0 * nozzles_px);
+    const double nozzles_px = field_.byFactor(0.4, 10.0), length_px = field_.byFactor(2.0, 4.0 + 12.0 * nozzles_px);
     double distance_m = range_m_ * (hasRow_ ? field_.between(1.0, 1.3) : field_.between(0.6, 1.3)),
            diameter_m = nozzles_px * acrossFilm_m(distance_m) / kFilm_px;
     if (onBody) distance_m = range_m_, diameter_m = nozzles_px * fieldAtTarget_m_ / kFilm_px;
     // An engine has its size: where it may stand anywhere, its distance is chosen instead.
-    const bool engine = field_.chance(0.6) && (onBody ? diameter_m > 0.2 && diameter_m < 2.0 : !looksDown || diameter_m > 0.5);
-    if (engine) {
-      diameter_m = kEngine_m;
-      if (!onBody && !looksDown) distance_m = kEngine_m / nozzles_px * kFilm_px / (2.0 * std::tan(0.5 * field_rad_));
+    const bool byName = field_.chance(0.6) && (onBody || looksDown ? diameter_m < 3.0 * engine.diameter_m && diameter_m > engine.diameter_m / 3.0 : true);
+    if (byName) {
+      diameter_m = engine.diameter_m;
+      if (!onBody && !looksDown) distance_m = diameter_m / nozzles_px * kFilm_px / (2.0 * std::tan(0.5 * field_rad_));
     }
     diameter_m = std::clamp(diameter_m, 0.002, 50.0);
     double length_m = std::clamp(length_px * acrossFilm_m(distance_m) / kFilm_px, 3.0 * diameter_m, 200.0 * diameter_m);
@@ -493,7 +497,7 @@ class Composer {
     if (pair) out << (onBody ? ", " : "") << "nozzles: [" << at << ", " << Place{at.x + aside.x, at.y + aside.y, at.z + aside.z} << "]";
     else out << (onBody ? ", " : "") << "position: " << at;
     out << ", direction: [" << way.x << ", " << way.y << ", " << way.z << "], ";
-    if (engine) out << "engine: " << field_.of(kEngines) << ", begin: -1 s";
+    if (byName) out << "engine: " << engine.name << ", begin: -1 s";
     else
       out << "nozzle: {diameter: " << diameter_m << " m, temperature: " << field_.between(400.0, 2800.0) << " K, speed: " << field_.byFactor(20.0, 2500.0)
           << " m/s, species: " << species() << "}";
@@ -515,7 +519,8 @@ class Composer {
     constexpr const char* kSmokes[] = {"white_phosphorus", "fog_oil", "mtv", "alumina", "soot"};
     double distance_m = range_m_ * field_.between(hasRow_ ? 1.0 : 0.6, 1.5);
     const double length_m = acrossFilm_m(distance_m) * field_.byFactor(0.15, 1.5), speed_m_s = field_.byFactor(1.0, 15.0);
-    const double lasts_s = std::clamp(length_m / speed_m_s, 0.2, 100.0), radius_m = std::clamp(length_m * field_.byFactor(0.01, 0.15), 0.005, 100.0);
+    const double lasts_s = std::clamp(length_m / speed_m_s, 0.2, 100.0), pixel_m = acrossFilm_m(distance_m) / kFilm_px,
+                 radius_m = std::clamp(std::max(length_m * field_.byFactor(0.01, 0.15), 0.3 * pixel_m), 0.005, 100.0);
     if (hasRow_) distance_m = std::max(distance_m, range_m_ + 0.5 * length_m - size_m_);
     const double east = field_.chance(0.5) ? 1.0 : -1.0;
     Place at = inView(distance_m, 0.2, ground_ ? radius_m : -1e9);
