@@ -64,6 +64,7 @@ PuffsState::PuffsState(std::vector<Puff> puffs) : puffs_(std::move(puffs)) {
   high = -low;
   auto numbers = std::make_shared<FieldTexels>();
   finest_m = physics::kFar;
+  alone = 1.33;  // soft: two lines are no better than one
   for (const Puff& p : puffs_) {
     const glm::dvec3 centre = p.centre - origin;
     const double reach = reachOf(p);

@@ -248,7 +248,8 @@ void put(Subpixels& image, const FineSubpixels& fine) {
     return;
   }
   for (const auto& [p, f] : fine)
-    for (size_t s = 0; s < f.sum.size(); ++s) image.add(s, p, (f.sum[s] - f.under[s]) / f.whole);
+    // What is around the bodies sends at least nothing: where a mean is less than what was taken out of it, as beside a steep field.
+    for (size_t s = 0; s < f.sum.size(); ++s) image.add(s, p, std::max(f.sum[s] - f.under[s], f.sum[s] - f.whole * image.slot(s, p)) / f.whole);
 }
 
 bool anyOf(const std::vector<char>& flags) {

@@ -81,6 +81,7 @@ class FieldState {
   glm::dmat3 localFromField{1.0};
   glm::dvec3 low{0.0}, high{0.0};  ///< box in field axes; nothing is outside
   double finest_m = 0.0;           ///< the least of its elements
+  double alone = 1.0;              ///< up to so many lines across a pixel, as its elements ask for, its middle alone is as good
   std::vector<FieldElement> elements;
   std::shared_ptr<const FieldTexels> texels;
   /// Of a unit of what the shader adds up, how much of each gas it is: see FieldSource::mixtures().

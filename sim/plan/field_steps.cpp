@@ -12,7 +12,7 @@
 namespace pitviper {
 namespace {
 
-constexpr std::array kCounts{1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64};
+constexpr std::array kCounts{1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 96};
 constexpr int kMany = 128;
 /// Times and, at each, lines from each eye through each kind of element that are looked at; eyes.
 constexpr int kTimes = 6;

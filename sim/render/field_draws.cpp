@@ -146,6 +146,7 @@ const Program& FieldDraws::use(int field) {
   glUniform1f(program.uniform("fieldFine"), body.fine);
   const glm::vec2 low(body.lines.low), high(body.lines.high);
   glUniform4f(program.uniform("fieldRect"), low.x, low.y, high.x, high.y);
+  glUniform1f(program.uniform("linesAlone"), body.state ? static_cast<float>(body.state->alone) : 1.0f);
   glUniform2f(program.uniform("fieldRange"), body.range.x, body.range.y);
   glUniform4fv(program.uniform("gasLevels"), static_cast<GLsizei>(body.tables.temperatures.size()), &body.tables.temperatures[0].x);
   glUniform4i(program.uniform("tileGrid"), body.grid.x, body.grid.y, body.grid.z, body.grid.w);

@@ -101,6 +101,6 @@ bool FieldTables::mix(const std::array<double, kMostGases>& share) {
   return true;
 }
 
-int fieldLinesAtMost(double accuracy) { return accuracy >= 0.03 ? 55 : 233; }
+int fieldLinesAtMost(double accuracy) { return accuracy >= 0.03 ? 144 : 987; }
 
 }  // namespace pitviper

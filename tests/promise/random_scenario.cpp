@@ -81,7 +81,7 @@ class Composer {
 
   std::string compose() {
     placeEye();
-    kind_ = static_cast<Kind>(field_.weighted({0.65, 0.2, 0.08, 0.07}));
+    if (draw_.fields) kind_ = static_cast<Kind>(field_.weighted({0.65, 0.2, 0.08, 0.07}));
     if (kind_ != Kind::None) draw_.mostWavelengths = std::min(draw_.mostWavelengths, kWithFields), frames_ = std::min(frames_, 2);
     const std::string air = atmosphere(), light = lightFromAbove(), ground = ground_ ? groundPlate() : "", bodies = cluster(), things = row(),
                       lamps = lampsNearby(), field = fields(), eye = camera();

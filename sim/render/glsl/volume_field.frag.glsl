@@ -14,6 +14,7 @@ uniform vec4 fieldRow2;
 uniform float fieldFine;
 uniform vec4 fieldRect;    // nothing shows outside: low, high [pixels]
 uniform vec2 fieldRange;   // from the camera to its nearest and farthest [m], where it is so far that the air across it is nearly even; else 0, 0
+uniform float linesAlone;  // up to so many lines across a pixel its middle alone is as good
 uniform ivec4 tileGrid;    // first pixel x, y; tiles across; pixels a side
 uniform vec4 planckRange;  // first 1 / T, entries per unit of it, texel of the first
 uniform vec4 gasLevels[MIXTURES * LEVEL_FOURS];  // temperatures of levels [K], ended by some far above any
@@ -198,7 +199,7 @@ vec4 stepped(vec4 behind, vec4 tau, vec4 airDepth, vec4 inside, vec4 sunlit, int
 void setLattice(float wanted) {
   int before = 1;
   lines_ = 1;
-  for (int k = 0; k < 12; ++k) {
+  for (int k = 0; k < 15; ++k) {
     if (float(lines_) >= wanted) break;
     int next = lines_ + before;
     before = lines_;
@@ -219,7 +220,7 @@ void main() {
   field_ = Draw(fieldRow0, fieldRow1, fieldRow2, uvec4(0u), vec4(0.0), vec4(fieldFine, 0.0, 0.0, 0.0));
   start_ = -planeOf(field_);  // the camera
   float across = uintBitsToFloat(texelFetch(fieldTiles, row + 2).x), perPixel = uintBitsToFloat(texelFetch(fieldTiles, row + 3).x);
-  bool fine = across > 1.0;
+  bool fine = across > linesAlone;
   size_ = fine ? high - low : vec2(1.0);
   from_ = fine ? low : corner;
   // llvmpipe ends all loops of a pixel after 65535 rounds in all (LP_MAX_TGSI_LOOP_ITERATIONS), without a word: fewer lines before that.
