@@ -42,7 +42,7 @@ constexpr double kOutside = 2.63;             // exp(-2.63^2) = 0.001
 constexpr double kFadedFrom = 0.8;            // of the length
 constexpr double kFinest = 1.0 / 3.0;         // of a nozzle's radius: lines so far apart see a top hat's width to some percent, and its sum well
 constexpr double kFinestOfWidth = 0.5;        // of a Gaussian's width: what is hot of it is narrower than its gas
-constexpr int kPieces = kFieldKinds;                    // of a jet, ever longer: lines lie closer together in those that are finer
+constexpr int kPieces = kFieldKinds;          // of a jet, ever longer: lines lie closer together in those that are finer
 constexpr double kAlong = 0.3;                // of the way from the nozzle: over that it changes along itself
 constexpr int kLooks = 64;
 constexpr int kCones = 4;              // jets.field.glsl

@@ -53,13 +53,14 @@ struct Share {
   std::vector<double> under;     ///< what the image has there, sampled as finely; empty: its mean over the subpixel
   Moments placed{};              ///< of those that count, by their solid angle
   std::vector<Moments> moments;  ///< by slot, by what they send; empty where no points are kept
-  double shown = 0.0;  ///< of those whose surface is a small body's
-  size_t sample = 0;   ///< one of them
+  double shown = 0.0;            ///< of those whose surface is a small body's
+  size_t sample = 0;             ///< one of them
   double cosPsi = 1.0;
 };
 using Shares = std::map<size_t, Share>;
 
-/// Calls visit(zoomed pixel, subpixel, projected solid angle, cosine to the image's axis, place from the subpixel's middle) for each zoomed sample that falls into the image.
+/// Calls visit(zoomed pixel, subpixel, projected solid angle, cosine to the image's axis, place from the subpixel's middle) for each zoomed sample that falls
+/// into the image.
 template <class Visit>
 void eachSample(const Subpixels& image, const View& z, const Visit& visit) {
   const View& v = image.view();
@@ -189,7 +190,7 @@ struct Fine {
   double whole = 0.0;    ///< of the subpixel
   std::vector<double> sum;
   std::vector<double> under;  ///< what the image has where they are
-  Moments placed{};  ///< as of Share
+  Moments placed{};           ///< as of Share
   std::vector<Moments> moments;
 };
 using FineSubpixels = std::map<size_t, Fine>;
@@ -358,7 +359,10 @@ class MixedBodies {
         under = pass.finishReadback();
       }
       const auto colourOf = [&](size_t q) { return whole_[i] && colour[q] != kNone && hasOwnView(zoomed.entity[colour[q]]) ? kNone : colour[q]; };
-      gather(image, z, zoomed, sharesOf(image, z, zoomed, colourOf, [&](int e) { return isOne(e); }, under ? &*under : nullptr), fine);
+      gather(image, z, zoomed,
+             sharesOf(
+                 image, z, zoomed, colourOf, [&](int e) { return isOne(e); }, under ? &*under : nullptr),
+             fine);
     }
   }
 

@@ -61,10 +61,10 @@ struct FieldStep {
 struct FieldElement {
   glm::dvec3 centre{0.0};
   double radius_m = 0.0;
-  int texel = 0;                ///< of several neighbours it may be the same
-  double finest_m = 0.0;        ///< the least length over which it changes across a line: pixels wider than this look at it along several lines
-  int kind = 0;                 ///< below kFieldKinds: those alike in how many steps lines through them need
-  glm::dvec3 drawnOut_m{0.0};   ///< its axis, as long as that over which it changes along it; 0: the same all around
+  int texel = 0;               ///< of several neighbours it may be the same
+  double finest_m = 0.0;       ///< the least length over which it changes across a line: pixels wider than this look at it along several lines
+  int kind = 0;                ///< below kFieldKinds: those alike in how many steps lines through them need
+  glm::dvec3 drawnOut_m{0.0};  ///< its axis, as long as that over which it changes along it; 0: the same all around
 };
 
 /// Numbers that a field's shader reads; immutable, so that the same pointer is the same content.

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/radiometry/constants.hpp"
 #include "sim/radiance/node_surroundings.hpp"
+#include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {

@@ -118,11 +118,11 @@ class NodeSum final : public TermSink {
   std::vector<double> panes_, mediaDepth_;  ///< on the way so far
   At near_, far_;
   std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_;
-  double hazePhaseOf_ = 2.0;              ///< cosine that hazePhase_ is for
-  double turnedAt_ = 2.0;                  ///< cosine that turnedOf_ is for
+  double hazePhaseOf_ = 2.0;                     ///< cosine that hazePhase_ is for
+  double turnedAt_ = 2.0;                        ///< cosine that turnedOf_ is for
   std::map<int, std::vector<double>> turnedOf_;  ///< of each material
-  const AirPlace* sunKnownAt_ = nullptr;  ///< near_ has the way on to the sun from there
-  const AirPlace* here_ = nullptr;        ///< the place reached: near_ is its
+  const AirPlace* sunKnownAt_ = nullptr;         ///< near_ has the way on to the sun from there
+  const AirPlace* here_ = nullptr;               ///< the place reached: near_ is its
   std::map<Factor, std::vector<double>> kept_;
 };
 

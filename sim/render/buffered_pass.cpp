@@ -85,7 +85,8 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
     batch.weights.upload(weights);
     batches_.push_back(std::move(batch));
   }
-  if (plan.terms.layer.any || plan.terms.media || plan.terms.fields) layers_ = std::make_unique<LayerPass>(simulation, plan, tables(), sharedScene(), library, slots, targets_);
+  if (plan.terms.layer.any || plan.terms.media || plan.terms.fields)
+    layers_ = std::make_unique<LayerPass>(simulation, plan, tables(), sharedScene(), library, slots, targets_);
   if (!truth) return;
   slots.files["truth"] = "sim/render/glsl/truth_layers.glsl";
   slots.generated["targets"] = "void clearTargets() {}\n";
@@ -166,7 +167,11 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
       }
       const TimedPart part("transparent");
       spectrum.shareDepth(visibility);
-      layers_->blend({.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode, .view = view(), .covered = covered_ ? &pixelClasses() : nullptr});
+      layers_->blend({.spectrum = spectrum,
+                      .visibility = visibility,
+                      .firstNode = batches_[b].firstNode,
+                      .view = view(),
+                      .covered = covered_ ? &pixelClasses() : nullptr});
       bindBuffers();
       visibility.colour(0).bind(0);
     }

@@ -42,9 +42,8 @@ struct LayerOrder : OrderFaults {
 
 /// Pieces that overlap in the picture are compared where they overlap (in double precision): right for all pieces that don't pass through
 /// each other, whatever their sizes. Of two that do, one is drawn before the other as a whole. A medium counts at the middle of its way on a line
-/// of sight that meets both, so that what stands inside it is in front of it or behind it as a whole; a meshed one stands for its box. Two fields that pass through each other
-/// are as far as their origins. Equally far: in the
-/// order given.
+/// of sight that meets both, so that what stands inside it is in front of it or behind it as a whole; a meshed one stands for its box. Two fields that pass
+/// through each other are as far as their origins. Equally far: in the order given.
 LayerOrder orderLayers(const View& view, const std::vector<LayerPiece>& pieces);
 
 }  // namespace pitviper

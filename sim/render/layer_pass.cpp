@@ -217,7 +217,8 @@ void LayerPass::blend(const Over& over) {
   if (fields_ && over.firstNode == 0) fields_->look(over.view);
   for (const Run& run : runs_) {
     const LayerPiece& first = pieces_[order_.pieces[run.first]];
-    if (run.medium && first.field < 0 && first.group < 0 && simulation_.entities[static_cast<size_t>(tables_.draws[first.draw].entity)].form.kind == BodyForm::Kind::Mesh)
+    if (run.medium && first.field < 0 && first.group < 0 &&
+        simulation_.entities[static_cast<size_t>(tables_.draws[first.draw].entity)].form.kind == BodyForm::Kind::Mesh)
       drawThickness(first, over);
     const BlendPath path = run.medium ? fewPath_ : surfacePath_;
     RenderTarget* copy = path == BlendPath::PingPong ? &sizedLike(copies_, over.spectrum, over.spectrum.colourCount()) : nullptr;

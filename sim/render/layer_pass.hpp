@@ -39,7 +39,7 @@ class LayerPass {
     RenderTarget& spectrum;          ///< with the visibility pass' depth attached
     const RenderTarget& visibility;  ///< identity and depth of the solid scene
     int firstNode = 0;
-    const View& view;  ///< that it is a picture of
+    const View& view;                       ///< that it is a picture of
     const PixelClasses* covered = nullptr;  ///< what they leave out has the nearest depth of all, and nothing is to be drawn over it
   };
   /// Draws, view, lights and nodes are bound; changes the bound surface tables and the blend, cull and depth state's settings.

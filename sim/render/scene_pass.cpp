@@ -252,7 +252,8 @@ void ScenePass::findClassesIn(const View& v, const WorldState& state, const std:
     const auto e = static_cast<size_t>(d.entity);
     const Pose& pose = state.entities[e];
     const Entity& entity = simulation_.entities[e];
-    if (drawn[e] && state.isThere(e) && mayShow(v, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m)) add(sunAlone_[e] != 0);
+    if (drawn[e] && state.isThere(e) && mayShow(v, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m))
+      add(sunAlone_[e] != 0);
   }
 }
 
@@ -280,7 +281,8 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   // What is averaged already bends as little as what is behind it.
   const RenderTarget* before = withoutTransparent();
   const bool averaged = before && transparentIsAveraged();
-  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_->smoothness(), averaged ? *before : pixels.shading, averaged ? nullptr : before, v.grouped);
+  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_->smoothness(), averaged ? *before : pixels.shading, averaged ? nullptr : before,
+                     v.grouped);
   if (v.subpixels != v.grouped) shared_->spread(pixels.shading, current_->shading, v.grouped, glm::ivec4(0));
   else if (v.kept.z > 0) shared_->spread(pixels.shading, current_->shading, v.grouped, v.kept);
   wholePixels_ = false;

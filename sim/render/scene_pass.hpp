@@ -144,14 +144,14 @@ class ScenePass {
   SolidPass solids_;
   LightRelevance relevance_;
   std::optional<SurroundingsBuffer> around_;  ///< where ambient light has directions
-  std::unique_ptr<AirOnGpu> air_;  ///< null: none, or not on the GPU
+  std::unique_ptr<AirOnGpu> air_;             ///< null: none, or not on the GPU
   Shading how_;
   std::unique_ptr<ShadowPass> shadows_;  ///< where the plan has them
   Buffer nodes_, draws_, lights_, view_, pixelView_, tileViews_, tileDraws_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;
   bool partial_ = false, warm_ = false;
-  bool wholePixels_ = false;                ///< pixels are shaded, not their subpixels
+  bool wholePixels_ = false;  ///< pixels are shaded, not their subpixels
   View shadedView_;
   std::optional<ResolvePass> resolve_;      ///< made when first needed
   const RenderTarget* truthOf_ = nullptr;   ///< where truth is by itself

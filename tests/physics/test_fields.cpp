@@ -17,13 +17,17 @@ namespace {
 std::string looking(double range_m, double field_deg, int pixels, const std::string& more = "") {
   return R"(
 time: {frames: 1, rate: 1 Hz}
-)" + more + R"(
+)" + more +
+         R"(
 cameras:
   - name: c
-    film: {width: )" + std::to_string(pixels) + ", height: " + std::to_string(pixels) + R"(}
-    field_of_view: )" + std::to_string(field_deg) + R"( deg
+    film: {width: )" +
+         std::to_string(pixels) + ", height: " + std::to_string(pixels) + R"(}
+    field_of_view: )" +
+         std::to_string(field_deg) + R"( deg
     aperture: 10 mm
-    position: [)" + std::to_string(-range_m) + R"( m, 0 m, 2000 m]
+    position: [)" +
+         std::to_string(-range_m) + R"( m, 0 m, 2000 m]
     heading: 90 deg
     channels: [{name: mw, response: {band: [3 um, 5 um]}}]
 )";
@@ -41,7 +45,8 @@ TEST(Fields, ThroughTheMiddleOfAPuff) {
     const double want = blackBodyBand(3.0, 5.0, kKelvin) * -std::expm1(-depth);
     worst = std::max(worst, std::abs(at(frame.layers.front(), frame, 4, 4) / want - 1.0));
   }
-  bound("radiance through the middle of a puff, optical depths 1e-4 to 10", worst, 2e-4, "closed form of the kernel; single precision, quadrature in wavelength");
+  bound("radiance through the middle of a puff, optical depths 1e-4 to 10", worst, 2e-4,
+        "closed form of the kernel; single precision, quadrature in wavelength");
 }
 
 // A thin puff sends k M B in every direction, however many pixels it covers: no view of its own, and no edge.
@@ -54,8 +59,7 @@ TEST(Fields, IntensityAtAnyRange) {
     const Frame frame = renderFrame(sim);
     double intensity = 0.0;
     for (int y = 0; y < 33; ++y)
-      for (int x = 0; x < 33; ++x)
-        intensity += at(frame.layers.front(), frame, x, y) * sim.cameras[0].pinhole.solidAngle_sr(x, y) * range * range;
+      for (int x = 0; x < 33; ++x) intensity += at(frame.layers.front(), frame, x, y) * sim.cameras[0].pinhole.solidAngle_sr(x, y) * range * range;
     // 2e-5 of optical depth at most: 1 - exp(-d) is within 1e-5 of d.
     const double want = blackBodyBand(3.0, 5.0, kKelvin) * kAbsorption * kAmount;
     worst = std::max(worst, std::abs(intensity / want - 1.0));

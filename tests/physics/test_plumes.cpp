@@ -129,8 +129,8 @@ cameras:
         for (int x = 0; x < 96; ++x) {
           // Area across the axis: solid angle times range^2 / cos^3.
           const double u = (x + 0.5 - 48.0) / 48.0 * 0.55 * c.length_m / c.range_m, v = (y + 0.5 - 24.0) / 48.0 * 0.55 * c.length_m / c.range_m;
-          seen += pitviper::test::at(frame.layers[static_cast<std::size_t>(b)], frame, x, y) * sim.cameras[0].pinhole.solidAngle_sr(x, y) * c.range_m * c.range_m *
-                  std::pow(1.0 + u * u + v * v, 1.5);
+          seen += pitviper::test::at(frame.layers[static_cast<std::size_t>(b)], frame, x, y) * sim.cameras[0].pinhole.solidAngle_sr(x, y) * c.range_m *
+                  c.range_m * std::pow(1.0 + u * u + v * v, 1.5);
         }
       const double want = intensityFromTheSide(jet, around, length_m, source.setup().species(), bands[b][0], bands[b][1]);
       char what[200];

@@ -265,8 +265,8 @@ TEST(Smoke, KnowsItsSun) {
   }
 }
 
-// Rationale: a trail that ends a rounding's breadth from the grid of its pieces has no half of that breadth between them. Beginnings and times at which it does,
-// as scenarios write them. Expected: all that was let out, at each.
+// Rationale: a trail that ends a rounding's breadth from the grid of its pieces has no half of that breadth between them. Beginnings and times at which it
+// does, as scenarios write them. Expected: all that was let out, at each.
 TEST(Smoke, EndsOnItsGridButForRounding) {
   const Carrier carrier(straight(200.0));
   double worst = 0.0;

@@ -1,13 +1,14 @@
 // A medium that varies through its body over the spectral image: see sim/model/field.hpp. A pixel looks along several lines where the field is finer than it;
-// each line is cut into steps, the farthest first, each blended as an even layer (sim/radiometry/glsl/medium.glsl). Which elements a pixel may meet is listed by
-// tiles. Air is worked out for a stretch of many steps where it is nearly even on it.
+// each line is cut into steps, the farthest first, each blended as an even layer (sim/radiometry/glsl/medium.glsl). Which elements a pixel may meet is listed
+// by tiles. Air is worked out for a stretch of many steps where it is nearly even on it.
 //@use sim/radiometry/glsl/medium.glsl
 //@constants
 //@use sim/render/glsl/volume_ray.glsl
 //@use sim/render/glsl/node_block.glsl
 layout(binding = 5) uniform samplerBuffer fieldSpectra;  // sim/render/field_tables.hpp says what is where
 layout(binding = 17) uniform samplerBuffer fieldTexels;  // of the field's own shader
-layout(binding = 19) uniform usamplerBuffer fieldTiles;  // of each tile: first of its list, length, lines across a pixel, lines a pixel (floats), steps; then the lists: texels of elements
+// Of each tile: first of its list, length, lines across a pixel, lines a pixel (floats), steps; then the lists: texels of elements.
+layout(binding = 19) uniform usamplerBuffer fieldTiles;
 uniform vec4 fieldRow0;  // of a Draw: from camera to field axes
 uniform vec4 fieldRow1;
 uniform vec4 fieldRow2;
@@ -59,7 +60,8 @@ float levelMix{g}_;
 float amount{g}_;
 //@end
 
-// Air of a stretch, four nodes each: transmittance to its near end, optical depth and radiance on it, path radiance to its near end, transmittance on to the sun.
+// Air of a stretch, four nodes each: transmittance to its near end, optical depth and radiance on it, path radiance to its near end, transmittance on to the
+// sun.
 vec2 stretch_;      // [m] from the camera
 float low_, high_;  // of a step, parts of the stretch
 //@each t TARGETS
@@ -89,7 +91,8 @@ void setAir(float nearest, float farthest) {
 //@end
 }
 
-// The part of a stretch's radiance that comes from before a place on it, (1 - exp(-depth u))/(1 - exp(-depth)): exact at its ends, else to the square of the depth.
+// The part of a stretch's radiance that comes from before a place on it, (1 - exp(-depth u))/(1 - exp(-depth)): exact at its ends, else to the square of the
+// depth.
 vec4 partBefore(float u, vec4 depth) { return u * (1.0 + 0.5 * (1.0 - u) * depth); }
 
 // meanDecay(), of exp(-x) that is known.
