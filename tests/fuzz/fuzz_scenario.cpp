@@ -289,6 +289,7 @@ Libraries copyLibraries(const fs::path& root, const fs::path& folder) {
     for (const auto& entry : fs::directory_iterator(copy.filename() == "substances" ? root / "materials/substances" : root / copy.filename() / "library"))
       if (entry.path().extension() == ".yaml" || entry.path().extension() == ".air") fs::copy_file(entry.path(), copy / entry.path().filename());
   }
+  fs::copy(root / "materials/library/gases", copies.materials / "gases", fs::copy_options::recursive);
   return copies;
 }
 
