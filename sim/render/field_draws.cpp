@@ -19,7 +19,7 @@ constexpr double kEven = 0.1;
 
 }  // namespace
 
-FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, const ShaderSlots& slots) : simulation_(simulation) {
+FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, const ShaderSlots& slots) {
   const auto steps = fieldSteps(simulation, plan);
   for (size_t f = 0; f < simulation.fields.size(); ++f) {
     const FieldBody& field = simulation.fields[f];
@@ -33,13 +33,16 @@ FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const Sha
     own.constants["BLACK_ENTRIES"] = kBlackEntries;
     body.steps = steps[f];
     own.constants["MOST_LINES"] = fieldLinesAtMost(plan.accuracy);
-    std::string key = field.source->shader();
-    for (const char* name : {"MIXTURES", "LEVEL_FOURS", "SCATTERS"}) key += " " + std::to_string(own.constants[name]);
-    auto [at, isNew] = programs_.try_emplace(key);
-    if (isNew)
-      at->second = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", own),
-                           assembleShader(library, "sim/render/glsl/volume_field.frag.glsl", own));
-    body.program = &at->second;
+    for (const bool even : {false, true}) {
+      own.constants["EVEN"] = even ? 1 : 0;
+      std::string key = field.source->shader() + (even ? " far" : " near");
+      for (const char* name : {"MIXTURES", "LEVEL_FOURS", "SCATTERS"}) key += " " + std::to_string(own.constants[name]);
+      auto [at, isNew] = programs_.try_emplace(key);
+      if (isNew)
+        at->second = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", own),
+                             assembleShader(library, "sim/render/glsl/volume_field.frag.glsl", own));
+      (even ? body.far : body.near) = &at->second;
+    }
   }
 }
 
@@ -136,7 +139,7 @@ glm::ivec4 FieldDraws::rectOf(int field) const {
 
 const Program& FieldDraws::use(int field) {
   Body& body = bodies_[static_cast<size_t>(field)];
-  const Program& program = *body.program;
+  const Program& program = body.range.y > 0.0f ? *body.far : *body.near;
   body.spectra.bindTexture(5, 4);
   body.texels.bindTexture(17, 4);
   body.tiles.bindTexture(19, 1, true);

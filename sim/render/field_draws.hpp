@@ -35,7 +35,7 @@ class FieldDraws {
     FieldTables tables;
     std::array<int, kFieldKinds> steps{};  ///< by kind of element
     Buffer spectra, texels, tiles;
-    const Program* program = nullptr;
+    const Program *far = nullptr, *near = nullptr;  ///< of those with nearly even air across them, or any
     std::shared_ptr<const FieldTexels> uploaded;
     const FieldState* state = nullptr;  ///< null: not there
     // Of the view.
@@ -47,7 +47,6 @@ class FieldDraws {
   };
   void listTiles(const View& view, const FieldState& field, Body& body);
 
-  const Simulation& simulation_;
   std::map<std::string, Program> programs_;
   std::deque<Body> bodies_;
 };

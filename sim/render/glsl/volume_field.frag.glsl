@@ -170,32 +170,50 @@ void prepareStep(float from, float to) {
   high_ = partOf(to);
 }
 
-// A step: what comes from behind, less what air alone would show to its far end, is what the result is to its near end.
-//   y' = y exp(-a) + I E(a + g)/E(g) + tau S a E(a + g),   E(x) = (1 - exp(-x))/x: as mediumRadiance() has it, I radiance of the air on the step.
-vec4 stepped(vec4 behind, vec4 tau, vec4 airDepth, vec4 inside, vec4 sunlit, int four) {
+// What a step has of the gases at four nodes: optical depth, emission x depth, sunlight turned to the camera x depth.
+struct Matter {
+  vec4 depth, emitted, turned;
+};
+
+Matter matterAt(int four) {
   vec4 black = mix(texelFetch(fieldSpectra, black_ + four), texelFetch(fieldSpectra, black_ + FOURS + four), blackMix_);
-  vec4 depth = vec4(0.0), emitted = vec4(0.0), turned = vec4(0.0);
+  Matter m = Matter(vec4(0.0), vec4(0.0), vec4(0.0));
 //@each g MIXTURES
   {
     vec4 each = mix(texelFetch(fieldSpectra, level{g}_ + four), texelFetch(fieldSpectra, level{g}_ + FOURS + four), levelMix{g}_), own = each * amount{g}_;
-    depth += own;
+    m.depth += own;
     if (SCATTERS > 0) {
       int other = int(texelFetch(fieldSpectra, {g}).z) + 5 * four;
       vec4 thermal = texelFetch(fieldSpectra, other), radiance = texelFetch(fieldSpectra, other + 1), around = texelFetch(fieldSpectra, other + 2);
       vec4 sunlight = texelFetch(fieldSpectra, other + 3), g1 = texelFetch(fieldSpectra, other + 4);
       vec4 bend = max(1.0 + g1 * g1 - 2.0 * g1 * cosScatter_, vec4(1.0e-6));
       vec4 phase = (1.0 - g1 * g1) / (4.0 * 3.14159265358979 * bend * sqrt(bend));  // Henyey and Greenstein 1941
-      emitted += own * (thermal * black + gain_ * radiance + around);
-      turned += own * sun_ * sunlight * phase * exp(-min(sunAmount_ * each, vec4(80.0)));
+      m.emitted += own * (thermal * black + gain_ * radiance + around);
+      m.turned += own * sun_ * sunlight * phase * exp(-min(sunAmount_ * each, vec4(80.0)));
     } else {
-      emitted += own * black;
+      m.emitted += own * black;
     }
   }
 //@end
-  vec4 beside = airDepth * (high_ - low_), passed = exp(-min(depth, vec4(80.0))), clear = exp(-min(beside, vec4(80.0)));
-  vec4 mean = meanOf(depth + beside, passed * clear), upTo = airDepth * low_, fallen = 1.0 - upTo * (1.0 - 0.5 * upTo);
+  return m;
+}
+
+// A step: what comes from behind, less what air alone would show to its far end, is what the result is to its near end.
+//   y' = y exp(-a) + I E(a + g)/E(g) + tau S a E(a + g),   E(x) = (1 - exp(-x))/x: as mediumRadiance() has it, I radiance of the air on the step.
+// EVEN: the air's depth g on a step is so small that E(a) does for both, and the step is seen through the air before its middle.
+vec4 stepped(vec4 behind, vec4 tau, vec4 airDepth, vec4 inside, vec4 sunlit, int four) {
+  Matter m = matterAt(four);
+  vec4 passed = exp(-min(m.depth, vec4(80.0)));
+  if (EVEN > 0) {
+    vec4 upTo = airDepth * (0.5 * (low_ + high_)), fallen = 1.0 - upTo * (1.0 - 0.5 * upTo);
+    vec4 light = inside * ((high_ - low_) + (0.5 * ((1.0 - high_) * high_ - (1.0 - low_) * low_)) * airDepth);
+    vec4 mean = mix((1.0 - passed) / m.depth, 1.0 - 0.5 * m.depth, lessThan(m.depth, vec4(2.0e-3)));
+    return passed * behind + mean * (light + fallen * (tau * m.emitted + sunlit * m.turned));
+  }
+  vec4 beside = airDepth * (high_ - low_), clear = exp(-min(beside, vec4(80.0)));
+  vec4 mean = meanOf(m.depth + beside, passed * clear), upTo = airDepth * low_, fallen = 1.0 - upTo * (1.0 - 0.5 * upTo);
   vec4 light = inside * (partBefore(high_, airDepth) - partBefore(low_, airDepth));
-  return passed * behind + light * mean / meanOf(beside, clear) + fallen * mean * (tau * emitted + sunlit * turned);
+  return passed * behind + light * mean / meanOf(beside, clear) + fallen * mean * (tau * m.emitted + sunlit * m.turned);
 }
 
 // Points of a lattice of Fibonacci's, as many as wanted or a few more: their rows and columns are all different, and no two are near each other.
@@ -226,8 +244,9 @@ void main() {
   bool fine = across > linesAlone;
   size_ = fine ? high - low : vec2(1.0);
   from_ = fine ? low : corner;
-  // llvmpipe ends all loops of a pixel after 65535 rounds in all (LP_MAX_TGSI_LOOP_ITERATIONS), without a word: fewer lines before that.
-  float most = clamp(60000.0 / float(listed_ + cuts_ * (1 + listed_) + 1), 1.0, float(MOST_LINES));
+  // llvmpipe ends all loops of a pixel after 65535 rounds in all (LP_MAX_TGSI_LOOP_ITERATIONS), each loop's last among them, without a word: fewer lines before
+  // that.
+  float most = clamp(60000.0 / float(2 * listed_ + cuts_ * (6 + 2 * listed_) + 16), 1.0, float(MOST_LINES));
   setLattice(fine ? min(max(perPixel * size_.x * size_.y, 1.5 * across * max(size_.x, size_.y)), most) : 1.0);
   if (float(lines_) > most && turn_ < lines_) {
     int fewer = lines_ - turn_;
@@ -238,30 +257,46 @@ void main() {
 //@each t TARGETS
   vec4 under{t}_ = spectrumBelow{t}(), sum{t} = outside * under{t}_;
 //@end
-  bool once = fieldRange.y > 0.0, hasAir = false;
+  if (EVEN > 0) setAir(fieldRange.x, fieldRange.y);
   for (int l = 0; l < lines_; ++l) {
     prepareLine(l);
 //@each t TARGETS
     vec4 line{t} = under{t}_;
 //@end
     float to = leave_;
+    if (EVEN > 0) {
+      high_ = partOf(leave_);
+//@each t TARGETS
+      line{t} -= before{t}_ + inside{t}_ * partBefore(high_, depth{t}_);
+//@end
+    }
     for (int k = 0; k < steps_; ++k) {
       float from = fieldCut((float(steps_) - 1.0 - float(k)) / float(steps_));
-      bool opens = k % together_ == 0, closes = k % together_ == together_ - 1;
-      if (opens && !hasAir) {
-        float toIt = planeOf(field_);
-        setAir(once ? fieldRange.x : (toIt + (together_ > 1 ? enter_ : from)) * rayLength_, once ? fieldRange.y : (toIt + to) * rayLength_);
-        hasAir = once;
-      }
-      prepareStep(from, to);
+      if (EVEN > 0) {
+        prepareStep(from, to);
 //@each t TARGETS
-      {
-        vec4 beyond = opens ? before{t}_ + inside{t}_ * partBefore(high_, depth{t}_) : vec4(0.0);
-        vec4 y = stepped(line{t} - beyond, tau{t}_, depth{t}_, inside{t}_, sunlit{t}_, fourOf({t}));
-        line{t} = closes ? y + before{t}_ + inside{t}_ * partBefore(low_, depth{t}_) : y;
-      }
+        line{t} = stepped(line{t}, tau{t}_, depth{t}_, inside{t}_, sunlit{t}_, fourOf({t}));
 //@end
+      } else {
+        bool opens = k % together_ == 0, closes = k % together_ == together_ - 1;
+        float toIt = planeOf(field_);
+        if (opens) setAir((toIt + (together_ > 1 ? enter_ : from)) * rayLength_, (toIt + to) * rayLength_);
+        prepareStep(from, to);
+//@each t TARGETS
+        {
+          vec4 beyond = opens ? before{t}_ + inside{t}_ * partBefore(high_, depth{t}_) : vec4(0.0);
+          vec4 y = stepped(line{t} - beyond, tau{t}_, depth{t}_, inside{t}_, sunlit{t}_, fourOf({t}));
+          line{t} = closes ? y + before{t}_ + inside{t}_ * partBefore(low_, depth{t}_) : y;
+        }
+//@end
+      }
       to = from;
+    }
+    if (EVEN > 0) {
+      low_ = partOf(to);
+//@each t TARGETS
+      line{t} += before{t}_ + inside{t}_ * partBefore(low_, depth{t}_);
+//@end
     }
 //@each t TARGETS
     sum{t} += share * line{t};
