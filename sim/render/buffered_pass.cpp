@@ -65,7 +65,9 @@ ShaderSlots integration(const Plan& plan, int first, int count, std::vector<floa
 BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                            double apertureArea_m2, bool classes)
     : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Buffered, classes) {
-  const int perBatch = std::min(4 * kMostTargets, plan.nodeCount());
+  // As few batches as there can be, all alike: a batch costs what its targets do, filled or not.
+  const int count = (plan.nodeCount() + 4 * kMostTargets - 1) / (4 * kMostTargets);
+  const int perBatch = std::min(((plan.nodeCount() + count - 1) / count + 3) / 4 * 4, plan.nodeCount());
   targets_ = (perBatch + 3) / 4;
   const bool writtenOut = plan.nodeCount() == perBatch && tables().writtenOut;
   ShaderSlots slots = shadingSlots(writtenOut);
@@ -74,11 +76,10 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
   const auto spectrum = writeSpectrum(slots, targets_, writtenOut ? plan.nodeCount() : 0);
   shade_ = ClassPrograms(library, slots, tables(), surfaceClasses(), spectrum);
   for (int first = 0; first < plan.nodeCount(); first += perBatch) {
-    const int count = std::min(perBatch, plan.nodeCount() - first);
     Batch batch;
     batch.firstNode = first;
     std::vector<float> weights;
-    const ShaderSlots integral = integration(plan, first, count, weights);
+    const ShaderSlots integral = integration(plan, first, std::min(perBatch, plan.nodeCount() - first), weights);
     checkUniformSize(weights.size() * sizeof(float), "the channels' spectral weights");
     batch.integrate = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", integral),
                               assembleShader(library, "sim/render/glsl/integrate.frag.glsl", integral));
