@@ -95,7 +95,11 @@ void CameraRenderer::begin(const WorldState& state) {
   view_.kept = smallBodiesIn(simulation_, state_, view_, small_, present_, parts_);
   std::vector<char> drawn(present_);
   for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = present_[e] && !small_[e];
-  if (direct_ && buffered_) pass_ = seesTransparent() ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
+  overlay_.reset();
+  if (direct_ && buffered_) {
+    pass_ = seesTransparent() ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
+    if (isBuffered()) overlay_ = overlayIn(simulation_, state_, view_, drawn);
+  }
   if (reference_) reference_->beginPicture(viewsOfPicture());
   if (isBuffered() && buffered_->layers()) buffered_->layers()->beginPicture();
   std::vector<double> zoomed(present_.size(), 0.0);
@@ -103,8 +107,17 @@ void CameraRenderer::begin(const WorldState& state) {
   const ShadowDemand demand{view_, present_, zoomed};
   warmUp(demand, drawn);
   pass_->setState(state_, &demand);
-  pass_->draw(view_, state_, drawn);
-  pass_->startReadback();
+  if (!overlay_) {
+    pass_->draw(view_, state_, drawn);
+    pass_->startReadback();
+    return;
+  }
+  direct_->setState(state_, &demand);
+  direct_->draw(view_, state_, drawn);
+  direct_->startReadback();
+  if (overlay_->isEmpty()) return;
+  buffered_->draw(overlayView(view_, *overlay_), state_, drawn);
+  buffered_->startReadback();
 }
 
 /// A driver compiles what is left of a program when it is first used: of a moving scene no later frame, in which something transparent comes into view or
@@ -154,7 +167,9 @@ WorldState CameraRenderer::lampsInView() const {
 }
 
 CameraImage CameraRenderer::finish() {
-  Subpixels image(plan_, view_, pass_->finishReadback());
+  RawImage picture = (overlay_ ? direct_.get() : pass_)->finishReadback();
+  if (overlay_ && !overlay_->isEmpty()) lay(buffered_->finishReadback(), view_, *overlay_, picture);
+  Subpixels image(plan_, view_, std::move(picture));
   if (camera_.pointsApart) image.keepPoints();
   {
     const TimedPart part("small bodies");

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "sim/camera/hot_parts.hpp"
+#include "sim/camera/overlay.hpp"
 #include "sim/camera/subpixels.hpp"
 #include "sim/camera/visible_lights.hpp"
 #include "sim/render/buffered_pass.hpp"
@@ -62,14 +63,15 @@ class CameraRenderer {
   std::unique_ptr<ReferencePass> reference_;  ///< instead of the other two
   std::unique_ptr<DirectPass> direct_;        ///< both where auto has to choose frame by frame
   std::unique_ptr<BufferedPass> buffered_;
-  ScenePass* pass_ = nullptr;
+  ScenePass* pass_ = nullptr;       ///< of the picture, or of its overlay and small bodies
+  std::optional<Overlay> overlay_;  ///< over the direct pass' picture
   WorldState state_;
   View view_;
   std::optional<Part> only_;
   std::vector<char> small_, present_;
   std::shared_ptr<const std::vector<char>> wanted_;  ///< one flag per subpixel, row 0 at the bottom; null: all
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles_;
-  double focalLength_m_ = 0.0;  ///< that these are of
+  double focalLength_m_ = 0.0;                          ///< that these are of
   std::future<std::vector<ScatteredAgain>> scattered_;  ///< of the picture that was begun; its destructor waits, so nothing it uses goes first
 };
 
