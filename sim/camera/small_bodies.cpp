@@ -2,13 +2,16 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <memory>
 #include <numeric>
-#include <optional>
+#include <set>
 
+#include "sim/camera/covered_cells.hpp"
 #include "sim/camera/light_places.hpp"
 #include "sim/camera/zoomed_lines.hpp"
 #include "sim/model/field_lines.hpp"
@@ -45,12 +48,17 @@ View zoomedView(const Ball& ball, const View& v, int size) {
 
 namespace {
 
+/// Sizes of pictures of fields: few are ever made, and llvmpipe compiles programs again for textures whose sizes are no powers of two (half a minute each).
+int powerOfTwo(int lines) {
+  constexpr unsigned kFewest = 16;
+  return static_cast<int>(std::bit_ceil(std::max(static_cast<unsigned>(lines), kFewest)));
+}
+
 /// What zoomed samples say of one subpixel of the image.
 struct Share {
   double looked = 0.0;   ///< projected solid angle of all zoomed samples in it [sr]
   double covered = 0.0;  ///< of those that count: what they see takes the place of what the image has there
   std::vector<double> sum;
-  std::vector<double> under;     ///< what the image has there, sampled as finely; empty: its mean over the subpixel
   Moments placed{};              ///< of those that count, by their solid angle
   std::vector<Moments> moments;  ///< by slot, by what they send; empty where no points are kept
   double shown = 0.0;            ///< of those whose surface is a small body's
@@ -82,11 +90,12 @@ void eachSample(const Subpixels& image, const View& z, const Visit& visit) {
 constexpr std::uint32_t kNone = 0xffffffffu;
 
 /// By subpixel. `colourOf(q)`: the sample whose colour a sample has (itself, nearly always), or kNone; `isShown(entity)`: of what surface truth is.
-/// `under`: the same view of what the image holds, or null.
+/// `cells`: takes what those cover that count, or null.
 template <class ColourOf, class IsShown>
 Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, const ColourOf& colourOf, const IsShown& isShown,
-                const RawImage* under = nullptr) {
+                CoveredCells* cells = nullptr) {
   Shares shares;
+  const View& v = image.view();
   eachSample(image, z, [&](size_t q, size_t p, double etendue, double cosPsi, const glm::dvec2& off) {
     Share& share = shares[p];
     share.looked += etendue;
@@ -95,9 +104,10 @@ Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, c
     share.covered += etendue;
     share.sum.resize(image.slotCount(), 0.0);
     for (size_t s = 0; s < image.slotCount(); ++s) share.sum[s] += etendue * static_cast<double>(zoomed.groups[s / 4][4 * from + s % 4]);
-    if (under) {
-      share.under.resize(image.slotCount(), 0.0);
-      for (size_t s = 0; s < image.slotCount(); ++s) share.under[s] += etendue * static_cast<double>(under->groups[s / 4][4 * q + s % 4]);
+    if (cells) {
+      const auto width = static_cast<size_t>(v.width);
+      const double subpixel_sr = v.tanPerPixelX * v.tanPerPixelY * std::pow(cosPsi, 4);
+      cells->add(glm::dvec2(p % width, p / width) + 0.5 + off, etendue / subpixel_sr);
     }
     if (image.keepsPoints()) {
       share.moments.resize(image.slotCount());
@@ -195,24 +205,27 @@ struct Fine {
 };
 using FineSubpixels = std::map<size_t, Fine>;
 
-void gather(Subpixels& image, const View& z, const RawImage& zoomed, const Shares& shares, FineSubpixels& fine) {
+/// `wholeOnly`: subpixels alone count that lie in the zoomed picture as a whole.
+void gather(Subpixels& image, const View& z, const RawImage& zoomed, const Shares& shares, FineSubpixels& fine, bool wholeOnly = false) {
   const View& v = image.view();
   const glm::dmat3 zoomFromMain = glm::transpose(z.localFromCamera) * v.localFromCamera;
   for (const auto& [p, share] : shares) {
     if (share.covered <= 0.0) continue;
     const int x = static_cast<int>(p % static_cast<size_t>(v.width)), y = static_cast<int>(p / static_cast<size_t>(v.width));
+    const bool inside = isInside(v, z, zoomFromMain, x, y);
+    if (wholeOnly && !inside) continue;
     const double whole = image.projectedSolidAngle_sr(x, y);
     Fine& f = fine[p];
     f.sum.resize(image.slotCount(), 0.0);
     f.under.resize(image.slotCount(), 0.0);
     f.whole = whole;
     // Samples fall to one side or the other of a subpixel's edge: all of them are all of it, and no more than finer views have left.
-    const double all = isInside(v, z, zoomFromMain, x, y) ? whole / share.looked : 1.0;
+    const double all = inside ? whole / share.looked : 1.0;
     const double each = std::min(all, std::max(whole - f.covered, 0.0) / share.covered);
     f.covered += each * share.covered;
     for (size_t s = 0; s < f.sum.size(); ++s) {
       f.sum[s] += each * share.sum[s];
-      f.under[s] += each * (share.under.empty() ? share.covered * image.slot(s, p) : share.under[s]);
+      f.under[s] += each * share.covered * image.slot(s, p);
     }
     f.moments.resize(share.moments.size());
     for (size_t k = 0; k < f.placed.size(); ++k) {
@@ -240,7 +253,7 @@ void putPoints(Subpixels& image, size_t subpixel, const Fine& f) {
   }
 }
 
-/// The image keeps what it has in the rest of a subpixel. Where that is its mean, it is a mean of radiances, none of which is below 0.
+/// The image keeps what it has in the rest of a subpixel: a mean of radiances, none of which is below 0.
 void put(Subpixels& image, const FineSubpixels& fine) {
   // More are no point: on so many subpixels a picture is as good.
   constexpr size_t kMostPoints = 16;
@@ -249,8 +262,7 @@ void put(Subpixels& image, const FineSubpixels& fine) {
     return;
   }
   for (const auto& [p, f] : fine)
-    // What is around the bodies sends at least nothing: where a mean is less than what was taken out of it, as beside a steep field.
-    for (size_t s = 0; s < f.sum.size(); ++s) image.add(s, p, std::max(f.sum[s] - f.under[s], f.sum[s] - f.whole * image.slot(s, p)) / f.whole);
+    for (size_t s = 0; s < f.sum.size(); ++s) image.add(s, p, (f.sum[s] - f.under[s]) / f.whole);
 }
 
 bool anyOf(const std::vector<char>& flags) {
@@ -263,6 +275,160 @@ std::shared_ptr<const std::vector<char>> marksOf(const Subpixels& image, const V
   eachSample(image, z, [&](size_t q, size_t p, double, double, const glm::dvec2&) { (*marks)[q] = subpixels[p]; });
   return marks;
 }
+
+/// A part of a zoomed view: first sample, how many.
+struct Box {
+  glm::ivec2 low{0}, size{0};
+  int area() const { return size.x * size.y; }
+};
+
+/// The samples that are wanted of a box; of no size where none is.
+Box shrunk(const std::vector<char>& wanted, int width, const Box& in) {
+  glm::ivec2 low(std::numeric_limits<int>::max()), high(0);
+  for (int y = in.low.y; y < in.low.y + in.size.y; ++y)
+    for (int x = in.low.x; x < in.low.x + in.size.x; ++x)
+      if (wanted[static_cast<size_t>(y * width + x)]) low = glm::min(low, glm::ivec2(x, y)), high = glm::max(high, glm::ivec2(x, y) + 1);
+  return high.x > 0 ? Box{low, high - low} : Box{};
+}
+
+/// Samples that take as long as what a picture costs besides: 22 ms of 1 us a sample (llvmpipe, 26 media); 5 ms of 20 us a sample through a jet.
+constexpr int kPicture = 16384, kPictureOfFields = 256;
+
+/// Boxes that hold all that are wanted: parted while that leaves out more samples than a picture of its own is worth.
+void partBox(const std::vector<char>& wanted, int width, const Box& box, int picture, std::vector<Box>& boxes) {
+  constexpr int kStep = 8, kSteps = 16;
+  Box first, second;
+  int least = box.area() - picture;
+  for (int k = 0; k < 2; ++k)
+    for (int step = std::max(kStep, box.size[k] / kSteps), at = step; at < box.size[k]; at += step) {
+      Box one = box, other = box;
+      one.size[k] = at, other.low[k] += at, other.size[k] -= at;
+      one = shrunk(wanted, width, one), other = shrunk(wanted, width, other);
+      if (one.area() + other.area() < least) least = one.area() + other.area(), first = one, second = other;
+    }
+  if (first.area() == 0) return boxes.push_back(box);
+  partBox(wanted, width, first, picture, boxes);
+  partBox(wanted, width, second, picture, boxes);
+}
+
+/// Draws what is wanted of a zoomed view, and not much more where `fields` may show: a sample through one costs as much as a hundred others.
+RawImage drawWanted(ScenePass& pass, const View& z, const WorldState& state, const std::vector<char>& drawn, bool fields) {
+  constexpr int kLargest = 512;  // pictures are kept, by size
+  const glm::ivec2 all(z.width, z.height), most = fields ? glm::ivec2(powerOfTwo(all.x), powerOfTwo(all.y)) : all;
+  const Box whole{glm::ivec2(0), most};
+  std::vector<Box> boxes;
+  if (z.width <= kLargest) partBox(*z.wanted, z.width, shrunk(*z.wanted, z.width, {glm::ivec2(0), all}), fields ? kPictureOfFields : kPicture, boxes);
+  int area = 0;
+  for (Box& box : boxes) {
+    for (int k = 0; k < 2; ++k) box.size[k] = std::min(fields ? powerOfTwo(box.size[k]) : evenSize(box.size[k]), most[k]);
+    box.low = glm::min(box.low, most - box.size);
+    area += box.area();
+  }
+  if (boxes.empty() || area >= whole.area()) boxes = {whole};
+  RawImage image;
+  image.width = z.width, image.height = z.height;
+  const auto samples = static_cast<size_t>(z.width) * static_cast<size_t>(z.height);
+  image.entity.assign(samples, -1);
+  for (const Box& box : boxes) {
+    View part = z;
+    part.width = box.size.x, part.height = box.size.y;
+    part.axisX -= box.low.x, part.axisY -= box.low.y;
+    const glm::ivec2 seen = glm::min(box.size, all - box.low);  // the rest is beyond the view
+    // Calls copy(first in the view, first in the part, how many) for each row.
+    const auto rows = [&](const auto& copy) {
+      for (int y = 0; y < seen.y; ++y)
+        copy(static_cast<size_t>((box.low.y + y) * z.width + box.low.x), static_cast<size_t>(y * box.size.x), static_cast<size_t>(seen.x));
+    };
+    auto wanted = std::make_shared<std::vector<char>>(static_cast<size_t>(box.area()), 0);
+    rows([&](size_t view, size_t own, size_t count) { std::copy_n(&(*z.wanted)[view], count, &(*wanted)[own]); });
+    part.wanted = wanted;
+    pass.draw(part, state, drawn);
+    pass.startReadback(true);
+    const RawImage picture = pass.finishReadback();
+    rows([&](size_t view, size_t own, size_t count) { std::copy_n(&picture.entity[own], count, &image.entity[view]); });
+    for (const auto& [from, to] : {std::pair{&picture.groups, &image.groups}, {&picture.truth, &image.truth}}) {
+      to->resize(from->size(), std::vector<float>(4 * samples, 0.0f));
+      for (size_t g = 0; g < from->size(); ++g)
+        rows([&](size_t view, size_t own, size_t count) { std::copy_n(&(*from)[g][4 * own], 4 * count, &(*to)[g][4 * view]); });
+    }
+  }
+  return image;
+}
+
+/// A field varies within a subpixel: what shows of it beside a body is not its mean, and where a cold body hides a bright jet the difference of two means would
+/// be all that is left. Such subpixels are drawn once more without the bodies, cell by cell; cells count as far as nothing covers them.
+class BesideBodies {
+ public:
+  BesideBodies(const Simulation& sim, const WorldState& state, const View& v) : cells_(v) {
+    for (size_t f = 0; f < sim.fields.size(); ++f)
+      if (const FieldState* field = fieldOf(state, f))
+        if (const FieldLines lines = fieldLines(v, *field); !lines.isEmpty()) fields_.push_back(lines);
+  }
+  /// Takes what bodies cover; null where no field is in the picture.
+  CoveredCells* cells() { return fields_.empty() ? nullptr : &cells_; }
+  /// Subpixels that a view has samples in: near each other.
+  void touch(const Subpixels& image, const Shares& shares) {
+    std::vector<size_t> near;
+    for (const auto& [p, share] : shares) {
+      const auto width = static_cast<size_t>(image.view().width);
+      const double x = static_cast<double>(p % width), y = static_cast<double>(p / width);
+      if (share.covered > 0.0 && std::any_of(fields_.begin(), fields_.end(),
+                                             [&](const FieldLines& f) { return f.low.x < x + 1.0 && f.low.y < y + 1.0 && f.high.x > x && f.high.y > y; }))
+        near.push_back(p);
+    }
+    if (!near.empty()) parts_.push_back(std::move(near));
+  }
+  /// Puts what is there without the bodies in place of the image's means, and takes away what of it they cover. `without`: what is in the picture but for them.
+  void draw(Subpixels& image, ScenePass& pass, const WorldState& state, const std::vector<char>& without, FineSubpixels& fine) const {
+    constexpr double kNothing = 1e-9;  // of a subpixel: its samples make up the whole of it but for rounding
+    std::set<size_t> done;
+    for (std::vector<size_t> part : parts_) {
+      std::erase_if(part, [&](size_t p) { return fine.at(p).covered > (1.0 - kNothing) * fine.at(p).whole || !done.insert(p).second; });
+      if (!part.empty()) drawPart(image, pass, state, without, part, fine);
+    }
+  }
+
+ private:
+  static constexpr int kAcross = CoveredCells::kAcross;
+  void drawPart(Subpixels& image, ScenePass& pass, const WorldState& state, const std::vector<char>& without, const std::vector<size_t>& part,
+                FineSubpixels& fine) const {
+    const auto width = static_cast<size_t>(image.view().width);
+    const auto placeOf = [&](size_t p) { return glm::ivec2(p % width, p / width); };
+    glm::ivec2 low = placeOf(part.front()), high = low;
+    for (size_t p : part) low = glm::min(low, placeOf(p)), high = glm::max(high, placeOf(p) + 1);
+    const glm::ivec2 size(powerOfTwo(kAcross * (high.x - low.x)), powerOfTwo(kAcross * (high.y - low.y)));
+    View z = magnified(image.view(), {low, size / kAcross}, kAcross);
+    const auto firstOf = [&](size_t p) {
+      const glm::ivec2 at = (placeOf(p) - low) * kAcross;
+      return static_cast<size_t>(at.y) * static_cast<size_t>(z.width) + static_cast<size_t>(at.x);
+    };
+    auto marks = std::make_shared<std::vector<char>>(static_cast<size_t>(z.width) * static_cast<size_t>(z.height), 0);
+    for (size_t p : part)
+      for (int c = 0; c < kAcross * kAcross; ++c) (*marks)[firstOf(p) + static_cast<size_t>(c / kAcross * z.width + c % kAcross)] = 1;
+    z.wanted = marks;
+    const RawImage seen = drawWanted(pass, z, state, without, true);
+    for (size_t p : part) {
+      const CoveredCells::Cells* covered = cells_.of(p);
+      Fine& f = fine.at(p);
+      for (size_t s = 0; s < image.slotCount(); ++s) {
+        double hidden = 0.0, left = 0.0, hides = 0.0, leaves = 0.0, all = 0.0;
+        for (int c = 0; c < kAcross * kAcross; ++c) {
+          const double here = static_cast<double>(seen.groups[s / 4][4 * (firstOf(p) + static_cast<size_t>(c / kAcross * z.width + c % kAcross)) + s % 4]);
+          const double share = covered ? std::clamp((*covered)[static_cast<size_t>(c)], 0.0, 1.0) : 0.0;
+          hides += share, hidden += share * here;
+          leaves += 1.0 - share, left += (1.0 - share) * here;
+          all += here / (kAcross * kAcross);
+        }
+        const double behind = hides > 0.0 ? hidden / hides : all, beside = leaves > 0.0 ? left / leaves : all;
+        f.under[s] = f.covered * behind;
+        image.add(s, p, (f.under[s] + (f.whole - f.covered) * beside) / f.whole - image.slot(s, p));
+      }
+    }
+  }
+  CoveredCells cells_;
+  std::vector<FieldLines> fields_;          ///< those that may show
+  std::vector<std::vector<size_t>> parts_;  ///< subpixels to be drawn together
+};
 
 /// Solid bodies that nothing transparent is near: where one shows it takes the place of what is behind it.
 class SolidBodies {
@@ -332,38 +498,36 @@ class MixedBodies {
       views_.push_back(zoomedView(zooms[i].ball, v, zooms[i].size));
       views_.back().onlyEntity = -1;
       whole_.push_back(i >= ofBodies);
+      partOf_.push_back(zooms[i].ball);
     }
   }
   /// `others`: what else is in the picture; `all`: what may show at all, that is in the pictures of parts.
   void draw(Subpixels& image, ScenePass& pass, std::vector<char> others, const std::vector<char>& all, const std::vector<char>* only,
             FineSubpixels& fine) const {
     const std::vector<char> without = others;
+    BesideBodies beside(sim_, state_, image.view());
     for (int e : bodies_) others[static_cast<size_t>(e)] = 1;
     for (size_t i = 0; i < views_.size(); ++i) {
       View z = views_[i];
       std::vector<std::uint32_t> colour = colours(z, sets(image, i));
-      if (only) {
-        const auto marks = marksOf(image, z, *only);
+      const auto leave = [&](const std::vector<char>& subpixels) {
+        const auto marks = marksOf(image, z, subpixels);
         for (size_t q = 0; q < colour.size(); ++q)
           if (!(*marks)[q]) colour[q] = kNone;
-      }
+      };
+      if (only) leave(*only);
+      if (whole_[i]) leave(subpixelsOf(partOf_[i], image));
       z.wanted = wanted(colour);
       if (!anyOf(*z.wanted)) continue;
-      pass.draw(z, state_, whole_[i] ? all : others);
-      pass.startReadback(true);
-      const RawImage zoomed = pass.finishReadback();
-      std::optional<RawImage> under;
-      if (!whole_[i] && !sim_.fields.empty()) {  // a field varies within a subpixel: what the body hides is not its mean
-        pass.draw(z, state_, without);
-        pass.startReadback();
-        under = pass.finishReadback();
-      }
+      const RawImage zoomed = drawWanted(pass, z, state_, whole_[i] ? all : others, beside.cells() != nullptr);
       const auto colourOf = [&](size_t q) { return whole_[i] && colour[q] != kNone && hasOwnView(zoomed.entity[colour[q]]) ? kNone : colour[q]; };
-      gather(image, z, zoomed,
-             sharesOf(
-                 image, z, zoomed, colourOf, [&](int e) { return isOne(e); }, under ? &*under : nullptr),
-             fine);
+      const Shares shares = sharesOf(
+          image, z, zoomed, colourOf, [&](int e) { return isOne(e); }, beside.cells());
+      // What sees anything of a part lies wholly in its view; at the view's border others are cut.
+      gather(image, z, zoomed, shares, fine, whole_[i]);
+      if (!whole_[i]) beside.touch(image, shares);
     }
+    beside.draw(image, pass, state_, without, fine);
   }
 
  private:
@@ -383,7 +547,6 @@ class MixedBodies {
   }
   /// Bodies side by side (slices of a plume) share a view of the finest one's density: each view is a picture of its own, with all that is transparent in it.
   static void join(std::vector<Zoom>& zooms, const View& v) {
-    constexpr double kPicture = 16384.0;  // samples that take as long as what a picture costs besides: 22 ms of 1 us a sample (llvmpipe, 26 media)
     constexpr double kAlike = 2.0, kMostLines = 512.0, kEmpty = 1.5;  // densities; a view; samples beside the bodies
     for (size_t i = 0; i < zooms.size(); ++i)
       for (size_t j = i + 1; j < zooms.size();) {
@@ -428,6 +591,36 @@ class MixedBodies {
       all[q] = set | (whole_[index] ? kAny : 0);
     });
     return all;
+  }
+  /// Flags of those that a part of a body may show in: of all surfaces within its ball, around each triangle.
+  std::vector<char> subpixelsOf(const Ball& part, const Subpixels& image) const {
+    constexpr double kMargin = 0.01;  // of a subpixel
+    const View& v = image.view();
+    const auto width = static_cast<size_t>(v.width), all = width * static_cast<size_t>(v.height);
+    std::vector<char> flags(all, 0);
+    const Entity& entity = sim_.entities[static_cast<size_t>(part.entity)];
+    const Pose& pose = state_.entities[static_cast<size_t>(part.entity)];
+    const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
+    for (const Surface& surface : entity.surfaces) {
+      const MeshPart& own = entity.mesh->parts[surface.meshPart];
+      std::vector<glm::dvec2> corners;
+      bool within = true;
+      for (std::uint32_t t = own.firstTriangle; t < own.firstTriangle + own.triangleCount && within; ++t)
+        for (int k = 0; k < 3 && within; ++k) {
+          const glm::dvec3 at = pose.position + pose.orientation * glm::dvec3(entity.mesh->positions[entity.mesh->triangles[t][k]]);
+          within = glm::length(at - part.centre) <= part.radius_m;  // which lies before the camera
+          corners.push_back(filmPosition(v, cameraFromLocal * (at - v.position)));
+        }
+      for (size_t c = 0; within && c < corners.size(); c += 3) {
+        const glm::dvec2 size(v.width - 1, v.height - 1), low = glm::min(glm::min(corners[c], corners[c + 1]), corners[c + 2]) - kMargin,
+                                                          high = glm::max(glm::max(corners[c], corners[c + 1]), corners[c + 2]) + kMargin;
+        if (high.x < 0.0 || high.y < 0.0 || low.x > v.width || low.y > v.height) continue;
+        const glm::ivec2 from(glm::clamp(low, glm::dvec2(0.0), size)), to(glm::clamp(high, glm::dvec2(0.0), size));
+        for (int y = from.y; y <= to.y; ++y)
+          for (int x = from.x; x <= to.x; ++x) flags[image.index(x, y)] = 1;
+      }
+    }
+    return flags;
   }
   /// Whose colour a sample has. One on an outline, where a ray and the rasteriser may see different things (it counts in 1/256 of a pixel), has that of
   /// a neighbour that meets the same.
@@ -474,8 +667,9 @@ class MixedBodies {
   const WorldState& state_;
   std::vector<int> bodies_;
   std::vector<char> small_;
-  std::vector<View> views_;  ///< the finest first
-  std::vector<char> whole_;  ///< of each: it is a part's, and all it sees counts
+  std::vector<View> views_;   ///< the finest first
+  std::vector<char> whole_;   ///< of each: it is a part's, and all it sees counts
+  std::vector<Ball> partOf_;  ///< what each looks at
 };
 
 }  // namespace
