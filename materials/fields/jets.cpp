@@ -44,6 +44,8 @@ constexpr double kFinest = 1.0 / 3.0;         // of a nozzle's radius: lines so 
 constexpr double kFinestOfWidth = 0.5;        // of a Gaussian's width: what is hot of it is narrower than its gas
 constexpr int kPieces = kFieldKinds;          // of a jet, ever longer: lines lie closer together in those that are finer
 constexpr double kAlong = 0.3;                // of the way from the nozzle: over that it changes along itself
+constexpr double kSlowedWithin = 60.0;        // diameters: behind that it is far colder than where it leaves
+constexpr int kAcross = 12;
 constexpr int kLooks = 64;
 constexpr int kCones = 4;              // jets.field.glsl
 constexpr std::size_t kMostKept = 64;  // 4 s of a ramp at 15 frames a second; 10 kB each
@@ -379,27 +381,47 @@ void JetsSource::addTo(Fingerprint& f) const {
   f.add(setup_.life.begin_s).add(setup_.life.end_s).add(setup_.length_m).add(setup_.airWarmer_K);
 }
 
+namespace {
+/// Of a jet: where a fast one is slowed down it is hotter than where it leaves.
+double hottest_K(const NozzleFlow& flow, const CoFlow& around) {
+  const FreeJet jet(flow, around, kSlowedWithin * flow.diameter_m);
+  double hottest = flow.temperature_K;
+  for (const JetRow& row : jet.rows())
+    for (int i = 0; i <= kAcross; ++i)
+      hottest = std::max(hottest, jetState(jet.constants(), row, row.coreU_m + 2.0 * row.widthU_m * i / kAcross).temperature_K);
+  return hottest;
+}
+}  // namespace
+
 glm::dvec2 JetsSource::temperatures_K() const {
-  // The tropopause's air; the hottest of a preset's exits, over the heights and speeds that it may meet (a motor's at a low throttle is the hottest).
+  // The tropopause's air; the hottest of a preset's exits and of what follows, over the heights and speeds that it may meet (a motor's at a low throttle is
+  // the hottest). In still air it is slowed down most.
   glm::dvec2 range(216.65, 216.65);
+  const auto take = [&range](const NozzleFlow& flow, const CoFlow& around) {
+    range.y = std::max(range.y, hottest_K(flow, around));
+    range.x = std::min(range.x, flow.temperature_K);
+  };
+  const auto at = [](double throttle, double height_m, double speed_m_s) {
+    Conditions c;
+    c.throttle = std::llround(throttle * kThrottleSteps);
+    c.height = std::llround(height_m / kHeightStep_m);
+    c.speed = std::llround(speed_m_s / kSpeedStep_m_s);
+    return c;
+  };
   if (setup_.nozzle) {
-    range.y = std::max(range.y, setup_.nozzle->temperature_K);
-    range.x = std::min(range.x, setup_.nozzle->temperature_K);
+    for (double height_m : {0.0, 11000.0}) take(*setup_.nozzle, around(at(1.0, height_m, 0.0)));
     return range;
   }
   const auto [least, most] = setup_.throttle.range();
   for (double throttle : {std::clamp(least, 0.0, 1.0), std::clamp(most, 0.0, 1.0)})
     for (double height_m : {0.0, 11000.0})
       for (double speed_m_s : {0.0, 300.0, 600.0}) {
-        Conditions c;
-        c.throttle = std::llround(throttle * kThrottleSteps);
-        c.height = std::llround(height_m / kHeightStep_m);
-        c.speed = std::llround(speed_m_s / kSpeedStep_m_s);
-        if (const auto flow = flowAt(c)) range.y = std::max(range.y, flow->temperature_K);
+        const Conditions c = at(throttle, height_m, speed_m_s);
+        if (const auto flow = flowAt(c)) take(*flow, around(c));
       }
   // Phases of a burn.
   for (const BurnPhase& phase : setup_.engine->burn)
-    if (const auto flow = nozzleOf(*setup_.engine, std::clamp(phase.throttle * most, 0.0, 1.0), CoFlow{})) range.y = std::max(range.y, flow->temperature_K);
+    if (const auto flow = nozzleOf(*setup_.engine, std::clamp(phase.throttle * most, 0.0, 1.0), CoFlow{})) take(*flow, CoFlow{});
   return range;
 }
 
