@@ -1,6 +1,7 @@
 #include "sim/camera/overlay.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "sim/model/field_lines.hpp"
@@ -11,8 +12,9 @@ namespace {
 
 /// Of a view: from there on all of it is drawn as one.
 constexpr double kMostOfView = 0.5;
-/// Pixels drawn around what counts.
+/// Pixels drawn around what counts; across, at least.
 constexpr int kRoom_px = 2;
+constexpr unsigned kFewest_px = 16;
 
 struct Box {
   glm::dvec2 low{INFINITY}, high{-INFINITY};
@@ -50,6 +52,17 @@ glm::ivec4 pixelsAround(const Box& box, const View& v, int more) {
   return {from, glm::max(to - from, glm::ivec2(0))};
 }
 
+/// Grown to a power of two of pixels each way, within the view: passes keep their targets by size, and what is seen through grows and shrinks frame by frame.
+glm::ivec4 ofFewSizes(glm::ivec4 part, const View& v) {
+  const glm::ivec2 film(v.width, v.height);
+  for (int k = 0; k < 2; ++k) {
+    const int size = v.subpixels * static_cast<int>(std::bit_ceil(std::max(static_cast<unsigned>(part[k + 2] / v.subpixels), kFewest_px)));
+    part[k + 2] = std::min(size, film[k]);
+    part[k] = std::min(part[k], film[k] - part[k + 2]);
+  }
+  return part;
+}
+
 }  // namespace
 
 std::optional<Overlay> overlayIn(const Simulation& sim, const WorldState& state, const View& v, const std::vector<char>& bodies) {
@@ -68,7 +81,7 @@ std::optional<Overlay> overlayIn(const Simulation& sim, const WorldState& state,
   Overlay overlay;
   if (box.isEmpty()) return overlay;
   overlay.counts = pixelsAround(box, v, 0);
-  overlay.drawn = pixelsAround(box, v, kRoom_px);
+  overlay.drawn = ofFewSizes(pixelsAround(box, v, kRoom_px), v);
   if (static_cast<double>(overlay.drawn.z) * overlay.drawn.w > kMostOfView * v.width * v.height) return {};
   return overlay;
 }

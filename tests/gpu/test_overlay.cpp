@@ -67,6 +67,26 @@ TEST(Overlay, EqualsBufferedMode) {
           "lines of fields lie on a film of another corner, in single precision");
 }
 
+// Rationale: passes keep a target of each size that they ever drew, and an hour of a stream must not have thousands.
+TEST(Overlay, HasFewSizes) {
+  const Simulation sim = scene(world("1"));
+  const WorldState state = advance(sim, 0.0);
+  for (double closer : {1.0, 1.1, 1.2, 1.3, 1.4}) {
+    View view = cameraView(sim.cameras[0], state, 1);
+    view.width = view.height = 400;
+    view.axisX = view.axisY = 200.0;
+    view.tanPerPixelX /= closer, view.tanPerPixelY /= closer;
+    const auto overlay = overlayIn(sim, state, view, std::vector<char>(sim.entities.size(), 1));
+    ASSERT_TRUE(overlay);
+    for (int k = 0; k < 2; ++k) {
+      const int size = overlay->drawn[k + 2];
+      EXPECT_EQ(size & (size - 1), 0) << size;
+      EXPECT_LE(overlay->drawn[k], overlay->counts[k]);
+      EXPECT_GE(overlay->drawn[k] + size, overlay->counts[k] + overlay->counts[k + 2]);
+    }
+  }
+}
+
 // Rationale: what covers the picture leaves nothing to the direct pass; where nothing shows there is nothing to lay.
 TEST(Overlay, IsNoMoreThanItNeeds) {
   const Simulation sim = scene(world("1"));
