@@ -52,6 +52,7 @@ struct FieldStep {
   double enter_m = 0.0, leave_m = 0.0;      ///< along the line
   std::array<double, kMostGases> amount{};  ///< of each gas: the integral of its density along the stretch
   double temperature_K = 0.0;
+  double drift_perK = 0.0;  ///< 1 / temperature at its far end, less that at its near end: setDrifts()
   double gain = 1.0;       ///< factor of Medium::radiance
   double sun = 0.0;        ///< share of the sun's disc that nothing solid hides from it
   double sunAmount = 0.0;  ///< of the first gas between it and the sun, in the field itself
@@ -65,6 +66,7 @@ struct FieldElement {
   double finest_m = 0.0;       ///< the least length over which it changes across a line: pixels wider than this look at it along several lines
   int kind = 0;                ///< below kFieldKinds: those alike in how many steps lines through them need
   glm::dvec3 drawnOut_m{0.0};  ///< its axis, as long as that over which it changes along it; 0: the same all around
+  glm::dvec3 half_m{0.0};      ///< halves of a box around its centre, along the field's axes, that holds it too; 0: none
 };
 
 /// Numbers that a field's shader reads; immutable, so that the same pointer is the same content.
@@ -81,7 +83,6 @@ class FieldState {
   glm::dmat3 localFromField{1.0};
   glm::dvec3 low{0.0}, high{0.0};  ///< box in field axes; nothing is outside
   double finest_m = 0.0;           ///< the least of its elements
-  double alone = 1.0;              ///< up to so many lines across a pixel, as its elements ask for, its middle alone is as good
   std::vector<FieldElement> elements;
   std::shared_ptr<const FieldTexels> texels;
   /// Of a unit of what the shader adds up, how much of each gas it is: see FieldSource::mixtures().

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/field_drift.hpp"
 #include "sim/model/field_states.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/scene/triangle_tree.hpp"
@@ -120,6 +121,7 @@ std::vector<Slab> slabsAlong(const Simulation& sim, const WorldState& state, con
     if (!field) continue;
     steps.clear();
     field->along({origin, direction, 0.0, std::min(range_m, physics::kFar)}, fieldSteps, steps);
+    if (fieldSteps > kPlannedFieldSteps) setDrifts(steps);  // a plan's products have none
     for (const FieldStep& s : steps)
       if (s.leave_m > s.enter_m) slabs.push_back({static_cast<int>(f), s});
   }

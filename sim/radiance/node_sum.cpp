@@ -233,8 +233,30 @@ std::vector<std::vector<double>> NodeSum::sourcesOf(const Segment& s) {
   return all;
 }
 
+/// How much more black bodies send at a segment's far end than at its near end, of what its media send: empty where none changes. No end sends less than
+/// nothing.
+std::vector<std::vector<double>> NodeSum::driftsOf(const Segment& s, const std::vector<std::vector<double>>& sources) {
+  if (s.dark || std::all_of(s.media.begin(), s.media.end(), [](const MediumInside& m) { return m.drift_perK == 0.0; })) return {};
+  std::vector<std::vector<double>> all(s.media.size(), std::vector<double>(count_, 0.0));
+  std::vector<double> far(count_), near(count_);  // of one temperature: the gases of a field share it
+  const MediumInside* of = nullptr;
+  for (size_t k = 0; k < s.media.size(); ++k) {
+    const MediumInside& m = s.media[k];
+    if (m.drift_perK == 0.0) continue;
+    if (!of || of->temperature_K != m.temperature_K || of->drift_perK != m.drift_perK) {
+      spectra_.planck(1.0 / (1.0 / m.temperature_K + 0.5 * m.drift_perK), far);
+      spectra_.planck(1.0 / (1.0 / m.temperature_K - 0.5 * m.drift_perK), near);
+      of = &m;
+    }
+    const NodeSpectra::MediumRows* rows = spectra_.mediumRows(m.material);
+    for (size_t i = 0; i < count_; ++i) all[k][i] = std::clamp((rows ? rows->thermal[i] : 1.0) * (far[i] - near[i]), -2.0 * sources[k][i], 2.0 * sources[k][i]);
+  }
+  return all;
+}
+
 // J = (x S + y B) / (x + y) with S of the media and B of the air, B linear in depth from one end to the other:
 //   integral of J exp(-t) dt = J_near (1 - exp(-d)) + (J_far - J_near) g(d), d = x + y.
+// S is that in the middle, and changes by D to the far end in a field: S (1 - exp(-d)) + D (g(d) - (1 - exp(-d))/2).
 void NodeSum::segment(const Segment& s) {
   const auto nodes = spectra_.nodes();
   // Where one end sees no sun, the other's way to it holds for the segment.
@@ -258,13 +280,14 @@ void NodeSum::segment(const Segment& s) {
   }
   const bool media = !s.media.empty() && takes({TermKind::Media}), air = s.air && takes({TermKind::AirEmission}),
              turned = sunlit && takes({TermKind::ScatteredSun});
-  const auto sources = sourcesOf(s);
+  const auto sources = sourcesOf(s), drifts = driftsOf(s, sources);
   for (size_t i = 0; i < count_; ++i) {
-    double x = 0.0, emitted = 0.0, ofWatched = 0.0;
+    double x = 0.0, emitted = 0.0, ofWatched = 0.0, drifting = 0.0;
     for (size_t m = 0; m < s.media.size(); ++m) {
       const double own = nodes[i].absorption_per_m[static_cast<size_t>(s.media[m].material)] * s.media[m].length_m;
       x += own;
       emitted += own * sources[m][i];
+      if (!drifts.empty()) drifting += own * drifts[m][i];
       if (s.media[m].entity == watched_) ofWatched += own * sources[m][i];
     }
     const double before = mediaDepth_[i];
@@ -275,7 +298,7 @@ void NodeSum::segment(const Segment& s) {
     const double reaching = panes_[i] * (before > 0.0 ? std::exp(-before) : 1.0), seen = reaching * (s.air ? near_.passed[i] : 1.0);
     const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * (x > 0.0 ? std::exp(-x) : 1.0), lost = lostOf(d, left);
     if (watched_ >= 0 && x > 0.0) ofEntity_[i] += seen * ofWatched / d * lost;
-    if (media && x > 0.0) send(TermKind::Media, i, seen * emitted / d * lost);
+    if (media && x > 0.0) send(TermKind::Media, i, seen / d * (emitted * lost + (drifting != 0.0 ? drifting * (growing(d, left, lost) - 0.5 * lost) : 0.0)));
     if (air && y > 0.0) {
       const double near = near_.black[i] + nodes[i].air.source, far = far_.black[i] + nodes[i].air.source;
       send(TermKind::AirEmission, i, seen * (y / d) * (near * lost + (far - near) * growing(d, left, lost)));

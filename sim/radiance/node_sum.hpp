@@ -101,6 +101,7 @@ class NodeSum final : public TermSink {
   };
   void place(const AirPlace& at, const AirAmounts* both, At& out);
   std::vector<std::vector<double>> sourcesOf(const Segment& segment);
+  std::vector<std::vector<double>> driftsOf(const Segment& segment, const std::vector<std::vector<double>>& sources);
   /// Of haze, per node; lines of one sun mostly ask for the same angle again.
   const std::vector<double>& hazePhase(double cosScatter);
   const std::vector<double>& turnedBy(const MediumInside& medium, double cosScatter);
