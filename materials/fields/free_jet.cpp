@@ -17,6 +17,7 @@ constexpr double kCo2 = 0.0440095, kH2o = 0.0180153, kCo = 0.0280101, kN2 = 0.02
 constexpr double kSootDensity_kg_m3 = 1800.0;  // Park, Kittelson, Zachariah and McMurry, J. Nanopart. Res. 6 (2004) 267: 1.78 g/cm3 of inherent density
 constexpr double kSchmidt = 0.7;               // Pope, 10.2
 constexpr double kEntrainment = 0.32;          // Ricou and Spalding
+constexpr double kLip = 0.2;                   // of the radius: the shear layer's width at the nozzle
 constexpr double kLeastExcess = 0.05;          // chosen, see the constructor
 constexpr double kRowRatio = 1.08;             // 1 + a row's length over its distance: straight lines in it miss x^(2/3) by 0.0002
 constexpr double kFirstRows = 0.5;             // nozzle diameters below which rows are about evenly spaced: a tenth of a core
@@ -303,35 +304,39 @@ void FreeJet::march(double length_m) {
     return mass;
   };
 
-  double mass = massFlow_kg_s_, x = 0.0, lastX = 0.0;
-  Unknowns now{}, last{};
-  bool started = false;
+  // The nozzle's own layer: both profiles are one there, so that momentum alone gives the core.
+  Unknowns now{std::log(kLip), 1.0, 1.0};
+  Integrals own = integrate(k, kLip, now[1], now[2]);
+  for (int round = 0; round < 40 && std::abs(own.value[0] * scale / momentum_N_ - 1.0) > 1e-13; ++round) {
+    now[1] -= (own.value[0] - momentum_N_ / scale) / (own.slope[0][1] + own.slope[0][2]);
+    now[2] = now[1];
+    own = integrate(k, kLip, now[1], now[2]);
+  }
+  const double layer = own.value[2] * scale - massFlow_kg_s_;
+  double mass = massFlow_kg_s_, x = 0.0, lastX = 0.0;  // mass: without that layer's
+  Unknowns last = now;
   // To a distance, in one step or, where Newton's method loses its way, in two.
   auto step = [&](auto&& self, double to, int depth) -> void {
     const double there = advance(mass, to - x);
     Unknowns guess = now;
-    if (!started) {  // thin shear layer of uniform density: integrals of F and F^2 over it
-      const double width = (there / massFlow_kg_s_ - 1.0) / (std::sqrt(kPi) - std::sqrt(0.5 * kPi));
-      guess = {std::log(width), 1.0 - std::sqrt(kPi / 8.0) * width, 1.0 - std::sqrt(kPi / 8.0) * width};
-    } else if (x > lastX) {
+    if (x > lastX) {
       const double part = (to - x) / (x - lastX);
-      const double w = std::exp(now[0]), lastW = lastX > 0.0 ? std::exp(last[0]) : 0.0;
+      const double w = std::exp(now[0]), lastW = std::exp(last[0]);
       guess = {std::log(std::max(0.5 * w, w + part * (w - lastW))), now[1] + part * (now[1] - last[1]), now[2] + part * (now[2] - last[2])};
     }
     Unknowns found = guess;
-    if (!solve(k, {momentum_N_ / scale, massFlow_kg_s_ / scale, there / scale}, found)) {
+    if (!solve(k, {momentum_N_ / scale, massFlow_kg_s_ / scale, (there + layer) / scale}, found)) {
       if (depth >= 8) throw std::runtime_error("free jet: no such profiles carry its fluxes at x = " + std::to_string(to) + " m");
       const double half = x + 0.5 * (to - x);
       self(self, half, depth + 1);
       self(self, to, depth + 1);
       return;
     }
-    last = started ? now : Unknowns{0.0, 1.0, 1.0};
+    last = now;
     lastX = x;
     now = found;
     x = to;
     mass = there;
-    started = true;
   };
   // The core's end, where the profiles' course has a kink, gets a row of its own. Both cores end there, and the mixture is the excess speed up to there,
   // so that momentum alone gives the width, that the mass, and that the distance from the last row.
@@ -344,20 +349,20 @@ void FreeJet::march(double length_m) {
       logWidth -= std::clamp(miss * momentum_N_ / (scale * sum.slope[0][0]), -0.5, 0.5);
     }
     constexpr int kSteps = 8;  // Simpson's rule for dx = dM/(dM/dx)
-    const double h = (sum.value[2] * scale - fromMass) / kSteps;
+    const double h = (sum.value[2] * scale - layer - fromMass) / kSteps;
     double distance = 0.0;
     for (int i = 0; i < kSteps; ++i)
       distance += h / 6.0 * (1.0 / entrainment(fromMass + i * h) + 4.0 / entrainment(fromMass + (i + 0.5) * h) + 1.0 / entrainment(fromMass + (i + 1) * h));
     now = {logWidth, 0.0, 0.0};
     last = now;
     lastX = x = fromX + distance;
-    mass = sum.value[2] * scale;
+    mass = sum.value[2] * scale - layer;
   };
   auto keep = [&] { rows_.push_back(filled(k, x, now[1], k.radius_m * std::exp(now[0]), now[2])); };
 
   rows_.clear();
   rows_.reserve(160);
-  rows_.push_back(filled(k, 0.0, 1.0, 0.0, 1.0));
+  keep();
   bool core = true;
   while (core && x < longest_m) {
     double to = k.rowScale_m * std::expm1(static_cast<double>(rows_.size()) * k.rowLogRatio);
@@ -367,7 +372,7 @@ void FreeJet::march(double length_m) {
     step(step, to, 0);
     if (now[1] < 0.0) {
       core = false;
-      coreEnd(beforeMass, beforeX, beforeX > 0.0 ? before[0] : 0.0);
+      coreEnd(beforeMass, beforeX, before[0]);
     }
     keep();
   }
@@ -435,7 +440,6 @@ double FreeJet::reach_m(double x_m, double part) const {
 
 JetFluxes FreeJet::fluxes(double x_m) const {
   const JetRow row = at(x_m);
-  if (!(row.widthU_m > 0.0)) return {momentum_N_, massFlow_kg_s_ * constants_.excessEnthalpy_J_kg, massFlow_kg_s_, massFlow_kg_s_};
   const Integrals sum = integrate(constants_, row.widthU_m / constants_.radius_m, row.shapeU, row.shapeZ);
   const double scale = 2.0 * kPi * constants_.radius_m * constants_.radius_m;
   return {scale * sum.value[0], scale * sum.value[1] * constants_.excessEnthalpy_J_kg, scale * sum.value[1], scale * sum.value[2]};

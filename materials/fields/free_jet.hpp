@@ -15,12 +15,15 @@
 //                    Z ~ (u/uc)^Sc_t (Hinze, Turbulence (1975), 6-8; Pope 10.2: 0.7). Along the core 1: then mixture is excess speed over that of the
 //                    nozzle (Crocco's relation), whatever the density, and both cores end together. Between them chosen: a ratio of 1.2 from the nozzle on
 //                    would end the mixture's core first, and in a supersonic jet leave cold gas at full speed on the axis.
-//   entrained mass   int rho (u - U) + rho U sqrt(F_u) dA = M(x), in still air the mass flow itself:
-//                    dM/dx = 0.32 (sqrt(pi)/2) sqrt(rho_a J) g r
+//   entrained mass   int rho (u - U) + rho U sqrt(F_u) dA = M(x) + ml, in still air the mass flow itself:
+//                    dM/dx = 0.32 (sqrt(pi)/2) sqrt(rho_a J) g r,  M(0) = m0
+//     ml: what the layer has that leaves the nozzle's lip: both profiles have the width w = 0.2 R there, and the core that carries J with it. Chosen: its
+//        momentum thickness is 0.26 w = 0.05 R, more than a model nozzle's boundary layer (0.005 ... 0.02 R) and of the order of the cooled film along an
+//        engine's liner; mixing from a sharp lip has that width 1.1 diameters behind it. At uniform density ml = 0.11 m0.
 //     0.32: Ricou and Spalding, J. Fluid Mech. 11 (1961) 21-32: M/m0 = 0.32 (x/d) sqrt(rho_a/rho_0) in still air.
 //     r: the start. Hill, J. Fluid Mech. 51 (1972) 773-779: a third of the full rate one diameter behind the nozzle, rising to it at 13; here a straight
 //        line through these two, with d sqrt(rho_0/rho_a) for the diameter as in Ricou and Spalding: r = min(1, sqrt(25 + 36 m)/18), m = (M/m0 - 1)/0.32.
-//        So in still air M/m0 = 0.32 (x/d_e - 1.57) from x = 13 d_e on: 7.8 % below Ricou and Spalding's line at 20 d_e, 1.6 % at 100 d_e.
+//        So in still air (M + ml)/m0 = 0.32 (x/d_e - 1.57) + 0.11 from x = 13 d_e on: 6.1 % below Ricou and Spalding's line at 20 d_e, 1.2 % at 100 d_e.
 //     g: co-flow. The top hat of equal mass and momentum flux, whose excess speed is dU = J/M, widens as dB/dx ~ dU/(U + dU) (spreading hypothesis:
 //        Chu, Lee and Chu, J. Hydraul. Eng. 125 (1999) 193-204; Lee and Chu, Turbulent Jets and Plumes (2003)). With J constant that is
 //        g = 2 sqrt(1 + k)/(2 + k), k = U M / J: 1 in still air, width ~ x^(1/3) where the excess is small.

@@ -40,13 +40,16 @@ constexpr double kGasConstant = 8.314462618;  // J/(mol K), CODATA 2018
 constexpr double kAtmosphere_Pa = 101325.0;   // amounts of gases are per this
 constexpr double kOutside = 2.63;             // exp(-2.63^2) = 0.001
 constexpr double kFadedFrom = 0.8;            // of the length
-constexpr double kFinest = 1.0 / 3.0;         // of a nozzle's radius: lines so far apart see a top hat's width to some percent, and its sum well
 constexpr double kFinestOfWidth = 0.5;        // of a Gaussian's width: what is hot of it is narrower than its gas
-constexpr int kPieces = kFieldKinds;          // of a jet, ever longer: lines lie closer together in those that are finer
 constexpr double kAlong = 0.3;                // of the way from the nozzle: over that it changes along itself
-constexpr double kSlowedWithin = 60.0;        // diameters: behind that it is far colder than where it leaves
-constexpr int kAcross = 12;                   // places across it that are looked at
+constexpr double kFirstPiece = 2.0;           // of a nozzle's radius; then each piece ends so much farther: lines lie closer together where it is finer
+constexpr double kNextPiece = 1.6;
+constexpr double kFirstAlong = 0.4;  // of a nozzle's radius: the same of the first, where it begins within one
+constexpr double kFadeAlong = 0.5;   // of the stretch that it fades on: the same there
 constexpr int kLooks = 64;
+constexpr double kSlowedWithin = 60.0;        // diameters: behind that it is far colder than where it leaves
+constexpr int kAcross = 24;                   // places across it that are looked at
+constexpr double kBetween = 1.003;            // it is hotter between these by so much at most
 constexpr int kCones = 4;              // jets.field.glsl
 constexpr std::size_t kMostKept = 64;  // 4 s of a ramp at 15 frames a second; 10 kB each
 constexpr double kHalf_s = 0.005;      // half of the time that a speed is told over: 1 g changes it by 0.1 m/s in twice that
@@ -61,7 +64,7 @@ glm::dmat3 axesAlong(const glm::dvec3& direction) {
 }
 
 /// Radii at both ends of cones whose common inside holds a jet's outline: lines along the outline's upper hull.
-std::array<glm::dvec2, kCones> boundsOf(const std::vector<glm::dvec2>& outline, double length_m) {
+std::array<glm::dvec2, kCones> boundsOf(const std::vector<glm::dvec2>& outline, double ramp_m, double length_m) {
   std::vector<glm::dvec2> hull;
   for (const glm::dvec2& p : outline) {
     while (hull.size() > 1) {
@@ -71,9 +74,9 @@ std::array<glm::dvec2, kCones> boundsOf(const std::vector<glm::dvec2>& outline, 
     }
     hull.push_back(p);
   }
-  const auto endsOf = [length_m](const glm::dvec2& a, const glm::dvec2& b) {
+  const auto endsOf = [ramp_m, length_m](const glm::dvec2& a, const glm::dvec2& b) {
     const double slope = (b.y - a.y) / (b.x - a.x);
-    return glm::dvec2(a.y - slope * a.x, a.y + slope * (length_m - a.x));
+    return glm::dvec2(a.y - slope * (a.x + ramp_m), a.y + slope * (length_m - a.x));
   };
   std::array<glm::dvec2, kCones> cones;
   // Sides of the hull at even steps of the logarithm of x.
@@ -104,10 +107,7 @@ class JetsState : public FieldState {
     length_m = std::min(length_m, k.length_m);
     const int count = static_cast<int>(nozzles.size());
     auto& t = own_;
-    const auto border = [length_m](int piece) {
-      const double part = static_cast<double>(piece) / kPieces;
-      return length_m * part * part;
-    };
+    const double ramp = kJetRamp * k.radius_m;
     for (int j = 0; j < count; ++j) t.emplace_back(nozzles[static_cast<std::size_t>(j)], count - j);
     const double faded = kFadedFrom * length_m;
     t.emplace_back(k.radius_m, length_m, faded, 1.0 / (length_m - faded));
@@ -140,44 +140,52 @@ class JetsState : public FieldState {
     }
     t.push_back(moles);
     t.push_back(densities);
-    std::vector<glm::dvec2> outline;
+    const auto outlineAt = [](const JetRow& row) { return row.coreZ_m + kOutside * row.widthZ_m; };
+    std::vector<glm::dvec2> outline{{-ramp, outlineAt(jet.rows().front())}};
     for (const JetRow& row : jet.rows()) {
       const double x = std::min(row.x_m, length_m);
       const JetRow here = x < row.x_m ? jet.at(x) : row;
-      outline.emplace_back(x, here.coreZ_m + kOutside * here.widthZ_m);
+      outline.emplace_back(x, outlineAt(here));
       if (row.x_m >= length_m) break;
     }
-    const auto cones = boundsOf(outline, length_m);
+    const auto cones = boundsOf(outline, ramp, length_m);
     t.emplace_back(cones[0].x, cones[0].y, cones[1].x, cones[1].y);
     t.emplace_back(cones[2].x, cones[2].y, cones[3].x, cones[3].y);
     const double coreLength = std::min(k.coreLength_m, length_m);
-    t.emplace_back(coreLength, jet.at(coreLength).coreZ_m, 0.0, 0.0);
+    t.emplace_back(coreLength, jet.at(coreLength).coreZ_m, jet.at(0.0).coreZ_m, ramp);
     for (const JetRow& row : jet.rows()) t.emplace_back(row.x_m, row.shapeU, row.widthU_m, row.shapeZ);
 
     const auto radiusAt = [&](double x) {
       double radius = 1e300;
-      for (const auto& c : cones) radius = std::min(radius, c.x + (c.y - c.x) * x / length_m);
+      for (const auto& c : cones) radius = std::min(radius, c.x + (c.y - c.x) * (x + ramp) / (length_m + ramp));
       return radius;
     };
     // The common inside of cones bulges: its widest place is at an end or where two of them cross.
-    double widest = 0.0;
-    for (int i = 0; i <= kLooks; ++i) widest = std::max(widest, radiusAt(length_m * i / kLooks));
-    widest *= 1.0 + 2.0 / kLooks;
+    const auto widestIn = [&](double from, double to) {
+      double wide = 0.0;
+      for (int i = 0; i <= kLooks; ++i) wide = std::max(wide, radiusAt(from + (to - from) * i / kLooks));
+      return wide * (1.0 + 2.0 / kLooks);
+    };
+    const double widest = widestIn(-ramp, length_m);
+    std::vector<double> border{-ramp};
+    for (double x = std::min(kFirstPiece * k.radius_m, length_m); border.back() < length_m; x = kNextPiece * x < 0.9 * length_m ? kNextPiece * x : length_m)
+      border.push_back(x);
+    const int pieces = static_cast<int>(border.size()) - 1;
     low = glm::dvec3(1e300), high = glm::dvec3(-1e300);
     for (int j = 0; j < count; ++j) {
       const glm::dvec3 at = nozzles[static_cast<std::size_t>(j)];
-      low = glm::min(low, at - glm::dvec3(0.0, widest, widest));
+      low = glm::min(low, at - glm::dvec3(ramp, widest, widest));
       high = glm::max(high, at + glm::dvec3(length_m, widest, widest));
-      for (int s = 0; s < kPieces; ++s) {
-        const double from = border(s), to = border(s + 1);
-        double wide = 0.0;
-        for (int i = 0; i <= kLooks; ++i) wide = std::max(wide, radiusAt(from + (to - from) * i / kLooks));
-        const double fine = std::max(kFinest * k.radius_m, kFinestOfWidth * jet.at(from).widthZ_m);
-        elements.push_back({at + glm::dvec3(0.5 * (from + to), 0.0, 0.0), std::hypot(0.5 * (to - from), wide) * (1.0 + 2.0 / kLooks), j, fine, s,
-                            glm::dvec3(std::max(2.0 * k.radius_m, kAlong * 0.5 * (from + to)), 0.0, 0.0)});
+      for (int s = 0; s < pieces; ++s) {
+        const double from = border[static_cast<std::size_t>(s)], to = border[static_cast<std::size_t>(s) + 1];
+        double along = s == 0 ? kFirstAlong * k.radius_m : std::max(kFirstPiece * k.radius_m, kAlong * 0.5 * (from + to));
+        if (to > faded) along = std::min(along, kFadeAlong * (length_m - faded));
+        const double wide = widestIn(from, to), half = 0.5 * (to - from);
+        elements.push_back({at + glm::dvec3(0.5 * (from + to), 0.0, 0.0), std::hypot(half, wide), j, kFinestOfWidth * jet.at(from).widthZ_m,
+                            s * kFieldKinds / pieces, glm::dvec3(along, 0.0, 0.0), glm::dvec3(half, wide, wide)});
       }
     }
-    finest_m = kFinest * k.radius_m;
+    finest_m = elements.front().finest_m;
     auto single = std::make_shared<FieldTexels>();
     for (const glm::dvec4& v : t) single->texel.emplace_back(v);
     texels = single;
@@ -389,7 +397,7 @@ double hottest_K(const NozzleFlow& flow, const CoFlow& around) {
   for (const JetRow& row : jet.rows())
     for (int i = 0; i <= kAcross; ++i)
       hottest = std::max(hottest, jetState(jet.constants(), row, row.coreU_m + 2.0 * row.widthU_m * i / kAcross).temperature_K);
-  return hottest;
+  return kBetween * hottest;
 }
 }  // namespace
 

@@ -4,7 +4,8 @@
 // Gases: what the nozzle has of CO2, H2O and CO [atm m], soot [m: volume fraction x length] and alumina [kg/m2], each in excess over the air around, which the
 // atmosphere has already. What overlaps of two jets is added. Left out: jets bent by a turn, what a body does to the flow behind it (a wake, a base), jets
 // that hit something.
-// Bounded where a thousandth of the mixture fraction of a cross-section lies outside; it fades out over the last fifth of its length, so that no end shows.
+// Bounded where a thousandth of the mixture fraction of a cross-section lies outside; it begins softly (kJetRamp) and fades out over the last fifth of its
+// length, so that no end shows.
 #include <memory>
 #include <optional>
 #include <vector>
@@ -34,6 +35,10 @@ struct JetsSetup {
 
 /// A thing that starts or stops takes so long: its throttle is the mean over this time before. About what a motor's igniter takes; nothing pops.
 constexpr double kJetRise_s = 0.1;
+
+/// A jet begins from so many radii before its nozzle's plane to as many behind, as 3 x^2 - 2 x^3: what a line along it sums up stays. Chosen: no nozzle's end
+/// is a plane (petals, a view into it); and a picture's lines see where it is.
+constexpr double kJetRamp = 0.5;
 
 class JetsSource : public FieldSource {
  public:

@@ -44,10 +44,13 @@ double intensityFromTheSide(const FreeJet& jet, const CoFlow& around, double len
   double intensity = 0.0;
   std::vector<double> depth(um.size()), radiance(um.size()), passed(um.size());
   for (int i = 0; i < kPlaces; ++i) {
-    const double part = (i + 0.5) / kPlaces, x = length_m * part * part, dx = length_m * 2.0 * part / kPlaces;
+    // From where it begins to where it has faded: kJetRamp, and the last fifth of its length.
+    const double ramp = kJetRamp * jet.constants().radius_m, part = (i + 0.5) / kPlaces, place = (length_m + ramp) * part * part - ramp,
+                 dx = (length_m + ramp) * 2.0 * part / kPlaces, x = std::max(place, 0.0), begun = std::min(0.5 * (place + ramp) / ramp, 1.0);
     const JetRow row = jet.at(x);
     const double wide = row.coreZ_m + 3.5 * row.widthZ_m;
-    const double left = std::clamp((length_m - x) / (0.2 * length_m), 0.0, 1.0), present = left * left * (3.0 - 2.0 * left);
+    const double left = std::clamp((length_m - x) / (0.2 * length_m), 0.0, 1.0),
+                 present = left * left * (3.0 - 2.0 * left) * begun * begun * (3.0 - 2.0 * begun);
     for (int j = 0; j < kLines; ++j) {
       const double y = wide * (j + 0.5) / kLines, half = std::sqrt(wide * wide - y * y), dz = half / kSlabs;
       std::fill(radiance.begin(), radiance.end(), 0.0);

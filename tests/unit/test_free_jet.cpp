@@ -147,7 +147,7 @@ TEST(FreeJet, EntrainsAsRicouAndSpaldingMeasured) {
 // The start of entrainment: Hill (1972): a third of the full rate one diameter behind the nozzle, all of it from 13 on.
 TEST(FreeJet, EntrainmentRisesAsHillMeasured) {
   const FreeJet jet(airJet(), {}, 40.0);
-  auto rate = [&](double x) { return (jet.fluxes(x + 0.05).mass_kg_s - jet.fluxes(x - 0.05).mass_kg_s) / 0.1 / jet.fluxes(0.0).mass_kg_s; };
+  auto rate = [&](double x) { return (jet.fluxes(x + 0.05).mass_kg_s - jet.fluxes(x - 0.05).mass_kg_s) / 0.1 / jet.fluxes(0.0).mixture_kg_s; };
   // 3 %: mass over a difference of a tenth of a diameter between rows 1e-4 true
   EXPECT_NEAR(rate(1.0) / 0.32, 1.0 / 3.0, 0.03);
   EXPECT_NEAR(rate(7.0) / 0.32, 2.0 / 3.0, 0.03);
@@ -182,18 +182,24 @@ TEST(FreeJet, DecaysAndSpreadsAsMeasuredWhereIsothermal) {
   std::cout << "isothermal: B " << decay << ", origin " << origin << " d, spread " << spread << ", mixture " << mixing << " d/x, core " << core << " d\n";
 }
 
-// A uniform Gaussian jet has no freedom left: M/m0 = 2 u0/uc, J = rho pi w^2 uc^2/2. The core ends where M = 2 m0: at 6.72 d by Hill's line.
+// A uniform Gaussian jet has no freedom left: M/m0 = 2 u0/uc, J = rho pi w^2 uc^2/2. The core ends where M = 2 m0. At the nozzle: a core c and a layer of width
+// w = 0.2 R have J = m0 u0: c^2 + c w sqrt(pi/2) + w^2/2 = R^2, and the mass c^2 + c w sqrt(pi) + w^2.
 TEST(FreeJet, MeetsClosedFormsWhereIsothermal) {
   NozzleFlow slow = airJet(1.0);  // no warmth from friction
   const FreeJet jet(slow, {}, 100.0);
+  const double w = 0.2, slope = w * std::sqrt(0.5 * kPiHere), core = 0.5 * (std::sqrt(slope * slope + 4.0 - 2.0 * w * w) - slope);
+  const double layer = core * core + core * w * std::sqrt(kPiHere) + w * w - 1.0;
+  EXPECT_NEAR(jet.at(0.0).coreU_m, 0.5 * core, 1e-4);
+  EXPECT_NEAR(jet.fluxes(0.0).mass_kg_s / jet.fluxes(0.0).mixture_kg_s, 1.0 + layer, 1e-3);
   for (const JetRow& row : jet.rows()) {
     if (row.coreU_m > 0.0 || row.x_m < 6.0) continue;
-    const double mass = row.x_m < 13.0 ? 1.0 + 0.32 * (5.0 * row.x_m / 18.0 + row.x_m * row.x_m / 36.0) : 1.0 + 0.32 * (13.0 * 23.0 / 36.0 + row.x_m - 13.0);
+    const double mass =
+        layer + (row.x_m < 13.0 ? 1.0 + 0.32 * (5.0 * row.x_m / 18.0 + row.x_m * row.x_m / 36.0) : 1.0 + 0.32 * (13.0 * 23.0 / 36.0 + row.x_m - 13.0));
     // 1e-3: air at the nozzle is air without argon in its specific heat only; the kinetic 0.5 J/kg is 2e-6 of its enthalpy
     EXPECT_NEAR(row.speed_m_s * mass / 2.0, 1.0, 1e-3) << row.x_m;
     EXPECT_NEAR(row.widthU_m * row.speed_m_s * std::sqrt(2.0), 1.0, 1e-3) << row.x_m;
   }
-  EXPECT_NEAR(jet.constants().coreLength_m, -5.0 + std::sqrt(25.0 + 36.0 / 0.32), 5e-3);
+  EXPECT_NEAR(jet.constants().coreLength_m, -5.0 + std::sqrt(25.0 + 36.0 * (1.0 - layer) / 0.32), 5e-3);
 }
 
 TEST(FreeJet, MixtureIsExcessSpeedAlongTheCore) {
@@ -212,10 +218,11 @@ TEST(FreeJet, IsTheNozzleAtTheNozzle) {
   const CoFlow around{101325.0, 288.15, 100.0, 420e-6, 0.01};
   const NozzleFlow nozzle = preset("turbofan_afterburner", around);
   const FreeJet jet(nozzle, around, 100.0 * nozzle.diameter_m);
-  const double radius = 0.5 * nozzle.diameter_m;
+  EXPECT_NEAR(jet.at(0.0).widthU_m, 0.1 * nozzle.diameter_m, 1e-9);
   for (double x : {0.0, 1e-6, 1e-3}) {
-    const double part = x == 0.0 ? 0.999 : 0.99;  // a top hat, then with a shoulder of a thousandth
-    const JetState in = jet.stateAt(x * nozzle.diameter_m, part * radius), out = jet.stateAt(x * nozzle.diameter_m, 1.02 * radius);
+    const JetRow row = jet.at(x * nozzle.diameter_m);  // its core, and where the layer has fallen to exp(-25)
+    EXPECT_GT(row.coreU_m, 0.4 * nozzle.diameter_m);
+    const JetState in = jet.stateAt(row.x_m, 0.999 * std::min(row.coreU_m, row.coreZ_m)), out = jet.stateAt(row.x_m, row.coreZ_m + 5.0 * row.widthZ_m);
     EXPECT_NEAR(in.temperature_K / nozzle.temperature_K, 1.0, 1e-9);
     EXPECT_NEAR(in.speed_m_s / nozzle.speed_m_s, 1.0, 1e-9);
     EXPECT_NEAR(in.mixture, 1.0, 1e-9);
@@ -241,8 +248,9 @@ TEST(FreeJet, MixesLessInAFlowAlongIt) {
   const FreeJet jet(airJet(400.0), around, 4000.0), still(airJet(400.0), {}, 100.0);
   const double momentum = jet.fluxes(0.0).excessMomentum_N;
   const double slope = 0.32 * 0.5 * std::sqrt(kPiHere) * std::sqrt(airDensity(around) / momentum) * around.speed_m_s;
+  const double layer = jet.fluxes(0.0).mass_kg_s - jet.fluxes(0.0).mixture_kg_s;
   auto course = [&](double x) {
-    const double q = std::sqrt(1.0 + around.speed_m_s * jet.fluxes(x).mass_kg_s / momentum);
+    const double q = std::sqrt(1.0 + around.speed_m_s * (jet.fluxes(x).mass_kg_s - layer) / momentum);
     return q * q * q / 3.0 + q;
   };
   // Mixing has begun where M = 3.66 m0; between rows mass is 1e-3 true, q^3/3 + q too.
@@ -328,7 +336,6 @@ TEST(FreeJet, ConstantsAndRowsAreAllAShaderNeeds) {
       for (int j = 0; j <= 20; ++j) {
         const float x = static_cast<float>(jet.length_m() * std::pow(i / 100.0, 3.0) * 0.9999);
         const float r = static_cast<float>(1.5 * jet.mixtureRadius_m(x, 0.5 * jet.at(x).mixture) * j / 20.0);
-        if (x == 0.0f && std::abs(r / jet.constants().radius_m - 1.0) < 1e-5) continue;  // the step itself
         const JetState s = jet.stateAt(x, r);
         const FloatState got = asAShader(jet, x, r);
         // 24 bits, an exponential of up to 5 widths, (r - c)/w with w a fiftieth of r near the nozzle: 1e-4 of each, of the partial pressures of a whole

@@ -1,6 +1,8 @@
 // A flow on a regular grid, trilinear between nodes.
 //   Texels: 0 first node, nodes along x   1 1/spacing, nodes along y   2 last node, nodes along z   3, 4 a gas's share in what weighs temperatures
 //   5 texels of a node, 0, 0, 0; then the nodes, x fastest: temperature and the first three gases; the next four.
+const bool fieldMixes = false;
+
 int gridNode_ = 0;  // texel of the lowest corner's
 int gridX_ = 0, gridY_ = 0, gridZ_ = 0;  // to its neighbours'
 Vec3 gridPart_ = Vec3(0.0);

@@ -4,11 +4,14 @@
 //     0 radius, length, where it begins to fade, 1/(length - that)     1 1/rowScale, 1/rowLogRatio, coreLength, 1/farLogRatio
 //     2 coreRow, rowCount - 2, strength, nozzles                       3 flow, 4 cp, cpExcess, moles, molesExcess: see jet.glsl
 //     5 which of the amounts are moles, 6 which are density/pressure [1/K]: 1 there
-//     7, 8 radii at both ends of four cones that bound it              9 length and end radius of the core
+//     7, 8 radii at both ends of four cones that bound it              9 length, end radius, first radius of the core, ramp: half of the stretch around its
+//     nozzle on which it begins
 //     then the rows.
 //@use sim/radiometry/glsl/chord.glsl
 //@use materials/fields/glsl/jet.glsl
 //@use materials/fields/glsl/cuts.glsl
+
+const bool fieldMixes = false;
 
 // Of the line at hand, in sigma: its ends; where it enters and leaves the uniform cores of two nozzles at most, and how many steps end there. t and scale of
 // sigma; steps.
@@ -16,6 +19,7 @@ Vec2 jetsEnds_ = Vec2(0.0);
 Vec4 jetsKnots_ = Vec4(0.0);
 Vec4 jetsSteps_ = Vec4(0.0);
 Vec3 jetsMap_ = Vec3(0.0);
+Real jetsPresent_ = 0.0;        // of a step, of that of all nozzles so far that has begun and faded least: what there is of it
 Vec3 jetsMixture_ = Vec3(0.0);  // of a step, of all nozzles so far: mixture fraction, excess speed, what has not faded of the first
 
 Vec2 fieldChord(int at) {
@@ -23,12 +27,14 @@ Vec2 fieldChord(int at) {
   int own = at + int(place.w);
   Vec4 first = fieldTexel(own + 7);
   Vec4 second = fieldTexel(own + 8);
-  Real middle = 0.5 * fieldTexel(own).y;
-  Vec3 p = q_ - Vec3(place.x + middle, place.y, place.z);
-  Vec2 a = coneChord(p, d_, middle, first.x, first.y);
-  Vec2 b = coneChord(p, d_, middle, first.z, first.w);
-  Vec2 c = coneChord(p, d_, middle, second.x, second.y);
-  Vec2 e = coneChord(p, d_, middle, second.z, second.w);
+  Real length_ = fieldTexel(own).y;
+  Real ramp = fieldTexel(own + 9).w;
+  Real half_ = 0.5 * (length_ + ramp);
+  Vec3 p = q_ - Vec3(place.x + 0.5 * (length_ - ramp), place.y, place.z);
+  Vec2 a = coneChord(p, d_, half_, first.x, first.y);
+  Vec2 b = coneChord(p, d_, half_, first.z, first.w);
+  Vec2 c = coneChord(p, d_, half_, second.x, second.y);
+  Vec2 e = coneChord(p, d_, half_, second.z, second.w);
   if (!(a.y > a.x && b.y > b.x && c.y > c.x && e.y > e.x)) return Vec2(0.0, 0.0);
   return Vec2(max(max(a.x, b.x), max(c.x, e.x)), min(min(a.y, b.y), min(c.y, e.y)));
 }
@@ -63,8 +69,8 @@ void fieldLine(int at, int steps) {
     low = min(low, nearest);
     high = max(high, nearest);
     wide = max(wide, sqrt(dot(there, there) + 4.0 * size.x * size.x) / perT_);
-    Vec2 within = coneChord(p - Vec3(0.5 * core.x, 0.0, 0.0), d_, 0.5 * core.x, size.x, core.y);
-    if (within.y > within.x) cores = jetsCores(cores, Vec2(max(within.x, enter_), min(within.y, leave_)));
+    Vec2 within = coneChord(p - Vec3(0.5 * (core.w + core.x), 0.0, 0.0), d_, 0.5 * (core.x - core.w), core.z, core.y);
+    if (core.x > core.w && within.y > within.x) cores = jetsCores(cores, Vec2(max(within.x, enter_), min(within.y, leave_)));
   }
   Vec2 scale = high >= low ? Vec2(0.5 * (low + high), 1.0 / max(wide, 0.5 * (high - low))) : Vec2(0.5 * (enter_ + leave_), 1.0 / max(leave_ - enter_, 1.0e-6));
   jetsEnds_ = Vec2(cutSigma(enter_, scale), cutSigma(leave_, scale));
@@ -122,17 +128,21 @@ void fieldAdd(int at, Real from, Real to) {
   int own = at + int(head.w);
   Vec3 p = q_ + (0.5 * (from + to)) * d_ - Vec3(head.x, head.y, head.z);
   Vec4 size = fieldTexel(own);
-  if (p.x < 0.0 || p.x >= size.y) return;
+  Real ramp = fieldTexel(own + 9).w;
+  if (p.x <= -ramp || p.x >= size.y) return;
   Vec4 counts = fieldTexel(own + 2);
-  int i = int(min(max(jetRow(p.x, fieldTexel(own + 1), counts.x), 0.0), counts.y));
+  Real x = max(p.x, 0.0);
+  int i = int(min(max(jetRow(x, fieldTexel(own + 1), counts.x), 0.0), counts.y));
   Vec4 a = fieldTexel(own + 10 + i);
   Vec4 b = fieldTexel(own + 11 + i);
-  Vec4 row = a + (p.x - a.x) / (b.x - a.x) * (b - a);
+  Vec4 row = a + (x - a.x) / (b.x - a.x) * (b - a);
   Real left = min((size.y - p.x) * size.w, 1.0);
-  Real present = counts.z * left * left * (3.0 - 2.0 * left);
+  Real begun = min(0.5 * (p.x + ramp) / ramp, 1.0);
+  Real present = counts.z * left * left * (3.0 - 2.0 * left) * begun * begun * (3.0 - 2.0 * begun);
   Vec2 here = jetMixture(row, size.x, sqrt(p.y * p.y + p.z * p.z));
   jetsMixture_ = (weight_ > 0.0 ? jetsMixture_ : Vec3(0.0)) + Vec3(here.x, here.y, present * here.x);
-  jetsMixture_ = Vec3(min(jetsMixture_.x, 1.0), min(jetsMixture_.y, 1.0), min(jetsMixture_.z, 1.0));
+  jetsPresent_ = weight_ > 0.0 ? max(jetsPresent_, present) : present;
+  jetsMixture_ = Vec3(min(jetsMixture_.x, 1.0), min(jetsMixture_.y, 1.0), min(jetsMixture_.z, jetsPresent_));
   // Of all nozzles together, anew with each.
   Vec4 heat = fieldTexel(own + 4);
   Real temperature = jetTemperature(Vec2(jetsMixture_.x, jetsMixture_.y), fieldTexel(own + 3), heat);
