@@ -8,6 +8,9 @@
 namespace pitviper {
 namespace {
 
+/// Temperatures within this part of each other count as their mean: what they send at 3 um and 500 K is then true to (c2/(lambda T))^2 kAlike^2/24 = 1e-4.
+constexpr double kAlike = 0.005;
+
 glm::dvec3 chordOf(const Puff& p, const glm::dvec3& origin, const glm::dvec3& direction) {
   const double squash = p.radius_m / p.length_m() - 1.0;
   return physics::puffChord(physics::puffScaled(origin - p.centre, p.axis, squash, p.radius_m), physics::puffScaled(direction, p.axis, squash, p.radius_m));
@@ -64,7 +67,6 @@ PuffsState::PuffsState(std::vector<Puff> puffs) : puffs_(std::move(puffs)) {
   high = -low;
   auto numbers = std::make_shared<FieldTexels>();
   finest_m = physics::kFar;
-  alone = 1.33;  // soft: two lines are no better than one
   for (const Puff& p : puffs_) {
     const glm::dvec3 centre = p.centre - origin;
     const double reach = reachOf(p);
@@ -106,32 +108,37 @@ void PuffsState::along(const FieldLine& line, int steps, std::vector<FieldStep>&
   if (met.empty() || steps < 1) return;
   const int count = static_cast<int>(std::clamp(std::ceil((leave - enter) / (0.25 * finest_m)), 1.0, static_cast<double>(steps)));
   const PuffCuts cuts(puffs_.front(), line, enter, leave);
-  for (int k = 0; k < count; ++k) {
-    FieldStep step;
-    step.enter_m = cuts.at(static_cast<double>(k) / count);
-    step.leave_m = cuts.at((k + 1.0) / count);
+  // What a stretch holds is even, but at temperatures that send very differently: those alike to kAlike are one step, all of them on the same stretch.
+  struct Kind {
+    long of = 0;
     double weight = 0.0, heat = 0.0, gained = 0.0, lit = 0.0, shade = 0.0;
+    std::array<double, kMostGases> amount{};
+  };
+  std::vector<Kind> kinds;
+  for (int k = 0; k < count; ++k) {
+    const double enter_m = cuts.at(static_cast<double>(k) / count), leave_m = cuts.at((k + 1.0) / count);
+    kinds.clear();
     for (const Met& m : met) {
       const Puff& p = *m.puff;
-      const double column = densityOf(p) * physics::puffColumn(m.chord, step.enter_m, step.leave_m);
+      const double column = densityOf(p) * physics::puffColumn(m.chord, enter_m, leave_m);
       if (!(column > 0.0)) continue;
+      const long of = std::lround(std::log(p.temperature_K) / kAlike);
+      auto kind = std::find_if(kinds.begin(), kinds.end(), [of](const Kind& other) { return other.of == of; });
+      if (kind == kinds.end()) kind = kinds.insert(kinds.end(), Kind{.of = of});
       double own = 0.0;
       for (std::size_t g = 0; g < kMostPuffGases; ++g) {
-        step.amount[g] += column * p.amount[g];
+        kind->amount[g] += column * p.amount[g];
         own += column * p.amount[g];
       }
-      weight += own;
-      heat += own * p.temperature_K;
-      gained += own * p.gain;
-      lit += own * p.sun;
-      shade += own * p.sunAmount;
+      kind->weight += own;
+      kind->heat += own * p.temperature_K;
+      kind->gained += own * p.gain;
+      kind->lit += own * p.sun;
+      kind->shade += own * p.sunAmount;
     }
-    if (!(weight > 0.0)) continue;
-    step.temperature_K = heat / weight;
-    step.gain = gained / weight;
-    step.sun = lit / weight;
-    step.sunAmount = shade / weight;
-    out.push_back(step);
+    for (const Kind& of : kinds)
+      if (of.weight > 0.0)
+        out.push_back({enter_m, leave_m, of.amount, of.heat / of.weight, 0.0, of.gained / of.weight, of.lit / of.weight, of.shade / of.weight});
   }
 }
 

@@ -33,7 +33,8 @@ class PuffsState : public FieldState {
  public:
   /// Its axes are the local frame's, moved to the first puff. One puff or more, radii above 0.
   explicit PuffsState(std::vector<Puff> puffs);
-  /// Equal parts of what lies between the first puff that the line meets and the last, each a quarter of finest_m or longer; none that holds nothing.
+  /// Equal parts of what lies between the first puff that the line meets and the last, each a quarter of finest_m or longer; none that holds nothing. Where
+  /// puffs of different temperatures share one, each temperature is a step of its own on the same stretch.
   void along(const FieldLine& line, int steps, std::vector<FieldStep>& out) const override;
   const std::vector<Puff>& puffs() const { return puffs_; }
 

@@ -49,6 +49,7 @@ vec3 d_;
 float perT_, enter_, leave_;
 vec4 amountLow_ = vec4(0.0), amountHigh_ = vec4(0.0);
 float weight_ = 0.0, heat_ = 0.0, gained_ = 0.0, lit_ = 0.0, shade_ = 0.0;
+void addTemperature(float weight, float temperature) {}
 //@slot field
 void main() {
   q_ = vec3(-10.0, (gl_FragCoord.xy - 32.0) / 6.0);
@@ -96,6 +97,8 @@ void main() {
           // Its parts are of the union of chords too; none is left out here, all being much longer than the puffs are fine.
           std::vector<FieldStep> all;
           state.along({q + state.origin, direction, -1e3, 1e3}, 3, all);
+          // Those of one stretch differ by their temperature alone.
+          all.erase(std::unique(all.begin(), all.end(), [](const FieldStep& a, const FieldStep& b) { return a.enter_m == b.enter_m; }), all.end());
           std::array<double, 4> want{};
           if (!all.empty() && all.size() < 3) continue;  // a third of the way that passes no puff is not among them
           if (!all.empty()) {

@@ -4,6 +4,8 @@
 //@use materials/fields/glsl/puff.glsl
 //@use materials/fields/glsl/cuts.glsl
 
+const bool fieldMixes = true;
+
 vec3 puffOn_(int at) {
   vec4 place = fieldTexel(at), form = fieldTexel(at + 1);
   return puffChord(puffScaled(q_ - place.xyz, form.xyz, form.w, place.w), puffScaled(d_, form.xyz, form.w, place.w));
@@ -32,6 +34,7 @@ void fieldAdd(int at, float from, float to) {
   if (column <= 0.0) return;
   vec4 amounts = fieldTexel(at + 2) * column, state = fieldTexel(at + 3);
   float weight = amounts.x + amounts.y + amounts.z + amounts.w;
+  addTemperature(weight, state.x);
   amountLow_ += amounts;
   weight_ += weight;
   heat_ += weight * state.x;
