@@ -6,7 +6,7 @@ namespace pitviper {
 namespace {
 
 /// A change of the planner makes old plans strangers.
-constexpr double kPlannerVersion = 77;
+constexpr double kPlannerVersion = 78;
 
 }  // namespace
 

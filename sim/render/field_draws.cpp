@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "sim/model/field_states.hpp"
-#include "sim/plan/field_steps.hpp"
 
 namespace pitviper {
 namespace {
@@ -16,11 +15,16 @@ namespace {
 constexpr int kTile_px = 8, kMostTilesAcross = 128;
 /// A field whose depth is less than this part of the way to it has one stretch of air across it: as kEven of its shader.
 constexpr double kEven = 0.1;
+/// Many samples of a zoomed view are one pixel's: lines through each may lie farther apart.
+constexpr double kOfMany = 2.0;
+/// llvmpipe ends all loops of a pixel after 65535 rounds in all (LP_MAX_TGSI_LOOP_ITERATIONS), without a word: fewer lines before that. Rounds of a line
+/// besides those of its elements and steps; each loop's last counts as well.
+constexpr double kMostRounds = 60000.0, kOtherRounds = 16.0;
 
 }  // namespace
 
-FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, const ShaderSlots& slots) {
-  const auto steps = fieldSteps(simulation, plan);
+FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, const ShaderSlots& slots)
+    : sampling_(FieldSampling::of(simulation, plan)) {
   for (size_t f = 0; f < simulation.fields.size(); ++f) {
     const FieldBody& field = simulation.fields[f];
     Body& body = bodies_.emplace_back(simulation, plan, field);
@@ -30,9 +34,6 @@ FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const Sha
     own.constants["LEVEL_FOURS"] = body.tables.levelFours;
     own.constants["FOURS"] = body.tables.fours;
     own.constants["SCATTERS"] = body.tables.scatters ? 1 : 0;
-    own.constants["BLACK_ENTRIES"] = kBlackEntries;
-    body.steps = steps[f];
-    own.constants["MOST_LINES"] = fieldLinesAtMost(plan.accuracy);
     for (const bool even : {false, true}) {
       own.constants["EVEN"] = even ? 1 : 0;
       std::string key = field.source->shader() + (even ? " far" : " near");
@@ -54,33 +55,54 @@ void FieldDraws::listTiles(const View& view, const FieldState& field, Body& body
   body.grid = {low.x, low.y, tiles.x, tile};
   struct List {
     std::vector<std::uint32_t> texel;
-    float across = 0.0f, perPixel = 0.0f;
+    FieldLines lines;
     int steps = 1;
   };
   std::vector<List> lists(static_cast<size_t>(tiles.x) * static_cast<size_t>(tiles.y));
-  for (const FieldElement& e : field.elements) {
-    if (body.steps[static_cast<size_t>(e.kind)] == 0) continue;
-    const ElementLines lines = elementLines(view, field, e);
-    if (lines.on.isEmpty()) continue;
-    const glm::ivec2 from = glm::clamp((glm::ivec2(glm::floor(lines.on.low)) - low) / tile, glm::ivec2(0), tiles - 1);
-    const glm::ivec2 to = glm::clamp((glm::ivec2(glm::ceil(lines.on.high)) - low) / tile, glm::ivec2(0), tiles - 1);
-    for (int y = from.y; y <= to.y; ++y)
-      for (int x = from.x; x <= to.x; ++x) {
-        List& list = lists[static_cast<size_t>(y * tiles.x + x)];
-        if (list.texel.empty() || list.texel.back() != static_cast<std::uint32_t>(e.texel)) list.texel.push_back(static_cast<std::uint32_t>(e.texel));
-        list.across = std::max(list.across, static_cast<float>(lines.across));
-        list.perPixel = std::max(list.perPixel, static_cast<float>(lines.perPixel));
-        list.steps = std::max(list.steps, body.steps[static_cast<size_t>(e.kind)]);
-      }
+  const auto tilesOf = [&](const glm::dvec2& from, const glm::dvec2& to, const auto& visit) {
+    const glm::ivec2 first = glm::clamp((glm::ivec2(glm::floor(from)) - low) / tile, glm::ivec2(0), tiles - 1);
+    const glm::ivec2 last = glm::clamp((glm::ivec2(glm::ceil(to)) - low) / tile, glm::ivec2(0), tiles - 1);
+    for (int y = first.y; y <= last.y; ++y)
+      for (int x = first.x; x <= last.x; ++x) visit(lists[static_cast<size_t>(y * tiles.x + x)]);
+  };
+  for (const FieldLines::Part& part : body.lines.parts) {
+    const FieldElement& e = field.elements[part.element];
+    const int steps = body.steps[static_cast<size_t>(e.kind)];
+    if (steps == 0) continue;
+    const auto texel = static_cast<std::uint32_t>(e.texel);
+    tilesOf(part.low, part.high, [&](List& list) {
+      if (list.texel.empty() || list.texel.back() != texel) list.texel.push_back(texel);
+      list.lines.parts.push_back(part);
+      list.steps = std::max(list.steps, steps);
+    });
   }
-  std::vector<std::uint32_t> words(5 * lists.size());
+  std::vector<std::uint32_t> words(3 * lists.size());
+  body.firstPixel = static_cast<int>(words.size());
+  const glm::ivec2 grid = tiles * tile;
+  words.resize(words.size() + 3 * static_cast<size_t>(grid.x) * static_cast<size_t>(grid.y));
+  const auto bits = [](double v) { return std::bit_cast<std::uint32_t>(static_cast<float>(v)); };
   for (size_t t = 0; t < lists.size(); ++t) {
-    words[5 * t] = static_cast<std::uint32_t>(words.size());
-    words[5 * t + 1] = static_cast<std::uint32_t>(lists[t].texel.size());
-    words[5 * t + 2] = std::bit_cast<std::uint32_t>(lists[t].across);
-    words[5 * t + 3] = std::bit_cast<std::uint32_t>(lists[t].perPixel);
-    words[5 * t + 4] = static_cast<std::uint32_t>(lists[t].steps);
-    words.insert(words.end(), lists[t].texel.begin(), lists[t].texel.end());
+    const List& list = lists[t];
+    words[3 * t] = static_cast<std::uint32_t>(words.size());
+    words[3 * t + 1] = static_cast<std::uint32_t>(list.texel.size());
+    words[3 * t + 2] = static_cast<std::uint32_t>(list.steps);
+    words.insert(words.end(), list.texel.begin(), list.texel.end());
+    if (list.texel.empty()) continue;
+    const double listed = static_cast<double>(list.texel.size()), rounds = 2.0 * listed + list.steps * (6.0 + 2.0 * listed) + kOtherRounds;
+    const int most = std::max(static_cast<int>(std::sqrt(kMostRounds / rounds)), 1);
+    const glm::ivec2 corner = glm::ivec2(static_cast<int>(t) % tiles.x, static_cast<int>(t) / tiles.x) * tile;
+    for (int y = corner.y; y < corner.y + tile; ++y)
+      for (int x = corner.x; x < corner.x + tile; ++x) {
+        const PixelLines p = pixelLines({&list.lines, 1}, low.x + x, low.y + y, std::min(most, kReferenceLines),
+                                        view.zoomed ? LinesApart{kOfMany * body.coarser, 1} : LinesApart{body.coarser, 2});
+        const size_t at = static_cast<size_t>(body.firstPixel) + 3 * static_cast<size_t>(y * grid.x + x);
+        const bool alone = p.within.size() == 1 && p.outside == 0.0;
+        words[at] = alone ? 0u : static_cast<std::uint32_t>(words.size());
+        words[at + 1] = static_cast<std::uint32_t>(p.within.size());
+        words[at + 2] = bits(p.outside);
+        for (const FilmLine& line : p.within)
+          if (!alone) words.insert(words.end(), {bits(line.at.x), bits(line.at.y), bits(line.share)});
+      }
   }
   body.tiles.upload(words);
 }
@@ -90,6 +112,7 @@ void FieldDraws::place(const View& view, const WorldState& state, std::vector<La
     Body& body = bodies_[f];
     const FieldState* field = fieldOf(state, f);
     body.state = field && !field->elements.empty() ? field : nullptr;
+    if (body.state) body.steps = sampling_->steps(f, state.time_s), body.coarser = sampling_->coarser(f, state.time_s);
     if (!body.state || fieldLines(view, *field).isEmpty()) continue;
     if (body.uploaded != field->texels) {
       body.texels.upload(field->texels->texel);
@@ -147,13 +170,12 @@ const Program& FieldDraws::use(int field) {
   const char* rows[3] = {"fieldRow0", "fieldRow1", "fieldRow2"};
   for (int r = 0; r < 3; ++r) glUniform4fv(program.uniform(rows[r]), 1, &body.row[r].x);
   glUniform1f(program.uniform("fieldFine"), body.fine);
-  const glm::vec2 low(body.lines.low), high(body.lines.high);
-  glUniform4f(program.uniform("fieldRect"), low.x, low.y, high.x, high.y);
-  glUniform1f(program.uniform("linesAlone"), body.state ? static_cast<float>(body.state->alone) : 1.0f);
+  glUniform1i(program.uniform("firstPixel"), body.firstPixel);
   glUniform2f(program.uniform("fieldRange"), body.range.x, body.range.y);
   glUniform4fv(program.uniform("gasLevels"), static_cast<GLsizei>(body.tables.temperatures.size()), &body.tables.temperatures[0].x);
   glUniform4i(program.uniform("tileGrid"), body.grid.x, body.grid.y, body.grid.z, body.grid.w);
-  glUniform4f(program.uniform("planckRange"), body.tables.firstInverse_K, body.tables.entriesPerInverse, static_cast<float>(body.tables.blackAt), 0.0f);
+  glUniform4f(program.uniform("planckRange"), body.tables.firstInverse_K, body.tables.entriesPerInverse, static_cast<float>(body.tables.blackAt),
+              static_cast<float>(body.tables.blackEntries - 1));
   return program;
 }
 

@@ -9,6 +9,7 @@
 
 #include "sim/gl/objects.hpp"
 #include "sim/model/field_lines.hpp"
+#include "sim/plan/field_sampling.hpp"
 #include "sim/render/field_tables.hpp"
 #include "sim/render/layer_order.hpp"
 #include "sim/render/shading_program.hpp"
@@ -33,7 +34,7 @@ class FieldDraws {
   struct Body {
     Body(const Simulation& simulation, const Plan& plan, const FieldBody& field) : tables(simulation, plan, field) {}
     FieldTables tables;
-    std::array<int, kFieldKinds> steps{};  ///< by kind of element
+    StepsByKind steps{};  ///< by kind of element
     Buffer spectra, texels, tiles;
     const Program *far = nullptr, *near = nullptr;  ///< of those with nearly even air across them, or any
     std::shared_ptr<const FieldTexels> uploaded;
@@ -44,9 +45,12 @@ class FieldDraws {
     float fine = 0.0f;
     glm::vec2 range{0.0f};
     glm::ivec4 grid{0};
+    int firstPixel = 0;
+    double coarser = 1.0;  ///< lines of pictures, than of the reference
   };
   void listTiles(const View& view, const FieldState& field, Body& body);
 
+  std::shared_ptr<const FieldSampling> sampling_;
   std::map<std::string, Program> programs_;
   std::deque<Body> bodies_;
 };

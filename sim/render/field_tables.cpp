@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <functional>
 
+#include "sim/radiometry/constants.hpp"
+
 namespace pitviper {
 namespace {
 
 /// A temperature above all.
 constexpr float kNever_K = 1e30f;
+/// Steps of c2/(lambda T) between entries of Planck's law: a straight line between two is off by an eighth of its square, 2e-4. How many there are.
+constexpr double kBlackStep = 0.04, kFewestBlack = 128.0, kMostBlack = 8192.0;
 
 void appendRow(std::vector<glm::vec4>& texels, const Plan& plan, const std::function<double(const SpectralNode&)>& value) {
   const size_t begin = texels.size(), nodes = plan.nodes.size();
@@ -76,11 +80,16 @@ FieldTables::FieldTables(const Simulation& sim, const Plan& plan, const FieldBod
   }
   const glm::dvec2 range = field.source->temperatures_K();
   const double coldest = std::max(range.x, 1.0), hottest = std::max(range.y, coldest * (1.0 + 1e-6));
-  const double first = 1.0 / hottest, step = (1.0 / coldest - first) / (kBlackEntries - 1);
+  double shortest = 1e3;
+  for (const SpectralNode& n : plan.nodes)
+    for (const auto& [wavelength_um, share] : n.members) shortest = std::min(shortest, wavelength_um);
+  const double first = 1.0 / hottest, range_perK = 1.0 / coldest - first;
+  blackEntries = static_cast<int>(std::clamp(range_perK * kSecondRadiation_umK / (shortest * kBlackStep), kFewestBlack, kMostBlack));
+  const double step = range_perK / (blackEntries - 1);
   firstInverse_K = static_cast<float>(first);
   entriesPerInverse = static_cast<float>(1.0 / step);
   blackAt = static_cast<int>(texels.size());
-  for (int k = 0; k < kBlackEntries; ++k) {
+  for (int k = 0; k < blackEntries; ++k) {
     const double temperature_K = 1.0 / (first + step * k);
     appendRow(texels, plan, [temperature_K](const SpectralNode& n) { return n.planck(temperature_K); });
   }
@@ -100,7 +109,5 @@ bool FieldTables::mix(const std::array<double, kMostGases>& share) {
   }
   return true;
 }
-
-int fieldLinesAtMost(double accuracy) { return accuracy >= 0.03 ? 144 : 987; }
 
 }  // namespace pitviper

@@ -19,7 +19,7 @@ class FieldTables {
 
   std::vector<glm::vec4> texels;
   std::vector<glm::vec4> temperatures;  ///< of each mixture `levelFours`, ended by some far above any
-  int mixtures = 0, levelFours = 1, fours = 0, blackAt = 0;
+  int mixtures = 0, levelFours = 1, fours = 0, blackAt = 0, blackEntries = 0;
   bool scatters = false;  ///< some gas has more than absorption
   float firstInverse_K = 0.0f, entriesPerInverse = 1.0f;
 
@@ -33,9 +33,5 @@ class FieldTables {
   std::vector<Mixture> mixed_;
   std::array<double, kMostGases> share_{};
 };
-constexpr int kBlackEntries = 384;
-
-/// Lines through a pixel at most.
-int fieldLinesAtMost(double accuracy);
 
 }  // namespace pitviper

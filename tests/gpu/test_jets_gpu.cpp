@@ -36,7 +36,7 @@ std::string camera(const glm::dvec3& at, double range_m, double offAxis_deg, dou
 )";
 }
 
-/// Every pixel is within what was asked for. Steps have a third of that on the few lines that were looked at to choose them (sim/plan/field_steps.cpp); air of
+/// Every pixel is within what was asked for. Steps have a third of that on the few lines that were looked at to choose them (sim/plan/field_sampling.cpp); air of
 /// a stretch has 2e-4 (volume_field.frag.glsl). The rest is for lines that nobody looked at: wavelengths, which have their share in other pictures, are the
 /// same.
 void check(const std::string& what, const Simulation& sim, bool all = true) {
@@ -45,10 +45,7 @@ void check(const std::string& what, const Simulation& sim, bool all = true) {
   const View view = cameraView(c, state, 1);
   const FieldState* field = fieldOf(state, 0);
   ASSERT_TRUE(field);
-  EXPECT_GE(fieldLines(view, *field).apart_px, 1.0) << "a pixel is one line of the reference";
-  for (const FieldElement& e : field->elements) {
-    EXPECT_LE(elementLines(view, *field, e).across, 1.0) << "a pixel is one line of the picture";
-  }
+  EXPECT_GE(fieldLines(view, *field).apart_px, 1.0) << "a pixel is one line";
   const Worst w = compare(sim, makePlan(sim, c.outputs, c.spectral, c.where), 1, kFloor);
   EXPECT_EQ(w.covered, 1024.0);
   bound(what + ": GPU against double, 99 % of pixels", w.percentile99, kAsked, "the accuracy asked for, a third of it for steps");
@@ -66,7 +63,7 @@ TEST(JetsOnTheGpu, AreThoseInDouble) {
       const Simulation sim = scene(std::string(kAirs[air]) + R"(
 time: {frames: 1, rate: 1 Hz}
 plumes: [{name: p, nozzles: [[0 m, 0.5 m, 1000 m], [0 m, -0.5 m, 1000 m]], direction: [1, 0, 0], engine: turbofan_afterburner, length: 20 m}]
-)" + camera({1.0, 0.0, 1000.0}, 40.0, off, 1.4));
+)" + camera({0.8, 0.0, 1000.15}, 40.0, off, 0.4));
       check(std::string("two jets, ") + (off > 45.0 ? "from the side" : "30 deg off their axis") + ", " + kInAir[air], sim, off > 45.0);
     }
 }

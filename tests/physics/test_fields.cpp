@@ -121,5 +121,58 @@ accuracy: 1 %)"));
   bound("the same, 99 % of pixels", worst99, 1e-2, "the accuracy asked");
 }
 
+// Hot gas in cold gas at the same place, thin: L = d (a B(hot) + (1 - a) B(cold)), whatever the mean of their temperatures; their shares 1e-4 to a half.
+TEST(Fields, HotInCold) {
+  double worst = 0.0;
+  for (double share : {1e-4, 0.01, 0.5}) {
+    Simulation sim = scene(looking(100.0, 1.0, 9));
+    constexpr double kRadius = 8.0, kDepth = 1e-3, kHot_K = 1400.0, kCold_K = 300.0;
+    const double middle = 315.0 / (64.0 * kPi) * 32.0 / 35.0 / (kRadius * kRadius);
+    addPuffs(sim, {puffAt({0, 0, 2000}, kRadius, kDepth * (1.0 - share) / middle, kCold_K), puffAt({0, 0, 2000}, kRadius, kDepth * share / middle, kHot_K)},
+             greyGas(1.0));
+    const Frame frame = renderFrame(sim);
+    const double want = -std::expm1(-kDepth) * (share * blackBodyBand(3.0, 5.0, kHot_K) + (1.0 - share) * blackBodyBand(3.0, 5.0, kCold_K));
+    worst = std::max(worst, std::abs(at(frame.layers.front(), frame, 4, 4) / want - 1.0));
+  }
+  bound("thin gas at 1400 K in gas at 300 K, a ten-thousandth to half of it", worst, 1e-3,
+        "closed form; Planck's law between entries 2e-4, moments of temperature in single precision");
+}
+
+// Smoke far away in hazy air, with nothing in the scene that the sun lights: the air before it, the sun's way down to it, its own shade, lines that are close
+// enough for its sharp edge. From the side, where the way through it is short compared with that to it, and along it.
+TEST(Fields, FarSmokeInSunlitHaze) {
+  for (const char* from : {"[-40 m, 1500 m, 20 m]", "[-5 m, 700 m, 20 m]"}) {
+    const Simulation sim = scene(std::string(R"(
+origin: {latitude: 40 deg, longitude: 15 deg}
+time: {frames: 1, rate: 1 Hz}
+atmosphere: {model: layered, library: hazy_us76, visibility: 8 km}
+sun: {azimuth: 120 deg, elevation: 20 deg, irradiance: solar_e490}
+wind: {speed: 4 m/s, direction: )") +
+                                 (from[1] == '-' && from[2] == '4' ? "270" : "185") +
+                                 R"( deg}
+accuracy: 1 %
+smokes: [{name: s, smoke: fog_oil, position: )" +
+                                 from +
+                                 R"(, rate: 1 kg/s, begin: -20 s, radius: 1 m, lifetime: 60 s, puffs: 30}]
+cameras:
+  - name: c
+    film: {width: 16, height: 8}
+    field_of_view: 4.5 deg
+    aperture: 10 mm
+    samples: 1
+    position: [0 m, 0 m, 10 m]
+    heading: 0 deg
+    pitch: 0.7 deg
+    channels:
+      - {name: near, response: {band: [2.1 um, 2.3 um]}}
+      - {name: mw, response: {band: [3.6 um, 4.9 um]}}
+)");
+    const Worst w = compare(sim, 1);
+    EXPECT_GT(w.covered, 100);
+    bound(std::string("smoke in sunlit haze, ") + (from[2] == '4' ? "across" : "along") + ", 1 %: GPU against reference, worst pixel", w.error, 1e-2,
+          "the accuracy asked");
+  }
+}
+
 }  // namespace
 }  // namespace pitviper::test

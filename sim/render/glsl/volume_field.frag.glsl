@@ -5,19 +5,20 @@
 //@constants
 //@use sim/render/glsl/volume_ray.glsl
 //@use sim/render/glsl/node_block.glsl
+//@use sim/radiometry/glsl/footprint.glsl
 layout(binding = 5) uniform samplerBuffer fieldSpectra;  // sim/render/field_tables.hpp says what is where
 layout(binding = 17) uniform samplerBuffer fieldTexels;  // of the field's own shader
-// Of each tile: first of its list, length, lines across a pixel, lines a pixel (floats), steps; then the lists: texels of elements.
+// Of each tile: first of its list, length, steps; of each pixel of the tiles, row by row: first of its lines (0: its middle alone), their number, share of it
+// that they leave (a float); then the lists: texels of elements; and lines: place on the film [pixels], share of the pixel (floats).
 layout(binding = 19) uniform usamplerBuffer fieldTiles;
 uniform vec4 fieldRow0;  // of a Draw: from camera to field axes
 uniform vec4 fieldRow1;
 uniform vec4 fieldRow2;
 uniform float fieldFine;
-uniform vec4 fieldRect;    // nothing shows outside: low, high [pixels]
 uniform vec2 fieldRange;   // from the camera to its nearest and farthest [m], where it is so far that the air across it is nearly even; else 0, 0
-uniform float linesAlone;  // up to so many lines across a pixel its middle alone is as good
 uniform ivec4 tileGrid;    // first pixel x, y; tiles across; pixels a side
-uniform vec4 planckRange;  // first 1 / T, entries per unit of it, texel of the first
+uniform int firstPixel;    // of the tiles: where their lines are told
+uniform vec4 planckRange;  // first 1 / T, entries per unit of it, texel of the first, number of the last
 uniform vec4 gasLevels[MIXTURES * LEVEL_FOURS];  // temperatures of levels [K], ended by some far above any
 
 /// Air is nearly even on a stretch shorter than this part of the way to it: what its optical depth d there makes of exp(-d) is told by three terms to 2e-4.
@@ -39,6 +40,28 @@ float heat_;
 float gained_;
 float lit_;
 float shade_;
+// Of the step gathered last, which is the next to be seen through: amounts; 1 / temperature [1/K] (0: nothing is there), factor of own radiance, share of the
+// sun, amount towards it.
+vec4 nextLow_;
+vec4 nextHigh_;
+vec4 next_;
+vec3 nextTwo_;  // two temperatures that send what all of its parts do, the share of the second: twoTemperatures()
+float driftPerK_;  // of the step at hand: driftOf()
+// Of the parts of a step where a field keeps their temperatures apart (fieldMixes): sums of weight x powers of their difference from the first one's, that; the
+// range of them.
+vec3 moments_;
+float firstOf_;
+vec2 range_;
+
+void addTemperature(float weight, float temperature) {
+  if (weight_ <= 0.0) {
+    firstOf_ = temperature;
+    range_ = vec2(temperature);
+  }
+  float d = temperature - firstOf_;
+  moments_ += weight * vec3(d, d * d, d * d * d);
+  range_ = vec2(min(range_.x, temperature), max(range_.y, temperature));
+}
 //@slot field
 
 //@slot targets
@@ -46,14 +69,14 @@ float shade_;
 Draw field_;
 int list_, listed_, first_, cuts_;  // the tile's elements, and steps of its lines; texel of the first that the line meets
 uvec2 met_;                  // of the first 64 of the list, those that the line meets
-int lines_, turn_;           // of the pixel; steps of the lattice that they lie on
-vec2 from_, size_;           // of what they cover [pixels]
+int lines_, firstLine_;      // of the pixel
+float share_;                // of it that a line stands for
 float start_;
 int steps_, together_;       // steps of a line; of a stretch of air
 float cosScatter_;
 float gain_, sun_, sunAmount_;
-int black_;
-float blackMix_;
+int black_, hotter_;  // rows of Planck's law: of the temperature, of the hotter one where there are two
+float blackMix_, hotterMix_, hotterShare_;
 //@each g MIXTURES
 int level{g}_;
 float levelMix{g}_;
@@ -103,7 +126,11 @@ vec4 meanOf(vec4 x, vec4 decayed) {
 
 // A line of the pixel: what it meets.
 void prepareLine(int l) {
-  prepareRay(from_ + size_ * vec2((float(l) + 0.5) / float(lines_), fract((float((l * turn_) % lines_) + 0.5) / float(lines_))));
+  int at = firstLine_ + 3 * l;
+  bool alone = firstLine_ == 0;
+  vec2 place = uintBitsToFloat(uvec2(texelFetch(fieldTiles, at).x, texelFetch(fieldTiles, at + 1).x));
+  share_ = alone ? 1.0 : uintBitsToFloat(texelFetch(fieldTiles, at + 2).x);
+  prepareRay(alone ? gl_FragCoord.xy : place);
   d_ = inBody(field_, ray_);
   q_ = pointOnPlane(field_);
   perT_ = rayLength_;
@@ -112,10 +139,10 @@ void prepareLine(int l) {
   first_ = -1;
   met_ = uvec2(0u);
   for (int e = 0; e < listed_; ++e) {
-    int at = int(texelFetch(fieldTiles, list_ + e).x);
-    vec2 chord = fieldChord(at);
+    int element = int(texelFetch(fieldTiles, list_ + e).x);
+    vec2 chord = fieldChord(element);
     if (!(chord.y > chord.x)) continue;
-    if (first_ < 0) first_ = at;
+    if (first_ < 0) first_ = element;
     enter_ = min(enter_, chord.x);
     leave_ = max(leave_, chord.y);
     if (e < 32) met_.x |= 1u << uint(e);
@@ -137,19 +164,46 @@ void addMet(int from, uint met, float enter, float leave) {
   }
 }
 
-void prepareStep(float from, float to) {
+void gatherStep(float from, float to) {
   amountLow_ = vec4(0.0);
   amountHigh_ = vec4(0.0);
   weight_ = heat_ = gained_ = lit_ = shade_ = 0.0;
+  moments_ = vec3(0.0);
   addMet(0, met_.x, from, to);
   addMet(32, met_.y, from, to);
   for (int e = 64; e < listed_; ++e) fieldAdd(int(texelFetch(fieldTiles, list_ + e).x), from, to);
-  float inverse = weight_ > 0.0 ? 1.0 / weight_ : 0.0, temperature = weight_ > 0.0 ? heat_ * inverse : 300.0;
-  gain_ = gained_ * inverse;
-  sun_ = lit_ * inverse;
-  sunAmount_ = shade_ * inverse;
+  nextLow_ = amountLow_;
+  nextHigh_ = amountHigh_;
+  next_ = weight_ > 0.0 ? vec4(weight_ / heat_, vec3(gained_, lit_, shade_) / weight_) : vec4(0.0);
+  if (fieldMixes && weight_ > 0.0) {
+    vec3 m = moments_ / weight_;
+    nextTwo_ = twoTemperatures(heat_ / weight_, m.y - m.x * m.x, m.z - 3.0 * m.y * m.x + 2.0 * m.x * m.x * m.x);
+    nextTwo_.xy = clamp(nextTwo_.xy, range_.xx, range_.yy);
+  }
+}
+
+// How 1 / temperature changes over a step to its far end, by that and the lengths of it (y) and of what touches it, farther (x) and nearer (z):
+// sim/model/field_drift.hpp.
+float driftOf(vec3 inverse, vec3 size) {
+  float far = (inverse.x - inverse.y) * size.y / (size.y + size.x), near = (inverse.y - inverse.z) * size.y / (size.y + size.z);
+  return inverse.x > 0.0 && inverse.z > 0.0 && near * far > 0.0 ? 2.0 * sign(near) * min(abs(near), abs(far)) : 0.0;
+}
+
+void setBlack(float inverse, out int row, out float part) {
+  float place = clamp((inverse - planckRange.x) * planckRange.y, 0.0, planckRange.w);
+  int entry = min(int(place), int(planckRange.w) - 1);
+  row = int(planckRange.z) + entry * FOURS;
+  part = place - float(entry);
+}
+
+// A step that was gathered.
+void prepareStep(float from, float to, vec4 low, vec4 high, vec4 state, vec3 two) {
+  float inverse = state.x > 0.0 ? state.x : 1.0 / 300.0, temperature = 1.0 / inverse;
+  gain_ = state.y;
+  sun_ = state.z;
+  sunAmount_ = state.w;
 //@each g MIXTURES
-  amount{g}_ = {g} < 4 ? amountLow_[{g} % 4] : amountHigh_[{g} % 4];
+  amount{g}_ = {g} < 4 ? low[{g} % 4] : high[{g} % 4];
   {
     vec4 gas = texelFetch(fieldSpectra, {g});  // first texel of its levels, number of levels, first texel of what else it has
     float passed = -1.0;
@@ -162,22 +216,30 @@ void prepareStep(float from, float to) {
     level{g}_ = int(gas.x) + low * FOURS;
   }
 //@end
-  float place = clamp((1.0 / temperature - planckRange.x) * planckRange.y, 0.0, float(BLACK_ENTRIES - 1));
-  int entry = min(int(place), BLACK_ENTRIES - 2);
-  black_ = int(planckRange.z) + entry * FOURS;
-  blackMix_ = place - float(entry);
+  setBlack(fieldMixes && state.x > 0.0 ? 1.0 / two.x : inverse, black_, blackMix_);
+  if (fieldMixes) setBlack(state.x > 0.0 ? 1.0 / two.y : inverse, hotter_, hotterMix_);
+  hotterShare_ = two.z;
   low_ = partOf(from);
   high_ = partOf(to);
 }
 
-// What a step has of the gases at four nodes: optical depth, emission x depth, sunlight turned to the camera x depth.
+// What a step has of the gases at four nodes: optical depth; emission in its middle x depth, and what that changes by to its far end; sunlight turned to the
+// camera x depth.
 struct Matter {
-  vec4 depth, emitted, turned;
+  vec4 depth, emitted, drifting, turned;
 };
 
 Matter matterAt(int four) {
-  vec4 black = mix(texelFetch(fieldSpectra, black_ + four), texelFetch(fieldSpectra, black_ + FOURS + four), blackMix_);
-  Matter m = Matter(vec4(0.0), vec4(0.0), vec4(0.0));
+  vec4 warmer = texelFetch(fieldSpectra, black_ + four), cooler = texelFetch(fieldSpectra, black_ + FOURS + four), black = mix(warmer, cooler, blackMix_), slope = cooler - warmer;
+  if (fieldMixes) {
+    warmer = texelFetch(fieldSpectra, hotter_ + four);
+    cooler = texelFetch(fieldSpectra, hotter_ + FOURS + four);
+    black = mix(black, mix(warmer, cooler, hotterMix_), hotterShare_);
+    slope = mix(slope, cooler - warmer, hotterShare_);
+  }
+  // No end sends less than nothing.
+  vec4 drift = clamp(slope * (driftPerK_ * planckRange.y), -2.0 * black, 2.0 * black);
+  Matter m = Matter(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
 //@each g MIXTURES
   {
     vec4 each = mix(texelFetch(fieldSpectra, level{g}_ + four), texelFetch(fieldSpectra, level{g}_ + FOURS + four), levelMix{g}_), own = each * amount{g}_;
@@ -189,14 +251,20 @@ Matter matterAt(int four) {
       vec4 bend = max(1.0 + g1 * g1 - 2.0 * g1 * cosScatter_, vec4(1.0e-6));
       vec4 phase = (1.0 - g1 * g1) / (4.0 * 3.14159265358979 * bend * sqrt(bend));  // Henyey and Greenstein 1941
       m.emitted += own * (thermal * black + gain_ * radiance + around);
+      m.drifting += own * thermal * drift;
       m.turned += own * sun_ * sunlight * phase * exp(-min(sunAmount_ * each, vec4(80.0)));
     } else {
       m.emitted += own * black;
+      m.drifting += own * drift;
     }
   }
 //@end
   return m;
 }
+
+// Of a source that changes by 1 over an even layer of a depth, what is seen beyond that of its middle, for each of that depth: (g(d) - (1 - exp(-d))/2)/d with
+// g(d) = (1 - exp(-d) (1 + d))/d, to 1e-3 up to a depth of 1 and to a tenth beyond.
+vec4 drifted(vec4 depth) { return -depth / (12.0 + depth * (6.0 + 1.8 * depth)); }
 
 // A step: what comes from behind, less what air alone would show to its far end, is what the result is to its near end.
 //   y' = y exp(-a) + I E(a + g)/E(g) + tau S a E(a + g),   E(x) = (1 - exp(-x))/x: as mediumRadiance() has it, I radiance of the air on the step.
@@ -208,56 +276,33 @@ vec4 stepped(vec4 behind, vec4 tau, vec4 airDepth, vec4 inside, vec4 sunlit, int
     vec4 upTo = airDepth * (0.5 * (low_ + high_)), fallen = 1.0 - upTo * (1.0 - 0.5 * upTo);
     vec4 light = inside * ((high_ - low_) + (0.5 * ((1.0 - high_) * high_ - (1.0 - low_) * low_)) * airDepth);
     vec4 mean = mix((1.0 - passed) / m.depth, 1.0 - 0.5 * m.depth, lessThan(m.depth, vec4(2.0e-3)));
-    return passed * behind + mean * (light + fallen * (tau * m.emitted + sunlit * m.turned));
+    return passed * behind + mean * (light + fallen * (tau * m.emitted + sunlit * m.turned)) + drifted(m.depth) * fallen * tau * m.drifting;
   }
   vec4 beside = airDepth * (high_ - low_), clear = exp(-min(beside, vec4(80.0)));
   vec4 mean = meanOf(m.depth + beside, passed * clear), upTo = airDepth * low_, fallen = 1.0 - upTo * (1.0 - 0.5 * upTo);
   vec4 light = inside * (partBefore(high_, airDepth) - partBefore(low_, airDepth));
-  return passed * behind + light * mean / meanOf(beside, clear) + fallen * mean * (tau * m.emitted + sunlit * m.turned);
-}
-
-// Points of a lattice of Fibonacci's, as many as wanted or a few more: their rows and columns are all different, and no two are near each other.
-void setLattice(float wanted) {
-  int before = 1;
-  lines_ = 1;
-  for (int k = 0; k < 15; ++k) {
-    if (float(lines_) >= wanted) break;
-    int next = lines_ + before;
-    before = lines_;
-    lines_ = next;
-  }
-  turn_ = before;
+  return passed * behind + light * mean / meanOf(beside, clear) + fallen * (mean * (tau * m.emitted + sunlit * m.turned) + drifted(m.depth + beside) * tau * m.drifting);
 }
 
 void main() {
-  vec2 corner = gl_FragCoord.xy - 0.5, low = max(fieldRect.xy, corner), high = min(fieldRect.zw, corner + 1.0);
-  if (!(high.x > low.x && high.y > low.y)) discard;
-  ivec2 tile = (ivec2(gl_FragCoord.xy) - tileGrid.xy) / tileGrid.w;
-  int row = 5 * (tile.y * tileGrid.z + tile.x);
+  ivec2 at = ivec2(gl_FragCoord.xy) - tileGrid.xy, tile = at / tileGrid.w;
+  int row = 3 * (tile.y * tileGrid.z + tile.x), pixel = firstPixel + 3 * (at.y * tileGrid.z * tileGrid.w + at.x);
   list_ = int(texelFetch(fieldTiles, row).x);
   listed_ = int(texelFetch(fieldTiles, row + 1).x);
-  if (listed_ == 0) discard;
-  cuts_ = int(texelFetch(fieldTiles, row + 4).x);
+  cuts_ = int(texelFetch(fieldTiles, row + 2).x);
+  firstLine_ = int(texelFetch(fieldTiles, pixel).x);
+  lines_ = int(texelFetch(fieldTiles, pixel + 1).x);
+  float outside = uintBitsToFloat(texelFetch(fieldTiles, pixel + 2).x);
+  if (listed_ == 0 || lines_ == 0) discard;
   field_ = Draw(fieldRow0, fieldRow1, fieldRow2, uvec4(0u), vec4(0.0), vec4(fieldFine, 0.0, 0.0, 0.0));
   start_ = -planeOf(field_);  // the camera
-  float across = uintBitsToFloat(texelFetch(fieldTiles, row + 2).x), perPixel = uintBitsToFloat(texelFetch(fieldTiles, row + 3).x);
-  bool fine = across > linesAlone;
-  size_ = fine ? high - low : vec2(1.0);
-  from_ = fine ? low : corner;
-  // llvmpipe ends all loops of a pixel after 65535 rounds in all (LP_MAX_TGSI_LOOP_ITERATIONS), each loop's last among them, without a word: fewer lines before
-  // that.
-  float most = clamp(60000.0 / float(2 * listed_ + cuts_ * (6 + 2 * listed_) + 16), 1.0, float(MOST_LINES));
-  setLattice(fine ? min(max(perPixel * size_.x * size_.y, 1.5 * across * max(size_.x, size_.y)), most) : 1.0);
-  if (float(lines_) > most && turn_ < lines_) {
-    int fewer = lines_ - turn_;
-    lines_ = turn_;
-    turn_ = fewer;
-  }
-  float share = size_.x * size_.y / float(lines_), outside = max(1.0 - size_.x * size_.y, 0.0);
 //@each t TARGETS
   vec4 under{t}_ = spectrumBelow{t}(), sum{t} = outside * under{t}_;
 //@end
-  if (EVEN > 0) setAir(fieldRange.x, fieldRange.y);
+  if (EVEN > 0) {
+    prepareRay(gl_FragCoord.xy);  // air along the pixel's middle
+    setAir(fieldRange.x, fieldRange.y);
+  }
   for (int l = 0; l < lines_; ++l) {
     prepareLine(l);
 //@each t TARGETS
@@ -270,10 +315,23 @@ void main() {
       line{t} -= before{t}_ + inside{t}_ * partBefore(high_, depth{t}_);
 //@end
     }
+    float from = steps_ > 0 ? fieldCut((float(steps_) - 1.0) / float(steps_)) : to;
+    vec3 inverse = vec3(0.0), size = vec3(1.0, 1.0, to - from);
+    if (steps_ > 0) gatherStep(from, to);
     for (int k = 0; k < steps_; ++k) {
-      float from = fieldCut((float(steps_) - 1.0 - float(k)) / float(steps_));
+      vec4 amountsLow = nextLow_, amountsHigh = nextHigh_, state = next_;
+      vec3 two = nextTwo_;
+      float nearer = from;
+      next_ = vec4(0.0);
+      if (k + 1 < steps_) {
+        nearer = fieldCut((float(steps_) - 2.0 - float(k)) / float(steps_));
+        gatherStep(nearer, from);
+      }
+      inverse = vec3(inverse.y, state.x, next_.x);
+      size = vec3(size.yz, from - nearer);
+      driftPerK_ = driftOf(inverse, size);
       if (EVEN > 0) {
-        prepareStep(from, to);
+        prepareStep(from, to, amountsLow, amountsHigh, state, two);
 //@each t TARGETS
         line{t} = stepped(line{t}, tau{t}_, depth{t}_, inside{t}_, sunlit{t}_, fourOf({t}));
 //@end
@@ -281,7 +339,7 @@ void main() {
         bool opens = k % together_ == 0, closes = k % together_ == together_ - 1;
         float toIt = planeOf(field_);
         if (opens) setAir((toIt + (together_ > 1 ? enter_ : from)) * rayLength_, (toIt + to) * rayLength_);
-        prepareStep(from, to);
+        prepareStep(from, to, amountsLow, amountsHigh, state, two);
 //@each t TARGETS
         {
           vec4 beyond = opens ? before{t}_ + inside{t}_ * partBefore(high_, depth{t}_) : vec4(0.0);
@@ -291,6 +349,7 @@ void main() {
 //@end
       }
       to = from;
+      from = nearer;
     }
     if (EVEN > 0) {
       low_ = partOf(to);
@@ -299,7 +358,7 @@ void main() {
 //@end
     }
 //@each t TARGETS
-    sum{t} += share * line{t};
+    sum{t} += share_ * line{t};
 //@end
   }
 //@each t TARGETS

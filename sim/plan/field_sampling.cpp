@@ -1,0 +1,255 @@
+#include "sim/plan/field_sampling.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+
+#include "sim/model/field_drift.hpp"
+#include "sim/model/field_lines.hpp"
+#include "sim/model/field_states.hpp"
+#include "sim/model/world.hpp"
+#include "sim/plan/sight_rays.hpp"
+#include "sim/radiance/node_sum.hpp"
+
+namespace pitviper {
+namespace {
+
+constexpr std::array kCounts{1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 96};
+constexpr int kMany = 128;
+/// Times and, at each, lines from each eye through a field, and through each kind of element, that are looked at; eyes.
+constexpr int kTimes = 8;
+constexpr std::size_t kLines = 32, kLinesOfKind = 4;
+constexpr std::size_t kEyes = 3;
+/// How far apart lines through a pixel are tried, the farthest first; pixels of each camera at each time, lines each way in them at most, steps of these.
+constexpr std::array kApart{6.0, 4.0, 3.0, 2.2, 1.6, 1.0};
+constexpr int kPixels = 16, kTried = 800, kAcross = 14, kSteps = 8;
+/// What is darker than this part of the field's brightest line counts as so much, as on the film: filmFloors().
+constexpr double kDimmest = 1e-3;
+/// Parts of the accuracy that steps may spend, and lines; what is asked where no accuracy is.
+constexpr double kPart = 1.0 / 3.0, kUsual = 0.01;
+/// Of what was not there when it was looked for; steps of what never was.
+constexpr int kNotSeen = -1, kUnknown = 16;
+/// What changes no line by more than this part of the accuracy is not drawn, as terms that small are.
+constexpr double kUnseen = 0.05;
+/// Places at which the air of a line is looked at.
+constexpr int kAirPlaces = 8;
+
+/// Radiance of lines through one field at a time, in the plan's slots.
+class FieldLooks {
+ public:
+  FieldLooks(const Simulation& sim, const Plan& plan, const WorldState& state, std::size_t index, NodeSum& sum)
+      : plan_(plan),
+        field_(*fieldOf(state, index)),
+        index_(static_cast<int>(index)),
+        clear_(plan.terms),
+        sum_(sum),
+        scene_{sim, plan.terms, plan.sunLegs.get(), state, {}, kAirPlaces},
+        airless_{sim, clear_, nullptr, state, {}, 0} {
+    clear_.air = false;
+  }
+  const FieldState& field() const { return field_; }
+  std::vector<double> along(LineOfSight& sight, int steps) {
+    tell(scene_, sight, steps);
+    return slotsOf(sum_.radiance());
+  }
+  /// Per node, without the field.
+  std::vector<double> behind(LineOfSight& sight) {
+    tell(scene_, sight, 0);
+    return {sum_.radiance().begin(), sum_.radiance().end()};
+  }
+  /// Of the field in clear air before what is behind it, per node: air is even over a pixel.
+  std::vector<double> before(const std::vector<double>& behind, LineOfSight& sight, int steps) {
+    tell(airless_, sight, steps);
+    std::vector<double> seen = sum_.transmittance();
+    for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = sum_.radiance()[i] + seen[i] * behind[i];
+    return slotsOf(seen);
+  }
+
+ private:
+  void tell(const RadianceScene& scene, LineOfSight& sight, int steps) {
+    field_.along({sight.origin, sight.direction, 0.0, physics::kFar}, steps, cut_);
+    setDrifts(cut_);
+    sight.hits.slabs.clear();
+    for (const FieldStep& s : cut_) sight.hits.slabs.push_back({index_, s});
+    sum_.begin();
+    radianceAlong(scene, sight, sum_);
+  }
+  std::vector<double> slotsOf(std::span<const double> radiance) const {
+    std::vector<double> slots(plan_.weight.size(), 0.0);
+    for (std::size_t s = 0; s < slots.size(); ++s)
+      for (std::size_t i = 0; i < plan_.nodes.size(); ++i) slots[s] += plan_.weight[s][i] * radiance[i];
+    return slots;
+  }
+
+  const Plan& plan_;
+  const FieldState& field_;
+  int index_;
+  Terms clear_;
+  NodeSum& sum_;
+  RadianceScene scene_, airless_;
+  std::vector<FieldStep> cut_;
+};
+
+StepsByKind stepsFor(FieldLooks& looks, const std::vector<glm::dvec3>& eyes, double asked, Dice& dice) {
+  const double allowed = kPart * asked, unseen = kUnseen * asked;
+  const FieldState& field = looks.field();
+  StepsByKind steps;
+  steps.fill(kNotSeen);
+  std::array<std::vector<const FieldElement*>, kFieldKinds> kinds;
+  for (const FieldElement& e : field.elements) kinds[static_cast<std::size_t>(e.kind)].push_back(&e);
+  const auto present = static_cast<std::size_t>(std::count_if(kinds.begin(), kinds.end(), [](const auto& of) { return !of.empty(); }));
+  const std::size_t lines = std::max(kLinesOfKind, kLines / std::max(present, std::size_t{1}));
+  struct Look {
+    std::size_t kind;
+    LineOfSight sight;
+    std::vector<double> want, without;
+  };
+  std::vector<Look> all;
+  std::vector<double> floor;
+  for (std::size_t k = 0; k < kinds.size(); ++k)
+    for (std::size_t l = 0; l < lines * eyes.size() && !kinds[k].empty(); ++l) {
+      const FieldElement& e = *kinds[k][dice.below(kinds[k].size())];
+      // Near its middle, where a jet's core is, as well as anywhere.
+      const double reach = l % 2 == 0 ? 0.6 : 0.03;
+      const auto off = [&] { return reach * (2.0 * dice.unit() - 1.0); };
+      const glm::dvec3 place = glm::clamp(e.centre + e.radius_m * glm::dvec3(off(), off(), off()), field.low, field.high), eye = eyes[l / lines];
+      const glm::dvec3 line = field.origin + field.localFromField * place - eye;
+      if (!(glm::length(line) > 0.0)) continue;
+      Look look{k, {eye, glm::normalize(line), {}, 0.0}, {}, {}};
+      look.want = looks.along(look.sight, kMany);
+      look.without = looks.along(look.sight, 0);
+      floor.resize(look.want.size(), 0.0);
+      for (std::size_t s = 0; s < floor.size(); ++s) floor[s] = std::max(floor[s], kDimmest * look.want[s]);
+      all.push_back(std::move(look));
+    }
+  for (Look& look : all) {
+    const auto errorOf = [&](const std::vector<double>& got) {
+      double worst = 0.0;
+      for (std::size_t s = 0; s < got.size(); ++s)
+        if (floor[s] > 0.0) worst = std::max(worst, std::abs(got[s] - look.want[s]) / std::max(look.want[s], floor[s]));
+      return worst;
+    };
+    int& own = steps[look.kind];
+    own = std::max(own, 0);
+    if (own == 0 && errorOf(look.without) <= unseen) continue;
+    for (const int count : kCounts) {
+      if (count < own) continue;
+      own = count;
+      if (errorOf(looks.along(look.sight, count)) <= allowed) break;
+    }
+  }
+  return steps;
+}
+
+/// The farthest apart that lines may lie in pixels of this view, or as far as said already.
+double coarserFor(FieldLooks& looks, const View& view, double asked, Dice& dice, double already) {
+  const FieldLines lines = fieldLines(view, looks.field());
+  if (lines.isEmpty() || lines.parts.empty()) return already;
+  const auto through = [&](double x, double y) { return LineOfSight{view.position, glm::normalize(view.localFromCamera * view.ray(x, y)), {}, 0.0}; };
+  const auto mean = [&](const PixelLines& pixel, const std::vector<double>& behind) {
+    std::vector<double> sum;
+    for (const FilmLine& l : pixel.within) {
+      LineOfSight sight = through(l.at.x, l.at.y);
+      const auto own = looks.before(behind, sight, kSteps);
+      sum.resize(own.size(), 0.0);
+      for (std::size_t s = 0; s < own.size(); ++s) sum[s] += l.share * own[s];
+    }
+    return sum;
+  };
+  std::vector<double> brightest;
+  int looked = 0;
+  for (int tried = 0; looked < kPixels && tried < kTried; ++tried) {
+    const FieldLines::Part& part = lines.parts[dice.below(lines.parts.size())];
+    const glm::dvec2 at = part.low + (part.high - part.low) * glm::dvec2(dice.unit(), dice.unit());
+    const int x = std::clamp(static_cast<int>(at.x), 0, view.width - 1), y = std::clamp(static_cast<int>(at.y), 0, view.height - 1);
+    const auto linesOf = [&](double coarser) { return pixelLines({&lines, 1}, x, y, kAcross, {coarser, 2}); };
+    const PixelLines fine = linesOf(1.0);
+    if (fine.within.size() < 2) continue;
+    LineOfSight middle = through(x + 0.5, y + 0.5);
+    const std::vector<double> behind = looks.behind(middle), want = mean(fine, behind);
+    brightest.resize(want.size(), 0.0);
+    for (std::size_t s = 0; s < want.size(); ++s) brightest[s] = std::max(brightest[s], want[s]);
+    for (const double coarser : kApart) {
+      if (already > 0.0 && coarser > already) continue;
+      already = coarser;
+      const std::vector<double> got = mean(linesOf(coarser), behind);
+      double worst = 0.0;
+      for (std::size_t s = 0; s < got.size(); ++s) worst = std::max(worst, std::abs(got[s] - want[s]) / std::max({want[s], kDimmest * brightest[s], 1e-300}));
+      if (worst <= kPart * asked) break;
+    }
+    ++looked;
+  }
+  return already;
+}
+
+}  // namespace
+
+FieldSampling::FieldSampling(const Simulation& sim, const Plan& plan) {
+  const double asked = plan.accuracy > 0.0 ? plan.accuracy : kUsual;
+  const NodeSpectra spectra(sim, plan.nodes, 0);
+  NodeSum sum(spectra);
+  Dice dice(11);
+  const int times = sim.fields.empty() ? 0 : std::clamp(sim.time.frames, 1, kTimes);
+  for (int t = 0; t < times; ++t) {
+    time_s_.push_back(sim.time.at(times > 1 ? t * (sim.time.frames - 1) / (times - 1) : 0));
+    std::vector<Needs>& needs = of_.emplace_back(sim.fields.size());
+    const WorldState state = advance(sim, time_s_.back());
+    std::vector<glm::dvec3> eyes;
+    for (const Camera& c : sim.cameras) eyes.push_back(cameraAt(c, state).pose.position);
+    for (const Probe& p : sim.probes) eyes.push_back(p.position);
+    eyes.resize(std::min(eyes.size(), kEyes));
+    for (std::size_t f = 0; f < sim.fields.size(); ++f) {
+      needs[f].steps.fill(kNotSeen);
+      if (!fieldOf(state, f)) continue;
+      FieldLooks looks(sim, plan, state, f, sum);
+      needs[f].steps = stepsFor(looks, eyes, asked, dice);
+      for (std::size_t c = 0; c < std::min(sim.cameras.size(), kEyes); ++c)
+        needs[f].coarser = coarserFor(looks, cameraView(sim.cameras[c], state, 1), asked, dice, needs[f].coarser);
+    }
+  }
+}
+
+std::shared_ptr<const FieldSampling> FieldSampling::of(const Simulation& simulation, const Plan& plan) {
+  static std::mutex mutex;
+  static std::weak_ptr<const FieldSampling> last;
+  static const Simulation* lastOf = nullptr;
+  static std::vector<std::vector<double>> lastWeights;
+  const std::lock_guard lock(mutex);
+  if (auto kept = last.lock(); kept && lastOf == &simulation && lastWeights == plan.weight) return kept;
+  auto made = std::make_shared<const FieldSampling>(simulation, plan);
+  last = made, lastOf = &simulation, lastWeights = plan.weight;
+  return made;
+}
+
+std::pair<const FieldSampling::Needs*, const FieldSampling::Needs*> FieldSampling::around(std::size_t field, double time_s) const {
+  const auto after = static_cast<std::size_t>(std::lower_bound(time_s_.begin(), time_s_.end(), time_s) - time_s_.begin());
+  return {&of_[after > 0 ? after - 1 : 0][field], &of_[std::min(after, of_.size() - 1)][field]};
+}
+
+StepsByKind FieldSampling::steps(std::size_t field, double time_s) const {
+  const auto [last, next] = around(field, time_s);
+  StepsByKind steps;
+  for (std::size_t k = 0; k < steps.size(); ++k) {
+    steps[k] = std::max(last->steps[k], next->steps[k]);
+    // What comes and goes between the two: as at any time.
+    if (steps[k] <= 0)
+      for (const auto& of : of_) steps[k] = std::max(steps[k], of[field].steps[k]);
+    if (steps[k] == kNotSeen) steps[k] = kUnknown;
+  }
+  return steps;
+}
+
+double FieldSampling::coarser(std::size_t field, double time_s) const {
+  const auto [last, next] = around(field, time_s);
+  double least = INFINITY;
+  const auto take = [&least](const Needs& n) {
+    if (n.coarser > 0.0) least = std::min(least, n.coarser);
+  };
+  take(*last), take(*next);
+  for (const auto& of : of_)
+    if (!std::isfinite(least)) take(of[field]);
+  return std::isfinite(least) ? least : 1.0;
+}
+
+}  // namespace pitviper
