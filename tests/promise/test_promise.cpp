@@ -29,9 +29,7 @@ namespace {
 /// What a clone without settings tries.
 constexpr int kScenarios = 6, kWavelengths = 300, kAttempts = 20;
 constexpr std::uint64_t kSeed = 3;
-/// Scenes with plumes, smoke and flares are not among them yet: where a field is finer than a pixel, or a small body is before it, pictures miss what is
-/// asked (README, Limits). PITVIPER_PROMISE_FIELDS=1 tries them.
-constexpr long long kFields = 0;
+constexpr long long kFields = 1;
 
 std::string setting(const char* name) {
   const char* text = std::getenv(name);
