@@ -21,9 +21,10 @@ constexpr int kMany = 128;
 constexpr int kTimes = 8;
 constexpr std::size_t kLines = 32, kLinesOfKind = 4;
 constexpr std::size_t kEyes = 3;
-/// How far apart lines through a pixel are tried, the farthest first; pixels of each camera at each time, lines each way in them at most, steps of these.
+/// How far apart lines through a pixel are tried, the farthest first; pixels of each camera at each time, of a field: fewer of many; lines each
+/// way in them at most, steps of these.
 constexpr std::array kApart{6.0, 4.0, 3.0, 2.2, 1.6, 1.0};
-constexpr int kPixels = 16, kTried = 800, kAcross = 14, kSteps = 8;
+constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kTried = 2000, kAcross = 14, kSteps = 8;
 /// What is darker than this part of the field's brightest line counts as so much, as on the film: filmFloors().
 constexpr double kDimmest = 1e-3;
 /// Parts of the accuracy that steps may spend, and lines; what is asked where no accuracy is.
@@ -143,7 +144,7 @@ StepsByKind stepsFor(FieldLooks& looks, const std::vector<glm::dvec3>& eyes, dou
 }
 
 /// The farthest apart that lines may lie in pixels of this view, or as far as said already.
-double coarserFor(FieldLooks& looks, const View& view, double asked, Dice& dice, double already) {
+double coarserFor(FieldLooks& looks, const View& view, int pixels, double asked, Dice& dice, double already) {
   const FieldLines lines = fieldLines(view, looks.field());
   if (lines.isEmpty() || lines.parts.empty()) return already;
   const auto through = [&](double x, double y) { return LineOfSight{view.position, glm::normalize(view.localFromCamera * view.ray(x, y)), {}, 0.0}; };
@@ -159,7 +160,7 @@ double coarserFor(FieldLooks& looks, const View& view, double asked, Dice& dice,
   };
   std::vector<double> brightest;
   int looked = 0;
-  for (int tried = 0; looked < kPixels && tried < kTried; ++tried) {
+  for (int tried = 0; looked < pixels && tried < kTried; ++tried) {
     const FieldLines::Part& part = lines.parts[dice.below(lines.parts.size())];
     const glm::dvec2 at = part.low + (part.high - part.low) * glm::dvec2(dice.unit(), dice.unit());
     const int x = std::clamp(static_cast<int>(at.x), 0, view.width - 1), y = std::clamp(static_cast<int>(at.y), 0, view.height - 1);
@@ -190,6 +191,7 @@ FieldSampling::FieldSampling(const Simulation& sim, const Plan& plan) {
   const NodeSpectra spectra(sim, plan.nodes, 0);
   NodeSum sum(spectra);
   Dice dice(11);
+  const int pixels = std::clamp(kPixels / std::max(static_cast<int>(sim.fields.size()), 1), kFewestPixels, kMostPixels);
   const int times = sim.fields.empty() ? 0 : std::clamp(sim.time.frames, 1, kTimes);
   for (int t = 0; t < times; ++t) {
     time_s_.push_back(sim.time.at(times > 1 ? t * (sim.time.frames - 1) / (times - 1) : 0));
@@ -205,7 +207,7 @@ FieldSampling::FieldSampling(const Simulation& sim, const Plan& plan) {
       FieldLooks looks(sim, plan, state, f, sum);
       needs[f].steps = stepsFor(looks, eyes, asked, dice);
       for (std::size_t c = 0; c < std::min(sim.cameras.size(), kEyes); ++c)
-        needs[f].coarser = coarserFor(looks, cameraView(sim.cameras[c], state, 1), asked, dice, needs[f].coarser);
+        needs[f].coarser = coarserFor(looks, cameraView(sim.cameras[c], state, std::max(sim.cameras[c].samples, 1)), pixels, asked, dice, needs[f].coarser);
     }
   }
 }
