@@ -72,5 +72,36 @@ TEST(NodeSum, AirAndGasOnOneSegment) {
   }
 }
 
+// A gas whose source rises evenly with depth from its near end to its far one: int (S + D (t/d - 1/2)) exp(-t) dt from 0 to d, by Simpson's rule here; depths
+// from thin to opaque, hotter far away and near by.
+TEST(NodeSum, SourceThatChangesOverASegment) {
+  OneSegment one;
+  const auto gas = std::find_if(one.sim.materials.begin(), one.sim.materials.end(), [](const auto& m) { return m->medium.has_value(); });
+  double worst = 0.0;
+  for (double d : {1e-4, 0.1, 1.0, 5.0, 30.0})
+    for (double drift_perK : {-1e-4, 1e-4}) {
+      MediumInside inside{&*(*gas)->medium, -1, static_cast<int>(gas - one.sim.materials.begin()), 900.0, d / 0.002, false};
+      inside.drift_perK = drift_perK;
+      NodeSum sum(one.spectra);
+      sum.begin();
+      AirPlace near, far;
+      far.range_m = 400.0;
+      sum.segment({near, far, {&inside, 1}, false, false, 0.0, false});
+      for (size_t i = 0; i < 2; ++i) {
+        const double w = one.nodes[i].members.front().wavelength_um, s = physics::planckRadiance(w, 900.0);
+        const double more =
+            physics::planckRadiance(w, 1.0 / (1.0 / 900.0 + 0.5 * drift_perK)) - physics::planckRadiance(w, 1.0 / (1.0 / 900.0 - 0.5 * drift_perK));
+        constexpr int kParts = 20000;
+        double want = 0.0;
+        for (int k = 0; k <= kParts; ++k) {
+          const double t = d * k / kParts, weight = k == 0 || k == kParts ? 1.0 : k % 2 == 1 ? 4.0 : 2.0;
+          want += weight * (s + more * (t / d - 0.5)) * std::exp(-t) * d / (3.0 * kParts);
+        }
+        worst = std::max(worst, std::abs(sum.radiance()[i] / want - 1.0));
+      }
+    }
+  bound("gas whose source changes over a segment, depths 1e-4 to 30", worst, 1e-6, "black bodies by a table of 5 K: cubic with slopes; Simpson's rule");
+}
+
 }  // namespace
 }  // namespace pitviper::test

@@ -263,7 +263,7 @@ Matter matterAt(int four) {
 }
 
 // Of a source that changes by 1 over an even layer of a depth, what is seen beyond that of its middle, for each of that depth: (g(d) - (1 - exp(-d))/2)/d with
-// g(d) = (1 - exp(-d) (1 + d))/d, to 1e-3 up to a depth of 1 and to a tenth beyond.
+// g(d) = (1 - exp(-d) (1 + d))/d (NodeSum::segment), to 3 % up to a depth of 1 and to 9 % beyond.
 vec4 drifted(vec4 depth) { return -depth / (12.0 + depth * (6.0 + 1.8 * depth)); }
 
 // A step: what comes from behind, less what air alone would show to its far end, is what the result is to its near end.
