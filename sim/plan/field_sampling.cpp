@@ -216,11 +216,12 @@ std::shared_ptr<const FieldSampling> FieldSampling::of(const Simulation& simulat
   static std::mutex mutex;
   static std::weak_ptr<const FieldSampling> last;
   static const Simulation* lastOf = nullptr;
+  static double lastAccuracy = 0.0;
   static std::vector<std::vector<double>> lastWeights;
   const std::lock_guard lock(mutex);
-  if (auto kept = last.lock(); kept && lastOf == &simulation && lastWeights == plan.weight) return kept;
+  if (auto kept = last.lock(); kept && lastOf == &simulation && lastAccuracy == plan.accuracy && lastWeights == plan.weight) return kept;
   auto made = std::make_shared<const FieldSampling>(simulation, plan);
-  last = made, lastOf = &simulation, lastWeights = plan.weight;
+  last = made, lastOf = &simulation, lastAccuracy = plan.accuracy, lastWeights = plan.weight;
   return made;
 }
 
