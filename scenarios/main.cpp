@@ -38,7 +38,8 @@ const std::map<std::string, Command>& commands() {
         "                   --set entities.jet.temperature='300 K'; list items by number or by their name; repeatable;\n"
         "                   --set parameters.speed='300 m/s' a parameter of the scenario\n"
         "  --root FOLDER    a folder, besides the scenario's own, from which it may include and extend files; repeatable\n"
-        "  --plan FILE      draws a camera with the plan of another run, FOLDER/CAMERA.plan: the same scenario and plan give the same bytes; repeatable\n"
+        "  --plan FILE      draws a camera with the plan of another run of this scenario, FOLDER/CAMERA.plan: the same scenario and plan give the same bytes;\n"
+        "                   with --set accuracy=reference the reference of that run, along its lines; of anything else's it is refused; repeatable\n"
         "  --poses FILE     CAMERA_poses.csv, as a run with a gimbal leaves it: the camera looks where that says, frame by frame; repeatable\n"
         "  --preview        also a PNG per frame: every channel with colour bar and unit\n"
         "  --video FILE.mp4 also a film of the previews (of several cameras one each, FILE_<camera>.mp4); by ffmpeg\n"
@@ -59,6 +60,19 @@ const std::map<std::string, Command>& commands() {
         "anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"
         "On a terminal a bar shows how far it is; elsewhere lines come on stderr, the first after 3 s, each next after as long again as all before.\n"
         "The last lines sum up: frames, time, frames a second, and for each camera what its plan expects to be off by at most.\n"}},
+      {"audit",
+       {auditCommand, "hold a scenario's pictures against the reference, pixel by pixel: is what was asked for kept?",
+        "pitviper audit SCENARIO.yaml [--frames A:B] [--camera NAME]... [--out FOLDER] [--set path.to.key=value]... [--root FOLDER]...\n\n"
+        "Draws frames (the first, the middle and the last) of each camera as run does, by its plan, and again by the reference: every wavelength, in double\n"
+        "precision, along the same lines (subpixels, views of small bodies and of bright parts). Prints what each layer's pixels are off by,\n"
+        "|L - Lref| / max(Lref, 1e-3 x the 99th percentile of Lref), beside what was asked and predicted, and where the worst is. The reference takes seconds\n"
+        "to minutes a frame: --set cameras.seeker.film.width=64 and so on makes it quicker. Exit code 4 where a pixel is farther off than was asked.\n"
+        "The same by hand: run, then run --set accuracy=reference --plan FOLDER/CAMERA.plan draws the reference along that run's lines, to another --out.\n"
+        "A reference without that plan looks along its own lines (all subpixels, 256 across a small body): outlines and small bodies then differ.\n\n"
+        "  --frames A:B     these frames, both included; of an exposure with motion its middle\n"
+        "  --camera NAME    this camera alone; repeatable\n"
+        "  --out FOLDER     also audit.csv and CAMERA_audit.png, a picture of the errors; created if missing\n"
+        "  --set, --root    as of run\n"}},
       {"check",
        {checkCommand, "validate a scenario, render nothing",
         "pitviper check SCENARIO.yaml [--set path.to.key=value]... [--root FOLDER]... [--audit]\n\nReads everything the scenario names and reports the first mistake as "
@@ -221,7 +235,7 @@ void printHelp() {
   std::printf("pitviper: infrared and optronic sensor scenes in calibrated units\n\nusage: pitviper COMMAND ...\n\n");
   for (const auto& [name, c] : commands()) std::printf("  %-10s %s\n", name.c_str(), c.summary);
   std::printf("  %-10s %s\n", "test", "build and run every test (the pitviper script)");
-  std::printf("\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input, 3 frames of a stream unaccounted for, 130 and 143 ended by a signal.\n");
+  std::printf("\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input, 3 frames of a stream unaccounted for, 4 an audit found more than was asked, 130 and 143 ended by a signal.\n");
 }
 
 int run(Arguments arguments) {

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <numeric>
 
 #include "scenarios/commands/accuracy_renderings.hpp"
 #include "scenarios/commands/progress.hpp"
@@ -76,24 +75,17 @@ AccuracyReport measureAccuracy(const AccuracyRequest& request) {
   }
   const auto scene = std::make_shared<const GpuScene>(sim);
 
-  SpectralSampling fine;
-  fine.reference = true;
+  ComparedFrames compared = comparedFrames(sim, camera, states);
   Progress waiting("reference", frames);
-  Renderings truth(sim, camera, fine, scene);
+  Renderings truth(sim, camera, referenceSampling(), scene);
   truth.renderer().setProgress([&](double share) { waiting.within(share); });
-  std::vector<std::vector<double>> found;
-  std::vector<std::vector<char>> left;
-  for (const WorldState& state : states) {
-    left.push_back(outlinePixels(sim, camera, state));
-    truth.add(state, left.back(), found);
-    waiting.step();
-  }
+  std::vector<std::vector<double>> found = truth.draw(compared, [&] { waiting.step(); });
   waiting.finish();
   std::vector<ChannelReference> reference;
   for (size_t c = 0; c < found.size(); ++c) reference.emplace_back(camera.outputs[c].kernel, std::move(found[c]));
 
   AccuracyReport report;
-  const auto count = std::accumulate(left.begin(), left.end(), std::ptrdiff_t{0}, [](auto n, const auto& f) { return n + std::count(f.begin(), f.end(), 1); });
+  const int count = compared.leftOut();
   const std::string skipped = count > 0 ? "; " + std::to_string(count) + " pixels on outlines of transparent things left out" : "";
   char heading[512];
   std::snprintf(heading, sizeof heading, "%s, camera %s, %dx%d pixels of %dx%d subpixels, frame%s %s, against the reference (%d wavelengths)%s",
@@ -107,9 +99,7 @@ AccuracyReport measureAccuracy(const AccuracyRequest& request) {
   for (const AccuracySetting& setting : ladder) {
     try {
       auto renderings = std::make_unique<Renderings>(sim, camera, setting.sampling, scene);
-      std::vector<std::vector<double>> rendered;
-      for (size_t f = 0; f < states.size(); ++f) renderings->add(states[f], left[f], rendered);
-      report.rows.push_back(rowOf(setting, camera, renderings->plan(), reference, rendered));
+      report.rows.push_back(rowOf(setting, camera, renderings->plan(), reference, renderings->draw(compared)));
       drawn.push_back(std::move(renderings));
     } catch (const GlError& e) {
       report.missing.push_back(setting.name + ": " + e.what());

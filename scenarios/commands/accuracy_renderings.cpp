@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "scenarios/commands/commands.hpp"
+#include "sim/camera/camera_image.hpp"
 #include "sim/render/reference/outline.hpp"
 
 namespace pitviper {
@@ -30,14 +31,47 @@ Renderings::Renderings(const Simulation& sim, const Camera& camera, const Spectr
   renderer_ = std::make_unique<CameraRenderer>(sim, camera_, shaderLibrary(), scene);
 }
 
-void Renderings::add(const WorldState& state, const std::vector<char>& left, std::vector<std::vector<double>>& outputs) {
-  const CameraImage image = renderer_->render(state);
-  outputs.resize(camera_.outputs.size());
-  for (size_t c = 0; c < outputs.size(); ++c) {
-    const auto& pixels = image.slots[static_cast<size_t>(image.slotOfOutput[c])];
-    for (size_t p = 0; p < pixels.size(); ++p)
-      if (!left[p]) outputs[c].push_back(pixels[p]);
+std::vector<std::vector<double>> Renderings::draw(ComparedFrames& frames, const std::function<void()>& drawn) {
+  std::vector<std::vector<double>> outputs(camera_.outputs.size());
+  const bool first = frames.parts.empty();
+  for (size_t f = 0; f < frames.states.size(); ++f) {
+    if (!first) renderer_->setParts(frames.parts[f]);
+    CameraImage image = renderer_->render(frames.states[f]);
+    if (first) frames.parts.push_back(image.parts);
+    putPointsIntoPixels(image);
+    for (size_t c = 0; c < outputs.size(); ++c) {
+      const auto& pixels = image.slots[static_cast<size_t>(image.slotOfOutput[c])];
+      for (size_t p = 0; p < pixels.size(); ++p)
+        if (!frames.left[f][p]) outputs[c].push_back(pixels[p]);
+    }
+    if (drawn) drawn();
   }
+  return outputs;
+}
+
+SpectralSampling referenceSampling() {
+  SpectralSampling s;
+  s.reference = true;
+  return s;
+}
+
+int ComparedFrames::leftOut() const {
+  std::ptrdiff_t n = 0;
+  for (const auto& marks : left) n += std::count(marks.begin(), marks.end(), 1);
+  return static_cast<int>(n);
+}
+
+ComparedPixel ComparedFrames::placeOf(std::size_t n, int width) const {
+  for (size_t f = 0; f < left.size(); ++f)
+    for (size_t p = 0; p < left[f].size(); ++p)
+      if (!left[f][p] && n-- == 0) return {static_cast<int>(f), static_cast<int>(p) % width, static_cast<int>(p) / width};
+  return {};
+}
+
+ComparedFrames comparedFrames(const Simulation& sim, const Camera& camera, std::vector<WorldState> states) {
+  ComparedFrames frames{std::move(states), {}, {}};
+  for (const WorldState& state : frames.states) frames.left.push_back(outlinePixels(sim, camera, state));
+  return frames;
 }
 
 std::vector<char> outlinePixels(const Simulation& sim, const Camera& camera, const WorldState& state) {

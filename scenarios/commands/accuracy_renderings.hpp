@@ -1,5 +1,7 @@
 #pragma once
-// A scenario's camera drawn at one accuracy and at another, pixel by pixel: what `bench --accuracy` and the tests of the promise compare.
+// A scenario's camera drawn at one accuracy and at another, pixel by pixel along the same lines: what `audit`, `bench --accuracy` and the tests of the promise
+// compare.
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -15,6 +17,21 @@ void keepRadianceAlone(Camera& camera);
 /// Of a slot; none where the plan was made without an accuracy.
 std::optional<double> predictedError(const Plan& plan, std::size_t slot);
 
+struct ComparedPixel {
+  int frame = 0, column = 0, row = 0;  ///< frame: of those compared, from 0; row 0 on top
+};
+
+/// The frames of a camera of which all pictures are made, and what they have in common.
+struct ComparedFrames {
+  std::vector<WorldState> states;
+  std::vector<std::vector<char>> left;   ///< marks of outlinePixels()
+  std::vector<std::vector<Ball>> parts;  ///< bright parts with views of their own, by frame: those of whoever draws first; empty before
+  int leftOut() const;
+  /// The n-th pixel that is compared.
+  ComparedPixel placeOf(std::size_t n, int width) const;
+};
+ComparedFrames comparedFrames(const Simulation& simulation, const Camera& camera, std::vector<WorldState> states);
+
 /// The scenario with one camera, at a setting.
 class Renderings {
  public:
@@ -22,13 +39,16 @@ class Renderings {
   Renderings(const Simulation& simulation, const Camera& camera, const SpectralSampling& sampling, const std::shared_ptr<const GpuScene>& scene);
   CameraRenderer& renderer() { return *renderer_; }
   const Plan& plan() const { return renderer_->plan(); }
-  /// Adds a frame's pixels to those of each output, the ones that `left` marks left out.
-  void add(const WorldState& state, const std::vector<char>& left, std::vector<std::vector<double>>& outputs);
+  /// Pixels of each output, of all frames but those left out. `drawn`: told after each frame.
+  std::vector<std::vector<double>> draw(ComparedFrames& frames, const std::function<void()>& drawn = {});
 
  private:
   Camera camera_;
   std::unique_ptr<CameraRenderer> renderer_;
 };
+
+/// The reference, for what a camera draws.
+SpectralSampling referenceSampling();
 
 /// Marks pixels of a frame, from the top, with the outline of something transparent in the middle of a subpixel: there the reference, which casts
 /// rays, and the rasteriser see different things.

@@ -10,6 +10,7 @@ namespace pitviper {
 using Arguments = std::vector<std::string>;
 
 int runCommand(const Arguments& arguments);
+int auditCommand(const Arguments& arguments);
 int checkCommand(const Arguments& arguments);
 int infoCommand(const Arguments& arguments);
 int integrateCommand(const Arguments& arguments);

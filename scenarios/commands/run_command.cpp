@@ -176,7 +176,7 @@ int runCommand(const Arguments& arguments) {
     probes.write(out, place.mayReplace);
     for (const Camera& c : sim.cameras)
       if (leavesPoses(c)) writePoses(out, sim, c, report.poses.at(c.name), place.mayReplace);
-    for (const auto& [camera, plan] : report.plans) writeFileAtomically(out / (camera + ".plan"), plan);
+    for (const auto& [camera, plan] : report.plans) writeFileAtomically(out / (camera + ".plan"), plan, place.mayReplace);
     std::optional<HistoryReport> told;
     if (flown) {
       for (int number = range.first; sim.cameras.empty() && number <= range.last; ++number) flown->look(number, advance(sim, sim.time.at(number)));

@@ -8,6 +8,7 @@
 #include "sim/parameters/read_file.hpp"
 #include "sim/parameters/table.hpp"
 #include "sim/parameters/units.hpp"
+#include "sim/plan/plan_origin.hpp"
 #include "sim/stream/sink_models.hpp"
 
 namespace pitviper {
@@ -87,6 +88,10 @@ void readPlans(const Options& o, Simulation& sim) {
       throw UserError(where, "a plan of no camera of this scenario", "a file named after a camera, CAMERA.plan", "name the .plan file that a run wrote");
     camera->plan = readWholeFile(file, {}, where);
     camera->planFile = name;
+    if (!camera->spectral.reference) continue;  // what draws by it looks whether it is its own
+    if (const auto origin = readOrigin(camera->plan)) drawOnLinesOf(*camera, *origin);
+    else throw UserError(where, "not a plan, or not one that says what it was made for", "the plan that a run of this scenario wrote, whole",
+                         "name the .plan file whose pictures the reference is to be held beside");
   }
 }
 
@@ -147,8 +152,7 @@ void refuseForeignFiles(const Simulation& sim, const RunRange& range, const OwnF
         for (const char* kind : kindsOf(c))
           for (const auto& file : placed.sink->filesOf(c.name, number, kind))
             if (file != std::exchange(last, file)) refuseForeignFile(file, sim);
-  for (const auto& file : own)
-    if (file.extension() != ".plan") refuseForeignFile(file, sim);
+  for (const auto& file : own) refuseForeignFile(file, sim);
 }
 
 }  // namespace pitviper

@@ -6,6 +6,7 @@
 #include "sim/gl/timing.hpp"
 #include "sim/model/field_lines.hpp"
 #include "sim/model/field_states.hpp"
+#include "sim/plan/plan_origin.hpp"
 #include "sim/plan/planner.hpp"
 
 namespace pitviper {
@@ -15,6 +16,12 @@ namespace {
 constexpr int kWorthClasses = 64 * 64;
 /// What the reference asks of bright parts where no accuracy is.
 constexpr double kReferenceParts = 0.002;
+
+/// A reference that was given a plan looks along the lines that pictures by that plan look along.
+Plan planOfLines(const Simulation& simulation, const Camera& camera) {
+  const Camera planned = plannedCamera(camera);
+  return planFor(simulation, {&planned, nullptr});
+}
 
 }  // namespace
 
@@ -26,10 +33,11 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
       scattering_(simulation, camera, plan_),
       ways_(simulation, plan_),
       lines_(zoomedLines(simulation, camera.zoomedSamples, camera.outlineAccuracy)),
-      hotParts_(simulation, plan_,
-                camera.outlineAccuracy > 0.0 ? camera.outlineAccuracy
-                : camera.spectral.reference  ? kReferenceParts
-                                             : 0.0) {
+      linesOf_(camera.spectral.reference && !camera.plan.empty() ? std::make_unique<const Plan>(planOfLines(simulation, camera)) : nullptr),
+      hotParts_(simulation, linesOf_ ? *linesOf_ : plan_,
+                camera.outlineAccuracy > 0.0               ? camera.outlineAccuracy
+                : camera.spectral.reference && !linesOf_ ? kReferenceParts
+                                                           : 0.0) {
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
   const double area_m2 = camera.pinhole.apertureArea_m2();
   if (camera.spectral.reference) {

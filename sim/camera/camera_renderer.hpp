@@ -56,6 +56,7 @@ class CameraRenderer {
   WaysToLights ways_;
   FilmWeights filmWeights_;
   std::vector<int> lines_;  ///< across each small body
+  std::unique_ptr<const Plan> linesOf_;  ///< of a reference: the plan whose lines it looks along, if one was given
   HotParts hotParts_;
   std::optional<std::vector<Ball>> given_;
   bool warm_ = false;                         ///< both passes have drawn

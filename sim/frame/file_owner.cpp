@@ -60,7 +60,7 @@ std::optional<Owner> ownerInText(const std::filesystem::path& file) {
 
 std::optional<Owner> ownerOf(const std::filesystem::path& file) {
   const std::string kind = file.extension().string();
-  if (kind == ".csv") return ownerInTable(file);
+  if (kind == ".csv" || kind == ".plan") return ownerInTable(file);
   // What has no place for words is of whom the file beside it says.
   if (kind == ".tif") return ownerInText(std::filesystem::path(file).replace_extension(".json"));
   if (kind == ".img") return ownerInText(std::filesystem::path(file).replace_extension(".hdr"));

@@ -181,7 +181,8 @@ bool readPlanned(const std::string& text, Plan& into) {
   const bool tables = plan.air.elevations > 1 && plan.air.ranges > 1, none = plan.air.elevations == 0 && plan.air.ranges == 0;
   bool fits = r.ok() && (into.air.elevations > 0 ? tables : none) && plan.air.azimuths > 0 && plan.weight.size() == static_cast<size_t>(into.slotCount) &&
               plan.predictedError.size() == plan.weight.size() && plan.fineCount.size() == plan.weight.size() &&
-              plan.shares.size() == static_cast<size_t>(kTermKinds);
+              // Terms are looked at only where an accuracy says which of them matter.
+              plan.shares.size() == (into.accuracy > 0.0 ? static_cast<size_t>(kTermKinds) : 0);
   for (const TermShare& s : plan.shares) fits &= s.share.size() == plan.weight.size();
   for (const auto& row : plan.weight) fits &= row.size() == plan.nodes.size();
   if (fits) into = std::move(plan);

@@ -3,16 +3,9 @@
 #include "sim/plan/plan_cache.hpp"
 
 namespace pitviper {
-namespace {
-
-/// A change of the planner makes old plans strangers.
-constexpr double kPlannerVersion = 78;
-
-}  // namespace
-
 ContentKey planKey(const Simulation& sim, const Eye& eye) {
   Fingerprint f;
-  f.add(kPlannerVersion);
+  f.add(static_cast<double>(kPlannerVersion));
   addTo(f, sim);
   if (eye.camera) addTo(f, *eye.camera);
   else addTo(f, *eye.probe);

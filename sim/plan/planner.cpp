@@ -7,6 +7,7 @@
 #include "sim/plan/line_check.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/plan_fits.hpp"
+#include "sim/plan/plan_origin.hpp"
 
 namespace pitviper {
 namespace {
@@ -218,9 +219,12 @@ Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress
   const ContentKey key = planKey(sim, eye);
   const Terms all = plan.terms;
   const bool given = eye.camera && !eye.camera->plan.empty();
-  if (given && !(readPlanned(eye.camera->plan, plan) && suits(plan, sim)))
-    throw UserError({eye.camera->planFile, 0, 0, -1}, "not a plan for camera '" + eye.camera->name + "' of this scenario",
-                    "the plan that a run of it wrote, whole: the same channels and materials", "leave --plan out, or name the .plan file of such a run");
+  if (given) {
+    refuseForeignPlan(sim, *eye.camera);
+    if (!(readPlanned(withoutOrigin(eye.camera->plan), plan) && suits(plan, sim)))
+      throw UserError({eye.camera->planFile, 0, 0, -1}, "a damaged plan", "the plan that a run of this scenario wrote, whole",
+                      "leave --plan out, or name the .plan file of such a run");
+  }
   if (!given && !readCachedPlan(key, plan)) {
     SpectralSampling exact;
     exact.reference = true;

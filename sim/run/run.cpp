@@ -7,7 +7,9 @@
 #include "sim/camera/probe.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/model/world.hpp"
+#include "sim/frame/file_owner.hpp"
 #include "sim/plan/plan_cache.hpp"
+#include "sim/plan/plan_origin.hpp"
 #include "sim/run/camera_line.hpp"
 #include "sim/run/spectral_renderer.hpp"
 
@@ -66,7 +68,11 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
     if (!auditor.broken().empty()) report.broken[name] = auditor.broken();
     if (auditor.tally().pixels > 0) report.audits[name] = auditor.tally();
     if (line->camera().follower) report.poses[name] = line->camera().follower->recordHeader + line->takePoses();
-    if (!line->camera().spectral.reference) report.plans[name] = writePlanned(line->renderer().plan());
+    if (!line->camera().spectral.reference) {
+      PlanOrigin origin = originOf(sim, drawnCamera(line->camera()));
+      origin.samples = line->camera().samples;  // of a pixel of its own, not of a stage's cell
+      report.plans[name] = tableMark(sim) + originLine(origin) + writePlanned(line->renderer().plan());
+    }
   }
   return report;
 }

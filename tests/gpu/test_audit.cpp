@@ -5,6 +5,7 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "sim/plan/plan_cache.hpp"
+#include "sim/plan/plan_origin.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/camera/audit.hpp"
 #include "sim/run/run.hpp"
@@ -93,7 +94,7 @@ TEST(Audit, FindsWhatAPlanIsOffBy) {
   Plan bad = good;
   for (auto& row : bad.weight)
     for (double& w : row) w *= 1.05;
-  sim.cameras[0].plan = writePlanned(bad);
+  sim.cameras[0].plan = originLine(originOf(sim, sim.cameras[0])) + writePlanned(bad);
   sim.cameras[0].planFile = "c.plan";
   int drawn = 0;
   const RunReport broken = runFrames(

@@ -61,14 +61,11 @@ TEST(SmallBodiesAtFields, PixelsHaveTheBodyAndWhatIsBesideIt) {
         camera.zoomedSamples = 32;
         const auto gpu = std::make_shared<const GpuScene>(sim);
         const WorldState state = advance(sim, sim.time.at(0));
-        const std::vector<char> none(kSize * kSize, 0);
-        SpectralSampling fine, asked;
-        fine.reference = true;
+        ComparedFrames all{{state}, {std::vector<char>(kSize * kSize, 0)}, {}};
+        SpectralSampling asked;
         asked.accuracy = kAsked;
-        Renderings exact(sim, camera, fine, gpu), ours(sim, camera, asked, gpu);
-        std::vector<std::vector<double>> reference, planned;
-        exact.add(state, none, reference);
-        ours.add(state, none, planned);
+        Renderings exact(sim, camera, referenceSampling(), gpu), ours(sim, camera, asked, gpu);
+        const auto reference = exact.draw(all), planned = ours.draw(all);
         const WholePixels whole(sim, camera, ours.plan(), 5);
         double worst = 0.0, off = 0.0, referenceOff = 0.0;
         int known = 0;

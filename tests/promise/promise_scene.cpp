@@ -41,14 +41,6 @@ class OwnCache {
   std::filesystem::path folder_;
 };
 
-/// Place of the n-th pixel that was not left out.
-PromisePixel placeOf(size_t n, const std::vector<std::vector<char>>& left, int width) {
-  for (size_t f = 0; f < left.size(); ++f)
-    for (size_t p = 0; p < left[f].size(); ++p)
-      if (!left[f][p] && n-- == 0) return {static_cast<int>(f), static_cast<int>(p) % width, static_cast<int>(p) / width, 0.0, 0.0};
-  return {};
-}
-
 }  // namespace
 
 PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const std::vector<double>& accuracies, bool automatic) {
@@ -66,7 +58,6 @@ PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const 
   if (automatic) camera.samples = 2, camera.sharesShading = true;
   const auto gpu = std::make_shared<const GpuScene>(sim);
   std::vector<WorldState> states;
-  std::vector<std::vector<char>> left;
   for (int f = 0; f < sim.time.frames; ++f) {
     states.push_back(advance(sim, sim.time.at(f)));
     RandomDice dice(seed + 977 * static_cast<std::uint64_t>(f));
@@ -74,22 +65,20 @@ PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const 
       const double across = dice.between(0.0, 1.0), up = dice.between(0.0, 1.0);
       states.back() = pointed(states.back(), camera, camera.follower->anywhere(followerTick(camera, states.back(), f), {across, up}));
     }
-    left.push_back(outlinePixels(sim, camera, states.back()));
-    out.leftOut += static_cast<int>(std::count(left.back().begin(), left.back().end(), 1));
   }
+  ComparedFrames compared = comparedFrames(sim, camera, states);
+  out.leftOut = compared.leftOut();
 
   const auto draw = [&](const SpectralSampling& sampling, std::vector<std::vector<double>>& pixels) {
     auto renderings = std::make_unique<Renderings>(sim, camera, sampling, gpu);
-    for (size_t f = 0; f < states.size(); ++f) renderings->add(states[f], left[f], pixels);
+    pixels = renderings->draw(compared);
     for (const auto& channel : pixels) out.negative += static_cast<int>(std::count_if(channel.begin(), channel.end(), [](double l) { return l < 0.0; }));
     return renderings;
   };
 
   auto start = std::chrono::steady_clock::now();
-  SpectralSampling fine;
-  fine.reference = true;
   std::vector<std::vector<double>> found;
-  draw(fine, found);
+  draw(referenceSampling(), found);
   out.reference_s = secondsSince(start);
   out.pixels = static_cast<int>(found.empty() ? 0 : found.front().size());
   std::vector<ChannelReference> reference;
@@ -121,7 +110,7 @@ PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const 
         cell.found = errors[worst];
         cell.beyond =
             static_cast<double>(std::count_if(errors.begin(), errors.end(), [&](double e) { return e > accuracy; })) / static_cast<double>(errors.size());
-        cell.worst = placeOf(worst, left, camera.pinhole.width);
+        static_cast<ComparedPixel&>(cell.worst) = compared.placeOf(worst, camera.pinhole.width);
         cell.worst.planned = pixels[c][worst];
         cell.worst.reference = reference[c].values()[worst];
       }

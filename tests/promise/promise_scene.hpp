@@ -4,10 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/commands/accuracy_renderings.hpp"
+
 namespace pitviper::test {
 
-struct PromisePixel {
-  int frame = 0, column = 0, row = 0;     ///< row 0 on top
+struct PromisePixel : ComparedPixel {
   double planned = 0.0, reference = 0.0;  ///< integral of kernel x radiance
 };
 
