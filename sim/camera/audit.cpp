@@ -47,6 +47,7 @@ Auditor::Auditor(const Simulation& simulation, const Camera& camera, const Plan&
   perFrame_ = camera.spectral.reference ? 0.0 : simulation.audit >= 0.0 ? simulation.audit : affordablePixels(simulation, camera, planned);
   camera_.spectral = {};
   camera_.spectral.reference = true;
+  camera_.plan.clear();  // its views of bright parts come with each picture
   camera_.truth = {};
   camera_.spectralImage.reset();
   seed_ = mixed(static_cast<std::uint64_t>(simulation.seed));
