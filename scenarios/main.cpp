@@ -155,11 +155,17 @@ const std::map<std::string, Command>& commands() {
         "                   the same name (PNG, needs VTK), in FOLDER; created if missing\n"}},
       {"material",
        {materialCommand, "what a surface or a substance of the library, or of a file, is: tables, charts, a sphere of it",
-        "pitviper material [NAME|FILE] [--out FOLDER]\n\n"
+        "pitviper material [NAME|FILE] [--out FOLDER] [--axis UNIT] [--unit %|1] [--quantity WHAT] [--column N] [--wavelengths FILE]\n\n"
         "Without an argument: the library's materials and substances. NAME: one of them; FILE.yaml: a material of your own (what stands below its name\n"
         "under 'materials:'). Prints reflectance, emissivity and transmittance by wavelength and view angle.\n"
-        "FILE of others: refractiveindex.info's YAML, or a spectrum in two columns (ECOSTRESS, USGS): prints it as a substance or a material, to be\n"
-        "kept in a file of its own.\n\n"
+        "FILE of others: refractiveindex.info's YAML, or a spectrum in columns (ECOSTRESS, the USGS's libraries 6 and 7, field and Fourier spectrometers' text,\n"
+        "JCAMP-DX): prints it as a substance or a material, to be kept in a file of its own, and says on the standard error what it changed or took for\n"
+        "granted. What the words above a spectrum's numbers leave open is refused; these say it, and count before those words:\n\n"
+        "  --axis UNIT      of the wavelengths: um, nm, angstrom, 1/cm (wavenumbers) or eV (photon energies)\n"
+        "  --unit %|1       of the values: per cent, or shares of 1\n"
+        "  --quantity WHAT  reflectance, transmittance, or emissivity (of an opaque surface: 1 - reflectance)\n"
+        "  --column N       the column of the values, counted from 1\n"
+        "  --wavelengths FILE  the wavelengths of a file with one column, as the USGS's library 7 keeps them\n"
         "  --out FOLDER     also NAME.png, charts of spectra, emissivity by angle and reflection of light from 45 degrees (needs VTK), and\n"
         "                   NAME_sphere.png, a sphere of it under a sun and a dome of daylight as an eye sees it (of materials without data there:\n"
         "                   at 320 K in the infrared), in FOLDER; created if missing\n"}},

@@ -5,9 +5,9 @@
 
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/material_import.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/surroundings_loss.hpp"
+#include "scenarios/import/material_import.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/camera/camera_renderer.hpp"
@@ -218,6 +218,36 @@ Named namedOf(const std::filesystem::path& file) {
   return own;
 }
 
+template <class T>
+std::optional<T> choiceOf(const Options& o, const char* option, const std::vector<std::pair<const char*, T>>& choices) {
+  if (!o.has(option)) return std::nullopt;
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) {
+    if (o.value(option) == name) return value;
+    names.emplace_back(name);
+  }
+  throw unknownWord({option, 0, 0, -1}, "it cannot be", o.value(option), names);
+}
+
+/// What is said of a spectrum where its file does not.
+ImportChoices choicesOf(const Options& o) {
+  ImportChoices c;
+  c.axis = choiceOf<SpectralAxis>(o, "--axis",
+                                  {{"um", SpectralAxis::Micrometre},
+                                   {"nm", SpectralAxis::Nanometre},
+                                   {"angstrom", SpectralAxis::Angstrom},
+                                   {"1/cm", SpectralAxis::PerCentimetre},
+                                   {"cm-1", SpectralAxis::PerCentimetre},
+                                   {"eV", SpectralAxis::ElectronVolt}});
+  c.scale = choiceOf<double>(o, "--unit", {{"%", 0.01}, {"1", 1.0}});
+  c.quantity = choiceOf<SpectrumQuantity>(
+      o, "--quantity",
+      {{"reflectance", SpectrumQuantity::Reflectance}, {"transmittance", SpectrumQuantity::Transmittance}, {"emissivity", SpectrumQuantity::Emissivity}});
+  if (o.has("--column")) c.column = static_cast<int>(std::clamp(readRange(o.value("--column"), "--column").first, 0LL, 100000LL));
+  c.wavelengths = o.value("--wavelengths");
+  return c;
+}
+
 void list(const Libraries& libraries) {
   for (const auto& [title, folder] :
        {std::pair{"materials", libraries.materials}, std::pair{"substances (what 'index:' names)", libraries.materials.parent_path() / "substances"}}) {
@@ -235,10 +265,11 @@ void list(const Libraries& libraries) {
 }  // namespace
 
 int materialCommand(const Arguments& arguments) {
-  const Options o("material", arguments, {{"--out"}}, 0, 1);
+  const Options o("material", arguments, {{"--out"}, {"--axis"}, {"--unit"}, {"--quantity"}, {"--column"}, {"--wavelengths"}}, 0, 1);
   const Libraries libraries = findLibraries();
   if (o.words().empty()) {
-    if (o.has("--out")) throw UserError({"--out", 0, 0, -1}, "of which material?", "material NAME|FILE --out FOLDER", "name it");
+    for (const char* option : {"--out", "--axis", "--unit", "--quantity", "--column", "--wavelengths"})
+      if (o.has(option)) throw UserError({option, 0, 0, -1}, "of which material?", std::string("material NAME|FILE ") + option + " ...", "name it");
     list(libraries);
     return 0;
   }
@@ -247,12 +278,15 @@ int materialCommand(const Arguments& arguments) {
   std::error_code ignored;
   Named own{word};
   if (std::filesystem::is_regular_file(file, ignored)) {
-    if (const auto imported = importedYaml(file)) {
-      std::printf("%s", imported->c_str());
+    if (const auto imported = importedMaterial(file, choicesOf(o))) {
+      for (const std::string& note : imported->notes) std::fprintf(stderr, "%s: note: %s\n", file.string().c_str(), note.c_str());
+      std::printf("%s", imported->yaml.c_str());
       return 0;
     }
     own = namedOf(file);
     own.materials = "materials: {" + asYaml(own.name) + ": {file: " + asYaml(std::filesystem::absolute(file).string()) + "}}\n";
+  } else if (const ImportChoices choices = choicesOf(o); choices.axis || choices.scale || choices.quantity || choices.column || !choices.wavelengths.empty()) {
+    throw UserError({word, 0, 0, -1}, "there is no such file", "the file of a spectrum", "check the name");
   } else if (const auto known = libraries.materials / (word + ".yaml"); std::filesystem::is_regular_file(known, ignored)) {
     own = namedOf(known);
   } else if (const auto substance = libraries.materials.parent_path() / "substances" / (word + ".yaml"); std::filesystem::is_regular_file(substance, ignored)) {

@@ -195,6 +195,7 @@ std::optional<double> convert(const WrittenQuantity& quantity, std::string_view 
   const auto from = parseUnit(quantity.unit);
   const auto to = parseUnit(canonical);
   if (!from || !to || from->dims != to->dims) return std::nullopt;
+  if (from->factor == to->factor && from->offset == to->offset) return quantity.value;  // to the last bit: 1000 um are no more than 1000 um
   const double base = (quantity.value + from->offset) * from->factor;
   return base / to->factor - to->offset;
 }
