@@ -116,7 +116,11 @@ int infoCommand(const Arguments& arguments) {
                   unitOf(image, layer.name).c_str());
     return 0;
   }
-  std::printf("%s: %d x %d pixels\n\n", o.words()[0].c_str(), image.width, image.height);
+  std::printf("%s: %d x %d pixels\n", o.words()[0].c_str(), image.width, image.height);
+  if (image.held)
+    std::printf("the file has columns %d to %d and rows %d to %d of them (its data window); the others are 0\n", image.held->left, image.held->right - 1,
+                image.held->top, image.held->bottom - 1);
+  std::printf("\n");
   printLayers(image);
   std::printf("\n");
   for (const auto& a : image.attributes)

@@ -11,6 +11,9 @@
 namespace pitviper {
 namespace {
 
+/// As of spectra: far below the end of a float, far above any light.
+constexpr double kLargestRadiance = 1e30;
+
 /// As fine as pictures of all directions are kept: 3 deg round the horizon, where rings lie closer than that.
 DirectionGrid gridOfMap() {
   DirectionGrid grid;
@@ -71,14 +74,22 @@ std::shared_ptr<const MixedSurroundings> Builder::mapOf(const Record& ambient) c
                     "'light' for a map in red, green and blue, or 'layers' with the wavelength of each", r.given("light") ? "remove one" : "add one of them");
   std::vector<const FloatLayer*> layers;
   std::vector<Spectrum> spectra;
+  const auto radianceOf = [&](const FloatLayer& layer, std::ptrdiff_t at, double factor, const Location& where) {
+    const float v = layer.pixels[static_cast<std::size_t>(at)];
+    return UserError(where,
+                     "layer '" + layer.name.substr(0, 60) + "' of " + path.string() + " holds " + briefNumber(factor * static_cast<double>(v)) + " at column " +
+                         std::to_string(at % image.width) + ", row " + std::to_string(at / image.width) +
+                         (factor == 1.0 ? "" : " with its 'scale' and under its light"),
+                     "values from 0 to 1e30, of layers in W/(m2 sr um)", factor == 1.0 ? "mend the picture" : "lower 'scale' or 'light', or mend the picture");
+  };
   const auto layerNamed = [&](const std::string& name, const Location& where) {
     const FloatLayer* layer = image.find(name);
     std::vector<std::string> names;
     for (const FloatLayer& l : image.layers) names.push_back(l.name);
     if (!layer) throw unknownWord(where, "the file has no layer", name, names);
-    for (float v : layer->pixels)
-      if (!(v >= 0.0f && std::isfinite(v)))
-        throw UserError(where, "layer '" + name + "' of the map holds " + briefNumber(static_cast<double>(v)), "radiances of 0 or more", "mend the picture");
+    const auto wrong =
+        std::find_if(layer->pixels.begin(), layer->pixels.end(), [](float v) { return !(v >= 0.0f && static_cast<double>(v) <= kLargestRadiance); });
+    if (wrong != layer->pixels.end()) throw radianceOf(*layer, wrong - layer->pixels.begin(), 1.0, where);
     return layer;
   };
   if (r.given("light")) {
@@ -117,6 +128,12 @@ std::shared_ptr<const MixedSurroundings> Builder::mapOf(const Record& ambient) c
   const DirectionGrid grid = gridOfMap();
   auto share = layersOnGrid(grid, layers, image.width, image.height, layout, r.number("heading"));
   const double scale = r.number("scale");
+  for (std::size_t k = 0; k < layers.size(); ++k) {
+    const double factor = scale * spectra[k].maximum(spectra[k].validLow(), spectra[k].validHigh());
+    const auto most = std::max_element(layers[k]->pixels.begin(), layers[k]->pixels.end());
+    if (!(factor * static_cast<double>(*most) <= kLargestRadiance))
+      throw radianceOf(*layers[k], most - layers[k]->pixels.begin(), factor, r.where(r.given("light") ? "light" : "file"));
+  }
   for (auto& row : share)
     for (double& v : row) v *= scale;
   return std::make_shared<MixedSurroundings>(grid, std::move(spectra), std::move(share));

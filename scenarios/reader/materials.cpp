@@ -83,6 +83,13 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
       if (r.given("layer")) throw unknownWord(r.where("layer"), "the file has no layer", r.text("layer"), names);
       throw UserError(r.where("file"), "an EXR file of " + std::to_string(names.size()) + " layers", "'layer: ...', one of " + listed(names), "add it");
     }
+    if (image.held && !unit.empty())
+      throw UserError(r.where("file"),
+                      "'" + path.string() + "' has only a part of its picture, columns " + std::to_string(image.held->left) + " to " +
+                          std::to_string(image.held->right - 1) + " and rows " + std::to_string(image.held->top) + " to " +
+                          std::to_string(image.held->bottom - 1) + " of " + std::to_string(image.width) + " x " + std::to_string(image.height),
+                      "a value of " + std::string(name) + " everywhere: the data window as large as the display window",
+                      "write the whole picture, or make the display window that of the data");
     t.name = path.string();
     t.width = image.width;
     t.height = image.height;
@@ -116,11 +123,14 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
       for (const Value& x : row->items) t.texels.push_back(static_cast<float>(readNumber(x, unit, "texture value")));
     }
   }
-  for (float x : t.texels)
-    if (!(static_cast<double>(x) >= lowest && static_cast<double>(x) <= highest))
-      throw UserError(r.where(), "the texture of " + std::string(name) + " holds " + briefNumber(static_cast<double>(x)),
-                      briefNumber(lowest) + " to " + briefNumber(highest) + (unit.empty() ? "" : " " + std::string(unit)),
-                      "correct its values, or 'minimum' and 'maximum'");
+  const auto wrong =
+      std::find_if(t.texels.begin(), t.texels.end(), [&](float x) { return !(static_cast<double>(x) >= lowest && static_cast<double>(x) <= highest); });
+  if (const auto at = static_cast<int>(wrong - t.texels.begin()); wrong != t.texels.end())
+    throw UserError(r.where(),
+                    "the texture of " + std::string(name) + " holds " + briefNumber(static_cast<double>(*wrong)) + " at column " +
+                        std::to_string(at % t.width) + ", row " + std::to_string(t.height - 1 - at / t.width),
+                    briefNumber(lowest) + " to " + briefNumber(highest) + (unit.empty() ? "" : " " + std::string(unit)),
+                    "correct its values, or 'minimum' and 'maximum'");
   std::size_t texels = t.texels.size();
   for (const Texture& other : simulation_.textures) texels += other.texels.size();
   if (texels > kMostTexels)

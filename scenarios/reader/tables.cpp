@@ -241,7 +241,7 @@ const ParameterTable& environmentMap() {
   static const ParameterTable t{
       "map",
       "An EXR of all directions, in layers by wavelength, or in red, green and blue (layers R, G, B), which are raised to spectra under the main light.",
-      {required(text("file", "EXR file")),
+      {required(text("file", "EXR file: its display window; what its data window leaves out of that sends nothing")),
        withDefault(
            choice("layout", {"latitude_longitude", "cube"},
                   "latitude_longitude: rows from zenith to nadir, the middle column towards `heading`, to the right clockwise; cube: six square faces in a "

@@ -34,6 +34,9 @@ class Reader {
 
   SpectralImage read() {
     SpectralImage image;
+    if (exr_.held)
+      refuse("the file has only a part of its picture: " + sizeOf(*exr_.held) + " of " + sizeOf({0, 0, exr_.width, exr_.height}),
+             "all pixels, as they were written");
     image.file = where_.file;
     image.width = exr_.width;
     image.height = exr_.height;
@@ -53,6 +56,8 @@ class Reader {
   [[noreturn]] void refuse(const std::string& wrong, const std::string& expected) const {
     throw UserError(where_, wrong, expected, "take a <camera>_<frame>_spectral.exr of a camera with 'spectral_image: {band: [3 um, 5 um]}'");
   }
+
+  static std::string sizeOf(const PixelBox& box) { return std::to_string(box.right - box.left) + " x " + std::to_string(box.bottom - box.top) + " pixels"; }
 
   void checkFinite(const FloatLayer& layer) const {
     const auto bad = std::find_if(layer.pixels.begin(), layer.pixels.end(), [](float v) { return !std::isfinite(v); });

@@ -29,6 +29,11 @@ struct Attribute {
 /// A file with this attribute has channels R, G and B for people, which are no layers of it.
 inline constexpr const char* kPictureAttribute = "pitviper.picture";
 
+/// A part of an image: columns [left, right), rows [top, bottom).
+struct PixelBox {
+  int left = 0, top = 0, right = 0, bottom = 0;
+};
+
 struct ExrImage {
   int width = 0;
   int height = 0;
@@ -37,6 +42,8 @@ struct ExrImage {
   /// What programs show that know nothing of the layers: linear sRGB, three values a pixel; or empty. Written in half precision as R, G and B, never read
   /// back. kPictureAttribute has to say what it is.
   std::vector<float> picture = {};
+  /// What of the image the file has, where its data window leaves some of its display window out: elsewhere pixels are 0.
+  std::optional<PixelBox> held = {};
 
   /// The layer of that name, or null.
   const FloatLayer* find(std::string_view name) const;
@@ -57,10 +64,12 @@ enum class ExrCompression { None, Zip };
 /// `mayReplace`: as of writeFileAtomically.
 void writeExr(const std::filesystem::path& path, const ExrImage& image, const MayReplace& mayReplace = {}, ExrCompression compression = ExrCompression::None);
 
-/// Reads a single-part scan-line file of any compression; half and integer channels become float. The data window is the image.
+/// Reads a single-part file in scan lines or tiles (of several levels the finest), of any compression; half and integer channels become float. The display
+/// window is the image: what the data window has beyond it is cut off, what it leaves out is 0 and told by `held`.
 /// Layers and attributes come sorted by name. Attributes of types string, double, float, int, v3d and v3f are returned, others and
 /// EXR's own are left out.
-/// Errors: UserError with the file name if it is missing, damaged, truncated, tiled, multi-part, deep, subsampled or over the limits above.
+/// Errors: UserError with the file name if it is missing, damaged, truncated, multi-part, deep, subsampled, over the limits above, or if its two windows have
+/// no pixel in common.
 ExrImage readExr(const std::filesystem::path& path);
 
 /// A text attribute, from the header alone, read at most 4 MB far. Nothing where it isn't there, or the file is no EXR. Never throws but std::bad_alloc.

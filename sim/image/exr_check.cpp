@@ -14,7 +14,7 @@ namespace {
 
 // OpenEXR file layout: https://openexr.com/en/latest/OpenEXRFileLayout.html
 constexpr std::uint32_t magic = 20000630;
-constexpr std::uint32_t longNamesFlag = 0x400;
+constexpr std::uint32_t longNamesFlag = 0x400, tiledFlag = 0x200;
 constexpr std::uint32_t formatVersion = 2;
 
 // No compression of EXR packs tighter than deflate on constant data, 1032 to 1 (zlib, "Maximum Compression Factor"), except PIZ and DWA on
@@ -27,7 +27,7 @@ struct KnownType {
   std::string_view name;
   std::int64_t size;
 };
-constexpr std::array<KnownType, 14> knownTypes = {{{"box2i", 16},
+constexpr std::array<KnownType, 15> knownTypes = {{{"box2i", 16},
                                                    {"chlist", -1},
                                                    {"compression", 1},
                                                    {"double", 8},
@@ -38,9 +38,15 @@ constexpr std::array<KnownType, 14> knownTypes = {{{"box2i", 16},
                                                    {"m44f", 64},
                                                    {"rational", 8},
                                                    {"string", -1},
+                                                   {"tiledesc", 9},
                                                    {"v2f", 8},
                                                    {"v3d", 24},
                                                    {"v3f", 12}}};
+
+struct Window {
+  std::int64_t left = 0, top = 0, width = 0, height = 0;
+  bool meets(const Window& o) const { return left < o.left + o.width && o.left < left + width && top < o.top + o.height && o.top < top + height; }
+};
 
 class Walk {
  public:
@@ -50,13 +56,21 @@ class Walk {
     if (bytes_.size() < 8 || u32() != magic) fail("is not an EXR file", "the bytes 76 2f 31 01 at the start");
     const std::uint32_t version = u32();
     if ((version & 0xff) != formatVersion) fail("EXR version " + std::to_string(version & 0xff) + " is not known", "version 2");
-    if ((version & ~(0xffu | longNamesFlag)) != 0) fail("is tiled, deep or multi-part", "a single-part scan-line EXR");
+    if ((version & ~(0xffu | longNamesFlag | tiledFlag)) != 0) fail("is deep or multi-part", "a single-part EXR in scan lines or tiles");
     while (attribute()) {
     }
-    if (channels_ < 1 || width_ < 1) fail("the header lacks channels or dataWindow", "a complete EXR header");
-    const std::uint64_t pixelBytes = static_cast<std::uint64_t>(width_) * static_cast<std::uint64_t>(height_) * bytesPerPixel_;
-    if (pixelBytes > freePixelBytes && pixelBytes / maxCompressionFactor > bytes_.size())
-      fail("is far too short for " + std::to_string(width_) + " x " + std::to_string(height_) + " pixels; it is truncated or damaged");
+    if (channels_ < 1 || data_.width < 1 || display_.width < 1) fail("the header lacks channels, dataWindow or displayWindow", "a complete EXR header");
+    if (((version & tiledFlag) != 0) != (tileArea_ > 0)) fail("has tiles by its version or by its header, not by both; it is damaged");
+    if (tileArea_ * bytesPerPixel_ > freePixelBytes) fail("has tiles of more than 256 MB", "smaller tiles");
+    if (!data_.meets(display_)) fail("the data window and the display window have no pixel in common", "pixels within the display window");
+    for (const Window* own : {&data_, &display_}) {
+      const Window& w = *own;
+      // What is placed is kept as floats, whatever it is in the file.
+      const std::uint64_t bytesPerPixel = own == &data_ ? bytesPerPixel_ : 4 * static_cast<std::uint64_t>(channels_);
+      const std::uint64_t pixelBytes = static_cast<std::uint64_t>(w.width) * static_cast<std::uint64_t>(w.height) * bytesPerPixel;
+      if (pixelBytes > freePixelBytes && pixelBytes / maxCompressionFactor > bytes_.size())
+        fail("is far too short for " + std::to_string(w.width) + " x " + std::to_string(w.height) + " pixels; it is truncated or damaged");
+    }
   }
 
  private:
@@ -110,7 +124,11 @@ class Walk {
     } else if (type == "chlist") {
       bytes_[typeAt] = '?';
     } else if (called == "dataWindow" && type == "box2i") {
-      dataWindow();
+      data_ = window("data");
+    } else if (called == "displayWindow" && type == "box2i") {
+      display_ = window("display");
+    } else if (called == "tiles" && type == "tiledesc") {
+      tiles();
     }
     at_ = next;
     return true;
@@ -140,15 +158,21 @@ class Walk {
     end_ = end;
   }
 
-  void dataWindow() {
+  void tiles() {
+    const std::int64_t width = i32(), height = i32();
+    if (width < 1 || height < 1 || width > maxSide || height > maxSide)
+      fail("has tiles of " + std::to_string(width) + " x " + std::to_string(height) + " pixels", "1 to 32768 on a side");
+    tileArea_ = static_cast<std::uint64_t>(width * height);
+  }
+
+  Window window(const std::string& which) {
     const std::int64_t x0 = i32(), y0 = i32(), x1 = i32(), y1 = i32();
     if (x1 < x0 || y1 < y0 || x1 - x0 >= maxSide || y1 - y0 >= maxSide)
-      fail("the data window is " + std::to_string(x1 - x0 + 1) + " x " + std::to_string(y1 - y0 + 1) + " pixels", "1 to 32768 on a side");
+      fail("the " + which + " window is " + std::to_string(x1 - x0 + 1) + " x " + std::to_string(y1 - y0 + 1) + " pixels", "1 to 32768 on a side");
     // Addresses are formed relative to the window's corner; nobody needs one farther out.
     constexpr std::int64_t farthest = std::int64_t{1} << 24;
-    if (std::max(std::max(-x0, x0), std::max(-y0, y0)) > farthest) fail("the data window lies absurdly far out", "a corner within 2^24");
-    width_ = x1 - x0 + 1;
-    height_ = y1 - y0 + 1;
+    if (std::max(std::max(-x0, x0), std::max(-y0, y0)) > farthest) fail("the " + which + " window lies absurdly far out", "a corner within 2^24");
+    return {x0, y0, x1 - x0 + 1, y1 - y0 + 1};
   }
 
   std::string& bytes_;
@@ -157,7 +181,8 @@ class Walk {
   std::size_t end_;
   int channels_ = 0;
   std::uint64_t bytesPerPixel_ = 0;
-  std::int64_t width_ = 0, height_ = 0;
+  std::uint64_t tileArea_ = 0;
+  Window data_, display_;
 };
 
 }  // namespace

@@ -73,11 +73,32 @@ std::vector<Attribute> readAttributes(const Imf::Header& header) {
   return found;
 }
 
+/// Pixels of the data window where they stand in the display window.
+void place(ExrImage& image, const Imath::Box2i& window, const Imath::Box2i& display) {
+  const Imath::V2i low(std::max(window.min.x, display.min.x), std::max(window.min.y, display.min.y)),
+      high(std::min(window.max.x, display.max.x), std::min(window.max.y, display.max.y));
+  const int width = display.max.x - display.min.x + 1, height = display.max.y - display.min.y + 1;
+  const auto at = [](int x, int y, const Imath::Box2i& box) {
+    return static_cast<std::ptrdiff_t>(y - box.min.y) * (box.max.x - box.min.x + 1) + (x - box.min.x);
+  };
+  for (FloatLayer& layer : image.layers) {
+    std::vector<float> whole(static_cast<std::size_t>(width) * static_cast<std::size_t>(height), 0.0f);
+    for (int y = low.y; y <= high.y; ++y) {
+      const auto from = layer.pixels.begin() + at(low.x, y, window);
+      std::copy(from, from + (high.x - low.x + 1), whole.begin() + at(low.x, y, display));
+    }
+    layer.pixels = std::move(whole);
+  }
+  image.width = width, image.height = height;
+  const PixelBox held{low.x - display.min.x, low.y - display.min.y, high.x + 1 - display.min.x, high.y + 1 - display.min.y};
+  if (held.right - held.left < width || held.bottom - held.top < height) image.held = held;
+}
+
 ExrImage decode(const std::string& bytes) {
   MemoryReader stream(bytes);
   Imf::InputFile file(stream, 0);
   const Imf::Header& header = file.header();
-  const Imath::Box2i window = header.dataWindow();
+  const Imath::Box2i window = header.dataWindow(), display = header.displayWindow();
   ExrImage image;
   image.width = window.max.x - window.min.x + 1;
   image.height = window.max.y - window.min.y + 1;
@@ -93,6 +114,7 @@ ExrImage decode(const std::string& bytes) {
     frame.insert(layer.name, Imf::Slice::Make(Imf::FLOAT, layer.pixels.data(), window, sizeof(float), sizeof(float) * width));
   file.setFrameBuffer(frame);
   file.readPixels(window.min.y, window.max.y);
+  if (window != display) place(image, window, display);
   return image;
 }
 

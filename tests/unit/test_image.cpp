@@ -231,28 +231,6 @@ TEST_F(ExrFile, HostileHeadersAreUserErrors) {
   EXPECT_THROW(readExr("/dev/zero"), UserError);
 }
 
-TEST_F(ExrFile, ADataWindowAwayFromTheOriginIsTheImage) {
-  // The header of a file with the window moved by (-5, 7); scan lines carry their own y, so only one block may be present.
-  ExrImage image = sample();
-  image.height = 16;
-  for (FloatLayer& layer : image.layers) layer.pixels.resize(37 * 16);
-  writeExr(folder_ / "a.exr", image, {}, ExrCompression::Zip);  // blocks of 16 lines
-  std::string bytes = slurp(folder_ / "a.exr");
-  const std::int32_t window[4] = {-5, 7, 31, 22};
-  bytes = withValue(bytes, std::string("dataWindow\0box2i\0", 17), std::string_view(reinterpret_cast<const char*>(window), 16));
-  std::uint64_t block = 0;  // the only entry of the offset table, right before the block it points to
-  for (std::size_t at = 0; at + 8 < bytes.size(); ++at) {
-    std::memcpy(&block, bytes.data() + at, 8);
-    if (block == at + 8) break;
-  }
-  bytes[block] = 7;
-  spill(folder_ / "b.exr", bytes);
-  const ExrImage in = readExr(folder_ / "b.exr");
-  EXPECT_EQ(in.width, 37);
-  EXPECT_EQ(in.height, 16);
-  EXPECT_EQ(std::memcmp(in.find("mw.radiance")->pixels.data(), image.layers[0].pixels.data(), 4 * 37 * 16), 0);
-}
-
 TEST_F(AtomicFile, ReplacesAFileAndLeavesNoTemporary) {
   writeFileAtomically(folder_ / "a.txt", "one");
   writeFileAtomically(folder_ / "a.txt", std::string_view("t\0o", 3));
