@@ -164,6 +164,27 @@ TEST_F(GridFiles, WhatIsWrongIsNamed) {
     for (std::size_t at; (at = vast.find(extent)) != std::string::npos;) vast.replace(at, 11, "0 9999 0 9999 0 9999");
     EXPECT_NE(of(written(folder_, "vast.vti", vast), {"T"}).find("vast.vti"), std::string::npos);
   }
+  // What the reader would take for 0 or 1.
+  for (const auto& [from, to, words] :
+       {std::tuple<std::string, std::string, std::string>{"Spacing=\"0.5 0.25 2\"", "Spacing=\"nan 1 1\"", "3:1: Spacing=\"nan 1 1\" of the grid"},
+        {"Spacing=\"0.5 0.25 2\"", "Spacing=\"1 inf 1\"", "3:1: Spacing"},
+        {"Spacing=\"0.5 0.25 2\"", "Spacing=\"1 1\"", "3 finite numbers"},
+        {"Spacing=\"0.5 0.25 2\"", "Spacing=\"1,5 1 1\"", "3:1: Spacing"},
+        {"Spacing=\"0.5 0.25 2\"", "Spacing=\"1 0 1\"", "a step that is not above 0"},
+        {"Spacing=\"0.5 0.25 2\"", "Spacing=\"1 -1 1\"", "a step that is not above 0"},
+        {"Spacing=\"0.5 0.25 2\"", "Spacing=\"1e999 1 1\"", "3:1: Spacing"},
+        {"Origin=\"1 2 3\"", "Origin=\"1 2 NaN\"", "3:1: Origin"},
+        {"Origin=\"1 2 3\"", "Origin=\"\"", "3:1: Origin"},
+        {"WholeExtent=\"0 2 0 1 0 3\"", "WholeExtent=\"0 nan 0 1 0 3\"", "3:1: WholeExtent"},
+        {"WholeExtent=\"0 2 0 1 0 3\"", "WholeExtent=\"0 2 0 1 0 3.5\"", "6 whole numbers"},
+        {"Piece Extent=\"0 2 0 1 0 3\"", "Piece Extent=\"0 2 0 1 0\"", "4:1: Extent"}}) {
+    std::string bad = text;
+    ASSERT_NE(bad.find(from), std::string::npos);
+    bad.replace(bad.find(from), from.size(), to);
+    const std::string said = of(written(folder_, "bad.vti", bad), {"T"});
+    EXPECT_NE(said.find(words), std::string::npos) << to << ": " << said;
+    EXPECT_NE(said.find("bad.vti:"), std::string::npos) << said;
+  }
   EXPECT_NE(of(written(folder_, "empty.vti", ""), {"T"}).find("empty.vti"), std::string::npos);
   setGridImportFolder(folder_.path());
   EXPECT_NE(of(file, {"T"}).find("libvtk9-dev"), std::string::npos);

@@ -1,6 +1,8 @@
 // VTK XML PolyData and ImageData: the tags' nesting, what kind of file it is, and declared counts against the file's size. The arrays
 // themselves (base64, compressed) are left to the reader and checked after it.
 #include <algorithm>
+#include <charconv>
+#include <cmath>
 
 #include "sim/scene/import/checks.hpp"
 #include "sim/scene/import/import_reply.hpp"
@@ -41,6 +43,8 @@ class VtpCheck {
         if (name == "VTKFile") isType = attribute(tag, "type") == type_;
         if (name == "VTKFile" && !isType) fail(at, "the file holds no " + type_, "type=\"" + type_ + "\"");
         checkCounts(at, tag);
+        if (name == "ImageData") checkImage(at, tag);
+        if (name == "Piece") checkNumbers(at, tag, "Extent", 6, true);
         if (name == "AppendedData") return;  // what follows may be raw bytes
         if (tag[tag.size() - 2] != '/') open.push_back(name);
         if (open.size() > 32) fail(at, "the tags are nested too deeply", "32 levels at most");  // a PolyData needs five
@@ -90,6 +94,40 @@ class VtpCheck {
         fail(at, std::string(name) + "=\"" + shown(value) + "\" is not possible in a file of this size",
              "at most " + std::to_string(static_cast<long long>(limit)));
     }
+  }
+
+  void checkImage(std::size_t at, std::string_view tag) const {
+    checkNumbers(at, tag, "WholeExtent", 6, true);
+    checkNumbers(at, tag, "Origin", 3, false);
+    for (double step : checkNumbers(at, tag, "Spacing", 3, false))
+      if (!(step > 0.0))
+        fail(at, "Spacing=\"" + shown(attribute(tag, "Spacing")) + "\" has a step that is not above 0", "three steps above 0, along x, y and z");
+  }
+
+  /// The reader takes what it cannot read for 0 or 1.
+  std::vector<double> checkNumbers(std::size_t at, std::string_view tag, const std::string& name, std::size_t count, bool whole) const {
+    const std::string value = attribute(tag, name);
+    if (value.empty() && tag.find(" " + name + "=") == tag.npos) return {};
+    std::vector<double> all;
+    const char* const end = value.data() + value.size();
+    for (const char* p = value.data();;) {
+      while (p < end && static_cast<unsigned char>(*p) <= ' ') ++p;
+      if (p == end) break;
+      double number = 0.0;
+      const auto [next, error] = std::from_chars(p + (*p == '+' ? 1 : 0), end, number);
+      const bool parted = next == end || static_cast<unsigned char>(*next) <= ' ';
+      constexpr double kMostExtent = 2147483647.0;
+      if (error != std::errc{} || !parted || !std::isfinite(number) || (whole && !(std::abs(number) <= kMostExtent && number == std::floor(number)))) {
+        all.clear();
+        break;
+      }
+      all.push_back(number);
+      p = next;
+    }
+    if (all.size() != count)
+      fail(at, name + "=\"" + shown(value) + "\" of the grid",
+           std::to_string(count) + (whole ? " whole numbers" : " finite numbers") + " with blanks between them");
+    return all;
   }
 
   std::string file_;
