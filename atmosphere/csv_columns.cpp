@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "sim/parameters/csv_separators.hpp"
 #include "sim/parameters/readable_text.hpp"
 
 namespace pitviper::csv {
@@ -139,6 +140,7 @@ std::vector<Column> columnsOf(std::string_view header, const Location& line) {
   if (std::none_of(cells.begin(), cells.end(), isKnown))
     throw UserError({line.file, line.line, 1, -1}, "no column of air has a name of those on this line",
                     "a line with the names of columns: wavelength_um, range_km, transmittance", "see atmosphere/tabulated_csv.hpp");
+  refuseOtherSeparators(header, line);
   for (const Cell& cell : cells) {
     Column c = columnOf(cell, line);
     for (const Column& other : columns)

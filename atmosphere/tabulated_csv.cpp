@@ -10,6 +10,7 @@
 
 #include "atmosphere/csv_columns.hpp"
 #include "atmosphere/depth_fit.hpp"
+#include "sim/parameters/csv_separators.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/parameters/readable_text.hpp"
@@ -95,11 +96,12 @@ class Reader {
   }
 
   void readRow(std::string_view line) {
+    refuseOtherSeparators(line, {name_, line_, 1, -1});
     const auto cells = csv::cellsOf(line);
     if (cells.size() != columns_.size())
       fail(cells.size() > columns_.size() ? cells[columns_.size()].column : static_cast<int>(line.size()) + 1,
            "a row of " + std::to_string(cells.size()) + " cells", std::to_string(columns_.size()) + ", as line " + std::to_string(header_) + " has names",
-           "add or remove cells");
+           fixOfCells(cells.size(), columns_.size()));
     if (++rows_ > kMostRows) fail(1, "more than 500000 rows", "a table of air", "thin it out");
 
     double wavelength = 0.0, range = 0.0;

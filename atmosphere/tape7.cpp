@@ -92,6 +92,9 @@ class RunReader {
   void checkWavenumber(const Line& line, double v) const {
     const char* const fix = "give MODTRAN's own tape7, in wavenumbers, not one turned into wavelengths";
     const std::string found = tape7::inQuotes(line.cut(1, fields_[0].last));
+    if (!wavenumber_.empty() && v == wavenumber_.back())
+      throw UserError(line.at(1), "the wavenumber " + found + " does not rise: it stands twice, as with several lines of sight in one run, which are not read",
+                      "rising wavenumbers in cm-1", tape7::kOneLineOfSight);
     if (!wavenumber_.empty() && !(v > wavenumber_.back()))
       throw UserError(line.at(1), "the wavenumber " + found + " does not rise", "rising wavenumbers in cm-1", fix);
     if (!tape7::inBand(run_, v))

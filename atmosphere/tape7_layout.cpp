@@ -118,6 +118,10 @@ bool isNames(const Line& line) {
 
 Layout layoutOf(Tape7Kind kind, const std::vector<Line>& lines, size_t at) {
   const auto words = wordsOf(lines[at].text);
+  for (const Word& w : words)
+    if (w.text == "LOS")
+      throw UserError(lines[at].at(w.first), "a column LOS: several lines of sight in one run, as MODTRAN 5.3 and later write them, are not read",
+                      "one line of sight to a run", kOneLineOfSight);
   checkFirst(lines[at], words);
   if (kind == Tape7Kind::Transmittance) return transmittanceLayout(lines, at);
   if (kind == Tape7Kind::SolarIrradiance) return irradianceLayout(lines[at], words);

@@ -6,6 +6,10 @@
 
 namespace pitviper::tape7 {
 
+/// What to do about several lines of sight in one run.
+inline constexpr const char* kOneLineOfSight =
+    "run MODTRAN with each line of sight as a case of its own, one after the other in one tape5: its tape7 has a run for each";
+
 /// A line of column names begins with the wavenumber's, or with what some outputs have instead.
 bool isNames(const Line& line);
 

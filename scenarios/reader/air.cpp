@@ -40,6 +40,25 @@ void addLibrary(Value& air, const std::filesystem::path& folder) {
   }
 }
 
+/// A table of the library is the library's air: its file lies beside none of a user's scenarios.
+void refuseMissingTable(const Value& air, const std::filesystem::path& base, const std::filesystem::path& library) {
+  const Value* word = air.find("table");
+  if (!word || word->kind != Value::Kind::Scalar || air.find("library")) return;
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(base / word->text, ignored)) return;
+  const auto names = libraryNames(library);
+  std::string fix = "check the path";
+  std::vector<std::string> same;
+  for (const std::string& name : names) {
+    const Value tree = loadYaml(library / (name + ".yaml"), word->where);
+    const Value* table = tree.find("table");
+    if (table && std::filesystem::path(table->text).stem() == std::filesystem::path(word->text).stem()) same.push_back(name);
+  }
+  if (!same.empty()) fix = "write 'library: " + same.back() + "' in its place" + (same.size() > 1 ? ", or one of " + listed(same) : "");
+  throw UserError(word->where, "there is no file '" + (base / word->text).string() + "'",
+                  "an air table (.air), its path relative to this file; or 'library', one of " + listed(names), fix);
+}
+
 }  // namespace
 
 void Builder::readAtmosphere(const Record& scenario) {
@@ -61,6 +80,7 @@ void Builder::readAtmosphere(const Record& scenario) {
   const ParameterTable all = anyAirTable();
   const Record r(air, all);
   const bool none = r.text("model") == "none";
+  refuseMissingTable(air, base_, libraries_.atmosphere);
   if (r.given("library") && !none) {
     if (const auto own = marksOf(air); !own.empty())
       throw UserError(air.find("library")->where, "the air is given twice, by '" + own.front().key + "' and by 'library'", "one of the two", "remove one");

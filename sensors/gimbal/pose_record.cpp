@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/parameters/csv_separators.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/parameters/readable_text.hpp"
 #include "sim/parameters/table.hpp"
@@ -114,6 +115,7 @@ PoseRecord posesOf(std::string_view rest, const std::string& file) {
     rest.remove_prefix(std::min(end + 1, rest.size()));
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (line.empty() || line[0] == '#') continue;
+    refuseOtherSeparators(line, where);
     const auto cells = cellsOf(line, where);
     if (!hasHeader) {
       const auto wanted = cellsOf(kHeader, where);
@@ -124,7 +126,8 @@ PoseRecord posesOf(std::string_view rest, const std::string& file) {
       continue;
     }
     if (cells.size() != kCells)
-      throw UserError(where, "a row of " + std::to_string(cells.size()) + " cells", std::to_string(kCells) + ", as the header has", "add or remove cells");
+      throw UserError(where, "a row of " + std::to_string(cells.size()) + " cells", std::to_string(kCells) + ", as the header has",
+                      fixOfCells(cells.size(), kCells));
     record.rows.push_back(rowOf(cells));
     if (record.rows.size() < 2) continue;
     const PoseRow &before = record.rows[record.rows.size() - 2], &row = record.rows.back();

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/flight/flight_axes.hpp"
+#include "sim/parameters/csv_separators.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/parameters/readable_text.hpp"
 #include "sim/parameters/table.hpp"
@@ -133,7 +134,7 @@ class Rows {
     cells_ = cellsOf(line);
     if (cells_.size() != header_.names.size())
       throw UserError(where, "a row of " + std::to_string(cells_.size()) + " cells", std::to_string(header_.names.size()) + ", as the header has columns",
-                      "add or remove cells");
+                      fixOfCells(cells_.size(), header_.names.size()));
     if (points.size() == kMostRows)
       throw UserError(where, "the trajectory goes on after " + std::to_string(kMostRows) + " rows", "at most that many", "thin it out");
     line_ = number;
@@ -258,6 +259,7 @@ Trajectory readTrajectoryCsv(const std::filesystem::path& file, const LocalFrame
     if (line.size() > kMostLine)
       throw UserError(where, "a line of " + std::to_string(line.size()) + " characters", "4096 at most", "check that it is a CSV file");
     if (line.find_first_not_of(" \t") == std::string_view::npos || line[0] == '#') continue;
+    refuseOtherSeparators(line, where);
     if (!header) {
       header = headerOf(line, where);
       rows.emplace(*header, frame, where.file);

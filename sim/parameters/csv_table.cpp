@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "sim/parameters/csv_separators.hpp"
 #include "sim/parameters/readable_text.hpp"
 #include "sim/parameters/units.hpp"
 
@@ -54,6 +55,7 @@ CsvTable readCsvTable(const std::filesystem::path& file, const FileWanted& wante
     if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
     if (line.empty() || line[0] == '#') continue;
     const auto cells = cellsOf(line);
+    refuseOtherSeparators(line, where);
     if (table.columns.empty()) {
       for (const Cell& cell : cells) table.columns.push_back(columnOf(cell, table.columns.size() + 1, where));
       continue;
@@ -61,7 +63,7 @@ CsvTable readCsvTable(const std::filesystem::path& file, const FileWanted& wante
     const std::size_t wantedCells = table.columns.size();
     if (cells.size() != wantedCells)
       throw UserError(where, "a row of " + std::to_string(cells.size()) + " cells", std::to_string(wantedCells) + ", as the header has columns",
-                      "add or remove cells");
+                      fixOfCells(cells.size(), wantedCells));
     for (const Cell& cell : cells) {
       const auto q = splitQuantity(cell.text);
       if (!q || !q->unit.empty())

@@ -6,6 +6,7 @@
 
 #include "sim/parameters/csv_table.hpp"
 #include "sim/parameters/readable_text.hpp"
+#include "sim/parameters/unit_conversion.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/radiometry/constants.hpp"
 
@@ -52,8 +53,7 @@ Spectrum fromRows(std::vector<Row> rows, const std::string& axisUnit, const Loca
   }
   if (!convert({1.0, valueUnit}, canonical))
     throw UserError(unitWhere, "the values of " + std::string(name) + " have the unit '" + valueUnit + "'",
-                    canonical.empty() ? "plain numbers (unit 1)" : "a unit of the dimension of " + std::string(canonical),
-                    "write 'unit: " + (canonical.empty() ? "\"1\"" : std::string(canonical)) + "'");
+                    canonical.empty() ? "plain numbers (unit 1)" : "a unit of the dimension of " + std::string(canonical), conversionOf(valueUnit, canonical));
   if (rows.empty()) throw UserError(where, "the table of " + std::string(name) + " is empty", "at least one row", "add rows [wavelength, value]");
   const bool falls = rows.size() > 1 && rows[1].x < rows[0].x;
   if (falls && axis == Axis::Wavelength)

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "sim/parameters/time_course.hpp"
+#include "sim/parameters/unit_conversion.hpp"
 #include "sim/parameters/units.hpp"
 
 namespace pitviper {
@@ -284,10 +285,12 @@ double readNumber(const Value& value, std::string_view unit, std::string_view na
     if (written->unit.empty())
       throw UserError(value.where, what + " has no unit (" + quotedShort(value.text) + ")", unitExample(unit),
                       "write " + quotedShort(value.text + " " + writtenUnit(unit)) + " if that is meant");
+    const bool light = unit.starts_with("W") && parseUnit(written->unit);
     throw UserError(value.where, what + " has the wrong unit " + quotedShort(written->unit), unitExample(unit),
-                    "write it in " + (unit.empty()  ? std::string("plain numbers")
-                                      : unit == "K" ? std::string("K or degC")
-                                                    : writtenUnit(unit)));
+                    light ? conversionOf(written->unit, unit)
+                          : "write it in " + (unit.empty()  ? std::string("plain numbers")
+                                              : unit == "K" ? std::string("K or degC")
+                                                            : writtenUnit(unit)));
   }
   return *converted;
 }

@@ -347,6 +347,10 @@ TEST(Tape7, BrokenOnesAreRefused) {
   starts(replaced(sunny, "0.75000000", "7.5000E+01"), "t7:12:9: the transmittance TOT_TRANS is '7.5000E+01'");
   starts(replaced(sunny, "0.75000000", "-.75000000"), "t7:12:9: the transmittance TOT_TRANS is '-.75000000'");
   starts(replaced(sunny, "    FREQ", "  WAVLEN"), "t7:11:3: a table over wavelength ('WAVLEN')");
+  starts(replaced(sunny, "FREQ  TOT_TRANS", "FREQ LOS TOT_TRANS"), "t7:11:10: a column LOS: several lines of sight in one run");
+  starts(replaced(gases, "    FREQ COMBIN", "    FREQ LOS  COMBIN"), "t7:11:10: a column LOS");
+  starts(replaced(irradianceRun(), "FREQ", "FREQ LOS"), "t7:11:");
+  starts(replaced(sunny, "\n 2500.00", "\n 2000.00"), "t7:13:1: the wavenumber '2000.00' does not rise: it stands twice, as with several lines of sight");
   starts(replaced(sunny, "    FREQ", "FREQ(CM)"), "t7:11:1: 'FREQ(CM)' heads the first column");
   starts(replaced(sunny, " 2000.00 ", " 5000.00 "), "t7:12:1: the wavenumber '5000.00' lies outside the band of the run's card 4, line 9");
   starts(replaced(sunny, "\n 2500.00", "\n 2000.00"), "t7:13:1: the wavenumber '2000.00' does not rise");
