@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scenarios/reader/builder.hpp"
+#include "scenarios/reader/steadied.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sensors/gimbal/gimbal_choice.hpp"
@@ -406,6 +407,7 @@ void Builder::readCameras(const Record& scenario) {
       throw UserError(r.where(), "camera '" + c.name + "' looks nowhere", "'look_at', 'heading' and 'pitch', a motion, or 'attached_to'",
                       "add 'look_at: <entity>'");
     }
+    c.mount.steadied = readSteadied(r, c.mount, simulation_);
 
     Spectrum optics(1.0);
     if (r.given("optics")) optics = bounded(spectra_, r.value("optics"), "", "optics transmission", 0.0, 1.0, Outside::Zero);

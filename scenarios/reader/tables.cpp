@@ -453,6 +453,9 @@ const ParameterTable& camera() {
               "the frame and in <camera>_truth.csv",
               0, 9),
          any("look_at", "name of an entity or a light, or a position [x, y, z]; with a `gimbal` its target, and heading, pitch and roll are of the gimbal's base"),
+         any("stabilised",
+             "angles of its carrier that its mount keeps from it, and from its gimbal's base: one of roll, pitch and yaw or a list of them. Roll and pitch are level then, yaw is "
+             "that of the scenario's start; its own heading, pitch and roll come on top"),
          map("gimbal", "two axes that follow what it looks at, within their limits")}};
     addPlacement(x.parameters, true);
     return x;

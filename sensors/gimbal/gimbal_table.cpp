@@ -34,7 +34,7 @@ const ParameterTable& gimbalTable() {
        list("boresight", "error of its line of sight: [left, up] of where its angles say; none unless given", 2, 2),
        list("offset", "where it is to aim: [left, up] of its target; none unless given", 2, 2),
        withDefault(angle("roll", "of the camera about its line of sight, right side down", kPi), "0 deg"),
-       withDefault(boolean("stabilised", "between demands it holds a line in space; else its angles to the base"), "true"),
+       withDefault(boolean("stabilised", "between demands it holds a line in space; else its angles to the base (what keeps the base itself level is the camera's own `stabilised`)"), "true"),
        map("jitter", "of the line of sight: what stabilisation leaves"), map("scan", "a pattern on top of where it looks"),
        map("tracker", "what `driver: centroid` looks for")}};
   return t;

@@ -176,9 +176,10 @@ void addTo(Fingerprint& f, const Camera& c) {
   f.add(name).add(width).add(height).add(focalLength_m).add(pitchX_m).add(pitchY_m).add(apertureDiameter_m);
   addTo(f, focalLengthOverTime_m);
   addTo(f, exposureOverTime_s);
-  const auto& [motion, carrier, lookAtEntity, lookAtLight, looksAtPoint, lookAtPoint] = mount;
+  const auto& [motion, carrier, lookAtEntity, lookAtLight, looksAtPoint, lookAtPoint, steadied] = mount;
   addTo(f, motion);
   f.add(carrier).add(lookAtEntity).add(lookAtLight).add(looksAtPoint).add(lookAtPoint);
+  f.add(steadied.heading).add(steadied.pitch).add(steadied.roll).add(steadied.heading_rad);
   f.add(exposure_s).add(near_m).add(samples).add(smallBody_px).add(truth.any()).add(truth.solidAngles);
   for (const auto& [number, column, row, pose] : learnt) {
     f.add(number).add(column).add(row).add(pose.has_value());

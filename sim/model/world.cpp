@@ -68,7 +68,11 @@ Pose baseOf(const Mount& mount, const CameraChange* change, const WorldState& st
   Pose pose = mount.motion.at(state.time_s);
   if (change && change->position) pose.position = *change->position;
   if (change && change->orientation) pose.orientation = *change->orientation;
-  return mount.carrier >= 0 ? composed(state.entities[static_cast<size_t>(mount.carrier)], pose) : pose;
+  if (mount.carrier < 0) return pose;
+  const Pose& carrier = state.entities[static_cast<size_t>(mount.carrier)];
+  Pose base = composed(carrier, pose);
+  if (mount.steadied.any()) base.orientation = glm::normalize(steadied(mount.steadied, carrier.orientation) * pose.orientation);
+  return base;
 }
 
 std::optional<glm::dvec3> targetOf(const Mount& mount, const WorldState& state) {

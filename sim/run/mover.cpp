@@ -75,20 +75,6 @@ glm::dvec3 turned(const glm::dquat& from, const glm::dquat& to) {
   return sine > 0.0 ? axis * (2.0 * std::atan2(sine, by.w) / sine) : axis;
 }
 
-Attitude attitudeOf(const glm::dquat& q) {
-  const glm::dvec3 forward = q * glm::dvec3(1, 0, 0);
-  Attitude a;
-  a.pitch_rad = std::asin(std::clamp(forward.z, -1.0, 1.0));
-  const double level = std::hypot(forward.x, forward.y);
-  // Below a part in 1e12 the direction over ground is rounding.
-  if (level > 1e-12) a.heading_rad = std::atan2(forward.x, forward.y);
-  if (a.heading_rad < 0.0) a.heading_rad += 2.0 * kPi;
-  if (a.heading_rad >= 2.0 * kPi) a.heading_rad = 0.0;  // a rounding west of north
-  const glm::dquat rest = glm::inverse(orientationFrom(a)) * q;
-  a.roll_rad = std::remainder(2.0 * std::atan2(rest.x, rest.w), 2.0 * kPi);
-  return a;
-}
-
 Slopes slopesThrough(double t0, const glm::dvec3& p0, double t1, const glm::dvec3& p1, double t2, const glm::dvec3& p2) {
   const double before = t1 - t0, after = t2 - t1;
   const glm::dvec3 into = (p1 - p0) / before, out = (p2 - p1) / after;

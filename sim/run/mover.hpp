@@ -38,10 +38,6 @@ class Mover {
 /// Turning from one orientation to another as a vector in the axes of the first [rad]: half a turn at most.
 glm::dvec3 turned(const glm::dquat& from, const glm::dquat& to);
 
-/// Heading from 0 to 2 pi, pitch within a quarter turn, roll within half a turn [rad]; of a body that points straight up or down the heading is that of its
-/// roll.
-Attitude attitudeOf(const glm::dquat& orientation);
-
 /// Of a parabola through three positions at rising times: what it is at the middle one.
 struct Slopes {
   glm::dvec3 velocity{0.0}, acceleration{0.0};

@@ -34,6 +34,14 @@ Pinhole::SolidAngles Pinhole::solidAngles() const {
   return all;
 }
 
+glm::dquat steadied(const Steadied& angles, const glm::dquat& carrier) {
+  Attitude a = attitudeOf(carrier);
+  if (angles.heading) a.heading_rad = angles.heading_rad;
+  if (angles.pitch) a.pitch_rad = 0.0;
+  if (angles.roll) a.roll_rad = 0.0;
+  return orientationFrom(a);
+}
+
 glm::dmat3 localFromCamera(const Pose& pose) {
   const glm::dvec3 x = pose.orientation * glm::dvec3(1, 0, 0);
   const glm::dvec3 y = pose.orientation * glm::dvec3(0, 1, 0);

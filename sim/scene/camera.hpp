@@ -34,6 +34,16 @@ struct Pinhole {
   double integral(int column, int row, int power) const;
 };
 
+/// Angles of its carrier's attitude that a platform between the two keeps from a camera: pitch and roll are 0 (level) then, the heading is the one given.
+struct Steadied {
+  bool heading = false, pitch = false, roll = false;
+  double heading_rad = 0.0;
+  bool any() const { return heading || pitch || roll; }
+};
+
+/// The attitude that such a platform has on a carrier.
+glm::dquat steadied(const Steadied& angles, const glm::dquat& carrier);
+
 /// How a camera is carried and where it looks.
 struct Mount {
   Motion motion;          ///< in the local frame, or in the carrier's body frame
@@ -42,6 +52,7 @@ struct Mount {
   int lookAtLight = -1;   ///< index of a point light, or -1; of nothing to look at: along the motion's own x axis
   bool looksAtPoint = false;
   glm::dvec3 lookAtPoint{0.0};
+  Steadied steadied;  ///< of a camera that is carried
 };
 
 /// Columns: camera x (right), y (up), z (backward) in the local frame.

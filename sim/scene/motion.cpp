@@ -16,6 +16,20 @@ glm::dquat orientationFrom(const Attitude& a) {
   return glm::normalize(heading * pitch * roll);
 }
 
+Attitude attitudeOf(const glm::dquat& q) {
+  const glm::dvec3 forward = q * glm::dvec3(1, 0, 0);
+  Attitude a;
+  a.pitch_rad = std::asin(std::clamp(forward.z, -1.0, 1.0));
+  const double level = std::hypot(forward.x, forward.y);
+  // Below a part in 1e12 the direction over ground is rounding.
+  if (level > 1e-12) a.heading_rad = std::atan2(forward.x, forward.y);
+  if (a.heading_rad < 0.0) a.heading_rad += 2.0 * kPi;
+  if (a.heading_rad >= 2.0 * kPi) a.heading_rad = 0.0;  // a rounding west of north
+  const glm::dquat rest = glm::inverse(orientationFrom(a)) * q;
+  a.roll_rad = std::remainder(2.0 * std::atan2(rest.x, rest.w), 2.0 * kPi);
+  return a;
+}
+
 glm::dquat orientationAlong(const glm::dvec3& forward, double roll_rad) {
   const glm::dvec3 x = glm::normalize(forward);
   const bool vertical = std::abs(x.z) > 1.0 - 1e-12;

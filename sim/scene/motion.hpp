@@ -28,6 +28,9 @@ struct Attitude {
 };
 
 glm::dquat orientationFrom(const Attitude& attitude);
+/// Heading from 0 to 2 pi, pitch within a quarter turn, roll within half a turn [rad]; of a body that points straight up or down the heading is that of its
+/// roll.
+Attitude attitudeOf(const glm::dquat& orientation);
 /// Body x along `forward`, z as near to up as possible (north where forward is vertical), then rolled.
 glm::dquat orientationAlong(const glm::dvec3& forward, double roll_rad = 0.0);
 
