@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sensors/detector_stage.hpp"
+#include "sensors/netd_design.hpp"
 #include "sensors/signal_memory.hpp"
 #include "sensors/stages.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -25,6 +26,19 @@ DetectorLaw::Correction readCorrection(const Record& detector) {
   const DetectorLaw::Correction c{r.number("low"), r.number("high"), static_cast<int>(r.integer("frames"))};
   if (!(c.low_K < c.high_K)) throw UserError(r.where(), "a correction whose black bodies do not rise", "'low' below 'high'", "swap them");
   return c;
+}
+
+DisplayLaw readDisplay(const Record& r) {
+  const std::string agc = r.text("agc");
+  DisplayLaw law;
+  law.agc = agc == "fixed" ? Agc::Fixed : agc == "plateau" ? Agc::Plateau : Agc::Linear;
+  for (const char* key : {"agc_plateau", "agc_linear"})
+    if (r.given(key) && law.agc != Agc::Plateau) throw UserError(r.where(key), std::string("'") + key + "' beside 'agc: " + agc + "'", "'agc: plateau', which it is of", "write that, or remove it");
+  for (const char* key : {"agc_tails", "agc_gain"})
+    if (r.given(key) && law.agc == Agc::Fixed) throw UserError(r.where(key), std::string("'") + key + "' beside 'agc: fixed'", "'agc: linear' or 'plateau'", "write one, or remove it");
+  law.tails = r.number("agc_tails"), law.plateau = r.number("agc_plateau"), law.linear = r.number("agc_linear");
+  if (r.given("agc_gain")) law.most_codesPerCount = r.number("agc_gain");
+  return law;
 }
 
 DetectorLaw readLaw(const Record& r, const Camera& camera) {
@@ -52,7 +66,7 @@ DetectorLaw readLaw(const Record& r, const Camera& camera) {
   law.badPixels = r.number("bad_pixels");
   law.badTogether = static_cast<int>(r.integer("bad_cluster"));
   law.flickerCorner_Hz = r.number("flicker_corner");
-  if (law.flickerCorner_Hz > 0.0 && !(law.sigmaTvh > 0.0))
+  if (law.flickerCorner_Hz > 0.0 && !(law.sigmaTvh > 0.0) && !r.given("netd"))
     throw UserError(r.where("flicker_corner"), "a corner of 1/f noise without white noise to meet", "'read_noise' or 'reset_noise'", "give one, or remove it");
   law.crosstalk = r.number("crosstalk");
   law.lag = r.number("lag");
@@ -65,8 +79,8 @@ DetectorLaw readLaw(const Record& r, const Camera& camera) {
   law.darkCurrent_per_s *= camera.binning * camera.binning;
   law.sigmaVh *= camera.binning, law.offsetDrift_per_s *= camera.binning;
   law.prnu /= camera.binning, law.gainDrift_per_s /= camera.binning, law.crosstalk /= camera.binning;
-  const std::string agc = r.text("agc");
-  law.agc = agc == "linear" ? Agc::Linear : agc == "plateau" ? Agc::Plateau : Agc::Percentile;
+  law.display = readDisplay(r);
+  designNoise(r, camera, law);
   return law;
 }
 
@@ -89,6 +103,8 @@ StageModel detectorModel() {
        within(above(number("dark_reference", "K", "temperature at which dark_current is meant"), 0), 0, 1000),
        withDefault(within(above(number("dark_doubling", "K", "warming that doubles it"), 0), 0, 1000), "8 K"),
        electronsOf("read_noise", "sigma_tvh: of each pixel and frame"), electronsOf("reset_noise", "kTC noise of each pixel and frame, besides read noise"),
+       above(within(number("netd", "K", "instead of read noise: the NETD that it is to have at `netd_at`, through this camera's own lens and exposure, without what is fixed"), 0, 100), 0),
+       withDefault(within(above(number("netd_at", "K", "of the black body that `netd` is meant for"), 0), 0, 20000), "300 K"), text("netd_channel", "of several that count, the one that `netd` is of"),
        withDefault(within(number("flicker_corner", "Hz", "where 1/f noise is as dense as read and reset noise"), 0, 1e6), "0 Hz"),
        electronsOf("row_noise", "sigma_tv: of each row and frame"),
        electronsOf("column_noise", "sigma_th: of each column and frame"), electronsOf("frame_noise", "sigma_t: of each frame"),
@@ -106,7 +122,14 @@ StageModel detectorModel() {
        withDefault(within(number("time_constant", "s", "of a bolometer: its signal follows the light so slowly"), 0, 10), "0 s"),
        withDefault(within(number("line_time", "s", "rolling read-out: each row is exposed so much later than the one above, the middle of the film at the frame's time"),
                           0, 1), "0 s"),
-       withDefault(choice("agc", {"linear", "percentile", "plateau"}, "how `display` maps counts to a screen's codes"), "percentile")},
+       withDefault(choice("agc", {"linear", "percentile", "plateau", "fixed"},
+                          "how `display` maps counts to a screen's 256 codes. linear, or percentile: evenly over the picture's range but for its tails; plateau: by its histogram, no "
+                          "count of which weighs more than a plateau; fixed: the converter's whole range"),
+                   "linear"),
+       withDefault(within(number("agc_tails", "", "share of the pixels at either end that the range passes over"), 0, 0.2), "0.5 %"),
+       above(within(number("agc_gain", "", "most codes that a count gets; unless given noise from frame to frame becomes 4 codes rms at most"), 0, 255), 0),
+       withDefault(within(above(number("agc_plateau", "", "share of the pixels beyond which a count weighs no more"), 0), 0, 1), "2 %"),
+       withDefault(within(number("agc_linear", "", "share of the codes that go evenly over the range, so that what is far hotter looks it"), 0, 1), "20 %")},
       [](const Record& r, const Camera& camera) {
         StageChoice choice;
         choice.onPixels = true;

@@ -66,7 +66,7 @@ class DetectorStage final : public SensorStage {
       }
       std::vector<float>& picture = pictures.values(o);
       picture = output.asSignalToNoise ? own->signalToNoise : own->counts;
-      if (output.asDisplay) toDisplayCodes(picture, law_);
+      if (output.asDisplay) toDisplayCodes(picture, law_, noiseAtMedian(picture, tick));
       if (!output.asTemperature) continue;
       const double dark = law_.darkCurrent_per_s * tick.exposure_s;
       const std::vector<float>* lens = o < pictures.ownLight.size() && !pictures.ownLight[o].empty() ? &pictures.ownLight[o] : nullptr;
@@ -76,6 +76,14 @@ class DetectorStage final : public SensorStage {
   }
 
  private:
+  /// From frame to frame, of a pixel that counts as many as the picture's middle one [count].
+  double noiseAtMedian(std::vector<float> counts, const SensorTick& tick) const {
+    const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
+    std::nth_element(counts.begin(), middle, counts.end(), [](float a, float b) { return a < b || (!std::isnan(a) && std::isnan(b)); });
+    const double gain = law_.gain * tick.gain, electrons = std::isnan(*middle) ? law_.fullWell : std::max(0.0, (static_cast<double>(*middle) - law_.offset) / gain);
+    return gain * std::sqrt(electrons + law_.readoutVariance(tick.step_s));
+  }
+
   /// Learnt with the camera's own lens and exposure, whatever commands make of them: a frame's counts depend on no other.
   const FixedPattern& patternOf(const ChannelOutput& output, std::uint32_t channel, const SensorTick& tick, int width, int height) {
     FixedPattern& f = patterns_[channel];

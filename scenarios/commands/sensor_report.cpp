@@ -33,6 +33,8 @@ std::string sensorText(const Camera& camera, double step_s) {
           out += print(", %.3g electrons at 300 K, NETD %.3g mK", d->electronsAt300K, 1e3 * d->netd_K);
           if (d->netdWithFixed_K > 1.01 * d->netd_K) out += print(" (%.3g with fixed pattern)", 1e3 * d->netdWithFixed_K);
           out += ", most of it " + d->limitedBy;
+          if (const DetectorLaw* law = detectorOf(camera); law && law->netd)
+            out += print("; read noise of %.4g electrons from the NETD of %.4g mK at %.4g K", law->sigmaTvh, 1e3 * law->netd->value_K, law->netd->at_K);
           out += d->saturation_K > 0.0 ? print(", saturated at %.4g K", d->saturation_K) : ", never saturated";
         }
         out += print(", %.3g W/m2 on one pixel as its noise%s", d->noiseEquivalent_W_m2, seesHeat ? "" : " in the dark");

@@ -1,6 +1,7 @@
 // Frames as TIFF, PNG and FITS: counts are whole numbers in them, and in PNG everything is.
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "sim/frame/file_formats.hpp"
 #include "sim/frame/file_owner.hpp"
@@ -20,6 +21,7 @@ LayerCode codeOf(const FrameLayer& layer, const std::string& file) {
   double low = INFINITY, high = -INFINITY;
   for (float v : layer.pixels)
     if (std::isfinite(v)) low = std::min(low, static_cast<double>(v)), high = std::max(high, static_cast<double>(v));
+  if (const auto ends = screenEnds(layer)) std::tie(low, high) = *ends;
   if (!(low <= high)) return {layer.name, file, "uint16", 0.0, 1.0, true};
   const double step = high > low ? (high - low) / 65534.0 : 1.0;
   return {layer.name, file, "uint16", low - step, step, true};

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/frame/file_formats.hpp"
+#include "sim/frame/frame_picture.hpp"
 #include "sim/image/picture_scale.hpp"
 #include "sim/image/srgb.hpp"
 
@@ -38,7 +39,8 @@ std::vector<float> colours(const FrameLayer& x, const FrameLayer& y, const Frame
 }
 
 /// Grey whose codes on a screen are even in the values; what is not finite is black.
-std::vector<float> greys(const std::vector<float>& pixels) {
+std::vector<float> greys(const FrameLayer& layer) {
+  const std::vector<float>& pixels = layer.pixels;
   static const std::array<float, 1025> linear = [] {
     std::array<float, 1025> table{};
     for (std::size_t k = 0; k < table.size(); ++k) {
@@ -47,7 +49,8 @@ std::vector<float> greys(const std::vector<float>& pixels) {
     }
     return table;
   }();
-  const PictureScale scale = scaleOf(pixels);
+  const auto ends = screenEnds(layer);
+  const PictureScale scale = ends ? PictureScale::between(ends->first, ends->second) : scaleOf(pixels);
   std::vector<float> picture;
   picture.reserve(3 * pixels.size());
   for (float v : pixels) {
@@ -68,7 +71,7 @@ void writeExrFile(const std::filesystem::path& file, const Frame& frame, const F
   if (options.picture) {
     const FrameLayer *x = layerNamed(frame, "X.tristimulus"), *y = layerNamed(frame, "Y.tristimulus"), *z = layerNamed(frame, "Z.tristimulus");
     const bool seen = x && y && z;
-    image.picture = seen ? colours(*x, *y, *z) : greys(frame.layers.front().pixels);
+    image.picture = seen ? colours(*x, *y, *z) : greys(frame.layers.front());
     image.attributes.push_back({kPictureAttribute, (seen ? "sRGB of X, Y, Z" : "grey of " + frame.layers.front().name) + ", for people: no measurements"});
   }
   writeExr(file, image, options.mayReplace, options.compression);

@@ -27,6 +27,7 @@ struct Eye {
 std::string paletteOf(const Frame& frame, const FrameLayer& layer, const PictureStyle& style) {
   constexpr double kEyesEnd_um = 0.9;
   if (style.palette != "auto") return style.palette;
+  if (screenEnds(layer)) return "white_hot";
   for (const auto& a : frame.attributes)
     if (a.name == "band_um." + layer.name) return std::stod(std::get<std::string>(a.value)) < kEyesEnd_um ? "white_hot" : "thermal";
   return "thermal";
@@ -41,6 +42,7 @@ Rgb8Image pictureOf(const Frame& frame, const FrameLayer& layer, const PictureSt
   options.unit = layer.unit;
   options.colourMap = paletteOf(frame, layer, style);
   if (const auto range = style.ranges.find(layer.name); range != style.ranges.end()) options.range = range->second;
+  else if (const auto ends = screenEnds(layer)) options.range = ends;
   else if (style.range) options.range = style.range;
   else if (const auto scale = scales.find(layer.name); scale != scales.end()) options.scale = scale->second;
   if (&layer == eye.y) {
@@ -65,6 +67,11 @@ std::vector<const FrameLayer*> shownLayers(const Frame& frame, const PictureStyl
   for (const FrameLayer& l : frame.layers)
     if ((style.truth || l.name.rfind("truth.", 0) != 0) && !(eye.y && (&l == eye.x || &l == eye.z))) shown.push_back(&l);
   return shown;
+}
+
+std::optional<std::pair<double, double>> screenEnds(const FrameLayer& layer) {
+  if (layer.unit != "code") return std::nullopt;
+  return std::pair{0.0, 255.0};
 }
 
 std::vector<float> scaledValues(const Frame& frame, const FrameLayer& layer) {

@@ -27,6 +27,8 @@ struct PictureStyle {
 
 /// The layers that a picture shows: those of its channels (of an eye's three one), and truth where that is asked for.
 std::vector<const FrameLayer*> shownLayers(const Frame& frame, const PictureStyle& style);
+/// Ends of a layer that is made for a screen, from black to white: codes are shown as they are, not stretched again. None: others.
+std::optional<std::pair<double, double>> screenEnds(const FrameLayer& layer);
 /// What a layer's scale is made of: its values, or what a screen shows of an eye's.
 std::vector<float> scaledValues(const Frame& frame, const FrameLayer& layer);
 /// The layers side by side, each with colour bar and unit; or the first of them. Layers that neither `style` nor `scales` have a scale for choose their own.

@@ -7,7 +7,17 @@
 namespace pitviper {
 
 /// How `display` maps counts to the 256 codes of a screen: for people only.
-enum class Agc { Linear, Percentile, Plateau };
+enum class Agc { Fixed, Linear, Plateau };
+
+/// Fixed: the converter's whole range. Linear, Plateau: automatic gain (sensors/display_codes.hpp).
+struct DisplayLaw {
+  Agc agc = Agc::Linear;
+  double tails = 0.005;             ///< share of the pixels at either end that the picture's range passes over
+  double plateau = 0.02;            ///< share of the pixels beyond which a count weighs no more
+  double linear = 0.2;              ///< Plateau: share of the codes that go evenly over the picture's range
+  double most_codesPerCount = 0.0;  ///< 0: that with which noise from frame to frame is kNoise_codes
+  static constexpr double kNoise_codes = 4.0;
+};
 
 /// count = round(gain x min(well, electrons) + offset), 0 to 2^bits - 1. Noises are standard deviations [electron], named as in EMVA 1288 and in the
 /// three-dimensional noise model (t: from frame to frame, v: from row to row, h: from column to column).
@@ -19,6 +29,11 @@ struct DetectorLaw {
   double offset = 0.0;             ///< [count]
   int bits = 14;
   double sigmaTvh = 0.0, sigmaTv = 0.0, sigmaTh = 0.0, sigmaT = 0.0;  ///< temporal: read and reset noise, of rows, of columns, of the frame
+  /// A NETD that it was designed for, from which sigmaTvh follows; none: it was given.
+  struct Netd {
+    double value_K = 0.0, at_K = 300.0;
+  };
+  std::optional<Netd> netd = {};
   double flickerCorner_Hz = 0.0;                                     ///< where 1/f noise is as dense as sigmaTvh; 0: none
   double sigmaVh = 0.0, sigmaV = 0.0, sigmaH = 0.0;                   ///< fixed: of pixels (DSNU), rows, columns
   double prnu = 0.0;                                                  ///< of the response, relative
@@ -37,7 +52,7 @@ struct DetectorLaw {
   std::optional<Correction> correction = {};
   double offsetDrift_per_s = 0.0;  ///< rms over pixels, in electrons a second since time 0
   double gainDrift_per_s = 0.0;    ///< the same, relative
-  Agc agc = Agc::Percentile;
+  DisplayLaw display = {};
   static constexpr int kFlickerOctaves = 12;
   /// Of 1/f noise, in one octave of frequencies, at so many seconds from frame to frame [electron^2]: 2 sigma^2 (f_c / f_s) ln 2.
   double flickerVariance(double step_s) const { return 2.0 * sigmaTvh * sigmaTvh * flickerCorner_Hz * step_s * std::log(2.0); }

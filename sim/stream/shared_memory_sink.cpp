@@ -26,7 +26,7 @@ class SharedMemorySink final : public Sink {
                         "at most " + std::to_string(PITVIPER_STREAM_LAYERS) + " in shared memory", "ask for fewer outputs, or split it into two cameras");
       for (const ChannelOutput& o : c.outputs) {
         const bool counts = isCounts(c, o);
-        d.layers.push_back({o.layer(), o.unit, counts, !o.asDisplay, static_cast<std::uint16_t>(law && !o.asDisplay ? law->mostCount() : 65535.0)});
+        d.layers.push_back({o.layer(), o.unit, counts, !o.asDisplay, static_cast<std::uint16_t>(o.asDisplay ? 255.0 : law ? law->mostCount() : 65535.0)});
       }
       try {
         rings_.emplace(c.name, std::make_unique<RingWriter>(d));

@@ -25,7 +25,7 @@ StreamCoder::StreamCoder(const Camera& camera, const std::string& layer, const S
   if (!chosen) throw unknownWord(where, "camera '" + camera.name + "' has no layer", layer, names);
   layer_ = chosen->layer();
   counts_ = isCounts(camera, *chosen);
-  if (counts_ && !chosen->asDisplay) bits_ = detectorOf(camera)->bits;
+  if (counts_) bits_ = chosen->asDisplay ? 8 : detectorOf(camera)->bits;
 }
 
 void StreamCoder::code(const Frame& frame, StreamPicture& picture) {
