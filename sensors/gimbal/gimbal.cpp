@@ -126,9 +126,9 @@ void advance(const GimbalOptions& options, const GimbalState::Servo& servo, doub
   }
 }
 
-bool followsAtOnce(const GimbalOptions& o) { return o.lag_s == 0.0 && !(o.limits.rate_rad_s > 0.0) && !(o.limits.acceleration_rad_s2 > 0.0); }
-
 }  // namespace
+
+bool followsAtOnce(const GimbalOptions& o) { return o.lag_s == 0.0 && !(o.limits.rate_rad_s > 0.0) && !(o.limits.acceleration_rad_s2 > 0.0); }
 
 void requireSound(const GimbalOptions& o) {
   const auto require = [](bool sound, const char* what) {

@@ -23,6 +23,9 @@ struct GimbalOptions {
 /// Errors: std::invalid_argument for limits that hold nothing, negative rates, accelerations or lags, what is no number, and unsound jitter or scan.
 void requireSound(const GimbalOptions& options);
 
+/// Without lag and limits of rate and acceleration it is where it is demanded to be, whatever the time before.
+bool followsAtOnce(const GimbalOptions& options);
+
 /// Between instants of this grid (2000 a second) the servo goes on as it decided at the last one.
 constexpr double kServoStep_s = 1.0 / 2000.0;
 

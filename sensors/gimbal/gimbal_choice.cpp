@@ -137,6 +137,19 @@ Value emptyMap(const Location& where) {
   return v;
 }
 
+/// A servo goes through every instant of its grid: of longer scenarios, or frames farther apart, that would take minutes (about 2 million a second).
+void requireReachable(const GimbalOptions& g, const TimeAxis& time, const Location& where) {
+  constexpr double kLongestStep_s = 1000.0, kLongest_s = 1e5;
+  const double all_s = time.step_s * std::max(0, time.frames - 1);
+  if (followsAtOnce(g) || (time.step_s <= kLongestStep_s && all_s <= kLongest_s)) return;
+  const bool isStep = time.step_s > kLongestStep_s;
+  throw UserError(where,
+                  "a gimbal with a lag or limits of rate or acceleration, whose servo decides 2000 times a second, over " +
+                      (isStep ? brief(time.step_s) + " s from frame to frame" : brief(all_s) + " s from the first frame to the last"),
+                  isStep ? "frames at most " + brief(kLongestStep_s) + " s apart ('rate: 0.001 Hz' of 'time')" : "at most " + brief(kLongest_s) + " s in all",
+                  isStep ? "raise the rate of 'time', or remove lag, rate and acceleration: it is then where it is demanded to be" : "ask for fewer frames or a higher rate, or remove lag, rate and acceleration");
+}
+
 std::string wordsOfField(const GimbalOptions& g) {
   std::string text = "gimbal: azimuth " + (std::isfinite(g.limits.azimuth_rad) ? "+-" + degrees(g.limits.azimuth_rad) : std::string("all round"));
   text += ", elevation " + degrees(g.limits.elevation_rad.x) + " to " + degrees(g.limits.elevation_rad.y);
@@ -233,6 +246,7 @@ FollowerChoice readGimbal(const Value& value, const Simulation& simulation, cons
   g.stabilised = r.boolean("stabilised");
   if (r.given("jitter")) g.jitter = jitterOf(r.value("jitter"));
   if (r.given("scan")) g.scan = scanOf(r.value("scan"));
+  requireReachable(g, simulation.time, r.where());
   std::optional<std::size_t> output;
   if (o.driver == GimbalDriver::Centroid) {
     const Value none = emptyMap(r.where());
