@@ -171,15 +171,22 @@ const std::map<std::string, Command>& commands() {
         "                   at 320 K in the infrared), in FOLDER; created if missing\n"}},
       {"measure",
        {measureCommand, "a camera on a lab bench: SiTF, NETD, noise, MTF, gain, well, point response from its pictures, beside its design",
-        "pitviper measure NAME|CAMERA.yaml [--frames N] [--film N] [--set key=value]... [--out FOLDER]\n\n"
+        "pitviper measure NAME|CAMERA.yaml [--frames N] [--film N] [--set key=value]... [--out FOLDER]\n"
+        "                 [--ranges SCENARIO.yaml [--target WxH] [--contrast 'T K'] [--false-alarms N] [--root FOLDER]...]\n\n"
         "Draws flat fields, levels from dark to full, a slanted edge (ISO 12233), a point in a pixel's middle, edge and corner, and four-bar targets through a\n"
         "camera of the library, or one in a file with a key 'camera', whose channels have 'output: counts'; and measures from these pictures alone: SiTF, NETD, the\n"
         "seven components of three-dimensional noise with their standard errors, gain by photon transfer, full well, linearity, MTF, a pixel's share of a star, the\n"
-        "bars' contrast and an MRTD-like figure (the difference at which a bar has 2.25 times its noise over its own pixels and 0.2 s). Flat fields are at 300 K, or\n"
+        "bars' contrast, what a star is to send for its signal to be its noise, and the MRTD over frequency (FLIR92 with an eye's own threshold). Flat fields are at 300 K, or\n"
         "where the detector is half full if 300 K give it next to nothing.\n\n"
         "  --frames N       of each flat field (default 64)\n"
         "  --film N         a side of the square in the film's middle that is measured (default 128)\n"
         "  --set key=value  a key of the camera: --set exposure='2 ms'\n"
+        "  --ranges FILE    also how far a target is detected, recognised and identified through this scenario's air, along the line of sight of its first camera: by\n"
+        "                   Johnson's cycles (STANAG 4347: 1, 3 and 6) and by TTP (V50 2, 7.5 and 13); and as a spot: its TNR, and how far a threshold finds it\n"
+        "  --target WxH     metres (default 2.3x2.3, STANAG 4347)\n"
+        "  --contrast 'T K' of the target over what is around it, which is as hot as the flat fields (default 2 K)\n"
+        "  --false-alarms N an hour, over the film, of the threshold for spots (default 1)\n"
+        "  --root FOLDER    as of run\n"
         "  --out FOLDER     also NAME.html, a page with charts (needs VTK), NAME.csv and the charts; created if missing\n"}},
       {"stream", {streamCommand, "frames at a fixed rate to hardware and other programs, and commands from them", 
         "pitviper stream SCENARIO.yaml [--clock CLOCK] [--rate 'R Hz'] [--frames N | --duration 'T s' | --endless] [--late WHAT] [--delay 'D ms'] [--hold]\n"

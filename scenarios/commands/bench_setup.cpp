@@ -28,6 +28,7 @@ Setup::Setup(const BenchOptions& options, const std::string& target, int frames,
   c.spectralImage.reset();
   c.spectral.accuracy = 0.0;  // every wavelength of its own sampling
   c.motionBlur = false;
+  film_ = {c.pinhole.width, c.pinhole.height};
   c.pinhole.width = std::min(c.pinhole.width, options.film_px);
   c.pinhole.height = std::min(c.pinhole.height, options.film_px);
   simulation_.audit = 0.0;

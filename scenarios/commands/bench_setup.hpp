@@ -25,6 +25,8 @@ class Setup {
   Setup(const BenchOptions& options, const std::string& target, int frames, int samples = 1, const std::string& commands = "");
   const Simulation& simulation() const { return simulation_; }
   const Camera& camera() const { return simulation_.cameras.front(); }
+  /// Columns and rows of the camera's whole film.
+  glm::ivec2 film() const { return film_; }
 
   /// Calls of(frame's number, counts of a layer) for each.
   template <class Of>
@@ -37,6 +39,7 @@ class Setup {
 
  private:
   Simulation simulation_;
+  glm::ivec2 film_{0};
 };
 
 /// A black plate across the line of sight, from left to right of the film's middle.

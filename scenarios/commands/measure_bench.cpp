@@ -8,8 +8,10 @@
 #include <stdexcept>
 
 #include "scenarios/commands/bench_setup.hpp"
+#include "scenarios/commands/measure_mrtd.hpp"
 #include "sensors/edge_transfer.hpp"
 #include "sensors/figures.hpp"
+#include "sensors/spot_detection.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/radiometry/constants.hpp"
 
@@ -44,7 +46,7 @@ Line lineThrough(const std::vector<double>& x, const std::vector<double>& y, con
 
 class Bench {
  public:
-  Bench(const BenchOptions& options, const Camera& camera, const ChannelOutput& output, std::function<void(const std::string&, double)> progress)
+  Bench(const BenchOptions& options, const Camera& camera, glm::ivec2 film, const ChannelOutput& output, std::function<void(const std::string&, double)> progress)
       : options_(options), camera_(camera), output_(output), progress_(std::move(progress)), law_(*detectorOf(camera)), layer_(output.layer()) {
     const Pinhole& p = camera.pinhole;
     axis_sr_ = p.projectedSolidAngle_sr(p.width / 2, p.height / 2);
@@ -59,6 +61,12 @@ class Bench {
                                 ? 300.0
                                 : kelvinFor(0.5 * room);
     design_ = *figuresOf(camera, output, options.step_s, result_.temperature_K).detected;
+    BenchSight& sight = result_.sight;
+    sight.output = output;
+    sight.electrons_per_K = design_.electrons_per_K, sight.noise_electrons = design_.netd_K * design_.electrons_per_K;
+    sight.pixel_sr = axis_sr_, sight.shareInMiddle = pixelShareOf(camera, output, p.focalLength_m), sight.shareInCorner = pixelShareOf(camera, output, p.focalLength_m, 0.5, 0.5);
+    sight.pixels_per_s = static_cast<double>(film.x) * film.y / options.step_s;
+    sight.design = {tabulated([this](double f) { return contrastAt(f); }), p.pitchX_m / p.focalLength_m, p.pitchY_m / p.focalLength_m, film.y, 1.0 / options.step_s, {}, {}};
   }
 
   BenchResult measure() {
@@ -67,6 +75,7 @@ class Bench {
     slantedEdge();
     points();
     bars();
+    tellResolvable(result_);
     return std::move(result_);
   }
 
@@ -131,6 +140,12 @@ class Bench {
       designed.x.push_back(static_cast<double>(k)), designed.y.push_back(1e3 * wanted[k] / sitf_);
       measured.x.push_back(static_cast<double>(k)), measured.y.push_back(1e3 * found[k].sigma / sitf_);
     }
+    const auto noise = [&](auto&& counts, double counts_per_K) {
+      const auto of = [&](std::size_t k) { return counts(k) / counts_per_K; };
+      return ThermalNoise{of(6), of(3), of(4), of(5), of(1), of(2)};  // in the order of kNoiseNames
+    };
+    result_.sight.design.noise = noise([&](std::size_t k) { return wanted[k]; }, law_.gain * design_.electrons_per_K);
+    found_ = noise([&](std::size_t k) { return found[k].sigma; }, sitf_);
     Chart chart{"Noise in three dimensions", "", "mK", false, false, true, {measured, designed}, {}, {}};
     for (const char* name : kNoiseNames) chart.categories.push_back(name);
     result_.charts.push_back(chart);
@@ -266,6 +281,9 @@ class Bench {
       result_.notes.push_back(std::string("no MTF: ") + e.what());
       return;
     }
+    result_.sight.measured = result_.sight.design;
+    result_.sight.measured->noise = found_;
+    result_.sight.measured->transfer = tabulated([&](double f) { return found.at(f); });
     const auto designed = [&](double f) { return contrastAt(f); };
     Series design{"design", {}, {}, true, false}, measured{"measured", {}, {}, false, false};
     double worst = 0.0;
@@ -319,11 +337,27 @@ class Bench {
         for (int i = -20; i <= 20; ++i) within += reachShare(i - x, j - y);
       const double wanted = reachShare(-x, -y) / within;
       figure((std::string("a star ") + name + ", share of that pixel").c_str(), "1", wanted, found);
+      const double onAperture_W_m2 = watts * (output_.bandHigh_um - output_.bandLow_um) / (kFar_m * kFar_m);
+      const double atOne = design_.noiseEquivalent_W_m2 / reachShare(-x, -y), foundAtOne = onAperture_W_m2 * netd_ * sitf_ / (picture[own] - without[own]);
+      figure((std::string("irradiance of a star ") + name + " at a TNR of 1").c_str(), "W/m2", atOne, foundAtOne);
+      const double seen = tnrFor(0.9, thresholdForRate(1.0, result_.sight.pixels_per_s));
+      figure((std::string("... ") + name + ", found with 90 %, 1 false alarm/h").c_str(), "W/m2", seen * atOne, seen * foundAtOne);
       design.x.push_back(place), design.y.push_back(wanted), measured.x.push_back(place), measured.y.push_back(found);
       ++place;
     }
     chart.series = {measured, design};
     result_.charts.push_back(chart);
+  }
+  /// A contrast over cycles a pixel as one over cycles/rad, to half a cycle a pixel: a table of it, linear between.
+  std::function<double(double)> tabulated(const std::function<double(double)>& contrast) const {
+    constexpr int kSteps = 256;
+    std::vector<double> table;
+    for (int k = 0; k <= kSteps; ++k) table.push_back(contrast(0.5 * k / kSteps));
+    return [table, pixel_rad = camera_.pinhole.pitchX_m / camera_.pinhole.focalLength_m](double cycles_per_rad) {
+      const double at = std::clamp(cycles_per_rad * pixel_rad / 0.5, 0.0, 1.0) * kSteps;
+      const auto k = std::min(static_cast<std::size_t>(at), table.size() - 2);
+      return table[k] + (at - static_cast<double>(k)) * (table[k + 1] - table[k]);
+    };
   }
   double contrastAt(double f) const {
     double value = f > 0.0 ? std::sin(kPi * f) / (kPi * f) : 1.0;
@@ -375,11 +409,10 @@ class Bench {
     return at->second;
   }
 
-  /// Four bars of a height of seven widths: what they leave of their contrast, and from it and the NETD the difference that an eye could tell.
+  /// Four bars of a height of seven widths: what they leave of their contrast.
   void bars() {
     tell("four bars", 0.85);
     const double kelvin = result_.temperature_K, difference = std::min(20.0 * std::max(design_.netd_K, 1e-9) + 0.01 * kelvin, 0.1 * kelvin);
-    Series design{"design", {}, {}, true, false}, measured{"measured", {}, {}, false, false};
     for (int width_px : {8, 4, 2}) {  // of a bar: 1/16, 1/8 and 1/4 cycle a pixel
       const double f = 0.5 / width_px;
       // They move by a pixel while they are looked at: what is alike in a picture's cells and in bars does not stay so.
@@ -410,16 +443,7 @@ class Bench {
       const double slope = (countsFor(kelvin + difference) - countsFor(kelvin)) * 2.0 / kPi, found = amplitude / slope;
       const double wanted = barsThroughLens(width_px, half) * kPi / 2.0;
       figure(print("contrast of four bars of %d pixels", width_px).c_str(), "1", wanted, found, 0.0, true);
-      // A bar is seen at a signal of 2.25 times its noise, over its own pixels and the 0.2 s that an eye adds up (G. C. Holst, Electro-Optical Imaging System Performance).
-      constexpr double kThreshold = 2.25, kEye_s = 0.2;
-      const double pixels = 7.0 * width_px * width_px, together = std::max(1.0, kEye_s / options_.step_s);
-      const auto figureOf = [&](double netd, double contrast) { return 1e3 * kThreshold * netd / (contrast * std::sqrt(pixels * together)); };
-      figure(print("MRTD-like figure at %.3g cycles/mrad", 1e-3 * f * camera_.pinhole.focalLength_m / camera_.pinhole.pitchX_m).c_str(), "mK", figureOf(design_.netd_K, wanted),
-             figureOf(netd_, found));
-      design.x.push_back(f), design.y.push_back(figureOf(design_.netd_K, wanted));
-      measured.x.push_back(f), measured.y.push_back(figureOf(netd_, found));
     }
-    result_.charts.push_back({"MRTD-like figure", "cycles a pixel", "mK", false, true, false, {measured, design}, {}, {}});
   }
 
   const BenchOptions& options_;
@@ -430,6 +454,7 @@ class Bench {
   std::string layer_;
   double axis_sr_ = 0.0, perIntegral_ = 0.0, own_ = 0.0, pixel_m_ = 0.0, sitf_ = 1.0, netd_ = 0.0;
   int settle_ = 0, width_ = 0;
+  ThermalNoise found_;
   std::vector<char> bad_;
   SensorFigures::Detected design_;
   std::map<std::pair<double, double>, double> shares_;
@@ -447,7 +472,7 @@ std::vector<BenchResult> measureCamera(const BenchOptions& options, const std::f
   if (counted.empty())
     throw UserError({options.base, 0, 0, -1}, "a camera that makes no counts", "a channel with 'output: counts' and 'stage: detector' among its 'stages'", "add them");
   for (std::size_t k = 0; k < counted.size(); ++k)
-    results.push_back(Bench(options, setup.camera(), *counted[k], [&](const std::string& what, double share) {
+    results.push_back(Bench(options, setup.camera(), setup.film(), *counted[k], [&](const std::string& what, double share) {
                         if (progress) progress(what, (static_cast<double>(k) + share) / static_cast<double>(counted.size()));
                       }).measure());
   return results;

@@ -1,8 +1,12 @@
 // A camera on a lab bench: figures from its pictures alone, beside those of its design.
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <optional>
 
+#include "scenarios/commands/band_air.hpp"
 #include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/dri_report.hpp"
 #include "scenarios/commands/html_page.hpp"
 #include "scenarios/commands/measure_bench.hpp"
 #include "scenarios/commands/options.hpp"
@@ -13,6 +17,7 @@
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/read_file.hpp"
+#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
@@ -44,6 +49,41 @@ int wholeOption(const Options& o, const char* name, int otherwise, int least, in
   return static_cast<int>(a);
 }
 
+double numberOption(const Options& o, const char* name, const char* unit, double otherwise, double least, double most, const char* example) {
+  if (!o.has(name)) return otherwise;
+  Value text;
+  text.kind = Value::Kind::Scalar;
+  text.where = {name + std::string(" ") + o.value(name), 0, 0, -1};
+  text.text = o.value(name);
+  const double v = readNumber(text, unit, name + 2);
+  if (!(v >= least && v <= most)) throw UserError(text.where, "out of range", print("from %g to %g%s%s", least, most, *unit ? " " : "", unit), std::string("write ") + name + " " + example);
+  return v;
+}
+
+/// "2.3x2.3", in metres.
+AcquiredTarget targetOf(const Options& o) {
+  AcquiredTarget t;
+  if (o.has("--target")) {
+    const std::string text = o.value("--target");
+    const auto x = text.find('x');
+    char* end = nullptr;
+    t.width_m = std::strtod(text.c_str(), &end);
+    bool sound = x != std::string::npos && end == text.c_str() + x;
+    if (sound) t.height_m = std::strtod(text.c_str() + x + 1, &end), sound = *end == '\0' && end != text.c_str() + x + 1;
+    const auto isSize = [](double v) { return v >= 1e-3 && v <= 1e4; };
+    if (!sound || !isSize(t.width_m) || !isSize(t.height_m))
+      throw UserError({"--target " + text, 0, 0, -1}, "not a target's size", "width x height in metres, from 0.001 to 10000 each", "write --target 2.3x2.3");
+  }
+  t.difference_K = numberOption(o, "--contrast", "K", t.difference_K, 1e-6, 1e4, "'2 K'");
+  return t;
+}
+
+std::string lined(const std::vector<std::string>& cells) {
+  std::string line = print("  %-16s", cells[0].c_str());
+  for (std::size_t k = 1; k < cells.size(); ++k) line += print(" %15s", cells[k].c_str());
+  return line;
+}
+
 constexpr const char* kTableHead = "channel,figure,unit,design,measured,standard error\n";
 
 /// Only what it has written itself is written again.
@@ -58,7 +98,7 @@ void refuseOthers(const fs::path& file, const std::string& begins) {
 }  // namespace
 
 int measureCommand(const Arguments& arguments) {
-  const Options o("measure", arguments, {{"--out"}, {"--frames"}, {"--film"}, {"--set", true, true}}, 1, 1);
+  const Options o("measure", arguments, {{"--out"}, {"--frames"}, {"--film"}, {"--set", true, true}, {"--ranges"}, {"--target"}, {"--contrast"}, {"--false-alarms"}, rootOption()}, 1, 1);
   const std::string word = o.words()[0];
   const fs::path file = word;
   const bool isFile = file.extension() == ".yaml" || file.extension() == ".yml";
@@ -68,6 +108,11 @@ int measureCommand(const Arguments& arguments) {
   options.frames = wholeOption(o, "--frames", options.frames, 4, 4096);
   options.film_px = wholeOption(o, "--film", options.film_px, 64, 1024);
   for (const std::string& change : o.values("--set")) options.changes.push_back("cameras.bench." + change);
+  for (const char* of : {"--target", "--contrast", "--false-alarms", "--root"})
+    if (o.has(of) && !o.has("--ranges")) throw UserError({of, 0, 0, -1}, "of ranges that are not asked for", "'--ranges SCENARIO.yaml' beside it", "add it");
+  DriWish wish{o.value("--ranges"), targetOf(o), numberOption(o, "--false-alarms", "", 1.0, 1e-6, 1e6, "1")};
+  std::optional<Simulation> world;
+  if (o.has("--ranges")) world = readScenario(wish.scenario, {}, findLibraries(), rootsOf(o));
   const std::string name = isFile ? file.stem().string() : word;
   const fs::path out = o.value("--out");
   if (!out.empty()) {
@@ -99,11 +144,31 @@ int measureCommand(const Arguments& arguments) {
     page.heading("Channel " + r.channel + print(", flat fields at %.4g K", r.temperature_K));
     page.table({"figure", "design", "measured", "off"}, rows);
     for (const std::string& note : r.notes) page.paragraph(note);
+    std::optional<DriReport> dri;
+    if (world) {
+      const BandAir air(*world, r.sight.output, r.temperature_K);
+      const std::string aboutAir = print("air of %s from %.4g m up, %.3g deg above the level, transmittance %.3g at 1 km and %.3g at 10 km", wish.scenario.c_str(), air.height_m(),
+                                         air.elevation_rad() * 180.0 / kPi, air.at(1e3), air.at(1e4));
+      dri = driReport(r, wish, [&](double range_m) { return air.at(range_m); }, aboutAir);
+      std::printf("  %s\n%s\n", dri->about.c_str(), lined(dri->rangeHead).c_str());
+      for (const auto& row : dri->ranges) std::printf("%s\n", lined(row).c_str());
+      std::printf("  %s\n%s\n", dri->aboutSpot.c_str(), lined(dri->spotHead).c_str());
+      for (const auto& row : dri->spots) std::printf("%s\n", lined(row).c_str());
+      page.heading("Detection, recognition, identification: channel " + r.channel);
+      page.paragraph(dri->about);
+      page.table(dri->rangeHead, dri->ranges);
+      page.paragraph(dri->aboutSpot);
+      page.table(dri->spotHead, dri->spots);
+    }
     if (out.empty()) continue;
     ensureWritableFolder(out);
     const fs::path charts = out / (name + "_" + r.channel + ".png");
     drawCharts(r.charts, 2, charts);
     page.picture(charts, "Charts of channel " + r.channel);
+    if (!dri) continue;
+    const fs::path ranges = out / (name + "_" + r.channel + "_ranges.png");
+    drawCharts(dri->charts, 2, ranges);
+    page.picture(ranges, "Ranges of channel " + r.channel);
   }
   if (out.empty()) return 0;
   writeFileAtomically(out / (name + ".csv"), csv);
