@@ -96,7 +96,7 @@ const ParameterTable& motionMissile() {
         text("target", "name of an entity"),
         choice(
             "guidance", {"none", "pursuit", "true_pn", "pure_pn"},
-            "true_pn: N V_c (w x r), across the line of sight; pure_pn: N w x v, across the velocity; pursuit: velocity turned to the line of sight (Zarchan, "
+            "true_pn: N V_c (w x r), across the line of sight, as published for a point mass: what of it is along the way changes the speed; pure_pn: N w x v, across the velocity; pursuit: velocity turned to the line of sight (Zarchan, "
             "Tactical and Strategic Missile Guidance, ch. 2; Shneydor, Missile Guidance and Pursuit, ch. 3 and 5). With a target true_pn unless given, else "
             "none"),
         withDefault(within(number("navigation_constant", "", "N of proportional navigation"), 1.0, 10.0), "4"),

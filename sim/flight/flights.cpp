@@ -102,7 +102,8 @@ class Flight {
     const double lag = task_.guidance ? task_.guidance->timeConstant_s : 0.0;
     if (lag > 0.0) r.lateral = (command - s.lateral) / lag;
     r.lift = lag > 0.0 ? s.lateral : command;
-    r.lift -= r.ahead * glm::dot(r.lift, r.ahead);
+    // What lifts is across the way through the air; a law across the line of sight is flown as it is published, whatever gives it.
+    if (!task_.guidance || task_.guidance->law != GuidanceLaw::TrueProportional) r.lift -= r.ahead * glm::dot(r.lift, r.ahead);
     const double size = glm::length(r.lift), most = size > 0.0 ? task_.body->mostLateral_m_s2(t, pressure) : 0.0;
     if (size > most) r.lift *= most / size;
     r.acceleration += r.lift;

@@ -6,9 +6,10 @@
 
 namespace pitviper {
 
-/// TrueProportional: a = N' V_c (w x r^), across the line of sight; PureProportional: a = N' w x v, across the velocity; w = r x v_rel / r^2 turns the line of
-/// sight, V_c is the closing speed (0 where the target opens). Source: Zarchan, Tactical and Strategic Missile Guidance, ch. 2; Shneydor, Missile Guidance and
-/// Pursuit, ch. 5. Pursuit: velocity turns with the line of sight and towards it, a = w x v + K V (r^ - (r^ v^) v^): Shneydor, ch. 3, with a gain for the
+/// TrueProportional: a = N' V_c (w x r^), across the line of sight, flown as a whole: its part along the velocity changes the speed, as in the published
+/// engagement; PureProportional: a = N' w x v, across the velocity; w = r x v_rel / r^2 turns the line of
+/// sight, V_c is the closing speed (0 where the target opens). Source: Zarchan, Tactical and Strategic Missile Guidance, ch. 2 (law, and the listing of its
+/// two-dimensional engagement); Shneydor, Missile Guidance and Pursuit, ch. 5. Pursuit: velocity turns with the line of sight and towards it, a = w x v + K V (r^ - (r^ v^) v^): Shneydor, ch. 3, with a gain for the
 /// error.
 enum class GuidanceLaw { TrueProportional, PureProportional, Pursuit };
 
@@ -24,7 +25,7 @@ struct GuidanceOptions {
   double blindRange_m = 5.0;
 };
 
-/// What the law commands [m/s2], weight and limit included, lag not. Only its part across the velocity can be flown.
+/// What the law commands [m/s2], weight and limit included, lag not.
 glm::dvec3 guidanceCommand(const GuidanceOptions& options, const MovingPoint& own, const MovingPoint& target, const glm::dvec3& gravity_m_s2);
 
 /// Distance at which two would pass, both going on with the velocities they have [m]; that of now where they open.

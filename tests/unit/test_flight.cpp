@@ -1,6 +1,7 @@
 // Flights against closed forms: air, gravity, drag, guidance, turns.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <memory>
@@ -369,6 +370,103 @@ TEST_P(LinearProportionalNavigation, HeadingErrorIsTakenOutAsTheClosedFormSays) 
 
 INSTANTIATE_TEST_SUITE_P(Zarchan, LinearProportionalNavigation,
                          ::testing::Combine(::testing::Values(3.0, 4.0, 5.0), ::testing::Values(GuidanceLaw::TrueProportional, GuidanceLaw::PureProportional)));
+
+/// The published two-dimensional engagement, in feet, written here from its equations alone. Source: Zarchan, Tactical and Strategic Missile Guidance, ch. 2,
+/// listing of the "two-dimensional tactical missile-target engagement simulation": second-order Runge-Kutta, steps of 0.01 s, 0.0002 s within 1000 ft.
+struct PublishedEngagement {
+  double headingError_rad = 0.0, turn_ft_s2 = 0.0, constant = 4.0;
+  double beta = 0.0;
+  std::vector<std::array<double, 2>> command = {};  ///< time [s], n_c [ft/s2]
+  double end_s = 0.0, miss_ft = 0.0, endSpeed_ft_s = 0.0;
+
+  struct Rates {
+    double rt1, rt2, rm1, rm2, vm1, vm2, beta;
+  };
+  void run() {
+    const double vt = 1000.0, vm = 3000.0;
+    Rates x{40000.0, 10000.0, 0.0, 10000.0, 0.0, 0.0, beta};
+    const double sight = std::atan2(x.rt2 - x.rm2, x.rt1 - x.rm1), lead = std::asin(vt * std::sin(beta + sight) / vm), way = sight + lead + headingError_rad;
+    x.vm1 = vm * std::cos(way), x.vm2 = vm * std::sin(way);
+    double t = 0.0, range = 0.0, closing = 1.0, n = 0.0;
+    const auto rates = [&](const Rates& s) {
+      const double vt1 = -vt * std::cos(s.beta), vt2 = vt * std::sin(s.beta), r1 = s.rt1 - s.rm1, r2 = s.rt2 - s.rm2, v1 = vt1 - s.vm1, v2 = vt2 - s.vm2;
+      range = std::hypot(r1, r2);
+      closing = -(r1 * v1 + r2 * v2) / range;
+      const double lambda = std::atan2(r2, r1), turning = (r1 * v2 - r2 * v1) / (range * range);
+      n = constant * closing * turning;
+      return Rates{vt1, vt2, s.vm1, s.vm2, -n * std::sin(lambda), n * std::cos(lambda), turn_ft_s2 / vt};
+    };
+    const auto plus = [](const Rates& s, const Rates& d, double h) {
+      return Rates{s.rt1 + h * d.rt1, s.rt2 + h * d.rt2, s.rm1 + h * d.rm1, s.rm2 + h * d.rm2, s.vm1 + h * d.vm1, s.vm2 + h * d.vm2, s.beta + h * d.beta};
+    };
+    for (rates(x); closing >= 0.0;) {
+      const double h = range < 1000.0 ? 0.0002 : 0.01;
+      const Rates first = rates(x);
+      command.push_back({t, n});
+      const Rates euler = plus(x, first, h), second = rates(euler), end = plus(euler, second, h);
+      x = {0.5 * (x.rt1 + end.rt1), 0.5 * (x.rt2 + end.rt2), 0.5 * (x.rm1 + end.rm1), 0.5 * (x.rm2 + end.rm2), 0.5 * (x.vm1 + end.vm1), 0.5 * (x.vm2 + end.vm2), 0.5 * (x.beta + end.beta)};
+      t += h;
+      rates(x);
+    }
+    end_s = t, miss_ft = range, endSpeed_ft_s = std::hypot(x.vm1, x.vm2);
+  }
+};
+
+// The published engagement against the flown one: accelerations over time, time of interception, miss and speed at the end.
+TEST(Guidance, TrueNavigationIsThePublishedEngagement) {
+  constexpr double kFoot = 0.3048, kVt = 1000.0 * kFoot;
+  struct Case {
+    double headingError_deg, turn_g, constant, beta_deg;
+  };
+  for (const Case& c : {Case{-20.0, 0.0, 4.0, 0.0}, Case{0.0, 3.0, 4.0, 0.0}, Case{-20.0, 0.0, 3.0, 0.0}, Case{-20.0, 3.0, 5.0, 0.0}, Case{15.0, -2.0, 4.0, 30.0}}) {
+    const double turn_ft_s2 = c.turn_g * 32.2, beta = c.beta_deg * kDegree, rate = turn_ft_s2 / 1000.0;
+    PublishedEngagement published{c.headingError_deg * kDegree, turn_ft_s2, c.constant, beta};
+    published.run();
+    const double lead = std::asin(std::sin(beta) / 3.0), way = lead + c.headingError_deg * kDegree;
+    FlightTask task;
+    task.body = freeBody();
+    const glm::dvec3 ahead(std::cos(way), 0.0, std::sin(way));
+    task.launch = {0.0, {0.0, 0.0, 10000.0 * kFoot}, 3000.0 * kFoot * ahead, ahead};
+    task.duration_s = 20.0;
+    task.step_s = 0.005;
+    task.stopAtGround = false;
+    task.stopAtClosestApproach = true;
+    task.stopWithin_m = 1000.0;
+    task.guidance = GuidanceOptions{};
+    task.guidance->navigationConstant = c.constant;
+    task.guidance->gravityCompensation = false;
+    task.guidance->blindRange_m = 1e-3;
+    task.target = [=](double t) {
+      const double b = beta + rate * t;
+      const glm::dvec3 from(40000.0 * kFoot, 0.0, 10000.0 * kFoot);
+      // The integral of V (-cos b, sin b).
+      const glm::dvec2 gone = rate != 0.0 ? kVt / rate * glm::dvec2(-(std::sin(b) - std::sin(beta)), -(std::cos(b) - std::cos(beta)))
+                                          : kVt * t * glm::dvec2(-std::cos(beta), std::sin(beta));
+      return MovingPoint{from + glm::dvec3(gone.x, 0.0, gone.y), kVt * glm::dvec3(-std::cos(b), 0.0, std::sin(b)), glm::dvec3(0.0)};
+    };
+    const FlightResult flown = fly(task, uniformWorld(0.0, 0.0));
+    const std::string what = "heading error " + std::to_string(static_cast<int>(c.headingError_deg)) + " deg, target " + std::to_string(static_cast<int>(c.turn_g)) + " g, N' " +
+                             std::to_string(static_cast<int>(c.constant));
+    double worst = 0.0, most = 0.0;
+    for (const auto& [t, n] : published.command) most = std::max(most, t < published.end_s - 0.5 ? std::abs(n) : 0.0);
+    for (std::size_t k = 0; k < published.command.size(); k += 10) {
+      const auto& [t, n] = published.command[k];
+      if (t >= published.end_s - 0.5) break;
+      worst = std::max(worst, std::abs(glm::length(flown.trajectory.accelerationAt(t)) - std::abs(n) * kFoot) / (most * kFoot));
+    }
+    bound("acceleration against the published listing, " + what + ", of the largest", worst, 1e-3, "the listing's steps of second order; the last half second, where both end, left out");
+    ASSERT_TRUE(flown.closest);
+    figure("time of interception, " + what + " [s]", flown.closest->time_s, published.end_s, 1e-4, "the listing ends within a step of 0.2 ms, and is of second order");
+    EXPECT_LT(flown.closest->distance_m, 0.3) << what;
+    EXPECT_LT(published.miss_ft * kFoot, 0.3) << what;
+    figure("speed at interception, " + what + " [ft/s]", glm::length(flown.trajectory.velocityAt(flown.closest->time_s - 1e-3)) / kFoot, published.endSpeed_ft_s, 1e-3, "as the accelerations");
+  }
+  // n_c at launch by hand: N' (V_T + V_M cos HE) V_M sin(-HE) / R.
+  PublishedEngagement first{-20.0 * kDegree, 0.0, 4.0, 0.0};
+  first.run();
+  figure("the listing's first command [g]", first.command.front()[1] / 32.2, 4.0 * (1000.0 + 3000.0 * std::cos(20.0 * kDegree)) * 3000.0 * std::sin(20.0 * kDegree) / 40000.0 / 32.2, 1e-9,
+         "N' Vc lambda-dot");
+}
 
 TEST(Guidance, PursuitTakesTheTimeOfItsClosedForm) {
   // Curve of pursuit: T = r0 (V + v cos f)/(V^2 - v^2), f between the line of sight and the target's velocity at the begin (Shneydor, ch. 3).
