@@ -19,7 +19,7 @@
 
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/readable_text.hpp"
-#include "sim/stream/ring/ring_writer.hpp"
+#include "sim/stream/ring/ring_memory.hpp"
 
 namespace pitviper {
 namespace {

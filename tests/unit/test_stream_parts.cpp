@@ -1,4 +1,6 @@
 // Parts of a stream by themselves: what times are told, what becomes of each tick, how the dial turns, who may write a ring.
+#include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -292,6 +294,147 @@ TEST(Ring, ANameHasOneWriterAndADeadOnesIsTaken) {
   RingWriter next(ringDesign(name, 8, 4));
   for (const char* wrong : {"", "/", "name", "/a/b", "/a b", "/.."}) EXPECT_NE(wrongRingName(wrong), "") << wrong;
   EXPECT_EQ(wrongRingName(name), "");
+}
+
+// Rationale: a reader maps the object for reading only, but any process of the user may write to it. Expected: the writer reads nothing back: frames of a new reader
+// of the same numbers come whole, wherever the header was damaged.
+TEST(Ring, AHeaderWrittenByOthersChangesNothingForItsWriter) {
+  const std::string name = ownRing("header");
+  for (const int byte : {0x00, 0xff, 0x7f, 0x80, 0x01}) {
+    RingWriter writer(ringDesign(name, 64, 48));
+    pitviper_stream s{};
+    ASSERT_EQ(pitviper_stream_open(&s, name.c_str()), 0);
+    pitviper_stream_header whole = *s.header;
+    const int file = shm_open(name.c_str(), O_RDWR, 0);
+    const std::vector<unsigned char> damage(sizeof whole, static_cast<unsigned char>(byte));
+    for (int k = 0; k < 9; ++k) {
+      ASSERT_EQ(pwrite(file, damage.data(), damage.size(), 0), static_cast<ssize_t>(damage.size()));
+      writer.publish(numbered(k, 64, 48));
+    }
+    EXPECT_EQ(writer.published(), 9u);
+    whole.published = 9;
+    ASSERT_EQ(pwrite(file, &whole, sizeof whole, 0), static_cast<ssize_t>(sizeof whole));
+    s.next = 8;
+    const pitviper_stream_frame* f = pitviper_stream_next(&s, 1);
+    ASSERT_NE(f, nullptr);
+    EXPECT_EQ(static_cast<const std::uint16_t*>(pitviper_stream_pixels(&s, f, 0))[64 * 48 - 1], 8);
+    pitviper_stream_close(&s);
+    close(file);
+  }
+}
+
+// Expected: an object cut short, to nothing, to a part of its header or of a frame, ends its stream with a message and no process by a signal; a writer that never
+// writes again goes as well. A bus error that is none of a ring's still ends a process.
+TEST(Ring, AnObjectCutShortEndsItsStreamAlone) {
+  for (const off_t left : {0, 100, 4096, 4096 + 5000, 5 * 4096}) {
+    const std::string name = ownRing("cut");
+    RingWriter writer(ringDesign(name, 64, 48)), other(ringDesign(name + ".other", 64, 48));
+    for (int k = 0; k < 6; ++k) writer.publish(numbered(k, 64, 48));
+    ASSERT_EQ(truncate(("/dev/shm" + name).c_str(), left), 0);
+    bool told = false;
+    try {
+      for (int k = 0; k < 6; ++k) writer.publish(numbered(k, 64, 48));
+    } catch (const std::runtime_error& e) {
+      told = std::string(e.what()).find("was cut short by another process") != std::string::npos;
+    }
+    EXPECT_TRUE(told) << left;
+    other.publish(numbered(1, 64, 48));
+    RingWriter idle(ringDesign(name + ".idle", 64, 48));
+    ASSERT_EQ(truncate(("/dev/shm" + name + ".idle").c_str(), 0), 0);
+  }
+  if (const pid_t child = fork(); child == 0) {
+    const std::string name = ownRing("others");
+    const int file = shm_open(name.c_str(), O_RDWR | O_CREAT | O_EXCL, 0600);
+    shm_unlink(name.c_str());
+    *static_cast<volatile char*>(mmap(nullptr, 4096, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0)) = 1;
+    _exit(0);
+  } else {
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status) && WTERMSIG(status) == SIGBUS);
+  }
+}
+
+// Expected: of many processes that start at once over an object whose writer is no more, one has the name; and none takes away the name of its successor.
+TEST(Ring, OneOfManyTakesAnAbandonedName) {
+  const std::string name = ownRing("many");
+  for (int round = 0; round < 20; ++round) {
+    if (const pid_t child = fork(); child == 0) {
+      new RingWriter(ringDesign(name, 8, 4));
+      _exit(0);
+    } else {
+      waitpid(child, nullptr, 0);
+    }
+    int gate[2], ends[2];
+    ASSERT_EQ(pipe(gate) + pipe(ends), 0);
+    std::vector<pid_t> children;
+    for (int k = 0; k < 6; ++k) {
+      children.push_back(fork());
+      if (children.back() != 0) continue;
+      close(gate[1]), close(ends[1]);
+      char c = 0;
+      if (read(gate[0], &c, 1) != 0) _exit(9);
+      try {
+        RingWriter writer(ringDesign(name, 8, 4));
+        writer.publish(numbered(1, 8, 4));
+        if (read(ends[0], &c, 1) != 0) _exit(9);  // it lives until the others have tried
+      } catch (const std::exception&) {
+        _exit(1);
+      }
+      _exit(0);
+    }
+    close(gate[0]), close(ends[0]);
+    close(gate[1]);
+    int refused = 0;
+    for (int k = 0; k < 5; ++k) {
+      int status = 0;
+      wait(&status);
+      refused += WIFEXITED(status) && WEXITSTATUS(status) == 1;
+    }
+    EXPECT_EQ(refused, 5);
+    struct stat status {};
+    EXPECT_EQ(::stat(("/dev/shm" + name).c_str(), &status), 0) << "it has its name";
+    close(ends[1]);
+    int last = 0;
+    wait(&last);
+    EXPECT_TRUE(WIFEXITED(last) && WEXITSTATUS(last) == 0);
+    EXPECT_NE(::stat(("/dev/shm" + name).c_str(), &status), 0);
+  }
+  // A name that was taken away by hand and given to another is the other's.
+  auto first = std::make_unique<RingWriter>(ringDesign(name, 8, 4));
+  shm_unlink(name.c_str());
+  RingWriter second(ringDesign(name, 8, 4));
+  first.reset();
+  EXPECT_EQ(::access(("/dev/shm" + name).c_str(), F_OK), 0);
+}
+
+// Expected: whenever a writer is killed while its memory is made, no name and no memory stays.
+TEST(Ring, AWriterKilledWhileItIsMadeLeavesNothing) {
+  const std::string name = ownRing("made");
+  RingDesign large = ringDesign(name, 1024, 1024);
+  large.slots = 40;  // 240 MB: some tens of milliseconds
+  int before = 0;
+  for (const int wait_us : {0, 2000, 5000, 10000, 20000, 40000}) {
+    const pid_t child = fork();
+    if (child == 0) {
+      try {
+        new RingWriter(large);
+      } catch (const std::exception&) {
+        _exit(1);
+      }
+      for (;;) pause();
+    }
+    usleep(static_cast<useconds_t>(wait_us));
+    const bool named = ::access(("/dev/shm" + name).c_str(), F_OK) == 0;
+    before += !named;
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+    if (!named) {
+      EXPECT_NE(::access(("/dev/shm" + name).c_str(), F_OK), 0);
+    }
+    RingWriter next(ringDesign(name, 8, 4));
+  }
+  EXPECT_GT(before, 0);
 }
 
 TEST(QueuedSink, SkipsInRealTimeAndLosesNothingInLockstep) {

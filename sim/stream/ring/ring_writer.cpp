@@ -1,13 +1,9 @@
 #include "sim/stream/ring/ring_writer.hpp"
 
-#include <signal.h>
-
 #include <algorithm>
 #include <cctype>
 #include <climits>
 #include <cstring>
-#include <mutex>
-#include <set>
 #include <stdexcept>
 
 #include "sim/frame/frame_number.hpp"
@@ -29,30 +25,7 @@ void copyText(char (&to)[N], const std::string& text) {
   to[count] = 0;
 }
 
-/// An object of the name that a living process writes stays.
-void removeAbandoned(const std::string& name) {
-  const int file = shm_open(name.c_str(), O_RDONLY, 0);
-  if (file < 0) return;
-  pitviper_stream_header h{};
-  const bool is = pread(file, &h, sizeof h, 0) == static_cast<ssize_t>(sizeof h) && std::memcmp(h.magic, PITVIPER_STREAM_MAGIC, sizeof h.magic) == 0;
-  close(file);
-  if (!is) throw std::runtime_error("shared memory " + name + " is there already and is no stream's; expected a free name; fix: choose another");
-  const bool lives = !h.ended && h.writer_pid > 0 && h.writer_pid <= INT_MAX && (kill(static_cast<pid_t>(h.writer_pid), 0) == 0 || errno == EPERM);
-  if (lives)
-    throw std::runtime_error("shared memory " + name + " is written by process " + std::to_string(h.writer_pid) +
-                             "; expected a free name; fix: end that stream, or choose another name");
-  shm_unlink(name.c_str());
-}
-
-std::mutex gOpen;
-std::set<std::string> gOpenRings;
-
 }  // namespace
-
-void removeOpenRings() {
-  const std::lock_guard lock(gOpen);
-  for (const std::string& name : gOpenRings) shm_unlink(name.c_str());
-}
 
 std::string wrongRingName(const std::string& name) {
   if (name.size() < 2 || name[0] != '/' || name.size() > NAME_MAX) return "a slash and up to 254 letters";
@@ -64,37 +37,24 @@ std::string wrongRingName(const std::string& name) {
 
 RingWriter::RingWriter(const RingDesign& design) : design_(design) {
   if (design_.layers.size() > PITVIPER_STREAM_LAYERS) design_.layers.resize(PITVIPER_STREAM_LAYERS);
-  removeAbandoned(design_.name);
   const std::size_t pixels = static_cast<std::size_t>(design_.width) * static_cast<std::size_t>(design_.height);
-  std::size_t slotBytes = whole(sizeof(pitviper_stream_frame), 64);
-  std::vector<std::size_t> offsets;
+  slotBytes_ = whole(sizeof(pitviper_stream_frame), 64);
   for (const RingLayer& l : design_.layers) {
-    offsets.push_back(slotBytes);
-    slotBytes += whole(pixels * (l.isCounts ? sizeof(std::uint16_t) : sizeof(float)), 64);
+    offsets_.push_back(slotBytes_);
+    slotBytes_ += whole(pixels * (l.isCounts ? sizeof(std::uint16_t) : sizeof(float)), 64);
   }
-  slotBytes = whole(slotBytes, kPage);
-  const std::size_t headerBytes = whole(sizeof(pitviper_stream_header), kPage);
-  bytes_ = headerBytes + static_cast<std::size_t>(design_.slots) * slotBytes;
-  const auto fail = [&](const char* what, int reason) {
-    throw std::runtime_error("shared memory " + design_.name + ": " + what + " (" + std::strerror(reason) + "); expected " + std::to_string(bytes_ >> 20) +
-                             " MB in /dev/shm; fix: free it there, or ask for fewer slots");
-  };
-  const int file = shm_open(design_.name.c_str(), O_RDWR | O_CREAT | O_EXCL, 0600);
-  if (file < 0) fail("cannot be made", errno);
-  // All of it now: a full disk of memory ends a process at its first touch.
-  const int room = ftruncate(file, static_cast<off_t>(bytes_)) != 0 ? errno : posix_fallocate(file, 0, static_cast<off_t>(bytes_));
-  at_ = room != 0 ? MAP_FAILED : mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, file, 0);
-  const int reason = room != 0 ? room : errno;
-  close(file);
-  if (at_ == MAP_FAILED) {
-    shm_unlink(design_.name.c_str());
-    fail("there is no room", reason);
-  }
-  pitviper_stream_header& h = header();
+  slotBytes_ = whole(slotBytes_, kPage);
+  headerBytes_ = whole(sizeof(pitviper_stream_header), kPage);
+  const std::size_t bytes = headerBytes_ + static_cast<std::size_t>(design_.slots) * slotBytes_;
+  memory_ = std::make_unique<RingMemory>(design_.name, bytes, [&](char* at) { fill(*reinterpret_cast<pitviper_stream_header*>(at), bytes); });
+}
+
+void RingWriter::fill(pitviper_stream_header& h, std::size_t bytes) const {
+  std::memcpy(h.magic, PITVIPER_STREAM_MAGIC, sizeof h.magic);
   h.version = PITVIPER_STREAM_VERSION;
-  h.header_bytes = static_cast<std::uint32_t>(headerBytes);
-  h.slot_bytes = slotBytes;
-  h.total_bytes = bytes_;
+  h.header_bytes = static_cast<std::uint32_t>(headerBytes_);
+  h.slot_bytes = slotBytes_;
+  h.total_bytes = bytes;
   h.slots = static_cast<std::uint32_t>(design_.slots);
   h.layers = static_cast<std::uint32_t>(design_.layers.size());
   h.width = static_cast<std::uint32_t>(design_.width);
@@ -111,33 +71,34 @@ RingWriter::RingWriter(const RingDesign& design) : design_(design) {
     copyText(h.layer[k].radiance_unit, l.isCounts && l.isRadiance ? "W/(m2 sr)" : "");
     h.layer[k].type = l.isCounts ? PITVIPER_UINT16 : PITVIPER_FLOAT32;
     h.layer[k].maximum = l.maximum;
-    h.layer[k].offset = offsets[k];
+    h.layer[k].offset = offsets_[k];
   }
-  __atomic_thread_fence(__ATOMIC_RELEASE);
-  std::memcpy(h.magic, PITVIPER_STREAM_MAGIC, sizeof h.magic);  // last: who sees it sees the rest
-  const std::lock_guard lock(gOpen);
-  gOpenRings.insert(design_.name);
 }
 
 RingWriter::~RingWriter() {
-  shm_unlink(design_.name.c_str());
-  {
-    const std::lock_guard lock(gOpen);
-    gOpenRings.erase(design_.name);
-  }
-  pitviper_stream_header& h = header();
-  __atomic_store_n(&h.ended, 1u, __ATOMIC_RELEASE);
-  __atomic_fetch_add(&h.wake, 1u, __ATOMIC_RELEASE);
-  syscall(SYS_futex, &h.wake, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
-  munmap(at_, bytes_);
+  memory_->unlink();
+  memory_->write([&] {
+    __atomic_store_n(&header().ended, 1u, __ATOMIC_RELEASE);
+    wakeReaders(static_cast<std::uint32_t>(published_ + 1));
+  });
 }
 
-std::uint64_t RingWriter::published() const { return __atomic_load_n(&header().published, __ATOMIC_ACQUIRE); }
+void RingWriter::wakeReaders(std::uint32_t wake) {
+  __atomic_store_n(&header().wake, wake, __ATOMIC_RELEASE);
+  syscall(SYS_futex, &header().wake, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
+}
 
 void RingWriter::publish(const Frame& frame) {
-  pitviper_stream_header& h = header();
-  const std::uint64_t k = h.published;
-  auto* slot = static_cast<char*>(at_) + h.header_bytes + k % h.slots * h.slot_bytes;
+  if (memory_->write([&] { write(frame); })) return;
+  throw std::runtime_error("shared memory " + design_.name +
+                           " was cut short by another process while frames went there; expected that readers map it for reading only; fix: end what writes to it, and "
+                           "stream again");
+}
+
+void RingWriter::write(const Frame& frame) {
+  // Nothing is read from the header: others may have written to it.
+  const std::uint64_t k = published_;
+  auto* slot = memory_->at() + headerBytes_ + k % static_cast<std::uint64_t>(design_.slots) * slotBytes_;
   auto& f = *reinterpret_cast<pitviper_stream_frame*>(slot);
   __atomic_store_n(&f.lock, 2 * k + 1, __ATOMIC_RELAXED);
   __atomic_thread_fence(__ATOMIC_RELEASE);
@@ -169,7 +130,7 @@ void RingWriter::publish(const Frame& frame) {
       f.gain[l] = numberOf(frame, calibration + "radiance_per_count", 0.0);
       f.offset[l] = numberOf(frame, calibration + "radiance_at_0", 0.0);
     }
-    char* to = slot + h.layer[l].offset;
+    char* to = slot + offsets_[l];
     const auto layer = std::find_if(frame.layers.begin(), frame.layers.end(), [&](const FrameLayer& o) { return o.name == design.name; });
     if (layer == frame.layers.end() || layer->pixels.size() != pixels) {
       std::memset(to, 0, pixels * (design.isCounts ? sizeof(std::uint16_t) : sizeof(float)));
@@ -181,9 +142,9 @@ void RingWriter::publish(const Frame& frame) {
   }
   f.sent_tai_ns = taiOf_ns(monotonic_ns());
   __atomic_store_n(&f.lock, 2 * k + 2, __ATOMIC_RELEASE);
-  __atomic_store_n(&h.published, k + 1, __ATOMIC_RELEASE);
-  __atomic_store_n(&h.wake, static_cast<std::uint32_t>(k + 1), __ATOMIC_RELEASE);
-  syscall(SYS_futex, &h.wake, FUTEX_WAKE, INT_MAX, nullptr, nullptr, 0);
+  published_ = k + 1;
+  __atomic_store_n(&header().published, k + 1, __ATOMIC_RELEASE);
+  wakeReaders(static_cast<std::uint32_t>(k + 1));
 }
 
 }  // namespace pitviper

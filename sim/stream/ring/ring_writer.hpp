@@ -1,11 +1,13 @@
 #pragma once
 // The writer's side of frames in shared memory. Layout and rules: pitviper_stream.h beside this.
+#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "sim/frame/frame.hpp"
 #include "sim/stream/ring/pitviper_stream.h"
+#include "sim/stream/ring/ring_memory.hpp"
 
 namespace pitviper {
 
@@ -24,9 +26,6 @@ struct RingDesign {
   std::vector<RingLayer> layers;  ///< at most PITVIPER_STREAM_LAYERS
 };
 
-/// For a program that is about to end by a signal: no ring of its own stays.
-void removeOpenRings();
-
 /// Why a name is none; empty: it is one.
 std::string wrongRingName(const std::string& name);
 
@@ -38,15 +37,20 @@ class RingWriter {
   ~RingWriter();
   RingWriter(const RingWriter&) = delete;
   RingWriter& operator=(const RingWriter&) = delete;
-  /// Never waits. The frame has the design's layers and size, or they stay dark.
+  /// Never waits. The frame has the design's layers and size, or they stay dark. Errors: std::runtime_error where the object was cut short.
   void publish(const Frame& frame);
-  std::uint64_t published() const;
+  std::uint64_t published() const { return published_; }
 
  private:
-  pitviper_stream_header& header() const { return *static_cast<pitviper_stream_header*>(at_); }
+  pitviper_stream_header& header() const { return *reinterpret_cast<pitviper_stream_header*>(memory_->at()); }
+  void fill(pitviper_stream_header& h, std::size_t bytes) const;
+  void write(const Frame& frame);
+  void wakeReaders(std::uint32_t wake);
   RingDesign design_;
-  void* at_ = nullptr;
-  std::size_t bytes_ = 0;
+  std::unique_ptr<RingMemory> memory_;
+  std::size_t headerBytes_ = 0, slotBytes_ = 0;
+  std::vector<std::size_t> offsets_;  ///< of layers in a slot
+  std::atomic<std::uint64_t> published_{0};
 };
 
 }  // namespace pitviper
