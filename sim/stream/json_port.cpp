@@ -276,18 +276,20 @@ class JsonPort final : public CommandPort {
   }
 
   static Json parsed(std::string_view text, const Location& where) {
-    constexpr std::size_t kDeepest = 64;
+    // Values are copied, printed and read by functions that call themselves.
+    constexpr int kDeepest = 64;
     std::vector<std::set<std::string>> keys;
     std::string twice;
     bool tooDeep = false;
-    const auto look = [&](int, Json::parse_event_t event, Json& value) {
+    const auto look = [&](int depth, Json::parse_event_t event, Json& value) {
       if (event == Json::parse_event_t::object_start) keys.emplace_back();
       else if (event == Json::parse_event_t::object_end && !keys.empty()) keys.pop_back();
       else if (event == Json::parse_event_t::key && !keys.empty() && !keys.back().insert(value.get<std::string>()).second) twice = value.get<std::string>();
-      return !(tooDeep |= keys.size() > kDeepest);
+      return !(tooDeep |= depth > kDeepest);
     };
     Json j = Json::parse(text, look, false);
-    if (j.is_discarded() || !j.is_object() || tooDeep)
+    if (tooDeep) throw UserError(where, "lists and objects in each other, more than " + std::to_string(kDeepest) + " deep", "one object with its values", "send a flat one");
+    if (j.is_discarded() || !j.is_object())
       throw UserError(where, "not a JSON object", R"(a line such as {"command": "light", "light": "flare", "level": 0})", "send one object a line");
     if (!twice.empty()) throw UserError(where, "key '" + twice + "' stands there twice", "each key once", "remove one");
     return j;

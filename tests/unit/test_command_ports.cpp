@@ -75,6 +75,41 @@ std::string ownSocket(const char* what) {
   return (std::filesystem::temp_directory_path() / ("pitviper_test." + std::to_string(getpid()) + "." + what)).string();
 }
 
+// Rationale: what reads, copies and prints values calls itself, a level a call. Expected: whatever of a line nests, lists or objects or both, under whatever key,
+// is refused at the same depth, so that no stack, however small, ends; what a command may well have is taken.
+TEST(JsonPort, RefusesWhatNestsDeep) {
+  const Simulation sim = aScene();
+  CommandInbox inbox([](const std::string&) {});
+  const std::string path = ownSocket("deep");
+  const auto port = openJsonPort({path, true, 1.0, [] { return 0.0; }, {}, {}}, sim, inbox);
+  Client c(path);
+  ASSERT_TRUE(c.connected);
+  const auto nested = [](const std::string& open, const std::string& close, std::size_t count, const std::string& inside) {
+    std::string text;
+    for (std::size_t k = 0; k < count; ++k) text += open;
+    text += inside;
+    for (std::size_t k = 0; k < count; ++k) text += close;
+    return text;
+  };
+  const std::vector<std::pair<std::string, std::string>> kinds = {{"[", "]"}, {"{\"a\":", "}"}, {"[{\"a\":", "}]"}, {"{\"a\":[", "]}"}, {"[1,", "]"}};
+  for (const char* key : {"id", "host_frame", "status", "position"})
+    for (const auto& [open, close] : kinds)
+      for (const std::size_t count : {66u, 500u, 4000u}) {
+        c.send("{\"" + std::string(key) + "\":" + nested(open, close, count, "1") + "}\n");
+        const std::string answer = c.line();
+        EXPECT_NE(answer.find("more than 64 deep"), std::string::npos) << key << open << count << answer;
+      }
+  c.send("{\"id\":" + std::string(32000, '[') + std::string(32000, ']') + "}\n");
+  EXPECT_NE(c.line().find("more than 64 deep"), std::string::npos);
+  c.send(std::string(60000, '[') + "\n");  // nor is it whole
+  EXPECT_NE(c.line().find("error"), std::string::npos);
+  for (const auto& [open, close] : kinds) {
+    const std::string id = nested(open, close, 20, "1");
+    c.send("{\"id\":" + id + "}\n");
+    EXPECT_EQ(c.line(), "{\"id\":" + id + ",\"ok\":true}");
+  }
+}
+
 TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
   const Simulation sim = aScene();
   std::vector<std::string> log;
