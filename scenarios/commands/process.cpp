@@ -17,6 +17,7 @@
 #include <thread>
 #include <utility>
 
+#include "sim/gl/driver_cache.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/readable_text.hpp"
 #include "sim/stream/ring/ring_memory.hpp"
@@ -120,6 +121,7 @@ void prepareProcess() {
   openClosedStreams();
   std::signal(SIGXFSZ, SIG_IGN);
   std::set_terminate(endByException);
+  tellOfDriverBy(tell);
   watchSignals();
 }
 

@@ -1,5 +1,6 @@
 #include "sim/gl/context.hpp"
 
+#include <dlfcn.h>
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
@@ -7,6 +8,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <vector>
+
+#include "sim/gl/driver_cache.hpp"
 
 namespace pitviper {
 namespace {
@@ -17,6 +20,23 @@ bool hasWord(const char* list, const char* word) {
   for (const char* p = list; (p = std::strstr(p, word)); p += n)
     if ((p == list || p[-1] == ' ') && (p[n] == ' ' || p[n] == '\0')) return true;
   return false;
+}
+
+constexpr const char* kInstall = "install Mesa's software renderer: apt-get install libegl1 libgl1 libgl1-mesa-dri, or a GPU driver with EGL";
+
+/// The library of entry points ends the process where it finds none: what it would look for is looked for before.
+void checkEgl() {
+  bool hasGl = false;
+  for (const char* library : {"libOpenGL.so.0", "libGL.so.1"}) {
+    void* at = hasGl ? nullptr : dlopen(library, RTLD_LAZY | RTLD_LOCAL);
+    hasGl |= at != nullptr;
+    if (at) dlclose(at);
+  }
+  if (!hasGl) throw GlError(std::string("there is no OpenGL library (libOpenGL.so.0 or libGL.so.1); ") + kInstall);
+  if (!epoxy_has_egl()) throw GlError(std::string("there is no EGL library (libEGL.so.1); ") + kInstall);
+  if (!hasWord(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_platform_base"))
+    throw GlError(std::string("EGL has no driver behind it (no file in /usr/share/glvnd/egl_vendor.d, or where __EGL_VENDOR_LIBRARY_DIRS says, names one that loads); ") +
+                  kInstall);
 }
 
 std::vector<EGLDeviceEXT> devices() {
@@ -78,6 +98,8 @@ GlLimits currentLimits() {
 
 GlContext::GlContext(std::string device) {
   if (const char* wish = std::getenv("PITVIPER_GL"); wish && *wish && device == "auto") device = wish;
+  prepareDriverCache();
+  checkEgl();
   displayBefore_ = eglGetCurrentDisplay();
   before_ = eglGetCurrentContext();
   EGLDisplay display = EGL_NO_DISPLAY;
@@ -103,9 +125,7 @@ GlContext::GlContext(std::string device) {
   } else {
     throw GlError("PITVIPER_GL is '" + device + "'; it can be auto, surfaceless or device:N");
   }
-  if (context == EGL_NO_CONTEXT)
-    throw GlError("no OpenGL 4.5 core context through EGL (tried " + device +
-                  "); install Mesa's software renderer: apt-get install libegl1 libgl1-mesa-dri, or a GPU driver with EGL");
+  if (context == EGL_NO_CONTEXT) throw GlError("no OpenGL 4.5 core context through EGL (tried " + device + "); " + kInstall);
   display_ = display;
   context_ = context;
   limits_ = currentLimits();

@@ -50,12 +50,14 @@ class Faults : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
   fs::path put(const std::string& name, const std::string& text) const {
+    fs::create_directories((folder_ / name).parent_path());
     std::ofstream(folder_ / name, std::ios::binary) << text;
     return folder_ / name;
   }
-  /// Runs a line of bash in the folder; $P is the program.
-  Result run(const std::string& line) const {
+  /// Runs a line of bash in the folder; $P is the program. `inside`: another line, in the file .inside.
+  Result run(const std::string& line, const std::string& inside = "") const {
     put(".line", line);
+    put(".inside", inside);
     const pid_t child = fork();
     if (child == 0) {
       setenv("P", PITVIPER_PROGRAM, 1);
@@ -176,6 +178,51 @@ TEST_F(Faults, MemoryIsPredicted) {
     EXPECT_FALSE(fs::exists(folder_ / "out"));
     EXPECT_LT(r.peak_kB, 200 << 10);
   }
+}
+
+// Rationale: the driver writes to the index of its cache as to memory, and a page that the disk has no room for ends the process. Expected: on disks that are full
+// before the first context, with and without an index that is only promised, a note and the pictures; on one that fills up later the pictures alone.
+TEST_F(Faults, AFullDiskUnderTheDriversCacheCostsTheCacheAlone) {
+  if (run("unshare -rm true").code != 0) GTEST_SKIP() << "needs a mount of its own (unshare)";
+  put("a.yaml", kPlate + camera());
+  ASSERT_EQ(run("$P run a.yaml --out whole").code, 0);
+  const std::string frame = readAll(folder_ / "whole" / "c_00000.exr");
+  const std::string fill = "dd if=/dev/zero of=disk/fill bs=4k status=none 2>/dev/null; ", draw = "$P run a.yaml --overwrite --out out";
+  const std::string promised = "mkdir disk/mesa_shader_cache; truncate -s 1310728 disk/mesa_shader_cache/index; ";
+  struct Disk {
+    std::string size, before, draws;
+    bool told;
+  };
+  for (const Disk& d : {Disk{"8k", "", "XDG_CACHE_HOME=$PWD/disk " + draw, true},
+                        {"600k", "", "XDG_CACHE_HOME=$PWD/disk " + draw, true},
+                        {"8m", fill, "XDG_CACHE_HOME=$PWD/disk " + draw, true},
+                        {"8m", promised + fill, "XDG_CACHE_HOME=$PWD/disk " + draw, true},
+                        {"8m", promised + fill, "MESA_SHADER_CACHE_DIR=$PWD/disk XDG_CACHE_HOME=$PWD/own " + draw, true},
+                        {"1400k", promised, "XDG_CACHE_HOME=$PWD/disk " + draw, false},
+                        {"8k", "", "MESA_SHADER_CACHE_DISABLE=true XDG_CACHE_HOME=$PWD/disk " + draw, false}}) {
+    fs::create_directories(folder_ / "disk");
+    const Result r = run("unshare -rm bash -c '. ./.inside'", "mount -t tmpfs -o size=" + d.size + " none disk || exit 9; " + d.before + d.draws);
+    EXPECT_EQ(r.code, 0) << d.size << d.draws << r.err;
+    EXPECT_EQ(r.err.find("has no room for the driver's cache of shaders") != std::string::npos, d.told) << d.size << d.draws << r.err;
+    EXPECT_TRUE(readAll(folder_ / "out" / "c_00000.exr") == frame) << d.size << d.draws;
+  }
+}
+
+// Expected: where EGL or its drivers are not there, one line that says what to install, and the code of a machine that could not.
+TEST_F(Faults, WithoutADriverThereIsAMessage) {
+  put("a.yaml", kPlate + camera());
+  put("broken/a.json", R"({"file_format_version": "1.0.0", "ICD": {"library_path": "libEGL_nobody.so.0"}})");
+  fs::create_directories(folder_ / "none");
+  for (const char* without : {"__EGL_VENDOR_LIBRARY_DIRS=none", "__EGL_VENDOR_LIBRARY_DIRS=broken", "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null", "LIBGL_DRIVERS_PATH=$PWD/none"})
+    for (const char* command : {"run a.yaml --out out", "check a.yaml --audit", "stream a.yaml --frames 1 --shared-memory /pitviper.test.driver"}) {
+      const Result r = run(std::string(without) + " $P " + command);
+      EXPECT_EQ(r.code, 1) << without << command << r.err;
+      EXPECT_NE(r.err.find("apt-get install libegl1 libgl1 libgl1-mesa-dri"), std::string::npos) << without << r.err;
+    }
+  const Result r = run("__EGL_VENDOR_LIBRARY_DIRS=none $P run a.yaml --out out");
+  EXPECT_EQ(r.code, 1);
+  EXPECT_EQ(r.err.rfind("pitviper: EGL has no driver behind it", 0), 0u) << r.err;
+  EXPECT_EQ(r.err.find('\n'), r.err.size() - 1) << r.err;
 }
 
 // Expected: where memory ends all the same, one message and 2.
