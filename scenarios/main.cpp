@@ -248,6 +248,7 @@ void printHelp() {
   std::printf("pitviper: infrared and optronic sensor scenes in calibrated units\n\nusage: pitviper COMMAND ...\n\n");
   for (const auto& [name, c] : commands()) std::printf("  %-10s %s\n", name.c_str(), c.summary);
   std::printf("  %-10s %s\n", "test", "build and run every test (the pitviper script)");
+  std::printf("  %-10s %s\n", "figures", "write the figures in the documents anew (the pitviper script)");
   std::printf("\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input, 3 frames of a stream unaccounted for, 4 an audit found more than was asked, 130 and 143 ended by a signal.\n");
 }
 
