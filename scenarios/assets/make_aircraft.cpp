@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/scene/mesh_normals.hpp"
 #include "sim/scene/mesh_tools.hpp"
 
 namespace pitviper {

@@ -65,6 +65,7 @@ int checkCommand(const Arguments& arguments) {
   std::printf("%s", seen.text.c_str());
   std::fflush(stdout);  // before the notes, where both go to one place
   std::fprintf(stderr, "%s", seen.notes.c_str());
+  noteMeshes(sim, notes);
   noteCuts(sim, notes);
   noteSampling(sim, notes);
   noteNear(sim, sim.time.at(0), notes);

@@ -124,6 +124,7 @@ int runCommand(const Arguments& arguments) {
   }
   ensureWritableFolder(out);
   Notes notes;
+  noteMeshes(sim, notes);
   noteCuts(sim, notes);
   noteSampling(sim, notes);
   noteNear(sim, sim.time.at(range.first), notes);

@@ -57,6 +57,20 @@ void noteNear(const Simulation& sim, double time_s, Notes& notes) {
   }
 }
 
+void noteMeshes(const Simulation& sim, Notes& notes) {
+  std::set<std::string> told;
+  for (const Entity& e : sim.entities) {
+    const auto say = [&](const std::string& note) {
+      if (told.insert(e.meshFile + note).second) notes.say("mesh of '" + e.name + "' (" + e.meshFile + "): " + note);
+    };
+    for (const std::string& note : e.mesh->notes) say(note);
+    if (const glm::dvec3& o = e.mesh->offset_m; o != glm::dvec3(0.0))
+      say(print("it lies about (%.10g, %.10g, %.10g) m forward, left and up of its file's origin, and is held from there, in double precision; 'position' places "
+                "the file's origin, about which it turns",
+                o.x, o.y, o.z));
+  }
+}
+
 void noteCuts(const Simulation& sim, Notes& notes) {
   std::set<std::string> told;
   auto note = [&](const std::string& owner, const std::vector<ChannelOutput>& outputs) {

@@ -23,6 +23,8 @@ class Notes {
 void noteSampling(const Simulation& simulation, Notes& notes);
 /// One line for each camera that begins with part of a body nearer than it draws: a dome in front of it, for instance.
 void noteNear(const Simulation& simulation, double time_s, Notes& notes);
+/// What meshes from files had that was mended, and where they lie far from their file's origin: once a file.
+void noteMeshes(const Simulation& simulation, Notes& notes);
 /// One line for each channel whose response ends before its own end, where the scene has no data.
 void noteCuts(const Simulation& simulation, Notes& notes);
 /// By so much light scattered more than once must brighten a channel to be worth a word.

@@ -249,6 +249,7 @@ int streamCommand(const Arguments& arguments) {
     ensureWritableFolder(out);
   }
   Notes notes;
+  noteMeshes(sim, notes);
   noteCuts(sim, notes);
   for (const Camera& c : sim.cameras)
     if (c.spectralImage) notes.say("camera " + c.name + ": its spectral image is drawn by run, not by a stream");

@@ -162,10 +162,11 @@ std::shared_ptr<const Mesh> Builder::readShape(const Value& value, BodyForm& for
     if (path.is_relative()) path = spectra_.files().base / path;
     *mesh = importMesh(path, r.number("unit"), r.where("file"));
     turnAsAsked(*mesh, r);
-    mesh->closed = isClosed(*mesh);
   }
-  if (r.given("scale"))
+  if (r.given("scale")) {
     for (auto& p : mesh->positions) p *= static_cast<float>(r.number("scale"));
+    mesh->offset_m *= r.number("scale");
+  }
   validateMesh(*mesh, r.where());
   return mesh;
 }

@@ -15,7 +15,7 @@ const FieldState* FieldStates::at(std::size_t field) const {
   std::call_once(place.once, [&] {
     const FieldWorld world{&simulation_, world_.time_s,
                            [this](int entity, double time_s) {
-                             return time_s == world_.time_s ? world_.entities[static_cast<std::size_t>(entity)] : poseOf(simulation_, entity, time_s);
+                             return time_s == world_.time_s ? world_.bodyPose(static_cast<std::size_t>(entity)) : poseOf(simulation_, entity, time_s);
                            },
                            [this](const glm::dvec3& at) { return sunAt(at); }};
     place.state = simulation_.fields[field].source->at(world);

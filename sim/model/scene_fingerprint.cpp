@@ -28,8 +28,8 @@ void addTo(Fingerprint& f, const std::optional<T>& value) {
 }
 
 void addTo(Fingerprint& f, const Mesh& m) {
-  const auto& [positions, normals, uv, triangles, parts, closed, heightField] = m;
-  f.all(positions).all(normals).all(uv).all(triangles).add(closed);
+  const auto& [positions, normals, uv, triangles, parts, closed, heightField, offset_m, notes] = m;
+  f.all(positions).all(normals).all(uv).all(triangles).add(closed).add(offset_m);
   for (const auto& [name, firstTriangle, triangleCount] : parts) f.add(name).add(firstTriangle).add(triangleCount);
 }
 

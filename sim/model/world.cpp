@@ -24,7 +24,9 @@ auto valueOf(const Map& courses, const Key& key, double time_s, const Other& oth
 WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s) {
   WorldState state;
   state.time_s = time_s;
-  const auto carried = [&state](int carrier, const Pose& own) { return carrier >= 0 ? composed(state.entities[static_cast<size_t>(carrier)], own) : own; };
+  const auto carried = [&state](int carrier, const Pose& own) { return carrier >= 0 ? composed(state.bodyPose(static_cast<size_t>(carrier)), own) : own; };
+  if (std::any_of(sim.entities.begin(), sim.entities.end(), [](const Entity& e) { return e.mesh && e.mesh->offset_m != glm::dvec3(0.0); }))
+    for (const Entity& e : sim.entities) state.offsets_m.push_back(e.mesh ? e.mesh->offset_m : glm::dvec3(0.0));
   for (const Entity& e : sim.entities) {  // a parent comes before its children
     const int index = static_cast<int>(state.entities.size());
     const bool there = e.presentAt(time_s) && (e.parent < 0 || state.isThere(static_cast<size_t>(e.parent)));
@@ -33,7 +35,8 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
     Pose own = e.motion.at(time_s);
     own.position = valueOf(courses.positions, index, time_s, [&] { return own.position; });
     own.orientation = valueOf(courses.orientations, index, time_s, [&] { return own.orientation; });
-    state.entities.push_back(carried(e.parent, own));
+    const Pose body = carried(e.parent, own);
+    state.entities.push_back(state.offsets_m.empty() ? body : composed(body, {state.offsets_m[static_cast<size_t>(index)], {1, 0, 0, 0}}));
     std::vector<double>& temperatures = state.temperatures_K.emplace_back();
     for (const Surface& s : e.surfaces)
       temperatures.push_back(valueOf(courses.temperatures_K, std::pair(index, static_cast<int>(temperatures.size())), time_s, [&] { return s.temperatureAt_K(time_s); }));
@@ -69,7 +72,7 @@ Pose baseOf(const Mount& mount, const CameraChange* change, const WorldState& st
   if (change && change->position) pose.position = *change->position;
   if (change && change->orientation) pose.orientation = *change->orientation;
   if (mount.carrier < 0) return pose;
-  const Pose& carrier = state.entities[static_cast<size_t>(mount.carrier)];
+  const Pose carrier = state.bodyPose(static_cast<size_t>(mount.carrier));
   Pose base = composed(carrier, pose);
   if (mount.steadied.any()) base.orientation = glm::normalize(steadied(mount.steadied, carrier.orientation) * pose.orientation);
   return base;
@@ -78,7 +81,7 @@ Pose baseOf(const Mount& mount, const CameraChange* change, const WorldState& st
 std::optional<glm::dvec3> targetOf(const Mount& mount, const WorldState& state) {
   if (mount.looksAtPoint) return mount.lookAtPoint;
   if (mount.lookAtLight >= 0) return state.lights[static_cast<size_t>(mount.lookAtLight)];
-  if (mount.lookAtEntity >= 0) return state.entities[static_cast<size_t>(mount.lookAtEntity)].position;
+  if (mount.lookAtEntity >= 0) return state.bodyPose(static_cast<size_t>(mount.lookAtEntity)).position;
   return std::nullopt;
 }
 

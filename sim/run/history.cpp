@@ -180,8 +180,8 @@ void History::begin(int frame, const WorldState& world) {
       s.isKnown = s.isPlaceKnown = isSamePlace(s.pose.position, own.lights[thing.index]);
     } else {
       s.isThere = world.isThere(thing.index);
-      s.pose = world.entities[thing.index];
-      s.isPlaceKnown = isSamePlace(s.pose.position, own.entities[thing.index].position);
+      s.pose = world.bodyPose(thing.index);
+      s.isPlaceKnown = isSamePlace(s.pose.position, own.bodyPose(thing.index).position);
       s.isKnown = s.isPlaceKnown && isSameTurn(s.pose.orientation, own.entities[thing.index].orientation);
     }
     // What only its carrier has moved has no rows either.

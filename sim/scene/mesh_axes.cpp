@@ -31,6 +31,7 @@ void turnAxes(Mesh& mesh, const FileAxes& readAs, const FileAxes& meant) {
   const glm::mat3 turn = glm::transpose(fileFromBody(meant)) * fileFromBody(readAs);  // of 0, 1 and -1
   for (glm::vec3& p : mesh.positions) p = turn * p;
   for (glm::vec3& n : mesh.normals) n = turn * n;
+  mesh.offset_m = glm::dmat3(turn) * mesh.offset_m;
 }
 
 }  // namespace pitviper

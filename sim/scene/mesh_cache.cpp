@@ -13,7 +13,7 @@
 namespace pitviper {
 namespace {
 
-constexpr std::uint64_t kMagic = 0x32304853'4d565450u;  // "PTVMSH02" in little-endian order: form and version
+constexpr std::uint64_t kMagic = 0x33304853'4d565450u;  // "PTVMSH03" in little-endian order: form and version
 
 std::uint64_t mix(std::uint64_t h, std::uint64_t word, std::uint64_t multiplier) {
   h = (std::rotl(h, 27) ^ word) * multiplier;
@@ -101,6 +101,8 @@ std::string serializeMesh(const Mesh& mesh, const std::vector<NamedFile>& named)
   putWord(body, mesh.triangles.size());
   putWord(body, mesh.parts.size());
   putWord(body, mesh.closed ? 1 : 0);
+  putWord(body, mesh.notes.size());
+  for (int k = 0; k < 3; ++k) putWord(body, std::bit_cast<std::uint64_t>(mesh.offset_m[k]));
   put(body, mesh.positions);
   put(body, mesh.normals);
   put(body, mesh.uv);
@@ -110,6 +112,10 @@ std::string serializeMesh(const Mesh& mesh, const std::vector<NamedFile>& named)
     putWord(body, part.triangleCount);
     putWord(body, part.name.size());
     body += part.name;
+  }
+  for (const std::string& note : mesh.notes) {
+    putWord(body, note.size());
+    body += note;
   }
   const ContentKey sum = contentKey(body);
   std::string out;
@@ -138,6 +144,8 @@ std::optional<Mesh> deserializeMesh(std::string_view bytes, std::vector<NamedFil
   const std::uint64_t positions = in.word(), normals = in.word(), uv = in.word(), triangles = in.word(), parts = in.word();
   Mesh mesh;
   mesh.closed = in.word() != 0;
+  const std::uint64_t notes = in.word();
+  for (int k = 0; k < 3; ++k) mesh.offset_m[k] = std::bit_cast<double>(in.word());
   in.array(mesh.positions, positions);
   in.array(mesh.normals, normals);
   in.array(mesh.uv, uv);
@@ -149,6 +157,7 @@ std::optional<Mesh> deserializeMesh(std::string_view bytes, std::vector<NamedFil
     part.name = std::string(in.take(in.word()));
     mesh.parts.push_back(std::move(part));
   }
+  for (std::uint64_t i = 0; i < notes && in.ok; ++i) mesh.notes.emplace_back(in.take(in.word()));
   if (!in.ok || !in.left.empty()) return std::nullopt;
   if (named != nullptr) *named = std::move(files);
   return mesh;

@@ -9,13 +9,15 @@
 #include "sim/scene/import/child_process.hpp"
 #include "sim/scene/import/import_reply.hpp"
 #include "sim/scene/mesh_cache.hpp"
+#include "sim/scene/mesh_normals.hpp"
+#include "sim/scene/mesh_orientation.hpp"
 #include "sim/scene/mesh_tools.hpp"
 
 namespace pitviper {
 namespace {
 
 /// Raised whenever the same file would be imported differently: older cache entries are then not found any more.
-constexpr std::uint64_t kImportVersion = 2;
+constexpr std::uint64_t kImportVersion = 3;
 
 /// 10 million triangles take 0.5 GB as binary STL and about 1.5 GB as ASCII STL.
 constexpr std::uintmax_t kMostBytes = 2ull << 30;
@@ -84,11 +86,12 @@ void finish(Mesh& mesh, const Location& where) {
   if (mesh.uv.size() != mesh.positions.size()) mesh.uv.assign(mesh.positions.size(), glm::vec2(0.0f));
   if (mesh.parts.empty()) mesh.parts = {{"all", 0, static_cast<std::uint32_t>(mesh.triangles.size())}};
   validateMesh(mesh, where);
+  orientShells(mesh, hasNormals, kCrease_rad);
   if (!hasNormals) computeNormals(mesh, kCrease_rad);
-  mesh.closed = isClosed(mesh);
 }
 
 void scale(Mesh& mesh, double metresPerUnit, const Location& askedAt) {
+  mesh.offset_m *= metresPerUnit;
   for (glm::vec3& p : mesh.positions) {
     p = glm::vec3(glm::dvec3(p) * metresPerUnit);
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))

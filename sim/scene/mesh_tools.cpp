@@ -1,98 +1,17 @@
 #include "sim/scene/mesh_tools.hpp"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
-#include <unordered_map>
+
+#include "sim/scene/mesh_edges.hpp"
 
 namespace pitviper {
 namespace {
 
-/// Three float bit patterns (positions) or a smoothing group and two of them (uv): equal keys mean the same vertex.
-using Key = std::array<std::uint32_t, 3>;
-
-struct KeyHash {
-  std::size_t operator()(const Key& k) const {
-    std::uint64_t h = 0x9e3779b97f4a7c15u;  // the golden ratio and two odd multipliers: any good mix will do
-    for (std::uint32_t v : k) h = (std::rotl(h, 23) ^ v) * 0xff51afd7ed558ccdu;
-    return static_cast<std::size_t>(h ^ (h >> 32));
-  }
-};
-
-std::uint32_t bitsOf(float value) { return std::bit_cast<std::uint32_t>(value == 0.0f ? 0.0f : value); }  // -0 is 0
-
-/// For each vertex the number of its position: vertices at exactly the same place share one.
-std::vector<std::uint32_t> weldByPosition(const Mesh& mesh) {
-  std::vector<std::uint32_t> place(mesh.positions.size());
-  std::unordered_map<Key, std::uint32_t, KeyHash> known;
-  known.reserve(mesh.positions.size());
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    const glm::vec3& p = mesh.positions[i];
-    const Key key{bitsOf(p.x), bitsOf(p.y), bitsOf(p.z)};
-    place[i] = known.try_emplace(key, static_cast<std::uint32_t>(known.size())).first->second;
-  }
-  return place;
-}
-
-/// Twice the triangle's area times its normal.
-glm::dvec3 areaVector(const Mesh& mesh, const glm::uvec3& t) {
-  const glm::dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
-  return glm::cross(b - a, c - a);
-}
-
 glm::dvec3 unitOr(const glm::dvec3& v, const glm::dvec3& otherwise) {
   const double length = glm::length(v);
   return length > 0.0 && std::isfinite(length) ? v / length : otherwise;
-}
-
-/// One of the three directed edges of a triangle, between welded places, smaller place first.
-struct Edge {
-  std::uint64_t places;  ///< smaller place in the upper half
-  std::uint32_t triangle;
-  std::uint8_t corner;  ///< where the edge starts
-  bool forward;         ///< runs from the smaller place to the larger
-  friend bool operator<(const Edge& a, const Edge& b) { return a.places != b.places ? a.places < b.places : a.triangle < b.triangle; }
-};
-
-std::vector<Edge> sortedEdges(const Mesh& mesh, const std::vector<std::uint32_t>& place) {
-  std::vector<Edge> edges;
-  edges.reserve(mesh.triangles.size() * 3);
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
-    for (std::uint8_t k = 0; k < 3; ++k) {
-      const std::uint64_t a = place[mesh.triangles[t][k]], b = place[mesh.triangles[t][(k + 1) % 3]];
-      edges.push_back({std::min(a, b) << 32 | std::max(a, b), t, k, a < b});
-    }
-  std::sort(edges.begin(), edges.end());
-  return edges;
-}
-
-std::uint32_t rootOf(std::vector<std::uint32_t>& parent, std::uint32_t i) {
-  while (parent[i] != i) i = parent[i] = parent[parent[i]];
-  return i;
-}
-
-/// Corners (3 t + k) of triangles that meet at a place and are joined by edges bent less than the crease: one root
-/// each.
-std::vector<std::uint32_t> smoothingGroups(const Mesh& mesh, const std::vector<std::uint32_t>& place, const std::vector<glm::dvec3>& faceNormals,
-                                           double leastCosine) {
-  std::vector<std::uint32_t> parent(mesh.triangles.size() * 3);
-  std::iota(parent.begin(), parent.end(), 0u);
-  const std::vector<Edge> edges = sortedEdges(mesh, place);
-  for (std::size_t i = 0; i + 1 < edges.size(); ++i) {
-    const Edge &a = edges[i], &b = edges[i + 1];
-    if (a.places != b.places || a.forward == b.forward) continue;
-    if (i > 0 && edges[i - 1].places == a.places) continue;  // more than two triangles: a crease
-    if (i + 2 < edges.size() && edges[i + 2].places == a.places) continue;
-    if (glm::dot(faceNormals[a.triangle], faceNormals[b.triangle]) < leastCosine) continue;
-    const auto join = [&](std::uint32_t ka, std::uint32_t kb) { parent[rootOf(parent, a.triangle * 3 + ka % 3)] = rootOf(parent, b.triangle * 3 + kb % 3); };
-    join(a.corner, b.corner + 1u);
-    join(a.corner + 1u, b.corner);
-  }
-  for (std::uint32_t i = 0; i < parent.size(); ++i) parent[i] = rootOf(parent, i);
-  return parent;
 }
 
 }  // namespace
@@ -139,51 +58,14 @@ BoundingSphere boundingSphere(const Mesh& mesh) {
 
 bool isClosed(const Mesh& mesh) {
   if (mesh.triangles.empty()) return false;
-  const std::vector<Edge> edges = sortedEdges(mesh, weldByPosition(mesh));
+  const std::vector<MeshEdge> edges = sortedEdges(mesh, weldByPosition(mesh));
   for (std::size_t i = 0; i < edges.size();) {
     long long balance = 0;
     const std::uint64_t places = edges[i].places;
     for (; i < edges.size() && edges[i].places == places; ++i) balance += edges[i].forward ? 1 : -1;
-    if (balance != 0 && places >> 32 != (places & 0xffffffffu)) return false;  // an edge of no length doesn't count
+    if (balance != 0 && edges[i - 1].hasLength()) return false;
   }
   return signedVolume(mesh) > 0.0;
-}
-
-void computeNormals(Mesh& mesh, double creaseAngle_rad) {
-  const std::vector<std::uint32_t> place = weldByPosition(mesh);
-  std::vector<glm::dvec3> faceNormals;
-  faceNormals.reserve(mesh.triangles.size());
-  for (const glm::uvec3& t : mesh.triangles) faceNormals.push_back(unitOr(areaVector(mesh, t), {0.0, 0.0, 1.0}));
-  const std::vector<std::uint32_t> group = smoothingGroups(mesh, place, faceNormals, std::cos(creaseAngle_rad));
-
-  std::vector<glm::dvec3> sums(group.size(), glm::dvec3(0.0));
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const glm::dvec3 at(mesh.positions[mesh.triangles[t][k]]);
-      const glm::dvec3 u = glm::dvec3(mesh.positions[mesh.triangles[t][(k + 1) % 3]]) - at;
-      const glm::dvec3 v = glm::dvec3(mesh.positions[mesh.triangles[t][(k + 2) % 3]]) - at;
-      sums[group[3 * t + k]] += faceNormals[t] * std::atan2(glm::length(glm::cross(u, v)), glm::dot(u, v));
-    }
-
-  Mesh out;
-  std::unordered_map<Key, std::uint32_t, KeyHash> known;
-  known.reserve(mesh.positions.size());
-  const bool hasUv = mesh.uv.size() == mesh.positions.size();
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t i = mesh.triangles[t][k], root = group[3 * t + k];
-      const glm::vec2 uv = hasUv ? mesh.uv[i] : glm::vec2(0.0f);
-      const auto [entry, isNew] = known.try_emplace(Key{root, bitsOf(uv.x), bitsOf(uv.y)}, static_cast<std::uint32_t>(out.positions.size()));
-      if (isNew) {
-        out.positions.push_back(mesh.positions[i]);
-        out.normals.push_back(glm::vec3(unitOr(sums[root], faceNormals[t])));
-        out.uv.push_back(uv);
-      }
-      mesh.triangles[t][k] = entry->second;
-    }
-  mesh.positions = std::move(out.positions);
-  mesh.normals = std::move(out.normals);
-  mesh.uv = std::move(out.uv);
 }
 
 void appendPart(Mesh& into, const Mesh& part, const std::string& name, const glm::mat4& placement) {

@@ -25,7 +25,7 @@ double surfaceArea(const Mesh& mesh);
 /// Overlapping bodies count twice. Meaningless for an open mesh.
 double signedVolume(const Mesh& mesh);
 
-/// A sphere that holds every vertex; at most a fifth larger than the smallest one.
+/// A sphere that holds every vertex, from the mesh's offset; at most a fifth larger than the smallest one.
 BoundingSphere boundingSphere(const Mesh& mesh);
 
 /// True when, with vertices at exactly equal positions taken as one, every edge is used as often in one direction as in
@@ -33,15 +33,9 @@ BoundingSphere boundingSphere(const Mesh& mesh);
 /// Then back faces cannot be seen from outside.
 bool isClosed(const Mesh& mesh);
 
-/// Replaces the normals by angle-weighted means over the neighbours whose common edge bends by less than
-/// creaseAngle_rad, and splits vertices where the surface bends more or where uv differ. Vertices are welded by exact
-/// position first, so a triangle soup becomes smooth; unused vertices vanish. Needs valid indices. The order of
-/// triangles is kept.
-void computeNormals(Mesh& mesh, double creaseAngle_rad);
-
 /// Appends all triangles of `part` as one part called `name`, moved by `placement` (affine; a mirroring one turns the
 /// triangles round). If the last part of `into` has this name already, it grows. `into.closed` stays true only if both
-/// are.
+/// are. Neither has an offset.
 void appendPart(Mesh& into, const Mesh& part, const std::string& name, const glm::mat4& placement);
 
 /// Checks an untrusted mesh and removes its triangles of zero area (and parts left empty); returns how many were

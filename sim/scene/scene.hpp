@@ -88,7 +88,9 @@ class FieldStates;  // sim/model/field_states.hpp
 /// Everything that changes, at one time: poses in the local frame.
 struct WorldState {
   double time_s = 0.0;
-  std::vector<Pose> entities;
+  std::vector<Pose> entities;         ///< of their meshes: of the body itself, moved by its mesh's offset
+  std::vector<glm::dvec3> offsets_m;  ///< per entity, of its mesh; none: all are 0
+  Pose bodyPose(std::size_t entity) const;
   std::vector<std::vector<double>> temperatures_K;  ///< per entity and surface; of a surface with a temperature texture its mean
   std::vector<glm::dvec3> lights;
   std::vector<double> lightLevels;                  ///< of a light that is not there 0

@@ -1,12 +1,10 @@
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <numbers>
@@ -16,9 +14,11 @@
 #include "sim/radiometry/constants.hpp"
 #include "sim/scene/mesh_cache.hpp"
 #include "sim/scene/mesh_import.hpp"
+#include "sim/scene/mesh_normals.hpp"
 #include "sim/scene/mesh_tools.hpp"
 #include "sim/scene/primitives.hpp"
 #include "tests/fuzz/fuzz_mesh.hpp"
+#include "tests/support/mesh_import.hpp"
 
 namespace pitviper {
 namespace {
@@ -47,35 +47,7 @@ void expectSound(Mesh mesh, bool closed) {
   EXPECT_EQ(against, 0u);
 }
 
-struct Import : testing::Test {
-  std::filesystem::path folder = std::filesystem::temp_directory_path() / ("pitviper_mesh_" + std::to_string(getpid()));
-  Import() {
-    std::filesystem::create_directories(folder);
-    setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
-#ifdef PITVIPER_MESH_IMPORT_FOLDER
-    setMeshImportFolder(PITVIPER_MESH_IMPORT_FOLDER);
-#endif
-  }
-  ~Import() override {
-    std::filesystem::remove_all(folder);
-    setenv("XDG_CACHE_HOME", before.c_str(), 1);
-  }
-  const std::string before = std::getenv("XDG_CACHE_HOME") != nullptr ? std::getenv("XDG_CACHE_HOME") : "";
-
-  std::filesystem::path write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder / name, std::ios::binary) << bytes;
-    return folder / name;
-  }
-  /// What importMesh complains about.
-  std::string complaint(const std::filesystem::path& file, double metresPerUnit = 1.0) const {
-    try {
-      importMesh(file, metresPerUnit, {"scene.yaml", 7, 3});
-    } catch (const UserError& error) {
-      return error.what();
-    }
-    return "";
-  }
-};
+using Import = test::MeshImport;
 
 }  // namespace
 
@@ -280,7 +252,7 @@ TEST_F(Import, EveryFormatGivesTheTetrahedron) {
     EXPECT_EQ(mesh.parts[0].name, isGltf ? "hull" : "all");
     float front = -1e9f;
     for (const glm::vec3& p : mesh.positions) front = std::max(front, p.x);
-    EXPECT_FLOAT_EQ(front, isGltf ? 22.0f : 2.0f);  // glTF's z, moved by its node, is our x
+    EXPECT_FLOAT_EQ(front + static_cast<float>(mesh.offset_m.x), isGltf ? 22.0f : 2.0f);  // glTF's z, moved by its node, is our x
   }
 }
 

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "sim/scene/import/checks.hpp"
+#include "sim/scene/import/gltf_nodes.hpp"
 #include "sim/scene/import/import_failure.hpp"
 #include "sim/scene/import/import_reply.hpp"
 #include "sim/scene/import/json.hpp"
@@ -20,6 +21,7 @@ class GltfCheck {
   CheckedFile run() {
     CheckedFile checked;
     checked.partNames = check();
+    checked.placements = takePlacements(root_);
     checked.bytes = canonical();
     checked.buffers = std::move(contents_);
     return checked;

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "sim/scene/import/checks.hpp"
+#include "sim/scene/import/far_origin.hpp"
 #include "sim/scene/import/import_reply.hpp"
 #include "sim/scene/import/text_cursor.hpp"
 
@@ -42,33 +43,39 @@ class ObjCheck {
   };
 
   void vertexLine(int kind, int least, int most) {
-    std::string& text = kind == 2 ? normals_ : out_.bytes;
-    text += kind == 0 ? "v" : kind == 1 ? "vt" : "vn";
+    glm::dvec3 values(0.0);
     int count = 0;
     for (std::string_view word = in_.wordOfLine(); !word.empty() || count < least; word = in_.wordOfLine()) {
-      const float value = in_.number(word);
-      if (count++ < most) putNumber(text, value);  // a weight or a colour may follow
+      const double value = in_.number(word);
+      if (count < most) values[count++] = value;  // a weight or a colour may follow
     }
-    for (; count < most; ++count) text += " 0";
-    text += '\n';
+    if (kind == 0) places_.push_back(values);
+    else if (kind == 1) putLine(out_.bytes, "vt", values, 2);
+    else putLine(normals_, "vn", values, 3);
     if (++counts_[kind] > 3 * static_cast<long long>(kMostImportedTriangles)) in_.fail("the mesh has too many vertices");
   }
 
-  static void putNumber(std::string& text, float value) {
-    char digits[32];
-    const auto end = std::to_chars(digits, digits + sizeof digits, value).ptr;
-    text += ' ';
-    text.append(digits, end);
+  static void putLine(std::string& text, const char* command, const glm::dvec3& values, int count) {
+    text += command;
+    for (int k = 0; k < count; ++k) {
+      char digits[32];
+      const auto end = std::to_chars(digits, digits + sizeof digits, static_cast<float>(values[k])).ptr;
+      text += ' ';
+      text.append(digits, end);
+    }
+    text += '\n';
   }
 
   void faceLine() {
     long long corners = 0;
+    const int line = in_.here().line;
     for (std::string_view word = in_.wordOfLine(); !word.empty(); word = in_.wordOfLine(), ++corners) {
       if (corners == kMostCorners) in_.fail("this face has too many corners", "at most " + std::to_string(kMostCorners));
       corners_.push_back(corner(word));
     }
     if (corners < 3) in_.fail("a face has " + std::to_string(corners) + " corners", "three or more");
     faceSizes_.push_back(static_cast<std::uint32_t>(corners));
+    out_.placeOfFace.push_back(static_cast<std::uint64_t>(line));
     triangles_ += corners - 2;
     if (triangles_ > static_cast<long long>(kMostImportedTriangles))
       in_.fail("the mesh has too many triangles", "at most " + std::to_string(kMostImportedTriangles), "simplify the mesh");
@@ -117,6 +124,14 @@ class ObjCheck {
       if (farthest_[kind] >= counts_[kind])
         throw ImportFailure{farthestAt_[kind], "index " + std::to_string(farthest_[kind] + 1) + " is out of range", "1.." + std::to_string(counts_[kind]), ""};
     if (faceSizes_.empty()) in_.fail("the file has no faces", "at least one 'f' line");
+    glm::dvec3 low(INFINITY), high(-INFINITY);
+    for (const Corner& c : corners_) {
+      const glm::dvec3& p = places_[static_cast<std::size_t>(c[0])];
+      low = glm::min(low, p), high = glm::max(high, p);
+    }
+    out_.origin = farOrigin(low, high);
+    for (const glm::dvec3& p : places_) putLine(out_.bytes, "v", p - out_.origin, 3);
+    places_ = {};
     // The reader drops faces that are not all alike: texture coordinates are filled up by 0 0, normals left out unless
     // every corner has one.
     const auto has = [](int kind) { return [kind](const Corner& c) { return c[kind] >= 0; }; };
@@ -146,6 +161,7 @@ class ObjCheck {
 
   TextCursor in_;
   CheckedFile out_;
+  std::vector<glm::dvec3> places_;
   std::string normals_;  ///< the canonical copy's vn lines
   std::array<long long, 3> counts_{}, farthest_{-1, -1, -1};
   std::array<Location, 3> farthestAt_;

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "sim/scene/import/checks.hpp"
+#include "sim/scene/import/far_origin.hpp"
 #include "sim/scene/import/import_reply.hpp"
 #include "sim/scene/import/text_cursor.hpp"
 
@@ -58,6 +59,7 @@ class PlyCheck {
       in_.fail("the file has no vertices or no faces", "elements 'vertex' and 'face'", "points alone cannot be rendered");
     vertexCount_ = vertices->count;
     for (const Element& element : elements_) readElement(element);
+    if (places_.empty()) in_.fail("the vertices have no x, y and z");
     if (triangles_ == 0) in_.fail("the file has no triangles");
     assemble();
     return std::move(out_);
@@ -136,7 +138,7 @@ class PlyCheck {
     if (isFace && std::none_of(element.properties.begin(), element.properties.end(), isIndexList))
       in_.fail("the faces have no vertices", "a list 'vertex_indices'");
     for (long long row = 0; row < element.count; ++row) {
-      std::array<float, kSlots.size()> values{};
+      std::array<double, kSlots.size()> values{};
       for (const Property& property : element.properties) {
         if (property.countType != nullptr) {
           readList(property, isFace && isIndexList(property));
@@ -147,9 +149,8 @@ class PlyCheck {
         }
       }
       if (!isVertex) continue;
-      const std::size_t kept = 3 + (hasNormals_ ? 3 : 0);
-      append(vertexBytes_, values.data(), kept);
-      if (hasUv_) append(vertexBytes_, values.data() + 6, 2);
+      places_.emplace_back(values[0], values[1], values[2]);
+      for (std::size_t k = hasNormals_ ? 3 : 6; k < (hasUv_ ? values.size() : 6u); ++k) attributes_.push_back(static_cast<float>(values[k]));
     }
   }
 
@@ -167,6 +168,7 @@ class PlyCheck {
   }
 
   void readList(const Property& property, bool isFace) {
+    const std::uint64_t begin = at_;
     const long long count = whole(*property.countType, 0, isFace ? kMostCorners : std::numeric_limits<std::uint32_t>::max());
     std::vector<std::int32_t> face;
     if (isFace) face.push_back(static_cast<std::int32_t>(count));
@@ -176,6 +178,7 @@ class PlyCheck {
     }
     if (!isFace || count < 3) return;  // lines and points among the faces are left out
     append(faceBytes_, face.data(), face.size());
+    out_.placeOfFace.push_back(ascii_ ? static_cast<std::uint64_t>(in_.here().line) : begin);
     ++faceCount_;
     triangles_ += count - 2;
     if (triangles_ > static_cast<long long>(kMostImportedTriangles))
@@ -215,16 +218,16 @@ class PlyCheck {
     return value;
   }
 
-  float real(const Type& type) {
+  double real(const Type& type) {
     if (ascii_) return in_.number(in_.word());
-    if (type.kind != Type::Real) return static_cast<float>(whole(type, std::numeric_limits<long long>::min(), std::numeric_limits<long long>::max()));
+    if (type.kind != Type::Real) return static_cast<double>(whole(type, std::numeric_limits<long long>::min(), std::numeric_limits<long long>::max()));
     const std::uint64_t bits = raw(type);
     const double value = type.size == 8 ? std::bit_cast<double>(bits) : static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(bits)));
     if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()))) {
       at_ -= type.size;
       failHere("a number is not finite in single precision", "a finite number");
     }
-    return static_cast<float>(value);
+    return value;
   }
 
   template <class T>
@@ -239,7 +242,24 @@ class PlyCheck {
     for (std::size_t slot = 0; slot < kSlots.size(); ++slot)
       if (slot < 3 || (slot < 6 ? hasNormals_ : hasUv_)) out += "property float " + std::string(kSlots[slot]) + "\n";
     out += "element face " + std::to_string(faceCount_) + "\nproperty list int int vertex_indices\nend_header\n";
-    out += vertexBytes_;
+    glm::dvec3 low(INFINITY), high(-INFINITY);
+    for (std::size_t at = 0; at < faceBytes_.size();) {
+      std::int32_t count = 0;
+      std::memcpy(&count, faceBytes_.data() + at, sizeof count);
+      for (at += sizeof count; count > 0; --count, at += sizeof count) {
+        std::int32_t index = 0;
+        std::memcpy(&index, faceBytes_.data() + at, sizeof index);
+        low = glm::min(low, places_[static_cast<std::size_t>(index)]), high = glm::max(high, places_[static_cast<std::size_t>(index)]);
+      }
+    }
+    out_.origin = farOrigin(low, high);
+    out_.placesAreBytes = !ascii_;
+    const std::size_t more = (hasNormals_ ? 3 : 0) + (hasUv_ ? 2 : 0);
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      const glm::vec3 p(places_[i] - out_.origin);
+      append(out, &p.x, 3);
+      append(out, attributes_.data() + i * more, more);
+    }
     out += faceBytes_;
   }
 
@@ -250,7 +270,9 @@ class PlyCheck {
   bool ascii_ = false, swap_ = false, hasNormals_ = false, hasUv_ = false;
   long long vertexCount_ = 0, faceCount_ = 0, triangles_ = 0;
   std::vector<Element> elements_;
-  std::string vertexBytes_, faceBytes_;
+  std::vector<glm::dvec3> places_;  ///< of vertices
+  std::vector<float> attributes_;   ///< their normals and texture coordinates
+  std::string faceBytes_;
   CheckedFile out_;
 };
 

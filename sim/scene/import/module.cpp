@@ -13,15 +13,18 @@
 namespace pitviper {
 namespace {
 
+/// Text without the mark that says it is UTF-8, which would be part of its first word.
+std::string_view withoutMark(std::string_view bytes) { return bytes.substr(bytes.starts_with("\xef\xbb\xbf") ? 3 : 0); }
+
 Mesh import(const ImportRequest& request) {
   const std::string& file = request.file;
   std::string extension = std::filesystem::path(file).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   if (request.bytes.empty()) throw ImportFailure{{file}, "the file is empty", "a mesh", ""};
   CheckedFile checked;
-  if (extension == ".obj") checked = checkObj(file, request.bytes);
-  else if (extension == ".stl") checked = checkStl(file, request.bytes);
-  else if (extension == ".ply") checked = checkPly(file, request.bytes);
+  if (extension == ".obj") checked = checkObj(file, withoutMark(request.bytes));
+  else if (extension == ".stl") checked = checkStl(file, withoutMark(request.bytes));
+  else if (extension == ".ply") checked = checkPly(file, withoutMark(request.bytes));
   else if (extension == ".vtp") checked = checkVtp(file, request.bytes);
   else checked = checkGltf(request);
   Mesh mesh = readWithVtk(file, extension, checked.bytes.empty() ? request.bytes : checked.bytes, checked);

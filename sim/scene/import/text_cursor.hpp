@@ -68,8 +68,8 @@ class TextCursor {
     throw ImportFailure{here(), wrong, expected, fix};
   }
 
-  /// The word as a number that single precision can hold. Numbers too small for it become 0.
-  float number(std::string_view word) const {
+  /// The word as a number within the range of single precision. Numbers too small for it become 0.
+  double number(std::string_view word) const {
     double value = 0.0;
     const char* first = word.data() + (word.starts_with('+') ? 1 : 0);
     const char* last = word.data() + word.size();
@@ -78,10 +78,10 @@ class TextCursor {
                           word[std::min(word.find_first_of("eE") + 1, word.size() - 1)] == '-';
     if (word.empty() || end != last || (error != std::errc{} && !tooSmall))
       fail(word.empty() ? "a number is missing here" : "'" + shown(word) + "' is not a number", "a finite number");
-    if (tooSmall || std::abs(value) < static_cast<double>(std::numeric_limits<float>::min())) return 0.0f;
+    if (tooSmall || std::abs(value) < static_cast<double>(std::numeric_limits<float>::min())) return 0.0;
     if (!(std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max())))
       fail("'" + shown(word) + "' is not a finite number in single precision", "a finite number");
-    return static_cast<float>(value);
+    return value;
   }
 
   long long integer(std::string_view word, long long least, long long most) const {

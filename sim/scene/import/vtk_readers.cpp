@@ -59,6 +59,7 @@ void readGltf(const MemoryFile& copy, const CheckedFile& checked, MeshBuilder& b
   at->VisitOnlyLeavesOff();
   at->TraverseSubTreeOn();
   std::string node;
+  glm::dmat4 placement(1.0);
   for (at->InitTraversal(); !at->IsDoneWithTraversal(); at->GoToNextItem()) {
     // The reader calls blocks "Node_7" by the number in the file, below them "Mesh_0", and leaves the primitives
     // unnamed.
@@ -67,8 +68,8 @@ void readGltf(const MemoryFile& copy, const CheckedFile& checked, MeshBuilder& b
     std::size_t number = 0;
     if (block.starts_with("Node_") && std::from_chars(block.data() + 5, block.data() + block.size(), number).ec == std::errc{} &&
         number < checked.partNames.size())
-      node = checked.partNames[number];
-    if (auto* leaf = vtkPolyData::SafeDownCast(at->GetCurrentDataObject())) builder.add(leaf, {}, node);
+      node = checked.partNames[number], placement = checked.placements[number];
+    if (auto* leaf = vtkPolyData::SafeDownCast(at->GetCurrentDataObject())) builder.add(leaf, {}, node, placement);
   }
   builder.turnFromGltf();
 }
@@ -77,7 +78,7 @@ void readGltf(const MemoryFile& copy, const CheckedFile& checked, MeshBuilder& b
 
 vtkStandardNewMacro(Complaints)
 
-Location placeIn(const std::string& file, const std::string& complaint) {
+    Location placeIn(const std::string& file, const std::string& complaint) {
   int line = 0, column = -1;
   if (std::sscanf(complaint.c_str(), "Error parsing XML in stream at line %d, column %d", &line, &column) != 2) return {file};
   return {file, line, column + 1};
