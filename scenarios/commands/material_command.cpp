@@ -279,6 +279,9 @@ int materialCommand(const Arguments& arguments) {
   Named own{word};
   if (std::filesystem::is_regular_file(file, ignored)) {
     if (const auto imported = importedMaterial(file, choicesOf(o))) {
+      if (o.has("--out"))
+        throw UserError({"--out", 0, 0, -1}, "charts of a file of others", "one of this project's",
+                        "keep what 'pitviper material " + word + "' prints in a file, and show that");
       for (const std::string& note : imported->notes) std::fprintf(stderr, "%s: note: %s\n", file.string().c_str(), note.c_str());
       std::printf("%s", imported->yaml.c_str());
       return 0;

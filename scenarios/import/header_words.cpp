@@ -8,7 +8,7 @@ namespace pitviper {
 namespace {
 
 /// Spellings, the longest first, in small letters of ASCII or as they are in UTF-8.
-constexpr std::array<std::array<const char*, 2>, 50> kSpellings = {{
+constexpr std::array<std::array<const char*, 2>, 53> kSpellings = {{
     {"cm^{-1}", " percm "},
     {"cm^(-1)", " percm "},
     {"cm**-1", " percm "},
@@ -44,6 +44,9 @@ constexpr std::array<std::array<const char*, 2>, 50> kSpellings = {{
     {"\xC3\xA9", "e"},
     {"per cent", " percent "},
     {"%", " percent "},
+    {"*100", " percent "},
+    {"x100", " percent "},
+    {"x 100", " percent "},
     {"0 to 100", " percent "},
     {"0..100", " percent "},
     {"0 - 100", " percent "},
@@ -128,7 +131,7 @@ Meaning meaningOf(const std::string& w) {
     return Meaning::Reflectance;
   if (beginsWith(w, {"transmi"}) || isOneOf(w, {"trans", "tran", "rtgc"})) return Meaning::Transmittance;
   if (beginsWith(w, {"emissiv", "emissionsgrad", "emittan", "absorptanc", "absorptiv"}) || w == "emis") return Meaning::Emissivity;
-  if (beginsWith(w, {"absorb", "kubelka", "radianc", "irradianc", "count", "raman", "intensit", "interferogram"}) ||
+  if (beginsWith(w, {"absorb", "absorption", "extinction", "kubelka", "radianc", "irradianc", "count", "raman", "intensit", "interferogram"}) ||
       isOneOf(w, {"dn", "log", "abs", "raw", "beam"}))
     return Meaning::NoSurface;
   return Meaning::None;

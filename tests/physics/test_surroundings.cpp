@@ -13,6 +13,7 @@
 #include "sim/radiance/node_surroundings.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/compare.hpp"
+#include "tests/support/exr_bytes.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -236,6 +237,37 @@ TEST(Surroundings, MapsOfEitherLayout) {
   bound("a cube map against a sphere map of the same light, of the brightest", worst / most, 0.01, "pixels of 3 deg");
   // The window lies to the east and south, and the camera in the east sees it on the left.
   EXPECT_GT(at(a, sphere, 12, 20), 1.1 * at(a, sphere, 28, 20));
+}
+
+// A sky of 1 W/(m2 sr um) from which a file leaves the lower half out, however its windows lie: a surface of reflectance 0.5 that faces up sends
+// 0.5 W/(m2 sr) in a band of 1 um, one that faces down nothing.
+TEST(Surroundings, AFileOfTheUpperHalfIsASkyAbove) {
+  const TemporaryFolder folder;
+  const auto one = [](char, int, int) { return 1.0f; };
+  const std::vector<std::pair<std::string, std::string>> files = {{"half", exrBytes({0, 0, 63, 15}, {0, 0, 63, 31}, "ab", one)},
+                                                                  {"tiles", exrBytes({0, 0, 63, 15}, {0, 0, 63, 31}, "ab", one, 8)},
+                                                                  {"origin below 0", exrBytes({-20, -9, 43, 6}, {-20, -9, 43, 22}, "ab", one)},
+                                                                  {"beyond the display", exrBytes({-7, -5, 90, 15}, {0, 0, 63, 31}, "ab", one, 16)}};
+  for (const auto& [name, bytes] : files)
+    for (int side : {1, -1}) {
+      const std::string file = folder.put("sky.exr", bytes), sign = side > 0 ? "" : "-";
+      const Frame f = renderFrame(scene("accuracy: none\nambient: {map: {file: " + file +
+                                        ", layers: [{name: a, wavelength: 3.9 um}, {name: b, wavelength: 5.1 um}]}}\nmaterials: {m: {components: [{reflection: "
+                                        "lambertian, reflectance: 0.5}]}}\n"
+                                        "entities: [{name: p, shape: {model: plate, width: 10 m, height: 10 m}, pitch: " +
+                                        sign +
+                                        "90 deg, material: m, temperature: 1 K}]\n"
+                                        "cameras: [{name: c, film: {width: 2, height: 2}, field_of_view: 1 deg, aperture: 20 mm, position: [0 m, -1 m, " +
+                                        sign +
+                                        "20 m], look_at: p, channels: [{name: a, "
+                                        "response: {band: [4 um, 5 um]}}]}]\n"));
+      const double seen = at(layer(f, "a.radiance"), f, 1, 1);
+      if (side > 0)
+        figure("a sky above by a file of its upper half, " + name, seen, 0.5, 2e-4,
+               "0.5 L, L of 1 W/(m2 sr um) over 1 um; the horizon between two rows of 3 deg");
+      else bound("the same from below, of the sky above", seen / 0.5, 2e-4, "nothing is below; the horizon between two rows of 3 deg");
+      EXPECT_GE(seen, 0.0);
+    }
 }
 
 TEST(Surroundings, LossIsPredicted) {

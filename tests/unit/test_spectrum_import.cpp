@@ -101,6 +101,8 @@ TEST(SpectrumImport, HeadersInManySpellings) {
        "100+200 300\n1750 "
        "400 500 $$ end\n##END=\n",
        1e4 / 1500, 0.3, "transmittance"},
+      {"columns the other way round", "Reflectance (%)\tWavelength (nm)\n20\t500\n40\t900\n", 0.9, 0.4},
+      {"times a hundred", "Wavelength (um), Reflectance x 100\n0.5, 1.4\n5, 0.8\n", 5, 0.008},
       {"columns by name", "Wave ;Sample ;Reference;Reflectance\n[nm];[counts];[counts];[%]\n500;1000;2000;50\n900;1000;4000;25\n", 0.9, 0.25}};
   double worst = 0.0;
   for (const Right& r : all) {
@@ -129,6 +131,7 @@ TEST(SpectrumImport, WhatIsOpenIsRefusedWithTheChoices) {
       {"two quantities", "Reflectance and transmittance of a leaf\nwavelength um\n" + um, "several quantities"},
       {"absorbance", "Wavenumber (cm-1), Absorbance\n4000, 0.1\n400, 0.2\n", "a.txt:1:1: the values are none of a surface's"},
       {"attenuated total reflection", "Wavenumber (cm-1), ATR reflectance\n4000, 0.1\n400, 0.2\n", "none of a surface's"},
+      {"absorption coefficient", "Wavelength (um)\tAbsorption coefficient (1/cm)\n0.5\t0.1\n5\t0.2\n", "none of a surface's"},
       {"radiance", "Wavelength (nm)\tRadiance\n400\t0.1\n900\t0.2\n", "none of a surface's"},
       {"raw counts", "Spectrum file is raw data\nWavelength (nm)\ta.asd\n400\t1000\n900\t2000\n", "none of a surface's"},
       {"frequency", "Frequency (THz), Reflectance\n100, 0.1\n200, 0.2\n", "a.txt:1:1: an axis that is neither"},

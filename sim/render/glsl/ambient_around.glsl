@@ -147,7 +147,7 @@ vec2 aroundAt(int i) {
   if (AROUND_PLAIN == 1) {
     mean += 0.66666667 * ofDegree1(light, to0_) + 0.25 * ofDegree2(light, to0_);
     if (AROUND_DEGREE > 3) mean -= 0.04166667 * ofDegree4(light, to0_);
-    return vec2(isSurface_ * mean, 0.0);
+    return vec2(isSurface_ * max(mean, 0.0), 0.0);  // rounding of what is nothing can lie below it
   }
   vec4 q0 = vec4(0.0, ofDegree1(light, to0_), ofDegree1(light, to1_), ofDegree2(light, to0_));
   vec4 q1 = vec4(ofDegree2(light, to1_), ofDegree2(light, to2_), 0.0, 0.0), q2 = vec4(0.0), q3 = vec4(0.0);
@@ -172,7 +172,7 @@ vec2 aroundAt(int i) {
     sum += own * modifier_[k / 3][k % 3];
   }
   if (material_.response.y > 1u) restOf_ = -1;
-  return isSurface_ * vec2(mean, sum);
+  return isSurface_ * vec2(max(mean, 0.0), sum);
 }
 
 // Nodes that are written out one by one would each hold all of the above: these are looked at beforehand, in a loop.
