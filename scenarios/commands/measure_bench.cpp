@@ -63,6 +63,7 @@ class Bench {
     design_ = *figuresOf(camera, output, options.step_s, result_.temperature_K).detected;
     BenchSight& sight = result_.sight;
     sight.output = output;
+    sight.seesHeat = result_.temperature_K == 300.0;
     sight.electrons_per_K = design_.electrons_per_K, sight.noise_electrons = design_.netd_K * design_.electrons_per_K;
     sight.pixel_sr = axis_sr_, sight.shareInMiddle = pixelShareOf(camera, output, p.focalLength_m), sight.shareInCorner = pixelShareOf(camera, output, p.focalLength_m, 0.5, 0.5);
     sight.pixels_per_s = static_cast<double>(film.x) * film.y / options.step_s;

@@ -37,6 +37,7 @@ struct BenchSight {
   ChannelOutput output;
   double electrons_per_K = 0.0, noise_electrons = 0.0;  ///< at the flat fields' temperature; of a pixel from frame to frame
   double pixel_sr = 0.0, shareInMiddle = 1.0, shareInCorner = 1.0;  ///< of a spot's light, on its pixel
+  bool seesHeat = false;                                            ///< of 300 K: what it is measured at
   double pixels_per_s = 0.0;                                        ///< of the whole film
 };
 

@@ -145,7 +145,8 @@ int measureCommand(const Arguments& arguments) {
     page.table({"figure", "design", "measured", "off"}, rows);
     for (const std::string& note : r.notes) page.paragraph(note);
     std::optional<DriReport> dri;
-    if (world) {
+    if (world && !r.sight.seesHeat) std::printf("  no ranges: they are of heat, and a body of 300 K gives channel %s next to nothing, or too much\n", r.channel.c_str());
+    if (world && r.sight.seesHeat) {
       const BandAir air(*world, r.sight.output, r.temperature_K);
       const std::string aboutAir = print("air of %s from %.4g m up, %.3g deg above the level, transmittance %.3g at 1 km and %.3g at 10 km", wish.scenario.c_str(), air.height_m(),
                                          air.elevation_rad() * 180.0 / kPi, air.at(1e3), air.at(1e4));

@@ -16,6 +16,10 @@ std::string print(const char* format, auto... values) {
 
 void tellResolvable(BenchResult& result) {
   const BenchSight& sight = result.sight;
+  if (!sight.seesHeat) {
+    result.notes.push_back("no MRTD: a body of 300 K gives this channel next to nothing, or too much");
+    return;
+  }
   const double most = nyquist_per_rad(sight.design, Bars::SideBySide);
   Series design{"design", {}, {}, true, false}, measured{"measured", {}, {}, false, false}, stacked{"design, bars stacked", {}, {}, true, false};
   constexpr int kPoints = 60;

@@ -1,5 +1,7 @@
 #include "scenarios/reader/steadied.hpp"
 
+#include <algorithm>
+
 #include "sim/model/world.hpp"
 
 namespace pitviper {
@@ -19,6 +21,9 @@ void hold(Steadied& angles, const Value& word) {
 
 Steadied readSteadied(const Record& camera, const Mount& mount, const Simulation& simulation) {
   Steadied angles;
+  if (const Value* gimbal = camera.find("gimbal"))
+    if (const Value* own = gimbal->find("stabilised"); own && (own->kind == Value::Kind::List || std::find(kAngles.begin(), kAngles.end(), own->text) != kAngles.end()))
+      throw UserError(own->where, "angles of a mount under 'gimbal', whose own 'stabilised' is true or false", "'stabilised' of the camera, beside 'gimbal'", "move it there");
   if (!camera.given("stabilised")) return angles;
   const Value& value = camera.value("stabilised");
   if (value.kind == Value::Kind::List) {

@@ -150,6 +150,16 @@ void requireReachable(const GimbalOptions& g, const TimeAxis& time, const Locati
                   isStep ? "raise the rate of 'time', or remove lag, rate and acceleration: it is then where it is demanded to be" : "ask for fewer frames or a higher rate, or remove lag, rate and acceleration");
 }
 
+/// Within an exposure a picture is the mean of some; how many is found from where things are at its ends and its middle, which say nothing of a scan that comes round in between.
+void requireSeen(const Scan& scan, const Camera& camera, const Location& where) {
+  constexpr double kOwn = 0.5, kPartsATurn = 8.0, kMostParts = 256.0;  // turns; parts as of `exposure_parts`
+  const double turns = std::max({scan.frequency_Hz, scan.secondFrequency_Hz, scan.lineRate_Hz}) * camera.exposure_s, wanted = std::ceil(kPartsATurn * turns);
+  if (scan.kind == Scan::Kind::None || !camera.motionBlur || turns <= kOwn || camera.exposureParts >= wanted) return;
+  throw UserError(where, "a scan that goes through " + brief(turns) + (scan.kind == Scan::Kind::Raster ? " lines" : " turns") + " within an exposure with motion_blur",
+                  wanted <= kMostParts ? "'exposure_parts' of the camera, " + brief(wanted) + " or more (8 a turn)" : "at most " + brief(kMostParts / kPartsATurn) + " in an exposure of 256 parts",
+                  wanted <= kMostParts ? "add 'exposure_parts: " + brief(wanted) + "', or shorten the exposure" : "shorten the exposure, slow the scan down, or give what it blurs to `point_spread`");
+}
+
 std::string wordsOfField(const GimbalOptions& g) {
   std::string text = "gimbal: azimuth " + (std::isfinite(g.limits.azimuth_rad) ? "+-" + degrees(g.limits.azimuth_rad) : std::string("all round"));
   text += ", elevation " + degrees(g.limits.elevation_rad.x) + " to " + degrees(g.limits.elevation_rad.y);
@@ -247,6 +257,7 @@ FollowerChoice readGimbal(const Value& value, const Simulation& simulation, cons
   if (r.given("jitter")) g.jitter = jitterOf(r.value("jitter"));
   if (r.given("scan")) g.scan = scanOf(r.value("scan"));
   requireReachable(g, simulation.time, r.where());
+  if (r.given("scan")) requireSeen(g.scan, camera, r.where("scan"));
   std::optional<std::size_t> output;
   if (o.driver == GimbalDriver::Centroid) {
     const Value none = emptyMap(r.where());

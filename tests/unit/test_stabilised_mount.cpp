@@ -114,6 +114,11 @@ TEST(StabilisedMount, RefusesWhatIsNone) {
   EXPECT_NE(refusal("stabilised: [roll, roll], ").find("'roll' twice"), std::string::npos);
   EXPECT_NE(refusal("stabilised: [], ").find("no angle to hold"), std::string::npos);
   EXPECT_NE(refusal("stabilised: roll, look_at: far, ").find("a 'gimbal' on it"), std::string::npos);
+  for (const char* own : {"roll", "[roll]", "[pitch, yaw]"}) {
+    const std::string said = refusal(std::string("look_at: far, gimbal: {stabilised: ") + own + "}, ");
+    EXPECT_NE(said.find("'stabilised' of the camera, beside 'gimbal'"), std::string::npos) << said;
+  }
+  EXPECT_EQ(refusal("look_at: far, gimbal: {stabilised: false}, "), "");
   EXPECT_NE(refusal("stabilised: roll, ", false).find("nothing carries"), std::string::npos);
 }
 
