@@ -25,6 +25,7 @@ StreamCoder::StreamCoder(const Camera& camera, const std::string& layer, const S
   if (!chosen) throw unknownWord(where, "camera '" + camera.name + "' has no layer", layer, names);
   layer_ = chosen->layer();
   counts_ = isCounts(camera, *chosen);
+  display_ = chosen->asDisplay;
   if (counts_) bits_ = chosen->asDisplay ? 8 : detectorOf(camera)->bits;
 }
 
@@ -41,6 +42,7 @@ void StreamCoder::code(const Frame& frame, StreamPicture& picture) {
     picture.gain = numberOf(frame, "calibration." + layer_ + ".radiance_per_count", 0.0);
     picture.offset = numberOf(frame, "calibration." + layer_ + ".radiance_at_0", 0.0);
     picture.outside = toGreyCodes(layer->pixels, 0.0, 1.0, most, picture.codes);
+    if (display_) picture.outside = 0;  // black and white are where automatic gain puts some
     return;
   }
   if (!range_) {

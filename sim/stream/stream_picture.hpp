@@ -34,7 +34,7 @@ class StreamCoder {
 
  private:
   int width_ = 0, height_ = 0, bits_ = 16;
-  bool counts_ = false;
+  bool counts_ = false, display_ = false;
   std::string layer_;
   StreamRange range_;
 };

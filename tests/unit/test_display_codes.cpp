@@ -6,8 +6,11 @@
 #include <random>
 
 #include "sensors/display_codes.hpp"
+#include "sim/frame/frame_picture.hpp"
+#include "sim/stream/stream_picture.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
+#include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -125,6 +128,34 @@ TEST(DisplayCodes, FixedRangeAndWhatIsNone) {
     EXPECT_EQ(with[1], 255.0f);
     EXPECT_TRUE(std::all_of(with.begin(), with.end(), [](float v) { return v >= 0.0f && v <= 255.0f; }));
   }
+}
+
+// Codes are for a screen as they are: pictures of frames do not stretch them again, and streams have eight bits of them.
+TEST(DisplayCodes, AreShownAsTheyAre) {
+  Frame frame;
+  frame.camera = "c";
+  frame.width = 64, frame.height = 2;
+  frame.layers = {{"mw.display", "code", {}}};
+  for (int k = 0; k < 128; ++k) frame.layers[0].pixels.push_back(static_cast<float>(100 + k / 16));
+  PictureStyle style;
+  style.plain = true;
+  const Rgb8Image picture = pictureOf(frame, style);
+  for (const auto& [column, code] : {std::pair{0, 100}, std::pair{40, 102}, std::pair{63, 103}})
+    for (int colour = 0; colour < 3; ++colour) EXPECT_NEAR(static_cast<double>(picture.rgb[static_cast<std::size_t>(3 * column + colour)]), code, 1.0) << column;
+  EXPECT_EQ(screenEnds(frame.layers[0]), (std::pair{0.0, 255.0}));
+  EXPECT_FALSE(screenEnds({"mw.counts", "count", {}}));
+  const Simulation sim = scene(
+      "cameras: [{name: c, film: {width: 64, height: 2, pitch: 15 um}, focal_length: 100 mm, aperture: 25 mm, exposure: 4 ms, position: [0 m, 0 m, 0 m], heading: 0 deg, stages: [{stage: detector, full_well: 7e6}], "
+      "channels: [{name: mw, response: {band: [3.5 um, 4.9 um]}, quantum_efficiency: 0.8, output: [display, counts]}]}]\n");
+  StreamCoder codes(sim.cameras[0], "mw.display", {}, {}), counts(sim.cameras[0], "mw.counts", {}, {});
+  EXPECT_EQ(codes.bits(), 8);
+  EXPECT_EQ(counts.bits(), 14);
+  frame.layers[0].pixels[5] = 255.0f;
+  StreamPicture sent;
+  codes.code(frame, sent);
+  EXPECT_EQ(sent.codes[0], 100);
+  EXPECT_EQ(sent.codes[5], 255);
+  EXPECT_EQ(sent.outside, 0u);
 }
 
 // Order is kept: a hotter pixel is never darker.
