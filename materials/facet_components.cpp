@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/fringes.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -13,13 +14,15 @@ constexpr double kQuarter = 0.5 * kPi;
 constexpr int kBeneathAngles = 31;
 static_assert((FacetOptics::kViews - 1) % (kBeneathAngles - 1) == 0);
 
-class PartOfFace : public ReflectionComponent {
+class PartOfFace : public ReflectionComponent, public HasFringes {
  public:
   PartOfFace(Lobe lobe, std::shared_ptr<const FacetOptics> optics) : ReflectionComponent(std::move(lobe)), optics_(std::move(optics)) {}
   bool hemisphericalVaries() const override { return true; }
   std::vector<double> knots_um() const override { return optics_->knots_um(); }
   double validLow_um() const override { return optics_->validLow_um(); }
   double validHigh_um() const override { return optics_->validHigh_um(); }
+  double resolvedBy_um(double w) const override { return optics_->resolvedBy_um(w); }
+  double averagedFringe_um(double w) const override { return optics_->averagedFringe_um(w); }
 
  protected:
   std::shared_ptr<const FacetOptics> optics_;

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "materials/film_fringes.hpp"
 #include "sim/model/scene_fingerprint.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -30,7 +31,6 @@ constexpr int kMostFacetAngles = 361;
 /// Angles of a facet whose film has states: by the dozen they may not be fine; a degree of a film of 1 um is a tenth of a radian.
 constexpr int kStateAngles = 91;
 constexpr std::size_t kStateRows = 1024;
-constexpr double kMostFringes = 2048.0;
 /// Phase from one state to the next: linear between them, a fringe is off by up to an eighth of its square, 3 % at 0.36 um and 1 % at 0.6.
 constexpr double kStatePhase = 0.5, kShortest_um = 0.36;
 
@@ -118,7 +118,10 @@ void FacetOptics::chooseAngles() {
     for (int i = 0; i <= kWavelengths; ++i) {
       const double w = std::clamp(low * std::pow(high / low, i / double(kWavelengths)), low, high);
       const Stack stack = stackAt(w);
-      const auto at = [&](double angle) { return filmPower(stack.layers, stack.last, w, std::sin(angle)).reflectance; };
+      const FringeMean fringes(stack.layers, w);
+      const auto at = [&](double angle) {
+        return fringes.of(stack.layers, [&](const auto& layers) { return filmPower(layers, stack.last, w, std::sin(angle)); }).reflectance;
+      };
       double before = at(0.0);
       for (int j = 0; j + 1 < facetAngles_; ++j) {
         const double next = at(angleAt(j + 1, facetAngles_)), middle = at(0.5 * (angleAt(j, facetAngles_) + angleAt(j + 1, facetAngles_)));
@@ -159,20 +162,24 @@ FacetOptics::Stack FacetOptics::stackAt(double w) const {
 FacetRow FacetOptics::rowAt(double w) const {
   FacetRow row;
   const auto n = spec_.beneath(w);
-  const auto& [layers, last] = stackAt(w);
+  const Stack stack = stackAt(w);
+  const FringeMean fringes(stack.layers, w);
+  const auto powerAt = [&](double sine) {
+    return fringes.of(stack.layers, [&](const auto& layers) { return filmPower(layers, stack.last, w, sine); });
+  };
   // What a facet lets in of what it does not reflect, at the views.
   std::vector<double> passed(kViews, 0.0);
   const int perView = (facetAngles_ - 1) % (kViews - 1) == 0 ? (facetAngles_ - 1) / (kViews - 1) : 0;
   const auto inside = [](const FilmPower& p) { return p.reflectance < 1.0 ? std::min(1.0, p.transmittance / (1.0 - p.reflectance)) : 0.0; };
   for (int j = 0; j < facetAngles_; ++j) {
-    const FilmPower p = filmPower(layers, last, w, std::sin(angleAt(j, facetAngles_)));
+    const FilmPower p = powerAt(std::sin(angleAt(j, facetAngles_)));
     row.facet.push_back(p.reflectance);
     if (perView > 0 && j % perView == 0) passed[static_cast<size_t>(j / perView)] = inside(p);
   }
   const bool goesIn = spec_.pigment || spec_.paneThickness_um;
   for (int v = 0; goesIn && v < kViews; ++v)
     if (perView == 0 || v == kViews - 1)
-      passed[static_cast<size_t>(v)] = inside(filmPower(layers, last, w, std::sin(std::min(angleAt(v, kViews), kQuarter - 1e-6))));
+      passed[static_cast<size_t>(v)] = inside(powerAt(std::sin(std::min(angleAt(v, kViews), kQuarter - 1e-6))));
   std::vector<double> atViews;
   for (int v = 0; v < kViews; ++v) {
     const double sent = (*share_)[static_cast<size_t>(v)].of(row.facet);
@@ -201,7 +208,8 @@ FacetRow FacetOptics::rowAt(double w) const {
     if (!spec_.pigmentApparent) {
       std::vector<double> absorbed;
       for (int v = 0; v < kViews; ++v) {
-        const FilmPower p = filmPowerFromBeneath(layers, n.real(), w, std::sin(angleAt(v, kViews)));
+        const FilmPower p =
+            fringes.of(stack.layers, [&](const auto& layers) { return filmPowerFromBeneath(layers, n.real(), w, std::sin(angleAt(v, kViews))); });
         absorbed.push_back(std::clamp(1.0 - p.reflectance - p.transmittance, 0.0, 1.0));
       }
       const double back = std::clamp(1.0 - mean / n2 - cosineMean(absorbed), 0.0, 1.0);
@@ -239,25 +247,23 @@ const FacetRow& FacetOptics::at(double w) const {
 std::vector<double> FacetOptics::knots_um() const {
   std::vector<double> all = spec_.beneath.knots_um();
   const auto add = [&all](const std::vector<double>& more) { all.insert(all.end(), more.begin(), more.end()); };
-  double path_um = 0.0;  // of what interferes, both ways
   for (const auto* films : {&spec_.layers, &spec_.back})
-    for (const FilmSpec& f : *films) {
-      add(f.index.knots_um());
-      if (!f.coherent || f.thickness_um == 0.0) continue;
-      double most = 0.0;
-      for (int i = 0; i <= 32; ++i) most = std::max(most, f.index(std::clamp(low_um_ * std::pow(high_um_ / low_um_, i / 32.0), low_um_, high_um_)).real());
-      path_um += 2.0 * most * f.thickness_um;
-    }
-  // A fringe between two of them, of those that cameras see: rules of sixteen points see it. Stacks of thousands get fewer.
-  const double first = std::ceil(path_um / std::clamp(30.0, low_um_, high_um_)), last = path_um / std::clamp(0.3, low_um_, high_um_),
-               step = std::max(1.0, std::ceil((last - first) / kMostFringes));
-  for (double order = first; path_um > 0.0 && order <= last; order += step)
-    if (order > 0.0) all.push_back(path_um / order);
+    for (const FilmSpec& f : *films) add(f.index.knots_um());
   if (spec_.pigment) add(spec_.pigment->knots());
   std::erase_if(all, [&](double w) { return w < low_um_ || w > high_um_; });
   std::sort(all.begin(), all.end());
   all.erase(std::unique(all.begin(), all.end()), all.end());
   return all;
+}
+
+double FacetOptics::resolvedBy_um(double w) const {
+  const Stack stack = stackAt(w);
+  return fringeStep_um(stack.layers, stack.last, w);
+}
+
+double FacetOptics::averagedFringe_um(double w) const {
+  const double apart = fringeApart_um(stackAt(w).layers, w);
+  return fringeSpread_um(apart, w) > 0.0 ? apart : 0.0;
 }
 
 void FacetOptics::addTo(Fingerprint& f) const {

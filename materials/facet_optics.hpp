@@ -66,7 +66,10 @@ class FacetOptics {
   bool hasBeneath() const { return spec_.pigment || mostLost_ > kWorthBeneath; }
   double validLow_um() const { return low_um_; }
   double validHigh_um() const { return high_um_; }
+  /// Of its substances; of fringes see HasFringes.
   std::vector<double> knots_um() const;
+  double resolvedBy_um(double wavelength_um) const;
+  double averagedFringe_um(double wavelength_um) const;
   void addTo(Fingerprint& fingerprint) const;
 
  private:

@@ -2,11 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "sim/model/fringes.hpp"
 
 namespace pitviper {
 namespace {
 
-class Mixed final : public ReflectionComponent {
+class Mixed final : public ReflectionComponent, public HasFringes {
  public:
   Mixed(std::shared_ptr<const ReflectionComponent> a, std::shared_ptr<const ReflectionComponent> b, double share)
       : ReflectionComponent(a->lobe()), a_(std::move(a)), b_(std::move(b)), share_(share) {}
@@ -22,6 +25,20 @@ class Mixed final : public ReflectionComponent {
     std::sort(all.begin(), all.end());
     all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;
+  }
+  double resolvedBy_um(double w) const override {
+    const auto of = [w](const auto& c) {
+      const auto* has = dynamic_cast<const HasFringes*>(c.get());
+      return has ? has->resolvedBy_um(w) : std::numeric_limits<double>::infinity();
+    };
+    return std::min(of(a_), of(b_));
+  }
+  double averagedFringe_um(double w) const override {
+    const auto of = [w](const auto& c) {
+      const auto* has = dynamic_cast<const HasFringes*>(c.get());
+      return has ? has->averagedFringe_um(w) : 0.0;
+    };
+    return std::max(of(a_), of(b_));
   }
   double validLow_um() const override { return std::max(a_->validLow_um(), b_->validLow_um()); }
   double validHigh_um() const override { return std::min(a_->validHigh_um(), b_->validHigh_um()); }

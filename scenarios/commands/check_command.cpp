@@ -67,6 +67,7 @@ int checkCommand(const Arguments& arguments) {
   std::fprintf(stderr, "%s", seen.notes.c_str());
   noteMeshes(sim, notes);
   noteCuts(sim, notes);
+  noteFringes(sim, notes);
   noteSampling(sim, notes);
   noteNear(sim, sim.time.at(0), notes);
   if (o.has("--audit")) auditFrames(sim);

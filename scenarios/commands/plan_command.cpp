@@ -7,6 +7,7 @@
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/plan_report.hpp"
 #include "scenarios/commands/progress.hpp"
+#include "scenarios/commands/run_notes.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/frame/limits_check.hpp"
 #include "sim/gl/context.hpp"
@@ -98,6 +99,9 @@ int planCommand(const Arguments& arguments) {
   }
   for (const Probe& p : sim.probes) tell("probe " + p.name, {nullptr, &p}, 3.0 * p.resolution * p.resolution);
   if (o.has("--json")) std::printf("[%s]\n", json.c_str());
+  std::fflush(stdout);
+  Notes notes;
+  noteFringes(sim, notes);
   return 0;
 }
 

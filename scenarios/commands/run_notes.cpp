@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "sim/model/world.hpp"
+#include "sim/plan/averaged_fringes.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/plan/sampling_check.hpp"
 
@@ -27,7 +28,12 @@ void Notes::say(const std::string& text) {
 void noteSampling(const Simulation& sim, Notes& said) {
   for (const Camera& c : sim.cameras) {
     if (c.spectral.reference || c.spectral.accuracy > 0.0) continue;  // planned for the gas
-    const auto notes = checkSampling(sim, makePlan(sim, c.outputs, c.spectral, c.where), c.outputs, 0.01);
+    const Plan plan = makePlan(sim, c.outputs, c.spectral, c.where);
+    if (const auto fringes = checkFringes(sim, plan, c.outputs, 0.01); !fringes.empty())
+      said.say(print("camera %s: %d spectral samples are %.2g %% off for the fringes of '%s' in channel %s; ask for an 'accuracy', or raise spectral.samples%s",
+                     c.name.c_str(), c.spectral.samples, 100.0 * fringes.front().error, fringes.front().material.c_str(), fringes.front().channel.c_str(),
+                     fringes.size() > 1 ? " (the worst of several)" : ""));
+    const auto notes = checkSampling(sim, plan, c.outputs, 0.01);
     if (notes.empty()) continue;
     const SamplingNote& n = notes.front();
     said.say(print("camera %s: %d spectral samples are %.2g %% off for the emission of %.2g m of '%s' in channel %s; raise spectral.samples, such as "
@@ -35,6 +41,14 @@ void noteSampling(const Simulation& sim, Notes& said) {
                  c.name.c_str(), c.spectral.samples, 100.0 * n.error, n.thickness_m, n.medium.c_str(), n.channel.c_str(),
                  notes.size() > 1 ? " (the worst of several)" : ""));
   }
+}
+
+void noteFringes(const Simulation& sim, Notes& said) {
+  const auto say = [&](const std::string& owner, const std::vector<ChannelOutput>& outputs) {
+    for (const AveragedFringes& f : averagedFringes(sim, outputs)) said.say(owner + ", channel " + f.channel + ": " + wordsOf(f));
+  };
+  for (const Camera& c : sim.cameras) say("camera " + c.name, c.outputs);
+  for (const Probe& p : sim.probes) say("probe " + p.name, p.outputs);
 }
 
 void noteNear(const Simulation& sim, double time_s, Notes& notes) {

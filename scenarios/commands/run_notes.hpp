@@ -19,8 +19,10 @@ class Notes {
   std::vector<std::string> all_;
 };
 
-/// One line for each camera whose wavelengths miss the bands of a gas by more than a per cent.
+/// One line for each camera whose wavelengths miss the bands of a gas, or the fringes of a film, by more than a per cent.
 void noteSampling(const Simulation& simulation, Notes& notes);
+/// One line for each channel in which fringes of a material are averaged.
+void noteFringes(const Simulation& simulation, Notes& notes);
 /// One line for each camera that begins with part of a body nearer than it draws: a dome in front of it, for instance.
 void noteNear(const Simulation& simulation, double time_s, Notes& notes);
 /// What meshes from files had that was mended, and where they lie far from their file's origin: once a file.

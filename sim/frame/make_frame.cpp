@@ -11,6 +11,7 @@
 #include "sim/frame/target_rows.hpp"
 #include "sim/frame/version.hpp"
 #include "sim/model/world.hpp"
+#include "sim/plan/averaged_fringes.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -277,6 +278,11 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   addAccuracy(frame, camera, image);
   addAudit(frame, camera, image);
   for (const ScatteredAgain& s : image.scatteredAgain) frame.attributes.push_back({"pitviper.scattered_again." + s.channel, s.factor});
+  for (const AveragedFringes& f : averagedFringes(sim, camera.outputs)) {
+    const std::string key = "pitviper.averaged_fringes." + f.channel;
+    const bool told = std::any_of(frame.attributes.begin(), frame.attributes.end(), [&](const auto& a) { return a.name == key; });
+    if (!told) frame.attributes.push_back({key, wordsOf(f)});
+  }
   if (!image.transparentOrder.empty()) frame.attributes.push_back({"pitviper.transparent_order", image.transparentOrder});
   if (image.exposureParts > 1) {
     frame.attributes.push_back({"pitviper.exposure_parts", image.exposureParts});

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/radiometry/reference_width.hpp"
+
 namespace pitviper {
 namespace {
 
-/// Usual bins; of the far infrared, where 5 1/cm are a half of the wavelength, no more than a part of it: with x = c2 / (lambda T)
-/// the middle of a bin is off Planck's mean by up to x^2 / 24 x 0.01^2: 1e-4 at x = 5, where most of its light is, and of either sign.
-constexpr double kWidth_per_cm = 5.0, kWidth_um = 1e-3, kPart = 0.01;
 /// Even bins, as wide as is usual in the middle, over what widths grow by no more than this (8-12 um: 2.25); else over so many times a wavelength each.
 constexpr double kEven = 2.5, kSteps = 1.1;
 /// A bin is cut at a spectrum's bends where its middle is farther from its mean than this part of the larger of them: the grain of
@@ -18,11 +17,6 @@ constexpr double kBent = 5e-3;
 constexpr size_t kMostCuts = 32;
 /// Air's own bends are edges where they lie no closer than this part of a usual bin.
 constexpr double kOwnBins = 0.9;
-
-/// Width of a bin that begins at a wavelength [um].
-double widthAt(double wavelength_um) {
-  return std::min(std::max(kWidth_um, kWidth_per_cm * 1e-4 * wavelength_um * wavelength_um), std::max(kPart * wavelength_um, kWidth_um));
-}
 
 struct Bin {
   double from, to, at;
@@ -35,11 +29,11 @@ std::vector<Bin> tableBins(std::span<const double> table, double low, double hig
     const double from = k == 0 ? low : std::max(low, 0.5 * (table[k - 1] + table[k]));
     const double to = k + 1 == table.size() ? high : std::min(high, 0.5 * (table[k] + table[k + 1]));
     if (!(from < to)) continue;
-    if (to - from <= widthAt(table[k])) {
+    if (to - from <= referenceWidth_um(table[k])) {
       bins.push_back({from, to, std::clamp(table[k], from, to)});
       continue;
     }
-    const int parts = static_cast<int>((to - from) / widthAt(table[k]) + 0.999);
+    const int parts = static_cast<int>((to - from) / referenceWidth_um(table[k]) + 0.999);
     for (int b = 0; b < parts; ++b)
       bins.push_back({from + (to - from) * b / parts, from + (to - from) * (b + 1) / parts, from + (to - from) * (b + 0.5) / parts});
   }
@@ -57,31 +51,51 @@ std::vector<Bin> usualBins(const Spectrum& kernel, std::span<const double> own) 
   // A response with more bends than bins is averaged over the bins.
   std::vector<double> kept = {edges.front()};
   for (double e : edges)
-    if (e - kept.back() > 0.25 * widthAt(e)) kept.push_back(e);
+    if (e - kept.back() > 0.25 * referenceWidth_um(e)) kept.push_back(e);
   if (kept.size() == 1) kept.push_back(high);
   else if (kept.back() != high) kept.back() = high;
   std::vector<double> all = kept;
   for (double o : own) {
     const auto above = std::upper_bound(kept.begin(), kept.end(), o);
     if (above == kept.begin() || above == kept.end()) continue;
-    if (std::min(o - *(above - 1), *above - o) > 0.25 * widthAt(o)) all.push_back(o);
+    if (std::min(o - *(above - 1), *above - o) > 0.25 * referenceWidth_um(o)) all.push_back(o);
   }
   std::sort(all.begin(), all.end());
   std::vector<Bin> bins;
   const auto even = [&bins](double from, double to) {
-    const int parts = std::max(1, static_cast<int>((to - from) / widthAt(0.5 * (from + to)) + 0.999));
+    const int parts = std::max(1, static_cast<int>((to - from) / referenceWidth_um(0.5 * (from + to)) + 0.999));
     for (int b = 0; b < parts; ++b) {
       const double a = from + (to - from) * b / parts, e = from + (to - from) * (b + 1) / parts;
       bins.push_back({a, e, 0.5 * (a + e)});
     }
   };
   for (size_t i = 0; i + 1 < all.size(); ++i) {
-    const double from = all[i], to = all[i + 1], grown = widthAt(to) / widthAt(from);
+    const double from = all[i], to = all[i + 1], grown = referenceWidth_um(to) / referenceWidth_um(from);
     const int parts = grown <= kEven ? 1 : static_cast<int>(std::ceil(std::log(to / from) / std::log(kSteps)));
     for (int p = 0; p < parts; ++p)
       even(p == 0 ? from : from * std::pow(to / from, static_cast<double>(p) / parts), p + 1 == parts ? to : from * std::pow(to / from, (p + 1.0) / parts));
   }
   return bins;
+}
+
+/// Bins cut into even parts where fringes are closer together than they show.
+std::vector<Bin> followed(const std::vector<Bin>& bins, const Simulation& sim) {
+  const auto fringed = fringedOf(sim);
+  if (fringed.empty()) return bins;
+  std::vector<Bin> all;
+  for (const Bin& bin : bins) {
+    double widest = bin.to - bin.from;
+    for (const HasFringes* f : fringed) widest = std::min(widest, f->resolvedBy_um(bin.at));
+    const int parts = static_cast<int>((bin.to - bin.from) / widest + 0.999);
+    if (parts < 2) {
+      all.push_back(bin);
+      continue;
+    }
+    for (int b = 0; b < parts; ++b)
+      all.push_back({bin.from + (bin.to - bin.from) * b / parts, bin.from + (bin.to - bin.from) * (b + 1) / parts,
+                     bin.from + (bin.to - bin.from) * (b + 0.5) / parts});
+  }
+  return all;
 }
 
 /// Where spectra bend within a bin so that its middle does not stand for it.
@@ -138,15 +152,15 @@ std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const dou
 
 std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, const Simulation& sim) {
   auto spectra = spectraOf(sim);
-  if (!sim.air || !sim.air->traits().any) return weighted(kernel, usualBins(kernel, {}), spectra);
+  if (!sim.air || !sim.air->traits().any) return weighted(kernel, followed(usualBins(kernel, {}), sim), spectra);
   const std::vector<double> knots = sim.air->knots_um();
   // Air from a table keeps its table's wavelengths.
-  if (sim.air->traits().linearBetweenKnots) return weighted(kernel, tableBins(knots, kernel.supportLow(), kernel.supportHigh()), spectra);
+  if (sim.air->traits().linearBetweenKnots) return weighted(kernel, followed(tableBins(knots, kernel.supportLow(), kernel.supportHigh()), sim), spectra);
   std::vector<double> own;
   for (size_t k = 1; k + 1 < knots.size(); ++k)
-    if (std::min(knots[k] - knots[k - 1], knots[k + 1] - knots[k]) >= kOwnBins * widthAt(knots[k])) own.push_back(knots[k]);
+    if (std::min(knots[k] - knots[k - 1], knots[k + 1] - knots[k]) >= kOwnBins * referenceWidth_um(knots[k])) own.push_back(knots[k]);
   spectra.push_back(airSpectrum(*sim.air));
-  return weighted(kernel, usualBins(kernel, own), spectra);
+  return weighted(kernel, followed(usualBins(kernel, own), sim), spectra);
 }
 
 }  // namespace pitviper

@@ -15,7 +15,8 @@ namespace pitviper {
 std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const double> table = {});
 
 /// Of a scene: with the wavelengths of its air where that is from a table, edges where layered air bends, and bins cut where some spectrum of the scene
-/// (spectraOf) bends so much that the middle of a bin is not its mean: lines narrower than a bin keep their energy.
+/// (spectraOf) bends so much that the middle of a bin is not its mean: lines narrower than a bin keep their energy. Bins
+/// are as small as fringes take (fringedOf).
 std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, const Simulation& simulation);
 
 }  // namespace pitviper

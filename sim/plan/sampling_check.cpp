@@ -5,6 +5,8 @@
 #include <functional>
 #include <map>
 
+#include "sim/plan/fine_grid.hpp"
+#include "sim/plan/scene_spectra.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/quadrature.hpp"
@@ -67,6 +69,31 @@ std::vector<SamplingNote> checkSampling(const Simulation& sim, const Plan& plan,
   for (const auto& [key, note] : worst)
     if (note.error > allowed) notes.push_back(note);
   std::sort(notes.begin(), notes.end(), [](const SamplingNote& a, const SamplingNote& b) { return a.error > b.error; });
+  return notes;
+}
+
+std::vector<FringeNote> checkFringes(const Simulation& sim, const Plan& plan, const std::vector<ChannelOutput>& outputs, double allowed) {
+  constexpr double kRoom_K = 300.0;
+  std::vector<FringeNote> notes;
+  if (fringedOf(sim).empty()) return notes;
+  std::map<std::string, bool> seen;
+  for (size_t o = 0; o < outputs.size(); ++o) {
+    if (!seen.try_emplace(outputs[o].channel, true).second) continue;
+    const auto grid = fineGrid(outputs[o].kernel, sim);
+    const auto& weight = plan.weight[static_cast<size_t>(plan.slotOfOutput[o])];
+    const bool thermal = kSecondRadiation_umK / (outputs[o].kernel.supportHigh() * kRoom_K) < kWien;
+    for (const auto& m : sim.materials) {
+      const bool fringed = std::any_of(m->reflections.begin(), m->reflections.end(), [](const auto& r) { return dynamic_cast<const HasFringes*>(r.get()); });
+      if (!fringed) continue;
+      double fine = 0.0, planned = 0.0, all = 0.0;
+      for (const QuadratureNode& n : grid) fine += n.weight * m->reflectance(n.x, 0.0), all += n.weight;
+      for (size_t i = 0; i < plan.nodes.size(); ++i)
+        if (weight[i] != 0.0) planned += weight[i] * plan.nodes[i].mean([&](double w) { return m->reflectance(w, 0.0); });
+      const double off = std::abs(planned - fine), of = thermal ? std::min(fine, all - fine) : fine;
+      if (off > allowed * of) notes.push_back({m->name, outputs[o].channel, of > 0.0 ? off / of : 1.0});
+    }
+  }
+  std::sort(notes.begin(), notes.end(), [](const FringeNote& a, const FringeNote& b) { return a.error > b.error; });
   return notes;
 }
 

@@ -18,4 +18,13 @@ struct SamplingNote {
 /// worst first. Channels in which it does not shine to speak of are left out. Held against Gauss points between all knots of kernel and absorption.
 std::vector<SamplingNote> checkSampling(const Simulation& simulation, const Plan& plan, const std::vector<ChannelOutput>& outputs, double allowed);
 
+/// What a film's reflectance (at normal incidence), or where the channel sees thermal light its emission, is off by in a channel.
+struct FringeNote {
+  std::string material, channel;
+  double error = 0.0;
+};
+
+/// Films whose fringes a plan's wavelengths step over, by more than `allowed`; worst first. Held against the reference's wavelengths.
+std::vector<FringeNote> checkFringes(const Simulation& simulation, const Plan& plan, const std::vector<ChannelOutput>& outputs, double allowed);
+
 }  // namespace pitviper

@@ -41,6 +41,21 @@ std::vector<BentSpectrum> spectraOf(const Simulation& sim) {
   return all;
 }
 
+std::vector<const HasFringes*> fringedOf(const Simulation& sim) {
+  std::vector<const HasFringes*> all;
+  const auto add = [&all](const Material& m) {
+    for (const auto& r : m.reflections)
+      if (const auto* fringed = dynamic_cast<const HasFringes*>(r.get())) all.push_back(fringed);
+  };
+  for (const auto& m : sim.materials) {
+    add(*m);
+    if (!m->states) continue;
+    // The last has the thickest film.
+    add(*m->states->entries.back());
+  }
+  return all;
+}
+
 BentSpectrum airSpectrum(const Atmosphere& air) {
   return {air.knots_um(), [&air](double w) {
             double sum = 0.0;

@@ -3,6 +3,7 @@
 #include <functional>
 #include <vector>
 
+#include "sim/model/fringes.hpp"
 #include "sim/model/simulation.hpp"
 #include "sim/radiometry/quadrature.hpp"
 
@@ -16,6 +17,9 @@ struct BentSpectrum {
 /// Lights, sun, background, ambient light, and what materials and media send, reflect, let through and absorb. Those without bends are left out.
 /// Valid while the simulation is, at wavelengths that all of it covers.
 std::vector<BentSpectrum> spectraOf(const Simulation& simulation);
+
+/// Its components that have fringes between their knots.
+std::vector<const HasFringes*> fringedOf(const Simulation& simulation);
 
 /// The same of the air: the sum of its extinction coefficients.
 BentSpectrum airSpectrum(const Atmosphere& air);
