@@ -6,6 +6,7 @@
 
 #include "sim/camera/camera_pointer.hpp"
 #include "sim/camera/hot_parts.hpp"
+#include "sim/plan/averaged_fringes.hpp"
 #include "sim/plan/scattered_again.hpp"
 #include "sim/scene/camera.hpp"
 
@@ -43,6 +44,7 @@ struct CameraImage {
   std::vector<TruthPixel> truth;               ///< per pixel, or empty
   std::vector<int> slotOfOutput;               ///< from the plan
   std::string transparentOrder;                ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view
+  std::vector<AveragedFringes> averagedFringes;  ///< of materials, the same in every picture
   std::vector<ScatteredAgain> scatteredAgain;  ///< channels in which light scattered more than once would matter
   double accuracy = 0.0;                       ///< from the plan, and so its error per slot
   std::vector<double> predictedError;          ///< empty where nothing was measured

@@ -30,6 +30,7 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
     : simulation_(simulation),
       camera_(camera),
       plan_(planFor(simulation, {&camera, nullptr}, planning)),
+      fringes_(averagedFringes(simulation, camera.outputs)),
       scattering_(simulation, camera, plan_),
       ways_(simulation, plan_),
       lines_(zoomedLines(simulation, camera.zoomedSamples, camera.outlineAccuracy)),
@@ -194,6 +195,7 @@ CameraImage CameraRenderer::finish() {
   resolved.solidAngles = solidAngles_;
   resolved.exposure_s = cameraAt(camera_, state_).exposure_s;
   if (isBuffered() && buffered_->layers()) resolved.transparentOrder = buffered_->layers()->describeOrder();
+  resolved.averagedFringes = fringes_;
   resolved.scatteredAgain = scattered_.valid() ? scattered_.get() : scattering_.at(state_);
   resolved.accuracy = plan_.accuracy;
   resolved.predictedError = plan_.predictedError;

@@ -52,6 +52,7 @@ class CameraRenderer {
   const Simulation& simulation_;
   const Camera& camera_;
   Plan plan_;
+  std::vector<AveragedFringes> fringes_;
   ScatteringCheck scattering_;
   WaysToLights ways_;
   FilmWeights filmWeights_;

@@ -11,7 +11,6 @@
 #include "sim/frame/target_rows.hpp"
 #include "sim/frame/version.hpp"
 #include "sim/model/world.hpp"
-#include "sim/plan/averaged_fringes.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -278,7 +277,7 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   addAccuracy(frame, camera, image);
   addAudit(frame, camera, image);
   for (const ScatteredAgain& s : image.scatteredAgain) frame.attributes.push_back({"pitviper.scattered_again." + s.channel, s.factor});
-  for (const AveragedFringes& f : averagedFringes(sim, camera.outputs)) {
+  for (const AveragedFringes& f : image.averagedFringes) {
     const std::string key = "pitviper.averaged_fringes." + f.channel;
     const bool told = std::any_of(frame.attributes.begin(), frame.attributes.end(), [&](const auto& a) { return a.name == key; });
     if (!told) frame.attributes.push_back({key, wordsOf(f)});
