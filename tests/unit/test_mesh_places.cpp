@@ -164,6 +164,30 @@ TEST_F(MeshPlaces, FarFromTheFilesOrigin) {
   EXPECT_LT(worstFrom, 1.0);
 }
 
+// Coordinates that the file has in single precision stay what they are there, to the last bit: what they are rounded to is not rounded again.
+TEST_F(MeshPlaces, SinglePrecisionStaysExact) {
+  for (const float away : {1e3f, 65536.5f, 4649776.5f, 9.9e6f}) {
+    const Mesh box = makeBox(30, 20, 10);
+    std::string bytes(80, ' ');
+    const auto put = [&](const auto& value) { bytes.append(reinterpret_cast<const char*>(&value), sizeof value); };
+    put(static_cast<std::uint32_t>(box.triangles.size()));
+    std::vector<glm::vec3> places;
+    for (const glm::uvec3& t : box.triangles) {
+      put(glm::vec3(0.0f));
+      for (int k = 0; k < 3; ++k) places.push_back(box.positions[t[k]] + glm::vec3(away, -0.3f * away, 0.1f)), put(places.back());
+      put(std::uint16_t{0});
+    }
+    const Mesh mesh = import("far.stl", bytes);
+    EXPECT_NE(mesh.offset_m, glm::dvec3(0.0));
+    ASSERT_EQ(mesh.triangles.size(), box.triangles.size());
+    for (const glm::uvec3& t : mesh.triangles)
+      for (int k = 0; k < 3; ++k) {
+        const glm::dvec3 place = mesh.offset_m + glm::dvec3(mesh.positions[t[k]]);
+        EXPECT_TRUE(std::any_of(places.begin(), places.end(), [&](const glm::vec3& p) { return glm::dvec3(p) == place; })) << away;
+      }
+  }
+}
+
 // A body near its file's origin, as nearly all are, has no offset; nor does a large one about it.
 TEST_F(MeshPlaces, NearOnesStayAsTheyAre) {
   for (const double away : {0.0, 0.5, 3.0}) {
