@@ -12,11 +12,37 @@ double lengthOf(const glm::dvec2& v) { return std::abs(v.x) + std::abs(v.y); }
 }  // namespace
 
 PolygonCutter::Result PolygonCutter::cut(std::span<const glm::dvec3> corners, double noise, Triangles& triangles) {
+  const auto hasArea = [&](Result result) { return result == Result::Cut && covers(corners, triangles); };
   const Result first = cutWithin(corners, noise, triangles);
-  if (first == Result::Cut) return first;
-  // What is as small as the noise may still have a shape.
-  const Result exact = cutWithin(corners, 0.0, triangles);
-  return exact == Result::Crossing && first == Result::Flat ? Result::Flat : exact;
+  // What is as small as the noise may still have a shape; and edges that cross by little may be meant to touch: files round.
+  if (hasArea(first) || hasArea(cutWithin(corners, 0.0, triangles))) return Result::Cut;
+  for (const double more : {1.0, 16.0, 256.0, 4096.0})
+    if (hasArea(cutWithin(mergedWithin(corners, more * noise), more * noise, triangles))) return Result::Cut;
+  triangles.clear();
+  return first == Result::Flat ? Result::Flat : Result::Crossing;
+}
+
+/// Whether triangles have the polygon's area without covering anything twice, in the plane that it was projected onto.
+bool PolygonCutter::covers(std::span<const glm::dvec3> corners, const Triangles& triangles) const {
+  constexpr double kOverlap = 1e-4;  // a tenth of what a picture is asked for at best
+  const auto doubled = [&](const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
+    return cross({b[u_] - a[u_], b[v_] - a[v_]}, {c[u_] - a[u_], c[v_] - a[v_]});
+  };
+  double area = 0.0, covered = 0.0;
+  for (std::size_t k = 1; k + 1 < corners.size(); ++k) area += doubled(corners[0], corners[k], corners[k + 1]);
+  for (const auto& t : triangles) covered += std::abs(doubled(corners[t[0]], corners[t[1]], corners[t[2]]));
+  return std::abs(covered - area) <= kOverlap * area;
+}
+
+std::span<const glm::dvec3> PolygonCutter::mergedWithin(std::span<const glm::dvec3> corners, double noise) {
+  merged_.assign(corners.begin(), corners.end());
+  for (std::size_t i = 1; i < corners.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (glm::all(glm::lessThanEqual(glm::abs(corners[i] - merged_[j]), glm::dvec3(2.0 * noise)))) {
+        merged_[i] = merged_[j];
+        break;
+      }
+  return merged_;
 }
 
 PolygonCutter::Result PolygonCutter::cutWithin(std::span<const glm::dvec3> corners, double noise, Triangles& triangles) {
@@ -62,10 +88,10 @@ PolygonCutter::Result PolygonCutter::cutWithin(std::span<const glm::dvec3> corne
 void PolygonCutter::flatten(std::span<const glm::dvec3> corners, const glm::dvec3& normal) {
   const glm::dvec3 size = glm::abs(normal);
   const int away = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-  int u = (away + 1) % 3, v = (away + 2) % 3;
-  if (normal[away] < 0.0) std::swap(u, v);
+  u_ = (away + 1) % 3, v_ = (away + 2) % 3;
+  if (normal[away] < 0.0) std::swap(u_, v_);
   flat_.clear();
-  for (const glm::dvec3& p : corners) flat_.emplace_back(p[u] - corners[0][u], p[v] - corners[0][v]);
+  for (const glm::dvec3& p : corners) flat_.emplace_back(p[u_] - corners[0][u_], p[v_] - corners[0][v_]);
 }
 
 /// 1: c lies left of the way from a to b; 0: on its line, as well as can be told.

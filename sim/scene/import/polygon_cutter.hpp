@@ -26,6 +26,8 @@ class PolygonCutter {
  private:
   using Corner = std::uint32_t;
 
+  bool covers(std::span<const glm::dvec3> corners, const Triangles& triangles) const;
+  std::span<const glm::dvec3> mergedWithin(std::span<const glm::dvec3> corners, double noise);
   Result cutWithin(std::span<const glm::dvec3> corners, double noise, Triangles& triangles);
   void flatten(std::span<const glm::dvec3> corners, const glm::dvec3& normal);
   int turn(Corner a, Corner b, Corner c) const;
@@ -39,10 +41,12 @@ class PolygonCutter {
   double doubleArea() const;
   Corner corner(std::size_t at) const { return ring_[at % ring_.size()]; }
 
+  std::vector<glm::dvec3> merged_;
   std::vector<glm::dvec2> flat_;  ///< corners, projected so that the polygon goes counter-clockwise
   std::vector<Corner> ring_;      ///< corners that are left, in order
   std::vector<char> tried_;
   std::vector<double> shape_;  ///< of their ears
+  int u_ = 0, v_ = 1;          ///< axes of the plane
   double noise_ = 0.0;
 };
 
