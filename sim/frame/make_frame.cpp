@@ -180,7 +180,7 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   addUnits(frame, camera.outputs);
   const glm::dmat3 cameraFromLocal = glm::transpose(localFromCamera(pose));
   for (size_t e = 0; e < sim.entities.size(); ++e) {
-    const glm::dvec3 x = cameraFromLocal * (state.bodyPose(e).position - pose.position);
+    const glm::dvec3 x = cameraFromLocal * (state.entities[e].position - pose.position);
     // Behind the camera: no place in the picture; not there: no range either.
     std::vector<double> seen = {state.isThere(e) ? glm::length(x) : NAN, NAN, NAN};
     if (x.z < 0.0 && state.isThere(e)) {
