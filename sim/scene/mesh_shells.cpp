@@ -172,7 +172,7 @@ class ShellFinder {
   void settle(const std::vector<std::uint32_t>& bundle, const std::vector<std::uint32_t>& knots, std::vector<MeshShell>& shells) {
     const bool open = std::any_of(bundle.begin(), bundle.end(), [&](std::uint32_t p) { return pieces_[p].open; });
     if (bundle.size() == 1 || open) {
-      for (std::uint32_t p : bundle) settleOne(pieces_[p], open, shells);
+      for (std::uint32_t p : bundle) settleOne(pieces_[p], open, knots, shells);
       return;
     }
     MeshShell& shell = shells.emplace_back();
@@ -182,11 +182,11 @@ class ShellFinder {
     close(shell);
   }
 
-  void settleOne(Piece& piece, bool open, std::vector<MeshShell>& shells) {
+  void settleOne(Piece& piece, bool open, const std::vector<std::uint32_t>& knots, std::vector<MeshShell>& shells) {
     MeshShell& shell = shells.emplace_back();
     shell.triangles = std::move(piece.triangles);
     if (winding_.isOneSided(shell.triangles[0])) return unclear(shell);
-    if (!open) return close(shell);
+    if (!open) return imbalance(knots) == 0 ? close(shell) : unclear(shell);
     double balance = 0.0;
     for (std::uint32_t t : shell.triangles) balance += (turn_[t] ? -1.0 : 1.0) * glm::length(areaVector(mesh_, mesh_.triangles[t]));
     if (balance < 0.0) turnAll(shell.triangles);

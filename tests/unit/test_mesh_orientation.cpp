@@ -253,6 +253,23 @@ TEST(MeshOrientation, OpenAndOneSidedSheets) {
   EXPECT_FALSE(strip.closed);
 }
 
+// A fin that stands on a closed body is a sheet of its own: the body still faces outward, and the mesh as a whole is open.
+TEST(MeshOrientation, AFinOnABody) {
+  for (const bool turned : {false, true}) {
+    Assembly a;
+    a.add(makeBox(1, 1, 1), glm::mat4(1.0f), "all", false, turned ? 1.0 : 0.0);
+    const auto n = static_cast<std::uint32_t>(a.mesh.positions.size());
+    for (const glm::vec3 p : {glm::vec3(0.5f, 0.5f, 0.5f), {0.5f, -0.5f, 0.5f}, {0.5f, 0.0f, 2.0f}})
+      a.mesh.positions.push_back(p), a.mesh.normals.emplace_back(1, 0, 0), a.mesh.uv.emplace_back(0, 0);
+    a.mesh.triangles.emplace_back(n, n + 1, n + 2);
+    ++a.mesh.parts[0].triangleCount;
+    orientShells(a.mesh, true, kCrease);
+    EXPECT_FALSE(a.mesh.closed);
+    for (std::size_t t = 0; t + 1 < a.mesh.triangles.size(); ++t)
+      EXPECT_GT(glm::dot(faceOf(a.mesh, t), glm::dvec3(a.mesh.positions[a.mesh.triangles[t].x]) + glm::dvec3(a.mesh.positions[a.mesh.triangles[t].y])), 0.0);
+  }
+}
+
 // Normals that point inwards are made anew where the winding is right; where the winding was wrong with them they are turned with it, and stay as smooth.
 TEST(MeshOrientation, NormalsFollowTheSurface) {
   for (const bool winding : {false, true})
