@@ -34,8 +34,10 @@ std::string quotedText(std::string_view text) {
     }
     text.remove_prefix(std::max<std::size_t>(length, 1));
   }
+  whole = readable(whole);
+  while (!whole.empty() && whole.back() == ' ') whole.pop_back();
   std::string out = "\"";
-  for (char c : readable(whole)) {
+  for (char c : whole) {
     if (c == '"' || c == '\\') out += '\\';
     out += c;
   }

@@ -59,7 +59,9 @@ class Importer {
 
   std::string words(const char* key) const {
     const Value* v = tree_.find(key);
-    return v ? v->text : "";
+    std::string text = v ? v->text : "";
+    while (!text.empty() && static_cast<unsigned char>(text.back()) <= ' ') text.pop_back();
+    return text;
   }
 
   /// n is relative to air where the file says so.

@@ -159,7 +159,8 @@ class Reader {
 
   void readLine(const Line& line) {
     if (header_.title.empty() && (line.key == "name" || line.key == "title" || line.key == "samplename")) header_.title = line.value;
-    if (line.text.rfind("splib", 0) == 0) header_.title = line.value.substr(line.value.find(':') == std::string::npos ? 0 : line.value.find(':') + 1);
+    if (header_.title.empty() && line.text.rfind("splib", 0) == 0)
+      header_.title = line.value.substr(line.value.find(':') == std::string::npos ? 0 : line.value.find(':') + 1);
     const Words value = headerWords(line.value);
     if (kAxisKeys.count(line.key)) return sayAxis(line.words, line.number, true, true);
     if (kValueKeys.count(line.key)) return sayValues(lettersSpelled(value), line.number, true);

@@ -114,12 +114,15 @@ class Importer {
       throw UserError({choices_.wavelengths, 1, 1, -1},
                       std::to_string(other.rows.size()) + " wavelengths for the " + std::to_string(data_.rows.size()) + " values of " + file_, "as many",
                       "name the file that belongs to the spectrum's instrument");
+    data_.head.insert(data_.head.end(), other.head.begin(), other.head.end());
     for (std::size_t k = 0; k < data_.rows.size(); ++k) data_.rows[k].values.insert(data_.rows[k].values.begin(), other.rows[k].values[0]);
   }
 
   SpectrumQuantity quantityOf() const {
     if (choices_.quantity) return *choices_.quantity;
     if (head_.quantity) return head_.quantity->value;
+    // The USGS's file names end so where their words do not.
+    if (head_.sharesByCustom && (stem_.ends_with("AREF") || stem_.ends_with("RREF"))) return SpectrumQuantity::Reflectance;
     fail(data_.rows.front().line, "no word above the numbers says of what they are", "reflectance, transmittance or emissivity",
          "say which by '--quantity reflectance', transmittance or emissivity");
   }

@@ -79,6 +79,14 @@ TEST(ExrWindows, HostileWindowsAndTilesAreUserErrors) {
   flag[5] = 0;  // tiles by its header alone
   EXPECT_NE(refusal(put(flag)), "");
   for (std::size_t end = 0; end < tiled.size(); end += 3) EXPECT_NE(refusal(put(tiled.substr(0, end))), "") << end;
+  int refused = 0;
+  for (std::size_t at = 8; at < tiled.size(); ++at)
+    for (int bit : {0, 4, 7}) {
+      std::string bytes = tiled;
+      bytes[at] = static_cast<char>(bytes[at] ^ 1 << bit);
+      refused += refusal(put(bytes)).empty() ? 0 : 1;  // anything but a UserError ends the test
+    }
+  EXPECT_GT(refused, 300);
 }
 
 std::string sceneRefusal(const std::string& body) {

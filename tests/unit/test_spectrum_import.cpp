@@ -176,6 +176,7 @@ TEST(SpectrumImport, ChoicesCountBeforeWords) {
   const Made m = made(" splib07a Record=2: Snow AREF\n 0.98\n -1.2300000e+034\n 0.1\n", usgs);
   ASSERT_TRUE(m.spectrum) << m.refused;
   EXPECT_NEAR((*m.spectrum)(2.5), 0.1, 1e-12);
+  EXPECT_TRUE(made("splib07a Record=2: Snow\n0.98\n0.5\n0.1\n", usgs, "splib07a_Snow_ASDFRa_AREF.txt").spectrum);
   EXPECT_NE(made("splib07a Record=2: Snow AREF\n0.98\n0.1\n", usgs).refused.find("3 wavelengths for the 2 values"), std::string::npos);
   EXPECT_NE(made("DATA:\n  - type: tabulated k\n", usgs, "a.yml").refused.find("leave them out"), std::string::npos);
 }
