@@ -62,7 +62,8 @@ struct Share {
   Moments placed{};              ///< of those that count, by their solid angle
   std::vector<Moments> moments;  ///< by slot, by what they send; empty where no points are kept
   double shown = 0.0;            ///< of those whose surface is a small body's
-  size_t sample = 0;             ///< one of them
+  size_t sample = 0;             ///< the one of them that is nearest to the subpixel's middle
+  double off2 = INFINITY;        ///< how far it is from there, squared
   double cosPsi = 1.0;
 };
 using Shares = std::map<size_t, Share>;
@@ -116,8 +117,7 @@ Shares sharesOf(const Subpixels& image, const View& z, const RawImage& zoomed, c
     }
     if (!isShown(zoomed.entity[from])) return;
     share.shown += etendue;
-    share.sample = from;
-    share.cosPsi = cosPsi;
+    if (const double off2 = glm::dot(off, off); off2 < share.off2) share.off2 = off2, share.sample = from, share.cosPsi = cosPsi;
   });
   return shares;
 }
@@ -133,7 +133,7 @@ bool isInside(const View& main, const View& zoomed, const glm::dmat3& zoomFromMa
   return true;
 }
 
-/// The truth of a subpixel that a body covers by half or more.
+/// The truth of a subpixel that a body covers by half or more, though its middle may not see it: of the nearest place that does.
 void takeTruth(Subpixels& image, const RawImage& zoomed, const Share& share, double whole, size_t pixel) {
   if (!image.hasTruth() || share.shown < 0.5 * whole) return;
   TruthPixel truth = truthAt(zoomed, share.sample);  // the zoomed view's axis points at the body: put the angle off the real one in
@@ -198,6 +198,7 @@ std::vector<char> overlapTransparent(const Simulation& sim, const WorldState& st
 struct Fine {
   double covered = 0.0;  ///< projected solid angle [sr]
   double whole = 0.0;    ///< of the subpixel
+  bool shown = false;    ///< some of it sees the surface of a small body
   std::vector<double> sum;
   std::vector<double> under;  ///< what the image has where they are
   Moments placed{};           ///< as of Share
@@ -232,6 +233,7 @@ void gather(Subpixels& image, const View& z, const RawImage& zoomed, const Share
       f.placed[k] += each * share.placed[k];
       for (size_t s = 0; s < share.moments.size(); ++s) f.moments[s][k] += each * share.moments[s][k];
     }
+    f.shown |= share.shown > 0.0;
     takeTruth(image, zoomed, share, whole / all, p);
   }
 }
@@ -311,13 +313,15 @@ void partBox(const std::vector<char>& wanted, int width, const Box& box, int pic
   partBox(wanted, width, second, picture, boxes);
 }
 
+/// Pictures are kept, by size: larger zoomed views are drawn as a whole.
+constexpr int kLargest = 512;
+
 /// Draws what is wanted of a zoomed view, and not much more where `fields` may show: a sample through one costs as much as a hundred others.
-RawImage drawWanted(ScenePass& pass, const View& z, const WorldState& state, const std::vector<char>& drawn, bool fields) {
-  constexpr int kLargest = 512;  // pictures are kept, by size
+RawImage drawWanted(ScenePass& pass, const View& z, const WorldState& state, const std::vector<char>& drawn, bool fields, int largest = kLargest) {
   const glm::ivec2 all(z.width, z.height), most = fields ? glm::ivec2(powerOfTwo(all.x), powerOfTwo(all.y)) : all;
   const Box whole{glm::ivec2(0), most};
   std::vector<Box> boxes;
-  if (z.width <= kLargest) partBox(*z.wanted, z.width, shrunk(*z.wanted, z.width, {glm::ivec2(0), all}), fields ? kPictureOfFields : kPicture, boxes);
+  if (z.width <= largest) partBox(*z.wanted, z.width, shrunk(*z.wanted, z.width, {glm::ivec2(0), all}), fields ? kPictureOfFields : kPicture, boxes);
   int area = 0;
   for (Box& box : boxes) {
     for (int k = 0; k < 2; ++k) box.size[k] = std::min(fields ? powerOfTwo(box.size[k]) : evenSize(box.size[k]), most[k]);
@@ -672,6 +676,23 @@ class MixedBodies {
   std::vector<Ball> partOf_;  ///< what each looks at
 };
 
+/// The truth of what is small is that of a subpixel's middle, as of what is large: where its truth is asked for such subpixels are drawn once more, with all
+/// that is there.
+void putMiddles(Subpixels& image, ScenePass& pass, const Simulation& sim, const WorldState& state, const std::vector<char>& small, const std::vector<char>& present,
+                const FineSubpixels& fine) {
+  if (!image.hasTruth()) return;
+  const View& v = image.view();
+  const auto width = static_cast<size_t>(v.width);
+  auto marks = std::make_shared<std::vector<char>>(width * static_cast<size_t>(v.height), 0);
+  for (const auto& [p, f] : fine) (*marks)[p] = f.shown && image.isMiddle(static_cast<int>(p % width), static_cast<int>(p / width));
+  if (!anyOf(*marks)) return;
+  View middles = magnified(v, {0, 0, v.width, v.height}, 1);
+  middles.wanted = marks;
+  const RawImage seen = drawWanted(pass, middles, state, present, !sim.fields.empty(), std::numeric_limits<int>::max());
+  for (size_t p = 0; p < marks->size(); ++p)
+    if ((*marks)[p] && seen.entity[p] >= 0 && small[static_cast<size_t>(seen.entity[p])]) image.setTruth(p, truthAt(seen, p));
+}
+
 }  // namespace
 
 std::vector<char> findSmallBodies(const Simulation& sim, const WorldState& state, const View& v, double limit) {
@@ -729,6 +750,7 @@ void addSmallBodies(Subpixels& image, ScenePass& pass, const Simulation& sim, co
   SolidBodies(image, sim, state, apart, lines, wanted).draw(pass, state, solids, fine);
   MixedBodies(sim, state, v, together, lines, parts, small).draw(image, pass, others, present, wanted, fine);
   put(image, fine);
+  putMiddles(image, pass, sim, state, small, present, fine);
 }
 
 }  // namespace pitviper

@@ -46,6 +46,8 @@ class Subpixels {
   /// Integral of cos(psi) dOmega over a subpixel [sr].
   double projectedSolidAngle_sr(int x, int y) const;
   bool hasTruth() const { return !raw_.truth.empty(); }
+  /// Whether truth of a pixel is that of this subpixel.
+  bool isMiddle(int x, int y) const { return x % view_.subpixels == view_.subpixels / 2 && y % view_.subpixels == view_.subpixels / 2; }
   void setTruth(size_t pixel, const TruthPixel& truth) { truth_[pixel] = truth; }
 
   /// Mean over samples x samples subpixels, weighted by projected solid angle (flux adds up); truth from the middle one. `weights`: brought up to date.
