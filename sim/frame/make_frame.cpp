@@ -1,9 +1,12 @@
 #include "sim/frame/make_frame.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <set>
+#include <stdexcept>
 
 #include "sim/frame/file_owner.hpp"
 #include "sim/frame/limits_check.hpp"
@@ -107,11 +110,29 @@ std::uint64_t noiseSeed(const Simulation& sim, const Camera& camera) {
   return hash ^ (static_cast<std::uint64_t>(sim.seed) * 0x9e3779b97f4a7c15u);
 }
 
-std::vector<float> valuesOf(const ChannelOutput& output, size_t o, const CameraImage& image) {
+std::string nameOf(const std::string& camera, int number) { return "camera " + camera + ", frame " + std::to_string(number); }
+
+/// What is no number, or beyond all that a file or a sensor's stage can hold, ends the run: no stage, and nobody who reads a frame, could tell it from a measurement.
+/// Marks that a user asks for come later, and are not looked at.
+void refuseNotFinite(const std::string& frame, int width, const ChannelOutput& output, const std::vector<float>& values) {
+  constexpr std::uint32_t kExponent = 0x7f800000u;
+  std::uint32_t any = 0;
+  for (float v : values) any |= (std::bit_cast<std::uint32_t>(v) & kExponent) == kExponent;  // as whole numbers: several at once
+  if (!any) return;
+  const auto isWrong = [](float v) { return !std::isfinite(v); };
+  const auto first = std::find_if(values.begin(), values.end(), isWrong);
+  const auto at = static_cast<int>(first - values.begin()), count = static_cast<int>(std::count_if(first, values.end(), isWrong));
+  throw std::runtime_error(frame + ", " + output.layer() + ": pixel " + std::to_string(at % width) + "," + std::to_string(at / width) +
+                           (count > 1 ? " and " + std::to_string(count - 1) + " more are" : " is") + (std::isnan(*first) ? " no number" : " beyond the largest number") +
+                           "; expected up to 3e38; fix: look at what is seen there: temperatures, intensities, scales and distances at the end of their ranges");
+}
+
+std::vector<float> valuesOf(const std::string& frame, const ChannelOutput& output, size_t o, const CameraImage& image) {
   const auto& slot = image.slots[static_cast<size_t>(image.slotOfOutput[o])];
   const double scale = output.scale * (output.perExposure ? image.exposure_s : 1.0);
   std::vector<float> values(slot.size());
   for (size_t p = 0; p < slot.size(); ++p) values[p] = static_cast<float>(scale * slot[p] * (output.perEtendue ? image.solidAngles->projected_sr[p] : 1.0));
+  refuseNotFinite(frame, image.width, output, values);
   return values;
 }
 
@@ -125,7 +146,7 @@ void toApparentTemperatures(std::vector<float>& values, const ChannelOutput& out
 
 void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image) {
   for (size_t o = 0; o < camera.outputs.size(); ++o) {
-    frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, valuesOf(camera.outputs[o], o, image)});
+    frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, valuesOf(nameOf(frame.camera, frame.number), camera.outputs[o], o, image)});
     if (camera.outputs[o].asTemperature) toApparentTemperatures(frame.layers.back().pixels, camera.outputs[o], image.solidAngles->projected_sr, image.exposure_s);
   }
 }
@@ -252,7 +273,7 @@ SensorTick sensorTick(const Simulation& sim, const Camera& camera, const CameraI
 
 std::vector<std::vector<float>> sensed(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number, SensorChain& chain) {
   std::vector<std::vector<float>> drawn;
-  for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(camera.outputs[o], o, image));
+  for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(nameOf(camera.name, number), camera.outputs[o], o, image));
   return chain.run(std::move(drawn), image.solidAngles->projected_sr, sensorTick(sim, camera, image, state, number), pointsOf(camera, image));
 }
 

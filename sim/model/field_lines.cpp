@@ -29,22 +29,26 @@ bool ofBox(const View& v, const FieldState& f, const glm::dvec3& low, const glm:
   return true;
 }
 
-/// Around a sphere; nothing where it is behind. False where it reaches the camera's plane: it may show everywhere.
+/// Around a sphere; nothing where it is behind, or beside all that the film's plane has. False where it may show everywhere.
 bool ofSphere(const View& v, const FieldState& f, const FieldElement& e, FieldLines& lines) {
+  constexpr double kAlongPlane = 1.570796;  // rad: so near the camera's plane a film of single precision ends
   const glm::dvec3 p = glm::transpose(v.localFromCamera) * (f.origin + f.localFromField * e.centre - v.position);
   if (-p.z < -e.radius_m) return true;
-  if (!(-p.z > e.radius_m + v.near_m)) return false;
-  glm::dvec2 low, high;
+  glm::dvec2 low(-INFINITY), high(INFINITY);
+  bool tells = false;
   for (int k = 0; k < 2; ++k) {
     // Planes through the eye that touch the sphere: angles of its middle -+ asin(radius / distance), in the plane of this axis and the camera's.
-    const double distance = std::hypot(p[k], p.z), middle = std::atan2(p[k], -p.z), half = std::asin(std::min(e.radius_m / distance, 1.0));
+    const double distance = std::hypot(p[k], p.z), middle = std::atan2(p[k], -p.z);
+    if (!(distance > e.radius_m)) continue;
+    const double half = std::asin(e.radius_m / distance), from = middle - half, to = middle + half;
+    if (from > kAlongPlane || to < -kAlongPlane) return true;
+    tells = true;
     const double tan = k == 0 ? v.tanPerPixelX : v.tanPerPixelY, axis = k == 0 ? v.axisX : v.axisY;
-    if (!(std::abs(middle) + half < 1.55)) return false;
-    low[k] = axis + std::tan(middle - half) / tan;
-    high[k] = axis + std::tan(middle + half) / tan;
+    if (from > -kAlongPlane) low[k] = axis + std::tan(from) / tan;
+    if (to < kAlongPlane) high[k] = axis + std::tan(to) / tan;
   }
-  cover(lines, low, high);
-  return true;
+  if (tells) cover(lines, low, high);
+  return tells;
 }
 
 /// How far apart lines through an element may lie: over its finest length, and over more along its axis as it shows on the film.
@@ -82,8 +86,9 @@ bool ofElements(const View& v, const FieldState& f, FieldLines& lines) {
 bool ofWhole(const View& v, const FieldState& f, FieldLines& lines) { return ofBox(v, f, f.low, f.high, lines); }
 
 FieldLines cutToFilm(const View& view, const FieldLines& found) {
-  const glm::dvec2 margin = kMargin * (found.high - found.low) + kMargin_px;
-  return {glm::max(found.low - margin, glm::dvec2(0.0)), glm::min(found.high + margin, glm::dvec2(view.width, view.height)), found.apart_px};
+  const glm::dvec2 film(view.width, view.height), low = glm::max(found.low, -film), high = glm::min(found.high, 2.0 * film);
+  const glm::dvec2 margin = kMargin * glm::max(high - low, glm::dvec2(0.0)) + kMargin_px;
+  return {glm::max(low - margin, glm::dvec2(0.0)), glm::min(high + margin, film), found.apart_px};
 }
 
 }  // namespace
@@ -129,12 +134,15 @@ constexpr Points kPoints[3] = {{1, {0.5, 0.0, 0.0}, {1.0, 0.0, 0.0}},
                                {3, {0.112701665379258311, 0.5, 0.887298334620741689}, {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0}}};
 /// Of a pixel's cells: parts so much coarser than its finest, or so much of it empty, is worth halving it.
 constexpr double kCoarser = 1.5, kFilled = 0.7;
+/// Lines of a pixel with too many of them lie so many times farther apart at most.
+constexpr double kCoarsest = 1e3;
 
-/// A pixel's cells: halved until what is in each is about alike.
+/// A pixel's cells: halved until what is in each is about alike; given up where that takes more lines than `most`.
 class PixelCells {
  public:
-  explicit PixelCells(const LinesApart& apart) : apart_(apart) {}
+  PixelCells(const LinesApart& apart, double most) : apart_(apart), most_(most) {}
   void add(const glm::dvec2& low, const glm::dvec2& high, std::span<const FieldLines::Part> parts) {
+    if (isFull()) return;
     std::vector<FieldLines::Part> here;
     glm::dvec2 from(INFINITY), to(-INFINITY), finest(INFINITY), coarsest(0.0);
     double filled = 0.0;
@@ -157,12 +165,14 @@ class PixelCells {
       return;
     }
     cells_.push_back({from, to, {axisOf(lines.x, wanted.x), axisOf(lines.y, wanted.y)}});
+    lines_ += static_cast<double>(cells_.back().axis[0].lines()) * cells_.back().axis[1].lines();
   }
-  double lines() const {
-    double sum = 0.0;
-    for (const Cell& c : cells_) sum += static_cast<double>(c.axis[0].lines()) * c.axis[1].lines();
-    return sum;
+  /// All of it as one, with so many lines each way.
+  void addWhole(const glm::dvec2& low, const glm::dvec2& high, int lines) {
+    const Axis axis = lines < 3 ? Axis{1, &kPoints[std::max(lines, 1) - 1]} : Axis{lines / 3, &kPoints[2]};
+    cells_.assign(1, {low, high, {axis, axis}});
   }
+  bool isFull() const { return lines_ > most_; }
   PixelLines all() const {
     PixelLines found;
     found.outside = 1.0;
@@ -194,6 +204,7 @@ class PixelCells {
     Axis axis[2];
   };
   LinesApart apart_;
+  double most_, lines_ = 0.0;
   std::vector<Cell> cells_;
 };
 
@@ -215,9 +226,11 @@ PixelLines pixelLines(std::span<const FieldLines> fields, int x, int y, int most
     return lines;
   }
   for (LinesApart now = apart;; now.coarser *= 1.4) {
-    PixelCells cells(now);
+    PixelCells cells(now, static_cast<double>(most) * most);
     cells.add(corner, corner + 1.0, parts);
-    if (cells.lines() <= static_cast<double>(most) * most || now.coarser > 1e3) return cells.all();
+    if (cells.isFull() && now.coarser <= kCoarsest) continue;
+    if (cells.isFull()) cells.addWhole(corner, corner + 1.0, most);
+    return cells.all();
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "sim/gl/context.hpp"
 #include "sim/gl/timing.hpp"
+#include "sim/render/node_loops.hpp"
 
 namespace pitviper {
 namespace {
@@ -19,11 +20,7 @@ constexpr int kMostTargets = 8;
 std::vector<std::string> writeSpectrum(ShaderSlots& slots, int targets, int nodes) {
   std::ostringstream declared, body;
   declared << "uniform int firstNode;\nvoid clearTargets() {}\n";
-  body << "void integrate() {\n";
-  for (int i = 0; i < 4 * targets; ++i)
-    body << "  spectrum" << i / 4 << "[" << i % 4 << "] = nodeRadiance("
-         << (nodes > 0 ? std::to_string(std::min(i, nodes - 1)) : "min(firstNode + " + std::to_string(i) + ", NODES - 1)") << ");\n";
-  body << "}\n";
+  body << "void integrate() {\n" << nodesText("spectrum", targets, nodes, "nodeRadiance(", false) << "}\n";
   slots.generated["targets"] = declared.str();
   slots.generated["integrate"] = body.str();
   std::vector<std::string> names;

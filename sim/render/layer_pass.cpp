@@ -9,6 +9,7 @@
 
 #include "sim/gl/context.hpp"
 #include "sim/render/media_groups.hpp"
+#include "sim/render/node_loops.hpp"
 
 namespace pitviper {
 namespace {
@@ -48,10 +49,7 @@ void addBlend(ShaderSlots& slots, BlendPath path, int targets, int nodes, bool b
     const std::string four = written ? std::to_string(std::min(t, (nodes - 1) / 4)) : "min(firstNode / 4 + " + std::to_string(t) + ", (NODES - 1) / 4)";
     blend << "    u" << t << " = blendedFour(u" << t << ", " << four << ");\n";
   }
-  for (int i = 0; i < 4 * targets && !byFour; ++i) {
-    const std::string node = written ? std::to_string(std::min(i, nodes - 1)) : "min(firstNode + " + std::to_string(i) + ", NODES - 1)";
-    blend << "    u" << i / 4 << "[" << i % 4 << "] = blended(u" << i / 4 << "[" << i % 4 << "], " << node << ");\n";
-  }
+  if (!byFour) blend << nodesText("u", targets, written ? nodes : 0, "blended(", true);
   blend << "  }\n";
   for (int t = 0; t < targets; ++t) blend << "  spectrum" << t << " = u" << t << ";\n";
   blend << "}\n";

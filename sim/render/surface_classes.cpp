@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/render/node_loops.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -132,6 +134,7 @@ void addClassSlots(const SurfaceClass& own, const RenderTables& tables, ShaderSl
   else if (!own.tabulated && tables.solid.lit) slots.files["columns"] = folder + "columns_plain.glsl";
   if (!own.modifiers) slots.files["modifiers"] = folder + "modifiers_none.glsl";
   if (!own.temperatureTextures) slots.files["temperature"] = folder + "temperature_uniform.glsl";
+  setLightLoops(slots);
 }
 
 }  // namespace pitviper

@@ -9,6 +9,7 @@
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/material_tables.hpp"
+#include "sim/render/node_loops.hpp"
 
 namespace pitviper {
 namespace {
@@ -126,7 +127,8 @@ void writeIntegral(RenderTables& t, const Plan& plan) {
   for (int g = 0; g < plan.groupCount(); ++g) targets << "  channels" << g << " = vec4(0.0);\n";
   targets << "}\n";
   text << "void integrate() {\n  Real radiance;\n";
-  t.writtenOut = plan.nodeCount() * (1 + (plan.terms.lights ? plan.lightCount * t.solid.vectors : 0)) <= kMostWrittenOut;
+  t.writtenOut = plan.nodeCount() * (1 + (plan.terms.lights ? plan.lightCount * t.solid.vectors : 0)) <= kMostWrittenOut &&
+                 (!plan.terms.lights || plan.lightCount <= kFewLights || plan.nodeCount() <= kMostLoopsWrittenOut);
   const bool written = t.writtenOut;
   size_t at = 0;
   for (const Loop& loop : written ? loopsOf(plan, true) : integrationLoops(plan)) {
@@ -211,6 +213,7 @@ void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, con
   slots.constants["EMISSION_MODIFIERS"] = slots.constants["TRANSMISSION_MODIFIERS"] = slots.constants["VIEW_ANGLES"] = 1;
   file("lights", "lights_none");
   if (tables.lit) slots.files["lights"] = lightsFile(plan);
+  setLightLoops(slots);
   file("columns", !tables.lit ? "columns_none" : tables.tabulated ? "columns_tabulated" : "columns_plain");
   file("temperature", !terms.temperatureTextures ? "temperature_uniform" : tables.planckAt >= 0 ? "temperature_tabulated" : "temperature_textured");
   file("footprint", plan.textureAccuracy > 0.0 ? "footprint_pixel" : "footprint_none");

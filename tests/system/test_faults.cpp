@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/image/exr.hpp"
 #include "sim/parameters/readable_text.hpp"
 
 namespace {
@@ -177,6 +179,77 @@ TEST_F(Faults, MemoryIsPredicted) {
       EXPECT_NE(r.err.find(word), std::string::npos) << r.err;
     EXPECT_FALSE(fs::exists(folder_ / "out"));
     EXPECT_LT(r.peak_kB, 200 << 10);
+  }
+}
+
+// Rationale: LLVM's time to compile doubles with every loop that follows another; lights of a surface are a loop at each wavelength. Expected: programs of many
+// lights at many wavelengths, drawn directly, buffered and for transparent surfaces, are there after seconds of the processor (2 to 6 measured on 2 cores; from five
+// lights and 16 wavelengths on it were minutes), and their pictures are those of few lights that send the same.
+TEST_F(Faults, ProgramsOfManyLightsAreMadeInSeconds) {
+  const auto scene = [&](int lamps, double area_cm2, const std::string& more) {
+    std::string text = "ambient: {temperature: 280 K}\naudit: 0\nmaterials:\n  m: {components: [{reflection: lambertian, reflectance: 0.3}]}\n"
+                       "  half: {components: [{reflection: lambertian, reflectance: 0.2}], transmission: {transmittance: 0.6}}\nlights:\n";
+    for (int k = 0; k < lamps; ++k)
+      text += "- {name: l" + std::to_string(k) + ", intensity: {blackbody: 1500 K, area: " + std::to_string(area_cm2) + " cm2}, position: [3 m, -2 m, 3 m]}\n";
+    return text + more + "- {name: p, shape: {model: plate, width: 4 m, height: 4 m}, material: m, temperature: 300 K}\n" +
+           "cameras: [{name: c, film: {width: 16, height: 16}, field_of_view: 20 deg, aperture: 40 mm, look_at: p, position: [9 m, 1 m, 1 m], spectral: {samples: 16}, "
+           "channels: [{name: a, response: {band: [3.6 um, 4.2 um]}}, {name: b, response: {band: [4.4 um, 4.9 um]}}]}]\n";
+  };
+  const std::string pane = "entities:\n- {name: pane, shape: {model: plate, width: 1 m, height: 1 m}, material: half, temperature: 310 K, position: [2 m, 0 m, 0 m], "
+                           "heading: 90 deg}\n";
+  int kinds = 0;
+  for (const std::string& more : std::vector<std::string>{"entities:\n", "render: {mode: buffered}\nentities:\n", pane}) {
+    put("few.yaml", scene(2, 10.0, more));
+    ASSERT_EQ(run("$P run few.yaml --out few --overwrite").code, 0) << readAll(folder_ / ".stderr");
+    for (const int lamps : {6, 20}) {
+      if (lamps == 20 && more == pane) continue;
+      put("many.yaml", scene(lamps, 20.0 / lamps, more));
+      const Result r = run("XDG_CACHE_HOME=$PWD/cache" + std::to_string(++kinds) + " bash -c 'ulimit -t 25; $P run many.yaml --out many --overwrite'");
+      ASSERT_EQ(r.code, 0) << lamps << more << r.err;
+      const auto few = pitviper::readExr(folder_ / "few" / "c_00000.exr"), many = pitviper::readExr(folder_ / "many" / "c_00000.exr");
+      double most = 0.0;
+      for (size_t l = 0; l < few.layers.size(); ++l)
+        for (size_t k = 0; k < few.layers[l].pixels.size(); ++k)
+          most = std::max(most, std::abs(many.layers[l].pixels[k] / static_cast<double>(few.layers[l].pixels[k]) - 1.0));
+      EXPECT_LT(most, 1e-5) << lamps << more << ": sums of 20 terms in single precision, 20 x 6e-8, and decimals of the areas";
+    }
+  }
+}
+
+// Rationale: a pixel that is no number, or beyond all numbers, looks like black or white to whoever reads a frame. Expected: whatever makes one, with and without
+// stages of a sensor, direct, buffered and by the reference, in a spectral image and a temperature, no frame and no success, but one line that says where.
+TEST_F(Faults, APixelThatIsNotFiniteNeverLeaves) {
+  const auto scene = [](const std::string& plate, const std::string& more, const std::string& camera, const std::string& channel = "") {
+    return more + "audit: 0\nmaterials: {m: {components: [{reflection: lambertian, reflectance: 0.3}]}}\nentities:\n- {name: p, shape: {model: plate, width: 1 m, height: 1 m}, "
+                  "material: m, temperature: " + plate + "}\ncameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: "
+                  "[9 m, 0 m, 0 m], " + camera + "channels: [{name: m, response: {band: [3.6 um, 4.9 um]}" + channel + "}]}]\n";
+  };
+  const std::string lamp = "lights: [{name: l, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 1e30], [6, 1e30]]}, radius: 1 um, level: 1e6, position: [0.01 m, 0.05 m, 0.05 m]}]\n";
+  const std::string detector = "exposure: 1 ms, stages: [{stage: detector, full_well: 7e6, bits: 14}], ", efficiency = ", quantum_efficiency: 0.8, output: [counts]";
+  int refused = 0;
+  for (const std::string& text : {scene("300 K", lamp, ""), scene("300 K", lamp + "render: {mode: buffered}\n", ""), scene("300 K", lamp + "accuracy: reference\n", ""),
+                                  scene("300 K", lamp, detector, efficiency), scene("300 K", lamp, "", ", output: [radiance, apparent_temperature]"),
+                                  scene("300 K", "ambient: {radiance: {wavelength: um, unit: W/(m2 sr um), values: [[3, 1e30], [6, 1e30]]}}\n", detector, efficiency)}) {
+    put("a.yaml", text);
+    const Result r = run("rm -rf out; ulimit -t 40; $P run a.yaml --out out");
+    EXPECT_NE(r.code, 0) << text << r.out;
+    EXPECT_FALSE(fs::exists(folder_ / "out" / "c_00000.exr")) << text;
+    EXPECT_NE(r.err.find("; expected "), std::string::npos) << text << r.err;
+    EXPECT_NE(r.err.find("; fix: "), std::string::npos) << text << r.err;
+    refused += r.err.find("camera c, frame 0, m.") != std::string::npos;
+  }
+  EXPECT_GE(refused, 4);
+}
+
+// Expected: a flare out of view, however far, costs a picture nothing, and several flares no more programs than one (1 to 6 s of the processor).
+TEST_F(Faults, FlaresAnywhereAreDrawnInSeconds) {
+  for (const char* flare : {"position: [0 m, 0 m, 10 km], speed: 0 m/s", "position: [0 m, 0 m, 1000 km], speed: 0 m/s", "position: [80 km, 1 m, 1 m], speed: 0 m/s",
+                            "position: [0 m, -3 km, 2 km], speed: 0 m/s", "position: [9 m, -30 m, 3 m], sequence: {count: 5, interval: 0.1 s}"}) {
+    put("a.yaml", "time: {rate: 100 Hz, frames: 1}\naudit: 0\n" + kPlate + "flares: [{name: f, type: mtv, time: -0.6 s, " + flare + "}]\n" +
+                      "cameras: [{name: c, film: {width: 16, height: 12}, field_of_view: 6 deg, aperture: 40 mm, look_at: p, position: [0 m, -40 m, 0 m], "
+                      "channels: [{name: mw, response: {band: [3.7 um, 4.8 um]}}]}]\n");
+    const Result r = run("ulimit -t 40; $P run a.yaml --out out --overwrite");
+    EXPECT_EQ(r.code, 0) << flare << r.err;
   }
 }
 

@@ -70,5 +70,79 @@ TEST(FieldLines, HoldAGaussianThatABorderCuts) {
         "panels of 2.25 widths: the same remainder 3^6 times, no longer small; pictures take them where a third of the accuracy holds");
 }
 
+// Rationale: parts as fine as 1e-6 of a pixel beside coarse ones, all over it, would be halved into 1e12 cells. Expected: as many lines as allowed at most, at once,
+// that stand for the whole pixel.
+TEST(FieldLines, StayFewHoweverFineThePartsAre) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  for (int trial = 0; trial < 60; ++trial) {
+    std::vector<FieldLines::Part> parts;
+    const double fine = std::pow(10.0, -6.0 * unit(random));
+    for (int k = 0; k < 2 + trial % 5; ++k) {
+      const double apart = k == 0 ? fine : std::pow(10.0, -6.0 * unit(random)), thin = trial % 3 == 0 ? 1.0 : 1e-3 * unit(random);
+      parts.push_back({{-1.0, thin < 1.0 ? unit(random) : -1.0}, {2.0, 2.0}, {apart, trial % 2 ? apart : 1e-6}, static_cast<std::size_t>(k)});
+    }
+    const FieldLines lines = ofParts(parts);
+    for (int most : {1, 4, 48, 128}) {
+      const PixelLines p = pixelLines({&lines, 1}, 0, 0, most, {1.0, 2});
+      double sum = p.outside;
+      for (const FilmLine& l : p.within) sum += l.share;
+      EXPECT_NEAR(sum, 1.0, 1e-9);
+      EXPECT_LE(static_cast<int>(p.within.size()), most * most);
+    }
+  }
+}
+
+/// A field of one sphere without a box of its own.
+struct Sphere final : FieldState {
+  Sphere(const glm::dvec3& centre, double radius_m) {
+    FieldElement e;
+    e.centre = centre, e.radius_m = radius_m, e.finest_m = 0.1 * radius_m;
+    elements = {e};
+    low = centre - radius_m, high = centre + radius_m;
+  }
+  void along(const FieldLine&, int, std::vector<FieldStep>&) const override {}
+};
+
+View aView(double field_deg) {
+  View v;
+  v.width = 24, v.height = 16;
+  v.tanPerPixelX = v.tanPerPixelY = 2.0 * std::tan(0.5 * field_deg * std::acos(-1.0) / 180.0) / v.width;
+  v.axisX = 12.0, v.axisY = 8.0;
+  return v;
+}
+
+// Expected: what is beside, above, below or behind the film shows nowhere, however far off; and wherever a place of a sphere falls on the film, it is within
+// the rectangle that it is looked for in. Angles as far as 178 degrees across, spheres from inside of which one looks to such of 1e-6 rad.
+TEST(FieldLines, ASphereShowsWhereItIs) {
+  for (const double far_m : {10.0, 1e3, 1e4, 1e5, 1e7})
+    for (const glm::dvec3& way : {glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0), glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(0.6, 0.8, 0.0)})
+      EXPECT_TRUE(fieldLines(aView(6.0), Sphere(far_m * way, 3.0)).isEmpty()) << far_m;
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  std::normal_distribution<double> normal;
+  int shown = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    const View v = aView(trial % 4 == 0 ? 178.0 : 2.0 + 170.0 * unit(random));
+    const double distance = std::pow(10.0, 5.0 * unit(random)), radius = distance * std::pow(10.0, -6.0 * unit(random) + 0.5);
+    glm::dvec3 way(normal(random), normal(random), trial % 2 ? 0.02 * normal(random) : normal(random));
+    const glm::dvec3 centre = distance * glm::normalize(way);
+    const Sphere sphere(centre, radius);
+    const FieldLines lines = fieldLines(v, sphere);
+    for (int k = 0; k < 200; ++k) {
+      const glm::dvec3 p = centre + radius * glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+      if (p.z >= -1e-9 * distance) continue;
+      const glm::dvec2 at = filmPosition(v, p);
+      if (at.x < 0.0 || at.y < 0.0 || at.x > v.width || at.y > v.height) continue;
+      ++shown;
+      ASSERT_FALSE(lines.parts.empty());
+      const FieldLines::Part& part = lines.parts.front();
+      ASSERT_TRUE(at.x >= part.low.x - 1e-6 && at.x <= part.high.x + 1e-6 && at.y >= part.low.y - 1e-6 && at.y <= part.high.y + 1e-6)
+          << at.x << " " << at.y << " in " << part.low.x << " " << part.low.y << " to " << part.high.x << " " << part.high.y;
+    }
+  }
+  EXPECT_GT(shown, 10000);
+}
+
 }  // namespace
 }  // namespace pitviper::test
