@@ -1,6 +1,6 @@
 #include "scenarios/import/material_import.hpp"
 
-#include <cmath>
+#include <cctype>
 
 #include "materials/refractive_index.hpp"
 #include "scenarios/import/optical_constants_import.hpp"
@@ -42,7 +42,8 @@ void readBack(const std::string& yaml, const std::filesystem::path& file) {
 }  // namespace
 
 std::optional<ImportedMaterial> importedMaterial(const std::filesystem::path& file, const ImportChoices& choices) {
-  const std::string ending = file.extension().string();
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   std::optional<ImportedMaterial> made;
   if (ending == ".yml" || ending == ".yaml") {
     std::string text;

@@ -310,7 +310,9 @@ const ParameterTable& texture() {
       "A grey PNG (8 or 16 bit, read linearly), a layer of an OpenEXR file, or inline rows, bottom row last, stretched over u and v from 0 to 1; bilinear "
       "between pixel centres. "
       "Where an accuracy is asked for it is read over what a pixel covers of it, and a temperature gives the mean of what that sends.",
-      {text("file", "PNG or EXR file; an EXR's values are in the texture's unit (K, um, or 1)"), text("layer", "of an EXR file with several"),
+      {text("file", "PNG or EXR file; an EXR's values are in the texture's unit (K, um, or 1). Its display window counts: what its data window leaves out "
+            "is 0 of a share (a modifier), and refused of anything else"),
+       text("layer", "of an EXR file with several"),
        list("rows", "rows of numbers from top to bottom", 1, 4096), any("minimum", "of a PNG file: value of black (a quantity in the texture's unit)"),
        any("maximum", "of a PNG file: value of white"),
        withDefault(choice("edges", {"hold", "repeat"}, "beyond its edges; repeat where it goes round a sphere or cylinder (u runs round, v from end to end)"),
