@@ -144,6 +144,7 @@ class Importer {
     std::vector<Row> kept;
     std::size_t twice = 0;
     for (Row& row : rows) {
+      if (!(row.values[0] > 0.0)) throw UserError(row.where, "a wavelength of " + um(row.values[0]), "above 0", "correct or remove the row");
       if (!kept.empty()) {
         const double before = kept.back().values[0], here = row.values[0];
         if (row.values == kept.back().values) {

@@ -242,6 +242,7 @@ TEST(OpticalConstants, RefusesAtTheRow) {
       {head + good + "        1.0 1.6 0.1\n", "a.yml:7:1: a second row at 1 um, of other values than that of line 6"},
       {head + good + "        5.0 1.6 -1e-7\n", "a.yml:7:1: k is -1e-07 at 5 um: light would grow"},
       {head + good + "        5.0 0 0.1\n", "a.yml:7:1: n is 0 at 5 um"},
+      {head + "        0 1.6 0.1\n        2 1.6 0.1\n", "a.yml:5:1: a wavelength of 0 um"},
       {head + "        1001 1.6 0.1\n        2000 1.6 0.1\n", "a.yml:5:1: the table goes from 1001 um to 2000 um"},
       {"DATA:\n  - type: tabulated k\n    data: |\n        1 0.1\n        2 0.2\n", "a.yml:2:3: no n in the file"},
       {"DATA:\n  - type: tabulated n\n    data: |\n        1 1\n        2 2\n  - type: tabulated k\n    data: |\n        3 1\n        4 2\n",
