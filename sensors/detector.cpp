@@ -81,6 +81,7 @@ DetectorLaw readLaw(const Record& r, const Camera& camera) {
   law.prnu /= camera.binning, law.gainDrift_per_s /= camera.binning, law.crosstalk /= camera.binning;
   law.display = readDisplay(r);
   designNoise(r, camera, law);
+  law.unread = r.text("saturated") == "limit" ? WhereUnread::Limit : WhereUnread::Nan;
   return law;
 }
 
@@ -122,6 +123,10 @@ StageModel detectorModel() {
        withDefault(within(number("time_constant", "s", "of a bolometer: its signal follows the light so slowly"), 0, 10), "0 s"),
        withDefault(within(number("line_time", "s", "rolling read-out: each row is exposed so much later than the one above, the middle of the film at the frame's time"),
                           0, 1), "0 s"),
+       withDefault(choice("saturated", {"nan", "limit"},
+                          "what `apparent_temperature` and `snr` are where a count says nothing (the well or the converter is full, the converter's lowest code): no number, or "
+                          "the limit, that of what just fills the pixel; of bad pixels no number either way"),
+                   "nan"),
        withDefault(choice("agc", {"linear", "percentile", "plateau", "fixed"},
                           "how `display` maps counts to a screen's 256 codes. linear, or percentile: evenly over the picture's range but for its tails; plateau: by its histogram, no "
                           "count of which weighs more than a plateau; fixed: the converter's whole range"),

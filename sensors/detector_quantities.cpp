@@ -70,6 +70,11 @@ void signalToNoise(const Detector& d, const Collector& c, ChannelOutput& o) {
   o.asSignalToNoise = true;
 }
 
+void saturated(const Detector& d, const Collector& c, ChannelOutput& o) {
+  counts(d, c, o);
+  o.asMark = true;
+}
+
 void display(const Detector& d, const Collector& c, ChannelOutput& o) {
   counts(d, c, o);
   o.asDisplay = true;
@@ -95,6 +100,8 @@ std::vector<Quantity> detectorQuantities() {
           {"apparent_temperature", "K", "temperature of a black body that gives the same counts, or, without a detector's stage, the same radiance",
            apparentTemperature},
           {"snr", "1", "mean photoelectrons of light over the noise of a frame, without what is fixed (needs what counts need)", signalToNoise},
+          {"saturated", "1", "why a pixel's count says nothing: 1 the well or the converter is full, 2 the converter's lowest code, 3 a bad pixel; else 0 (needs what counts need)",
+           saturated},
           {"display", "code", "counts as 256 codes for a screen, by the detector's `agc`: for people, no measurements", display},
           {"volts", "V", "gain times flux or focal-plane irradiance (needs gain)", volts}};
 }

@@ -51,6 +51,7 @@ class DetectorStage final : public SensorStage {
     struct Read {
       std::string channel;
       std::vector<float> counts, signalToNoise;
+      std::vector<CountMark> marks;
     };
     std::vector<Read> read;  // counts by channel: they and what is told of them are of one read-out
     for (std::size_t o = 0; o < pictures.outputs.size(); ++o) {
@@ -58,21 +59,23 @@ class DetectorStage final : public SensorStage {
       if (!output.detected) continue;
       auto own = std::find_if(read.begin(), read.end(), [&](const auto& r) { return r.channel == output.channel; });
       if (own == read.end()) {
-        read.push_back({output.channel, pictures.values(o), {}});
+        read.push_back({output.channel, pictures.values(o), {}, {}});
         own = read.end() - 1;
         const bool wanted = std::any_of(pictures.outputs.begin(), pictures.outputs.end(),
                                         [&](const ChannelOutput& other) { return other.asSignalToNoise && other.channel == output.channel; });
-        expose(own->counts, wanted ? &own->signalToNoise : nullptr, output, tick, pictures.width, pictures.height);
+        expose(own->counts, own->marks, wanted ? &own->signalToNoise : nullptr, output, tick, pictures.width, pictures.height);
       }
       std::vector<float>& picture = pictures.values(o);
       picture = output.asSignalToNoise ? own->signalToNoise : own->counts;
       if (output.asDisplay) toDisplayCodes(picture, law_, noiseAtMedian(picture, tick));
+      if (output.asMark) std::transform(own->marks.begin(), own->marks.end(), picture.begin(), [](CountMark m) { return static_cast<float>(m); });
       if (!output.asTemperature) continue;
       const double dark = law_.darkCurrent_per_s * tick.exposure_s;
       const std::vector<float>* lens = o < pictures.ownLight.size() && !pictures.ownLight[o].empty() ? &pictures.ownLight[o] : nullptr;
       for (std::size_t p = 0; p < picture.size(); ++p)
-        picture[p] = static_cast<float>(((static_cast<double>(picture[p]) - law_.offset) / (law_.gain * tick.gain) - dark) / law_.fillFactor - (lens ? static_cast<double>((*lens)[p]) : 0.0));
+        picture[p] = static_cast<float>((saidElectrons(picture[p], own->marks[p], tick.gain) - dark) / law_.fillFactor - (lens ? static_cast<double>((*lens)[p]) : 0.0));
     }
+    for (Read& r : read) pictures.marks[r.channel] = std::move(r.marks);
   }
 
  private:
@@ -82,6 +85,19 @@ class DetectorStage final : public SensorStage {
     std::nth_element(counts.begin(), middle, counts.end(), [](float a, float b) { return a < b || (!std::isnan(a) && std::isnan(b)); });
     const double gain = law_.gain * tick.gain, electrons = std::isnan(*middle) ? law_.fullWell : std::max(0.0, (static_cast<double>(*middle) - law_.offset) / gain);
     return gain * std::sqrt(electrons + law_.readoutVariance(tick.step_s));
+  }
+
+  /// What a count stands for; where it says nothing no number, or the most that the pixel tells.
+  double saidElectrons(float count, CountMark mark, double gain) const {
+    if (mark == CountMark::Bad || (mark != CountMark::None && law_.unread == WhereUnread::Nan)) return NAN;
+    return mark == CountMark::Full ? law_.saturation(gain) : (static_cast<double>(count) - law_.offset) / (law_.gain * gain);
+  }
+
+  /// Signal to noise where a count says nothing: none, or that of a pixel that is just full.
+  double markedSignalToNoise(float own, CountMark mark, double gain, double dark, double variance) const {
+    if (mark == CountMark::Bad || law_.unread == WhereUnread::Nan) return NAN;
+    const double most = law_.saturation(gain);
+    return mark == CountMark::Full ? std::max(0.0, most - dark) / std::sqrt(most + variance) : static_cast<double>(own);
   }
 
   /// Learnt with the camera's own lens and exposure, whatever commands make of them: a frame's counts depend on no other.
@@ -99,7 +115,7 @@ class DetectorStage final : public SensorStage {
     return f;
   }
 
-  void expose(std::vector<float>& picture, std::vector<float>* signalToNoise, const ChannelOutput& output, const SensorTick& tick, int width, int height) {
+  void expose(std::vector<float>& picture, std::vector<CountMark>& marks, std::vector<float>* signalToNoise, const ChannelOutput& output, const SensorTick& tick, int width, int height) {
     const std::uint32_t channel = channelNumber(output.channel);
     const FixedPattern& fixed = patternOf(output, channel, tick, width, height);
     share(picture, law_.crosstalk, width, height);
@@ -115,6 +131,7 @@ class DetectorStage final : public SensorStage {
     const double whole = law_.sigmaT > 0.0 ? law_.sigmaT * source(NoiseEffect::Frame).normal(0) : 0.0;
     const double variance = law_.readoutVariance(tick.step_s);
     if (signalToNoise) signalToNoise->resize(picture.size());
+    marks.assign(picture.size(), CountMark::None);
     std::vector<double> columns(static_cast<std::size_t>(width), whole);
     for (int x = 0; law_.sigmaTh > 0.0 && x < width; ++x) columns[static_cast<std::size_t>(x)] += law_.sigmaTh * ofColumn.normal(static_cast<std::uint32_t>(x));
     struct Row {
@@ -129,15 +146,20 @@ class DetectorStage final : public SensorStage {
         double response = static_cast<double>(fixed.response[at]);
         if (!fixed.gainDrift.empty()) response += static_cast<double>(fixed.gainDrift[at]) * tick.time_s;
         double signal = response * ideal;
-        if (!fixed.bend.empty()) signal += static_cast<double>(fixed.bend[at]) * ideal * ideal;
+        if (!fixed.bend.empty()) {  // a bend is known up to a full well: beyond, it would turn the brightest dark
+          const double known = std::min(ideal, law_.fullWell);
+          signal += static_cast<double>(fixed.bend[at]) * known * known;
+        }
         const double mean = std::max(0.0, signal) + darkMean;
         if (signalToNoise) (*signalToNoise)[at] = static_cast<float>(std::max(0.0, signal) / std::sqrt(mean + variance));
         drawn.count[static_cast<std::size_t>(x)] = mean;
       }
       shot.poissonAndNormal(static_cast<std::uint32_t>(from), drawn.count, drawn.normal);
       // What the well holds is what is counted; read-out adds to what it says.
-      for (std::size_t x = 0; x < drawn.count.size(); ++x)
-        if (const int bad = fixed.bad[from + x]; bad > 0) drawn.count[x] = bad == 1 ? 0.0 : law_.fullWell;
+      for (std::size_t x = 0; x < drawn.count.size(); ++x) {
+        if (drawn.count[x] >= law_.fullWell) marks[from + x] = CountMark::Full;
+        if (const int bad = fixed.bad[from + x]; bad > 0) drawn.count[x] = bad == 1 ? 0.0 : law_.fullWell, marks[from + x] = CountMark::Bad;
+      }
       std::vector<double>& electrons = drawn.count;
       readOut(drawn.count.data(), drawn.normal.data(), &fixed.dark[from], columns.data(), law_.fullWell, row, law_.sigmaTvh, electrons.data(), width);
       for (std::size_t x = 0; !fixed.darkDrift.empty() && x < electrons.size(); ++x) electrons[x] += static_cast<double>(fixed.darkDrift[from + x]) * tick.time_s;
@@ -146,6 +168,12 @@ class DetectorStage final : public SensorStage {
       for (std::size_t x = 0; !fixed.gain.empty() && x < electrons.size(); ++x)
         electrons[x] = static_cast<double>(fixed.gain[from + x]) * (electrons[x] - darkMean) + static_cast<double>(fixed.offset[from + x]) + darkMean;
       toCounts(electrons.data(), gain, law_.offset, most, &picture[from], width);
+      for (std::size_t at = from; at < from + electrons.size(); ++at) {
+        const auto count = static_cast<double>(picture[at]);
+        if (marks[at] == CountMark::None && !(count > 0.0 && count < most)) marks[at] = count > 0.0 ? CountMark::Full : CountMark::Lowest;
+        if (signalToNoise && marks[at] != CountMark::None)
+          (*signalToNoise)[at] = static_cast<float>(markedSignalToNoise((*signalToNoise)[at], marks[at], tick.gain, darkMean, variance));
+      }
     };
     sideBySide(height, [&](int first, int last) {
       Row drawn{std::vector<double>(static_cast<std::size_t>(width)), std::vector<double>(static_cast<std::size_t>(width))};

@@ -55,8 +55,10 @@ void printLayers(const ExrImage& image) {
       high = std::max(high, static_cast<double>(v));
       sum += static_cast<double>(v);
     }
-    std::printf("%-32s %-18s %14.6g %14.6g %14.6g", layer.name.c_str(), unitOf(image, layer.name).c_str(), low,
-                sum / static_cast<double>(std::max<size_t>(1, layer.pixels.size() - bad - unseen)), high);
+    if (low <= high)
+      std::printf("%-32s %-18s %14.6g %14.6g %14.6g", layer.name.c_str(), unitOf(image, layer.name).c_str(), low, sum / static_cast<double>(layer.pixels.size() - bad - unseen), high);
+    else
+      std::printf("%-32s %-18s %14s %14s %14s", layer.name.c_str(), unitOf(image, layer.name).c_str(), "none", "none", "none");
     if (const Attribute* bin = image.findAttribute("bin_um." + layer.name)) std::printf("  bin [um] %s", textOf(*bin).c_str());
     if (unseen) std::printf("  (%zu pixels see nothing)", unseen);
     if (bad) std::printf("  (%zu not finite)", bad);

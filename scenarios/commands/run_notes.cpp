@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/frame/mark_header.hpp"
 #include "sim/model/world.hpp"
 #include "sim/plan/averaged_fringes.hpp"
 #include "sim/plan/plan.hpp"
@@ -129,7 +130,26 @@ void FrameNotes::limits(const Frame& f) {
                    f.camera.c_str(), f.number, std::get<std::string>(a.value).c_str()));
 }
 
+/// Once per camera and channel, and again for its first frame that is full as a whole: pixels whose counts say nothing.
+void FrameNotes::saturation(const Frame& f) {
+  const int all = f.width * f.height;
+  for (const auto& [channel, tally] : markTallies(f)) {
+    const std::string key = f.camera + "/" + channel + "/";
+    const bool whole = tally.full + tally.bad >= all && tally.full > 0;
+    const auto part = [all](int pixels) { return print("%d of %d pixels (%.3g %%)", pixels, all, 100.0 * pixels / all); };
+    if (whole ? told_.insert(key + "whole").second : tally.full > 0 && told_.insert(key + "full").second)
+      notes_.say(print("camera %s, channel %s, frame %d: %s full (the well, or the converter's highest code): their counts say only that there is at least so much light, and temperatures "
+                       "and signals to noise are no numbers there; shorten 'exposure', or raise 'full_well' or lower 'gain' of the detector",
+                       f.camera.c_str(), channel.c_str(), f.number, whole ? "the whole picture is" : (part(tally.full) + (tally.full == 1 ? " is" : " are")).c_str()));
+    if (tally.lowest > 0 && told_.insert(key + "lowest").second)
+      notes_.say(print("camera %s, channel %s, frame %d: %s at the converter's lowest code: their counts say only that there is at most so much light; give the detector an 'offset', or lengthen "
+                       "'exposure'",
+                       f.camera.c_str(), channel.c_str(), f.number, (part(tally.lowest) + (tally.lowest == 1 ? " is" : " are")).c_str()));
+  }
+}
+
 void FrameNotes::look(const Frame& frame) {
+  saturation(frame);
   order(frame);
   limits(frame);
   scattering(frame);

@@ -43,6 +43,7 @@ class FrameNotes {
   void order(const Frame& frame);
   void scattering(const Frame& frame);
   void limits(const Frame& frame);
+  void saturation(const Frame& frame);
   Notes& notes_;
   std::set<std::string> told_;
 };

@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <vector>
 
+#include "sim/frame/mark_header.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -19,6 +21,13 @@ void RunTotal::add(const Frame& f) {
   if (!f.kind.empty()) return;  // spectral images say nothing of errors
   static const std::string kError = "pitviper.predicted_error.";
   Seen& seen = cameras_[f.camera];
+  ++seen.frames;
+  for (const auto& [channel, tally] : markTallies(f))
+    if (tally.full > 0) {
+      Seen::Full& full = seen.full[channel];
+      ++full.frames;
+      full.most = std::max(full.most, static_cast<double>(tally.full) / (static_cast<double>(f.width) * f.height));
+    }
   for (const Attribute& a : f.attributes) {
     if (a.name == "pitviper.mode") seen.mode = std::get<std::string>(a.value);
     if (a.name == "pitviper.accuracy") seen.accuracy = std::get<double>(a.value);
@@ -50,6 +59,9 @@ std::string RunTotal::expected() const {
               print("%.2g %%", 100.0 * seen.partError) + " of an edge's contrast at most" +
               (seen.streakError > 0.0 ? ", " + print("%.2g %%", 100.0 * seen.streakError) + " of a small body's streak" : "") + ")";
     text += "\n";
+    for (const auto& [channel, full] : seen.full)
+      text += "  " + camera + ": " + channel + " is full in " + std::to_string(full.frames) + " of " + std::to_string(seen.frames) + " frames, " + print("%.3g %%", 100.0 * full.most) +
+              " of a frame's pixels at most\n";
   }
   return text;
 }

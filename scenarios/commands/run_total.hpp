@@ -23,6 +23,12 @@ class RunTotal {
     int parts = 1;                ///< of an exposure, the most
     double motion_px = 0.0, partError = 0.0, streakError = 0.0;
     std::map<std::string, double> error;  ///< by channel, the largest
+    int frames = 0;
+    struct Full {
+      int frames = 0;
+      double most = 0.0;  ///< share of a frame's pixels
+    };
+    std::map<std::string, Full> full;  ///< by channel
   };
   std::map<std::string, Seen> cameras_;
 };

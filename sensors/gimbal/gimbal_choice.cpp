@@ -119,7 +119,7 @@ std::size_t outputNamed(const Record& tracker, const Camera& camera) {
 TrackerOptions trackerOf(const Record& r, const ChannelOutput& output) {
   TrackerOptions t;
   t.rule.sigmas = r.number("threshold");
-  const bool counts = output.detected && !output.asTemperature && !output.asSignalToNoise;
+  const bool counts = output.isCount() || output.asDisplay;
   t.rule.leastNoise = r.given("least_noise") ? r.number("least_noise") : counts ? kRoundingOfCounts : 0.0;
   t.rule.shareOfPeak = r.number("share_of_peak");
   t.rule.background = r.text("background") == "gate" ? ThresholdRule::Background::GateBorder : ThresholdRule::Background::Picture;

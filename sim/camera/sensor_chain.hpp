@@ -19,6 +19,8 @@ class SensorChain {
   /// Of an output per etendue: what an even field of radiance gives each pixel, as a projected solid angle, through all of the optics; as a calibration would find it. Of the last
   /// tick that was run.
   const std::vector<double>& seenSolidAngles(std::size_t output) const { return seen_[output]; }
+  /// Pixels whose counts say nothing, of the last tick that was run.
+  const CountMarks& marks() const { return pixels_.marks; }
   /// The cell in the middle of a pixel of the camera, in pictures of drawnCamera().
   std::size_t middleCell(int column, int row) const;
 

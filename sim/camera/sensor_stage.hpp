@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/gl/objects.hpp"
+#include "sim/model/count_marks.hpp"
 #include "sim/model/simulation.hpp"
 
 namespace pitviper {
@@ -44,6 +45,8 @@ class SensorPictures {
   const std::vector<double>* cellWeights = nullptr;
   /// Of each output what the sensor itself has sent to each pixel, in its unit; empty: nothing, or not asked for.
   std::vector<std::vector<float>> ownLight;
+  /// Of each channel that a detector counts, why pixels' counts say nothing.
+  CountMarks marks;
   /// What a share of a point's value is in a cell.
   double inCell(const SensorPoint& p, std::size_t cell) const { return outputs[p.output].perEtendue || !cellWeights ? p.value : p.value / (*cellWeights)[cell]; }
 

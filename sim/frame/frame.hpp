@@ -29,8 +29,8 @@ struct TargetRow {
     double own = 0.0;           ///< what it sends and reflects, that reaches the aperture, times range squared
     double total = 0.0;         ///< all light along the lines that meet it: with the air's, and what is seen through it
     double contrast = 0.0;      ///< what the picture would lose without it
-    double signalToNoise = 0.0;  ///< of its contrast in the best pixel; NaN without a detector
-    int saturated = -1;          ///< pixels in its box that are full; -1 without counts
+    double signalToNoise = 0.0;  ///< of its contrast in the best pixel; NaN without a detector, and where that pixel is full
+    int saturated = -1;          ///< pixels in its box that are full; -1 without a detector
   };
   std::vector<Channel> channels;
 };

@@ -1,5 +1,7 @@
 #include "sim/frame/frame_picture.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "sim/frame/file_owner.hpp"
@@ -39,6 +41,7 @@ Rgb8Image pictureOf(const Frame& frame, const FrameLayer& layer, const PictureSt
   char time[32];
   std::snprintf(time, sizeof time, "t = %.3f s", frame.time_s);
   options.title = frame.camera + "  " + layer.name + "  " + time;
+  if (std::any_of(layer.pixels.begin(), layer.pixels.end(), [](float v) { return !std::isfinite(v); })) options.title += "  magenta: none";
   options.unit = layer.unit;
   options.colourMap = paletteOf(frame, layer, style);
   if (const auto range = style.ranges.find(layer.name); range != style.ranges.end()) options.range = range->second;

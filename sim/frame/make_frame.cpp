@@ -10,6 +10,7 @@
 
 #include "sim/frame/file_owner.hpp"
 #include "sim/frame/limits_check.hpp"
+#include "sim/frame/mark_header.hpp"
 #include "sim/frame/sensor_header.hpp"
 #include "sim/frame/target_rows.hpp"
 #include "sim/frame/version.hpp"
@@ -141,7 +142,8 @@ std::vector<float> valuesOf(const std::string& frame, const ChannelOutput& outpu
 void toApparentTemperatures(std::vector<float>& values, const ChannelOutput& output, const std::vector<double>& projected_sr, double exposure_s) {
   const double scale = output.scale * (output.perExposure ? exposure_s : 1.0);
   for (size_t p = 0; p < values.size(); ++p)
-    values[p] = static_cast<float>((*output.temperature)(static_cast<double>(values[p]) / (scale * (output.perEtendue ? projected_sr[p] : 1.0))));
+    if (!std::isnan(values[p]))  // no number: a pixel whose count says nothing
+      values[p] = static_cast<float>((*output.temperature)(static_cast<double>(values[p]) / (scale * (output.perEtendue ? projected_sr[p] : 1.0))));
 }
 
 void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image) {
@@ -229,17 +231,19 @@ std::vector<SensorPoint> pointsOf(const Camera& camera, const CameraImage& image
 }
 
 /// The part of the film that is read out; places in what is said of it follow.
-void cutOut(Frame& frame, const glm::ivec4& window) {
+void cutOut(Frame& frame, CountMarks& marks, const glm::ivec4& window) {
   const auto left = static_cast<size_t>(window.x), top = static_cast<size_t>(window.y), width = static_cast<size_t>(window.z), height = static_cast<size_t>(window.w);
-  for (FrameLayer& l : frame.layers) {
-    std::vector<float> part;
+  const auto cut = [&](auto& pixels) {
+    std::remove_reference_t<decltype(pixels)> part;
     part.reserve(width * height);
     for (size_t row = top; row < top + height; ++row) {
-      const auto first = l.pixels.begin() + static_cast<std::ptrdiff_t>(row * static_cast<size_t>(frame.width) + left);
+      const auto first = pixels.begin() + static_cast<std::ptrdiff_t>(row * static_cast<size_t>(frame.width) + left);
       part.insert(part.end(), first, first + static_cast<std::ptrdiff_t>(width));
     }
-    l.pixels = std::move(part);
-  }
+    pixels = std::move(part);
+  };
+  for (FrameLayer& l : frame.layers) cut(l.pixels);
+  for (auto& [channel, pixels] : marks) cut(pixels);
   frame.width = window.z;
   frame.height = window.w;
   for (Attribute& a : frame.attributes)
@@ -310,8 +314,10 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
     frame.attributes.push_back({"pitviper.exposure_error", image.exposureError});
     if (image.streakError > 0.0) frame.attributes.push_back({"pitviper.exposure_streak_error", image.streakError});
   }
-  if (camera.window) cutOut(frame, *camera.window);
-  finishTargets(frame, camera, sim.time.step_s, cameraAt(camera, state).gain);
+  CountMarks marks = chain ? chain->marks() : CountMarks();
+  if (camera.window) cutOut(frame, marks, *camera.window);
+  addMarks(frame, marks);
+  finishTargets(frame, marks);
   return frame;
 }
 

@@ -89,7 +89,7 @@ void addCalibration(Frame& frame, const Camera& camera, const CameraState& eye, 
   const double gain = law->gain * eye.gain, dark = law->darkCurrent_per_s * eye.exposure_s;
   const double axis_sr = p.projectedSolidAngle_sr(p.width / 2, p.height / 2), perIntegral = law->fillFactor * o.scale * eye.exposure_s * axis_sr;
   const double own = law->fillFactor * ownLightOf(camera, o, axis_sr, eye.exposure_s) + dark;
-  if (!o.asTemperature && !o.asSignalToNoise && !o.asDisplay) {
+  if (o.isCount()) {
     // Of light even over the response: integral of S L over integral of kernel L.
     const double perElectron = o.curves->response.integral(o.bandLow_um, o.bandHigh_um) / o.kernel.integral(o.bandLow_um, o.bandHigh_um) / perIntegral;
     add("gain_count_per_electron", gain);

@@ -6,22 +6,17 @@
 
 namespace pitviper {
 
-void finishTargets(Frame& frame, const Camera& camera, double step_s, double gain) {
-  const DetectorLaw* law = detectorOf(camera);
+void finishTargets(Frame& frame, const CountMarks& marks) {
   for (TargetRow& t : frame.targets) {
     for (TargetRow::Channel& c : t.channels) {
-      const auto counts = std::find_if(frame.layers.begin(), frame.layers.end(), [&](const FrameLayer& l) { return l.name == c.channel + ".counts"; });
-      if (!law || counts == frame.layers.end() || std::isnan(t.left)) continue;
+      const auto own = marks.find(c.channel);
+      if (own == marks.end() || std::isnan(t.left)) continue;
       c.saturated = 0;
-      // A full well says what it holds, and read-out adds its noise.
-      constexpr double kSigmas = 4.0;
-      const double noise = kSigmas * gain * law->gain * std::sqrt(law->readoutVariance(step_s)) + 1.0;
-      const float full = static_cast<float>(std::min(law->mostCount(), std::floor(gain * law->gain * law->fullWell + law->offset + 0.5) - noise));
       // A pixel around, which the lens reaches.
       const int left = std::max(0, static_cast<int>(t.left) - 1), right = std::min(frame.width - 1, static_cast<int>(t.right) + 1),
                 top = std::max(0, static_cast<int>(t.top) - 1), bottom = std::min(frame.height - 1, static_cast<int>(t.bottom) + 1);
       for (int y = top; y <= bottom; ++y)
-        for (int x = left; x <= right; ++x) c.saturated += counts->pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)] >= full;
+        for (int x = left; x <= right; ++x) c.saturated += own->second[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)] == CountMark::Full;
     }
     const std::string name = "target." + t.name + ".";
     frame.attributes.push_back({name + "place", std::vector<double>{t.column, t.row, t.left, t.top, t.right, t.bottom}});

@@ -1,14 +1,14 @@
 #pragma once
 // Rows of targets (TargetRow) in a frame's header and as tables.
 #include "sim/frame/frame.hpp"
-#include "sim/model/simulation.hpp"
+#include "sim/model/count_marks.hpp"
 
 namespace pitviper {
 
 /// What a frame's pixels say of its targets (those that are full), and their rows as attributes `target.<name>.`: `place` [column, row, left, top, right, bottom],
 /// `sight` [range, its rate, turning to the right and up, share that is visible], and of each channel `<channel>` [own, total, contrast, signal to noise, full pixels].
-/// `gain`: factor of the detector's own, at that time.
-void finishTargets(Frame& frame, const Camera& camera, double step_s, double gain);
+/// `marks`: of the frame's pixels.
+void finishTargets(Frame& frame, const CountMarks& marks);
 
 /// Rows as a table: a line of names and units, and for each row a line.
 std::string targetTableHead(const std::vector<TargetRow>& rows);

@@ -154,7 +154,8 @@ void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, con
       const double behind = body_sr > 0.0 ? perFlux * pixel_sr * (total[counted] - contrast[counted]) / range2 / body_sr : 0.0;
       const double own_e = law->fillFactor * ownLightOf(camera_, *detected, pixel_sr, eye.exposure_s), dark = law->darkCurrent_per_s * eye.exposure_s;
       const double variance = std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark + law->readoutVariance(simulation_.time.step_s);
-      c.signalToNoise = signal / std::sqrt(variance);
+      // A best pixel that is full tells nothing of it.
+      if (std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark < law->saturation(eye.gain)) c.signalToNoise = signal / std::sqrt(variance);
     }
     row.channels.push_back(c);
   }

@@ -9,7 +9,7 @@ std::size_t toGreyCodes(std::span<const float> values, double low, double step, 
   unsigned outside = 0;
   for (std::size_t p = 0; p < values.size(); ++p) {
     const float code = (values[p] - from) * perStep + 0.5f;
-    const float kept = code >= 0.0f ? std::min(code, top) : 0.0f;  // NaN too
+    const float kept = code < 0.0f ? 0.0f : code < top ? code : top;  // NaN: the highest
     codes[p] = static_cast<std::uint16_t>(kept);
     outside += static_cast<unsigned>(!(code >= 0.0f)) + static_cast<unsigned>(code >= top);
   }

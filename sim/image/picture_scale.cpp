@@ -59,8 +59,10 @@ double PictureScale::value(double position) const {
 
 void CommonScale::add(const std::vector<float>& pixels) {
   constexpr std::size_t kMost = 4u << 20;
-  const auto [least, most] = std::minmax_element(pixels.begin(), pixels.end(), [](float a, float b) { return a < b || (!std::isfinite(a) && std::isfinite(b)); });
-  if (least != pixels.end()) extremes_.insert(extremes_.end(), {*least, *most});
+  float least = INFINITY, most = -INFINITY;
+  for (float v : pixels)
+    if (std::isfinite(v)) least = std::min(least, v), most = std::max(most, v);
+  if (least <= most) extremes_.insert(extremes_.end(), {least, most});
   for (std::size_t i = 0; i < pixels.size(); i += step_) some_.push_back(pixels[i]);
   while (some_.size() > kMost) {
     std::size_t kept = 0;

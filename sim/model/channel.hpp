@@ -34,10 +34,13 @@ struct ChannelOutput {
   bool detected = false;                                    ///< photoelectrons that a detector makes counts of
   bool asTemperature = false;                               ///< then told as the temperature of a black body whose kernel integral is as large
   bool asSignalToNoise = false, asDisplay = false;          ///< of what is detected: its mean over its noise; codes for a screen
+  bool asMark = false;                                      ///< why a count says nothing (CountMark)
   std::shared_ptr<const BandTemperature> temperature = {};  ///< of its kernel, where that is asked for (asTemperature, detected)
   double bandLow_um = 0.0, bandHigh_um = 0.0;
   std::shared_ptr<const ChannelCurves> curves = {};  ///< in the frame's header; none: nothing
   std::string cut;  ///< what of its response is left out for want of data, in words; empty: nothing (coverage.hpp)
+  /// What the detector counts, told as it is.
+  bool isCount() const { return detected && !asTemperature && !asSignalToNoise && !asDisplay && !asMark; }
   std::string layer() const { return channel + "." + quantity; }
 };
 

@@ -2,9 +2,16 @@
 // How a detector makes counts of photoelectrons, as a scenario asks for it.
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 
 namespace pitviper {
+
+/// Why a pixel's count says nothing: as many electrons as its well holds or the converter's highest code, its lowest code, a bad pixel.
+enum class CountMark : std::uint8_t { None = 0, Full = 1, Lowest = 2, Bad = 3 };
+
+/// What temperatures and signals to noise are where a count says nothing: no number, or that of what just fills the pixel.
+enum class WhereUnread { Nan, Limit };
 
 /// How `display` maps counts to the 256 codes of a screen: for people only.
 enum class Agc { Fixed, Linear, Plateau };
@@ -53,6 +60,7 @@ struct DetectorLaw {
   double offsetDrift_per_s = 0.0;  ///< rms over pixels, in electrons a second since time 0
   double gainDrift_per_s = 0.0;    ///< the same, relative
   DisplayLaw display = {};
+  WhereUnread unread = WhereUnread::Nan;
   static constexpr int kFlickerOctaves = 12;
   /// Of 1/f noise, in one octave of frequencies, at so many seconds from frame to frame [electron^2]: 2 sigma^2 (f_c / f_s) ln 2.
   double flickerVariance(double step_s) const { return 2.0 * sigmaTvh * sigmaTvh * flickerCorner_Hz * step_s * std::log(2.0); }
@@ -61,8 +69,8 @@ struct DetectorLaw {
     return sigmaTvh * sigmaTvh + sigmaTv * sigmaTv + sigmaTh * sigmaTh + sigmaT * sigmaT + kFlickerOctaves * flickerVariance(step_s) + 1.0 / (12.0 * gain * gain);
   }
   double mostCount() const { return static_cast<double>((1 << bits) - 1); }
-  /// Electrons at which it no longer tells: the well is full, or the highest count.
-  double saturation() const { return std::min(fullWell, (mostCount() - offset) / gain); }
+  /// Electrons at which it no longer tells: the well is full, or the highest count. `factor`: of its gain.
+  double saturation(double factor = 1.0) const { return std::min(fullWell, (mostCount() - offset) / (gain * factor)); }
 };
 
 }  // namespace pitviper

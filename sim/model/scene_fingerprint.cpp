@@ -83,7 +83,7 @@ void addTo(Fingerprint& f, const MaterialStates& s) {
 
 void addTo(Fingerprint& f, const std::vector<ChannelOutput>& outputs) {
   f.add(static_cast<double>(outputs.size()));
-  for (const auto& [channel, quantity, unit, where, kernel, scale, perEtendue, perExposure, behindOptics, onFilm, onFilmScale, detected, asTemperature, asSignalToNoise, asDisplay,
+  for (const auto& [channel, quantity, unit, where, kernel, scale, perEtendue, perExposure, behindOptics, onFilm, onFilmScale, detected, asTemperature, asSignalToNoise, asDisplay, asMark,
                     temperature, bandLow_um, bandHigh_um, curves, cut] : outputs) {
     f.add(channel).add(quantity).add(scale).add(perEtendue).add(perExposure);
     pitviper::addTo(f, kernel);

@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "sim/frame/frame_number.hpp"
+#include "sim/frame/mark_header.hpp"
 #include "sim/image/grey_codes.hpp"
 #include "sim/parameters/table.hpp"
 
 namespace pitviper {
 
 bool isCounts(const Camera& camera, const ChannelOutput& output) {
-  return detectorOf(camera) && output.detected && !output.asTemperature && !output.asSignalToNoise;
+  return detectorOf(camera) && (output.isCount() || output.asDisplay);
 }
 
 StreamCoder::StreamCoder(const Camera& camera, const std::string& layer, const StreamRange& range, const Location& where)
@@ -42,6 +43,9 @@ void StreamCoder::code(const Frame& frame, StreamPicture& picture) {
     picture.gain = numberOf(frame, "calibration." + layer_ + ".radiance_per_count", 0.0);
     picture.offset = numberOf(frame, "calibration." + layer_ + ".radiance_at_0", 0.0);
     picture.outside = toGreyCodes(layer->pixels, 0.0, 1.0, most, picture.codes);
+    // A well may be full below the highest code.
+    const auto tallies = markTallies(frame);
+    if (const auto own = tallies.find(layer_.substr(0, layer_.rfind('.'))); own != tallies.end()) picture.outside = std::max(picture.outside, static_cast<std::size_t>(own->second.full));
     if (display_) picture.outside = 0;  // black and white are where automatic gain puts some
     return;
   }

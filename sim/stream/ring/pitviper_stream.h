@@ -49,7 +49,7 @@ enum {
   PITVIPER_LATE = 1,           /* sent after it was due */
   PITVIPER_REPEATED = 2,       /* the picture before, in place of one that was not ready */
   PITVIPER_OUTSIDE_LIMITS = 4, /* shows what its plan was not made for */
-  PITVIPER_SATURATED = 8       /* a layer of counts holds its highest */
+  PITVIPER_SATURATED = 8       /* a layer of counts holds its highest, or a detector's well is full; temperatures and signals to noise are NaN there */
 };
 
 struct pitviper_stream_layer {

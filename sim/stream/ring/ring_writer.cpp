@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "sim/frame/frame_number.hpp"
+#include "sim/frame/mark_header.hpp"
 #include "sim/frame/version.hpp"
 #include "sim/image/grey_codes.hpp"
 #include "sim/stream/clock/wall_clock.hpp"
@@ -121,6 +122,8 @@ void RingWriter::write(const Frame& frame) {
   std::copy(std::begin(wxyz), std::end(wxyz), f.orientation_ecef_wxyz);
   f.truth_column_px = s.column_px, f.truth_row_px = s.row_px;
   f.exposure_s = numberOf(frame, "pitviper.exposure_s", 0.0);
+  for (const auto& [channel, tally] : markTallies(frame))
+    if (tally.full > 0) f.flags |= PITVIPER_SATURATED;
   const std::size_t pixels = static_cast<std::size_t>(design_.width) * static_cast<std::size_t>(design_.height);
   for (std::size_t l = 0; l < design_.layers.size(); ++l) {
     const RingLayer& design = design_.layers[l];
