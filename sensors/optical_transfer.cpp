@@ -22,8 +22,11 @@ double apertureTransfer(double shift, double obscuration, double defocus_waves) 
   if (e > 0.0 && s > 0.0 && (1.0 - e * e) / (2.0 * s) < 1.0 - half) edges.push_back((1.0 - e * e) / (2.0 * s));
   std::sort(edges.begin(), edges.end());
   const double waves = 4.0 * kPi * defocus_waves * s;
-  const int points = std::clamp(16 + static_cast<int>(std::abs(waves)), 16, 96);
-  static thread_local std::vector<std::vector<QuadratureNode>> rules(97);
+  // A rule of n points holds some n radians of a cosine; few rules, as each is worked out once.
+  constexpr int kTogether = 16, kMost = 1024;
+  const double most = std::abs(waves) * (1.0 - half);
+  const int points = std::min(kTogether * (1 + static_cast<int>(std::ceil(most / kTogether))), kMost);
+  static thread_local std::vector<std::vector<QuadratureNode>> rules(kMost + 1);
   if (rules[static_cast<std::size_t>(points)].empty()) rules[static_cast<std::size_t>(points)] = gaussLegendre(points, 0.0, 1.0);
   const auto root = [](double x) { return x > 0.0 ? std::sqrt(x) : 0.0; };
   double sum = 0.0;
@@ -83,9 +86,14 @@ double sinc(double x) { return std::abs(x) > 1e-8 ? std::sin(kPi * x) / (kPi * x
 
 }  // namespace
 
+double cyclesOf(int reach) {
+  constexpr double kCellsTimesCycles = 288.0;
+  return std::clamp(std::floor(kCellsTimesCycles / (reach + 1)), 1.0, kMostCycles);
+}
+
 SpreadKernel spreadKernel(const std::function<double(double, double)>& transfer, double cutoff_per_m, double cell_m, int reach) {
   const bool isSampled = cutoff_per_m * cell_m <= kSampled;
-  cutoff_per_m = std::min(cutoff_per_m, kMostCycles / cell_m);
+  cutoff_per_m = std::min(cutoff_per_m, cyclesOf(reach) / cell_m);
   std::vector<double> places;
   for (int i = 0; i <= reach; ++i) places.push_back(cell_m * i);
   const auto averaged = [&](double f) { return isSampled ? 1.0 : sinc(cell_m * f) * sinc(cell_m * f); };
@@ -101,7 +109,7 @@ SpreadKernel spreadKernel(const std::function<double(double, double)>& transfer,
 PointResponse::PointResponse(const std::function<double(double, double)>& transfer, double cutoff_per_m, double cell_m, int reach) : reach_(reach) {
   // So that between entries a cubic is good to 1e-3 of what little the highest frequencies leave.
   constexpr double kEntriesACycle = 11.0, kMostEntries = 1500.0;
-  const double cutoff = std::min(cutoff_per_m, kMostCycles / cell_m);
+  const double cutoff = std::min(cutoff_per_m, cyclesOf(reach) / cell_m);
   steps_ = static_cast<int>(std::clamp(std::ceil(kEntriesACycle * cutoff * cell_m), 4.0, std::max(4.0, kMostEntries / (reach + 1))));
   side_ = (reach + 1) * steps_ + 3;
   std::vector<double> places;

@@ -32,9 +32,11 @@ constexpr double kSampled = 0.75;
 /// Beyond so many cycles a cell nothing is looked at: cells are then far wider than the point spread function, and a hundredth of a cell's light may be told as
 /// its neighbours'. A whole number, at which sinc is 0, so that all shares together stay 1.
 constexpr double kMostCycles = 32.0;
+/// Of kernels that reach farther fewer cycles count, down to one: what is so wide has nothing finer in it, and their work (frequencies by frequencies by cells) stays within a second.
+double cyclesOf(int reach);
 
 /// `transfer`: real and even, by frequency along x and y [1/m]; nothing beyond `cutoff`. Cells are means of what falls on them before it is spread.
-/// Frequencies up to kMostCycles a cell count.
+/// Frequencies up to cyclesOf(reach) a cell count.
 ///   share(i, j) = c^2 integral of OTF(f) s(f) cos(2 pi c (i f_x + j f_y)) d2f
 /// Where cells are fine enough to sample the point spread function (c cutoff <= kSampled; all shares together are then 1), s is 1: the means before stand for
 /// those after. Where they are coarser, s = sinc^2(c f_x) sinc^2(c f_y): light lies evenly on the cell it comes from, and is averaged over the one it falls on.
@@ -42,7 +44,7 @@ SpreadKernel spreadKernel(const std::function<double(double fx, double fy)>& tra
 
 /// Share of a point's light that falls on a cell, by how far the cell's middle is from the point: the point spread function averaged over the cell, once.
 ///   share(x, y) = c^2 integral of OTF(f) sinc(c f_x) sinc(c f_y) cos(2 pi c (x f_x + y f_y)) d2f, x and y in cells
-/// Frequencies up to kMostCycles a cell count. Tabulated, cubic between entries.
+/// Frequencies up to cyclesOf(reach) a cell count. Tabulated, cubic between entries.
 class PointResponse {
  public:
   PointResponse(const std::function<double(double fx, double fy)>& transfer, double cutoff_per_m, double cell_m, int reach);

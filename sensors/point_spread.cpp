@@ -1,11 +1,15 @@
 // The lens: a point spread function by diffraction, wavefront, defocus, blur and jitter, of each channel its own.
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <iterator>
 #include <map>
+#include <memory>
 #include <tuple>
 
 #include "sensors/convolution.hpp"
-#include "sensors/side_by_side.hpp"
+#include "sensors/far_wings.hpp"
+#include "sensors/lens_spread.hpp"
 #include "sensors/stages.hpp"
 #include "sim/camera/sensor_stage.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -13,114 +17,11 @@
 namespace pitviper {
 namespace {
 
-constexpr int kMostReach_cells = 128;
-
-struct Lens {
-  bool diffraction = true;
-  double fNumber = 1.0;
-  double obscuration = 0.0;  ///< of the aperture's diameter
-  double wavefront_m = 0.0;  ///< rms
-  double defocus_m = 0.0;    ///< of the film along the axis
-  double still_m = 0.0;      ///< blur of Gauss, rms along one direction on the film
-  double jitter_rad = 0.0;
-  double blur_m = 0.0;        ///< both
-  double veilingGlare = 0.0;  ///< share of the light that is spread evenly
-  double focalLength_m = 1.0, aperture_m = 1.0, pitch_m = 1.0;
-  int cells = 1;
-  double cell_m = 0.0;
-  double leastShare = 0.99;  ///< of light within the kernel
-
-  void zoom(double focal_m) {
-    focalLength_m = focal_m;
-    fNumber = focal_m / aperture_m;
-    blur_m = std::hypot(still_m, focal_m * jitter_rad);
-  }
-  void setCells(int cellsOfPixel) {
-    cells = cellsOfPixel;
-    cell_m = pitch_m / cellsOfPixel;
-  }
-  double cutoff_per_m(double wavelength_um) const { return diffraction ? 1.0 / (wavelength_um * 1e-6 * fNumber) : blurCutoff_per_m(); }
-  /// Where Gauss is 1e-9.
-  double blurCutoff_per_m() const { return std::sqrt(2.0 * 20.7) / (2.0 * kPi * blur_m); }
-  double transfer(double wavelength_um, double frequency_per_m) const {
-    const double f = frequency_per_m, w = wavelength_um * 1e-6;
-    double value = std::exp(-2.0 * kPi * kPi * blur_m * blur_m * f * f);
-    if (!diffraction) return value;
-    const double nu = f * w * fNumber;  // of the cut-off
-    if (nu >= 1.0) return 0.0;
-    value *= apertureTransfer(2.0 * nu, obscuration, defocus_m / (8.0 * fNumber * fNumber * w));
-    return wavefront_m > 0.0 ? value * wavefrontTransfer(nu, wavefront_m / w) : value;
-  }
-};
-
-/// Wavelengths within a kernel and their shares.
-using Waves = std::vector<std::pair<double, double>>;
-
-/// Of light that is even over an output's kernel.
-Waves wavesOf(const ChannelOutput& output) {
-  constexpr int kWavelengths = 24;
-  Waves all;
-  double sum = 0.0;
-  for (int k = 0; k < kWavelengths; ++k) {
-    const double w = output.bandLow_um + (output.bandHigh_um - output.bandLow_um) * (k + 0.5) / kWavelengths, share = output.kernel(w);
-    if (share > 0.0) all.emplace_back(w, share), sum += share;
-  }
-  if (all.empty()) all.emplace_back(0.5 * (output.bandLow_um + output.bandHigh_um), 1.0), sum = 1.0;
-  for (auto& [w, share] : all) share /= sum;
-  return all;
-}
-
-double transferOf(const Lens& lens, const Waves& waves, double frequency_per_m) {
-  double sum = 0.0;
-  for (const auto& [w, share] : waves) sum += share * lens.transfer(w, frequency_per_m);
-  return sum;
-}
-
-/// The OTF of an output's light, round, as a table over frequency.
-class Transfer {
- public:
-  Transfer(const Lens& lens, const ChannelOutput& output) {
-    const Waves waves = wavesOf(output);
-    for (const auto& [w, share] : waves) cutoff_ = std::max(cutoff_, lens.cutoff_per_m(w));
-    if (lens.blur_m > 0.0) cutoff_ = std::min(cutoff_, lens.blurCutoff_per_m());
-    last_ = std::min(cutoff_, std::sqrt(2.0) * kMostCycles / lens.cell_m);
-    for (int k = 0; k <= kEntries; ++k) table_.push_back(transferOf(lens, waves, last_ * k / kEntries));
-  }
-  double cutoff_per_m() const { return cutoff_; }
-  double operator()(double fx, double fy) const {
-    const double x = std::sqrt(fx * fx + fy * fy) / last_ * kEntries;
-    const auto k = static_cast<std::size_t>(x);
-    return k >= kEntries ? 0.0 : table_[k] + (table_[k + 1] - table_[k]) * (x - static_cast<double>(k));
-  }
-
- private:
-  static constexpr int kEntries = 2000;
-  double cutoff_ = 0.0, last_ = 0.0;
-  std::vector<double> table_;
-};
-
-SpreadKernel kernelOf(const Lens& lens, const ChannelOutput& output, int mostReach) {
-  const Transfer transfer(lens, output);
-  for (int reach = std::min(2, mostReach);; reach = std::min(2 * reach, mostReach)) {
-    SpreadKernel kernel = spreadKernel(transfer, transfer.cutoff_per_m(), lens.cell_m, reach);
-    if (kernel.sum() >= lens.leastShare || reach == mostReach) return kernel;
-  }
-}
-
 /// The first of a camera's outputs that is spread as this one is: counts and what is told of them begin as the same photoelectrons.
 std::size_t firstAlike(const std::vector<ChannelOutput>& outputs, std::size_t o) {
   for (std::size_t k = 0; outputs[o].detected && k < o; ++k)
     if (outputs[k].detected && outputs[k].channel == outputs[o].channel) return k;
   return o;
-}
-
-std::vector<SpreadKernel> kernelsOf(const Lens& lens, const std::vector<ChannelOutput>& outputs, int mostReach) {
-  std::vector<SpreadKernel> all;
-  for (std::size_t o = 0; o < outputs.size(); ++o) {
-    const std::size_t alike = firstAlike(outputs, o);
-    all.push_back(alike < o ? all[alike] : kernelOf(lens, outputs[o], mostReach));
-  }
-  return all;
 }
 
 /// The fewest cells of a pixel on which contrast at half a cycle a pixel is the lens's own, in all channels; at most so many that pictures still fit.
@@ -131,9 +32,9 @@ int fewestCells(Lens lens, const Camera& camera) {
   for (int cells = 1; cells < kMost; ++cells) {
     lens.setCells(cells);
     const auto isGood = [&](const ChannelOutput& o) {
-      const Transfer transfer(lens, o);
+      const LensTransfer transfer(lens, o);
       // Light that lies evenly on its cell, or stands in its middle, and is averaged over a pixel of cells.
-      const SpreadKernel kernel = kernelOf(lens, o, kMostReach_cells);
+      const SpreadKernel kernel = kernelOf(lens, o, reachOf(lens, o).value_or(kMostReach_cells));
       const double x = nyquist * lens.cell_m, ofCells = std::sin(kPi * x * cells) / (cells * std::sin(kPi * x)), own = 2.0 / kPi;
       return std::abs(kernel.transfer(x) * ofCells * std::sin(kPi * x) / (kPi * x) - transfer(nyquist, 0.0) * own) <= kOff;
     };
@@ -142,96 +43,144 @@ int fewestCells(Lens lens, const Camera& camera) {
   return kMost;
 }
 
+/// What a picture is beside its bright things: the middle of its values.
+double levelOf(const std::vector<float>& picture) {
+  constexpr std::size_t kLookedAt = 16384;
+  std::vector<float> some;
+  const std::size_t step = picture.size() / kLookedAt + 1;
+  for (std::size_t k = 0; k < picture.size(); k += step) some.push_back(picture[k]);
+  std::nth_element(some.begin(), some.begin() + static_cast<std::ptrdiff_t>(some.size() / 2), some.end());
+  return static_cast<double>(some[some.size() / 2]);
+}
+
 class PointSpreadStage final : public SensorStage {
  public:
-  PointSpreadStage(const Lens& lens, std::vector<SpreadKernel> kernels) : lens_(lens), kernels_(std::move(kernels)) {}
+  explicit PointSpreadStage(const Lens& lens) : lens_(lens) {}
   void run(const SensorTick& tick, SensorPictures& pictures) override {
     follow(tick, pictures);
     const std::vector<SensorPoint> points = std::move(pictures.points);
     pictures.points.clear();
-    for (std::size_t o = 0; o < kernels_.size(); ++o) {
-      if (spread_.size() <= o) spread_.emplace_back(kernels_[o], pictures.width, pictures.height);
+    for (std::size_t o = 0; o < pictures.outputs.size(); ++o) {
       std::vector<float>& picture = pictures.values(o);
       if (const std::size_t alike = firstAlike(pictures.outputs, o); alike < o) {
         picture = pictures.values(alike);
         continue;
       }
+      Spread& spread = spreadOf(o, pictures);
+      // Beyond what is drawn a picture goes on as it is in the middle of its values: bright things end with it.
+      const double level = levelOf(picture);
+      std::vector<double> sum = spread.near->operator()(picture, level);
       double mean = 0.0;
       for (float v : picture) mean += static_cast<double>(v) / static_cast<double>(picture.size());
-      spread_[o].apply(picture);
-      // What the kernel does not hold lies evenly over the film.
-      const double within = 1.0 - lens_.veilingGlare, veil = mean * (lens_.veilingGlare + within * std::max(0.0, 1.0 - kernels_[o].sum()));
-      for (float& v : picture) v = static_cast<float>(within * static_cast<double>(v) + veil);
-      addPoints(points, o, pictures, picture);
+      if (spread.far) spread.far->gather(picture, level);
+      for (const SensorPoint& p : points)
+        if (p.output == o) mean += addPoint(p, spread, pictures, sum) / static_cast<double>(picture.size());
+      if (spread.far) spread.far->spread(sum);
+      const double within = 1.0 - lens_.veilingGlare, veil = lens_.veilingGlare * mean;
+      for (std::size_t c = 0; c < sum.size(); ++c) picture[c] = static_cast<float>(std::max(0.0, within * (sum[c] + level) + veil));
     }
   }
 
  private:
-  /// Points at their own places: shares of each on the cells around it, and what falls farther away.
-  void addPoints(const std::vector<SensorPoint>& points, std::size_t o, const SensorPictures& pictures, std::vector<float>& picture) {
-    std::vector<double> sum;
-    const double within = 1.0 - lens_.veilingGlare;
-    double veil = 0.0;
-    // Each looks at all cells: of many points on large pictures the far light lies evenly, as that of cells does.
-    constexpr double kMostSteps = 2e7;
-    const auto own = std::count_if(points.begin(), points.end(), [&](const SensorPoint& p) { return p.output == o; });
-    const bool tails = lens_.diffraction && static_cast<double>(own) * static_cast<double>(picture.size()) <= kMostSteps;
-    for (const SensorPoint& p : points) {
-      if (p.output != o) continue;
-      if (sum.empty()) sum.assign(picture.begin(), picture.end());
-      auto& response = responses_[o];
-      if (!response) {
-        const Transfer transfer(lens_, pictures.outputs[o]);
-        response = std::make_unique<PointResponse>(transfer, transfer.cutoff_per_m(), lens_.cell_m, kernels_[o].reach);
-      }
-      const int column = static_cast<int>(std::floor(p.column)), row = static_cast<int>(std::floor(p.row)), reach = response->reach();
-      double all = 0.0;
-      for (int y = row - reach; y <= row + reach; ++y)
-        for (int x = column - reach; x <= column + reach; ++x) {
-          const double share = within * response->share(x + 0.5 - p.column, y + 0.5 - p.row);
-          all += share;
-          if (x < 0 || y < 0 || x >= pictures.width || y >= pictures.height) continue;
-          const auto cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(pictures.width) + static_cast<std::size_t>(x);
-          sum[cell] += share * pictures.inCell(p, cell);
-        }
-      const double far = std::max(0.0, within - all);
-      veil += (1.0 - within + (tails ? 0.0 : far)) * pictures.inCell(p, picture.size() / 2) / static_cast<double>(picture.size());
-      if (tails) addTail(p, far, reach, column, row, pictures, sum);
+  struct Spread {
+    LensSpread law;
+    std::unique_ptr<Convolution> near;
+    std::unique_ptr<FarWings> far;            ///< none of a lens that does not diffract
+    std::unique_ptr<PointResponse> response;  ///< once there are points
+  };
+
+  Spread& spreadOf(std::size_t o, const SensorPictures& pictures) {
+    const auto at = spreads_.find(o);
+    if (at != spreads_.end()) return at->second;
+    Spread s{LensSpread(lens_, pictures.outputs[o]), nullptr, nullptr, nullptr};
+    s.near = std::make_unique<Convolution>(s.law.near, pictures.width, pictures.height);
+    if (s.law.wing > 0.0) s.far = std::make_unique<FarWings>(s.law, pictures.width, pictures.height);
+    return spreads_.emplace(o, std::move(s)).first->second;
+  }
+
+  /// A point at its own place: shares of it on the cells around, and what goes far. Returns its light as that of one cell.
+  double addPoint(const SensorPoint& p, Spread& spread, const SensorPictures& pictures, std::vector<double>& sum) {
+    if (!spread.response) {
+      const LensTransfer transfer(lens_, pictures.outputs[p.output]);
+      spread.response = std::make_unique<PointResponse>(transfer, transfer.cutoff_per_m(), lens_.cell_m, spread.law.exactReach);
     }
-    for (std::size_t c = 0; c < sum.size(); ++c) picture[c] = static_cast<float>(std::max(0.0, sum[c] + veil));
+    const int column = static_cast<int>(std::floor(p.column)), row = static_cast<int>(std::floor(p.row)), reach = spread.law.near.reach;
+    for (int y = std::max(0, row - reach); y <= std::min(pictures.height - 1, row + reach); ++y)
+      for (int x = std::max(0, column - reach); x <= std::min(pictures.width - 1, column + reach); ++x) {
+        const double dx = x + 0.5 - p.column, dy = y + 0.5 - p.row, r = std::sqrt(dx * dx + dy * dy), whole = spread.law.whole(r);
+        double share = whole > 0.0 ? whole * spread.response->share(dx, dy) : 0.0;
+        if (whole < 1.0) share += (1.0 - whole) * spread.law.far(r);
+        const auto cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(pictures.width) + static_cast<std::size_t>(x);
+        sum[cell] += spread.law.cut(r) * share * pictures.inCell(p, cell);
+      }
+    const int nearestX = std::clamp(column, 0, pictures.width - 1), nearestY = std::clamp(row, 0, pictures.height - 1);
+    const double light = pictures.inCell(p, static_cast<std::size_t>(nearestY) * static_cast<std::size_t>(pictures.width) + static_cast<std::size_t>(nearestX));
+    if (spread.far && nearestX == column && nearestY == row) spread.far->gather(p.column, p.row, light);
+    return light;
   }
 
-  /// What diffraction sends beyond a square of cells around a point falls off as the cube of the distance from it (an edge of the aperture; J. W. Goodman, Introduction to
-  /// Fourier Optics, of Airy's pattern averaged over its rings): c / r^3, whose integral beyond a square of half a side a is 4 sqrt(2) c / a.
-  static void addTail(const SensorPoint& p, double far, int reach, int column, int row, const SensorPictures& pictures, std::vector<double>& sum) {
-    const double c = far * (reach + 0.5) / (4.0 * std::sqrt(2.0));
-    sideBySide(pictures.height, [&](int first, int last) {
-      for (int y = first; y < last; ++y)
-        for (int x = 0; x < pictures.width; ++x) {
-          if (std::abs(x - column) <= reach && std::abs(y - row) <= reach) continue;
-          const double dx = x + 0.5 - p.column, dy = y + 0.5 - p.row, r2 = dx * dx + dy * dy;
-          const auto cell = static_cast<std::size_t>(y) * static_cast<std::size_t>(pictures.width) + static_cast<std::size_t>(x);
-          sum[cell] += c / (r2 * std::sqrt(r2)) * pictures.inCell(p, cell);
-        }
-    });
-  }
-
-  /// Another stage may ask for finer cells, and a lens zooms. Kernels stay within the margin that there is.
+  /// Another stage may ask for finer cells, and a lens zooms.
   void follow(const SensorTick& tick, const SensorPictures& pictures) {
     const double focal = tick.focalLength_m > 0.0 ? tick.focalLength_m : lens_.focalLength_m;
     if (pictures.cells == lens_.cells && std::abs(focal / lens_.focalLength_m - 1.0) < 1e-9) return;
     lens_.zoom(focal);
     lens_.setCells(pictures.cells);
-    spread_.clear();
-    responses_.clear();
-    kernels_ = kernelsOf(lens_, pictures.outputs, std::min(kMostReach_cells, pictures.margin_px * lens_.cells));
+    spreads_.clear();
   }
 
   Lens lens_;
-  std::vector<SpreadKernel> kernels_;
-  std::vector<Convolution> spread_;
-  std::map<std::size_t, std::unique_ptr<PointResponse>> responses_;  ///< by output, once there are points
+  std::map<std::size_t, Spread> spreads_;  ///< by output
 };
+
+/// Of three digits, not rounded up.
+std::string brief(double v) {
+  char text[40];
+  std::snprintf(text, sizeof text, v < 1000.0 ? "%.3g" : "%.0f", 0.995 * v);
+  return text;
+}
+
+/// Rms or defocus that makes a lens too wide, as a scenario says it.
+struct Width {
+  const char* key;
+  double Lens::*value;
+  double perLength;   ///< of the value: the radius on the film that most of the light lies in [m]
+  const char* unit;
+  double perUnit;
+};
+
+/// Refuses a lens whose light goes beyond 128 cells, with the largest value of what makes it so that is taken; without working out what is far too wide.
+void refuseTooWide(const Record& r, const Lens& lens, const std::vector<ChannelOutput>& outputs) {
+  const double most_m = kMostReach_cells * lens.cell_m;
+  constexpr double kSigmas = 3.0;
+  /// More waves of defocus than a transfer function is worked out for.
+  constexpr double kMostDefocus_waves = 250.0;
+  double shortest_um = INFINITY;
+  for (const ChannelOutput& o : outputs) shortest_um = std::min(shortest_um, o.bandLow_um);
+  const double mostDefocus_m = lens.diffraction && std::isfinite(shortest_um) ? kMostDefocus_waves * 8.0 * lens.fNumber * lens.fNumber * shortest_um * 1e-6 : INFINITY;
+  const Width widths[] = {{"defocus", &Lens::defocus_m, 0.5 / lens.fNumber, "um", 1e-6}, {"blur", &Lens::still_m, kSigmas, "um", 1e-6}, {"jitter", &Lens::jitter_rad, kSigmas * lens.focalLength_m, "urad", 1e-6}};
+  const Width& widest = *std::max_element(std::begin(widths), std::end(widths), [&](const Width& a, const Width& b) { return a.perLength * lens.*a.value < b.perLength * lens.*b.value; });
+  const auto fits = [&](const Lens& some) {
+    for (const Width& w : widths)
+      if (w.perLength * some.*w.value > most_m) return false;
+    if (some.defocus_m > mostDefocus_m) return false;
+    for (std::size_t o = 0; o < outputs.size(); ++o)
+      if (firstAlike(outputs, o) == o && !reachOf(some, outputs[o])) return false;
+    return true;
+  };
+  if (fits(lens)) return;
+  double low = 0.0, high = std::min(lens.*widest.value, most_m / widest.perLength);
+  constexpr int kHalvings = 8;
+  for (int k = 0; k < kHalvings && high > 0.0; ++k) {
+    Lens less = lens;
+    less.*widest.value = 0.5 * (low + high);
+    less.zoom(less.focalLength_m);
+    (fits(less) ? low : high) = less.*widest.value;
+  }
+  const std::string wide = "a point spread function that is wider than " + std::to_string(kMostReach_cells) + " cells of " + brief(lens.cell_m * 1e6 / 0.995) + " um";
+  if (!(low > 0.0)) throw UserError(r.where(), wide, "most of its light within them", "lower 'cells', or let more of it lie 'beyond'");
+  throw UserError(r.where(widest.key), wide, "a '" + std::string(widest.key) + "' of at most " + brief(low / widest.perUnit) + " " + widest.unit + " with all else as it is",
+                  std::string("lower '") + widest.key + "'" + (lens.cells > 1 ? ", or 'cells'" : ""));
+}
 
 StageChoice readPointSpread(const Record& r, const Camera& camera) {
   Lens lens;
@@ -263,25 +212,21 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
     if (lens.wavefront_m > kMostWavefront_waves * o.bandLow_um * 1e-6)
       throw UserError(r.where("wavefront_error"), "a wavefront error of more than 0.18 waves in channel '" + o.channel + "'",
                       "at most " + std::to_string(kMostWavefront_waves * o.bandLow_um) + " um", "lower it, or say it as 'blur'");
+  refuseTooWide(r, lens, camera.outputs);
   if (!r.given("cells")) {
     choice.cells = fewestCells(lens, camera);
     lens.setCells(choice.cells);
   }
-  const std::vector<SpreadKernel> kernels = kernelsOf(lens, camera.outputs, kMostReach_cells);
-  for (std::size_t o = 0; o < kernels.size(); ++o) {
-    choice.margin_px = std::max(choice.margin_px, (kernels[o].reach + choice.cells - 1) / choice.cells);
-    if (kernels[o].sum() < lens.leastShare - 1e-3)
-      throw UserError(r.where(), "a point spread function that is wider than 128 cells in channel '" + camera.outputs[o].channel + "'",
-                      "most of its light within them", "lower 'cells', defocus or blur");
-  }
+  for (std::size_t o = 0; o < camera.outputs.size(); ++o)
+    if (firstAlike(camera.outputs, o) == o) choice.margin_px = std::max(choice.margin_px, (reachOf(lens, camera.outputs[o]).value_or(kMostReach_cells) + choice.cells - 1) / choice.cells);
   constexpr int kLeast_px = 2;  // of the smallest kernel
   if (choice.margin_px > kLeast_px && 2 * choice.margin_px > std::max(p.width, p.height))
     throw UserError(r.where(), "a point spread function wider than the film: " + std::to_string(choice.margin_px) + " pixels to each side",
-                    "half the film at most", "let more of it go into the even veil ('beyond'), or enlarge the film");
+                    "half the film at most", "let more of its light lie 'beyond', or enlarge the film");
   const double within = 1.0 - lens.veilingGlare;
   choice.transfer = [lens, within](const ChannelOutput& o, double frequency_per_m) { return within * transferOf(lens, wavesOf(o), frequency_per_m); };
   choice.drawnTransfer = [lens, within](const ChannelOutput& o, double frequency_per_m) {
-    return within * kernelOf(lens, o, kMostReach_cells).transfer(frequency_per_m * lens.cell_m);
+    return within * LensSpread(lens, o).near.transfer(frequency_per_m * lens.cell_m);
   };
   choice.takesPoints = true;
   // Tables are made once for each output and focal length: near ones, or far ones once those are asked for.
@@ -293,12 +238,12 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
     if (at == known->end()) {
       Lens zoomed = lens;
       zoomed.zoom(focal_m);
-      const Transfer transfer(zoomed, o);
+      const LensTransfer transfer(zoomed, o);
       at = known->emplace(std::tuple(o.layer(), focal_m, reach), PointResponse(transfer, transfer.cutoff_per_m(), zoomed.pitch_m, reach)).first;
     }
     return within * at->second.share(x, y);
   };
-  choice.make = [lens, kernels](const ShaderLibrary&) { return std::make_unique<PointSpreadStage>(lens, kernels); };
+  choice.make = [lens](const ShaderLibrary&) { return std::make_unique<PointSpreadStage>(lens); };
   return choice;
 }
 
@@ -308,7 +253,7 @@ StageModel pointSpreadModel() {
   return {
       "point_spread",
       "What the lens makes of points: diffraction at the aperture, wavelength by wavelength within a channel (for light that is even over it), with wavefront "
-      "error, defocus, blur and jitter, on cells of a pixel. What it sends farther than its kernel reaches is an even veil.",
+      "error, defocus, blur and jitter, on cells of a pixel; near a point with its rings, and far from it by their mean, as the cube of the distance, as far as the picture reaches.",
       {withDefault(boolean("diffraction", "at a circular aperture of the camera's F number"), "true"),
        withDefault(within(number("obscuration", "", "of the aperture, by diameter"), 0, 0.9), "0"),
        withDefault(within(number("wavefront_error", "m", "rms, after Shannon; up to 0.18 waves"), 0, 1e-3), "0 um"),
@@ -317,7 +262,7 @@ StageModel pointSpreadModel() {
        withDefault(within(number("jitter", "rad", "of the line of sight within an exposure, rms along one direction"), 0, 0.1), "0 rad"),
        withDefault(within(number("veiling_glare", "", "share of the light that the lens spreads evenly"), 0, 0.9), "0"),
        integer("cells", "cells a side of a pixel; unless given the fewest, up to 4, that leave contrast at half a cycle a pixel within 0.01", 1, 16),
-       withDefault(within(above(number("beyond", "", "share of a point's light that may go into the veil rather than lie where it is"), 0), 0, 0.2), "0.01")},
+       withDefault(within(above(number("beyond", "", "share of a point's light that may lie farther than the margin that is drawn around the film; its rings are told twice as far as that, beyond that their mean"), 0), 0, 0.2), "0.01")},
       readPointSpread};
 }
 
