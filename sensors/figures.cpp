@@ -10,21 +10,22 @@ namespace pitviper {
 
 SensorFigures figuresOf(const Camera& camera, const ChannelOutput& output, double step_s, double kelvin) {
   const Pinhole& p = camera.pinhole;
+  const double exposure_s = camera.exposureOf(output.channel);
   SensorFigures figures;
   figures.ifov_rad = p.pitchX_m / p.focalLength_m;
   figures.mtfAtNyquist = figures.drawnMtf = 2.0 / kPi;  // sinc(1/2) of a whole pixel
-  const DetectorLaw* law = detectorOf(camera);
-  for (const StageChoice& s : camera.stages) {
+  const DetectorLaw* law = detectorOf(camera, output.channel);
+  for (const StageChoice& s : camera.stagesOf(output.channel)) {
     if (s.drawnTransfer) figures.drawnMtf *= s.drawnTransfer(output, 0.5 / p.pitchX_m);
     if (s.transfer) figures.mtfAtNyquist *= s.transfer(output, 0.5 / p.pitchX_m);
   }
   if (!law || !output.detected) return figures;
   const BandTemperature band(output.kernel, output.bandLow_um, output.bandHigh_um);
-  const double axis_sr = p.projectedSolidAngle_sr(p.width / 2, p.height / 2), perIntegral = law->fillFactor * output.scale * camera.exposure_s * axis_sr,
-               own = law->fillFactor * ownLightOf(camera, output, axis_sr, camera.exposure_s);
+  const double axis_sr = p.projectedSolidAngle_sr(p.width / 2, p.height / 2), perIntegral = law->fillFactor * output.scale * exposure_s * axis_sr,
+               own = law->fillFactor * ownLightOf(camera, output, axis_sr, exposure_s);
   SensorFigures::Detected d;
   d.electronsAt300K = perIntegral * band.integral(kelvin);
-  const double slope = perIntegral * band.slope(kelvin), dark = law->darkCurrent_per_s * camera.exposure_s;
+  const double slope = perIntegral * band.slope(kelvin), dark = law->darkCurrent_per_s * exposure_s;
   d.electrons_per_K = slope;
   const auto square = [](double x) { return x * x; };
   // A correction at two points leaves of pixels' own bends what is not on the line through both.
@@ -59,7 +60,7 @@ SensorFigures figuresOf(const Camera& camera, const ChannelOutput& output, doubl
   d.saturation_K = law->saturation() > dark + own ? band((law->saturation() - dark - own) / perIntegral) : 20.0;
   if (d.saturation_K > 19999.0) d.saturation_K = 0.0;
   const double all = output.kernel.integral(output.bandLow_um, output.bandHigh_um);
-  d.noiseEquivalent_W_m2 = std::sqrt(temporal) * (output.bandHigh_um - output.bandLow_um) / (law->fillFactor * output.scale * camera.exposure_s * all);
+  d.noiseEquivalent_W_m2 = std::sqrt(temporal) * (output.bandHigh_um - output.bandLow_um) / (law->fillFactor * output.scale * exposure_s * all);
   figures.detected = d;
   return figures;
 }

@@ -47,11 +47,11 @@ Line lineThrough(const std::vector<double>& x, const std::vector<double>& y, con
 class Bench {
  public:
   Bench(const BenchOptions& options, const Camera& camera, glm::ivec2 film, const ChannelOutput& output, std::function<void(const std::string&, double)> progress)
-      : options_(options), camera_(camera), output_(output), progress_(std::move(progress)), law_(*detectorOf(camera)), layer_(output.layer()) {
+      : options_(options), camera_(camera), output_(output), progress_(std::move(progress)), law_(*detectorOf(camera, output.channel)), layer_(output.layer()) {
     const Pinhole& p = camera.pinhole;
     axis_sr_ = p.projectedSolidAngle_sr(p.width / 2, p.height / 2);
-    perIntegral_ = law_.fillFactor * output.scale * camera.exposure_s * axis_sr_;
-    own_ = law_.fillFactor * ownLightOf(camera, output, axis_sr_, camera.exposure_s) + law_.darkCurrent_per_s * camera.exposure_s;
+    perIntegral_ = law_.fillFactor * output.scale * camera.exposureOf(output.channel) * axis_sr_;
+    own_ = law_.fillFactor * ownLightOf(camera, output, axis_sr_, camera.exposureOf(output.channel)) + law_.darkCurrent_per_s * camera.exposureOf(output.channel);
     settle_ = warmUpOf(camera, options.step_s);
     pixel_m_ = p.pitchX_m / p.focalLength_m * kFar_m;
     result_.channel = output.channel;
@@ -167,7 +167,7 @@ class Bench {
 
   /// Counts, rms.
   std::array<double, 7> designComponents() const {
-    const double signal = design_.electronsAt300K, lens = own_ - law_.darkCurrent_per_s * camera_.exposure_s;
+    const double signal = design_.electronsAt300K, lens = own_ - law_.darkCurrent_per_s * camera_.exposureOf(output_.channel);
     const auto square = [](double x) { return x * x; };
     const double octave = law_.flickerVariance(options_.step_s);
     // Octaves that are faster than the frames taken; slower ones stand still.
@@ -306,7 +306,7 @@ class Bench {
     const double room = law_.saturation() - own_, share = std::max(pixelShareOf(camera_, output_, camera_.pinhole.focalLength_m), 1e-3);
     // Even over the band: half a well on its pixel.
     const double all = output_.kernel.integral(output_.bandLow_um, output_.bandHigh_um),
-                 perIntensity = law_.fillFactor * output_.scale * camera_.exposure_s * all / (kFar_m * kFar_m), watts = 0.5 * room / share / perIntensity;
+                 perIntensity = law_.fillFactor * output_.scale * camera_.exposureOf(output_.channel) * all / (kFar_m * kFar_m), watts = 0.5 * room / share / perIntensity;
     Series design{"design", {}, {}, true, true}, measured{"measured", {}, {}, false, true};
     const std::vector<double> without = meanPicture(Setup(options_, "", options_.frames));
     Chart chart{"Share of a star's light on one pixel", "", "share", false, false, true, {}, {}, {"middle", "edge", "corner"}};
@@ -362,7 +362,7 @@ class Bench {
   }
   double contrastAt(double f) const {
     double value = f > 0.0 ? std::sin(kPi * f) / (kPi * f) : 1.0;
-    for (const StageChoice& s : camera_.stages)
+    for (const StageChoice& s : camera_.stagesOf(output_.channel))
       if (s.transfer) value *= s.transfer(output_, f / camera_.pinhole.pitchX_m);
     return value;
   }
@@ -469,7 +469,7 @@ std::vector<BenchResult> measureCamera(const BenchOptions& options, const std::f
   std::vector<BenchResult> results;
   std::vector<const ChannelOutput*> counted;
   for (const ChannelOutput& o : setup.camera().outputs)
-    if (o.detected && o.quantity == "counts") counted.push_back(&o);
+    if (o.isCount()) counted.push_back(&o);
   if (counted.empty())
     throw UserError({options.base, 0, 0, -1}, "a camera that makes no counts", "a channel with 'output: counts' and 'stage: detector' among its 'stages'", "add them");
   for (std::size_t k = 0; k < counted.size(); ++k)

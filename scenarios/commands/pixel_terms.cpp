@@ -97,7 +97,7 @@ void printPixelTerms(const ExrImage& frame, const std::string& file, int column,
     std::vector<double> values;
     for (size_t o : outputs) {
       const ChannelOutput& output = camera.outputs[o];
-      const double etendue = output.perEtendue ? image.solidAngles->projected_sr[pixel] : 1.0, exposure = output.perExposure ? image.exposure_s : 1.0;
+      const double etendue = output.perEtendue ? image.solidAngles->projected_sr[pixel] : 1.0, exposure = output.perExposure ? image.exposures_s.of(output.channel) : 1.0;
       values.push_back(output.scale * etendue * exposure * image.slots[static_cast<size_t>(image.slotOfOutput[o])][pixel]);
     }
     return values;
@@ -118,10 +118,10 @@ void printPixelTerms(const ExrImage& frame, const std::string& file, int column,
     const auto values = valuesOf(part);
     if (std::any_of(values.begin(), values.end(), [](double v) { return v != 0.0; })) print(nameOf(part, sim), values);
   }
-  print(camera.stages.empty() ? "all of it" : "all of it, before the sensor's stages", all);
+  print(!camera.hasStages() ? "all of it" : "all of it, before the sensor's stages", all);
   std::vector<double> own;
   for (size_t o : outputs) own.push_back(static_cast<double>(frame.find(camera.outputs[o].layer())->pixels[pixel]));
-  print(camera.stages.empty() ? "this frame" : "this frame, after them", own);
+  print(!camera.hasStages() ? "this frame" : "this frame, after them", own);
 }
 
 }  // namespace pitviper

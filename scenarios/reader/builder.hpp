@@ -17,9 +17,15 @@ enum class Species;
 
 /// A number for a message: six digits at most.
 std::string briefNumber(double v);
+/// More subpixels than a picture may have.
+bool tooLarge(const Camera& camera);
+/// Is there a stage among these that makes counts? (Their order and keys are read later.)
+bool makesCounts(const Value& stages);
 
 /// What a file held, as 64 hexadecimal digits.
 std::string sha256(const std::string& text);
+
+struct Collector;
 
 class Builder {
  public:
@@ -95,7 +101,13 @@ class Builder {
   void readSurfaces(const Record& r, Entity& entity);
   int entityNamed(const Value& asked) const;
   // cameras.cpp
-  std::vector<ChannelOutput> readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s, bool hasDetector = false);
+  /// `camera`: whose they are, which gets what they have of their own; null: none, and they may have nothing of their own.
+  std::vector<ChannelOutput> readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s, bool hasDetector = false, Camera* camera = nullptr);
+  /// What a channel has of its own: its exposure, and what it says of its detector goes into `collector`.
+  void readOwn(const Record& channel, Camera* camera, Collector& collector) const;
+  // camera_stages.cpp
+  /// Of all its channels, which are read.
+  void readStages(const Record& r, Camera& camera) const;
   /// Its kernel is as it will be.
   static void tellTemperature(ChannelOutput& output);
   Spectrum readResponse(const Record& channel) const;

@@ -10,13 +10,18 @@
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sensors/gimbal/gimbal_choice.hpp"
 #include "sensors/quantity.hpp"
-#include "sensors/stages.hpp"
 #include "sim/model/coverage.hpp"
 #include "sim/parameters/time_course.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/plan/plan.hpp"
 
 namespace pitviper {
+
+bool tooLarge(const Camera& c) {
+  const double columns = static_cast<double>(c.pinhole.width) * c.samples, rows = static_cast<double>(c.pinhole.height) * c.samples;
+  return columns > 16384 || rows > 16384 || columns * rows > 16384.0 * 4096.0;
+}
+
 namespace {
 
 /// Rows of one channel's spectra; each makes 16 nodes of 56 bytes in the quadrature: 230 MB.
@@ -32,15 +37,6 @@ Gain readGain(const Value& v) {
   }
   throw UserError(v.where, "gain is not in volts per watt or per irradiance", "'2e6 V/W' or '40 V/(W/m2)'", "write it with its unit");
 }
-
-/// More subpixels than a picture may have.
-bool tooLarge(const Camera& c) {
-  const double columns = static_cast<double>(c.pinhole.width) * c.samples, rows = static_cast<double>(c.pinhole.height) * c.samples;
-  return columns > 16384 || rows > 16384 || columns * rows > 16384.0 * 4096.0;
-}
-
-/// Frames that are drawn before the first for a detector's memory.
-constexpr int kMostWarmUp = 256;
 
 /// Of F number, focal length and aperture any two say the third; three must agree.
 void readAperture(const Record& r, Pinhole& p) {
@@ -229,17 +225,6 @@ Value withSensor(const Value& camera, const Libraries& libraries, const std::fil
   return merged;
 }
 
-/// Is there a stage that makes counts? (Their order and keys are read later.)
-bool hasDetector(const Record& camera) {
-  if (!camera.given("stages")) return false;
-  const auto& all = camera.value("stages").items;
-  return std::any_of(all.begin(), all.end(), [](const Value& v) {
-    const Value* name = v.find("stage");
-    const StageModel* model = name ? stageModels().named(name->text) : nullptr;
-    return model && model->isDetector;
-  });
-}
-
 /// A camera's channels, and an eye's after them.
 Value channelsOf(const Record& camera) {
   Value all;
@@ -268,13 +253,28 @@ Value channelsOf(const Record& camera) {
 
 }  // namespace
 
-std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s, bool hasDetector) {
+void Builder::readOwn(const Record& r, Camera* camera, Collector& collector) const {
+  for (const char* key : {"exposure", "stages"})
+    if (r.given(key) && !camera)
+      throw UserError(r.where(key), std::string("'") + key + "' of a channel that is not a camera's", "a channel of a camera in a scenario", std::string("remove '") + key + "'");
+  if (!camera || (!r.given("exposure") && !r.given("stages"))) return;
+  OwnChannel& own = camera->ownChannels[r.text("name")];
+  if (r.given("exposure")) {
+    const TimeCourse exposure = r.course("exposure");
+    own.exposure_s = collector.exposure_s = exposure.at(simulation_.time.at(0));
+    if (!exposure.isConstant()) own.exposureOverTime_s = exposure;
+  }
+  own.hasDetector = r.given("stages") && makesCounts(r.value("stages"));
+  collector.hasDetector = collector.hasDetector || own.hasDetector;
+}
+
+std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s, bool hasDetector, Camera* camera) {
   if (list.items.empty())
     throw UserError(list.where, "no channel", "at least one channel with name and response", "add '- {name: mw, response: {band: [3 um, 5 um]}}'");
   std::map<std::string, Location> names;
   std::vector<ChannelOutput> outputs;
-  Collector collector = pinhole ? Collector(*pinhole, exposure_s) : Collector();
-  collector.hasDetector = hasDetector;
+  Collector common = pinhole ? Collector(*pinhole, exposure_s) : Collector();
+  common.hasDetector = hasDetector;
   const auto allowed = quantityNames(!pinhole);
   for (const Value& v : list.items) {
     const Record r(v, tables::channel());
@@ -282,6 +282,8 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
     d.channel = r.text("name");
     d.where = v.where;
     checkUnique(r.value("name"), names, "channel");
+    Collector collector = common;
+    readOwn(r, camera, collector);
     d.response = readResponse(r);
     if (optics) d.optics = *optics;
     if (r.given("quantum_efficiency"))
@@ -310,6 +312,7 @@ std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectr
       };
       keepOutput(
           outputs, [&, &q = quantity] { return makeOutput(d, q, collector); }, where);
+      if (camera && camera->ownChannel(d.channel)) outputs.back().apart = d.channel;
       for (size_t i = 0; i + 1 < outputs.size(); ++i)
         if (outputs[i].layer() == outputs.back().layer())
           throw UserError(where, "'" + quantity + "' twice in channel '" + d.channel + "'", "each quantity once", "remove one");
@@ -377,8 +380,6 @@ void Builder::readCameras(const Record& scenario) {
     }
     c.motionBlur = r.boolean("motion_blur");
     if (r.given("exposure_parts")) c.exposureParts = static_cast<int>(r.integer("exposure_parts"));
-    if (c.motionBlur && !(c.exposure_s > 0.0))
-      throw UserError(r.where("motion_blur"), "motion within an exposure of no time", "'exposure' of the camera, such as '5 ms'", "add it, or remove motion_blur");
     c.near_m = r.number("near");
     c.smallBody_px = r.number("small_bodies");
 
@@ -414,7 +415,10 @@ void Builder::readCameras(const Record& scenario) {
     if (!r.given("channels") && !(r.given("eye") && r.boolean("eye")))
       throw UserError(v.where, "a camera without channels", "'channels', or 'eye: true'",
                       "add '- {name: mw, response: {band: [3 um, 5 um]}}' under 'channels:'");
-    c.outputs = readChannels(channelsOf(r), &optics, &p, c.exposure_s, hasDetector(r));
+    c.outputs = readChannels(channelsOf(r), &optics, &p, c.exposure_s, r.given("stages") && makesCounts(r.value("stages")), &c);
+    for (const ChannelOutput& o : c.outputs)
+      if (c.motionBlur && !(c.exposureOf(o.channel) > 0.0))
+        throw UserError(r.where("motion_blur"), "motion within an exposure of no time, in channel '" + o.channel + "'", "'exposure' of the camera, such as '5 ms'", "add it, or remove motion_blur");
     if (r.given("truth"))
       for (const Value& t : r.value("truth").items) {
         static const std::vector<std::string> names{"range", "entity",           "temperature", "normal", "area",
@@ -437,28 +441,7 @@ void Builder::readCameras(const Record& scenario) {
       c.follower = readGimbal(r.value("gimbal"), simulation_, c, r.given("look_at") ? r.where("look_at") : r.where("gimbal"));
     c.outlineAccuracy = c.spectral.reference ? 0.0 : c.spectral.accuracy;
     c.textureAccuracy = c.spectral.reference ? kFinestTextures : c.spectral.accuracy;
-    if (r.given("stages"))
-      for (const Value& s : r.value("stages").items) {
-        c.stages.push_back(readStage(s, c));
-        const StageChoice& own = c.stages.back();
-        const auto isBefore = [&](const StageChoice& other) { return &other != &own && other.onPixels && (!own.onPixels || other.detector); };
-        if (std::any_of(c.stages.begin(), c.stages.end(), isBefore))
-          throw UserError(s.where,
-                          own.detector   ? "a second detector"
-                          : own.onPixels ? "a stage of the film after its detector"
-                                         : "optics after the detector",
-                          "the order in which light meets them", "move it to the front, or remove it");
-        if (const int frames = warmUpOf(c, simulation_.time.step_s); frames > kMostWarmUp)
-          throw UserError(s.where, "a detector that remembers " + std::to_string(frames) + " frames", "at most " + std::to_string(kMostWarmUp),
-                          "lower its time constant or lag, or the frame rate");
-        const Camera drawn = drawnCamera(c);
-        if (tooLarge(drawn) || !drawn.pinhole.isFlat())
-          throw UserError(s.where,
-                          "with its margin and cells the picture would have " + std::to_string(drawn.pinhole.width) + "x" +
-                              std::to_string(drawn.pinhole.height) + " cells of " + std::to_string(drawn.samples) + "x" + std::to_string(drawn.samples) +
-                              " subpixels",
-                          "at most 67 million, 16384 on a side, within 176 deg", "lower film or samples, or ask less of the stage");
-      }
+    readStages(r, c);
     if (r.given("spectral_image")) c.spectralImage = readSpectralBins(Record(r.value("spectral_image"), tables::spectralImage()), p);
     simulation_.cameras.push_back(std::move(c));
   }

@@ -496,6 +496,9 @@ const ParameterTable& channel() {
                                 "Response: a spectrum (`band`, table, file, library name) or `product` of several; zero outside its table.",
                                 {required(text("name", "unique in the camera")), required(spectrum("response", "", "spectral response S(lambda)")),
                                  spectrum("quantum_efficiency", "", "photoelectrons per photon, for `electrons`"),
+                                 within(course("exposure", "s", "exposure time of this channel, around the frame's time; its camera's unless given"), 1e-12, 1e6),
+                                 list("stages",
+                                      "of this channel alone: each in place of its camera's stage of that name, or besides them; `distortion` is the camera's", 0, 32),
                                  any("gain", "for `volts`: in V/W of pixel flux or V/(W/m2) of focal-plane irradiance"),
                                  any("output", "a quantity or a list of quantities (default radiance), see below")}};
   return t;

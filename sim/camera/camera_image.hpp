@@ -9,6 +9,7 @@
 #include "sim/plan/averaged_fringes.hpp"
 #include "sim/plan/scattered_again.hpp"
 #include "sim/scene/camera.hpp"
+#include "sim/scene/scene.hpp"
 
 namespace pitviper {
 
@@ -40,7 +41,8 @@ struct CameraImage {
   int width = 0, height = 0;
   std::vector<std::vector<double>> slots;  ///< [slot][pixel], kernel unit x W/(m2 sr)
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles;
-  double exposure_s = 0.0;                     ///< of the camera at its time
+  ChannelValues exposures_s;                   ///< of the camera at its time
+  double exposure_s = 0.0;                     ///< the longest of them
   std::vector<TruthPixel> truth;               ///< per pixel, or empty
   std::vector<int> slotOfOutput;               ///< from the plan
   std::string transparentOrder;                ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view

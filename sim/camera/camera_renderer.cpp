@@ -193,7 +193,8 @@ CameraImage CameraRenderer::finish() {
   CameraImage resolved = image.resolve(camera_.pinhole, camera_.samples, filmWeights_);
   resolved.slotOfOutput = plan_.slotOfOutput;
   resolved.solidAngles = solidAngles_;
-  resolved.exposure_s = cameraAt(camera_, state_).exposure_s;
+  resolved.exposures_s = cameraAt(camera_, state_).exposures_s;
+  resolved.exposure_s = longestExposure_s(camera_, resolved.exposures_s);
   if (isBuffered() && buffered_->layers()) resolved.transparentOrder = buffered_->layers()->describeOrder();
   resolved.averagedFringes = fringes_;
   resolved.scatteredAgain = scattered_.valid() ? scattered_.get() : scattering_.at(state_);

@@ -79,39 +79,57 @@ double motionOf(const Simulation& sim, const Camera& camera, const StateAt& stat
 }  // namespace
 
 ExposureParts exposureParts(const Simulation& sim, const Camera& camera, const StateAt& stateAt, double time_s) {
-  const DetectorLaw* law = detectorOf(camera);
-  const double line_s = law ? law->lineTime_s : 0.0, exposure_s = camera.motionBlur ? cameraAt(camera, stateAt(time_s)).exposure_s : 0.0;
+  // How outputs are exposed and read out.
+  struct Timing {
+    double exposure_s, line_s;
+    bool operator==(const Timing&) const = default;
+  };
+  std::vector<Timing> timings;
   ExposureParts parts;
   parts.times_s = {time_s};
+  const CameraState eye = cameraAt(camera, stateAt(time_s));
+  for (const ChannelOutput& o : camera.outputs) {
+    const DetectorLaw* law = detectorOf(camera, o.channel);
+    const Timing own{camera.motionBlur ? eye.exposures_s.of(o.channel) : 0.0, law ? law->lineTime_s : 0.0};
+    parts.timingOfOutput.push_back(static_cast<std::size_t>(std::find(timings.begin(), timings.end(), own) - timings.begin()));
+    if (parts.timingOfOutput.back() == timings.size()) timings.push_back(own);
+  }
+  if (timings.empty()) timings.push_back({0.0, 0.0});
+  double line_s = 0.0, exposure_s = 0.0, shortest_s = INFINITY;
+  for (const Timing& t : timings) line_s = std::max(line_s, t.line_s), exposure_s = std::max(exposure_s, t.exposure_s), shortest_s = std::min(shortest_s, t.exposure_s);
   if (!(line_s > 0.0) && !(exposure_s > 0.0)) return parts;
   const int cells = cellsOf(camera), margin = marginOf(camera), rows = (camera.pinhole.height + 2 * margin) * cells;
-  const auto rowTime = [&](int row) { return time_s + ((row + 0.5) / cells - margin - 0.5 * camera.pinhole.height) * line_s; };
-  const double first = rowTime(0) - 0.5 * exposure_s, last = rowTime(rows - 1) + 0.5 * exposure_s, asked = camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise;
+  const auto rowTime = [&](int row, double ofLine_s) { return time_s + ((row + 0.5) / cells - margin - 0.5 * camera.pinhole.height) * ofLine_s; };
+  const double first = rowTime(0, line_s) - 0.5 * exposure_s, last = rowTime(rows - 1, line_s) + 0.5 * exposure_s, asked = camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise;
   parts.motion_px = motionOf(sim, camera, stateAt, {first, time_s, last}, parts.smallMotion_px);
   const bool addsUp = exposure_s > 0.0;
+  const double ofShortest = addsUp ? exposure_s / shortest_s : 1.0;
   int count = camera.exposureParts;
   if (count == 0) {
     constexpr double kPicturesAPixel = 4.0;
-    const double wanted = addsUp ? std::max(std::sqrt(parts.motion_px / (4.0 * asked)), kPicturesAPixel * parts.smallMotion_px) : parts.motion_px / (4.0 * asked);
+    const double wanted = addsUp ? std::max(std::sqrt(ofShortest * parts.motion_px / (4.0 * asked)), kPicturesAPixel * parts.smallMotion_px) : parts.motion_px / (4.0 * asked);
     count = static_cast<int>(std::clamp(std::ceil(wanted), 1.0, static_cast<double>(kMostParts)));
   }
-  parts.error = parts.motion_px / (4.0 * count * (addsUp ? count : 1));
+  parts.error = ofShortest * parts.motion_px / (4.0 * count * (addsUp ? count : 1));
   parts.streakError = addsUp ? std::min(1.0, parts.smallMotion_px / count) : 0.0;
   if (count == 1) return parts;
   const double step = (last - first) / count;
   parts.times_s.clear();
   for (int k = 0; k < count; ++k) parts.times_s.push_back(first + (k + 0.5) * step);
-  if (!(line_s > 0.0)) return parts;
-  for (int k = 0; k < count; ++k) {
-    std::vector<double>& weights = parts.rowWeights.emplace_back();
-    for (int row = 0; row < rows; ++row) {
-      const double t = rowTime(row);
-      if (addsUp) {  // the part of the row's exposure that is nearest to this time
-        const double from = std::max(t - 0.5 * exposure_s, first + k * step), to = std::min(t + 0.5 * exposure_s, first + (k + 1) * step);
-        weights.push_back(std::max(0.0, to - from) / exposure_s);
-      } else {
-        const double at = std::clamp((t - first) / step - 0.5, 0.0, count - 1.0);
-        weights.push_back(std::max(0.0, 1.0 - std::abs(at - k)));
+  for (const Timing& timing : timings) {
+    std::vector<std::vector<double>>& ofTimes = parts.rowWeights.emplace_back();
+    if (!(line_s > 0.0) && timing.exposure_s == exposure_s) continue;  // all alike
+    for (int k = 0; k < count; ++k) {
+      std::vector<double>& weights = ofTimes.emplace_back();
+      for (int row = 0; row < rows; ++row) {
+        const double t = rowTime(row, timing.line_s);
+        if (addsUp) {  // the part of the row's exposure that is nearest to this time
+          const double from = std::max(t - 0.5 * timing.exposure_s, first + k * step), to = std::min(t + 0.5 * timing.exposure_s, first + (k + 1) * step);
+          weights.push_back(std::max(0.0, to - from) / timing.exposure_s);
+        } else {
+          const double at = std::clamp((t - first) / step - 0.5, 0.0, count - 1.0);
+          weights.push_back(std::max(0.0, 1.0 - std::abs(at - k)));
+        }
       }
     }
   }
@@ -134,11 +152,14 @@ CameraImage renderParts(CameraRenderer& renderer, const ExposureParts& parts, co
     if (k == middle && looked) looked(state, image);
     if (count == 1) return image;
     const auto width = static_cast<std::size_t>(image.width);
-    const auto weight = [&](std::size_t row) { return parts.rowWeights.empty() ? 1.0 / static_cast<double>(count) : parts.rowWeights[k][row]; };
-    for (auto& slot : image.slots)
-      for (std::size_t p = 0; p < slot.size(); ++p) slot[p] *= weight(p / width);
+    std::vector<const std::vector<double>*> weightsOf(image.slots.size(), nullptr);  // of rows; null: all alike
+    for (std::size_t o = 0; o < parts.timingOfOutput.size(); ++o)
+      if (const auto& ofTimes = parts.rowWeights[parts.timingOfOutput[o]]; !ofTimes.empty()) weightsOf[static_cast<std::size_t>(image.slotOfOutput[o])] = &ofTimes[k];
+    const auto weight = [&](std::size_t slot, std::size_t row) { return weightsOf[slot] ? (*weightsOf[slot])[row] : 1.0 / static_cast<double>(count); };
+    for (std::size_t s = 0; s < image.slots.size(); ++s)
+      for (std::size_t p = 0; p < image.slots[s].size(); ++p) image.slots[s][p] *= weight(s, p / width);
     for (FilmPoint p : image.points) {
-      p.flux *= weight(static_cast<std::size_t>(p.pixel) / width);
+      p.flux *= weight(static_cast<std::size_t>(p.slot), static_cast<std::size_t>(p.pixel) / width);
       if (p.flux != 0.0) points.push_back(p);
     }
     if (k > 0)

@@ -6,14 +6,15 @@
 
 namespace pitviper {
 
-SensorChain::SensorChain(const Camera& camera, const ShaderLibrary& library)
+StageLine::StageLine(const Camera& camera, std::vector<ChannelOutput> outputs, const std::vector<StageChoice>& stages, const ShaderLibrary& library)
     : camera_(camera),
-      cells_(camera.outputs, drawnCamera(camera).pinhole.width, drawnCamera(camera).pinhole.height, cellsOf(camera), marginOf(camera)),
-      pixels_(camera.outputs, camera.pinhole.width, camera.pinhole.height, 1, 0) {
-  for (const StageChoice& s : camera.stages) (s.onPixels ? ofPixels_ : ofCells_).push_back({"sensor: " + s.name, s.make(library)});
+      outputs_(std::move(outputs)),
+      cells_(outputs_, drawnCamera(camera).pinhole.width, drawnCamera(camera).pinhole.height, cellsOf(camera), marginOf(camera)),
+      pixels_(outputs_, camera.pinhole.width, camera.pinhole.height, 1, 0) {
+  for (const StageChoice& s : stages) (s.onPixels ? ofPixels_ : ofCells_).push_back({"sensor: " + s.name, s.make(library)});
 }
 
-std::vector<float> SensorChain::resolved(std::vector<float> cells, const std::vector<double>& weights, bool addsUp) const {
+std::vector<float> StageLine::resolved(std::vector<float> cells, const std::vector<double>& weights, bool addsUp) const {
   const int n = cells_.cells, margin = cells_.margin_px;
   if (n == 1 && margin == 0) return cells;  // each is its own mean
   std::vector<float> pixels;
@@ -32,40 +33,40 @@ std::vector<float> SensorChain::resolved(std::vector<float> cells, const std::ve
   return pixels;
 }
 
-std::vector<std::vector<float>> SensorChain::run(std::vector<std::vector<float>> drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
-                                                 std::vector<SensorPoint> points) {
+std::vector<std::vector<float>> StageLine::run(std::vector<std::vector<float>> drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
+                                               std::vector<SensorPoint> points) {
   calibrate(cellWeights, tick);
   for (size_t o = 0; o < drawn.size(); ++o) cells_.values(o) = std::move(drawn[o]);
   cells_.points = std::move(points);
   cells_.cellWeights = &cellWeights;
   run(ofCells_, tick, cells_);
   cells_.cellWeights = nullptr;
-  for (size_t o = 0; o < drawn.size(); ++o) pixels_.values(o) = resolved(std::move(cells_.values(o)), cellWeights, camera_.outputs[o].perEtendue);
+  for (size_t o = 0; o < drawn.size(); ++o) pixels_.values(o) = resolved(std::move(cells_.values(o)), cellWeights, outputs_[o].perEtendue);
   run(ofPixels_, tick, pixels_);
   std::vector<std::vector<float>> pixels;
   for (size_t o = 0; o < drawn.size(); ++o) pixels.push_back(std::move(pixels_.values(o)));
   return pixels;
 }
 
-void SensorChain::run(const std::vector<Named>& stages, const SensorTick& tick, SensorPictures& pictures) {
+void StageLine::run(const std::vector<Named>& stages, const SensorTick& tick, SensorPictures& pictures) {
   for (const Named& s : stages) {
     const TimedPart part(s.part.c_str());
     s.stage->run(tick, pictures);
   }
 }
 
-void SensorChain::calibrate(const std::vector<double>& cellWeights, const SensorTick& tick) {
+void StageLine::calibrate(const std::vector<double>& cellWeights, const SensorTick& tick) {
   if (tick.focalLength_m == calibratedFocal_m_ && tick.exposure_s == calibratedExposure_s_) return;
   calibratedFocal_m_ = tick.focalLength_m, calibratedExposure_s_ = tick.exposure_s;
-  const std::size_t count = camera_.outputs.size();
+  const std::size_t count = outputs_.size();
   seen_.assign(count, {});
   pixels_.ownLight.assign(count, {});
-  const bool asked = std::any_of(camera_.outputs.begin(), camera_.outputs.end(), [](const ChannelOutput& o) { return o.asTemperature && o.perEtendue; });
+  const bool asked = std::any_of(outputs_.begin(), outputs_.end(), [](const ChannelOutput& o) { return o.asTemperature && o.perEtendue; });
   if (!asked) return;
-  const auto unitOf = [&](std::size_t o) { return camera_.outputs[o].scale * (camera_.outputs[o].perExposure ? tick.exposure_s : 1.0); };
+  const auto unitOf = [&](std::size_t o) { return outputs_[o].scale * (outputs_[o].perExposure ? tick.exposure_s : 1.0); };
   const auto through = [&](const std::vector<double>& radiance) {
     for (std::size_t o = 0; o < count; ++o) {
-      const ChannelOutput& output = camera_.outputs[o];
+      const ChannelOutput& output = outputs_[o];
       std::vector<float>& cells = cells_.values(o);
       cells.clear();
       for (double sr : cellWeights) cells.push_back(static_cast<float>(radiance[o] * unitOf(o) * (output.perEtendue ? sr : 1.0)));
@@ -75,7 +76,7 @@ void SensorChain::calibrate(const std::vector<double>& cellWeights, const Sensor
     run(ofCells_, tick, cells_);
     cells_.cellWeights = nullptr;
     std::vector<std::vector<float>> pixels;
-    for (std::size_t o = 0; o < count; ++o) pixels.push_back(resolved(cells_.values(o), cellWeights, camera_.outputs[o].perEtendue));
+    for (std::size_t o = 0; o < count; ++o) pixels.push_back(resolved(cells_.values(o), cellWeights, outputs_[o].perEtendue));
     return pixels;
   };
   // Nothing at all; then an even field, ten times as bright as the sensor's own light so that their difference has its digits.
@@ -92,9 +93,49 @@ void SensorChain::calibrate(const std::vector<double>& cellWeights, const Sensor
       seen_[o].push_back((static_cast<double>(lit[o][p]) - static_cast<double>(pixels_.ownLight[o][p])) / (unitOf(o) * radiance[o]));
 }
 
+SensorChain::SensorChain(const Camera& camera, const ShaderLibrary& library) : width_(drawnCamera(camera).pinhole.width), cells_(cellsOf(camera)), margin_px_(marginOf(camera)) {
+  // Channels that have nothing of their own go together.
+  std::vector<std::string> names;
+  std::vector<std::vector<ChannelOutput>> outputs;
+  for (const ChannelOutput& o : camera.outputs) {
+    const std::string name = camera.ownChannel(o.channel) ? o.channel : "";
+    const auto line = static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+    if (line == names.size()) names.push_back(name), outputs.emplace_back();
+    places_.push_back({line, outputs[line].size()});
+    outputs[line].push_back(o);
+  }
+  for (std::size_t k = 0; k < names.size(); ++k) lines_.push_back(std::make_unique<StageLine>(camera, outputs[k], names[k].empty() ? camera.stages : camera.stagesOf(names[k]), library));
+}
+
+std::vector<std::vector<float>> SensorChain::run(std::vector<std::vector<float>> drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
+                                                 std::vector<SensorPoint> points) {
+  std::vector<std::vector<std::vector<float>>> ofLine(lines_.size());
+  std::vector<std::vector<SensorPoint>> pointsOf(lines_.size());
+  for (std::size_t o = 0; o < drawn.size(); ++o) ofLine[places_[o].line].push_back(std::move(drawn[o]));
+  for (SensorPoint& p : points) {
+    const Place& place = places_[p.output];
+    p.output = place.output;
+    pointsOf[place.line].push_back(p);
+  }
+  for (std::size_t k = 0; k < lines_.size(); ++k) {
+    SensorTick own = tick;
+    own.exposure_s = tick.exposures_s.of(lines_[k]->outputs().front().channel);
+    own.gain = tick.gains.of(lines_[k]->outputs().front().channel);
+    ofLine[k] = lines_[k]->run(std::move(ofLine[k]), cellWeights, own, std::move(pointsOf[k]));
+  }
+  std::vector<std::vector<float>> pixels;
+  for (const Place& p : places_) pixels.push_back(std::move(ofLine[p.line][p.output]));
+  return pixels;
+}
+
+CountMarks SensorChain::marks() const {
+  CountMarks all;
+  for (const auto& line : lines_) all.insert(line->marks().begin(), line->marks().end());
+  return all;
+}
+
 std::size_t SensorChain::middleCell(int column, int row) const {
-  const int n = cells_.cells, margin = cells_.margin_px;
-  return static_cast<size_t>((row + margin) * n + n / 2) * static_cast<size_t>(cells_.width) + static_cast<size_t>((column + margin) * n + n / 2);
+  return static_cast<size_t>((row + margin_px_) * cells_ + cells_ / 2) * static_cast<size_t>(width_) + static_cast<size_t>((column + margin_px_) * cells_ + cells_ / 2);
 }
 
 }  // namespace pitviper

@@ -130,7 +130,7 @@ void refuseNotFinite(const std::string& frame, int width, const ChannelOutput& o
 
 std::vector<float> valuesOf(const std::string& frame, const ChannelOutput& output, size_t o, const CameraImage& image) {
   const auto& slot = image.slots[static_cast<size_t>(image.slotOfOutput[o])];
-  const double scale = output.scale * (output.perExposure ? image.exposure_s : 1.0);
+  const double scale = output.scale * (output.perExposure ? image.exposures_s.of(output.channel) : 1.0);
   std::vector<float> values(slot.size());
   for (size_t p = 0; p < slot.size(); ++p) values[p] = static_cast<float>(scale * slot[p] * (output.perEtendue ? image.solidAngles->projected_sr[p] : 1.0));
   refuseNotFinite(frame, image.width, output, values);
@@ -149,7 +149,7 @@ void toApparentTemperatures(std::vector<float>& values, const ChannelOutput& out
 void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image) {
   for (size_t o = 0; o < camera.outputs.size(); ++o) {
     frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, valuesOf(nameOf(frame.camera, frame.number), camera.outputs[o], o, image)});
-    if (camera.outputs[o].asTemperature) toApparentTemperatures(frame.layers.back().pixels, camera.outputs[o], image.solidAngles->projected_sr, image.exposure_s);
+    if (camera.outputs[o].asTemperature) toApparentTemperatures(frame.layers.back().pixels, camera.outputs[o], image.solidAngles->projected_sr, image.exposures_s.of(camera.outputs[o].channel));
   }
 }
 
@@ -185,7 +185,10 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   add("pitviper.time_s", state.time_s);
   const CameraState eye = cameraAt(camera, state);
   const Pinhole& p = eye.pinhole;
-  addOptics(frame, p, eye.exposure_s);
+  addOptics(frame, p, longestExposure_s(camera, eye.exposures_s));
+  for (const ChannelOutput& o : camera.outputs)
+    if (const std::string own = "pitviper.exposure_s." + o.channel; !camera.ownChannels.empty() && (frame.attributes.empty() || frame.attributes.back().name != own))
+      add(own, eye.exposures_s.of(o.channel));
   addStandard(frame, sim, camera, eye);
   addSensor(frame, camera, eye);
   add("pitviper.samples", camera.samples);
@@ -226,7 +229,7 @@ std::vector<SensorPoint> pointsOf(const Camera& camera, const CameraImage& image
   for (const FilmPoint& p : image.points)
     for (size_t o = 0; o < camera.outputs.size(); ++o)
       if (image.slotOfOutput[o] == p.slot)
-        points.push_back({p.column, p.row, o, camera.outputs[o].scale * (camera.outputs[o].perExposure ? image.exposure_s : 1.0) * p.flux});
+        points.push_back({p.column, p.row, o, camera.outputs[o].scale * (camera.outputs[o].perExposure ? image.exposures_s.of(camera.outputs[o].channel) : 1.0) * p.flux});
   return points;
 }
 
@@ -270,7 +273,7 @@ SensorTick sensorTick(const Simulation& sim, const Camera& camera, const CameraI
   const CameraState eye = cameraAt(camera, state);
   const Pinhole& now = eye.pinhole;
   return {number,          state.time_s, image.exposure_s, sim.time.step_s, now.projectedSolidAngle_sr(now.width / 2, now.height / 2), now.focalLength_m,
-          noiseSeed(sim, camera), eye.gain};
+          noiseSeed(sim, camera), eye.gains.common, eye.exposures_s, eye.gains};
 }
 
 }  // namespace
@@ -288,7 +291,7 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
     auto pixels = sensed(sim, camera, image, state, number, *chain);
     for (size_t o = 0; o < camera.outputs.size(); ++o) {
       if (camera.outputs[o].asTemperature)
-        toApparentTemperatures(pixels[o], camera.outputs[o], chain->seenSolidAngles(o), image.exposure_s);
+        toApparentTemperatures(pixels[o], camera.outputs[o], chain->seenSolidAngles(o), image.exposures_s.of(camera.outputs[o].channel));
       frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, std::move(pixels[o])});
     }
   } else {

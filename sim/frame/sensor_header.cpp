@@ -62,7 +62,7 @@ void addCurves(Frame& frame, const ChannelOutput& o) {
 std::vector<double> temperatures(const BandTemperature& band, double mostIntegral) {
   constexpr int kSteps = 128;
   constexpr double kColdest_K = 200.0, kHottest_K = 3000.0;
-  const double hottest = std::clamp(band(mostIntegral), 2.0 * kColdest_K, kHottest_K);
+  const double hottest = std::clamp(band(mostIntegral), 1.05 * kColdest_K, kHottest_K);
   std::vector<double> all;
   for (int k = 0; k <= kSteps; ++k) all.push_back(kColdest_K * std::pow(hottest / kColdest_K, static_cast<double>(k) / kSteps));
   return all;
@@ -77,7 +77,7 @@ void addCalibration(Frame& frame, const Camera& camera, const CameraState& eye, 
   const Pinhole& p = eye.pinhole;
   if (!o.temperature) return;
   const BandTemperature& band = *o.temperature;
-  const DetectorLaw* law = detectorOf(camera);
+  const DetectorLaw* law = detectorOf(camera, o.channel);
   if (!law || !o.detected) {
     const std::vector<double> all = temperatures(band, INFINITY);
     std::vector<double> radiances;
@@ -86,9 +86,9 @@ void addCalibration(Frame& frame, const Camera& camera, const CameraState& eye, 
     addTable("radiance", radiances);
     return;
   }
-  const double gain = law->gain * eye.gain, dark = law->darkCurrent_per_s * eye.exposure_s;
-  const double axis_sr = p.projectedSolidAngle_sr(p.width / 2, p.height / 2), perIntegral = law->fillFactor * o.scale * eye.exposure_s * axis_sr;
-  const double own = law->fillFactor * ownLightOf(camera, o, axis_sr, eye.exposure_s) + dark;
+  const double exposure_s = eye.exposures_s.of(o.channel), gain = law->gain * eye.gains.of(o.channel), dark = law->darkCurrent_per_s * exposure_s;
+  const double axis_sr = p.projectedSolidAngle_sr(p.width / 2, p.height / 2), perIntegral = law->fillFactor * o.scale * exposure_s * axis_sr;
+  const double own = law->fillFactor * ownLightOf(camera, o, axis_sr, exposure_s) + dark;
   if (o.isCount()) {
     // Of light even over the response: integral of S L over integral of kernel L.
     const double perElectron = o.curves->response.integral(o.bandLow_um, o.bandHigh_um) / o.kernel.integral(o.bandLow_um, o.bandHigh_um) / perIntegral;
@@ -100,7 +100,7 @@ void addCalibration(Frame& frame, const Camera& camera, const CameraState& eye, 
     add("radiance_per_count", perElectron / gain);
     add("radiance_at_0", -(law->offset / gain + own) * perElectron);
   }
-  const std::vector<double> all = temperatures(band, std::max(0.0, law->saturation() - own) / perIntegral);
+  const std::vector<double> all = temperatures(band, std::max(0.0, law->saturation(eye.gains.of(o.channel)) - own) / perIntegral);
   std::vector<double> counts;
   for (double t : all) counts.push_back(gain * (perIntegral * band.integral(t) + own) + law->offset);
   addTable("temperature_K", all);
@@ -118,7 +118,7 @@ void addStandard(Frame& frame, const Simulation& sim, const Camera& camera, cons
   rows.insert(rows.end(), {origin.x, origin.y, origin.z, 1.0});
   frame.attributes.push_back({"worldToCamera", std::move(rows)});
   frame.attributes.push_back({"framesPerSecond", 1.0 / sim.time.step_s});
-  if (eye.exposure_s > 0.0) frame.attributes.push_back({"expTime", eye.exposure_s});
+  if (const double longest_s = longestExposure_s(camera, eye.exposures_s); longest_s > 0.0) frame.attributes.push_back({"expTime", longest_s});
   frame.attributes.push_back({"aperture", eye.pinhole.focalLength_m / camera.pinhole.apertureDiameter_m});
   if (sim.time.epoch_s) frame.attributes.push_back({"pitviper.date_utc", dateOf(*sim.time.epoch_s + frame.time_s)});
 }

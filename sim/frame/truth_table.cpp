@@ -86,6 +86,7 @@ Camera measuredCamera(const Camera& camera) {
   measured.outputs = measuredOutputs(camera);
   measured.plan.clear();
   measured.stages.clear();
+  for (auto& [channel, own] : measured.ownChannels) own.stages.clear();
   return measured;
 }
 
@@ -137,7 +138,6 @@ void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, con
   const CameraState eye = cameraAt(camera_, state);
   const Pinhole& p = eye.pinhole;
   const double pixel_sr = p.projectedSolidAngle_sr(p.width / 2, p.height / 2), range2 = row.range_m * row.range_m;
-  const DetectorLaw* law = detectorOf(camera_);
   for (std::size_t r : radianceOf_) {
     const auto slot = static_cast<std::size_t>(plan_.slotOfOutput[r]);
     TargetRow::Channel c;
@@ -145,17 +145,19 @@ void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, con
     c.unit = "W/sr";
     c.own = own[slot], c.total = total[slot], c.contrast = contrast[slot];
     c.signalToNoise = NAN;
+    const DetectorLaw* law = detectorOf(camera_, c.channel);
+    const double exposure_s = eye.exposures_s.of(c.channel);
     const auto detected = std::find_if(measured_.outputs.begin(), measured_.outputs.end(), [&](const ChannelOutput& o) { return o.detected && o.channel == c.channel; });
     if (law && detected != measured_.outputs.end() && range2 > 0.0) {
       const auto counted = static_cast<std::size_t>(plan_.slotOfOutput[static_cast<std::size_t>(detected - measured_.outputs.begin())]);
-      const double perFlux = law->fillFactor * detected->scale * eye.exposure_s;  // electrons of kernel integral x sr
+      const double perFlux = law->fillFactor * detected->scale * exposure_s;  // electrons of kernel integral x sr
       // All of it in one pixel where it is smaller than one, but for what the lens spreads; else a pixel's part of its face.
       const double pixels = std::max(body_sr / pixel_sr, 1.0 / pixelShareOf(camera_, *detected, p.focalLength_m)), signal = perFlux * contrast[counted] / range2 / pixels;
       const double behind = body_sr > 0.0 ? perFlux * pixel_sr * (total[counted] - contrast[counted]) / range2 / body_sr : 0.0;
-      const double own_e = law->fillFactor * ownLightOf(camera_, *detected, pixel_sr, eye.exposure_s), dark = law->darkCurrent_per_s * eye.exposure_s;
+      const double own_e = law->fillFactor * ownLightOf(camera_, *detected, pixel_sr, exposure_s), dark = law->darkCurrent_per_s * exposure_s;
       const double variance = std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark + law->readoutVariance(simulation_.time.step_s);
       // A best pixel that is full tells nothing of it.
-      if (std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark < law->saturation(eye.gain)) c.signalToNoise = signal / std::sqrt(variance);
+      if (std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark < law->saturation(eye.gains.of(c.channel))) c.signalToNoise = signal / std::sqrt(variance);
     }
     row.channels.push_back(c);
   }

@@ -41,6 +41,8 @@ struct ChannelOutput {
   std::string cut;  ///< what of its response is left out for want of data, in words; empty: nothing (coverage.hpp)
   /// What the detector counts, told as it is.
   bool isCount() const { return detected && !asTemperature && !asSignalToNoise && !asDisplay && !asMark; }
+  /// Whose exposure and detector it has, where those are not the camera's; it then shares no integral with other channels, as what moves differs.
+  std::string apart;
   std::string layer() const { return channel + "." + quantity; }
 };
 

@@ -24,6 +24,7 @@ struct Courses {
   std::map<std::string, Course<glm::dquat>> cameraOrientations;
   std::map<std::string, Course<double>> focalLengths_m, exposures_s;
   std::map<std::string, Course<double>> gains;  ///< factors of the detector's own
+  std::map<std::pair<std::string, std::string>, Course<double>> channelExposures_s, channelGains;  ///< by camera and channel, of channels that have their own
   std::map<std::string, std::vector<Pointing>> pointings;  ///< of cameras on gimbals: the newest (addPointing)
 };
 

@@ -84,8 +84,8 @@ void addTo(Fingerprint& f, const MaterialStates& s) {
 void addTo(Fingerprint& f, const std::vector<ChannelOutput>& outputs) {
   f.add(static_cast<double>(outputs.size()));
   for (const auto& [channel, quantity, unit, where, kernel, scale, perEtendue, perExposure, behindOptics, onFilm, onFilmScale, detected, asTemperature, asSignalToNoise, asDisplay, asMark,
-                    temperature, bandLow_um, bandHigh_um, curves, cut] : outputs) {
-    f.add(channel).add(quantity).add(scale).add(perEtendue).add(perExposure);
+                    temperature, bandLow_um, bandHigh_um, curves, cut, apart] : outputs) {
+    f.add(channel).add(apart).add(quantity).add(scale).add(perEtendue).add(perExposure);
     pitviper::addTo(f, kernel);
   }
 }
@@ -171,7 +171,7 @@ void addTo(Fingerprint& f, const Simulation& sim) {
 
 void addTo(Fingerprint& f, const Camera& c) {
   const auto& [name, where, pinhole, mount, exposure_s, focalLengthOverTime_m, exposureOverTime_s, near_m, samples, motionBlur, exposureParts, pointsApart, binning, window, sharesShading, smallBody_px, zoomedSamples, outlineAccuracy, textureAccuracy, spectral,
-               learnt, plan, planFile, outputs, stages, spectralImage, truth, follower] = c;
+               learnt, plan, planFile, outputs, stages, ownChannels, spectralImage, truth, follower] = c;
   const auto& [width, height, focalLength_m, pitchX_m, pitchY_m, apertureDiameter_m] = pinhole;
   f.add(name).add(width).add(height).add(focalLength_m).add(pitchX_m).add(pitchY_m).add(apertureDiameter_m);
   addTo(f, focalLengthOverTime_m);
@@ -190,6 +190,11 @@ void addTo(Fingerprint& f, const Camera& c) {
   addTo(f, spectral);
   addTo(f, outputs);
   for (const StageChoice& s : stages) f.add(s.fingerprint);
+  for (const auto& [channel, own] : ownChannels) {
+    f.add(channel).add(own.exposure_s.has_value()).add(own.exposure_s.value_or(0.0));
+    addTo(f, own.exposureOverTime_s);
+    for (const StageChoice& s : own.stages) f.add(s.fingerprint);
+  }
 }
 
 void addTo(Fingerprint& f, const Probe& p) {

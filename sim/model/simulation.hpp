@@ -1,6 +1,7 @@
 #pragma once
 // A whole scenario, typed and in SI, as the kernel sees it: nothing here knows where it was read from.
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,6 +58,14 @@ struct FilmPlace {
   std::optional<Pose> pose = {};  ///< of a camera that something points, at that time
 };
 
+/// What a channel has of its own, in place of its camera's.
+struct OwnChannel {
+  std::optional<double> exposure_s;
+  TimeCourse exposureOverTime_s;    ///< empty: as above; else above is what holds at the first frame
+  std::vector<StageChoice> stages;  ///< all of it
+  bool hasDetector = false;         ///< one that its camera's other channels do not share
+};
+
 struct Camera {
   std::string name;
   Location where;
@@ -82,9 +91,27 @@ struct Camera {
   std::string planFile;           ///< where it came from, for messages
   std::vector<ChannelOutput> outputs;
   std::vector<StageChoice> stages;            ///< of its sensor, after the spectral integral
+  std::map<std::string, OwnChannel> ownChannels;  ///< by name, of those that have an exposure or stages of their own
   std::optional<SpectralBins> spectralImage;  ///< written beside the frame
   TruthLayers truth;
   std::optional<FollowerChoice> follower;  ///< what points it, besides its mount; none: its mount
+
+  const OwnChannel* ownChannel(const std::string& channel) const {
+    const auto found = ownChannels.find(channel);
+    return found == ownChannels.end() ? nullptr : &found->second;
+  }
+  const std::vector<StageChoice>& stagesOf(const std::string& channel) const {
+    const OwnChannel* own = ownChannel(channel);
+    return own ? own->stages : stages;
+  }
+  bool hasStages() const {
+    return !stages.empty() || std::any_of(ownChannels.begin(), ownChannels.end(), [](const auto& own) { return !own.second.stages.empty(); });
+  }
+  /// At the first frame.
+  double exposureOf(const std::string& channel) const {
+    const OwnChannel* own = ownChannel(channel);
+    return own && own->exposure_s ? *own->exposure_s : exposure_s;
+  }
 };
 
 /// Irradiance on a plane at a point: layers as a camera's outputs with kernels for irradiance.

@@ -52,7 +52,8 @@ int warmUpOf(const Camera& camera, double step_s);
 double pixelShareOf(const Camera& camera, const ChannelOutput& output, double focalLength_m, double x = 0.0, double y = 0.0);
 /// Of all its stages, in the output's unit.
 double ownLightOf(const Camera& camera, const ChannelOutput& output, double axis_sr, double exposure_s);
-const DetectorLaw* detectorOf(const Camera& camera);  ///< or null
+const DetectorLaw* detectorOf(const Camera& camera, const std::string& channel);  ///< or null
+bool hasDetector(const Camera& camera);  ///< of any of its channels
 /// Where a place of the picture that a pinhole would draw [pixels from the top left corner] is in that of its stages.
 glm::dvec2 placeOnFilm(const Camera& camera, double focalLength_m, const glm::dvec2& column_row);
 

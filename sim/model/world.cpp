@@ -50,12 +50,16 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
   for (const Camera& c : sim.cameras) {
     if (!c.focalLengthOverTime_m.empty()) state.cameras[c.name].focalLength_m = c.focalLengthOverTime_m.at(time_s);
     if (!c.exposureOverTime_s.empty()) state.cameras[c.name].exposure_s = c.exposureOverTime_s.at(time_s);
+    for (const auto& [channel, own] : c.ownChannels)
+      if (!own.exposureOverTime_s.empty()) state.cameras[c.name].channelExposures_s[channel] = own.exposureOverTime_s.at(time_s);
   }
   for (const auto& [camera, course] : courses.cameraPositions) state.cameras[camera].position = course(time_s);
   for (const auto& [camera, course] : courses.cameraOrientations) state.cameras[camera].orientation = course(time_s);
   for (const auto& [camera, course] : courses.focalLengths_m) state.cameras[camera].focalLength_m = course(time_s);
   for (const auto& [camera, course] : courses.exposures_s) state.cameras[camera].exposure_s = course(time_s);
   for (const auto& [camera, course] : courses.gains) state.cameras[camera].gain = course(time_s);
+  for (const auto& [of, course] : courses.channelExposures_s) state.cameras[of.first].channelExposures_s[of.second] = course(time_s);
+  for (const auto& [of, course] : courses.channelGains) state.cameras[of.first].channelGains[of.second] = course(time_s);
   for (const auto& [camera, pointings] : courses.pointings) state.cameras[camera].pointings = pointings;
   if (!sim.fields.empty()) state.fields = std::make_shared<const FieldStates>(sim, state);
   return state;
@@ -142,11 +146,22 @@ WorldState World::at(double time_s) const {
 
 CameraState cameraAt(const Camera& camera, const WorldState& state) {
   const CameraChange* change = changeOf(camera, state);
-  CameraState at{poseOf(camera.mount, change, state), camera.pinhole, camera.exposure_s, 1.0};
+  CameraState at{poseOf(camera.mount, change, state), camera.pinhole, {camera.exposure_s}, {1.0}};
+  for (const auto& [channel, own] : camera.ownChannels)
+    if (own.exposure_s) at.exposures_s.own[channel] = *own.exposure_s;
   if (change && change->focalLength_m) at.pinhole.focalLength_m = *change->focalLength_m;
-  if (change && change->exposure_s) at.exposure_s = *change->exposure_s;
-  if (change && change->gain) at.gain = *change->gain;
+  if (change && change->exposure_s) at.exposures_s.common = *change->exposure_s;
+  if (change && change->gain) at.gains.common = *change->gain;
+  if (change)
+    for (const auto& [channel, exposure_s] : change->channelExposures_s) at.exposures_s.own[channel] = exposure_s;
+  if (change) at.gains.own = change->channelGains;
   return at;
+}
+
+double longestExposure_s(const Camera& camera, const ChannelValues& exposures_s) {
+  double longest = camera.outputs.empty() ? exposures_s.common : 0.0;
+  for (const ChannelOutput& o : camera.outputs) longest = std::max(longest, exposures_s.of(o.channel));
+  return longest;
 }
 
 FollowerTick followerTick(const Camera& camera, const WorldState& state, int frame) {

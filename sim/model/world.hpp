@@ -41,10 +41,11 @@ class World {
 struct CameraState {
   Pose pose;  ///< local frame; body axes: x is the line of sight, y left, z up
   Pinhole pinhole;
-  double exposure_s = 0.0;
-  double gain = 1.0;  ///< factor of its detector's
+  ChannelValues exposures_s, gains;  ///< the second: factors of detectors'
 };
 CameraState cameraAt(const Camera& camera, const WorldState& state);
+/// The longest exposure of any of its channels: how long a frame takes.
+double longestExposure_s(const Camera& camera, const ChannelValues& exposures_s);
 
 /// What a camera's follower is told of a time.
 FollowerTick followerTick(const Camera& camera, const WorldState& state, int frame);

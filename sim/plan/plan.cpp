@@ -62,7 +62,7 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   std::vector<const ChannelOutput*> slots;
   for (const auto& output : outputs) {
     requireData(sim, output);
-    auto same = std::find_if(slots.begin(), slots.end(), [&](const auto* s) { return sameKernel(s->kernel, output.kernel); });
+    auto same = std::find_if(slots.begin(), slots.end(), [&](const auto* s) { return s->apart == output.apart && sameKernel(s->kernel, output.kernel); });
     plan.slotOfOutput.push_back(static_cast<int>(same - slots.begin()));
     if (same == slots.end()) slots.push_back(&output);
   }

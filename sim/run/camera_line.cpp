@@ -37,7 +37,7 @@ CameraLine::CameraLine(const Simulation& simulation, const Camera& camera, const
     rungs_.push_back({std::move(drawn), std::move(renderer)});
   }
   auditor_ = std::make_unique<Auditor>(simulation, *rungs_[0].drawn, rungs_[0].renderer->plan(), library, scene);
-  if (!camera.stages.empty()) chain_ = std::make_unique<SensorChain>(camera, library);
+  if (camera.hasStages()) chain_ = std::make_unique<SensorChain>(camera, library);
   if (camera.truth.targets || camera.truth.terms) truth_ = std::make_unique<TruthMeter>(simulation, camera);
   if (camera.follower) pointer_ = std::make_unique<CameraPointer>(simulation, camera);
 }

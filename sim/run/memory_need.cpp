@@ -67,7 +67,7 @@ double needOf(const Simulation& sim, const Camera& c) {
   const Picture p = pictureOf(drawnCamera(c));
   constexpr double kSolidAngles = 16.0;
   double need = keptOnGpu(sim, p, c.spectral.reference) + whileDrawn(p) + frames((p.layers + p.truth) * p.pixels) + kSolidAngles * p.pixels;
-  if (!c.stages.empty()) need += 4.0 * 4.0 * p.layers * p.pixels;  // two pictures of each output, what is sent and what comes back
+  if (c.hasStages()) need += 4.0 * 4.0 * p.layers * p.pixels;  // two pictures of each output, what is sent and what comes back
   if (c.spectralImage) {
     const int atOnce = std::min(c.spectralImage->count(), kMostSlots);
     const Picture pass{p.pixels, p.subpixels, atOnce, 0, 4 * kMostTargets};

@@ -350,7 +350,7 @@ class StreamLoop {
     s.renderEnd_tai_ns = taiOf_ns(made);
     s.due_tai_ns = tick.due_ns > 0 ? taiOf_ns(tick.due_ns) : 0;
     s.poseAge_ns = tick.newestCommand_ns >= 0 ? job.begun_ns - tick.newestCommand_ns : -1;
-    s.gain = cameraAt(camera, tick.state).gain;
+    s.gain = cameraAt(camera, tick.state).gains.common;
     s.accuracy = image.accuracy;
     for (double e : image.predictedError) s.predictedError = std::max(s.predictedError, e);
     const AttributeLook look(frame);

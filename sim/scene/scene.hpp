@@ -73,12 +73,23 @@ struct Pointing {
   glm::dvec3 direction{1.0, 0.0, 0.0};
 };
 
+/// A value of a camera, and of those of its channels that have their own.
+struct ChannelValues {
+  double common = 0.0;
+  std::map<std::string, double> own = {};
+  double of(const std::string& channel) const {
+    const auto found = own.find(channel);
+    return found == own.end() ? common : found->second;
+  }
+};
+
 /// What of a camera is not as the scenario has it.
 struct CameraChange {
   std::optional<glm::dvec3> position;     ///< in the local frame or in its carrier's
   std::optional<glm::dquat> orientation;  ///< the same; it looks along its x axis
   std::optional<double> focalLength_m, exposure_s;
   std::optional<double> gain;  ///< factor of its detector's
+  std::map<std::string, double> channelExposures_s, channelGains;  ///< of channels that have their own
   std::vector<Pointing> pointings;  ///< the newest, oldest first, of one on a gimbal
   std::optional<Pose> pose;         ///< in the local frame, of what points it: goes before position, orientation and mount
 };

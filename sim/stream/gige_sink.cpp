@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 
+#include "sim/frame/frame_number.hpp"
 #include "sim/frame/version.hpp"
 #include "sim/stream/clock/wall_clock.hpp"
 #include "sim/stream/controllable_sink.hpp"
@@ -67,18 +68,27 @@ class GigeSink final : public Sink, public ControllableSink {
       s.version = kVersion;
       s.width = d.coder.width(), s.height = d.coder.height(), s.bits = d.coder.bits();
       s.rate_hz = 1.0 / simulation_.time.step_s;
-      s.exposure_us = 1e6 * c.exposure_s;
+      // The device is of one layer: its channel's exposure and gain are what a client sets.
+      const std::string channel = d.coder.layer().substr(0, d.coder.layer().rfind('.'));
+      const OwnChannel* own = c.ownChannel(channel);
+      s.exposure_us = 1e6 * c.exposureOf(channel);
       s.allowDestination = wish_.allowDestination;
       s.line_Mbps = wish_.line_Mbps;
       GigeCallbacks calls;
       calls.now_ns = [] { return taiOf_ns(monotonic_ns()); };
       if (controls_.command) {
-        if (c.exposure_s > 0.0)
-          calls.exposure = [this, name = c.name](double us) { controls_.command({{"command", "look"}, {"camera", name}, {"exposure", number(us, " us")}}); };
-        if (detectorOf(c))
-          calls.gain = [this, name = c.name](double dB) {
+        const auto send = [this](std::vector<std::pair<std::string, std::string>> words, const std::string& ofChannel) {
+          if (!ofChannel.empty()) words.emplace_back("channel", ofChannel);
+          controls_.command(words);
+        };
+        if (c.exposureOf(channel) > 0.0)
+          calls.exposure = [send, name = c.name, of = own && own->exposure_s ? channel : ""](double us) {
+            send({{"command", "look"}, {"camera", name}, {"exposure", number(us, " us")}}, of);
+          };
+        if (detectorOf(c, channel))
+          calls.gain = [send, name = c.name, of = own && own->hasDetector ? channel : ""](double dB) {
             constexpr double kDecibelsOfTen = 20.0;
-            controls_.command({{"command", "gain"}, {"camera", name}, {"factor", number(std::pow(10.0, dB / kDecibelsOfTen), "")}});
+            send({{"command", "gain"}, {"camera", name}, {"factor", number(std::pow(10.0, dB / kDecibelsOfTen), "")}}, of);
           };
         else s.gainMax_dB = 0.0;
       }
@@ -107,7 +117,8 @@ class GigeSink final : public Sink, public ControllableSink {
     picture->sequence = frame->stamp ? s.sequence : static_cast<std::uint64_t>(frame->number);
     picture->timestamp_ns = taiOf_ns(monotonic_ns());
     picture->simulation_ns = s.time_ns;
-    picture->exposure_us = 1e-3 * static_cast<double>(s.exposureEnd_ns - s.exposureStart_ns);
+    const std::string channel = d.coder.layer().substr(0, d.coder.layer().rfind('.'));
+    picture->exposure_us = 1e6 * numberOf(*frame, "pitviper.exposure_s." + channel, 1e-9 * static_cast<double>(s.exposureEnd_ns - s.exposureStart_ns));
     constexpr double kDecibelsOfTen = 20.0;  // of a voltage
     picture->gain_dB = kDecibelsOfTen * std::log10(s.gain);
     picture->radianceScale = coded.gain, picture->radianceOffset = coded.offset;

@@ -20,12 +20,12 @@ class SharedMemorySink final : public Sink {
       RingDesign d{simulation_.cameras.size() > 1 ? name_ + "." + c.name : name_, simulation_.name, c.name, 0, 0, slots_, 1.0 / simulation_.time.step_s, {}};
       d.width = c.window ? c.window->z : c.pinhole.width;
       d.height = c.window ? c.window->w : c.pinhole.height;
-      const DetectorLaw* law = detectorOf(c);
       if (c.outputs.size() > PITVIPER_STREAM_LAYERS)
         throw UserError(where_, "camera '" + c.name + "' has " + std::to_string(c.outputs.size()) + " layers",
                         "at most " + std::to_string(PITVIPER_STREAM_LAYERS) + " in shared memory", "ask for fewer outputs, or split it into two cameras");
       for (const ChannelOutput& o : c.outputs) {
         const bool counts = isCounts(c, o);
+        const DetectorLaw* law = detectorOf(c, o.channel);
         d.layers.push_back({o.layer(), o.unit, counts, !o.asDisplay, static_cast<std::uint16_t>(o.asDisplay ? 255.0 : law ? law->mostCount() : 65535.0)});
       }
       try {

@@ -11,7 +11,7 @@
 namespace pitviper {
 
 bool isCounts(const Camera& camera, const ChannelOutput& output) {
-  return detectorOf(camera) && (output.isCount() || output.asDisplay);
+  return detectorOf(camera, output.channel) && (output.isCount() || output.asDisplay);
 }
 
 StreamCoder::StreamCoder(const Camera& camera, const std::string& layer, const StreamRange& range, const Location& where)
@@ -27,7 +27,7 @@ StreamCoder::StreamCoder(const Camera& camera, const std::string& layer, const S
   layer_ = chosen->layer();
   counts_ = isCounts(camera, *chosen);
   display_ = chosen->asDisplay;
-  if (counts_) bits_ = chosen->asDisplay ? 8 : detectorOf(camera)->bits;
+  if (counts_) bits_ = chosen->asDisplay ? 8 : detectorOf(camera, chosen->channel)->bits;
 }
 
 void StreamCoder::code(const Frame& frame, StreamPicture& picture) {

@@ -42,7 +42,7 @@ Frame renderFrame(const Simulation& sim, int frame) {
   const Camera& camera = sim.cameras.at(0);
   std::optional<SensorChain> chain;
   needContext();
-  if (!camera.stages.empty()) chain.emplace(camera, shaderLibrary());
+  if (camera.hasStages()) chain.emplace(camera, shaderLibrary());
   for (int before = frame - warmUpOf(camera, sim.time.step_s); before < frame; ++before)
     sensed(sim, camera, renderImage(sim, before), advance(sim, sim.time.at(before)), before, *chain);
   const CameraImage image = renderImage(sim, frame);

@@ -333,7 +333,7 @@ TEST(CigiWorld, PutsBodiesWhereTheHostHasThem) {
   EXPECT_NEAR(cameraAt(sim.cameras[0], tell({wide})).pinhole.focalLength_m, 0.5 * 8 * 15e-6 / std::tan(0.1), 1e-9);
   CigiSensor sensor;
   sensor.view = 1, sensor.gain = 1.0;
-  EXPECT_NEAR(cameraAt(sim.cameras[0], tell({sensor})).gain, 10.0, 1e-9);
+  EXPECT_NEAR(cameraAt(sim.cameras[0], tell({sensor})).gains.common, 10.0, 1e-9);
   EXPECT_TRUE(refused.empty()) << refused.front();
   // What cannot be is said.
   CigiEntityPose wrong = jet;

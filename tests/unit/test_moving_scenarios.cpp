@@ -219,7 +219,7 @@ TEST(MovingScenarios, CamerasZoomAndExposeOverTime) {
   EXPECT_NEAR(at(2.0).pinhole.focalLength_m, focal(10.0), 1e-12);
   EXPECT_NEAR(at(1.0).pinhole.focalLength_m, 0.5 * (focal(10.0) + focal(20.0)), 1e-12);  // evenly by focal length
   EXPECT_NEAR(sim.cameras[0].pinhole.focalLength_m, focal(15.0), 1e-12) << "of the first frame, by the course of angles";
-  EXPECT_NEAR(at(2.0).exposure_s, 3e-3, 1e-15);
+  EXPECT_NEAR(at(2.0).exposures_s.common, 3e-3, 1e-15);
   EXPECT_NEAR(sim.cameras[0].exposure_s, 4e-3, 1e-15);
 }
 
