@@ -182,7 +182,9 @@ std::shared_ptr<const FieldState> FlareCloud::at(const FieldWorld& world) const 
   }
   const double area = areaFromTheSide_m2(puffs);
   for (Puff& p : puffs) p.gain = level / area;
-  return std::make_shared<PuffsState>(std::move(puffs));
+  auto state = std::make_shared<PuffsState>(std::move(puffs));
+  state->source = pose.position - state->origin;
+  return state;
 }
 
 void FlareCloud::addTo(Fingerprint& f) const {

@@ -89,6 +89,7 @@ class FlareCloud : public FieldSource {
   std::string shader() const override { return kPuffsShader; }
   void addTo(Fingerprint& fingerprint) const override;
   glm::dvec2 temperatures_K() const override;
+  std::string target() const override { return "flare"; }
   /// At level 1, standing still.
   double radius_m() const { return radius_m_; }
   const FlareCloudOptions& options() const { return options_; }

@@ -35,6 +35,7 @@ class GridSource : public FieldSource {
   std::string shader() const override { return "materials/fields/glsl/grid.field.glsl"; }
   void addTo(Fingerprint& fingerprint) const override;
   glm::dvec2 temperatures_K() const override { return range_K_; }
+  std::string target() const override { return "plume"; }
   /// In its own axes, at origin 0.
   std::shared_ptr<const FieldState> state() const { return state_; }
 

@@ -109,6 +109,7 @@ class JetsState : public FieldState {
     auto& t = own_;
     const double ramp = kJetRamp * k.radius_m;
     for (int j = 0; j < count; ++j) t.emplace_back(nozzles[static_cast<std::size_t>(j)], count - j);
+    for (const glm::dvec3& nozzle : nozzles) source += nozzle / static_cast<double>(count);
     const double faded = kFadedFrom * length_m;
     t.emplace_back(k.radius_m, length_m, faded, 1.0 / (length_m - faded));
     t.emplace_back(1.0 / k.rowScale_m, 1.0 / k.rowLogRatio, k.coreLength_m, 1.0 / k.farLogRatio);

@@ -52,6 +52,7 @@ class JetsSource : public FieldSource {
   std::vector<int> mixtures() const override;
   void addTo(Fingerprint& fingerprint) const override;
   glm::dvec2 temperatures_K() const override;
+  std::string target() const override { return "plume"; }
 
   const JetsSetup& setup() const { return setup_; }
   /// What the jet is at a time, to steps that change it by less than a thousandth: throttle 1/2000, speed 0.25 m/s, height 5 m, presence 1/256.

@@ -16,9 +16,9 @@ struct FrameLayer {
   std::vector<float> pixels;
 };
 
-/// What is true of a body or a lamp in a frame (sim/frame/truth_table.hpp).
+/// What is true of a body, a plume, a flare or a lamp in a frame (sim/frame/truth_table.hpp).
 struct TargetRow {
-  std::string name, kind;              ///< "body", "medium", "lamp"
+  std::string name, kind;              ///< "body", "medium", "plume", "flare", "lamp"
   double column = 0.0, row = 0.0;      ///< of its middle [pixels from the top left corner]; NaN behind the camera
   double left = 0.0, top = 0.0, right = 0.0, bottom = 0.0;  ///< the box around its outline, whatever hides it [pixels]; NaN where it is not in view
   double range_m = 0.0, rangeRate_m_s = 0.0;

@@ -1,15 +1,15 @@
 #include "sim/frame/truth_table.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
 #include <set>
-#include <thread>
 
 #include "sim/camera/small_bodies.hpp"
 #include "sim/camera/visible_lights.hpp"
 #include "sim/camera/zoomed_lines.hpp"
+#include "sim/frame/truth_work.hpp"
+#include "sim/model/coverage.hpp"
+#include "sim/model/field_states.hpp"
 #include "sim/model/world.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
@@ -29,26 +29,6 @@ constexpr int kWithin = 6;
 /// What lies between places that are worked out may be off by, of what is asked.
 constexpr double kLinearOfAccuracy = 0.04;
 
-/// Each worker takes the next piece until there are none.
-template <class OfPiece>
-void eachPiece(int pieces, const OfPiece& ofPiece) {
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int piece = next++; piece < pieces; piece = next++) ofPiece(piece);
-  };
-  std::vector<std::future<void>> workers;
-  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) workers.push_back(std::async(std::launch::async, work));
-  work();
-  for (auto& w : workers) w.get();
-}
-
-std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance) {
-  std::vector<double> slots(static_cast<std::size_t>(plan.slotCount), 0.0);
-  for (std::size_t s = 0; s < slots.size(); ++s)
-    for (std::size_t i = 0; i < plan.nodes.size(); ++i) slots[s] += plan.weight[s][i] * radiance[i];
-  return slots;
-}
-
 bool meets(const RayHits& hits, int entity) {
   return hits.solid.entity == entity || std::any_of(hits.layers.begin(), hits.layers.end(), [&](const Hit& h) { return h.entity == entity; }) ||
          std::any_of(hits.stretches.begin(), hits.stretches.end(), [&](const Stretch& s) { return s.entity == entity; });
@@ -57,7 +37,7 @@ bool meets(const RayHits& hits, int entity) {
 bool isRadiance(const ChannelOutput& o) { return o.quantity == "radiance"; }
 
 /// The radiance of each channel, and what a detector counts.
-std::vector<ChannelOutput> measuredOutputs(const Camera& camera) {
+std::vector<ChannelOutput> measuredOutputs(const Simulation& simulation, const Camera& camera) {
   std::vector<ChannelOutput> outputs;
   std::set<std::string> channels;
   for (const ChannelOutput& o : camera.outputs) {
@@ -71,6 +51,7 @@ std::vector<ChannelOutput> measuredOutputs(const Camera& camera) {
     radiance.bandLow_um = o.curves->response.supportLow();
     radiance.bandHigh_um = o.curves->response.supportHigh();
     radiance.curves = o.curves;
+    cutToData(simulation, radiance);  // as of those that are drawn
     outputs.push_back(radiance);
     for (const ChannelOutput& other : camera.outputs)
       if (other.detected && other.channel == o.channel) {
@@ -81,9 +62,9 @@ std::vector<ChannelOutput> measuredOutputs(const Camera& camera) {
   return outputs;
 }
 
-Camera measuredCamera(const Camera& camera) {
+Camera measuredCamera(const Simulation& simulation, const Camera& camera) {
   Camera measured = camera;
-  measured.outputs = measuredOutputs(camera);
+  measured.outputs = measuredOutputs(simulation, camera);
   measured.plan.clear();
   measured.stages.clear();
   for (auto& [channel, own] : measured.ownChannels) own.stages.clear();
@@ -95,7 +76,7 @@ Camera measuredCamera(const Camera& camera) {
 TruthMeter::TruthMeter(const Simulation& simulation, const Camera& camera)
     : simulation_(simulation),
       camera_(camera),
-      measured_(measuredCamera(camera)),
+      measured_(measuredCamera(simulation, camera)),
       asked_(camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise),
       lines_(std::clamp(kLinesAtOnePercent * std::pow(0.01 / asked_, 2.0 / 3.0), 48.0, 256.0)),
       present_(simulation.entities.size(), 1),
@@ -134,7 +115,7 @@ TargetRow TruthMeter::placed(const std::string& name, const char* kind, const Mo
 }
 
 void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, const std::vector<double>& total, const std::vector<double>& contrast, double body_sr,
-                             const WorldState& state) const {
+                             const WorldState& state, const std::vector<double>& faces_sr) const {
   const CameraState eye = cameraAt(camera_, state);
   const Pinhole& p = eye.pinhole;
   const double pixel_sr = p.projectedSolidAngle_sr(p.width / 2, p.height / 2), range2 = row.range_m * row.range_m;
@@ -152,7 +133,8 @@ void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, con
       const auto counted = static_cast<std::size_t>(plan_.slotOfOutput[static_cast<std::size_t>(detected - measured_.outputs.begin())]);
       const double perFlux = law->fillFactor * detected->scale * exposure_s;  // electrons of kernel integral x sr
       // All of it in one pixel where it is smaller than one, but for what the lens spreads; else a pixel's part of its face.
-      const double pixels = std::max(body_sr / pixel_sr, 1.0 / pixelShareOf(camera_, *detected, p.focalLength_m)), signal = perFlux * contrast[counted] / range2 / pixels;
+      const double face_sr = faces_sr.empty() ? body_sr : faces_sr[row.channels.size()];
+      const double pixels = std::max(face_sr / pixel_sr, 1.0 / pixelShareOf(camera_, *detected, p.focalLength_m)), signal = perFlux * contrast[counted] / range2 / pixels;
       const double behind = body_sr > 0.0 ? perFlux * pixel_sr * (total[counted] - contrast[counted]) / range2 / body_sr : 0.0;
       const double own_e = law->fillFactor * ownLightOf(camera_, *detected, pixel_sr, exposure_s), dark = law->darkCurrent_per_s * exposure_s;
       const double variance = std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark + law->readoutVariance(simulation_.time.step_s);
@@ -345,11 +327,24 @@ std::vector<TargetRow> TruthMeter::targets(const WorldState& state, const StateA
                           {earlier, ballOf(simulation_, earlier, entity).centre}, {later, ballOf(simulation_, later, entity).centre}));
     addBody(rows.back(), entity, state);
   }
+  for (std::size_t f = 0; f < simulation_.fields.size(); ++f) {
+    const FieldState* now = fieldOf(state, f);
+    const std::string kind = simulation_.fields[f].source->target();
+    if (!now || kind.empty()) continue;
+    const auto placeOf = [](const FieldState& field) { return field.origin + field.localFromField * field.source; };
+    const FieldState *before = fieldOf(earlier, f), *after = fieldOf(later, f);
+    const glm::dvec3 here = placeOf(*now), from = before ? placeOf(*before) : after ? 2.0 * here - placeOf(*after) : here, to = after ? placeOf(*after) : 2.0 * here - from;
+    rows.push_back(placed(simulation_.fields[f].name, kind.c_str(), {state, here}, {earlier, from}, {later, to}));
+    addField(rows.back(), f, state);
+  }
   for (std::size_t l = 0; l < simulation_.lights.size(); ++l) {
     if (!simulation_.lights[l].visible) continue;
     rows.push_back(placed(simulation_.lights[l].name, "lamp", {state, state.lights[l]}, {earlier, earlier.lights[l]}, {later, later.lights[l]}));
     addLamp(rows.back(), l, state);
   }
+  // Bodies, plumes and lamps may share a name: later ones say what they are.
+  for (std::size_t k = 0; k < rows.size(); ++k)
+    if (std::any_of(rows.begin(), rows.begin() + static_cast<long>(k), [&](const TargetRow& r) { return r.name == rows[k].name; })) rows[k].name += "_" + rows[k].kind;
   return rows;
 }
 

@@ -15,10 +15,12 @@ class TruthMeter {
   /// `camera`: the film's, which asks for targets or terms. Makes a plan of its own where the channels' radiances are not among its outputs. Both must outlive it.
   TruthMeter(const Simulation& simulation, const Camera& camera);
 
-  /// A row for each body but terrain and the camera's carrier, and for each lamp that can be seen. Intensities of a body: over lines of a square grid over its
+  /// A row for each body but terrain and the camera's carrier, for each plume and flare that is there, and for each lamp that can be seen. Intensities of a body: over lines of a square grid over its
   /// bounding sphere, 128 across at 1 %, six times as many where what they meet changes; worked out where they bend, linear between within a twenty-fifth of the accuracy. `own`: emission and
   /// reflection of its surfaces or its medium, through all that lies before it; `total`: all light along lines that meet it before anything opaque; `contrast`:
   /// that less what these lines would have without it. Each times range squared. A camera within a body's sphere gets NaN.
+  /// Of a plume or flare: over lines as the reference has them through a pixel, times the range of its nozzles or flame squared; its box holds all lines along which it sends a
+  /// hundredth of what it does along its brightest; `visible` is the share of what it sends that reaches the film past what is opaque.
   std::vector<TargetRow> targets(const WorldState& state, const StateAt& stateAt = {}) const;
 
   /// Layers `truth.terms.<channel>.<part>` [W/(m2 sr)] at pixels' middles, before the sensor's stages: emission, ambient, sun, lamp.<name> (light of that lamp that
@@ -33,10 +35,12 @@ class TruthMeter {
   };
   TargetRow placed(const std::string& name, const char* kind, const Moment& now, const Moment& before, const Moment& after) const;
   void addBody(TargetRow& row, int entity, const WorldState& state) const;
+  void addField(TargetRow& row, std::size_t field, const WorldState& state) const;
   void addLamp(TargetRow& row, std::size_t light, const WorldState& state) const;
-  /// Of kernel integrals times range squared, in the order of Plan::slotCount.
+  /// Of kernel integrals times range squared, in the order of Plan::slotCount. `faces_sr`: of each channel, the solid angle over which it would be as bright as its
+  /// brightest pixel; empty: that of the body.
   void addChannels(TargetRow& row, const std::vector<double>& own, const std::vector<double>& total, const std::vector<double>& contrast, double body_sr,
-                   const WorldState& state) const;
+                   const WorldState& state, const std::vector<double>& faces_sr = {}) const;
 
   const Simulation& simulation_;
   const Camera& camera_;

@@ -82,6 +82,7 @@ class FieldState {
   glm::dvec3 origin{0.0};
   glm::dmat3 localFromField{1.0};
   glm::dvec3 low{0.0}, high{0.0};  ///< box in field axes; nothing is outside
+  glm::dvec3 source{0.0};          ///< where it comes from, in field axes: the middle of nozzles, a flame
   double finest_m = 0.0;           ///< the least of its elements
   std::vector<FieldElement> elements;
   std::shared_ptr<const FieldTexels> texels;
@@ -114,6 +115,8 @@ class FieldSource {
   virtual void addTo(Fingerprint& fingerprint) const = 0;
   /// Temperatures that it may have [K], for the tables of its gases.
   virtual glm::dvec2 temperatures_K() const = 0;
+  /// A word for tables of targets; empty: it is no target.
+  virtual std::string target() const { return {}; }
 };
 
 struct FieldBody {

@@ -121,7 +121,7 @@ NodeSum::NodeSum(const NodeSpectra& spectra) : spectra_(spectra), count_(spectra
 
 void NodeSum::begin() {
   radiance_.assign(count_, 0.0);
-  if (watched_ >= 0) ofEntity_.assign(count_, 0.0);
+  if (watchesOne()) ofEntity_.assign(count_, 0.0);
   if (keepsParts_) {
     for (auto& p : parts_) p.assign(count_, 0.0);
     ofLamp_.assign(spectra_.simulation().lights.size(), std::vector<double>(count_, 0.0));
@@ -282,13 +282,16 @@ void NodeSum::segment(const Segment& s) {
              turned = sunlit && takes({TermKind::ScatteredSun});
   const auto sources = sourcesOf(s), drifts = driftsOf(s, sources);
   for (size_t i = 0; i < count_; ++i) {
-    double x = 0.0, emitted = 0.0, ofWatched = 0.0, drifting = 0.0;
+    double x = 0.0, emitted = 0.0, ofWatched = 0.0, drifting = 0.0, driftingOfWatched = 0.0;
     for (size_t m = 0; m < s.media.size(); ++m) {
       const double own = nodes[i].absorption_per_m[static_cast<size_t>(s.media[m].material)] * s.media[m].length_m;
       x += own;
       emitted += own * sources[m][i];
       if (!drifts.empty()) drifting += own * drifts[m][i];
-      if (s.media[m].entity == watched_) ofWatched += own * sources[m][i];
+      if (watchesOne() && s.media[m].entity == watched_ && s.media[m].field == watchedField_) {
+        ofWatched += own * sources[m][i];
+        if (!drifts.empty()) driftingOfWatched += own * drifts[m][i];
+      }
     }
     const double before = mediaDepth_[i];
     mediaDepth_[i] += x;
@@ -297,8 +300,9 @@ void NodeSum::segment(const Segment& s) {
     if (!(d > 0.0)) continue;
     const double reaching = panes_[i] * (before > 0.0 ? std::exp(-before) : 1.0), seen = reaching * (s.air ? near_.passed[i] : 1.0);
     const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * (x > 0.0 ? std::exp(-x) : 1.0), lost = lostOf(d, left);
-    if (watched_ >= 0 && x > 0.0) ofEntity_[i] += seen * ofWatched / d * lost;
-    if (media && x > 0.0) send(TermKind::Media, i, seen / d * (emitted * lost + (drifting != 0.0 ? drifting * (growing(d, left, lost) - 0.5 * lost) : 0.0)));
+    const auto sent = [&](double even, double change) { return seen / d * (even * lost + (change != 0.0 ? change * (growing(d, left, lost) - 0.5 * lost) : 0.0)); };
+    if (ofWatched > 0.0) ofEntity_[i] += sent(ofWatched, driftingOfWatched);
+    if (media && x > 0.0) send(TermKind::Media, i, sent(emitted, drifting));
     if (air && y > 0.0) {
       const double near = near_.black[i] + nodes[i].air.source, far = far_.black[i] + nodes[i].air.source;
       send(TermKind::AirEmission, i, seen * (y / d) * (near * lost + (far - near) * growing(d, left, lost)));

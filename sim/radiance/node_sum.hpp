@@ -77,6 +77,8 @@ class NodeSum final : public TermSink {
   /// Of what this entity sends or reflects, surface or medium, where watchEntity() was called; of all terms, whatever setOnly() says.
   std::span<const double> ofEntity() const { return ofEntity_; }
   void watchEntity(int entity) { watched_ = entity; }
+  /// The same of a field, an index into Simulation::fields: ofEntity() is then its.
+  void watchField(int field) { watchedField_ = field; }
   /// Sums from here on are of this part alone; without one of all.
   void setOnly(const std::optional<Part>& only) { only_ = only; }
   /// The parts that lines had since watchParts() was called.
@@ -109,7 +111,8 @@ class NodeSum final : public TermSink {
   const NodeSpectra& spectra_;
   size_t count_;
   bool keepsParts_ = false;
-  int watched_ = -1;
+  int watched_ = -1, watchedField_ = -1;
+  bool watchesOne() const { return watched_ >= 0 || watchedField_ >= 0; }
   std::optional<Part> only_;
   bool watches_ = false;
   std::set<Part> met_;

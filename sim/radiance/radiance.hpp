@@ -60,6 +60,7 @@ struct MediumInside {
   double sun = 0.0;        ///< share of the sun that reaches it, but for the air and for what follows
   double sunAmount = 0.0;  ///< of the same medium on the way to the sun
   double drift_perK = 0.0;  ///< 1 / temperature at the segment's far end, less that at its near end
+  int field = -1;          ///< index into Simulation::fields; -1: a body's
   Factor source() const { return Factor::medium(*medium, temperature_K, gain, lasting); }
 };
 

@@ -18,11 +18,13 @@ class TruthSink final : public Sink {
   void take(const std::shared_ptr<const Frame>& frame) override {
     const auto text = texts_.find(frame->camera);
     if (text == texts_.end() || !frame->kind.empty()) return;
-    if (text->second.empty()) text->second = mark_ + targetTableHead(frame->targets);
+    std::string& head = heads_[frame->camera];
+    if (head.empty() && !frame->targets.empty()) head = targetTableHead(frame->targets);
     text->second += targetTable(*frame);
   }
   void finish(const std::function<void(double)>&) override {
-    for (const auto& [camera, text] : texts_) writeFileAtomically(fileOf(camera), text, place_.mayReplace);
+    for (const auto& [camera, text] : texts_)
+      writeFileAtomically(fileOf(camera), mark_ + (heads_[camera].empty() ? targetTableHead({}) : heads_[camera]) + text, place_.mayReplace);
   }
   std::vector<std::filesystem::path> filesOf(const std::string& camera, int, const std::string& kind) const override {
     if (!kind.empty() || !texts_.count(camera)) return {};
@@ -33,14 +35,14 @@ class TruthSink final : public Sink {
   std::filesystem::path fileOf(const std::string& camera) const { return place_.folder / (camera + "_truth.csv"); }
   SinkPlace place_;
   std::string mark_;
-  std::map<std::string, std::string> texts_;  ///< by camera
+  std::map<std::string, std::string> texts_, heads_;  ///< by camera; what it has columns for is said by the first frame that has a row
 };
 
 }  // namespace
 
 SinkModel truthSink() {
   return {"truth",
-          "Tables `<camera>_truth.csv` of cameras whose `truth` asks for targets: a row a frame and body or lamp. Written without being asked for where no sinks are given.",
+          "Tables `<camera>_truth.csv` of cameras whose `truth` asks for targets: a row a frame and body, plume, flare or lamp. Written without being asked for where no sinks are given.",
           {folderParameter()},
           [](const Record& r, const Simulation&) {
             return [folder = readFolder(r)](const Simulation& simulation, const SinkPlace& place) -> std::unique_ptr<Sink> {

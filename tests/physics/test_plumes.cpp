@@ -113,6 +113,7 @@ cameras:
     position: [)" + half + " m, -" +
                              range + R"( m, 0 m]
     heading: 0 deg
+    truth: [targets]
     channels:
       - {name: wide, response: {band: [3 um, 5 um]}}
       - {name: red, response: {band: [4.1 um, 4.6 um]}}
@@ -139,6 +140,7 @@ cameras:
       char what[200];
       std::snprintf(what, sizeof what, "%s, %.1f-%.1f um from the side: %.1f W/sr; over the sum of lines", c.what, bands[b][0], bands[b][1], want);
       figure(what, seen / want, 1.0, 0.01, "the accuracy asked for");
+      figure(std::string(what) + ", of its row in truth", frame.targets.at(0).channels[static_cast<std::size_t>(b)].contrast / want, 1.0, 0.01, "the accuracy asked for");
     }
   }
 }

@@ -1,8 +1,11 @@
 // Rows of targets and terms of light against closed forms and against the reference.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "materials/fields/flares.hpp"
+#include "sim/flight/standard_atmosphere.hpp"
 #include "sim/frame/truth_table.hpp"
 #include "sim/model/stage.hpp"
 #include "sim/model/world.hpp"
@@ -156,6 +159,124 @@ TEST(TruthTable, TermsAddUp) {
   const double tau = std::exp(-0.1);
   figure("emission of a wall through 1 km of air", at(layer(f, "truth.terms.mw.emission"), f, 64, 48), 0.7 * blackBodyBand(3.6, 4.9, 320.0) * tau, 1e-4, "e B tau");
   figure("ambient light that it reflects", at(layer(f, "truth.terms.mw.ambient"), f, 64, 48), 0.3 * blackBodyBand(3.6, 4.9, 270.0) * tau, 1e-4, "rho B tau");
+}
+
+/// A still camera looks east at what burns 2 km away and 100 m up.
+std::string watch(const std::string& more = "", const std::string& heading = "heading: 90 deg") {
+  return "cameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, focal_length: 60 mm, aperture: 25 mm, exposure: 4 ms, truth: [targets], position: [0 m, 0 m, 100 m], " + heading + ", " + more +
+         "channels: [{name: mw, response: {band: [3 um, 5 um]}}, {name: lw, response: {band: [8 um, 12 um]}}]}]\n";
+}
+
+bool hasRow(const Frame& f, const std::string& name) {
+  return std::any_of(f.targets.begin(), f.targets.end(), [&](const TargetRow& t) { return t.name == name; });
+}
+
+// A flare that falls from rest, seen from the side: its stated intensity, by what its air leaves of it; each of a sequence while it burns.
+TEST(TruthTable, FlaresHaveTheirStatedIntensity) {
+  struct Case {
+    const char *type, *more;
+    double factor;
+  };
+  for (const Case& c : {Case{"mtv", "", 1.0}, Case{"mtv", ", intensity: 2.5", 2.5}, Case{"spectrally_matched", "", 1.0}, Case{"pyrophoric", ", intensity: 0.5", 0.5}}) {
+    const Simulation sim = scene("accuracy: 1 %\ntime: {rate: 2 Hz, frames: 20}\nbackground: {temperature: 0 K}\nflares: [{name: f, type: " + std::string(c.type) +
+                                 c.more + ", position: [2 km, 0 m, 100 m], speed: 0 m/s, time: 0.5 s, smoke: false, sequence: {count: 2, interval: 1 s}}]\n" + watch());
+    const FlareType& type = *findFlareType(c.type);
+    const auto& cloud = dynamic_cast<const FlareCloud&>(*sim.fields[0].source).options();
+    EXPECT_FALSE(hasRow(renderFrame(sim, 1), "f_0")) << "ejected, not lit";
+    for (int frame : {2, 3}) {
+      const double t = 0.5 * frame, fallen = glm::length(cloud.path->velocityAt(t));
+      // What burns in still air, at 100 m: rise, hold, fall by its age, less in the wind of its fall.
+      const double level = flareBurn(type, t - 0.5 - type.ignition_s) * flareInWind(type, fallen) * flareAtPressure(type, standardAir(cloud.path->at(t).position.z).pressure_Pa);
+      const Frame f = renderFrame(sim, frame);
+      if (!(level > 0.0)) {
+        EXPECT_FALSE(hasRow(f, "f_0"));
+        continue;
+      }
+      const TargetRow& row0 = row(f, "f_0");
+      EXPECT_EQ(row0.kind, "flare");
+      figure(print("a %s", c.type) + print(" flare at %g s, 3-5 um [W/sr]", t), row0.channels[0].own, level * c.factor * type.intensity_W_sr, 0.01,
+             "as stated, seen from the side; accuracy asked. Air of 288 K in its cloud adds below 1e-3");
+      EXPECT_NEAR(row0.channels[0].contrast, row0.channels[0].own, 1e-3 * row0.channels[0].own) << "nothing behind it";
+      EXPECT_NEAR(row0.range_m, 2000.0, 0.1);
+      EXPECT_NEAR(row0.visible, 1.0, 1e-9);
+      EXPECT_EQ(hasRow(f, "f_1"), 0.5 * frame > 1.5 + type.ignition_s && row(f, "f_0").range_m > 0.0) << frame;
+      // Its box: around its place, as wide as what shows of a cloud of its radius.
+      const double across = (row0.right - row0.left) * 2000.0 * 15e-6 / 60e-3;
+      EXPECT_GT(across, 0.5 * dynamic_cast<const FlareCloud&>(*sim.fields[0].source).radius_m()) << c.type;
+      EXPECT_LT(across, 4.0 * dynamic_cast<const FlareCloud&>(*sim.fields[0].source).radius_m() * std::pow(std::max(level, 1e-4), 0.25) + 4.0 * type.spread_m_s * t) << c.type;
+      EXPECT_TRUE(row0.column > row0.left - 1.0 && row0.column < row0.right + 1.0 && row0.row > row0.top - 1.0 && row0.row < row0.bottom + 1.0);
+    }
+  }
+}
+
+// Against the picture: what its pixels add up to, at all sizes; a plume before sky, in air, on a body that flies.
+TEST(TruthTable, PlumesAndFlaresAreWhatThePictureHas) {
+  for (double range : {1500.0, 4000.0, 30000.0})
+    for (const char* engine : {"turbofan_military", "double_base_motor"}) {
+      const std::string world = "accuracy: 1 %\ntime: {start: 1 s, rate: 10 Hz, frames: 2}\natmosphere: {model: homogeneous, extinction: 0.02 /km, temperature: 285 K}\nbackground: {temperature: 220 K}\n";
+      const std::string place = print("position: [%g m, -6 m, 100 m]", range);
+      const std::string burning = "plumes: [{name: p, " + place + ", direction: [0, 1, 0], length: 12 m, engine: " + engine + ", begin: 0 s}]\n" +
+                                  (std::string(engine) == "turbofan_military" ? "flares: [{name: f, type: mtv, " + print("position: [%g m, -9 m, 100 m]", range) + ", speed: 0 m/s, time: 0.2 s, smoke: false, light: false}]\n" : "");
+      const auto sumOf = [&](const std::string& text, Frame* frame) {
+        const Simulation sim = scene(world + text + watch("samples: 2, "));
+        const Frame f = renderFrame(sim);
+        const auto sr = sim.cameras[0].pinhole.solidAngles().plain_sr;
+        double all = 0.0;
+        for (size_t p = 0; p < sr.size(); ++p) all += sr[p] * static_cast<double>(layer(f, "mw.radiance").pixels[p]);
+        if (frame) *frame = f;
+        return all * range * range;
+      };
+      Frame f;
+      const double seen = sumOf(burning, &f) - sumOf("", nullptr);
+      double told = 0.0;
+      for (const TargetRow& t : f.targets) told += t.channels[0].contrast;
+      figure(print("plume and flare of a %s", engine) + print(" at %g m: rows of truth over the picture's sum", range), told / seen, 1.0, 0.02, "1 % asked of each");
+      EXPECT_EQ(row(f, "p").kind, "plume");
+      figure("place of a nozzle on the film [column]", row(f, "p").column, 32.0 + 6.0 / range * 4000.0, 1e-6, "a pinhole");
+      EXPECT_LT(row(f, "p").right, row(f, "p").column + std::max(1.0, 4000.0 / range)) << "it goes to the left";
+    }
+}
+
+// What hides them, how their lines of sight turn, what a detector makes of them; names that a body has too.
+TEST(TruthTable, PlumesHaveSharesRatesAndNoise) {
+  const std::string jet =
+      "accuracy: 1 %\ntime: {start: 1 s, rate: 10 Hz, frames: 2}\nbackground: {temperature: 250 K}\nmaterials: {m: {components: []}}\nentities:\n- {name: jet, shape: {model: sphere, radius: 20 cm}, material: m, temperature: 290 K, "
+      "motion: [{time: 0 s, position: [2 km, 100 m, 100 m]}, {time: 2 s, position: [2 km, -100 m, 100 m]}]}\n",
+                    burning = "plumes: [{name: jet, on: jet, engine: turbofan_military, length: 20 m}]\nflares: [{name: f, type: mtv, position: [2 km, 0 m, 105 m], speed: 0 m/s, time: 0.2 s, smoke: false}]\n";
+  const Frame f = renderFrame(scene(jet + burning + watch("stages: [{stage: detector, full_well: 7e6, read_noise: 300}], ")));
+  const TargetRow& plume = row(f, "jet_plume");
+  EXPECT_EQ(row(f, "jet").kind, "body");
+  figure("turning of the line of sight to a nozzle [rad/s]", plume.sightRight_rad_s, 0.05, 1e-3, "100 m/s at 2 km");
+  EXPECT_NEAR(plume.rangeRate_m_s, 0.0, 0.1);
+  EXPECT_GT(plume.visible, 0.9) << "but for what the ball hides that carries it";
+  // A wall that is down a frame later: the same plan.
+  const Simulation walled = scene(jet + "- {name: wall, shape: {model: plate, width: 40 m, height: 10 m}, material: m, temperature: 250 K, motion: {model: waypoints, interpolation: linear, points: [{time: 1 s, "
+                                        "position: [1900 m, 0 m, 94.98 m], heading: 270 deg}, {time: 1.1 s, position: [1900 m, 0 m, 60 m], heading: 270 deg}]}}\n" + burning + watch());
+  const Frame hidden = renderFrame(walled, 0), open = renderFrame(walled, 1);
+  // The wall's upper edge is at 99.98 m, which hides what is below 99.979 m at 2 km: the lower half of a level jet, and none of the flare.
+  figure("share of a plume that a wall's edge leaves", row(hidden, "jet_plume").visible, 0.5, 0.06, "half, and 2 cm of a jet of half a metre");
+  EXPECT_NEAR(row(hidden, "f").visible, 1.0, 1e-9);
+  const auto left = [&](std::size_t channel) { return row(hidden, "jet_plume").channels[channel].own / row(open, "jet_plume").channels[channel].own; };
+  figure("intensity of what is left of it, of all, mean of two channels", 0.5 * (left(0) + left(1)), row(hidden, "jet_plume").visible / row(open, "jet_plume").visible, 0.01, "the share is by what it sends, here past the ball that carries it too; 1 % asked");
+  EXPECT_LT(plume.visible, 1.0);
+  const Frame cut = renderFrame(scene(jet + burning + watch("", "heading: 90.229 deg")));  // the film's edge is 0.46 degrees away
+  EXPECT_LE(row(cut, "jet_plume").visible, 1.0);
+  const Frame behind = renderFrame(scene(jet + burning + watch("", "heading: 270 deg")));
+  EXPECT_EQ(row(behind, "f").visible, 0.0);
+  EXPECT_EQ(row(behind, "f").channels[0].own, 0.0);
+  EXPECT_TRUE(std::isnan(row(behind, "f").column));
+}
+
+// What a response has beyond its air's data is cut, as of what is drawn.
+TEST(TruthTable, AMicrobolometerInLayeredAir) {
+  for (const char* air : {"clear_us76", "hazy_mls", "clear_mls"}) {
+    const std::string world = "accuracy: 1 %\natmosphere: " + std::string(air) +
+                              "\nmaterials: {m: {components: []}}\nentities: [{name: wall, shape: {model: plate, width: 10 m, height: 10 m}, material: m, temperature: 350 K, position: [1 km, 0 m, 100 m], heading: 270 deg}]\n";
+    const Frame f = renderFrame(scene(world + "cameras: [{name: c, film: {width: 48, height: 48, pitch: 17 um}, focal_length: 60 mm, aperture: 50 mm, truth: [targets], position: [0 m, 0 m, 100 m], heading: 90 deg, "
+                                              "channels: [{name: lw, response: microbolometer_lwir}]}]\n"));
+    const TargetRow& t = row(f, "wall");
+    figure(std::string("radiance of a wall by a microbolometer in ") + air + ", of its pixel", t.channels[0].total / 100.0, at(layer(f, "lw.radiance"), f, 24, 24), 0.01, "L A over A; accuracy asked, and 10 m at 1 km");
+  }
 }
 
 }  // namespace
