@@ -20,6 +20,12 @@ double thresholdFor(double probability) {
 
 double thresholdForRate(double alarms_per_hour, double pixels_per_s) { return thresholdFor(alarms_per_hour / (3600.0 * pixels_per_s)); }
 
+double thresholdByCrossings(double alarms_per_hour, double pixels_per_s) {
+  const double ofMean = pixels_per_s / (2.0 * std::sqrt(3.0)) * 3600.0;
+  if (!(alarms_per_hour > 0.0 && alarms_per_hour <= ofMean)) throw std::invalid_argument("more alarms than noise crosses its mean");
+  return std::sqrt(2.0 * std::log(ofMean / alarms_per_hour));
+}
+
 double detection(double tnr, double threshold) { return falseAlarms(threshold - tnr); }
 
 double tnrFor(double probability, double threshold) { return threshold - thresholdFor(probability); }

@@ -74,9 +74,9 @@ DriReport driReport(const BenchResult& bench, const DriWish& wish, const Transmi
   const auto tnr = [&](double range, double share) { return spotSignal(sight, t, range, air(range), share) / sight.noise_electrons; };
   const auto inMiddle = [&](double range) { return tnr(range, sight.shareInMiddle); };
   const auto inCorner = [&](double range) { return tnr(range, sight.shareInCorner); };
-  report.aboutSpot = print("as a spot (%.3g and %.3g of its light on one pixel, in its middle and in its corner): a threshold of %.3g sigma for %g false alarm(s) an hour over the film; found in a frame with 50 %% "
+  report.aboutSpot = print("as a spot (%.3g and %.3g of its light on one pixel, in its middle and in its corner): a threshold of %.3g sigma for %g false alarm(s) an hour over the film (%.3g where video is compared as it comes, by Rice); found in a frame with 50 %% "
                            "as far as %s and %s, with 90 %% as far as %s and %s",
-                           sight.shareInMiddle, sight.shareInCorner, threshold, wish.alarms_per_hour, metres(rangeWhere(inMiddle, threshold)).c_str(), metres(rangeWhere(inCorner, threshold)).c_str(),
+                           sight.shareInMiddle, sight.shareInCorner, threshold, wish.alarms_per_hour, thresholdByCrossings(wish.alarms_per_hour, sight.pixels_per_s), metres(rangeWhere(inMiddle, threshold)).c_str(), metres(rangeWhere(inCorner, threshold)).c_str(),
                            metres(rangeWhere(inMiddle, tnrFor(0.9, threshold))).c_str(), metres(rangeWhere(inCorner, tnrFor(0.9, threshold))).c_str());
   report.spotHead = {"range", "transmittance", "pixels across", "TNR, middle", "detected", "TNR, corner", "detected"};
   for (const double range : {500.0, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4}) {

@@ -147,6 +147,8 @@ int measureCommand(const Arguments& arguments) {
     std::optional<DriReport> dri;
     if (world && !r.sight.seesHeat) std::printf("  no ranges: they are of heat, and a body of 300 K gives channel %s next to nothing, or too much\n", r.channel.c_str());
     if (world && r.sight.seesHeat) {
+      if (const double most = 0.1 * 3600.0 * r.sight.pixels_per_s; wish.alarms_per_hour > most)
+        throw UserError({"--false-alarms " + o.value("--false-alarms"), 0, 0, -1}, "more than every tenth pixel", print("at most %g an hour of this film", most), "ask for fewer");
       const BandAir air(*world, r.sight.output, r.temperature_K);
       const std::string aboutAir = print("air of %s from %.4g m up, %.3g deg above the level, transmittance %.3g at 1 km and %.3g at 10 km", wish.scenario.c_str(), air.height_m(),
                                          air.elevation_rad() * 180.0 / kPi, air.at(1e3), air.at(1e4));

@@ -25,7 +25,8 @@ TEST(Measure, FindsTheDesignInPictures) {
                                         "  channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: counts}]\n  stages:\n  - {stage: point_spread, wavefront_error: 0.2 um}\n"
                                         "  - {stage: detector, full_well: 6e6, bits: 14, offset: 200, read_noise: 500, row_noise: 400, column_noise: 300, frame_noise: 250, dsnu: 600, fixed_row_noise: 350, "
                                         "fixed_column_noise: 300, prnu: 0.001, bad_pixels: 0.001}\n");
-  const Result r = pitviper("measure " + camera + " --film 80 --frames 16 --out " + (folder.path() / "out").string());
+  const Result r = pitviper("measure " + camera + " --film 80 --frames 16 --ranges " + folder.put("air.yaml", "atmosphere: {model: homogeneous, extinction: 0.2 /km, temperature: 288 K}\ncameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, "
+                             "aperture: 5 mm, position: [0 m, 0 m, 5 m], heading: 0 deg, channels: [{name: x, response: {band: [3.7 um, 4.8 um]}}]}]\n") + " --out " + (folder.path() / "out").string());
   ASSERT_TRUE(r.code == 0 || r.output.find("libvtk9") != std::string::npos) << r.output;
   if (r.code != 0) GTEST_SKIP() << "built without VTK";
   std::ifstream in(folder.path() / "out/mine.csv");
@@ -59,7 +60,7 @@ TEST(Measure, FindsTheDesignInPictures) {
       EXPECT_LT(std::abs(row.measured - row.design), 4.0 * row.error) << name;
     }
   EXPECT_EQ(components, 7);
-  for (const char* file : {"mine.html", "mine_mw.png"}) EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / file)) << file;
+  for (const char* file : {"mine.html", "mine_mw.png", "mine_mw_ranges.png"}) EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / file)) << file;
 }
 
 /// Design and measured of a line of the printed table.

@@ -167,6 +167,12 @@ TEST(Acquisition, ProbabilitiesOfTheCriteria) {
   EXPECT_NEAR(probabilityOf(Criterion::Ttp, 26.0, 13.0), 3.9724 / 4.9724, 1e-5);
 }
 
+// The table that goes with Johnson's cycles, to its two digits: of what is needed for 50 %, 3 times give 1.00, 2 give 0.95, ... Source: Ratches 1976.
+TEST(Acquisition, ProbabilitiesAsPublished) {
+  for (const auto& [ratio, published] : {std::pair{3.0, 1.0}, std::pair{2.0, 0.95}, std::pair{1.5, 0.80}, std::pair{1.0, 0.50}, std::pair{0.75, 0.30}, std::pair{0.5, 0.10}, std::pair{0.25, 0.02}, std::pair{0.0, 0.0}})
+    bound(print("probability with %g of the cycles of 50 %%, off the table", ratio), std::abs(probabilityOf(Criterion::Johnson, 6.0 * ratio, 6.0) - published), 0.025, "half of 0.05, to which the table is rounded");
+}
+
 // Farther for more contrast, a larger target, less noise, clearer air, fewer cycles.
 TEST(Acquisition, IsMonotonous) {
   const auto camera = [](double netd) {
@@ -207,6 +213,32 @@ TEST(SpotDetection, ThresholdsOfTheNormalDistribution) {
   EXPECT_NEAR(falseAlarms(thresholdForRate(1.0, 640.0 * 512.0 * 50.0)) * 3600.0 * 640.0 * 512.0 * 50.0, 1.0, 1e-9);
   EXPECT_THROW((void)thresholdFor(0.0), std::invalid_argument);
   EXPECT_THROW((void)thresholdFor(1.0), std::invalid_argument);
+}
+
+// Upward crossings of noise that an ideal filter leaves up to B: B / sqrt 3 exp(-k^2 / 2) a second (Rice), of 400 sines of random frequencies and phases.
+TEST(SpotDetection, CrossingsByRice) {
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> part(0.0, 1.0);
+  constexpr int kSines = 400, kPoints = 120000;
+  constexpr double kStep = 1.0 / 24.0;  // of 1 / B
+  std::vector<double> noise(kPoints, 0.0);
+  for (int s = 0; s < kSines; ++s) {
+    const double frequency = (s + part(random)) / kSines, phase = 2.0 * kPi * part(random);
+    for (int k = 0; k < kPoints; ++k) noise[static_cast<std::size_t>(k)] += std::sqrt(2.0 / kSines) * std::cos(2.0 * kPi * frequency * kStep * k + phase);
+  }
+  for (const double threshold : {0.5, 1.0, 2.0}) {
+    int crossings = 0;
+    for (std::size_t k = 1; k < noise.size(); ++k) crossings += noise[k - 1] <= threshold && noise[k] > threshold;
+    const double expected = kPoints * kStep / std::sqrt(3.0) * std::exp(-0.5 * threshold * threshold);
+    figure(print("crossings of %g sigma by chance", threshold), crossings, expected, 4.0 / std::sqrt(expected), "B / sqrt 3 exp(-k^2 / 2); 4 standard errors as if independent");
+  }
+  // B is half the pixels' rate: as many alarms an hour as asked for.
+  for (const double alarms : {0.01, 1.0, 100.0}) {
+    const double k = thresholdByCrossings(alarms, 640.0 * 512.0 * 50.0);
+    EXPECT_NEAR(0.5 * 640.0 * 512.0 * 50.0 / std::sqrt(3.0) * std::exp(-0.5 * k * k) * 3600.0 / alarms, 1.0, 1e-9);
+    EXPECT_GT(k, thresholdForRate(alarms, 640.0 * 512.0 * 50.0));
+  }
+  EXPECT_THROW((void)thresholdByCrossings(1e9, 1.0), std::invalid_argument);
 }
 
 // By chance: so many of a million normal numbers are above it, with a target and without.
