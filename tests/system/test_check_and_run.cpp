@@ -236,4 +236,31 @@ TEST_F(CheckAndRun, AResponseCutIsNoted) {
   EXPECT_TRUE(has(run("info out/eye_00000.exr").second, "pitviper.response_cut.lw.radiance")) << said;
 }
 
+// Rationale: what is mended in a mesh and where it lies is no secret. Expected: a line of check and of run for each file, and none for one that is as it should
+// be.
+TEST_F(CheckAndRun, MeshesTellWhatWasMended) {
+  const std::string cube = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0 0 1\nv 1 0 1\nv 0 1 1\nv 1 1 1\n";
+  const std::string right = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n",
+                    turned = "f 2 4 3 1\nf 7 8 6 5\nf 5 6 2 1\nf 4 8 7 3\nf 3 7 5 1\nf 6 8 4 2\n";
+  put("right.obj", cube + right);
+  put("turned.obj", cube + turned);
+  put("far.obj", "v 4649776.2 0 0\nv 4649776.2 1 0\nv 4649776.2 0 1\nf 1 2 3\n");
+  const auto body = [](const std::string& name) {
+    return "  - {name: " + name + ", shape: {model: mesh, file: " + name +
+           ".obj, unit: 1 m}, material: blackbody, temperature: 300 K, position: [0 m, 1 km, 50 m]}\n";
+  };
+  put("s.yaml", "entities:\n" + body("right") + body("turned") + body("far") + kCamera);
+  for (const char* command : {"check s.yaml", "run s.yaml --overwrite"}) {
+    const auto [code, said] = run(command);
+    EXPECT_EQ(code, 0) << said;
+    EXPECT_TRUE(has(said, "note: mesh of 'turned' (turned.obj): 1 of 1 closed shell faced the wrong way, and was turned\n")) << said;
+    EXPECT_TRUE(has(said, "note: mesh of 'far' (far.obj): it lies about (4649776.25, 0.5, 0.5) m forward, left and up of its file's origin")) << said;
+    EXPECT_FALSE(has(said, "mesh of 'right'")) << said;
+  }
+  put("turned.obj", cube + turned + "f 1 8 2 7\n");
+  const auto [code, said] = run("check s.yaml");
+  EXPECT_EQ(code, 2);
+  EXPECT_TRUE(has(said, "turned.obj:15:1: face 7 crosses itself; expected a face whose edges meet at corners only; fix: ")) << said;
+}
+
 }  // namespace
