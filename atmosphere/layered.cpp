@@ -7,6 +7,7 @@
 #include "atmosphere/layered_gpu.hpp"
 #include "atmosphere/models.hpp"
 #include "atmosphere/scattered_sun.hpp"
+#include "sim/model/haze_not_fog.hpp"
 #include "sim/radiometry/spectrum.hpp"
 
 namespace pitviper {
@@ -23,7 +24,7 @@ AirStation stationOf(const PathStation& s) {
   return station;
 }
 
-class Layered final : public Atmosphere {
+class Layered final : public Atmosphere, public HasHaze {
  public:
   explicit Layered(AbsorberTable table) : table_(std::move(table)) {
     for (const Absorber& a : table_.absorbers()) exponents_.push_back(a.exponent);
@@ -71,6 +72,15 @@ class Layered final : public Atmosphere {
     std::copy(found.amount_km.begin(), found.amount_km.end(), a.amount.begin());
     return a;
   }
+  double hazePer_km(double w) const override {
+    const auto c = table_.coefficients(w);
+    const auto here = table_.densities(0.0);
+    double sum = 0.0;
+    for (size_t k = 0; k < table_.absorbers().size(); ++k)
+      if (table_.absorbers()[k].kind == AbsorberKind::Haze) sum += c[k] * here.amount_km[k];
+    return sum;
+  }
+  double hazeAbsorbs(double w) const override { return 1.0 - table_.hazeAlbedo(w); }
   double validLow_um() const override { return table_.validLow_um(); }
   double validHigh_um() const override { return table_.validHigh_um(); }
   std::vector<double> knots_um() const override { return table_.knots_um(); }

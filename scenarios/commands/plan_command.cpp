@@ -101,6 +101,7 @@ int planCommand(const Arguments& arguments) {
   if (o.has("--json")) std::printf("[%s]\n", json.c_str());
   std::fflush(stdout);
   Notes notes;
+  noteFog(sim, notes);
   noteFringes(sim, notes);
   return 0;
 }

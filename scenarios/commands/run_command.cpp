@@ -126,6 +126,7 @@ int runCommand(const Arguments& arguments) {
   Notes notes;
   noteMeshes(sim, notes);
   noteCuts(sim, notes);
+  noteFog(sim, notes);
   noteFringes(sim, notes);
   noteSampling(sim, notes);
   noteNear(sim, sim.time.at(range.first), notes);

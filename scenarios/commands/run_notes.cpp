@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "sim/frame/mark_header.hpp"
+#include "sim/model/haze_not_fog.hpp"
 #include "sim/model/world.hpp"
 #include "sim/plan/averaged_fringes.hpp"
 #include "sim/plan/plan.hpp"
@@ -42,6 +43,10 @@ void noteSampling(const Simulation& sim, Notes& said) {
                  c.name.c_str(), c.spectral.samples, 100.0 * n.error, n.thickness_m, n.medium.c_str(), n.channel.c_str(),
                  notes.size() > 1 ? " (the worst of several)" : ""));
   }
+}
+
+void noteFog(const Simulation& sim, Notes& said) {
+  if (const std::string words = hazeNotFog(sim); !words.empty()) said.say(words);
 }
 
 void noteFringes(const Simulation& sim, Notes& said) {
@@ -97,10 +102,17 @@ void noteCuts(const Simulation& sim, Notes& notes) {
   for (const Probe& p : sim.probes) note("probe " + p.name, p.outputs);
 }
 
-void sayScatteredAgain(const std::string& camera, const std::string& channel, double factor, Notes& notes) {
-  notes.say(print("camera %s, channel %s: light that the air scatters more than once is left out; with it pixels would be about %.2g times as bright "
-               "(two-stream estimate: good to a factor of two or so)",
-               camera.c_str(), channel.c_str(), factor));
+void sayScatteredAgain(const std::string& camera, const ScatteredAgain& s, Notes& notes) {
+  // Three figures, and no exponent.
+  const auto times = [](double f) {
+    if (f < 100.0) return print("%.3g", f);
+    const double step = std::pow(10.0, std::floor(std::log10(f)) - 1.0);
+    return print("%.0f", std::round(f / step) * step);
+  };
+  const std::string off = s.error > 0.4 ? "a guess where the sun is so low, or so little comes through" : print("chance %.0f %%", std::max(100.0 * s.error, 1.0));
+  notes.say(print("camera %s, channel %s: light that the air scatters more than once is left out; with it pixels would be about %s times as bright (%s to %s over "
+               "the film), by photons followed through level air over the ground below, shadows of bodies left out (%s)",
+               camera.c_str(), s.channel.c_str(), times(s.factor).c_str(), times(s.least).c_str(), times(s.most).c_str(), off.c_str()));
 }
 
 /// Once per camera: what of a picture's transparent things is not in its right order.
@@ -117,9 +129,19 @@ void FrameNotes::order(const Frame& f) {
 /// Once per camera and channel.
 void FrameNotes::scattering(const Frame& f) {
   const std::string begin = "pitviper.scattered_again.";
-  for (const auto& a : f.attributes)
-    if (a.name.rfind(begin, 0) == 0 && std::get<double>(a.value) > kWorthSaying && told_.insert(f.camera + "/" + a.name).second)
-      sayScatteredAgain(f.camera, a.name.substr(begin.size()), std::get<double>(a.value), notes_);
+  const auto value = [&f](const std::string& name) {
+    for (const auto& a : f.attributes)
+      if (a.name == name) return std::get<double>(a.value);
+    return 1.0;
+  };
+  for (const auto& a : f.attributes) {
+    if (a.name.rfind(begin, 0) != 0 || !told_.insert(f.camera + "/" + a.name).second) continue;
+    const std::string channel = a.name.substr(begin.size());
+    sayScatteredAgain(f.camera,
+                      {channel, std::get<double>(a.value), value("pitviper.scattered_again_least." + channel), value("pitviper.scattered_again_most." + channel),
+                       value("pitviper.scattered_again_chance." + channel)},
+                      notes_);
+  }
 }
 
 /// Once a run: what the plan was not made for.

@@ -6,6 +6,7 @@
 
 #include "sim/frame/frame.hpp"
 #include "sim/model/simulation.hpp"
+#include "sim/plan/scattered_again.hpp"
 
 namespace pitviper {
 
@@ -21,6 +22,8 @@ class Notes {
 
 /// One line for each camera whose wavelengths miss the bands of a gas, or the fringes of a film, by more than a per cent.
 void noteSampling(const Simulation& simulation, Notes& notes);
+/// One line where the air is haze as thick as fog.
+void noteFog(const Simulation& simulation, Notes& notes);
 /// One line for each channel in which fringes of a material are averaged.
 void noteFringes(const Simulation& simulation, Notes& notes);
 /// One line for each camera that begins with part of a body nearer than it draws: a dome in front of it, for instance.
@@ -29,9 +32,7 @@ void noteNear(const Simulation& simulation, double time_s, Notes& notes);
 void noteMeshes(const Simulation& simulation, Notes& notes);
 /// One line for each channel whose response ends before its own end, where the scene has no data.
 void noteCuts(const Simulation& simulation, Notes& notes);
-/// By so much light scattered more than once must brighten a channel to be worth a word.
-constexpr double kWorthSaying = 1.1;
-void sayScatteredAgain(const std::string& camera, const std::string& channel, double factor, Notes& notes);
+void sayScatteredAgain(const std::string& camera, const ScatteredAgain& scattered, Notes& notes);
 
 /// What frames say of themselves, each thing once.
 class FrameNotes {

@@ -251,6 +251,7 @@ int streamCommand(const Arguments& arguments) {
   Notes notes;
   noteMeshes(sim, notes);
   noteCuts(sim, notes);
+  noteFog(sim, notes);
   noteFringes(sim, notes);
   for (const Camera& c : sim.cameras)
     if (c.spectralImage) notes.say("camera " + c.name + ": its spectral image is drawn by run, not by a stream");

@@ -14,6 +14,7 @@
 #include "sim/frame/sensor_header.hpp"
 #include "sim/frame/target_rows.hpp"
 #include "sim/frame/version.hpp"
+#include "sim/model/haze_not_fog.hpp"
 #include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
 
@@ -304,7 +305,13 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   addAxis(frame, camera);
   addAccuracy(frame, camera, image);
   addAudit(frame, camera, image);
-  for (const ScatteredAgain& s : image.scatteredAgain) frame.attributes.push_back({"pitviper.scattered_again." + s.channel, s.factor});
+  for (const ScatteredAgain& s : image.scatteredAgain) {
+    frame.attributes.push_back({"pitviper.scattered_again." + s.channel, s.factor});
+    frame.attributes.push_back({"pitviper.scattered_again_least." + s.channel, s.least});
+    frame.attributes.push_back({"pitviper.scattered_again_most." + s.channel, s.most});
+    frame.attributes.push_back({"pitviper.scattered_again_chance." + s.channel, s.error});
+  }
+  if (const std::string words = hazeNotFog(sim); !words.empty()) frame.attributes.push_back({"pitviper.haze_not_fog", words});
   for (const AveragedFringes& f : image.averagedFringes) {
     const std::string key = "pitviper.averaged_fringes." + f.channel;
     const bool told = std::any_of(frame.attributes.begin(), frame.attributes.end(), [&](const auto& a) { return a.name == key; });

@@ -21,14 +21,31 @@ constexpr int kHeights = 65;
 constexpr int kWavelengths = 2;
 /// Lines of sight: parts of the film across and down.
 constexpr double kLines[][2] = {{0.5, 0.5}, {0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}};
+/// Ways that photons are followed back, from a line and from what ends it, at each wavelength.
+constexpr int kWalks = 400;
+/// What lies below the camera is land where it reaches as far as this; else the ground beneath it is.
+constexpr double kLand_m = 1000.0;
 /// A channel is lit where white air in full sun would send this part of a black body of 288 K.
 constexpr double kLit = 0.1, kWarm_K = 288.0;
+/// Where no accuracy is asked for, what is worth saying.
+constexpr double kWorth = 0.01;
+/// Sine of the sun's elevation below which what lies beside a place is lit otherwise than it is, and what that leaves of a factor's certainty.
+constexpr double kLowSun = 0.1, kGuess = 0.5;
 
 double sumOver(const std::array<double, kMostAirAmounts>& coefficients, const AirAmounts& powered) {
   double sum = 0.0;
   for (size_t k = 0; k < coefficients.size(); ++k) sum += coefficients[k] * powered.amount[k];
   return sum;
 }
+
+/// A mean of what chance gives, and its variance.
+struct Tally {
+  double sum = 0.0, squares = 0.0;
+  int count = 0;
+  void add(double v) { sum += v, squares += v * v, ++count; }
+  double mean() const { return sum / count; }
+  double variance() const { return std::max(squares / count - mean() * mean(), 0.0) / count; }
+};
 
 }  // namespace
 
@@ -48,10 +65,11 @@ ScatteringCheck::ScatteringCheck(const Simulation& sim, const Camera& camera, co
     for (const QuadratureNode& q : spectralRule(output.kernel, kWavelengths, Spacing::Gauss)) {
       const SpectralNode node = nodeAt(sim, q.x);
       Column column;
-      for (const AirAmounts& a : above) column.depth.push_back(Atmosphere::depthOf(node.air, a));
-      const double molecules = sumOver(node.air.molecules, above.front()), haze = sumOver(node.air.haze, above.front());
-      column.albedo = column.depth.front() > 0.0 ? (molecules + haze) / column.depth.front() : 0.0;
-      column.asymmetry = molecules + haze > 0.0 ? haze * node.air.asymmetry / (molecules + haze) : 0.0;
+      for (const AirAmounts& a : above) {
+        column.all.push_back(Atmosphere::depthOf(node.air, a));
+        column.molecules.push_back(sumOver(node.air.molecules, a)), column.haze.push_back(sumOver(node.air.haze, a));
+      }
+      column.asymmetry = node.air.asymmetry;
       sunlit += q.weight * sim.sun->irradiance(q.x) / (4.0 * kPi), warm += q.weight * physics::planckRadiance(q.x, kWarm_K);
       channel.nodes.push_back(node), channel.weight.push_back(q.weight), channel.columns.push_back(std::move(column));
     }
@@ -59,17 +77,48 @@ ScatteringCheck::ScatteringCheck(const Simulation& sim, const Camera& camera, co
   }
 }
 
-double ScatteringCheck::depthAbove(const Column& column, double height_m) const {
+double ScatteringCheck::aboveAt(const std::vector<double>& column, double height_m) const {
   const double t = std::sqrt(std::clamp(height_m / sim_.air->top_m(), 0.0, 1.0)) * (kHeights - 1);
   const int h = std::min(static_cast<int>(t), kHeights - 2);
   const double f = std::clamp((height_m - heightAt(h)) / (heightAt(h + 1) - heightAt(h)), 0.0, 1.0);
-  return (1.0 - f) * column.depth[static_cast<size_t>(h)] + f * column.depth[static_cast<size_t>(h) + 1];
+  return (1.0 - f) * column[static_cast<size_t>(h)] + f * column[static_cast<size_t>(h) + 1];
+}
+
+/// What lies between a height and the sun.
+struct ScatteringCheck::SunAt {
+  double height_m, share;
+  AirAmounts powered;
+};
+
+WalkAir ScatteringCheck::airOver(const Channel& channel, size_t n, const std::optional<Hit>& below, const std::vector<SunAt>& sun,
+                                 const glm::dvec3& toSun) const {
+  const SpectralNode& node = channel.nodes[n];
+  const Column& column = channel.columns[n];
+  WalkAir air;
+  for (const SunAt& s : sun) {
+    air.above.push_back(aboveAt(column.all, s.height_m));
+    air.sunlight.push_back(s.share > 0.0 ? s.share * std::exp(-Atmosphere::depthOf(node.air, s.powered)) : 0.0);
+  }
+  for (size_t k = 0; k + 1 < sun.size(); ++k) {
+    const auto part = [&](const std::vector<double>& of) {
+      const double all = air.above[k] - air.above[k + 1];
+      return all > 0.0 ? std::clamp((aboveAt(of, sun[k].height_m) - aboveAt(of, sun[k + 1].height_m)) / all, 0.0, 1.0) : 0.0;
+    };
+    air.molecules.push_back(part(column.molecules));
+    air.haze.push_back(std::min(part(column.haze), 1.0 - air.molecules.back()));
+  }
+  air.asymmetry = column.asymmetry;
+  air.groundAlbedo =
+      below ? std::clamp(sim_.materialOf(surfaceAt(sim_, *below)).reflectance(node.members.front().wavelength_um, 0.0), 0.0, 1.0) : 0.0;
+  air.toSun = toSun;
+  return air;
 }
 
 /// A line of sight, with what it has of the sun.
 struct ScatteringCheck::Line {
   std::optional<Hit> end;
-  double end_K;  ///< temperature there
+  double end_K;                  ///< temperature there
+  glm::dvec3 direction, normal;  ///< z up, the sun above x
   SunlitAir air;
   double cosScatter;
   LightLeg sun;
@@ -87,6 +136,15 @@ std::vector<ScatteringCheck::Line> ScatteringCheck::linesOver(const WorldState& 
     return hits.solid.entity >= 0 ? hits.solid : groundHit(sim_, place, direction);
   };
   below = endOf(-up);
+  // A roof or a deck is not the ground that lights the air.
+  if (below && below->entity >= 0 && sim_.ground && static_cast<double>(sim_.entities[static_cast<size_t>(below->entity)].boundingRadius_m) < kLand_m)
+    below = groundHit(sim_, place, -up);
+  // Axes of a photon's walk: z up, the sun above x.
+  glm::dvec3 x = sim_.sun->toSun - glm::dot(sim_.sun->toSun, up) * up;
+  if (!(glm::length(x) > 1e-9)) x = std::abs(up.x) < 0.9 ? glm::cross(up, glm::dvec3(1, 0, 0)) : glm::cross(up, glm::dvec3(0, 1, 0));
+  x = glm::normalize(x);
+  const glm::dvec3 y = glm::cross(up, x);
+  const auto turned = [&](const glm::dvec3& v) { return glm::normalize(glm::dvec3(glm::dot(v, x), glm::dot(v, y), glm::dot(v, up))); };
   std::vector<Line> lines;
   for (const auto& [across, down] : kLines) {
     const Pinhole& p = eye.pinhole;
@@ -96,35 +154,41 @@ std::vector<ScatteringCheck::Line> ScatteringCheck::linesOver(const WorldState& 
     const RaySun sun{glm::dot(sim_.sun->toSun, up), glm::dot(direction, sim_.sun->toSun)};
     SunlitAir air(*sim_.air, ray, sim_.air->stations(ray, end ? end->distance : physics::kFar), plan_.sunLegs.get(), sun);
     const LightLeg leg = end ? lightLeg(sim_, state, *end, sim_.lights.size()) : LightLeg{};
-    lines.push_back({end, end ? temperatureAt(sim_, state, *end) : 0.0, std::move(air), sun.cosScatter, leg, sim_.air->powered(leg.air)});
+    lines.push_back({end, end ? temperatureAt(sim_, state, *end) : 0.0, turned(direction), end ? turned(end->normal) : glm::dvec3(0, 0, 1), std::move(air), sun.cosScatter, leg, sim_.air->powered(leg.air)});
   }
   return lines;
 }
 
-ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n, const Line& line, const std::optional<Hit>& below,
-                                                const AirAmounts& slant) const {
+ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n, const Line& line, const PhotonWalk& walk) const {
   const SpectralNode& node = channel.nodes[n];
   const Column& column = channel.columns[n];
   const double um = node.members.front().wavelength_um, e0 = sim_.sun->irradiance(um);
-  const double ground = below ? std::clamp(sim_.materialOf(surfaceAt(sim_, *below)).reflectance(um, 0.0), 0.0, 1.0) : 0.0;
-  const double sine = column.depth.front() / std::max(Atmosphere::depthOf(node.air, slant), column.depth.front());
-  const TwoStream layer(column.depth.front(), column.albedo, column.asymmetry, sine, ground);
   std::vector<double> source;
   for (const AirStation& s : line.air.stations) source.push_back(physics::planckRadiance(um, s.temperature_K));
   const AirRadiance seen = airRadiance(node.air, line.air, source);
   const double rayleigh = rayleighPhase(line.cosScatter), haze = henyeyGreensteinPhase(line.cosScatter, node.air.asymmetry);
   Parts parts{seen.thermal.back() + e0 * (rayleigh * seen.molecules.back() + haze * seen.haze.back()), 0.0, 0.0};
+  WalkDice dice(1 + n);
+  // Where the line is scattered: as much as is seen from each stretch of it.
+  std::vector<double> reached{0.0}, particles{0.0};
   for (size_t s = 1; s < line.air.stations.size(); ++s) {
     const auto passed = [&](const std::array<double, kMostAirAmounts>& c) { return sumOver(c, line.air.powered[s]) - sumOver(c, line.air.powered[s - 1]); };
-    const double small = passed(node.air.molecules), large = passed(node.air.haze), d = seen.depth[s] - seen.depth[s - 1];
-    parts.scattering += small + large;
-    if (!(d > 0.0)) continue;
-    const double height = 0.5 * (line.air.stations[s - 1].height_m + line.air.stations[s].height_m), from = depthAbove(column, height);
-    const TwoStream::Fluxes flux = layer.at(from);
-    // Once scattered is in the picture: what is left of the beam by all extinction. More than that goes its way, and all around.
-    const double aside = std::max(flux.beam - std::exp(-from / std::max(sine, 1e-3)), 0.0);
-    const double each = (small * rayleigh + large * haze) * aside + (small + large) * (flux.down + flux.up) / (2.0 * kPi);
-    parts.more += e0 * each / d * std::exp(-seen.depth[s - 1]) * physics::oneMinusExp(d);
+    const double small = std::max(passed(node.air.molecules), 0.0), large = std::max(passed(node.air.haze), 0.0), d = seen.depth[s] - seen.depth[s - 1];
+    reached.push_back(reached.back() + (d > 0.0 ? (small + large) / d * std::exp(-seen.depth[s - 1]) * physics::oneMinusExp(d) : 0.0));
+    particles.push_back(small + large > 0.0 ? large / (small + large) : 0.0);
+  }
+  if (reached.back() > 0.0) {
+    Tally tally;
+    for (int k = 0; k < kWalks; ++k) {
+      const double at = (k + unitOf(dice)) / kWalks * reached.back();
+      const auto s = std::clamp<size_t>(static_cast<size_t>(std::upper_bound(reached.begin(), reached.end(), at) - reached.begin()), 1, reached.size() - 1);
+      const double f = reached[s] > reached[s - 1] ? (at - reached[s - 1]) / (reached[s] - reached[s - 1]) : 0.5;
+      const double height = (1.0 - f) * line.air.stations[s - 1].height_m + f * line.air.stations[s].height_m;
+      const auto found = walk.from(aboveAt(column.all, height), walk.before(line.direction, unitOf(dice) < particles[s], dice), dice);
+      tally.add(found.once + found.again + found.ground);
+    }
+    const double each = e0 * reached.back();
+    parts.more += each * tally.mean(), parts.variance += each * each * tally.variance();
   }
   const double through = std::exp(-seen.depth.back());
   if (!line.end) {
@@ -133,17 +197,19 @@ ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n
   }
   const Surface& surface = surfaceAt(sim_, *line.end);
   const Material& material = sim_.materialOf(surface);
-  const double reflectance = material.reflectance(um, 0.0), cosine = glm::dot(line.end->normal, sim_.frame.up(line.end->point));
-  const double height = sim_.frame.height(line.end->point), from = depthAbove(column, height), leg = Atmosphere::depthOf(node.air, line.toSun);
+  const double reflectance = material.reflectance(um, 0.0), height = sim_.frame.height(line.end->point), leg = Atmosphere::depthOf(node.air, line.toSun);
   const double dome = kPi * ambientOn(line.end->normal, height, um);
-  const TwoStream::Fluxes flux = layer.at(from);
   parts.own +=
       through * (material.emissivity(um, 0.0) * physics::planckRadiance(um, line.end_K) + reflectance / kPi * (e0 * line.sun.factor * std::exp(-leg) + dome));
-  // A dome that the scenario has lights every side alike; else half of what is level, by how the surface lies.
-  const double around = sim_.ambient && !sim_.surroundings ? flux.down : 0.5 * (1.0 + cosine) * flux.down + 0.5 * (1.0 - cosine) * flux.up;
-  const double falls = around + std::max(flux.beam - std::exp(-leg), 0.0) * line.sun.factor;
-  parts.more += through * reflectance / kPi * std::max(e0 * falls - dome, 0.0);
-  parts.scattering += sumOver(node.air.molecules, line.toSun) + sumOver(node.air.haze, line.toSun);
+  const double each = through * reflectance * e0;
+  if (!(each > 0.0)) return parts;
+  // Irradiance over pi: the mean of what comes from directions drawn by their cosine. Without ambient light what is scattered once is nobody's wish.
+  Tally tally;
+  for (int k = 0; k < kWalks; ++k) {
+    const auto found = walk.from(aboveAt(column.all, height), walk.evenlySent(line.normal, dice), dice);
+    tally.add(found.again + (sim_.ambient || sim_.surroundings ? found.once + found.ground : 0.0));
+  }
+  parts.more += std::max(each * tally.mean() - through * reflectance * dome / kPi, 0.0), parts.variance += each * each * tally.variance();
   return parts;
 }
 
@@ -157,32 +223,40 @@ double ScatteringCheck::ambientOn(const glm::dvec3& normal, double height_m, dou
 std::vector<ScatteredAgain> ScatteringCheck::at(const WorldState& state) const {
   std::vector<ScatteredAgain> all;
   if (channels_.empty()) return all;
-  const double sunSine = glm::dot(sim_.sun->toSun, sim_.frame.up(cameraAt(camera_, state).pose.position));
-  // What the sun goes through from where over what lies straight above: the cosine that a flat layer would have.
-  const RisenSun risen = risenSun(0.0, sunSine, sim_.frame.earthRadius_m());
-  if (!(risen.share > 0.0)) return all;
-  const AirAmounts slant = sim_.air->powered(plan_.sunLegs->at(0.0, risen.sinElevation));
+  const glm::dvec3 up = sim_.frame.up(cameraAt(camera_, state).pose.position);
+  const double sunSine = glm::dot(sim_.sun->toSun, up), radius = sim_.frame.earthRadius_m();
   std::optional<Hit> below;
   const std::vector<Line> lines = linesOver(state, below);
+  const double ground = below ? std::max(sim_.frame.height(below->point), 0.0) : 0.0;
+  std::vector<SunAt> sun;
+  bool lit = false;
+  for (int h = 0; h < kHeights; ++h) {
+    const double height = h == 0 ? ground : heightAt(h);
+    if (h > 0 && height <= ground) continue;
+    const RisenSun risen = risenSun(height, sunSine, radius);
+    lit |= risen.share > 0.0;
+    sun.push_back({height, risen.share, risen.share > 0.0 ? sim_.air->powered(plan_.sunLegs->at(height, risen.sinElevation)) : AirAmounts{}});
+  }
+  if (!lit || sun.size() < 2) return all;
+  const glm::dvec3 toSun(std::sqrt(std::max(1.0 - sunSine * sunSine, 0.0)), 0.0, sunSine);
   for (const Channel& channel : channels_) {
-    std::vector<double> factors, depths;
+    std::vector<PhotonWalk> walks;
+    for (size_t n = 0; n < channel.nodes.size(); ++n) walks.emplace_back(airOver(channel, n, below, sun, toSun));
+    std::vector<std::pair<double, double>> factors;  // with their errors
     for (const Line& line : lines) {
-      double once = 0.0, again = 0.0, depth = 0.0, total = 0.0;
+      double once = 0.0, again = 0.0, variance = 0.0;
       for (size_t n = 0; n < channel.nodes.size(); ++n) {
-        const Parts parts = partsOf(channel, n, line, below, slant);
+        const Parts parts = partsOf(channel, n, line, walks[n]);
         const double weight = channel.weight[n];
-        once += weight * parts.own, again += weight * parts.more, depth += weight * parts.scattering, total += weight;
+        once += weight * parts.own, again += weight * parts.more, variance += weight * weight * parts.variance;
       }
-      if (!(once > 0.0)) continue;
-      factors.push_back(1.0 + again / once), depths.push_back(depth / total);
+      if (once > 0.0) factors.emplace_back(1.0 + again / once, std::sqrt(variance) / (once + again));
     }
     if (factors.empty()) continue;
-    const auto middle = [](std::vector<double>& v) {
-      std::nth_element(v.begin(), v.begin() + static_cast<std::ptrdiff_t>(v.size() / 2), v.end());
-      return v[v.size() / 2];
-    };
-    const double depth = middle(depths);
-    if (depth > kMatters) all.push_back({channel.name, middle(factors), depth});
+    std::sort(factors.begin(), factors.end());
+    const auto& [factor, error] = factors[factors.size() / 2];
+    if (factors.back().first - 1.0 > (plan_.accuracy > 0.0 ? plan_.accuracy : kWorth))
+      all.push_back({channel.name, factor, factors.front().first, factors.back().first, sunSine < kLowSun ? std::max(error, kGuess) : error});
   }
   return all;
 }

@@ -4,32 +4,33 @@
 #include <string>
 #include <vector>
 
+#include "sim/model/photon_walk.hpp"
 #include "sim/model/ray_hits.hpp"
-#include "sim/model/two_stream.hpp"
 #include "sim/plan/plan.hpp"
 
 namespace pitviper {
 
 struct ScatteredAgain {
   std::string channel;
-  double factor = 1.0;  ///< radiance with it over radiance without, the middle one of the lines of sight looked at
-  double depth = 0.0;   ///< optical depth of scattering on such a line and on to the sun
+  double factor = 1.0;             ///< radiance with it over radiance without, the middle one of the lines of sight looked at
+  double least = 1.0, most = 1.0;  ///< of all of them
+  double error = 0.0;              ///< of the middle one by chance, relative, one sigma; 0.5 and more under a sun so low that level air is no more than a guess
 };
 
 class ScatteringCheck {
  public:
   /// Both must outlive it. `plan`: of the camera's outputs. Nothing to say without layered air in sunlight.
   ScatteringCheck(const Simulation& simulation, const Camera& camera, const Plan& plan);
-  /// Channels that the sun lights and in which the depth is above 0.2, at a time: five lines of sight over the film, two-stream fluxes of the whole
-  /// column of air over the ground that lies below the camera. Shadows are not asked for. Within a factor of 2 or so (tests/physics/test_scattered_again.cpp).
+  /// Channels that the sun lights and in which some line of sight would be brighter by more than the plan's accuracy, or 1 % where it has none, at a time:
+  /// five lines over the film, photons followed back from them through level air over the ground that lies below the camera (the earth under a small roof). Shadows of bodies are not asked
+  /// for; haze scatters as the picture's own does (tests/physics/test_scattered_again.cpp).
   std::vector<ScatteredAgain> at(const WorldState& state) const;
   bool looks() const { return !channels_.empty(); }  ///< false: at() has nothing to say, whenever
-  static constexpr double kMatters = 0.2;
 
  private:
   struct Column {
-    std::vector<double> depth;  ///< above each height, all extinction
-    double albedo = 0.0, asymmetry = 0.0;
+    std::vector<double> all, molecules, haze;  ///< optical depth above each height: of everything, and of what scatters
+    double asymmetry = 0.0;
   };
   struct Channel {
     std::string name;
@@ -37,16 +38,18 @@ class ScatteringCheck {
     std::vector<double> weight;
     std::vector<Column> columns;
   };
-  double heightAt(int entry) const;
   struct Line;
-  /// Of a line at a node: radiance as drawn, what light scattered again would add, optical depth of what scatters.
+  struct SunAt;
+  /// Of a line at a node: radiance as drawn, what light scattered again would add, and its variance.
   struct Parts {
-    double own, more, scattering;
+    double own, more, variance;
   };
-  double depthAbove(const Column& column, double height_m) const;
+  double heightAt(int entry) const;
+  double aboveAt(const std::vector<double>& column, double height_m) const;
   std::vector<Line> linesOver(const WorldState& state, std::optional<Hit>& below) const;
+  WalkAir airOver(const Channel& channel, std::size_t node, const std::optional<Hit>& below, const std::vector<SunAt>& sun, const glm::dvec3& toSun) const;
   double ambientOn(const glm::dvec3& normal, double height_m, double wavelength_um) const;
-  Parts partsOf(const Channel& channel, std::size_t node, const Line& line, const std::optional<Hit>& below, const AirAmounts& slant) const;
+  Parts partsOf(const Channel& channel, std::size_t node, const Line& line, const PhotonWalk& walk) const;
 
   const Simulation& sim_;
   const Camera& camera_;
