@@ -15,6 +15,9 @@ constexpr double kEven = 2.5, kSteps = 1.1;
 constexpr double kBent = 5e-3;
 /// Cuts of a bin that one spectrum may ask for; of more bends every second, third ... is taken.
 constexpr size_t kMostCuts = 32;
+/// A line of absorption narrower than a bin is cut where it has fallen by this factor each, down to this part of it: within them exp(-k s) is off its mean by
+/// 0.54 (1/2.5)^2 / 24 at most, whatever the length s.
+constexpr double kWing = 1.5, kFaintest = 300.0;
 /// Air's own bends are edges where they lie no closer than this part of a usual bin.
 constexpr double kOwnBins = 0.9;
 
@@ -98,48 +101,140 @@ std::vector<Bin> followed(const std::vector<Bin>& bins, const Simulation& sim) {
   return all;
 }
 
-/// Where spectra bend within a bin so that its middle does not stand for it.
-std::vector<double> cutsOf(const Bin& bin, std::span<const BentSpectrum> spectra) {
-  std::vector<double> cuts;
-  for (const BentSpectrum& s : spectra) {
-    auto knots = knotsWithin(s, bin.from, bin.to);
-    if (knots.empty()) continue;
-    // By two Gauss points between bends: at a step the values on both sides count.
-    std::vector<double> edges = {bin.from};
-    edges.insert(edges.end(), knots.begin(), knots.end());
-    edges.push_back(bin.to);
-    double sum = 0.0;
-    for (size_t i = 0; i + 1 < edges.size(); ++i) {
-      const double width = edges[i + 1] - edges[i];
-      for (const auto& [place, weight] : {std::pair{0.2113248654051871, 0.5}, {0.7886751345948129, 0.5}}) {
-        sum += weight * width * s.at(edges[i] + place * width);
-      }
-    }
-    const double mean = sum / (bin.to - bin.from), middle = s.at(bin.at);
-    if (std::abs(mean - middle) <= kBent * std::max(std::abs(mean), std::abs(middle))) continue;
-    const size_t step = (knots.size() + kMostCuts - 1) / kMostCuts;
-    for (size_t k = 0; k < knots.size(); k += step) cuts.push_back(knots[k]);
+/// Mean of what is about linear between bends: two Gauss points each, so that at a step the values on both sides count.
+template <class F>
+double meanBetween(const F& f, double from, double to, std::span<const double> bends) {
+  double sum = 0.0, at = from;
+  const auto add = [&](double next) {
+    for (double place : {0.2113248654051871, 0.7886751345948129}) sum += 0.5 * (next - at) * f(at + place * (next - at));
+    at = next;
+  };
+  for (double b : bends) add(b);
+  add(to);
+  return sum / (to - from);
+}
+
+/// Of a line of absorption narrower than a bin, where it has fallen by so much each: light through any length of it sees its wings (curve of growth).
+void addWings(const BentSpectrum& s, const Bin& bin, const std::vector<double>& knots, std::vector<double>& cuts) {
+  std::vector<double> edges = {bin.from};
+  edges.insert(edges.end(), knots.begin(), knots.end());
+  edges.push_back(bin.to);
+  for (size_t i = 0; i + 1 < edges.size(); ++i) {
+    // A hair inside: bends may be steps.
+    const double hair = 1e-9 * (edges[i + 1] - edges[i]), a = s.at(edges[i] + hair), b = s.at(edges[i + 1] - hair), most = std::max(a, b), least = std::min(a, b);
+    for (double k = most / kWing; k > std::max(least * kWing, most / kFaintest); k /= kWing)
+      cuts.push_back(edges[i] + (k - a) / (b - a) * (edges[i + 1] - edges[i]));
   }
-  std::sort(cuts.begin(), cuts.end());
-  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+}
+
+struct Cuts {
+  std::vector<double> at_um;
+  const BentSpectrum* rough = nullptr;  ///< bends more often than there are cuts
+  int spectra = 0;                      ///< that asked for cuts
+};
+
+/// Where spectra bend within a bin so that its middle does not stand for it.
+Cuts cutsOf(const Bin& bin, std::span<const BentSpectrum> spectra) {
+  Cuts cuts;
+  for (const BentSpectrum& s : spectra) {
+    const auto knots = knotsWithin(s, bin.from, bin.to);
+    if (knots.empty()) continue;
+    const double mean = meanBetween(s.at, bin.from, bin.to, knots), middle = s.at(bin.at);
+    if (std::abs(mean - middle) <= kBent * std::max(std::abs(mean), std::abs(middle))) continue;
+    ++cuts.spectra;
+    const size_t step = (knots.size() + kMostCuts - 1) / kMostCuts;
+    if (step > 1) cuts.rough = &s;
+    for (size_t k = 0; k < knots.size(); k += step) cuts.at_um.push_back(knots[k]);
+    if (s.isDepth && step == 1) addWings(s, bin, knots, cuts.at_um);
+  }
+  std::sort(cuts.at_um.begin(), cuts.at_um.end());
+  cuts.at_um.erase(std::unique(cuts.at_um.begin(), cuts.at_um.end()), cuts.at_um.end());
   return cuts;
 }
 
-std::vector<QuadratureNode> weighted(const Spectrum& kernel, const std::vector<Bin>& bins, std::span<const BentSpectrum> spectra) {
+/// The place between two, nearest to their middle, at which a spectrum is its mean over them.
+double placeOfMean(const BentSpectrum& s, double from, double to) {
+  const auto knots = knotsWithin(s, from, to);
+  const double middle = 0.5 * (from + to), mean = meanBetween(s.at, from, to, knots);
+  double best = middle, away = INFINITY, at = from, off = s.at(from) - mean;
+  const auto look = [&](double next) {
+    const double there = s.at(next) - mean;
+    if (off * there <= 0.0 && off != there) {
+      const double crossing = at + off / (off - there) * (next - at);
+      if (std::abs(crossing - middle) < away) best = crossing, away = std::abs(crossing - middle);
+    }
+    at = next, off = there;
+  };
+  for (double k : knots) look(k);
+  look(to);
+  return best;
+}
+
+/// A bin of thousands of lines of a gas by how much they absorb: so many equal parts of it, each where it is their mean (a k-distribution).
+std::vector<QuadratureNode> byStrength(const BentSpectrum& s, const Bin& bin, double weight) {
+  struct Piece {
+    double absorbs, at, width;
+  };
+  std::vector<Piece> pieces;
+  double from = bin.from;
+  const auto add = [&](double to) {
+    // Of even measure: from one row to the next it may change by decades.
+    constexpr int kParts = 8;
+    for (int p = 0; p < kParts; ++p) {
+      const double at = from + (p + 0.5) / kParts * (to - from);
+      pieces.push_back({s.at(at), at, (to - from) / kParts});
+    }
+    from = to;
+  };
+  for (double k : knotsWithin(s, bin.from, bin.to)) add(k);
+  add(bin.to);
+  std::sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) { return a.absorbs < b.absorbs; });
   std::vector<QuadratureNode> nodes;
-  const auto add = [&](double from, double to, double at) {
+  const double whole = bin.to - bin.from;
+  double passed = 0.0;
+  for (size_t i = 0; i < pieces.size();) {
+    const size_t first = i;
+    const double end = whole * static_cast<double>(nodes.size() + 1) / kMostCuts;
+    double width = 0.0, sum = 0.0;
+    do width += pieces[i].width, sum += pieces[i].width * pieces[i].absorbs, ++i;
+    while (i < pieces.size() && (passed + width < end || nodes.size() + 1 == kMostCuts));
+    passed += width;
+    const auto nearest = std::min_element(pieces.begin() + static_cast<std::ptrdiff_t>(first), pieces.begin() + static_cast<std::ptrdiff_t>(i),
+                                          [mean = sum / width](const Piece& a, const Piece& b) { return std::abs(a.absorbs - mean) < std::abs(b.absorbs - mean); });
+    nodes.push_back({nearest->at, weight * width / whole});
+  }
+  return nodes;
+}
+
+/// `free`: bins may be looked at beside their middle where that stands better for them: where a response's narrow peaks are.
+std::vector<QuadratureNode> weighted(const Spectrum& kernel, const std::vector<Bin>& bins, std::span<const BentSpectrum> spectra, bool free) {
+  std::vector<QuadratureNode> nodes;
+  const std::vector<double> peaks = free ? kernel.knots() : std::vector<double>();
+  const auto centroid = [&](double from, double to, double at, bool piece) {
+    const std::vector<double> within(std::upper_bound(peaks.begin(), peaks.end(), from), std::lower_bound(peaks.begin(), peaks.end(), to));
+    if (within.empty() && !(piece && free)) return at;
+    const double mean = meanBetween(kernel, from, to, within), moment = meanBetween([&](double w) { return (w - from) * kernel(w); }, from, to, within);
+    return mean > 0.0 && moment >= 0.0 && moment <= mean * (to - from) ? from + moment / mean : at;
+  };
+  const auto add = [&](double from, double to, double at, bool piece, const BentSpectrum* rough) {
     const double weight = from < to ? kernel.integral(from, to) : 0.0;
-    if (weight != 0.0) nodes.push_back({at, weight});
+    if (weight != 0.0) nodes.push_back({rough ? placeOfMean(*rough, from, to) : centroid(from, to, at, piece), weight});
   };
   for (const Bin& bin : bins) {
-    const auto cuts = cutsOf(bin, spectra);
-    if (cuts.empty()) {
-      add(bin.from, bin.to, bin.at);
+    const Cuts cuts = cutsOf(bin, spectra);
+    if (cuts.at_um.empty()) {
+      add(bin.from, bin.to, bin.at, false, nullptr);
+      continue;
+    }
+    if (cuts.rough && cuts.rough->isDepth && cuts.spectra == 1) {
+      const double weight = kernel.integral(bin.from, bin.to);
+      for (const QuadratureNode& n : byStrength(*cuts.rough, bin, weight))
+        if (n.weight != 0.0) nodes.push_back(n);
       continue;
     }
     double from = bin.from;
-    for (double c : cuts) add(from, c, 0.5 * (from + c)), from = c;
-    add(from, bin.to, 0.5 * (from + bin.to));
+    for (double c : cuts.at_um) add(from, c, 0.5 * (from + c), true, cuts.rough), from = c;
+    add(from, bin.to, 0.5 * (from + bin.to), true, cuts.rough);
   }
   return nodes;
 }
@@ -147,20 +242,20 @@ std::vector<QuadratureNode> weighted(const Spectrum& kernel, const std::vector<B
 }  // namespace
 
 std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const double> table) {
-  return weighted(kernel, table.empty() ? usualBins(kernel, {}) : tableBins(table, kernel.supportLow(), kernel.supportHigh()), {});
+  return weighted(kernel, table.empty() ? usualBins(kernel, {}) : tableBins(table, kernel.supportLow(), kernel.supportHigh()), {}, table.empty());
 }
 
 std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, const Simulation& sim) {
   auto spectra = spectraOf(sim);
-  if (!sim.air || !sim.air->traits().any) return weighted(kernel, followed(usualBins(kernel, {}), sim), spectra);
+  if (!sim.air || !sim.air->traits().any) return weighted(kernel, followed(usualBins(kernel, {}), sim), spectra, true);
   const std::vector<double> knots = sim.air->knots_um();
   // Air from a table keeps its table's wavelengths.
-  if (sim.air->traits().linearBetweenKnots) return weighted(kernel, followed(tableBins(knots, kernel.supportLow(), kernel.supportHigh()), sim), spectra);
+  if (sim.air->traits().linearBetweenKnots) return weighted(kernel, followed(tableBins(knots, kernel.supportLow(), kernel.supportHigh()), sim), spectra, false);
   std::vector<double> own;
   for (size_t k = 1; k + 1 < knots.size(); ++k)
     if (std::min(knots[k] - knots[k - 1], knots[k + 1] - knots[k]) >= kOwnBins * referenceWidth_um(knots[k])) own.push_back(knots[k]);
   spectra.push_back(airSpectrum(*sim.air));
-  return weighted(kernel, followed(usualBins(kernel, own), sim), spectra);
+  return weighted(kernel, followed(usualBins(kernel, own), sim), spectra, true);
 }
 
 }  // namespace pitviper

@@ -36,6 +36,7 @@ std::vector<BentSpectrum> spectraOf(const Simulation& sim) {
     if (m.transmission) add(m.transmission->knots_um(), [&m](double w) { return m.transmission->at(w, 0.0); });
     if (!m.medium) continue;
     addSpectrum(m.medium->absorption_per_m);
+    if (!m.medium->absorption_per_m.knots().empty()) all.back().isDepth = true;
     if (m.medium->radiance) addSpectrum(*m.medium->radiance);
   }
   return all;

@@ -12,6 +12,7 @@ namespace pitviper {
 struct BentSpectrum {
   std::vector<double> knots_um;  ///< rising
   std::function<double(double wavelength_um)> at;
+  bool isDepth = false;  ///< light dies away by its exponential: the mean of what passes is not what passes at its mean
 };
 
 /// Lights, sun, background, ambient light, and what materials and media send, reflect, let through and absorb. Those without bends are left out.
