@@ -25,8 +25,11 @@ std::vector<double> factorOf(const SpreadKernel& k) {
 
 }  // namespace
 
-Convolution::Convolution(const SpreadKernel& kernel, int width, int height)
-    : along_(factorOf(kernel)), width_(width), height_(height), transform_(std::max(width + kernel.reach, 2 * kernel.reach + 1), std::max(height + kernel.reach, 2 * kernel.reach + 1)) {
+Convolution::Convolution(const SpreadKernel& kernel, int width, int height, int unused)
+    : along_(factorOf(kernel)),
+      width_(width),
+      height_(height),
+      transform_(std::max(width + std::max(0, kernel.reach - unused), 2 * kernel.reach + 1), std::max(height + std::max(0, kernel.reach - unused), 2 * kernel.reach + 1)) {
   if (!along_.empty()) return;
   std::vector<double> own(transform_.size());
   const int columns = transform_.columns(), rows = transform_.rows();

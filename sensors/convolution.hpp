@@ -10,7 +10,8 @@ namespace pitviper {
 /// By half spectra; where a kernel is a product of one along rows and one along columns (Gauss), and short, by these.
 class Convolution {
  public:
-  Convolution(const SpreadKernel& kernel, int width, int height);
+  /// `unused`: cells at each edge of the picture that nobody looks at, a margin; light may come to them around the picture.
+  Convolution(const SpreadKernel& kernel, int width, int height, int unused = 0);
   /// What is spread of a picture less a level, row by row; beyond the picture there is nothing but that level.
   std::vector<double> operator()(const std::vector<float>& picture, double level) const;
 
@@ -18,7 +19,7 @@ class Convolution {
   std::vector<double> alongBoth(const std::vector<float>& picture, double level) const;
   std::vector<double> along_;  ///< the kernel of rows and of columns, from its middle on; empty: it is no product
   int width_, height_;
-  PlaneTransform transform_;      ///< of the picture and one reach of nothing
+  PlaneTransform transform_;      ///< of the picture and, beside it, nothing for a reach
   std::vector<double> transfer_;  ///< of the kernel
 };
 

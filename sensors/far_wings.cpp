@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensors/side_by_side.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -39,19 +41,22 @@ FarWings::Place FarWings::placeOf(double cell) const {
 }
 
 void FarWings::gather(const std::vector<float>& picture, double level) {
-  const auto across = static_cast<std::size_t>(transform_.columns());
-  std::vector<double> row(static_cast<std::size_t>(columns_));
-  for (int y = 0; y < height_; ++y) {
-    std::fill(row.begin(), row.end(), 0.0);
-    const float* cells = &picture[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_)];
-    for (std::size_t x = 0; x < ofColumn_.size(); ++x) {
-      const double light = static_cast<double>(cells[x]) - level;
-      for (int k = 0; k < 4; ++k) row[static_cast<std::size_t>(ofColumn_[x].first + k)] += ofColumn_[x].weight[k] * light;
+  const auto across = static_cast<std::size_t>(transform_.columns()), nodes = static_cast<std::size_t>(columns_);
+  std::vector<double> rows(nodes * static_cast<std::size_t>(height_), 0.0);
+  sideBySide(height_, [&](int first, int last) {
+    for (auto y = static_cast<std::size_t>(first); y < static_cast<std::size_t>(last); ++y) {
+      const float* cells = &picture[y * static_cast<std::size_t>(width_)];
+      double* row = &rows[y * nodes];
+      for (std::size_t x = 0; x < ofColumn_.size(); ++x) {
+        const double light = static_cast<double>(cells[x]) - level;
+        double* to = row + ofColumn_[x].first;
+        for (int k = 0; k < 4; ++k) to[k] += ofColumn_[x].weight[k] * light;
+      }
     }
-    const Place& down = ofRow_[static_cast<std::size_t>(y)];
+  });
+  for (std::size_t y = 0; y < ofRow_.size(); ++y)
     for (int k = 0; k < 4; ++k)
-      for (std::size_t x = 0; x < row.size(); ++x) light_[static_cast<std::size_t>(down.first + k) * across + x] += down.weight[k] * row[x];
-  }
+      for (std::size_t x = 0; x < nodes; ++x) light_[static_cast<std::size_t>(ofRow_[y].first + k) * across + x] += ofRow_[y].weight[k] * rows[y * nodes + x];
 }
 
 void FarWings::gather(double column, double row, double light) {
@@ -65,16 +70,20 @@ void FarWings::spread(std::vector<double>& cells) {
   const auto across = static_cast<std::size_t>(transform_.columns());
   const std::vector<double> far = transform_.convolved(light_, transfer_);
   std::fill(light_.begin(), light_.end(), 0.0);
-  std::vector<double> row(static_cast<std::size_t>(columns_));
-  for (int y = 0; y < height_; ++y) {
-    std::fill(row.begin(), row.end(), 0.0);
-    const Place& down = ofRow_[static_cast<std::size_t>(y)];
-    for (int k = 0; k < 4; ++k)
-      for (std::size_t x = 0; x < row.size(); ++x) row[x] += down.weight[k] * far[static_cast<std::size_t>(down.first + k) * across + x];
-    double* own = &cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_)];
-    for (std::size_t x = 0; x < ofColumn_.size(); ++x)
-      for (int k = 0; k < 4; ++k) own[x] += ofColumn_[x].weight[k] * row[static_cast<std::size_t>(ofColumn_[x].first + k)];
-  }
+  sideBySide(height_, [&](int first, int last) {
+    std::vector<double> row(static_cast<std::size_t>(columns_));
+    for (int y = first; y < last; ++y) {
+      std::fill(row.begin(), row.end(), 0.0);
+      const Place& down = ofRow_[static_cast<std::size_t>(y)];
+      for (int k = 0; k < 4; ++k)
+        for (std::size_t x = 0; x < row.size(); ++x) row[x] += down.weight[k] * far[static_cast<std::size_t>(down.first + k) * across + x];
+      double* own = &cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(width_)];
+      for (std::size_t x = 0; x < ofColumn_.size(); ++x) {
+        const double *from = row.data() + ofColumn_[x].first, *w = ofColumn_[x].weight;
+        own[x] += w[0] * from[0] + w[1] * from[1] + w[2] * from[2] + w[3] * from[3];
+      }
+    }
+  });
 }
 
 }  // namespace pitviper

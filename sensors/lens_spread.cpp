@@ -101,7 +101,7 @@ std::optional<int> reachOf(const Lens& lens, const ChannelOutput& output) {
 
 LensSpread::LensSpread(const Lens& lens, const ChannelOutput& output) {
   const LensTransfer transfer(lens, output);
-  const int enough = reachOf(lens, output).value_or(kMostReach_cells);
+  enough = reachOf(lens, output).value_or(kMostReach_cells);
   if (!lens.diffraction) {
     // Gauss falls below 1e-12 of its middle.
     constexpr double kSigmas = 7.5;

@@ -76,6 +76,7 @@ struct SmoothStep {
 struct LensSpread {
   LensSpread(const Lens& lens, const ChannelOutput& output);
   double wing = 0.0;       ///< [cells]
+  int enough = 0;          ///< reachOf() [cells]
   int exactReach = 0;      ///< cells
   SmoothStep whole, cut;
   SpreadKernel near;       ///< to cut's end

@@ -93,7 +93,7 @@ class PointSpreadStage final : public SensorStage {
     const auto at = spreads_.find(o);
     if (at != spreads_.end()) return at->second;
     Spread s{LensSpread(lens_, pictures.outputs[o]), nullptr, nullptr, nullptr};
-    s.near = std::make_unique<Convolution>(s.law.near, pictures.width, pictures.height);
+    s.near = std::make_unique<Convolution>(s.law.near, pictures.width, pictures.height, std::min(s.law.enough, pictures.margin_px * pictures.cells));
     if (s.law.wing > 0.0) s.far = std::make_unique<FarWings>(s.law, pictures.width, pictures.height);
     return spreads_.emplace(o, std::move(s)).first->second;
   }
