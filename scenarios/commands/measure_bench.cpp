@@ -316,7 +316,7 @@ class Bench {
       // The middle of the film is a pixel's corner where it has an even number of them.
       const double column = std::min(camera_.pinhole.width, options_.film_px) % 2 ? 0.0 : 0.5, row = std::min(camera_.pinhole.height, options_.film_px) % 2 ? 0.0 : 0.5;
       const std::string target = print(
-          "lights: [{name: star, radius: 1 mm, intensity: {wavelength: um, unit: W/(sr um), values: [[%.9g, %.9g], [%.9g, %.9g]]}, position: [%.9g m, %.9g m, %.9g m]}]\n",
+          "lights: [{name: star, radius: 1 mm, intensity: {wavelength: um, unit: W/(sr um), outside: zero, values: [[%.9g, %.9g], [%.9g, %.9g]]}, position: [%.9g m, %.9g m, %.9g m]}]\n",
           output_.bandLow_um, watts, output_.bandHigh_um, watts, kFar_m, -at(column + x), -at(row + y));
       const Setup setup(options_, target, options_.frames);
       const std::vector<double> picture = meanPicture(setup);

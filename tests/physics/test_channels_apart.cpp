@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "scenarios/commands/sensor_report.hpp"
+#include "scenarios/commands/measure_bench.hpp"
 #include "sensors/figures.hpp"
 #include "sim/camera/exposure_parts.hpp"
 #include "sim/model/stage.hpp"
@@ -152,6 +152,25 @@ TEST(ChannelsApart, CommandsNameAChannel) {
   // Over time.
   const Simulation course = seen(channel(kMidChannel, "exposure: [[0 s, 1 ms], [0.06 s, 4 ms]], stages: [" + std::string(kMid) + "]"));
   EXPECT_NEAR(number(renderFrame(course, 1), "pitviper.exposure_s.mw"), 2e-3, 1e-12);
+}
+
+// The lab bench measures each channel by its own exposure and detector.
+TEST(ChannelsApart, AreMeasuredOneByOne) {
+  needContext();
+  BenchOptions options;
+  options.base = ".";
+  options.frames = 8, options.film_px = 64;
+  options.camera =
+      "  film: {width: 96, height: 80, pitch: 15 um}\n  focal_length: 100 mm\n  f_number: 2\n  channels:\n"
+      "  - {name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: counts, exposure: 2 ms, stages: [{stage: detector, full_well: 7e6, bits: 14, offset: 100, read_noise: 400}]}\n"
+      "  - {name: lw, response: {band: [8 um, 9.5 um]}, quantum_efficiency: 0.6, output: counts, exposure: 0.15 ms, stages: [{stage: point_spread, cells: 1, defocus: 20 um}, {stage: detector, full_well: 3e7, bits: 15, offset: 300, read_noise: 1500}]}\n";
+  const auto results = measureCamera(options, {});
+  ASSERT_EQ(results.size(), 2u);
+  for (const BenchResult& r : results)
+    for (const BenchFigure& f : r.figures)
+      if (f.name == "SiTF" || f.name == "full well, or what the converter holds")
+        figure(r.channel + ", " + f.name + " from pictures of a camera of two channels", f.measured, f.design, 0.02, "the channel's own exposure, gain and well; 8 frames of 4096 pixels");
+  EXPECT_GT(std::abs(results[0].figures[1].design / results[1].figures[1].design - 1.0), 0.05);
 }
 
 TEST(ChannelsApart, WhatIsWrongIsNamed) {
