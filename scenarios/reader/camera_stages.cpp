@@ -19,7 +19,7 @@ const StageModel* modelOf(const Value& stage) {
 std::vector<const Value*> together(const std::vector<Value>& cameras, const std::vector<Value>& own) {
   std::vector<const Value*> all;
   for (const Value& v : cameras) all.push_back(&v);
-  std::vector<const Value*> left = all;  // of the camera's, those that none has taken the place of
+  std::vector<const Value*> left = all;  // of the camera's, those that none of its own takes the place of
   for (const Value& v : own) {
     const auto same = std::find_if(left.begin(), left.end(), [&](const Value* other) { return modelOf(v) && modelOf(*other) == modelOf(v); });
     if (same != left.end()) {
@@ -76,6 +76,10 @@ void Builder::readStages(const Record& r, Camera& camera) const {
   };
   Camera common = seenBy([&](const std::string& channel) { return !camera.ownChannel(channel); });
   readList(together(cameras, none), simulation_.time.step_s, common);
+  std::vector<const Value*> unused;  // of the camera's: each channel has its own in their place
+  for (const Value& v : cameras) unused.push_back(&v);
+  // What a sensor's file has besides is no mistake of the scenario.
+  std::erase_if(unused, [&](const Value* v) { return !common.outputs.empty() || v->where.file != camera.where.file; });
   if (r.given("channels"))
     for (const Value& channel : r.value("channels").items) {
       const auto own = camera.ownChannels.find(channel.find("name")->text);
@@ -84,13 +88,17 @@ void Builder::readStages(const Record& r, Camera& camera) const {
       const std::vector<Value>& stages = list ? list->items : none;
       Camera seen = seenBy([&](const std::string& name) { return name == own->first; });
       seen.exposure_s = camera.exposureOf(own->first);
-      readList(together(cameras, stages), simulation_.time.step_s, seen);
+      const std::vector<const Value*> all = together(cameras, stages);
+      std::erase_if(unused, [&](const Value* v) { return std::find(all.begin(), all.end(), v) != all.end(); });
+      readList(all, simulation_.time.step_s, seen);
       // Places in a picture, and in what is said of it, are the camera's.
       for (const Value& s : stages)
         if (modelOf(s) && std::any_of(seen.stages.begin(), seen.stages.end(), [&](const StageChoice& c) { return c.place && c.name == modelOf(s)->name; }))
           throw UserError(s.where, "a " + modelOf(s)->name + " of one channel, which would move its picture off the others'", "it among the camera's own 'stages'", "move it there");
       own->second.stages = std::move(seen.stages);
     }
+  if (!unused.empty())
+    throw UserError(unused.front()->where, "a stage that no channel of camera '" + camera.name + "' has: each has its own in its place", "it for channels that have none, or none", "remove it, or one of theirs");
   camera.stages = std::move(common.stages);
   const Camera drawn = drawnCamera(camera);
   if (tooLarge(drawn) || !drawn.pinhole.isFlat())

@@ -416,6 +416,9 @@ void Builder::readCameras(const Record& scenario) {
       throw UserError(v.where, "a camera without channels", "'channels', or 'eye: true'",
                       "add '- {name: mw, response: {band: [3 um, 5 um]}}' under 'channels:'");
     c.outputs = readChannels(channelsOf(r), &optics, &p, c.exposure_s, r.given("stages") && makesCounts(r.value("stages")), &c);
+    const auto hasOwnExposure = [&](const ChannelOutput& o) { return c.ownChannel(o.channel) && c.ownChannel(o.channel)->exposure_s; };
+    if (written.find("exposure") && std::all_of(c.outputs.begin(), c.outputs.end(), hasOwnExposure))
+      throw UserError(r.where("exposure"), "an exposure that no channel of camera '" + c.name + "' has: each has its own", "it for channels that have none, or none", "remove it, or theirs");
     for (const ChannelOutput& o : c.outputs)
       if (c.motionBlur && !(c.exposureOf(o.channel) > 0.0))
         throw UserError(r.where("motion_blur"), "motion within an exposure of no time, in channel '" + o.channel + "'", "'exposure' of the camera, such as '5 ms'", "add it, or remove motion_blur");

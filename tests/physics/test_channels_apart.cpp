@@ -192,6 +192,9 @@ TEST(ChannelsApart, WhatIsWrongIsNamed) {
   expect(refusal(channel(kMidChannel, "exposure: 1 ms"), std::string("stages: [") + kMid + "], ", "commands: [{command: gain, camera: c, channel: mw, factor: 2}]\n"), "with a detector of its own");
   expect(refusal(channel(kMidChannel, std::string("stages: [") + kMid + "]")), "needs an exposure time");
   expect(refusal(channel(kMidChannel, "exposure: 1 ms")), "needs a detector");
+  expect(refusal(mid + ", " + lw, "exposure: 1 ms, "), "an exposure that no channel of camera 'c' has");
+  expect(refusal(mid + ", " + lw, std::string("stages: [{stage: point_spread}, ") + kMid + "], "), "a stage that no channel of camera 'c' has");
+  EXPECT_EQ(refusal(mid + ", " + lw, "stages: [{stage: point_spread}], "), "");
   expect(refusal(channel(kMidChannel, std::string("exposure: 1 ms, stages: [") + kMid + ", " + kMid + "]")), "a second detector");
   try {
     (void)scene("probes: [{name: p, position: [0 m, 0 m, 0 m], channels: [{name: x, response: {band: [3 um, 5 um]}, exposure: 1 ms}]}]\n");
