@@ -146,13 +146,20 @@ double areaFromTheSide_m2(std::span<const Puff> puffs) {
 }
 
 FlareCloud::FlareCloud(FlareCloudOptions options) : options_(std::move(options)) {
-  if (!options_.path || options_.level.empty()) throw std::invalid_argument("a flare without a path or a level");
+  if (options_.store < 0 && (!options_.path || options_.level.empty())) throw std::invalid_argument("a flare without a path or a level");
   if (!(options_.area_m2 > 0.0 && options_.depth > 0.0)) throw std::invalid_argument("a flare without an area or a depth");
   radius_m_ = std::sqrt(options_.area_m2 / (kPi * puffOpacity(options_.depth)));
 }
 
 std::shared_ptr<const FieldState> FlareCloud::at(const FieldWorld& world) const {
-  const FlareCloudOptions& o = options_;
+  FlareCloudOptions o = options_;
+  if (o.store >= 0) {
+    const auto flies = world.ejected ? world.ejected(o.store) : nullptr;
+    if (!flies) return nullptr;
+    o.path = flies->path;
+    o.level = flies->level;
+    o.lit_s = flies->lit_s;
+  }
   const double level = o.level.at(world.time_s);
   if (!(level > kLeastLevel)) return nullptr;
   const Pose pose = o.path->at(world.time_s);
@@ -188,10 +195,10 @@ std::shared_ptr<const FieldState> FlareCloud::at(const FieldWorld& world) const 
 }
 
 void FlareCloud::addTo(Fingerprint& f) const {
-  const auto& [path, level, area_m2, depth, glow_s, spread_m_s, lit_s, wind_m_s, airWarmer_K] = options_;
-  f.add("flare").add(area_m2).add(depth).add(glow_s).add(spread_m_s).add(lit_s).add(wind_m_s).add(airWarmer_K);
+  const auto& [store, path, level, area_m2, depth, glow_s, spread_m_s, lit_s, wind_m_s, airWarmer_K] = options_;
+  f.add("flare").add(store).add(area_m2).add(depth).add(glow_s).add(spread_m_s).add(lit_s).add(wind_m_s).add(airWarmer_K);
   pitviper::addTo(f, level);
-  path->addTo(f);
+  if (path) path->addTo(f);
 }
 
 glm::dvec2 FlareCloud::temperatures_K() const {

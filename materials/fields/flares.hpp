@@ -73,6 +73,7 @@ double puffOpacity(double depth);
 double areaFromTheSide_m2(std::span<const Puff> puffs);
 
 struct FlareCloudOptions {
+  int store = -1;  ///< index into Simulation::stores: path, level and lit_s are of what is ejected of it
   std::shared_ptr<const Trajectory> path;
   TimeCourse level;
   double area_m2 = 0.1;  ///< A at level 1, standing still

@@ -280,11 +280,16 @@ JetsSource::~JetsSource() = default;
 
 std::vector<int> JetsSource::mixtures() const { return mixturesOf(setup_.species()); }
 
-double JetsSource::throttleAt(double time_s) const {
+double JetsSource::askedThrottle(double time_s, const ThrottleSet& commanded) const {
+  const std::optional<double> set = commanded ? commanded(time_s) : std::nullopt;
+  return std::clamp(set ? *set : setup_.throttle.at(time_s), 0.0, 1.0);
+}
+
+double JetsSource::throttleAt(double time_s, const ThrottleSet& commanded) const {
   if (!setup_.life.has(time_s)) return 0.0;
   const double ignited_s = std::isfinite(setup_.life.begin_s) ? setup_.life.begin_s : 0.0;
   const double burning = setup_.engine ? burnThrottle(*setup_.engine, time_s - ignited_s) : 1.0;
-  return burning > 0.0 ? burning * std::clamp(setup_.throttle.at(time_s), 0.0, 1.0) : 0.0;
+  return burning > 0.0 ? burning * askedThrottle(time_s, commanded) : 0.0;
 }
 
 namespace {
@@ -303,16 +308,16 @@ double JetsSource::presenceAt(double time_s) const {
   return meanBefore(time_s, [this](double t) { return setup_.life.has(t) ? 1.0 : 0.0; });
 }
 
-std::optional<JetsSource::Conditions> JetsSource::conditionsAt(double time_s, double height_m, double speed_m_s) const {
+std::optional<JetsSource::Conditions> JetsSource::conditionsAt(double time_s, double height_m, double speed_m_s, const ThrottleSet& commanded) const {
   Conditions c;
   const bool breathes = setup_.engine && setup_.engine->breathesAir();
   double throttle = 0.0, presence = 1.0;
   if (breathes) {  // comes and goes as a whole; its throttle is of the time that it is there
     presence = presenceAt(time_s);
     const double begin = setup_.life.begin_s, end = setup_.life.end_s;
-    throttle = std::clamp(setup_.throttle.at(std::clamp(time_s, begin, std::max(begin, end))), 0.0, 1.0);
+    throttle = askedThrottle(std::clamp(time_s, begin, std::max(begin, end)), commanded);
   } else {
-    throttle = meanBefore(time_s, [this](double t) { return throttleAt(t); });
+    throttle = meanBefore(time_s, [&](double t) { return throttleAt(t, commanded); });
   }
   c.throttle = std::llround(throttle * kThrottleSteps);
   c.presence = std::llround(presence * kPresenceSteps);
@@ -363,13 +368,14 @@ std::shared_ptr<const FieldState> JetsSource::at(const FieldWorld& world) const 
     const glm::dvec3 before = world.poseAt(setup_.entity, now - 2.0 * kHalf_s).position, middle = world.poseAt(setup_.entity, now - 1e-6 * kHalf_s).position,
                      after = world.poseAt(setup_.entity, now + 2.0 * kHalf_s).position;
     const glm::dvec3 past = (middle - before) / (2.0 * kHalf_s), coming = (after - middle) / (2.0 * kHalf_s);
-    velocity = glm::length(past) > 2.0 * glm::length(coming) ? past : glm::length(coming) > 2.0 * glm::length(past) ? coming : 0.5 * (past + coming);
+    const auto moved = world.velocityNow ? world.velocityNow(setup_.entity) : std::nullopt;
+    velocity = moved ? *moved : glm::length(past) > 2.0 * glm::length(coming) ? past : glm::length(coming) > 2.0 * glm::length(past) ? coming : 0.5 * (past + coming);
   }
   const glm::dmat3 localFromField = glm::mat3_cast(pose.orientation) * bodyFromField_;
   const glm::dvec3 origin = pose.position + glm::mat3_cast(pose.orientation) * setup_.nozzles.front();
   const Simulation& s = *world.simulation;
   const double speed = -glm::dot(velocity - s.wind_m_s, localFromField[0]);
-  const auto conditions = conditionsAt(now, s.frame.toGeodetic(origin).height_m, speed);
+  const auto conditions = conditionsAt(now, s.frame.toGeodetic(origin).height_m, speed, world.throttleAt);
   const auto there = conditions ? std::static_pointer_cast<const JetsState>(stateOf(*conditions)) : nullptr;
   if (!there) return nullptr;
   auto placed = std::make_shared<JetsState>(*there);
@@ -421,7 +427,10 @@ glm::dvec2 JetsSource::temperatures_K() const {
     for (double height_m : {0.0, 11000.0}) take(*setup_.nozzle, around(at(1.0, height_m, 0.0)));
     return range;
   }
-  const auto [least, most] = setup_.throttle.range();
+  // Whatever its own course is, a command may set any throttle of an engine.
+  const bool commanded = setup_.engine->breathesAir();
+  const glm::dvec2 own(setup_.throttle.range().first, setup_.throttle.range().second);
+  const double least = commanded ? 0.0 : own.x, most = commanded ? 1.0 : own.y;
   for (double throttle : {std::clamp(least, 0.0, 1.0), std::clamp(most, 0.0, 1.0)})
     for (double height_m : {0.0, 11000.0})
       for (double speed_m_s : {0.0, 300.0, 600.0}) {

@@ -53,6 +53,8 @@ class JetsSource : public FieldSource {
   void addTo(Fingerprint& fingerprint) const override;
   glm::dvec2 temperatures_K() const override;
   std::string target() const override { return "plume"; }
+  /// A solid motor has none: it burns as it was cast.
+  bool hasThrottle() const override { return !setup_.engine || setup_.engine->breathesAir(); }
 
   const JetsSetup& setup() const { return setup_; }
   /// What the jet is at a time, to steps that change it by less than a thousandth: throttle 1/2000, speed 0.25 m/s, height 5 m, presence 1/256.
@@ -62,8 +64,10 @@ class JetsSource : public FieldSource {
     double throttlePart() const { return static_cast<double>(throttle) / 2000.0; }
     double presencePart() const { return static_cast<double>(presence) / 256.0; }
   };
+  /// FieldWorld::throttleAt.
+  using ThrottleSet = std::function<std::optional<double>(double time_s)>;
   /// At a height above sea level [m] and a speed along the axis, against the exhaust [m/s]; nothing where it is out.
-  std::optional<Conditions> conditionsAt(double time_s, double height_m, double speed_m_s) const;
+  std::optional<Conditions> conditionsAt(double time_s, double height_m, double speed_m_s, const ThrottleSet& commanded = {}) const;
   CoFlow around(const Conditions& conditions) const;
   /// Nothing where the nozzle is out.
   std::optional<NozzleFlow> flowAt(const Conditions& conditions) const;
@@ -73,7 +77,8 @@ class JetsSource : public FieldSource {
 
  private:
   struct Kept;
-  double throttleAt(double time_s) const;
+  double throttleAt(double time_s, const ThrottleSet& commanded) const;
+  double askedThrottle(double time_s, const ThrottleSet& commanded) const;
   double presenceAt(double time_s) const;
   JetsSetup setup_;
   glm::dmat3 bodyFromField_{1.0};

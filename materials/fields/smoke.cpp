@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "sim/flight/standard_atmosphere.hpp"
+#include "sim/model/store.hpp"
 #include "sim/model/world.hpp"
 
 namespace pitviper {
@@ -203,6 +204,16 @@ struct SmokeSource::Trail {
 };
 
 std::shared_ptr<const FieldState> SmokeSource::at(const FieldWorld& world) const {
+  if (options_.store >= 0) {
+    const auto flies = world.ejected ? world.ejected(options_.store) : nullptr;
+    if (!flies) return nullptr;
+    SmokeOptions its = options_;
+    its.store = -1;
+    its.path = flies->path;
+    its.begin_s = flies->lit_s;
+    its.end_s = flies->out_s;
+    return SmokeSource(its).at(world);
+  }
   const double youngest = std::min(world.time_s, options_.end_s), oldest = std::max(options_.begin_s, world.time_s - options_.lifetime_s);
   if (!(youngest - oldest > Trail::kNone_s)) return nullptr;
   Trail trail{*this, world, oldest, youngest};
@@ -225,9 +236,9 @@ std::shared_ptr<const FieldState> SmokeSource::at(const FieldWorld& world) const
 }
 
 void SmokeSource::addTo(Fingerprint& f) const {
-  const auto& [entity, path, position, rate_kg_s, begin_s, end_s, radius_m, temperature_K, blown_m_s, share, rises, dissipation_m2_s3, diffusivity_m2_s,
+  const auto& [entity, store, path, position, rate_kg_s, begin_s, end_s, radius_m, temperature_K, blown_m_s, share, rises, dissipation_m2_s3, diffusivity_m2_s,
                lifetime_s, fadeShare, mostPuffs, wind_m_s, airWarmer_K] = options_;
-  f.add("smoke").add(entity).add(path != nullptr).add(position).add(begin_s).add(end_s).add(radius_m).add(temperature_K).add(blown_m_s).add(share).add(rises);
+  f.add("smoke").add(entity).add(store).add(path != nullptr).add(position).add(begin_s).add(end_s).add(radius_m).add(temperature_K).add(blown_m_s).add(share).add(rises);
   f.add(dissipation_m2_s3).add(diffusivity_m2_s).add(lifetime_s).add(fadeShare).add(mostPuffs).add(wind_m_s).add(airWarmer_K);
   pitviper::addTo(f, rate_kg_s);
   if (path) path->addTo(f);

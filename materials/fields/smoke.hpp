@@ -35,6 +35,7 @@ namespace pitviper {
 struct SmokeOptions {
   // Where it comes from: an entity, a path of its own, or a fixed place.
   int entity = -1;
+  int store = -1;  ///< index into Simulation::stores: path, begin_s and end_s are of what is ejected of it
   std::shared_ptr<const Trajectory> path;
   glm::dvec3 position{0.0};  ///< in its axes; of a fixed place in the local frame
   TimeCourse rate_kg_s;      ///< of the simulation's time

@@ -3,6 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <list>
+#include <mutex>
+#include <optional>
 
 #include "materials/fields/flares.hpp"
 #include "materials/fields/smoke.hpp"
@@ -43,6 +47,43 @@ glm::dvec3 readDirection(const Record& r) {
   return d / length;
 }
 
+/// When it is ejected; none: when a command says so.
+std::optional<double> readEjection(const Value& v) {
+  if (v.kind == Value::Kind::Scalar && v.text == "on_command") return {};
+  const double time_s = readNumber(v, "s", "time");
+  if (!(std::abs(time_s) <= kLongestTime_s))
+    throw UserError(v.where, "time is out of range (" + v.text.substr(0, 40) + ")", "-1e+09 to 1e+09 s, or 'on_command'", "correct it");
+  return time_s;
+}
+
+/// Commands are carried out for every picture anew: the flights of the last few times that they eject it are kept.
+auto keepingLast(std::function<Ejected(double, const Pose&, const glm::dvec3&)> fly) {
+  struct Flight {
+    double time_s = 0.0;
+    Pose carrier;
+    glm::dvec3 velocity{0.0};
+    std::shared_ptr<const Ejected> flown;
+  };
+  struct Kept {
+    std::mutex mutex;
+    std::list<Flight> flights;
+  };
+  return [fly = std::move(fly), kept = std::make_shared<Kept>()](double time_s, const Pose& carrier, const glm::dvec3& velocity) -> std::shared_ptr<const Ejected> {
+    constexpr std::size_t kMost = 8;
+    const std::lock_guard lock(kept->mutex);
+    for (const Flight& f : kept->flights)
+      if (f.time_s == time_s && f.carrier.position == carrier.position && f.carrier.orientation == carrier.orientation && f.velocity == velocity) return f.flown;
+    std::shared_ptr<const Ejected> flown;
+    try {
+      flown = std::make_shared<const Ejected>(fly(time_s, carrier, velocity));
+    } catch (const FlightError&) {  // no drag takes such a speed in steps that it flies in: it is gone
+    }
+    kept->flights.push_front({time_s, carrier, velocity, flown});
+    if (kept->flights.size() > kMost) kept->flights.pop_back();
+    return flown;
+  };
+}
+
 }  // namespace
 
 namespace tables {
@@ -59,7 +100,7 @@ const ParameterTable& flare() {
         "smoke.",
         {required(text("name", "unique among lights")), required(choice("type", flareNames(), known)),
          text("from", "name of the entity that ejects it, as the scenario moves it; without it, it starts from its position at rest"),
-         required(within(number("time", "s", "of ejection"), -kLongestTime_s, kLongestTime_s)),
+         required(any("time", "of ejection [s]; or `on_command`: it is aboard until `command: eject` ejects it")),
          within(vector3("position", "m", "in the entity's body axes (x forward, y left, z up), [0, 0, 0] unless given; without `from` east, north, up"),
                 -kFarthest_m, kFarthest_m),
          any("direction", "of ejection in the same axes: [x, y, z], or {azimuth, elevation}; down unless given"),
@@ -88,7 +129,7 @@ const ParameterTable& flareSequence() {
   static const ParameterTable t{
       "sequence of flares",
       "",
-      {required(integer("count", "how many", 1, 256)), required(within(number("interval", "s", "from each to the next"), 0.0, 3600.0)),
+      {required(integer("count", "how many", 1, 256)), within(number("interval", "s", "from each to the next; where commands eject them each is told by itself"), 0.0, 3600.0),
        withDefault(boolean("alternate", "every second goes to the other side: y of position and direction change sign"), "false")}};
   return t;
 }
@@ -144,13 +185,18 @@ void Builder::readFlares(const Record& scenario) {
 
     const int carrier = r.given("from") ? entityNamed(r.value("from")) : -1;
     if (carrier < 0 && !r.given("position")) throw UserError(r.where(), "a flare from nowhere", "'from' (an entity), or a 'position'", "add 'from: <entity>'");
+    const std::optional<double> firstAt_s = readEjection(r.value("time"));
+    const bool onCommand = !firstAt_s;
     int count = 1;
     double interval_s = 0.0;
     bool alternate = false;
     if (several) {
       const Record sequence(r.value("sequence"), tables::flareSequence());
       count = static_cast<int>(sequence.integer("count"));
-      interval_s = sequence.number("interval");
+      if (onCommand && sequence.given("interval"))
+        throw UserError(sequence.where("interval"), "an interval between flares that commands eject", "each ejected by its own command", "remove it");
+      if (!onCommand && !sequence.given("interval")) throw UserError(sequence.where(), "a sequence without an interval", "the time from each to the next", "add 'interval: 0.2 s'");
+      interval_s = onCommand ? 0.0 : sequence.number("interval");
       alternate = sequence.boolean("alternate");
     }
     const glm::dvec3 direction = readDirection(r), position = r.given("position") ? r.vector("position") : glm::dvec3(0.0);
@@ -158,14 +204,14 @@ void Builder::readFlares(const Record& scenario) {
     if (all > kMostFlares)
       throw UserError(r.where(several ? "sequence" : "name"), "more than " + std::to_string(kMostFlares) + " flares with these", "fewer", "lower 'count'");
     for (int k = 0; k < count; ++k) {
-      const double time_s = r.number("time") + k * interval_s;
+      const double time_s = firstAt_s.value_or(0.0) + k * interval_s;
       const glm::dvec3 side(1.0, alternate && k % 2 == 1 ? -1.0 : 1.0, 1.0);
       Value called = r.value("name");
       if (several) called.text += "_" + std::to_string(k);
       checkUnique(called, lightNames_, "light");
       Pose pose;
       glm::dvec3 velocity(0.0);
-      if (carrier >= 0) {
+      if (carrier >= 0 && !onCommand) {
         if (!advance(simulation_, time_s).isThere(static_cast<std::size_t>(carrier)))
           throw UserError(r.where("from"),
                           "'" + r.text("from").substr(0, 60) + "' isn't there at " + briefNumber(time_s) + " s, when it should eject '" + called.text + "'",
@@ -177,17 +223,26 @@ void Builder::readFlares(const Record& scenario) {
       world.frame = simulation_.frame;
       world.coriolis = hasOrigin_;
       if (glm::length(simulation_.wind_m_s) > 0.0) world.wind = {{0.0, simulation_.wind_m_s}};
-      FlareFlight flown{Trajectory({TrajectoryPoint{}}), {}, 0.0, 0.0};
+      const auto flyFrom = [type, world, from = side * position, push = r.number("speed") * (side * direction)](double at_s, const Pose& carriersPose, const glm::dvec3& itsVelocity) {
+        FlareFlight flown = flyFlare(type, launchFrom(at_s, carriersPose, itsVelocity, from, push), world);
+        return Ejected{std::make_shared<const Trajectory>(std::move(flown.path)), std::move(flown.level), flown.lit_s, flown.out_s};
+      };
+      Ejected flown;
       try {
-        flown = flyFlare(type, launchFrom(time_s, pose, velocity, side * position, r.number("speed") * (side * direction)), world);
+        flown = flyFrom(time_s, pose, velocity);
       } catch (const FlightError& e) {
         throw UserError(r.where(), "flare '" + called.text + "' cannot fly: " + e.wrong, "drag that takes its speed in a millisecond or more",
                         "raise 'mass', or lower 'drag_area' or 'burn_time'");
       }
-      const auto path = std::make_shared<const Trajectory>(flown.path);
+      const int store = onCommand ? static_cast<int>(simulation_.stores.size()) : -1;
+      if (onCommand) {
+        simulation_.stores.push_back({called.text, carrier, keepingLast(flyFrom), type.ignition_s, type.ignition_s + type.burn_s});
+        flown = {};
+      }
 
       FlareCloudOptions cloud;
-      cloud.path = path;
+      cloud.store = store;
+      cloud.path = flown.path;
       cloud.level = flown.level;
       cloud.area_m2 = area;
       cloud.depth = type.depth;
@@ -205,15 +260,19 @@ void Builder::readFlares(const Record& scenario) {
         light.intensity = intensity;
         light.radius_m = std::sqrt(area / kPi);
         light.visible = false;  // its cloud is
-        light.motion = Motion(flown.path);
-        light.level = flown.level;
-        light.lifetime = {flown.lit_s, flown.out_s};
+        light.store = store;
+        if (!onCommand) {
+          light.motion = Motion(*flown.path);
+          light.level = flown.level;
+          light.lifetime = {flown.lit_s, flown.out_s};
+        }
         simulation_.lights.push_back(std::move(light));
       }
 
       if (smokeIs < 0 || !(yield > 0.0)) continue;
       SmokeOptions o;
-      o.path = path;
+      o.store = store;
+      o.path = flown.path;
       o.begin_s = flown.lit_s;
       o.end_s = flown.out_s;
       const double burnt = type.burntShare > 0.0 ? type.burntShare : 1.0;

@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,7 @@
 
 namespace pitviper {
 
+struct Ejected;
 struct Simulation;
 
 /// Gases (or kinds of particles) of one field at most: as in sim/render/glsl/volume_field.frag.glsl.
@@ -100,6 +102,12 @@ struct FieldWorld {
   std::function<Pose(int entity, double time_s)> poseAt;
   /// Share of the sun's disc that reaches a place (0 or 1 where bodies hide it); 0 without a sun.
   std::function<double(const glm::dvec3& place)> sunAt;
+  /// Of an entity that commands move, or nothing: its velocity now [m/s].
+  std::function<std::optional<glm::dvec3>(int entity)> velocityNow = {};
+  /// What commands have made of the throttle of this field's engine at a time, or nothing. Empty: none has.
+  std::function<std::optional<double>(double time_s)> throttleAt = {};
+  /// What flies of a store that commands eject (Simulation::stores), or null.
+  std::function<std::shared_ptr<const Ejected>(int store)> ejected = {};
 };
 
 /// Where a field comes from.
@@ -117,6 +125,8 @@ class FieldSource {
   virtual glm::dvec2 temperatures_K() const = 0;
   /// A word for tables of targets; empty: it is no target.
   virtual std::string target() const { return {}; }
+  /// Whether there is a throttle that a command may set.
+  virtual bool hasThrottle() const { return false; }
 };
 
 struct FieldBody {

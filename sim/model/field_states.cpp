@@ -17,10 +17,25 @@ const FieldState* FieldStates::at(std::size_t field) const {
                            [this](int entity, double time_s) {
                              return time_s == world_.time_s ? world_.bodyPose(static_cast<std::size_t>(entity)) : poseOf(simulation_, entity, time_s);
                            },
-                           [this](const glm::dvec3& at) { return sunAt(at); }};
+                           [this](const glm::dvec3& at) { return sunAt(at); },
+                           [this](int entity) {
+                             const auto moved = world_.velocities.find(entity);
+                             return moved == world_.velocities.end() ? std::nullopt : std::optional(moved->second);
+                           },
+                           throttleOf(static_cast<int>(field)),
+                           [this](int store) {
+                             const auto flies = world_.ejected.find(store);
+                             return flies == world_.ejected.end() ? nullptr : flies->second;
+                           }};
     place.state = simulation_.fields[field].source->at(world);
   });
   return place.state.get();
+}
+
+std::function<std::optional<double>(double)> FieldStates::throttleOf(int field) const {
+  const auto set = world_.throttles.find(field);
+  if (set == world_.throttles.end()) return {};
+  return [steps = set->second](double time_s) { return steps->at(time_s); };
 }
 
 double FieldStates::sunAt(const glm::dvec3& place) const {

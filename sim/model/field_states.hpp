@@ -24,6 +24,7 @@ class FieldStates {
     std::shared_ptr<const FieldState> state;
   };
   double sunAt(const glm::dvec3& place) const;
+  std::function<std::optional<double>(double time_s)> throttleOf(int field) const;
   const Simulation& simulation_;
   WorldState world_;  ///< without fields: what stands before the sun
   mutable std::vector<Place> places_;

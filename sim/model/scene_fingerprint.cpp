@@ -53,9 +53,9 @@ void addTo(Fingerprint& f, const Entity& e) {
 }
 
 void addTo(Fingerprint& f, const PointLight& l) {
-  const auto& [name, intensity, radius_m, visible, motion, parent, level, lifetime] = l;
+  const auto& [name, intensity, radius_m, visible, motion, parent, level, lifetime, store] = l;
   addTo(f, lifetime);
-  f.add(name).add(radius_m).add(visible).add(parent);
+  f.add(name).add(store).add(radius_m).add(visible).add(parent);
   pitviper::addTo(f, intensity);
   pitviper::addTo(f, motion);
   pitviper::addTo(f, level);
@@ -133,7 +133,7 @@ void addTo(Fingerprint& f, const Material& m) {
 
 void addTo(Fingerprint& f, const Simulation& sim) {
   const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, wind_m_s, textures, materials, entities, lights, fields, sun, ambient, surroundings,
-               background, ground, air, cameras, probes, commands, sinks] = sim;
+               background, ground, air, cameras, probes, commands, stores, sinks] = sim;
   f.add(static_cast<double>(seed)).add(static_cast<int>(mode)).add(shadows);
   const auto& [latitude_rad, longitude_rad, height_m] = frame.origin();
   f.add(latitude_rad).add(longitude_rad).add(height_m);

@@ -15,6 +15,7 @@
 #include "sim/model/material.hpp"
 #include "sim/model/sink.hpp"
 #include "sim/model/stage.hpp"
+#include "sim/model/store.hpp"
 #include "sim/model/surroundings.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectral_rule.hpp"
@@ -172,6 +173,7 @@ struct Simulation {
   std::vector<Camera> cameras;
   std::vector<Probe> probes;
   std::vector<Command> commands;  ///< in the order of their times
+  std::vector<Store> stores;      ///< what commands may eject
   std::vector<SinkChoice> sinks;  ///< of its frames; none: files of all of them
 
   const Material& materialOf(const Surface& s) const { return *materials[static_cast<size_t>(s.material)]; }

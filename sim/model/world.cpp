@@ -1,6 +1,7 @@
 #include "sim/model/world.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
 #include "sim/model/field_states.hpp"
@@ -8,10 +9,12 @@
 namespace pitviper {
 namespace {
 
+void change(const Simulation& sim, const Command& command, double at_s, Courses& courses);
+
 /// The scenario's commands from one on, as far as a time; returns the first that is left.
 std::size_t carryOut(const Simulation& sim, std::size_t next, double time_s, Courses& courses) {
   for (; next < sim.commands.size() && sim.commands[next].at_s <= time_s + kSameTick * sim.time.step_s; ++next)
-    sim.commands[next].change(courses, sim.commands[next].at_s);
+    change(sim, sim.commands[next], sim.commands[next].at_s, courses);
   return next;
 }
 
@@ -19,6 +22,37 @@ template <class Map, class Key, class Other>
 auto valueOf(const Map& courses, const Key& key, double time_s, const Other& otherwise) {
   const auto set = courses.find(key);
   return set == courses.end() ? otherwise() : set->second(time_s);
+}
+
+/// The time for which a body is where its own motion has it.
+double routeTime(const Courses& courses, int entity, double time_s) { return valueOf(courses.routeTimes_s, entity, time_s, [=] { return time_s; }); }
+
+/// In the local frame, or in its carrier's.
+Pose ownPose(const Simulation& sim, const Courses& courses, int entity, double time_s) {
+  Pose own = sim.entities[static_cast<size_t>(entity)].motion.at(routeTime(courses, entity, time_s));
+  own.position = valueOf(courses.positions, entity, time_s, [&] { return own.position; });
+  own.orientation = valueOf(courses.orientations, entity, time_s, [&] { return own.orientation; });
+  return own;
+}
+
+bool isMoved(const Simulation& sim, const Courses& courses, int entity) {
+  for (int e = entity; e >= 0; e = sim.entities[static_cast<size_t>(e)].parent)
+    if (courses.positions.count(e) || courses.orientations.count(e) || courses.routeTimes_s.count(e)) return true;
+  return false;
+}
+
+void eject(const Simulation& sim, int index, double at_s, Courses& courses) {
+  const Store& store = sim.stores[static_cast<size_t>(index)];
+  if (store.carrier >= 0 && !lifetimeOf(sim, store.carrier).has(at_s)) return;
+  auto flies = store.carrier < 0 ? store.eject(at_s, {}, {})
+                                 : store.eject(at_s, poseOf(sim, courses, store.carrier, at_s), velocityOf(sim, courses, store.carrier, at_s));
+  if (flies) courses.ejected[index] = std::move(flies);
+}
+
+void change(const Simulation& sim, const Command& command, double at_s, Courses& courses) {
+  command.change(courses, at_s);
+  for (const auto& [store, when_s] : courses.toEject) eject(sim, store, when_s, courses);
+  courses.toEject.clear();
 }
 
 WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s) {
@@ -29,20 +63,25 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
     for (const Entity& e : sim.entities) state.offsets_m.push_back(e.mesh ? e.mesh->offset_m : glm::dvec3(0.0));
   for (const Entity& e : sim.entities) {  // a parent comes before its children
     const int index = static_cast<int>(state.entities.size());
-    const bool there = e.presentAt(time_s) && (e.parent < 0 || state.isThere(static_cast<size_t>(e.parent)));
+    const bool there = e.lifetime.has(time_s) && e.motion.presentAt(routeTime(courses, index, time_s)) && (e.parent < 0 || state.isThere(static_cast<size_t>(e.parent)));
     if (!there) state.absent.resize(sim.entities.size(), 0);
     if (!there) state.absent[static_cast<size_t>(index)] = 1;
-    Pose own = e.motion.at(time_s);
-    own.position = valueOf(courses.positions, index, time_s, [&] { return own.position; });
-    own.orientation = valueOf(courses.orientations, index, time_s, [&] { return own.orientation; });
-    const Pose body = carried(e.parent, own);
+    const Pose body = carried(e.parent, ownPose(sim, courses, index, time_s));
     state.entities.push_back(state.offsets_m.empty() ? body : composed(body, {state.offsets_m[static_cast<size_t>(index)], {1, 0, 0, 0}}));
+    if (!sim.fields.empty() && isMoved(sim, courses, index)) state.velocities[index] = velocityOf(sim, courses, index, time_s);
     std::vector<double>& temperatures = state.temperatures_K.emplace_back();
     for (const Surface& s : e.surfaces)
       temperatures.push_back(valueOf(courses.temperatures_K, std::pair(index, static_cast<int>(temperatures.size())), time_s, [&] { return s.temperatureAt_K(time_s); }));
   }
   for (const PointLight& l : sim.lights) {
     const int index = static_cast<int>(state.lights.size());
+    if (l.store >= 0) {
+      const auto flies = courses.ejected.find(l.store);
+      const bool lit = flies != courses.ejected.end();
+      state.lights.push_back(lit ? flies->second->path->at(time_s).position : glm::dvec3(0.0));
+      state.lightLevels.push_back(lit ? valueOf(courses.lightLevels, index, time_s, [&] { return flies->second->level.at(time_s); }) : 0.0);
+      continue;
+    }
     state.lights.push_back(carried(l.parent, l.motion.at(time_s)).position);
     const bool there = l.presentAt(time_s) && (l.parent < 0 || state.isThere(static_cast<size_t>(l.parent)));
     state.lightLevels.push_back(there ? valueOf(courses.lightLevels, index, time_s, [&] { return l.levelAt(time_s); }) : 0.0);
@@ -61,6 +100,8 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
   for (const auto& [of, course] : courses.channelExposures_s) state.cameras[of.first].channelExposures_s[of.second] = course(time_s);
   for (const auto& [of, course] : courses.channelGains) state.cameras[of.first].channelGains[of.second] = course(time_s);
   for (const auto& [camera, pointings] : courses.pointings) state.cameras[camera].pointings = pointings;
+  state.throttles = courses.throttles;
+  state.ejected = courses.ejected;
   if (!sim.fields.empty()) state.fields = std::make_shared<const FieldStates>(sim, state);
   return state;
 }
@@ -114,6 +155,26 @@ glm::dvec3 velocityOf(const Simulation& sim, int entity, double time_s) {
   return velocityOf(sim, e.parent, time_s) + carrier.orientation * own + turned / (2.0 * kApart_s);
 }
 
+Pose poseOf(const Simulation& sim, const Courses& courses, int entity, double time_s) {
+  const int parent = sim.entities[static_cast<size_t>(entity)].parent;
+  const Pose own = ownPose(sim, courses, entity, time_s);
+  return parent >= 0 ? composed(poseOf(sim, courses, parent, time_s), own) : own;
+}
+
+glm::dvec3 velocityOf(const Simulation& sim, const Courses& courses, int entity, double time_s) {
+  constexpr double kApart_s = 1e-5;  // as above
+  const Entity& e = sim.entities[static_cast<size_t>(entity)];
+  const auto moved = courses.moved.find(entity);
+  const double at = routeTime(courses, entity, time_s);
+  const double rate = courses.routeTimes_s.count(entity) ? (routeTime(courses, entity, time_s + kApart_s) - routeTime(courses, entity, time_s - kApart_s)) / (2.0 * kApart_s) : 1.0;
+  const glm::dvec3 own = moved != courses.moved.end() ? moved->second.velocity : rate * e.motion.velocityAt(at);
+  if (e.parent < 0) return own;
+  const glm::dvec3 place = ownPose(sim, courses, entity, time_s).position;
+  const auto turned = [&](double t) { return poseOf(sim, courses, e.parent, t).orientation * place; };
+  return velocityOf(sim, courses, e.parent, time_s) + poseOf(sim, courses, e.parent, time_s).orientation * own +
+         (turned(time_s + kApart_s) - turned(time_s - kApart_s)) / (2.0 * kApart_s);
+}
+
 Pose poseOf(const Simulation& sim, int entity, double time_s) {
   const Entity& e = sim.entities[static_cast<size_t>(entity)];
   const Pose own = e.motion.at(time_s);
@@ -130,12 +191,37 @@ Lifetime lifetimeOf(const Simulation& sim, int entity) {
 
 WorldState advance(const Simulation& simulation, double time_s) { return World(simulation).at(time_s); }
 
+WorldState withEjected(const Simulation& sim, double time_s, int look) {
+  Courses courses;
+  carryOut(sim, 0, time_s, courses);
+  // Parts of the time that it burns: most are early, while it is near what ejected it; evenly spread before (the golden ratio's sequence).
+  const double even = std::fmod((look + 0.5) * 0.6180339887498949, 1.0), part = 0.02 + 0.9 * even * even * even;
+  for (size_t s = 0; s < sim.stores.size(); ++s) {
+    const Store& store = sim.stores[s];
+    const auto index = static_cast<int>(s);
+    if (!courses.ejected.count(index)) eject(sim, index, time_s - store.lit_s - part * (store.out_s - store.lit_s), courses);
+  }
+  return stateOf(sim, courses, time_s);
+}
+
+void move(Courses& courses, int entity, double at_s, const glm::dvec3& position, const std::optional<glm::dvec3>& velocity) {
+  Moved now{at_s, position, velocity.value_or(glm::dvec3(0.0))};
+  if (const auto before = courses.moved.find(entity); !velocity && before != courses.moved.end()) {
+    const double ago_s = at_s - before->second.at_s;
+    const glm::dvec3 way = position - before->second.position;
+    if (ago_s > 0.0 && ago_s <= kSameWay_s && glm::length(way) <= kFastest_m_s * ago_s) now.velocity = way / ago_s;
+    else if (ago_s == 0.0) now.velocity = before->second.velocity;
+  }
+  courses.moved[entity] = now;
+  courses.positions[entity] = [position, at_s, goesOn = velocity.value_or(glm::dvec3(0.0))](double t) { return position + (t - at_s) * goesOn; };
+}
+
 void World::apply(const Command& command, int tick) {
   const double at_s = simulation_.time.at(tick);
   if (at_s < since_s_) throw std::invalid_argument("a command for tick " + std::to_string(tick) + ", and a later one has had some");
   since_s_ = at_s;
   next_ = carryOut(simulation_, next_, at_s, courses_);
-  command.change(courses_, std::min(command.at_s, at_s));
+  change(simulation_, command, std::min(command.at_s, at_s), courses_);
 }
 
 WorldState World::at(double time_s) const {

@@ -196,7 +196,7 @@ FieldSampling::FieldSampling(const Simulation& sim, const Plan& plan) {
   for (int t = 0; t < times; ++t) {
     time_s_.push_back(sim.time.at(times > 1 ? t * (sim.time.frames - 1) / (times - 1) : 0));
     std::vector<Needs>& needs = of_.emplace_back(sim.fields.size());
-    const WorldState state = advance(sim, time_s_.back());
+    const WorldState state = withEjected(sim, time_s_.back(), t);
     std::vector<glm::dvec3> eyes;
     for (const Camera& c : sim.cameras) eyes.push_back(cameraAt(c, state).pose.position);
     for (const Probe& p : sim.probes) eyes.push_back(p.position);

@@ -69,7 +69,10 @@ int SightRays::frameWith(size_t surface) {
 std::shared_ptr<const WorldState> SightRays::stateAt(int frame) {
   if (const auto known = states_.find(frame); known != states_.end()) return known->second;
   if (states_.size() >= kMostStates) states_.clear();
-  return states_[frame] = std::make_shared<const WorldState>(advance(simulation_, simulation_.time.at(frame)));
+  const double time_s = simulation_.time.at(frame);
+  // What commands may eject burns at every second frame.
+  const bool ejected = !simulation_.stores.empty() && frame % 2 == 0;
+  return states_[frame] = std::make_shared<const WorldState>(ejected ? withEjected(simulation_, time_s, frame / 2) : advance(simulation_, time_s));
 }
 
 /// Any; where there are fields, which take time to work out, one of so many as are kept.

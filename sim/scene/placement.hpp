@@ -27,7 +27,7 @@ std::optional<glm::dvec3> readPosition(const Record& record, const LocalFrame& f
 struct CommandedPose {
   std::optional<glm::dvec3> position;
   std::optional<Attitude> attitude;
-  glm::dvec3 velocity{0.0};  ///< with which it goes on from the position
+  std::optional<glm::dvec3> velocity{};  ///< with which it goes on from the position; none: it stays there
 };
 CommandedPose readCommandedPose(const Record& record, const LocalFrame& frame, bool attached);
 /// `position`, `geodetic`, `velocity`, `heading`, `pitch` and `roll` of it.

@@ -55,6 +55,7 @@ struct PointLight {
   int parent = -1;
   TimeCourse level;  ///< factor over time, usually 0 outside; empty: 1 always
   Lifetime lifetime;
+  int store = -1;  ///< index into Simulation::stores: it shines as what is ejected of that does; -1: as above
   bool presentAt(double time_s) const { return lifetime.has(time_s) && motion.presentAt(time_s); }
   double levelAt(double time_s) const { return level.empty() ? 1.0 : level.at(time_s); }
 };
@@ -94,7 +95,9 @@ struct CameraChange {
   std::optional<Pose> pose;         ///< in the local frame, of what points it: goes before position, orientation and mount
 };
 
-class FieldStates;  // sim/model/field_states.hpp
+class FieldStates;    // sim/model/field_states.hpp
+struct Ejected;       // sim/model/store.hpp
+struct ThrottleSteps; // sim/model/command.hpp
 
 /// Everything that changes, at one time: poses in the local frame.
 struct WorldState {
@@ -108,6 +111,9 @@ struct WorldState {
   std::vector<char> absent;                         ///< per entity: neither seen nor in the way of anything; none: all are there
   bool isThere(std::size_t entity) const { return entity >= absent.size() || !absent[entity]; }
   std::map<std::string, CameraChange> cameras;  ///< by name, of those that commands have changed
+  std::map<int, glm::dvec3> velocities;         ///< of entities that commands move, they or what carries them [m/s]
+  std::map<int, std::shared_ptr<const ThrottleSteps>> throttles;  ///< by field, that commands have set
+  std::map<int, std::shared_ptr<const Ejected>> ejected;          ///< by store
   std::shared_ptr<const FieldStates> fields;        ///< of media that vary through their bodies; null: none
 };
 

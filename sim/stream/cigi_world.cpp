@@ -93,9 +93,10 @@ void CigiWorld::of(const CigiEntityPose& p, std::vector<Command>& commands, cons
   const auto rate = rates_.find(e);
   const CigiRate goesOn = rate == rates_.end() ? CigiRate{} : rate->second;
   const glm::dquat axes = axesOf(goesOn, parent < 0, orientation);
-  const glm::dvec3 velocity = axes * goesOn.linear_m_s, turning = axes * goesOn.angular_rad_s;
+  const glm::dvec3 turning = axes * goesOn.angular_rad_s;
+  const std::optional<glm::dvec3> velocity = rate == rates_.end() ? std::nullopt : std::optional(axes * goesOn.linear_m_s);
   commands.push_back(now([=](Courses& courses, double at_s) {
-    courses.positions[e] = [=](double t) { return position + (t - at_s) * velocity; };
+    move(courses, e, at_s, position, velocity);
     courses.orientations[e] = [=](double t) { return turned(turning, t - at_s) * orientation; };
   }));
 }
@@ -113,7 +114,7 @@ void CigiWorld::of(const CigiRate& r, std::vector<Command>& commands, const Refu
     const glm::dquat q = at(courses.orientations, e, at_s, own.orientation);
     const glm::dquat axes = axesOf(r, free, q);
     const glm::dvec3 velocity = axes * r.linear_m_s, turning = axes * r.angular_rad_s;
-    courses.positions[e] = [=](double t) { return p + (t - at_s) * velocity; };
+    move(courses, e, at_s, p, velocity);
     courses.orientations[e] = [=](double t) { return turned(turning, t - at_s) * q; };
   }));
 }
@@ -128,7 +129,7 @@ void CigiWorld::of(const CigiPart& p, std::vector<Command>& commands, const Refu
   commands.push_back(now([=, motion = simulation_.entities[static_cast<std::size_t>(e)].motion, given = offsets](Courses& courses, double at_s) {
     const Pose rest = motion.at(at_s);
     const Pose moved{rest.position + rest.orientation * given.position(), rest.orientation * given.orientation()};
-    courses.positions[e] = [=](double) { return moved.position; };
+    move(courses, e, at_s, moved.position, std::nullopt);
     courses.orientations[e] = [=](double) { return moved.orientation; };
   }));
 }
@@ -193,9 +194,23 @@ void CigiWorld::of(const CigiComponent& c, std::vector<Command>& commands, const
     if (c.component > 0) words.emplace_back("part", body.mesh->parts[body.surfaces[static_cast<std::size_t>(c.component - 1)].meshPart].name);
     return worded(words, commands, refuse);
   }
-  const bool level = c.component == 1, trigger = c.component == 2;
-  if (c.componentClass != CigiComponentClass::System || (!level && !trigger))
+  const bool level = c.component == 1, trigger = c.component == 2, eject = c.component == 3, throttle = c.component == 4;
+  if (c.componentClass != CigiComponentClass::System || (!level && !trigger && !eject && !throttle))
     return refuse("component " + std::to_string(c.component) + " of class " + std::to_string(static_cast<int>(c.componentClass)));
+  if (eject) {
+    if (c.instance < 1 || c.instance > static_cast<int>(simulation_.stores.size()))
+      return refuse("flare " + std::to_string(c.instance) + " is none of 1 to " + std::to_string(simulation_.stores.size()) + " that are 'on_command'");
+    return worded({{"command", "eject"}, {"flare", simulation_.stores[static_cast<std::size_t>(c.instance - 1)].name}}, commands, refuse);
+  }
+  if (throttle) {
+    std::vector<std::string> plumes;
+    for (const FieldBody& field : simulation_.fields)
+      if (field.source->hasThrottle()) plumes.push_back(field.name);
+    if (c.instance < 1 || c.instance > static_cast<int>(plumes.size()))
+      return refuse("plume " + std::to_string(c.instance) + " is none of 1 to " + std::to_string(plumes.size()));
+    if (!value) return refuse("a throttle that is no number");
+    return worded({{"command", "throttle"}, {"plume", plumes[static_cast<std::size_t>(c.instance - 1)]}, {"value", number(*value)}}, commands, refuse);
+  }
   if (c.instance < 1 || c.instance > static_cast<int>(simulation_.lights.size()))
     return refuse("light " + std::to_string(c.instance) + " is none of 1 to " + std::to_string(simulation_.lights.size()));
   const std::string& light = simulation_.lights[static_cast<std::size_t>(c.instance - 1)].name;

@@ -20,7 +20,8 @@ int named(const Record& r, const char* key, const std::vector<T>& all) {
 }  // namespace
 
 Registry<CommandModel>& commandModels() {
-  static Registry<CommandModel> all("command", {moveCommand(), lookCommand(), pointCommand(), temperatureCommand(), lightCommand(), triggerCommand(), gainCommand()});
+  static Registry<CommandModel> all("command", {moveCommand(), speedCommand(), throttleCommand(), ejectCommand(), lookCommand(), pointCommand(), temperatureCommand(),
+                                                   lightCommand(), triggerCommand(), gainCommand()});
   return all;
 }
 
@@ -54,6 +55,17 @@ Command commandOf(const std::vector<std::pair<std::string, std::string>>& words,
 
 int entityOf(const Record& r, const Simulation& sim) { return named(r, "entity", sim.entities); }
 int lightOf(const Record& r, const Simulation& sim) { return named(r, "light", sim.lights); }
+int plumeOf(const Record& r, const Simulation& sim) {
+  std::vector<std::string> names;
+  const std::string asked = r.text("plume");
+  for (size_t f = 0; f < sim.fields.size(); ++f) {
+    if (!sim.fields[f].source->hasThrottle()) continue;
+    if (sim.fields[f].name == asked) return static_cast<int>(f);
+    names.push_back(sim.fields[f].name);
+  }
+  throw unknownWord(r.where("plume"), "there is no plume of an engine or nozzle", asked, names);
+}
+int storeOf(const Record& r, const Simulation& sim) { return named(r, "flare", sim.stores); }
 int cameraOf(const Record& r, const Simulation& sim) { return named(r, "camera", sim.cameras); }
 
 }  // namespace pitviper

@@ -29,11 +29,16 @@ Command commandOf(const std::vector<std::pair<std::string, std::string>>& words,
 int entityOf(const Record& record, const Simulation& simulation);
 int lightOf(const Record& record, const Simulation& simulation);
 int cameraOf(const Record& record, const Simulation& simulation);
+int plumeOf(const Record& record, const Simulation& simulation);  ///< of Simulation::fields
+int storeOf(const Record& record, const Simulation& simulation);
 
 /// That a camera's follower takes commands. Errors: UserError at a key that would point it.
 void requireTakesCommands(const Camera& camera, const Location& where);
 
 CommandModel moveCommand();
+CommandModel speedCommand();
+CommandModel throttleCommand();
+CommandModel ejectCommand();
 CommandModel temperatureCommand();
 CommandModel lightCommand();
 CommandModel lookCommand();

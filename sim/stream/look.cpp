@@ -65,7 +65,7 @@ CommandModel lookCommand() {
       if (r.given("roll")) throw UserError(r.where("roll"), "a roll of a camera on a gimbal", "'heading' and 'pitch': its axes are azimuth and elevation", "remove it");
     }
     return [=, name = camera.name, gimbal = camera.follower.has_value(), mount = camera.mount](Courses& courses, double at_s) {
-      if (pose.position) courses.cameraPositions[name] = [=](double t) { return *pose.position + (t - at_s) * pose.velocity; };
+      if (pose.position) courses.cameraPositions[name] = [=](double t) { return *pose.position + (t - at_s) * pose.velocity.value_or(glm::dvec3(0.0)); };
       if (pose.attitude && gimbal) {
         const glm::dvec3 sight = orientationFrom(*pose.attitude) * glm::dvec3(1, 0, 0);
         const bool carried = mount.carrier >= 0;

@@ -12,7 +12,7 @@ CommandModel moveCommand() {
     const CommandedPose pose = readCommandedPose(r, sim.frame, sim.entities[static_cast<size_t>(e)].parent >= 0);
     if (!pose.position && !pose.attitude) throw UserError(r.where(), "a move to nowhere", "a position, or an attitude", "add 'position:'");
     return [=](Courses& courses, double at_s) {
-      if (pose.position) courses.positions[e] = [=](double t) { return *pose.position + (t - at_s) * pose.velocity; };
+      if (pose.position) move(courses, e, at_s, *pose.position, pose.velocity);
       if (pose.attitude) courses.orientations[e] = [q = orientationFrom(*pose.attitude)](double) { return q; };
     };
   };

@@ -12,6 +12,7 @@
 #include <random>
 #include <thread>
 
+#include "sim/model/field_states.hpp"
 #include "sim/model/world.hpp"
 #include "sim/stream/cigi_world.hpp"
 #include "sim/stream/command_models.hpp"
@@ -189,6 +190,50 @@ TEST(JsonPort, TakesCommandsWithAScenariosWordsAndAnswersMistakes) {
   EXPECT_EQ(c.line(), R"({"id":2,"ok":true})");
 }
 
+// A host moves a jet, opens its throttle, lets another fly faster and ejects a flare, line by line.
+TEST(JsonPort, FlaresThrottlesAndSpeeds) {
+  const Simulation sim = scene(std::string(kScene) + R"(
+flares: [{name: decoy, type: mtv, from: jet, time: on_command, direction: [0, 0, -1], speed: 20 m/s}]
+plumes: [{name: exhaust, on: jet, engine: turbofan_military}]
+)");
+  CommandInbox inbox;
+  const std::string path = ownSocket("flight");
+  const auto port = openJsonPort({path, true, 1.0, {}, {}, {}}, sim, inbox);
+  Client c(path);
+  ASSERT_TRUE(c.connected);
+  const std::vector<std::string> lines = {
+      R"({"id": 1, "command": "move", "entity": "jet", "position": ["10 m", "2 km", "300 m"], "velocity": ["0 m/s", "200 m/s", "0 m/s"], "heading": "0 deg"})",
+      R"({"id": 2, "command": "throttle", "plume": "exhaust", "value": "0.3"})",
+      R"({"id": 3, "command": "eject", "flare": "decoy"})",
+  };
+  for (std::size_t k = 0; k < lines.size(); ++k) {
+    c.send(lines[k] + "\n");
+    EXPECT_EQ(c.line(), "{\"id\":" + std::to_string(k + 1) + ",\"ok\":true}");
+  }
+  World world(sim);
+  for (LiveCommand& live : inbox.take()) {
+    live.command.at_s = 0.5;
+    world.apply(live.command, 50);
+  }
+  const WorldState then = world.at(0.5), later = world.at(0.8);
+  ASSERT_EQ(then.ejected.size(), 1u);
+  const Trajectory& flown = *then.ejected.at(0)->path;
+  EXPECT_LT(glm::length(flown.at(0.5).position - glm::dvec3(10.0, 2000.0, 300.0)), 1e-9);
+  EXPECT_LT(glm::length(flown.velocityAt(0.5) - glm::dvec3(0.0, 200.0, -20.0)), 1e-9);
+  EXPECT_LT(flown.at(0.8).position.y, 2060.0) << "drag";
+  EXPECT_GT(later.lightLevels[1], 0.0);
+  EXPECT_NE(fieldOf(later, 1), nullptr);
+  EXPECT_NEAR(*later.throttles.at(0)->at(0.8), 0.3, 1e-12);
+  EXPECT_LT(glm::length(later.velocities.at(0) - glm::dvec3(0.0, 200.0, 0.0)), 1e-9);
+  for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{{R"({"command": "eject", "flare": "decoi"})", "did you mean 'decoy'?"},
+                                                                                   {R"({"command": "speed", "entity": "jet", "value": "100 m/s"})", "has no route"},
+                                                                                   {R"({"command": "throttle", "plume": "exhaust", "value": "120 %"})", "value"}}) {
+    c.send(text + "\n");
+    const std::string answer = c.line();
+    EXPECT_NE(answer.find(says), std::string::npos) << answer;
+  }
+}
+
 TEST(JsonPort, RandomBytesNeitherStopItNorChangeAnything) {
   const Simulation sim = aScene();
   CommandInbox inbox;
@@ -244,6 +289,55 @@ TEST(Commands, OneThatComesLateHoldsAsOfItsOwnTime) {
   EXPECT_NEAR(world.at(1.0).entities[0].position.x, 2.0, 1e-9);
   EXPECT_NEAR(world.at(1.0005).entities[0].position.x, 2.05, 1e-9);
   EXPECT_NEAR(world.at(0.9995).entities[0].position.x, 1.95, 1e-9) << "an exposure begins before its tick";
+}
+
+// A host that only says where: frame by frame, as most do. What it ejects flies as fast as it came.
+TEST(CigiWorld, EjectsFlaresAndSetsThrottles) {
+  const Simulation sim = scene(std::string(kScene) + R"(
+flares: [{name: decoy, type: mtv, from: jet, time: on_command, direction: [0, 0, -1], speed: 20 m/s}]
+plumes: [{name: exhaust, on: jet, engine: turbofan_military}]
+)");
+  CigiWorld cigi(sim);
+  World world(sim);
+  std::vector<std::string> refused;
+  const auto tell = [&](int tick, const std::vector<CigiChange>& changes) {
+    std::vector<Command> commands;
+    cigi.translate(changes, commands, [&](const std::string& says) { refused.push_back(says); });
+    for (Command& c : commands) {
+      c.at_s = sim.time.at(tick);
+      world.apply(c, tick);
+    }
+  };
+  CigiEntityPose jet;
+  jet.entity = 1;
+  jet.state = CigiEntityState::Active;
+  jet.orientation = glm::quat_cast(sim.frame.ecefFromLocal());
+  const double lat = 36.0 * M_PI / 180.0, lon = -6.0 * M_PI / 180.0;
+  for (int tick = 0; tick <= 10; ++tick) {
+    jet.geodetic = {lat + 1e-7 * tick, lon, 600.0};  // 0.64 m north in 10 ms
+    tell(tick, {jet});
+  }
+  CigiComponent eject, throttle;
+  eject.componentClass = throttle.componentClass = CigiComponentClass::System;
+  eject.component = 3, eject.instance = 1;
+  throttle.component = 4, throttle.instance = 1, throttle.wordCount = 2;
+  throttle.words[0] = std::bit_cast<std::uint32_t>(0.25f);
+  tell(10, {eject, throttle});
+  EXPECT_TRUE(refused.empty());
+  const WorldState now = world.at(sim.time.at(10));
+  ASSERT_EQ(now.ejected.size(), 1u);
+  // A meridian's radius at 36 degrees: 6357.4 km (WGS 84, a (1 - e^2)/(1 - e^2 sin^2)^(3/2)) and 600 m of height.
+  const glm::dvec3 speed = now.ejected.at(0)->path->velocityAt(sim.time.at(10));
+  EXPECT_NEAR(speed.y, 6358.0e3 * 1e-7 / 0.01, 0.02);
+  EXPECT_NEAR(speed.x, 0.0, 1e-3);
+  EXPECT_NEAR(speed.z, -20.0, 1e-3);
+  EXPECT_NEAR(*now.throttles.at(0)->at(0.1), 0.25, 1e-9);
+  eject.instance = 2;
+  throttle.instance = 2;
+  tell(11, {eject, throttle});
+  ASSERT_EQ(refused.size(), 2u);
+  EXPECT_NE(refused[0].find("flare 2 is none of 1 to 1"), std::string::npos) << refused[0];
+  EXPECT_NE(refused[1].find("plume 2 is none of 1 to 1"), std::string::npos) << refused[1];
 }
 
 TEST(CigiWorld, PutsBodiesWhereTheHostHasThem) {
