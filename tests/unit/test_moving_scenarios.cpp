@@ -12,6 +12,7 @@
 #include "sim/scene/gravity.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -318,6 +319,51 @@ TEST(MovingScenarios, ReadmesExamplesAreOnes) {
   EXPECT_EQ(missile.target, "jet");
   ASSERT_TRUE(missile.closest);
   EXPECT_GT(advance(motion, 1.0).temperatures_K[2][0], 300.0);
+}
+
+// The README's script of random poses, in three rows a frame: at each frame's time the body is there, turned so, and flies along its nose.
+TEST(MovingScenarios, PosesOfYourOwnDice) {
+  std::ifstream in(std::string(PITVIPER_SOURCE_DIR) + "/scenarios/README.md");
+  std::stringstream all;
+  all << in.rdbuf();
+  const std::string text = all.str(), mark = "```yaml labelled\n";
+  const size_t from = text.find(mark);
+  ASSERT_NE(from, std::string::npos);
+  std::string yaml = text.substr(from + mark.size(), text.find("```", from + mark.size()) - from - mark.size());
+  const TemporaryFolder folder;
+  struct Row {
+    glm::dvec3 place;
+    double heading_deg, pitch_deg, roll_deg, speed_m_s;
+  };
+  std::vector<Row> rows;
+  std::string csv = "time_s,x_m,y_m,z_m,heading_deg,pitch_deg,roll_deg\n";
+  const auto ahead = [](const Row& r) { return orientationFrom({r.heading_deg * kPi / 180.0, r.pitch_deg * kPi / 180.0, 0.0}) * glm::dvec3(1.0, 0.0, 0.0); };
+  for (int k = 0; k < 40; ++k) {  // leaps of kilometres and any attitudes
+    const double a = std::fmod(0.618 * k, 1.0), b = std::fmod(0.755 * k, 1.0), c = std::fmod(0.57 * k, 1.0);
+    rows.push_back({{500.0 * std::pow(20.0, a), 200.0 * b - 100.0, 100.0 + 80.0 * c}, 360.0 * b, 60.0 * c - 30.0, 120.0 * a - 60.0, 150.0 + 150.0 * c});
+    for (double dt : {-0.01, 0.0, 0.01}) {
+      const Row& r = rows.back();
+      const glm::dvec3 at = r.place + r.speed_m_s * dt * ahead(r);
+      char line[200];
+      std::snprintf(line, sizeof line, "%.2f,%.6f,%.6f,%.6f,%.4f,%.4f,%.4f\n", k + dt, at.x, at.y, at.z, r.heading_deg, r.pitch_deg, r.roll_deg);
+      csv += line;
+    }
+  }
+  yaml.replace(yaml.find("poses.csv"), 9, folder.put("poses.csv", csv));
+  const Simulation sim = scene(yaml);
+  double place = 0.0, turn = 0.0, speed = 0.0;
+  for (int k = 0; k < 40; ++k) {
+    const Row& r = rows[static_cast<size_t>(k)];
+    const Pose pose = poseOf(sim, 0, sim.time.at(k));
+    place = std::max(place, glm::length(pose.position - r.place));
+    const glm::dquat right = orientationFrom({r.heading_deg * kPi / 180.0, r.pitch_deg * kPi / 180.0, r.roll_deg * kPi / 180.0});
+    turn = std::max(turn, 2.0 * std::acos(std::min(std::abs(glm::dot(pose.orientation, right)), 1.0)));
+    speed = std::max(speed, glm::length(velocityOf(sim, 0, sim.time.at(k)) - r.speed_m_s * ahead(r)) / r.speed_m_s);
+    EXPECT_NEAR(advance(sim, sim.time.at(k)).temperatures_K[0][0], recoveryTemperatureAt_K(r.place.z, r.speed_m_s, BoundaryLayer::Turbulent), 0.5) << k;
+  }
+  bound("poses of a file with three rows a frame: place [m]", place, 1e-5, "six digits behind the point");
+  bound("the same: attitude [rad]", turn, 1e-5, "four digits of a degree");
+  bound("the same: velocity, of the speed", speed, 1e-5, "six digits behind the point over 20 ms: 1e-4 m/s of 150; rows evenly about the frame's");
 }
 
 }  // namespace
