@@ -86,7 +86,7 @@ class Builder {
   enum class Mover { Entity, Light, Camera };
   Placement readPlacement(const Record& r, Mover mover);
   /// A flight of something whose carrier and target have their motions; it is then its own.
-  void flyNow(const Record& r, Mover mover, Placement& placement) const;
+  void flyNow(const Record& r, Mover mover, Placement& placement);
   /// Motions of the entities that fly, targets and carriers first. Errors: UserError for those that wait for each other.
   void flyAll();
   /// After flyAll(): temperatures that follow from motions.
@@ -157,6 +157,7 @@ class Builder {
   std::map<std::string, Location> smokeNames_;
   bool hasOrigin_ = false;
   std::map<int, const Value*> fliesLater_;  ///< entities, as they were written
+  double stepsFlown_ = 0.0;                 ///< of all flights so far
   struct Recovery {
     int entity, surface;
     const Value* value;

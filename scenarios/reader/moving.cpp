@@ -111,12 +111,18 @@ int Builder::targetNamed(const Value& asked) const {
   throw unknownWord(asked.where, "there is no entity", name, names, "add it under 'entities:'");
 }
 
-void Builder::flyNow(const Record& r, Mover mover, Placement& p) const {
+void Builder::flyNow(const Record& r, Mover mover, Placement& p) {
+  constexpr double kMostSteps = 1e7;  // as of one flight: seconds of work; 1 GB where each is kept
   const Value& motion = r.value("motion");
   const Value* target = flightTarget(motion);
   const AtEnd gone = mover == Mover::Camera ? AtEnd::Hold : AtEnd::Vanish;
   const FlightAsked asked{r.text("name"), r, &motion, mover != Mover::Light, p.carrier, target ? targetNamed(*target) : -1, hasOrigin_};
   p.flight = std::make_shared<const FlightRecord>(flyAsked(simulation_, asked, readEnds(r, {gone, gone})));
+  const Record flown(motion, motionModelOf(motion) == "missile" ? tables::motionMissile() : tables::motionBallistic());
+  stepsFlown_ += (p.flight->trajectory.end_s() - p.flight->trajectory.begin_s()) / flown.number("step");
+  if (stepsFlown_ > kMostSteps)
+    throw UserError(motion.where, "flights of " + std::to_string(static_cast<long long>(stepsFlown_)) + " steps, this one and those before it",
+                    "at most 10 million in a scenario", "take longer steps, shorter flights or fewer of them");
   const auto spin = p.motion.spin();
   p.motion = Motion(p.flight->trajectory);
   if (spin) p.motion = p.motion.withSpin(*spin);

@@ -1,6 +1,5 @@
 #pragma once
 // The memory that drawing a simulation takes, told before it is drawn, beside what there is.
-#include <optional>
 #include <string>
 
 #include "sim/model/simulation.hpp"
@@ -17,10 +16,6 @@ struct MemoryNeed {
 /// Of `run`, from the sizes of pictures alone: pictures on the GPU (on a driver without one in the same memory), copies read back, frames on their way to
 /// files. Nothing is planned for it. An upper estimate: 1 to 2 times what was measured.
 MemoryNeed memoryNeeded(const Simulation& simulation);
-
-/// What this process may still take: free memory and caches that the system would give, the limits of its control groups, its own limit of address
-/// space (ulimit -v). Nothing where the system tells none of them.
-std::optional<double> availableMemory_bytes();
 
 /// UserError at the camera or probe that takes most, where drawing would take more than there is.
 void refuseBeyondMemory(const Simulation& simulation);

@@ -298,6 +298,28 @@ TEST_F(Faults, WithoutADriverThereIsAMessage) {
   EXPECT_EQ(r.err.find('\n'), r.err.size() - 1) << r.err;
 }
 
+// Rationale: numbers that are each in their range may together ask for hours or for all memory. Expected: refused before the work, with the numbers and a fix.
+TEST_F(Faults, WorkWithoutEndIsRefused) {
+  const auto flights = [](int count, const std::string& step, const std::string& seconds) {
+    return "entities:\n- {name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: {}, temperature: 300 K}\n- {repeat: {count: " + std::to_string(count) + "}, name: 'r$i', shape: {model: sphere, radius: 1 m, segments: 8}, material: {}, temperature: 300 K, position: "
+                    "[0 m, 0 m, 5 m], motion: {model: ballistic, launch: 0 s, mass: 1 kg, velocity: [0 m/s, 0 m/s, 9000 m/s], step: " + step + ", duration: " + seconds + "}}\n" +
+           camera();
+  };
+  put("a.yaml", flights(4000, "2 ms", "50 s"));
+  expectRefused("ulimit -t 40; $P check a.yaml", "at most 10 million in a scenario");
+  put("a.yaml", flights(20, "20 ms", "100 s"));
+  EXPECT_EQ(run("$P check a.yaml").code, 0);
+  // Rings beyond the machine's memory, where the system would end a process.
+  for (const char* slots : {"4096", "3500"}) {
+    put("a.yaml", "sinks: [{sink: shared_memory, name: /pitviper.test.large, slots: " + std::string(slots) + "}]\n" + kPlate + camera("{band: [3.6 um, 4.9 um]}", "{width: 4096, height: 2048}"));
+    const Result r = run("$P run a.yaml --out out");
+    EXPECT_EQ(r.code, 2) << r.err;
+    EXPECT_NE(r.err.find("the machine has no such memory"), std::string::npos) << r.err;
+    EXPECT_NE(r.err.find("ask for fewer slots"), std::string::npos) << r.err;
+    EXPECT_FALSE(fs::exists("/dev/shm/pitviper.test.large"));
+  }
+}
+
 // Expected: where memory ends all the same, one message and 2.
 TEST_F(Faults, OutOfMemoryIsAMessage) {
 #if defined(__SANITIZE_ADDRESS__)

@@ -10,6 +10,7 @@
 
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/frame/file_owner.hpp"
+#include "sim/parameters/available_memory.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/parameters/readable_text.hpp"
 #include "sim/run/memory_need.hpp"

@@ -14,6 +14,7 @@
 #include <mutex>
 #include <stdexcept>
 
+#include "sim/parameters/available_memory.hpp"
 #include "sim/stream/clock/wall_clock.hpp"
 #include "sim/stream/ring/pitviper_stream.h"
 
@@ -107,6 +108,9 @@ RingMemory::RingMemory(std::string name, std::size_t bytes, const std::function<
     throw std::runtime_error("shared memory " + name_ + ": " + what + " (" + std::strerror(reason) + "); expected " + std::to_string(bytes_ >> 20) + " MB in " +
                              kFolder + "; fix: free it there, or ask for fewer slots");
   };
+  // Of a machine without memory for it the system would end a process, this one or another.
+  constexpr double kMostShare = 0.9;
+  if (const auto free = availableMemory_bytes(); free && static_cast<double>(bytes_) > kMostShare * *free) fail("the machine has no such memory", ENOMEM);
   // Nobody else's name is worth taking memory for.
   if (struct stat named {}; stat((kFolder + name_).c_str(), &named) == 0) takeAbandoned(name_);
   file_ = open(kFolder, O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
