@@ -135,7 +135,7 @@ std::string indexOf(const DispersionFormula& f, double low, double high, const L
   const std::string range = "  from: " + exactNumber(low) + " um\n  to: " + exactNumber(high) + " um\n";
   std::string terms;
   for (std::size_t i = 1; sellmeier && i < f.c.size(); i += 2) {
-    const double pole = f.number == 1 ? f.c[i + 1] * f.c[i + 1] : f.c[i + 1];
+    const double pole = f.number == 1 ? tidy(f.c[i + 1] * f.c[i + 1]) : f.c[i + 1];
     if (f.c[i] != 0.0 && pole >= low * low && pole <= high * high)
       throw UserError(where, "formula " + std::to_string(f.number) + " has a pole at " + exactNumber(std::sqrt(pole)) + " um, within its range",
                       "a range between its poles", "correct its coefficients, or its wavelength_range");
@@ -147,7 +147,7 @@ std::string indexOf(const DispersionFormula& f, double low, double high, const L
     const double um = std::clamp(low * std::pow(high / low, i / double(kPlaces)), low, high);
     if (!isIndex(f(um))) refuse(f, um, where);
   }
-  if (sellmeier) return "  constant: " + exactNumber(1.0 + f.c[0]) + "\n  sellmeier: [" + terms + "]\n" + range;
+  if (sellmeier) return "  constant: " + exactNumber(tidy(1.0 + f.c[0])) + "\n  sellmeier: [" + terms + "]\n" + range;
   std::string of = exactNumber(f.c[0]);
   for (std::size_t i = 1; i < f.c.size(); i += 2) of += ", " + exactNumber(f.c[i]);
   return "  cauchy: [" + of + "]\n" + range;

@@ -49,8 +49,8 @@ class Importer {
     std::string head;
     for (const std::string& n : notes_) head += "# note: " + n + "\n";
     const std::string comments = words("COMMENTS");
-    return {head + "description: " + quotedText(name_ + (comments.empty() ? "" : "; " + comments)) +
-                "\nsource: " + quotedText(words("REFERENCES") + "; as in refractiveindex.info") + "\nindex:\n" + n_ + k_,
+    return {head + "description: " + quotedText(name_ + (comments.empty() ? "" : "; " + comments)) + "\nsource: " +
+                quotedText((words("REFERENCES").empty() ? "" : words("REFERENCES") + "; ") + "as in refractiveindex.info") + "\nindex:\n" + n_ + k_,
             notes_};
   }
 
