@@ -132,7 +132,8 @@ class Flight {
       if (const double closing = -glm::dot(r, v); closing > 0.0 && closing < kNear_steps * task_.step_s * glm::dot(v, v))
         for (int part = 1; part < kNearParts; ++part) ends.push_back(time_s_ + (end - time_s_) * part / kNearParts);
     }
-    for (auto b = std::upper_bound(breaks_.begin(), breaks_.end(), time_s_ + kShortest_s); b != breaks_.end() && *b < end - kShortest_s; ++b) ends.push_back(*b);
+    for (auto b = std::upper_bound(breaks_.begin(), breaks_.end(), time_s_ + kShortest_s); b != breaks_.end() && *b < end - kShortest_s; ++b)
+      ends.push_back(*b);
     std::sort(ends.begin(), ends.end());
     return ends;
   }

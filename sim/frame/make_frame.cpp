@@ -114,8 +114,8 @@ std::uint64_t noiseSeed(const Simulation& sim, const Camera& camera) {
 
 std::string nameOf(const std::string& camera, int number) { return "camera " + camera + ", frame " + std::to_string(number); }
 
-/// What is no number, or beyond all that a file or a sensor's stage can hold, ends the run: no stage, and nobody who reads a frame, could tell it from a measurement.
-/// Marks that a user asks for come later, and are not looked at.
+/// What is no number, or beyond all that a file or a sensor's stage can hold, ends the run: no stage, and nobody who reads a frame, could tell it from a
+/// measurement. Marks that a user asks for come later, and are not looked at.
 void refuseNotFinite(const std::string& frame, int width, const ChannelOutput& output, const std::vector<float>& values) {
   constexpr std::uint32_t kExponent = 0x7f800000u;
   std::uint32_t any = 0;
@@ -124,9 +124,10 @@ void refuseNotFinite(const std::string& frame, int width, const ChannelOutput& o
   const auto isWrong = [](float v) { return !std::isfinite(v); };
   const auto first = std::find_if(values.begin(), values.end(), isWrong);
   const auto at = static_cast<int>(first - values.begin()), count = static_cast<int>(std::count_if(first, values.end(), isWrong));
-  throw std::runtime_error(frame + ", " + output.layer() + ": pixel " + std::to_string(at % width) + "," + std::to_string(at / width) +
-                           (count > 1 ? " and " + std::to_string(count - 1) + " more are" : " is") + (std::isnan(*first) ? " no number" : " beyond the largest number") +
-                           "; expected up to 3e38; fix: look at what is seen there: temperatures, intensities, scales and distances at the end of their ranges");
+  throw std::runtime_error(
+      frame + ", " + output.layer() + ": pixel " + std::to_string(at % width) + "," + std::to_string(at / width) +
+      (count > 1 ? " and " + std::to_string(count - 1) + " more are" : " is") + (std::isnan(*first) ? " no number" : " beyond the largest number") +
+      "; expected up to 3e38; fix: look at what is seen there: temperatures, intensities, scales and distances at the end of their ranges");
 }
 
 std::vector<float> valuesOf(const std::string& frame, const ChannelOutput& output, size_t o, const CameraImage& image) {

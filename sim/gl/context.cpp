@@ -35,7 +35,8 @@ void checkEgl() {
   if (!hasGl) throw GlError(std::string("there is no OpenGL library (libOpenGL.so.0 or libGL.so.1); ") + kInstall);
   if (!epoxy_has_egl()) throw GlError(std::string("there is no EGL library (libEGL.so.1); ") + kInstall);
   if (!hasWord(eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS), "EGL_EXT_platform_base"))
-    throw GlError(std::string("EGL has no driver behind it (no file in /usr/share/glvnd/egl_vendor.d, or where __EGL_VENDOR_LIBRARY_DIRS says, names one that loads); ") +
+    throw GlError(std::string("EGL has no driver behind it (no file in /usr/share/glvnd/egl_vendor.d, or where __EGL_VENDOR_LIBRARY_DIRS says, names one "
+                              "that loads); ") +
                   kInstall);
 }
 

@@ -288,7 +288,9 @@ class JsonPort final : public CommandPort {
       return !(tooDeep |= depth > kDeepest);
     };
     Json j = Json::parse(text, look, false);
-    if (tooDeep) throw UserError(where, "lists and objects in each other, more than " + std::to_string(kDeepest) + " deep", "one object with its values", "send a flat one");
+    if (tooDeep)
+      throw UserError(where, "lists and objects in each other, more than " + std::to_string(kDeepest) + " deep", "one object with its values",
+                      "send a flat one");
     if (j.is_discarded() || !j.is_object())
       throw UserError(where, "not a JSON object", R"(a line such as {"command": "light", "light": "flare", "level": 0})", "send one object a line");
     if (!twice.empty()) throw UserError(where, "key '" + twice + "' stands there twice", "each key once", "remove one");

@@ -183,20 +183,23 @@ TEST_F(Faults, MemoryIsPredicted) {
 }
 
 // Rationale: LLVM's time to compile doubles with every loop that follows another; lights of a surface are a loop at each wavelength. Expected: programs of many
-// lights at many wavelengths, drawn directly, buffered and for transparent surfaces, are there after seconds of the processor (2 to 6 measured on 2 cores; from five
-// lights and 16 wavelengths on it were minutes), and their pictures are those of few lights that send the same.
+// lights at many wavelengths, drawn directly, buffered and for transparent surfaces, are there after seconds of the processor (2 to 6 measured on 2 cores; from
+// five lights and 16 wavelengths on it were minutes), and their pictures are those of few lights that send the same.
 TEST_F(Faults, ProgramsOfManyLightsAreMadeInSeconds) {
   const auto scene = [&](int lamps, double area_cm2, const std::string& more) {
-    std::string text = "ambient: {temperature: 280 K}\naudit: 0\nmaterials:\n  m: {components: [{reflection: lambertian, reflectance: 0.3}]}\n"
-                       "  half: {components: [{reflection: lambertian, reflectance: 0.2}], transmission: {transmittance: 0.6}}\nlights:\n";
+    std::string text =
+        "ambient: {temperature: 280 K}\naudit: 0\nmaterials:\n  m: {components: [{reflection: lambertian, reflectance: 0.3}]}\n"
+        "  half: {components: [{reflection: lambertian, reflectance: 0.2}], transmission: {transmittance: 0.6}}\nlights:\n";
     for (int k = 0; k < lamps; ++k)
       text += "- {name: l" + std::to_string(k) + ", intensity: {blackbody: 1500 K, area: " + std::to_string(area_cm2) + " cm2}, position: [3 m, -2 m, 3 m]}\n";
     return text + more + "- {name: p, shape: {model: plate, width: 4 m, height: 4 m}, material: m, temperature: 300 K}\n" +
-           "cameras: [{name: c, film: {width: 16, height: 16}, field_of_view: 20 deg, aperture: 40 mm, look_at: p, position: [9 m, 1 m, 1 m], spectral: {samples: 16}, "
+           "cameras: [{name: c, film: {width: 16, height: 16}, field_of_view: 20 deg, aperture: 40 mm, look_at: p, position: [9 m, 1 m, 1 m], spectral: "
+           "{samples: 16}, "
            "channels: [{name: a, response: {band: [3.6 um, 4.2 um]}}, {name: b, response: {band: [4.4 um, 4.9 um]}}]}]\n";
   };
-  const std::string pane = "entities:\n- {name: pane, shape: {model: plate, width: 1 m, height: 1 m}, material: half, temperature: 310 K, position: [2 m, 0 m, 0 m], "
-                           "heading: 90 deg}\n";
+  const std::string pane =
+      "entities:\n- {name: pane, shape: {model: plate, width: 1 m, height: 1 m}, material: half, temperature: 310 K, position: [2 m, 0 m, 0 m], "
+      "heading: 90 deg}\n";
   int kinds = 0;
   for (const std::string& more : std::vector<std::string>{"entities:\n", "render: {mode: buffered}\nentities:\n", pane}) {
     put("few.yaml", scene(2, 10.0, more));
@@ -216,20 +219,30 @@ TEST_F(Faults, ProgramsOfManyLightsAreMadeInSeconds) {
   }
 }
 
-// Rationale: a pixel that is no number, or beyond all numbers, looks like black or white to whoever reads a frame. Expected: whatever makes one, with and without
-// stages of a sensor, direct, buffered and by the reference, in a spectral image and a temperature, no frame and no success, but one line that says where.
+// Rationale: a pixel that is no number, or beyond all numbers, looks like black or white to whoever reads a frame. Expected: whatever makes one, with and
+// without stages of a sensor, direct, buffered and by the reference, in a spectral image and a temperature, no frame and no success, but one line that says
+// where.
 TEST_F(Faults, APixelThatIsNotFiniteNeverLeaves) {
   const auto scene = [](const std::string& plate, const std::string& more, const std::string& camera, const std::string& channel = "") {
-    return more + "audit: 0\nmaterials: {m: {components: [{reflection: lambertian, reflectance: 0.3}]}}\nentities:\n- {name: p, shape: {model: plate, width: 1 m, height: 1 m}, "
-                  "material: m, temperature: " + plate + "}\ncameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: "
-                  "[9 m, 0 m, 0 m], " + camera + "channels: [{name: m, response: {band: [3.6 um, 4.9 um]}" + channel + "}]}]\n";
+    return more +
+           "audit: 0\nmaterials: {m: {components: [{reflection: lambertian, reflectance: 0.3}]}}\nentities:\n- {name: p, shape: {model: plate, width: 1 m, "
+           "height: 1 m}, "
+           "material: m, temperature: " +
+           plate +
+           "}\ncameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: "
+           "[9 m, 0 m, 0 m], " +
+           camera + "channels: [{name: m, response: {band: [3.6 um, 4.9 um]}" + channel + "}]}]\n";
   };
-  const std::string lamp = "lights: [{name: l, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 1e30], [6, 1e30]]}, radius: 1 um, level: 1e6, position: [0.01 m, 0.05 m, 0.05 m]}]\n";
-  const std::string detector = "exposure: 1 ms, stages: [{stage: detector, full_well: 7e6, bits: 14}], ", efficiency = ", quantum_efficiency: 0.8, output: [counts]";
+  const std::string lamp =
+      "lights: [{name: l, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 1e30], [6, 1e30]]}, radius: 1 um, level: 1e6, position: [0.01 m, 0.05 m, "
+      "0.05 m]}]\n";
+  const std::string detector = "exposure: 1 ms, stages: [{stage: detector, full_well: 7e6, bits: 14}], ",
+                    efficiency = ", quantum_efficiency: 0.8, output: [counts]";
   int refused = 0;
-  for (const std::string& text : {scene("300 K", lamp, ""), scene("300 K", lamp + "render: {mode: buffered}\n", ""), scene("300 K", lamp + "accuracy: reference\n", ""),
-                                  scene("300 K", lamp, detector, efficiency), scene("300 K", lamp, "", ", output: [radiance, apparent_temperature]"),
-                                  scene("300 K", "ambient: {radiance: {wavelength: um, unit: W/(m2 sr um), values: [[3, 1e30], [6, 1e30]]}}\n", detector, efficiency)}) {
+  for (const std::string& text :
+       {scene("300 K", lamp, ""), scene("300 K", lamp + "render: {mode: buffered}\n", ""), scene("300 K", lamp + "accuracy: reference\n", ""),
+        scene("300 K", lamp, detector, efficiency), scene("300 K", lamp, "", ", output: [radiance, apparent_temperature]"),
+        scene("300 K", "ambient: {radiance: {wavelength: um, unit: W/(m2 sr um), values: [[3, 1e30], [6, 1e30]]}}\n", detector, efficiency)}) {
     put("a.yaml", text);
     const Result r = run("rm -rf out; ulimit -t 40; $P run a.yaml --out out");
     EXPECT_NE(r.code, 0) << text << r.out;
@@ -243,8 +256,9 @@ TEST_F(Faults, APixelThatIsNotFiniteNeverLeaves) {
 
 // Expected: a flare out of view, however far, costs a picture nothing, and several flares no more programs than one (1 to 6 s of the processor).
 TEST_F(Faults, FlaresAnywhereAreDrawnInSeconds) {
-  for (const char* flare : {"position: [0 m, 0 m, 10 km], speed: 0 m/s", "position: [0 m, 0 m, 1000 km], speed: 0 m/s", "position: [80 km, 1 m, 1 m], speed: 0 m/s",
-                            "position: [0 m, -3 km, 2 km], speed: 0 m/s", "position: [9 m, -30 m, 3 m], sequence: {count: 5, interval: 0.1 s}"}) {
+  for (const char* flare :
+       {"position: [0 m, 0 m, 10 km], speed: 0 m/s", "position: [0 m, 0 m, 1000 km], speed: 0 m/s", "position: [80 km, 1 m, 1 m], speed: 0 m/s",
+        "position: [0 m, -3 km, 2 km], speed: 0 m/s", "position: [9 m, -30 m, 3 m], sequence: {count: 5, interval: 0.1 s}"}) {
     put("a.yaml", "time: {rate: 100 Hz, frames: 1}\naudit: 0\n" + kPlate + "flares: [{name: f, type: mtv, time: -0.6 s, " + flare + "}]\n" +
                       "cameras: [{name: c, film: {width: 16, height: 12}, field_of_view: 6 deg, aperture: 40 mm, look_at: p, position: [0 m, -40 m, 0 m], "
                       "channels: [{name: mw, response: {band: [3.7 um, 4.8 um]}}]}]\n");
@@ -253,8 +267,8 @@ TEST_F(Faults, FlaresAnywhereAreDrawnInSeconds) {
   }
 }
 
-// Rationale: the driver writes to the index of its cache as to memory, and a page that the disk has no room for ends the process. Expected: on disks that are full
-// before the first context, with and without an index that is only promised, a note and the pictures; on one that fills up later the pictures alone.
+// Rationale: the driver writes to the index of its cache as to memory, and a page that the disk has no room for ends the process. Expected: on disks that are
+// full before the first context, with and without an index that is only promised, a note and the pictures; on one that fills up later the pictures alone.
 TEST_F(Faults, AFullDiskUnderTheDriversCacheCostsTheCacheAlone) {
   if (run("unshare -rm true").code != 0) GTEST_SKIP() << "needs a mount of its own (unshare)";
   put("a.yaml", kPlate + camera());
@@ -286,7 +300,8 @@ TEST_F(Faults, WithoutADriverThereIsAMessage) {
   put("a.yaml", kPlate + camera());
   put("broken/a.json", R"({"file_format_version": "1.0.0", "ICD": {"library_path": "libEGL_nobody.so.0"}})");
   fs::create_directories(folder_ / "none");
-  for (const char* without : {"__EGL_VENDOR_LIBRARY_DIRS=none", "__EGL_VENDOR_LIBRARY_DIRS=broken", "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null", "LIBGL_DRIVERS_PATH=$PWD/none"})
+  for (const char* without :
+       {"__EGL_VENDOR_LIBRARY_DIRS=none", "__EGL_VENDOR_LIBRARY_DIRS=broken", "__EGL_VENDOR_LIBRARY_FILENAMES=/dev/null", "LIBGL_DRIVERS_PATH=$PWD/none"})
     for (const char* command : {"run a.yaml --out out", "check a.yaml --audit", "stream a.yaml --frames 1 --shared-memory /pitviper.test.driver"}) {
       const Result r = run(std::string(without) + " $P " + command);
       EXPECT_EQ(r.code, 1) << without << command << r.err;
@@ -301,9 +316,11 @@ TEST_F(Faults, WithoutADriverThereIsAMessage) {
 // Rationale: numbers that are each in their range may together ask for hours or for all memory. Expected: refused before the work, with the numbers and a fix.
 TEST_F(Faults, WorkWithoutEndIsRefused) {
   const auto flights = [](int count, const std::string& step, const std::string& seconds) {
-    return "entities:\n- {name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: {}, temperature: 300 K}\n- {repeat: {count: " + std::to_string(count) + "}, name: 'r$i', shape: {model: sphere, radius: 1 m, segments: 8}, material: {}, temperature: 300 K, position: "
-                    "[0 m, 0 m, 5 m], motion: {model: ballistic, launch: 0 s, mass: 1 kg, velocity: [0 m/s, 0 m/s, 9000 m/s], step: " + step + ", duration: " + seconds + "}}\n" +
-           camera();
+    return "entities:\n- {name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: {}, temperature: 300 K}\n- {repeat: {count: " +
+           std::to_string(count) +
+           "}, name: 'r$i', shape: {model: sphere, radius: 1 m, segments: 8}, material: {}, temperature: 300 K, position: "
+           "[0 m, 0 m, 5 m], motion: {model: ballistic, launch: 0 s, mass: 1 kg, velocity: [0 m/s, 0 m/s, 9000 m/s], step: " +
+           step + ", duration: " + seconds + "}}\n" + camera();
   };
   put("a.yaml", flights(4000, "2 ms", "50 s"));
   expectRefused("ulimit -t 40; $P check a.yaml", "at most 10 million in a scenario");
@@ -311,7 +328,8 @@ TEST_F(Faults, WorkWithoutEndIsRefused) {
   EXPECT_EQ(run("$P check a.yaml").code, 0);
   // Rings beyond the machine's memory, where the system would end a process.
   for (const char* slots : {"4096", "3500"}) {
-    put("a.yaml", "sinks: [{sink: shared_memory, name: /pitviper.test.large, slots: " + std::string(slots) + "}]\n" + kPlate + camera("{band: [3.6 um, 4.9 um]}", "{width: 4096, height: 2048}"));
+    put("a.yaml", "sinks: [{sink: shared_memory, name: /pitviper.test.large, slots: " + std::string(slots) + "}]\n" + kPlate +
+                      camera("{band: [3.6 um, 4.9 um]}", "{width: 4096, height: 2048}"));
     const Result r = run("$P run a.yaml --out out");
     EXPECT_EQ(r.code, 2) << r.err;
     EXPECT_NE(r.err.find("the machine has no such memory"), std::string::npos) << r.err;

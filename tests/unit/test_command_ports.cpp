@@ -76,8 +76,8 @@ std::string ownSocket(const char* what) {
   return (std::filesystem::temp_directory_path() / ("pitviper_test." + std::to_string(getpid()) + "." + what)).string();
 }
 
-// Rationale: what reads, copies and prints values calls itself, a level a call. Expected: whatever of a line nests, lists or objects or both, under whatever key,
-// is refused at the same depth, so that no stack, however small, ends; what a command may well have is taken.
+// Rationale: what reads, copies and prints values calls itself, a level a call. Expected: whatever of a line nests, lists or objects or both, under whatever
+// key, is refused at the same depth, so that no stack, however small, ends; what a command may well have is taken.
 TEST(JsonPort, RefusesWhatNestsDeep) {
   const Simulation sim = aScene();
   CommandInbox inbox([](const std::string&) {});

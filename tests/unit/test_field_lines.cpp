@@ -70,8 +70,8 @@ TEST(FieldLines, HoldAGaussianThatABorderCuts) {
         "panels of 2.25 widths: the same remainder 3^6 times, no longer small; pictures take them where a third of the accuracy holds");
 }
 
-// Rationale: parts as fine as 1e-6 of a pixel beside coarse ones, all over it, would be halved into 1e12 cells. Expected: as many lines as allowed at most, at once,
-// that stand for the whole pixel.
+// Rationale: parts as fine as 1e-6 of a pixel beside coarse ones, all over it, would be halved into 1e12 cells. Expected: as many lines as allowed at most, at
+// once, that stand for the whole pixel.
 TEST(FieldLines, StayFewHoweverFineThePartsAre) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
@@ -116,7 +116,8 @@ View aView(double field_deg) {
 // the rectangle that it is looked for in. Angles as far as 178 degrees across, spheres from inside of which one looks to such of 1e-6 rad.
 TEST(FieldLines, ASphereShowsWhereItIs) {
   for (const double far_m : {10.0, 1e3, 1e4, 1e5, 1e7})
-    for (const glm::dvec3& way : {glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0), glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(0.6, 0.8, 0.0)})
+    for (const glm::dvec3& way :
+         {glm::dvec3(0, 1, 0), glm::dvec3(0, -1, 0), glm::dvec3(1, 0, 0), glm::dvec3(-1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(0.6, 0.8, 0.0)})
       EXPECT_TRUE(fieldLines(aView(6.0), Sphere(far_m * way, 3.0)).isEmpty()) << far_m;
   std::mt19937 random(8);
   std::uniform_real_distribution<double> unit(0.0, 1.0);

@@ -296,8 +296,8 @@ TEST(Ring, ANameHasOneWriterAndADeadOnesIsTaken) {
   EXPECT_EQ(wrongRingName(name), "");
 }
 
-// Rationale: a reader maps the object for reading only, but any process of the user may write to it. Expected: the writer reads nothing back: frames of a new reader
-// of the same numbers come whole, wherever the header was damaged.
+// Rationale: a reader maps the object for reading only, but any process of the user may write to it. Expected: the writer reads nothing back: frames of a new
+// reader of the same numbers come whole, wherever the header was damaged.
 TEST(Ring, AHeaderWrittenByOthersChangesNothingForItsWriter) {
   const std::string name = ownRing("header");
   for (const int byte : {0x00, 0xff, 0x7f, 0x80, 0x01}) {
@@ -323,8 +323,8 @@ TEST(Ring, AHeaderWrittenByOthersChangesNothingForItsWriter) {
   }
 }
 
-// Expected: an object cut short, to nothing, to a part of its header or of a frame, ends its stream with a message and no process by a signal; a writer that never
-// writes again goes as well. A bus error that is none of a ring's still ends a process.
+// Expected: an object cut short, to nothing, to a part of its header or of a frame, ends its stream with a message and no process by a signal; a writer that
+// never writes again goes as well. A bus error that is none of a ring's still ends a process.
 TEST(Ring, AnObjectCutShortEndsItsStreamAlone) {
   for (const off_t left : {0, 100, 4096, 4096 + 5000, 5 * 4096}) {
     const std::string name = ownRing("cut");

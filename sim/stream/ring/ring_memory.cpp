@@ -32,7 +32,8 @@ bool isSame(const struct stat& a, const struct stat& b) { return a.st_dev == b.s
 
 /// Who holds an object's lock may take its name away: nobody else does meanwhile.
 void unlinkOwn(const std::string& name, int file) {
-  struct stat own {}, named {};
+  struct stat own {
+  }, named{};
   if (fstat(file, &own) == 0 && stat((kFolder + name).c_str(), &named) == 0 && isSame(own, named)) shm_unlink(name.c_str());
 }
 
@@ -112,7 +113,7 @@ RingMemory::RingMemory(std::string name, std::size_t bytes, const std::function<
   constexpr double kMostShare = 0.9;
   if (const auto free = availableMemory_bytes(); free && static_cast<double>(bytes_) > kMostShare * *free) fail("the machine has no such memory", ENOMEM);
   // Nobody else's name is worth taking memory for.
-  if (struct stat named {}; stat((kFolder + name_).c_str(), &named) == 0) takeAbandoned(name_);
+  if (struct stat named{}; stat((kFolder + name_).c_str(), &named) == 0) takeAbandoned(name_);
   file_ = open(kFolder, O_RDWR | O_TMPFILE | O_CLOEXEC, 0600);
   if (file_ < 0) fail("cannot be made", errno);
   if (flock(file_, LOCK_EX | LOCK_NB) != 0) fail("cannot be locked", errno);
@@ -149,7 +150,8 @@ void RingMemory::place() {
                                " of Linux; fix: mount them");
     if (takeAbandoned(name_) == Taken::Gone) continue;
     if (monotonic_ns() > until)
-      throw std::runtime_error("shared memory " + name_ + " is being taken by another process; expected a free name; fix: end that stream, or choose another name");
+      throw std::runtime_error("shared memory " + name_ +
+                               " is being taken by another process; expected a free name; fix: end that stream, or choose another name");
     sleepUntil_ns(monotonic_ns() + kPause_ns);
   }
 }

@@ -20,8 +20,8 @@ class RingMemory {
   RingMemory(const RingMemory&) = delete;
   RingMemory& operator=(const RingMemory&) = delete;
   char* at() const { return static_cast<char*>(at_); }
-  /// Lets `write` write to it. Who may write to the object may also cut it short, and a touch beyond its end would end the process: false then, the rest of what
-  /// is written, now and later, is in memory that nobody else sees.
+  /// Lets `write` write to it. Who may write to the object may also cut it short, and a touch beyond its end would end the process: false then, the rest of
+  /// what is written, now and later, is in memory that nobody else sees.
   bool write(const std::function<void()>& write);
 
  private:

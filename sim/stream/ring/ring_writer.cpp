@@ -92,8 +92,8 @@ void RingWriter::wakeReaders(std::uint32_t wake) {
 void RingWriter::publish(const Frame& frame) {
   if (memory_->write([&] { write(frame); })) return;
   throw std::runtime_error("shared memory " + design_.name +
-                           " was cut short by another process while frames went there; expected that readers map it for reading only; fix: end what writes to it, and "
-                           "stream again");
+                           " was cut short by another process while frames went there; expected that readers map it for reading only; fix: end what writes to "
+                           "it, and stream again");
 }
 
 void RingWriter::write(const Frame& frame) {
