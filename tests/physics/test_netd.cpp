@@ -62,7 +62,7 @@ TEST(Netd, IsWhatPicturesShow) {
 TEST(Netd, ReadNoiseByHand) {
   for (const double netd_mK : {20.0, 50.0, 300.0}) {
     const Simulation sim = flat(print("full_well: 2e7, bits: 16, gain: 0.003, netd: %g mK, dark_current: 1e6 /s", netd_mK), 300.0, 3.0);
-    const DetectorLaw& law = *detectorOf(sim.cameras[0]);
+    const DetectorLaw& law = *detectorOf(sim.cameras[0], sim.cameras[0].outputs[0].channel);
     const auto d = *figuresOf(sim.cameras[0], sim.cameras[0].outputs[0]).detected;
     const double wanted = std::sqrt(std::pow(1e-3 * netd_mK * d.electrons_per_K, 2.0) - d.electronsAt300K - 1e6 * 4e-3 - 1.0 / (12.0 * 0.003 * 0.003));
     figure(print("read noise of a NETD of %g mK [electron]", netd_mK), law.sigmaTvh, wanted, 1e-9, "what the other noises leave of it");
