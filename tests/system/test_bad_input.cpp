@@ -331,11 +331,6 @@ std::vector<Bad> badScenarios() {
            kCamera,
        {"the body of 'p' is not closed", "'gas' is a medium"},
        {{"body.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"}}},
-      {"MediumInAMeshInsideOut",
-       "materials: {gas: {absorption: 1 /m}}\nentities: [{name: p, shape: @@{model: mesh, file: body.obj, unit: 1 m}, material: gas, temperature: 300 K}]\n" +
-           kCamera,
-       {"the body of 'p' is not closed", "normals outwards"},
-       {{"body.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n"}}},
       {"MediumWithComponents",
        "materials: {gas: {absorption: 1 /m, components: @@[{reflection: lambertian, reflectance: 0.1}]}}\n",
        {"a medium with 'components'", "two entities"}},
