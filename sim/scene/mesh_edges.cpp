@@ -2,29 +2,20 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <unordered_map>
+
+#include "sim/scene/bit_key.hpp"
 
 namespace pitviper {
 namespace {
 
 using Key = std::array<std::uint32_t, 3>;
 
-struct KeyHash {
-  std::size_t operator()(const Key& k) const {
-    std::uint64_t h = 0x9e3779b97f4a7c15u;  // the golden ratio and two odd multipliers: any good mix will do
-    for (std::uint32_t v : k) h = (std::rotl(h, 23) ^ v) * 0xff51afd7ed558ccdu;
-    return static_cast<std::size_t>(h ^ (h >> 32));
-  }
-};
-
-std::uint32_t bitsOf(float value) { return std::bit_cast<std::uint32_t>(value == 0.0f ? 0.0f : value); }  // -0 is 0
-
 }  // namespace
 
 std::vector<std::uint32_t> weldByPosition(const Mesh& mesh) {
   std::vector<std::uint32_t> place(mesh.positions.size());
-  std::unordered_map<Key, std::uint32_t, KeyHash> known;
+  std::unordered_map<Key, std::uint32_t, BitKeyHash> known;
   known.reserve(mesh.positions.size());
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
     const glm::vec3& p = mesh.positions[i];

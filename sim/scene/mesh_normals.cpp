@@ -1,11 +1,11 @@
 #include "sim/scene/mesh_normals.hpp"
 
 #include <array>
-#include <bit>
 #include <cmath>
 #include <numeric>
 #include <unordered_map>
 
+#include "sim/scene/bit_key.hpp"
 #include "sim/scene/mesh_edges.hpp"
 
 namespace pitviper {
@@ -13,16 +13,6 @@ namespace {
 
 /// A vertex of the changed mesh: what becomes of its normal, then the vertex that it was; or its smoothing group and the bits of its uv.
 using Key = std::array<std::uint32_t, 4>;
-
-struct KeyHash {
-  std::size_t operator()(const Key& k) const {
-    std::uint64_t h = 0x9e3779b97f4a7c15u;  // the golden ratio and two odd multipliers: any good mix will do
-    for (std::uint32_t v : k) h = (std::rotl(h, 23) ^ v) * 0xff51afd7ed558ccdu;
-    return static_cast<std::size_t>(h ^ (h >> 32));
-  }
-};
-
-std::uint32_t bitsOf(float value) { return std::bit_cast<std::uint32_t>(value == 0.0f ? 0.0f : value); }  // -0 is 0
 
 glm::dvec3 unitOr(const glm::dvec3& v, const glm::dvec3& otherwise) {
   const double length = glm::length(v);
@@ -71,7 +61,7 @@ void changeNormals(Mesh& mesh, const std::vector<CornerNormal>& wish, double cre
     }
 
   Mesh out;
-  std::unordered_map<Key, std::uint32_t, KeyHash> known;
+  std::unordered_map<Key, std::uint32_t, BitKeyHash> known;
   known.reserve(mesh.positions.size());
   const bool hasUv = mesh.uv.size() == mesh.positions.size();
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
