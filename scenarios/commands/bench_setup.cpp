@@ -3,18 +3,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scenarios/commands/print.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 
 namespace pitviper {
-namespace {
-
-std::string print(const char* format, auto... values) {
-  char text[600];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
-}  // namespace
 
 Setup::Setup(const BenchOptions& options, const std::string& target, int frames, int samples, const std::string& commands) {
   simulation_ = readScenarioText(

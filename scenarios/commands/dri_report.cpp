@@ -4,16 +4,11 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scenarios/commands/print.hpp"
 #include "sensors/spot_detection.hpp"
 
 namespace pitviper {
 namespace {
-
-std::string print(const char* format, auto... values) {
-  char text[600];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string metres(double range_m) {
   if (range_m == 0.0) return "nowhere";

@@ -9,6 +9,7 @@
 
 #include "scenarios/commands/bench_setup.hpp"
 #include "scenarios/commands/measure_mrtd.hpp"
+#include "scenarios/commands/print.hpp"
 #include "sensors/edge_transfer.hpp"
 #include "sensors/figures.hpp"
 #include "sensors/spot_detection.hpp"
@@ -17,12 +18,6 @@
 
 namespace pitviper {
 namespace {
-
-std::string print(const char* format, auto... values) {
-  char text[600];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 double meanOf(const Counts& c) {
   double sum = 0.0;

@@ -10,6 +10,7 @@
 #include "scenarios/commands/html_page.hpp"
 #include "scenarios/commands/measure_bench.hpp"
 #include "scenarios/commands/options.hpp"
+#include "scenarios/commands/print.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/commands/sensor_report.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
@@ -23,12 +24,6 @@ namespace pitviper {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string print(const char* format, auto... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string offOf(const BenchFigure& f) {
   if (f.absolute) return print("%+.3g", f.measured - f.design);

@@ -3,16 +3,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scenarios/commands/print.hpp"
+
 namespace pitviper {
-namespace {
-
-std::string print(const char* format, auto... values) {
-  char text[600];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
-}  // namespace
 
 void tellResolvable(BenchResult& result) {
   const BenchSight& sight = result.sight;

@@ -1,4 +1,5 @@
 #pragma once
+// What an observer resolves through a camera on the bench, by its design and by its pictures.
 #include "scenarios/commands/measure_bench.hpp"
 
 namespace pitviper {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "scenarios/commands/print.hpp"
 #include "sim/frame/mark_header.hpp"
 #include "sim/model/haze_not_fog.hpp"
 #include "sim/model/world.hpp"
@@ -12,15 +13,6 @@
 #include "sim/plan/sampling_check.hpp"
 
 namespace pitviper {
-namespace {
-
-std::string print(const char* format, auto... values) {
-  char text[800];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
-}  // namespace
 
 void Notes::say(const std::string& text) {
   std::fprintf(stderr, "note: %s\n", text.c_str());

@@ -7,6 +7,7 @@
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/html_page.hpp"
 #include "scenarios/commands/plan_report.hpp"
+#include "scenarios/commands/print.hpp"
 #include "scenarios/commands/sensor_report.hpp"
 #include "sim/frame/file_owner.hpp"
 #include "sim/parameters/read_file.hpp"
@@ -16,12 +17,6 @@
 
 namespace pitviper {
 namespace {
-
-std::string print(const char* format, auto... values) {
-  char text[200];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 /// More bodies than these make no chart that anybody reads.
 constexpr std::size_t kMostTargets = 8;

@@ -4,18 +4,10 @@
 #include <cstdio>
 #include <set>
 
+#include "scenarios/commands/print.hpp"
 #include "sensors/figures.hpp"
 
 namespace pitviper {
-namespace {
-
-std::string print(const char* format, auto... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
-
-}  // namespace
 
 std::string sensorText(const Camera& camera, double step_s) {
   if (!camera.hasStages()) return "";

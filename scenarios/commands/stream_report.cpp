@@ -6,17 +6,12 @@
 
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/html_page.hpp"
+#include "scenarios/commands/print.hpp"
 
 namespace pitviper {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string print(const char* format, auto... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 std::string milliseconds(double ns) { return print(std::abs(ns) < 1e6 ? "%.3f" : "%.2f", 1e-6 * ns); }
 

@@ -1,4 +1,5 @@
 #pragma once
+// The key `stabilised` of a camera: which angles of its carrier do not reach it.
 #include "sim/model/simulation.hpp"
 #include "sim/parameters/table.hpp"
 

@@ -13,6 +13,7 @@
 #include "scenarios/commands/charts/space_shapes.hpp"
 #include "scenarios/commands/charts/style.hpp"
 #include "scenarios/commands/charts/trajectory_axes.hpp"
+#include "scenarios/commands/print.hpp"
 #include "sim/image/draw_text.hpp"
 #include "sim/image/ticks.hpp"
 
@@ -29,12 +30,6 @@ constexpr std::size_t kMostRows = 16;       // of the legend
 constexpr std::size_t kMostPoints = 60000;  // of all tubes: more takes seconds and shows no more
 /// A camera this many times farther from the bodies than they spread is left out, and said.
 constexpr double kFar = 8.0;
-
-std::string print(const char* format, auto... values) {
-  char text[300];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 bool finite(const glm::dvec3& p) { return std::isfinite(p.x + p.y + p.z); }
 
