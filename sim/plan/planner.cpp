@@ -164,6 +164,8 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
   tell(0.02);
   const std::vector<double> floor = filmFloors(sim, fine, rays);
   const int airPlaces = airPlacesFor(sim, fine, rays, plan.accuracy, floor), lastPlaces = std::max(airPlaces, kUsualPlaces);
+  // Fits and what they are held against tell light from all around alike.
+  plan.terms = withSurroundings(plan.terms, fine.plan.terms.surroundings);
   const Terms all = plan.terms;
   const int lights = plan.lightCount;
   const auto seed = static_cast<unsigned long long>(sim.seed);
