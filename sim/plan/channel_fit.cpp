@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 
 #include "sim/plan/product_set.hpp"
 
@@ -11,9 +12,7 @@ namespace {
 
 /// Of the error asked for: what groups may take of the products they are fitted to, and of those they have not seen. The rest is for tables
 /// and for what was not drawn.
-constexpr double kFitted = 0.25, kUnseen = 0.36;
-/// With gases in bodies, whose lengths and temperatures vary more than a few hundred lines of sight show.
-constexpr double kGas = 0.6;
+constexpr double kFitted = 0.33, kUnseen = 0.42;
 constexpr int kMostGroups = 96;
 /// Of hundreds of lines most say the same: a fit begins with some, and the worst of the others join them.
 constexpr FitEffort kEffort{60, 160, 0.0, 12};
@@ -22,10 +21,7 @@ constexpr size_t kLearnt = 60;
 
 }  // namespace
 
-ChannelFit::ChannelFit(const Simulation& simulation, const Spectrum& kernel, double accuracy) : grid_(fineGridOf(simulation, kernel)), accuracy_(accuracy) {
-  const auto isGas = [](const auto& m) { return m->medium.has_value(); };
-  if (std::any_of(simulation.materials.begin(), simulation.materials.end(), isGas)) accuracy_ *= kGas;
-}
+ChannelFit::ChannelFit(const Simulation& simulation, const Spectrum& kernel, double accuracy) : grid_(fineGridOf(simulation, kernel)), accuracy_(accuracy) {}
 
 void ChannelFit::look(const ProductSet& products) {
   for (Eigen::Index m = 0; m < products.parts.cols(); ++m)
@@ -62,15 +58,21 @@ bool ChannelFit::check(const Sights& sights) {
   return false;
 }
 
-void ChannelFit::tighten(double factor, const Sights& sights) {
-  accuracy_ *= factor;
-  holds_ = false;
-  SpectralProblem problem = sights.problem(grid_, absorbers_, floor_, seen_);
+void ChannelFit::learn(const Sights& sights, size_t first, double part) {
+  SpectralProblem problem = sights.problem(grid_, absorbers_, floor_, first);
   seen_ = sights.size();
-  look(ProductSet(problem));
+  const ProductSet products(problem);
+  look(products);
+  before_ = {fit_, accuracy_};
+  const std::vector<double> errors = groupErrors(products, fit_.groups);
+  const bool isShown = std::any_of(errors.begin(), errors.end(), [&](double e) { return std::abs(e) > kFitted * accuracy_; });
+  if (!isShown) accuracy_ *= part;
+  holds_ = false;
   training_.insert(training_.end(), problem.products.begin(), problem.products.end());
   fit(std::move(problem));
 }
+
+void ChannelFit::goBack() { std::tie(fit_, accuracy_) = before_; }
 
 /// To what it has learnt; from the groups it has.
 void ChannelFit::fit(SpectralProblem problem) {

@@ -13,8 +13,10 @@ class ChannelFit {
   /// Checks the groups on the sights drawn since it last looked; where they are not within the accuracy, learns the worst and fits again.
   /// True where they were.
   bool check(const Sights& sights);
-  /// Fits again, to a part of the accuracy and to all sights drawn since it last looked; to be checked again.
-  void tighten(double factor, const Sights& sights);
+  /// Fits again, to sights from a number on besides: to a part of the accuracy where those, as sums of products, are within it. To be checked again.
+  void learn(const Sights& sights, size_t first, double part);
+  /// To what it was before it learnt last.
+  void goBack();
   bool holds() const { return holds_; }
 
   const FineGrid& grid() const { return grid_; }
@@ -34,6 +36,7 @@ class ChannelFit {
   std::vector<double> shares_ = std::vector<double>(kTermKinds, 0.0);
   size_t seen_ = 0;
   GroupFit fit_;
+  std::pair<GroupFit, double> before_;  ///< it learnt last: groups and accuracy
   bool holds_ = false;
 };
 

@@ -26,6 +26,9 @@ struct Trial {
   double merit = 0.0, length = 0.0, rootStep = 0.0;
 };
 
+/// The norm's last power: a larger one swings between two errors.
+constexpr double kMostPower = 12.0;
+
 /// Dampings tried of one step, each ten times the last.
 constexpr int kDampings = 3;
 
@@ -53,7 +56,7 @@ double refineGroups(const ProductSet& set, GroupState& state, RefineProgress& pr
   }
   double& damping = progress.damping;
   for (int round = 0; round < limits.rounds && most > limits.goal && !limits.expired(); ++round, ++progress.round) {
-    const double p = std::clamp(2.0 * std::pow(1.25, progress.round - 4), 2.0, 16.0);
+    const double p = std::clamp(2.0 * std::pow(1.25, progress.round - 4), 2.0, kMostPower);
     const double largest = errors.cwiseAbs().maxCoeff();
     if (!(largest > 0.0)) break;
     // Newton's step on the p-norm: rows weighted with |e|^(p-2); a small part for all keeps the good ones good.
@@ -65,7 +68,7 @@ double refineGroups(const ProductSet& set, GroupState& state, RefineProgress& pr
       Trial nearest;
       nearest.merit = before;
       step.solve(damping, rootStep);
-      for (double length : {1.0, 0.5, 0.25, 0.12}) {
+      for (double length : {1.0, 0.5, 0.25, 0.12, 0.06}) {
         Trial trial{step.moved(length), {}, {}, 0.0, length, rootStep};
         trial.at = set.moments(trial.state);
         trial.errors = set.errors(trial.at);

@@ -21,6 +21,12 @@ constexpr double kLeastShare = 1e-6;
 /// Part of each wavelength that is spread evenly over all groups before a fit: a share of 0 could not move. Neither is always the better.
 constexpr double kSpreads[] = {0.1, 0.01};
 
+/// Products in a fit at most, before the oldest are forgotten, of those at first.
+constexpr size_t kKeptProducts = 4;
+
+/// Groups tried first.
+constexpr int kFirstTried = 4;
+
 /// Rounds between two looks at all products.
 constexpr int kRoundsPerPass = 6;
 
@@ -170,7 +176,7 @@ class Fitter {
   /// Of the products that fits before this one added, the latest stay, as many as there were at first: they are hard for other counts too.
   void forgetOldest() {
     const size_t first = spreadOf(all_.size(), effort_.workingProducts).size();
-    if (working_.size() <= 2 * first) return;
+    if (working_.size() <= kKeptProducts * first) return;
     working_.erase(working_.begin() + static_cast<std::ptrdiff_t>(first), working_.end() - static_cast<std::ptrdiff_t>(first));
     set_ = all_.subset(working_);
   }
@@ -217,8 +223,9 @@ namespace {
 GroupFit fitToTolerance(const ProductSet& products, double tolerance, int mostGroups, const FitEffort& effort, int fewest, GroupState from) {
   Fitter fitter(products, effort, std::move(from));
   const int most = std::max(std::min(mostGroups, fitter.mostGroups()), 1);
-  const int first = std::clamp(fewest, 1, most);
-  int tooFew = first - 1, enough = most + 1;
+  // Below the first there may be enough too, unless they are known not to be.
+  const int first = std::clamp(fewest > 1 ? fewest : kFirstTried, 1, most);
+  int tooFew = fewest > 1 ? first - 1 : 0, enough = most + 1;
   GroupFit best;
   // Growing by halves until it holds, then between the last two.
   for (int n = first; tooFew + 1 < enough;) {

@@ -12,12 +12,15 @@ namespace pitviper {
 namespace {
 
 /// Lines of sight to fit to at first besides the extremes, and of each check; checks until one is passed, but no more than so many.
-constexpr int kFirst = 240, kCheck = 360, kChecks = 6;
-/// Lines on which fits are held against the equation after that, besides the extremes; how often one is tightened; what they may show of the accuracy, and
-/// those that a tightened fit learns.
-constexpr int kSecond = 400, kTighter = 4;
+constexpr int kFirst = 600, kCheck = 360, kChecks = 6;
+/// Lines on which fits are held against the equation after that, besides the extremes; how often one learns from them; what they may show of the accuracy, and
+/// those that it learns.
+constexpr int kSecond = 400, kLearn = 4;
 constexpr double kHeld = 0.6, kLearnt = 0.3;
-constexpr double kTightened = 0.5;
+/// Where they do not show as products, all lines are to be told as much better as they are off by, and a little; no less than half of what was asked before.
+constexpr double kTightened = 0.9, kLeastPart = 0.5;
+/// What does not fall below this part of what it was is not the groups' to mend.
+constexpr double kHopeless = 0.9;
 /// Of the accuracy: more of it in terms that a plan leaves out teaches that they are there.
 constexpr double kNoticed = 0.05;
 /// Below, air and the textures of usual scenes send no thermal light to speak of.
@@ -106,29 +109,31 @@ PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& pla
 }
 
 void PlanFits::learn(const CheckedLines& checked, const std::vector<size_t>& slots) {
-  tighten(checked, slots);
+  teach(checked, slots);
   hold(slots);
 }
 
-void PlanFits::tighten(const CheckedLines& checked, const std::vector<size_t>& slots) {
+void PlanFits::teach(const CheckedLines& checked, const std::vector<size_t>& slots) {
   std::set<size_t> missed;
   for (size_t s : slots)
     for (size_t n = 0; n < checked.lines.size(); ++n)
       if (checked.figures[s].errors[n] > kLearnt * plan_.accuracy || checked.figures[s].left[n] > kNoticed * plan_.accuracy) missed.insert(n);
-  for (size_t n : missed) sights_.add(checked.lines[n]);
-  forAll(slots, [&](size_t s) { fits_[s]->tighten(kTightened, sights_); });
+  const size_t first = sights_.size();
+  for (size_t n : missed) sights_.add(checked.lines[n], true);
+  forAll(slots, [&](size_t s) { fits_[s]->learn(sights_, first, std::clamp(kTightened * kHeld * plan_.accuracy / checked.figures[s].largest, kLeastPart, kTightened)); });
 }
 
 /// Checks fits on ever new lines and on the second ones, until they hold or enough was tried.
 void PlanFits::hold(std::vector<size_t> open) {
+  std::vector<double> before(fits_.size(), INFINITY);
   for (int attempt = 0;; ++attempt) {
     for (int n = 0; n < kChecks && !open.empty(); ++n) {
-      tell_(0.5 + 0.5 * (attempt + static_cast<double>(n) / kChecks) / (kTighter + 1));
+      tell_(0.5 + 0.5 * (attempt + static_cast<double>(n) / kChecks) / (kLearn + 1));
       sights_.draw(kCheck);
       forAll(open, [&](size_t s) { fits_[s]->check(sights_); });
       std::erase_if(open, [&](size_t s) { return fits_[s]->holds(); });
     }
-    if (attempt == kTighter) return;
+    if (attempt == kLearn) return;
     if (second_.lines.empty()) {
       second_.lines = rays_.extremes();
       for (int n = 0; n < kSecond; ++n) second_.lines.push_back(n % 4 != 0 ? rays_.fromFilm() : rays_.ofCombination());
@@ -136,10 +141,19 @@ void PlanFits::hold(std::vector<size_t> open) {
     takeNodes(plan_);
     second_.figures = checkLines(sim_, NodesOfPlan(sim_, plan_), fine_, second_.lines, airPlaces_, floor_);
     open.clear();
-    for (size_t s = 0; s < fits_.size(); ++s)
-      if (second_.figures[s].largest > kHeld * plan_.accuracy) open.push_back(s);
+    for (size_t s = 0; s < fits_.size(); ++s) {
+      const double largest = second_.figures[s].largest;
+      if (largest <= kHeld * plan_.accuracy || before[s] == 0.0) continue;
+      if (largest > kHopeless * before[s]) {
+        fits_[s]->goBack();
+        before[s] = 0.0;
+        continue;
+      }
+      before[s] = largest;
+      open.push_back(s);
+    }
     if (open.empty()) return;
-    tighten(second_, open);
+    teach(second_, open);
   }
 }
 

@@ -24,14 +24,14 @@ class PlanFits {
   /// `airPlaces`: airPlacesFor() it; `tell`: what part of the work of the constructor or of learn() is done, at most. All must outlive it.
   PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
            SightRays& rays, const std::vector<double>& floor, int airPlaces, const std::function<void(double part)>& tell);
-  /// Fits those slots to half of what they were fitted to, and to what they are off by on these lines.
+  /// Fits those slots to what they are off by on these lines besides.
   void learn(const CheckedLines& checked, const std::vector<size_t>& slots);
   /// The groups as the plan's nodes.
   void takeNodes(Plan& plan) const;
 
  private:
   void hold(std::vector<size_t> open);
-  void tighten(const CheckedLines& checked, const std::vector<size_t>& slots);
+  void teach(const CheckedLines& checked, const std::vector<size_t>& slots);
 
   const Simulation& sim_;
   const NodesOfPlan& fine_;

@@ -20,7 +20,7 @@ constexpr int kLastSmall = 300;
 /// found above with 2 or with 1.5, one with 2.5: at 2 a margin of a third to spare.
 constexpr double kMargin = 2.0;
 /// A plan that shows more on them than was asked learns them, and is told anew by as many others: so often.
-constexpr int kAgain = 1;
+constexpr int kAgain = 2;
 /// Of what tables lose, no more than this of the accuracy is made up for by wavelengths.
 constexpr double kMended = 0.3;
 /// A term that is nowhere more than this part of the accuracy is dropped.

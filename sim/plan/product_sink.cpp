@@ -13,8 +13,8 @@ namespace {
 /// Black bodies of the air and of textures stand at steps; below kShort_um, where a step changes the shape of their spectra, at finer ones.
 constexpr double kStep_K = 4.0, kFineStep_K = 1.0, kShort_um = 3.0;
 constexpr double kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
-/// Hot gases: steps of 1 % in temperature, between which a black body is straight to 0.2 % where c2 / (lambda T) is 12.
-constexpr double kHotStep = 0.01;
+/// Hot gases are those of the nearest of such temperatures (steps of 2 %): what is fitted to one holds for its neighbours.
+constexpr double kHotStep = 0.02;
 /// Directions of the surroundings' light in half a turn.
 constexpr double kElevationSteps = 12.0, kAzimuthSteps = 4.0;
 
@@ -233,10 +233,8 @@ void ProductSink::emissionOfMedia(const Segment& s) {
     addSource(scatter, share * m.sun, pathOf(way, 0.0, before), pathOf(way, 1.0, before));
   }
   for (const auto& [temperature_K, share] : black) {
-    // Between two of temperatures that lie evenly in their logarithm.
-    const double at = std::log(std::max(temperature_K, 1.0)) / kHotStep, low = std::floor(at);
-    for (const auto& [step, part] : {std::pair{low, 1.0 - (at - low)}, {low + 1.0, at - low}})
-      addSource(book_.spectrum(Factor::planck(std::exp(kHotStep * step), true), sim_), share * part, near, far);
+    const double stepped_K = std::exp(kHotStep * std::round(std::log(std::max(temperature_K, 1.0)) / kHotStep));
+    addSource(book_.spectrum(Factor::planck(stepped_K, true), sim_), share, near, far);
   }
 }
 

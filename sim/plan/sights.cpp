@@ -13,6 +13,55 @@ namespace {
 constexpr double kNegligible = 1e-4;
 /// No amount at all: tables of ways to the sun have 1e-30 where there is nothing.
 constexpr double kNone = 1e-20;
+/// Parts of a line's way through a field: what a fit learns of a line along which more change is the same.
+constexpr std::size_t kFieldParts = 8;
+
+/// Of neighbouring steps one, of about as much of all gases each.
+std::vector<Slab> inParts(const std::vector<Slab>& all) {
+  std::vector<Slab> some;
+  for (std::size_t from = 0, to = 0; from < all.size(); from = to) {
+    while (to < all.size() && all[to].field == all[from].field) ++to;
+    if (to - from <= kFieldParts) {
+      some.insert(some.end(), all.begin() + static_cast<std::ptrdiff_t>(from), all.begin() + static_cast<std::ptrdiff_t>(to));
+      continue;
+    }
+    std::array<double, kMostGases> whole{};
+    for (std::size_t k = from; k < to; ++k)
+      for (std::size_t g = 0; g < whole.size(); ++g) whole[g] += all[k].step.amount[g];
+    std::vector<double> part;
+    double sum = 0.0;
+    for (std::size_t k = from; k < to; ++k) {
+      part.push_back(0.0);
+      for (std::size_t g = 0; g < whole.size(); ++g)
+        if (whole[g] > 0.0) part.back() += all[k].step.amount[g] / whole[g];
+      sum += part.back();
+    }
+    double before = 0.0, weight = 0.0;
+    int last = -1;
+    for (std::size_t k = from; k < to; ++k) {
+      const double own = part[k - from];
+      const int place = std::min(static_cast<int>(static_cast<double>(kFieldParts) * (before + 0.5 * own) / sum), static_cast<int>(kFieldParts) - 1);
+      before += own;
+      const FieldStep& s = all[k].step;
+      if (place != last) {
+        some.push_back(all[k]);
+        weight = own, last = place;
+        continue;
+      }
+      FieldStep& m = some.back().step;
+      const double share = weight + own > 0.0 ? own / (weight + own) : 0.5;
+      weight += own;
+      m.leave_m = s.leave_m;
+      for (std::size_t g = 0; g < whole.size(); ++g) m.amount[g] += s.amount[g];
+      m.temperature_K += share * (s.temperature_K - m.temperature_K);
+      m.drift_perK += s.drift_perK;
+      m.gain += share * (s.gain - m.gain);
+      m.sun += share * (s.sun - m.sun);
+      m.sunAmount += share * (s.sunAmount - m.sunAmount);
+    }
+  }
+  return some;
+}
 }  // namespace
 
 FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel) {
@@ -45,7 +94,7 @@ int SightBook::both(int a, int b) {
 Sights::Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um, int airPlaces)
     : simulation_(simulation), plan_(plan), rays_(rays), shortest_um_(shortest_um), airPlaces_(airPlaces) {}
 
-void Sights::add(const SightRay& ray) {
+void Sights::add(const SightRay& ray, bool inFull) {
   RadianceScene scene{simulation_, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, airPlaces_};
   // In shade, half in it, or lit: other lights of a pixel then count for more.
   scene.lit = [this, &ray](const Hit&, size_t, const LightLeg&) {
@@ -55,8 +104,10 @@ void Sights::add(const SightRay& ray) {
   };
   ProductSink sink(simulation_, book_, shortest_um_);
   sink.begin(ray.fromFilm);
-  radianceAlong(scene, ray.line, sink);
-  if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), ray.pixel_sr, sink);
+  LineOfSight line = ray.line;
+  if (!inFull) line.hits.slabs = inParts(line.hits.slabs);
+  radianceAlong(scene, line, sink);
+  if (ray.lamp >= 0) lampAlong(scene, line, static_cast<size_t>(ray.lamp), ray.pixel_sr, sink);
   book_.sights.push_back(sink.finish());
 }
 

@@ -62,8 +62,8 @@ class Sights {
   void begin(int count, const std::vector<FilmPlace>& learnt);
   /// More of the others.
   void draw(int count);
-  /// A line that turned out to matter.
-  void add(const SightRay& ray);
+  /// A line; `inFull`, one that turned out to matter: with every step through fields.
+  void add(const SightRay& ray, bool inFull = false);
   size_t size() const { return book_.sights.size(); }
   /// The absorbers that a channel may meet: places in AirAmounts, and from kMostAirAmounts on the materials of media.
   std::vector<int> absorbers(const FineGrid& grid) const;

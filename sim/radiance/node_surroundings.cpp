@@ -330,7 +330,16 @@ std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, 
     const double share = part == 0 ? 1.0 - place.share : place.share;
     if (share == 0.0) continue;
     const Height& h = height(place.height + part);
-    const DirectionGrid::Reading reading = h.finer.at(aimed.direction), level = h.finer.at(view.normal);
+    // The rest about a direction, of all nodes at once; of a lobe's blurs those that some node has.
+    const auto restAt = [&](const DirectionGrid::Reading& reading, bool sharp, std::size_t blur) -> Eigen::VectorXd {
+      const Eigen::MatrixXd& rest = h.rest(around, degree_, sharp, blur);
+      Eigen::VectorXd here = Eigen::VectorXd::Zero(rest.rows());
+      for (size_t k = 0; k < 4; ++k) here += reading.weight[k] * rest.col(static_cast<Eigen::Index>(reading.at[k]));
+      return h.mix * here;
+    };
+    const DirectionGrid::Reading reading = h.finer.at(aimed.direction);
+    const Eigen::VectorXd matt = restAt(h.finer.at(view.normal), false, kCosine);
+    std::array<Eigen::VectorXd, kBlurs> left;
     std::size_t four = nodes_.size(), sharper = 0;
     for (size_t i = 0; i < all.size(); ++i) {
       const Harmonics& light = h.harmonics[i];
@@ -344,23 +353,16 @@ std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, 
           sum += weight(planeWeightAt(l, k)) * of;
         }
       // Of what is no lobe, a matt surface's share of the rest.
-      double matt = 0.0;
-      for (size_t k = 0; k < 4; ++k)
-        matt +=
-            level.weight[k] * h.mix.row(static_cast<Eigen::Index>(i)).dot(h.rest(around, degree_, false, kCosine).col(static_cast<Eigen::Index>(level.at[k])));
-      sum += (whole[i] - std::max(weight(kPlaneWeights), 0.0)) * matt;
+      sum += (whole[i] - std::max(weight(kPlaneWeights), 0.0)) * matt[static_cast<Eigen::Index>(i)];
       if (const double d = weight(kPlaneWeights); d > 0.0) {
         // Four nodes have the two blurs about the first one's.
         const double blur = std::clamp(weight(0) / d + aimed.further, 0.0, kBlurs - 1.0);
         if (i / 4 != four) four = i / 4, sharper = std::min(static_cast<size_t>(blur), kBlurs - std::size_t{2});
+        const double further = blur - static_cast<double>(sharper);
         for (size_t step = 0; step < 2; ++step) {
-          double left = 0.0;
-          for (size_t k = 0; k < 4; ++k)
-            left +=
-                reading.weight[k] *
-                h.mix.row(static_cast<Eigen::Index>(i)).dot(h.rest(around, degree_, own.isSharp, sharper + step).col(static_cast<Eigen::Index>(reading.at[k])));
-          const double further = blur - static_cast<double>(sharper);
-          sum += d * (step == 0 ? 1.0 - further : further) * left;
+          Eigen::VectorXd& of = left[sharper + step];
+          if (of.size() == 0) of = restAt(reading, own.isSharp, sharper + step);
+          sum += d * (step == 0 ? 1.0 - further : further) * of[static_cast<Eigen::Index>(i)];
         }
       }
       all[i] += share * sum;
