@@ -146,6 +146,7 @@ int runCommand(const Arguments& arguments) {
     RunTotal total;
     Stopwatch writing;
     std::optional<Timing> timing;
+    const ProgramCount before = programsSoFar();
     if (o.has("--timing")) timing.emplace();
     const auto sinks = sinksOf();
     for (const auto& placed : sinks) placed.sink->start();
@@ -196,7 +197,10 @@ int runCommand(const Arguments& arguments) {
                                 total.expected() + auditText(report);
     std::fputs(summary.c_str(), stdout);
     if (page) page->write(out, pictures.video, {summary, notes, told ? &*told : nullptr, history.tables}, place.mayReplace);
-    if (timing) std::printf("%s", timingText(timing->seconds(), writing.seconds(), frames).c_str());
+    if (timing) {
+      const ProgramCount made{programsSoFar().programs - before.programs, programsSoFar().lines - before.lines};
+      std::printf("%s", timingText(timing->seconds(), made, writing.seconds(), frames).c_str());
+    }
     return 0;
   }
 }

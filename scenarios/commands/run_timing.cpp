@@ -4,27 +4,36 @@
 #include <cstdio>
 #include <vector>
 
+#include "scenarios/commands/print.hpp"
+#include "sim/camera/camera_renderer.hpp"
 #include "sim/run/run.hpp"
 
 namespace pitviper {
 
-std::string timingText(const std::map<std::string, double>& parts, double files_s, int frames) {
+std::string stageOf(const std::string& part) {
+  const bool preparing = part.starts_with(kPreparingPart);
+  if (!preparing && !part.starts_with(kFirstFramePart)) return "";
+  if (part.find(kProgramsPart) != std::string::npos) return "programs";
+  if (part.find(kPlanningPart) != std::string::npos) return "planning";
+  return preparing ? "tables" : "first_frame";
+}
+
+std::string timingText(const std::map<std::string, double>& parts, const ProgramCount& programs, double files_s, int frames) {
   char line[160];
-  double sum = 0.0, preparing = 0.0, first = 0.0;
+  double sum = 0.0;
+  std::map<std::string, double> once{{"planning", 0.0}, {"tables", 0.0}, {"programs", 0.0}, {"first_frame", 0.0}};
   std::vector<std::pair<double, std::string>> longest;
   for (const auto& [name, seconds] : parts) {
-    if (name.starts_with(kPreparingPart)) {
-      preparing += seconds;
-    } else if (name.starts_with(kFirstFramePart)) {
-      first += seconds;
+    if (const std::string stage = stageOf(name); !stage.empty()) {
+      once[stage] += seconds;
     } else {
       sum += seconds;
       longest.emplace_back(seconds, name);
     }
   }
   std::sort(longest.rbegin(), longest.rend());
-  std::snprintf(line, sizeof line, "Time, each part waited for: preparing %.3g s, the first frame %.3g s", preparing, first);
-  std::string text = line;
+  std::string text = print("Time, each part waited for: planning %.3g s, tables %.3g s, %ld programs of %ld lines %.3g s, the first frame %.3g s", once["planning"], once["tables"],
+                           programs.programs, programs.lines, once["programs"], once["first_frame"]);
   const int later = frames - 1;
   if (later > 0) {
     std::snprintf(line, sizeof line, ", the others %.4g ms a frame, %.4g frames a second:\n", 1e3 * sum / later, sum > 0.0 ? later / sum : 0.0);

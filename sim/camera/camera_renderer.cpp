@@ -23,13 +23,18 @@ Plan planOfLines(const Simulation& simulation, const Camera& camera) {
   return planFor(simulation, {&planned, nullptr});
 }
 
+Plan timedPlan(const Simulation& simulation, const Camera& camera, const std::function<void(double)>& planning) {
+  const TimedPart part(kPlanningPart);
+  return planFor(simulation, {&camera, nullptr}, planning);
+}
+
 }  // namespace
 
 CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
                                const std::function<void(double)>& planning)
     : simulation_(simulation),
       camera_(camera),
-      plan_(planFor(simulation, {&camera, nullptr}, planning)),
+      plan_(timedPlan(simulation, camera, planning)),
       fringes_(averagedFringes(simulation, camera.outputs)),
       scattering_(simulation, camera, plan_),
       ways_(simulation, plan_),

@@ -14,6 +14,9 @@
 
 namespace pitviper {
 
+/// Part of the time (sim/gl/timing.hpp) in which a camera's plan is made, or found again.
+inline constexpr const char* kPlanningPart = "planning";
+
 class CameraRenderer {
  public:
   /// The simulation, camera and library must outlive it. Needs a current GlContext. `planning`: told while a plan is made.

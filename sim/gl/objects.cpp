@@ -3,9 +3,11 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstring>
 
 #include "sim/gl/context.hpp"
+#include "sim/gl/timing.hpp"
 
 namespace pitviper {
 
@@ -24,7 +26,10 @@ VertexArray makeVertexArray() {
 
 namespace {
 
+std::atomic<long> gPrograms{0}, gLines{0};
+
 GLuint compile(GLenum stage, const AssembledShader& shader) {
+  gLines += std::count(shader.source.begin(), shader.source.end(), '\n');
   const GLuint s = glCreateShader(stage);
   const char* text = shader.source.c_str();
   glShaderSource(s, 1, &text, nullptr);
@@ -42,14 +47,21 @@ GLuint compile(GLenum stage, const AssembledShader& shader) {
 
 }  // namespace
 
+ProgramCount programsSoFar() { return {gPrograms, gLines}; }
+
 Program::Program(const AssembledShader& vertex, const AssembledShader& fragment) {
+  const TimedPart part(kProgramsPart);
   const GLuint vs = compile(GL_VERTEX_SHADER, vertex);
   link({vs, compile(GL_FRAGMENT_SHADER, fragment)}, fragment);
 }
 
-Program::Program(const AssembledShader& compute) { link({compile(GL_COMPUTE_SHADER, compute)}, compute); }
+Program::Program(const AssembledShader& compute) {
+  const TimedPart part(kProgramsPart);
+  link({compile(GL_COMPUTE_SHADER, compute)}, compute);
+}
 
 void Program::link(std::initializer_list<unsigned> stages, const AssembledShader& lines) {
+  ++gPrograms;
   name_ = GlName<deleteProgram>(glCreateProgram());
   text_ = lines.source;
   for (unsigned stage : stages) glAttachShader(name_, stage);

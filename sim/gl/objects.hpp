@@ -44,6 +44,15 @@ void deleteQuery(unsigned);
 using VertexArray = GlName<deleteVertexArray>;
 VertexArray makeVertexArray();
 
+/// What this process has had compiled and linked so far: programs, and lines of the texts of all their stages.
+struct ProgramCount {
+  long programs = 0, lines = 0;
+};
+ProgramCount programsSoFar();
+
+/// Part of the time (sim/gl/timing.hpp) in which programs are compiled and linked.
+inline constexpr const char* kProgramsPart = "programs";
+
 /// A linked program. Compile and link errors are GlError with file:line of the project's shader files.
 class Program {
  public:

@@ -2,6 +2,8 @@
 
 #include <epoxy/gl.h>
 
+#include <ctime>
+
 namespace pitviper {
 namespace {
 
@@ -9,14 +11,29 @@ thread_local Timing* current = nullptr;
 
 }  // namespace
 
-Timing::Timing() : last_(std::chrono::steady_clock::now()), before_(current) { current = this; }
-Timing::~Timing() { current = before_; }
+double workSoFar_s() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+Timing::Timing() : last_(std::chrono::steady_clock::now()), lastWork_s_(workSoFar_s()), before_(current) { current = this; }
+Timing::~Timing() { end(); }
+
+void Timing::end() {
+  if (current == this) current = before_;
+}
 
 void Timing::charge() {
   glFinish();
   const auto now = std::chrono::steady_clock::now();
-  if (!open_.empty()) seconds_[open_.back()] += std::chrono::duration<double>(now - last_).count();
+  const double work_s = workSoFar_s();
+  if (!open_.empty()) {
+    seconds_[open_.back()] += std::chrono::duration<double>(now - last_).count();
+    workSeconds_[open_.back()] += work_s - lastWork_s_;
+  }
   last_ = now;
+  lastWork_s_ = work_s;
 }
 
 TimedPart::TimedPart(const char* name) : timing_(current) {
