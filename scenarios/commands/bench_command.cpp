@@ -5,6 +5,8 @@
 #include "scenarios/commands/accuracy_report.hpp"
 #include "scenarios/commands/bench_report.hpp"
 #include "scenarios/commands/commands.hpp"
+#include "scenarios/commands/first_command.hpp"
+#include "scenarios/commands/guard_bench.hpp"
 #include "scenarios/commands/options.hpp"
 #include "scenarios/commands/phong_bench.hpp"
 #include "scenarios/commands/scenario_bench.hpp"
@@ -77,9 +79,18 @@ int scenarioCommand(const Options& o) {
   return 0;
 }
 
+/// Those with options of their own.
+constexpr std::pair<const char*, int (*)(const Arguments&)> kOwnBenches[] = {{"--first", firstCommand}, {"--once", onceCommand}, {"--guard", guardCommand}};
+
 }  // namespace
 
 int benchCommand(const Arguments& arguments) {
+  for (const auto& [option, command] : kOwnBenches)
+    if (const auto found = std::find(arguments.begin(), arguments.end(), option); found != arguments.end()) {
+      Arguments others(arguments);
+      others.erase(others.begin() + (found - arguments.begin()));
+      return command(others);
+    }
   const Options o("bench", arguments,
                   {{"--frames"}, {"--factor"}, {"--out"}, {"--accuracy"}, {"--scenario"}, {"--size"}, {"--set", true, true}, rootOption(), {"--phong", false}}, 0, 0);
   if (o.has("--phong")) {

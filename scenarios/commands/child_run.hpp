@@ -1,0 +1,19 @@
+#pragma once
+// This program again, as a process of its own: what it takes is then its own, and nothing of it is warm.
+#include <map>
+#include <string>
+
+#include "scenarios/commands/commands.hpp"
+
+namespace pitviper {
+
+struct ChildResult {
+  int code = 1;        ///< as of the commands; 128 and a signal's number where one ended it
+  std::string output;  ///< both streams together
+};
+
+/// Runs `pitviper` with these arguments and waits for it. `environment`: variables that it has besides this process's own, or instead. SIGINT, SIGTERM and SIGHUP meanwhile
+/// end it too, and its code says so. Throws std::runtime_error where no process can be made.
+ChildResult runChild(const Arguments& arguments, const std::map<std::string, std::string>& environment);
+
+}  // namespace pitviper
