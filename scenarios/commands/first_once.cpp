@@ -83,6 +83,8 @@ void measureFrames(Cameras& cameras, const Simulation& sim, const OnceRequest& r
   into["frames"] = static_cast<double>(each.size());
   if (each.empty()) return;
   into["frame_work"] = (Clocks().work_s - start.work_s) / static_cast<double>(each.size());
+  into["frame_most_at"] = static_cast<double>(std::max_element(each.begin(), each.end()) - each.begin() + 1);
+  into["programs_later"] = static_cast<double>(programsSoFar().programs) - into["programs_made"];
   std::sort(each.begin(), each.end());
   const auto percentile = [&](double share) { return each[static_cast<std::size_t>(std::ceil(share * static_cast<double>(each.size()))) - 1]; };
   into["frame_50"] = 1e3 * percentile(0.5);

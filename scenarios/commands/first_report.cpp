@@ -32,7 +32,7 @@ std::string shortName(const std::string& scenario) { return std::filesystem::pat
 std::string firstTable(const FirstRow& row) {
   std::string out = shortName(row.scenario) + ": s, in brackets processor s\n";
   out +=
-      "| state | reading | planning | tables | programs | first frame | to a picture | programs: made, lines, compiled | groups | frame ms: 50 %, 99 %, most (of) | MB | yardstick ms |\n"
+      "| state | reading | planning | tables | programs | first frame | to a picture | programs: made, lines, compiled | groups | frame ms: 50 %, 99 %, most (which of) | MB | yardstick ms |\n"
       "|---|---|---|---|---|---|---|---|---|---|---|---|\n";
   std::string changes;
   for (const FirstState& s : row.states) {
@@ -41,7 +41,7 @@ std::string firstTable(const FirstRow& row) {
     out += "| " + s.name + " |";
     for (const char* stage : {"reading", "planning", "tables", "programs", "first_frame", "picture"}) out += " " + seconds(s, stage) + " |";
     out += " " + number(s, "programs_made", "%.0f") + ", " + number(s, "program_lines", "%.0f") + ", " + number(s, "compiled", "%.0f") + " | " + number(s, "groups", "%.0f") + " | " +
-           number(s, "frame_50", "%.1f") + ", " + number(s, "frame_99", "%.1f") + ", " + number(s, "frame_most", "%.1f") + " (" + number(s, "frames", "%.0f") + ") | " +
+           number(s, "frame_50", "%.1f") + ", " + number(s, "frame_99", "%.1f") + ", " + number(s, "frame_most", "%.1f") + " (" + number(s, "frame_most_at", "%.0f of ") + number(s, "frames", "%.0f") + ") | " +
            number(s, "memory", "%.0f") + " | " + number(s, "yardstick", "%.1f") + " |\n";
   }
   return out + changes;

@@ -70,18 +70,29 @@ class Entries {
   std::vector<std::size_t> order_;
 };
 
+/// A number, the first of a course, or the offset of a skin that the air heats.
+void addWarmer(Edits& edits, const Value& owner, const std::string& path, const std::string& shown) {
+  const Value* given = owner.find("temperature");
+  if (!given) return;
+  const std::string here = path + ".temperature", said = shown + ".temperature";
+  const auto warmer = [](double kelvin) { return kelvin + 10.0; };
+  addNumber(edits, given, here, said, "K", warmer);
+  if (given->kind == Value::Kind::List && !given->items.empty() && given->items[0].items.size() == 2)
+    addNumber(edits, &given->items[0].items[1], here + ".0.1", said + ".0.1", "K", warmer);
+  if (!given->find("recovery")) return;
+  if (const Value* offset = given->find("offset")) addNumber(edits, offset, here + ".offset", said + ".offset", "K", warmer);
+  else edits.push_back(replaced(here + ".offset", said + ".offset", "0 K", "10 K"));
+}
+
 Edits temperatures(const Value& tree, const Simulation&) {
   Edits edits;
-  const auto warmer = [](double kelvin) { return kelvin + 10.0; };
   const Entries entities(tree, "entities");
-  entities.each([&](const Value& e, const std::string& path, const std::string& shown) {
-    addNumber(edits, e.find("temperature"), path + ".temperature", shown + ".temperature", "K", warmer);
-  });
+  entities.each([&](const Value& e, const std::string& path, const std::string& shown) { addWarmer(edits, e, path, shown); });
   entities.each([&](const Value& e, const std::string& path, const std::string& shown) {
     if (const Value* parts = e.find("parts"); parts && parts->kind == Value::Kind::Map)
-      for (const auto& [part, value] : parts->entries)
-        addNumber(edits, value.find("temperature"), path + ".parts." + part + ".temperature", shown + ".parts." + part + ".temperature", "K", warmer);
+      for (const auto& [part, value] : parts->entries) addWarmer(edits, value, path + ".parts." + part, shown + ".parts." + part);
   });
+  if (const Value* ground = tree.find("ground")) addWarmer(edits, *ground, "ground", "ground");
   return edits;
 }
 
@@ -154,7 +165,7 @@ struct ChangeKind {
 };
 
 constexpr ChangeKind kKinds[] = {
-    {"temperature", temperatures, "no body has a temperature that is one number"},
+    {"temperature", temperatures, "no body has a temperature that can be 10 K more"},
     {"visibility", visibilities, "there is no air with a visibility"},
     {"field_of_view", fieldsOfView, "no camera has a field of view that is one number"},
     {"position", positions, "nothing has a position of three numbers"},
