@@ -30,7 +30,7 @@ const std::vector<FigureName>& firstFigureNames() {
       {"frame_99", Frame, "the 99th [ms]"},
       {"frame_most", Frame, "the longest [ms]"},
       {"frame_most_at", Count, "which of them that is, from 1 for the second picture"},
-      {"frame_work", Work, "processor seconds of one of them: mean"},
+      {"frame_work", Work, "processor seconds of one of them: median"},
       {"frames", Count, "so many of them"},
       {"groups", Count, "wavelengths or groups of them, all cameras together"},
       {"programs_made", Count, "programs, up to the first picture"},

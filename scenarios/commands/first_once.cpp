@@ -77,12 +77,16 @@ class Cameras {
 
 void measureFrames(Cameras& cameras, const Simulation& sim, const OnceRequest& request, FirstFigures& into) {
   const int most = cameras.mayBeginAgain() ? request.frames : std::min(request.frames, sim.time.frames - 1);
-  std::vector<double> each;
+  std::vector<double> each, work;
   const Clocks start;
-  for (int k = 1; k <= most && Clocks().wall_s - start.wall_s < request.most_s; ++k) each.push_back(timed([&] { cameras.draw(k % sim.time.frames); }));
+  for (int k = 1; k <= most && Clocks().wall_s - start.wall_s < request.most_s; ++k) {
+    const double before = workSoFar_s();
+    each.push_back(timed([&] { cameras.draw(k % sim.time.frames); }));
+    work.push_back(workSoFar_s() - before);
+  }
   into["frames"] = static_cast<double>(each.size());
   if (each.empty()) return;
-  into["frame_work"] = (Clocks().work_s - start.work_s) / static_cast<double>(each.size());
+  into["frame_work"] = median(work);  // a few, in which a driver compiles, are not what frames take
   into["frame_most_at"] = static_cast<double>(std::max_element(each.begin(), each.end()) - each.begin() + 1);
   into["programs_later"] = static_cast<double>(programsSoFar().programs) - into["programs_made"];
   std::sort(each.begin(), each.end());
