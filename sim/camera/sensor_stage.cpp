@@ -51,6 +51,7 @@ void FormulaStage::run(const SensorTick& tick, SensorPictures& pictures) {
   if (!parameters_.empty()) glUniform1fv(program_.uniform("parameters"), static_cast<GLsizei>(parameters_.size()), parameters_.data());
   glUniform1i(program_.uniform("cellsPerPixel"), pictures.cells);
   glUniform1i(program_.uniform("frameNumber"), tick.frame);
+  glUniform2i(program_.uniform("last"), pictures.width - 1, pictures.height - 1);
   for (size_t o = 0; o < pictures.outputs.size(); ++o) {
     pictures.next(o).bind();
     pictures.now(o).bind(0);

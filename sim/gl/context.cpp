@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "sim/gl/driver_cache.hpp"
+#include "sim/gl/sampler_slots.hpp"
 
 namespace pitviper {
 namespace {
@@ -130,6 +131,7 @@ GlContext::GlContext(std::string device) {
   display_ = display;
   context_ = context;
   limits_ = currentLimits();
+  if (limits_.software) fillSamplerSlots();
 }
 
 GlContext::~GlContext() {

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cstring>
 
 #include "sim/gl/context.hpp"
+#include "sim/gl/sampler_slots.hpp"
 #include "sim/gl/timing.hpp"
 
 namespace pitviper {
@@ -27,6 +29,20 @@ VertexArray makeVertexArray() {
 namespace {
 
 std::atomic<long> gPrograms{0}, gLines{0};
+
+/// llvmpipe compiles a program again for textures of other kinds of sizes: whether a side is a power of two and, of a buffer, whether bits 8 to 15 of its
+/// bytes are all 0 (lp_sampler_static_texture_state() of Mesa takes them for a texture's last level). So no side is one below the largest that every driver of
+/// OpenGL 4.5 has, and those bits never are.
+int storedSide(int side) {
+  constexpr int kLargest = 16384;
+  return side + (side < kLargest && std::has_single_bit(static_cast<unsigned>(side)) ? 1 : 0);
+}
+
+std::size_t storedBytes(std::size_t bytes) {
+  std::size_t stored = (std::max<std::size_t>(bytes, 1) + 15) / 16 * 16;
+  if ((stored >> 8 & 0xff) == 0) stored += 0x100;
+  return stored + (std::has_single_bit(stored) ? 16 : 0);
+}
 
 GLuint compile(GLenum stage, const AssembledShader& shader) {
   gLines += std::count(shader.source.begin(), shader.source.end(), '\n');
@@ -79,13 +95,12 @@ void Program::use() const { glUseProgram(name_); }
 int Program::uniform(const char* name) const { return glGetUniformLocation(name_, name); }
 
 void Buffer::upload(const void* data, std::size_t bytes) {
-  const std::size_t wanted = std::max<std::size_t>(bytes, 16);
-  if (name_ == 0u || wanted != bytes_) {
+  if (name_ == 0u || bytes != bytes_) {
     GLuint n = 0;
     glCreateBuffers(1, &n);
     name_ = GlName<deleteBuffer>(n);
-    glNamedBufferStorage(n, static_cast<GLsizeiptr>(wanted), nullptr, GL_DYNAMIC_STORAGE_BIT | GL_MAP_READ_BIT);
-    bytes_ = wanted;
+    glNamedBufferStorage(n, static_cast<GLsizeiptr>(storedBytes(bytes)), nullptr, GL_DYNAMIC_STORAGE_BIT | GL_MAP_READ_BIT);
+    bytes_ = bytes;
     texture_ = GlName<deleteTexture>();
   }
   if (bytes > 0 && data) glNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(bytes), data);
@@ -137,9 +152,8 @@ Texture2D::Texture2D(int width, int height, PixelFormat format) : width_(width),
                           : format == PixelFormat::R32f   ? GL_R32F
                           : format == PixelFormat::Rg32ui ? GL_RG32UI
                                                           : GL_DEPTH_COMPONENT32F;
-  glTextureStorage2D(n, 1, internal, width, height);
-  glTextureParameteri(n, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  glTextureParameteri(n, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glTextureStorage2D(n, 1, internal, storedSide(width), storedSide(height));
+  setNearest(n);
 }
 
 void Texture2D::upload(const std::vector<float>& texels) const {
@@ -150,7 +164,7 @@ void Texture2D::upload(const std::vector<float>& texels) const {
 void Texture2D::download(std::vector<float>& texels) const {
   texels.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_));
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
-  glGetTextureImage(name_, 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(float)), texels.data());
+  glGetTextureSubImage(name_, 0, 0, 0, 0, width_, height_, 1, GL_RED, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(float)), texels.data());
 }
 
 void Texture2D::bind(unsigned unit) const { glBindTextureUnit(unit, name_); }
@@ -223,8 +237,7 @@ DepthLayers::DepthLayers(int size, int count) : size_(size), count_(count) {
   glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &n);
   texture_ = GlName<deleteTexture>(n);
   glTextureStorage3D(n, 1, GL_DEPTH_COMPONENT32F, size, size, count);
-  glTextureParameteri(n, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
-  glTextureParameteri(n, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  setNearest(n);
   glCreateFramebuffers(1, &n);
   framebuffer_ = GlName<deleteFramebuffer>(n);
   glNamedFramebufferDrawBuffer(n, GL_NONE);

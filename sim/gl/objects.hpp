@@ -72,7 +72,7 @@ class Program {
 
 class Buffer {
  public:
-  /// Replaces the contents; storage is kept where the size is unchanged. A buffer is never empty (16 bytes at least).
+  /// Replaces the contents; storage is kept where the size is unchanged. Its storage is never empty, and somewhat more than asked for.
   void upload(const void* data, std::size_t bytes);
   template <class T>
   void upload(const std::vector<T>& data) {
@@ -102,6 +102,7 @@ class Buffer {
 
 enum class PixelFormat { Rgba32f, Rg32f, R32f, Rg32ui, Depth32f };
 
+/// Its storage has a row or a column more where a side is a power of two: textureSize() is not its size.
 class Texture2D {
  public:
   Texture2D() = default;

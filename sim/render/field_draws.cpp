@@ -39,9 +39,10 @@ FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const Sha
       std::string key = field.source->shader() + (even ? " far" : " near");
       for (const char* name : {"MIXTURES", "LEVEL_FOURS", "SCATTERS"}) key += " " + std::to_string(own.constants[name]);
       auto [at, isNew] = programs_.try_emplace(key);
-      if (isNew)
-        at->second = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", own),
-                             assembleShader(library, "sim/render/glsl/volume_field.frag.glsl", own));
+      for (Program& program : at->second)
+        if (isNew)
+          program = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", own),
+                            assembleShader(library, "sim/render/glsl/volume_field.frag.glsl", own));
       (even ? body.far : body.near) = &at->second;
     }
   }
@@ -160,9 +161,9 @@ glm::ivec4 FieldDraws::rectOf(int field) const {
   return {low.x, low.y, high.x - low.x, high.y - low.y};
 }
 
-const Program& FieldDraws::use(int field) {
+const Program& FieldDraws::use(int field, bool covered) {
   Body& body = bodies_[static_cast<size_t>(field)];
-  const Program& program = body.range.y > 0.0f ? *body.far : *body.near;
+  const Program& program = (*(body.range.y > 0.0f ? body.far : body.near))[covered ? 1 : 0];
   body.spectra.bindTexture(5, 4);
   body.texels.bindTexture(17, 4);
   body.tiles.bindTexture(19, 1, true);
@@ -180,7 +181,7 @@ const Program& FieldDraws::use(int field) {
 }
 
 void FieldDraws::addPrograms(std::vector<NamedProgram>& all) const {
-  for (const auto& [key, program] : programs_) all.push_back({"field " + key, program.text()});
+  for (const auto& [key, program] : programs_) all.push_back({"field " + key, program[0].text()});
 }
 
 }  // namespace pitviper

@@ -25,7 +25,8 @@ class FieldDraws {
   /// How they are drawn from here on: for the pixels of this view, which sees the same.
   void look(const View& view);
   /// The program of a field that is in view, in use, its buffers and uniforms set but `firstNode`.
-  const Program& use(int field);
+  /// `covered`: with a depth test; each of the two has a program of its own, as llvmpipe finds only the first of a program's states in its cache.
+  const Program& use(int field, bool covered);
   /// The part of the picture that it may show in (corner, size) [pixels].
   glm::ivec4 rectOf(int field) const;
   void addPrograms(std::vector<NamedProgram>& all) const;
@@ -36,7 +37,7 @@ class FieldDraws {
     FieldTables tables;
     StepsByKind steps{};  ///< by kind of element
     Buffer spectra, texels, tiles;
-    const Program *far = nullptr, *near = nullptr;  ///< of those with nearly even air across them, or any
+    const std::array<Program, 2>*far = nullptr, *near = nullptr;  ///< of those with nearly even air across them, or any; not covered, covered
     std::shared_ptr<const FieldTexels> uploaded;
     const FieldState* state = nullptr;  ///< null: not there
     // Of the view.
@@ -51,7 +52,7 @@ class FieldDraws {
   void listTiles(const View& view, const FieldState& field, Body& body);
 
   std::shared_ptr<const FieldSampling> sampling_;
-  std::map<std::string, Program> programs_;
+  std::map<std::string, std::array<Program, 2>> programs_;
   std::deque<Body> bodies_;
 };
 

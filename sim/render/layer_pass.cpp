@@ -309,7 +309,7 @@ void LayerPass::setGroup(const std::vector<std::uint32_t>& draws) const {
 }
 
 void LayerPass::drawField(const LayerPiece& piece, const Over& over) {
-  const Program& program = fields_->use(piece.field);
+  const Program& program = fields_->use(piece.field, over.covered != nullptr);
   over.visibility.colour(0).bind(0);
   glUniform1i(program.uniform("firstNode"), over.firstNode);
   beginMedium(over.covered != nullptr);

@@ -13,6 +13,7 @@ constexpr unsigned kClasses = 18;
 
 PixelClasses::PixelClasses(const ShaderLibrary& library, const ShaderSlots& slots)
     : program_(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/classes.frag.glsl", slots)),
+      withLight_(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/classes.frag.glsl", slots)),
       cover_(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/cover.frag.glsl", slots)) {}
 
 void PixelClasses::find(const RenderTarget& visibility, const Texture2D* bends, int grouped) {
@@ -67,8 +68,9 @@ void PixelClasses::begin(const RenderTarget& visibility, bool withLight) {
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
-  program_.use();
-  glUniform1i(program_.uniform("grouped"), 0);
+  const Program& program = withLight ? withLight_ : program_;
+  program.use();
+  glUniform1i(program.uniform("grouped"), 0);
 }
 
 }  // namespace pitviper

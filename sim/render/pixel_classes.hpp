@@ -38,7 +38,7 @@ class PixelClasses {
 
  private:
   void begin(const RenderTarget& visibility, bool withLight);
-  Program program_, cover_;
+  Program program_, withLight_, cover_;  // two of one text: llvmpipe finds only the first of a program's states in its cache
   std::deque<RenderTarget> targets_;
   const RenderTarget *found_ = nullptr, *light_ = nullptr;
 };

@@ -72,6 +72,7 @@ void SharedShading::findBends(const RenderTarget& subpixels, const RenderTarget&
   find_.use();
   glUniform1f(find_.uniform("threshold"), static_cast<float>(threshold_));
   glUniform1i(find_.uniform("drawnOver"), before != nullptr);
+  glUniform2i(find_.uniform("last"), pixels.width() - 1, pixels.height() - 1);
   drawAll(find_, *bends_, grouped);
 }
 

@@ -31,6 +31,7 @@ SolidPass::SolidPass(const Simulation& simulation, const RenderTables& tables, c
       tables_(tables),
       scene_(scene),
       single_(visibilityProgram(library, false)),
+      ofPart_(visibilityProgram(library, false)),
       instanced_(visibilityProgram(library, true)),
       box_(assembleShader(library, "sim/render/glsl/box.vert.glsl", {}), assembleShader(library, "sim/render/glsl/nothing.frag.glsl", {})) {}
 
@@ -68,9 +69,9 @@ std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const W
   return all;
 }
 
-void SolidPass::drawOne(const Candidate& c) const {
-  single_.use();
-  glUniform1i(single_.uniform("drawIndex"), static_cast<int>(c.draw));
+void SolidPass::drawOne(const Program& program, const Candidate& c) const {
+  program.use();
+  glUniform1i(program.uniform("drawIndex"), static_cast<int>(c.draw));
   if (c.shown.empty()) drawTriangles(c, c.first, c.triangles, 1);
   for (const auto& [first, count] : c.shown) drawTriangles(c, first, count, 1);
 }
@@ -126,7 +127,7 @@ void SolidPass::drawHidden(const std::vector<Candidate>& dense) {
   glDepthMask(GL_TRUE);
   for (size_t i = 0; i < dense.size(); ++i) {
     if (dense[i].boxBefore) glBeginConditionalRender(queries_[i], GL_QUERY_WAIT);
-    drawOne(dense[i]);
+    drawOne(single_, dense[i]);
     if (dense[i].boxBefore) glEndConditionalRender();
   }
 }
@@ -150,7 +151,7 @@ void SolidPass::drawPart(const glm::ivec4& part, const std::vector<Candidate>& c
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CLIP_DISTANCE0);
   glEnable(GL_DEPTH_CLAMP);
-  for (const Candidate& c : candidates) drawOne(c);
+  for (const Candidate& c : candidates) drawOne(ofPart_, c);
   glDisable(GL_CLIP_DISTANCE0);
   glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_DEPTH_TEST);
@@ -188,7 +189,7 @@ void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& stat
   int firstInstance = 0;
   for (const auto& group : groups) {
     if (group.size() == 1) {
-      drawOne(group.front());
+      drawOne(single_, group.front());
       continue;
     }
     instanced_.use();
@@ -197,9 +198,9 @@ void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& stat
     firstInstance += static_cast<int>(group.size());
   }
   if (asked < kWorthAsking) {
-    for (const Candidate& c : dense) drawOne(c);
+    for (const Candidate& c : dense) drawOne(single_, c);
   } else {
-    drawOne(dense[0]);
+    drawOne(single_, dense[0]);
     drawHidden({dense.begin() + 1, dense.end()});
   }
   glDisable(GL_CLIP_DISTANCE0);

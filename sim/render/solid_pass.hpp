@@ -30,7 +30,7 @@ class SolidPass {
   void drawPart(const glm::ivec4& part, const std::vector<Candidate>& candidates) const;
 
  private:
-  void drawOne(const Candidate& c) const;
+  void drawOne(const Program& program, const Candidate& c) const;
   void drawTriangles(const Candidate& shape, std::uint32_t first, std::uint32_t count, std::size_t instances) const;
   void cutOff(Candidate& c, const View& view, const Pose& pose, const MeshPart& part) const;
   void drawHidden(const std::vector<Candidate>& dense);
@@ -38,7 +38,7 @@ class SolidPass {
   const Simulation& simulation_;
   const RenderTables& tables_;
   const GpuScene& scene_;
-  Program single_, instanced_, box_;
+  Program single_, ofPart_, instanced_, box_;  // two of one text: llvmpipe finds only the first of a program's states in its cache
   Buffer instances_;
   std::vector<GlName<deleteQuery>> queries_;
   const RenderTarget* target_ = nullptr;

@@ -12,10 +12,9 @@ layout(binding = 26 + {g}) uniform sampler2D before{g};
 //@end
 layout(binding = 17) uniform sampler2D smoothness;  // see classes.frag.glsl
 uniform int grouped;
+uniform ivec2 last;  // pixel of the picture
 uniform float threshold;
 uniform bool drawnOver;  // something transparent is, what was there before in these
-
-ivec2 last_;
 
 bool bendsBy(vec4 bend, vec4 most) { return !all(lessThanEqual(bend, threshold * most)); }
 
@@ -23,7 +22,7 @@ bool bendsIn(sampler2D pixels, ivec2 p) {
   vec4 here = texelFetch(pixels, p, 0), most = here, bend = vec4(0.0);
   for (int k = 0; k < 4; ++k) {
     ivec2 step = ivec2(k == 0 ? 0 : 1, k == 0 ? 1 : k - 2);
-    vec4 a = texelFetch(pixels, clamp(p - step, ivec2(0), last_), 0), b = texelFetch(pixels, clamp(p + step, ivec2(0), last_), 0);
+    vec4 a = texelFetch(pixels, clamp(p - step, ivec2(0), last), 0), b = texelFetch(pixels, clamp(p + step, ivec2(0), last), 0);
     most = max(most, max(a, b));
     bend = max(bend, abs(a + b - 2.0 * here));
   }
@@ -34,7 +33,7 @@ bool bendsIn(sampler2D pixels, ivec2 p) {
 bool changeBendsIn(sampler2D pixels, sampler2D before, ivec2 p) {
   vec4 here = texelFetch(pixels, p, 0), most = here, change = here - texelFetch(before, p, 0), bend = vec4(0.0);
   for (int k = 0; k < 4; ++k) {
-    ivec2 step = ivec2(k == 0 ? 0 : 1, k == 0 ? 1 : k - 2), back = clamp(p - step, ivec2(0), last_), on = clamp(p + step, ivec2(0), last_);
+    ivec2 step = ivec2(k == 0 ? 0 : 1, k == 0 ? 1 : k - 2), back = clamp(p - step, ivec2(0), last), on = clamp(p + step, ivec2(0), last);
     vec4 a = texelFetch(pixels, back, 0), b = texelFetch(pixels, on, 0);
     most = max(most, max(a, b));
     bend = max(bend, abs(a - texelFetch(before, back, 0) + b - texelFetch(before, on, 0) - 2.0 * change));
@@ -50,7 +49,7 @@ bool lightBends(ivec2 p) {
   bool bends = here.x < 0.0;
   for (int k = 0; k < 4; ++k) {
     ivec2 step = ivec2(k == 0 ? 0 : 1, k == 0 ? 1 : k - 2);
-    vec2 a = texelFetch(smoothness, clamp(p - step, ivec2(0), last_), 0).xy, b = texelFetch(smoothness, clamp(p + step, ivec2(0), last_), 0).xy;
+    vec2 a = texelFetch(smoothness, clamp(p - step, ivec2(0), last), 0).xy, b = texelFetch(smoothness, clamp(p + step, ivec2(0), last), 0).xy;
     vec2 most = max(here, max(a, b)), bend = abs(a + b - 2.0 * here);
     bends = bends || min(a.x, b.x) < 0.0 || bend.x > threshold * most.x || bend.y > kRidge * most.y;
   }
@@ -59,7 +58,6 @@ bool lightBends(ivec2 p) {
 
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
-  last_ = textureSize(visibility, 0) - 1;
   uint draw = texelFetch(visibility, p, 0).x;
   bool same = true;
   for (int y = 0; y < grouped; ++y)
