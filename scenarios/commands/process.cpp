@@ -20,6 +20,7 @@
 #include "sim/gl/driver_cache.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/readable_text.hpp"
+#include "sim/scene/content_cache.hpp"
 #include "sim/stream/ring/ring_memory.hpp"
 
 namespace pitviper {
@@ -122,6 +123,7 @@ void prepareProcess() {
   std::signal(SIGXFSZ, SIG_IGN);
   std::set_terminate(endByException);
   tellOfDriverBy(tell);
+  tellOfCacheBy(tell);
   watchSignals();
 }
 

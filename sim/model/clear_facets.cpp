@@ -9,6 +9,9 @@
 #include <iterator>
 #include <thread>
 
+#include "sim/parameters/fingerprint.hpp"
+#include "sim/scene/content_cache.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -172,6 +175,27 @@ std::vector<char> clearFacets(const Mesh& mesh, const glm::dvec3& toLight, std::
   for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) threads.push_back(std::async(std::launch::async, work));
   work();
   for (auto& t : threads) t.get();
+  return clear;
+}
+
+std::vector<char> keptClearFacets(const Mesh& mesh, const glm::dvec3& toLight, std::span<const Occluder> others) {
+  Fingerprint f;
+  f.add(toLight).all(mesh.positions).all(mesh.triangles);
+  for (const Occluder& o : others) {
+    for (int k = 0; k < 3; ++k) f.add(o.axes[k]);
+    f.add(o.origin).all(o.mesh.positions).all(o.mesh.triangles);
+  }
+  constexpr const char* kWhat = "clear-1";
+  const ContentKey key = contentKey(f.bytes());
+  if (const auto kept = readCachedTable(kWhat, key)) {
+    TableReader in(*kept);
+    std::vector<char> clear = in.all<char>();
+    if (in.isWhole() && clear.size() == mesh.triangles.size()) return clear;
+  }
+  std::vector<char> clear = clearFacets(mesh, toLight, others);
+  TableWriter out;
+  out.all(clear);
+  writeCachedTable(kWhat, key, out.bytes());
   return clear;
 }
 

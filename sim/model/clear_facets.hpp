@@ -19,4 +19,7 @@ struct Occluder {
 /// lie side by side in both directions (fans of long ones, details far smaller than the rest). `toLight`: unit, body axes.
 std::vector<char> clearFacets(const Mesh& mesh, const glm::dvec3& toLight, std::span<const Occluder> others = {});
 
+/// The same, from the cache of tables where it was found before.
+std::vector<char> keptClearFacets(const Mesh& mesh, const glm::dvec3& toLight, std::span<const Occluder> others);
+
 }  // namespace pitviper

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/scene_fingerprint.hpp"
 #include "sim/model/sunlit_air.hpp"
 #include "sim/model/surroundings.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -78,7 +79,13 @@ class SkyAround final : public Surroundings {
     return all;
   }
 
-  void addTo(Fingerprint& f) const override { f.add(std::string_view("sky and ground")); }  // the scenario's other parts say the rest
+  void addTo(Fingerprint& f) const override {
+    f.add(std::string_view("sky and ground")).add(legs_ != nullptr).add(ground_K_).add(earthRadius_m_);
+    air_->addTo(f);
+    if (legs_) f.add(sun_->toSun), pitviper::addTo(f, sun_->irradiance);
+    pitviper::addTo(f, background_);
+    pitviper::addTo(f, *ground_);
+  }
 
  private:
   struct Line {

@@ -8,9 +8,12 @@
 #include "sim/model/field_drift.hpp"
 #include "sim/model/field_lines.hpp"
 #include "sim/model/field_states.hpp"
+#include "sim/model/scene_fingerprint.hpp"
 #include "sim/model/world.hpp"
+#include "sim/plan/plan_cache.hpp"
 #include "sim/plan/sight_rays.hpp"
 #include "sim/radiance/node_sum.hpp"
+#include "sim/scene/content_cache.hpp"
 
 namespace pitviper {
 namespace {
@@ -35,6 +38,9 @@ constexpr int kNotSeen = -1, kUnknown = 16;
 constexpr double kUnseen = 0.05;
 /// Places at which the air of a line is looked at.
 constexpr int kAirPlaces = 8;
+
+/// Of the cache; a change of what is found here is a new one.
+constexpr const char* kWhat = "fields-1";
 
 /// Radiance of lines through one field at a time, in the plan's slots.
 class FieldLooks {
@@ -212,6 +218,25 @@ FieldSampling::FieldSampling(const Simulation& sim, const Plan& plan) {
   }
 }
 
+std::string FieldSampling::bytes() const {
+  TableWriter out;
+  out.all(time_s_);
+  for (const auto& needs : of_) out.all(needs);
+  return out.bytes();
+}
+
+std::optional<FieldSampling> FieldSampling::from(std::string_view bytes, std::size_t fields) {
+  TableReader in(bytes);
+  FieldSampling all;
+  all.time_s_ = in.all<double>();
+  for (std::size_t t = 0; t < all.time_s_.size(); ++t) {
+    all.of_.push_back(in.all<Needs>());
+    if (all.of_.back().size() != fields) return std::nullopt;
+  }
+  if (!in.isWhole()) return std::nullopt;
+  return all;
+}
+
 std::shared_ptr<const FieldSampling> FieldSampling::of(const Simulation& simulation, const Plan& plan) {
   static std::mutex mutex;
   static std::weak_ptr<const FieldSampling> last;
@@ -220,7 +245,19 @@ std::shared_ptr<const FieldSampling> FieldSampling::of(const Simulation& simulat
   static std::vector<std::vector<double>> lastWeights;
   const std::lock_guard lock(mutex);
   if (auto kept = last.lock(); kept && lastOf == &simulation && lastAccuracy == plan.accuracy && lastWeights == plan.weight) return kept;
-  auto made = std::make_shared<const FieldSampling>(simulation, plan);
+  Fingerprint f;
+  f.add(static_cast<double>(kPlannerVersion)).add(plan.accuracy).add(writePlanned(plan));
+  addTo(f, simulation);
+  for (const Camera& c : simulation.cameras) addTo(f, c);
+  for (const Probe& p : simulation.probes) addTo(f, p);
+  const ContentKey key = contentKey(f.bytes());
+  std::shared_ptr<const FieldSampling> made;
+  if (const auto kept = readCachedTable(kWhat, key))
+    if (auto read = from(*kept, simulation.fields.size())) made = std::make_shared<const FieldSampling>(std::move(*read));
+  if (!made) {
+    made = std::make_shared<const FieldSampling>(simulation, plan);
+    writeCachedTable(kWhat, key, made->bytes());
+  }
   last = made, lastOf = &simulation, lastAccuracy = plan.accuracy, lastWeights = plan.weight;
   return made;
 }

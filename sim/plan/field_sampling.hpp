@@ -1,6 +1,9 @@
 #pragma once
 // How finely a picture looks at fields, by the accuracy asked for: steps of a line, and lines through a pixel.
 #include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
 
 #include "sim/plan/plan.hpp"
 
@@ -15,12 +18,16 @@ class FieldSampling {
   /// The same again while somebody holds one of the same simulation and plan.
   static std::shared_ptr<const FieldSampling> of(const Simulation& simulation, const Plan& plan);
   FieldSampling(const Simulation& simulation, const Plan& plan);
+  /// As bytes that read back to the same, for the cache of tables; nothing where they cannot be read, or are of another number of fields.
+  std::string bytes() const;
+  static std::optional<FieldSampling> from(std::string_view bytes, std::size_t fields);
   /// Of a field: what the times before and after that were looked at need. Seen along its axis a jet needs three times the steps that it needs from the side.
   StepsByKind steps(std::size_t field, double time_s) const;
   /// How much farther apart than pixelLines() has them for the reference lines may lie: the thicker and the more uneven a field, the less.
   double coarser(std::size_t field, double time_s) const;
 
  private:
+  FieldSampling() = default;
   struct Needs {
     StepsByKind steps{};
     double coarser = 0.0;  ///< 0: nothing was there to be looked at

@@ -2,10 +2,15 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <future>
 #include <set>
+#include <thread>
 
+#include "sim/parameters/fingerprint.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/scene/content_cache.hpp"
 
 namespace pitviper {
 namespace {
@@ -64,13 +69,9 @@ struct NodeSurroundings::Height {
     std::call_once(isTold[at], [&] { rests[at] = tellRest(around, sharp ? 0 : degree, wanted); });
     return rests[at];
   }
-
-  /// Of the blurs in use, at nodes; made when asked for.
-  mutable std::vector<float> atNodes;
-  mutable std::once_flag areTold;
+  Eigen::MatrixXd tellRest(const Surroundings& around, int degree, std::size_t wanted) const;
 
  private:
-  Eigen::MatrixXd tellRest(const Surroundings& around, int degree, std::size_t wanted) const;
   mutable std::array<Eigen::MatrixXd, 2 * kRests> rests;
   mutable std::array<std::once_flag, 2 * kRests> isTold;
 };
@@ -153,6 +154,7 @@ const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) con
   h.grid = around.grids()[number];
   h.number = number;
   h.finer = h.grid.finer();
+  prepareLight(number);
   const auto entries = static_cast<Eigen::Index>(h.grid.size()), count = static_cast<Eigen::Index>(nodes_.size());
   Eigen::MatrixXd light = Eigen::MatrixXd::Zero(entries, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -191,47 +193,104 @@ const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) con
   return h;
 }
 
-const std::vector<float>& NodeSurroundings::restsOf(const Height& h) const {
-  std::call_once(h.areTold, [&] {
-    struct Rest {
-      bool sharp;
-      std::size_t blur;
-    };
-    std::vector<Rest> rests;
-    for (const bool sharp : {false, true}) {
-      const Blurs blurs = blursInUse(sharp);
-      for (int b = 0; b < blurs.count; ++b) rests.push_back({sharp, static_cast<size_t>(blurs.first + b)});
-    }
-    rests.push_back({false, kCosine});
-    const std::size_t padded = (nodes_.size() + 3) / 4 * 4, entries = h.finer.size();
-    h.atNodes.assign(rests.size() * entries * padded, 0.0f);
-    for (std::size_t b = 0; b < rests.size(); ++b) {
-      const Eigen::MatrixXd all = h.mix * h.rest(*simulation_.surroundings, degree_, rests[b].sharp, rests[b].blur);
-      for (std::size_t g = 0; g < entries; ++g)
-        for (std::size_t i = 0; i < nodes_.size(); ++i)
-          h.atNodes[(b * entries + g) * padded + i] = static_cast<float>(all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g)));
-    }
-  });
-  return h.atNodes;
+NodeSurroundings::Told NodeSurroundings::makeTold(std::size_t number) const {
+  const Height& h = height(number);
+  struct Rest {
+    bool sharp;
+    std::size_t blur;
+  };
+  std::vector<Rest> rests;
+  for (const bool sharp : {false, true}) {
+    const Blurs blurs = blursInUse(sharp);
+    for (int b = 0; b < blurs.count; ++b) rests.push_back({sharp, static_cast<size_t>(blurs.first + b)});
+  }
+  rests.push_back({false, kCosine});
+  const std::size_t padded = (nodes_.size() + 3) / 4 * 4, entries = h.finer.size();
+  Told told{h.harmonics, std::vector<float>(rests.size() * entries * padded, 0.0f)};
+  for (std::size_t b = 0; b < rests.size(); ++b) {
+    const Eigen::MatrixXd all = h.mix * h.tellRest(*simulation_.surroundings, rests[b].sharp ? 0 : degree_, rests[b].blur);
+    for (std::size_t g = 0; g < entries; ++g)
+      for (std::size_t i = 0; i < nodes_.size(); ++i)
+        told.rest[(b * entries + g) * padded + i] = static_cast<float>(all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g)));
+  }
+  return told;
+}
+
+const NodeSurroundings::Told& NodeSurroundings::told(std::size_t number) const {
+  const std::lock_guard lock(telling_);
+  auto& told = told_[number];
+  if (!told) told = sharedTold(number);
+  return *told;
+}
+
+std::shared_ptr<const NodeSurroundings::Told> NodeSurroundings::sharedTold(std::size_t number) const {
+  const DirectionGrid& grid = simulation_.surroundings->grids()[number];
+  Fingerprint f;
+  simulation_.surroundings->addTo(f);
+  f.add(static_cast<double>(number)).add(degree_).add(grid.above).add(grid.below).add(grid.azimuths).add(grid.turn_rad).add(grid.horizon_rad);
+  for (const bool sharp : {false, true}) f.add(blursInUse(sharp).first).add(blursInUse(sharp).count);
+  for (const SpectralNode& n : nodes_) f.all(n.members);
+  constexpr const char* kWhat = "surroundings-1";
+  const ContentKey key = contentKey(f.bytes());
+  static std::mutex sharing;
+  static std::map<ContentKey, std::weak_ptr<const Told>> shared;
+  const std::lock_guard lock(sharing);
+  std::weak_ptr<const Told>& known = shared[key];
+  if (auto own = known.lock()) return own;
+  auto told = std::make_shared<Told>();
+  known = told;
+  if (const auto kept = readCachedTable(kWhat, key)) {
+    TableReader in(*kept);
+    told->harmonics = in.all<Harmonics>(), told->rest = in.all<float>();
+    if (in.isWhole() && told->harmonics.size() == nodes_.size()) return told;
+  }
+  *told = makeTold(number);
+  TableWriter out;
+  out.all(told->harmonics), out.all(told->rest);
+  writeCachedTable(kWhat, key, out.bytes());
+  return told;
 }
 
 NodeSurroundings::Light NodeSurroundings::lightAt(const Surroundings::Place& place) const {
-  const Height &low = height(place.height), &high = height(place.height + (place.share > 0.0 ? 1 : 0));
+  const Told &low = told(place.height), &high = told(place.height + (place.share > 0.0 ? 1 : 0));
+  const DirectionGrid& above = simulation_.surroundings->grids()[place.height + (place.share > 0.0 ? 1 : 0)];
   const double share = place.share;
   Light light;
-  light.grid = low.finer;
-  light.grid.horizon_rad = (1.0 - share) * low.finer.horizon_rad + share * high.finer.horizon_rad;
+  light.grid = simulation_.surroundings->grids()[place.height].finer();
+  light.grid.horizon_rad = (1.0 - share) * light.grid.horizon_rad + share * above.horizon_rad;
   light.harmonics.assign(nodes_.size(), Harmonics{});
   for (std::size_t i = 0; i < nodes_.size(); ++i)
     for (std::size_t c = 0; c < static_cast<std::size_t>(harmonicCount(degree_)); ++c)
       light.harmonics[i][c] = (1.0 - share) * low.harmonics[i][c] + share * high.harmonics[i][c];
-  light.rest = restsOf(low);
+  light.rest = low.rest;
   if (share > 0.0) {
-    const std::vector<float>& above = restsOf(high);
     const auto mix = static_cast<float>(share);
-    for (std::size_t k = 0; k < above.size(); ++k) light.rest[k] += mix * (above[k] - light.rest[k]);
+    for (std::size_t k = 0; k < high.rest.size(); ++k) light.rest[k] += mix * (high.rest[k] - light.rest[k]);
   }
   return light;
+}
+
+/// Light by wavelength is kept by the surroundings: made beforehand, on all cores.
+void NodeSurroundings::prepareLight(std::size_t number) const {
+  std::set<double> wanted_um;
+  for (const SpectralNode& n : nodes_)
+    for (const auto& m : n.members) wanted_um.insert(m.wavelength_um);
+  const std::vector<double> all_um(wanted_um.begin(), wanted_um.end());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t k = next++; k < all_um.size(); k = next++) simulation_.surroundings->light(all_um[k], number);
+  };
+  std::vector<std::future<void>> others;
+  for (unsigned n = 1; n < std::thread::hardware_concurrency(); ++n) others.push_back(std::async(std::launch::async, work));
+  work();
+  for (auto& o : others) o.get();
+}
+
+const std::vector<double>& NodeSurroundings::ofDome() const {
+  std::call_once(isDomeKnown_, [&] {
+    for (const SpectralNode& n : nodes_) ofDome_.push_back(n.mean(*simulation_.ambient));
+  });
+  return ofDome_;
 }
 
 const std::vector<std::vector<double>>& NodeSurroundings::columns(const ReflectionComponent& r) const {
@@ -305,7 +364,7 @@ std::vector<double> NodeSurroundings::reflected(const ReflectionComponent& r, co
   if (degree_ == Terms::kWhole) return inFull(r, view);
   if (degree_ > 0) return byHarmonics(r, view);
   std::vector<double> all = hemispherical(r, std::acos(std::clamp(glm::dot(view.normal, view.toViewer), 0.0, 1.0)));
-  for (size_t i = 0; i < all.size(); ++i) all[i] *= nodes_[i].mean(*simulation_.ambient);
+  for (size_t i = 0; i < all.size(); ++i) all[i] *= ofDome()[i];
   return all;
 }
 

@@ -53,7 +53,17 @@ class NodeSurroundings {
  private:
   struct Height;
   const Height& height(std::size_t number) const;
-  const std::vector<float>& restsOf(const Height& height) const;
+  /// What Light is mixed of, of one of the surroundings' heights.
+  struct Told {
+    std::vector<Harmonics> harmonics;
+    std::vector<float> rest;
+  };
+  const Told& told(std::size_t number) const;
+  /// By content: several passes of one plan ask for the same.
+  std::shared_ptr<const Told> sharedTold(std::size_t number) const;
+  Told makeTold(std::size_t number) const;
+  void prepareLight(std::size_t height) const;
+  const std::vector<double>& ofDome() const;
   std::vector<double> inFull(const ReflectionComponent& component, const SurfaceView& view) const;
   std::vector<double> byHarmonics(const ReflectionComponent& component, const SurfaceView& view) const;
   const std::vector<std::vector<double>>& columns(const ReflectionComponent& component) const;
@@ -66,6 +76,10 @@ class NodeSurroundings {
   std::vector<double> usual_um_;  ///< by which lobes are aimed, whatever the nodes
   mutable std::mutex busy_;
   mutable std::map<std::size_t, std::unique_ptr<Height>> heights_;
+  mutable std::mutex telling_;
+  mutable std::map<std::size_t, std::shared_ptr<const Told>> told_;
+  mutable std::once_flag isDomeKnown_;
+  mutable std::vector<double> ofDome_;
   const Responses& responses(const ReflectionComponent& component, bool sharp) const;
   mutable std::map<std::pair<const ReflectionComponent*, bool>, std::unique_ptr<Responses>> responses_;
   mutable std::map<const ReflectionComponent*, std::unique_ptr<std::vector<std::vector<double>>>> columns_;

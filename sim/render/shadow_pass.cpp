@@ -167,7 +167,7 @@ ShadowPass::Clear ShadowPass::findClear(std::size_t receiver, const glm::dvec3& 
       others.push_back({theirs, at.axes, at.origin});
       found.casters[c] = at;
     }
-  const std::vector<char> clear = clearFacets(mesh, toSun, others);
+  const std::vector<char> clear = keptClearFacets(mesh, toSun, others);
   const std::uint32_t first = scene_->firstTriangle(static_cast<int>(receiver));
   clear_.resize(std::max<size_t>(clear_.size(), (first + clear.size()) / 32 + 1), 0);
   for (size_t n = 0; n < clear.size(); ++n)

@@ -43,8 +43,10 @@ void SurroundingsBuffer::setState(const WorldState& state) {
     else slots_[k].reset();
   }
   const bool grows = wanted.size() > slots_.size();
-  if (grows) slots_.resize(wanted.size()), slotOf.clear(), std::fill(slots_.begin(), slots_.end(), std::nullopt);
-  std::vector<float> all;
+  if (grows) {
+    slots_.resize(wanted.size()), slotOf.clear(), std::fill(slots_.begin(), slots_.end(), std::nullopt);
+    buffer_.upload(nullptr, wanted.size() * size_ * sizeof(float));
+  }
   std::size_t free = 0;
   for (const auto& place : wanted) {
     if (slotOf.contains(place)) continue;
@@ -52,10 +54,8 @@ void SurroundingsBuffer::setState(const WorldState& state) {
     slots_[free] = place;
     slotOf[place] = free;
     const std::vector<float> own = told(place);
-    if (grows) all.insert(all.end(), own.begin(), own.end());
-    else buffer_.uploadPart(free * size_ * sizeof(float), own.data(), size_ * sizeof(float));
+    buffer_.uploadPart(free * size_ * sizeof(float), own.data(), size_ * sizeof(float));
   }
-  if (grows) buffer_.upload(all);
   at_.clear();
   for (const auto& place : places_) at_.push_back(slotOf[place]);
 }

@@ -1,0 +1,69 @@
+#pragma once
+// Tables that take long to make, kept between runs by the content that they are made from, beside plans and imported meshes ($XDG_CACHE_HOME/pitviper). A table
+// read from it is the one that was written, byte by byte. Losing the folder costs time only.
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "sim/scene/mesh_cache.hpp"
+
+namespace pitviper {
+
+/// All tables together; those not used for longest go first. A larger one than the other is not kept.
+inline constexpr std::uintmax_t kMostTableBytes = std::uintmax_t{1} << 29, kLargestTable = std::uintmax_t{1} << 26;
+
+/// `what`: the kind of table and its version, of letters, digits and '-'. Nothing where it is not there, or damaged (which is said). Never throws.
+std::optional<std::string> readCachedTable(std::string_view what, const ContentKey& key);
+/// Where it cannot be written that is said. Never throws.
+void writeCachedTable(std::string_view what, const ContentKey& key, std::string_view bytes);
+
+/// Gets a line for the first trouble of a process with the folder; nobody without.
+using TellOfCache = void (*)(const char* line);
+void tellOfCacheBy(TellOfCache tell);
+/// `reason`: what went wrong. The first of a process is told.
+void tellOfCacheTrouble(const std::string& reason);
+
+/// Lists of plain values as bytes, each behind its length.
+class TableWriter {
+ public:
+  template <class T>
+  void all(const std::vector<T>& values) {
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+    const std::uint64_t count = values.size();
+    bytes_.append(reinterpret_cast<const char*>(&count), sizeof count);
+    bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+  }
+  const std::string& bytes() const { return bytes_; }
+
+ private:
+  std::string bytes_;
+};
+
+/// After the first list that does not fit everything fails.
+class TableReader {
+ public:
+  explicit TableReader(std::string_view bytes) : left_(bytes) {}
+  template <class T>
+  std::vector<T> all() {
+    static_assert(std::is_trivially_copyable_v<T> && !std::is_pointer_v<T>);
+    std::uint64_t count = 0;
+    ok_ = ok_ && left_.size() >= sizeof count;
+    if (ok_) std::memcpy(&count, left_.data(), sizeof count), left_.remove_prefix(sizeof count);
+    ok_ = ok_ && count <= left_.size() / sizeof(T);
+    std::vector<T> values(ok_ ? count : 0);
+    if (!values.empty())
+      std::memcpy(static_cast<void*>(values.data()), left_.data(), values.size() * sizeof(T)), left_.remove_prefix(values.size() * sizeof(T));
+    return values;
+  }
+  /// All was there, and nothing else.
+  bool isWhole() const { return ok_ && left_.empty(); }
+
+ private:
+  std::string_view left_;
+  bool ok_ = true;
+};
+
+}  // namespace pitviper
