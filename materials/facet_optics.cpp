@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
+#include <unordered_map>
+#include <utility>
 
 #include "materials/film_fringes.hpp"
 #include "sim/model/scene_fingerprint.hpp"
@@ -229,8 +231,14 @@ const FacetRow& FacetOptics::at(double w) const {
   };
   thread_local Last last;
   if (last.number == number_ && last.wavelength_um == w) return *last.row;
-  std::shared_ptr<const FacetRow> row;
-  {
+  // Threads of a reference look the same up again and again: each remembers it, or they would wait for each other most of the time.
+  struct Hash {
+    std::size_t operator()(const std::pair<std::uint64_t, double>& key) const { return std::hash<double>()(key.second) ^ key.first * 0x9e3779b97f4a7c15u; }
+  };
+  thread_local std::unordered_map<std::pair<std::uint64_t, double>, std::shared_ptr<const FacetRow>, Hash> known;
+  if (known.size() > kMostRows) known.clear();
+  std::shared_ptr<const FacetRow>& row = known[{number_, w}];
+  if (!row) {
     const std::lock_guard lock(mutex_);
     if (const auto found = rows_.find(w); found != rows_.end()) row = found->second;
   }
@@ -240,7 +248,7 @@ const FacetRow& FacetOptics::at(double w) const {
     if (rows_.size() >= (statesPerUm_ > 0.0 ? kStateRows : kMostRows)) rows_.clear();
     rows_[w] = row;
   }
-  last = {number_, w, std::move(row)};
+  last = {number_, w, row};
   return *last.row;
 }
 

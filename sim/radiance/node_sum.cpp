@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/radiance/node_planck.hpp"
 #include "sim/radiance/node_surroundings.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -76,17 +77,14 @@ NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralN
 void NodeSpectra::Planck::make(std::span<const SpectralNode> nodes, double first, double last, double step) {
   first_K = first, step_K = step;
   const int count = static_cast<int>(std::lround((last - first) / step));
+  const NodePlanck planck(nodes);
+  const std::size_t each = nodes.size();
+  value.resize(static_cast<std::size_t>(count + 1) * each), slope.resize(value.size());
   for (int k = 0; k <= count; ++k) {
-    const double t = first + step * k;
-    for (const SpectralNode& n : nodes) {
-      value.push_back(n.planck(t));
-      // dB/dT = B x / (T (1 - exp(-x))), x = c2 / (lambda T).
-      slope.push_back(step * n.mean([t](double w) {
-        const double x = kSecondRadiation_umK / (w * t);
-        return physics::planckRadiance(w, t) * x / (t * physics::oneMinusExp(x));
-      }));
-    }
+    const std::size_t begin = static_cast<std::size_t>(k) * each;
+    planck.at(first + step * k, std::span(value).subspan(begin, each), std::span(slope).subspan(begin, each));
   }
+  for (double& s : slope) s *= step;
 }
 
 bool NodeSpectra::Planck::at(double temperature_K, std::span<double> into) const {

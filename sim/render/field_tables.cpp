@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "sim/radiance/node_planck.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -89,9 +90,11 @@ FieldTables::FieldTables(const Simulation& sim, const Plan& plan, const FieldBod
   firstInverse_K = static_cast<float>(first);
   entriesPerInverse = static_cast<float>(1.0 / step);
   blackAt = static_cast<int>(texels.size());
+  const NodePlanck planck(plan.nodes);
+  std::vector<double> black(plan.nodes.size());
   for (int k = 0; k < blackEntries; ++k) {
-    const double temperature_K = 1.0 / (first + step * k);
-    appendRow(texels, plan, [temperature_K](const SpectralNode& n) { return n.planck(temperature_K); });
+    planck.at(1.0 / (first + step * k), black);
+    appendRow(texels, plan, [&](const SpectralNode& n) { return black[static_cast<size_t>(&n - plan.nodes.data())]; });
   }
 }
 

@@ -1,8 +1,11 @@
 #include "sim/render/material_tables.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <future>
+#include <thread>
 
 #include "sim/radiance/node_surroundings.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -120,17 +123,32 @@ std::vector<double> meansOver(const SpectralNode& node, std::size_t places, std:
   return sums;
 }
 
+/// Of each node of a plan, on all cores.
+template <class Of>
+std::vector<std::vector<double>> ofNodes(const Plan& plan, const Of& of) {
+  std::vector<std::vector<double>> all(plan.nodes.size());
+  std::atomic<std::size_t> next{0};
+  const auto work = [&] {
+    for (std::size_t i = next++; i < all.size(); i = next++) all[i] = of(plan.nodes[i]);
+  };
+  std::vector<std::future<void>> others;
+  for (unsigned n = 1; n < std::thread::hardware_concurrency(); ++n) others.push_back(std::async(std::launch::async, work));
+  work();
+  for (auto& o : others) o.get();
+  return all;
+}
+
 /// By angle 2, angle 1 and node.
 void appendColumns(SurfaceTables& t, const Material& m, const MaterialAxes& axes, std::size_t table, const Plan& plan) {
   if (!t.lit) return;
   const AxisPair& own = axes.table[table];
   const auto along = static_cast<std::size_t>(own[0].count), cells = along * static_cast<std::size_t>(own[1].count);
-  std::vector<std::vector<double>> means;
-  for (const SpectralNode& n : plan.nodes)
-    means.push_back(meansOver(n, cells, m.reflections.size(), [&](std::size_t k, double w, std::size_t cell) {
+  const auto means = ofNodes(plan, [&](const SpectralNode& n) {
+    return meansOver(n, cells, m.reflections.size(), [&](std::size_t k, double w, std::size_t cell) {
       if (axes.tableOf[k] != table) return 0.0;
       return columnAt(*m.reflections[k], w, own[0].at(static_cast<int>(cell % along)), own[1].at(static_cast<int>(cell / along)), own);
-    }));
+    });
+  });
   for (std::size_t cell = 0; cell < cells; ++cell)
     for (const auto& mean : means) appendComponents(t.columns, t, m, 0.0, [&](std::size_t k) { return mean[cell * m.reflections.size() + k]; });
 }
@@ -138,14 +156,14 @@ void appendColumns(SurfaceTables& t, const Material& m, const MaterialAxes& axes
 /// By view angle and node.
 void appendHemispherical(SurfaceTables& t, const Material& m, int views, const Plan& plan) {
   const std::size_t parts = m.reflections.size() + 1;
-  std::vector<std::vector<double>> means;
-  for (const SpectralNode& n : plan.nodes)
-    means.push_back(meansOver(n, static_cast<std::size_t>(views), parts, [&](std::size_t k, double w, std::size_t view) {
+  const auto means = ofNodes(plan, [&](const SpectralNode& n) {
+    return meansOver(n, static_cast<std::size_t>(views), parts, [&](std::size_t k, double w, std::size_t view) {
       const double angle = viewAngle(static_cast<int>(view), views);
       if (k + 1 < parts) return m.reflections[k]->hemispherical(w, angle);
       // In double precision: what a good window emits is nearly all digits of 1 less than what it lets through and reflects.
       return m.emissivity(w, angle);
-    }));
+    });
+  });
   for (std::size_t view = 0; view < static_cast<std::size_t>(views); ++view)
     for (const auto& mean : means)
       appendComponents(t.hemispherical, t, m, mean[view * parts + parts - 1], [&](std::size_t k) { return mean[view * parts + k]; });
