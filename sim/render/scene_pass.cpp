@@ -22,6 +22,8 @@ constexpr int kTilePicture_px = 1024;
 /// Where an accuracy is asked for, pixels that bend by more than so many times it are shaded subpixel by subpixel: an edge between two middles bends by as
 /// much as there is between its sides, and the middle is off by half of that at most.
 constexpr double kBendShare = 2.0, kUsualAccuracy = 0.01;
+/// For the rounding of places in single precision.
+constexpr double kRoom = 1.001;
 
 /// The same plan at one wavelength: what the reference needs of tables is which part each draw is.
 Plan outline(const Plan& plan) {
@@ -58,6 +60,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
   const bool demand = classes && lightsVary(plan, simulation, truth);
   slots.files["light_demand"] = std::string("sim/render/glsl/") + (demand ? "light_demand.glsl" : "light_demand_none.glsl");
   slots.files["shadow_list"] = std::string("sim/render/glsl/") + (plan.terms.shadows ? "shadow_list.glsl" : "shadow_list_none.glsl");
+  slots.constants["SHADOWS_VARY"] = classes && shadowsVary(plan, simulation, truth) ? 1 : 0;
   addLightConstants(slots);
   pixelClasses_.emplace(library, slots);
   if (shading != Shading::Reference)
@@ -144,7 +147,7 @@ void ScenePass::uploadLights(const WorldState& state) {
   const size_t stride = 3 * static_cast<size_t>(plan_.lightCount) + 1;
   std::vector<glm::vec4> lights((state.entities.size() + 1) * stride, glm::vec4(0.0f));
   const bool few = plan_.lightCount <= kFewLights;
-  sunAlone_.assign(state.entities.size(), 1);
+  lightNeeds_.assign(state.entities.size(), {});
   for (size_t r = 0; plan_.lightCount > 0 && r <= state.entities.size(); ++r) {
     // The first row is the ground's, which lamps don't light. Few lights have a place each, many are listed one after the other: lights_few.glsl,
     // lights_many.glsl.
@@ -158,7 +161,14 @@ void ScenePass::uploadLights(const WorldState& state) {
       const size_t k = few ? number : static_cast<size_t>(row->x);
       row[3 * k + 1] = glm::vec4(place, radius_m);
       const auto casters = shadows_ && matters && body ? shadows_->castersOf(e, number) : ShadowPass::Range{};
-      if (body && matters && (casters.count > 0 || number < simulation_.lights.size())) sunAlone_[e] = 0;
+      if (body && matters) {
+        const Entity& entity = simulation_.entities[e];
+        const bool lamp = number < simulation_.lights.size();
+        const double farthest = kRoom * (glm::length(place - glm::dvec3(entity.boundingCentre)) + static_cast<double>(entity.boundingRadius_m));
+        if (lamp && farthest * farthest < static_cast<double>(std::min(reach2_m2.x, reach2_m2.y))) lightNeeds_[e].sunAlone = false;
+        lightNeeds_[e].lamps |= lamp;
+        lightNeeds_[e].shadows |= casters.count > 0;
+      }
       row[3 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, shadowReach2_m2);
       row[3 * k + 3] = reach2_m2;
       row->x += 1.0f;
@@ -243,17 +253,18 @@ void ScenePass::findClassesIn(const View& v, const WorldState& state, const std:
   for (size_t c = 1; !warm_ && c < surfaceClasses_.size(); ++c) classesInView_.insert(c);
   warm_ = true;
   for (const DrawItem& d : tables_.draws) {
-    const auto add = [&](bool sunAlone) {
-      classesInView_.insert(static_cast<size_t>(d.surfaceClass));
-      if (!sunAlone) classesInView_.insert(static_cast<size_t>(d.everyLight));
+    const auto add = [&](const LightNeeds& needs) {
+      if (needs.sunAlone) classesInView_.insert(static_cast<size_t>(d.surfaceClass));
+      if (needs.lamps) classesInView_.insert(static_cast<size_t>(d.unshadowed));
+      if (needs.shadows) classesInView_.insert(static_cast<size_t>(d.everyLight));
     };
-    if (d.kind == DrawKind::Ground) add(true);
+    if (d.kind == DrawKind::Ground) add({});
     if (d.kind != DrawKind::Solid) continue;
     const auto e = static_cast<size_t>(d.entity);
     const Pose& pose = state.entities[e];
     const Entity& entity = simulation_.entities[e];
     if (drawn[e] && state.isThere(e) && mayShow(v, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m))
-      add(sunAlone_[e] != 0);
+      add(lightNeeds_[e]);
   }
 }
 
@@ -383,7 +394,7 @@ void ScenePass::drawTilePicture(const std::vector<Tile>& tiles, const WorldState
     std::set<size_t> classes;
     for (std::uint32_t d : tiles[i].draws)
       if (tables_.draws[d].entity == tiles[i].view->onlyEntity)
-        for (int c : {tables_.draws[d].surfaceClass, tables_.draws[d].everyLight}) classes.insert(static_cast<size_t>(c));
+        for (int c : {tables_.draws[d].surfaceClass, tables_.draws[d].unshadowed, tables_.draws[d].everyLight}) classes.insert(static_cast<size_t>(c));
     shadeTile(current_->shading, tiles[i].part, classes);
   }
   checkGl("drawing small bodies");

@@ -137,7 +137,12 @@ class ScenePass {
   RenderTables tables_;
   std::vector<SurfaceClass> surfaceClasses_;
   std::set<std::size_t> classesInView_;
-  std::vector<char> sunAlone_;                ///< one flag per entity: no lamp and no shadow matters to any of it
+  struct LightNeeds {
+    bool sunAlone = true;  ///< no lamp may matter to some of it
+    bool lamps = false;    ///< one may
+    bool shadows = false;  ///< something may stand between some of it and a light that matters
+  };
+  std::vector<LightNeeds> lightNeeds_;        ///< of each entity
   std::optional<SharedShading> shared_;       ///< made when first needed
   std::optional<PixelClasses> pixelClasses_;  ///< made with the tables
   SurfaceBuffers solid_;

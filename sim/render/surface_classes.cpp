@@ -89,23 +89,34 @@ std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation
     auto at = std::find_if(classes.begin() + 1, classes.end(), [&](const SurfaceClass& c) { return kindOf(c) == kindOf(own); });
     if (at == classes.end()) at = classes.insert(classes.end(), own);
     else *at = both(*at, own);
-    item.surfaceClass = item.everyLight = static_cast<int>(at - classes.begin());
+    item.surfaceClass = item.unshadowed = item.everyLight = static_cast<int>(at - classes.begin());
   }
   if (!lightsVary(plan, sim, truth)) return classes;
   const std::size_t all = classes.size();
+  const bool unshadowed = shadowsVary(plan, sim, truth);
   std::vector<int> alone{0};
   for (std::size_t c = 1; c < all; ++c) {
     alone.push_back(static_cast<int>(kindOf(classes[c]) < kCostly ? classes.size() : c));
     if (alone.back() == static_cast<int>(c)) continue;
     classes.push_back(classes[c]);
     classes.back().sunAlone = true;
+    if (!unshadowed) continue;
+    classes.push_back(classes[c]);
+    classes.back().unshadowed = true;
   }
-  for (DrawItem& item : tables.draws) item.surfaceClass = alone[static_cast<std::size_t>(item.surfaceClass)];
+  for (DrawItem& item : tables.draws) {
+    item.surfaceClass = alone[static_cast<std::size_t>(item.everyLight)];
+    if (unshadowed && item.surfaceClass != item.everyLight) item.unshadowed = item.surfaceClass + 1;  // light_demand.glsl counts on it
+  }
   return classes;
 }
 
 bool lightsVary(const Plan& plan, const Simulation& sim, bool truth) {
   return (sim.sun || !truth) && plan.terms.lights && plan.lightCount > 0 && (plan.terms.shadows || plan.lightCount > 1);
+}
+
+bool shadowsVary(const Plan& plan, const Simulation& sim, bool truth) {
+  return lightsVary(plan, sim, truth) && plan.terms.shadows && plan.lightCount > (sim.sun ? 1 : 0);
 }
 
 void addClassSlots(const SurfaceClass& own, const RenderTables& tables, ShaderSlots& slots) {
@@ -118,8 +129,8 @@ void addClassSlots(const SurfaceClass& own, const RenderTables& tables, ShaderSl
   }
   if (own.sunAlone) {
     slots.files["lights"] = folder + (slots.constants["SUN"] > 0 ? "lights_sun.glsl" : "lights_none.glsl");
-    slots.files["shadow"] = folder + "shadow_none.glsl";
   }
+  if (own.sunAlone || own.unshadowed) slots.files["shadow"] = folder + "shadow_none.glsl";
   if (!own.lobes) {
     slots.constants["LOBES"] = 0;
     if (tables.solid.lit) slots.generated["lobes"] = "Real lobeOf(int kind, Vec4 parameters, Vec3 toLight) { return 1.0; }\n";

@@ -37,6 +37,7 @@ struct DrawItem {
   std::uint32_t material = 0;  ///< in the tables of its kind
   double temperature_K = 0.0;  ///< that its row is of
   int surfaceClass = 0;        ///< of what is solid (surface_classes.hpp)
+  int unshadowed = 0;          ///< the class for where lamps matter and shadows don't; everyLight where there is none
   int everyLight = 0;          ///< the class for where lamps or shadows matter; the same where there is one
 };
 

@@ -11,8 +11,9 @@ namespace pitviper::test {
 namespace {
 
 /// The largest difference of a layer from the reference's, by the reference's largest value.
-double worst(const std::string& scenario, const std::string& name) {
-  const Frame planned = renderFrame(scene("accuracy: 1 %\n" + scenario)), exact = renderFrame(scene("accuracy: reference\n" + scenario));
+double worst(const std::string& scenario, const std::string& name, const std::string& reference = "") {
+  const Frame planned = renderFrame(scene("accuracy: 1 %\n" + scenario)),
+              exact = renderFrame(scene("accuracy: reference\n" + (reference.empty() ? scenario : reference)));
   const auto &a = layer(planned, name), &b = layer(exact, name);
   double most = 0.0, off = 0.0;
   for (int row = 0; row < 64; ++row)
@@ -57,6 +58,44 @@ TEST(LightDemand, LampsAndTheirTruth) {
     bound(std::string("lamps over hills ") + words + ", of the brightest pixel", worst(lamps(day, ""), "mw.radiance"), 0.01, "the accuracy asked for");
     bound(std::string("solid angle from the first lamp ") + words + ", of the largest", worst(lamps(day, truth), "truth.solid_angle_from_light"), 1e-4,
           "single precision of a grazing facet");
+  }
+}
+
+/// Balls in a row before a wall, another wall hidden behind it, and lamps on the camera's side of them.
+std::string casters(int balls, const std::string& more, const std::string& places) {
+  std::string lights, bodies;
+  int number = 0;
+  for (std::size_t from = 0; from < places.size(); from = places.find(';', from) + 1) {
+    lights += (number ? ", " : "") + std::string("{name: l") + std::to_string(number) +
+              ", intensity: {wavelength: um, unit: W/(sr um), outside: zero, values: [[1, 3000], [13, 3000]]}, visible: false, position: [" +
+              places.substr(from, places.find(';', from) - from) + "]}";
+    ++number;
+  }
+  for (int i = 0; i < balls; ++i)
+    bodies += ", {name: ball" + std::to_string(i) + ", shape: {model: sphere, radius: 2 m}, material: grey_aircraft_paint, temperature: 300 K, position: [" +
+              std::to_string(-18 + 36 * i / std::max(balls - 1, 1)) + " m, " + std::to_string(52 + i % 3) + " m, " + std::to_string(14 + 5 * (i % 4)) + " m]}";
+  return more + "lights: [" + lights + "]\nentities: [{name: wall, shape: {model: plate, width: 60 m, height: 60 m}, material: grey_aircraft_paint, " +
+         "temperature: 300 K, position: [0 m, 60 m, 20 m], heading: 180 deg}, {name: hidden, shape: {model: plate, width: 60 m, height: 60 m}, material: " +
+         "grey_aircraft_paint, temperature: 320 K, position: [0 m, 61 m, 20 m], heading: 180 deg}" + bodies +
+         "]\ncameras: [{name: c, position: [0 m, 0 m, 20 m], heading: 0 deg, " + kFilm + ", channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}}]}]\n";
+}
+
+// Where nothing stands before a lamp shadows are not asked for: of the few balls on the line to it they are, of many everywhere.
+TEST(LightDemand, WhatStandsBeforeALamp) {
+  const std::string sun = "sun: {azimuth: 200 deg, elevation: 35 deg, temperature: 5772 K}\n", one = "10 m, 30 m, 25 m;", two = one + "-14 m, 45 m, 10 m;";
+  struct Row {
+    const char* what;
+    int balls;
+    std::string more, lamps;
+  };
+  for (const Row& r : {Row{"no ball, one lamp", 0, "", one}, Row{"a ball, one lamp", 1, "", one}, Row{"five balls, two lamps", 5, "", two},
+                       Row{"five balls, two lamps, sunshine", 5, sun, two}, Row{"twenty balls, one lamp", 20, "", one},
+                       Row{"four balls, six lamps", 4, "", two + "0 m, 40 m, 20 m; -5 m, 30 m, 30 m; 15 m, 40 m, 12 m; 3 m, 20 m, 8 m;"}}) {
+    const std::string scenario = casters(r.balls, r.more, r.lamps);
+    bound(std::string("shadows before a wall, ") + r.what + ", of the brightest pixel", worst(scenario, "mw.radiance"), 0.01, "the accuracy asked for");
+    if (r.balls > 0) {
+      EXPECT_GT(worst("render: {shadows: false}\n" + scenario, "mw.radiance", scenario), 0.02) << r.what << ": without shadows the picture is off by twice what the bound allows";
+    }
   }
 }
 

@@ -6,7 +6,7 @@ struct Draw {
   vec4 row2;
   uvec4 table;  // self or temperature row, material, temperature texture + 1, entity + 1
   vec4 state;   // temperature [K], part, row of its lights, z of its origin from the depth centre [m]
-  vec4 fine;    // what row2.w lost by rounding [m]; depth of its class, and of that with every light
+  vec4 fine;    // what row2.w lost by rounding [m]; depth of its class with the sun alone (that without shadows is the next), and with every light
 };
 // Textures of buffers: llvmpipe reads storage buffers three times as slowly.
 layout(binding = 8) uniform usamplerBuffer draws;

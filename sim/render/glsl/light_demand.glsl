@@ -1,5 +1,5 @@
-// Whether what a pixel sees takes the program that has every light and its shadows: near a lamp, or where something may stand before the sun. Elsewhere one
-// with the sun alone does.
+// Which program what a pixel sees takes: that with every light and its shadows where something may stand before one that matters, that with every light near a
+// lamp, elsewhere that with the sun alone.
 //@use sim/radiometry/glsl/sun_disc.glsl
 //@use sim/render/glsl/light_list.glsl
 vec3 point_, facet_, toViewer_;
@@ -11,6 +11,7 @@ const float kSunlit = 0.3;  // as in sim/render/light_relevance.hpp
 // Of its reach, squared, within which a lamp may make a picture bend: it is kLampShare (sim/render/light_relevance.hpp), so that farther off a lamp adds less
 // than the accuracy, half of what a bend is.
 const float kBends = 0.01;
+const float kFewCasters = 16.0;  // of more, asking each costs about what the shadows do
 bool sunlit_, smooth_;
 vec2 lightAndDepth_;  // cosine to the sun, or -1; 1 / depth
 
@@ -27,7 +28,7 @@ bool sunMayBeHidden(int entry, vec3 normal, float range) {
   return may;
 }
 
-bool needsAll(uvec2 id, vec2 pixel) {
+int lightDemand(uvec2 id, vec2 pixel) {
   prepareRay(pixel);
   Draw draw = drawAt(id.x);
   vec3 d = inBody(draw, ray_), q = pointOnPlane(draw);
@@ -44,15 +45,23 @@ bool needsAll(uvec2 id, vec2 pixel) {
   if (dot(facet_, d) > 0.0) normal = -normal;
   int row = lightRow(draw), lamps = (LIGHTS > FEW_LIGHTS ? int(lightTexel(row).x) : LIGHTS) - SUN;
   bool hidden = SUN > 0 && sunMayBeHidden(lightEntry(row, lamps), normal, max((planeOf(draw) + m.along) * rayLength_, 1.0e-6));
-  bool all = hidden;
+  bool lit = hidden;
   smooth_ = !hidden;
+  wholeSun_ = false;
   for (int k = 0; k < lamps; ++k) {
     int entry = lightEntry(row, k);
+    vec4 listed = lightTexel(entry + 1);
     vec3 line = lightTexel(entry).xyz - point_;
     vec2 reach2 = lightTexel(entry + 2).xy;
-    bool matters = lightTexel(entry + 1).x >= 0.0;
-    all = all || (matters && dot(line, line) < (sunlit_ ? reach2.y : reach2.x));
-    smooth_ = smooth_ && !(matters && dot(line, line) < kBends * (sunlit_ ? reach2.y : reach2.x));
+    float d2 = dot(line, line), near2 = sunlit_ ? reach2.y : reach2.x;
+    bool matters = listed.x >= 0.0 && d2 < near2;
+    lit = lit || matters;
+    if (SHADOWS_VARY > 0) {
+      bool asked = LIGHTS <= FEW_LIGHTS && listed.z <= kFewCasters;
+      bool stopped = asked ? mayBeHidden(asked ? listed : vec4(0.0), line * inversesqrt(max(d2, 1.0e-30))) : listed.z > 0.0;
+      hidden = hidden || (matters && d2 < listed.w && stopped);
+    }
+    smooth_ = smooth_ && !(matters && d2 < kBends * near2);
   }
-  return all;
+  return !lit ? kSunAlone : SHADOWS_VARY > 0 && !hidden ? kUnshadowed : kEveryLight;
 }
