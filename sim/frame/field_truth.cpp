@@ -107,7 +107,7 @@ void TruthMeter::addField(TargetRow& row, std::size_t f, const WorldState& state
     Row here{own, own, own, std::vector<double>(channels * static_cast<std::size_t>(grid.width), 0.0)};
     std::vector<FieldStep> alone;
     for (int x = 0; x < grid.width; ++x)
-      for (const FilmLine& through : pixelLines(places, x, y, kMostLines, {coarse ? kCoarser : 1.0, 2, 1.0}).within) {
+      for (const FilmLine& through : pixelLines(places, x, y, kMostLines, {coarse ? kCoarser : 1.0}).within) {
         const glm::dvec3 ray = grid.ray(through.at.x, through.at.y);
         const double length = glm::length(ray), nearest_m = grid.near_m * length;
         LineOfSight line{grid.position, grid.localFromCamera * ray / length, {}, 0.0};

@@ -8,7 +8,7 @@ namespace {
 
 /// Parts of the finest length that lines lie apart at most. A Gaussian profile sampled every 0.83 sigma is integrated to 1e-12 (Poisson's summation); the
 /// finest length of a puff is 1.66 of its sigma.
-constexpr double kApart = 0.5, kSigmas = 0.83;
+constexpr double kApart = 0.5;
 /// A rectangle grows by a part of itself and by so many pixels: rounding in single precision.
 constexpr double kMargin = 0.02, kMargin_px = 1e-4;
 
@@ -196,7 +196,7 @@ class PixelCells {
     double share(int i) const { return points->share[i % points->count] / panels; }
   };
   Axis axisOf(double lines, double wanted) const {
-    const int count = std::max(static_cast<int>(std::ceil(std::min(lines, 1e4))), wanted * apart_.evenFrom_px > 1.0 ? apart_.atLeast : 1);
+    const int count = std::max(static_cast<int>(std::ceil(std::min(lines, 1e4))), wanted > 1.0 ? apart_.atLeast : 1);
     return count <= 3 ? Axis{1, &kPoints[count - 1]} : Axis{(count + 2) / 3, &kPoints[2]};
   }
   struct Cell {
@@ -210,12 +210,6 @@ class PixelCells {
 
 }  // namespace
 
-double evenFrom_px(double part, double dimmest) {
-  // f = exp(-x^2 / 2): the mean over h is f + h^2 f''/24, f''/f = x^2 - 1; h is a pixel by sigma.
-  const double bend = std::max(-2.0 * std::log(dimmest) - 1.0, 1.0);
-  return kSigmas * std::sqrt(bend / (24.0 * part));
-}
-
 PixelLines pixelLines(std::span<const FieldLines> fields, int x, int y, int most, const LinesApart& apart) {
   const glm::dvec2 corner(x, y);
   std::vector<FieldLines::Part> parts;
@@ -227,7 +221,7 @@ PixelLines pixelLines(std::span<const FieldLines> fields, int x, int y, int most
       finest = std::min({finest, p.apart_px.x, p.apart_px.y});
     }
   PixelLines lines;
-  if (!(finest < apart.evenFrom_px)) {
+  if (!(finest < 1.0)) {
     lines.within.push_back({corner + 0.5, 1.0});
     return lines;
   }

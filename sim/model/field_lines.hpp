@@ -27,27 +27,20 @@ struct FilmLine {
   glm::dvec2 at{0.0};  ///< [pixels from the lower left]
   double share = 1.0;
 };
-/// Of the reference.
-constexpr int kReferenceLines = 128;
-constexpr double kReferenceEven_px = 12.0;
-
-/// Where lines may lie so many pixels apart, one through a pixel's middle is within `part` of the pixel's mean wherever a Gaussian profile has more than
-/// `dimmest` of its middle.
-double evenFrom_px(double part, double dimmest);
-
-/// How far apart lines through a pixel may lie: so many times what fields ask for; so many at least, each way, where lines so many pixels apart see less than
-/// all of their structure: one through the middle of a slope is off by how it bends.
+/// How far apart lines through a pixel may lie: so many times what fields ask for; so many at least, each way, in a part of it that is finer than that part.
 struct LinesApart {
   double coarser = 1.0;
   int atLeast = 2;
-  double evenFrom_px = kReferenceEven_px;
 };
-/// Through pixel (x, y): over the parts of it in which fields show, as far apart as said, its middle alone where they are even. Where that takes more than
+/// Through pixel (x, y): over the parts of it in which fields show, as far apart as said, its middle alone where that does. Where that takes more than
 /// `most` x `most`, all of them farther apart.
 struct PixelLines {
   std::vector<FilmLine> within;
   double outside = 0.0;  ///< share of the pixel where none of them shows
 };
 PixelLines pixelLines(std::span<const FieldLines> fields, int x, int y, int most, const LinesApart& apart = {});
+
+/// Of the reference.
+constexpr int kReferenceLines = 128;
 
 }  // namespace pitviper

@@ -25,8 +25,6 @@ class FieldSampling {
   StepsByKind steps(std::size_t field, double time_s) const;
   /// How much farther apart than pixelLines() has them for the reference lines may lie: the thicker and the more uneven a field, the less.
   double coarser(std::size_t field, double time_s) const;
-  /// From where on a pixel's middle does for the whole of it: LinesApart::evenFrom_px.
-  double evenFrom_px() const { return evenFrom_px_; }
 
  private:
   FieldSampling() = default;
@@ -35,7 +33,6 @@ class FieldSampling {
     double coarser = 0.0;  ///< 0: nothing was there to be looked at
   };
   std::pair<const Needs*, const Needs*> around(std::size_t field, double time_s) const;
-  double evenFrom_px_ = 1.0;
   std::vector<double> time_s_;          ///< rising
   std::vector<std::vector<Needs>> of_;  ///< [time][field]
 };

@@ -95,7 +95,7 @@ void FieldDraws::listTiles(const View& view, const FieldState& field, Body& body
     for (int y = corner.y; y < corner.y + tile; ++y)
       for (int x = corner.x; x < corner.x + tile; ++x) {
         const PixelLines p = pixelLines({&list.lines, 1}, low.x + x, low.y + y, std::min(most, kReferenceLines),
-                                        view.zoomed ? LinesApart{kOfMany * body.coarser, 1, 1.0} : LinesApart{body.coarser, 2, sampling_->evenFrom_px()});
+                                        view.zoomed ? LinesApart{kOfMany * body.coarser, 1} : LinesApart{body.coarser, 2});
         const size_t at = static_cast<size_t>(body.firstPixel) + 3 * static_cast<size_t>(y * grid.x + x);
         const bool alone = p.within.size() == 1 && p.outside == 0.0;
         words[at] = alone ? 0u : static_cast<std::uint32_t>(words.size());

@@ -70,31 +70,6 @@ TEST(FieldLines, HoldAGaussianThatABorderCuts) {
         "panels of 2.25 widths: the same remainder 3^6 times, no longer small; pictures take them where a third of the accuracy holds");
 }
 
-// A Gaussian profile that is wider than a pixel: lines as far apart as asked for would be one a pixel, which is off by how the slope bends. Its mean over any
-// pixel is a difference of error functions; errors are told as on the film, against 1e-3 of the middle where it is darker.
-TEST(FieldLines, HoldASlopeWiderThanAPixel) {
-  std::mt19937 random(8);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  constexpr double kDimmest = 1e-3;
-  for (const double part : {1e-1 / 3.0, 1e-2 / 3.0, 1e-3 / 3.0}) {
-    double worst = 0.0, middle = 0.0;
-    for (int trial = 0; trial < 4000; ++trial) {
-      const double sigma = std::pow(10.0, 2.0 * unit(random) + 0.1), centre = 0.5 + 5.0 * sigma * (2.0 * unit(random) - 1.0), root = std::sqrt(2.0) * sigma;
-      const FieldLines lines = ofParts({{{-1.0, -1.0}, {2.0, 2.0}, {0.83 * sigma, 1e3}, 0}});
-      const double want = std::sqrt(0.5 * std::acos(-1.0)) * sigma * (std::erf((1.0 - centre) / root) - std::erf(-centre / root));
-      const auto at = [&](double x) { return std::exp(-0.5 * std::pow((x - centre) / sigma, 2.0)); };
-      double sum = 0.0;
-      for (const FilmLine& l : pixelLines({&lines, 1}, 0, 0, 128, {1.0, 2, evenFrom_px(part, kDimmest)}).within) sum += l.share * at(l.at.x);
-      worst = std::max(worst, std::abs(sum - want) / std::max(want, kDimmest));
-      middle = std::max(middle, std::abs(at(0.5) - want) / std::max(want, kDimmest));
-    }
-    char what[120];
-    std::snprintf(what, sizeof what, "a slope wider than a pixel, lines for %.2g", part);
-    bound(what, worst, std::max(part, 0.012), "what is asked for, and where two points do: h^4 f''''/4320 at h = 0.83 sigma, 3.7 sigma from the middle");
-    EXPECT_GT(middle, 0.1) << "one line a pixel would not do";
-  }
-}
-
 // Rationale: parts as fine as 1e-6 of a pixel beside coarse ones, all over it, would be halved into 1e12 cells. Expected: as many lines as allowed at most, at
 // once, that stand for the whole pixel.
 TEST(FieldLines, StayFewHoweverFineThePartsAre) {
