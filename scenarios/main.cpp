@@ -76,13 +76,14 @@ const std::map<std::string, Command>& commands() {
         "  --set, --root    as of run\n"}},
       {"check",
        {checkCommand, "validate a scenario, render nothing",
-        "pitviper check SCENARIO.yaml [--set path.to.key=value]... [--root FOLDER]... [--audit]\n\nReads everything the scenario names and reports the first mistake as "
+        "pitviper check SCENARIO.yaml [--set path.to.key=value]... [--root FOLDER]... [--plan] [--audit]\n\nReads everything the scenario names and reports the first mistake as "
         "file:line:col with "
         "the fix (exit code 2).\nThen tells what each camera sees in the first, the middle and the last frame: a line a body (many alike in one) with its "
         "size,\n"
         "range, size in pixels, and whether it is out of view, behind the camera, hidden by another or smaller than a pixel; 'hidden' is\n"
         "found by rays to a few dozen places on the body. Meshes whose size smells of another unit than the one given are noted.\n\n"
         "  --root FOLDER    as of run\n"
+        "  --plan           also plans each camera, which takes seconds, and says how many wavelengths it takes; the plan is kept, as of run\n"
         "  --audit          also draws those frames, works 16 pixels of each (or as many as the scenario's 'audit' says) out by the reference,\n"
         "                   and tells how far they are from it; writes nothing\n"}},
       {"plan",

@@ -13,6 +13,8 @@ namespace {
 /// Of the error asked for: what groups may take of the products they are fitted to, and of those they have not seen. The rest is for tables
 /// and for what was not drawn.
 constexpr double kFitted = 0.33, kUnseen = 0.42;
+/// Of that, with fields in view, whose steps and lines have an account of their own.
+constexpr double kBesideFields = 0.7;
 constexpr int kMostGroups = 96;
 /// Of hundreds of lines most say the same: a fit begins with some, and the worst of the others join them.
 constexpr FitEffort kEffort{60, 160, 0.0, 12};
@@ -21,7 +23,9 @@ constexpr size_t kLearnt = 60;
 
 }  // namespace
 
-ChannelFit::ChannelFit(const Simulation& simulation, const Spectrum& kernel, double accuracy) : grid_(fineGridOf(simulation, kernel)), accuracy_(accuracy) {}
+ChannelFit::ChannelFit(const Simulation& simulation, const Spectrum& kernel, double accuracy) : grid_(fineGridOf(simulation, kernel)), accuracy_(accuracy) {
+  if (!simulation.fields.empty()) accuracy_ *= kBesideFields;
+}
 
 void ChannelFit::look(const ProductSet& products) {
   for (Eigen::Index m = 0; m < products.parts.cols(); ++m)

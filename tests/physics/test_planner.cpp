@@ -97,6 +97,20 @@ TEST_F(Planner, DropsWhatNoChannelSees) {
   EXPECT_TRUE(planOf(scene("accuracy: 0.1 %\n" + sun + kGrey + kWall + camera(kLongwave))).terms.lights);
 }
 
+// A mirror's sky is more than harmonics can tell: that is said, and wavelengths are spent on what wavelengths are off by alone.
+TEST_F(Planner, WhatHarmonicsLoseTakesNoWavelengths) {
+  const std::string sky = "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
+                          "ground: {material: soil, temperature: 295 K}\n";
+  const Plan plan = planOf(scene("accuracy: 0.5 %\n" + sky +
+                                 "materials: {m: {components: [{reflection: microfacet, index: aluminium, roughness: 0.01}]}}\n"
+                                 "entities: [{name: b, shape: {model: sphere, radius: 20 m}, material: m, temperature: 300 K, position: [0 m, 1 km, 100 m]}]\n" +
+                                 camera("{name: vis, response: {band: [0.5 um, 0.6 um]}}")));
+  ASSERT_EQ(plan.parts.size(), 1u);
+  EXPECT_GT(plan.parts[0].surroundings, 0.005) << "or the scene says nothing";
+  EXPECT_LE(plan.parts[0].wavelengths, 0.005);
+  EXPECT_LE(plan.nodeCount(), 2) << "so smooth a band takes one or two; held against lines with more harmonics than its own it took five";
+}
+
 TEST_F(Planner, SamePlanEveryTimeAndFromTheCache) {
   const std::string text = "accuracy: 1 %\natmosphere: clear_us76\n" + kGrey + kWall + camera(kMidwave);
   const Plan first = planOf(scene(text));

@@ -1,5 +1,6 @@
 // A user's own check of the promise: `audit`, and the same by hand with two runs; and plans that are given where they do not belong.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -106,8 +107,8 @@ TEST_F(AuditCommand, APlanOfAnythingElseIsRefused) {
                 {"--set accuracy=none", "a plan of a camera 'c' that is another"},  // it has one sample a pixel then
                 {"--set accuracy=none --set cameras.c.samples=auto", "a plan for an accuracy of 3 %; none is asked for"}};
   for (const auto& other : others)
-    for (const char* command : {"run", "stream --frames 1"}) {
-      const Result r = run(std::string(command) + " s.yaml " + other.change + " --plan a/c.plan --out c");
+    for (const std::string& command : {std::string("run"), "stream --frames 1 --shared-memory /pitviper_" + std::to_string(getpid())}) {
+      const Result r = run(command + " s.yaml " + other.change + " --plan a/c.plan --out c");
       EXPECT_EQ(r.code, 2) << command << " " << other.change;
       EXPECT_NE(r.output.find("a/c.plan: " + other.word), std::string::npos) << command << " " << other.change << ": " << r.output;
     }
