@@ -13,10 +13,8 @@ namespace {
 constexpr double kNegligible = 1e-4;
 /// No amount at all: tables of ways to the sun have 1e-30 where there is nothing.
 constexpr double kNone = 1e-20;
-/// Parts of a line's way through a field: what a fit learns of a line along which more change is the same.
-constexpr std::size_t kFieldParts = 8;
+}  // namespace
 
-/// Of neighbouring steps one, of about as much of all gases each.
 std::vector<Slab> inParts(const std::vector<Slab>& all) {
   std::vector<Slab> some;
   for (std::size_t from = 0, to = 0; from < all.size(); from = to) {
@@ -62,7 +60,6 @@ std::vector<Slab> inParts(const std::vector<Slab>& all) {
   }
   return some;
 }
-}  // namespace
 
 FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel) {
   FineGrid grid;

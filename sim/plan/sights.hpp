@@ -82,6 +82,12 @@ class Sights {
   int airPlaces_;
 };
 
+/// Parts of a line's way through a field at most: what a fit learns of a line along which more change is the same.
+constexpr std::size_t kFieldParts = 8;
+
+/// Neighbouring steps of a field as one, of about as much of all gases each; amounts add up, temperatures are means by amount.
+std::vector<Slab> inParts(const std::vector<Slab>& all);
+
 FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel);
 
 }  // namespace pitviper
