@@ -5,6 +5,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
@@ -22,6 +23,9 @@ bool hasWord(const char* list, const char* word) {
     if ((p == list || p[-1] == ' ') && (p[n] == ' ' || p[n] == '\0')) return true;
   return false;
 }
+
+/// Made so far: a new one may stand where one stood before.
+std::atomic<unsigned> gContexts{0};
 
 constexpr const char* kInstall = "install Mesa's software renderer: apt-get install libegl1 libgl1 libgl1-mesa-dri, or a GPU driver with EGL";
 
@@ -98,7 +102,18 @@ GlLimits currentLimits() {
   return l;
 }
 
+bool isSoftware() {
+  thread_local std::pair<EGLContext, unsigned> asked;
+  thread_local bool is = false;
+  if (const std::pair now(eglGetCurrentContext(), gContexts.load()); now != asked || now.first == EGL_NO_CONTEXT) {
+    asked = now;
+    is = currentLimits().software;
+  }
+  return is;
+}
+
 GlContext::GlContext(std::string device) {
+  ++gContexts;
   if (const char* wish = std::getenv("PITVIPER_GL"); wish && *wish && device == "auto") device = wish;
   prepareDriverCache();
   checkEgl();

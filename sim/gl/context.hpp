@@ -43,6 +43,9 @@ class GlContext {
 /// Of the current context.
 GlLimits currentLimits();
 
+/// Whether the current context draws on the CPU; asks the driver once for each context.
+bool isSoftware();
+
 /// Throws GlError where a uniform block would be larger than the driver's; says what takes the room.
 void checkUniformSize(std::size_t bytes, const char* what);
 

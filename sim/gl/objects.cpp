@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <bit>
+#include <cstdlib>
 #include <cstring>
 
 #include "sim/gl/context.hpp"
@@ -61,6 +62,14 @@ GLuint compile(GLenum stage, const AssembledShader& shader) {
   throw GlError("shader does not compile:\n" + shader.mapLog(log.data()));
 }
 
+/// What memory of the driver's holds that nobody has written, where PITVIPER_POISON is set: no number. Drivers without a GPU give zeros, GPUs what the last
+/// program left there.
+constexpr GLuint kPoison = 0xffffffffu;
+bool isPoisoned() {
+  static const bool is = std::getenv("PITVIPER_POISON") != nullptr;
+  return is;
+}
+
 }  // namespace
 
 ProgramCount programsSoFar() { return {gPrograms, gLines}; }
@@ -95,11 +104,25 @@ void Program::use() const { glUseProgram(name_); }
 int Program::uniform(const char* name) const { return glGetUniformLocation(name_, name); }
 
 void Buffer::upload(const void* data, std::size_t bytes) {
+  if (!isSoftware()) {
+    // Fresh storage each time: NVIDIA's driver (580.159) was seen to write a part of a buffer before it had cleared the whole, as it was told earlier.
+    if (name_ == 0u) {
+      GLuint n = 0;
+      glCreateBuffers(1, &n);
+      name_ = GlName<deleteBuffer>(n);
+    }
+    static const char none[16] = {};
+    glNamedBufferData(name_, static_cast<GLsizeiptr>(std::max(bytes, sizeof none)), bytes > 0 ? data : none, GL_DYNAMIC_DRAW);
+    if (bytes != bytes_) texture_ = GlName<deleteTexture>();
+    bytes_ = bytes;
+    return;
+  }
   if (name_ == 0u || bytes != bytes_) {
     GLuint n = 0;
     glCreateBuffers(1, &n);
     name_ = GlName<deleteBuffer>(n);
-    glNamedBufferStorage(n, static_cast<GLsizeiptr>(storedBytes(bytes)), nullptr, GL_DYNAMIC_STORAGE_BIT | GL_MAP_READ_BIT);
+    glNamedBufferStorage(n, static_cast<GLsizeiptr>(storedBytes(bytes)), nullptr, GL_DYNAMIC_STORAGE_BIT);
+    if (isPoisoned()) glClearNamedBufferData(n, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &kPoison);
     bytes_ = bytes;
     texture_ = GlName<deleteTexture>();
   }
@@ -107,7 +130,22 @@ void Buffer::upload(const void* data, std::size_t bytes) {
 }
 
 void Buffer::uploadPart(std::size_t first, const void* data, std::size_t bytes) {
-  glNamedBufferSubData(name_, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes), data);
+  if (isSoftware()) {
+    glNamedBufferSubData(name_, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes), data);
+    return;
+  }
+  Buffer staged;  // copied by the GPU, in its turn
+  staged.upload(data, bytes);
+  glCopyNamedBufferSubData(staged.name_, name_, 0, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes));
+}
+
+void Buffer::makeReadable(std::size_t bytes) {
+  if (name_ != 0u && bytes == bytes_) return;
+  GLuint n = 0;
+  glCreateBuffers(1, &n);
+  name_ = GlName<deleteBuffer>(n);
+  glNamedBufferStorage(n, static_cast<GLsizeiptr>(std::max<std::size_t>(bytes, 16)), nullptr, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
+  bytes_ = bytes;
 }
 
 void Buffer::bindStorage(unsigned index) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, index, name_); }
@@ -131,7 +169,11 @@ void Buffer::bindTexture(unsigned unit, int perTexel, bool whole) const {
   glBindTextureUnit(unit, texture_);
 }
 void Buffer::bindPack() const { glBindBuffer(GL_PIXEL_PACK_BUFFER, name_); }
-void Buffer::download(void* into, std::size_t bytes) const { glGetNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(bytes), into); }
+void Buffer::download(void* into, std::size_t bytes) const {
+  if (bytes == 0) return;
+  if (const void* mapped = glMapNamedBufferRange(name_, 0, static_cast<GLsizeiptr>(bytes), GL_MAP_READ_BIT)) std::memcpy(into, mapped, bytes);
+  glUnmapNamedBuffer(name_);
+}
 void Buffer::bindVertices() const {
   glBindVertexBuffer(0, name_, 0, 4 * sizeof(float));
   glVertexAttribFormat(0, 3, GL_FLOAT, GL_FALSE, 0);
@@ -154,6 +196,12 @@ Texture2D::Texture2D(int width, int height, PixelFormat format) : width_(width),
                                                           : GL_DEPTH_COMPONENT32F;
   glTextureStorage2D(n, 1, internal, storedSide(width), storedSide(height));
   setNearest(n);
+  if (!isPoisoned()) return;
+  const bool whole = format == PixelFormat::Rg32ui, depth = format == PixelFormat::Depth32f;
+  const float somewhere = 0.71875f;  // a depth is between 0 and 1
+  const GLuint four[4] = {kPoison, kPoison, kPoison, kPoison};
+  const void* values = depth ? static_cast<const void*>(&somewhere) : four;
+  glClearTexImage(n, 0, depth ? GL_DEPTH_COMPONENT : whole ? GL_RG_INTEGER : GL_RGBA, whole ? GL_UNSIGNED_INT : GL_FLOAT, values);
 }
 
 void Texture2D::upload(const std::vector<float>& texels) const {
@@ -270,7 +318,7 @@ void drawFullScreen(const RenderTarget& target, const Program& program, const st
 void Readback::copy(Buffer& into, const RenderTarget& from, unsigned attachment, unsigned format, unsigned type, const glm::ivec4& part,
                     std::size_t bytesEach) {
   const std::size_t bytes = static_cast<std::size_t>(part.z) * static_cast<std::size_t>(part.w) * bytesEach;
-  if (into.bytes() != bytes) into.upload(nullptr, bytes);
+  into.makeReadable(bytes);
   glBindFramebuffer(GL_READ_FRAMEBUFFER, from.name());
   glReadBuffer(attachment);
   into.bindPack();
@@ -289,7 +337,7 @@ void Readback::start(const RenderTarget& target, std::size_t first, std::size_t 
   pixels_ = static_cast<size_t>(part.z) * static_cast<size_t>(part.w);
   hasIdentity_ = false;
   // A driver without a GPU copies on this thread: beside threads that still draw it would take several times as long.
-  if (currentLimits().software) glFinish();
+  if (isSoftware()) glFinish();
   colours_.resize(count);
   glPixelStorei(GL_PACK_ALIGNMENT, 4);
   for (size_t i = 0; i < count; ++i) copy(colours_[i], target, GL_COLOR_ATTACHMENT0 + static_cast<unsigned>(first + i), GL_RGBA, GL_FLOAT, part, 16);

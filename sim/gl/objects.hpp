@@ -89,7 +89,10 @@ class Buffer {
   void bindVertices() const;
   /// As a texture of floats or of whole numbers, one or four to a texel, read by texelFetch.
   void bindTexture(unsigned unit, int perTexel, bool whole = false) const;
+  /// Storage that a GPU writes and download() reads, of that size [bytes].
+  void makeReadable(std::size_t bytes);
   void bindPack() const;
+  /// The first bytes; waits for what is written into it.
   void download(void* into, std::size_t bytes) const;
   std::size_t bytes() const { return bytes_; }
   explicit operator bool() const { return name_ != 0u; }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "sim/gl/context.hpp"
 #include "sim/render/shadow_trees.hpp"
 
 namespace pitviper {
@@ -60,6 +61,8 @@ glm::uvec4 shapeOf(std::size_t first, int width, int height, std::size_t last) {
 }  // namespace
 
 GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
+  // What a driver has freed it gives out again: nothing of a renderer that has ended may still be written there.
+  if (!isSoftware()) glFinish();
   std::vector<glm::vec4> vertices;
   std::vector<glm::uvec4> indices;
   std::vector<std::uint32_t> corners;

@@ -27,7 +27,7 @@ constexpr std::size_t kFewLevels = 64;
 BlendPath pathOfFew(BlendPath path) {
   const auto offered = offeredBlendPaths();
   const char* wish = std::getenv("PITVIPER_BLEND");
-  const bool free = currentLimits().software && (!wish || !*wish) && std::find(offered.begin(), offered.end(), BlendPath::TextureBarrier) != offered.end();
+  const bool free = isSoftware() && (!wish || !*wish) && std::find(offered.begin(), offered.end(), BlendPath::TextureBarrier) != offered.end();
   return free ? BlendPath::TextureBarrier : path;
 }
 

@@ -18,7 +18,7 @@ std::string nameOf(ShadingStage stage) { return stage == ShadingStage::Compute ?
 
 ShadingStage chooseShadingStage() {
   const char* wish = std::getenv("PITVIPER_SHADING");
-  if (!wish || !*wish) return currentLimits().software ? ShadingStage::Fragment : ShadingStage::Compute;
+  if (!wish || !*wish) return isSoftware() ? ShadingStage::Fragment : ShadingStage::Compute;
   for (ShadingStage stage : {ShadingStage::Fragment, ShadingStage::Compute})
     if (wish == nameOf(stage)) return stage;
   throw GlError(std::string("PITVIPER_SHADING is '") + wish + "'; it can be fragment or compute");

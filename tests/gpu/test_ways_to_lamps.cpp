@@ -32,7 +32,7 @@ TEST(WaysToLamps, HoldWhatTheModelsHold) {
                   "look_at: p, channels: [{name: v, response: {band: [0.5 um, 0.55 um]}}]}]\n",
                   visibility_km, height_m, way_m * way_m, aside_m, -way_m, height_m + up_m, height_m);
     const Worst w = compare(scene(text), 1);
-    EXPECT_GT(w.covered, 10) << "lit";
+    EXPECT_GT(w.covered, 10) << "lit, scene " << n;
     worst = std::max(worst, w.error);
     farthest = std::max(farthest, up_m);
   }
