@@ -20,7 +20,7 @@
 #include "sim/gl/driver_cache.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/readable_text.hpp"
-#include "sim/scene/content_cache.hpp"
+#include "sim/scene/cache_folder.hpp"
 #include "sim/stream/ring/ring_memory.hpp"
 
 namespace pitviper {

@@ -6,39 +6,15 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "sim/image/atomic_file.hpp"
-#include "sim/parameters/read_file.hpp"
 #include "sim/plan/sights.hpp"
+#include "sim/scene/content_cache.hpp"
 
 namespace pitviper {
 namespace {
 
 constexpr const char* kFormat = "pitviper plan 4";
 
-std::filesystem::path fileOf(const ContentKey& key) {
-  const std::filesystem::path folder = meshCacheFolder();
-  if (folder.empty()) return {};
-  char name[64];
-  std::snprintf(name, sizeof name, "%016llx%016llx.plan", static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
-  return folder / name;
-}
-
-/// As many plans as are kept; 60 kB each, about.
-constexpr size_t kMostKept = 200;
-
-/// A thousand times an ordinary one.
-constexpr std::uintmax_t kLargestPlan = 64u << 20;
-
-/// Of too many plans the older half goes.
-void forgetOldest(const std::filesystem::path& folder) {
-  std::vector<std::pair<std::filesystem::file_time_type, std::filesystem::path>> kept;
-  for (const auto& f : std::filesystem::directory_iterator(folder))
-    if (f.path().extension() == ".plan") kept.emplace_back(f.last_write_time(), f.path());
-  if (kept.size() <= kMostKept) return;
-  std::sort(kept.begin(), kept.end());
-  std::error_code ignored;  // another run may have been quicker
-  for (size_t k = 0; k < kept.size() / 2; ++k) std::filesystem::remove(kept[k].second, ignored);
-}
+constexpr const char* kTable = "plan";
 
 /// Hexadecimal floating point: every digit, both ways.
 class Writer {
@@ -190,24 +166,10 @@ bool readPlanned(const std::string& text, Plan& into) {
 }
 
 bool readCachedPlan(const ContentKey& key, Plan& into) {
-  try {
-    return readPlanned(readWholeFile(fileOf(key), {.mostBytes = kLargestPlan}), into);
-  } catch (const std::exception&) {
-    return false;
-  }
+  const auto text = readCachedTable(kTable, key);
+  return text && readPlanned(*text, into);
 }
 
-void writeCachedPlan(const ContentKey& key, const Plan& plan) {
-  try {
-    const std::filesystem::path file = fileOf(key);
-    if (file.empty()) return;
-    std::filesystem::create_directories(file.parent_path());
-    writeFileAtomically(file, writePlanned(plan));
-    forgetOldest(file.parent_path());
-    removeAbandonedTemporaries(file.parent_path());
-  } catch (const std::exception&) {
-    // Nothing is lost but time: see the header.
-  }
-}
+void writeCachedPlan(const ContentKey& key, const Plan& plan) { writeCachedTable(kTable, key, writePlanned(plan)); }
 
 }  // namespace pitviper

@@ -1,11 +1,11 @@
 #pragma once
 // Plans kept between runs, by content: the same scene, eye and accuracy give the same plan, which takes a second or more to find.
-// In $XDG_CACHE_HOME/pitviper (or ~/.cache/pitviper), beside imported meshes. Losing the folder costs time only.
+// They are tables as others that are kept (sim/scene/content_cache.hpp).
 #include <optional>
 
 #include "sim/plan/plan.hpp"
 #include "sim/plan/sight_rays.hpp"
-#include "sim/scene/mesh_cache.hpp"
+#include "sim/scene/cache_folder.hpp"
 
 namespace pitviper {
 
@@ -22,9 +22,9 @@ std::string planFingerprint(const Plan& plan);
 std::string writePlanned(const Plan& plan);
 bool readPlanned(const std::string& text, Plan& into);
 
-/// False where it is not there, unreadable or damaged. Never throws.
+/// False where it is not there, unreadable or damaged (which is told). Never throws.
 bool readCachedPlan(const ContentKey& key, Plan& into);
-/// A folder that cannot be written is no error. Never throws.
+/// A folder that cannot be written is told. Never throws.
 void writeCachedPlan(const ContentKey& key, const Plan& plan);
 
 }  // namespace pitviper

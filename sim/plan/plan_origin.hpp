@@ -4,7 +4,7 @@
 #include <string>
 
 #include "sim/plan/sight_rays.hpp"
-#include "sim/scene/mesh_cache.hpp"
+#include "sim/scene/cache_folder.hpp"
 
 namespace pitviper {
 

@@ -1,9 +1,5 @@
 #include "sim/scene/content_cache.hpp"
 
-#include <atomic>
-#include <cstdio>
-
-#include "sim/image/atomic_file.hpp"
 #include "sim/parameters/read_file.hpp"
 
 namespace pitviper {
@@ -11,13 +7,7 @@ namespace {
 
 constexpr const char* kPrefix = "table-";
 
-std::filesystem::path fileOf(std::string_view what, const ContentKey& key) {
-  const std::filesystem::path folder = meshCacheFolder();
-  if (folder.empty()) return {};
-  char name[40];
-  std::snprintf(name, sizeof name, "-%016llx%016llx", static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
-  return folder / (kPrefix + std::string(what) + name);
-}
+std::filesystem::path fileOf(std::string_view what, const ContentKey& key) { return cacheFile(kPrefix + std::string(what) + "-", key); }
 
 /// Behind the table's bytes, so that none is copied for it.
 std::string sealOf(std::string_view bytes) {
@@ -25,23 +15,7 @@ std::string sealOf(std::string_view bytes) {
   return std::string(reinterpret_cast<const char*>(sum.data()), sizeof sum);
 }
 
-std::atomic<TellOfCache> gTell{nullptr};
-std::atomic<bool> gIsTold{false};
-
 }  // namespace
-
-void tellOfCacheBy(TellOfCache tell) {
-  gTell = tell;
-  gIsTold = false;
-}
-
-void tellOfCacheTrouble(const std::string& reason) {
-  if (const TellOfCache tell = gTell; tell && !gIsTold.exchange(true))
-    tell(("note: the cache of tables in " + meshCacheFolder().string() + " is of no use: " + reason +
-          "; pictures are the same without it, but what takes long to make is made anew in each run; let XDG_CACHE_HOME name a folder that can be written and "
-          "has room")
-             .c_str());
-}
 
 std::optional<std::string> readCachedTable(std::string_view what, const ContentKey& key) {
   try {
@@ -51,8 +25,7 @@ std::optional<std::string> readCachedTable(std::string_view what, const ContentK
     std::string bytes = readWholeFile(file, {.mostBytes = kLargestTable + sizeof(ContentKey)});
     const std::size_t size = bytes.size() < sizeof(ContentKey) ? 0 : bytes.size() - sizeof(ContentKey);
     if (bytes.size() < sizeof(ContentKey) || bytes.substr(size) != sealOf(std::string_view(bytes).substr(0, size))) {
-      std::filesystem::remove(file, ignored);
-      tellOfCacheTrouble(file.filename().string() + " is damaged and was removed");
+      removeDamaged(file);
       return std::nullopt;
     }
     bytes.resize(size);
@@ -65,15 +38,7 @@ std::optional<std::string> readCachedTable(std::string_view what, const ContentK
 }
 
 void writeCachedTable(std::string_view what, const ContentKey& key, std::string_view bytes) {
-  try {
-    const std::filesystem::path file = fileOf(what, key);
-    if (file.empty() || bytes.size() > kLargestTable) return;
-    std::filesystem::create_directories(file.parent_path());
-    writeFileAtomically(file, std::string(bytes) + sealOf(bytes));
-    pruneCache(file.parent_path(), kPrefix, kMostTableBytes, file);
-  } catch (const std::exception& e) {
-    tellOfCacheTrouble(e.what());
-  }
+  if (bytes.size() <= kLargestTable) writeCacheFile(fileOf(what, key), std::string(bytes) + sealOf(bytes), kPrefix, kMostTableBytes);
 }
 
 }  // namespace pitviper

@@ -1,6 +1,6 @@
 #pragma once
-// Tables that take long to make, kept between runs by the content that they are made from, beside plans and imported meshes ($XDG_CACHE_HOME/pitviper). A table
-// read from it is the one that was written, byte by byte. Losing the folder costs time only.
+// Tables that take long to make, kept between runs by the content that they are made from, beside imported meshes (cache_folder.hpp). A table read from it is
+// the one that was written, byte by byte.
 #include <cstring>
 #include <optional>
 #include <string>
@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "sim/scene/mesh_cache.hpp"
+#include "sim/scene/cache_folder.hpp"
 
 namespace pitviper {
 
@@ -19,12 +19,6 @@ inline constexpr std::uintmax_t kMostTableBytes = std::uintmax_t{1} << 29, kLarg
 std::optional<std::string> readCachedTable(std::string_view what, const ContentKey& key);
 /// Where it cannot be written that is said. Never throws.
 void writeCachedTable(std::string_view what, const ContentKey& key, std::string_view bytes);
-
-/// Gets a line for the first trouble of a process with the folder; nobody without.
-using TellOfCache = void (*)(const char* line);
-void tellOfCacheBy(TellOfCache tell);
-/// `reason`: what went wrong. The first of a process is told.
-void tellOfCacheTrouble(const std::string& reason);
 
 /// Lists of plain values as bytes, each behind its length.
 class TableWriter {

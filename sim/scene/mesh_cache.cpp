@@ -1,24 +1,15 @@
 #include "sim/scene/mesh_cache.hpp"
 
-#include <algorithm>
 #include <bit>
-#include <cstdio>
-#include <cstdlib>
 #include <cstring>
 #include <type_traits>
 
-#include "sim/image/atomic_file.hpp"
 #include "sim/parameters/read_file.hpp"
 
 namespace pitviper {
 namespace {
 
 constexpr std::uint64_t kMagic = 0x33304853'4d565450u;  // "PTVMSH03" in little-endian order: form and version
-
-std::uint64_t mix(std::uint64_t h, std::uint64_t word, std::uint64_t multiplier) {
-  h = (std::rotl(h, 27) ^ word) * multiplier;
-  return h ^ (h >> 29);
-}
 
 template <class T>
 void put(std::string& out, const std::vector<T>& values) {
@@ -62,28 +53,7 @@ struct Source {
 
 constexpr const char* kPrefix = "mesh-";
 
-std::filesystem::path cacheFile(const ContentKey& key) {
-  const std::filesystem::path folder = meshCacheFolder();
-  if (folder.empty()) return {};
-  char name[64];
-  std::snprintf(name, sizeof name, "%s%016llx%016llx.bin", kPrefix, static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
-  return folder / name;
-}
-
 }  // namespace
-
-ContentKey contentKey(std::string_view bytes, ContentKey seed) {
-  // The two multipliers are those of MurmurHash3 (Appleby, public domain); any odd constants with mixed bits would do.
-  constexpr std::uint64_t kFirst = 0xff51afd7ed558ccdu, kSecond = 0xc4ceb9fe1a85ec53u;
-  std::uint64_t a = mix(seed[0], bytes.size(), kFirst), b = mix(seed[1], ~bytes.size(), kSecond);
-  for (std::size_t i = 0; i < bytes.size(); i += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
-    a = mix(a, word, kFirst);
-    b = mix(b, word, kSecond);
-  }
-  return {mix(a, b, kFirst), mix(b, a, kSecond)};
-}
 
 std::string serializeMesh(const Mesh& mesh, const std::vector<NamedFile>& named) {
   std::string body;
@@ -163,70 +133,29 @@ std::optional<Mesh> deserializeMesh(std::string_view bytes, std::vector<NamedFil
   return mesh;
 }
 
-std::filesystem::path meshCacheFolder() {
-  // XDG Base Directory Specification: a path that is not absolute is to be ignored.
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && cache[0] == '/') return std::filesystem::path(cache) / "pitviper";
-  if (const char* home = std::getenv("HOME"); home != nullptr && home[0] == '/') return std::filesystem::path(home) / ".cache" / "pitviper";
-  return {};
-}
-
 std::optional<Mesh> readCachedMesh(const ContentKey& key, const std::function<bool(const NamedFile&)>& isUnchanged) {
   try {
-    const std::filesystem::path file = cacheFile(key);
+    const std::filesystem::path file = cacheFile(kPrefix, key);
+    std::error_code ignored;  // a cache that may only be read
+    if (file.empty() || !std::filesystem::exists(file, ignored)) return std::nullopt;
     std::vector<NamedFile> named;
     std::optional<Mesh> mesh = deserializeMesh(readWholeFile(file), &named);
-    if (!mesh) return std::nullopt;
+    if (!mesh) {
+      removeDamaged(file);
+      return std::nullopt;
+    }
     for (const NamedFile& other : named)
       if (!isUnchanged || !isUnchanged(other)) return std::nullopt;
-    std::error_code ignored;  // a cache that may only be read
     std::filesystem::last_write_time(file, std::filesystem::file_time_type::clock::now(), ignored);
     return mesh;
-  } catch (const std::exception&) {
+  } catch (const std::exception& e) {
+    tellOfCacheTrouble(e.what());
     return std::nullopt;
   }
 }
 
 void writeCachedMesh(const ContentKey& key, const Mesh& mesh, const std::vector<NamedFile>& named) {
-  try {
-    const std::filesystem::path file = cacheFile(key);
-    if (file.empty()) return;
-    std::filesystem::create_directories(file.parent_path());
-    writeFileAtomically(file, serializeMesh(mesh, named));
-    pruneCache(file.parent_path(), kPrefix, kMostCachedBytes, file);
-  } catch (const std::exception&) {
-    // Nothing is lost but time: see the header.
-  }
-}
-
-void pruneCache(const std::filesystem::path& folder, std::string_view prefix, std::uintmax_t mostBytes, const std::filesystem::path& keep) {
-  try {
-    removeAbandonedTemporaries(folder);
-    struct Kept {
-      std::filesystem::file_time_type used;
-      std::uintmax_t bytes;
-      std::filesystem::path file;
-    };
-    std::vector<Kept> kept;
-    std::uintmax_t total = 0;
-    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-      std::error_code gone;  // another run may have been quicker
-      if (!entry.path().filename().string().starts_with(prefix) || !entry.is_regular_file(gone)) continue;
-      const auto used = entry.last_write_time(gone);
-      const std::uintmax_t bytes = gone ? 0 : entry.file_size(gone);
-      if (gone) continue;
-      total += bytes;
-      if (entry.path() != keep) kept.push_back({used, bytes, entry.path()});
-    }
-    std::sort(kept.begin(), kept.end(), [](const Kept& a, const Kept& b) { return a.used < b.used; });
-    std::error_code ignored;
-    for (const Kept& oldest : kept) {
-      if (total <= mostBytes) return;
-      std::filesystem::remove(oldest.file, ignored);
-      total -= oldest.bytes;
-    }
-  } catch (const std::exception&) {
-    // Too large a cache is no reason to end.
-  }
+  writeCacheFile(cacheFile(kPrefix, key), serializeMesh(mesh, named), kPrefix, kMostCachedBytes);
 }
 
 }  // namespace pitviper

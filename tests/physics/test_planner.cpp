@@ -44,7 +44,7 @@ class Planner : public ::testing::Test {
   }
   size_t kept() const {
     size_t n = 0;
-    for (const auto& f : std::filesystem::recursive_directory_iterator(folder_)) n += f.path().extension() == ".plan";
+    for (const auto& f : std::filesystem::recursive_directory_iterator(folder_)) n += f.path().filename().string().starts_with("table-plan-");
     return n;
   }
   std::filesystem::path folder_;

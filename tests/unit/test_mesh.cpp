@@ -324,7 +324,7 @@ TEST_F(Import, KnownFilesNeedNoModule) {
   const Mesh first = importMesh(file, 1.0, {});
   const auto cached = [&] {
     std::vector<std::filesystem::path> found;
-    for (const auto& entry : std::filesystem::directory_iterator(meshCacheFolder())) found.push_back(entry.path());
+    for (const auto& entry : std::filesystem::directory_iterator(cacheFolder())) found.push_back(entry.path());
     return found;
   };
   ASSERT_EQ(cached().size(), 1u);
@@ -333,7 +333,10 @@ TEST_F(Import, KnownFilesNeedNoModule) {
   EXPECT_EQ(again.triangles, first.triangles);
   EXPECT_EQ(again.normals, first.normals);
   EXPECT_NEAR(surfaceArea(again), 9.0 * surfaceArea(first), 1e-4);
-  std::filesystem::resize_file(cached()[0], 100);  // damaged: read again, and mended
+  static std::vector<std::string> told;
+  told.clear();
+  tellOfCacheBy([](const char* line) { told.emplace_back(line); });
+  std::filesystem::resize_file(cached()[0], 100);  // damaged: said, read again, and mended
   EXPECT_NE(complaint(file).find("libvtk9-dev"), std::string::npos);
 #ifdef PITVIPER_MESH_IMPORT_FOLDER
   setMeshImportFolder(PITVIPER_MESH_IMPORT_FOLDER);
@@ -342,8 +345,14 @@ TEST_F(Import, KnownFilesNeedNoModule) {
 #endif
   EXPECT_EQ(importMesh(file, 1.0, {}).triangles, first.triangles);
   EXPECT_GT(std::filesystem::file_size(cached()[0]), 100u);
+  ASSERT_EQ(told.size(), 1u);
+  EXPECT_NE(told[0].find(" is damaged and was removed; pictures are the same without it"), std::string::npos) << told[0];
   setenv("XDG_CACHE_HOME", "/proc/unwritable", 1);
+  tellOfCacheBy([](const char* line) { told.emplace_back(line); });
   EXPECT_EQ(importMesh(file, 1.0, {}).triangles, first.triangles);
+  ASSERT_EQ(told.size(), 2u);
+  EXPECT_NE(told[1].find("/proc/unwritable/pitviper is of no use: "), std::string::npos) << told[1];
+  tellOfCacheBy(nullptr);
 }
 
 /// A tetrahedron whose buffer is in a file, named as it is written in JSON.
