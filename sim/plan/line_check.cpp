@@ -1,14 +1,11 @@
 #include "sim/plan/line_check.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
-#include <thread>
 
+#include "sim/plan/on_threads.hpp"
 #include "sim/plan/sights.hpp"
 #include "sim/radiance/node_sum.hpp"
-#include "sim/radiance/shadow_rays.hpp"
 
 namespace pitviper {
 namespace {
@@ -20,13 +17,6 @@ constexpr double kPlacesShare = 0.4;
 constexpr size_t kLooked = 20;
 /// Frames that are looked at for how dark the film gets, and lines in all of them and at least in each.
 constexpr int kFloorFrames = 24, kFloorLines = 240, kFewestLines = 12;
-
-std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance) {
-  std::vector<double> slots(plan.weight.size(), 0.0);
-  for (size_t s = 0; s < slots.size(); ++s)
-    for (size_t i = 0; i < radiance.size(); ++i) slots[s] += plan.weight[s][i] * radiance[i];
-  return slots;
-}
 
 /// Whether a node of the plan leaves a kind of terms out.
 bool isDropped(const Plan& plan, const Terms& all, TermKind kind, const NodeBlock& block) {
@@ -78,21 +68,13 @@ class AllSums final : public TermSink {
   std::vector<std::unique_ptr<NodeSum>>& sums_;
 };
 
-struct LineSums {
-  std::vector<double> exact;
-  std::vector<std::vector<double>> planned, dropped;  ///< by plan
-};
+}  // namespace
 
-/// Calls work(next) on as many threads as the machine has; next() gives each number from 0 on once.
-template <class Work>
-void onAllThreads(size_t count, const Work& work) {
-  std::atomic<size_t> taken{0};
-  const auto next = [&] { return taken++; };
-  std::vector<std::future<void>> others;
-  for (unsigned t = 1; t < std::min<size_t>(std::thread::hardware_concurrency(), count); ++t)
-    others.push_back(std::async(std::launch::async, [&] { work(next); }));
-  work(next);
-  for (auto& o : others) o.get();
+std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance) {
+  std::vector<double> slots(plan.weight.size(), 0.0);
+  for (size_t s = 0; s < slots.size(); ++s)
+    for (size_t i = 0; i < radiance.size(); ++i) slots[s] += plan.weight[s][i] * radiance[i];
+  return slots;
 }
 
 RadianceScene sceneOf(const Simulation& sim, const Plan& fine, const ShadowCaster& shadows, const SightRay& ray, int places) {
@@ -104,8 +86,6 @@ RadianceScene sceneOf(const Simulation& sim, const Plan& fine, const ShadowCaste
     };
   return scene;
 }
-
-}  // namespace
 
 std::vector<double> filmFloors(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays) {
   const Plan& plan = fine.plan;
@@ -174,52 +154,69 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
   return kTried[std::size(kTried) - 1];
 }
 
-std::vector<std::vector<LineFigures>> checkLines(const Simulation& sim, std::span<const NodesOfPlan* const> plans, const NodesOfPlan& ofFine,
-                                                 const std::vector<SightRay>& lines, int places, const std::vector<double>& floor) {
-  const Plan& fine = ofFine.plan;
-  const ShadowCaster shadows(sim);
-  std::vector<LineSums> sums(lines.size());
-  onAllThreads(lines.size(), [&](const auto& next) {
-    std::vector<std::unique_ptr<NodeSum>> own;  // of the plans and, last, in full
-    for (const NodesOfPlan* plan : plans) own.push_back(std::make_unique<NodeSum>(plan->spectra)), own.back()->keepParts();
-    own.push_back(std::make_unique<NodeSum>(ofFine.spectra));
+HeldLines::HeldLines(const Simulation& simulation, const NodesOfPlan& fine, std::vector<SightRay> lines, int places, const std::vector<double>& floor)
+    : sim_(simulation), fine_(fine), lines_(std::move(lines)), places_(places), floor_(floor) {}
+
+std::vector<LineFigures> HeldLines::check(const NodesOfPlan& of) {
+  const Plan &fine = fine_.plan, &plan = of.plan;
+  const ShadowCaster shadows(sim_);
+  const bool isKnown = !exact_.empty() || lines_.empty();
+  exact_.resize(lines_.size());
+  struct Sums {
+    std::vector<double> planned, dropped;
+  };
+  std::vector<Sums> sums(lines_.size());
+  onAllThreads(lines_.size(), [&](const auto& next) {
+    std::vector<std::unique_ptr<NodeSum>> own;  // of the plan and, where that is not known, in full
+    own.push_back(std::make_unique<NodeSum>(of.spectra));
+    own.back()->keepParts();
+    if (!isKnown) own.push_back(std::make_unique<NodeSum>(fine_.spectra));
     AllSums all(own);
-    for (size_t n = next(); n < lines.size(); n = next()) {
-      const SightRay& ray = lines[n];
-      const RadianceScene scene = sceneOf(sim, fine, shadows, ray, places);
+    for (size_t n = next(); n < lines_.size(); n = next()) {
+      const SightRay& ray = lines_[n];
+      const RadianceScene scene = sceneOf(sim_, fine, shadows, ray, places_);
       for (auto& sum : own) sum->begin();
       radianceAlong(scene, ray.line, all);
       if (ray.lamp >= 0) lampAlong(scene, ray.line, static_cast<size_t>(ray.lamp), ray.pixel_sr, all);
-      sums[n].exact = slotsOf(fine, own.back()->radiance());
-      for (size_t p = 0; p < plans.size(); ++p) {
-        sums[n].planned.push_back(slotsOf(plans[p]->plan, own[p]->radiance()));
-        sums[n].dropped.push_back(droppedOf(plans[p]->plan, fine.terms, *own[p]));
-      }
+      if (!isKnown) exact_[n] = slotsOf(fine, own.back()->radiance());
+      sums[n] = {slotsOf(plan, own.front()->radiance()), droppedOf(plan, fine.terms, *own.front())};
     }
   });
-  std::vector<std::vector<LineFigures>> figures(plans.size(), std::vector<LineFigures>(fine.weight.size()));
-  for (size_t p = 0; p < plans.size(); ++p)
-    for (size_t s = 0; s < figures[p].size(); ++s) {
-      LineFigures& f = figures[p][s];
-      for (const LineSums& l : sums) {
-        const double size = std::max(std::abs(l.exact[s]), floor[s]), difference = std::abs(l.planned[p][s] - l.exact[s]);
-        f.errors.push_back(size > 0.0 ? difference / size : difference > 0.0 ? INFINITY : 0.0);
-        f.left.push_back(size > 0.0 ? std::abs(l.dropped[p][s]) / size : 0.0);
-        f.dropped = std::max(f.dropped, f.left.back());
-      }
-      if (f.errors.empty()) continue;
-      std::vector<double> sorted = f.errors;
-      std::sort(sorted.begin(), sorted.end());
-      f.largest = sorted.back();
-      f.median = sorted[sorted.size() / 2];
+  std::vector<LineFigures> figures(fine.weight.size());
+  for (size_t s = 0; s < figures.size(); ++s) {
+    LineFigures& f = figures[s];
+    for (size_t n = 0; n < lines_.size(); ++n) {
+      const double exact = exact_[n][s], size = std::max(std::abs(exact), floor_[s]), difference = std::abs(sums[n].planned[s] - exact);
+      f.errors.push_back(size > 0.0 ? difference / size : difference > 0.0 ? INFINITY : 0.0);
+      f.left.push_back(size > 0.0 ? std::abs(sums[n].dropped[s]) / size : 0.0);
+      f.largest = std::max(f.largest, f.errors.back());
+      f.dropped = std::max(f.dropped, f.left.back());
     }
+  }
   return figures;
 }
 
 std::vector<LineFigures> checkLines(const Simulation& sim, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines, int places,
                                     const std::vector<double>& floor) {
-  const NodesOfPlan* const one[] = {&plan};
-  return std::move(checkLines(sim, one, fine, lines, places, floor).front());
+  return HeldLines(sim, fine, lines, places, floor).check(plan);
+}
+
+Plan ofSlots(const Plan& plan, const std::vector<size_t>& slots) {
+  Plan some = plan;
+  some.nodes.clear(), some.blocks.clear(), some.weight.assign(slots.size(), {});
+  some.slotCount = static_cast<int>(slots.size());
+  for (const NodeBlock& b : plan.blocks) {
+    NodeBlock own{some.nodeCount(), b.count, {}, b.lit};
+    for (size_t k = 0; k < slots.size(); ++k)
+      if (std::find(b.slots.begin(), b.slots.end(), static_cast<int>(slots[k])) != b.slots.end()) own.slots.push_back(static_cast<int>(k));
+    if (own.slots.empty()) continue;
+    for (int i = b.first; i < b.first + b.count; ++i) {
+      some.nodes.push_back(plan.nodes[static_cast<size_t>(i)]);
+      for (size_t k = 0; k < slots.size(); ++k) some.weight[k].push_back(plan.weight[slots[k]][static_cast<size_t>(i)]);
+    }
+    some.blocks.push_back(std::move(own));
+  }
+  return some;
 }
 
 }  // namespace pitviper

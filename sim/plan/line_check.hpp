@@ -6,12 +6,13 @@
 #include "sim/plan/plan.hpp"
 #include "sim/plan/sight_rays.hpp"
 #include "sim/radiance/node_sum.hpp"
+#include "sim/radiance/shadow_rays.hpp"
 
 namespace pitviper {
 
 /// Of one channel, relative to max(|L|, floor).
 struct LineFigures {
-  double largest = 0.0, median = 0.0;
+  double largest = 0.0;
   double dropped = 0.0;        ///< the most that terms make up which the plan leaves out
   std::vector<double> errors;  ///< of each line
   std::vector<double> left;    ///< of each line: what terms make up which the plan leaves out
@@ -34,12 +35,37 @@ std::vector<double> filmFloors(const Simulation& simulation, const NodesOfPlan& 
 /// short waves see it bend where long ones don't. On some of the film's lines and the extremes.
 int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays, double accuracy, const std::vector<double>& floor);
 
-/// One per slot. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: filmFloors(). `places`: at which the air is looked at, alike on
-/// both sides, so that only wavelengths differ. Terms are those of `fine`; `plan` may leave kinds of terms out, all of them or by node.
+/// Lines that plans are held against: what all wavelengths give of them is told once. Terms are those of `fine`; a plan may leave kinds of terms out, all of
+/// them or by node.
+class HeldLines {
+ public:
+  /// All but the lines must outlive it. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: filmFloors(). `places`: at which the air is
+  /// looked at, alike on both sides, so that only wavelengths differ.
+  HeldLines(const Simulation& simulation, const NodesOfPlan& fine, std::vector<SightRay> lines, int places, const std::vector<double>& floor);
+  const std::vector<SightRay>& lines() const { return lines_; }
+  /// One per slot.
+  std::vector<LineFigures> check(const NodesOfPlan& plan);
+
+ private:
+  const Simulation& sim_;
+  const NodesOfPlan& fine_;
+  std::vector<SightRay> lines_;
+  int places_;
+  const std::vector<double>& floor_;
+  std::vector<std::vector<double>> exact_;  ///< [line][slot]; empty: not told yet
+};
+
+/// Of lines that are asked for once.
 std::vector<LineFigures> checkLines(const Simulation& simulation, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines,
                                     int places, const std::vector<double>& floor);
-/// Of several plans at once.
-std::vector<std::vector<LineFigures>> checkLines(const Simulation& simulation, std::span<const NodesOfPlan* const> plans, const NodesOfPlan& fine,
-                                                 const std::vector<SightRay>& lines, int places, const std::vector<double>& floor);
+
+/// Of some slots, with the nodes that feed them.
+Plan ofSlots(const Plan& plan, const std::vector<size_t>& slots);
+
+/// Per slot, a sum over nodes.
+std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance);
+
+/// A line of sight as a scene to be told, at so many places of the air.
+RadianceScene sceneOf(const Simulation& simulation, const Plan& fine, const ShadowCaster& shadows, const SightRay& ray, int places);
 
 }  // namespace pitviper

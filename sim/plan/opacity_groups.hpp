@@ -53,6 +53,7 @@ struct SpectralGroup {
   std::vector<std::pair<int, double>> members;  ///< fine wavelength and share > 0; the shares sum to 1
   double weight = 0.0;
   std::vector<double> extinction;  ///< per column
+  bool operator==(const SpectralGroup&) const = default;
 };
 
 struct GroupFit {

@@ -1,12 +1,11 @@
 #include "sim/plan/plan_fits.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <functional>
-#include <future>
 #include <set>
-#include <thread>
+
+#include "sim/plan/on_threads.hpp"
 
 namespace pitviper {
 namespace {
@@ -56,14 +55,16 @@ SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const Spectral
 
 /// On as many threads as the machine has.
 void forAll(const std::vector<size_t>& slots, const std::function<void(size_t)>& work) {
-  std::atomic<size_t> next{0};
-  auto some = [&] {
-    for (size_t s = next++; s < slots.size(); s = next++) work(slots[s]);
-  };
-  std::vector<std::future<void>> others;
-  for (unsigned t = 1; t < std::min<size_t>(std::thread::hardware_concurrency(), slots.size()); ++t) others.push_back(std::async(std::launch::async, some));
-  some();
-  for (auto& o : others) o.get();
+  onAllThreads(slots.size(), [&](const auto& next) {
+    for (size_t k = next(); k < slots.size(); k = next()) work(slots[k]);
+  });
+}
+
+/// Lines that are new to fits.
+std::vector<SightRay> secondLines(SightRays& rays) {
+  std::vector<SightRay> lines;
+  for (int n = 0; n < kSecond; ++n) lines.push_back(n % 4 != 0 ? rays.fromFilm() : rays.ofCombination());
+  return lines;
 }
 
 /// Of channels that black bodies are seen in.
@@ -77,26 +78,38 @@ double shortestOf(const std::vector<const ChannelOutput*>& slots) {
 }  // namespace
 
 void CheckedLines::add(const std::vector<SightRay>& more, const std::vector<LineFigures>& theirs) {
-  lines.insert(lines.end(), more.begin(), more.end());
-  for (size_t s = 0; s < figures.size(); ++s) {
-    LineFigures& f = figures[s];
-    f.largest = std::max(f.largest, theirs[s].largest);
-    f.dropped = std::max(f.dropped, theirs[s].dropped);
-    f.errors.insert(f.errors.end(), theirs[s].errors.begin(), theirs[s].errors.end());
-    f.left.insert(f.left.end(), theirs[s].left.begin(), theirs[s].left.end());
+  addSome(more, theirs, [](const SightRay&) { return true; });
+}
+
+void CheckedLines::addSome(const std::vector<SightRay>& more, const std::vector<LineFigures>& theirs, const std::function<bool(const SightRay&)>& wanted) {
+  figures.resize(theirs.size());
+  for (size_t n = 0; n < more.size(); ++n) {
+    if (!wanted(more[n])) continue;
+    lines.push_back(more[n]);
+    for (size_t s = 0; s < figures.size(); ++s) {
+      if (theirs[s].errors.empty()) continue;
+      LineFigures& f = figures[s];
+      f.errors.push_back(theirs[s].errors[n]);
+      f.left.push_back(theirs[s].left[n]);
+      f.largest = std::max(f.largest, f.errors.back());
+      f.dropped = std::max(f.dropped, f.left.back());
+    }
   }
 }
 
 PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
-                   SightRays& rays, const std::vector<double>& floor, int airPlaces, const std::function<void(double)>& tell)
+                   HeldLines& extremes, SightRays& rays, const std::vector<double>& floor, int airPlaces, int lastPlaces,
+                   const std::function<void(double)>& tell)
     : sim_(simulation),
       fine_(fine),
       rays_(rays),
       floor_(floor),
-      airPlaces_(airPlaces),
+      lastPlaces_(lastPlaces),
       tell_(tell),
       plan_(plan),
-      sights_(simulation, plan_, rays, shortestOf(slots), airPlaces) {
+      sights_(simulation, plan_, rays, shortestOf(slots), airPlaces),
+      extremes_(extremes),
+      second_(simulation, fine, secondLines(rays), lastPlaces, floor) {
   std::vector<size_t> all;
   for (const ChannelOutput* slot : slots) {
     all.push_back(fits_.size());
@@ -108,24 +121,35 @@ PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& pla
   hold(all);
 }
 
-void PlanFits::learn(const CheckedLines& checked, const std::vector<size_t>& slots) {
-  teach(checked, slots);
+std::vector<size_t> PlanFits::learn(const CheckedLines& checked, const std::vector<size_t>& slots, const std::vector<double>& allowed) {
+  std::vector<std::vector<SpectralGroup>> before;
+  for (size_t s : slots) before.push_back(fits_[s]->groups());
+  teach(checked, slots, allowed);
   hold(slots);
+  std::vector<size_t> changed;
+  for (size_t k = 0; k < slots.size(); ++k)
+    if (fits_[slots[k]]->groups() != before[k]) changed.push_back(slots[k]);
+  return changed;
 }
 
-void PlanFits::teach(const CheckedLines& checked, const std::vector<size_t>& slots) {
+void PlanFits::teach(const CheckedLines& checked, const std::vector<size_t>& slots, const std::vector<double>& allowed) {
   std::set<size_t> missed;
   for (size_t s : slots)
-    for (size_t n = 0; n < checked.lines.size(); ++n)
-      if (checked.figures[s].errors[n] > kLearnt * plan_.accuracy || checked.figures[s].left[n] > kNoticed * plan_.accuracy) missed.insert(n);
+    for (size_t n = 0; n < checked.figures[s].errors.size(); ++n)
+      if (checked.figures[s].errors[n] > std::min(kLearnt * plan_.accuracy, kTightened * allowed[s]) || checked.figures[s].left[n] > kNoticed * plan_.accuracy)
+        missed.insert(n);
   const size_t first = sights_.size();
   for (size_t n : missed) sights_.add(checked.lines[n], true);
-  forAll(slots, [&](size_t s) { fits_[s]->learn(sights_, first, std::clamp(kTightened * kHeld * plan_.accuracy / checked.figures[s].largest, kLeastPart, kTightened)); });
+  forAll(slots, [&](size_t s) {
+    fits_[s]->learn(sights_, first, std::clamp(kTightened * allowed[s] / std::max(checked.figures[s].largest, 1e-300), kLeastPart, kTightened));
+  });
 }
 
 /// Checks fits on ever new lines and on the second ones, until they hold or enough was tried.
-void PlanFits::hold(std::vector<size_t> open) {
+void PlanFits::hold(const std::vector<size_t>& slots) {
+  std::vector<size_t> open = slots;
   std::vector<double> before(fits_.size(), INFINITY);
+  const std::vector<double> allowed(fits_.size(), kHeld * plan_.accuracy);
   for (int attempt = 0;; ++attempt) {
     for (int n = 0; n < kChecks && !open.empty(); ++n) {
       tell_(0.5 + 0.5 * (attempt + static_cast<double>(n) / kChecks) / (kLearn + 1));
@@ -134,16 +158,15 @@ void PlanFits::hold(std::vector<size_t> open) {
       std::erase_if(open, [&](size_t s) { return fits_[s]->holds(); });
     }
     if (attempt == kLearn) return;
-    if (second_.lines.empty()) {
-      second_.lines = rays_.extremes();
-      for (int n = 0; n < kSecond; ++n) second_.lines.push_back(n % 4 != 0 ? rays_.fromFilm() : rays_.ofCombination());
-    }
     takeNodes(plan_);
-    second_.figures = checkLines(sim_, NodesOfPlan(sim_, plan_), fine_, second_.lines, airPlaces_, floor_);
+    const NodesOfPlan nodes(sim_, plan_);
+    CheckedLines seen;
+    seen.add(extremes_.lines(), extremes_.check(nodes));
+    seen.add(second_.lines(), second_.check(nodes));
     open.clear();
-    for (size_t s = 0; s < fits_.size(); ++s) {
-      const double largest = second_.figures[s].largest;
-      if (largest <= kHeld * plan_.accuracy || before[s] == 0.0) continue;
+    for (size_t s : slots) {
+      const double largest = seen.figures[s].largest;
+      if (largest <= allowed[s] || before[s] == 0.0) continue;
       if (largest > kHopeless * before[s]) {
         fits_[s]->goBack();
         before[s] = 0.0;
@@ -153,7 +176,7 @@ void PlanFits::hold(std::vector<size_t> open) {
       open.push_back(s);
     }
     if (open.empty()) return;
-    teach(second_, open);
+    teach(seen, open, allowed);
   }
 }
 

@@ -14,35 +14,40 @@ namespace pitviper {
 struct CheckedLines {
   std::vector<SightRay> lines;
   std::vector<LineFigures> figures;
-  /// More of them; medians stay those of the first.
   void add(const std::vector<SightRay>& more, const std::vector<LineFigures>& theirs);
+  void addSome(const std::vector<SightRay>& more, const std::vector<LineFigures>& theirs, const std::function<bool(const SightRay&)>& wanted);
 };
 
 class PlanFits {
  public:
-  /// Fits groups within plan.accuracy. `slots`: an output of each; `fine`: the plan of every wavelength; `floor`: filmFloors();
-  /// `airPlaces`: airPlacesFor() it; `tell`: what part of the work of the constructor or of learn() is done, at most. All must outlive it.
+  /// Fits groups within plan.accuracy. `slots`: an output of each; `fine`: the plan of every wavelength; `extremes`: those of the rays; `floor`: filmFloors();
+  /// `airPlaces`: airPlacesFor() fits, `lastPlaces`: for what they are held against; `tell`: what part of the work of the constructor or of learn() is done, at
+  /// most. All must outlive it.
   PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
-           SightRays& rays, const std::vector<double>& floor, int airPlaces, const std::function<void(double part)>& tell);
-  /// Fits those slots to what they are off by on these lines besides.
-  void learn(const CheckedLines& checked, const std::vector<size_t>& slots);
+           HeldLines& extremes, SightRays& rays, const std::vector<double>& floor, int airPlaces, int lastPlaces,
+           const std::function<void(double part)>& tell);
+  /// Fits those slots to what they are off by on these lines besides; `allowed`: the most that each may be. Returns the slots whose groups have changed.
+  std::vector<size_t> learn(const CheckedLines& checked, const std::vector<size_t>& slots, const std::vector<double>& allowed);
+  /// Lines are told to fits at as many places as they are held against from here on.
+  void lookCloser() { sights_.setAirPlaces(lastPlaces_); }
   /// The groups as the plan's nodes.
   void takeNodes(Plan& plan) const;
 
  private:
-  void hold(std::vector<size_t> open);
-  void teach(const CheckedLines& checked, const std::vector<size_t>& slots);
+  void hold(const std::vector<size_t>& slots);
+  void teach(const CheckedLines& checked, const std::vector<size_t>& slots, const std::vector<double>& allowed);
 
   const Simulation& sim_;
   const NodesOfPlan& fine_;
   SightRays& rays_;
   const std::vector<double>& floor_;
-  int airPlaces_;
+  int lastPlaces_;
   const std::function<void(double)>& tell_;
   Plan plan_;
   Sights sights_;
   std::vector<std::unique_ptr<ChannelFit>> fits_;
-  CheckedLines second_;  ///< what fits are held against
+  HeldLines& extremes_;
+  HeldLines second_;  ///< what fits are held against besides
 };
 
 }  // namespace pitviper

@@ -1,13 +1,14 @@
 #include "sim/plan/planner.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 
 #include "sim/plan/air_table_request.hpp"
 #include "sim/plan/line_check.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/plan_fits.hpp"
 #include "sim/plan/plan_origin.hpp"
+#include "sim/plan/surroundings_choice.hpp"
 
 namespace pitviper {
 namespace {
@@ -28,10 +29,6 @@ constexpr double kDropped = 0.05;
 /// Single precision on the GPU over a whole pixel: 2.8e-6 of a formula and 1e-5 of tables (tests/gpu/test_float_against_double.cpp), 5e-5 found in random
 /// scenes.
 constexpr double kPrecision = 6e-5;
-/// Of the accuracy, the part that ambient light may lose by being told with fewer harmonics, on the largest of so many lines of the film, and half as many of
-/// small bodies. It changes evenly over surfaces, and needs no margin.
-constexpr double kSurroundingsShare = 0.4, kNoWorse = 1.1;
-constexpr int kSurroundingsLines = 240;
 /// Seeds of the last lines lie apart from those of the fit, and of the last ones before.
 constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u, kNextSeed = 0xd1b54a32d192ed03u, kSurroundingsSeed = 0x8cb92ba72f3d8dd7u;
 
@@ -64,85 +61,53 @@ bool suits(const Plan& plan, const Simulation& sim) {
   return std::all_of(plan.nodes.begin(), plan.nodes.end(), [&](const SpectralNode& n) { return n.absorption_per_m.size() == sim.materials.size(); });
 }
 
-/// Tables of the air, as large as the accuracy needs; what they lose, per slot.
-std::vector<double> planTables(const Simulation& sim, const Eye& eye, SightRays& rays, const std::vector<double>& floor, Plan& plan) {
-  std::vector<double> lost;
-  if (plan.terms.air) lost = sim.air->planTables({sim, plan, eye.camera, &rays, &floor});
-  return lost.empty() ? std::vector<double>(plan.weight.size(), 0.0) : lost;
-}
+/// What plans are held against at last.
+struct LastLook {
+  const Simulation& sim;
+  const Eye& eye;
+  const NodesOfPlan& fine;
+  SightRays& rays;
+  const std::vector<double>& floor;
+  int places;             ///< at which the air is looked at
+  HeldLines& extremes;
 
-/// What it is off by, on lines that no fit has seen and at the extremes.
-CheckedLines predict(const Simulation& sim, const Eye& eye, const NodesOfPlan& fine, SightRays& rays, const std::vector<double>& floor, int airPlaces,
-                     unsigned long long seed, Plan& plan) {
-  rays.reseed(seed);
-  CheckedLines last;
-  last.lines = rays.overFilm(kLast);
-  const NodesOfPlan planned(sim, plan);
-  last.figures = checkLines(sim, planned, fine, last.lines, airPlaces, floor);
-  // What middles of pixels miss and pixels hold: small bodies, glints, which are small, and lamps.
-  std::vector<SightRay> small = rays.ofSmallBodies(kLastSmall);
-  std::copy_if(rays.extremes().begin(), rays.extremes().end(), std::back_inserter(small), [](const SightRay& r) { return r.glints || r.lamp >= 0; });
-  last.add(small, checkLines(sim, planned, fine, small, airPlaces, floor));
-  const auto& found = last.figures;
-  const auto extreme = checkLines(sim, planned, fine, rays.extremes(), airPlaces, floor);
-  const std::vector<double> tables = planTables(sim, eye, rays, floor, plan);
-  plan.lines = kLast;
-  plan.parts.clear();
-  plan.predictedError.clear();
-  const double lamps = sim.lights.empty() ? 0.0 : (kLampShare + (plan.terms.shadows ? kShadowShare : 0.0)) * plan.accuracy;
-  const double thin = plan.terms.air ? kThinShare * plan.accuracy : 0.0;
-  for (size_t s = 0; s < found.size(); ++s) {
-    plan.parts.push_back({kMargin * found[s].largest, tables[s], found[s].dropped + lamps + thin, kPrecision,
-                          plan.surroundingsLoss.empty() ? 0.0 : plan.surroundingsLoss[s], extreme[s].largest});
-    plan.predictedError.push_back(plan.parts.back().sum());
+  /// Of some slots, on lines that no fit has seen and at the extremes: what they are off by but for tables. Returns the lines; figures of other slots are none.
+  CheckedLines tell(unsigned long long seed, const std::vector<size_t>& slots, Plan& plan) const {
+    rays.reseed(seed);
+    CheckedLines last;
+    const Plan some = ofSlots(plan, slots), fineSome = ofSlots(fine.plan, slots);
+    const NodesOfPlan planned(sim, some), exact(sim, fineSome);
+    std::vector<double> ownFloor;
+    for (size_t s : slots) ownFloor.push_back(floor[s]);
+    const auto look = [&](std::vector<SightRay> lines) {
+      std::vector<LineFigures> figures(floor.size());
+      std::vector<LineFigures> own = checkLines(sim, planned, exact, lines, places, ownFloor);
+      for (size_t k = 0; k < slots.size(); ++k) figures[slots[k]] = std::move(own[k]);
+      last.add(lines, figures);
+    };
+    look(rays.overFilm(kLast));
+    // What middles of pixels miss and pixels hold: small bodies, glints, which are small, and lamps.
+    look(rays.ofSmallBodies(kLastSmall));
+    const NodesOfPlan all(sim, plan);
+    const std::vector<LineFigures> extreme = extremes.check(all);
+    last.addSome(extremes.lines(), extreme, [](const SightRay& r) { return r.glints || r.lamp >= 0; });
+    plan.lines = kLast;
+    plan.parts.resize(floor.size());
+    const double lamps = sim.lights.empty() ? 0.0 : (kLampShare + (plan.terms.shadows ? kShadowShare : 0.0)) * plan.accuracy;
+    const double thin = plan.terms.air ? kThinShare * plan.accuracy : 0.0;
+    for (size_t s : slots)
+      plan.parts[s] = {kMargin * last.figures[s].largest, plan.parts[s].tables, last.figures[s].dropped + lamps + thin, kPrecision,
+                       plan.surroundingsLoss.empty() ? 0.0 : plan.surroundingsLoss[s], extreme[s].largest};
+    return last;
   }
-  return last;
-}
 
-/// Ambient light by direction costs: the fewest harmonics, or none but the mean, that lose no more than a part of the accuracy; else as many as there are.
-/// Returns the fine wavelengths with as many.
-std::unique_ptr<const Plan> chooseSurroundings(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays, Plan& plan) {
-  auto chosen = std::make_unique<Plan>(fine.plan);
-  if (plan.terms.surroundings == 0) return chosen;
-  const std::vector<double> floor = filmFloors(sim, fine, rays);
-  std::vector<SightRay> lines = rays.overFilm(kSurroundingsLines);
-  for (SightRay& ray : rays.ofSmallBodies(kSurroundingsLines / 2)) lines.push_back(std::move(ray));
-  for (int n = 0; n < kSurroundingsLines / 2; ++n) lines.push_back(rays.ofCombination());  // a canopy may be few pixels
-  struct Tried {
-    int degree;
-    std::vector<double> loss;
-    double largest;
-  };
-  std::vector<Tried> all;
-  const auto look = [&](std::initializer_list<int> degrees) {
-    std::vector<Plan> plans;
-    std::vector<std::unique_ptr<NodesOfPlan>> nodes;
-    std::vector<const NodesOfPlan*> each;
-    plans.reserve(degrees.size());
-    for (const int degree : degrees) {
-      plans.push_back(fine.plan);
-      plans.back().terms = withSurroundings(fine.plan.terms, degree);
-      nodes.push_back(std::make_unique<NodesOfPlan>(sim, plans.back()));
-      each.push_back(nodes.back().get());
-    }
-    const auto found = checkLines(sim, each, fine, lines, kUsualPlaces, floor);
-    for (size_t d = 0; d < degrees.size(); ++d) {
-      all.push_back({degrees.begin()[d], {}, 0.0});
-      for (const LineFigures& f : found[d]) all.back().loss.push_back(f.largest), all.back().largest = std::max(all.back().largest, f.largest);
-    }
-  };
-  const auto isEnough = [&](const Tried& t) { return t.largest <= kSurroundingsShare * plan.accuracy; };
-  if (plan.accuracy > 0.0) look({0, 2});
-  if (std::none_of(all.begin(), all.end(), isEnough)) look({3, kMostHarmonicOrder});
-  // Where none is good enough, more must be worth it.
-  double least = INFINITY;
-  for (const Tried& t : all) least = std::min(least, t.largest);
-  const Tried& taken = *std::find_if(all.begin(), all.end(), [&](const Tried& t) { return isEnough(t) || t.largest <= kNoWorse * least; });
-  plan.surroundings = taken.degree;
-  plan.surroundingsLoss = taken.loss;
-  chosen->terms = withSurroundings(fine.plan.terms, taken.degree);
-  return chosen;
-}
+  /// Tables of the air, as large as the accuracy needs, and what they lose.
+  void makeTables(Plan& plan) const {
+    std::vector<double> lost;
+    if (plan.terms.air) lost = sim.air->planTables({sim, plan, eye.camera, &rays, &floor});
+    for (size_t s = 0; s < plan.parts.size(); ++s) plan.parts[s].tables = lost.empty() ? 0.0 : lost[s];
+  }
+};
 
 /// Of each slot, the output it is of.
 std::vector<const ChannelOutput*> slotsOf(const Plan& plan, const std::vector<ChannelOutput>& outputs) {
@@ -152,9 +117,23 @@ std::vector<const ChannelOutput*> slotsOf(const Plan& plan, const std::vector<Ch
   return slots;
 }
 
+std::vector<size_t> allOf(const Plan& plan) {
+  std::vector<size_t> all(static_cast<size_t>(plan.slotCount));
+  std::iota(all.begin(), all.end(), 0);
+  return all;
+}
+
+/// Two plans leave the same terms out.
+bool dropAlike(const Plan& a, const Plan& b) {
+  const auto same = [](const auto& x, const auto& y, auto is) { return std::equal(x.begin(), x.end(), y.begin(), y.end(), is); };
+  return a.terms.ambient == b.terms.ambient && a.terms.scatteredSun == b.terms.scatteredSun && a.terms.lights == b.terms.lights &&
+         same(a.shares, b.shares, [](const TermShare& x, const TermShare& y) { return x.kept == y.kept; }) &&
+         same(a.blocks, b.blocks, [](const NodeBlock& x, const NodeBlock& y) { return x.lit == y.lit; });
+}
+
 /// Groups of wavelengths within plan.accuracy, terms that nobody would notice left out, and what all that is off by.
 void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const NodesOfPlan& fine, bool keepLights, SightRays& rays,
-             Plan& plan, const PlanProgress& progress) {
+             const std::vector<double>& floor, Plan& plan, const PlanProgress& progress) {
   // Fits take most of the time, the last lines and tables the rest; what is done again comes out of that.
   double from = 0.05, to = 0.6;
   const auto tell = [&](double share) {
@@ -162,43 +141,50 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
   };
   const std::function<void(double)> tellFits = [&](double part) { tell(from + (to - from) * part); };
   tell(0.02);
-  const std::vector<double> floor = filmFloors(sim, fine, rays);
   const int airPlaces = airPlacesFor(sim, fine, rays, plan.accuracy, floor), lastPlaces = std::max(airPlaces, kUsualPlaces);
   // Fits and what they are held against tell light from all around alike.
   plan.terms = withSurroundings(plan.terms, fine.plan.terms.surroundings);
   const Terms all = plan.terms;
   const int lights = plan.lightCount;
-  const auto seed = static_cast<unsigned long long>(sim.seed);
-  unsigned long long batch = kLastSeed;  // lines of another are new to every fit
-  // True where it holds on lines that no fit has seen, or all was tried.
-  const auto fitWith = [&](int places) {
-    PlanFits fits(sim, eye, plan, slotsOf(plan, outputs), fine, rays, floor, places, tellFits);
-    for (int attempt = 0;; ++attempt, batch ^= kNextSeed * static_cast<unsigned long long>(attempt)) {
-      tell(to);
-      fits.takeNodes(plan);
-      plan.terms = all;
-      plan.lightCount = lights;
-      dropTerms(plan, keepLights);
-      const CheckedLines last = predict(sim, eye, fine, rays, floor, lastPlaces, seed ^ batch, plan);
-      std::vector<size_t> missed;
-      for (size_t s = 0; s < plan.parts.size(); ++s)
-        // Finer groups help neither tables nor harmonics beyond what those may lose.
-        if (const PredictedParts& p = plan.parts[s]; p.sum() - p.tables - p.surroundings > plan.accuracy - std::min(p.tables, kMended * plan.accuracy) -
-                                                                                               std::min(p.surroundings, kSurroundingsShare * plan.accuracy))
-          missed.push_back(s);
-      from = 0.75, to = 0.9;
-      if (missed.empty()) return true;
-      if (attempt == kAgain) return false;
-      fits.learn(last, missed);
-    }
-  };
-  // What is still missed may lie between the places where fits look at the air.
-  if (!fitWith(airPlaces) && airPlaces < lastPlaces) {
+  HeldLines extremes(sim, fine, rays.extremes(), lastPlaces, floor);
+  const LastLook last{sim, eye, fine, rays, floor, lastPlaces, extremes};
+  PlanFits fits(sim, eye, plan, slotsOf(plan, outputs), fine, extremes, rays, floor, airPlaces, lastPlaces, tellFits);
+  // Lines of another batch are new to every fit.
+  unsigned long long batch = kLastSeed;
+  std::vector<size_t> changed = allOf(plan);
+  for (int attempt = 0;; ++attempt, batch ^= kNextSeed * static_cast<unsigned long long>(attempt)) {
+    tell(to);
+    const Plan before = plan;
+    fits.takeNodes(plan);
     plan.terms = all;
     plan.lightCount = lights;
-    batch = ~kLastSeed;
-    fitWith(lastPlaces);
+    dropTerms(plan, keepLights);
+    if (attempt == 0 || !dropAlike(before, plan)) changed = allOf(plan);
+    const CheckedLines seen = last.tell(static_cast<unsigned long long>(sim.seed) ^ batch, changed, plan);
+    if (attempt == 0) last.makeTables(plan);
+    // What wavelengths may show on the last lines. Finer groups help neither tables nor harmonics beyond what those may lose.
+    std::vector<double> allowed;
+    std::vector<size_t> missed;
+    for (size_t s = 0; s < plan.parts.size(); ++s) {
+      const PredictedParts& p = plan.parts[s];
+      const double left = plan.accuracy - std::min(p.tables, kMended * plan.accuracy) - std::min(p.surroundings, kSurroundingsShare * plan.accuracy) -
+                          p.dropped - p.precision;
+      allowed.push_back(std::max(left, 0.0) / kMargin);
+      if (p.wavelengths > left) missed.push_back(s);
+    }
+    from = 0.75, to = 0.9;
+    // What is still missed may lie between the places where fits look at the air.
+    const bool isLast = missed.empty() || attempt == 2 * kAgain;
+    if (!isLast) {
+      if (attempt == kAgain) fits.lookCloser();
+      changed = fits.learn(seen, missed, allowed);
+    }
+    if (!isLast && !changed.empty()) continue;
+    if (attempt > 0) last.makeTables(plan);
+    break;
   }
+  plan.predictedError.clear();
+  for (const PredictedParts& p : plan.parts) plan.predictedError.push_back(p.sum());
 }
 
 }  // namespace
@@ -233,15 +219,21 @@ Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress
     Plan fine = makePlan(sim, outputs, exact, where);
     fine.terms = withSurroundings(all, all.surroundings != 0 ? Terms::kWhole : 0);
     const auto seed = static_cast<unsigned long long>(sim.seed);
-    SightRays looks(sim, eye, seed ^ kSurroundingsSeed);
-    const auto chosen = chooseSurroundings(sim, NodesOfPlan(sim, fine), looks, plan);
-    SightRays rays(sim, eye, seed);
+    SightRays rays(sim, eye, seed ^ kSurroundingsSeed);
+    const NodesOfPlan whole(sim, fine);
+    const std::vector<double> floor = filmFloors(sim, whole, rays);
+    const auto chosen = chooseSurroundings(sim, whole, rays, floor, plan);
+    rays.reseed(seed);
     const NodesOfPlan exactNodes(sim, *chosen);
     if (plan.accuracy > 0.0) {
-      fitPlan(sim, eye, outputs, exactNodes, keepLights, rays, plan, progress);
+      fitPlan(sim, eye, outputs, exactNodes, keepLights, rays, floor, plan, progress);
     } else {
       for (const auto& w : fine.weight) plan.fineCount.push_back(static_cast<int>(std::count_if(w.begin(), w.end(), [](double v) { return v != 0.0; })));
-      predict(sim, eye, exactNodes, rays, filmFloors(sim, exactNodes, rays), kUsualPlaces, seed ^ kLastSeed, plan);
+      HeldLines extremes(sim, exactNodes, rays.extremes(), kUsualPlaces, floor);
+      const LastLook last{sim, eye, exactNodes, rays, floor, kUsualPlaces, extremes};
+      last.tell(seed ^ kLastSeed, allOf(plan), plan);
+      last.makeTables(plan);
+      for (const PredictedParts& p : plan.parts) plan.predictedError.push_back(p.sum());
     }
     plan.terms = all;
     writeCachedPlan(key, plan);

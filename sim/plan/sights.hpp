@@ -64,6 +64,8 @@ class Sights {
   void draw(int count);
   /// A line; `inFull`, one that turned out to matter: with every step through fields.
   void add(const SightRay& ray, bool inFull = false);
+  /// Of lines from here on.
+  void setAirPlaces(int places) { airPlaces_ = places; }
   size_t size() const { return book_.sights.size(); }
   /// The absorbers that a channel may meet: places in AirAmounts, and from kMostAirAmounts on the materials of media.
   std::vector<int> absorbers(const FineGrid& grid) const;

@@ -320,4 +320,10 @@ std::vector<double> NodeSum::transmittance() const {
   return all;
 }
 
+std::vector<double> NodeSum::reach() const {
+  std::vector<double> all = transmittance();
+  for (size_t i = 0; i < count_; ++i) all[i] *= near_.passed[i];
+  return all;
+}
+
 }  // namespace pitviper

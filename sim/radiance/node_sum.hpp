@@ -86,6 +86,8 @@ class NodeSum final : public TermSink {
   void watchParts() { watches_ = true; }
   /// Of panes and media on the whole way.
   std::vector<double> transmittance() const;
+  /// Of air, panes and media as far as the place reached.
+  std::vector<double> reach() const;
 
  private:
   const std::vector<double>& values(const Factor& factor);
