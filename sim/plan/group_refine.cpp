@@ -24,7 +24,12 @@ struct Trial {
   GroupMoments at;
   VectorXd errors;
   double merit = 0.0, length = 0.0, rootStep = 0.0;
+  int place = 0;  ///< of its length
 };
+
+/// Parts of a step that are tried.
+constexpr double kLengths[] = {1.0, 0.5, 0.25, 0.12, 0.06};
+constexpr int kLengthCount = 5;
 
 /// The norm's last power: a larger one swings between two errors.
 constexpr double kMostPower = 12.0;
@@ -67,15 +72,24 @@ double refineGroups(const ProductSet& set, GroupState& state, RefineProgress& pr
     const auto along = [&](double rootStep) {
       Trial nearest;
       nearest.merit = before;
+      nearest.place = progress.place;
       step.solve(damping, rootStep);
-      for (double length : {1.0, 0.5, 0.25, 0.12, 0.06}) {
-        Trial trial{step.moved(length), {}, {}, 0.0, length, rootStep};
+      const auto isBetter = [&](int place) {
+        if (place < 0 || place >= kLengthCount) return false;
+        Trial trial{step.moved(kLengths[place]), {}, {}, 0.0, kLengths[place], rootStep, place};
         trial.at = set.moments(trial.state);
         trial.errors = set.errors(trial.at);
         trial.merit = merit(trial.errors, p, largest);
-        if (trial.merit < nearest.merit) nearest = std::move(trial);
-        else if (nearest.length > 0.0) break;
-      }
+        if (!(trial.merit < nearest.merit)) return false;
+        nearest = std::move(trial);
+        return true;
+      };
+      // First as far as the last step went, then farther, or else less far, while that is better.
+      const bool begun = isBetter(progress.place);
+      bool farther = false;
+      for (int k = progress.place - 1; begun && isBetter(k); --k) farther = true;
+      for (int k = progress.place + 1; !farther && k < kLengthCount; ++k)
+        if (!isBetter(k) && nearest.length > 0.0) break;
       return nearest;
     };
     Trial taken = along(progress.rootStep);
@@ -92,6 +106,7 @@ double refineGroups(const ProductSet& set, GroupState& state, RefineProgress& pr
       continue;
     }
     progress.rootStep = taken.rootStep;
+    progress.place = taken.place;
     // Newton's step on the p-norm is 1 / (p - 1) of this one; much less says that the model is wrong so far out.
     const double newton = 1.0 / (p - 1.0);
     damping = std::clamp(damping * (taken.length >= std::min(2.0 * newton, 1.0) ? 0.4 : taken.length >= 0.9 * newton ? 1.0 : 4.0), 1e-9, 1e4);

@@ -17,6 +17,7 @@ struct RefineProgress {
   int round = 0;          ///< sets p
   double damping = 0.1;   ///< relative to the mean curvature
   double rootStep = 4.0;  ///< see GroupStep::solve
+  int place = 0;          ///< of the last step's length among those tried
 };
 
 /// Gauss-Newton on the p-norm of the errors (p rising from 2 towards the maximum), all extinctions and shares together (group_step.hpp), put back

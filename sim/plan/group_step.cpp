@@ -117,20 +117,32 @@ void GroupStep::solve(double damping, double rootStep) {
 /// By unknowns, or by products where these are fewer.
 void GroupStep::solveDirectly(double rootDamping, double extinctionDamping) {
   const Index shapes = byRoots_.rows(), extinctions = slopes_.extinction.rows(), all = shapes + extinctions, rows = errors_.size();
-  MatrixXd slopes(all, rows);
-  slopes << byRoots_, slopes_.extinction;
   VectorXd damped(all);
   damped << VectorXd::Constant(shapes, rootDamping), VectorXd::Constant(extinctions, extinctionDamping);
-  VectorXd step;
+  VectorXd slope(all), step;
+  slope << byRoots_ * errors_, slopes_.extinction * errors_;
   if (all <= rows) {
-    MatrixXd normal = MatrixXd(damped.asDiagonal());
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(slopes);
-    step = -normal.selfadjointView<Eigen::Lower>().llt().solve(slopes * errors_);
+    if (normal_.size() == 0) {
+      MatrixXd slopes(all, rows);
+      slopes << byRoots_, slopes_.extinction;
+      normal_ = MatrixXd::Zero(all, all);
+      normal_.selfadjointView<Eigen::Lower>().rankUpdate(slopes);
+    }
+    MatrixXd normal = normal_;
+    normal.diagonal() += damped;
+    step = -normal.selfadjointView<Eigen::Lower>().llt().solve(slope);
   } else {
-    const MatrixXd scaled = damped.cwiseSqrt().cwiseInverse().asDiagonal() * slopes;
-    MatrixXd normal = MatrixXd::Identity(rows, rows);
-    normal.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose());
-    step = -damped.cwiseInverse().cwiseProduct(slopes * normal.selfadjointView<Eigen::Lower>().llt().solve(errors_).eval());
+    if (normal_.size() == 0) {
+      normal_ = normalOfExtinctions_ = MatrixXd::Zero(rows, rows);
+      normal_.selfadjointView<Eigen::Lower>().rankUpdate(byRoots_.transpose());
+      normalOfExtinctions_.selfadjointView<Eigen::Lower>().rankUpdate(slopes_.extinction.transpose());
+    }
+    MatrixXd normal = normal_ / rootDamping + normalOfExtinctions_ / extinctionDamping;
+    normal.diagonal().array() += 1.0;
+    const VectorXd along = normal.selfadjointView<Eigen::Lower>().llt().solve(errors_);
+    VectorXd turned(all);
+    turned << byRoots_ * along, slopes_.extinction * along;
+    step = -damped.cwiseInverse().cwiseProduct(turned);
   }
   // v to w, C'w = v.
   VectorXd w(shapes);

@@ -1,6 +1,7 @@
 #include "sim/plan/opacity_groups.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <numeric>
@@ -159,6 +160,7 @@ class Fitter {
       least = leastBegun;
       best = state;
     }
+    std::array<double, 2> before{INFINITY, INFINITY};  // one and two passes ago
     for (int left = rounds - firstRounds; left > 0 && least > goal && !expired_(); left -= kRoundsPerPass) {
       if (static_cast<int>(working_.size()) < all_.size()) addWorst(all_.errors(all_.moments(state)));
       refineGroups(set_, state, progress, {std::min(left, kRoundsPerPass), 0.9 * goal, expired_});
@@ -168,6 +170,10 @@ class Fitter {
         best = state;
       }
       if (goal > 0.0 && least > kHopeless * goal) break;
+      // What two passes did not bring near enough for the others to do the rest they won't.
+      const double gain = before[1] - least, passes = std::ceil(static_cast<double>(left - kRoundsPerPass) / kRoundsPerPass);
+      if (goal > 0.0 && least > goal && gain * passes < least - goal) break;
+      before = {least, before[0]};
     }
     return finish(best, count);
   }

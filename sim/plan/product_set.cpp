@@ -88,6 +88,7 @@ ProductSet::ProductSet(const SpectralProblem& p) {
   amounts.resize(extinction.cols(), static_cast<Eigen::Index>(path.used.size()));
   for (Eigen::Index u = 0; u < amounts.cols(); ++u)
     for (Eigen::Index k = 0; k < amounts.rows(); ++k) amounts(k, u) = p.paths[static_cast<size_t>(path.used[static_cast<size_t>(u)])][static_cast<size_t>(k)];
+  for (Eigen::Index u = 0; u < amounts.cols(); ++u) sparse.add(amounts.col(u).data(), columnCount());
   compress();
   integrate(floors);
 }
@@ -174,6 +175,7 @@ ProductSet ProductSet::subset(const std::vector<int>& products) const {
   for (Eigen::Index i = 0; i < s.mix.cols(); ++i) s.mix.col(i) = mix.col(source.used[static_cast<size_t>(i)]);
   s.amounts.resize(columnCount(), static_cast<Eigen::Index>(path.used.size()));
   for (Eigen::Index i = 0; i < s.amounts.cols(); ++i) s.amounts.col(i) = amounts.col(path.used[static_cast<size_t>(i)]);
+  for (Eigen::Index u = 0; u < s.amounts.cols(); ++u) s.sparse.add(s.amounts.col(u).data(), columnCount());
   return s;
 }
 
@@ -183,10 +185,20 @@ bool ProductSet::hasProducts() const {
 
 GroupMoments ProductSet::moments(const GroupState& state) const {
   GroupMoments m;
-  m.source.noalias() = state.share * weighted;
-  m.weight.noalias() = state.share * weight;
-  m.transmittance.noalias() = state.extinction * amounts;
-  m.transmittance = (-m.transmittance.array()).exp();
+  m.groups = static_cast<int>(state.share.rows());
+  const int padded = paddedGroups(m.groups);
+  const auto filled = [&](const Eigen::MatrixXd& of) {
+    Eigen::MatrixXd all = Eigen::MatrixXd::Zero(padded, of.cols());
+    all.topRows(m.groups) = of;
+    return all;
+  };
+  const Eigen::MatrixXd share = filled(state.share), depths = filled(state.extinction);
+  m.source.resize(padded, weighted.cols());
+  averages(share.data(), weighted.data(), fineCount(), sourceCount(), padded, m.source.data());
+  m.weight.resize(padded);
+  averages(share.data(), weight.data(), fineCount(), 1, padded, m.weight.data());
+  m.transmittance.resize(padded, pathCount());
+  transmittances(sparse, depths.data(), padded, m.transmittance.data());
   return m;
 }
 
@@ -261,10 +273,10 @@ Eigen::VectorXd ProductSet::errors(const GroupMoments& at) const {
 // Group by group in the inner loops: a term's derivatives by a spectrum's averages go to the shapes that make up the spectrum.
 GroupSlopes ProductSet::slopes(const GroupMoments& at) const {
   const Eigen::ArrayXd perWeight = inverse(at.weight);
-  const Eigen::Index groups = at.source.rows(), shapes = mix.rows(), columns = amounts.rows();
+  const Eigen::Index padded = at.source.rows(), groups = at.groups, shapes = mix.rows(), columns = amounts.rows();
   GroupSlopes out{Eigen::MatrixXd::Zero(basis.cols() * groups, size()), Eigen::MatrixXd::Zero(columns * groups, size())};
   const double* w = perWeight.data();
-  Eigen::ArrayXd product(groups), own(groups), byWeight(groups);
+  Eigen::ArrayXd product(padded), own(padded), byWeight(groups);
   const auto addTo = [&](double* averages, int source) {
     const double *d = own.data(), *m = mix.data() + shapes * source;
     for (Eigen::Index r = 0; r < shapes; ++r, averages += groups)
@@ -276,7 +288,7 @@ GroupSlopes ProductSet::slopes(const GroupMoments& at) const {
     for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
       const ProductTerm& term = terms[static_cast<size_t>(t)];
       const double c = scale[m] * term.coefficient;
-      const double* tau = at.transmittance.data() + groups * term.path;
+      const double* tau = at.transmittance.data() + padded * term.path;
       const TermValue value(at, perWeight, term);
       value.spectraBut(-1, product);
       product *= c * at.transmittance.col(term.path).array();

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
+#include "sim/plan/group_kernels.hpp"
 #include "sim/plan/opacity_groups.hpp"
 
 namespace pitviper {
@@ -13,8 +14,9 @@ struct GroupState {
   Eigen::MatrixXd extinction;  ///< [group, column]
 };
 
-/// Where the products have been brought to with a state.
+/// Where the products have been brought to with a state. Groups are filled up (paddedGroups()) with such as have no weight.
 struct GroupMoments {
+  int groups = 0;                ///< without those
   Eigen::MatrixXd source;         ///< [group, source]: sum of weight x share x spectrum
   Eigen::VectorXd weight;         ///< [group]
   Eigen::MatrixXd transmittance;  ///< [group, path]
@@ -57,6 +59,7 @@ class ProductSet {
   double weightSize = 0.0;     ///< where averages are multiplied the weight is one more shape, the last: basis x weightSize
   Eigen::MatrixXd extinction;  ///< [fine, column]
   Eigen::MatrixXd amounts;     ///< [column, path]
+  SparseAmounts sparse;        ///< the same
   Eigen::MatrixXd parts;       ///< [tag, product]: what terms of a tag add to `fine`; not of a subset
   Eigen::VectorXd fine;        ///< [product]: value on the fine grid
   Eigen::VectorXd scale;       ///< [product]: 1 / max(|fine|, floor), 0 where that is 0

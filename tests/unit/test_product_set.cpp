@@ -8,7 +8,7 @@
 namespace pitviper::test {
 namespace {
 
-constexpr int kFine = 40, kGroups = 4, kSpectra = 6;
+constexpr int kFine = 40, kGroups = 5, kSpectra = 6;
 
 SpectralProblem problem(Numbers& random) {
   SpectralProblem p;
