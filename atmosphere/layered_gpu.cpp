@@ -54,6 +54,7 @@ void LayeredOnGpu::addHeights(std::vector<float>& out) const {
   const auto put = [&](const AirAmounts& logs) {
     for (size_t k = 0; k < static_cast<size_t>(4 * rows_.vectors()); ++k) out.push_back(static_cast<float>(logs.amount[k]));
   };
+  if (plan_.sunLegs) plan_.sunLegs->fill();
   for (int h = 0; plan_.sunLegs && h < SunLegs::kHeights; ++h)
     for (int e = 0; e < SunLegs::kElevations; ++e) put(plan_.sunLegs->rootAt(e, h));
   // From the top down, what lies above by Simpson's rule.

@@ -31,10 +31,16 @@ struct Sightline {
   struct Sent {
     double radiance, depth;
   };
-  /// What it sends at a wavelength, and all it takes from what lies behind.
-  Sent at(const AirNode& node, double um, double irradiance) const {
+  /// Black bodies of its air's temperatures at a wavelength.
+  std::vector<double> sourceAt(double um) const {
     std::vector<double> source;
     for (const AirStation& s : air.stations) source.push_back(s.temperature_K > 0.0 ? physics::planckRadiance(um, s.temperature_K) : 0.0);
+    return source;
+  }
+
+  /// What it sends at a wavelength, and all it takes from what lies behind.
+  Sent at(const AirNode& node, double um, double irradiance) const { return at(node, sourceAt(um), irradiance); }
+  Sent at(const AirNode& node, std::span<const double> source, double irradiance) const {
     const AirRadiance sent = airRadiance(node, air, source);
     double radiance = sent.thermal.back();
     if (!sent.molecules.empty())
@@ -42,6 +48,8 @@ struct Sightline {
     return {radiance, sent.depth.back()};
   }
 };
+
+double meanOf(const std::vector<std::pair<Sightline, double>>& lines, const AirNode& node, double um, double irradiance, double behind);
 
 class SkyAround final : public Surroundings {
  public:
@@ -140,10 +148,7 @@ class SkyAround final : public Surroundings {
       if (const auto at = falls_.find(um); at != falls_.end()) return at->second;
     }
     double falls = 0.0;
-    for (const auto& [line, weight] : skyLines()) {
-      const Sightline::Sent sent = line.at(node, um, irradiance);
-      falls += kPi * weight * (sent.radiance + background_(um) * std::exp(-sent.depth));
-    }
+    falls += kPi * meanOf(skyLines(), node, um, irradiance, background_(um));
     if (legs_) {
       const RisenSun risen = risenSun(0.0, sun_->toSun.z, earthRadius_m_);
       if (risen.share > 0.0)
@@ -187,6 +192,20 @@ std::vector<std::pair<Sightline, double>> linesOfMean(const Atmosphere& air, con
   return lines;
 }
 
+/// Their mean before a background. Lines of one elevation, which follow each other, have the same air's temperatures.
+double meanOf(const std::vector<std::pair<Sightline, double>>& lines, const AirNode& node, double um, double irradiance, double behind) {
+  const size_t azimuths = lines.size() / kElevations;
+  double sum = 0.0;
+  std::vector<double> source;
+  for (size_t i = 0; i < lines.size(); ++i) {
+    const auto& [line, weight] = lines[i];
+    if (i % azimuths == 0) source = line.sourceAt(um);
+    const Sightline::Sent sent = line.at(node, source, irradiance);
+    sum += weight * (sent.radiance + behind * std::exp(-sent.depth));
+  }
+  return sum;
+}
+
 const std::vector<std::pair<Sightline, double>>& SkyAround::skyLines() const {
   const std::lock_guard lock(busy_);
   if (skyLines_.empty()) skyLines_ = linesOfMean(*air_, legs_ ? sun_ : std::nullopt, legs_.get(), 0.0, earthRadius_m_);
@@ -204,13 +223,7 @@ Spectrum meanSky(const std::shared_ptr<const Atmosphere>& of, const std::optiona
   table.wavelength_um = of->knots_um();
   for (double w : table.wavelength_um) {
     const AirNode node = of->node(w);
-    const double irradiance = sun ? sun->irradiance(w) : 0.0, behind = background(w);
-    double sum = 0.0;
-    for (const auto& [line, weight] : lines) {
-      const Sightline::Sent sent = line.at(node, w, irradiance);
-      sum += weight * (sent.radiance + behind * std::exp(-sent.depth));
-    }
-    table.value.push_back(sum);
+    table.value.push_back(meanOf(lines, node, w, sun ? sun->irradiance(w) : 0.0, background(w)));
   }
   Spectrum sky(std::move(table));
   sky.setProvenance("mean of the sky of this scenario's air");

@@ -34,15 +34,24 @@ SunLegs::SunLegs(std::shared_ptr<const Atmosphere> path, double sinElevation, do
       first_(std::clamp(sinElevation - kBelow * step_, 0.0, std::max(1.0 - (kElevations - 1) * step_, 0.0))),
       radius_m_(earthRadius_m),
       top_m_(path_->top_m()),
-      roots_(static_cast<size_t>(kElevations) * kHeights) {
+      roots_(static_cast<size_t>(kElevations) * kHeights),
+      made_(kHeights) {}
+
+const AirAmounts* SunLegs::rowAt(int height) const {
+  AirAmounts* row = &roots_[static_cast<size_t>(height * kElevations)];
+  std::call_once(made_[static_cast<size_t>(height)], [&] {
+    for (int e = 0; e < kElevations; ++e) {
+      row[e] = path_->amounts({heightAt(height, top_m_), first_ + step_ * e, radius_m_}, physics::kFar);
+      for (double& w : row[e].amount) w = std::sqrt(std::max(w, 0.0));
+    }
+  });
+  return row;
+}
+
+void SunLegs::fill() const {
   std::atomic<int> next{0};
   const auto work = [&] {
-    for (int h = next++; h < kHeights; h = next++)
-      for (int e = 0; e < kElevations; ++e) {
-        AirAmounts a = path_->amounts({heightAt(h, top_m_), first_ + step_ * e, earthRadius_m}, physics::kFar);
-        for (double& w : a.amount) w = std::sqrt(std::max(w, 0.0));
-        roots_[static_cast<size_t>(e * kHeights + h)] = a;
-      }
+    for (int h = next++; h < kHeights; h = next++) rowAt(h);
   };
   std::vector<std::future<void>> others;
   for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
@@ -93,9 +102,10 @@ AirAmounts SunLegs::upwards(double height_m, double sine) const {
   const double weight[] = {(f - 1) * (f - 2) * (3 - f) / 6, f * (f - 2) * (f - 3) / 2, f * (f - 1) * (3 - f) / 2, f * (f - 1) * (f - 2) / 6};
   AirAmounts a;
   const size_t used = path_->exponents().size();
+  const AirAmounts *below = rowAt(h) + e, *above = rowAt(h + 1) + e;
   for (size_t k = 0; k < used; ++k) {
     double root = 0.0;
-    for (int j = 0; j < 4; ++j) root += weight[j] * ((1 - high) * rootAt(e + j, h).amount[k] + high * rootAt(e + j, h + 1).amount[k]);
+    for (int j = 0; j < 4; ++j) root += weight[j] * ((1 - high) * below[j].amount[k] + high * above[j].amount[k]);
     a.amount[k] = root > 0.0 ? root * root : 0.0;
   }
   return a;

@@ -1,6 +1,7 @@
 #pragma once
-// What lies between places of layered air and the sun, by height: tabulated once, asked for every place that sunlight reaches.
+// What lies between places of layered air and the sun, by height: tabulated once where asked, for every place that sunlight reaches.
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "sim/model/atmosphere.hpp"
@@ -35,15 +36,20 @@ class SunLegs {
   static double heightAt(double entry, double top_m);
   double firstSine() const { return first_; }
   double step() const { return step_; }
-  const AirAmounts& rootAt(int elevation, int height) const { return roots_[static_cast<size_t>(elevation * kHeights + height)]; }
+  const AirAmounts& rootAt(int elevation, int height) const { return rowAt(height)[elevation]; }
+  /// All of the table on all cores, before every entry is asked for.
+  void fill() const;
   double earthRadius_m() const { return radius_m_; }
 
  private:
   bool has(double height_m, double sine) const;
   AirAmounts upwards(double height_m, double sine) const;
+  /// By elevation; made when first asked for.
+  const AirAmounts* rowAt(int height) const;
   std::shared_ptr<const Atmosphere> path_;
   double step_, first_, radius_m_, top_m_;
-  std::vector<AirAmounts> roots_;  ///< [elevation][height]
+  mutable std::vector<AirAmounts> roots_;  ///< [height][elevation]
+  mutable std::vector<std::once_flag> made_;
 };
 
 }  // namespace pitviper

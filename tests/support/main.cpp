@@ -1,6 +1,7 @@
 // The tests' own start: a cache of their own, and an end to what hangs. A slow or busy machine is no hang: what counts is whether any work is done.
 #include <dirent.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -91,6 +92,27 @@ class Names : public testing::EmptyTestEventListener {
   }
 };
 
+/// Of this process and the children it has waited for [s].
+double processorSeconds() {
+  double sum = 0.0;
+  for (int who : {RUSAGE_SELF, RUSAGE_CHILDREN}) {
+    rusage used{};
+    if (getrusage(who, &used) != 0) continue;
+    for (const timeval& t : {used.ru_utime, used.ru_stime}) sum += static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
+  }
+  return sum;
+}
+
+/// Processor seconds beside the others in the reports: what a test costs, whatever runs beside it.
+class Costs : public testing::EmptyTestEventListener {
+ public:
+  void OnTestStart(const testing::TestInfo&) override { begin_s_ = processorSeconds(); }
+  void OnTestEnd(const testing::TestInfo&) override { testing::Test::RecordProperty("processor_s", std::to_string(processorSeconds() - begin_s_)); }
+
+ private:
+  double begin_s_ = 0.0;
+};
+
 [[noreturn]] void watch() {
   // A fuzz test that was asked to be long is one test, and so is a long promise.
   const bool isLong = std::getenv("PITVIPER_FUZZ") != nullptr || std::getenv("PITVIPER_FUZZ_AIR") != nullptr || std::getenv("PITVIPER_KILLS") != nullptr ||
@@ -117,6 +139,7 @@ int main(int argc, char** argv) {
   setenv("XDG_CACHE_HOME", PITVIPER_BUILD_DIR "/test_cache", 1);
   testing::InitGoogleTest(&argc, argv);
   testing::UnitTest::GetInstance()->listeners().Append(new Names);
+  testing::UnitTest::GetInstance()->listeners().Append(new Costs);
   std::thread(watch).detach();
   return RUN_ALL_TESTS();
 }
