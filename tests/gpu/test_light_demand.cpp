@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -10,10 +11,17 @@
 namespace pitviper::test {
 namespace {
 
+/// The reference's picture of a scenario, once however many are held against it.
+const Frame& exactly(const std::string& scenario) {
+  static std::map<std::string, Frame> drawn;
+  const auto at = drawn.find(scenario);
+  return at != drawn.end() ? at->second : drawn.emplace(scenario, renderFrame(scene("accuracy: reference\n" + scenario))).first->second;
+}
+
 /// The largest difference of a layer from the reference's, by the reference's largest value.
 double worst(const std::string& scenario, const std::string& name, const std::string& reference = "") {
-  const Frame planned = renderFrame(scene("accuracy: 1 %\n" + scenario)),
-              exact = renderFrame(scene("accuracy: reference\n" + (reference.empty() ? scenario : reference)));
+  const Frame planned = renderFrame(scene("accuracy: 1 %\n" + scenario));
+  const Frame& exact = exactly(reference.empty() ? scenario : reference);
   const auto &a = layer(planned, name), &b = layer(exact, name);
   double most = 0.0, off = 0.0;
   for (int row = 0; row < 64; ++row)

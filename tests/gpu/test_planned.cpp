@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 #include "scenarios/commands/bench_timing.hpp"
 #include "scenarios/commands/commands.hpp"
@@ -26,16 +27,26 @@ struct PlanErrors {
 /// |L - L_ref| / max(L_ref, 1e-3 x 99th percentile of L_ref).
 double errorOf(double got, double want, double p99) { return std::abs(got - want) / std::max(want, 1e-3 * p99); }
 
-/// Per slot.
-std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan& plan, int size, int stride, const std::vector<double>& times) {
+/// Every wavelength of a camera's channels.
+Plan everyWavelength(const Simulation& sim, const Camera& camera) {
+  SpectralSampling all;
+  all.reference = true;
+  return makePlan(sim, camera.outputs, all, camera.where);
+}
+
+/// The spectra of nodes that somebody keeps.
+std::shared_ptr<const NodeSpectra> lent(const NodesOfPlan& of) { return {std::shared_ptr<const NodeSpectra>(), &of.spectra}; }
+
+/// Per slot. `planned`: a plan; `fine`: every wavelength.
+std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const NodesOfPlan& plannedNodes, const NodesOfPlan& fineNodes, int size, int stride,
+                                const std::vector<double>& times) {
   needContext();
+  const Plan& plan = plannedNodes.plan;
+  Plan fine = fineNodes.plan;
+  fine.textureAccuracy = plan.textureAccuracy;
   camera.pinhole.pitchX_m *= static_cast<double>(camera.pinhole.width) / size;
   camera.pinhole.pitchY_m *= static_cast<double>(camera.pinhole.height) / size;
   camera.pinhole.width = camera.pinhole.height = size;
-  SpectralSampling all = camera.spectral;
-  all.reference = true;
-  Plan fine = makePlan(sim, camera.outputs, all, camera.where);
-  fine.textureAccuracy = plan.textureAccuracy;
   auto gpu = std::make_shared<const GpuScene>(sim);
   const auto pass = makeScenePass(sim, plan, shaderLibrary(), gpu, true, camera.pinhole.apertureArea_m2());
   std::vector<char> present(sim.entities.size(), 1);
@@ -51,7 +62,7 @@ std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan
     pass->draw(view, state, present);
     pass->startReadback();
     const RawImage raw = pass->finishReadback();
-    const ReferenceShader planned(sim, plan, view, state, present), exact(sim, fine, view, state, present);
+    const ReferenceShader planned(sim, plan, view, state, present, lent(plannedNodes)), exact(sim, fine, view, state, present, lent(fineNodes));
     for (int y = 0; y < size; y += stride)
       for (int x = 0; x < size; x += stride) {
         const size_t p = static_cast<size_t>(y * size + x);
@@ -85,13 +96,9 @@ std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Plan
 }
 
 /// The largest errors of a plan's wavelengths, per slot, on lines aimed at every combination of things that the film has, rare ones as often as others.
-std::vector<double> largestAimed(const Simulation& sim, const Camera& camera, const Plan& plan) {
+std::vector<double> largestAimed(const Simulation& sim, const Camera& camera, const NodesOfPlan& planned, const NodesOfPlan& fine) {
   constexpr int kLines = 100;
   constexpr unsigned long long kOwnSeed = 4711;
-  SpectralSampling all;
-  all.reference = true;
-  const Plan full = makePlan(sim, camera.outputs, all, camera.where);
-  const NodesOfPlan planned(sim, plan), fine(sim, full);
   SightRays rays(sim, {&camera, nullptr}, kOwnSeed);
   std::vector<SightRay> lines;
   for (int n = 0; n < kLines; ++n) lines.push_back(rays.ofCombination());
@@ -112,13 +119,15 @@ double kelvinOf(const Plan& plan, size_t slot, double error) {
 
 class Planned : public ::testing::TestWithParam<const char*> {
  protected:
-  /// Errors of a camera's channels at an accuracy, over three times.
-  std::vector<PlanErrors> errorsAt(const Simulation& sim, Camera& camera, double accuracy, Plan& plan) {
+  static Plan planAt(const Simulation& sim, Camera& camera, double accuracy) {
     camera.spectral = {};
     camera.spectral.accuracy = accuracy;
-    plan = planFor(sim, {&camera, nullptr});
+    return planFor(sim, {&camera, nullptr});
+  }
+  /// Errors of a camera's channels, over three times.
+  static std::vector<PlanErrors> errorsOf(const Simulation& sim, const Camera& camera, const NodesOfPlan& planned, const NodesOfPlan& fine) {
     const double end = sim.time.at(sim.time.frames - 1);
-    return compare(sim, camera, plan, 64, 7, {sim.time.start_s, 0.35 * end, 0.7 * end});
+    return compare(sim, camera, planned, fine, 64, 7, {sim.time.start_s, 0.35 * end, 0.7 * end});
   }
 };
 
@@ -127,9 +136,10 @@ TEST_P(Planned, PercentHolds) {
   const Simulation sim = readScenario(std::string(PITVIPER_SOURCE_DIR) + "/scenarios/" + GetParam() + ".yaml", {}, findLibraries());
   std::vector<double> ratios;
   for (Camera camera : sim.cameras) {
-    Plan plan;
-    const auto errors = errorsAt(sim, camera, 0.01, plan);
-    const std::vector<double> aimed = largestAimed(sim, camera, plan);
+    const Plan plan = planAt(sim, camera, 0.01), every = everyWavelength(sim, camera);
+    const NodesOfPlan planned(sim, plan), fine(sim, every);
+    const auto errors = errorsOf(sim, camera, planned, fine);
+    const std::vector<double> aimed = largestAimed(sim, camera, planned, fine);
     for (size_t s = 0; s < errors.size(); ++s) {
       const auto &spectral = errors[s].spectral, &drawn = errors[s].drawn;
       ASSERT_GT(drawn.size(), 150u);
@@ -155,8 +165,8 @@ TEST_F(Planned, PerMilleInKelvin) {
   Camera camera = sim.cameras[0];
   // Visible light is no measure of temperature, and takes most of the time.
   std::erase_if(camera.outputs, [](const ChannelOutput& o) { return o.channel == "vis"; });
-  Plan plan;
-  const auto errors = errorsAt(sim, camera, 0.001, plan);
+  const Plan plan = planAt(sim, camera, 0.001), every = everyWavelength(sim, camera);
+  const auto errors = errorsOf(sim, camera, NodesOfPlan(sim, plan), NodesOfPlan(sim, every));
   ASSERT_EQ(errors.size(), 2u);
   for (size_t s : {0u, 1u})
     bound("first_light, slot " + std::to_string(s) + ", 0.1 %: as a temperature [K]", kelvinOf(plan, s, errors[s].drawn.back()), 0.1,
