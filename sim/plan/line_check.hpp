@@ -18,9 +18,10 @@ struct LineFigures {
   std::vector<double> left;    ///< of each line: what terms make up which the plan leaves out
 };
 
-/// A plan with the spectra that lines have in common at its nodes. Both must outlive it.
+/// A plan with the spectra that lines have in common at its nodes. All must outlive it. `parts`: all wavelengths that it is made of, or null.
 struct NodesOfPlan {
-  NodesOfPlan(const Simulation& simulation, const Plan& of) : plan(of), spectra(simulation, of.nodes, of.terms.surroundings) {}
+  NodesOfPlan(const Simulation& simulation, const Plan& of, const NodesOfPlan* parts = nullptr)
+      : plan(of), spectra(simulation, of.nodes, of.terms.surroundings, parts ? &parts->spectra : nullptr) {}
   const Plan& plan;
   NodeSpectra spectra;
 };

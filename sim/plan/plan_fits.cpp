@@ -159,7 +159,7 @@ void PlanFits::hold(const std::vector<size_t>& slots) {
     }
     if (attempt == kLearn) return;
     takeNodes(plan_);
-    const NodesOfPlan nodes(sim_, plan_);
+    const NodesOfPlan nodes(sim_, plan_, &fine_);
     CheckedLines seen;
     seen.add(extremes_.lines(), extremes_.check(nodes));
     seen.add(second_.lines(), second_.check(nodes));

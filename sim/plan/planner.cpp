@@ -24,6 +24,8 @@ constexpr double kMargin = 2.0;
 constexpr int kAgain = 2;
 /// Of what tables lose, no more than this of the accuracy is made up for by wavelengths.
 constexpr double kMended = 0.3;
+/// Of the accuracy, what there is until tables are made anew, which may lose a little more.
+constexpr double kOldTables = 0.98;
 /// A term that is nowhere more than this part of the accuracy is dropped.
 constexpr double kDropped = 0.05;
 /// Single precision on the GPU over a whole pixel: 2.8e-6 of a formula and 1e-5 of tables (tests/gpu/test_float_against_double.cpp), 5e-5 found in random
@@ -76,7 +78,7 @@ struct LastLook {
     rays.reseed(seed);
     CheckedLines last;
     const Plan some = ofSlots(plan, slots), fineSome = ofSlots(fine.plan, slots);
-    const NodesOfPlan planned(sim, some), exact(sim, fineSome);
+    const NodesOfPlan planned(sim, some, &fine), exact(sim, fineSome, &fine);
     std::vector<double> ownFloor;
     for (size_t s : slots) ownFloor.push_back(floor[s]);
     const auto look = [&](std::vector<SightRay> lines) {
@@ -88,7 +90,7 @@ struct LastLook {
     look(rays.overFilm(kLast));
     // What middles of pixels miss and pixels hold: small bodies, glints, which are small, and lamps.
     look(rays.ofSmallBodies(kLastSmall));
-    const NodesOfPlan all(sim, plan);
+    const NodesOfPlan all(sim, plan, &fine);
     const std::vector<LineFigures> extreme = extremes.check(all);
     last.addSome(extremes.lines(), extreme, [](const SightRay& r) { return r.glints || r.lamp >= 0; });
     plan.lines = kLast;
@@ -167,7 +169,9 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
     std::vector<size_t> missed;
     for (size_t s = 0; s < plan.parts.size(); ++s) {
       const PredictedParts& p = plan.parts[s];
-      const double left = plan.accuracy - std::min(p.tables, kMended * plan.accuracy) - std::min(p.surroundings, kSurroundingsShare * plan.accuracy) -
+      // Tables were made for other groups of what has changed.
+      const bool isOld = attempt > 0 && std::find(changed.begin(), changed.end(), s) != changed.end();
+      const double left = (isOld ? kOldTables : 1.0) * plan.accuracy - std::min(p.tables, kMended * plan.accuracy) - std::min(p.surroundings, kSurroundingsShare * plan.accuracy) -
                           p.dropped - p.precision;
       allowed.push_back(std::max(left, 0.0) / kMargin);
       if (p.wavelengths > left) missed.push_back(s);
@@ -224,7 +228,7 @@ Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress
     const std::vector<double> floor = filmFloors(sim, whole, rays);
     const auto chosen = chooseSurroundings(sim, whole, rays, floor, plan);
     rays.reseed(seed);
-    const NodesOfPlan exactNodes(sim, *chosen);
+    const NodesOfPlan exactNodes(sim, *chosen, &whole);
     if (plan.accuracy > 0.0) {
       fitPlan(sim, eye, outputs, exactNodes, keepLights, rays, floor, plan, progress);
     } else {

@@ -49,14 +49,17 @@ void weigh(std::span<const double> coefficient, const AirAmounts& amounts, std::
 
 }  // namespace
 
-NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, int surroundings) : simulation_(simulation), nodes_(nodes) {
-  if (simulation.surroundings) surroundings_ = std::make_shared<const NodeSurroundings>(simulation, nodes, surroundings);
+NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, int surroundings, const NodeSpectra* parts)
+    : simulation_(simulation), nodes_(nodes) {
+  if (simulation.surroundings)
+    surroundings_ = std::make_shared<const NodeSurroundings>(simulation, nodes, surroundings, parts ? parts->surroundings_.get() : nullptr);
   const size_t used = simulation.air ? simulation.air->exponents().size() : 0;
   extinction_ = coefficientsOf(nodes, used, &AirNode::extinction);
   molecules_ = coefficientsOf(nodes, used, &AirNode::molecules);
   haze_ = coefficientsOf(nodes, used, &AirNode::haze);
-  if (!simulation.fields.empty()) ofGas_.make(nodes, kWarmest_K, kHottest_K, kGasStep_K);
-  if (!simulation.fields.empty() || (simulation.air && simulation.air->traits().variesAlongWay)) ofAir_.make(nodes, kColdest_K, kWarmest_K, kAirStep_K);
+  if (!simulation.fields.empty() && !(parts && ofGas_.average(nodes, parts->ofGas_, parts->nodes_))) ofGas_.make(nodes, kWarmest_K, kHottest_K, kGasStep_K);
+  if (!simulation.fields.empty() || (simulation.air && simulation.air->traits().variesAlongWay))
+    if (!(parts && ofAir_.average(nodes, parts->ofAir_, parts->nodes_))) ofAir_.make(nodes, kColdest_K, kWarmest_K, kAirStep_K);
   for (const FieldBody& field : simulation.fields)
     for (const FieldGas& gas : field.gases)
       for (const FieldGas::Level& level : gas.levels) {
@@ -85,6 +88,30 @@ void NodeSpectra::Planck::make(std::span<const SpectralNode> nodes, double first
     planck.at(first + step * k, std::span(value).subspan(begin, each), std::span(slope).subspan(begin, each));
   }
   for (double& s : slope) s *= step;
+}
+
+bool NodeSpectra::Planck::average(std::span<const SpectralNode> nodes, const Planck& parts, std::span<const SpectralNode> partNodes) {
+  if (partNodes.empty()) return false;
+  std::map<double, std::size_t> at_um;
+  for (std::size_t i = 0; i < partNodes.size(); ++i)
+    if (const auto& members = partNodes[i].members; members.size() == 1) at_um[members.front().wavelength_um] = i;
+  std::vector<std::vector<std::pair<std::size_t, double>>> of(nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i)
+    for (const auto& m : nodes[i].members) {
+      const auto found = at_um.find(m.wavelength_um);
+      if (found == at_um.end()) return false;
+      of[i].emplace_back(found->second, m.share);
+    }
+  first_K = parts.first_K, step_K = parts.step_K;
+  const std::size_t count = parts.value.size() / partNodes.size();
+  for (const auto& [from, into] : {std::pair{&parts.value, &value}, {&parts.slope, &slope}})
+    for (std::size_t k = 0; k < count; ++k)
+      for (std::size_t i = 0; i < nodes.size(); ++i) {
+        double sum = 0.0;
+        for (const auto& [part, share] : of[i]) sum += share * (*from)[k * partNodes.size() + part];
+        into->push_back(sum);
+      }
+  return true;
 }
 
 bool NodeSpectra::Planck::at(double temperature_K, std::span<double> into) const {

@@ -17,8 +17,8 @@ class NodeSurroundings;
 /// What lines have in common at some nodes; may be shared between threads.
 class NodeSpectra {
  public:
-  /// Both must outlive it. `surroundings`: as Terms::surroundings.
-  NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, int surroundings = Terms::kWhole);
+  /// All must outlive it. `surroundings`: as Terms::surroundings. `parts`: nodes of single wavelengths; what nodes made of them have of it is averaged.
+  NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, int surroundings = Terms::kWhole, const NodeSpectra* parts = nullptr);
   const Simulation& simulation() const { return simulation_; }
   std::span<const SpectralNode> nodes() const { return nodes_; }
   /// Black body of a temperature per node, in place: of the air's, and of gas where there are fields, by tables (tests/unit/test_node_sum.cpp has their error).
@@ -45,6 +45,8 @@ class NodeSpectra {
     double first_K = 0.0, step_K = 1.0;
     std::vector<double> value, slope;  ///< [temperature][node], and by step
     void make(std::span<const SpectralNode> nodes, double first_K, double last_K, double step_K);
+    /// As averages of nodes known already; false where some are missing.
+    bool average(std::span<const SpectralNode> nodes, const Planck& parts, std::span<const SpectralNode> partNodes);
     bool at(double temperature_K, std::span<double> into) const;
   };
 

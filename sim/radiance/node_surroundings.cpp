@@ -54,34 +54,49 @@ bool isNarrow(const ReflectionComponent& r) {
 
 }  // namespace
 
-/// Of one of the surroundings' heights. Node by node as sums of a few directional patterns.
-struct NodeSurroundings::Height {
-  Eigen::MatrixXd pattern;           ///< [pattern, entry of the grid]
-  Eigen::MatrixXd mix;               ///< [node, pattern]
-  std::vector<Harmonics> harmonics;  ///< by node
+/// Directional patterns of one of the surroundings' heights, which the light of all nodes is a sum of. Shared with nodes that are made of these.
+struct NodeSurroundings::Patterns {
+  Eigen::MatrixXd pattern;  ///< [pattern, entry of the grid]
   std::size_t number = 0;
   DirectionGrid grid, finer;
-  std::vector<DirectionGrid::Sample> samples;  ///< where it is in full
-  Eigen::MatrixXd atSamples;                   ///< [pattern, sample]
-  /// [pattern, entry of the finer grid]: what harmonics up to a degree (or, sharp, the mean) leave, by blur; made when asked for.
-  const Eigen::MatrixXd& rest(const Surroundings& around, int degree, bool sharp, std::size_t wanted) const {
-    const std::size_t at = wanted + (sharp ? kRests : 0);
-    std::call_once(isTold[at], [&] { rests[at] = tellRest(around, sharp ? 0 : degree, wanted); });
-    return rests[at];
+  /// [pattern, entry of the finer grid]: what harmonics up to a degree leave, by blur; made when asked for.
+  const Eigen::MatrixXd& rest(const Surroundings& around, int degree, std::size_t wanted) const {
+    Rest* found = nullptr;
+    {
+      const std::lock_guard lock(busy);
+      auto& kept = rests[{degree, wanted}];
+      if (!kept) kept = std::make_unique<Rest>();
+      found = kept.get();
+    }
+    std::call_once(found->isTold, [&] { found->of = tellRest(around, degree, wanted); });
+    return found->of;
   }
   Eigen::MatrixXd tellRest(const Surroundings& around, int degree, std::size_t wanted) const;
 
  private:
-  mutable std::array<Eigen::MatrixXd, 2 * kRests> rests;
-  mutable std::array<std::once_flag, 2 * kRests> isTold;
+  struct Rest {
+    std::once_flag isTold;
+    Eigen::MatrixXd of;
+  };
+  mutable std::mutex busy;
+  mutable std::map<std::pair<int, std::size_t>, std::unique_ptr<Rest>> rests;
+};
+
+/// Of one of the surroundings' heights. Node by node as sums of a few directional patterns.
+struct NodeSurroundings::Height {
+  std::shared_ptr<const Patterns> of;
+  Eigen::MatrixXd mix;               ///< [node, pattern]
+  std::vector<Harmonics> harmonics;  ///< by node
+  std::vector<DirectionGrid::Sample> samples;  ///< where it is in full
+  Eigen::MatrixXd atSamples;                   ///< [pattern, sample]
 };
 
 NodeSurroundings::~NodeSurroundings() = default;
 
-NodeSurroundings::NodeSurroundings(const Simulation& simulation, std::span<const SpectralNode> nodes, int degree)
-    : simulation_(simulation), nodes_(nodes), degree_(degree), usual_um_(lookedAt_um(simulation)) {}
+NodeSurroundings::NodeSurroundings(const Simulation& simulation, std::span<const SpectralNode> nodes, int degree, const NodeSurroundings* parts)
+    : simulation_(simulation), nodes_(nodes), degree_(degree), parts_(parts), usual_um_(lookedAt_um(simulation)) {}
 
-Eigen::MatrixXd NodeSurroundings::Height::tellRest(const Surroundings& around, int degree, std::size_t wanted) const {
+Eigen::MatrixXd NodeSurroundings::Patterns::tellRest(const Surroundings& around, int degree, std::size_t wanted) const {
   const auto entries = pattern.cols(), patterns = pattern.rows(), used = static_cast<Eigen::Index>(harmonicCount(degree));
   const Eigen::Index round = grid.azimuths, rings = grid.above + grid.below, told = finer.above + finer.below, phases = finer.azimuths / round;
   const Surroundings::Blur& blur = around.blur(number, wanted == kCosine ? Surroundings::kByCosine : blurOf_rad(static_cast<int>(wanted)));
@@ -150,12 +165,50 @@ const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) con
   if (kept) return *kept;
   kept = std::make_unique<Height>();
   Height& h = *kept;
+  if (!takeParts(number, h)) makePatterns(number, h);
+  if (degree_ != Terms::kWhole) return h;
+  const Patterns& of = *h.of;
+  h.samples = of.grid.samples(kPoints);
+  h.atSamples.resize(of.pattern.rows(), static_cast<Eigen::Index>(h.samples.size()));
+  for (size_t s = 0; s < h.samples.size(); ++s) {
+    Eigen::VectorXd here = Eigen::VectorXd::Zero(of.pattern.rows());
+    for (size_t k = 0; k < 4; ++k) here += h.samples[s].reading.weight[k] * of.pattern.col(static_cast<Eigen::Index>(h.samples[s].reading.at[k]));
+    h.atSamples.col(static_cast<Eigen::Index>(s)) = here;
+  }
+  return h;
+}
+
+/// As averages of nodes of single wavelengths that are known already; false where some are missing.
+bool NodeSurroundings::takeParts(std::size_t number, Height& h) const {
+  if (!parts_) return false;
+  std::map<double, std::size_t> at_um;
+  for (std::size_t i = 0; i < parts_->nodes_.size(); ++i)
+    if (const auto& members = parts_->nodes_[i].members; members.size() == 1) at_um[members.front().wavelength_um] = i;
+  for (const SpectralNode& n : nodes_)
+    for (const auto& m : n.members)
+      if (!at_um.contains(m.wavelength_um)) return false;
+  const Height& parts = parts_->height(number);
+  h.of = parts.of;
+  h.mix = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(nodes_.size()), parts.mix.cols());
+  h.harmonics.assign(nodes_.size(), Harmonics{});
+  for (std::size_t i = 0; i < nodes_.size(); ++i)
+    for (const auto& m : nodes_[i].members) {
+      const std::size_t part = at_um.at(m.wavelength_um);
+      h.mix.row(static_cast<Eigen::Index>(i)) += m.share * parts.mix.row(static_cast<Eigen::Index>(part));
+      for (size_t c = 0; c < h.harmonics[i].size(); ++c) h.harmonics[i][c] += m.share * parts.harmonics[part][c];
+    }
+  return true;
+}
+
+void NodeSurroundings::makePatterns(std::size_t number, Height& h) const {
+  const auto made = std::make_shared<Patterns>();
+  h.of = made;
   const Surroundings& around = *simulation_.surroundings;
-  h.grid = around.grids()[number];
-  h.number = number;
-  h.finer = h.grid.finer();
+  made->grid = around.grids()[number];
+  made->number = number;
+  made->finer = made->grid.finer();
   prepareLight(number);
-  const auto entries = static_cast<Eigen::Index>(h.grid.size()), count = static_cast<Eigen::Index>(nodes_.size());
+  const auto entries = static_cast<Eigen::Index>(made->grid.size()), count = static_cast<Eigen::Index>(nodes_.size());
   Eigen::MatrixXd light = Eigen::MatrixXd::Zero(entries, count);
   for (Eigen::Index i = 0; i < count; ++i) {
     Harmonics sum{};
@@ -179,18 +232,9 @@ const NodeSurroundings::Height& NodeSurroundings::height(std::size_t number) con
     left -= pattern * (pattern.transpose() * left);
     patterns.push_back(pattern);
   }
-  h.pattern.resize(static_cast<Eigen::Index>(patterns.size()), entries);
-  for (size_t p = 0; p < patterns.size(); ++p) h.pattern.row(static_cast<Eigen::Index>(p)) = patterns[p];
-  h.mix = (h.pattern * light).transpose();
-  if (degree_ != Terms::kWhole) return h;
-  h.samples = h.grid.samples(kPoints);
-  h.atSamples.resize(h.pattern.rows(), static_cast<Eigen::Index>(h.samples.size()));
-  for (size_t s = 0; s < h.samples.size(); ++s) {
-    Eigen::VectorXd here = Eigen::VectorXd::Zero(h.pattern.rows());
-    for (size_t k = 0; k < 4; ++k) here += h.samples[s].reading.weight[k] * h.pattern.col(static_cast<Eigen::Index>(h.samples[s].reading.at[k]));
-    h.atSamples.col(static_cast<Eigen::Index>(s)) = here;
-  }
-  return h;
+  made->pattern.resize(static_cast<Eigen::Index>(patterns.size()), entries);
+  for (size_t p = 0; p < patterns.size(); ++p) made->pattern.row(static_cast<Eigen::Index>(p)) = patterns[p];
+  h.mix = (made->pattern * light).transpose();
 }
 
 NodeSurroundings::Told NodeSurroundings::makeTold(std::size_t number) const {
@@ -205,10 +249,10 @@ NodeSurroundings::Told NodeSurroundings::makeTold(std::size_t number) const {
     for (int b = 0; b < blurs.count; ++b) rests.push_back({sharp, static_cast<size_t>(blurs.first + b)});
   }
   rests.push_back({false, kCosine});
-  const std::size_t padded = (nodes_.size() + 3) / 4 * 4, entries = h.finer.size();
+  const std::size_t padded = (nodes_.size() + 3) / 4 * 4, entries = h.of->finer.size();
   Told told{h.harmonics, std::vector<float>(rests.size() * entries * padded, 0.0f)};
   for (std::size_t b = 0; b < rests.size(); ++b) {
-    const Eigen::MatrixXd all = h.mix * h.tellRest(*simulation_.surroundings, rests[b].sharp ? 0 : degree_, rests[b].blur);
+    const Eigen::MatrixXd all = h.mix * h.of->tellRest(*simulation_.surroundings, rests[b].sharp ? 0 : degree_, rests[b].blur);
     for (std::size_t g = 0; g < entries; ++g)
       for (std::size_t i = 0; i < nodes_.size(); ++i)
         told.rest[(b * entries + g) * padded + i] = static_cast<float>(all(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(g)));
@@ -391,13 +435,13 @@ std::vector<double> NodeSurroundings::byHarmonics(const ReflectionComponent& r, 
     const Height& h = height(place.height + part);
     // The rest about a direction, of all nodes at once; of a lobe's blurs those that some node has.
     const auto restAt = [&](const DirectionGrid::Reading& reading, bool sharp, std::size_t blur) -> Eigen::VectorXd {
-      const Eigen::MatrixXd& rest = h.rest(around, degree_, sharp, blur);
+      const Eigen::MatrixXd& rest = h.of->rest(around, sharp ? 0 : degree_, blur);
       Eigen::VectorXd here = Eigen::VectorXd::Zero(rest.rows());
       for (size_t k = 0; k < 4; ++k) here += reading.weight[k] * rest.col(static_cast<Eigen::Index>(reading.at[k]));
       return h.mix * here;
     };
-    const DirectionGrid::Reading reading = h.finer.at(aimed.direction);
-    const Eigen::VectorXd matt = restAt(h.finer.at(view.normal), false, kCosine);
+    const DirectionGrid::Reading reading = h.of->finer.at(aimed.direction);
+    const Eigen::VectorXd matt = restAt(h.of->finer.at(view.normal), false, kCosine);
     std::array<Eigen::VectorXd, kBlurs> left;
     std::size_t four = nodes_.size(), sharper = 0;
     for (size_t i = 0; i < all.size(); ++i) {
@@ -444,14 +488,14 @@ std::vector<double> NodeSurroundings::inFull(const ReflectionComponent& r, const
     if (share == 0.0) continue;
     const Height& h = height(place.height + part);
     // By entry of the column and, last, for light of 1: what uniform light is off by is put right, so that it is exact.
-    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(h.pattern.rows() + 1, static_cast<Eigen::Index>(columnEntries(r)));
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(h.of->pattern.rows() + 1, static_cast<Eigen::Index>(columnEntries(r)));
     const auto add = [&](const glm::dvec3& light, double weight, const auto& here) {
       const ColumnReading reading = plain ? ColumnReading{{}, {1.0}} : readColumn(r, light, own);
       for (size_t e = 0; e < 4; ++e) {
         if (reading.weight[e] == 0.0) continue;
         auto to = sums.col(static_cast<Eigen::Index>(reading.at[e]));
-        to.head(h.pattern.rows()) += weight * reading.weight[e] * here;
-        to(h.pattern.rows()) += weight * reading.weight[e];
+        to.head(h.of->pattern.rows()) += weight * reading.weight[e] * here;
+        to(h.of->pattern.rows()) += weight * reading.weight[e];
       }
     };
     if (narrow) {
@@ -462,10 +506,10 @@ std::vector<double> NodeSurroundings::inFull(const ReflectionComponent& r, const
       integrateHemisphere(axes, angle, [&](const LightSample& s) {
         const double weight = s.weight * r.lobeAt(s.light, own);
         if (weight == 0.0) return;
-        Eigen::VectorXd here = Eigen::VectorXd::Zero(h.pattern.rows());
+        Eigen::VectorXd here = Eigen::VectorXd::Zero(h.of->pattern.rows());
         for (const double side : {s.light.y, -s.light.y}) {
-          const DirectionGrid::Reading at = h.grid.at(s.light.x * across + side * aside + s.light.z * view.normal);
-          for (size_t k = 0; k < 4; ++k) here += 0.5 * at.weight[k] * h.pattern.col(static_cast<Eigen::Index>(at.at[k]));
+          const DirectionGrid::Reading at = h.of->grid.at(s.light.x * across + side * aside + s.light.z * view.normal);
+          for (size_t k = 0; k < 4; ++k) here += 0.5 * at.weight[k] * h.of->pattern.col(static_cast<Eigen::Index>(at.at[k]));
         }
         add(s.light, weight, here);
       });
@@ -479,8 +523,8 @@ std::vector<double> NodeSurroundings::inFull(const ReflectionComponent& r, const
     for (size_t i = 0; i < all.size(); ++i) {
       const Eigen::Map<const Eigen::VectorXd> column(columns[i].data(), static_cast<Eigen::Index>(columns[i].size()));
       const Eigen::VectorXd of = sums * column;
-      const double found = h.mix.row(static_cast<Eigen::Index>(i)).dot(of.head(h.pattern.rows()));
-      all[i] += share * (found + (whole[i] - of(h.pattern.rows())) * h.harmonics[i][0] / std::sqrt(4.0 * kPi));
+      const double found = h.mix.row(static_cast<Eigen::Index>(i)).dot(of.head(h.of->pattern.rows()));
+      all[i] += share * (found + (whole[i] - of(h.of->pattern.rows())) * h.harmonics[i][0] / std::sqrt(4.0 * kPi));
     }
   }
   return all;

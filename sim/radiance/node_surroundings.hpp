@@ -15,8 +15,8 @@ namespace pitviper {
 /// May be shared between threads.
 class NodeSurroundings {
  public:
-  /// `degree`: as Terms::surroundings. All must outlive it.
-  NodeSurroundings(const Simulation& simulation, std::span<const SpectralNode> nodes, int degree);
+  /// `degree`: as Terms::surroundings. `parts`: of nodes of single wavelengths, or null; nodes made of them are told as their averages. All must outlive it.
+  NodeSurroundings(const Simulation& simulation, std::span<const SpectralNode> nodes, int degree, const NodeSurroundings* parts = nullptr);
   ~NodeSurroundings();
   int degree() const { return degree_; }
 
@@ -51,8 +51,11 @@ class NodeSurroundings {
   const Responses& responses(const Material& material, const Material& state, std::size_t component) const;
 
  private:
+  struct Patterns;
   struct Height;
   const Height& height(std::size_t number) const;
+  bool takeParts(std::size_t number, Height& height) const;
+  void makePatterns(std::size_t number, Height& height) const;
   /// What Light is mixed of, of one of the surroundings' heights.
   struct Told {
     std::vector<Harmonics> harmonics;
@@ -73,6 +76,7 @@ class NodeSurroundings {
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
   int degree_;
+  const NodeSurroundings* parts_;
   std::vector<double> usual_um_;  ///< by which lobes are aimed, whatever the nodes
   mutable std::mutex busy_;
   mutable std::map<std::size_t, std::unique_ptr<Height>> heights_;
