@@ -81,7 +81,7 @@ class Report {
 
   bool seesAny() const {
     for (const auto& frame : seen_)
-      if (std::any_of(frame.begin(), frame.end(), [](const BodySight& s) { return s.sight == Sight::InView; })) return true;
+      if (std::any_of(frame.begin(), frame.end(), [](const BodySight& s) { return s.sight == HowSeen::InView; })) return true;
     return false;
   }
 
@@ -94,7 +94,7 @@ class Report {
     std::map<std::string, size_t> known;
     for (size_t e = 0; e < sim_.entities.size(); ++e) {
       const bool shows =
-          std::any_of(seen_.begin(), seen_.end(), [&](const auto& frame) { return frame[e].sight == Sight::InView || frame[e].sight == Sight::Hidden; });
+          std::any_of(seen_.begin(), seen_.end(), [&](const auto& frame) { return frame[e].sight == HowSeen::InView || frame[e].sight == HowSeen::Hidden; });
       std::string key = shows ? sizeOf(seen_[0][e].size_m) : "";
       for (const auto& frame : seen_) key += "|" + std::to_string(static_cast<int>(frame[e].sight)) + (tiny(frame[e]) ? "t" : "");
       const auto [at, fresh] = known.try_emplace(sim_.entities.size() > kOneByOne ? key : std::to_string(e), lines.size());
@@ -136,19 +136,19 @@ class Report {
       return line.bodies.size() > 1 ? std::string("others") : e < 0 ? std::string("another") : sim_.entities[static_cast<size_t>(e)].name;
     };
     switch (s.sight) {
-      case Sight::Absent:
+      case HowSeen::Absent:
         return "not there";
-      case Sight::Carrier:
+      case HowSeen::Carrier:
         return "carries the camera";
-      case Sight::Behind:
+      case HowSeen::Behind:
         return range + ", behind the camera";
-      case Sight::OutOfView:
+      case HowSeen::OutOfView:
         return range + ", out of view";
-      case Sight::TooNear:
+      case HowSeen::TooNear:
         return range + ", nearer than the camera's near";
-      case Sight::Hidden:
+      case HowSeen::Hidden:
         return range + ", hidden by " + name(s.hiddenBy);
-      case Sight::InView:
+      case HowSeen::InView:
         break;
     }
     std::string text = range + ", ";

@@ -142,20 +142,20 @@ class Looker {
     if (s.range_m < radius)
       for (const glm::dvec3& p : look.places) s.range_m = std::min(s.range_m, glm::length(pose.position + pose.orientation * p - view_.position));
     if (!state_.isThere(e)) {
-      s.sight = Sight::Absent;
+      s.sight = HowSeen::Absent;
       return s;
     }
     if (static_cast<int>(e) == carrier_) {
-      s.sight = Sight::Carrier;
+      s.sight = HowSeen::Carrier;
       return s;
     }
     if ((cameraFromLocal_ * (centre - view_.position)).z > radius) {
-      s.sight = Sight::Behind;
+      s.sight = HowSeen::Behind;
       return s;
     }
     bool beside = false;
     if (!outline(e, s, beside)) {
-      s.sight = (cameraFromLocal_ * (centre - view_.position)).z > 0.0 ? Sight::Behind : Sight::TooNear;
+      s.sight = (cameraFromLocal_ * (centre - view_.position)).z > 0.0 ? HowSeen::Behind : HowSeen::TooNear;
       return s;
     }
     if (beside || !mayShow(view_, centre, radius)) return s;
@@ -197,9 +197,9 @@ class Looker {
     if (4 * within >= static_cast<int>(look.places.size())) s.hidden = static_cast<double>(hidden) / within;
     s.hiddenBy = most(hiders).first;
     if (const auto [veil, count] = most(veils); 2 * count > seen) s.through = veil;
-    if (seen > 0 || onFilm_[e]) s.sight = Sight::InView;
-    else if (hidden > 0) s.sight = Sight::Hidden;
-    if (s.sight == Sight::InView && seen == 0) s.hidden = 0.0;  // the film sees what lies between them
+    if (seen > 0 || onFilm_[e]) s.sight = HowSeen::InView;
+    else if (hidden > 0) s.sight = HowSeen::Hidden;
+    if (s.sight == HowSeen::InView && seen == 0) s.hidden = 0.0;  // the film sees what lies between them
   }
 
   const Simulation& sim_;

@@ -6,7 +6,7 @@
 
 namespace pitviper {
 
-enum class Sight {
+enum class HowSeen {
   Absent,     ///< not there at that time
   Carrier,    ///< carries the camera, which does not see it
   Behind,     ///< all of it behind the camera
@@ -17,7 +17,7 @@ enum class Sight {
 };
 
 struct BodySight {
-  Sight sight = Sight::OutOfView;
+  HowSeen sight = HowSeen::OutOfView;
   glm::dvec3 size_m{0.0};  ///< of the box around it along its own axes
   double range_m = 0.0;    ///< to the middle of its bounding sphere; from within that sphere: to the nearest place looked at
   double width_px = 0.0;   ///< of the box around its outline on the plane of the film, whatever the film's edges cut off;
