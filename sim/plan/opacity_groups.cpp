@@ -28,9 +28,6 @@ constexpr size_t kKeptProducts = 4;
 /// Groups tried first.
 constexpr int kFirstTried = 4;
 
-/// Groups that were enough for most products are nearly enough for all: counts grow by this part of them.
-constexpr int kGrowAgain = 6;
-
 /// Rounds between two looks at all products.
 constexpr int kRoundsPerPass = 6;
 
@@ -143,7 +140,7 @@ class Fitter {
     double least = errorFigures(all_.errors(all_.moments(state))).first;
     const int firstRounds = std::max(rounds / 3, 1);
     std::vector<GroupState> begins;
-    if (from_.share.rows() >= count) begins.push_back(mergedTo(count));
+    if (from_.share.rows() == count) begins.push_back(from_);
     for (double spread : kSpreads) {
       begins.push_back(state);
       begins.back().share = (1.0 - spread) * state.share.array() + spread / static_cast<double>(state.share.rows());
@@ -181,36 +178,7 @@ class Fitter {
     return finish(best, count);
   }
 
-  /// Fits of fewer groups begin with these, neighbours merged.
-  void beginWith(const std::vector<SpectralGroup>& groups) { from_ = stateOf(all_, groups); }
-
  private:
-  /// Groups found before, down to a count: each time the two as one that change least of what paths let through, by their weights.
-  GroupState mergedTo(int count) const {
-    GroupState s = from_;
-    while (s.share.rows() > count) {
-      const GroupMoments at = set_.moments(s);
-      const Eigen::Index groups = s.share.rows();
-      std::pair<Eigen::Index, Eigen::Index> nearest{0, 1};
-      double least = INFINITY;
-      for (Eigen::Index a = 0; a < groups; ++a)
-        for (Eigen::Index b = a + 1; b < groups; ++b) {
-          const double both = at.weight[a] + at.weight[b], part = both > 0.0 ? at.weight[a] * at.weight[b] / both : 0.0;
-          const double change = part * (at.transmittance.row(a) - at.transmittance.row(b)).squaredNorm();
-          if (change < least) least = change, nearest = {a, b};
-        }
-      const auto [a, b] = nearest;
-      const double both = at.weight[a] + at.weight[b], share = both > 0.0 ? at.weight[a] / both : 0.5;
-      GroupState merged{Eigen::MatrixXd(groups - 1, s.share.cols()), Eigen::MatrixXd(groups - 1, s.extinction.cols())};
-      s.extinction.row(a) = share * s.extinction.row(a) + (1.0 - share) * s.extinction.row(b);
-      s.share.row(a) += s.share.row(b);
-      for (Eigen::Index g = 0, to = 0; g < groups; ++g)
-        if (g != b) merged.share.row(to) = s.share.row(g), merged.extinction.row(to++) = s.extinction.row(g);
-      s = std::move(merged);
-    }
-    return s;
-  }
-
   /// Of the products that fits before this one added, the latest stay, as many as there were at first: they are hard for other counts too.
   void forgetOldest() {
     const size_t first = spreadOf(all_.size(), effort_.workingProducts).size();
@@ -269,17 +237,14 @@ GroupFit fitToTolerance(const ProductSet& products, double tolerance, int mostGr
   for (int n = first; tooFew + 1 < enough;) {
     GroupFit fit = fitter.fit(n, tolerance);
     if (fit.maximum <= tolerance) {
-      // What failed in growing may do from these groups.
-      if (fewest > 1 && enough > most) tooFew = first - 1;
       enough = n;
       best = std::move(fit);
-      fitter.beginWith(best.groups);
       n = (tooFew + enough) / 2;
       if (n == tooFew || (effort.fewGroups > 0 && enough > effort.fewGroups && 6 * (enough - tooFew) <= enough)) break;
     } else {
       tooFew = n;
       if (best.groups.empty() || (enough > most && fit.maximum < best.maximum)) best = std::move(fit);
-      n = enough <= most ? (tooFew + enough) / 2 : std::min(n + std::max(1, fewest > 1 ? n / kGrowAgain : n / 2), most);
+      n = enough <= most ? (tooFew + enough) / 2 : std::min(std::max(n + 1, n * 3 / 2), most);
       if (n <= tooFew) break;
     }
   }

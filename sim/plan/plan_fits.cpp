@@ -11,7 +11,7 @@ namespace pitviper {
 namespace {
 
 /// Lines of sight to fit to at first besides the extremes, and of each check; checks until one is passed, but no more than so many.
-constexpr int kFirst = 1200, kCheck = 360, kChecks = 6;
+constexpr int kFirst = 600, kCheck = 360, kChecks = 6;
 /// Lines on which fits are held against the equation after that, besides the extremes; how often one learns from them; what they may show of the accuracy, and
 /// those that it learns.
 constexpr int kSecond = 400, kLearn = 4;

@@ -125,29 +125,17 @@ void ProductSet::integrate(const std::vector<double>& floors) {
   int tags = 0;
   for (const ProductTerm& t : terms) tags = std::max(tags, t.tag + 1);
   parts = Eigen::MatrixXd::Zero(tags, static_cast<Eigen::Index>(floors.size()));
-  // Each wavelength as a group of its own.
-  const int padded = paddedGroups(fineCount());
-  Eigen::MatrixXd depths = Eigen::MatrixXd::Zero(padded, columnCount());
-  depths.topRows(fineCount()) = extinction;
-  Eigen::VectorXd tau(padded);
+  Eigen::VectorXd tau;
   int current = -1;
   for (int index : order) {
     const ProductTerm& t = terms[static_cast<size_t>(index)];
     if (t.path != current) {
       current = t.path;
-      SparseAmounts one;
-      one.add(amounts.col(current).data(), columnCount());
-      transmittances(one, depths.data(), padded, tau.data());
+      tau = (-(extinction * amounts.col(current)).array()).exp();
     }
-    double sum = 0.0;
-    if (t.count == 1) {
-      sum = weighted.col(t.spectrum[0]).dot(tau.head(fineCount()));
-    } else {
-      Eigen::ArrayXd product = weighted.col(t.spectrum[0]).array() * tau.head(fineCount()).array();
-      for (int f = 1; f < t.count; ++f) product *= weighted.col(t.spectrum[static_cast<size_t>(f)]).array() / weight.array();
-      sum = product.sum();
-    }
-    parts(t.tag, productOf[static_cast<size_t>(index)]) += t.coefficient * sum;
+    Eigen::ArrayXd product = weighted.col(t.spectrum[0]).array() * tau.array();
+    for (int f = 1; f < t.count; ++f) product *= weighted.col(t.spectrum[static_cast<size_t>(f)]).array() / weight.array();
+    parts(t.tag, productOf[static_cast<size_t>(index)]) += t.coefficient * product.sum();
   }
   fine = parts.colwise().sum();
   scale.resize(fine.size());
