@@ -1,5 +1,6 @@
 // A user's own check of the promise: `audit`, and the same by hand with two runs; and plans that are given where they do not belong.
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -123,8 +124,16 @@ TEST_F(AuditCommand, APlanOfAnythingElseIsRefused) {
 TEST_F(AuditCommand, APlanWithoutAnAccuracyIsReadAgain) {
   folder_.put("s.yaml", sceneText("accuracy: none\n"));
   ASSERT_EQ(run("run s.yaml --out a").code, 0);
-  const auto written = [&] { return std::filesystem::last_write_time(std::find_if(std::filesystem::directory_iterator(folder_.path() / "cache/pitviper"), std::filesystem::directory_iterator(), [](const auto& f) { return f.path().extension() == ".plan"; })->path()); };
+  // Reading marks a file as used, writing puts another in its place.
+  const auto written = [&] {
+    for (const auto& f : std::filesystem::directory_iterator(folder_.path() / "cache/pitviper")) {
+      struct stat of {};
+      if (f.path().filename().string().starts_with("table-plan-") && stat(f.path().c_str(), &of) == 0) return static_cast<long long>(of.st_ino);
+    }
+    return -1LL;
+  };
   const auto first = written();
+  ASSERT_NE(first, -1);
   const Result again = run("run s.yaml --out b --plan a/c.plan");
   EXPECT_EQ(again.code, 0) << again.output;
   EXPECT_EQ(run("run s.yaml --out c").code, 0);

@@ -132,7 +132,7 @@ TEST_F(Stream, RealTimeAccountsForEveryFrameAndWritesItsPage) {
 
 TEST_F(Stream, ASceneTooSlowForItsRateDegradesAsAskedAndSaysSo) {
   for (const char* late : {"send", "drop", "repeat"}) {
-    const Result r = pitviper("stream " + file() + " --rate '20 kHz' --frames 8000 --late " + late + " --out " + out().string() + " --overwrite");
+    const Result r = pitviper("stream " + file() + " --rate '20 kHz' --frames 8000 --shared-memory " + ring("late") + " --late " + late + " --out " + out().string() + " --overwrite");
     EXPECT_EQ(r.code, 0) << r.output;
     EXPECT_NE(r.output.find("does not hold"), std::string::npos) << r.output;
     const auto eye = report()["cameras"]["eye"];
@@ -145,7 +145,7 @@ TEST_F(Stream, ASceneTooSlowForItsRateDegradesAsAskedAndSaysSo) {
 }
 
 TEST_F(Stream, TheDialTurnsWhereTheRateDoesNotHold) {
-  const Result r = pitviper("stream " + file("accuracy: {asked: 1 %, at_most: 4 %}\n") + " --rate '20 kHz' --frames 8000 --out " + out().string());
+  const Result r = pitviper("stream " + file("accuracy: {asked: 1 %, at_most: 4 %}\n") + " --rate '20 kHz' --frames 8000 --shared-memory " + ring("dial") + " --out " + out().string());
   EXPECT_EQ(r.code, 0) << r.output;
   const auto j = report();
   ASSERT_EQ(j["accuracies"].size(), 3u) << "1, 2 and 4 %";
