@@ -111,8 +111,10 @@ void Buffer::upload(const void* data, std::size_t bytes) {
       glCreateBuffers(1, &n);
       name_ = GlName<deleteBuffer>(n);
     }
-    static const char none[16] = {};
-    glNamedBufferData(name_, static_cast<GLsizeiptr>(std::max(bytes, sizeof none)), bytes > 0 ? data : none, GL_DYNAMIC_DRAW);
+    char few[16] = {};  // storage is never smaller
+    if (bytes < sizeof few && bytes > 0 && data) std::memcpy(few, data, bytes);
+    const bool isFew = bytes < sizeof few;
+    glNamedBufferData(name_, static_cast<GLsizeiptr>(isFew ? sizeof few : bytes), isFew ? few : data, GL_DYNAMIC_DRAW);
     if (bytes != bytes_) texture_ = GlName<deleteTexture>();
     bytes_ = bytes;
     return;
