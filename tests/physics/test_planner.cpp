@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "sim/plan/line_check.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/planner.hpp"
 #include "tests/support/figures.hpp"
@@ -152,6 +153,34 @@ TEST_F(Planner, DamagedPlansAreNotRead) {
   EXPECT_EQ(read.nodeCount(), nodes) << "left as it was";
   EXPECT_TRUE(readPlanned(text, read));
   EXPECT_EQ(writePlanned(read), text);
+}
+
+// Groups of wavelengths whose surroundings and black bodies are known take theirs from these: the same light as worked out anew.
+TEST_F(Planner, NodesOfKnownWavelengthsAreAveragesOfThem) {
+  const auto sim = scene("accuracy: 1 %\natmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
+                         "plumes: [{name: p, position: [-5 m, 900 m, 100 m], direction: [1, 0, 0], engine: turbofan_military, length: 20 m, begin: -1 s}]\n" +
+                         kGrey + kWall + camera(kMidwave + ", " + kLongwave));
+  const Camera& camera = sim.cameras.at(0);
+  const Plan plan = planOf(sim);
+  SpectralSampling every;
+  every.reference = true;
+  Plan exact = makePlan(sim, camera.outputs, every, camera.where);
+  exact.terms = withSurroundings(exact.terms, plan.terms.surroundings);
+  const NodesOfPlan fine(sim, exact), anew(sim, plan), averaged(sim, plan, &fine);
+  SightRays rays(sim, {&camera, nullptr}, 7);
+  std::vector<SightRay> lines;
+  for (int n = 0; n < 40; ++n) lines.push_back(rays.ofCombination());
+  HeldLines held(sim, fine, lines, kUsualPlaces, filmFloors(sim, fine, rays));
+  const auto a = held.check(anew), b = held.check(averaged);
+  ASSERT_EQ(a.size(), 2u);
+  double worst = 0.0, largest = 0.0;
+  for (size_t s = 0; s < a.size(); ++s)
+    for (size_t n = 0; n < lines.size(); ++n) {
+      worst = std::max(worst, std::abs(a[s].errors[n] - b[s].errors[n]));
+      largest = std::max(largest, a[s].errors[n]);
+    }
+  EXPECT_GT(largest, 1e-5) << "there is something to compare";
+  bound("light along 40 lines by nodes averaged from known wavelengths against nodes made anew", worst, 1e-4, "patterns leave 1e-5 of a node's norm out, on each side");
 }
 
 }  // namespace
