@@ -4,7 +4,7 @@
 
 #include "atmosphere/layered_grid.hpp"
 #include "sim/model/sunlit_air.hpp"
-#include "sim/radiance/node_air.hpp"
+#include "sim/model/node_air.hpp"
 
 namespace pitviper {
 

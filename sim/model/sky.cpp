@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/node_air.hpp"
 #include "sim/model/scene_fingerprint.hpp"
 #include "sim/model/sunlit_air.hpp"
 #include "sim/model/surroundings.hpp"
@@ -27,29 +28,69 @@ constexpr double kNight = -0.35;
 struct Sightline {
   SunlitAir air;
   double cosScatter;
+};
+/// With its share of a mean.
+using WeightedLines = std::vector<std::pair<Sightline, double>>;
+
+/// What lines send at some wavelengths. Each wavelength's figures are the same to the last bit whichever others stand beside it: their number is even, so that
+/// all are worked out in vectors.
+class SkyAt {
+ public:
+  SkyAt(const Atmosphere& air, std::span<const double> um, const Sun* sun, const Spectrum& background) : count_(um.size()), nodes_(nodesAt(air, um)), air_(nodes_) {
+    for (double w : um) {
+      irradiance_.push_back(sun ? sun->irradiance(w) : 0.0);
+      behind_.push_back(background(w));
+    }
+  }
+  std::size_t size() const { return count_; }
+  const AirNode& node(std::size_t i) const { return nodes_[i].air; }
+  double irradiance(std::size_t i) const { return irradiance_[i]; }
+  double behind(std::size_t i) const { return behind_[i]; }
 
   struct Sent {
-    double radiance, depth;
+    std::vector<double> radiance, depth;  ///< by wavelength; depth: of what it takes from what lies behind
   };
-  /// Black bodies of its air's temperatures at a wavelength.
-  std::vector<double> sourceAt(double um) const {
-    std::vector<double> source;
-    for (const AirStation& s : air.stations) source.push_back(s.temperature_K > 0.0 ? physics::planckRadiance(um, s.temperature_K) : 0.0);
-    return source;
+  Sent along(const Sightline& line) const {
+    const NodeRadiance all = air_.along(line.air);
+    const std::size_t last = (line.air.stations.size() - 1) * nodes_.size();
+    const double rayleigh = rayleighPhase(line.cosScatter);
+    Sent sent;
+    for (std::size_t i = 0; i < count_; ++i) {
+      double radiance = all.thermal[last + i];
+      if (!all.molecules.empty())
+        radiance +=
+            irradiance_[i] * (rayleigh * all.molecules[last + i] + henyeyGreensteinPhase(line.cosScatter, node(i).asymmetry) * all.haze[last + i]);
+      sent.radiance.push_back(radiance);
+      sent.depth.push_back(all.depth[last + i]);
+    }
+    return sent;
+  }
+  std::vector<double> meanOf(const WeightedLines& lines) const {
+    std::vector<double> sum(count_, 0.0);
+    for (const auto& [line, weight] : lines) {
+      const Sent sent = along(line);
+      for (std::size_t i = 0; i < count_; ++i) sum[i] += weight * (sent.radiance[i] + behind_[i] * std::exp(-sent.depth[i]));
+    }
+    return sum;
   }
 
-  /// What it sends at a wavelength, and all it takes from what lies behind.
-  Sent at(const AirNode& node, double um, double irradiance) const { return at(node, sourceAt(um), irradiance); }
-  Sent at(const AirNode& node, std::span<const double> source, double irradiance) const {
-    const AirRadiance sent = airRadiance(node, air, source);
-    double radiance = sent.thermal.back();
-    if (!sent.molecules.empty())
-      radiance += irradiance * (rayleighPhase(cosScatter) * sent.molecules.back() + henyeyGreensteinPhase(cosScatter, node.asymmetry) * sent.haze.back());
-    return {radiance, sent.depth.back()};
+ private:
+  static std::vector<SpectralNode> nodesAt(const Atmosphere& air, std::span<const double> um) {
+    std::vector<SpectralNode> nodes;
+    for (std::size_t i = 0; i < um.size() + um.size() % 2; ++i) {
+      const double w = um[std::min(i, um.size() - 1)];
+      nodes.emplace_back();
+      nodes.back().members = {{w, 1.0}};
+      nodes.back().air = air.node(w);
+    }
+    return nodes;
   }
+
+  std::size_t count_;
+  std::vector<SpectralNode> nodes_;
+  NodeAir air_;
+  std::vector<double> irradiance_, behind_;
 };
-
-double meanOf(const std::vector<std::pair<Sightline, double>>& lines, const AirNode& node, double um, double irradiance, double behind);
 
 class SkyAround final : public Surroundings {
  public:
@@ -66,24 +107,25 @@ class SkyAround final : public Surroundings {
     if (sunlit) legs_ = SunLegs::of(air_, sun_->toSun.z, earthRadius_m_);
   }
 
-  std::vector<double> radiance(double um, std::size_t height) const override {
-    const AirNode node = air_->node(um);
-    const double irradiance = legs_ ? sun_->irradiance(um) : 0.0;
+  std::vector<std::vector<double>> radiance(std::span<const double> um, std::size_t height) const override {
+    const SkyAt sky(*air_, um, legs_ ? &*sun_ : nullptr, background_);
     const DirectionGrid& grid = grids()[height];
-    const double behind = background_(um), falls = groundIrradiance(um, node, irradiance);
+    const std::vector<double> falls = groundIrradiance(um, sky);
     const int half = grid.azimuths / 2;
-    std::vector<double> own;
+    std::vector<std::vector<double>> own(um.size()), all(um.size());
     for (const Line& line : linesAt(height)) {
-      const Sightline::Sent sent = line.sight.at(node, um, irradiance);
-      double end = behind;
-      if (line.groundAngle_rad >= 0.0)
-        end = ground_->emissivity(um, line.groundAngle_rad) * physics::planckRadiance(um, ground_K_) +
-              ground_->reflectance(um, line.groundAngle_rad) / kPi * falls;
-      own.push_back(sent.radiance + end * std::exp(-sent.depth));
+      const SkyAt::Sent sent = sky.along(line.sight);
+      for (std::size_t i = 0; i < um.size(); ++i) {
+        double end = sky.behind(i);
+        if (line.groundAngle_rad >= 0.0)
+          end = ground_->emissivity(um[i], line.groundAngle_rad) * physics::planckRadiance(um[i], ground_K_) +
+                ground_->reflectance(um[i], line.groundAngle_rad) / kPi * falls[i];
+        own[i].push_back(sent.radiance[i] + end * std::exp(-sent.depth[i]));
+      }
     }
-    std::vector<double> all;
-    for (int ring = 0; ring < grid.above + grid.below; ++ring)
-      for (int a = 0; a < grid.azimuths; ++a) all.push_back(own[static_cast<size_t>(ring * (half + 1) + (a <= half ? a : grid.azimuths - a))]);
+    for (std::size_t i = 0; i < um.size(); ++i)
+      for (int ring = 0; ring < grid.above + grid.below; ++ring)
+        for (int a = 0; a < grid.azimuths; ++a) all[i].push_back(own[i][static_cast<size_t>(ring * (half + 1) + (a <= half ? a : grid.azimuths - a))]);
     return all;
   }
 
@@ -141,24 +183,28 @@ class SkyAround final : public Surroundings {
   }
 
   /// On the ground, of the sun and of the mean sky [W/(m2 um)].
-  double groundIrradiance(double um, const AirNode& node, double irradiance) const {
-    if (ground_->reflections.empty()) return 0.0;
+  std::vector<double> groundIrradiance(std::span<const double> um, const SkyAt& sky) const {
+    std::vector<double> all;
+    if (ground_->reflections.empty()) return std::vector<double>(um.size(), 0.0);
     {
       const std::lock_guard lock(busy_);
-      if (const auto at = falls_.find(um); at != falls_.end()) return at->second;
+      for (double w : um)
+        if (const auto at = falls_.find(w); at != falls_.end()) all.push_back(at->second);
     }
-    double falls = 0.0;
-    falls += kPi * meanOf(skyLines(), node, um, irradiance, background_(um));
-    if (legs_) {
-      const RisenSun risen = risenSun(0.0, sun_->toSun.z, earthRadius_m_);
-      if (risen.share > 0.0)
-        falls += irradiance * risen.share * std::max(risen.sinElevation, 0.0) * air_->transmittance(node, legs_->at(0.0, risen.sinElevation));
+    if (all.size() == um.size()) return all;
+    all = sky.meanOf(skyLines());
+    const RisenSun risen = legs_ ? risenSun(0.0, sun_->toSun.z, earthRadius_m_) : RisenSun{};
+    for (std::size_t i = 0; i < um.size(); ++i) {
+      all[i] *= kPi;
+      if (legs_ && risen.share > 0.0)
+        all[i] += sky.irradiance(i) * risen.share * std::max(risen.sinElevation, 0.0) * air_->transmittance(sky.node(i), legs_->at(0.0, risen.sinElevation));
     }
     const std::lock_guard lock(busy_);
-    return falls_.try_emplace(um, falls).first->second;
+    for (std::size_t i = 0; i < um.size(); ++i) falls_.try_emplace(um[i], all[i]);
+    return all;
   }
 
-  const std::vector<std::pair<Sightline, double>>& skyLines() const;
+  const WeightedLines& skyLines() const;
 
   std::shared_ptr<const Atmosphere> air_;
   std::optional<Sun> sun_;
@@ -169,13 +215,13 @@ class SkyAround final : public Surroundings {
   mutable std::mutex busy_;
   mutable std::vector<std::vector<Line>> lines_;
   mutable std::map<double, double> falls_;
-  mutable std::vector<std::pair<Sightline, double>> skyLines_;
+  mutable WeightedLines skyLines_;
 };
 
 /// Lines to the sky from height 0 with their weights, of sum 1, in its mean by the cosine to the zenith.
-std::vector<std::pair<Sightline, double>> linesOfMean(const Atmosphere& air, const std::optional<Sun>& sun, const SunLegs* legs, double height_m,
+WeightedLines linesOfMean(const Atmosphere& air, const std::optional<Sun>& sun, const SunLegs* legs, double height_m,
                                                       double earthRadius_m) {
-  std::vector<std::pair<Sightline, double>> lines;
+  WeightedLines lines;
   for (const QuadratureNode& node : gaussLegendre(kElevations, 0.0, 1.0)) {
     const AirRay ray{height_m, node.x, earthRadius_m};
     const auto stations = air.stationsAt(ray, kRanges_m);
@@ -192,21 +238,7 @@ std::vector<std::pair<Sightline, double>> linesOfMean(const Atmosphere& air, con
   return lines;
 }
 
-/// Their mean before a background. Lines of one elevation, which follow each other, have the same air's temperatures.
-double meanOf(const std::vector<std::pair<Sightline, double>>& lines, const AirNode& node, double um, double irradiance, double behind) {
-  const size_t azimuths = lines.size() / kElevations;
-  double sum = 0.0;
-  std::vector<double> source;
-  for (size_t i = 0; i < lines.size(); ++i) {
-    const auto& [line, weight] = lines[i];
-    if (i % azimuths == 0) source = line.sourceAt(um);
-    const Sightline::Sent sent = line.at(node, source, irradiance);
-    sum += weight * (sent.radiance + behind * std::exp(-sent.depth));
-  }
-  return sum;
-}
-
-const std::vector<std::pair<Sightline, double>>& SkyAround::skyLines() const {
+const WeightedLines& SkyAround::skyLines() const {
   const std::lock_guard lock(busy_);
   if (skyLines_.empty()) skyLines_ = linesOfMean(*air_, legs_ ? sun_ : std::nullopt, legs_.get(), 0.0, earthRadius_m_);
   return skyLines_;
@@ -221,10 +253,7 @@ Spectrum meanSky(const std::shared_ptr<const Atmosphere>& of, const std::optiona
   Spectrum::Table table;
   table.name = "the sky of the air";
   table.wavelength_um = of->knots_um();
-  for (double w : table.wavelength_um) {
-    const AirNode node = of->node(w);
-    table.value.push_back(meanOf(lines, node, w, sun ? sun->irradiance(w) : 0.0, background(w)));
-  }
+  table.value = SkyAt(*of, table.wavelength_um, sun ? &*sun : nullptr, background).meanOf(lines);
   Spectrum sky(std::move(table));
   sky.setProvenance("mean of the sky of this scenario's air");
   return sky;

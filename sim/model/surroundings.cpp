@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/model/scene_fingerprint.hpp"
+#include "sim/parameters/on_threads.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -24,17 +25,40 @@ const std::vector<Harmonics>& Surroundings::projection(std::size_t height) const
 }
 
 const Surroundings::Light& Surroundings::light(double wavelength_um, std::size_t height) const {
+  const auto find = [&]() -> const Light* {
+    const std::lock_guard lock(busy_);
+    const auto at = kept_.find({height, wavelength_um});
+    return at != kept_.end() ? &at->second : nullptr;
+  };
+  if (const Light* known = find()) return *known;
+  keep({&wavelength_um, 1}, height);
+  return *find();
+}
+
+void Surroundings::keep(std::span<const double> wavelengths_um, std::size_t height) const {
+  const std::vector<std::vector<double>> all = radiance(wavelengths_um, height);
+  const std::vector<Harmonics>& each = projection(height);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    Light sum{{all[i].begin(), all[i].end()}, {}};
+    for (std::size_t g = 0; g < all[i].size(); ++g)
+      for (std::size_t c = 0; c < sum.harmonics.size(); ++c) sum.harmonics[c] += all[i][g] * each[g][c];
+    const std::lock_guard lock(busy_);
+    kept_.try_emplace({height, wavelengths_um[i]}, std::move(sum));
+  }
+}
+
+void Surroundings::prepare(std::span<const double> wavelengths_um, std::size_t height) const {
+  constexpr std::size_t kTogether = 32;
+  std::vector<double> missing;
   {
     const std::lock_guard lock(busy_);
-    if (const auto at = kept_.find({height, wavelength_um}); at != kept_.end()) return at->second;
+    for (double w : wavelengths_um)
+      if (!kept_.contains({height, w})) missing.push_back(w);
   }
-  const std::vector<double> all = radiance(wavelength_um, height);
-  const std::vector<Harmonics>& each = projection(height);
-  Light sum{{all.begin(), all.end()}, {}};
-  for (std::size_t g = 0; g < all.size(); ++g)
-    for (std::size_t c = 0; c < sum.harmonics.size(); ++c) sum.harmonics[c] += all[g] * each[g][c];
-  const std::lock_guard lock(busy_);
-  return kept_.try_emplace({height, wavelength_um}, std::move(sum)).first->second;
+  onAllThreads((missing.size() + kTogether - 1) / kTogether, [&](const auto& next) {
+    for (std::size_t k = next(); k * kTogether < missing.size(); k = next())
+      keep(std::span(missing).subspan(k * kTogether, std::min(kTogether, missing.size() - k * kTogether)), height);
+  });
 }
 
 const Surroundings::Blur& Surroundings::blur(std::size_t height, double sigma_rad) const {
@@ -105,13 +129,17 @@ const HarmonicResponse& Surroundings::response(const ReflectionComponent& compon
   return *responses_.try_emplace({&component, order}, std::move(made)).first->second;
 }
 
-std::vector<double> MixedSurroundings::radiance(double wavelength_um, std::size_t) const {
-  std::vector<double> values, all;
-  for (const Spectrum& s : spectra_) values.push_back(s(wavelength_um));
-  for (const auto& share : share_) {
-    double sum = 0.0;
-    for (std::size_t k = 0; k < values.size(); ++k) sum += share[k] * values[k];
-    all.push_back(sum);
+std::vector<std::vector<double>> MixedSurroundings::radiance(std::span<const double> wavelengths_um, std::size_t) const {
+  std::vector<std::vector<double>> all;
+  for (double w : wavelengths_um) {
+    std::vector<double> values;
+    for (const Spectrum& s : spectra_) values.push_back(s(w));
+    auto& own = all.emplace_back();
+    for (const auto& share : share_) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < values.size(); ++k) sum += share[k] * values[k];
+      own.push_back(sum);
+    }
   }
   return all;
 }

@@ -34,6 +34,8 @@ class Surroundings {
     Harmonics harmonics;
   };
   const Light& light(double wavelength_um, std::size_t height) const;
+  /// The same of many, which costs less than one by one; on all threads.
+  void prepare(std::span<const double> wavelengths_um, std::size_t height) const;
   const std::vector<Harmonics>& projection(std::size_t height) const;
   /// What blurs values on the grid onto its finer one, by exp((cos - 1) / sigma^2) over the sphere, or by a cosine, as matt surfaces do: of [finer ring][finer
   /// azimuth up to the second of the grid], shares of [ring][azimuth], of sum 1; kept. All around it goes on the same.
@@ -48,11 +50,14 @@ class Surroundings {
   virtual void addTo(Fingerprint& f) const = 0;
 
  protected:
-  virtual std::vector<double> radiance(double wavelength_um, std::size_t height) const = 0;
+  /// [wavelength][entry], of some, one at least; of each the same whatever the others.
+  virtual std::vector<std::vector<double>> radiance(std::span<const double> wavelengths_um, std::size_t height) const = 0;
   Surroundings(std::vector<double> heights_m, std::vector<DirectionGrid> grids) : heights_m_(std::move(heights_m)), grids_(std::move(grids)) {}
   const std::vector<double>& heights_m() const { return heights_m_; }
 
  private:
+  void keep(std::span<const double> wavelengths_um, std::size_t height) const;
+
   std::vector<double> heights_m_;
   std::vector<DirectionGrid> grids_;
   mutable std::mutex busy_;
@@ -79,7 +84,7 @@ class MixedSurroundings final : public Surroundings {
   Spectrum mean() const;
 
  private:
-  std::vector<double> radiance(double wavelength_um, std::size_t height) const override;
+  std::vector<std::vector<double>> radiance(std::span<const double> wavelengths_um, std::size_t height) const override;
   std::vector<Spectrum> spectra_;
   std::vector<std::vector<double>> share_;
 };

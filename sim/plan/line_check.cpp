@@ -2,8 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
-#include "sim/plan/on_threads.hpp"
+#include "sim/parameters/on_threads.hpp"
 #include "sim/plan/sights.hpp"
 #include "sim/radiance/node_sum.hpp"
 
@@ -125,29 +126,37 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
   const auto& extremes = rays.extremes();
   for (size_t n = 0; n < std::min(kLooked, extremes.size()); ++n) lines.push_back(extremes[n * extremes.size() / std::min(kLooked, extremes.size())]);
   for (size_t n = 0; n < kLooked; ++n) lines.push_back(rays.fromFilm());
-  NodeSum sum(fine.spectra);
   const Plan& plan = fine.plan;
-  const auto seen = [&](const SightRay& ray, int places) {
-    sum.begin();
-    radianceAlong({sim, plan.terms, plan.sunLegs.get(), *ray.state, {}, places}, ray.line, sum);
-    return std::vector<double>(sum.radiance().begin(), sum.radiance().end());
+  std::vector<std::vector<double>> all(lines.size()), slots(lines.size());
+  const auto tellAll = [&](const std::function<void(size_t, std::span<const double>)>& take, int places) {
+    onAllThreads(lines.size(), [&](const auto& next) {
+      NodeSum sum(fine.spectra);
+      for (size_t n = next(); n < lines.size(); n = next()) {
+        sum.begin();
+        radianceAlong({sim, plan.terms, plan.sunLegs.get(), *lines[n].state, {}, places}, lines[n].line, sum);
+        take(n, sum.radiance());
+      }
+    });
   };
-  std::vector<std::vector<double>> all, slots;
-  for (const SightRay& ray : lines) {
-    all.push_back(seen(ray, 0));
-    slots.push_back(slotsOf(plan, all.back()));
-  }
+  tellAll(
+      [&](size_t n, std::span<const double> found) {
+        all[n].assign(found.begin(), found.end());
+        slots[n] = slotsOf(plan, found);
+      },
+      0);
   // Wavelength by wavelength: what is lost at one and won at another is nothing to a channel, but something to groups of them.
   const auto isEnough = [&](int places) {
-    for (size_t n = 0; n < lines.size(); ++n) {
-      const auto found = seen(lines[n], places);
-      for (size_t s = 0; s < slots[n].size(); ++s) {
-        double lost = 0.0;
-        for (size_t i = 0; i < found.size(); ++i) lost += plan.weight[s][i] * std::abs(found[i] - all[n][i]);
-        if (lost > kPlacesShare * accuracy * std::max(slots[n][s], floor[s])) return false;
-      }
-    }
-    return true;
+    std::vector<char> missed(lines.size(), 0);
+    tellAll(
+        [&](size_t n, std::span<const double> found) {
+          for (size_t s = 0; s < slots[n].size(); ++s) {
+            double lost = 0.0;
+            for (size_t i = 0; i < found.size(); ++i) lost += plan.weight[s][i] * std::abs(found[i] - all[n][i]);
+            if (lost > kPlacesShare * accuracy * std::max(slots[n][s], floor[s])) missed[n] = 1;
+          }
+        },
+        places);
+    return std::none_of(missed.begin(), missed.end(), [](char m) { return m != 0; });
   };
   for (int places : kTried)
     if (isEnough(places)) return places;

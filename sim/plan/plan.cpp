@@ -111,6 +111,23 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   return plan;
 }
 
+Plan someWavelengths(const Plan& plan, int most) {
+  Plan some = plan;
+  some.nodes.clear(), some.blocks.clear();
+  for (auto& w : some.weight) w.clear();
+  for (const NodeBlock& b : plan.blocks) {
+    const int count = std::min(b.count, most);
+    some.blocks.push_back({some.nodeCount(), count, b.slots, b.lit});
+    for (int k = 0; k < count; ++k) {
+      const int begin = b.first + k * b.count / count, end = b.first + (k + 1) * b.count / count;
+      some.nodes.push_back(plan.nodes[static_cast<size_t>((begin + end) / 2)]);
+      for (size_t s = 0; s < plan.weight.size(); ++s)
+        some.weight[s].push_back(std::accumulate(plan.weight[s].begin() + begin, plan.weight[s].begin() + end, 0.0));
+    }
+  }
+  return some;
+}
+
 std::vector<double> Plan::darkFloors() const {
   std::vector<double> floors;
   for (const auto& w : weight) floors.push_back(darkFloor(0.0, std::accumulate(w.begin(), w.end(), 0.0)));

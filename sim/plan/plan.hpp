@@ -98,6 +98,9 @@ struct Plan {
 /// The scene at one wavelength.
 SpectralNode nodeAt(const Simulation& simulation, double wavelength_um);
 
+/// Of each block of a plan of single wavelengths, in their order, at most `most`: the middle ones of as many stretches, with the weight of all of their stretch.
+Plan someWavelengths(const Plan& plan, int most);
+
 /// Slots of one pass: four RGBA targets.
 constexpr int kMostSlots = 16;
 

@@ -5,7 +5,7 @@
 #include <functional>
 #include <set>
 
-#include "sim/plan/on_threads.hpp"
+#include "sim/parameters/on_threads.hpp"
 
 namespace pitviper {
 namespace {

@@ -79,7 +79,12 @@ int SightBook::spectrum(const std::string& name, GridSpectrum f) {
 
 int SightBook::spectrum(const Factor& factor, const Simulation& sim) {
   const auto [at, isNew] = factors_.try_emplace(factor, static_cast<int>(spectra.size()));
-  if (isNew) spectra.push_back([factor, &sim](const FineGrid& g, size_t i) { return valueOf(sim, factor, g.wavelength_um[i]); });
+  if (isNew)
+    spectra.push_back([factor, &sim](const FineGrid& g, size_t i) {
+      // Of a whole grid that costs less than of one wavelength after the other.
+      if (factor.kind == Factor::Kind::Around && i == 0) sim.surroundings->prepare(g.wavelength_um, static_cast<size_t>(factor.z));
+      return valueOf(sim, factor, g.wavelength_um[i]);
+    });
   return at->second;
 }
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/plan/on_threads.hpp"
+#include "sim/parameters/on_threads.hpp"
 
 namespace pitviper {
 namespace {
@@ -81,9 +81,8 @@ Tried tell(const Simulation& sim, const NodesOfPlan& fine, const std::vector<Aro
 
 }  // namespace
 
-std::unique_ptr<const Plan> chooseSurroundings(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays, const std::vector<double>& floor, Plan& plan) {
-  auto chosen = std::make_unique<Plan>(fine.plan);
-  if (plan.terms.surroundings == 0) return chosen;
+void chooseSurroundings(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays, const std::vector<double>& floor, Plan& plan) {
+  if (plan.terms.surroundings == 0) return;
   std::vector<SightRay> lines = rays.overFilm(kLines);
   for (SightRay& ray : rays.ofSmallBodies(kLines / 2)) lines.push_back(std::move(ray));
   for (int n = 0; n < kLines / 2; ++n) lines.push_back(rays.ofCombination());
@@ -114,8 +113,6 @@ std::unique_ptr<const Plan> chooseSurroundings(const Simulation& sim, const Node
   const Tried& taken = *std::find_if(all.begin(), all.end(), [&](const Tried& t) { return isEnough(t) || t.largest <= kNoWorse * least; });
   plan.surroundings = taken.degree;
   plan.surroundingsLoss = taken.loss;
-  chosen->terms = withSurroundings(fine.plan.terms, taken.degree);
-  return chosen;
 }
 
 }  // namespace pitviper

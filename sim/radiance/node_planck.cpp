@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "sim/radiance/node_air.hpp"
+#include "sim/model/node_air.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {

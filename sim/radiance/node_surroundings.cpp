@@ -2,11 +2,8 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
 #include <set>
-#include <thread>
 
 #include "sim/parameters/fingerprint.hpp"
 #include "sim/radiance/node_patterns.hpp"
@@ -151,7 +148,10 @@ void NodeSurroundings::makePatterns(std::size_t number, Height& h) const {
   made->grid = around.grids()[number];
   made->number = number;
   made->finer = made->grid.finer();
-  prepareLight(number);
+  std::set<double> wanted_um;
+  for (const SpectralNode& n : nodes_)
+    for (const auto& m : n.members) wanted_um.insert(m.wavelength_um);
+  around.prepare(std::vector<double>(wanted_um.begin(), wanted_um.end()), number);
   const auto entries = static_cast<Eigen::Index>(made->grid.size()), count = static_cast<Eigen::Index>(nodes_.size());
   Eigen::MatrixXd light = Eigen::MatrixXd::Zero(entries, count);
   for (Eigen::Index i = 0; i < count; ++i) {
@@ -259,21 +259,6 @@ NodeSurroundings::Light NodeSurroundings::lightAt(const Surroundings::Place& pla
 }
 
 /// Light by wavelength is kept by the surroundings: made beforehand, on all cores.
-void NodeSurroundings::prepareLight(std::size_t number) const {
-  std::set<double> wanted_um;
-  for (const SpectralNode& n : nodes_)
-    for (const auto& m : n.members) wanted_um.insert(m.wavelength_um);
-  const std::vector<double> all_um(wanted_um.begin(), wanted_um.end());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t k = next++; k < all_um.size(); k = next++) simulation_.surroundings->light(all_um[k], number);
-  };
-  std::vector<std::future<void>> others;
-  for (unsigned n = 1; n < std::thread::hardware_concurrency(); ++n) others.push_back(std::async(std::launch::async, work));
-  work();
-  for (auto& o : others) o.get();
-}
-
 const std::vector<double>& NodeSurroundings::ofDome() const {
   std::call_once(isDomeKnown_, [&] {
     for (const SpectralNode& n : nodes_) ofDome_.push_back(n.mean(*simulation_.ambient));

@@ -65,7 +65,6 @@ class NodeSurroundings {
   /// By content: several passes of one plan ask for the same.
   std::shared_ptr<const Told> sharedTold(std::size_t number) const;
   Told makeTold(std::size_t number) const;
-  void prepareLight(std::size_t height) const;
   const std::vector<double>& ofDome() const;
   std::vector<double> inFull(const ReflectionComponent& component, const SurfaceView& view) const;
   std::vector<double> byHarmonics(const ReflectionComponent& component, const SurfaceView& view) const;

@@ -5,7 +5,7 @@
 
 #include "atmosphere/layered_grid.hpp"
 #include "sim/plan/plan.hpp"
-#include "sim/radiance/node_air.hpp"
+#include "sim/model/node_air.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -1,4 +1,4 @@
-#include "sim/radiance/node_air.hpp"
+#include "sim/model/node_air.hpp"
 
 #include <Eigen/Core>
 #include <algorithm>
