@@ -11,9 +11,10 @@ namespace {
 double integral(const Resolving& c, Bars bars, double difference_K) {
   constexpr int kSteps = 600;
   const double most = std::sqrt(nyquist_per_rad(c, bars));
+  const Mrtd mrtd(c, bars);
   double sum = 0.0;
   for (int k = 0; k < kSteps; ++k) {
-    const double u = most * (k + 0.5) / kSteps, over = 0.25 * kPi * difference_K / mrtd_K(c, bars, u * u);
+    const double u = most * (k + 0.5) / kSteps, over = 0.25 * kPi * difference_K / mrtd(u * u);
     if (over > 1.0) sum += 2.0 * u * std::sqrt(over) * most / kSteps;
   }
   return sum;

@@ -23,26 +23,33 @@ double eyeThreshold(double u, double field_deg, double luminance) {
 
 namespace {
 
-/// The threshold of an observer who may step back: bars that are too coarse for the eye are seen as finer ones.
-double bestThreshold(double u, double field_deg, double luminance) {
-  constexpr double kBestBelow = 12.0;  // an eye's best frequency lies at 1 to 8 cycles a degree for any display
-  double low = u, high = kBestBelow;
-  if (!(low < high)) return eyeThreshold(u, field_deg, luminance);
+/// Where an eye needs least contrast [1/deg].
+double bestFrequency(double field_deg, double luminance) {
+  double low = 0.0, high = 12.0;  // it lies at 1 to 8 cycles a degree for any display
   for (int k = 0; k < 24; ++k) {  // thirds: 12 (2/3)^24 = 7e-4
     const double a = low + (high - low) / 3.0, b = high - (high - low) / 3.0;
     if (eyeThreshold(a, field_deg, luminance) < eyeThreshold(b, field_deg, luminance)) high = b;
     else low = a;
   }
-  return std::min(eyeThreshold(u, field_deg, luminance), eyeThreshold(0.5 * (low + high), field_deg, luminance));
+  return 0.5 * (low + high);
 }
 
 }  // namespace
 
 double nyquist_per_rad(const Resolving& c, Bars bars) { return 0.5 / (bars == Bars::SideBySide ? c.pitchX_rad : c.pitchY_rad); }
 
-double mrtd_K(const Resolving& c, Bars bars, double f) {
-  if (f > nyquist_per_rad(c, bars) * (1.0 + 1e-12)) return INFINITY;
-  const bool across = bars == Bars::SideBySide;
+Mrtd::Mrtd(const Resolving& camera, Bars bars) : c_(camera), bars_(bars) {
+  const Observer& o = c_.observer;
+  const double height_rad = 2.0 * std::atan(0.5 * o.displayHeight_m / o.distance_m), degree = kPi / 180.0;
+  field_deg_ = height_rad / degree;
+  cyclesPerDegree_ = c_.rows * c_.pitchY_rad / height_rad * degree;
+  best_ = bestFrequency(field_deg_, o.luminance_cd_m2);
+}
+
+double Mrtd::operator()(double f) const {
+  const Resolving& c = c_;
+  if (f > nyquist_per_rad(c, bars_) * (1.0 + 1e-12)) return INFINITY;
+  const bool across = bars_ == Bars::SideBySide;
   const double own = across ? c.pitchX_rad : c.pitchY_rad, other = across ? c.pitchY_rad : c.pitchX_rad;
   const double passed = std::abs(c.transfer(f)) * sinc(own * f);
   if (!(passed > 0.0)) return INFINITY;
@@ -53,10 +60,12 @@ double mrtd_K(const Resolving& c, Bars bars, double f) {
   const double variance = square(c.noise.tvh) * time * a * b + square(c.noise.vh) * a * b + square(alternating) * time * a + square(fixed) * a;
   const double noise = kPi * kPi / 8.0 * o.snr * std::sqrt(variance) / passed;
   if (!(o.sceneContrast_K > 0.0)) return noise;
-  const double height_rad = 2.0 * std::atan(0.5 * o.displayHeight_m / o.distance_m), magnification = height_rad / (c.rows * c.pitchY_rad), degree = kPi / 180.0;
-  const double eye = 0.25 * kPi * 2.0 * o.sceneContrast_K * bestThreshold(f / magnification * degree, height_rad / degree, o.luminance_cd_m2) / passed;
-  return std::hypot(noise, eye);
+  // An observer may step back: bars that are too coarse for the eye are seen as finer ones.
+  const double threshold = eyeThreshold(std::max(f * cyclesPerDegree_, best_), field_deg_, o.luminance_cd_m2);
+  return std::hypot(noise, 0.25 * kPi * 2.0 * o.sceneContrast_K * threshold / passed);
 }
+
+double mrtd_K(const Resolving& c, Bars bars, double f) { return Mrtd(c, bars)(f); }
 
 namespace {
 
@@ -64,12 +73,13 @@ namespace {
 double resolvedBy(const Resolving& c, Bars bars, double difference_K) {
   constexpr int kSteps = 400;
   const double most = nyquist_per_rad(c, bars);
+  const Mrtd mrtd(c, bars);
   for (int k = 0; k < kSteps; ++k) {
     double low = most * k / kSteps, high = most * (k + 1) / kSteps;
-    if (mrtd_K(c, bars, high) <= difference_K) continue;
+    if (mrtd(high) <= difference_K) continue;
     for (int halving = 0; halving < 60; ++halving) {
       const double middle = 0.5 * (low + high);
-      (mrtd_K(c, bars, middle) <= difference_K ? low : high) = middle;
+      (mrtd(middle) <= difference_K ? low : high) = middle;
     }
     return low > 1e-9 * most ? low : 0.0;  // of halves of the first step nothing else is left where none is resolved
   }

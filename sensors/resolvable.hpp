@@ -46,7 +46,20 @@ enum class Bars { SideBySide, Stacked };
 /// Threshold modulation of an eye for `cycles_per_deg` on a field of so many degrees a side.
 double eyeThreshold(double cycles_per_deg, double field_deg, double luminance_cd_m2);
 
-/// [K]; infinite beyond half a cycle a pixel. `cycles_per_rad` above 0.
+/// The minimum resolvable temperature difference of one direction: what all frequencies have in common is worked out once.
+class Mrtd {
+ public:
+  /// `camera` must outlive it.
+  Mrtd(const Resolving& camera, Bars bars);
+  /// [K]; infinite beyond half a cycle a pixel. `cycles_per_rad` above 0.
+  double operator()(double cycles_per_rad) const;
+
+ private:
+  const Resolving& c_;
+  Bars bars_;
+  double field_deg_, cyclesPerDegree_;  ///< height of the display as the eye sees it; what one cycle a radian before the camera is on it
+  double best_;                         ///< where the eye needs least contrast [1/deg]
+};
 double mrtd_K(const Resolving& camera, Bars bars, double cycles_per_rad);
 /// The highest frequency that is resolved at a difference, of the geometric mean of both directions (FLIR92) [cycles/rad]; 0: none.
 double resolved_per_rad(const Resolving& camera, double difference_K);
