@@ -23,6 +23,8 @@ TEST(LayeredAir, TablesAgainstRays) {
   for (const auto& [low, high] : {std::pair{0.5, 0.7}, {3.6, 4.9}, {8.0, 12.0}})
     for (const double height : {300.0, 6000.0})
       for (const char* mode : {"direct", "buffered"}) {
+        // Both modes read the same tables by the same functions: each height and band once in buffered mode.
+        if (*mode == 'b' && (low > 3.0 && low < 4.0) != (height > 1000.0)) continue;
         const auto sim = scene(
             "atmosphere: hazy_us76\nsun: {azimuth: 60 deg, elevation: 35 deg, temperature: 5772 K}\nambient: {from: sky}\nrender: {mode: " + std::string(mode) +
             "}\nmaterials: {m: {components: [{reflection: lambertian, reflectance: 0.35}]}}\n"

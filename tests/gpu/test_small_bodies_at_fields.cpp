@@ -55,6 +55,8 @@ TEST(SmallBodiesAtFields, PixelsHaveTheBodyAndWhatIsBesideIt) {
   for (const double nozzle_px : {3.0, 10.0})
     for (const double sphere_px : {1.0, 3.0})
       for (const auto& [where, range_m] : {std::pair{"before", 990.0}, {"in", 1000.0}, {"behind", 1010.0}}) {
+        // Each place with each size, of the jet and of the sphere: what is before and behind a jet as narrow as the sphere, what is in one of another size.
+        if ((nozzle_px < 5.0) == (sphere_px < 2.0) ? range_m == 1000.0 : range_m != 1000.0) continue;
         Simulation sim = scene(yaml(nozzle_px, sphere_px, range_m));
         Camera& camera = sim.cameras[0];
         keepRadianceAlone(camera);

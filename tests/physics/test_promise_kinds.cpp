@@ -69,15 +69,14 @@ TEST(PromiseKinds, LowSunInAWideField) {
 
 // Towards the low sun itself the cosine of its azimuth reaches 1 within the film: no azimuth of a table lies beyond it, where phase functions have no value.
 TEST(PromiseKinds, LowSunInTheFilm) {
-  for (const char* air : {"hazy_us76", "hazy_mls"})
-    for (const char* field : {"35 deg", "150 deg"}) {
-      const std::string text = std::string("atmosphere: ") + air +
-                               "\nsun: {azimuth: 90 deg, elevation: 2.9 deg, temperature: 5772 K}\nambient: {from: sky}\nentities:\n"
-                               "- {name: ground, shape: {model: plate, width: 200 km, height: 200 km}, material: snow, temperature: 290 K, pitch: 90 deg}\n" +
-                               camera("[0 m, 0 m, 11 m]", "[840 m, 0 m, 25 m]",
-                                      std::string("field_of_view: ") + field + ", channels: [{name: vis, response: {band: [0.5 um, 0.52 um]}}]");
-      bound(std::string("low sun in a film of ") + field + ", " + air + ", planned at 1 %, worst pixel", worstOff(text, "1 %"), 0.01, "asked for");
-    }
+  for (const auto& [air, field] : {std::pair{"hazy_us76", "35 deg"}, {"hazy_mls", "150 deg"}}) {
+    const std::string text = std::string("atmosphere: ") + air +
+                             "\nsun: {azimuth: 90 deg, elevation: 2.9 deg, temperature: 5772 K}\nambient: {from: sky}\nentities:\n"
+                             "- {name: ground, shape: {model: plate, width: 200 km, height: 200 km}, material: snow, temperature: 290 K, pitch: 90 deg}\n" +
+                             camera("[0 m, 0 m, 11 m]", "[840 m, 0 m, 25 m]",
+                                    std::string("field_of_view: ") + field + ", channels: [{name: vis, response: {band: [0.5 um, 0.52 um]}}]");
+    bound(std::string("low sun in a film of ") + field + ", " + air + ", planned at 1 %, worst pixel", worstOff(text, "1 %"), 0.01, "asked for");
+  }
 }
 
 // A window that lets through and reflects all but a millionth sends that millionth of a black body: 1 less both, in double precision.

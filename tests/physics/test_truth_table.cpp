@@ -216,6 +216,7 @@ TEST(TruthTable, PlumesAndFlaresAreWhatThePictureHas) {
   double empty = -1.0;  // of a picture of the air and what is behind it, over steradians
   for (double range : {1500.0, 4000.0, 30000.0})
     for (const char* engine : {"turbofan_military", "double_base_motor"}) {
+      if (range != 4000.0 && (range < 4000.0) == (std::string(engine) == "double_base_motor")) continue;  // one of them near, the other far
       const std::string world = "accuracy: 1 %\ntime: {start: 1 s, rate: 10 Hz, frames: 2}\natmosphere: {model: homogeneous, extinction: 0.02 /km, temperature: 285 K}\nbackground: {temperature: 220 K}\n";
       const std::string place = print("position: [%g m, -6 m, 100 m]", range);
       const std::string burning = "plumes: [{name: p, " + place + ", direction: [0, 1, 0], length: 12 m, engine: " + engine + ", begin: 0 s}]\n" +
@@ -244,17 +245,17 @@ TEST(TruthTable, PlumesAndFlaresAreWhatThePictureHas) {
 // What hides them, how their lines of sight turn, what a detector makes of them; names that a body has too.
 TEST(TruthTable, PlumesHaveSharesRatesAndNoise) {
   const std::string jet =
-      "accuracy: 1 %\ntime: {start: 1 s, rate: 10 Hz, frames: 2}\nbackground: {temperature: 250 K}\nmaterials: {m: {components: []}}\nentities:\n- {name: jet, shape: {model: sphere, radius: 20 cm}, material: m, temperature: 290 K, "
+      "time: {start: 1 s, rate: 10 Hz, frames: 2}\nbackground: {temperature: 250 K}\nmaterials: {m: {components: []}}\nentities:\n- {name: jet, shape: {model: sphere, radius: 20 cm}, material: m, temperature: 290 K, "
       "motion: [{time: 0 s, position: [2 km, 100 m, 100 m]}, {time: 2 s, position: [2 km, -100 m, 100 m]}]}\n",
                     burning = "plumes: [{name: jet, on: jet, engine: turbofan_military, length: 20 m}]\nflares: [{name: f, type: mtv, position: [2 km, 0 m, 105 m], speed: 0 m/s, time: 0.2 s, smoke: false}]\n";
-  const Frame f = renderFrame(scene(jet + burning + watch("stages: [{stage: detector, full_well: 7e6, read_noise: 300}], ")));
+  const Frame f = renderFrame(scene("accuracy: 10 %\n" + jet + burning + watch("stages: [{stage: detector, full_well: 7e6, read_noise: 300}], ")));
   const TargetRow& plume = row(f, "jet_plume");
   EXPECT_EQ(row(f, "jet").kind, "body");
   figure("turning of the line of sight to a nozzle [rad/s]", plume.sightRight_rad_s, 0.05, 1e-3, "100 m/s at 2 km");
   EXPECT_NEAR(plume.rangeRate_m_s, 0.0, 0.1);
   EXPECT_GT(plume.visible, 0.9) << "but for what the ball hides that carries it";
   // A wall that is down a frame later: the same plan.
-  const Simulation walled = scene(jet + "- {name: wall, shape: {model: plate, width: 40 m, height: 10 m}, material: m, temperature: 250 K, motion: {model: waypoints, interpolation: linear, points: [{time: 1 s, "
+  const Simulation walled = scene("accuracy: 1 %\n" + jet + "- {name: wall, shape: {model: plate, width: 40 m, height: 10 m}, material: m, temperature: 250 K, motion: {model: waypoints, interpolation: linear, points: [{time: 1 s, "
                                         "position: [1900 m, 0 m, 94.98 m], heading: 270 deg}, {time: 1.1 s, position: [1900 m, 0 m, 60 m], heading: 270 deg}]}}\n" + burning + watch());
   const Frame hidden = renderFrame(walled, 0), open = renderFrame(walled, 1);
   // The wall's upper edge is at 99.98 m, which hides what is below 99.979 m at 2 km: the lower half of a level jet, and none of the flare.
@@ -263,9 +264,9 @@ TEST(TruthTable, PlumesHaveSharesRatesAndNoise) {
   const auto left = [&](std::size_t channel) { return row(hidden, "jet_plume").channels[channel].own / row(open, "jet_plume").channels[channel].own; };
   figure("intensity of what is left of it, of all, mean of two channels", 0.5 * (left(0) + left(1)), row(hidden, "jet_plume").visible / row(open, "jet_plume").visible, 0.01, "the share is by what it sends, here past the ball that carries it too; 1 % asked");
   EXPECT_LT(plume.visible, 1.0);
-  const Frame cut = renderFrame(scene(jet + burning + watch("", "heading: 90.229 deg")));  // the film's edge is 0.46 degrees away
+  const Frame cut = renderFrame(scene("accuracy: 10 %\n" + jet + burning + watch("", "heading: 90.229 deg")));  // the film's edge is 0.46 degrees away
   EXPECT_LE(row(cut, "jet_plume").visible, 1.0);
-  const Frame behind = renderFrame(scene(jet + burning + watch("", "heading: 270 deg")));
+  const Frame behind = renderFrame(scene("accuracy: 10 %\n" + jet + burning + watch("", "heading: 270 deg")));
   EXPECT_EQ(row(behind, "f").visible, 0.0);
   EXPECT_EQ(row(behind, "f").channels[0].own, 0.0);
   EXPECT_TRUE(std::isnan(row(behind, "f").column));
