@@ -17,6 +17,7 @@
 #include <string_view>
 
 #include "scenarios/reader/scenario_reader.hpp"
+#include "sim/image/png.hpp"
 
 namespace pitviper {
 namespace {
@@ -293,6 +294,27 @@ Libraries copyLibraries(const fs::path& root, const fs::path& folder) {
   return copies;
 }
 
+/// The shipped scenarios beside small copies of the pictures they name: what is damaged is words, not texels.
+void copyScenarios(const fs::path& from, const fs::path& to) {
+  constexpr int kSide = 16;
+  fs::create_directories(to / "assets");
+  for (const auto& entry : fs::directory_iterator(from))
+    if (entry.path().extension() == ".yaml") fs::copy_file(entry.path(), to / entry.path().filename(), fs::copy_options::overwrite_existing);
+  for (const auto& entry : fs::directory_iterator(from / "assets")) {
+    const fs::path copy = to / "assets" / entry.path().filename();
+    if (entry.path().filename().string().starts_with("terrain_")) {
+      const GreyImage whole = readPngGrey(entry.path());
+      std::vector<std::uint16_t> few;
+      for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x)
+          few.push_back(static_cast<std::uint16_t>(65535.0 * static_cast<double>(whole.pixels[static_cast<std::size_t>(y * whole.height / kSide * whole.width + x * whole.width / kSide)])));
+      writePngGrey(copy, kSide, kSide, few);
+    } else if (entry.is_regular_file()) {
+      fs::copy_file(entry.path(), copy, fs::copy_options::overwrite_existing);
+    }
+  }
+}
+
 /// `<file>:<line>:<column>: ...; fix: ...` in one line; the file's name may hold anything.
 bool wellFormed(const std::string& message) {
   static const std::regex place("^[^:]*:[0-9]+:[0-9]+: .");
@@ -322,6 +344,7 @@ class Run {
  public:
   Run(const std::vector<fs::path>& files, const fs::path& root, const fs::path& folder)
       : files_(files), folder_(folder), libraries_(copyLibraries(root, folder)) {
+    copyScenarios(root / "scenarios", folder_ / "scenarios");
     static const std::regex columns("columns: *[0-9]+");
     for (const fs::path& file : files) {
       corpus_.push_back(std::regex_replace(readAll(file), columns, "columns: 8"));
@@ -348,7 +371,7 @@ class Run {
     write(kept, text);
     const std::clock_t start = std::clock();
     limitProcessor(kLongest_s);
-    const std::string wrong = read(role == Role::Scenario ? text : userOf(role), files_[chosen].parent_path());
+    const std::string wrong = read(role == Role::Scenario ? text : userOf(role), role == Role::Scenario ? folder_ / "scenarios" : files_[chosen].parent_path());
     limitProcessor(0);
     note(seed, static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC, wrong, kept);
   }

@@ -1,6 +1,6 @@
 // Damaged scenarios, library files and meshes: each must be read or refused in one line, without crash, hang or more than 1 GB.
-// PITVIPER_FUZZ sets the number of scenarios (default 2000; the full test is 100000), PITVIPER_FUZZ_MESHES of meshes (default a
-// twentieth of that), PITVIPER_FUZZ_SEED the first seed.
+// PITVIPER_FUZZ sets the number of scenarios (default 1500; the full test is 100000), PITVIPER_FUZZ_MESHES of meshes (default a
+// fifteenth of that), PITVIPER_FUZZ_SEED the first seed.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -18,8 +18,8 @@ long long fromEnvironment(const char* name, long long otherwise) {
   return text == nullptr ? otherwise : std::atoll(text);
 }
 
-const int kScenarios = static_cast<int>(fromEnvironment("PITVIPER_FUZZ", 2000));
-const int kMeshes = static_cast<int>(fromEnvironment("PITVIPER_FUZZ_MESHES", kScenarios / 20));
+const int kScenarios = static_cast<int>(fromEnvironment("PITVIPER_FUZZ", 1500));
+const int kMeshes = static_cast<int>(fromEnvironment("PITVIPER_FUZZ_MESHES", kScenarios / 15));
 const auto kSeed = static_cast<std::uint64_t>(fromEnvironment("PITVIPER_FUZZ_SEED", 1));
 
 /// Kept where something failed, with the inputs that did it.
