@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <set>
 
 #include "scenarios/commands/commands.hpp"
 #include "sensors/far_wings.hpp"
@@ -186,6 +187,7 @@ TEST(FarLight, TooWideIsRefusedWithTheMost) {
     }
     return "";
   };
+  std::set<std::string> tried;
   for (const auto& [key, value, unit] : {std::tuple{"defocus", "1 m", "um"}, std::tuple{"defocus", "20 mm", "um"}, std::tuple{"blur", "1 m", "um"}, std::tuple{"jitter", "0.1 rad", "urad"}, std::tuple{"blur", "2 mm", "um"}}) {
     const auto began = std::chrono::steady_clock::now();
     const std::string said = refusal(std::string("{stage: point_spread, ") + key + ": " + value + "}");
@@ -194,8 +196,11 @@ TEST(FarLight, TooWideIsRefusedWithTheMost) {
     const std::size_t at = said.find("of at most ");
     ASSERT_NE(at, std::string::npos) << said;
     const double most = std::stod(said.substr(at + 11));
-    EXPECT_EQ(refusal(print("{stage: point_spread, cells: 1, %s: %.6g %s}", key, most, unit)), "") << key;
-    EXPECT_NE(refusal(print("{stage: point_spread, cells: 1, %s: %.6g %s}", key, 1.1 * most, unit)), "") << key;
+    // Which value was asked for is no matter of the most: it is tried once.
+    if (tried.insert(key).second) {
+      EXPECT_EQ(refusal(print("{stage: point_spread, cells: 1, %s: %.6g %s}", key, most, unit)), "") << key;
+      EXPECT_NE(refusal(print("{stage: point_spread, cells: 1, %s: %.6g %s}", key, 1.1 * most, unit)), "") << key;
+    }
     bound(std::string("seconds until '") + key + ": " + value + "' is refused", took_s, 60.0, "a kernel of 128 cells takes at most a second of a core; nine are made");
   }
   EXPECT_NE(refusal("{stage: point_spread, wavefront_error: 1 mm}").find("at most"), std::string::npos);

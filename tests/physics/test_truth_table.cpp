@@ -66,6 +66,7 @@ TEST(TruthTable, AgreesWithTheReference) {
       if (bodies == "none") text = text.substr(0, text.find("entities:"));
       Simulation sim = scene("accuracy: reference\n" + text + camera("samples: 4, ") );
       sim.cameras[0].truth = {};
+      sim.cameras[0].zoomedSamples = 64;  // of each subpixel's side: an outline to a thousandth
       const Frame g = renderFrame(sim);
       const auto sr = sim.cameras[0].pinhole.solidAngles().plain_sr;
       double all = 0.0;
