@@ -131,7 +131,7 @@ TEST(Measure, RangesThroughAScenariosAir) {
                                   "um]}}]}]\n");
   };
   const auto measured = [&](const std::string& more) {
-    const Result r = pitviper("measure " + camera + " --film 64 --frames 2 " + more);
+    const Result r = pitviper("measure " + camera + " --film 64 --frames 4 " + more);
     EXPECT_EQ(r.code, 0) << r.output;
     return r.output;
   };
