@@ -1,8 +1,9 @@
 #include "scenarios/reader/scenario_reader.hpp"
 
-#include <openssl/sha.h>
+#include <openssl/evp.h>
 
 #include <cstdlib>
+#include <memory>
 
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/expand.hpp"
@@ -13,15 +14,35 @@
 
 namespace pitviper {
 
-std::string sha256(const std::string& text) {
-  unsigned char digest[SHA256_DIGEST_LENGTH];
-  SHA256(reinterpret_cast<const unsigned char*>(text.data()), text.size(), digest);
-  std::string hex;
-  for (unsigned char byte : digest) {
-    hex += "0123456789abcdef"[byte >> 4];
-    hex += "0123456789abcdef"[byte & 15];
+namespace {
+
+/// FIPS 180-4, of bytes that come piece by piece.
+class Sha256 {
+ public:
+  Sha256() { EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr); }
+  void add(std::string_view piece) { EVP_DigestUpdate(context_.get(), piece.data(), piece.size()); }
+  std::string hex() {
+    unsigned char digest[EVP_MAX_MD_SIZE];
+    unsigned size = 0;
+    EVP_DigestFinal_ex(context_.get(), digest, &size);
+    std::string text;
+    for (unsigned i = 0; i < size; ++i) {
+      text += "0123456789abcdef"[digest[i] >> 4];
+      text += "0123456789abcdef"[digest[i] & 15];
+    }
+    return text;
   }
-  return hex;
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_{EVP_MD_CTX_new(), &EVP_MD_CTX_free};
+};
+
+}  // namespace
+
+std::string sha256(const std::string& text) {
+  Sha256 hash;
+  hash.add(text);
+  return hash.hex();
 }
 
 Libraries findLibraries() {
@@ -84,9 +105,11 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
   }
   if (sim.cameras.empty() && sim.probes.empty())
     throw UserError(tree.where, "the scenario has neither a camera nor a probe", "at least one under 'cameras:'", "add a camera");
-  Fingerprint content;
+  Sha256 hash;
+  Fingerprint content([&hash](std::string_view piece) { hash.add(piece); });
   addTo(content, sim);
-  sim.content = sha256(content.bytes());
+  content.finish();
+  sim.content = hash.hex();
   return sim;
 }
 

@@ -179,14 +179,14 @@ std::vector<char> clearFacets(const Mesh& mesh, const glm::dvec3& toLight, std::
 }
 
 std::vector<char> keptClearFacets(const Mesh& mesh, const glm::dvec3& toLight, std::span<const Occluder> others) {
-  Fingerprint f;
-  f.add(toLight).all(mesh.positions).all(mesh.triangles);
-  for (const Occluder& o : others) {
-    for (int k = 0; k < 3; ++k) f.add(o.axes[k]);
-    f.add(o.origin).all(o.mesh.positions).all(o.mesh.triangles);
-  }
   constexpr const char* kWhat = "clear-1";
-  const ContentKey key = contentKey(f.bytes());
+  const ContentKey key = contentKeyOf([&](Fingerprint& f) {
+    f.add(toLight).all(mesh.positions).all(mesh.triangles);
+    for (const Occluder& o : others) {
+      for (int k = 0; k < 3; ++k) f.add(o.axes[k]);
+      f.add(o.origin).all(o.mesh.positions).all(o.mesh.triangles);
+    }
+  });
   if (const auto kept = readCachedTable(kWhat, key)) {
     TableReader in(*kept);
     std::vector<char> clear = in.all<char>();

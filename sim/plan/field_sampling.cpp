@@ -245,12 +245,12 @@ std::shared_ptr<const FieldSampling> FieldSampling::of(const Simulation& simulat
   static std::vector<std::vector<double>> lastWeights;
   const std::lock_guard lock(mutex);
   if (auto kept = last.lock(); kept && lastOf == &simulation && lastAccuracy == plan.accuracy && lastWeights == plan.weight) return kept;
-  Fingerprint f;
-  f.add(static_cast<double>(kPlannerVersion)).add(plan.accuracy).add(writePlanned(plan));
-  addTo(f, simulation);
-  for (const Camera& c : simulation.cameras) addTo(f, c);
-  for (const Probe& p : simulation.probes) addTo(f, p);
-  const ContentKey key = contentKey(f.bytes());
+  const ContentKey key = contentKeyOf([&](Fingerprint& f) {
+    f.add(static_cast<double>(kPlannerVersion)).add(plan.accuracy).add(writePlanned(plan));
+    addTo(f, simulation);
+    for (const Camera& c : simulation.cameras) addTo(f, c);
+    for (const Probe& p : simulation.probes) addTo(f, p);
+  });
   std::shared_ptr<const FieldSampling> made;
   if (const auto kept = readCachedTable(kWhat, key))
     if (auto read = from(*kept, simulation.fields.size())) made = std::make_shared<const FieldSampling>(std::move(*read));

@@ -4,12 +4,12 @@
 
 namespace pitviper {
 ContentKey planKey(const Simulation& sim, const Eye& eye) {
-  Fingerprint f;
-  f.add(static_cast<double>(kPlannerVersion));
-  addTo(f, sim);
-  if (eye.camera) addTo(f, *eye.camera);
-  else addTo(f, *eye.probe);
-  return contentKey(f.bytes());
+  return contentKeyOf([&](Fingerprint& f) {
+    f.add(static_cast<double>(kPlannerVersion));
+    addTo(f, sim);
+    if (eye.camera) addTo(f, *eye.camera);
+    else addTo(f, *eye.probe);
+  });
 }
 
 }  // namespace pitviper

@@ -28,14 +28,11 @@ std::string percent(double accuracy) {
 PlanOrigin originOf(const Simulation& sim, const Camera& camera) {
   PlanOrigin o;
   o.version = kPlannerVersion;
-  Fingerprint scene, eye;
-  addTo(scene, sim);
   Camera own = camera;
   own.learnt.clear();
   own.spectral.accuracy = 0.0;
-  addTo(eye, own);
-  o.scene = contentKey(scene.bytes());
-  o.eye = contentKey(eye.bytes());
+  o.scene = contentKeyOf([&](Fingerprint& f) { addTo(f, sim); });
+  o.eye = contentKeyOf([&](Fingerprint& f) { addTo(f, own); });
   o.accuracy = camera.spectral.accuracy;
   o.samples = camera.samples;
   o.sharesShading = camera.sharesShading;

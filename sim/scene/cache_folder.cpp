@@ -18,22 +18,48 @@ std::uint64_t mix(std::uint64_t h, std::uint64_t word, std::uint64_t multiplier)
   return h ^ (h >> 29);
 }
 
+/// Of so many bytes in all, in pieces of which each but the last has a multiple of 8.
+class Hash {
+ public:
+  Hash(std::size_t bytes, ContentKey seed) : a_(mix(seed[0], bytes, kFirst)), b_(mix(seed[1], ~bytes, kSecond)) {}
+  void add(std::string_view piece) {
+    for (std::size_t i = 0; i < piece.size(); i += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, piece.data() + i, std::min<std::size_t>(8, piece.size() - i));
+      a_ = mix(a_, word, kFirst);
+      b_ = mix(b_, word, kSecond);
+    }
+  }
+  ContentKey key() const { return {mix(a_, b_, kFirst), mix(b_, a_, kSecond)}; }
+
+ private:
+  // The two multipliers are those of MurmurHash3 (Appleby, public domain); any odd constants with mixed bits would do.
+  static constexpr std::uint64_t kFirst = 0xff51afd7ed558ccdu, kSecond = 0xc4ceb9fe1a85ec53u;
+  std::uint64_t a_, b_;
+};
+
 std::atomic<TellOfCache> gTell{nullptr};
 std::atomic<bool> gIsTold{false};
 
 }  // namespace
 
 ContentKey contentKey(std::string_view bytes, ContentKey seed) {
-  // The two multipliers are those of MurmurHash3 (Appleby, public domain); any odd constants with mixed bits would do.
-  constexpr std::uint64_t kFirst = 0xff51afd7ed558ccdu, kSecond = 0xc4ceb9fe1a85ec53u;
-  std::uint64_t a = mix(seed[0], bytes.size(), kFirst), b = mix(seed[1], ~bytes.size(), kSecond);
-  for (std::size_t i = 0; i < bytes.size(); i += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + i, std::min<std::size_t>(8, bytes.size() - i));
-    a = mix(a, word, kFirst);
-    b = mix(b, word, kSecond);
-  }
-  return {mix(a, b, kFirst), mix(b, a, kSecond)};
+  Hash hash(bytes.size(), seed);
+  hash.add(bytes);
+  return hash.key();
+}
+
+ContentKey contentKeyOf(const std::function<void(Fingerprint&)>& tell) {
+  const auto told = [&tell](Fingerprint::Taker take) {
+    Fingerprint f(std::move(take));
+    tell(f);
+    f.finish();
+  };
+  std::size_t bytes = 0;
+  told([&bytes](std::string_view piece) { bytes += piece.size(); });
+  Hash hash(bytes, {});
+  told([&hash](std::string_view piece) { hash.add(piece); });
+  return hash.key();
 }
 
 std::filesystem::path cacheFolder() {

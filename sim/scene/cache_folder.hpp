@@ -4,8 +4,11 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
+
+#include "sim/parameters/fingerprint.hpp"
 
 namespace pitviper {
 
@@ -13,6 +16,8 @@ namespace pitviper {
 using ContentKey = std::array<std::uint64_t, 2>;
 
 ContentKey contentKey(std::string_view bytes, ContentKey seed = {});
+/// Of the bytes that `tell` gives a fingerprint, none of which are kept: a scene's are as large as its meshes. Told twice, for their number stands before them.
+ContentKey contentKeyOf(const std::function<void(Fingerprint&)>& tell);
 
 /// Empty if neither XDG_CACHE_HOME (absolute) nor HOME is set.
 std::filesystem::path cacheFolder();

@@ -47,6 +47,19 @@ TEST_F(ContentCache, GivesBackWhatWasWritten) {
   EXPECT_TRUE(gTold.empty());
 }
 
+// Whatever pieces a fingerprint gives its bytes away in.
+TEST_F(ContentCache, KeysOfToldBytesAreThoseOfKeptOnes) {
+  for (const std::size_t size : {0, 1, 7, 8, 65'527, 65'528, 65'529, 65'536, 131'073, 200'003}) {
+    const auto tell = [size](Fingerprint& f) {
+      f.add(std::string(size, 'x')).add(1.0).all(std::vector<float>(size / 3, 2.5f)).all(std::vector<char>(size % 11, 'c'));
+    };
+    Fingerprint kept;
+    tell(kept);
+    EXPECT_EQ(contentKeyOf(tell), contentKey(kept.bytes())) << size;
+    EXPECT_NE(contentKeyOf(tell), contentKeyOf([&](Fingerprint& f) { tell(f), f.add(0.0); })) << size;
+  }
+}
+
 TEST_F(ContentCache, ListsReadBackOrNotAtAll) {
   TableWriter out;
   const std::vector<float> some = {1.5f, -2.0f};
