@@ -56,6 +56,7 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
     buffered_ = std::make_unique<BufferedPass>(simulation, plan_, library, scene, truth, area_m2, classes);
   // Its program is made at the start even where the first frame needs the other: none may be late for want of a compiler.
   if (simulation.mode != RenderMode::Buffered) direct_ = std::make_unique<DirectPass>(simulation, plan_, library, scene, truth, area_m2, classes);
+  if (direct_ && buffered_) direct_->shareLight(*buffered_);
   pass_ = buffered_ ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
 }
 

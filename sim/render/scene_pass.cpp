@@ -53,8 +53,10 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       relevance_(simulation, tabled(), tables_),
       how_(shading) {
   if (plan.terms.air && shading != Shading::Reference) air_ = simulation.air->onGpu(simulation, plan, shading == Shading::Direct);
-  if (tables_.around) around_.emplace(simulation, *tables_.around);
-  if (plan.terms.shadows) shadows_ = std::make_unique<ShadowPass>(simulation, plan, scene_, library);
+  // The reference shades on the CPU: programs of its own are those of truth alone.
+  const bool shades = shading != Shading::Reference || truth;
+  if (shades && tables_.around) around_ = std::make_shared<SurroundingsBuffer>(simulation, *tables_.around);
+  if (shades && plan.terms.shadows) shadows_ = std::make_shared<ShadowPass>(simulation, plan, scene_, library);
   ShaderSlots slots;
   slots.constants["GROUND"] = tables_.ground;
   const bool demand = classes && lightsVary(plan, simulation, truth);
@@ -62,10 +64,15 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
   slots.files["shadow_list"] = std::string("sim/render/glsl/") + (plan.terms.shadows ? "shadow_list.glsl" : "shadow_list_none.glsl");
   slots.constants["SHADOWS_VARY"] = classes && shadowsVary(plan, simulation, truth) ? 1 : 0;
   addLightConstants(slots);
-  pixelClasses_.emplace(library, slots);
+  if (shades) pixelClasses_.emplace(library, slots);
   if (shading != Shading::Reference)
     checkUniformSize((tables_.node.size() + tables_.ambient.size() + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float),
                      "the spectral nodes");
+}
+
+void ScenePass::shareLight(const ScenePass& other) {
+  shadows_ = other.shadows_;
+  around_ = other.around_;
 }
 
 void ScenePass::addLightConstants(ShaderSlots& slots) const {
@@ -227,7 +234,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   const TimedPart part("shading");
   findClassesIn(v, state, drawn);
   const auto shared = shadeTogether(v);
-  pixelClasses_->find(current_->visibility, shared ? &shared->bends : nullptr, v.grouped);
+  if (pixelClasses_) pixelClasses_->find(current_->visibility, shared ? &shared->bends : nullptr, v.grouped);
   if (shared) leaveOut(current_->visibility);
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;

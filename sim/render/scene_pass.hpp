@@ -43,6 +43,8 @@ class ScenePass {
   ScenePass(const ScenePass&) = delete;
   ScenePass& operator=(const ScenePass&) = delete;
 
+  /// Shadows and the light from all around are from here on one with those of another pass of the same plan, which is told the same states.
+  void shareLight(const ScenePass& other);
   /// Uploads what changes with time: light levels, temperatures; draws shadow maps. `demand`: as ShadowPass's; what is not drawn then has no shadows.
   void setState(const WorldState& state, const ShadowDemand* demand = nullptr);
   /// `drawn`: one flag per entity; the others are left out (small bodies have views of their own).
@@ -144,14 +146,14 @@ class ScenePass {
   };
   std::vector<LightNeeds> lightNeeds_;        ///< of each entity
   std::optional<SharedShading> shared_;       ///< made when first needed
-  std::optional<PixelClasses> pixelClasses_;  ///< made with the tables
+  std::optional<PixelClasses> pixelClasses_;  ///< made with the tables, where a program asks for them
   SurfaceBuffers solid_;
   SolidPass solids_;
   LightRelevance relevance_;
-  std::optional<SurroundingsBuffer> around_;  ///< where ambient light has directions
-  std::unique_ptr<AirOnGpu> air_;             ///< null: none, or not on the GPU
+  std::shared_ptr<SurroundingsBuffer> around_;  ///< where ambient light has directions
+  std::unique_ptr<AirOnGpu> air_;               ///< null: none, or not on the GPU
   Shading how_;
-  std::unique_ptr<ShadowPass> shadows_;  ///< where the plan has them
+  std::shared_ptr<ShadowPass> shadows_;  ///< where the plan has them
   Buffer nodes_, draws_, lights_, view_, pixelView_, tileViews_, tileDraws_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;
