@@ -296,6 +296,12 @@ DepthLayers::DepthLayers(int size, int count) : size_(size), count_(count) {
     throw GlError("the driver cannot draw into " + std::to_string(count) + " depth textures of " + std::to_string(size) + "x" + std::to_string(size));
 }
 
+void DepthLayers::grow(int count) {
+  DepthLayers larger(size_, count);
+  glCopyImageSubData(texture_, GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, larger.texture_, GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, size_, size_, count_);
+  *this = std::move(larger);
+}
+
 void DepthLayers::bindForDrawing(int layer) const {
   glNamedFramebufferTextureLayer(framebuffer_, GL_DEPTH_ATTACHMENT, texture_, 0, layer);
   glBindFramebuffer(GL_FRAMEBUFFER, framebuffer_);

@@ -157,6 +157,8 @@ class DepthLayers {
   DepthLayers() = default;
   /// Throws GlError where the driver has no such texture.
   DepthLayers(int size, int count);
+  /// More of them; what is drawn into the first stays.
+  void grow(int count);
   void bindForDrawing(int layer) const;
   void bind(unsigned unit) const;
   int count() const { return count_; }

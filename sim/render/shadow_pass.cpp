@@ -52,7 +52,8 @@ ShadowPass::ShadowPass(const Simulation& simulation, const Plan& plan, std::shar
     boxes_.push_back(box);
     if (trees_->of(e).triangles >= kDense) wanted += lightCount_;
   }
-  layers_ = DepthLayers(kTexels, std::clamp(wanted, 1, kMostMaps));
+  mostLayers_ = std::clamp(wanted, 1, kMostMaps);
+  layers_ = DepthLayers(kTexels, 1);
   ranges_.assign(simulation.entities.size() * static_cast<size_t>(lightCount_), {});
 }
 
@@ -83,11 +84,14 @@ ShadowPass::Map& ShadowPass::mapOf(std::size_t caster, std::size_t light, const 
   // Rounding of a body's attitude is no other light.
   const bool drawn = map.layer >= 0 && map.projection && glm::length(map.light.at - place.at) <= kSameLight * glm::length(place.at);
   if (drawn) return map;
-  if (map.layer < 0 && layersTaken_ == layers_.count()) return map;
+  if (map.layer < 0 && layersTaken_ == mostLayers_) return map;
   map.light = place;
   map.projection = fitShadowMap({trees_->of(caster).low, trees_->of(caster).high}, place, kTexels);
   if (!map.projection) return map;
-  if (map.layer < 0) map.layer = layersTaken_++;
+  if (map.layer < 0) {
+    if (layersTaken_ == layers_.count()) layers_.grow(std::min(mostLayers_, layersTaken_ + (layersTaken_ + 1) / 2));
+    map.layer = layersTaken_++;
+  }
   draw(caster, map);
   return map;
 }

@@ -82,7 +82,8 @@ class ShadowPass {
   std::shared_ptr<const ShadowTrees> trees_;
   int lightCount_;
   Program program_;
-  DepthLayers layers_;
+  DepthLayers layers_;  ///< as many as have been asked for so far
+  int mostLayers_ = 0;
   std::map<std::pair<std::size_t, std::size_t>, Map> maps_;
   int layersTaken_ = 0;
   std::vector<ShadowBox> boxes_;  ///< of whole meshes

@@ -1,10 +1,12 @@
 // Shadows as drawn, by depth maps and rays in single precision, against the reference's rays in double precision, which know no maps.
+#include <epoxy/gl.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 
 #include "scenarios/commands/commands.hpp"
+#include "sim/gl/context.hpp"
 #include "sim/render/direct_pass.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
@@ -169,6 +171,34 @@ TEST(ShadowDemand, FollowsWhatIsSeen) {
   const Pose turned{{10.0, 0.0, 0.0}, glm::angleAxis(0.5 * kPi, glm::dvec3(0.0, 0.0, 1.0))};
   EXPECT_NEAR(distanceTo({{-1.0, -2.0, -3.0}, {1.0, 2.0, 3.0}}, turned, {15.0, 1.0, 7.0}), 5.0, 1e-12) << "3 m beside it and 4 above";
   EXPECT_EQ(distanceTo({{-1.0, -2.0, -3.0}, {1.0, 2.0, 3.0}}, turned, {11.9, 0.9, 2.0}), 0.0);
+}
+
+// Layers are made as maps are asked for: those that are drawn already stay as they are.
+TEST(DepthMaps, StayWhereMoreAreMade) {
+  needContext();
+  constexpr int kSize = 65;
+  DepthLayers layers(kSize, 1);
+  const auto fill = [&](int layer) {
+    layers.bindForDrawing(layer);
+    glDepthMask(GL_TRUE);
+    const GLfloat depth = 0.125f * static_cast<GLfloat>(layer + 1);
+    glClearBufferfv(GL_DEPTH, 0, &depth);
+  };
+  fill(0);
+  for (int count : {2, 3, 5, 7}) {
+    const int before = layers.count();
+    layers.grow(count);
+    ASSERT_EQ(layers.count(), count);
+    for (int layer = before; layer < count; ++layer) fill(layer);
+    for (int layer = 0; layer < count; ++layer) {
+      layers.bindForDrawing(layer);
+      std::vector<float> depths(kSize * kSize);
+      glPixelStorei(GL_PACK_ALIGNMENT, 4);
+      glReadPixels(0, 0, kSize, kSize, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
+      for (float d : depths) ASSERT_EQ(d, 0.125f * static_cast<float>(layer + 1)) << layer << " of " << count;
+    }
+  }
+  checkGl("growing depth layers");
 }
 
 }  // namespace
