@@ -91,7 +91,11 @@ void Program::link(std::initializer_list<unsigned> stages, const AssembledShader
   text_ = lines.source;
   for (unsigned stage : stages) glAttachShader(name_, stage);
   glLinkProgram(name_);
-  for (unsigned stage : stages) glDeleteShader(stage);
+  // A driver keeps what it made of a text as long as that is attached.
+  for (unsigned stage : stages) {
+    glDetachShader(name_, stage);
+    glDeleteShader(stage);
+  }
   GLint ok = 0;
   glGetProgramiv(name_, GL_LINK_STATUS, &ok);
   if (ok) return;
