@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
 
 #include "sim/gl/context.hpp"
 #include "sim/render/shadow_trees.hpp"
+#include "sim/render/solid_programs.hpp"
 
 namespace pitviper {
 
@@ -119,6 +121,11 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
 std::shared_ptr<const ShadowTrees> GpuScene::shadowTrees(const Simulation& simulation) const {
   if (!shadowTrees_) shadowTrees_ = std::make_shared<const ShadowTrees>(simulation);
   return shadowTrees_;
+}
+
+std::shared_ptr<const SolidPrograms> GpuScene::solidPrograms(const ShaderLibrary& library) const {
+  if (!solidPrograms_) solidPrograms_ = std::make_shared<const SolidPrograms>(library);
+  return solidPrograms_;
 }
 
 void GpuScene::bind() const {

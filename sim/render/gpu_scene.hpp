@@ -15,6 +15,7 @@ struct BodyBox {
 };
 
 class ShadowTrees;
+struct SolidPrograms;
 
 class GpuScene {
  public:
@@ -30,6 +31,8 @@ class GpuScene {
 
   /// Of the simulation it was made for; made when first asked for.
   std::shared_ptr<const ShadowTrees> shadowTrees(const Simulation& simulation) const;
+  /// Of what each pixel sees; made when first asked for.
+  std::shared_ptr<const SolidPrograms> solidPrograms(const ShaderLibrary& library) const;
 
  private:
   Buffer vertices_, indices_, textureShapes_, texels_, levels_;  ///< read by programs
@@ -39,6 +42,7 @@ class GpuScene {
   std::vector<BodyBox> boxes_;
   std::vector<std::shared_ptr<const ClusteredMesh>> clustered_;  ///< per entity, shared by those with the same mesh
   mutable std::shared_ptr<const ShadowTrees> shadowTrees_;
+  mutable std::shared_ptr<const SolidPrograms> solidPrograms_;
 };
 
 }  // namespace pitviper

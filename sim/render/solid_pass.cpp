@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "sim/render/solid_programs.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -16,24 +18,13 @@ constexpr std::uint32_t kWorthAsking = 4096;
 /// Larger meshes are drawn body by body: handing the body's number on with every triangle costs llvmpipe more than a draw call.
 constexpr std::uint32_t kWorthInstancing = 100;
 
-Program visibilityProgram(const ShaderLibrary& library, bool instances) {
-  ShaderSlots vertex, fragment;
-  vertex.files["drawn"] = instances ? "sim/render/glsl/drawn_instances.vert.glsl" : "sim/render/glsl/drawn_one.glsl";
-  fragment.files["drawn"] = instances ? "sim/render/glsl/drawn_instances.frag.glsl" : "sim/render/glsl/drawn_one.glsl";
-  return Program(assembleShader(library, "sim/render/glsl/visibility.vert.glsl", vertex),
-                 assembleShader(library, "sim/render/glsl/visibility.frag.glsl", fragment));
-}
-
 }  // namespace
 
 SolidPass::SolidPass(const Simulation& simulation, const RenderTables& tables, const GpuScene& scene, const ShaderLibrary& library)
     : simulation_(simulation),
       tables_(tables),
       scene_(scene),
-      single_(visibilityProgram(library, false)),
-      ofPart_(visibilityProgram(library, false)),
-      instanced_(visibilityProgram(library, true)),
-      box_(assembleShader(library, "sim/render/glsl/box.vert.glsl", {}), assembleShader(library, "sim/render/glsl/nothing.frag.glsl", {})) {}
+      programs_(scene.solidPrograms(library)) {}
 
 std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const WorldState& state, const std::vector<char>& drawn) const {
   std::vector<Candidate> all;
@@ -108,7 +99,7 @@ void SolidPass::drawHidden(const std::vector<Candidate>& dense) {
     queries_.emplace_back(name);
   }
   // All boxes against what is drawn so far, then the bodies whose box has shown: one wait for all.
-  box_.use();
+  programs_->box.use();
   glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   glDepthMask(GL_FALSE);
   glDisable(GL_CULL_FACE);
@@ -116,9 +107,9 @@ void SolidPass::drawHidden(const std::vector<Candidate>& dense) {
     if (!dense[i].boxBefore) continue;
     const BodyBox& box = scene_.box(dense[i].entity);
     const glm::vec3 low(box.low), high(box.high);
-    glUniform1i(box_.uniform("drawIndex"), static_cast<int>(dense[i].draw));
-    glUniform3f(box_.uniform("low"), low.x, low.y, low.z);
-    glUniform3f(box_.uniform("high"), high.x, high.y, high.z);
+    glUniform1i(programs_->box.uniform("drawIndex"), static_cast<int>(dense[i].draw));
+    glUniform3f(programs_->box.uniform("low"), low.x, low.y, low.z);
+    glUniform3f(programs_->box.uniform("high"), high.x, high.y, high.z);
     glBeginQuery(GL_ANY_SAMPLES_PASSED_CONSERVATIVE, queries_[i]);
     glDrawArrays(GL_TRIANGLES, 0, 36);
     glEndQuery(GL_ANY_SAMPLES_PASSED_CONSERVATIVE);
@@ -127,7 +118,7 @@ void SolidPass::drawHidden(const std::vector<Candidate>& dense) {
   glDepthMask(GL_TRUE);
   for (size_t i = 0; i < dense.size(); ++i) {
     if (dense[i].boxBefore) glBeginConditionalRender(queries_[i], GL_QUERY_WAIT);
-    drawOne(single_, dense[i]);
+    drawOne(programs_->single, dense[i]);
     if (dense[i].boxBefore) glEndConditionalRender();
   }
 }
@@ -151,7 +142,7 @@ void SolidPass::drawPart(const glm::ivec4& part, const std::vector<Candidate>& c
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CLIP_DISTANCE0);
   glEnable(GL_DEPTH_CLAMP);
-  for (const Candidate& c : candidates) drawOne(ofPart_, c);
+  for (const Candidate& c : candidates) drawOne(programs_->ofPart, c);
   glDisable(GL_CLIP_DISTANCE0);
   glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_DEPTH_TEST);
@@ -189,18 +180,18 @@ void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& stat
   int firstInstance = 0;
   for (const auto& group : groups) {
     if (group.size() == 1) {
-      drawOne(single_, group.front());
+      drawOne(programs_->single, group.front());
       continue;
     }
-    instanced_.use();
-    glUniform1i(instanced_.uniform("firstInstance"), firstInstance);
+    programs_->instanced.use();
+    glUniform1i(programs_->instanced.uniform("firstInstance"), firstInstance);
     drawTriangles(group.front(), group.front().first, group.front().triangles, group.size());
     firstInstance += static_cast<int>(group.size());
   }
   if (asked < kWorthAsking) {
-    for (const Candidate& c : dense) drawOne(single_, c);
+    for (const Candidate& c : dense) drawOne(programs_->single, c);
   } else {
-    drawOne(single_, dense[0]);
+    drawOne(programs_->single, dense[0]);
     drawHidden({dense.begin() + 1, dense.end()});
   }
   glDisable(GL_CLIP_DISTANCE0);

@@ -38,7 +38,7 @@ class SolidPass {
   const Simulation& simulation_;
   const RenderTables& tables_;
   const GpuScene& scene_;
-  Program single_, ofPart_, instanced_, box_;  // two of one text: llvmpipe finds only the first of a program's states in its cache
+  std::shared_ptr<const SolidPrograms> programs_;
   Buffer instances_;
   std::vector<GlName<deleteQuery>> queries_;
   const RenderTarget* target_ = nullptr;

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "scenarios/commands/commands.hpp"
+#include "sim/render/reference/reference_pass.hpp"
 #include "sim/run/spectral_renderer.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -139,6 +140,26 @@ TEST(ReferenceMode, TellsHowFarAPictureIs) {
     EXPECT_LT(shares.front(), 0.5);
     EXPECT_EQ(shares.back(), 1.0);
   }
+}
+
+// It shades on the CPU: only layers of truth have programs, and those alone light and shadows on the GPU.
+TEST(ReferenceMode, DrawsOnTheGpuWhatIsSeenAlone) {
+  needContext();
+  const Simulation sim = withSampling(scene(kScene), referenceSampling());
+  const Camera& camera = sim.cameras[0];
+  const Plan plan = makePlan(sim, camera.outputs, camera.spectral, camera.where);
+  ASSERT_TRUE(plan.terms.shadows);
+  const auto gpu = std::make_shared<const GpuScene>(sim);
+  const auto programsOf = [&](bool truth) {
+    const long before = programsSoFar().programs;
+    const ReferencePass pass(sim, plan, shaderLibrary(), gpu, truth, 1.0);
+    EXPECT_EQ(pass.programs().empty(), !truth);
+    return programsSoFar().programs - before;
+  };
+  figure("programs of a first reference without truth", static_cast<double>(programsOf(false)), 4.0, 0.0,
+         "what each subpixel sees: of a picture, of a part of one, of many bodies at once, behind boxes");
+  figure("programs of a further one", static_cast<double>(programsOf(false)), 0.0, 0.0, "those are the scene's");
+  EXPECT_GT(programsOf(true), 0);
 }
 
 }  // namespace
