@@ -93,6 +93,7 @@ int Builder::readTexture(const Value& value, std::string_view unit, std::string_
     t.name = path.string();
     t.width = image.width;
     t.height = image.height;
+    t.texels.reserve(layer->pixels.size());
     // Row 0 of a texture is its lowest.
     for (int y = t.height - 1; y >= 0; --y)
       t.texels.insert(t.texels.end(), layer->pixels.begin() + static_cast<std::ptrdiff_t>(y) * t.width,

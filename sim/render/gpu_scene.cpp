@@ -71,6 +71,11 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
   std::vector<DrawnVertex> drawn;
   std::map<const Mesh*, std::uint32_t> placed;
   std::map<const Mesh*, std::shared_ptr<const ClusteredMesh>> clustered;
+  std::set<const Mesh*> meshes;
+  std::size_t points = 0, triangles = 0;
+  for (const auto& entity : sim.entities)
+    if (meshes.insert(entity.mesh.get()).second) points += entity.mesh->positions.size(), triangles += entity.mesh->triangles.size();
+  vertices.reserve(2 * points), indices.reserve(triangles), corners.reserve(3 * triangles);
   for (const auto& entity : sim.entities) {
     const Mesh& mesh = *entity.mesh;
     const auto [at, fresh] = placed.try_emplace(&mesh, static_cast<std::uint32_t>(indices.size()));
@@ -95,6 +100,9 @@ GpuScene::GpuScene(const Simulation& sim) : vertexArray_(makeVertexArray()) {
 
   std::vector<glm::uvec4> shapes;
   std::vector<float> texels;
+  std::size_t texelCount = 0;
+  for (const Texture& t : sim.textures) texelCount += t.texels.size();
+  texels.reserve(texelCount);
   // Shapes of the textures first, then of their levels, those of cells before the others; see textures.glsl.
   std::size_t shape = sim.textures.size();
   for (const Texture& t : sim.textures) {

@@ -27,11 +27,19 @@ std::vector<Parts> partsOf(int m, int n) {
   return all;
 }
 
+/// Room for its texels and no more.
+void reserve(TextureLevel& l, bool moments) {
+  const auto texels = static_cast<size_t>(l.width) * static_cast<size_t>(l.height);
+  l.mean.reserve(texels);
+  if (moments) l.second.reserve(texels), l.third.reserve(texels);
+}
+
 TextureLevel halved(const TextureLevel& from, bool moments) {
   TextureLevel l;
   l.width = (from.width + 1) / 2;
   l.height = (from.height + 1) / 2;
   const auto columns = partsOf(from.width, l.width), rows = partsOf(from.height, l.height);
+  reserve(l, moments);
   for (const Parts& y : rows)
     for (const Parts& x : columns) {
       const auto over = [&](const auto& value) {
@@ -84,6 +92,7 @@ TextureLevel cellsOf(const Texture& t, bool moments) {
   constexpr std::array kAt{0.25 - 0.5 * kGauss, 0.25 + 0.5 * kGauss, 0.75 - 0.5 * kGauss, 0.75 + 0.5 * kGauss};
   const auto held = [&t](int k, int n) { return static_cast<size_t>(t.repeats ? (k + n) % n : std::clamp(k, 0, n - 1)); };
   TextureLevel cells{t.width, t.height, {}, {}, {}};
+  reserve(cells, moments);
   for (int y = 0; y < t.height; ++y)
     for (int x = 0; x < t.width; ++x) {
       // A texel and the eight about it, less itself.
