@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "sim/plan/freed_memory.hpp"
 #include "sim/plan/sights.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
 
@@ -81,7 +82,10 @@ int Auditor::doubtful(const WorldState& state, int frame) const {
 void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool force) {
   const int own = auditedPixels(perFrame_, frame), count = std::max(own, force && perFrame_ > 0.0 ? 1 : 0);
   if (count == 0) return;
-  if (!reference_) reference_ = std::make_unique<CameraRenderer>(simulation_, camera_, library_, scene_);
+  if (!reference_) {
+    giveBackFreedMemory();  // of the compiler's, for the first picture
+    reference_ = std::make_unique<CameraRenderer>(simulation_, camera_, library_, scene_);
+  }
   std::vector<int> pixels = pixelsOf(count, frame, 1);
   const int doubt = doubtful(state, frame);
   if (doubt >= 0) pixels.push_back(doubt);

@@ -6,6 +6,7 @@
 #include "sim/gl/timing.hpp"
 #include "sim/model/field_lines.hpp"
 #include "sim/model/field_states.hpp"
+#include "sim/plan/freed_memory.hpp"
 #include "sim/plan/plan_origin.hpp"
 #include "sim/plan/planner.hpp"
 
@@ -25,7 +26,9 @@ Plan planOfLines(const Simulation& simulation, const Camera& camera) {
 
 Plan timedPlan(const Simulation& simulation, const Camera& camera, const std::function<void(double)>& planning) {
   const TimedPart part(kPlanningPart);
-  return planFor(simulation, {&camera, nullptr}, planning);
+  Plan plan = planFor(simulation, {&camera, nullptr}, planning);
+  giveBackFreedMemory();
+  return plan;
 }
 
 }  // namespace
