@@ -91,6 +91,7 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
   if (doubt >= 0) pixels.push_back(doubt);
   reference_->setWanted(pixels);
   reference_->setParts(image.parts);
+  reference_->setSolidAngles(image.solidAngles, cameraAt(camera_, state).pinhole.focalLength_m);
   CameraImage exact = reference_->render(state), drawn = image;
   putPointsIntoPixels(exact);
   putPointsIntoPixels(drawn);

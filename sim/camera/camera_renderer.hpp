@@ -28,6 +28,11 @@ class CameraRenderer {
   /// Draws and begins reading back; the caller may do other work before finish().
   void begin(const WorldState& state);
   CameraImage finish();
+  /// What another's pictures of this film at this focal length had, instead of its own.
+  void setSolidAngles(std::shared_ptr<const Pinhole::SolidAngles> angles, double focalLength_m) {
+    solidAngles_ = std::move(angles);
+    focalLength_m_ = focalLength_m;
+  }
   /// Only these pixels are wanted of the pictures that follow (row x width + column, row 0 at the top); the others come out dark. Reference mode.
   void setWanted(const std::vector<int>& pixels);
   /// Reference mode: the pictures that follow are of one part alone (all parts add up to the whole); without one of all.

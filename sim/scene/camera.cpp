@@ -26,6 +26,8 @@ double Pinhole::projectedSolidAngle_sr(int column, int row) const { return integ
 
 Pinhole::SolidAngles Pinhole::solidAngles() const {
   SolidAngles all;
+  const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+  all.plain_sr.reserve(pixels), all.projected_sr.reserve(pixels);
   for (int row = 0; row < height; ++row)
     for (int column = 0; column < width; ++column) {
       all.plain_sr.push_back(solidAngle_sr(column, row));
