@@ -1,11 +1,9 @@
 #pragma once
 // What tables of truth have in common: work in pieces, sums of a line by slot.
-#include <atomic>
-#include <future>
 #include <span>
-#include <thread>
 #include <vector>
 
+#include "sim/parameters/on_threads.hpp"
 #include "sim/plan/plan.hpp"
 
 namespace pitviper {
@@ -13,14 +11,9 @@ namespace pitviper {
 /// Each worker takes the next piece until there are none.
 template <class OfPiece>
 void eachPiece(int pieces, const OfPiece& ofPiece) {
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int piece = next++; piece < pieces; piece = next++) ofPiece(piece);
-  };
-  std::vector<std::future<void>> workers;
-  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) workers.push_back(std::async(std::launch::async, work));
-  work();
-  for (auto& w : workers) w.get();
+  onAllThreads(static_cast<std::size_t>(pieces), [&](const auto& next) {
+    for (auto piece = static_cast<int>(next()); piece < pieces; piece = static_cast<int>(next())) ofPiece(piece);
+  });
 }
 
 /// Integrals of kernel x radiance, in the order of Plan::slotCount, of radiance per node.

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
-#include <future>
 #include <iterator>
-#include <thread>
 
 #include "sim/parameters/fingerprint.hpp"
+#include "sim/parameters/on_threads.hpp"
 #include "sim/scene/content_cache.hpp"
 
 namespace pitviper {
@@ -166,15 +164,10 @@ std::vector<char> clearFacets(const Mesh& mesh, const glm::dvec3& toLight, std::
   const Cells cells(all);
   if (!cells.affordable()) return clear;
   constexpr size_t kEach = 4096;
-  std::atomic<size_t> next{0};
-  const auto work = [&] {
-    for (size_t first = next.fetch_add(kEach); first < own; first = next.fetch_add(kEach))
+  onAllThreads((own + kEach - 1) / kEach, [&](const auto& next) {
+    for (size_t first = next() * kEach; first < own; first = next() * kEach)
       for (size_t n = first; n < std::min(first + kEach, own); ++n) clear[n] = isClear(all, cells, n);
-  };
-  std::vector<std::future<void>> threads;
-  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) threads.push_back(std::async(std::launch::async, work));
-  work();
-  for (auto& t : threads) t.get();
+  });
   return clear;
 }
 

@@ -1,14 +1,12 @@
 #include "sim/model/sun_legs.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <future>
 #include <map>
 #include <mutex>
-#include <thread>
 #include <tuple>
 
+#include "sim/parameters/on_threads.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -49,14 +47,9 @@ const AirAmounts* SunLegs::rowAt(int height) const {
 }
 
 void SunLegs::fill() const {
-  std::atomic<int> next{0};
-  const auto work = [&] {
-    for (int h = next++; h < kHeights; h = next++) rowAt(h);
-  };
-  std::vector<std::future<void>> others;
-  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
-  work();
-  for (auto& o : others) o.get();
+  onAllThreads(kHeights, [&](const auto& next) {
+    for (size_t h = next(); h < kHeights; h = next()) rowAt(static_cast<int>(h));
+  });
 }
 
 std::shared_ptr<const SunLegs> SunLegs::of(const std::shared_ptr<const Atmosphere>& path, double sinElevation, double earthRadius_m) {

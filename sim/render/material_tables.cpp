@@ -1,12 +1,10 @@
 #include "sim/render/material_tables.hpp"
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
-#include <future>
-#include <thread>
 
+#include "sim/parameters/on_threads.hpp"
 #include "sim/radiance/node_surroundings.hpp"
 #include "sim/radiometry/constants.hpp"
 
@@ -127,14 +125,9 @@ std::vector<double> meansOver(const SpectralNode& node, std::size_t places, std:
 template <class Of>
 std::vector<std::vector<double>> ofNodes(const Plan& plan, const Of& of) {
   std::vector<std::vector<double>> all(plan.nodes.size());
-  std::atomic<std::size_t> next{0};
-  const auto work = [&] {
-    for (std::size_t i = next++; i < all.size(); i = next++) all[i] = of(plan.nodes[i]);
-  };
-  std::vector<std::future<void>> others;
-  for (unsigned n = 1; n < std::thread::hardware_concurrency(); ++n) others.push_back(std::async(std::launch::async, work));
-  work();
-  for (auto& o : others) o.get();
+  onAllThreads(all.size(), [&](const auto& next) {
+    for (std::size_t i = next(); i < all.size(); i = next()) all[i] = of(plan.nodes[i]);
+  });
   return all;
 }
 

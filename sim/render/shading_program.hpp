@@ -7,7 +7,7 @@ namespace pitviper {
 
 enum class ShadingStage { Fragment, Compute };
 
-/// Fragments where the CPU draws (both take the same time there, `bench --factor shading`), compute on a GPU (data-centre GPUs give fragments
+/// Fragments where the CPU draws (compute takes as long on a wall, `bench --factor shading`, but five times as long where surfaces have classes), compute on a GPU (data-centre GPUs give fragments
 /// few of their units); the environment variable PITVIPER_SHADING (fragment, compute) overrides. Throws GlError for another word.
 ShadingStage chooseShadingStage();
 std::string nameOf(ShadingStage stage);

@@ -172,9 +172,4 @@ ReferencePixel ReferenceShader::shadeOver(LineOfSight line, int x, int y, NodeSu
   return whole;
 }
 
-ReferencePixel referencePixel(const Simulation& sim, const Plan& plan, const View& view, const WorldState& state, int x, int y) {
-  const std::vector<char> all(sim.entities.size(), 1);
-  return ReferenceShader(sim, plan, view, state, all).pixel(x, y);
-}
-
 }  // namespace pitviper

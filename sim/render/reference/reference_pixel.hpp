@@ -66,7 +66,4 @@ class ReferenceShader {
   std::shared_ptr<const NodeSpectra> spectra_;
 };
 
-/// The centre of pixel (x, y) of a view, counted from the lower left; everything is drawn.
-ReferencePixel referencePixel(const Simulation& simulation, const Plan& plan, const View& view, const WorldState& state, int x, int y);
-
 }  // namespace pitviper
