@@ -11,10 +11,16 @@ namespace {
 constexpr double kColdest_K = 140.0, kWarmest_K = 400.0;
 constexpr Eigen::Index kTemperatures = 256;
 
-Eigen::MatrixXd matrixOf(const std::vector<AirAmounts>& amounts) {
-  Eigen::MatrixXd all(kMostAirAmounts, static_cast<Eigen::Index>(amounts.size()));
-  for (Eigen::Index s = 0; s < all.cols(); ++s) all.col(s) = Eigen::Map<const Eigen::VectorXd>(amounts[static_cast<size_t>(s)].amount.data(), kMostAirAmounts);
-  return all;
+/// Of each station, sum over absorbers of coefficient x amount, in their order: a node's sum is the same to the last bit whichever nodes stand beside it, which
+/// a product of matrices does not promise.
+template <class Into>
+void weigh(const Eigen::MatrixXd& coefficient, const std::vector<AirAmounts>& amounts, Into&& into) {
+  for (std::size_t s = 0; s < amounts.size(); ++s) {
+    auto sum = into.col(static_cast<Eigen::Index>(s));
+    sum.setZero();
+    for (std::size_t k = 0; k < kMostAirAmounts; ++k)
+      if (const double amount = amounts[s].amount[k]; amount != 0.0) sum += amount * coefficient.col(static_cast<Eigen::Index>(k)).array();
+  }
 }
 
 /// `left`: exp(-x).
@@ -93,9 +99,8 @@ NodeRadiance NodeAir::along(const SunlitAir& air) const {
   const Tables& t = *tables_;
   const auto stations = static_cast<Eigen::Index>(air.stations.size()), nodes = t.source.size();
   NodeRadiance out;
-  const Eigen::MatrixXd powered = matrixOf(air.powered);
   auto depth = sized(out.depth, nodes, stations), thermal = sized(out.thermal, nodes, stations);
-  depth.matrix().noalias() = t.extinction * powered;
+  weigh(t.extinction, air.powered, depth);
   Eigen::ArrayXd seen = (-depth.col(0)).exp(), before, source, d, left, gone, share;  // with room of their own for all steps
   t.planck(air.stations[0].temperature_K, before);
   before += t.source;
@@ -111,7 +116,10 @@ NodeRadiance NodeAir::along(const SunlitAir& air) const {
     before.swap(source);
   }
   if (air.lit.empty()) return out;
-  const Eigen::ArrayXXd small = (t.molecules * powered).array(), large = (t.haze * powered).array(), both = (t.extinction * matrixOf(air.both)).array();
+  Eigen::ArrayXXd small(nodes, stations), large(nodes, stations), both(nodes, stations);
+  weigh(t.molecules, air.powered, small);
+  weigh(t.haze, air.powered, large);
+  weigh(t.extinction, air.both, both);
   auto molecules = sized(out.molecules, nodes, stations), haze = sized(out.haze, nodes, stations);
   for (Eigen::Index s = 1; s < stations; ++s) {
     molecules.col(s) = molecules.col(s - 1);

@@ -1,5 +1,6 @@
 #pragma once
-// What air sends along a line of sight at all nodes of a plan at once, as airRadiance() has it for one: tables of a view are made of thousands of these.
+// What air sends along a line of sight at all nodes of a plan at once, as airRadiance() has it for one: tables of a view, and the sky of a plan, are made of
+// thousands of these.
 #include <memory>
 #include <span>
 #include <vector>

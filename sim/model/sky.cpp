@@ -36,13 +36,13 @@ using WeightedLines = std::vector<std::pair<Sightline, double>>;
 /// all are worked out in vectors.
 class SkyAt {
  public:
-  SkyAt(const Atmosphere& air, std::span<const double> um, const Sun* sun, const Spectrum& background) : count_(um.size()), nodes_(nodesAt(air, um)), air_(nodes_) {
+  SkyAt(const Atmosphere& air, std::span<const double> um, const Sun* sun, const Spectrum& background)
+      : count_(um.size()), nodes_(nodesAt(air, um)), air_(nodes_) {
     for (double w : um) {
       irradiance_.push_back(sun ? sun->irradiance(w) : 0.0);
       behind_.push_back(background(w));
     }
   }
-  std::size_t size() const { return count_; }
   const AirNode& node(std::size_t i) const { return nodes_[i].air; }
   double irradiance(std::size_t i) const { return irradiance_[i]; }
   double behind(std::size_t i) const { return behind_[i]; }
@@ -58,8 +58,7 @@ class SkyAt {
     for (std::size_t i = 0; i < count_; ++i) {
       double radiance = all.thermal[last + i];
       if (!all.molecules.empty())
-        radiance +=
-            irradiance_[i] * (rayleigh * all.molecules[last + i] + henyeyGreensteinPhase(line.cosScatter, node(i).asymmetry) * all.haze[last + i]);
+        radiance += irradiance_[i] * (rayleigh * all.molecules[last + i] + henyeyGreensteinPhase(line.cosScatter, node(i).asymmetry) * all.haze[last + i]);
       sent.radiance.push_back(radiance);
       sent.depth.push_back(all.depth[last + i]);
     }
@@ -219,8 +218,7 @@ class SkyAround final : public Surroundings {
 };
 
 /// Lines to the sky from height 0 with their weights, of sum 1, in its mean by the cosine to the zenith.
-WeightedLines linesOfMean(const Atmosphere& air, const std::optional<Sun>& sun, const SunLegs* legs, double height_m,
-                                                      double earthRadius_m) {
+WeightedLines linesOfMean(const Atmosphere& air, const std::optional<Sun>& sun, const SunLegs* legs, double height_m, double earthRadius_m) {
   WeightedLines lines;
   for (const QuadratureNode& node : gaussLegendre(kElevations, 0.0, 1.0)) {
     const AirRay ray{height_m, node.x, earthRadius_m};

@@ -2,6 +2,7 @@
 // found.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenarios/commands/commands.hpp"
@@ -182,6 +183,26 @@ TEST(Surroundings, TheSkyIsTheSky) {
       }
     bound(print("surroundings at %g m against lines of sight, relative", height), worst, 0.06,
           "13 stretches of a line, rings up to 8 deg apart; ground as a diffuse surface under the mean sky");
+  }
+}
+
+// Plans are the same bytes whatever was asked before: light at a wavelength does not depend on which others are worked out with it.
+TEST(Surroundings, TheSkyOfAWavelengthIsTheSameWhateverStandsBesideIt) {
+  const std::string text = kSky +
+                           "cameras: [{name: c, film: {width: 3, height: 3}, field_of_view: 1 deg, aperture: 5 mm, position: [0 m, 0 m, 1 m], heading: 0 deg, "
+                           "pitch: 0 deg, channels: [{name: a, response: {band: [8 um, 9 um]}}]}]\n";
+  for (std::size_t count : {2u, 3u, 31u, 32u, 33u, 71u}) {
+    const Simulation together = scene(text), apart = scene(text);
+    std::vector<double> at_um;
+    for (std::size_t i = 0; i < count; ++i) at_um.push_back(0.45 * std::pow(30.0, static_cast<double>(i) / static_cast<double>(count)));
+    for (std::size_t height : {0u, 3u}) {
+      together.surroundings->prepare(at_um, height);
+      for (double w : at_um) {
+        const auto &a = together.surroundings->light(w, height), &b = apart.surroundings->light(w, height);
+        EXPECT_TRUE(a.radiance == b.radiance && a.harmonics == b.harmonics) << count << " wavelengths, height " << height << ", " << w << " um";
+        EXPECT_GT(*std::max_element(a.radiance.begin(), a.radiance.end()), 0.0f);
+      }
+    }
   }
 }
 
