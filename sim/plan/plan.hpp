@@ -32,12 +32,12 @@ struct TermShare {
 
 /// What a channel's predicted error is made of, relative to the pixel.
 struct PredictedParts {
-  double wavelengths = 0.0;  ///< largest on the last lines, times a margin
-  double tables = 0.0;       ///< between entries of tables
-  double dropped = 0.0;      ///< terms left out
-  double precision = 0.0;    ///< single precision
-  double surroundings = 0.0; ///< ambient light by so many harmonics
-  double extremes = 0.0;     ///< by itself: largest on the lines at the extremes, of wavelengths alone
+  double wavelengths = 0.0;   ///< largest on the last lines, times a margin
+  double tables = 0.0;        ///< between entries of tables
+  double dropped = 0.0;       ///< terms left out
+  double precision = 0.0;     ///< single precision
+  double surroundings = 0.0;  ///< ambient light by so many harmonics
+  double extremes = 0.0;      ///< by itself: largest on the lines at the extremes, of wavelengths alone
   double sum() const { return wavelengths + tables + dropped + precision + surroundings; }
 };
 
@@ -98,7 +98,7 @@ struct Plan {
 /// The scene at one wavelength.
 SpectralNode nodeAt(const Simulation& simulation, double wavelength_um);
 
-/// Of each block of a plan of single wavelengths, in their order, at most `most`: the middle ones of as many stretches, with the weight of all of their stretch.
+/// Of each block of a plan of single wavelengths at most `most`: the middle ones of as many stretches, each with the weight of its stretch in every slot.
 Plan someWavelengths(const Plan& plan, int most);
 
 /// Slots of one pass: four RGBA targets.

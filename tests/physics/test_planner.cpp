@@ -8,6 +8,7 @@
 #include "sim/plan/line_check.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/planner.hpp"
+#include "sim/plan/surroundings_choice.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 
@@ -100,12 +101,14 @@ TEST_F(Planner, DropsWhatNoChannelSees) {
 
 // A mirror's sky is more than harmonics can tell: that is said, and wavelengths are spent on what wavelengths are off by alone.
 TEST_F(Planner, WhatHarmonicsLoseTakesNoWavelengths) {
-  const std::string sky = "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
-                          "ground: {material: soil, temperature: 295 K}\n";
-  const Plan plan = planOf(scene("accuracy: 0.5 %\n" + sky +
-                                 "materials: {m: {components: [{reflection: microfacet, index: aluminium, roughness: 0.01}]}}\n"
-                                 "entities: [{name: b, shape: {model: sphere, radius: 20 m}, material: m, temperature: 300 K, position: [0 m, 1 km, 100 m]}]\n" +
-                                 camera("{name: vis, response: {band: [0.5 um, 0.6 um]}}")));
+  const std::string sky =
+      "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
+      "ground: {material: soil, temperature: 295 K}\n";
+  const Plan plan =
+      planOf(scene("accuracy: 0.5 %\n" + sky +
+                   "materials: {m: {components: [{reflection: microfacet, index: aluminium, roughness: 0.01}]}}\n"
+                   "entities: [{name: b, shape: {model: sphere, radius: 20 m}, material: m, temperature: 300 K, position: [0 m, 1 km, 100 m]}]\n" +
+                   camera("{name: vis, response: {band: [0.5 um, 0.6 um]}}")));
   ASSERT_EQ(plan.parts.size(), 1u);
   EXPECT_GT(plan.parts[0].surroundings, 0.005) << "or the scene says nothing";
   EXPECT_LE(plan.parts[0].wavelengths, 0.005);
@@ -157,9 +160,10 @@ TEST_F(Planner, DamagedPlansAreNotRead) {
 
 // Groups of wavelengths whose surroundings and black bodies are known take theirs from these: the same light as worked out anew.
 TEST_F(Planner, NodesOfKnownWavelengthsAreAveragesOfThem) {
-  const auto sim = scene("accuracy: 1 %\natmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
-                         "plumes: [{name: p, position: [-5 m, 900 m, 100 m], direction: [1, 0, 0], engine: turbofan_military, length: 20 m, begin: -1 s}]\n" +
-                         kGrey + kWall + camera(kMidwave + ", " + kLongwave));
+  const auto sim = scene(
+      "accuracy: 1 %\natmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
+      "plumes: [{name: p, position: [-5 m, 900 m, 100 m], direction: [1, 0, 0], engine: turbofan_military, length: 20 m, begin: -1 s}]\n" +
+      kGrey + kWall + camera(kMidwave + ", " + kLongwave));
   const Camera& camera = sim.cameras.at(0);
   const Plan plan = planOf(sim);
   SpectralSampling every;
@@ -180,7 +184,48 @@ TEST_F(Planner, NodesOfKnownWavelengthsAreAveragesOfThem) {
       largest = std::max(largest, a[s].errors[n]);
     }
   EXPECT_GT(largest, 1e-5) << "there is something to compare";
-  bound("light along 40 lines by nodes averaged from known wavelengths against nodes made anew", worst, 1e-4, "patterns leave 1e-5 of a node's norm out, on each side");
+  bound("light along 40 lines by nodes averaged from known wavelengths against nodes made anew", worst, 1e-4,
+        "patterns leave 1e-5 of a node's norm out, on each side");
+}
+
+// How bright a film is, and what harmonics lose, is told on few wavelengths of a channel: as all of them tell it.
+TEST_F(Planner, FewWavelengthsTellFloorsAndHarmonics) {
+  const auto sim = scene("accuracy: 1 %\natmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n" +
+                         kGrey + kWall + camera("{name: vis, response: {band: [0.5 um, 0.7 um]}}, " + kMidwave + ", " + kLongwave));
+  const Camera& camera = sim.cameras.at(0);
+  SpectralSampling every;
+  every.reference = true;
+  Plan all = makePlan(sim, camera.outputs, every, camera.where);
+  all.terms = withSurroundings(all.terms, Terms::kWhole);
+  const Plan few = someWavelengths(all, 16);
+  ASSERT_EQ(few.nodeCount(), 3 * 16);
+  ASSERT_GT(all.nodeCount(), 4 * few.nodeCount());
+  std::vector<std::vector<double>> floors, losses;
+  for (const Plan* of : std::initializer_list<const Plan*>{&all, &few}) {
+    const NodesOfPlan nodes(sim, *of);
+    SightRays rays(sim, {&camera, nullptr}, 7);
+    floors.push_back(filmFloors(sim, nodes, rays));
+    Plan chosen = *of;
+    chosen.accuracy = 1e-3;
+    chooseSurroundings(sim, nodes, rays, floors.back(), chosen);
+    losses.push_back(chosen.surroundingsLoss);
+    EXPECT_EQ(losses.back().size(), 3u);
+  }
+  double floor = 0.0, loss = 0.0, largest = 0.0;
+  for (size_t s = 0; s < 3; ++s) {
+    double whole = 0.0, some = 0.0;
+    for (double w : all.weight[s]) whole += w;
+    for (double w : few.weight[s]) some += w;
+    EXPECT_NEAR(some / whole, 1.0, 1e-12) << "no part of a response is lost";
+    floor = std::max(floor, std::abs(floors[1][s] / floors[0][s] - 1.0));
+    loss = std::max(loss, std::abs(losses[1][s] - losses[0][s]));
+    largest = std::max(largest, losses[0][s]);
+  }
+  EXPECT_GT(largest, 1e-6) << "there is something to compare";
+  bound("floors of a film in three bands by 16 wavelengths against all", floor, 0.05,
+        "a floor is a thousandth of the film's brightness: a twentieth of it is nothing");
+  bound("what harmonics lose by 16 wavelengths against all, of that, largest", loss / largest, 0.1,
+        "it is predicted with parts beside it that have a margin of 2");
 }
 
 }  // namespace
