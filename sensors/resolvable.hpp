@@ -2,16 +2,16 @@
 // The least temperature difference of four bars that an observer at a display resolves (MRTD), over their frequency.
 //
 // Law, by direction of the modulation (across: bars side by side from left to right), E_a along the modulation, E_b along the bars, E_t over time:
-//   noise: (pi^2 / 8) SNR / H(f) sqrt(s_tvh^2 E_t E_a E_b + s_vh^2 E_a E_b + s_th^2 E_t E_a + s_h^2 E_a); of bars one above the other s_tv and s_v instead of s_th and s_h
-//   eye:   (pi / 4) 2 S m(f / M) / H(f)
-//   MRTD = sqrt(noise^2 + eye^2), up to half a cycle a pixel
-// f: cycles/rad; H: lens, pixel and display; s: noise in three dimensions [K]; E_t = min(1, 1 / (rate t_eye)); E of a length w of a bar (1 / (2 f) across, 7 / (2 f)
-// along) on pixels of pitch p, each shown as a square: p integral of sinc^2(p x) sinc^2(w x) dx = p / w (1 - p / (3 w)), or 1 - w / (3 p) where p > w; S: what the display shows from its
-// mean brightness to black [K]; M: magnification; m: threshold modulation of the eye, of an observer who may step back from bars too coarse for it; 4 / pi: of the square wave's first harmonic, 2 / pi: its mean over a bar.
-// Source: noise and its integration by the eye: J. A. Ratches, Opt. Eng. 15, 525 (1976), with the four bars' 7:1 and SNR 2.25; in three dimensions L. Scott and J. D'Agostino, "NVEOD
-// FLIR92 thermal imaging systems performance model", Proc. SPIE 1689, 194 (1992) (its correction functions). The eye's own threshold, added as a square, as in R. H. Vollmerhausen, E. Jacobs,
-// R. G. Driggers, Opt. Eng. 43, 2806 (2004): CTF_sys = CTF_eye / H sqrt(1 + noise^2), here with the noise of FLIR92. m: P. G. J. Barten, Proc. SPIE 5294, 231 (2004).
-// Valid: bars below half a cycle a pixel; white noise.
+//   noise: (pi^2 / 8) SNR / H(f) sqrt(s_tvh^2 E_t E_a E_b + s_vh^2 E_a E_b + s_th^2 E_t E_a + s_h^2 E_a); of bars one above the other s_tv and s_v instead of
+//   s_th and s_h eye:   (pi / 4) 2 S m(f / M) / H(f) MRTD = sqrt(noise^2 + eye^2), up to half a cycle a pixel
+// f: cycles/rad; H: lens, pixel and display; s: noise in three dimensions [K]; E_t = min(1, 1 / (rate t_eye)); E of a length w of a bar (1 / (2 f) across, 7 /
+// (2 f) along) on pixels of pitch p, each shown as a square: p integral of sinc^2(p x) sinc^2(w x) dx = p / w (1 - p / (3 w)), or 1 - w / (3 p) where p > w; S:
+// what the display shows from its mean brightness to black [K]; M: magnification; m: threshold modulation of the eye, of an observer who may step back from
+// bars too coarse for it; 4 / pi: of the square wave's first harmonic, 2 / pi: its mean over a bar. Source: noise and its integration by the eye: J. A.
+// Ratches, Opt. Eng. 15, 525 (1976), with the four bars' 7:1 and SNR 2.25; in three dimensions L. Scott and J. D'Agostino, "NVEOD FLIR92 thermal imaging
+// systems performance model", Proc. SPIE 1689, 194 (1992) (its correction functions). The eye's own threshold, added as a square, as in R. H. Vollmerhausen, E.
+// Jacobs, R. G. Driggers, Opt. Eng. 43, 2806 (2004): CTF_sys = CTF_eye / H sqrt(1 + noise^2), here with the noise of FLIR92. m: P. G. J. Barten, Proc. SPIE
+// 5294, 231 (2004). Valid: bars below half a cycle a pixel; white noise.
 #include <functional>
 
 namespace pitviper {

@@ -71,7 +71,8 @@ int Auditor::doubtful(const WorldState& state, int frame) const {
   for (int pixel : pixelsOf(kDoubts, frame, 2)) {
     const int n = camera_.samples, column = pixel % camera_.pinhole.width, row = camera_.pinhole.height - 1 - pixel / camera_.pinhole.width;
     const glm::dvec3 ray = view.ray((column + 0.5) * n, (row + 0.5) * n);
-    const RayHits hits = castRay(simulation_, state, view.position, view.localFromCamera * ray / glm::length(ray), view.near_m * glm::length(ray), &drawn, false, kPlannedFieldSteps);
+    const RayHits hits = castRay(simulation_, state, view.position, view.localFromCamera * ray / glm::length(ray), view.near_m * glm::length(ray), &drawn,
+                                 false, kPlannedFieldSteps);
     const auto [at, isNew] = seen.try_emplace(ReferenceShader::things(hits), 0, pixel);
     ++at->second.first;
   }

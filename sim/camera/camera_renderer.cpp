@@ -44,9 +44,9 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
       lines_(zoomedLines(simulation, camera.zoomedSamples, camera.outlineAccuracy)),
       linesOf_(camera.spectral.reference && !camera.plan.empty() ? std::make_unique<const Plan>(planOfLines(simulation, camera)) : nullptr),
       hotParts_(simulation, linesOf_ ? *linesOf_ : plan_,
-                camera.outlineAccuracy > 0.0               ? camera.outlineAccuracy
+                camera.outlineAccuracy > 0.0             ? camera.outlineAccuracy
                 : camera.spectral.reference && !linesOf_ ? kReferenceParts
-                                                           : 0.0) {
+                                                         : 0.0) {
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
   const double area_m2 = camera.pinhole.apertureArea_m2();
   if (camera.spectral.reference) {

@@ -64,7 +64,7 @@ class CameraRenderer {
   ScatteringCheck scattering_;
   WaysToLights ways_;
   FilmWeights filmWeights_;
-  std::vector<int> lines_;  ///< across each small body
+  std::vector<int> lines_;               ///< across each small body
   std::unique_ptr<const Plan> linesOf_;  ///< of a reference: the plan whose lines it looks along, if one was given
   HotParts hotParts_;
   std::optional<std::vector<Ball>> given_;

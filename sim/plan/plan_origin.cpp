@@ -89,9 +89,12 @@ void refuseForeignPlan(const Simulation& sim, const Camera& camera) {
   if (!given) throw UserError(where, "not a plan, or not one that says what it was made for", expected, remedy);
   if (given->version != own.version) throw UserError(where, "a plan of another version of this program", expected, remedy);
   if (given->scene != own.scene)
-    throw UserError(where, "a plan of another scenario, or of this one before something in it was changed (bodies, materials, air, lights, times)", expected, remedy);
+    throw UserError(where, "a plan of another scenario, or of this one before something in it was changed (bodies, materials, air, lights, times)", expected,
+                    remedy);
   if (given->eye != own.eye)
-    throw UserError(where, "a plan of a camera '" + given->camera.substr(0, 60) + "' that is another, or had another film, optics, place, channels or subpixels", expected, remedy);
+    throw UserError(where,
+                    "a plan of a camera '" + given->camera.substr(0, 60) + "' that is another, or had another film, optics, place, channels or subpixels",
+                    expected, remedy);
   if (given->accuracy != own.accuracy)
     throw UserError(where, "a plan for an accuracy of " + percent(given->accuracy) + "; " + percent(own.accuracy) + " is asked for", expected, remedy);
 }

@@ -73,7 +73,7 @@ struct LastLook {
   const NodesOfPlan& fine;
   SightRays& rays;
   const std::vector<double>& floor;
-  int places;             ///< at which the air is looked at
+  int places;  ///< at which the air is looked at
   HeldLines& extremes;
 
   /// Of some slots, on lines that no fit has seen and at the extremes: what they are off by but for tables. Returns the lines; figures of other slots are none.
@@ -101,8 +101,12 @@ struct LastLook {
     const double lamps = sim.lights.empty() ? 0.0 : (kLampShare + (plan.terms.shadows ? kShadowShare : 0.0)) * plan.accuracy;
     const double thin = plan.terms.air ? kThinShare * plan.accuracy : 0.0;
     for (size_t s : slots)
-      plan.parts[s] = {kMargin * last.figures[s].largest, plan.parts[s].tables, last.figures[s].dropped + lamps + thin, kPrecision,
-                       plan.surroundingsLoss.empty() ? 0.0 : plan.surroundingsLoss[s], extreme[s].largest};
+      plan.parts[s] = {kMargin * last.figures[s].largest,
+                       plan.parts[s].tables,
+                       last.figures[s].dropped + lamps + thin,
+                       kPrecision,
+                       plan.surroundingsLoss.empty() ? 0.0 : plan.surroundingsLoss[s],
+                       extreme[s].largest};
     return last;
   }
 
@@ -174,8 +178,8 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
       const PredictedParts& p = plan.parts[s];
       // Tables were made for other groups of what has changed.
       const bool isOld = attempt > 0 && std::find(changed.begin(), changed.end(), s) != changed.end();
-      const double left = (isOld ? kOldTables : 1.0) * plan.accuracy - std::min(p.tables, kMended * plan.accuracy) - std::min(p.surroundings, kSurroundingsShare * plan.accuracy) -
-                          p.dropped - p.precision;
+      const double left = (isOld ? kOldTables : 1.0) * plan.accuracy - std::min(p.tables, kMended * plan.accuracy) -
+                          std::min(p.surroundings, kSurroundingsShare * plan.accuracy) - p.dropped - p.precision;
       allowed.push_back(std::max(left, 0.0) / kMargin);
       if (p.wavelengths > left) missed.push_back(s);
     }

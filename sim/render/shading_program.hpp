@@ -7,8 +7,9 @@ namespace pitviper {
 
 enum class ShadingStage { Fragment, Compute };
 
-/// Fragments where the CPU draws (compute takes as long on a wall, `bench --factor shading`, but five times as long where surfaces have classes), compute on a GPU (data-centre GPUs give fragments
-/// few of their units); the environment variable PITVIPER_SHADING (fragment, compute) overrides. Throws GlError for another word.
+/// Fragments where the CPU draws (compute takes as long on a wall, `bench --factor shading`, but more than five times as long for a frame of first_light, whose
+/// surfaces have classes), compute on a GPU (data-centre GPUs give fragments few of their units); the environment variable PITVIPER_SHADING (fragment, compute)
+/// overrides. Throws GlError for another word.
 ShadingStage chooseShadingStage();
 std::string nameOf(ShadingStage stage);
 

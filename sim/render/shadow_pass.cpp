@@ -114,13 +114,15 @@ void ShadowPass::draw(std::size_t caster, const Map& map) {
   for (int r = 0; r < 4; ++r) rows[r] = glm::vec4(map.projection->row[r]);
   glUniform4fv(program_.uniform("mapFromBody"), 4, &rows[0].x);
   glUniform1f(program_.uniform("texels"), static_cast<float>(kTexels));
-  // Of a whole closed body the faces that look away lie behind others, everywhere: clusters of them are left out. (Not face by face: which way a narrow one looks is decided on the
-  // map's grid, and may be decided wrongly.)
+  // Of a whole closed body the faces that look away lie behind others, everywhere: clusters of them are left out. (Not face by face: which way a narrow one
+  // looks is decided on the map's grid, and may be decided wrongly.)
   const glm::dvec3 eye = map.light.sun ? kFarSun_m * glm::normalize(map.light.at) : map.light.at;
-  const bool half = entity.mesh->closed && !simulation_.isTransparent(entity) && glm::length(eye - glm::dvec3(entity.boundingCentre)) > 1.0001 * static_cast<double>(entity.boundingRadius_m);
+  const bool half = entity.mesh->closed && !simulation_.isTransparent(entity) &&
+                    glm::length(eye - glm::dvec3(entity.boundingCentre)) > 1.0001 * static_cast<double>(entity.boundingRadius_m);
   const std::uint32_t base = scene_->firstTriangle(static_cast<int>(caster));
   const auto drawRun = [](std::uint32_t first, std::uint32_t count) {
-    if (count > 0) glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT, reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * 12));
+    if (count > 0)
+      glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(count * 3), GL_UNSIGNED_INT, reinterpret_cast<const void*>(static_cast<std::uintptr_t>(first) * 12));
   };
   for (const Surface& s : entity.surfaces) {
     if (simulation_.materialOf(s).isTransparent()) continue;

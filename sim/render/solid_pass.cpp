@@ -21,10 +21,7 @@ constexpr std::uint32_t kWorthInstancing = 100;
 }  // namespace
 
 SolidPass::SolidPass(const Simulation& simulation, const RenderTables& tables, const GpuScene& scene, const ShaderLibrary& library)
-    : simulation_(simulation),
-      tables_(tables),
-      scene_(scene),
-      programs_(scene.solidPrograms(library)) {}
+    : simulation_(simulation), tables_(tables), scene_(scene), programs_(scene.solidPrograms(library)) {}
 
 std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const WorldState& state, const std::vector<char>& drawn) const {
   std::vector<Candidate> all;

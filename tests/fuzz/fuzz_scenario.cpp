@@ -307,7 +307,8 @@ void copyScenarios(const fs::path& from, const fs::path& to) {
       std::vector<std::uint16_t> few;
       for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x)
-          few.push_back(static_cast<std::uint16_t>(65535.0 * static_cast<double>(whole.pixels[static_cast<std::size_t>(y * whole.height / kSide * whole.width + x * whole.width / kSide)])));
+          few.push_back(static_cast<std::uint16_t>(
+              65535.0 * static_cast<double>(whole.pixels[static_cast<std::size_t>(y * whole.height / kSide * whole.width + x * whole.width / kSide)])));
       writePngGrey(copy, kSide, kSide, few);
     } else if (entry.is_regular_file()) {
       fs::copy_file(entry.path(), copy, fs::copy_options::overwrite_existing);

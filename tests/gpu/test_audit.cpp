@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "scenarios/commands/commands.hpp"
+#include "sim/camera/audit.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/plan_origin.hpp"
 #include "sim/plan/planner.hpp"
-#include "sim/camera/audit.hpp"
 #include "sim/run/run.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -109,7 +109,8 @@ TEST(LightDemand, WhatStandsBeforeALamp) {
     const std::string scenario = casters(r.balls, r.more, r.lamps);
     bound(std::string("shadows before a wall, ") + r.what + ", of the brightest pixel", worst(scenario, "mw.radiance"), 0.01, "the accuracy asked for");
     if (r.balls > 0) {
-      EXPECT_GT(worst("render: {shadows: false}\n" + scenario, "mw.radiance", scenario), 0.02) << r.what << ": without shadows the picture is off by twice what the bound allows";
+      EXPECT_GT(worst("render: {shadows: false}\n" + scenario, "mw.radiance", scenario), 0.02)
+          << r.what << ": without shadows the picture is off by twice what the bound allows";
     }
   }
 }

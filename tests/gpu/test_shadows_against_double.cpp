@@ -7,8 +7,8 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "sim/gl/context.hpp"
-#include "sim/render/direct_pass.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/render/direct_pass.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
 #include "sim/render/shadow_demand.hpp"
 #include "tests/support/compare.hpp"
@@ -149,7 +149,8 @@ TEST(ShadowsAgainstDouble, PanesInShade) {
 // Where few pixels may ask for a shadow there is no map: a ball and its shadow from afar, and from within.
 TEST(ShadowDemand, FollowsWhatIsSeen) {
   const Simulation sim = scene(
-      "sun: {azimuth: 90 deg, elevation: 0 deg, temperature: 5772 K}\nlights: [{name: l, intensity: 1 W/(sr um), position: [0 m, 0 m, 4 m]}]\nentities: [{name: b, "
+      "sun: {azimuth: 90 deg, elevation: 0 deg, temperature: 5772 K}\nlights: [{name: l, intensity: 1 W/(sr um), position: [0 m, 0 m, 4 m]}]\nentities: "
+      "[{name: b, "
       "shape: {model: sphere, radius: 1 m}, material: blackbody, temperature: 300 K}]\n" +
       std::string(kFilm) + "field_of_view: 40 deg, position: [0 m, -100 m, 0 m], look_at: [0 m, 0 m, 0 m]}\n");
   const WorldState state = advance(sim, 0.0);

@@ -20,10 +20,10 @@ namespace {
 
 struct Case {
   const char* name;
-  const char* band;       ///< of the channel [um]
+  const char* band;  ///< of the channel [um]
   double low_um, high_um;
   double fNumber, pitch_um;
-  const char* stage;      ///< keys of point_spread
+  const char* stage;  ///< keys of point_spread
   double obscuration = 0.0;
 };
 
@@ -36,9 +36,11 @@ const Case kCases[] = {
 };
 
 Simulation sceneOf(const Case& c, int width, int height) {
-  return scene(print("background: {temperature: 300 K}\ncameras: [{name: c, film: {width: %d, height: %d, pitch: %g um}, focal_length: 100 mm, f_number: %g, position: [0 m, 0 m, 0 m], heading: 0 deg, "
-                     "stages: [{stage: point_spread, %s}], channels: [{name: a, response: {band: [%s]}}]}]\n",
-                     width, height, c.pitch_um, c.fNumber, c.stage, c.band));
+  return scene(
+      print("background: {temperature: 300 K}\ncameras: [{name: c, film: {width: %d, height: %d, pitch: %g um}, focal_length: 100 mm, f_number: %g, position: "
+            "[0 m, 0 m, 0 m], heading: 0 deg, "
+            "stages: [{stage: point_spread, %s}], channels: [{name: a, response: {band: [%s]}}]}]\n",
+            width, height, c.pitch_um, c.fNumber, c.stage, c.band));
 }
 
 struct Drawn {
@@ -66,7 +68,8 @@ Drawn drawnThrough(const Simulation& sim, double peak, int column, int row, bool
   return {pictures.width, pictures.height, pictures.cells, pictures.values(0)};
 }
 
-/// Airy's pattern with an obscuration e of light that is even from one wavelength to another, as a share of a cell: pi (1 - e^2) / (4 (lambda F)^2) ((2 J1(v) / v - e^2 2 J1(e v) / (e v)) / (1 - e^2))^2.
+/// Airy's pattern with an obscuration e of light that is even from one wavelength to another, as a share of a cell: pi (1 - e^2) / (4 (lambda F)^2) ((2 J1(v) /
+/// v - e^2 2 J1(e v) / (e v)) / (1 - e^2))^2.
 double airy(const Case& c, double cell_m, double r_cells) {
   double sum = 0.0;
   constexpr int kWaves = 160;
@@ -111,7 +114,8 @@ TEST(FarLight, FallsWithoutAnEdge) {
       EXPECT_LE(sum[i] / count[i], sum[i - 1] / count[i - 1]) << c.name << ", ring " << k;
       worst = std::max(worst, std::abs(sum[i] / closed[i] - 1.0));
     }
-    bound(std::string("rings of three cells around a flare of 1e6 times its background, off Airy's: ") + c.name, worst, 0.03, "rings of the pattern within one of these; background 1 in single precision, 6e-8 of the flare a cell");
+    bound(std::string("rings of three cells around a flare of 1e6 times its background, off Airy's: ") + c.name, worst, 0.03,
+          "rings of the pattern within one of these; background 1 in single precision, 6e-8 of the flare a cell");
   }
 }
 
@@ -125,9 +129,11 @@ TEST(FarLight, IsNotLost) {
       double sum = 0.0;
       for (std::size_t k = 0; k < flare.picture.size(); ++k) sum += static_cast<double>(flare.picture[k]) - static_cast<double>(none.picture[k]);
       // Beyond a rectangle of half sides a and b: the integral of w / r^3 over its outside, 4 w sqrt(a^2 + b^2) / (a b).
-      const double a = 0.5 * none.width, b = 0.5 * none.height, cell_m = c.pitch_um * 1e-6 / none.cells, scale = 0.5 * (c.low_um + c.high_um) * 1e-6 * c.fNumber / cell_m,
+      const double a = 0.5 * none.width, b = 0.5 * none.height, cell_m = c.pitch_um * 1e-6 / none.cells,
+                   scale = 0.5 * (c.low_um + c.high_um) * 1e-6 * c.fNumber / cell_m,
                    beyond = 4.0 * scale / std::pow(kPi, 3.0) / (1.0 - c.obscuration) * std::hypot(a, b) / (a * b);
-      figure(std::string("light of ") + (point ? "a star" : "a flare's cell") + " on the film: " + c.name, sum / 1e4, 1.0 - beyond, 1e-3, "4 w sqrt(a^2 + b^2) / (a b) beyond it; a star's cells at 32 cycles");
+      figure(std::string("light of ") + (point ? "a star" : "a flare's cell") + " on the film: " + c.name, sum / 1e4, 1.0 - beyond, 1e-3,
+             "4 w sqrt(a^2 + b^2) / (a b) beyond it; a star's cells at 32 cycles");
     }
   }
 }
@@ -135,7 +141,8 @@ TEST(FarLight, IsNotLost) {
 // A blur without diffraction has no far light, and its bell goes down to the last digit.
 TEST(FarLight, ABellFallsToNothing) {
   const Simulation sim = scene(
-      "background: {temperature: 300 K}\ncameras: [{name: c, film: {width: 160, height: 128, pitch: 15 um}, focal_length: 100 mm, f_number: 4, position: [0 m, 0 m, 0 m], heading: 0 deg, "
+      "background: {temperature: 300 K}\ncameras: [{name: c, film: {width: 160, height: 128, pitch: 15 um}, focal_length: 100 mm, f_number: 4, position: [0 m, "
+      "0 m, 0 m], heading: 0 deg, "
       "stages: [{stage: point_spread, diffraction: false, blur: 75 um, cells: 1}], channels: [{name: a, response: {band: [8 um, 12 um]}}]}]\n");
   const Drawn empty = drawnThrough(sim, 0.0, 1, 1);
   const int column = empty.width / 2, row = empty.height / 2;
@@ -144,9 +151,11 @@ TEST(FarLight, ABellFallsToNothing) {
   for (int x = 0; x < 40; ++x) {
     // Cells that sample a bell have its density in their middles.
     const auto cell = [](double at) { return std::exp(-0.5 * at * at / 25.0) / (5.0 * std::sqrt(2.0 * kPi)); };
-    worst = std::max(worst, std::abs(static_cast<double>(d.picture[static_cast<std::size_t>(row * d.width + column + x)]) - 1.0 - 1e6 * cell(x) * cell(0)) / (1.0 + 1e6 * cell(x) * cell(0)));
+    worst = std::max(worst, std::abs(static_cast<double>(d.picture[static_cast<std::size_t>(row * d.width + column + x)]) - 1.0 - 1e6 * cell(x) * cell(0)) /
+                                (1.0 + 1e6 * cell(x) * cell(0)));
   }
-  bound("a bell of 5 cells around a flare of 1e6 times its background, off its closed form", worst, 2e-3, "its transform is cut where it is 1e-9, a thousandth of the background here");
+  bound("a bell of 5 cells around a flare of 1e6 times its background, off its closed form", worst, 2e-3,
+        "its transform is cut where it is 1e-9, a thousandth of the background here");
 }
 
 // The grid of far light against the sum itself, of cells and of points anywhere between them.
@@ -180,15 +189,18 @@ TEST(FarLight, CoarseGridsHoldIt) {
 TEST(FarLight, TooWideIsRefusedWithTheMost) {
   const auto refusal = [](const std::string& stage) -> std::string {
     try {
-      (void)scene("cameras: [{name: c, film: {width: 640, height: 512, pitch: 15 um}, focal_length: 100 mm, f_number: 4, position: [0 m, 0 m, 0 m], heading: 0 deg, stages: [" + stage +
-                  "], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}}]}]\n");
+      (void)scene(
+          "cameras: [{name: c, film: {width: 640, height: 512, pitch: 15 um}, focal_length: 100 mm, f_number: 4, position: [0 m, 0 m, 0 m], heading: 0 deg, "
+          "stages: [" +
+          stage + "], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}}]}]\n");
     } catch (const UserError& e) {
       return e.what();
     }
     return "";
   };
   std::set<std::string> tried;
-  for (const auto& [key, value, unit] : {std::tuple{"defocus", "1 m", "um"}, std::tuple{"defocus", "20 mm", "um"}, std::tuple{"blur", "1 m", "um"}, std::tuple{"jitter", "0.1 rad", "urad"}, std::tuple{"blur", "2 mm", "um"}}) {
+  for (const auto& [key, value, unit] : {std::tuple{"defocus", "1 m", "um"}, std::tuple{"defocus", "20 mm", "um"}, std::tuple{"blur", "1 m", "um"},
+                                         std::tuple{"jitter", "0.1 rad", "urad"}, std::tuple{"blur", "2 mm", "um"}}) {
     const auto began = std::chrono::steady_clock::now();
     const std::string said = refusal(std::string("{stage: point_spread, ") + key + ": " + value + "}");
     const double took_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
@@ -201,7 +213,8 @@ TEST(FarLight, TooWideIsRefusedWithTheMost) {
       EXPECT_EQ(refusal(print("{stage: point_spread, cells: 1, %s: %.6g %s}", key, most, unit)), "") << key;
       EXPECT_NE(refusal(print("{stage: point_spread, cells: 1, %s: %.6g %s}", key, 1.1 * most, unit)), "") << key;
     }
-    bound(std::string("seconds until '") + key + ": " + value + "' is refused", took_s, 60.0, "a kernel of 128 cells takes at most a second of a core; nine are made");
+    bound(std::string("seconds until '") + key + ": " + value + "' is refused", took_s, 60.0,
+          "a kernel of 128 cells takes at most a second of a core; nine are made");
   }
   EXPECT_NE(refusal("{stage: point_spread, wavefront_error: 1 mm}").find("at most"), std::string::npos);
 }

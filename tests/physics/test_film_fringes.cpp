@@ -49,7 +49,8 @@ std::string written(Complex n) { return n.imag() == 0.0 ? print("%.17g", n.real(
 Simulation filmOf(Complex n, double d, Complex beneath) {
   return scene("materials: {film: {components: [{reflection: microfacet, roughness: 0.002, index: " + written(beneath) + ", layers: [{index: " + written(n) +
                print(", thickness: %.17g um", d) +
-               ", coherent: true}]}]}}\nentities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: film, temperature: 300 K}]\nprobes: [{name: p, position: [0 m, 0 m, 1 m], channels: [{name: a, response: {band: [8 um, 12 um]}, output: irradiance}]}]\n");
+               ", coherent: true}]}]}}\nentities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: film, temperature: 300 K}]\nprobes: "
+               "[{name: p, position: [0 m, 0 m, 1 m], channels: [{name: a, response: {band: [8 um, 12 um]}, output: irradiance}]}]\n");
 }
 
 Means onGrid(const Simulation& sim, double low, double high, double angle, size_t& nodes) {
@@ -103,8 +104,10 @@ TEST(FilmFringes, AreAsFineQuadratureHasThem) {
       most = std::max(most, nodes);
     }
   }
-  bound("56 means of coherent films of 1 to 100 um over bands on the reference's wavelengths, reflected sunlight against Airy's formula by fine quadrature, "
-        "relative", worst, 1e-3, "asked for");
+  bound(
+      "56 means of coherent films of 1 to 100 um over bands on the reference's wavelengths, reflected sunlight against Airy's formula by fine quadrature, "
+      "relative",
+      worst, 1e-3, "asked for");
   bound("the same, emission at 300 K in 3-5 and 8-12 um and parts of them", worstThermal, 1e-3, "asked for");
   std::printf("most wavelengths: %zu\n", most);
   EXPECT_LE(most, 6500u);  // eight a nanometre of 0.9 to 1.7 um
@@ -120,7 +123,7 @@ TEST(FilmFringes, CloserThanBinsAreTheSumOfPowers) {
         const std::vector<FilmLayer> film{{n, d, true}}, apart{{n, d, false}};
         const FringeMean fringes(film, w);
         if (!(fringeApart_um(film, w) < 0.5e-3)) continue;
-        const double mean = fringes.of(film, [&](const auto& l) { return filmPower(l, beneath, w, sine); }).reflectance,
+        const double mean = fringes.of(film, [&](const auto&l) { return filmPower(l, beneath, w, sine); }).reflectance,
                      sum = filmPower(apart, beneath, w, sine).reflectance;
         worst = std::max(worst, std::abs(mean / sum - 1.0));
       }
@@ -174,12 +177,13 @@ TEST(FilmFringes, OfStacks) {
 
 TEST(FilmFringes, AreToldWhereTheyAreAveraged) {
   const auto told = [](double n, double d, const char* band, bool coherent = true) {
-    const Simulation sim = scene("materials: {film: {components: [{reflection: microfacet, roughness: 0.002, index: 1.5, layers: [{index: " + print("%g", n) +
-                                 print(", thickness: %g um, coherent: ", d) + (coherent ? "true" : "false") +
-                                 "}]}]}}\nentities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: film, temperature: 300 K}]\ncameras: "
-                                 "[{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m], channels: "
-                                 "[{name: b, response: {band: " +
-                                 band + "}}]}]\n");
+    const Simulation sim =
+        scene("materials: {film: {components: [{reflection: microfacet, roughness: 0.002, index: 1.5, layers: [{index: " + print("%g", n) +
+              print(", thickness: %g um, coherent: ", d) + (coherent ? "true" : "false") +
+              "}]}]}}\nentities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: film, temperature: 300 K}]\ncameras: "
+              "[{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m], channels: "
+              "[{name: b, response: {band: " +
+              band + "}}]}]\n");
     return averagedFringes(sim, sim.cameras[0].outputs);
   };
   // lambda^2 / (2 n d) against 1 nm below 1.41 um, 5 1/cm beyond.
@@ -189,7 +193,7 @@ TEST(FilmFringes, AreToldWhereTheyAreAveraged) {
   EXPECT_EQ(visible[0].at_um, 0.45);
   EXPECT_FALSE(visible[0].narrow);
   EXPECT_NE(wordsOf(visible[0]).find("fringes of 'film' are 0.68 nm apart at 0.45 um"), std::string::npos) << wordsOf(visible[0]);
-  EXPECT_TRUE(told(1.5, 100.0, "[3 um, 5 um]").empty());    // 33 1/cm apart
+  EXPECT_TRUE(told(1.5, 100.0, "[3 um, 5 um]").empty());  // 33 1/cm apart
   EXPECT_TRUE(told(1.5, 100.0, "[8 um, 12 um]").empty());
   EXPECT_TRUE(told(1.5, 10.0, "[0.45 um, 0.7 um]").empty());
   EXPECT_TRUE(told(1.5, 100.0, "[0.45 um, 0.7 um]", false).empty());
@@ -199,10 +203,11 @@ TEST(FilmFringes, AreToldWhereTheyAreAveraged) {
 
 TEST(FilmFringes, FewSamplesThatStepOverThemAreTold) {
   const auto told = [](const char* spectral, double d, const char* band) {
-    const Simulation sim = scene(print("materials: {film: {components: [{reflection: microfacet, roughness: 0.002, index: 1.5, layers: [{index: 2.4, thickness: %g um}]}]}}\n", d) +
-                                 "entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: film, temperature: 300 K}]\ncameras: "
-                                 "[{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m], spectral: " +
-                                 spectral + ", channels: [{name: b, response: {band: " + band + "}}]}]\n");
+    const Simulation sim = scene(
+        print("materials: {film: {components: [{reflection: microfacet, roughness: 0.002, index: 1.5, layers: [{index: 2.4, thickness: %g um}]}]}}\n", d) +
+        "entities: [{name: p, shape: {model: plate, width: 1 m, height: 1 m}, material: film, temperature: 300 K}]\ncameras: "
+        "[{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m], spectral: " +
+        spectral + ", channels: [{name: b, response: {band: " + band + "}}]}]\n");
     const Camera& c = sim.cameras[0];
     return checkFringes(sim, makePlan(sim, c.outputs, c.spectral, c.where), c.outputs, 0.01);
   };

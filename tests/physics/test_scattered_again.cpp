@@ -72,7 +72,8 @@ TEST(PhotonWalk, IsChandrasekharsHalfSpace) {
                    found = radianceOf(walk, 0.0, {std::sqrt(1.0 - m * m), 0.0, -m}, 100000);
       worst = std::max(worst, std::abs(found / expected - 1.0));
     }
-  bound("light sent back by a deep layer of isotropic scattering against Chandrasekhar's H, relative", worst, 0.015, "100000 photons, layers of 0.3 of a depth at most");
+  bound("light sent back by a deep layer of isotropic scattering against Chandrasekhar's H, relative", worst, 0.015,
+        "100000 photons, layers of 0.3 of a depth at most");
 }
 
 TEST(PhotonWalk, LosesNothing) {
@@ -180,13 +181,13 @@ TEST(ScatteredAgain, FogIsDaylightAfterAll) {
 TEST(ScatteredAgain, HazySkies) {
   // Horizon of a hazy sky away from the sun at 0.55 um, over black ground: published skies have 100 W/(m2 sr um) over land; scattered once 15.
   const auto sky = [](const char* air, double pitch) {
-    return renderFrame(
-        scene(std::string("atmosphere: ") + air +
-              "\nsun: {azimuth: 210 deg, elevation: 40 deg, temperature: 5772 K}\ncameras: [{name: e, film: {width: 3, height: 3}, field_of_view: 0.2 deg, "
-              "aperture: 5 "
-              "mm, position: [0 m, 0 m, 10 m], heading: 30 deg, pitch: " +
-              print("%g", pitch) +
-              " deg, channels: [{name: g, response: {band: [0.545 um, 0.555 um]}, output: radiance_per_um}, {name: lw, response: {band: [10 um, 10.1 um]}}]}]\n"));
+    return renderFrame(scene(
+        std::string("atmosphere: ") + air +
+        "\nsun: {azimuth: 210 deg, elevation: 40 deg, temperature: 5772 K}\ncameras: [{name: e, film: {width: 3, height: 3}, field_of_view: 0.2 deg, "
+        "aperture: 5 "
+        "mm, position: [0 m, 0 m, 10 m], heading: 30 deg, pitch: " +
+        print("%g", pitch) +
+        " deg, channels: [{name: g, response: {band: [0.545 um, 0.555 um]}, output: radiance_per_um}, {name: lw, response: {band: [10 um, 10.1 um]}}]}]\n"));
   };
   for (double pitch : {0.3, 10.0, 30.0, 89.9}) {
     const Frame frame = sky("hazy_us76", pitch);
@@ -230,7 +231,8 @@ TEST(ScatteredAgain, IsWhatWalksAlongTheWholeLineFind) {
   double worst = 0.0, once = 0.0;
   for (const char* air : {"clear_us76", "hazy_us76", "{library: hazy_mls, visibility: 5 km}"})
     for (double pitch : {10.0, 35.0, 89.0}) {
-      const Simulation sim = scene(std::string("atmosphere: ") + air + "\nsun: {azimuth: 0 deg, elevation: 35 deg, temperature: 5772 K}\ncameras: [{name: e, film: {width: 3, height: 3}, " +
+      const Simulation sim = scene(std::string("atmosphere: ") + air +
+                                   "\nsun: {azimuth: 0 deg, elevation: 35 deg, temperature: 5772 K}\ncameras: [{name: e, film: {width: 3, height: 3}, " +
                                    "field_of_view: 0.1 deg, aperture: 5 mm, position: [0 m, 0 m, 10 m], heading: 0 deg, pitch: " + print("%g", pitch) +
                                    " deg, channels: [{name: b, response: {band: [0.449 um, 0.451 um]}, output: radiance_per_um}, "
                                    "{name: r, response: {band: [0.649 um, 0.651 um]}, output: radiance_per_um}]}]\n");
@@ -258,14 +260,16 @@ TEST(ScatteredAgain, IsWhatWalksAlongTheWholeLineFind) {
 
 TEST(ScatteredAgain, IsToldWhereItIsMoreThanAskedForAndNowhereElse) {
   const auto told = [](const char* air, double sun, const char* camera, const char* head = "", const char* ambient = "{from: sky}") {
-    const Frame frame = renderFrame(scene(
-        std::string(head) + "atmosphere: " + air + print("\nsun: {azimuth: 90 deg, elevation: %g deg, temperature: 5772 K}\nambient: ", sun) + ambient +
-        "\nentities: [{name: p, shape: {model: plate, width: 3 m, height: 3 m}, material: white_lambertian, temperature: 288 K, heading: 90 deg, position: [0 m, 0 m, 10 "
-        "m]}]\ncameras: [{name: c, film: {width: 3, height: 3}, field_of_view: 0.5 deg, aperture: 5 mm, position: [50 m, 0 m, 10 m], " +
-        camera + "}]\n"));
+    const Frame frame = renderFrame(
+        scene(std::string(head) + "atmosphere: " + air + print("\nsun: {azimuth: 90 deg, elevation: %g deg, temperature: 5772 K}\nambient: ", sun) + ambient +
+              "\nentities: [{name: p, shape: {model: plate, width: 3 m, height: 3 m}, material: white_lambertian, temperature: 288 K, heading: 90 deg, "
+              "position: [0 m, 0 m, 10 "
+              "m]}]\ncameras: [{name: c, film: {width: 3, height: 3}, field_of_view: 0.5 deg, aperture: 5 mm, position: [50 m, 0 m, 10 m], " +
+              camera + "}]\n"));
     return again(frame, "n");
   };
-  const std::string plate = "look_at: p, channels: [{name: n, response: {band: ", sky = "heading: 30 deg, pitch: 60 deg, channels: [{name: n, response: {band: ";
+  const std::string plate = "look_at: p, channels: [{name: n, response: {band: ",
+                    sky = "heading: 30 deg, pitch: 60 deg, channels: [{name: n, response: {band: ";
   const auto in = [](const std::string& what, const char* band) { return what + band + "}}]"; };
   // A clear visible sky, its optical depth of scattering a tenth.
   EXPECT_GT(told("clear_us76", 60.0, in(sky, "[0.5 um, 0.6 um]").c_str()), 1.08);

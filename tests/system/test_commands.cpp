@@ -80,7 +80,9 @@ TEST_F(Commands, TheSameBytesTwice) {
 
 TEST_F(Commands, FramesCarryUnitsAndPose) {
   const Result r = pitviper("run " + scenario("first_light.yaml") +
-                            " --frames 3 --set accuracy='10 %' --set cameras.0.samples=1 --preview --set 'cameras.0.truth=[range, entity, temperature, normal, area, solid_angles]' --out " + folder_.string());
+                            " --frames 3 --set accuracy='10 %' --set cameras.0.samples=1 --preview --set 'cameras.0.truth=[range, entity, temperature, normal, "
+                            "area, solid_angles]' --out " +
+                            folder_.string());
   ASSERT_EQ(r.code, 0) << r.output;
   const auto image = pitviper::readExr(folder_ / "seeker_00003.exr");
   EXPECT_TRUE(fs::exists(folder_ / "seeker_00003.png"));
@@ -208,14 +210,13 @@ TEST_F(Commands, BenchMeasuresAccuracyAgainstTheReference) {
 // Rationale: a picture does not depend on how it is drawn. Expected: a frame with a canopy, plumes and smoke is the same in auto and buffered
 // mode, has something of each in it, and direct mode is refused.
 TEST_F(Commands, TransparentThingsAreTheSameInEitherMode) {
-  const std::string line =
-      "run " + scenario("canopy_plume_smoke.yaml") +
-      " --frames 7 --set audit=0 --set cameras.chase.film.width=96 --set cameras.chase.film.height=72 --set cameras.chase.samples=1"
-      " --set cameras.chase.spectral.samples=4 --set cameras.cockpit_view.film.width=64 --set cameras.cockpit_view.film.height=48"
-      " --set cameras.cockpit_view.samples=1 --set cameras.cockpit_view.spectral.samples=4 --set cameras.cockpit_view.small_bodies=0"
-      " --set 'cameras.chase.channels=[{name: mw, response: {band: [3.6 um, 4.9 um]}}, {name: vis, response: {band: [0.45 um, 0.75 um]}}]'"
-      " --set 'cameras.cockpit_view.channels=[{name: lw, response: {band: [8 um, 12 um]}}]' --out " +
-      folder_.string();
+  const std::string line = "run " + scenario("canopy_plume_smoke.yaml") +
+                           " --frames 7 --set audit=0 --set cameras.chase.film.width=96 --set cameras.chase.film.height=72 --set cameras.chase.samples=1"
+                           " --set cameras.chase.spectral.samples=4 --set cameras.cockpit_view.film.width=64 --set cameras.cockpit_view.film.height=48"
+                           " --set cameras.cockpit_view.samples=1 --set cameras.cockpit_view.spectral.samples=4 --set cameras.cockpit_view.small_bodies=0"
+                           " --set 'cameras.chase.channels=[{name: mw, response: {band: [3.6 um, 4.9 um]}}, {name: vis, response: {band: [0.45 um, 0.75 um]}}]'"
+                           " --set 'cameras.cockpit_view.channels=[{name: lw, response: {band: [8 um, 12 um]}}]' --out " +
+                           folder_.string();
   ASSERT_EQ(pitviper(line + "/auto").code, 0);
   ASSERT_EQ(pitviper(line + "/buffered --set render.mode=buffered").code, 0);
   const Result direct = pitviper(line + "/direct --set render.mode=direct");

@@ -351,7 +351,8 @@ TEST_F(Faults, OutOfMemoryIsAMessage) {
   for (int k = 0; k < 2; ++k) many += "  m" + std::to_string(k) + ": {components: [{reflection: lambertian, reflectance: {file: table.csv}}]}\n";
   std::string balls = "entities:\n";
   for (int k = 0; k < 12; ++k)
-    balls += "- {name: b" + std::to_string(k) + ", shape: {model: sphere, radius: " + std::to_string(1.0 + 0.01 * k) + " m, segments: 512}, material: {}, temperature: 300 K}\n";
+    balls += "- {name: b" + std::to_string(k) + ", shape: {model: sphere, radius: " + std::to_string(1.0 + 0.01 * k) +
+             " m, segments: 512}, material: {}, temperature: 300 K}\n";
   put("a.yaml", many + balls + camera());
   bool ended = false;
   for (int megabytes = 40; megabytes <= 400; megabytes += 30) {

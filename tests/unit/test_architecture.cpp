@@ -12,10 +12,28 @@
 
 namespace {
 
-const std::vector<std::string> kOrder = {"sim/radiometry", "sim/parameters", "sim/image",  "sim/gl",    "sim/scene",  "sim/flight", "sim/model",
-                                         "sim/radiance",   "sim/plan",       "sim/render", "sim/render/reference", "sim/camera", "sim/frame",
-                                         "sim/stream/clock", "sim/stream/on_demand", "sim/stream/ring", "sim/stream/gige", "sim/stream/cigi", "sim/stream/gstreamer",
-                                         "sim/stream/projector", "sim/stream", "sim/run"};
+const std::vector<std::string> kOrder = {"sim/radiometry",
+                                         "sim/parameters",
+                                         "sim/image",
+                                         "sim/gl",
+                                         "sim/scene",
+                                         "sim/flight",
+                                         "sim/model",
+                                         "sim/radiance",
+                                         "sim/plan",
+                                         "sim/render",
+                                         "sim/render/reference",
+                                         "sim/camera",
+                                         "sim/frame",
+                                         "sim/stream/clock",
+                                         "sim/stream/on_demand",
+                                         "sim/stream/ring",
+                                         "sim/stream/gige",
+                                         "sim/stream/cigi",
+                                         "sim/stream/gstreamer",
+                                         "sim/stream/projector",
+                                         "sim/stream",
+                                         "sim/run"};
 
 int levelOf(const std::string& path) {
   int level = -1;
@@ -57,18 +75,19 @@ std::vector<Use> allUses() {
 
 std::string violation(const Use& use) {
   if (use.system) {
-    static const std::map<std::string, std::vector<std::string>> homes = {{"yaml-cpp/", {"scenarios/reader/"}},
-                                                                          {"GeographicLib/", {"sim/scene/"}},
-                                                                          {"OpenEXR/", {"sim/image/"}},
-                                                                          {"Imf", {"sim/image/"}},
-                                                                          {"Eigen/", {"sim/model/node_air", "sim/plan/", "sim/radiance/", "materials/", "sensors/"}},
-                                                                          {"unsupported/Eigen/", {"sensors/"}},
-                                                                          {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}},
-                                                                          {"openvdb/", {"sim/scene/import_vdb/"}},
-                                                                          {"epoxy/", {"sim/gl/", "sim/render/", "sim/camera/", "scenarios/commands/bench", "sim/stream/projector/"}},
-                                                                          {"GLFW/", {"sim/stream/projector/"}},
-                                                                          {"X11/", {"sim/stream/projector/"}},
-                                                                          {"gst/", {"sim/stream/gstreamer/"}}};
+    static const std::map<std::string, std::vector<std::string>> homes = {
+        {"yaml-cpp/", {"scenarios/reader/"}},
+        {"GeographicLib/", {"sim/scene/"}},
+        {"OpenEXR/", {"sim/image/"}},
+        {"Imf", {"sim/image/"}},
+        {"Eigen/", {"sim/model/node_air", "sim/plan/", "sim/radiance/", "materials/", "sensors/"}},
+        {"unsupported/Eigen/", {"sensors/"}},
+        {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}},
+        {"openvdb/", {"sim/scene/import_vdb/"}},
+        {"epoxy/", {"sim/gl/", "sim/render/", "sim/camera/", "scenarios/commands/bench", "sim/stream/projector/"}},
+        {"GLFW/", {"sim/stream/projector/"}},
+        {"X11/", {"sim/stream/projector/"}},
+        {"gst/", {"sim/stream/gstreamer/"}}};
     for (const auto& [library, allowed] : homes) {
       if (use.included.rfind(library, 0) != 0) continue;
       for (const auto& home : allowed)
