@@ -1,6 +1,9 @@
 // Parts of a stream by themselves: what times are told, what becomes of each tick, how the dial turns, who may write a ring.
+#include <arpa/inet.h>
 #include <fcntl.h>
+#include <netinet/in.h>
 #include <sys/mman.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,6 +18,7 @@
 #include "sim/run/frame_pacer.hpp"
 #include "sim/stream/clock/durations.hpp"
 #include "sim/stream/clock/wall_clock.hpp"
+#include "sim/stream/gige/gige_stream.hpp"
 #include "sim/stream/projector_table.hpp"
 #include "sim/stream/queued_sink.hpp"
 #include "sim/stream/ring/ring_writer.hpp"
@@ -467,6 +471,54 @@ TEST(QueuedSink, SkipsInRealTimeAndLosesNothingInLockstep) {
       EXPECT_GT(took, 60000000) << "it waits for room";
     }
   }
+}
+
+// A client may stop, move or come anew while pictures wait to be sent. Expected: each picture is counted once, as sent, overtaken, cut short or without a
+// client.
+TEST(GigeStream, EveryPictureIsAccountedFor) {
+  const int eye = socket(AF_INET, SOCK_DGRAM | SOCK_NONBLOCK, 0), client = socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in at{};
+  at.sin_family = AF_INET;
+  at.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(bind(client, reinterpret_cast<const sockaddr*>(&at), sizeof at), 0);
+  socklen_t size = sizeof at;
+  ASSERT_EQ(getsockname(client, reinterpret_cast<sockaddr*>(&at), &size), 0);
+  for (const char* what : {"stops", "moves", "comes anew"}) {
+    GigeSettings settings;
+    settings.width = settings.height = 64;
+    GigeTally tally;
+    std::uint64_t published = 0;
+    {
+      GigeStream stream(eye, settings, tally, {});
+      GigePlan plan;
+      plan.address = INADDR_LOOPBACK;
+      plan.port = ntohs(at.sin_port);
+      plan.packetBytes = 576;
+      plan.delay_ns = 20000000;  // a picture of 16 packets is on its way for a third of a second, and the next ones wait
+      stream.configure(plan);
+      stream.acquire(true);
+      const auto publish = [&] {
+        auto picture = std::make_shared<GigePicture>();
+        picture->width = picture->height = 64;
+        picture->codes.assign(64 * 64, 1);
+        stream.publish(picture);
+        ++published;
+      };
+      for (int k = 0; k < 4; ++k) publish();
+      if (what == std::string("stops")) stream.acquire(false);
+      if (what == std::string("moves")) ++plan.address, stream.configure(plan);
+      if (what == std::string("comes anew")) stream.reopen();
+      publish();
+      stream.acquire(false);
+      const auto counted = [&] {
+        const GigeCounts c = tally.now();
+        return c.pictures + c.skipped + c.cut + c.withoutConsumer;
+      };
+      for (int k = 0; k < 1000 && counted() < published; ++k) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+      EXPECT_EQ(counted(), published) << "the client " << what;
+    }
+  }
+  close(eye), close(client);
 }
 
 TEST(ProjectorTable, IsStraightBetweenItsRows) {

@@ -100,6 +100,12 @@ GigeStream::~GigeStream() {
   thread_.join();
 }
 
+/// With the mutex held.
+void GigeStream::giveUpWaiting() {
+  tally_.add(&GigeCounts::cut, mailbox_.size());
+  mailbox_.clear();
+}
+
 void GigeStream::configure(const GigePlan& plan) {
   const int discover = plan.isFragmentable ? IP_PMTUDISC_DONT : IP_PMTUDISC_PROBE;
   setsockopt(socket_, IPPROTO_IP, IP_MTU_DISCOVER, &discover, sizeof discover);
@@ -107,7 +113,7 @@ void GigeStream::configure(const GigePlan& plan) {
   if (!plan.isTriggered || plan.source != plan_.source) hasTrigger_ = false;
   if (plan.address != plan_.address || plan.port != plan_.port) {
     ++generation_;
-    mailbox_.clear();
+    giveUpWaiting();
   }
   plan_ = plan;
   hasDestination_ = plan.hasDestination();
@@ -117,7 +123,7 @@ void GigeStream::reopen() {
   const std::lock_guard lock(mutex_);
   ++generation_;
   ++openings_;
-  mailbox_.clear();
+  giveUpWaiting();
   resends_.clear();
   hasResends_ = false;
 }
@@ -129,7 +135,7 @@ void GigeStream::acquire(bool isOn) {
     isAcquiring_ = isOn;
     picturesLeft_ = plan_.pictures;
     hasTrigger_ = false;
-    mailbox_.clear();
+    giveUpWaiting();
     if (!isOn) ++generation_;
   }
   if (acquisition_) acquisition_(isOn);

@@ -37,6 +37,7 @@ class GigeStream {
  private:
   using Clock = std::chrono::steady_clock;
   class Batch;
+  void giveUpWaiting();
   void run();
   void send(const GigePicture& picture, const GigePlan& plan, std::uint64_t generation);
   void serveResends();

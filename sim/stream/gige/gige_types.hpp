@@ -71,7 +71,7 @@ struct GigeCounts {
   std::uint64_t resent = 0;            ///< packets sent again
   std::uint64_t resendsNotServed = 0;  ///< requests for what is gone, never was, or was asked for too often
   std::uint64_t skipped = 0;           ///< pictures overtaken by newer ones while the sender was busy
-  std::uint64_t cut = 0;               ///< pictures that ended early: the socket refused, or the client stopped
+  std::uint64_t cut = 0;               ///< pictures that ended early or never left: the socket refused, or the client stopped
   std::uint64_t withoutConsumer = 0;   ///< pictures while nobody streams
   std::uint64_t withoutTrigger = 0;    ///< pictures while a trigger is waited for
   std::uint64_t triggers = 0;          ///< accepted
