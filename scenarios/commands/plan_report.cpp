@@ -135,7 +135,8 @@ std::string planText(const PlannedEye& eye) {
     const PredictedParts& p = plan.parts[s];
     out += "  " + padded("", widest, false) + "   of it wavelengths " + percent(p.wavelengths) + ", tables " + percent(p.tables) + ", terms left out " +
            percent(p.dropped) + ", precision " + percent(p.precision) +
-           (plan.surroundingsLoss.empty() ? "" : ", light from all around " + percent(p.surroundings)) + "; at the extremes " + percent(p.extremes) + "\n";
+           (plan.surroundingsLoss.empty() ? "" : ", light from all around " + percent(p.surroundings)) +
+           (p.fields > 0.0 ? ", steps through plumes and clouds " + percent(p.fields) : "") + "; at the extremes " + percent(p.extremes) + "\n";
   }
   if (eye.camera) {
     out += "  beside it geometry, " + edgeText(*eye.camera, plan.accuracy);

@@ -2,15 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "sim/camera/small_bodies.hpp"
 #include "sim/camera/visible_lights.hpp"
 #include "sim/camera/zoomed_lines.hpp"
 #include "sim/frame/truth_work.hpp"
-#include "sim/model/coverage.hpp"
 #include "sim/model/field_states.hpp"
+#include "sim/model/stage.hpp"
 #include "sim/model/world.hpp"
+#include "sim/plan/measured_outputs.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
 #include "sim/render/reference/zoomed_tile.hpp"
@@ -36,55 +36,20 @@ bool meets(const RayHits& hits, int entity) {
 
 bool isRadiance(const ChannelOutput& o) { return o.quantity == "radiance"; }
 
-/// The radiance of each channel, and what a detector counts.
-std::vector<ChannelOutput> measuredOutputs(const Simulation& simulation, const Camera& camera) {
-  std::vector<ChannelOutput> outputs;
-  std::set<std::string> channels;
-  for (const ChannelOutput& o : camera.outputs) {
-    if (!channels.insert(o.channel).second || !o.curves) continue;
-    ChannelOutput radiance;
-    radiance.channel = o.channel;
-    radiance.quantity = "radiance";
-    radiance.unit = "W/(m2 sr)";
-    radiance.where = o.where;
-    radiance.kernel = o.curves->response;
-    radiance.bandLow_um = o.curves->response.supportLow();
-    radiance.bandHigh_um = o.curves->response.supportHigh();
-    radiance.curves = o.curves;
-    cutToData(simulation, radiance);  // as of those that are drawn
-    outputs.push_back(radiance);
-    for (const ChannelOutput& other : camera.outputs)
-      if (other.detected && other.channel == o.channel) {
-        outputs.push_back(other);
-        break;
-      }
-  }
-  return outputs;
-}
-
-Camera measuredCamera(const Simulation& simulation, const Camera& camera) {
-  Camera measured = camera;
-  measured.outputs = measuredOutputs(simulation, camera);
-  measured.plan.clear();
-  measured.stages.clear();
-  for (auto& [channel, own] : measured.ownChannels) own.stages.clear();
-  return measured;
-}
-
 }  // namespace
 
 TruthMeter::TruthMeter(const Simulation& simulation, const Camera& camera)
     : simulation_(simulation),
       camera_(camera),
-      measured_(measuredCamera(simulation, camera)),
+      measured_(measuredOutputs(simulation, camera)),
       asked_(camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise),
       lines_(std::clamp(kLinesAtOnePercent * std::pow(0.01 / asked_, 2.0 / 3.0), 48.0, 256.0)),
       present_(simulation.entities.size(), 1),
-      plan_(planFor(simulation, {&measured_, nullptr})),
+      plan_(measuredPlanFor(simulation, drawnCamera(camera))),
       spectra_(std::make_shared<const NodeSpectra>(simulation, plan_.nodes, plan_.terms.surroundings)) {
   if (camera.mount.carrier >= 0) present_[static_cast<std::size_t>(camera.mount.carrier)] = 0;
-  for (std::size_t o = 0; o < measured_.outputs.size(); ++o)
-    if (isRadiance(measured_.outputs[o])) radianceOf_.push_back(o);
+  for (std::size_t o = 0; o < measured_.size(); ++o)
+    if (isRadiance(measured_[o])) radianceOf_.push_back(o);
 }
 
 TargetRow TruthMeter::placed(const std::string& name, const char* kind, const Moment& now, const Moment& before, const Moment& after) const {
@@ -122,15 +87,15 @@ void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, con
   for (std::size_t r : radianceOf_) {
     const auto slot = static_cast<std::size_t>(plan_.slotOfOutput[r]);
     TargetRow::Channel c;
-    c.channel = measured_.outputs[r].channel;
+    c.channel = measured_[r].channel;
     c.unit = "W/sr";
     c.own = own[slot], c.total = total[slot], c.contrast = contrast[slot];
     c.signalToNoise = NAN;
     const DetectorLaw* law = detectorOf(camera_, c.channel);
     const double exposure_s = eye.exposures_s.of(c.channel);
-    const auto detected = std::find_if(measured_.outputs.begin(), measured_.outputs.end(), [&](const ChannelOutput& o) { return o.detected && o.channel == c.channel; });
-    if (law && detected != measured_.outputs.end() && range2 > 0.0) {
-      const auto counted = static_cast<std::size_t>(plan_.slotOfOutput[static_cast<std::size_t>(detected - measured_.outputs.begin())]);
+    const auto detected = std::find_if(measured_.begin(), measured_.end(), [&](const ChannelOutput& o) { return o.detected && o.channel == c.channel; });
+    if (law && detected != measured_.end() && range2 > 0.0) {
+      const auto counted = static_cast<std::size_t>(plan_.slotOfOutput[static_cast<std::size_t>(detected - measured_.begin())]);
       const double perFlux = law->fillFactor * detected->scale * exposure_s;  // electrons of kernel integral x sr
       // All of it in one pixel where it is smaller than one, but for what the lens spreads; else a pixel's part of its face.
       const double face_sr = faces_sr.empty() ? body_sr : faces_sr[row.channels.size()];
@@ -405,7 +370,7 @@ std::vector<FrameLayer> TruthMeter::terms(const WorldState& state) const {
       std::vector<float>& layer = layers[c * parts + part];
       if (part == static_cast<std::size_t>(TermKind::Lights) || !mayHave(part)) continue;
       const std::string name = part < kTermKinds ? std::string(kNames[part]) : "lamp." + simulation_.lights[part - kTermKinds].name;
-      told.push_back({"truth.terms." + measured_.outputs[radianceOf_[c]].channel + "." + name, "W/(m2 sr)", std::move(layer)});
+      told.push_back({"truth.terms." + measured_[radianceOf_[c]].channel + "." + name, "W/(m2 sr)", std::move(layer)});
     }
   return told;
 }

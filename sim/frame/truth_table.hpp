@@ -12,7 +12,7 @@ namespace pitviper {
 
 class TruthMeter {
  public:
-  /// `camera`: the film's, which asks for targets or terms. Makes a plan of its own where the channels' radiances are not among its outputs. Both must outlive it.
+  /// `camera`: the film's, which asks for targets or terms. Both must outlive it.
   TruthMeter(const Simulation& simulation, const Camera& camera);
 
   /// A row for each body but terrain and the camera's carrier, for each plume and flare that is there, and for each lamp that can be seen. Intensities of a body: over lines of a square grid over its
@@ -44,7 +44,7 @@ class TruthMeter {
 
   const Simulation& simulation_;
   const Camera& camera_;
-  Camera measured_;  ///< with radiances of its channels, and what is detected
+  std::vector<ChannelOutput> measured_;
   std::vector<std::size_t> radianceOf_;  ///< of each channel, an output of it
   double asked_;  ///< accuracy
   double lines_;  ///< across a body

@@ -14,17 +14,33 @@ namespace {
 /// and for what was not drawn.
 constexpr double kFitted = 0.33, kUnseen = 0.42;
 /// Of that, with fields in view, whose steps and lines have an account of their own.
-constexpr double kBesideFields = 0.7;
+constexpr double kBesideFields = 0.75;
 constexpr int kMostGroups = 96;
 /// Of hundreds of lines most say the same: a fit begins with some, and the worst of the others join them.
 constexpr FitEffort kEffort{60, 160, 0.0, 12};
+/// Ratios of kernels that vary by less are a factor.
+constexpr double kSameShape = 1e-6;
 /// Of the worst that a fit learns from at a time.
 constexpr size_t kLearnt = 60;
 
 }  // namespace
 
-ChannelFit::ChannelFit(const Simulation& simulation, const Spectrum& kernel, double accuracy) : grid_(fineGridOf(simulation, kernel)), accuracy_(accuracy) {
+ChannelFit::ChannelFit(const Simulation& simulation, std::span<const Spectrum* const> kernels, double accuracy)
+    : grid_(fineGridOf(simulation, kernels)), accuracy_(accuracy) {
   if (!simulation.fields.empty()) accuracy_ *= kBesideFields;
+  for (size_t k = 0; k < grid_.ratio.size(); ++k) {
+    const auto [least, most] = std::minmax_element(grid_.ratio[k].begin(), grid_.ratio[k].end());
+    if (*most - *least > kSameShape * *most) kernels_.push_back(k + 1);
+  }
+}
+
+SpectralProblem ChannelFit::problemOf(const Sights& sights, size_t first) const { return sights.problem(grid_, kernels_, absorbers_, floors_, first); }
+
+double ChannelFit::weightOf(const SpectralGroup& group, size_t kernel) const {
+  if (kernel == 0) return group.weight;
+  double mean = 0.0;
+  for (const auto& [index, share] : group.members) mean += share * grid_.ratio[kernel - 1][static_cast<size_t>(index)];
+  return group.weight * mean;
 }
 
 void ChannelFit::look(const ProductSet& products) {
@@ -33,10 +49,10 @@ void ChannelFit::look(const ProductSet& products) {
       shares_[static_cast<size_t>(k)] = std::max(shares_[static_cast<size_t>(k)], std::abs(products.parts(k, m)) * products.scale[m]);
 }
 
-void ChannelFit::begin(const Sights& sights, double floor) {
+void ChannelFit::begin(const Sights& sights, std::vector<double> floors) {
   absorbers_ = sights.absorbers(grid_);
-  floor_ = floor;
-  SpectralProblem problem = sights.problem(grid_, absorbers_, floor_);
+  floors_ = std::move(floors);
+  SpectralProblem problem = problemOf(sights, 0);
   seen_ = sights.size();
   const ProductSet products(problem);
   look(products);
@@ -45,7 +61,7 @@ void ChannelFit::begin(const Sights& sights, double floor) {
 }
 
 bool ChannelFit::check(const Sights& sights) {
-  SpectralProblem problem = sights.problem(grid_, absorbers_, floor_, seen_);
+  SpectralProblem problem = problemOf(sights, seen_);
   seen_ = sights.size();
   const ProductSet products(problem);
   look(products);
@@ -63,7 +79,7 @@ bool ChannelFit::check(const Sights& sights) {
 }
 
 void ChannelFit::learn(const Sights& sights, size_t first, double part) {
-  SpectralProblem problem = sights.problem(grid_, absorbers_, floor_, first);
+  SpectralProblem problem = problemOf(sights, first);
   seen_ = sights.size();
   const ProductSet products(problem);
   look(products);

@@ -30,8 +30,8 @@ constexpr std::array kApart{6.0, 4.0, 3.0, 2.2, 1.6, 1.0};
 constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kTried = 2000, kAcross = 14, kSteps = 8;
 /// What is darker than this part of the field's brightest line counts as so much, as on the film: filmFloors().
 constexpr double kDimmest = 1e-3;
-/// Parts of the accuracy that steps may spend, and lines; what is asked where no accuracy is.
-constexpr double kPart = 1.0 / 3.0, kUsual = 0.01;
+/// What is asked where no accuracy is.
+constexpr double kUsual = 0.01;
 /// Of what was not there when it was looked for; steps of what never was.
 constexpr int kNotSeen = -1, kUnknown = 16;
 /// What changes no line by more than this part of the accuracy is not drawn, as terms that small are.
@@ -99,7 +99,7 @@ class FieldLooks {
 };
 
 StepsByKind stepsFor(FieldLooks& looks, const std::vector<glm::dvec3>& eyes, double asked, Dice& dice) {
-  const double allowed = kPart * asked, unseen = kUnseen * asked;
+  const double allowed = kFieldsShare * asked, unseen = kUnseen * asked;
   const FieldState& field = looks.field();
   StepsByKind steps;
   steps.fill(kNotSeen);
@@ -183,7 +183,7 @@ double coarserFor(FieldLooks& looks, const View& view, int pixels, double asked,
       const std::vector<double> got = mean(linesOf(coarser), behind);
       double worst = 0.0;
       for (std::size_t s = 0; s < got.size(); ++s) worst = std::max(worst, std::abs(got[s] - want[s]) / std::max({want[s], kDimmest * brightest[s], 1e-300}));
-      if (worst <= kPart * asked) break;
+      if (worst <= kFieldsShare * asked) break;
     }
     ++looked;
   }

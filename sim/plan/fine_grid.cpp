@@ -43,11 +43,25 @@ std::vector<Bin> tableBins(std::span<const double> table, double low, double hig
   return bins;
 }
 
-/// From edge to edge, at least at the response's own: `own` are further ones where they leave room.
-std::vector<Bin> usualBins(const Spectrum& kernel, std::span<const double> own) {
-  const double low = kernel.supportLow(), high = kernel.supportHigh();
+using Kernels = std::span<const Spectrum* const>;
+
+/// Where any of them bends, rising.
+std::vector<double> knotsOf(Kernels kernels) {
+  std::vector<double> all;
+  for (const Spectrum* k : kernels) {
+    const std::vector<double> own = k->knots();
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+/// From edge to edge, at least at the responses' own: `own` are further ones where they leave room.
+std::vector<Bin> usualBins(Kernels kernels, std::span<const double> own) {
+  const double low = kernels.front()->supportLow(), high = kernels.front()->supportHigh();
   std::vector<double> edges = {low, high};
-  for (double k : kernel.knots())
+  for (double k : knotsOf(kernels))
     if (k > low && k < high) edges.push_back(k);
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
@@ -206,19 +220,37 @@ std::vector<QuadratureNode> byStrength(const BentSpectrum& s, const Bin& bin, do
   return nodes;
 }
 
-/// `free`: bins may be looked at beside their middle where that stands better for them: where a response's narrow peaks are.
-std::vector<QuadratureNode> weighted(const Spectrum& kernel, const std::vector<Bin>& bins, std::span<const BentSpectrum> spectra, bool free) {
-  std::vector<QuadratureNode> nodes;
-  const std::vector<double> peaks = free ? kernel.knots() : std::vector<double>();
+/// Nodes for each kernel, at the same wavelengths. `free`: bins may be looked at beside their middle where that stands better for them: where a response's
+/// narrow peaks are.
+std::vector<std::vector<QuadratureNode>> weighted(Kernels kernels, const std::vector<Bin>& bins, std::span<const BentSpectrum> spectra, bool free) {
+  std::vector<std::vector<QuadratureNode>> nodes(kernels.size());
+  const std::vector<double> peaks = free ? knotsOf(kernels) : std::vector<double>();
+  const double low = kernels.front()->supportLow(), high = kernels.front()->supportHigh();
+  // Of several, their mean shape.
+  std::vector<double> scale = {1.0};
+  for (size_t k = 1; k < kernels.size(); ++k) scale.push_back(kernels.front()->integral(low, high) / kernels[k]->integral(low, high));
+  const auto shape = [&](double w) {
+    double sum = 0.0;
+    for (size_t k = 0; k < kernels.size(); ++k) sum += scale[k] * (*kernels[k])(w);
+    return sum;
+  };
   const auto centroid = [&](double from, double to, double at, bool piece) {
     const std::vector<double> within(std::upper_bound(peaks.begin(), peaks.end(), from), std::lower_bound(peaks.begin(), peaks.end(), to));
     if (within.empty() && !(piece && free)) return at;
-    const double mean = meanBetween(kernel, from, to, within), moment = meanBetween([&](double w) { return (w - from) * kernel(w); }, from, to, within);
+    const double mean = meanBetween(shape, from, to, within), moment = meanBetween([&](double w) { return (w - from) * shape(w); }, from, to, within);
     return mean > 0.0 && moment >= 0.0 && moment <= mean * (to - from) ? from + moment / mean : at;
   };
+  const auto weights = [&](double from, double to) {
+    std::vector<double> all;
+    for (const Spectrum* k : kernels) all.push_back(from < to ? k->integral(from, to) : 0.0);
+    return all;
+  };
+  const auto isSeen = [](const std::vector<double>& all) { return std::any_of(all.begin(), all.end(), [](double w) { return w != 0.0; }); };
   const auto add = [&](double from, double to, double at, bool piece, const BentSpectrum* rough) {
-    const double weight = from < to ? kernel.integral(from, to) : 0.0;
-    if (weight != 0.0) nodes.push_back({rough ? placeOfMean(*rough, from, to) : centroid(from, to, at, piece), weight});
+    const std::vector<double> all = weights(from, to);
+    if (!isSeen(all)) return;
+    const double place = rough ? placeOfMean(*rough, from, to) : centroid(from, to, at, piece);
+    for (size_t k = 0; k < kernels.size(); ++k) nodes[k].push_back({place, all[k]});
   };
   for (const Bin& bin : bins) {
     const Cuts cuts = cutsOf(bin, spectra);
@@ -227,9 +259,9 @@ std::vector<QuadratureNode> weighted(const Spectrum& kernel, const std::vector<B
       continue;
     }
     if (cuts.rough && cuts.rough->isDepth && cuts.spectra == 1) {
-      const double weight = kernel.integral(bin.from, bin.to);
-      for (const QuadratureNode& n : byStrength(*cuts.rough, bin, weight))
-        if (n.weight != 0.0) nodes.push_back(n);
+      const std::vector<double> all = weights(bin.from, bin.to);
+      for (size_t k = 0; isSeen(all) && k < kernels.size(); ++k)
+        for (const QuadratureNode& n : byStrength(*cuts.rough, bin, all[k])) nodes[k].push_back(n);
       continue;
     }
     double from = bin.from;
@@ -242,20 +274,27 @@ std::vector<QuadratureNode> weighted(const Spectrum& kernel, const std::vector<B
 }  // namespace
 
 std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const double> table) {
-  return weighted(kernel, table.empty() ? usualBins(kernel, {}) : tableBins(table, kernel.supportLow(), kernel.supportHigh()), {}, table.empty());
+  const Spectrum* const one[] = {&kernel};
+  return weighted(one, table.empty() ? usualBins(one, {}) : tableBins(table, kernel.supportLow(), kernel.supportHigh()), {}, table.empty()).front();
 }
 
-std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, const Simulation& sim) {
+std::vector<std::vector<QuadratureNode>> fineGrids(Kernels kernels, const Simulation& sim) {
   auto spectra = spectraOf(sim);
-  if (!sim.air || !sim.air->traits().any) return weighted(kernel, followed(usualBins(kernel, {}), sim), spectra, true);
+  if (!sim.air || !sim.air->traits().any) return weighted(kernels, followed(usualBins(kernels, {}), sim), spectra, true);
   const std::vector<double> knots = sim.air->knots_um();
   // Air from a table keeps its table's wavelengths.
-  if (sim.air->traits().linearBetweenKnots) return weighted(kernel, followed(tableBins(knots, kernel.supportLow(), kernel.supportHigh()), sim), spectra, false);
+  if (sim.air->traits().linearBetweenKnots)
+    return weighted(kernels, followed(tableBins(knots, kernels.front()->supportLow(), kernels.front()->supportHigh()), sim), spectra, false);
   std::vector<double> own;
   for (size_t k = 1; k + 1 < knots.size(); ++k)
     if (std::min(knots[k] - knots[k - 1], knots[k + 1] - knots[k]) >= kOwnBins * referenceWidth_um(knots[k])) own.push_back(knots[k]);
   spectra.push_back(airSpectrum(*sim.air));
-  return weighted(kernel, followed(usualBins(kernel, own), sim), spectra, true);
+  return weighted(kernels, followed(usualBins(kernels, own), sim), spectra, true);
+}
+
+std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, const Simulation& sim) {
+  const Spectrum* const one[] = {&kernel};
+  return fineGrids(one, sim).front();
 }
 
 }  // namespace pitviper

@@ -19,4 +19,7 @@ std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, std::span<const dou
 /// are as small as fringes take (fringedOf).
 std::vector<QuadratureNode> fineGrid(const Spectrum& kernel, const Simulation& simulation);
 
+/// The same for kernels that are alike (kernel_family.hpp): the same wavelengths with weights for each, edges where any of them bends.
+std::vector<std::vector<QuadratureNode>> fineGrids(std::span<const Spectrum* const> kernels, const Simulation& simulation);
+
 }  // namespace pitviper

@@ -105,10 +105,9 @@ void SparseAmounts::add(const double* amounts, int columns) {
   first.push_back(static_cast<int>(column.size()));
 }
 
-PITVIPER_WIDE void transmittances(const SparseAmounts& amounts, const double* extinction, int groups, double* into) {
-  const int paths = static_cast<int>(amounts.first.size()) - 1;
-  for (int from = 0; from < paths; from += kBlock) {
-    const int to = std::min(from + kBlock, paths);
+PITVIPER_WIDE void transmittances(const SparseAmounts& amounts, int begin, int end, const double* extinction, int groups, double* into) {
+  for (int from = begin; from < end; from += kBlock) {
+    const int to = std::min(from + kBlock, end);
     double* block = into + static_cast<std::ptrdiff_t>(groups) * from;
     if (groups % kLanes == 0) depths<kLanes>(amounts, from, to, extinction, groups, block);
     else if (groups % 2 == 0) depths<2>(amounts, from, to, extinction, groups, block);

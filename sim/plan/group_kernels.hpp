@@ -15,8 +15,9 @@ struct SparseAmounts {
   void add(const double* amounts, int columns);
 };
 
-/// exp(-sum over columns of extinction x amount): `extinction` [column][group], `into` [path][group], groups as paddedGroups() has them.
-void transmittances(const SparseAmounts& amounts, const double* extinction, int groups, double* into);
+/// exp(-sum over columns of extinction x amount) of paths `begin` to `end`: `extinction` [column][group], `into` [path][group] of all paths, groups as
+/// paddedGroups() has them.
+void transmittances(const SparseAmounts& amounts, int begin, int end, const double* extinction, int groups, double* into);
 
 /// Sums over wavelengths of share x spectrum: `share` [wavelength][group], `spectra` [spectrum][wavelength], `into` [spectrum][group].
 void averages(const double* share, const double* spectra, int wavelengths, int count, int groups, double* into);

@@ -225,6 +225,28 @@ Plan ofSlots(const Plan& plan, const std::vector<size_t>& slots) {
     }
     some.blocks.push_back(std::move(own));
   }
+  const auto pick = [&](auto& of) {
+    if (of.empty()) return;
+    const auto all = of;
+    of.clear();
+    for (size_t s : slots) of.push_back(all[s]);
+  };
+  pick(some.predictedError), pick(some.parts), pick(some.fineCount), pick(some.surroundingsLoss);
+  for (TermShare& term : some.shares) pick(term.share);
+  return some;
+}
+
+Plan ofOutputs(const Plan& plan, size_t first, size_t count) {
+  std::vector<size_t> slots;
+  std::vector<int> slotOfOutput;
+  for (size_t o = first; o < first + count; ++o) {
+    const auto slot = static_cast<size_t>(plan.slotOfOutput[o]);
+    const auto at = std::find(slots.begin(), slots.end(), slot);
+    slotOfOutput.push_back(static_cast<int>(at - slots.begin()));
+    if (at == slots.end()) slots.push_back(slot);
+  }
+  Plan some = ofSlots(plan, slots);
+  some.slotOfOutput = std::move(slotOfOutput);
   return some;
 }
 

@@ -60,8 +60,10 @@ class HeldLines {
 std::vector<LineFigures> checkLines(const Simulation& simulation, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines,
                                     int places, const std::vector<double>& floor);
 
-/// Of some slots, with the nodes that feed them.
+/// Of some slots, with the nodes that feed them, and what is said of each.
 Plan ofSlots(const Plan& plan, const std::vector<size_t>& slots);
+/// Of so many outputs from one on.
+Plan ofOutputs(const Plan& plan, size_t first, size_t count);
 
 /// Per slot, a sum over nodes.
 std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance);

@@ -7,6 +7,7 @@
 #include "sim/model/coverage.hpp"
 #include "sim/plan/air_table_request.hpp"
 #include "sim/plan/fine_grid.hpp"
+#include "sim/plan/kernel_family.hpp"
 
 namespace pitviper {
 namespace {
@@ -50,6 +51,16 @@ SpectralNode nodeAt(const Simulation& sim, double wavelength_um) {
   return node;
 }
 
+std::vector<const ChannelOutput*> differentKernels(std::span<const ChannelOutput> outputs, std::vector<int>* slotOfOutput) {
+  std::vector<const ChannelOutput*> slots;
+  for (const auto& output : outputs) {
+    const auto same = std::find_if(slots.begin(), slots.end(), [&](const auto* s) { return s->apart == output.apart && sameKernel(s->kernel, output.kernel); });
+    if (slotOfOutput) slotOfOutput->push_back(static_cast<int>(same - slots.begin()));
+    if (same == slots.end()) slots.push_back(&output);
+  }
+  return slots;
+}
+
 Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, const SpectralSampling& sampling, const Location& where) {
   Plan plan;
   plan.terms = termsOf(sim);
@@ -59,13 +70,8 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   if (plan.terms.air && sim.air->traits().scattersSun && sim.sun)
     plan.sunLegs = SunLegs::of(sim.air, glm::dot(sim.frame.up(glm::dvec3(0.0)), sim.sun->toSun), sim.frame.earthRadius_m());
 
-  std::vector<const ChannelOutput*> slots;
-  for (const auto& output : outputs) {
-    requireData(sim, output);
-    auto same = std::find_if(slots.begin(), slots.end(), [&](const auto* s) { return s->apart == output.apart && sameKernel(s->kernel, output.kernel); });
-    plan.slotOfOutput.push_back(static_cast<int>(same - slots.begin()));
-    if (same == slots.end()) slots.push_back(&output);
-  }
+  for (const auto& output : outputs) requireData(sim, output);
+  const auto slots = differentKernels(outputs, &plan.slotOfOutput);
   plan.slotCount = static_cast<int>(slots.size());
   if (plan.slotCount > kMostSlots)
     throw UserError(where, "this camera or probe needs " + std::to_string(plan.slotCount) + " different spectral kernels in one pass", "at most 16",
@@ -74,12 +80,22 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   std::vector<const Spectrum*> kernels;
   for (const auto* slot : slots) kernels.push_back(&slot->kernel);
   const auto pieces = commonPieces(kernels);
-  std::vector<std::vector<QuadratureNode>> rules;
-  for (const auto* slot : slots) {
+  std::vector<std::vector<QuadratureNode>> rules(slots.size());
+  const auto families = sampling.reference ? kernelFamilies(slots) : std::vector<std::vector<size_t>>();
+  for (size_t s = 0; s < slots.size(); ++s) {
+    const ChannelOutput* slot = slots[s];
     try {
-      rules.push_back(sampling.reference ? fineGrid(slot->kernel, sim)
-                      : sampling.shared  ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, pieces)
-                                         : ruleWithLines(sim, slot->kernel, sampling));
+      if (!sampling.reference)
+        rules[s] = sampling.shared ? sharedRule(slot->kernel, sampling.samples, sampling.spacing, pieces) : ruleWithLines(sim, slot->kernel, sampling);
+      else
+        for (const auto& family : families) {
+          // Responses of one band at the same wavelengths: what is told of them serves all.
+          if (family.front() != s) continue;
+          std::vector<const Spectrum*> alike;
+          for (size_t k : family) alike.push_back(kernels[k]);
+          auto grids = fineGrids(alike, sim);
+          for (size_t k = 0; k < family.size(); ++k) rules[family[k]] = std::move(grids[k]);
+        }
     } catch (const std::invalid_argument& e) {
       throw UserError(slot->where, "channel '" + slot->channel + "': " + e.what(),
                       sampling.shared ? "a response that these samples integrate to 0.1 %" : "a response above zero somewhere",

@@ -4,6 +4,7 @@
 // scene and an accuracy.
 #include <algorithm>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,8 +38,9 @@ struct PredictedParts {
   double dropped = 0.0;       ///< terms left out
   double precision = 0.0;     ///< single precision
   double surroundings = 0.0;  ///< ambient light by so many harmonics
+  double fields = 0.0;        ///< steps through plumes and clouds, and lines through pixels of them, at most
   double extremes = 0.0;      ///< by itself: largest on the lines at the extremes, of wavelengths alone
-  double sum() const { return wavelengths + tables + dropped + precision + surroundings; }
+  double sum() const { return wavelengths + tables + dropped + precision + surroundings + fields; }
 };
 
 /// Entries of the tables that the GPU reads air from; 0: none.
@@ -64,6 +66,8 @@ constexpr double kShadowShare = 0.02;
 constexpr double kLampShare = 0.01;
 /// And the part that what absorbs next to nothing may take.
 constexpr double kThinShare = 0.002;
+/// And the part that steps through fields may take, and lines through pixels of them.
+constexpr double kFieldsShare = 1.0 / 3.0;
 /// What counts as dark in any film [W/(m2 sr um)]: to a pixel of 1e-9 m2 sr a micrometre of it sends a photon in five hours.
 constexpr double kDarkest = 1e-14;
 /// The floor of a channel whose bright pixels have so much; `kernel`: its integral over wavelength, which is the sum of its weights.
@@ -103,6 +107,9 @@ Plan someWavelengths(const Plan& plan, int most);
 
 /// Slots of one pass: four RGBA targets.
 constexpr int kMostSlots = 16;
+
+/// An output of each slot: outputs with the same kernel, and nothing apart, share one. `slotOfOutput`: of each output.
+std::vector<const ChannelOutput*> differentKernels(std::span<const ChannelOutput> outputs, std::vector<int>* slotOfOutput = nullptr);
 
 /// Outputs with the same kernel share a slot. Throws UserError where there are more than 16 kernels, a response is zero, or
 /// the spectrum of a material, light, air or background does not cover a channel's band (naming both).

@@ -93,7 +93,7 @@ std::string writePlanned(const Plan& plan) {
   w.put(plan.weight.size());
   for (const auto& row : plan.weight) w.all(row);
   w.all(plan.predictedError);
-  for (const PredictedParts& p : plan.parts) w.all(std::array{p.wavelengths, p.tables, p.dropped, p.precision, p.surroundings, p.extremes});
+  for (const PredictedParts& p : plan.parts) w.all(std::array{p.wavelengths, p.tables, p.dropped, p.precision, p.surroundings, p.fields, p.extremes});
   for (int n : {plan.air.elevations, plan.air.ranges, plan.air.azimuths}) w.put(static_cast<size_t>(n));
   w.put(plan.air.over), w.put(plan.air.across), w.put(plan.air.near_m), w.put(plan.air.same), w.put(plan.air.sunDepth);
   w.put(static_cast<size_t>(plan.lines)), w.put(static_cast<size_t>(plan.surroundings));
@@ -140,9 +140,9 @@ bool readPlanned(const std::string& text, Plan& into) {
   plan.predictedError = r.all(kMostSlots);
   plan.parts.clear();
   for (size_t k = 0; k < plan.predictedError.size(); ++k) {
-    const auto p = r.all(6);
-    if (p.size() != 6) return false;
-    plan.parts.push_back({p[0], p[1], p[2], p[3], p[4], p[5]});
+    const auto p = r.all(7);
+    if (p.size() != 7) return false;
+    plan.parts.push_back({p[0], p[1], p[2], p[3], p[4], p[5], p[6]});
   }
   for (int* n : {&plan.air.elevations, &plan.air.ranges, &plan.air.azimuths}) *n = static_cast<int>(r.count(kMostEntries));
   plan.air.over = r.number(), plan.air.across = r.number(), plan.air.near_m = r.number(), plan.air.same = r.number(), plan.air.sunDepth = r.number();

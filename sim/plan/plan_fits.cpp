@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sim/parameters/on_threads.hpp"
+#include "sim/plan/kernel_family.hpp"
 
 namespace pitviper {
 namespace {
@@ -54,9 +55,9 @@ SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const Spectral
 }
 
 /// On as many threads as the machine has.
-void forAll(const std::vector<size_t>& slots, const std::function<void(size_t)>& work) {
-  onAllThreads(slots.size(), [&](const auto& next) {
-    for (size_t k = next(); k < slots.size(); k = next()) work(slots[k]);
+void forAll(const std::vector<size_t>& fits, const std::function<void(size_t)>& work) {
+  onAllThreads(fits.size(), [&](const auto& next) {
+    for (size_t k = next(); k < fits.size(); k = next()) work(fits[k]);
   });
 }
 
@@ -73,6 +74,12 @@ double shortestOf(const std::vector<const ChannelOutput*>& slots) {
   for (const ChannelOutput* s : slots)
     if (s->kernel.supportHigh() > kThermal_um) shortest_um = std::min(shortest_um, std::max(s->kernel.supportLow(), kThermal_um));
   return shortest_um;
+}
+
+size_t mostOf(const std::vector<std::vector<size_t>>& families) {
+  size_t most = 0;
+  for (const auto& f : families) most = std::max(most, f.size());
+  return most;
 }
 
 }  // namespace
@@ -107,55 +114,69 @@ PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& pla
       lastPlaces_(lastPlaces),
       tell_(tell),
       plan_(plan),
-      sights_(simulation, plan_, rays, shortestOf(slots), airPlaces),
+      slots_(kernelFamilies(slots)),
+      sights_(simulation, plan_, rays, shortestOf(slots), airPlaces, mostOf(slots_)),
       extremes_(extremes),
       second_(simulation, fine, secondLines(rays), lastPlaces, floor) {
   std::vector<size_t> all;
-  for (const ChannelOutput* slot : slots) {
+  for (const auto& family : slots_) {
     all.push_back(fits_.size());
-    fits_.push_back(std::make_unique<ChannelFit>(simulation, slot->kernel, plan.accuracy));
+    std::vector<const Spectrum*> kernels;
+    for (size_t s : family) kernels.push_back(&slots[s]->kernel);
+    fits_.push_back(std::make_unique<ChannelFit>(simulation, kernels, plan.accuracy));
   }
   sights_.begin(kFirst, eye.camera ? eye.camera->learnt : std::vector<FilmPlace>());
   tell_(0.1);
-  forAll(all, [&](size_t s) { fits_[s]->begin(sights_, floor_[s]); });
+  forAll(all, [&](size_t f) {
+    std::vector<double> floors;
+    for (size_t s : slots_[f]) floors.push_back(floor_[s]);
+    fits_[f]->begin(sights_, std::move(floors));
+  });
   hold(all);
 }
 
 std::vector<size_t> PlanFits::learn(const CheckedLines& checked, const std::vector<size_t>& slots, const std::vector<double>& allowed) {
+  std::vector<size_t> fits, changed;
+  for (size_t f = 0; f < fits_.size(); ++f)
+    if (std::any_of(slots_[f].begin(), slots_[f].end(), [&](size_t s) { return std::find(slots.begin(), slots.end(), s) != slots.end(); })) fits.push_back(f);
   std::vector<std::vector<SpectralGroup>> before;
-  for (size_t s : slots) before.push_back(fits_[s]->groups());
-  teach(checked, slots, allowed);
-  hold(slots);
-  std::vector<size_t> changed;
-  for (size_t k = 0; k < slots.size(); ++k)
-    if (fits_[slots[k]]->groups() != before[k]) changed.push_back(slots[k]);
+  for (size_t f : fits) before.push_back(fits_[f]->groups());
+  teach(checked, fits, allowed);
+  hold(fits);
+  for (size_t k = 0; k < fits.size(); ++k)
+    if (fits_[fits[k]]->groups() != before[k]) changed.insert(changed.end(), slots_[fits[k]].begin(), slots_[fits[k]].end());
+  std::sort(changed.begin(), changed.end());
   return changed;
 }
 
-void PlanFits::teach(const CheckedLines& checked, const std::vector<size_t>& slots, const std::vector<double>& allowed) {
+void PlanFits::teach(const CheckedLines& checked, const std::vector<size_t>& fits, const std::vector<double>& allowed) {
   std::set<size_t> missed;
-  for (size_t s : slots)
-    for (size_t n = 0; n < checked.figures[s].errors.size(); ++n)
-      if (checked.figures[s].errors[n] > std::min(kLearnt * plan_.accuracy, kTightened * allowed[s]) || checked.figures[s].left[n] > kNoticed * plan_.accuracy)
-        missed.insert(n);
+  for (size_t f : fits)
+    for (size_t s : slots_[f])
+      for (size_t n = 0; n < checked.figures[s].errors.size(); ++n)
+        if (checked.figures[s].errors[n] > std::min(kLearnt * plan_.accuracy, kTightened * allowed[s]) ||
+            checked.figures[s].left[n] > kNoticed * plan_.accuracy)
+          missed.insert(n);
   const size_t first = sights_.size();
   for (size_t n : missed) sights_.add(checked.lines[n], true);
-  forAll(slots, [&](size_t s) {
-    fits_[s]->learn(sights_, first, std::clamp(kTightened * allowed[s] / std::max(checked.figures[s].largest, 1e-300), kLeastPart, kTightened));
+  forAll(fits, [&](size_t f) {
+    double part = kTightened;
+    for (size_t s : slots_[f]) part = std::min(part, kTightened * allowed[s] / std::max(checked.figures[s].largest, 1e-300));
+    fits_[f]->learn(sights_, first, std::max(part, kLeastPart));
   });
 }
 
 /// Checks fits on ever new lines and on the second ones, until they hold or enough was tried.
-void PlanFits::hold(const std::vector<size_t>& slots) {
-  std::vector<size_t> open = slots;
+void PlanFits::hold(const std::vector<size_t>& fits) {
+  std::vector<size_t> open = fits;
   std::vector<double> before(fits_.size(), INFINITY);
-  const std::vector<double> allowed(fits_.size(), kHeld * plan_.accuracy);
+  const std::vector<double> allowed(floor_.size(), kHeld * plan_.accuracy);
   for (int attempt = 0;; ++attempt) {
     for (int n = 0; n < kChecks && !open.empty(); ++n) {
       tell_(0.5 + 0.5 * (attempt + static_cast<double>(n) / kChecks) / (kLearn + 1));
       sights_.draw(kCheck);
-      forAll(open, [&](size_t s) { fits_[s]->check(sights_); });
-      std::erase_if(open, [&](size_t s) { return fits_[s]->holds(); });
+      forAll(open, [&](size_t f) { fits_[f]->check(sights_); });
+      std::erase_if(open, [&](size_t f) { return fits_[f]->holds(); });
     }
     if (attempt == kLearn) return;
     takeNodes(plan_);
@@ -164,16 +185,17 @@ void PlanFits::hold(const std::vector<size_t>& slots) {
     seen.add(extremes_.lines(), extremes_.check(nodes));
     seen.add(second_.lines(), second_.check(nodes));
     open.clear();
-    for (size_t s : slots) {
-      const double largest = seen.figures[s].largest;
-      if (largest <= allowed[s] || before[s] == 0.0) continue;
-      if (largest > kHopeless * before[s]) {
-        fits_[s]->goBack();
-        before[s] = 0.0;
+    for (size_t f : fits) {
+      double largest = 0.0;
+      for (size_t s : slots_[f]) largest = std::max(largest, seen.figures[s].largest);
+      if (largest <= kHeld * plan_.accuracy || before[f] == 0.0) continue;
+      if (largest > kHopeless * before[f]) {
+        fits_[f]->goBack();
+        before[f] = 0.0;
         continue;
       }
-      before[s] = largest;
-      open.push_back(s);
+      before[f] = largest;
+      open.push_back(f);
     }
     if (open.empty()) return;
     teach(seen, open, allowed);
@@ -183,21 +205,23 @@ void PlanFits::hold(const std::vector<size_t>& slots) {
 void PlanFits::takeNodes(Plan& plan) const {
   plan.nodes.clear();
   plan.blocks.clear();
-  plan.weight.clear();
   plan.shares.clear();
-  plan.fineCount.clear();
-  for (int k = 0; k < kTermKinds; ++k) plan.shares.push_back({nameOf(static_cast<TermKind>(k)), {}, true});
-  for (const auto& f : fits_) {
-    plan.blocks.push_back({plan.nodeCount(), static_cast<int>(f->groups().size()), {static_cast<int>(plan.blocks.size())}});
-    for (const SpectralGroup& g : f->groups()) plan.nodes.push_back(nodeOf(sim_, *f, g));
-    plan.fineCount.push_back(static_cast<int>(f->grid().weight.size()));
-    for (size_t k = 0; k < f->shares().size(); ++k) plan.shares[k].share.push_back(f->shares()[k]);
+  for (int k = 0; k < kTermKinds; ++k) plan.shares.push_back({nameOf(static_cast<TermKind>(k)), std::vector<double>(floor_.size(), 0.0), true});
+  plan.weight.assign(floor_.size(), {});
+  plan.fineCount.assign(floor_.size(), 0);
+  for (size_t f = 0; f < fits_.size(); ++f) {
+    const ChannelFit& fit = *fits_[f];
+    plan.blocks.push_back({plan.nodeCount(), static_cast<int>(fit.groups().size()), {slots_[f].begin(), slots_[f].end()}});
+    for (size_t k = 0; k < slots_[f].size(); ++k) {
+      const size_t s = slots_[f][k];
+      plan.weight[s].assign(plan.nodes.size(), 0.0);
+      for (const SpectralGroup& g : fit.groups()) plan.weight[s].push_back(fit.weightOf(g, k));
+      plan.fineCount[s] = static_cast<int>(fit.grid().weight.size());
+      for (size_t t = 0; t < fit.shares().size(); ++t) plan.shares[t].share[s] = fit.shares()[t];
+    }
+    for (const SpectralGroup& g : fit.groups()) plan.nodes.push_back(nodeOf(sim_, fit, g));
   }
-  for (size_t s = 0; s < fits_.size(); ++s) {
-    std::vector<double> weights(plan.nodes.size(), 0.0);
-    for (size_t g = 0; g < fits_[s]->groups().size(); ++g) weights[static_cast<size_t>(plan.blocks[s].first) + g] = fits_[s]->groups()[g].weight;
-    plan.weight.push_back(std::move(weights));
-  }
+  for (auto& w : plan.weight) w.resize(plan.nodes.size(), 0.0);
 }
 
 }  // namespace pitviper

@@ -1,5 +1,5 @@
 #pragma once
-// The groups of wavelengths of all channels of a plan: fitted to lines of sight as sums of products, then held against the radiance equation itself,
+// The groups of wavelengths of all channels of a plan, those of alike kernels in common: fitted to lines of sight as sums of products, then held against the radiance equation itself,
 // which products are simpler than.
 #include <functional>
 #include <memory>
@@ -26,7 +26,8 @@ class PlanFits {
   PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
            HeldLines& extremes, SightRays& rays, const std::vector<double>& floor, int airPlaces, int lastPlaces,
            const std::function<void(double part)>& tell);
-  /// Fits those slots to what they are off by on these lines besides; `allowed`: the most that each may be. Returns the slots whose groups have changed.
+  /// Fits those slots, and those fitted with them, to what they are off by on these lines besides; `allowed`: the most that each slot may be. Returns the slots
+  /// whose groups have changed.
   std::vector<size_t> learn(const CheckedLines& checked, const std::vector<size_t>& slots, const std::vector<double>& allowed);
   /// Lines are told to fits at as many places as they are held against from here on.
   void lookCloser() { sights_.setAirPlaces(lastPlaces_); }
@@ -34,8 +35,8 @@ class PlanFits {
   void takeNodes(Plan& plan) const;
 
  private:
-  void hold(const std::vector<size_t>& slots);
-  void teach(const CheckedLines& checked, const std::vector<size_t>& slots, const std::vector<double>& allowed);
+  void hold(const std::vector<size_t>& fits);
+  void teach(const CheckedLines& checked, const std::vector<size_t>& fits, const std::vector<double>& allowed);
 
   const Simulation& sim_;
   const NodesOfPlan& fine_;
@@ -44,6 +45,7 @@ class PlanFits {
   int lastPlaces_;
   const std::function<void(double)>& tell_;
   Plan plan_;
+  std::vector<std::vector<size_t>> slots_;  ///< of each fit
   Sights sights_;
   std::vector<std::unique_ptr<ChannelFit>> fits_;
   HeldLines& extremes_;

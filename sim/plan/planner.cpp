@@ -5,6 +5,7 @@
 
 #include "sim/plan/air_table_request.hpp"
 #include "sim/plan/line_check.hpp"
+#include "sim/plan/measured_outputs.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/plan_fits.hpp"
 #include "sim/plan/plan_origin.hpp"
@@ -61,6 +62,9 @@ void dropTerms(Plan& plan, bool keepLights) {
   if (std::none_of(plan.blocks.begin(), plan.blocks.end(), [](const NodeBlock& b) { return b.lit; })) dropLights(plan);
 }
 
+/// The truth layers show the first light's geometry.
+bool keepsLights(const Eye& eye) { return eye.camera && eye.camera->truth.solidAngles; }
+
 /// A plan that was made elsewhere has what drawing takes from it.
 bool suits(const Plan& plan, const Simulation& sim) {
   return std::all_of(plan.nodes.begin(), plan.nodes.end(), [&](const SpectralNode& n) { return n.absorption_per_m.size() == sim.materials.size(); });
@@ -106,6 +110,7 @@ struct LastLook {
                        last.figures[s].dropped + lamps + thin,
                        kPrecision,
                        plan.surroundingsLoss.empty() ? 0.0 : plan.surroundingsLoss[s],
+                       sim.fields.empty() ? 0.0 : kFieldsShare * plan.accuracy,
                        extreme[s].largest};
     return last;
   }
@@ -179,7 +184,7 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
       // Tables were made for other groups of what has changed.
       const bool isOld = attempt > 0 && std::find(changed.begin(), changed.end(), s) != changed.end();
       const double left = (isOld ? kOldTables : 1.0) * plan.accuracy - std::min(p.tables, kMended * plan.accuracy) -
-                          std::min(p.surroundings, kSurroundingsShare * plan.accuracy) - p.dropped - p.precision;
+                          std::min(p.surroundings, kSurroundingsShare * plan.accuracy) - p.dropped - p.precision - p.fields;
       allowed.push_back(std::max(left, 0.0) / kMargin);
       if (p.wavelengths > left) missed.push_back(s);
     }
@@ -198,21 +203,15 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
   for (const PredictedParts& p : plan.parts) plan.predictedError.push_back(p.sum());
 }
 
-}  // namespace
-
-Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress) {
-  const auto& outputs = eye.camera ? eye.camera->outputs : eye.probe->outputs;
+/// Terms that nobody would notice are still in it.
+Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const PlanProgress& progress) {
   const SpectralSampling& sampling = eye.camera ? eye.camera->spectral : eye.probe->spectral;
   const Location& where = eye.camera ? eye.camera->where : eye.probe->where;
   Plan plan = makePlan(sim, outputs, sampling, where);
-  // The truth layers show the first light's geometry.
   plan.textureAccuracy = eye.camera ? eye.camera->textureAccuracy : sampling.reference ? kFinestTextures : sampling.accuracy;
-  const bool keepLights = eye.camera && eye.camera->truth.solidAngles;
+  const bool keepLights = keepsLights(eye);
   if (!keepLights && !plan.terms.solid.reflects && !plan.terms.layer.reflects) dropLights(plan);
-  if (sampling.reference || sampling.shared) {
-    plan.fingerprint = planFingerprint(plan);
-    return plan;
-  }
+  if (sampling.reference || sampling.shared) return plan;
   plan.accuracy = sampling.accuracy;
 
   const ContentKey key = planKey(sim, eye);
@@ -251,10 +250,39 @@ Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress
     plan.terms = all;
     writeCachedPlan(key, plan);
   }
-  if (plan.accuracy > 0.0) dropTerms(plan, keepLights);
-  plan.fingerprint = planFingerprint(plan);
   if (progress) progress(1.0);
   return plan;
+}
+
+Plan finished(Plan plan, const Eye& eye) {
+  if (plan.accuracy > 0.0) dropTerms(plan, keepsLights(eye));
+  plan.fingerprint = planFingerprint(plan);
+  return plan;
+}
+
+std::vector<ChannelOutput> joined(std::vector<ChannelOutput> all, const std::vector<ChannelOutput>& more) {
+  all.insert(all.end(), more.begin(), more.end());
+  return all;
+}
+
+}  // namespace
+
+Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress) {
+  const auto [drawn, measured] = plannedOutputs(sim, eye);
+  return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), progress), 0, drawn.size()), eye);
+}
+
+Plan measuredPlanFor(const Simulation& sim, const Camera& camera) {
+  const auto [drawn, measured] = plannedOutputs(sim, {&camera, nullptr});
+  if (!measured.empty()) {
+    const Eye eye{&camera, nullptr};
+    return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), {}), drawn.size(), measured.size()), eye);
+  }
+  Camera own = camera;
+  own.outputs = measuredOutputs(sim, camera);
+  own.plan.clear();
+  own.truth = {};
+  return planFor(sim, {&own, nullptr});
 }
 
 }  // namespace pitviper

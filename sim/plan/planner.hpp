@@ -14,4 +14,7 @@ using PlanProgress = std::function<void(double share)>;
 /// `progress` is told how much is done, on the calling thread; of a plan at hand only that it is made.
 Plan planFor(const Simulation& simulation, const Eye& eye, const PlanProgress& progress = {});
 
+/// The same for what the truth of a camera's targets is measured in (measuredOutputs()); where that goes, of the same groups as the picture: no work besides.
+Plan measuredPlanFor(const Simulation& simulation, const Camera& camera);
+
 }  // namespace pitviper

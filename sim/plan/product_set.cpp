@@ -5,8 +5,13 @@
 #include <stdexcept>
 #include <string>
 
+#include "sim/parameters/on_threads.hpp"
+
 namespace pitviper {
 namespace {
+
+/// Of terms, paths, spectra, products for errors and for slopes, so many keep a thread busy for longer than it takes to start one.
+constexpr size_t kLeastTerms = 512, kLeastPaths = 1024, kLeastSpectra = 128, kLeastProducts = 64, kLeastSlopes = 16;
 
 void require(bool condition, const std::string& what) {
   if (!condition) throw std::invalid_argument("spectral problem: " + what);
@@ -124,19 +129,23 @@ void ProductSet::integrate(const std::vector<double>& floors) {
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return terms[static_cast<size_t>(a)].path < terms[static_cast<size_t>(b)].path; });
   int tags = 0;
   for (const ProductTerm& t : terms) tags = std::max(tags, t.tag + 1);
-  parts = Eigen::MatrixXd::Zero(tags, static_cast<Eigen::Index>(floors.size()));
-  Eigen::VectorXd tau;
-  int current = -1;
-  for (int index : order) {
-    const ProductTerm& t = terms[static_cast<size_t>(index)];
-    if (t.path != current) {
-      current = t.path;
-      tau = (-(extinction * amounts.col(current)).array()).exp();
+  std::vector<double> values(terms.size());
+  onStretches(order.size(), kLeastTerms, [&](size_t from, size_t to) {
+    Eigen::VectorXd tau;
+    int current = -1;
+    for (size_t n = from; n < to; ++n) {
+      const ProductTerm& t = terms[static_cast<size_t>(order[n])];
+      if (t.path != current) {
+        current = t.path;
+        tau = (-(extinction * amounts.col(current)).array()).exp();
+      }
+      Eigen::ArrayXd product = weighted.col(t.spectrum[0]).array() * tau.array();
+      for (int f = 1; f < t.count; ++f) product *= weighted.col(t.spectrum[static_cast<size_t>(f)]).array() / weight.array();
+      values[static_cast<size_t>(order[n])] = t.coefficient * product.sum();
     }
-    Eigen::ArrayXd product = weighted.col(t.spectrum[0]).array() * tau.array();
-    for (int f = 1; f < t.count; ++f) product *= weighted.col(t.spectrum[static_cast<size_t>(f)]).array() / weight.array();
-    parts(t.tag, productOf[static_cast<size_t>(index)]) += t.coefficient * product.sum();
-  }
+  });
+  parts = Eigen::MatrixXd::Zero(tags, static_cast<Eigen::Index>(floors.size()));
+  for (int index : order) parts(terms[static_cast<size_t>(index)].tag, productOf[static_cast<size_t>(index)]) += values[static_cast<size_t>(index)];
   fine = parts.colwise().sum();
   scale.resize(fine.size());
   for (Eigen::Index m = 0; m < fine.size(); ++m) {
@@ -194,11 +203,16 @@ GroupMoments ProductSet::moments(const GroupState& state) const {
   };
   const Eigen::MatrixXd share = filled(state.share), depths = filled(state.extinction);
   m.source.resize(padded, weighted.cols());
-  averages(share.data(), weighted.data(), fineCount(), sourceCount(), padded, m.source.data());
+  onStretches(static_cast<size_t>(sourceCount()), kLeastSpectra, [&](size_t from, size_t to) {
+    const auto column = static_cast<Eigen::Index>(from);
+    averages(share.data(), weighted.col(column).data(), fineCount(), static_cast<int>(to - from), padded, m.source.col(column).data());
+  });
   m.weight.resize(padded);
   averages(share.data(), weight.data(), fineCount(), 1, padded, m.weight.data());
   m.transmittance.resize(padded, pathCount());
-  transmittances(sparse, depths.data(), padded, m.transmittance.data());
+  onStretches(static_cast<size_t>(pathCount()), kLeastPaths, [&](size_t from, size_t to) {
+    transmittances(sparse, static_cast<int>(from), static_cast<int>(to), depths.data(), padded, m.transmittance.data());
+  });
   return m;
 }
 
@@ -252,21 +266,24 @@ class TermValue {
 Eigen::VectorXd ProductSet::errors(const GroupMoments& at) const {
   const Eigen::ArrayXd perWeight = inverse(at.weight);
   Eigen::VectorXd e(size());
-  Eigen::ArrayXd product(at.weight.size());
-  for (int m = 0; m < size(); ++m) {
-    double sum = 0.0;
-    for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
-      const ProductTerm& term = terms[static_cast<size_t>(t)];
-      const auto tau = at.transmittance.col(term.path);
-      if (term.count == 1) {
-        sum += term.coefficient * at.source.col(term.spectrum[0]).dot(tau);
-        continue;
+  onStretches(static_cast<size_t>(size()), kLeastProducts, [&](size_t from, size_t to) {
+    Eigen::ArrayXd product(at.weight.size());
+    for (size_t m = from; m < to; ++m) {
+      double sum = 0.0;
+      for (int t = firstTerm[m]; t < firstTerm[m + 1]; ++t) {
+        const ProductTerm& term = terms[static_cast<size_t>(t)];
+        const auto tau = at.transmittance.col(term.path);
+        if (term.count == 1) {
+          sum += term.coefficient * at.source.col(term.spectrum[0]).dot(tau);
+          continue;
+        }
+        TermValue(at, perWeight, term).spectraBut(-1, product);
+        sum += term.coefficient * (product * tau.array()).sum();
       }
-      TermValue(at, perWeight, term).spectraBut(-1, product);
-      sum += term.coefficient * (product * tau.array()).sum();
+      const auto at_m = static_cast<Eigen::Index>(m);
+      e[at_m] = scale[at_m] * (sum - fine[at_m]);
     }
-    e[m] = scale[m] * (sum - fine[m]);
-  }
+  });
   return e;
 }
 
@@ -276,41 +293,43 @@ GroupSlopes ProductSet::slopes(const GroupMoments& at) const {
   const Eigen::Index padded = at.source.rows(), groups = at.groups, shapes = mix.rows(), columns = amounts.rows();
   GroupSlopes out{Eigen::MatrixXd::Zero(basis.cols() * groups, size()), Eigen::MatrixXd::Zero(columns * groups, size())};
   const double* w = perWeight.data();
-  Eigen::ArrayXd product(padded), own(padded), byWeight(groups);
-  const auto addTo = [&](double* averages, int source) {
-    const double *d = own.data(), *m = mix.data() + shapes * source;
-    for (Eigen::Index r = 0; r < shapes; ++r, averages += groups)
-      for (Eigen::Index g = 0; g < groups; ++g) averages[g] += m[r] * d[g];
-  };
-  for (int m = 0; m < size(); ++m) {
-    double* averages = out.average.col(m).data();
-    byWeight.setZero();
-    for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
-      const ProductTerm& term = terms[static_cast<size_t>(t)];
-      const double c = scale[m] * term.coefficient;
-      const double* tau = at.transmittance.data() + padded * term.path;
-      const TermValue value(at, perWeight, term);
-      value.spectraBut(-1, product);
-      product *= c * at.transmittance.col(term.path).array();
-      for (int f = 0; f < term.count; ++f) {
-        if (term.count == 1)
-          for (Eigen::Index g = 0; g < groups; ++g) own[g] = c * tau[g];
-        else {
-          value.spectraBut(f, own);
-          for (Eigen::Index g = 0; g < groups; ++g) own[g] *= c * tau[g];
+  onStretches(static_cast<size_t>(size()), kLeastSlopes, [&](size_t from, size_t to) {
+    Eigen::ArrayXd product(padded), own(padded), byWeight(groups);
+    const auto addTo = [&](double* averages, int source) {
+      const double *d = own.data(), *m = mix.data() + shapes * source;
+      for (Eigen::Index r = 0; r < shapes; ++r, averages += groups)
+        for (Eigen::Index g = 0; g < groups; ++g) averages[g] += m[r] * d[g];
+    };
+    for (auto m = static_cast<int>(from); m < static_cast<int>(to); ++m) {
+      double* averages = out.average.col(m).data();
+      byWeight.setZero();
+      for (int t = firstTerm[static_cast<size_t>(m)]; t < firstTerm[static_cast<size_t>(m) + 1]; ++t) {
+        const ProductTerm& term = terms[static_cast<size_t>(t)];
+        const double c = scale[m] * term.coefficient;
+        const double* tau = at.transmittance.data() + padded * term.path;
+        const TermValue value(at, perWeight, term);
+        value.spectraBut(-1, product);
+        product *= c * at.transmittance.col(term.path).array();
+        for (int f = 0; f < term.count; ++f) {
+          if (term.count == 1)
+            for (Eigen::Index g = 0; g < groups; ++g) own[g] = c * tau[g];
+          else {
+            value.spectraBut(f, own);
+            for (Eigen::Index g = 0; g < groups; ++g) own[g] *= c * tau[g];
+          }
+          addTo(averages, term.spectrum[static_cast<size_t>(f)]);
         }
-        addTo(averages, term.spectrum[static_cast<size_t>(f)]);
+        if (term.count > 1)
+          for (Eigen::Index g = 0; g < groups; ++g) byWeight[g] -= (term.count - 1) * w[g] * product[g];
+        const double* amount = amounts.data() + columns * term.path;
+        double* depths = out.extinction.col(m).data();
+        for (Eigen::Index k = 0; k < columns; ++k, depths += groups)
+          if (amount[k] != 0.0)
+            for (Eigen::Index g = 0; g < groups; ++g) depths[g] -= amount[k] * product[g];
       }
-      if (term.count > 1)
-        for (Eigen::Index g = 0; g < groups; ++g) byWeight[g] -= (term.count - 1) * w[g] * product[g];
-      const double* amount = amounts.data() + columns * term.path;
-      double* depths = out.extinction.col(m).data();
-      for (Eigen::Index k = 0; k < columns; ++k, depths += groups)
-        if (amount[k] != 0.0)
-          for (Eigen::Index g = 0; g < groups; ++g) depths[g] -= amount[k] * product[g];
+      if (basis.cols() > shapes) out.average.col(m).tail(groups) = weightSize * byWeight.matrix();
     }
-    if (basis.cols() > shapes) out.average.col(m).tail(groups) = weightSize * byWeight.matrix();
-  }
+  });
   return out;
 }
 

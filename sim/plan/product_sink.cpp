@@ -86,8 +86,9 @@ int ProductSink::pathOf(const AirAmounts& powered, double ownPart, std::pair<int
 void ProductSink::add(ProductTerm term) {
   for (const Pane& p : panes_) {
     term.coefficient *= p.modifier;
-    if (term.count < kMostFactors) term.spectrum[static_cast<size_t>(term.count++)] = p.transmittance;
-    else term.spectrum.back() = book_.both(term.spectrum.back(), p.transmittance);
+    // One place is left for the ratio of kernels (Sights::problem).
+    if (term.count + 1 < kMostFactors) term.spectrum[static_cast<size_t>(term.count++)] = p.transmittance;
+    else term.spectrum[kMostFactors - 2] = book_.both(term.spectrum[kMostFactors - 2], p.transmittance);
   }
   if (term.coefficient != 0.0) sight_.terms.push_back(term);
 }

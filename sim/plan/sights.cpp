@@ -61,12 +61,17 @@ std::vector<Slab> inParts(const std::vector<Slab>& all) {
   return some;
 }
 
-FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel) {
+FineGrid fineGridOf(const Simulation& simulation, std::span<const Spectrum* const> kernels) {
   FineGrid grid;
-  for (const QuadratureNode& n : fineGrid(kernel, simulation)) {
+  const auto nodes = fineGrids(kernels, simulation);
+  for (const QuadratureNode& n : nodes.front()) {
     grid.wavelength_um.push_back(n.x);
     grid.weight.push_back(n.weight);
     grid.air.push_back(simulation.air ? simulation.air->node(n.x) : AirNode{});
+  }
+  for (size_t k = 1; k < kernels.size(); ++k) {
+    std::vector<double>& ratio = grid.ratio.emplace_back();
+    for (size_t i = 0; i < grid.weight.size(); ++i) ratio.push_back(grid.weight[i] > 0.0 ? nodes[k][i].weight / grid.weight[i] : 0.0);
   }
   return grid;
 }
@@ -93,8 +98,11 @@ int SightBook::both(int a, int b) {
                   [fa = spectra[static_cast<size_t>(a)], fb = spectra[static_cast<size_t>(b)]](const FineGrid& g, size_t i) { return fa(g, i) * fb(g, i); });
 }
 
-Sights::Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um, int airPlaces)
-    : simulation_(simulation), plan_(plan), rays_(rays), shortest_um_(shortest_um), airPlaces_(airPlaces) {}
+Sights::Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um, int airPlaces, size_t kernels)
+    : simulation_(simulation), plan_(plan), rays_(rays), shortest_um_(shortest_um), airPlaces_(airPlaces) {
+  for (size_t k = 0; k + 1 < kernels; ++k)
+    ratios_.push_back(book_.spectrum("kernel " + std::to_string(k + 1), [k](const FineGrid& g, size_t i) { return k < g.ratio.size() ? g.ratio[k][i] : 0.0; }));
+}
 
 void Sights::add(const SightRay& ray, bool inFull) {
   RadianceScene scene{simulation_, plan_.terms, plan_.sunLegs.get(), *ray.state, {}, airPlaces_};
@@ -145,7 +153,7 @@ std::vector<int> Sights::absorbers(const FineGrid& grid) const {
   return found;
 }
 
-SpectralProblem Sights::whole(const FineGrid& grid, const std::vector<int>& absorbers, std::span<const Sight> sights) const {
+SpectralProblem Sights::spectra(const FineGrid& grid, const std::vector<int>& absorbers) const {
   SpectralProblem p;
   p.wavelength_um = grid.wavelength_um;
   p.weight = grid.weight;
@@ -164,26 +172,33 @@ SpectralProblem Sights::whole(const FineGrid& grid, const std::vector<int>& abso
     for (int a : absorbers) u.push_back(path.amount(a));
     p.paths.push_back(std::move(u));
   }
-  for (const Sight& s : sights) p.products.push_back({s.terms, 0.0});
   return p;
 }
 
-SpectralProblem Sights::problem(const FineGrid& grid, const std::vector<int>& absorbers, double floor, size_t first) const {
-  SpectralProblem p = whole(grid, absorbers, std::span(book_.sights).subspan(first));
+SpectralProblem Sights::problem(const FineGrid& grid, std::span<const size_t> kernels, const std::vector<int>& absorbers, std::span<const double> floors,
+                                size_t first) const {
+  SpectralProblem p = spectra(grid, absorbers);
   std::map<std::pair<int, std::array<int, kMostFactors>>, double> bound;
-  for (SpectralProduct& product : p.products) {
-    product.floor = floor;
-    std::erase_if(product.terms, [&](const ProductTerm& t) {
-      auto [at, isNew] = bound.try_emplace({t.count, t.spectrum}, 0.0);
-      if (isNew)
-        for (size_t i = 0; i < p.weight.size(); ++i) {
-          double value = p.weight[i];
-          for (int s : t.spectra()) value *= p.spectra[static_cast<size_t>(s)][i];
-          at->second += std::abs(value);
-        }
-      return std::abs(t.coefficient) * at->second < kNegligible * floor;
-    });
-  }
+  const auto isNegligible = [&](const ProductTerm& t, double floor) {
+    auto [at, isNew] = bound.try_emplace({t.count, t.spectrum}, 0.0);
+    if (isNew)
+      for (size_t i = 0; i < p.weight.size(); ++i) {
+        double value = p.weight[i];
+        for (int s : t.spectra()) value *= p.spectra[static_cast<size_t>(s)][i];
+        at->second += std::abs(value);
+      }
+    return std::abs(t.coefficient) * at->second < kNegligible * floor;
+  };
+  for (size_t n = first; n < book_.sights.size(); ++n)
+    for (size_t k : kernels) {
+      SpectralProduct product{{}, floors[k]};
+      for (ProductTerm t : book_.sights[n].terms) {
+        // A group's weight in a further kernel is the first's times the ratio's average, whatever else is averaged.
+        if (k > 0) t.spectrum[static_cast<size_t>(t.count++)] = ratios_[k - 1];
+        if (!isNegligible(t, product.floor)) product.terms.push_back(t);
+      }
+      p.products.push_back(std::move(product));
+    }
   return p;
 }
 

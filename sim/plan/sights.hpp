@@ -12,9 +12,10 @@
 
 namespace pitviper {
 
-/// Wavelengths of a channel's fine grid, and the air there.
+/// Wavelengths of the fine grid of a channel, or of alike ones, and the air there.
 struct FineGrid {
-  std::vector<double> wavelength_um, weight;
+  std::vector<double> wavelength_um, weight;  ///< of the first kernel
+  std::vector<std::vector<double>> ratio;     ///< of each further kernel's weights to the first's
   std::vector<AirNode> air;
   mutable std::vector<std::vector<double>> known;  ///< of a SightBook's spectra, the first so many
 };
@@ -55,8 +56,8 @@ struct SightBook {
 class Sights {
  public:
   /// All must outlive it. `plan`: what makePlan() says of terms. `shortest_um`: the shortest wavelength that any channel sees thermal light at; `airPlaces`:
-  /// at which air is looked at, between which its emission is taken as one black body's.
-  Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um, int airPlaces);
+  /// at which air is looked at, between which its emission is taken as one black body's. `kernels`: of a grid at most.
+  Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um, int airPlaces, size_t kernels);
   /// The extremes, what was learnt, and so many others: half of them as the film draws pixels, a quarter of all combinations of things alike, a quarter aimed
   /// at bodies.
   void begin(int count, const std::vector<FilmPlace>& learnt);
@@ -69,17 +70,19 @@ class Sights {
   size_t size() const { return book_.sights.size(); }
   /// The absorbers that a channel may meet: places in AirAmounts, and from kMostAirAmounts on the materials of media.
   std::vector<int> absorbers(const FineGrid& grid) const;
-  /// The spectral problem of a channel, of sights from a number on, one column of extinction per absorber. Terms that with nothing in their way
-  /// would be far below the floor are left out.
-  SpectralProblem problem(const FineGrid& grid, const std::vector<int>& absorbers, double floor, size_t first = 0) const;
+  /// The spectral problem of some of a grid's kernels, of sights from a number on, one column of extinction per absorber: sight by sight a product of each
+  /// kernel. Terms that with nothing in their way would be far below the kernel's floor are left out.
+  SpectralProblem problem(const FineGrid& grid, std::span<const size_t> kernels, const std::vector<int>& absorbers, std::span<const double> floors,
+                          size_t first = 0) const;
 
  private:
   double coefficientOf(const FineGrid& grid, size_t i, int absorber) const;
-  SpectralProblem whole(const FineGrid& grid, const std::vector<int>& absorbers, std::span<const Sight> sights) const;
+  SpectralProblem spectra(const FineGrid& grid, const std::vector<int>& absorbers) const;
   const Simulation& simulation_;
   const Plan& plan_;
   SightRays& rays_;
   SightBook book_;
+  std::vector<int> ratios_;  ///< spectra of the book: of each further kernel
   double shortest_um_;
   int airPlaces_;
 };
@@ -90,6 +93,6 @@ constexpr std::size_t kFieldParts = 8;
 /// Neighbouring steps of a field as one, of about as much of all gases each; amounts add up, temperatures are means by amount.
 std::vector<Slab> inParts(const std::vector<Slab>& all);
 
-FineGrid fineGridOf(const Simulation& simulation, const Spectrum& kernel);
+FineGrid fineGridOf(const Simulation& simulation, std::span<const Spectrum* const> kernels);
 
 }  // namespace pitviper

@@ -38,7 +38,7 @@ TEST(GroupKernels, SumsAreThoseOfAnyNumberOfGroups) {
     SparseAmounts sparse;
     for (int p = 0; p < kPaths; ++p) sparse.add(amounts.data() + kColumns * p, kColumns);
     std::vector<double> through(static_cast<size_t>(padded * kPaths)), sums(static_cast<size_t>(padded * kSpectra));
-    transmittances(sparse, extinction.data(), padded, through.data());
+    transmittances(sparse, 0, static_cast<int>(sparse.first.size()) - 1, extinction.data(), padded, through.data());
     averages(share.data(), spectra.data(), kFine, kSpectra, padded, sums.data());
     double worst = 0.0;
     for (int g = 0; g < groups; ++g) {
