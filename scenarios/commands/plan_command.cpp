@@ -69,7 +69,8 @@ int planCommand(const Arguments& arguments) {
   auto tell = [&](const std::string& name, const Eye& eye, double subpixels) {
     const auto start = std::chrono::steady_clock::now();
     Progress progress("plan", 1);
-    const Plan plan = planFor(sim, eye, [&](double share) { progress.phase("planning " + name, share); });
+    const Plan plan = planFor(
+        sim, eye, [&](double share) { progress.phase("planning " + name, share); }, Foretold::Always);
     progress.withdraw();
     const bool buffered = sim.mode == RenderMode::Buffered || sim.hasTransparent();
     PlannedEye told{name,
@@ -81,8 +82,9 @@ int planCommand(const Arguments& arguments) {
                     bytesOf(makeTables(sim, plan)),
                     buffered,
                     plan.terms.air && plan.air.elevations > 0,
-                    eye.camera && eye.camera->follower ? (sim.limits.any() ? describe(sim.limits) + "; " : std::string()) + eye.camera->follower->words + ": its whole field"
-                                                       : describe(sim.limits),
+                    eye.camera && eye.camera->follower
+                        ? (sim.limits.any() ? describe(sim.limits) + "; " : std::string()) + eye.camera->follower->words + ": its whole field"
+                        : describe(sim.limits),
                     eye.camera};
     if (yardstick > 0.0) told.framesPerSecond = predictedRate(plan, subpixels, yardstick, buffered);
     if (o.has("--json")) json += (json.empty() ? "" : ", ") + planJson(told);

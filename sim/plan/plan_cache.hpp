@@ -13,7 +13,7 @@ namespace pitviper {
 inline constexpr int kPlannerVersion = 89;
 
 /// Of everything a plan is made from: the scenario's content, whole, and the eye's.
-ContentKey planKey(const Simulation& simulation, const Eye& eye);
+ContentKey planKey(const Simulation& simulation, const Eye& eye, bool isForetold = true);
 
 /// Of a plan's content, 32 hexadecimal digits.
 std::string planFingerprint(const Plan& plan);

@@ -204,7 +204,7 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
 }
 
 /// Terms that nobody would notice are still in it.
-Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const PlanProgress& progress) {
+Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const PlanProgress& progress, Foretold error) {
   const SpectralSampling& sampling = eye.camera ? eye.camera->spectral : eye.probe->spectral;
   const Location& where = eye.camera ? eye.camera->where : eye.probe->where;
   Plan plan = makePlan(sim, outputs, sampling, where);
@@ -214,7 +214,8 @@ Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutp
   if (sampling.reference || sampling.shared) return plan;
   plan.accuracy = sampling.accuracy;
 
-  const ContentKey key = planKey(sim, eye);
+  const bool isTold = plan.accuracy > 0.0 || error == Foretold::Always;
+  const ContentKey key = planKey(sim, eye, isTold);
   const Terms all = plan.terms;
   const bool given = eye.camera && !eye.camera->plan.empty();
   if (given) {
@@ -237,7 +238,12 @@ Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutp
     fine.terms = withSurroundings(fine.terms, plan.terms.surroundings != 0 ? plan.surroundings : 0);
     rays.reseed(seed);
     const NodesOfPlan exactNodes(sim, fine);
-    if (plan.accuracy > 0.0) {
+    if (!isTold) {
+      HeldLines none(sim, exactNodes, {}, kUsualPlaces, floor);
+      plan.parts.resize(floor.size());
+      LastLook{sim, eye, exactNodes, rays, floor, kUsualPlaces, none}.makeTables(plan);
+      plan.parts.clear();
+    } else if (plan.accuracy > 0.0) {
       fitPlan(sim, eye, outputs, exactNodes, airPlacesFor(sim, whole, rays, plan.accuracy, floor), keepLights, rays, floor, plan, progress);
     } else {
       for (const auto& w : fine.weight) plan.fineCount.push_back(static_cast<int>(std::count_if(w.begin(), w.end(), [](double v) { return v != 0.0; })));
@@ -267,16 +273,16 @@ std::vector<ChannelOutput> joined(std::vector<ChannelOutput> all, const std::vec
 
 }  // namespace
 
-Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress) {
+Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress, Foretold error) {
   const auto [drawn, measured] = plannedOutputs(sim, eye);
-  return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), progress), 0, drawn.size()), eye);
+  return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), progress, error), 0, drawn.size()), eye);
 }
 
 Plan measuredPlanFor(const Simulation& sim, const Camera& camera) {
   const auto [drawn, measured] = plannedOutputs(sim, {&camera, nullptr});
   if (!measured.empty()) {
     const Eye eye{&camera, nullptr};
-    return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), {}), drawn.size(), measured.size()), eye);
+    return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), {}, Foretold::IfChosen), drawn.size(), measured.size()), eye);
   }
   Camera own = camera;
   own.outputs = measuredOutputs(sim, camera);

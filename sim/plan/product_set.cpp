@@ -129,6 +129,9 @@ void ProductSet::integrate(const std::vector<double>& floors) {
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return terms[static_cast<size_t>(a)].path < terms[static_cast<size_t>(b)].path; });
   int tags = 0;
   for (const ProductTerm& t : terms) tags = std::max(tags, t.tag + 1);
+  // Spectra without the weights, of those that are multiplied.
+  Eigen::MatrixXd plain(weighted.rows(), hasProducts() ? weighted.cols() : 0);
+  for (Eigen::Index s = 0; s < plain.cols(); ++s) plain.col(s) = weighted.col(s).array() / weight.array();
   std::vector<double> values(terms.size());
   onStretches(order.size(), kLeastTerms, [&](size_t from, size_t to) {
     Eigen::VectorXd tau;
@@ -140,7 +143,7 @@ void ProductSet::integrate(const std::vector<double>& floors) {
         tau = (-(extinction * amounts.col(current)).array()).exp();
       }
       Eigen::ArrayXd product = weighted.col(t.spectrum[0]).array() * tau.array();
-      for (int f = 1; f < t.count; ++f) product *= weighted.col(t.spectrum[static_cast<size_t>(f)]).array() / weight.array();
+      for (int f = 1; f < t.count; ++f) product *= plain.col(t.spectrum[static_cast<size_t>(f)]).array();
       values[static_cast<size_t>(order[n])] = t.coefficient * product.sum();
     }
   });
