@@ -17,6 +17,7 @@ ContentKey planKey(const Simulation& sim, const Eye& eye, bool isForetold) {
       own.exposureOverTime_s = {};
       own.ownChannels.clear();
       own.outputs.clear();
+      own.stages.clear();
       own.truth = {};
       own.truth.solidAngles = eye.camera->truth.solidAngles;
       addTo(f, own);

@@ -139,6 +139,77 @@ TEST_F(Planner, SamePlanEveryTimeAndFromTheCache) {
   }
 }
 
+const std::string kEye = ", exposure: 2 ms, stages: [{stage: detector, full_well: 7e6, bits: 14, read_noise: 500}]";
+std::string counting(const std::string& outputs) {
+  return "{name: mw, response: {band: [3.7 um, 4.9 um]}, quantum_efficiency: insb_mwir, output: [" + outputs + "]}";
+}
+
+// Radiance and what a detector counts of it are integrals over one band: the groups of one do for the other, or nearly.
+TEST_F(Planner, QuantitiesOfOneBandShareGroups) {
+  const std::string world = "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n" + kGrey + kWall;
+  const auto made = [&](const std::string& accuracy, const std::string& outputs) { return scene("accuracy: " + accuracy + "\n" + world + camera(counting(outputs), kEye)); };
+  const auto sim = made("0.5 %", "radiance, electrons");
+  const Plan plan = planOf(sim);
+  ASSERT_EQ(plan.slotCount, 2);
+  ASSERT_EQ(plan.blocks.size(), 1u);
+  EXPECT_EQ(plan.blocks[0].slots, (std::vector<int>{0, 1}));
+  const int alone = planOf(made("0.5 %", "radiance")).nodeCount() + planOf(made("0.5 %", "electrons")).nodeCount();
+  EXPECT_LT(plan.nodeCount(), alone);
+  const Frame planned = renderFrame(sim), exact = renderFrame(made("reference", "radiance, electrons"));
+  for (const char* quantity : {"mw.radiance", "mw.electrons"}) {
+    double worst = 0.0;
+    const FrameLayer &a = layer(planned, quantity), &b = layer(exact, quantity);
+    for (size_t p = 0; p < a.pixels.size(); ++p) worst = std::max(worst, std::abs(static_cast<double>(a.pixels[p]) / static_cast<double>(b.pixels[p]) - 1.0));
+    bound(std::string(quantity) + " by groups of both in common against all wavelengths", worst, 0.005, "asked for");
+  }
+  // The reference tells both at the same wavelengths, each with its own weights.
+  SpectralSampling every;
+  every.reference = true;
+  const Plan fine = makePlan(sim, sim.cameras[0].outputs, every, sim.cameras[0].where);
+  ASSERT_EQ(fine.blocks.size(), 1u);
+  for (size_t s = 0; s < 2; ++s) {
+    const Spectrum& kernel = sim.cameras[0].outputs[s].kernel;
+    double sum = 0.0;
+    for (double w : fine.weight[s]) sum += w;
+    figure("sum of the weights of kernel " + std::to_string(s), sum, kernel.integral(3.7, 4.9), 1e-12, "its integral over the band");
+  }
+}
+
+// Of targets' truth nothing is planned for itself: their channels are planned with the picture's.
+TEST_F(Planner, TruthOfTargetsTakesThePicturesGroups) {
+  const auto sim = scene("accuracy: 1 %\natmosphere: clear_us76\n" + kGrey + kWall + camera(counting("counts"), kEye + ", truth: [targets]"));
+  const Plan drawn = planOf(sim);
+  const Plan measured = measuredPlanFor(sim, sim.cameras[0]);
+  EXPECT_EQ(kept(), 1u);
+  EXPECT_EQ(drawn.slotCount, 1);
+  ASSERT_EQ(measured.slotCount, 2);
+  ASSERT_EQ(drawn.nodeCount(), measured.nodeCount());
+  for (int i = 0; i < drawn.nodeCount(); ++i) {
+    const auto k = static_cast<size_t>(i);
+    ASSERT_EQ(drawn.nodes[k].members.size(), measured.nodes[k].members.size());
+    EXPECT_EQ(drawn.weight[0][k], measured.weight[static_cast<size_t>(measured.slotOfOutput[1])][k]) << "of what is counted";
+  }
+  ASSERT_EQ(measured.predictedError.size(), 2u);
+  for (double e : measured.predictedError) EXPECT_LE(e, 0.01);
+}
+
+// How long a camera is exposed, what its detector makes of light, and what is shown besides are no matter to wavelengths.
+TEST_F(Planner, WhatComesAfterLightPlansNothingAnew) {
+  const std::string text = "accuracy: 1 %\natmosphere: clear_us76\n" + kGrey + kWall + camera(counting("counts, radiance"), kEye);
+  planOf(scene(text));
+  ASSERT_EQ(kept(), 1u);
+  for (const auto& [from, to] : {std::pair{"2 ms", "3 ms"}, {"read_noise: 500", "read_noise: 700"}, {"counts, radiance", "counts, snr, radiance"}, {"read_noise: 500}]", "read_noise: 500}], truth: [range, entity]"}}) {
+    std::string other = text;
+    other.replace(other.find(from), std::string(from).size(), to);
+    planOf(scene(other));
+    EXPECT_EQ(kept(), 1u) << to;
+  }
+  std::string other = text;
+  other.replace(other.find("counts, radiance"), 16, "radiance");
+  planOf(scene(other));
+  EXPECT_EQ(kept(), 2u) << "one kernel less";
+}
+
 TEST_F(Planner, DamagedPlansAreNotRead) {
   const auto sim = scene("accuracy: 1 %\n" + kGrey + kWall + camera(kMidwave));
   const Plan plan = planOf(sim);

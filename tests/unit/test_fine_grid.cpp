@@ -7,6 +7,7 @@
 
 #include "materials/reflection.hpp"
 #include "sim/plan/fine_grid.hpp"
+#include "sim/plan/kernel_family.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
@@ -262,6 +263,34 @@ TEST(FineGrid, RulesOfFewSamplesHaveNodesOnLines) {
   for (int i = 0; i <= 400; ++i) rough.wavelength_um.push_back(0.4 + 0.001 * i), rough.value.push_back(1.0 + 0.2 * (i * 7919 % 13));
   for (const auto& sim : {lampOf({{0.4, 0.5, 0.8}, {1, 2, 1}, Outside::Zero, ""}), lampOf(rough)})
     EXPECT_TRUE(narrowLines(spectraOf(sim), band, spectralRule(band, 16, Spacing::Gauss)).empty());
+}
+
+// Responses that differ by less than a factor of 3 of their mean ratio go over the same wavelengths; others don't.
+TEST(FineGrid, AlikeResponsesShareWavelengths) {
+  const auto table = [](std::vector<double> at, std::vector<double> value) { return Spectrum(Spectrum::Table{std::move(at), std::move(value), Outside::Hold, ""}); };
+  const Spectrum band = Spectrum::band(3.5, 5.0), rising = band * table({3.0, 4.013, 5.5}, {0.4, 0.8, 0.9}), scaled = band * 7.0,
+                 peaked = band * table({3.0, 4.0, 4.1, 4.2, 5.5}, {0.01, 0.01, 1.0, 0.01, 0.01}), shorter = Spectrum::band(3.5, 4.9);
+  EXPECT_TRUE(areAlike(band, rising));
+  EXPECT_TRUE(areAlike(rising, band));
+  EXPECT_TRUE(areAlike(band, scaled));
+  EXPECT_FALSE(areAlike(band, peaked));
+  EXPECT_FALSE(areAlike(band, shorter));
+  EXPECT_FALSE(areAlike(band, band * 0.0));
+  Simulation nothing;
+  const Spectrum* const family[] = {&band, &rising, &scaled};
+  const auto grids = fineGrids(family, nothing);
+  ASSERT_EQ(grids.size(), 3u);
+  const Spectrum black(Spectrum::BlackBody{500.0, 1.0});
+  for (size_t k = 0; k < 3; ++k) {
+    ASSERT_EQ(grids[k].size(), grids[0].size());
+    double sum = 0.0, seen = 0.0;
+    for (size_t i = 0; i < grids[k].size(); ++i) {
+      EXPECT_EQ(grids[k][i].x, grids[0][i].x);
+      sum += grids[k][i].weight, seen += grids[k][i].weight * black(grids[k][i].x);
+    }
+    figure("weights of kernel " + std::to_string(k), sum, family[k]->integral(3.5, 5.0), 1e-12, "integral of the kernel");
+    figure("a black body in kernel " + std::to_string(k), seen, (*family[k] * black).integral(3.5, 5.0), 2e-5, "Gauss-Legendre between bends; bins of 0.3 % of a wavelength");
+  }
 }
 
 }  // namespace

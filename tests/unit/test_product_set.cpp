@@ -1,6 +1,9 @@
 // Products of averages: their derivatives against differences of the products themselves, for one to five spectra in a term.
 #include <gtest/gtest.h>
 
+#include <tuple>
+
+#include "sim/parameters/on_threads.hpp"
 #include "sim/plan/product_set.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/numbers.hpp"
@@ -70,6 +73,35 @@ TEST(ProductSet, DerivativesAreThoseOfTheProducts) {
                         told = slopes.average.transpose() * averages.reshaped() + slopes.extinction.transpose() * change.extinction.reshaped();
   bound("derivative of products of 1 to 5 averages against differences", (slope - told).cwiseAbs().maxCoeff() / told.cwiseAbs().maxCoeff(), 3e-3,
         "spectra as few shapes, to 1e-3 of each");
+}
+
+// On however many threads: each number is worked out by one of them, in one order.
+TEST(ProductSet, IsTheSameOnAnyNumberOfThreads) {
+  Numbers random(77);
+  SpectralProblem p = problem(random);
+  const auto few = p.products;
+  for (int n = 0; n < 60; ++n)
+    for (SpectralProduct product : few) {
+      for (ProductTerm& t : product.terms) t.coefficient *= random(0.5, 1.5);
+      p.products.push_back(product);
+    }
+  GroupState state{Eigen::MatrixXd(kGroups, kFine), Eigen::MatrixXd(kGroups, 2)};
+  for (Eigen::Index i = 0; i < kFine; ++i) {
+    for (Eigen::Index g = 0; g < kGroups; ++g) state.share(g, i) = random(0.1, 1.0);
+    state.share.col(i) /= state.share.col(i).sum();
+  }
+  for (Eigen::Index g = 0; g < kGroups; ++g) state.extinction.row(g) << random(0.0, 1.0), random(0.0, 1.0);
+  const auto told = [&] {
+    const ProductSet set(p);
+    const GroupMoments at = set.moments(state);
+    const GroupSlopes slopes = set.slopes(at);
+    return std::tuple(set.fine, at.source, at.transmittance, set.errors(at), slopes.average, slopes.extinction);
+  };
+  const auto all = told();
+  startedThreads += 1000;  // as if all cores were busy
+  const auto one = told();
+  startedThreads -= 1000;
+  EXPECT_TRUE(all == one);
 }
 
 }  // namespace
