@@ -10,7 +10,7 @@
 #include "sensors/noise_source.hpp"
 #include "sensors/side_by_side.hpp"
 #include "sensors/signal_memory.hpp"
-#include "sensors/wide_loops.hpp"
+#include "sim/radiometry/wide_loops.hpp"
 
 namespace pitviper {
 namespace {

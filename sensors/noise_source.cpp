@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "sensors/wide_loops.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/wide_loops.hpp"
 
 namespace pitviper {
 namespace {

@@ -22,7 +22,4 @@ void transmittances(const SparseAmounts& amounts, int begin, int end, const doub
 /// Sums over wavelengths of share x spectrum: `share` [wavelength][group], `spectra` [spectrum][wavelength], `into` [spectrum][group].
 void averages(const double* share, const double* spectra, int wavelengths, int count, int groups, double* into);
 
-/// exp(x) for x <= 0, to 1e-14 of it; below -700 as at -700.
-void exponentials(double* x, int count);
-
 }  // namespace pitviper
