@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/node_planck.hpp"
+#include "sim/radiometry/exponentials.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -21,6 +24,12 @@ void weigh(const Eigen::MatrixXd& coefficient, const std::vector<AirAmounts>& am
     for (std::size_t k = 0; k < kMostAirAmounts; ++k)
       if (const double amount = amounts[s].amount[k]; amount != 0.0) sum += amount * coefficient.col(static_cast<Eigen::Index>(k)).array();
   }
+}
+
+/// exp(-x) of each.
+void leave(const Eigen::ArrayXd& x, Eigen::ArrayXd& left) {
+  left = -x;
+  exponentials(left.data(), static_cast<int>(left.size()));
 }
 
 /// `left`: exp(-x).
@@ -56,7 +65,8 @@ struct NodeAir::Tables {
     }
     const Eigen::Index k = std::min(static_cast<Eigen::Index>(t), kTemperatures - 2);
     const double f = t - static_cast<double>(k);
-    into = ((1.0 - f) * logPlanck.col(k) + f * logPlanck.col(k + 1)).exp();
+    into = (1.0 - f) * logPlanck.col(k) + f * logPlanck.col(k + 1);
+    exponentials(into.data(), static_cast<int>(into.size()));
   }
 };
 
@@ -73,10 +83,12 @@ NodeAir::NodeAir(std::span<const SpectralNode> all) {
     const SpectralNode& n = all[static_cast<size_t>(i)];
     t.extinction.row(i) = row(n.air.extinction), t.molecules.row(i) = row(n.air.molecules), t.haze.row(i) = row(n.air.haze);
     t.source[i] = n.air.source;
-    for (Eigen::Index k = 0; k < kTemperatures; ++k) {
-      const double inverse = 1.0 / kWarmest_K + (1.0 / kColdest_K - 1.0 / kWarmest_K) * static_cast<double>(k) / (kTemperatures - 1);
-      t.logPlanck(i, k) = std::log(std::max(n.planck(1.0 / inverse), 1e-300));
-    }
+  }
+  const NodePlanck planck(all);
+  std::vector<double> black(all.size());
+  for (Eigen::Index k = 0; k < kTemperatures; ++k) {
+    planck.at(1.0 / (1.0 / kWarmest_K + (1.0 / kColdest_K - 1.0 / kWarmest_K) * static_cast<double>(k) / (kTemperatures - 1)), black);
+    for (Eigen::Index i = 0; i < nodes; ++i) t.logPlanck(i, k) = std::log(std::max(black[static_cast<size_t>(i)], 1e-300));
   }
   tables_ = std::make_shared<const Tables>(std::move(t));
 }
@@ -88,8 +100,9 @@ std::vector<double> NodeAir::planck(double temperature_K) const {
 }
 
 std::vector<double> lostOf(std::span<const double> x) {
-  const Eigen::ArrayXd from = Eigen::Map<const Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size())), left = (-from).exp();
-  Eigen::ArrayXd all;
+  const Eigen::ArrayXd from = Eigen::Map<const Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+  Eigen::ArrayXd left, all;
+  leave(from, left);
   lose(from, left, all);
   return {all.begin(), all.end()};
 }
@@ -101,12 +114,13 @@ NodeRadiance NodeAir::along(const SunlitAir& air) const {
   NodeRadiance out;
   auto depth = sized(out.depth, nodes, stations), thermal = sized(out.thermal, nodes, stations);
   weigh(t.extinction, air.powered, depth);
-  Eigen::ArrayXd seen = (-depth.col(0)).exp(), before, source, d, left, gone, share;  // with room of their own for all steps
+  Eigen::ArrayXd seen, before, source, d = depth.col(0), left, gone, share;  // with room of their own for all steps
+  leave(d, seen);
   t.planck(air.stations[0].temperature_K, before);
   before += t.source;
   for (Eigen::Index s = 1; s < stations; ++s) {
     d = (depth.col(s) - depth.col(s - 1)).max(0.0);
-    left = (-d).exp();
+    leave(d, left);
     lose(d, left, gone);
     t.planck(air.stations[static_cast<size_t>(s)].temperature_K, source);
     source += t.source;
@@ -117,6 +131,7 @@ NodeRadiance NodeAir::along(const SunlitAir& air) const {
   }
   if (air.lit.empty()) return out;
   Eigen::ArrayXXd small(nodes, stations), large(nodes, stations), both(nodes, stations);
+  Eigen::ArrayXd nearest, reaching;
   weigh(t.molecules, air.powered, small);
   weigh(t.haze, air.powered, large);
   weigh(t.extinction, air.both, both);
@@ -128,9 +143,11 @@ NodeRadiance NodeAir::along(const SunlitAir& air) const {
     if (!(sun > 0.0)) continue;
     const auto near = both.col(here > 0.0 ? s - 1 : s), far = both.col(there > 0.0 ? s : s - 1);
     d = (far - near).abs();
-    left = (-d).exp();
+    leave(d, left);
     lose(d, left, gone);
-    share = sun * (-near.min(far)).exp() * (d < 1e-8).select(1.0 - 0.5 * d, gone / d.max(1e-8));
+    nearest = near.min(far);
+    leave(nearest, reaching);
+    share = sun * reaching * (d < 1e-8).select(1.0 - 0.5 * d, gone / d.max(1e-8));
     molecules.col(s) += (small.col(s) - small.col(s - 1)).max(0.0) * share;
     haze.col(s) += (large.col(s) - large.col(s - 1)).max(0.0) * share;
   }

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/radiance/node_planck.hpp"
 #include "sim/radiance/node_surroundings.hpp"
+#include "sim/radiance/planck_table.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/exponentials.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -40,6 +41,13 @@ std::vector<double> coefficientsOf(std::span<const SpectralNode> nodes, size_t u
 
 Eigen::Map<Eigen::ArrayXd> arrayOf(std::vector<double>& v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
 
+/// exp(-x) of each.
+void passedOf(const std::vector<double>& x, std::vector<double>& passed) {
+  passed.resize(x.size());
+  std::transform(x.begin(), x.end(), passed.begin(), std::negate<>());
+  exponentials(passed.data(), static_cast<int>(passed.size()));
+}
+
 /// Per node, sum over amounts of coefficient x amount.
 void weigh(std::span<const double> coefficient, const AirAmounts& amounts, std::vector<double>& into) {
   const auto nodes = static_cast<Eigen::Index>(into.size()), used = nodes > 0 ? static_cast<Eigen::Index>(coefficient.size()) / nodes : 0;
@@ -57,9 +65,15 @@ NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralN
   extinction_ = coefficientsOf(nodes, used, &AirNode::extinction);
   molecules_ = coefficientsOf(nodes, used, &AirNode::molecules);
   haze_ = coefficientsOf(nodes, used, &AirNode::haze);
-  if (!simulation.fields.empty() && !(parts && ofGas_.average(nodes, parts->ofGas_, parts->nodes_))) ofGas_.make(nodes, kWarmest_K, kHottest_K, kGasStep_K);
+  for (size_t m = 0; !nodes.empty() && m < nodes.front().absorption_per_m.size(); ++m)
+    for (const SpectralNode& n : nodes) absorption_per_m_.push_back(n.absorption_per_m[m]);
+  const auto table = [&](std::shared_ptr<const PlanckTable> NodeSpectra::*of, double first, double last, double step) {
+    if (parts) this->*of = PlanckTable::averaged(nodes, parts->*of, parts->nodes_);
+    if (!(this->*of)) this->*of = std::make_shared<const PlanckTable>(nodes, first, last, step);
+  };
+  if (!simulation.fields.empty()) table(&NodeSpectra::ofGas_, kWarmest_K, kHottest_K, kGasStep_K);
   if (!simulation.fields.empty() || (simulation.air && simulation.air->traits().variesAlongWay))
-    if (!(parts && ofAir_.average(nodes, parts->ofAir_, parts->nodes_))) ofAir_.make(nodes, kColdest_K, kWarmest_K, kAirStep_K);
+    table(&NodeSpectra::ofAir_, kColdest_K, kWarmest_K, kAirStep_K);
   for (const FieldBody& field : simulation.fields)
     for (const FieldGas& gas : field.gases)
       for (const FieldGas::Level& level : gas.levels) {
@@ -77,56 +91,8 @@ NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralN
       }
 }
 
-void NodeSpectra::Planck::make(std::span<const SpectralNode> nodes, double first, double last, double step) {
-  first_K = first, step_K = step;
-  const int count = static_cast<int>(std::lround((last - first) / step));
-  const NodePlanck planck(nodes);
-  const std::size_t each = nodes.size();
-  value.resize(static_cast<std::size_t>(count + 1) * each), slope.resize(value.size());
-  for (int k = 0; k <= count; ++k) {
-    const std::size_t begin = static_cast<std::size_t>(k) * each;
-    planck.at(first + step * k, std::span(value).subspan(begin, each), std::span(slope).subspan(begin, each));
-  }
-  for (double& s : slope) s *= step;
-}
-
-bool NodeSpectra::Planck::average(std::span<const SpectralNode> nodes, const Planck& parts, std::span<const SpectralNode> partNodes) {
-  if (partNodes.empty()) return false;
-  std::map<double, std::size_t> at_um;
-  for (std::size_t i = 0; i < partNodes.size(); ++i)
-    if (const auto& members = partNodes[i].members; members.size() == 1) at_um[members.front().wavelength_um] = i;
-  std::vector<std::vector<std::pair<std::size_t, double>>> of(nodes.size());
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    for (const auto& m : nodes[i].members) {
-      const auto found = at_um.find(m.wavelength_um);
-      if (found == at_um.end()) return false;
-      of[i].emplace_back(found->second, m.share);
-    }
-  first_K = parts.first_K, step_K = parts.step_K;
-  const std::size_t count = parts.value.size() / partNodes.size();
-  for (const auto& [from, into] : {std::pair{&parts.value, &value}, {&parts.slope, &slope}})
-    for (std::size_t k = 0; k < count; ++k)
-      for (std::size_t i = 0; i < nodes.size(); ++i) {
-        double sum = 0.0;
-        for (const auto& [part, share] : of[i]) sum += share * (*from)[k * partNodes.size() + part];
-        into->push_back(sum);
-      }
-  return true;
-}
-
-bool NodeSpectra::Planck::at(double temperature_K, std::span<double> into) const {
-  const size_t n = into.size(), count = n > 0 ? value.size() / n : 0;
-  const double t = (temperature_K - first_K) / step_K;
-  if (count == 0 || !(t >= 0.0 && t <= static_cast<double>(count - 1))) return false;
-  const auto low = std::min(static_cast<size_t>(t), count - 2);
-  const double u = t - static_cast<double>(low), v = 1.0 - u;
-  const double p0 = v * v * (1.0 + 2.0 * u), p1 = u * u * (1.0 + 2.0 * v), s0 = u * v * v, s1 = -u * u * v;
-  for (size_t i = 0, k = low * n; i < n; ++i, ++k) into[i] = p0 * value[k] + p1 * value[k + n] + s0 * slope[k] + s1 * slope[k + n];
-  return true;
-}
-
 void NodeSpectra::planck(double temperature_K, std::span<double> into) const {
-  if (ofAir_.at(temperature_K, into) || ofGas_.at(temperature_K, into)) return;
+  if ((ofAir_ && ofAir_->at(temperature_K, into)) || (ofGas_ && ofGas_->at(temperature_K, into))) return;
   for (size_t i = 0; i < nodes_.size(); ++i) into[i] = nodes_[i].planck(temperature_K);
 }
 
@@ -157,6 +123,7 @@ void NodeSum::begin() {
 void NodeSum::restart() {
   panes_.assign(count_, 1.0);
   mediaDepth_.assign(count_, 0.0);
+  mediaPassed_.assign(count_, 1.0);
   std::fill(near_.depth.begin(), near_.depth.end(), 0.0);
   std::fill(near_.passed.begin(), near_.passed.end(), 1.0);
   here_ = sunKnownAt_ = nullptr;
@@ -177,10 +144,14 @@ void NodeSum::term(const Term& term) {
     const std::vector<double>& v = values(f);
     for (size_t i = 0; i < count_; ++i) product[i] *= v[i];
   }
+  if (term.air) {
+    termDepth_.resize(count_);
+    weigh(spectra_.extinction(), *term.air, termDepth_);
+    passedOf(termDepth_, termPassed_);
+  }
   for (size_t i = 0; i < count_; ++i) {
     if (product[i] == 0.0) continue;
-    const double air = term.air ? std::exp(-Atmosphere::depthOf(spectra_.nodes()[i].air, *term.air)) : near_.passed[i];
-    const double sent = product[i] * panes_[i] * air * (mediaDepth_[i] > 0.0 ? std::exp(-mediaDepth_[i]) : 1.0);
+    const double sent = product[i] * panes_[i] * (term.air ? termPassed_ : near_.passed)[i] * mediaPassed_[i];
     if (taken) send(term.kind, i, sent);
     if (watched) ofEntity_[i] += sent;
     if (keepsParts_ && taken && term.kind == TermKind::Lights) ofLamp_[static_cast<size_t>(term.light)][i] += sent;
@@ -195,10 +166,10 @@ void NodeSum::pane(const Factor& transmittance, double modifier) {
 /// `both`: amounts with the way on to the sun, or null where nobody asks.
 void NodeSum::place(const AirPlace& at, const AirAmounts* both, At& out) {
   weigh(spectra_.extinction(), at.powered, out.depth);
-  arrayOf(out.passed) = (-arrayOf(out.depth)).exp();
+  passedOf(out.depth, out.passed);
   if (both) {
     weigh(spectra_.extinction(), *both, out.sunDepth);
-    arrayOf(out.sunPassed) = (-arrayOf(out.sunDepth)).exp();
+    passedOf(out.sunDepth, out.sunPassed);
   }
   if (at.temperature_K > 0.0) spectra_.planck(at.temperature_K, out.black);
   else std::fill(out.black.begin(), out.black.end(), 0.0);
@@ -227,9 +198,8 @@ const std::vector<double>& NodeSum::turnedBy(const MediumInside& m, double cosSc
 std::vector<std::vector<double>> NodeSum::sourcesOf(const Segment& s) {
   std::vector<std::vector<double>> all;
   if (s.dark) return std::vector<std::vector<double>>(s.media.size(), std::vector<double>(count_, 0.0));
-  std::vector<double> black, sunAir;  // of one temperature: the gases of a field share it
+  std::vector<double> black, sunAir, shade;  // the first of one temperature: the gases of a field share it
   double blackOf_K = -1.0;
-  const auto nodes = spectra_.nodes();
   for (const MediumInside& m : s.media) {
     const NodeSpectra::MediumRows* rows = spectra_.mediumRows(m.material);
     if (m.lasting || (!rows && (m.medium->albedo || m.medium->radiance))) {
@@ -249,11 +219,15 @@ std::vector<std::vector<double>> NodeSum::sourcesOf(const Segment& s) {
       sunAir.resize(count_);
       weigh(spectra_.extinction(), *s.sunAir, sunAir);
       weigh(spectra_.extinction(), s.near.powered, near);
-      for (size_t i = 0; i < count_; ++i) sunAir[i] = std::exp(std::min(near[i] - sunAir[i], 0.0));
+      for (size_t i = 0; i < count_; ++i) near[i] = std::max(sunAir[i] - near[i], 0.0);
+      passedOf(near, sunAir);
     }
     const std::vector<double>& turned = turnedBy(m, s.cosScatter);
-    for (size_t i = 0; i < count_; ++i)
-      all.back()[i] += m.sun * turned[i] * (s.sunAir ? sunAir[i] : 1.0) * std::exp(-m.sunAmount * nodes[i].absorption_per_m[static_cast<size_t>(m.material)]);
+    shade.resize(count_);
+    const double* perLength = spectra_.absorption_per_m(m.material).data();
+    for (size_t i = 0; i < count_; ++i) shade[i] = -m.sunAmount * perLength[i];
+    exponentials(shade.data(), static_cast<int>(count_));
+    for (size_t i = 0; i < count_; ++i) all.back()[i] += m.sun * turned[i] * (s.sunAir ? sunAir[i] : 1.0) * shade[i];
   }
   return all;
 }
@@ -277,6 +251,26 @@ std::vector<std::vector<double>> NodeSum::driftsOf(const Segment& s, const std::
     for (size_t i = 0; i < count_; ++i) all[k][i] = std::clamp((rows ? rows->thermal[i] : 1.0) * (far[i] - near[i]), -2.0 * sources[k][i], 2.0 * sources[k][i]);
   }
   return all;
+}
+
+/// What a segment's media take and send, per node.
+void NodeSum::gather(const Segment& s, const std::vector<std::vector<double>>& sources, const std::vector<std::vector<double>>& drifts) {
+  for (auto* v : {&own_.depth, &own_.emitted, &own_.drifting, &own_.watched, &own_.driftingOfWatched}) v->assign(count_, 0.0);
+  const auto add = [&](const std::vector<double>& depth, const std::vector<double>& sent, std::vector<double>& into) {
+    for (size_t i = 0; i < count_; ++i) into[i] += depth[i] * sent[i];
+  };
+  std::vector<double> depth(count_);
+  for (size_t m = 0; m < s.media.size(); ++m) {
+    const MediumInside& of = s.media[m];
+    const double* perLength = spectra_.absorption_per_m(of.material).data();
+    for (size_t i = 0; i < count_; ++i) own_.depth[i] += depth[i] = perLength[i] * of.length_m;
+    add(depth, sources[m], own_.emitted);
+    if (!drifts.empty()) add(depth, drifts[m], own_.drifting);
+    if (!watchesOne() || of.entity != watched_ || of.field != watchedField_) continue;
+    add(depth, sources[m], own_.watched);
+    if (!drifts.empty()) add(depth, drifts[m], own_.driftingOfWatched);
+  }
+  passedOf(own_.depth, own_.passed);
 }
 
 // J = (x S + y B) / (x + y) with S of the media and B of the air, B linear in depth from one end to the other:
@@ -306,34 +300,28 @@ void NodeSum::segment(const Segment& s) {
   const bool media = !s.media.empty() && takes({TermKind::Media}), air = s.air && takes({TermKind::AirEmission}),
              turned = sunlit && takes({TermKind::ScatteredSun});
   const auto sources = sourcesOf(s), drifts = driftsOf(s, sources);
+  const bool inMedia = !s.media.empty();
+  if (inMedia) gather(s, sources, drifts);
   for (size_t i = 0; i < count_; ++i) {
-    double x = 0.0, emitted = 0.0, ofWatched = 0.0, drifting = 0.0, driftingOfWatched = 0.0;
-    for (size_t m = 0; m < s.media.size(); ++m) {
-      const double own = nodes[i].absorption_per_m[static_cast<size_t>(s.media[m].material)] * s.media[m].length_m;
-      x += own;
-      emitted += own * sources[m][i];
-      if (!drifts.empty()) drifting += own * drifts[m][i];
-      if (watchesOne() && s.media[m].entity == watched_ && s.media[m].field == watchedField_) {
-        ofWatched += own * sources[m][i];
-        if (!drifts.empty()) driftingOfWatched += own * drifts[m][i];
-      }
-    }
-    const double before = mediaDepth_[i];
+    const double x = inMedia ? own_.depth[i] : 0.0, passed = inMedia ? own_.passed[i] : 1.0, before = mediaDepth_[i], beforePassed = mediaPassed_[i];
     mediaDepth_[i] += x;
+    mediaPassed_[i] *= passed;
     if (s.dark || (s.air ? near_.depth[i] : 0.0) + before > kOpaque) continue;
     const double y = s.air ? std::max(far_.depth[i] - near_.depth[i], 0.0) : 0.0, d = x + y;
     if (!(d > 0.0)) continue;
-    const double reaching = panes_[i] * (before > 0.0 ? std::exp(-before) : 1.0), seen = reaching * (s.air ? near_.passed[i] : 1.0);
-    const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * (x > 0.0 ? std::exp(-x) : 1.0), lost = lostOf(d, left);
-    const auto sent = [&](double even, double change) { return seen / d * (even * lost + (change != 0.0 ? change * (growing(d, left, lost) - 0.5 * lost) : 0.0)); };
-    if (ofWatched > 0.0) ofEntity_[i] += sent(ofWatched, driftingOfWatched);
-    if (media && x > 0.0) send(TermKind::Media, i, sent(emitted, drifting));
+    const double reaching = panes_[i] * beforePassed, seen = reaching * (s.air ? near_.passed[i] : 1.0);
+    const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * passed, lost = lostOf(d, left);
+    const auto sent = [&](double even, double change) {
+      return seen / d * (even * lost + (change != 0.0 ? change * (growing(d, left, lost) - 0.5 * lost) : 0.0));
+    };
+    if (inMedia && watchesOne() && own_.watched[i] > 0.0) ofEntity_[i] += sent(own_.watched[i], own_.driftingOfWatched[i]);
+    if (media && x > 0.0) send(TermKind::Media, i, sent(own_.emitted[i], own_.drifting[i]));
     if (air && y > 0.0) {
       const double near = near_.black[i] + nodes[i].air.source, far = far_.black[i] + nodes[i].air.source;
       send(TermKind::AirEmission, i, seen * (y / d) * (near * lost + (far - near) * growing(d, left, lost)));
     }
     if (!turned) continue;
-    const double mean = meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * (x > 0.0 ? std::exp(-x) : 1.0));
+    const double mean = meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * passed);
     send(TermKind::ScatteredSun, i, sun * reaching * mean * (*irradiance)[i] * turned_[i]);
   }
   if (s.air) std::swap(near_, far_);
@@ -343,7 +331,7 @@ void NodeSum::segment(const Segment& s) {
 
 std::vector<double> NodeSum::transmittance() const {
   std::vector<double> all(count_);
-  for (size_t i = 0; i < count_; ++i) all[i] = panes_[i] * std::exp(-mediaDepth_[i]);
+  for (size_t i = 0; i < count_; ++i) all[i] = panes_[i] * mediaPassed_[i];
   return all;
 }
 

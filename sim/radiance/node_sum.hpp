@@ -13,6 +13,7 @@
 namespace pitviper {
 
 class NodeSurroundings;
+class PlanckTable;
 
 /// What lines have in common at some nodes; may be shared between threads.
 class NodeSpectra {
@@ -29,6 +30,10 @@ class NodeSpectra {
   std::span<const double> extinction() const { return extinction_; }
   std::span<const double> molecules() const { return molecules_; }
   std::span<const double> haze() const { return haze_; }
+  /// Of a material's medium, per node.
+  std::span<const double> absorption_per_m(int material) const {
+    return std::span(absorption_per_m_).subspan(static_cast<size_t>(material) * nodes_.size(), nodes_.size());
+  }
   /// Of a field's gas that has more than absorption, per node: part of its extinction that emits, own radiance, ambient light and, for a phase function of 1,
   /// sunlight that it scatters, asymmetry. Each averaged by itself, as pictures have it. Null of all other materials.
   struct MediumRows {
@@ -40,21 +45,11 @@ class NodeSpectra {
   }
 
  private:
-  /// Temperatures evenly apart: between two the cubic that has their values and slopes (Hermite's).
-  struct Planck {
-    double first_K = 0.0, step_K = 1.0;
-    std::vector<double> value, slope;  ///< [temperature][node], and by step
-    void make(std::span<const SpectralNode> nodes, double first_K, double last_K, double step_K);
-    /// As averages of nodes known already; false where some are missing.
-    bool average(std::span<const SpectralNode> nodes, const Planck& parts, std::span<const SpectralNode> partNodes);
-    bool at(double temperature_K, std::span<double> into) const;
-  };
-
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
-  std::vector<double> extinction_, molecules_, haze_;
+  std::vector<double> extinction_, molecules_, haze_, absorption_per_m_;
   std::shared_ptr<const NodeSurroundings> surroundings_;  ///< null: a uniform dome's
-  Planck ofAir_, ofGas_;
+  std::shared_ptr<const PlanckTable> ofAir_, ofGas_;      ///< null: none is asked for
   std::map<int, MediumRows> mediumRows_;
 };
 
@@ -107,6 +102,7 @@ class NodeSum final : public TermSink {
   };
   void place(const AirPlace& at, const AirAmounts* both, At& out);
   std::vector<std::vector<double>> sourcesOf(const Segment& segment);
+  void gather(const Segment& segment, const std::vector<std::vector<double>>& sources, const std::vector<std::vector<double>>& drifts);
   std::vector<std::vector<double>> driftsOf(const Segment& segment, const std::vector<std::vector<double>>& sources);
   /// Of haze, per node; lines of one sun mostly ask for the same angle again.
   const std::vector<double>& hazePhase(double cosScatter);
@@ -123,9 +119,13 @@ class NodeSum final : public TermSink {
   std::vector<double> radiance_, ofEntity_;
   std::array<std::vector<double>, kTermKinds> parts_;
   std::vector<std::vector<double>> ofLamp_;
-  std::vector<double> panes_, mediaDepth_;  ///< on the way so far
+  std::vector<double> panes_, mediaDepth_, mediaPassed_;  ///< on the way so far; the last exp of the one before
+  struct {
+    std::vector<double> depth, passed;                                  ///< of all
+    std::vector<double> emitted, drifting, watched, driftingOfWatched;  ///< sums of depths times sources, and times what these change by
+  } own_;                                                               ///< of the media of a segment
   At near_, far_;
-  std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_;
+  std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_, termDepth_, termPassed_;
   double hazePhaseOf_ = 2.0;                     ///< cosine that hazePhase_ is for
   double turnedAt_ = 2.0;                        ///< cosine that turnedOf_ is for
   std::map<int, std::vector<double>> turnedOf_;  ///< of each material

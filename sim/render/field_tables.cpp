@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "sim/radiance/node_planck.hpp"
+#include "sim/model/node_planck.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {

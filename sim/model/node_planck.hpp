@@ -16,6 +16,7 @@ class NodePlanck {
  private:
   std::vector<double> c2OverWavelength_K_, c1OverWavelength5_;  ///< by member, the latter times its share
   std::vector<std::size_t> members_;                            ///< of each node
+  double least_K_ = 0.0;                                        ///< of the longest wavelength
 };
 
 }  // namespace pitviper
