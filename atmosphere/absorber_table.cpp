@@ -10,7 +10,6 @@
 #include "sim/parameters/error.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/radiometry/physics.hpp"
-#include "sim/radiometry/quadrature.hpp"
 #include "sim/radiometry/spectrum.hpp"
 
 namespace pitviper {
@@ -21,35 +20,6 @@ double hazeExtinction_per_km(double visibility_km) { return 3.912 / visibility_k
 
 // Dense fog to the clearest air; below 0.5 km haze grows to droplets of other spectra than the table's.
 constexpr double kLeastVisibility_km = 0.5, kMostVisibility_km = 300.0;
-
-// Below this the first interval's exponential is held: the deepest open ground on earth is 0.43 km below the sea.
-constexpr double kLowest_m = -2000.0;
-
-// A straight line over a sphere. From r0 = radius + height and b = r0 sin(elevation): r^2 = r0^2 + s (2 b + s).
-struct Ray {
-  double height_m, r0, b, radius_m;
-
-  Ray(double height, double sinElevation, double radius) : height_m(height), r0(radius + height), b(r0 * sinElevation), radius_m(radius) {}
-  double heightAt(double s) const {
-    const double grown = s * (2.0 * b + s);  // r^2 - r0^2, without the difference of large numbers
-    return height_m + grown / (r0 + std::sqrt(std::max(r0 * r0 + grown, 0.0)));
-  }
-  double lowest_m() const { return -b; }  // where along the line
-  // Where it crosses a height, if it does: first <= second.
-  std::optional<std::pair<double, double>> crossings(double altitude_m) const {
-    const double q2 = (altitude_m - height_m) * (2.0 * radius_m + altitude_m + height_m);
-    const double root2 = b * b + q2;
-    if (root2 <= 0.0) return std::nullopt;
-    const double far = b >= 0.0 ? -b - std::sqrt(root2) : -b + std::sqrt(root2);
-    const double near = -q2 / far;  // the product of the roots is -q2
-    return std::minmax({near, far});
-  }
-};
-
-const std::vector<QuadratureNode>& unitGauss(int points) {
-  static const std::vector<QuadratureNode> few = gaussLegendre(3, 0.0, 1.0), many = gaussLegendre(AbsorberTable::kGaussPoints, 0.0, 1.0);
-  return points == 3 ? few : many;
-}
 
 struct Word {
   std::string_view text;
@@ -197,10 +167,13 @@ class AbsorberTableReader {
   }
 
   void finishLevels() {
+    table_.steepest_.assign(table_.levels_.size(), 0.0);
     for (size_t i = 0; i + 1 < table_.levels_.size(); ++i)
       for (size_t k = 0; k < table_.absorbers_.size(); ++k) {
         const double here = table_.levels_[i].density[k], next = table_.levels_[i + 1].density[k];
-        table_.levels_[i].logRatio[k] = here > 0.0 && next > 0.0 ? std::log(next / here) : std::numeric_limits<double>::quiet_NaN();
+        const double log = here > 0.0 && next > 0.0 ? std::log(next / here) : std::numeric_limits<double>::quiet_NaN();
+        table_.levels_[i].logRatio[k] = log;
+        table_.steepest_[i] = std::fmax(table_.steepest_[i], std::abs(log));
       }
   }
 
@@ -240,96 +213,10 @@ void AbsorberTable::restoreAerosol() {
     if ((absorbers_[k].kind == AbsorberKind::Haze || absorbers_[k].kind == AbsorberKind::Aerosol) && scale_[k] == 0.0) scale_[k] = 1.0;
 }
 
-size_t AbsorberTable::intervalAt(double height_m) const {
-  const auto above = std::upper_bound(levels_.begin() + 1, levels_.end() - 1, height_m, [](double h, const Level& l) { return h < l.altitude_m; });
-  return static_cast<size_t>(above - levels_.begin()) - 1;
-}
-
-void AbsorberTable::addDensities(size_t interval, double height_m, double weight_km, AbsorberAmounts& sum) const {
-  const Level &low = levels_[interval], &high = levels_[interval + 1];
-  const double f = (std::max(height_m, kLowest_m) - low.altitude_m) / (high.altitude_m - low.altitude_m);
-  for (size_t k = 0; k < absorbers_.size(); ++k) {
-    const double log = low.logRatio[k];
-    const double density = std::isnan(log) ? std::max(low.density[k] + (high.density[k] - low.density[k]) * f, 0.0) : low.density[k] * std::exp(log * f);
-    sum.amount_km[k] += weight_km * scale_[k] * density;
-  }
-}
-
 std::vector<double> AbsorberTable::levels_m() const {
   std::vector<double> heights;
   for (const Level& level : levels_) heights.push_back(level.altitude_m);
   return heights;
-}
-
-AbsorberAmounts AbsorberTable::densities(double height_m) const {
-  AbsorberAmounts sum;
-  if (height_m <= top_m()) addDensities(intervalAt(height_m), height_m, 1.0, sum);
-  return sum;
-}
-
-double AbsorberTable::temperature_K(double height_m) const {
-  const double h = std::clamp(height_m, kLowest_m, top_m());
-  const size_t i = intervalAt(h);
-  const double f = (h - levels_[i].altitude_m) / (levels_[i + 1].altitude_m - levels_[i].altitude_m);
-  return levels_[i].temperature_K + f * (levels_[i + 1].temperature_K - levels_[i].temperature_K);
-}
-
-std::vector<PathStation> AbsorberTable::stationsBetween(double height_m, double sinElevation, double earthRadius_m, double begin, double end,
-                                                        std::vector<double> cuts, int points) const {
-  const Ray ray(height_m, std::clamp(sinElevation, -1.0, 1.0), earthRadius_m);
-  const auto cut = [&](double s) { cuts.push_back(s); };
-  cut(begin), cut(end), cut(ray.lowest_m());
-  for (const Level& level : levels_)
-    if (const auto at = ray.crossings(level.altitude_m)) cut(at->first), cut(at->second);
-  std::erase_if(cuts, [&](double s) { return !(s >= begin && s <= end); });
-  std::sort(cuts.begin(), cuts.end());
-  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
-
-  const auto& gauss = unitGauss(points);
-  std::vector<PathStation> stations = {PathStation{begin, temperature_K(ray.heightAt(begin)), {}, ray.heightAt(begin)}};
-  for (size_t i = 0; i + 1 < cuts.size(); ++i) {
-    const double length = cuts[i + 1] - cuts[i], height = ray.heightAt(cuts[i + 1]);
-    const size_t interval = intervalAt(ray.heightAt(cuts[i] + 0.5 * length));
-    PathStation next{cuts[i + 1], temperature_K(height), stations.back().amounts, height};
-    for (const QuadratureNode& node : gauss) addDensities(interval, ray.heightAt(cuts[i] + length * node.x), 1e-3 * length * node.weight, next.amounts);
-    stations.push_back(next);
-  }
-  return stations;
-}
-
-std::vector<PathStation> AbsorberTable::stations(double height_m, double sinElevation, double range_m, double earthRadius_m, int count,
-                                                 std::span<const double> alsoAt_m) const {
-  const Ray ray(height_m, std::clamp(sinElevation, -1.0, 1.0), earthRadius_m);
-  const auto within = ray.crossings(top_m());
-  const double begin = within ? std::max(within->first, 0.0) : 0.0;
-  const double end = within ? std::min(within->second, range_m) : 0.0;
-  if (!(end > begin)) return {PathStation{0.0, temperature_K(height_m), {}, height_m}};
-  std::vector<double> cuts(alsoAt_m.begin(), alsoAt_m.end());
-  for (int i = 1; i < count; ++i) {
-    const double f = static_cast<double>(i) / count;
-    cuts.push_back(begin + (end - begin) * f * f);
-  }
-  return stationsBetween(height_m, sinElevation, earthRadius_m, begin, end, std::move(cuts), kGaussPoints);
-}
-
-std::vector<PathStation> AbsorberTable::stationsAt(double height_m, double sinElevation, std::span<const double> ranges_m, double earthRadius_m) const {
-  const Ray ray(height_m, std::clamp(sinElevation, -1.0, 1.0), earthRadius_m);
-  const auto within = ray.crossings(top_m());
-  const double begin = within ? std::max(within->first, 0.0) : 0.0;
-  const double end = within && !ranges_m.empty() ? std::min(within->second, ranges_m.back()) : 0.0;
-  if (!(end > begin)) return std::vector<PathStation>(ranges_m.size(), PathStation{0.0, temperature_K(height_m), {}, height_m});
-  const auto all = stationsBetween(height_m, sinElevation, earthRadius_m, begin, end, {ranges_m.begin(), ranges_m.end()}, 3);
-  std::vector<PathStation> stations;
-  size_t at = 0;
-  for (double r : ranges_m) {
-    while (at + 1 < all.size() && all[at + 1].range_m <= r) ++at;
-    stations.push_back(all[at]);
-  }
-  return stations;
-}
-
-AbsorberAmounts AbsorberTable::amounts(double height_m, double sinElevation, double range_m, double earthRadius_m) const {
-  return stations(height_m, sinElevation, range_m, earthRadius_m, 0).back().amounts;
 }
 
 std::vector<double> AbsorberTable::knots_um() const {

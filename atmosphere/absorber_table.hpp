@@ -83,7 +83,8 @@ class AbsorberTable {
 
   /// Amounts on the straight line from a height, with the sine of its elevation there, as far as a range (may be infinite) over a spherical
   /// earth; the earth itself does not stop it. From either end the same to rounding.
-  /// Quadrature: kGaussPoints points of Gauss-Legendre between each two neighbours of: the levels crossed, the lowest point of the line.
+  /// Quadrature between each two neighbours of: the levels crossed, the lowest point of the line. By their middle and a series where densities change
+  /// little, else kGaussPoints points of Gauss-Legendre.
   /// Relative error below 1e-6 of each amount against the same profiles integrated finely (tests/unit/test_absorber_table.cpp).
   /// Refraction left out: between two given points it is of second order; of what lies towards space it is 0.4 % at a zenith angle of 80
   /// degrees (LOWTRAN's bent path, same profiles), more below: bent_path.hpp has it.
@@ -94,6 +95,9 @@ class AbsorberTable {
   /// the part within the air, and at further ranges asked for. The first is at range 0 or where the air begins.
   std::vector<PathStation> stations(double height_m, double sinElevation, double range_m, double earthRadius_m, int count = 32,
                                     std::span<const double> alsoAt_m = {}) const;
+
+  /// The ranges of these alone [m].
+  std::vector<double> placesAlong(double height_m, double sinElevation, double range_m, double earthRadius_m, int count = 32) const;
 
   /// The same at given ranges alone, rising from 0 on; those before the air begins and beyond its end hold what there is as far as there.
   std::vector<PathStation> stationsAt(double height_m, double sinElevation, std::span<const double> ranges_m, double earthRadius_m) const;
@@ -132,10 +136,18 @@ class AbsorberTable {
   };
   friend class AbsorberTableReader;
 
-  std::vector<PathStation> stationsBetween(double height_m, double sinElevation, double earthRadius_m, double begin_m, double end_m, std::vector<double> cuts_m,
-                                           int points) const;
+  /// A line and what of it lies in the air.
+  struct Way;
+  /// Rising: these places and where densities bend.
+  std::vector<double> placesOn(const Way& way, std::vector<double> cuts_m) const;
+  std::vector<PathStation> stationsOn(const Way& way, std::vector<double> cuts_m, int points) const;
+  static std::vector<double> closerNearBy(const Way& way, int count, std::span<const double> alsoAt_m);
   size_t intervalAt(double height_m) const;
-  void addDensities(size_t interval, double height_m, double weight_km, AbsorberAmounts& sum) const;
+  /// Where between an interval's levels a height lies: 0 to 1, beyond them for what is extrapolated.
+  double partOf(size_t interval, double height_m) const;
+  /// Densities at a place, or their mean over a short stretch around it: `half` how far either end is from it in parts of the interval, `bend` by how much the
+  /// ends' mean lies above it.
+  void addDensities(size_t interval, double part, double weight_km, AbsorberAmounts& sum, double half = 0.0, double bend = 0.0) const;
   double depthOf(const std::array<double, kMostAbsorbers>& coefficients, const AbsorberAmounts& amounts) const;
   std::pair<size_t, double> binAt(double wavelength_um) const;
 
@@ -144,6 +156,7 @@ class AbsorberTable {
   std::array<double, kMostAbsorbers> scale_{};  ///< of each absorber's density: 1, or as the visibility asks
   std::vector<Absorber> absorbers_;
   std::vector<Level> levels_;
+  std::vector<double> steepest_;  ///< of each interval: the largest logarithm of the next level's density over this one's
   std::vector<Bin> bins_;
 };
 

@@ -61,6 +61,9 @@ class Layered final : public Atmosphere, public HasHaze {
     for (const PathStation& s : table_.stations(ray.height_m, ray.sinElevation, range_m, ray.earthRadius_m)) all.push_back(stationOf(s));
     return all;
   }
+  std::vector<double> placesAlong(const AirRay& ray, double range_m) const override {
+    return table_.placesAlong(ray.height_m, ray.sinElevation, range_m, ray.earthRadius_m);
+  }
   std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const override {
     std::vector<AirStation> all;
     for (const PathStation& s : table_.stationsAt(ray.height_m, ray.sinElevation, ranges_m, ray.earthRadius_m)) all.push_back(stationOf(s));

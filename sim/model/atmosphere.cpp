@@ -12,6 +12,12 @@ AirAmounts Atmosphere::densities(double) const { return {}; }
 
 std::vector<AirStation> Atmosphere::stations(const AirRay& ray, double range_m) const { return {{}, {range_m, 0.0, 0.0, amounts(ray, range_m)}}; }
 
+std::vector<double> Atmosphere::placesAlong(const AirRay& ray, double range_m) const {
+  std::vector<double> ranges;
+  for (const AirStation& s : stations(ray, range_m)) ranges.push_back(s.range_m);
+  return ranges;
+}
+
 std::vector<AirStation> Atmosphere::stationsAt(const AirRay& ray, std::span<const double> ranges_m) const {
   std::vector<AirStation> stations;
   for (double r : ranges_m) stations.push_back({r, 0.0, 0.0, amounts(ray, r)});

@@ -87,6 +87,8 @@ class Atmosphere {
   /// Places along a ray, at least where its emission bends; the first where the air begins, the last at the range or the air's end.
   /// Here: the beginning and the end of air that is the same along the ray.
   virtual std::vector<AirStation> stations(const AirRay& ray, double range_m) const;
+  /// The ranges of these alone [m].
+  virtual std::vector<double> placesAlong(const AirRay& ray, double range_m) const;
   /// The same at given ranges, rising. Here: amounts alone.
   virtual std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const;
   /// Temperature at height 0 [K]; 0: it does not say.

@@ -77,6 +77,30 @@ std::vector<double> refinedAtDusk(const AirRay& ray, const RaySun& sun, const st
   return all;
 }
 
+/// Steps of a field stand close together: of places that are no nearer to the eye than two hundred times their distance, and no farther apart in height than
+/// this, the first and the last are looked at, and between these amounts change evenly. They are then off by at most (10 m / 300 m) / 8 / 200, 2e-5, where a
+/// haze falls to a third in 300 m.
+constexpr double kEvenPart = 0.005, kEvenHigher_m = 10.0;
+
+/// Which of rising ranges are looked at, by number: all but steps that others tell.
+std::vector<size_t> lookedAt(const std::vector<double>& ranges, const std::vector<Slab>& slabs, double sine) {
+  std::vector<double> steps;
+  for (const Slab& s : slabs) steps.insert(steps.end(), {s.step.enter_m, s.step.leave_m});
+  std::sort(steps.begin(), steps.end());
+  std::vector<size_t> some = {0};
+  for (size_t i = 1; i < ranges.size(); ++i) {
+    const double last = ranges[some.back()], apart = std::min(kEvenPart * last, kEvenHigher_m / std::max(std::abs(sine), 1e-9));
+    if (i + 1 == ranges.size() || ranges[i + 1] - last > apart || !std::binary_search(steps.begin(), steps.end(), ranges[i])) some.push_back(i);
+  }
+  return some;
+}
+
+AirAmounts mixed(const AirAmounts& near, const AirAmounts& far, double share) {
+  AirAmounts all;
+  for (size_t k = 0; k < all.amount.size(); ++k) all.amount[k] = near.amount[k] + share * (far.amount[k] - near.amount[k]);
+  return all;
+}
+
 void mergeInto(std::vector<double>& at, const std::vector<double>& more) {
   at.insert(at.end(), more.begin(), more.end());
   std::sort(at.begin(), at.end());
@@ -97,8 +121,7 @@ AirPlaces::AirPlaces(const RadianceScene& scene, const LineOfSight& line, std::v
   RaySun sun;
   if (sim.sun) sun = {glm::dot(sim.sun->toSun, sim.frame.up(line.origin)), glm::dot(line.direction, sim.sun->toSun)};
   if (path.traits().variesAlongWay) {
-    std::vector<double> own;
-    for (const AirStation& s : path.stations(ray, ranges.back())) own.push_back(s.range_m);
+    std::vector<double> own = path.placesAlong(ray, ranges.back());
     std::erase_if(own, [&](double r) { return r > ranges.back(); });
     const double begin = own.front(), end = own.back();
     for (double r : ranges)
@@ -111,10 +134,19 @@ AirPlaces::AirPlaces(const RadianceScene& scene, const LineOfSight& line, std::v
   }
   sunlit_ = scene.terms.scatteredSun;
   cosScatter_ = sun.cosScatter;
-  const SunlitAir air(path, ray, path.stationsAt(ray, ranges), sunlit_ ? scene.sunLegs : nullptr, sun);
-  for (size_t i = 0; i < ranges.size(); ++i) {
-    places_.push_back({ranges[i], air.stations[i].temperature_K, air.powered[i], sunlit_ ? air.both[i] : AirAmounts{}, sunlit_ ? air.lit[i] : 0.0});
-    amounts_.push_back(air.stations[i].amounts);
+  const std::vector<size_t> seen = lookedAt(ranges, line.hits.slabs, ray.sinElevation);
+  std::vector<double> at;
+  for (size_t i : seen) at.push_back(ranges[i]);
+  const SunlitAir air(path, ray, path.stationsAt(ray, at), sunlit_ ? scene.sunLegs : nullptr, sun);
+  places_.reserve(ranges.size()), amounts_.reserve(ranges.size());
+  for (size_t i = 0, k = 0; i < ranges.size(); ++i) {
+    if (k + 1 < seen.size() && i >= seen[k + 1]) ++k;
+    const size_t next = i == seen[k] ? k : k + 1;
+    const double share = next == k ? 0.0 : (ranges[i] - at[k]) / (at[next] - at[k]);
+    const AirStation &near = air.stations[k], &far = air.stations[next];
+    places_.push_back({ranges[i], near.temperature_K + share * (far.temperature_K - near.temperature_K), mixed(air.powered[k], air.powered[next], share),
+                       sunlit_ ? mixed(air.both[k], air.both[next], share) : AirAmounts{}, sunlit_ ? air.lit[k] + share * (air.lit[next] - air.lit[k]) : 0.0});
+    amounts_.push_back(mixed(near.amounts, far.amounts, share));
   }
 }
 

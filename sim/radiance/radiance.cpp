@@ -11,6 +11,10 @@
 namespace pitviper {
 namespace {
 
+/// How far apart places are between which the air on their ways to the sun is taken as changing evenly, in height and along the line: of haze that falls to a
+/// third in 300 m it is then off by (10/300)^2/8, 1e-4, of what there is.
+constexpr double kSunHigher_m = 10.0, kSunFurther_m = 500.0;
+
 /// Tells one line of sight to a sink.
 class Teller {
  public:
@@ -82,9 +86,23 @@ class Teller {
     }
     const bool scatters = addFields(middle, far.range_m - near.range_m);
     AirAmounts toSun;
-    if (scatters && scene_.terms.air)
-      toSun = sim_.air->powered(air_.amounts(near) + sunHere(sim_, line_.origin + middle * line_.direction).air);
+    if (scatters && scene_.terms.air) toSun = sim_.air->powered(air_.amounts(near) + airToSun(middle, far.range_m - near.range_m));
     sink_.segment({near, far, inside_, scene_.terms.air, air_.sunlit(), cosScatter_, dark_, scatters && scene_.terms.air ? &toSun : nullptr});
+  }
+
+  /// From a place on the line to the sun: linear between places that stand close together (kSunHigher_m, kSunFurther_m).
+  AirAmounts airToSun(double range_m, double length_m) {
+    const double sine = glm::dot(line_.direction, sim_.frame.up(line_.origin)), apart = std::min(kSunFurther_m, kSunHigher_m / std::max(std::abs(sine), 1e-9)),
+                 number = std::floor(range_m / apart), share = range_m / apart - number;
+    const auto at = [&](double r) { return sunHere(sim_, line_.origin + r * line_.direction); };
+    if (length_m >= apart) return at(range_m).air;
+    for (const double n : {number, number + 1.0})
+      if (SunPlace& place = sunPlaces_[std::fmod(n, 2.0) == 0.0 ? 0 : 1]; place.number != n) place = {n, at(n * apart)};
+    const SunPlace &first = sunPlaces_[std::fmod(number, 2.0) == 0.0 ? 0 : 1], &second = sunPlaces_[std::fmod(number, 2.0) == 0.0 ? 1 : 0];
+    if (!(first.sun.share > 0.0 && second.sun.share > 0.0)) return at(range_m).air;
+    AirAmounts mixed;
+    for (size_t k = 0; k < mixed.amount.size(); ++k) mixed.amount[k] = (1.0 - share) * first.sun.air.amount[k] + share * second.sun.air.amount[k];
+    return mixed;
   }
 
   /// What fields have on a stretch; whether sunlight falls on some of it that scatters.
@@ -101,8 +119,8 @@ class Teller {
           const Medium& medium = *sim_.materials[static_cast<size_t>(material)]->medium;
           const double sun = medium.albedo && sim_.sun ? s.sun : 0.0;
           scatters |= sun > 0.0;
-          inside_.push_back({&medium, -1, material, s.temperature_K, share * part * s.amount[g], false, s.gain, sun, s.sunAmount, share * s.drift_perK,
-                             slab.field});
+          inside_.push_back(
+              {&medium, -1, material, s.temperature_K, share * part * s.amount[g], false, s.gain, sun, s.sunAmount, share * s.drift_perK, slab.field});
         });
       }
     }
@@ -110,9 +128,7 @@ class Teller {
   }
 
   /// Of the body that it belongs to; the ground lies at 0.
-  double heightOf(const Hit& hit) const {
-    return hit.entity < 0 ? 0.0 : sim_.frame.height(scene_.state.entities[static_cast<size_t>(hit.entity)].position);
-  }
+  double heightOf(const Hit& hit) const { return hit.entity < 0 ? 0.0 : sim_.frame.height(scene_.state.entities[static_cast<size_t>(hit.entity)].position); }
   double viewAngle(const Hit& hit) const { return std::acos(std::clamp(-glm::dot(hit.normal, line_.direction), 0.0, 1.0)); }
 
   void pane(const Hit& hit) {
@@ -135,8 +151,7 @@ class Teller {
     if (states.texture >= 0) state = modifier(states.texture, hit);
     else
       for (const auto& [temperature_K, part] : temperaturesOf(surfaceAt(sim_, hit), hit)) state += part * temperature_K;
-    const double x = std::clamp((state - states.low) / (states.high - states.low), 0.0, 1.0) * last,
-                 low = std::min(std::floor(x), last - 1.0);
+    const double x = std::clamp((state - states.low) / (states.high - states.low), 0.0, 1.0) * last, low = std::min(std::floor(x), last - 1.0);
     share_ = 1.0 - (x - low);
     surface(hit, *states.entries[static_cast<size_t>(low)], place);
     share_ = x - low;
@@ -203,8 +218,13 @@ class Teller {
   std::vector<MediumInside> inside_;
   double cosScatter_ = 0.0;
   bool dark_ = false;
-  int entity_ = -1;     ///< of the surface that is told
-  double share_ = 1.0;  ///< of the state that is told
+  struct SunPlace {
+    double number = -1.0;
+    SunHere sun;
+  };
+  std::array<SunPlace, 2> sunPlaces_;  ///< the two last: an even and an odd one
+  int entity_ = -1;                    ///< of the surface that is told
+  double share_ = 1.0;                 ///< of the state that is told
 };
 
 }  // namespace

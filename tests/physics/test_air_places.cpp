@@ -3,11 +3,14 @@
 
 #include <cmath>
 
+#include "sim/model/field_states.hpp"
 #include "sim/model/sunlit_air.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/print.hpp"
+#include "tests/support/puff_scene.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
@@ -80,6 +83,60 @@ TEST(AirPlaces, SunThatSetsAlongALine) {
         }
   }
   bound("sky under a sun that sets along the line, the same", worst, 1e-3, "depths linear between places; the disc's share too");
+}
+
+/// Holds what air is told between a field's steps and the sun against that of each step.
+class WaysToTheSun final : public TermSink {
+ public:
+  WaysToTheSun(const Simulation& sim, const LineOfSight& line) : sim_(sim), line_(line) {}
+  void restart() override {}
+  void term(const Term&) override {}
+  void pane(const Factor&, double) override {}
+  void segment(const Segment& s) override {
+    if (!s.sunAir) return;
+    const AirRay ray{sim_.frame.height(line_.origin), glm::dot(line_.direction, sim_.frame.up(line_.origin)), sim_.frame.earthRadius_m()};
+    const AirAmounts there = sunHere(sim_, line_.origin + 0.5 * (s.near.range_m + s.far.range_m) * line_.direction).air;
+    const AirAmounts want = sim_.air->powered(sim_.air->amounts(ray, s.near.range_m) + there);
+    for (size_t k = 0; k < want.amount.size(); ++k)
+      if (want.amount[k] > 0.0) worst = std::max(worst, std::abs(s.sunAir->amount[k] / want.amount[k] - 1.0));
+    ++told;
+  }
+  double worst = 0.0;
+  int told = 0;
+
+ private:
+  const Simulation& sim_;
+  const LineOfSight& line_;
+};
+
+// Steps of a cloud of smoke stand closer together than air changes: its way to the sun is told at few of them.
+TEST(AirPlaces, WaysToTheSunAlongAField) {
+  for (double sun_deg : {2.0, 15.0, 60.0}) {
+    Simulation sim = worldOf("hazy_mls", sun_deg);
+    Medium smoke = greyGas(1e-3);
+    smoke.albedo = Spectrum(0.5);
+    addPuffs(sim, {puffAt({0.0, 3000.0, 900.0}, 150.0, 1.0, 300.0)}, smoke);
+    const auto legs = SunLegs::of(sim.air, sim.sun->toSun.z, sim.frame.earthRadius_m());
+    const WorldState state = advance(sim, 0.0);
+    const Terms terms = termsOf(sim);
+    const FieldState& field = *fieldOf(state, 0);
+    double worst = 0.0;
+    int told = 0;
+    // Level, steeply up and down, and straight up: through layers of the table.
+    for (const glm::dvec3 eye : {glm::dvec3(0.0, 0.0, 900.0), {0.0, 2500.0, 5.0}, {0.0, 2800.0, 2000.0}, {0.0, 3000.0, 5.0}})
+      for (int steps : {6, 100}) {
+        LineOfSight line{eye, glm::normalize(glm::dvec3(0.0, 3000.0, 900.0) - eye), {}, 0.0};
+        std::vector<FieldStep> cut;
+        field.along({line.origin, line.direction, 0.0, physics::kFar}, steps, cut);
+        for (const FieldStep& s : cut) line.hits.slabs.push_back({0, s});
+        WaysToTheSun sink(sim, line);
+        radianceAlong({sim, terms, legs.get(), state, {}, 0}, line, sink);
+        worst = std::max(worst, sink.worst), told += sink.told;
+      }
+    EXPECT_GT(told, 90);
+    bound(print("air between the steps of a field and the sun at %g degrees, relative", sun_deg), worst, 2e-4,
+          "linear over 10 m of height: (10 m / 300 m)^2 / 8 where a haze ends");
+  }
 }
 
 }  // namespace
