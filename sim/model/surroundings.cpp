@@ -84,33 +84,39 @@ const Surroundings::Blur& Surroundings::blur(std::size_t height, double sigma_ra
   const std::vector<DirectionGrid::Sample> samples = wide ? grid.samples(3) : std::vector<DirectionGrid::Sample>{};
   const int count = sigma_rad == 0.0 ? 1 : 1500;
   const double golden = kPi * (3.0 - std::sqrt(5.0));
-  for (std::size_t r = 0; r < rings; ++r)
-    for (std::size_t phase = 0; phase < phases; ++phase) {
-      const glm::dvec3 middle = finer.direction(r * round + phase);
-      double* row = blur.shares.data() + (r * phases + phase) * size;
-      const auto add = [&](const DirectionGrid::Reading& reading, double weight) {
-        for (std::size_t e = 0; e < 4; ++e) row[reading.at[e]] += weight * reading.weight[e];
-      };
-      if (wide) {
-        double whole = 0.0;
-        for (const DirectionGrid::Sample& s : samples) {
-          const double cosine = glm::dot(middle, s.direction), weight = s.solidAngle * (sigma_rad < 0.0 ? cosine : std::exp((cosine - 1.0) / variance));
-          if (weight > 0.0) add(s.reading, weight), whole += weight;
+  std::vector<glm::dvec3> spiral;  // about the z axis
+  for (int k = 0; k < count && !wide; ++k) {
+    const double cosine = count == 1 ? 1.0 : 1.0 + variance * std::log1p((k + 0.5) / count * (opposite - 1.0)),
+                 sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0));
+    spiral.emplace_back(sine * std::cos(golden * k), sine * std::sin(golden * k), cosine);
+  }
+  onAllThreads(rings, [&](const auto& next) {
+    for (std::size_t r = next(); r < rings; r = next())
+      for (std::size_t phase = 0; phase < phases; ++phase) {
+        const glm::dvec3 middle = finer.direction(r * round + phase);
+        double* row = blur.shares.data() + (r * phases + phase) * size;
+        const auto add = [&](const DirectionGrid::Reading& reading, double weight) {
+          for (std::size_t e = 0; e < 4; ++e) row[reading.at[e]] += weight * reading.weight[e];
+        };
+        if (wide) {
+          double whole = 0.0;
+          for (const DirectionGrid::Sample& s : samples) {
+            const double cosine = glm::dot(middle, s.direction), weight = s.solidAngle * (sigma_rad < 0.0 ? cosine : std::exp((cosine - 1.0) / variance));
+            if (weight > 0.0) add(s.reading, weight), whole += weight;
+          }
+          for (std::size_t h = 0; h < size; ++h) row[h] /= whole;
+          continue;
         }
-        for (std::size_t h = 0; h < size; ++h) row[h] /= whole;
-        continue;
+        const glm::dvec3 aside = glm::normalize(glm::cross(middle, std::abs(middle.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0))),
+                         up = glm::cross(aside, middle);
+        for (const glm::dvec3& s : spiral) {
+          glm::dvec3 to = s.z * middle + (s.x * aside + s.y * up);
+          // The horizon is seen from the side that its ring is of.
+          if (count == 1) to.z += r < static_cast<std::size_t>(finer.above) ? 1e-9 : -1e-9;
+          add(grid.at(to), 1.0 / count);
+        }
       }
-      const glm::dvec3 aside = glm::normalize(glm::cross(middle, std::abs(middle.z) < 0.9 ? glm::dvec3(0, 0, 1) : glm::dvec3(1, 0, 0))),
-                       up = glm::cross(aside, middle);
-      for (int k = 0; k < count; ++k) {
-        const double cosine = count == 1 ? 1.0 : 1.0 + variance * std::log1p((k + 0.5) / count * (opposite - 1.0));
-        const double sine = std::sqrt(std::max(1.0 - cosine * cosine, 0.0)), turn = golden * k;
-        glm::dvec3 to = cosine * middle + sine * (std::cos(turn) * aside + std::sin(turn) * up);
-        // The horizon is seen from the side that its ring is of.
-        if (count == 1) to.z += r < static_cast<std::size_t>(finer.above) ? 1e-9 : -1e-9;
-        add(grid.at(to), 1.0 / count);
-      }
-    }
+  });
   return blur;
 }
 
