@@ -39,8 +39,31 @@ constexpr double kUnseen = 0.05;
 /// Places at which the air of a line is looked at.
 constexpr int kAirPlaces = 8;
 
+/// Nodes of each block of a plan that tell how finely to look.
+constexpr int kNodes = 24;
+
 /// Of the cache; a change of what is found here is a new one.
-constexpr const char* kWhat = "fields-1";
+constexpr const char* kWhat = "fields-2";
+
+/// Of each block so many nodes at most, evenly by how much fields absorb at them, which is what steps are about; each has the weights of those beside it.
+Plan fewNodes(const Simulation& sim, const Plan& plan, int most) {
+  std::vector<std::size_t> order;
+  const auto absorbed = [&](std::size_t node) {
+    double sum = 0.0;
+    for (const FieldBody& f : sim.fields)
+      for (const FieldGas& g : f.gases) sum += plan.nodes[node].absorption_per_m[static_cast<std::size_t>(g.levels.front().material)];
+    return sum;
+  };
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) order.push_back(i);
+  for (const NodeBlock& b : plan.blocks)
+    std::stable_sort(order.begin() + b.first, order.begin() + b.first + b.count, [&](std::size_t i, std::size_t j) { return absorbed(i) < absorbed(j); });
+  Plan sorted = plan;
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    sorted.nodes[i] = plan.nodes[order[i]];
+    for (std::size_t s = 0; s < plan.weight.size(); ++s) sorted.weight[s][i] = plan.weight[s][order[i]];
+  }
+  return someWavelengths(sorted, most);
+}
 
 /// Radiance of lines through one field at a time, in the plan's slots.
 class FieldLooks {
@@ -192,8 +215,9 @@ double coarserFor(FieldLooks& looks, const View& view, int pixels, double asked,
 
 }  // namespace
 
-FieldSampling::FieldSampling(const Simulation& sim, const Plan& plan) {
-  const double asked = plan.accuracy > 0.0 ? plan.accuracy : kUsual;
+FieldSampling::FieldSampling(const Simulation& sim, const Plan& whole, int most) {
+  const double asked = whole.accuracy > 0.0 ? whole.accuracy : kUsual;
+  const Plan plan = fewNodes(sim, whole, most);
   const NodeSpectra spectra(sim, plan.nodes, 0);
   NodeSum sum(spectra);
   Dice dice(11);
@@ -255,7 +279,7 @@ std::shared_ptr<const FieldSampling> FieldSampling::of(const Simulation& simulat
   if (const auto kept = readCachedTable(kWhat, key))
     if (auto read = from(*kept, simulation.fields.size())) made = std::make_shared<const FieldSampling>(std::move(*read));
   if (!made) {
-    made = std::make_shared<const FieldSampling>(simulation, plan);
+    made = std::make_shared<const FieldSampling>(simulation, plan, kNodes);
     writeCachedTable(kWhat, key, made->bytes());
   }
   last = made, lastOf = &simulation, lastAccuracy = plan.accuracy, lastWeights = plan.weight;

@@ -17,7 +17,8 @@ class FieldSampling {
  public:
   /// The same again while somebody holds one of the same simulation and plan.
   static std::shared_ptr<const FieldSampling> of(const Simulation& simulation, const Plan& plan);
-  FieldSampling(const Simulation& simulation, const Plan& plan);
+  /// By so many nodes of each block of the plan at most, and their share of its weights.
+  FieldSampling(const Simulation& simulation, const Plan& plan, int most);
   /// As bytes that read back to the same, for the cache of tables; nothing where they cannot be read, or are of another number of fields.
   std::string bytes() const;
   static std::optional<FieldSampling> from(std::string_view bytes, std::size_t fields);
