@@ -102,7 +102,7 @@ void TruthMeter::addField(TargetRow& row, std::size_t f, const WorldState& state
   };
   std::vector<Row> rows(static_cast<std::size_t>(grid.height));
   eachPiece(grid.height, [&](int y) {
-    NodeSum sum(*spectra_), behind(*spectra_);
+    NodeSum sum(*spectra_);
     sum.watchField(static_cast<int>(f));
     Row here{own, own, own, std::vector<double>(channels * static_cast<std::size_t>(grid.width), 0.0)};
     std::vector<FieldStep> alone;
@@ -136,8 +136,7 @@ void TruthMeter::addField(TargetRow& row, std::size_t f, const WorldState& state
           const std::vector<double> all = shader.shade(line, sum).slots, its = slotsOf(plan_, sum.ofEntity());
           seen.own = channelsOf(its);
           if (seen.whole.empty()) seen.whole = seen.own;
-          std::erase_if(line.hits.slabs, isIts);
-          const std::vector<double> without = shader.shade(line, behind).slots;
+          const std::vector<double> without = slotsOf(plan_, sum.withoutField());
           for (std::size_t s = 0; s < slots; ++s) {
             here.own[s] += seen.sr * its[s];
             here.total[s] += seen.sr * all[s];

@@ -113,6 +113,7 @@ NodeSum::NodeSum(const NodeSpectra& spectra) : spectra_(spectra), count_(spectra
 void NodeSum::begin() {
   radiance_.assign(count_, 0.0);
   if (watchesOne()) ofEntity_.assign(count_, 0.0);
+  isParted_ = false;
   if (keepsParts_) {
     for (auto& p : parts_) p.assign(count_, 0.0);
     ofLamp_.assign(spectra_.simulation().lights.size(), std::vector<double>(count_, 0.0));
@@ -124,6 +125,7 @@ void NodeSum::restart() {
   panes_.assign(count_, 1.0);
   mediaDepth_.assign(count_, 0.0);
   mediaPassed_.assign(count_, 1.0);
+  if (isParted_) without_.depth = mediaDepth_, without_.passed = mediaPassed_;
   std::fill(near_.depth.begin(), near_.depth.end(), 0.0);
   std::fill(near_.passed.begin(), near_.passed.end(), 1.0);
   here_ = sunKnownAt_ = nullptr;
@@ -151,8 +153,9 @@ void NodeSum::term(const Term& term) {
   }
   for (size_t i = 0; i < count_; ++i) {
     if (product[i] == 0.0) continue;
-    const double sent = product[i] * panes_[i] * (term.air ? termPassed_ : near_.passed)[i] * mediaPassed_[i];
+    const double reaching = product[i] * panes_[i] * (term.air ? termPassed_ : near_.passed)[i], sent = reaching * mediaPassed_[i];
     if (taken) send(term.kind, i, sent);
+    if (taken && isParted_) without_.radiance[i] += reaching * without_.passed[i];
     if (watched) ofEntity_[i] += sent;
     if (keepsParts_ && taken && term.kind == TermKind::Lights) ofLamp_[static_cast<size_t>(term.light)][i] += sent;
   }
@@ -255,7 +258,8 @@ std::vector<std::vector<double>> NodeSum::driftsOf(const Segment& s, const std::
 
 /// What a segment's media take and send, per node.
 void NodeSum::gather(const Segment& s, const std::vector<std::vector<double>>& sources, const std::vector<std::vector<double>>& drifts) {
-  for (auto* v : {&own_.depth, &own_.emitted, &own_.drifting, &own_.watched, &own_.driftingOfWatched}) v->assign(count_, 0.0);
+  for (auto* v : {&own_.depth, &own_.emitted, &own_.drifting, &own_.watched, &own_.driftingOfWatched, &own_.otherDepth}) v->assign(count_, 0.0);
+  bool isOfField = false;
   const auto add = [&](const std::vector<double>& depth, const std::vector<double>& sent, std::vector<double>& into) {
     for (size_t i = 0; i < count_; ++i) into[i] += depth[i] * sent[i];
   };
@@ -267,10 +271,16 @@ void NodeSum::gather(const Segment& s, const std::vector<std::vector<double>>& s
     add(depth, sources[m], own_.emitted);
     if (!drifts.empty()) add(depth, drifts[m], own_.drifting);
     if (!watchesOne() || of.entity != watched_ || of.field != watchedField_) continue;
+    isOfField |= watchedField_ >= 0;
+    for (size_t i = 0; i < count_; ++i) own_.otherDepth[i] -= depth[i];
     add(depth, sources[m], own_.watched);
     if (!drifts.empty()) add(depth, drifts[m], own_.driftingOfWatched);
   }
   passedOf(own_.depth, own_.passed);
+  if (isOfField && !isParted_) without_ = {radiance_, mediaDepth_, mediaPassed_}, isParted_ = true;
+  if (!isParted_) return;
+  for (size_t i = 0; i < count_; ++i) own_.otherDepth[i] = std::max(own_.otherDepth[i] + own_.depth[i], 0.0);
+  passedOf(own_.otherDepth, own_.otherPassed);
 }
 
 // J = (x S + y B) / (x + y) with S of the media and B of the air, B linear in depth from one end to the other:
@@ -303,26 +313,41 @@ void NodeSum::segment(const Segment& s) {
   const bool inMedia = !s.media.empty();
   if (inMedia) gather(s, sources, drifts);
   for (size_t i = 0; i < count_; ++i) {
-    const double x = inMedia ? own_.depth[i] : 0.0, passed = inMedia ? own_.passed[i] : 1.0, before = mediaDepth_[i], beforePassed = mediaPassed_[i];
+    const double y = s.air ? std::max(far_.depth[i] - near_.depth[i], 0.0) : 0.0;
+    // Media of depth x on the stretch, of which `passed` is the exponential, behind such as let `beforePassed` through.
+    const auto tell = [&](double x, double passed, double before, double beforePassed, double emitted, double drifting, const auto& add, double ofWatched,
+                          double driftingOfWatched) {
+      const double d = x + y;
+      if (s.dark || (s.air ? near_.depth[i] : 0.0) + before > kOpaque || !(d > 0.0)) return;
+      const double reaching = panes_[i] * beforePassed, seen = reaching * (s.air ? near_.passed[i] : 1.0);
+      const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * passed, lost = lostOf(d, left);
+      const auto sent = [&](double even, double change) {
+        return seen / d * (even * lost + (change != 0.0 ? change * (growing(d, left, lost) - 0.5 * lost) : 0.0));
+      };
+      if (ofWatched > 0.0) ofEntity_[i] += sent(ofWatched, driftingOfWatched);
+      if (media && x > 0.0) add(TermKind::Media, sent(emitted, drifting));
+      if (air && y > 0.0) {
+        const double near = near_.black[i] + nodes[i].air.source, far = far_.black[i] + nodes[i].air.source;
+        add(TermKind::AirEmission, seen * (y / d) * (near * lost + (far - near) * growing(d, left, lost)));
+      }
+      if (!turned) return;
+      const double mean = meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * passed);
+      add(TermKind::ScatteredSun, sun * reaching * mean * (*irradiance)[i] * turned_[i]);
+    };
+    const double x = inMedia ? own_.depth[i] : 0.0, passed = inMedia ? own_.passed[i] : 1.0;
+    tell(
+        x, passed, mediaDepth_[i], mediaPassed_[i], inMedia ? own_.emitted[i] : 0.0, inMedia ? own_.drifting[i] : 0.0,
+        [&](TermKind kind, double radiance) { send(kind, i, radiance); }, inMedia && watchesOne() ? own_.watched[i] : 0.0,
+        inMedia ? own_.driftingOfWatched[i] : 0.0);
     mediaDepth_[i] += x;
     mediaPassed_[i] *= passed;
-    if (s.dark || (s.air ? near_.depth[i] : 0.0) + before > kOpaque) continue;
-    const double y = s.air ? std::max(far_.depth[i] - near_.depth[i], 0.0) : 0.0, d = x + y;
-    if (!(d > 0.0)) continue;
-    const double reaching = panes_[i] * beforePassed, seen = reaching * (s.air ? near_.passed[i] : 1.0);
-    const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * passed, lost = lostOf(d, left);
-    const auto sent = [&](double even, double change) {
-      return seen / d * (even * lost + (change != 0.0 ? change * (growing(d, left, lost) - 0.5 * lost) : 0.0));
-    };
-    if (inMedia && watchesOne() && own_.watched[i] > 0.0) ofEntity_[i] += sent(own_.watched[i], own_.driftingOfWatched[i]);
-    if (media && x > 0.0) send(TermKind::Media, i, sent(own_.emitted[i], own_.drifting[i]));
-    if (air && y > 0.0) {
-      const double near = near_.black[i] + nodes[i].air.source, far = far_.black[i] + nodes[i].air.source;
-      send(TermKind::AirEmission, i, seen * (y / d) * (near * lost + (far - near) * growing(d, left, lost)));
-    }
-    if (!turned) continue;
-    const double mean = meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * passed);
-    send(TermKind::ScatteredSun, i, sun * reaching * mean * (*irradiance)[i] * turned_[i]);
+    if (!isParted_) continue;
+    const double other = inMedia ? own_.otherDepth[i] : 0.0, otherPassed = inMedia ? own_.otherPassed[i] : 1.0;
+    tell(
+        other, otherPassed, without_.depth[i], without_.passed[i], inMedia ? own_.emitted[i] - own_.watched[i] : 0.0,
+        inMedia ? own_.drifting[i] - own_.driftingOfWatched[i] : 0.0, [&](TermKind, double radiance) { without_.radiance[i] += radiance; }, 0.0, 0.0);
+    without_.depth[i] += other;
+    without_.passed[i] *= otherPassed;
   }
   if (s.air) std::swap(near_, far_);
   here_ = &s.far;

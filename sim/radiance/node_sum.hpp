@@ -76,6 +76,8 @@ class NodeSum final : public TermSink {
   void watchEntity(int entity) { watched_ = entity; }
   /// The same of a field, an index into Simulation::fields: ofEntity() is then its.
   void watchField(int field) { watchedField_ = field; }
+  /// Where watchField() was called: what the line would have without the field.
+  std::span<const double> withoutField() const { return isParted_ ? without_.radiance : radiance_; }
   /// Sums from here on are of this part alone; without one of all.
   void setOnly(const std::optional<Part>& only) { only_ = only; }
   /// The parts that lines had since watchParts() was called.
@@ -122,8 +124,13 @@ class NodeSum final : public TermSink {
   std::vector<double> panes_, mediaDepth_, mediaPassed_;  ///< on the way so far; the last exp of the one before
   struct {
     std::vector<double> depth, passed;                                  ///< of all
+    std::vector<double> otherDepth, otherPassed;                        ///< of what is not watched, once a watched field was met
     std::vector<double> emitted, drifting, watched, driftingOfWatched;  ///< sums of depths times sources, and times what these change by
   } own_;                                                               ///< of the media of a segment
+  struct {
+    std::vector<double> radiance, depth, passed;
+  } without_;  ///< the field that is watched, as radiance_, mediaDepth_ and mediaPassed_ from where it begins
+  bool isParted_ = false;
   At near_, far_;
   std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_, termDepth_, termPassed_;
   double hazePhaseOf_ = 2.0;                     ///< cosine that hazePhase_ is for
