@@ -8,6 +8,7 @@
 #include "sim/model/field_drift.hpp"
 #include "sim/model/field_lines.hpp"
 #include "sim/model/field_states.hpp"
+#include "sim/plan/line_check.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
 
@@ -20,7 +21,7 @@ constexpr double kWidest = 8.0, kMuchWider = 8.0;
 /// Lines of a pixel of the grid at most, each way, and how far apart they lie compared with the reference's: 1.7 of a Gaussian's widths leave 1e-3.
 constexpr int kMostLines = 48;
 constexpr double kCoarser = 2.0, kCoarseFrom = 0.005;
-/// Steps along a line: as of pictures at 1 %, and of the reference.
+/// Steps along a line: as of pictures at 1 %, and of the reference. Air is then looked at where plans do, which changes what it sends by some 1e-4.
 constexpr int kCoarseSteps = 48;
 /// Its box holds what sends this part of what its brightest line does.
 constexpr double kOfBrightest = 0.01;
@@ -83,7 +84,8 @@ void TruthMeter::addField(TargetRow& row, std::size_t f, const WorldState& state
   const FieldLines places[] = {fieldLines(grid, field)};
   const bool coarse = asked_ >= kCoarseFrom;
   const int steps = coarse ? kCoarseSteps : kReferenceFieldSteps;
-  const ReferenceShader shader(simulation_, plan_, grid, state, present_, spectra_);
+  ReferenceShader shader(simulation_, plan_, grid, state, present_, spectra_);
+  if (coarse) shader.setAirPlaces(kUsualPlaces);
   const CameraState eye = cameraAt(camera_, state);
   const glm::ivec4 window = camera_.window.value_or(glm::ivec4(0, 0, film.width, film.height));
 

@@ -33,7 +33,7 @@ ReferenceShader::ReferenceShader(const Simulation& simulation, const Plan& plan,
 }
 
 RadianceScene ReferenceShader::scene() const {
-  RadianceScene s{simulation_, plan_.terms, plan_.sunLegs.get(), state_, {}, 0, tapsFor(plan_.textureAccuracy)};
+  RadianceScene s{simulation_, plan_.terms, plan_.sunLegs.get(), state_, {}, airPlaces_, tapsFor(plan_.textureAccuracy)};
   if (plan_.terms.shadows)
     s.lit = [this](const Hit& hit, size_t light, const LightLeg& leg) {
       const double radius_m = light < simulation_.lights.size() ? simulation_.lights[light].radius_m : 0.0;

@@ -34,6 +34,8 @@ class ReferenceShader {
                   std::shared_ptr<const NodeSpectra> spectra = nullptr);
   /// The centre of pixel (x, y), counted from the lower left: what a ray meets.
   ReferencePixel pixel(int x, int y, NodeSum& sum) const;
+  /// Air is looked at in so many places besides those where something begins (RadianceScene::airPlaces).
+  void setAirPlaces(int places) { airPlaces_ = places; }
   ReferencePixel pixel(int x, int y) const;
   /// One place of the film [pixels from the lower left]: textures are read there, not over a pixel.
   ReferencePixel place(double x, double y, NodeSum& sum) const;
@@ -61,6 +63,7 @@ class ReferenceShader {
   const WorldState& state_;
   const std::vector<char>& drawn_;
   bool transparent_;
+  int airPlaces_ = 0;
   std::vector<FieldLines> fields_;  ///< of those that are there
   ShadowCaster shadows_;
   std::shared_ptr<const NodeSpectra> spectra_;
