@@ -155,8 +155,10 @@ bool readPlanned(const std::string& text, Plan& into) {
   for (size_t k = 0; k < plan.shares.size(); ++k) plan.shares[k] = {nameOf(static_cast<TermKind>(k)), r.all(kMostSlots), true};
   // The air has tables or it has none: makePlan() has asked it.
   const bool tables = plan.air.elevations > 1 && plan.air.ranges > 1, none = plan.air.elevations == 0 && plan.air.ranges == 0;
+  // Errors are told of all slots, or of none.
+  const auto ofAllOrNone = [&](const auto& of) { return of.size() == plan.weight.size() || (into.accuracy == 0.0 && of.empty()); };
   bool fits = r.ok() && (into.air.elevations > 0 ? tables : none) && plan.air.azimuths > 0 && plan.weight.size() == static_cast<size_t>(into.slotCount) &&
-              plan.predictedError.size() == plan.weight.size() && plan.fineCount.size() == plan.weight.size() &&
+              ofAllOrNone(plan.predictedError) && ofAllOrNone(plan.fineCount) &&
               // Terms are looked at only where an accuracy says which of them matter.
               plan.shares.size() == (into.accuracy > 0.0 ? static_cast<size_t>(kTermKinds) : 0);
   for (const TermShare& s : plan.shares) fits &= s.share.size() == plan.weight.size();
