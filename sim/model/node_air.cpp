@@ -14,15 +14,26 @@ namespace {
 constexpr double kColdest_K = 140.0, kWarmest_K = 400.0;
 constexpr Eigen::Index kTemperatures = 256;
 
+/// Of nodes; most absorbers scatter nothing.
+struct Coefficients {
+  Eigen::MatrixXd of;                   ///< [node][absorber]
+  std::vector<Eigen::Index> absorbers;  ///< whose are not all zero
+
+  void findAbsorbers() {
+    for (Eigen::Index k = 0; k < of.cols(); ++k)
+      if (!of.col(k).isZero(0.0)) absorbers.push_back(k);
+  }
+};
+
 /// Of each station, sum over absorbers of coefficient x amount, in their order: a node's sum is the same to the last bit whichever nodes stand beside it, which
 /// a product of matrices does not promise.
 template <class Into>
-void weigh(const Eigen::MatrixXd& coefficient, const std::vector<AirAmounts>& amounts, Into&& into) {
+void weigh(const Coefficients& coefficients, const std::vector<AirAmounts>& amounts, Into&& into) {
   for (std::size_t s = 0; s < amounts.size(); ++s) {
     auto sum = into.col(static_cast<Eigen::Index>(s));
     sum.setZero();
-    for (std::size_t k = 0; k < kMostAirAmounts; ++k)
-      if (const double amount = amounts[s].amount[k]; amount != 0.0) sum += amount * coefficient.col(static_cast<Eigen::Index>(k)).array();
+    for (const Eigen::Index k : coefficients.absorbers)
+      if (const double amount = amounts[s].amount[static_cast<std::size_t>(k)]; amount != 0.0) sum += amount * coefficients.of.col(k).array();
   }
 }
 
@@ -48,7 +59,7 @@ Eigen::Map<Eigen::ArrayXXd> sized(std::vector<double>& all, Eigen::Index nodes, 
 
 struct NodeAir::Tables {
   std::span<const SpectralNode> nodes;
-  Eigen::MatrixXd extinction, molecules, haze;  ///< [node][absorber]
+  Coefficients extinction, molecules, haze;
   Eigen::ArrayXd source;
   Eigen::ArrayXXd logPlanck;  ///< [node], over the inverse of the temperature
 
@@ -74,16 +85,16 @@ NodeAir::NodeAir(std::span<const SpectralNode> all) {
   const auto nodes = static_cast<Eigen::Index>(all.size());
   Tables t;
   t.nodes = all;
-  t.extinction.resize(nodes, kMostAirAmounts);
-  t.molecules = t.haze = t.extinction;
+  for (Coefficients* c : {&t.extinction, &t.molecules, &t.haze}) c->of.resize(nodes, kMostAirAmounts);
   t.source.resize(nodes);
   t.logPlanck.resize(nodes, kTemperatures);
   const auto row = [](const auto& coefficients) { return Eigen::Map<const Eigen::RowVectorXd>(coefficients.data(), kMostAirAmounts); };
   for (Eigen::Index i = 0; i < nodes; ++i) {
     const SpectralNode& n = all[static_cast<size_t>(i)];
-    t.extinction.row(i) = row(n.air.extinction), t.molecules.row(i) = row(n.air.molecules), t.haze.row(i) = row(n.air.haze);
+    t.extinction.of.row(i) = row(n.air.extinction), t.molecules.of.row(i) = row(n.air.molecules), t.haze.of.row(i) = row(n.air.haze);
     t.source[i] = n.air.source;
   }
+  for (Coefficients* c : {&t.extinction, &t.molecules, &t.haze}) c->findAbsorbers();
   const NodePlanck planck(all);
   std::vector<double> black(all.size());
   for (Eigen::Index k = 0; k < kTemperatures; ++k) {

@@ -31,12 +31,14 @@ double meanPassed(double from, double to, double fromPassed, double toPassed) {
   return std::abs(change) < 1e-4 ? fromPassed * (1.0 - change * (0.5 - change * (1.0 / 6.0 - change / 24.0))) : (fromPassed - toPassed) / change;
 }
 
-/// A coefficient per node and amount of air, as arithmetic likes it.
-std::vector<double> coefficientsOf(std::span<const SpectralNode> nodes, size_t used, std::array<double, kMostAirAmounts> AirNode::*coefficient) {
-  std::vector<double> all;
-  for (size_t k = 0; k < used; ++k)
-    for (const SpectralNode& n : nodes) all.push_back((n.air.*coefficient)[k]);
-  return all;
+NodeSpectra::AirRows rowsOf(std::span<const SpectralNode> nodes, size_t used, std::array<double, kMostAirAmounts> AirNode::*coefficient) {
+  NodeSpectra::AirRows rows;
+  for (size_t k = 0; k < used; ++k) {
+    if (std::all_of(nodes.begin(), nodes.end(), [&](const SpectralNode& n) { return (n.air.*coefficient)[k] == 0.0; })) continue;
+    rows.amounts.push_back(k);
+    for (const SpectralNode& n : nodes) rows.coefficient.push_back((n.air.*coefficient)[k]);
+  }
+  return rows;
 }
 
 Eigen::Map<Eigen::ArrayXd> arrayOf(std::vector<double>& v) { return {v.data(), static_cast<Eigen::Index>(v.size())}; }
@@ -49,10 +51,12 @@ void passedOf(const std::vector<double>& x, std::vector<double>& passed) {
 }
 
 /// Per node, sum over amounts of coefficient x amount.
-void weigh(std::span<const double> coefficient, const AirAmounts& amounts, std::vector<double>& into) {
-  const auto nodes = static_cast<Eigen::Index>(into.size()), used = nodes > 0 ? static_cast<Eigen::Index>(coefficient.size()) / nodes : 0;
-  arrayOf(into).matrix().noalias() =
-      Eigen::Map<const Eigen::MatrixXd>(coefficient.data(), nodes, used) * Eigen::Map<const Eigen::VectorXd>(amounts.amount.data(), used);
+void weigh(const NodeSpectra::AirRows& rows, const AirAmounts& amounts, std::vector<double>& into) {
+  std::array<double, kMostAirAmounts> some{};
+  for (size_t k = 0; k < rows.amounts.size(); ++k) some[k] = amounts.amount[rows.amounts[k]];
+  const auto used = static_cast<Eigen::Index>(rows.amounts.size());
+  arrayOf(into).matrix().noalias() = Eigen::Map<const Eigen::MatrixXd>(rows.coefficient.data(), static_cast<Eigen::Index>(into.size()), used) *
+                                     Eigen::Map<const Eigen::VectorXd>(some.data(), used);
 }
 
 }  // namespace
@@ -62,9 +66,9 @@ NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralN
   if (simulation.surroundings)
     surroundings_ = std::make_shared<const NodeSurroundings>(simulation, nodes, surroundings, parts ? parts->surroundings_.get() : nullptr);
   const size_t used = simulation.air ? simulation.air->exponents().size() : 0;
-  extinction_ = coefficientsOf(nodes, used, &AirNode::extinction);
-  molecules_ = coefficientsOf(nodes, used, &AirNode::molecules);
-  haze_ = coefficientsOf(nodes, used, &AirNode::haze);
+  extinction_ = rowsOf(nodes, used, &AirNode::extinction);
+  molecules_ = rowsOf(nodes, used, &AirNode::molecules);
+  haze_ = rowsOf(nodes, used, &AirNode::haze);
   for (size_t m = 0; !nodes.empty() && m < nodes.front().absorption_per_m.size(); ++m)
     for (const SpectralNode& n : nodes) absorption_per_m_.push_back(n.absorption_per_m[m]);
   const auto table = [&](std::shared_ptr<const PlanckTable> NodeSpectra::*of, double first, double last, double step) {

@@ -26,10 +26,15 @@ class NodeSpectra {
   void planck(double temperature_K, std::span<double> into) const;
   std::vector<double> of(const Factor& factor) const;
   const NodeSurroundings* surroundings() const { return surroundings_.get(); }
-  /// What an amount of air takes from a line, and scatters by molecules and by haze: [amount][node].
-  std::span<const double> extinction() const { return extinction_; }
-  std::span<const double> molecules() const { return molecules_; }
-  std::span<const double> haze() const { return haze_; }
+  /// Of the amounts of air that have any.
+  struct AirRows {
+    std::vector<size_t> amounts;
+    std::vector<double> coefficient;  ///< [of amounts][node]
+  };
+  /// What an amount of air takes from a line, and scatters by molecules and by haze.
+  const AirRows& extinction() const { return extinction_; }
+  const AirRows& molecules() const { return molecules_; }
+  const AirRows& haze() const { return haze_; }
   /// Of a material's medium, per node.
   std::span<const double> absorption_per_m(int material) const {
     return std::span(absorption_per_m_).subspan(static_cast<size_t>(material) * nodes_.size(), nodes_.size());
@@ -47,7 +52,8 @@ class NodeSpectra {
  private:
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
-  std::vector<double> extinction_, molecules_, haze_, absorption_per_m_;
+  AirRows extinction_, molecules_, haze_;
+  std::vector<double> absorption_per_m_;
   std::shared_ptr<const NodeSurroundings> surroundings_;  ///< null: a uniform dome's
   std::shared_ptr<const PlanckTable> ofAir_, ofGas_;      ///< null: none is asked for
   std::map<int, MediumRows> mediumRows_;
