@@ -109,8 +109,8 @@ std::vector<Bin> followed(const std::vector<Bin>& bins, const Simulation& sim) {
       continue;
     }
     for (int b = 0; b < parts; ++b)
-      all.push_back({bin.from + (bin.to - bin.from) * b / parts, bin.from + (bin.to - bin.from) * (b + 1) / parts,
-                     bin.from + (bin.to - bin.from) * (b + 0.5) / parts});
+      all.push_back(
+          {bin.from + (bin.to - bin.from) * b / parts, bin.from + (bin.to - bin.from) * (b + 1) / parts, bin.from + (bin.to - bin.from) * (b + 0.5) / parts});
   }
   return all;
 }
@@ -135,7 +135,8 @@ void addWings(const BentSpectrum& s, const Bin& bin, const std::vector<double>& 
   edges.push_back(bin.to);
   for (size_t i = 0; i + 1 < edges.size(); ++i) {
     // A hair inside: bends may be steps.
-    const double hair = 1e-9 * (edges[i + 1] - edges[i]), a = s.at(edges[i] + hair), b = s.at(edges[i + 1] - hair), most = std::max(a, b), least = std::min(a, b);
+    const double hair = 1e-9 * (edges[i + 1] - edges[i]), a = s.at(edges[i] + hair), b = s.at(edges[i + 1] - hair), most = std::max(a, b),
+                 least = std::min(a, b);
     for (double k = most / kWing; k > std::max(least * kWing, most / kFaintest); k /= kWing)
       cuts.push_back(edges[i] + (k - a) / (b - a) * (edges[i + 1] - edges[i]));
   }
@@ -213,8 +214,9 @@ std::vector<QuadratureNode> byStrength(const BentSpectrum& s, const Bin& bin, do
     do width += pieces[i].width, sum += pieces[i].width * pieces[i].absorbs, ++i;
     while (i < pieces.size() && (passed + width < end || nodes.size() + 1 == kMostCuts));
     passed += width;
-    const auto nearest = std::min_element(pieces.begin() + static_cast<std::ptrdiff_t>(first), pieces.begin() + static_cast<std::ptrdiff_t>(i),
-                                          [mean = sum / width](const Piece& a, const Piece& b) { return std::abs(a.absorbs - mean) < std::abs(b.absorbs - mean); });
+    const auto nearest =
+        std::min_element(pieces.begin() + static_cast<std::ptrdiff_t>(first), pieces.begin() + static_cast<std::ptrdiff_t>(i),
+                         [mean = sum / width](const Piece& a, const Piece& b) { return std::abs(a.absorbs - mean) < std::abs(b.absorbs - mean); });
     nodes.push_back({nearest->at, weight * width / whole});
   }
   return nodes;

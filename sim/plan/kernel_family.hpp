@@ -7,7 +7,8 @@
 
 namespace pitviper {
 
-/// Whether two responses span the same wavelengths and their ratio is nowhere beyond a factor of 3 of its mean: groups for one then do for the other, or nearly.
+/// Whether two responses span the same wavelengths and their ratio is nowhere beyond a factor of 3 of its mean: groups for one then do for the other, or
+/// nearly.
 bool areAlike(const Spectrum& a, const Spectrum& b);
 
 /// Indices of a plan's slots, those of alike kernels together, in the order of their first ones. What is apart shares no integral.

@@ -1,6 +1,6 @@
 #pragma once
-// The groups of wavelengths of all channels of a plan, those of alike kernels in common: fitted to lines of sight as sums of products, then held against the radiance equation itself,
-// which products are simpler than.
+// The groups of wavelengths of all channels of a plan, those of alike kernels in common: fitted to lines of sight as sums of products, then held against the
+// radiance equation itself, which products are simpler than.
 #include <functional>
 #include <memory>
 #include <vector>
@@ -24,8 +24,7 @@ class PlanFits {
   /// `airPlaces`: airPlacesFor() fits, `lastPlaces`: for what they are held against; `tell`: what part of the work of the constructor or of learn() is done, at
   /// most. All must outlive it.
   PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
-           HeldLines& extremes, SightRays& rays, const std::vector<double>& floor, int airPlaces, int lastPlaces,
-           const std::function<void(double part)>& tell);
+           HeldLines& extremes, SightRays& rays, const std::vector<double>& floor, int airPlaces, int lastPlaces, const std::function<void(double part)>& tell);
   /// Fits those slots, and those fitted with them, to what they are off by on these lines besides; `allowed`: the most that each slot may be. Returns the slots
   /// whose groups have changed.
   std::vector<size_t> learn(const CheckedLines& checked, const std::vector<size_t>& slots, const std::vector<double>& allowed);

@@ -147,7 +147,9 @@ std::string counting(const std::string& outputs) {
 // Radiance and what a detector counts of it are integrals over one band: the groups of one do for the other, or nearly.
 TEST_F(Planner, QuantitiesOfOneBandShareGroups) {
   const std::string world = "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n" + kGrey + kWall;
-  const auto made = [&](const std::string& accuracy, const std::string& outputs) { return scene("accuracy: " + accuracy + "\n" + world + camera(counting(outputs), kEye)); };
+  const auto made = [&](const std::string& accuracy, const std::string& outputs) {
+    return scene("accuracy: " + accuracy + "\n" + world + camera(counting(outputs), kEye));
+  };
   const auto sim = made("0.5 %", "radiance, electrons");
   const Plan plan = planOf(sim);
   ASSERT_EQ(plan.slotCount, 2);
@@ -198,7 +200,10 @@ TEST_F(Planner, WhatComesAfterLightPlansNothingAnew) {
   const std::string text = "accuracy: 1 %\natmosphere: clear_us76\n" + kGrey + kWall + camera(counting("counts, radiance"), kEye);
   planOf(scene(text));
   ASSERT_EQ(kept(), 1u);
-  for (const auto& [from, to] : {std::pair{"2 ms", "3 ms"}, {"read_noise: 500", "read_noise: 700"}, {"counts, radiance", "counts, snr, radiance"}, {"read_noise: 500}]", "read_noise: 500}], truth: [range, entity]"}}) {
+  for (const auto& [from, to] : {std::pair{"2 ms", "3 ms"},
+                                 {"read_noise: 500", "read_noise: 700"},
+                                 {"counts, radiance", "counts, snr, radiance"},
+                                 {"read_noise: 500}]", "read_noise: 500}], truth: [range, entity]"}}) {
     std::string other = text;
     other.replace(other.find(from), std::string(from).size(), to);
     planOf(scene(other));

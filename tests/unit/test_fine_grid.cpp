@@ -180,7 +180,8 @@ TEST(FineGrid, CurvesOfGrowth) {
       double own = 0.0, whole = 0.0;
       for (const QuadratureNode& n : grid) own += n.weight * lost(n.x);
       // Each flank by its closed form: width (1 - (1 - exp(-t)) / t).
-      whole = 2.0 * half * static_cast<double>(kPlaces.size()) * (length_m < 1e-2 ? length_m / 2.0 - length_m * length_m / 6.0 : 1.0 + std::expm1(-length_m) / length_m);
+      whole = 2.0 * half * static_cast<double>(kPlaces.size()) *
+              (length_m < 1e-2 ? length_m / 2.0 - length_m * length_m / 6.0 : 1.0 + std::expm1(-length_m) / length_m);
       double& of = half > 5e-3 ? wide : worst;
       of = std::max(of, std::abs(own / whole - 1.0));
     }
@@ -267,7 +268,9 @@ TEST(FineGrid, RulesOfFewSamplesHaveNodesOnLines) {
 
 // Responses that differ by less than a factor of 3 of their mean ratio go over the same wavelengths; others don't.
 TEST(FineGrid, AlikeResponsesShareWavelengths) {
-  const auto table = [](std::vector<double> at, std::vector<double> value) { return Spectrum(Spectrum::Table{std::move(at), std::move(value), Outside::Hold, ""}); };
+  const auto table = [](std::vector<double> at, std::vector<double> value) {
+    return Spectrum(Spectrum::Table{std::move(at), std::move(value), Outside::Hold, ""});
+  };
   const Spectrum band = Spectrum::band(3.5, 5.0), rising = band * table({3.0, 4.013, 5.5}, {0.4, 0.8, 0.9}), scaled = band * 7.0,
                  peaked = band * table({3.0, 4.0, 4.1, 4.2, 5.5}, {0.01, 0.01, 1.0, 0.01, 0.01}), shorter = Spectrum::band(3.5, 4.9);
   EXPECT_TRUE(areAlike(band, rising));
@@ -289,7 +292,8 @@ TEST(FineGrid, AlikeResponsesShareWavelengths) {
       sum += grids[k][i].weight, seen += grids[k][i].weight * black(grids[k][i].x);
     }
     figure("weights of kernel " + std::to_string(k), sum, family[k]->integral(3.5, 5.0), 1e-12, "integral of the kernel");
-    figure("a black body in kernel " + std::to_string(k), seen, (*family[k] * black).integral(3.5, 5.0), 2e-5, "Gauss-Legendre between bends; bins of 0.3 % of a wavelength");
+    figure("a black body in kernel " + std::to_string(k), seen, (*family[k] * black).integral(3.5, 5.0), 2e-5,
+           "Gauss-Legendre between bends; bins of 0.3 % of a wavelength");
   }
 }
 
