@@ -170,7 +170,9 @@ void PlanFits::teach(const CheckedLines& checked, const std::vector<size_t>& fit
 void PlanFits::hold(const std::vector<size_t>& fits) {
   std::vector<size_t> open = fits;
   std::vector<double> before(fits_.size(), INFINITY);
-  const std::vector<double> allowed(floor_.size(), kHeld * plan_.accuracy);
+  // Steps through fields have an account of their own.
+  const double held = kHeld * (sim_.fields.empty() ? 1.0 : 1.0 - kFieldsShare) * plan_.accuracy;
+  const std::vector<double> allowed(floor_.size(), held);
   for (int attempt = 0;; ++attempt) {
     for (int n = 0; n < kChecks && !open.empty(); ++n) {
       tell_(0.5 + 0.5 * (attempt + static_cast<double>(n) / kChecks) / (kLearn + 1));
@@ -188,7 +190,7 @@ void PlanFits::hold(const std::vector<size_t>& fits) {
     for (size_t f : fits) {
       double largest = 0.0;
       for (size_t s : slots_[f]) largest = std::max(largest, seen.figures[s].largest);
-      if (largest <= kHeld * plan_.accuracy || before[f] == 0.0) continue;
+      if (largest <= held || before[f] == 0.0) continue;
       if (largest > kHopeless * before[f]) {
         fits_[f]->goBack();
         before[f] = 0.0;
