@@ -132,7 +132,8 @@ TEST_F(Stream, RealTimeAccountsForEveryFrameAndWritesItsPage) {
 
 TEST_F(Stream, ASceneTooSlowForItsRateDegradesAsAskedAndSaysSo) {
   for (const char* late : {"send", "drop", "repeat"}) {
-    const Result r = pitviper("stream " + file() + " --rate '20 kHz' --frames 8000 --shared-memory " + ring("late") + " --late " + late + " --out " + out().string() + " --overwrite");
+    const Result r = pitviper("stream " + file() + " --rate '20 kHz' --frames 8000 --shared-memory " + ring("late") + " --late " + late + " --out " +
+                              out().string() + " --overwrite");
     EXPECT_EQ(r.code, 0) << r.output;
     EXPECT_NE(r.output.find("does not hold"), std::string::npos) << r.output;
     const auto eye = report()["cameras"]["eye"];
@@ -145,7 +146,8 @@ TEST_F(Stream, ASceneTooSlowForItsRateDegradesAsAskedAndSaysSo) {
 }
 
 TEST_F(Stream, TheDialTurnsWhereTheRateDoesNotHold) {
-  const Result r = pitviper("stream " + file("accuracy: {asked: 1 %, at_most: 4 %}\n") + " --rate '20 kHz' --frames 8000 --shared-memory " + ring("dial") + " --out " + out().string());
+  const Result r = pitviper("stream " + file("accuracy: {asked: 1 %, at_most: 4 %}\n") + " --rate '20 kHz' --frames 8000 --shared-memory " + ring("dial") +
+                            " --out " + out().string());
   EXPECT_EQ(r.code, 0) << r.output;
   const auto j = report();
   ASSERT_EQ(j["accuracies"].size(), 3u) << "1, 2 and 4 %";
@@ -252,10 +254,13 @@ TEST_F(Stream, ACigiHostHoldsTheClock) {
 }
 
 TEST_F(Stream, ArvCameraTestReceivesWholePictures) {
-  if (!has("arv-camera-test-0.8") || !has("arv-tool-0.8")) GTEST_SKIP() << "needs aravis-tools and aravis-tools-cli";
+  if (!has("arv-camera-test-0.8") || !has("arv-tool-0.8") || !hasPython())
+    GTEST_SKIP() << "needs aravis-tools, aravis-tools-cli and /usr/bin/python3 with numpy";
+  // It lasts as long as its clients take.
+  folder_.put("end.py", "from pitviper_commands import Commands\nCommands('" + socket() + "').send(end=True)\n");
   const std::string address = "127.0.0." + std::to_string(10 + getpid() % 200);
   // Cameras are listed by who answers on the loopback's broadcast.
-  Background stream("stream " + file() + " --rate '50 Hz' --duration '8 s' --gige " + address + " --out " + out().string());
+  Background stream("stream " + file() + " --rate '50 Hz' --endless --commands " + socket() + " --gige " + address + " --out " + out().string());
   Result list;
   for (int k = 0; k < 200 && list.output.find(address) == std::string::npos; ++k) {
     list = run("arv-tool-0.8");
@@ -266,6 +271,7 @@ TEST_F(Stream, ArvCameraTestReceivesWholePictures) {
   EXPECT_NE(values.output.find("Width = 40"), std::string::npos) << values.output;
   EXPECT_NE(values.output.find("ExposureTime = 1000"), std::string::npos) << values.output;
   const Result test = run("arv-camera-test-0.8 -n pitviper-eye-ball --no-packet-socket --duration 2");
+  run(client("end.py"));
   const auto at = test.output.find("n_completed_buffers    = ");
   ASSERT_NE(at, std::string::npos) << test.output;
   EXPECT_GT(std::atoi(test.output.c_str() + at + std::strlen("n_completed_buffers    = ")), 10) << test.output;
