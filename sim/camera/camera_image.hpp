@@ -8,18 +8,11 @@
 #include "sim/camera/hot_parts.hpp"
 #include "sim/plan/averaged_fringes.hpp"
 #include "sim/plan/scattered_again.hpp"
+#include "sim/render/reference/pixel_truth.hpp"
 #include "sim/scene/camera.hpp"
 #include "sim/scene/scene.hpp"
 
 namespace pitviper {
-
-/// Truth of a pixel: see sim/render/glsl/truth_layers.glsl for the order.
-struct TruthPixel {
-  float area_m2 = 0, solidAngleFromLight_sr = 0, solidAngleOfAperture_sr = 0, range_m = 0;
-  float normal[3] = {0, 0, 0};
-  float temperature_K = 0;
-  float entity = 0, part = 0, cosView = 0;
-};
 
 /// What an audit found of a channel's slot: relative errors |L - Lref| / max(|Lref|, 1e-3 x the 99th percentile of the picture).
 struct SlotAudit {
@@ -32,7 +25,7 @@ struct SlotAudit {
 struct FilmPoint {
   double column = 0.0, row = 0.0;  ///< pixels of the picture from its top left corner
   int slot = 0;
-  int pixel = 0;  ///< that it is in (row by row from the top), all of what it stands for
+  int pixel = 0;      ///< that it is in (row by row from the top), all of what it stands for
   double flux = 0.0;  ///< kernel unit x W/m2 on the aperture: radiance times projected solid angle; what it hides taken away
 };
 
@@ -41,22 +34,22 @@ struct CameraImage {
   int width = 0, height = 0;
   std::vector<std::vector<double>> slots;  ///< [slot][pixel], kernel unit x W/(m2 sr)
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles;
-  ChannelValues exposures_s;                   ///< of the camera at its time
-  double exposure_s = 0.0;                     ///< the longest of them
-  std::vector<TruthPixel> truth;               ///< per pixel, or empty
-  std::vector<int> slotOfOutput;               ///< from the plan
-  std::string transparentOrder;                ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view
+  ChannelValues exposures_s;                     ///< of the camera at its time
+  double exposure_s = 0.0;                       ///< the longest of them
+  std::vector<TruthPixel> truth;                 ///< per pixel, or empty
+  std::vector<int> slotOfOutput;                 ///< from the plan
+  std::string transparentOrder;                  ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view
   std::vector<AveragedFringes> averagedFringes;  ///< of materials, the same in every picture
-  std::vector<ScatteredAgain> scatteredAgain;  ///< channels in which light scattered more than once would matter
-  double accuracy = 0.0;                       ///< from the plan, and so its error per slot
-  std::vector<double> predictedError;          ///< empty where nothing was measured
-  std::string plan;                            ///< its fingerprint
-  std::vector<Ball> parts;                     ///< bright ones that had views of their own
-  std::vector<FilmPoint> points;               ///< besides `slots`: of a camera with pointsApart
-  int exposureParts = 1;                       ///< times that it is a mean of
+  std::vector<ScatteredAgain> scatteredAgain;    ///< channels in which light scattered more than once would matter
+  double accuracy = 0.0;                         ///< from the plan, and so its error per slot
+  std::vector<double> predictedError;            ///< empty where nothing was measured
+  std::string plan;                              ///< its fingerprint
+  std::vector<Ball> parts;                       ///< bright ones that had views of their own
+  std::vector<FilmPoint> points;                 ///< besides `slots`: of a camera with pointsApart
+  int exposureParts = 1;                         ///< times that it is a mean of
   double exposureMotion_px = 0.0, exposureError = 0.0, streakError = 0.0;  ///< as of ExposureParts
-  std::vector<SlotAudit> audit;                ///< per slot; empty: not audited
-  std::optional<CameraPointing> pointing;      ///< of a camera with a follower
+  std::vector<SlotAudit> audit;                                            ///< per slot; empty: not audited
+  std::optional<CameraPointing> pointing;                                  ///< of a camera with a follower
 };
 
 /// Points become part of the pixels that they are in, and there are none any more.

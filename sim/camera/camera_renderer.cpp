@@ -50,8 +50,8 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
   const bool truth = camera.truth.any(), transparent = simulation.hasTransparent();
   const double area_m2 = camera.pinhole.apertureArea_m2();
   if (camera.spectral.reference) {
-    reference_ = std::make_unique<ReferencePass>(simulation, plan_, library, scene, truth, area_m2);
-    pass_ = reference_.get();
+    reference_ = std::make_unique<ReferenceDrawer>(simulation, plan_, library, scene, truth, area_m2);
+    drawer_ = reference_.get();
     return;
   }
   const bool classes = camera.pinhole.width * camera.samples * camera.pinhole.height * camera.samples >= kWorthClasses;
@@ -60,7 +60,7 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
   // Its program is made at the start even where the first frame needs the other: none may be late for want of a compiler.
   if (simulation.mode != RenderMode::Buffered) direct_ = std::make_unique<DirectPass>(simulation, plan_, library, scene, truth, area_m2, classes);
   if (direct_ && buffered_) direct_->shareLight(*buffered_);
-  pass_ = buffered_ ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
+  drawer_ = buffered_ ? static_cast<LineDrawer*>(buffered_.get()) : direct_.get();
 }
 
 bool CameraRenderer::seesTransparent() const {
@@ -115,7 +115,7 @@ void CameraRenderer::begin(const WorldState& state) {
   for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = present_[e] && !small_[e];
   overlay_.reset();
   if (direct_ && buffered_) {
-    pass_ = seesTransparent() ? static_cast<ScenePass*>(buffered_.get()) : direct_.get();
+    drawer_ = seesTransparent() ? static_cast<LineDrawer*>(buffered_.get()) : direct_.get();
     if (isBuffered()) overlay_ = overlayIn(simulation_, state_, view_, drawn);
   }
   if (reference_) reference_->beginPicture(viewsOfPicture());
@@ -124,10 +124,10 @@ void CameraRenderer::begin(const WorldState& state) {
   for (size_t e = 0; e < zoomed.size(); ++e) zoomed[e] = small_[e] ? static_cast<double>(lines_[e]) * lines_[e] : 0.0;
   const ShadowDemand demand{view_, present_, zoomed};
   warmUp(demand, drawn);
-  pass_->setState(state_, &demand);
+  drawer_->setState(state_, &demand);
   if (!overlay_) {
-    pass_->draw(view_, state_, drawn);
-    pass_->startReadback();
+    drawer_->draw(view_, state_, drawn);
+    drawer_->startReadback();
     return;
   }
   direct_->setState(state_, &demand);
@@ -144,7 +144,7 @@ void CameraRenderer::warmUp(const ShadowDemand& demand, const std::vector<char>&
   if (!direct_ || !buffered_ || warm_ || simulation_.time.frames < 2) return;
   warm_ = true;
   const TimedPart part("preparing");
-  ScenePass& other = pass_ == buffered_.get() ? static_cast<ScenePass&>(*direct_) : *buffered_;
+  ScenePass& other = drawer_ == buffered_.get() ? static_cast<ScenePass&>(*direct_) : *buffered_;
   other.setState(state_, &demand);
   other.draw(view_, state_, drawn);
 }
@@ -185,13 +185,16 @@ WorldState CameraRenderer::lampsInView() const {
 }
 
 CameraImage CameraRenderer::finish() {
-  RawImage picture = (overlay_ ? direct_.get() : pass_)->finishReadback();
+  RawImage picture = (overlay_ ? static_cast<LineDrawer*>(direct_.get()) : drawer_)->finishReadback();
   if (overlay_ && !overlay_->isEmpty()) lay(buffered_->finishReadback(), view_, *overlay_, picture);
   Subpixels image(plan_, view_, std::move(picture));
   if (camera_.pointsApart) image.keepPoints();
   {
     const TimedPart part("small bodies");
-    addSmallBodies(image, *pass_, simulation_, state_, small_, present_, lines_, parts_, wanted_.get());
+    const TruthAt truthAt = [this](const WorldState& state, const glm::dvec2& place) {
+      return truthSeen(simulation_, state, view_, place, present_, camera_.pinhole.apertureArea_m2(), plan_.textureAccuracy, plan_.terms.lights);
+    };
+    addSmallBodies(image, *drawer_, simulation_, state_, small_, present_, lines_, parts_, wanted_.get(), image.hasTruth() ? truthAt : TruthAt{});
   }
   {
     const TimedPart part("lamps in view");

@@ -10,7 +10,7 @@
 #include "sim/camera/visible_lights.hpp"
 #include "sim/render/buffered_pass.hpp"
 #include "sim/render/direct_pass.hpp"
-#include "sim/render/reference/reference_pass.hpp"
+#include "sim/render/reference/reference_drawer.hpp"
 
 namespace pitviper {
 
@@ -50,7 +50,7 @@ class CameraRenderer {
   /// The bright parts of the next pictures, as another plan chose them: a picture is held against one of the same views.
   void setParts(std::vector<Ball> parts) { given_ = std::move(parts); }
   /// Of the mode that the last frame was drawn in.
-  bool isBuffered() const { return buffered_ && pass_ == buffered_.get(); }
+  bool isBuffered() const { return buffered_ && drawer_ == buffered_.get(); }
 
  private:
   bool seesTransparent() const;
@@ -68,12 +68,12 @@ class CameraRenderer {
   std::unique_ptr<const Plan> linesOf_;  ///< of a reference: the plan whose lines it looks along, if one was given
   HotParts hotParts_;
   std::optional<std::vector<Ball>> given_;
-  bool warm_ = false;                         ///< both passes have drawn
-  std::vector<Ball> parts_;                   ///< bright ones of the picture
-  std::unique_ptr<ReferencePass> reference_;  ///< instead of the other two
-  std::unique_ptr<DirectPass> direct_;        ///< both where auto has to choose frame by frame
+  bool warm_ = false;                           ///< both passes have drawn
+  std::vector<Ball> parts_;                     ///< bright ones of the picture
+  std::unique_ptr<ReferenceDrawer> reference_;  ///< instead of the other two
+  std::unique_ptr<DirectPass> direct_;          ///< both where auto has to choose frame by frame
   std::unique_ptr<BufferedPass> buffered_;
-  ScenePass* pass_ = nullptr;       ///< of the picture, or of its overlay and small bodies
+  LineDrawer* drawer_ = nullptr;    ///< of the picture, or of its overlay and small bodies
   std::optional<Overlay> overlay_;  ///< over the direct pass' picture
   WorldState state_;
   View view_;

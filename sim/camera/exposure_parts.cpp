@@ -19,8 +19,8 @@ std::optional<glm::dvec2> filmOf(const View& v, const glm::dvec3& place) {
   return filmPosition(v, p);
 }
 
-/// How far anything in view goes on the film from the first of these times to the last [pixels]: what a grid of lines meets at the middle one, and middles of bodies.
-/// `small`: of what is smaller than two pixels alone.
+/// How far anything in view goes on the film from the first of these times to the last [pixels]: what a grid of lines meets at the middle one, and middles of
+/// bodies. `small`: of what is smaller than two pixels alone.
 double motionOf(const Simulation& sim, const Camera& camera, const StateAt& stateAt, const std::array<double, 3>& times_s, double& small) {
   std::vector<WorldState> states;
   std::vector<View> views;
@@ -63,7 +63,8 @@ double motionOf(const Simulation& sim, const Camera& camera, const StateAt& stat
     if (drawn[e] && states[1].isThere(e)) {
       constexpr double kSmall_px = 2.0;
       const double way = follow(static_cast<int>(e), glm::dvec3(sim.entities[e].boundingCentre)),
-                   range = glm::length(states[1].entities[e].position - v.position), size = 2.0 * static_cast<double>(sim.entities[e].boundingRadius_m) / range / v.tanPerPixelX;
+                   range = glm::length(states[1].entities[e].position - v.position),
+                   size = 2.0 * static_cast<double>(sim.entities[e].boundingRadius_m) / range / v.tanPerPixelX;
       if (size < kSmall_px) small = std::max(small, way);
     }
   for (std::size_t l = 0; l < sim.lights.size(); ++l) {
@@ -96,18 +97,21 @@ ExposureParts exposureParts(const Simulation& sim, const Camera& camera, const S
   }
   if (timings.empty()) timings.push_back({0.0, 0.0});
   double line_s = 0.0, exposure_s = 0.0, shortest_s = INFINITY;
-  for (const Timing& t : timings) line_s = std::max(line_s, t.line_s), exposure_s = std::max(exposure_s, t.exposure_s), shortest_s = std::min(shortest_s, t.exposure_s);
+  for (const Timing& t : timings)
+    line_s = std::max(line_s, t.line_s), exposure_s = std::max(exposure_s, t.exposure_s), shortest_s = std::min(shortest_s, t.exposure_s);
   if (!(line_s > 0.0) && !(exposure_s > 0.0)) return parts;
   const int cells = cellsOf(camera), margin = marginOf(camera), rows = (camera.pinhole.height + 2 * margin) * cells;
   const auto rowTime = [&](int row, double ofLine_s) { return time_s + ((row + 0.5) / cells - margin - 0.5 * camera.pinhole.height) * ofLine_s; };
-  const double first = rowTime(0, line_s) - 0.5 * exposure_s, last = rowTime(rows - 1, line_s) + 0.5 * exposure_s, asked = camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise;
+  const double first = rowTime(0, line_s) - 0.5 * exposure_s, last = rowTime(rows - 1, line_s) + 0.5 * exposure_s,
+               asked = camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise;
   parts.motion_px = motionOf(sim, camera, stateAt, {first, time_s, last}, parts.smallMotion_px);
   const bool addsUp = exposure_s > 0.0;
   const double ofShortest = addsUp ? exposure_s / shortest_s : 1.0;
   int count = camera.exposureParts;
   if (count == 0) {
     constexpr double kPicturesAPixel = 4.0;
-    const double wanted = addsUp ? std::max(std::sqrt(ofShortest * parts.motion_px / (4.0 * asked)), kPicturesAPixel * parts.smallMotion_px) : parts.motion_px / (4.0 * asked);
+    const double wanted =
+        addsUp ? std::max(std::sqrt(ofShortest * parts.motion_px / (4.0 * asked)), kPicturesAPixel * parts.smallMotion_px) : parts.motion_px / (4.0 * asked);
     count = static_cast<int>(std::clamp(std::ceil(wanted), 1.0, static_cast<double>(kMostParts)));
   }
   parts.error = ofShortest * parts.motion_px / (4.0 * count * (addsUp ? count : 1));
@@ -142,7 +146,8 @@ CameraImage renderExposure(CameraRenderer& renderer, const Simulation& sim, cons
   return renderParts(renderer, exposureParts(sim, camera, stateAt, time_s), stateAt, looked);
 }
 
-CameraImage renderParts(CameraRenderer& renderer, const ExposureParts& parts, const StateAt& stateAt, const std::function<void(const WorldState&, CameraImage&)>& looked) {
+CameraImage renderParts(CameraRenderer& renderer, const ExposureParts& parts, const StateAt& stateAt,
+                        const std::function<void(const WorldState&, CameraImage&)>& looked) {
   const std::size_t count = parts.times_s.size(), middle = count / 2;
   CameraImage mean;
   std::vector<FilmPoint> points;
@@ -154,7 +159,8 @@ CameraImage renderParts(CameraRenderer& renderer, const ExposureParts& parts, co
     const auto width = static_cast<std::size_t>(image.width);
     std::vector<const std::vector<double>*> weightsOf(image.slots.size(), nullptr);  // of rows; null: all alike
     for (std::size_t o = 0; o < parts.timingOfOutput.size(); ++o)
-      if (const auto& ofTimes = parts.rowWeights[parts.timingOfOutput[o]]; !ofTimes.empty()) weightsOf[static_cast<std::size_t>(image.slotOfOutput[o])] = &ofTimes[k];
+      if (const auto& ofTimes = parts.rowWeights[parts.timingOfOutput[o]]; !ofTimes.empty())
+        weightsOf[static_cast<std::size_t>(image.slotOfOutput[o])] = &ofTimes[k];
     const auto weight = [&](std::size_t slot, std::size_t row) { return weightsOf[slot] ? (*weightsOf[slot])[row] : 1.0 / static_cast<double>(count); };
     for (std::size_t s = 0; s < image.slots.size(); ++s)
       for (std::size_t p = 0; p < image.slots[s].size(); ++p) image.slots[s][p] *= weight(s, p / width);

@@ -20,13 +20,6 @@ double meanOf(const Texture& t) {
 
 }  // namespace
 
-double extentOf(const Ball& b, const View& v) {
-  const glm::dvec3 p = glm::transpose(v.localFromCamera) * (b.centre - v.position);
-  const double depth = -p.z;
-  if (depth <= 4.0 * b.radius_m + v.near_m || b.radius_m <= 0.0) return INFINITY;
-  return 2.0 * b.radius_m / depth / std::min(v.tanPerPixelX, v.tanPerPixelY);
-}
-
 HotParts::HotParts(const Simulation& sim, const Plan& plan, double accuracy) : simulation_(sim), plan_(plan), accuracy_(accuracy) {
   for (const Entity& e : sim.entities) {
     std::vector<Part>& parts = parts_.emplace_back();

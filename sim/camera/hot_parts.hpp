@@ -4,22 +4,10 @@
 #include <map>
 #include <vector>
 
-#include "sim/model/view.hpp"
+#include "sim/camera/zoomed_view.hpp"
 #include "sim/plan/plan.hpp"
 
 namespace pitviper {
-
-/// What a zoomed view looks at [local frame, m].
-struct Ball {
-  int entity = -1;
-  int surface = -1;  ///< of the entity, where a part of it is meant
-  glm::dvec3 centre{0.0};
-  double radius_m = 0.0;
-  double lines_per_m = 0.0;  ///< across it, as finely as it has to be sampled
-};
-
-/// Diameter of a ball [subpixels of the view]; infinite where it comes near the camera's plane.
-double extentOf(const Ball& ball, const View& view);
 
 class HotParts {
  public:

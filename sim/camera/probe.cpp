@@ -8,7 +8,8 @@
 #include "sim/model/light_legs.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/radiometry/physics.hpp"
-#include "sim/render/reference/reference_pass.hpp"
+#include "sim/render/reference/reference_drawer.hpp"
+#include "sim/render/scene_pass.hpp"
 
 namespace pitviper {
 namespace {
@@ -50,8 +51,8 @@ ProbeMeter::ProbeMeter(const Simulation& simulation, const Probe& probe, const S
       ways_(simulation, plan_),
       all_(simulation.entities.size(), 1),
       lines_(zoomedLines(simulation, Camera{}.zoomedSamples, probe.spectral.reference ? 0.0 : plan_.accuracy)) {
-  pass_ = probe.spectral.reference ? std::make_unique<ReferencePass>(simulation, plan_, library, scene, false, 1.0)
-                                   : makeScenePass(simulation, plan_, library, scene, false, 1.0, false);
+  if (probe.spectral.reference) drawer_ = std::make_unique<ReferenceDrawer>(simulation, plan_, library, scene, false, 1.0);
+  else drawer_ = makeScenePass(simulation, plan_, library, scene, false, 1.0, false);
 }
 
 void ProbeMeter::addSurroundings(const WorldState& state, std::vector<double>& sums) {
@@ -59,10 +60,10 @@ void ProbeMeter::addSurroundings(const WorldState& state, std::vector<double>& s
     const auto small = findSmallBodies(simulation_, state, v, 16.0);  // as a camera's default: a far body falls between rays otherwise
     std::vector<char> drawn(all_);
     for (size_t e = 0; e < drawn.size(); ++e) drawn[e] = !small[e];
-    pass_->draw(v, state, drawn);
-    pass_->startReadback();
-    Subpixels image(plan_, v, pass_->finishReadback());
-    addSmallBodies(image, *pass_, simulation_, state, small, all_, lines_);
+    drawer_->draw(v, state, drawn);
+    drawer_->startReadback();
+    Subpixels image(plan_, v, drawer_->finishReadback());
+    addSmallBodies(image, *drawer_, simulation_, state, small, all_, lines_);
     for (int y = 0; y < v.height; ++y)
       for (int x = 0; x < v.width; ++x) {
         const glm::dvec3 ray = v.ray(x + 0.5, y + 0.5);
@@ -103,7 +104,7 @@ void ProbeMeter::addSun(const WorldState& state, std::vector<double>& sums) cons
 }
 
 std::vector<double> ProbeMeter::read(const WorldState& state) {
-  pass_->setState(state);
+  drawer_->setState(state);
   std::vector<double> sums(static_cast<size_t>(plan_.slotCount), 0.0), values;
   addSurroundings(state, sums);
   addLights(state, sums);

@@ -2,6 +2,7 @@
 // Irradiance on a plane at a point: the whole hemisphere in five wide views, summed by projected solid angle, and the point lights
 // and the sun that reach it.
 #include "sim/camera/visible_lights.hpp"
+#include "sim/render/gpu_scene.hpp"
 
 namespace pitviper {
 
@@ -24,7 +25,7 @@ class ProbeMeter {
   const Probe& probe_;
   glm::dvec3 normal_;
   Plan plan_;
-  std::unique_ptr<ScenePass> pass_;
+  std::unique_ptr<LineDrawer> drawer_;
   WaysToLights ways_;
   std::vector<char> all_;   ///< flags of all entities
   std::vector<int> lines_;  ///< across each small body

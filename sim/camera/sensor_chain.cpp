@@ -93,7 +93,8 @@ void StageLine::calibrate(const std::vector<double>& cellWeights, const SensorTi
       seen_[o].push_back((static_cast<double>(lit[o][p]) - static_cast<double>(pixels_.ownLight[o][p])) / (unitOf(o) * radiance[o]));
 }
 
-SensorChain::SensorChain(const Camera& camera, const ShaderLibrary& library) : width_(drawnCamera(camera).pinhole.width), cells_(cellsOf(camera)), margin_px_(marginOf(camera)) {
+SensorChain::SensorChain(const Camera& camera, const ShaderLibrary& library)
+    : width_(drawnCamera(camera).pinhole.width), cells_(cellsOf(camera)), margin_px_(marginOf(camera)) {
   // Channels that have nothing of their own go together.
   std::vector<std::string> names;
   std::vector<std::vector<ChannelOutput>> outputs;
@@ -104,7 +105,8 @@ SensorChain::SensorChain(const Camera& camera, const ShaderLibrary& library) : w
     places_.push_back({line, outputs[line].size()});
     outputs[line].push_back(o);
   }
-  for (std::size_t k = 0; k < names.size(); ++k) lines_.push_back(std::make_unique<StageLine>(camera, outputs[k], names[k].empty() ? camera.stages : camera.stagesOf(names[k]), library));
+  for (std::size_t k = 0; k < names.size(); ++k)
+    lines_.push_back(std::make_unique<StageLine>(camera, outputs[k], names[k].empty() ? camera.stages : camera.stagesOf(names[k]), library));
 }
 
 std::vector<std::vector<float>> SensorChain::run(std::vector<std::vector<float>> drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
@@ -135,7 +137,8 @@ CountMarks SensorChain::marks() const {
 }
 
 std::size_t SensorChain::middleCell(int column, int row) const {
-  return static_cast<size_t>((row + margin_px_) * cells_ + cells_ / 2) * static_cast<size_t>(width_) + static_cast<size_t>((column + margin_px_) * cells_ + cells_ / 2);
+  return static_cast<size_t>((row + margin_px_) * cells_ + cells_ / 2) * static_cast<size_t>(width_) +
+         static_cast<size_t>((column + margin_px_) * cells_ + cells_ / 2);
 }
 
 }  // namespace pitviper

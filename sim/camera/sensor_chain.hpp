@@ -14,7 +14,8 @@ class StageLine {
   StageLine(const Camera& camera, std::vector<ChannelOutput> outputs, const std::vector<StageChoice>& stages, const ShaderLibrary& library);
   const std::vector<ChannelOutput>& outputs() const { return outputs_; }
   /// As SensorChain::run(), of its outputs.
-  std::vector<std::vector<float>> run(std::vector<std::vector<float>> drawn, const std::vector<double>& cellWeights, const SensorTick& tick, std::vector<SensorPoint> points);
+  std::vector<std::vector<float>> run(std::vector<std::vector<float>> drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
+                                      std::vector<SensorPoint> points);
   const std::vector<double>& seenSolidAngles(std::size_t output) const { return seen_[output]; }
   const CountMarks& marks() const { return pixels_.marks; }
 
@@ -44,8 +45,8 @@ class SensorChain {
   /// (drawnCamera() has pointsApart). Returns pictures of the camera's own pixels.
   std::vector<std::vector<float>> run(std::vector<std::vector<float>> drawn, const std::vector<double>& cellWeights, const SensorTick& tick,
                                       std::vector<SensorPoint> points = {});
-  /// Of an output per etendue: what an even field of radiance gives each pixel, as a projected solid angle, through all of the optics; as a calibration would find it. Of the last
-  /// tick that was run.
+  /// Of an output per etendue: what an even field of radiance gives each pixel, as a projected solid angle, through all of the optics; as a calibration would
+  /// find it. Of the last tick that was run.
   const std::vector<double>& seenSolidAngles(std::size_t output) const { return lines_[places_[output].line]->seenSolidAngles(places_[output].output); }
   /// Pixels whose counts say nothing, of the last tick that was run.
   CountMarks marks() const;

@@ -14,11 +14,11 @@ namespace pitviper {
 struct SensorTick {
   int frame = 0;
   double time_s = 0.0, exposure_s = 0.0;
-  double step_s = 1.0;      ///< from frame to frame
-  double axis_sr = 0.0;     ///< projected solid angle of a pixel of the film on the axis, at this time
-  double focalLength_m = 0.0;  ///< at this time; 0: the camera's own
-  std::uint64_t seed = 0;  ///< of the scenario and this camera
-  double gain = 1.0;       ///< factor of the detector's own, at this time
+  double step_s = 1.0;                            ///< from frame to frame
+  double axis_sr = 0.0;                           ///< projected solid angle of a pixel of the film on the axis, at this time
+  double focalLength_m = 0.0;                     ///< at this time; 0: the camera's own
+  std::uint64_t seed = 0;                         ///< of the scenario and this camera
+  double gain = 1.0;                              ///< factor of the detector's own, at this time
   ChannelValues exposures_s = {}, gains = {1.0};  ///< of all channels: exposure_s and gain are of those that a stage sees
 };
 
@@ -49,7 +49,9 @@ class SensorPictures {
   /// Of each channel that a detector counts, why pixels' counts say nothing.
   CountMarks marks;
   /// What a share of a point's value is in a cell.
-  double inCell(const SensorPoint& p, std::size_t cell) const { return outputs[p.output].perEtendue || !cellWeights ? p.value : p.value / (*cellWeights)[cell]; }
+  double inCell(const SensorPoint& p, std::size_t cell) const {
+    return outputs[p.output].perEtendue || !cellWeights ? p.value : p.value / (*cellWeights)[cell];
+  }
 
   /// In memory, row by row, to be read and written.
   std::vector<float>& values(std::size_t output);

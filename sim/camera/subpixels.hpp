@@ -8,7 +8,7 @@
 
 #include "sim/camera/camera_image.hpp"
 #include "sim/plan/plan.hpp"
-#include "sim/render/scene_pass.hpp"
+#include "sim/render/line_drawer.hpp"
 
 namespace pitviper {
 
@@ -62,8 +62,8 @@ class Subpixels {
   RawImage raw_;
   std::map<size_t, std::vector<double>> added_;  ///< subpixels that got something, by slot
   bool keepsPoints_ = false;
-  std::vector<FilmPoint> points_;                ///< in subpixels from the lower left corner
-  std::map<size_t, TruthPixel> truth_;           ///< truth that replaces the pass's own
+  std::vector<FilmPoint> points_;       ///< in subpixels from the lower left corner
+  std::map<size_t, TruthPixel> truth_;  ///< truth that replaces the pass's own
 };
 
 TruthPixel truthAt(const RawImage& raw, size_t pixel);

@@ -26,7 +26,11 @@ std::uint64_t mixed(std::uint64_t x) {
 }
 
 WholePixels::WholePixels(const Simulation& simulation, const Camera& camera, const Plan& plan, std::uint64_t seed)
-    : simulation_(simulation), camera_(camera), plan_(plan), seed_(seed), spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms.surroundings)) {}
+    : simulation_(simulation),
+      camera_(camera),
+      plan_(plan),
+      seed_(seed),
+      spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms.surroundings)) {}
 
 std::optional<WholePixel> WholePixels::look(const WorldState& state, int pixel) const {
   const View view = cameraView(camera_, state, 1);
@@ -47,8 +51,7 @@ std::optional<WholePixel> WholePixels::look(const WorldState& state, int pixel) 
     for (int y = first; y < last; ++y)
       for (int x = 0; x < kPlaces; ++x) {
         const auto number = static_cast<std::uint64_t>(pixel) * (2 * kPlaces * kPlaces) + static_cast<std::uint64_t>(2 * (y * kPlaces + x));
-        const ReferencePixel seen =
-            shader.place(column + (x + unit(seed_ ^ number)) / kPlaces, row + (y + unit(seed_ ^ (number + 1))) / kPlaces, sum);
+        const ReferencePixel seen = shader.place(column + (x + unit(seed_ ^ number)) / kPlaces, row + (y + unit(seed_ ^ (number + 1))) / kPlaces, sum);
         auto& own = sums[static_cast<std::size_t>((x & 1) + 2 * (y & 1))];
         for (std::size_t s = 0; s < slots; ++s) own[s] += seen.slots[s];
       }

@@ -11,7 +11,8 @@
 namespace pitviper {
 namespace {
 
-/// Edge of a tile [pixels]: lists stay short, which leaves rounds for more lines at a nozzle, and few pixels wait for a neighbour's. Larger where a picture would have too many.
+/// Edge of a tile [pixels]: lists stay short, which leaves rounds for more lines at a nozzle, and few pixels wait for a neighbour's. Larger where a picture
+/// would have too many.
 constexpr int kTile_px = 4, kMostTilesAcross = 128;
 /// A field whose depth is less than this part of the way to it has one stretch of air across it: as kEven of its shader.
 constexpr double kEven = 0.1;

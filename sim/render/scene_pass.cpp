@@ -25,16 +25,6 @@ constexpr double kBendShare = 2.0, kUsualAccuracy = 0.01;
 /// For the rounding of places in single precision.
 constexpr double kRoom = 1.001;
 
-/// The same plan at one wavelength: what the reference needs of tables is which part each draw is.
-Plan outline(const Plan& plan) {
-  Plan one = plan;
-  one.nodes.resize(1);
-  for (auto& w : one.weight) w.resize(1);
-  one.blocks = {{0, 1, {}}};
-  for (int s = 0; s < plan.slotCount; ++s) one.blocks[0].slots.push_back(s);
-  return one;
-}
-
 }  // namespace
 
 ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
@@ -45,29 +35,28 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       scene_(std::move(scene)),
       truth_(truth),
       apertureArea_m2_(apertureArea_m2),
-      outline_(shading == Shading::Reference ? std::optional(outline(plan)) : std::nullopt),
-      tables_(makeTables(simulation, tabled())),
+      tables_(makeTables(simulation, plan)),
       surfaceClasses_(sortIntoClasses(tables_, simulation, plan, truth, classes)),
+      pixelClasses_(library, classSlots(classes)),
       solid_(tables_.solid),
-      solids_(simulation, tables_, *scene_, library),
-      relevance_(simulation, tabled(), tables_),
-      how_(shading) {
-  if (plan.terms.air && shading != Shading::Reference) air_ = simulation.air->onGpu(simulation, plan, shading == Shading::Direct);
-  // The reference shades on the CPU: programs of its own are those of truth alone.
-  const bool shades = shading != Shading::Reference || truth;
-  if (shades && tables_.around) around_ = std::make_shared<SurroundingsBuffer>(simulation, *tables_.around);
-  if (shades && plan.terms.shadows) shadows_ = std::make_shared<ShadowPass>(simulation, plan, scene_, library);
+      solids_(simulation, tables_.draws, *scene_, library),
+      relevance_(simulation, plan, tables_) {
+  if (plan.terms.air) air_ = simulation.air->onGpu(simulation, plan, shading == Shading::Direct);
+  if (tables_.around) around_ = std::make_shared<SurroundingsBuffer>(simulation, *tables_.around);
+  if (plan.terms.shadows) shadows_ = std::make_shared<ShadowPass>(simulation, plan, scene_, library);
+  checkUniformSize((tables_.node.size() + tables_.ambient.size() + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float),
+                   "the spectral nodes");
+}
+
+ShaderSlots ScenePass::classSlots(bool classes) const {
   ShaderSlots slots;
   slots.constants["GROUND"] = tables_.ground;
-  const bool demand = classes && lightsVary(plan, simulation, truth);
+  const bool demand = classes && lightsVary(plan_, simulation_, truth_);
   slots.files["light_demand"] = std::string("sim/render/glsl/") + (demand ? "light_demand.glsl" : "light_demand_none.glsl");
-  slots.files["shadow_list"] = std::string("sim/render/glsl/") + (plan.terms.shadows ? "shadow_list.glsl" : "shadow_list_none.glsl");
-  slots.constants["SHADOWS_VARY"] = classes && shadowsVary(plan, simulation, truth) ? 1 : 0;
+  slots.files["shadow_list"] = std::string("sim/render/glsl/") + (plan_.terms.shadows ? "shadow_list.glsl" : "shadow_list_none.glsl");
+  slots.constants["SHADOWS_VARY"] = classes && shadowsVary(plan_, simulation_, truth_) ? 1 : 0;
   addLightConstants(slots);
-  if (shades) pixelClasses_.emplace(library, slots);
-  if (shading != Shading::Reference)
-    checkUniformSize((tables_.node.size() + tables_.ambient.size() + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float),
-                     "the spectral nodes");
+  return slots;
 }
 
 void ScenePass::shareLight(const ScenePass& other) {
@@ -93,8 +82,8 @@ ShaderSlots ScenePass::shadingSlots(bool writtenOut) const {
                                                               : tables_.solid.lit   ? "surface_simple.glsl"
                                                                                     : "surface_unlit.glsl");
   slots.files["transmission"] = "sim/render/glsl/transmission_none.glsl";
-  slots.constants["NODES"] = how_ == Shading::Reference ? 1 : plan_.nodeCount();
-  slots.constants["NODE_TEXELS"] = how_ == Shading::Reference ? 1 : (plan_.nodeCount() + 3) / 4;
+  slots.constants["NODES"] = plan_.nodeCount();
+  slots.constants["NODE_TEXELS"] = (plan_.nodeCount() + 3) / 4;
   slots.constants["GROUPS"] = plan_.groupCount();
   addLightConstants(slots);
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
@@ -124,7 +113,7 @@ std::vector<std::string> ScenePass::channelTargets() const {
 void ScenePass::setState(const WorldState& state, const ShadowDemand* demand) {
   {
     const TimedPart part("tables");
-    if (updateTemperatures(tables_, simulation_, tabled(), state)) {
+    if (updateTemperatures(tables_, simulation_, plan_, state)) {
       solid_.update(tables_.solid);
       relevance_.follow(tables_);
       onTemperatures();
@@ -135,7 +124,7 @@ void ScenePass::setState(const WorldState& state, const ShadowDemand* demand) {
         state, [&](size_t e, size_t l) { return l == simulation_.lights.size() || relevance_.shadowMatters(e, l, state); }, demand);
   const TimedPart part("tables");
   std::vector<float> block = tables_.node;
-  const auto lights = lightTable(simulation_, tabled(), state);
+  const auto lights = lightTable(simulation_, plan_, state);
   block.insert(block.end(), lights.begin(), lights.end());
   block.insert(block.end(), tables_.ambient.begin(), tables_.ambient.end());
   nodes_.upload(block);
@@ -145,7 +134,7 @@ void ScenePass::setState(const WorldState& state, const ShadowDemand* demand) {
 }
 
 GpuDraw ScenePass::drawOf(std::size_t draw, const View& view, const WorldState& state) const {
-  GpuDraw data = drawData(simulation_, tables_, draw, view, state);
+  GpuDraw data = drawData(simulation_, tables_.draws[draw], view, state);
   if (around_) data.fine.w = around_->slotOf(tables_.draws[draw].entity);
   return data;
 }
@@ -234,7 +223,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   const TimedPart part("shading");
   findClassesIn(v, state, drawn);
   const auto shared = shadeTogether(v);
-  if (pixelClasses_) pixelClasses_->find(current_->visibility, shared ? &shared->bends : nullptr, v.grouped);
+  pixelClasses_.find(current_->visibility, shared ? &shared->bends : nullptr, v.grouped);
   if (shared) leaveOut(current_->visibility);
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
@@ -243,7 +232,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   shade(current_->shading, current_->visibility);
   drawn_ = v;
   resolved_ = truthOf_ = nullptr;
-  if (v.subpixels > 1 && how_ != Shading::Reference) {
+  if (v.subpixels > 1) {
     const TimedPart resolving("resolve");
     const auto groups = static_cast<size_t>(plan_.groupCount());
     if (!resolve_) resolve_.emplace(library_, shared ? groups : current_->shading.colourCount(), groups);
@@ -291,7 +280,7 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   pixelView_.upload(&data, sizeof data);
   wholePixels_ = true;
   pixelView_.bindUniform(0);
-  pixelClasses_->findWithLight(pixels.visibility);
+  pixelClasses_.findWithLight(pixels.visibility);
   pixels.visibility.colour(0).bind(0);
   partial_ = false;
   shadedView_ = whole;
@@ -299,7 +288,7 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   // What is averaged already bends as little as what is behind it.
   const RenderTarget* before = withoutTransparent();
   const bool averaged = before && transparentIsAveraged();
-  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_->smoothness(), averaged ? *before : pixels.shading, averaged ? nullptr : before,
+  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_.smoothness(), averaged ? *before : pixels.shading, averaged ? nullptr : before,
                      v.grouped);
   if (v.subpixels != v.grouped) shared_->spread(pixels.shading, current_->shading, v.grouped, glm::ivec4(0));
   else if (v.kept.z > 0) shared_->spread(pixels.shading, current_->shading, v.grouped, v.kept);
@@ -384,12 +373,12 @@ void ScenePass::drawTilePicture(const std::vector<Tile>& tiles, const WorldState
     }
   }
   const TimedPart part("shading");
-  pixelClasses_->begin(current_->visibility);
+  pixelClasses_.begin(current_->visibility);
   for (size_t i = 0; i < tiles.size(); ++i) {
     bindTile(i);
-    pixelClasses_->drawPart(tiles[i].part);
+    pixelClasses_.drawPart(tiles[i].part);
   }
-  pixelClasses_->end();
+  pixelClasses_.end();
   current_->visibility.colour(0).bind(0);
   clearShading();
   for (size_t i = 0; i < tiles.size(); ++i) {

@@ -8,10 +8,10 @@
 #include <set>
 #include <span>
 
-#include "sim/model/view.hpp"
 #include "sim/render/air_on_gpu.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/light_relevance.hpp"
+#include "sim/render/line_drawer.hpp"
 #include "sim/render/pixel_classes.hpp"
 #include "sim/render/resolve_pass.hpp"
 #include "sim/render/shading_program.hpp"
@@ -26,44 +26,23 @@
 
 namespace pitviper {
 
-/// Integrals of kernel x radiance per subpixel, or per pixel (View::subpixels), as read back. Row 0 is the bottom.
-struct RawImage {
-  int width = 0, height = 0;
-  int subpixels = 1;   ///< so many by so many of the view were resolved into each
-  glm::ivec4 kept{0};  ///< corner and size of a part that is there subpixel by subpixel as well
-  std::vector<std::vector<float>> keptGroups;
-  std::vector<std::vector<float>> groups;  ///< four slots each, RGBA
-  std::vector<std::vector<float>> truth;   ///< three layers of RGBA where asked for
-  std::vector<int> entity;                 ///< what each pixel sees, -1 the background. Empty unless asked for
-};
-
-class ScenePass {
+class ScenePass : public LineDrawer {
  public:
-  virtual ~ScenePass() = default;
-  ScenePass(const ScenePass&) = delete;
-  ScenePass& operator=(const ScenePass&) = delete;
-
   /// Shadows and the light from all around are from here on one with those of another pass of the same plan, which is told the same states.
   void shareLight(const ScenePass& other);
-  /// Uploads what changes with time: light levels, temperatures; draws shadow maps. `demand`: as ShadowPass's; what is not drawn then has no shadows.
-  void setState(const WorldState& state, const ShadowDemand* demand = nullptr);
-  /// `drawn`: one flag per entity; the others are left out (small bodies have views of their own).
-  void draw(const View& view, const WorldState& state, const std::vector<char>& drawn);
-  /// Whether views can be drawn as tiles.
-  virtual bool drawsTiles() const { return false; }
-  /// Views of one size from one place, each of its own body (View::onlyEntity), as tiles of pictures that are read back as a whole; `take`(view, image).
+  void setState(const WorldState& state, const ShadowDemand* demand = nullptr) override;
+  void draw(const View& view, const WorldState& state, const std::vector<char>& drawn) override;
   void drawTiles(const std::vector<View>& views, const WorldState& state, const std::vector<char>& drawn,
-                 const std::function<void(std::size_t, const RawImage&)>& take);
-  /// Starts copying the last drawn image.
-  void startReadback(bool identity = false);
-  RawImage finishReadback();
+                 const std::function<void(std::size_t, const RawImage&)>& take) override;
+  void startReadback(bool identity = false) override;
+  RawImage finishReadback() override;
   /// What a picture is drawn with besides the visibility pass, in order: shadow maps, shading, truth, transparent things, integration.
   virtual std::vector<NamedProgram> programs() const;
   const RenderTables& tables() const { return tables_; }
 
  protected:
-  /// Direct: in the shader, so that air is integrated over the channels beforehand; buffered: after it; reference: not on the GPU at all.
-  enum class Shading { Direct, Buffered, Reference };
+  /// Direct: in the shader, so that air is integrated over the channels beforehand; buffered: after it.
+  enum class Shading { Direct, Buffered };
   /// The simulation, the plan and the library must outlive it. `shading`: where the spectral integral is done; `classes`: each class of surfaces by a program
   /// of its own.
   ScenePass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
@@ -99,17 +78,19 @@ class ScenePass {
   /// Those that the current view may show.
   const std::set<std::size_t>& classesInView() const { return classesInView_; }
   /// Of the picture's pixels, found before shade().
-  const PixelClasses& pixelClasses() const { return *pixelClasses_; }
+  const PixelClasses& pixelClasses() const { return pixelClasses_; }
   /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
   /// `writtenOut`: nodes are named by numbers, none by a loop.
   ShaderSlots shadingSlots(bool writtenOut) const;
   void addLightConstants(ShaderSlots& slots) const;
+  /// Of what finds pixels' classes.
+  ShaderSlots classSlots(bool classes) const;
   /// Names of the channel targets, and of the truth targets, in order.
   std::vector<std::string> channelTargets() const;
   static std::vector<std::string> truthTargets() { return {"truthGeometry", "truthNormal", "truthIdentity"}; }
   void bindBuffers() const;
-  RenderTarget& visibilityFor(int width, int height) { return targetsFor(width, height).visibility; }
   std::shared_ptr<const GpuScene> sharedScene() const { return scene_; }
+  RenderTarget& visibilityFor(int width, int height) { return targetsFor(width, height).visibility; }
 
  private:
   struct Targets {
@@ -126,8 +107,6 @@ class ScenePass {
   void drawTilePicture(const std::vector<Tile>& tiles, const WorldState& state);
   RawImage cut(const Readback::Pixels& picture, const Tile& tile) const;
   Targets& targetsFor(int width, int height);
-  /// What tables are made for.
-  const Plan& tabled() const { return outline_ ? *outline_ : plan_; }
 
   const Simulation& simulation_;
   const Plan& plan_;
@@ -135,7 +114,6 @@ class ScenePass {
   std::shared_ptr<const GpuScene> scene_;
   bool truth_;
   double apertureArea_m2_;
-  std::optional<Plan> outline_;  ///< reference: the same plan at one wavelength
   RenderTables tables_;
   std::vector<SurfaceClass> surfaceClasses_;
   std::set<std::size_t> classesInView_;
@@ -144,16 +122,15 @@ class ScenePass {
     bool lamps = false;    ///< one may
     bool shadows = false;  ///< something may stand between some of it and a light that matters
   };
-  std::vector<LightNeeds> lightNeeds_;        ///< of each entity
-  std::optional<SharedShading> shared_;       ///< made when first needed
-  std::optional<PixelClasses> pixelClasses_;  ///< made with the tables, where a program asks for them
+  std::vector<LightNeeds> lightNeeds_;   ///< of each entity
+  std::optional<SharedShading> shared_;  ///< made when first needed
+  PixelClasses pixelClasses_;
   SurfaceBuffers solid_;
   SolidPass solids_;
   LightRelevance relevance_;
   std::shared_ptr<SurroundingsBuffer> around_;  ///< where ambient light has directions
-  std::unique_ptr<AirOnGpu> air_;               ///< null: none, or not on the GPU
-  Shading how_;
-  std::shared_ptr<ShadowPass> shadows_;  ///< where the plan has them
+  std::unique_ptr<AirOnGpu> air_;               ///< null: none
+  std::shared_ptr<ShadowPass> shadows_;         ///< where the plan has them
   Buffer nodes_, draws_, lights_, view_, pixelView_, tileViews_, tileDraws_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;

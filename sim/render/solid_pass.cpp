@@ -20,14 +20,14 @@ constexpr std::uint32_t kWorthInstancing = 100;
 
 }  // namespace
 
-SolidPass::SolidPass(const Simulation& simulation, const RenderTables& tables, const GpuScene& scene, const ShaderLibrary& library)
-    : simulation_(simulation), tables_(tables), scene_(scene), programs_(scene.solidPrograms(library)) {}
+SolidPass::SolidPass(const Simulation& simulation, const std::vector<DrawItem>& items, const GpuScene& scene, const ShaderLibrary& library)
+    : simulation_(simulation), items_(items), scene_(scene), programs_(scene.solidPrograms(library)) {}
 
 std::vector<SolidPass::Candidate> SolidPass::candidatesIn(const View& v, const WorldState& state, const std::vector<char>& drawn) const {
   std::vector<Candidate> all;
   const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
-  for (size_t d = 1; d < tables_.draws.size(); ++d) {
-    const DrawItem& item = tables_.draws[d];
+  for (size_t d = 1; d < items_.size(); ++d) {
+    const DrawItem& item = items_[d];
     const auto e = static_cast<size_t>(item.entity);
     if (item.kind != DrawKind::Solid || !drawn[e] || !state.isThere(e)) continue;
     const Entity& entity = simulation_.entities[e];

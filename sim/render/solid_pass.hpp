@@ -11,7 +11,7 @@ namespace pitviper {
 class SolidPass {
  public:
   /// All but the library must outlive it.
-  SolidPass(const Simulation& simulation, const RenderTables& tables, const GpuScene& scene, const ShaderLibrary& library);
+  SolidPass(const Simulation& simulation, const std::vector<DrawItem>& items, const GpuScene& scene, const ShaderLibrary& library);
   /// Clears the target and fills it. Draws, view and meshes are bound.
   void draw(RenderTarget& target, const View& view, const WorldState& state, const std::vector<char>& drawn);
 
@@ -36,7 +36,7 @@ class SolidPass {
   void drawHidden(const std::vector<Candidate>& dense);
 
   const Simulation& simulation_;
-  const RenderTables& tables_;
+  const std::vector<DrawItem>& items_;
   const GpuScene& scene_;
   std::shared_ptr<const SolidPrograms> programs_;
   Buffer instances_;

@@ -12,9 +12,9 @@ namespace pitviper {
 /// What shading takes beyond the plainest surface.
 struct SurfaceClass {
   bool sky = false;
-  bool sunAlone = false;   ///< for pixels that no lamp and no shadow matters to
+  bool sunAlone = false;    ///< for pixels that no lamp and no shadow matters to
   bool unshadowed = false;  ///< for pixels that no shadow matters to
-  bool modifiers = false;  ///< textures of reflection or emission
+  bool modifiers = false;   ///< textures of reflection or emission
   bool emissionModifiers = false;
   bool viewAngles = false;  ///< what the hemisphere sends depends on them
   bool columns = false;     ///< that are not albedo / pi
@@ -27,8 +27,8 @@ struct SurfaceClass {
   bool operator==(const SurfaceClass&) const = default;
 };
 
-/// Classes of what is solid, the sky first, and in each solid draw the numbers of its own (DrawItem::surfaceClass, unshadowed, everyLight). `apart`: false puts all into
-/// one, of which each pixel costs as the costliest, but which takes a driver no longer to compile than a single program.
+/// Classes of what is solid, the sky first, and in each solid draw the numbers of its own (DrawItem::surfaceClass, unshadowed, everyLight). `apart`: false puts
+/// all into one, of which each pixel costs as the costliest, but which takes a driver no longer to compile than a single program.
 std::vector<SurfaceClass> sortIntoClasses(RenderTables& tables, const Simulation& simulation, const Plan& plan, bool truth, bool apart);
 
 /// Whether some pixels of a plan's pictures may need no lamps and no shadows where others do. Truth tells of the first lamp, whatever it adds; only the

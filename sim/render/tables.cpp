@@ -240,6 +240,21 @@ void addSurfaceSlots(const SurfaceTables& tables, const SurfaceTerms& terms, con
   slots.constants["PLANCK_ENTRIES"] = kPlanckEntries;
 }
 
+std::vector<DrawItem> drawItems(const Simulation& sim) {
+  std::vector<DrawItem> items{{DrawKind::Background, -1, -1}};
+  if (sim.ground) items.push_back({DrawKind::Ground, -1, -1});
+  for (size_t e = 0; e < sim.entities.size(); ++e) {
+    const Entity& entity = sim.entities[e];
+    const bool medium = sim.mediumOf(entity);
+    for (size_t s = 0; s < (medium ? 1 : entity.surfaces.size()); ++s) {
+      const Surface& surface = entity.surfaces[s];
+      const DrawKind kind = medium ? DrawKind::Medium : sim.materialOf(surface).transmission ? DrawKind::Layer : DrawKind::Solid;
+      items.push_back({kind, static_cast<int>(e), static_cast<int>(s), 0, 0, surface.temperature_K});
+    }
+  }
+  return items;
+}
+
 RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   RenderTables t;
   if (plan.terms.surroundings > 0) t.around = std::make_shared<const NodeSurroundings>(sim, plan.nodes, plan.terms.surroundings);
@@ -261,25 +276,20 @@ RenderTables makeTables(const Simulation& sim, const Plan& plan) {
   const auto background = static_cast<std::uint32_t>(t.solid.materials.size());
   appendMaterial(t.solid, sim, Material{}, {}, plan, nullptr);  // black: its row is its radiance
 
-  t.draws.push_back({DrawKind::Background, -1, -1, appendRow(t.solid, sim, plan, nullptr), background});
-  if (sim.ground) {
-    t.ground = static_cast<int>(t.draws.size());
-    t.draws.push_back({DrawKind::Ground, -1, -1, appendRow(t.solid, sim, plan, &*sim.ground), at[static_cast<size_t>(sim.ground->material)]});
-  }
-  for (size_t e = 0; e < sim.entities.size(); ++e) {
-    const Entity& entity = sim.entities[e];
-    if (const Medium* medium = sim.mediumOf(entity)) {
-      t.draws.push_back(
-          {DrawKind::Medium, static_cast<int>(e), 0, appendMedium(t, plan, *medium, entity.surfaces.front()), 0, entity.surfaces.front().temperature_K});
+  t.draws = drawItems(sim);
+  for (DrawItem& d : t.draws) {
+    const Surface* surface = d.kind == DrawKind::Ground ? &*sim.ground
+                             : d.entity < 0             ? nullptr
+                                                        : &sim.entities[static_cast<size_t>(d.entity)].surfaces[static_cast<size_t>(d.surface)];
+    if (d.kind == DrawKind::Medium) {
+      d.row = appendMedium(t, plan, *sim.mediumOf(sim.entities[static_cast<size_t>(d.entity)]), *surface);
       continue;
     }
-    for (size_t s = 0; s < entity.surfaces.size(); ++s) {
-      const Surface& surface = entity.surfaces[s];
-      const bool layer = sim.materialOf(surface).transmission.has_value();
-      t.draws.push_back({layer ? DrawKind::Layer : DrawKind::Solid, static_cast<int>(e), static_cast<int>(s),
-                         appendRow(layer ? t.layer : t.solid, sim, plan, &surface), at[static_cast<size_t>(surface.material)], surface.temperature_K});
-    }
+    d.row = appendRow(d.kind == DrawKind::Layer ? t.layer : t.solid, sim, plan, surface);
+    d.material = surface ? at[static_cast<size_t>(surface->material)] : background;
   }
+  for (size_t d = 0; d < t.draws.size(); ++d)
+    if (t.draws[d].kind == DrawKind::Ground) t.ground = static_cast<int>(d);
 
   for (const SpectralNode& n : plan.nodes) {
     const double w = n.members.front().wavelength_um;

@@ -41,6 +41,9 @@ struct DrawItem {
   int everyLight = 0;          ///< the class for where lamps or shadows matter; the same where there is one
 };
 
+/// Of all parts that are drawn, without what only tables know.
+std::vector<DrawItem> drawItems(const Simulation& simulation);
+
 /// What a program needs of the surfaces that it draws: the solid ones, or the transparent ones.
 struct SurfaceTables {
   bool general = false;    ///< angular tables, modifiers or temperature textures

@@ -21,8 +21,7 @@ GpuView viewData(const Simulation& simulation, const View& v, double apertureAre
   return g;
 }
 
-GpuDraw drawData(const Simulation& simulation, const RenderTables& tables, std::size_t draw, const View& v, const WorldState& state) {
-  const DrawItem& item = tables.draws[draw];
+GpuDraw drawData(const Simulation& simulation, const DrawItem& item, const View& v, const WorldState& state) {
   GpuDraw g{};
   const Pose pose = item.entity < 0 ? Pose{v.position, {1, 0, 0, 0}} : state.entities[static_cast<size_t>(item.entity)];
   const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);

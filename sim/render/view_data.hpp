@@ -26,6 +26,6 @@ static_assert(sizeof(GpuView) == 144);
 
 /// `corner`: where the view's lower left stands in the picture [pixels].
 GpuView viewData(const Simulation& simulation, const View& view, double apertureArea_m2, glm::ivec2 corner = {0, 0});
-GpuDraw drawData(const Simulation& simulation, const RenderTables& tables, std::size_t draw, const View& view, const WorldState& state);
+GpuDraw drawData(const Simulation& simulation, const DrawItem& item, const View& view, const WorldState& state);
 
 }  // namespace pitviper

@@ -8,6 +8,7 @@
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
 #include "sim/radiance/shadow_rays.hpp"
+#include "sim/render/raster_tracer.hpp"
 
 namespace pitviper {
 
@@ -17,12 +18,6 @@ struct ReferencePixel {
   int entity = -1;
   int surface = -1;
   double range_m = 0.0;
-};
-
-/// What the visibility pass found; entity -1: the background.
-struct SeenTriangle {
-  int entity = -1;
-  std::uint32_t triangle = 0;  ///< of its mesh
 };
 
 /// Many pixels of one view; pixels may be asked for from several threads, each with a sum of its own over spectra().
