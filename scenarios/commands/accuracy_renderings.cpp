@@ -28,7 +28,7 @@ std::optional<double> predictedError(const Plan& plan, std::size_t slot) {
 Renderings::Renderings(const Simulation& sim, const Camera& camera, const SpectralSampling& sampling, const std::shared_ptr<const GpuScene>& scene)
     : camera_(camera) {
   camera_.spectral = sampling;
-  renderer_ = std::make_unique<CameraRenderer>(sim, camera_, shaderLibrary(), scene);
+  renderer_ = std::make_unique<CameraRenderer>(sim, camera_, cameraPlan(sim, camera_), shaderLibrary(), scene);
 }
 
 std::vector<std::vector<double>> Renderings::draw(ComparedFrames& frames, const std::function<void()>& drawn) {

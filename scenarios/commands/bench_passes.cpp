@@ -54,7 +54,8 @@ struct PreparedPass : Prepared {
 };
 
 struct PreparedFrame : Prepared {
-  explicit PreparedFrame(const BenchSetting& setting) : Prepared(setting), renderer(simulation, simulation.cameras[0], shaderLibrary(), scene) {}
+  explicit PreparedFrame(const BenchSetting& setting)
+      : Prepared(setting), renderer(simulation, simulation.cameras[0], cameraPlan(simulation, simulation.cameras[0]), shaderLibrary(), scene) {}
   CameraRenderer renderer;
 };
 

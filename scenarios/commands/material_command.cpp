@@ -194,7 +194,7 @@ std::vector<Chart> chartsOf(const Material& m, const std::string& name) {
 void draw(const Shown& s, const std::string& name, const std::filesystem::path& out) {
   const GlContext context;
   const auto scene = std::make_shared<const GpuScene>(s.simulation);
-  CameraRenderer renderer(s.simulation, s.simulation.cameras[0], shaderLibrary(), scene);
+  CameraRenderer renderer(s.simulation, s.simulation.cameras[0], cameraPlan(s.simulation, s.simulation.cameras[0]), shaderLibrary(), scene);
   const WorldState state = advance(s.simulation, 0.0);
   const Frame frame = makeFrame(s.simulation, s.simulation.cameras[0], renderer.render(state), state, 0, nullptr);
   writePreviewFile(out / (name + "_sphere.png"), frame);

@@ -85,7 +85,7 @@ void printPixelTerms(const ExrImage& frame, const std::string& file, int column,
                     "name that one, or draw the frame again");
   const Camera camera = cameraOf(frame, file, sim);
   const GlContext context;
-  CameraRenderer renderer(sim, camera, shaderLibrary(), std::make_shared<const GpuScene>(sim));
+  CameraRenderer renderer(sim, camera, cameraPlan(sim, camera), shaderLibrary(), std::make_shared<const GpuScene>(sim));
   const int number = wholeAttribute(frame, "pitviper.frame");
   WorldState state = advance(sim, sim.time.at(number));
   if (camera.follower) state = pointed(std::move(state), camera, poseOf(frame, sim, file));

@@ -19,8 +19,8 @@ namespace {
 constexpr double kNominalRate = 6e6;
 }  // namespace
 
-std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes,
-                                       const std::vector<std::filesystem::path>& roots, int frames) {
+std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes, const std::vector<std::filesystem::path>& roots,
+                                       int frames) {
   const Simulation sim = readScenario(scenario, changes, findLibraries(), roots);
   const auto scene = std::make_shared<const GpuScene>(sim);
   Yardstick yardstick;
@@ -31,7 +31,7 @@ std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::v
     // Of a camera that a gimbal points a frame is the whole loop: its picture, its sensor, what it finds in that; one frame after the other, none again.
     std::unique_ptr<CameraLine> loop;
     if (camera.follower) loop = std::make_unique<CameraLine>(sim, camera, shaderLibrary(), scene, std::function<void(double)>());
-    const auto alone = loop ? nullptr : std::make_unique<CameraRenderer>(sim, camera, shaderLibrary(), scene);
+    const auto alone = loop ? nullptr : std::make_unique<CameraRenderer>(sim, camera, cameraPlan(sim, camera), shaderLibrary(), scene);
     const CameraRenderer& renderer = loop ? loop->renderer() : *alone;
     int next = 0;
     // One after the other, as they follow in a run: what has not changed is not made again.

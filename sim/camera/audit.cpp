@@ -85,7 +85,7 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
   if (count == 0) return;
   if (!reference_) {
     giveBackFreedMemory();  // of the compiler's, for the first picture
-    reference_ = std::make_unique<CameraRenderer>(simulation_, camera_, library_, scene_);
+    reference_ = std::make_unique<CameraRenderer>(simulation_, camera_, cameraPlan(simulation_, camera_), library_, scene_);
   }
   std::vector<int> pixels = pixelsOf(count, frame, 1);
   const int doubt = doubtful(state, frame);

@@ -24,20 +24,20 @@ Plan planOfLines(const Simulation& simulation, const Camera& camera) {
   return planFor(simulation, {&planned, nullptr});
 }
 
-Plan timedPlan(const Simulation& simulation, const Camera& camera, const std::function<void(double)>& planning) {
+}  // namespace
+
+Plan cameraPlan(const Simulation& simulation, const Camera& camera, const std::function<void(double)>& planning) {
   const TimedPart part(kPlanningPart);
   Plan plan = planFor(simulation, {&camera, nullptr}, planning);
   giveBackFreedMemory();
   return plan;
 }
 
-}  // namespace
-
-CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
-                               const std::function<void(double)>& planning)
+CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camera, Plan plan, const ShaderLibrary& library,
+                               std::shared_ptr<const GpuScene> scene)
     : simulation_(simulation),
       camera_(camera),
-      plan_(timedPlan(simulation, camera, planning)),
+      plan_(std::move(plan)),
       fringes_(averagedFringes(simulation, camera.outputs)),
       scattering_(simulation, camera, plan_),
       ways_(simulation, plan_),

@@ -17,11 +17,13 @@ namespace pitviper {
 /// Part of the time (sim/gl/timing.hpp) in which a camera's plan is made, or found again.
 inline constexpr const char* kPlanningPart = "planning";
 
+/// A camera's plan, made or found again. `planning`: told while it is made.
+Plan cameraPlan(const Simulation& simulation, const Camera& camera, const std::function<void(double share)>& planning = {});
+
 class CameraRenderer {
  public:
-  /// The simulation, camera and library must outlive it. Needs a current GlContext. `planning`: told while a plan is made.
-  CameraRenderer(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene,
-                 const std::function<void(double share)>& planning = {});
+  /// The simulation, camera and library must outlive it. `plan`: cameraPlan() the camera. Needs a current GlContext.
+  CameraRenderer(const Simulation& simulation, const Camera& camera, Plan plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene);
   CameraRenderer(const CameraRenderer&) = delete;
   CameraRenderer& operator=(const CameraRenderer&) = delete;
 

@@ -6,7 +6,6 @@
 #include "sim/camera/visible_lights.hpp"
 #include "sim/camera/zoomed_lines.hpp"
 #include "sim/model/light_legs.hpp"
-#include "sim/plan/planner.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/reference_drawer.hpp"
 #include "sim/render/scene_pass.hpp"
@@ -43,11 +42,11 @@ std::vector<View> hemisphere(const Probe& probe) {
 
 }  // namespace
 
-ProbeMeter::ProbeMeter(const Simulation& simulation, const Probe& probe, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene)
+ProbeMeter::ProbeMeter(const Simulation& simulation, const Probe& probe, Plan plan, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene)
     : simulation_(simulation),
       probe_(probe),
       normal_(glm::normalize(probe.normal)),
-      plan_(planFor(simulation, {nullptr, &probe})),
+      plan_(std::move(plan)),
       ways_(simulation, plan_),
       all_(simulation.entities.size(), 1),
       lines_(zoomedLines(simulation, Camera{}.zoomedSamples, probe.spectral.reference ? 0.0 : plan_.accuracy)) {

@@ -9,8 +9,8 @@ namespace pitviper {
 /// A probe's plan and programs, which it keeps from one reading to the next.
 class ProbeMeter {
  public:
-  /// Simulation, probe and library must outlive it. Needs a current GlContext.
-  ProbeMeter(const Simulation& simulation, const Probe& probe, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene);
+  /// Simulation, probe and library must outlive it. `plan`: planFor() the probe. Needs a current GlContext.
+  ProbeMeter(const Simulation& simulation, const Probe& probe, Plan plan, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene);
   ProbeMeter(const ProbeMeter&) = delete;
   ProbeMeter& operator=(const ProbeMeter&) = delete;
   /// One value per output, in the output's unit. Surfaces are sampled by 5 x resolution^2 rays on a turned grid (no edge of a scene

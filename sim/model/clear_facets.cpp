@@ -172,7 +172,7 @@ std::vector<char> clearFacets(const Mesh& mesh, const glm::dvec3& toLight, std::
 }
 
 std::vector<char> keptClearFacets(const Mesh& mesh, const glm::dvec3& toLight, std::span<const Occluder> others) {
-  constexpr const char* kWhat = "clear-1";
+  constexpr const char* kWhat = "clear";
   const ContentKey key = contentKeyOf([&](Fingerprint& f) {
     f.add(toLight).all(mesh.positions).all(mesh.triangles);
     for (const Occluder& o : others) {

@@ -42,8 +42,7 @@ constexpr int kAirPlaces = 8;
 /// Nodes of each block of a plan that tell how finely to look.
 constexpr int kNodes = 24;
 
-/// Of the cache; a change of what is found here is a new one.
-constexpr const char* kWhat = "fields-2";
+constexpr const char* kWhat = "fields";
 
 /// Of each block so many nodes at most, evenly by how much fields absorb at them, which is what steps are about; each has the weights of those beside it.
 Plan fewNodes(const Simulation& sim, const Plan& plan, int most) {
@@ -270,7 +269,7 @@ std::shared_ptr<const FieldSampling> FieldSampling::of(const Simulation& simulat
   const std::lock_guard lock(mutex);
   if (auto kept = last.lock(); kept && lastOf == &simulation && lastAccuracy == plan.accuracy && lastWeights == plan.weight) return kept;
   const ContentKey key = contentKeyOf([&](Fingerprint& f) {
-    f.add(static_cast<double>(kPlannerVersion)).add(plan.accuracy).add(writePlanned(plan));
+    f.add(plan.accuracy).add(writePlanned(plan));
     addTo(f, simulation);
     for (const Camera& c : simulation.cameras) addTo(f, c);
     for (const Probe& p : simulation.probes) addTo(f, p);

@@ -9,9 +9,6 @@
 
 namespace pitviper {
 
-/// A change of the planner makes old plans strangers.
-inline constexpr int kPlannerVersion = 91;
-
 /// Of everything a plan is made from: the scenario's content, whole, and the eye's.
 ContentKey planKey(const Simulation& simulation, const Eye& eye, bool isForetold = true);
 

@@ -8,7 +8,7 @@ namespace pitviper {
 ContentKey planKey(const Simulation& sim, const Eye& eye, bool isForetold) {
   const auto [drawn, measured] = plannedOutputs(sim, eye);
   return contentKeyOf([&](Fingerprint& f) {
-    f.add(static_cast<double>(kPlannerVersion)).add(isForetold);
+    f.add(isForetold);
     addTo(f, sim);
     if (eye.camera) {
       // Of what a camera asks for, light's way tells kernels apart, and nothing else: not how long it is exposed, what is made of it, or shown besides.

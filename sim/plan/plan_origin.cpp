@@ -4,7 +4,7 @@
 
 #include "sim/model/scene_fingerprint.hpp"
 #include "sim/parameters/error.hpp"
-#include "sim/plan/plan_cache.hpp"
+#include "sim/scene/laws_digest.hpp"
 
 namespace pitviper {
 namespace {
@@ -27,7 +27,7 @@ std::string percent(double accuracy) {
 
 PlanOrigin originOf(const Simulation& sim, const Camera& camera) {
   PlanOrigin o;
-  o.version = kPlannerVersion;
+  o.laws = lawsDigest();
   Camera own = camera;
   own.learnt.clear();
   own.spectral.accuracy = 0.0;
@@ -43,7 +43,7 @@ PlanOrigin originOf(const Simulation& sim, const Camera& camera) {
 std::string originLine(const PlanOrigin& o) {
   char numbers[120];
   std::snprintf(numbers, sizeof numbers, " accuracy %a samples %d shared %d", o.accuracy, o.samples, o.sharesShading ? 1 : 0);
-  return kBegin + std::to_string(o.version) + " scene " + hex(o.scene) + " eye " + hex(o.eye) + numbers + " of camera " + o.camera + "\n";
+  return kBegin + o.laws + " scene " + hex(o.scene) + " eye " + hex(o.eye) + numbers + " of camera " + o.camera + "\n";
 }
 
 std::optional<PlanOrigin> readOrigin(const std::string& text) {
@@ -54,13 +54,15 @@ std::optional<PlanOrigin> readOrigin(const std::string& text) {
     from = end + 1;
     PlanOrigin o;
     unsigned long long key[4];
+    char laws[17] = {};
     int shared = 0, name = 0;
-    if (std::sscanf(line.c_str(), "# plan %d scene %16llx%16llx eye %16llx%16llx accuracy %la samples %d shared %d of camera %n", &o.version, &key[0], &key[1],
-                    &key[2], &key[3], &o.accuracy, &o.samples, &shared, &name) != 8 ||
+    if (std::sscanf(line.c_str(), "# plan %16[0-9a-f] scene %16llx%16llx eye %16llx%16llx accuracy %la samples %d shared %d of camera %n", laws, &key[0],
+                    &key[1], &key[2], &key[3], &o.accuracy, &o.samples, &shared, &name) != 8 ||
         name == 0)
       continue;
     // A camera takes no others.
     if (!(o.accuracy >= 0.0 && o.accuracy < 1.0) || o.samples < 1 || o.samples > 16) return std::nullopt;
+    o.laws = laws;
     o.scene = {key[0], key[1]};
     o.eye = {key[2], key[3]};
     o.sharesShading = shared != 0;
@@ -87,7 +89,7 @@ void refuseForeignPlan(const Simulation& sim, const Camera& camera) {
   const PlanOrigin own = originOf(sim, camera);
   const std::string expected = "the plan that a run of this scenario wrote for camera '" + camera.name + "', whole";
   if (!given) throw UserError(where, "not a plan, or not one that says what it was made for", expected, remedy);
-  if (given->version != own.version) throw UserError(where, "a plan of another version of this program", expected, remedy);
+  if (given->laws != own.laws) throw UserError(where, "a plan of another version of this program", expected, remedy);
   if (given->scene != own.scene)
     throw UserError(where, "a plan of another scenario, or of this one before something in it was changed (bodies, materials, air, lights, times)", expected,
                     remedy);

@@ -8,13 +8,13 @@
 
 namespace pitviper {
 
-/// The line before a plan's text in a .plan file: "# plan 78 scene HEX eye HEX accuracy A samples N shared S of camera NAME".
+/// The line before a plan's text in a .plan file: "# plan HEX scene HEX eye HEX accuracy A samples N shared S of camera NAME".
 struct PlanOrigin {
-  int version = 0;                   ///< of the planner
-  ContentKey scene{}, eye{};         ///< all that pictures depend on but for cameras; the camera's film, optics, place and channels
-  double accuracy = 0.0;             ///< that the plan was asked for; 0: none was
-  int samples = 1;                   ///< n x n subpixels, Camera::samples
-  bool sharesShading = false;        ///< Camera::sharesShading
+  std::string laws;            ///< lawsDigest()
+  ContentKey scene{}, eye{};   ///< all that pictures depend on but for cameras; the camera's film, optics, place and channels
+  double accuracy = 0.0;       ///< that the plan was asked for; 0: none was
+  int samples = 1;             ///< n x n subpixels, Camera::samples
+  bool sharesShading = false;  ///< Camera::sharesShading
   std::string camera;
 };
 

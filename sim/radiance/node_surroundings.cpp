@@ -218,7 +218,7 @@ std::shared_ptr<const NodeSurroundings::Told> NodeSurroundings::sharedTold(std::
   f.add(static_cast<double>(number)).add(degree_).add(grid.above).add(grid.below).add(grid.azimuths).add(grid.turn_rad).add(grid.horizon_rad);
   for (const bool sharp : {false, true}) f.add(blursInUse(sharp).first).add(blursInUse(sharp).count);
   for (const SpectralNode& n : nodes_) f.all(n.members);
-  constexpr const char* kWhat = "surroundings-3";
+  constexpr const char* kWhat = "surroundings";
   const ContentKey key = contentKey(f.bytes());
   static std::mutex sharing;
   static std::map<ContentKey, std::weak_ptr<const Told>> shared;

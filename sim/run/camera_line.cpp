@@ -33,7 +33,7 @@ CameraLine::CameraLine(const Simulation& simulation, const Camera& camera, const
   for (std::size_t k = 0; k < (allRungs ? accuracies.size() : 1); ++k) {
     auto drawn = std::make_unique<Camera>(drawnCamera(k == 0 ? camera : withAccuracy(camera, accuracies[k])));
     if (k > 0) drawn->plan.clear();  // one that was given is of the accuracy asked for
-    auto renderer = std::make_unique<CameraRenderer>(simulation, *drawn, library, scene, planning);
+    auto renderer = std::make_unique<CameraRenderer>(simulation, *drawn, cameraPlan(simulation, *drawn, planning), library, scene);
     rungs_.push_back({std::move(drawn), std::move(renderer)});
   }
   auditor_ = std::make_unique<Auditor>(simulation, *rungs_[0].drawn, rungs_[0].renderer->plan(), library, scene);

@@ -5,11 +5,12 @@
 #include <optional>
 
 #include "sim/camera/probe.hpp"
+#include "sim/frame/file_owner.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/model/world.hpp"
-#include "sim/frame/file_owner.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/plan_origin.hpp"
+#include "sim/plan/planner.hpp"
 #include "sim/run/camera_line.hpp"
 #include "sim/run/spectral_renderer.hpp"
 
@@ -30,7 +31,8 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
     spectral.push_back(camera.spectralImage ? std::make_unique<SpectralRenderer>(sim, camera, library, scene) : nullptr);
   }
   std::vector<std::unique_ptr<ProbeMeter>> meters;
-  for (size_t p = 0; probes && p < sim.probes.size(); ++p) meters.push_back(std::make_unique<ProbeMeter>(sim, sim.probes[p], library, scene));
+  for (size_t p = 0; probes && p < sim.probes.size(); ++p)
+    meters.push_back(std::make_unique<ProbeMeter>(sim, sim.probes[p], planFor(sim, {nullptr, &sim.probes[p]}), library, scene));
   std::future<void> handing;  // its destructor waits, so nothing it uses goes first
   auto wait = [&handing] {
     const TimedPart part("waiting for files");

@@ -37,14 +37,17 @@ SpectralRenderer::SpectralRenderer(const Simulation& simulation, const Camera& c
     : simulation_(simulation), camera_(camera), library_(library), scene_(std::move(scene)), passes_(spectralPasses(camera)) {
   const double subpixels = static_cast<double>(camera.pinhole.width) * camera.pinhole.height * camera.samples * camera.samples;
   const size_t most = static_cast<size_t>(kMostKept_bytes / (kBytesPerSubpixel * subpixels));
-  for (size_t p = 0; p < std::min(most, passes_.size()); ++p) kept_.push_back(std::make_unique<CameraRenderer>(simulation_, passes_[p], library_, scene_));
+  for (size_t p = 0; p < std::min(most, passes_.size()); ++p)
+    kept_.push_back(std::make_unique<CameraRenderer>(simulation_, passes_[p], cameraPlan(simulation_, passes_[p]), library_, scene_));
 }
 
 Frame SpectralRenderer::render(const WorldState& state, int number) {
   Frame frame = startFrame(camera_, state, number);
   frame.kind = kSpectralKind;
   for (size_t p = 0; p < passes_.size(); ++p)
-    addOutputs(frame, passes_[p], p < kept_.size() ? kept_[p]->render(state) : CameraRenderer(simulation_, passes_[p], library_, scene_).render(state));
+    addOutputs(frame, passes_[p],
+               p < kept_.size() ? kept_[p]->render(state)
+                                : CameraRenderer(simulation_, passes_[p], cameraPlan(simulation_, passes_[p]), library_, scene_).render(state));
   Camera whole = camera_;
   whole.outputs.clear();  // the channels are in the frame beside it
   addMetadata(frame, simulation_, whole, state);

@@ -47,8 +47,8 @@ class AttributeLook {
   std::map<std::string_view, const decltype(Attribute::value)*> byName_;
 };
 
-/// What points a camera and came without a time is of the time since the tick before, whose frame the host has answered: it is seen in this tick already, as what
-/// a camera finds in its own pictures.
+/// What points a camera and came without a time is of the time since the tick before, whose frame the host has answered: it is seen in this tick already, as
+/// what a camera finds in its own pictures.
 decltype(Command::change) pointingSince(decltype(Command::change) change, double before_s) {
   return [change = std::move(change), before_s](Courses& courses, double at_s) {
     std::map<std::string, std::uint64_t> newest;
@@ -315,8 +315,7 @@ class StreamLoop {
       const std::string poses = line.takePoses();
       if (wish_.poses) wish_.poses(line.camera(), poses);
     }
-    if (drawnFrame_)
-      drawnFrame_(line.camera(), *frame, tick.state, image.pointing ? image.pointing->followed.pose : cameraAt(line.camera(), tick.state).pose);
+    if (drawnFrame_) drawnFrame_(line.camera(), *frame, tick.state, image.pointing ? image.pointing->followed.pose : cameraAt(line.camera(), tick.state).pose);
     const std::int64_t made = monotonic_ns();
     frame->stamp = stampOf(*frame, line.camera(), image, tick, job, made);
     // For files; what the pacer finds it adds.

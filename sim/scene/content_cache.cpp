@@ -1,13 +1,14 @@
 #include "sim/scene/content_cache.hpp"
 
 #include "sim/parameters/read_file.hpp"
+#include "sim/scene/laws_digest.hpp"
 
 namespace pitviper {
 namespace {
 
 constexpr const char* kPrefix = "table-";
 
-std::filesystem::path fileOf(std::string_view what, const ContentKey& key) { return cacheFile(kPrefix + std::string(what) + "-", key); }
+std::filesystem::path fileOf(std::string_view what, const ContentKey& key) { return cacheFile(kPrefix + std::string(what) + "-" + std::string(lawsDigest()) + "-", key); }
 
 /// Behind the table's bytes, so that none is copied for it.
 std::string sealOf(std::string_view bytes) {

@@ -70,7 +70,7 @@ TEST(Audit, WantedPixelsAreThoseOfTheWholePicture) {
   sim.cameras[0].spectral.reference = true;
   const auto gpu = std::make_shared<const GpuScene>(sim);
   const WorldState state = advance(sim, 0.0);
-  CameraRenderer renderer(sim, sim.cameras[0], shaderLibrary(), gpu);
+  CameraRenderer renderer(sim, sim.cameras[0], cameraPlan(sim, sim.cameras[0]), shaderLibrary(), gpu);
   const CameraImage whole = renderer.render(state);
   std::vector<int> wanted;
   for (int p = 0; p < 24 * 20; p += 7) wanted.push_back(p);

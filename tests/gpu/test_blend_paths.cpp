@@ -106,7 +106,7 @@ TEST(BlendPaths, SameBytesAgain) {
     for (size_t l = 0; l < one->layers.size(); ++l) EXPECT_EQ(one->layers[l].pixels, two->layers[l].pixels) << path;
     const Setting setting("PITVIPER_BLEND", path);
     auto gpu = std::make_shared<const GpuScene>(sim);
-    CameraRenderer renderer(sim, sim.cameras.at(0), shaderLibrary(), gpu);
+    CameraRenderer renderer(sim, sim.cameras.at(0), cameraPlan(sim, sim.cameras.at(0)), shaderLibrary(), gpu);
     const WorldState state = advance(sim, 0.0);
     const CameraImage first = renderer.render(state), again = renderer.render(state);
     EXPECT_EQ(first.slots, again.slots) << path;

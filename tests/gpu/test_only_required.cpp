@@ -424,7 +424,7 @@ TEST(OnlyRequired, NoSpectralImageWhereNothingTransparentIsInView) {
     if (e.name == "window") e.motion = Motion(Pose{{0.0, -500.0, 20.0}, {1.0, 0.0, 0.0, 0.0}});
   for (const bool behind : {false, true}) {
     const Simulation& sim = behind ? hidden : seen;
-    CameraRenderer renderer(sim, sim.cameras[0], shaderLibrary(), std::make_shared<const GpuScene>(sim));
+    CameraRenderer renderer(sim, sim.cameras[0], cameraPlan(sim, sim.cameras[0]), shaderLibrary(), std::make_shared<const GpuScene>(sim));
     renderer.render(advance(sim, 0.0));
     EXPECT_EQ(renderer.isBuffered(), !behind);
   }

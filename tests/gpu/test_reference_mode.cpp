@@ -136,7 +136,7 @@ TEST(ReferenceMode, TellsHowFarAPictureIs) {
   sim.cameras[0].outputs.resize(1);
   sim.cameras[0].zoomedSamples = 32;
   needContext();
-  CameraRenderer renderer(sim, sim.cameras[0], shaderLibrary(), std::make_shared<const GpuScene>(sim));
+  CameraRenderer renderer(sim, sim.cameras[0], cameraPlan(sim, sim.cameras[0]), shaderLibrary(), std::make_shared<const GpuScene>(sim));
   for (int picture = 0; picture < 2; ++picture) {
     std::vector<double> shares;
     renderer.setProgress([&](double s) { shares.push_back(s); });

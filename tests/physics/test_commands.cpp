@@ -67,7 +67,7 @@ TEST(Commands, CoolAgain) {
   needContext();
   for (const Kind& kind : kinds()) {
     const Simulation sim = scene(kEye + with(kind.scene, "TEMPERATURE", "300 K") + "commands: [{command: temperature, at: 0.1 s, entity: b, value: 700 K}]\n");
-    CameraRenderer renderer(sim, sim.cameras[0], shaderLibrary(), std::make_shared<const GpuScene>(sim));
+    CameraRenderer renderer(sim, sim.cameras[0], cameraPlan(sim, sim.cameras[0]), shaderLibrary(), std::make_shared<const GpuScene>(sim));
     const auto first = renderer.render(advance(sim, 0.0)).slots, hot = renderer.render(advance(sim, 0.1)).slots,
                again = renderer.render(advance(sim, 0.0)).slots;
     EXPECT_NE(first, hot) << kind.name;

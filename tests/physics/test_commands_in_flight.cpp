@@ -214,7 +214,7 @@ TEST(CommandsInFlight, PlansAreMadeForFlaresThatMayBeEjected) {
   const auto picture = [](const Simulation& sim) {
     World live(sim);
     live.apply(commandOf({{"command", "eject"}, {"flare", "f"}}, "test", sim, 0.5), 5);
-    CameraRenderer renderer(sim, sim.cameras[0], shaderLibrary(), std::make_shared<const GpuScene>(sim));
+    CameraRenderer renderer(sim, sim.cameras[0], cameraPlan(sim, sim.cameras[0]), shaderLibrary(), std::make_shared<const GpuScene>(sim));
     const CameraImage image = renderer.render(live.at(0.9));
     double sum = 0.0;
     for (std::size_t p = 0; p < image.slots[0].size(); ++p) sum += image.slots[0][p] * image.solidAngles->plain_sr[p];

@@ -25,7 +25,7 @@ Parts partsOf(const std::string& yaml, int pixel) {
   Camera& camera = sim.cameras[0];
   camera.spectral.reference = true;
   camera.zoomedSamples = 32;
-  CameraRenderer renderer(sim, camera, shaderLibrary(), std::make_shared<const GpuScene>(sim));
+  CameraRenderer renderer(sim, camera, cameraPlan(sim, camera), shaderLibrary(), std::make_shared<const GpuScene>(sim));
   renderer.setWanted({pixel});
   renderer.watchParts();
   const WorldState state = advance(sim, sim.time.at(0));

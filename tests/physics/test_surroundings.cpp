@@ -326,9 +326,9 @@ TEST(SurroundingsOnGpu, BodiesThatClimb) {
       "]\ncameras: [{name: c, film: {width: 24, height: 96}, field_of_view: 20 deg, aperture: 20 mm, position: [4 km, 0 m, 600 m], look_at: [0 m, 0 m, 600 "
       "m], small_bodies: 0, spectral: {samples: 3}, channels: [{name: a, response: {band: [3.5 um, 4 um]}}]}]\n");
   const auto gpu = std::make_shared<const GpuScene>(sim);
-  CameraRenderer one(sim, sim.cameras[0], shaderLibrary(), gpu);
+  CameraRenderer one(sim, sim.cameras[0], cameraPlan(sim, sim.cameras[0]), shaderLibrary(), gpu);
   for (const double t : {0.0, 0.1, 0.2, 0.4, 0.3, 0.0}) {
-    CameraRenderer fresh(sim, sim.cameras[0], shaderLibrary(), gpu);
+    CameraRenderer fresh(sim, sim.cameras[0], cameraPlan(sim, sim.cameras[0]), shaderLibrary(), gpu);
     EXPECT_EQ(one.render(advance(sim, t)).slots, fresh.render(advance(sim, t)).slots) << t << " s";
   }
   EXPECT_NE(one.render(advance(sim, 0.0)).slots, one.render(advance(sim, 0.4)).slots);

@@ -5,10 +5,11 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
-#include "sim/gl/context.hpp"
 #include "sim/camera/exposure_parts.hpp"
 #include "sim/camera/probe.hpp"
 #include "sim/frame/truth_table.hpp"
+#include "sim/plan/planner.hpp"
+#include "sim/gl/context.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -34,7 +35,7 @@ CameraImage renderImage(const Simulation& sim, int frame) {
   needContext();
   auto gpu = std::make_shared<const GpuScene>(sim);
   const Camera drawn = drawnCamera(sim.cameras.at(0));
-  CameraRenderer renderer(sim, drawn, shaderLibrary(), gpu);
+  CameraRenderer renderer(sim, drawn, cameraPlan(sim, drawn), shaderLibrary(), gpu);
   return renderExposure(renderer, sim, sim.cameras.at(0), sim.time.at(frame));
 }
 
@@ -74,7 +75,7 @@ double sum(const FrameLayer& l) {
 std::vector<double> probeReading(const Simulation& sim) {
   needContext();
   auto gpu = std::make_shared<const GpuScene>(sim);
-  return ProbeMeter(sim, sim.probes.at(0), shaderLibrary(), gpu).read(advance(sim, sim.time.at(0)));
+  return ProbeMeter(sim, sim.probes.at(0), planFor(sim, {nullptr, &sim.probes.at(0)}), shaderLibrary(), gpu).read(advance(sim, sim.time.at(0)));
 }
 
 double blackBodyBand(double low_um, double high_um, double temperature_K) {
