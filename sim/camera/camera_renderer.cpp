@@ -42,6 +42,7 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
       scattering_(simulation, camera, plan_),
       ways_(simulation, plan_),
       lines_(zoomedLines(simulation, camera.zoomedSamples, camera.outlineAccuracy)),
+      areas_m2_(facingAreas(simulation)),
       linesOf_(camera.spectral.reference && !camera.plan.empty() ? std::make_unique<const Plan>(planOfLines(simulation, camera)) : nullptr),
       hotParts_(simulation, linesOf_ ? *linesOf_ : plan_,
                 camera.outlineAccuracy > 0.0             ? camera.outlineAccuracy
@@ -121,7 +122,7 @@ void CameraRenderer::begin(const WorldState& state) {
   if (reference_) reference_->beginPicture(viewsOfPicture());
   if (isBuffered() && buffered_->layers()) buffered_->layers()->beginPicture();
   std::vector<double> zoomed(present_.size(), 0.0);
-  for (size_t e = 0; e < zoomed.size(); ++e) zoomed[e] = small_[e] ? static_cast<double>(lines_[e]) * lines_[e] : 0.0;
+  for (size_t e = 0; e < zoomed.size(); ++e) zoomed[e] = small_[e] ? zoomedLinesOn(e) : 0.0;
   const ShadowDemand demand{view_, present_, zoomed};
   warmUp(demand, drawn);
   drawer_->setState(state_, &demand);
@@ -136,6 +137,13 @@ void CameraRenderer::begin(const WorldState& state) {
   if (overlay_->isEmpty()) return;
   buffered_->draw(overlayView(view_, *overlay_), state_, drawn);
   buffered_->startReadback();
+}
+
+/// Of a small body's own view, those that see it.
+double CameraRenderer::zoomedLinesOn(std::size_t entity) const {
+  const Ball ball = ballOf(simulation_, state_, static_cast<int>(entity));
+  const glm::dvec3 direction = glm::normalize(glm::conjugate(state_.entities[entity].orientation) * (ball.centre - view_.position));
+  return zoomedFill(glm::length(direction * areas_m2_[entity]), ball.radius_m) * lines_[entity] * lines_[entity];
 }
 
 /// A driver compiles what is left of a program when it is first used: of a moving scene no later frame, in which something transparent comes into view or

@@ -58,6 +58,7 @@ class CameraRenderer {
   bool seesTransparent() const;
   void warmUp(const ShadowDemand& demand, const std::vector<char>& drawn);
   int viewsOfPicture() const;
+  double zoomedLinesOn(std::size_t entity) const;
   WorldState lampsInView() const;
   const Simulation& simulation_;
   const Camera& camera_;
@@ -67,6 +68,7 @@ class CameraRenderer {
   WaysToLights ways_;
   FilmWeights filmWeights_;
   std::vector<int> lines_;               ///< across each small body
+  std::vector<glm::dvec3> areas_m2_;     ///< facingAreas()
   std::unique_ptr<const Plan> linesOf_;  ///< of a reference: the plan whose lines it looks along, if one was given
   HotParts hotParts_;
   std::optional<std::vector<Ball>> given_;

@@ -29,6 +29,26 @@ bool isEven(const Simulation& sim, const Entity& e) {
   return true;
 }
 
+/// A number of each mesh that is asked for, found once.
+template <class Value>
+class OfMeshes {
+ public:
+  /// `add`: a triangle's vector area [m2] to the value.
+  template <class Add>
+  Value of(const Entity& e, const Add& add) {
+    const auto [known, fresh] = known_.try_emplace(e.mesh.get(), Value(0.0));
+    if (fresh)
+      for (const auto& t : e.mesh->triangles) {
+        const glm::dvec3 a = e.mesh->positions[t.x];
+        add(known->second, 0.5 * glm::cross(glm::dvec3(e.mesh->positions[t.y]) - a, glm::dvec3(e.mesh->positions[t.z]) - a));
+      }
+    return known->second;
+  }
+
+ private:
+  std::map<const Mesh*, Value> known_;
+};
+
 }  // namespace
 
 int evenSize(double lines) {
@@ -41,22 +61,30 @@ int evenSize(double lines) {
 std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
   constexpr double kPart = 0.25;
   std::vector<int> lines;
-  std::map<const Mesh*, double> surfaces_m2;
+  OfMeshes<double> surfaces_m2;
   for (const Entity& e : sim.entities) {
     lines.push_back(most);
     if (accuracy <= 0.0 || !isEven(sim, e)) continue;
-    const auto [known, fresh] = surfaces_m2.try_emplace(e.mesh.get(), 0.0);
-    if (fresh)
-      for (const auto& t : e.mesh->triangles) {
-        const glm::dvec3 a = e.mesh->positions[t.x];
-        known->second += 0.5 * glm::length(glm::cross(glm::dvec3(e.mesh->positions[t.y]) - a, glm::dvec3(e.mesh->positions[t.z]) - a));
-      }
-    const double across = 2.0 * static_cast<double>(e.boundingRadius_m), area = 0.25 * known->second, outline = glm::pi<double>() * across;
+    const double across = 2.0 * static_cast<double>(e.boundingRadius_m),
+                 area = 0.25 * surfaces_m2.of(e, [](double&sum, const glm::dvec3&own) { sum += glm::length(own); }), outline = glm::pi<double>() * across;
     // h = across / lines in the law, solved for them.
     const double needed = area > 0.0 ? across * std::cbrt(outline * 0.0724 / std::pow(kPart * accuracy * area, 2.0)) : INFINITY;
     lines.back() = std::min(evenSize(needed), most);
   }
   return lines;
+}
+
+std::vector<glm::dvec3> facingAreas(const Simulation& sim) {
+  std::vector<glm::dvec3> all;
+  OfMeshes<glm::dvec3> areas_m2;
+  // Of the two sides of a closed mesh each is seen from one side.
+  for (const Entity& e : sim.entities) all.push_back(areas_m2.of(e, [](glm::dvec3& sum, const glm::dvec3& own) { sum += 0.5 * glm::abs(own); }));
+  return all;
+}
+
+double zoomedFill(double area_m2, double radius_m) {
+  const double side_m = 2.04 * radius_m;  // as zoomedView()
+  return side_m > 0.0 ? std::min(area_m2 / (side_m * side_m), 1.0) : 1.0;
 }
 
 }  // namespace pitviper

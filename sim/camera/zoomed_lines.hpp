@@ -16,4 +16,10 @@ int evenSize(double lines);
 /// sphere of diameter D, A = S / 4 on average over directions (Cauchy) and P = pi D at most.
 std::vector<int> zoomedLines(const Simulation& simulation, int most, double accuracy);
 
+/// Areas of each entity as seen along its axes [m2], what lies behind more of it counted too. Along another direction d it is about |(d_x A_x, d_y A_y, d_z
+/// A_z)|, exactly so for ellipsoids.
+std::vector<glm::dvec3> facingAreas(const Simulation& simulation);
+/// Part of a zoomed view's lines that see the body in it, so many square metres large.
+double zoomedFill(double area_m2, double radius_m);
+
 }  // namespace pitviper

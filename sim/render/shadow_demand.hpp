@@ -10,7 +10,7 @@ namespace pitviper {
 struct ShadowDemand {
   const View& view;
   const std::vector<char>& drawn;     ///< one flag per entity: the others are not seen
-  const std::vector<double>& zoomed;  ///< one per entity: subpixels of its own view, of a small body, else 0
+  const std::vector<double>& zoomed;  ///< one per entity: lines of its own view that see it, of a small body, else 0
 };
 
 /// Subpixels that a caster's shadow from a light covers, about: of what a box is wide on average over directions, where the ray away from the light comes

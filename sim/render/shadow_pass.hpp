@@ -45,7 +45,7 @@ class ShadowPass {
   /// Clear facets are found once for bodies of so many triangles (0.2 to 0.4 us each).
   static constexpr std::size_t kFewestFacets = 1024, kMostFacets = 4'000'000;
   /// A map costs as much as the rays of so many pixels, and a part of one more for each triangle (llvmpipe; found on first_light and sixteen).
-  static constexpr double kRaysPerMap = 5000.0, kRaysPerTriangle = 0.3;
+  static constexpr double kRaysPerMap = 2000.0, kRaysPerTriangle = 1.5;
   /// Maps of 4 MiB each; further casters are left to rays.
   static constexpr int kMostMaps = 64;
   struct Map {

@@ -7,6 +7,7 @@
 
 #include "sim/camera/small_bodies.hpp"
 #include "sim/camera/zoomed_lines.hpp"
+#include "sim/model/ray_hits.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
@@ -245,6 +246,42 @@ TEST(SmallBodies, AreaIsAsGoodAsItsLines) {
     bound("areas of a box from 40 directions on " + std::to_string(lines) + " lines, mean square by the law", squares / kDirections, 1.0,
           "sqrt(0.0724 P h^3) / A; no line of the grid lies on the middle of what is even");
   }
+}
+
+// How many of a zoomed view's lines see its body is what its shadows are priced by: exact for an ellipsoid, about right for others.
+TEST(SmallBodies, LinesThatSeeABodyAreForeseen) {
+  const auto foreseen = [](const std::string& shape, const glm::dvec3& from, double& found) {
+    const Simulation sim = scene("entities: [{name: b, shape: " + shape +
+                                 ", material: blackbody, temperature: 300 K, position: [0 m, 0 m, 0 m]}]\ncameras: [{name: c, film: {width: 9, height: 9}, "
+                                 "field_of_view: 1 deg, aperture: 20 mm, position: [" +
+                                 print("%.9g m, ", from.x) + print("%.9g m, ", from.y) + print("%.9g m]", from.z) +
+                                 ", look_at: [0 m, 0 m, 0 m], channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n");
+    const WorldState state = advance(sim, 0.0);
+    const Ball ball = ballOf(sim, state, 0);
+    constexpr int kLines = 200;
+    const View z = zoomedView(ball, cameraView(sim.cameras[0], state, 1), kLines);
+    int met = 0;
+    for (int y = 0; y < kLines; ++y)
+      for (int x = 0; x < kLines; ++x) {
+        const glm::dvec3 ray = z.ray(x + 0.5, y + 0.5);
+        met += meetsBody(sim, state, z.position, z.localFromCamera * ray / glm::length(ray), 0.1, 0);
+      }
+    found = static_cast<double>(met) / (kLines * kLines);
+    const glm::dvec3 direction = glm::normalize(glm::conjugate(state.entities[0].orientation) * (ball.centre - z.position));
+    return zoomedFill(glm::length(direction * facingAreas(sim)[0]), ball.radius_m);
+  };
+  double least = INFINITY, most = 0.0, found = 0.0;
+  for (const glm::dvec3& from : {glm::dvec3(2000, 0, 0), glm::dvec3(0, -2000, 0), glm::dvec3(-1200, 900, 1300), glm::dvec3(700, -1800, -300)}) {
+    const double told = foreseen("{model: ellipsoid, length: 6 m, width: 2 m, height: 1 m}", from, found);
+    figure("part of a zoomed view that an ellipsoid fills", told, found, 0.02, "|(d_x A_x, d_y A_y, d_z A_z)|; facets, and 200 x 200 lines");
+    for (const char* shape :
+         {"{model: jet}", "{model: missile}", "{model: box, length: 4 m, width: 2 m, height: 1 m}", "{model: cylinder, radius: 0.5 m, length: 5 m}"}) {
+      const double other = foreseen(shape, from, found);
+      least = std::min(least, other / found), most = std::max(most, other / found);
+    }
+  }
+  bound("the same of jets, missiles, boxes and cylinders, most over found", most, 3.5, "what lies behind more of a body is counted too");
+  bound("found over the least of them", 1.0 / least, 1.75, "a box shows three faces: root 3");
 }
 
 }  // namespace
