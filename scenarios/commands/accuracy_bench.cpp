@@ -8,7 +8,6 @@
 
 #include "scenarios/commands/accuracy_renderings.hpp"
 #include "scenarios/commands/progress.hpp"
-#include "scenarios/reader/scenario_reader.hpp"
 #include "sim/gl/context.hpp"
 
 namespace pitviper {
@@ -59,8 +58,8 @@ void resizeFilm(Pinhole& p, int columns) {
 }
 
 AccuracyReport measureAccuracy(const AccuracyRequest& request) {
-  Simulation sim = readScenario(request.scenario, request.changes, findLibraries(), request.roots);
-  if (sim.cameras.empty()) throw UserError({request.scenario, 0, 0, -1}, "the scenario has no camera", "at least one", "choose another scenario");
+  Simulation sim = request.scenario.read();
+  if (sim.cameras.empty()) throw UserError({request.scenario.file, 0, 0, -1}, "the scenario has no camera", "at least one", "choose another scenario");
   sim.cameras.resize(1);
   Camera& camera = sim.cameras[0];
   keepRadianceAlone(camera);

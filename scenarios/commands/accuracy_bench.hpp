@@ -1,12 +1,11 @@
 #pragma once
 // Speed against accuracy of a scenario: its first camera at a ladder of accuracies and of even sampling, against the reference.
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "scenarios/commands/accuracy_error.hpp"
-#include "sim/model/simulation.hpp"
+#include "scenarios/commands/scenario_wish.hpp"
 
 namespace pitviper {
 
@@ -35,11 +34,9 @@ struct AccuracyRow {
 std::vector<AccuracySetting> accuracyLadder();
 
 struct AccuracyRequest {
-  std::string scenario;
-  std::vector<std::string> changes;  ///< as of `run --set`
-  std::vector<std::filesystem::path> roots = {};  ///< as of `run --root`
-  int size_px = 0;                   ///< columns of the film, its field of view kept; 0: as it is
-  int frames = 3;                    ///< spread over the scenario's time
+  ScenarioWish scenario;
+  int size_px = 0;  ///< columns of the film, its field of view kept; 0: as it is
+  int frames = 3;   ///< spread over the scenario's time
 };
 
 struct AccuracyReport {

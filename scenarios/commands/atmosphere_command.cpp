@@ -1,5 +1,4 @@
 // pitviper atmosphere: what a MODTRAN tape7, a table of air or an air table of the library holds, in words, tables and charts.
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <optional>
@@ -11,7 +10,7 @@
 #include "scenarios/commands/air_report.hpp"
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/options.hpp"
+#include "scenarios/commands/print.hpp"
 #include "scenarios/commands/tabulated_report.hpp"
 #include "scenarios/reader/library_air.hpp"
 #include "sim/image/atomic_file.hpp"
@@ -20,11 +19,7 @@
 namespace pitviper {
 namespace {
 
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", v);
-  return std::isnan(v) ? std::string() : text;
-}
+std::string number(double v) { return std::isnan(v) ? std::string() : print("%.9g", v); }
 
 std::string csvOf(const Tape7Run& run) {
   std::string out = "wavelength [um],wavenumber [1/cm]";
@@ -91,16 +86,6 @@ void showTable(const TabulatedAir& air, const std::string& name, const std::opti
   write(*out, name, tableCsv(air), charts, static_cast<int>(charts.size()));
 }
 
-std::optional<double> rangeGiven(const Options& o) {
-  if (!o.has("--range")) return std::nullopt;
-  const std::string text = o.value("--range");
-  double km = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), km);
-  if (error != std::errc() || end != text.data() + text.size() || !(km > 0.0 && km <= 1e5))
-    throw UserError({}, "--range is '" + text + "'", "a number of km above 0", "--range 5");
-  return 1e3 * km;
-}
-
 void showTape7(const std::filesystem::path& file, std::optional<double> range_m, const std::optional<std::filesystem::path>& out) {
   const auto runs = readTape7(file);
   std::printf("%s: %zu run%s of MODTRAN\n", file.string().c_str(), runs.size(), runs.size() == 1 ? "" : "s");
@@ -124,21 +109,16 @@ void showTape7(const std::filesystem::path& file, std::optional<double> range_m,
   showTable(*air, name + "_air", out);
 }
 
-}  // namespace
+struct AirWish {
+  std::string out;
+  std::optional<double> range_km;
+};
 
-int atmosphereCommand(const Arguments& arguments) {
-  const Options o("atmosphere", arguments, {{"--out"}, {"--range"}}, 0, 1);
+int showAirs(const AirWish& w, const std::string& word) {
   const Libraries libraries = findLibraries();
-  if (o.words().empty()) {
-    for (const char* option : {"--out", "--range"})
-      if (o.has(option)) throw UserError({option, 0, 0, -1}, "of which air?", "atmosphere NAME|FILE " + std::string(option) + " ...", "name it");
-    listLibrary(libraries);
-    return 0;
-  }
-  const std::string& word = o.words()[0];
   const std::filesystem::path file = word;
-  const auto out = o.has("--out") ? std::optional<std::filesystem::path>(o.value("--out")) : std::nullopt;
-  const auto range_m = rangeGiven(o);
+  const auto out = w.out.empty() ? std::nullopt : std::optional<std::filesystem::path>(w.out);
+  const auto range_m = w.range_km ? std::optional<double>(1e3 * *w.range_km) : std::nullopt;
   // A word without folder and extension that is no file is a name: of a table of the library, or of a library air.
   std::error_code ignored;
   const bool named = !std::filesystem::exists(file, ignored) && file.extension().empty() && !file.has_parent_path();
@@ -155,6 +135,35 @@ int atmosphereCommand(const Arguments& arguments) {
   else if (file.extension() == ".csv") showTable(readAirCsv(file), file.stem().string(), out);
   else showTape7(file, range_m, out);
   return 0;
+}
+
+}  // namespace
+
+CommandLine atmosphereCommand() {
+  const auto w = std::make_shared<AirWish>();
+  return {
+      "atmosphere",
+      "[NAME|FILE]",
+      "what air there is in the library, in a MODTRAN tape7 or in a CSV file, as tables and charts",
+      "Without an argument: the library airs. NAME: one of them (clear_mls), or an air table (us76_rural), as FILE.air: mean transmittance and radiance of "
+      "level "
+      "and slant paths, sky, sun at the ground.\n"
+      "FILE.csv: air by tables; the columns it may have are listed at the head of atmosphere/tabulated_csv.hpp, for instance wavelength_um, range_km, "
+      "transmittance, path_radiance_W/(m2 sr um).\n"
+      "FILE: a tape7 (.tp7) of MODTRAN, transmittance, thermal radiance with or without the sun or solar irradiance, any number of runs; prints for each: "
+      "kind, "
+      "model, path, wavelengths and step, mean transmittance in 3-5 and 8-12 um where covered; and how it serves as air along a path.",
+      {{"--range", "KM", "of the only path in a tape7 whose cards have none", number(w->range_km, {1e-6, 1e5, "km", true}), "NAME|FILE"},
+       {"--out", "FOLDER",
+        "also NAME.csv, FILE_run<N>.csv or FILE_air.csv, every column over wavelength in W/(m2 sr um) or W/(m2 um), and a chart of the same name (PNG, needs "
+        "VTK), in FOLDER; created if missing",
+        into(w->out), "NAME|FILE"}},
+      "",
+      [w](const Arguments& words) {
+        if (!words.empty()) return showAirs(*w, words[0]);
+        listLibrary(findLibraries());
+        return 0;
+      }};
 }
 
 }  // namespace pitviper

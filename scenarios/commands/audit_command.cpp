@@ -6,14 +6,13 @@
 #include "scenarios/commands/accuracy_error.hpp"
 #include "scenarios/commands/accuracy_renderings.hpp"
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/options.hpp"
 #include "scenarios/commands/progress.hpp"
-#include "scenarios/reader/scenario_reader.hpp"
+#include "scenarios/commands/scenario_wish.hpp"
+#include "sim/camera/camera_pointer.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/image/png.hpp"
 #include "sim/image/preview.hpp"
-#include "sim/camera/camera_pointer.hpp"
 #include "sim/model/stage.hpp"
 #include "sim/model/world.hpp"
 #include "sim/parameters/error.hpp"
@@ -100,36 +99,34 @@ std::string csvOf(const std::string& camera, double asked, const std::vector<int
   return text;
 }
 
-}  // namespace
+struct AuditWish {
+  ScenarioWish scenario;
+  std::string frames, out;
+  std::vector<std::string> cameras;
+};
 
-int auditCommand(const Arguments& arguments) {
-  const Options o("audit", arguments, {{"--frames"}, {"--camera", true, true}, {"--set", true, true}, rootOption(), {"--out"}}, 1, 1);
-  Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries(), rootsOf(o));
+int audit(const AuditWish& w) {
+  const Simulation sim = w.scenario.read();
   refuseBeyondMemory(sim);
   std::vector<std::string> names;
   for (const Camera& c : sim.cameras) names.push_back(c.name);
-  for (const std::string& name : o.values("--camera"))
-    if (std::find(names.begin(), names.end(), name) == names.end())
-      throw unknownWord({"--camera " + name, 0, 0, -1}, "there is no camera", name, names);
+  for (const std::string& name : w.cameras)
+    if (std::find(names.begin(), names.end(), name) == names.end()) throw unknownWord({"--camera " + name, 0, 0, -1}, "there is no camera", name, names);
   std::set<int> chosen{0, sim.time.frames / 2, sim.time.frames - 1};
-  if (o.has("--frames")) {
-    const auto [first, last] = readRange(o.value("--frames"), "--frames");
-    if (first < 0 || last < first || last >= sim.time.frames)
-      throw UserError({"--frames " + o.value("--frames"), 0, 0, -1}, "there is no such range of frames",
-                      "within 0:" + std::to_string(sim.time.frames - 1) + ", rising", "choose frames of the scenario's 'time.frames'");
+  if (!w.frames.empty()) {
     chosen.clear();
-    for (auto n = first; n <= last; ++n) chosen.insert(static_cast<int>(n));
+    const auto [first, last] = framesWanted(w.frames, sim);
+    for (int n = first; n <= last; ++n) chosen.insert(n);
   }
   const std::vector<int> numbers(chosen.begin(), chosen.end());
-  const std::filesystem::path out = o.value("--out");
+  const std::filesystem::path out = w.out;
   if (!out.empty()) ensureWritableFolder(out);
   const GlContext context;
   const auto scene = std::make_shared<const GpuScene>(sim);
   std::string csv = "camera,layer,asked [1],predicted [1],median [1],99 of 100 [1],largest [1],beyond asked [1],frame,column,row,planned,reference\n";
   bool isBroken = false;
   for (const Camera& base : sim.cameras) {
-    const auto wanted = o.values("--camera");
-    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), base.name) == wanted.end()) continue;
+    if (!w.cameras.empty() && std::find(w.cameras.begin(), w.cameras.end(), base.name) == w.cameras.end()) continue;
     if (base.spectral.reference)
       throw UserError(base.where, "camera '" + base.name + "' draws the reference itself", "an accuracy, or none", "add --set accuracy='1 %'");
     // As a run draws it, by the plan that a run finds in its cache.
@@ -155,12 +152,14 @@ int auditCommand(const Arguments& arguments) {
     progress.withdraw();
     const Plan& plan = planned.plan();
     const auto layers = layersOf(camera, plan, frames, drawn, std::move(found));
-    std::printf("camera %s: %zu frame%s of %dx%d pixels of %dx%d lines, by the plan (%d wavelengths) and by the reference along the same lines (%d wavelengths)\n",
-                camera.name.c_str(), numbers.size(), numbers.size() == 1 ? "" : "s", camera.pinhole.width, camera.pinhole.height, camera.samples, camera.samples,
-                plan.nodeCount(), exact.plan().nodeCount());
+    std::printf(
+        "camera %s: %zu frame%s of %dx%d pixels of %dx%d lines, by the plan (%d wavelengths) and by the reference along the same lines (%d wavelengths)\n",
+        camera.name.c_str(), numbers.size(), numbers.size() == 1 ? "" : "s", camera.pinhole.width, camera.pinhole.height, camera.samples, camera.samples,
+        plan.nodeCount(), exact.plan().nodeCount());
     if (frames.leftOut() > 0)
-      std::printf("  %d pixels with an outline of something transparent in the middle of a line are left out: rays and the rasteriser may see different things there\n",
-                  frames.leftOut());
+      std::printf(
+          "  %d pixels with an outline of something transparent in the middle of a line are left out: rays and the rasteriser may see different things there\n",
+          frames.leftOut());
     for (const AuditedLayer& l : layers) {
       const bool broken = plan.accuracy > 0.0 && !(l.found.maximum <= plan.accuracy);
       isBroken |= broken;
@@ -168,7 +167,8 @@ int auditCommand(const Arguments& arguments) {
                   percent(l.found.percentile99).c_str(), percent(l.found.median).c_str());
       if (plan.accuracy > 0.0) std::printf("; asked %s %%", percent(plan.accuracy).c_str());
       if (l.predicted) std::printf(", predicted %s %%", percent(*l.predicted).c_str());
-      std::printf("; worst at %d,%d of frame %d: %.6g for %.6g\n", l.worst.column, l.worst.row, numbers[static_cast<size_t>(l.worst.frame)], l.planned, l.reference);
+      std::printf("; worst at %d,%d of frame %d: %.6g for %.6g\n", l.worst.column, l.worst.row, numbers[static_cast<size_t>(l.worst.frame)], l.planned,
+                  l.reference);
       if (broken) std::printf("    beyond what was asked in %s %% of the pixels\n", percent(l.beyond).c_str());
     }
     csv += csvOf(camera.name, plan.accuracy, numbers, layers);
@@ -176,6 +176,28 @@ int auditCommand(const Arguments& arguments) {
   }
   if (!out.empty()) writeFileAtomically(out / "audit.csv", csv);
   return isBroken ? kBeyondAsked : 0;
+}
+
+}  // namespace
+
+CommandLine auditCommand() {
+  const auto w = std::make_shared<AuditWish>();
+  return {
+      "audit",
+      "SCENARIO.yaml",
+      "hold a scenario's pictures against the reference, pixel by pixel: is what was asked for kept?",
+      "Draws frames (the first, the middle and the last) of each camera as run does, by its plan, and again by the reference: every wavelength, in double "
+      "precision, along the same lines (subpixels, views of small bodies and of bright parts). Prints what each layer's pixels are off by, |L - Lref| / "
+      "max(Lref, 1e-3 x the 99th percentile of Lref), beside what was asked and predicted, and where the worst is. The reference takes seconds to minutes a "
+      "frame: --set cameras.seeker.film.width=64 and so on makes it quicker. Exit code 4 where a pixel is farther off than was asked.\n"
+      "The same by hand: run, then run --set accuracy=reference --plan FOLDER/CAMERA.plan draws the reference along that run's lines, to another --out. A "
+      "reference without that plan looks along its own lines (all subpixels, 256 across a small body): outlines and small bodies then differ.",
+      joined({{"--frames", "A:B", "these frames, both included; of an exposure with motion its middle", into(w->frames)},
+              {"--camera", "NAME...", "this camera alone", into(w->cameras)},
+              {"--out", "FOLDER", "also audit.csv and CAMERA_audit.png, a picture of the errors; created if missing", into(w->out)}},
+             scenarioOptions(w->scenario)),
+      "",
+      [w](const Arguments& words) { return w->scenario.file = words[0], audit(*w); }};
 }
 
 }  // namespace pitviper

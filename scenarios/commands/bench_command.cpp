@@ -5,63 +5,29 @@
 #include "scenarios/commands/accuracy_report.hpp"
 #include "scenarios/commands/bench_report.hpp"
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/first_command.hpp"
-#include "scenarios/commands/guard_bench.hpp"
-#include "scenarios/commands/options.hpp"
 #include "scenarios/commands/phong_bench.hpp"
 #include "scenarios/commands/scenario_bench.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
-#include "sim/parameters/error.hpp"
-#include "sim/parameters/table.hpp"
 
 namespace pitviper {
 namespace {
 
-int framesWanted(const Options& o) {
-  const auto [frames, last] = readRange(o.value("--frames", "60"), "--frames");
-  if (frames != last || frames < 10 || frames > 100000)
-    throw UserError({"--frames " + o.value("--frames"), 0, 0, -1}, "not a number of frames to time", "10 to 100000", "write --frames 60");
-  return static_cast<int>(frames);
-}
+/// To time.
+Target framesToTime(int& frames) { return number(frames, {10, 100000, "", false, "not a number of frames to time"}); }
 
-std::vector<BenchFactor> factorsWanted(const Options& o) {
-  std::vector<BenchFactor> all = benchFactors();
-  if (!o.has("--factor")) return all;
-  const std::string wanted = o.value("--factor");
-  std::vector<std::string> names;
-  for (const auto& f : all) names.push_back(f.name);
-  std::erase_if(all, [&](const BenchFactor& f) { return f.name != wanted; });
-  if (all.empty())
-    throw UserError({"--factor " + wanted, 0, 0, -1}, "there is no such factor", "one of " + listed(names),
-                    didYouMean(wanted, names, "choose one, or leave --factor out"));
-  return all;
-}
-
-/// A whole number of an option within bounds, or what it is without.
-int wholeNumber(const Options& o, const std::string& name, int otherwise, int least, int most, const std::string& meaning) {
-  if (!o.has(name)) return otherwise;
-  const auto [n, last] = readRange(o.value(name), name);
-  if (n != last || n < least || n > most)
-    throw UserError({name + " " + o.value(name), 0, 0, -1}, "not " + meaning, std::to_string(least) + " to " + std::to_string(most),
-                    "write " + name + " " + std::to_string(otherwise > 0 ? otherwise : least));
-  return static_cast<int>(n);
-}
-
-int accuracyCommand(const Options& o) {
-  if (o.has("--factor")) throw UserError({"pitviper bench", 0, 0, -1}, "--factor says nothing to --accuracy", "one of the two", "remove one");
+struct AccuracyWish {
   AccuracyRequest request;
-  request.scenario = o.value("--accuracy");
-  request.changes = o.values("--set");
-  request.roots = rootsOf(o);
-  request.size_px = wholeNumber(o, "--size", 0, 8, 4096, "a number of columns");
-  request.frames = wholeNumber(o, "--frames", 3, 1, 1000, "a number of frames to compare");
-  const std::filesystem::path out = o.value("--out");
-  if (o.has("--out")) ensureWritableFolder(out);
+  std::string out;
+};
+
+int benchAccuracy(const AccuracyWish& w) {
+  const std::filesystem::path out = w.out;
+  if (!out.empty()) ensureWritableFolder(out);
   const GlContext context;
-  const AccuracyReport report = measureAccuracy(request);
+  const AccuracyReport report = measureAccuracy(w.request);
   std::printf("%s\n%s\n%s", report.heading.c_str(), context.limits().renderer.c_str(), accuracyTables(report).c_str());
-  if (!o.has("--out")) return 0;
+  if (out.empty()) return 0;
   writeFileAtomically(out / "accuracy.csv", accuracyCsv(report));
   std::printf("\n%s written\n", (out / "accuracy.csv").string().c_str());
   const auto charts = accuracyCharts(report);
@@ -70,43 +36,16 @@ int accuracyCommand(const Options& o) {
   return 0;
 }
 
-int scenarioCommand(const Options& o) {
-  for (const char* other : {"--factor", "--out"})
-    if (o.has(other)) throw UserError({"pitviper bench", 0, 0, -1}, std::string(other) + " says nothing to --scenario", "one of the two", "remove one");
-  const GlContext context;
-  const auto rates = timeScenario(o.value("--scenario"), o.values("--set"), rootsOf(o), framesWanted(o));
-  std::printf("%s\n%s", context.limits().renderer.c_str(), rateTable(rates).c_str());
-  return 0;
-}
+struct BenchWish {
+  std::vector<BenchFactor> factors = benchFactors();
+  int frames = 60;
+  std::string out;
+};
 
-/// Those with options of their own.
-constexpr std::pair<const char*, int (*)(const Arguments&)> kOwnBenches[] = {{"--first", firstCommand}, {"--once", onceCommand}, {"--guard", guardCommand}};
-
-}  // namespace
-
-int benchCommand(const Arguments& arguments) {
-  for (const auto& [option, command] : kOwnBenches)
-    if (const auto found = std::find(arguments.begin(), arguments.end(), option); found != arguments.end()) {
-      Arguments others(arguments);
-      others.erase(others.begin() + (found - arguments.begin()));
-      return command(others);
-    }
-  const Options o("bench", arguments,
-                  {{"--frames"}, {"--factor"}, {"--out"}, {"--accuracy"}, {"--scenario"}, {"--size"}, {"--set", true, true}, rootOption(), {"--phong", false}}, 0, 0);
-  if (o.has("--phong")) {
-    if (arguments.size() > 1) throw UserError({"pitviper bench", 0, 0, -1}, "--phong with other options", "it alone", "remove them");
-    std::printf("%s", phongBench().c_str());
-    return 0;
-  }
-  if (o.has("--accuracy")) return accuracyCommand(o);
-  if (o.has("--size")) throw UserError({"pitviper bench", 0, 0, -1}, "--size goes with --accuracy", "a scenario", "remove it, or add --accuracy");
-  if (o.has("--scenario")) return scenarioCommand(o);
-  if (o.has("--set")) throw UserError({"pitviper bench", 0, 0, -1}, "--set goes with --accuracy or --scenario", "a scenario", "remove it, or add one");
-  if (o.has("--root")) throw UserError({"pitviper bench", 0, 0, -1}, "--root goes with --accuracy or --scenario", "a scenario", "remove it, or add one");
-  const int frames = framesWanted(o);
-  std::vector<BenchFactor> factors = factorsWanted(o);
-  const std::filesystem::path out = o.value("--out");
-  if (o.has("--out")) ensureWritableFolder(out);
+int bench(BenchWish& w) {
+  auto& [factors, frames, folder] = w;
+  const std::filesystem::path out = folder;
+  if (!out.empty()) ensureWritableFolder(out);
 
   const GlContext context;
   for (BenchFactor& f : factors) dropWhatIsNotOffered(f);
@@ -125,12 +64,88 @@ int benchCommand(const Arguments& arguments) {
       "%s\nCentre: 256x256 pixels, 16 channels, 16 wavelengths, one light, thermal emission, air on both legs; one factor varied at a time.\n"
       "Medians of up to %d frames, each row in turn with the yardstick, a bare 16-wavelength loop.\n\n%s",
       context.limits().renderer.c_str(), frames, benchTables(factors, rows).c_str());
-  if (!o.has("--out")) return 0;
+  if (out.empty()) return 0;
   writeFileAtomically(out / "bench.csv", benchCsv(rows));
   std::printf("\n%s written\n", (out / "bench.csv").string().c_str());
   drawCharts(benchCharts(factors, rows), 3, out / "bench.png");
   std::printf("%s written\n", (out / "bench.png").string().c_str());
   return 0;
+}
+
+}  // namespace
+
+CommandLine benchCommand() {
+  const auto w = std::make_shared<BenchWish>();
+  std::vector<Word<std::vector<BenchFactor>>> names;
+  for (const BenchFactor& f : w->factors) names.push_back({f.name, {f}});
+  return {
+      "bench",
+      "",
+      "speed of this machine beside a fixed yardstick",
+      "Times direct and buffered mode on a wall that fills the film (256x256, 16 channels, 16 wavelengths, one light, thermal emission, air on both legs), "
+      "then "
+      "with one factor varied at a time, in rounds that alternate with a bare loop over 16 wavelengths, the yardstick. Prints tables: milliseconds, million "
+      "pixels and frames a second, speed by the yardstick, time by the centre. Takes some minutes.",
+      {{"--factor", "NAME", "this factor only", oneOf(w->factors, names)},
+       {"--frames", "N", "frames to time in each row; fewer of slow ones", framesToTime(w->frames)},
+       {"--out", "FOLDER", "also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing", into(w->out)}},
+      "",
+      [w](const Arguments&) { return bench(*w); }};
+}
+
+CommandLine scenarioBenchCommand() {
+  struct Wish {
+    ScenarioWish scenario;
+    int frames = 60;
+  };
+  const auto w = std::make_shared<Wish>();
+  return {
+      "bench --scenario",
+      "SCENARIO.yaml",
+      "",
+      "Time of a frame of each camera, the frames in their order, drawing and readback, no files (with a gimbal its sensor and tracker too); beside them the "
+      "yardstick, and where the time of a frame goes, part by part: what updates tables and shadow maps, what is seen, shading, readback and so on.",
+      joined({{"--frames", "N", "frames to time", framesToTime(w->frames)}}, scenarioOptions(w->scenario)),
+      "",
+      [w](const Arguments& words) {
+        w->scenario.file = words[0];
+        const GlContext context;
+        const auto rates = timeScenario(w->scenario, w->frames);
+        std::printf("%s\n%s", context.limits().renderer.c_str(), rateTable(rates).c_str());
+        return 0;
+      }};
+}
+
+CommandLine accuracyBenchCommand() {
+  const auto w = std::make_shared<AccuracyWish>();
+  AccuracyRequest& r = w->request;
+  return {
+      "bench --accuracy",
+      "SCENARIO.yaml",
+      "",
+      "The scenario's first camera at accuracies of 10 to 0.1 %, at 4 to 340 even samples and at 16 Gauss points a channel, against the reference (double "
+      "precision on the CPU, every wavelength; slow). Prints frames a second and the error of each channel's pixels, |L - Lref| / max(Lref, 1e-3 x the 99th "
+      "percentile of Lref), and as a temperature difference. The error is that of spectral sampling, tables, dropped terms and single precision; what a pixel "
+      "sees is the same on both sides.",
+      joined({{"--size", "N", "columns of the film, its field of view kept", number(r.size_px, {8, 4096, "", false, "not a number of columns"})},
+              {"--frames", "N", "frames, spread over the scenario's time", number(r.frames, {1, 1000, "", false, "not a number of frames to compare"})},
+              {"--out", "FOLDER", "also write accuracy.csv and a chart, accuracy.png (needs VTK)", into(w->out)}},
+             scenarioOptions(r.scenario)),
+      "",
+      [w](const Arguments& words) { return w->request.scenario.file = words[0], benchAccuracy(*w); }};
+}
+
+CommandLine phongBenchCommand() {
+  return {"bench --phong",
+          "",
+          "",
+          "Tables of 200 entries of spectral Phong lobes against the formula, error and time, as in the paper that proposed them.",
+          {},
+          "",
+          [](const Arguments&) {
+            std::fputs(phongBench().c_str(), stdout);
+            return 0;
+          }};
 }
 
 }  // namespace pitviper

@@ -3,12 +3,11 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/geometry_report.hpp"
-#include "scenarios/commands/options.hpp"
 #include "scenarios/commands/run_notes.hpp"
 #include "scenarios/commands/run_total.hpp"
+#include "scenarios/commands/scenario_wish.hpp"
 #include "scenarios/commands/seen_report.hpp"
 #include "scenarios/commands/sensor_report.hpp"
-#include "scenarios/reader/scenario_reader.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/render/tables.hpp"
@@ -40,28 +39,29 @@ void auditFrames(Simulation& sim) {
   for (int frame : frames) std::printf("frame %d\n%s", frame, auditText(runFrames(sim, shaderLibrary(), {frame, frame}, [](const auto&) {})).c_str());
 }
 
-}  // namespace
+struct CheckWish {
+  ScenarioWish scenario;
+  bool plans = false, audits = false;
+};
 
-int checkCommand(const Arguments& arguments) {
-  const Options o("check", arguments, {{"--set", true, true}, rootOption(), {"--plan", false}, {"--audit", false}}, 1, 1);
-  Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries(), rootsOf(o));
+int check(const CheckWish& w) {
+  Simulation sim = w.scenario.read();
   refuseBeyondMemory(sim);
   Notes notes;
   size_t triangles = 0;
   for (const auto& e : sim.entities) triangles += e.mesh->triangles.size();
   auto count = [](size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); };
-  std::printf("%s: good. %s, %s, %s (%s), %s, %s, %s\n", o.words()[0].c_str(), count(static_cast<size_t>(sim.time.frames), "frame", "frames").c_str(),
+  std::printf("%s: good. %s, %s, %s (%s), %s, %s, %s\n", w.scenario.file.c_str(), count(static_cast<size_t>(sim.time.frames), "frame", "frames").c_str(),
               count(sim.cameras.size(), "camera", "cameras").c_str(), count(sim.entities.size(), "entity", "entities").c_str(),
               count(triangles, "triangle", "triangles").c_str(), count(sim.lights.size(), "light", "lights").c_str(),
               count(sim.materials.size(), "material", "materials").c_str(), count(sim.probes.size(), "probe", "probes").c_str());
   for (const auto& c : sim.cameras) {
     const Camera drawn = drawnCamera(c);
-    const bool isPlanned = o.has("--plan");
-    const Plan plan = isPlanned ? planFor(sim, {&drawn, nullptr}) : roughPlan(sim, drawn);
+    const Plan plan = w.plans ? planFor(sim, {&drawn, nullptr}) : roughPlan(sim, drawn);
     makeTables(sim, plan);  // what only the tables can find wrong
     std::printf("  camera %s: %dx%d, %s from %s%s\n", c.name.c_str(), c.pinhole.width, c.pinhole.height, count(c.outputs.size(), "layer", "layers").c_str(),
                 count(static_cast<size_t>(plan.slotCount), "spectral kernel", "spectral kernels").c_str(),
-                isPlanned ? (", " + count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths")).c_str() : "");
+                w.plans ? (", " + count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths")).c_str() : "");
     if (c.follower) std::printf("    %s\n", c.follower->words.c_str());
     std::printf("%s%s", sensorText(c, sim.time.step_s).c_str(), geometryText(sim, drawn, plan).c_str());
     for (const ScatteredAgain& s : ScatteringCheck(sim, c, plan).at(advance(sim, sim.time.at(0)))) sayScatteredAgain(c.name, s, notes);
@@ -75,14 +75,34 @@ int checkCommand(const Arguments& arguments) {
   std::printf("%s", seen.text.c_str());
   std::fflush(stdout);  // before the notes, where both go to one place
   std::fprintf(stderr, "%s", seen.notes.c_str());
-  noteMeshes(sim, notes);
-  noteCuts(sim, notes);
-  noteFog(sim, notes);
-  noteFringes(sim, notes);
+  noteScenario(sim, notes);
   noteSampling(sim, notes);
   noteNear(sim, sim.time.at(0), notes);
-  if (o.has("--audit")) auditFrames(sim);
+  if (w.audits) auditFrames(sim);
   return 0;
+}
+
+}  // namespace
+
+CommandLine checkCommand() {
+  const auto w = std::make_shared<CheckWish>();
+  return {
+      "check",
+      "SCENARIO.yaml",
+      "validate a scenario, render nothing",
+      "Reads everything the scenario names and reports the first mistake as file:line:col with the fix (exit code 2).\n"
+      "Then tells what each camera sees in the first, the middle and the last frame: a line a body (many alike in one) with its size, range, size in pixels, "
+      "and whether it is out of view, behind the camera, hidden by another or smaller than a pixel; 'hidden' is found by rays to a few dozen places on the "
+      "body. Meshes whose size smells of another unit than the one given are noted.",
+      joined(
+          {{"--plan", "", "also plans each camera, which takes seconds, and says how many wavelengths it takes; the plan is kept, as of run", into(w->plans)},
+           {"--audit", "",
+            "also draws those frames, works 16 pixels of each (or as many as the scenario's 'audit' says) out by the reference, and tells how far they are "
+            "from it; writes nothing",
+            into(w->audits)}},
+          scenarioOptions(w->scenario)),
+      "",
+      [w](const Arguments& words) { return w->scenario.file = words[0], check(*w); }};
 }
 
 }  // namespace pitviper

@@ -24,17 +24,18 @@ std::string otherWords(const std::string& output) {
 
 class Measuring {
  public:
-  explicit Measuring(const FirstRequest& request) : request_(request) {}
+  explicit Measuring(const OnceRequest& request) : request_(request) {}
 
   FirstFigures measure(const std::vector<std::string>& sets) {
-    Arguments arguments{"bench", "--once", request_.scenario, "--frames", std::to_string(request_.frames), "--seconds", print("%.9g", request_.frames_s)};
-    for (const std::vector<std::string>& all : {request_.overrides, sets})
+    const auto& [scenario, frames, most_s] = request_;
+    Arguments arguments{"bench", "--once", scenario.file, "--frames", std::to_string(frames), "--seconds", print("%.9g", most_s)};
+    for (const std::vector<std::string>& all : {scenario.changes, sets})
       for (const std::string& set : all) arguments.insert(arguments.end(), {"--set", set});
-    for (const auto& root : request_.roots) arguments.insert(arguments.end(), {"--root", root.string()});
+    for (const auto& root : scenario.roots) arguments.insert(arguments.end(), {"--root", root.string()});
     const std::size_t before = cache_.driverFiles();
     const ChildResult result = runChild(arguments, cache_.environment());
     const std::string words = otherWords(result.output);
-    if (result.code != 0) throw FirstFailure(words.empty() ? request_.scenario + ": its process ended with " + std::to_string(result.code) : words, result.code);
+    if (result.code != 0) throw FirstFailure(words.empty() ? scenario.file + ": its process ended with " + std::to_string(result.code) : words, result.code);
     if (!words.empty() && words != said_) tell((said_ = words).c_str());
     FirstFigures figures = readFigures(result.output);
     figures["compiled"] = static_cast<double>(cache_.driverFiles()) - static_cast<double>(before);
@@ -44,7 +45,7 @@ class Measuring {
   void back() { cache_.back(); }
 
  private:
-  const FirstRequest& request_;
+  const OnceRequest& request_;
   OwnCache cache_;
   std::string said_;
 };
@@ -59,7 +60,7 @@ std::vector<std::string> firstStateNames() {
 
 std::vector<FirstState> measureFirst(const FirstRequest& request, const std::function<void(const std::string&)>& next) {
   const auto wanted = [&](const std::string& state) { return std::find(request.states.begin(), request.states.end(), state) != request.states.end(); };
-  Measuring measuring(request);
+  Measuring measuring(request.once);
   std::vector<FirstState> states;
   next("first");
   states.push_back({"first", "nothing cached", true, measuring.measure({})});
@@ -70,7 +71,7 @@ std::vector<FirstState> measureFirst(const FirstRequest& request, const std::fun
   measuring.mark();
   const auto& names = scenarioChangeNames();
   if (std::none_of(names.begin(), names.end(), wanted)) return states;
-  for (const ScenarioChange& change : changesOf(request.scenario, request.overrides, request.roots)) {
+  for (const ScenarioChange& change : changesOf(request.once.scenario)) {
     if (!wanted(change.name)) continue;
     FirstState state{change.name, change.words, false, {}};
     next(change.name);

@@ -1,10 +1,9 @@
 #pragma once
 // A scenario from nothing cached, a second time, and after each of a few changes: every time by a process of its own.
-#include <filesystem>
 #include <functional>
 #include <stdexcept>
 
-#include "scenarios/commands/first_figures.hpp"
+#include "scenarios/commands/first_once.hpp"
 #include "scenarios/commands/own_cache.hpp"
 
 namespace pitviper {
@@ -17,12 +16,8 @@ struct FirstState {
 };
 
 struct FirstRequest {
-  std::string scenario;
-  std::vector<std::string> overrides;  ///< as --set
-  std::vector<std::filesystem::path> roots;
+  OnceRequest once;                 ///< of each state
   std::vector<std::string> states;  ///< to measure besides "first"; in any order
-  int frames = 100;
-  double frames_s = 20.0;  ///< that they may take in each state
 };
 
 /// "first", "second" and the names of all changes.

@@ -1,52 +1,23 @@
-#include "scenarios/commands/first_command.hpp"
-
 #include <algorithm>
 #include <cstdio>
-#include <sstream>
 
+#include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/first_once.hpp"
 #include "scenarios/commands/first_report.hpp"
 #include "scenarios/commands/process.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "sim/image/atomic_file.hpp"
-#include "sim/parameters/table.hpp"
-#include "sim/parameters/units.hpp"
 
 namespace pitviper {
 namespace {
 
-constexpr int kMostFrames = 100000;
-
-int framesOf(const Options& o) {
-  const auto [n, last] = readRange(o.value("--frames", "100"), "--frames");
-  if (n != last || n < 0 || n > kMostFrames)
-    throw UserError({"--frames " + o.value("--frames"), 0, 0, -1}, "not a number of frames after the first", "0 to " + std::to_string(kMostFrames), "write --frames 100");
-  return static_cast<int>(n);
-}
-
-double secondsOf(const Options& o) {
-  const auto written = splitQuantity(o.value("--seconds", "20"));
-  if (!written || !(written->unit.empty() || written->unit == "s") || !(written->value >= 0.0))
-    throw UserError({"--seconds " + o.value("--seconds"), 0, 0, -1}, "not a time that frames may take", "seconds, 0 or more", "write --seconds 20");
-  return written->value;
-}
-
-/// "a,b" as names of states; without, all of them.
-std::vector<std::string> statesOf(const Options& o) {
-  const std::vector<std::string> all = firstStateNames();
-  if (!o.has("--states")) return all;
-  std::vector<std::string> wanted;
-  std::istringstream in(o.value("--states"));
-  for (std::string name; std::getline(in, name, ',');) {
-    if (std::find(all.begin(), all.end(), name) == all.end())
-      throw UserError({"--states " + o.value("--states"), 0, 0, -1}, "there is no state '" + name + "'", "some of " + listed(all) + ", between commas", didYouMean(name, all));
-    wanted.push_back(name);
-  }
-  std::vector<std::string> ordered{"first"};
-  for (const std::string& name : all)
-    if (name != "first" && std::find(wanted.begin(), wanted.end(), name) != wanted.end()) ordered.push_back(name);
-  return ordered;
+/// --frames, --seconds, --set and --root.
+std::vector<Option> onceOptions(OnceRequest& r) {
+  return joined(
+      {{"--frames", "N", "after the first, at most", number(r.frames, {0, 100000, "", false, "not a number of frames after the first"})},
+       {"--seconds", "S", "that they may take in each state: fewer of slow ones", number(r.most_s, {0.0, 1e9, "s", true, "not a time that frames may take"})}},
+      scenarioOptions(r.scenario));
 }
 
 std::vector<std::string> shippedScenarios() {
@@ -58,28 +29,30 @@ std::vector<std::string> shippedScenarios() {
   return all;
 }
 
-}  // namespace
+struct FirstWish {
+  FirstRequest request;
+  std::string out;
+};
 
-int onceCommand(const Arguments& arguments) {
-  const Options o("bench", arguments, {{"--frames"}, {"--seconds"}, {"--set", true, true}, rootOption()}, 1, 1);
-  std::fputs(writeFigures(measureOnce({o.words()[0], o.values("--set"), rootsOf(o), framesOf(o), secondsOf(o)})).c_str(), stdout);
-  return 0;
-}
-
-int firstCommand(const Arguments& arguments) {
-  const Options o("bench", arguments, {{"--frames"}, {"--seconds"}, {"--states"}, {"--out"}, {"--set", true, true}, rootOption()}, 0, 1000);
-  const std::vector<std::string> states = statesOf(o), scenarios = o.words().empty() ? shippedScenarios() : o.words();
-  const int frames = framesOf(o);
-  const double frames_s = secondsOf(o);
-  const std::filesystem::path out = o.value("--out");
-  if (o.has("--out")) ensureWritableFolder(out);
+int first(FirstWish& w, std::vector<std::string> scenarios) {
+  FirstRequest& request = w.request;
+  const std::vector<std::string> all = firstStateNames();
+  std::vector<std::string> states;  // in their order
+  for (const std::string& name : all)
+    if (name == "first" || request.states.empty() || std::find(request.states.begin(), request.states.end(), name) != request.states.end())
+      states.push_back(name);
+  request.states = states;
+  if (scenarios.empty()) scenarios = shippedScenarios();
+  const std::filesystem::path out = w.out;
+  if (!out.empty()) ensureWritableFolder(out);
   std::vector<FirstRow> rows;
   int code = 0;
   for (const std::string& scenario : scenarios) {
     Progress progress("bench", static_cast<int>(states.size()));
     bool begun = false;
     try {
-      rows.push_back({scenario, measureFirst({scenario, o.values("--set"), rootsOf(o), states, frames, frames_s}, [&](const std::string& state) {
+      request.once.scenario.file = scenario;
+      rows.push_back({scenario, measureFirst(request, [&](const std::string& state) {
                         if (begun) progress.step();
                         begun = true;
                         progress.phase(scenario + ", " + state);
@@ -94,11 +67,47 @@ int firstCommand(const Arguments& arguments) {
     progress.withdraw();
     std::printf("%s\n", firstTable(rows.back()).c_str());
     std::fflush(stdout);
-    if (o.has("--out")) writeFileAtomically(out / "first.csv", firstCsv(rows));  // after each: what ends it takes nothing that was measured
+    if (!out.empty()) writeFileAtomically(out / "first.csv", firstCsv(rows));  // after each: what ends it takes nothing that was measured
   }
   if (rows.size() > 1) std::printf("%s\n", firstSummary(rows, states).c_str());
-  if (o.has("--out") && !rows.empty()) std::printf("%s written\n", (out / "first.csv").string().c_str());
+  if (!out.empty() && !rows.empty()) std::printf("%s written\n", (out / "first.csv").string().c_str());
   return code;
+}
+
+}  // namespace
+
+CommandLine onceBenchCommand() {
+  const auto w = std::make_shared<OnceRequest>();
+  return {"bench --once",
+          "SCENARIO.yaml",
+          "",
+          "One state of bench --first by itself, with what is cached now, a figure a line.",
+          onceOptions(*w),
+          "",
+          [w](const Arguments& words) {
+            w->scenario.file = words[0];
+            std::fputs(writeFigures(measureOnce(*w)).c_str(), stdout);
+            return 0;
+          }};
+}
+
+CommandLine firstBenchCommand() {
+  const auto w = std::make_shared<FirstWish>();
+  return {
+      "bench --first",
+      "[SCENARIO.yaml]...",
+      "",
+      "How long one waits for a picture. Each scenario (without one: all that are shipped) from nothing cached, a second time, and after each of six changes, "
+      "with what the first two have cached: a body 10 K warmer, another visibility, field of view, position, material, half the accuracy's error. A process "
+      "of its own for each state, and a cache of their own. A change that a scenario cannot have is left out, and said. Prints seconds by the clock and "
+      "processor seconds of reading, planning, tables (all other preparing), programs (made, lines, and files that the driver's cache gained: 0 where it "
+      "compiled nothing) and the first frame of every camera; percentiles of the frames after it, drawn and read back one after the other, from the first "
+      "again where the scenario has fewer (not with a gimbal); memory. Spectral images, probes, audits and files are left out.",
+      joined({{"--states", "A,B", "these alone, besides 'first'", someOf(w->request.states, firstStateNames(), "state")},
+              {"--out", "FOLDER", "also write first.csv, a line a state, with all figures", into(w->out)}},
+             onceOptions(w->request.once)),
+      "",
+      [w](const Arguments& words) { return first(*w, words); }};
 }
 
 }  // namespace pitviper

@@ -9,7 +9,6 @@
 #include "scenarios/commands/bench_timing.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/run_timing.hpp"
-#include "scenarios/reader/scenario_reader.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/parameters/error.hpp"
@@ -115,11 +114,11 @@ void measureYardstick(const GlContext& context, FirstFigures& into) {
 FirstFigures measureOnce(const OnceRequest& request) {
   FirstFigures figures;
   const Clocks start;
-  const Simulation sim = readScenario(request.scenario, request.changes, findLibraries(), request.roots);
+  const Simulation sim = request.scenario.read();
   const Clocks read;
   put(figures, "reading", start, read);
   if (sim.cameras.empty())
-    throw UserError({request.scenario, 0, 0, -1}, "the scenario has no camera, so there is no picture to wait for", "one under 'cameras:'", "choose another scenario");
+    throw UserError({request.scenario.file, 0, 0, -1}, "the scenario has no camera, so there is no picture to wait for", "one under 'cameras:'", "choose another scenario");
   refuseBeyondMemory(sim);
   const GlContext context;
   Timing timing;

@@ -1,17 +1,14 @@
 #pragma once
 // From a scenario's file to its first picture, once, in this process, with whatever is cached.
-#include <filesystem>
-
 #include "scenarios/commands/first_figures.hpp"
+#include "scenarios/commands/scenario_wish.hpp"
 
 namespace pitviper {
 
 struct OnceRequest {
-  std::string scenario;
-  std::vector<std::string> changes;  ///< as --set
-  std::vector<std::filesystem::path> roots;
-  int frames = 100;        ///< after the first, at most
-  double most_s = 20.0;    ///< that they may take together
+  ScenarioWish scenario;
+  int frames = 100;      ///< after the first, at most
+  double most_s = 20.0;  ///< that they may take together
 };
 
 /// Needs a process that has drawn nothing yet and no GlContext; makes one. Spectral images, probes, audits and files are left out.

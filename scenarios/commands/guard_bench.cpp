@@ -69,11 +69,11 @@ class Measured {
  private:
   const std::vector<FirstState>& scenario(const std::filesystem::path& file) {
     if (const auto known = scenarios_.find(file); known != scenarios_.end()) return known->second;
-    std::vector<std::string> states;
+    FirstRequest request;
     for (const GuardLine& l : lines_)
-      if (l.path == file) states.push_back(l.state);
-    return scenarios_[file] = measureFirst({.scenario = file.string(), .overrides = {}, .roots = {}, .states = states, .frames = kFramesOfScenario, .frames_s = kMostOfFrames_s},
-                                           [&](const std::string& state) { next_(file.filename().string() + ", " + state); });
+      if (l.path == file) request.states.push_back(l.state);
+    request.once.scenario.file = file.string(), request.once.frames = kFramesOfScenario, request.once.most_s = kMostOfFrames_s;
+    return scenarios_[file] = measureFirst(request, [&](const std::string& state) { next_(file.filename().string() + ", " + state); });
   }
 
   double bench(const GuardLine& line) {
@@ -129,15 +129,22 @@ std::string guardText(const std::vector<GuardResult>& results, const std::string
     if (!r.now) missing += "not measured: " + r.line.label() + ": " + r.why + "\n", ++counts[2];
   }
   return table + "\n" + grown + missing + shrunk +
-         print("%zu figures of %s: %d grown by more than a fifth, %d shrunk by more than a fifth, %d not measured\n", results.size(), file.c_str(), counts[0], counts[1], counts[2]);
+         print("%zu figures of %s: %d grown by more than a fifth, %d shrunk by more than a fifth, %d not measured\n", results.size(), file.c_str(), counts[0],
+               counts[1], counts[2]);
 }
 
-int guardCommand(const Arguments& arguments) {
-  const Options o("bench", arguments, {{"--quick", false}, {"--strict", false}}, 1, 1);
-  std::vector<GuardLine> lines = readGuardFile(o.words()[0]);
-  if (o.has("--quick")) std::erase_if(lines, [](const GuardLine& l) { return !l.quick; });
+namespace {
+
+struct GuardWish {
+  bool quick = false, strict = false;
+};
+
+int guard(const GuardWish& w, const std::string& file) {
+  std::vector<GuardLine> lines = readGuardFile(file);
+  if (w.quick) std::erase_if(lines, [](const GuardLine& l) { return !l.quick; });
   if (lines.empty())
-    throw UserError({o.words()[0], 0, 0, -1}, o.has("--quick") ? "there is no figure of the set 'quick'" : "there is no figure", "a line each: set, subject, state, figure, value, reason", "add one");
+    throw UserError({file, 0, 0, -1}, w.quick ? "there is no figure of the set 'quick'" : "there is no figure",
+                    "a line each: set, subject, state, figure, value, reason", "add one");
   Progress progress("bench", 0);
   std::vector<GuardResult> results;
   try {
@@ -148,9 +155,25 @@ int guardCommand(const Arguments& arguments) {
     return failure.code();
   }
   progress.withdraw();
-  std::fputs(guardText(results, o.words()[0]).c_str(), stdout);
+  std::fputs(guardText(results, file).c_str(), stdout);
   const bool broken = std::any_of(results.begin(), results.end(), [](const GuardResult& r) { return hasGrown(r); });
-  return o.has("--strict") && broken ? 1 : 0;
+  return w.strict && broken ? 1 : 0;
+}
+
+}  // namespace
+
+CommandLine guardBenchCommand() {
+  const auto w = std::make_shared<GuardWish>();
+  return {
+      "bench --guard",
+      "FILE.csv",
+      "",
+      "Measures again the figures that FILE holds (tests/bench_guard.csv says how it is written) and names each that grew, or shrank, by more than a fifth. "
+      "Seconds are told as where the yardstick gives 6 million pixels a second, so that machines compare. Exit code 0 whatever grew.",
+      {{"--quick", "", "the set 'quick' alone: under a minute", into(w->quick)},
+       {"--strict", "", "exit code 1 where a figure grew by more than a fifth", into(w->strict)}},
+      "",
+      [w](const Arguments& words) { return guard(*w, words[0]); }};
 }
 
 }  // namespace pitviper

@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "scenarios/commands/guard_file.hpp"
-#include "scenarios/commands/options.hpp"
 
 namespace pitviper {
 
@@ -27,8 +26,5 @@ bool hasShrunk(const GuardResult& result);
 
 /// All figures as a table, then a line for each that has grown, could not be measured, or has shrunk.
 std::string guardText(const std::vector<GuardResult>& results, const std::string& file);
-
-/// Takes the words of `bench` without --guard.
-int guardCommand(const Arguments& arguments);
 
 }  // namespace pitviper

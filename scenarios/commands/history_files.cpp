@@ -18,20 +18,14 @@ constexpr std::size_t kFew = 1u << 22;
 
 }  // namespace
 
-std::vector<OptionSpec> historyOptions() { return {{"--no-history", false}, {"--trajectories", false}}; }
-
-HistoryWish readHistoryWish(const Options& o, const Simulation& sim) {
-  HistoryWish wish;
+void HistoryWish::settle(const Simulation& sim, bool reports) {
   const bool moves = hasHistory(sim);
-  if (o.has("--trajectories")) {
-    const Location where{"--trajectories", 0, 0, -1};
-    if (!moves) throw UserError(where, "nothing moves in this scenario", "a body, a lamp or a camera with 'motion'", "remove --trajectories");
+  if (mustDraw) {
+    if (!moves) throw UserError({"--trajectories", 0, 0, -1}, "nothing moves in this scenario", "a body, a lamp or a camera with 'motion'", "remove --trajectories");
     requireCharts();
-    wish.mustDraw = true;
   }
-  wish.tables = moves && !o.has("--no-history");
-  wish.picture = moves && (wish.mustDraw || o.has("--report"));
-  return wish;
+  tables = moves && !none;
+  picture = moves && (mustDraw || reports);
 }
 
 OwnFiles HistoryFiles::filesIn(const std::filesystem::path& folder, const HistoryWish& wish) {

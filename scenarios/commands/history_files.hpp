@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/commands/options.hpp"
 #include "scenarios/commands/run_sinks.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/run/encounters.hpp"
@@ -18,12 +17,11 @@ struct HistoryWish {
   bool tables = false;    ///< history.csv and encounters.csv
   bool picture = false;   ///< trajectories.png
   bool mustDraw = false;  ///< it was asked for by itself: without VTK the run is refused before it begins
+  bool none = false;      ///< no tables were asked for
+  /// Of a run: tables unless told otherwise, a picture with a report or where asked for; nothing where nothing moves.
+  /// Errors: UserError where a picture is asked for and nothing moves, or there is no VTK.
+  void settle(const Simulation& simulation, bool reports);
 };
-
-/// `--no-history` and `--trajectories`, of a run: tables unless told otherwise, a picture with a report or where asked for; nothing where nothing moves.
-std::vector<OptionSpec> historyOptions();
-/// Errors: UserError where a picture is asked for and nothing moves, or there is no VTK.
-HistoryWish readHistoryWish(const Options& options, const Simulation& simulation);
 
 /// What came of it, for the report.
 struct HistoryReport {

@@ -2,7 +2,6 @@
 #include <cstdio>
 
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/options.hpp"
 #include "scenarios/commands/pixel_terms.hpp"
 #include "sim/gl/blend_path.hpp"
 #include "sim/gl/context.hpp"
@@ -56,9 +55,9 @@ void printLayers(const ExrImage& image) {
       sum += static_cast<double>(v);
     }
     if (low <= high)
-      std::printf("%-32s %-18s %14.6g %14.6g %14.6g", layer.name.c_str(), unitOf(image, layer.name).c_str(), low, sum / static_cast<double>(layer.pixels.size() - bad - unseen), high);
-    else
-      std::printf("%-32s %-18s %14s %14s %14s", layer.name.c_str(), unitOf(image, layer.name).c_str(), "none", "none", "none");
+      std::printf("%-32s %-18s %14.6g %14.6g %14.6g", layer.name.c_str(), unitOf(image, layer.name).c_str(), low,
+                  sum / static_cast<double>(layer.pixels.size() - bad - unseen), high);
+    else std::printf("%-32s %-18s %14s %14s %14s", layer.name.c_str(), unitOf(image, layer.name).c_str(), "none", "none", "none");
     if (const Attribute* bin = image.findAttribute("bin_um." + layer.name)) std::printf("  bin [um] %s", textOf(*bin).c_str());
     if (unseen) std::printf("  (%zu pixels see nothing)", unseen);
     if (bad) std::printf("  (%zu not finite)", bad);
@@ -83,33 +82,27 @@ void printMachine() {
   row("uniform block", std::to_string(l.uniformBlock) + " bytes: about " + std::to_string(l.uniformBlock / 48) + " wavelengths with up to four lights");
 }
 
-}  // namespace
+struct InfoWish {
+  std::optional<std::pair<long long, long long>> at;
+  ScenarioWish terms;
+};
 
-int infoCommand(const Arguments& arguments) {
-  const Options o("info", arguments, {{"--at"}, {"--terms"}, {"--set", true, true}, rootOption()}, 0, 1);
-  if (o.words().empty()) {
-    if (o.has("--at")) throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "a pixel of no file", "info FILE.exr --at COLUMN,ROW", "name the file");
-    printMachine();
-    return 0;
-  }
-  if (o.has("--terms") && !o.has("--at"))
-    throw UserError({"--terms " + o.value("--terms"), 0, 0, -1}, "parts of no pixel", "info FILE.exr --at COLUMN,ROW --terms SCENARIO.yaml", "add --at");
-  if (o.has("--set") && !o.has("--terms"))
-    throw UserError({"--set", 0, 0, -1}, "a change of no scenario", "--set beside --terms SCENARIO.yaml", "add --terms, or remove --set");
-  if (o.has("--root") && !o.has("--terms"))
-    throw UserError({"--root", 0, 0, -1}, "a folder for parts of no scenario", "--root beside --terms SCENARIO.yaml", "add --terms, or remove --root");
-  const ExrImage image = readExr(o.words()[0]);
-  if (o.has("--at")) {
-    std::string text = o.value("--at");
-    if (const size_t comma = text.find(','); comma != std::string::npos) text[comma] = ':';
-    else text.clear();
-    if (text.empty()) throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "not a pixel", "column,row from the top left, from 0", "write --at 128,128");
-    const auto [x, y] = readRange(text, "--at");
+/// "column,row".
+std::pair<long long, long long> pixelOf(const std::string& text, const Location& where) {
+  const size_t comma = text.find(',');
+  if (comma == std::string::npos) throw UserError(where, "not a pixel", "column,row from the top left, from 0", "write --at 128,128");
+  return readRange(text.substr(0, comma) + ":" + text.substr(comma + 1), "--at");
+}
+
+int info(const InfoWish& w, const std::string& file) {
+  const ExrImage image = readExr(file);
+  if (w.at) {
+    const auto [x, y] = *w.at;
     if (x < 0 || y < 0 || x >= image.width || y >= image.height)
-      throw UserError({"--at " + o.value("--at"), 0, 0, -1}, "outside the picture",
+      throw UserError({"--at " + std::to_string(x) + "," + std::to_string(y), 0, 0, -1}, "outside the picture",
                       "column 0 to " + std::to_string(image.width - 1) + ", row 0 to " + std::to_string(image.height - 1), "choose a pixel of it");
-    if (o.has("--terms")) {
-      printPixelTerms(image, o.words()[0], static_cast<int>(x), static_cast<int>(y), o.value("--terms"), o.values("--set"), rootsOf(o));
+    if (!w.terms.file.empty()) {
+      printPixelTerms(image, file, static_cast<int>(x), static_cast<int>(y), w.terms);
       return 0;
     }
     for (const auto& layer : image.layers)
@@ -118,7 +111,7 @@ int infoCommand(const Arguments& arguments) {
                   unitOf(image, layer.name).c_str());
     return 0;
   }
-  std::printf("%s: %d x %d pixels\n", o.words()[0].c_str(), image.width, image.height);
+  std::printf("%s: %d x %d pixels\n", file.c_str(), image.width, image.height);
   if (image.held)
     std::printf("the file has columns %d to %d and rows %d to %d of them (its data window); the others are 0\n", image.held->left, image.held->right - 1,
                 image.held->top, image.held->bottom - 1);
@@ -136,6 +129,37 @@ int infoCommand(const Arguments& arguments) {
     std::printf("%-44s %s: range [m], column, row %s\n", entity.c_str(), textOf(*name).c_str(), place ? textOf(*place).c_str() : "");
   }
   return 0;
+}
+
+}  // namespace
+
+CommandLine infoCommand() {
+  const auto w = std::make_shared<InfoWish>();
+  return {
+      "info",
+      "[FILE.exr]",
+      "what is in a frame, or what this machine draws with",
+      "Layers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver, its limits, and the way in which transparent things are "
+      "blended (fetch, barrier or ping_pong; PITVIPER_BLEND chooses another).",
+      joined(
+          {{"--at",
+            "COLUMN,ROW",
+            "the values of one pixel with their units; (0,0) is the top left",
+            {[w](const std::string& text, const Location& where) { w->at = pixelOf(text, where); }},
+            "FILE.exr"},
+           {"--terms", "SCENARIO.yaml",
+            "what that pixel is made of: emission, each light's reflection, the dome's, the air's emission, scattered sunlight, media and lamps in view, by "
+            "the "
+            "body that sends it, worked out in double precision at every wavelength; the scenario must be the one that the frame was drawn from, with the same "
+            "--set and --root, and its tables and meshes as they were",
+            into(w->terms.file), "--at"}},
+          scenarioOptions(w->terms, "--terms")),
+      "",
+      [w](const Arguments& words) {
+        if (!words.empty()) return info(*w, words[0]);
+        printMachine();
+        return 0;
+      }};
 }
 
 }  // namespace pitviper

@@ -2,7 +2,7 @@
 #include <cstdio>
 
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/options.hpp"
+#include "scenarios/commands/print.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
 #include "sim/frame/file_formats.hpp"
 #include "sim/frame/frame_picture.hpp"
@@ -15,9 +15,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Where the frame goes: beside the image unless asked otherwise, never over the image.
-fs::path outputOf(const Options& o, const fs::path& image, const fs::path& sensor) {
-  if (!o.has("--out")) return image.parent_path() / (image.stem().string() + "_" + sensor.stem().string() + ".exr");
-  const fs::path out = o.value("--out");
+fs::path outputOf(const fs::path& out, const fs::path& image, const fs::path& sensor) {
+  if (out.empty()) return image.parent_path() / (image.stem().string() + "_" + sensor.stem().string() + ".exr");
   const Location where{"--out " + out.string(), 0, 0, -1};
   if (out.extension() != ".exr") throw UserError(where, "not the name of an EXR file", "a name that ends in .exr", "write --out frame.exr");
   std::error_code ignored;
@@ -25,18 +24,15 @@ fs::path outputOf(const Options& o, const fs::path& image, const fs::path& senso
   return out;
 }
 
-std::string percent(double fraction) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g %%", 100.0 * fraction);
-  return text;
-}
+std::string percent(double fraction) { return print("%.2g %%", 100.0 * fraction); }
 
-}  // namespace
+struct IntegrateWish {
+  std::string out;
+  bool preview = false;
+};
 
-int integrateCommand(const Arguments& arguments) {
-  const Options o("integrate", arguments, {{"--out"}, {"--preview", false}}, 2, 2);
-  const fs::path file = o.words()[0], sensorFile = o.words()[1];
-  fs::path out = outputOf(o, file, sensorFile);
+int integrate(const IntegrateWish& w, const fs::path& file, const fs::path& sensorFile) {
+  fs::path out = outputOf(w.out, file, sensorFile);
   const SpectralImage image = readSpectralImage(file);
   const Sensor sensor = readSensor(sensorFile, image.pinhole, image.exposure_s, findLibraries());
   IntegratedFrame result = integrateSpectralImage(image, sensor.outputs, sensor.pinhole, sensor.exposure_s);
@@ -51,12 +47,30 @@ int integrateCommand(const Arguments& arguments) {
     std::printf("%-32s %-18s %s, %s\n", frame.layers[l].name.c_str(), frame.layers[l].unit.c_str(), percent(result.binning[l].median).c_str(),
                 percent(result.binning[l].maximum).c_str());
   std::printf("%s\n", out.string().c_str());
-  if (o.has("--preview")) {
+  if (w.preview) {
     out.replace_extension(".png");
     writePreviewFile(out, frame);
     std::printf("%s\n", out.string().c_str());
   }
   return 0;
+}
+
+}  // namespace
+
+CommandLine integrateCommand() {
+  const auto w = std::make_shared<IntegrateWish>();
+  return {
+      "integrate",
+      "FILE_spectral.exr SENSOR.yaml",
+      "apply another sensor to a spectral image",
+      "Integrates a spectral image (a camera's 'spectral_image:') over the channels of a sensor file, such as scenarios/sensors/mw_insb.yaml: the same keys "
+      "'channels', 'optics', 'exposure' and 'aperture' as of a camera; what it leaves out is as of the camera. Writes an EXR with a layer "
+      "<channel>.<quantity> per output. The sensor meets each bin's mean radiance: exact where its response is flat over the bin; how far off the others are, "
+      "to first order, is printed per layer and kept as attribute binning_error.<layer> (median and maximum over pixels).",
+      {{"--out", "FILE.exr", "what to write; otherwise <image>_<sensor>.exr beside the image", into(w->out)},
+       {"--preview", "", "also a PNG: every channel with colour bar and unit", into(w->preview)}},
+      "The bins must cover every channel: one that reaches beyond them is refused.",
+      [w](const Arguments& words) { return integrate(*w, words[0], words[1]); }};
 }
 
 }  // namespace pitviper

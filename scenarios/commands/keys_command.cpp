@@ -1,15 +1,15 @@
 #include <cstdio>
 
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/options.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 
 namespace pitviper {
 
-int keysCommand(const Arguments& arguments) {
-  const Options o("keys", arguments, {}, 0, 0);
-  std::fputs(keyReference().c_str(), stdout);
-  return 0;
+CommandLine keysCommand() {
+  return {"keys", "", "the reference of every scenario key (Markdown)", "Prints the key reference as in scenarios/README.md.", {}, "", [](const Arguments&) {
+            std::fputs(keyReference().c_str(), stdout);
+            return 0;
+          }};
 }
 
 }  // namespace pitviper

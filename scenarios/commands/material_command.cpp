@@ -5,7 +5,7 @@
 
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/options.hpp"
+#include "scenarios/commands/print.hpp"
 #include "scenarios/commands/surroundings_loss.hpp"
 #include "scenarios/import/material_import.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
@@ -25,12 +25,6 @@ namespace {
 constexpr double kDegree = kPi / 180.0;
 constexpr double kViews_deg[] = {0.0, 45.0, 75.0, 85.0};
 constexpr double kTable_um[] = {0.35, 0.45, 0.55, 0.65, 0.9, 1.06, 1.6, 2.2, 3.5, 4.0, 4.6, 8.0, 9.5, 10.6, 12.0, 14.0, 20.0};
-
-std::string line(const char* format, auto... values) {
-  char text[240];
-  std::snprintf(text, sizeof text, format, values...);
-  return text;
-}
 
 /// As YAML.
 std::string asYaml(const std::string& text) {
@@ -59,7 +53,7 @@ std::string sceneOf(const Named& own, bool eye, double low_um, double high_um) {
   scene += "entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " + asYaml(own.name) + ", temperature: " + own.temperature +
            "}]\ncameras: [{name: sphere, film: {width: 256, height: 256}, field_of_view: 12.5 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], "
            "look_at: s, ";
-  return scene + (eye ? "eye: true}]\n" : line("channels: [{name: ir, response: {band: [%.6g um, %.6g um]}}]}]\n", low_um, high_um));
+  return scene + (eye ? "eye: true}]\n" : print("channels: [{name: ir, response: {band: [%.6g um, %.6g um]}}]}]\n", low_um, high_um));
 }
 
 /// Under a sky by day.
@@ -72,7 +66,7 @@ std::string lossOf(const Named& own, const Material& m, const Libraries& librari
                             asYaml(own.name) + ", temperature: " + own.temperature +
                             "}]\ncameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [10 m, 0 "
                             "m, 0 m], look_at: s, " +
-                            line("channels: [{name: c, response: {band: [%.6g um, %.6g um]}}]}]\n", low, high);
+                            print("channels: [{name: c, response: {band: [%.6g um, %.6g um]}}]}]\n", low, high);
   return surroundingsLoss(readScenarioText(scene, "material " + own.name, ".", {}, libraries));
 }
 
@@ -110,20 +104,20 @@ std::string describe(const Material& m, const std::string& description) {
   std::string out = description.empty() ? "" : description + "\n";
   if (!m.provenance.empty()) out += "source: " + m.provenance + "\n";
   for (const std::string& note : m.notes) out += "note: " + note + "\n";
-  out += line("%.4g to %.4g um; %zu component%s", m.validLow_um(), m.validHigh_um(), m.reflections.size(), m.reflections.size() == 1 ? "" : "s");
+  out += print("%.4g to %.4g um; %zu component%s", m.validLow_um(), m.validHigh_um(), m.reflections.size(), m.reflections.size() == 1 ? "" : "s");
   const char* before = ": ";
   for (size_t k = 0; k < m.reflections.size();) {
     const auto told = [](const ReflectionComponent& r) {
       const auto axes = r.axes();
       const int entries = axes[0].count * axes[1].count;
       return (r.lobe().function.empty() ? std::string("no lobe") : r.lobe().function) +
-             (entries > 1 ? line(" x a table of %d angles", entries) : std::string()) +
-             (r.angleError() > 0.0 ? line(" (linear between them, off by %.2g at most)", r.angleError()) : std::string());
+             (entries > 1 ? print(" x a table of %d angles", entries) : std::string()) +
+             (r.angleError() > 0.0 ? print(" (linear between them, off by %.2g at most)", r.angleError()) : std::string());
     };
     const std::string own = told(*m.reflections[k]);
     size_t alike = 1;
     while (k + alike < m.reflections.size() && told(*m.reflections[k + alike]) == own) ++alike;
-    out += before + (alike > 1 ? line("%zu of ", alike) : std::string()) + own;
+    out += before + (alike > 1 ? print("%zu of ", alike) : std::string()) + own;
     before = ", ";
     k += alike;
   }
@@ -132,11 +126,11 @@ std::string describe(const Material& m, const std::string& description) {
                         : "\n|---|---|---|---|---|---|---|---|---|\n";
   for (double w : kTable_um) {
     if (w < m.validLow_um() || w > m.validHigh_um()) continue;
-    out += line("| %.4g |", w);
-    for (double v : kViews_deg) out += line(" %.4f |", m.reflectance(w, v * kDegree));
-    for (double v : kViews_deg) out += line(" %.4f |", m.emissivity(w, v * kDegree));
+    out += print("| %.4g |", w);
+    for (double v : kViews_deg) out += print(" %.4f |", m.reflectance(w, v * kDegree));
+    for (double v : kViews_deg) out += print(" %.4f |", m.emissivity(w, v * kDegree));
     for (double v : kViews_deg)
-      if (m.transmission) out += line(" %.4f |", m.transmittance(w, v * kDegree));
+      if (m.transmission) out += print(" %.4f |", m.transmittance(w, v * kDegree));
     out += "\n";
   }
   return out;
@@ -148,14 +142,14 @@ std::string byTemperature(const Material& m) {
   const auto& entries = m.states->entries;
   std::string out = "\nWhat it emits along its normal changes with its temperature; above is the first.\n| wavelength [um] |", rule = "\n|---|";
   for (size_t k = 0; k < entries.size(); ++k) {
-    out += line(" %.4g K |", m.states->low + (m.states->high - m.states->low) * static_cast<double>(k) / static_cast<double>(entries.size() - 1));
+    out += print(" %.4g K |", m.states->low + (m.states->high - m.states->low) * static_cast<double>(k) / static_cast<double>(entries.size() - 1));
     rule += "---|";
   }
   out += rule + "\n";
   for (double w : kTable_um) {
     if (w < m.validLow_um() || w > m.validHigh_um()) continue;
-    out += line("| %.4g |", w);
-    for (const auto& entry : entries) out += line(" %.4f |", entry->emissivity(w, 0.0));
+    out += print("| %.4g |", w);
+    for (const auto& entry : entries) out += print(" %.4f |", entry->emissivity(w, 0.0));
     out += "\n";
   }
   return out;
@@ -177,7 +171,7 @@ std::vector<Chart> chartsOf(const Material& m, const std::string& name) {
   const glm::dvec3 light(-std::sin(45.0 * kDegree), 0.0, std::cos(45.0 * kDegree));
   for (double w : {0.55, 1.6, 4.0, 10.0}) {
     if (w < m.validLow_um() || w > m.validHigh_um()) continue;
-    Series byView{line("%.3g um", w), {}, {}}, byLobe = byView;
+    Series byView{print("%.3g um", w), {}, {}}, byLobe = byView;
     for (int i = 0; i <= 178; ++i) byView.x.push_back(0.5 * i), byView.y.push_back(m.emissivity(w, 0.5 * i * kDegree));
     for (int i = -356; i <= 356; ++i) {
       const double v = 0.25 * i * kDegree;
@@ -218,36 +212,6 @@ Named namedOf(const std::filesystem::path& file) {
   return own;
 }
 
-template <class T>
-std::optional<T> choiceOf(const Options& o, const char* option, const std::vector<std::pair<const char*, T>>& choices) {
-  if (!o.has(option)) return std::nullopt;
-  std::vector<std::string> names;
-  for (const auto& [name, value] : choices) {
-    if (o.value(option) == name) return value;
-    names.emplace_back(name);
-  }
-  throw unknownWord({option, 0, 0, -1}, "it cannot be", o.value(option), names);
-}
-
-/// What is said of a spectrum where its file does not.
-ImportChoices choicesOf(const Options& o) {
-  ImportChoices c;
-  c.axis = choiceOf<SpectralAxis>(o, "--axis",
-                                  {{"um", SpectralAxis::Micrometre},
-                                   {"nm", SpectralAxis::Nanometre},
-                                   {"angstrom", SpectralAxis::Angstrom},
-                                   {"1/cm", SpectralAxis::PerCentimetre},
-                                   {"cm-1", SpectralAxis::PerCentimetre},
-                                   {"eV", SpectralAxis::ElectronVolt}});
-  c.scale = choiceOf<double>(o, "--unit", {{"%", 0.01}, {"1", 1.0}});
-  c.quantity = choiceOf<SpectrumQuantity>(
-      o, "--quantity",
-      {{"reflectance", SpectrumQuantity::Reflectance}, {"transmittance", SpectrumQuantity::Transmittance}, {"emissivity", SpectrumQuantity::Emissivity}});
-  if (o.has("--column")) c.column = static_cast<int>(std::clamp(readRange(o.value("--column"), "--column").first, 0LL, 100000LL));
-  c.wavelengths = o.value("--wavelengths");
-  return c;
-}
-
 void list(const Libraries& libraries) {
   for (const auto& [title, folder] :
        {std::pair{"materials", libraries.materials}, std::pair{"substances (what 'index:' names)", libraries.materials.parent_path() / "substances"}}) {
@@ -262,24 +226,19 @@ void list(const Libraries& libraries) {
   }
 }
 
-}  // namespace
+struct MaterialWish {
+  std::string out;
+  ImportChoices choices;  ///< what is said of a spectrum where its file does not
+};
 
-int materialCommand(const Arguments& arguments) {
-  const Options o("material", arguments, {{"--out"}, {"--axis"}, {"--unit"}, {"--quantity"}, {"--column"}, {"--wavelengths"}}, 0, 1);
+int show(const MaterialWish& w, const std::string& word) {
   const Libraries libraries = findLibraries();
-  if (o.words().empty()) {
-    for (const char* option : {"--out", "--axis", "--unit", "--quantity", "--column", "--wavelengths"})
-      if (o.has(option)) throw UserError({option, 0, 0, -1}, "of which material?", std::string("material NAME|FILE ") + option + " ...", "name it");
-    list(libraries);
-    return 0;
-  }
-  const std::string& word = o.words()[0];
   const std::filesystem::path file = word;
   std::error_code ignored;
   Named own{word};
   if (std::filesystem::is_regular_file(file, ignored)) {
-    if (const auto imported = importedMaterial(file, choicesOf(o))) {
-      if (o.has("--out"))
+    if (const auto imported = importedMaterial(file, w.choices)) {
+      if (!w.out.empty())
         throw UserError({"--out", 0, 0, -1}, "charts of a file of others", "one of this project's",
                         "keep what 'pitviper material " + word + "' prints in a file, and show that");
       for (const std::string& note : imported->notes) std::fprintf(stderr, "%s: note: %s\n", file.string().c_str(), note.c_str());
@@ -288,7 +247,7 @@ int materialCommand(const Arguments& arguments) {
     }
     own = namedOf(file);
     own.materials = "materials: {" + asYaml(own.name) + ": {file: " + asYaml(std::filesystem::absolute(file).string()) + "}}\n";
-  } else if (const ImportChoices choices = choicesOf(o); choices.axis || choices.scale || choices.quantity || choices.column || !choices.wavelengths.empty()) {
+  } else if (const ImportChoices& c = w.choices; c.axis || c.scale || c.quantity || c.column || !c.wavelengths.empty()) {
     throw UserError({word, 0, 0, -1}, "there is no such file", "the file of a spectrum", "check the name");
   } else if (const auto known = libraries.materials / (word + ".yaml"); std::filesystem::is_regular_file(known, ignored)) {
     own = namedOf(known);
@@ -302,13 +261,57 @@ int materialCommand(const Arguments& arguments) {
   std::printf("%s: %s", own.name.c_str(), describe(*s.material, own.description).c_str());
   std::printf("%s", byTemperature(*s.material).c_str());
   std::printf("%s", lossOf(own, *s.material, libraries).c_str());
-  if (!o.has("--out")) return 0;
-  const std::filesystem::path out = o.value("--out");
+  if (w.out.empty()) return 0;
+  const std::filesystem::path out = w.out;
   ensureWritableFolder(out);
   drawCharts(chartsOf(*s.material, own.name), 3, out / (own.name + ".png"));
   draw(s, own.name, out);
   std::printf("\n%s and %s written\n", (out / (own.name + ".png")).string().c_str(), (out / (own.name + "_sphere.png")).string().c_str());
   return 0;
+}
+
+}  // namespace
+
+CommandLine materialCommand() {
+  const auto w = std::make_shared<MaterialWish>();
+  ImportChoices& c = w->choices;
+  const std::string own = "NAME|FILE";
+  return {
+      "material",
+      "[NAME|FILE]",
+      "what a surface or a substance of the library, or of a file, is: tables, charts, a sphere of it",
+      "Without an argument: the library's materials and substances. NAME: one of them; FILE.yaml: a material of your own (what stands below its name under "
+      "'materials:'). Prints reflectance, emissivity and transmittance by wavelength and view angle.\n"
+      "FILE of others: refractiveindex.info's YAML, or a spectrum in columns (ECOSTRESS, the USGS's libraries 6 and 7, field and Fourier spectrometers' text, "
+      "JCAMP-DX): prints it as a substance or a material, to be kept in a file of its own, and says on the standard error what it changed or took for granted. "
+      "What the words above a spectrum's numbers leave open is refused; these say it, and count before those words:",
+      {{"--axis", "UNIT", "of the wavelengths: wavenumbers and photon energies too",
+        oneOf(c.axis, {{"um", SpectralAxis::Micrometre},
+                       {"nm", SpectralAxis::Nanometre},
+                       {"angstrom", SpectralAxis::Angstrom},
+                       {"1/cm", SpectralAxis::PerCentimetre},
+                       {"cm-1", SpectralAxis::PerCentimetre},
+                       {"eV", SpectralAxis::ElectronVolt}}),
+        own},
+       {"--unit", "UNIT", "of the values: per cent, or shares of 1", oneOf(c.scale, {{"%", 0.01}, {"1", 1.0}}), own},
+       {"--quantity", "WHAT", "emissivity: of an opaque surface, 1 - reflectance",
+        oneOf(
+            c.quantity,
+            {{"reflectance", SpectrumQuantity::Reflectance}, {"transmittance", SpectrumQuantity::Transmittance}, {"emissivity", SpectrumQuantity::Emissivity}}),
+        own},
+       {"--column", "N", "the column of the values, counted from 1", number(c.column, {1, 100000}), own},
+       {"--wavelengths", "FILE", "the wavelengths of a file with one column, as the USGS's library 7 keeps them", into(c.wavelengths), own},
+       {"--out", "FOLDER",
+        "also NAME.png, charts of spectra, emissivity by angle and reflection of light from 45 degrees (needs VTK), and NAME_sphere.png, a sphere of it under "
+        "a "
+        "sun and a dome of daylight as an eye sees it (of materials without data there: at 320 K in the infrared), in FOLDER; created if missing",
+        into(w->out), own}},
+      "",
+      [w](const Arguments& words) {
+        if (!words.empty()) return show(*w, words[0]);
+        list(findLibraries());
+        return 0;
+      }};
 }
 
 }  // namespace pitviper

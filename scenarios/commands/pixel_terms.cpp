@@ -77,11 +77,10 @@ std::vector<size_t> toldOutputs(const ExrImage& frame, const Camera& camera) {
 
 }  // namespace
 
-void printPixelTerms(const ExrImage& frame, const std::string& file, int column, int row, const std::string& scenario,
-                     const std::vector<std::string>& changes, const std::vector<std::filesystem::path>& roots) {
-  const Simulation sim = readScenario(scenario, changes, findLibraries(), roots);
+void printPixelTerms(const ExrImage& frame, const std::string& file, int column, int row, const ScenarioWish& scenario) {
+  const Simulation sim = scenario.read();
   if (textAttribute(frame, kScenarioHash) != sim.sha256 || textAttribute(frame, kScenarioContent) != sim.content)
-    throw UserError({file, 0, 0, -1}, "not a frame of '" + scenario + "' as it is now", "the scenario that the frame was drawn from, with the same --set",
+    throw UserError({file, 0, 0, -1}, "not a frame of '" + scenario.file + "' as it is now", "the scenario that the frame was drawn from, with the same --set",
                     "name that one, or draw the frame again");
   const Camera camera = cameraOf(frame, file, sim);
   const GlContext context;

@@ -4,11 +4,10 @@
 
 #include "scenarios/commands/bench_timing.hpp"
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/options.hpp"
 #include "scenarios/commands/plan_report.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/commands/run_notes.hpp"
-#include "scenarios/reader/scenario_reader.hpp"
+#include "scenarios/commands/scenario_wish.hpp"
 #include "sim/frame/limits_check.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/render/buffered_pass.hpp"
@@ -57,14 +56,16 @@ std::string ladderOf(const Simulation& sim, const Camera& camera, const Plan& pl
   return ladderText(plans, plan.accuracy, subpixels);
 }
 
-}  // namespace
+struct PlanWish {
+  ScenarioWish scenario;
+  bool asJson = false, speed = false, shaders = false;
+};
 
-int planCommand(const Arguments& arguments) {
-  const Options o("plan", arguments, {{"--set", true, true}, rootOption(), {"--json", false}, {"--speed", false}, {"--shaders", false}}, 1, 1);
-  const Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries(), rootsOf(o));
+int plan(const PlanWish& w) {
+  const Simulation sim = w.scenario.read();
   std::optional<GlContext> context;
-  if (o.has("--speed") || o.has("--shaders")) context.emplace();
-  const double yardstick = o.has("--speed") ? yardstickRate() : 0.0;
+  if (w.speed || w.shaders) context.emplace();
+  const double yardstick = w.speed ? yardstickRate() : 0.0;
   std::string json;
   auto tell = [&](const std::string& name, const Eye& eye, double subpixels) {
     const auto start = std::chrono::steady_clock::now();
@@ -87,9 +88,9 @@ int planCommand(const Arguments& arguments) {
                         : describe(sim.limits),
                     eye.camera};
     if (yardstick > 0.0) told.framesPerSecond = predictedRate(plan, subpixels, yardstick, buffered);
-    if (o.has("--json")) json += (json.empty() ? "" : ", ") + planJson(told);
+    if (w.asJson) json += (json.empty() ? "" : ", ") + planJson(told);
     else std::printf("%s%s\n", planText(told).c_str(), eye.camera && plan.accuracy > 0.0 ? ladderOf(sim, *eye.camera, plan, subpixels).c_str() : "");
-    if (o.has("--shaders")) {
+    if (w.shaders) {
       const auto pass = makeScenePass(sim, plan, shaderLibrary(), std::make_shared<const GpuScene>(sim), eye.camera && eye.camera->truth.any(), 1.0);
       for (const NamedProgram& p : pass->programs())
         if (p.name == "shading") std::printf("%s\n", p.text.c_str());
@@ -100,12 +101,31 @@ int planCommand(const Arguments& arguments) {
     tell("camera " + c.name, {&c, nullptr}, static_cast<double>(c.pinhole.width) * c.pinhole.height * c.samples * c.samples);
   }
   for (const Probe& p : sim.probes) tell("probe " + p.name, {nullptr, &p}, 3.0 * p.resolution * p.resolution);
-  if (o.has("--json")) std::printf("[%s]\n", json.c_str());
+  if (w.asJson) std::printf("[%s]\n", json.c_str());
   std::fflush(stdout);
   Notes notes;
   noteFog(sim, notes);
   noteFringes(sim, notes);
   return 0;
+}
+
+}  // namespace
+
+CommandLine planCommand() {
+  const auto w = std::make_shared<PlanWish>();
+  return {
+      "plan",
+      "SCENARIO.yaml",
+      "what a scenario's accuracy makes of it: terms, wavelengths, predicted error",
+      "Per camera and probe: how much of a pixel each term can be in each channel, which are kept and which dropped; into how many groups of wavelengths each "
+      "channel's integral goes, of how many the reference has, and the error predicted for lines of sight the groups were not fitted to. 'accuracy: 1 %' in "
+      "the scenario, or --set accuracy='0.1 %', asks for another. Plans are kept by content in $XDG_CACHE_HOME/pitviper (or ~/.cache/pitviper).",
+      joined({{"--json", "", "for programs: a list with an object per camera and probe", into(w->asJson)},
+              {"--speed", "", "also predicted frames a second, from a measured yardstick", into(w->speed)},
+              {"--shaders", "", "also the text of the shading program", into(w->shaders)}},
+             scenarioOptions(w->scenario)),
+      "",
+      [w](const Arguments& words) { return w->scenario.file = words[0], plan(*w); }};
 }
 
 }  // namespace pitviper

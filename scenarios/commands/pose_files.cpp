@@ -9,10 +9,10 @@
 
 namespace pitviper {
 
-void replayPoses(const Options& o, Simulation& sim) {
+void replayPoses(const std::vector<std::string>& files, Simulation& sim) {
   std::vector<std::string> names;
   for (const Camera& c : sim.cameras) names.push_back(posesFileName(c.name));
-  for (const std::string& file : o.values("--poses")) {
+  for (const std::string& file : files) {
     const Location where{"--poses " + file, 0, 0, -1};
     const std::string name = std::filesystem::path(file).filename().string();
     const auto at = std::find(names.begin(), names.end(), name);

@@ -2,16 +2,16 @@
 // Records of what points cameras: given with --poses, and left by runs.
 #include <filesystem>
 #include <string>
+#include <vector>
 
-#include "scenarios/commands/options.hpp"
 #include "scenarios/commands/run_notes.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/model/simulation.hpp"
 
 namespace pitviper {
 
-/// --poses FILE, repeatable: of each CAMERA_poses.csv its camera looks where that says. Errors: UserError.
-void replayPoses(const Options& options, Simulation& simulation);
+/// Of each CAMERA_poses.csv its camera looks where that says. Errors: UserError.
+void replayPoses(const std::vector<std::string>& files, Simulation& simulation);
 /// Whether a run leaves a record of it: something points it that is no record.
 bool leavesPoses(const Camera& camera);
 std::filesystem::path posesFileIn(const std::filesystem::path& folder, const Camera& camera);

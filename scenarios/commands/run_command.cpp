@@ -25,15 +25,12 @@
 namespace pitviper {
 namespace {
 
-RunRange framesWanted(const Options& o, const Simulation& sim) {
-  RunRange range{0, sim.time.frames - 1};
-  if (!o.has("--frames")) return range;
-  const auto [a, b] = readRange(o.value("--frames"), "--frames");
-  if (a < 0 || b < a || b >= sim.time.frames)
-    throw UserError({"--frames " + o.value("--frames"), 0, 0, -1}, "there is no such range of frames",
-                    "within 0:" + std::to_string(sim.time.frames - 1) + ", rising", "choose frames of the scenario's 'time.frames'");
-  return {static_cast<int>(a), static_cast<int>(b)};
-}
+struct RunWish {
+  DrawWish draw;
+  std::string frames;
+  HistoryWish history;
+  bool times = false, reports = false;
+};
 
 /// Probe readings as CSV, one file a probe.
 class ProbeTables {
@@ -87,47 +84,39 @@ void learn(const RunReport& report, Simulation& sim, int start, Notes& notes) {
     if (found == report.broken.end()) continue;
     const AuditTally& tally = report.audits.at(c.name);
     char text[400];
-    std::snprintf(text, sizeof text, "camera %s: an audit found %.2g %% in '%s', of %.2g %% asked; its plan learns that line and the run starts over (%d of %d)",
-                  c.name.c_str(), 100.0 * tally.largest, tally.channel.c_str(), 100.0 * tally.asked, start, kMostStarts);
+    std::snprintf(text, sizeof text,
+                  "camera %s: an audit found %.2g %% in '%s', of %.2g %% asked; its plan learns that line and the run starts over (%d of %d)", c.name.c_str(),
+                  100.0 * tally.largest, tally.channel.c_str(), 100.0 * tally.asked, start, kMostStarts);
     notes.say(text);
     c.learnt.insert(c.learnt.end(), found->second.begin(), found->second.end());
     c.plan.clear();  // what --plan gave does not hold
   }
 }
 
-}  // namespace
-
-int runCommand(const Arguments& arguments) {
-  std::vector<OptionSpec> specs{{"--out"}, {"--frames"}, {"--set", true, true}, rootOption(), {"--overwrite", false}, {"--plan", true, true}, {"--poses", true, true}, {"--timing", false}, {"--report", false}};
-  for (const OptionSpec& spec : pictureOptions()) specs.push_back(spec);
-  for (const OptionSpec& spec : historyOptions()) specs.push_back(spec);
-  const Options o("run", arguments, specs, 1, 1);
-  Simulation sim = readScenario(o.words()[0], o.values("--set"), findLibraries(), rootsOf(o));
-  refuseBeyondMemory(sim);
-  readPlans(o, sim);
-  replayPoses(o, sim);
-  const RunRange range = framesWanted(o, sim);
-  const HistoryWish history = readHistoryWish(o, sim);
-  PictureWish pictures = readPictureWish(o, sim);
-  if (o.has("--report") && !pictures.sheet) {
+int run(RunWish& w) {
+  Simulation sim = w.draw.read();
+  const auto [first, last] = framesWanted(w.frames, sim);
+  const RunRange range{first, last};
+  HistoryWish& history = w.history;
+  history.settle(sim, w.reports);
+  PictureWish& pictures = w.draw.pictures;
+  pictures.settle(sim);
+  if (w.reports && !pictures.sheet) {
     pictures.sheet = true;
-    if (!o.has("--scale") && !pictures.previews) pictures.style.ownScale = false;
+    if (!pictures.scaled && !pictures.previews) pictures.style.ownScale = false;
   }
-  const std::filesystem::path out = o.value("--out", "out");
+  const std::filesystem::path out = w.draw.out.empty() ? "out" : w.draw.out;
   SinkPlace place{out, {}};
   const auto sinksOf = [&] { return makeSinks(sim, place, pictures); };
-  refuseClashes(sim, range, ownFiles(sim, out, o.has("--report"), history), sinksOf());
-  if (!o.has("--overwrite")) {
-    refuseForeignFiles(sim, range, ownFiles(sim, out, o.has("--report"), history), sinksOf());
+  refuseClashes(sim, range, ownFiles(sim, out, w.reports, history), sinksOf());
+  if (!w.draw.overwrites) {
+    refuseForeignFiles(sim, range, ownFiles(sim, out, w.reports, history), sinksOf());
     // And again for each: another run may have put it there meanwhile.
     place.mayReplace = [&sim](const std::filesystem::path& file) { refuseForeignFile(file, sim); };
   }
   ensureWritableFolder(out);
   Notes notes;
-  noteMeshes(sim, notes);
-  noteCuts(sim, notes);
-  noteFog(sim, notes);
-  noteFringes(sim, notes);
+  noteScenario(sim, notes);
   noteSampling(sim, notes);
   noteNear(sim, sim.time.at(range.first), notes);
   notePointing(sim, range.first, notes);
@@ -140,14 +129,14 @@ int runCommand(const Arguments& arguments) {
     progress.phase("preparing");
     ProbeTables probes(sim);
     std::optional<RunReportPage> page;
-    if (o.has("--report")) page.emplace(sim);
+    if (w.reports) page.emplace(sim);
     std::optional<HistoryFiles> flown;
     if (history.tables || history.picture) flown.emplace(sim, out, history);
     RunTotal total;
     Stopwatch writing;
     std::optional<Timing> timing;
     const ProgramCount before = programsSoFar();
-    if (o.has("--timing")) timing.emplace();
+    if (w.times) timing.emplace();
     const auto sinks = sinksOf();
     for (const auto& placed : sinks) placed.sink->start();
     const RunReport report = runFrames(
@@ -203,6 +192,35 @@ int runCommand(const Arguments& arguments) {
     }
     return 0;
   }
+}
+
+}  // namespace
+
+CommandLine runCommand() {
+  const auto w = std::make_shared<RunWish>();
+  return {
+      "run",
+      "SCENARIO.yaml",
+      "render a scenario to calibrated EXR frames",
+      "Renders the scenario's frames: one EXR per camera and frame in FOLDER, named <camera>_<frame>.exr, with a float layer <channel>.<quantity> per output, "
+      "truth.* layers and a grey picture for programs that know nothing of layers; other formats by 'sinks: [{sink: files, format: tiff}]'; probes write "
+      "<probe>.csv; a camera with 'spectral_image:' also writes <camera>_<frame>_spectral.exr for pitviper integrate.",
+      joined({{"--out", "FOLDER", "where to write (default 'out'); created if missing", into(w->draw.out)},
+              {"--frames", "A:B", "frames A to B only, both included (or one: A); counted from 0: --frames 0:9 draws ten", into(w->frames)},
+              {"--report", "", "also report.html: scenario, plans, sensors, sheet, what its layers and targets do over time, notes; all in one file",
+               into(w->reports)},
+              {"--no-history", "", "without history.csv and encounters.csv, which are written where something moves", into(w->history.none)},
+              {"--trajectories", "", "also trajectories.png, what was flown (needs VTK; with --report too)", into(w->history.mustDraw)},
+              {"--timing", "",
+               "says at the end how long planning, tables, programs and the first frame took, and where the time of frames after it went: visibility, shadows, "
+               "air, shading, readback, files; drawing then waits for each part, which makes it somewhat slower",
+               into(w->times)}},
+             drawOptions(w->draw)),
+      "Files of the same names are replaced where they are of the same scenario (its text, what it extends and includes, --set); another's is refused before "
+      "anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"
+      "On a terminal a bar shows how far it is; elsewhere lines come on stderr, the first after 3 s, each next after as long again as all before.\n"
+      "The last lines sum up: frames, time, frames a second, and for each camera what its plan expects to be off by at most.",
+      [w](const Arguments& words) { return w->draw.scenario.file = words[0], run(*w); }};
 }
 
 }  // namespace pitviper

@@ -13,6 +13,36 @@
 #include "sim/plan/sampling_check.hpp"
 
 namespace pitviper {
+namespace {
+
+/// What meshes from files had that was mended, and where they lie far from their file's origin: once a file.
+void noteMeshes(const Simulation& sim, Notes& notes) {
+  std::set<std::string> told;
+  for (const Entity& e : sim.entities) {
+    const auto say = [&](const std::string& note) {
+      if (told.insert(e.meshFile + note).second) notes.say("mesh of '" + e.name + "' (" + e.meshFile + "): " + note);
+    };
+    for (const std::string& note : e.mesh->notes) say(note);
+    if (const glm::dvec3& o = e.mesh->offset_m; o != glm::dvec3(0.0))
+      say(print("it lies about (%.10g, %.10g, %.10g) m forward, left and up of its file's origin, and is held from there, in double precision; 'position' places "
+                "the file's origin, about which it turns",
+                o.x, o.y, o.z));
+  }
+}
+
+/// One line for each channel whose response ends before its own end, where the scene has no data.
+void noteCuts(const Simulation& sim, Notes& notes) {
+  std::set<std::string> told;
+  auto note = [&](const std::string& owner, const std::vector<ChannelOutput>& outputs) {
+    for (const ChannelOutput& o : outputs)
+      if (!o.cut.empty() && told.insert(owner + o.channel).second)
+        notes.say(print("%s, channel '%s': %s", owner.c_str(), o.channel.c_str(), o.cut.c_str()));
+  };
+  for (const Camera& c : sim.cameras) note("camera " + c.name, c.outputs);
+  for (const Probe& p : sim.probes) note("probe " + p.name, p.outputs);
+}
+
+}  // namespace
 
 void Notes::say(const std::string& text) {
   std::fprintf(stderr, "note: %s\n", text.c_str());
@@ -69,29 +99,11 @@ void noteNear(const Simulation& sim, double time_s, Notes& notes) {
   }
 }
 
-void noteMeshes(const Simulation& sim, Notes& notes) {
-  std::set<std::string> told;
-  for (const Entity& e : sim.entities) {
-    const auto say = [&](const std::string& note) {
-      if (told.insert(e.meshFile + note).second) notes.say("mesh of '" + e.name + "' (" + e.meshFile + "): " + note);
-    };
-    for (const std::string& note : e.mesh->notes) say(note);
-    if (const glm::dvec3& o = e.mesh->offset_m; o != glm::dvec3(0.0))
-      say(print("it lies about (%.10g, %.10g, %.10g) m forward, left and up of its file's origin, and is held from there, in double precision; 'position' places "
-                "the file's origin, about which it turns",
-                o.x, o.y, o.z));
-  }
-}
-
-void noteCuts(const Simulation& sim, Notes& notes) {
-  std::set<std::string> told;
-  auto note = [&](const std::string& owner, const std::vector<ChannelOutput>& outputs) {
-    for (const ChannelOutput& o : outputs)
-      if (!o.cut.empty() && told.insert(owner + o.channel).second)
-        notes.say(print("%s, channel '%s': %s", owner.c_str(), o.channel.c_str(), o.cut.c_str()));
-  };
-  for (const Camera& c : sim.cameras) note("camera " + c.name, c.outputs);
-  for (const Probe& p : sim.probes) note("probe " + p.name, p.outputs);
+void noteScenario(const Simulation& sim, Notes& notes) {
+  noteMeshes(sim, notes);
+  noteCuts(sim, notes);
+  noteFog(sim, notes);
+  noteFringes(sim, notes);
 }
 
 void sayScatteredAgain(const std::string& camera, const ScatteredAgain& s, Notes& notes) {

@@ -28,10 +28,8 @@ void noteFog(const Simulation& simulation, Notes& notes);
 void noteFringes(const Simulation& simulation, Notes& notes);
 /// One line for each camera that begins with part of a body nearer than it draws: a dome in front of it, for instance.
 void noteNear(const Simulation& simulation, double time_s, Notes& notes);
-/// What meshes from files had that was mended, and where they lie far from their file's origin: once a file.
-void noteMeshes(const Simulation& simulation, Notes& notes);
-/// One line for each channel whose response ends before its own end, where the scene has no data.
-void noteCuts(const Simulation& simulation, Notes& notes);
+/// What is to be said of a scenario before it is drawn: what meshes had that was mended, responses that end where the scene has no data, fog and fringes.
+void noteScenario(const Simulation& simulation, Notes& notes);
 void sayScatteredAgain(const std::string& camera, const ScatteredAgain& scattered, Notes& notes);
 
 /// What frames say of themselves, each thing once.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "scenarios/commands/pose_files.hpp"
 #include "sim/frame/file_owner.hpp"
 #include "sim/frame/spectral_image.hpp"
 #include "sim/image/colour_map.hpp"
@@ -9,6 +10,7 @@
 #include "sim/parameters/table.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/plan/plan_origin.hpp"
+#include "sim/run/memory_need.hpp"
 #include "sim/stream/sink_models.hpp"
 
 namespace pitviper {
@@ -17,9 +19,9 @@ namespace {
 Location ofOption(const std::string& option) { return {option, 0, 0, -1}; }
 
 /// "layer=a:b" in the layer's unit.
-PreviewRanges previewRanges(const Options& o, const Simulation& sim) {
+PreviewRanges previewRanges(const std::vector<std::string>& texts, const Simulation& sim) {
   PreviewRanges ranges;
-  for (const auto& text : o.values("--preview-range")) {
+  for (const auto& text : texts) {
     const Location where = ofOption("--preview-range " + text);
     const size_t equals = text.find('='), colon = text.find(':', equals == std::string::npos ? 0 : equals);
     if (equals == std::string::npos || colon == std::string::npos)
@@ -47,40 +49,9 @@ constexpr size_t kMostNames = 200000;
 /// Kinds of frames of a camera.
 std::vector<const char*> kindsOf(const Camera& c) { return c.spectralImage ? std::vector<const char*>{"", kSpectralKind} : std::vector<const char*>{""}; }
 
-}  // namespace
-
-std::vector<OptionSpec> pictureOptions() {
-  return {{"--preview", false}, {"--preview-range", true, true}, {"--video"}, {"--sheet", false}, {"--scale"}, {"--palette"}, {"--plain", false}, {"--truth", false}};
-}
-
-PictureWish readPictureWish(const Options& o, const Simulation& sim) {
-  PictureWish wish;
-  wish.style.ranges = previewRanges(o, sim);
-  wish.style.ownScale = true;
-  if (o.has("--scale")) readScale(o.value("--scale"), ofOption("--scale " + o.value("--scale")), wish.style);
-  if (o.has("--palette")) {
-    std::vector<std::string> names = colourMapNames();
-    names.insert(names.begin(), "auto");
-    wish.style.palette = o.value("--palette");
-    if (std::find(names.begin(), names.end(), wish.style.palette) == names.end())
-      throw unknownWord(ofOption("--palette " + wish.style.palette), "there is no palette", wish.style.palette, names);
-  }
-  wish.style.plain = o.has("--plain");
-  wish.style.truth = o.has("--truth");
-  wish.sheet = o.has("--sheet");
-  if (o.has("--video")) {
-    wish.video = o.value("--video");
-    readVideoName(wish.video, ofOption("--video " + wish.video));
-  }
-  const bool ofStyle = !wish.style.ranges.empty() || o.has("--scale") || o.has("--palette") || wish.style.plain || wish.style.truth;
-  wish.previews = o.has("--preview") || (ofStyle && !wish.sheet && wish.video.empty());
-  // Of one film one scale: frames that differ in brightness are to look so.
-  if (!o.has("--scale") && (wish.sheet || !wish.video.empty())) wish.style.ownScale = false;
-  return wish;
-}
-
-void readPlans(const Options& o, Simulation& sim) {
-  for (const std::string& name : o.values("--plan")) {
+/// Each is the plan of the camera that it is named after.
+void readPlans(const std::vector<std::string>& names, Simulation& sim) {
+  for (const std::string& name : names) {
     const std::filesystem::path file = name;
     const Location where{name, 0, 0, -1};
     const auto camera = std::find_if(sim.cameras.begin(), sim.cameras.end(), [&](const Camera& c) { return c.name == file.stem().string(); });
@@ -90,9 +61,66 @@ void readPlans(const Options& o, Simulation& sim) {
     camera->planFile = name;
     if (!camera->spectral.reference) continue;  // what draws by it looks whether it is its own
     if (const auto origin = readOrigin(camera->plan)) drawOnLinesOf(*camera, *origin);
-    else throw UserError(where, "not a plan, or not one that says what it was made for", "the plan that a run of this scenario wrote, whole",
-                         "name the .plan file whose pictures the reference is to be held beside");
+    else
+      throw UserError(where, "not a plan, or not one that says what it was made for", "the plan that a run of this scenario wrote, whole",
+                      "name the .plan file whose pictures the reference is to be held beside");
   }
+}
+
+}  // namespace
+
+void PictureWish::settle(const Simulation& sim) {
+  style.ranges = previewRanges(ranges, sim);
+  const bool ofStyle = !ranges.empty() || scaled || coloured || style.plain || style.truth;
+  previews = previews || (ofStyle && !sheet && video.empty());
+  // Of one film one scale: frames that differ in brightness are to look so.
+  if (!scaled && (sheet || !video.empty())) style.ownScale = false;
+}
+
+std::vector<Option> drawOptions(DrawWish& w) {
+  PictureWish& p = w.pictures;
+  std::vector<std::string> palettes = colourMapNames();
+  palettes.insert(palettes.begin(), "auto");
+  const auto colour = [&p, palettes](const std::string& text, const Location& where) {
+    if (std::find(palettes.begin(), palettes.end(), text) == palettes.end()) throw unknownWord(where, "there is no palette", text, palettes);
+    p.style.palette = text, p.coloured = true;
+  };
+  const auto scale = [&p](const std::string& text, const Location& where) { readScale(text, where, p.style), p.scaled = true; };
+  const auto video = [&p](const std::string& text, const Location& where) { readVideoName(text, where), p.video = text; };
+  return joined(
+      scenarioOptions(w.scenario),
+      std::vector<Option>{
+          {"--plan", "FILE...",
+           "draws a camera with the plan of another run of this scenario, FOLDER/CAMERA.plan: the same scenario and plan give the same bytes; with --set "
+           "accuracy=reference the reference of that run, along its lines; of anything else's it is refused",
+           into(w.plans)},
+          {"--poses", "FILE...", "CAMERA_poses.csv, as a run with a gimbal leaves it: the camera looks where that says, frame by frame", into(w.poses)},
+          {"--overwrite", "", "also replaces files of other scenarios, and files that are not of this program", into(w.overwrites)},
+          {"", "", "Pictures", {}},
+          {"--preview", "", "also a PNG per frame: every channel with colour bar and unit", into(p.previews)},
+          {"--preview-range", "LAYER=LOW:HIGH...",
+           "ends of a layer's colour bar, in its unit (implies --preview). Without it the bar runs from the 0.5 to the 99.8 percentile, and is bent where a "
+           "few "
+           "bright things would hide the rest",
+           into(p.ranges)},
+          {"--video", "FILE.mp4", "also a film of the previews (of several cameras one each, FILE_<camera>.mp4); by ffmpeg", {video}},
+          {"--sheet", "", "also <camera>_sheet.png: up to twenty pictures of the first layer, evenly over the run", into(p.sheet)},
+          {"--scale",
+           "WHICH",
+           "of colour bars. frame: each picture its own (previews unless given); run: one for all, drawn when the run ends (films and sheets unless given); "
+           "LOW:HIGH: these ends, in the layers' unit",
+           {scale}},
+          {"--palette", "NAME", "auto: white_hot below 0.9 um, else thermal", {colour, listed(palettes)}},
+          {"--plain", "", "pixels alone, one to one: no bar, no words", into(p.style.plain)},
+          {"--truth", "", "truth layers too", into(p.style.truth)}});
+}
+
+Simulation DrawWish::read() const {
+  Simulation sim = scenario.read();
+  refuseBeyondMemory(sim);
+  readPlans(plans, sim);
+  replayPoses(poses, sim);
+  return sim;
 }
 
 std::vector<PlacedSink> makeSinks(const Simulation& sim, const SinkPlace& place, const PictureWish& pictures) {
@@ -114,7 +142,9 @@ std::vector<PlacedSink> makePictures(const Simulation& sim, const SinkPlace& pla
   if (pictures.previews) users.push_back(previewFiles(place));
   if (pictures.sheet) users.push_back(contactSheets(place));
   if (!pictures.video.empty()) users.push_back(videoFiles(sim, place, pictures.video, 0.0));
-  sinks.push_back({makePictureSink(pictures.style, std::move(users), place), ofOption(pictures.previews ? "--preview" : pictures.sheet ? "--sheet" : "--video")});
+  sinks.push_back({makePictureSink(pictures.style, std::move(users), place), ofOption(pictures.previews ? "--preview"
+                                                                                      : pictures.sheet  ? "--sheet"
+                                                                                                        : "--video")});
   return sinks;
 }
 

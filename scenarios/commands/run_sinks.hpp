@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "scenarios/commands/options.hpp"
+#include "scenarios/commands/scenario_wish.hpp"
 #include "sim/model/simulation.hpp"
 #include "sim/run/run.hpp"
 #include "sim/stream/picture_sink.hpp"
@@ -18,23 +18,31 @@ struct PlacedSink {
 
 /// What the command line asks for of pictures.
 struct PictureWish {
-  PictureStyle style;
-  bool previews = false, sheet = false;
-  std::string video;  ///< name of its file; empty: none
+  PictureStyle style = {.ownScale = true};
+  bool previews = false, sheet = false, scaled = false, coloured = false;
+  std::string video = {};                ///< name of its file; empty: none
+  std::vector<std::string> ranges = {};  ///< "layer=low:high"
   bool any() const { return previews || sheet || !video.empty(); }
+  /// What the words mean together, and of this scenario's layers. Errors: UserError.
+  void settle(const Simulation& simulation);
 };
 
-/// Options of pictures, for a command's list.
-std::vector<OptionSpec> pictureOptions();
-/// What they say. Errors: UserError.
-PictureWish readPictureWish(const Options& options, const Simulation& simulation);
+/// What `run` and `stream` draw.
+struct DrawWish {
+  ScenarioWish scenario;
+  std::string out;  ///< empty: not said
+  std::vector<std::string> plans, poses;
+  bool overwrites = false;
+  PictureWish pictures;
+  /// The scenario, with plans and poses given. Errors: UserError.
+  Simulation read() const;
+};
+std::vector<Option> drawOptions(DrawWish& wish);
 
 /// Those of the scenario, or files; and the pictures wished for.
 std::vector<PlacedSink> makeSinks(const Simulation& simulation, const SinkPlace& place, const PictureWish& pictures);
 /// The pictures wished for alone.
 std::vector<PlacedSink> makePictures(const Simulation& simulation, const SinkPlace& place, const PictureWish& pictures);
-/// `--plan FILE`: each is the plan of the camera that it is named after. Errors: UserError.
-void readPlans(const Options& options, Simulation& simulation);
 
 /// Files that a run writes besides its sinks'.
 using OwnFiles = std::vector<std::filesystem::path>;

@@ -7,7 +7,6 @@
 #include "scenarios/commands/bench_timing.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/progress.hpp"
-#include "scenarios/reader/scenario_reader.hpp"
 #include "sim/camera/camera_renderer.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/run/camera_line.hpp"
@@ -19,9 +18,8 @@ namespace {
 constexpr double kNominalRate = 6e6;
 }  // namespace
 
-std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes, const std::vector<std::filesystem::path>& roots,
-                                       int frames) {
-  const Simulation sim = readScenario(scenario, changes, findLibraries(), roots);
+std::vector<ScenarioRate> timeScenario(const ScenarioWish& scenario, int frames) {
+  const Simulation sim = scenario.read();
   const auto scene = std::make_shared<const GpuScene>(sim);
   Yardstick yardstick;
   std::vector<ScenarioRate> rates;

@@ -1,9 +1,10 @@
 #pragma once
 // Frames a second of a scenario as it is: drawn, read back and resolved in memory, no files; beside the yardstick.
-#include <filesystem>
 #include <map>
 #include <string>
 #include <vector>
+
+#include "scenarios/commands/scenario_wish.hpp"
 
 namespace pitviper {
 
@@ -17,8 +18,7 @@ struct ScenarioRate {
 };
 
 /// Every camera over the scenario's frames one after the other, from the first again where there are not so many.
-std::vector<ScenarioRate> timeScenario(const std::string& scenario, const std::vector<std::string>& changes,
-                                       const std::vector<std::filesystem::path>& roots, int frames);
+std::vector<ScenarioRate> timeScenario(const ScenarioWish& scenario, int frames);
 
 std::string rateTable(const std::vector<ScenarioRate>& rates);
 

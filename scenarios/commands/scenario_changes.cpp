@@ -194,23 +194,23 @@ const std::vector<std::string>& scenarioChangeNames() {
   return names;
 }
 
-std::vector<ScenarioChange> changesOf(const std::string& scenario, const std::vector<std::string>& overrides, const std::vector<std::filesystem::path>& roots) {
+std::vector<ScenarioChange> changesOf(const ScenarioWish& scenario) {
   const Libraries libraries = findLibraries();
-  const Simulation before = readScenario(scenario, overrides, libraries, roots);
+  const Simulation before = scenario.read();
   std::string text;
-  loadYaml(scenario, {scenario, 0, 0, -1}, &text);
+  loadYaml(scenario.file, {scenario.file, 0, 0, -1}, &text);
   const std::vector<ContentKey> keys = keysOf(before);
-  const Value tree = expandScenario(text, scenario, std::filesystem::path(scenario).parent_path(), overrides, libraries, roots).tree;
+  const Value tree = expandScenario(text, scenario.file, std::filesystem::path(scenario.file).parent_path(), scenario.changes, libraries, scenario.roots).tree;
   std::vector<ScenarioChange> changes;
   for (const ChangeKind& kind : kKinds) {
     ScenarioChange change{kind.name, {}, kind.without};
     bool tried = false;
     for (const Edit& edit : kind.edits(tree, before)) {
-      std::vector<std::string> all = overrides;
-      all.push_back(edit.set);
+      ScenarioWish edited = scenario;
+      edited.changes.push_back(edit.set);
       std::string why;
       try {
-        if (keysOf(readScenario(scenario, all, libraries, roots)) == keys) why = edit.words + " changes nothing";
+        if (keysOf(edited.read()) == keys) why = edit.words + " changes nothing";
       } catch (const UserError& e) {
         why = e.what();
       }

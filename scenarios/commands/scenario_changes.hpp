@@ -1,8 +1,9 @@
 #pragma once
 // What a user changes and looks again: six small edits of any scenario, as --set has them.
-#include <filesystem>
 #include <string>
 #include <vector>
+
+#include "scenarios/commands/scenario_wish.hpp"
 
 namespace pitviper {
 
@@ -17,6 +18,6 @@ const std::vector<std::string>& scenarioChangeNames();
 
 /// Each change once, of the first place that can have it: of a body that a camera looks at before others. Each has been read: the scenario with it is good, and
 /// its pictures are others. Errors: UserError as of reading the scenario itself.
-std::vector<ScenarioChange> changesOf(const std::string& scenario, const std::vector<std::string>& overrides, const std::vector<std::filesystem::path>& roots);
+std::vector<ScenarioChange> changesOf(const ScenarioWish& scenario);
 
 }  // namespace pitviper

@@ -61,7 +61,7 @@ TEST(MeansSink, TakesEveryFrame) {
   const TemporaryFolder folder;
   const std::string scenario = folder.put("s.yaml", kScene + "sinks: [{sink: means, folder: deep, factor: 2}]\n");
   const std::filesystem::path out = folder.path() / "out";
-  ASSERT_EQ(runCommand({scenario, "--out", out.string()}), 0);
+  ASSERT_EQ(perform(runCommand(), {scenario, "--out", out.string()}), 0);
   std::ifstream in(out / "deep/means.csv");
   std::string line;
   std::vector<double> means;
@@ -97,7 +97,7 @@ TEST(SinkModels, EachHasFilesOfItsOwn) {
     Arguments arguments{folder.put("s.yaml", kScene + "sinks: " + sinks + "\n"), "--out", out.string()};
     arguments.insert(arguments.end(), more.begin(), more.end());
     try {
-      runCommand(arguments);
+      perform(runCommand(), arguments);
     } catch (const UserError& e) {
       return e.what();
     }

@@ -21,12 +21,12 @@ std::string refusal(const std::filesystem::path& file) {
 
 TEST(MaterialCommand, ShowsLibraryAndSubstances) {
   testing::internal::CaptureStdout();
-  EXPECT_EQ(materialCommand({}), 0);
-  EXPECT_EQ(materialCommand({"gold"}), 0);
-  EXPECT_EQ(materialCommand({"sapphire"}), 0);
+  EXPECT_EQ(perform(materialCommand(), {}), 0);
+  EXPECT_EQ(perform(materialCommand(), {"gold"}), 0);
+  EXPECT_EQ(perform(materialCommand(), {"sapphire"}), 0);
   const std::string said = testing::internal::GetCapturedStdout();
   for (const char* part : {"sea_water", "substances", "Rakic", "| 0.55 |", "sapphire_facets"}) EXPECT_NE(said.find(part), std::string::npos) << part;
-  EXPECT_THROW(materialCommand({"golt"}), UserError);
+  EXPECT_THROW(perform(materialCommand(), {"golt"}), UserError);
 }
 
 TEST(MaterialCommand, ImportsOthersFiles) {
@@ -46,7 +46,7 @@ TEST(MaterialCommand, ImportsOthersFiles) {
   // What it writes is read.
   const std::string mine = folder.put("mine.yaml", spectrum->yaml);
   testing::internal::CaptureStdout();
-  EXPECT_EQ(materialCommand({mine}), 0);
+  EXPECT_EQ(perform(materialCommand(), {mine}), 0);
   EXPECT_NE(testing::internal::GetCapturedStdout().find("| 10.6 | 0.2"), std::string::npos);
   EXPECT_FALSE(importedMaterial(folder.put("own.yaml", "components: []\n")));
 }

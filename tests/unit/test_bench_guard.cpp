@@ -127,7 +127,7 @@ std::vector<ScenarioChange> changesOfText(const std::string& body, const std::st
   const TemporaryFolder folder;
   std::string camera = kCamera;
   camera.replace(camera.find('%'), 1, target);
-  return changesOf(folder.put("s.yaml", body + camera), {}, {});
+  return changesOf({folder.put("s.yaml", body + camera)});
 }
 
 std::string wordsOf(const std::vector<ScenarioChange>& changes, const std::string& name) {
