@@ -8,6 +8,7 @@
 
 #include "sim/model/atmosphere.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectrum.hpp"
@@ -85,11 +86,8 @@ class AbsorberTableReader {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool whole = end == text.data() + text.size() && std::isfinite(value);
     // What no double can hold, 1e999 or 1e-999, is refused as well.
-    if (!whole || error != std::errc() || value < low || value > high) {
-      std::array<char, 80> range{};
-      std::snprintf(range.data(), range.size(), "a number from %g to %g", low, high);
-      fail(column, what + " is '" + std::string(text) + "'", range.data());
-    }
+    if (!whole || error != std::errc() || value < low || value > high)
+      fail(column, what + " is '" + std::string(text) + "'", print("a number from %g to %g", low, high));
     return value;
   }
 

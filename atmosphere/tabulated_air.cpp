@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectrum.hpp"
@@ -46,12 +47,6 @@ void require(bool condition, const char* what) {
 double airMass(double elevation_rad) {
   const double degrees = std::max(elevation_rad, 0.0) * 180.0 / kPi;
   return 1.0 / (std::sin(std::max(elevation_rad, 0.0)) + 0.50572 * std::pow(degrees + 6.07995, -1.6364));
-}
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
 }
 
 }  // namespace
@@ -119,11 +114,11 @@ void TabulatedAir::requireBand(double low_um, double high_um, const std::string&
   constexpr double kRounding = 1e-9;
   if (low_um >= validLow_um() * (1.0 - kRounding) && high_um <= validHigh_um() * (1.0 + kRounding)) return;
   throw UserError({data_.file, data_.line, 1, -1},
-                  "the air covers " + number(validLow_um()) + " to " + number(validHigh_um()) + " um, not the " + number(low_um) + " to " + number(high_um) +
-                      " um of " + sensor,
+                  "the air covers " + briefNumber(validLow_um()) + " to " + briefNumber(validHigh_um()) + " um, not the " + briefNumber(low_um) + " to " +
+                      briefNumber(high_um) + " um of " + sensor,
                   "a table over all of it",
-                  "add rows from " + number(low_um) + " to " + number(high_um) + " um (" + number(std::floor(1e4 / high_um)) + " to " +
-                      number(std::ceil(1e4 / low_um)) + " 1/cm)");
+                  "add rows from " + briefNumber(low_um) + " to " + briefNumber(high_um) + " um (" + briefNumber(std::floor(1e4 / high_um)) + " to " +
+                      briefNumber(std::ceil(1e4 / low_um)) + " 1/cm)");
 }
 
 }  // namespace pitviper

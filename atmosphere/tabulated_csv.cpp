@@ -12,6 +12,7 @@
 #include "atmosphere/depth_fit.hpp"
 #include "sim/parameters/csv_separators.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/parameters/readable_text.hpp"
 #include "sim/radiometry/spectrum.hpp"
@@ -30,12 +31,6 @@ constexpr double kResolution = 1e-6;
 constexpr size_t kMostRows = 500000;
 constexpr std::uintmax_t kLargestFile = 64u << 20;  // as many rows of 130 characters
 constexpr size_t kLongestLine = 65536;
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 struct Entry {
   double wavelength_um = 0.0;
@@ -85,7 +80,7 @@ class Reader {
     if (error != std::errc() || !std::isfinite(v)) fail(cell.column, what + " is not finite", "a number such as 0.93 or 1.2e-3", "correct the cell");
     v *= column.scale;
     if (!(v >= low && v <= high))
-      fail(cell.column, what + " is out of range", "a number from " + number(low / column.scale) + " to " + number(high / column.scale),
+      fail(cell.column, what + " is out of range", "a number from " + briefNumber(low / column.scale) + " to " + briefNumber(high / column.scale),
            column.meaning == Meaning::Transmittance ? "give transmittance as a fraction, not in per cent" : "correct the cell or its unit");
     return v;
   }
@@ -139,7 +134,7 @@ class Reader {
     auto& list = table_[range];
     if (!list.empty()) {
       const double before = list.back().wavelength_um;
-      const std::string over = hasColumn(Meaning::Range) ? " at a range of " + number(range) + " km" : "";
+      const std::string over = hasColumn(Meaning::Range) ? " at a range of " + briefNumber(range) + " km" : "";
       if (entry.wavelength_um == before)
         fail(hasColumn(Meaning::Range) ? rangeColumn : axisColumn,
              "this " + std::string(axis.meaning == Meaning::Wavelength ? "wavelength" : "wavenumber") + over + " comes twice", "each once",
@@ -163,10 +158,10 @@ class Reader {
     for (const auto& [range, list] : table_) {
       for (size_t i = 0; i < list.size(); ++i)
         if (i >= first.size() || list[i].wavelength_um != first[i].wavelength_um)
-          fail(1, "a wavelength at a range of " + number(range) + " km that " + number(table_.begin()->first) + " km has not",
+          fail(1, "a wavelength at a range of " + briefNumber(range) + " km that " + briefNumber(table_.begin()->first) + " km has not",
                "the same wavelengths for all ranges", "add or remove rows", list[i].line);
       if (list.size() < first.size())
-        fail(1, "a wavelength at a range of " + number(table_.begin()->first) + " km that " + number(range) + " km has not",
+        fail(1, "a wavelength at a range of " + briefNumber(table_.begin()->first) + " km that " + briefNumber(range) + " km has not",
              "the same wavelengths for all ranges", "add or remove rows", first[list.size()].line);
     }
     if (first.size() < 2) fail(1, "one wavelength", "two or more", "add rows: nothing is known between the wavelengths of one", first[0].line);
@@ -198,10 +193,10 @@ class Reader {
     else data.exponents.assign(kFittedPowers.begin(), kFittedPowers.end());
     data.shortest_m = 1e3 * table_.begin()->first;
     data.longest_m = 1e3 * table_.rbegin()->first;
-    data.description = table_.size() == 1 ? "one range, " + number(table_.begin()->first) +
+    data.description = table_.size() == 1 ? "one range, " + briefNumber(table_.begin()->first) +
                                                 " km; exponential in range, which it is not in bands of lines: other ranges are worse"
-                                          : std::to_string(table_.size()) + " ranges, " + number(table_.begin()->first) + " to " +
-                                                number(table_.rbegin()->first) + " km; powers of range fitted";
+                                          : std::to_string(table_.size()) + " ranges, " + briefNumber(table_.begin()->first) + " to " +
+                                                briefNumber(table_.rbegin()->first) + " km; powers of range fitted";
     double squares = 0.0;
     for (size_t i = 0; i < data.wavelength_um.size(); ++i) {
       std::vector<RangeDepth> rows;

@@ -3,6 +3,7 @@
 #include "atmosphere/tabulated_csv.hpp"
 #include "atmosphere/tabulated_path.hpp"
 #include "atmosphere/tabulated_tape7.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/scene/placement.hpp"
 
 namespace pitviper {
@@ -29,9 +30,9 @@ constexpr double kLargestRadiance = 1e30;
 std::shared_ptr<const Atmosphere> airOf(TabulatedAir air) {
   for (double w : air.knots_um())
     if (const double source = air.sourceRadiance(w); !(source <= kLargestRadiance)) {
-      char text[160];
-      std::snprintf(text, sizeof text, "the air's source radiance, path radiance / (1 - transmittance), is %.6g W/(m2 sr um) at %.6g um", source, w);
-      throw UserError({air.file(), air.line(), 1, -1}, text, "at most 1e30", "correct the radiances or their unit");
+      throw UserError({air.file(), air.line(), 1, -1},
+                      print("the air's source radiance, path radiance / (1 - transmittance), is %.6g W/(m2 sr um) at %.6g um", source, w), "at most 1e30",
+                      "correct the radiances or their unit");
     }
   return makeTabulatedPath(std::move(air));
 }

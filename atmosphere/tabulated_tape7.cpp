@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 
 #include "atmosphere/depth_fit.hpp"
 #include "atmosphere/tape7_spectra.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -24,12 +24,6 @@ struct Component {
 };
 constexpr Component kComponents[] = {{"H2O_TRANS", 0}, {"UMIX_TRANS", 1}, {"TRACE_TRANS", 1},   {"O3_TRANS", 2},  {"N2_CONT", 3},
                                      {"H2O_CONT", 3},  {"MOLEC_SCAT", 3}, {"AER+CLD_TRANS", 3}, {"HNO3_TRANS", 3}};
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 std::string sayRun(const Tape7Run& run) { return "run " + std::to_string(run.number); }
 
@@ -61,7 +55,7 @@ double rangeOf(const Tape7Run& run, std::optional<double> given_m) {
   const auto own = run.geometry.range_km;
   if (own && *own > 0.0) {
     if (given_m && std::abs(1e-3 * *given_m / *own - 1.0) > 1e-3)
-      refuse(run, "the range given, " + number(1e-3 * *given_m) + " km, is not the " + number(*own) + " km of " + sayRun(run), "one of the two",
+      refuse(run, "the range given, " + briefNumber(1e-3 * *given_m) + " km, is not the " + briefNumber(*own) + " km of " + sayRun(run), "one of the two",
              "leave the range out: the file has it");
     return *own;
   }
@@ -125,10 +119,10 @@ std::map<double, Leg> legsOf(std::span<const Tape7Run> runs, std::optional<doubl
     Leg& leg = legs[rangeOf(*run, range_m)];
     const Tape7Run*& place = radiates(*run) ? leg.radiance : leg.transmittance;
     if (place)
-      refuse(
-          *run,
-          "the range " + number(rangeOf(*run, range_m)) + " km comes twice, in runs " + std::to_string(place->number) + " and " + std::to_string(run->number),
-          "each range once", "remove one of the runs");
+      refuse(*run,
+             "the range " + briefNumber(rangeOf(*run, range_m)) + " km comes twice, in runs " + std::to_string(place->number) + " and " +
+                 std::to_string(run->number),
+             "each range once", "remove one of the runs");
     place = run;
   }
   return legs;
@@ -137,10 +131,10 @@ std::map<double, Leg> legsOf(std::span<const Tape7Run> runs, std::optional<doubl
 std::string describeLegs(const std::map<double, Leg>& legs) {
   const Tape7Run& run = legs.begin()->second.transmittance ? *legs.begin()->second.transmittance : *legs.begin()->second.radiance;
   std::string text = run.geometry.path == Tape7Path::Horizontal ? "level air" : "air along a slant path, as if it were the same all along it";
-  if (run.geometry.h1_km) text += ", " + number(*run.geometry.h1_km) + " km high";
-  if (run.geometry.path == Tape7Path::Slant && run.geometry.zenith_deg) text += ", zenith angle " + number(*run.geometry.zenith_deg) + " deg";
+  if (run.geometry.h1_km) text += ", " + briefNumber(*run.geometry.h1_km) + " km high";
+  if (run.geometry.path == Tape7Path::Slant && run.geometry.zenith_deg) text += ", zenith angle " + briefNumber(*run.geometry.zenith_deg) + " deg";
   text += legs.size() == 1 ? ", from one range" : ", from " + std::to_string(legs.size()) + " ranges";
-  for (auto leg = legs.begin(); leg != legs.end(); ++leg) text += (leg == legs.begin() ? " (" : ", ") + number(leg->first);
+  for (auto leg = legs.begin(); leg != legs.end(); ++leg) text += (leg == legs.begin() ? " (" : ", ") + briefNumber(leg->first);
   return text + " km)";
 }
 
@@ -155,14 +149,14 @@ std::optional<TabulatedSky> tabulatedSky(std::span<const Tape7Run> runs) {
     if (!g.zenith_deg)
       refuse(run, "the zenith angle of " + sayRun(run) + " is not in its card 3", "the angle at which it looks up", "run MODTRAN with ANGLE on card 3");
     if (*g.zenith_deg > 90.0)
-      refuse(run, sayRun(run) + " looks down, at a zenith angle of " + number(*g.zenith_deg) + " deg: it is no sky", "0 to 90 deg", "remove the run");
+      refuse(run, sayRun(run) + " looks down, at a zenith angle of " + briefNumber(*g.zenith_deg) + " deg: it is no sky", "0 to 90 deg", "remove the run");
     const double elevation = (90.0 - *g.zenith_deg) * kPi / 180.0;
     for (size_t i = 0; i < views.size(); ++i)
       if (std::abs(views[i].elevation_rad - elevation) < 1e-9)
-        refuse(
-            run,
-            "the zenith angle " + number(*g.zenith_deg) + " deg comes twice, in runs " + std::to_string(seen[i]->number) + " and " + std::to_string(run.number),
-            "each angle once", "remove one of the runs");
+        refuse(run,
+               "the zenith angle " + briefNumber(*g.zenith_deg) + " deg comes twice, in runs " + std::to_string(seen[i]->number) + " and " +
+                   std::to_string(run.number),
+               "each angle once", "remove one of the runs");
     if (!seen.empty()) {
       requireSameGrid(run, *seen.front());
       if (std::abs(g.h1_km.value_or(0.0) - seen.front()->geometry.h1_km.value_or(0.0)) > 1e-6)

@@ -5,16 +5,11 @@
 #include <cstdio>
 
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 namespace {
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 const char* sayKind(Tape7Kind kind) {
   constexpr const char* names[] = {"transmittance", "thermal radiance", "radiance with the sun", "solar irradiance"};
@@ -59,7 +54,7 @@ void checkUnit(const Tape7Run& run, const Tape7Column& total) {
     const double ratio = written / physics::planckRadiance(run.wavelength_um[i], kelvin);
     if (ratio < kSameUnit && ratio > 1.0 / kSameUnit) continue;
     throw UserError({run.file, run.lineOf(i), total.firstColumn, -1},
-                    "TOTAL_RAD is " + number(ratio) + " times what a black body of BBODY_T, " + number(kelvin) + " K, sends: its unit is another",
+                    "TOTAL_RAD is " + briefNumber(ratio) + " times what a black body of BBODY_T, " + briefNumber(kelvin) + " K, sends: its unit is another",
                     "W/(cm2 sr cm-1), as MODTRAN writes it", "give the file as MODTRAN wrote it, its radiances not converted");
   }
 }
@@ -90,7 +85,7 @@ Spectrum pathRadiance(const Tape7Run& run) {
   for (size_t i = 0; i < value.size(); ++i) {
     const Location where{run.file, run.lineOf(i), total.firstColumn, -1};
     if (std::abs(value[i] + sum[i] - total.value[i]) > kSumsAgree * std::abs(total.value[i]))
-      throw UserError(where, "TOTAL_RAD is not the sum of its parts (" + number((value[i] + sum[i]) / total.value[i]) + " times it)",
+      throw UserError(where, "TOTAL_RAD is not the sum of its parts (" + briefNumber((value[i] + sum[i]) / total.value[i]) + " times it)",
                       sunny ? "PTH_THRML + SOL_SCAT + SURF_EMIS + GRND_RFLT" : "PTH_THRML + SURF_EMIS + GRND_RFLT", "give the file as MODTRAN wrote it");
     if (value[i] < 0.0)
       throw UserError(where, "the path radiance is below zero", "zero or more", "run MODTRAN again with more streams or without multiple scattering");
@@ -106,8 +101,8 @@ void requireBand(const Tape7Run& run, double low_um, double high_um, const std::
   constexpr double kRounding = 1e-9;
   if (low_um >= from * (1.0 - kRounding) && high_um <= to * (1.0 + kRounding)) return;
   throw UserError({run.file, run.bandLine, 1, -1},
-                  "run " + std::to_string(run.number) + " covers " + number(from) + " to " + number(to) + " um, not the " + number(low_um) + " to " +
-                      number(high_um) + " um of " + sensor,
+                  "run " + std::to_string(run.number) + " covers " + briefNumber(from) + " to " + briefNumber(to) + " um, not the " + briefNumber(low_um) +
+                      " to " + briefNumber(high_um) + " um of " + sensor,
                   "a run over all of it",
                   "run MODTRAN from V1 = " + std::to_string(static_cast<int>(std::floor(1e4 / high_um))) +
                       " to V2 = " + std::to_string(static_cast<int>(std::ceil(1e4 / low_um))) + " cm-1");

@@ -3,9 +3,9 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 
@@ -27,11 +27,7 @@ constexpr double kSame = 1e-5;
 
 using Axis = std::vector<double>;
 
-std::string percent(double part) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g %%", 100.0 * part);
-  return text;
-}
+std::string percent(double part) { return print("%.3g %%", 100.0 * part); }
 
 double last(MeasuredAngles kind) { return kind == MeasuredAngles::Directions ? kPi : 0.5 * kPi; }
 
@@ -316,8 +312,7 @@ void boundEnergy(MeasuredBrdf& brdf, const Location& where) {
     for (std::size_t k = 0; k < brdf.parts.size(); ++k)
       for (auto* values : {&brdf.parts[k].values, &brdf.albedos[k].values}) over(*values, [&](std::size_t, double& v) { v /= greatest; });
   }
-  char wavelength[32];
-  std::snprintf(wavelength, sizeof wavelength, "%.4g um", worst_um);
+  const std::string wavelength = print("%.4g um", worst_um);
   if (most > 1.0 + kMostChange)
     throw UserError(where, "a BRDF that returns " + percent(most) + " of what it receives at " + wavelength, "at most 110 %, which is then scaled",
                     "check its unit, 1/sr");

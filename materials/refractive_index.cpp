@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/model/scene_fingerprint.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -95,8 +96,7 @@ void check(const RefractiveIndex& index, const Location& where) {
   for (int i = 0; i <= kPlaces; ++i) all.push_back(std::clamp(low * std::pow(high / low, i / double(kPlaces)), low, high));
   for (double w : all) {
     const auto n = index(w);
-    char at[120];
-    std::snprintf(at, sizeof at, "%.4g + %.4gi at %.4g um", n.real(), n.imag(), w);
+    const std::string at = print("%.4g + %.4gi at %.4g um", n.real(), n.imag(), w);
     if (!(n.real() > 0.0 && n.real() <= kLargestIndex))
       throw UserError(where, std::string("a refractive index of ") + at, "n above 0, up to 1000", "correct it, or its range");
     if (!(n.imag() >= 0.0 && n.imag() <= kLargestIndex))

@@ -1,9 +1,9 @@
 #include "sensors/netd_design.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "sensors/figures.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -41,11 +41,7 @@ void designNoise(const Record& r, const Camera& camera, DetectorLaw& law) {
   own.detector = law;
   const double at_K = law.netd->at_K, step_s = 1.0;  // only 1/f noise depends on that, and there is none
   const SensorFigures::Detected without = *figuresOf(whole, *output, step_s, at_K).detected;
-  const auto milli = [](double v) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.6g mK", v);
-    return std::string(text);
-  };
+  const auto milli = [](double v) { return print("%.6g mK", v); };
   const double others_mK = std::ceil(1e5 * without.netd_K) / 1e2;  // so that what is offered is taken
   const std::string where = " at " + std::to_string(static_cast<int>(std::lround(at_K))) + " K";
   if (without.saturation_K > 0.0 && at_K >= without.saturation_K)

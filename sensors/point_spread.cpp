@@ -12,6 +12,7 @@
 #include "sensors/lens_spread.hpp"
 #include "sensors/stages.hpp"
 #include "sim/camera/sensor_stage.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -133,11 +134,7 @@ class PointSpreadStage final : public SensorStage {
 };
 
 /// Of three digits, not rounded up.
-std::string brief(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, v < 1000.0 ? "%.3g" : "%.0f", 0.995 * v);
-  return text;
-}
+std::string brief(double v) { return print(v < 1000.0 ? "%.3g" : "%.0f", 0.995 * v); }
 
 /// Rms or defocus that makes a lens too wide, as a scenario says it.
 struct Width {

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 
 #include "scenarios/commands/accuracy_renderings.hpp"
+#include "scenarios/commands/accuracy_report.hpp"
+#include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/progress.hpp"
+#include "scenarios/commands/scenario_wish.hpp"
 #include "sim/gl/context.hpp"
+#include "sim/image/atomic_file.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -36,12 +40,10 @@ AccuracyRow rowOf(const AccuracySetting& setting, const Camera& camera, const Pl
 
 std::vector<AccuracySetting> accuracyLadder() {
   std::vector<AccuracySetting> all;
-  char name[32];
   for (double accuracy : {0.1, 0.03, 0.01, 0.003, 0.001}) {
     SpectralSampling s;
     s.accuracy = accuracy;
-    std::snprintf(name, sizeof name, "%g %%", 100.0 * accuracy);
-    all.push_back({AccuracySetting::Kind::Planned, name, s});
+    all.push_back({AccuracySetting::Kind::Planned, print("%g %%", 100.0 * accuracy), s});
   }
   all.push_back({AccuracySetting::Kind::Gauss, "Gauss 16", {16, Spacing::Gauss}});
   for (int samples : {4, 8, 16, 32, 64, 128, 256, 340})
@@ -57,14 +59,23 @@ void resizeFilm(Pinhole& p, int columns) {
   p.pitchY_m = height / p.height;
 }
 
-AccuracyReport measureAccuracy(const AccuracyRequest& request) {
-  Simulation sim = request.scenario.read();
-  if (sim.cameras.empty()) throw UserError({request.scenario.file, 0, 0, -1}, "the scenario has no camera", "at least one", "choose another scenario");
+namespace {
+
+struct AccuracyWish {
+  ScenarioWish scenario;
+  int size_px = 0;  ///< columns of the film; 0: as it is
+  int frames = 3;
+  std::string out;
+};
+
+AccuracyReport measureAccuracy(const AccuracyWish& wish) {
+  Simulation sim = wish.scenario.read();
+  if (sim.cameras.empty()) throw UserError({wish.scenario.file, 0, 0, -1}, "the scenario has no camera", "at least one", "choose another scenario");
   sim.cameras.resize(1);
   Camera& camera = sim.cameras[0];
   keepRadianceAlone(camera);
-  if (request.size_px > 0) resizeFilm(camera.pinhole, request.size_px);
-  const int frames = std::min(request.frames, sim.time.frames);
+  if (wish.size_px > 0) resizeFilm(camera.pinhole, wish.size_px);
+  const int frames = std::min(wish.frames, sim.time.frames);
   std::vector<WorldState> states;
   std::string numbers;
   for (int i = 0; i < frames; ++i) {
@@ -86,11 +97,9 @@ AccuracyReport measureAccuracy(const AccuracyRequest& request) {
   AccuracyReport report;
   const int count = compared.leftOut();
   const std::string skipped = count > 0 ? "; " + std::to_string(count) + " pixels on outlines of transparent things left out" : "";
-  char heading[512];
-  std::snprintf(heading, sizeof heading, "%s, camera %s, %dx%d pixels of %dx%d subpixels, frame%s %s, against the reference (%d wavelengths)%s",
-                sim.name.c_str(), camera.name.c_str(), camera.pinhole.width, camera.pinhole.height, camera.samples, camera.samples, frames == 1 ? "" : "s",
-                numbers.c_str(), truth.plan().nodeCount(), skipped.c_str());
-  report.heading = heading;
+  report.heading = print("%s, camera %s, %dx%d pixels of %dx%d subpixels, frame%s %s, against the reference (%d wavelengths)%s", sim.name.c_str(),
+                         camera.name.c_str(), camera.pinhole.width, camera.pinhole.height, camera.samples, camera.samples, frames == 1 ? "" : "s",
+                         numbers.c_str(), truth.plan().nodeCount(), skipped.c_str());
 
   const auto ladder = accuracyLadder();
   Progress progress("accuracies", static_cast<int>(ladder.size()) * (1 + kRounds));
@@ -123,6 +132,38 @@ AccuracyReport measureAccuracy(const AccuracyRequest& request) {
     report.rows[i].framesPerSecond = static_cast<double>(states.size()) / sum;
   }
   return report;
+}
+
+int bench(const AccuracyWish& w) {
+  if (!w.out.empty()) ensureWritableFolder(w.out);
+  const GlContext context;
+  const AccuracyReport report = measureAccuracy(w);
+  std::printf("%s\n%s\n%s", report.heading.c_str(), context.limits().renderer.c_str(), accuracyTables(report).c_str());
+  if (w.out.empty()) return 0;
+  std::printf("\n");
+  const auto charts = accuracyCharts(report);
+  writeWithCharts(w.out, "accuracy", accuracyCsv(report), charts, std::min(static_cast<int>(charts.size()), 4));
+  return 0;
+}
+
+}  // namespace
+
+CommandLine accuracyBenchCommand() {
+  const auto w = std::make_shared<AccuracyWish>();
+  return {
+      "bench --accuracy",
+      "SCENARIO.yaml",
+      "",
+      "The scenario's first camera at accuracies of 10 to 0.1 %, at 4 to 340 even samples and at 16 Gauss points a channel, against the reference (double "
+      "precision on the CPU, every wavelength; slow). Prints frames a second and the error of each channel's pixels, |L - Lref| / max(Lref, 1e-3 x the 99th "
+      "percentile of Lref), and as a temperature difference. The error is that of spectral sampling, tables, dropped terms and single precision; what a pixel "
+      "sees is the same on both sides.",
+      joined({{"--size", "N", "columns of the film, its field of view kept", number(w->size_px, {8, 4096, "", false, "not a number of columns"})},
+              {"--frames", "N", "frames, spread over the scenario's time", number(w->frames, {1, 1000, "", false, "not a number of frames to compare"})},
+              {"--out", "FOLDER", "also write accuracy.csv and a chart, accuracy.png (needs VTK)", into(w->out)}},
+             scenarioOptions(w->scenario)),
+      "",
+      [w](const Arguments& words) { return w->scenario.file = words[0], bench(*w); }};
 }
 
 }  // namespace pitviper

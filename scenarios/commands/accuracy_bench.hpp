@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "scenarios/commands/accuracy_error.hpp"
-#include "scenarios/commands/scenario_wish.hpp"
+#include "sim/model/simulation.hpp"
 
 namespace pitviper {
 
@@ -33,20 +33,11 @@ struct AccuracyRow {
 /// The accuracies, even samples and Gauss points that are compared.
 std::vector<AccuracySetting> accuracyLadder();
 
-struct AccuracyRequest {
-  ScenarioWish scenario;
-  int size_px = 0;  ///< columns of the film, its field of view kept; 0: as it is
-  int frames = 3;   ///< spread over the scenario's time
-};
-
 struct AccuracyReport {
   std::string heading;  ///< scenario, camera, frames, driver
   std::vector<AccuracyRow> rows;
   std::vector<std::string> missing;  ///< settings that could not be drawn, and why
 };
-
-/// Renders all of it. Throws UserError for what is wrong with the scenario. Needs a current GlContext.
-AccuracyReport measureAccuracy(const AccuracyRequest& request);
 
 /// Film of `columns` with the same field of view.
 void resizeFilm(Pinhole& pinhole, int columns);

@@ -2,26 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
+
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
 
-__attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
-
 /// Two digits, and no exponent where it can be read without.
 std::string figure(double v) {
-  if (!(v >= 1e-4 && v < 1e6)) return format("%.2g", v);
+  if (!(v >= 1e-4 && v < 1e6)) return print("%.2g", v);
   const int place = static_cast<int>(std::floor(std::log10(v))) - 1;
-  return format("%.*f", std::max(0, -place), v);
+  return print("%.*f", std::max(0, -place), v);
 }
 
 std::string threeOf(const ErrorFigures& e, double scale) {
@@ -73,12 +65,12 @@ std::string comparison(const AccuracyReport& report) {
     const AccuracyRow* even = enoughSamples(report, c);
     all &= even != nullptr;
     if (even && (!slowest || even->nodes > slowest->nodes)) slowest = even;
-    out += "| " + channel.name + format(" | %d%s | ", channel.nodes, channel.errors.relative.maximum <= kCompared ? "" : " (not within)");
-    out += even ? format("%d | %.1f times |\n", even->channels[c].nodes, static_cast<double>(even->channels[c].nodes) / channel.nodes) : "more than 340 | |\n";
+    out += "| " + channel.name + print(" | %d%s | ", channel.nodes, channel.errors.relative.maximum <= kCompared ? "" : " (not within)");
+    out += even ? print("%d | %.1f times |\n", even->channels[c].nodes, static_cast<double>(even->channels[c].nodes) / channel.nodes) : "more than 340 | |\n";
   }
   if (all && slowest)
-    out += format("\nFrames a second: %.1f planned, %.1f with %s samples in every channel, %.1f times.\n", planned->framesPerSecond, slowest->framesPerSecond,
-                  slowest->setting.name.c_str(), planned->framesPerSecond / slowest->framesPerSecond);
+    out += print("\nFrames a second: %.1f planned, %.1f with %s samples in every channel, %.1f times.\n", planned->framesPerSecond, slowest->framesPerSecond,
+                 slowest->setting.name.c_str(), planned->framesPerSecond / slowest->framesPerSecond);
   return out;
 }
 
@@ -95,9 +87,9 @@ std::string accuracyTables(const AccuracyReport& report) {
   for (const auto& c : first) out += " " + c.name + " n |" + (predicted ? " expected |" : "") + " " + c.name + " |";
   out += "\n" + rule(3 + first.size() * (predicted ? 3 : 2));
   for (const AccuracyRow& r : report.rows) {
-    out += format("| %s | %.1f | %d |", r.setting.name.c_str(), r.framesPerSecond, r.nodes);
+    out += print("| %s | %.1f | %d |", r.setting.name.c_str(), r.framesPerSecond, r.nodes);
     for (const auto& c : r.channels) {
-      out += format(" %d |", c.nodes);
+      out += print(" %d |", c.nodes);
       if (predicted) out += c.predicted ? " " + figure(100.0 * *c.predicted) + " |" : " |";
       out += " " + threeOf(c.errors.relative, 100.0) + " |";
     }
@@ -128,11 +120,11 @@ std::string accuracyCsv(const AccuracyReport& report) {
   for (const AccuracyRow& r : report.rows)
     for (const auto& c : r.channels) {
       const bool planned = r.setting.kind == AccuracySetting::Kind::Planned;
-      out += format("%s,%s,%s,%s,%.6g,%d,%s,%d,%s,%.6g,%.6g,%.6g,", kindName(r.setting.kind), r.setting.name.c_str(),
-                    planned ? format("%g", r.setting.sampling.accuracy).c_str() : "", planned ? "" : std::to_string(r.setting.sampling.samples).c_str(),
-                    r.framesPerSecond, r.nodes, c.name.c_str(), c.nodes, c.predicted ? format("%.6g", *c.predicted).c_str() : "", c.errors.relative.median,
-                    c.errors.relative.percentile99, c.errors.relative.maximum);
-      out += (c.errors.kelvin ? format("%.6g,%.6g,%.6g", c.errors.kelvin->median, c.errors.kelvin->percentile99, c.errors.kelvin->maximum) : ",,") + "\n";
+      out += print("%s,%s,%s,%s,%.6g,%d,%s,%d,%s,%.6g,%.6g,%.6g,", kindName(r.setting.kind), r.setting.name.c_str(),
+                   planned ? print("%g", r.setting.sampling.accuracy).c_str() : "", planned ? "" : std::to_string(r.setting.sampling.samples).c_str(),
+                   r.framesPerSecond, r.nodes, c.name.c_str(), c.nodes, c.predicted ? print("%.6g", *c.predicted).c_str() : "", c.errors.relative.median,
+                   c.errors.relative.percentile99, c.errors.relative.maximum);
+      out += (c.errors.kelvin ? print("%.6g,%.6g,%.6g", c.errors.kelvin->median, c.errors.kelvin->percentile99, c.errors.kelvin->maximum) : ",,") + "\n";
     }
   return out;
 }

@@ -1,9 +1,9 @@
 #include "scenarios/commands/air_report.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "atmosphere/scattered_sun.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -47,19 +47,11 @@ std::string bandMean(const AbsorberTable& air, double low_um, double high_um, F&
   constexpr int kPoints = 800;
   double sum = 0.0;
   for (int i = 0; i < kPoints; ++i) sum += value(low_um + (high_um - low_um) * (i + 0.5) / kPoints) / kPoints;
-  char text[24];
-  std::snprintf(text, sizeof text, "%.4g", sum);
-  return text;
+  return print("%.4g", sum);
 }
 
 constexpr std::pair<double, double> kBands_um[] = {{0.45, 0.75}, {3.0, 5.0}, {3.5, 4.1}, {8.0, 12.0}};
 constexpr const char* kBandNames = " | 0.45-0.75 um | 3-5 um | 3.5-4.1 um | 8-12 um |\n|---|---|---|---|---|\n";
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 /// Geometry common to all wavelengths.
 struct Views {
@@ -78,14 +70,14 @@ struct Views {
   double sunAtGround(double w, size_t i) const { return sunAbove(w) * sun.air().transmittance(w, sunPaths[i]); }
 };
 
-std::string degreesUp(double degrees) { return number(degrees) + " deg up"; }
+std::string degreesUp(double degrees) { return briefNumber(degrees) + " deg up"; }
 
 }  // namespace
 
 std::string describeAir(const AbsorberTable& air) {
-  std::string out = air.title() + "\n" + air.source() + "\n" + number(air.validLow_um()) + " to " + number(air.validHigh_um()) + " um, " +
+  std::string out = air.title() + "\n" + air.source() + "\n" + briefNumber(air.validLow_um()) + " to " + briefNumber(air.validHigh_um()) + " um, " +
                     std::to_string(air.absorbers().size()) + " absorbers:";
-  for (const Absorber& a : air.absorbers()) out += " " + a.name + (a.exponent == 1.0 ? "" : "^" + number(a.exponent));
+  for (const Absorber& a : air.absorbers()) out += " " + a.name + (a.exponent == 1.0 ? "" : "^" + briefNumber(a.exponent));
   const auto row = [&](const std::string& name, auto&& value) {
     out += "| " + name;
     for (const auto& [low, high] : kBands_um) out += " | " + bandMean(air, low, high, value);
@@ -123,13 +115,13 @@ std::string airCsv(const AbsorberTable& air) {
   out += "\n";
   const Views views(air);
   for (double w : wavelengths(air)) {
-    out += number(w) + "," + number(1e4 / w);
-    for (const auto& a : amounts) out += "," + number(air.transmittance(w, a));
-    for (const auto& p : views.paths) out += "," + number(views.sun.thermalRadiance(w, p));
-    for (size_t i = 0; i < views.paths.size(); ++i) out += "," + number(views.path(w, i));
-    for (size_t i = 0; i < views.sky.size(); ++i) out += "," + number(views.skyAt(w, i));
-    out += "," + number(sunAbove(w));
-    for (size_t i = 0; i < views.sunPaths.size(); ++i) out += "," + number(views.sunAtGround(w, i));
+    out += briefNumber(w) + "," + briefNumber(1e4 / w);
+    for (const auto& a : amounts) out += "," + briefNumber(air.transmittance(w, a));
+    for (const auto& p : views.paths) out += "," + briefNumber(views.sun.thermalRadiance(w, p));
+    for (size_t i = 0; i < views.paths.size(); ++i) out += "," + briefNumber(views.path(w, i));
+    for (size_t i = 0; i < views.sky.size(); ++i) out += "," + briefNumber(views.skyAt(w, i));
+    out += "," + briefNumber(sunAbove(w));
+    for (size_t i = 0; i < views.sunPaths.size(); ++i) out += "," + briefNumber(views.sunAtGround(w, i));
     out += "\n";
   }
   return out;

@@ -10,11 +10,11 @@
 #include "scenarios/commands/air_report.hpp"
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/print.hpp"
 #include "scenarios/commands/tabulated_report.hpp"
 #include "scenarios/reader/library_air.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -58,20 +58,11 @@ std::vector<Chart> chartsOf(const Tape7Run& run) {
   return charts;
 }
 
-/// Writes NAME.csv and NAME.png.
-void write(const std::filesystem::path& out, const std::string& name, const std::string& csv, const std::vector<Chart>& charts, int columns) {
-  ensureWritableFolder(out);
-  writeFileAtomically(out / (name + ".csv"), csv);
-  std::printf("%s written\n", (out / (name + ".csv")).string().c_str());
-  drawCharts(charts, columns, out / (name + ".png"));
-  std::printf("%s written\n", (out / (name + ".png")).string().c_str());
-}
-
 void showAir(const AbsorberTable& air, const std::string& name, const std::optional<std::filesystem::path>& out) {
   std::printf("%s", describeAir(air).c_str());
   if (!out) return;
   std::printf("\n");
-  write(*out, name, airCsv(air), airCharts(air), 2);
+  writeWithCharts(*out, name, airCsv(air), airCharts(air), 2);
 }
 
 void listLibrary(const Libraries& libraries) {
@@ -83,7 +74,7 @@ void showTable(const TabulatedAir& air, const std::string& name, const std::opti
   std::printf("%s", describeTable(air).c_str());
   if (!out) return;
   const auto charts = tableCharts(air);
-  write(*out, name, tableCsv(air), charts, static_cast<int>(charts.size()));
+  writeWithCharts(*out, name, tableCsv(air), charts, static_cast<int>(charts.size()));
 }
 
 void showTape7(const std::filesystem::path& file, std::optional<double> range_m, const std::optional<std::filesystem::path>& out) {
@@ -94,7 +85,7 @@ void showTape7(const std::filesystem::path& file, std::optional<double> range_m,
   if (out)
     for (const auto& run : runs) {
       const auto charts = chartsOf(run);
-      write(*out, name + "_run" + std::to_string(run.number), csvOf(run), charts, static_cast<int>(charts.size()));
+      writeWithCharts(*out, name + "_run" + std::to_string(run.number), csvOf(run), charts, static_cast<int>(charts.size()));
     }
   // Not every file is air along a path: of one that is not, the reason is part of what there is to know.
   std::optional<TabulatedAir> air;
@@ -118,6 +109,7 @@ int showAirs(const AirWish& w, const std::string& word) {
   const Libraries libraries = findLibraries();
   const std::filesystem::path file = word;
   const auto out = w.out.empty() ? std::nullopt : std::optional<std::filesystem::path>(w.out);
+  if (out) ensureWritableFolder(*out);
   const auto range_m = w.range_km ? std::optional<double>(1e3 * *w.range_km) : std::nullopt;
   // A word without folder and extension that is no file is a name: of a table of the library, or of a library air.
   std::error_code ignored;

@@ -16,6 +16,7 @@
 #include "sim/model/stage.hpp"
 #include "sim/model/world.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/table.hpp"
 #include "sim/run/memory_need.hpp"
 
@@ -81,20 +82,14 @@ void writePicture(const std::filesystem::path& file, const Camera& camera, const
   writePng(file, placeSideBySide(pictures));
 }
 
-std::string percent(double share) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", 100.0 * share);
-  return text;
-}
+std::string percent(double share) { return print("%.3g", 100.0 * share); }
 
 std::string csvOf(const std::string& camera, double asked, const std::vector<int>& numbers, const std::vector<AuditedLayer>& layers) {
   std::string text;
-  char line[400];
   for (const AuditedLayer& l : layers) {
-    std::snprintf(line, sizeof line, "%s,%s,%.6g,%s,%.6g,%.6g,%.6g,%.6g,%d,%d,%d,%.9g,%.9g\n", camera.c_str(), l.name.c_str(), asked,
+    text += print("%s,%s,%.6g,%s,%.6g,%.6g,%.6g,%.6g,%d,%d,%d,%.9g,%.9g\n", camera.c_str(), l.name.c_str(), asked,
                   l.predicted ? std::to_string(*l.predicted).c_str() : "", l.found.median, l.found.percentile99, l.found.maximum, l.beyond,
                   numbers[static_cast<size_t>(l.worst.frame)], l.worst.column, l.worst.row, l.planned, l.reference);
-    text += line;
   }
   return text;
 }

@@ -1,24 +1,19 @@
 #include "scenarios/commands/bench_report.hpp"
 
 #include <algorithm>
-#include <cstdarg>
-#include <cstdio>
 
-#include "scenarios/commands/bench_paper.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
 
-constexpr double kYardstickPixels = Yardstick::kSize_px * Yardstick::kSize_px;
+// What the paper reached in 2006, for comparison. Source: Duvenhage 2006, section 6: GeForce 6600GT, sixteen channels; frames a second
+// are those of buffered mode at 256x256.
+constexpr const char* kPaper = "Duvenhage 2006, GeForce 6600GT";
+constexpr double kPaperDirect_Mpixel_s = 5.2, kPaperBuffered_Mpixel_s = 4.6;
+constexpr double kPaperOverdrawOne_per_s = 70.0, kPaperOverdrawSeven_per_s = 10.0;
 
-__attribute__((format(printf, 1, 2))) std::string format(const char* pattern, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, pattern);
-  std::vsnprintf(text, sizeof text, pattern, arguments);
-  va_end(arguments);
-  return text;
-}
+constexpr double kYardstickPixels = Yardstick::kSize_px * Yardstick::kSize_px;
 
 std::vector<const BenchRow*> rowsOf(const std::vector<BenchRow>& rows, const std::string& factor) {
   std::vector<const BenchRow*> found;
@@ -34,9 +29,9 @@ const BenchRow* find(const std::vector<BenchRow>& rows, const std::string& facto
 }
 
 std::string comparison(const BenchRow& r) {
-  if (r.factor == "overdraw") return r.variant.added > 0 ? format("%+.1f %%", 100.0 * (r.timeByBase - 1.0)) : "";
-  if (r.factor == "layers") return r.costPerLayer ? format("%.2f a layer", *r.costPerLayer) : "";
-  return format("%.2f", r.timeByBase);
+  if (r.factor == "overdraw") return r.variant.added > 0 ? print("%+.1f %%", 100.0 * (r.timeByBase - 1.0)) : "";
+  if (r.factor == "layers") return r.costPerLayer ? print("%.2f a layer", *r.costPerLayer) : "";
+  return print("%.2f", r.timeByBase);
 }
 
 const char* comparisonHeading(const std::string& factor) {
@@ -51,17 +46,17 @@ void addTable(std::string& out, const BenchFactor& factor, const std::vector<con
   const char* last = comparisonHeading(factor.name);
   const auto cells = [&](const std::string& a, const std::string& b, const std::string& c, const std::string& d, const std::string& e, const std::string& f,
                          const std::string& g) {
-    return format("| %-*s | %-*s | %9s | %9s | %9s | %12s | %*s |\n", static_cast<int>(wide), a.c_str(), static_cast<int>(mode), b.c_str(), c.c_str(),
-                  d.c_str(), e.c_str(), f.c_str(), static_cast<int>(std::string(last).size()), g.c_str());
+    return print("| %-*s | %-*s | %9s | %9s | %9s | %12s | %*s |\n", static_cast<int>(wide), a.c_str(), static_cast<int>(mode), b.c_str(), c.c_str(), d.c_str(),
+                 e.c_str(), f.c_str(), static_cast<int>(std::string(last).size()), g.c_str());
   };
   out += cells(factor.heading, "mode", "ms", "Mpixel/s", "frames/s", "by yardstick", last) + "|---|---|---|---|---|---|---|\n";
   if (factor.name == "centre" && !rows.empty()) {
     const double bare = rows[0]->yardstickSeconds;
-    out += cells("yardstick", "", format("%.2f", bare * 1e3), format("%.2f", kYardstickPixels / bare * 1e-6), format("%.1f", 1.0 / bare), "1.00", "");
+    out += cells("yardstick", "", print("%.2f", bare * 1e3), print("%.2f", kYardstickPixels / bare * 1e-6), print("%.1f", 1.0 / bare), "1.00", "");
   }
   for (const BenchRow* r : rows)
-    out += cells(r->variant.value, r->variant.mode, format("%.2f", r->seconds * 1e3), format("%.2f", r->megapixelsPerSecond()),
-                 format("%.1f", r->framesPerSecond()), format("%.2f", r->rateByYardstick), comparison(*r));
+    out += cells(r->variant.value, r->variant.mode, print("%.2f", r->seconds * 1e3), print("%.2f", r->megapixelsPerSecond()),
+                 print("%.1f", r->framesPerSecond()), print("%.2f", r->rateByYardstick), comparison(*r));
   out += "\n";
 }
 
@@ -69,20 +64,20 @@ void addFindings(std::string& out, const std::vector<BenchRow>& rows) {
   for (const char* mode : {"direct", "buffered"})
     if (const BenchRow* r = find(rows, "centre", "drawing pass", mode)) {
       const double paper = std::string(mode) == "direct" ? kPaperDirect_Mpixel_s : kPaperBuffered_Mpixel_s;
-      out += format("%s mode at the centre: %.2f of the yardstick (wanted: at least 0.55); %s: %.1f Mpixel/s, this is %.2f times that\n", mode,
-                    r->rateByYardstick, kPaper, paper, r->megapixelsPerSecond() / paper);
+      out += print("%s mode at the centre: %.2f of the yardstick (wanted: at least 0.55); %s: %.1f Mpixel/s, this is %.2f times that\n", mode,
+                   r->rateByYardstick, kPaper, paper, r->megapixelsPerSecond() / paper);
     }
   for (const char* mode : {"direct", "buffered"})
     if (const BenchRow* r = find(rows, "overdraw", "7", mode))
-      out += format("%s mode: six hidden plates of 8000 triangles add %.1f %% (wanted: at most 25 %%)\n", mode, 100.0 * (r->timeByBase - 1.0));
+      out += print("%s mode: six hidden plates of 8000 triangles add %.1f %% (wanted: at most 25 %%)\n", mode, 100.0 * (r->timeByBase - 1.0));
   const BenchRow *once = find(rows, "overdraw", "1", "buffered"), *seven = find(rows, "overdraw", "7", "buffered");
   if (once && seven)
-    out += format("buffered mode, frames/s at overdraw one and seven: %.0f and %.0f; %s: %.0f and %.0f\n", once->framesPerSecond(), seven->framesPerSecond(),
-                  kPaper, kPaperOverdrawOne_per_s, kPaperOverdrawSeven_per_s);
+    out += print("buffered mode, frames/s at overdraw one and seven: %.0f and %.0f; %s: %.0f and %.0f\n", once->framesPerSecond(), seven->framesPerSecond(),
+                 kPaper, kPaperOverdrawOne_per_s, kPaperOverdrawSeven_per_s);
   for (const auto& [mode, wanted] :
        {std::pair{"attenuation", "wanted: at most 0.3"}, {"emission and air", "wanted: at most 0.5"}, {"and reflection", "stated"}})
     if (const BenchRow* r = find(rows, "layers", "8", mode); r && r->costPerLayer)
-      out += format("a transparent layer (%s) costs %.2f of the solid pass, mean of eight (%s)\n", mode, *r->costPerLayer, wanted);
+      out += print("a transparent layer (%s) costs %.2f of the solid pass, mean of eight (%s)\n", mode, *r->costPerLayer, wanted);
 }
 
 Series seriesOf(const std::vector<const BenchRow*>& rows, const std::string& mode, double (*figure)(const BenchRow&)) {
@@ -190,10 +185,10 @@ std::string benchCsv(const std::vector<BenchRow>& rows) {
       "rate by yardstick,time by base,cost per layer\n";
   for (const BenchRow& r : rows) {
     const BenchSetting& s = r.variant.setting;
-    out += format("%s,%s,%s,%d,%d,%d,%d,%d,%d,%d,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,", r.factor.c_str(), r.variant.value.c_str(), r.variant.mode.c_str(), s.film_px,
-                  s.channels, s.wavelengths, s.lights, s.overdraw, s.layers, r.frames, r.seconds * 1e3, r.yardstickSeconds * 1e3, r.megapixelsPerSecond(),
-                  r.framesPerSecond(), r.rateByYardstick, r.timeByBase);
-    out += (r.costPerLayer ? format("%.6g", *r.costPerLayer) : "") + "\n";
+    out += print("%s,%s,%s,%d,%d,%d,%d,%d,%d,%d,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,", r.factor.c_str(), r.variant.value.c_str(), r.variant.mode.c_str(), s.film_px,
+                 s.channels, s.wavelengths, s.lights, s.overdraw, s.layers, r.frames, r.seconds * 1e3, r.yardstickSeconds * 1e3, r.megapixelsPerSecond(),
+                 r.framesPerSecond(), r.rateByYardstick, r.timeByBase);
+    out += (r.costPerLayer ? print("%.6g", *r.costPerLayer) : "") + "\n";
   }
   return out;
 }

@@ -1,10 +1,9 @@
 #include "scenarios/commands/bench_setup.hpp"
 
 #include <cmath>
-#include <cstdio>
 
-#include "scenarios/commands/print.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 

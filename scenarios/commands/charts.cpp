@@ -3,9 +3,11 @@
 #include <dlfcn.h>
 
 #include <cmath>
+#include <cstdio>
 #include <stdexcept>
 
 #include "scenarios/commands/charts/charts_module.hpp"
+#include "sim/image/atomic_file.hpp"
 #include "sim/image/png.hpp"
 #include "sim/parameters/error.hpp"
 
@@ -40,6 +42,14 @@ void* fromModule(const char* function) {
 }
 
 }  // namespace
+
+void writeWithCharts(const std::filesystem::path& folder, const std::string& name, const std::string& csv, const std::vector<Chart>& charts, int columns) {
+  const std::string stem = (folder / name).string();
+  writeFileAtomically(stem + ".csv", csv);
+  std::printf("%s.csv written\n", stem.c_str());
+  drawCharts(charts, columns, stem + ".png");
+  std::printf("%s.png written\n", stem.c_str());
+}
 
 void requireCharts() { fromModule(kChartsFunction); }
 

@@ -31,6 +31,9 @@ struct Chart {
 /// std::runtime_error if drawing failed.
 void drawCharts(const std::vector<Chart>& charts, int columns, const std::filesystem::path& png);
 
+/// NAME.csv and NAME.png in a folder, each said when it is written. Errors: as of drawCharts().
+void writeWithCharts(const std::filesystem::path& folder, const std::string& name, const std::string& csv, const std::vector<Chart>& charts, int columns);
+
 /// Errors: UserError if the module is missing or cannot be loaded.
 void requireCharts();
 

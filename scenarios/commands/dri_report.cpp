@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include "scenarios/commands/print.hpp"
 #include "sensors/spot_detection.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {

@@ -1,15 +1,64 @@
 #include "scenarios/commands/first_bench.hpp"
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdlib>
 #include <sstream>
 
 #include "scenarios/commands/child_run.hpp"
-#include "scenarios/commands/print.hpp"
 #include "scenarios/commands/process.hpp"
 #include "scenarios/commands/scenario_changes.hpp"
+#include "sim/image/atomic_file.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char *kNow = "now", *kMarked = "marked";
+
+void copyAll(const fs::path& from, const fs::path& to) {
+  fs::remove_all(to);
+  fs::copy(from, to, fs::copy_options::recursive);
+}
+
+/// A folder for what a program keeps between runs, which nothing else has filled: this program's own plans, tables and meshes, and the driver's programs.
+class OwnCache {
+ public:
+  /// In the folder for temporary files. Errors: OutputError.
+  OwnCache() {
+    std::string name = (fs::temp_directory_path() / "pitviper_cache_XXXXXX").string();
+    if (!::mkdtemp(name.data())) throw OutputError(name, "cannot make a folder for what is kept between runs", errno);
+    folder_ = name;
+    fs::create_directories(folder_ / kNow);
+  }
+  ~OwnCache() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  OwnCache(const OwnCache&) = delete;
+  OwnCache& operator=(const OwnCache&) = delete;
+
+  /// What a process needs to know to keep its things there.
+  std::map<std::string, std::string> environment() const {
+    const std::string now = (folder_ / kNow).string();
+    return {{"XDG_CACHE_HOME", now}, {"MESA_SHADER_CACHE_DIR", now}, {"MESA_GLSL_CACHE_DIR", now}, {"__GL_SHADER_DISK_CACHE_PATH", now}};
+  }
+  /// Files in which the driver keeps programs.
+  std::size_t driverFiles() const {
+    std::size_t count = 0;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_ / kNow))
+      if (entry.is_regular_file() && entry.path().filename() != "index" && entry.path().parent_path().filename() != "pitviper") ++count;
+    return count;
+  }
+  /// Notes what is in it; back() makes it so again.
+  void mark() { copyAll(folder_ / kNow, folder_ / kMarked); }
+  void back() { copyAll(folder_ / kMarked, folder_ / kNow); }
+
+ private:
+  fs::path folder_;
+};
 
 constexpr int kEndedBySignals = 128;
 

@@ -4,7 +4,6 @@
 #include <stdexcept>
 
 #include "scenarios/commands/first_once.hpp"
-#include "scenarios/commands/own_cache.hpp"
 
 namespace pitviper {
 

@@ -2,7 +2,7 @@
 
 #include <sstream>
 
-#include "scenarios/commands/print.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {

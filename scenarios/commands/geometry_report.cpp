@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "sim/camera/small_bodies.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -14,11 +14,7 @@ constexpr int kMostSamples = 16, kBlock = 4;
 /// Of a body's intensity.
 constexpr double kWorthSaying = 0.01;
 
-std::string percent(double part) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g %%", 100.0 * part);
-  return text;
-}
+std::string percent(double part) { return print("%.2g %%", 100.0 * part); }
 
 }  // namespace
 
@@ -52,13 +48,11 @@ std::string geometryText(const Simulation& sim, const Camera& c, const Plan& pla
       const Entity& e = sim.entities[static_cast<std::size_t>(b.entity)];
       const std::string name = e.name + "'s " + e.mesh->parts[e.surfaces[static_cast<std::size_t>(b.surface)].meshPart].name;
       if (!named.insert(name).second) continue;
-      char line[400];
-      std::snprintf(line, sizeof line,
-                    "    %s: %.2g pixels wide in frame %d: its outline leaves the body's intensity off by more than %s; %san 'accuracy' samples such parts by "
-                    "themselves\n",
-                    name.substr(0, 120).c_str(), extentOf(b, view) / c.samples, frame, percent(kWorthSaying).c_str(),
-                    c.samples < kMostSamples ? "more 'samples' help, and " : "");
-      text += line;
+      text += print(
+          "    %s: %.2g pixels wide in frame %d: its outline leaves the body's intensity off by more than %s; %san 'accuracy' samples such parts by "
+          "themselves\n",
+          name.substr(0, 120).c_str(), extentOf(b, view) / c.samples, frame, percent(kWorthSaying).c_str(),
+          c.samples < kMostSamples ? "more 'samples' help, and " : "");
     }
   }
   return text;

@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <fstream>
 #include <set>
 
 #include "scenarios/commands/bench_timing.hpp"
-#include "scenarios/commands/code_lines.hpp"
 #include "scenarios/commands/first_bench.hpp"
-#include "scenarios/commands/print.hpp"
 #include "scenarios/commands/process.hpp"
 #include "sim/gl/context.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -113,6 +113,17 @@ std::vector<GuardResult> measureGuard(const std::vector<GuardLine>& lines, const
   std::vector<GuardResult> results;
   for (const GuardLine& line : lines) results.push_back(measured.of(line));
   return results;
+}
+
+long codeLines(const std::filesystem::path& folder) {
+  long lines = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    const auto kind = entry.path().extension();
+    if (!entry.is_regular_file() || (kind != ".cpp" && kind != ".hpp" && kind != ".glsl")) continue;
+    std::ifstream in(entry.path());
+    for (std::string line; std::getline(in, line);) lines += line.find_first_not_of(" \t\r") != std::string::npos;
+  }
+  return lines;
 }
 
 bool hasGrown(const GuardResult& r) { return r.now && *r.now > (1.0 + kGuarded) * r.line.value; }

@@ -21,6 +21,9 @@ inline constexpr double kGuarded = 0.2;
 /// `next`: told what begins. Errors: as of measureFirst() and of the bench.
 std::vector<GuardResult> measureGuard(const std::vector<GuardLine>& lines, const std::function<void(const std::string&)>& next);
 
+/// Lines that are not blank, of all C++ and GLSL below a folder.
+long codeLines(const std::filesystem::path& folder);
+
 bool hasGrown(const GuardResult& result);
 bool hasShrunk(const GuardResult& result);
 

@@ -7,6 +7,7 @@
 #include "sim/gl/context.hpp"
 #include "sim/image/exr.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/render/shading_program.hpp"
 
 namespace pitviper {
@@ -14,19 +15,14 @@ namespace {
 
 std::string textOf(const Attribute& a) {
   if (const auto* s = std::get_if<std::string>(&a.value)) return *s;
-  char buffer[64];
-  if (const auto* d = std::get_if<double>(&a.value)) return std::snprintf(buffer, sizeof buffer, "%.9g", *d), buffer;
+  if (const auto* d = std::get_if<double>(&a.value)) return print("%.9g", *d);
   if (const auto* i = std::get_if<int>(&a.value)) return std::to_string(*i);
   std::string all;
   if (const auto* curve = std::get_if<std::vector<float>>(&a.value)) {
     if (curve->empty()) return "no values";
-    std::snprintf(buffer, sizeof buffer, "%zu values, %.6g ... %.6g", curve->size(), static_cast<double>(curve->front()), static_cast<double>(curve->back()));
-    return buffer;
+    return print("%zu values, %.6g ... %.6g", curve->size(), static_cast<double>(curve->front()), static_cast<double>(curve->back()));
   }
-  for (double v : std::get<std::vector<double>>(a.value)) {
-    std::snprintf(buffer, sizeof buffer, "%.12g", v);
-    all += (all.empty() ? "" : " ") + std::string(buffer);
-  }
+  for (double v : std::get<std::vector<double>>(a.value)) all += (all.empty() ? "" : " ") + print("%.12g", v);
   return all;
 }
 

@@ -2,12 +2,12 @@
 #include <cstdio>
 
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/print.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
 #include "sim/frame/file_formats.hpp"
 #include "sim/frame/frame_picture.hpp"
 #include "sim/frame/integrate.hpp"
 #include "sim/image/atomic_file.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {

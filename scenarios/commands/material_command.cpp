@@ -5,7 +5,6 @@
 
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/commands.hpp"
-#include "scenarios/commands/print.hpp"
 #include "scenarios/commands/surroundings_loss.hpp"
 #include "scenarios/import/material_import.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
@@ -16,6 +15,7 @@
 #include "sim/gl/context.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/radiometry/constants.hpp"
 

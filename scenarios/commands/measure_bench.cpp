@@ -9,11 +9,11 @@
 
 #include "scenarios/commands/bench_setup.hpp"
 #include "scenarios/commands/measure_mrtd.hpp"
-#include "scenarios/commands/print.hpp"
 #include "sensors/edge_transfer.hpp"
 #include "sensors/figures.hpp"
 #include "sensors/spot_detection.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {

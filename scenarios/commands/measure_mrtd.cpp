@@ -1,9 +1,8 @@
 #include "scenarios/commands/measure_mrtd.hpp"
 
 #include <cmath>
-#include <cstdio>
 
-#include "scenarios/commands/print.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 

@@ -6,7 +6,7 @@
 #include <map>
 #include <sstream>
 
-#include "scenarios/commands/print.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/units.hpp"
 
 namespace pitviper {

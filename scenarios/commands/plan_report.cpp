@@ -2,25 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
 #include <cstdio>
 
 #include "scenarios/commands/geometry_report.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/tables.hpp"
 
 namespace pitviper {
 namespace {
-
-std::string print(const char* format, ...) __attribute__((format(printf, 1, 2)));
-std::string print(const char* format, ...) {
-  char text[256];
-  va_list values;
-  va_start(values, format);
-  std::vsnprintf(text, sizeof text, format, values);
-  va_end(values);
-  return text;
-}
 
 std::string quoted(const std::string& s) {
   std::string out = "\"";

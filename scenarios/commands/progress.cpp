@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "sim/parameters/print.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -12,12 +14,6 @@ namespace {
 constexpr double kBar_s = 0.2;
 
 double seconds(std::chrono::steady_clock::duration d) { return std::chrono::duration<double>(d).count(); }
-
-std::string print(const char* format, double v) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, v);
-  return text;
-}
 
 /// "37 s", "12 min", "3.4 h": no more digits than are known.
 std::string duration(double s) { return s < 100.0 ? print("%.0f s", s) : s < 6000.0 ? print("%.0f min", s / 60.0) : print("%.1f h", s / 3600.0); }

@@ -18,6 +18,7 @@
 #include "sim/gl/context.hpp"
 #include "sim/gl/timing.hpp"
 #include "sim/image/atomic_file.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/run/memory_need.hpp"
 #include "sim/run/run.hpp"
@@ -43,12 +44,9 @@ class ProbeTables {
       for (const auto& o : reading.probe.outputs) text += "," + o.layer() + " [" + o.unit + "]";
       text += "\n";
     }
-    char cell[64];
-    std::snprintf(cell, sizeof cell, "%d,%.9g", reading.frame, reading.time_s);
-    text += cell;
+    text += print("%d,%.9g", reading.frame, reading.time_s);
     for (double v : reading.values) {
-      std::snprintf(cell, sizeof cell, ",%.9g", v);
-      text += cell;
+      text += print(",%.9g", v);
     }
     text += "\n";
   }
@@ -83,11 +81,8 @@ void learn(const RunReport& report, Simulation& sim, int start, Notes& notes) {
     const auto found = report.broken.find(c.name);
     if (found == report.broken.end()) continue;
     const AuditTally& tally = report.audits.at(c.name);
-    char text[400];
-    std::snprintf(text, sizeof text,
-                  "camera %s: an audit found %.2g %% in '%s', of %.2g %% asked; its plan learns that line and the run starts over (%d of %d)", c.name.c_str(),
-                  100.0 * tally.largest, tally.channel.c_str(), 100.0 * tally.asked, start, kMostStarts);
-    notes.say(text);
+    notes.say(print("camera %s: an audit found %.2g %% in '%s', of %.2g %% asked; its plan learns that line and the run starts over (%d of %d)", c.name.c_str(),
+                    100.0 * tally.largest, tally.channel.c_str(), 100.0 * tally.asked, start, kMostStarts));
     c.learnt.insert(c.learnt.end(), found->second.begin(), found->second.end());
     c.plan.clear();  // what --plan gave does not hold
   }

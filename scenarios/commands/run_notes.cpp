@@ -4,10 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
-#include "scenarios/commands/print.hpp"
 #include "sim/frame/mark_header.hpp"
 #include "sim/model/haze_not_fog.hpp"
 #include "sim/model/world.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/plan/averaged_fringes.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/plan/sampling_check.hpp"

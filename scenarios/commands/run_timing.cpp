@@ -1,11 +1,10 @@
 #include "scenarios/commands/run_timing.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
-#include "scenarios/commands/print.hpp"
 #include "sim/camera/camera_renderer.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/run/run.hpp"
 
 namespace pitviper {
@@ -19,7 +18,6 @@ std::string stageOf(const std::string& part) {
 }
 
 std::string timingText(const std::map<std::string, double>& parts, const ProgramCount& programs, double files_s, int frames) {
-  char line[160];
   double sum = 0.0;
   std::map<std::string, double> once{{"planning", 0.0}, {"tables", 0.0}, {"programs", 0.0}, {"first_frame", 0.0}};
   std::vector<std::pair<double, std::string>> longest;
@@ -36,16 +34,14 @@ std::string timingText(const std::map<std::string, double>& parts, const Program
                            programs.programs, programs.lines, once["programs"], once["first_frame"]);
   const int later = frames - 1;
   if (later > 0) {
-    std::snprintf(line, sizeof line, ", the others %.4g ms a frame, %.4g frames a second:\n", 1e3 * sum / later, sum > 0.0 ? later / sum : 0.0);
-    text += line;
+    text += print(", the others %.4g ms a frame, %.4g frames a second:\n", 1e3 * sum / later, sum > 0.0 ? later / sum : 0.0);
   } else {
     text += " (several frames show what each takes)\n";
   }
   constexpr double kWorthALine = 1e-3;
   double rest = 0.0;
   const auto add = [&](const std::string& name, double seconds) {
-    std::snprintf(line, sizeof line, "  %-28s %9.3f ms %6.1f %%\n", name.c_str(), 1e3 * seconds / later, sum > 0.0 ? 100.0 * seconds / sum : 0.0);
-    text += line;
+    text += print("  %-28s %9.3f ms %6.1f %%\n", name.c_str(), 1e3 * seconds / later, sum > 0.0 ? 100.0 * seconds / sum : 0.0);
   };
   for (const auto& [seconds, name] : longest) {
     if (later < 1) break;
@@ -53,8 +49,7 @@ std::string timingText(const std::map<std::string, double>& parts, const Program
     else rest += seconds;
   }
   if (rest > 0.0) add("all others", rest);
-  std::snprintf(line, sizeof line, "  %-28s %9.3f ms beside drawing\n", "files", 1e3 * files_s / frames);
-  return text + line;
+  return text + print("  %-28s %9.3f ms beside drawing\n", "files", 1e3 * files_s / frames);
 }
 
 }  // namespace pitviper

@@ -1,19 +1,13 @@
 #include "scenarios/commands/run_total.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <vector>
 
 #include "sim/frame/mark_header.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
-
-std::string print(const char* format, double v) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, v);
-  return text;
-}
 
 }  // namespace
 
@@ -71,22 +65,17 @@ std::string auditText(const RunReport& report) {
   for (const auto& [camera, t] : report.audits) {
     std::vector<double> sorted = t.errors;
     std::sort(sorted.begin(), sorted.end());
-    char line[256];
-    std::snprintf(line, sizeof line, "  %s: audited %d pixel%s of %d frame%s against the reference: median %.2g %%, largest %.2g %% (%s)", camera.c_str(),
-                  t.pixels, t.pixels == 1 ? "" : "s", t.frames, t.frames == 1 ? "" : "s", 100.0 * sorted[sorted.size() / 2], 100.0 * t.largest,
-                  t.channel.c_str());
-    text += line;
+    text += print("  %s: audited %d pixel%s of %d frame%s against the reference: median %.2g %%, largest %.2g %% (%s)", camera.c_str(), t.pixels,
+                  t.pixels == 1 ? "" : "s", t.frames, t.frames == 1 ? "" : "s", 100.0 * sorted[sorted.size() / 2], 100.0 * t.largest, t.channel.c_str());
     if (t.asked > 0.0) {
-      std::snprintf(line, sizeof line, " of %.2g %% asked%s", 100.0 * t.asked, t.largest > t.asked ? ": MORE THAN ASKED, those frames say so" : "");
-      text += line;
+      text += print(" of %.2g %% asked%s", 100.0 * t.asked, t.largest > t.asked ? ": MORE THAN ASKED, those frames say so" : "");
     }
     text += "\n";
     if (t.whole.empty()) continue;
     sorted = t.whole;
     std::sort(sorted.begin(), sorted.end());
-    std::snprintf(line, sizeof line, "  %s: with its geometry, against 32x32 places a pixel: median %.2g %%, largest %.2g %% (standard error up to %.2g %%)\n",
-                  camera.c_str(), 100.0 * sorted[sorted.size() / 2], 100.0 * sorted.back(), 100.0 * t.wholeError);
-    text += line;
+    text += print("  %s: with its geometry, against 32x32 places a pixel: median %.2g %%, largest %.2g %% (standard error up to %.2g %%)\n", camera.c_str(),
+                  100.0 * sorted[sorted.size() / 2], 100.0 * sorted.back(), 100.0 * t.wholeError);
   }
   return text;
 }

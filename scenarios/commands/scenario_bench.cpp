@@ -1,5 +1,4 @@
-#include "scenarios/commands/scenario_bench.hpp"
-
+// `bench --scenario`: frames a second of a scenario as it is: drawn, read back and resolved in memory, no files; beside the yardstick.
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
@@ -7,8 +6,11 @@
 #include "scenarios/commands/bench_timing.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/progress.hpp"
+#include "scenarios/commands/scenario_wish.hpp"
 #include "sim/camera/camera_renderer.hpp"
+#include "sim/gl/context.hpp"
 #include "sim/gl/timing.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/run/camera_line.hpp"
 
 namespace pitviper {
@@ -16,8 +18,17 @@ namespace {
 
 /// The speed that figures are told at, whatever the machine [pixels of the yardstick a second].
 constexpr double kNominalRate = 6e6;
-}  // namespace
 
+struct ScenarioRate {
+  std::string camera;
+  int nodes = 0, channels = 0, frames = 0;
+  double seconds = 0.0;                      ///< of a frame: mean
+  double slow = 0.0;                         ///< 95 % of frames take no longer [s]
+  double yardstickSeconds = 0.0;             ///< of the yardstick's frame between
+  std::map<std::string, double> parts = {};  ///< seconds of each part of a frame
+};
+
+/// Every camera over the scenario's frames one after the other, from the first again where there are not so many.
 std::vector<ScenarioRate> timeScenario(const ScenarioWish& scenario, int frames) {
   const Simulation sim = scenario.read();
   const auto scene = std::make_shared<const GpuScene>(sim);
@@ -72,22 +83,43 @@ std::string rateTable(const std::vector<ScenarioRate>& rates) {
       "|\n|---|---|---|---|---|---|---|---|\n";
   for (const ScenarioRate& r : rates) {
     const double yardstick = Yardstick::kSize_px * Yardstick::kSize_px / r.yardstickSeconds;
-    char line[256];
-    std::snprintf(line, sizeof line, "| %s | %d | %d | %.2f | %.2f | %.1f | %.2f | %.1f |\n", r.camera.c_str(), r.channels, r.nodes, 1e3 * r.seconds,
-                  1e3 * r.slow, 1.0 / r.seconds, 1e-6 * yardstick, kNominalRate / yardstick / r.seconds);
-    out += line;
+    out += print("| %s | %d | %d | %.2f | %.2f | %.1f | %.2f | %.1f |\n", r.camera.c_str(), r.channels, r.nodes, 1e3 * r.seconds, 1e3 * r.slow, 1.0 / r.seconds,
+                 1e-6 * yardstick, kNominalRate / yardstick / r.seconds);
   }
   out += "\nBy part, ms a frame, each waited for (together they may take longer than what is not waited for):\n";
   for (const ScenarioRate& r : rates) {
     out += r.camera + ": ";
     for (const auto& [name, seconds] : r.parts) {
-      char part[120];
-      std::snprintf(part, sizeof part, "%s%s %.2f", out.ends_with(": ") ? "" : ", ", name.c_str(), 1e3 * seconds);
-      out += part;
+      out += print("%s%s %.2f", out.ends_with(": ") ? "" : ", ", name.c_str(), 1e3 * seconds);
     }
     out += "\n";
   }
   return out;
+}
+
+}  // namespace
+
+CommandLine scenarioBenchCommand() {
+  struct Wish {
+    ScenarioWish scenario;
+    int frames = 60;
+  };
+  const auto w = std::make_shared<Wish>();
+  return {
+      "bench --scenario",
+      "SCENARIO.yaml",
+      "",
+      "Time of a frame of each camera, the frames in their order, drawing and readback, no files (with a gimbal its sensor and tracker too); beside them the "
+      "yardstick, and where the time of a frame goes, part by part: what updates tables and shadow maps, what is seen, shading, readback and so on.",
+      joined({{"--frames", "N", "frames to time", number(w->frames, {10, 100000, "", false, "not a number of frames to time"})}}, scenarioOptions(w->scenario)),
+      "",
+      [w](const Arguments& words) {
+        w->scenario.file = words[0];
+        const GlContext context;
+        const auto rates = timeScenario(w->scenario, w->frames);
+        std::printf("%s\n%s", context.limits().renderer.c_str(), rateTable(rates).c_str());
+        return 0;
+      }};
 }
 
 }  // namespace pitviper

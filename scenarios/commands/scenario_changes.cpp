@@ -5,9 +5,9 @@
 #include <optional>
 #include <set>
 
-#include "scenarios/commands/print.hpp"
 #include "scenarios/reader/expand.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/plan/plan_cache.hpp"
 

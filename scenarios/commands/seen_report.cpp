@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <set>
 
 #include "sim/frame/seen_bodies.hpp"
 #include "sim/model/world.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/scene/mesh_units.hpp"
 
 namespace pitviper {
@@ -19,12 +19,6 @@ constexpr size_t kOneByOne = 20, kMostLines = 60;
 constexpr double kHidden = 0.04;
 /// Cameras x bodies beyond which only the first frame is looked at: all three would take minutes.
 constexpr size_t kMostPairs = 50000;
-
-std::string print(const char* format, double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, format, v);
-  return text;
-}
 
 std::string metres(double v) { return v >= 1e3 ? print("%.3g km", 1e-3 * v) : v < 0.1 && v > 0.0 ? print("%.3g mm", 1e3 * v) : print("%.3g m", v); }
 

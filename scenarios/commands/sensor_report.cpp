@@ -1,11 +1,10 @@
 #include "scenarios/commands/sensor_report.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <set>
 
-#include "scenarios/commands/print.hpp"
 #include "sensors/figures.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 

@@ -6,7 +6,7 @@
 
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/html_page.hpp"
-#include "scenarios/commands/print.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {

@@ -17,6 +17,7 @@
 #include "scenarios/commands/gige_reader.hpp"
 #include "scenarios/commands/stream_report.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/stream/clock/durations.hpp"
 #include "sim/stream/clock/wall_clock.hpp"
 #include "sim/stream/command_port.hpp"
@@ -33,16 +34,15 @@ const char* const kAddress = "127.0.0.9";
 
 /// A camera whose frames nobody draws.
 Simulation benchOf(const SelfTestWish& w) {
-  char text[900];
-  std::snprintf(text, sizeof text,
-                "name: self_test\ntime: {rate: %.9g Hz}\nentities:\n  - {name: ball, shape: {model: sphere, radius: 1 m}, temperature: 300 K, material: "
-                "grey_aircraft_paint}\n"
-                "cameras:\n  - name: bench\n    position: [100 m, 0 m, 0 m]\n    look_at: ball\n    film: {width: %d, height: %d, pitch: 15 um}\n    "
-                "focal_length: 100 mm\n    aperture: 25 mm\n    exposure: 1 ms\n"
-                "    channels:\n      - {name: mw, response: {band: [3.7 um, 4.8 um]}, quantum_efficiency: insb_mwir, output: counts}\n"
-                "    stages:\n      - {stage: detector, full_well: 6.5e6, bits: 16}\n",
-                w.rate_hz, w.width, w.height);
-  return readScenarioText(text, "self-test", ".", {}, findLibraries());
+  return readScenarioText(
+      print("name: self_test\ntime: {rate: %.9g Hz}\nentities:\n  - {name: ball, shape: {model: sphere, radius: 1 m}, temperature: 300 K, material: "
+            "grey_aircraft_paint}\n"
+            "cameras:\n  - name: bench\n    position: [100 m, 0 m, 0 m]\n    look_at: ball\n    film: {width: %d, height: %d, pitch: 15 um}\n    "
+            "focal_length: 100 mm\n    aperture: 25 mm\n    exposure: 1 ms\n"
+            "    channels:\n      - {name: mw, response: {band: [3.7 um, 4.8 um]}, quantum_efficiency: insb_mwir, output: counts}\n"
+            "    stages:\n      - {stage: detector, full_well: 6.5e6, bits: 16}\n",
+            w.rate_hz, w.width, w.height),
+      "self-test", ".", {}, findLibraries());
 }
 
 /// Pictures made before: a disc goes round over noise; in the first pixel which of them it is.
@@ -304,19 +304,13 @@ Way throughCigi(const Simulation& sim) {
 int streamSelfTest(const SelfTestWish& wish) {
   const Simulation sim = benchOf(wish);
   const auto pictures = picturesOf(wish);
-  char text[300];
-  std::snprintf(text, sizeof text, "%d x %d pixels of 16 bits, %.6g Hz, %.6g s each, pictures made before; sender and reader on this machine\n", wish.width,
-                wish.height, wish.rate_hz, wish.duration_s);
-  std::fputs(text, stdout);
+  std::printf("%d x %d pixels of 16 bits, %.6g Hz, %.6g s each, pictures made before; sender and reader on this machine\n", wish.width, wish.height,
+              wish.rate_hz, wish.duration_s);
   std::vector<std::vector<std::string>> rows{
       {"", "sent", "received", "counted as lost", "wrong", "delay p50 [ms]", "p99", "p99.9", "largest", "period's deviation [ms]"}};
   std::uint64_t unaccounted = 0;
   const auto add = [&](const Way& way, bool isFrames) {
-    const auto ms = [](double ns) {
-      char number[40];
-      std::snprintf(number, sizeof number, "%.3f", 1e-6 * ns);
-      return std::string(number);
-    };
+    const auto ms = [](double ns) { return print("%.3f", 1e-6 * ns); };
     rows.push_back({way.name, std::to_string(way.sent), std::to_string(way.received), std::to_string(way.counted), std::to_string(way.wrong),
                     ms(way.delay.quantile_ns(0.5)), ms(way.delay.quantile_ns(0.99)), ms(way.delay.quantile_ns(0.999)), ms(way.delay.most_ns()),
                     isFrames ? ms(way.period.deviation_ns()) : ""});

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "sim/parameters/print.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_surroundings.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -82,12 +82,9 @@ std::string surroundingsLoss(const Simulation& sim) {
       "root mean square, largest\n"
       "| wavelength [um] | reflected part | its mean alone | 9 harmonics | 16 | 25 |\n|---|---|---|---|---|---|\n";
   for (size_t i = 0; i < nodes.size(); ++i) {
-    char text[160];
-    std::snprintf(text, sizeof text, "| %.4g | %.2g %% |", nodes[i].members.front().wavelength_um, 100.0 * reflected[i] / all[i]);
-    out += text;
+    out += print("| %.4g | %.2g %% |", nodes[i].members.front().wavelength_um, 100.0 * reflected[i] / all[i]);
     for (const Sums& s : errors[i]) {
-      std::snprintf(text, sizeof text, " %.2g %%, %.2g %% |", 100.0 * std::sqrt(s.squares / radiance2[i]), 100.0 * s.most / std::sqrt(radiance2[i] / count));
-      out += text;
+      out += print(" %.2g %%, %.2g %% |", 100.0 * std::sqrt(s.squares / radiance2[i]), 100.0 * s.most / std::sqrt(radiance2[i] / count));
     }
     out += "\n";
   }

@@ -2,20 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
 
 constexpr double kReportedRanges_m[] = {500.0, 1000.0, 2000.0, 5000.0, 10000.0};
-
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 /// Those above and the table's own ends, rising.
 std::vector<double> ranges(const TabulatedAir& air) {
@@ -27,8 +21,8 @@ std::vector<double> ranges(const TabulatedAir& air) {
   return all;
 }
 
-std::string sayRange(double range_m) { return number(1e-3 * range_m) + " km"; }
-std::string sayElevation(double elevation_rad) { return number(std::round(elevation_rad * 180.0 / kPi * 1e4) / 1e4) + " deg up"; }
+std::string sayRange(double range_m) { return briefNumber(1e-3 * range_m) + " km"; }
+std::string sayElevation(double elevation_rad) { return briefNumber(std::round(elevation_rad * 180.0 / kPi * 1e4) / 1e4) + " deg up"; }
 
 /// Over wavelength, trapezoids between the table's own.
 double meanTransmittance(const TabulatedAir& air, double range_m, double low_um, double high_um) {
@@ -44,11 +38,11 @@ double meanTransmittance(const TabulatedAir& air, double range_m, double low_um,
 }  // namespace
 
 std::string describeTable(const TabulatedAir& air) {
-  std::string out = air.description() + "\n" + number(air.validLow_um()) + " to " + number(air.validHigh_um()) + " um, " +
+  std::string out = air.description() + "\n" + briefNumber(air.validLow_um()) + " to " + briefNumber(air.validHigh_um()) + " um, " +
                     std::to_string(air.knots_um().size()) + " wavelengths; powers of range:";
-  for (double a : air.exponents()) out += " " + number(a);
-  out += "\nlargest difference from the table: transmittance " + number(air.fit().largest) + " (rms " + number(air.fit().rms) + ")";
-  out += air.emits() ? ", path radiance " + number(100.0 * air.fit().radiance) + " % of its largest\n" : "; no path radiance in it\n";
+  for (double a : air.exponents()) out += " " + briefNumber(a);
+  out += "\nlargest difference from the table: transmittance " + briefNumber(air.fit().largest) + " (rms " + briefNumber(air.fit().rms) + ")";
+  out += air.emits() ? ", path radiance " + briefNumber(100.0 * air.fit().radiance) + " % of its largest\n" : "; no path radiance in it\n";
   if (const auto& sky = air.sky()) {
     out += "sky known at";
     for (const auto& view : sky->views()) out += (&view == sky->views().data() ? " " : ", ") + sayElevation(view.elevation_rad);
@@ -61,7 +55,7 @@ std::string describeTable(const TabulatedAir& air) {
   }
   if (bands.empty()) bands.push_back({air.validLow_um(), air.validHigh_um()});
   out += "\n| mean transmittance |";
-  for (const auto& [low, high] : bands) out += " " + number(low) + "-" + number(high) + " um |";
+  for (const auto& [low, high] : bands) out += " " + briefNumber(low) + "-" + briefNumber(high) + " um |";
   out += "\n|---|";
   for (size_t i = 0; i < bands.size(); ++i) out += "---|";
   out += "\n";
@@ -69,9 +63,7 @@ std::string describeTable(const TabulatedAir& air) {
     out += "| " + sayRange(range) +
            (range < air.shortestRange_m() * (1 - 1e-9) || range > air.longestRange_m() * (1 + 1e-9) ? " (outside the table's ranges) |" : " |");
     for (const auto& [low, high] : bands) {
-      char text[16];
-      std::snprintf(text, sizeof text, " %.4f |", meanTransmittance(air, range, low, high));
-      out += text;
+      out += print(" %.4f |", meanTransmittance(air, range, low, high));
     }
     out += "\n";
   }
@@ -81,7 +73,7 @@ std::string describeTable(const TabulatedAir& air) {
 std::string tableCsv(const TabulatedAir& air) {
   std::string out = "wavelength [um],wavenumber [1/cm]";
   const auto at = ranges(air);
-  for (double a : air.exponents()) out += ",depth of the first km of power " + number(a);
+  for (double a : air.exponents()) out += ",depth of the first km of power " + briefNumber(a);
   out += ",source radiance [W/(m2 sr um)]";
   for (double r : at) out += ",transmittance " + sayRange(r);
   for (double r : at) out += ",path radiance " + sayRange(r) + " [W/(m2 sr um)]";
@@ -90,14 +82,14 @@ std::string tableCsv(const TabulatedAir& air) {
     for (const auto& view : sky->views()) out += ",sky radiance " + sayElevation(view.elevation_rad) + " [W/(m2 sr um)]";
   out += "\n";
   for (double w : air.knots_um()) {
-    out += number(w) + "," + number(1e4 / w);
-    for (double c : air.coefficients(w)) out += "," + number(c);
-    out += "," + number(air.sourceRadiance(w));
-    for (double r : at) out += "," + number(air.transmittance(w, r));
-    for (double r : at) out += "," + number(air.pathRadiance(w, r));
+    out += briefNumber(w) + "," + briefNumber(1e4 / w);
+    for (double c : air.coefficients(w)) out += "," + briefNumber(c);
+    out += "," + briefNumber(air.sourceRadiance(w));
+    for (double r : at) out += "," + briefNumber(air.transmittance(w, r));
+    for (double r : at) out += "," + briefNumber(air.pathRadiance(w, r));
     if (sky)
       for (const auto& view : sky->views())
-        out += "," + (w >= sky->knots_um().front() && w <= sky->knots_um().back() ? number(sky->radiance(w, view.elevation_rad)) : std::string());
+        out += "," + (w >= sky->knots_um().front() && w <= sky->knots_um().back() ? briefNumber(sky->radiance(w, view.elevation_rad)) : std::string());
     out += "\n";
   }
   return out;

@@ -5,6 +5,8 @@
 #include <cstdio>
 #include <set>
 
+#include "sim/parameters/print.hpp"
+
 namespace pitviper {
 
 FlownScene flownScene(const Simulation& sim, const History& history, const std::vector<Encounter>& encounters, const std::string& title) {
@@ -23,9 +25,7 @@ FlownScene flownScene(const Simulation& sim, const History& history, const std::
     if (!isCamera) drawn.insert(path.name);
     scene.paths.push_back(std::move(flown));
   }
-  char span[80];
-  std::snprintf(span, sizeof span, ", %.4g s to %.4g s", first, last);
-  scene.title += span;
+  scene.title += print(", %.4g s to %.4g s", first, last);
   const auto stand = [&](const std::string& name) {
     const auto found = std::find_if(sim.entities.begin(), sim.entities.end(), [&](const Entity& e) { return e.name == name; });
     if (found == sim.entities.end() || !drawn.insert(name).second) return;

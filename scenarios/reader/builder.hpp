@@ -8,6 +8,7 @@
 #include "materials/media.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
 #include "scenarios/reader/sensor_reader.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/spectrum_value.hpp"
 #include "sim/parameters/table.hpp"
 
@@ -16,7 +17,6 @@ namespace pitviper {
 enum class Species;
 
 /// A number for a message: six digits at most.
-std::string briefNumber(double v);
 /// More subpixels than a picture may have.
 bool tooLarge(const Camera& camera);
 /// Is there a stage among these that makes counts? (Their order and keys are read later.)

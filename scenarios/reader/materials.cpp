@@ -12,6 +12,7 @@
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/image/exr.hpp"
 #include "sim/image/png.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -22,9 +23,7 @@ constexpr std::size_t kMostMaterials = 4096;
 constexpr std::size_t kMostTexels = 40000000;
 
 std::string percentAt(double sum, double wavelength_um, double angle_rad) {
-  char text[80];
-  std::snprintf(text, sizeof text, "%.4g %% at %.4g um and %.0f deg from the normal", 100.0 * sum, wavelength_um, angle_rad * 180.0 / kPi);
-  return text;
+  return print("%.4g %% at %.4g um and %.0f deg from the normal", 100.0 * sum, wavelength_um, angle_rad * 180.0 / kPi);
 }
 
 constexpr AngleTableKind kEmissivity{"an emissivity", "0 to 1", 1.0}, kTransmittance{"a transmittance", "0 to 1", 1.0};

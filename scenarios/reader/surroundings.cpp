@@ -8,6 +8,7 @@
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/model/sky.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/units.hpp"
 
 namespace pitviper {
@@ -38,12 +39,6 @@ void readPair(const Record& r, const char* key, const char* unit, double most, c
 }
 
 }  // namespace
-
-std::string briefNumber(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.6g", v);
-  return text;
-}
 
 Builder::Builder(Simulation& simulation, std::filesystem::path base, Libraries libraries)
     : simulation_(simulation), base_(base), libraries_(libraries), spectra_([&] {

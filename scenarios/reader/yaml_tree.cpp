@@ -10,6 +10,7 @@
 #include <map>
 #include <sstream>
 
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/parameters/readable_text.hpp"
 
@@ -158,8 +159,7 @@ void refuseOtherThanText(std::string_view text, const std::string& file) {
     const std::size_t length = utf8Length(text.substr(i));
     const auto c = static_cast<unsigned char>(text[i]);
     if (length == 0 || (c < 32 && c != '\n' && c != '\r' && c != '\t') || c == 127) {
-      char code[8];
-      std::snprintf(code, sizeof code, "0x%02x", c);
+      const std::string code = print("0x%02x", c);
       throw UserError(at, length == 0 ? std::string("the byte ") + code + " is not UTF-8" : std::string("the control character ") + code,
                       "a text file in UTF-8", "save the file as UTF-8 text, or remove the byte");
     }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "sensors/gimbal/gimbal_follower.hpp"
 #include "sensors/gimbal/gimbal_tables.hpp"
 #include "sim/model/world.hpp"
 #include "sim/parameters/fingerprint.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -16,11 +16,7 @@ namespace {
 /// Deviation of rounding to whole counts, 1 / sqrt(12).
 constexpr double kRoundingOfCounts = 0.2886751345948129;
 
-std::string brief(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g", v);
-  return text;
-}
+std::string brief(double v) { return print("%.4g", v); }
 std::string degrees(double v_rad) { return brief(v_rad * 180.0 / kPi) + " deg"; }
 
 /// Two numbers of one unit.

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -11,11 +11,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * kPi;
 
-std::string degrees(double angle_rad) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.4g deg", angle_rad * 180.0 / kPi);
-  return text;
-}
+std::string degrees(double angle_rad) { return print("%.4g deg", angle_rad * 180.0 / kPi); }
 
 double azimuthNearest(double azimuth_rad, double near_rad) { return azimuth_rad + kTurn * std::round((near_rad - azimuth_rad) / kTurn); }
 

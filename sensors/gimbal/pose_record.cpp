@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "sim/parameters/csv_separators.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/parameters/readable_text.hpp"
 #include "sim/parameters/table.hpp"
@@ -83,12 +84,8 @@ std::string posesFileName(std::string_view camera) { return std::string(camera) 
 std::string posesHeader() { return std::string(kHeader) + "\n"; }
 
 std::string poseLine(const PoseRow& row) {
-  char number[40];
   std::string line;
-  const auto add = [&](double v) {
-    std::snprintf(number, sizeof number, "%.17g,", v);
-    line += number;
-  };
+  const auto add = [&](double v) { line += print("%.17g,", v); };
   const glm::dquat& q = row.pose.orientation;
   add(row.time_s);
   line += std::to_string(row.frame) + ",";

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "sim/flight/flight_axes.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/scene/gravity.hpp"
 
 namespace pitviper {
@@ -39,11 +39,7 @@ struct Element {
   }
 };
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
+std::string number(double value) { return print("%.3g", value); }
 
 /// Legs are straight on a map: metres east and north along great circles from the origin, at a mean height, and height.
 class Map {

@@ -4,15 +4,10 @@
 
 #include "sim/frame/file_formats.hpp"
 #include "sim/frame/file_owner.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
-
-std::string print(double value) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
 
 /// A header's texts end at braces and commas.
 std::string plain(std::string text) {
@@ -51,15 +46,15 @@ void writeEnviFiles(const std::filesystem::path& file, const Frame& frame, const
   if (all) {  // wavelengths are of every band or of none
     const auto band = [&](const FrameLayer& l) { return *bandOf(frame, l); };
     header += "wavelength units = Micrometers\nwavelength = " +
-              listOf(frame, [&](const FrameLayer& l) { return print(0.5 * (band(l).first + band(l).second)); }) +
-              "\nfwhm = " + listOf(frame, [&](const FrameLayer& l) { return print(band(l).second - band(l).first); }) + "\n";
+              listOf(frame, [&](const FrameLayer& l) { return print("%.9g", 0.5 * (band(l).first + band(l).second)); }) +
+              "\nfwhm = " + listOf(frame, [&](const FrameLayer& l) { return print("%.9g", band(l).second - band(l).first); }) + "\n";
   }
   for (const Attribute& a : frame.attributes) {
     header += plain(a.name) + " = ";
     if (const auto* text = std::get_if<std::string>(&a.value)) header += plain(*text);
     else if (const auto numbers = numbersOf(a)) {
       std::string list;
-      for (double n : *numbers) list += (list.empty() ? "" : ", ") + print(n);
+      for (double n : *numbers) list += (list.empty() ? "" : ", ") + print("%.9g", n);
       header += numbers->size() == 1 ? list : "{" + list + "}";
     }
     header += "\n";

@@ -7,6 +7,7 @@
 #include "sim/frame/file_owner.hpp"
 #include "sim/image/png.hpp"
 #include "sim/image/srgb.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -38,8 +39,7 @@ std::string paletteOf(const Frame& frame, const FrameLayer& layer, const Picture
 Rgb8Image pictureOf(const Frame& frame, const FrameLayer& layer, const PictureStyle& style, const LayerScales& scales) {
   const Eye eye(frame);
   PreviewOptions options;
-  char time[32];
-  std::snprintf(time, sizeof time, "t = %.3f s", frame.time_s);
+  const std::string time = print("t = %.3f s", frame.time_s);
   options.title = frame.camera + "  " + layer.name + "  " + time;
   if (std::any_of(layer.pixels.begin(), layer.pixels.end(), [](float v) { return !std::isfinite(v); })) options.title += "  magenta: none";
   options.unit = layer.unit;

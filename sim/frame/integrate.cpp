@@ -2,25 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "sim/frame/make_frame.hpp"
 #include "sim/frame/version.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
 
-std::string interval(double low, double high) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.6g to %.6g um", low, high);
-  return text;
-}
+std::string interval(double low, double high) { return print("%.6g to %.6g um", low, high); }
 
 void checkCovered(const SpectralImage& image, const ChannelOutput& o) {
   const double low = o.kernel.supportLow(), high = o.kernel.supportHigh(), first = image.edge_um.front(), last = image.edge_um.back();
   if (low >= first * (1 - 1e-9) && high <= last * (1 + 1e-9)) return;
-  char band[96];
-  std::snprintf(band, sizeof band, "spectral_image: {band: [%.6g um, %.6g um]}", std::min(low, first), std::max(high, last));
+  const std::string band = print("spectral_image: {band: [%.6g um, %.6g um]}", std::min(low, first), std::max(high, last));
   throw UserError(o.where, "channel '" + o.channel + "' responds from " + interval(low, high) + ", beyond the bins of " + image.file,
                   "a response within " + interval(first, last),
                   std::string("render the image with '") + band + "', or cut the response off: 'response: {product: [..., {band: [..., ...]}]}'");

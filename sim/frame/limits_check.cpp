@@ -1,10 +1,10 @@
 #include "sim/frame/limits_check.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <vector>
 
 #include "sim/model/view.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -12,14 +12,8 @@ namespace {
 /// Things named one by one; of more their number.
 constexpr size_t kMostNamed = 4;
 
-std::string number(const char* format, double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, format, v);
-  return text;
-}
-
-std::string metres(double v) { return std::abs(v) >= 1e3 ? number("%.4g km", 1e-3 * v) : number("%.4g m", v); }
-std::string kelvins(double v) { return number("%.4g K", v); }
+std::string metres(double v) { return std::abs(v) >= 1e3 ? print("%.4g km", 1e-3 * v) : print("%.4g m", v); }
+std::string kelvins(double v) { return print("%.4g K", v); }
 
 }  // namespace
 
@@ -48,8 +42,7 @@ std::string outsideLimits(const Simulation& sim, const Camera& camera, const Wor
   }
   for (size_t l = 0; l < sim.lights.size() && limits.lightLevel > 0.0; ++l)
     if (state.lightLevels[l] > limits.lightLevel)
-      found.push_back("light " + sim.lights[l].name + " at level " + number("%.4g", state.lightLevels[l]) + ", planned to " +
-                      number("%.4g", limits.lightLevel));
+      found.push_back("light " + sim.lights[l].name + " at level " + print("%.4g", state.lightLevels[l]) + ", planned to " + print("%.4g", limits.lightLevel));
   std::string text;
   for (size_t k = 0; k < std::min(kMostNamed, found.size()); ++k) text += (k ? "; " : "") + found[k];
   if (found.size() > kMostNamed) text += "; and " + std::to_string(found.size() - kMostNamed) + " more";
@@ -60,7 +53,7 @@ std::string describe(const Limits& limits) {
   std::string text;
   if (limits.farthest_m > 0.0) text = "bodies at " + metres(limits.nearest_m) + " to " + metres(limits.farthest_m);
   if (limits.hottest_K > 0.0) text += (text.empty() ? "bodies at " : ", at ") + kelvins(limits.coldest_K) + " to " + kelvins(limits.hottest_K);
-  if (limits.lightLevel > 0.0) text += (text.empty() ? "" : ", ") + ("lights to level " + number("%.4g", limits.lightLevel));
+  if (limits.lightLevel > 0.0) text += (text.empty() ? "" : ", ") + ("lights to level " + print("%.4g", limits.lightLevel));
   return text;
 }
 

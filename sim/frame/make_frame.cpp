@@ -16,6 +16,7 @@
 #include "sim/frame/version.hpp"
 #include "sim/model/haze_not_fog.hpp"
 #include "sim/model/world.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
@@ -168,9 +169,7 @@ void addOptics(Frame& frame, const Pinhole& p, double exposure_s) {
 void addUnits(Frame& frame, const std::vector<ChannelOutput>& outputs) {
   for (const auto& layer : frame.layers) frame.attributes.push_back({"unit." + layer.name, layer.unit});
   for (const auto& o : outputs) {
-    char band[64];
-    std::snprintf(band, sizeof band, "%.6g to %.6g", o.bandLow_um, o.bandHigh_um);
-    frame.attributes.push_back({"band_um." + o.layer(), std::string(band)});
+    frame.attributes.push_back({"band_um." + o.layer(), print("%.6g to %.6g", o.bandLow_um, o.bandHigh_um)});
     if (!o.cut.empty()) frame.attributes.push_back({"pitviper.response_cut." + o.layer(), o.cut});
   }
 }

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <set>
+
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -16,11 +17,9 @@ std::string dateOf(double epoch_s) {
   const auto day = floor<days>(when);
   const year_month_day date(day);
   const hh_mm_ss time(when - day);
-  char text[64];
-  std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02d.%03d", static_cast<int>(date.year()), static_cast<unsigned>(date.month()),
-                static_cast<unsigned>(date.day()), static_cast<int>(time.hours().count()), static_cast<int>(time.minutes().count()),
-                static_cast<int>(time.seconds().count()), static_cast<int>(time.subseconds().count()));
-  return text;
+  return print("%04d-%02u-%02uT%02d:%02d:%02d.%03d", static_cast<int>(date.year()), static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+               static_cast<int>(time.hours().count()), static_cast<int>(time.minutes().count()), static_cast<int>(time.seconds().count()),
+               static_cast<int>(time.subseconds().count()));
 }
 
 /// Where curves bend, within a channel's band: its ends, knots, and, so that smooth ones are told too, an even choice between.

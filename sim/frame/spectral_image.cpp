@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/spectrum.hpp"
 
 namespace pitviper {
@@ -11,17 +12,9 @@ namespace {
 
 constexpr const char* kUnit = "W/(m2 sr um)";
 
-std::string numberOfBin(int bin) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%03d", bin);
-  return text;
-}
+std::string numberOfBin(int bin) { return print("%03d", bin); }
 
-std::string micrometres(double low, double high) {
-  char text[64];
-  std::snprintf(text, sizeof text, "%.6g to %.6g um", low, high);
-  return text;
-}
+std::string micrometres(double low, double high) { return print("%.6g to %.6g um", low, high); }
 
 struct Bin {
   double low_um, high_um;

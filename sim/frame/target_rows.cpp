@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
+
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 
@@ -38,11 +39,7 @@ std::string targetTableHead(const std::vector<TargetRow>& rows) {
 
 std::string targetTable(const Frame& frame) {
   std::string text;
-  const auto add = [&text](double value) {
-    char cell[40];
-    std::snprintf(cell, sizeof cell, ",%.9g", value);
-    text += std::isnan(value) ? "," : cell;
-  };
+  const auto add = [&text](double value) { text += std::isnan(value) ? "," : print(",%.9g", value); };
   for (const TargetRow& t : frame.targets) {
     text += std::to_string(frame.number);
     add(frame.time_s);

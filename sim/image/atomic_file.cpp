@@ -18,6 +18,8 @@
 #include <system_error>
 #include <utility>
 
+#include "sim/parameters/print.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -73,8 +75,7 @@ std::filesystem::path temporaryName(const std::filesystem::path& target) {
   static std::atomic<std::uint64_t> count{0};
   std::random_device device;
   const std::uint64_t tag = (static_cast<std::uint64_t>(device()) << 32 | device()) ^ (static_cast<std::uint64_t>(::getpid()) << 20) ^ ++count;
-  char digits[kTagDigits + 1];
-  std::snprintf(digits, sizeof digits, "%016llx", static_cast<unsigned long long>(tag));
+  const std::string digits = print("%016llx", static_cast<unsigned long long>(tag));
   const std::string name = target.filename().string();
   if (name.size() > NAME_MAX) return target.parent_path() / name;  // the system's own error tells
   return target.parent_path() / ("." + name.substr(0, kLongestStem) + "." + digits + std::string(kPartial));

@@ -11,6 +11,7 @@
 
 #include "sim/image/whole_values.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/read_file.hpp"
 
 namespace pitviper {
@@ -107,9 +108,7 @@ class MemoryFile {
     // A card has 80 letters: "HIERARCH ", the name, " = ", a number of so many digits and its exponent. What is too long for that is told in words.
     const int digits = name.size() <= 8 ? 15 : std::min(15, 80 - 9 - static_cast<int>(name.size()) - 3 - 8);
     if (digits < 6) {
-      char number[40];
-      std::snprintf(number, sizeof number, "%.15g", value);
-      fits_write_comment(file_, (name + " = " + number).c_str(), &status_);
+      fits_write_comment(file_, (name + " = " + print("%.15g", value)).c_str(), &status_);
     } else if (std::isfinite(value)) fits_update_key_dbl(file_, name.c_str(), value, -digits, nullptr, &status_);
     else addText(name, std::isnan(value) ? "nan" : "inf");  // section 4.2.4 has no such numbers
   }

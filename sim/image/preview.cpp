@@ -13,6 +13,7 @@
 #include "sim/image/draw_text.hpp"
 #include "sim/image/picture_scale.hpp"
 #include "sim/image/ticks.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -63,9 +64,9 @@ Ticks bentTicks(const PictureScale& scale) {
     const double at = scale.position(rounded);
     if (!std::isfinite(at) || at < 0.0 || at > 1.0 || (!ticks.values.empty() && rounded <= ticks.values.back())) continue;
     ticks.values.push_back(rounded);
-    char text[40];
-    std::snprintf(text, sizeof text, "%.*f", std::clamp(static_cast<int>(-std::floor(std::log10(unit))), 0, 9), rounded);
-    ticks.labels.push_back(std::abs(rounded) >= 1e5 || (rounded != 0.0 && std::abs(rounded) < 1e-3) ? shortNumber(rounded) : text);
+    ticks.labels.push_back(std::abs(rounded) >= 1e5 || (rounded != 0.0 && std::abs(rounded) < 1e-3)
+                               ? shortNumber(rounded)
+                               : print("%.*f", std::clamp(static_cast<int>(-std::floor(std::log10(unit))), 0, 9), rounded));
   }
   return ticks;
 }

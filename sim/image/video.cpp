@@ -16,6 +16,8 @@
 #include <thread>
 #include <vector>
 
+#include "sim/parameters/print.hpp"
+
 extern char** environ;
 
 namespace pitviper {
@@ -112,8 +114,7 @@ class VideoWriter::Encoder {
 
  private:
   void start(int in, int out, double rate_per_s, const std::string& comment) {
-    char rate[40];
-    std::snprintf(rate, sizeof rate, "%.9g", rate_per_s);
+    const std::string rate = print("%.9g", rate_per_s);
     const std::string size = std::to_string(width_) + "x" + std::to_string(height_), every = std::to_string(std::max(1L, std::lround(rate_per_s))),
                       said = "comment=" + comment;
     // One thread and bitexact: the same pictures give the same bytes.

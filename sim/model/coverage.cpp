@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/parameters/print.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -34,17 +36,9 @@ std::vector<Source> sourcesOf(const Simulation& sim, const Location& channel) {
 /// 1e-12: ends of tables made in wavenumbers are rounded.
 bool covers(const Source& s, double low, double high) { return s.low_um <= low * (1 + 1e-12) && s.high_um >= high * (1 - 1e-12); }
 
-std::string micrometres(double v) {
-  char s[32];
-  std::snprintf(s, sizeof s, "%.6g um", v);
-  return s;
-}
+std::string micrometres(double v) { return print("%.6g um", v); }
 
-std::string percent(double share) {
-  char s[32];
-  std::snprintf(s, sizeof s, "%.2g %%", 100.0 * share);
-  return s;
-}
+std::string percent(double share) { return print("%.2g %%", 100.0 * share); }
 
 /// Part of a kernel's integral outside [from, to]; 1 where that is everything or the kernel itself has gaps.
 double shareOutside(const Spectrum& kernel, double from, double to) {
@@ -61,15 +55,10 @@ std::string fixFor(const Source& s, double low, double high) {
   const double from = std::max(low, s.low_um), to = std::min(high, s.high_um);
   std::string narrow = "narrow the channel";
   if (from < to) {  // rounded inwards: what is written here is taken
-    char band[96];
-    std::snprintf(band, sizeof band, " ('response: {product: [<the response>, {band: [%.6g um, %.6g um]}]}')", std::ceil(from * 1e4) * 1e-4,
-                  std::floor(to * 1e4) * 1e-4);
-    narrow += band;
+    narrow += print(" ('response: {product: [<the response>, {band: [%.6g um, %.6g um]}]}')", std::ceil(from * 1e4) * 1e-4, std::floor(to * 1e4) * 1e-4);
   }
   if (s.table) {
-    char table[96];
-    std::snprintf(table, sizeof table, "make the table from %.0f to %.0f 1/cm or more, or ", std::floor(1e4 / high), std::ceil(1e4 / low));
-    return table + narrow;
+    return print("make the table from %.0f to %.0f 1/cm or more, or ", std::floor(1e4 / high), std::ceil(1e4 / low)) + narrow;
   }
   if (s.isAir) return narrow + ", or take other air";
   return "extend its table, " + narrow + ", or declare 'outside: hold' or 'outside: zero' if that is true";

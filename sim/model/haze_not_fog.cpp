@@ -1,7 +1,8 @@
 #include "sim/model/haze_not_fog.hpp"
 
 #include <cmath>
-#include <cstdio>
+
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -22,14 +23,12 @@ std::string hazeNotFog(const Simulation& sim) {
   const double visibility_km = kKoschmieder / (visible + kMolecules_per_km);
   // To a metre: what is asked for as 1 km is none.
   if (!(visibility_km < kFog_km - 1e-3) || infrared >= kRadiationFog * visible) return {};
-  char text[600];
-  std::snprintf(text, sizeof text,
-                "air of %.2g km of visibility is haze here, not fog: it weakens 10 um by %.2g of what it does at 0.55 um, where fog does by 0.24 (radiation fog) to "
-                "1.23 (advection fog; LOWTRAN 7): 1 km of this haze lets %.2g %% through at 10 um, of such fogs %.2g to %.2g %%; and haze absorbs %.1g %% of what "
-                "it takes at 0.55 um, fog nothing",
-                visibility_km, infrared / visible, 100.0 * std::exp(-infrared), 100.0 * std::exp(-kRadiationFog * visible),
-                100.0 * std::exp(-kAdvectionFog * visible), 100.0 * hazy->hazeAbsorbs(0.55));
-  return text;
+  return print(
+      "air of %.2g km of visibility is haze here, not fog: it weakens 10 um by %.2g of what it does at 0.55 um, where fog does by 0.24 (radiation fog) to "
+      "1.23 (advection fog; LOWTRAN 7): 1 km of this haze lets %.2g %% through at 10 um, of such fogs %.2g to %.2g %%; and haze absorbs %.1g %% of what "
+      "it takes at 0.55 um, fog nothing",
+      visibility_km, infrared / visible, 100.0 * std::exp(-infrared), 100.0 * std::exp(-kRadiationFog * visible), 100.0 * std::exp(-kAdvectionFog * visible),
+      100.0 * hazy->hazeAbsorbs(0.55));
 }
 
 }  // namespace pitviper

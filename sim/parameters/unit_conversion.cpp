@@ -1,7 +1,6 @@
 #include "sim/parameters/unit_conversion.hpp"
 
-#include <cstdio>
-
+#include "sim/parameters/print.hpp"
 #include "sim/parameters/units.hpp"
 
 namespace pitviper {
@@ -12,11 +11,7 @@ constexpr double kPlanckLight_J_m = 6.62607015e-34 * 299792458.0;
 
 enum Dimension : std::size_t { kWatt, kMetre, kSecond, kKelvin, kRadian, kSteradian, kVolt, kCount };
 
-std::string number(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.7g", v);
-  return text;
-}
+std::string number(double v) { return print("%.7g", v); }
 
 }  // namespace
 

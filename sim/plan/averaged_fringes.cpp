@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "sim/model/fringes.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/reference_width.hpp"
 
 namespace pitviper {
@@ -47,11 +47,9 @@ std::vector<AveragedFringes> averagedFringes(const Simulation& sim, const std::v
 }
 
 std::string wordsOf(const AveragedFringes& f) {
-  char text[400];
-  std::snprintf(text, sizeof text, "fringes of '%s' are %.2g nm apart at %.4g um, closer than the wavelengths of the reference (%.2g nm): they are averaged, %s",
-                f.material.substr(0, 60).c_str(), 1e3 * f.apart_um, f.at_um, 1e3 * f.width_um,
-                f.narrow ? "and this channel is so narrow that it could see some of them" : "as if powers of its thick layers added");
-  return text;
+  return print("fringes of '%s' are %.2g nm apart at %.4g um, closer than the wavelengths of the reference (%.2g nm): they are averaged, %s",
+               f.material.substr(0, 60).c_str(), 1e3 * f.apart_um, f.at_um, 1e3 * f.width_um,
+               f.narrow ? "and this channel is so narrow that it could see some of them" : "as if powers of its thick layers added");
 }
 
 }  // namespace pitviper

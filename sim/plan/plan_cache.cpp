@@ -105,12 +105,7 @@ std::string writePlanned(const Plan& plan) {
   return std::string(kFormat) + " " + std::to_string(sum[0]) + " " + std::to_string(sum[1]) + "\n" + w.text + "\n";
 }
 
-std::string planFingerprint(const Plan& plan) {
-  const ContentKey key = contentKey(writePlanned(plan));
-  char text[40];
-  std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
-  return text;
-}
+std::string planFingerprint(const Plan& plan) { return digitsOf(contentKey(writePlanned(plan))); }
 
 bool readPlanned(const std::string& text, Plan& into) {
   const size_t line = text.find('\n');

@@ -1,9 +1,8 @@
 #include "sim/plan/plan_origin.hpp"
 
-#include <cstdio>
-
 #include "sim/model/scene_fingerprint.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/scene/laws_digest.hpp"
 
 namespace pitviper {
@@ -11,17 +10,7 @@ namespace {
 
 constexpr const char* kBegin = "# plan ";
 
-std::string hex(const ContentKey& key) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
-  return text;
-}
-
-std::string percent(double accuracy) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6g %%", 100.0 * accuracy);
-  return accuracy > 0.0 ? text : "none";
-}
+std::string percent(double accuracy) { return accuracy > 0.0 ? print("%.6g %%", 100.0 * accuracy) : "none"; }
 
 }  // namespace
 
@@ -41,9 +30,8 @@ PlanOrigin originOf(const Simulation& sim, const Camera& camera) {
 }
 
 std::string originLine(const PlanOrigin& o) {
-  char numbers[120];
-  std::snprintf(numbers, sizeof numbers, " accuracy %a samples %d shared %d", o.accuracy, o.samples, o.sharesShading ? 1 : 0);
-  return kBegin + o.laws + " scene " + hex(o.scene) + " eye " + hex(o.eye) + numbers + " of camera " + o.camera + "\n";
+  return kBegin + o.laws + " scene " + digitsOf(o.scene) + " eye " + digitsOf(o.eye) +
+         print(" accuracy %a samples %d shared %d", o.accuracy, o.samples, o.sharesShading ? 1 : 0) + " of camera " + o.camera + "\n";
 }
 
 std::optional<PlanOrigin> readOrigin(const std::string& text) {

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "sim/flight/closest_approach.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/run/mover.hpp"
 
@@ -114,11 +115,7 @@ std::string encountersText(const std::vector<Encounter>& encounters) {
       "target_up_m,end\n";
   for (const Encounter& e : encounters) {
     text += e.body + "," + e.target + "," + e.kind;
-    const auto number = [&](double v) {
-      char cell[40] = ",";
-      if (std::isfinite(v)) std::snprintf(cell, sizeof cell, ",%.12g", v);
-      text += cell;
-    };
+    const auto number = [&](double v) { text += std::isfinite(v) ? print(",%.12g", v) : ","; };
     number(e.time_s), number(e.distance_m);
     text += e.passed ? ",1" : ",0";
     number(e.relativeSpeed_m_s), number(e.aspect_rad * 180.0 / kPi), number(e.speed_m_s), number(e.targetSpeed_m_s);

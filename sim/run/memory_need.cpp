@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <set>
 
 #include "sim/parameters/available_memory.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/plan/plan.hpp"
 
 namespace pitviper {
@@ -87,9 +87,7 @@ double needOfScene(const Simulation& sim) {
 }
 
 std::string gigabytes(double bytes) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2g GB", std::max(bytes, 0.0) / 1e9);
-  return bytes >= 99.5e9 ? std::to_string(std::llround(bytes / 1e9)) + " GB" : text;
+  return bytes >= 99.5e9 ? std::to_string(std::llround(bytes / 1e9)) + " GB" : print("%.2g GB", std::max(bytes, 0.0) / 1e9);
 }
 
 std::string describe(const Camera& c) {

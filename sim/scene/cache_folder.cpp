@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sim/image/atomic_file.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -69,12 +70,14 @@ std::filesystem::path cacheFolder() {
   return {};
 }
 
+std::string digitsOf(const ContentKey& key) {
+  return print("%016llx%016llx", static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
+}
+
 std::filesystem::path cacheFile(std::string_view prefix, const ContentKey& key) {
   const std::filesystem::path folder = cacheFolder();
   if (folder.empty()) return {};
-  char name[40];
-  std::snprintf(name, sizeof name, "%016llx%016llx", static_cast<unsigned long long>(key[0]), static_cast<unsigned long long>(key[1]));
-  return folder / (std::string(prefix) + name);
+  return folder / (std::string(prefix) + digitsOf(key));
 }
 
 void pruneCache(const std::filesystem::path& folder, std::string_view prefix, std::uintmax_t mostBytes, const std::filesystem::path& keep) {

@@ -22,6 +22,8 @@ ContentKey contentKeyOf(const std::function<void(Fingerprint&)>& tell);
 /// Empty if neither XDG_CACHE_HOME (absolute) nor HOME is set.
 std::filesystem::path cacheFolder();
 
+/// A key as 32 hexadecimal digits.
+std::string digitsOf(const ContentKey& key);
 /// Of that content in the folder: `prefix` and the key, 32 hexadecimal digits. Empty where there is no folder.
 std::filesystem::path cacheFile(std::string_view prefix, const ContentKey& key);
 

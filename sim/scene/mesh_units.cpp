@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <filesystem>
 
+#include "sim/parameters/print.hpp"
+
 namespace pitviper {
 namespace {
 
@@ -15,11 +17,7 @@ constexpr double kLongest_m = 500.0, kShortest_m = 0.02;
 constexpr double kFeetFrom_m = 40.0;
 constexpr double kFoot_m = 0.3048;
 
-std::string metres(double v) {
-  char text[32];
-  std::snprintf(text, sizeof text, v < 1e3 ? "%.3g m" : "%.0f m", v);
-  return text;
-}
+std::string metres(double v) { return print(v < 1e3 ? "%.3g m" : "%.0f m", v); }
 
 bool isGltf(const std::string& file) {
   std::string e = std::filesystem::path(file).extension().string();

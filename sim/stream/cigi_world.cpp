@@ -1,19 +1,15 @@
 #include "sim/stream/cigi_world.hpp"
 
 #include <cmath>
-#include <cstdio>
 
 #include "sim/model/world.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/stream/command_models.hpp"
 
 namespace pitviper {
 namespace {
 
-std::string number(double v) {
-  char text[40];
-  std::snprintf(text, sizeof text, "%.9g", v);
-  return text;
-}
+std::string number(double v) { return print("%.9g", v); }
 
 /// Axes x north, y west, z up as directions of a local east-north-up frame.
 glm::dquat northWestUp() { return orientationFrom(Attitude{}); }

@@ -6,6 +6,7 @@
 
 #include "sim/frame/frame_number.hpp"
 #include "sim/frame/version.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/stream/clock/wall_clock.hpp"
 #include "sim/stream/controllable_sink.hpp"
 #include "sim/stream/gige/gige_device.hpp"
@@ -34,11 +35,7 @@ std::string addressAfter(const std::string& first, int k, const Location& where)
   return std::to_string(a) + "." + std::to_string(b) + "." + std::to_string(c) + "." + std::to_string(d);
 }
 
-std::string number(double v, const char* unit) {
-  char text[60];
-  std::snprintf(text, sizeof text, "%.9g%s", v, unit);
-  return text;
-}
+std::string number(double v, const char* unit) { return print("%.9g%s", v, unit); }
 
 class GigeSink final : public Sink, public ControllableSink {
  public:

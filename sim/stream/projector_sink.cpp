@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "sim/parameters/print.hpp"
 #include "sim/stream/pipeline_sinks.hpp"
 #include "sim/stream/projector/open_projector.hpp"
 #include "sim/stream/stream_picture.hpp"
@@ -31,9 +32,11 @@ class WindowSink final : public ProjectorSink {
     if (!projector_) return {{"projector", 0, 0, 0, {}}};
     const ProjectorCounts c = projector_->counts();
     const std::uint64_t taken = taken_;
-    char rate[80];
-    std::snprintf(rate, sizeof rate, "projector at %.2f Hz%s", projector_->rate_hz(), projector_->isPaced() ? " (by a timer: this display holds no swap)" : "");
-    return {{rate, taken, c.shown, taken - std::min(taken, c.shown), {{"swaps", c.swaps}}}};
+    return {{print("projector at %.2f Hz%s", projector_->rate_hz(), projector_->isPaced() ? " (by a timer: this display holds no swap)" : ""),
+             taken,
+             c.shown,
+             taken - std::min(taken, c.shown),
+             {{"swaps", c.swaps}}}};
   }
   std::optional<std::int64_t> nextSwap() override {
     if (!projector_->waitSwap(swap_, kLongest_ns)) return std::nullopt;

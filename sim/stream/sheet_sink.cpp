@@ -5,6 +5,7 @@
 
 #include "sim/image/draw_text.hpp"
 #include "sim/image/png.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/stream/picture_sink.hpp"
 #include "sim/stream/sink_models.hpp"
 
@@ -41,8 +42,7 @@ class ContactSheets final : public PictureUser {
   void take(const Frame& frame, const Rgb8Image& picture) override {
     Camera& c = cameras_[frame.camera];
     if (c.seen++ % c.step != 0) return;
-    char caption[80];
-    std::snprintf(caption, sizeof caption, "%05d   t = %.3f s", frame.number, frame.time_s);
+    const std::string caption = print("%05d   t = %.3f s", frame.number, frame.time_s);
     c.texts = pictureTexts(frame);
     c.tiles.push_back({caption, resized(picture)});
     if (c.tiles.size() < 2 * kMostTiles) return;

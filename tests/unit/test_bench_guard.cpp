@@ -1,7 +1,6 @@
 // Figures that are held against a file: how the file is read, what is named, and the changes of scenarios that are measured.
 #include <gtest/gtest.h>
 
-#include "scenarios/commands/code_lines.hpp"
 #include "scenarios/commands/first_figures.hpp"
 #include "scenarios/commands/guard_bench.hpp"
 #include "scenarios/commands/run_timing.hpp"

@@ -13,9 +13,9 @@
 #include "scenarios/commands/charts/space_shapes.hpp"
 #include "scenarios/commands/charts/style.hpp"
 #include "scenarios/commands/charts/trajectory_axes.hpp"
-#include "scenarios/commands/print.hpp"
 #include "sim/image/draw_text.hpp"
 #include "sim/image/ticks.hpp"
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {

@@ -1,7 +1,8 @@
 #include "sim/stream/cigi/cigi_packets.hpp"
 
-#include <cstdio>
 #include <limits>
+
+#include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
@@ -52,9 +53,7 @@ class Fields {
   }
   double within(const char* name, double value, double least, double most) {
     if (value >= least && value <= most) return value;  // false of a NaN
-    char words[160];
-    std::snprintf(words, sizeof words, "%s %.9g is outside of %.9g to %.9g", name, value, least, most);
-    refuse(words);
+    refuse(print("%s %.9g is outside of %.9g to %.9g", name, value, least, most));
     return least;
   }
   std::span<const std::byte> bytes_;
@@ -260,9 +259,7 @@ Trouble checkBeginning(std::span<const std::byte> d, bool& bigEndian) {
   if (minor != 2 && minor != 3) return {CigiFault::WrongVersion, "the host speaks CIGI 3." + std::to_string(minor) + understood};
   const int magic = byteAt(6) << 8 | byteAt(7);
   if (magic != 0x8000 && magic != 0x0080) {
-    char words[120];
-    std::snprintf(words, sizeof words, "IG Control (byte 6) has %02x %02x for a byte order: 80 00 or 00 80", byteAt(6), byteAt(7));
-    return {CigiFault::NoByteOrder, words};
+    return {CigiFault::NoByteOrder, print("IG Control (byte 6) has %02x %02x for a byte order: 80 00 or 00 80", byteAt(6), byteAt(7))};
   }
   bigEndian = magic == 0x8000;
   return {};

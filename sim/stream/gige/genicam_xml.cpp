@@ -1,11 +1,11 @@
 #include "sim/stream/gige/genicam_xml.hpp"
 
 #include <array>
-#include <cstdio>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "sim/parameters/print.hpp"
 #include "sim/stream/gige/gige_plan.hpp"
 #include "sim/stream/gige/gige_registers.hpp"
 
@@ -28,16 +28,8 @@ std::string escaped(const std::string& text) {
   return result;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.17g", value);
-  return text;
-}
-std::string hex(std::uint32_t value) {
-  char text[16];
-  std::snprintf(text, sizeof text, "0x%X", value);
-  return text;
-}
+std::string number(double value) { return print("%.17g", value); }
+std::string hex(std::uint32_t value) { return print("0x%X", value); }
 std::string tag(const std::string& name, const std::string& content) { return content.empty() ? "" : "<" + name + ">" + content + "</" + name + ">\n"; }
 const char* word(Access access) { return access == Access::ReadOnly ? "RO" : access == Access::WriteOnly ? "WO" : "RW"; }
 
@@ -136,10 +128,8 @@ class Description {
     close(c.isFloat ? "Float" : "Integer");
     if (c.isFloat) floatRegister(name + "Reg", tag("Address", "0x0"), Access::ReadOnly, port);
     else intRegister(name + "Reg", tag("Address", "0x0"), 8, Access::ReadOnly, port);
-    char digits[16];
-    std::snprintf(digits, sizeof digits, "%x", id);  // a chunk's id is written without 0x
     openNode("Port", port);
-    body_ += tag("ChunkID", digits);
+    body_ += tag("ChunkID", print("%x", id));  // without 0x
     close("Port");
   }
   /// Two words of one number.
@@ -313,11 +303,8 @@ std::string guidOf(const std::string& text) {
   std::array<std::uint64_t, 2> halves{0xcbf29ce484222325u, 0x84222325cbf29ce4u};
   for (const char c : text)
     for (std::uint64_t& half : halves) half = (half ^ static_cast<unsigned char>(c)) * 0x100000001b3u;  // FNV-1a from two starts
-  char guid[40];
-  std::snprintf(guid, sizeof guid, "%08X-%04X-%04X-%04X-%012llX", static_cast<unsigned>(halves[0] >> 32), static_cast<unsigned>(halves[0] >> 16 & 0xFFFF),
-                static_cast<unsigned>(halves[0] & 0xFFFF), static_cast<unsigned>(halves[1] >> 48),
-                static_cast<unsigned long long>(halves[1] & 0xFFFFFFFFFFFFu));
-  return guid;
+  return print("%08X-%04X-%04X-%04X-%012llX", static_cast<unsigned>(halves[0] >> 32), static_cast<unsigned>(halves[0] >> 16 & 0xFFFF),
+               static_cast<unsigned>(halves[0] & 0xFFFF), static_cast<unsigned>(halves[1] >> 48), static_cast<unsigned long long>(halves[1] & 0xFFFFFFFFFFFFu));
 }
 
 }  // namespace

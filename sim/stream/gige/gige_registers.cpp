@@ -1,9 +1,9 @@
 #include "sim/stream/gige/gige_registers.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 
+#include "sim/parameters/print.hpp"
 #include "sim/stream/gige/gige_plan.hpp"
 #include "sim/stream/gige/wire.hpp"
 
@@ -65,9 +65,7 @@ GigeRegisters::GigeRegisters(const GigeSettings& settings, const GigeNetwork& ne
   setText(bootstrap::kDeviceVersion, 32, settings.version);
   setText(bootstrap::kInformation, 48, "simulated infrared camera");
   setText(bootstrap::kSerial, 16, settings.serial);
-  char url[64];
-  std::snprintf(url, sizeof url, "Local:pitviper.xml;%x;%zx", feature::kXml, xml_.size());
-  setText(bootstrap::kXmlUrl, 512, url);
+  setText(bootstrap::kXmlUrl, 512, print("Local:pitviper.xml;%x;%zx", feature::kXml, xml_.size()));
   for (const std::uint32_t at : {bootstrap::kInterfaces, bootstrap::kStreamChannels, bootstrap::kActions, bootstrap::kLinks}) setWord(at, 1);
   setWord(bootstrap::kLinkSpeed, static_cast<std::uint32_t>(settings.line_Mbps));
   setWord(bootstrap::kStreamCapability, kTellsSourcePort | kKnowsShortIds);
