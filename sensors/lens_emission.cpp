@@ -70,37 +70,35 @@ class LensEmissionStage final : public SensorStage {
 }  // namespace
 
 StageModel lensEmissionModel() {
-  return {"lens_emission",
-          "What the warm sensor sends to its own film: the lens by its emissivity, and its housing around the lens's cone as far as a cold stop leaves it open. Of "
-          "quantities behind the optics. `apparent_temperature` takes it away again, as a calibration would; its noise stays.",
-          {required(within(above(number("temperature", "K", "of the lens"), 0), 0, 2000)),
-           within(number("emissivity", "", "of the lens; 1 - `optics` unless given"), 0, 1),
-           within(number("stop_f_number", "", "of the cone that the cold stop leaves open, at most that of the lens; 0.5: none; unless given it is the lens's"), 0.5, 1e3),
-           within(above(number("housing_temperature", "K", "of what is seen around the lens; unless given as warm as the lens"), 0), 0, 2000),
-           withDefault(within(number("housing_emissivity", "", "of it"), 0, 1), "1")},
-          [](const Record& r, const Camera& camera) {
-            const double fNumber = camera.pinhole.focalLength_m / camera.pinhole.apertureDiameter_m;
-            Warm warm;
-            warm.lens_K = r.number("temperature");
-            warm.around_K = r.given("housing_temperature") ? r.number("housing_temperature") : warm.lens_K;
-            warm.aroundEmissivity = r.number("housing_emissivity");
-            if (r.given("emissivity")) warm.emissivity = r.number("emissivity");
-            if (r.given("stop_f_number")) {
-              const double stop = r.number("stop_f_number");
-              if (stop > fNumber * (1.0 + 1e-9))
-                throw UserError(r.where("stop_f_number"), "a cold stop that cuts into the lens's cone", "at most its F number, " + std::to_string(fNumber),
-                                "lower it, or narrow the aperture to what the stop leaves");
-              warm.stop = stop;
-            }
-            warm.pixelArea_m2 = camera.pinhole.pitchX_m * camera.pinhole.pitchY_m;
-            warm.aperture_m = camera.pinhole.apertureDiameter_m;
-            StageChoice choice;
-            choice.ownLight = [warm](const ChannelOutput& o, double axis_sr) {
-              return o.behindOptics ? axis_sr * (warm.lens(o) + warm.housing(o, axis_sr)) : 0.0;
-            };
-            choice.make = [warm](const ShaderLibrary&) { return std::make_unique<LensEmissionStage>(warm); };
-            return choice;
-          }};
+  return {
+      "lens_emission",
+      "What the warm sensor sends to its own film: the lens by its emissivity, and its housing around the lens's cone as far as a cold stop leaves it open. Of "
+      "quantities behind the optics. `apparent_temperature` takes it away again, as a calibration would; its noise stays.",
+      {required(within(above(number("temperature", "K", "of the lens", &Warm::lens_K), 0), 0, 2000)),
+       within(number("emissivity", "", "of the lens; 1 - `optics` unless given", &Warm::emissivity), 0, 1),
+       within(number("stop_f_number", "", "of the cone that the cold stop leaves open, at most that of the lens; 0.5: none; unless given it is the lens's"),
+              0.5, 1e3),
+       within(above(number("housing_temperature", "K", "of what is seen around the lens; unless given as warm as the lens", &Warm::around_K), 0), 0, 2000),
+       withDefault(within(number("housing_emissivity", "", "of it", &Warm::aroundEmissivity), 0, 1), "1")},
+      [](const Record& r, const Camera& camera) {
+        const double fNumber = camera.pinhole.focalLength_m / camera.pinhole.apertureDiameter_m;
+        Warm warm;
+        r.fill(warm);
+        if (!r.given("housing_temperature")) warm.around_K = warm.lens_K;
+        if (r.given("stop_f_number")) {
+          const double stop = r.number("stop_f_number");
+          if (stop > fNumber * (1.0 + 1e-9))
+            throw UserError(r.where("stop_f_number"), "a cold stop that cuts into the lens's cone", "at most its F number, " + std::to_string(fNumber),
+                            "lower it, or narrow the aperture to what the stop leaves");
+          warm.stop = stop;
+        }
+        warm.pixelArea_m2 = camera.pinhole.pitchX_m * camera.pinhole.pitchY_m;
+        warm.aperture_m = camera.pinhole.apertureDiameter_m;
+        StageChoice choice;
+        choice.ownLight = [warm](const ChannelOutput& o, double axis_sr) { return o.behindOptics ? axis_sr * (warm.lens(o) + warm.housing(o, axis_sr)) : 0.0; };
+        choice.make = [warm](const ShaderLibrary&) { return std::make_unique<LensEmissionStage>(warm); };
+        return choice;
+      }};
 }
 
 }  // namespace pitviper

@@ -181,6 +181,7 @@ void refuseTooWide(const Record& r, const Lens& lens, const std::vector<ChannelO
 
 StageChoice readPointSpread(const Record& r, const Camera& camera) {
   Lens lens;
+  r.fill(lens);
   const Pinhole& p = camera.pinhole;
   if (std::abs(p.pitchX_m / p.pitchY_m - 1.0) > 1e-9)
     throw UserError(r.where(), "a point spread function on pixels that are not square", "'pitch' without 'pitch_y'", "remove pitch_y, or the stage");
@@ -189,14 +190,7 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
   lens.aperture_m = p.apertureDiameter_m;
   lens.pitch_m = p.pitchX_m;
   lens.setCells(choice.cells);
-  lens.diffraction = r.boolean("diffraction");
-  lens.obscuration = r.number("obscuration");
-  lens.wavefront_m = r.number("wavefront_error");
-  lens.defocus_m = r.number("defocus");
-  lens.still_m = r.number("blur");
-  lens.jitter_rad = r.number("jitter");
   lens.zoom(p.focalLength_m);
-  lens.veilingGlare = r.number("veiling_glare");
   lens.leastShare = 1.0 - r.number("beyond");
   for (const char* key : {"obscuration", "wavefront_error", "defocus"})
     if (!lens.diffraction && r.number(key) > 0.0)
@@ -250,16 +244,22 @@ StageModel pointSpreadModel() {
   return {
       "point_spread",
       "What the lens makes of points: diffraction at the aperture, wavelength by wavelength within a channel (for light that is even over it), with wavefront "
-      "error, defocus, blur and jitter, on cells of a pixel; near a point with its rings, and far from it by their mean, as the cube of the distance, as far as the picture reaches.",
-      {withDefault(boolean("diffraction", "at a circular aperture of the camera's F number"), "true"),
-       withDefault(within(number("obscuration", "", "of the aperture, by diameter"), 0, 0.9), "0"),
-       withDefault(within(number("wavefront_error", "m", "rms, after Shannon; up to 0.18 waves"), 0, 1e-3), "0 um"),
-       withDefault(within(number("defocus", "m", "of the film along the axis"), 0, 1), "0 um"),
-       withDefault(within(number("blur", "m", "of Gauss on the film, rms along one direction"), 0, 1), "0 um"),
-       withDefault(within(number("jitter", "rad", "of the line of sight within an exposure, rms along one direction"), 0, 0.1), "0 rad"),
-       withDefault(within(number("veiling_glare", "", "share of the light that the lens spreads evenly"), 0, 0.9), "0"),
+      "error, defocus, blur and jitter, on cells of a pixel; near a point with its rings, and far from it by their mean, as the cube of the distance, as far "
+      "as the picture reaches.",
+      {withDefault(boolean("diffraction", "at a circular aperture of the camera's F number", &Lens::diffraction), "true"),
+       withDefault(within(number("obscuration", "", "of the aperture, by diameter", &Lens::obscuration), 0, 0.9), "0"),
+       withDefault(within(number("wavefront_error", "m", "rms, after Shannon; up to 0.18 waves", &Lens::wavefront_m), 0, 1e-3), "0 um"),
+       withDefault(within(number("defocus", "m", "of the film along the axis", &Lens::defocus_m), 0, 1), "0 um"),
+       withDefault(within(number("blur", "m", "of Gauss on the film, rms along one direction", &Lens::still_m), 0, 1), "0 um"),
+       withDefault(within(number("jitter", "rad", "of the line of sight within an exposure, rms along one direction", &Lens::jitter_rad), 0, 0.1), "0 rad"),
+       withDefault(within(number("veiling_glare", "", "share of the light that the lens spreads evenly", &Lens::veilingGlare), 0, 0.9), "0"),
        integer("cells", "cells a side of a pixel; unless given the fewest, up to 4, that leave contrast at half a cycle a pixel within 0.01", 1, 16),
-       withDefault(within(above(number("beyond", "", "share of a point's light that may lie farther than the margin that is drawn around the film; its rings are told twice as far as that, beyond that their mean"), 0), 0, 0.2), "0.01")},
+       withDefault(within(above(number("beyond", "",
+                                       "share of a point's light that may lie farther than the margin that is drawn around the film; its rings are told twice "
+                                       "as far as that, beyond that their mean"),
+                                0),
+                          0, 0.2),
+                   "0.01")},
       readPointSpread};
 }
 

@@ -55,27 +55,57 @@ bool hasPattern(const Simulation& sim, const Surface& s) {
   return std::any_of(textures.begin(), textures.end(), [&](int t) { return t >= 0 && sim.textures[static_cast<size_t>(t)].texels.size() > 1; });
 }
 
-/// The keys that a shape takes: a key of another shape would be ignored without a word.
-void refuseForeignKeys(const Record& r, const std::string& model) {
-  static const std::map<std::string, std::vector<std::string>> keys = {{"plate", {"width", "height"}},
-                                                                       {"box", {"length", "width", "height"}},
-                                                                       {"disc", {"radius", "segments"}},
-                                                                       {"sphere", {"radius", "segments", "fit"}},
-                                                                       {"ellipsoid", {"length", "width", "height", "segments"}},
-                                                                       {"cylinder", {"radius", "length", "segments", "capped"}},
-                                                                       {"cone", {"radius", "top_radius", "length", "segments", "capped"}},
-                                                                       {"terrain", {"size", "relief", "columns", "terrain_seed", "height_map"}},
-                                                                       {"jet", {}},
-                                                                       {"missile", {}},
-                                                                       {"ground", {"extent", "tile"}},
-                                                                       {"mesh", {"file", "unit", "forward", "up"}}};
-  std::vector<std::string> own = keys.at(model);
+struct ShapeModel {
+  std::vector<std::string> needs, takes;  ///< keys
+  Mesh (*make)(const Record&) = nullptr;  ///< null: of more than its keys
+};
+
+double given(const Record& r, const char* key) { return r.given(key) ? r.number(key) : 0.0; }
+int segments(const Record& r) { return static_cast<int>(r.integer("segments")); }
+
+const std::map<std::string, ShapeModel>& shapeModels() {
+  static const std::map<std::string, ShapeModel> all = {
+      {"plate", {{"width", "height"}, {}, [](const Record& r) { return makePlate(r.number("width"), r.number("height")); }}},
+      {"box", {{"length", "width", "height"}, {}, [](const Record& r) { return makeBox(r.number("length"), r.number("width"), r.number("height")); }}},
+      {"disc", {{"radius"}, {"segments"}, [](const Record& r) { return makeDisc(r.number("radius"), segments(r)); }}},
+      {"sphere",
+       {{"radius"},
+        {"segments", "fit"},
+        [](const Record& r) {
+          return makeSphere(r.number("radius"), segments(r), r.text("fit") == "inscribed" ? SphereFit::Inscribed : SphereFit::EqualArea);
+        }}},
+      {"ellipsoid",
+       {{"length", "width", "height"},
+        {"segments"},
+        [](const Record& r) { return makeEllipsoid(r.number("length"), r.number("width"), r.number("height"), segments(r)); }}},
+      {"cylinder",
+       {{"radius", "length"},
+        {"segments", "capped"},
+        [](const Record& r) { return makeCylinder(r.number("radius"), r.number("length"), segments(r), r.boolean("capped")); }}},
+      {"cone",
+       {{"radius", "length"},
+        {"top_radius", "segments", "capped"},
+        [](const Record& r) { return makeCone(r.number("radius"), given(r, "top_radius"), r.number("length"), segments(r), r.boolean("capped")); }}},
+      {"jet", {{}, {}, [](const Record&) { return makeJet(); }}},
+      {"missile", {{}, {}, [](const Record&) { return makeMissile(); }}},
+      {"terrain", {{"size"}, {"relief", "columns", "terrain_seed", "height_map"}}},
+      {"ground", {{}, {"extent", "tile"}}},
+      {"mesh", {{"file", "unit"}, {"forward", "up"}}}};
+  return all;
+}
+
+/// A key of another shape would be ignored without a word.
+void refuseForeignKeys(const Record& r, const std::string& name, const ShapeModel& model) {
+  std::vector<std::string> own = model.needs;
+  own.insert(own.end(), model.takes.begin(), model.takes.end());
   own.emplace_back("scale");
   for (size_t i = 0; i < r.whole().entries.size(); ++i) {
     const std::string& key = r.whole().entries[i].first;
-    if (key == "model" || std::find(own.begin(), own.end(), key) != own.end()) continue;
-    throw unknownWord(r.whole().keyPlaces[i], "a " + model + " has no", key, own, "remove it");
+    if (key != "model" && std::find(own.begin(), own.end(), key) == own.end())
+      throw unknownWord(r.whole().keyPlaces[i], "a " + name + " has no", key, own, "remove it");
   }
+  for (const std::string& key : model.needs)
+    if (!r.given(key)) throw UserError(r.where(), "a " + name + " without '" + key + "'", tables::shape().find(key)->description, "add '" + key + ":'");
 }
 
 /// Turns a mesh from a file by its 'forward' and 'up'; what is not given is as the format has it.
@@ -93,10 +123,10 @@ void turnAsAsked(Mesh& mesh, const Record& r) {
   turnAxes(mesh, usual, meant);
 }
 
-/// The true form, scaled; what is missing has been, or will be, refused.
+/// The true form, scaled.
 BodyForm formOf(const Record& r, const std::string& model) {
   const double scale = r.given("scale") ? r.number("scale") : 1.0;
-  auto metres = [&](const char* key) { return r.given(key) ? scale * r.number(key) : 0.0; };
+  auto metres = [&](const char* key) { return scale * given(r, key); };
   if (model == "sphere") return {BodyForm::Kind::Ellipsoid, glm::dvec3(metres("radius"))};
   if (model == "ellipsoid") return {BodyForm::Kind::Ellipsoid, 0.5 * glm::dvec3(metres("length"), metres("width"), metres("height"))};
   const bool closed = r.boolean("capped");
@@ -118,23 +148,11 @@ std::shared_ptr<const Mesh> Builder::shapeOf(const Value& value, BodyForm& form)
 std::shared_ptr<const Mesh> Builder::readShape(const Value& value, BodyForm& form) {
   const Record r(value, tables::shape());
   const std::string model = r.text("model");
-  auto need = [&](const char* key) {
-    if (!r.given(key))
-      throw UserError(r.where(), "a " + model + " without '" + key + "'", tables::shape().find(key)->description, std::string("add '") + key + ":'");
-    return r.number(key);
-  };
-  refuseForeignKeys(r, model);
-  const int segments = static_cast<int>(r.integer("segments"));
+  const ShapeModel& shape = shapeModels().at(model);
+  refuseForeignKeys(r, model, shape);
   form = formOf(r, model);
   auto mesh = std::make_shared<Mesh>();
-  if (model == "plate") *mesh = makePlate(need("width"), need("height"));
-  else if (model == "box") *mesh = makeBox(need("length"), need("width"), need("height"));
-  else if (model == "disc") *mesh = makeDisc(need("radius"), segments);
-  else if (model == "sphere") *mesh = makeSphere(need("radius"), segments, r.text("fit") == "inscribed" ? SphereFit::Inscribed : SphereFit::EqualArea);
-  else if (model == "ellipsoid") *mesh = makeEllipsoid(need("length"), need("width"), need("height"), segments);
-  else if (model == "cylinder") *mesh = makeCylinder(need("radius"), need("length"), segments, r.boolean("capped"));
-  else if (model == "cone")
-    *mesh = makeCone(need("radius"), r.given("top_radius") ? r.number("top_radius") : 0.0, need("length"), segments, r.boolean("capped"));
+  if (shape.make) *mesh = shape.make(r);
   else if (model == "terrain") {
     if (r.given("height_map")) {
       const int texture = readTexture(r.value("height_map"), "m", "a height map", -1e4, 1e4);
@@ -142,22 +160,15 @@ std::shared_ptr<const Mesh> Builder::readShape(const Value& value, BodyForm& for
       simulation_.textures.resize(static_cast<size_t>(texture));
       if (t.width < 2 || t.height < 2 || t.width > 2048 || t.height > 2048)
         throw UserError(r.where("height_map"), "a height map of " + std::to_string(t.width) + "x" + std::to_string(t.height), "2x2 to 2048x2048", "resize it");
-      *mesh = makeTerrain(need("size"), t.width - 1, t.height - 1, t.texels);
+      *mesh = makeTerrain(r.number("size"), t.width - 1, t.height - 1, t.texels);
     } else {
-      TerrainShape shape;
-      shape.size_m = need("size");
-      shape.relief_m = r.given("relief") ? r.number("relief") : 0.0;
-      shape.columns = static_cast<int>(r.integer("columns"));
-      shape.seed = static_cast<std::uint64_t>(r.integer("terrain_seed"));
-      *mesh = makeTerrain(shape);
+      TerrainShape terrain{.relief_m = 0.0};
+      r.fill(terrain);
+      *mesh = makeTerrain(terrain);
     }
   } else if (model == "ground") {
-    *mesh = makeGround(r.given("extent") ? r.number("extent") : kUsualGround_m, simulation_.frame.earthRadius_m(), r.given("tile") ? r.number("tile") : 0.0);
-  } else if (model == "jet") *mesh = makeJet();
-  else if (model == "missile") *mesh = makeMissile();
-  else {
-    if (!r.given("file")) throw UserError(r.where(), "a mesh without 'file'", "'file: aircraft.obj'", "add it");
-    if (!r.given("unit")) throw UserError(r.where(), "a mesh without 'unit'", "the length of one unit of the file, such as 'unit: 1 m'", "add it");
+    *mesh = makeGround(r.given("extent") ? r.number("extent") : kUsualGround_m, simulation_.frame.earthRadius_m(), given(r, "tile"));
+  } else {
     std::filesystem::path path = r.text("file");
     if (path.is_relative()) path = spectra_.files().base / path;
     *mesh = importMesh(path, r.number("unit"), r.where("file"));
@@ -247,7 +258,7 @@ void Builder::readEntities(const Record& scenario) {
   for (const Value& v : scenario.value("entities").items) {
     const Record r(v, tables::entity());
     Entity e;
-    e.name = r.text("name");
+    r.fill(e);
     checkUnique(r.value("name"), entityNames_, "entity");
     e.mesh = shapeOf(r.value("shape"), e.form);
     if (const Record shape(r.value("shape"), tables::shape()); shape.text("model") == "mesh") {
@@ -283,10 +294,8 @@ void Builder::readLights(const Record& scenario) {
     const ParameterTable table = tables::light(model);
     const Record r(v, table);
     PointLight l;
-    l.name = r.text("name");
+    r.fill(l);
     checkUnique(r.value("name"), lightNames_, "light");
-    l.radius_m = r.number("radius");
-    l.visible = r.boolean("visible");
     const auto spectra =
         spectraOf(model.parameters, r, [&](const Value& s, const Parameter& p) { return bounded(spectra_, s, p.unit, p.key, p.minimum, p.maximum); });
     model.make({r, spectra}, l);

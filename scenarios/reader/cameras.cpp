@@ -29,6 +29,16 @@ constexpr std::size_t kMostKnots = 250000;
 /// Wavelengths x nodes of all quadrature rules of a scenario, at about 6 ns each: 3 s.
 constexpr std::size_t kMostPlanSteps = 500000000;
 
+constexpr std::pair<const char*, bool TruthLayers::*> kTruthLayers[] = {{"range", &TruthLayers::range},
+                                                                        {"entity", &TruthLayers::entity},
+                                                                        {"temperature", &TruthLayers::temperature},
+                                                                        {"normal", &TruthLayers::normal},
+                                                                        {"area", &TruthLayers::area},
+                                                                        {"solid_angles", &TruthLayers::solidAngles},
+                                                                        {"pixel_solid_angle", &TruthLayers::pixelSolidAngle},
+                                                                        {"terms", &TruthLayers::terms},
+                                                                        {"targets", &TruthLayers::targets}};
+
 Gain readGain(const Value& v) {
   const auto q = v.kind == Value::Kind::Scalar ? splitQuantity(v.text) : std::nullopt;
   if (q) {
@@ -129,10 +139,7 @@ SpectralSampling Builder::readSpectral(const Record& owner) {
   if (!owner.given("spectral")) return s;
   s = {};
   const Record r(owner.value("spectral"), tables::spectral());
-  s.samples = static_cast<int>(r.integer("samples"));
-  const std::string spacing = r.text("spacing");
-  s.spacing = spacing == "even" ? Spacing::Even : spacing == "log" ? Spacing::Log : Spacing::Gauss;
-  s.shared = r.boolean("shared");
+  r.fill(s);
   return s;
 }
 
@@ -331,7 +338,7 @@ void Builder::readCameras(const Record& scenario) {
     const Value v = withSensor(written, libraries_, base_);
     const Record r(v, tables::camera());
     Camera c;
-    c.name = r.text("name");
+    r.fill(c);
     c.where = v.where;
     checkUnique(r.value("name"), cameraNames_, "camera");
 
@@ -378,10 +385,6 @@ void Builder::readCameras(const Record& scenario) {
       c.exposure_s = exposure.at(first_s);
       if (!exposure.isConstant()) c.exposureOverTime_s = exposure;
     }
-    c.motionBlur = r.boolean("motion_blur");
-    if (r.given("exposure_parts")) c.exposureParts = static_cast<int>(r.integer("exposure_parts"));
-    c.near_m = r.number("near");
-    c.smallBody_px = r.number("small_bodies");
 
     Placement place = readPlacement(r, Mover::Camera);
     if (place.fliesLater) flyNow(r, Mover::Camera, place);
@@ -424,19 +427,11 @@ void Builder::readCameras(const Record& scenario) {
         throw UserError(r.where("motion_blur"), "motion within an exposure of no time, in channel '" + o.channel + "'", "'exposure' of the camera, such as '5 ms'", "add it, or remove motion_blur");
     if (r.given("truth"))
       for (const Value& t : r.value("truth").items) {
-        static const std::vector<std::string> names{"range", "entity",           "temperature", "normal", "area",
-                                                    "solid_angles", "pixel_solid_angle", "terms",       "targets"};
         const std::string word = readText(t, "truth");
-        if (word == "range") c.truth.range = true;
-        else if (word == "entity") c.truth.entity = true;
-        else if (word == "temperature") c.truth.temperature = true;
-        else if (word == "normal") c.truth.normal = true;
-        else if (word == "area") c.truth.area = true;
-        else if (word == "solid_angles") c.truth.solidAngles = true;
-        else if (word == "pixel_solid_angle") c.truth.pixelSolidAngle = true;
-        else if (word == "terms") c.truth.terms = true;
-        else if (word == "targets") c.truth.targets = true;
-        else throw unknownWord(t.where, "there is no truth layer", word, names);
+        std::vector<std::string> names;
+        for (const auto& [name, layer] : kTruthLayers)
+          if (names.emplace_back(name) == word) c.truth.*layer = true;
+        if (std::find(names.begin(), names.end(), word) == names.end()) throw unknownWord(t.where, "there is no truth layer", word, names);
       }
     planned(c.outputs, c.spectral, c.where);
     for (ChannelOutput& o : c.outputs) tellTemperature(o);
@@ -456,13 +451,11 @@ void Builder::readProbes(const Record& scenario) {
   for (const Value& v : scenario.value("probes").items) {
     const Record r(v, tables::probe());
     Probe p;
-    p.name = r.text("name");
+    r.fill(p);
     p.where = v.where;
     checkUnique(r.value("name"), names, "probe");
-    p.position = r.vector("position");
-    p.normal = r.vector("normal");
     if (!(glm::length(p.normal) > 0.0)) throw UserError(r.where("normal"), "a normal of length 0", "a direction such as [0, 0, 1]", "correct it");
-    p.resolution = static_cast<int>(r.integer("resolution")) / 2 * 2;
+    p.resolution = p.resolution / 2 * 2;
     p.spectral = readSpectral(r);
     p.outputs = readChannels(r.value("channels"), nullptr, nullptr, 0.0);
     planned(p.outputs, p.spectral, p.where);

@@ -109,8 +109,8 @@ const ParameterTable& flare() {
          withDefault(within(number("intensity", "", "factor on the type's intensity; the cloud's area goes with it"), 1e-3, 1e3), "1"),
          atLeast(spectrum("spectrum", "W/(sr um)", "instead of the type's spectrum: radiant intensity standing still at sea level"), 0.0),
          within(above(number("burn_time", "s", "instead of the type's"), 0.0), 0.05, 600.0),
-         within(above(number("mass", "kg", "instead of the type's"), 0.0), 1e-3, 100.0),
-         within(number("drag_area", "m2", "instead of the type's: drag coefficient times area"), 0.0, 10.0),
+         within(above(number("mass", "kg", "instead of the type's", &FlareType::mass_kg), 0.0), 1e-3, 100.0),
+         within(number("drag_area", "m2", "instead of the type's: drag coefficient times area", &FlareType::dragArea_m2), 0.0, 10.0),
          any("smoke", "`true`: as its type has it; `false`: none; or a smoke's name"), withDefault(boolean("light", "lights what is near it"), "true")}};
   }();
   return t;
@@ -150,8 +150,7 @@ void Builder::readFlares(const Record& scenario) {
       type.rise_s *= std::min(factor, 1.0);
       type.fall_s *= std::min(factor, 1.0);
     }
-    if (r.given("mass")) type.mass_kg = r.number("mass");
-    if (r.given("drag_area")) type.dragArea_m2 = r.number("drag_area");
+    r.fill(type);
 
     const std::string name = r.text("name");
     const double factor = r.number("intensity");

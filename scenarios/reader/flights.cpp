@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "scenarios/reader/builder.hpp"
 #include "sim/flight/ballistic.hpp"
@@ -34,12 +33,15 @@ void addFlightKeys(std::vector<Parameter>& p) {
       withDefault(
           within(above(number("step", "s",
                               "of integration: classical Runge-Kutta of order 4, fixed, cut where tables bend; frames have no say. Gravity of the ellipsoid, "
-                              "air of US Standard Atmosphere 1976 with `wind`, Coriolis acceleration where the scenario has an `origin`"),
+                              "air of US Standard Atmosphere 1976 with `wind`, Coriolis acceleration where the scenario has an `origin`",
+                              &FlightTask::step_s),
                        0.0),
                  1e-5, 1.0),
           "5 ms"),
-      within(above(number("duration", "s", "it flies at most; until the scenario's last frame and a second more unless given"), 0.0), 1e-3, 1e6),
-      within(number("ground", "m", "height above the ellipsoid at which it ends; 0 m unless given, none if it starts below that"), -1e4, 1e5)};
+      within(above(number("duration", "s", "it flies at most; until the scenario's last frame and a second more unless given", &FlightTask::duration_s), 0.0),
+             1e-3, 1e6),
+      within(number("ground", "m", "height above the ellipsoid at which it ends; 0 m unless given, none if it starts below that", &FlightWorld::groundHeight_m),
+             -1e4, 1e5)};
   p.insert(p.end(), own.begin(), own.end());
 }
 
@@ -59,15 +61,20 @@ const ParameterTable& motionBallistic() {
         {required(choice("model", {"ballistic"}, ""))}};
     addFlightKeys(x.parameters);
     const std::vector<Parameter> own = {
-        required(within(above(number("mass", "kg", "at launch"), 0.0), 1e-6, 1e7)),
-        withDefault(within(number("burnt_share", "", "of the mass, that burns away"), 0.0, 0.99), "0"),
-        withDefault(within(number("ignition", "s", "since launch"), 0.0, 1e6), "0 s"),
-        within(above(number("burn_time", "s", "from ignition on"), 0.0), 1e-6, 1e6),
-        withDefault(within(number("burn_exponent", "", "1: mass falls evenly; 3: as of a grain that shrinks on all sides"), 1.0, 10.0), "1"),
+        required(within(above(number("mass", "kg", "at launch", &BallisticOptions::mass_kg), 0.0), 1e-6, 1e7)),
+        withDefault(within(number("burnt_share", "", "of the mass, that burns away", &BallisticOptions::burntShare), 0.0, 0.99), "0"),
+        withDefault(within(number("ignition", "s", "since launch", &BallisticOptions::ignition_s), 0.0, 1e6), "0 s"),
+        within(above(number("burn_time", "s", "from ignition on", &BallisticOptions::burnTime_s), 0.0), 1e-6, 1e6),
+        withDefault(
+            within(number("burn_exponent", "", "1: mass falls evenly; 3: as of a grain that shrinks on all sides", &BallisticOptions::burnExponent), 1.0, 10.0),
+            "1"),
         within(number("area", "m2", "that drag is of"), 0.0, 1e6),
         within(number("diameter", "m", "instead of an area: that of a circle"), 0.0, 1e3),
         drag("drag"),
-        within(above(number("ballistic_coefficient", "kg/m2", "instead of drag and area: mass at launch over drag coefficient and area"), 0.0), 1e-6, 1e9),
+        within(above(number("ballistic_coefficient", "kg/m2", "instead of drag and area: mass at launch over drag coefficient and area",
+                            &BallisticOptions::ballisticCoefficient_kg_m2),
+                     0.0),
+               1e-6, 1e9),
         within(course("area_factor", "", "factor on the area over time since launch"), 0.0, 1e6)};
     x.parameters.insert(x.parameters.end(), own.begin(), own.end());
     return x;
@@ -84,26 +91,35 @@ const ParameterTable& motionMissile() {
                      {required(choice("model", {"missile"}, ""))}};
     addFlightKeys(x.parameters);
     const std::vector<Parameter> own = {
-        required(within(above(number("mass", "kg", "at launch, propellant included"), 0.0), 1e-3, 1e7)),
+        required(within(above(number("mass", "kg", "at launch, propellant included", &PointMassOptions::launchMass_kg), 0.0), 1e-3, 1e7)),
         within(course("thrust", "N", "over time since launch: rows, none before the first and after the last; one number: as long as it flies"), 0.0, 1e9),
-        within(number("propellant", "kg", "mass burnt in proportion to thrust"), 0.0, 1e7),
-        within(above(number("specific_impulse", "s", "instead of the propellant's mass: total impulse over weight of propellant"), 0.0), 1.0, 1e4),
+        within(number("propellant", "kg", "mass burnt in proportion to thrust", &PointMassOptions::propellantMass_kg), 0.0, 1e7),
+        within(above(number("specific_impulse", "s", "instead of the propellant's mass: total impulse over weight of propellant",
+                            &PointMassOptions::specificImpulse_s),
+                     0.0),
+               1.0, 1e4),
         within(number("area", "m2", "that coefficients are of"), 0.0, 1e6),
         within(number("diameter", "m", "instead of an area: that of a circle"), 0.0, 1e3),
         drag("drag"),
-        within(number("g_limit", "", "most lateral acceleration, in units of 9.80665 m/s2; none unless given"), 0.0, 1e4),
-        within(number("lift_coefficient", "", "most that the air gives, on the same area; no such limit unless given"), 0.0, 1e3),
+        within(number("g_limit", "", "most lateral acceleration, in units of 9.80665 m/s2; none unless given", &PointMassOptions::mostLateral_g), 0.0, 1e4),
+        within(number("lift_coefficient", "", "most that the air gives, on the same area; no such limit unless given", &PointMassOptions::mostLiftCoefficient),
+               0.0, 1e3),
         text("target", "name of an entity"),
-        choice(
-            "guidance", {"none", "pursuit", "true_pn", "pure_pn"},
-            "true_pn: N V_c (w x r), across the line of sight, as published for a point mass: what of it is along the way changes the speed; pure_pn: N w x v, across the velocity; pursuit: velocity turned to the line of sight (Zarchan, "
-            "Tactical and Strategic Missile Guidance, ch. 2; Shneydor, Missile Guidance and Pursuit, ch. 3 and 5). With a target true_pn unless given, else "
-            "none"),
-        withDefault(within(number("navigation_constant", "", "N of proportional navigation"), 1.0, 10.0), "4"),
-        withDefault(within(number("pursuit_gain", "1/s", "of pursuit: how fast an error of direction is turned away"), 0.0, 1e3), "2 Hz"),
-        withDefault(within(number("guided_from", "s", "since launch"), 0.0, 1e6), "0 s"),
-        withDefault(within(number("time_constant", "s", "lag of what is flown behind what is commanded, first order"), 0.0, 100.0), "0 s"),
-        withDefault(within(number("stop_within", "m", "it ends at its closest approach to the target if that is within this; it goes on if it misses by more"),
+        choice("guidance", {"none", "pursuit", "true_pn", "pure_pn"},
+               "true_pn: N V_c (w x r), across the line of sight, as published for a point mass: what of it is along the way changes the speed; pure_pn: N w x "
+               "v, across the velocity; pursuit: velocity turned to the line of sight (Zarchan, "
+               "Tactical and Strategic Missile Guidance, ch. 2; Shneydor, Missile Guidance and Pursuit, ch. 3 and 5). With a target true_pn unless given, else "
+               "none"),
+        withDefault(within(number("navigation_constant", "", "N of proportional navigation", &GuidanceOptions::navigationConstant), 1.0, 10.0), "4"),
+        withDefault(
+            within(number("pursuit_gain", "1/s", "of pursuit: how fast an error of direction is turned away", &GuidanceOptions::pursuitGain_per_s), 0.0, 1e3),
+            "2 Hz"),
+        withDefault(within(number("guided_from", "s", "since launch", &GuidanceOptions::begin_s), 0.0, 1e6), "0 s"),
+        withDefault(
+            within(number("time_constant", "s", "lag of what is flown behind what is commanded, first order", &GuidanceOptions::timeConstant_s), 0.0, 100.0),
+            "0 s"),
+        withDefault(within(number("stop_within", "m", "it ends at its closest approach to the target if that is within this; it goes on if it misses by more",
+                                  &FlightTask::stopWithin_m),
                            0.0, 1e9),
                     "30 m")};
     x.parameters.insert(x.parameters.end(), own.begin(), own.end());
@@ -186,32 +202,23 @@ void needArea(const Record& r) {
 
 std::shared_ptr<const FlyingBody> ballisticOf(const Record& r) {
   BallisticOptions o;
-  o.mass_kg = r.number("mass");
-  o.burntShare = r.number("burnt_share");
-  o.ignition_s = r.number("ignition");
+  r.fill(o);
   if (o.burntShare > 0.0 && !r.given("burn_time"))
     throw UserError(r.where("burnt_share"), "a mass that burns in no time", "'burn_time'", "add 'burn_time: 4 s'");
-  if (r.given("burn_time")) o.burnTime_s = r.number("burn_time");
-  o.burnExponent = r.number("burn_exponent");
   needArea(r);
   o.area_m2 = areaOf(r);
   if (r.given("drag")) o.drag = readDrag(r.value("drag"));
-  if (r.given("ballistic_coefficient")) o.ballisticCoefficient_kg_m2 = r.number("ballistic_coefficient");
   if (r.given("area_factor")) o.areaFactor = pieces(r, "area_factor", 1e6);
   return std::make_shared<const Ballistic>(std::move(o));
 }
 
 std::shared_ptr<const FlyingBody> missileOf(const Record& r, double duration_s) {
   PointMassOptions o;
-  o.launchMass_kg = r.number("mass");
+  r.fill(o);
   if (r.given("thrust")) o.thrust = pieces(r, "thrust", duration_s);
-  if (r.given("propellant")) o.propellantMass_kg = r.number("propellant");
-  if (r.given("specific_impulse")) o.specificImpulse_s = r.number("specific_impulse");
   needArea(r);
   o.referenceArea_m2 = areaOf(r);
   if (r.given("drag")) o.drag = readDrag(r.value("drag"));
-  if (r.given("g_limit")) o.mostLateral_g = r.number("g_limit");
-  if (r.given("lift_coefficient")) o.mostLiftCoefficient = r.number("lift_coefficient");
   return std::make_shared<const PointMass>(std::move(o));
 }
 
@@ -234,45 +241,15 @@ std::optional<GuidanceOptions> guidanceOf(const Record& r, bool hasTarget) {
     throw UserError(r.where("guidance"), "guidance without a target", "'target', the name of an entity", "add 'target: <entity>', or write 'guidance: none'");
   GuidanceOptions o;
   o.law = law == "pursuit" ? GuidanceLaw::Pursuit : law == "pure_pn" ? GuidanceLaw::PureProportional : GuidanceLaw::TrueProportional;
-  o.navigationConstant = r.number("navigation_constant");
-  o.pursuitGain_per_s = r.number("pursuit_gain");
-  o.begin_s = r.number("guided_from");
-  o.timeConstant_s = r.number("time_constant");
+  r.fill(o);
   return o;
 }
 
 /// Where a key stands that an option of a flight is read from.
 UserError refused(const FlightError& e, const Record& motion) {
-  static const std::map<std::string, const char*> keys = {{"step_s", "step"},
-                                                          {"duration_s", "duration"},
-                                                          {"keepEvery", "duration"},
-                                                          {"launch", "launch"},
-                                                          {"guidance", "guidance"},
-                                                          {"timeConstant_s", "time_constant"},
-                                                          {"navigationConstant", "navigation_constant"},
-                                                          {"pursuitGain_per_s", "pursuit_gain"},
-                                                          {"begin_s", "guided_from"},
-                                                          {"launchMass_kg", "mass"},
-                                                          {"mass_kg", "mass"},
-                                                          {"thrust", "thrust"},
-                                                          {"propellantMass_kg", "propellant"},
-                                                          {"specificImpulse_s", "specific_impulse"},
-                                                          {"referenceArea_m2", "area"},
-                                                          {"area_m2", "area"},
-                                                          {"drag", "drag"},
-                                                          {"mostLateral_g", "g_limit"},
-                                                          {"mostLiftCoefficient", "lift_coefficient"},
-                                                          {"burntShare", "burnt_share"},
-                                                          {"ignition_s", "ignition"},
-                                                          {"burnTime_s", "burn_time"},
-                                                          {"burnExponent", "burn_exponent"},
-                                                          {"ballisticCoefficient_kg_m2", "ballistic_coefficient"},
-                                                          {"areaFactor", "area_factor"}};
-  const auto known = keys.find(e.option);
-  const char* key = known == keys.end() ? nullptr : known->second;
-  const Value* at = key ? motion.whole().find(key) : nullptr;
+  const Value* at = motion.whole().find(e.option);
   const Location& where = !at ? motion.where() : e.item && *e.item < at->items.size() ? at->items[*e.item].where : at->where;
-  return UserError(where, (key ? std::string(key) : e.option) + ": " + e.wrong, e.expected, e.fix);
+  return UserError(where, e.option + ": " + e.wrong, e.expected, e.fix);
 }
 
 /// Where it starts and how fast.
@@ -323,9 +300,9 @@ FlightRecord flyAsked(const Simulation& sim, const FlightAsked& asked, const Mot
                     "a time before it", "launch it earlier, or raise 'frames' under 'time:'");
   FlightTask task;
   task.launch = launchOf(sim, asked, r);
-  task.step_s = r.number("step");
   // A second beyond the last frame: exposures and lines of a shutter reach into it.
-  task.duration_s = r.given("duration") ? r.number("duration") : last_s - launch_s + 1.0;
+  task.duration_s = last_s - launch_s + 1.0;
+  r.fill(task);
   task.keepEvery = std::max(1, static_cast<int>(std::round(kBetweenPoints_s / task.step_s)));
   task.before = ends.before;
   task.after = ends.after;
@@ -333,17 +310,14 @@ FlightRecord flyAsked(const Simulation& sim, const FlightAsked& asked, const Mot
   world.frame = sim.frame;
   world.coriolis = asked.coriolis;
   if (glm::length(sim.wind_m_s) > 0.0) world.wind = {{0.0, sim.wind_m_s}};
-  world.groundHeight_m = r.given("ground") ? r.number("ground") : 0.0;
+  r.fill(world);
   task.stopAtGround = r.given("ground") || heightIn(world, task.launch.position) > world.groundHeight_m;
   FlightRecord record{model, Trajectory({TrajectoryPoint{}}), "", "", {}};
   if (asked.target >= 0) {
     task.target = targetMotion(sim, asked.target);
     record.target = sim.entities[static_cast<std::size_t>(asked.target)].name;
   }
-  if (missile) {
-    task.guidance = guidanceOf(r, asked.target >= 0);
-    task.stopWithin_m = r.number("stop_within");
-  }
+  if (missile) task.guidance = guidanceOf(r, asked.target >= 0);
   try {
     task.body = missile ? missileOf(r, task.duration_s) : ballisticOf(r);
     FlightResult flown = fly(task, world);

@@ -10,13 +10,9 @@
 namespace pitviper {
 namespace {
 
-const std::vector<std::string> kEnds = {"hold", "go_on", "loop", "vanish"};
+const std::vector<std::pair<const char*, AtEnd>> kEnds = {{"hold", AtEnd::Hold}, {"go_on", AtEnd::GoOn}, {"loop", AtEnd::Loop}, {"vanish", AtEnd::Vanish}};
 const std::vector<std::string> kModels = {"waypoints", "route", "csv", "ballistic", "missile"};
 constexpr std::size_t kMostWaypoints = 100000;
-
-AtEnd endNamed(const std::string& word) {
-  return word == "go_on" ? AtEnd::GoOn : word == "loop" ? AtEnd::Loop : word == "vanish" ? AtEnd::Vanish : AtEnd::Hold;
-}
 
 Parameter modelKey(const char* name) { return required(choice("model", {name}, "")); }
 
@@ -30,7 +26,8 @@ const ParameterTable& ends() {
       "What a motion does before its first point and after its last. hold: stands still there; go_on: keeps velocity and attitude; loop: again and again; "
       "vanish: "
       "is not there, neither seen nor in the way of light.",
-      {choice("before", kEnds, "before the first point; as the motion's model has it unless given"), choice("after", kEnds, "after the last point; the same")}};
+      {choice("before", kEnds, "before the first point; as the motion's model has it unless given", &MotionEnds::before),
+       choice("after", kEnds, "after the last point; the same", &MotionEnds::after)}};
   return t;
 }
 
@@ -38,10 +35,10 @@ const ParameterTable& spin() {
   static const ParameterTable t{
       "spin",
       "Turning about an axis of the body, by any number of turns, on top of the attitude that it has anyway: rotors, rolling missiles, tumbling debris.",
-      {required(vector3("axis", "", "in body axes (x forward, y left, z up); turns are right-handed about it, as a right wing goes down about x")),
-       within(number("rate", "rad/s", "even; from time 0 on, or `from`"), -1e5, 1e5),
-       number("from", "s", "of an even rate: the time at which it has turned by nothing"),
-       course("angle", "rad", "instead of a rate: the angle over time, beyond 360 deg as far as it goes")}};
+      {required(vector3("axis", "", "in body axes (x forward, y left, z up); turns are right-handed about it, as a right wing goes down about x", &Spin::axis)),
+       within(number("rate", "rad/s", "even; from time 0 on, or `from`", &Spin::rate_rad_s), -1e5, 1e5),
+       number("from", "s", "of an even rate: the time at which it has turned by nothing", &Spin::from_s),
+       course("angle", "rad", "instead of a rate: the angle over time, beyond 360 deg as far as it goes", &Spin::angle_rad)}};
   return t;
 }
 
@@ -71,24 +68,29 @@ const ParameterTable& motionRoute() {
       "goes on after, unless `ends` says otherwise.",
       {modelKey("route"), required(list("points", "waypoints of a route; it passes the corner at each on an arc that touches both legs", 2, kMostWaypoints)),
        within(number("speed", "m/s", "at all waypoints without one of their own"), 0.0, 1e4),
-       withDefault(within(number("begin", "s", "at the first waypoint"), -kLongestTime_s, kLongestTime_s), "0 s"),
+       withDefault(within(number("begin", "s", "at the first waypoint", &WaypointFlightOptions::begin_s), -kLongestTime_s, kLongestTime_s), "0 s"),
        withDefault(within(above(number("g_limit", "",
-                                       "most lateral acceleration of turns, in units of 9.80665 m/s2; turns are flown with it unless a waypoint says less"),
+                                       "most lateral acceleration of turns, in units of 9.80665 m/s2; turns are flown with it unless a waypoint says less",
+                                       &WaypointFlightOptions::mostLateral_g),
                                 0.0),
                           0.0, 100.0),
                    "5"),
-       withDefault(within(above(number("speed_g_limit", "", "most acceleration along the path where speeds differ"), 0.0), 0.0, 100.0), "2"),
-       withDefault(boolean("bank", "wings bank in turns: tan(bank) is the lateral acceleration over gravity"), "true"),
-       withDefault(within(number("bank_time", "s", "over which it rolls in and out of turns"), 0.0, 60.0), "1 s"),
-       withDefault(within(above(number("step", "s", "between points that are kept"), 0.0), 1e-4, 1.0), "20 ms")}};
+       withDefault(
+           within(above(number("speed_g_limit", "", "most acceleration along the path where speeds differ", &WaypointFlightOptions::mostLongitudinal_g), 0.0),
+                  0.0, 100.0),
+           "2"),
+       withDefault(boolean("bank", "wings bank in turns: tan(bank) is the lateral acceleration over gravity", &WaypointFlightOptions::bank), "true"),
+       withDefault(within(number("bank_time", "s", "over which it rolls in and out of turns", &WaypointFlightOptions::bankTime_s), 0.0, 60.0), "1 s"),
+       withDefault(within(above(number("step", "s", "between points that are kept", &WaypointFlightOptions::step_s), 0.0), 1e-4, 1.0), "20 ms")}};
   return t;
 }
 
 const ParameterTable& routePoint() {
   static const ParameterTable t = [] {
     ParameterTable x{"waypoint of a route", "", positionParameters()};
-    x.parameters.push_back(within(number("speed", "m/s", "there: constant through the turn, changed evenly along legs"), 0.0, 1e4));
-    x.parameters.push_back(within(above(number("turn_g", "", "lateral acceleration of this turn; `g_limit` unless given"), 0.0), 0.0, 100.0));
+    x.parameters.push_back(within(number("speed", "m/s", "there: constant through the turn, changed evenly along legs", &FlightWaypoint::speed_m_s), 0.0, 1e4));
+    x.parameters.push_back(
+        within(above(number("turn_g", "", "lateral acceleration of this turn; `g_limit` unless given", &FlightWaypoint::turn_g), 0.0), 0.0, 100.0));
     return x;
   }();
   return t;
@@ -114,12 +116,11 @@ MotionEnds readEnds(const Record& r, const MotionEnds& otherwise) {
   const Value& v = r.value("ends");
   if (v.kind != Value::Kind::Map) {
     const std::string word = readText(v, "ends");
-    if (std::find(kEnds.begin(), kEnds.end(), word) == kEnds.end()) throw unknownWord(v.where, "a motion cannot end with", word, kEnds);
-    return {endNamed(word), endNamed(word)};
+    for (const auto& [name, end] : kEnds)
+      if (word == name) return {end, end};
+    throw unknownWord(v.where, "a motion cannot end with", word, tables::ends().find("after")->choices);
   }
-  const Record both(v, tables::ends());
-  if (both.given("before")) ends.before = endNamed(both.text("before"));
-  if (both.given("after")) ends.after = endNamed(both.text("after"));
+  Record(v, tables::ends()).fill(ends);
   return ends;
 }
 
@@ -127,22 +128,18 @@ std::optional<Spin> readSpin(const Record& r) {
   if (!r.given("spin")) return std::nullopt;
   const Record s(r.value("spin"), tables::spin());
   Spin spin;
-  spin.axis = s.vector("axis");
+  s.fill(spin);
   if (!(glm::length(spin.axis) > 0.0)) throw UserError(s.where("axis"), "an axis of length 0", "a direction such as [1, 0, 0]", "correct it");
   spin.axis = glm::normalize(spin.axis);
   if (s.given("rate") == s.given("angle"))
     throw UserError(s.where(), s.given("rate") ? "a spin with a rate and an angle" : "a spin without a rate", "'rate', or 'angle' over time",
                     s.given("rate") ? "remove one" : "add 'rate: 720 deg/s'");
-  if (s.given("rate")) spin.rate_rad_s = s.number("rate");
-  if (s.given("from")) spin.from_s = s.number("from");
-  if (s.given("angle")) spin.angle_rad = s.course("angle");
   return spin;
 }
 
 Lifetime readLifetime(const Record& r) {
   Lifetime life;
-  if (r.given("begin")) life.begin_s = r.number("begin");
-  if (r.given("end")) life.end_s = r.number("end");
+  r.fill(life);
   if (!(life.end_s > life.begin_s)) throw UserError(r.where("end"), "an end at or before the begin", "a later time", "correct 'end' or 'begin'");
   return life;
 }
@@ -224,12 +221,7 @@ UserError refused(const WaypointRefusal& e, const Record& route) {
 Trajectory readRoute(const Value& motion, const LocalFrame& frame, const MotionEnds& ends) {
   const Record r(motion, tables::motionRoute());
   WaypointFlightOptions options;
-  options.begin_s = r.number("begin");
-  options.mostLateral_g = r.number("g_limit");
-  options.mostLongitudinal_g = r.number("speed_g_limit");
-  options.bank = r.boolean("bank");
-  options.bankTime_s = r.number("bank_time");
-  options.step_s = r.number("step");
+  r.fill(options);
   options.before = ends.before;
   options.after = ends.after;
   std::vector<FlightWaypoint> waypoints;
@@ -241,8 +233,8 @@ Trajectory readRoute(const Value& motion, const LocalFrame& frame, const MotionE
       throw UserError(w.where(), "a waypoint without a speed", "'speed' of the waypoint, or of the route for all", "add 'speed: 200 m/s'");
     FlightWaypoint& point = waypoints.emplace_back();
     point.position = *position;
-    point.speed_m_s = w.given("speed") ? w.number("speed") : r.number("speed");
-    if (w.given("turn_g")) point.turn_g = w.number("turn_g");
+    if (!w.given("speed")) point.speed_m_s = r.number("speed");
+    w.fill(point);
   }
   try {
     return flyWaypoints(waypoints, options, frame);

@@ -41,17 +41,13 @@ const char* gasName(Species species) {
 /// What leaves a nozzle that is written out. Errors: UserError for one that no species of ours leaves, or more than all.
 NozzleFlow nozzleOf(const Record& r, double hottest_K) {
   NozzleFlow flow;
-  flow.diameter_m = r.number("diameter");
-  flow.temperature_K = r.number("temperature");
-  flow.speed_m_s = r.number("speed");
+  r.fill(flow);
   if (flow.temperature_K > hottest_K)
     throw UserError(r.where("temperature"), "a nozzle of " + briefNumber(flow.temperature_K) + " K, hotter than the tables of its gases",
                     "at most " + briefNumber(hottest_K) + " K, where they end", "write the static temperature as it leaves, not that of the chamber");
   const Record s(r.value("species"), tables::plumeSpecies());
-  const auto part = [&s](const char* key) { return s.given(key) ? s.number(key) : 0.0; };
-  flow.gas = {part("co2"), part("h2o"), part("co"), part("oxygen")};
-  flow.sootMassFraction = part("soot");
-  flow.aluminaMassFraction = part("alumina");
+  s.fill(flow.gas);
+  s.fill(flow);
   const double sum = flow.gas.co2 + flow.gas.h2o + flow.gas.co + flow.gas.oxygen;
   if (sum > 1.0) throw UserError(s.where(), "mole fractions that add up to " + briefNumber(sum), "at most 1: what is left is nitrogen", "lower them");
   if (flow.sootMassFraction + flow.aluminaMassFraction > 0.9)
@@ -59,7 +55,6 @@ NozzleFlow nozzleOf(const Record& r, double hottest_K) {
   if (!(sum - flow.gas.oxygen + flow.sootMassFraction + flow.aluminaMassFraction > 0.0))
     throw UserError(s.where(), "nothing in this exhaust emits", "at least one of co2, h2o, co, soot, alumina", "add 'co2: 0.05'");
   if (r.given("molecular_mass")) flow.gasMolarMass_kg_mol = 1e-3 * r.number("molecular_mass");
-  if (r.given("specific_heat")) flow.specificHeat_J_kgK = r.number("specific_heat");
   return flow;
 }
 
@@ -78,24 +73,28 @@ const ParameterTable& plume() {
         {required(text("name", "unique name")), text("on", "name of the entity whose nozzles these are; without it they stand in the local frame"),
          list("nozzles", "positions of several equal nozzles, instead of `position`", 1, JetsSource::kMostNozzles),
          withDefault(
-             within(vector3("direction", "", "of the exhaust in the body's axes (x forward, y left, z up; without `on`: east, north, up); of any length"), -1e3,
-                    1e3),
+             within(vector3("direction", "", "of the exhaust in the body's axes (x forward, y left, z up; without `on`: east, north, up); of any length",
+                            &JetsSetup::direction),
+                    -1e3, 1e3),
              "-1, 0, 0"),
          text("engine", "what leaves each nozzle, by name: " + known), map("nozzle", "what leaves each nozzle, written out"),
          map("grid", "instead of jets: a flow from a file"),
          withDefault(within(course("throttle", "",
                                    "0 to 1, or a course over the scenario's time. An engine idles at 0 (with afterburner: flies without it); a motor's is that "
-                                   "of its own burn times this; of a written nozzle it is the part of its mass flow. At 0 a motor and a nozzle are out"),
+                                   "of its own burn times this; of a written nozzle it is the part of its mass flow. At 0 a motor and a nozzle are out",
+                                   &JetsSetup::throttle),
                             0.0, 1.0),
                      "1"),
          within(number("begin", "s",
                        "of a motor's burn and of what an engine gives; it comes within a tenth of a second. Without it a motor is lit as its body "
-                       "comes, or at 0 s, and all others always run"),
+                       "comes, or at 0 s, and all others always run",
+                       &Lifetime::begin_s),
                 -kLongestTime_s, kLongestTime_s),
-         within(number("end", "s", "it is gone a tenth of a second later"), -kLongestTime_s, kLongestTime_s),
+         within(number("end", "s", "it is gone a tenth of a second later", &Lifetime::end_s), -kLongestTime_s, kLongestTime_s),
          within(above(number("length", "m",
                              "that is drawn, at most, fading over its last fifth; unless given 200 diameters of its nozzle, or to where 1 % of it "
-                             "is exhaust"),
+                             "is exhaust",
+                             &JetsSetup::length_m),
                       0.0),
                 0.01, 1e5)}};
     for (auto& own : positionParameters()) x.parameters.insert(x.parameters.begin() + 2, std::move(own));
@@ -108,11 +107,13 @@ const ParameterTable& plumeNozzle() {
   static const ParameterTable t{
       "nozzle",
       "What leaves a nozzle, at the pressure of the air around it.",
-      {required(within(number("diameter", "m", "of the stream"), 1e-3, 100.0)),
-       required(within(number("temperature", "K", "static, as it leaves"), 200.0, 1e4)),
-       required(within(number("speed", "m/s", "against the nozzle"), 1.0, 6000.0)), required(map("species", "what of it emits")),
+      {required(within(number("diameter", "m", "of the stream", &NozzleFlow::diameter_m), 1e-3, 100.0)),
+       required(within(number("temperature", "K", "static, as it leaves", &NozzleFlow::temperature_K), 200.0, 1e4)),
+       required(within(number("speed", "m/s", "against the nozzle", &NozzleFlow::speed_m_s), 1.0, 6000.0)), required(map("species", "what of it emits")),
        within(number("molecular_mass", "", "relative, of its gas (air: 28.96); of its species and nitrogen unless given"), 2.0, 200.0),
-       within(number("specific_heat", "J/(kg K)", "of all that leaves, between the air's temperature and its own; of its gas unless given"), 100.0, 1e4)}};
+       within(number("specific_heat", "J/(kg K)", "of all that leaves, between the air's temperature and its own; of its gas unless given",
+                     &NozzleFlow::specificHeat_J_kgK),
+              100.0, 1e4)}};
   return t;
 }
 
@@ -142,12 +143,14 @@ const ParameterTable& plumeArrays() {
 }
 
 const ParameterTable& plumeSpecies() {
-  static const ParameterTable t{
-      "species",
-      "Of a nozzle's exhaust. What is left of the gas is nitrogen.",
-      {within(number("co2", "", "mole fraction of its gas"), 0.0, 1.0), within(number("h2o", "", "mole fraction of its gas"), 0.0, 1.0),
-       within(number("co", "", "mole fraction of its gas"), 0.0, 1.0), within(number("oxygen", "", "mole fraction of its gas; it doesn't emit"), 0.0, 1.0),
-       within(number("soot", "", "part of all its mass"), 0.0, 0.9), within(number("alumina", "", "part of all its mass"), 0.0, 0.9)}};
+  static const ParameterTable t{"species",
+                                "Of a nozzle's exhaust. What is left of the gas is nitrogen.",
+                                {within(number("co2", "", "mole fraction of its gas", &GasFractions::co2), 0.0, 1.0),
+                                 within(number("h2o", "", "mole fraction of its gas", &GasFractions::h2o), 0.0, 1.0),
+                                 within(number("co", "", "mole fraction of its gas", &GasFractions::co), 0.0, 1.0),
+                                 within(number("oxygen", "", "mole fraction of its gas; it doesn't emit", &GasFractions::oxygen), 0.0, 1.0),
+                                 within(number("soot", "", "part of all its mass", &NozzleFlow::sootMassFraction), 0.0, 0.9),
+                                 within(number("alumina", "", "part of all its mass", &NozzleFlow::aluminaMassFraction), 0.0, 0.9)}};
   return t;
 }
 
@@ -201,14 +204,11 @@ void Builder::readJets(const Record& r, FieldBody& body) {
   } else {
     setup.nozzles = {readPosition(r, simulation_.frame).value_or(glm::dvec3(0.0))};
   }
-  setup.direction = r.vector("direction");
+  r.fill(setup);
   if (!(glm::length(setup.direction) > 1e-9))
     throw UserError(r.where("direction"), "an exhaust without a direction", "three numbers that are not all 0", "write 'direction: [-1, 0, 0]'");
-  setup.throttle = r.course("throttle");
-  if (r.given("begin")) setup.life.begin_s = r.number("begin");
-  if (r.given("end")) setup.life.end_s = r.number("end");
+  r.fill(setup.life);
   whileThere(setup.entity, setup.life, r);  // a body that is not there has no exhaust; a motor is lit as its body comes
-  if (r.given("length")) setup.length_m = r.number("length");
   setup.airWarmer_K = airWarmer_K();
 
   const auto source = std::make_shared<const JetsSource>(setup);
@@ -291,8 +291,7 @@ void Builder::readGrid(const Record& r, FieldBody& body) {
   if (std::abs(glm::dot(forward, up)) > 0.5)
     throw UserError(g.where(g.given("up") ? "up" : "forward"), "a grid's 'forward' and 'up' point along the same axis", "two at right angles", "change one");
   setup.bodyFromGrid = glm::transpose(glm::dmat3(forward, glm::cross(up, forward), up));
-  if (r.given("begin")) setup.life.begin_s = r.number("begin");
-  if (r.given("end")) setup.life.end_s = r.number("end");
+  r.fill(setup.life);
   whileThere(setup.entity, setup.life, r);
   const auto source = std::make_shared<const GridSource>(setup);
   const glm::dvec2 range_K = source->temperatures_K();

@@ -65,18 +65,12 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
   const Record r(tree, tables::scenario());
   Simulation sim;
   sim.file = fileName;
-  sim.name = r.given("name") ? r.text("name") : std::filesystem::path(fileName).stem().string();
+  sim.name = std::filesystem::path(fileName).stem().string();
+  r.fill(sim);
   sim.sha256 = sha256(expanded.identity);
-  sim.seed = r.integer("seed");
-  if (r.given("audit")) sim.audit = r.number("audit");
   Builder b(sim, base, libraries);
   try {
-    if (r.given("render")) {
-      const Record render(r.value("render"), tables::render());
-      const std::string mode = render.text("mode");
-      sim.shadows = render.boolean("shadows");
-      sim.mode = mode == "buffered" ? RenderMode::Buffered : mode == "direct" ? RenderMode::Direct : RenderMode::Auto;
-    }
+    if (r.given("render")) Record(r.value("render"), tables::render()).fill(sim);
     b.readOrigin(r);
     b.readTime(r);
     b.readLimits(r);

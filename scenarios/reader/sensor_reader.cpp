@@ -34,7 +34,7 @@ void turnOptics(const Record& r, Pinhole& p) {
 SpectralBins Builder::readSpectralBins(const Record& r, const Pinhole& pinhole) {
   SpectralBins bins;
   bins.where = r.where();
-  bins.samples = static_cast<int>(r.integer("samples"));
+  r.fill(bins);
   const int count = static_cast<int>(r.integer("bins"));
   const auto& band = r.value("band").items;
   const double low = onAxis(readNumber(band[0], "um", "band edge")), high = onAxis(readNumber(band[1], "um", "band edge"));

@@ -37,24 +37,29 @@ const ParameterTable& smoke() {
          within(spectrum("albedo", "", "with `extinction`: the part of it that scatters; 0 unless given"), 0.0, 1.0),
          within(spectrum("asymmetry", "", "with `albedo`: mean cosine of the angle that it turns light by; 0 unless given"), -0.99, 0.99),
          text("from", "name of the entity that lets it out; without it, it stands at its position"),
-         required(within(course("rate", "kg/s", "mass of particles let out: a number, or a course over the scenario's time"), 0.0, 1e4)),
-         within(number("begin", "s", "from then on; the first frame's time unless given"), -kLongestTime_s, kLongestTime_s),
-         within(number("end", "s", "until then; for as long as the scenario runs unless given"), -kLongestTime_s, kLongestTime_s),
-         withDefault(within(number("radius", "m", "of the stream as it leaves"), 0.005, 500.0), "0.2 m"),
-         within(number("temperature", "K", "as it leaves: hot smoke rises and glows until it has mixed; that of the air unless given"), 0.0, 4000.0),
-         withDefault(
-             within(vector3("velocity", "m/s", "that it is blown out with, in the body's axes (x forward, y left, z up): exhaust goes to -x"), -4000.0, 4000.0),
-             "0, 0, 0 m/s"),
-         withDefault(within(number("share", "", "of the body's velocity through the air that it leaves with"), 0.0, 1.0), "0.1"),
-         withDefault(boolean("rise", "hot smoke rises"), "true"),
+         required(
+             within(course("rate", "kg/s", "mass of particles let out: a number, or a course over the scenario's time", &SmokeOptions::rate_kg_s), 0.0, 1e4)),
+         within(number("begin", "s", "from then on; the first frame's time unless given", &SmokeOptions::begin_s), -kLongestTime_s, kLongestTime_s),
+         within(number("end", "s", "until then; for as long as the scenario runs unless given", &SmokeOptions::end_s), -kLongestTime_s, kLongestTime_s),
+         withDefault(within(number("radius", "m", "of the stream as it leaves", &SmokeOptions::radius_m), 0.005, 500.0), "0.2 m"),
+         within(number("temperature", "K", "as it leaves: hot smoke rises and glows until it has mixed; that of the air unless given",
+                       &SmokeOptions::temperature_K),
+                0.0, 4000.0),
+         withDefault(within(vector3("velocity", "m/s", "that it is blown out with, in the body's axes (x forward, y left, z up): exhaust goes to -x",
+                                    &SmokeOptions::blown_m_s),
+                            -4000.0, 4000.0),
+                     "0, 0, 0 m/s"),
+         withDefault(within(number("share", "", "of the body's velocity through the air that it leaves with", &SmokeOptions::share), 0.0, 1.0), "0.1"),
+         withDefault(boolean("rise", "hot smoke rises", &SmokeOptions::rises), "true"),
          withDefault(within(number("dissipation", "m2/s3",
-                                   "of the air's turbulence, which small puffs grow by: 1e-5 in a calm night, 1e-3 by day, 1e-2 in wind close to the ground"),
+                                   "of the air's turbulence, which small puffs grow by: 1e-5 in a calm night, 1e-3 by day, 1e-2 in wind close to the ground",
+                                   &SmokeOptions::dissipation_m2_s3),
                             0.0, 10.0),
                      "1e-3 m2/s3"),
-         withDefault(within(number("diffusivity", "m2/s", "of the air, which large puffs grow by"), 0.0, 1e3), "5 m2/s"),
-         withDefault(within(above(number("lifetime", "s", "of a puff, over whose last part it fades"), 0.0), 0.1, 1e5), "60 s"),
-         withDefault(within(number("fade", "", "share of the lifetime that it fades over"), 0.0, 1.0), "40 %"),
-         withDefault(integer("puffs", "at most; a trail that needs more gets longer ones", 8, 2000), "400")}};
+         withDefault(within(number("diffusivity", "m2/s", "of the air, which large puffs grow by", &SmokeOptions::diffusivity_m2_s), 0.0, 1e3), "5 m2/s"),
+         withDefault(within(above(number("lifetime", "s", "of a puff, over whose last part it fades", &SmokeOptions::lifetime_s), 0.0), 0.1, 1e5), "60 s"),
+         withDefault(within(number("fade", "", "share of the lifetime that it fades over", &SmokeOptions::fadeShare), 0.0, 1.0), "40 %"),
+         withDefault(integer("puffs", "at most; a trail that needs more gets longer ones", 8, 2000, &SmokeOptions::mostPuffs), "400")}};
     for (auto& own : positionParameters()) x.parameters.push_back(std::move(own));
     return x;
   }();
@@ -117,9 +122,8 @@ void Builder::readSmokes(const Record& scenario) {
     }
 
     SmokeOptions o;
-    o.rate_kg_s = r.course("rate");
-    o.begin_s = r.given("begin") ? r.number("begin") : simulation_.time.start_s;
-    o.end_s = r.given("end") ? r.number("end") : kLongestTime_s;
+    o.begin_s = simulation_.time.start_s, o.end_s = kLongestTime_s;
+    r.fill(o);
     if (!(o.end_s > o.begin_s))
       throw UserError(r.where(r.given("end") ? "end" : "begin"), "smoke that ends before it begins",
                       "an end after the begin, which is at " + briefNumber(o.begin_s) + " s", "exchange them");
@@ -142,16 +146,6 @@ void Builder::readSmokes(const Record& scenario) {
       throw UserError(r.where(), "smoke from nowhere", "'from' (an entity), or a 'position' or 'geodetic'", "add 'from: <entity>'");
     }
     o.position = readPosition(r, simulation_.frame).value_or(glm::dvec3(0.0));
-    o.radius_m = r.number("radius");
-    o.temperature_K = r.given("temperature") ? r.number("temperature") : 0.0;
-    o.blown_m_s = r.vector("velocity");
-    o.share = r.number("share");
-    o.rises = r.boolean("rise");
-    o.dissipation_m2_s3 = r.number("dissipation");
-    o.diffusivity_m2_s = r.number("diffusivity");
-    o.lifetime_s = r.number("lifetime");
-    o.fadeShare = r.number("fade");
-    o.mostPuffs = static_cast<int>(r.integer("puffs"));
     o.wind_m_s = simulation_.wind_m_s;
     o.airWarmer_K = airWarmer_K();
     body.gases = {{"smoke", {{300.0, material}}}};

@@ -101,7 +101,8 @@ void Builder::readTime(const Record& scenario) {
   empty.kind = Value::Kind::Map;
   empty.where = scenario.where();
   const Record r(scenario.given("time") ? scenario.value("time") : empty, tables::time());
-  simulation_.time = {r.number("start"), 1.0 / r.number("rate"), static_cast<int>(r.integer("frames"))};
+  r.fill(simulation_.time);
+  simulation_.time.step_s = 1.0 / r.number("rate");
   if (r.given("date")) simulation_.time.epoch_s = readDate(r.text("date"), r.where("date"));
 }
 
@@ -111,7 +112,7 @@ void Builder::readLimits(const Record& scenario) {
   Limits& limits = simulation_.limits;
   readPair(r, "range", "m", kFarthestRange_m, "[100 m, 20 km]", limits.nearest_m, limits.farthest_m);
   readPair(r, "temperature", "K", kHottestBody_K, "[250 K, 900 K]", limits.coldest_K, limits.hottest_K);
-  if (r.given("light")) limits.lightLevel = r.number("light");
+  r.fill(limits);
   if (!limits.any())
     throw UserError(r.where(), "limits without any", "'range', 'temperature' or 'light'", "write 'limits: {range: [100 m, 20 km]}', or remove 'limits'");
 }

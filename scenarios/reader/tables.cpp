@@ -14,6 +14,7 @@
 #include "sim/parameters/spectrum_value.hpp"
 #include "sim/parameters/time_course.hpp"
 #include "sim/scene/placement.hpp"
+#include "sim/scene/primitives.hpp"
 #include "sim/stream/command_models.hpp"
 #include "sim/stream/sink_models.hpp"
 
@@ -43,8 +44,9 @@ void addPlacement(std::vector<Parameter>& p, bool attitude, double mostTurn = kM
 
 /// From when to when it is there.
 void addLifetime(std::vector<Parameter>& p) {
-  p.push_back(within(number("begin", "s", "from then on it is there: seen, in the way of light, casting shadows; always unless given"), -kLongestTime_s, kLongestTime_s));
-  p.push_back(within(number("end", "s", "at that time it no longer is"), -kLongestTime_s, kLongestTime_s));
+  p.push_back(within(number("begin", "s", "from then on it is there: seen, in the way of light, casting shadows; always unless given", &Lifetime::begin_s),
+                     -kLongestTime_s, kLongestTime_s));
+  p.push_back(within(number("end", "s", "at that time it no longer is", &Lifetime::end_s), -kLongestTime_s, kLongestTime_s));
 }
 
 /// A spectrum over view angle: emissivity, transmittance.
@@ -63,7 +65,7 @@ const ParameterTable& scenario() {
   static const ParameterTable t{
       "scenario",
       "The file itself.",
-      {text("name", "short name, written into every frame (default: the file's name)"),
+      {text("name", "short name, written into every frame (default: the file's name)", &Simulation::name),
        text("description", "one or two sentences"),
        text("extends",
             "a scenario whose keys hold where this one has none: the same scene with other cameras. A path relative to this file, within the folder above its "
@@ -72,18 +74,19 @@ const ParameterTable& scenario() {
            "a file, or a list of files, whose keys are put under this one's: maps key by key, own keys first; lists joined, the included first (not `sinks`). "
            "Below the scenario's folder, in a folder of `--root` or in a library"),
        map("parameters", "name: value, for `$name` anywhere else in this file and in those that it includes here"),
-       withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL), "1"),
+       withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL, &Simulation::seed), "1"),
        map("origin", "where the local east-north-up frame stands on the earth"),
        map("time", "first frame, rate and number of frames"),
        map("limits", "what may come besides the scenario's own times, where poses and levels come live"),
        map("render", "how it is drawn"),
        any("accuracy",
-            "relative error of a pixel that the plan may spend on wavelengths, tables and terms left out, `1 %` for example, or `reference`: every wavelength "
-            "in double precision on the CPU, slow; `none`: as each camera's `spectral` says, nothing left out; without it: 1 % in layered air and air from "
-            "tables, else none. A map says besides what a stream may fall back to: `{asked: 1 %, at_most: 3 %}`"),
+           "relative error of a pixel that the plan may spend on wavelengths, tables and terms left out, `1 %` for example, or `reference`: every wavelength "
+           "in double precision on the CPU, slow; `none`: as each camera's `spectral` says, nothing left out; without it: 1 % in layered air and air from "
+           "tables, else none. A map says besides what a stream may fall back to: `{asked: 1 %, at_most: 3 %}`"),
        within(number("audit", "",
                      "pixels a frame that are worked out by the reference as well, and held against it: 0.1 is one in each tenth frame, 0 none; without it as "
-                     "many as cost about a twentieth of the time"),
+                     "many as cost about a twentieth of the time",
+                     &Simulation::audit),
               0.0, 1e6),
        any("atmosphere", "the air: `none`, the name of a library air, or a map"),
        map("wind", "where the air goes to, for what flies in it"),
@@ -125,11 +128,12 @@ const ParameterTable& repeat() {
 const ParameterTable& render() {
   static const ParameterTable t{"render",
                                 "Pictures are the same in either mode, to rounding.",
-                                {withDefault(choice("mode", {"auto", "direct", "buffered"},
+                                {withDefault(choice("mode", {{"auto", RenderMode::Auto}, {"direct", RenderMode::Direct}, {"buffered", RenderMode::Buffered}},
                                                     "direct: shading integrates straight into the channels; buffered: through a spectral image, as "
-                                                    "transparent things need it; auto: buffered only in frames with something transparent in view"),
+                                                    "transparent things need it; auto: buffered only in frames with something transparent in view",
+                                                    &Simulation::mode),
                                              "auto"),
-                                 withDefault(boolean("shadows", "opaque surfaces cast shadows of the sun and of point lights"), "true")}};
+                                 withDefault(boolean("shadows", "opaque surfaces cast shadows of the sun and of point lights", &Simulation::shadows), "true")}};
   return t;
 }
 
@@ -146,9 +150,9 @@ const ParameterTable& geodetic() {
 const ParameterTable& time() {
   static const ParameterTable t{"time",
                                 "",
-                                {withDefault(within(number("start", "s", "time of frame 0"), -kLongestTime_s, kLongestTime_s), "0 s"),
+                                {withDefault(within(number("start", "s", "time of frame 0", &TimeAxis::start_s), -kLongestTime_s, kLongestTime_s), "0 s"),
                                  withDefault(within(number("rate", "Hz", "frames per second"), 1e-6, 1e9), "30 Hz"),
-                                 withDefault(integer("frames", "number of frames", 1, 10000000), "1"),
+                                 withDefault(integer("frames", "number of frames", 1, 10000000, &TimeAxis::frames), "1"),
                                  text("date", "UTC of time 0, such as 2026-06-21T12:00:00, for the headers of frames")}};
   return t;
 }
@@ -159,7 +163,7 @@ const ParameterTable& limits() {
       "What the plan for an `accuracy` must hold for besides what the scenario's own times show. Frames beyond it say so (`pitviper.outside_limits`).",
       {list("range", "[nearest, farthest] between a camera and a body in view, such as [100 m, 20 km]", 2, 2),
        list("temperature", "[coldest, hottest] of a body, such as [250 K, 900 K]; temperature textures count as they are", 2, 2),
-       within(above(number("light", "", "greatest level of a point light"), 0.0), 0.0, 1e6)}};
+       within(above(number("light", "", "greatest level of a point light", &Limits::lightLevel), 0.0), 0.0, 1e6)}};
   return t;
 }
 
@@ -339,12 +343,13 @@ const ParameterTable& transmission() {
 }
 
 ParameterTable light(const LightModel& model) {
-  ParameterTable t{"light: " + model.name,
-                   model.description,
-                   {required(text("name", "unique name")), text("model", "`" + model.name + "`" + (model.name == "lamp" ? ", or left out" : ""))}};
+  ParameterTable t{
+      "light: " + model.name,
+      model.description,
+      {required(text("name", "unique name", &PointLight::name)), text("model", "`" + model.name + "`" + (model.name == "lamp" ? ", or left out" : ""))}};
   t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
-  t.parameters.push_back(withDefault(within(number("radius", "m", "distances to it are bounded below by this"), 1e-6, 1e6), "0.05 m"));
-  t.parameters.push_back(withDefault(boolean("visible", "adds its own flux to the pixel it is seen in"), "true"));
+  t.parameters.push_back(withDefault(within(number("radius", "m", "distances to it are bounded below by this", &PointLight::radius_m), 1e-6, 1e6), "0.05 m"));
+  t.parameters.push_back(withDefault(boolean("visible", "adds its own flux to the pixel it is seen in", &PointLight::visible), "true"));
   addPlacement(t.parameters, false);
   addLifetime(t.parameters);
   return t;
@@ -354,7 +359,7 @@ const ParameterTable& entity() {
   static const ParameterTable t = [] {
     ParameterTable x{"entity",
                      "A body: shape, surface, place.",
-                     {required(text("name", "unique name")), required(map("shape", "what it looks like")),
+                     {required(text("name", "unique name", &Entity::name)), required(map("shape", "what it looks like")),
                       any("material", "of all parts without one of their own: a name, or a material written out"),
                       any("temperature", "of all parts without one of their own: a number, a course (a number over time), a texture, or a map with `recovery`"),
                       map("parts", "part name: material and temperature")}};
@@ -385,10 +390,10 @@ const ParameterTable& shape() {
        withDefault(integer("segments", "disc, sphere, ellipsoid, cylinder, cone: around", 8, 2048), "64"),
        withDefault(boolean("capped", "cylinder, cone"), "true"),
        withDefault(choice("fit", {"inscribed", "equal_area"}, "sphere: vertices on it, or the same projected area"), "equal_area"),
-       within(number("size", "m", "terrain: side of the square"), 1e-3, 1e6),
-       within(number("relief", "m", "terrain: height range"), 0, 1e4),
-       withDefault(integer("columns", "terrain: cells along a side", 1, 1024), "128"),
-       withDefault(integer("terrain_seed", "terrain", 0, 1000000000), "1"),
+       within(number("size", "m", "terrain: side of the square", &TerrainShape::size_m), 1e-3, 1e6),
+       within(number("relief", "m", "terrain: height range", &TerrainShape::relief_m), 0, 1e4),
+       withDefault(integer("columns", "terrain: cells along a side", 1, 1024, &TerrainShape::columns), "128"),
+       withDefault(integer("terrain_seed", "terrain", 0, 1000000000, &TerrainShape::seed), "1"),
        map("height_map", "terrain: a texture of heights instead of noise"),
        within(number("extent", "m", "ground: how far it reaches from its position; 400 km unless given, the horizon from 12.5 km up"), 1, 1e6),
        within(number("tile", "m",
@@ -420,43 +425,51 @@ const ParameterTable& camera() {
     ParameterTable x{
         "camera",
         "A pinhole projection with a real aperture; up to 16 channels.",
-        {required(text("name", "unique name; begins the file names")),
-         any("sensor", "a library sensor's name, or {file: ...}: its keys hold where the camera has none of its own"), required(map("film", "pixels")),
+        {required(text("name", "unique name; begins the file names", &Camera::name)),
+         any("sensor", "a library sensor's name, or {file: ...}: its keys hold where the camera has none of its own"),
+         required(map("film", "pixels")),
          within(course("focal_length", "m", "with `pitch` of the film"), 1e-6, 1e4),
-         within(course("field_of_view", "rad",
-                       "horizontal, instead of focal length (then 50 mm) or of pitch; over time it zooms: the focal length goes evenly from row to row, pitch and "
-                       "aperture stay"),
-                1e-9, 3.1),
+         within(
+             course("field_of_view", "rad",
+                    "horizontal, instead of focal length (then 50 mm) or of pitch; over time it zooms: the focal length goes evenly from row to row, pitch and "
+                    "aperture stay"),
+             1e-9, 3.1),
          within(number("aperture", "m", "diameter of the entrance pupil; needed unless `f_number` tells it"), 1e-9, 1e3),
-         within(number("f_number", "", "focal length over aperture (an ideal, aplanatic lens: the film gets pi L / (4 F^2) on the axis); with either the other "
+         within(number("f_number", "",
+                       "focal length over aperture (an ideal, aplanatic lens: the film gets pi L / (4 F^2) on the axis); with either the other "
                        "follows, with both all three must agree"),
                 0.5, 1e4),
          spectrum("optics", "", "transmission of the optics, 0..1; 0 outside its table, as a response is"),
          within(course("exposure", "s", "exposure time, around the frame's time"), 1e-12, 1e6),
-         withDefault(boolean("motion_blur", "what moves while it exposes is drawn at several times of the exposure"), "false"),
-         integer("exposure_parts", "so many times; unless given as many as the accuracy (1 % where none is asked for) takes", 1, 256),
-         withDefault(within(number("near", "m", "nearest distance drawn"), 1e-4, 1e5), "0.1 m"),
+         withDefault(boolean("motion_blur", "what moves while it exposes is drawn at several times of the exposure", &Camera::motionBlur), "false"),
+         integer("exposure_parts", "so many times; unless given as many as the accuracy (1 % where none is asked for) takes", 1, 256, &Camera::exposureParts),
+         withDefault(within(number("near", "m", "nearest distance drawn", &Camera::near_m), 1e-4, 1e5), "0.1 m"),
          any("samples",
              "n: n x n subpixels per pixel, 1 to 16; or auto: 2 x 2, shaded one by one only where they see different parts or neighbouring pixels "
              "differ; a shadow or a glint narrower than a pixel within a part may be missed. Without this key: auto where an accuracy is asked for (the "
              "reference: 2), else 1"),
          withDefault(within(number("small_bodies", "",
                                    "bodies spanning fewer pixels are drawn by a zoomed view of their own and keep their intensity at any range (0: draw all as "
-                                   "they fall on pixels)"),
+                                   "they fall on pixels)",
+                                   &Camera::smallBody_px),
                             0, 256),
                      "16"),
-         map("spectral", "wavelength sampling"), list("channels", "spectral channels", 1, 64),
+         map("spectral", "wavelength sampling"),
+         list("channels", "spectral channels", 1, 64),
          boolean("eye", "adds the channels X, Y and Z of the CIE 1931 observer in cd/m2; previews show them as one picture in sRGB"),
          list("stages", "what its optics, detector and electronics do to its pictures, in this order", 0, 32),
          map("spectral_image", "also writes <camera>_<frame>_spectral.exr, which `pitviper integrate` takes"),
          list("truth",
               "extra layers: range, entity, temperature, normal, area, solid_angles, pixel_solid_angle (of each pixel's field, sr), terms (what each channel's "
-              "light is made of, worked out in double precision: slow); and targets: place, range, intensity, contrast, signal to noise of each body and lamp, in "
+              "light is made of, worked out in double precision: slow); and targets: place, range, intensity, contrast, signal to noise of each body and lamp, "
+              "in "
               "the frame and in <camera>_truth.csv",
               0, 9),
-         any("look_at", "name of an entity or a light, or a position [x, y, z]; with a `gimbal` its target, and heading, pitch and roll are of the gimbal's base"),
+         any("look_at",
+             "name of an entity or a light, or a position [x, y, z]; with a `gimbal` its target, and heading, pitch and roll are of the gimbal's base"),
          any("stabilised",
-             "angles of its carrier that its mount keeps from it, and from its gimbal's base: one of roll, pitch and yaw or a list of them. Roll and pitch are level then, yaw is "
+             "angles of its carrier that its mount keeps from it, and from its gimbal's base: one of roll, pitch and yaw or a list of them. Roll and pitch are "
+             "level then, yaw is "
              "that of the scenario's start; its own heading, pitch and roll come on top"),
          map("gimbal", "two axes that follow what it looks at, within their limits")}};
     addPlacement(x.parameters, true);
@@ -508,11 +521,14 @@ const ParameterTable& spectral() {
   static const ParameterTable t{
       "spectral",
       "Sampling of each channel over wavelength, from band edge to band edge exactly.",
-      {withDefault(integer("samples", "wavelengths per channel", 1, 512), "16"),
-       withDefault(choice("spacing", {"gauss", "even", "log"},
-                          "gauss: Gauss points of the response, error below 0.1 % with 16 for spectra smooth over the band; even, log: equal cells"),
+      {withDefault(integer("samples", "wavelengths per channel", 1, 512, &SpectralSampling::samples), "16"),
+       withDefault(choice("spacing", {{"gauss", Spacing::Gauss}, {"even", Spacing::Even}, {"log", Spacing::Log}},
+                          "gauss: Gauss points of the response, error below 0.1 % with 16 for spectra smooth over the band; even, log: equal cells",
+                          &SpectralSampling::spacing),
                    "gauss"),
-       withDefault(boolean("shared", "one set of wavelengths for all channels, over the union of their bands (split at every band edge)"), "false")}};
+       withDefault(
+           boolean("shared", "one set of wavelengths for all channels, over the union of their bands (split at every band edge)", &SpectralSampling::shared),
+           "false")}};
   return t;
 }
 
@@ -522,7 +538,7 @@ const ParameterTable& spectralImage() {
       "Mean spectral radiance at the aperture in bins of wavelength, a layer each. Rendering time grows with bins x samples.",
       {required(list("band", "[from, to]: first and last edge, such as [3 um, 5 um]", 2, 2)), withDefault(integer("bins", "layers", 2, 512), "32"),
        withDefault(choice("spacing", {"even", "log"}, "even: bins of equal width; log: of equal ratio"), "even"),
-       withDefault(integer("samples", "Gauss points per bin (of log bins: of the narrowest drawn together)", 2, 16), "4")}};
+       withDefault(integer("samples", "Gauss points per bin (of log bins: of the narrowest drawn together)", 2, 16, &SpectralBins::samples), "4")}};
   return t;
 }
 
@@ -544,9 +560,10 @@ const ParameterTable& probe() {
   static const ParameterTable t{
       "probe",
       "Irradiance on a plane at a point, whole hemisphere.",
-      {required(text("name", "unique name")), required(within(vector3("position", "m", "east, north, up"), -kFarthest_m, kFarthest_m)),
-       withDefault(within(vector3("normal", "", "direction the plane faces"), -1e6, 1e6), "0, 0, 1"),
-       withDefault(integer("resolution", "rays across a quarter turn", 16, 2048), "512"), map("spectral", "wavelength sampling"),
+      {required(text("name", "unique name", &Probe::name)),
+       required(within(vector3("position", "m", "east, north, up", &Probe::position), -kFarthest_m, kFarthest_m)),
+       withDefault(within(vector3("normal", "", "direction the plane faces", &Probe::normal), -1e6, 1e6), "0, 0, 1"),
+       withDefault(integer("resolution", "rays across a quarter turn", 16, 2048, &Probe::resolution), "512"), map("spectral", "wavelength sampling"),
        required(list("channels", "as a camera's; output irradiance, photon_irradiance or illuminance", 1, 16))}};
   return t;
 }

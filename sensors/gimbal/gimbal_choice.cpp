@@ -50,7 +50,7 @@ AxisJitter axisOf(const Record& r) {
   if (r.given("rms") != r.given("corner"))
     throw UserError(r.where(), "a jitter's 'rms' and 'corner' go together", "both, or a 'spectrum'",
                     r.given("rms") ? "add 'corner: 20 Hz'" : "add 'rms: 20 urad'");
-  if (r.given("rms")) axis.rms_rad = r.number("rms"), axis.corner_Hz = r.number("corner");
+  r.fill(axis);
   return axis;
 }
 
@@ -90,14 +90,9 @@ Scan scanOf(const Value& value) {
       throw unknownWord(r.whole().keyPlaces[k], "a " + name + " scan has no", given, names, "remove it");
     }
   }
-  const auto number = [&](const char* key) { return r.given(key) ? r.number(key) : 0.0; };
   Scan s;
   s.kind = kind;
-  s.by = r.text("by") == "gimbal" ? Scan::By::Gimbal : Scan::By::Optics;
-  s.width_rad = number("width"), s.height_rad = number("height"), s.lineRate_Hz = number("line_rate"), s.flyback = number("flyback");
-  if (r.given("lines")) s.lines = static_cast<int>(r.integer("lines"));
-  s.radius_rad = number("radius"), s.frequency_Hz = number("frequency"), s.secondFrequency_Hz = number("second_frequency"), s.phase_rad = number("phase");
-  if (r.given("turns")) s.turns = r.number("turns");
+  r.fill(s);
   return s;
 }
 
@@ -114,15 +109,10 @@ std::size_t outputNamed(const Record& tracker, const Camera& camera) {
 
 TrackerOptions trackerOf(const Record& r, const ChannelOutput& output) {
   TrackerOptions t;
-  t.rule.sigmas = r.number("threshold");
-  const bool counts = output.isCount() || output.asDisplay;
-  t.rule.leastNoise = r.given("least_noise") ? r.number("least_noise") : counts ? kRoundingOfCounts : 0.0;
-  t.rule.shareOfPeak = r.number("share_of_peak");
-  t.rule.background = r.text("background") == "gate" ? ThresholdRule::Background::GateBorder : ThresholdRule::Background::Picture;
-  t.rule.leastPixels = static_cast<int>(r.integer("least_pixels"));
-  if (r.given("saturation")) t.rule.saturation = r.number("saturation");
+  if (output.isCount() || output.asDisplay) t.rule.leastNoise = kRoundingOfCounts;
+  r.fill(t);
+  r.fill(t.rule);
   if (const auto half = pairOf(r, "gate", "", 1.0, 16384.0, "half its width and height, from 1 pixel")) t.gateHalf_px = *half;
-  t.reacquireAfter = static_cast<int>(r.integer("reacquire_after"));
   return t;
 }
 
@@ -235,23 +225,19 @@ FollowerChoice readGimbal(const Value& value, const Simulation& simulation, cons
   const std::string driver = r.text("driver");
   o.driver = *gimbalDriverOf(driver);
   GimbalOptions& g = o.gimbal;
-  if (r.given("azimuth")) g.limits.azimuth_rad = r.number("azimuth");
+  r.fill(o);
+  r.fill(g);
+  r.fill(g.limits);
   if (const auto e = pairOf(r, "elevation", "rad", -0.5 * kPi, 0.5 * kPi, "least and most, within -90 deg to 90 deg")) {
     if (!(e->x <= e->y)) throw UserError(r.where("elevation"), "limits of elevation that do not rise", "[least, most]", "swap them");
     g.limits.elevation_rad = *e;
   }
-  if (r.given("rate")) g.limits.rate_rad_s = r.number("rate");
-  if (r.given("acceleration")) g.limits.acceleration_rad_s2 = r.number("acceleration");
   if (r.given("lag") && r.given("bandwidth"))
     throw UserError(r.where("bandwidth"), "a lag and a bandwidth", "one of the two: bandwidth = 1 / (2 pi lag)", "remove one");
-  if (r.given("lag")) g.lag_s = r.number("lag");
   if (r.given("bandwidth")) g.lag_s = 1.0 / (2.0 * kPi * r.number("bandwidth"));
-  o.latency_s = r.number("latency");
   constexpr double kMostOff = 0.7853981633974483;
   g.boresight_rad = pairOf(r, "boresight", "rad", -kMostOff, kMostOff, "[left, up] within 45 deg").value_or(glm::dvec2(0.0));
   g.offset_rad = pairOf(r, "offset", "rad", -kMostOff, kMostOff, "[left, up] within 45 deg").value_or(glm::dvec2(0.0));
-  g.roll_rad = r.number("roll");
-  g.stabilised = r.boolean("stabilised");
   if (r.given("jitter")) g.jitter = jitterOf(r.value("jitter"));
   if (r.given("scan")) g.scan = scanOf(r.value("scan"));
   requireReachable(g, simulation.time, r.where());

@@ -16,20 +16,20 @@ void check(bool good, const char* option, double value, const char* expected, co
 
 Ballistic::Ballistic(BallisticOptions options) : options_(std::move(options)) {
   const BallisticOptions& o = options_;
-  check(std::isfinite(o.mass_kg) && o.mass_kg > 0.0, "mass_kg", o.mass_kg, "a mass above 0", "give the mass at launch");
-  check(o.burntShare >= 0.0 && o.burntShare <= 0.99, "burntShare", o.burntShare, "0 to 0.99", "leave some mass: a case or ash");
-  check(std::isfinite(o.ignition_s) && o.ignition_s >= 0.0, "ignition_s", o.ignition_s, "a time since launch", "give 0 or more");
-  check(std::isfinite(o.burnTime_s) && o.burnTime_s >= 0.0 && (o.burntShare == 0.0 || o.burnTime_s > 0.0), "burnTime_s", o.burnTime_s, "a time above 0",
+  check(std::isfinite(o.mass_kg) && o.mass_kg > 0.0, "mass", o.mass_kg, "a mass above 0", "give the mass at launch");
+  check(o.burntShare >= 0.0 && o.burntShare <= 0.99, "burnt_share", o.burntShare, "0 to 0.99", "leave some mass: a case or ash");
+  check(std::isfinite(o.ignition_s) && o.ignition_s >= 0.0, "ignition", o.ignition_s, "a time since launch", "give 0 or more");
+  check(std::isfinite(o.burnTime_s) && o.burnTime_s >= 0.0 && (o.burntShare == 0.0 || o.burnTime_s > 0.0), "burn_time", o.burnTime_s, "a time above 0",
         "say how long it burns");
-  check(std::isfinite(o.burnExponent) && o.burnExponent >= 1.0, "burnExponent", o.burnExponent, "1 or more", "1 burns evenly, 3 as a shrinking grain");
-  check(std::isfinite(o.area_m2) && o.area_m2 >= 0.0, "area_m2", o.area_m2, "an area", "give that of the cross-section");
+  check(std::isfinite(o.burnExponent) && o.burnExponent >= 1.0, "burn_exponent", o.burnExponent, "1 or more", "1 burns evenly, 3 as a shrinking grain");
+  check(std::isfinite(o.area_m2) && o.area_m2 >= 0.0, "area", o.area_m2, "an area", "give that of the cross-section");
   checkCurve("drag", o.drag);
-  checkCurve("areaFactor", o.areaFactor);
+  checkCurve("area_factor", o.areaFactor);
   if (o.ballisticCoefficient_kg_m2) {
-    check(std::isfinite(*o.ballisticCoefficient_kg_m2) && *o.ballisticCoefficient_kg_m2 > 0.0, "ballisticCoefficient_kg_m2", *o.ballisticCoefficient_kg_m2,
+    check(std::isfinite(*o.ballisticCoefficient_kg_m2) && *o.ballisticCoefficient_kg_m2 > 0.0, "ballistic_coefficient", *o.ballisticCoefficient_kg_m2,
           "a number above 0", "it is mass / (drag coefficient x area)");
     if (o.area_m2 > 0.0 || !o.drag.empty())
-      throw FlightError("ballisticCoefficient_kg_m2", "given with an area or a drag coefficient", "one way to give drag", "leave one out");
+      throw FlightError("ballistic_coefficient", "given with an area or a drag coefficient", "one way to give drag", "leave one out");
   }
 }
 

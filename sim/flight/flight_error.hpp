@@ -1,5 +1,5 @@
 #pragma once
-// What a user asked of a flight that it cannot do. It names the option as the structs do, so that a reader can add file, line and column.
+// What a user asked of a flight that it cannot do. It names the key of a scenario that is wrong, so that a reader can add file, line and column.
 #include <cstddef>
 #include <optional>
 #include <stdexcept>

@@ -67,12 +67,12 @@ class Flight {
     if (!task_.body) throw std::invalid_argument("a flight without a body");
     checkWorld(world_);
     const double steps = task_.duration_s / task_.step_s;
-    if (!(task_.step_s > 0.0)) throw FlightError("step_s", std::to_string(task_.step_s), "a time above 0", "1 to 10 ms serve");
-    if (!(task_.duration_s > 0.0)) throw FlightError("duration_s", std::to_string(task_.duration_s), "a time above 0", "say how long it flies at most");
-    if (!(steps <= kMostSteps)) throw FlightError("step_s", std::to_string(steps) + " steps", "at most 10 million", "take longer steps");
-    if (task_.keepEvery < 1) throw FlightError("keepEvery", std::to_string(task_.keepEvery), "1 or more", "1 keeps every step");
+    if (!(task_.step_s > 0.0)) throw FlightError("step", std::to_string(task_.step_s), "a time above 0", "1 to 10 ms serve");
+    if (!(task_.duration_s > 0.0)) throw FlightError("duration", std::to_string(task_.duration_s), "a time above 0", "say how long it flies at most");
+    if (!(steps <= kMostSteps)) throw FlightError("step", std::to_string(steps) + " steps", "at most 10 million", "take longer steps");
+    if (task_.keepEvery < 1) throw FlightError("duration", std::to_string(task_.keepEvery), "1 or more", "1 keeps every step");
     if (!(steps / task_.keepEvery <= kMostPoints))
-      throw FlightError("keepEvery", std::to_string(steps / task_.keepEvery) + " points", "at most a million", "keep fewer");
+      throw FlightError("duration", std::to_string(steps / task_.keepEvery) + " points", "at most a million", "keep fewer");
     const Launch& l = task_.launch;
     if (!std::isfinite(l.time_s) || !finite({l.position, l.velocity, l.direction})) throw FlightError("launch", "not finite", "finite numbers", "correct it");
     if (!(glm::length(l.direction) > 0.0)) throw FlightError("launch", "no direction", "a vector", "say where it points");
@@ -81,7 +81,7 @@ class Flight {
     if (!task_.target) throw FlightError("guidance", "no target", "one to fly at", "name a target or leave guidance out");
     const double lag = task_.guidance->timeConstant_s;
     if (lag > 0.0 && lag < task_.step_s)
-      throw FlightError("timeConstant_s", std::to_string(lag) + " s", "0, or at least the step of " + std::to_string(task_.step_s) + " s",
+      throw FlightError("time_constant", std::to_string(lag) + " s", "0, or at least the step of " + std::to_string(task_.step_s) + " s",
                         "take shorter steps or no lag");
   }
 
@@ -115,7 +115,7 @@ class Flight {
     const double h = to - from, middle = from + 0.5 * h;
     const Rates a = rates(from, middle, s);
     if (a.damping_per_s * h > kStable)
-      throw FlightError("step_s", "drag stops the body within " + std::to_string(1.0 / a.damping_per_s) + " s, steps are of " + std::to_string(h) + " s",
+      throw FlightError("step", "drag stops the body within " + std::to_string(1.0 / a.damping_per_s) + " s, steps are of " + std::to_string(h) + " s",
                         "a stable integration", "take shorter steps; check drag, area and mass");
     const Rates b = rates(middle, middle, moved(s, a, 0.5 * h)), c = rates(middle, middle, moved(s, b, 0.5 * h)), d = rates(to, middle, moved(s, c, h));
     const double w = h / 6.0;
@@ -141,7 +141,7 @@ class Flight {
   void advance(double to) {
     const State next = stepped(state_, time_s_, to);
     if (!finite(next))
-      throw FlightError("step_s", "the flight's numbers overflow " + std::to_string(to - task_.launch.time_s) + " s after launch", "a stable integration",
+      throw FlightError("step", "the flight's numbers overflow " + std::to_string(to - task_.launch.time_s) + " s after launch", "a stable integration",
                         "take shorter steps; check drag, area and mass");
     const double h = to - time_s_;
     double stop = to;

@@ -52,10 +52,10 @@ double zeroEffortMiss_m(const MovingPoint& own, const MovingPoint& target) {
 }
 
 void checkGuidance(const GuidanceOptions& o) {
-  check(o.navigationConstant >= 1.0 && o.navigationConstant <= 10.0, "navigationConstant", o.navigationConstant, "1 to 10", "3 to 5 are usual");
-  check(std::isfinite(o.pursuitGain_per_s) && o.pursuitGain_per_s >= 0.0, "pursuitGain_per_s", o.pursuitGain_per_s, "0 or more", "give a positive gain");
-  check(std::isfinite(o.begin_s) && o.begin_s >= 0.0, "begin_s", o.begin_s, "a time since launch", "give 0 or more");
-  check(std::isfinite(o.timeConstant_s) && o.timeConstant_s >= 0.0, "timeConstant_s", o.timeConstant_s, "0 or more", "0 is without lag");
+  check(o.navigationConstant >= 1.0 && o.navigationConstant <= 10.0, "navigation_constant", o.navigationConstant, "1 to 10", "3 to 5 are usual");
+  check(std::isfinite(o.pursuitGain_per_s) && o.pursuitGain_per_s >= 0.0, "pursuit_gain", o.pursuitGain_per_s, "0 or more", "give a positive gain");
+  check(std::isfinite(o.begin_s) && o.begin_s >= 0.0, "guided_from", o.begin_s, "a time since launch", "give 0 or more");
+  check(std::isfinite(o.timeConstant_s) && o.timeConstant_s >= 0.0, "time_constant", o.timeConstant_s, "0 or more", "0 is without lag");
   check(o.most_g >= 0.0, "most_g", o.most_g, "0 or more", "give the limit as a positive number");
   check(std::isfinite(o.blindRange_m) && o.blindRange_m > 0.0, "blindRange_m", o.blindRange_m, "a range above 0", "a few metres");
 }

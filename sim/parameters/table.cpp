@@ -13,12 +13,9 @@
 namespace pitviper {
 namespace {
 
-Parameter make(std::string key, ParameterType type, std::string unit, std::string description) {
+Parameter make(const std::string& key, ParameterType type, const std::string& unit, const std::string& description, const Binding& into = {}) {
   Parameter p;
-  p.key = std::move(key);
-  p.type = type;
-  p.unit = std::move(unit);
-  p.description = std::move(description);
+  p.key = key, p.type = type, p.unit = unit, p.description = description, p.into = into;
   return p;
 }
 
@@ -162,28 +159,27 @@ const char* typeName(const Parameter& p) {
 
 }  // namespace
 
-Parameter number(std::string k, std::string u, std::string d) { return make(std::move(k), ParameterType::Number, std::move(u), std::move(d)); }
-Parameter course(std::string k, std::string u, std::string d) { return make(std::move(k), ParameterType::Course, std::move(u), std::move(d)); }
-Parameter integer(std::string k, std::string d, long long lo, long long hi) {
-  return within(make(std::move(k), ParameterType::Integer, "", std::move(d)), static_cast<double>(lo), static_cast<double>(hi));
+Parameter number(std::string k, std::string u, std::string d, Binding to) { return make(k, ParameterType::Number, u, d, to); }
+Parameter course(std::string k, std::string u, std::string d, Binding to) { return make(k, ParameterType::Course, u, d, to); }
+Parameter integer(std::string k, std::string d, long long lo, long long hi, Binding to) {
+  return within(make(k, ParameterType::Integer, "", d, to), static_cast<double>(lo), static_cast<double>(hi));
 }
-Parameter boolean(std::string k, std::string d) { return make(std::move(k), ParameterType::Boolean, "", std::move(d)); }
-Parameter text(std::string k, std::string d) { return make(std::move(k), ParameterType::Text, "", std::move(d)); }
+Parameter boolean(std::string k, std::string d, Binding to) { return make(k, ParameterType::Boolean, "", d, to); }
+Parameter text(std::string k, std::string d, Binding to) { return make(k, ParameterType::Text, "", d, to); }
 Parameter choice(std::string k, std::vector<std::string> c, std::string d) {
-  Parameter p = make(std::move(k), ParameterType::Choice, "", std::move(d));
+  Parameter p = make(k, ParameterType::Choice, "", d);
   p.choices = std::move(c);
   return p;
 }
-Parameter vector3(std::string k, std::string u, std::string d) { return make(std::move(k), ParameterType::Vector, std::move(u), std::move(d)); }
+Parameter vector3(std::string k, std::string u, std::string d, Binding to) { return make(k, ParameterType::Vector, u, d, to); }
 Parameter list(std::string k, std::string d, size_t lo, size_t hi) {
-  Parameter p = make(std::move(k), ParameterType::List, "", std::move(d));
-  p.minimumItems = lo;
-  p.maximumItems = hi;
+  Parameter p = make(k, ParameterType::List, "", d);
+  p.minimumItems = lo, p.maximumItems = hi;
   return p;
 }
-Parameter map(std::string k, std::string d) { return make(std::move(k), ParameterType::Map, "", std::move(d)); }
-Parameter spectrum(std::string k, std::string u, std::string d) { return make(std::move(k), ParameterType::Spectrum, std::move(u), std::move(d)); }
-Parameter any(std::string k, std::string d) { return make(std::move(k), ParameterType::Any, "", std::move(d)); }
+Parameter map(std::string k, std::string d) { return make(k, ParameterType::Map, "", d); }
+Parameter spectrum(std::string k, std::string u, std::string d) { return make(k, ParameterType::Spectrum, u, d); }
+Parameter any(std::string k, std::string d) { return make(k, ParameterType::Any, "", d); }
 
 Parameter required(Parameter p) {
   p.required = true;
@@ -267,6 +263,11 @@ Location Record::where(std::string_view key) const {
   return v ? v->where : value_->where;
 }
 double Record::number(std::string_view key) const { return readNumber(value(key), parameter(key).unit, key); }
+void Record::read(std::string_view key, TimeCourse& into) const { into = course(key); }
+void Record::fill(const std::type_info& type, void* object) const {
+  for (const Parameter& p : table_->parameters)
+    if (p.into.object && *p.into.object == type && has(p.key)) p.into.put(*this, p.key, object);
+}
 TimeCourse Record::course(std::string_view key) const { return readCourse(value(key), parameter(key).unit, key); }
 long long Record::integer(std::string_view key) const { return readInteger(value(key), key); }
 bool Record::boolean(std::string_view key) const { return readBoolean(value(key), key); }

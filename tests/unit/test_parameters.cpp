@@ -7,8 +7,11 @@
 #include "scenarios/reader/scenario_reader.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/parameters/spectrum_value.hpp"
+#include "sim/parameters/time_course.hpp"
 #include "sim/parameters/units.hpp"
+#include "sim/scene/motion.hpp"
 #include "tests/support/scene_builder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -62,6 +65,55 @@ TEST(Reader, PlacesAndFixes) {
   EXPECT_EQ(errorOf("background: {temperature: 300}\n" + kCamera).rfind("test.yaml:1:27: temperature has no unit", 0), 0u);
   EXPECT_EQ(errorOf("background: {temperature: 300 m}\n" + kCamera).rfind("test.yaml:1:27: temperature has the wrong unit", 0), 0u);
   EXPECT_NE(errorOf("lights: []\n").find("neither a camera nor a probe"), std::string::npos);
+}
+
+struct Sample {
+  double range_m = 7.0;
+  std::optional<double> gain = {};
+  int count = 3;
+  bool open = false;
+  std::string name = "none";
+  glm::dvec3 at{1.0, 2.0, 3.0};
+  TimeCourse level;
+  AtEnd end = AtEnd::Hold;
+};
+struct Other {
+  double range_m = 5.0;
+};
+
+// A key is one row: what a user writes goes into the member that its row names, in the row's unit; what is absent leaves members as they are, or has the row's
+// default.
+TEST(Parameters, AKeyGoesIntoTheMemberOfItsRow) {
+  const ParameterTable table{
+      "sample",
+      "",
+      {number("range", "m", "", &Sample::range_m), number("gain", "", "", &Sample::gain), withDefault(integer("count", "", 0, 100, &Sample::count), "9"),
+       boolean("open", "", &Sample::open), text("name", "", &Sample::name), vector3("at", "m", "", &Sample::at), course("level", "W", "", &Sample::level),
+       choice("end", {{"hold", AtEnd::Hold}, {"loop", AtEnd::Loop}}, "", &Sample::end), number("far", "m", "", &Other::range_m)}};
+  const TemporaryFolder folder;
+  const auto read = [&](const std::string& yaml, auto object) {
+    const Value tree = loadYaml(folder.put("a.yaml", yaml), {});
+    Record(tree, table).fill(object);
+    return object;
+  };
+  const Sample all =
+      read("{range: 2 km, gain: 50 %, count: 4, open: true, name: x, at: [1 m, 2 cm, 3 km], level: [[0 s, 1 W], [2 s, 3 W]], end: loop, far: 1 m}", Sample{});
+  EXPECT_DOUBLE_EQ(all.range_m, 2000.0);
+  EXPECT_DOUBLE_EQ(all.gain.value(), 0.5);
+  EXPECT_EQ(all.count, 4);
+  EXPECT_TRUE(all.open);
+  EXPECT_EQ(all.name, "x");
+  EXPECT_DOUBLE_EQ(all.at.y, 0.02);
+  EXPECT_DOUBLE_EQ(all.level.at(1.0), 2.0);
+  EXPECT_EQ(all.end, AtEnd::Loop);
+  const Sample none = read("{far: 3 m}", Sample{});
+  EXPECT_DOUBLE_EQ(none.range_m, 7.0);
+  EXPECT_FALSE(none.gain);
+  EXPECT_EQ(none.count, 9) << "the row's default";
+  EXPECT_EQ(none.name, "none");
+  EXPECT_EQ(none.end, AtEnd::Hold);
+  EXPECT_DOUBLE_EQ(read("{far: 3 m, range: 1 m}", Other{}).range_m, 3.0) << "rows of another struct leave it alone";
+  EXPECT_NE(describe(table).find("| `end` | choice |  | - | hold, loop |"), std::string::npos) << describe(table);
 }
 
 // What would be ignored is refused, and what people mean is suggested.
