@@ -1,7 +1,8 @@
 //@use sim/radiometry/glsl/exponential.glsl
 // Layered air: -ln tau = sum of c_k W_k^a_k over the absorbers k, four to a vector. What a camera's way holds (logarithm of the mean density)
 // and sends beyond air of one temperature comes from a table by elevation and range, made in double precision for each view
-// (atmosphere/layered_gpu.hpp); ways on to lights and to the sun from tables by height. Amounts of both legs are added before the power: a band does not decay exponentially.
+// (atmosphere/layered_gpu.hpp); ways on to lights and to the sun from tables by height. Amounts of both legs are added before the
+// power: a band does not decay exponentially.
 layout(std140, binding = 3) uniform AirBlock {
   vec4 grid;       // root of the first elevation's sine, entries per unit of it; scale of ranges [m], entries per unit of ln(1 + range / scale)
   vec4 azimuth;    // first cosine of the azimuth to the sun times the sun's horizontal part, entries per unit of it; number of elevations, of ranges
@@ -12,7 +13,8 @@ layout(std140, binding = 3) uniform AirBlock {
   vec4 black[AIR_BLACKS];  // of nodes: radiance of a black body of the air's temperature at the camera
 } air;
 //@slot air_extinction
-layout(binding = 20) uniform samplerBuffer airAmounts;   // [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density, column above][vector]
+// [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density, column above][vector]
+layout(binding = 20) uniform samplerBuffer airAmounts;
 layout(binding = 21) uniform samplerBuffer airRadiance;  // [azimuth][elevation][range, space last][part][value]
 
 int airElevations() { return int(air.azimuth.z); }
@@ -104,7 +106,8 @@ AirLeg airUpwards(float height, float sine) {
   airHeight(height, entry, m);
   int e = clamp(int(x) - 1, 0, max(AIR_SUNS - 4, 0)), at = airHeights() + (entry * AIR_SUNS + e) * AIR_VECTORS;
   float f = x - float(e);
-  vec4 weight = vec4((f - 1.0) * (f - 2.0) * (3.0 - f) / 6.0, f * (f - 2.0) * (f - 3.0) / 2.0, f * (f - 1.0) * (3.0 - f) / 2.0, f * (f - 1.0) * (f - 2.0) / 6.0);
+  vec4 weight = vec4((f - 1.0) * (f - 2.0) * (3.0 - f) / 6.0, f * (f - 2.0) * (f - 3.0) / 2.0, f * (f - 1.0) * (3.0 - f) / 2.0,
+                     f * (f - 1.0) * (f - 2.0) / 6.0);
 //@each v AIR_VECTORS
   {
     int low = at + {v}, above = low + AIR_SUNS * AIR_VECTORS;
@@ -181,7 +184,8 @@ Real pathDepth(int i, AirPath near, AirPath far) { return max(airDepth(i, far) -
 
 // Four nodes or channels between the four entries of a table; of one azimuth.
 vec4 airPart(AirPath p, int azimuth, int part, int four) {
-  int size = AIR_PARTS * AIR_VALUES, low = (azimuth * airElevations() * (airRanges() + 1) + p.cell) * size + part * AIR_VALUES + four, step = p.next * size, high = low + (airRanges() + 1) * size;
+  int size = AIR_PARTS * AIR_VALUES, low = (azimuth * airElevations() * (airRanges() + 1) + p.cell) * size + part * AIR_VALUES + four;
+  int step = p.next * size, high = low + (airRanges() + 1) * size;
   return mix(mix(texelFetch(airRadiance, low), texelFetch(airRadiance, low + step), p.mixed.y),
              mix(texelFetch(airRadiance, high), texelFetch(airRadiance, high + step), p.mixed.y), p.mixed.x);
 }

@@ -33,8 +33,13 @@ AirAmounts longestWay(const Simulation& simulation) {
 }  // namespace
 
 LayeredOnGpu::LayeredOnGpu(const Simulation& simulation, const Plan& plan, bool perChannel)
-    : simulation_(simulation), plan_(plan), perChannel_(perChannel), rows_(simulation, plan, perChannel), coefficients_(plan, rows_.vectors(), longestWay(simulation)) {
-  if (plan.lightCount > 0 || (plan.terms.fields && plan.sunLegs)) addHeights(heights_);  // ways on to them; fields scatter the sun's light where nothing else does
+    : simulation_(simulation),
+      plan_(plan),
+      perChannel_(perChannel),
+      rows_(simulation, plan, perChannel),
+      coefficients_(plan, rows_.vectors(), longestWay(simulation)) {
+  if (plan.lightCount > 0 || (plan.terms.fields && plan.sunLegs))
+    addHeights(heights_);  // ways on to them; fields scatter the sun's light where nothing else does
 }
 
 void LayeredOnGpu::addSlots(ShaderSlots& slots) const {

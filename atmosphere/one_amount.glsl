@@ -1,8 +1,9 @@
 //@use sim/radiometry/glsl/exponential.glsl
 // The slot `path` for air of one absorber, as rich everywhere on a way as airLength() says: tau = exp(-gamma s), L_path = L_m (1 - tau). Before it stands
 //   float airLength(float height_m, float sinElevation, float range_m)   // amount on a way [m of air at extinction gamma]
-// Source: Duvenhage 2006 section 4.4; PHYSICS section 2 form of it. gamma extinction [1/m], s amount [m], L_m source radiance [W/(m2 sr um)]. Valid: all s >= 0,
-// infinite included. Towards the sun the way ends where the air does, at view.earth.y; air without a top has the sun's irradiance as it is at the scene.
+// Source: Duvenhage 2006 section 4.4; PHYSICS section 2 form of it. gamma extinction [1/m], s amount [m], L_m source radiance [W/(m2 sr um)].
+// Valid: all s >= 0, infinite included. Towards the sun the way ends where the air does, at view.earth.y; air without a top has the sun's
+// irradiance as it is at the scene.
 struct AirPath {
   float length;  // [m]
   float beyond;  // of the last stretch, from differences at the stretch itself: a far small body's keeps its digits

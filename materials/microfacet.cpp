@@ -79,12 +79,13 @@ MadeReflection makeFacets(const ComponentRecord& r) {
 }  // namespace
 
 const ParameterTable& filmLayerTable() {
-  static const ParameterTable t{
-      "film layer",
-      "A plane layer of a stack, by its refractive index and thickness.",
-      {required(any("index", "its refractive index: a number, the name of a substance, or a map of n and k or a formula")),
-       within(number("thickness", "um", "how thick it is; where it is left out, `film_thickness` holds"), 0, kMostThickness_um),
-       boolean("coherent", "whether waves from its two faces interfere (up to 100 um), or their powers add; by itself: up to 10 um. Fringes closer together than 1 nm or 5 1/cm are averaged, and said to be")}};
+  static const ParameterTable t{"film layer",
+                                "A plane layer of a stack, by its refractive index and thickness.",
+                                {required(any("index", "its refractive index: a number, the name of a substance, or a map of n and k or a formula")),
+                                 within(number("thickness", "um", "how thick it is; where it is left out, `film_thickness` holds"), 0, kMostThickness_um),
+                                 boolean("coherent",
+                                         "whether waves from its two faces interfere (up to 100 um), or their powers add; by itself: up to 10 um. Fringes "
+                                         "closer together than 1 nm or 5 1/cm are averaged, and said to be")}};
   return t;
 }
 

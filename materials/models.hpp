@@ -68,8 +68,8 @@ ParameterTable anyComponentTable();
 /// Makes a component of a state.
 using ComponentMaker = std::function<MadeReflection(double state)>;
 
-/// Reads a component but for its state. `record` must outlive what it returns. `spectrum`: reads a spectrum's value as its parameter says; `base`: where relative
-/// names of files begin.
+/// Reads a component but for its state. `record` must outlive what it returns. `spectrum`: reads a spectrum's value as its parameter says; `base`: where
+/// relative names of files begin.
 ComponentMaker componentMaker(const ReflectionModel& model, const Record& record, const SpectrumOf& spectrum, const SubstanceOf& substance,
                               const std::filesystem::path& base);
 

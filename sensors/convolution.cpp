@@ -29,13 +29,15 @@ Convolution::Convolution(const SpreadKernel& kernel, int width, int height, int 
     : along_(factorOf(kernel)),
       width_(width),
       height_(height),
-      transform_(std::max(width + std::max(0, kernel.reach - unused), 2 * kernel.reach + 1), std::max(height + std::max(0, kernel.reach - unused), 2 * kernel.reach + 1)) {
+      transform_(std::max(width + std::max(0, kernel.reach - unused), 2 * kernel.reach + 1),
+                 std::max(height + std::max(0, kernel.reach - unused), 2 * kernel.reach + 1)) {
   if (!along_.empty()) return;
   std::vector<double> own(transform_.size());
   const int columns = transform_.columns(), rows = transform_.rows();
   for (int j = -kernel.reach; j <= kernel.reach; ++j)
     for (int i = -kernel.reach; i <= kernel.reach; ++i)
-      own[static_cast<std::size_t>((j + rows) % rows) * static_cast<std::size_t>(columns) + static_cast<std::size_t>((i + columns) % columns)] = kernel.at(i, j);
+      own[static_cast<std::size_t>((j + rows) % rows) * static_cast<std::size_t>(columns) + static_cast<std::size_t>((i + columns) % columns)] =
+          kernel.at(i, j);
   transfer_ = transform_.transferOf(own);
 }
 
@@ -51,7 +53,8 @@ std::vector<double> Convolution::alongBoth(const std::vector<float>& picture, do
       double* out = &rows[y * width];
       for (std::size_t x = 0; x < width; ++x) out[x] = along_[0] * middle[x];
       for (int k = 1; k <= reach; ++k)
-        for (std::size_t x = 0; x < width; ++x) out[x] += along_[static_cast<std::size_t>(k)] * (middle[static_cast<std::ptrdiff_t>(x) - k] + middle[x + static_cast<std::size_t>(k)]);
+        for (std::size_t x = 0; x < width; ++x)
+          out[x] += along_[static_cast<std::size_t>(k)] * (middle[static_cast<std::ptrdiff_t>(x) - k] + middle[x + static_cast<std::size_t>(k)]);
     }
   });
   sideBySide(height_, [&](int first, int last) {
@@ -78,7 +81,8 @@ std::vector<double> Convolution::operator()(const std::vector<float>& picture, d
     for (std::size_t x = 0; x < width; ++x) whole[y * columns + x] = static_cast<double>(picture[y * width + x]) - level;
   whole = transform_.convolved(whole, transfer_);
   spread.reserve(width * height);
-  for (std::size_t y = 0; y < height; ++y) spread.insert(spread.end(), whole.begin() + static_cast<std::ptrdiff_t>(y * columns), whole.begin() + static_cast<std::ptrdiff_t>(y * columns + width));
+  for (std::size_t y = 0; y < height; ++y)
+    spread.insert(spread.end(), whole.begin() + static_cast<std::ptrdiff_t>(y * columns), whole.begin() + static_cast<std::ptrdiff_t>(y * columns + width));
   return spread;
 }
 

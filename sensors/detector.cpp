@@ -34,9 +34,11 @@ DisplayLaw readDisplay(const Record& r) {
   DisplayLaw law;
   r.fill(law);
   for (const char* key : {"agc_plateau", "agc_linear"})
-    if (r.given(key) && law.agc != Agc::Plateau) throw UserError(r.where(key), std::string("'") + key + "' beside 'agc: " + agc + "'", "'agc: plateau', which it is of", "write that, or remove it");
+    if (r.given(key) && law.agc != Agc::Plateau)
+      throw UserError(r.where(key), std::string("'") + key + "' beside 'agc: " + agc + "'", "'agc: plateau', which it is of", "write that, or remove it");
   for (const char* key : {"agc_tails", "agc_gain"})
-    if (r.given(key) && law.agc == Agc::Fixed) throw UserError(r.where(key), std::string("'") + key + "' beside 'agc: fixed'", "'agc: linear' or 'plateau'", "write one, or remove it");
+    if (r.given(key) && law.agc == Agc::Fixed)
+      throw UserError(r.where(key), std::string("'") + key + "' beside 'agc: fixed'", "'agc: linear' or 'plateau'", "write one, or remove it");
   return law;
 }
 

@@ -90,20 +90,22 @@ void volts(const Detector& d, const Collector& c, ChannelOutput& o) {
 }  // namespace
 
 std::vector<Quantity> detectorQuantities() {
-  return {{"flux", "W", "pixel flux behind the optics", flux},
-          {"focal_irradiance", "W/m2", "irradiance on the film, flux per pixel area", focalIrradiance},
-          {"focal_illuminance", "lx", "illuminance on the film", focalIlluminance},
-          {"exposure", "J", "flux times exposure time", exposure},
-          {"photons", "photon", "photons on the pixel during the exposure", photons},
-          {"electrons", "electron", "photoelectrons during the exposure (needs quantum_efficiency)", electrons},
-          {"counts", "count", "what the detector's stage makes of the photoelectrons (needs quantum_efficiency, exposure and `stage: detector`)", counts},
-          {"apparent_temperature", "K", "temperature of a black body that gives the same counts, or, without a detector's stage, the same radiance",
-           apparentTemperature},
-          {"snr", "1", "mean photoelectrons of light over the noise of a frame, without what is fixed (needs what counts need)", signalToNoise},
-          {"saturated", "1", "why a pixel's count says nothing: 1 the well or the converter is full, 2 the converter's lowest code, 3 a bad pixel; else 0 (needs what counts need)",
-           saturated},
-          {"display", "code", "counts as 256 codes for a screen, by the detector's `agc`: for people, no measurements", display},
-          {"volts", "V", "gain times flux or focal-plane irradiance (needs gain)", volts}};
+  return {
+      {"flux", "W", "pixel flux behind the optics", flux},
+      {"focal_irradiance", "W/m2", "irradiance on the film, flux per pixel area", focalIrradiance},
+      {"focal_illuminance", "lx", "illuminance on the film", focalIlluminance},
+      {"exposure", "J", "flux times exposure time", exposure},
+      {"photons", "photon", "photons on the pixel during the exposure", photons},
+      {"electrons", "electron", "photoelectrons during the exposure (needs quantum_efficiency)", electrons},
+      {"counts", "count", "what the detector's stage makes of the photoelectrons (needs quantum_efficiency, exposure and `stage: detector`)", counts},
+      {"apparent_temperature", "K", "temperature of a black body that gives the same counts, or, without a detector's stage, the same radiance",
+       apparentTemperature},
+      {"snr", "1", "mean photoelectrons of light over the noise of a frame, without what is fixed (needs what counts need)", signalToNoise},
+      {"saturated", "1",
+       "why a pixel's count says nothing: 1 the well or the converter is full, 2 the converter's lowest code, 3 a bad pixel; else 0 (needs what counts need)",
+       saturated},
+      {"display", "code", "counts as 256 codes for a screen, by the detector's `agc`: for people, no measurements", display},
+      {"volts", "V", "gain times flux or focal-plane irradiance (needs gain)", volts}};
 }
 
 }  // namespace pitviper

@@ -38,7 +38,8 @@ PITVIPER_WIDE void toCounts(const double* electrons, double gain, double offset,
 }
 
 /// A row's electrons from what the wells have counted: what the well holds, dark signal, and read-out's noise.
-PITVIPER_WIDE void readOut(const double* counted, const double* normal, const float* dark, const double* column, double fullWell, double row, double noise, double* electrons, int width) {
+PITVIPER_WIDE void readOut(const double* counted, const double* normal, const float* dark, const double* column, double fullWell, double row, double noise,
+                           double* electrons, int width) {
   for (int x = 0; x < width; ++x)
     electrons[x] = (counted[x] < fullWell ? counted[x] : fullWell) + (static_cast<double>(dark[x]) + row + column[x]) + noise * normal[x];
 }
@@ -73,7 +74,8 @@ class DetectorStage final : public SensorStage {
       const double dark = law_.darkCurrent_per_s * tick.exposure_s;
       const std::vector<float>* lens = o < pictures.ownLight.size() && !pictures.ownLight[o].empty() ? &pictures.ownLight[o] : nullptr;
       for (std::size_t p = 0; p < picture.size(); ++p)
-        picture[p] = static_cast<float>((saidElectrons(picture[p], own->marks[p], tick.gain) - dark) / law_.fillFactor - (lens ? static_cast<double>((*lens)[p]) : 0.0));
+        picture[p] =
+            static_cast<float>((saidElectrons(picture[p], own->marks[p], tick.gain) - dark) / law_.fillFactor - (lens ? static_cast<double>((*lens)[p]) : 0.0));
     }
     for (Read& r : read) pictures.marks[r.channel] = std::move(r.marks);
   }
@@ -83,7 +85,8 @@ class DetectorStage final : public SensorStage {
   double noiseAtMedian(std::vector<float> counts, const SensorTick& tick) const {
     const auto middle = counts.begin() + static_cast<std::ptrdiff_t>(counts.size() / 2);
     std::nth_element(counts.begin(), middle, counts.end(), [](float a, float b) { return a < b || (!std::isnan(a) && std::isnan(b)); });
-    const double gain = law_.gain * tick.gain, electrons = std::isnan(*middle) ? law_.fullWell : std::max(0.0, (static_cast<double>(*middle) - law_.offset) / gain);
+    const double gain = law_.gain * tick.gain,
+                 electrons = std::isnan(*middle) ? law_.fullWell : std::max(0.0, (static_cast<double>(*middle) - law_.offset) / gain);
     return gain * std::sqrt(electrons + law_.readoutVariance(tick.step_s));
   }
 
@@ -115,7 +118,8 @@ class DetectorStage final : public SensorStage {
     return f;
   }
 
-  void expose(std::vector<float>& picture, std::vector<CountMark>& marks, std::vector<float>* signalToNoise, const ChannelOutput& output, const SensorTick& tick, int width, int height) {
+  void expose(std::vector<float>& picture, std::vector<CountMark>& marks, std::vector<float>* signalToNoise, const ChannelOutput& output,
+              const SensorTick& tick, int width, int height) {
     const std::uint32_t channel = channelNumber(output.channel);
     const FixedPattern& fixed = patternOf(output, channel, tick, width, height);
     share(picture, law_.crosstalk, width, height);
@@ -162,7 +166,8 @@ class DetectorStage final : public SensorStage {
       }
       std::vector<double>& electrons = drawn.count;
       readOut(drawn.count.data(), drawn.normal.data(), &fixed.dark[from], columns.data(), law_.fullWell, row, law_.sigmaTvh, electrons.data(), width);
-      for (std::size_t x = 0; !fixed.darkDrift.empty() && x < electrons.size(); ++x) electrons[x] += static_cast<double>(fixed.darkDrift[from + x]) * tick.time_s;
+      for (std::size_t x = 0; !fixed.darkDrift.empty() && x < electrons.size(); ++x)
+        electrons[x] += static_cast<double>(fixed.darkDrift[from + x]) * tick.time_s;
       for (std::size_t x = 0; flicker && x < electrons.size(); ++x) electrons[x] += octave * static_cast<double>((*flicker)[from + x]);
       // The correction knows the mean dark signal as what there is without light.
       for (std::size_t x = 0; !fixed.gain.empty() && x < electrons.size(); ++x)

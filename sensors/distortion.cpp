@@ -1,6 +1,8 @@
 // Distortion of the lens: the picture of a pinhole drawn out or in, and what is smaller than a cell moved.
-// Law: x_d = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), y_d = y (...) + p1 (r^2 + 2 y^2) + 2 p2 x y; x to the right and y down, tangents from the
-//   axis, r^2 = x^2 + y^2. Source: D. C. Brown, Photogrammetric Engineering 32, 444 (1966), in the signs of OpenCV's camera calibration. Valid while r_d rises with r.
+// Law: x_d = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), y_d = y (...) + p1 (r^2 + 2 y^2) + 2 p2 x y; x to the right and y down, tangents
+// from the
+//   axis, r^2 = x^2 + y^2. Source: D. C. Brown, Photogrammetric Engineering 32, 444 (1966), in the signs of OpenCV's camera calibration. Valid while r_d rises
+//   with r.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -79,13 +81,16 @@ class DistortionStage final : public SensorStage {
     const glm::dvec2 middle(0.5 * pictures.width, 0.5 * pictures.height);
     sources_.resize(static_cast<std::size_t>(pictures.width) * static_cast<std::size_t>(pictures.height));
     // What the scenario's own focal length allows another may not: a lens that zooms out.
-    const glm::dvec2 corner = 0.5 * glm::dvec2(pictures.width - 2 * pictures.margin_px * pictures.cells, pictures.height - 2 * pictures.margin_px * pictures.cells) * cell;
+    const glm::dvec2 corner =
+        0.5 * glm::dvec2(pictures.width - 2 * pictures.margin_px * pictures.cells, pictures.height - 2 * pictures.margin_px * pictures.cells) * cell;
     const glm::dvec2 from = brown_.inverse(corner), reach = 0.5 * glm::dvec2(pictures.width, pictures.height) * cell;
     bool folds = !(glm::length(brown_(from) - corner) < 1e-9) || !(std::abs(from.x) <= reach.x + cell && std::abs(from.y) <= reach.y + cell);
     for (int k = 1; k <= 64 && !folds; ++k) folds = !(brown_.rises(glm::length(from) * k / 64) > 0.0);
     if (folds)
-      throw UserError({"stage 'distortion'", 0, 0, -1}, "at a focal length of " + std::to_string(1e3 * focal) + " mm the distortion folds the picture over, or needs more than was drawn around the film",
-                      "coefficients that hold for every focal length that commands set", "lower them, or zoom less far out");
+      throw UserError(
+          {"stage 'distortion'", 0, 0, -1},
+          "at a focal length of " + std::to_string(1e3 * focal) + " mm the distortion folds the picture over, or needs more than was drawn around the film",
+          "coefficients that hold for every focal length that commands set", "lower them, or zoom less far out");
     sideBySide(pictures.height, [&](int first, int last) {
       for (int y = first; y < last; ++y)
         for (int x = 0; x < pictures.width; ++x) {
@@ -160,7 +165,8 @@ Parameter coefficient(const char* key, const char* description) { return withDef
 
 StageModel distortionModel() {
   return {"distortion",
-          "The lens draws the picture out or in: x_d = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), y_d alike; x to the right, y down, in tangents from "
+          "The lens draws the picture out or in: x_d = x (1 + k1 r^2 + k2 r^4 + k3 r^6) + 2 p1 x y + p2 (r^2 + 2 x^2), y_d alike; x to the right, y down, in "
+          "tangents from "
           "the axis (Brown 1966, OpenCV's signs). Before `point_spread`, where there is one. Truth layers stay a pinhole's; positions of targets follow it.",
           {coefficient("k1", "radial; below 0: barrel"), coefficient("k2", "radial"), coefficient("k3", "radial"), coefficient("p1", "tangential"),
            coefficient("p2", "tangential"), withDefault(integer("cells", "cells a side of a pixel", 1, 16), "2")},

@@ -27,7 +27,8 @@ FarWings::FarWings(const LensSpread& spread, int width, int height)
   for (int j = -rows_ + 1; j < rows_; ++j)
     for (int i = -columns_ + 1; i < columns_; ++i)
       if (const double r = step_ * std::hypot(i, j); r > spread.cut.begin)
-        kernel[static_cast<std::size_t>((j + down) % down) * static_cast<std::size_t>(across) + static_cast<std::size_t>((i + across) % across)] = (1.0 - spread.cut(r)) * spread.far(r);
+        kernel[static_cast<std::size_t>((j + down) % down) * static_cast<std::size_t>(across) + static_cast<std::size_t>((i + across) % across)] =
+            (1.0 - spread.cut(r)) * spread.far(r);
   transfer_ = transform_.transferOf(kernel);
   light_.assign(transform_.size(), 0.0);
   for (int x = 0; x < width; ++x) ofColumn_.push_back(placeOf(x + 0.5));
@@ -63,7 +64,8 @@ void FarWings::gather(double column, double row, double light) {
   const Place across = placeOf(std::clamp(column, 0.0, static_cast<double>(width_))), down = placeOf(std::clamp(row, 0.0, static_cast<double>(height_)));
   for (int j = 0; j < 4; ++j)
     for (int i = 0; i < 4; ++i)
-      light_[static_cast<std::size_t>(down.first + j) * static_cast<std::size_t>(transform_.columns()) + static_cast<std::size_t>(across.first + i)] += down.weight[j] * across.weight[i] * light;
+      light_[static_cast<std::size_t>(down.first + j) * static_cast<std::size_t>(transform_.columns()) + static_cast<std::size_t>(across.first + i)] +=
+          down.weight[j] * across.weight[i] * light;
 }
 
 void FarWings::spread(std::vector<double>& cells) {

@@ -7,8 +7,8 @@
 
 namespace pitviper {
 
-/// Adds the sum over places s of light(s) (1 - cut(r)) wing / r^3, r = |cell - s|. Light goes to the grid's places, and comes back from them, by Lagrange's cubic through
-/// four neighbours each way, whose error is of the fourth order of the grid's step over the distance at which `cut` begins.
+/// Adds the sum over places s of light(s) (1 - cut(r)) wing / r^3, r = |cell - s|. Light goes to the grid's places, and comes back from them, by Lagrange's
+/// cubic through four neighbours each way, whose error is of the fourth order of the grid's step over the distance at which `cut` begins.
 class FarWings {
  public:
   FarWings(const LensSpread& spread, int width, int height);

@@ -32,8 +32,10 @@ SensorFigures figuresOf(const Camera& camera, const ChannelOutput& output, doubl
   const bool isCorrected = law->correction.has_value();
   const double seen = d.electronsAt300K + own;
   double bend = law->nonlinearity * seen * seen / law->fullWell;
-  if (isCorrected) bend = law->nonlinearity / law->fullWell *
-                          std::abs((d.electronsAt300K - perIntegral * band.integral(law->correction->low_K)) * (d.electronsAt300K - perIntegral * band.integral(law->correction->high_K)));
+  if (isCorrected)
+    bend = law->nonlinearity / law->fullWell *
+           std::abs((d.electronsAt300K - perIntegral * band.integral(law->correction->low_K)) *
+                    (d.electronsAt300K - perIntegral * band.integral(law->correction->high_K)));
   struct Noise {
     const char* name;
     double variance;

@@ -1,7 +1,8 @@
 #pragma once
 // What a sensor is worth, by its design: the figures that engineers compare.
-//   N(T) = fill t scale Omega integral of kernel B(T); NETD = sqrt(N + D + sigma^2 + 1 / (12 gain^2)) / (dN/dT), D: electrons of dark current and of the lens's own light, sigma: noises from frame to
-//   frame, with PRNU N, DSNU and fixed rows and columns for the other. MTF: the lens's transfer function times sinc(pitch f), f = 1 / (2 pitch).
+//   N(T) = fill t scale Omega integral of kernel B(T); NETD = sqrt(N + D + sigma^2 + 1 / (12 gain^2)) / (dN/dT), D: electrons of dark current and of the lens's
+//   own light, sigma: noises from frame to frame, with PRNU N, DSNU and fixed rows and columns for the other. MTF: the lens's transfer function times
+//   sinc(pitch f), f = 1 / (2 pitch).
 // Source: EMVA Standard 1288, release 4.0; NETD as in G. C. Holst, Electro-Optical Imaging System Performance. Valid below saturation.
 #include <optional>
 #include <string>

@@ -21,9 +21,9 @@ struct FixedPattern {
 
 FixedPattern fixedPattern(const DetectorLaw& law, std::uint64_t seed, std::uint32_t channel, int width, int height);
 
-/// Two-point correction at time 0, pixel by pixel, from black bodies that give `low` and `high` electrons: said values there, averaged over the law's frames with
-/// their temporal noise (`lowNoise`, `highNoise`: rms of a frame), become those. Source: D. L. Perry and E. L. Dereniak, Opt. Eng. 32, 1854 (1993): what is left
-/// is 0 at both points but for that noise, and between and beyond them what bends leave.
+/// Two-point correction at time 0, pixel by pixel, from black bodies that give `low` and `high` electrons: said values there, averaged over the law's frames
+/// with their temporal noise (`lowNoise`, `highNoise`: rms of a frame), become those. Source: D. L. Perry and E. L. Dereniak, Opt. Eng. 32, 1854 (1993): what
+/// is left is 0 at both points but for that noise, and between and beyond them what bends leave.
 void learnCorrection(FixedPattern& pattern, const DetectorLaw& law, std::uint64_t seed, std::uint32_t channel, double low, double high, double lowNoise,
                      double highNoise);
 

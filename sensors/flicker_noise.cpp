@@ -30,7 +30,8 @@ const std::vector<float>& FlickerNoise::at(int frame) {
         const auto s = static_cast<std::size_t>(setOf(static_cast<std::size_t>(p)));
         if (!changed[s]) continue;
         const NoiseSource source(seed_, channel_, static_cast<std::uint32_t>(block_[static_cast<std::size_t>(k)][s]), NoiseEffect::Flicker);
-        octaves_[static_cast<std::size_t>(k)][static_cast<std::size_t>(p)] = static_cast<float>(source.normal(static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(k)));
+        octaves_[static_cast<std::size_t>(k)][static_cast<std::size_t>(p)] =
+            static_cast<float>(source.normal(static_cast<std::uint32_t>(p), static_cast<std::uint32_t>(k)));
       }
     });
   }

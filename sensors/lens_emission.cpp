@@ -1,8 +1,9 @@
 // What the sensor itself sends to its film: the lens, within the cone that the scene fills too, and what is warm around it, up to the cold stop.
-// Law: at a pixel that the scene sends  scale x Omega x integral of K tau L  (K: kernel before the optics, tau: their transmission, Omega: its projected solid angle):
+// Law: at a pixel that the scene sends  scale x Omega x integral of K tau L  (K: kernel before the optics, tau: their transmission, Omega: its projected solid
+// angle):
 //   lens: scale Omega integral of K e B(T);  around it: scale Omega_axis ((F / F_stop)^2 - 1) integral of K e_h B(T_h)
-// F: that of the lens, F_stop: of the cone that the cold stop leaves open (an ideal, aplanatic lens: a film in a cone of F gets pi L / (4 F^2); 0.5: all of the half space).
-// Source: E. L. Dereniak and G. D. Boreman, Infrared Detectors and Systems (1996), cold shields.
+// F: that of the lens, F_stop: of the cone that the cold stop leaves open (an ideal, aplanatic lens: a film in a cone of F gets pi L / (4 F^2); 0.5: all of the
+// half space). Source: E. L. Dereniak and G. D. Boreman, Infrared Detectors and Systems (1996), cold shields.
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -40,7 +41,8 @@ struct Warm {
     std::vector<double> knots = o.onFilm.knots();
     for (double w : o.curves->optics.knots()) knots.push_back(w);
     std::sort(knots.begin(), knots.end());
-    return o.onFilmScale * integrate([&](double w) { return o.onFilm(w) * e(w) * body(w); }, o.curves->response.supportLow(), o.curves->response.supportHigh(), knots);
+    return o.onFilmScale *
+           integrate([&](double w) { return o.onFilm(w) * e(w) * body(w); }, o.curves->response.supportLow(), o.curves->response.supportHigh(), knots);
   }
 };
 
@@ -57,7 +59,8 @@ class LensEmissionStage final : public SensorStage {
       const double time = output.perExposure ? tick.exposure_s : 1.0, lens = time * at->second.first,
                    around = time * at->second.second * tick.axis_sr / (pictures.cells * pictures.cells);
       std::vector<float>& picture = pictures.values(o);
-      for (std::size_t c = 0; c < picture.size(); ++c) picture[c] = static_cast<float>(static_cast<double>(picture[c]) + lens * (*pictures.cellWeights)[c] + around);
+      for (std::size_t c = 0; c < picture.size(); ++c)
+        picture[c] = static_cast<float>(static_cast<double>(picture[c]) + lens * (*pictures.cellWeights)[c] + around);
     }
   }
 

@@ -132,7 +132,8 @@ LensSpread::LensSpread(const Lens& lens, const ChannelOutput& output) {
   const double missing = 1.0 - beyond - sum;
   for (int j = -exactReach; j <= exactReach; ++j)
     for (int i = -exactReach; i <= exactReach; ++i)
-      if (const double r = std::hypot(i, j), w = whole(r); w > 0.0) near.share[static_cast<std::size_t>((j + near.reach) * (2 * near.reach + 1) + i + near.reach)] += missing / exactSum * cut(r) * w * exact.at(i, j);
+      if (const double r = std::hypot(i, j), w = whole(r); w > 0.0)
+        near.share[static_cast<std::size_t>((j + near.reach) * (2 * near.reach + 1) + i + near.reach)] += missing / exactSum * cut(r) * w * exact.at(i, j);
 }
 
 }  // namespace pitviper

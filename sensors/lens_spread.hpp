@@ -32,8 +32,9 @@ struct Lens {
   double transfer(double wavelength_um, double frequency_per_m) const;
   /// The point spread function far from a point, its rings averaged, is wing / r^3 of its light per area (r: distance): s / (4 pi^2), s = -d OTF / df at 0.
   ///   s = lambda F (4 / pi / (1 - e) + 4 (W / 0.18)^2), e: obscuration; of Shannon's wavefront factor the second.
-  /// Source: an OTF that has a cone's tip at 0 is a plane's transform of 1 / r^3 (R. N. Bracewell, The Fourier Transform and Its Applications); the lost overlap of shifted
-  /// apertures is the shift times their edges' width. Of a clear aperture that is Airy's pattern averaged over its rings, lambda F / (pi r)^3.
+  /// Source: an OTF that has a cone's tip at 0 is a plane's transform of 1 / r^3 (R. N. Bracewell, The Fourier Transform and Its Applications); the lost
+  /// overlap of shifted apertures is the shift times their edges' width. Of a clear aperture that is Airy's pattern averaged over its rings, lambda F / (pi
+  /// r)^3.
   double wing_m(double wavelength_um) const;
 };
 
@@ -71,8 +72,8 @@ struct SmoothStep {
 
 /// What a lens makes of a cell's light at any distance r [cells], in pieces that end nowhere:
 ///   near(r) + (1 - cut(r)) wing / r^3,  near = cut (exact share x whole + (1 - whole) wing / r^3)
-/// Exact shares, with their rings, give way to the mean fall-off between half of and all of the reach that they are worked out to, and what is near to what is far, which coarser
-/// grids hold (FarWings), a little farther on. So no distance is the kernel's edge, however bright a thing is; all shares together are 1.
+/// Exact shares, with their rings, give way to the mean fall-off between half of and all of the reach that they are worked out to, and what is near to what is
+/// far, which coarser grids hold (FarWings), a little farther on. So no distance is the kernel's edge, however bright a thing is; all shares together are 1.
 struct LensSpread {
   LensSpread(const Lens& lens, const ChannelOutput& output);
   double wing = 0.0;       ///< [cells]

@@ -53,8 +53,8 @@ std::array<NoiseComponent, 7> NoiseCube::components() const {
       for (std::size_t x = 0; x < H; ++x)
         stvh += square(static_cast<double>(frames_[i][y * H + x]) - whole - ofTV[i * V + y] - ofTH[i * H + x] - ofVH[y * H + x] + ofT[i] + ofV[y] + ofH[x]);
   const double dt = t - 1.0, dv = v - 1.0, dh = h - 1.0;
-  const double mt = st * v * h / dt, mv = sv * t * h / dv, mh = sh * t * v / dh, mtv = stv * h / (dt * dv), mth = sth * v / (dt * dh), mvh = svh * t / (dv * dh),
-               mtvh = stvh / (dt * dv * dh);
+  const double mt = st * v * h / dt, mv = sv * t * h / dv, mh = sh * t * v / dh, mtv = stv * h / (dt * dv), mth = sth * v / (dt * dh),
+               mvh = svh * t / (dv * dh), mtvh = stvh / (dt * dv * dh);
   // Of independent mean squares a difference has the sum of their variances, 2 m^2 / degrees.
   const auto of = [&](double variance, double scale, std::initializer_list<std::pair<double, double>> parts) {
     double error = 0.0;

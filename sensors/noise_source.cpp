@@ -28,7 +28,8 @@ inline double unitOf(std::uint32_t high, std::uint32_t low) { return (static_cas
 constexpr std::size_t kBatch = 64;
 
 /// Philox of places on end, as pairs in (0, 1).
-PITVIPER_WIDE void pairsOf(std::uint32_t first, std::uint32_t frame, std::uint32_t effect, std::uint32_t key0, std::uint32_t key1, double* u, double* v, std::size_t count) {
+PITVIPER_WIDE void pairsOf(std::uint32_t first, std::uint32_t frame, std::uint32_t effect, std::uint32_t key0, std::uint32_t key1, double* u, double* v,
+                           std::size_t count) {
   std::uint32_t c0[kBatch], c1[kBatch], c2[kBatch], c3[kBatch];
   for (std::size_t i = 0; i < count; ++i) c0[i] = first + static_cast<std::uint32_t>(i), c1[i] = 0, c2[i] = frame, c3[i] = effect;
   for (int round = 0; round < 10; ++round) {
@@ -96,16 +97,40 @@ double normalQuantile(double u) {
   double r = std::sqrt(-std::log(q < 0.0 ? u : 1.0 - u)), value;
   if (r <= 5.0) {
     r -= 1.6;
-    value = (((((((7.7454501427834140764e-4 * r + 0.0227238449892691845833) * r + 0.24178072517745061177) * r + 1.27045825245236838258) * r + 3.64784832476320460504) * r +
-               5.7694972214606914055) * r + 4.6303378461565452959) * r + 1.42343711074968357734) /
-            (((((((1.05075007164441684324e-9 * r + 5.475938084995344946e-4) * r + 0.0151986665636164571966) * r + 0.14810397642748007459) * r + 0.68976733498510000455) * r +
-               1.6763848301838038494) * r + 2.05319162663775882187) * r + 1.0);
+    value = (((((((7.7454501427834140764e-4 * r + 0.0227238449892691845833) * r + 0.24178072517745061177) * r + 1.27045825245236838258) * r +
+                3.64784832476320460504) *
+                   r +
+               5.7694972214606914055) *
+                  r +
+              4.6303378461565452959) *
+                 r +
+             1.42343711074968357734) /
+            (((((((1.05075007164441684324e-9 * r + 5.475938084995344946e-4) * r + 0.0151986665636164571966) * r + 0.14810397642748007459) * r +
+                0.68976733498510000455) *
+                   r +
+               1.6763848301838038494) *
+                  r +
+              2.05319162663775882187) *
+                 r +
+             1.0);
   } else {
     r -= 5.0;
-    value = (((((((2.01033439929228813265e-7 * r + 2.71155556874348757815e-5) * r + 0.0012426609473880784386) * r + 0.026532189526576123093) * r + 0.29656057182850489123) * r +
-               1.7848265399172913358) * r + 5.4637849111641143699) * r + 6.6579046435011037772) /
-            (((((((2.04426310338993978564e-15 * r + 1.4215117583164458887e-7) * r + 1.8463183175100546818e-5) * r + 7.868691311456132591e-4) * r + 0.0148753612908506148525) * r +
-               0.13692988092273580531) * r + 0.59983220655588793769) * r + 1.0);
+    value = (((((((2.01033439929228813265e-7 * r + 2.71155556874348757815e-5) * r + 0.0012426609473880784386) * r + 0.026532189526576123093) * r +
+                0.29656057182850489123) *
+                   r +
+               1.7848265399172913358) *
+                  r +
+              5.4637849111641143699) *
+                 r +
+             6.6579046435011037772) /
+            (((((((2.04426310338993978564e-15 * r + 1.4215117583164458887e-7) * r + 1.8463183175100546818e-5) * r + 7.868691311456132591e-4) * r +
+                0.0148753612908506148525) *
+                   r +
+               0.13692988092273580531) *
+                  r +
+              0.59983220655588793769) *
+                 r +
+             1.0);
   }
   return q < 0.0 ? -value : value;
 }
@@ -153,7 +178,8 @@ void NoiseSource::poissonAndNormal(std::uint32_t first, std::span<double> mean, 
       countsOfNormals(means.data(), u, count);
       continue;
     }
-    for (std::size_t i = 0; i < count; ++i) means[i] = means[i] > kNormal ? ofNormal(means[i], normalQuantile(u[i])) : poisson(means[i], (place + static_cast<std::uint32_t>(i)) ^ 0x80000000u);
+    for (std::size_t i = 0; i < count; ++i)
+      means[i] = means[i] > kNormal ? ofNormal(means[i], normalQuantile(u[i])) : poisson(means[i], (place + static_cast<std::uint32_t>(i)) ^ 0x80000000u);
   }
 }
 

@@ -8,11 +8,28 @@
 namespace pitviper {
 
 /// What a number is for.
-enum class NoiseEffect : std::uint32_t { Shot, Read, Row, Column, Frame, FixedPixel, FixedRow, FixedColumn, Gain, BadPixel, Flicker, Bend, OffsetDrift, GainDrift, Correction };
+enum class NoiseEffect : std::uint32_t {
+  Shot,
+  Read,
+  Row,
+  Column,
+  Frame,
+  FixedPixel,
+  FixedRow,
+  FixedColumn,
+  Gain,
+  BadPixel,
+  Flicker,
+  Bend,
+  OffsetDrift,
+  GainDrift,
+  Correction
+};
 
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter, std::array<std::uint32_t, 2> key);
 
-/// Of a uniform number in (0, 1): the normal one that as many lie below. Source: M. J. Wichura, Applied Statistics 37, 477 (1988), AS 241, PPND16, good to 1e-15.
+/// Of a uniform number in (0, 1): the normal one that as many lie below. Source: M. J. Wichura, Applied Statistics 37, 477 (1988), AS 241, PPND16, good to
+/// 1e-15.
 double normalQuantile(double u);
 /// The same of each, in place: same bits, several at a time.
 void normalQuantiles(std::span<double> u);

@@ -97,8 +97,9 @@ SpreadKernel spreadKernel(const std::function<double(double, double)>& transfer,
   std::vector<double> places;
   for (int i = 0; i <= reach; ++i) places.push_back(cell_m * i);
   const auto averaged = [&](double f) { return isSampled ? 1.0 : sinc(cell_m * f) * sinc(cell_m * f); };
-  const std::vector<double> quarter = Frequencies(cutoff_per_m, cell_m * (reach + 1))
-                                          .cosines([&](double fx, double fy) { return cell_m * cell_m * transfer(fx, fy) * averaged(fx) * averaged(fy); }, places);
+  const std::vector<double> quarter =
+      Frequencies(cutoff_per_m, cell_m * (reach + 1))
+          .cosines([&](double fx, double fy) { return cell_m * cell_m * transfer(fx, fy) * averaged(fx) * averaged(fy); }, places);
   SpreadKernel kernel;
   kernel.reach = reach;
   for (int j = -reach; j <= reach; ++j)

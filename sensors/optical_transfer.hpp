@@ -32,7 +32,8 @@ constexpr double kSampled = 0.75;
 /// Beyond so many cycles a cell nothing is looked at: cells are then far wider than the point spread function, and a hundredth of a cell's light may be told as
 /// its neighbours'. A whole number, at which sinc is 0, so that all shares together stay 1.
 constexpr double kMostCycles = 32.0;
-/// Of kernels that reach farther fewer cycles count, down to one: what is so wide has nothing finer in it, and their work (frequencies by frequencies by cells) stays within a second.
+/// Of kernels that reach farther fewer cycles count, down to one: what is so wide has nothing finer in it, and their work (frequencies by frequencies by cells)
+/// stays within a second.
 double cyclesOf(int reach);
 
 /// `transfer`: real and even, by frequency along x and y [1/m]; nothing beyond `cutoff`. Cells are means of what falls on them before it is spread.
@@ -52,7 +53,9 @@ class PointResponse {
   double share(double x, double y) const;
 
  private:
-  double entry(int i, int j) const { return table_[static_cast<std::size_t>(std::abs(j)) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(std::abs(i))]; }
+  double entry(int i, int j) const {
+    return table_[static_cast<std::size_t>(std::abs(j)) * static_cast<std::size_t>(side_) + static_cast<std::size_t>(std::abs(i))];
+  }
   int reach_, steps_, side_;  ///< entries a cell; a side of the quarter that is kept
   std::vector<double> table_;
 };

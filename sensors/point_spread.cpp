@@ -153,9 +153,13 @@ void refuseTooWide(const Record& r, const Lens& lens, const std::vector<ChannelO
   constexpr double kMostDefocus_waves = 250.0;
   double shortest_um = INFINITY;
   for (const ChannelOutput& o : outputs) shortest_um = std::min(shortest_um, o.bandLow_um);
-  const double mostDefocus_m = lens.diffraction && std::isfinite(shortest_um) ? kMostDefocus_waves * 8.0 * lens.fNumber * lens.fNumber * shortest_um * 1e-6 : INFINITY;
-  const Width widths[] = {{"defocus", &Lens::defocus_m, 0.5 / lens.fNumber, "um", 1e-6}, {"blur", &Lens::still_m, kSigmas, "um", 1e-6}, {"jitter", &Lens::jitter_rad, kSigmas * lens.focalLength_m, "urad", 1e-6}};
-  const Width& widest = *std::max_element(std::begin(widths), std::end(widths), [&](const Width& a, const Width& b) { return a.perLength * lens.*a.value < b.perLength * lens.*b.value; });
+  const double mostDefocus_m =
+      lens.diffraction && std::isfinite(shortest_um) ? kMostDefocus_waves * 8.0 * lens.fNumber * lens.fNumber * shortest_um * 1e-6 : INFINITY;
+  const Width widths[] = {{"defocus", &Lens::defocus_m, 0.5 / lens.fNumber, "um", 1e-6},
+                          {"blur", &Lens::still_m, kSigmas, "um", 1e-6},
+                          {"jitter", &Lens::jitter_rad, kSigmas * lens.focalLength_m, "urad", 1e-6}};
+  const Width& widest = *std::max_element(std::begin(widths), std::end(widths),
+                                          [&](const Width& a, const Width& b) { return a.perLength * lens.*a.value < b.perLength * lens.*b.value; });
   const auto fits = [&](const Lens& some) {
     for (const Width& w : widths)
       if (w.perLength * some.*w.value > most_m) return false;
@@ -173,9 +177,11 @@ void refuseTooWide(const Record& r, const Lens& lens, const std::vector<ChannelO
     less.zoom(less.focalLength_m);
     (fits(less) ? low : high) = less.*widest.value;
   }
-  const std::string wide = "a point spread function that is wider than " + std::to_string(kMostReach_cells) + " cells of " + brief(lens.cell_m * 1e6 / 0.995) + " um";
+  const std::string wide =
+      "a point spread function that is wider than " + std::to_string(kMostReach_cells) + " cells of " + brief(lens.cell_m * 1e6 / 0.995) + " um";
   if (!(low > 0.0)) throw UserError(r.where(), wide, "most of its light within them", "lower 'cells', or let more of it lie 'beyond'");
-  throw UserError(r.where(widest.key), wide, "a '" + std::string(widest.key) + "' of at most " + brief(low / widest.perUnit) + " " + widest.unit + " with all else as it is",
+  throw UserError(r.where(widest.key), wide,
+                  "a '" + std::string(widest.key) + "' of at most " + brief(low / widest.perUnit) + " " + widest.unit + " with all else as it is",
                   std::string("lower '") + widest.key + "'" + (lens.cells > 1 ? ", or 'cells'" : ""));
 }
 
@@ -209,7 +215,8 @@ StageChoice readPointSpread(const Record& r, const Camera& camera) {
     lens.setCells(choice.cells);
   }
   for (std::size_t o = 0; o < camera.outputs.size(); ++o)
-    if (firstAlike(camera.outputs, o) == o) choice.margin_px = std::max(choice.margin_px, (reachOf(lens, camera.outputs[o]).value_or(kMostReach_cells) + choice.cells - 1) / choice.cells);
+    if (firstAlike(camera.outputs, o) == o)
+      choice.margin_px = std::max(choice.margin_px, (reachOf(lens, camera.outputs[o]).value_or(kMostReach_cells) + choice.cells - 1) / choice.cells);
   constexpr int kLeast_px = 2;  // of the smallest kernel
   if (choice.margin_px > kLeast_px && 2 * choice.margin_px > std::max(p.width, p.height))
     throw UserError(r.where(), "a point spread function wider than the film: " + std::to_string(choice.margin_px) + " pixels to each side",

@@ -1,11 +1,11 @@
 #pragma once
 // Detection of a spot, a target smaller than a pixel, by a threshold over noise.
 //
-// Law: a pixel is above k sigma of its noise without a target with Q(k), with one whose signal is TNR sigma with Q(k - TNR); Q(x) = erfc(x / sqrt 2) / 2. So many
-// false alarms an hour from n pixels a second: Q(k) = alarms / (3600 n).
-// Where a detector's video is compared as it comes, low-pass filtered at half of the pixels' rate, an alarm is an upward crossing: n / (2 sqrt 3) exp(-k^2 / 2) a second.
-// Source: samples of Gaussian noise, independent as a staring array's pixels are from frame to frame; crossings: S. O. Rice, Bell Syst. Tech. J. 24, 46 (1945), as in RCA Electro-Optics
-// Handbook EOH-11 (1974), section 8. Valid: the background is even, fixed pattern is corrected; one frame decides.
+// Law: a pixel is above k sigma of its noise without a target with Q(k), with one whose signal is TNR sigma with Q(k - TNR); Q(x) = erfc(x / sqrt 2) / 2. So
+// many false alarms an hour from n pixels a second: Q(k) = alarms / (3600 n). Where a detector's video is compared as it comes, low-pass filtered at half of
+// the pixels' rate, an alarm is an upward crossing: n / (2 sqrt 3) exp(-k^2 / 2) a second. Source: samples of Gaussian noise, independent as a staring array's
+// pixels are from frame to frame; crossings: S. O. Rice, Bell Syst. Tech. J. 24, 46 (1945), as in RCA Electro-Optics Handbook EOH-11 (1974), section 8. Valid:
+// the background is even, fixed pattern is corrected; one frame decides.
 
 namespace pitviper {
 

@@ -369,7 +369,10 @@ std::shared_ptr<const FieldState> JetsSource::at(const FieldWorld& world) const 
                      after = world.poseAt(setup_.entity, now + 2.0 * kHalf_s).position;
     const glm::dvec3 past = (middle - before) / (2.0 * kHalf_s), coming = (after - middle) / (2.0 * kHalf_s);
     const auto moved = world.velocityNow ? world.velocityNow(setup_.entity) : std::nullopt;
-    velocity = moved ? *moved : glm::length(past) > 2.0 * glm::length(coming) ? past : glm::length(coming) > 2.0 * glm::length(past) ? coming : 0.5 * (past + coming);
+    velocity = moved                                           ? *moved
+               : glm::length(past) > 2.0 * glm::length(coming) ? past
+               : glm::length(coming) > 2.0 * glm::length(past) ? coming
+                                                               : 0.5 * (past + coming);
   }
   const glm::dmat3 localFromField = glm::mat3_cast(pose.orientation) * bodyFromField_;
   const glm::dvec3 origin = pose.position + glm::mat3_cast(pose.orientation) * setup_.nozzles.front();

@@ -238,7 +238,18 @@ std::shared_ptr<const FieldState> SmokeSource::at(const FieldWorld& world) const
 void SmokeSource::addTo(Fingerprint& f) const {
   const auto& [entity, store, path, position, rate_kg_s, begin_s, end_s, radius_m, temperature_K, blown_m_s, share, rises, dissipation_m2_s3, diffusivity_m2_s,
                lifetime_s, fadeShare, mostPuffs, wind_m_s, airWarmer_K] = options_;
-  f.add("smoke").add(entity).add(store).add(path != nullptr).add(position).add(begin_s).add(end_s).add(radius_m).add(temperature_K).add(blown_m_s).add(share).add(rises);
+  f.add("smoke")
+      .add(entity)
+      .add(store)
+      .add(path != nullptr)
+      .add(position)
+      .add(begin_s)
+      .add(end_s)
+      .add(radius_m)
+      .add(temperature_K)
+      .add(blown_m_s)
+      .add(share)
+      .add(rises);
   f.add(dissipation_m2_s3).add(diffusivity_m2_s).add(lifetime_s).add(fadeShare).add(mostPuffs).add(wind_m_s).add(airWarmer_K);
   pitviper::addTo(f, rate_kg_s);
   if (path) path->addTo(f);

@@ -10,9 +10,11 @@ namespace pitviper {
 
 BandAir::BandAir(const Simulation& scenario, ChannelOutput output, double background_K) : air_(scenario.air) {
   if (scenario.cameras.empty())
-    throw UserError({scenario.name, 0, 0, -1}, "a scenario without a camera", "one, along whose line of sight the air is looked through", "add 'cameras' to it");
+    throw UserError({scenario.name, 0, 0, -1}, "a scenario without a camera", "one, along whose line of sight the air is looked through",
+                    "add 'cameras' to it");
   const Pose pose = cameraAt(scenario.cameras.front(), advance(scenario, scenario.time.at(0))).pose;
-  ray_ = {scenario.frame.height(pose.position), glm::dot(pose.orientation * glm::dvec3(1, 0, 0), scenario.frame.up(pose.position)), scenario.frame.earthRadius_m()};
+  ray_ = {scenario.frame.height(pose.position), glm::dot(pose.orientation * glm::dvec3(1, 0, 0), scenario.frame.up(pose.position)),
+          scenario.frame.earthRadius_m()};
   if (!air_ || !air_->traits().any) return;
   Simulation alone;
   alone.air = air_;
@@ -23,7 +25,8 @@ BandAir::BandAir(const Simulation& scenario, ChannelOutput output, double backgr
   double all = 0.0;
   for (int k = 0; k < kPoints; ++k) {
     const double wavenumber = 1.0 / high + (1.0 / low - 1.0 / high) * (k + 0.5) / kPoints, um = 1.0 / wavenumber, step = 1e-3 * background_K;
-    const double weight = output.kernel(um) * (physics::planckRadiance(um, background_K + step) - physics::planckRadiance(um, background_K - step)) * um * um;  // d lambda = lambda^2 d nu
+    const double weight = output.kernel(um) * (physics::planckRadiance(um, background_K + step) - physics::planckRadiance(um, background_K - step)) * um *
+                          um;  // d lambda = lambda^2 d nu
     if (!(weight > 0.0)) continue;
     weights_.push_back(weight);
     nodes_.push_back(air_->node(um));

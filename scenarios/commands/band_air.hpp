@@ -8,8 +8,8 @@ namespace pitviper {
 
 class BandAir {
  public:
-  /// From a scenario's first camera along its line of sight, at its first frame. `background_K`: the temperature from which the difference is. Errors: UserError for a scenario without
-  /// cameras, and for air without data where the channel responds.
+  /// From a scenario's first camera along its line of sight, at its first frame. `background_K`: the temperature from which the difference is. Errors:
+  /// UserError for a scenario without cameras, and for air without data where the channel responds.
   BandAir(const Simulation& scenario, ChannelOutput output, double background_K);
 
   /// Mean transmittance, weighted by the channel's kernel and by dB/dT: what is left of a small difference.

@@ -118,7 +118,8 @@ std::vector<BenchFactor> benchFactors() {
   all.push_back(lights());
   all.push_back(varied("film", "pixels a side", {64, 128, 256, 512, 1024, 2048}, 256, [](BenchSetting& s, int v) { s.film_px = v; }));
   all.push_back(varied("bodies", "bodies before the wall", {0, 1, 10, 100, 1000}, 0, [](BenchSetting& s, int v) { s.bodies = v; }));
-  all.push_back(varied("triangles", "triangles of the wall", {2, 1000, 10'000, 100'000, 1'000'000, 10'000'000}, 2, [](BenchSetting& s, int v) { s.triangles = v; }));
+  all.push_back(
+      varied("triangles", "triangles of the wall", {2, 1000, 10'000, 100'000, 1'000'000, 10'000'000}, 2, [](BenchSetting& s, int v) { s.triangles = v; }));
   all.push_back(layers());
   all.push_back(shading());
   all.push_back(blend());

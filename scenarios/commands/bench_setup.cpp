@@ -27,9 +27,11 @@ Setup::Setup(const BenchOptions& options, const std::string& target, int frames,
 
 std::string plate(const char* name, double left_m, double right_m, double halfHeight_m, double kelvin, double roll_deg, double range_m) {
   // A plate faces along x; seen from the west its y runs to the left.
-  return print("  - {name: %s, shape: {model: plate, width: %.9g m, height: %.9g m}, material: black, temperature: %.9g K, position: [%.9g m, %.9g m, 0 m], heading: 270 deg, "
-               "roll: %.9g deg}\n",
-               name, right_m - left_m, 2.0 * halfHeight_m, kelvin, range_m, -0.5 * (left_m + right_m), roll_deg);
+  return print(
+      "  - {name: %s, shape: {model: plate, width: %.9g m, height: %.9g m}, material: black, temperature: %.9g K, position: [%.9g m, %.9g m, 0 m], heading: "
+      "270 deg, "
+      "roll: %.9g deg}\n",
+      name, right_m - left_m, 2.0 * halfHeight_m, kelvin, range_m, -0.5 * (left_m + right_m), roll_deg);
 }
 
 std::vector<char> badPixels(const std::vector<double>& mean) {

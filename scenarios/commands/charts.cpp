@@ -66,7 +66,8 @@ void drawCharts(const std::vector<Chart>& charts, int columns, const std::filesy
   writePng(png, reply.picture);
 }
 
-void drawTrajectories(const FlownScene& scene, const std::filesystem::path& png, const std::map<std::string, std::string>& texts, const MayReplace& mayReplace) {
+void drawTrajectories(const FlownScene& scene, const std::filesystem::path& png, const std::map<std::string, std::string>& texts,
+                      const MayReplace& mayReplace) {
   bool any = false;
   for (const FlownPath& p : scene.paths) {
     if (p.time_s.size() != p.position_m.size()) throw std::invalid_argument("path '" + p.name + "' has unequal times and positions");

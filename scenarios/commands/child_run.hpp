@@ -12,8 +12,8 @@ struct ChildResult {
   std::string output;  ///< both streams together
 };
 
-/// Runs `pitviper` with these arguments and waits for it. `environment`: variables that it has besides this process's own, or instead. SIGINT, SIGTERM and SIGHUP meanwhile
-/// end it too, and its code says so. Throws std::runtime_error where no process can be made.
+/// Runs `pitviper` with these arguments and waits for it. `environment`: variables that it has besides this process's own, or instead. SIGINT, SIGTERM and
+/// SIGHUP meanwhile end it too, and its code says so. Throws std::runtime_error where no process can be made.
 ChildResult runChild(const Arguments& arguments, const std::map<std::string, std::string>& environment);
 
 }  // namespace pitviper

@@ -69,15 +69,18 @@ DriReport driReport(const BenchResult& bench, const DriWish& wish, const Transmi
   const auto tnr = [&](double range, double share) { return spotSignal(sight, t, range, air(range), share) / sight.noise_electrons; };
   const auto inMiddle = [&](double range) { return tnr(range, sight.shareInMiddle); };
   const auto inCorner = [&](double range) { return tnr(range, sight.shareInCorner); };
-  report.aboutSpot = print("as a spot (%.3g and %.3g of its light on one pixel, in its middle and in its corner): a threshold of %.3g sigma for %g false alarm(s) an hour over the film (%.3g where video is compared as it comes, by Rice); found in a frame with 50 %% "
-                           "as far as %s and %s, with 90 %% as far as %s and %s",
-                           sight.shareInMiddle, sight.shareInCorner, threshold, wish.alarms_per_hour, thresholdByCrossings(wish.alarms_per_hour, sight.pixels_per_s), metres(rangeWhere(inMiddle, threshold)).c_str(), metres(rangeWhere(inCorner, threshold)).c_str(),
-                           metres(rangeWhere(inMiddle, tnrFor(0.9, threshold))).c_str(), metres(rangeWhere(inCorner, tnrFor(0.9, threshold))).c_str());
+  report.aboutSpot = print(
+      "as a spot (%.3g and %.3g of its light on one pixel, in its middle and in its corner): a threshold of %.3g sigma for %g false alarm(s) an hour over the "
+      "film (%.3g where video is compared as it comes, by Rice); found in a frame with 50 %% "
+      "as far as %s and %s, with 90 %% as far as %s and %s",
+      sight.shareInMiddle, sight.shareInCorner, threshold, wish.alarms_per_hour, thresholdByCrossings(wish.alarms_per_hour, sight.pixels_per_s),
+      metres(rangeWhere(inMiddle, threshold)).c_str(), metres(rangeWhere(inCorner, threshold)).c_str(),
+      metres(rangeWhere(inMiddle, tnrFor(0.9, threshold))).c_str(), metres(rangeWhere(inCorner, tnrFor(0.9, threshold))).c_str());
   report.spotHead = {"range", "transmittance", "pixels across", "TNR, middle", "detected", "TNR, corner", "detected"};
   for (const double range : {500.0, 1e3, 2e3, 5e3, 1e4, 2e4, 5e4}) {
     const double a = inMiddle(range), b = inCorner(range);
-    report.spots.push_back({metres(range), print("%.4g", air(range)), print("%.3g", std::sqrt(t.area_m2() / sight.pixel_sr) / range), print("%.4g", a), print("%.3g %%", 100.0 * detection(a, threshold)),
-                            print("%.4g", b), print("%.3g %%", 100.0 * detection(b, threshold))});
+    report.spots.push_back({metres(range), print("%.4g", air(range)), print("%.3g", std::sqrt(t.area_m2() / sight.pixel_sr) / range), print("%.4g", a),
+                            print("%.3g %%", 100.0 * detection(a, threshold)), print("%.4g", b), print("%.3g %%", 100.0 * detection(b, threshold))});
   }
   const double end = farthest > 0.0 ? 1.3 * farthest : 2e4;
   constexpr int kPoints = 80;
@@ -98,7 +101,8 @@ DriReport driReport(const BenchResult& bench, const DriWish& wish, const Transmi
     const double range = end * k / kPoints, spot = spotEnd * k / kPoints, a = inMiddle(spot), b = inCorner(spot);
     passed.x.push_back(1e-3 * range), passed.y.push_back(air(range));
     middle.x.push_back(1e-3 * spot), middle.y.push_back(a), corner.x.push_back(1e-3 * spot), corner.y.push_back(b);
-    foundMiddle.x.push_back(1e-3 * spot), foundMiddle.y.push_back(detection(a, threshold)), foundCorner.x.push_back(1e-3 * spot), foundCorner.y.push_back(detection(b, threshold));
+    foundMiddle.x.push_back(1e-3 * spot), foundMiddle.y.push_back(detection(a, threshold)), foundCorner.x.push_back(1e-3 * spot),
+        foundCorner.y.push_back(detection(b, threshold));
   }
   report.charts = {acquired,
                    {"Transmittance of the band", "range [km]", "mean of dB/dT", false, false, true, {passed}, {}, {}},

@@ -32,9 +32,9 @@ class FirstFailure : public std::runtime_error {
   int code_;
 };
 
-/// In the order of firstStateNames(). Every change is measured with what "first" and "second" have cached, and nothing of other changes. A change that the scenario
-/// cannot have, or cannot be drawn with, is not measured and says so. `next`: told the name of each state before it begins.
-/// Errors: FirstFailure; UserError as of reading.
+/// In the order of firstStateNames(). Every change is measured with what "first" and "second" have cached, and nothing of other changes. A change that the
+/// scenario cannot have, or cannot be drawn with, is not measured and says so. `next`: told the name of each state before it begins. Errors: FirstFailure;
+/// UserError as of reading.
 std::vector<FirstState> measureFirst(const FirstRequest& request, const std::function<void(const std::string&)>& next);
 
 }  // namespace pitviper

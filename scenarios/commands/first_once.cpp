@@ -46,7 +46,8 @@ double peakMemory_MB() {
 class Cameras {
  public:
   explicit Cameras(const Simulation& sim) : sim_(sim), scene_(std::make_shared<const GpuScene>(sim)) {
-    for (const Camera& camera : sim.cameras) lines_.push_back(std::make_unique<CameraLine>(sim, camera, shaderLibrary(), scene_, std::function<void(double)>()));
+    for (const Camera& camera : sim.cameras)
+      lines_.push_back(std::make_unique<CameraLine>(sim, camera, shaderLibrary(), scene_, std::function<void(double)>()));
   }
   void warmUp() {
     for (const auto& line : lines_) line->warmUp(0);
@@ -118,7 +119,8 @@ FirstFigures measureOnce(const OnceRequest& request) {
   const Clocks read;
   put(figures, "reading", start, read);
   if (sim.cameras.empty())
-    throw UserError({request.scenario.file, 0, 0, -1}, "the scenario has no camera, so there is no picture to wait for", "one under 'cameras:'", "choose another scenario");
+    throw UserError({request.scenario.file, 0, 0, -1}, "the scenario has no camera, so there is no picture to wait for", "one under 'cameras:'",
+                    "choose another scenario");
   refuseBeyondMemory(sim);
   const GlContext context;
   Timing timing;

@@ -61,7 +61,8 @@ double valueOf(const Cell& cell) {
   const char* const end = cell.text.data() + cell.text.size();
   const auto [last, error] = std::from_chars(cell.text.data(), end, value);
   if (error != std::errc() || last != end || !std::isfinite(value) || value < 0.0)
-    throw UserError(cell.where, "'" + cell.text + "' is no value of a figure", "a number, 0 or more, without a unit", "write what bench --guard prints as 'now'");
+    throw UserError(cell.where, "'" + cell.text + "' is no value of a figure", "a number, 0 or more, without a unit",
+                    "write what bench --guard prints as 'now'");
   return value;
 }
 
@@ -93,7 +94,8 @@ GuardLine lineOf(const std::vector<Cell>& cells, const std::filesystem::path& fo
                     "a scenario or a folder of sources, from this file's own folder, or 'bench'", "check the name");
   }
   line.value = valueOf(cells[4]);
-  if (reason.text.empty()) throw UserError(reason.where, "the figure has no reason", "in the last column why it may be so large", "say when and why it was written so");
+  if (reason.text.empty())
+    throw UserError(reason.where, "the figure has no reason", "in the last column why it may be so large", "say when and why it was written so");
   return line;
 }
 
@@ -110,7 +112,8 @@ std::vector<GuardLine> readGuardFile(const std::filesystem::path& file) {
     if (first == std::string::npos || text[first] == '#') continue;
     const auto cells = cellsOf(text, file.string(), number);
     if (cells.size() != kCells)
-      throw UserError({file.string(), number, 1, -1}, std::to_string(cells.size()) + " cells", "6: set, subject, state, figure, value, reason", "add what is missing between commas");
+      throw UserError({file.string(), number, 1, -1}, std::to_string(cells.size()) + " cells", "6: set, subject, state, figure, value, reason",
+                      "add what is missing between commas");
     lines.push_back(lineOf(cells, file.parent_path()));
     if (!labels.insert(lines.back().label()).second)
       throw UserError(lines.back().where, "the figure '" + lines.back().label() + "' is there twice", "each once", "remove one");

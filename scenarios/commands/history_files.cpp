@@ -21,7 +21,8 @@ constexpr std::size_t kFew = 1u << 22;
 void HistoryWish::settle(const Simulation& sim, bool reports) {
   const bool moves = hasHistory(sim);
   if (mustDraw) {
-    if (!moves) throw UserError({"--trajectories", 0, 0, -1}, "nothing moves in this scenario", "a body, a lamp or a camera with 'motion'", "remove --trajectories");
+    if (!moves)
+      throw UserError({"--trajectories", 0, 0, -1}, "nothing moves in this scenario", "a body, a lamp or a camera with 'motion'", "remove --trajectories");
     requireCharts();
   }
   tables = moves && !none;

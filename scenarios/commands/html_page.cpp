@@ -21,7 +21,8 @@ std::string escaped(const std::string& text) {
 
 std::string base64(const std::string& bytes) {
   std::string out(4 * ((bytes.size() + 2) / 3) + 1, '\0');
-  const int size = EVP_EncodeBlock(reinterpret_cast<unsigned char*>(out.data()), reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
+  const int size =
+      EVP_EncodeBlock(reinterpret_cast<unsigned char*>(out.data()), reinterpret_cast<const unsigned char*>(bytes.data()), static_cast<int>(bytes.size()));
   out.resize(static_cast<std::size_t>(size));
   return out;
 }
@@ -30,7 +31,8 @@ constexpr const char* kStyle =
     "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:72em;padding:0 1.5em;color:#1c2330;background:#fff}"
     "h1{font-size:1.5em;margin:0 0 .3em}h2{font-size:1.15em;margin:1.8em 0 .5em;border-bottom:1px solid #d8dce3;padding-bottom:.2em}"
     "table{border-collapse:collapse;margin:.6em 0}td,th{border:1px solid #d8dce3;padding:.25em .7em;text-align:right;font-variant-numeric:tabular-nums}"
-    "td:first-child,th:first-child{text-align:left}th{background:#f2f4f7;font-weight:600}pre{background:#f6f7f9;padding:.8em 1em;overflow:auto;font-size:13px;white-space:pre-wrap}"
+    "td:first-child,th:first-child{text-align:left}th{background:#f2f4f7;font-weight:600}pre{background:#f6f7f9;padding:.8em "
+    "1em;overflow:auto;font-size:13px;white-space:pre-wrap}"
     "img{max-width:100%;height:auto;border:1px solid #d8dce3}figure{margin:.8em 0}figcaption{color:#5a6372;font-size:.9em}";
 
 }  // namespace
@@ -71,8 +73,8 @@ void HtmlPage::write(const std::filesystem::path& file, const MayReplace& mayRep
     for (std::size_t at = mark.find("--"); at != mark.npos; at = mark.find("--", at)) mark.replace(at, 2, "- -");
     page += "<!-- " + mark + " -->\n";
   }
-  page += "<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\"><title>" + escaped(title_) + "</title><style>" + kStyle +
-          "</style></head><body>\n<h1>" + escaped(title_) + "</h1>\n" + body_ + "</body></html>\n";
+  page += "<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width\"><title>" + escaped(title_) +
+          "</title><style>" + kStyle + "</style></head><body>\n<h1>" + escaped(title_) + "</h1>\n" + body_ + "</body></html>\n";
   writeFileAtomically(file, page, mayReplace);
 }
 

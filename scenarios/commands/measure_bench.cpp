@@ -41,12 +41,14 @@ Line lineThrough(const std::vector<double>& x, const std::vector<double>& y, con
 
 class Bench {
  public:
-  Bench(const BenchOptions& options, const Camera& camera, glm::ivec2 film, const ChannelOutput& output, std::function<void(const std::string&, double)> progress)
+  Bench(const BenchOptions& options, const Camera& camera, glm::ivec2 film, const ChannelOutput& output,
+        std::function<void(const std::string&, double)> progress)
       : options_(options), camera_(camera), output_(output), progress_(std::move(progress)), law_(*detectorOf(camera, output.channel)), layer_(output.layer()) {
     const Pinhole& p = camera.pinhole;
     axis_sr_ = p.projectedSolidAngle_sr(p.width / 2, p.height / 2);
     perIntegral_ = law_.fillFactor * output.scale * camera.exposureOf(output.channel) * axis_sr_;
-    own_ = law_.fillFactor * ownLightOf(camera, output, axis_sr_, camera.exposureOf(output.channel)) + law_.darkCurrent_per_s * camera.exposureOf(output.channel);
+    own_ =
+        law_.fillFactor * ownLightOf(camera, output, axis_sr_, camera.exposureOf(output.channel)) + law_.darkCurrent_per_s * camera.exposureOf(output.channel);
     settle_ = warmUpOf(camera, options.step_s);
     pixel_m_ = p.pitchX_m / p.focalLength_m * kFar_m;
     result_.channel = output.channel;
@@ -60,9 +62,16 @@ class Bench {
     sight.output = output;
     sight.seesHeat = result_.temperature_K == 300.0;
     sight.electrons_per_K = design_.electrons_per_K, sight.noise_electrons = design_.netd_K * design_.electrons_per_K;
-    sight.pixel_sr = axis_sr_, sight.shareInMiddle = pixelShareOf(camera, output, p.focalLength_m), sight.shareInCorner = pixelShareOf(camera, output, p.focalLength_m, 0.5, 0.5);
+    sight.pixel_sr = axis_sr_, sight.shareInMiddle = pixelShareOf(camera, output, p.focalLength_m),
+    sight.shareInCorner = pixelShareOf(camera, output, p.focalLength_m, 0.5, 0.5);
     sight.pixels_per_s = static_cast<double>(film.x) * film.y / options.step_s;
-    sight.design = {tabulated([this](double f) { return contrastAt(f); }), p.pitchX_m / p.focalLength_m, p.pitchY_m / p.focalLength_m, film.y, 1.0 / options.step_s, {}, {}};
+    sight.design = {tabulated([this](double f) { return contrastAt(f); }),
+                    p.pitchX_m / p.focalLength_m,
+                    p.pitchY_m / p.focalLength_m,
+                    film.y,
+                    1.0 / options.step_s,
+                    {},
+                    {}};
   }
 
   BenchResult measure() {
@@ -104,7 +113,8 @@ class Bench {
     });
     bad_ = badPixels(mean);
     const auto count = std::count(bad_.begin(), bad_.end(), 1);
-    figure("bad pixels, share", "1", law_.badPixels, static_cast<double>(count) / static_cast<double>(bad_.size()), std::sqrt(std::max<double>(1.0, static_cast<double>(count))) / static_cast<double>(bad_.size()));
+    figure("bad pixels, share", "1", law_.badPixels, static_cast<double>(count) / static_cast<double>(bad_.size()),
+           std::sqrt(std::max<double>(1.0, static_cast<double>(count))) / static_cast<double>(bad_.size()));
     if (count > 0) result_.notes.push_back(print("%ld bad pixels are replaced by means of those around them in what follows", static_cast<long>(count)));
     mend(mean, bad_, width_);
     const std::vector<double> fall = fallOff(mean);
@@ -171,8 +181,9 @@ class Bench {
     double vh = square(law_.prnu * (signal + lens)) + square(law_.sigmaVh) + square(law_.nonlinearity * square(signal + lens) / law_.fullWell);
     double v = square(law_.sigmaV), h = square(law_.sigmaH);
     if (law_.correction) {
-      const double low = perIntegral_ * output_.temperature->integral(law_.correction->low_K), high = perIntegral_ * output_.temperature->integral(law_.correction->high_K),
-                   at = (signal - low) / (high - low), learnt = 1.0 / law_.correction->frames;
+      const double low = perIntegral_ * output_.temperature->integral(law_.correction->low_K),
+                   high = perIntegral_ * output_.temperature->integral(law_.correction->high_K), at = (signal - low) / (high - low),
+                   learnt = 1.0 / law_.correction->frames;
       // What bends leave, and the correction's own noise at its two points.
       vh = square(law_.nonlinearity / law_.fullWell * (signal - low) * (signal - high)) +
            learnt * (square(1.0 - at) * (low + own_ + square(law_.sigmaTvh)) + square(at) * (high + own_ + square(law_.sigmaTvh)));
@@ -234,7 +245,8 @@ class Bench {
     const double error = std::sqrt(2.0 / ((kFrames - 1.0) * static_cast<double>(bad_.size())) / spread);
     if (error < 0.1 * law_.gain) figure("gain (photon transfer)", "count/electron", law_.gain, transfer.slope, error);
     else result_.notes.push_back("gain cannot be told by photon transfer: read noise is far above shot noise");
-    if (error < 0.1 * law_.gain && transfer.slope > 0.0) figure("full well, or what the converter holds", "electron", law_.saturation(), (atSaturation - law_.offset) / law_.gain);
+    if (error < 0.1 * law_.gain && transfer.slope > 0.0)
+      figure("full well, or what the converter holds", "electron", law_.saturation(), (atSaturation - law_.offset) / law_.gain);
     std::vector<double> light(ideal.begin(), ideal.end() - 2), said(means.begin(), means.end() - 2), even(light.size(), 1.0);
     const Line straight = lineThrough(light, said, even);
     double worst = 0.0;
@@ -247,12 +259,14 @@ class Bench {
       const double readout = variances[i] > 0.0 ? law_.gain * law_.gain * (ideal[i] + own_ + law_.sigmaTvh * law_.sigmaTvh) + steps : 0.0;
       designed.x.push_back(means[i] - law_.offset), designed.y.push_back(readout);
     }
-    result_.charts.push_back({"Photon transfer", "mean count less offset", "variance from frame to frame, count^2", true, true, false, {points, designed}, {}, {}});
+    result_.charts.push_back(
+        {"Photon transfer", "mean count less offset", "variance from frame to frame, count^2", true, true, false, {points, designed}, {}, {}});
     Series response{"measured", {}, {}, false, false}, line{"design", {}, {}, true, false};
     for (int k = 0; k < kLevels; ++k) {
       const auto i = static_cast<std::size_t>(k);
       response.x.push_back(ideal[i]), response.y.push_back(means[i]);
-      line.x.push_back(ideal[i]), line.y.push_back(std::min({law_.gain * (ideal[i] + own_) + law_.offset, law_.gain * law_.fullWell + law_.offset, law_.mostCount()}));
+      line.x.push_back(ideal[i]),
+          line.y.push_back(std::min({law_.gain * (ideal[i] + own_) + law_.offset, law_.gain * law_.fullWell + law_.offset, law_.mostCount()}));
     }
     result_.charts.push_back({"Response", "photoelectrons of an ideal pixel", "mean count", false, false, true, {response, line}, {}, {}});
   }
@@ -262,11 +276,12 @@ class Bench {
     const double room = law_.saturation() - own_, hot = kelvinFor(0.75 * room), cold = kelvinFor(0.15 * room), half = 3.0 * options_.film_px * pixel_m_;
     // A hot plate before a cold one, its edge through the middle.
     const double tilt_deg = 5.0, shift = 0.5 * half / std::cos(tilt_deg * kPi / 180.0);
-    const std::string target =
-        "entities:\n" + plate("cold", -half, half, half, cold, 0.0, 1.001 * kFar_m) +
-        print("  - {name: hot, shape: {model: plate, width: %.9g m, height: %.9g m}, material: black, temperature: %.9g K, position: [%.9g m, %.9g m, 0 m], heading: 270 deg, "
-              "roll: %.9g deg}\n",
-              half, 4.0 * half, hot, kFar_m, shift, tilt_deg);
+    const std::string target = "entities:\n" + plate("cold", -half, half, half, cold, 0.0, 1.001 * kFar_m) +
+                               print(
+                                   "  - {name: hot, shape: {model: plate, width: %.9g m, height: %.9g m}, material: black, temperature: %.9g K, position: "
+                                   "[%.9g m, %.9g m, 0 m], heading: 270 deg, "
+                                   "roll: %.9g deg}\n",
+                                   half, 4.0 * half, hot, kFar_m, shift, tilt_deg);
     const Setup setup(options_, target, std::max(4, options_.frames / 4), kSubpixels);
     const std::vector<double> picture = meanPicture(setup);
     const auto width = static_cast<std::size_t>(setup.camera().pinhole.width), height = static_cast<std::size_t>(setup.camera().pinhole.height);
@@ -301,7 +316,8 @@ class Bench {
     const double room = law_.saturation() - own_, share = std::max(pixelShareOf(camera_, output_, camera_.pinhole.focalLength_m), 1e-3);
     // Even over the band: half a well on its pixel.
     const double all = output_.kernel.integral(output_.bandLow_um, output_.bandHigh_um),
-                 perIntensity = law_.fillFactor * output_.scale * camera_.exposureOf(output_.channel) * all / (kFar_m * kFar_m), watts = 0.5 * room / share / perIntensity;
+                 perIntensity = law_.fillFactor * output_.scale * camera_.exposureOf(output_.channel) * all / (kFar_m * kFar_m),
+                 watts = 0.5 * room / share / perIntensity;
     Series design{"design", {}, {}, true, true}, measured{"measured", {}, {}, false, true};
     const std::vector<double> without = meanPicture(Setup(options_, "", options_.frames));
     Chart chart{"Share of a star's light on one pixel", "", "share", false, false, true, {}, {}, {"middle", "edge", "corner"}};
@@ -309,9 +325,11 @@ class Bench {
     for (const auto& [x, y, name] : {std::tuple{0.0, 0.0, "in its middle"}, std::tuple{0.5, 0.0, "on its edge"}, std::tuple{0.5, 0.5, "in its corner"}}) {
       const auto at = [&](double offset) { return offset * pixel_m_; };
       // The middle of the film is a pixel's corner where it has an even number of them.
-      const double column = std::min(camera_.pinhole.width, options_.film_px) % 2 ? 0.0 : 0.5, row = std::min(camera_.pinhole.height, options_.film_px) % 2 ? 0.0 : 0.5;
+      const double column = std::min(camera_.pinhole.width, options_.film_px) % 2 ? 0.0 : 0.5,
+                   row = std::min(camera_.pinhole.height, options_.film_px) % 2 ? 0.0 : 0.5;
       const std::string target = print(
-          "lights: [{name: star, radius: 1 mm, intensity: {wavelength: um, unit: W/(sr um), outside: zero, values: [[%.9g, %.9g], [%.9g, %.9g]]}, position: [%.9g m, %.9g m, %.9g m]}]\n",
+          "lights: [{name: star, radius: 1 mm, intensity: {wavelength: um, unit: W/(sr um), outside: zero, values: [[%.9g, %.9g], [%.9g, %.9g]]}, position: "
+          "[%.9g m, %.9g m, %.9g m]}]\n",
           output_.bandLow_um, watts, output_.bandHigh_um, watts, kFar_m, -at(column + x), -at(row + y));
       const Setup setup(options_, target, options_.frames);
       const std::vector<double> picture = meanPicture(setup);
@@ -416,9 +434,11 @@ class Bench {
       std::string target = wall(kelvin);
       for (int b = 0; b < 4; ++b) {
         const double left = (2.0 * b - 3.5) * width_px * pixel_m_, right = left + width_px * pixel_m_, range = 0.999 * kFar_m, y = -0.5 * (left + right);
-        target += print("  - {name: bar%d, shape: {model: plate, width: %.9g m, height: %.9g m}, material: black, temperature: %.12g K, motion: [{time: 0 s, position: [%.9g m, %.9g m, 0 m], "
-                        "heading: 270 deg}, {time: %.9g s, position: [%.9g m, %.9g m, 0 m], heading: 270 deg}]}\n",
-                        b, right - left, 7.0 * width_px * pixel_m_, kelvin + difference, range, y + 0.5 * pixel_m_, frames * options_.step_s, range, y - 0.5 * pixel_m_);
+        target += print(
+            "  - {name: bar%d, shape: {model: plate, width: %.9g m, height: %.9g m}, material: black, temperature: %.12g K, motion: [{time: 0 s, position: "
+            "[%.9g m, %.9g m, 0 m], "
+            "heading: 270 deg}, {time: %.9g s, position: [%.9g m, %.9g m, 0 m], heading: 270 deg}]}\n",
+            b, right - left, 7.0 * width_px * pixel_m_, kelvin + difference, range, y + 0.5 * pixel_m_, frames * options_.step_s, range, y - 0.5 * pixel_m_);
       }
       const Setup setup(options_, target, frames, kSubpixels);
       const int width = setup.camera().pinhole.width, height = setup.camera().pinhole.height, half = 4 * width_px;
@@ -466,7 +486,8 @@ std::vector<BenchResult> measureCamera(const BenchOptions& options, const std::f
   for (const ChannelOutput& o : setup.camera().outputs)
     if (o.isCount()) counted.push_back(&o);
   if (counted.empty())
-    throw UserError({options.base, 0, 0, -1}, "a camera that makes no counts", "a channel with 'output: counts' and 'stage: detector' among its 'stages'", "add them");
+    throw UserError({options.base, 0, 0, -1}, "a camera that makes no counts", "a channel with 'output: counts' and 'stage: detector' among its 'stages'",
+                    "add them");
   for (std::size_t k = 0; k < counted.size(); ++k)
     results.push_back(Bench(options, setup.camera(), setup.film(), *counted[k], [&](const std::string& what, double share) {
                         if (progress) progress(what, (static_cast<double>(k) + share) / static_cast<double>(counted.size()));

@@ -50,7 +50,8 @@ struct BenchResult {
   BenchSight sight;
 };
 
-/// Of each channel with counts. Needs a current GlContext. Errors: UserError where the camera makes no counts. `progress`: what is done now, and the share of all.
+/// Of each channel with counts. Needs a current GlContext. Errors: UserError where the camera makes no counts. `progress`: what is done now, and the share of
+/// all.
 std::vector<BenchResult> measureCamera(const BenchOptions& options, const std::function<void(const std::string& what, double share)>& progress);
 
 }  // namespace pitviper

@@ -24,12 +24,15 @@ void tellResolvable(BenchResult& result) {
   if (sight.measured)
     for (const double part : {0.1, 0.25, 0.5, 0.75, 0.95}) {
       const double f = part * most;
-      result.figures.push_back({print("MRTD at %.3g cycles/mrad", 1e-3 * f), "mK", 1e3 * mrtd_K(sight.design, Bars::SideBySide, f), 1e3 * mrtd_K(*sight.measured, Bars::SideBySide, f), 0.0, false});
+      result.figures.push_back({print("MRTD at %.3g cycles/mrad", 1e-3 * f), "mK", 1e3 * mrtd_K(sight.design, Bars::SideBySide, f),
+                                1e3 * mrtd_K(*sight.measured, Bars::SideBySide, f), 0.0, false});
     }
   const Observer& o = sight.design.observer;
-  result.notes.push_back(print("MRTD: noise in three dimensions by FLIR92 (SNR %g over %g s) and an eye's own threshold (Barten 2004) before a display %g cm high at %g cm, %g cd/m2, %g K from its mean to "
-                               "black; up to half a cycle a pixel",
-                               o.snr, o.eye_s, 100.0 * o.displayHeight_m, 100.0 * o.distance_m, o.luminance_cd_m2, o.sceneContrast_K));
+  result.notes.push_back(
+      print("MRTD: noise in three dimensions by FLIR92 (SNR %g over %g s) and an eye's own threshold (Barten 2004) before a display %g cm high at %g cm, %g "
+            "cd/m2, %g K from its mean to "
+            "black; up to half a cycle a pixel",
+            o.snr, o.eye_s, 100.0 * o.displayHeight_m, 100.0 * o.distance_m, o.luminance_cd_m2, o.sceneContrast_K));
   std::vector<Series> all{design, stacked};
   if (sight.measured) all.insert(all.begin(), measured);
   result.charts.push_back({"MRTD", "cycles/mrad", "mK", false, true, false, all, {}, {}});

@@ -96,7 +96,8 @@ void printPixelTerms(const ExrImage& frame, const std::string& file, int column,
     std::vector<double> values;
     for (size_t o : outputs) {
       const ChannelOutput& output = camera.outputs[o];
-      const double etendue = output.perEtendue ? image.solidAngles->projected_sr[pixel] : 1.0, exposure = output.perExposure ? image.exposures_s.of(output.channel) : 1.0;
+      const double etendue = output.perEtendue ? image.solidAngles->projected_sr[pixel] : 1.0,
+                   exposure = output.perExposure ? image.exposures_s.of(output.channel) : 1.0;
       values.push_back(output.scale * etendue * exposure * image.slots[static_cast<size_t>(image.slotOfOutput[o])][pixel]);
     }
     return values;

@@ -108,8 +108,8 @@ void watchSignals() {
   std::abort();
 }
 
-/// A stream that tens of megabytes of pictures go through each second would give them back to the system after every frame, which then hands them out again page by
-/// page, cleared: half of a frame's time at 640 x 512. They are kept.
+/// A stream that tens of megabytes of pictures go through each second would give them back to the system after every frame, which then hands them out again
+/// page by page, cleared: half of a frame's time at 640 x 512. They are kept.
 void keepMemory() {
   mallopt(M_MMAP_THRESHOLD, 32 << 20);  // the most that it takes
   mallopt(M_TRIM_THRESHOLD, 1 << 30);

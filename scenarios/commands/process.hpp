@@ -9,7 +9,8 @@ namespace pitviper {
 /// the program with a message and 2, in whatever thread; streams that were closed read and write nothing, and writing is then an error.
 void prepareProcess();
 
-/// While it lives the first SIGINT, SIGTERM or SIGHUP calls `end` (on another thread) instead of ending the program, which then ends by itself; the second is as ever.
+/// While it lives the first SIGINT, SIGTERM or SIGHUP calls `end` (on another thread) instead of ending the program, which then ends by itself; the second is
+/// as ever.
 class EndsItself {
  public:
   explicit EndsItself(std::function<void()> end);

@@ -37,7 +37,8 @@ std::string progressText(const ProgressState& s) {
     if (s.phaseShare > 0.0) text += print(", %.0f %%", 100.0 * s.phaseShare);
     return text + ", " + duration(s.elapsed_s) + " so far";
   }
-  if (s.total <= 0) return std::to_string(s.done) + (stepsASecond(s) > 0.0 ? ", " + print("%.1f/s", stepsASecond(s)) : "") + ", " + duration(s.elapsed_s) + " so far";
+  if (s.total <= 0)
+    return std::to_string(s.done) + (stepsASecond(s) > 0.0 ? ", " + print("%.1f/s", stepsASecond(s)) : "") + ", " + duration(s.elapsed_s) + " so far";
   std::string text = std::to_string(s.done) + " of " + std::to_string(s.total);
   if (s.share > 0.0) text += " and " + print("%.0f %%", 100.0 * s.share) + " of the next";
   const double rate = stepsASecond(s), left = secondsLeft(s);

@@ -24,9 +24,10 @@ void noteMeshes(const Simulation& sim, Notes& notes) {
     };
     for (const std::string& note : e.mesh->notes) say(note);
     if (const glm::dvec3& o = e.mesh->offset_m; o != glm::dvec3(0.0))
-      say(print("it lies about (%.10g, %.10g, %.10g) m forward, left and up of its file's origin, and is held from there, in double precision; 'position' places "
-                "the file's origin, about which it turns",
-                o.x, o.y, o.z));
+      say(print(
+          "it lies about (%.10g, %.10g, %.10g) m forward, left and up of its file's origin, and is held from there, in double precision; 'position' places "
+          "the file's origin, about which it turns",
+          o.x, o.y, o.z));
   }
 }
 
@@ -87,7 +88,8 @@ void noteNear(const Simulation& sim, double time_s, Notes& notes) {
       const Entity& body = sim.entities[e];
       const Pose& pose = state.entities[e];
       const glm::dvec3 centre = pose.position + pose.orientation * glm::dvec3(body.boundingCentre);
-      if (static_cast<int>(e) == c.mount.carrier || !state.isThere(e) || sim.mediumOf(body) || glm::length(eye - centre) > static_cast<double>(body.boundingRadius_m) + c.near_m)
+      if (static_cast<int>(e) == c.mount.carrier || !state.isThere(e) || sim.mediumOf(body) ||
+          glm::length(eye - centre) > static_cast<double>(body.boundingRadius_m) + c.near_m)
         continue;
       const glm::dvec3 at = glm::inverse(pose.orientation) * (eye - pose.position);
       double nearest = INFINITY;
@@ -113,10 +115,12 @@ void sayScatteredAgain(const std::string& camera, const ScatteredAgain& s, Notes
     const double step = std::pow(10.0, std::floor(std::log10(f)) - 1.0);
     return print("%.0f", std::round(f / step) * step);
   };
-  const std::string off = s.error > 0.4 ? "a guess where the sun is so low, or so little comes through" : print("chance %.0f %%", std::max(100.0 * s.error, 1.0));
-  notes.say(print("camera %s, channel %s: light that the air scatters more than once is left out; with it pixels would be about %s times as bright (%s to %s over "
-               "the film), by photons followed through level air over the ground below, shadows of bodies left out (%s)",
-               camera.c_str(), s.channel.c_str(), times(s.factor).c_str(), times(s.least).c_str(), times(s.most).c_str(), off.c_str()));
+  const std::string off =
+      s.error > 0.4 ? "a guess where the sun is so low, or so little comes through" : print("chance %.0f %%", std::max(100.0 * s.error, 1.0));
+  notes.say(
+      print("camera %s, channel %s: light that the air scatters more than once is left out; with it pixels would be about %s times as bright (%s to %s over "
+            "the film), by photons followed through level air over the ground below, shadows of bodies left out (%s)",
+            camera.c_str(), s.channel.c_str(), times(s.factor).c_str(), times(s.least).c_str(), times(s.most).c_str(), off.c_str()));
 }
 
 /// Once per camera: what of a picture's transparent things is not in its right order.
@@ -142,8 +146,8 @@ void FrameNotes::scattering(const Frame& f) {
     if (a.name.rfind(begin, 0) != 0 || !told_.insert(f.camera + "/" + a.name).second) continue;
     const std::string channel = a.name.substr(begin.size());
     sayScatteredAgain(f.camera,
-                      {channel, std::get<double>(a.value), value("pitviper.scattered_again_least." + channel), value("pitviper.scattered_again_most." + channel),
-                       value("pitviper.scattered_again_chance." + channel)},
+                      {channel, std::get<double>(a.value), value("pitviper.scattered_again_least." + channel),
+                       value("pitviper.scattered_again_most." + channel), value("pitviper.scattered_again_chance." + channel)},
                       notes_);
   }
 }
@@ -164,13 +168,17 @@ void FrameNotes::saturation(const Frame& f) {
     const bool whole = tally.full + tally.bad >= all && tally.full > 0;
     const auto part = [all](int pixels) { return print("%d of %d pixels (%.3g %%)", pixels, all, 100.0 * pixels / all); };
     if (whole ? told_.insert(key + "whole").second : tally.full > 0 && told_.insert(key + "full").second)
-      notes_.say(print("camera %s, channel %s, frame %d: %s full (the well, or the converter's highest code): their counts say only that there is at least so much light, and temperatures "
-                       "and signals to noise are no numbers there; shorten 'exposure', or raise 'full_well' or lower 'gain' of the detector",
-                       f.camera.c_str(), channel.c_str(), f.number, whole ? "the whole picture is" : (part(tally.full) + (tally.full == 1 ? " is" : " are")).c_str()));
+      notes_.say(
+          print("camera %s, channel %s, frame %d: %s full (the well, or the converter's highest code): their counts say only that there is at least so much "
+                "light, and temperatures "
+                "and signals to noise are no numbers there; shorten 'exposure', or raise 'full_well' or lower 'gain' of the detector",
+                f.camera.c_str(), channel.c_str(), f.number, whole ? "the whole picture is" : (part(tally.full) + (tally.full == 1 ? " is" : " are")).c_str()));
     if (tally.lowest > 0 && told_.insert(key + "lowest").second)
-      notes_.say(print("camera %s, channel %s, frame %d: %s at the converter's lowest code: their counts say only that there is at most so much light; give the detector an 'offset', or lengthen "
-                       "'exposure'",
-                       f.camera.c_str(), channel.c_str(), f.number, (part(tally.lowest) + (tally.lowest == 1 ? " is" : " are")).c_str()));
+      notes_.say(
+          print("camera %s, channel %s, frame %d: %s at the converter's lowest code: their counts say only that there is at most so much light; give the "
+                "detector an 'offset', or lengthen "
+                "'exposure'",
+                f.camera.c_str(), channel.c_str(), f.number, (part(tally.lowest) + (tally.lowest == 1 ? " is" : " are")).c_str()));
   }
 }
 

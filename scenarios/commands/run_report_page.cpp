@@ -51,19 +51,22 @@ void RunReportPage::add(const Frame& frame) {
 void RunReportPage::tellFlown(HtmlPage& page, const Said& said) {
   page.heading("What was flown");
   const HistoryReport& flown = *said.flown;
-  if (!flown.picture.empty()) page.picture(flown.picture, "Trajectories: balls at equal times, shadows on the floor, the closest approach and lines of sight then");
+  if (!flown.picture.empty())
+    page.picture(flown.picture, "Trajectories: balls at equal times, shadows on the floor, the closest approach and lines of sight then");
   else if (!flown.whyNoPicture.empty()) page.paragraph("No picture of the trajectories: " + flown.whyNoPicture);
   if (!flown.encounters.empty()) {
     std::vector<std::vector<std::string>> rows;
     constexpr std::size_t kMostRows = 40;  // more is read in the table beside the page
     for (const Encounter& e : flown.encounters) {
       if (rows.size() >= kMostRows) break;
-      rows.push_back({e.kind == "camera" ? "camera " + e.body : e.body, e.target, print("%.4g", e.distance_m), print("%.6g", e.time_s), e.passed ? "yes" : "no", print("%.4g", e.relativeSpeed_m_s),
-                      std::isfinite(e.aspect_rad) ? print("%.1f", e.aspect_rad * 180.0 / kPi) : "", e.end});
+      rows.push_back({e.kind == "camera" ? "camera " + e.body : e.body, e.target, print("%.4g", e.distance_m), print("%.6g", e.time_s), e.passed ? "yes" : "no",
+                      print("%.4g", e.relativeSpeed_m_s), std::isfinite(e.aspect_rad) ? print("%.1f", e.aspect_rad * 180.0 / kPi) : "", e.end});
     }
     page.table({"who", "to", "closest approach [m]", "at [s]", "passed", "relative speed [m/s]", "aspect [deg]", "flight ended by"}, rows);
     if (flown.encounters.size() > rows.size()) page.paragraph("and " + std::to_string(flown.encounters.size() - rows.size()) + " more");
-    page.paragraph("Not passed: the least distance of the time looked at, at one of its ends. Aspect: between the target's nose and where the other comes from (a camera: is), 0 head-on, 180 from behind.");
+    page.paragraph(
+        "Not passed: the least distance of the time looked at, at one of its ends. Aspect: between the target's nose and where the other comes from (a camera: "
+        "is), 0 head-on, 180 from behind.");
   }
   if (!said.tables) return;
   page.link("history.csv", "history.csv: positions, velocities, accelerations, attitudes and rates, tick by tick");
@@ -95,15 +98,25 @@ void RunReportPage::write(const std::filesystem::path& folder, const std::string
         double sum = 0.0;
         for (double v : course.mean) sum += v;
         rows.push_back({name, course.unit, print("%.5g", *std::min_element(course.least.begin(), course.least.end())),
-                        print("%.5g", sum / static_cast<double>(course.mean.size())), print("%.5g", *std::max_element(course.most.begin(), course.most.end()))});
+                        print("%.5g", sum / static_cast<double>(course.mean.size())),
+                        print("%.5g", *std::max_element(course.most.begin(), course.most.end()))});
         if (course.time_s.size() > 1)
-          charts.push_back({name, "time [s]", course.unit, false, false, false,
-                            {{"mean", course.time_s, course.mean, false, false}, {"smallest", course.time_s, course.least, true, false}, {"largest", course.time_s, course.most, true, false}},
-                            {}, {}});
+          charts.push_back({name,
+                            "time [s]",
+                            course.unit,
+                            false,
+                            false,
+                            false,
+                            {{"mean", course.time_s, course.mean, false, false},
+                             {"smallest", course.time_s, course.least, true, false},
+                             {"largest", course.time_s, course.most, true, false}},
+                            {},
+                            {}});
       }
     if (!rows.empty()) page.table({"layer", "unit", "smallest", "mean", "largest"}, rows);
     if (const auto targets = targets_.find(c.name); targets != targets_.end()) {
-      Chart ranges{"Range of targets", "time [s]", "m", false, false, true, {}, {}, {}}, contrasts{"Contrast of targets", "time [s]", "W/sr", false, false, false, {}, {}, {}};
+      Chart ranges{"Range of targets", "time [s]", "m", false, false, true, {}, {}, {}},
+          contrasts{"Contrast of targets", "time [s]", "W/sr", false, false, false, {}, {}, {}};
       for (const auto& [name, course] : targets->second) {
         if (ranges.series.size() >= kMostTargets || course.time_s.size() < 2) break;
         ranges.series.push_back({name, course.time_s, course.range_m, false, false});

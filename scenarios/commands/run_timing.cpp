@@ -30,8 +30,8 @@ std::string timingText(const std::map<std::string, double>& parts, const Program
     }
   }
   std::sort(longest.rbegin(), longest.rend());
-  std::string text = print("Time, each part waited for: planning %.3g s, tables %.3g s, %ld programs of %ld lines %.3g s, the first frame %.3g s", once["planning"], once["tables"],
-                           programs.programs, programs.lines, once["programs"], once["first_frame"]);
+  std::string text = print("Time, each part waited for: planning %.3g s, tables %.3g s, %ld programs of %ld lines %.3g s, the first frame %.3g s",
+                           once["planning"], once["tables"], programs.programs, programs.lines, once["programs"], once["first_frame"]);
   const int later = frames - 1;
   if (later > 0) {
     text += print(", the others %.4g ms a frame, %.4g frames a second:\n", 1e3 * sum / later, sum > 0.0 ? later / sum : 0.0);

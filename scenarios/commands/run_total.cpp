@@ -54,8 +54,8 @@ std::string RunTotal::expected() const {
               (seen.streakError > 0.0 ? ", " + print("%.2g %%", 100.0 * seen.streakError) + " of a small body's streak" : "") + ")";
     text += "\n";
     for (const auto& [channel, full] : seen.full)
-      text += "  " + camera + ": " + channel + " is full in " + std::to_string(full.frames) + " of " + std::to_string(seen.frames) + " frames, " + print("%.3g %%", 100.0 * full.most) +
-              " of a frame's pixels at most\n";
+      text += "  " + camera + ": " + channel + " is full in " + std::to_string(full.frames) + " of " + std::to_string(seen.frames) + " frames, " +
+              print("%.3g %%", 100.0 * full.most) + " of a frame's pixels at most\n";
   }
   return text;
 }

@@ -35,7 +35,8 @@ Edit replaced(const std::string& path, const std::string& shown, const std::stri
 }
 
 /// A number with a unit becomes another by `change`, which gets it in `canonical`.
-void addNumber(Edits& edits, const Value* value, const std::string& path, const std::string& shown, const char* canonical, const std::function<double(double)>& change) {
+void addNumber(Edits& edits, const Value* value, const std::string& path, const std::string& shown, const char* canonical,
+               const std::function<double(double)>& change) {
   const auto written = quantityIn(value);
   const auto now = written ? convert(*written, canonical) : std::nullopt;
   if (now) edits.push_back(replaced(path, shown, value->text, quantityText(change(*now), canonical)));
@@ -114,7 +115,8 @@ Edits fieldsOfView(const Value& tree, const Simulation& sim) {
   });
   // A camera of the library says neither.
   if (!sim.cameras.empty())
-    edits.push_back(replaced("cameras.0.focal_length", "cameras." + sim.cameras[0].name + ".focal_length", quantityText(1e3 * sim.cameras[0].pinhole.focalLength_m, "mm"),
+    edits.push_back(replaced("cameras.0.focal_length", "cameras." + sim.cameras[0].name + ".focal_length",
+                             quantityText(1e3 * sim.cameras[0].pinhole.focalLength_m, "mm"),
                              quantityText(1.25e3 * sim.cameras[0].pinhole.focalLength_m, "mm")));
   return edits;
 }
@@ -124,7 +126,8 @@ void addPositions(Edits& edits, const Value& value, const std::string& path, con
   const auto further = [](double m) { return m + 1.0; };
   for (const auto& [key, inner] : value.entries) {
     const std::string here = path + "." + key, said = shown + "." + key;
-    if (key == "position" && inner.kind == Value::Kind::List && inner.items.size() == 3) addNumber(edits, &inner.items[0], here + ".0", said + ".0", "m", further);
+    if (key == "position" && inner.kind == Value::Kind::List && inner.items.size() == 3)
+      addNumber(edits, &inner.items[0], here + ".0", said + ".0", "m", further);
     else if (inner.kind != Value::Kind::Scalar) addPositions(edits, inner, here, said);
   }
   for (std::size_t k = 0; k < value.items.size(); ++k) addPositions(edits, value.items[k], print("%s.%zu", path.c_str(), k), print("%s.%zu", shown.c_str(), k));

@@ -102,7 +102,8 @@ class Builder {
   int entityNamed(const Value& asked) const;
   // cameras.cpp
   /// `camera`: whose they are, which gets what they have of their own; null: none, and they may have nothing of their own.
-  std::vector<ChannelOutput> readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s, bool hasDetector = false, Camera* camera = nullptr);
+  std::vector<ChannelOutput> readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s, bool hasDetector = false,
+                                          Camera* camera = nullptr);
   /// What a channel has of its own: its exposure, and what it says of its detector goes into `collector`.
   void readOwn(const Record& channel, Camera* camera, Collector& collector) const;
   // camera_stages.cpp

@@ -15,7 +15,8 @@ const StageModel* modelOf(const Value& stage) {
   return name ? stageModels().named(name->text) : nullptr;
 }
 
-/// The stages of a channel: its camera's, each of its own in place of the camera's of that name; others of its own behind these, before what takes pixels where they do not.
+/// The stages of a channel: its camera's, each of its own in place of the camera's of that name; others of its own behind these, before what takes pixels where
+/// they do not.
 std::vector<const Value*> together(const std::vector<Value>& cameras, const std::vector<Value>& own) {
   std::vector<const Value*> all;
   for (const Value& v : cameras) all.push_back(&v);
@@ -94,15 +95,19 @@ void Builder::readStages(const Record& r, Camera& camera) const {
       // Places in a picture, and in what is said of it, are the camera's.
       for (const Value& s : stages)
         if (modelOf(s) && std::any_of(seen.stages.begin(), seen.stages.end(), [&](const StageChoice& c) { return c.place && c.name == modelOf(s)->name; }))
-          throw UserError(s.where, "a " + modelOf(s)->name + " of one channel, which would move its picture off the others'", "it among the camera's own 'stages'", "move it there");
+          throw UserError(s.where, "a " + modelOf(s)->name + " of one channel, which would move its picture off the others'",
+                          "it among the camera's own 'stages'", "move it there");
       own->second.stages = std::move(seen.stages);
     }
   if (!unused.empty())
-    throw UserError(unused.front()->where, "a stage that no channel of camera '" + camera.name + "' has: each has its own in its place", "it for channels that have none, or none", "remove it, or one of theirs");
+    throw UserError(unused.front()->where, "a stage that no channel of camera '" + camera.name + "' has: each has its own in its place",
+                    "it for channels that have none, or none", "remove it, or one of theirs");
   camera.stages = std::move(common.stages);
   const Camera drawn = drawnCamera(camera);
   if (tooLarge(drawn) || !drawn.pinhole.isFlat())
-    throw UserError(r.where("channels"), "with the margins and cells of all channels' stages the picture would have " + std::to_string(drawn.pinhole.width) + "x" + std::to_string(drawn.pinhole.height) + " cells",
+    throw UserError(r.where("channels"),
+                    "with the margins and cells of all channels' stages the picture would have " + std::to_string(drawn.pinhole.width) + "x" +
+                        std::to_string(drawn.pinhole.height) + " cells",
                     "at most 67 million subpixels, 16384 on a side, within 176 deg", "lower film or samples, or ask less of the stages");
 }
 

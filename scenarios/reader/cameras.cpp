@@ -64,7 +64,8 @@ void readAperture(const Record& r, Pinhole& p) {
   const double own = p.focalLength_m / p.apertureDiameter_m;
   if (std::abs(own / fNumber - 1.0) > kAgree)
     throw UserError(r.where("f_number"),
-                    "an F number of " + r.value("f_number").text + ", and " + (ownFocal ? "focal length" : "field of view and pitch") + " over aperture is " + std::to_string(own),
+                    "an F number of " + r.value("f_number").text + ", and " + (ownFocal ? "focal length" : "field of view and pitch") + " over aperture is " +
+                        std::to_string(own),
                     "three that agree, or two of them", "remove one");
 }
 
@@ -263,7 +264,8 @@ Value channelsOf(const Record& camera) {
 void Builder::readOwn(const Record& r, Camera* camera, Collector& collector) const {
   for (const char* key : {"exposure", "stages"})
     if (r.given(key) && !camera)
-      throw UserError(r.where(key), std::string("'") + key + "' of a channel that is not a camera's", "a channel of a camera in a scenario", std::string("remove '") + key + "'");
+      throw UserError(r.where(key), std::string("'") + key + "' of a channel that is not a camera's", "a channel of a camera in a scenario",
+                      std::string("remove '") + key + "'");
   if (!camera || (!r.given("exposure") && !r.given("stages"))) return;
   OwnChannel& own = camera->ownChannels[r.text("name")];
   if (r.given("exposure")) {
@@ -275,7 +277,8 @@ void Builder::readOwn(const Record& r, Camera* camera, Collector& collector) con
   collector.hasDetector = collector.hasDetector || own.hasDetector;
 }
 
-std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s, bool hasDetector, Camera* camera) {
+std::vector<ChannelOutput> Builder::readChannels(const Value& list, const Spectrum* optics, const Pinhole* pinhole, double exposure_s, bool hasDetector,
+                                                 Camera* camera) {
   if (list.items.empty())
     throw UserError(list.where, "no channel", "at least one channel with name and response", "add '- {name: mw, response: {band: [3 um, 5 um]}}'");
   std::map<std::string, Location> names;
@@ -402,7 +405,8 @@ void Builder::readCameras(const Record& scenario) {
           throw UserError(target.where, "look_at is more than a million km away", "metres from the origin", "check the unit");
       } else {
         const auto light = std::find_if(simulation_.lights.begin(), simulation_.lights.end(), [&](const PointLight& l) { return l.name == target.text; });
-        if (light != simulation_.lights.end() && entityNames_.count(target.text) == 0) c.mount.lookAtLight = static_cast<int>(light - simulation_.lights.begin());
+        if (light != simulation_.lights.end() && entityNames_.count(target.text) == 0)
+          c.mount.lookAtLight = static_cast<int>(light - simulation_.lights.begin());
         else c.mount.lookAtEntity = entityNamed(target);
         if (c.mount.lookAtEntity >= 0 && c.mount.lookAtEntity == c.mount.carrier)
           throw UserError(target.where, "a camera looks at the body that carries it", "another body", "change look_at");
@@ -421,10 +425,12 @@ void Builder::readCameras(const Record& scenario) {
     c.outputs = readChannels(channelsOf(r), &optics, &p, c.exposure_s, r.given("stages") && makesCounts(r.value("stages")), &c);
     const auto hasOwnExposure = [&](const ChannelOutput& o) { return c.ownChannel(o.channel) && c.ownChannel(o.channel)->exposure_s; };
     if (written.find("exposure") && std::all_of(c.outputs.begin(), c.outputs.end(), hasOwnExposure))
-      throw UserError(r.where("exposure"), "an exposure that no channel of camera '" + c.name + "' has: each has its own", "it for channels that have none, or none", "remove it, or theirs");
+      throw UserError(r.where("exposure"), "an exposure that no channel of camera '" + c.name + "' has: each has its own",
+                      "it for channels that have none, or none", "remove it, or theirs");
     for (const ChannelOutput& o : c.outputs)
       if (c.motionBlur && !(c.exposureOf(o.channel) > 0.0))
-        throw UserError(r.where("motion_blur"), "motion within an exposure of no time, in channel '" + o.channel + "'", "'exposure' of the camera, such as '5 ms'", "add it, or remove motion_blur");
+        throw UserError(r.where("motion_blur"), "motion within an exposure of no time, in channel '" + o.channel + "'",
+                        "'exposure' of the camera, such as '5 ms'", "add it, or remove motion_blur");
     if (r.given("truth"))
       for (const Value& t : r.value("truth").items) {
         const std::string word = readText(t, "truth");

@@ -68,11 +68,13 @@ auto keepingLast(std::function<Ejected(double, const Pose&, const glm::dvec3&)> 
     std::mutex mutex;
     std::list<Flight> flights;
   };
-  return [fly = std::move(fly), kept = std::make_shared<Kept>()](double time_s, const Pose& carrier, const glm::dvec3& velocity) -> std::shared_ptr<const Ejected> {
+  return [fly = std::move(fly), kept = std::make_shared<Kept>()](double time_s, const Pose& carrier,
+                                                                 const glm::dvec3& velocity) -> std::shared_ptr<const Ejected> {
     constexpr std::size_t kMost = 8;
     const std::lock_guard lock(kept->mutex);
     for (const Flight& f : kept->flights)
-      if (f.time_s == time_s && f.carrier.position == carrier.position && f.carrier.orientation == carrier.orientation && f.velocity == velocity) return f.flown;
+      if (f.time_s == time_s && f.carrier.position == carrier.position && f.carrier.orientation == carrier.orientation && f.velocity == velocity)
+        return f.flown;
     std::shared_ptr<const Ejected> flown;
     try {
       flown = std::make_shared<const Ejected>(fly(time_s, carrier, velocity));
@@ -126,11 +128,11 @@ const ParameterTable& flareDirection() {
 }
 
 const ParameterTable& flareSequence() {
-  static const ParameterTable t{
-      "sequence of flares",
-      "",
-      {required(integer("count", "how many", 1, 256)), within(number("interval", "s", "from each to the next; where commands eject them each is told by itself"), 0.0, 3600.0),
-       withDefault(boolean("alternate", "every second goes to the other side: y of position and direction change sign"), "false")}};
+  static const ParameterTable t{"sequence of flares",
+                                "",
+                                {required(integer("count", "how many", 1, 256)),
+                                 within(number("interval", "s", "from each to the next; where commands eject them each is told by itself"), 0.0, 3600.0),
+                                 withDefault(boolean("alternate", "every second goes to the other side: y of position and direction change sign"), "false")}};
   return t;
 }
 
@@ -194,7 +196,8 @@ void Builder::readFlares(const Record& scenario) {
       count = static_cast<int>(sequence.integer("count"));
       if (onCommand && sequence.given("interval"))
         throw UserError(sequence.where("interval"), "an interval between flares that commands eject", "each ejected by its own command", "remove it");
-      if (!onCommand && !sequence.given("interval")) throw UserError(sequence.where(), "a sequence without an interval", "the time from each to the next", "add 'interval: 0.2 s'");
+      if (!onCommand && !sequence.given("interval"))
+        throw UserError(sequence.where(), "a sequence without an interval", "the time from each to the next", "add 'interval: 0.2 s'");
       interval_s = onCommand ? 0.0 : sequence.number("interval");
       alternate = sequence.boolean("alternate");
     }
@@ -222,7 +225,8 @@ void Builder::readFlares(const Record& scenario) {
       world.frame = simulation_.frame;
       world.coriolis = hasOrigin_;
       if (glm::length(simulation_.wind_m_s) > 0.0) world.wind = {{0.0, simulation_.wind_m_s}};
-      const auto flyFrom = [type, world, from = side * position, push = r.number("speed") * (side * direction)](double at_s, const Pose& carriersPose, const glm::dvec3& itsVelocity) {
+      const auto flyFrom = [type, world, from = side * position, push = r.number("speed") * (side * direction)](double at_s, const Pose& carriersPose,
+                                                                                                                const glm::dvec3& itsVelocity) {
         FlareFlight flown = flyFlare(type, launchFrom(at_s, carriersPose, itsVelocity, from, push), world);
         return Ejected{std::make_shared<const Trajectory>(std::move(flown.path)), std::move(flown.level), flown.lit_s, flown.out_s};
       };

@@ -87,9 +87,11 @@ double readDate(const std::string& text, const Location& where) {
   int year = 0, month = 0, day = 0, hour = 0, minute = 0, end = 0;
   double second = 0.0;
   const int read = std::sscanf(text.c_str(), "%4d-%2d-%2dT%2d:%2d:%lf%n", &year, &month, &day, &hour, &minute, &second, &end);
-  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)), std::chrono::day(static_cast<unsigned>(day))};
+  const std::chrono::year_month_day date{std::chrono::year(year), std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
   const std::string rest = text.substr(read == 6 ? static_cast<size_t>(end) : text.size());
-  if (read != 6 || !(rest.empty() || rest == "Z") || year < 1 || !date.ok() || hour < 0 || hour > 23 || minute < 0 || minute > 59 || !(second >= 0.0 && second < 60.0))
+  if (read != 6 || !(rest.empty() || rest == "Z") || year < 1 || !date.ok() || hour < 0 || hour > 23 || minute < 0 || minute > 59 ||
+      !(second >= 0.0 && second < 60.0))
     throw UserError(where, "'" + text + "' is no date", "a date and time of UTC, such as 2026-06-21T12:00:00", "write it so");
   return static_cast<double>(std::chrono::sys_days(date).time_since_epoch().count()) * 86400.0 + hour * 3600.0 + minute * 60.0 + second;
 }

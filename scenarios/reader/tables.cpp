@@ -32,8 +32,9 @@ void addPlacement(std::vector<Parameter>& p, bool attitude, double mostTurn = kM
   for (auto& own : positionParameters()) p.push_back(std::move(own));
   if (attitude)
     for (auto& own : attitudeParameters(mostTurn)) p.push_back(std::move(own));
-  p.push_back(any("motion",
-                  "waypoints, whose orientation follows the path unless a waypoint gives one; or a map with `model`: waypoints, route, csv, ballistic or missile"));
+  p.push_back(
+      any("motion",
+          "waypoints, whose orientation follows the path unless a waypoint gives one; or a map with `model`: waypoints, route, csv, ballistic or missile"));
   p.push_back(withDefault(choice("interpolation", {"smooth", "linear"}, "between waypoints: cubic with continuous velocity, or straight"), "smooth"));
   p.push_back(any("ends", "what its motion does before its first and after its last point: hold, go_on, loop or vanish, or a map of `before` and `after`"));
   p.push_back(map("spin", "turning about an axis of its own, on top of its attitude"));
@@ -108,11 +109,12 @@ const ParameterTable& scenario() {
 }
 
 const ParameterTable& entryOfList() {
-  static const ParameterTable t{"entry of a list",
-                                "Any entry that is a map, as of `entities`, `lights`, `cameras`, `channels`, `motion`.",
-                                {map("repeat", "the entry stands several times"),
-                                 text("include", "the entries of a file stand here: those of its list, or the one that its map is; beside it nothing but `with` and `repeat`"),
-                                 map("with", "name: value, parameters of that file")}};
+  static const ParameterTable t{
+      "entry of a list",
+      "Any entry that is a map, as of `entities`, `lights`, `cameras`, `channels`, `motion`.",
+      {map("repeat", "the entry stands several times"),
+       text("include", "the entries of a file stand here: those of its list, or the one that its map is; beside it nothing but `with` and `repeat`"),
+       map("with", "name: value, parameters of that file")}};
   return t;
 }
 
@@ -121,7 +123,8 @@ const ParameterTable& repeat() {
       "repeat",
       "An entry as often as it says. Names that do not hold the number get `_0`, `_1`, ...",
       {required(integer("count", "how often; 0: never", 0, 4096)), withDefault(text("as", "the name of its number, from 0: `$i`"), "i"),
-       map("every", "what is added from each to the next, in the form of the entry: `{position: [10 m, 0 m, 0 m], motion: {time: 0.3 s}}`; keys that the entry has")}};
+       map("every",
+           "what is added from each to the next, in the form of the entry: `{position: [10 m, 0 m, 0 m], motion: {time: 0.3 s}}`; keys that the entry has")}};
   return t;
 }
 
@@ -168,11 +171,11 @@ const ParameterTable& limits() {
 }
 
 const ParameterTable& accuracy() {
-  static const ParameterTable t{"accuracy",
-                                "What a stream may trade for its rate: it begins with the accuracy asked for, draws coarser where it would be late, in steps of two, and "
-                                "says so on each frame; plans and programs for all of them are made before the first frame. Whatever is not a stream draws as asked.",
-                                {text("asked", "as `accuracy` itself; unless given 1 %, or `at_most` if that is less"),
-                                 required(text("at_most", "the coarsest, such as 3 %"))}};
+  static const ParameterTable t{
+      "accuracy",
+      "What a stream may trade for its rate: it begins with the accuracy asked for, draws coarser where it would be late, in steps of two, and "
+      "says so on each frame; plans and programs for all of them are made before the first frame. Whatever is not a stream draws as asked.",
+      {text("asked", "as `accuracy` itself; unless given 1 %, or `at_most` if that is less"), required(text("at_most", "the coarsest, such as 3 %"))}};
   return t;
 }
 
@@ -372,7 +375,9 @@ const ParameterTable& entity() {
 
 const ParameterTable& part() {
   static const ParameterTable t{
-      "part", "", {any("material", "name of a material, or one written out"), any("temperature", "a number, a course, a texture in K, or a map with `recovery`")}};
+      "part",
+      "",
+      {any("material", "name of a material, or one written out"), any("temperature", "a number, a course, a texture in K, or a map with `recovery`")}};
   return t;
 }
 
@@ -498,22 +503,23 @@ const ParameterTable& film() {
       "",
       {required(integer("width", "pixels", 1, 16384)), required(integer("height", "pixels", 1, 16384)), within(number("pitch", "m", "pixel pitch"), 1e-9, 1),
        within(number("pitch_y", "m", "vertical pitch where different"), 1e-9, 1),
-       withDefault(integer("binning", "so many by so many pixels are read as one: width, height and pitch are the detector's own; charges add up before read-out", 1, 16),
+       withDefault(integer("binning",
+                           "so many by so many pixels are read as one: width, height and pitch are the detector's own; charges add up before read-out", 1, 16),
                    "1"),
        list("window", "[left, top, width, height] of what is read out [pixels of the picture]; all of the film is drawn", 4, 4)}};
   return t;
 }
 
 const ParameterTable& channel() {
-  static const ParameterTable t{"channel",
-                                "Response: a spectrum (`band`, table, file, library name) or `product` of several; zero outside its table.",
-                                {required(text("name", "unique in the camera")), required(spectrum("response", "", "spectral response S(lambda)")),
-                                 spectrum("quantum_efficiency", "", "photoelectrons per photon, for `electrons`"),
-                                 within(course("exposure", "s", "exposure time of this channel, around the frame's time; its camera's unless given"), 1e-12, 1e6),
-                                 list("stages",
-                                      "of this channel alone: each in place of its camera's stage of that name, or besides them; `distortion` is the camera's", 0, 32),
-                                 any("gain", "for `volts`: in V/W of pixel flux or V/(W/m2) of focal-plane irradiance"),
-                                 any("output", "a quantity or a list of quantities (default radiance), see below")}};
+  static const ParameterTable t{
+      "channel",
+      "Response: a spectrum (`band`, table, file, library name) or `product` of several; zero outside its table.",
+      {required(text("name", "unique in the camera")), required(spectrum("response", "", "spectral response S(lambda)")),
+       spectrum("quantum_efficiency", "", "photoelectrons per photon, for `electrons`"),
+       within(course("exposure", "s", "exposure time of this channel, around the frame's time; its camera's unless given"), 1e-12, 1e6),
+       list("stages", "of this channel alone: each in place of its camera's stage of that name, or besides them; `distortion` is the camera's", 0, 32),
+       any("gain", "for `volts`: in V/W of pixel flux or V/(W/m2) of focal-plane irradiance"),
+       any("output", "a quantity or a list of quantities (default radiance), see below")}};
   return t;
 }
 
@@ -581,12 +587,13 @@ std::vector<ParameterTable> all() {
   addAll(mediumModels(), medium);
   for (const auto& t : {filmLayerTable(), refractiveIndexTable(), angleAxisTable(), texture(), emission(), transmission()}) every.push_back(t);
   addAll(lightModels(), light);
-  for (const auto& t :
-       {courseTable(), entity(), part(), recovery(), shape(), waypoint(), ends(), spin(), motionWaypoints(), motionRoute(), routePoint(), motionCsv(), motionBallistic(),
-        motionMissile(), wind(), geodetic(), camera(), cameraPreset(), film(), channel(), spectral(), spectralImage(), sensor(), probe()})
+  for (const auto& t : {courseTable(),     entity(),       part(),       recovery(),  shape(),           waypoint(),      ends(),   spin(),
+                        motionWaypoints(), motionRoute(),  routePoint(), motionCsv(), motionBallistic(), motionMissile(), wind(),   geodetic(),
+                        camera(),          cameraPreset(), film(),       channel(),   spectral(),        spectralImage(), sensor(), probe()})
     every.push_back(t);
   for (const auto& t : gimbalTables()) every.push_back(t);
-  for (const auto& t : {plume(), plumeNozzle(), plumeSpecies(), plumeGrid(), plumeArrays(), smoke(), flare(), flareDirection(), flareSequence()}) every.push_back(t);
+  for (const auto& t : {plume(), plumeNozzle(), plumeSpecies(), plumeGrid(), plumeArrays(), smoke(), flare(), flareDirection(), flareSequence()})
+    every.push_back(t);
   addAll(stageModels(), stageTable);
   addAll(commandModels(), commandTable);
   addAll(sinkModels(), sinkTable);

@@ -133,19 +133,24 @@ void requireReachable(const GimbalOptions& g, const TimeAxis& time, const Locati
                   "a gimbal with a lag or limits of rate or acceleration, whose servo decides 2000 times a second, over " +
                       (isStep ? brief(time.step_s) + " s from frame to frame" : brief(all_s) + " s from the first frame to the last"),
                   isStep ? "frames at most " + brief(kLongestStep_s) + " s apart ('rate: 0.001 Hz' of 'time')" : "at most " + brief(kLongest_s) + " s in all",
-                  isStep ? "raise the rate of 'time', or remove lag, rate and acceleration: it is then where it is demanded to be" : "ask for fewer frames or a higher rate, or remove lag, rate and acceleration");
+                  isStep ? "raise the rate of 'time', or remove lag, rate and acceleration: it is then where it is demanded to be"
+                         : "ask for fewer frames or a higher rate, or remove lag, rate and acceleration");
 }
 
-/// Within an exposure a picture is the mean of some; how many is found from where things are at its ends and its middle, which say nothing of a scan that comes round in between.
+/// Within an exposure a picture is the mean of some; how many is found from where things are at its ends and its middle, which say nothing of a scan that comes
+/// round in between.
 void requireSeen(const Scan& scan, const Camera& camera, const Location& where) {
   constexpr double kOwn = 0.5, kPartsATurn = 8.0, kMostParts = 256.0;  // turns; parts as of `exposure_parts`
   double exposure_s = camera.exposure_s;
   for (const auto& [channel, own] : camera.ownChannels) exposure_s = std::max(exposure_s, own.exposure_s.value_or(0.0));
   const double turns = std::max({scan.frequency_Hz, scan.secondFrequency_Hz, scan.lineRate_Hz}) * exposure_s, wanted = std::ceil(kPartsATurn * turns);
   if (scan.kind == Scan::Kind::None || !camera.motionBlur || turns <= kOwn || camera.exposureParts >= wanted) return;
-  throw UserError(where, "a scan that goes through " + brief(turns) + (scan.kind == Scan::Kind::Raster ? " lines" : " turns") + " within an exposure with motion_blur",
-                  wanted <= kMostParts ? "'exposure_parts' of the camera, " + brief(wanted) + " or more (8 a turn)" : "at most " + brief(kMostParts / kPartsATurn) + " in an exposure of 256 parts",
-                  wanted <= kMostParts ? "add 'exposure_parts: " + brief(wanted) + "', or shorten the exposure" : "shorten the exposure, slow the scan down, or give what it blurs to `point_spread`");
+  throw UserError(where,
+                  "a scan that goes through " + brief(turns) + (scan.kind == Scan::Kind::Raster ? " lines" : " turns") + " within an exposure with motion_blur",
+                  wanted <= kMostParts ? "'exposure_parts' of the camera, " + brief(wanted) + " or more (8 a turn)"
+                                       : "at most " + brief(kMostParts / kPartsATurn) + " in an exposure of 256 parts",
+                  wanted <= kMostParts ? "add 'exposure_parts: " + brief(wanted) + "', or shorten the exposure"
+                                       : "shorten the exposure, slow the scan down, or give what it blurs to `point_spread`");
 }
 
 std::string wordsOfField(const GimbalOptions& g) {

@@ -9,8 +9,8 @@ namespace pitviper {
 /// TrueProportional: a = N' V_c (w x r^), across the line of sight, flown as a whole: its part along the velocity changes the speed, as in the published
 /// engagement; PureProportional: a = N' w x v, across the velocity; w = r x v_rel / r^2 turns the line of
 /// sight, V_c is the closing speed (0 where the target opens). Source: Zarchan, Tactical and Strategic Missile Guidance, ch. 2 (law, and the listing of its
-/// two-dimensional engagement); Shneydor, Missile Guidance and Pursuit, ch. 5. Pursuit: velocity turns with the line of sight and towards it, a = w x v + K V (r^ - (r^ v^) v^): Shneydor, ch. 3, with a gain for the
-/// error.
+/// two-dimensional engagement); Shneydor, Missile Guidance and Pursuit, ch. 5. Pursuit: velocity turns with the line of sight and towards it, a = w x v + K V
+/// (r^ - (r^ v^) v^): Shneydor, ch. 3, with a gain for the error.
 enum class GuidanceLaw { TrueProportional, PureProportional, Pursuit };
 
 struct GuidanceOptions {

@@ -61,7 +61,8 @@ double largestSum(const std::vector<double>& cells, int width, int height, int a
   const auto at = [&](int x, int y) { return static_cast<std::size_t>(y * (width + 1) + x); };
   std::vector<double> upTo(static_cast<std::size_t>((width + 1) * (height + 1)), 0.0);
   for (int y = 0; y < height; ++y)
-    for (int x = 0; x < width; ++x) upTo[at(x + 1, y + 1)] = cells[static_cast<std::size_t>(y * width + x)] + upTo[at(x, y + 1)] + upTo[at(x + 1, y)] - upTo[at(x, y)];
+    for (int x = 0; x < width; ++x)
+      upTo[at(x + 1, y + 1)] = cells[static_cast<std::size_t>(y * width + x)] + upTo[at(x, y + 1)] + upTo[at(x + 1, y)] - upTo[at(x, y)];
   double most = 0.0;
   for (int y = 0; y == 0 || y + across <= height; ++y)
     for (int x = 0; x == 0 || x + across <= width; ++x) {
@@ -187,7 +188,8 @@ void TruthMeter::addField(TargetRow& row, std::size_t f, const WorldState& state
   for (std::size_t c = 0; c < channels; ++c) {
     std::vector<double> cells;
     for (const Row& r : rows)
-      cells.insert(cells.end(), r.ofCell.begin() + static_cast<long>(c * static_cast<std::size_t>(grid.width)), r.ofCell.begin() + static_cast<long>((c + 1) * static_cast<std::size_t>(grid.width)));
+      cells.insert(cells.end(), r.ofCell.begin() + static_cast<long>(c * static_cast<std::size_t>(grid.width)),
+                   r.ofCell.begin() + static_cast<long>((c + 1) * static_cast<std::size_t>(grid.width)));
     const double most = largestSum(cells, grid.width, grid.height, across);
     faces_sr.push_back(most > 0.0 ? std::abs(contrast[slotOf(c)]) / most * square_sr : 0.0);
   }

@@ -16,7 +16,8 @@ struct LayerCode {
   bool zeroIsNone = false;  ///< code 0 stands for no number
 };
 
-/// {"pitviper.scenario": ..., "pitviper.scenario_sha256": ..., "width", "height", "layers": [{"name", "unit", "type", "file", "low", "step", ...}], "attributes":
+/// {"pitviper.scenario": ..., "pitviper.scenario_sha256": ..., "width", "height", "layers": [{"name", "unit", "type", "file", "low", "step", ...}],
+/// "attributes":
 /// {...}}. What is not finite is null.
 std::string frameJson(const Frame& frame, const std::vector<LayerCode>& codes);
 

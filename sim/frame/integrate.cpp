@@ -42,8 +42,9 @@ BinningError errorOf(const std::vector<double>& value, const std::vector<double>
 
 /// What is said anew of the integrated frame.
 bool isReplaced(const std::string& name) {
-  for (const char* n : {"pitviper.version", "pitviper.focal_length_m", "pitviper.pitch_x_m", "pitviper.pitch_y_m", "pitviper.aperture_m",
-                        "pitviper.aperture_area_m2", "pitviper.exposure_s", "pitviper.spectral_image", "pitviper.sensor", "pitviper.sensor_sha256", kPictureAttribute, "expTime", "aperture"})
+  for (const char* n :
+       {"pitviper.version", "pitviper.focal_length_m", "pitviper.pitch_x_m", "pitviper.pitch_y_m", "pitviper.aperture_m", "pitviper.aperture_area_m2",
+        "pitviper.exposure_s", "pitviper.spectral_image", "pitviper.sensor", "pitviper.sensor_sha256", kPictureAttribute, "expTime", "aperture"})
     if (name == n) return true;
   return false;
 }

@@ -152,7 +152,8 @@ void toApparentTemperatures(std::vector<float>& values, const ChannelOutput& out
 void addOutputs(Frame& frame, const Camera& camera, const CameraImage& image) {
   for (size_t o = 0; o < camera.outputs.size(); ++o) {
     frame.layers.push_back({camera.outputs[o].layer(), camera.outputs[o].unit, valuesOf(nameOf(frame.camera, frame.number), camera.outputs[o], o, image)});
-    if (camera.outputs[o].asTemperature) toApparentTemperatures(frame.layers.back().pixels, camera.outputs[o], image.solidAngles->projected_sr, image.exposures_s.of(camera.outputs[o].channel));
+    if (camera.outputs[o].asTemperature)
+      toApparentTemperatures(frame.layers.back().pixels, camera.outputs[o], image.solidAngles->projected_sr, image.exposures_s.of(camera.outputs[o].channel));
   }
 }
 
@@ -188,7 +189,8 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
   const Pinhole& p = eye.pinhole;
   addOptics(frame, p, longestExposure_s(camera, eye.exposures_s));
   for (const ChannelOutput& o : camera.outputs)
-    if (const std::string own = "pitviper.exposure_s." + o.channel; !camera.ownChannels.empty() && (frame.attributes.empty() || frame.attributes.back().name != own))
+    if (const std::string own = "pitviper.exposure_s." + o.channel;
+        !camera.ownChannels.empty() && (frame.attributes.empty() || frame.attributes.back().name != own))
       add(own, eye.exposures_s.of(o.channel));
   addStandard(frame, sim, camera, eye);
   addSensor(frame, camera, eye);
@@ -230,13 +232,15 @@ std::vector<SensorPoint> pointsOf(const Camera& camera, const CameraImage& image
   for (const FilmPoint& p : image.points)
     for (size_t o = 0; o < camera.outputs.size(); ++o)
       if (image.slotOfOutput[o] == p.slot)
-        points.push_back({p.column, p.row, o, camera.outputs[o].scale * (camera.outputs[o].perExposure ? image.exposures_s.of(camera.outputs[o].channel) : 1.0) * p.flux});
+        points.push_back(
+            {p.column, p.row, o, camera.outputs[o].scale * (camera.outputs[o].perExposure ? image.exposures_s.of(camera.outputs[o].channel) : 1.0) * p.flux});
   return points;
 }
 
 /// The part of the film that is read out; places in what is said of it follow.
 void cutOut(Frame& frame, CountMarks& marks, const glm::ivec4& window) {
-  const auto left = static_cast<size_t>(window.x), top = static_cast<size_t>(window.y), width = static_cast<size_t>(window.z), height = static_cast<size_t>(window.w);
+  const auto left = static_cast<size_t>(window.x), top = static_cast<size_t>(window.y), width = static_cast<size_t>(window.z),
+             height = static_cast<size_t>(window.w);
   const auto cut = [&](auto& pixels) {
     std::remove_reference_t<decltype(pixels)> part;
     part.reserve(width * height);
@@ -256,8 +260,8 @@ void cutOut(Frame& frame, CountMarks& marks, const glm::ivec4& window) {
     for (double* x : {&t.column, &t.left, &t.right}) *x -= window.x;
     for (double* y : {&t.row, &t.top, &t.bottom}) *y -= window.y;
   }
-  frame.attributes.push_back({"pitviper.window", std::vector<double>{static_cast<double>(window.x), static_cast<double>(window.y), static_cast<double>(window.z),
-                                                                      static_cast<double>(window.w)}});
+  frame.attributes.push_back({"pitviper.window", std::vector<double>{static_cast<double>(window.x), static_cast<double>(window.y),
+                                                                     static_cast<double>(window.z), static_cast<double>(window.w)}});
 }
 
 /// Of the axis: the middle of the film, wherever the part is that is read out.
@@ -279,7 +283,8 @@ SensorTick sensorTick(const Simulation& sim, const Camera& camera, const CameraI
 
 }  // namespace
 
-std::vector<std::vector<float>> sensed(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number, SensorChain& chain) {
+std::vector<std::vector<float>> sensed(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number,
+                                       SensorChain& chain) {
   std::vector<std::vector<float>> drawn;
   for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(nameOf(camera.name, number), camera.outputs[o], o, image));
   return chain.run(std::move(drawn), image.solidAngles->projected_sr, sensorTick(sim, camera, image, state, number), pointsOf(camera, image));

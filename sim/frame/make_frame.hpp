@@ -8,8 +8,8 @@
 namespace pitviper {
 
 /// Turns integrals into quantities: value = scale x integral [x projected solid angle] [x exposure time], which then go through the sensor's stages
-/// (`chain`; the image is then one of drawnCamera()). `targets`, `terms`: as TruthMeter has them. Adds truth layers and metadata (pose, optics, bands, where each entity is in the picture, the error its
-/// plan expects).
+/// (`chain`; the image is then one of drawnCamera()). `targets`, `terms`: as TruthMeter has them. Adds truth layers and metadata (pose, optics, bands, where
+/// each entity is in the picture, the error its plan expects).
 Frame makeFrame(const Simulation& simulation, const Camera& camera, const CameraImage& image, const WorldState& state, int number,
                 SensorChain* chain = nullptr, std::vector<TargetRow> targets = {}, std::vector<FrameLayer> terms = {});
 /// The stages of a picture alone: pictures of the film's pixels, output by output. A chain whose stages remember takes frames before its first that way.

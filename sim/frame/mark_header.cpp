@@ -13,7 +13,8 @@ struct Kind {
   const char* name;
   int MarkTally::*number;
 };
-constexpr std::array<Kind, 3> kKinds{Kind{CountMark::Full, ".full", &MarkTally::full}, {CountMark::Lowest, ".lowest", &MarkTally::lowest}, {CountMark::Bad, ".bad", &MarkTally::bad}};
+constexpr std::array<Kind, 3> kKinds{
+    Kind{CountMark::Full, ".full", &MarkTally::full}, {CountMark::Lowest, ".lowest", &MarkTally::lowest}, {CountMark::Bad, ".bad", &MarkTally::bad}};
 
 }  // namespace
 

@@ -1,6 +1,6 @@
 // Frames as bare bytes behind a short header, for programs that have no library for anything else. All little-endian:
-//   offset 0: "PITVRAW1"; 8: uint32 bytes of the whole header, a multiple of 64; 12: uint32 width; 16: uint32 height; 20: uint32 number of layers; 24: uint64 0;
-//   32: JSON (frame_json.hpp) with the layers' names, units and types in their order, filled up with spaces.
+//   offset 0: "PITVRAW1"; 8: uint32 bytes of the whole header, a multiple of 64; 12: uint32 width; 16: uint32 height; 20: uint32 number of layers; 24: uint64
+//   0; 32: JSON (frame_json.hpp) with the layers' names, units and types in their order, filled up with spaces.
 // After the header the layers one after another, row by row from the top: "uint16" (counts) or "float32".
 #include <bit>
 #include <cstring>

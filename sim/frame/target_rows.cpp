@@ -17,7 +17,8 @@ void finishTargets(Frame& frame, const CountMarks& marks) {
       const int left = std::max(0, static_cast<int>(t.left) - 1), right = std::min(frame.width - 1, static_cast<int>(t.right) + 1),
                 top = std::max(0, static_cast<int>(t.top) - 1), bottom = std::min(frame.height - 1, static_cast<int>(t.bottom) + 1);
       for (int y = top; y <= bottom; ++y)
-        for (int x = left; x <= right; ++x) c.saturated += own->second[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)] == CountMark::Full;
+        for (int x = left; x <= right; ++x)
+          c.saturated += own->second[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)] == CountMark::Full;
     }
     const std::string name = "target." + t.name + ".";
     frame.attributes.push_back({name + "place", std::vector<double>{t.column, t.row, t.left, t.top, t.right, t.bottom}});
@@ -32,8 +33,8 @@ std::string targetTableHead(const std::vector<TargetRow>& rows) {
       "frame,time [s],name,kind,column,row,left,top,right,bottom,range [m],range rate [m/s],sight right [rad/s],sight up [rad/s],visible";
   if (!rows.empty())
     for (const TargetRow::Channel& c : rows.front().channels)
-      text += "," + c.channel + ".own [" + c.unit + "]," + c.channel + ".total [" + c.unit + "]," + c.channel + ".contrast [" + c.unit + "]," + c.channel + ".snr," +
-              c.channel + ".saturated";
+      text += "," + c.channel + ".own [" + c.unit + "]," + c.channel + ".total [" + c.unit + "]," + c.channel + ".contrast [" + c.unit + "]," + c.channel +
+              ".snr," + c.channel + ".saturated";
   return text + "\n";
 }
 

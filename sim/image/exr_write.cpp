@@ -133,7 +133,8 @@ std::string encode(const ExrImage& image, ExrCompression compression) {
   for (std::size_t k = 0; k < 3 && !picture.empty(); ++k) {
     constexpr std::array<const char*, 3> names = {"R", "G", "B"};
     header.channels().insert(names[k], Imf::Channel(Imf::HALF));
-    frame.insert(names[k], Imf::Slice(Imf::HALF, reinterpret_cast<char*>(picture.data() + k), 3 * sizeof(half), 3 * sizeof(half) * static_cast<std::size_t>(image.width)));
+    frame.insert(names[k], Imf::Slice(Imf::HALF, reinterpret_cast<char*>(picture.data() + k), 3 * sizeof(half),
+                                      3 * sizeof(half) * static_cast<std::size_t>(image.width)));
   }
   MemoryWriter stream;
   {

@@ -61,8 +61,8 @@ class MemoryFile {
       for (const Attribute* c : columns) titles.push_back(c->name.substr(c->name.rfind('.') + 1));
       for (std::size_t k = 0; k < columns.size(); ++k) ofTitles.push_back(titles[k].data()), ofForms.push_back(forms[k].data());
       const auto& first = std::get<std::vector<float>>(columns.front()->value);
-      fits_create_tbl(file_, BINARY_TBL, static_cast<long long>(first.size()), static_cast<int>(columns.size()), ofTitles.data(), ofForms.data(), nullptr, name.c_str(),
-                      &status_);
+      fits_create_tbl(file_, BINARY_TBL, static_cast<long long>(first.size()), static_cast<int>(columns.size()), ofTitles.data(), ofForms.data(), nullptr,
+                      name.c_str(), &status_);
       for (std::size_t k = 0; k < columns.size(); ++k) {
         std::vector<float> values = std::get<std::vector<float>>(columns[k]->value);
         values.resize(first.size());

@@ -18,9 +18,9 @@ struct FitsImage {
   std::vector<Attribute> keywords = {};  ///< of it alone
 };
 
-/// The first image is the primary one, which has the keywords too; others follow as extensions. Keywords longer than 8 letters become HIERARCH cards, long texts
-/// go on in CONTINUE cards, lists are numbered `NAME.1`, `NAME.2`, ..., curves become binary tables behind the images. Written atomically. Errors: OutputError if it cannot be stored;
-/// std::invalid_argument for images that are not width * height, or none.
+/// The first image is the primary one, which has the keywords too; others follow as extensions. Keywords longer than 8 letters become HIERARCH cards, long
+/// texts go on in CONTINUE cards, lists are numbered `NAME.1`, `NAME.2`, ..., curves become binary tables behind the images. Written atomically. Errors:
+/// OutputError if it cannot be stored; std::invalid_argument for images that are not width * height, or none.
 void writeFits(const std::filesystem::path& path, int width, int height, const std::vector<FitsImage>& images, const std::vector<Attribute>& keywords,
                const MayReplace& mayReplace = {});
 

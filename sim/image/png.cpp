@@ -201,7 +201,8 @@ void write(const std::filesystem::path& path, Job& job, std::size_t rowBytes, co
 Job jobOf(int width, int height, std::size_t count, std::size_t each, int bits, int colour) {
   const int limit = static_cast<int>(maxSide);
   if (width < 1 || height < 1 || width > limit || height > limit) throw std::invalid_argument("writePng: a side is not in 1..16384");
-  if (count != each * static_cast<std::size_t>(width) * static_cast<std::size_t>(height)) throw std::invalid_argument("writePng: values are not width * height");
+  if (count != each * static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
+    throw std::invalid_argument("writePng: values are not width * height");
   Job job;
   job.width = static_cast<png_uint_32>(width);
   job.height = static_cast<png_uint_32>(height);

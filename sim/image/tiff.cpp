@@ -56,8 +56,8 @@ using Tiff = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
 bool writePage(TIFF* tiff, std::uint32_t width, std::uint32_t height, const TiffPage& page) {
   const std::uint16_t bits = page.isWhole ? 16 : 32;
-  bool good = TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, width) && TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, height) && TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1) &&
-              TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits) &&
+  bool good = TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, width) && TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, height) &&
+              TIFFSetField(tiff, TIFFTAG_SAMPLESPERPIXEL, 1) && TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, bits) &&
               TIFFSetField(tiff, TIFFTAG_SAMPLEFORMAT, page.isWhole ? SAMPLEFORMAT_UINT : SAMPLEFORMAT_IEEEFP) &&
               TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) && TIFFSetField(tiff, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) &&
               TIFFSetField(tiff, TIFFTAG_COMPRESSION, COMPRESSION_NONE) && TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, height) &&

@@ -57,8 +57,8 @@ struct Courses {
 /// A command's time and a frame's are the same where they lie within this part of a tick: sums of steps round.
 constexpr double kSameTick = 1e-6;
 
-/// Puts a body somewhere, to go on with a velocity. One that is not told is 0, but of what follows that body (an exhaust, a flare that it ejects) it is that since
-/// the move before, where that is no longer ago than kSameWay_s and no faster than kFastest_m_s: hosts that send a place a frame seldom send velocities.
+/// Puts a body somewhere, to go on with a velocity. One that is not told is 0, but of what follows that body (an exhaust, a flare that it ejects) it is that
+/// since the move before, where that is no longer ago than kSameWay_s and no faster than kFastest_m_s: hosts that send a place a frame seldom send velocities.
 void move(Courses& courses, int entity, double at_s, const glm::dvec3& position, const std::optional<glm::dvec3>& velocity);
 constexpr double kSameWay_s = 1.0, kFastest_m_s = 1e4;
 

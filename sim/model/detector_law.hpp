@@ -66,7 +66,8 @@ struct DetectorLaw {
   double flickerVariance(double step_s) const { return 2.0 * sigmaTvh * sigmaTvh * flickerCorner_Hz * step_s * std::log(2.0); }
   /// Of read-out from frame to frame, 1/f noise and the converter's steps included [electron^2].
   double readoutVariance(double step_s) const {
-    return sigmaTvh * sigmaTvh + sigmaTv * sigmaTv + sigmaTh * sigmaTh + sigmaT * sigmaT + kFlickerOctaves * flickerVariance(step_s) + 1.0 / (12.0 * gain * gain);
+    return sigmaTvh * sigmaTvh + sigmaTv * sigmaTv + sigmaTh * sigmaTh + sigmaT * sigmaT + kFlickerOctaves * flickerVariance(step_s) +
+           1.0 / (12.0 * gain * gain);
   }
   double mostCount() const { return static_cast<double>((1 << bits) - 1); }
   /// Electrons at which it no longer tells: the well is full, or the highest count. `factor`: of its gain.

@@ -9,8 +9,8 @@ namespace pitviper {
 
 /// Optical depth = absorption x length of path inside the body (of a field: x amount, see sim/model/field.hpp). It emits as a black body of its temperature
 /// (Kirchhoff, for the part that is not scattered), and sends `radiance` besides: what it would show at great depth without emission.
-/// Where it has an albedo, that part of its extinction scatters: sunlight once, with the phase function of Henyey and Greenstein, and ambient light as if it came
-/// evenly from all around.
+/// Where it has an albedo, that part of its extinction scatters: sunlight once, with the phase function of Henyey and Greenstein, and ambient light as if it
+/// came evenly from all around.
 struct Medium {
   Spectrum absorption_per_m;         ///< extinction where there is an albedo
   std::optional<Spectrum> radiance{};  ///< [W/(m2 sr um)]

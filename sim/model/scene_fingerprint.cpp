@@ -83,8 +83,8 @@ void addTo(Fingerprint& f, const MaterialStates& s) {
 
 void addTo(Fingerprint& f, const std::vector<ChannelOutput>& outputs) {
   f.add(static_cast<double>(outputs.size()));
-  for (const auto& [channel, quantity, unit, where, kernel, scale, perEtendue, perExposure, behindOptics, onFilm, onFilmScale, detected, asTemperature, asSignalToNoise, asDisplay, asMark,
-                    temperature, bandLow_um, bandHigh_um, curves, cut, apart] : outputs) {
+  for (const auto& [channel, quantity, unit, where, kernel, scale, perEtendue, perExposure, behindOptics, onFilm, onFilmScale, detected, asTemperature,
+                    asSignalToNoise, asDisplay, asMark, temperature, bandLow_um, bandHigh_um, curves, cut, apart] : outputs) {
     f.add(channel).add(apart).add(quantity).add(scale).add(perEtendue).add(perExposure);
     pitviper::addTo(f, kernel);
   }
@@ -132,8 +132,8 @@ void addTo(Fingerprint& f, const Material& m) {
 }
 
 void addTo(Fingerprint& f, const Simulation& sim) {
-  const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, wind_m_s, textures, materials, entities, lights, fields, sun, ambient, surroundings,
-               background, ground, air, cameras, probes, commands, stores, sinks] = sim;
+  const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, wind_m_s, textures, materials, entities, lights, fields, sun,
+               ambient, surroundings, background, ground, air, cameras, probes, commands, stores, sinks] = sim;
   f.add(static_cast<double>(seed)).add(static_cast<int>(mode)).add(shadows);
   const auto& [latitude_rad, longitude_rad, height_m] = frame.origin();
   f.add(latitude_rad).add(longitude_rad).add(height_m);
@@ -170,8 +170,9 @@ void addTo(Fingerprint& f, const Simulation& sim) {
 }
 
 void addTo(Fingerprint& f, const Camera& c) {
-  const auto& [name, where, pinhole, mount, exposure_s, focalLengthOverTime_m, exposureOverTime_s, near_m, samples, motionBlur, exposureParts, pointsApart, binning, window, sharesShading, smallBody_px, zoomedSamples, outlineAccuracy, textureAccuracy, spectral,
-               learnt, plan, planFile, outputs, stages, ownChannels, spectralImage, truth, follower] = c;
+  const auto& [name, where, pinhole, mount, exposure_s, focalLengthOverTime_m, exposureOverTime_s, near_m, samples, motionBlur, exposureParts, pointsApart,
+               binning, window, sharesShading, smallBody_px, zoomedSamples, outlineAccuracy, textureAccuracy, spectral, learnt, plan, planFile, outputs, stages,
+               ownChannels, spectralImage, truth, follower] = c;
   const auto& [width, height, focalLength_m, pitchX_m, pitchY_m, apertureDiameter_m] = pinhole;
   f.add(name).add(width).add(height).add(focalLength_m).add(pitchX_m).add(pitchY_m).add(apertureDiameter_m);
   addTo(f, focalLengthOverTime_m);

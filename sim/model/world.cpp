@@ -63,7 +63,8 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
     for (const Entity& e : sim.entities) state.offsets_m.push_back(e.mesh ? e.mesh->offset_m : glm::dvec3(0.0));
   for (const Entity& e : sim.entities) {  // a parent comes before its children
     const int index = static_cast<int>(state.entities.size());
-    const bool there = e.lifetime.has(time_s) && e.motion.presentAt(routeTime(courses, index, time_s)) && (e.parent < 0 || state.isThere(static_cast<size_t>(e.parent)));
+    const bool there =
+        e.lifetime.has(time_s) && e.motion.presentAt(routeTime(courses, index, time_s)) && (e.parent < 0 || state.isThere(static_cast<size_t>(e.parent)));
     if (!there) state.absent.resize(sim.entities.size(), 0);
     if (!there) state.absent[static_cast<size_t>(index)] = 1;
     const Pose body = carried(e.parent, ownPose(sim, courses, index, time_s));
@@ -71,7 +72,8 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
     if (!sim.fields.empty() && isMoved(sim, courses, index)) state.velocities[index] = velocityOf(sim, courses, index, time_s);
     std::vector<double>& temperatures = state.temperatures_K.emplace_back();
     for (const Surface& s : e.surfaces)
-      temperatures.push_back(valueOf(courses.temperatures_K, std::pair(index, static_cast<int>(temperatures.size())), time_s, [&] { return s.temperatureAt_K(time_s); }));
+      temperatures.push_back(
+          valueOf(courses.temperatures_K, std::pair(index, static_cast<int>(temperatures.size())), time_s, [&] { return s.temperatureAt_K(time_s); }));
   }
   for (const PointLight& l : sim.lights) {
     const int index = static_cast<int>(state.lights.size());
@@ -166,7 +168,9 @@ glm::dvec3 velocityOf(const Simulation& sim, const Courses& courses, int entity,
   const Entity& e = sim.entities[static_cast<size_t>(entity)];
   const auto moved = courses.moved.find(entity);
   const double at = routeTime(courses, entity, time_s);
-  const double rate = courses.routeTimes_s.count(entity) ? (routeTime(courses, entity, time_s + kApart_s) - routeTime(courses, entity, time_s - kApart_s)) / (2.0 * kApart_s) : 1.0;
+  const double rate = courses.routeTimes_s.count(entity)
+                          ? (routeTime(courses, entity, time_s + kApart_s) - routeTime(courses, entity, time_s - kApart_s)) / (2.0 * kApart_s)
+                          : 1.0;
   const glm::dvec3 own = moved != courses.moved.end() ? moved->second.velocity : rate * e.motion.velocityAt(at);
   if (e.parent < 0) return own;
   const glm::dvec3 place = ownPose(sim, courses, entity, time_s).position;

@@ -20,7 +20,8 @@ glm::dvec3 velocityOf(const Simulation& simulation, int entity, double time_s);
 /// The same as commands have it.
 Pose poseOf(const Simulation& simulation, const Courses& courses, int entity, double time_s);
 glm::dvec3 velocityOf(const Simulation& simulation, const Courses& courses, int entity, double time_s);
-/// Where a plan has to look too: as advance(), and what commands may eject burns, unless the scenario's have ejected it. `look`: of several, each finds it at another age.
+/// Where a plan has to look too: as advance(), and what commands may eject burns, unless the scenario's have ejected it. `look`: of several, each finds it at
+/// another age.
 WorldState withEjected(const Simulation& simulation, double time_s, int look);
 /// Before and after which it is not there, for its own sake or its carriers'; infinite where nothing says so.
 Lifetime lifetimeOf(const Simulation& simulation, int entity);

@@ -48,7 +48,8 @@ class GroupStep {
   Eigen::VectorXd rootOfPivot_;  ///< the root of D, 0 where it is nothing but rounding,
   Eigen::VectorXi order_;        ///< P: [place] -> (shape, group), and
   Eigen::MatrixXd byRoots_;      ///< slopes by v [v, product]
-  Eigen::MatrixXd normal_, normalOfExtinctions_;  ///< sums of products of slopes by unknowns, or by products and by the two kinds of unknowns; made when asked for
+  Eigen::MatrixXd normal_,
+      normalOfExtinctions_;      ///< sums of products of slopes by unknowns, or by products and by the two kinds of unknowns; made when asked for
   double shareCurvature_ = 0.0;  ///< sum of squares of the slopes by roots
   Eigen::MatrixXd shareStep_, extinctionStep_;
 };

@@ -154,7 +154,8 @@ std::vector<ScatteringCheck::Line> ScatteringCheck::linesOver(const WorldState& 
     const RaySun sun{glm::dot(sim_.sun->toSun, up), glm::dot(direction, sim_.sun->toSun)};
     SunlitAir air(*sim_.air, ray, sim_.air->stations(ray, end ? end->distance : physics::kFar), plan_.sunLegs.get(), sun);
     const LightLeg leg = end ? lightLeg(sim_, state, *end, sim_.lights.size()) : LightLeg{};
-    lines.push_back({end, end ? temperatureAt(sim_, state, *end) : 0.0, turned(direction), end ? turned(end->normal) : glm::dvec3(0, 0, 1), std::move(air), sun.cosScatter, leg, sim_.air->powered(leg.air)});
+    lines.push_back({end, end ? temperatureAt(sim_, state, *end) : 0.0, turned(direction), end ? turned(end->normal) : glm::dvec3(0, 0, 1), std::move(air),
+                     sun.cosScatter, leg, sim_.air->powered(leg.air)});
   }
   return lines;
 }

@@ -22,8 +22,8 @@ class ScatteringCheck {
   /// Both must outlive it. `plan`: of the camera's outputs. Nothing to say without layered air in sunlight.
   ScatteringCheck(const Simulation& simulation, const Camera& camera, const Plan& plan);
   /// Channels that the sun lights and in which some line of sight would be brighter by more than the plan's accuracy, or 1 % where it has none, at a time:
-  /// five lines over the film, photons followed back from them through level air over the ground that lies below the camera (the earth under a small roof). Shadows of bodies are not asked
-  /// for; haze scatters as the picture's own does (tests/physics/test_scattered_again.cpp).
+  /// five lines over the film, photons followed back from them through level air over the ground that lies below the camera (the earth under a small roof).
+  /// Shadows of bodies are not asked for; haze scatters as the picture's own does (tests/physics/test_scattered_again.cpp).
   std::vector<ScatteredAgain> at(const WorldState& state) const;
   bool looks() const { return !channels_.empty(); }  ///< false: at() has nothing to say, whenever
 

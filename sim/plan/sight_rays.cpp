@@ -82,7 +82,9 @@ int SightRays::someFrame() {
   return static_cast<int>(static_cast<long long>(frame) * kFieldFrames / frames) * (frames - 1) / (kFieldFrames - 1);
 }
 
-void SightRays::cast(SightRay& ray) const { ray.line.hits = castRay(simulation_, *ray.state, ray.line.origin, ray.line.direction, ray.nearest_m, &drawn_, false, kPlannedFieldSteps); }
+void SightRays::cast(SightRay& ray) const {
+  ray.line.hits = castRay(simulation_, *ray.state, ray.line.origin, ray.line.direction, ray.nearest_m, &drawn_, false, kPlannedFieldSteps);
+}
 
 /// Of a camera that a gimbal points: half where its mount looks, half anywhere in the gimbal's field.
 SightRay SightRays::startAt(int frame) {
@@ -270,7 +272,8 @@ std::vector<SightRay> SightRays::ofSmallBodies(int count) {
     const SightRay start = startAt(frame);
     std::vector<size_t> small;
     for (size_t s = 0; s < surfaces_.size(); ++s)
-      if (start.state->isThere(surfaces_[s].first) && isSmall(start, simulation_.entities[surfaces_[s].first], start.state->entities[surfaces_[s].first])) small.push_back(s);
+      if (start.state->isThere(surfaces_[s].first) && isSmall(start, simulation_.entities[surfaces_[s].first], start.state->entities[surfaces_[s].first]))
+        small.push_back(s);
     for (int n = 0; !small.empty() && n < count / frames; ++n)
       for (int tries = 0; tries < kTries; ++tries)
         if (auto ray = aimedAt(frame, small[dice_.below(small.size())], false)) {

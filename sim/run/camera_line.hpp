@@ -24,13 +24,14 @@ class CameraLine {
   CameraLine(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
              const std::function<void(double share)>& planning, bool allRungs = false);
 
-  /// Detectors that remember see so many frames before the first, which nobody gets; a follower that looks at its own pictures all from the scenario's first on.
+  /// Detectors that remember see so many frames before the first, which nobody gets; a follower that looks at its own pictures all from the scenario's first
+  /// on.
   void warmUp(int first);
   /// Every rung draws a picture that nobody gets: the first frame waits for no compiler.
   void prepare(const StateAt& stateAt, double time_s);
 
-  /// Begins a frame's picture; the caller may do other work before finish(). `number`: of the frame, in rising order: what points the camera ticks; without, the
-  /// camera looks as its mount has it.
+  /// Begins a frame's picture; the caller may do other work before finish(). `number`: of the frame, in rising order: what points the camera ticks; without,
+  /// the camera looks as its mount has it.
   void begin(const StateAt& stateAt, double time_s, std::optional<int> number = {});
   /// Its picture. `number`: of the frame; given it is audited (`isFirst`: of its run).
   CameraImage finish(std::optional<int> audited = {}, bool isFirst = false);

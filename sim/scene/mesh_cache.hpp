@@ -1,6 +1,6 @@
 #pragma once
-// Meshes in our own binary form, in which imported ones are kept between runs. A cache file is a 32 byte header (magic and version, size and checksum of what follows), the names and keys of files that the
-// imported one names, and the arrays of struct Mesh in this machine's byte order.
+// Meshes in our own binary form, in which imported ones are kept between runs. A cache file is a 32 byte header (magic and version, size and checksum of what
+// follows), the names and keys of files that the imported one names, and the arrays of struct Mesh in this machine's byte order.
 #include <cstdint>
 #include <functional>
 #include <optional>

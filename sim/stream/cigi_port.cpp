@@ -23,7 +23,8 @@ constexpr std::int32_t kOldest = 1000;
 
 class CigiPort final : public CommandPort {
  public:
-  CigiPort(const std::string& address, bool steps, const Simulation& simulation, CommandInbox& inbox) : address_(address), steps_(steps), world_(simulation), inbox_(inbox) {
+  CigiPort(const std::string& address, bool steps, const Simulation& simulation, CommandInbox& inbox)
+      : address_(address), steps_(steps), world_(simulation), inbox_(inbox) {
     const SocketPlace place = readSocketPlace(address, "--cigi");
     sockaddr_in at{};
     at.sin_family = AF_INET;

@@ -80,7 +80,8 @@ void CigiWorld::of(const CigiEntityPose& p, std::vector<Command>& commands, cons
   if (e < 0) return;
   const int parent = simulation_.entities[static_cast<std::size_t>(e)].parent;
   if (p.attached ? p.parent - 1 != parent : parent >= 0)
-    return refuse("entity " + std::to_string(p.entity) + (parent < 0 ? " stands by itself" : " is attached to entity " + std::to_string(parent + 1)) + " in the scenario, and stays so");
+    return refuse("entity " + std::to_string(p.entity) + (parent < 0 ? " stands by itself" : " is attached to entity " + std::to_string(parent + 1)) +
+                  " in the scenario, and stays so");
   if (p.state != CigiEntityState::Active) return refuse("entity " + std::to_string(p.entity) + " is to be gone, and every body of the scenario stays in it");
   const LocalFrame& frame = simulation_.frame;
   const glm::dvec3 position = p.attached ? p.position : frame.toLocal(p.geodetic);
@@ -134,7 +135,8 @@ void CigiWorld::of(const CigiView& v, std::vector<Command>& commands, const Refu
   for (int c : cameras(v.view, v.group, refuse)) {
     const Camera& camera = simulation_.cameras[static_cast<std::size_t>(c)];
     if (v.entity != camera.mount.carrier + 1) {
-      refuse("camera '" + camera.name + "' goes with entity " + std::to_string(camera.mount.carrier + 1) + " in the scenario, not with " + std::to_string(v.entity));
+      refuse("camera '" + camera.name + "' goes with entity " + std::to_string(camera.mount.carrier + 1) + " in the scenario, not with " +
+             std::to_string(v.entity));
       continue;
     }
     CigiOffsets& offsets = viewOffsets_[c];
@@ -168,7 +170,8 @@ void CigiWorld::of(const CigiViewDefinition& d, std::vector<Command>& commands, 
   const std::optional<double> wide_rad = d.horizontalFieldOfView_rad();
   if (!wide_rad) return refuse("a view that is not as wide to the left as to the right, or whose width is not given");
   for (int c : cameras(d.view, d.group, refuse))
-    worded({{"command", "look"}, {"camera", simulation_.cameras[static_cast<std::size_t>(c)].name}, {"field_of_view", number(*wide_rad) + " rad"}}, commands, refuse);
+    worded({{"command", "look"}, {"camera", simulation_.cameras[static_cast<std::size_t>(c)].name}, {"field_of_view", number(*wide_rad) + " rad"}}, commands,
+           refuse);
 }
 
 void CigiWorld::of(const CigiSensor& s, std::vector<Command>& commands, const Refuse& refuse) {
@@ -185,7 +188,8 @@ void CigiWorld::of(const CigiComponent& c, std::vector<Command>& commands, const
     if (e < 0) return;
     const Entity& body = simulation_.entities[static_cast<std::size_t>(e)];
     if (!value) return refuse("a temperature that is no number");
-    if (c.component > static_cast<int>(body.surfaces.size())) return refuse("component " + std::to_string(c.component) + " of a body of " + std::to_string(body.surfaces.size()) + " parts");
+    if (c.component > static_cast<int>(body.surfaces.size()))
+      return refuse("component " + std::to_string(c.component) + " of a body of " + std::to_string(body.surfaces.size()) + " parts");
     std::vector<std::pair<std::string, std::string>> words{{"command", "temperature"}, {"entity", body.name}, {"value", number(*value) + " K"}};
     if (c.component > 0) words.emplace_back("part", body.mesh->parts[body.surfaces[static_cast<std::size_t>(c.component - 1)].meshPart].name);
     return worded(words, commands, refuse);

@@ -12,7 +12,8 @@ namespace pitviper {
 /// Numbers that hosts give things:
 ///   entities  1, 2, ... in the order of the scenario; what is attached there is attached here, and to the same
 ///   parts     1, 2, ... what is attached to an entity, in that order; offsets and angles are from where the scenario has it
-///   views     1, 2, ... cameras in the order of the scenario, and 0 is the first; group 0, or all cameras. Offsets are from the body that carries it; of a camera that stands
+///   views     1, 2, ... cameras in the order of the scenario, and 0 is the first; group 0, or all cameras. Offsets are from the body that carries it; of a
+///   camera that stands
 ///             by itself entity 0: x north, y east, z down at the scenario's origin, angles from there
 ///   sensors   of a view: gain 0.5 is the scenario's, 0 a tenth, 1 ten times; automatic gain is the scenario's
 ///   components of entities (class 0, instance: the entity): 0 the body, 1, 2, ... its parts: first word, float, temperature [K];

@@ -20,8 +20,8 @@ int named(const Record& r, const char* key, const std::vector<T>& all) {
 }  // namespace
 
 Registry<CommandModel>& commandModels() {
-  static Registry<CommandModel> all("command", {moveCommand(), speedCommand(), throttleCommand(), ejectCommand(), lookCommand(), pointCommand(), temperatureCommand(),
-                                                   lightCommand(), triggerCommand(), gainCommand()});
+  static Registry<CommandModel> all("command", {moveCommand(), speedCommand(), throttleCommand(), ejectCommand(), lookCommand(), pointCommand(),
+                                                temperatureCommand(), lightCommand(), triggerCommand(), gainCommand()});
   return all;
 }
 

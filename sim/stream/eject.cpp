@@ -15,7 +15,8 @@ CommandModel ejectCommand() {
     return [index](Courses& courses, double at_s) { courses.toEject.emplace_back(index, at_s); };
   };
   return {"eject",
-          "Ejects a flare from where its carrier is then, with its velocity: that of its route, or of the `move` that put it there (where that has none, as fast as it came since the move before). "
+          "Ejects a flare from where its carrier is then, with its velocity: that of its route, or of the `move` that put it there (where that has none, as "
+          "fast as it came since the move before). "
           "Ejected once more it begins anew, and the one before is gone.",
           keys, read};
 }

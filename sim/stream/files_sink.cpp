@@ -11,7 +11,9 @@ class FilesSink final : public Sink {
     options_.mayReplace = place_.mayReplace;
   }
   void start() override { ensureWritableFolder(place_.folder); }
-  void take(const std::shared_ptr<const Frame>& frame) override { format_.write(place_.folder / (frameFileStem(*frame) + format_.extension), *frame, options_); }
+  void take(const std::shared_ptr<const Frame>& frame) override {
+    format_.write(place_.folder / (frameFileStem(*frame) + format_.extension), *frame, options_);
+  }
   std::vector<std::filesystem::path> filesOf(const std::string& camera, int number, const std::string& kind) const override {
     std::vector<std::filesystem::path> files{place_.folder / (frameFileStem(camera, number, kind) + format_.extension)};
     if (!format_.beside.empty()) files.push_back(place_.folder / (frameFileStem(camera, number, kind) + format_.beside));
@@ -42,7 +44,8 @@ SinkModel filesSink() {
   return {"files",
           "Every frame as a file, `<camera>_<frame>`, with all its layers. This, as EXR, is what a run writes where no sink is given.",
           {folderParameter(), withDefault(choice("format", formatNames(), formatWords()), "exr"),
-           withDefault(choice("compression", {"none", "zip"}, "of EXR, without loss: a fifth to two fifths less room, and twenty times as long to write"), "none"),
+           withDefault(choice("compression", {"none", "zip"}, "of EXR, without loss: a fifth to two fifths less room, and twenty times as long to write"),
+                       "none"),
            withDefault(boolean("picture", "of EXR: R, G and B for programs that show nothing else"), "true")},
           [](const Record& r, const Simulation&) {
             FileOptions options;

@@ -26,10 +26,13 @@ CommandModel gainCommand() {
       if (what.hasDetector) names.push_back(own);
     if (std::find(names.begin(), names.end(), channel) == names.end())
       throw UserError(r.where("channel"), "camera '" + camera.name + "' has no channel '" + channel + "' with a detector of its own",
-                      names.empty() ? "a channel with 'stages: [{stage: detector, ...}]'" : "'" + names.front() + "', for instance", "remove 'channel', or name one that has");
+                      names.empty() ? "a channel with 'stages: [{stage: detector, ...}]'" : "'" + names.front() + "', for instance",
+                      "remove 'channel', or name one that has");
     return [name = camera.name, factor, channel](Courses& courses, double) { courses.channelGains[{name, channel}] = [factor](double) { return factor; }; };
   };
-  return {"gain", "Counts per electron of a camera's detector, or of a channel's own, as a factor of what it has; what frames say of their calibration follows.", keys, read};
+  return {"gain",
+          "Counts per electron of a camera's detector, or of a channel's own, as a factor of what it has; what frames say of their calibration follows.", keys,
+          read};
 }
 
 }  // namespace pitviper

@@ -43,7 +43,8 @@ class GigeSink final : public Sink, public ControllableSink {
     int k = 0;
     for (const Camera& c : simulation_.cameras)
       if (wish_.camera.empty() || wish_.camera == c.name) {
-        Device d{addressAfter(wish_.address, k++, wish_.where), StreamCoder(c, wish_.layer, wish_.range, wish_.where), nullptr, std::make_shared<std::atomic<std::uint64_t>>(0)};
+        Device d{addressAfter(wish_.address, k++, wish_.where), StreamCoder(c, wish_.layer, wish_.range, wish_.where), nullptr,
+                 std::make_shared<std::atomic<std::uint64_t>>(0)};
         devices_.emplace(c.name, std::move(d));
       }
   }
@@ -140,10 +141,24 @@ class GigeSink final : public Sink, public ControllableSink {
     for (const auto& [camera, d] : devices_) {
       const GigeCounts c = d.device ? d.device->counts() : GigeCounts{};
       const std::uint64_t taken = *d.taken;
-      all.push_back({"camera " + camera + " at " + d.address, taken, c.pictures, c.skipped + c.cut + c.withoutConsumer + c.withoutTrigger,
-                     {{"pictures without a client", c.withoutConsumer}, {"waiting for a trigger", c.withoutTrigger}, {"overtaken by newer ones", c.skipped}, {"cut short", c.cut},
-                      {"packets", c.packets}, {"sent again", c.resent}, {"resends not served", c.resendsNotServed}, {"triggers", c.triggers}, {"triggers missed", c.triggersMissed},
-                      {"requests", c.commands}, {"malformed", c.malformed}, {"refused", c.refused}, {"throttled", c.throttled}, {"heartbeats lost", c.heartbeatsLost}}});
+      all.push_back({"camera " + camera + " at " + d.address,
+                     taken,
+                     c.pictures,
+                     c.skipped + c.cut + c.withoutConsumer + c.withoutTrigger,
+                     {{"pictures without a client", c.withoutConsumer},
+                      {"waiting for a trigger", c.withoutTrigger},
+                      {"overtaken by newer ones", c.skipped},
+                      {"cut short", c.cut},
+                      {"packets", c.packets},
+                      {"sent again", c.resent},
+                      {"resends not served", c.resendsNotServed},
+                      {"triggers", c.triggers},
+                      {"triggers missed", c.triggersMissed},
+                      {"requests", c.commands},
+                      {"malformed", c.malformed},
+                      {"refused", c.refused},
+                      {"throttled", c.throttled},
+                      {"heartbeats lost", c.heartbeatsLost}}});
     }
     return all;
   }
@@ -165,15 +180,23 @@ class GigeSink final : public Sink, public ControllableSink {
 
 SinkModel gigeSink() {
   return {"gige",
-          "Cameras on the network, compatible with GVCP and GVSP of machine vision (tested with Aravis): each camera of the scenario is one, at `address` and those after it. One layer: "
-          "counts as they are, others as 16-bit codes of a fixed scale; Mono8, Mono12Packed and Mono16 with chunks. Clients may set exposure and gain of a stream, and trigger it.",
+          "Cameras on the network, compatible with GVCP and GVSP of machine vision (tested with Aravis): each camera of the scenario is one, at `address` and "
+          "those after it. One layer: "
+          "counts as they are, others as 16-bit codes of a fixed scale; Mono8, Mono12Packed and Mono16 with chunks. Clients may set exposure and gain of a "
+          "stream, and trigger it.",
           {withDefault(text("address", "IPv4 address of this machine, of the first camera; port 3956"), "127.0.0.1"), text("camera", "this one alone"),
-           text("layer", "such as mw.counts; the first counts unless given, or the first layer"), list("range", "[lowest, highest] of a layer that is no count, in its unit", 2, 2),
+           text("layer", "such as mw.counts; the first counts unless given, or the first layer"),
+           list("range", "[lowest, highest] of a layer that is no count, in its unit", 2, 2),
            withDefault(boolean("allow_destination", "pictures may go to whatever address the client asks for, not to its own alone"), "false"),
            withDefault(integer("line", "speed of the line that packets are spread over [Mbit/s]", 10, 400000), "10000")},
           [](const Record& r, const Simulation& sim) {
-            GigeWish wish{r.text("address"), r.given("camera") ? r.text("camera") : "", r.given("layer") ? r.text("layer") : "", {}, r.boolean("allow_destination"),
-                          static_cast<int>(r.integer("line")), r.where()};
+            GigeWish wish{r.text("address"),
+                          r.given("camera") ? r.text("camera") : "",
+                          r.given("layer") ? r.text("layer") : "",
+                          {},
+                          r.boolean("allow_destination"),
+                          static_cast<int>(r.integer("line")),
+                          r.where()};
             addressAfter(wish.address, 0, r.where("address"));
             std::vector<std::string> names;
             for (const Camera& c : sim.cameras) names.push_back(c.name);

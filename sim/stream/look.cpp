@@ -32,14 +32,16 @@ std::string channelOf(const Record& r, const Camera& camera, bool setsExposure) 
     else if (names.empty() || names.back() != o.channel) names.push_back(o.channel);
   if (!r.given("channel")) {
     if (setsExposure && !common && !names.empty())
-      throw UserError(r.where("exposure"), "each channel of camera '" + camera.name + "' has an exposure of its own", "'channel', one of them", "add 'channel: " + names.front() + "'");
+      throw UserError(r.where("exposure"), "each channel of camera '" + camera.name + "' has an exposure of its own", "'channel', one of them",
+                      "add 'channel: " + names.front() + "'");
     return "";
   }
   if (!setsExposure) throw UserError(r.where("channel"), "a channel without an exposure to set", "'exposure' beside it", "add it, or remove 'channel'");
   const std::string name = r.text("channel");
   if (!hasOwn(name)) {
     if (std::any_of(camera.outputs.begin(), camera.outputs.end(), [&](const ChannelOutput& o) { return o.channel == name; }))
-      throw UserError(r.where("channel"), "channel '" + name + "' has the exposure of its camera", "a channel with an 'exposure' of its own", "remove 'channel', or give it one in the scenario");
+      throw UserError(r.where("channel"), "channel '" + name + "' has the exposure of its camera", "a channel with an 'exposure' of its own",
+                      "remove 'channel', or give it one in the scenario");
     throw unknownWord(r.where("channel"), "camera '" + camera.name + "' has no channel with an exposure of its own that is called", name, names);
   }
   return name;
@@ -62,7 +64,8 @@ CommandModel lookCommand() {
       throw UserError(r.where(), "a look that changes nothing", "a position, an attitude, a field of view or an exposure", "add one");
     if (camera.follower && pose.attitude) {
       requireTakesCommands(camera, r.where("heading"));
-      if (r.given("roll")) throw UserError(r.where("roll"), "a roll of a camera on a gimbal", "'heading' and 'pitch': its axes are azimuth and elevation", "remove it");
+      if (r.given("roll"))
+        throw UserError(r.where("roll"), "a roll of a camera on a gimbal", "'heading' and 'pitch': its axes are azimuth and elevation", "remove it");
     }
     return [=, name = camera.name, gimbal = camera.follower.has_value(), mount = camera.mount](Courses& courses, double at_s) {
       if (pose.position) courses.cameraPositions[name] = [=](double t) { return *pose.position + (t - at_s) * pose.velocity.value_or(glm::dvec3(0.0)); };

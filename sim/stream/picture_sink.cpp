@@ -106,8 +106,9 @@ void readScale(const std::string& text, const Location& where, PictureStyle& sty
 std::vector<Parameter> styleParameters() {
   std::vector<std::string> palettes = colourMapNames();
   palettes.insert(palettes.begin(), "auto");
-  return {withDefault(text("scale", "`run`: one colour bar for all frames, which are drawn when the run ends; `frame`: each its own; `low:high`, in the layers' unit"),
-                      "run"),
+  return {withDefault(
+              text("scale", "`run`: one colour bar for all frames, which are drawn when the run ends; `frame`: each its own; `low:high`, in the layers' unit"),
+              "run"),
           withDefault(choice("palette", palettes, "thermal: false colour; auto: grey below 0.9 um, else thermal"), "auto"),
           withDefault(boolean("plain", "the pixels alone, one to one"), "false"), withDefault(boolean("truth", "truth layers too"), "false"),
           map("ranges", "layer: [low, high], ends of its colour bar in the layer's own unit, whatever `scale` says")};

@@ -9,7 +9,9 @@ namespace {
 class PreviewFiles final : public PictureUser {
  public:
   explicit PreviewFiles(SinkPlace place) : place_(std::move(place)) {}
-  void take(const Frame& frame, const Rgb8Image& picture) override { writePng(fileOf(frame.camera, frame.number), picture, pictureTexts(frame), place_.mayReplace); }
+  void take(const Frame& frame, const Rgb8Image& picture) override {
+    writePng(fileOf(frame.camera, frame.number), picture, pictureTexts(frame), place_.mayReplace);
+  }
   std::filesystem::path fileOf(const std::string& camera, int number) const override { return place_.folder / (frameFileStem(camera, number, "") + ".png"); }
 
  private:

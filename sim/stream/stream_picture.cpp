@@ -45,7 +45,8 @@ void StreamCoder::code(const Frame& frame, StreamPicture& picture) {
     picture.outside = toGreyCodes(layer->pixels, 0.0, 1.0, most, picture.codes);
     // A well may be full below the highest code.
     const auto tallies = markTallies(frame);
-    if (const auto own = tallies.find(layer_.substr(0, layer_.rfind('.'))); own != tallies.end()) picture.outside = std::max(picture.outside, static_cast<std::size_t>(own->second.full));
+    if (const auto own = tallies.find(layer_.substr(0, layer_.rfind('.'))); own != tallies.end())
+      picture.outside = std::max(picture.outside, static_cast<std::size_t>(own->second.full));
     if (display_) picture.outside = 0;  // black and white are where automatic gain puts some
     return;
   }

@@ -7,9 +7,12 @@
 namespace pitviper {
 
 CommandModel temperatureCommand() {
-  const std::vector<Parameter> keys = {required(text("entity", "name of a body")), text("part", "of its shape; all of them unless given"),
-                                       required(within(number("value", "K", "temperature"), 0.0, 1e5)),
-                                       within(number("time_constant", "s", "it comes near it as exp(-t/this) from what it has then, as the skin of an engine whose throttle is moved; unless given it has it at once"), 1e-6, 1e6)};
+  const std::vector<Parameter> keys = {
+      required(text("entity", "name of a body")), text("part", "of its shape; all of them unless given"),
+      required(within(number("value", "K", "temperature"), 0.0, 1e5)),
+      within(number("time_constant", "s",
+                    "it comes near it as exp(-t/this) from what it has then, as the skin of an engine whose throttle is moved; unless given it has it at once"),
+             1e-6, 1e6)};
   const auto read = [](const Record& r, const Simulation& sim) -> decltype(Command::change) {
     const int e = entityOf(r, sim);
     const Entity& entity = sim.entities[static_cast<size_t>(e)];

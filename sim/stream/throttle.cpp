@@ -17,7 +17,10 @@ CommandModel throttleCommand() {
       courses.throttles[f] = std::make_shared<const ThrottleSteps>(std::move(all));
     };
   };
-  return {"throttle", "Sets the throttle of a plume, in place of its own course. An engine's exhaust follows at once, a nozzle's within a tenth of a second; a solid motor has none.", keys, read};
+  return {"throttle",
+          "Sets the throttle of a plume, in place of its own course. An engine's exhaust follows at once, a nozzle's within a tenth of a second; a solid motor "
+          "has none.",
+          keys, read};
 }
 
 }  // namespace pitviper

@@ -42,7 +42,8 @@ class TruthSink final : public Sink {
 
 SinkModel truthSink() {
   return {"truth",
-          "Tables `<camera>_truth.csv` of cameras whose `truth` asks for targets: a row a frame and body, plume, flare or lamp. Written without being asked for where no sinks are given.",
+          "Tables `<camera>_truth.csv` of cameras whose `truth` asks for targets: a row a frame and body, plume, flare or lamp. Written without being asked "
+          "for where no sinks are given.",
           {folderParameter()},
           [](const Record& r, const Simulation&) {
             return [folder = readFolder(r)](const Simulation& simulation, const SinkPlace& place) -> std::unique_ptr<Sink> {

@@ -52,8 +52,10 @@ std::unique_ptr<PictureUser> videoFiles(const Simulation& simulation, const Sink
 
 SinkModel videoSink() {
   std::vector<Parameter> parameters = styleParameters();
-  parameters.insert(parameters.begin(), {folderParameter(), withDefault(text("file", "its name, which ends in .mp4; of several cameras with `_<camera>` in it"), "video.mp4"),
-                                         within(above(number("rate", "Hz", "pictures a second; unless given that of the frames, or 25 where players have no such rate"), 0.0), 0.0, 1000.0)});
+  parameters.insert(
+      parameters.begin(),
+      {folderParameter(), withDefault(text("file", "its name, which ends in .mp4; of several cameras with `_<camera>` in it"), "video.mp4"),
+       within(above(number("rate", "Hz", "pictures a second; unless given that of the frames, or 25 where players have no such rate"), 0.0), 0.0, 1000.0)});
   return {"video", "The run as a video (H.264 in MP4, by ffmpeg) of its previews; of each camera one.", parameters, [](const Record& r, const Simulation& sim) {
             const std::filesystem::path file = r.text("file");
             readVideoName(file, r.where("file"));

@@ -20,8 +20,8 @@ LightModel burningModel() {
           [](const ModelRecord& r, PointLight& light) {
             light.intensity = Spectrum(Spectrum::BlackBody{r.record.number("temperature"), r.record.number("area")});
             const double from = r.record.number("from"), burns = r.record.number("burns");
-            light.level = TimeCourse({{from, 0.0}, {from + 0.1 * burns, 1.0}, {from + 0.9 * burns, 1.0}, {from + burns, 0.0}}, TimeCourse::Interpolation::Linear,
-                                     TimeCourse::Outside::Zero);
+            light.level = TimeCourse({{from, 0.0}, {from + 0.1 * burns, 1.0}, {from + 0.9 * burns, 1.0}, {from + burns, 0.0}},
+                                     TimeCourse::Interpolation::Linear, TimeCourse::Outside::Zero);
           }};
 }
 

@@ -26,7 +26,8 @@ materials:
   gas: {absorption: {wavelength: um, unit: 1/m, values: [[3, 0.01], [4.2, 0.01], [4.3, 0.5], [4.5, 0.5], [4.6, 0.01], [12, 0.01]]}}
 entities:
   - {name: ground, shape: {model: plate, width: 4 km, height: 4 km}, pitch: 90 deg, material: dry_grass, temperature: 290 K}
-  - {name: hut, shape: {model: box, length: 20 m, width: 12 m, height: 9 m}, material: concrete, temperature: 300 K, position: [0 m, 300 m, 4.5 m], heading: 30 deg}
+  - {name: hut, shape: {model: box, length: 20 m, width: 12 m, height: 9 m}, material: concrete, temperature: 300 K,
+     position: [0 m, 300 m, 4.5 m], heading: 30 deg}
   - {name: hot, shape: {model: sphere, radius: 0.2 m}, material: blackbody, temperature: 700 K, position: [14 m, 300 m, 4 m]}
   - {name: window, shape: {model: plate, width: 12 m, height: 12 m}, material: pane, temperature: 295 K, position: [-12 m, 250 m, 5 m], heading: 180 deg}
   - {name: cloud, shape: {model: sphere, radius: 5 m}, material: gas, temperature: 600 K, position: [12 m, 260 m, 8 m]}

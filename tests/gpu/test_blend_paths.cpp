@@ -48,16 +48,19 @@ std::string crowd(int channels, const std::string& more) {
          " m}, heading: " + text(90.0 + 40.0 * unit(random)) + " deg, pitch: " + text(40.0 * unit(random)) + " deg, position: " +
          text(glm::dvec3(8.0 + 1.7 * i, 2.0 * unit(random), 2.0 * unit(random))) + ", temperature: " + text(330.0 + 60.0 * unit(random)) +
          " K, material: {transmission: {transmittance: " + text(0.6 + 0.3 * unit(random)) + "}, components: [{reflection: lambertian, reflectance: 0.08}]}}\n";
-  y += "  - {name: bubble, shape: {model: sphere, radius: 1.2 m, segments: 24}, material: {transmission: {transmittance: 0.8, angular: [[0 deg, 1], [90 deg, 0.2]]}}, "
+  y += "  - {name: bubble, shape: {model: sphere, radius: 1.2 m, segments: 24}, material: {transmission: {transmittance: 0.8, angular: [[0 deg, 1], [90 deg, "
+       "0.2]]}}, "
        "temperature: 350 K, position: [12 m, -1 m, 1 m]}\n"
-       "  - {name: solid, shape: {model: box, length: 1 m, width: 1.5 m, height: 1.5 m}, material: concrete, temperature: 320 K, position: [20 m, 1 m, 0 m], heading: 30 deg}\n";
+       "  - {name: solid, shape: {model: box, length: 1 m, width: 1.5 m, height: 1.5 m}, material: concrete, temperature: 320 K, position: [20 m, 1 m, 0 m], "
+       "heading: 30 deg}\n";
   const Cloud clouds[] = {of(placed(sphere(1.0), {14, 1, -1}), 0.5, 420), of(placed(box(2, 2, 2), {18, -1, 0}, 30, 40), 0.4, 300),
                           of(placed(cone(1, 0.2, 3), {24, 0, 1}, 20, 30), 0.9, 500), of(placed(box(3, 1, 1), {25, 1, -1}, 70, 10), 0.7, 280),
                           of(placed(ellipsoid(3, 2, 1), {30, 0, 0}, 50, 20), 0.3, 460)};
   for (size_t i = 0; i < std::size(clouds); ++i) y += clouds[i].yaml("m" + std::to_string(i));
   std::string list = "[";
   for (int c = 0; c < channels; ++c)
-    list += (c ? ", " : "") + std::string("{name: c") + std::to_string(c) + ", response: {band: [" + text(3.0 + 0.5 * c) + " um, " + text(4.0 + 0.6 * c) + " um]}}";
+    list +=
+        (c ? ", " : "") + std::string("{name: c") + std::to_string(c) + ", response: {band: [" + text(3.0 + 0.5 * c) + " um, " + text(4.0 + 0.6 * c) + " um]}}";
   return y + Eye{{0, 0, 0}, {1, 0, 0}, 30.0, 32}.yaml(list + "]", "    small_bodies: 0\n" + more);
 }
 
@@ -75,7 +78,8 @@ std::optional<Frame> by(const std::string& path, const Simulation& sim) {
 
 TEST(BlendPaths, AgreeWithEachOther) {
   needContext();
-  for (const auto& [what, yaml] : {std::pair<std::string, std::string>{"1 channel", crowd(1, "")}, {"16 channels, 80 nodes in 3 batches", crowd(16, "    spectral: {samples: 5}\n")},
+  for (const auto& [what, yaml] : {std::pair<std::string, std::string>{"1 channel", crowd(1, "")},
+                                   {"16 channels, 80 nodes in 3 batches", crowd(16, "    spectral: {samples: 5}\n")},
                                    {"2 x 2 subpixels", crowd(2, "    samples: 2\n    spectral: {samples: 8}\n")}}) {
     const Simulation sim = scene(yaml);
     const auto copied = by("ping_pong", sim);

@@ -36,8 +36,8 @@ std::string camera(const glm::dvec3& at, double range_m, double offAxis_deg, dou
 )";
 }
 
-/// Every pixel is within what was asked for. Steps have a third of that on the few lines that were looked at to choose them (sim/plan/field_sampling.cpp); air of
-/// a stretch has 2e-4 (volume_field.frag.glsl). The rest is for lines that nobody looked at: wavelengths, which have their share in other pictures, are the
+/// Every pixel is within what was asked for. Steps have a third of that on the few lines that were looked at to choose them (sim/plan/field_sampling.cpp); air
+/// of a stretch has 2e-4 (volume_field.frag.glsl). The rest is for lines that nobody looked at: wavelengths, which have their share in other pictures, are the
 /// same.
 void check(const std::string& what, const Simulation& sim, bool all = true) {
   const Camera& c = sim.cameras[0];

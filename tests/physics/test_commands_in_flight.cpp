@@ -20,10 +20,14 @@ namespace {
 
 const std::string kEye =
     "time: {rate: 10 Hz, frames: 20}\nbackground: {temperature: 200 K}\nmaterials: {m: {components: [{reflection: lambertian, reflectance: 0.3}]}}\n"
-    "cameras: [{name: c, film: {width: 32, height: 24}, field_of_view: 4 deg, aperture: 20 mm, position: [0 m, -2 km, 1 km], heading: 0 deg, channels: [{name: mw, response: {band: [3 um, 5 um]}}]}]\n";
+    "cameras: [{name: c, film: {width: 32, height: 24}, field_of_view: 4 deg, aperture: 20 mm, position: [0 m, -2 km, 1 km], heading: 0 deg, channels: [{name: "
+    "mw, response: {band: [3 um, 5 um]}}]}]\n";
 
-std::string jet(const std::string& motion) { return "entities: [{name: jet, shape: {model: sphere, radius: 2 m}, material: m, temperature: 300 K, " + motion + "}]\n"; }
-const std::string kStraight = "motion: [{time: 0 s, position: [-100 m, 0 m, 1 km]}, {time: 2 s, position: [100 m, 0 m, 1 km]}]", kStill = "position: [-20 m, 0 m, 1 km], heading: 90 deg";
+std::string jet(const std::string& motion) {
+  return "entities: [{name: jet, shape: {model: sphere, radius: 2 m}, material: m, temperature: 300 K, " + motion + "}]\n";
+}
+const std::string kStraight = "motion: [{time: 0 s, position: [-100 m, 0 m, 1 km]}, {time: 2 s, position: [100 m, 0 m, 1 km]}]",
+                  kStill = "position: [-20 m, 0 m, 1 km], heading: 90 deg";
 
 std::string flare(const std::string& time, const std::string& more = "") {
   return "flares: [{name: f, type: mtv, from: jet, time: " + time + ", position: [-2 m, 0 m, 0 m], direction: [0, 0, -1], speed: 20 m/s" + more + "}]\n";
@@ -64,9 +68,12 @@ TEST(CommandsInFlight, AFlareThatIsEjectedIsThatOfTheScenario) {
 TEST(CommandsInFlight, AFlareLeavesWhereTheHostHasItsCarrier) {
   const Simulation sim = scene(kEye + jet(kStill) + flare("on_command", ", sequence: {count: 3}"));
   ASSERT_EQ(sim.stores.size(), 3u);
-  const auto say = [&](World& world, int tick, const std::vector<std::pair<std::string, std::string>>& words) { world.apply(commandOf(words, "test", sim, sim.time.at(tick)), tick); };
+  const auto say = [&](World& world, int tick, const std::vector<std::pair<std::string, std::string>>& words) {
+    world.apply(commandOf(words, "test", sim, sim.time.at(tick)), tick);
+  };
   const auto move = [&](World& world, int tick, const glm::dvec3& at, const std::string& velocity) {
-    std::vector<std::pair<std::string, std::string>> words{{"command", "move"}, {"entity", "jet"}, {"position", print("%.17g m, %.17g m, ", at.x, at.y) + print("%.17g m", at.z)}, {"heading", "90 deg"}};
+    std::vector<std::pair<std::string, std::string>> words{
+        {"command", "move"}, {"entity", "jet"}, {"position", print("%.17g m, %.17g m, ", at.x, at.y) + print("%.17g m", at.z)}, {"heading", "90 deg"}};
     if (!velocity.empty()) words.emplace_back("velocity", velocity);
     say(world, tick, words);
   };
@@ -102,9 +109,12 @@ TEST(CommandsInFlight, AThrottleIsAsTheScenarioHasIt) {
   for (const auto& [engine, from, to] : {std::tuple{"turbofan_military", 1.0, 0.2}, {"turbofan_afterburner", 0.1, 0.9}, {"nozzle", 1.0, 0.4}}) {
     const auto plume = [&, engine = engine](double throttle) {
       return jet(kStill) + "plumes: [{name: ex, on: jet, begin: 0 s, length: 20 m, " +
-             (std::string(engine) == "nozzle" ? "nozzle: {diameter: 40 cm, temperature: 900 K, speed: 300 m/s, species: {co2: 5 %, h2o: 5 %}}" : "engine: " + std::string(engine)) + print(", throttle: %g}]\n", throttle);
+             (std::string(engine) == "nozzle" ? "nozzle: {diameter: 40 cm, temperature: 900 K, speed: 300 m/s, species: {co2: 5 %, h2o: 5 %}}"
+                                              : "engine: " + std::string(engine)) +
+             print(", throttle: %g}]\n", throttle);
     };
-    const Simulation asked = scene(kEye + plume(from) + print("commands: [{command: throttle, at: 0.5 s, plume: ex, value: %g}]\n", to)), before = scene(kEye + plume(from)), after = scene(kEye + plume(to));
+    const Simulation asked = scene(kEye + plume(from) + print("commands: [{command: throttle, at: 0.5 s, plume: ex, value: %g}]\n", to)),
+                     before = scene(kEye + plume(from)), after = scene(kEye + plume(to));
     const auto jetAt = [](const Simulation& sim, double t) {
       std::vector<double> all;
       std::vector<FieldStep> steps;
@@ -125,7 +135,8 @@ TEST(CommandsInFlight, AThrottleIsAsTheScenarioHasIt) {
     // In the picture of a plan that has seen both.
     const auto light = [](const Simulation& sim, int frame) { return sum(layer(renderFrame(sim, frame), "mw.radiance")); };
     const double dark = light(scene(kEye + jet(kStill)), 0);
-    figure("light of an afterburner that a command has lit, over that of a scenario's", (light(asked, 7) - dark) / (light(after, 7) - dark), 1.0, 0.01, "both drawn to the 1 % of pictures of fields");
+    figure("light of an afterburner that a command has lit, over that of a scenario's", (light(asked, 7) - dark) / (light(after, 7) - dark), 1.0, 0.01,
+           "both drawn to the 1 % of pictures of fields");
     EXPECT_GT(light(after, 7) - dark, 1.5 * (light(before, 7) - dark));
   }
 }
@@ -133,7 +144,8 @@ TEST(CommandsInFlight, AThrottleIsAsTheScenarioHasIt) {
 /// The skin of an engine whose throttle is moved follows by its time constant, from whatever it has.
 TEST(CommandsInFlight, ASkinFollowsByItsTimeConstant) {
   const Simulation sim = scene(kEye + jet(kStill) +
-                               "commands: [{command: temperature, at: 0.2 s, entity: jet, value: 900 K, time_constant: 0.5 s}, {command: temperature, at: 1 s, entity: jet, value: 400 K, time_constant: 0.2 s}]\n");
+                               "commands: [{command: temperature, at: 0.2 s, entity: jet, value: 900 K, time_constant: 0.5 s}, {command: temperature, at: 1 s, "
+                               "entity: jet, value: 400 K, time_constant: 0.2 s}]\n");
   const double turned = 900.0 - 600.0 * std::exp(-0.8 / 0.5);
   for (double t : {0.0, 0.2, 0.3, 0.9, 1.0, 1.1, 1.9}) {
     const double right = t <= 0.2 ? 300.0 : t <= 1.0 ? 900.0 - 600.0 * std::exp(-(t - 0.2) / 0.5) : 400.0 + (turned - 400.0) * std::exp(-(t - 1.0) / 0.2);
@@ -145,7 +157,9 @@ TEST(CommandsInFlight, ASkinFollowsByItsTimeConstant) {
 TEST(CommandsInFlight, ThrottlesEveryTick) {
   const Simulation sim = scene(kEye + jet(kStill) + "plumes: [{name: ex, on: jet, engine: turbofan_military, length: 20 m}]\n");
   World world(sim);
-  for (int tick = 0; tick < 200; ++tick) world.apply(commandOf({{"command", "throttle"}, {"plume", "ex"}, {"value", print("%g", 0.5 + 0.4 * std::sin(0.1 * tick))}}, "test", sim, sim.time.at(tick)), tick);
+  for (int tick = 0; tick < 200; ++tick)
+    world.apply(commandOf({{"command", "throttle"}, {"plume", "ex"}, {"value", print("%g", 0.5 + 0.4 * std::sin(0.1 * tick))}}, "test", sim, sim.time.at(tick)),
+                tick);
   const WorldState now = world.at(sim.time.at(199));
   EXPECT_LT(now.throttles.at(0)->steps.size(), 14u);
   EXPECT_NEAR(*now.throttles.at(0)->at(sim.time.at(199)), 0.5 + 0.4 * std::sin(19.9), 1e-5);
@@ -155,11 +169,18 @@ TEST(CommandsInFlight, ThrottlesEveryTick) {
 TEST(CommandsInFlight, APlumeGoesWithTheBodyThatIsMoved) {
   const std::string plume = "plumes: [{name: ex, on: jet, engine: turbofan_military, length: 20 m}]\n";
   for (double speed : {0.0, 100.0, 250.0}) {
-    const std::string motion = print("motion: [{time: 0 s, position: [-%g m, 0 m, 1 km], heading: 90 deg}, ", 0.5 * speed) + print("{time: 1 s, position: [%g m, 0 m, 1 km], heading: 90 deg}]", 0.5 * speed);
+    const std::string motion = print("motion: [{time: 0 s, position: [-%g m, 0 m, 1 km], heading: 90 deg}, ", 0.5 * speed) +
+                               print("{time: 1 s, position: [%g m, 0 m, 1 km], heading: 90 deg}]", 0.5 * speed);
     const Simulation flown = scene(kEye + jet(motion) + plume), moved = scene(kEye + jet(kStill) + plume);
     const double at = -0.5 * speed + 0.5 * speed;
     World world(moved);
-    world.apply(commandOf({{"command", "move"}, {"entity", "jet"}, {"position", print("%g m, 0 m, 1000 m", at)}, {"heading", "90 deg"}, {"velocity", print("%g m/s, 0 m/s, 0 m/s", speed)}}, "test", moved, 0.5), 5);
+    world.apply(commandOf({{"command", "move"},
+                           {"entity", "jet"},
+                           {"position", print("%g m, 0 m, 1000 m", at)},
+                           {"heading", "90 deg"},
+                           {"velocity", print("%g m/s, 0 m/s, 0 m/s", speed)}},
+                          "test", moved, 0.5),
+                5);
     const WorldState a = world.at(0.5), b = advance(flown, 0.5);
     std::vector<FieldStep> stepsA, stepsB;
     for (double behind : {1.0, 3.0, 10.0}) {
@@ -175,8 +196,12 @@ TEST(CommandsInFlight, APlumeGoesWithTheBodyThatIsMoved) {
 
 /// Along a route: so far at that speed as the route is long.
 TEST(CommandsInFlight, SpeedAlongARoute) {
-  const std::string corner = "motion: {model: waypoints, points: [{time: 0 s, position: [0 m, 0 m, 1 km]}, {time: 1 s, position: [100 m, 0 m, 1 km]}, {time: 3 s, position: [100 m, 400 m, 1 km]}], interpolation: linear}";
-  const auto placed = [&](const std::string& motion, const std::string& commands, double t) { return advance(scene(kEye + jet(motion) + "commands: [" + commands + "]\n"), t).entities[0].position; };
+  const std::string corner =
+      "motion: {model: waypoints, points: [{time: 0 s, position: [0 m, 0 m, 1 km]}, {time: 1 s, position: [100 m, 0 m, 1 km]}, {time: 3 s, position: [100 m, "
+      "400 m, 1 km]}], interpolation: linear}";
+  const auto placed = [&](const std::string& motion, const std::string& commands, double t) {
+    return advance(scene(kEye + jet(motion) + "commands: [" + commands + "]\n"), t).entities[0].position;
+  };
   double worst = 0.0;
   for (double speed : {30.0, 100.0, 350.0})
     for (double t : {0.6, 1.0, 1.7, 2.4}) {
@@ -184,12 +209,17 @@ TEST(CommandsInFlight, SpeedAlongARoute) {
       const glm::dvec3 right = way < 100.0 ? glm::dvec3(way, 0.0, 1000.0) : glm::dvec3(100.0, std::min(way - 100.0, 400.0), 1000.0);
       worst = std::max(worst, glm::length(placed(corner, "{command: speed, at: 0.5 s, entity: jet, value: " + print("%g m/s}", speed), t) - right));
     }
-  bound("place on two straight legs of 100 and 200 m/s flown at 30 to 350 [m]", worst, 0.01, "Simpson's rule over parts of 50 ms, exact on straight legs; the interpolation between");
+  bound("place on two straight legs of 100 and 200 m/s flown at 30 to 350 [m]", worst, 0.01,
+        "Simpson's rule over parts of 50 ms, exact on straight legs; the interpolation between");
   EXPECT_LT(glm::length(placed(corner, "{command: speed, at: 0.5 s, entity: jet, value: 0 m/s}", 1.9) - glm::dvec3(50.0, 0.0, 1000.0)), 1e-6);
   // Faster, then slower.
-  EXPECT_LT(glm::length(placed(corner, "{command: speed, at: 0.5 s, entity: jet, value: 200 m/s}, {command: speed, at: 1 s, entity: jet, value: 50 m/s}", 2.0) - glm::dvec3(100.0, 100.0, 1000.0)), 0.01);
+  EXPECT_LT(glm::length(placed(corner, "{command: speed, at: 0.5 s, entity: jet, value: 200 m/s}, {command: speed, at: 1 s, entity: jet, value: 50 m/s}", 2.0) -
+                        glm::dvec3(100.0, 100.0, 1000.0)),
+            0.01);
   // A smooth route: an arc as long as it is; a circle in loops.
-  const std::string arc = "motion: {model: waypoints, points: [{time: 0 s, position: [0 m, 0 m, 1 km]}, {time: 1 s, position: [80 m, 10 m, 1 km]}, {time: 2 s, position: [120 m, 90 m, 1 km]}, {time: 3 s, position: [90 m, 170 m, 1 km]}]}";
+  const std::string arc =
+      "motion: {model: waypoints, points: [{time: 0 s, position: [0 m, 0 m, 1 km]}, {time: 1 s, position: [80 m, 10 m, 1 km]}, {time: 2 s, position: [120 m, "
+      "90 m, 1 km]}, {time: 3 s, position: [90 m, 170 m, 1 km]}]}";
   const Simulation smooth = scene(kEye + jet(arc) + "commands: [{command: speed, at: 0 s, entity: jet, value: 60 m/s}]\n");
   double way = 0.0;
   glm::dvec3 last = advance(smooth, 0.0).entities[0].position;
@@ -200,9 +230,14 @@ TEST(CommandsInFlight, SpeedAlongARoute) {
   }
   figure("way along a smooth route in 2 s at 60 m/s [m]", way, 120.0, 2e-4, "chords of 3 cm; steps of 50 ms");
   // A move takes it off, a speed brings it back.
-  EXPECT_LT(glm::length(placed(corner, "{command: move, at: 0.2 s, entity: jet, position: [9 m, 9 m, 9 m]}, {command: speed, at: 0.5 s, entity: jet, value: 100 m/s}", 0.7) - glm::dvec3(70.0, 0.0, 1000.0)), 0.01);
+  EXPECT_LT(
+      glm::length(
+          placed(corner, "{command: move, at: 0.2 s, entity: jet, position: [9 m, 9 m, 9 m]}, {command: speed, at: 0.5 s, entity: jet, value: 100 m/s}", 0.7) -
+          glm::dvec3(70.0, 0.0, 1000.0)),
+      0.01);
   // Its plume feels the speed.
-  const Simulation plume = scene(kEye + jet(corner) + "plumes: [{name: ex, on: jet, engine: turbofan_military}]\ncommands: [{command: speed, at: 0.1 s, entity: jet, value: 222 m/s}]\n");
+  const Simulation plume = scene(
+      kEye + jet(corner) + "plumes: [{name: ex, on: jet, engine: turbofan_military}]\ncommands: [{command: speed, at: 0.1 s, entity: jet, value: 222 m/s}]\n");
   EXPECT_NEAR(glm::length(advance(plume, 0.3).velocities.at(0)), 222.0, 0.1);
 }
 
@@ -225,7 +260,8 @@ TEST(CommandsInFlight, PlansAreMadeForFlaresThatMayBeEjected) {
 }
 
 TEST(CommandsInFlight, MistakesAreNamed) {
-  const std::string things = jet(kStraight) + flare("on_command") + "plumes: [{name: ex, on: jet, engine: turbofan_military}, {name: solid, on: jet, engine: double_base_motor}]\n";
+  const std::string things =
+      jet(kStraight) + flare("on_command") + "plumes: [{name: ex, on: jet, engine: turbofan_military}, {name: solid, on: jet, engine: double_base_motor}]\n";
   const std::pair<const char*, const char*> cases[] = {
       {"{command: eject, at: 0 s, flare: g}", "there is no flare"},
       {"{command: throttle, at: 0 s, plume: eh, value: 1}", "there is no plume"},
@@ -245,14 +281,18 @@ TEST(CommandsInFlight, MistakesAreNamed) {
   };
   for (const auto& [command, says] : cases) {
     std::string all = kEye + things;
-    all.replace(all.find("entities: ["), 11, "entities: [{name: still, shape: {model: sphere, radius: 1 m}, material: m, temperature: 300 K, position: [0 m, 0 m, 1 km]}, ");
+    all.replace(all.find("entities: ["), 11,
+                "entities: [{name: still, shape: {model: sphere, radius: 1 m}, material: m, temperature: 300 K, position: [0 m, 0 m, 1 km]}, ");
     const std::string said = told(all + "commands: [" + command + "]\n");
     EXPECT_NE(said.find(says), std::string::npos) << command << "\n" << said;
   }
   EXPECT_NE(told(kEye + jet(kStraight) + flare("on_comand")).find("time"), std::string::npos);
-  EXPECT_NE(told(kEye + jet(kStraight) + flare("on_command", ", sequence: {count: 2, interval: 1 s}")).find("an interval between flares that commands eject"), std::string::npos);
+  EXPECT_NE(told(kEye + jet(kStraight) + flare("on_command", ", sequence: {count: 2, interval: 1 s}")).find("an interval between flares that commands eject"),
+            std::string::npos);
   EXPECT_NE(told(kEye + jet(kStraight) + flare("1 s", ", sequence: {count: 2}")).find("a sequence without an interval"), std::string::npos);
-  EXPECT_NE(told(kEye + jet("begin: 1 s, " + kStraight) + flare("on_command") + "commands: [{command: eject, at: 0.5 s, flare: f}]\n").find("isn't there when it should eject"), std::string::npos);
+  EXPECT_NE(told(kEye + jet("begin: 1 s, " + kStraight) + flare("on_command") + "commands: [{command: eject, at: 0.5 s, flare: f}]\n")
+                .find("isn't there when it should eject"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// What a detector makes of more than one frame or pixel: memory, 1/f noise, correction and drift, crosstalk, clusters, binning, windows; what it tells besides counts.
+// What a detector makes of more than one frame or pixel: memory, 1/f noise, correction and drift, crosstalk, clusters, binning, windows; what it tells besides
+// counts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +20,8 @@ namespace pitviper::test {
 namespace {
 
 /// A film that a black body fills, 50 frames a second.
-Simulation field(const std::string& detector, const std::string& output, double kelvin = 300.0, const std::string& more = "", const std::string& film = "width: 64, height: 64, pitch: 15 um") {
+Simulation field(const std::string& detector, const std::string& output, double kelvin = 300.0, const std::string& more = "",
+                 const std::string& film = "width: 64, height: 64, pitch: 15 um") {
   return scene("seed: 5\nbackground: {temperature: " + std::to_string(kelvin) + " K}\n" + more + "cameras: [{name: c, film: {" + film +
                "}, focal_length: 100 mm, aperture: 25 mm, exposure: 4 ms, position: [0 m, 0 m, 0 m], heading: 90 deg, stages: [{stage: detector, " + detector +
                "}], channels: [{name: mw, response: {band: [3.5 um, 4.9 um]}, quantum_efficiency: 0.8, output: [electrons, " + output + "]}]}]\n");
@@ -40,7 +42,8 @@ double varianceOf(const std::vector<double>& x) {
 // A wall that jumps from 290 to 310 K at frame 10: 1 - exp(-(n + 1) step / tau) of the step in the n-th frame after, and lag^(n + 1) left.
 TEST(DetectorMemory, FollowsASlowDetectorsLaw) {
   const std::string wall =
-      "time: {rate: 50 Hz, frames: 30}\nmaterials: {m: {components: []}}\nentities: [{name: w, shape: {model: plate, width: 100 m, height: 100 m}, material: m, temperature: 290 "
+      "time: {rate: 50 Hz, frames: 30}\nmaterials: {m: {components: []}}\nentities: [{name: w, shape: {model: plate, width: 100 m, height: 100 m}, material: "
+      "m, temperature: 290 "
       "K, position: [1000 m, 0 m, 0 m], heading: 270 deg}]\ncommands: [{command: temperature, at: 0.2 s, entity: w, value: 310 K}]\n";
   for (const auto& [law, left] : {std::pair{"time_constant: 12 ms", std::exp(-20.0 / 12.0)}, std::pair{"lag: 0.3", 0.3}}) {
     const Simulation sim = field(std::string("full_well: 1e9, bits: 16, gain: 0.001, ") + law, "counts", 3.0, wall);
@@ -58,9 +61,10 @@ TEST(DetectorMemory, FollowsASlowDetectorsLaw) {
 
 // Alone, in a run from the start, and from another start: the same counts.
 TEST(DetectorMemory, AFrameIsTheSameAloneAndInARun) {
-  const Simulation sim = field("full_well: 7e6, read_noise: 300, lag: 0.2, flicker_corner: 5 Hz, offset_drift: 100 /s, correction: {}, prnu: 0.02, dsnu: 500", "counts", 3.0,
-                               "time: {rate: 50 Hz, frames: 8}\nmaterials: {m: {components: []}}\nentities: [{name: w, shape: {model: sphere, radius: 2 m}, material: m, temperature: "
-                               "300 K, motion: [{time: 0 s, position: [1000 m, -4 m, 0 m]}, {time: 0.2 s, position: [1000 m, 4 m, 0 m]}]}]\n");
+  const Simulation sim = field(
+      "full_well: 7e6, read_noise: 300, lag: 0.2, flicker_corner: 5 Hz, offset_drift: 100 /s, correction: {}, prnu: 0.02, dsnu: 500", "counts", 3.0,
+      "time: {rate: 50 Hz, frames: 8}\nmaterials: {m: {components: []}}\nentities: [{name: w, shape: {model: sphere, radius: 2 m}, material: m, temperature: "
+      "300 K, motion: [{time: 0 s, position: [1000 m, -4 m, 0 m]}, {time: 0.2 s, position: [1000 m, 4 m, 0 m]}]}]\n");
   needContext();
   std::vector<std::vector<std::vector<float>>> runs;
   for (int first : {0, 3, 6}) {
@@ -115,15 +119,18 @@ TEST(DetectorMemory, FlickerNoiseFallsAsOneOverF) {
   // The corner: where it is as dense as the white noise, 2 sigma^2 a cycle a frame.
   const DetectorLaw law{.sigmaTvh = 50.0, .flickerCorner_Hz = 4.0};
   const double step = 0.02, octave = std::sqrt(law.flickerVariance(step));
-  figure("density of 1/f noise at its corner by that of white noise", octave * octave / (std::log(2.0) * 4.0 * step) / (2.0 * 50.0 * 50.0), 1.0, 1e-12, "by definition");
+  figure("density of 1/f noise at its corner by that of white noise", octave * octave / (std::log(2.0) * 4.0 * step) / (2.0 * 50.0 * 50.0), 1.0, 1e-12,
+         "by definition");
   FlickerNoise again(3, 7, kPixels);
   EXPECT_EQ(std::vector<float>(noise.at(777)), again.at(777)) << "of a frame's number alone";
 }
 
 // Two-point correction: no pattern at both points but what its learning had; between them what bends leave; drift afterwards.
 TEST(DetectorMemory, TwoPointCorrection) {
-  const std::string law = "full_well: 2e7, bits: 16, gain: 0.003, prnu: 0.05, dsnu: 20000, nonlinearity: 0.01, correction: {low: 290 K, high: 320 K, frames: 1000000}";
-  const auto pattern = [&](const std::string& more, double kelvin, int frame = 0) {  // rms over pixels of means over 16 frames, less their shot noise [electron]
+  const std::string law =
+      "full_well: 2e7, bits: 16, gain: 0.003, prnu: 0.05, dsnu: 20000, nonlinearity: 0.01, correction: {low: 290 K, high: 320 K, frames: 1000000}";
+  const auto pattern = [&](const std::string& more, double kelvin,
+                           int frame = 0) {  // rms over pixels of means over 16 frames, less their shot noise [electron]
     const Simulation sim = field(law + more, "counts", kelvin, "time: {rate: 50 Hz, frames: 100000}\n");
     std::vector<double> mean(4096, 0.0);
     double electrons = 0.0;
@@ -150,9 +157,12 @@ TEST(DetectorMemory, TwoPointCorrection) {
 // A single bright pixel's worth of light is shared with four; the sum stays.
 TEST(DetectorMemory, CrosstalkAndClusters) {
   const Simulation sim = scene(
-      "background: {temperature: 3 K}\nlights: [{name: l, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 0.1], [5, 0.1]]}, position: [1000 m, 0 m, 0 m]}]\ncameras: [{name: c, "
-      "film: {width: 17, height: 17, pitch: 15 um}, focal_length: 100 mm, aperture: 25 mm, exposure: 4 ms, position: [0 m, 0 m, 0 m], heading: 90 deg, stages: [{stage: "
-      "detector, full_well: 1e9, bits: 16, gain: 0.01, crosstalk: 0.05}], channels: [{name: mw, response: {band: [3.5 um, 4.9 um]}, quantum_efficiency: 0.8, output: [electrons, "
+      "background: {temperature: 3 K}\nlights: [{name: l, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 0.1], [5, 0.1]]}, position: [1000 m, 0 m, "
+      "0 m]}]\ncameras: [{name: c, "
+      "film: {width: 17, height: 17, pitch: 15 um}, focal_length: 100 mm, aperture: 25 mm, exposure: 4 ms, position: [0 m, 0 m, 0 m], heading: 90 deg, stages: "
+      "[{stage: "
+      "detector, full_well: 1e9, bits: 16, gain: 0.01, crosstalk: 0.05}], channels: [{name: mw, response: {band: [3.5 um, 4.9 um]}, quantum_efficiency: 0.8, "
+      "output: [electrons, "
       "counts, snr]}]}]\n");
   const Frame f = renderFrame(sim);
   const double electrons = at(layer(f, "mw.electrons"), f, 8, 8);
@@ -161,7 +171,8 @@ TEST(DetectorMemory, CrosstalkAndClusters) {
   figure("share of its own pixel after crosstalk", share(8, 8), 0.8, 5e-3, "1 - 4 x 0.05; shot noise");
   figure("share of the pixel above", share(8, 7), 0.05, 0.02, "shot noise");
   EXPECT_NEAR(share(9, 9), 0.0, 1e-3);
-  figure("its signal to noise", at(layer(f, "mw.snr"), f, 8, 8), 0.8 * electrons / std::sqrt(0.8 * electrons + 1.0 / (12.0 * 1e-4)), 1e-4, "N / sqrt(N + 1 / (12 K^2))");
+  figure("its signal to noise", at(layer(f, "mw.snr"), f, 8, 8), 0.8 * electrons / std::sqrt(0.8 * electrons + 1.0 / (12.0 * 1e-4)), 1e-4,
+         "N / sqrt(N + 1 / (12 K^2))");
   // Clusters of four: 2 % of 128 x 128 pixels, nearly each beside another.
   const Simulation bad = field("full_well: 1e8, offset: 10, bad_pixels: 0.02, bad_cluster: 4", "counts", 300.0, "", "width: 128, height: 128, pitch: 15 um");
   const Frame b = renderFrame(bad);
@@ -185,10 +196,11 @@ TEST(DetectorMemory, BinningAndWindows) {
   figure("electrons of four pixels as one", meanOf(pixels(four, "mw.electrons")), 4.0 * meanOf(pixels(one, "mw.electrons")), 1e-5, "their light together");
   figure("counts of four, dark current and all", meanOf(pixels(four, "mw.counts")), 4.0 * meanOf(pixels(one, "mw.counts")), 2e-3, "noise over 1024 pixels");
   const double electrons = meanOf(pixels(four, "mw.electrons")) + 4.0 * 4e6;
-  figure("variance of their counts", varianceOf(pixels(four, "mw.counts")) / (0.0006 * 0.0006), electrons + 81e6 + 1.0 / (12.0 * 0.0006 * 0.0006), 4.0 * std::sqrt(2.0 / 1024.0),
-         "read noise once; 4 standard errors");
+  figure("variance of their counts", varianceOf(pixels(four, "mw.counts")) / (0.0006 * 0.0006), electrons + 81e6 + 1.0 / (12.0 * 0.0006 * 0.0006),
+         4.0 * std::sqrt(2.0 / 1024.0), "read noise once; 4 standard errors");
   const std::string noisy = "full_well: 7e6, read_noise: 300, prnu: 0.01";
-  const Frame whole = renderFrame(field(noisy, "counts")), part = renderFrame(field(noisy, "counts", 300.0, "", "width: 64, height: 64, pitch: 15 um, window: [10, 20, 16, 8]"));
+  const Frame whole = renderFrame(field(noisy, "counts")),
+              part = renderFrame(field(noisy, "counts", 300.0, "", "width: 64, height: 64, pitch: 15 um, window: [10, 20, 16, 8]"));
   ASSERT_EQ(part.width, 16);
   ASSERT_EQ(part.height, 8);
   for (int y = 0; y < 8; ++y)
@@ -208,7 +220,8 @@ TEST(DetectorMemory, DisplayCodes) {
     }
     // Rounding of counts (about 0.8 codes each) and codes adds (0.8^2 + 1) / 12; 4 standard errors of 4096 pixels are 4 %.
     if (std::string(agc) != "fixed") {
-      figure(std::string("noise of a flat field on a screen, rms, ") + agc, std::sqrt(varianceOf(codes)), std::sqrt(16.0 + 1.64 / 12.0), 0.05, "4 codes; 4 standard errors of 4096 pixels, tails of the plateau");
+      figure(std::string("noise of a flat field on a screen, rms, ") + agc, std::sqrt(varianceOf(codes)), std::sqrt(16.0 + 1.64 / 12.0), 0.05,
+             "4 codes; 4 standard errors of 4096 pixels, tails of the plateau");
       EXPECT_NEAR(meanOf(codes), 127.5, 1.0) << agc;
     }
   }

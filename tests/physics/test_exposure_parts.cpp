@@ -15,12 +15,17 @@ namespace {
 /// A hot plate of 4 x 60 pixels that moves by `px_per_s` to the right; a pixel is 0.15 m. At t = 0 its left edge is in the film's middle.
 Simulation moving(double px_per_s, const std::string& camera, const std::string& time = "time: {rate: 50 Hz, frames: 3}\n") {
   const double v = 0.15 * px_per_s;
-  return scene(time + print("background: {temperature: 3 K}\nmaterials: {m: {components: []}}\nentities: [{name: p, shape: {model: plate, width: 0.6 m, height: 9 m}, material: m, "
-                            "temperature: 400 K, motion: [{time: -1 s, position: [1000 m, %.9g m, 0 m], heading: 270 deg}, {time: 1 s, position: [1000 m, %.9g m, 0 m], "
-                            "heading: 270 deg}]}]\n",
-                            -0.3 + v, -0.3 - v) +
-               "cameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, focal_length: 100 mm, aperture: 25 mm, samples: 8, small_bodies: 0, position: [0 m, 0 m, 0 m], heading: "
-               "90 deg, " + camera + "}]\n");
+  return scene(
+      time +
+      print("background: {temperature: 3 K}\nmaterials: {m: {components: []}}\nentities: [{name: p, shape: {model: plate, width: 0.6 m, height: 9 m}, "
+            "material: m, "
+            "temperature: 400 K, motion: [{time: -1 s, position: [1000 m, %.9g m, 0 m], heading: 270 deg}, {time: 1 s, position: [1000 m, %.9g m, 0 m], "
+            "heading: 270 deg}]}]\n",
+            -0.3 + v, -0.3 - v) +
+      "cameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, focal_length: 100 mm, aperture: 25 mm, samples: 8, small_bodies: 0, position: [0 m, 0 "
+      "m, 0 m], heading: "
+      "90 deg, " +
+      camera + "}]\n");
 }
 
 /// Of a scenario's own world.
@@ -66,8 +71,10 @@ TEST(ExposureParts, StillThingsTakeOne) {
 // Rolling read-out: a row of y pixels below the middle sees the bar where it is y line times later.
 TEST(ExposureParts, RollingReadOutSlantsWhatMoves) {
   const double speed = 1000.0, line_s = 2e-4;  // 0.2 pixels a row
-  const Simulation sim = moving(speed, "exposure: 1 ms, stages: [{stage: detector, full_well: 1e7, line_time: 0.2 ms}], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, "
-                                       "quantum_efficiency: 0.8, output: electrons}]");
+  const Simulation sim =
+      moving(speed,
+             "exposure: 1 ms, stages: [{stage: detector, full_well: 1e7, line_time: 0.2 ms}], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, "
+             "quantum_efficiency: 0.8, output: electrons}]");
   const Frame f = renderFrame(sim);
   double worst = 0.0;
   for (int row = 2; row < 46; ++row) {
@@ -79,8 +86,10 @@ TEST(ExposureParts, RollingReadOutSlantsWhatMoves) {
     if (sum > 0.0) worst = std::max(worst, std::abs(moment / sum - (34.0 + speed * line_s * (row - 23.5))));
   }
   bound("middle of a moving bar in each row, pixels off the row's own time", worst, 0.0625, "edges on 8 subpixels are up to a sixteenth off");
-  const Simulation blurred = moving(speed, "exposure: 4 ms, motion_blur: true, stages: [{stage: detector, full_well: 1e7, line_time: 0.2 ms}], channels: [{name: mw, response: {band: "
-                                           "[3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: electrons}]");
+  const Simulation blurred =
+      moving(speed,
+             "exposure: 4 ms, motion_blur: true, stages: [{stage: detector, full_well: 1e7, line_time: 0.2 ms}], channels: [{name: mw, response: {band: "
+             "[3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: electrons}]");
   const Frame g = renderFrame(blurred);
   worst = 0.0;
   double widest = 0.0;
@@ -101,19 +110,25 @@ TEST(ExposureParts, RollingReadOutSlantsWhatMoves) {
 // Times around a frame's own are drawn by what is there then; a lamp that crosses leaves its light along its way.
 TEST(ExposureParts, ALampLeavesAStreak) {
   const auto flux = [](const std::string& blur) {
-    const Frame f = renderFrame(scene(
-        "time: {rate: 50 Hz, frames: 3}\nbackground: {temperature: 3 K}\nlights: [{name: l, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 1], [5, 1]]}, motion: [{time: -1 s, "
-        "position: [1000 m, 150 m, 0.1 m]}, {time: 1 s, position: [1000 m, -150 m, 0.1 m]}]}]\ncameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, focal_length: 100 mm, "
-        "aperture: 25 mm, exposure: 10 ms, " + blur + "stages: [{stage: point_spread, beyond: 0.01}], position: [0 m, 0 m, 0 m], heading: 90 deg, channels: [{name: mw, response: {band: "
-        "[3.6 um, 4.9 um]}, output: flux}]}]\n"));
+    const Frame f =
+        renderFrame(scene("time: {rate: 50 Hz, frames: 3}\nbackground: {temperature: 3 K}\nlights: [{name: l, intensity: {wavelength: um, unit: W/(sr um), "
+                          "values: [[3, 1], [5, 1]]}, motion: [{time: -1 s, "
+                          "position: [1000 m, 150 m, 0.1 m]}, {time: 1 s, position: [1000 m, -150 m, 0.1 m]}]}]\ncameras: [{name: c, film: {width: 64, height: "
+                          "48, pitch: 15 um}, focal_length: 100 mm, "
+                          "aperture: 25 mm, exposure: 10 ms, " +
+                          blur +
+                          "stages: [{stage: point_spread, beyond: 0.01}], position: [0 m, 0 m, 0 m], heading: 90 deg, channels: [{name: mw, response: {band: "
+                          "[3.6 um, 4.9 um]}, output: flux}]}]\n"));
     return std::pair{sum(layer(f, "mw.flux")), at(layer(f, "mw.flux"), f, 32, 23)};
   };
   const auto [still, peak] = flux("");
   const auto [streak, along] = flux("motion_blur: true, exposure_parts: 64, ");
   figure("light of a lamp that moves by ten pixels, of the same at rest", streak, still, 2e-3, "energy");
   const Simulation lamp = scene(
-      "time: {rate: 50 Hz, frames: 3}\nbackground: {temperature: 3 K}\nlights: [{name: l, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 1], [5, 1]]}, motion: [{time: -1 s, position: [1000 m, 150 m, "
-      "0.1 m]}, {time: 1 s, position: [1000 m, -150 m, 0.1 m]}]}]\ncameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, focal_length: 100 mm, aperture: 25 mm, exposure: 10 ms, motion_blur: true, "
+      "time: {rate: 50 Hz, frames: 3}\nbackground: {temperature: 3 K}\nlights: [{name: l, intensity: {wavelength: um, unit: W/(sr um), values: [[3, 1], [5, "
+      "1]]}, motion: [{time: -1 s, position: [1000 m, 150 m, "
+      "0.1 m]}, {time: 1 s, position: [1000 m, -150 m, 0.1 m]}]}]\ncameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, focal_length: 100 mm, "
+      "aperture: 25 mm, exposure: 10 ms, motion_blur: true, "
       "position: [0 m, 0 m, 0 m], heading: 90 deg, channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, output: flux}]}]\n");
   const ExposureParts parts = partsOf(lamp, 0.0);
   EXPECT_GE(parts.times_s.size(), 40u) << "four a pixel of ten";

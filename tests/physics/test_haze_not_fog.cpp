@@ -12,7 +12,8 @@ namespace pitviper::test {
 namespace {
 
 Simulation airOf(const std::string& air) {
-  return scene("atmosphere: " + air + "\nprobes: [{name: p, position: [0 m, 0 m, 1 m], channels: [{name: a, response: {band: [8 um, 12 um]}, output: irradiance}]}]\n");
+  return scene("atmosphere: " + air +
+               "\nprobes: [{name: p, position: [0 m, 0 m, 1 m], channels: [{name: a, response: {band: [8 um, 12 um]}, output: irradiance}]}]\n");
 }
 
 TEST(HazeNotFog, IsSaidBelowAKilometre) {
@@ -21,7 +22,8 @@ TEST(HazeNotFog, IsSaidBelowAKilometre) {
       const Simulation sim = airOf("{library: " + std::string(library) + print(", visibility: %g km}", km));
       const auto* hazy = dynamic_cast<const HasHaze*>(sim.air.get());
       ASSERT_NE(hazy, nullptr);
-      figure(std::string(library) + print(", haze of %g km at 0.55 um [1/km]", km), hazy->hazePer_km(0.55), 3.912 / km - 0.0116, 4e-3, "Koschmieder's law less Rayleigh scattering; read between bins of the table");
+      figure(std::string(library) + print(", haze of %g km at 0.55 um [1/km]", km), hazy->hazePer_km(0.55), 3.912 / km - 0.0116, 4e-3,
+             "Koschmieder's law less Rayleigh scattering; read between bins of the table");
       const std::string words = hazeNotFog(sim);
       EXPECT_NE(words.find(print("air of %.2g km of visibility is haze here, not fog", km)), std::string::npos) << words;
       // By Beer's law of LOWTRAN 7's ratios.
@@ -32,8 +34,8 @@ TEST(HazeNotFog, IsSaidBelowAKilometre) {
 }
 
 TEST(HazeNotFog, IsNotSaidOfOtherAir) {
-  for (const char* air : {"{library: hazy_us76, visibility: 1 km}", "{library: hazy_us76, visibility: 2 km}", "hazy_us76", "hazy_mls", "clear_us76", "clear_mls",
-                          "{model: homogeneous, extinction: 5e-3 /m}"})
+  for (const char* air : {"{library: hazy_us76, visibility: 1 km}", "{library: hazy_us76, visibility: 2 km}", "hazy_us76", "hazy_mls", "clear_us76",
+                          "clear_mls", "{model: homogeneous, extinction: 5e-3 /m}"})
     EXPECT_EQ(hazeNotFog(airOf(air)), "") << air;
   const Simulation none;
   EXPECT_EQ(hazeNotFog(none), "");

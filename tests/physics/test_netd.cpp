@@ -13,10 +13,14 @@
 namespace pitviper::test {
 namespace {
 
-Simulation flat(const std::string& detector, double kelvin, double fNumber, const std::string& lens = "", const std::string& outputs = "counts", const std::string& second = "") {
+Simulation flat(const std::string& detector, double kelvin, double fNumber, const std::string& lens = "", const std::string& outputs = "counts",
+                const std::string& second = "") {
   return scene(print("seed: 7\ntime: {rate: 50 Hz, frames: 8}\nbackground: {temperature: %.9g K}\n", kelvin) +
-               print("cameras: [{name: c, film: {width: 64, height: 64, pitch: 15 um}, focal_length: 100 mm, f_number: %g, exposure: 4 ms, position: [0 m, 0 m, 0 m], heading: 0 deg, stages: [", fNumber) + lens +
-               "{stage: detector, " + detector + "}], channels: [{name: mw, response: {band: [3.5 um, 4.9 um]}, quantum_efficiency: 0.8, output: [" + outputs + "]}" + second + "]}]\n");
+               print("cameras: [{name: c, film: {width: 64, height: 64, pitch: 15 um}, focal_length: 100 mm, f_number: %g, exposure: 4 ms, position: [0 m, 0 "
+                     "m, 0 m], heading: 0 deg, stages: [",
+                     fNumber) +
+               lens + "{stage: detector, " + detector + "}], channels: [{name: mw, response: {band: [3.5 um, 4.9 um]}, quantum_efficiency: 0.8, output: [" +
+               outputs + "]}" + second + "]}]\n");
 }
 
 double meanOf(const std::vector<float>& v) {
@@ -33,28 +37,35 @@ double measured_K(const std::string& detector, double kelvin, double fNumber, co
   std::vector<float> before;
   for (int k = 0; k < kFrames; ++k) {
     const auto now = layer(renderFrame(at, k), "mw.counts").pixels;
-    for (std::size_t p = 0; k > 0 && p < now.size(); ++p) variance += 0.5 * std::pow(static_cast<double>(now[p]) - static_cast<double>(before[p]), 2.0) / static_cast<double>(now.size()) / (kFrames - 1);
+    for (std::size_t p = 0; k > 0 && p < now.size(); ++p)
+      variance += 0.5 * std::pow(static_cast<double>(now[p]) - static_cast<double>(before[p]), 2.0) / static_cast<double>(now.size()) / (kFrames - 1);
     before = now;
   }
-  const double rise = meanOf(layer(renderFrame(flat(detector, kelvin + 2.0, fNumber, lens)), "mw.counts").pixels) - meanOf(layer(renderFrame(flat(detector, kelvin - 2.0, fNumber, lens)), "mw.counts").pixels);
+  const double rise = meanOf(layer(renderFrame(flat(detector, kelvin + 2.0, fNumber, lens)), "mw.counts").pixels) -
+                      meanOf(layer(renderFrame(flat(detector, kelvin - 2.0, fNumber, lens)), "mw.counts").pixels);
   return std::sqrt(variance) / (rise / 4.0);
 }
 
-// The camera's own F-number, lens and dark current with it. Differences of 8 frames of 4096 pixels: the variance is good to sqrt(3 / (2 x 7 x 4096)) of it (neighbouring
-// differences share a frame), the deviation to half of that, 0.36 %; four of that, and 0.1 % for the slope over 4 K.
+// The camera's own F-number, lens and dark current with it. Differences of 8 frames of 4096 pixels: the variance is good to sqrt(3 / (2 x 7 x 4096)) of it
+// (neighbouring differences share a frame), the deviation to half of that, 0.36 %; four of that, and 0.1 % for the slope over 4 K.
 TEST(Netd, IsWhatPicturesShow) {
   struct Case {
     const char* what;
     double netd_mK, at_K, fNumber;
     const char *more, *lens;
   };
-  for (const Case& c : {Case{"30 mK, F/4", 30, 300, 4, "", ""}, {"60 mK, F/2.5", 60, 300, 2.5, "", ""}, {"200 mK, F/4, dark current", 200, 300, 4, ", dark_current: 5e7 /s", ""},
-                        {"80 mK at 280 K", 80, 280, 3, ", netd_at: 280 K", ""}, {"40 mK, a fill factor of 0.6", 40, 300, 3, ", fill_factor: 0.6", ""},
+  for (const Case& c : {Case{"30 mK, F/4", 30, 300, 4, "", ""},
+                        {"60 mK, F/2.5", 60, 300, 2.5, "", ""},
+                        {"200 mK, F/4, dark current", 200, 300, 4, ", dark_current: 5e7 /s", ""},
+                        {"80 mK at 280 K", 80, 280, 3, ", netd_at: 280 K", ""},
+                        {"40 mK, a fill factor of 0.6", 40, 300, 3, ", fill_factor: 0.6", ""},
                         {"40 mK, a warm lens", 40, 300, 3, "", "{stage: lens_emission, temperature: 310 K, emissivity: 0.1}, "}}) {
     const std::string detector = print("full_well: 2e7, bits: 16, offset: 500, netd: %g mK%s", c.netd_mK, c.more);
-    figure(std::string("NETD of pictures [mK], design ") + c.what, 1e3 * measured_K(detector, c.at_K, c.fNumber, c.lens), c.netd_mK, 0.0155, "as asked; four standard errors and the slope");
+    figure(std::string("NETD of pictures [mK], design ") + c.what, 1e3 * measured_K(detector, c.at_K, c.fNumber, c.lens), c.netd_mK, 0.0155,
+           "as asked; four standard errors and the slope");
     const Simulation sim = flat(detector, c.at_K, c.fNumber, c.lens);
-    figure(std::string("NETD of figures [mK], design ") + c.what, 1e3 * figuresOf(sim.cameras[0], sim.cameras[0].outputs[0], 0.02, c.at_K).detected->netd_K, c.netd_mK, 1e-9, "by construction; rounding");
+    figure(std::string("NETD of figures [mK], design ") + c.what, 1e3 * figuresOf(sim.cameras[0], sim.cameras[0].outputs[0], 0.02, c.at_K).detected->netd_K,
+           c.netd_mK, 1e-9, "by construction; rounding");
   }
 }
 

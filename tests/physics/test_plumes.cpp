@@ -151,7 +151,8 @@ cameras:
       char what[200];
       std::snprintf(what, sizeof what, "%s, %.1f-%.1f um from the side: %.1f W/sr; over the sum of lines", c.what, bands[b][0], bands[b][1], want);
       figure(what, seen / want, 1.0, 0.01, "the accuracy asked for");
-      figure(std::string(what) + ", of its row in truth", frame.targets.at(0).channels[static_cast<std::size_t>(b)].contrast / want, 1.0, 0.01, "the accuracy asked for");
+      figure(std::string(what) + ", of its row in truth", frame.targets.at(0).channels[static_cast<std::size_t>(b)].contrast / want, 1.0, 0.01,
+             "the accuracy asked for");
     }
   }
 }

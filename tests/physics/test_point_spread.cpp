@@ -107,8 +107,8 @@ double shareOfPixel(double x, double y) {
   double sum = 0.0;
   for (const auto& a : nodes)
     for (const auto& b : nodes)
-      sum += 4.0 * a.weight * b.weight * ofCircle(std::min(2.0, 2.0 * std::hypot(a.x, b.x) / cutoff)) * sinc(a.x) * sinc(b.x) * std::cos(2.0 * kPi * a.x * x * pitch) *
-             std::cos(2.0 * kPi * b.x * y * pitch);
+      sum += 4.0 * a.weight * b.weight * ofCircle(std::min(2.0, 2.0 * std::hypot(a.x, b.x) / cutoff)) * sinc(a.x) * sinc(b.x) *
+             std::cos(2.0 * kPi * a.x * x * pitch) * std::cos(2.0 * kPi * b.x * y * pitch);
   return sum * pitch * pitch;
 }
 
@@ -142,7 +142,8 @@ TEST(PointSpread, FarLightOfAStar) {
         if (std::hypot(x - 32, y - 32) <= radius_px) within += at(layer(f, "lw.flux"), f, x, y);
     const double v = kPi * radius_px * 15.0 / 20.0;
     figure(print("light of a star within %g pixels, 10 um F/2, a kernel of 95 %% of it", radius_px), within / sum(layer(plain, "lw.flux")),
-           1.0 - std::pow(std::cyl_bessel_j(0.0, v), 2.0) - std::pow(std::cyl_bessel_j(1.0, v), 2.0), 3e-3, "Rayleigh 1881; a circle of whole pixels; rings averaged");
+           1.0 - std::pow(std::cyl_bessel_j(0.0, v), 2.0) - std::pow(std::cyl_bessel_j(1.0, v), 2.0), 3e-3,
+           "Rayleigh 1881; a circle of whole pixels; rings averaged");
   }
 }
 
@@ -152,7 +153,8 @@ TEST(PointSpread, SmallBodiesFallWhereTheyAre) {
     const Frame f = renderFrame(scene(
         "background: {temperature: 3 K}\nmaterials: {m: {components: []}}\nentities: [{name: p, shape: {model: sphere, radius: " + std::to_string(radius_m) +
         " m}, material: m, temperature: 900 K, position: [1000 m, " + std::to_string(x_px * 0.15) +
-        " m, 0 m]}]\ncameras: [{name: c, film: {width: 65, height: 65, pitch: 15 um}, focal_length: 100 mm, aperture: 50 mm, position: [0 m, 0 m, 0 m], heading: 90 deg, "
+        " m, 0 m]}]\ncameras: [{name: c, film: {width: 65, height: 65, pitch: 15 um}, focal_length: 100 mm, aperture: 50 mm, position: [0 m, 0 m, 0 m], "
+        "heading: 90 deg, "
         "stages: [{stage: point_spread, cells: 2, beyond: 0.02}], channels: [{name: lw, response: {band: [9.99 um, 10.01 um]}, output: flux}]}]\n"));
     return at(layer(f, "lw.flux"), f, 32, 32) / sum(layer(f, "lw.flux"));
   };
@@ -170,8 +172,10 @@ TEST(PointSpread, SmallBodiesFallWhereTheyAre) {
   const Frame star = renderFrame(pointScene(0.0, 0.0, "stages: [{stage: point_spread, cells: 2, beyond: 0.02}], "));
   const double onFilm = at(layer(star, "lw.flux"), star, 32, 32) / sum(layer(star, "lw.flux")) / shareOfPixel(0.0, 0.0);  // what its far light leaves it
   for (double x : {0.0, 0.21, 0.5}) {
-    figure(print("share of a body of a fifth of a pixel, %.2g off the middle", x), shareOf(x, 0.015), onFilm * ofDisc(x, 0.1), 1e-3, "points with its middle and its spread");
-    figure(print("share of a body of a pixel, %.2g off the middle", x), shareOf(x, 0.075), onFilm * ofDisc(x, 0.5), 5e-3, "the same; a sphere's edge on 256 lines");
+    figure(print("share of a body of a fifth of a pixel, %.2g off the middle", x), shareOf(x, 0.015), onFilm * ofDisc(x, 0.1), 1e-3,
+           "points with its middle and its spread");
+    figure(print("share of a body of a pixel, %.2g off the middle", x), shareOf(x, 0.075), onFilm * ofDisc(x, 0.5), 5e-3,
+           "the same; a sphere's edge on 256 lines");
   }
 }
 

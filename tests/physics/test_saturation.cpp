@@ -19,14 +19,19 @@ namespace {
 /// Six black plates side by side, 4 x 24 pixels each, before one of 300 K; a pixel is 0.1 m.
 const std::vector<double> kPlates_K{250.0, 300.0, 360.0, 450.0, 900.0, 2500.0};
 
-Simulation plates(const std::string& detector, const std::string& more = "", const std::string& camera = "truth: [temperature], ", const std::string& band = "3.7 um, 4.8 um") {
+Simulation plates(const std::string& detector, const std::string& more = "", const std::string& camera = "truth: [temperature], ",
+                  const std::string& band = "3.7 um, 4.8 um") {
   std::string text = "seed: 5\nbackground: {temperature: 300 K}\n" + more + "entities:\n";
   for (std::size_t k = 0; k < kPlates_K.size(); ++k)
-    text += print("  - {name: p%zu, shape: {model: plate, width: 0.4 m, height: 4 m}, material: blackbody, temperature: %g K, position: [100 m, %g m, 0 m], heading: 270 deg}\n", k, kPlates_K[k], 1.0 - 0.4 * static_cast<double>(k));
+    text += print(
+        "  - {name: p%zu, shape: {model: plate, width: 0.4 m, height: 4 m}, material: blackbody, temperature: %g K, position: [100 m, %g m, 0 m], heading: 270 "
+        "deg}\n",
+        k, kPlates_K[k], 1.0 - 0.4 * static_cast<double>(k));
   return scene(text +
-               "cameras: [{name: c, film: {width: 24, height: 24, pitch: 20 um}, focal_length: 20 mm, aperture: 10 mm, exposure: 1 ms, small_bodies: 0, position: [0 m, 0 m, 0 m], heading: 90 deg, " +
-               camera + "channels: [{name: mw, response: {band: [" + band + "]}, quantum_efficiency: 0.8, output: [counts, apparent_temperature, snr, saturated]}], stages: [{stage: detector, " +
-               detector + "}]}]\n");
+               "cameras: [{name: c, film: {width: 24, height: 24, pitch: 20 um}, focal_length: 20 mm, aperture: 10 mm, exposure: 1 ms, small_bodies: 0, "
+               "position: [0 m, 0 m, 0 m], heading: 90 deg, " +
+               camera + "channels: [{name: mw, response: {band: [" + band +
+               "]}, quantum_efficiency: 0.8, output: [counts, apparent_temperature, snr, saturated]}], stages: [{stage: detector, " + detector + "}]}]\n");
 }
 
 int attribute(const Frame& f, const std::string& name) {
@@ -42,7 +47,8 @@ struct Told {
 };
 Told told(const Simulation& sim, const Frame& f) {
   Told t;
-  const FrameLayer &apparent = layer(f, "mw.apparent_temperature"), &marks = layer(f, "mw.saturated"), &snr = layer(f, "mw.snr"), &truth = layer(f, "truth.temperature");
+  const FrameLayer &apparent = layer(f, "mw.apparent_temperature"), &marks = layer(f, "mw.saturated"), &snr = layer(f, "mw.snr"),
+                   &truth = layer(f, "truth.temperature");
   for (std::size_t p = 0; p < apparent.pixels.size(); ++p) {
     const bool marked = marks.pixels[p] != 0.0f;
     EXPECT_EQ(std::isnan(apparent.pixels[p]), marked) << p;
@@ -59,13 +65,16 @@ Told told(const Simulation& sim, const Frame& f) {
 
 // Whatever cuts the count: what still has a number is right, what has none is marked and counted.
 TEST(Saturation, NoNumberIsTakenForATemperature) {
-  for (const char* detector : {"full_well: 2e6, bits: 14, read_noise: 300", "full_well: 2e6, bits: 14, read_noise: 2000, offset: 300", "full_well: 1e9, gain: 0.004, bits: 14, read_noise: 200",
-                               "full_well: 3e6, bits: 16, gain: 0.01, read_noise: 500, dark_current: 4e8 /s, offset: 500", "full_well: 5e5, bits: 12, gain: 0.02, offset: 20"}) {
+  for (const char* detector :
+       {"full_well: 2e6, bits: 14, read_noise: 300", "full_well: 2e6, bits: 14, read_noise: 2000, offset: 300",
+        "full_well: 1e9, gain: 0.004, bits: 14, read_noise: 200", "full_well: 3e6, bits: 16, gain: 0.01, read_noise: 500, dark_current: 4e8 /s, offset: 500",
+        "full_well: 5e5, bits: 12, gain: 0.02, offset: 20"}) {
     const Simulation sim = plates(detector);
     const Frame f = renderFrame(sim);
     const Told t = told(sim, f);
     EXPECT_GE(t.marked, t.hot) << detector;
-    bound(std::string("temperatures that have no mark, off the plates', in standard deviations: ") + detector, t.worst, 5.0, "576 normal numbers; 5 sigma is one in 1.7 million");
+    bound(std::string("temperatures that have no mark, off the plates', in standard deviations: ") + detector, t.worst, 5.0,
+          "576 normal numbers; 5 sigma is one in 1.7 million");
     EXPECT_EQ(attribute(f, "pitviper.saturated.mw.full") + attribute(f, "pitviper.saturated.mw.lowest"), t.marked) << detector;
     EXPECT_EQ(attribute(f, "pitviper.saturated.mw.bad"), 0);
   }
@@ -73,7 +82,9 @@ TEST(Saturation, NoNumberIsTakenForATemperature) {
 
 // Where pixels differ, a full one's count, corrected, is anything: the mark is made in the well.
 TEST(Saturation, CorrectionDoesNotHideIt) {
-  const Simulation sim = plates("full_well: 2e6, bits: 16, gain: 0.01, read_noise: 300, prnu: 0.1, dsnu: 20000, nonlinearity: 0.01, offset: 2000, correction: {low: 290 K, high: 360 K, frames: 4096}");
+  const Simulation sim = plates(
+      "full_well: 2e6, bits: 16, gain: 0.01, read_noise: 300, prnu: 0.1, dsnu: 20000, nonlinearity: 0.01, offset: 2000, correction: {low: 290 K, high: 360 K, "
+      "frames: 4096}");
   const Frame f = renderFrame(sim);
   double least = INFINITY, most = 0.0;
   int full = 0;
@@ -81,7 +92,8 @@ TEST(Saturation, CorrectionDoesNotHideIt) {
     if (layer(f, "truth.temperature").pixels[p] > 800.0f) {
       EXPECT_EQ(layer(f, "mw.saturated").pixels[p], 1.0f);
       EXPECT_TRUE(std::isnan(layer(f, "mw.apparent_temperature").pixels[p]));
-      least = std::min(least, static_cast<double>(layer(f, "mw.counts").pixels[p])), most = std::max(most, static_cast<double>(layer(f, "mw.counts").pixels[p]));
+      least = std::min(least, static_cast<double>(layer(f, "mw.counts").pixels[p])),
+      most = std::max(most, static_cast<double>(layer(f, "mw.counts").pixels[p]));
       ++full;
     }
   EXPECT_EQ(full, 192);
@@ -90,7 +102,8 @@ TEST(Saturation, CorrectionDoesNotHideIt) {
 
 // The limit: a body that just fills the pixel, by the channel's own Planck integral.
 TEST(Saturation, TheLimitIsABound) {
-  for (const char* detector : {"full_well: 2e6, bits: 14, saturated: limit, bad_pixels: 0.1", "full_well: 1e9, gain: 0.004, bits: 14, saturated: limit", "full_well: 2e6, bits: 14, saturated: limit, fill_factor: 0.6, dark_current: 1e8 /s, offset: 100"}) {
+  for (const char* detector : {"full_well: 2e6, bits: 14, saturated: limit, bad_pixels: 0.1", "full_well: 1e9, gain: 0.004, bits: 14, saturated: limit",
+                               "full_well: 2e6, bits: 14, saturated: limit, fill_factor: 0.6, dark_current: 1e8 /s, offset: 100"}) {
     const Simulation sim = plates(detector);
     const Frame f = renderFrame(sim);
     const SensorFigures design = figuresOf(sim.cameras[0], sim.cameras[0].outputs[0]);
@@ -108,7 +121,8 @@ TEST(Saturation, TheLimitIsABound) {
     }
     EXPECT_GT(full, 0);
     EXPECT_EQ(bad, attribute(f, "pitviper.saturated.mw.bad"));
-    bound(std::string("temperatures of full pixels, off that which saturates, K: ") + detector, worst, 0.02, "off the axis a pixel sees cos^4 of it: 3e-4 of the light here");
+    bound(std::string("temperatures of full pixels, off that which saturates, K: ") + detector, worst, 0.02,
+          "off the axis a pixel sees cos^4 of it: 3e-4 of the light here");
   }
 }
 
@@ -117,7 +131,8 @@ TEST(Saturation, GainWindowAndDarkCodes) {
   const Simulation dark = plates(cold + ", gain: 1e-6");
   EXPECT_GT(attribute(renderFrame(dark), "pitviper.saturated.mw.lowest"), 90) << "a plate of 250 K gives less than half a count";
   // A gain that is turned up fills the converter, and down again.
-  const Simulation gains = plates("full_well: 1e8, bits: 14, read_noise: 300, gain: 5e-4", "time: {rate: 10 Hz, frames: 2}\ncommands: [{command: gain, at: 0.1 s, camera: c, factor: 60}]\n");
+  const Simulation gains = plates("full_well: 1e8, bits: 14, read_noise: 300, gain: 5e-4",
+                                  "time: {rate: 10 Hz, frames: 2}\ncommands: [{command: gain, at: 0.1 s, camera: c, factor: 60}]\n");
   EXPECT_LT(attribute(renderFrame(gains, 0), "pitviper.saturated.mw.full"), attribute(renderFrame(gains, 1), "pitviper.saturated.mw.full"));
   // What is not read out is not counted.
   const std::string window = "full_well: 2e6, bits: 14";
@@ -140,7 +155,8 @@ TEST(Saturation, MarksAreOfWhatIsCounted) {
   EXPECT_EQ(soon, before) << "after one frame the warming has 1 - exp(-1/2) = 39 % of it";
   EXPECT_EQ(later, before + 96) << "after ten 99 %";
   // A well of 85 % of a plate's own light is not full where a tenth of it goes to each neighbour, of a column one pixel wide; in the middle of the plate it is.
-  const Frame shared = renderFrame(plates(print("full_well: %g, bits: 14, crosstalk: 0.08", 0.97 * figuresOf(sim.cameras[0], sim.cameras[0].outputs[0], 0.01, 900.0).detected->electronsAt300K)));
+  const Frame shared = renderFrame(plates(
+      print("full_well: %g, bits: 14, crosstalk: 0.08", 0.97 * figuresOf(sim.cameras[0], sim.cameras[0].outputs[0], 0.01, 900.0).detected->electronsAt300K)));
   const Frame alone = renderFrame(plates(print("full_well: %g, bits: 14", 0.97 * hot)));
   EXPECT_EQ(attribute(alone, "pitviper.saturated.mw.full"), 192);
   EXPECT_LT(attribute(shared, "pitviper.saturated.mw.full"), 192) << "the column towards the cooler plate gives more than it gets";

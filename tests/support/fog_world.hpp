@@ -66,7 +66,8 @@ inline Cloud cone(double radius, double top, double length) {
           .gauges = {frustumGauge(0.5 * length, radius, top)}, .reach = 2.0 * std::max(radius, top) + length};
 }
 inline Cloud box(double l, double w, double h) {
-  return {.shape = "{model: box, length: " + text(l) + " m, width: " + text(w) + " m, height: " + text(h) + " m}", .gauges = {boxGauge(0.5 * glm::dvec3(l, w, h))},
+  return {.shape = "{model: box, length: " + text(l) + " m, width: " + text(w) + " m, height: " + text(h) + " m}",
+          .gauges = {boxGauge(0.5 * glm::dvec3(l, w, h))},
           .reach = l + w + h};
 }
 inline Cloud placed(Cloud c, const glm::dvec3& place, double heading = 90.0, double pitch = 0.0) {

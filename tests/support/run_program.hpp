@@ -24,6 +24,8 @@ inline Result run(const std::string& line) {
   return r;
 }
 
-inline Result pitviper(const std::string& arguments) { return run(std::string("PITVIPER_HOME=") + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM + " " + arguments); }
+inline Result pitviper(const std::string& arguments) {
+  return run(std::string("PITVIPER_HOME=") + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM + " " + arguments);
+}
 
 }  // namespace pitviper::test

@@ -15,25 +15,30 @@ namespace pitviper::test {
 namespace {
 
 /// An outline that crosses pixels, a body of a third of a pixel, a small bright part of a large body, a texture finer than pixels, a pane.
-std::string sceneText(const std::string& more = "", const std::string& channels = "[{name: mw, response: {band: [3.4 um, 4.2 um]}, output: [radiance, photons]}]") {
+std::string sceneText(const std::string& more = "",
+                      const std::string& channels = "[{name: mw, response: {band: [3.4 um, 4.2 um]}, output: [radiance, photons]}]") {
   return "name: scene\natmosphere: {extinction: 2e-5 1/m, temperature: 280 K}\n"
          "materials:\n"
          "  m: {components: [{reflection: lambertian, reflectance: {wavelength: um, unit: \"1\", values: [[3, 0.1], [3.8, 0.7], [6, 0.3]]}}]}\n"
          "  pane: {transmission: {transmittance: {wavelength: um, unit: \"1\", values: [[3, 0.9], [3.7, 0.3], [6, 0.8]]}}, components: []}\n"
          "entities:\n"
-         "  - {name: wall, shape: {model: plate, width: 40 m, height: 40 m}, material: m, temperature: 305 K, position: [0 m, 2 km, 60 m], heading: 170 deg, roll: 17 deg}\n"
+         "  - {name: wall, shape: {model: plate, width: 40 m, height: 40 m}, material: m, temperature: 305 K, position: [0 m, 2 km, 60 m], heading: 170 deg, "
+         "roll: 17 deg}\n"
          "  - {name: ball, shape: {model: sphere, radius: 0.3 m}, material: m, temperature: 600 K, position: [11 m, 1.9 km, 66 m]}\n"
-         "  - {name: jet, shape: {model: jet}, material: m, temperature: 290 K, position: [-5 m, 1.5 km, 52 m], heading: 70 deg, parts: {nozzle: {temperature: 800 K}}}\n"
-         "  - {name: window, shape: {model: plate, width: 12 m, height: 12 m}, material: pane, temperature: 300 K, position: [4 m, 1.2 km, 58 m], heading: 175 deg}\n"
-         "cameras: [{name: c, film: {width: 20, height: 20}, field_of_view: 1.6 deg, aperture: 5 mm, exposure: 1 ms, position: [0 m, 0 m, 50 m], look_at: wall, channels: " +
+         "  - {name: jet, shape: {model: jet}, material: m, temperature: 290 K, position: [-5 m, 1.5 km, 52 m], heading: 70 deg, parts: {nozzle: {temperature: "
+         "800 K}}}\n"
+         "  - {name: window, shape: {model: plate, width: 12 m, height: 12 m}, material: pane, temperature: 300 K, position: [4 m, 1.2 km, 58 m], heading: 175 "
+         "deg}\n"
+         "cameras: [{name: c, film: {width: 20, height: 20}, field_of_view: 1.6 deg, aperture: 5 mm, exposure: 1 ms, position: [0 m, 0 m, 50 m], look_at: "
+         "wall, channels: " +
          channels + "}]\n" + more;
 }
 
 class AuditCommand : public ::testing::Test {
  protected:
   Result run(const std::string& arguments) const {
-    return test::run("cd " + folder_.path().string() + " && XDG_CACHE_HOME=" + (folder_.path() / "cache").string() + " PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " " +
-                     PITVIPER_PROGRAM + " " + arguments);
+    return test::run("cd " + folder_.path().string() + " && XDG_CACHE_HOME=" + (folder_.path() / "cache").string() + " PITVIPER_HOME=" + PITVIPER_SOURCE_DIR +
+                     " " + PITVIPER_PROGRAM + " " + arguments);
   }
   /// Largest difference of a layer's pixels, as `audit` has it.
   double apart(const std::string& planned, const std::string& reference, const std::string& layer) const {

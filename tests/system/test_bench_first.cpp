@@ -16,7 +16,8 @@ namespace fs = std::filesystem;
 constexpr const char* kScenario =
     "time: {rate: 10 Hz, frames: 3}\natmosphere: {extinction: 0.1 /km, temperature: 288 K}\n"
     "entities:\n  - {name: ball, shape: {model: sphere, radius: 1 m}, material: flat_black_paint, temperature: 300 K, position: [0 m, 300 m, 40 m]}\n"
-    "cameras:\n  - {name: c, film: {width: 32, height: 32}, field_of_view: 1 deg, aperture: 5 cm, position: [0 m, 0 m, 40 m], look_at: ball, channels: [{name: mw, response: {band: [4 um, "
+    "cameras:\n  - {name: c, film: {width: 32, height: 32}, field_of_view: 1 deg, aperture: 5 cm, position: [0 m, 0 m, 40 m], look_at: ball, channels: [{name: "
+    "mw, response: {band: [4 um, "
     "4.1 um]}}]}\n";
 
 /// Cells of a CSV's lines by the names of its columns.
@@ -72,7 +73,8 @@ TEST(BenchFirst, StagesOfEveryState) {
 
 TEST(BenchFirst, WhatCannotBeMeasuredIsSaid) {
   const TemporaryFolder folder;
-  const Result blind = pitviper("bench --first " + folder.put("s.yaml", "probes: [{name: p, position: [0 m, 0 m, 0 m], channels: [{name: a, response: {band: [4 um, 4.1 um]}}]}]\n"));
+  const Result blind = pitviper(
+      "bench --first " + folder.put("s.yaml", "probes: [{name: p, position: [0 m, 0 m, 0 m], channels: [{name: a, response: {band: [4 um, 4.1 um]}}]}]\n"));
   EXPECT_EQ(blind.code, 2) << blind.output;
   EXPECT_NE(blind.output.find("s.yaml: the scenario has no camera, so there is no picture to wait for; expected"), std::string::npos) << blind.output;
   const Result wrong = pitviper("bench --first " + folder.put("t.yaml", "nonsense: 1\n"));

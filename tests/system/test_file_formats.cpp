@@ -30,10 +30,14 @@ std::string bytes(const fs::path& file) {
 
 /// A hot ball before a wall, as counts and radiance; the ball moves.
 std::string scenario(const std::string& sinks, const std::string& more = "") {
-  return "name: formats\nseed: 3\ntime: {rate: 25 Hz, frames: 4, date: 2026-06-21T12:00:00}\nbackground: {temperature: 290 K}\nmaterials: {m: {components: []}}\nentities:\n- {name: ball, shape: "
-         "{model: sphere, radius: 2 m}, material: m, temperature: 350 K, motion: [{time: 0 s, position: [1000 m, -3 m, 0 m]}, {time: 1 s, position: [1000 m, 30 m, 0 m]}]}\ncameras:\n- {name: c, "
-         "film: {width: 40, height: 30, pitch: 15 um}, focal_length: 50 mm, f_number: 2, exposure: 2 ms, position: [0 m, 0 m, 0 m], heading: 90 deg, truth: [range, targets], stages: [{stage: "
-         "detector, full_well: 7e6, offset: 100, read_noise: 300}], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: [counts, radiance]}]}\n" +
+  return "name: formats\nseed: 3\ntime: {rate: 25 Hz, frames: 4, date: 2026-06-21T12:00:00}\nbackground: {temperature: 290 K}\nmaterials: {m: {components: "
+         "[]}}\nentities:\n- {name: ball, shape: "
+         "{model: sphere, radius: 2 m}, material: m, temperature: 350 K, motion: [{time: 0 s, position: [1000 m, -3 m, 0 m]}, {time: 1 s, position: [1000 m, "
+         "30 m, 0 m]}]}\ncameras:\n- {name: c, "
+         "film: {width: 40, height: 30, pitch: 15 um}, focal_length: 50 mm, f_number: 2, exposure: 2 ms, position: [0 m, 0 m, 0 m], heading: 90 deg, truth: "
+         "[range, targets], stages: [{stage: "
+         "detector, full_well: 7e6, offset: 100, read_noise: 300}], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: "
+         "[counts, radiance]}]}\n" +
          more + (sinks.empty() ? "" : "sinks: " + sinks + "\n");
 }
 
@@ -41,7 +45,8 @@ class FileFormats : public ::testing::Test {
  protected:
   /// Draws frame 0 in a format; the same as EXR beside it.
   ExrImage draw(const std::string& format) {
-    const Result r = pitviper("run " + folder_.put("s.yaml", scenario("[files, {sink: files, format: " + format + "}]")) + " --frames 0 --out " + out().string());
+    const Result r =
+        pitviper("run " + folder_.put("s.yaml", scenario("[files, {sink: files, format: " + format + "}]")) + " --frames 0 --out " + out().string());
     EXPECT_EQ(r.code, 0) << r.output;
     return readExr(out() / "c_00000.exr");
   }
@@ -84,7 +89,8 @@ TEST_F(FileFormats, TiffByLibtiff) {
   TIFFClose(tiff);
   EXPECT_EQ(pages, 3);
   const std::string json = bytes(out() / "c_00000.json");
-  for (const char* part : {"\"mw.counts\"", "\"unit\": \"count\"", "curve.mw.response", "calibration.mw.counts.radiance_per_count"}) EXPECT_NE(json.find(part), std::string::npos) << part;
+  for (const char* part : {"\"mw.counts\"", "\"unit\": \"count\"", "curve.mw.response", "calibration.mw.counts.radiance_per_count"})
+    EXPECT_NE(json.find(part), std::string::npos) << part;
 }
 
 TEST_F(FileFormats, FitsByCfitsio) {
@@ -141,7 +147,8 @@ TEST_F(FileFormats, PngByLibpng) {
   const double low = number("\"low\""), step = number("\"step\"");
   const GreyImage radiance = readPngGrey(out() / "c_00000_mw.radiance.png");
   for (size_t p = 0; p < radiance.pixels.size(); ++p)
-    ASSERT_NEAR(low + step * static_cast<double>(std::lround(radiance.pixels[p] * 65535.0f)), static_cast<double>(exr.find("mw.radiance")->pixels[p]), 0.51 * step);
+    ASSERT_NEAR(low + step * static_cast<double>(std::lround(radiance.pixels[p] * 65535.0f)), static_cast<double>(exr.find("mw.radiance")->pixels[p]),
+                0.51 * step);
 }
 
 TEST_F(FileFormats, EnviByGdal) {
@@ -180,7 +187,8 @@ TEST_F(FileFormats, RunAgainSideBySideAndWithLongNames) {
     const Result again = pitviper(line);
     EXPECT_EQ(again.code, 0) << format << ": " << again.output;
   }
-  const Result both = pitviper("run " + folder_.put("b.yaml", scenario("[{sink: files, format: tiff}, {sink: files, format: png}]")) + " --frames 0 --out " + (folder_.path() / "both").string());
+  const Result both = pitviper("run " + folder_.put("b.yaml", scenario("[{sink: files, format: tiff}, {sink: files, format: png}]")) + " --frames 0 --out " +
+                               (folder_.path() / "both").string());
   EXPECT_EQ(both.code, 2);
   EXPECT_NE(both.output.find("two sinks write"), std::string::npos) << both.output;
   std::string text = scenario("[{sink: files, format: fits}]");
@@ -233,13 +241,16 @@ TEST_F(FileFormats, TheHeaderCalibratesCounts) {
   const size_t k = static_cast<size_t>(std::lower_bound(count.begin(), count.end(), mean) - count.begin());
   const double kelvin = temperature[k - 1] + (temperature[k] - temperature[k - 1]) * (mean - count[k - 1]) / (count[k] - count[k - 1]);
   EXPECT_NEAR(kelvin, 290.0, 0.15) << "off the axis cos^4 takes up to 0.3 %";
-  EXPECT_NEAR((number("radiance_per_count") * mean + number("radiance_at_0")) / radiance, 1.0, 0.06) << "of light even over the band; a black body of 290 K is not";
+  EXPECT_NEAR((number("radiance_per_count") * mean + number("radiance_at_0")) / radiance, 1.0, 0.06)
+      << "of light even over the band; a black body of 290 K is not";
 }
 
 TEST_F(FileFormats, FilmsSheetsAndThePage) {
   const Result r = pitviper("run " + folder_.put("s.yaml", scenario("")) + " --video film.mp4 --report --out " + out().string());
   ASSERT_EQ(r.code, 0) << r.output;
-  const Result probe = run("ffprobe -v error -count_frames -select_streams v -show_entries stream=codec_name,width,height,nb_read_frames,r_frame_rate -of csv=p=0 " + (out() / "film.mp4").string());
+  const Result probe =
+      run("ffprobe -v error -count_frames -select_streams v -show_entries stream=codec_name,width,height,nb_read_frames,r_frame_rate -of csv=p=0 " +
+          (out() / "film.mp4").string());
   EXPECT_NE(probe.output.find("h264"), std::string::npos) << probe.output;
   EXPECT_NE(probe.output.find("25/1"), std::string::npos) << probe.output;
   EXPECT_NE(probe.output.find(",4"), std::string::npos) << probe.output;
@@ -274,18 +285,22 @@ TEST_F(FileFormats, OneScaleForARun) {
 
 // A disk that fills leaves a film of whole frames: fragments of a second, as many as there was room for.
 TEST_F(FileFormats, AFullDiskLeavesWholeFrames) {
-  const std::string file = folder_.put("s.yaml", "name: long\ntime: {rate: 25 Hz, frames: 150}\nbackground: {temperature: 290 K}\ncameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, "
-                                                 "focal_length: 50 mm, f_number: 2, exposure: 2 ms, position: [0 m, 0 m, 0 m], heading: 90 deg, stages: [{stage: detector, full_well: 7e6, "
-                                                 "read_noise: 90000}], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: counts}]}]\nsinks: [{sink: video, "
-                                                 "scale: frame}]\n");
+  const std::string file = folder_.put(
+      "s.yaml",
+      "name: long\ntime: {rate: 25 Hz, frames: 150}\nbackground: {temperature: 290 K}\ncameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, "
+      "focal_length: 50 mm, f_number: 2, exposure: 2 ms, position: [0 m, 0 m, 0 m], heading: 90 deg, stages: [{stage: detector, full_well: 7e6, "
+      "read_noise: 90000}], channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: counts}]}]\nsinks: [{sink: video, "
+      "scale: frame}]\n");
   // A limit on a file's size stands for the disk.
   const Result whole = pitviper("run " + file + " --out " + (folder_.path() / "whole").string());
   ASSERT_EQ(whole.code, 0) << whole.output;
   const auto size = fs::file_size(folder_.path() / "whole/video.mp4");
-  const Result r = run("bash -c 'ulimit -f " + std::to_string(size / 1024 / 2) + "; PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM + " run " + file + " --out " + out().string() + "'");
+  const Result r = run("bash -c 'ulimit -f " + std::to_string(size / 1024 / 2) + "; PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM + " run " +
+                       file + " --out " + out().string() + "'");
   EXPECT_EQ(r.code, 1) << r.output;
   ASSERT_TRUE(fs::exists(out() / "video.mp4")) << r.output;
-  const Result probe = run("ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames -of csv=p=0 " + (out() / "video.mp4").string());
+  const Result probe =
+      run("ffprobe -v error -count_frames -select_streams v -show_entries stream=nb_read_frames -of csv=p=0 " + (out() / "video.mp4").string());
   EXPECT_EQ(probe.output.find("rror"), std::string::npos) << probe.output;
   const int frames = std::atoi(probe.output.c_str());
   EXPECT_GE(frames, 25) << probe.output;

@@ -35,12 +35,13 @@ TEST(MaterialCommand, ImportsOthersFiles) {
   const auto table = importedMaterial(nk);
   ASSERT_TRUE(table);
   EXPECT_NE(table->yaml.find("[0.5, 1.5, 0.1], [1, 1.6, 0.2]"), std::string::npos) << table->yaml;
-  const auto formula = importedMaterial(folder.put("b.yml", "DATA:\n  - type: formula 1\n    wavelength_range: 0.3 2.5\n    coefficients: 0 0.7 0.07 0.4 0.1\n"));
+  const auto formula =
+      importedMaterial(folder.put("b.yml", "DATA:\n  - type: formula 1\n    wavelength_range: 0.3 2.5\n    coefficients: 0 0.7 0.07 0.4 0.1\n"));
   ASSERT_TRUE(formula);
   EXPECT_NE(formula->yaml.find("sellmeier: [[0.7, 0.0049], [0.4, 0.01]]"), std::string::npos) << formula->yaml;
   EXPECT_NE(formula->yaml.find("from: 0.3 um"), std::string::npos);
-  const auto spectrum =
-      importedMaterial(folder.put("c.txt", "Name: Paint\nX Units: Wavelength (micrometers)\nY Units: Reflectance (percent)\n\n14.0 5.0\n10.0 -1.23e34\n2.0 60\n"));
+  const auto spectrum = importedMaterial(
+      folder.put("c.txt", "Name: Paint\nX Units: Wavelength (micrometers)\nY Units: Reflectance (percent)\n\n14.0 5.0\n10.0 -1.23e34\n2.0 60\n"));
   ASSERT_TRUE(spectrum);
   EXPECT_NE(spectrum->yaml.find("[2, 0.6], [14, 0.05]"), std::string::npos) << spectrum->yaml;
   // What it writes is read.

@@ -16,17 +16,25 @@ struct Row {
   double design = 0.0, measured = 0.0, error = 0.0;
 };
 
-// Rationale: figures that engineers compare are to be found in the pictures. Expected: SiTF, NETD, gain and well within 2 %, MTF within 0.02 up to Nyquist, a star's
-// share within 1 %, each component of noise within 4 of its standard errors; a page, a table and charts.
+// Rationale: figures that engineers compare are to be found in the pictures. Expected: SiTF, NETD, gain and well within 2 %, MTF within 0.02 up to Nyquist, a
+// star's share within 1 %, each component of noise within 4 of its standard errors; a page, a table and charts.
 TEST(Measure, FindsTheDesignInPictures) {
   const TemporaryFolder folder;
   const std::string camera = folder.put("mine.yaml",
-                                        "description: a camera\ncamera:\n  film: {width: 160, height: 120, pitch: 15 um}\n  focal_length: 100 mm\n  f_number: 3\n  optics: 0.85\n  exposure: 3 ms\n"
-                                        "  channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: counts}]\n  stages:\n  - {stage: point_spread, wavefront_error: 0.2 um}\n"
-                                        "  - {stage: detector, full_well: 6e6, bits: 14, offset: 200, read_noise: 500, row_noise: 400, column_noise: 300, frame_noise: 250, dsnu: 600, fixed_row_noise: 350, "
+                                        "description: a camera\ncamera:\n  film: {width: 160, height: 120, pitch: 15 um}\n  focal_length: 100 mm\n  f_number: "
+                                        "3\n  optics: 0.85\n  exposure: 3 ms\n"
+                                        "  channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: counts}]\n  stages:\n  - "
+                                        "{stage: point_spread, wavefront_error: 0.2 um}\n"
+                                        "  - {stage: detector, full_well: 6e6, bits: 14, offset: 200, read_noise: 500, row_noise: 400, column_noise: 300, "
+                                        "frame_noise: 250, dsnu: 600, fixed_row_noise: 350, "
                                         "fixed_column_noise: 300, prnu: 0.001, bad_pixels: 0.001}\n");
-  const Result r = pitviper("measure " + camera + " --film 80 --frames 16 --ranges " + folder.put("air.yaml", "atmosphere: {model: homogeneous, extinction: 0.2 /km, temperature: 288 K}\ncameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, "
-                             "aperture: 5 mm, position: [0 m, 0 m, 5 m], heading: 0 deg, channels: [{name: x, response: {band: [3.7 um, 4.8 um]}}]}]\n") + " --out " + (folder.path() / "out").string());
+  const Result r = pitviper(
+      "measure " + camera + " --film 80 --frames 16 --ranges " +
+      folder.put(
+          "air.yaml",
+          "atmosphere: {model: homogeneous, extinction: 0.2 /km, temperature: 288 K}\ncameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, "
+          "aperture: 5 mm, position: [0 m, 0 m, 5 m], heading: 0 deg, channels: [{name: x, response: {band: [3.7 um, 4.8 um]}}]}]\n") +
+      " --out " + (folder.path() / "out").string());
   ASSERT_TRUE(r.code == 0 || r.output.find("libvtk9") != std::string::npos) << r.output;
   if (r.code != 0) GTEST_SKIP() << "built without VTK";
   std::ifstream in(folder.path() / "out/mine.csv");
@@ -50,7 +58,8 @@ TEST(Measure, FindsTheDesignInPictures) {
   within("NETD (rms over the film)", 0.02);
   within("gain (photon transfer)", 0.02);
   within("full well, or what the converter holds", 0.02);
-  for (const char* star : {"a star in its middle, share of that pixel", "a star on its edge, share of that pixel", "a star in its corner, share of that pixel"}) within(star, 0.01);
+  for (const char* star : {"a star in its middle, share of that pixel", "a star on its edge, share of that pixel", "a star in its corner, share of that pixel"})
+    within(star, 0.01);
   ASSERT_TRUE(rows.count("largest difference of MTF up to Nyquist"));
   EXPECT_LT(rows["largest difference of MTF up to Nyquist"].measured, 0.02);
   int components = 0;
@@ -76,12 +85,13 @@ Row printedRow(const std::string& output, const std::string& name) {
 
 std::string plainCamera(const std::string& detector) {
   return "camera:\n  film: {width: 160, height: 128, pitch: 15 um}\n  focal_length: 100 mm\n  f_number: 3\n  optics: 0.85\n  exposure: 3 ms\n"
-         "  channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: counts}]\n  stages:\n  - {stage: point_spread}\n  - {stage: detector, full_well: 6e6, bits: 14, offset: 200, " +
+         "  channels: [{name: mw, response: {band: [3.6 um, 4.9 um]}, quantum_efficiency: 0.8, output: counts}]\n  stages:\n  - {stage: point_spread}\n  - "
+         "{stage: detector, full_well: 6e6, bits: 14, offset: 200, " +
          detector + "}\n";
 }
 
-// A NETD that is asked for is the one that pictures show: 16 frames of 64 x 64 pixels know a deviation to 0.29 %; four of that, and as much for SiTF. The MRTD follows from noise and contrast, both
-// as found: 7 components of which six are nothing, each known to some per cent of the seventh.
+// A NETD that is asked for is the one that pictures show: 16 frames of 64 x 64 pixels know a deviation to 0.29 %; four of that, and as much for SiTF. The MRTD
+// follows from noise and contrast, both as found: 7 components of which six are nothing, each known to some per cent of the seventh.
 TEST(Measure, NetdAsDesignedAndMrtd) {
   const TemporaryFolder folder;
   for (const double netd_mK : {30.0, 75.0}) {
@@ -122,23 +132,28 @@ double rangeIn(const std::string& output, const std::string& task, int column) {
   return range;
 }
 
-// Rationale: ranges fall from detection to identification, with less contrast and with more air; without air a spot's TNR falls as the square of range; what is asked wrongly is refused.
+// Rationale: ranges fall from detection to identification, with less contrast and with more air; without air a spot's TNR falls as the square of range; what is
+// asked wrongly is refused.
 TEST(Measure, RangesThroughAScenariosAir) {
   const TemporaryFolder folder;
   const std::string camera = folder.put("c.yaml", plainCamera("netd: 30 mK"));
   const auto scenario = [&](const std::string& name, const std::string& air) {
-    return folder.put(name, air + "cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 5 mm, position: [0 m, 0 m, 5 m], heading: 0 deg, channels: [{name: x, response: {band: [3.7 um, 4.8 "
-                                  "um]}}]}]\n");
+    return folder.put(name, air +
+                                "cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 5 mm, position: [0 m, 0 m, 5 m], heading: 0 "
+                                "deg, channels: [{name: x, response: {band: [3.7 um, 4.8 "
+                                "um]}}]}]\n");
   };
   const auto measured = [&](const std::string& more) {
     const Result r = pitviper("measure " + camera + " --film 64 --frames 4 " + more);
     EXPECT_EQ(r.code, 0) << r.output;
     return r.output;
   };
-  const std::string none = scenario("none.yaml", ""), clear = scenario("clear.yaml", "atmosphere: {model: homogeneous, extinction: 0.2 /km, temperature: 288 K}\n"),
-                    thick = scenario("thick.yaml", "atmosphere: {model: homogeneous, extinction: 1 /km, temperature: 288 K}\n"), layered = scenario("layered.yaml", "atmosphere: clear_us76\n");
-  const std::string vacuum = measured("--ranges " + none), good = measured("--ranges " + clear), bad = measured("--ranges " + thick), cold = measured("--ranges " + clear + " --contrast '0.2 K'"),
-                    real = measured("--ranges " + layered);
+  const std::string none = scenario("none.yaml", ""),
+                    clear = scenario("clear.yaml", "atmosphere: {model: homogeneous, extinction: 0.2 /km, temperature: 288 K}\n"),
+                    thick = scenario("thick.yaml", "atmosphere: {model: homogeneous, extinction: 1 /km, temperature: 288 K}\n"),
+                    layered = scenario("layered.yaml", "atmosphere: clear_us76\n");
+  const std::string vacuum = measured("--ranges " + none), good = measured("--ranges " + clear), bad = measured("--ranges " + thick),
+                    cold = measured("--ranges " + clear + " --contrast '0.2 K'"), real = measured("--ranges " + layered);
   for (int column : {1, 2, 4, 5}) {
     for (const std::string& out : {vacuum, good, bad, real}) {
       EXPECT_GT(rangeIn(out, "detection", column), rangeIn(out, "recognition", column)) << column << out;
@@ -179,8 +194,11 @@ TEST(Measure, RangesThroughAScenariosAir) {
 
 TEST(Measure, RefusesWhatMakesNoCounts) {
   const TemporaryFolder folder;
-  const Result r = pitviper("measure " + folder.put("none.yaml", "camera: {film: {width: 64, height: 64, pitch: 15 um}, focal_length: 100 mm, f_number: 3, channels: [{name: mw, response: {band: [3.6 um, 4.9 "
-                                                                 "um]}}]}\n"));
+  const Result r = pitviper(
+      "measure " +
+      folder.put("none.yaml",
+                 "camera: {film: {width: 64, height: 64, pitch: 15 um}, focal_length: 100 mm, f_number: 3, channels: [{name: mw, response: {band: [3.6 um, 4.9 "
+                 "um]}}]}\n"));
   EXPECT_EQ(r.code, 2);
   EXPECT_NE(r.output.find("makes no counts"), std::string::npos) << r.output;
   const Result name = pitviper("measure insb_64x512");

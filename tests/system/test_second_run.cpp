@@ -18,8 +18,8 @@ namespace fs = std::filesystem;
 
 struct SecondRun : testing::Test {
   std::string run(const std::string& scenario, const std::string& out, const std::string& cache, const std::string& with = "") const {
-    const std::string line = "cd " + folder.path().string() + " && " + with + " XDG_CACHE_HOME=" + cache + " PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM +
-                             " run " + scenario + " --frames 0:0 --overwrite --out " + out + " 2>&1";
+    const std::string line = "cd " + folder.path().string() + " && " + with + " XDG_CACHE_HOME=" + cache + " PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " " +
+                             PITVIPER_PROGRAM + " run " + scenario + " --frames 0:0 --overwrite --out " + out + " 2>&1";
     FILE* pipe = popen(line.c_str(), "r");
     std::array<char, 4096> buffer{};
     std::string output;

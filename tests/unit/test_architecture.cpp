@@ -156,6 +156,32 @@ TEST(Architecture, FoldersStandInNoCircle) {
   EXPECT_EQ(circle(uses), "");
 }
 
+/// What no line of ours is longer than.
+constexpr size_t kColumns = 160;
+/// Until what takes their place is there.
+const std::vector<std::string> kBeingRewritten = {"sim/render/", "sim/camera/", "sim/frame/truth_table"};
+
+// A page and a screen hold it; the formatter knows the same number.
+TEST(Architecture, NoLineIsLongerThanThePage) {
+  const std::filesystem::path root = PITVIPER_SOURCE_DIR;
+  int files = 0;
+  for (const char* top : {"sim", "materials", "atmosphere", "sensors", "scenarios", "tests"})
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(root / top)) {
+      const std::string ext = entry.path().extension().string(), name = std::filesystem::relative(entry.path(), root).string();
+      if (ext != ".cpp" && ext != ".hpp" && ext != ".h" && ext != ".glsl") continue;
+      if (std::any_of(kBeingRewritten.begin(), kBeingRewritten.end(), [&](const std::string& room) { return name.starts_with(room); })) continue;
+      std::ifstream in(entry.path());
+      int number = 0;
+      for (std::string line; std::getline(in, line);)
+        if (++number, line.size() > kColumns) ADD_FAILURE() << name << ":" << number << ": " << line.size() << " columns";
+      ++files;
+    }
+  EXPECT_GT(files, 1000);
+  std::ifstream format(root / ".clang-format");
+  const std::string text{std::istreambuf_iterator<char>(format), {}};
+  EXPECT_NE(text.find("ColumnLimit: " + std::to_string(kColumns) + "\n"), std::string::npos) << text;
+}
+
 TEST(Architecture, TheTestItselfFindsViolations) {
   EXPECT_NE(violation({"sim/radiometry/planck.hpp", "sim/gl/context.hpp", false}), "");
   EXPECT_NE(violation({"sim/render/glsl/shade.frag.glsl", "materials/phong.glsl", false}), "");

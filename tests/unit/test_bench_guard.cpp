@@ -137,7 +137,8 @@ std::string wordsOf(const std::vector<ScenarioChange>& changes, const std::strin
 
 TEST(BenchChanges, OfTheBodyThatACameraLooksAt) {
   const auto changes = changesOfText(
-      "atmosphere: hazy_us76\naccuracy: 4 %\nentities:\n  - {name: field, shape: {model: plate, width: 9 m, height: 9 m}, material: flat_black_paint, temperature: 280 K, position: [1 m, 2 m, "
+      "atmosphere: hazy_us76\naccuracy: 4 %\nentities:\n  - {name: field, shape: {model: plate, width: 9 m, height: 9 m}, material: flat_black_paint, "
+      "temperature: 280 K, position: [1 m, 2 m, "
       "3 m]}\n  - {name: ball, shape: {model: sphere, radius: 1 m}, material: olive_gloss_paint, temperature: 27 degC, position: [10 m, 300 m, 40 m]}\n",
       "ball");
   EXPECT_EQ(wordsOf(changes, "temperature"), "entities.ball.temperature 27 degC -> 310.15 K");
@@ -150,8 +151,9 @@ TEST(BenchChanges, OfTheBodyThatACameraLooksAt) {
 
 TEST(BenchChanges, WhatAScenarioCannotHaveIsSaid) {
   const auto changes = changesOfText(
-      "atmosphere: {extinction: 0.1 /km, temperature: 288 K}\nentities:\n  - {name: ball, shape: {model: plate, width: 1 m, height: 1 m}, material: flat_black_paint, temperature: {file: "
-      PITVIPER_SOURCE_DIR "/scenarios/assets/terrain_near_temperature.png, minimum: 280 K, maximum: 300 K}, position: [10 m, 300 m, 40 m]}\n",
+      "atmosphere: {extinction: 0.1 /km, temperature: 288 K}\nentities:\n  - {name: ball, shape: {model: plate, width: 1 m, height: 1 m}, material: "
+      "flat_black_paint, temperature: {file: " PITVIPER_SOURCE_DIR
+      "/scenarios/assets/terrain_near_temperature.png, minimum: 280 K, maximum: 300 K}, position: [10 m, 300 m, 40 m]}\n",
       "ball");
   EXPECT_EQ(wordsOf(changes, "temperature"), "none: no body has a temperature that can be 10 K more");
   EXPECT_TRUE(wordsOf(changes, "visibility").starts_with("none: ")) << wordsOf(changes, "visibility");
@@ -163,14 +165,17 @@ TEST(BenchChanges, OfWhatIsWarmedByAirOrOverTime) {
   const std::string body = "atmosphere: clear_us76\norigin: {latitude: 50 deg, longitude: 8 deg}\n", jet =
     "entities:\n  - {name: jet, shape: {model: jet}, material: grey_aircraft_paint, position: [0 m, 1 km, 90 m], temperature: ";
   EXPECT_EQ(wordsOf(changesOfText(body + jet + "{recovery: turbulent}}\n", "jet"), "temperature"), "entities.jet.temperature.offset 0 K -> 10 K");
-  EXPECT_EQ(wordsOf(changesOfText(body + jet + "{recovery: turbulent, offset: -15 K}}\n", "jet"), "temperature"), "entities.jet.temperature.offset -15 K -> -5 K");
+  EXPECT_EQ(wordsOf(changesOfText(body + jet + "{recovery: turbulent, offset: -15 K}}\n", "jet"), "temperature"),
+            "entities.jet.temperature.offset -15 K -> -5 K");
   EXPECT_EQ(wordsOf(changesOfText(body + jet + "[[0 s, 290 K], [1 s, 300 K]]}\n", "jet"), "temperature"), "entities.jet.temperature.0.1 290 K -> 300 K");
 }
 
 TEST(BenchChanges, OfAWayOfAPartAndOfAMap) {
   const auto changes = changesOfText(
-      "atmosphere: {library: hazy_us76, visibility: 8 km}\naccuracy: {asked: 2 %, at_most: 8 %}\nentities:\n  - name: jet\n    shape: {model: jet}\n    material: {components: []}\n"
-      "    temperature: {over: [[0 s, 300 K], [1 s, 310 K]]}\n    parts: {nozzle: {temperature: 800 K}}\n    motion: [{time: 0 s, position: [0 m, 1 km, 90 m]}, {time: 1 s, position: [9 m, 1 km, 90 m]}]\n",
+      "atmosphere: {library: hazy_us76, visibility: 8 km}\naccuracy: {asked: 2 %, at_most: 8 %}\nentities:\n  - name: jet\n    shape: {model: jet}\n    "
+      "material: {components: []}\n"
+      "    temperature: {over: [[0 s, 300 K], [1 s, 310 K]]}\n    parts: {nozzle: {temperature: 800 K}}\n    motion: [{time: 0 s, position: [0 m, 1 km, 90 "
+      "m]}, {time: 1 s, position: [9 m, 1 km, 90 m]}]\n",
       "jet");
   EXPECT_EQ(wordsOf(changes, "temperature"), "entities.jet.parts.nozzle.temperature 800 K -> 810 K");
   EXPECT_EQ(wordsOf(changes, "visibility"), "atmosphere.visibility 8 km -> 6 km");

@@ -225,9 +225,10 @@ plumes: [{name: exhaust, on: jet, engine: turbofan_military}]
   EXPECT_NE(fieldOf(later, 1), nullptr);
   EXPECT_NEAR(*later.throttles.at(0)->at(0.8), 0.3, 1e-12);
   EXPECT_LT(glm::length(later.velocities.at(0) - glm::dvec3(0.0, 200.0, 0.0)), 1e-9);
-  for (const auto& [text, says] : std::vector<std::pair<std::string, std::string>>{{R"({"command": "eject", "flare": "decoi"})", "did you mean 'decoy'?"},
-                                                                                   {R"({"command": "speed", "entity": "jet", "value": "100 m/s"})", "has no route"},
-                                                                                   {R"({"command": "throttle", "plume": "exhaust", "value": "120 %"})", "value"}}) {
+  for (const auto& [text, says] :
+       std::vector<std::pair<std::string, std::string>>{{R"({"command": "eject", "flare": "decoi"})", "did you mean 'decoy'?"},
+                                                        {R"({"command": "speed", "entity": "jet", "value": "100 m/s"})", "has no route"},
+                                                        {R"({"command": "throttle", "plume": "exhaust", "value": "120 %"})", "value"}}) {
     c.send(text + "\n");
     const std::string answer = c.line();
     EXPECT_NE(answer.find(says), std::string::npos) << answer;

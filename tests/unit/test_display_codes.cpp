@@ -58,7 +58,8 @@ TEST(DisplayCodes, EvenHistogramIsAStraightLine) {
       double worst = 0.0;
       for (std::size_t k = 0; k < codes.size(); ++k)
         worst = std::max(worst, std::abs(static_cast<double>(codes[k]) - 255.0 * (static_cast<double>(k % static_cast<std::size_t>(n)) + 0.5) / n));
-      bound(print("display: %d even counts, %s, off a line [code]", n, agc == Agc::Linear ? "linear" : "plateau"), worst, 0.5 + 1e-6, "255 (m + 1/2) / n; rounding to whole codes");
+      bound(print("display: %d even counts, %s, off a line [code]", n, agc == Agc::Linear ? "linear" : "plateau"), worst, 0.5 + 1e-6,
+            "255 (m + 1/2) / n; rounding to whole codes");
     }
 }
 
@@ -72,8 +73,8 @@ TEST(DisplayCodes, TailsAreCut) {
     EXPECT_NEAR(codes[static_cast<std::size_t>(k)], std::clamp(255.0 * (k - 4 + 0.5) / 991.0, 0.0, 255.0), 0.51) << k;
 }
 
-// Half the pixels at A, half at B = A + D. Linear: D codes times the gain, or from end to end. Plateau: each level has 255 (0.8 / 2 + 0.2 / (D + 1)) codes, each count between
-// them 255 x 0.2 / (D + 1), none more than the gain.
+// Half the pixels at A, half at B = A + D. Linear: D codes times the gain, or from end to end. Plateau: each level has 255 (0.8 / 2 + 0.2 / (D + 1)) codes,
+// each count between them 255 x 0.2 / (D + 1), none more than the gain.
 TEST(DisplayCodes, TwoLevels) {
   for (const auto& [distance, gain] : {std::pair{400, 0.5}, std::pair{40, 0.5}, std::pair{400, 255.0}, std::pair{9000, 0.8}, std::pair{1, 20.0}}) {
     std::vector<float> counts;
@@ -86,8 +87,8 @@ TEST(DisplayCodes, TwoLevels) {
   }
 }
 
-// What an empty scene has is noise: at most as many codes rms as are asked for, about mid-grey, whatever the noise is; nothing near black and white. (Before, a plateau spread it from
-// black to white.)
+// What an empty scene has is noise: at most as many codes rms as are asked for, about mid-grey, whatever the noise is; nothing near black and white. (Before, a
+// plateau spread it from black to white.)
 TEST(DisplayCodes, NoiseOfAnEmptySceneStaysNoise) {
   for (const Agc agc : {Agc::Linear, Agc::Plateau})
     for (const double sigma : {1.5, 5.0, 20.0, 80.0}) {
@@ -95,7 +96,8 @@ TEST(DisplayCodes, NoiseOfAnEmptySceneStaysNoise) {
       const std::string what = print("display: noise of %g counts, %s", sigma, agc == Agc::Linear ? "linear" : "plateau");
       // Rounding of counts and of codes adds a twelfth of the square of each step: 4 codes of 1.5 counts are 2.7 a count.
       const double step = 4.0 / sigma, steps = std::sqrt(16.0 + (step * step + 1.0) / 12.0);
-      figure(what + " [codes rms]", deviation(codes), steps, 0.03, "4 codes, steps of counts and codes; the plateau's tails have fewer codes, 1 % of the range each");
+      figure(what + " [codes rms]", deviation(codes), steps, 0.03,
+             "4 codes, steps of counts and codes; the plateau's tails have fewer codes, 1 % of the range each");
       EXPECT_NEAR(medianOf(codes), 127.5, 0.5 + step) << what;
       const auto [least, most] = std::minmax_element(codes.begin(), codes.end());
       EXPECT_GT(*least, 80.0f) << what;
@@ -141,11 +143,13 @@ TEST(DisplayCodes, AreShownAsTheyAre) {
   style.plain = true;
   const Rgb8Image picture = pictureOf(frame, style);
   for (const auto& [column, code] : {std::pair{0, 100}, std::pair{40, 102}, std::pair{63, 103}})
-    for (int colour = 0; colour < 3; ++colour) EXPECT_NEAR(static_cast<double>(picture.rgb[static_cast<std::size_t>(3 * column + colour)]), code, 1.0) << column;
+    for (int colour = 0; colour < 3; ++colour)
+      EXPECT_NEAR(static_cast<double>(picture.rgb[static_cast<std::size_t>(3 * column + colour)]), code, 1.0) << column;
   EXPECT_EQ(screenEnds(frame.layers[0]), (std::pair{0.0, 255.0}));
   EXPECT_FALSE(screenEnds({"mw.counts", "count", {}}));
   const Simulation sim = scene(
-      "cameras: [{name: c, film: {width: 64, height: 2, pitch: 15 um}, focal_length: 100 mm, aperture: 25 mm, exposure: 4 ms, position: [0 m, 0 m, 0 m], heading: 0 deg, stages: [{stage: detector, full_well: 7e6}], "
+      "cameras: [{name: c, film: {width: 64, height: 2, pitch: 15 um}, focal_length: 100 mm, aperture: 25 mm, exposure: 4 ms, position: [0 m, 0 m, 0 m], "
+      "heading: 0 deg, stages: [{stage: detector, full_well: 7e6}], "
       "channels: [{name: mw, response: {band: [3.5 um, 4.9 um]}, quantum_efficiency: 0.8, output: [display, counts]}]}]\n");
   StreamCoder codes(sim.cameras[0], "mw.display", {}, {}), counts(sim.cameras[0], "mw.counts", {}, {});
   EXPECT_EQ(codes.bits(), 8);

@@ -404,7 +404,8 @@ struct PublishedEngagement {
       const Rates first = rates(x);
       command.push_back({t, n});
       const Rates euler = plus(x, first, h), second = rates(euler), end = plus(euler, second, h);
-      x = {0.5 * (x.rt1 + end.rt1), 0.5 * (x.rt2 + end.rt2), 0.5 * (x.rm1 + end.rm1), 0.5 * (x.rm2 + end.rm2), 0.5 * (x.vm1 + end.vm1), 0.5 * (x.vm2 + end.vm2), 0.5 * (x.beta + end.beta)};
+      x = {0.5 * (x.rt1 + end.rt1), 0.5 * (x.rt2 + end.rt2), 0.5 * (x.rm1 + end.rm1),  0.5 * (x.rm2 + end.rm2),
+           0.5 * (x.vm1 + end.vm1), 0.5 * (x.vm2 + end.vm2), 0.5 * (x.beta + end.beta)};
       t += h;
       rates(x);
     }
@@ -418,7 +419,8 @@ TEST(Guidance, TrueNavigationIsThePublishedEngagement) {
   struct Case {
     double headingError_deg, turn_g, constant, beta_deg;
   };
-  for (const Case& c : {Case{-20.0, 0.0, 4.0, 0.0}, Case{0.0, 3.0, 4.0, 0.0}, Case{-20.0, 0.0, 3.0, 0.0}, Case{-20.0, 3.0, 5.0, 0.0}, Case{15.0, -2.0, 4.0, 30.0}}) {
+  for (const Case& c :
+       {Case{-20.0, 0.0, 4.0, 0.0}, Case{0.0, 3.0, 4.0, 0.0}, Case{-20.0, 0.0, 3.0, 0.0}, Case{-20.0, 3.0, 5.0, 0.0}, Case{15.0, -2.0, 4.0, 30.0}}) {
     const double turn_ft_s2 = c.turn_g * 32.2, beta = c.beta_deg * kDegree, rate = turn_ft_s2 / 1000.0;
     PublishedEngagement published{c.headingError_deg * kDegree, turn_ft_s2, c.constant, beta};
     published.run();
@@ -445,8 +447,8 @@ TEST(Guidance, TrueNavigationIsThePublishedEngagement) {
       return MovingPoint{from + glm::dvec3(gone.x, 0.0, gone.y), kVt * glm::dvec3(-std::cos(b), 0.0, std::sin(b)), glm::dvec3(0.0)};
     };
     const FlightResult flown = fly(task, uniformWorld(0.0, 0.0));
-    const std::string what = "heading error " + std::to_string(static_cast<int>(c.headingError_deg)) + " deg, target " + std::to_string(static_cast<int>(c.turn_g)) + " g, N' " +
-                             std::to_string(static_cast<int>(c.constant));
+    const std::string what = "heading error " + std::to_string(static_cast<int>(c.headingError_deg)) + " deg, target " +
+                             std::to_string(static_cast<int>(c.turn_g)) + " g, N' " + std::to_string(static_cast<int>(c.constant));
     double worst = 0.0, most = 0.0;
     for (const auto& [t, n] : published.command) most = std::max(most, t < published.end_s - 0.5 ? std::abs(n) : 0.0);
     for (std::size_t k = 0; k < published.command.size(); k += 10) {
@@ -454,18 +456,21 @@ TEST(Guidance, TrueNavigationIsThePublishedEngagement) {
       if (t >= published.end_s - 0.5) break;
       worst = std::max(worst, std::abs(glm::length(flown.trajectory.accelerationAt(t)) - std::abs(n) * kFoot) / (most * kFoot));
     }
-    bound("acceleration against the published listing, " + what + ", of the largest", worst, 1e-3, "the listing's steps of second order; the last half second, where both end, left out");
+    bound("acceleration against the published listing, " + what + ", of the largest", worst, 1e-3,
+          "the listing's steps of second order; the last half second, where both end, left out");
     ASSERT_TRUE(flown.closest);
-    figure("time of interception, " + what + " [s]", flown.closest->time_s, published.end_s, 1e-4, "the listing ends within a step of 0.2 ms, and is of second order");
+    figure("time of interception, " + what + " [s]", flown.closest->time_s, published.end_s, 1e-4,
+           "the listing ends within a step of 0.2 ms, and is of second order");
     EXPECT_LT(flown.closest->distance_m, 0.3) << what;
     EXPECT_LT(published.miss_ft * kFoot, 0.3) << what;
-    figure("speed at interception, " + what + " [ft/s]", glm::length(flown.trajectory.velocityAt(flown.closest->time_s - 1e-3)) / kFoot, published.endSpeed_ft_s, 1e-3, "as the accelerations");
+    figure("speed at interception, " + what + " [ft/s]", glm::length(flown.trajectory.velocityAt(flown.closest->time_s - 1e-3)) / kFoot,
+           published.endSpeed_ft_s, 1e-3, "as the accelerations");
   }
   // n_c at launch by hand: N' (V_T + V_M cos HE) V_M sin(-HE) / R.
   PublishedEngagement first{-20.0 * kDegree, 0.0, 4.0, 0.0};
   first.run();
-  figure("the listing's first command [g]", first.command.front()[1] / 32.2, 4.0 * (1000.0 + 3000.0 * std::cos(20.0 * kDegree)) * 3000.0 * std::sin(20.0 * kDegree) / 40000.0 / 32.2, 1e-9,
-         "N' Vc lambda-dot");
+  figure("the listing's first command [g]", first.command.front()[1] / 32.2,
+         4.0 * (1000.0 + 3000.0 * std::cos(20.0 * kDegree)) * 3000.0 * std::sin(20.0 * kDegree) / 40000.0 / 32.2, 1e-9, "N' Vc lambda-dot");
 }
 
 TEST(Guidance, PursuitTakesTheTimeOfItsClosedForm) {

@@ -37,7 +37,8 @@ TEST(Lobes, StayBelowTheirMaximum) {
         }
   }
   EXPECT_GT(worst, 0.3);
-  bound("lobes times the cosine of their light over the greatest they say, down to 0.6 deg above the horizon", worst, 1.0 + 1e-9, "what lamps are left out by; rounding");
+  bound("lobes times the cosine of their light over the greatest they say, down to 0.6 deg above the horizon", worst, 1.0 + 1e-9,
+        "what lamps are left out by; rounding");
 }
 
 }  // namespace

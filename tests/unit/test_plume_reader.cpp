@@ -18,8 +18,10 @@ namespace {
 const char* const kScene = R"(
 entities:
   - {name: jet, shape: {model: jet}, material: {components: [{reflection: lambertian, reflectance: 0.2}]}, temperature: 300 K, position: [0 m, 0 m, 3000 m]}
-  - {name: missile, shape: {model: missile}, material: {components: [{reflection: lambertian, reflectance: 0.2}]}, temperature: 300 K, begin: 2 s, position: [0 m, 99 m, 3000 m]}
-cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 2 deg, aperture: 10 mm, look_at: jet, position: [-500 m, 0 m, 3000 m], channels: [{name: a, response: {band: [3 um, 5 um]}}]}]
+  - {name: missile, shape: {model: missile}, material: {components: [{reflection: lambertian, reflectance: 0.2}]}, temperature: 300 K,
+     begin: 2 s, position: [0 m, 99 m, 3000 m]}
+cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 2 deg, aperture: 10 mm, look_at: jet, position: [-500 m, 0 m, 3000 m],
+  channels: [{name: a, response: {band: [3 um, 5 um]}}]}]
 plumes:
 )";
 
@@ -39,7 +41,8 @@ const JetsSource& jetsOf(const Simulation& s, std::size_t field = 0) { return dy
 
 TEST(PlumeReader, EnginesAndMotors) {
   const Simulation s = with(R"(
-  - {name: exhaust, on: jet, engine: turbofan_afterburner, nozzles: [[-7.3 m, 0.55 m, 0 m], [-7.3 m, -0.55 m, 0 m]], throttle: [[0 s, 0], [2 s, 1]], length: 50 m}
+  - {name: exhaust, on: jet, engine: turbofan_afterburner, nozzles: [[-7.3 m, 0.55 m, 0 m], [-7.3 m, -0.55 m, 0 m]], throttle: [[0 s, 0], [2 s, 1]],
+     length: 50 m}
   - {name: motor, on: missile, engine: aluminised_motor, position: [-1.43 m, 0 m, 0 m]}
 )");
   ASSERT_EQ(s.fields.size(), 2u);
@@ -130,7 +133,7 @@ TEST(PlumeReader, WhatIsWrongIsNamed) {
     EXPECT_NE(text, "") << c.plume;
     EXPECT_NE(text.find(c.wrong), std::string::npos) << text;
     EXPECT_NE(text.find(c.fix), std::string::npos) << text;
-    EXPECT_NE(text.find(":7:"), std::string::npos) << text;  // the plume's line
+    EXPECT_NE(text.find(":9:"), std::string::npos) << text;  // the plume's line
   }
   EXPECT_NE(said("  - {name: p, on: jet, " + ok + "}\n  - {name: p, on: jet, " + ok + "}\n").find("'p'"), std::string::npos);
 }

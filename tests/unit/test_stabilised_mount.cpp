@@ -18,8 +18,8 @@ namespace {
 Simulation carried(const std::vector<Attitude>& attitudes_deg, const std::string& camera) {
   std::string points;
   for (std::size_t k = 0; k < attitudes_deg.size(); ++k)
-    points += print("%s{time: %zu s, position: [%zu m, 0 m, 500 m], heading: %.9g deg, pitch: %.9g deg, roll: %.9g deg}", k ? ", " : "", k, 100 * k, attitudes_deg[k].heading_rad,
-                    attitudes_deg[k].pitch_rad, attitudes_deg[k].roll_rad);
+    points += print("%s{time: %zu s, position: [%zu m, 0 m, 500 m], heading: %.9g deg, pitch: %.9g deg, roll: %.9g deg}", k ? ", " : "", k, 100 * k,
+                    attitudes_deg[k].heading_rad, attitudes_deg[k].pitch_rad, attitudes_deg[k].roll_rad);
   return scene("time: {rate: 1 Hz, frames: " + std::to_string(attitudes_deg.size()) +
                "}\nentities:\n  - {name: missile, shape: {model: sphere, radius: 1 cm}, material: blackbody, temperature: 300 K, motion: [" + points +
                "]}\n  - {name: far, shape: {model: sphere, radius: 1 m}, material: blackbody, temperature: 300 K, position: [9 km, 0 m, 500 m]}\n"
@@ -43,7 +43,11 @@ TEST(StabilisedMount, HoldsWhatItIsAskedFor) {
     const char* text;
     bool heading, pitch, roll;
   };
-  for (const Case& c : {Case{"roll", false, false, true}, {"[roll]", false, false, true}, {"pitch", false, true, false}, {"yaw", true, false, false}, {"[roll, pitch]", false, true, true},
+  for (const Case& c : {Case{"roll", false, false, true},
+                        {"[roll]", false, false, true},
+                        {"pitch", false, true, false},
+                        {"yaw", true, false, false},
+                        {"[roll, pitch]", false, true, true},
                         {"[yaw, pitch, roll]", true, true, true}})
     for (unsigned seed : {1u, 2u, 3u}) {
       const auto asked = anyAttitudes(seed);
@@ -52,7 +56,8 @@ TEST(StabilisedMount, HoldsWhatItIsAskedFor) {
       for (int k = 0; k < 12; ++k) {
         const WorldState state = advance(sim, k);
         const Pose& body = state.entities[0];
-        const Attitude is = attitudeOf(cameraAt(sim.cameras[0], state).pose.orientation), was = attitudeOf(body.orientation), start = attitudeOf(advance(sim, 0.0).entities[0].orientation);
+        const Attitude is = attitudeOf(cameraAt(sim.cameras[0], state).pose.orientation), was = attitudeOf(body.orientation),
+                       start = attitudeOf(advance(sim, 0.0).entities[0].orientation);
         worst = std::max({worst, apart(is.heading_rad, c.heading ? start.heading_rad : was.heading_rad), apart(is.pitch_rad, c.pitch ? 0.0 : was.pitch_rad),
                           apart(is.roll_rad, c.roll ? 0.0 : was.roll_rad)});
         place = std::max(place, glm::length(cameraAt(sim.cameras[0], state).pose.position - body.position - body.orientation * glm::dvec3(2, 0, 0.5)));
@@ -65,7 +70,8 @@ TEST(StabilisedMount, HoldsWhatItIsAskedFor) {
 
 // Its own heading, pitch and roll come on top of the platform: a camera that looks to the side of a body that banks stays level.
 TEST(StabilisedMount, OwnAnglesComeOnTop) {
-  const Simulation sim = carried({{90, 0, 0}, {90, 0, 60}, {90, 0, -45}}, "heading: 90 deg, pitch: -10 deg, stabilised: roll, "), loose = carried({{90, 0, 0}, {90, 0, 60}}, "heading: 90 deg, pitch: -10 deg, ");
+  const Simulation sim = carried({{90, 0, 0}, {90, 0, 60}, {90, 0, -45}}, "heading: 90 deg, pitch: -10 deg, stabilised: roll, "),
+                   loose = carried({{90, 0, 0}, {90, 0, 60}}, "heading: 90 deg, pitch: -10 deg, ");
   for (int k = 0; k < 3; ++k) {
     const Attitude is = attitudeOf(cameraAt(sim.cameras[0], advance(sim, k)).pose.orientation);
     EXPECT_NEAR(is.heading_rad, kPi, 1e-12) << k;
@@ -78,7 +84,8 @@ TEST(StabilisedMount, OwnAnglesComeOnTop) {
 
 // A gimbal stands on the platform: its picture is upright while the missile banks, and it looks at its target all the same.
 TEST(StabilisedMount, IsTheBaseOfAGimbal) {
-  const Simulation sim = carried({{90, 0, 0}, {88, 3, 75}, {94, -4, -170}}, "look_at: far, gimbal: {}, stabilised: roll, "), loose = carried({{90, 0, 0}, {88, 3, 75}, {94, -4, -170}}, "look_at: far, gimbal: {}, ");
+  const Simulation sim = carried({{90, 0, 0}, {88, 3, 75}, {94, -4, -170}}, "look_at: far, gimbal: {}, stabilised: roll, "),
+                   loose = carried({{90, 0, 0}, {88, 3, 75}, {94, -4, -170}}, "look_at: far, gimbal: {}, ");
   for (int k = 0; k < 3; ++k) {
     const auto lookingAt = [&](const Simulation& s) {
       auto follower = s.cameras[0].follower->make(s, s.cameras[0]);
@@ -102,13 +109,16 @@ TEST(StabilisedMount, RefusesWhatIsNone) {
   const auto refusal = [](const std::string& camera, bool isCarried = true) -> std::string {
     try {
       if (isCarried) (void)carried({{90, 0, 0}, {90, 0, 60}}, camera);
-      else (void)scene("cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 5 mm, position: [0 m, 0 m, 0 m], heading: 0 deg, " + camera + "channels: [{name: x, response: {band: [3 um, 5 um]}}]}]\n");
+      else
+        (void)scene("cameras: [{name: c, film: {width: 8, height: 8}, field_of_view: 5 deg, aperture: 5 mm, position: [0 m, 0 m, 0 m], heading: 0 deg, " +
+                    camera + "channels: [{name: x, response: {band: [3 um, 5 um]}}]}]\n");
     } catch (const UserError& e) {
       return e.what();
     }
     return "";
   };
-  EXPECT_NE(refusal("stabilised: bank, ").find("a mount has no angle 'bank'; expected one of roll, pitch, yaw"), std::string::npos) << refusal("stabilised: bank, ");
+  EXPECT_NE(refusal("stabilised: bank, ").find("a mount has no angle 'bank'; expected one of roll, pitch, yaw"), std::string::npos)
+      << refusal("stabilised: bank, ");
   EXPECT_NE(refusal("stabilised: true, ").find("a mount has no angle 'true'"), std::string::npos);
   EXPECT_NE(refusal("stabilised: heading, ").find("yaw"), std::string::npos);
   EXPECT_NE(refusal("stabilised: [roll, roll], ").find("'roll' twice"), std::string::npos);

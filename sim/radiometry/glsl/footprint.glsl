@@ -20,8 +20,8 @@ struct Taps {
   int level;
 };
 
-// a, b: sides of the parallelogram that a pixel covers [texels]. It becomes the rectangle with the same second moments: Heckbert 1989, Fundamentals of Texture Mapping and Image
-// Warping, section 3.4.
+// a, b: sides of the parallelogram that a pixel covers [texels]. It becomes the rectangle with the same second moments: Heckbert 1989,
+// Fundamentals of Texture Mapping and Image Warping, section 3.4.
 // `perTexel`: places a texel, at least; so many across and along, at most. `beside` keeps pixels of a whole number of texels, which are common, off the
 // places where the choice changes: single and double precision choose alike.
 PHYSICS Taps tapsOf(Vec2 a, Vec2 b, Real perTexel, Real mostAcross, Real mostAlong, int lastLevel) {

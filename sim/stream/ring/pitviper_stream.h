@@ -4,9 +4,9 @@
  * process writes; any number read, and map it for reading only: nothing that a reader does, dying included, is seen by the writer or by others.
  * All integers and floats are of the machine's own order.
  *
- * The writer, for its k-th frame (k from 0), in slot k % slots:  lock = 2k + 1;  record and layers;  lock = 2k + 2;  published = k + 1;  wake = low 32 bits of that,
- * and a futex wake on it. A reader of frame k: lock must be 2k + 2 before it looks and after (it may use the pixels in place, and asks at the end whether they
- * held). A slot is written again `slots` frames later.
+ * The writer, for its k-th frame (k from 0), in slot k % slots:  lock = 2k + 1;  record and layers;  lock = 2k + 2;  published = k + 1;  wake = low 32 bits of
+ * that, and a futex wake on it. A reader of frame k: lock must be 2k + 2 before it looks and after (it may use the pixels in place, and asks at the end whether
+ * they held). A slot is written again `slots` frames later.
  *
  *   struct pitviper_stream s;
  *   if (pitviper_stream_open(&s, "/pitviper.tracker") != 0) ...            errno says why
