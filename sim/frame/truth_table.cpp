@@ -23,7 +23,8 @@ constexpr double kApart_s = 1e-3;
 
 /// Where no accuracy is asked for, and of the reference, which has none.
 constexpr double kAskedOtherwise = 0.002;
-/// Lines across a body for 1 %, and between two of them where what they meet changes: an area of a thirtieth of its diameter is then off by 1 % (see zoomedLines()).
+/// Lines across a body for 1 %, and between two of them where what they meet changes: an area of a thirtieth of its diameter is then off by 1 % (see
+/// zoomedLines()).
 constexpr double kLinesAtOnePercent = 128.0;
 constexpr int kWithin = 6;
 /// What lies between places that are worked out may be off by, of what is asked.
@@ -71,16 +72,17 @@ TargetRow TruthMeter::placed(const std::string& name, const char* kind, const Mo
   const glm::dvec3 seen = glm::transpose(local) * line;
   if (seen.z < 0.0) {
     const Pinhole& p = eye.pinhole;
-    const glm::dvec2 at = placeOnFilm(camera_, p.focalLength_m, {0.5 * p.width + seen.x / -seen.z * p.focalLength_m / p.pitchX_m,
-                                                                 0.5 * p.height - seen.y / -seen.z * p.focalLength_m / p.pitchY_m});
+    const glm::dvec2 at =
+        placeOnFilm(camera_, p.focalLength_m,
+                    {0.5 * p.width + seen.x / -seen.z * p.focalLength_m / p.pitchX_m, 0.5 * p.height - seen.y / -seen.z * p.focalLength_m / p.pitchY_m});
     row.column = at.x;
     row.row = at.y;
   }
   return row;
 }
 
-void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, const std::vector<double>& total, const std::vector<double>& contrast, double body_sr,
-                             const WorldState& state, const std::vector<double>& faces_sr) const {
+void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, const std::vector<double>& total, const std::vector<double>& contrast,
+                             double body_sr, const WorldState& state, const std::vector<double>& faces_sr) const {
   const CameraState eye = cameraAt(camera_, state);
   const Pinhole& p = eye.pinhole;
   const double pixel_sr = p.projectedSolidAngle_sr(p.width / 2, p.height / 2), range2 = row.range_m * row.range_m;
@@ -99,12 +101,14 @@ void TruthMeter::addChannels(TargetRow& row, const std::vector<double>& own, con
       const double perFlux = law->fillFactor * detected->scale * exposure_s;  // electrons of kernel integral x sr
       // All of it in one pixel where it is smaller than one, but for what the lens spreads; else a pixel's part of its face.
       const double face_sr = faces_sr.empty() ? body_sr : faces_sr[row.channels.size()];
-      const double pixels = std::max(face_sr / pixel_sr, 1.0 / pixelShareOf(camera_, *detected, p.focalLength_m)), signal = perFlux * contrast[counted] / range2 / pixels;
+      const double pixels = std::max(face_sr / pixel_sr, 1.0 / pixelShareOf(camera_, *detected, p.focalLength_m)),
+                   signal = perFlux * contrast[counted] / range2 / pixels;
       const double behind = body_sr > 0.0 ? perFlux * pixel_sr * (total[counted] - contrast[counted]) / range2 / body_sr : 0.0;
       const double own_e = law->fillFactor * ownLightOf(camera_, *detected, pixel_sr, exposure_s), dark = law->darkCurrent_per_s * exposure_s;
       const double variance = std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark + law->readoutVariance(simulation_.time.step_s);
       // A best pixel that is full tells nothing of it.
-      if (std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark < law->saturation(eye.gains.of(c.channel))) c.signalToNoise = signal / std::sqrt(variance);
+      if (std::max(0.0, behind + std::max(0.0, signal)) + own_e + dark < law->saturation(eye.gains.of(c.channel)))
+        c.signalToNoise = signal / std::sqrt(variance);
     }
     row.channels.push_back(c);
   }
@@ -156,9 +160,7 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
     return placeOnFilm(camera_, eye.pinhole.focalLength_m, {at.x, film.height - at.y});
   };
   const glm::ivec4 window = camera_.window.value_or(glm::ivec4(0, 0, film.width, film.height));
-  const auto isOnFilm = [&](const glm::dvec2& at) {
-    return at.x >= window.x && at.y >= window.y && at.x < window.x + window.z && at.y < window.y + window.w;
-  };
+  const auto isOnFilm = [&](const glm::dvec2& at) { return at.x >= window.x && at.y >= window.y && at.x < window.x + window.z && at.y < window.y + window.w; };
   double whole_sr = 0.0, visible_sr = 0.0, seen_sr = 0.0;
   const int columns = (size + ZoomedTile::kSize - 1) / ZoomedTile::kSize;
   struct Sums {
@@ -206,7 +208,7 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
           if (met != 0) visibleHere += solidAngle(x, y);
           return met == 0 ? 0 : met * 31 + ReferenceShader::things(lineOf(x, y, others).hits);
         },
-        [&](int x, int y) { return slotsThrough(x + 0.5, y + 0.5, sum, behind); }, kLinearOfAccuracy * asked_);
+        [&](int x, int y) { return slotsThrough(x + 0.5, y + 0.5, sum, behind); }, kLinearOfAccuracy* asked_);
     tile.fill(x0, y0, w, h, [&](int x, int y, const std::vector<double>& all) { seen[indexOf(x, y)] = all; });
     const auto add = [&](const std::vector<double>& all, double sr) {
       seenHere += sr;
@@ -298,7 +300,11 @@ std::vector<TargetRow> TruthMeter::targets(const WorldState& state, const StateA
     if (!now || kind.empty()) continue;
     const auto placeOf = [](const FieldState& field) { return field.origin + field.localFromField * field.source; };
     const FieldState *before = fieldOf(earlier, f), *after = fieldOf(later, f);
-    const glm::dvec3 here = placeOf(*now), from = before ? placeOf(*before) : after ? 2.0 * here - placeOf(*after) : here, to = after ? placeOf(*after) : 2.0 * here - from;
+    const glm::dvec3 here = placeOf(*now),
+                     from = before  ? placeOf(*before)
+                            : after ? 2.0 * here - placeOf(*after)
+                                    : here,
+                     to = after ? placeOf(*after) : 2.0 * here - from;
     rows.push_back(placed(simulation_.fields[f].name, kind.c_str(), {state, here}, {earlier, from}, {later, to}));
     addField(rows.back(), f, state);
   }
@@ -309,7 +315,8 @@ std::vector<TargetRow> TruthMeter::targets(const WorldState& state, const StateA
   }
   // Bodies, plumes and lamps may share a name: later ones say what they are.
   for (std::size_t k = 0; k < rows.size(); ++k)
-    if (std::any_of(rows.begin(), rows.begin() + static_cast<long>(k), [&](const TargetRow& r) { return r.name == rows[k].name; })) rows[k].name += "_" + rows[k].kind;
+    if (std::any_of(rows.begin(), rows.begin() + static_cast<long>(k), [&](const TargetRow& r) { return r.name == rows[k].name; }))
+      rows[k].name += "_" + rows[k].kind;
   return rows;
 }
 
@@ -348,20 +355,28 @@ std::vector<FrameLayer> TruthMeter::terms(const WorldState& state) const {
     const auto sums = apparentIntensity(simulation_, plan_, state, l, film.position, way);
     const double perIntensity = -seen.z / range / (range * range) / now.projectedSolidAngle_sr(column, row);
     for (std::size_t c = 0; c < radianceOf_.size(); ++c)
-      layers[c * parts + static_cast<std::size_t>(TermKind::LampsInView)][static_cast<std::size_t>(row) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(column)] +=
+      layers[c * parts + static_cast<std::size_t>(TermKind::LampsInView)]
+            [static_cast<std::size_t>(row) * static_cast<std::size_t>(film.width) + static_cast<std::size_t>(column)] +=
           static_cast<float>(perIntensity * sums[static_cast<std::size_t>(plan_.slotOfOutput[radianceOf_[c]])]);
   }
   // By the scene, not by what is in view: all frames have the same layers.
   const auto mayHave = [&](std::size_t part) {
     const Terms t = termsOf(simulation_);
     switch (part < kTermKinds ? static_cast<TermKind>(part) : TermKind::Lights) {
-      case TermKind::Ambient: return t.ambient;
-      case TermKind::Sun: return simulation_.sun.has_value();
-      case TermKind::AirEmission: return t.air;
-      case TermKind::ScatteredSun: return t.scatteredSun;
-      case TermKind::Media: return t.media;
-      case TermKind::LampsInView: return std::any_of(simulation_.lights.begin(), simulation_.lights.end(), [](const PointLight& l) { return l.visible; });
-      default: return true;
+      case TermKind::Ambient:
+        return t.ambient;
+      case TermKind::Sun:
+        return simulation_.sun.has_value();
+      case TermKind::AirEmission:
+        return t.air;
+      case TermKind::ScatteredSun:
+        return t.scatteredSun;
+      case TermKind::Media:
+        return t.media;
+      case TermKind::LampsInView:
+        return std::any_of(simulation_.lights.begin(), simulation_.lights.end(), [](const PointLight& l) { return l.visible; });
+      default:
+        return true;
     }
   };
   std::vector<FrameLayer> told;

@@ -15,16 +15,17 @@ class TruthMeter {
   /// `camera`: the film's, which asks for targets or terms. Both must outlive it.
   TruthMeter(const Simulation& simulation, const Camera& camera);
 
-  /// A row for each body but terrain and the camera's carrier, for each plume and flare that is there, and for each lamp that can be seen. Intensities of a body: over lines of a square grid over its
-  /// bounding sphere, 128 across at 1 %, six times as many where what they meet changes; worked out where they bend, linear between within a twenty-fifth of the accuracy. `own`: emission and
-  /// reflection of its surfaces or its medium, through all that lies before it; `total`: all light along lines that meet it before anything opaque; `contrast`:
-  /// that less what these lines would have without it. Each times range squared. A camera within a body's sphere gets NaN.
-  /// Of a plume or flare: over lines as the reference has them through a pixel, times the range of its nozzles or flame squared; its box holds all lines along which it sends a
-  /// hundredth of what it does along its brightest; `visible` is the share of what it sends that reaches the film past what is opaque.
+  /// A row for each body but terrain and the camera's carrier, for each plume and flare that is there, and for each lamp that can be seen. Intensities of a
+  /// body: over lines of a square grid over its bounding sphere, 128 across at 1 %, six times as many where what they meet changes; worked out where they bend,
+  /// linear between within a twenty-fifth of the accuracy. `own`: emission and reflection of its surfaces or its medium, through all that lies before it;
+  /// `total`: all light along lines that meet it before anything opaque; `contrast`: that less what these lines would have without it. Each times range
+  /// squared. A camera within a body's sphere gets NaN. Of a plume or flare: over lines as the reference has them through a pixel, times the range of its
+  /// nozzles or flame squared; its box holds all lines along which it sends a hundredth of what it does along its brightest; `visible` is the share of what it
+  /// sends that reaches the film past what is opaque.
   std::vector<TargetRow> targets(const WorldState& state, const StateAt& stateAt = {}) const;
 
-  /// Layers `truth.terms.<channel>.<part>` [W/(m2 sr)] at pixels' middles, before the sensor's stages: emission, ambient, sun, lamp.<name> (light of that lamp that
-  /// surfaces reflect), air_emission, scattered_sun, background, media, lamps_in_view; those that the scene can have. Their sum is the channel's radiance.
+  /// Layers `truth.terms.<channel>.<part>` [W/(m2 sr)] at pixels' middles, before the sensor's stages: emission, ambient, sun, lamp.<name> (light of that lamp
+  /// that surfaces reflect), air_emission, scattered_sun, background, media, lamps_in_view; those that the scene can have. Their sum is the channel's radiance.
   std::vector<FrameLayer> terms(const WorldState& state) const;
 
  private:
@@ -37,8 +38,8 @@ class TruthMeter {
   void addBody(TargetRow& row, int entity, const WorldState& state) const;
   void addField(TargetRow& row, std::size_t field, const WorldState& state) const;
   void addLamp(TargetRow& row, std::size_t light, const WorldState& state) const;
-  /// Of kernel integrals times range squared, in the order of Plan::slotCount. `faces_sr`: of each channel, the solid angle over which it would be as bright as its
-  /// brightest pixel; empty: that of the body.
+  /// Of kernel integrals times range squared, in the order of Plan::slotCount. `faces_sr`: of each channel, the solid angle over which it would be as bright as
+  /// its brightest pixel; empty: that of the body.
   void addChannels(TargetRow& row, const std::vector<double>& own, const std::vector<double>& total, const std::vector<double>& contrast, double body_sr,
                    const WorldState& state, const std::vector<double>& faces_sr = {}) const;
 
@@ -46,8 +47,8 @@ class TruthMeter {
   const Camera& camera_;
   std::vector<ChannelOutput> measured_;
   std::vector<std::size_t> radianceOf_;  ///< of each channel, an output of it
-  double asked_;  ///< accuracy
-  double lines_;  ///< across a body
+  double asked_;                         ///< accuracy
+  double lines_;                         ///< across a body
   std::vector<char> present_;
   Plan plan_;
   std::shared_ptr<const NodeSpectra> spectra_;

@@ -8,7 +8,9 @@ namespace {
 
 constexpr const char* kPrefix = "table-";
 
-std::filesystem::path fileOf(std::string_view what, const ContentKey& key) { return cacheFile(kPrefix + std::string(what) + "-" + std::string(lawsDigest()) + "-", key); }
+std::filesystem::path fileOf(std::string_view what, const ContentKey& key) {
+  return cacheFile(kPrefix + std::string(what) + "-" + std::string(lawsDigest()) + "-", key);
+}
 
 /// Behind the table's bytes, so that none is copied for it.
 std::string sealOf(std::string_view bytes) {

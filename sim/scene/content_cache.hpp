@@ -15,8 +15,8 @@ namespace pitviper {
 /// All tables together; those not used for longest go first. A larger one than the other is not kept.
 inline constexpr std::uintmax_t kMostTableBytes = std::uintmax_t{1} << 29, kLargestTable = std::uintmax_t{1} << 26;
 
-/// `what`: the kind of table, of letters, digits and '-'. Nothing where it is not there, was made by other laws (laws_digest.hpp), or is damaged (which is said).
-/// Never throws.
+/// `what`: the kind of table, of letters, digits and '-'. Nothing where it is not there, was made by other laws (laws_digest.hpp), or is damaged (which is
+/// said). Never throws.
 std::optional<std::string> readCachedTable(std::string_view what, const ContentKey& key);
 /// Where it cannot be written that is said. Never throws.
 void writeCachedTable(std::string_view what, const ContentKey& key, std::string_view bytes);

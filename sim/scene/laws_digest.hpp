@@ -4,8 +4,8 @@
 
 namespace pitviper {
 
-/// Of the sources of all that makes such tables (radiometry to plan, atmospheres, materials, sensors), 16 hexadecimal digits: a change of any makes what was kept
-/// before a stranger.
+/// Of the sources of all that makes such tables (radiometry to plan, atmospheres, materials, sensors), 16 hexadecimal digits: a change of any makes what was
+/// kept before a stranger.
 std::string_view lawsDigest();
 
 }  // namespace pitviper

@@ -110,11 +110,12 @@ float restAt(int g, float blur, int i) {
     restOf_ = i / 4;
     sharper_ = min(int(x), int(most_[g]) - 1);
     ivec4 at = restAt_[g] + sharper_ * blurEntries + restOf_;
-    restNear_ = restMix_[g].x * texelFetch(surroundings, at.x) + restMix_[g].y * texelFetch(surroundings, at.y) + restMix_[g].z * texelFetch(surroundings, at.z) +
-                restMix_[g].w * texelFetch(surroundings, at.w);
+    vec4 share = restMix_[g];
+    restNear_ = share.x * texelFetch(surroundings, at.x) + share.y * texelFetch(surroundings, at.y) + share.z * texelFetch(surroundings, at.z) +
+                share.w * texelFetch(surroundings, at.w);
     at += blurEntries;
-    restFar_ = restMix_[g].x * texelFetch(surroundings, at.x) + restMix_[g].y * texelFetch(surroundings, at.y) + restMix_[g].z * texelFetch(surroundings, at.z) +
-               restMix_[g].w * texelFetch(surroundings, at.w);
+    restFar_ = share.x * texelFetch(surroundings, at.x) + share.y * texelFetch(surroundings, at.y) + share.z * texelFetch(surroundings, at.z) +
+               share.w * texelFetch(surroundings, at.w);
   }
   return mix(restNear_[i % 4], restFar_[i % 4], x - float(sharper_));
 }

@@ -1,6 +1,7 @@
 //@constants
 // 1 where a pixel shaded once is not enough: its subpixels see different parts, or its radiance bends, in some channel, by more than a share of the
-// brightest around (or, where textures are read over whole pixels, its light does): across an edge of light or shade by as much as there is between its sides, in what is smooth hardly at all.
+// brightest around (or, where textures are read over whole pixels, its light does): across an edge of light or shade by as much as there is between its sides,
+// in what is smooth hardly at all.
 layout(location = 0) out float bends;
 layout(binding = 0) uniform usampler2D visibility;  // of pixels
 layout(binding = 18) uniform usampler2D subpixels;

@@ -11,7 +11,8 @@ struct Shadow {
 layout(binding = 14) uniform usamplerBuffer trees;
 Shadow shadowAt(int number) {
   return Shadow(vec4[4](shadowRow(number, 0), shadowRow(number, 1), shadowRow(number, 2), shadowRow(number, 3)),
-                vec4[3](shadowRow(number, 4), shadowRow(number, 5), shadowRow(number, 6)), ivec4(shadowTexel(number, 7)), shadowRow(number, 8), shadowRow(number, 9));
+                vec4[3](shadowRow(number, 4), shadowRow(number, 5), shadowRow(number, 6)), ivec4(shadowTexel(number, 7)), shadowRow(number, 8),
+                shadowRow(number, 9));
 }
 vec3 treeFloats(int at) { return uintBitsToFloat(texelFetch(trees, at).xyz); }
 layout(binding = 16) uniform sampler2DArray shadowMaps;

@@ -1,5 +1,5 @@
 // Textures of floats in one buffer, read bilinearly in single precision (hardware filters use 8-bit fractions).
-layout(binding = 11) uniform usamplerBuffer textureShapes;  // first texel, width, height, and of a texture 1 where it repeats + 2 levels + 64 first level's shape
+layout(binding = 11) uniform usamplerBuffer textureShapes;  // first texel, width, height; of a texture 1 where it repeats + 2 levels + 64 first level's shape
 layout(binding = 12) uniform samplerBuffer texels;
 float texelAt(int at) { return texelFetch(texels, at).x; }
 

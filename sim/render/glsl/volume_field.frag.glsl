@@ -211,7 +211,8 @@ void prepareStep(float from, float to, vec4 low, vec4 high, vec4 state, vec3 two
     passed += dot(vec4(greaterThanEqual(vec4(temperature), gasLevels[{g} * LEVEL_FOURS + {v}])), vec4(1.0));
 //@end
     int low = int(clamp(passed, 0.0, max(gas.y - 2.0, 0.0)));
-    float at = texelFetch(fieldSpectra, MIXTURES + 4 * LEVEL_FOURS * {g} + low).x, next = texelFetch(fieldSpectra, MIXTURES + 4 * LEVEL_FOURS * {g} + low + 1).x;
+    int first = MIXTURES + 4 * LEVEL_FOURS * {g} + low;
+    float at = texelFetch(fieldSpectra, first).x, next = texelFetch(fieldSpectra, first + 1).x;
     levelMix{g}_ = gas.y < 2.0 ? 0.0 : clamp((temperature - at) / (next - at), 0.0, 1.0);
     level{g}_ = int(gas.x) + low * FOURS;
   }
@@ -230,7 +231,8 @@ struct Matter {
 };
 
 Matter matterAt(int four) {
-  vec4 warmer = texelFetch(fieldSpectra, black_ + four), cooler = texelFetch(fieldSpectra, black_ + FOURS + four), black = mix(warmer, cooler, blackMix_), slope = cooler - warmer;
+  vec4 warmer = texelFetch(fieldSpectra, black_ + four), cooler = texelFetch(fieldSpectra, black_ + FOURS + four);
+  vec4 black = mix(warmer, cooler, blackMix_), slope = cooler - warmer;
   if (fieldMixes) {
     warmer = texelFetch(fieldSpectra, hotter_ + four);
     cooler = texelFetch(fieldSpectra, hotter_ + FOURS + four);
@@ -281,7 +283,8 @@ vec4 stepped(vec4 behind, vec4 tau, vec4 airDepth, vec4 inside, vec4 sunlit, int
   vec4 beside = airDepth * (high_ - low_), clear = exp(-min(beside, vec4(80.0)));
   vec4 mean = meanOf(m.depth + beside, passed * clear), upTo = airDepth * low_, fallen = 1.0 - upTo * (1.0 - 0.5 * upTo);
   vec4 light = inside * (partBefore(high_, airDepth) - partBefore(low_, airDepth));
-  return passed * behind + light * mean / meanOf(beside, clear) + fallen * (mean * (tau * m.emitted + sunlit * m.turned) + drifted(m.depth + beside) * tau * m.drifting);
+  return passed * behind + light * mean / meanOf(beside, clear) +
+         fallen * (mean * (tau * m.emitted + sunlit * m.turned) + drifted(m.depth + beside) * tau * m.drifting);
 }
 
 void main() {
