@@ -134,9 +134,7 @@ int showAirs(const AirWish& w, const std::string& word) {
 CommandLine atmosphereCommand() {
   const auto w = std::make_shared<AirWish>();
   return {
-      "atmosphere",
-      "[NAME|FILE]",
-      "what air there is in the library, in a MODTRAN tape7 or in a CSV file, as tables and charts",
+      {"atmosphere", "[NAME|FILE]", "what air there is in the library, in a MODTRAN tape7 or in a CSV file, as tables and charts"},
       "Without an argument: the library airs. NAME: one of them (clear_mls), or an air table (us76_rural), as FILE.air: mean transmittance and radiance of "
       "level "
       "and slant paths, sky, sun at the ground.\n"
@@ -150,7 +148,6 @@ CommandLine atmosphereCommand() {
         "also NAME.csv, FILE_run<N>.csv or FILE_air.csv, every column over wavelength in W/(m2 sr um) or W/(m2 um), and a chart of the same name (PNG, needs "
         "VTK), in FOLDER; created if missing",
         into(w->out), "NAME|FILE"}},
-      "",
       [w](const Arguments& words) {
         if (!words.empty()) return showAirs(*w, words[0]);
         listLibrary(findLibraries());

@@ -178,9 +178,7 @@ int audit(const AuditWish& w) {
 CommandLine auditCommand() {
   const auto w = std::make_shared<AuditWish>();
   return {
-      "audit",
-      "SCENARIO.yaml",
-      "hold a scenario's pictures against the reference, pixel by pixel: is what was asked for kept?",
+      {"audit", "SCENARIO.yaml", "hold a scenario's pictures against the reference, pixel by pixel: is what was asked for kept?"},
       "Draws frames (the first, the middle and the last) of each camera as run does, by its plan, and again by the reference: every wavelength, in double "
       "precision, along the same lines (subpixels, views of small bodies and of bright parts). Prints what each layer's pixels are off by, |L - Lref| / "
       "max(Lref, 1e-3 x the 99th percentile of Lref), beside what was asked and predicted, and where the worst is. The reference takes seconds to minutes a "
@@ -191,7 +189,6 @@ CommandLine auditCommand() {
               {"--camera", "NAME...", "this camera alone", into(w->cameras)},
               {"--out", "FOLDER", "also audit.csv and CAMERA_audit.png, a picture of the errors; created if missing", into(w->out)}},
              scenarioOptions(w->scenario)),
-      "",
       [w](const Arguments& words) { return w->scenario.file = words[0], audit(*w); }};
 }
 

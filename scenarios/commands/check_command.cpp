@@ -87,9 +87,7 @@ int check(const CheckWish& w) {
 CommandLine checkCommand() {
   const auto w = std::make_shared<CheckWish>();
   return {
-      "check",
-      "SCENARIO.yaml",
-      "validate a scenario, render nothing",
+      {"check", "SCENARIO.yaml", "validate a scenario, render nothing"},
       "Reads everything the scenario names and reports the first mistake as file:line:col with the fix (exit code 2).\n"
       "Then tells what each camera sees in the first, the middle and the last frame: a line a body (many alike in one) with its size, range, size in pixels, "
       "and whether it is out of view, behind the camera, hidden by another or smaller than a pixel; 'hidden' is found by rays to a few dozen places on the "
@@ -101,7 +99,6 @@ CommandLine checkCommand() {
             "from it; writes nothing",
             into(w->audits)}},
           scenarioOptions(w->scenario)),
-      "",
       [w](const Arguments& words) { return w->scenario.file = words[0], check(*w); }};
 }
 

@@ -153,12 +153,9 @@ int first(FirstWish& w, std::vector<std::string> scenarios) {
 
 CommandLine onceBenchCommand() {
   const auto w = std::make_shared<OnceRequest>();
-  return {"bench --once",
-          "SCENARIO.yaml",
-          "",
+  return {{"bench --once", "SCENARIO.yaml"},
           "One state of bench --first by itself, with what is cached now, a figure a line.",
           onceOptions(*w),
-          "",
           [w](const Arguments& words) {
             w->scenario.file = words[0];
             std::fputs(writeFigures(measureOnce(*w)).c_str(), stdout);
@@ -169,9 +166,7 @@ CommandLine onceBenchCommand() {
 CommandLine firstBenchCommand() {
   const auto w = std::make_shared<FirstWish>();
   return {
-      "bench --first",
-      "[SCENARIO.yaml]...",
-      "",
+      {"bench --first", "[SCENARIO.yaml]..."},
       "How long one waits for a picture. Each scenario (without one: all that are shipped) from nothing cached, a second time, and after each of six changes, "
       "with what the first two have cached: a body 10 K warmer, another visibility, field of view, position, material, half the accuracy's error. A process "
       "of its own for each state, and a cache of their own. A change that a scenario cannot have is left out, and said. Prints seconds by the clock and "
@@ -181,7 +176,6 @@ CommandLine firstBenchCommand() {
       joined({{"--states", "A,B", "these alone, besides 'first'", someOf(w->request.states, firstStateNames(), "state")},
               {"--out", "FOLDER", "also write first.csv, a line a state, with all figures", into(w->out)}},
              onceOptions(w->request.once)),
-      "",
       [w](const Arguments& words) { return first(*w, words); }};
 }
 

@@ -2,6 +2,7 @@
 
 #include <openssl/evp.h>
 
+#include "sim/parameters/error.hpp"
 #include "sim/parameters/read_file.hpp"
 
 namespace pitviper {
@@ -61,6 +62,19 @@ void HtmlPage::table(const std::vector<std::string>& head, const std::vector<std
 void HtmlPage::picture(const std::filesystem::path& png, const std::string& says) {
   body_ += "<figure><img alt=\"" + escaped(says) + "\" src=\"data:image/png;base64," + base64(readWholeFile(png, {}, {})) + "\"><figcaption>" + escaped(says) +
            "</figcaption></figure>\n";
+}
+
+void HtmlPage::charts(const std::vector<Chart>& charts, const std::filesystem::path& folder, const std::string& says) {
+  if (charts.empty()) return;
+  const std::filesystem::path png = folder / ".report_charts.png";
+  try {
+    drawCharts(charts, 2, png);
+    picture(png, says);
+  } catch (const UserError& e) {
+    paragraph(std::string("No charts: ") + e.what());
+  }
+  std::error_code ignored;
+  std::filesystem::remove(png, ignored);
 }
 
 void HtmlPage::link(const std::string& file, const std::string& says) { body_ += "<p><a href=\"" + escaped(file) + "\">" + escaped(says) + "</a></p>\n"; }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/commands/charts.hpp"
 #include "sim/image/atomic_file.hpp"
 
 namespace pitviper {
@@ -21,6 +22,8 @@ class HtmlPage {
   void table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows);
   /// A PNG, put into the page. Errors: UserError if it cannot be read.
   void picture(const std::filesystem::path& png, const std::string& says);
+  /// Charts in two columns, drawn in `folder` and put into the page; where they cannot be drawn it says why.
+  void charts(const std::vector<Chart>& charts, const std::filesystem::path& folder, const std::string& says);
   /// A file beside the page.
   void link(const std::string& file, const std::string& says);
   /// Errors: OutputError, and what `mayReplace` throws.

@@ -132,9 +132,7 @@ int info(const InfoWish& w, const std::string& file) {
 CommandLine infoCommand() {
   const auto w = std::make_shared<InfoWish>();
   return {
-      "info",
-      "[FILE.exr]",
-      "what is in a frame, or what this machine draws with",
+      {"info", "[FILE.exr]", "what is in a frame, or what this machine draws with"},
       "Layers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver, its limits, and the way in which transparent things are "
       "blended (fetch, barrier or ping_pong; PITVIPER_BLEND chooses another).",
       joined(
@@ -150,7 +148,6 @@ CommandLine infoCommand() {
             "--set and --root, and its tables and meshes as they were",
             into(w->terms.file), "--at"}},
           scenarioOptions(w->terms, "--terms")),
-      "",
       [w](const Arguments& words) {
         if (!words.empty()) return info(*w, words[0]);
         printMachine();

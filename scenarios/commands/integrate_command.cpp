@@ -60,17 +60,15 @@ int integrate(const IntegrateWish& w, const fs::path& file, const fs::path& sens
 CommandLine integrateCommand() {
   const auto w = std::make_shared<IntegrateWish>();
   return {
-      "integrate",
-      "FILE_spectral.exr SENSOR.yaml",
-      "apply another sensor to a spectral image",
+      {"integrate", "FILE_spectral.exr SENSOR.yaml", "apply another sensor to a spectral image"},
       "Integrates a spectral image (a camera's 'spectral_image:') over the channels of a sensor file, such as scenarios/sensors/mw_insb.yaml: the same keys "
       "'channels', 'optics', 'exposure' and 'aperture' as of a camera; what it leaves out is as of the camera. Writes an EXR with a layer "
       "<channel>.<quantity> per output. The sensor meets each bin's mean radiance: exact where its response is flat over the bin; how far off the others are, "
       "to first order, is printed per layer and kept as attribute binning_error.<layer> (median and maximum over pixels).",
       {{"--out", "FILE.exr", "what to write; otherwise <image>_<sensor>.exr beside the image", into(w->out)},
        {"--preview", "", "also a PNG: every channel with colour bar and unit", into(w->preview)}},
-      "The bins must cover every channel: one that reaches beyond them is refused.",
-      [w](const Arguments& words) { return integrate(*w, words[0], words[1]); }};
+      [w](const Arguments& words) { return integrate(*w, words[0], words[1]); },
+      "The bins must cover every channel: one that reaches beyond them is refused."};
 }
 
 }  // namespace pitviper

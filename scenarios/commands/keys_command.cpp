@@ -6,7 +6,7 @@
 namespace pitviper {
 
 CommandLine keysCommand() {
-  return {"keys", "", "the reference of every scenario key (Markdown)", "Prints the key reference as in scenarios/README.md.", {}, "", [](const Arguments&) {
+  return {{"keys", "", "the reference of every scenario key (Markdown)"}, "Prints the key reference as in scenarios/README.md.", {}, [](const Arguments&) {
             std::fputs(keyReference().c_str(), stdout);
             return 0;
           }};

@@ -277,9 +277,7 @@ CommandLine materialCommand() {
   ImportChoices& c = w->choices;
   const std::string own = "NAME|FILE";
   return {
-      "material",
-      "[NAME|FILE]",
-      "what a surface or a substance of the library, or of a file, is: tables, charts, a sphere of it",
+      {"material", "[NAME|FILE]", "what a surface or a substance of the library, or of a file, is: tables, charts, a sphere of it"},
       "Without an argument: the library's materials and substances. NAME: one of them; FILE.yaml: a material of your own (what stands below its name under "
       "'materials:'). Prints reflectance, emissivity and transmittance by wavelength and view angle.\n"
       "FILE of others: refractiveindex.info's YAML, or a spectrum in columns (ECOSTRESS, the USGS's libraries 6 and 7, field and Fourier spectrometers' text, "
@@ -306,7 +304,6 @@ CommandLine materialCommand() {
         "a "
         "sun and a dome of daylight as an eye sees it (of materials without data there: at 320 K in the infrared), in FOLDER; created if missing",
         into(w->out), own}},
-      "",
       [w](const Arguments& words) {
         if (!words.empty()) return show(*w, words[0]);
         list(findLibraries());

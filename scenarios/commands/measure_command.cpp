@@ -161,9 +161,7 @@ CommandLine measureCommand() {
   const auto w = std::make_shared<MeasureWish>();
   const auto target = [w](const std::string& text, const Location& where) { readTarget(text, where, w->target); };
   return {
-      "measure",
-      "NAME|CAMERA.yaml",
-      "a camera on a lab bench: SiTF, NETD, noise, MTF, gain, well, point response from its pictures, beside its design",
+      {"measure", "NAME|CAMERA.yaml", "a camera on a lab bench: SiTF, NETD, noise, MTF, gain, well, point response from its pictures, beside its design"},
       "Draws flat fields, levels from dark to full, a slanted edge (ISO 12233), a point in a pixel's middle, edge and corner, and four-bar targets through a "
       "camera of the library, or one in a file with a key 'camera', whose channels have 'output: counts'; and measures from these pictures alone: SiTF, NETD, "
       "the seven components of three-dimensional noise with their standard errors, gain by photon transfer, full well, linearity, MTF, a pixel's share of a "
@@ -182,7 +180,6 @@ CommandLine measureCommand() {
        {"--false-alarms", "N", "an hour, over the film, of the threshold for spots", number(w->alarms_per_hour, {1e-6, 1e6, ""}), "--ranges"},
        rootOption(w->world, "--ranges"),
        {"--out", "FOLDER", "also NAME.html, a page with charts (needs VTK), NAME.csv and the charts; created if missing", into(w->out)}},
-      "",
       [w](const Arguments& words) { return measure(*w, words[0]); }};
 }
 

@@ -92,13 +92,17 @@ std::vector<Option> joined(std::vector<Option> all, const Lists&... others) {
   return all;
 }
 
-struct CommandLine {
+struct CommandTitle {
   std::string name;   ///< "bench"; "bench --first": of `bench`, where --first stands behind it
   std::string words;  ///< "SCENARIO.yaml", "[NAME|FILE]", "[SCENARIO.yaml]..."
-  std::string summary, about;
+  std::string summary = {};
+};
+
+struct CommandLine : CommandTitle {
+  std::string about;
   std::vector<Option> options;
-  std::string after;  ///< the options
   std::function<int(const Arguments& words)> run;
+  std::string after = {};  ///< the options
 };
 
 /// Fills the command's fields and runs it. `others`: whose options are none of its own. Errors: UserError.

@@ -151,12 +151,9 @@ std::string phongBench() {
 }  // namespace
 
 CommandLine phongBenchCommand() {
-  return {"bench --phong",
-          "",
-          "",
+  return {{"bench --phong", ""},
           "Tables of 200 entries of spectral Phong lobes against the formula, error and time, as in the paper that proposed them.",
           {},
-          "",
           [](const Arguments&) { return std::fputs(phongBench().c_str(), stdout), 0; }};
 }
 

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/html_page.hpp"
 #include "scenarios/commands/plan_report.hpp"
 #include "scenarios/commands/sensor_report.hpp"
@@ -128,17 +127,7 @@ void RunReportPage::write(const std::filesystem::path& folder, const std::string
         if (!chart.series.empty()) charts.push_back(chart);
       page.paragraph("Targets: " + c.name + "_truth.csv, unless a sink of its own was asked for.");
     }
-    if (!charts.empty()) {
-      const std::filesystem::path png = folder / ("." + c.name + "_report_charts.png");
-      try {
-        drawCharts(charts, 2, png);
-        page.picture(png, "What its layers and targets do over time");
-      } catch (const UserError& e) {
-        page.paragraph(std::string("No charts: ") + e.what());
-      }
-      std::error_code ignored;
-      std::filesystem::remove(png, ignored);
-    }
+    page.charts(charts, folder, "What its layers and targets do over time");
     if (const std::string text = sensorText(c, sim.time.step_s); !text.empty()) {
       page.paragraph("The sensor by its design:");
       page.lines(text);

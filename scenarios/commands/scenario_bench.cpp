@@ -106,13 +106,10 @@ CommandLine scenarioBenchCommand() {
   };
   const auto w = std::make_shared<Wish>();
   return {
-      "bench --scenario",
-      "SCENARIO.yaml",
-      "",
+      {"bench --scenario", "SCENARIO.yaml"},
       "Time of a frame of each camera, the frames in their order, drawing and readback, no files (with a gimbal its sensor and tracker too); beside them the "
       "yardstick, and where the time of a frame goes, part by part: what updates tables and shadow maps, what is seen, shading, readback and so on.",
       joined({{"--frames", "N", "frames to time", number(w->frames, {10, 100000, "", false, "not a number of frames to time"})}}, scenarioOptions(w->scenario)),
-      "",
       [w](const Arguments& words) {
         w->scenario.file = words[0];
         const GlContext context;

@@ -278,9 +278,7 @@ CommandLine streamCommand() {
   const auto w = std::make_shared<StreamOptions>();
   const auto cores = [w](const std::string& text, const Location& where) { readCores(text, where, w->cores); };
   return {
-      "stream",
-      "SCENARIO.yaml",
-      "frames at a fixed rate to hardware and other programs, and commands from them",
+      {"stream", "SCENARIO.yaml", "frames at a fixed rate to hardware and other programs, and commands from them"},
       "Frames of every camera at a fixed rate to other programs and to hardware, and commands from them. Plans and programs are made before the first frame. "
       "Without "
       "a way for frames (here, or in the scenario's 'sinks') they go to shared memory /pitviper. Ends after the scenario's frames, or as asked; SIGINT and "
@@ -350,21 +348,18 @@ CommandLine streamCommand() {
             into(w->cigi)},
            {"", "", "Scenario", {}}},
           drawOptions(w->draw)),
+      [w](const Arguments& words) { return w->draw.scenario.file = words[0], stream(*w); },
       "What is slow has a queue, and skips frames in real time.\n"
       "'accuracy: {asked: 1 %, at_most: 3 %}' in the scenario: where the rate does not hold it draws coarser, up to that; frames say to what.\n"
-      "scenarios/clients has a tracker, readers and a CIGI host.",
-      [w](const Arguments& words) { return w->draw.scenario.file = words[0], stream(*w); }};
+      "scenarios/clients has a tracker, readers and a CIGI host."};
 }
 
 CommandLine selfTestCommand() {
   const auto w = std::make_shared<SelfTestWish>();
-  return {"stream --self-test",
-          "",
-          "",
+  return {{"stream --self-test", ""},
           "What each way takes on this machine, without drawing: 640x512 pixels, in a table.",
           {{"--rate", "'R Hz'", "of frames", number(w->rate_hz, {1.0, 1e4, "Hz"})},
            {"--duration", "'T s'", "for each way", number(w->duration_s, {0.1, 1e4, "s"})}},
-          "",
           [w](const Arguments&) { return streamSelfTest(*w); }};
 }
 

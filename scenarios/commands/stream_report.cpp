@@ -4,7 +4,6 @@
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
-#include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/html_page.hpp"
 #include "sim/parameters/print.hpp"
 
@@ -201,17 +200,7 @@ void writeStreamReport(const StreamResult& result, const std::string& mark, cons
     if (a.period.count() > 1)
       charts.push_back({"Share of periods longer than, " + a.camera, "sent to sent [ms]", "share", false, true, false, {shares}, {}, {}});
   }
-  if (!charts.empty()) {
-    const std::filesystem::path png = folder / ".stream_charts.png";
-    try {
-      drawCharts(charts, 2, png);
-      page.picture(png, "Each point of the course is the mean, and the largest, of a piece of the run");
-    } catch (const UserError& e) {
-      page.paragraph(std::string("No charts: ") + e.what());
-    }
-    std::error_code ignored;
-    std::filesystem::remove(png, ignored);
-  }
+  page.charts(charts, folder, "Each point of the course is the mean, and the largest, of a piece of the run");
   page.write(folder / "stream.html", mayReplace);
 }
 

@@ -16,7 +16,6 @@ namespace pitviper {
 
 enum class Species;
 
-/// A number for a message: six digits at most.
 /// More subpixels than a picture may have.
 bool tooLarge(const Camera& camera);
 /// Is there a stage among these that makes counts? (Their order and keys are read later.)
@@ -120,8 +119,8 @@ class Builder {
   FieldGas gasOf(Species species, double low_K, double high_K);
   void readJets(const Record& r, FieldBody& body);
   void readGrid(const Record& r, FieldBody& body);
-  /// Within `life`, the times at which an entity is there.
-  void whileThere(int entity, Lifetime& life, const Record& r) const;
+  /// Begin and end within the times at which an entity is there.
+  void whileThere(int entity, double& begin_s, double& end_s, const Record& r, const char* key, const char* shouldDo) const;
   // smokes.cpp
   /// A material of a field's gas, made once by each name.
   int fieldMaterial(const std::string& name, const std::string& source, const std::function<Medium()>& make);

@@ -8,6 +8,7 @@
 #include "materials/fields/grid_field.hpp"
 #include "materials/fields/jets.hpp"
 #include "scenarios/reader/builder.hpp"
+#include "sim/model/world.hpp"
 #include "sim/parameters/time_course.hpp"
 #include "sim/scene/grid_import.hpp"
 #include "sim/scene/mesh_axes.hpp"
@@ -173,16 +174,13 @@ FieldGas Builder::gasOf(Species species, double low_K, double high_K) {
   return gas;
 }
 
-void Builder::whileThere(int entity, Lifetime& life, const Record& r) const {
-  for (int e = entity; e >= 0; e = simulation_.entities[static_cast<std::size_t>(e)].parent) {
-    const Entity& carrier = simulation_.entities[static_cast<std::size_t>(e)];
-    life.begin_s = std::max(life.begin_s, carrier.lifetime.begin_s);
-    life.end_s = std::min(life.end_s, carrier.lifetime.end_s);
-    if (carrier.motion.before() == AtEnd::Vanish) life.begin_s = std::max(life.begin_s, carrier.motion.begin_s());
-    if (carrier.motion.after() == AtEnd::Vanish) life.end_s = std::min(life.end_s, carrier.motion.end_s());
+void Builder::whileThere(int entity, double& begin_s, double& end_s, const Record& r, const char* key, const char* shouldDo) const {
+  if (entity >= 0) {
+    const Lifetime there = lifetimeOf(simulation_, entity);
+    begin_s = std::max(begin_s, there.begin_s), end_s = std::min(end_s, there.end_s);
   }
-  if (!(life.end_s > life.begin_s))
-    throw UserError(r.where("on"), "'" + r.text("on").substr(0, 60) + "' isn't there while it should have a plume", "times within its lifetime",
+  if (!(end_s > begin_s))
+    throw UserError(r.where(key), "'" + r.text(key).substr(0, 60) + "' isn't there while it should " + shouldDo, "times within its lifetime",
                     "change 'begin' and 'end', here or there");
 }
 
@@ -208,7 +206,8 @@ void Builder::readJets(const Record& r, FieldBody& body) {
   if (!(glm::length(setup.direction) > 1e-9))
     throw UserError(r.where("direction"), "an exhaust without a direction", "three numbers that are not all 0", "write 'direction: [-1, 0, 0]'");
   r.fill(setup.life);
-  whileThere(setup.entity, setup.life, r);  // a body that is not there has no exhaust; a motor is lit as its body comes
+  whileThere(setup.entity, setup.life.begin_s, setup.life.end_s, r, "on",
+             "have a plume");  // a body that is not there has no exhaust; a motor is lit as its body comes
   setup.airWarmer_K = airWarmer_K();
 
   const auto source = std::make_shared<const JetsSource>(setup);
@@ -292,7 +291,7 @@ void Builder::readGrid(const Record& r, FieldBody& body) {
     throw UserError(g.where(g.given("up") ? "up" : "forward"), "a grid's 'forward' and 'up' point along the same axis", "two at right angles", "change one");
   setup.bodyFromGrid = glm::transpose(glm::dmat3(forward, glm::cross(up, forward), up));
   r.fill(setup.life);
-  whileThere(setup.entity, setup.life, r);
+  whileThere(setup.entity, setup.life.begin_s, setup.life.end_s, r, "on", "have a plume");
   const auto source = std::make_shared<const GridSource>(setup);
   const glm::dvec2 range_K = source->temperatures_K();
   for (const Wanted& w : gases) body.gases.push_back(gasOf(w.species, range_K.x, range_K.y));

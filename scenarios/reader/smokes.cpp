@@ -131,17 +131,7 @@ void Builder::readSmokes(const Record& scenario) {
       o.entity = entityNamed(r.value("from"));
       if (r.given("geodetic"))
         throw UserError(r.where("geodetic"), "a geodetic position of smoke that a body lets out", "'position' in the body's axes", "use 'position'");
-      // A body that is not there lets nothing out.
-      for (int e = o.entity; e >= 0; e = simulation_.entities[static_cast<std::size_t>(e)].parent) {
-        const Entity& carrier = simulation_.entities[static_cast<std::size_t>(e)];
-        o.begin_s = std::max(o.begin_s, carrier.lifetime.begin_s);
-        o.end_s = std::min(o.end_s, carrier.lifetime.end_s);
-        if (carrier.motion.before() == AtEnd::Vanish) o.begin_s = std::max(o.begin_s, carrier.motion.begin_s());
-        if (carrier.motion.after() == AtEnd::Vanish) o.end_s = std::min(o.end_s, carrier.motion.end_s());
-      }
-      if (!(o.end_s > o.begin_s))
-        throw UserError(r.where("from"), "'" + r.text("from").substr(0, 60) + "' isn't there while it should smoke", "times within its lifetime",
-                        "change 'begin' and 'end', here or there");
+      whileThere(o.entity, o.begin_s, o.end_s, r, "from", "smoke");  // a body that is not there lets nothing out
     } else if (!r.given("position") && !r.given("geodetic")) {
       throw UserError(r.where(), "smoke from nowhere", "'from' (an entity), or a 'position' or 'geodetic'", "add 'from: <entity>'");
     }

@@ -22,9 +22,7 @@ struct Wish {
 };
 
 CommandLine tableOf(Wish& w) {
-  return {"toy",
-          "A [B]",
-          "",
+  return {{"toy", "A [B]"},
           "Does nothing.",
           {{"--loud", "", "with noise", into(w.loud)},
            {"--count", "N", "so often", number(w.count, {1, 9, "", false, "no count"})},
@@ -35,11 +33,11 @@ CommandLine tableOf(Wish& w) {
            {"--file", "FILE", "where", into(w.file), "--loud"},
            {"--set", "K=V...", "changes", into(w.sets)},
            {"--days", "A,B", "then", someOf(w.days, {"monday", "tuesday"}, "day"), "B"}},
-          "And that is all.",
           [&w](const Arguments& words) {
             w.words = words;
             return 5;
-          }};
+          },
+          "And that is all."};
 }
 
 std::string refusal(const Arguments& arguments, const std::vector<CommandLine>& others = {}) {
@@ -91,7 +89,7 @@ TEST(Options, AreRefusedInOneLineWithTheFix) {
       {{"a", "b", "--days", "mondy"}, "--days mondy: there is no day 'mondy'; expected some of monday, tuesday, between commas; fix: did you mean 'monday'?"},
   };
   for (const auto& [arguments, says] : wrong) EXPECT_EQ(refusal(arguments).substr(0, says.size()), says);
-  CommandLine other{"toy --far", "", "", "", {{"--miles", "N", "", {}}}, "", {}};
+  CommandLine other{{"toy --far", ""}, "", {{"--miles", "N", "", {}}}, {}};
   EXPECT_EQ(refusal({"a", "--miles", "3"}, {other}).substr(0, 87), "pitviper toy: --miles says nothing to pitviper toy; expected it with pitviper toy --far");
   EXPECT_NE(refusal({"a", "--mils", "3"}, {other}).find("unknown option '--mils'"), std::string::npos);
 }
