@@ -1,4 +1,5 @@
-# Writes a .cpp with lawsDigest(): of the content of all FILES, in an order that does not depend on the machine.
+# Writes a .cpp with lawsDigest(): of the content of all files that LIST names, in an order that does not depend on the machine.
+file(READ ${LIST} FILES)
 list(SORT FILES)
 set(all "")
 foreach(file IN LISTS FILES)
@@ -7,10 +8,4 @@ foreach(file IN LISTS FILES)
 endforeach()
 string(SHA256 digest "${all}")
 string(SUBSTRING ${digest} 0 16 digest)
-set(text "#include \"sim/scene/laws_digest.hpp\"\n\nnamespace pitviper {\nstd::string_view lawsDigest() { return \"${digest}\"; }\n}  // namespace pitviper\n")
-if(EXISTS ${OUT})
-  file(READ ${OUT} before)
-endif()
-if(NOT text STREQUAL "${before}")
-  file(WRITE ${OUT} "${text}")
-endif()
+file(WRITE ${OUT} "#include \"sim/scene/laws_digest.hpp\"\n\nnamespace pitviper {\nstd::string_view lawsDigest() { return \"${digest}\"; }\n}  // namespace pitviper\n")
