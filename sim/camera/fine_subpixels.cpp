@@ -41,8 +41,11 @@ SheetShares sharesOf(const Subpixels& image, const Sheets& sheets, const Sheet& 
   SheetShares shares;
   const View& v = image.view();
   const auto slots = image.slotCount(), width = static_cast<std::size_t>(v.width);
+  SheetShare* last = nullptr;
+  std::size_t lastOf = 0;
   eachLine(v, sheet.view, [&](const SheetLine& line) {
-    SheetShare& share = shares[line.subpixel];
+    if (!last || line.subpixel != lastOf) last = &shares[line.subpixel], lastOf = line.subpixel;  // neighbours mostly fall into the same
+    SheetShare& share = *last;
     share.looked_sr += line.etendue_sr;
     if ((mayCount && !(*mayCount)[line.number]) || !sheets.counts(sheet, line.place, line.subpixel, drawn.entity[line.number])) return;
     share.covered_sr += line.etendue_sr;

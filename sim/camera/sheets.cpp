@@ -160,6 +160,7 @@ bool Sheets::isOf(const Sheet& sheet, const glm::dvec3& direction, std::size_t s
 }
 
 bool Sheets::counts(const Sheet& sheet, const glm::dvec2& place, std::size_t subpixel, int seen) const {
+  if (sheet.view.onlyEntity >= 0 && sheet.view.onlyEntity != seen) return false;
   const glm::dvec3 ray = sheet.view.ray(place.x, place.y), direction = sheet.view.localFromCamera * ray / glm::length(ray);
   const auto meets = [&](int e) {
     return e == seen ||
