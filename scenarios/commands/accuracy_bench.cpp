@@ -85,7 +85,7 @@ AccuracyReport measureAccuracy(const AccuracyWish& wish) {
   }
   const auto scene = std::make_shared<const GpuScene>(sim);
 
-  ComparedFrames compared = comparedFrames(sim, camera, states);
+  ComparedFrames compared{states, {}};
   Progress waiting("reference", frames);
   Renderings truth(sim, camera, referenceSampling(), scene);
   truth.renderer().setProgress([&](double share) { waiting.within(share); });
@@ -95,11 +95,9 @@ AccuracyReport measureAccuracy(const AccuracyWish& wish) {
   for (size_t c = 0; c < found.size(); ++c) reference.emplace_back(camera.outputs[c].kernel, std::move(found[c]));
 
   AccuracyReport report;
-  const int count = compared.leftOut();
-  const std::string skipped = count > 0 ? "; " + std::to_string(count) + " pixels on outlines of transparent things left out" : "";
-  report.heading = print("%s, camera %s, %dx%d pixels of %dx%d subpixels, frame%s %s, against the reference (%d wavelengths)%s", sim.name.c_str(),
-                         camera.name.c_str(), camera.pinhole.width, camera.pinhole.height, camera.samples, camera.samples, frames == 1 ? "" : "s",
-                         numbers.c_str(), truth.plan().nodeCount(), skipped.c_str());
+  report.heading =
+      print("%s, camera %s, %dx%d pixels of %dx%d subpixels, frame%s %s, against the reference (%d wavelengths)", sim.name.c_str(), camera.name.c_str(),
+            camera.pinhole.width, camera.pinhole.height, camera.samples, camera.samples, frames == 1 ? "" : "s", numbers.c_str(), truth.plan().nodeCount());
 
   const auto ladder = accuracyLadder();
   Progress progress("accuracies", static_cast<int>(ladder.size()) * (1 + kRounds));

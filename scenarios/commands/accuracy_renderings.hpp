@@ -24,13 +24,10 @@ struct ComparedPixel {
 /// The frames of a camera of which all pictures are made, and what they have in common.
 struct ComparedFrames {
   std::vector<WorldState> states;
-  std::vector<std::vector<char>> left;   ///< marks of outlinePixels()
   std::vector<std::vector<Ball>> parts;  ///< bright parts with views of their own, by frame: those of whoever draws first; empty before
-  int leftOut() const;
-  /// The n-th pixel that is compared.
-  ComparedPixel placeOf(std::size_t n, int width) const;
 };
-ComparedFrames comparedFrames(const Simulation& simulation, const Camera& camera, std::vector<WorldState> states);
+/// Of the n-th pixel of all frames.
+ComparedPixel placeOf(std::size_t n, const Camera& camera);
 
 /// The scenario with one camera, at a setting.
 class Renderings {
@@ -39,7 +36,7 @@ class Renderings {
   Renderings(const Simulation& simulation, const Camera& camera, const SpectralSampling& sampling, const std::shared_ptr<const GpuScene>& scene);
   CameraRenderer& renderer() { return *renderer_; }
   const Plan& plan() const { return renderer_->plan(); }
-  /// Pixels of each output, of all frames but those left out. `drawn`: told after each frame.
+  /// Pixels of each output, of all frames. `drawn`: told after each frame.
   std::vector<std::vector<double>> draw(ComparedFrames& frames, const std::function<void()>& drawn = {});
 
  private:
@@ -49,9 +46,5 @@ class Renderings {
 
 /// The reference, for what a camera draws.
 SpectralSampling referenceSampling();
-
-/// Marks pixels of a frame, from the top, with the outline of something transparent in the middle of a subpixel: there the reference, which casts
-/// rays, and the rasteriser see different things.
-std::vector<char> outlinePixels(const Simulation& simulation, const Camera& camera, const WorldState& state);
 
 }  // namespace pitviper

@@ -36,7 +36,7 @@ struct AuditedLayer {
   std::vector<double> errors;             ///< of every pixel that is compared
 };
 
-std::vector<AuditedLayer> layersOf(const Camera& camera, const Plan& plan, const ComparedFrames& frames, const std::vector<std::vector<double>>& drawn,
+std::vector<AuditedLayer> layersOf(const Camera& camera, const Plan& plan, const std::vector<std::vector<double>>& drawn,
                                    std::vector<std::vector<double>> exact) {
   std::vector<AuditedLayer> all;
   std::set<int> seen;
@@ -52,7 +52,7 @@ std::vector<AuditedLayer> layersOf(const Camera& camera, const Plan& plan, const
     const auto count = std::count_if(sorted.begin(), sorted.end(), [&](double e) { return !(e <= plan.accuracy); });
     layer.beyond = static_cast<double>(count) / static_cast<double>(sorted.size());
     const auto worst = static_cast<size_t>(std::max_element(layer.errors.begin(), layer.errors.end()) - layer.errors.begin());
-    layer.worst = frames.placeOf(worst, camera.pinhole.width);
+    layer.worst = placeOf(worst, camera);
     layer.planned = drawn[o][worst];
     layer.reference = reference.values()[worst];
     all.push_back(std::move(layer));
@@ -61,19 +61,12 @@ std::vector<AuditedLayer> layersOf(const Camera& camera, const Plan& plan, const
 }
 
 /// Each layer's errors in the frame where the largest of it lies.
-void writePicture(const std::filesystem::path& file, const Camera& camera, const ComparedFrames& frames, const std::vector<int>& numbers,
-                  const std::vector<AuditedLayer>& layers) {
+void writePicture(const std::filesystem::path& file, const Camera& camera, const std::vector<int>& numbers, const std::vector<AuditedLayer>& layers) {
   const auto pixels = static_cast<size_t>(camera.pinhole.width) * static_cast<size_t>(camera.pinhole.height);
   std::vector<Rgb8Image> pictures;
   for (const AuditedLayer& layer : layers) {
     std::vector<float> errors(pixels, 0.0f);
-    size_t n = 0;
-    for (size_t f = 0; f < frames.left.size(); ++f)
-      for (size_t p = 0; p < pixels; ++p) {
-        if (frames.left[f][p]) continue;
-        if (static_cast<int>(f) == layer.worst.frame) errors[p] = static_cast<float>(100.0 * layer.errors[n]);
-        ++n;
-      }
+    for (size_t p = 0; p < pixels; ++p) errors[p] = static_cast<float>(100.0 * layer.errors[static_cast<size_t>(layer.worst.frame) * pixels + p]);
     PreviewOptions look;
     look.title = camera.name + " " + layer.name + ", frame " + std::to_string(numbers[static_cast<size_t>(layer.worst.frame)]) + ": off by";
     look.unit = "% of the reference";
@@ -134,7 +127,7 @@ int audit(const AuditWish& w) {
       if (pointer) pointer->tickTo(world, n);
       states.push_back((pointer ? pointer->around(world) : world)(sim.time.at(n)));
     }
-    ComparedFrames frames = comparedFrames(sim, camera, std::move(states));
+    ComparedFrames frames{std::move(states), {}};
     Progress progress("audit of camera " + camera.name, 2 * static_cast<int>(numbers.size()));
     progress.phase("planning camera " + camera.name);
     Renderings planned(sim, camera, camera.spectral, scene);
@@ -146,15 +139,11 @@ int audit(const AuditWish& w) {
     auto found = exact.draw(frames, [&] { progress.step(); });
     progress.withdraw();
     const Plan& plan = planned.plan();
-    const auto layers = layersOf(camera, plan, frames, drawn, std::move(found));
+    const auto layers = layersOf(camera, plan, drawn, std::move(found));
     std::printf(
         "camera %s: %zu frame%s of %dx%d pixels of %dx%d lines, by the plan (%d wavelengths) and by the reference along the same lines (%d wavelengths)\n",
         camera.name.c_str(), numbers.size(), numbers.size() == 1 ? "" : "s", camera.pinhole.width, camera.pinhole.height, camera.samples, camera.samples,
         plan.nodeCount(), exact.plan().nodeCount());
-    if (frames.leftOut() > 0)
-      std::printf(
-          "  %d pixels with an outline of something transparent in the middle of a line are left out: rays and the rasteriser may see different things there\n",
-          frames.leftOut());
     for (const AuditedLayer& l : layers) {
       const bool broken = plan.accuracy > 0.0 && !(l.found.maximum <= plan.accuracy);
       isBroken |= broken;
@@ -167,7 +156,7 @@ int audit(const AuditWish& w) {
       if (broken) std::printf("    beyond what was asked in %s %% of the pixels\n", percent(l.beyond).c_str());
     }
     csv += csvOf(camera.name, plan.accuracy, numbers, layers);
-    if (!out.empty() && !layers.empty()) writePicture(out / (camera.name + "_audit.png"), camera, frames, numbers, layers);
+    if (!out.empty() && !layers.empty()) writePicture(out / (camera.name + "_audit.png"), camera, numbers, layers);
   }
   if (!out.empty()) writeFileAtomically(out / "audit.csv", csv);
   return isBroken ? kBeyondAsked : 0;

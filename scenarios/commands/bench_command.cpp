@@ -22,7 +22,6 @@ int bench(BenchWish& w) {
   if (!out.empty()) ensureWritableFolder(out);
 
   const GlContext context;
-  for (BenchFactor& f : factors) dropWhatIsNotOffered(f);
   Yardstick yardstick;
   int steps = 0;
   for (const auto& f : factors) steps += benchSteps(f, frames);

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <functional>
 
-#include "sim/gl/blend_path.hpp"
 #include "sim/render/shading_program.hpp"
 
 namespace pitviper {
@@ -87,20 +86,6 @@ BenchFactor shading() {
   return f;
 }
 
-/// Four layers with emission and air by each way of blending.
-BenchFactor blend() {
-  BenchFactor f{"blend", "four layers blended by", {}};
-  for (BlendPath path : {BlendPath::FramebufferFetch, BlendPath::TextureBarrier, BlendPath::PingPong}) {
-    BenchVariant v{nameOf(path), static_cast<double>(f.variants.size()), "buffered", {}};
-    v.setting.mode = RenderMode::Buffered;
-    v.setting.layers = 4;
-    v.setting.blend = nameOf(path);
-    v.base = 2;  // a copy: every driver can do it
-    f.variants.push_back(v);
-  }
-  return f;
-}
-
 }  // namespace
 
 std::vector<BenchFactor> benchFactors() {
@@ -122,17 +107,7 @@ std::vector<BenchFactor> benchFactors() {
       varied("triangles", "triangles of the wall", {2, 1000, 10'000, 100'000, 1'000'000, 10'000'000}, 2, [](BenchSetting& s, int v) { s.triangles = v; }));
   all.push_back(layers());
   all.push_back(shading());
-  all.push_back(blend());
   return all;
-}
-
-void dropWhatIsNotOffered(BenchFactor& f) {
-  if (f.name != "blend") return;
-  const auto offered = offeredBlendPaths();
-  std::erase_if(f.variants, [&](const BenchVariant& v) {
-    return std::none_of(offered.begin(), offered.end(), [&](BlendPath path) { return nameOf(path) == v.setting.blend; });
-  });
-  for (auto& v : f.variants) v.base = static_cast<int>(f.variants.size()) - 1;
 }
 
 }  // namespace pitviper

@@ -25,7 +25,5 @@ struct BenchFactor {
 };
 
 std::vector<BenchFactor> benchFactors();
-/// Ways of blending that the current context cannot do.
-void dropWhatIsNotOffered(BenchFactor& factor);
 
 }  // namespace pitviper

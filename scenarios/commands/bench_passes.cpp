@@ -62,7 +62,7 @@ struct PreparedFrame : Prepared {
 }  // namespace
 
 DrawFrame preparePass(const BenchSetting& setting) {
-  const Environment shading("PITVIPER_SHADING", setting.shading), blend("PITVIPER_BLEND", setting.blend);
+  const Environment shading("PITVIPER_SHADING", setting.shading);
   return [p = std::make_shared<PreparedPass>(setting)] { p->pass->draw(p->view, p->state, p->drawn); };
 }
 

@@ -206,7 +206,6 @@ std::vector<Chart> benchCharts(const std::vector<BenchFactor>& factors, const st
     else if (f.name == "shading") charts.push_back(rateChart(f, rows, "Shading as fragments or as compute", Spread::Categories, false));
     else if (f.name == "bodies") charts.push_back(rateChart(f, rows, "Bodies of 2000 triangles before the wall", Spread::Categories, false));
     else if (f.name == "triangles") charts.push_back(rateChart(f, rows, "Triangles of the wall", Spread::Logarithmic, false));
-    else if (f.name == "blend") charts.push_back(rateChart(f, rows, "Four transparent layers, by way of blending", Spread::Categories, false));
     else charts.push_back(rateChart(f, rows, "Size of the film", Spread::Logarithmic, false));
   }
   return charts;

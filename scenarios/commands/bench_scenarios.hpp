@@ -26,7 +26,6 @@ struct BenchSetting {
   bool air = true;
   RenderMode mode = RenderMode::Direct;
   std::string shading;  ///< as PITVIPER_SHADING; empty: what the machine chooses
-  std::string blend;    ///< as PITVIPER_BLEND
 };
 
 Simulation benchSimulation(const BenchSetting& setting);

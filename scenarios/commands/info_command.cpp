@@ -3,7 +3,6 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/pixel_terms.hpp"
-#include "sim/gl/blend_path.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/image/exr.hpp"
 #include "sim/parameters/error.hpp"
@@ -65,14 +64,10 @@ void printLayers(const ExrImage& image) {
 void printMachine() {
   const GlContext context;
   const GlLimits& l = context.limits();
-  const BlendPath chosen = chooseBlendPath();
-  std::string offered;
-  for (BlendPath path : offeredBlendPaths()) offered += (offered.empty() ? "" : ", ") + nameOf(path);
   auto row = [](const char* what, const std::string& value) { std::printf("%-36s %s\n", what, value.c_str()); };
   row("renderer", l.renderer + (l.software ? " (drawn by the CPU)" : ""));
   row("vendor, OpenGL", l.vendor + ", " + l.version);
   row("spectral shading as", nameOf(chooseShadingStage()) + " (PITVIPER_SHADING: fragment, compute)");
-  row("transparent things blended by", nameOf(chosen) + " (offered: " + offered + ")");
   row("largest picture", std::to_string(l.largestTexture) + " subpixels a side");
   row("targets in a pass", std::to_string(l.drawBuffers) + " of four channels: " + std::to_string(4 * l.drawBuffers) + " wavelengths a batch in buffered mode");
   row("uniform block", std::to_string(l.uniformBlock) + " bytes: about " + std::to_string(l.uniformBlock / 48) + " wavelengths with up to four lights");
@@ -133,8 +128,7 @@ CommandLine infoCommand() {
   const auto w = std::make_shared<InfoWish>();
   return {
       {"info", "[FILE.exr]", "what is in a frame, or what this machine draws with"},
-      "Layers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver, its limits, and the way in which transparent things are "
-      "blended (fetch, barrier or ping_pong; PITVIPER_BLEND chooses another).",
+      "Layers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver and its limits.",
       joined(
           {{"--at",
             "COLUMN,ROW",

@@ -123,17 +123,6 @@ void sayScatteredAgain(const std::string& camera, const ScatteredAgain& s, Notes
             camera.c_str(), s.channel.c_str(), times(s.factor).c_str(), times(s.least).c_str(), times(s.most).c_str(), off.c_str()));
 }
 
-/// Once per camera: what of a picture's transparent things is not in its right order.
-void FrameNotes::order(const Frame& f) {
-  for (const auto& a : f.attributes) {
-    if (a.name != "pitviper.transparent_order") continue;
-    const std::string order = std::get<std::string>(a.value);
-    if (order != "exact" && told_.insert(f.camera).second)
-      notes_.say(print("camera %s, frame %d: the order of transparent things is %s; of two that pass through each other one is drawn over the other",
-                   f.camera.c_str(), f.number, order.c_str()));
-  }
-}
-
 /// Once per camera and channel.
 void FrameNotes::scattering(const Frame& f) {
   const std::string begin = "pitviper.scattered_again.";
@@ -184,7 +173,6 @@ void FrameNotes::saturation(const Frame& f) {
 
 void FrameNotes::look(const Frame& frame) {
   saturation(frame);
-  order(frame);
   limits(frame);
   scattering(frame);
 }

@@ -39,7 +39,6 @@ class FrameNotes {
   void look(const Frame& frame);
 
  private:
-  void order(const Frame& frame);
   void scattering(const Frame& frame);
   void limits(const Frame& frame);
   void saturation(const Frame& frame);

@@ -38,7 +38,6 @@ struct CameraImage {
   double exposure_s = 0.0;                       ///< the longest of them
   std::vector<TruthPixel> truth;                 ///< per pixel, or empty
   std::vector<int> slotOfOutput;                 ///< from the plan
-  std::string transparentOrder;                  ///< how transparent things in view were sorted, for the frame's metadata; empty: none in view
   std::vector<AveragedFringes> averagedFringes;  ///< of materials, the same in every picture
   std::vector<ScatteredAgain> scatteredAgain;    ///< channels in which light scattered more than once would matter
   double accuracy = 0.0;                         ///< from the plan, and so its error per slot

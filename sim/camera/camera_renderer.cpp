@@ -120,7 +120,6 @@ void CameraRenderer::begin(const WorldState& state) {
     if (isBuffered()) overlay_ = overlayIn(simulation_, state_, view_, drawn);
   }
   if (reference_) reference_->beginPicture(viewsOfPicture());
-  if (isBuffered() && buffered_->layers()) buffered_->layers()->beginPicture();
   std::vector<double> zoomed(present_.size(), 0.0);
   for (size_t e = 0; e < zoomed.size(); ++e) zoomed[e] = small_[e] ? zoomedLinesOn(e) : 0.0;
   const ShadowDemand demand{view_, present_, zoomed};
@@ -215,7 +214,6 @@ CameraImage CameraRenderer::finish() {
   resolved.solidAngles = solidAngles_;
   resolved.exposures_s = cameraAt(camera_, state_).exposures_s;
   resolved.exposure_s = longestExposure_s(camera_, resolved.exposures_s);
-  if (isBuffered() && buffered_->layers()) resolved.transparentOrder = buffered_->layers()->describeOrder();
   resolved.averagedFringes = fringes_;
   resolved.scatteredAgain = scattered_.valid() ? scattered_.get() : scattering_.at(state_);
   resolved.accuracy = plan_.accuracy;

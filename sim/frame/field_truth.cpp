@@ -1,5 +1,6 @@
 // Rows of what has no outline: exhaust and burning clouds.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "sim/camera/visible_lights.hpp"
@@ -82,7 +83,7 @@ void TruthMeter::addField(TargetRow& row, std::size_t f, const WorldState& state
   const FieldState& field = *fieldOf(state, f);
   const View grid = gridOver(cameraView(drawnCamera(camera_), state, 1), field, static_cast<int>(0.5 * lines_));
   if (grid.width == 0) return addChannels(row, own, total, contrast, 0.0, state);
-  const FieldLines places[] = {fieldLines(grid, field)};
+  const FieldLines places = fieldLines(grid, field);
   const bool coarse = asked_ >= kCoarseFrom;
   const int steps = coarse ? kCoarseSteps : kReferenceFieldSteps;
   ReferenceShader shader(simulation_, plan_, grid, state, present_, spectra_);
@@ -110,7 +111,7 @@ void TruthMeter::addField(TargetRow& row, std::size_t f, const WorldState& state
     Row here{own, own, own, std::vector<double>(channels * static_cast<std::size_t>(grid.width), 0.0)};
     std::vector<FieldStep> alone;
     for (int x = 0; x < grid.width; ++x)
-      for (const FilmLine& through : pixelLines(places, x, y, kMostLines, {coarse ? kCoarser : 1.0}).within) {
+      for (const FilmLine& through : pixelLines(std::array{&places}, x, y, kMostLines, {coarse ? kCoarser : 1.0}).within) {
         const glm::dvec3 ray = grid.ray(through.at.x, through.at.y);
         const double length = glm::length(ray), nearest_m = grid.near_m * length;
         LineOfSight line{grid.position, grid.localFromCamera * ray / length, {}, 0.0};

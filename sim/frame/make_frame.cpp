@@ -322,7 +322,6 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
     const bool told = std::any_of(frame.attributes.begin(), frame.attributes.end(), [&](const auto& a) { return a.name == key; });
     if (!told) frame.attributes.push_back({key, wordsOf(f)});
   }
-  if (!image.transparentOrder.empty()) frame.attributes.push_back({"pitviper.transparent_order", image.transparentOrder});
   if (image.exposureParts > 1) {
     frame.attributes.push_back({"pitviper.exposure_parts", image.exposureParts});
     frame.attributes.push_back({"pitviper.exposure_motion_px", image.exposureMotion_px});

@@ -174,6 +174,15 @@ void Buffer::bindTexture(unsigned unit, int perTexel, bool whole) const {
   }
   glBindTextureUnit(unit, texture_);
 }
+void Buffer::bindImage(unsigned unit) const {
+  bindTexture(unit, 4);
+  glBindImageTexture(unit, texture_, 0, GL_FALSE, 0, GL_WRITE_ONLY, GL_RGBA32F);
+}
+void Buffer::reserve(std::size_t bytes) {
+  if (name_ == 0u || bytes > bytes_) upload(nullptr, bytes);
+}
+void Buffer::fill(std::uint32_t value) const { glClearNamedBufferData(name_, GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, &value); }
+void Buffer::read(void* into, std::size_t bytes) const { glGetNamedBufferSubData(name_, 0, static_cast<GLsizeiptr>(bytes), into); }
 void Buffer::bindPack() const { glBindBuffer(GL_PIXEL_PACK_BUFFER, name_); }
 void Buffer::download(void* into, std::size_t bytes) const {
   if (bytes == 0) return;
@@ -244,6 +253,10 @@ RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>
   if (depth) {
     depth_.emplace(width, height, PixelFormat::Depth32f);
     glNamedFramebufferTexture(n, GL_DEPTH_ATTACHMENT, depth_->name(), 0);
+  }
+  if (colours.empty() && !depth) {
+    glNamedFramebufferParameteri(n, GL_FRAMEBUFFER_DEFAULT_WIDTH, width);
+    glNamedFramebufferParameteri(n, GL_FRAMEBUFFER_DEFAULT_HEIGHT, height);
   }
   glNamedFramebufferDrawBuffers(n, static_cast<GLsizei>(buffers.size()), buffers.data());
   if (glCheckNamedFramebufferStatus(n, GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)

@@ -89,6 +89,14 @@ class Buffer {
   void bindVertices() const;
   /// As a texture of floats or of whole numbers, one or four to a texel, read by texelFetch.
   void bindTexture(unsigned unit, int perTexel, bool whole = false) const;
+  /// The same of four floats to a texel, for imageStore().
+  void bindImage(unsigned unit) const;
+  /// Storage of that size [bytes] that programs write; nothing is done where it has as much.
+  void reserve(std::size_t bytes);
+  /// Every number of it.
+  void fill(std::uint32_t value) const;
+  /// Its first bytes; waits for what writes them.
+  void read(void* into, std::size_t bytes) const;
   /// Storage that a GPU writes and download() reads, of that size [bytes].
   void makeReadable(std::size_t bytes);
   void bindPack() const;

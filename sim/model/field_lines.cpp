@@ -210,12 +210,12 @@ class PixelCells {
 
 }  // namespace
 
-PixelLines pixelLines(std::span<const FieldLines> fields, int x, int y, int most, const LinesApart& apart) {
+PixelLines pixelLines(std::span<const FieldLines* const> fields, int x, int y, int most, const LinesApart& apart) {
   const glm::dvec2 corner(x, y);
   std::vector<FieldLines::Part> parts;
   double finest = INFINITY;
-  for (const FieldLines& f : fields)
-    for (const FieldLines::Part& p : f.parts) {
+  for (const FieldLines* f : fields)
+    for (const FieldLines::Part& p : f->parts) {
       if (!(p.high.x > corner.x && p.high.y > corner.y && p.low.x < corner.x + 1.0 && p.low.y < corner.y + 1.0)) continue;
       parts.push_back(p);
       finest = std::min({finest, p.apart_px.x, p.apart_px.y});

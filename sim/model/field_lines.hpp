@@ -38,7 +38,7 @@ struct PixelLines {
   std::vector<FilmLine> within;
   double outside = 0.0;  ///< share of the pixel where none of them shows
 };
-PixelLines pixelLines(std::span<const FieldLines> fields, int x, int y, int most, const LinesApart& apart = {});
+PixelLines pixelLines(std::span<const FieldLines* const> fields, int x, int y, int most, const LinesApart& apart = {});
 
 /// Of the reference.
 constexpr int kReferenceLines = 128;

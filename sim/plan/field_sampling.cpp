@@ -192,7 +192,7 @@ double coarserFor(FieldLooks& looks, const View& view, int pixels, double asked,
     const FieldLines::Part& part = lines.parts[dice.below(lines.parts.size())];
     const glm::dvec2 at = part.low + (part.high - part.low) * glm::dvec2(dice.unit(), dice.unit());
     const int x = std::clamp(static_cast<int>(at.x), 0, view.width - 1), y = std::clamp(static_cast<int>(at.y), 0, view.height - 1);
-    const auto linesOf = [&](double coarser) { return pixelLines({&lines, 1}, x, y, kAcross, {coarser, 2}); };
+    const auto linesOf = [&](double coarser) { return pixelLines(std::array{&lines}, x, y, kAcross, {coarser, 2}); };
     const PixelLines fine = linesOf(1.0);
     if (fine.within.size() < 2) continue;
     LineOfSight middle = through(x + 0.5, y + 0.5);

@@ -84,7 +84,7 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
     batches_.push_back(std::move(batch));
   }
   if (plan.terms.layer.any || plan.terms.media || plan.terms.fields)
-    layers_ = std::make_unique<LayerPass>(simulation, plan, tables(), sharedScene(), library, slots, targets_);
+    transparent_ = std::make_unique<SeenThrough>(simulation, plan, tables(), sharedScene(), library, slots, targets_);
   if (!truth) return;
   slots.files["truth"] = "sim/render/glsl/truth_layers.glsl";
   slots.generated["targets"] = "void clearTargets() {}\n";
@@ -96,8 +96,8 @@ std::vector<NamedProgram> BufferedPass::programs() const {
   auto all = ScenePass::programs();
   shade_.addTo(all);
   if (hasTruth()) all.push_back({"truth", truth_.text()});
-  if (layers_)
-    for (NamedProgram& p : layers_->programs()) all.push_back(std::move(p));
+  if (transparent_)
+    for (NamedProgram& p : transparent_->programs()) all.push_back(std::move(p));
   for (const Batch& b : batches_) all.push_back({"integration", b.integrate.text()});
   return all;
 }
@@ -111,7 +111,7 @@ RenderTarget& BufferedPass::spectrumFor(const RenderTarget& visibility) {
 }
 
 void BufferedPass::onTemperatures() {
-  if (layers_) layers_->updateTemperatures();
+  if (transparent_) transparent_->updateTemperatures();
 }
 
 void BufferedPass::leaveOut(RenderTarget& visibility) {
@@ -120,9 +120,11 @@ void BufferedPass::leaveOut(RenderTarget& visibility) {
   covered_ = true;
 }
 
-void BufferedPass::beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) {
+void BufferedPass::place(const View& view, const WorldState& state, const std::vector<char>& drawn, std::vector<GpuDraw>& draws) {
   covered_ = false;
-  if (layers_) layers_->order(view, state, drawn);
+  if (!transparent_) return;
+  transparent_->place(view, state, drawn);
+  transparent_->addDraws(draws);
 }
 
 void BufferedPass::integrate(const Batch& batch, RenderTarget& into, const RenderTarget& spectrum, bool adds) const {
@@ -164,12 +166,8 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
         integrate(batches_[b], *before_, spectrum, b > 0);
       }
       const TimedPart part("transparent");
-      spectrum.shareDepth(visibility);
-      layers_->blend({.spectrum = spectrum,
-                      .visibility = visibility,
-                      .firstNode = batches_[b].firstNode,
-                      .view = view(),
-                      .covered = covered_ ? &pixelClasses() : nullptr});
+      transparent_->run(
+          {.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode, .view = view(), .covered = covered_ && !isOfWholePixels()});
       bindBuffers();
       visibility.colour(0).bind(0);
     }

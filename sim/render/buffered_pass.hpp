@@ -3,8 +3,8 @@
 // channels' kernels; between the two, transparent things are blended over it. Source: Duvenhage 2006 sections 4.6.2 and 5.3. Nodes beyond 32
 // (eight RGBA targets) go in further batches, whose integrals add up.
 #include "sim/render/class_programs.hpp"
-#include "sim/render/layer_pass.hpp"
 #include "sim/render/scene_pass.hpp"
+#include "sim/render/seen_through.hpp"
 
 namespace pitviper {
 
@@ -14,17 +14,14 @@ class BufferedPass final : public ScenePass {
                double apertureArea_m2, bool classes = true);
   std::vector<NamedProgram> programs() const override;
 
-  /// Null where nothing in the scenario is transparent.
-  LayerPass* layers() const { return layers_.get(); }
-
  private:
   void shade(RenderTarget& into, const RenderTarget& visibility) override;
   void onTemperatures() override;
-  void beforeShading(const View& view, const WorldState& state, const std::vector<char>& drawn) override;
+  void place(const View& view, const WorldState& state, const std::vector<char>& drawn, std::vector<GpuDraw>& draws) override;
   bool sharesShading() const override { return true; }
-  bool drawsOver() const { return layers_ && !layers_->isEmpty(); }
+  bool drawsOver() const { return transparent_ && !transparent_->isEmpty(); }
   const RenderTarget* withoutTransparent() const override { return drawsOver() ? &*before_ : nullptr; }
-  bool transparentIsAveraged() const override { return drawsOver() && layers_->isOfFields(); }
+  bool transparentIsAveraged() const override { return drawsOver() && transparent_->isOfFields(); }
   void leaveOut(RenderTarget& visibility) override;
   struct Batch {
     int firstNode = 0;
@@ -37,9 +34,9 @@ class BufferedPass final : public ScenePass {
   std::vector<Batch> batches_;
   ClassPrograms shade_;
   ShadingProgram truth_;
-  std::unique_ptr<LayerPass> layers_;
-  bool covered_ = false;  ///< the depth of what is seen is that of what is drawn over
-  int targets_ = 0;       ///< RGBA targets of the spectral image
+  std::unique_ptr<SeenThrough> transparent_;  ///< null: nothing in the scenario is
+  bool covered_ = false;                      ///< the depth of what is seen is that of what is drawn over
+  int targets_ = 0;                           ///< RGBA targets of the spectral image
   std::deque<RenderTarget> spectra_;
   std::optional<RenderTarget> before_;  ///< channels of whole pixels
 };

@@ -1,6 +1,6 @@
 #pragma once
-// Fields of a view on the GPU: their numbers, which tiles of the picture each of their parts may show in, and the programs that draw them.
-#include <array>
+// Fields of a view on the GPU: their numbers, which tiles of the picture each of their parts may show in, the lines of the pixels where they do, and the
+// programs that look along these.
 #include <deque>
 #include <map>
 #include <memory>
@@ -11,49 +11,69 @@
 #include "sim/model/field_lines.hpp"
 #include "sim/plan/field_sampling.hpp"
 #include "sim/render/field_tables.hpp"
-#include "sim/render/layer_order.hpp"
 #include "sim/render/shading_program.hpp"
+#include "sim/render/view_data.hpp"
 
 namespace pitviper {
 
 class FieldDraws {
  public:
-  /// All but the library must outlive it. `slots`: of programs that blend over the spectral image, the slot `targets` of addTargets().
+  /// All but the library must outlive it. `slots`: of programs that work out entries of lists, nodes of a batch.
   FieldDraws(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, const ShaderSlots& slots);
-  /// What of them is in view; adds a piece of each to be sorted. The state must last while they are drawn.
-  void place(const View& view, const WorldState& state, std::vector<LayerPiece>& pieces);
+  /// Those of a state that a view shows. The state must last while they are drawn.
+  void place(const View& view, const WorldState& state);
+  bool isEmpty() const;
+  std::size_t count() const { return bodies_.size(); }
+  /// Where they stand in that view, a draw each.
+  void addDraws(std::vector<GpuDraw>& draws) const;
   /// How they are drawn from here on: for the pixels of this view, which sees the same.
   void look(const View& view);
-  /// The program of a field that is in view, in use, its buffers and uniforms set but `firstNode`.
-  /// `covered`: with a depth test; each of the two has a program of its own, as llvmpipe finds only the first of a program's states in its cache.
-  const Program& use(int field, bool covered);
+  bool shows(std::size_t field) const { return !bodies_[field].lines.isEmpty(); }
   /// The part of the picture that it may show in (corner, size) [pixels].
-  glm::ivec4 rectOf(int field) const;
+  glm::ivec4 rectOf(std::size_t field) const;
+  /// What sim/render/glsl/field_tiles.glsl reads.
+  void setTiles(std::size_t field, const Program& program) const;
+  /// What sim/render/glsl/field_lines.glsl reads.
+  void setLines(const Program& program) const;
+  /// Lines of all pixels that may meet each.
+  const std::vector<std::size_t>& entries() const { return entries_; }
+  /// The program of a field in use, its buffers and uniforms set, but those of its list.
+  const Program& use(std::size_t field) const;
   void addPrograms(std::vector<NamedProgram>& all) const;
 
  private:
+  struct Tile {
+    std::vector<std::uint32_t> texel;
+    FieldLines lines;
+    int steps = 1;
+    glm::dvec2 range{0.0};  ///< [m] from the plane of the field's origin
+  };
   struct Body {
     Body(const Simulation& simulation, const Plan& plan, const FieldBody& field) : tables(simulation, plan, field) {}
     FieldTables tables;
     StepsByKind steps{};  ///< by kind of element
     Buffer spectra, texels, tiles;
-    const std::array<Program, 2>*far = nullptr, *near = nullptr;  ///< of those with nearly even air across them, or any; not covered, covered
+    const Program *far = nullptr, *near = nullptr;  ///< of those with nearly even air across them, or any
     std::shared_ptr<const FieldTexels> uploaded;
     const FieldState* state = nullptr;  ///< null: not there
     // Of the view.
     FieldLines lines;
-    glm::vec4 row[3];
-    float fine = 0.0f;
+    GpuDraw draw{};
     glm::vec2 range{0.0f};
-    glm::ivec4 grid{0};
-    int firstPixel = 0;
+    glm::ivec4 grid{0};  ///< first pixel, tiles across, pixels a side
+    std::vector<Tile> listed;
     double coarser = 1.0;  ///< lines of pictures, than of the reference
+    const Tile* tileAt(int x, int y) const;
   };
-  void listTiles(const View& view, const FieldState& field, Body& body);
+  void listTiles(const View& view, Body& body) const;
+  void listLines(const View& view);
 
   std::shared_ptr<const FieldSampling> sampling_;
-  std::map<std::string, std::array<Program, 2>> programs_;
+  std::map<std::string, Program> programs_;
   std::deque<Body> bodies_;
+  Buffer lines_;
+  glm::ivec4 part_{0};  ///< of the film that has lines
+  std::vector<std::size_t> entries_;
 };
 
 }  // namespace pitviper

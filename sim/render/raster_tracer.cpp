@@ -1,13 +1,21 @@
 #include "sim/render/raster_tracer.hpp"
 
+#include <algorithm>
+
+#include "sim/render/transparent_draws.hpp"
 #include "sim/render/view_data.hpp"
 
 namespace pitviper {
 
 RasterTracer::RasterTracer(const Simulation& simulation, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene)
-    : simulation_(simulation), scene_(std::move(scene)), items_(drawItems(simulation)), solids_(simulation, items_, *scene_, library) {}
+    : simulation_(simulation), scene_(std::move(scene)), items_(drawItems(simulation)), solids_(simulation, items_, *scene_, library) {
+  if (std::none_of(items_.begin(), items_.end(), [](const DrawItem& d) { return d.kind == DrawKind::Layer; })) return;
+  ShaderSlots slots;
+  slots.files["ground"] = "sim/render/glsl/ground_none.glsl";  // where a line ends at the ground is the equation's business
+  hits_ = std::make_unique<HitLists>(library, slots, std::vector{HitLists::Kind::Pane});
+}
 
-std::vector<SeenTriangle> RasterTracer::see(const View& v, const WorldState& state, const std::vector<char>& drawn) {
+SeenLines RasterTracer::see(const View& v, const WorldState& state, const std::vector<char>& drawn) {
   RenderTarget* target = nullptr;
   for (RenderTarget& t : targets_)
     if (t.width() == v.width && t.height() == v.height) target = &t;
@@ -23,10 +31,33 @@ std::vector<SeenTriangle> RasterTracer::see(const View& v, const WorldState& sta
   solids_.draw(*target, v, state, drawn);
   readback_.start(*target, 0, target);
   const auto identity = readback_.wait().identity;
-  std::vector<SeenTriangle> seen(identity.size() / 2);
-  for (size_t p = 0; p < seen.size(); ++p)
-    if (const DrawItem& item = items_[identity[2 * p]]; item.entity >= 0) seen[p] = {item.entity, identity[2 * p + 1] - scene_->firstTriangle(item.entity)};
+  SeenLines seen;
+  seen.solid.resize(identity.size() / 2);
+  for (size_t p = 0; p < seen.solid.size(); ++p) seen.solid[p] = triangleOf(identity[2 * p], identity[2 * p + 1]);
+  if (hits_) addPanes(*target, v, state, drawn, seen);
   return seen;
+}
+
+SeenTriangle RasterTracer::triangleOf(std::uint32_t draw, std::uint32_t triangle) const {
+  const int entity = items_[draw].entity;
+  return entity < 0 ? SeenTriangle{} : SeenTriangle{entity, triangle - scene_->firstTriangle(entity)};
+}
+
+void RasterTracer::addPanes(const RenderTarget& visibility, const View& view, const WorldState& state, const std::vector<char>& drawn, SeenLines& seen) {
+  const std::vector<std::size_t> inView = transparentIn(items_, simulation_, view, state, drawn);
+  hits_->find(visibility, false, [&] {
+    for (std::size_t d : inView)
+      if (items_[d].kind == DrawKind::Layer) drawPane(*hits_, *scene_, simulation_, items_[d], d);
+  });
+  std::vector<std::vector<SeenTriangle>> panes(seen.solid.size());
+  hits_->eachHit([&](int x, int y, const glm::uvec4& hit) {
+    panes[static_cast<size_t>(y) * static_cast<size_t>(view.width) + static_cast<size_t>(x)].push_back(triangleOf(hit.x & 0x3fffffffu, hit.w));
+  });
+  for (const auto& line : panes) {
+    seen.firstPane.push_back(static_cast<std::uint32_t>(seen.panes.size()));
+    seen.panes.insert(seen.panes.end(), line.begin(), line.end());
+  }
+  seen.firstPane.push_back(static_cast<std::uint32_t>(seen.panes.size()));
 }
 
 }  // namespace pitviper

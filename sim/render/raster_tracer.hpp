@@ -1,7 +1,10 @@
 #pragma once
-// What lines through the middles of a view's pixels see of solid bodies, as the pictures' own rasteriser tells it.
+// What lines through the middles of a view's pixels meet of surfaces, solid and transparent, as the pictures' own rasteriser tells it.
 #include <deque>
+#include <memory>
+#include <span>
 
+#include "sim/render/hit_lists.hpp"
 #include "sim/render/solid_pass.hpp"
 
 namespace pitviper {
@@ -12,18 +15,32 @@ struct SeenTriangle {
   std::uint32_t triangle = 0;  ///< of its mesh
 };
 
+/// Row by row from below.
+struct SeenLines {
+  std::vector<SeenTriangle> solid;
+  std::vector<std::uint32_t> firstPane;  ///< of each line, then the number of all; empty: nothing transparent is in view
+  std::vector<SeenTriangle> panes;       ///< before what is solid, in no order
+  std::span<const SeenTriangle> panesOf(std::size_t line) const {
+    if (firstPane.empty()) return {};
+    return {panes.data() + firstPane[line], panes.data() + firstPane[line + 1]};
+  }
+};
+
 class RasterTracer {
  public:
   /// All but the library must outlive it. Needs a current GlContext.
   RasterTracer(const Simulation& simulation, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene);
-  /// Row by row from below. `drawn`: one flag per entity.
-  std::vector<SeenTriangle> see(const View& view, const WorldState& state, const std::vector<char>& drawn);
+  /// `drawn`: one flag per entity.
+  SeenLines see(const View& view, const WorldState& state, const std::vector<char>& drawn);
 
  private:
+  SeenTriangle triangleOf(std::uint32_t draw, std::uint32_t triangle) const;
+  void addPanes(const RenderTarget& visibility, const View& view, const WorldState& state, const std::vector<char>& drawn, SeenLines& seen);
   const Simulation& simulation_;
   std::shared_ptr<const GpuScene> scene_;
   std::vector<DrawItem> items_;
   SolidPass solids_;
+  std::unique_ptr<HitLists> hits_;  ///< null: no surface of the scenario is transparent
   Buffer draws_, view_;
   std::deque<RenderTarget> targets_;  ///< by size
   Readback readback_;

@@ -209,16 +209,13 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
     view_.upload(&data, sizeof data);
     std::vector<GpuDraw> draws;
     for (size_t d = 0; d < tables_.draws.size(); ++d) draws.push_back(drawOf(d, v, state));
+    place(v, state, drawn, draws);
     draws_.upload(draws);
     bindBuffers();
   }
   {
     const TimedPart part("visibility");
     solids_.draw(current_->visibility, v, state, drawn);
-  }
-  {
-    const TimedPart part("order");
-    beforeShading(v, state, drawn);
   }
   const TimedPart part("shading");
   findClassesIn(v, state, drawn);

@@ -61,8 +61,8 @@ class ScenePass : public LineDrawer {
   virtual void onTemperatures() {}
   /// Whether this mode can shade several pixels as one where a view allows it (View::grouped).
   virtual bool sharesShading() const { return false; }
-  /// What a mode has to make ready for a view, its solid scene drawn.
-  virtual void beforeShading(const View&, const WorldState&, const std::vector<char>&) {}
+  /// What a mode has in a view besides the draws of the tables, which stand before its own.
+  virtual void place(const View&, const WorldState&, const std::vector<char>&, std::vector<GpuDraw>&) {}
   /// The channels that whole pixels had before transparent things were drawn over them; null where there are none.
   virtual const RenderTarget* withoutTransparent() const { return nullptr; }
   /// What is transparent in view is drawn over whole pixels as it is on average over each.

@@ -11,7 +11,6 @@
 #include "sim/plan/line_check.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/render/direct_pass.hpp"
-#include "sim/render/reference/outline.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -48,6 +47,7 @@ std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Node
   camera.pinhole.pitchY_m *= static_cast<double>(camera.pinhole.height) / size;
   camera.pinhole.width = camera.pinhole.height = size;
   auto gpu = std::make_shared<const GpuScene>(sim);
+  RasterTracer tracer(sim, shaderLibrary(), gpu);
   const auto pass = makeScenePass(sim, plan, shaderLibrary(), gpu, true, camera.pinhole.apertureArea_m2());
   std::vector<char> present(sim.entities.size(), 1);
   if (camera.mount.carrier >= 0) present[static_cast<size_t>(camera.mount.carrier)] = 0;
@@ -63,18 +63,16 @@ std::vector<PlanErrors> compare(const Simulation& sim, Camera camera, const Node
     pass->startReadback();
     const RawImage raw = pass->finishReadback();
     const ReferenceShader planned(sim, plan, view, state, present, lent(plannedNodes)), exact(sim, fine, view, state, present, lent(fineNodes));
+    const SeenLines lines = tracer.see(view, state, present);
+    NodeSum plannedSum(planned.spectra()), fineSum(exact.spectra());
     for (int y = 0; y < size; y += stride)
       for (int x = 0; x < size; x += stride) {
         const size_t p = static_cast<size_t>(y * size + x);
-        const TruthPixel truth = truthAt(raw, p);
-        const ReferencePixel want = exact.pixel(x, y);
-        if (static_cast<int>(truth.entity) != want.entity + 1 || static_cast<int>(truth.part) != want.surface + 1) continue;
-        // Another triangle of the same part: a ridge or a wing's edge.
-        if (want.entity >= 0 && std::abs(static_cast<double>(truth.range_m) / want.range_m - 1.0) > 1e-3) continue;
-        if (onOutline(sim, state, view, present, x, y)) continue;
+        const ReferencePixel want = exact.shadeOver(exact.line(x, y, lines), x, y, fineSum);
+        EXPECT_EQ(static_cast<int>(truthAt(raw, p).entity), want.entity + 1);
         Seen seen;
         for (size_t s = 0; s < want.slots.size(); ++s) seen.drawn.push_back(static_cast<double>(raw.groups[s / 4][4 * p + s % 4]));
-        seen.planned = planned.pixel(x, y).slots;
+        seen.planned = planned.shadeOver(planned.line(x, y, lines), x, y, plannedSum).slots;
         seen.fine = want.slots;
         pixels.push_back(std::move(seen));
       }

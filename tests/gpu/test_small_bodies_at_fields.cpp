@@ -63,7 +63,7 @@ TEST(SmallBodiesAtFields, PixelsHaveTheBodyAndWhatIsBesideIt) {
         camera.zoomedSamples = 32;
         const auto gpu = std::make_shared<const GpuScene>(sim);
         const WorldState state = advance(sim, sim.time.at(0));
-        ComparedFrames all{{state}, {std::vector<char>(kSize * kSize, 0)}, {}};
+        ComparedFrames all{{state}, {}};
         SpectralSampling asked;
         asked.accuracy = kAsked;
         Renderings exact(sim, camera, referenceSampling(), gpu), ours(sim, camera, asked, gpu);

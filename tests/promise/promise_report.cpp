@@ -14,7 +14,7 @@ namespace pitviper::test {
 std::string promiseCsvHeading() {
   return "seed,channel,asked,predicted,of it wavelengths,of it tables,extremes,found,groups,wavelengths,worst frame,worst column,worst row,planned "
          "there,reference "
-         "there,pixels,left out,below 0,"
+         "there,pixels,below 0,"
          "reference [s],planned [s]\n";
 }
 
@@ -22,9 +22,9 @@ std::string promiseCsv(const PromiseScene& scene) {
   std::string out;
   for (const PromiseCell& c : scene.cells)
     out +=
-        print("%llu,%s,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%d,%d,%d,%d,%d,%.6g,%.6g,%d,%d,%d,%.2f,%.2f\n", static_cast<unsigned long long>(c.seed), c.channel.c_str(),
+        print("%llu,%s,%g,%.4g,%.4g,%.4g,%.4g,%.4g,%d,%d,%d,%d,%d,%.6g,%.6g,%d,%d,%.2f,%.2f\n", static_cast<unsigned long long>(c.seed), c.channel.c_str(),
               c.asked, c.predicted, c.ofWavelengths, c.ofTables, c.extremes, c.found, c.groups, c.wavelengths, c.worst.frame, c.worst.column, c.worst.row,
-              c.worst.planned, c.worst.reference, scene.pixels, scene.leftOut, scene.negative, scene.reference_s, scene.planned_s);
+              c.worst.planned, c.worst.reference, scene.pixels, scene.negative, scene.reference_s, scene.planned_s);
   return out;
 }
 

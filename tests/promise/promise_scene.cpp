@@ -66,8 +66,7 @@ PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const 
       states.back() = pointed(states.back(), camera, camera.follower->anywhere(followerTick(camera, states.back(), f), {across, up}));
     }
   }
-  ComparedFrames compared = comparedFrames(sim, camera, states);
-  out.leftOut = compared.leftOut();
+  ComparedFrames compared{states, {}};
 
   const auto draw = [&](const SpectralSampling& sampling, std::vector<std::vector<double>>& pixels) {
     auto renderings = std::make_unique<Renderings>(sim, camera, sampling, gpu);
@@ -110,7 +109,7 @@ PromiseScene keepPromise(std::uint64_t seed, const std::string& scenario, const 
         cell.found = errors[worst];
         cell.beyond =
             static_cast<double>(std::count_if(errors.begin(), errors.end(), [&](double e) { return e > accuracy; })) / static_cast<double>(errors.size());
-        static_cast<ComparedPixel&>(cell.worst) = compared.placeOf(worst, camera.pinhole.width);
+        static_cast<ComparedPixel&>(cell.worst) = placeOf(worst, camera);
         cell.worst.planned = pixels[c][worst];
         cell.worst.reference = reference[c].values()[worst];
       }

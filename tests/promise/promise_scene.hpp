@@ -29,7 +29,6 @@ struct PromiseScene {
   std::uint64_t seed = 0;
   std::string text;                           ///< of the scenario
   int pixels = 0;                             ///< compared, of all frames
-  int leftOut = 0;                            ///< on outlines of something transparent, where a ray and the rasteriser may see different things
   int negative = 0;                           ///< pixels below 0, planned or reference, all channels
   double reference_s = 0.0, planned_s = 0.0;  ///< time taken
   std::vector<PromiseCell> cells;

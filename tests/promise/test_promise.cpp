@@ -123,12 +123,12 @@ const Run& theRun() {
 }
 
 TEST(Promise, NoPixelIsFartherFromTheReferenceThanAsked) {
-  int compared = 0, leftOut = 0;
-  for (const PromiseScene& s : theRun().scenes) compared += s.pixels, leftOut += s.leftOut;
+  int compared = 0;
+  for (const PromiseScene& s : theRun().scenes) compared += s.pixels;
   for (const PromiseCell& c : theRun().cells)
     EXPECT_LE(c.found, c.asked) << "seed " << c.seed << ", " << c.channel << ", frame " << c.worst.frame << ", pixel " << c.worst.column << ", " << c.worst.row
                                 << ": " << c.worst.planned << " for " << c.worst.reference << ", predicted " << c.predicted;
-  EXPECT_GT(compared, leftOut) << "outlines of transparent things are a small part of pictures";
+  EXPECT_GT(compared, 0);
 }
 
 TEST(Promise, PredictedIsWorthItsName) {

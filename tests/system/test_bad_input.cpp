@@ -496,19 +496,17 @@ TEST(Disk, OutputFolderThatCannotBe) {
   EXPECT_EQ(readAll(place.folder() / "taken"), "a file in the way\n");
 }
 
-// A word that names no way of blending: the environment is at fault, not a scenario, and only where something is blended.
-TEST(Environment, UnknownBlendPath) {
+// A word that names no stage: the environment is at fault, not a scenario.
+TEST(Environment, UnknownShadingStage) {
   const Workplace place;
   place.put("pane.yaml", "render: {mode: buffered}\n" + entity("material: {transmission: {transmittance: 0.5}}, temperature: 300 K"));
-  place.put("good.yaml", kPlate + kCamera);
-  const Result r = place.run({"run", "pane.yaml", "--out", "frames"}, "PITVIPER_BLEND=blend");
+  const Result r = place.run({"run", "pane.yaml", "--out", "frames"}, "PITVIPER_SHADING=shade");
   EXPECT_EQ(r.code, 1) << r.err;
   EXPECT_EQ(r.err.find('\n'), r.err.size() - 1) << r.err;
-  for (const char* word : {"PITVIPER_BLEND", "'blend'", "barrier", "ping_pong"}) EXPECT_NE(r.err.find(word), std::string::npos) << r.err;
-  messages()["UnknownBlendPath"] = r.err;
+  for (const char* word : {"PITVIPER_SHADING", "'shade'", "fragment", "compute"}) EXPECT_NE(r.err.find(word), std::string::npos) << r.err;
+  messages()["UnknownShadingStage"] = r.err;
   EXPECT_FALSE(fs::exists(place.folder() / "frames") && !fs::is_empty(place.folder() / "frames"));
-  EXPECT_EQ(place.run({"run", "good.yaml", "--out", "frames"}, "PITVIPER_BLEND=blend").code, 0);
-  EXPECT_EQ(place.run({"run", "pane.yaml", "--out", "more"}, "PITVIPER_BLEND=ping_pong").code, 0);
+  EXPECT_EQ(place.run({"run", "pane.yaml", "--out", "more"}, "PITVIPER_SHADING=compute").code, 0);
 }
 
 /// Ten messages as a user sees them.

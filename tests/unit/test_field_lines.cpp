@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -33,7 +34,7 @@ TEST(FieldLines, StandForThePixel) {
     }
     const FieldLines lines = ofParts(parts);
     for (int most : {4, 24}) {
-      const PixelLines p = pixelLines({&lines, 1}, 0, 0, most, {1.0 + 2.0 * unit(random), 1 + trial % 2});
+      const PixelLines p = pixelLines(std::array{&lines}, 0, 0, most, {1.0 + 2.0 * unit(random), 1 + trial % 2});
       double sum = p.outside;
       for (const FilmLine& l : p.within) {
         sum += l.share;
@@ -56,7 +57,7 @@ TEST(FieldLines, HoldAGaussianThatABorderCuts) {
     const FieldLines lines = ofParts({{{centre - 4.0 * width, -1.0}, {centre + 4.0 * width, 2.0}, {0.25 * width, 10.0}, 0}});
     const double want = 0.5 * std::sqrt(std::acos(-1.0)) * width * (std::erf((1.0 - centre) / width) - std::erf(-centre / width));
     for (const double coarser : {1.0, 3.0}) {
-      const PixelLines p = pixelLines({&lines, 1}, 0, 0, 128, {coarser, 2});
+      const PixelLines p = pixelLines(std::array{&lines}, 0, 0, 128, {coarser, 2});
       double sum = 0.0;
       for (const FilmLine& l : p.within) sum += l.share * std::exp(-std::pow((l.at.x - centre) / width, 2.0));
       // Of what one sends that lies wholly within the pixel.
@@ -84,7 +85,7 @@ TEST(FieldLines, StayFewHoweverFineThePartsAre) {
     }
     const FieldLines lines = ofParts(parts);
     for (int most : {1, 4, 48, 128}) {
-      const PixelLines p = pixelLines({&lines, 1}, 0, 0, most, {1.0, 2});
+      const PixelLines p = pixelLines(std::array{&lines}, 0, 0, most, {1.0, 2});
       double sum = p.outside;
       for (const FilmLine& l : p.within) sum += l.share;
       EXPECT_NEAR(sum, 1.0, 1e-9);

@@ -1,23 +1,20 @@
-// A medium that varies through its body over the spectral image: see sim/model/field.hpp. A pixel looks along several lines where the field is finer than it;
-// each line is cut into steps, the farthest first, each blended as an even layer (sim/radiometry/glsl/medium.glsl). Which elements a pixel may meet is listed
-// by tiles. Air is worked out for a stretch of many steps where it is nearly even on it.
+// A line of sight through a medium that varies through its body: see sim/model/field.hpp. It is cut into steps, the farthest first, each passed as an even
+// layer (sim/radiometry/glsl/medium.glsl), and into slabs where something else begins or ends on it: of each it leaves what it lets through and what it adds.
+// Which elements it may meet is listed by tiles. Air is worked out for a stretch of many steps where it is nearly even on it.
 //@use sim/radiometry/glsl/medium.glsl
 //@constants
 //@use sim/render/glsl/volume_ray.glsl
 //@use sim/render/glsl/node_block.glsl
 //@use sim/radiometry/glsl/footprint.glsl
+//@use sim/render/glsl/field_tiles.glsl
+//@use sim/render/glsl/field_lines.glsl
+//@use sim/render/glsl/listed_entry.glsl
 layout(binding = 5) uniform samplerBuffer fieldSpectra;  // sim/render/field_tables.hpp says what is where
 layout(binding = 17) uniform samplerBuffer fieldTexels;  // of the field's own shader
-// Of each tile: first of its list, length, steps; of each pixel of the tiles, row by row: first of its lines (0: its middle alone), their number, share of it
-// that they leave (a float); then the lists: texels of elements; and lines: place on the film [pixels], share of the pixel (floats).
-layout(binding = 19) uniform usamplerBuffer fieldTiles;
-uniform vec4 fieldRow0;  // of a Draw: from camera to field axes
-uniform vec4 fieldRow1;
-uniform vec4 fieldRow2;
-uniform float fieldFine;
+layout(binding = 18) uniform usamplerBuffer list;        // pixel, which of its lines, passage of the farthest slab, its words
+layout(binding = 22) uniform usamplerBuffer words;       // number of slabs, then where each ends on the near side (floats: t; not of the last)
+uniform int drawIndex;     // of the field
 uniform vec2 fieldRange;   // from the camera to its nearest and farthest [m], where it is so far that the air across it is nearly even; else 0, 0
-uniform ivec4 tileGrid;    // first pixel x, y; tiles across; pixels a side
-uniform int firstPixel;    // of the tiles: where their lines are told
 uniform vec4 planckRange;  // first 1 / T, entries per unit of it, texel of the first, number of the last
 uniform vec4 gasLevels[MIXTURES * LEVEL_FOURS];  // temperatures of levels [K], ended by some far above any
 
@@ -67,12 +64,13 @@ void addTemperature(float weight, float temperature) {
 //@slot targets
 //@slot path
 Draw field_;
+ivec2 pixel_;
 int list_, listed_, first_, cuts_;  // the tile's elements, and steps of its lines; texel of the first that the line meets
 uvec2 met_;                  // of the first 64 of the list, those that the line meets
-int lines_, firstLine_;      // of the pixel
-float share_;                // of it that a line stands for
-float start_;
-int steps_, together_;       // steps of a line; of a stretch of air
+int steps_;                  // of the line
+bool together_;              // on one stretch of air
+int slabs_, words_;          // of the line
+int passage_, apart_;        // of the slab at hand; from one to the next
 float cosScatter_;
 float gain_, sun_, sunAmount_;
 int black_, hotter_;  // rows of Planck's law: of the temperature, of the hotter one where there are two
@@ -124,13 +122,9 @@ vec4 meanOf(vec4 x, vec4 decayed) {
   return mix((1.0 - decayed) / max(x, vec4(0.1)), series, lessThan(x, vec4(0.125)));
 }
 
-// A line of the pixel: what it meets.
-void prepareLine(int l) {
-  int at = firstLine_ + 3 * l;
-  bool alone = firstLine_ == 0;
-  vec2 place = uintBitsToFloat(uvec2(texelFetch(fieldTiles, at).x, texelFetch(fieldTiles, at + 1).x));
-  share_ = alone ? 1.0 : uintBitsToFloat(texelFetch(fieldTiles, at + 2).x);
-  prepareRay(alone ? gl_FragCoord.xy : place);
+// What the line meets.
+void prepareLine(vec2 place) {
+  prepareRay(place);
   d_ = inBody(field_, ray_);
   q_ = pointOnPlane(field_);
   perT_ = rayLength_;
@@ -148,12 +142,12 @@ void prepareLine(int l) {
     if (e < 32) met_.x |= 1u << uint(e);
     else if (e < 64) met_.y |= 1u << uint(e - 32);
   }
-  enter_ = max(enter_, start_);
-  leave_ = min(leave_, endOfRay(field_));
+  enter_ = max(enter_, -planeOf(field_));  // the camera
+  leave_ = min(leave_, endOfRay(field_, pixel_));
   steps_ = leave_ > enter_ && first_ >= 0 ? cuts_ : 0;
   if (steps_ > 0) fieldLine(first_, steps_);
   cosScatter_ = dot(ray_, view.sun.xyz) / rayLength_;
-  together_ = fieldRange.y > 0.0 || (leave_ - enter_) * rayLength_ < kEven * (planeOf(field_) + enter_) * rayLength_ ? max(steps_, 1) : 1;
+  together_ = fieldRange.y > 0.0 || (leave_ - enter_) * rayLength_ < kEven * (planeOf(field_) + enter_) * rayLength_;
 }
 
 void addMet(int from, uint met, float enter, float leave) {
@@ -271,9 +265,12 @@ vec4 drifted(vec4 depth) { return -depth / (12.0 + depth * (6.0 + 1.8 * depth));
 // A step: what comes from behind, less what air alone would show to its far end, is what the result is to its near end.
 //   y' = y exp(-a) + I E(a + g)/E(g) + tau S a E(a + g),   E(x) = (1 - exp(-x))/x: as mediumRadiance() has it, I radiance of the air on the step.
 // EVEN: the air's depth g on a step is so small that E(a) does for both, and the step is seen through the air before its middle.
+vec4 passed_;  // what the step lets through
+
 vec4 stepped(vec4 behind, vec4 tau, vec4 airDepth, vec4 inside, vec4 sunlit, int four) {
   Matter m = matterAt(four);
   vec4 passed = exp(-min(m.depth, vec4(80.0)));
+  passed_ = passed;
   if (EVEN > 0) {
     vec4 upTo = airDepth * (0.5 * (low_ + high_)), fallen = 1.0 - upTo * (1.0 - 0.5 * upTo);
     vec4 light = inside * ((high_ - low_) + (0.5 * ((1.0 - high_) * high_ - (1.0 - low_) * low_)) * airDepth);
@@ -287,84 +284,111 @@ vec4 stepped(vec4 behind, vec4 tau, vec4 airDepth, vec4 inside, vec4 sunlit, int
          fallen * (mean * (tau * m.emitted + sunlit * m.turned) + drifted(m.depth + beside) * tau * m.drifting);
 }
 
-void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy) - tileGrid.xy, tile = at / tileGrid.w;
-  int row = 3 * (tile.y * tileGrid.z + tile.x), pixel = firstPixel + 3 * (at.y * tileGrid.z * tileGrid.w + at.x);
-  list_ = int(texelFetch(fieldTiles, row).x);
-  listed_ = int(texelFetch(fieldTiles, row + 1).x);
-  cuts_ = int(texelFetch(fieldTiles, row + 2).x);
-  firstLine_ = int(texelFetch(fieldTiles, pixel).x);
-  lines_ = int(texelFetch(fieldTiles, pixel + 1).x);
-  float outside = uintBitsToFloat(texelFetch(fieldTiles, pixel + 2).x);
-  if (listed_ == 0 || lines_ == 0) discard;
-  field_ = Draw(fieldRow0, fieldRow1, fieldRow2, uvec4(0u), vec4(0.0), vec4(fieldFine, 0.0, 0.0, 0.0));
-  start_ = -planeOf(field_);  // the camera
 //@each t TARGETS
-  vec4 under{t}_ = spectrumBelow{t}(), sum{t} = outside * under{t}_;
+vec4 through{t}, own{t};  // of the slab at hand, from its far end on
 //@end
+
+// At the far end of a slab: nothing of it is passed yet; less the air beyond, which the steps add anew.
+void openSlab() {
+//@each t TARGETS
+  through{t} = vec4(1.0);
+  own{t} = vec4(0.0);
+//@end
+}
+
+void openAir(float far) {
+  high_ = partOf(far);
+//@each t TARGETS
+  own{t} -= before{t}_ + inside{t}_ * partBefore(high_, depth{t}_);
+//@end
+}
+
+void closeAir(float near) {
+  low_ = partOf(near);
+//@each t TARGETS
+  own{t} += before{t}_ + inside{t}_ * partBefore(low_, depth{t}_);
+//@end
+}
+
+void closeSlab() {
+//@each t TARGETS
+  storePassage(passage_, {t}, through{t}, own{t});
+//@end
+  passage_ += apart_;
+  openSlab();
+}
+
+// The near end of a slab, where another one begins; of a step.
+float endOfSlab(int slab) { return slab + 1 < slabs_ ? uintBitsToFloat(texelFetch(words, words_ + 1 + slab).x) : -kFar; }
+float endOfStep(int k) { return fieldCut((float(steps_) - 1.0 - float(k)) / float(steps_)); }
+
+void main() {
+  uvec4 entry = texelFetch(list, listedEntry());
+  pixel_ = ivec2(entry.x & 0xffffu, entry.x >> 16);
+  passage_ = int(entry.z);
+  words_ = int(entry.w);
+  slabs_ = int(texelFetch(words, words_).x);
+  FieldTile tile = fieldTileAt(pixel_);
+  list_ = tile.list;
+  listed_ = tile.listed;
+  cuts_ = tile.steps;
+  int lines = linesOf(pixel_);
+  apart_ = countOfLines(lines);
+  field_ = drawAt(uint(drawIndex));
   if (EVEN > 0) {
-    prepareRay(gl_FragCoord.xy);  // air along the pixel's middle
+    prepareRay(vec2(pixel_) + 0.5);  // air along the pixel's middle
     setAir(fieldRange.x, fieldRange.y);
   }
-  for (int l = 0; l < lines_; ++l) {
-    prepareLine(l);
-//@each t TARGETS
-    vec4 line{t} = under{t}_;
-//@end
-    float to = leave_;
-    if (EVEN > 0) {
-      high_ = partOf(leave_);
-//@each t TARGETS
-      line{t} -= before{t}_ + inside{t}_ * partBefore(high_, depth{t}_);
-//@end
-    }
-    float from = steps_ > 0 ? fieldCut((float(steps_) - 1.0) / float(steps_)) : to;
-    vec3 inverse = vec3(0.0), size = vec3(1.0, 1.0, to - from);
-    if (steps_ > 0) gatherStep(from, to);
-    for (int k = 0; k < steps_; ++k) {
-      vec4 amountsLow = nextLow_, amountsHigh = nextHigh_, state = next_;
-      vec3 two = nextTwo_;
-      float nearer = from;
-      next_ = vec4(0.0);
-      if (k + 1 < steps_) {
-        nearer = fieldCut((float(steps_) - 2.0 - float(k)) / float(steps_));
-        gatherStep(nearer, from);
-      }
-      inverse = vec3(inverse.y, state.x, next_.x);
-      size = vec3(size.yz, from - nearer);
-      driftPerK_ = driftOf(inverse, size);
-      if (EVEN > 0) {
-        prepareStep(from, to, amountsLow, amountsHigh, state, two);
-//@each t TARGETS
-        line{t} = stepped(line{t}, tau{t}_, depth{t}_, inside{t}_, sunlit{t}_, fourOf({t}));
-//@end
-      } else {
-        bool opens = k % together_ == 0, closes = k % together_ == together_ - 1;
-        float toIt = planeOf(field_);
-        if (opens) setAir((toIt + (together_ > 1 ? enter_ : from)) * rayLength_, (toIt + to) * rayLength_);
-        prepareStep(from, to, amountsLow, amountsHigh, state, two);
-//@each t TARGETS
-        {
-          vec4 beyond = opens ? before{t}_ + inside{t}_ * partBefore(high_, depth{t}_) : vec4(0.0);
-          vec4 y = stepped(line{t} - beyond, tau{t}_, depth{t}_, inside{t}_, sunlit{t}_, fourOf({t}));
-          line{t} = closes ? y + before{t}_ + inside{t}_ * partBefore(low_, depth{t}_) : y;
-        }
-//@end
-      }
-      to = from;
-      from = nearer;
-    }
-    if (EVEN > 0) {
-      low_ = partOf(to);
-//@each t TARGETS
-      line{t} += before{t}_ + inside{t}_ * partBefore(low_, depth{t}_);
-//@end
-    }
-//@each t TARGETS
-    sum{t} += share_ * line{t};
-//@end
+  prepareLine(placeOfLine(lines, int(entry.y)));
+  openSlab();
+  int slab = 0, k = 0;
+  float slabEnd = endOfSlab(0), to = leave_;
+  for (; slab + 1 < slabs_ && !(slabEnd < to); slabEnd = endOfSlab(slab)) {
+    closeSlab();
+    ++slab;
   }
+  float stepEnd = steps_ > 0 ? endOfStep(0) : to, from = max(stepEnd, slabEnd);
+  vec3 inverse = vec3(0.0), size = vec3(1.0, 1.0, to - from);
+  bool open = false;  // a stretch of air
+  if (steps_ > 0) gatherStep(from, to);
+  while (k < steps_) {
+    vec4 amountsLow = nextLow_, amountsHigh = nextHigh_, state = next_;
+    vec3 two = nextTwo_;
+    bool ends = slab + 1 < slabs_ && from <= slabEnd;
+    if (from <= stepEnd) {
+      ++k;
+      if (k < steps_) stepEnd = endOfStep(k);
+    }
+    if (ends) {
+      ++slab;
+      slabEnd = endOfSlab(slab);
+    }
+    float nearer = from;
+    next_ = vec4(0.0);
+    if (k < steps_) {
+      nearer = max(stepEnd, slabEnd);
+      gatherStep(nearer, from);
+    }
+    inverse = vec3(inverse.y, state.x, next_.x);
+    size = vec3(size.yz, from - nearer);
+    driftPerK_ = driftOf(inverse, size);
+    if (!open) {
+      if (EVEN == 0) setAir((planeOf(field_) + (together_ ? enter_ : from)) * rayLength_, (planeOf(field_) + to) * rayLength_);
+      openAir(to);
+      open = true;
+    }
+    prepareStep(from, to, amountsLow, amountsHigh, state, two);
 //@each t TARGETS
-  spectrum{t} = sum{t};
+    own{t} = stepped(own{t}, tau{t}_, depth{t}_, inside{t}_, sunlit{t}_, fourOf({t}));
+    through{t} *= passed_;
 //@end
+    if (!together_ || ends || k >= steps_) {
+      closeAir(from);
+      open = false;
+    }
+    if (ends) closeSlab();
+    to = from;
+    from = nearer;
+  }
+  for (; slab < slabs_; ++slab) closeSlab();
 }

@@ -3,11 +3,10 @@
 //@slot ground_end
 // How far a ray through a medium's body may count: t along the ray from the plane of the body's origin.
 layout(binding = 0) uniform usampler2D visibility;
-uniform int drawIndex;
 
 // Depths of planes are compared in two parts each: the difference of the large ones is exact where they are near each other.
-float endOfRay(Draw body) {
-  uvec2 id = texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).xy;
+float endOfRay(Draw body, ivec2 pixel) {
+  uvec2 id = texelFetch(visibility, pixel, 0).xy;
   float end = kFar - planeOf(body);
   if (id.x != 0u) {
     Draw solid = drawAt(id.x);

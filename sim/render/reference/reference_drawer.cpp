@@ -30,19 +30,19 @@ void ReferenceDrawer::endPicture() const {
 }
 
 void ReferenceDrawer::draw(const View& view, const WorldState& state, const std::vector<char>& drawn) {
-  const std::vector<SeenTriangle> seen = tracer_.see(view, state, drawn);
+  const SeenLines seen = tracer_.see(view, state, drawn);
   const auto width = static_cast<size_t>(view.width);
   image_ = {};
   image_.width = view.width, image_.height = view.height;
-  image_.groups.assign(static_cast<size_t>(plan_.groupCount()), std::vector<float>(4 * seen.size(), 0.0f));
-  for (const SeenTriangle& s : seen) image_.entity.push_back(s.entity);
+  image_.groups.assign(static_cast<size_t>(plan_.groupCount()), std::vector<float>(4 * seen.solid.size(), 0.0f));
+  for (const SeenTriangle& s : seen.solid) image_.entity.push_back(s.entity);
   const ReferenceShader shader(simulation_, plan_, view, state, drawn, spectra_);
   const auto indexOf = [&](int x, int y) { return static_cast<size_t>(y) * width + static_cast<size_t>(x); };
   // The line of a pixel that counts.
   const auto lineAt = [&](int x, int y) -> std::optional<LineOfSight> {
     const size_t p = indexOf(x, y);
-    if ((view.onlyEntity >= 0 && seen[p].entity != view.onlyEntity) || (view.wanted && !(*view.wanted)[p])) return {};
-    return shader.line(x, y, seen[p]);
+    if ((view.onlyEntity >= 0 && seen.solid[p].entity != view.onlyEntity) || (view.wanted && !(*view.wanted)[p])) return {};
+    return shader.line(x, y, seen);
   };
   const auto put = [&](int x, int y, const std::vector<double>& slots) {
     for (size_t s = 0; s < slots.size(); ++s) image_.groups[s / 4][4 * indexOf(x, y) + s % 4] = static_cast<float>(slots[s]);
@@ -85,11 +85,11 @@ void ReferenceDrawer::draw(const View& view, const WorldState& state, const std:
   if (truth_ && !view.zoomed) tellTruth(view, state, shader, seen);
 }
 
-void ReferenceDrawer::tellTruth(const View& view, const WorldState& state, const ReferenceShader& shader, const std::vector<SeenTriangle>& seen) {
-  image_.truth.assign(3, std::vector<float>(4 * seen.size(), 0.0f));
-  for (size_t p = 0; p < seen.size(); ++p) {
+void ReferenceDrawer::tellTruth(const View& view, const WorldState& state, const ReferenceShader& shader, const SeenLines& seen) {
+  image_.truth.assign(3, std::vector<float>(4 * seen.solid.size(), 0.0f));
+  for (size_t p = 0; p < seen.solid.size(); ++p) {
     const auto x = static_cast<int>(p % static_cast<size_t>(view.width)), y = static_cast<int>(p / static_cast<size_t>(view.width));
-    const TruthPixel t = truthOf(simulation_, state, view, shader.line(x, y, seen[p]), apertureArea_m2_, plan_.textureAccuracy, plan_.terms.lights);
+    const TruthPixel t = truthOf(simulation_, state, view, shader.line(x, y, seen), apertureArea_m2_, plan_.textureAccuracy, plan_.terms.lights);
     const float layers[3][4] = {{t.area_m2, t.solidAngleFromLight_sr, t.solidAngleOfAperture_sr, t.range_m},
                                 {t.normal[0], t.normal[1], t.normal[2], t.temperature_K},
                                 {t.entity, t.part, t.cosView, 0.0f}};

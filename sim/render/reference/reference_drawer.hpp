@@ -36,7 +36,7 @@ class ReferenceDrawer final : public LineDrawer {
   RawImage finishReadback() override { return std::move(image_); }
 
  private:
-  void tellTruth(const View& view, const WorldState& state, const ReferenceShader& shader, const std::vector<SeenTriangle>& seen);
+  void tellTruth(const View& view, const WorldState& state, const ReferenceShader& shader, const SeenLines& seen);
   const Simulation& simulation_;
   const Plan& plan_;
   bool truth_;

@@ -67,17 +67,21 @@ ReferencePixel ReferenceShader::pixel(int x, int y) const {
   return pixel(x, y, sum);
 }
 
-LineOfSight ReferenceShader::line(int x, int y, const SeenTriangle& seen) const {
+LineOfSight ReferenceShader::line(int x, int y, const SeenLines& seen) const {
   LineOfSight line = lineThrough(x + 0.5, y + 0.5);
   RayHits& hits = line.hits;
-  if (seen.entity >= 0) hits.solid = hitOf(simulation_, state_, line.origin, line.direction, seen.entity, seen.triangle);
+  const size_t number = static_cast<size_t>(y) * static_cast<size_t>(view_.width) + static_cast<size_t>(x);
+  const auto hitAt = [&](const SeenTriangle& t) { return hitOf(simulation_, state_, line.origin, line.direction, t.entity, t.triangle); };
+  if (seen.solid[number].entity >= 0) hits.solid = hitAt(seen.solid[number]);
   if (transparent_) {
-    // What is transparent, before the solid surface that is known already.
+    // Media, before the solid surface that is known already; surfaces are known too.
     RayHits all = castRay(simulation_, state_, line.origin, line.direction, nearest_m(x + 0.5, y + 0.5), &drawn_, true, 0);
-    std::erase_if(all.layers, [&](const Hit& h) { return h.distance > hits.solid.distance; });
     for (Stretch& s : all.stretches) s.leave = std::min(s.leave, hits.solid.distance);
     std::erase_if(all.stretches, [](const Stretch& s) { return s.leave <= s.enter; });
-    hits.layers = std::move(all.layers);
+    for (const SeenTriangle& pane : seen.panesOf(number)) {
+      hits.layers.push_back(hitAt(pane));
+      hits.layers.back().distance = std::min(hits.layers.back().distance, hits.solid.distance);
+    }
     hits.stretches = std::move(all.stretches);
     hits.slabs = slabsAlong(simulation_, state_, line.origin, line.direction, hits.solid.distance, kReferenceFieldSteps);
   }
@@ -148,7 +152,9 @@ ReferencePixel ReferenceShader::shade(const LineOfSight& line, NodeSum& sum) con
 }
 
 ReferencePixel ReferenceShader::shadeOver(LineOfSight line, int x, int y, NodeSum& sum) const {
-  const PixelLines lines = pixelLines(fields_, x, y, kReferenceLines);
+  std::vector<const FieldLines*> fields;
+  for (const FieldLines& f : fields_) fields.push_back(&f);
+  const PixelLines lines = pixelLines(fields, x, y, kReferenceLines);
   if (lines.within.size() == 1 && lines.outside == 0.0) return shade(line, sum);
   ReferencePixel whole;
   const auto add = [&](double share) {

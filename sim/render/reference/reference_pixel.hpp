@@ -34,8 +34,8 @@ class ReferenceShader {
   ReferencePixel pixel(int x, int y) const;
   /// One place of the film [pixels from the lower left]: textures are read there, not over a pixel.
   ReferencePixel place(double x, double y, NodeSum& sum) const;
-  /// The line of sight of the same, given which triangle it sees; and what comes along a line.
-  LineOfSight line(int x, int y, const SeenTriangle& seen) const;
+  /// The line of sight of the same, given which triangles all lines of the view meet; and what comes along a line.
+  LineOfSight line(int x, int y, const SeenLines& seen) const;
   ReferencePixel shade(const LineOfSight& line, NodeSum& sum) const;
   /// The same of a pixel whose middle the line goes through: over several lines through the fields that it passes, where they are finer than it.
   ReferencePixel shadeOver(LineOfSight line, int x, int y, NodeSum& sum) const;
