@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstdio>
 #include <set>
 
@@ -50,10 +51,11 @@ int check(const CheckWish& w) {
   Notes notes;
   size_t triangles = 0;
   for (const auto& e : sim.entities) triangles += e.mesh->triangles.size();
+  const auto lamps = static_cast<size_t>(std::count_if(sim.lights.begin(), sim.lights.end(), [](const PointLight& l) { return l.lamp < 0; }));
   auto count = [](size_t n, const char* one, const char* many) { return std::to_string(n) + " " + (n == 1 ? one : many); };
   std::printf("%s: good. %s, %s, %s (%s), %s, %s, %s\n", w.scenario.file.c_str(), count(static_cast<size_t>(sim.time.frames), "frame", "frames").c_str(),
               count(sim.cameras.size(), "camera", "cameras").c_str(), count(sim.entities.size(), "entity", "entities").c_str(),
-              count(triangles, "triangle", "triangles").c_str(), count(sim.lights.size(), "light", "lights").c_str(),
+              count(triangles, "triangle", "triangles").c_str(), count(lamps, "light", "lights").c_str(),
               count(sim.materials.size(), "material", "materials").c_str(), count(sim.probes.size(), "probe", "probes").c_str());
   for (const auto& c : sim.cameras) {
     const Camera drawn = drawnCamera(c);

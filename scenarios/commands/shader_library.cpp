@@ -1,6 +1,7 @@
 #include <array>
 
 #include "atmosphere/models.hpp"
+#include "materials/lights.hpp"
 #include "materials/models.hpp"
 #include "scenarios/commands/commands.hpp"
 #include "sensors/stages.hpp"
@@ -28,6 +29,8 @@ const ShaderLibrary& shaderLibrary() {
     for (const AirModel& m : airModels().all())
       for (const auto& [path, text] : m.shaders) l.add(std::array{ShaderText{path, text}});
     for (const ReflectionModel& m : reflectionModels().all())
+      if (!m.shader.first.empty()) l.add(std::array{ShaderText{m.shader.first, m.shader.second}});
+    for (const LightModel& m : lightModels().all())
       if (!m.shader.first.empty()) l.add(std::array{ShaderText{m.shader.first, m.shader.second}});
     return l;
   }();

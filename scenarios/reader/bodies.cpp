@@ -287,8 +287,10 @@ void Builder::readEntities(const Record& scenario) {
   readRecoveries();
 }
 
+/// Further points of lights come after all others, which commands number.
 void Builder::readLights(const Record& scenario) {
   if (!scenario.given("lights")) return;
+  std::vector<PointLight> further;
   for (const Value& v : scenario.value("lights").items) {
     const LightModel& model = askedLight(v);
     const ParameterTable table = tables::light(model);
@@ -299,13 +301,25 @@ void Builder::readLights(const Record& scenario) {
     const auto spectra =
         spectraOf(model.parameters, r, [&](const Value& s, const Parameter& p) { return bounded(spectra_, s, p.unit, p.key, p.minimum, p.maximum); });
     model.make({r, spectra}, l);
-    Placement p = readPlacement(r, Mover::Light);
-    if (p.fliesLater) flyNow(r, Mover::Light, p);
-    l.motion = p.motion;
-    l.parent = p.carrier;
+    const Mover mover = model.hasAxes ? Mover::Beam : Mover::Light;
+    Placement p = readPlacement(r, mover);
+    if (p.fliesLater) flyNow(r, mover, p);
+    l.mount.motion = p.motion;
+    l.mount.carrier = p.carrier;
     l.lifetime = p.lifetime;
-    simulation_.lights.push_back(std::move(l));
+    if (model.hasAxes) readLookAt(r, "light", l.mount);
+    const Spectrum whole = l.intensity;
+    const int lamp = static_cast<int>(simulation_.lights.size());
+    for (const LightPoint& point : model.points ? model.points(r) : std::vector<LightPoint>()) {
+      l.offset_m = point.offset_m;
+      l.intensity = whole * point.share;
+      if (l.lamp < 0) simulation_.lights.push_back(l);
+      else further.push_back(l);
+      l.lamp = lamp;
+    }
+    if (l.lamp < 0) simulation_.lights.push_back(std::move(l));
   }
+  simulation_.lights.insert(simulation_.lights.end(), further.begin(), further.end());
 }
 
 }  // namespace pitviper

@@ -82,8 +82,10 @@ class Builder {
     std::shared_ptr<const FlightRecord> flight;
     bool fliesLater = false;  ///< its motion depends on others: flyAll() works it out
   };
-  enum class Mover { Entity, Light, Camera };
+  enum class Mover { Entity, Light, Beam, Camera };  ///< a beam is a light that has axes
   Placement readPlacement(const Record& r, Mover mover);
+  /// What a camera or a light (`what`) looks at, after its placement. Errors: UserError where nothing says where it points.
+  void readLookAt(const Record& r, const std::string& what, Mount& mount) const;
   /// A flight of something whose carrier and target have their motions; it is then its own.
   void flyNow(const Record& r, Mover mover, Placement& placement);
   /// Motions of the entities that fly, targets and carriers first. Errors: UserError for those that wait for each other.

@@ -393,28 +393,7 @@ void Builder::readCameras(const Record& scenario) {
     if (place.fliesLater) flyNow(r, Mover::Camera, place);
     c.mount.motion = place.motion;
     c.mount.carrier = place.carrier;
-    if (r.given("look_at")) {
-      for (const char* key : {"heading", "pitch", "roll"})
-        if (r.given(key) && !r.given("gimbal"))  // whose base they turn
-          throw UserError(r.where(key), std::string("a ") + key + " and a look_at", "one of the two", "remove one");
-      const Value& target = r.value("look_at");
-      if (target.kind == Value::Kind::List || (target.kind == Value::Kind::Scalar && target.text.find(',') != std::string::npos)) {
-        c.mount.looksAtPoint = true;
-        c.mount.lookAtPoint = readVector(target, "m", "look_at");
-        if (!(glm::length(c.mount.lookAtPoint) <= 1e9))
-          throw UserError(target.where, "look_at is more than a million km away", "metres from the origin", "check the unit");
-      } else {
-        const auto light = std::find_if(simulation_.lights.begin(), simulation_.lights.end(), [&](const PointLight& l) { return l.name == target.text; });
-        if (light != simulation_.lights.end() && entityNames_.count(target.text) == 0)
-          c.mount.lookAtLight = static_cast<int>(light - simulation_.lights.begin());
-        else c.mount.lookAtEntity = entityNamed(target);
-        if (c.mount.lookAtEntity >= 0 && c.mount.lookAtEntity == c.mount.carrier)
-          throw UserError(target.where, "a camera looks at the body that carries it", "another body", "change look_at");
-      }
-    } else if (!r.given("heading") && !r.given("pitch") && !r.given("motion") && c.mount.carrier < 0) {
-      throw UserError(r.where(), "camera '" + c.name + "' looks nowhere", "'look_at', 'heading' and 'pitch', a motion, or 'attached_to'",
-                      "add 'look_at: <entity>'");
-    }
+    readLookAt(r, "camera", c.mount);
     c.mount.steadied = readSteadied(r, c.mount, simulation_);
 
     Spectrum optics(1.0);

@@ -265,7 +265,7 @@ void Builder::readFlares(const Record& scenario) {
         light.visible = false;  // its cloud is
         light.store = store;
         if (!onCommand) {
-          light.motion = Motion(*flown.path);
+          light.mount.motion = Motion(*flown.path);
           light.level = flown.level;
           light.lifetime = {flown.lit_s, flown.out_s};
         }

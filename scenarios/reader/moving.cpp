@@ -102,6 +102,31 @@ Builder::Placement Builder::readPlacement(const Record& r, Mover mover) {
   return p;
 }
 
+void Builder::readLookAt(const Record& r, const std::string& what, Mount& mount) const {
+  if (!r.given("look_at")) {
+    if (!r.given("heading") && !r.given("pitch") && !r.given("motion") && mount.carrier < 0)
+      throw UserError(r.where(), what + " '" + r.text("name") + "' looks nowhere", "'look_at', 'heading' and 'pitch', a motion, or 'attached_to'",
+                      "add 'look_at: <entity>'");
+    return;
+  }
+  for (const char* key : {"heading", "pitch", "roll"})
+    if (r.given(key) && !r.given("gimbal"))  // whose base they turn
+      throw UserError(r.where(key), std::string("a ") + key + " and a look_at", "one of the two", "remove one");
+  const Value& target = r.value("look_at");
+  if (target.kind == Value::Kind::List || (target.kind == Value::Kind::Scalar && target.text.find(',') != std::string::npos)) {
+    mount.looksAtPoint = true;
+    mount.lookAtPoint = readVector(target, "m", "look_at");
+    if (!(glm::length(mount.lookAtPoint) <= 1e9))
+      throw UserError(target.where, "look_at is more than a million km away", "metres from the origin", "check the unit");
+    return;
+  }
+  const auto light = std::find_if(simulation_.lights.begin(), simulation_.lights.end(), [&](const PointLight& l) { return l.name == target.text; });
+  if (light != simulation_.lights.end() && entityNames_.count(target.text) == 0) mount.lookAtLight = static_cast<int>(light - simulation_.lights.begin());
+  else mount.lookAtEntity = entityNamed(target);
+  if (mount.lookAtEntity >= 0 && mount.lookAtEntity == mount.carrier)
+    throw UserError(target.where, "a " + what + " looks at the body that carries it", "another body", "change look_at");
+}
+
 int Builder::targetNamed(const Value& asked) const {
   const std::string name = readText(asked, "target");
   const auto found = entityIndex_.find(name);

@@ -353,7 +353,8 @@ ParameterTable light(const LightModel& model) {
   t.parameters.insert(t.parameters.end(), model.parameters.begin(), model.parameters.end());
   t.parameters.push_back(withDefault(within(number("radius", "m", "distances to it are bounded below by this", &PointLight::radius_m), 1e-6, 1e6), "0.05 m"));
   t.parameters.push_back(withDefault(boolean("visible", "adds its own flux to the pixel it is seen in", &PointLight::visible), "true"));
-  addPlacement(t.parameters, false);
+  if (model.hasAxes) t.parameters.push_back(any("look_at", "what its x axis points at: name of an entity or of a light before it, or a position [x, y, z]"));
+  addPlacement(t.parameters, model.hasAxes);
   addLifetime(t.parameters);
   return t;
 }

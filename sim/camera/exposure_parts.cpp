@@ -29,12 +29,12 @@ double motionOf(const Simulation& sim, const Camera& camera, const StateAt& stat
     views.push_back(cameraView(camera, states.back(), 1));
   }
   double most = 0.0;
-  // A place of a body's own axes, or of the world.
-  const auto follow = [&](int entity, const glm::dvec3& own) -> double {
+  // A place of what has a pose in each state.
+  const auto followIn = [&](const auto& poseIn, const glm::dvec3& own) -> double {
     std::array<std::optional<glm::dvec2>, 3> at;
     for (std::size_t k = 0; k < at.size(); ++k) {
-      const Pose* pose = entity >= 0 ? &states[k].entities[static_cast<std::size_t>(entity)] : nullptr;
-      at[k] = filmOf(views[k], pose ? pose->position + pose->orientation * own : own);
+      const Pose pose = poseIn(states[k]);
+      at[k] = filmOf(views[k], pose.position + pose.orientation * own);
       if (!at[k]) return 0.0;
     }
     const auto inView = [&](const glm::dvec2& p) { return p.x > -1.0 && p.y > -1.0 && p.x < views[1].width + 1.0 && p.y < views[1].height + 1.0; };
@@ -42,6 +42,10 @@ double motionOf(const Simulation& sim, const Camera& camera, const StateAt& stat
     const double way = glm::length(*at[1] - *at[0]) + glm::length(*at[2] - *at[1]);
     most = std::max(most, way);
     return way;
+  };
+  // A place of a body's own axes, or of the world.
+  const auto follow = [&](int entity, const glm::dvec3& own) {
+    return followIn([&](const WorldState& s) { return entity >= 0 ? s.entities[static_cast<std::size_t>(entity)] : Pose{}; }, own);
   };
   std::vector<char> drawn(sim.entities.size(), 1);
   if (camera.mount.carrier >= 0) drawn[static_cast<std::size_t>(camera.mount.carrier)] = 0;
@@ -67,6 +71,13 @@ double motionOf(const Simulation& sim, const Camera& camera, const StateAt& stat
                    size = 2.0 * static_cast<double>(sim.entities[e].boundingRadius_m) / range / v.tanPerPixelX;
       if (size < kSmall_px) small = std::max(small, way);
     }
+  for (std::size_t l = 0; l < sim.lights.size(); ++l) {
+    if (!sim.lights[l].pattern.body || !(states[1].lightLevels[l] > 0.0)) continue;
+    // Where its beam falls: the middle of what turns with it.
+    const glm::dvec3 axis = states[1].lightPoses[l].orientation * glm::dvec3(1, 0, 0);
+    const RayHits hits = castRay(sim, states[1], states[1].lights[l], axis, sim.lights[l].radius_m, &drawn, false, 0);
+    if (hits.solid.entity >= 0) followIn([&](const WorldState& s) { return s.lightPoses[l]; }, {hits.solid.distance, 0.0, 0.0});
+  }
   for (std::size_t l = 0; l < sim.lights.size(); ++l) {
     if (!sim.lights[l].visible) continue;
     std::array<std::optional<glm::dvec2>, 3> at;

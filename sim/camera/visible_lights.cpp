@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sim/model/ground.hpp"
+#include "sim/model/light_legs.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -10,15 +11,14 @@ namespace pitviper {
 std::vector<double> apparentIntensity(const Simulation& sim, const Plan& plan, const WorldState& state, size_t light, const glm::dvec3& from,
                                       const std::vector<double>& way) {
   const glm::dvec3 line = state.lights[light] - from;
-  const double range = glm::length(line);
+  const double range = glm::length(line), sent = state.lightLevels[light] * (range > 0.0 ? patternTowards(sim, state, light, -line / range) : 1.0);
   AirAmounts air;
   if (plan.terms.air)
     air = sim.air->amounts({sim.frame.height(from), range > 0.0 ? glm::dot(line, sim.frame.up(from)) / range : 0.0, sim.frame.earthRadius_m()}, range);
   std::vector<double> sums(static_cast<size_t>(plan.slotCount), 0.0);
   for (size_t i = 0; i < plan.nodes.size(); ++i) {
     const SpectralNode& n = plan.nodes[i];
-    const double intensity =
-        way[i] * state.lightLevels[light] * n.mean(sim.lights[light].intensity) * (plan.terms.air ? sim.air->transmittance(n.air, air) : 1.0);
+    const double intensity = way[i] * sent * n.mean(sim.lights[light].intensity) * (plan.terms.air ? sim.air->transmittance(n.air, air) : 1.0);
     for (size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * intensity;
   }
   return sums;

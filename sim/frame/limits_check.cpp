@@ -41,7 +41,7 @@ std::string outsideLimits(const Simulation& sim, const Camera& camera, const Wor
       found.push_back(body.name + " at " + kelvins(coldest) + ", planned from " + kelvins(limits.coldest_K));
   }
   for (size_t l = 0; l < sim.lights.size() && limits.lightLevel > 0.0; ++l)
-    if (state.lightLevels[l] > limits.lightLevel)
+    if (sim.lights[l].lamp < 0 && state.lightLevels[l] > limits.lightLevel)
       found.push_back("light " + sim.lights[l].name + " at level " + print("%.4g", state.lightLevels[l]) + ", planned to " + print("%.4g", limits.lightLevel));
   std::string text;
   for (size_t k = 0; k < std::min(kMostNamed, found.size()); ++k) text += (k ? "; " : "") + found[k];

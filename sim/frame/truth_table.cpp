@@ -8,6 +8,7 @@
 #include "sim/camera/zoomed_lines.hpp"
 #include "sim/frame/truth_work.hpp"
 #include "sim/model/field_states.hpp"
+#include "sim/model/light_legs.hpp"
 #include "sim/model/stage.hpp"
 #include "sim/model/world.hpp"
 #include "sim/plan/measured_outputs.hpp"
@@ -384,6 +385,7 @@ std::vector<FrameLayer> TruthMeter::terms(const WorldState& state) const {
     for (std::size_t part = 0; part < parts; ++part) {
       std::vector<float>& layer = layers[c * parts + part];
       if (part == static_cast<std::size_t>(TermKind::Lights) || !mayHave(part)) continue;
+      if (part >= kTermKinds && lampOf(simulation_, part - kTermKinds) != part - kTermKinds) continue;
       const std::string name = part < kTermKinds ? std::string(kNames[part]) : "lamp." + simulation_.lights[part - kTermKinds].name;
       told.push_back({"truth.terms." + measured_[radianceOf_[c]].channel + "." + name, "W/(m2 sr)", std::move(layer)});
     }

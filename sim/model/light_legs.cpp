@@ -21,6 +21,13 @@ SunHere sunHere(const Simulation& sim, const glm::dvec3& point) {
   return here;
 }
 
+double patternTowards(const Simulation& sim, const WorldState& state, std::size_t light, const glm::dvec3& direction) {
+  const LightPattern& pattern = sim.lights[light].pattern;
+  return pattern.body ? pattern.body(pattern.parameters, glm::inverse(state.lightPoses[light].orientation) * direction) : 1.0;
+}
+
+std::size_t lampOf(const Simulation& sim, std::size_t light) { return sim.lights[light].lamp >= 0 ? static_cast<std::size_t>(sim.lights[light].lamp) : light; }
+
 LightLeg lightLeg(const Simulation& sim, const WorldState& state, const Hit& hit, std::size_t light) {
   LightLeg leg;
   if (light == sim.lights.size()) {
@@ -36,6 +43,7 @@ LightLeg lightLeg(const Simulation& sim, const WorldState& state, const Hit& hit
   leg.distance_m = std::sqrt(d2);
   leg.toLight = d2 > 0.0 ? line / leg.distance_m : hit.normal;
   leg.factor = physics::pointIrradianceFactor(glm::dot(leg.toLight, hit.normal), d2, sim.lights[light].radius_m);
+  if (leg.factor > 0.0) leg.factor *= patternTowards(sim, state, light, -leg.toLight);
   if (!sim.air || !sim.air->traits().any) return leg;
   leg.air = sim.air->amounts({sim.frame.height(hit.point), glm::dot(leg.toLight, sim.frame.up(hit.point)), sim.frame.earthRadius_m()}, leg.distance_m);
   return leg;

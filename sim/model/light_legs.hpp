@@ -7,8 +7,8 @@ namespace pitviper {
 struct LightLeg {
   glm::dvec3 toLight{0.0};  ///< unit, local frame; of the sun over the earth the middle of what stands above the place's horizon
   double distance_m = 0.0;  ///< infinite for the sun
-  double factor = 0.0;      ///< irradiance for an intensity (for the sun: an irradiance) of 1 without air: cosine / distance^2 (for the sun: cosine x share of
-                            ///< its disc above the horizon), 0 from behind
+  double factor = 0.0;      ///< irradiance for an intensity (for the sun: an irradiance) of 1 without air: cosine x pattern / distance^2 (for the sun: cosine x
+                            ///< share of its disc above the horizon), 0 from behind
   AirAmounts air;           ///< between the surface and the light (of air without a top: none on the way to the sun)
 };
 
@@ -19,6 +19,12 @@ struct SunHere {
   AirAmounts air;         ///< on the way there, of air with a top
 };
 SunHere sunHere(const Simulation& simulation, const glm::dvec3& point);
+
+/// What a lamp sends in a direction (unit, local frame, away from it), as a share of its intensity.
+double patternTowards(const Simulation& simulation, const WorldState& state, std::size_t light, const glm::dvec3& direction);
+
+/// The lamp that a light is a point of: as a rule itself.
+std::size_t lampOf(const Simulation& simulation, std::size_t light);
 
 /// `light`: an index into Simulation::lights, or their number for the sun.
 LightLeg lightLeg(const Simulation& simulation, const WorldState& state, const Hit& hit, std::size_t light);

@@ -52,12 +52,20 @@ void addTo(Fingerprint& f, const Entity& e) {
   pitviper::addTo(f, motion);
 }
 
-void addTo(Fingerprint& f, const PointLight& l) {
-  const auto& [name, intensity, radius_m, visible, motion, parent, level, lifetime, store] = l;
-  addTo(f, lifetime);
-  f.add(name).add(store).add(radius_m).add(visible).add(parent);
-  pitviper::addTo(f, intensity);
+void addTo(Fingerprint& f, const Mount& m) {
+  const auto& [motion, carrier, lookAtEntity, lookAtLight, looksAtPoint, lookAtPoint, steadied] = m;
   pitviper::addTo(f, motion);
+  f.add(carrier).add(lookAtEntity).add(lookAtLight).add(looksAtPoint).add(lookAtPoint);
+  f.add(steadied.heading).add(steadied.pitch).add(steadied.roll).add(steadied.heading_rad);
+}
+
+void addTo(Fingerprint& f, const PointLight& l) {
+  const auto& [name, intensity, pattern, radius_m, visible, mount, offset_m, lamp, level, lifetime, store] = l;
+  addTo(f, lifetime);
+  f.add(name).add(store).add(radius_m).add(visible).add(offset_m).add(lamp);
+  f.add(pattern.function).add(pattern.parameters.x).add(pattern.parameters.y).add(pattern.parameters.z).add(pattern.parameters.w);
+  addTo(f, mount);
+  pitviper::addTo(f, intensity);
   pitviper::addTo(f, level);
 }
 
@@ -177,10 +185,7 @@ void addTo(Fingerprint& f, const Camera& c) {
   f.add(name).add(width).add(height).add(focalLength_m).add(pitchX_m).add(pitchY_m).add(apertureDiameter_m);
   addTo(f, focalLengthOverTime_m);
   addTo(f, exposureOverTime_s);
-  const auto& [motion, carrier, lookAtEntity, lookAtLight, looksAtPoint, lookAtPoint, steadied] = mount;
-  addTo(f, motion);
-  f.add(carrier).add(lookAtEntity).add(lookAtLight).add(looksAtPoint).add(lookAtPoint);
-  f.add(steadied.heading).add(steadied.pitch).add(steadied.roll).add(steadied.heading_rad);
+  addTo(f, mount);
   f.add(exposure_s).add(near_m).add(samples).add(smallBody_px).add(truth.any()).add(truth.solidAngles);
   for (const auto& [number, column, row, pose] : learnt) {
     f.add(number).add(column).add(row).add(pose.has_value());

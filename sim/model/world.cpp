@@ -55,6 +55,41 @@ void change(const Simulation& sim, const Command& command, double at_s, Courses&
   courses.toEject.clear();
 }
 
+const CameraChange* changeOf(const Camera& camera, const WorldState& state) {
+  const auto found = state.cameras.find(camera.name);
+  return found == state.cameras.end() ? nullptr : &found->second;
+}
+
+/// As it is carried, wherever it looks.
+Pose baseOf(const Mount& mount, const CameraChange* change, const WorldState& state) {
+  Pose pose = mount.motion.at(state.time_s);
+  if (change && change->position) pose.position = *change->position;
+  if (change && change->orientation) pose.orientation = *change->orientation;
+  if (mount.carrier < 0) return pose;
+  const Pose carrier = state.bodyPose(static_cast<size_t>(mount.carrier));
+  Pose base = composed(carrier, pose);
+  if (mount.steadied.any()) base.orientation = glm::normalize(steadied(mount.steadied, carrier.orientation) * pose.orientation);
+  return base;
+}
+
+std::optional<glm::dvec3> targetOf(const Mount& mount, const WorldState& state) {
+  if (mount.looksAtPoint) return mount.lookAtPoint;
+  if (mount.lookAtLight >= 0) return state.lightPoses[static_cast<size_t>(mount.lookAtLight)].position;
+  if (mount.lookAtEntity >= 0) return state.bodyPose(static_cast<size_t>(mount.lookAtEntity)).position;
+  return std::nullopt;
+}
+
+Pose poseOf(const Mount& mount, const CameraChange* change, const WorldState& state) {
+  if (change && change->pose) return *change->pose;
+  Pose pose = baseOf(mount, change, state);
+  if (change && change->orientation) return pose;
+  if (const auto target = targetOf(mount, state)) {
+    const glm::dvec3 line = *target - pose.position;
+    if (glm::dot(line, line) > 0.0) pose.orientation = orientationAlong(line);
+  }
+  return pose;
+}
+
 WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s) {
   WorldState state;
   state.time_s = time_s;
@@ -76,16 +111,18 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
           valueOf(courses.temperatures_K, std::pair(index, static_cast<int>(temperatures.size())), time_s, [&] { return s.temperatureAt_K(time_s); }));
   }
   for (const PointLight& l : sim.lights) {
-    const int index = static_cast<int>(state.lights.size());
+    const int index = l.lamp >= 0 ? l.lamp : static_cast<int>(state.lights.size());
     if (l.store >= 0) {
       const auto flies = courses.ejected.find(l.store);
       const bool lit = flies != courses.ejected.end();
-      state.lights.push_back(lit ? flies->second->path->at(time_s).position : glm::dvec3(0.0));
+      state.lightPoses.push_back(lit ? Pose{flies->second->path->at(time_s).position, {1, 0, 0, 0}} : Pose{});
+      state.lights.push_back(state.lightPoses.back().position);
       state.lightLevels.push_back(lit ? valueOf(courses.lightLevels, index, time_s, [&] { return flies->second->level.at(time_s); }) : 0.0);
       continue;
     }
-    state.lights.push_back(carried(l.parent, l.motion.at(time_s)).position);
-    const bool there = l.presentAt(time_s) && (l.parent < 0 || state.isThere(static_cast<size_t>(l.parent)));
+    const Pose& pose = state.lightPoses.emplace_back(poseOf(l.mount, nullptr, state));
+    state.lights.push_back(l.offset_m == glm::dvec3(0.0) ? pose.position : pose.position + pose.orientation * l.offset_m);
+    const bool there = l.presentAt(time_s) && (l.mount.carrier < 0 || state.isThere(static_cast<size_t>(l.mount.carrier)));
     state.lightLevels.push_back(there ? valueOf(courses.lightLevels, index, time_s, [&] { return l.levelAt(time_s); }) : 0.0);
   }
   for (const Camera& c : sim.cameras) {
@@ -106,41 +143,6 @@ WorldState stateOf(const Simulation& sim, const Courses& courses, double time_s)
   state.ejected = courses.ejected;
   if (!sim.fields.empty()) state.fields = std::make_shared<const FieldStates>(sim, state);
   return state;
-}
-
-const CameraChange* changeOf(const Camera& camera, const WorldState& state) {
-  const auto found = state.cameras.find(camera.name);
-  return found == state.cameras.end() ? nullptr : &found->second;
-}
-
-/// As it is carried, wherever it looks.
-Pose baseOf(const Mount& mount, const CameraChange* change, const WorldState& state) {
-  Pose pose = mount.motion.at(state.time_s);
-  if (change && change->position) pose.position = *change->position;
-  if (change && change->orientation) pose.orientation = *change->orientation;
-  if (mount.carrier < 0) return pose;
-  const Pose carrier = state.bodyPose(static_cast<size_t>(mount.carrier));
-  Pose base = composed(carrier, pose);
-  if (mount.steadied.any()) base.orientation = glm::normalize(steadied(mount.steadied, carrier.orientation) * pose.orientation);
-  return base;
-}
-
-std::optional<glm::dvec3> targetOf(const Mount& mount, const WorldState& state) {
-  if (mount.looksAtPoint) return mount.lookAtPoint;
-  if (mount.lookAtLight >= 0) return state.lights[static_cast<size_t>(mount.lookAtLight)];
-  if (mount.lookAtEntity >= 0) return state.bodyPose(static_cast<size_t>(mount.lookAtEntity)).position;
-  return std::nullopt;
-}
-
-Pose poseOf(const Mount& mount, const CameraChange* change, const WorldState& state) {
-  if (change && change->pose) return *change->pose;
-  Pose pose = baseOf(mount, change, state);
-  if (change && change->orientation) return pose;
-  if (const auto target = targetOf(mount, state)) {
-    const glm::dvec3 line = *target - pose.position;
-    if (glm::dot(line, line) > 0.0) pose.orientation = orientationAlong(line);
-  }
-  return pose;
 }
 
 }  // namespace

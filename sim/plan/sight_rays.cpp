@@ -386,6 +386,26 @@ std::vector<SightRay> SightRays::lamps(int frame) {
   return seen;
 }
 
+/// Where the beams of lights fall at a frame, in view: they may be few pixels.
+std::vector<SightRay> SightRays::beams(int frame) {
+  std::vector<SightRay> lit;
+  for (size_t l = 0; l < simulation_.lights.size(); ++l) {
+    const PointLight& light = simulation_.lights[l];
+    if (!light.pattern.body || light.lamp >= 0) continue;
+    SightRay ray = startAt(frame);
+    const WorldState& state = *ray.state;
+    const Hit fall =
+        castRay(simulation_, state, state.lights[l], state.lightPoses[l].orientation * glm::dvec3(1, 0, 0), light.radius_m, nullptr, false, 0).solid;
+    const glm::dvec3 line = fall.point - ray.line.origin;
+    if (!(state.lightLevels[l] > 0.0) || fall.entity < 0 || !(glm::length(line) > 0.0) || (!inView(ray, line) && !turnToward(ray, frame, line))) continue;
+    ray.line.direction = glm::normalize(line);
+    ray.fromFilm = false;
+    cast(ray);
+    if (ray.line.hits.solid.entity == fall.entity) lit.push_back(std::move(ray));
+  }
+  return lit;
+}
+
 /// Where lights may begin to shine, or shine most: at the bends of their courses and where commands begin to hold.
 std::vector<int> SightRays::framesOfLevels() const {
   std::vector<int> frames;
@@ -502,8 +522,10 @@ void SightRays::findNearAndFar() {
   for (int frame : framesOfLevels()) lampFrames.push_back(frame);
   std::sort(lampFrames.begin(), lampFrames.end());
   lampFrames.erase(std::unique(lampFrames.begin(), lampFrames.end()), lampFrames.end());
-  for (int frame : lampFrames)
+  for (int frame : lampFrames) {
     for (SightRay& r : lamps(frame)) extremes_.push_back(std::move(r));
+    for (SightRay& r : beams(frame)) extremes_.push_back(std::move(r));
+  }
   for (size_t s = 0; s < surfaces_.size(); ++s) {
     const Extent& e = bodies[surfaces_[s].first];
     std::vector<int> which = {e.nearestFrame, e.farthestFrame};

@@ -83,6 +83,7 @@ class SightRays {
   std::optional<SightRay> aimedAtField(int frame, size_t field);
   bool isSmall(const SightRay& ray, const Entity& entity, const Pose& pose) const;
   std::vector<SightRay> lamps(int frame);
+  std::vector<SightRay> beams(int frame);
   std::vector<int> framesOfLevels() const;
   std::vector<int> framesOfTemperatures(const Surface& surface) const;
   void findLifetimes();

@@ -205,7 +205,7 @@ class Teller {
         const ReflectionComponent& r = *m.reflections[k];
         add(sun ? TermKind::Sun : TermKind::Lights, modifiers[k] * strength * r.lobeAt(light, view),
             {Factor::column(r, light, view), sun ? Factor::sun() : Factor::light(sim_.lights[l])}, scene_.terms.air ? &both : nullptr,
-            sun ? -1 : static_cast<int>(l));
+            sun ? -1 : static_cast<int>(lampOf(sim_, l)));
       }
     }
   }
@@ -245,11 +245,14 @@ void radianceAlong(const RadianceScene& scene, const LineOfSight& line, TermSink
 void wayAlong(const RadianceScene& scene, const LineOfSight& line, double range_m, TermSink& sink) { Teller(scene, line, range_m, sink).run(false); }
 
 void lampAlong(const RadianceScene& scene, const LineOfSight& line, std::size_t light, double pixel_sr, TermSink& sink) {
-  const double range = glm::length(scene.state.lights[light] - line.origin), level = scene.state.lightLevels[light];
+  const glm::dvec3 way = scene.state.lights[light] - line.origin;
+  const double range = glm::length(way), level = scene.state.lightLevels[light];
   if (!(level > 0.0) || !(range > 0.0)) return;
+  const double sent = level * patternTowards(scene.simulation, scene.state, light, -way / range);
+  if (!(sent > 0.0)) return;
   wayAlong(scene, line, range, sink);
   const std::array shine{Factor::light(scene.simulation.lights[light])};
-  sink.term({TermKind::LampsInView, level / (range * range * pixel_sr), shine, nullptr, -1, static_cast<int>(light)});
+  sink.term({TermKind::LampsInView, sent / (range * range * pixel_sr), shine, nullptr, -1, static_cast<int>(lampOf(scene.simulation, light))});
 }
 
 }  // namespace pitviper

@@ -35,6 +35,7 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       scene_(std::move(scene)),
       truth_(truth),
       apertureArea_m2_(apertureArea_m2),
+      patterns_(simulation),
       tables_(makeTables(simulation, plan)),
       surfaceClasses_(sortIntoClasses(tables_, simulation, plan, truth, classes)),
       pixelClasses_(library, classSlots(classes)),
@@ -55,7 +56,7 @@ ShaderSlots ScenePass::classSlots(bool classes) const {
   slots.files["light_demand"] = std::string("sim/render/glsl/") + (demand ? "light_demand.glsl" : "light_demand_none.glsl");
   slots.files["shadow_list"] = std::string("sim/render/glsl/") + (plan_.terms.shadows ? "shadow_list.glsl" : "shadow_list_none.glsl");
   slots.constants["SHADOWS_VARY"] = classes && shadowsVary(plan_, simulation_, truth_) ? 1 : 0;
-  addLightConstants(slots);
+  addLightSlots(slots);
   return slots;
 }
 
@@ -64,11 +65,12 @@ void ScenePass::shareLight(const ScenePass& other) {
   around_ = other.around_;
 }
 
-void ScenePass::addLightConstants(ShaderSlots& slots) const {
+void ScenePass::addLightSlots(ShaderSlots& slots) const {
   slots.constants["LIGHTS"] = plan_.lightCount;
   slots.constants["FEW_LIGHTS"] = kFewLights;
   slots.constants["SUN"] = simulation_.sun && plan_.lightCount > 0 ? 1 : 0;
   slots.constants["SUN_SETS"] = simulation_.overEarth() ? 1 : 0;
+  patterns_.addSlots(slots);
 }
 
 ShaderSlots ScenePass::shadingSlots(bool writtenOut) const {
@@ -85,7 +87,7 @@ ShaderSlots ScenePass::shadingSlots(bool writtenOut) const {
   slots.constants["NODES"] = plan_.nodeCount();
   slots.constants["NODE_TEXELS"] = (plan_.nodeCount() + 3) / 4;
   slots.constants["GROUPS"] = plan_.groupCount();
-  addLightConstants(slots);
+  addLightSlots(slots);
   slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
   slots.constants["LIGHT_PLACES"] = std::max(plan_.lightCount, kLightPlaces);
   slots.constants["GROUND"] = tables_.ground;
@@ -140,7 +142,7 @@ GpuDraw ScenePass::drawOf(std::size_t draw, const View& view, const WorldState& 
 }
 
 void ScenePass::uploadLights(const WorldState& state) {
-  const size_t stride = 3 * static_cast<size_t>(plan_.lightCount) + 1;
+  const auto texels = static_cast<size_t>(patterns_.texels()), stride = texels * static_cast<size_t>(plan_.lightCount) + 1;
   std::vector<glm::vec4> lights((state.entities.size() + 1) * stride, glm::vec4(0.0f));
   const bool few = plan_.lightCount <= kFewLights;
   lightNeeds_.assign(state.entities.size(), {});
@@ -155,7 +157,8 @@ void ScenePass::uploadLights(const WorldState& state) {
     auto add = [&](const glm::dvec3& place, double radius_m, size_t number, bool matters, double shadowReach2_m2, const glm::vec4& reach2_m2) {
       if (!few && !matters) return;
       const size_t k = few ? number : static_cast<size_t>(row->x);
-      row[3 * k + 1] = glm::vec4(place, radius_m);
+      glm::vec4* entry = row + texels * k + 1;
+      entry[0] = glm::vec4(place, radius_m);
       const auto casters = shadows_ && matters && body ? shadows_->castersOf(e, number) : ShadowPass::Range{};
       if (body && matters) {
         const Entity& entity = simulation_.entities[e];
@@ -165,8 +168,9 @@ void ScenePass::uploadLights(const WorldState& state) {
         lightNeeds_[e].lamps |= lamp;
         lightNeeds_[e].shadows |= casters.count > 0;
       }
-      row[3 * k + 2] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, shadowReach2_m2);
-      row[3 * k + 3] = reach2_m2;
+      entry[1] = glm::vec4(matters ? static_cast<float>(number) : -1.0f, casters.first, casters.count, shadowReach2_m2);
+      entry[2] = reach2_m2;
+      if (number < simulation_.lights.size()) patterns_.put(number, state, pose.orientation, entry);
       row->x += 1.0f;
     };
     for (size_t l = 0; l < simulation_.lights.size(); ++l)

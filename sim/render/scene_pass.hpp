@@ -10,6 +10,7 @@
 
 #include "sim/render/air_on_gpu.hpp"
 #include "sim/render/gpu_scene.hpp"
+#include "sim/render/light_patterns.hpp"
 #include "sim/render/light_relevance.hpp"
 #include "sim/render/line_drawer.hpp"
 #include "sim/render/pixel_classes.hpp"
@@ -82,7 +83,7 @@ class ScenePass : public LineDrawer {
   /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
   /// `writtenOut`: nodes are named by numbers, none by a loop.
   ShaderSlots shadingSlots(bool writtenOut) const;
-  void addLightConstants(ShaderSlots& slots) const;
+  void addLightSlots(ShaderSlots& slots) const;
   /// Of what finds pixels' classes.
   ShaderSlots classSlots(bool classes) const;
   /// Names of the channel targets, and of the truth targets, in order.
@@ -114,6 +115,7 @@ class ScenePass : public LineDrawer {
   std::shared_ptr<const GpuScene> scene_;
   bool truth_;
   double apertureArea_m2_;
+  LightPatterns patterns_;
   RenderTables tables_;
   std::vector<SurfaceClass> surfaceClasses_;
   std::set<std::size_t> classesInView_;

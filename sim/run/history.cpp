@@ -116,9 +116,10 @@ struct History::Tick {
 };
 
 bool hasHistory(const Simulation& sim) {
-  const auto moves = [](const auto& thing) { return !thing.motion.isStill(); };
-  if (std::any_of(sim.entities.begin(), sim.entities.end(), moves) || std::any_of(sim.lights.begin(), sim.lights.end(), moves)) return true;
-  if (std::any_of(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return !c.mount.motion.isStill() || c.follower; })) return true;
+  const auto moves = [](const auto& thing) { return !thing.mount.motion.isStill(); };
+  if (std::any_of(sim.entities.begin(), sim.entities.end(), [](const Entity& e) { return !e.motion.isStill(); })) return true;
+  if (std::any_of(sim.lights.begin(), sim.lights.end(), moves) || std::any_of(sim.cameras.begin(), sim.cameras.end(), moves)) return true;
+  if (std::any_of(sim.cameras.begin(), sim.cameras.end(), [](const Camera& c) { return c.follower.has_value(); })) return true;
   Courses courses;
   for (const Command& c : sim.commands) c.change(courses, c.at_s);
   return !courses.positions.empty() || !courses.orientations.empty() || !courses.cameraPositions.empty() || !courses.cameraOrientations.empty();
@@ -135,7 +136,8 @@ History::History(const Simulation& simulation, bool keepsPaths) : simulation_(si
   }
   for (std::size_t i = 0; i < moving_.lights.size(); ++i) {
     const PointLight& l = moving_.lights[i];
-    things_.push_back({l.name, "light", i, Mover(moving_, l.motion, l.parent), nullptr, !l.motion.isStill(), true});
+    if (l.lamp >= 0) continue;
+    things_.push_back({l.name, "light", i, Mover(moving_, l.mount.motion, l.mount.carrier), nullptr, !l.mount.motion.isStill(), true});
   }
   for (std::size_t i = 0; i < simulation.cameras.size(); ++i) {
     const Camera& c = simulation.cameras[i];
@@ -175,9 +177,9 @@ void History::begin(int frame, const WorldState& world) {
     if (thing.camera) continue;
     if (thing.kind == "light") {
       const PointLight& l = moving_.lights[thing.index];
-      s.isThere = l.presentAt(world.time_s) && (l.parent < 0 || world.isThere(static_cast<std::size_t>(l.parent)));
-      s.pose.position = world.lights[thing.index];
-      s.isKnown = s.isPlaceKnown = isSamePlace(s.pose.position, own.lights[thing.index]);
+      s.isThere = l.presentAt(world.time_s) && (l.mount.carrier < 0 || world.isThere(static_cast<std::size_t>(l.mount.carrier)));
+      s.pose.position = world.lightPoses[thing.index].position;
+      s.isKnown = s.isPlaceKnown = isSamePlace(s.pose.position, own.lightPoses[thing.index].position);
     } else {
       s.isThere = world.isThere(thing.index);
       s.pose = world.bodyPose(thing.index);
@@ -185,7 +187,7 @@ void History::begin(int frame, const WorldState& world) {
       s.isKnown = s.isPlaceKnown && isSameTurn(s.pose.orientation, own.entities[thing.index].orientation);
     }
     // What only its carrier has moved has no rows either.
-    const int parent = thing.kind == "light" ? moving_.lights[thing.index].parent : moving_.entities[thing.index].parent;
+    const int parent = thing.kind == "light" ? moving_.lights[thing.index].mount.carrier : moving_.entities[thing.index].parent;
     const bool carried = parent >= 0 && !open_->samples[static_cast<std::size_t>(parent)].isKnown;
     if (!s.isKnown) thing.isKnown = false, thing.hasRows = thing.hasRows || !carried;
   }

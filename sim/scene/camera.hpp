@@ -44,7 +44,7 @@ struct Steadied {
 /// The attitude that such a platform has on a carrier.
 glm::dquat steadied(const Steadied& angles, const glm::dquat& carrier);
 
-/// How a camera is carried and where it looks.
+/// How a camera or a light is carried and where it looks.
 struct Mount {
   Motion motion;          ///< in the local frame, or in the carrier's body frame
   int carrier = -1;       ///< entity index, or -1

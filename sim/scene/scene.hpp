@@ -9,8 +9,9 @@
 #include "sim/parameters/time_course.hpp"
 #include "sim/radiometry/spectrum.hpp"
 #include "sim/scene/body_form.hpp"
-#include "sim/scene/geodesy.hpp"
+#include "sim/scene/camera.hpp"
 #include "sim/scene/flight_record.hpp"
+#include "sim/scene/geodesy.hpp"
 #include "sim/scene/lifetime.hpp"
 #include "sim/scene/mesh.hpp"
 #include "sim/scene/motion.hpp"
@@ -45,18 +46,28 @@ struct Entity {
   bool presentAt(double time_s) const { return lifetime.has(time_s) && motion.presentAt(time_s); }
 };
 
-/// Point light: intensity(lambda) x level(t) [W/(sr um)].
+/// How a light's intensity falls off with direction: one .glsl body, float on the GPU, double in C++.
+struct LightPattern {
+  std::string file;      ///< shader file with the body
+  std::string function;  ///< PHYSICS Real function(Vec4 parameters, Vec3 direction), of a name of its own; direction: unit, from the light, in its axes
+  double (*body)(glm::dvec4 parameters, glm::dvec3 direction) = nullptr;  ///< the same in double, from 0 to 1; null: it sends alike to all sides
+  glm::dvec4 parameters{0.0};
+};
+
+/// Point light: intensity(lambda) x level(t) x pattern(direction) [W/(sr um)].
 struct PointLight {
   std::string name;
-  Spectrum intensity;
+  Spectrum intensity;  ///< where its pattern is 1
+  LightPattern pattern;
   double radius_m = 0.05;  ///< distances to it are bounded below by this
   bool visible = true;     ///< adds its own flux to the pixel it is seen in
-  Motion motion;
-  int parent = -1;
+  Mount mount;
+  glm::dvec3 offset_m{0.0};  ///< from what the mount carries, in its axes: of a lamp of several points
+  int lamp = -1;             ///< index of the lamp that it is a further point of, whose name and commands it has; -1: its own
   TimeCourse level;  ///< factor over time, usually 0 outside; empty: 1 always
   Lifetime lifetime;
   int store = -1;  ///< index into Simulation::stores: it shines as what is ejected of that does; -1: as above
-  bool presentAt(double time_s) const { return lifetime.has(time_s) && motion.presentAt(time_s); }
+  bool presentAt(double time_s) const { return lifetime.has(time_s) && mount.motion.presentAt(time_s); }
   double levelAt(double time_s) const { return level.empty() ? 1.0 : level.at(time_s); }
 };
 
@@ -106,7 +117,8 @@ struct WorldState {
   std::vector<glm::dvec3> offsets_m;  ///< per entity, of its mesh; none: all are 0
   Pose bodyPose(std::size_t entity) const;
   std::vector<std::vector<double>> temperatures_K;  ///< per entity and surface; of a surface with a temperature texture its mean
-  std::vector<glm::dvec3> lights;
+  std::vector<glm::dvec3> lights;                   ///< where they shine from
+  std::vector<Pose> lightPoses;                     ///< of the lamps that they are of, whose axes patterns are in
   std::vector<double> lightLevels;                  ///< of a light that is not there 0
   std::vector<char> absent;                         ///< per entity: neither seen nor in the way of anything; none: all are there
   bool isThere(std::size_t entity) const { return entity >= absent.size() || !absent[entity]; }

@@ -1,5 +1,7 @@
 #include "sim/stream/command_models.hpp"
 
+#include <algorithm>
+
 #include "sim/parameters/asked_model.hpp"
 #include "sim/scene/placement.hpp"
 
@@ -10,9 +12,9 @@ template <class T>
 int named(const Record& r, const char* key, const std::vector<T>& all) {
   const std::string name = r.text(key);
   std::vector<std::string> names;
-  for (const T& one : all) {
-    if (one.name == name) return static_cast<int>(names.size());
-    names.push_back(one.name);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    if (all[i].name == name) return static_cast<int>(i);
+    if (std::find(names.begin(), names.end(), all[i].name) == names.end()) names.push_back(all[i].name);  // points of a lamp share its name
   }
   throw unknownWord(r.where(key), std::string("there is no ") + key, name, names);
 }

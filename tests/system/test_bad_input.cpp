@@ -32,6 +32,8 @@ std::string shape(const std::string& text) { return "entities: [{name: p, materi
 std::string channel(const std::string& text) { return kPlate + "cameras:\n- {name: c, " + kCameraRest + ",\n   channels: [" + text + "]}\n"; }
 std::string response(const std::string& text) { return channel("{name: mw, response: " + text + "}"); }
 
+std::string light(const std::string& text) { return "lights: [" + text + "]\n" + kPlate + kCamera; }
+
 std::string film(const std::string& text, const std::string& samples = "1") {
   return kPlate + "cameras: [{name: c, film: " + text + ", samples: " + samples +
          ", field_of_view: 5 deg, aperture: 40 mm, look_at: p, position: [9 m, 0 m, 0 m], " + kChannels + "}]\n";
@@ -266,6 +268,15 @@ std::vector<Bad> badScenarios() {
       {"CountBeyondAnyInteger", film("{width: 8, height: 8, pitch: 20 um}", "@@99999999999999999999"), {"nor a whole number"}},
       {"TooManySubpixels", film("@@{width: 16384, height: 16384, pitch: 20 um}"), {"67 million"}},
       {"HostileSegments", shape("{model: sphere, radius: 1 m, segments: @@1000000}"), {"segments is out of range", "8 to 2048"}},
+      // Lights with axes.
+      {"SpotOfNoBeam", light("@@{name: l, model: spot, intensity: 1 W/(sr um), look_at: p}"), {"missing key 'beam_angle'"}},
+      {"SpotThatLooksNowhere", light("@@{name: l, model: spot, intensity: 1 W/(sr um), beam_angle: 9 deg}"), {"light 'l' looks nowhere", "look_at: <entity>"}},
+      {"SpotOfHalfASphere", light("{name: l, model: spot, intensity: 1 W/(sr um), look_at: p, beam_angle: @@190 deg}"), {"beam_angle is out of range"}},
+      {"LampThatIsTurned", light("{name: l, intensity: 1 W/(sr um), @@heading: 9 deg}"), {"unknown key 'heading'"}},
+      {"AreaOfNoSize", light("@@{name: l, model: area, radiance: 1 W/(m2 sr um), look_at: p}"), {"neither a rectangle nor a disc", "'diameter'"}},
+      {"AreaInView",
+       light("{name: l, model: area, radiance: 1 W/(m2 sr um), look_at: p, diameter: 1 m, visible: @@true}"),
+       {"an area light that is seen itself", "a body of its size"}},
       // Names.
       {"UnknownMaterial", entity("material: @@green_gras, temperature: 300 K"), {"no material 'green_gras'", "did you mean 'green_grass'?"}},
       {"UnknownLibrarySpectrum", response("@@insb_mwr"), {"did you mean 'insb_mwir'?"}},

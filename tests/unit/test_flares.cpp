@@ -212,7 +212,7 @@ flares:
   EXPECT_NEAR(sim.lights[1].intensity.integral(3.0, 5.0), 5000.0, 1e-6);
   // At its ejection: where the jet is, and as fast, with what it was thrown with to the left; the second to the right.
   for (int k : {0, 1}) {
-    const Motion& motion = sim.lights[static_cast<std::size_t>(k)].motion;
+    const Motion& motion = sim.lights[static_cast<std::size_t>(k)].mount.motion;
     const double t = 0.4 + 0.2 * k, side = k == 0 ? 1.0 : -1.0;
     EXPECT_NEAR(glm::length(motion.at(t).position - glm::dvec3(250.0 * t - 3.0, side, 3000.0)), 0.0, 1e-6);
     EXPECT_NEAR(glm::length(motion.velocityAt(t) - glm::dvec3(250.0, side * 30.0, 0.0)), 0.0, 1e-6);

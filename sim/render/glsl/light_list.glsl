@@ -4,6 +4,6 @@
 // Places that are left over have the number -1.
 layout(binding = 9) uniform samplerBuffer lights;
 vec4 lightTexel(int at) { return texelFetch(lights, at); }
-const int kLightTexels = 3;
+//@slot light_texels
 int lightRow(Draw draw) { return int(draw.state.z) * (kLightTexels * LIGHTS + 1); }
 int lightEntry(int row, int k) { return row + 1 + kLightTexels * k; }

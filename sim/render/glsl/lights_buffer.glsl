@@ -15,6 +15,7 @@ struct LightHere {
   int number;
 };
 
+//@slot light_patterns
 LightHere lightAt(int entry, bool sun) {
   LightHere here;
   vec4 light = lightTexel(entry), listed = lightTexel(entry + 1);
@@ -39,6 +40,7 @@ LightHere lightAt(int entry, bool sun) {
     lightDistance2_ = d2;
   }
   here.factor = here.number < 0 ? 0.0 : isSurface_ * (sun ? share * max(cosLight, 0.0) : pointIrradianceFactor(cosLight, d2, light.w));
+//@slot light_pattern
   if (here.factor > 0.0 && d2 < listed.w) here.factor *= shareSeen(listed, here.to, sun ? kFar : d - light.w);
   if (sun) here.air = airToSun(air_, height_);
   else here.air = airToLight(air_, height_, dot(up_, here.to), d);
