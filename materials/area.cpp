@@ -14,10 +14,12 @@ namespace physics {
 namespace {
 
 bool isDisc(const Record& r) {
-  const bool disc = r.given("diameter"), sides = r.given("width") && r.given("height");
-  if (disc == sides || (disc && (r.given("width") || r.given("height"))))
-    throw UserError(r.where(), "an area light that is neither a rectangle nor a disc", "'width' and 'height', or 'diameter'",
-                    disc ? "keep one of the two" : "add them");
+  const bool disc = r.given("diameter");
+  for (const char* side : {"width", "height"})
+    if (disc == r.given(side))
+      throw UserError(disc ? r.where(side) : r.where(),
+                      disc ? "an area light that is a disc and a rectangle" : "an area light that is neither a disc nor a rectangle",
+                      "'diameter', or 'width' and 'height'", disc ? std::string("remove '") + side + "'" : "add them");
   return disc;
 }
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "materials/lights.hpp"
+#include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -13,7 +14,7 @@ namespace physics {
 
 LightModel spotModel() {
   // From a searchlight's divergence, which single precision holds to 2e-4 of the intensity, to nearly a half-space.
-  constexpr double kNarrowest_rad = 0.00174, kWidest_rad = 3.1;
+  constexpr double kNarrowest_rad = 0.1 * kPi / 180.0, kWidest_rad = 178.0 * kPi / 180.0;
   return {
       "spot",
       "A lamp with a beam (searchlight, headlight, illuminator): intensity falls as cos^n off its axis, and is 0 from 90 deg on.",
