@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "sim/gl/context.hpp"
+#include "sim/plan/budget.hpp"
 
 namespace pitviper {
 namespace {
@@ -19,7 +20,7 @@ CoefficientsOnGpu::CoefficientsOnGpu(const Plan& plan, int vectors, const std::o
     std::vector<std::pair<double, size_t>> depths;
     for (size_t k = 0; k < count; ++k) depths.emplace_back(n.air.extinction[k] * most->amount[k], k);
     std::sort(depths.begin(), depths.end());
-    double left = kThinShare * plan.accuracy;
+    double left = budget::kThinAbsorbers.of(plan.accuracy);
     for (const auto& [depth, k] : depths)
       if ((left -= depth) >= 0.0) numbers_[from + k] = 0.0f;
   }

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "sim/model/ground.hpp"
+#include "sim/plan/budget.hpp"
 #include "sim/plan/sights.hpp"
 #include "sim/radiometry/physics.hpp"
 
@@ -17,8 +18,6 @@ namespace {
 /// Lines looked at, besides the film's corners and edges: of the film, and half as many of the extremes; where nodes are many, each costs as much as they do.
 constexpr size_t kFilm = 64, kFewest = 8;
 constexpr int kFewNodes = 24;
-/// Part of the accuracy that each of elevations, ranges and azimuths may take on them.
-constexpr double kShare = 0.05;
 /// Sizes to begin with and to end at.
 constexpr AirTableSize kLeast{17, 49, 1}, kMost{257, 385, 17};
 /// No more values than this (200 MB): what smaller tables lose then is said, not mended.
@@ -110,10 +109,6 @@ constexpr double kTableMargin = 2.0;
 /// And what ways on from lit surfaces to the sun lose, by the depth of these and the share of that light: 6e-4 of a pixel on the ground at a depth of 8 (fog,
 /// visibility 0.7 km; found on the GPU against double precision).
 constexpr double kSunWay = 1e-4;
-/// A probe keeps tables of the usual size, all around: a guess of what these lose, of the accuracy.
-constexpr double kProbeTables = 0.2;
-/// They are made for this where no accuracy is asked for.
-constexpr double kUsualAccuracy = 0.01;
 
 /// A line of sight as a grid's tables have it.
 struct TabledLine {
@@ -335,7 +330,7 @@ AirTableLoss AirTableFit::lossOf(const AirTableSize& size) const {
 }
 
 std::pair<AirTableSize, AirTableLoss> AirTableFit::within(double accuracy) const {
-  const double share = kShare * accuracy;
+  const double share = budget::kTableSteps.of(accuracy);
   AirTableSize size = kLeast;
   size.sunDepth = plan_.air.sunDepth;
   for (const Sample& s : samples_) {
@@ -366,7 +361,7 @@ std::vector<double> planLayeredTables(const AirTableRequest& r) {
   Plan& plan = r.plan;
   const double accuracy = plan.accuracy > 0.0 ? plan.accuracy : kUsualAccuracy;
   plan.air = affordable(kUsualSize, r.simulation, plan);
-  if (!r.rays || !r.camera) return std::vector<double>(plan.weight.size(), kProbeTables * accuracy);
+  if (!r.rays || !r.camera) return std::vector<double>(plan.weight.size(), budget::kProbeTables.of(accuracy));
   const std::vector<double> toSun = r.simulation.sun ? depthsToSun(r.simulation, plan) : std::vector<double>();
   if (!toSun.empty()) plan.air.sunDepth = *std::max_element(toSun.begin(), toSun.end());
   const NodesOfPlan nodes(r.simulation, plan);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/plan/budget.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -23,8 +24,6 @@ constexpr double kSameAzimuth = 0.02;
 /// And between two heights whose tables are mixed [m]: of air that thins by e in a kilometre their mean is off by 1e-3. Near the ground, where the way to the
 /// horizon changes with it, no more than a part of the height and a little.
 constexpr double kHeightStep_m = 64.0, kPartOfHeight = 0.25, kLowest_m = 2.0;
-/// Part of the accuracy that the sun's elevation may take between two of its steps.
-constexpr double kSunShare = 0.03;
 /// What a view sees is widened to whole steps of about so much of itself.
 constexpr double kWidened = 0.125;
 
@@ -116,7 +115,9 @@ double farthestIn(const Simulation& simulation, const View& view, const WorldSta
 }
 
 /// Step of the sine of the sun's elevation that changes what comes through the air, exp(-depth / sine), by no more than its share of the accuracy.
-double sunStep(double accuracy, double depth, double sine) { return powerOfTwoBelow(kSunShare * accuracy * std::max(sine, kLowestSun) / std::max(depth, 1.0)); }
+double sunStep(double accuracy, double depth, double sine) {
+  return powerOfTwoBelow(budget::kSunSteps.of(accuracy) * std::max(sine, kLowestSun) / std::max(depth, 1.0));
+}
 
 }  // namespace
 
@@ -210,7 +211,7 @@ Lattice latticeOf(double low, double high, int count, double over) {
 /// The grid of a view but for its height.
 AirGrid windowOf(const Simulation& simulation, const Plan& plan, const AirTableSize& size, const View& view, const WorldState& state) {
   const glm::dvec3 up = simulation.frame.up(view.position);
-  const double share = size.same * plan.accuracy / 0.01;
+  const double share = size.same * plan.accuracy / kUsualAccuracy;
   AirGrid g;
   g.places.ranges = size.ranges;
   const auto seen = elevationsIn(view, up);
@@ -250,7 +251,7 @@ AirGrids airGrids(const Simulation& simulation, const Plan& plan, const AirTable
   AirGrids grids;
   grids.below = grids.above = windowOf(simulation, plan, size, view, state);
   AirPlaces &below = grids.below.places, &above = grids.above.places;
-  const double height = simulation.frame.height(view.position), share = size.same * plan.accuracy / 0.01;
+  const double height = simulation.frame.height(view.position), share = size.same * plan.accuracy / kUsualAccuracy;
   if (!(share > 0.0)) {
     below.height_m = below.highest_m = above.height_m = above.highest_m = height;
     return grids;

@@ -6,6 +6,7 @@
 
 #include "scenarios/commands/geometry_report.hpp"
 #include "sim/parameters/print.hpp"
+#include "sim/plan/budget.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/tables.hpp"
 
@@ -48,6 +49,27 @@ double kelvinOf(const Plan& plan, size_t slot, double error, double temperature_
     warm += plan.weight[slot][i] * plan.nodes[i].planck(temperature_K + 0.5);
   }
   return warm > cold && cold > 1e-12 ? error * 0.5 * (cold + warm) / (warm - cold) : 0.0;
+}
+
+/// What each account of the budget may lose at most, and what it lost.
+std::string accountsText(const Plan& plan, const std::vector<std::string>& names) {
+  std::string out = print("\n  %-32s %10s", "lost, % of a pixel", plan.accuracy > 0.0 ? "at most" : "");
+  for (const auto& n : names) out += " " + padded(n, kShare, true);
+  out += "\n";
+  const auto row = [&](std::string_view name, const std::string& most, double PredictedParts::*part) {
+    out += print("  %-32s %10s", std::string(name).c_str(), plan.accuracy > 0.0 ? most.c_str() : "");
+    for (size_t s = 0; s < plan.parts.size(); ++s) out += " " + padded(percent(plan.parts[s].*part), std::max(kShare, names[s].size()), true);
+    out += "\n";
+  };
+  const auto most = [&](const Account& of) { return percent(of.of(plan.accuracy)); };
+  row("wavelengths", "the rest", &PredictedParts::wavelengths);
+  row(budget::kTables.name, most(budget::kTables), &PredictedParts::tables);
+  row(budget::kTerms.name, most(budget::kTerms) + " each", &PredictedParts::dropped);
+  if (!plan.surroundingsLoss.empty()) row(budget::kSurroundings.name, most(budget::kSurroundings), &PredictedParts::surroundings);
+  if (plan.parts.front().fields > 0.0) row(budget::kFields.name, most(budget::kFields), &PredictedParts::fields);
+  row("precision", "", &PredictedParts::precision);
+  row("beside it, at the extremes", "", &PredictedParts::extremes);
+  return out;
 }
 
 }  // namespace
@@ -121,16 +143,12 @@ std::string planText(const PlannedEye& eye) {
     if (const double k = kelvinOf(plan, s, plan.predictedError[s], 300.0); k > 0.0 && k < 10.0) out += print("  (%.2f K of a body at 300 K)", k);
     if (plan.accuracy > 0.0 && plan.predictedError[s] > plan.accuracy) out += "  MORE THAN ASKED FOR";
     out += "\n";
-    if (s >= plan.parts.size()) continue;
-    const PredictedParts& p = plan.parts[s];
-    out += "  " + padded("", widest, false) + "   of it wavelengths " + percent(p.wavelengths) + ", tables " + percent(p.tables) + ", terms left out " +
-           percent(p.dropped) + ", precision " + percent(p.precision) +
-           (plan.surroundingsLoss.empty() ? "" : ", light from all around " + percent(p.surroundings)) +
-           (p.fields > 0.0 ? ", steps through plumes and clouds " + percent(p.fields) : "") + "; at the extremes " + percent(p.extremes) + "\n";
   }
+  if (!plan.parts.empty()) out += accountsText(plan, names);
   if (eye.camera) {
     out += "  beside it geometry, " + edgeText(*eye.camera, plan.accuracy);
-    if (eye.camera->outlineAccuracy > 0.0) out += "; the intensity of a small body or bright part by " + percent(0.25 * plan.accuracy) + " % (1 sigma)";
+    if (eye.camera->outlineAccuracy > 0.0)
+      out += "; the intensity of a small body or bright part by " + percent(budget::kOutlines.of(plan.accuracy)) + " % (1 sigma)";
     out += "\n";
   }
   if (plan.lines > 0)
@@ -163,7 +181,7 @@ std::string ladderText(const std::vector<Plan>& plans, double asked, double subp
     const double worst = p.predictedError.empty() ? 0.0 : *std::max_element(p.predictedError.begin(), p.predictedError.end());
     out += print("  %-10s %6d %16s %18s", (percent(p.accuracy) + " %").c_str(), p.nodeCount(), air.c_str(),
                  (std::to_string(taps.mostAcross) + "x" + std::to_string(taps.mostAlong)).c_str());
-    out += print(" %10s %10s %18.3g%s\n", (percent(0.25 * p.accuracy) + " %").c_str(), (percent(worst) + " %").c_str(), termsOf(p),
+    out += print(" %10s %10s %18.3g%s\n", (percent(budget::kOutlines.of(p.accuracy)) + " %").c_str(), (percent(worst) + " %").c_str(), termsOf(p),
                  p.accuracy == asked ? "  this plan" : "");
     if (last && p.accuracy >= asked)
       more |= p.nodeCount() < last->nodeCount() || !(p.air == last->air) || tapsFor(last->textureAccuracy).mostAcross != taps.mostAcross;

@@ -10,6 +10,7 @@
 #include "sim/model/sky.hpp"
 #include "sim/parameters/print.hpp"
 #include "sim/parameters/units.hpp"
+#include "sim/plan/budget.hpp"
 
 namespace pitviper {
 namespace {
@@ -17,8 +18,8 @@ namespace {
 /// Far below the end of a float, 3.4e38.
 constexpr double kLargestFloatValue = 1e30;
 
-/// What layered air is drawn with if nobody says; and the ends of what can be asked for: single precision and the tables' angles do 0.01 %.
-constexpr double kUsualAccuracy = 0.01, kLeastAccuracy = 0.0005, kMostAccuracy = 0.2;
+/// The ends of what can be asked for: single precision and the tables' angles do 0.01 %.
+constexpr double kLeastAccuracy = 0.0005, kMostAccuracy = 0.2;
 
 /// Of limits: as far and as hot as a scenario's bodies can be.
 constexpr double kFarthestRange_m = 1e9, kHottestBody_K = 1e5;

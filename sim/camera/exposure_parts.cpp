@@ -5,12 +5,12 @@
 #include <cmath>
 
 #include "sim/model/ray_hits.hpp"
+#include "sim/plan/budget.hpp"
 
 namespace pitviper {
 namespace {
 
 constexpr int kMostParts = 256;
-constexpr double kAskedOtherwise = 0.01;
 
 /// Where a place of the world is on the film [pixels]; none behind it.
 std::optional<glm::dvec2> filmOf(const View& v, const glm::dvec3& place) {
@@ -114,15 +114,15 @@ ExposureParts exposureParts(const Simulation& sim, const Camera& camera, const S
   const int cells = cellsOf(camera), margin = marginOf(camera), rows = (camera.pinhole.height + 2 * margin) * cells;
   const auto rowTime = [&](int row, double ofLine_s) { return time_s + ((row + 0.5) / cells - margin - 0.5 * camera.pinhole.height) * ofLine_s; };
   const double first = rowTime(0, line_s) - 0.5 * exposure_s, last = rowTime(rows - 1, line_s) + 0.5 * exposure_s,
-               asked = camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kAskedOtherwise;
+               asked = camera.spectral.accuracy > 0.0 ? camera.spectral.accuracy : kUsualAccuracy;
   parts.motion_px = motionOf(sim, camera, stateAt, {first, time_s, last}, parts.smallMotion_px);
   const bool addsUp = exposure_s > 0.0;
   const double ofShortest = addsUp ? exposure_s / shortest_s : 1.0;
   int count = camera.exposureParts;
   if (count == 0) {
     constexpr double kPicturesAPixel = 4.0;
-    const double wanted =
-        addsUp ? std::max(std::sqrt(ofShortest * parts.motion_px / (4.0 * asked)), kPicturesAPixel * parts.smallMotion_px) : parts.motion_px / (4.0 * asked);
+    const double wanted = addsUp ? std::max(std::sqrt(ofShortest * parts.motion_px / (4.0 * budget::kMotion.of(asked))), kPicturesAPixel * parts.smallMotion_px)
+                                 : parts.motion_px / (4.0 * budget::kMotion.of(asked));
     count = static_cast<int>(std::clamp(std::ceil(wanted), 1.0, static_cast<double>(kMostParts)));
   }
   parts.error = ofShortest * parts.motion_px / (4.0 * count * (addsUp ? count : 1));

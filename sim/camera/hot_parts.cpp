@@ -5,11 +5,11 @@
 #include <glm/gtc/constants.hpp>
 #include <numeric>
 
+#include "sim/plan/budget.hpp"
+
 namespace pitviper {
 namespace {
 
-/// Of the accuracy, what one part may take.
-constexpr double kShare = 0.25;
 /// Diagonals of a subpixel around a part: one, and some.
 constexpr double kRoom = 1.06;
 
@@ -90,10 +90,10 @@ std::vector<Ball> HotParts::inView(const WorldState& state, const View& v, doubl
       if (!(extent < limit) || !mayShow(v, ball.centre, ball.radius_m)) continue;
       const double h = 2.0 * part.radius_m / extent, outline = 2.0 * glm::pi<double>() * part.radius_m;
       const double weight = weightOf(parts_[e], p, state.temperatures_K[e]);
-      if (std::min(std::sqrt(0.0724 * outline * h * h * h) / part.area_m2, 1.0) * weight <= kShare * accuracy_) continue;
+      if (std::min(std::sqrt(0.0724 * outline * h * h * h) / part.area_m2, 1.0) * weight <= budget::kBrightParts.of(accuracy_)) continue;
       // Subpixels that see anything of it lie wholly in its view: what the picture has there is replaced as a whole.
       ball.radius_m += kRoom * h * std::hypot(v.tanPerPixelX, v.tanPerPixelY) / std::min(v.tanPerPixelX, v.tanPerPixelY);
-      ball.lines_per_m = 1.0 / std::min(std::cbrt(std::pow(kShare * accuracy_ * part.area_m2 / weight, 2.0) / (0.0724 * outline)), h);
+      ball.lines_per_m = 1.0 / std::min(std::cbrt(std::pow(budget::kBrightParts.of(accuracy_) * part.area_m2 / weight, 2.0) / (0.0724 * outline)), h);
       // One view for parts that lie in each other, unless it would be too large.
       for (auto other = balls.begin(); other != balls.end();) {
         const glm::dvec3 line = other->centre - ball.centre;

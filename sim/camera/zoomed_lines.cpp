@@ -7,6 +7,7 @@
 #include <map>
 
 #include "sim/model/shadow_casters.hpp"
+#include "sim/plan/budget.hpp"
 
 namespace pitviper {
 namespace {
@@ -59,7 +60,6 @@ int evenSize(double lines) {
 }
 
 std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
-  constexpr double kPart = 0.25;
   std::vector<int> lines;
   OfMeshes<double> surfaces_m2;
   for (const Entity& e : sim.entities) {
@@ -68,7 +68,7 @@ std::vector<int> zoomedLines(const Simulation& sim, int most, double accuracy) {
     const double across = 2.0 * static_cast<double>(e.boundingRadius_m),
                  area = 0.25 * surfaces_m2.of(e, [](double&sum, const glm::dvec3&own) { sum += glm::length(own); }), outline = glm::pi<double>() * across;
     // h = across / lines in the law, solved for them.
-    const double needed = area > 0.0 ? across * std::cbrt(outline * 0.0724 / std::pow(kPart * accuracy * area, 2.0)) : INFINITY;
+    const double needed = area > 0.0 ? across * std::cbrt(outline * 0.0724 / std::pow(budget::kOutlines.of(accuracy) * area, 2.0)) : INFINITY;
     lines.back() = std::min(evenSize(needed), most);
   }
   return lines;

@@ -11,6 +11,7 @@
 #include "sim/model/light_legs.hpp"
 #include "sim/model/stage.hpp"
 #include "sim/model/world.hpp"
+#include "sim/plan/budget.hpp"
 #include "sim/plan/measured_outputs.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
@@ -28,8 +29,6 @@ constexpr double kAskedOtherwise = 0.002;
 /// zoomedLines()).
 constexpr double kLinesAtOnePercent = 128.0;
 constexpr int kWithin = 6;
-/// What lies between places that are worked out may be off by, of what is asked.
-constexpr double kLinearOfAccuracy = 0.04;
 
 bool meets(const RayHits& hits, int entity) {
   return hits.solid.entity == entity || std::any_of(hits.layers.begin(), hits.layers.end(), [&](const Hit& h) { return h.entity == entity; }) ||
@@ -209,7 +208,7 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
           if (met != 0) visibleHere += solidAngle(x, y);
           return met == 0 ? 0 : met * 31 + ReferenceShader::things(lineOf(x, y, others).hits);
         },
-        [&](int x, int y) { return slotsThrough(x + 0.5, y + 0.5, sum, behind); }, kLinearOfAccuracy* asked_);
+        [&](int x, int y) { return slotsThrough(x + 0.5, y + 0.5, sum, behind); }, budget::kTruthPlaces.of(asked_));
     tile.fill(x0, y0, w, h, [&](int x, int y, const std::vector<double>& all) { seen[indexOf(x, y)] = all; });
     const auto add = [&](const std::vector<double>& all, double sr) {
       seenHere += sr;

@@ -5,16 +5,12 @@
 #include <numeric>
 #include <tuple>
 
+#include "sim/plan/budget.hpp"
 #include "sim/plan/product_set.hpp"
 
 namespace pitviper {
 namespace {
 
-/// Of the error asked for: what groups may take of the products they are fitted to, and of those they have not seen, which lines as the equation has them
-/// follow. The rest is for tables and for what was not drawn.
-constexpr double kFitted = 0.33, kUnseen = 0.7;
-/// Of that, with fields in view, whose steps and lines have an account of their own.
-constexpr double kBesideFields = 0.75;
 constexpr int kMostGroups = 96;
 /// Of hundreds of lines most say the same: a fit begins with some, and the worst of the others join them.
 constexpr FitEffort kEffort{60, 160, 0.0, 12};
@@ -27,7 +23,7 @@ constexpr size_t kLearnt = 60;
 
 ChannelFit::ChannelFit(const Simulation& simulation, std::span<const Spectrum* const> kernels, double accuracy)
     : grid_(fineGridOf(simulation, kernels)), accuracy_(accuracy) {
-  if (!simulation.fields.empty()) accuracy_ *= kBesideFields;
+  if (!simulation.fields.empty()) accuracy_ = budget::kBesideFields.of(accuracy_);
   for (size_t k = 0; k < grid_.ratio.size(); ++k) {
     const auto [least, most] = std::minmax_element(grid_.ratio[k].begin(), grid_.ratio[k].end());
     if (*most - *least > kSameShape * *most) kernels_.push_back(k + 1);
@@ -56,7 +52,7 @@ void ChannelFit::begin(const Sights& sights, std::vector<double> floors) {
   seen_ = sights.size();
   const ProductSet products(problem);
   look(products);
-  fit_ = fitToTolerance(products, kFitted * accuracy_, kMostGroups, kEffort, {});
+  fit_ = fitToTolerance(products, budget::kFitted.of(accuracy_), kMostGroups, kEffort, {});
   training_ = std::move(problem.products);
 }
 
@@ -70,9 +66,9 @@ bool ChannelFit::check(const Sights& sights) {
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(), [&](size_t a, size_t b) { return std::abs(errors[a]) > std::abs(errors[b]); });
   const double worst = order.empty() ? 0.0 : std::abs(errors[order.front()]);
-  holds_ = worst <= kUnseen * accuracy_;
+  holds_ = worst <= budget::kUnseen.of(accuracy_);
   if (holds_) return true;
-  for (size_t k = 0; k < std::min(kLearnt, order.size()) && std::abs(errors[order[k]]) > kFitted * accuracy_; ++k)
+  for (size_t k = 0; k < std::min(kLearnt, order.size()) && std::abs(errors[order[k]]) > budget::kFitted.of(accuracy_); ++k)
     training_.push_back(problem.products[order[k]]);
   fit(std::move(problem));
   return false;
@@ -85,7 +81,7 @@ void ChannelFit::learn(const Sights& sights, size_t first, double part) {
   look(products);
   before_ = {fit_, accuracy_};
   const std::vector<double> errors = groupErrors(products, fit_.groups);
-  const bool isShown = std::any_of(errors.begin(), errors.end(), [&](double e) { return std::abs(e) > kFitted * accuracy_; });
+  const bool isShown = std::any_of(errors.begin(), errors.end(), [&](double e) { return std::abs(e) > budget::kFitted.of(accuracy_); });
   if (!isShown) accuracy_ *= part;
   holds_ = false;
   training_.insert(training_.end(), problem.products.begin(), problem.products.end());
@@ -97,7 +93,7 @@ void ChannelFit::goBack() { std::tie(fit_, accuracy_) = before_; }
 /// To what it has learnt; from the groups it has.
 void ChannelFit::fit(SpectralProblem problem) {
   problem.products = training_;
-  fit_ = fitToTolerance(ProductSet(problem), kFitted * accuracy_, kMostGroups, kEffort, fit_.groups);
+  fit_ = fitToTolerance(ProductSet(problem), budget::kFitted.of(accuracy_), kMostGroups, kEffort, fit_.groups);
 }
 
 }  // namespace pitviper

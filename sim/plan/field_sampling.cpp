@@ -10,6 +10,7 @@
 #include "sim/model/field_states.hpp"
 #include "sim/model/scene_fingerprint.hpp"
 #include "sim/model/world.hpp"
+#include "sim/plan/budget.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/sight_rays.hpp"
 #include "sim/radiance/node_sum.hpp"
@@ -30,12 +31,8 @@ constexpr std::array kApart{6.0, 4.0, 3.0, 2.2, 1.6, 1.0};
 constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kTried = 2000, kAcross = 14, kSteps = 8;
 /// What is darker than this part of the field's brightest line counts as so much, as on the film: filmFloors().
 constexpr double kDimmest = 1e-3;
-/// What is asked where no accuracy is.
-constexpr double kUsual = 0.01;
 /// Of what was not there when it was looked for; steps of what never was.
 constexpr int kNotSeen = -1, kUnknown = 16;
-/// What changes no line by more than this part of the accuracy is not drawn, as terms that small are.
-constexpr double kUnseen = 0.05;
 /// Places at which the air of a line is looked at.
 constexpr int kAirPlaces = 8;
 
@@ -121,7 +118,7 @@ class FieldLooks {
 };
 
 StepsByKind stepsFor(FieldLooks& looks, const std::vector<glm::dvec3>& eyes, double asked, Dice& dice) {
-  const double allowed = kFieldsShare * asked, unseen = kUnseen * asked;
+  const double allowed = budget::kFields.of(asked), unseen = budget::kFaintFields.of(asked);
   const FieldState& field = looks.field();
   StepsByKind steps;
   steps.fill(kNotSeen);
@@ -205,7 +202,7 @@ double coarserFor(FieldLooks& looks, const View& view, int pixels, double asked,
       const std::vector<double> got = mean(linesOf(coarser), behind);
       double worst = 0.0;
       for (std::size_t s = 0; s < got.size(); ++s) worst = std::max(worst, std::abs(got[s] - want[s]) / std::max({want[s], kDimmest * brightest[s], 1e-300}));
-      if (worst <= kFieldsShare * asked) break;
+      if (worst <= budget::kFields.of(asked)) break;
     }
     ++looked;
   }
@@ -215,7 +212,7 @@ double coarserFor(FieldLooks& looks, const View& view, int pixels, double asked,
 }  // namespace
 
 FieldSampling::FieldSampling(const Simulation& sim, const Plan& whole, int most) {
-  const double asked = whole.accuracy > 0.0 ? whole.accuracy : kUsual;
+  const double asked = whole.accuracy > 0.0 ? whole.accuracy : kUsualAccuracy;
   const Plan plan = fewNodes(sim, whole, most);
   const NodeSpectra spectra(sim, plan.nodes, 0);
   NodeSum sum(spectra);

@@ -5,16 +5,15 @@
 #include <functional>
 
 #include "sim/parameters/on_threads.hpp"
+#include "sim/plan/budget.hpp"
 #include "sim/plan/sights.hpp"
 #include "sim/radiance/node_sum.hpp"
 
 namespace pitviper {
 namespace {
 
-/// Numbers of places tried, the part of the accuracy that they may lose against all that the air's model has, and lines looked at, of the film and of
-/// the extremes.
+/// Numbers of places tried, which are held against all that the air's model has, and lines looked at, of the film and of the extremes.
 constexpr int kTried[] = {5, 9, 18, 36, 72};
-constexpr double kPlacesShare = 0.4;
 constexpr size_t kLooked = 20;
 /// Frames that are looked at for how dark the film gets, and lines in all of them and at least in each.
 constexpr int kFloorFrames = 24, kFloorLines = 240, kFewestLines = 12;
@@ -152,7 +151,7 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
           for (size_t s = 0; s < slots[n].size(); ++s) {
             double lost = 0.0;
             for (size_t i = 0; i < found.size(); ++i) lost += plan.weight[s][i] * std::abs(found[i] - all[n][i]);
-            if (lost > kPlacesShare * accuracy * std::max(slots[n][s], floor[s])) missed[n] = 1;
+            if (lost > budget::kAirPlaces.of(accuracy) * std::max(slots[n][s], floor[s])) missed[n] = 1;
           }
         },
         places);

@@ -60,14 +60,6 @@ constexpr double kDark = 1e-3;
 /// Where planning takes that percentile from lines of sight it takes a lower one: what is bright on about a hundredth of the film is more on some hundred
 /// lines and less on its pixels by chance, and the rest may be dark beside it.
 constexpr std::size_t kBrightPercent = 97;
-/// Of the accuracy, the part that shadows of lamps may take: they are looked for where the lamp is more than that of the pixel.
-constexpr double kShadowShare = 0.02;
-/// And the part that lamps may take which are left out where they add less.
-constexpr double kLampShare = 0.01;
-/// And the part that what absorbs next to nothing may take.
-constexpr double kThinShare = 0.002;
-/// And the part that steps through fields may take, and lines through pixels of them.
-constexpr double kFieldsShare = 1.0 / 3.0;
 /// What counts as dark in any film [W/(m2 sr um)]: to a pixel of 1e-9 m2 sr a micrometre of it sends a photon in five hours.
 constexpr double kDarkest = 1e-14;
 /// The floor of a channel whose bright pixels have so much; `kernel`: its integral over wavelength, which is the sum of its weights.

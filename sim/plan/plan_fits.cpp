@@ -6,6 +6,7 @@
 #include <set>
 
 #include "sim/parameters/on_threads.hpp"
+#include "sim/plan/budget.hpp"
 #include "sim/plan/kernel_family.hpp"
 
 namespace pitviper {
@@ -13,16 +14,12 @@ namespace {
 
 /// Lines of sight to fit to at first besides the extremes, and of each check; checks until one is passed, but no more than so many.
 constexpr int kFirst = 600, kCheck = 360, kChecks = 6;
-/// Lines on which fits are held against the equation after that, besides the extremes; how often one learns from them; what they may show of the accuracy, and
-/// those that it learns.
+/// Lines on which fits are held against the equation after that, besides the extremes; how often one learns from them.
 constexpr int kSecond = 400, kLearn = 4;
-constexpr double kHeld = 0.6, kLearnt = 0.3;
 /// Where they do not show as products, all lines are to be told as much better as they are off by, and a little; no less than half of what was asked before.
 constexpr double kTightened = 0.9, kLeastPart = 0.5;
 /// What does not fall below this part of what it was is not the groups' to mend.
 constexpr double kHopeless = 0.9;
-/// Of the accuracy: more of it in terms that a plan leaves out teaches that they are there.
-constexpr double kNoticed = 0.05;
 /// Below, air and the textures of usual scenes send no thermal light to speak of.
 constexpr double kThermal_um = 1.2;
 
@@ -154,8 +151,8 @@ void PlanFits::teach(const CheckedLines& checked, const std::vector<size_t>& fit
   for (size_t f : fits)
     for (size_t s : slots_[f])
       for (size_t n = 0; n < checked.figures[s].errors.size(); ++n)
-        if (checked.figures[s].errors[n] > std::min(kLearnt * plan_.accuracy, kTightened * allowed[s]) ||
-            checked.figures[s].left[n] > kNoticed * plan_.accuracy)
+        if (checked.figures[s].errors[n] > std::min(budget::kLearnt.of(plan_.accuracy), kTightened * allowed[s]) ||
+            checked.figures[s].left[n] > budget::kTerms.of(plan_.accuracy))
           missed.insert(n);
   const size_t first = sights_.size();
   for (size_t n : missed) sights_.add(checked.lines[n], true);
@@ -170,8 +167,7 @@ void PlanFits::teach(const CheckedLines& checked, const std::vector<size_t>& fit
 void PlanFits::hold(const std::vector<size_t>& fits) {
   std::vector<size_t> open = fits;
   std::vector<double> before(fits_.size(), INFINITY);
-  // Steps through fields have an account of their own.
-  const double held = kHeld * (sim_.fields.empty() ? 1.0 : 1.0 - kFieldsShare) * plan_.accuracy;
+  const double held = budget::kHeld.share * (sim_.fields.empty() ? 1.0 : 1.0 - budget::kFields.share) * plan_.accuracy;
   const std::vector<double> allowed(floor_.size(), held);
   for (int attempt = 0;; ++attempt) {
     for (int n = 0; n < kChecks && !open.empty(); ++n) {

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "sim/plan/air_table_request.hpp"
+#include "sim/plan/budget.hpp"
 #include "sim/plan/line_check.hpp"
 #include "sim/plan/measured_outputs.hpp"
 #include "sim/plan/plan_cache.hpp"
@@ -26,12 +27,6 @@ constexpr double kMargin = 2.0;
 constexpr int kLookedAt = 16;
 /// A plan that shows more on them than was asked learns them, and is told anew by as many others: so often.
 constexpr int kAgain = 2;
-/// Of what tables lose, no more than this of the accuracy is made up for by wavelengths.
-constexpr double kMended = 0.3;
-/// Of the accuracy, what there is until tables are made anew, which may lose a little more.
-constexpr double kOldTables = 0.98;
-/// A term that is nowhere more than this part of the accuracy is dropped.
-constexpr double kDropped = 0.05;
 /// Single precision on the GPU over a whole pixel: 2.8e-6 of a formula and 1e-5 of tables (tests/gpu/test_float_against_double.cpp), 5e-5 found in random
 /// scenes.
 constexpr double kPrecision = 6e-5;
@@ -45,7 +40,7 @@ void dropLights(Plan& plan) {
 
 /// What is nowhere seen in any channel has no place in the programs; sunlight and lamps also by channel.
 void dropTerms(Plan& plan, bool keepLights) {
-  auto seen = [&](TermKind kind, size_t slot) { return plan.shares[static_cast<size_t>(kind)].share[slot] > kDropped * plan.accuracy; };
+  auto seen = [&](TermKind kind, size_t slot) { return plan.shares[static_cast<size_t>(kind)].share[slot] > budget::kTerms.of(plan.accuracy); };
   auto anywhere = [&](TermKind kind) {
     bool kept = false;
     for (size_t s = 0; s < static_cast<size_t>(plan.slotCount); ++s) kept |= seen(kind, s);
@@ -102,15 +97,15 @@ struct LastLook {
     last.addSome(extremes.lines(), extreme, [](const SightRay& r) { return r.glints || r.lamp >= 0; });
     plan.lines = kLast;
     plan.parts.resize(floor.size());
-    const double lamps = sim.lights.empty() ? 0.0 : (kLampShare + (plan.terms.shadows ? kShadowShare : 0.0)) * plan.accuracy;
-    const double thin = plan.terms.air ? kThinShare * plan.accuracy : 0.0;
+    const double lamps = sim.lights.empty() ? 0.0 : (budget::kLamps.share + (plan.terms.shadows ? budget::kLampShadows.share : 0.0)) * plan.accuracy;
+    const double thin = plan.terms.air ? budget::kThinAbsorbers.of(plan.accuracy) : 0.0;
     for (size_t s : slots)
       plan.parts[s] = {kMargin * last.figures[s].largest,
                        plan.parts[s].tables,
                        last.figures[s].dropped + lamps + thin,
                        kPrecision,
                        plan.surroundingsLoss.empty() ? 0.0 : plan.surroundingsLoss[s],
-                       sim.fields.empty() ? 0.0 : kFieldsShare * plan.accuracy,
+                       sim.fields.empty() ? 0.0 : budget::kFields.of(plan.accuracy),
                        extreme[s].largest};
     return last;
   }
@@ -183,8 +178,8 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
       const PredictedParts& p = plan.parts[s];
       // Tables were made for other groups of what has changed.
       const bool isOld = attempt > 0 && std::find(changed.begin(), changed.end(), s) != changed.end();
-      const double left = (isOld ? kOldTables : 1.0) * plan.accuracy - std::min(p.tables, kMended * plan.accuracy) -
-                          std::min(p.surroundings, kSurroundingsShare * plan.accuracy) - p.dropped - p.precision - p.fields;
+      const double left = (isOld ? 1.0 - budget::kTablesAnew.share : 1.0) * plan.accuracy - std::min(p.tables, budget::kTables.of(plan.accuracy)) -
+                          std::min(p.surroundings, budget::kSurroundings.of(plan.accuracy)) - p.dropped - p.precision - p.fields;
       allowed.push_back(std::max(left, 0.0) / kMargin);
       if (p.wavelengths > left) missed.push_back(s);
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sim/parameters/on_threads.hpp"
+#include "sim/plan/budget.hpp"
 
 namespace pitviper {
 namespace {
@@ -99,7 +100,7 @@ void chooseSurroundings(const Simulation& sim, const NodesOfPlan& fine, SightRay
     }
   });
   std::vector<Tried> all;
-  const auto isEnough = [&](const Tried& t) { return t.largest <= kSurroundingsShare * plan.accuracy; };
+  const auto isEnough = [&](const Tried& t) { return t.largest <= budget::kSurroundings.of(plan.accuracy); };
   const auto look = [&](int degree) {
     all.push_back(tell(sim, fine, told, floor, degree));
     return isEnough(all.back());

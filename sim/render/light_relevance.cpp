@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/plan/budget.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -173,7 +174,7 @@ double LightRelevance::nearest2_m2(std::size_t entity, std::size_t light, const 
 }
 
 double LightRelevance::reach2_m2(std::size_t entity, std::size_t light, const WorldState& state, bool sunlit) const {
-  return std::min(strength_m2(entity, light, state, sunlit) / share(std::max(kRounding, kLampShare * accuracy_)), physics::kFar);
+  return std::min(strength_m2(entity, light, state, sunlit) / share(std::max(kRounding, budget::kLamps.of(accuracy_))), physics::kFar);
 }
 
 bool LightRelevance::matters(std::size_t entity, std::size_t light, const WorldState& state) const {
@@ -181,7 +182,7 @@ bool LightRelevance::matters(std::size_t entity, std::size_t light, const WorldS
 }
 
 double LightRelevance::shadowReach2_m2(std::size_t entity, std::size_t light, const WorldState& state) const {
-  return std::min(strength_m2(entity, light, state) / share(std::max(kRounding, kShadowShare * accuracy_)), physics::kFar);
+  return std::min(strength_m2(entity, light, state) / share(std::max(kRounding, budget::kLampShadows.of(accuracy_))), physics::kFar);
 }
 
 bool LightRelevance::shadowMatters(std::size_t entity, std::size_t light, const WorldState& state) const {

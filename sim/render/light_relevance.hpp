@@ -16,14 +16,14 @@ class LightRelevance {
   /// The temperatures of the same tables have changed.
   void follow(const RenderTables& tables);
   /// The square of the distance from a light beyond which a body reflects so little of it that it does not matter [m2]: in every channel and for all lights
-  /// together less than kLampShare of the accuracy asked for of the radiance that its surfaces have by themselves; without an accuracy, at every wavelength
+  /// together less than budget::kLamps of the accuracy asked for of the radiance that its surfaces have by themselves; without an accuracy, at every wavelength
   /// less than what single precision can tell (6e-8). 0: it is dark. `sunlit`: in full sunshine, of which surfaces that send it on alike to all sides reflect
   /// more; within kSunlit of the horizon that counts as none.
   double reach2_m2(std::size_t entity, std::size_t light, const WorldState& state, bool sunlit = false) const;
   /// Whether the body comes as near.
   bool matters(std::size_t entity, std::size_t light, const WorldState& state) const;
   /// The square of the distance from a light beyond which its shadows on a body don't matter [m2]: unshaded it is, for all lights together, less than
-  /// kShadowShare of the accuracy asked for; without one, as above.
+  /// budget::kLampShadows of the accuracy asked for; without one, as above.
   double shadowReach2_m2(std::size_t entity, std::size_t light, const WorldState& state) const;
   /// Whether the body comes as near.
   bool shadowMatters(std::size_t entity, std::size_t light, const WorldState& state) const;

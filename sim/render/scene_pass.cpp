@@ -8,6 +8,7 @@
 
 #include "sim/gl/context.hpp"
 #include "sim/gl/timing.hpp"
+#include "sim/plan/budget.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -19,9 +20,6 @@ constexpr std::size_t kAligned = 256;
 constexpr int kLightPlaces = 33;
 /// Tiles are drawn in pictures of so many pixels a side at most, or of one tile.
 constexpr int kTilePicture_px = 1024;
-/// Where an accuracy is asked for, pixels that bend by more than so many times it are shaded subpixel by subpixel: an edge between two middles bends by as
-/// much as there is between its sides, and the middle is off by half of that at most.
-constexpr double kBendShare = 2.0, kUsualAccuracy = 0.01;
 /// For the rounding of places in single precision.
 constexpr double kRoom = 1.001;
 
@@ -269,7 +267,7 @@ void ScenePass::findClassesIn(const View& v, const WorldState& state, const std:
 std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   if (v.grouped < 2 || v.onlyEntity >= 0 || !sharesShading()) return {};
   if (!shared_)
-    shared_.emplace(library_, plan_.groupCount(), current_->shading.colourCount(), kBendShare * (plan_.accuracy > 0.0 ? plan_.accuracy : kUsualAccuracy),
+    shared_.emplace(library_, plan_.groupCount(), current_->shading.colourCount(), budget::kBends.of(plan_.accuracy > 0.0 ? plan_.accuracy : kUsualAccuracy),
                     plan_.textureAccuracy > 0.0);
   View whole = v;
   whole.width /= v.grouped, whole.height /= v.grouped;

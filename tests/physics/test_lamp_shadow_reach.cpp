@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "sim/plan/budget.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -68,7 +69,7 @@ TEST(LampShadows, ReachAsFarAsTheyMatter) {
       EXPECT_GT(shaded, 0) << kind.name << ": at the shortest distance the lamp is a good part of the pixel";
       EXPECT_GT(open, 0) << kind.name << ": at the longest it is nothing";
       bound(std::string("light of a lamp that no shadow was looked for, ") + kind.name + (*light ? ", beside ambient light" : "") + ", of the pixel", worst,
-            kShadowShare * kAccuracy / 2.0 * 1.001, "kShadowShare of 5 %, half for each of two lamps");
+            budget::kLampShadows.share * kAccuracy / 2.0 * 1.001, "budget::kLampShadows of 5 %, half for each of two lamps");
     }
 }
 
@@ -98,7 +99,8 @@ TEST(LampShadows, LampsReachAsFarAsTheyMatter) {
   }
   EXPECT_GT(kept, 2);
   EXPECT_GT(left, 1);
-  bound("light of a lamp that was left out, of the pixel", worst, kLampShare * kAccuracy / 2.0 * 1.001, "kLampShare of 5 %, half for each of two lamps");
+  bound("light of a lamp that was left out, of the pixel", worst, budget::kLamps.share * kAccuracy / 2.0 * 1.001,
+        "budget::kLamps of 5 %, half for each of two lamps");
   bound("light of one that was not, off by, of the pixel", off, kAccuracy, "the accuracy asked for");
 }
 
@@ -116,7 +118,8 @@ TEST(LampShadows, WhatIsNotLookedForIsPredicted) {
               "4.6 um]}}]}]\n");
     return planFor(sim, {&sim.cameras[0], nullptr}).parts[0].dropped;
   };
-  figure("predicted of shadows of lamps at 5 %", dropped("true") - dropped("false"), kShadowShare * 0.05, 1e-9, "kShadowShare of the accuracy");
+  figure("predicted of shadows of lamps at 5 %", dropped("true") - dropped("false"), budget::kLampShadows.share * 0.05, 1e-9,
+         "budget::kLampShadows of the accuracy");
 }
 
 }  // namespace

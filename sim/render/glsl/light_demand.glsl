@@ -8,7 +8,7 @@ bool wholeSun_;
 //@slot shadow_list
 
 const float kSunlit = 0.3;  // as in sim/render/light_relevance.hpp
-// Of its reach, squared, within which a lamp may make a picture bend: it is kLampShare (sim/render/light_relevance.hpp), so that farther off a lamp adds less
+// Of its reach, squared, within which a lamp may make a picture bend: it is budget::kLamps (sim/plan/budget.hpp), so that farther off a lamp adds less
 // than the accuracy, half of what a bend is.
 const float kBends = 0.01;
 const float kFewCasters = 16.0;  // of more, asking each costs about what the shadows do
