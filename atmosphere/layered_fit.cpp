@@ -72,7 +72,8 @@ class Reader {
     for (size_t s = 0; s < slots; ++s) {
       const auto part = [&](size_t p) { return mixed(a.radiance, (columnA * parts + p) * values + s, b.radiance, (columnB * parts + p) * values + s); };
       seen.air[s] += part(0);
-      if (parts > 1) seen.air[s] += rayleighPhase(cosScatter_) * part(1) + henyeyGreensteinPhase(cosScatter_, rows_.asymmetries()[s]) * part(2);
+      if (parts > 1)
+        seen.air[s] += physics::rayleighPhase(cosScatter_) * part(1) + physics::henyeyGreensteinPhase(cosScatter_, rows_.asymmetries()[s]) * part(2);
     }
     return seen;
   }

@@ -142,7 +142,8 @@ void AirRows::writeRadiance(const NodeRadiance& sent, double cosScatter, AirRow&
         if (plan_.weight[slot][i] == 0.0) continue;
         // The shader has one asymmetry per channel: on the row's own azimuth each node keeps its own.
         const double turned =
-            part < 2 ? 1.0 : henyeyGreensteinPhase(cosScatter, plan_.nodes[i].air.asymmetry) / henyeyGreensteinPhase(cosScatter, asymmetry_[slot]);
+            part < 2 ? 1.0
+                     : physics::henyeyGreensteinPhase(cosScatter, plan_.nodes[i].air.asymmetry) / physics::henyeyGreensteinPhase(cosScatter, asymmetry_[slot]);
         add(slot, strength * plan_.weight[slot][i] * turned);
       }
     }

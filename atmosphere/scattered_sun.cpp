@@ -18,12 +18,6 @@ double dot(const Powers& a, const Powers& b) {
   return sum;
 }
 
-// Mean of exp(-D) over a stretch where D goes evenly from one end's to the other's; the lesser comes out of it, so that neither overflows.
-double meanDecay(double depth, double other) {
-  const double x = std::abs(other - depth);
-  return std::exp(-std::min(depth, other)) * (x < 1e-8 ? 1.0 - 0.5 * x : -std::expm1(-x) / x);
-}
-
 double cosineOf(double sine) { return std::sqrt(std::max(1.0 - sine * sine, 0.0)); }
 
 // Camera at height, z upwards, sun in the xz plane.
@@ -143,7 +137,7 @@ ScatteredSun::Optics ScatteredSun::optics(double wavelength_um) const {
 
 double ScatteredSun::scatteredRadiance(double wavelength_um, const SunlitPath& path, double irradiance) const {
   const Optics o = optics(wavelength_um);
-  const double molecules = rayleighPhase(path.cosScatter), haze = henyeyGreensteinPhase(path.cosScatter, o.asymmetry);
+  const double molecules = physics::rayleighPhase(path.cosScatter), haze = physics::henyeyGreensteinPhase(path.cosScatter, o.asymmetry);
   Powers source{};
   for (size_t k = 0; k < source.size(); ++k) source[k] = molecules * o.molecules[k] + haze * o.haze[k];
   double sum = 0.0;
@@ -152,7 +146,7 @@ double ScatteredSun::scatteredRadiance(double wavelength_um, const SunlitPath& p
     const auto &near = path.stations[i - 1], &far = path.stations[i];
     const double scattered = dot(source, far.viewPower) - dot(source, near.viewPower);
     const double before = dot(o.extinction, near.bothPower), after = dot(o.extinction, far.bothPower);
-    sum += scattered * meanDecay(before, after);
+    sum += scattered * physics::meanPassedBetween(before, after);
   }
   return irradiance * sum;
 }

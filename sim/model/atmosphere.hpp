@@ -118,14 +118,6 @@ struct AirLight {
   /// Source: LOWTRAN 7 without multiple scattering (Kneizys et al. 1988, AFGL-TR-88-0177). Valid: exact in a world of one temperature (Kirchhoff) and
   /// for what only absorbs; where much is scattered under a cold sky the air comes out too bright, by at most the scattered share.
   void emitted(std::span<const double> source, std::span<double> radiance) const;
-  /// Of light of irradiance 1 scattered once, what all that scatters has in common: the mean of lit exp(-both) over each stretch, which times the
-  /// stretch's depth of a scatterer adds up to its radiance for a phase of 1/sr. `both`: depth from the camera and on to the sun; `lit`: share of
-  /// the sun that a place sees, linear between two. Where one end sees none, the other's depth holds for the stretch.
-  static void reaching(std::span<const double> both, std::span<const double> lit, std::span<double> share);
 };
-
-/// Phase functions [1/sr]; their integral over the sphere is 1. Source: Chandrasekhar 1960; Henyey and Greenstein 1941.
-double rayleighPhase(double cosScatter);
-double henyeyGreensteinPhase(double cosScatter, double asymmetry);
 
 }  // namespace pitviper

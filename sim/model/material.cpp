@@ -14,7 +14,7 @@ double Medium::source(double wavelength_um, double temperature_K, double gain) c
 }
 
 double Medium::scattered(double wavelength_um, double cosScatter) const {
-  return albedo ? (*albedo)(wavelength_um) * henyeyGreensteinPhase(cosScatter, asymmetry ? (*asymmetry)(wavelength_um) : 0.0) : 0.0;
+  return albedo ? (*albedo)(wavelength_um)*physics::henyeyGreensteinPhase(cosScatter, asymmetry ? (*asymmetry)(wavelength_um) : 0.0) : 0.0;
 }
 
 double Material::reflectance(double wavelength_um, double angle) const {

@@ -6,6 +6,7 @@
 
 #include "sim/model/node_planck.hpp"
 #include "sim/radiometry/exponentials.hpp"
+#include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 namespace {
@@ -41,13 +42,6 @@ void weigh(const Coefficients& coefficients, const std::vector<AirAmounts>& amou
 void leave(const Eigen::ArrayXd& x, Eigen::ArrayXd& left) {
   left = -x;
   exponentials(left.data(), static_cast<int>(left.size()));
-}
-
-/// `left`: exp(-x).
-void lose(const Eigen::ArrayXd& x, const Eigen::ArrayXd& left, Eigen::ArrayXd& lost) {
-  lost = 1.0 - x * (1.0 / 8.0);
-  for (double n : {7.0, 6.0, 5.0, 4.0, 3.0, 2.0}) lost = 1.0 - x * lost * (1.0 / n);
-  lost = (x < 0.125).select(x * lost, 1.0 - left);
 }
 
 Eigen::Map<Eigen::ArrayXXd> sized(std::vector<double>& all, Eigen::Index nodes, Eigen::Index stations) {
@@ -112,37 +106,39 @@ std::vector<double> NodeAir::planck(double temperature_K) const {
 
 std::vector<double> lostOf(std::span<const double> x) {
   const Eigen::ArrayXd from = Eigen::Map<const Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size()));
-  Eigen::ArrayXd left, all;
+  Eigen::ArrayXd left;
   leave(from, left);
-  lose(from, left, all);
-  return {all.begin(), all.end()};
+  std::vector<double> all(x.size());
+  for (size_t i = 0; i < all.size(); ++i) all[i] = physics::lostOf(x[i], left[static_cast<Eigen::Index>(i)]);
+  return all;
 }
 
-// Each step as AirLight::emitted() and AirLight::reaching() have it, and their limits.
+// Step by step by the law of a segment. Of sunlight scattered once molecules and haze have in common the mean of lit exp(-both) over a step, `both` the depth
+// from the eye to a place and on to the sun. Where one end of a step sees no sun, the other's depth holds for it.
 NodeRadiance NodeAir::along(const SunlitAir& air) const {
   const Tables& t = *tables_;
   const auto stations = static_cast<Eigen::Index>(air.stations.size()), nodes = t.source.size();
   NodeRadiance out;
   auto depth = sized(out.depth, nodes, stations), thermal = sized(out.thermal, nodes, stations);
   weigh(t.extinction, air.powered, depth);
-  Eigen::ArrayXd seen, before, source, d = depth.col(0), left, gone, share;  // with room of their own for all steps
+  Eigen::ArrayXd seen, before, source, d = depth.col(0), left, share;  // with room of their own for all steps
   leave(d, seen);
   t.planck(air.stations[0].temperature_K, before);
   before += t.source;
   for (Eigen::Index s = 1; s < stations; ++s) {
     d = (depth.col(s) - depth.col(s - 1)).max(0.0);
     leave(d, left);
-    lose(d, left, gone);
     t.planck(air.stations[static_cast<size_t>(s)].temperature_K, source);
     source += t.source;
-    thermal.col(s) =
-        thermal.col(s - 1) + seen * (before * gone + (source - before) * (d < 1e-3).select(d * (0.5 - d * (1.0 / 3.0)), (gone - d * left) / d.max(1e-3)));
+    for (Eigen::Index i = 0; i < nodes; ++i)
+      thermal(i, s) = thermal(i, s - 1) + seen[i] * physics::segmentRadiance(before[i], source[i], d[i], left[i], physics::lostOf(d[i], left[i]));
     seen *= left;
     before.swap(source);
   }
   if (air.lit.empty()) return out;
   Eigen::ArrayXXd small(nodes, stations), large(nodes, stations), both(nodes, stations);
   Eigen::ArrayXd nearest, reaching;
+  share.resize(nodes);
   weigh(t.molecules, air.powered, small);
   weigh(t.haze, air.powered, large);
   weigh(t.extinction, air.both, both);
@@ -155,10 +151,9 @@ NodeRadiance NodeAir::along(const SunlitAir& air) const {
     const auto near = both.col(here > 0.0 ? s - 1 : s), far = both.col(there > 0.0 ? s : s - 1);
     d = (far - near).abs();
     leave(d, left);
-    lose(d, left, gone);
     nearest = near.min(far);
     leave(nearest, reaching);
-    share = sun * reaching * (d < 1e-8).select(1.0 - 0.5 * d, gone / d.max(1e-8));
+    for (Eigen::Index i = 0; i < nodes; ++i) share[i] = sun * reaching[i] * physics::meanDecayOf(d[i], left[i]);
     molecules.col(s) += (small.col(s) - small.col(s - 1)).max(0.0) * share;
     haze.col(s) += (large.col(s) - large.col(s - 1)).max(0.0) * share;
   }

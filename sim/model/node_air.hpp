@@ -1,6 +1,5 @@
 #pragma once
-// What air sends along a line of sight at all nodes of a plan at once, as airRadiance() has it for one: tables of a view, and the sky of a plan, are made of
-// thousands of these.
+// What air sends along a line of sight at all nodes of a plan at once: tables of a view, and the sky of a plan, are made of thousands of these.
 #include <memory>
 #include <span>
 #include <vector>
@@ -10,7 +9,7 @@
 
 namespace pitviper {
 
-/// [station x nodes + node]
+/// [station x nodes + node], as far as each station [W/(m2 sr um)]. `thermal`: emission of all extinction (as AirLight::emitted) and AirNode::source.
 struct NodeRadiance {
   std::vector<double> depth, thermal;
   std::vector<double> molecules, haze;  ///< for phase functions and irradiance of 1; empty: no sun

@@ -5,6 +5,7 @@
 
 #include "sim/model/atmosphere.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 namespace {
@@ -83,7 +84,8 @@ PhotonWalk::Found PhotonWalk::from(double depthAbove, const glm::dvec3& towards,
       depth = std::max(depth, 0.0);
       const std::size_t layer = layerOf(depth);
       const double small = air_.molecules[layer], large = air_.haze[layer], cosine = glm::dot(d, air_.toSun);
-      const double sent = weight * (small * rayleighPhase(cosine) + large * henyeyGreensteinPhase(cosine, air_.asymmetry)) * sunAt(layer, depth);
+      const double sent =
+          weight * (small * physics::rayleighPhase(cosine) + large * physics::henyeyGreensteinPhase(cosine, air_.asymmetry)) * sunAt(layer, depth);
       (fresh ? found.once : found.again) += sent;
       weight *= small + large;
       d = before(d, unitOf(dice) * (small + large) >= small, dice);

@@ -53,12 +53,13 @@ class SkyAt {
   Sent along(const Sightline& line) const {
     const NodeRadiance all = air_.along(line.air);
     const std::size_t last = (line.air.stations.size() - 1) * nodes_.size();
-    const double rayleigh = rayleighPhase(line.cosScatter);
+    const double rayleigh = physics::rayleighPhase(line.cosScatter);
     Sent sent;
     for (std::size_t i = 0; i < count_; ++i) {
       double radiance = all.thermal[last + i];
       if (!all.molecules.empty())
-        radiance += irradiance_[i] * (rayleigh * all.molecules[last + i] + henyeyGreensteinPhase(line.cosScatter, node(i).asymmetry) * all.haze[last + i]);
+        radiance +=
+            irradiance_[i] * (rayleigh * all.molecules[last + i] + physics::henyeyGreensteinPhase(line.cosScatter, node(i).asymmetry) * all.haze[last + i]);
       sent.radiance.push_back(radiance);
       sent.depth.push_back(all.depth[last + i]);
     }

@@ -21,14 +21,4 @@ struct SunlitAir {
   SunlitAir(const Atmosphere& path, const AirRay& ray, std::vector<AirStation> stations, const SunLegs* legs, const RaySun& sun);
 };
 
-/// What a node's air sends along it, as far as each station [W/(m2 sr um)].
-struct AirRadiance {
-  std::vector<double> depth;
-  std::vector<double> thermal;          ///< emission of all extinction (AirLight::emitted), and AirNode::source
-  std::vector<double> molecules, haze;  ///< scattered sunlight for phase functions and irradiance of 1; empty: no sun
-};
-
-/// `source`: per station, radiance of a black body of its temperature at the node (0 where it has none).
-AirRadiance airRadiance(const AirNode& node, const SunlitAir& air, std::span<const double> source);
-
 }  // namespace pitviper

@@ -6,6 +6,7 @@
 
 #include "sim/model/harmonic_response.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 namespace {
@@ -257,7 +258,7 @@ void ProductSink::scattered(const Segment& s) {
     if (!(passed > 0.0)) continue;
     const int scatter = book_.spectrum("scatter " + std::to_string(k) + " " + std::to_string(cosine), [k, cosine](const FineGrid& g, size_t i) {
       const AirNode& n = g.air[i];
-      return n.molecules[k] * rayleighPhase(cosine) + n.haze[k] * henyeyGreensteinPhase(cosine, n.asymmetry);
+      return n.molecules[k] * physics::rayleighPhase(cosine) + n.haze[k] * physics::henyeyGreensteinPhase(cosine, n.asymmetry);
     });
     for (int p = 0; p < 3; ++p) {
       ProductTerm t;

@@ -5,7 +5,6 @@
 
 #include "sim/model/ground.hpp"
 #include "sim/model/light_legs.hpp"
-#include "sim/model/sunlit_air.hpp"
 #include "sim/model/world.hpp"
 #include "sim/radiance/factor.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -60,7 +59,7 @@ ScatteringCheck::ScatteringCheck(const Simulation& sim, const Camera& camera, co
   for (int h = 0; h < kHeights; ++h) above.push_back(sim.air->powered(sim.air->amounts({heightAt(h), 1.0, sim.frame.earthRadius_m()}, physics::kFar)));
   for (const ChannelOutput& output : camera.outputs) {
     if (std::any_of(channels_.begin(), channels_.end(), [&](const Channel& c) { return c.name == output.channel; })) continue;
-    Channel channel{output.channel, {}, {}, {}};
+    Channel channel{output.channel, {}, {}, {}, {}};
     double sunlit = 0.0, warm = 0.0;
     for (const QuadratureNode& q : spectralRule(output.kernel, kWavelengths, Spacing::Gauss)) {
       const SpectralNode node = nodeAt(sim, q.x);
@@ -73,7 +72,9 @@ ScatteringCheck::ScatteringCheck(const Simulation& sim, const Camera& camera, co
       sunlit += q.weight * sim.sun->irradiance(q.x) / (4.0 * kPi), warm += q.weight * physics::planckRadiance(q.x, kWarm_K);
       channel.nodes.push_back(node), channel.weight.push_back(q.weight), channel.columns.push_back(std::move(column));
     }
-    if (sunlit > kLit * warm) channels_.push_back(std::move(channel));
+    if (!(sunlit > kLit * warm)) continue;
+    channel.air.emplace(channel.nodes);
+    channels_.push_back(std::move(channel));
   }
 }
 
@@ -108,8 +109,7 @@ WalkAir ScatteringCheck::airOver(const Channel& channel, size_t n, const std::op
     air.haze.push_back(std::min(part(column.haze), 1.0 - air.molecules.back()));
   }
   air.asymmetry = column.asymmetry;
-  air.groundAlbedo =
-      below ? std::clamp(sim_.materialOf(surfaceAt(sim_, *below)).reflectance(node.members.front().wavelength_um, 0.0), 0.0, 1.0) : 0.0;
+  air.groundAlbedo = below ? std::clamp(sim_.materialOf(surfaceAt(sim_, *below)).reflectance(node.members.front().wavelength_um, 0.0), 0.0, 1.0) : 0.0;
   air.toSun = toSun;
   return air;
 }
@@ -160,22 +160,20 @@ std::vector<ScatteringCheck::Line> ScatteringCheck::linesOver(const WorldState& 
   return lines;
 }
 
-ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n, const Line& line, const PhotonWalk& walk) const {
+ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n, const Line& line, const NodeRadiance& seen, const PhotonWalk& walk) const {
   const SpectralNode& node = channel.nodes[n];
   const Column& column = channel.columns[n];
   const double um = node.members.front().wavelength_um, e0 = sim_.sun->irradiance(um);
-  std::vector<double> source;
-  for (const AirStation& s : line.air.stations) source.push_back(physics::planckRadiance(um, s.temperature_K));
-  const AirRadiance seen = airRadiance(node.air, line.air, source);
-  const double rayleigh = rayleighPhase(line.cosScatter), haze = henyeyGreensteinPhase(line.cosScatter, node.air.asymmetry);
-  Parts parts{seen.thermal.back() + e0 * (rayleigh * seen.molecules.back() + haze * seen.haze.back()), 0.0, 0.0};
+  const size_t nodes = channel.nodes.size(), end = (line.air.stations.size() - 1) * nodes + n;
+  const double rayleigh = physics::rayleighPhase(line.cosScatter), haze = physics::henyeyGreensteinPhase(line.cosScatter, node.air.asymmetry);
+  Parts parts{seen.thermal[end] + e0 * (rayleigh * seen.molecules[end] + haze * seen.haze[end]), 0.0, 0.0};
   WalkDice dice(1 + n);
   // Where the line is scattered: as much as is seen from each stretch of it.
   std::vector<double> reached{0.0}, particles{0.0};
   for (size_t s = 1; s < line.air.stations.size(); ++s) {
     const auto passed = [&](const std::array<double, kMostAirAmounts>& c) { return sumOver(c, line.air.powered[s]) - sumOver(c, line.air.powered[s - 1]); };
-    const double small = std::max(passed(node.air.molecules), 0.0), large = std::max(passed(node.air.haze), 0.0), d = seen.depth[s] - seen.depth[s - 1];
-    reached.push_back(reached.back() + (d > 0.0 ? (small + large) / d * std::exp(-seen.depth[s - 1]) * physics::oneMinusExp(d) : 0.0));
+    const double small = std::max(passed(node.air.molecules), 0.0), large = std::max(passed(node.air.haze), 0.0), before = seen.depth[(s - 1) * nodes + n];
+    reached.push_back(reached.back() + (small + large) * std::exp(-before) * physics::meanDecay(std::max(seen.depth[s * nodes + n] - before, 0.0)));
     particles.push_back(small + large > 0.0 ? large / (small + large) : 0.0);
   }
   if (reached.back() > 0.0) {
@@ -191,7 +189,7 @@ ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n
     const double each = e0 * reached.back();
     parts.more += each * tally.mean(), parts.variance += each * each * tally.variance();
   }
-  const double through = std::exp(-seen.depth.back());
+  const double through = std::exp(-seen.depth[end]);
   if (!line.end) {
     parts.own += through * sim_.background(um);
     return parts;
@@ -245,9 +243,10 @@ std::vector<ScatteredAgain> ScatteringCheck::at(const WorldState& state) const {
     for (size_t n = 0; n < channel.nodes.size(); ++n) walks.emplace_back(airOver(channel, n, below, sun, toSun));
     std::vector<std::pair<double, double>> factors;  // with their errors
     for (const Line& line : lines) {
+      const NodeRadiance seen = channel.air->along(line.air);
       double once = 0.0, again = 0.0, variance = 0.0;
       for (size_t n = 0; n < channel.nodes.size(); ++n) {
-        const Parts parts = partsOf(channel, n, line, walks[n]);
+        const Parts parts = partsOf(channel, n, line, seen, walks[n]);
         const double weight = channel.weight[n];
         once += weight * parts.own, again += weight * parts.more, variance += weight * weight * parts.variance;
       }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "sim/model/node_air.hpp"
 #include "sim/model/photon_walk.hpp"
 #include "sim/model/ray_hits.hpp"
 #include "sim/plan/plan.hpp"
@@ -37,6 +38,7 @@ class ScatteringCheck {
     std::vector<SpectralNode> nodes;
     std::vector<double> weight;
     std::vector<Column> columns;
+    std::optional<NodeAir> air;  ///< of these nodes
   };
   struct Line;
   struct SunAt;
@@ -49,7 +51,7 @@ class ScatteringCheck {
   std::vector<Line> linesOver(const WorldState& state, std::optional<Hit>& below) const;
   WalkAir airOver(const Channel& channel, std::size_t node, const std::optional<Hit>& below, const std::vector<SunAt>& sun, const glm::dvec3& toSun) const;
   double ambientOn(const glm::dvec3& normal, double height_m, double wavelength_um) const;
-  Parts partsOf(const Channel& channel, std::size_t node, const Line& line, const PhotonWalk& walk) const;
+  Parts partsOf(const Channel& channel, std::size_t node, const Line& line, const NodeRadiance& seen, const PhotonWalk& walk) const;
 
   const Simulation& sim_;
   const Camera& camera_;

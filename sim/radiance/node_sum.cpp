@@ -18,19 +18,6 @@ constexpr double kColdest_K = 140.0, kWarmest_K = 400.0, kAirStep_K = 1.0, kHott
 /// What lets less through than this sends nothing that anybody sees.
 constexpr double kOpaque = 45.0;
 
-/// (1 - exp(-d)) for a depth and its transmittance: the series where the difference would lose its digits (next term d^4/24: 4e-22).
-double lostOf(double d, double left) { return d < 1e-5 ? d * (1.0 - d * (0.5 - d / 6.0)) : 1.0 - left; }
-
-/// (1 - exp(-d) (1 + d)) / d: weight of what grows linearly with depth over a segment of depth d. The series where the difference would lose its
-/// digits: d/2 - d^2/3, next term d^3/8 below 2e-10 of it.
-double growing(double d, double left, double lost) { return d < 1e-3 ? d * (0.5 - d / 3.0) : (lost - d * left) / d; }
-
-/// Mean of exp(-t) between two depths, given both: the series where the difference would lose its digits.
-double meanPassed(double from, double to, double fromPassed, double toPassed) {
-  const double change = to - from;
-  return std::abs(change) < 1e-4 ? fromPassed * (1.0 - change * (0.5 - change * (1.0 / 6.0 - change / 24.0))) : (fromPassed - toPassed) / change;
-}
-
 NodeSpectra::AirRows rowsOf(std::span<const SpectralNode> nodes, size_t used, std::array<double, kMostAirAmounts> AirNode::*coefficient) {
   NodeSpectra::AirRows rows;
   for (size_t k = 0; k < used; ++k) {
@@ -186,7 +173,7 @@ const std::vector<double>& NodeSum::hazePhase(double cosScatter) {
   if (cosScatter == hazePhaseOf_) return hazePhase_;
   hazePhaseOf_ = cosScatter;
   hazePhase_.clear();
-  for (const SpectralNode& n : spectra_.nodes()) hazePhase_.push_back(henyeyGreensteinPhase(cosScatter, n.air.asymmetry));
+  for (const SpectralNode& n : spectra_.nodes()) hazePhase_.push_back(physics::henyeyGreensteinPhase(cosScatter, n.air.asymmetry));
   return hazePhase_;
 }
 
@@ -197,7 +184,7 @@ const std::vector<double>& NodeSum::turnedBy(const MediumInside& m, double cosSc
   if (cosScatter != turnedAt_) turnedOf_.clear();
   turnedAt_ = cosScatter;
   std::vector<double>& turned = turnedOf_[m.material];
-  for (size_t i = turned.size(); i < count_; ++i) turned.push_back(rows->sunlight[i] * henyeyGreensteinPhase(cosScatter, rows->asymmetry[i]));
+  for (size_t i = turned.size(); i < count_; ++i) turned.push_back(rows->sunlight[i] * physics::henyeyGreensteinPhase(cosScatter, rows->asymmetry[i]));
   return turned;
 }
 
@@ -287,9 +274,8 @@ void NodeSum::gather(const Segment& s, const std::vector<std::vector<double>>& s
   passedOf(own_.otherDepth, own_.otherPassed);
 }
 
-// J = (x S + y B) / (x + y) with S of the media and B of the air, B linear in depth from one end to the other:
-//   integral of J exp(-t) dt = J_near (1 - exp(-d)) + (J_far - J_near) g(d), d = x + y.
-// S is that in the middle, and changes by D to the far end in a field: S (1 - exp(-d)) + D (g(d) - (1 - exp(-d))/2).
+// The law of a segment (segment.glsl) with J = (x S + y B) / (x + y): S of the media, of depth x, told in the middle with what it changes by in a field; B of
+// the air, of depth y, told at both ends.
 void NodeSum::segment(const Segment& s) {
   const auto nodes = spectra_.nodes();
   // Where one end sees no sun, the other's way to it holds for the segment.
@@ -305,7 +291,7 @@ void NodeSum::segment(const Segment& s) {
   if (sunlit) {
     AirAmounts passed;
     for (size_t k = 0; k < kMostAirAmounts; ++k) passed.amount[k] = s.far.powered.amount[k] - s.near.powered.amount[k];
-    const double rayleigh = rayleighPhase(s.cosScatter);
+    const double rayleigh = physics::rayleighPhase(s.cosScatter);
     const std::vector<double>& phase = hazePhase(s.cosScatter);
     weigh(spectra_.molecules(), passed, turned_);
     weigh(spectra_.haze(), passed, turnedByHaze_);
@@ -324,18 +310,16 @@ void NodeSum::segment(const Segment& s) {
       const double d = x + y;
       if (s.dark || (s.air ? near_.depth[i] : 0.0) + before > kOpaque || !(d > 0.0)) return;
       const double reaching = panes_[i] * beforePassed, seen = reaching * (s.air ? near_.passed[i] : 1.0);
-      const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * passed, lost = lostOf(d, left);
-      const auto sent = [&](double even, double change) {
-        return seen / d * (even * lost + (change != 0.0 ? change * (growing(d, left, lost) - 0.5 * lost) : 0.0));
-      };
+      const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * passed, lost = physics::lostOf(d, left);
+      const auto sent = [&](double even, double change) { return seen / d * physics::driftingRadiance(even, change, d, left, lost); };
       if (ofWatched > 0.0) ofEntity_[i] += sent(ofWatched, driftingOfWatched);
       if (media && x > 0.0) add(TermKind::Media, sent(emitted, drifting));
       if (air && y > 0.0) {
         const double near = near_.black[i] + nodes[i].air.source, far = far_.black[i] + nodes[i].air.source;
-        add(TermKind::AirEmission, seen * (y / d) * (near * lost + (far - near) * growing(d, left, lost)));
+        add(TermKind::AirEmission, seen * (y / d) * physics::segmentRadiance(near, far, d, left, lost));
       }
       if (!turned) return;
-      const double mean = meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * passed);
+      const double mean = physics::meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * passed);
       add(TermKind::ScatteredSun, sun * reaching * mean * (*irradiance)[i] * turned_[i]);
     };
     const double x = inMedia ? own_.depth[i] : 0.0, passed = inMedia ? own_.passed[i] : 1.0;

@@ -11,6 +11,7 @@ using Vec3 = glm::dvec3;
 using Vec4 = glm::dvec4;
 using glm::cross;
 using glm::dot;
+using std::abs;
 using std::exp;
 using std::floor;
 using std::ldexp;
@@ -30,6 +31,8 @@ constexpr Real kFar = 1e30;
 #include "sim/radiometry/glsl/footprint.glsl"
 #include "sim/radiometry/glsl/geometry.glsl"
 #include "sim/radiometry/glsl/ground.glsl"
+#include "sim/radiometry/glsl/segment.glsl"
+// After what it uses.
 #include "sim/radiometry/glsl/medium.glsl"
 #include "sim/radiometry/glsl/planck.glsl"
 #include "sim/radiometry/glsl/sun_disc.glsl"

@@ -104,5 +104,24 @@ TEST(Bodies, MediumInAir) {
     }
 }
 
+// A segment whose source changes evenly with depth from 3 to 1, and the mean of what it lets through from a depth of y on.
+TEST(Bodies, SegmentOfAPath) {
+  const Grid g = evaluate("//@use sim/radiometry/glsl/segment.glsl\n",
+                          "vec4(x, y, segmentRadiance(3.0, 1.0, x, exp(-x), lostOf(x, exp(-x))), meanPassed(y, y + x, exp(-y), exp(-(y + x))))", 200, 40,
+                          1e-12f, 1.19f, 1e-6f, 1.5f);
+  Range sent("GPU segment with a source linear in depth, depths 1e-12 to 1300", 8e-6,
+             "3 (1 - exp(-d)) - 2 g(d); exp rounds by 1.2e-7, in g over d: 2 x 1.2e-7 / 0.125 of 0.24");
+  Range passed("GPU mean of exp(-D) from y to x + y, x to 80 and y to 10", 2e-5, "exp(-y) (1 - exp(-x)) / x; y + x rounds: 6e-8 x 10 / 0.125");
+  for (int j = 0; j < g.height; ++j)
+    for (int i = 0; i < g.width; ++i) {
+      const float* v = g.at(i, j);
+      const long double x = v[0], y = v[1], lost = -std::expm1(-x);
+      const std::string at = std::to_string(v[0]) + ", " + std::to_string(v[1]);
+      const long double growth = x < 1e-3L ? x * (0.5L - x * (1.0L / 3.0L - x * (0.125L - x / 30.0L))) : (lost - x * std::exp(-x)) / x;
+      sent.add(value(v[2]), static_cast<double>(3.0L * lost - 2.0L * growth), at);
+      if (x < 80.0L && y < 10.0L) passed.add(value(v[3]), static_cast<double>(std::exp(-y) * lost / x), at);
+    }
+}
+
 }  // namespace
 }  // namespace pitviper::test

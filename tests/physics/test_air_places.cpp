@@ -8,6 +8,7 @@
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "tests/support/air_radiance.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
 #include "tests/support/puff_scene.hpp"
@@ -52,8 +53,8 @@ Seen lookAlong(const Simulation& sim, double um, double height_m, const glm::dve
   for (const AirStation& s : air.stations) source.push_back(s.temperature_K > 0.0 ? physics::planckRadiance(um, s.temperature_K) : 0.0);
   const AirRadiance found = airRadiance(node.air, air, source);
   const double irradiance = sim.sun->irradiance(um);
-  return {sum.radiance()[0], found.thermal.back() + irradiance * (rayleighPhase(sun.cosScatter) * found.molecules.back() +
-                                                                  henyeyGreensteinPhase(sun.cosScatter, node.air.asymmetry) * found.haze.back())};
+  return {sum.radiance()[0], found.thermal.back() + irradiance * (physics::rayleighPhase(sun.cosScatter) * found.molecules.back() +
+                                                                  physics::henyeyGreensteinPhase(sun.cosScatter, node.air.asymmetry) * found.haze.back())};
 }
 
 // Where a band is opaque all that is seen lies in the first metres, and its depth grows as a root of the range there.

@@ -7,6 +7,7 @@
 #include "sim/model/node_air.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "tests/support/air_radiance.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 

@@ -57,16 +57,16 @@ TEST(ScatteredSun, PhaseFunctionsLoseNothing) {
   for (double g : {-0.5, 0.0, 0.3, 0.663, 0.85}) {
     double sum = 0.0, cosine = 0.0;
     for (const QuadratureNode& n : gaussLegendre(200, -1.0, 1.0)) {
-      sum += 2.0 * kPi * n.weight * henyeyGreensteinPhase(n.x, g);
-      cosine += 2.0 * kPi * n.weight * n.x * henyeyGreensteinPhase(n.x, g);
+      sum += 2.0 * kPi * n.weight * physics::henyeyGreensteinPhase(n.x, g);
+      cosine += 2.0 * kPi * n.weight * n.x * physics::henyeyGreensteinPhase(n.x, g);
     }
     EXPECT_NEAR(sum, 1.0, 1e-12) << g;
     EXPECT_NEAR(cosine, g, 1e-12) << g;  // what the asymmetry means
   }
   double rayleigh = 0.0;
-  for (const QuadratureNode& n : gaussLegendre(4, -1.0, 1.0)) rayleigh += 2.0 * kPi * n.weight * rayleighPhase(n.x);
+  for (const QuadratureNode& n : gaussLegendre(4, -1.0, 1.0)) rayleigh += 2.0 * kPi * n.weight * physics::rayleighPhase(n.x);
   EXPECT_NEAR(rayleigh, 1.0, 1e-14);
-  EXPECT_DOUBLE_EQ(henyeyGreensteinPhase(0.4, 0.0), 1.0 / (4.0 * kPi));
+  EXPECT_DOUBLE_EQ(physics::henyeyGreensteinPhase(0.4, 0.0), 1.0 / (4.0 * kPi));
 }
 
 // Chandrasekhar 1960: of a layer of depth t, albedo w, phase P [1/sr], sun at mu0, seen at mu:
@@ -80,7 +80,9 @@ TEST(ScatteredSun, PlaneLayersAreChandrasekhars) {
       for (double mu : {1.0, 0.600001, 0.45, 0.12})
         for (double azimuth : {0.0, 1.0, kPi}) {
           const double across = std::sqrt((1 - mu * mu) * (1 - mu0 * mu0)) * std::cos(azimuth);
-          const auto source = [&](double c) { return (molecules * rayleighPhase(c) + albedo * haze * henyeyGreensteinPhase(c, asymmetry)) / t; };
+          const auto source = [&](double c) {
+            return (molecules * physics::rayleighPhase(c) + albedo * haze * physics::henyeyGreensteinPhase(c, asymmetry)) / t;
+          };
           const double below = std::abs(mu - mu0) < 1e-12 ? t / mu * std::exp(-t / mu) : mu0 / (mu0 - mu) * (std::exp(-t / mu0) - std::exp(-t / mu));
           const double above = mu0 / (mu0 + mu) * -std::expm1(-t * (1.0 / mu + 1.0 / mu0));
           const double up = sky.scatteredRadiance(1.0, sky.path({0.0, mu, azimuth, mu0}, INFINITY), 7.0);
@@ -178,9 +180,9 @@ double marched(double wavelength_um, const SunlitView& v, double range_m, int st
     for (size_t k = 0; k < air.absorbers().size(); ++k) {
       depth += c[k] * std::pow(both.amount_km[k], air.absorbers()[k].exponent);
       const double scattered = c[k] * 2.0 * half.amount_km[k];
-      if (air.absorbers()[k].kind == AbsorberKind::Scattering) source += rayleighPhase(cosine) * scattered;
+      if (air.absorbers()[k].kind == AbsorberKind::Scattering) source += physics::rayleighPhase(cosine) * scattered;
       if (air.absorbers()[k].kind == AbsorberKind::Haze || air.absorbers()[k].kind == AbsorberKind::Aerosol)
-        source += air.hazeAlbedo(wavelength_um) * henyeyGreensteinPhase(cosine, ruralAsymmetry()(wavelength_um)) * scattered;
+        source += air.hazeAlbedo(wavelength_um) * physics::henyeyGreensteinPhase(cosine, ruralAsymmetry()(wavelength_um)) * scattered;
     }
     sum += source * std::exp(-depth);
     view += half;

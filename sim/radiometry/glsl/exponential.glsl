@@ -1,12 +1,22 @@
 // Exponentials that keep their digits at both ends. Shared by GLSL (float) and C++ (double).
 
-// 1 - exp(-x) for x >= 0, without cancellation.
-//   Below 0.125: Taylor series to x^8, truncation x^8/9! < 2e-13 relative. Above: the plain difference, which loses at most
-//   3 bits (1 - exp(-0.125) = 0.118). x may be infinite (1).
+// (1 - exp(-x)) / x for |x| < 0.125: Taylor series to x^7, truncation x^8/9! < 2e-13 relative.
+PHYSICS Real meanDecaySeries(Real x) {
+  return 1.0 - x * (1.0 / 2.0) * (1.0 - x * (1.0 / 3.0) * (1.0 - x * (1.0 / 4.0) * (1.0 - x * (1.0 / 5.0) *
+         (1.0 - x * (1.0 / 6.0) * (1.0 - x * (1.0 / 7.0) * (1.0 - x * (1.0 / 8.0)))))));
+}
+
+// 1 - exp(-x) for x >= 0, without cancellation: below 0.125 by the series, above by the plain difference, which loses at most 3 bits
+// (1 - exp(-0.125) = 0.118). x may be infinite (1).
 PHYSICS Real oneMinusExp(Real x) {
-  Real series = x * (1.0 - x / 2.0 * (1.0 - x / 3.0 * (1.0 - x / 4.0 * (1.0 - x / 5.0 *
-                (1.0 - x / 6.0 * (1.0 - x / 7.0 * (1.0 - x / 8.0)))))));
+  Real series = x * meanDecaySeries(x);
   return x < 0.125 ? series : 1.0 - exp(-x);
+}
+
+// The same where left = exp(-x) is known.
+PHYSICS Real lostOf(Real x, Real left) {
+  Real series = x * meanDecaySeries(x);
+  return x < 0.125 ? series : 1.0 - left;
 }
 
 // exp(-x) for x >= 0 with a two-part reduction, so that the error does not grow with x (exp2 hardware rounds x log2(e)).

@@ -1,8 +1,5 @@
-//@use sim/radiometry/glsl/exponential.glsl
+//@use sim/radiometry/glsl/segment.glsl
 // A layer of emitting gas or smoke with air in it. Shared by GLSL (float) and C++ (double).
-
-// (1 - exp(-x)) / x for x >= 0: mean transmittance along a path of optical depth x; 1 at 0.
-PHYSICS Real meanDecay(Real x) { return x > 1.0e-30 ? oneMinusExp(x) / x : 1.0; }
 
 // Radiance at the camera of what lies inside a layer and of the air in front of it, per wavelength:
 //   L = L_1 + (L_2 - L_1) E(a + g) / E(g) + tau_1 S a E(a + g),   E(x) = (1 - exp(-x)) / x
