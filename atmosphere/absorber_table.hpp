@@ -87,7 +87,7 @@ class AbsorberTable {
   /// little, else kGaussPoints points of Gauss-Legendre.
   /// Relative error below 1e-6 of each amount against the same profiles integrated finely (tests/unit/test_absorber_table.cpp).
   /// Refraction left out: between two given points it is of second order; of what lies towards space it is 0.4 % at a zenith angle of 80
-  /// degrees (LOWTRAN's bent path, same profiles), more below: bent_path.hpp has it.
+  /// degrees (LOWTRAN's bent path, same profiles), more below (tests/unit/test_bent_path.cpp).
   AbsorberAmounts amounts(double height_m, double sinElevation, double range_m, double earthRadius_m) const;
   static constexpr int kGaussPoints = 6;
 

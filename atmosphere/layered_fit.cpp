@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
-#include <future>
-#include <thread>
 
 #include "sim/model/ground.hpp"
+#include "sim/parameters/on_threads.hpp"
 #include "sim/plan/budget.hpp"
 #include "sim/plan/sights.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -309,14 +307,9 @@ AirTableFit::Lost AirTableFit::lostOn(const Sample& sample, const AirTableSize& 
 AirTableLoss AirTableFit::lossOf(const AirTableSize& size) const {
   const size_t slots = floor_.size();
   std::vector<Lost> lost(samples_.size());
-  std::atomic<size_t> next{0};
-  auto work = [&] {
-    for (size_t n = next++; n < samples_.size(); n = next++) lost[n] = lostOn(samples_[n], size);
-  };
-  std::vector<std::future<void>> others;
-  for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));
-  work();
-  for (auto& o : others) o.get();
+  onAllThreads(samples_.size(), [&](const auto& next) {
+    for (size_t n = next(); n < samples_.size(); n = next()) lost[n] = lostOn(samples_[n], size);
+  });
   const std::vector<double> none(slots, 0.0);
   AirTableLoss loss{none, none, none, none, none};
   for (const Lost& l : lost)

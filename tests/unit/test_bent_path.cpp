@@ -7,8 +7,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "atmosphere/bent_path.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "tests/support/bent_path.hpp"
 #include "tests/support/figures.hpp"
 
 namespace pitviper::test {

@@ -1,4 +1,4 @@
-#include "atmosphere/bent_path.hpp"
+#include "tests/support/bent_path.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "sim/radiometry/quadrature.hpp"
 
-namespace pitviper {
+namespace pitviper::test {
 namespace {
 
 // Of Edlen's formula.
@@ -148,4 +148,4 @@ BentPath bentPath(const AbsorberTable& air, double refractivity, double height_m
   return path;
 }
 
-}  // namespace pitviper
+}  // namespace pitviper::test
