@@ -9,9 +9,8 @@ namespace pitviper {
 
 class CoefficientsOnGpu {
  public:
-  /// `vectors`: of four absorbers each. Throws GlError where they do not fit into a uniform block.
-  /// `most`: to their powers, amounts that no way through the air exceeds. What adds less to the depth of it than a part of the accuracy is 0, which a
-  /// compiler leaves out; empty: nothing is.
+  /// `vectors`: of four absorbers each. `most`: amounts, raised to their powers, that no way through the air exceeds; coefficients that together add less to a
+  /// depth of these than budget::kThinAbsorbers are 0, which a compiler leaves out; empty: none is. Throws GlError where they do not fit into a uniform block.
   CoefficientsOnGpu(const Plan& plan, int vectors, const std::optional<AirAmounts>& most = {});
   void addSlots(ShaderSlots& slots) const;
   void bind() const;

@@ -22,7 +22,7 @@ constexpr AirTableSize kLeast{17, 49, 1}, kMost{257, 385, 17};
 constexpr double kMostValues = 5e7;
 /// Ranges lie evenly up to this part of the nearest thing's.
 constexpr double kNear = 0.3;
-/// Air that lets less through hides all that is behind it [kernel unit x um].
+/// Air that lets less through than this hides all that is behind it [kernel unit x um].
 constexpr double kOpaque = 1e-9;
 /// Steps of heights and suns become no smaller than this part of the usual ones.
 constexpr double kSame = 1.0 / 1024.0;
@@ -85,7 +85,7 @@ class Reader {
   std::vector<double> black_;
 };
 
-/// Those of rising ranges before an end, and the ends.
+/// The ranges that lie before the first of some ends, and then these ends.
 std::vector<double> upTo(std::vector<double> ranges, std::initializer_list<double> ends) {
   std::erase_if(ranges, [&](double r) { return r >= *ends.begin(); });
   ranges.insert(ranges.end(), ends);
@@ -94,19 +94,19 @@ std::vector<double> upTo(std::vector<double> ranges, std::initializer_list<doubl
 
 double largestOf(const std::vector<double>& all) { return all.empty() ? 0.0 : *std::max_element(all.begin(), all.end()); }
 
-/// Steps as many times half as wide as leave a share of an error, of which each leaves a quarter.
+/// As many entries as bring an error to its share: each time steps are halved a quarter of it is left.
 int finer(int entries, double error, double share, int most) {
   if (!(error > share)) return entries;
   const int doublings = static_cast<int>(std::clamp(std::ceil(0.5 * std::log2(error / share)), 1.0, 8.0));
   return std::min(((std::max(entries, 2) - 1) << doublings) + 1, most);
 }
 
-/// Where no accuracy is asked for, and of a probe.
+/// The size of tables where no accuracy is asked for, and of a probe.
 constexpr AirTableSize kUsualSize{129, 193, 5};
-/// What tables of layered air lose on the lines that their size was chosen on, times this, is predicted.
+/// The loss predicted is what tables lose on the lines that their size was chosen on, times this.
 constexpr double kTableMargin = 2.0;
-/// And what ways on from lit surfaces to the sun lose, by the depth of these and the share of that light: 6e-4 of a pixel on the ground at a depth of 8 (fog,
-/// visibility 0.7 km; found on the GPU against double precision).
+/// Beside that, what the tables of ways from lit surfaces to the sun lose, per unit of their depth and of the share of that light: 6e-4 of a pixel on the
+/// ground at a depth of 8 (fog, visibility 0.7 km; found on the GPU against double precision).
 constexpr double kSunWay = 1e-4;
 
 /// A line of sight as a grid's tables have it.
@@ -132,7 +132,7 @@ class LineLoss {
         ranges_(upTo(stations_, {own.end_m})),
         right_(reader_.at(own.rows.at(own.line, ranges_), ranges_.size() - 1, own.length_m)) {}
 
-  /// Between the line's own height and sun and those of the tables, which views share.
+  /// What is lost as views share tables: mixed for the height and the sun of the tables, where the line has its own.
   void ofSharing(const AirGrids& tables, const AirGrid& exact, const AirRows& any, std::vector<double>& into) const {
     AirRows right = any, below = any, above = any;
     right.begin(exact), below.begin(tables.below), above.begin(tables.above);
@@ -148,7 +148,7 @@ class LineLoss {
          Reader(simulation_, plan_, right, cosScatter).at(right.at(own_.line, here), here.size() - 1, own_.length_m));
   }
 
-  /// Half a step below and above.
+  /// What is lost between two elevations, a half step below and above the line's own.
   void ofElevations(std::vector<double>& into) const {
     const AirGrid& grid = own_.grid;
     const double horizon = grid.horizon(simulation_.frame.earthRadius_m());
@@ -171,14 +171,14 @@ class LineLoss {
          right_);
   }
 
-  /// Between two entries, and added up in steps.
+  /// What is lost between two ranges, and by adding air up in as wide steps.
   void ofRanges(std::vector<double>& into) const {
     const AirGrid& grid = own_.grid;
     const double entry = stations_.front();
     if (own_.length_m < physics::kFar) {
       const double entryAt = std::log1p(own_.length_m / grid.places.scale_m) * grid.entriesPerLog();
       const auto rangeAt = [&](double t) { return entry + grid.places.scale_m * std::expm1(t / grid.entriesPerLog()); };
-      // Before the first of them everything is as near to the eye as it is.
+      // Nothing is nearer than the first entry, which stands at the eye.
       const double share = std::min(0.5, entryAt), before = rangeAt(entryAt - share), after = rangeAt(entryAt - share + 1.0);
       const auto three = upTo(stations_, {before, own_.end_m, after});
       const AirRow row = own_.rows.at(own_.line, three);
@@ -192,7 +192,7 @@ class LineLoss {
     note(into, right_, reader_.at(own_.rows.at(own_.line, fineRanges), fineRanges.size() - 1, own_.length_m));
   }
 
-  /// Half a step to each side, or the view's middle.
+  /// What is lost between two azimuths, a half step to each side, or by having one for the whole view.
   void ofAzimuths(std::vector<double>& into) const {
     const AirGrid& grid = own_.grid;
     const size_t last = ranges_.size() - 1;

@@ -9,25 +9,25 @@
 namespace pitviper {
 namespace {
 
-/// Part of the farthest beyond which ranges lie evenly in their logarithm.
+/// Ranges lie evenly in their logarithm beyond this part of the farthest.
 constexpr double kScale = 1e-3;
 /// Ranges of places towards space [m].
 constexpr double kFirstSky_m = 100.0, kLastSky_m = 2e6;
-/// Part of a range to the next place on the way to space where there are so many ranges: at 1.6 um a black body of air halves within 12 K, some 2 km.
+/// Steps towards space as a part of the range, for tables with kRanges ranges: at 1.6 um a black body of air halves within 12 K, some 2 km.
 constexpr double kSkyStep = 0.08;
 constexpr int kRanges = 97;
-/// Times the rows of the widest view that was planned for: one that sees still more has as many, farther apart.
+/// A view that sees more than was planned for may have so many times the rows; one that sees still more has as many as were planned, farther apart.
 constexpr double kMostRows = 4.0;
 
-/// At 1 %: a step of azimuths (cosines) that share tables.
+/// Step of azimuths (of their cosine) within which views share tables, at an accuracy of 1 %.
 constexpr double kSameAzimuth = 0.02;
-/// And between two heights whose tables are mixed [m]: of air that thins by e in a kilometre their mean is off by 1e-3. Near the ground, where the way to the
-/// horizon changes with it, no more than a part of the height and a little.
+/// Step between two heights whose tables are mixed, at 1 % [m]: in air that thins by e in a kilometre their mean is off by 1e-3. Near the ground, where the way
+/// to the horizon changes with height, a part of the height and a little at most.
 constexpr double kHeightStep_m = 64.0, kPartOfHeight = 0.25, kLowest_m = 2.0;
-/// What a view sees is widened to whole steps of about so much of itself.
+/// What a view sees is widened to whole steps of about this part of it.
 constexpr double kWidened = 0.125;
 
-/// Light from lower than this comes through the air as from here, about [sine].
+/// The sine of the sun's elevation below which its light comes through about as much air as here.
 constexpr double kLowestSun = 0.02;
 
 glm::dvec3 axisOf(const View& v) { return v.localFromCamera * glm::dvec3(0, 0, -1); }
@@ -95,7 +95,7 @@ double powerOfTwoBelow(double v) { return std::exp2(std::floor(std::log2(v))); }
 /// The middle of the step that a value lies in; without a step the value itself.
 double snapped(double value, double step) { return step > 0.0 ? step * std::round(value / step) : value; }
 
-/// Limits on whole steps that hold two others.
+/// Widens limits to whole steps.
 std::pair<double, double> widened(double low, double high, double least, double most) {
   const double step = powerOfTwoBelow(std::max(kWidened * (high - low), 1e-9));
   return {std::clamp(step * std::floor(low / step), least, most), std::clamp(step * std::ceil(high / step), least, most)};
@@ -198,8 +198,8 @@ struct Lattice {
   int count;
 };
 
-/// Those that hold a range. At fixed places where so many are to cover `over`: what a view that turns sees anew are a few more. One that sees much more than
-/// was planned for has as many, farther apart.
+/// The places of a lattice that hold a range. Where `count` of them are to cover `over` the lattice stays where it is, so that a view that turns needs a few
+/// new places only. One that sees much more than was planned for has as many, farther apart.
 Lattice latticeOf(double low, double high, int count, double over) {
   const Lattice own{low, (high - low) / (count - 1), count};
   if (!(over > 0.0)) return own;

@@ -32,7 +32,7 @@ void AirRows::begin(const AirGrid& grid) {
   black_ = air_.planck(temperature_K);
 }
 
-/// Per node, or per channel as its nodes' sunlight is scattered.
+/// The asymmetry of haze per node, or per channel the mean over its nodes by the sunlight that they scatter.
 std::vector<double> AirRows::asymmetriesOf() const {
   std::vector<double> asymmetry(static_cast<size_t>(values_), 0.0);
   if (!perChannel_) {
@@ -126,7 +126,7 @@ NodeRadiance AirRows::sentAlong(const SunlitAir& line) const {
   return sent;
 }
 
-/// Of nodes, or integrated over the channels.
+/// Radiance of nodes, or integrated over the channels.
 void AirRows::writeRadiance(const NodeRadiance& sent, double cosScatter, AirRow& row) const {
   const size_t nodes = plan_.nodes.size(), columns = sent.thermal.size() / nodes, parts = static_cast<size_t>(parts_), values = static_cast<size_t>(values_);
   row.radiance.assign(columns * parts * values, 0.0f);

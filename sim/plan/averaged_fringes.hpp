@@ -14,7 +14,7 @@ struct AveragedFringes {
   bool narrow = false;                 ///< the channel is too narrow to be sure that its own average is the same
 };
 
-/// One for each channel and material.
+/// One for each pair of a channel and a material.
 std::vector<AveragedFringes> averagedFringes(const Simulation& simulation, const std::vector<ChannelOutput>& outputs);
 
 /// "fringes of 'film' are 0.33 nm apart at 0.45 um, ..."

@@ -12,11 +12,11 @@ namespace pitviper {
 namespace {
 
 constexpr int kMostGroups = 96;
-/// Of hundreds of lines most say the same: a fit begins with some, and the worst of the others join them.
+/// Most of hundreds of lines say the same: a fit begins with some, and the worst of the others join them.
 constexpr FitEffort kEffort{60, 160, 0.0, 12};
-/// Ratios of kernels that vary by less are a factor.
+/// Kernels whose ratio varies by less than this differ by a factor alone.
 constexpr double kSameShape = 1e-6;
-/// Of the worst that a fit learns from at a time.
+/// At most so many of the worst products are learnt at a time.
 constexpr size_t kLearnt = 60;
 
 }  // namespace
@@ -90,7 +90,7 @@ void ChannelFit::learn(const Sights& sights, size_t first, double part) {
 
 void ChannelFit::goBack() { std::tie(fit_, accuracy_) = before_; }
 
-/// To what it has learnt; from the groups it has.
+/// Fits to all products learnt, beginning with the groups it has.
 void ChannelFit::fit(SpectralProblem problem) {
   problem.products = training_;
   fit_ = fitToTolerance(ProductSet(problem), budget::kFitted.of(accuracy_), kMostGroups, kEffort, fit_.groups);

@@ -8,14 +8,15 @@ class ChannelFit {
  public:
   /// `accuracy`: relative error that may be spent.
   ChannelFit(const Simulation& simulation, std::span<const Spectrum* const> kernels, double accuracy);
-  /// Fits groups to all sights drawn so far. `floors`: what is darker in each kernel counts as this much.
+  /// Fits groups to all sights drawn so far. `floors`: the least that a line counts as in each kernel where its error is relative to it.
   void begin(const Sights& sights, std::vector<double> floors);
   /// Checks the groups on the sights drawn since it last looked; where they are not within the accuracy, learns the worst and fits again.
   /// True where they were.
   bool check(const Sights& sights);
-  /// Fits again, to sights from a number on besides: to a part of the accuracy where those, as sums of products, are within it. To be checked again.
+  /// Adds the sights from number `first` on to those it fits to, and fits again. Where the groups were within the accuracy on them already, it asks for that
+  /// `part` of the accuracy from here on. check() is due again.
   void learn(const Sights& sights, size_t first, double part);
-  /// To what it was before it learnt last.
+  /// Undoes the last learn().
   void goBack();
   bool holds() const { return holds_; }
 

@@ -21,17 +21,17 @@ namespace {
 
 constexpr std::array kCounts{1, 2, 3, 4, 6, 8, 10, 12, 16, 20, 24, 32, 40, 48, 64, 96};
 constexpr int kMany = 128;
-/// Times and, at each, lines from each eye through a field, and through each kind of element, that are looked at; eyes.
+/// How many times are looked at; lines from each eye through a field, and at least through each kind of its elements; eyes.
 constexpr int kTimes = 8;
 constexpr std::size_t kLines = 32, kLinesOfKind = 4;
 constexpr std::size_t kEyes = 3;
-/// How far apart lines through a pixel are tried, the farthest first; pixels of each camera at each time, of a field: fewer of many; lines each
-/// way in them at most, steps of these.
+/// Distances between lines through a pixel, the farthest tried first; pixels that are looked at of all fields together, and of one field at least and at most;
+/// tries to find them; the most lines each way in one; and steps of such a line.
 constexpr std::array kApart{6.0, 4.0, 3.0, 2.2, 1.6, 1.0};
 constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kTried = 2000, kAcross = 14, kSteps = 8;
-/// What is darker than this part of the field's brightest line counts as so much, as on the film: filmFloors().
+/// The least that a line counts as where an error is relative to it, of the brightest line of the field: as on the film (filmFloors()).
 constexpr double kDimmest = 1e-3;
-/// Of what was not there when it was looked for; steps of what never was.
+/// Steps of elements that were not there when they were looked for; steps taken for such as never were.
 constexpr int kNotSeen = -1, kUnknown = 16;
 /// Places at which the air of a line is looked at.
 constexpr int kAirPlaces = 8;
@@ -41,7 +41,8 @@ constexpr int kNodes = 24;
 
 constexpr const char* kWhat = "fields";
 
-/// Of each block so many nodes at most, evenly by how much fields absorb at them, which is what steps are about; each has the weights of those beside it.
+/// A plan with at most so many nodes of each block, spread evenly over how much fields absorb at them, which is what steps depend on; each has the weights of
+/// those beside it.
 Plan fewNodes(const Simulation& sim, const Plan& plan, int most) {
   std::vector<std::size_t> order;
   const auto absorbed = [&](std::size_t node) {

@@ -3,7 +3,7 @@
 
 namespace pitviper {
 
-/// Back to the system with what has been freed: the C library keeps it, for each thread that has planned its own. Some milliseconds.
+/// Gives memory that has been freed back to the system: the C library keeps it for each thread that has planned. Takes some milliseconds.
 void giveBackFreedMemory();
 
 }  // namespace pitviper

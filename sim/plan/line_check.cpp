@@ -15,7 +15,7 @@ namespace {
 /// Numbers of places tried, which are held against all that the air's model has, and lines looked at, of the film and of the extremes.
 constexpr int kTried[] = {5, 9, 18, 36, 72};
 constexpr size_t kLooked = 20;
-/// Frames that are looked at for how dark the film gets, and lines in all of them and at least in each.
+/// Frames in which filmFloors() looks for how dark the film gets, and its lines in all of them and, at least, in each.
 constexpr int kFloorFrames = 24, kFloorLines = 240, kFewestLines = 12;
 
 /// Whether a node of the plan leaves a kind of terms out.
@@ -33,7 +33,7 @@ bool isDropped(const Plan& plan, const Terms& all, TermKind kind, const NodeBloc
   }
 }
 
-/// What a line's slots lose by it.
+/// What each slot of a line lacks by the terms that a plan leaves out.
 std::vector<double> droppedOf(const Plan& plan, const Terms& all, const NodeSum& sum) {
   std::vector<double> lost(plan.weight.size(), 0.0);
   for (const NodeBlock& b : plan.blocks)
@@ -143,7 +143,7 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
         slots[n] = slotsOf(plan, found);
       },
       0);
-  // Wavelength by wavelength: what is lost at one and won at another is nothing to a channel, but something to groups of them.
+  // Differences are added without their signs: what one wavelength loses and another wins cancels in a channel, but not in a group that holds only one of them.
   const auto isEnough = [&](int places) {
     std::vector<char> missed(lines.size(), 0);
     tellAll(

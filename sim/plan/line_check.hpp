@@ -29,11 +29,12 @@ struct NodesOfPlan {
 /// Places at which a line's air is looked at unless an accuracy says how many.
 constexpr int kUsualPlaces = 24;
 
-/// What is darker counts as this much, per slot: 1e-3 of a high percentile of what the film sees in the darkest of its frames, but at least kDarkest.
+/// The least that a line counts as where an error is relative to it, per slot: 1e-3 of a high percentile of what the film sees in the darkest of its frames,
+/// but at least kDarkest.
 std::vector<double> filmFloors(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays);
 
-/// The fewest places at which air may be looked at along lines of sight, for channels to be within a part of the accuracy that leaves the rest to wavelengths:
-/// short waves see it bend where long ones don't. On some of the film's lines and the extremes.
+/// The fewest places at which the air of a line may be looked at for every channel to keep budget::kAirPlaces, found on some lines of the film and of the
+/// extremes: short waves see the air bend where long ones don't.
 int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays, double accuracy, const std::vector<double>& floor);
 
 /// Lines that plans are held against: what all wavelengths give of them is told once. Terms are those of `fine`; a plan may leave kinds of terms out, all of
@@ -56,19 +57,19 @@ class HeldLines {
   std::vector<std::vector<double>> exact_;  ///< [line][slot]; empty: not told yet
 };
 
-/// Of lines that are asked for once.
+/// HeldLines::check() of lines that are asked for once.
 std::vector<LineFigures> checkLines(const Simulation& simulation, const NodesOfPlan& plan, const NodesOfPlan& fine, const std::vector<SightRay>& lines,
                                     int places, const std::vector<double>& floor);
 
-/// Of some slots, with the nodes that feed them, and what is said of each.
+/// The part of a plan that belongs to some slots: their nodes, weights and figures.
 Plan ofSlots(const Plan& plan, const std::vector<size_t>& slots);
-/// Of so many outputs from one on.
+/// The part of a plan that belongs to `count` outputs from `first` on.
 Plan ofOutputs(const Plan& plan, size_t first, size_t count);
 
 /// Per slot, a sum over nodes.
 std::vector<double> slotsOf(const Plan& plan, std::span<const double> radiance);
 
-/// A line of sight as a scene to be told, at so many places of the air.
+/// The scene as a line of sight is told of it, with so many places of the air.
 RadianceScene sceneOf(const Simulation& simulation, const Plan& fine, const ShadowCaster& shadows, const SightRay& ray, int places);
 
 }  // namespace pitviper

@@ -24,7 +24,7 @@ struct NodeBlock {
   bool lit = true;  ///< reflected light of the sun or of points matters in these channels
 };
 
-/// How much of what channels see a term can be, at most over the lines of sight looked at.
+/// The greatest part of what channels see that a term makes up, over the lines of sight looked at.
 struct TermShare {
   std::string term;
   std::vector<double> share;  ///< [slot]: relative to the pixel, as errors are
@@ -33,13 +33,13 @@ struct TermShare {
 
 /// What a channel's predicted error is made of, relative to the pixel.
 struct PredictedParts {
-  double wavelengths = 0.0;   ///< largest on the last lines, times a margin
+  double wavelengths = 0.0;   ///< largest on lines that no fit has seen, times a margin
   double tables = 0.0;        ///< between entries of tables
   double dropped = 0.0;       ///< terms left out
   double precision = 0.0;     ///< single precision
   double surroundings = 0.0;  ///< ambient light by so many harmonics
   double fields = 0.0;        ///< steps through plumes and clouds, and lines through pixels of them, at most
-  double extremes = 0.0;      ///< by itself: largest on the lines at the extremes, of wavelengths alone
+  double extremes = 0.0;      ///< of wavelengths, largest on the lines at the extremes; not in the sum
   double sum() const { return wavelengths + tables + dropped + precision + surroundings + fields; }
 };
 
@@ -47,22 +47,23 @@ struct PredictedParts {
 struct AirTableSize {
   int elevations = 0, ranges = 0;
   int azimuths = 1;        ///< of scattered sunlight
-  double over = 0.0;       ///< so many elevations cover so much of the signed root of their sine, at places that stay; 0: what a view sees
-  double across = 0.0;     ///< and so many azimuths so much of their cosine times the sun's horizontal part
-  double near_m = 0.0;     ///< ranges lie evenly up to about here, beyond in their logarithm; 0 or beyond a thousandth of the farthest: up to there
+  double over = 0.0;       ///< range of the signed root of their sine that the elevations span, at places that stay; 0: what a view sees
+  double across = 0.0;     ///< the same of azimuths: of their cosine times the sun's horizontal part
+  double near_m = 0.0;     ///< ranges lie evenly up to about here, beyond in their logarithm; at most, and if 0, a thousandth of the farthest
   double same = 1.0;       ///< views share tables whose heights and suns lie within this of the usual steps (air_grid.cpp)
-  double sunDepth = 10.0;  ///< of the air on the way from the ground to the sun, at most of the channels, for the sunlight that gets through
+  double sunDepth = 10.0;  ///< of the air from the ground to the sun as the sunlight that gets through has it; the largest of all channels
   bool operator==(const AirTableSize&) const = default;
 };
 
 /// Part of the film's brightest (99th percentile) that an error is measured against where it is dark.
 constexpr double kDark = 1e-3;
-/// Where planning takes that percentile from lines of sight it takes a lower one: what is bright on about a hundredth of the film is more on some hundred
-/// lines and less on its pixels by chance, and the rest may be dark beside it.
+/// The percentile that planning takes in its place, on some hundred lines of sight: of what is bright on a hundredth of the film these lines may by chance meet
+/// more than their share, and all else would then count as dark beside it.
 constexpr std::size_t kBrightPercent = 97;
 /// What counts as dark in any film [W/(m2 sr um)]: to a pixel of 1e-9 m2 sr a micrometre of it sends a photon in five hours.
 constexpr double kDarkest = 1e-14;
-/// The floor of a channel whose bright pixels have so much; `kernel`: its integral over wavelength, which is the sum of its weights.
+/// What a pixel counts as at least where an error is relative to it. `bright`: what the bright pixels of the channel have; `kernel`: its integral over
+/// wavelength, which is the sum of its weights.
 inline double darkFloor(double bright, double kernel) { return std::max(kDark * bright, kDarkest * kernel); }
 
 struct Plan {
@@ -94,13 +95,14 @@ struct Plan {
 /// The scene at one wavelength.
 SpectralNode nodeAt(const Simulation& simulation, double wavelength_um);
 
-/// Of each block of a plan of single wavelengths at most `most`: the middle ones of as many stretches, each with the weight of its stretch in every slot.
+/// A plan of fewer wavelengths: each block of single ones is cut into at most `most` stretches, and the middle wavelength of each has the weight of its stretch
+/// in every slot.
 Plan someWavelengths(const Plan& plan, int most);
 
 /// Slots of one pass: four RGBA targets.
 constexpr int kMostSlots = 16;
 
-/// An output of each slot: outputs with the same kernel, and nothing apart, share one. `slotOfOutput`: of each output.
+/// One output of each slot. Outputs with the same kernel share a slot, unless one is kept apart. `slotOfOutput`: of each output.
 std::vector<const ChannelOutput*> differentKernels(std::span<const ChannelOutput> outputs, std::vector<int>* slotOfOutput = nullptr);
 
 /// Outputs with the same kernel share a slot. Throws UserError where there are more than 16 kernels, a response is zero, or

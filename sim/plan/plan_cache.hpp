@@ -9,10 +9,10 @@
 
 namespace pitviper {
 
-/// Of everything a plan is made from: the scenario's content, whole, and the eye's.
+/// The key of a plan: of all that it is made from, the content of the whole scenario and of the eye.
 ContentKey planKey(const Simulation& simulation, const Eye& eye, bool isForetold = true);
 
-/// Of a plan's content, 32 hexadecimal digits.
+/// A fingerprint of the content of a plan, 32 hexadecimal digits.
 std::string planFingerprint(const Plan& plan);
 
 /// What a planner adds to an outline (makePlan's plan), as text that reads back to the same numbers; `into` is unchanged where it cannot be read.

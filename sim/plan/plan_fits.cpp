@@ -12,15 +12,16 @@
 namespace pitviper {
 namespace {
 
-/// Lines of sight to fit to at first besides the extremes, and of each check; checks until one is passed, but no more than so many.
+/// Lines of sight of the first fit, besides the extremes; of each check; and the most checks until one is passed.
 constexpr int kFirst = 600, kCheck = 360, kChecks = 6;
-/// Lines on which fits are held against the equation after that, besides the extremes; how often one learns from them.
+/// Lines, besides the extremes, on which fits are held against the equation after that, and how often a fit learns from them.
 constexpr int kSecond = 400, kLearn = 4;
-/// Where they do not show as products, all lines are to be told as much better as they are off by, and a little; no less than half of what was asked before.
+/// Where the products do not show what a line is off by, all products are fitted closer: by what is allowed over what was found, and a little more, but at most
+/// to half.
 constexpr double kTightened = 0.9, kLeastPart = 0.5;
-/// What does not fall below this part of what it was is not the groups' to mend.
+/// An error of which learning leaves more than this part is none that groups could mend.
 constexpr double kHopeless = 0.9;
-/// Below, air and the textures of usual scenes send no thermal light to speak of.
+/// At shorter wavelengths the air and the textures of usual scenes send no thermal light to speak of.
 constexpr double kThermal_um = 1.2;
 
 /// A group of a channel's fine wavelengths as a node of the scene.
@@ -58,14 +59,14 @@ void forAll(const std::vector<size_t>& fits, const std::function<void(size_t)>& 
   });
 }
 
-/// Lines that are new to fits.
+/// Lines that no fit has seen.
 std::vector<SightRay> secondLines(SightRays& rays) {
   std::vector<SightRay> lines;
   for (int n = 0; n < kSecond; ++n) lines.push_back(n % 4 != 0 ? rays.fromFilm() : rays.ofCombination());
   return lines;
 }
 
-/// Of channels that black bodies are seen in.
+/// The shortest wavelength at which a channel sees black bodies.
 double shortestOf(const std::vector<const ChannelOutput*>& slots) {
   double shortest_um = INFINITY;
   for (const ChannelOutput* s : slots)
@@ -163,7 +164,7 @@ void PlanFits::teach(const CheckedLines& checked, const std::vector<size_t>& fit
   });
 }
 
-/// Checks fits on ever new lines and on the second ones, until they hold or enough was tried.
+/// Checks fits on new lines, and holds them against the equation on the second ones, until they are within the accuracy or enough was tried.
 void PlanFits::hold(const std::vector<size_t>& fits) {
   std::vector<size_t> open = fits;
   std::vector<double> before(fits_.size(), INFINITY);

@@ -25,10 +25,10 @@ class PlanFits {
   /// most. All must outlive it.
   PlanFits(const Simulation& simulation, const Eye& eye, const Plan& plan, const std::vector<const ChannelOutput*>& slots, const NodesOfPlan& fine,
            HeldLines& extremes, SightRays& rays, const std::vector<double>& floor, int airPlaces, int lastPlaces, const std::function<void(double part)>& tell);
-  /// Fits those slots, and those fitted with them, to what they are off by on these lines besides; `allowed`: the most that each slot may be. Returns the slots
-  /// whose groups have changed.
+  /// Adds what these slots are off by on these lines to what their fits learn. `allowed`: the most that each slot may be off by. Returns the slots whose groups
+  /// have changed, with those of the same fits.
   std::vector<size_t> learn(const CheckedLines& checked, const std::vector<size_t>& slots, const std::vector<double>& allowed);
-  /// Lines are told to fits at as many places as they are held against from here on.
+  /// From here on fits look at the air in as many places as they are held against.
   void lookCloser() { sights_.setAirPlaces(lastPlaces_); }
   /// The groups as the plan's nodes.
   void takeNodes(Plan& plan) const;

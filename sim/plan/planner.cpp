@@ -15,22 +15,23 @@
 namespace pitviper {
 namespace {
 
-/// Lines as the film draws them that say what a plan is off by, seen by no fit; of at most 3/n of pixels more is to be expected with 95 %.
+/// So many lines of sight, drawn as the film draws them and seen by no fit, measure what a plan is off by: with 95 % certainty at most 3 of n pixels are off by
+/// more than the worst of n lines.
 constexpr int kLast = 1000;
-/// And of small bodies, which have views of their own in the film's pixels.
+/// As many again of small bodies, which the film draws in views of their own.
 constexpr int kLastSmall = 300;
-/// Their largest error times this is predicted: a film of all pixels shows more than they do. Of 235 cells of random scenes (seeds 6001 to 6099) two were
-/// found above with 2 or with 1.5, one with 2.5: at 2 a margin of a third to spare.
+/// The largest error on these lines times this is predicted, as a film has many more pixels. Of 235 cells of random scenes (seeds 6001 to 6099) two were off by
+/// more than a margin of 2 or of 1.5 had predicted, one with 2.5.
 constexpr double kMargin = 2.0;
-/// How bright a film is, harmonics and places of air show on so many wavelengths of each channel: with 8 or 400 floors and losses are the same within 3 % in
-/// scenes from the visible to 14 um.
+/// Floors, harmonics and places of air are chosen on so many wavelengths of each channel: with 8 or 400 floors and losses are the same within 3 % in scenes
+/// from the visible to 14 um.
 constexpr int kLookedAt = 16;
-/// A plan that shows more on them than was asked learns them, and is told anew by as many others: so often.
+/// A plan that is off by more than was asked learns the lines that showed it and is measured on as many new ones: at most so many times.
 constexpr int kAgain = 2;
 /// Single precision on the GPU over a whole pixel: 2.8e-6 of a formula and 1e-5 of tables (tests/gpu/test_float_against_double.cpp), 5e-5 found in random
 /// scenes.
 constexpr double kPrecision = 6e-5;
-/// Seeds of the last lines lie apart from those of the fit, and of the last ones before.
+/// Added to the seed, so that the last lines are neither those of the fit nor those of the measurement before.
 constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u, kNextSeed = 0xd1b54a32d192ed03u, kSurroundingsSeed = 0x8cb92ba72f3d8dd7u;
 
 void dropLights(Plan& plan) {
@@ -38,7 +39,7 @@ void dropLights(Plan& plan) {
   plan.lightCount = 0;
 }
 
-/// What is nowhere seen in any channel has no place in the programs; sunlight and lamps also by channel.
+/// Leaves out of the programs what no channel would notice; reflected light of sun and lamps is left out channel by channel.
 void dropTerms(Plan& plan, bool keepLights) {
   auto seen = [&](TermKind kind, size_t slot) { return plan.shares[static_cast<size_t>(kind)].share[slot] > budget::kTerms.of(plan.accuracy); };
   auto anywhere = [&](TermKind kind) {
@@ -57,15 +58,15 @@ void dropTerms(Plan& plan, bool keepLights) {
   if (std::none_of(plan.blocks.begin(), plan.blocks.end(), [](const NodeBlock& b) { return b.lit; })) dropLights(plan);
 }
 
-/// The truth layers show the first light's geometry.
+/// Whether lights stay whatever they add, as truth layers show the geometry of the first.
 bool keepsLights(const Eye& eye) { return eye.camera && eye.camera->truth.solidAngles; }
 
-/// A plan that was made elsewhere has what drawing takes from it.
+/// Whether a plan that was read has at each node an absorption of every material of this scene.
 bool suits(const Plan& plan, const Simulation& sim) {
   return std::all_of(plan.nodes.begin(), plan.nodes.end(), [&](const SpectralNode& n) { return n.absorption_per_m.size() == sim.materials.size(); });
 }
 
-/// What plans are held against at last.
+/// Measures a plan on lines of sight that no fit has seen.
 struct LastLook {
   const Simulation& sim;
   const Eye& eye;
@@ -75,7 +76,8 @@ struct LastLook {
   int places;  ///< at which the air is looked at
   HeldLines& extremes;
 
-  /// Of some slots, on lines that no fit has seen and at the extremes: what they are off by but for tables. Returns the lines; figures of other slots are none.
+  /// Measures some slots on such lines and at the extremes, and writes what all but tables lose into the parts of the plan. Returns the lines, with figures of
+  /// these slots alone.
   CheckedLines tell(unsigned long long seed, const std::vector<size_t>& slots, Plan& plan) const {
     rays.reseed(seed);
     CheckedLines last;
@@ -90,7 +92,7 @@ struct LastLook {
       last.add(lines, figures);
     };
     look(rays.overFilm(kLast));
-    // What middles of pixels miss and pixels hold: small bodies, glints, which are small, and lamps.
+    // Small bodies, glints and lamps lie in pixels, but seldom in their middles.
     look(rays.ofSmallBodies(kLastSmall));
     const NodesOfPlan all(sim, plan, &fine);
     const std::vector<LineFigures> extreme = extremes.check(all);
@@ -132,7 +134,7 @@ std::vector<size_t> allOf(const Plan& plan) {
   return all;
 }
 
-/// Two plans leave the same terms out.
+/// Whether two plans leave the same terms out.
 bool dropAlike(const Plan& a, const Plan& b) {
   const auto same = [](const auto& x, const auto& y, auto is) { return std::equal(x.begin(), x.end(), y.begin(), y.end(), is); };
   return a.terms.ambient == b.terms.ambient && a.terms.scatteredSun == b.terms.scatteredSun && a.terms.lights == b.terms.lights &&
@@ -143,7 +145,7 @@ bool dropAlike(const Plan& a, const Plan& b) {
 /// Groups of wavelengths within plan.accuracy, terms that nobody would notice left out, and what all that is off by.
 void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const NodesOfPlan& fine, int airPlaces, bool keepLights,
              SightRays& rays, const std::vector<double>& floor, Plan& plan, const PlanProgress& progress) {
-  // Fits take most of the time, the last lines and tables the rest; what is done again comes out of that.
+  // Parts of the work, for the progress that is told: fits until `to`, then the last lines and tables; what is done again comes out of that.
   double from = 0.05, to = 0.6;
   const auto tell = [&](double share) {
     if (progress) progress(share);
@@ -171,12 +173,12 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
     if (attempt == 0 || !dropAlike(before, plan)) changed = allOf(plan);
     const CheckedLines seen = last.tell(static_cast<unsigned long long>(sim.seed) ^ batch, changed, plan);
     if (attempt == 0) last.makeTables(plan);
-    // What wavelengths may show on the last lines. Finer groups help neither tables nor harmonics beyond what those may lose.
+    // What is left for wavelengths. Tables and harmonics count up to their accounts only, as finer groups would not mend what they lose beyond.
     std::vector<double> allowed;
     std::vector<size_t> missed;
     for (size_t s = 0; s < plan.parts.size(); ++s) {
       const PredictedParts& p = plan.parts[s];
-      // Tables were made for other groups of what has changed.
+      // The groups of this slot have changed since tables were made.
       const bool isOld = attempt > 0 && std::find(changed.begin(), changed.end(), s) != changed.end();
       const double left = (isOld ? 1.0 - budget::kTablesAnew.share : 1.0) * plan.accuracy - std::min(p.tables, budget::kTables.of(plan.accuracy)) -
                           std::min(p.surroundings, budget::kSurroundings.of(plan.accuracy)) - p.dropped - p.precision - p.fields;
@@ -184,7 +186,7 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
       if (p.wavelengths > left) missed.push_back(s);
     }
     from = 0.75, to = 0.9;
-    // What is still missed may lie between the places where fits look at the air.
+    // After kAgain attempts fits look at the air in more places: what is still missed may lie between those they had.
     const bool isLast = missed.empty() || attempt == 2 * kAgain;
     if (!isLast) {
       if (attempt == kAgain) fits.lookCloser();
@@ -198,7 +200,7 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
   for (const PredictedParts& p : plan.parts) plan.predictedError.push_back(p.sum());
 }
 
-/// Terms that nobody would notice are still in it.
+/// The plan with all its terms, also those that finished() drops as no channel would notice them.
 Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const PlanProgress& progress, Foretold error) {
   const SpectralSampling& sampling = eye.camera ? eye.camera->spectral : eye.probe->spectral;
   const Location& where = eye.camera ? eye.camera->where : eye.probe->where;

@@ -11,15 +11,16 @@
 namespace pitviper {
 namespace {
 
-/// Black bodies of the air and of textures stand at steps; below kShort_um, where a step changes the shape of their spectra, at finer ones.
+/// Temperatures of the air and of textures are rounded to these steps; to the finer ones where a channel sees less than kShort_um, as a step there changes the
+/// shape of spectra.
 constexpr double kStep_K = 4.0, kFineStep_K = 1.0, kShort_um = 3.0;
 constexpr double kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
-/// Hot gases are those of the nearest of such temperatures (steps of 2 %): what is fitted to one holds for its neighbours.
+/// Temperatures of hot gases are rounded to steps of this ratio: what is fitted to one holds for its neighbours.
 constexpr double kHotStep = 0.02;
-/// Directions of the surroundings' light in half a turn.
+/// Directions of light from all around are rounded: steps in half a turn.
 constexpr double kElevationSteps = 12.0, kAzimuthSteps = 4.0;
 
-/// The factor at one of the steps.
+/// A factor with its angles rounded to their steps.
 Factor stepped(Factor f) {
   if (f.kind != Factor::Kind::Planck && f.kind != Factor::Kind::Emission && f.kind != Factor::Kind::Medium)
     f.x = kAngleStep_rad * std::round(f.x / kAngleStep_rad), f.y = kAngleStep_rad * std::round(f.y / kAngleStep_rad);
@@ -68,7 +69,7 @@ Sight ProductSink::finish() {
   return std::move(sight_);
 }
 
-/// Through the media so far, and a part of those of the segment being told.
+/// Writes down a path: an amount of air, the media so far, a part of those of the segment being told, and more of one medium.
 int ProductSink::pathOf(const AirAmounts& powered, double ownPart, std::pair<int, double> more) {
   SightPath path{powered, media_m_};
   if (more.second > 0.0) {
@@ -83,7 +84,7 @@ int ProductSink::pathOf(const AirAmounts& powered, double ownPart, std::pair<int
   return static_cast<int>(book_.paths.size()) - 1;
 }
 
-/// Through all panes so far.
+/// Writes down a term as it is seen through all panes so far.
 void ProductSink::add(ProductTerm term) {
   for (const Pane& p : panes_) {
     term.coefficient *= p.modifier;
@@ -94,7 +95,7 @@ void ProductSink::add(ProductTerm term) {
   if (term.coefficient != 0.0) sight_.terms.push_back(term);
 }
 
-/// A black body of a texture's temperature is a mixture of two.
+/// Writes down a term times further factors, where the black body of a texture is a mixture of those at two steps.
 void ProductSink::addFactor(const ProductTerm& term, std::span<const Factor> rest) {
   if (rest.empty()) {
     add(term);
@@ -116,7 +117,8 @@ void ProductSink::addFactor(const ProductTerm& term, std::span<const Factor> res
   with(Factor::planck(step_K_ * (low + 1.0), true), at - low);
 }
 
-/// What matters here is its spectrum: light that is even enough about the normal or, where a lobe is, the mirrored direction, and reflected as all light is.
+/// What a component reflects of the light from all around, as two spectra: that light from about the normal, or of a lobe from the mirrored direction, and the
+/// reflectance for light from all sides. Fits ask for its spectrum alone.
 static std::array<Factor, 2> evenly(const Simulation& sim, const Factor& f) {
   const auto& component = *static_cast<const ReflectionComponent*>(f.of);
   const SurfaceView& v = *f.seen;
@@ -183,7 +185,7 @@ void ProductSink::emission(const Segment& s) {
   emissionOfMedia(s);
 }
 
-/// About how much a unit of a medium absorbs: the mean of its bends.
+/// About how much a unit of a medium absorbs: the mean over the knots of its spectrum.
 double ProductSink::strengthOf(int material) {
   const auto [at, isNew] = strength_.try_emplace(material, 0.0);
   if (!isNew) return at->second;
@@ -201,7 +203,7 @@ void ProductSink::emissionOfMedia(const Segment& s) {
   double total = 0.0;
   for (const MediumInside& m : s.media) total += strengthOf(m.material) * m.length_m;
   if (!(total > 0.0)) return;
-  // Several in each other: each sends its share by strength, which only their fit is for.
+  // Of several media in each other each sends a share by its strength, which is near enough for a fit.
   const auto addSource = [&](int spectrum, double share, int near, int far) {
     for (const auto& [path, sign] : {std::pair{near, 1.0}, {far, -1.0}}) {
       ProductTerm t;

@@ -10,8 +10,7 @@ namespace pitviper {
 
 class ProductSink final : public TermSink {
  public:
-  /// All must outlive it.
-  /// `shortest_um`: of what is seen.
+  /// All must outlive it. `shortest_um`: the shortest wavelength at which a channel sees thermal light.
   ProductSink(const Simulation& simulation, SightBook& book, double shortest_um);
   /// A new line begins.
   void begin(bool fromFilm);
@@ -24,7 +23,7 @@ class ProductSink final : public TermSink {
   void pane(const Factor& transmittance, double modifier) override;
 
  private:
-  /// `more`: so much of a material besides.
+  /// `more`: a material and how much of it besides.
   int pathOf(const AirAmounts& powered, double ownPart, std::pair<int, double> more = {0, 0.0});
   void add(ProductTerm term);
   void addFactor(const ProductTerm& term, std::span<const Factor> rest);
@@ -37,7 +36,7 @@ class ProductSink final : public TermSink {
   SightBook& book_;
   double step_K_;  ///< between temperatures of black bodies
   Sight sight_;
-  std::map<int, double> strength_;  ///< of materials
+  std::map<int, double> strength_;    ///< of materials
   std::vector<size_t> scatterers_;    ///< absorbers of the air that scatter
   AirAmounts here_;                   ///< from the eye to the place reached, raised to their powers
   std::vector<double> media_m_;       ///< on the way so far, by material; empty: none

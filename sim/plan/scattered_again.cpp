@@ -20,15 +20,16 @@ constexpr int kHeights = 65;
 constexpr int kWavelengths = 2;
 /// Lines of sight: parts of the film across and down.
 constexpr double kLines[][2] = {{0.5, 0.5}, {0.25, 0.25}, {0.75, 0.25}, {0.25, 0.75}, {0.75, 0.75}};
-/// Ways that photons are followed back, from a line and from what ends it, at each wavelength.
+/// Photons that are followed back from a line, and from what ends it, at each wavelength.
 constexpr int kWalks = 400;
-/// What lies below the camera is land where it reaches as far as this; else the ground beneath it is.
+/// A body below the camera is the ground that lights the air if it reaches as far as this; else the ground beneath it is.
 constexpr double kLand_m = 1000.0;
-/// A channel is lit where white air in full sun would send this part of a black body of 288 K.
+/// A channel is looked at where white air in full sun would send at least this part of what a black body of 288 K does.
 constexpr double kLit = 0.1, kWarm_K = 288.0;
 /// Where no accuracy is asked for, what is worth saying.
 constexpr double kWorth = 0.01;
-/// Sine of the sun's elevation below which what lies beside a place is lit otherwise than it is, and what that leaves of a factor's certainty.
+/// Sine of the sun's elevation below which the air around a place is lit otherwise than at the place, and the relative error of a factor that this leaves at
+/// least.
 constexpr double kLowSun = 0.1, kGuess = 0.5;
 
 double sumOver(const std::array<double, kMostAirAmounts>& coefficients, const AirAmounts& powered) {
@@ -37,7 +38,7 @@ double sumOver(const std::array<double, kMostAirAmounts>& coefficients, const Ai
   return sum;
 }
 
-/// A mean of what chance gives, and its variance.
+/// The mean of random samples, and the variance of that mean.
 struct Tally {
   double sum = 0.0, squares = 0.0;
   int count = 0;
@@ -168,7 +169,7 @@ ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n
   const double rayleigh = physics::rayleighPhase(line.cosScatter), haze = physics::henyeyGreensteinPhase(line.cosScatter, node.air.asymmetry);
   Parts parts{seen.thermal[end] + e0 * (rayleigh * seen.molecules[end] + haze * seen.haze[end]), 0.0, 0.0};
   WalkDice dice(1 + n);
-  // Where the line is scattered: as much as is seen from each stretch of it.
+  // What is seen of light scattered before each station, and which part of it particles scattered.
   std::vector<double> reached{0.0}, particles{0.0};
   for (size_t s = 1; s < line.air.stations.size(); ++s) {
     const auto passed = [&](const std::array<double, kMostAirAmounts>& c) { return sumOver(c, line.air.powered[s]) - sumOver(c, line.air.powered[s - 1]); };
@@ -202,7 +203,8 @@ ScatteringCheck::Parts ScatteringCheck::partsOf(const Channel& channel, size_t n
       through * (material.emissivity(um, 0.0) * physics::planckRadiance(um, line.end_K) + reflectance / kPi * (e0 * line.sun.factor * std::exp(-leg) + dome));
   const double each = through * reflectance * e0;
   if (!(each > 0.0)) return parts;
-  // Irradiance over pi: the mean of what comes from directions drawn by their cosine. Without ambient light what is scattered once is nobody's wish.
+  // Irradiance over pi is the mean radiance over directions drawn by their cosine. Where a scenario asks for no ambient light, skylight of the first order is
+  // not missed either.
   Tally tally;
   for (int k = 0; k < kWalks; ++k) {
     const auto found = walk.from(aboveAt(column.all, height), walk.evenlySent(line.normal, dice), dice);

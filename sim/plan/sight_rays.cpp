@@ -19,15 +19,15 @@ constexpr double kInColumn = 0.4871, kInRow = 0.5113;
 /// Frames whose states are kept, and those that are looked at where there are fields.
 constexpr size_t kMostStates = 256;
 constexpr int kFieldFrames = 96;
-/// Tries to hit on something that is in view at a time.
+/// How often something is drawn by chance until it is in view.
 constexpr int kTries = 24;
 /// Frames at which bodies and lamps are looked for at their nearest and farthest.
 constexpr int kMostFrames = 400;
-/// Frames in which levels of lights may change that lamps are looked for in.
+/// Frames at which lamps are looked for because their levels bend, at most.
 constexpr size_t kMostLevels = 64;
-/// Combinations beyond so many, the rarest, have no extremes of their own.
+/// Only so many combinations of things, the most frequent, have extremes of their own.
 constexpr size_t kMostExtremes = 40;
-/// Frames in which bodies are looked for that are small there, the first and the last among them.
+/// Frames in which small bodies are looked for, the first and the last among them.
 constexpr int kSmallFrames = 12;
 /// Steps towards a glint, each shorter than the last.
 constexpr int kGlintSteps = 40;
@@ -340,8 +340,7 @@ void SightRays::survey() {
     if (auto ray = aimedAt(frameWith(static_cast<size_t>(n) % surfaces_.size()), static_cast<size_t>(n) % surfaces_.size()))
       candidates_.push_back(candidate(std::move(*ray)));
   for (size_t n = 0; n < static_cast<size_t>(kAimedSurvey) && !simulation_.fields.empty(); ++n)
-    if (auto ray = aimedAtField(someFrame(), n % simulation_.fields.size()))
-      candidates_.push_back(candidate(std::move(*ray)));
+    if (auto ray = aimedAtField(someFrame(), n % simulation_.fields.size())) candidates_.push_back(candidate(std::move(*ray)));
   std::map<std::vector<std::pair<int, int>>, size_t> placeOf;
   for (size_t c = 0; c < candidates_.size(); ++c) {
     const auto [at, isNew] = placeOf.try_emplace(candidates_[c].things, combinations_.size());

@@ -9,7 +9,7 @@
 namespace pitviper {
 namespace {
 
-/// Where no choice is within the share, more harmonics must lose less by this.
+/// Where no degree keeps its account, the lowest is taken whose loss is at most this many times the least.
 constexpr double kNoWorse = 1.1;
 /// So many lines of the film, and half as many of small bodies and of all combinations of things: a canopy may be few pixels.
 constexpr int kLines = 240;
@@ -108,7 +108,7 @@ void chooseSurroundings(const Simulation& sim, const NodesOfPlan& fine, SightRay
   for (const int degree : {0, 2, 3, kMostHarmonicOrder})
     if (plan.accuracy > 0.0 || degree > 2)
       if (look(degree)) break;
-  // Where none is good enough, more must be worth it.
+  // The first that keeps its account or, where none does, that loses about as little as any.
   double least = INFINITY;
   for (const Tried& t : all) least = std::min(least, t.largest);
   const Tried& taken = *std::find_if(all.begin(), all.end(), [&](const Tried& t) { return isEnough(t) || t.largest <= kNoWorse * least; });

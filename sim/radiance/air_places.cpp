@@ -12,7 +12,7 @@ namespace {
 /// from there on than a tenth of it or 100 m: emission, linear in depth between two, is then within 3e-5 of finer ones towards space, where the model's own
 /// places are 0.13 % off, and within 6e-5 where a band is so opaque that all it shows lies in the first metres, for its depth grows as a root of the range.
 constexpr double kFirst_m = 2.0, kNearPart = 0.25, kStep_m = 100.0, kPart = 0.1;
-/// Of fewer places: nearer than this one is as good as another, and beyond the other there is no air to speak of.
+/// How fewer places are spread: nearer than the first range one place is as good as another, and beyond the second there is no air to speak of.
 constexpr double kNear_m = 10.0, kFar_m = 1e6;
 
 /// The longest step from a place so far from the eye.
@@ -32,8 +32,8 @@ std::vector<double> subdivided(std::vector<double> at) {
   return all;
 }
 
-/// So many of rising places, the first and the last among them, where the air changes: half by the share of each absorber that lies before a place, half by
-/// the logarithm of its range, as much of the near air is all that is seen where much absorbs.
+/// Picks `count` of rising places, the first and the last among them, where the air changes: half by the share of each absorber that lies before a place, half
+/// by the logarithm of its range, as where much absorbs the near air is all that is seen.
 std::vector<double> thinned(const Atmosphere& path, const AirRay& ray, const std::vector<double>& all, size_t count) {
   if (all.size() <= count) return all;
   const auto stations = path.stationsAt(ray, all);
@@ -57,7 +57,7 @@ std::vector<double> thinned(const Atmosphere& path, const AirRay& ray, const std
   return some;
 }
 
-/// And where the sun's disc sets along the way: no place has more than this of its radius more of it above the horizon than the next.
+/// The sun sets along a line in steps: from one place to the next its disc rises or sinks by no more than this part of its radius.
 constexpr double kSunStep = 0.02;
 
 std::vector<double> refinedAtDusk(const AirRay& ray, const RaySun& sun, const std::vector<double>& at) {
@@ -82,7 +82,7 @@ std::vector<double> refinedAtDusk(const AirRay& ray, const RaySun& sun, const st
 /// haze falls to a third in 300 m.
 constexpr double kEvenPart = 0.005, kEvenHigher_m = 10.0;
 
-/// Which of rising ranges are looked at, by number: all but steps that others tell.
+/// The numbers of the ranges that are looked at: all but ends of steps through fields that are so close together that the air hardly changes.
 std::vector<size_t> lookedAt(const std::vector<double>& ranges, const std::vector<Slab>& slabs, double sine) {
   std::vector<double> steps;
   for (const Slab& s : slabs) steps.insert(steps.end(), {s.step.enter_m, s.step.leave_m});

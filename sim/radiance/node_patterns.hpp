@@ -39,11 +39,11 @@ struct NodeSurroundings::Patterns {
   mutable std::map<std::pair<int, std::size_t>, std::unique_ptr<Rest>> rests;
 };
 
-/// Of one of the surroundings' heights. Node by node as sums of a few directional patterns.
+/// The light at one of the surroundings' heights: node by node a sum of a few directional patterns.
 struct NodeSurroundings::Height {
   std::shared_ptr<const Patterns> of;
-  Eigen::MatrixXd mix;               ///< [node, pattern]
-  std::vector<Harmonics> harmonics;  ///< by node
+  Eigen::MatrixXd mix;                         ///< [node, pattern]
+  std::vector<Harmonics> harmonics;            ///< by node
   std::vector<DirectionGrid::Sample> samples;  ///< where it is in full
   Eigen::MatrixXd atSamples;                   ///< [pattern, sample]
 };

@@ -18,7 +18,8 @@ class PlanckTable;
 /// What lines have in common at some nodes; may be shared between threads.
 class NodeSpectra {
  public:
-  /// All must outlive it. `surroundings`: as Terms::surroundings. `parts`: nodes of single wavelengths; what nodes made of them have of it is averaged.
+  /// All must outlive it. `surroundings`: as Terms::surroundings. `parts`: spectra at the single wavelengths that these nodes are groups of, whose values are
+  /// averaged; null: none are known.
   NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, int surroundings = Terms::kWhole, const NodeSpectra* parts = nullptr);
   const Simulation& simulation() const { return simulation_; }
   std::span<const SpectralNode> nodes() const { return nodes_; }
@@ -26,7 +27,7 @@ class NodeSpectra {
   void planck(double temperature_K, std::span<double> into) const;
   std::vector<double> of(const Factor& factor) const;
   const NodeSurroundings* surroundings() const { return surroundings_.get(); }
-  /// Of the amounts of air that have any.
+  /// Coefficients of those amounts of air for which some node has one.
   struct AirRows {
     std::vector<size_t> amounts;
     std::vector<double> coefficient;  ///< [of amounts][node]
@@ -80,18 +81,18 @@ class NodeSum final : public TermSink {
   /// Of what this entity sends or reflects, surface or medium, where watchEntity() was called; of all terms, whatever setOnly() says.
   std::span<const double> ofEntity() const { return ofEntity_; }
   void watchEntity(int entity) { watched_ = entity; }
-  /// The same of a field, an index into Simulation::fields: ofEntity() is then its.
+  /// The same of a field, by its index into Simulation::fields, in the place of an entity.
   void watchField(int field) { watchedField_ = field; }
   /// Where watchField() was called: what the line would have without the field.
   std::span<const double> withoutField() const { return isParted_ ? without_.radiance : radiance_; }
-  /// Sums from here on are of this part alone; without one of all.
+  /// From here on only this part is summed; without one, all parts.
   void setOnly(const std::optional<Part>& only) { only_ = only; }
   /// The parts that lines had since watchParts() was called.
   const std::set<Part>& met() const { return met_; }
   void watchParts() { watches_ = true; }
-  /// Of panes and media on the whole way.
+  /// Transmittance of the panes and media on the whole way.
   std::vector<double> transmittance() const;
-  /// Of air, panes and media as far as the place reached.
+  /// Transmittance of air, panes and media as far as the place reached.
   std::vector<double> reach() const;
 
  private:
@@ -104,7 +105,8 @@ class NodeSum final : public TermSink {
     radiance_[node] += radiance;
     if (keepsParts_) parts_[static_cast<size_t>(kind)][node] += radiance;
   }
-  /// Of the place reached and the next: depth of the air, what it lets through; black body; both with the way on to the sun.
+  /// Of a place, per node: depth of the air before it and what that lets through, the black body of its air, and depth and transmittance with the way on to the
+  /// sun.
   struct At {
     std::vector<double> depth, passed, black, sunDepth, sunPassed;
   };
@@ -112,7 +114,7 @@ class NodeSum final : public TermSink {
   std::vector<std::vector<double>> sourcesOf(const Segment& segment);
   void gather(const Segment& segment, const std::vector<std::vector<double>>& sources, const std::vector<std::vector<double>>& drifts);
   std::vector<std::vector<double>> driftsOf(const Segment& segment, const std::vector<std::vector<double>>& sources);
-  /// Of haze, per node; lines of one sun mostly ask for the same angle again.
+  /// The phase function of haze per node, kept as lines of one sun mostly ask for the same angle again.
   const std::vector<double>& hazePhase(double cosScatter);
   const std::vector<double>& turnedBy(const MediumInside& medium, double cosScatter);
 
@@ -127,15 +129,15 @@ class NodeSum final : public TermSink {
   std::vector<double> radiance_, ofEntity_;
   std::array<std::vector<double>, kTermKinds> parts_;
   std::vector<std::vector<double>> ofLamp_;
-  std::vector<double> panes_, mediaDepth_, mediaPassed_;  ///< on the way so far; the last exp of the one before
+  std::vector<double> panes_, mediaDepth_, mediaPassed_;  ///< of the way so far: what panes let through, depth of media, and what that lets through
   struct {
     std::vector<double> depth, passed;                                  ///< of all
     std::vector<double> otherDepth, otherPassed;                        ///< of what is not watched, once a watched field was met
     std::vector<double> emitted, drifting, watched, driftingOfWatched;  ///< sums of depths times sources, and times what these change by
-  } own_;                                                               ///< of the media of a segment
+  } own_;                                                               ///< media of the segment being told
   struct {
     std::vector<double> radiance, depth, passed;
-  } without_;  ///< the field that is watched, as radiance_, mediaDepth_ and mediaPassed_ from where it begins
+  } without_;  ///< the line without the field that is watched: as radiance_, mediaDepth_ and mediaPassed_ from where it begins
   bool isParted_ = false;
   At near_, far_;
   std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_, termDepth_, termPassed_;

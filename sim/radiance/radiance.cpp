@@ -23,7 +23,7 @@ class Teller {
     if (sim_.sun) cosScatter_ = glm::dot(line.direction, sim_.sun->toSun);
   }
 
-  /// As far as its end, where something solid may be met; `shining` or only what lies on the way.
+  /// Tells the line as far as its end, where something solid may be met. `shining`: with what air and media send; else only what they let through.
   void run(bool shining, const Hit* solid = nullptr) {
     dark_ = !shining;
     sink_.restart();
@@ -127,7 +127,7 @@ class Teller {
     return scatters;
   }
 
-  /// Of the body that it belongs to; the ground lies at 0.
+  /// Height of the body that a hit belongs to; the ground lies at 0.
   double heightOf(const Hit& hit) const { return hit.entity < 0 ? 0.0 : sim_.frame.height(scene_.state.entities[static_cast<size_t>(hit.entity)].position); }
   double viewAngle(const Hit& hit) const { return std::acos(std::clamp(-glm::dot(hit.normal, line_.direction), 0.0, 1.0)); }
 

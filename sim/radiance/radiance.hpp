@@ -49,18 +49,18 @@ struct AirPlace {
   double sun = 0.0;            ///< share of its disc that reaches it
 };
 
-/// A body of gas or smoke on a stretch of the way, or a gas of a field at one of its temperatures.
+/// A body of gas or smoke on a stretch of the line, or one gas of a field at one temperature.
 struct MediumInside {
   const Medium* medium = nullptr;
   int entity = -1, material = 0;
   double temperature_K = 0.0;
-  double length_m = 0.0;   ///< of a field: amount
-  bool lasting = true;     ///< other lines meet it at this temperature
-  double gain = 1.0;       ///< factor of Medium::radiance
-  double sun = 0.0;        ///< share of the sun that reaches it, but for the air and for what follows
-  double sunAmount = 0.0;  ///< of the same medium on the way to the sun
+  double length_m = 0.0;    ///< of a field: amount
+  bool lasting = true;      ///< other lines meet it at this temperature
+  double gain = 1.0;        ///< factor of Medium::radiance
+  double sun = 0.0;         ///< share of the sun that reaches it, not counting what the air and this medium take
+  double sunAmount = 0.0;   ///< of the same medium on the way to the sun
   double drift_perK = 0.0;  ///< 1 / temperature at the segment's far end, less that at its near end
-  int field = -1;          ///< index into Simulation::fields; -1: a body's
+  int field = -1;           ///< index into Simulation::fields; -1: a body's
   Factor source() const { return Factor::medium(*medium, temperature_K, gain, lasting); }
 };
 
@@ -68,9 +68,9 @@ struct MediumInside {
 struct Segment {
   const AirPlace &near, &far;
   std::span<const MediumInside> media;
-  bool air = false, sunlit = false;  ///< whether there is air, and sunlight for it to scatter
-  double cosScatter = 0.0;           ///< between the line and the direction to the sun
-  bool dark = false;                 ///< only what it lets through is asked for
+  bool air = false, sunlit = false;    ///< whether there is air, and sunlight for it to scatter
+  double cosScatter = 0.0;             ///< between the line and the direction to the sun
+  bool dark = false;                   ///< only what it lets through is asked for
   const AirAmounts* sunAir = nullptr;  ///< from the eye to `near` and on to the sun, powered, where media scatter its light; null: no air
 };
 
