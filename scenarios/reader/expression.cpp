@@ -7,11 +7,11 @@
 
 #include "sim/parameters/readable_text.hpp"
 #include "sim/parameters/table.hpp"
+#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
 
-constexpr double kPi = 3.141592653589793238;
 /// Of a hand-written formula; keeps the parser's recursion short.
 constexpr int kDeepest = 64;
 /// As the parser of units takes them.

@@ -13,12 +13,12 @@
 #include "scenarios/reader/builder.hpp"
 #include "sim/flight/flight_error.hpp"
 #include "sim/model/world.hpp"
+#include "sim/radiometry/constants.hpp"
 #include "sim/scene/placement.hpp"
 
 namespace pitviper {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 /// Seconds that a flare's smoke is seen, and how it leaves: warm, and slower than the flare by what the air has taken of it. Chosen.
 constexpr double kSmokeLifetime_s = 30.0, kSmoke_K = 450.0, kSmokeShare = 0.3, kOfCloud = 0.6;
 constexpr int kSmokePuffs = 150;

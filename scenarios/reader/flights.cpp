@@ -17,7 +17,6 @@ namespace {
 
 /// Points of a trajectory are this far apart at least: quintic pieces of 10 ms are good to a millimetre at 100 g/s^4.
 constexpr double kBetweenPoints_s = 0.01;
-constexpr double kPi = 3.14159265358979324;
 
 /// Keys of both flights: how it starts, how it is integrated, where it ends.
 void addFlightKeys(std::vector<Parameter>& p) {
