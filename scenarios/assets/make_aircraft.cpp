@@ -2,15 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "sim/radiometry/constants.hpp"
 #include "sim/scene/mesh_normals.hpp"
 #include "sim/scene/mesh_tools.hpp"
 
 namespace pitviper {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr double kCrease_rad = 35.0 * kPi / 180.0;  // smooths the lofts' facets, keeps lips and trailing edges sharp
 
 using Ring = std::vector<glm::dvec3>;

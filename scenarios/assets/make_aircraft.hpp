@@ -1,6 +1,6 @@
 #pragma once
 // A generic twin-engine fighter and a generic air-to-air missile, lofted from a few sections; no real type is meant.
-// They are what jet.obj and missile.obj beside this file hold (writeObj()). Metres, nose along +x, origin near the
+// They are what jet.obj and missile.obj beside this file hold (tests/support/write_obj.hpp). Metres, nose along +x, origin near the
 // middle. Every body is closed; bodies overlap, so that nothing shows between them.
 #include "sim/scene/mesh.hpp"
 

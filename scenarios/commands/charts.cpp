@@ -1,7 +1,5 @@
 #include "scenarios/commands/charts.hpp"
 
-#include <dlfcn.h>
-
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -9,36 +7,15 @@
 #include "scenarios/commands/charts/charts_module.hpp"
 #include "sim/image/atomic_file.hpp"
 #include "sim/image/png.hpp"
-#include "sim/parameters/error.hpp"
+#include "sim/parameters/module_on_demand.hpp"
 
 namespace pitviper {
 namespace {
 
-std::filesystem::path& chartsFolder() {
-  static std::filesystem::path folder;
-  return folder;
-}
-
-std::filesystem::path modulePath() {
-  if (!chartsFolder().empty()) return chartsFolder() / kChartsModule;
-  std::error_code ignored;
-  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / kChartsModule;
-}
-
 void* fromModule(const char* function) {
-  const std::filesystem::path module = modulePath();
-  if (std::error_code ignored; !std::filesystem::exists(module, ignored))
-    throw UserError({"charts", 0, 0, -1}, "the charts module " + module.string() + " is missing", "a build with VTK",
-                    "install the package libvtk9-dev and build again, or ask for no chart");
-  // Never closed: VTK's factories would be left pointing into it.
-  void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* symbol = handle == nullptr ? nullptr : dlsym(handle, function);
-  if (symbol == nullptr) {
-    const char* reason = dlerror();
-    throw UserError({"charts", 0, 0, -1}, std::string("the charts module cannot be loaded (") + (reason != nullptr ? reason : "unknown") + ")",
-                    "VTK's libraries", "install the package libvtk9.1 (to build: libvtk9-dev), or ask for no chart");
-  }
-  return symbol;
+  return loadOnDemand({kChartsModule, function, "the charts module", "VTK", "install the package libvtk9-dev and build again, or ask for no chart",
+                       "install the package libvtk9.1 (to build: libvtk9-dev), or ask for no chart"},
+                      {"charts", 0, 0, -1});
 }
 
 }  // namespace
@@ -52,8 +29,6 @@ void writeWithCharts(const std::filesystem::path& folder, const std::string& nam
 }
 
 void requireCharts() { fromModule(kChartsFunction); }
-
-void setChartsFolder(const std::filesystem::path& folder) { chartsFolder() = folder; }
 
 void drawCharts(const std::vector<Chart>& charts, int columns, const std::filesystem::path& png) {
   if (charts.empty() || columns < 1) throw std::invalid_argument("nothing to draw");

@@ -37,7 +37,4 @@ void writeWithCharts(const std::filesystem::path& folder, const std::string& nam
 /// Errors: UserError if the module is missing or cannot be loaded.
 void requireCharts();
 
-/// Where the module libpitviper_charts.so lies; without this call, next to the executable.
-void setChartsFolder(const std::filesystem::path& folder);
-
 }  // namespace pitviper

@@ -53,44 +53,6 @@ glm::dvec2 scanAt(const Scan& s, double time_s) {
   return glm::dvec2(0.0);
 }
 
-std::optional<double> rosetteDivisor_Hz(double first_Hz, double second_Hz) {
-  // What a remainder of decimal fractions in double loses stays below 1e-9 of the larger for quotients up to 1e6.
-  constexpr double kLeast = 1e-6, kRounding = 1e-9;
-  const double larger = std::max(first_Hz, second_Hz);
-  double a = larger, b = std::min(first_Hz, second_Hz);
-  while (b > kRounding * larger) {
-    double rest = std::fmod(a, b);
-    if (b - rest < kRounding * larger) rest = 0.0;
-    a = b;
-    b = rest;
-  }
-  if (a < kLeast * larger) return std::nullopt;
-  return a;
-}
-
-std::optional<int> rosettePetals(double first_Hz, double second_Hz) {
-  const auto divisor_Hz = rosetteDivisor_Hz(first_Hz, second_Hz);
-  if (!divisor_Hz) return std::nullopt;
-  return static_cast<int>(std::lround((first_Hz + second_Hz) / *divisor_Hz));
-}
-
-std::optional<double> scanPeriod_s(const Scan& s) {
-  switch (s.kind) {
-    case Scan::Kind::None:
-      break;
-    case Scan::Kind::Raster:
-      return s.lines / s.lineRate_Hz;
-    case Scan::Kind::Spiral:
-      return 2.0 * s.turns / s.frequency_Hz;
-    case Scan::Kind::Conical:
-      return 1.0 / s.frequency_Hz;
-    case Scan::Kind::Rosette:
-      if (const auto divisor_Hz = rosetteDivisor_Hz(s.frequency_Hz, s.secondFrequency_Hz)) return 1.0 / *divisor_Hz;
-      return std::nullopt;
-  }
-  return 0.0;
-}
-
 void requireSound(const Scan& s) {
   const auto isPositive = [](double v) { return v > 0.0 && std::isfinite(v); };
   const auto require = [](bool sound, const char* what) {

@@ -1,7 +1,6 @@
 #pragma once
 // Scans: where a pattern has turned the line of sight at a time, as a function of time alone. Offsets (left, up) in the line's own axes [rad].
 #include <glm/glm.hpp>
-#include <optional>
 
 namespace pitviper {
 
@@ -30,14 +29,6 @@ struct Scan {
 /// |r| = R |cos(pi (f1 + f2) t)|. Source: S. G. Jahng et al., "Dynamic simulation of the rosette scanning infrared seeker and an infrared
 /// counter-countermeasure using the moment technique", Opt. Eng. 38, 921 (1999).
 glm::dvec2 scanAt(const Scan& scan, double time_s);
-
-/// After which the pattern begins again; 0 without a scan, nothing for a rosette whose frequencies have no common divisor (see rosetteDivisor_Hz).
-std::optional<double> scanPeriod_s(const Scan& scan);
-
-/// The greatest common divisor of two frequencies, by Euclid. Nothing where it is below 1e-6 of the larger: such frequencies, as a user writes them, have none.
-std::optional<double> rosetteDivisor_Hz(double first_Hz, double second_Hz);
-/// Petals of a closed rosette, (f1 + f2) / divisor (the same source); nothing where it never closes.
-std::optional<int> rosettePetals(double first_Hz, double second_Hz);
 
 /// Errors: std::invalid_argument for what scanAt() cannot do: sizes and rates that are not positive, no lines, a flyback outside [0, 1).
 void requireSound(const Scan& scan);

@@ -6,28 +6,21 @@
 #include "sim/flight/flight_error.hpp"
 
 namespace pitviper {
-namespace {
-
-void check(bool good, const char* option, double value, const char* expected, const char* fix) {
-  if (!good) throw FlightError(option, std::to_string(value), expected, fix);
-}
-
-}  // namespace
 
 Ballistic::Ballistic(BallisticOptions options) : options_(std::move(options)) {
   const BallisticOptions& o = options_;
-  check(std::isfinite(o.mass_kg) && o.mass_kg > 0.0, "mass", o.mass_kg, "a mass above 0", "give the mass at launch");
-  check(o.burntShare >= 0.0 && o.burntShare <= 0.99, "burnt_share", o.burntShare, "0 to 0.99", "leave some mass: a case or ash");
-  check(std::isfinite(o.ignition_s) && o.ignition_s >= 0.0, "ignition", o.ignition_s, "a time since launch", "give 0 or more");
-  check(std::isfinite(o.burnTime_s) && o.burnTime_s >= 0.0 && (o.burntShare == 0.0 || o.burnTime_s > 0.0), "burn_time", o.burnTime_s, "a time above 0",
-        "say how long it burns");
-  check(std::isfinite(o.burnExponent) && o.burnExponent >= 1.0, "burn_exponent", o.burnExponent, "1 or more", "1 burns evenly, 3 as a shrinking grain");
-  check(std::isfinite(o.area_m2) && o.area_m2 >= 0.0, "area", o.area_m2, "an area", "give that of the cross-section");
+  checkFlight(std::isfinite(o.mass_kg) && o.mass_kg > 0.0, "mass", o.mass_kg, "a mass above 0", "give the mass at launch");
+  checkFlight(o.burntShare >= 0.0 && o.burntShare <= 0.99, "burnt_share", o.burntShare, "0 to 0.99", "leave some mass: a case or ash");
+  checkFlight(std::isfinite(o.ignition_s) && o.ignition_s >= 0.0, "ignition", o.ignition_s, "a time since launch", "give 0 or more");
+  checkFlight(std::isfinite(o.burnTime_s) && o.burnTime_s >= 0.0 && (o.burntShare == 0.0 || o.burnTime_s > 0.0), "burn_time", o.burnTime_s, "a time above 0",
+              "say how long it burns");
+  checkFlight(std::isfinite(o.burnExponent) && o.burnExponent >= 1.0, "burn_exponent", o.burnExponent, "1 or more", "1 burns evenly, 3 as a shrinking grain");
+  checkFlight(std::isfinite(o.area_m2) && o.area_m2 >= 0.0, "area", o.area_m2, "an area", "give that of the cross-section");
   checkCurve("drag", o.drag);
   checkCurve("area_factor", o.areaFactor);
   if (o.ballisticCoefficient_kg_m2) {
-    check(std::isfinite(*o.ballisticCoefficient_kg_m2) && *o.ballisticCoefficient_kg_m2 > 0.0, "ballistic_coefficient", *o.ballisticCoefficient_kg_m2,
-          "a number above 0", "it is mass / (drag coefficient x area)");
+    checkFlight(std::isfinite(*o.ballisticCoefficient_kg_m2) && *o.ballisticCoefficient_kg_m2 > 0.0, "ballistic_coefficient", *o.ballisticCoefficient_kg_m2,
+                "a number above 0", "it is mass / (drag coefficient x area)");
     if (o.area_m2 > 0.0 || !o.drag.empty())
       throw FlightError("ballistic_coefficient", "given with an area or a drag coefficient", "one way to give drag", "leave one out");
   }

@@ -21,4 +21,9 @@ class FlightError : public std::runtime_error {
   std::optional<std::size_t> item;  ///< of a list, from 0
 };
 
+/// Throws what is wrong with an option's value unless it is good.
+inline void checkFlight(bool good, const char* option, double value, const char* expected, const char* fix) {
+  if (!good) throw FlightError(option, std::to_string(value), expected, fix);
+}
+
 }  // namespace pitviper

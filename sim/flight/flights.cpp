@@ -220,11 +220,6 @@ class Flight {
 
 }  // namespace
 
-Launch launchAlong(double time_s, const glm::dvec3& position, double heading_rad, double pitch_rad, double speed_m_s) {
-  const glm::dvec3 ahead = orientationFrom({heading_rad, pitch_rad, 0.0}) * glm::dvec3(1.0, 0.0, 0.0);
-  return {time_s, position, speed_m_s * ahead, ahead};
-}
-
 Launch launchFrom(double time_s, const Pose& parent, const glm::dvec3& parentVelocity, const glm::dvec3& offset, const glm::dvec3& ejection) {
   const glm::dvec3 push = parent.orientation * ejection;
   const glm::dvec3 ahead = glm::length(push) > 0.0 ? push : parent.orientation * glm::dvec3(1.0, 0.0, 0.0);

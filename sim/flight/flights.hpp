@@ -18,8 +18,6 @@ struct Launch {
   glm::dvec3 direction{1.0, 0.0, 0.0};  ///< where it points as long as no air flows past it
 };
 
-/// Heading clockwise from north, pitch up [rad], speed over ground.
-Launch launchAlong(double time_s, const glm::dvec3& position, double heading_rad, double pitch_rad, double speed_m_s);
 /// Released by something that moves: `offset` [m] and `ejection` [m/s] in its body axes (x forward, y left, z up); its turning adds no velocity.
 Launch launchFrom(double time_s, const Pose& parent, const glm::dvec3& parentVelocity, const glm::dvec3& offset, const glm::dvec3& ejection);
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "sim/flight/flight_error.hpp"
 #include "sim/scene/gravity.hpp"
@@ -27,10 +26,6 @@ glm::dvec3 lawCommand(const GuidanceOptions& options, const MovingPoint& own, co
   return glm::dvec3(0.0);
 }
 
-void check(bool good, const char* option, double value, const char* expected, const char* fix) {
-  if (!good) throw FlightError(option, std::to_string(value), expected, fix);
-}
-
 }  // namespace
 
 glm::dvec3 guidanceCommand(const GuidanceOptions& options, const MovingPoint& own, const MovingPoint& target, const glm::dvec3& gravity_m_s2) {
@@ -45,19 +40,13 @@ glm::dvec3 guidanceCommand(const GuidanceOptions& options, const MovingPoint& ow
   return size > most ? command * (most / size) : command;
 }
 
-double zeroEffortMiss_m(const MovingPoint& own, const MovingPoint& target) {
-  const glm::dvec3 r = target.position - own.position, v = target.velocity - own.velocity;
-  const double closing = -glm::dot(r, v), speed2 = glm::dot(v, v);
-  return closing > 0.0 ? glm::length(r + v * (closing / speed2)) : glm::length(r);
-}
-
 void checkGuidance(const GuidanceOptions& o) {
-  check(o.navigationConstant >= 1.0 && o.navigationConstant <= 10.0, "navigation_constant", o.navigationConstant, "1 to 10", "3 to 5 are usual");
-  check(std::isfinite(o.pursuitGain_per_s) && o.pursuitGain_per_s >= 0.0, "pursuit_gain", o.pursuitGain_per_s, "0 or more", "give a positive gain");
-  check(std::isfinite(o.begin_s) && o.begin_s >= 0.0, "guided_from", o.begin_s, "a time since launch", "give 0 or more");
-  check(std::isfinite(o.timeConstant_s) && o.timeConstant_s >= 0.0, "time_constant", o.timeConstant_s, "0 or more", "0 is without lag");
-  check(o.most_g >= 0.0, "most_g", o.most_g, "0 or more", "give the limit as a positive number");
-  check(std::isfinite(o.blindRange_m) && o.blindRange_m > 0.0, "blindRange_m", o.blindRange_m, "a range above 0", "a few metres");
+  checkFlight(o.navigationConstant >= 1.0 && o.navigationConstant <= 10.0, "navigation_constant", o.navigationConstant, "1 to 10", "3 to 5 are usual");
+  checkFlight(std::isfinite(o.pursuitGain_per_s) && o.pursuitGain_per_s >= 0.0, "pursuit_gain", o.pursuitGain_per_s, "0 or more", "give a positive gain");
+  checkFlight(std::isfinite(o.begin_s) && o.begin_s >= 0.0, "guided_from", o.begin_s, "a time since launch", "give 0 or more");
+  checkFlight(std::isfinite(o.timeConstant_s) && o.timeConstant_s >= 0.0, "time_constant", o.timeConstant_s, "0 or more", "0 is without lag");
+  checkFlight(o.most_g >= 0.0, "most_g", o.most_g, "0 or more", "give the limit as a positive number");
+  checkFlight(std::isfinite(o.blindRange_m) && o.blindRange_m > 0.0, "blindRange_m", o.blindRange_m, "a range above 0", "a few metres");
 }
 
 }  // namespace pitviper

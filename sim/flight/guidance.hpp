@@ -28,9 +28,6 @@ struct GuidanceOptions {
 /// What the law commands [m/s2], weight and limit included, lag not.
 glm::dvec3 guidanceCommand(const GuidanceOptions& options, const MovingPoint& own, const MovingPoint& target, const glm::dvec3& gravity_m_s2);
 
-/// Distance at which two would pass, both going on with the velocities they have [m]; that of now where they open.
-double zeroEffortMiss_m(const MovingPoint& own, const MovingPoint& target);
-
 /// Errors: FlightError naming the option.
 void checkGuidance(const GuidanceOptions& options);
 

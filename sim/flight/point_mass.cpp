@@ -7,22 +7,15 @@
 #include "sim/scene/gravity.hpp"
 
 namespace pitviper {
-namespace {
-
-void check(bool good, const char* option, double value, const char* expected, const char* fix) {
-  if (!good) throw FlightError(option, std::to_string(value), expected, fix);
-}
-
-}  // namespace
 
 PointMass::PointMass(PointMassOptions options) : options_(std::move(options)) {
   const PointMassOptions& o = options_;
-  check(std::isfinite(o.launchMass_kg) && o.launchMass_kg > 0.0, "mass", o.launchMass_kg, "a mass above 0", "give the mass at launch");
-  check(std::isfinite(o.referenceArea_m2) && o.referenceArea_m2 >= 0.0, "area", o.referenceArea_m2, "an area", "give that of the cross-section");
-  check(o.mostLateral_g >= 0.0, "g_limit", o.mostLateral_g, "0 or more", "give the limit as a positive number");
+  checkFlight(std::isfinite(o.launchMass_kg) && o.launchMass_kg > 0.0, "mass", o.launchMass_kg, "a mass above 0", "give the mass at launch");
+  checkFlight(std::isfinite(o.referenceArea_m2) && o.referenceArea_m2 >= 0.0, "area", o.referenceArea_m2, "an area", "give that of the cross-section");
+  checkFlight(o.mostLateral_g >= 0.0, "g_limit", o.mostLateral_g, "0 or more", "give the limit as a positive number");
   if (o.mostLiftCoefficient)
-    check(std::isfinite(*o.mostLiftCoefficient) && *o.mostLiftCoefficient >= 0.0, "lift_coefficient", *o.mostLiftCoefficient, "0 or more",
-          "give the limit as a positive number");
+    checkFlight(std::isfinite(*o.mostLiftCoefficient) && *o.mostLiftCoefficient >= 0.0, "lift_coefficient", *o.mostLiftCoefficient, "0 or more",
+                "give the limit as a positive number");
   checkCurve("thrust", o.thrust);
   checkCurve("drag", o.drag);
   double sum = 0.0;
@@ -33,12 +26,12 @@ PointMass::PointMass(PointMassOptions options) : options_(std::move(options)) {
   if (o.propellantMass_kg && o.specificImpulse_s) throw FlightError("propellant", "given with a specific impulse", "one of them", "leave one out");
   if (o.propellantMass_kg) propellant_kg_ = *o.propellantMass_kg;
   if (o.specificImpulse_s) {
-    check(std::isfinite(*o.specificImpulse_s) && *o.specificImpulse_s > 0.0, "specific_impulse", *o.specificImpulse_s, "a time above 0",
-          "solid motors have 200 to 270 s");
+    checkFlight(std::isfinite(*o.specificImpulse_s) && *o.specificImpulse_s > 0.0, "specific_impulse", *o.specificImpulse_s, "a time above 0",
+                "solid motors have 200 to 270 s");
     propellant_kg_ = sum / (*o.specificImpulse_s * kStandardGravity);
   }
-  check(std::isfinite(propellant_kg_) && propellant_kg_ >= 0.0, "propellant", propellant_kg_, "0 or more", "correct it");
-  check(propellant_kg_ < o.launchMass_kg, "propellant", propellant_kg_, "less than the mass at launch", "the mass at launch includes the propellant");
+  checkFlight(std::isfinite(propellant_kg_) && propellant_kg_ >= 0.0, "propellant", propellant_kg_, "0 or more", "correct it");
+  checkFlight(propellant_kg_ < o.launchMass_kg, "propellant", propellant_kg_, "less than the mass at launch", "the mass at launch includes the propellant");
   if (propellant_kg_ > 0.0 && !(sum > 0.0)) throw FlightError("propellant", "propellant without thrust", "a table of thrust", "give thrust over time");
 }
 

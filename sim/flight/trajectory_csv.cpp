@@ -1,7 +1,6 @@
 #include "sim/flight/trajectory_csv.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <string>

@@ -20,7 +20,7 @@ namespace {
 constexpr png_uint_32 maxSide = 16384;
 constexpr std::size_t maxGreyPixels = std::size_t{8192} * 4096;   // a small file can claim 16384 x 16384: over 1 GB as floats
 constexpr std::size_t maxChunkBytes = std::size_t{16} << 20;      // of text, profiles and the like; pixels are not counted
-constexpr std::uintmax_t maxFileBytes = std::uintmax_t{2} << 30;  // 16384 x 16384 of 8-bit RGB, packed badly, has 0.8 GB
+constexpr std::uintmax_t maxFileBytes = std::uintmax_t{2} << 30;  // 16384 x 16384 of 16 bits, packed badly, has 0.5 GB
 constexpr std::size_t maxDeflateFactor = 1032;                    // zlib, "Maximum Compression Factor"
 
 // libpng leaves on an error by longjmp, which must not pass objects with destructors. So all objects live in Job, outside the functions
@@ -96,15 +96,15 @@ class Reader {
                       "make a smaller picture");
   }
 
-  /// `rgb`: convert everything to 8-bit RGB; else keep grey codes, unpacked to 8 or 16 bits.
-  void pixels(bool rgb) {
+  /// Grey codes, unpacked to 8 or 16 bits.
+  void pixels() {
     std::size_t rowBytes = 0;
-    if (!setTransforms(job_, rgb, rowBytes)) fail();
+    if (!setTransforms(job_, rowBytes)) fail();
     const std::size_t total = rowBytes * job_.height;
-    // Packed codes of 1 bit grow up to 24 times; beyond that the pixels cannot be in the file, and need no memory.
-    if (total / (24 * maxDeflateFactor) > job_.bytes.size())
+    // Packed codes of 1 bit grow up to 8 times; beyond that the pixels cannot be in the file, and need no memory.
+    if (total / (8 * maxDeflateFactor) > job_.bytes.size())
       throw UserError(where_, "is far too short for its pixels; it is truncated or damaged", "a whole PNG file", "copy the file again");
-    if (!rgb && std::size_t{job_.width} * job_.height > maxGreyPixels)
+    if (std::size_t{job_.width} * job_.height > maxGreyPixels)
       throw UserError(where_, "the picture is " + std::to_string(job_.width) + " x " + std::to_string(job_.height) + " pixels",
                       "at most 33 million pixels in a texture, such as 8192 x 4096", "make a smaller picture");
     try {
@@ -133,16 +133,9 @@ class Reader {
     return true;
   }
 
-  static bool setTransforms(Job& job, bool rgb, std::size_t& rowBytes) {
+  static bool setTransforms(Job& job, std::size_t& rowBytes) {
     if (setjmp(png_jmpbuf(job.png)) != 0) return false;
-    if (rgb) {
-      png_set_expand(job.png);
-      png_set_scale_16(job.png);
-      png_set_strip_alpha(job.png);
-      png_set_gray_to_rgb(job.png);
-    } else if (job.bits < 8) {
-      png_set_expand_gray_1_2_4_to_8(job.png);
-    }
+    if (job.bits < 8) png_set_expand_gray_1_2_4_to_8(job.png);
     png_set_interlace_handling(job.png);
     png_read_update_info(job.png, job.info);
     rowBytes = png_get_rowbytes(job.png, job.info);
@@ -173,10 +166,6 @@ bool encode(Job& job) {
   png_write_end(job.png, nullptr);
   return true;
 }
-
-}  // namespace
-
-namespace {
 
 void write(const std::filesystem::path& path, Job& job, std::size_t rowBytes, const std::map<std::string, std::string>& texts, const MayReplace& mayReplace) {
   for (const auto& [keyword, text] : texts) {
@@ -252,17 +241,6 @@ std::optional<std::string> readPngText(const std::filesystem::path& path, std::s
   return std::nullopt;
 }
 
-Rgb8Image readPng(const std::filesystem::path& path) {
-  Reader reader(path);
-  reader.header();
-  reader.pixels(true);
-  Rgb8Image picture;
-  picture.width = static_cast<int>(reader.job().width);
-  picture.height = static_cast<int>(reader.job().height);
-  picture.rgb = reader.job().pixels;
-  return picture;
-}
-
 GreyImage readPngGrey(const std::filesystem::path& path) {
   Reader reader(path);
   reader.header();
@@ -270,7 +248,7 @@ GreyImage readPngGrey(const std::filesystem::path& path) {
   if (job.colour != PNG_COLOR_TYPE_GRAY)
     throw UserError(reader.where(), "the picture has colour, a palette or alpha", "a grey PNG of 8 or 16 bits",
                     "convert it, for example: convert in.png -alpha off -colorspace Gray out.png");
-  reader.pixels(false);
+  reader.pixels();
   GreyImage image;
   image.width = static_cast<int>(job.width);
   image.height = static_cast<int>(job.height);

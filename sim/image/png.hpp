@@ -35,11 +35,8 @@ void writePngGrey(const std::filesystem::path& path, int width, int height, cons
 /// What a keyword says, from before the pixels. Nothing where it isn't there, or the file is no PNG. Never throws but std::bad_alloc.
 std::optional<std::string> readPngText(const std::filesystem::path& path, std::string_view keyword);
 
-/// Any PNG as 8-bit RGB; alpha is dropped, 16-bit codes are rounded to 8.
-/// Errors: UserError with the file name if it is missing, damaged, truncated or over 16384 on a side.
-Rgb8Image readPng(const std::filesystem::path& path);
-
-/// A grey PNG of 1 to 16 bits. Errors: as readPng; and a colour, palette or alpha PNG, where the value to take would be a guess.
+/// A grey PNG of 1 to 16 bits. Errors: UserError with the file name if it is missing, damaged, truncated or over 16384 on a side; and a colour, palette or
+/// alpha PNG, where the value to take would be a guess.
 GreyImage readPngGrey(const std::filesystem::path& path);
 
 }  // namespace pitviper

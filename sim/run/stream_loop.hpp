@@ -44,8 +44,8 @@ struct StreamReport {
   std::uint64_t ticks = 0;                   ///< of the clock, drawn or not
   std::int64_t period_ns = 0, delay_ns = 0;  ///< 0: not of real time
   std::vector<CameraAccount> cameras;
-  Durations start, poseAge;  ///< how late ticks begin; see FrameStamp
-  Durations answer;          ///< lockstep: from a step's arrival to its frames being out, less drawing
+  Durations start;   ///< how late ticks begin
+  Durations answer;  ///< lockstep: from a step's arrival to its frames being out, less drawing
   Durations bareTimer;
   std::uint64_t bareTimerLate = 0;
   std::vector<RungUse> rungs;  ///< of cameras with more than one

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "sim/parameters/module_on_demand.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/scene/import/child_process.hpp"
 #include "sim/scene/import/grid_reply.hpp"
@@ -14,16 +15,10 @@ namespace {
 
 constexpr std::uintmax_t kMostBytes = 2ull << 30;
 
-std::filesystem::path& importFolder() {
-  static std::filesystem::path folder;
-  return folder;
-}
-
-std::filesystem::path modulePath(const char* name) {
-  if (!importFolder().empty()) return importFolder() / name;
-  std::error_code ignored;
-  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / name;
-}
+constexpr const char *kCalled = "the grid import module", *kVtkFix = "install the package libvtk9-dev and build again",
+                     *kVdbFix = "install the package libopenvdb-dev and build again";
+constexpr ModuleOnDemand kVti{kVtiModule, kGridFunction, kCalled, "VTK", kVtkFix, kVtkFix},
+    kVdb{kVdbModule, kGridFunction, kCalled, "OpenVDB", kVdbFix, kVdbFix};
 
 template <class T>
 void put(std::string& out, const T& value) {
@@ -64,8 +59,6 @@ bool decode(std::string_view in, const std::vector<std::string>& names, GridData
 
 }  // namespace
 
-void setGridImportFolder(const std::filesystem::path& folder) { importFolder() = folder; }
-
 GridData importGrid(const std::filesystem::path& file, const std::vector<std::string>& names, const Location& askedAt) {
   std::string extension = file.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -75,29 +68,18 @@ GridData importGrid(const std::filesystem::path& file, const std::vector<std::st
   const std::string bytes = readWholeFile(
       file, {.what = "a grid file", .mostBytes = kMostBytes, .fix = "check the name; it is relative to the scenario's folder", .fixLarge = "thin the grid out"},
       askedAt);
-  const bool vdb = extension == ".vdb";
-  const std::filesystem::path module = modulePath(vdb ? kVdbModule : kVtiModule);
-  const std::string package = vdb ? "libopenvdb-dev" : "libvtk9-dev";
-  if (std::error_code ignored; !std::filesystem::exists(module, ignored))
-    throw UserError(askedAt, "the grid import module " + module.string() + " is missing", std::string("a build with ") + (vdb ? "OpenVDB" : "VTK"),
-                    "install the package " + package + " and build again");
+  const ModuleOnDemand& module = extension == ".vdb" ? kVdb : kVti;
+  const std::filesystem::path moduleFile = fileOf(module, askedAt);
 
   const GridRequest request{file.string(), bytes, names};
   const auto work = [&] {
     GridReply reply;
-    void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
-    void* symbol = handle == nullptr ? nullptr : dlsym(handle, kGridFunction);
-    if (symbol == nullptr) {
-      const char* reason = dlerror();
-      reply = {{},
-               true,
-               askedAt,
-               std::string("the grid import module cannot be loaded (") + (reason != nullptr ? reason : "unknown") + ")",
-               "a module of this build",
-               "install the package " + package + " and build again"};
-    } else {
+    std::string problem;
+    if (void* function = functionIn(moduleFile, module.function, problem)) {
       allowMemory(request.bytes.size());
-      reinterpret_cast<GridFunction>(symbol)(request, &reply);
+      reinterpret_cast<GridFunction>(function)(request, &reply);
+    } else {
+      reply = {{}, true, askedAt, std::string(module.called) + " " + problem, "a module of this build", module.toRun};
     }
     return reply.failed ? encodeFailure(reply) : encode(reply.grid);
   };

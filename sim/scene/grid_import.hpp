@@ -20,7 +20,4 @@ GridData importGrid(const std::filesystem::path& file, const std::vector<std::st
 /// "node [3, 0, 7]", for messages.
 std::string gridIndex(const GridData& grid, std::size_t index);
 
-/// Where the modules lie; without this call, next to the executable.
-void setGridImportFolder(const std::filesystem::path& folder);
-
 }  // namespace pitviper

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "sim/parameters/module_on_demand.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/scene/import/child_process.hpp"
 #include "sim/scene/import/import_reply.hpp"
@@ -25,16 +26,12 @@ constexpr std::uintmax_t kMostBytes = 2ull << 30;
 /// Bends above this are edges: facets of a curved surface with nine or more around stay smooth.
 constexpr double kCrease_rad = 40.0 * std::numbers::pi / 180.0;
 
-std::filesystem::path& importFolder() {
-  static std::filesystem::path folder;
-  return folder;
-}
-
-std::filesystem::path modulePath() {
-  if (!importFolder().empty()) return importFolder() / kImportModule;
-  std::error_code ignored;
-  return std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path() / kImportModule;
-}
+constexpr ModuleOnDemand kMeshModule{kImportModule,
+                                     kImportFunction,
+                                     "the mesh import module",
+                                     "VTK",
+                                     "install the package libvtk9-dev and build again",
+                                     "install the package libvtk9.1 (to build: libvtk9-dev)"};
 
 std::string lowerExtension(const std::filesystem::path& file) {
   std::string extension = file.extension().string();
@@ -101,8 +98,6 @@ void scale(Mesh& mesh, double metresPerUnit, const Location& askedAt) {
 
 }  // namespace
 
-void setMeshImportFolder(const std::filesystem::path& folder) { importFolder() = folder; }
-
 Mesh importMesh(const std::filesystem::path& file, double metresPerUnit, const Location& askedAt) {
   if (!std::isfinite(metresPerUnit) || metresPerUnit <= 0.0)
     throw UserError(askedAt, "metres per unit of the mesh is " + std::to_string(metresPerUnit), "a finite positive number", "correct 'unit'");
@@ -117,13 +112,10 @@ Mesh importMesh(const std::filesystem::path& file, double metresPerUnit, const L
   FilesBeside before(file);
   std::optional<Mesh> mesh = readCachedMesh(key, [&](const NamedFile& named) { return before.isUnchanged(named); });
   if (!mesh) {
-    const std::filesystem::path module = modulePath();
-    if (std::error_code ignored; !std::filesystem::exists(module, ignored))
-      throw UserError(askedAt, "the mesh import module " + module.string() + " is missing", "a build with VTK",
-                      "install the package libvtk9-dev and build again");
+    const std::filesystem::path module = fileOf(kMeshModule, askedAt);
     FilesBeside beside(file);
     std::vector<NamedFile> named;
-    mesh = importInChild(module, {file.string(), bytes, {}}, beside, named, askedAt);
+    mesh = importInChild(kMeshModule, module, {file.string(), bytes, {}}, beside, named, askedAt);
     finish(*mesh, Location{file.string()});
     writeCachedMesh(key, *mesh, named);
   }

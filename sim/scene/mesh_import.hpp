@@ -21,7 +21,4 @@ namespace pitviper {
 /// positive, or a missing module or VTK; in the file itself (line and column, or byte) for what is wrong there.
 Mesh importMesh(const std::filesystem::path& file, double metresPerUnit, const Location& askedAt);
 
-/// Where the module libpitviper_mesh_import.so lies; without this call, next to the executable.
-void setMeshImportFolder(const std::filesystem::path& folder);
-
 }  // namespace pitviper

@@ -1,5 +1,5 @@
 #pragma once
-// What can be measured of a mesh, and how meshes are joined, checked and written. Lengths in metres, body axes as in
+// What can be measured of a mesh, and how meshes are joined and checked. Lengths in metres, body axes as in
 // mesh.hpp.
 #include <cstddef>
 #include <glm/glm.hpp>
@@ -42,8 +42,5 @@ void appendPart(Mesh& into, const Mesh& part, const std::string& name, const glm
 /// removed. Throws UserError at `where` for: no triangles, more than kMostTriangles, arrays of unequal length, indices
 /// out of range, positions or normals or uv that are not finite, parts that don't cover the triangles in order.
 std::size_t validateMesh(Mesh& mesh, const Location& where);
-
-/// Wavefront OBJ text of the mesh with normals, uv, and one group (g) per part; numbers have five digits.
-std::string writeObj(const Mesh& mesh);
 
 }  // namespace pitviper

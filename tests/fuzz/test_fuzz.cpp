@@ -6,6 +6,7 @@
 
 #include <cstdlib>
 
+#include "sim/parameters/module_on_demand.hpp"
 #include "sim/scene/mesh_import.hpp"
 #include "tests/fuzz/fuzz_mesh.hpp"
 #include "tests/fuzz/fuzz_scenario.hpp"
@@ -50,7 +51,7 @@ TEST_F(Fuzz, UndamagedFilesAreAccepted) {
 }
 
 TEST_F(Fuzz, DamagedMeshesAreImportedOrRefused) {
-  setMeshImportFolder(PITVIPER_BUILD_DIR);
+  setModuleFolder(PITVIPER_BUILD_DIR);
   std::filesystem::create_directories(folder_);
   const int failures = fuzzMeshes(kSeed, kMeshes, folder_);
   std::printf("%d damaged meshes from seed %llu: %d failed\n", kMeshes, static_cast<unsigned long long>(kSeed), failures);

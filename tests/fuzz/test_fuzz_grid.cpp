@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "sim/parameters/module_on_demand.hpp"
 #include "sim/scene/grid_import.hpp"
 #include "tests/fuzz/fuzz_grid.hpp"
 
@@ -22,12 +23,12 @@ class FuzzGrids : public testing::Test {
   void SetUp() override {
     const std::filesystem::path build = PITVIPER_BUILD_DIR, source = PITVIPER_SOURCE_DIR;
     if (!std::filesystem::exists(build / "libpitviper_mesh_import.so")) GTEST_SKIP() << "built without VTK";
-    setGridImportFolder(build);
+    setModuleFolder(build);
     const bool vdb = std::filesystem::exists(build / "libpitviper_vdb_import.so");
     sound_ = writeSoundGrids(folder_ / "sound", vdb ? source / "tests/support/gaussian.vdb" : std::filesystem::path());
   }
   void TearDown() override {
-    setGridImportFolder({});
+    setModuleFolder({});
     if (!HasFailure()) std::filesystem::remove_all(folder_);
   }
   std::filesystem::path folder_ = std::filesystem::temp_directory_path() / ("pitviper_fuzz_grids_" + std::to_string(getpid()));

@@ -8,7 +8,7 @@
 
 #include "sim/model/field_lines.hpp"
 #include "sim/model/field_states.hpp"
-#include "sim/scene/grid_import.hpp"
+#include "sim/parameters/module_on_demand.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -71,7 +71,7 @@ plumes: [{name: p, nozzles: [[0 m, 0.5 m, 1000 m], [0 m, -0.5 m, 1000 m]], direc
 // Rationale: a flow that is hot where it is dense, with all that its texels hold; the picture has its borders, and lines that are oblique to its axes.
 TEST(GridsOnTheGpu, AreThoseInDouble) {
   if (!std::filesystem::exists(std::filesystem::path(PITVIPER_BUILD_DIR) / "libpitviper_mesh_import.so")) GTEST_SKIP() << "built without VTK";
-  setGridImportFolder(PITVIPER_BUILD_DIR);
+  setModuleFolder(PITVIPER_BUILD_DIR);
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "flow.vti";
   constexpr int kX = 24, kY = 17, kZ = 15;
@@ -108,7 +108,7 @@ plumes:
                                    ", arrays: {temperature: T, co2: CO2, h2o: H2O, soot: SOOT}}\n" + camera({2.5, 0.3, 1000.2}, 40.0, off, 3.2));
       check(std::string("a grid's flow, ") + (off > 45.0 ? "from the side" : "30 deg off its axis") + ", " + kInAir[air], sim);
     }
-  setGridImportFolder({});
+  setModuleFolder({});
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <string>
 
+#include "sim/parameters/module_on_demand.hpp"
 #include "sim/scene/mesh_import.hpp"
 
 namespace pitviper::test {
@@ -18,7 +19,7 @@ struct MeshImport : testing::Test {
     std::filesystem::create_directories(folder);
     setenv("XDG_CACHE_HOME", (folder / "cache").c_str(), 1);
 #ifdef PITVIPER_MESH_IMPORT_FOLDER
-    setMeshImportFolder(PITVIPER_MESH_IMPORT_FOLDER);
+    setModuleFolder(PITVIPER_MESH_IMPORT_FOLDER);
 #endif
   }
   ~MeshImport() override {

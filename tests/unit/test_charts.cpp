@@ -6,8 +6,9 @@
 #include <set>
 
 #include "scenarios/commands/charts.hpp"
-#include "sim/image/png.hpp"
 #include "sim/parameters/error.hpp"
+#include "sim/parameters/module_on_demand.hpp"
+#include "tests/support/read_png.hpp"
 
 namespace pitviper {
 namespace {
@@ -30,7 +31,7 @@ class Charts : public ::testing::Test {
   }
   Rgb8Image drawn(const std::vector<Chart>& charts, int columns) const {
     drawCharts(charts, columns, folder_ / "chart.png");
-    return readPng(folder_ / "chart.png");
+    return test::readPng(folder_ / "chart.png");
   }
   fs::path folder_;
 };
@@ -108,7 +109,7 @@ TEST_F(Charts, NothingSensibleToDrawIsNoCrash) {
 }
 
 TEST_F(Charts, AMissingModuleSaysWhatToInstall) {
-  setChartsFolder(folder_);
+  setModuleFolder(folder_);
   Chart c{"Speed", "x", "y", false, false, false, {{"s", {1, 2}, {1, 2}, false, false}}, {}, {}};
   try {
     drawCharts({c}, 1, folder_ / "chart.png");
@@ -116,7 +117,7 @@ TEST_F(Charts, AMissingModuleSaysWhatToInstall) {
   } catch (const UserError& e) {
     EXPECT_NE(std::string(e.what()).find("libvtk9-dev"), std::string::npos) << e.what();
   }
-  setChartsFolder({});
+  setModuleFolder({});
   EXPECT_FALSE(fs::exists(folder_ / "chart.png"));
 }
 

@@ -166,17 +166,9 @@ TEST_P(CigiOrders, ComponentControls) {
   EXPECT_EQ(c.asFloat(4), std::nullopt) << "no number";
   EXPECT_EQ(c.asFloat(6), std::nullopt);
   EXPECT_EQ(c.asFloat(-1), std::nullopt);
-  EXPECT_EQ(c.asDouble(2), std::nullopt) << "no number";
   const auto& s = std::get<CigiComponent>(changes[1]);
   EXPECT_EQ(s.asFloat(0), -2.5);
   EXPECT_EQ(s.asFloat(2), std::nullopt) << "two words";
-  EXPECT_EQ(s.asDouble(1), std::nullopt);
-}
-
-TEST_P(CigiOrders, DoublesOfComponentsHaveTheHigherWordFirst) {
-  Datagram d = start();
-  d.u8(4).u8(32).u16(1).u16(1).u8(0).u8(0).u32(0).u32(0).u32(0x40091eb8).u32(0x51eb851f).u32(0).u32(0);
-  EXPECT_EQ(onlyChange<CigiComponent>(d).asDouble(1), 3.14);
 }
 
 TEST_P(CigiOrders, PartControl) {
@@ -313,7 +305,6 @@ TEST_P(CigiOrders, ViewDefinition) {
   EXPECT_EQ(c.bottom_deg, -10.0);
   const auto v = onlyChange<CigiViewDefinition>(d);
   EXPECT_NEAR(v.horizontalFieldOfView_rad().value(), 40.0 * kDegree, 1e-12);
-  EXPECT_EQ(v.verticalFieldOfView_rad(), std::nullopt) << "15 deg up, 10 deg down";
   EXPECT_NEAR(v.top_rad.value(), 15.0 * kDegree, 1e-12);
   EXPECT_NEAR(v.bottom_rad.value(), -10.0 * kDegree, 1e-12);
 }
@@ -549,13 +540,11 @@ TEST(CigiPoses, AttachedOnesAreInTheParentsAxes) {
 
 TEST(CigiPoses, OffsetsNotGivenStay) {
   CigiOffsets held;
-  EXPECT_TRUE(held.movesNothing());
   held.take({1.0, 2.0, std::nullopt, 0.5, std::nullopt, std::nullopt});
   held.take({std::nullopt, 5.0, 6.0, std::nullopt, 0.25, std::nullopt});
   expectNear(held.position(), {1, 5, 6}, 0.0);
   EXPECT_EQ(held.yaw_rad, 0.5);
   EXPECT_EQ(held.pitch_rad, 0.25);
-  EXPECT_FALSE(held.movesNothing());
   const glm::dvec3 forward = held.orientation() * glm::dvec3(1, 0, 0);
   expectNear(forward, {std::cos(0.25) * std::cos(0.5), -std::cos(0.25) * std::sin(0.5), std::sin(0.25)}, 1e-12);
 }
@@ -598,12 +587,12 @@ bool isSound(const CigiChange& change) {
   if (const auto* r = std::get_if<CigiRate>(&change)) return finite(r->linear_m_s) && finite(r->angular_rad_s);
   if (const auto* s = std::get_if<CigiSensor>(&change)) return s->gain >= 0.0 && s->gain <= 1.0 && s->level <= 1.0 && std::isfinite(s->acCoupling_s);
   if (const auto* d = std::get_if<CigiViewDefinition>(&change)) {
-    const auto horizontal = d->horizontalFieldOfView_rad(), vertical = d->verticalFieldOfView_rad();
-    return (!horizontal || (*horizontal > 0.0 && *horizontal < kPi)) && (!vertical || (*vertical > 0.0 && *vertical < kPi));
+    const auto horizontal = d->horizontalFieldOfView_rad();
+    return !horizontal || (*horizontal > 0.0 && *horizontal < kPi);
   }
   const auto& c = std::get<CigiComponent>(change);
   bool sound = c.wordCount <= 6;
-  for (int i = -1; i < 7; ++i) sound = sound && std::isfinite(c.asFloat(i).value_or(0.0)) && std::isfinite(c.asDouble(i).value_or(0.0));
+  for (int i = -1; i < 7; ++i) sound = sound && std::isfinite(c.asFloat(i).value_or(0.0));
   return sound;
 }
 

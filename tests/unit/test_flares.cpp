@@ -7,14 +7,14 @@
 
 #include "materials/fields/flares.hpp"
 #include "materials/fields/smoke.hpp"
+#include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/launch_along.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 std::shared_ptr<const Trajectory> flying(double speed_m_s) {
   return std::make_shared<const Trajectory>(std::vector<TrajectoryPoint>{{0.0, {0, 0, 1000}, {speed_m_s, 0, 0}, {}, {1, 0, 0, 0}},

@@ -16,6 +16,7 @@
 #include "sim/radiometry/constants.hpp"
 #include "sim/scene/gravity.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/launch_along.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -331,6 +332,13 @@ TEST(Flight, LagIsOfFirstOrder) {
   for (double t : {0.2, 0.4, 1.0})
     // The command turns with the velocity by a t/v = 2 %, whose projections matter by its square; points stand 5 ms apart about the corner at the begin.
     EXPECT_NEAR(glm::length(path.accelerationAt(t)), 2.0 * 9.80665 * -std::expm1(-(t - 0.1234) / 0.3), 2e-3 * 2.0 * 9.80665) << t;
+}
+
+/// Distance at which two would pass, both going on with the velocities they have [m]; that of now where they open.
+double zeroEffortMiss_m(const MovingPoint& own, const MovingPoint& target) {
+  const glm::dvec3 r = target.position - own.position, v = target.velocity - own.velocity;
+  const double closing = -glm::dot(r, v), speed2 = glm::dot(v, v);
+  return closing > 0.0 ? glm::length(r + v * (closing / speed2)) : glm::length(r);
 }
 
 class LinearProportionalNavigation : public ::testing::TestWithParam<std::tuple<double, GuidanceLaw>> {};

@@ -10,6 +10,7 @@
 
 #include "materials/fields/grid_field.hpp"
 #include "sim/model/simulation.hpp"
+#include "sim/parameters/module_on_demand.hpp"
 #include "sim/scene/grid_import.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -114,10 +115,10 @@ std::string wrongWith(const std::function<void()>& work) {
 class GridFiles : public ::testing::Test {
  protected:
   void SetUp() override {
-    setGridImportFolder(PITVIPER_BUILD_DIR);
+    setModuleFolder(PITVIPER_BUILD_DIR);
     if (!std::filesystem::exists(std::filesystem::path(PITVIPER_BUILD_DIR) / "libpitviper_mesh_import.so")) GTEST_SKIP() << "built without VTK";
   }
-  void TearDown() override { setGridImportFolder({}); }
+  void TearDown() override { setModuleFolder({}); }
   TemporaryFolder folder_;
 };
 
@@ -186,9 +187,9 @@ TEST_F(GridFiles, WhatIsWrongIsNamed) {
     EXPECT_NE(said.find("bad.vti:"), std::string::npos) << said;
   }
   EXPECT_NE(of(written(folder_, "empty.vti", ""), {"T"}).find("empty.vti"), std::string::npos);
-  setGridImportFolder(folder_.path());
+  setModuleFolder(folder_.path());
   EXPECT_NE(of(file, {"T"}).find("libvtk9-dev"), std::string::npos);
-  setGridImportFolder(PITVIPER_BUILD_DIR);
+  setModuleFolder(PITVIPER_BUILD_DIR);
 }
 
 // OpenVDB: the same Gaussian by its own library (tests/support/gaussian.vdb: 'T' and 'CO2' on 13x11x9 voxels of 0.25 m, values as below).

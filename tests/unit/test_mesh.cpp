@@ -11,6 +11,7 @@
 #include <set>
 
 #include "scenarios/assets/make_aircraft.hpp"
+#include "sim/parameters/module_on_demand.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/scene/mesh_cache.hpp"
 #include "sim/scene/mesh_import.hpp"
@@ -19,6 +20,7 @@
 #include "sim/scene/primitives.hpp"
 #include "tests/fuzz/fuzz_mesh.hpp"
 #include "tests/support/mesh_import.hpp"
+#include "tests/support/write_obj.hpp"
 
 namespace pitviper {
 namespace {
@@ -210,7 +212,7 @@ TEST(Aircraft, AreClosedAndHaveTheirSize) {
     EXPECT_TRUE(isClosed(*mesh));
     EXPECT_GT(mesh->triangles.size(), 3000u);
     EXPECT_LT(mesh->triangles.size(), 20000u);
-    EXPECT_LT(writeObj(*mesh).size(), 1'500'000u);
+    EXPECT_LT(test::writeObj(*mesh).size(), 1'500'000u);
   }
   const auto extent = [](const Mesh& mesh, int axis) {
     float low = 1e9f, high = -1e9f;
@@ -258,7 +260,7 @@ TEST_F(Import, EveryFormatGivesTheTetrahedron) {
 
 TEST_F(Import, ObjKeepsPartsNormalsAndUv) {
   const Mesh missile = makeMissile();
-  const Mesh back = importMesh(write("missile.obj", writeObj(missile)), 1.0, {});
+  const Mesh back = importMesh(write("missile.obj", test::writeObj(missile)), 1.0, {});
   expectSound(back, true);
   ASSERT_EQ(back.parts.size(), missile.parts.size());
   for (std::size_t i = 0; i < back.parts.size(); ++i) {
@@ -320,7 +322,7 @@ TEST_F(Import, MistakesAreNamedWithTheirPlace) {
 }
 
 TEST_F(Import, KnownFilesNeedNoModule) {
-  const auto file = write("a.obj", writeObj(makeSphere(1.0, 16)));
+  const auto file = write("a.obj", test::writeObj(makeSphere(1.0, 16)));
   const Mesh first = importMesh(file, 1.0, {});
   const auto cached = [&] {
     std::vector<std::filesystem::path> found;
@@ -328,7 +330,7 @@ TEST_F(Import, KnownFilesNeedNoModule) {
     return found;
   };
   ASSERT_EQ(cached().size(), 1u);
-  setMeshImportFolder(folder / "nowhere");
+  setModuleFolder(folder / "nowhere");
   const Mesh again = importMesh(file, 3.0, {});  // another scale is the same entry
   EXPECT_EQ(again.triangles, first.triangles);
   EXPECT_EQ(again.normals, first.normals);
@@ -339,9 +341,9 @@ TEST_F(Import, KnownFilesNeedNoModule) {
   std::filesystem::resize_file(cached()[0], 100);  // damaged: said, read again, and mended
   EXPECT_NE(complaint(file).find("libvtk9-dev"), std::string::npos);
 #ifdef PITVIPER_MESH_IMPORT_FOLDER
-  setMeshImportFolder(PITVIPER_MESH_IMPORT_FOLDER);
+  setModuleFolder(PITVIPER_MESH_IMPORT_FOLDER);
 #else
-  setMeshImportFolder({});
+  setModuleFolder({});
 #endif
   EXPECT_EQ(importMesh(file, 1.0, {}).triangles, first.triangles);
   EXPECT_GT(std::filesystem::file_size(cached()[0]), 100u);
@@ -386,14 +388,14 @@ TEST_F(Import, AChangedBufferIsReadAgain) {
     EXPECT_EQ(one.parts[0].name, "h\"ull");
     write("sub/x.bin", tetrahedron(2));
     EXPECT_NEAR(surfaceArea(importMesh(file, 1.0, {})), 4 * surfaceArea(one), 1e-5) << uri;
-    setMeshImportFolder(folder / "nowhere");  // and it is kept
+    setModuleFolder(folder / "nowhere");  // and it is kept
     EXPECT_NEAR(surfaceArea(importMesh(file, 1.0, {})), 4 * surfaceArea(one), 1e-5) << uri;
     std::filesystem::remove(folder / "sub/x.bin");
     EXPECT_NE(complaint(file), "") << uri;
 #ifdef PITVIPER_MESH_IMPORT_FOLDER
-    setMeshImportFolder(PITVIPER_MESH_IMPORT_FOLDER);
+    setModuleFolder(PITVIPER_MESH_IMPORT_FOLDER);
 #else
-    setMeshImportFolder({});
+    setModuleFolder({});
 #endif
   }
 }
@@ -427,9 +429,9 @@ TEST_F(Import, TheCacheIsBounded) {
 
 TEST_F(Import, ABrokenModuleIsNamed) {
   write("libpitviper_mesh_import.so", "no library");
-  setMeshImportFolder(folder);
-  EXPECT_NE(complaint(write("a.obj", writeObj(makePlate(1, 1)))).find("libvtk9.1"), std::string::npos);
-  setMeshImportFolder({});
+  setModuleFolder(folder);
+  EXPECT_NE(complaint(write("a.obj", test::writeObj(makePlate(1, 1)))).find("libvtk9.1"), std::string::npos);
+  setModuleFolder({});
 }
 
 TEST_F(Import, ACachedMeshIsWholeOrNothing) {

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "sim/model/world.hpp"
+#include "sim/parameters/module_on_demand.hpp"
 #include "sim/scene/mesh_cache.hpp"
 #include "sim/scene/mesh_tools.hpp"
 #include "sim/scene/primitives.hpp"
@@ -283,9 +284,9 @@ TEST_F(MeshPlaces, OffsetsInAScenario) {
     EXPECT_GT(glm::length(offset), 4e6);
     for (std::size_t k = 0; k + 3 < plain.size(); ++k) ASSERT_LT(glm::length(there[k] - (plain[k] + turn * at)), 1e-6) << k;
     for (std::size_t k = plain.size() - 3; k < plain.size(); ++k) EXPECT_LT(glm::length(there[k] - plain[k]), 1e-8);
-    setMeshImportFolder(folder / "nowhere");
+    setModuleFolder(folder / "nowhere");
   }
-  setMeshImportFolder({});
+  setModuleFolder({});
   Mesh kept = makeBox(1, 1, 1);
   kept.offset_m = at, kept.notes = {"one", "two"};
   const auto back = deserializeMesh(serializeMesh(kept));

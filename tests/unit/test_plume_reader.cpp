@@ -8,7 +8,7 @@
 #include "materials/fields/grid_field.hpp"
 #include "materials/fields/jets.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
-#include "sim/scene/grid_import.hpp"
+#include "sim/parameters/module_on_demand.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -153,7 +153,7 @@ std::string cube(double temperature_K, double middle, const char* gas = "X_CO2")
 
 TEST(PlumeReader, AGridFromAFile) {
   if (!std::filesystem::exists(std::filesystem::path(PITVIPER_BUILD_DIR) / "libpitviper_mesh_import.so")) GTEST_SKIP() << "built without VTK";
-  setGridImportFolder(PITVIPER_BUILD_DIR);
+  setModuleFolder(PITVIPER_BUILD_DIR);
   const TemporaryFolder folder;
   const auto asked = [&](const std::string& name, const std::string& more = "") {
     return "  - {name: p, on: jet, position: [-8 m, 0 m, 0 m], grid: {file: " + (folder.path() / name).string() + ", unit: 10 cm, forward: -x" + more +
@@ -180,7 +180,7 @@ TEST(PlumeReader, AGridFromAFile) {
   folder.put("other.vti", cube(600.0, 0.05, "Y"));
   EXPECT_NE(said(asked("other.vti")).find("no array 'X_CO2'"), std::string::npos);
   EXPECT_NE(said(asked("good.vti", ", up: -x")).find("same axis"), std::string::npos);
-  setGridImportFolder({});
+  setModuleFolder({});
 }
 
 // The example of scenarios/README.md is read as it stands there.

@@ -7,8 +7,8 @@
 
 #include "scenarios/commands/charts.hpp"
 #include "scenarios/commands/trajectory_picture.hpp"
-#include "sim/image/png.hpp"
 #include "sim/parameters/error.hpp"
+#include "tests/support/read_png.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace pitviper {
@@ -53,7 +53,7 @@ class Trajectories : public ::testing::Test {
   }
   Rgb8Image drawn(const FlownScene& scene) const {
     drawTrajectories(scene, folder_.path() / "t.png");
-    return readPng(folder_.path() / "t.png");
+    return test::readPng(folder_.path() / "t.png");
   }
   test::TemporaryFolder folder_;
 };

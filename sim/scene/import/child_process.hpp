@@ -1,7 +1,6 @@
 #pragma once
 // Runs the import module in a child process, so that a reader that crashes, hangs or eats memory costs one UserError.
 // Included by sim/scene/mesh_import.cpp and sim/scene/grid_import.cpp only. Not for Windows.
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <poll.h>
 #include <sys/prctl.h>
@@ -67,20 +66,19 @@ inline void allowMemory(std::size_t fileBytes) {
 /// OBJ text was read at 20 MB/s on one slow core: a minute and a second per MB of the processor's own time is ample, whatever else the machine does.
 inline rlim_t mostProcessor_s(std::size_t fileBytes) { return 60 + (fileBytes >> 20); }
 
-inline ImportReply runModule(const std::filesystem::path& module, const ImportRequest& request, const Location& askedAt) {
+inline ImportReply runModule(const ModuleOnDemand& module, const std::filesystem::path& file, const ImportRequest& request, const Location& askedAt) {
   ImportReply reply;
-  void* handle = dlopen(module.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* symbol = handle == nullptr ? nullptr : dlsym(handle, kImportFunction);
-  if (symbol == nullptr) {
-    const char* reason = dlerror();
+  std::string problem;
+  void* function = functionIn(file, module.function, problem);
+  if (function == nullptr) {
     reply.failed = true;
     reply.where = askedAt;
-    reply.wrong = std::string("the mesh import module cannot be loaded (") + (reason != nullptr ? reason : "unknown") + ")";
-    reply.fix = "install the package libvtk9.1 (to build: libvtk9-dev)";
+    reply.wrong = std::string(module.called) + " " + problem;
+    reply.fix = module.toRun;
     return reply;
   }
   allowMemory(request.bytes.size());
-  reinterpret_cast<ImportFunction>(symbol)(request, &reply);
+  reinterpret_cast<ImportFunction>(function)(request, &reply);
   return reply;
 }
 
@@ -184,8 +182,8 @@ std::string bytesFromChild(std::size_t fileBytes, const Location& askedAt, const
 
 /// The mesh as the module read it: unchecked; `named`: the files that it read besides, through `beside`. Throws UserError.
 template <class FilesBeside>
-Mesh importInChild(const std::filesystem::path& module, const ImportRequest& request, FilesBeside& beside, std::vector<NamedFile>& named,
-                   const Location& askedAt) {
+Mesh importInChild(const ModuleOnDemand& module, const std::filesystem::path& file, const ImportRequest& request, FilesBeside& beside,
+                   std::vector<NamedFile>& named, const Location& askedAt) {
   const auto work = [&] {
     ImportRequest asked = request;
     asked.readNamed = [&beside](const std::string& name, std::string& bytes, std::string& problem) {
@@ -193,7 +191,7 @@ Mesh importInChild(const std::filesystem::path& module, const ImportRequest& req
       allowMemory(bytes.size());
       return true;
     };
-    return encodeReply(runModule(module, asked, askedAt), beside.named());
+    return encodeReply(runModule(module, file, asked, askedAt), beside.named());
   };
   std::string failure;
   const std::string bytes = bytesFromChild(request.bytes.size(), askedAt, work, failure);

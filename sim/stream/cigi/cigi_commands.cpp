@@ -141,17 +141,10 @@ glm::dvec3 CigiOffsets::position() const { return {forward_m.value_or(0.0), left
 glm::dquat CigiOffsets::orientation() const { return cigiRotation(yaw_rad.value_or(0.0), pitch_rad.value_or(0.0), roll_rad.value_or(0.0)); }
 
 std::optional<double> CigiViewDefinition::horizontalFieldOfView_rad() const { return symmetric(left_rad, right_rad); }
-std::optional<double> CigiViewDefinition::verticalFieldOfView_rad() const { return symmetric(bottom_rad, top_rad); }
 
 std::optional<double> CigiComponent::asFloat(int i) const {
   if (i < 0 || i >= wordCount) return std::nullopt;
   return ifFinite(std::bit_cast<float>(words[static_cast<std::size_t>(i)]));
-}
-
-std::optional<double> CigiComponent::asDouble(int i) const {
-  if (i < 0 || i > 2 || 2 * i + 1 >= wordCount) return std::nullopt;
-  const auto high = static_cast<std::size_t>(2 * i);
-  return ifFinite(std::bit_cast<double>(static_cast<std::uint64_t>(words[high]) << 32 | words[high + 1]));
 }
 
 std::vector<CigiChange> cigiChanges(const CigiMessage& message) {

@@ -39,7 +39,6 @@ struct CigiOffsets {
   /// In the carrier's body axes; 0 where not given.
   glm::dvec3 position() const;
   glm::dquat orientation() const;
-  bool movesNothing() const { return !forward_m && !left_m && !up_m && !yaw_rad && !pitch_rad && !roll_rad; }
 };
 
 /// Which view goes with which entity, and how it stands there.
@@ -61,7 +60,6 @@ struct CigiViewDefinition {
 
   /// Of a view as wide to the left as to the right (within 1e-6 rad: half-angles are floats) with both given: what `look` takes.
   std::optional<double> horizontalFieldOfView_rad() const;
-  std::optional<double> verticalFieldOfView_rad() const;
 };
 
 /// CIGI has no command that resets a sensor.
@@ -99,9 +97,8 @@ struct CigiComponent {
   int wordCount = 0;
   std::array<std::uint32_t, 6> words{};
 
-  /// Word `i` as a float, or words 2 i (the higher) and 2 i + 1 as a double. Nothing beyond their count, or where it is no finite number.
+  /// Word `i` as a float. Nothing beyond their count, or where it is no finite number.
   std::optional<double> asFloat(int i) const;
-  std::optional<double> asDouble(int i) const;
 };
 
 using CigiChange = std::variant<CigiEntityPose, CigiView, CigiViewDefinition, CigiSensor, CigiPart, CigiRate, CigiComponent>;

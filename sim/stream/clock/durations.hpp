@@ -35,7 +35,6 @@ class LongCourse {
     std::uint64_t count = 0;
   };
   const std::vector<Piece>& pieces() const { return pieces_; }
-  std::uint64_t pieceLength() const { return length_; }
 
  private:
   static constexpr std::size_t kMost = 512;

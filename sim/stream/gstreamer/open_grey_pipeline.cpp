@@ -3,16 +3,17 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "sim/parameters/error.hpp"
-#include "sim/stream/on_demand/on_demand.hpp"
+#include "sim/parameters/module_on_demand.hpp"
 
 namespace pitviper {
 
 std::unique_ptr<GreyPipeline> openGreyPipeline(const std::string& pipeline, int width, int height, double rate_hz) {
   if (width < 1 || height < 1 || !std::isfinite(rate_hz) || rate_hz <= 0.0) throw std::invalid_argument("no frames for a pipeline");
-  const auto open = reinterpret_cast<GstreamerFunction>(
-      loadOnDemand({"pipeline", kGstreamerModule, kGstreamerFunction, "GStreamer 1.20 or later", "libgstreamer1.0-0 and libgstreamer-plugins-base1.0-0",
-                    "libgstreamer1.0-dev and libgstreamer-plugins-base1.0-dev"}));
+  const auto open =
+      reinterpret_cast<GstreamerFunction>(loadOnDemand({kGstreamerModule, kGstreamerFunction, "the module", "GStreamer 1.20 or later",
+                                                        "install the packages libgstreamer1.0-dev and libgstreamer-plugins-base1.0-dev and build again",
+                                                        "install the packages libgstreamer1.0-0 and libgstreamer-plugins-base1.0-0"},
+                                                       {"pipeline"}));
   const GreyPipelineRequest request{pipeline, width, height, rate_hz};
   GreyPipelineReply reply;
   open(&request, &reply);
