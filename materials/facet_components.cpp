@@ -1,7 +1,6 @@
 #include "materials/facet_components.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim/model/fringes.hpp"
 #include "sim/radiometry/constants.hpp"

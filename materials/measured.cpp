@@ -1,6 +1,5 @@
 // BRDFs over three angles from files: tables over two angles at a few azimuths, which a lobe each shares out. Source: Duvenhage 2006, section 5.2 (tables of
 // more than two angles as several).
-#include <cmath>
 
 #include "materials/measured_files.hpp"
 #include "materials/models.hpp"

@@ -93,8 +93,7 @@ ReflectionModel microfacetModel() {
   return {
       "microfacet",
       "Facets that mirror, by Fresnel's formulas, bare or under thin films: polished and rough metals, glass, paint under its clear coat, coated panes. Light "
-      "that "
-      "several facets return is in it, so that what does not absorb loses nothing.",
+      "that several facets return is in it, so that what does not absorb loses nothing.",
       {required(any("index", "refractive index of the substance beneath the films: a number, the name of a substance, or a map of n and k or a formula")),
        required(within(number("roughness", "", "root of twice the facets' mean square slope along one direction: 0.005 polished, 0.3 matt"), 0.002, 1)),
        withDefault(choice("slopes", {"ggx", "normal"}, "how slopes are distributed: Trowbridge and Reitz's long tails, or normally"), "ggx"),

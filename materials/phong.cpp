@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cmath>
 
 #include "materials/models.hpp"
 #include "materials/phong_albedo.hpp"

@@ -16,8 +16,7 @@ double meanSquareSlope(double wind_m_s) { return 0.003 + 5.12e-3 * wind_m_s; }
 ReflectionModel seaModel() {
   return {"sea",
           "Facets of water, their slopes normal and alike in all directions, of Cox and Munk's mean square for the wind; shadows of waves on waves are in it, "
-          "foam is not. "
-          "One pixel should hold many waves.",
+          "foam is not. One pixel should hold many waves.",
           {required(within(number("wind", "m/s", "12.5 m above the sea"), 0, 14)),
            withDefault(any("index", "refractive index of the water: a number, the name of a substance, or a map of n and k or a formula"), "water"),
            within(spectrum("pigment", "", "share of light that comes back out of the water"), 0, 1)},

@@ -79,8 +79,7 @@ StageModel detectorModel() {
       "detector",
       "Photoelectrons become counts: shot noise of light and dark current, fixed and temporal noise, the full well and the converter. Noises are in electrons "
       "rms, named as in EMVA 1288 and in the three-dimensional noise model. For the quantities `counts`, `apparent_temperature`, `snr` and `display`; others "
-      "stay ideal. A "
-      "frame's noise depends on seed, camera, frame and pixel alone.",
+      "stay ideal. A frame's noise depends on seed, camera, frame and pixel alone.",
       {required(within(number("full_well", "", "electrons that a pixel, or those that are read as one, hold", &DetectorLaw::fullWell), 1, 1e12)),
        withDefault(integer("bits", "of the converter", 1, 16, &DetectorLaw::bits), "14"),
        within(above(number("gain", "", "counts per electron; unless given a full well is the highest count", &DetectorLaw::gain), 0), 0, 1e6),
@@ -130,14 +129,12 @@ StageModel detectorModel() {
            "0 s"),
        withDefault(choice("saturated", {{"nan", WhereUnread::Nan}, {"limit", WhereUnread::Limit}},
                           "what `apparent_temperature` and `snr` are where a count says nothing (the well or the converter is full, the converter's lowest "
-                          "code): no number, or "
-                          "the limit, that of what just fills the pixel; of bad pixels no number either way",
+                          "code): no number, or the limit, that of what just fills the pixel; of bad pixels no number either way",
                           &DetectorLaw::unread),
                    "nan"),
        withDefault(choice("agc", {{"linear", Agc::Linear}, {"percentile", Agc::Linear}, {"plateau", Agc::Plateau}, {"fixed", Agc::Fixed}},
                           "how `display` maps counts to a screen's 256 codes. linear, or percentile: evenly over the picture's range but for its tails; "
-                          "plateau: by its histogram, no "
-                          "count of which weighs more than a plateau; fixed: the converter's whole range",
+                          "plateau: by its histogram, no count of which weighs more than a plateau; fixed: the converter's whole range",
                           &DisplayLaw::agc),
                    "linear"),
        withDefault(within(number("agc_tails", "", "share of the pixels at either end that the range passes over", &DisplayLaw::tails), 0, 0.2), "0.5 %"),

@@ -5,7 +5,6 @@
 // F: that of the lens, F_stop: of the cone that the cold stop leaves open (an ideal, aplanatic lens: a film in a cone of F gets pi L / (4 F^2); 0.5: all of the
 // half space). Source: E. L. Dereniak and G. D. Boreman, Infrared Detectors and Systems (1996), cold shields.
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "sensors/stages.hpp"

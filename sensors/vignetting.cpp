@@ -1,6 +1,5 @@
 // Vignetting: what mounts and edges of lenses cut off the light of oblique directions, besides cos^4, which a pixel's solid angle and the aperture have.
 #include <algorithm>
-#include <cmath>
 
 #include "sensors/stages.hpp"
 #include "sim/camera/sensor_stage.hpp"
@@ -43,20 +42,19 @@ Parameter coefficient(const char* key) { return withDefault(within(number(key, "
 }  // namespace
 
 StageModel vignettingModel() {
-  return {
-      "vignetting",
-      "Light of oblique directions that mounts and edges of lenses cut off: a share 1 + v1 tan^2 + v2 tan^4 + v3 tan^6 of the angle from the axis, within 0 "
-      "and 1, is left, besides cos^4. Of quantities behind the optics; radiance stays what arrives at the aperture.",
-      {coefficient("v1"), coefficient("v2"), coefficient("v3"), withDefault(integer("cells", "cells a side of a pixel", 1, 16), "1")},
-      [](const Record& r, const Camera& camera) {
-        StageChoice choice;
-        choice.cells = static_cast<int>(r.integer("cells"));
-        const Vignette vignette{r.number("v1"), r.number("v2"), r.number("v3")};
-        if (!(vignette.v1 < 0.0 || vignette.v2 < 0.0 || vignette.v3 < 0.0))
-          throw UserError(r.where(), "a vignetting that takes nothing away", "one of v1, v2 and v3 below 0", "give one, or remove the stage");
-        choice.make = [vignette, p = camera.pinhole](const ShaderLibrary&) { return std::make_unique<VignettingStage>(vignette, p); };
-        return choice;
-      }};
+  return {"vignetting",
+          "Light of oblique directions that mounts and edges of lenses cut off: a share 1 + v1 tan^2 + v2 tan^4 + v3 tan^6 of the angle from the axis, within "
+          "0 and 1, is left, besides cos^4. Of quantities behind the optics; radiance stays what arrives at the aperture.",
+          {coefficient("v1"), coefficient("v2"), coefficient("v3"), withDefault(integer("cells", "cells a side of a pixel", 1, 16), "1")},
+          [](const Record& r, const Camera& camera) {
+            StageChoice choice;
+            choice.cells = static_cast<int>(r.integer("cells"));
+            const Vignette vignette{r.number("v1"), r.number("v2"), r.number("v3")};
+            if (!(vignette.v1 < 0.0 || vignette.v2 < 0.0 || vignette.v3 < 0.0))
+              throw UserError(r.where(), "a vignetting that takes nothing away", "one of v1, v2 and v3 below 0", "give one, or remove the stage");
+            choice.make = [vignette, p = camera.pinhole](const ShaderLibrary&) { return std::make_unique<VignettingStage>(vignette, p); };
+            return choice;
+          }};
 }
 
 }  // namespace pitviper

@@ -8,11 +8,11 @@
 #include "sim/flight/standard_atmosphere.hpp"
 #include "sim/model/medium.hpp"
 #include "sim/model/simulation.hpp"
+#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kSeaLevel_Pa = 101325.0;
 /// Of the flight: a tenth of the time over which drag takes its speed, which leaves 1e-5 of it at the fourth order; 4 ms at most. Points of its path at every
 /// fourth, 20 ms apart at most, 20000 at most (2 MB).

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <list>
-#include <map>
 #include <mutex>
 #include <stdexcept>
 

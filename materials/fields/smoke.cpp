@@ -7,6 +7,7 @@
 #include "sim/flight/standard_atmosphere.hpp"
 #include "sim/model/store.hpp"
 #include "sim/model/world.hpp"
+#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
@@ -16,7 +17,6 @@ constexpr double kLapse_K_m = 0.0065;                            ///< US Standar
 constexpr double kEntrainment = 0.6;                             ///< b
 constexpr double kSlowest_m_s = 1.0;                             ///< U
 constexpr double kAlpha = 0.65518535;                            ///< 1.5 (0.5/6)^(1/3)
-constexpr double kPi = 3.14159265358979323846;
 
 double cubed(double x) { return x * x * x; }
 

@@ -148,17 +148,16 @@ int bench(const AccuracyWish& w) {
 
 CommandLine accuracyBenchCommand() {
   const auto w = std::make_shared<AccuracyWish>();
-  return {
-      {"bench --accuracy", "SCENARIO.yaml"},
-      "The scenario's first camera at accuracies of 10 to 0.1 %, at 4 to 340 even samples and at 16 Gauss points a channel, against the reference (double "
-      "precision on the CPU, every wavelength; slow). Prints frames a second and the error of each channel's pixels, |L - Lref| / max(Lref, 1e-3 x the 99th "
-      "percentile of Lref), and as a temperature difference. The error is that of spectral sampling, tables, dropped terms and single precision; what a pixel "
-      "sees is the same on both sides.",
-      joined({{"--size", "N", "columns of the film, its field of view kept", number(w->size_px, {8, 4096, "", false, "not a number of columns"})},
-              {"--frames", "N", "frames, spread over the scenario's time", number(w->frames, {1, 1000, "", false, "not a number of frames to compare"})},
-              {"--out", "FOLDER", "also write accuracy.csv and a chart, accuracy.png (needs VTK)", into(w->out)}},
-             scenarioOptions(w->scenario)),
-      [w](const Arguments& words) { return w->scenario.file = words[0], bench(*w); }};
+  return {{"bench --accuracy", "SCENARIO.yaml"},
+          "The scenario's first camera at accuracies of 10 to 0.1 %, at 4 to 340 even samples and at 16 Gauss points a channel, against the reference (double "
+          "precision on the CPU, every wavelength; slow). Prints frames a second and the error of each channel's pixels, |L - Lref| / max(Lref, 1e-3 x the "
+          "99th percentile of Lref), and as a temperature difference. The error is that of spectral sampling, tables, dropped terms and single precision; what "
+          "a pixel sees is the same on both sides.",
+          joined({{"--size", "N", "columns of the film, its field of view kept", number(w->size_px, {8, 4096, "", false, "not a number of columns"})},
+                  {"--frames", "N", "frames, spread over the scenario's time", number(w->frames, {1, 1000, "", false, "not a number of frames to compare"})},
+                  {"--out", "FOLDER", "also write accuracy.csv and a chart, accuracy.png (needs VTK)", into(w->out)}},
+                 scenarioOptions(w->scenario)),
+          [w](const Arguments& words) { return w->scenario.file = words[0], bench(*w); }};
 }
 
 }  // namespace pitviper

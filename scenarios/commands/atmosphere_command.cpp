@@ -133,26 +133,23 @@ int showAirs(const AirWish& w, const std::string& word) {
 
 CommandLine atmosphereCommand() {
   const auto w = std::make_shared<AirWish>();
-  return {
-      {"atmosphere", "[NAME|FILE]", "what air there is in the library, in a MODTRAN tape7 or in a CSV file, as tables and charts"},
-      "Without an argument: the library airs. NAME: one of them (clear_mls), or an air table (us76_rural), as FILE.air: mean transmittance and radiance of "
-      "level "
-      "and slant paths, sky, sun at the ground.\n"
-      "FILE.csv: air by tables; the columns it may have are listed at the head of atmosphere/tabulated_csv.hpp, for instance wavelength_um, range_km, "
-      "transmittance, path_radiance_W/(m2 sr um).\n"
-      "FILE: a tape7 (.tp7) of MODTRAN, transmittance, thermal radiance with or without the sun or solar irradiance, any number of runs; prints for each: "
-      "kind, "
-      "model, path, wavelengths and step, mean transmittance in 3-5 and 8-12 um where covered; and how it serves as air along a path.",
-      {{"--range", "KM", "of the only path in a tape7 whose cards have none", number(w->range_km, {1e-6, 1e5, "km", true}), "NAME|FILE"},
-       {"--out", "FOLDER",
-        "also NAME.csv, FILE_run<N>.csv or FILE_air.csv, every column over wavelength in W/(m2 sr um) or W/(m2 um), and a chart of the same name (PNG, needs "
-        "VTK), in FOLDER; created if missing",
-        into(w->out), "NAME|FILE"}},
-      [w](const Arguments& words) {
-        if (!words.empty()) return showAirs(*w, words[0]);
-        listLibrary(findLibraries());
-        return 0;
-      }};
+  return {{"atmosphere", "[NAME|FILE]", "what air there is in the library, in a MODTRAN tape7 or in a CSV file, as tables and charts"},
+          "Without an argument: the library airs. NAME: one of them (clear_mls), or an air table (us76_rural), as FILE.air: mean transmittance and radiance of "
+          "level and slant paths, sky, sun at the ground.\n"
+          "FILE.csv: air by tables; the columns it may have are listed at the head of atmosphere/tabulated_csv.hpp, for instance wavelength_um, range_km, "
+          "transmittance, path_radiance_W/(m2 sr um).\n"
+          "FILE: a tape7 (.tp7) of MODTRAN, transmittance, thermal radiance with or without the sun or solar irradiance, any number of runs; prints for each: "
+          "kind, model, path, wavelengths and step, mean transmittance in 3-5 and 8-12 um where covered; and how it serves as air along a path.",
+          {{"--range", "KM", "of the only path in a tape7 whose cards have none", number(w->range_km, {1e-6, 1e5, "km", true}), "NAME|FILE"},
+           {"--out", "FOLDER",
+            "also NAME.csv, FILE_run<N>.csv or FILE_air.csv, every column over wavelength in W/(m2 sr um) or W/(m2 um), and a chart of the same name (PNG, "
+            "needs VTK), in FOLDER; created if missing",
+            into(w->out), "NAME|FILE"}},
+          [w](const Arguments& words) {
+            if (!words.empty()) return showAirs(*w, words[0]);
+            listLibrary(findLibraries());
+            return 0;
+          }};
 }
 
 }  // namespace pitviper

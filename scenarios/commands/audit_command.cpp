@@ -166,19 +166,18 @@ int audit(const AuditWish& w) {
 
 CommandLine auditCommand() {
   const auto w = std::make_shared<AuditWish>();
-  return {
-      {"audit", "SCENARIO.yaml", "hold a scenario's pictures against the reference, pixel by pixel: is what was asked for kept?"},
-      "Draws frames (the first, the middle and the last) of each camera as run does, by its plan, and again by the reference: every wavelength, in double "
-      "precision, along the same lines (subpixels, views of small bodies and of bright parts). Prints what each layer's pixels are off by, |L - Lref| / "
-      "max(Lref, 1e-3 x the 99th percentile of Lref), beside what was asked and predicted, and where the worst is. The reference takes seconds to minutes a "
-      "frame: --set cameras.seeker.film.width=64 and so on makes it quicker. Exit code 4 where a pixel is farther off than was asked.\n"
-      "The same by hand: run, then run --set accuracy=reference --plan FOLDER/CAMERA.plan draws the reference along that run's lines, to another --out. A "
-      "reference without that plan looks along its own lines (all subpixels, 256 across a small body): outlines and small bodies then differ.",
-      joined({{"--frames", "A:B", "these frames, both included; of an exposure with motion its middle", into(w->frames)},
-              {"--camera", "NAME...", "this camera alone", into(w->cameras)},
-              {"--out", "FOLDER", "also audit.csv and CAMERA_audit.png, a picture of the errors; created if missing", into(w->out)}},
-             scenarioOptions(w->scenario)),
-      [w](const Arguments& words) { return w->scenario.file = words[0], audit(*w); }};
+  return {{"audit", "SCENARIO.yaml", "hold a scenario's pictures against the reference, pixel by pixel: is what was asked for kept?"},
+          "Draws frames (the first, the middle and the last) of each camera as run does, by its plan, and again by the reference: every wavelength, in double "
+          "precision, along the same lines (subpixels, views of small bodies and of bright parts). Prints what each layer's pixels are off by, |L - Lref| / "
+          "max(Lref, 1e-3 x the 99th percentile of Lref), beside what was asked and predicted, and where the worst is. The reference takes seconds to minutes "
+          "a frame: --set cameras.seeker.film.width=64 and so on makes it quicker. Exit code 4 where a pixel is farther off than was asked.\n"
+          "The same by hand: run, then run --set accuracy=reference --plan FOLDER/CAMERA.plan draws the reference along that run's lines, to another --out. A "
+          "reference without that plan looks along its own lines (all subpixels, 256 across a small body): outlines and small bodies then differ.",
+          joined({{"--frames", "A:B", "these frames, both included; of an exposure with motion its middle", into(w->frames)},
+                  {"--camera", "NAME...", "this camera alone", into(w->cameras)},
+                  {"--out", "FOLDER", "also audit.csv and CAMERA_audit.png, a picture of the errors; created if missing", into(w->out)}},
+                 scenarioOptions(w->scenario)),
+          [w](const Arguments& words) { return w->scenario.file = words[0], audit(*w); }};
 }
 
 }  // namespace pitviper

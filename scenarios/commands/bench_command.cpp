@@ -1,5 +1,4 @@
 // Speed of this machine: one factor at a time, beside a fixed yardstick timed in the same rounds, because machines drift.
-#include <algorithm>
 #include <cstdio>
 
 #include "scenarios/commands/bench_report.hpp"
@@ -49,16 +48,14 @@ CommandLine benchCommand() {
   const auto w = std::make_shared<BenchWish>();
   std::vector<Word<std::vector<BenchFactor>>> names;
   for (const BenchFactor& f : w->factors) names.push_back({f.name, {f}});
-  return {
-      {"bench", "", "speed of this machine beside a fixed yardstick"},
-      "Times direct and buffered mode on a wall that fills the film (256x256, 16 channels, 16 wavelengths, one light, thermal emission, air on both legs), "
-      "then "
-      "with one factor varied at a time, in rounds that alternate with a bare loop over 16 wavelengths, the yardstick. Prints tables: milliseconds, million "
-      "pixels and frames a second, speed by the yardstick, time by the centre. Takes some minutes.",
-      {{"--factor", "NAME", "this factor only", oneOf(w->factors, names)},
-       {"--frames", "N", "frames to time in each row; fewer of slow ones", number(w->frames, {10, 100000, "", false, "not a number of frames to time"})},
-       {"--out", "FOLDER", "also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing", into(w->out)}},
-      [w](const Arguments&) { return bench(*w); }};
+  return {{"bench", "", "speed of this machine beside a fixed yardstick"},
+          "Times direct and buffered mode on a wall that fills the film (256x256, 16 channels, 16 wavelengths, one light, thermal emission, air on both legs), "
+          "then with one factor varied at a time, in rounds that alternate with a bare loop over 16 wavelengths, the yardstick. Prints tables: milliseconds, "
+          "million pixels and frames a second, speed by the yardstick, time by the centre. Takes some minutes.",
+          {{"--factor", "NAME", "this factor only", oneOf(w->factors, names)},
+           {"--frames", "N", "frames to time in each row; fewer of slow ones", number(w->frames, {10, 100000, "", false, "not a number of frames to time"})},
+           {"--out", "FOLDER", "also write bench.csv and a chart, bench.png (needs VTK), in FOLDER; created if missing", into(w->out)}},
+          [w](const Arguments&) { return bench(*w); }};
 }
 
 }  // namespace pitviper

@@ -29,8 +29,7 @@ std::string plate(const char* name, double left_m, double right_m, double halfHe
   // A plate faces along x; seen from the west its y runs to the left.
   return print(
       "  - {name: %s, shape: {model: plate, width: %.9g m, height: %.9g m}, material: black, temperature: %.9g K, position: [%.9g m, %.9g m, 0 m], heading: "
-      "270 deg, "
-      "roll: %.9g deg}\n",
+      "270 deg, roll: %.9g deg}\n",
       name, right_m - left_m, 2.0 * halfHeight_m, kelvin, range_m, -0.5 * (left_m + right_m), roll_deg);
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "sensors/spot_detection.hpp"
 #include "sim/parameters/print.hpp"
@@ -71,8 +70,7 @@ DriReport driReport(const BenchResult& bench, const DriWish& wish, const Transmi
   const auto inCorner = [&](double range) { return tnr(range, sight.shareInCorner); };
   report.aboutSpot = print(
       "as a spot (%.3g and %.3g of its light on one pixel, in its middle and in its corner): a threshold of %.3g sigma for %g false alarm(s) an hour over the "
-      "film (%.3g where video is compared as it comes, by Rice); found in a frame with 50 %% "
-      "as far as %s and %s, with 90 %% as far as %s and %s",
+      "film (%.3g where video is compared as it comes, by Rice); found in a frame with 50 %% as far as %s and %s, with 90 %% as far as %s and %s",
       sight.shareInMiddle, sight.shareInCorner, threshold, wish.alarms_per_hour, thresholdByCrossings(wish.alarms_per_hour, sight.pixels_per_s),
       metres(rangeWhere(inMiddle, threshold)).c_str(), metres(rangeWhere(inCorner, threshold)).c_str(),
       metres(rangeWhere(inMiddle, tnrFor(0.9, threshold))).c_str(), metres(rangeWhere(inCorner, tnrFor(0.9, threshold))).c_str());

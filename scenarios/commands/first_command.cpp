@@ -165,18 +165,17 @@ CommandLine onceBenchCommand() {
 
 CommandLine firstBenchCommand() {
   const auto w = std::make_shared<FirstWish>();
-  return {
-      {"bench --first", "[SCENARIO.yaml]..."},
-      "How long one waits for a picture. Each scenario (without one: all that are shipped) from nothing cached, a second time, and after each of six changes, "
-      "with what the first two have cached: a body 10 K warmer, another visibility, field of view, position, material, half the accuracy's error. A process "
-      "of its own for each state, and a cache of their own. A change that a scenario cannot have is left out, and said. Prints seconds by the clock and "
-      "processor seconds of reading, planning, tables (all other preparing), programs (made, lines, and files that the driver's cache gained: 0 where it "
-      "compiled nothing) and the first frame of every camera; percentiles of the frames after it, drawn and read back one after the other, from the first "
-      "again where the scenario has fewer (not with a gimbal); memory. Spectral images, probes, audits and files are left out.",
-      joined({{"--states", "A,B", "these alone, besides 'first'", someOf(w->request.states, firstStateNames(), "state")},
-              {"--out", "FOLDER", "also write first.csv, a line a state, with all figures", into(w->out)}},
-             onceOptions(w->request.once)),
-      [w](const Arguments& words) { return first(*w, words); }};
+  return {{"bench --first", "[SCENARIO.yaml]..."},
+          "How long one waits for a picture. Each scenario (without one: all that are shipped) from nothing cached, a second time, and after each of six "
+          "changes, with what the first two have cached: a body 10 K warmer, another visibility, field of view, position, material, half the accuracy's error. "
+          "A process of its own for each state, and a cache of their own. A change that a scenario cannot have is left out, and said. Prints seconds by the "
+          "clock and processor seconds of reading, planning, tables (all other preparing), programs (made, lines, and files that the driver's cache gained: 0 "
+          "where it compiled nothing) and the first frame of every camera; percentiles of the frames after it, drawn and read back one after the other, from "
+          "the first again where the scenario has fewer (not with a gimbal); memory. Spectral images, probes, audits and files are left out.",
+          joined({{"--states", "A,B", "these alone, besides 'first'", someOf(w->request.states, firstStateNames(), "state")},
+                  {"--out", "FOLDER", "also write first.csv, a line a state, with all figures", into(w->out)}},
+                 onceOptions(w->request.once)),
+          [w](const Arguments& words) { return first(*w, words); }};
 }
 
 }  // namespace pitviper

@@ -1,6 +1,5 @@
 #include "scenarios/commands/geometry_report.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <set>
 

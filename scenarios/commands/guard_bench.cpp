@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
-#include <set>
 
 #include "scenarios/commands/bench_timing.hpp"
 #include "scenarios/commands/first_bench.hpp"
@@ -175,13 +174,12 @@ int guard(const GuardWish& w, const std::string& file) {
 
 CommandLine guardBenchCommand() {
   const auto w = std::make_shared<GuardWish>();
-  return {
-      {"bench --guard", "FILE.csv"},
-      "Measures again the figures that FILE holds (tests/bench_guard.csv says how it is written) and names each that grew, or shrank, by more than a fifth. "
-      "Seconds are told as where the yardstick gives 6 million pixels a second, so that machines compare. Exit code 0 whatever grew.",
-      {{"--quick", "", "the set 'quick' alone: under a minute", into(w->quick)},
-       {"--strict", "", "exit code 1 where a figure grew by more than a fifth", into(w->strict)}},
-      [w](const Arguments& words) { return guard(*w, words[0]); }};
+  return {{"bench --guard", "FILE.csv"},
+          "Measures again the figures that FILE holds (tests/bench_guard.csv says how it is written) and names each that grew, or shrank, by more than a "
+          "fifth. Seconds are told as where the yardstick gives 6 million pixels a second, so that machines compare. Exit code 0 whatever grew.",
+          {{"--quick", "", "the set 'quick' alone: under a minute", into(w->quick)},
+           {"--strict", "", "exit code 1 where a figure grew by more than a fifth", into(w->strict)}},
+          [w](const Arguments& words) { return guard(*w, words[0]); }};
 }
 
 }  // namespace pitviper

@@ -126,27 +126,24 @@ int info(const InfoWish& w, const std::string& file) {
 
 CommandLine infoCommand() {
   const auto w = std::make_shared<InfoWish>();
-  return {
-      {"info", "[FILE.exr]", "what is in a frame, or what this machine draws with"},
-      "Layers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver and its limits.",
-      joined(
-          {{"--at",
-            "COLUMN,ROW",
-            "the values of one pixel with their units; (0,0) is the top left",
-            {[w](const std::string& text, const Location& where) { w->at = pixelOf(text, where); }},
-            "FILE.exr"},
-           {"--terms", "SCENARIO.yaml",
-            "what that pixel is made of: emission, each light's reflection, the dome's, the air's emission, scattered sunlight, media and lamps in view, by "
-            "the "
-            "body that sends it, worked out in double precision at every wavelength; the scenario must be the one that the frame was drawn from, with the same "
-            "--set and --root, and its tables and meshes as they were",
-            into(w->terms.file), "--at"}},
-          scenarioOptions(w->terms, "--terms")),
-      [w](const Arguments& words) {
-        if (!words.empty()) return info(*w, words[0]);
-        printMachine();
-        return 0;
-      }};
+  return {{"info", "[FILE.exr]", "what is in a frame, or what this machine draws with"},
+          "Layers with unit, minimum, mean and maximum, and all attributes. Without a file: the driver and its limits.",
+          joined({{"--at",
+                   "COLUMN,ROW",
+                   "the values of one pixel with their units; (0,0) is the top left",
+                   {[w](const std::string& text, const Location& where) { w->at = pixelOf(text, where); }},
+                   "FILE.exr"},
+                  {"--terms", "SCENARIO.yaml",
+                   "what that pixel is made of: emission, each light's reflection, the dome's, the air's emission, scattered sunlight, media and lamps in "
+                   "view, by the body that sends it, worked out in double precision at every wavelength; the scenario must be the one that the frame was drawn "
+                   "from, with the same --set and --root, and its tables and meshes as they were",
+                   into(w->terms.file), "--at"}},
+                 scenarioOptions(w->terms, "--terms")),
+          [w](const Arguments& words) {
+            if (!words.empty()) return info(*w, words[0]);
+            printMachine();
+            return 0;
+          }};
 }
 
 }  // namespace pitviper

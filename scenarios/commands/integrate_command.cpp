@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstdio>
 
 #include "scenarios/commands/commands.hpp"
@@ -24,8 +23,6 @@ fs::path outputOf(const fs::path& out, const fs::path& image, const fs::path& se
   return out;
 }
 
-std::string percent(double fraction) { return print("%.2g %%", 100.0 * fraction); }
-
 struct IntegrateWish {
   std::string out;
   bool preview = false;
@@ -44,8 +41,8 @@ int integrate(const IntegrateWish& w, const fs::path& file, const fs::path& sens
   writeExrFile(out, frame, {});
   std::printf("%-32s %-18s error of %zu bins alone: median, maximum over pixels\n", "layer", "unit", image.bins.size());
   for (size_t l = 0; l < frame.layers.size(); ++l)
-    std::printf("%-32s %-18s %s, %s\n", frame.layers[l].name.c_str(), frame.layers[l].unit.c_str(), percent(result.binning[l].median).c_str(),
-                percent(result.binning[l].maximum).c_str());
+    std::printf("%-32s %-18s %.2g %%, %.2g %%\n", frame.layers[l].name.c_str(), frame.layers[l].unit.c_str(), 100.0 * result.binning[l].median,
+                100.0 * result.binning[l].maximum);
   std::printf("%s\n", out.string().c_str());
   if (w.preview) {
     out.replace_extension(".png");
@@ -59,16 +56,15 @@ int integrate(const IntegrateWish& w, const fs::path& file, const fs::path& sens
 
 CommandLine integrateCommand() {
   const auto w = std::make_shared<IntegrateWish>();
-  return {
-      {"integrate", "FILE_spectral.exr SENSOR.yaml", "apply another sensor to a spectral image"},
-      "Integrates a spectral image (a camera's 'spectral_image:') over the channels of a sensor file, such as scenarios/sensors/mw_insb.yaml: the same keys "
-      "'channels', 'optics', 'exposure' and 'aperture' as of a camera; what it leaves out is as of the camera. Writes an EXR with a layer "
-      "<channel>.<quantity> per output. The sensor meets each bin's mean radiance: exact where its response is flat over the bin; how far off the others are, "
-      "to first order, is printed per layer and kept as attribute binning_error.<layer> (median and maximum over pixels).",
-      {{"--out", "FILE.exr", "what to write; otherwise <image>_<sensor>.exr beside the image", into(w->out)},
-       {"--preview", "", "also a PNG: every channel with colour bar and unit", into(w->preview)}},
-      [w](const Arguments& words) { return integrate(*w, words[0], words[1]); },
-      "The bins must cover every channel: one that reaches beyond them is refused."};
+  return {{"integrate", "FILE_spectral.exr SENSOR.yaml", "apply another sensor to a spectral image"},
+          "Integrates a spectral image (a camera's 'spectral_image:') over the channels of a sensor file, such as scenarios/sensors/mw_insb.yaml: the same "
+          "keys 'channels', 'optics', 'exposure' and 'aperture' as of a camera; what it leaves out is as of the camera. Writes an EXR with a layer "
+          "<channel>.<quantity> per output. The sensor meets each bin's mean radiance: exact where its response is flat over the bin; how far off the others "
+          "are, to first order, is printed per layer and kept as attribute binning_error.<layer> (median and maximum over pixels).",
+          {{"--out", "FILE.exr", "what to write; otherwise <image>_<sensor>.exr beside the image", into(w->out)},
+           {"--preview", "", "also a PNG: every channel with colour bar and unit", into(w->preview)}},
+          [w](const Arguments& words) { return integrate(*w, words[0], words[1]); },
+          "The bins must cover every channel: one that reaches beyond them is refused."};
 }
 
 }  // namespace pitviper

@@ -51,8 +51,7 @@ std::string sceneOf(const Named& own, bool eye, double low_um, double high_um) {
         "ambient: {radiance: {product: [\"0.3 W/(m2 sr um)\", cie_d65]}}\nbackground: {radiance: {product: [\"0.03 W/(m2 sr um)\", cie_d65]}}\n";
   else scene += "ambient: {temperature: 280 K}\nbackground: {temperature: 250 K}\n";
   scene += "entities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " + asYaml(own.name) + ", temperature: " + own.temperature +
-           "}]\ncameras: [{name: sphere, film: {width: 256, height: 256}, field_of_view: 12.5 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], "
-           "look_at: s, ";
+           "}]\ncameras: [{name: sphere, film: {width: 256, height: 256}, field_of_view: 12.5 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], look_at: s, ";
   return scene + (eye ? "eye: true}]\n" : print("channels: [{name: ir, response: {band: [%.6g um, %.6g um]}}]}]\n", low_um, high_um));
 }
 
@@ -60,13 +59,13 @@ std::string sceneOf(const Named& own, bool eye, double low_um, double high_um) {
 std::string lossOf(const Named& own, const Material& m, const Libraries& libraries) {
   const double low = std::max(m.validLow_um(), 0.41), high = std::min(m.validHigh_um(), 14.0);
   if (!(high > low)) return "";
-  const std::string scene = own.materials +
-                            "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
-                            "ground: {material: soil, temperature: 295 K}\nentities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " +
-                            asYaml(own.name) + ", temperature: " + own.temperature +
-                            "}]\ncameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [10 m, 0 "
-                            "m, 0 m], look_at: s, " +
-                            print("channels: [{name: c, response: {band: [%.6g um, %.6g um]}}]}]\n", low, high);
+  const std::string scene =
+      own.materials +
+      "atmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
+      "ground: {material: soil, temperature: 295 K}\nentities: [{name: s, shape: {model: sphere, radius: 1 m}, material: " +
+      asYaml(own.name) + ", temperature: " + own.temperature +
+      "}]\ncameras: [{name: c, film: {width: 4, height: 4}, field_of_view: 1 deg, aperture: 5 mm, position: [10 m, 0 m, 0 m], look_at: s, " +
+      print("channels: [{name: c, response: {band: [%.6g um, %.6g um]}}]}]\n", low, high);
   return surroundingsLoss(readScenarioText(scene, "material " + own.name, ".", {}, libraries));
 }
 
@@ -301,8 +300,7 @@ CommandLine materialCommand() {
        {"--wavelengths", "FILE", "the wavelengths of a file with one column, as the USGS's library 7 keeps them", into(c.wavelengths), own},
        {"--out", "FOLDER",
         "also NAME.png, charts of spectra, emissivity by angle and reflection of light from 45 degrees (needs VTK), and NAME_sphere.png, a sphere of it under "
-        "a "
-        "sun and a dome of daylight as an eye sees it (of materials without data there: at 320 K in the infrared), in FOLDER; created if missing",
+        "a sun and a dome of daylight as an eye sees it (of materials without data there: at 320 K in the infrared), in FOLDER; created if missing",
         into(w->out), own}},
       [w](const Arguments& words) {
         if (!words.empty()) return show(*w, words[0]);

@@ -160,27 +160,26 @@ int measure(MeasureWish& w, const std::string& word) {
 CommandLine measureCommand() {
   const auto w = std::make_shared<MeasureWish>();
   const auto target = [w](const std::string& text, const Location& where) { readTarget(text, where, w->target); };
-  return {
-      {"measure", "NAME|CAMERA.yaml", "a camera on a lab bench: SiTF, NETD, noise, MTF, gain, well, point response from its pictures, beside its design"},
-      "Draws flat fields, levels from dark to full, a slanted edge (ISO 12233), a point in a pixel's middle, edge and corner, and four-bar targets through a "
-      "camera of the library, or one in a file with a key 'camera', whose channels have 'output: counts'; and measures from these pictures alone: SiTF, NETD, "
-      "the seven components of three-dimensional noise with their standard errors, gain by photon transfer, full well, linearity, MTF, a pixel's share of a "
-      "star, the bars' contrast, what a star is to send for its signal to be its noise, and the MRTD over frequency (FLIR92 with an eye's own threshold). Flat "
-      "fields are at 300 K, or where the detector is half full if 300 K give it next to nothing.",
-      {{"--frames", "N", "of each flat field", number(w->bench.frames, {4, 4096})},
-       {"--film", "N", "a side of the square in the film's middle that is measured", number(w->bench.film_px, {64, 1024})},
-       {"--set", "KEY=VALUE...", "a key of the camera: --set exposure='2 ms'", into(w->changes)},
-       {"--ranges", "SCENARIO.yaml",
-        "also how far a target is detected, recognised and identified through this scenario's air, along the line of sight of its first camera: by Johnson's "
-        "cycles (STANAG 4347: 1, 3 and 6) and by TTP (V50 2, 7.5 and 13); and as a spot: its TNR, and how far a threshold finds it",
-        into(w->world.file)},
-       {"--target", "WxH", "metres (default 2.3x2.3, STANAG 4347)", {target}, "--ranges"},
-       {"--contrast", "'T K'", "of the target over what is around it, which is as hot as the flat fields", number(w->target.difference_K, {1e-6, 1e4, "K"}),
-        "--ranges"},
-       {"--false-alarms", "N", "an hour, over the film, of the threshold for spots", number(w->alarms_per_hour, {1e-6, 1e6, ""}), "--ranges"},
-       rootOption(w->world, "--ranges"),
-       {"--out", "FOLDER", "also NAME.html, a page with charts (needs VTK), NAME.csv and the charts; created if missing", into(w->out)}},
-      [w](const Arguments& words) { return measure(*w, words[0]); }};
+  return {{"measure", "NAME|CAMERA.yaml", "a camera on a lab bench: SiTF, NETD, noise, MTF, gain, well, point response from its pictures, beside its design"},
+          "Draws flat fields, levels from dark to full, a slanted edge (ISO 12233), a point in a pixel's middle, edge and corner, and four-bar targets through "
+          "a camera of the library, or one in a file with a key 'camera', whose channels have 'output: counts'; and measures from these pictures alone: SiTF, "
+          "NETD, the seven components of three-dimensional noise with their standard errors, gain by photon transfer, full well, linearity, MTF, a pixel's "
+          "share of a star, the bars' contrast, what a star is to send for its signal to be its noise, and the MRTD over frequency (FLIR92 with an eye's own "
+          "threshold). Flat fields are at 300 K, or where the detector is half full if 300 K give it next to nothing.",
+          {{"--frames", "N", "of each flat field", number(w->bench.frames, {4, 4096})},
+           {"--film", "N", "a side of the square in the film's middle that is measured", number(w->bench.film_px, {64, 1024})},
+           {"--set", "KEY=VALUE...", "a key of the camera: --set exposure='2 ms'", into(w->changes)},
+           {"--ranges", "SCENARIO.yaml",
+            "also how far a target is detected, recognised and identified through this scenario's air, along the line of sight of its first camera: by "
+            "Johnson's cycles (STANAG 4347: 1, 3 and 6) and by TTP (V50 2, 7.5 and 13); and as a spot: its TNR, and how far a threshold finds it",
+            into(w->world.file)},
+           {"--target", "WxH", "metres (default 2.3x2.3, STANAG 4347)", {target}, "--ranges"},
+           {"--contrast", "'T K'", "of the target over what is around it, which is as hot as the flat fields", number(w->target.difference_K, {1e-6, 1e4, "K"}),
+            "--ranges"},
+           {"--false-alarms", "N", "an hour, over the film, of the threshold for spots", number(w->alarms_per_hour, {1e-6, 1e6, ""}), "--ranges"},
+           rootOption(w->world, "--ranges"),
+           {"--out", "FOLDER", "also NAME.html, a page with charts (needs VTK), NAME.csv and the charts; created if missing", into(w->out)}},
+          [w](const Arguments& words) { return measure(*w, words[0]); }};
 }
 
 }  // namespace pitviper

@@ -1,6 +1,5 @@
 #include "scenarios/commands/measure_mrtd.hpp"
 
-#include <cmath>
 
 #include "sim/parameters/print.hpp"
 
@@ -30,8 +29,7 @@ void tellResolvable(BenchResult& result) {
   const Observer& o = sight.design.observer;
   result.notes.push_back(
       print("MRTD: noise in three dimensions by FLIR92 (SNR %g over %g s) and an eye's own threshold (Barten 2004) before a display %g cm high at %g cm, %g "
-            "cd/m2, %g K from its mean to "
-            "black; up to half a cycle a pixel",
+            "cd/m2, %g K from its mean to black; up to half a cycle a pixel",
             o.snr, o.eye_s, 100.0 * o.displayHeight_m, 100.0 * o.distance_m, o.luminance_cd_m2, o.sceneContrast_K));
   std::vector<Series> all{design, stacked};
   if (sight.measured) all.insert(all.begin(), measured);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
 
@@ -113,16 +112,15 @@ int plan(const PlanWish& w) {
 
 CommandLine planCommand() {
   const auto w = std::make_shared<PlanWish>();
-  return {
-      {"plan", "SCENARIO.yaml", "what a scenario's accuracy makes of it: terms, wavelengths, predicted error"},
-      "Per camera and probe: how much of a pixel each term can be in each channel, which are kept and which dropped; into how many groups of wavelengths each "
-      "channel's integral goes, of how many the reference has, and the error predicted for lines of sight the groups were not fitted to. 'accuracy: 1 %' in "
-      "the scenario, or --set accuracy='0.1 %', asks for another. Plans are kept by content in $XDG_CACHE_HOME/pitviper (or ~/.cache/pitviper).",
-      joined({{"--json", "", "for programs: a list with an object per camera and probe", into(w->asJson)},
-              {"--speed", "", "also predicted frames a second, from a measured yardstick", into(w->speed)},
-              {"--shaders", "", "also the text of the shading program", into(w->shaders)}},
-             scenarioOptions(w->scenario)),
-      [w](const Arguments& words) { return w->scenario.file = words[0], plan(*w); }};
+  return {{"plan", "SCENARIO.yaml", "what a scenario's accuracy makes of it: terms, wavelengths, predicted error"},
+          "Per camera and probe: how much of a pixel each term can be in each channel, which are kept and which dropped; into how many groups of wavelengths "
+          "each channel's integral goes, of how many the reference has, and the error predicted for lines of sight the groups were not fitted to. 'accuracy: 1 "
+          "%' in the scenario, or --set accuracy='0.1 %', asks for another. Plans are kept by content in $XDG_CACHE_HOME/pitviper (or ~/.cache/pitviper).",
+          joined({{"--json", "", "for programs: a list with an object per camera and probe", into(w->asJson)},
+                  {"--speed", "", "also predicted frames a second, from a measured yardstick", into(w->speed)},
+                  {"--shaders", "", "also the text of the shading program", into(w->shaders)}},
+                 scenarioOptions(w->scenario)),
+          [w](const Arguments& words) { return w->scenario.file = words[0], plan(*w); }};
 }
 
 }  // namespace pitviper

@@ -1,8 +1,6 @@
 #include "scenarios/commands/plan_report.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 
 #include "scenarios/commands/geometry_report.hpp"
 #include "sim/parameters/print.hpp"

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "scenarios/commands/html_page.hpp"
 #include "scenarios/commands/plan_report.hpp"

@@ -87,32 +87,30 @@ std::vector<Option> drawOptions(DrawWish& w) {
   };
   const auto scale = [&p](const std::string& text, const Location& where) { readScale(text, where, p.style), p.scaled = true; };
   const auto video = [&p](const std::string& text, const Location& where) { readVideoName(text, where), p.video = text; };
-  return joined(
-      scenarioOptions(w.scenario),
-      std::vector<Option>{
-          {"--plan", "FILE...",
-           "draws a camera with the plan of another run of this scenario, FOLDER/CAMERA.plan: the same scenario and plan give the same bytes; with --set "
-           "accuracy=reference the reference of that run, along its lines; of anything else's it is refused",
-           into(w.plans)},
-          {"--poses", "FILE...", "CAMERA_poses.csv, as a run with a gimbal leaves it: the camera looks where that says, frame by frame", into(w.poses)},
-          {"--overwrite", "", "also replaces files of other scenarios, and files that are not of this program", into(w.overwrites)},
-          {"", "", "Pictures", {}},
-          {"--preview", "", "also a PNG per frame: every channel with colour bar and unit", into(p.previews)},
-          {"--preview-range", "LAYER=LOW:HIGH...",
-           "ends of a layer's colour bar, in its unit (implies --preview). Without it the bar runs from the 0.5 to the 99.8 percentile, and is bent where a "
-           "few "
-           "bright things would hide the rest",
-           into(p.ranges)},
-          {"--video", "FILE.mp4", "also a film of the previews (of several cameras one each, FILE_<camera>.mp4); by ffmpeg", {video}},
-          {"--sheet", "", "also <camera>_sheet.png: up to twenty pictures of the first layer, evenly over the run", into(p.sheet)},
-          {"--scale",
-           "WHICH",
-           "of colour bars. frame: each picture its own (previews unless given); run: one for all, drawn when the run ends (films and sheets unless given); "
-           "LOW:HIGH: these ends, in the layers' unit",
-           {scale}},
-          {"--palette", "NAME", "auto: white_hot below 0.9 um, else thermal", {colour, listed(palettes)}},
-          {"--plain", "", "pixels alone, one to one: no bar, no words", into(p.style.plain)},
-          {"--truth", "", "truth layers too", into(p.style.truth)}});
+  return joined(scenarioOptions(w.scenario),
+                std::vector<Option>{{"--plan", "FILE...",
+                                     "draws a camera with the plan of another run of this scenario, FOLDER/CAMERA.plan: the same scenario and plan give the "
+                                     "same bytes; with --set accuracy=reference the reference of that run, along its lines; of anything else's it is refused",
+                                     into(w.plans)},
+                                    {"--poses", "FILE...",
+                                     "CAMERA_poses.csv, as a run with a gimbal leaves it: the camera looks where that says, frame by frame", into(w.poses)},
+                                    {"--overwrite", "", "also replaces files of other scenarios, and files that are not of this program", into(w.overwrites)},
+                                    {"", "", "Pictures", {}},
+                                    {"--preview", "", "also a PNG per frame: every channel with colour bar and unit", into(p.previews)},
+                                    {"--preview-range", "LAYER=LOW:HIGH...",
+                                     "ends of a layer's colour bar, in its unit (implies --preview). Without it the bar runs from the 0.5 to the 99.8 "
+                                     "percentile, and is bent where a few bright things would hide the rest",
+                                     into(p.ranges)},
+                                    {"--video", "FILE.mp4", "also a film of the previews (of several cameras one each, FILE_<camera>.mp4); by ffmpeg", {video}},
+                                    {"--sheet", "", "also <camera>_sheet.png: up to twenty pictures of the first layer, evenly over the run", into(p.sheet)},
+                                    {"--scale",
+                                     "WHICH",
+                                     "of colour bars. frame: each picture its own (previews unless given); run: one for all, drawn when the run ends (films "
+                                     "and sheets unless given); LOW:HIGH: these ends, in the layers' unit",
+                                     {scale}},
+                                    {"--palette", "NAME", "auto: white_hot below 0.9 um, else thermal", {colour, listed(palettes)}},
+                                    {"--plain", "", "pixels alone, one to one: no bar, no words", into(p.style.plain)},
+                                    {"--truth", "", "truth layers too", into(p.style.truth)}});
 }
 
 Simulation DrawWish::read() const {

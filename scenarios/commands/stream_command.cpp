@@ -280,10 +280,8 @@ CommandLine streamCommand() {
   return {
       {"stream", "SCENARIO.yaml", "frames at a fixed rate to hardware and other programs, and commands from them"},
       "Frames of every camera at a fixed rate to other programs and to hardware, and commands from them. Plans and programs are made before the first frame. "
-      "Without "
-      "a way for frames (here, or in the scenario's 'sinks') they go to shared memory /pitviper. Ends after the scenario's frames, or as asked; SIGINT and "
-      "SIGTERM "
-      "end it after the frame it is at. Prints at the end what became of every frame, and its times; exit code 3 if one is unaccounted for.",
+      "Without a way for frames (here, or in the scenario's 'sinks') they go to shared memory /pitviper. Ends after the scenario's frames, or as asked; SIGINT "
+      "and SIGTERM end it after the frame it is at. Prints at the end what became of every frame, and its times; exit code 3 if one is unaccounted for.",
       joined(
           {{"", "", "Clock", {}},
            {"--clock", "CLOCK", "what begins a tick",
@@ -315,8 +313,7 @@ CommandLine streamCommand() {
             into(w->sharedMemory)},
            {"--gige", "ADDRESS",
             "each camera as a machine-vision camera, compatible with GVCP/GVSP, tested with Aravis, at this IPv4 address of the machine and those after it; "
-            "clients set "
-            "exposure and gain, and trigger. More of it: 'sink: gige' in the scenario",
+            "clients set exposure and gain, and trigger. More of it: 'sink: gige' in the scenario",
             into(w->gige)},
            {"--gstreamer", "PIPELINE...",
             "a pipeline of the first camera (again: of the next) after 'appsrc', GRAY16_LE, as for gst-launch-1.0: 'videoconvert ! autovideosink'",
@@ -335,16 +332,14 @@ CommandLine streamCommand() {
            {"--commands", "PLACE",
             "lines of JSON at a TCP port (7380, 0.0.0.0:7380) or a Unix socket (/tmp/pitviper.sock), with the words of a scenario's 'commands': {\"command\": "
             "\"move\", \"entity\": \"jet\", \"position\": [\"0 m\", \"1 km\", \"500 m\"]}, look, temperature, light, trigger, gain; with \"at\" for a time; "
-            "\"id\" asks "
-            "for an answer; \"host_frame\" comes back with the frame. {\"step\": 1} in lockstep, {\"run\": false} stops and {\"run\": true} starts real time, "
-            "{\"follow\": true} asks for a line a frame, {\"status\": true}, {\"pulse\": true}, {\"end\": true}",
+            "\"id\" asks for an answer; \"host_frame\" comes back with the frame. {\"step\": 1} in lockstep, {\"run\": false} stops and {\"run\": true} starts "
+            "real time, {\"follow\": true} asks for a line a frame, {\"status\": true}, {\"pulse\": true}, {\"end\": true}",
             into(w->commands)},
            {"--stale", "'T s'", "commands for a time so long ago are not carried out; younger ones are taken on to the frame's time",
             number(w->stale_s, {0.0, 1e9, "s"}), "--commands"},
            {"--cigi", "PLACE",
             "CIGI 3.3 at a UDP port (8004, 0.0.0.0:8004), Start of Frame back; IG mode standby stops, operate starts; in lockstep each IG Control is a step. "
-            "What has "
-            "which number: scenarios/README.md",
+            "What has which number: scenarios/README.md",
             into(w->cigi)},
            {"", "", "Scenario", {}}},
           drawOptions(w->draw)),

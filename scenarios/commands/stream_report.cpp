@@ -1,7 +1,6 @@
 #include "scenarios/commands/stream_report.hpp"
 
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 
 #include "scenarios/commands/html_page.hpp"

@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <cstring>
 #include <functional>
-#include <optional>
 #include <thread>
 
 #include "scenarios/commands/gige_reader.hpp"

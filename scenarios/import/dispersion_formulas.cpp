@@ -9,8 +9,6 @@
 namespace pitviper {
 namespace {
 
-/// As readRefractiveIndex takes it.
-constexpr double kLargestIndex = 1000.0;
 constexpr std::size_t kMostSellmeier = 16, kMostCauchy = 8;
 
 /// Coefficients left out at the end are 0, and so are their terms, whatever their poles.

@@ -33,6 +33,8 @@ void checkCoefficients(const DispersionFormula& formula, const Location& where);
 /// at most. UserError at `where` for a formula that gives no index there.
 std::string indexOf(const DispersionFormula& formula, double low_um, double high_um, const Location& where);
 
+/// As readRefractiveIndex takes it.
+constexpr double kLargestIndex = 1000.0;
 /// A tenth of what an imported index may be off.
 constexpr double kTableError = 1e-6;
 

@@ -1,6 +1,5 @@
 #include "scenarios/import/import_yaml.hpp"
 
-#include <algorithm>
 #include <charconv>
 
 #include "sim/parameters/readable_text.hpp"

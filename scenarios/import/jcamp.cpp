@@ -12,7 +12,8 @@
 namespace pitviper {
 namespace {
 
-struct Record {
+/// What stands behind a label, and where.
+struct Labelled {
   std::string value;
   int line = 0;
 };
@@ -52,7 +53,7 @@ bool isJcamp(const std::string& text) {
 
 NumberLines readJcamp(const std::string& text, const std::string& file) {
   NumberLines all;
-  std::map<std::string, Record> records;
+  std::map<std::string, Labelled> records;
   std::istringstream in(text);
   std::string form;
   Location where{file, 0, 1, -1};

@@ -1,8 +1,6 @@
 #include "scenarios/import/optical_constants_import.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <optional>
 #include <sstream>
 
 #include "scenarios/import/dispersion_formulas.hpp"
@@ -13,9 +11,6 @@
 
 namespace pitviper {
 namespace {
-
-/// As readRefractiveIndex takes it.
-constexpr double kLargestIndex = 1000.0;
 
 struct Row {
   std::vector<double> values;  ///< wavelength in um first

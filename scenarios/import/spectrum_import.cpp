@@ -1,7 +1,6 @@
 #include "scenarios/import/spectrum_import.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "scenarios/import/import_yaml.hpp"

@@ -16,12 +16,12 @@ constexpr double kSame_s = 1e-6 * kServoStep_s;
 struct Axis {
   double least, most, rate, acceleration, lag_s;
 };
-struct Course {
+struct ServoCourse {
   double angle, rate;
 };
 
 /// Without a limit of acceleration: e' = s - clamp(e / T, +-rate) by pieces. It has one sign throughout, so there are three pieces at most.
-Course lagged(const Axis& axis, double angle, double demand, double slope, double for_s) {
+ServoCourse lagged(const Axis& axis, double angle, double demand, double slope, double for_s) {
   const double end = demand + slope * for_s, T = axis.lag_s;
   if (T == 0.0 && axis.rate == kInfinite) return {end, slope};
   double e = demand - angle, left_s = for_s;
@@ -79,8 +79,8 @@ double rateAtEnd(const Axis& axis, double angle, double rate, double demand, dou
   return std::clamp(wanted, rate - axis.acceleration * h_s, rate + axis.acceleration * h_s);
 }
 
-Course courseOf(const Axis& axis, double angle, double rate, double demand, double slope, double step_s, double for_s) {
-  Course at;
+ServoCourse courseOf(const Axis& axis, double angle, double rate, double demand, double slope, double step_s, double for_s) {
+  ServoCourse at;
   if (axis.acceleration == kInfinite) {
     at = lagged(axis, angle, demand, slope, for_s);
   } else {
@@ -120,7 +120,7 @@ void decide(const GimbalOptions& options, const GimbalDemand& demanded, GimbalSt
 void advance(const GimbalOptions& options, const GimbalState::Servo& servo, double for_s, glm::dvec2& angle, glm::dvec2& rate) {
   const double step_s = gridAfter_s(servo.since_s) - servo.since_s;
   for (int i = 0; i < 2; ++i) {
-    const Course at = courseOf(axisOf(options, i), servo.angle_rad[i], servo.rate_rad_s[i], servo.demand_rad[i], servo.demandRate_rad_s[i], step_s, for_s);
+    const ServoCourse at = courseOf(axisOf(options, i), servo.angle_rad[i], servo.rate_rad_s[i], servo.demand_rad[i], servo.demandRate_rad_s[i], step_s, for_s);
     angle[i] = at.angle;
     rate[i] = at.rate;
   }

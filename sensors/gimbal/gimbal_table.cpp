@@ -17,8 +17,7 @@ const ParameterTable& gimbalTable() {
       "gimbal",
       "Two axes, azimuth outside and elevation inside, that follow what drives them. Angles are to its base: the body that carries the camera, turned by the "
       "camera's own heading, pitch and roll (of a camera that nothing carries: those alone); azimuth positive to the left of the base's forward axis, "
-      "elevation "
-      "up. What it looks at is the camera's `look_at`.",
+      "elevation up. What it looks at is the camera's `look_at`.",
       {withDefault(choice("driver", {"truth", "centroid", "commands"},
                           "who points it. truth: where its target is; centroid: a plain tracker on its own pictures, that of a frame acts before the next; "
                           "commands: `point` and `look` of a scenario or a stream"),
@@ -99,8 +98,7 @@ const ParameterTable& trackerTable() {
   static const ParameterTable t{
       "tracker of a gimbal",
       "Centroid of what is above a threshold over the background's median, within a gate that follows; the whole picture until something is found. On a "
-      "channel's first "
-      "output, as the sensor's stages leave it.",
+      "channel's first output, as the sensor's stages leave it.",
       {text("channel", "name of a channel of the camera; its first unless given"),
        withDefault(above(within(number("threshold", "", "above the background, in deviations of its noise", &ThresholdRule::sigmas), 0, 1e6), 0), "5"),
        within(number("least_noise", "", "least deviation, in the output's unit; 0.289 of counts (of their rounding), 0 of others unless given",

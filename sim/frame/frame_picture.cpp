@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "sim/frame/file_owner.hpp"
 #include "sim/image/png.hpp"

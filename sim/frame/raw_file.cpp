@@ -3,7 +3,6 @@
 //   0; 32: JSON (frame_json.hpp) with the layers' names, units and types in their order, filled up with spaces.
 // After the header the layers one after another, row by row from the top: "uint16" (counts) or "float32".
 #include <bit>
-#include <cstring>
 
 #include "sim/frame/file_formats.hpp"
 #include "sim/frame/frame_json.hpp"

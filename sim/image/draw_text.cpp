@@ -4,10 +4,8 @@
 #include FT_FREETYPE_H
 
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <mutex>
-#include <string>
 #include <system_error>
 
 namespace pitviper {

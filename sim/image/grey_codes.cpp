@@ -1,6 +1,5 @@
 #include "sim/image/grey_codes.hpp"
 
-#include <algorithm>
 
 namespace pitviper {
 

@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <stdexcept>
-#include <tuple>
 
 #include "sim/image/colour_map.hpp"
 #include "sim/image/draw_text.hpp"
@@ -25,7 +23,7 @@ constexpr Rgb8 plainText = {198, 203, 212};
 constexpr Rgb8 notFinite = {255, 0, 255};  // in neither colour map
 
 constexpr int minLongerSide = 512;
-constexpr int maxSide = 8192;
+constexpr int kMostPreviewSide = 8192;
 constexpr int minBarHeight = 150;  // room for six labels and two notes
 
 /// The finite values of an image and what clipping needs of them.
@@ -184,7 +182,7 @@ PictureScale scaleFor(const std::vector<float>& pixels, const PreviewOptions& op
 int even(int length) { return length + length % 2; }
 
 void check(int width, int height, const std::vector<float>& pixels, const PreviewOptions& options) {
-  if (width < 1 || height < 1 || width > maxSide || height > maxSide) throw std::invalid_argument("makePreview: a side is not in 1..8192");
+  if (width < 1 || height < 1 || width > kMostPreviewSide || height > kMostPreviewSide) throw std::invalid_argument("makePreview: a side is not in 1..8192");
   if (pixels.size() != static_cast<std::size_t>(width) * static_cast<std::size_t>(height))
     throw std::invalid_argument("makePreview: pixels are not width * height");
   if (!options.colours.empty() && options.colours.size() != pixels.size()) throw std::invalid_argument("makePreview: colours are not width * height");

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <map>
 
+#include "sim/radiometry/constants.hpp"
+
 namespace pitviper {
 namespace {
-
-constexpr double kPi = 3.141592653589793238;
 
 enum Base { W, M, S, K, RAD, SR, V, COUNT, LM };
 

@@ -1,6 +1,5 @@
 #include "sim/run/bare_timer.hpp"
 
-#include <algorithm>
 
 #include "sim/stream/clock/wall_clock.hpp"
 

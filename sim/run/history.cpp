@@ -149,9 +149,8 @@ History::~History() = default;
 
 std::string History::head() {
   std::string head =
-      "time_s,frame,name,kind,present,east_m,north_m,up_m,velocity_east_m_s,velocity_north_m_s,velocity_up_m_s,acceleration_east_m_s2,"
-      "acceleration_north_m_s2,acceleration_up_m_s2,heading_deg,pitch_deg,roll_deg,roll_rate_deg_s,pitch_rate_deg_s,yaw_rate_deg_s,speed_m_s,mach,height_m,"
-      "load_g,";
+      "time_s,frame,name,kind,present,east_m,north_m,up_m,velocity_east_m_s,velocity_north_m_s,velocity_up_m_s,acceleration_east_m_s2,acceleration_north_m_s2,"
+      "acceleration_up_m_s2,heading_deg,pitch_deg,roll_deg,roll_rate_deg_s,pitch_rate_deg_s,yaw_rate_deg_s,speed_m_s,mach,height_m,load_g,";
   head += kGimbalHead;
   head += '\n';
   return head;

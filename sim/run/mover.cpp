@@ -1,6 +1,5 @@
 #include "sim/run/mover.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "sim/radiometry/constants.hpp"

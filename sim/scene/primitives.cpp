@@ -5,12 +5,11 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "sim/radiometry/constants.hpp"
 #include "sim/scene/mesh_tools.hpp"
 
 namespace pitviper {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 void require(bool holds, const char* what) {
   if (!holds) throw std::invalid_argument(what);

@@ -16,8 +16,7 @@ CommandModel ejectCommand() {
   };
   return {"eject",
           "Ejects a flare from where its carrier is then, with its velocity: that of its route, or of the `move` that put it there (where that has none, as "
-          "fast as it came since the move before). "
-          "Ejected once more it begins anew, and the one before is gone.",
+          "fast as it came since the move before). Ejected once more it begins anew, and the one before is gone.",
           keys, read};
 }
 

@@ -181,9 +181,8 @@ class GigeSink final : public Sink, public ControllableSink {
 SinkModel gigeSink() {
   return {"gige",
           "Cameras on the network, compatible with GVCP and GVSP of machine vision (tested with Aravis): each camera of the scenario is one, at `address` and "
-          "those after it. One layer: "
-          "counts as they are, others as 16-bit codes of a fixed scale; Mono8, Mono12Packed and Mono16 with chunks. Clients may set exposure and gain of a "
-          "stream, and trigger it.",
+          "those after it. One layer: counts as they are, others as 16-bit codes of a fixed scale; Mono8, Mono12Packed and Mono16 with chunks. Clients may set "
+          "exposure and gain of a stream, and trigger it.",
           {withDefault(text("address", "IPv4 address of this machine, of the first camera; port 3956"), "127.0.0.1"), text("camera", "this one alone"),
            text("layer", "such as mw.counts; the first counts unless given, or the first layer"),
            list("range", "[lowest, highest] of a layer that is no count, in its unit", 2, 2),

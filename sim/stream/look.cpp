@@ -81,8 +81,7 @@ CommandModel lookCommand() {
   };
   return {"look",
           "Points a camera. A position, an attitude, a field of view or an exposure that is not given stays as the scenario has it; a camera that is turned no "
-          "longer follows "
-          "its `look_at`. The attitude of a camera on a gimbal is demanded of that, and it turns there as fast as it can.",
+          "longer follows its `look_at`. The attitude of a camera on a gimbal is demanded of that, and it turns there as fast as it can.",
           keys, read};
 }
 

@@ -42,11 +42,10 @@ CommandModel pointCommand() {
       addPointing(courses, name, now);
     };
   };
-  return {
-      "point",
-      "Demands a direction of a camera's gimbal, which turns there within its limits. One that a stream gets without `at` is seen in the next frame, as what a "
-      "centroid finds in the frame before.",
-      keys, read};
+  return {"point",
+          "Demands a direction of a camera's gimbal, which turns there within its limits. One that a stream gets without `at` is seen in the next frame, as "
+          "what a centroid finds in the frame before.",
+          keys, read};
 }
 
 }  // namespace pitviper

@@ -61,8 +61,7 @@ class SharedMemorySink final : public Sink {
 SinkModel sharedMemorySink() {
   return {"shared_memory",
           "Frames in POSIX shared memory, of this user alone: all channels, counts as 16-bit whole numbers, the rest as floats, with what there is to say of "
-          "each frame. "
-          "sim/stream/ring/pitviper_stream.h is its description, and all that a reader in C needs; scenarios/clients has readers.",
+          "each frame. sim/stream/ring/pitviper_stream.h is its description, and all that a reader in C needs; scenarios/clients has readers.",
           {withDefault(text("name", "of the object; of several cameras each has its name behind it"), "/pitviper"),
            withDefault(integer("slots", "frames that it holds", 2, 4096), "8")},
           [](const Record& r, const Simulation&) {

@@ -1,7 +1,6 @@
 // Some of a run's pictures on one sheet.
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
 #include "sim/image/draw_text.hpp"
 #include "sim/image/png.hpp"

@@ -13,7 +13,6 @@
 #include <vtkTable.h>
 #include <vtkTextProperty.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "scenarios/commands/charts/axis_layout.hpp"

@@ -6,8 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <optional>
 
 #include "scenarios/commands/charts/canvas.hpp"
 #include "scenarios/commands/charts/space_shapes.hpp"
@@ -16,6 +14,7 @@
 #include "sim/image/draw_text.hpp"
 #include "sim/image/ticks.hpp"
 #include "sim/parameters/print.hpp"
+#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
@@ -347,7 +346,6 @@ class TrajectorySheet {
     }
   }
 
-  static constexpr double kPi = 3.14159265358979324;
   const FlownScene& scene_;
   std::vector<std::string> beyond_;  ///< cameras; places() finds them, so it stands before view_
   TrajectoryView view_;

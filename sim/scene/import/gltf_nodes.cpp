@@ -4,7 +4,6 @@
 #include <glm/gtc/quaternion.hpp>
 #include <optional>
 #include <set>
-#include <string>
 
 namespace pitviper {
 namespace {

@@ -1,7 +1,6 @@
 #include "sim/stream/gige/gige_control.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "sim/stream/gige/wire.hpp"
 

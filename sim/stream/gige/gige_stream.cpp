@@ -18,7 +18,7 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::size_t kMailbox = 3;   ///< pictures; more would only be older when they arrive
-constexpr std::size_t kResends = 64;  ///< requests that wait
+constexpr std::size_t kMostResends = 64;  ///< requests that wait
 /// Pictures kept for requests to send parts again. Aravis gives a picture up after 200 ms, which are 12 pictures at 60 Hz.
 constexpr std::size_t kKeptPictures = 16, kKeptBytes = 128u << 20;
 constexpr std::uint64_t kResendsOfPicture = 4;  ///< times its packets; more is no repair
@@ -170,7 +170,7 @@ void GigeStream::publish(std::shared_ptr<const GigePicture> picture) {
 void GigeStream::resend(const GigeResend& request) {
   {
     const std::lock_guard lock(mutex_);
-    if (resends_.size() == kResends) return tally_.add(&GigeCounts::resendsNotServed);
+    if (resends_.size() == kMostResends) return tally_.add(&GigeCounts::resendsNotServed);
     resends_.push_back(request);
     hasResends_ = true;
   }

@@ -1,6 +1,5 @@
 #include "sim/stream/gstreamer/running_pipeline.hpp"
 
-#include <algorithm>
 #include <condition_variable>
 #include <cstring>
 #include <mutex>
