@@ -3,6 +3,7 @@
 #   Headers are included from the repository root ("sim/radiometry/planck.hpp").
 #   QUICK: nothing in it runs for long; optimised less, it compiles a third faster.
 #   .glsl files directly in it are compiled into the library as text: see sim/gl/shader_source.hpp.
+include(join_sources)
 find_program(PITVIPER_CCACHE ccache)
 if(PITVIPER_CCACHE)
   # What it needs to know of precompiled headers: they hold no __DATE__ and their macros are what the options say.
@@ -16,6 +17,10 @@ target_compile_options(pitviper_options INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Werror -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
   target_compile_options(pitviper_options INTERFACE -Wno-restrict -Wno-stringop-overflow -Wno-array-bounds)  # false alarms on std::string (GCC bug 105651)
+endif()
+if(CMAKE_UNITY_BUILD)
+  # A class of one file alone is taken for one of a header, and what one file calls its own hides nothing of another's.
+  target_compile_options(pitviper_options INTERFACE -Wno-subobject-linkage -Wno-shadow)
 endif()
 if(PITVIPER_SANITIZE)
   target_compile_options(pitviper_options INTERFACE
@@ -58,6 +63,7 @@ function(pitviper_module name)
     return()
   endif()
   add_library(${name} STATIC ${sources})
+  pitviper_join(${name})
   target_link_libraries(${name} PUBLIC pitviper_options ${M_DEPENDS} PRIVATE ${M_LIBRARIES})
   target_compile_options(${name} PRIVATE -fpch-preprocess)
   if(M_QUICK)
