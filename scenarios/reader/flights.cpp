@@ -10,6 +10,7 @@
 #include "sim/flight/point_mass.hpp"
 #include "sim/flight/recovery_temperature.hpp"
 #include "sim/model/world.hpp"
+#include "sim/radiometry/constants.hpp"
 #include "sim/scene/placement.hpp"
 
 namespace pitviper {

@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "sim/image/exr.hpp"
+#include "sim/image/png.hpp"
 #include "tests/support/read_png.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temporary_folder.hpp"
