@@ -18,9 +18,9 @@ constexpr int kTile_px = 4, kMostTilesAcross = 128;
 constexpr double kEven = 0.1;
 /// Many samples of a zoomed view are one pixel's: lines through each may lie farther apart.
 constexpr double kOfMany = 2.0;
-/// llvmpipe ends all loops of a pixel after 65535 rounds in all (LP_MAX_TGSI_LOOP_ITERATIONS), without a word: fewer lines before that. Rounds of a line
-/// besides those of its elements and steps; each loop's last counts as well.
-constexpr double kMostRounds = 60000.0, kOtherRounds = 16.0;
+/// Elements that the lines of a pixel look up in all, and as many more of each step: at a nozzle more lines would cost a frame more than its picture gains (a
+/// duel of two jets a half).
+constexpr double kMostWork = 30000.0, kOfStep = 3.0;
 
 std::uint32_t bitsOf(double v) { return std::bit_cast<std::uint32_t>(static_cast<float>(v)); }
 
@@ -146,6 +146,7 @@ const FieldDraws::Tile* FieldDraws::Body::tileAt(int x, int y) const {
 /// Of every pixel the lines through all fields that it may show, so that what is in each other is met by the same ones.
 void FieldDraws::listLines(const View& view) {
   entries_.assign(bodies_.size(), 0);
+  mostLines_ = 0;
   glm::ivec2 low(view.width, view.height), high(0);
   for (size_t f = 0; f < bodies_.size(); ++f) {
     if (!shows(f)) continue;
@@ -161,16 +162,16 @@ void FieldDraws::listLines(const View& view) {
     std::uint32_t& at = words[static_cast<size_t>(y - low.y) * static_cast<size_t>(part_.z) + static_cast<size_t>(x - low.x)];
     if (at != 0) return;
     here.clear(), lists.clear();
-    int most = kReferenceLines;
     double coarser = INFINITY;
+    int most = kReferenceLines;
     for (size_t f = 0; f < bodies_.size(); ++f) {
       const Tile* tile = bodies_[f].tileAt(x, y);
       if (!tile) continue;
       here.push_back(f);
       lists.push_back(&tile->lines);
-      const double listed = static_cast<double>(tile->texel.size()), rounds = 2.0 * listed + tile->steps * (6.0 + 2.0 * listed) + kOtherRounds;
-      most = std::min(most, std::max(static_cast<int>(std::sqrt(kMostRounds / rounds)), 1));
       coarser = std::min(coarser, bodies_[f].coarser);
+      const double listed = static_cast<double>(tile->texel.size()), work = listed + tile->steps * (kOfStep + listed);
+      most = std::min(most, std::max(static_cast<int>(std::sqrt(kMostWork / work)), 1));
     }
     const PixelLines lines = pixelLines(lists, x, y, most, view.zoomed ? LinesApart{kOfMany * coarser, 1} : LinesApart{coarser, 2});
     at = static_cast<std::uint32_t>(words.size());
@@ -178,6 +179,7 @@ void FieldDraws::listLines(const View& view) {
     words.insert(words.end(), {count, bitsOf(lines.outside)});
     for (const FilmLine& line : lines.within) words.insert(words.end(), {bitsOf(line.at.x), bitsOf(line.at.y), bitsOf(line.share)});
     for (size_t f : here) entries_[f] += count;
+    mostLines_ = std::max<size_t>(mostLines_, count);
   };
   for (const Body& body : bodies_)
     for (size_t t = 0; t < body.listed.size(); ++t) {

@@ -9,10 +9,19 @@ namespace pitviper {
 
 RasterTracer::RasterTracer(const Simulation& simulation, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene)
     : simulation_(simulation), scene_(std::move(scene)), items_(drawItems(simulation)), solids_(simulation, items_, *scene_, library) {
-  if (std::none_of(items_.begin(), items_.end(), [](const DrawItem& d) { return d.kind == DrawKind::Layer; })) return;
-  ShaderSlots slots;
-  slots.files["ground"] = "sim/render/glsl/ground_none.glsl";  // where a line ends at the ground is the equation's business
-  hits_ = std::make_unique<HitLists>(library, slots, std::vector{HitLists::Kind::Pane});
+  std::vector<HitLists::Kind> kinds;
+  for (const DrawItem& item : items_)
+    if (item.kind == DrawKind::Layer) kinds.push_back(HitLists::Kind::Pane);
+    else if (isMeshed(item)) kinds.push_back(HitLists::Kind::Border);
+  if (kinds.empty()) return;
+  ShaderSlots slots;  // where a line ends at the ground is the equation's business
+  slots.files["ground"] = "sim/render/glsl/ground_none.glsl";
+  slots.files["ground_end"] = "sim/render/glsl/ground_endless.glsl";
+  hits_ = std::make_unique<HitLists>(library, slots, kinds);
+}
+
+bool RasterTracer::isMeshed(const DrawItem& item) const {
+  return item.kind == DrawKind::Medium && simulation_.entities[static_cast<size_t>(item.entity)].form.kind == BodyForm::Kind::Mesh;
 }
 
 SeenLines RasterTracer::see(const View& v, const WorldState& state, const std::vector<char>& drawn) {
@@ -48,6 +57,7 @@ void RasterTracer::addPanes(const RenderTarget& visibility, const View& view, co
   hits_->find(visibility, false, [&] {
     for (std::size_t d : inView)
       if (items_[d].kind == DrawKind::Layer) drawPane(*hits_, *scene_, simulation_, items_[d], d);
+      else if (isMeshed(items_[d])) drawMedium(*hits_, *scene_, simulation_, items_[d], d);
   });
   std::vector<std::vector<SeenTriangle>> panes(seen.solid.size());
   hits_->eachHit([&](int x, int y, const glm::uvec4& hit) {

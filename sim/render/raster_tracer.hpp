@@ -19,7 +19,7 @@ struct SeenTriangle {
 struct SeenLines {
   std::vector<SeenTriangle> solid;
   std::vector<std::uint32_t> firstPane;  ///< of each line, then the number of all; empty: nothing transparent is in view
-  std::vector<SeenTriangle> panes;       ///< before what is solid, in no order
+  std::vector<SeenTriangle> panes;       ///< in no order: surfaces before what is solid, and all of meshed media
   std::span<const SeenTriangle> panesOf(std::size_t line) const {
     if (firstPane.empty()) return {};
     return {panes.data() + firstPane[line], panes.data() + firstPane[line + 1]};
@@ -34,13 +34,14 @@ class RasterTracer {
   SeenLines see(const View& view, const WorldState& state, const std::vector<char>& drawn);
 
  private:
+  bool isMeshed(const DrawItem& item) const;
   SeenTriangle triangleOf(std::uint32_t draw, std::uint32_t triangle) const;
   void addPanes(const RenderTarget& visibility, const View& view, const WorldState& state, const std::vector<char>& drawn, SeenLines& seen);
   const Simulation& simulation_;
   std::shared_ptr<const GpuScene> scene_;
   std::vector<DrawItem> items_;
   SolidPass solids_;
-  std::unique_ptr<HitLists> hits_;  ///< null: no surface of the scenario is transparent
+  std::unique_ptr<HitLists> hits_;  ///< null: the scenario has neither transparent surfaces nor meshed media
   Buffer draws_, view_;
   std::deque<RenderTarget> targets_;  ///< by size
   Readback readback_;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "sim/gl/timing.hpp"
 #include "sim/render/node_loops.hpp"
 #include "sim/render/transparent_draws.hpp"
 
@@ -17,8 +18,8 @@ constexpr std::size_t kEntries = 1024 * 1024;
 constexpr int kListSide = 1024;
 /// What lets through and what it adds, of all lines that are worked out at a time [bytes].
 constexpr std::size_t kMostBytes = std::size_t{192} << 20;
-constexpr std::size_t kFewestLines = 4096;
-constexpr std::size_t kGroup = 64;  // as in sim/render/glsl/seen_walk.comp.glsl
+constexpr std::size_t kMostLines = 262144, kFewestLines = 4096;
+constexpr std::size_t kGroup = 64, kAtOnce = 8;  // as in sim/render/glsl/seen_walk.comp.glsl
 
 }  // namespace
 
@@ -89,7 +90,8 @@ void SeenThrough::place(const View& view, const WorldState& state, const std::ve
 }
 
 void SeenThrough::findHits(const Over& over) {
-  if (fields_) fields_->look(over.view);
+  if (const TimedPart part("lines of fields"); fields_) fields_->look(over.view);
+  const TimedPart part("hits");
   hits_->find(over.visibility, over.covered, [&] {
     for (size_t d : draws_) (tables_.draws[d].kind == DrawKind::Layer ? drawPane : drawMedium)(*hits_, *scene_, simulation_, tables_.draws[d], d);
     for (size_t f = 0; fields_ && f < fields_->count(); ++f) {
@@ -108,6 +110,7 @@ void SeenThrough::findHits(const Over& over) {
 
 /// As many lines as there is memory for what they leave, from the first on.
 void SeenThrough::order(std::size_t first, std::size_t count) {
+  const TimedPart part("order");
   const std::size_t each = 2 * static_cast<std::size_t>(targets_) * sizeof(glm::vec4);
   for (;; count = std::max(count / 2, kFewestLines)) {
     lists_ = lines_->order(*hits_, first, count, fields_ ? fields_->entries() : std::vector<std::size_t>{}, [&](const Program& program) {
@@ -161,6 +164,7 @@ void SeenThrough::shadePassages(const Over& over) {
 }
 
 void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
+  const TimedPart part("walk");
   walk_.use();
   lines_->bindSteps(18, 17);
   hits_->bindLines(19);
@@ -171,8 +175,13 @@ void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
   glUniform1i(walk_.uniform("firstLine"), static_cast<GLint>(first));
   glUniform1i(walk_.uniform("lineCount"), static_cast<GLint>(count));
   glUniform3i(walk_.uniform("firstPassages"), 0, static_cast<GLint>(lists_.panes), static_cast<GLint>(lists_.panes + lists_.segments));
-  glDispatchCompute(static_cast<GLuint>((count + kGroup - 1) / kGroup), 1, 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  sums_.reserve(count * static_cast<std::size_t>(targets_) * sizeof(glm::vec4));
+  sums_.bindStorage(4);
+  for (std::size_t l = 0; l == 0 || (fields_ && l < fields_->mostLines()); l += kAtOnce) {
+    glUniform1i(walk_.uniform("firstOfPixel"), static_cast<GLint>(l));
+    glDispatchCompute(static_cast<GLuint>((count + kGroup - 1) / kGroup), static_cast<GLuint>(targets_), 1);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  }
 }
 
 void SeenThrough::run(const Over& over) {
@@ -183,7 +192,7 @@ void SeenThrough::run(const Over& over) {
   const std::size_t lines = hits_->lineCount();
   for (std::size_t first = 0; first < lines; first += ordered_.second) {
     // Of one lot only, later batches of nodes find it as the first one left it.
-    if (ordered_ != std::pair(std::size_t{0}, lines)) order(first, lines - first);
+    if (ordered_ != std::pair(std::size_t{0}, lines)) order(first, std::min(lines - first, kMostLines));
     shadePassages(over);
     walk(over, first, ordered_.second);
   }

@@ -62,6 +62,7 @@ class SeenThrough {
   int targets_;
   SurfaceBuffers buffers_;
   Buffer media_;
+  Buffer sums_;                         ///< of pixels' lines
   Buffer passages_;                     ///< what each thing on a line lets through and what it adds, node by node
   std::unique_ptr<FieldDraws> fields_;  ///< null: none
   std::unique_ptr<HitLists> hits_;

@@ -38,7 +38,6 @@ void drawMedium(HitLists& hits, const GpuScene& scene, const Simulation& simulat
   const bool meshed = entity.form.kind == BodyForm::Kind::Mesh;
   const Program& program = hits.use(meshed ? Kind::Border : Kind::Medium);
   glUniform1i(program.uniform("drawIndex"), static_cast<int>(draw));
-  glUniform1i(program.uniform("mediumRow"), static_cast<int>(item.row));
   if (meshed) return drawTriangles(scene.firstTriangle(item.entity), entity.mesh->triangles.size());
   // A line that meets the form must find its box, whatever the rasteriser's steps (1/256 of a pixel).
   const BodyBox& box = scene.box(item.entity);

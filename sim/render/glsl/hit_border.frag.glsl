@@ -3,7 +3,6 @@ layout(early_fragment_tests) in;
 //@use sim/render/glsl/volume_ray.glsl
 //@use sim/render/glsl/hit_list.glsl
 uniform int drawIndex;
-uniform int mediumRow;
 flat in uint triangle;
 
 void main() {
@@ -11,5 +10,5 @@ void main() {
   Draw body = drawAt(uint(drawIndex));
   Meeting m = meet(triangle, pointOnPlane(body), inBody(body, ray_));
   float t = min(m.along, endOfRay(body, ivec2(gl_FragCoord.xy)));
-  addHit(kBorder, uint(drawIndex), uvec3(floatBitsToUint(t), gl_FrontFacing ? 0u : 1u, uint(mediumRow)));
+  addHit(kBorder, uint(drawIndex), uvec3(floatBitsToUint(t), gl_FrontFacing ? 0u : 1u, triangle));
 }

@@ -6,7 +6,6 @@ layout(early_fragment_tests) in;
 uniform int drawIndex;
 uniform int form;  // 1 ellipsoid, 2 cone
 uniform vec3 formSize;
-uniform int mediumRow;
 
 void main() {
   prepareRay(gl_FragCoord.xy);
@@ -14,5 +13,5 @@ void main() {
   vec3 d = inBody(body, ray_), q = pointOnPlane(body);
   vec2 chord = form == 1 ? ellipsoidChord(q, d, formSize) : coneChord(q, d, formSize.x, formSize.y, formSize.z);
   chord = vec2(max(chord.x, -planeOf(body)), min(chord.y, endOfRay(body, ivec2(gl_FragCoord.xy))));
-  if (chord.y > chord.x) addHit(kMedium, uint(drawIndex), uvec3(floatBitsToUint(chord), uint(mediumRow)));
+  if (chord.y > chord.x) addHit(kMedium, uint(drawIndex), uvec3(floatBitsToUint(chord), 0u));
 }

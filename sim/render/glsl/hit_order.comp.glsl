@@ -23,7 +23,7 @@ uniform int lineCount;
 uniform int firstField;  // draw of the first
 uniform ivec4 room;      // events, steps, panes or segments, words
 const int kEvents = 0, kSteps = 1, kPanes = 2, kSegments = 3, kWords = 4, kFieldPassages = 5, kTotals = 6;
-const int kPieces = 4;
+const int kPieces = 16;
 const uint kCamera = 0xffffffffu;
 
 // Depth of a place as (what its plane has, what that lost by rounding, t from there): differences keep their digits.
@@ -100,7 +100,8 @@ void pass(uvec4 event) {
   }
 }
 
-bool isMedium(uint h, uvec4 hit) { return kindOf(hit) == kMedium || (kindOf(hit) == kBorder && int(links[h - 1u].w) > 0); }
+// How often the line is in what a hit is of, where that is a medium: a mesh may enclose a place twice.
+uint mediaOf(uint h, uvec4 hit) { return kindOf(hit) == kMedium ? 1u : kindOf(hit) == kBorder ? uint(max(int(links[h - 1u].w), 0)) : 0u; }
 
 void main() {
   if (gl_GlobalInvocationID.x >= uint(lineCount)) return;
@@ -141,7 +142,7 @@ void main() {
     uint media = 0u, fields = 0u;
     for (uint h = inside_; h != 0u; h = links[h - 1u].y) {
       uvec4 hit = hitAt(h);
-      if (isMedium(h, hit)) ++media;
+      media += mediaOf(h, hit);
       if (kindOf(hit) == kField) ++fields;
     }
     uint pieces = fields > 0u && media + fields > 1u ? uint(kPieces) : 1u;
@@ -194,7 +195,7 @@ void main() {
     uint media = 0u, fields = 0u;
     for (uint h = inside_; h != 0u; h = links[h - 1u].y) {
       uvec4 hit = hitAt(h);
-      if (isMedium(h, hit)) words[word + ++media] = hit.w;
+      for (uint n = mediaOf(h, hit); n > 0u; --n) words[word + ++media] = drawTexel(drawOf(hit), 3).x;
       if (kindOf(hit) == kField) ++fields;
     }
     uint pieces = fields > 0u && media + fields > 1u ? uint(kPieces) : 1u;

@@ -1,5 +1,7 @@
-// What a line shows beyond all that is seen through, taken through its steps, far to near: L <- through L + own. A group, things in the same piece of the line,
-// is passed in both orders and the mean of both taken: right to the third power of its depths. Where fields show, a pixel is the sum of its lines.
+// What a line shows beyond all that is seen through, taken through its steps, far to near: L <- through L + own. A group is things in the same piece of the
+// line, where their depths a add up to A: what each adds alone, S (1 - exp(-a)), it adds there by E(A) / E(a), E(x) = (1 - exp(-x)) / x: exact where they are
+// even on the piece. Where fields show, a pixel is the sum of its lines, some of them at a time: llvmpipe ends all loops of an invocation after 65535 rounds in
+// all (LP_MAX_TGSI_LOOP_ITERATIONS), without a word.
 layout(local_size_x = 64) in;
 //@constants
 //@use sim/render/glsl/field_lines.glsl
@@ -10,50 +12,60 @@ layout(binding = 22) uniform samplerBuffer passages;  // as listed_entry.glsl le
 uniform int firstLine;
 uniform int lineCount;
 uniform ivec3 firstPassages;  // of panes, segments, fields
+uniform int firstOfPixel;     // of its lines
+const int kAtOnce = 8;
+layout(std430, binding = 4) buffer Sums { vec4 sums[]; };
 //@each t TARGETS
 layout(rgba32f, binding = {t}) uniform image2D spectrum{t};
 //@end
 
 const uint kJoined = 1u << 29;
 int first_, end_;  // steps of the line
-bool fields_;      // are among them
 
 uint stepAt(int s) { return texelFetch(steps, s).x; }
 
-// Beyond a step on a line of the pixel; -1: beside all fields.
-vec4 passed(vec4 behind, uint step, int l, int four) {
+// The entry of a step on a line of the pixel; -1: beside all fields, where one of them has none.
+int passageOf(uint step, int l) {
   int kind = int(step >> 30);
-  if (kind == 2 && l < 0) return behind;
-  int at = 2 * (TARGETS * (firstPassages[kind] + int(step & (kJoined - 1u)) + (kind == 2 ? l : 0)) + four);
-  return texelFetch(passages, at) * behind + texelFetch(passages, at + 1);
+  return kind == 2 && l < 0 ? -1 : 2 * TARGETS * (firstPassages[kind] + int(step & (kJoined - 1u)) + (kind == 2 ? l : 0));
+}
+
+// E of the depth that lets through so much.
+vec4 meanOf(vec4 through) {
+  vec4 lost = 1.0 - through, series = 1.0 - lost * (0.5 + lost * (1.0 / 12.0 + lost * (1.0 / 24.0)));
+  return mix(lost / -log(clamp(through, vec4(1.0e-30), vec4(0.999))), series, lessThan(lost, vec4(0.05)));
 }
 
 vec4 seen(vec4 behind, int l, int four) {
   for (int s = first_; s < end_; ++s) {
-    uint step = stepAt(s);
-    if ((step & kJoined) == 0u) {
-      behind = passed(behind, step, l, four);
+    int at = passageOf(stepAt(s), l);
+    if ((stepAt(s) & kJoined) == 0u) {
+      if (at >= 0) behind = texelFetch(passages, at + 2 * four) * behind + texelFetch(passages, at + 2 * four + 1);
       continue;
     }
     int last = s;
-    while ((stepAt(last) & kJoined) != 0u) ++last;
-    vec4 forth = behind, back = behind;
-    for (int k = s; k <= last; ++k) {
-      forth = passed(forth, stepAt(k), l, four);
-      back = passed(back, stepAt(last + s - k), l, four);
+    vec4 through = vec4(1.0), own = vec4(0.0);
+    for (bool more = true; more; ++last) {
+      more = (stepAt(last) & kJoined) != 0u;
+      at = passageOf(stepAt(last), l);
+      if (at >= 0) through *= texelFetch(passages, at + 2 * four);
     }
-    behind = 0.5 * (forth + back);
-    s = last;
+    for (int k = s; k < last; ++k) {
+      at = passageOf(stepAt(k), l);
+      if (at >= 0) own += texelFetch(passages, at + 2 * four + 1) / meanOf(texelFetch(passages, at + 2 * four));
+    }
+    behind = through * behind + own * meanOf(through);
+    s = last - 1;
   }
   return behind;
 }
 
-vec4 ofPixel(vec4 behind, int lines, int four) {
-  if (!fields_) return seen(behind, -1, four);
+// Lines from firstOfPixel on are added; what is not all of them yet waits in `sums`.
+vec4 ofPixel(vec4 behind, int lines, int count, vec4 sum, int four) {
+  if (count == 0) return seen(behind, -1, four);
   float left = leftByLines(lines);
-  int count = countOfLines(lines);
-  vec4 sum = left > 0.0 ? left * seen(behind, -1, four) : vec4(0.0);
-  for (int l = 0; l < count; ++l) sum += shareOfLine(lines, l) * seen(behind, l, four);
+  if (firstOfPixel == 0) sum = left > 0.0 ? left * seen(behind, -1, four) : vec4(0.0);
+  for (int l = firstOfPixel; l < min(count, firstOfPixel + kAtOnce); ++l) sum += shareOfLine(lines, l) * seen(behind, l, four);
   return sum;
 }
 
@@ -64,10 +76,17 @@ void main() {
   ivec2 at = ivec2(pixel & 0xffffu, pixel >> 16);
   first_ = int(texelFetch(lineSteps, 2 * line).x);
   end_ = first_ + int(texelFetch(lineSteps, 2 * line + 1).x);
-  fields_ = false;
-  for (int s = first_; s < end_; ++s) fields_ = fields_ || stepAt(s) >> 30 == 2u;
-  int through = linesOf(at);
+  bool fields = false;
+  for (int s = first_; s < end_; ++s) fields = fields || stepAt(s) >> 30 == 2u;
+  int through = linesOf(at), count = fields ? countOfLines(through) : 0;
+  if (firstOfPixel > 0 && firstOfPixel >= count) return;
+  bool last = firstOfPixel + kAtOnce >= count;
 //@each t TARGETS
-  imageStore(spectrum{t}, at, ofPixel(imageLoad(spectrum{t}, at), through, {t}));
+  if (gl_GlobalInvocationID.y == {t}u) {
+    int own = TARGETS * int(gl_GlobalInvocationID.x) + {t};
+    vec4 sum = ofPixel(imageLoad(spectrum{t}, at), through, count, firstOfPixel > 0 ? sums[own] : vec4(0.0), {t});
+    if (last) imageStore(spectrum{t}, at, sum);
+    else sums[own] = sum;
+  }
 //@end
 }

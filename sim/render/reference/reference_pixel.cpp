@@ -67,6 +67,24 @@ ReferencePixel ReferenceShader::pixel(int x, int y) const {
   return pixel(x, y, sum);
 }
 
+/// Of meshed media, each inside what its triangles enclose, as often as they do; who is left more often than entered has the camera inside.
+void ReferenceShader::addStretches(std::vector<Hit> borders, std::vector<Stretch>& stretches) {
+  std::stable_sort(borders.begin(), borders.end(), [](const Hit& a, const Hit& b) {
+    return a.entity != b.entity ? a.entity < b.entity : a.distance != b.distance ? a.distance < b.distance : a.front && !b.front;
+  });
+  for (auto from = borders.begin(); from != borders.end();) {
+    const auto to = std::find_if(from, borders.end(), [&](const Hit& h) { return h.entity != from->entity; });
+    const auto entered = std::count_if(from, to, [](const Hit& h) { return h.front; });
+    auto inside = std::max<std::ptrdiff_t>((to - from) - 2 * entered, 0);
+    double since = 0.0;
+    for (; from != to; ++from) {
+      for (std::ptrdiff_t n = 0; n < inside && from->distance > since; ++n) stretches.push_back({from->entity, since, from->distance});
+      since = from->distance;
+      inside += from->front ? 1 : -1;
+    }
+  }
+}
+
 LineOfSight ReferenceShader::line(int x, int y, const SeenLines& seen) const {
   LineOfSight line = lineThrough(x + 0.5, y + 0.5);
   RayHits& hits = line.hits;
@@ -78,11 +96,15 @@ LineOfSight ReferenceShader::line(int x, int y, const SeenLines& seen) const {
     RayHits all = castRay(simulation_, state_, line.origin, line.direction, nearest_m(x + 0.5, y + 0.5), &drawn_, true, 0);
     for (Stretch& s : all.stretches) s.leave = std::min(s.leave, hits.solid.distance);
     std::erase_if(all.stretches, [](const Stretch& s) { return s.leave <= s.enter; });
+    std::vector<Hit> borders;
     for (const SeenTriangle& pane : seen.panesOf(number)) {
-      hits.layers.push_back(hitAt(pane));
-      hits.layers.back().distance = std::min(hits.layers.back().distance, hits.solid.distance);
+      Hit hit = hitAt(pane);
+      hit.distance = std::min(hit.distance, hits.solid.distance);
+      (simulation_.mediumOf(simulation_.entities[static_cast<size_t>(pane.entity)]) ? borders : hits.layers).push_back(hit);
     }
+    std::erase_if(all.stretches, [this](const Stretch& s) { return simulation_.entities[static_cast<size_t>(s.entity)].form.kind == BodyForm::Kind::Mesh; });
     hits.stretches = std::move(all.stretches);
+    addStretches(std::move(borders), hits.stretches);
     hits.slabs = slabsAlong(simulation_, state_, line.origin, line.direction, hits.solid.distance, kReferenceFieldSteps);
   }
   addFootprints(line, x + 0.5, y + 0.5);

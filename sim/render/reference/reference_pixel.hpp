@@ -49,6 +49,7 @@ class ReferenceShader {
  private:
   RadianceScene scene() const;
   LineOfSight lineThrough(double x, double y) const;
+  static void addStretches(std::vector<Hit> borders, std::vector<Stretch>& stretches);
   /// What a pixel, whose middle is there, covers of the textures it sees.
   void addFootprints(LineOfSight& line, double x, double y) const;
   double nearest_m(double x, double y) const;
