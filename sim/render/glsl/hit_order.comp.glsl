@@ -9,11 +9,13 @@ layout(binding = 17) uniform usamplerBuffer heads;
 layout(binding = 18) uniform usamplerBuffer hits;
 layout(binding = 19) uniform usamplerBuffer lines;
 layout(std430, binding = 3) writeonly buffer FieldEntries { uvec4 fieldEntries[]; };  // pixel, which of its lines, passage of the farthest slab, its words
-layout(std430, binding = 6) buffer Links { uvec4 links[]; };    // 1 + next hit; 1 + next that the line is in; of a field: passage of its farthest slab; its words
+// 1 + next hit; 1 + next that the line is in; of a field: passage of its farthest slab; its words
+layout(std430, binding = 6) buffer Links { uvec4 links[]; };
 layout(std430, binding = 8) buffer Totals { uint totals[]; };   // as numbered below; from kTotals on of each field entries, and where these begin
 layout(std430, binding = 9) buffer Events { uvec4 events[]; };  // 2 (1 + hit), + 1: it ends there; its place
 layout(std430, binding = 10) writeonly buffer LineSteps { uvec2 lineSteps[]; };  // first, number
-layout(std430, binding = 11) writeonly buffer Steps { uint steps[]; };  // kind << 30, 1 << 29: of one group with the next; number in its list, or a field's passage
+// kind << 30, 1 << 29: of one group with the next; number in its list, or a field's passage
+layout(std430, binding = 11) writeonly buffer Steps { uint steps[]; };
 layout(std430, binding = 12) writeonly buffer Panes { uvec4 panes[]; };        // pixel, draw, triangle
 layout(std430, binding = 13) writeonly buffer Segments { uvec4 segments[]; };  // pixel, its words; depth of its near end, its length
 layout(std430, binding = 14) buffer Words { uint words[]; };  // of a segment: number of media, their rows; of a field on a line: number of slabs, near ends

@@ -31,8 +31,8 @@ void segmentAt(int four, out vec4 through, out vec4 own) {
     Real air = pathDepth(i, near_, far_);
     Real before = pathRadiance(i, near_), tau = pathTransmittance(i, near_), inside = pathInside(i, near_, far_);
     through[{j}] = decay(depth[{j}]);
-    own[{j}] = depth[{j}] > 0.0 ? mediumRadiance(depth[{j}], air, before, inside, tau, emitted[{j}] / max(depth[{j}], 1.0e-30)) - through[{j}] * (before + inside)
-                              : 0.0;
+    Real seen = mediumRadiance(depth[{j}], air, before, inside, tau, emitted[{j}] / max(depth[{j}], 1.0e-30));
+    own[{j}] = depth[{j}] > 0.0 ? seen - through[{j}] * (before + inside) : 0.0;
   }
 //@end
 }
