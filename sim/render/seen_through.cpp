@@ -19,7 +19,7 @@ constexpr int kListSide = 1024;
 /// What lets through and what it adds, of all lines that are worked out at a time [bytes].
 constexpr std::size_t kMostBytes = std::size_t{192} << 20;
 constexpr std::size_t kMostLines = 262144, kFewestLines = 4096;
-constexpr std::size_t kGroup = 64, kAtOnce = 8;  // as in sim/render/glsl/seen_walk.comp.glsl
+constexpr std::size_t kGroup = 64, kAtOnce = 64;  // as in sim/render/glsl/seen_walk.comp.glsl
 
 }  // namespace
 
@@ -170,18 +170,21 @@ void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
   hits_->bindLines(19);
   passages_.bindTexture(22, 4);
   if (fields_) fields_->setLines(walk_);
-  for (int t = 0; t < targets_; ++t)
-    glBindImageTexture(static_cast<GLuint>(t), over.spectrum.colour(static_cast<std::size_t>(t)).name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
   glUniform1i(walk_.uniform("firstLine"), static_cast<GLint>(first));
   glUniform1i(walk_.uniform("lineCount"), static_cast<GLint>(count));
   glUniform3i(walk_.uniform("firstPassages"), 0, static_cast<GLint>(lists_.panes), static_cast<GLint>(lists_.panes + lists_.segments));
   sums_.reserve(count * static_cast<std::size_t>(targets_) * sizeof(glm::vec4));
   sums_.bindStorage(4);
-  for (std::size_t l = 0; l == 0 || (fields_ && l < fields_->mostLines()); l += kAtOnce) {
-    glUniform1i(walk_.uniform("firstOfPixel"), static_cast<GLint>(l));
-    glDispatchCompute(static_cast<GLuint>((count + kGroup - 1) / kGroup), static_cast<GLuint>(targets_), 1);
-    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  for (int t = 0; t < targets_; ++t) {
+    glBindImageTexture(0, over.spectrum.colour(static_cast<std::size_t>(t)).name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+    glUniform1i(walk_.uniform("four"), t);
+    for (std::size_t l = 0; l == 0 || (fields_ && l < fields_->mostLines()); l += kAtOnce) {
+      glUniform1i(walk_.uniform("firstOfPixel"), static_cast<GLint>(l));
+      glDispatchCompute(static_cast<GLuint>((count + kGroup - 1) / kGroup), 1, 1);
+      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    }
   }
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
 void SeenThrough::run(const Over& over) {

@@ -13,11 +13,10 @@ uniform int firstLine;
 uniform int lineCount;
 uniform ivec3 firstPassages;  // of panes, segments, fields
 uniform int firstOfPixel;     // of its lines
-const int kAtOnce = 8;
+const int kAtOnce = 64;
 layout(std430, binding = 4) buffer Sums { vec4 sums[]; };
-//@each t TARGETS
-layout(rgba32f, binding = {t}) uniform image2D spectrum{t};
-//@end
+uniform int four;  // nodes that are passed: of one target
+layout(rgba32f, binding = 0) uniform image2D spectrum;
 
 const uint kJoined = 1u << 29;
 int first_, end_;  // steps of the line
@@ -36,7 +35,7 @@ vec4 meanOf(vec4 through) {
   return mix(lost / -log(clamp(through, vec4(1.0e-30), vec4(0.999))), series, lessThan(lost, vec4(0.05)));
 }
 
-vec4 seen(vec4 behind, int l, int four) {
+vec4 seen(vec4 behind, int l) {
   for (int s = first_; s < end_; ++s) {
     int at = passageOf(stepAt(s), l);
     if ((stepAt(s) & kJoined) == 0u) {
@@ -61,11 +60,11 @@ vec4 seen(vec4 behind, int l, int four) {
 }
 
 // Lines from firstOfPixel on are added; what is not all of them yet waits in `sums`.
-vec4 ofPixel(vec4 behind, int lines, int count, vec4 sum, int four) {
-  if (count == 0) return seen(behind, -1, four);
+vec4 ofPixel(vec4 behind, int lines, int count, vec4 sum) {
+  if (count == 0) return seen(behind, -1);
   float left = leftByLines(lines);
-  if (firstOfPixel == 0) sum = left > 0.0 ? left * seen(behind, -1, four) : vec4(0.0);
-  for (int l = firstOfPixel; l < min(count, firstOfPixel + kAtOnce); ++l) sum += shareOfLine(lines, l) * seen(behind, l, four);
+  if (firstOfPixel == 0) sum = left > 0.0 ? left * seen(behind, -1) : vec4(0.0);
+  for (int l = firstOfPixel; l < min(count, firstOfPixel + kAtOnce); ++l) sum += shareOfLine(lines, l) * seen(behind, l);
   return sum;
 }
 
@@ -81,12 +80,8 @@ void main() {
   int through = linesOf(at), count = fields ? countOfLines(through) : 0;
   if (firstOfPixel > 0 && firstOfPixel >= count) return;
   bool last = firstOfPixel + kAtOnce >= count;
-//@each t TARGETS
-  if (gl_GlobalInvocationID.y == {t}u) {
-    int own = TARGETS * int(gl_GlobalInvocationID.x) + {t};
-    vec4 sum = ofPixel(imageLoad(spectrum{t}, at), through, count, firstOfPixel > 0 ? sums[own] : vec4(0.0), {t});
-    if (last) imageStore(spectrum{t}, at, sum);
-    else sums[own] = sum;
-  }
-//@end
+  int own = TARGETS * int(gl_GlobalInvocationID.x) + four;
+  vec4 sum = ofPixel(imageLoad(spectrum, at), through, count, firstOfPixel > 0 ? sums[own] : vec4(0.0));
+  if (last) imageStore(spectrum, at, sum);
+  else sums[own] = sum;
 }
