@@ -3,14 +3,20 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <string>
 #include <utility>
+
+#include "sim/gl/context.hpp"
 
 namespace pitviper {
 namespace {
 
 /// As in sim/render/glsl/hit_order.comp.glsl.
-enum Total : std::size_t { kEvents, kSteps, kPanes, kSegments, kWords, kFieldPassages, kTotals };
+enum Total : std::size_t { kEvents, kSteps, kPanes, kSegments, kWords, kFieldPassages, kMostEvents, kMostSteps, kMostWords, kTotals };
 constexpr std::size_t kGroup = 64;
+/// llvmpipe ends all loops of an invocation after 65535 rounds in all, without a word: Shell's method takes so many events in 50000, and as many things in each
+/// other as have so many words are gone through four times.
+constexpr std::size_t kMostEventsOfLine = 1024, kMostWordsOfLine = 8192;
 
 }  // namespace
 
@@ -69,6 +75,11 @@ OrderedLines::Lists OrderedLines::order(const HitLists& hits, std::size_t first,
     again |= needs(listRoom_, std::max(totals[kPanes], totals[kSegments]));
     again |= needs(wordRoom_, totals[kWords]);
     if (again) continue;
+    if (isSoftware() && (totals[kMostEvents] > kMostEventsOfLine || totals[kMostWords] > kMostWordsOfLine))
+      throw GlError("a line of sight crosses " + std::to_string(totals[kMostEvents]) + " borders of what is seen through, " +
+                    std::to_string(totals[kMostWords]) + " times in several at once; without a GPU " + std::to_string(kMostEventsOfLine) + " and " +
+                    std::to_string(kMostWordsOfLine) + " are worked through; use fewer or simpler transparent bodies, or a GPU");
+    lists.mostSteps = totals[kMostSteps];
     lists.panes = totals[kPanes];
     lists.segments = totals[kSegments];
     lists.fieldPassages = totals[kFieldPassages];

@@ -17,11 +17,12 @@ class OrderedLines {
   /// Entries of each list, and of each field's in the list of all fields; passages of fields.
   struct Lists {
     std::size_t panes = 0, segments = 0, fieldPassages = 0;
+    std::size_t mostSteps = 0;  ///< of a line
     std::vector<std::size_t> fieldEntries, fieldFirst;
     std::size_t passages() const { return panes + segments + fieldPassages; }
   };
   /// Of lines [first, first + count). `fieldEntries`: of each field as many as there can be. `set`: sets what sim/render/glsl/field_lines.glsl reads. Draws and
-  /// view are bound.
+  /// view are bound. Throws GlError where a line meets more things than a driver without a GPU works through.
   Lists order(const HitLists& hits, std::size_t first, std::size_t count, std::span<const std::size_t> fieldEntries,
               const std::function<void(const Program&)>& set);
 

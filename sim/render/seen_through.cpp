@@ -19,7 +19,9 @@ constexpr int kListSide = 1024;
 /// What lets through and what it adds, of all lines that are worked out at a time [bytes].
 constexpr std::size_t kMostBytes = std::size_t{192} << 20;
 constexpr std::size_t kMostLines = 262144, kFewestLines = 4096;
-constexpr std::size_t kGroup = 64, kAtOnce = 64;  // as in sim/render/glsl/seen_walk.comp.glsl
+constexpr std::size_t kGroup = 64;  // as in sim/render/glsl/seen_walk.comp.glsl
+/// llvmpipe ends all loops of an invocation after 65535 rounds in all, without a word; a line passes each of its steps in four at most.
+constexpr std::size_t kMostRounds = 60000, kOfStep = 4;
 
 }  // namespace
 
@@ -175,10 +177,12 @@ void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
   glUniform3i(walk_.uniform("firstPassages"), 0, static_cast<GLint>(lists_.panes), static_cast<GLint>(lists_.panes + lists_.segments));
   sums_.reserve(count * static_cast<std::size_t>(targets_) * sizeof(glm::vec4));
   sums_.bindStorage(4);
+  const std::size_t atOnce = std::max<std::size_t>(kMostRounds / (kOfStep * lists_.mostSteps + kOfStep), 2) - 1;  // and the share beside all fields
+  glUniform1i(walk_.uniform("atOnce"), static_cast<GLint>(atOnce));
   for (int t = 0; t < targets_; ++t) {
     glBindImageTexture(0, over.spectrum.colour(static_cast<std::size_t>(t)).name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
     glUniform1i(walk_.uniform("four"), t);
-    for (std::size_t l = 0; l == 0 || (fields_ && l < fields_->mostLines()); l += kAtOnce) {
+    for (std::size_t l = 0; l == 0 || (fields_ && l < fields_->mostLines()); l += atOnce) {
       glUniform1i(walk_.uniform("firstOfPixel"), static_cast<GLint>(l));
       glDispatchCompute(static_cast<GLuint>((count + kGroup - 1) / kGroup), 1, 1);
       glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);

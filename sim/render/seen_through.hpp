@@ -1,14 +1,12 @@
 #pragma once
 // The ordered pass of buffered mode: what of transparent surfaces, bodies of emitting media and fields a line meets, each node by its own transmittance, from
 // far to near over the spectral image of the solid scene. Source: Duvenhage 2006 section 5.3.2; PHYSICS section 2.
-#include <map>
 #include <memory>
 
 #include "sim/render/field_draws.hpp"
 #include "sim/render/gpu_scene.hpp"
 #include "sim/render/hit_lists.hpp"
 #include "sim/render/ordered_lines.hpp"
-#include "sim/render/pixel_classes.hpp"
 #include "sim/render/shading_program.hpp"
 #include "sim/render/surface_buffers.hpp"
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/gl/context.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/figures.hpp"
@@ -70,6 +71,32 @@ TEST(NestedMedia, PuffsGrownIntoEachOther) {
   }
   figure("seven puffs grown into each other [W/(m2 sr)]", middle(world("  g: {absorption: 0.3 /m}\n", puffs)), radianceOf(slabs, 4, 5), 1e-5,
          "slab equation of fifteen layers; single precision");
+}
+
+// Drivers without a GPU end a program's loops after so many rounds, without a word: what is too much for them is refused with one.
+TEST(NestedMedia, HundredsOnALine) {
+  const std::string wall =
+      "  - {name: wall, shape: {model: plate, width: 30 m, height: 30 m}, material: blackbody, temperature: 600 K, position: [0 m, 900 m, 0 m], heading: 0 "
+      "deg}\n";
+  const auto panes = [&](int count) {
+    std::string all;
+    for (int i = 0; i < count; ++i)
+      all += "  - {name: p" + std::to_string(i) + ", shape: {model: plate, width: 9 m, height: 9 m}, material: pane, temperature: 0 K, position: [0 m, " +
+             std::to_string(50.0 + 0.5 * ((i * 7) % count)) + " m, 0 m], heading: 0 deg}\n";
+    return all;
+  };
+  const std::string pane = "  pane: {transmission: {transmittance: 0.995}, emission: {emissivity: 0}}\n", thin = "  g: {absorption: 0.01 /m}\n";
+  figure("wall behind 700 panes [W/(m2 sr)]", middle(world(pane, wall, panes(700))), std::pow(0.995, 700) * blackBodyBand(4, 5, 600), 2e-4,
+         "T^700; single precision of 0.995, 3e-8, 700 times, and of as many products");
+  std::string balls;
+  for (int i = 0; i < 60; ++i)
+    balls += "  - {name: b" + std::to_string(i) + ", shape: {model: sphere, radius: " + std::to_string(0.05 * (i + 1)) +
+             " m}, material: g, temperature: 0 K, position: [0 m, 100 m, 0 m]}\n";
+  figure("wall behind 60 balls in each other [W/(m2 sr)]", middle(world(thin, wall, balls)), std::exp(-0.01 * 0.1 * 60 * 61 / 2) * blackBodyBand(4, 5, 600),
+         1e-4, "exp(-k d) of all diameters; single precision of 119 pieces");
+  needContext();
+  if (!isSoftware()) GTEST_SKIP() << "a GPU takes as many as there are";
+  EXPECT_THROW(middle(world(pane, wall, panes(1100))), GlError);
 }
 
 TEST(NestedMedia, WholePictureAgainstDouble) {

@@ -24,7 +24,8 @@ uniform int firstLine;
 uniform int lineCount;
 uniform int firstField;  // draw of the first
 uniform ivec4 room;      // events, steps, panes or segments, words
-const int kEvents = 0, kSteps = 1, kPanes = 2, kSegments = 3, kWords = 4, kFieldPassages = 5, kTotals = 6;
+const int kEvents = 0, kSteps = 1, kPanes = 2, kSegments = 3, kWords = 4, kFieldPassages = 5;
+const int kMostEvents = 6, kMostSteps = 7, kMostWords = 8, kTotals = 9;  // of a line
 const int kPieces = 16;
 const uint kCamera = 0xffffffffu;
 
@@ -50,10 +51,19 @@ bool isAfter(uvec4 a, uvec4 b) {
   return kindOf(p) == kBorder && p.z != q.z ? p.z > q.z : kindOf(p) == kPane ? p.w > q.w : a.x > b.x;
 }
 
-void addEvent(uvec4 event) {
-  uint at = first_ + events_++;
-  for (; at > first_ && isAfter(events[at - 1u], event); --at) events[at] = events[at - 1u];
-  events[at] = event;
+void addEvent(uvec4 event) { events[first_ + events_++] = event; }
+
+// Shell's method with Knuth's gaps: a line with many events takes few rounds, one with two a single comparison.
+void sortEvents() {
+  uint gap = 1u;
+  while (3u * gap + 1u < events_) gap = 3u * gap + 1u;
+  for (; gap > 0u; gap /= 3u)
+    for (uint e = gap; e < events_; ++e) {
+      uvec4 event = events[first_ + e];
+      uint at = e;
+      for (; at >= gap && isAfter(events[first_ + at - gap], event); at -= gap) events[first_ + at] = events[first_ + at - gap];
+      events[first_ + at] = event;
+    }
 }
 
 // A meshed medium that the line has met, by one of its hits; 0: none.
@@ -132,6 +142,8 @@ void main() {
     if (kindOf(hit) == kMedium || kindOf(hit) == kField) addEvent(uvec4(2u * h + 1u, floatBitsToUint(placeOf(drawOf(hit), uintBitsToFloat(hit.z)))));
     if (kindOf(hit) == kField) links[h - 1u].w = 0u;
   }
+  sortEvents();
+  atomicMax(totals[kMostEvents], number);
 
   // How much there is.
   uint stepCount = 0u, paneCount = 0u, segmentCount = 0u, wordCount = 0u;
@@ -163,6 +175,8 @@ void main() {
     if (kindOf(hitAt(h)) == kField) wordCount += 1u + links[h - 1u].w;
   uint word = wordCount > 0u ? atomicAdd(totals[kWords], wordCount) : 0u;
   lineSteps[line] = uvec2(step - stepCount, stepCount);
+  atomicMax(totals[kMostSteps], stepCount);
+  atomicMax(totals[kMostWords], wordCount);
   bool fits = step <= uint(room.y) && pane + paneCount <= uint(room.z) && segment + segmentCount <= uint(room.z) && word + wordCount <= uint(room.w);
   for (uint h = head; h != 0u; h = links[h - 1u].x) {
     uvec4 hit = hitAt(h);

@@ -13,7 +13,7 @@ uniform int firstLine;
 uniform int lineCount;
 uniform ivec3 firstPassages;  // of panes, segments, fields
 uniform int firstOfPixel;     // of its lines
-const int kAtOnce = 64;
+uniform int atOnce;           // so many of them
 layout(std430, binding = 4) buffer Sums { vec4 sums[]; };
 uniform int four;  // nodes that are passed: of one target
 layout(rgba32f, binding = 0) uniform image2D spectrum;
@@ -64,7 +64,7 @@ vec4 ofPixel(vec4 behind, int lines, int count, vec4 sum) {
   if (count == 0) return seen(behind, -1);
   float left = leftByLines(lines);
   if (firstOfPixel == 0) sum = left > 0.0 ? left * seen(behind, -1) : vec4(0.0);
-  for (int l = firstOfPixel; l < min(count, firstOfPixel + kAtOnce); ++l) sum += shareOfLine(lines, l) * seen(behind, l);
+  for (int l = firstOfPixel; l < min(count, firstOfPixel + atOnce); ++l) sum += shareOfLine(lines, l) * seen(behind, l);
   return sum;
 }
 
@@ -79,7 +79,7 @@ void main() {
   for (int s = first_; s < end_; ++s) fields = fields || stepAt(s) >> 30 == 2u;
   int through = linesOf(at), count = fields ? countOfLines(through) : 0;
   if (firstOfPixel > 0 && firstOfPixel >= count) return;
-  bool last = firstOfPixel + kAtOnce >= count;
+  bool last = firstOfPixel + atOnce >= count;
   int own = TARGETS * int(gl_GlobalInvocationID.x) + four;
   vec4 sum = ofPixel(imageLoad(spectrum, at), through, count, firstOfPixel > 0 ? sums[own] : vec4(0.0));
   if (last) imageStore(spectrum, at, sum);
