@@ -76,9 +76,9 @@ float gain_, sun_, sunAmount_;
 int black_, hotter_;  // rows of Planck's law: of the temperature, of the hotter one where there are two
 float blackMix_, hotterMix_, hotterShare_;
 //@each g MIXTURES
-int level{g} _;
-float levelMix{g} _;
-float amount{g} _;
+int level{g}_;
+float levelMix{g}_;
+float amount{g}_;
 //@end
 
 // Air of a stretch, four nodes each: transmittance to its near end, optical depth and radiance on it, path radiance to its near end, transmittance on to the
@@ -86,7 +86,7 @@ float amount{g} _;
 vec2 stretch_;      // [m] from the camera
 float low_, high_;  // of a step, parts of the stretch
 //@each t TARGETS
-vec4 tau{t} _, depth{t} _, inside{t} _, before{t} _, sunlit{t} _;
+vec4 tau{t}_, depth{t}_, inside{t}_, before{t}_, sunlit{t}_;
 //@end
 
 float partOf(float t) { return clamp(((planeOf(field_) + t) * rayLength_ - stretch_.x) / max(stretch_.y - stretch_.x, 1.0e-6), 0.0, 1.0); }
@@ -98,18 +98,18 @@ void setAir(float nearest, float farthest) {
   sunElevation_ = dot(view.sun.xyz, upThere);
   AirPath near = airFromCamera(stretch_.x), far = airBeyond(near, stretch_.x, height, dot(upThere, ray_) / rayLength_, stretch_.y - stretch_.x), toSun = near;
   if (SCATTERS > 0) toSun = airToSun(near, height);
-  //@each t TARGETS
-  //@each j 4
+//@each t TARGETS
+//@each j 4
   {
     int i = min(4 * fourOf({t}) + {j}, NODES - 1);
-    tau{t} _[{j}] = pathTransmittance(i, near);
-    depth{t} _[{j}] = pathDepth(i, near, far);
-    inside{t} _[{j}] = pathInside(i, near, far);
-    before{t} _[{j}] = pathRadiance(i, near);
-    if (SCATTERS > 0) sunlit{t} _[{j}] = pathTransmittance(i, toSun);
+    tau{t}_[{j}] = pathTransmittance(i, near);
+    depth{t}_[{j}] = pathDepth(i, near, far);
+    inside{t}_[{j}] = pathInside(i, near, far);
+    before{t}_[{j}] = pathRadiance(i, near);
+    if (SCATTERS > 0) sunlit{t}_[{j}] = pathTransmittance(i, toSun);
   }
-  //@end
-  //@end
+//@end
+//@end
 }
 
 // The part of a stretch's radiance that comes from before a place on it, (1 - exp(-depth u))/(1 - exp(-depth)): exact at its ends, else to the square of the
@@ -196,21 +196,21 @@ void prepareStep(float from, float to, vec4 low, vec4 high, vec4 state, vec3 two
   gain_ = state.y;
   sun_ = state.z;
   sunAmount_ = state.w;
-  //@each g MIXTURES
-  amount{g} _ = {g} < 4 ? low[{g} % 4] : high[{g} % 4];
+//@each g MIXTURES
+  amount{g}_ = {g} < 4 ? low[{g} % 4] : high[{g} % 4];
   {
     vec4 gas = texelFetch(fieldSpectra, {g});  // first texel of its levels, number of levels, first texel of what else it has
     float passed = -1.0;
-    //@each v LEVEL_FOURS
+//@each v LEVEL_FOURS
     passed += dot(vec4(greaterThanEqual(vec4(temperature), gasLevels[{g} * LEVEL_FOURS + {v}])), vec4(1.0));
-    //@end
+//@end
     int low = int(clamp(passed, 0.0, max(gas.y - 2.0, 0.0)));
     int first = MIXTURES + 4 * LEVEL_FOURS * {g} + low;
     float at = texelFetch(fieldSpectra, first).x, next = texelFetch(fieldSpectra, first + 1).x;
-    levelMix{g} _ = gas.y < 2.0 ? 0.0 : clamp((temperature - at) / (next - at), 0.0, 1.0);
-    level{g} _ = int(gas.x) + low * FOURS;
+    levelMix{g}_ = gas.y < 2.0 ? 0.0 : clamp((temperature - at) / (next - at), 0.0, 1.0);
+    level{g}_ = int(gas.x) + low * FOURS;
   }
-  //@end
+//@end
   setBlack(fieldMixes && state.x > 0.0 ? 1.0 / two.x : inverse, black_, blackMix_);
   if (fieldMixes) setBlack(state.x > 0.0 ? 1.0 / two.y : inverse, hotter_, hotterMix_);
   hotterShare_ = two.z;
@@ -236,9 +236,9 @@ Matter matterAt(int four) {
   // No end sends less than nothing.
   vec4 drift = clamp(slope * (driftPerK_ * planckRange.y), -2.0 * black, 2.0 * black);
   Matter m = Matter(vec4(0.0), vec4(0.0), vec4(0.0), vec4(0.0));
-  //@each g MIXTURES
+//@each g MIXTURES
   {
-    vec4 each = mix(texelFetch(fieldSpectra, level{g} _ + four), texelFetch(fieldSpectra, level{g} _ + FOURS + four), levelMix{g} _), own = each * amount{g} _;
+    vec4 each = mix(texelFetch(fieldSpectra, level{g}_ + four), texelFetch(fieldSpectra, level{g}_ + FOURS + four), levelMix{g}_), own = each * amount{g}_;
     m.depth += own;
     if (SCATTERS > 0) {
       int other = int(texelFetch(fieldSpectra, {g}).z) + 5 * four;
@@ -254,7 +254,7 @@ Matter matterAt(int four) {
       m.drifting += own * drift;
     }
   }
-  //@end
+//@end
   return m;
 }
 
@@ -290,31 +290,31 @@ vec4 through{t}, own{t};  // of the slab at hand, from its far end on
 
 // At the far end of a slab nothing of it is passed yet.
 void openSlab() {
-  //@each t TARGETS
+//@each t TARGETS
   through{t} = vec4(1.0);
   own{t} = vec4(0.0);
-  //@end
+//@end
 }
 
 // Steps pass what is seen less what air alone would show to their far end.
 void openAir(float far) {
   high_ = partOf(far);
-  //@each t TARGETS
-  own{t} -= before{t} _ + inside{t} _ * partBefore(high_, depth{t} _);
-  //@end
+//@each t TARGETS
+  own{t} -= before{t}_ + inside{t}_ * partBefore(high_, depth{t}_);
+//@end
 }
 
 void closeAir(float near) {
   low_ = partOf(near);
-  //@each t TARGETS
-  own{t} += before{t} _ + inside{t} _ * partBefore(low_, depth{t} _);
-  //@end
+//@each t TARGETS
+  own{t} += before{t}_ + inside{t}_ * partBefore(low_, depth{t}_);
+//@end
 }
 
 void closeSlab() {
-  //@each t TARGETS
+//@each t TARGETS
   storePassage(passage_, {t}, through{t}, own{t});
-  //@end
+//@end
   passage_ += apart_;
   openSlab();
 }
@@ -379,10 +379,10 @@ void main() {
       open = true;
     }
     prepareStep(from, to, amountsLow, amountsHigh, state, two);
-    //@each t TARGETS
-    own{t} = stepped(own{t}, tau{t} _, depth{t} _, inside{t} _, sunlit{t} _, fourOf({t}));
+//@each t TARGETS
+    own{t} = stepped(own{t}, tau{t}_, depth{t}_, inside{t}_, sunlit{t}_, fourOf({t}));
     through{t} *= passed_;
-    //@end
+//@end
     if (!together_ || ends || k >= steps_) {
       closeAir(from);
       open = false;
