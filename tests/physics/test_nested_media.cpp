@@ -82,7 +82,7 @@ TEST(NestedMedia, HundredsOnALine) {
     std::string all;
     for (int i = 0; i < count; ++i)
       all += "  - {name: p" + std::to_string(i) + ", shape: {model: plate, width: 9 m, height: 9 m}, material: pane, temperature: 0 K, position: [0 m, " +
-             std::to_string(50.0 + 0.5 * ((i * 7) % count)) + " m, 0 m], heading: 0 deg}\n";
+             std::to_string(50.0 + 0.5 * ((i * 13) % count)) + " m, 0 m], heading: 0 deg}\n";
     return all;
   };
   const std::string pane = "  pane: {transmission: {transmittance: 0.995}, emission: {emissivity: 0}}\n", thin = "  g: {absorption: 0.01 /m}\n";
