@@ -6,7 +6,7 @@
 #include "atmosphere/models.hpp"
 #include "sim/model/scene_fingerprint.hpp"
 #include "sim/radiometry/physics.hpp"
-#include "sim/render/air_on_gpu.hpp"
+#include "sim/render/assembly/air_on_gpu.hpp"
 
 namespace pitviper {
 namespace physics {
@@ -22,7 +22,9 @@ constexpr double kOne[] = {1.0};
 class NoAir final : public Atmosphere {
  public:
   AirTraits traits() const override { return {.any = false}; }
-  std::unique_ptr<AirOnGpu> onGpu(const Simulation&, const Plan&, bool) const override { return std::make_unique<AirFile>("sim/render/glsl/path_none.glsl"); }
+  std::unique_ptr<AirOnGpu> onGpu(const Simulation&, const Plan&, bool) const override {
+    return std::make_unique<AirFile>("sim/render/assembly/glsl/path_none.glsl");
+  }
   std::span<const double> exponents() const override { return {}; }
   AirNode node(double) const override { return {}; }
   double top_m() const override { return physics::kFar; }

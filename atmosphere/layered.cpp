@@ -7,8 +7,8 @@
 #include "atmosphere/layered_gpu.hpp"
 #include "atmosphere/models.hpp"
 #include "atmosphere/scattered_sun.hpp"
-#include "sim/model/haze_not_fog.hpp"
 #include "sim/radiometry/spectrum.hpp"
+#include "sim/world/haze_not_fog.hpp"
 
 namespace pitviper {
 namespace {

@@ -4,11 +4,11 @@
 #include <array>
 #include <cmath>
 
-#include "sim/model/ground.hpp"
 #include "sim/parameters/on_threads.hpp"
 #include "sim/plan/budget.hpp"
 #include "sim/plan/sights.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/world/ground.hpp"
 
 namespace pitviper {
 namespace {

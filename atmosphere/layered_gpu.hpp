@@ -7,7 +7,7 @@
 #include "atmosphere/coefficients_gpu.hpp"
 #include "atmosphere/layered_rows.hpp"
 #include "sim/gl/objects.hpp"
-#include "sim/render/air_on_gpu.hpp"
+#include "sim/render/assembly/air_on_gpu.hpp"
 
 namespace pitviper {
 

@@ -3,8 +3,8 @@
 // what a view needs is widened to fixed steps, and views with the same steps have the same tables.
 #include <vector>
 
-#include "sim/model/view.hpp"
 #include "sim/plan/plan.hpp"
+#include "sim/world/view.hpp"
 
 namespace pitviper {
 

@@ -3,8 +3,8 @@
 #include <span>
 
 #include "atmosphere/layered_grid.hpp"
-#include "sim/model/node_air.hpp"
-#include "sim/model/sunlit_air.hpp"
+#include "sim/radiance/node_air.hpp"
+#include "sim/radiance/sunlit_air.hpp"
 
 namespace pitviper {
 

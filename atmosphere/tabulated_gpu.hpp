@@ -3,7 +3,7 @@
 #include "atmosphere/coefficients_gpu.hpp"
 #include "sim/gl/objects.hpp"
 #include "sim/plan/plan.hpp"
-#include "sim/render/air_on_gpu.hpp"
+#include "sim/render/assembly/air_on_gpu.hpp"
 
 namespace pitviper {
 

@@ -6,8 +6,8 @@
 
 #include "sim/flight/standard_atmosphere.hpp"
 #include "sim/model/store.hpp"
-#include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

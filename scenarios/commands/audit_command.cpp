@@ -14,11 +14,11 @@
 #include "sim/image/png.hpp"
 #include "sim/image/preview.hpp"
 #include "sim/model/stage.hpp"
-#include "sim/model/world.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/parameters/print.hpp"
 #include "sim/parameters/table.hpp"
 #include "sim/run/memory_need.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

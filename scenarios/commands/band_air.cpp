@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "sim/model/coverage.hpp"
-#include "sim/model/world.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/world/coverage.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 

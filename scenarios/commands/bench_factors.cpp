@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "sim/render/shading_program.hpp"
+#include "sim/render/surface/shading_program.hpp"
 
 namespace pitviper {
 namespace {

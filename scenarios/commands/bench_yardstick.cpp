@@ -15,7 +15,7 @@ Yardstick::Yardstick()
   ShaderLibrary library;
   library.add(pv_commands_shaders());
   ShaderSlots none;
-  program_ = Program(assembleShader(shaderLibrary(), "sim/render/glsl/full_screen.vert.glsl", none),
+  program_ = Program(assembleShader(shaderLibrary(), "sim/render/geometry/glsl/full_screen.vert.glsl", none),
                      assembleShader(library, "scenarios/commands/glsl/yardstick.glsl", none));
   std::vector<float> table(16 * 32 * 32 * 4);
   for (size_t i = 0; i < table.size(); ++i) table[i] = 0.1f + 0.001f * static_cast<float>(i % 97);

@@ -11,7 +11,7 @@
 #include "scenarios/commands/sensor_report.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/plan/planner.hpp"
-#include "sim/render/tables.hpp"
+#include "sim/render/assembly/tables.hpp"
 #include "sim/run/memory_need.hpp"
 #include "sim/run/run.hpp"
 #include "sim/run/spectral_renderer.hpp"

@@ -7,7 +7,7 @@
 #include "sim/image/exr.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/parameters/print.hpp"
-#include "sim/render/shading_program.hpp"
+#include "sim/render/surface/shading_program.hpp"
 
 namespace pitviper {
 namespace {

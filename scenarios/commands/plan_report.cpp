@@ -6,7 +6,7 @@
 #include "sim/parameters/print.hpp"
 #include "sim/plan/budget.hpp"
 #include "sim/radiometry/physics.hpp"
-#include "sim/render/tables.hpp"
+#include "sim/render/assembly/tables.hpp"
 
 namespace pitviper {
 namespace {

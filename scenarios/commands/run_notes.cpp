@@ -5,12 +5,12 @@
 #include <cstdio>
 
 #include "sim/frame/mark_header.hpp"
-#include "sim/model/haze_not_fog.hpp"
-#include "sim/model/world.hpp"
 #include "sim/parameters/print.hpp"
 #include "sim/plan/averaged_fringes.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/plan/sampling_check.hpp"
+#include "sim/world/haze_not_fog.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {
@@ -36,8 +36,7 @@ void noteCuts(const Simulation& sim, Notes& notes) {
   std::set<std::string> told;
   auto note = [&](const std::string& owner, const std::vector<ChannelOutput>& outputs) {
     for (const ChannelOutput& o : outputs)
-      if (!o.cut.empty() && told.insert(owner + o.channel).second)
-        notes.say(print("%s, channel '%s': %s", owner.c_str(), o.channel.c_str(), o.cut.c_str()));
+      if (!o.cut.empty() && told.insert(owner + o.channel).second) notes.say(print("%s, channel '%s': %s", owner.c_str(), o.channel.c_str(), o.cut.c_str()));
   };
   for (const Camera& c : sim.cameras) note("camera " + c.name, c.outputs);
   for (const Probe& p : sim.probes) note("probe " + p.name, p.outputs);
@@ -61,10 +60,11 @@ void noteSampling(const Simulation& sim, Notes& said) {
     const auto notes = checkSampling(sim, plan, c.outputs, 0.01);
     if (notes.empty()) continue;
     const SamplingNote& n = notes.front();
-    said.say(print("camera %s: %d spectral samples are %.2g %% off for the emission of %.2g m of '%s' in channel %s; raise spectral.samples, such as "
-                 "{samples: 64, spacing: even}%s",
-                 c.name.c_str(), c.spectral.samples, 100.0 * n.error, n.thickness_m, n.medium.c_str(), n.channel.c_str(),
-                 notes.size() > 1 ? " (the worst of several)" : ""));
+    said.say(
+        print("camera %s: %d spectral samples are %.2g %% off for the emission of %.2g m of '%s' in channel %s; raise spectral.samples, such as "
+              "{samples: 64, spacing: even}%s",
+              c.name.c_str(), c.spectral.samples, 100.0 * n.error, n.thickness_m, n.medium.c_str(), n.channel.c_str(),
+              notes.size() > 1 ? " (the worst of several)" : ""));
   }
 }
 
@@ -96,7 +96,7 @@ void noteNear(const Simulation& sim, double time_s, Notes& notes) {
       for (const glm::vec3& p : body.mesh->positions) nearest = std::min(nearest, glm::length(glm::dvec3(p) - at));
       if (nearest >= c.near_m) continue;
       notes.say(print("camera %s: part of '%s' is %.2g m away, nearer than its near (%.2g m), and is not drawn; set near: %.1g mm", c.name.c_str(),
-                   body.name.c_str(), nearest, c.near_m, std::max(1e3 * nearest / 10.0, 0.1)));
+                      body.name.c_str(), nearest, c.near_m, std::max(1e3 * nearest / 10.0, 0.1)));
     }
   }
 }
@@ -145,8 +145,8 @@ void FrameNotes::scattering(const Frame& f) {
 void FrameNotes::limits(const Frame& f) {
   for (const auto& a : f.attributes)
     if (a.name == "pitviper.outside_limits" && told_.insert("limits").second)
-      notes_.say(print("camera %s, frame %d is outside the scenario's limits: %s; pixels may be off by more than the accuracy asked for",
-                   f.camera.c_str(), f.number, std::get<std::string>(a.value).c_str()));
+      notes_.say(print("camera %s, frame %d is outside the scenario's limits: %s; pixels may be off by more than the accuracy asked for", f.camera.c_str(),
+                       f.number, std::get<std::string>(a.value).c_str()));
 }
 
 /// Once per camera and channel, and again for its first frame that is full as a whole: pixels whose counts say nothing.

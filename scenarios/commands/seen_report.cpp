@@ -6,9 +6,9 @@
 #include <set>
 
 #include "sim/frame/seen_bodies.hpp"
-#include "sim/model/world.hpp"
 #include "sim/parameters/print.hpp"
 #include "sim/scene/mesh_units.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

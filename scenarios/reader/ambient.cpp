@@ -5,7 +5,7 @@
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "sim/model/environment_map.hpp"
-#include "sim/model/sky.hpp"
+#include "sim/radiance/sky.hpp"
 #include "sim/radiometry/constants.hpp"
 
 namespace pitviper {

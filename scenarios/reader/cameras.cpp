@@ -10,10 +10,10 @@
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sensors/gimbal/gimbal_choice.hpp"
 #include "sensors/quantity.hpp"
-#include "sim/model/coverage.hpp"
 #include "sim/parameters/time_course.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/plan/plan.hpp"
+#include "sim/world/coverage.hpp"
 
 namespace pitviper {
 
@@ -377,8 +377,7 @@ void Builder::readCameras(const Record& scenario) {
     readReadOut(film, c);
     c.focalLengthOverTime_m = focalLengths(r, p.focalLength_m * tangent);
     Pinhole widest = p;
-    if (!c.focalLengthOverTime_m.empty())
-      widest.focalLength_m = c.focalLengthOverTime_m.range(first_s, simulation_.time.at(simulation_.time.frames - 1)).first;
+    if (!c.focalLengthOverTime_m.empty()) widest.focalLength_m = c.focalLengthOverTime_m.range(first_s, simulation_.time.at(simulation_.time.frames - 1)).first;
     if (!widest.isFlat())
       throw UserError(r.where("film"), "the field of view is wider than a flat film can hold", "below 176 deg",
                       "use a longer focal length, or several cameras");
@@ -420,8 +419,7 @@ void Builder::readCameras(const Record& scenario) {
       }
     planned(c.outputs, c.spectral, c.where);
     for (ChannelOutput& o : c.outputs) tellTemperature(o);
-    if (r.given("gimbal"))
-      c.follower = readGimbal(r.value("gimbal"), simulation_, c, r.given("look_at") ? r.where("look_at") : r.where("gimbal"));
+    if (r.given("gimbal")) c.follower = readGimbal(r.value("gimbal"), simulation_, c, r.given("look_at") ? r.where("look_at") : r.where("gimbal"));
     c.outlineAccuracy = c.spectral.reference ? 0.0 : c.spectral.accuracy;
     c.textureAccuracy = c.spectral.reference ? kFinestTextures : c.spectral.accuracy;
     readStages(r, c);

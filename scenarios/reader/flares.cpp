@@ -12,9 +12,9 @@
 #include "materials/fields/smoke.hpp"
 #include "scenarios/reader/builder.hpp"
 #include "sim/flight/flight_error.hpp"
-#include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/scene/placement.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

@@ -9,9 +9,9 @@
 #include "sim/flight/flights.hpp"
 #include "sim/flight/point_mass.hpp"
 #include "sim/flight/recovery_temperature.hpp"
-#include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/scene/placement.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

@@ -8,11 +8,11 @@
 #include "materials/fields/grid_field.hpp"
 #include "materials/fields/jets.hpp"
 #include "scenarios/reader/builder.hpp"
-#include "sim/model/world.hpp"
 #include "sim/parameters/time_course.hpp"
 #include "sim/scene/grid_import.hpp"
 #include "sim/scene/mesh_axes.hpp"
 #include "sim/scene/placement.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sim/model/world.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

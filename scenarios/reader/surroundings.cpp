@@ -7,10 +7,10 @@
 #include "scenarios/reader/builder.hpp"
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
-#include "sim/model/sky.hpp"
 #include "sim/parameters/print.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/plan/budget.hpp"
+#include "sim/radiance/sky.hpp"
 
 namespace pitviper {
 namespace {

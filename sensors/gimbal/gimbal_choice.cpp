@@ -5,10 +5,10 @@
 
 #include "sensors/gimbal/gimbal_follower.hpp"
 #include "sensors/gimbal/gimbal_tables.hpp"
-#include "sim/model/world.hpp"
 #include "sim/parameters/fingerprint.hpp"
 #include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "sim/camera/wanted_lines.hpp"
-#include "sim/model/field_states.hpp"
+#include "sim/world/field_states.hpp"
 
 namespace pitviper {
 namespace {

@@ -3,7 +3,7 @@
 // bright jet the difference of two means would be all that is left. Such subpixels are drawn once more without the bodies, cell by cell; cells count as far as
 // nothing covers them.
 #include "sim/camera/fine_subpixels.hpp"
-#include "sim/model/field_lines.hpp"
+#include "sim/world/field_lines.hpp"
 
 namespace pitviper {
 

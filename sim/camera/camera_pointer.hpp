@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "sim/model/world.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 

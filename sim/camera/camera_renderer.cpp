@@ -4,11 +4,11 @@
 #include "sim/camera/visible_lights.hpp"
 #include "sim/camera/zoomed_lines.hpp"
 #include "sim/gl/timing.hpp"
-#include "sim/model/field_lines.hpp"
-#include "sim/model/field_states.hpp"
 #include "sim/plan/freed_memory.hpp"
 #include "sim/plan/plan_origin.hpp"
 #include "sim/plan/planner.hpp"
+#include "sim/world/field_lines.hpp"
+#include "sim/world/field_states.hpp"
 
 namespace pitviper {
 namespace {

@@ -3,7 +3,7 @@
 #include <array>
 #include <unordered_map>
 
-#include "sim/model/view.hpp"
+#include "sim/world/view.hpp"
 
 namespace pitviper {
 

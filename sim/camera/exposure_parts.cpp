@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include "sim/model/ray_hits.hpp"
 #include "sim/plan/budget.hpp"
+#include "sim/world/ray_hits.hpp"
 
 namespace pitviper {
 namespace {

@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "sim/model/field_lines.hpp"
-#include "sim/model/field_states.hpp"
+#include "sim/world/field_lines.hpp"
+#include "sim/world/field_states.hpp"
 
 namespace pitviper {
 namespace {

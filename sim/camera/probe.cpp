@@ -5,10 +5,10 @@
 #include "sim/camera/small_bodies.hpp"
 #include "sim/camera/visible_lights.hpp"
 #include "sim/camera/zoomed_lines.hpp"
-#include "sim/model/light_legs.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/reference_drawer.hpp"
 #include "sim/render/scene_pass.hpp"
+#include "sim/world/light_legs.hpp"
 
 namespace pitviper {
 namespace {

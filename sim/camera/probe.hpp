@@ -2,7 +2,7 @@
 // Irradiance on a plane at a point: the whole hemisphere in five wide views, summed by projected solid angle, and the point lights
 // and the sun that reach it.
 #include "sim/camera/visible_lights.hpp"
-#include "sim/render/gpu_scene.hpp"
+#include "sim/render/geometry/gpu_scene.hpp"
 
 namespace pitviper {
 

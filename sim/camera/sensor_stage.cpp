@@ -38,7 +38,7 @@ FormulaStage::FormulaStage(const ShaderLibrary& library, const std::string& file
   if (parameters_.size() > 16) throw std::invalid_argument("a stage has at most 16 parameters");
   ShaderSlots slots;
   slots.files["stage"] = file;
-  program_ = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots),
+  program_ = Program(assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", slots),
                      assembleShader(library, "sim/camera/glsl/sensor_stage.frag.glsl", slots));
 }
 

@@ -5,9 +5,9 @@
 #include <limits>
 
 #include "sim/camera/zoomed_lines.hpp"
-#include "sim/model/field_lines.hpp"
-#include "sim/model/field_states.hpp"
-#include "sim/model/ray_hits.hpp"
+#include "sim/world/field_lines.hpp"
+#include "sim/world/field_states.hpp"
+#include "sim/world/ray_hits.hpp"
 
 namespace pitviper {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "sim/model/ground.hpp"
-#include "sim/model/light_legs.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/world/ground.hpp"
+#include "sim/world/light_legs.hpp"
 
 namespace pitviper {
 

@@ -6,8 +6,8 @@
 #include <glm/gtc/constants.hpp>
 #include <map>
 
-#include "sim/model/shadow_casters.hpp"
 #include "sim/plan/budget.hpp"
+#include "sim/world/shadow_casters.hpp"
 
 namespace pitviper {
 namespace {

@@ -1,6 +1,6 @@
 #pragma once
 // Views that look at a small thing from where a picture is taken.
-#include "sim/model/view.hpp"
+#include "sim/world/view.hpp"
 
 namespace pitviper {
 

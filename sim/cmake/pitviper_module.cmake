@@ -1,8 +1,8 @@
-# pitviper_module(name FOLDER dir [QUICK] DEPENDS targets... LIBRARIES third_party...)
-#   One static library per folder, made of every .cpp directly in it, with the house's warnings as errors.
+# pitviper_module(name FOLDER dir [ROOMS folders...] [QUICK] DEPENDS targets... LIBRARIES third_party...)
+#   One static library per folder, made of every .cpp directly in it and in its ROOMS, with the house's warnings as errors.
 #   Headers are included from the repository root ("sim/radiometry/planck.hpp").
 #   QUICK: nothing in it runs for long; optimised less, it compiles a third faster.
-#   .glsl files directly in it are compiled into the library as text: see sim/gl/shader_source.hpp.
+#   .glsl files of these are compiled into the library as text: see sim/gl/shader_source.hpp.
 include(join_sources)
 find_program(PITVIPER_CCACHE ccache)
 if(PITVIPER_CCACHE)
@@ -42,13 +42,23 @@ endforeach()
 target_compile_options(pv_headers_quick PRIVATE $<$<CONFIG:Release>:-O1>)
 
 function(pitviper_module name)
-  cmake_parse_arguments(M "QUICK" "FOLDER" "DEPENDS;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(M "QUICK" "FOLDER" "ROOMS;DEPENDS;LIBRARIES" ${ARGN})
   set(folder ${CMAKE_CURRENT_SOURCE_DIR})
   if(M_FOLDER)
     set(folder ${CMAKE_CURRENT_SOURCE_DIR}/${M_FOLDER})
   endif()
-  file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.cpp)
-  file(GLOB shaders CONFIGURE_DEPENDS ${folder}/*.glsl ${folder}/glsl/*.glsl)
+  set(folders ${folder})
+  foreach(room IN LISTS M_ROOMS)
+    list(APPEND folders ${folder}/${room})
+  endforeach()
+  set(sources "")
+  set(shaders "")
+  foreach(folder IN LISTS folders)
+    file(GLOB own CONFIGURE_DEPENDS ${folder}/*.cpp)
+    list(APPEND sources ${own})
+    file(GLOB own CONFIGURE_DEPENDS ${folder}/*.glsl ${folder}/glsl/*.glsl)
+    list(APPEND shaders ${own})
+  endforeach()
   if(shaders)
     set(embedded ${CMAKE_CURRENT_BINARY_DIR}/${name}_shaders.cpp)
     add_custom_command(OUTPUT ${embedded}

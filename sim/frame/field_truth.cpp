@@ -7,11 +7,11 @@
 #include "sim/frame/truth_table.hpp"
 #include "sim/frame/truth_work.hpp"
 #include "sim/model/field_drift.hpp"
-#include "sim/model/field_lines.hpp"
-#include "sim/model/field_states.hpp"
 #include "sim/plan/line_check.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
+#include "sim/world/field_lines.hpp"
+#include "sim/world/field_states.hpp"
 
 namespace pitviper {
 namespace {

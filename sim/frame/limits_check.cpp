@@ -3,8 +3,8 @@
 #include <cmath>
 #include <vector>
 
-#include "sim/model/view.hpp"
 #include "sim/parameters/print.hpp"
+#include "sim/world/view.hpp"
 
 namespace pitviper {
 namespace {

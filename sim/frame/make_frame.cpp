@@ -13,10 +13,10 @@
 #include "sim/frame/sensor_header.hpp"
 #include "sim/frame/target_rows.hpp"
 #include "sim/frame/version.hpp"
-#include "sim/model/haze_not_fog.hpp"
-#include "sim/model/world.hpp"
 #include "sim/parameters/print.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/world/haze_not_fog.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {
@@ -212,8 +212,8 @@ void addMetadata(Frame& frame, const Simulation& sim, const Camera& camera, cons
     // Behind the camera: no place in the picture; not there: no range either.
     std::vector<double> seen = {state.isThere(e) ? glm::length(x) : NAN, NAN, NAN};
     if (x.z < 0.0 && state.isThere(e)) {
-      const glm::dvec2 at = placeOnFilm(camera, p.focalLength_m, {0.5 * p.width + x.x / -x.z * p.focalLength_m / p.pitchX_m,
-                                                                  0.5 * p.height - x.y / -x.z * p.focalLength_m / p.pitchY_m});
+      const glm::dvec2 at = placeOnFilm(
+          camera, p.focalLength_m, {0.5 * p.width + x.x / -x.z * p.focalLength_m / p.pitchX_m, 0.5 * p.height - x.y / -x.z * p.focalLength_m / p.pitchY_m});
       seen[1] = at.x;
       seen[2] = at.y;
     }
@@ -276,8 +276,16 @@ namespace {
 SensorTick sensorTick(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number) {
   const CameraState eye = cameraAt(camera, state);
   const Pinhole& now = eye.pinhole;
-  return {number,          state.time_s, image.exposure_s, sim.time.step_s, now.projectedSolidAngle_sr(now.width / 2, now.height / 2), now.focalLength_m,
-          noiseSeed(sim, camera), eye.gains.common, eye.exposures_s, eye.gains};
+  return {number,
+          state.time_s,
+          image.exposure_s,
+          sim.time.step_s,
+          now.projectedSolidAngle_sr(now.width / 2, now.height / 2),
+          now.focalLength_m,
+          noiseSeed(sim, camera),
+          eye.gains.common,
+          eye.exposures_s,
+          eye.gains};
 }
 
 }  // namespace

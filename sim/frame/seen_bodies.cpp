@@ -5,8 +5,8 @@
 #include <limits>
 #include <map>
 
-#include "sim/model/ray_hits.hpp"
-#include "sim/model/view.hpp"
+#include "sim/world/ray_hits.hpp"
+#include "sim/world/view.hpp"
 
 namespace pitviper {
 namespace {

@@ -2,7 +2,7 @@
 // What a frame's header says of the sensor it is of: so that its numbers can be used without the scenario at hand.
 #include "sim/frame/frame.hpp"
 #include "sim/model/simulation.hpp"
-#include "sim/model/world.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 

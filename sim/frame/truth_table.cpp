@@ -7,15 +7,15 @@
 #include "sim/camera/visible_lights.hpp"
 #include "sim/camera/zoomed_lines.hpp"
 #include "sim/frame/truth_work.hpp"
-#include "sim/model/field_states.hpp"
-#include "sim/model/light_legs.hpp"
 #include "sim/model/stage.hpp"
-#include "sim/model/world.hpp"
 #include "sim/plan/budget.hpp"
 #include "sim/plan/measured_outputs.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
 #include "sim/render/reference/zoomed_tile.hpp"
+#include "sim/world/field_states.hpp"
+#include "sim/world/light_legs.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

@@ -4,9 +4,9 @@
 #include <memory>
 
 #include "sim/frame/frame.hpp"
-#include "sim/model/world.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 

@@ -70,8 +70,8 @@ class Atmosphere {
  public:
   virtual ~Atmosphere() = default;
   virtual AirTraits traits() const { return {}; }
-  /// Its half on the GPU (sim/render/air_on_gpu.hpp), for pictures of a plan. `perChannel`: shading integrates over the channels (direct mode), so path
-  /// radiance may be integrated over them beforehand. All must outlive it; needs a current GlContext.
+  /// Its half on the GPU (sim/render/assembly/air_on_gpu.hpp), for pictures of a plan. `perChannel`: shading integrates over the channels (direct mode), so
+  /// path radiance may be integrated over them beforehand. All must outlive it; needs a current GlContext.
   virtual std::unique_ptr<AirOnGpu> onGpu(const Simulation& simulation, const Plan& plan, bool perChannel) const = 0;
   /// Chooses how large the tables are that this half reads (Plan::air), and says what they lose, per slot; empty: nothing, there are none.
   virtual std::vector<double> planTables(const AirTableRequest&) const { return {}; }

@@ -19,7 +19,7 @@ namespace pitviper {
 struct Ejected;
 struct Simulation;
 
-/// Gases (or kinds of particles) of one field at most: as in sim/render/glsl/volume_field.frag.glsl.
+/// Gases (or kinds of particles) of one field at most: as in sim/render/media/glsl/volume_field.frag.glsl.
 constexpr int kMostGases = 8;
 
 /// What a unit of a gas's amount does, at rising temperatures; between two linear in temperature, held beyond.
@@ -55,9 +55,9 @@ struct FieldStep {
   std::array<double, kMostGases> amount{};  ///< of each gas: the integral of its density along the stretch
   double temperature_K = 0.0;
   double drift_perK = 0.0;  ///< 1 / temperature at its far end, less that at its near end: setDrifts()
-  double gain = 1.0;       ///< factor of Medium::radiance
-  double sun = 0.0;        ///< share of the sun's disc that nothing solid hides from it
-  double sunAmount = 0.0;  ///< of the first gas between it and the sun, in the field itself
+  double gain = 1.0;        ///< factor of Medium::radiance
+  double sun = 0.0;         ///< share of the sun's disc that nothing solid hides from it
+  double sunAmount = 0.0;   ///< of the first gas between it and the sun, in the field itself
 };
 
 /// Part of a field as the GPU finds it: what bounds it, in field axes, and where its numbers begin among the texels.
@@ -116,7 +116,7 @@ class FieldSource {
   virtual ~FieldSource() = default;
   /// Null where there is nothing at the time. Called from several threads.
   virtual std::shared_ptr<const FieldState> at(const FieldWorld& world) const = 0;
-  /// Its file for the slot `field` of sim/render/glsl/volume_field.frag.glsl, which says what is in it.
+  /// Its file for the slot `field` of sim/render/media/glsl/volume_field.frag.glsl, which says what is in it.
   virtual std::string shader() const = 0;
   /// Of each gas, the amount of the shader's that it is a part of: gases that always come in the same proportions cost no more than one. Empty: each its own.
   virtual std::vector<int> mixtures() const { return {}; }

@@ -9,7 +9,7 @@ namespace pitviper {
 
 /// 1 / T [1/K] at the far end of a step less that at its near end, by the 1 / T in the middle of it and of those that touch it, nearer and farther, and their
 /// lengths: twice the smaller of both changes to where two meet; 0 where it is the hottest or coldest of the three. As driftOf() of
-/// sim/render/glsl/volume_field.frag.glsl.
+/// sim/render/media/glsl/volume_field.frag.glsl.
 double driftOf(double nearer, double nearerLength, double own, double length, double farther, double fartherLength);
 
 /// Sets FieldStep::drift_perK of steps along a line, nearest first.

@@ -69,7 +69,7 @@ class Surroundings {
 
 /// The sky of layered air by elevation and azimuth, and the ground below: emission of the air, sunlight it scatters once, the background behind it; ground of a
 /// temperature that reflects the sun and the mean of the sky as a diffuse surface of its directional reflectance, seen through the air. Without the sun's disc.
-/// Heights up to 60 km; Source of the terms: sim/model/sunlit_air.hpp.
+/// Heights up to 60 km; Source of the terms: sim/radiance/sunlit_air.hpp.
 std::shared_ptr<const Surroundings> skyAndGround(std::shared_ptr<const Atmosphere> air, const std::optional<Sun>& sun, const Spectrum& background,
                                                  std::shared_ptr<const Material> ground, double ground_K, double earthRadius_m);
 

@@ -6,15 +6,15 @@
 #include <mutex>
 
 #include "sim/model/field_drift.hpp"
-#include "sim/model/field_lines.hpp"
-#include "sim/model/field_states.hpp"
 #include "sim/model/scene_fingerprint.hpp"
-#include "sim/model/world.hpp"
 #include "sim/plan/budget.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/sight_rays.hpp"
 #include "sim/radiance/node_sum.hpp"
 #include "sim/scene/content_cache.hpp"
+#include "sim/world/field_lines.hpp"
+#include "sim/world/field_states.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

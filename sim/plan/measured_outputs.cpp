@@ -2,8 +2,8 @@
 
 #include <set>
 
-#include "sim/model/coverage.hpp"
 #include "sim/plan/plan.hpp"
+#include "sim/world/coverage.hpp"
 
 namespace pitviper {
 

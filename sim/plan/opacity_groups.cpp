@@ -273,18 +273,11 @@ std::vector<double> groupErrors(const ProductSet& set, const std::vector<Spectra
   return {errors.data(), errors.data() + errors.size()};
 }
 
-std::vector<double> groupErrors(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups) { return groupErrors(ProductSet(fresh), groups); }
-
 GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<SpectralGroup>& groups) {
-  const std::vector<double> errors = groupErrors(fresh, groups);
+  const std::vector<double> errors = groupErrors(ProductSet(fresh), groups);
   GroupFit result{groups, 0.0, 0.0};
   std::tie(result.maximum, result.p99) = errorFigures(Eigen::Map<const Eigen::VectorXd>(errors.data(), static_cast<Eigen::Index>(errors.size())));
   return result;
-}
-
-std::vector<double> fineIntegrals(const SpectralProblem& problem) {
-  const ProductSet set(problem);
-  return {set.fine.data(), set.fine.data() + set.fine.size()};
 }
 
 }  // namespace pitviper

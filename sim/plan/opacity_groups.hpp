@@ -84,9 +84,5 @@ GroupFit evaluateGroups(const SpectralProblem& fresh, const std::vector<Spectral
 
 /// (planned - fine) / max(|fine|, floor) of each product.
 std::vector<double> groupErrors(const ProductSet& products, const std::vector<SpectralGroup>& groups);
-std::vector<double> groupErrors(const SpectralProblem& problem, const std::vector<SpectralGroup>& groups);
-
-/// Value of each product on the fine grid.
-std::vector<double> fineIntegrals(const SpectralProblem& problem);
 
 }  // namespace pitviper

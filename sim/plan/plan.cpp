@@ -4,10 +4,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "sim/model/coverage.hpp"
 #include "sim/plan/air_table_request.hpp"
 #include "sim/plan/fine_grid.hpp"
 #include "sim/plan/kernel_family.hpp"
+#include "sim/world/coverage.hpp"
 
 namespace pitviper {
 namespace {

@@ -10,9 +10,9 @@
 
 #include "sim/model/simulation.hpp"
 #include "sim/model/spectral_node.hpp"
-#include "sim/model/sun_legs.hpp"
 #include "sim/radiance/terms.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/world/sun_legs.hpp"
 
 namespace pitviper {
 

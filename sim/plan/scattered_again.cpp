@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/model/ground.hpp"
-#include "sim/model/light_legs.hpp"
-#include "sim/model/world.hpp"
 #include "sim/radiance/factor.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectral_rule.hpp"
+#include "sim/world/ground.hpp"
+#include "sim/world/light_legs.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "sim/model/node_air.hpp"
-#include "sim/model/photon_walk.hpp"
-#include "sim/model/ray_hits.hpp"
+#include "sim/plan/photon_walk.hpp"
 #include "sim/plan/plan.hpp"
+#include "sim/radiance/node_air.hpp"
+#include "sim/world/ray_hits.hpp"
 
 namespace pitviper {
 

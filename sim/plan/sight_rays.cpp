@@ -4,10 +4,10 @@
 #include <cmath>
 #include <map>
 
-#include "sim/model/field_states.hpp"
-#include "sim/model/glint.hpp"
-#include "sim/model/ground.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/world/field_states.hpp"
+#include "sim/world/glint.hpp"
+#include "sim/world/ground.hpp"
 
 namespace pitviper {
 namespace {

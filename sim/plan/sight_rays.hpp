@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "sim/model/world.hpp"
 #include "sim/radiance/radiance.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 

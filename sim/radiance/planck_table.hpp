@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/model/node_planck.hpp"
+#include "sim/radiance/node_planck.hpp"
 
 namespace pitviper {
 

@@ -4,9 +4,9 @@
 #include <array>
 #include <cmath>
 
-#include "sim/model/ground.hpp"
 #include "sim/radiance/air_places.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/world/ground.hpp"
 
 namespace pitviper {
 namespace {

@@ -10,11 +10,11 @@
 #include <functional>
 #include <span>
 
-#include "sim/model/light_legs.hpp"
-#include "sim/model/ray_hits.hpp"
-#include "sim/model/sunlit_air.hpp"
 #include "sim/radiance/factor.hpp"
+#include "sim/radiance/sunlit_air.hpp"
 #include "sim/radiance/terms.hpp"
+#include "sim/world/light_legs.hpp"
+#include "sim/world/ray_hits.hpp"
 
 namespace pitviper {
 

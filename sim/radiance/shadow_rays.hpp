@@ -2,8 +2,8 @@
 // Shadows in double precision: a ray from the surface to the light through the trees of all opaque bodies.
 #include <vector>
 
-#include "sim/model/ray_hits.hpp"
-#include "sim/model/shadow_casters.hpp"
+#include "sim/world/ray_hits.hpp"
+#include "sim/world/shadow_casters.hpp"
 
 namespace pitviper {
 

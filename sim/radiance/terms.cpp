@@ -1,6 +1,6 @@
 #include "sim/radiance/terms.hpp"
 
-#include "sim/model/shadow_casters.hpp"
+#include "sim/world/shadow_casters.hpp"
 
 namespace pitviper {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "sim/gl/context.hpp"
 #include "sim/gl/timing.hpp"
-#include "sim/render/node_loops.hpp"
+#include "sim/render/assembly/node_loops.hpp"
 
 namespace pitviper {
 namespace {
@@ -69,7 +69,7 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
   const bool writtenOut = plan.nodeCount() == perBatch && tables().writtenOut;
   ShaderSlots slots = shadingSlots(writtenOut);
   slots.generated["weights"] = "";  // shading itself integrates nothing
-  slots.files["truth"] = "sim/render/glsl/truth_none.glsl";
+  slots.files["truth"] = "sim/render/assembly/glsl/truth_none.glsl";
   const auto spectrum = writeSpectrum(slots, targets_, writtenOut ? plan.nodeCount() : 0);
   shade_ = ClassPrograms(library, slots, tables(), surfaceClasses(), spectrum);
   for (int first = 0; first < plan.nodeCount(); first += perBatch) {
@@ -78,7 +78,7 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
     std::vector<float> weights;
     const ShaderSlots integral = integration(plan, first, std::min(perBatch, plan.nodeCount() - first), weights);
     checkUniformSize(weights.size() * sizeof(float), "the channels' spectral weights");
-    batch.integrate = Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", integral),
+    batch.integrate = Program(assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", integral),
                               assembleShader(library, "sim/render/glsl/integrate.frag.glsl", integral));
     batch.weights.upload(weights);
     batches_.push_back(std::move(batch));
@@ -86,7 +86,7 @@ BufferedPass::BufferedPass(const Simulation& simulation, const Plan& plan, const
   if (plan.terms.layer.any || plan.terms.media || plan.terms.fields)
     transparent_ = std::make_unique<SeenThrough>(simulation, plan, tables(), sharedScene(), library, slots, targets_);
   if (!truth) return;
-  slots.files["truth"] = "sim/render/glsl/truth_layers.glsl";
+  slots.files["truth"] = "sim/render/assembly/glsl/truth_layers.glsl";
   slots.generated["targets"] = "void clearTargets() {}\n";
   slots.generated["integrate"] = "void integrate() {}\n";
   truth_ = ShadingProgram(library, slots, truthTargets(), static_cast<size_t>(plan.groupCount()));

@@ -2,9 +2,9 @@
 // Buffered mode: the target holds the spectral image, one value per spectral node, and a pass of its own integrates it with the
 // channels' kernels; between the two, transparent things are blended over it. Source: Duvenhage 2006 sections 4.6.2 and 5.3. Nodes beyond 32
 // (eight RGBA targets) go in further batches, whose integrals add up.
-#include "sim/render/class_programs.hpp"
+#include "sim/render/media/seen_through.hpp"
 #include "sim/render/scene_pass.hpp"
-#include "sim/render/seen_through.hpp"
+#include "sim/render/surface/class_programs.hpp"
 
 namespace pitviper {
 

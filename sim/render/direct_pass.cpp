@@ -10,7 +10,7 @@ DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const Sha
     : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Direct, classes) {
   checkUniformSize(tables().weights.size() * sizeof(float), "the channels' spectral weights");
   ShaderSlots slots = shadingSlots(tables().writtenOut);
-  slots.files["truth"] = truth ? "sim/render/glsl/truth_layers.glsl" : "sim/render/glsl/truth_none.glsl";
+  slots.files["truth"] = truth ? "sim/render/assembly/glsl/truth_layers.glsl" : "sim/render/assembly/glsl/truth_none.glsl";
   slots.generated["targets"] = tables().targetsText;
   std::string integral = tables().integrateText;
   if (air() && air()->givesChannels()) {

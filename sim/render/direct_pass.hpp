@@ -1,7 +1,7 @@
 #pragma once
 // Direct mode: shading integrates straight into the channels; the spectral image never exists. Source: Duvenhage 2006 section 4.6.1.
-#include "sim/render/class_programs.hpp"
 #include "sim/render/scene_pass.hpp"
+#include "sim/render/surface/class_programs.hpp"
 
 namespace pitviper {
 

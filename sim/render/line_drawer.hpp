@@ -3,7 +3,7 @@
 #include <functional>
 #include <vector>
 
-#include "sim/model/view.hpp"
+#include "sim/world/view.hpp"
 
 namespace pitviper {
 
@@ -16,7 +16,7 @@ struct RawImage {
   glm::ivec4 kept{0};  ///< corner and size of a part that is there subpixel by subpixel as well
   std::vector<std::vector<float>> keptGroups;
   std::vector<std::vector<float>> groups;  ///< four slots each, RGBA
-  std::vector<std::vector<float>> truth;   ///< three layers of RGBA where asked for: sim/render/glsl/truth_layers.glsl
+  std::vector<std::vector<float>> truth;   ///< three layers of RGBA where asked for: sim/render/assembly/glsl/truth_layers.glsl
   std::vector<int> entity;                 ///< what each pixel sees, -1 the background. Empty unless asked for
 };
 

@@ -27,7 +27,8 @@ std::string resolveText(std::size_t colours, std::size_t means) {
 Program programFor(const ShaderLibrary& library, std::size_t colours, std::size_t means) {
   ShaderSlots slots;
   slots.generated["resolve"] = resolveText(colours, means);
-  return Program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots), assembleShader(library, "sim/render/glsl/resolve.frag.glsl", slots));
+  return Program(assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", slots),
+                 assembleShader(library, "sim/render/glsl/resolve.frag.glsl", slots));
 }
 
 }  // namespace

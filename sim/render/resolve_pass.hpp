@@ -2,7 +2,7 @@
 // Subpixels resolved into pixels: the mean over each pixel's, weighted by their projected solid angles (flux adds up), or, of truth, the one near its middle.
 #include "sim/gl/objects.hpp"
 #include "sim/gl/shader_assembler.hpp"
-#include "sim/model/view.hpp"
+#include "sim/world/view.hpp"
 
 namespace pitviper {
 

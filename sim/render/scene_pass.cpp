@@ -10,6 +10,7 @@
 #include "sim/gl/timing.hpp"
 #include "sim/plan/budget.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/render/surface/surface_slots.hpp"
 
 namespace pitviper {
 namespace {
@@ -51,8 +52,8 @@ ShaderSlots ScenePass::classSlots(bool classes) const {
   ShaderSlots slots;
   slots.constants["GROUND"] = tables_.ground;
   const bool demand = classes && lightsVary(plan_, simulation_, truth_);
-  slots.files["light_demand"] = std::string("sim/render/glsl/") + (demand ? "light_demand.glsl" : "light_demand_none.glsl");
-  slots.files["shadow_list"] = std::string("sim/render/glsl/") + (plan_.terms.shadows ? "shadow_list.glsl" : "shadow_list_none.glsl");
+  slots.files["light_demand"] = surfaceShader(demand ? "light_demand" : "light_demand_none");
+  slots.files["shadow_list"] = plan_.terms.shadows ? "sim/render/shadow/glsl/shadow_list.glsl" : "sim/render/shadow/glsl/shadow_list_none.glsl";
   slots.constants["SHADOWS_VARY"] = classes && shadowsVary(plan_, simulation_, truth_) ? 1 : 0;
   addLightSlots(slots);
   return slots;
@@ -73,15 +74,13 @@ void ScenePass::addLightSlots(ShaderSlots& slots) const {
 
 ShaderSlots ScenePass::shadingSlots(bool writtenOut) const {
   ShaderSlots slots;
-  slots.files["path"] = "sim/render/glsl/path_none.glsl";
+  slots.files["path"] = "sim/render/assembly/glsl/path_none.glsl";
   slots.constants["WRITTEN_OUT"] = writtenOut ? 1 : 0;
   if (air_) air_->addSlots(slots);
   addSurfaceSlots(tables_.solid, plan_.terms.solid, plan_, slots);
   slots.files["shadow"] = ShadowPass::slotFile(plan_);
-  slots.files["surface"] = std::string("sim/render/glsl/") + (tables_.solid.general ? "surface_general.glsl"
-                                                              : tables_.solid.lit   ? "surface_simple.glsl"
-                                                                                    : "surface_unlit.glsl");
-  slots.files["transmission"] = "sim/render/glsl/transmission_none.glsl";
+  slots.files["surface"] = surfaceShader(tables_.solid.general ? "surface_general" : tables_.solid.lit ? "surface_simple" : "surface_unlit");
+  slots.files["transmission"] = "sim/render/surface/glsl/transmission_none.glsl";
   slots.constants["NODES"] = plan_.nodeCount();
   slots.constants["NODE_TEXELS"] = (plan_.nodeCount() + 3) / 4;
   slots.constants["GROUPS"] = plan_.groupCount();

@@ -8,22 +8,23 @@
 #include <set>
 #include <span>
 
-#include "sim/render/air_on_gpu.hpp"
-#include "sim/render/gpu_scene.hpp"
-#include "sim/render/light_patterns.hpp"
-#include "sim/render/light_relevance.hpp"
+#include "sim/render/assembly/air_on_gpu.hpp"
+#include "sim/render/assembly/light_patterns.hpp"
+#include "sim/render/assembly/named_program.hpp"
+#include "sim/render/assembly/surface_buffers.hpp"
+#include "sim/render/assembly/tables.hpp"
+#include "sim/render/geometry/gpu_scene.hpp"
+#include "sim/render/geometry/pixel_classes.hpp"
+#include "sim/render/geometry/solid_pass.hpp"
+#include "sim/render/geometry/view_data.hpp"
 #include "sim/render/line_drawer.hpp"
-#include "sim/render/pixel_classes.hpp"
 #include "sim/render/resolve_pass.hpp"
-#include "sim/render/shading_program.hpp"
-#include "sim/render/shadow_pass.hpp"
+#include "sim/render/shadow/shadow_pass.hpp"
 #include "sim/render/shared_shading.hpp"
-#include "sim/render/solid_pass.hpp"
-#include "sim/render/surface_buffers.hpp"
-#include "sim/render/surface_classes.hpp"
-#include "sim/render/surroundings_buffer.hpp"
-#include "sim/render/tables.hpp"
-#include "sim/render/view_data.hpp"
+#include "sim/render/surface/light_relevance.hpp"
+#include "sim/render/surface/shading_program.hpp"
+#include "sim/render/surface/surface_classes.hpp"
+#include "sim/render/surface/surroundings_buffer.hpp"
 
 namespace pitviper {
 
@@ -91,7 +92,6 @@ class ScenePass : public LineDrawer {
   static std::vector<std::string> truthTargets() { return {"truthGeometry", "truthNormal", "truthIdentity"}; }
   void bindBuffers() const;
   std::shared_ptr<const GpuScene> sharedScene() const { return scene_; }
-  RenderTarget& visibilityFor(int width, int height) { return targetsFor(width, height).visibility; }
 
  private:
   struct Targets {

@@ -37,7 +37,7 @@ SharedShading::SharedShading(const ShaderLibrary& library, int groups, std::size
   ShaderSlots slots;
   slots.constants["GROUPS"] = groups;
   slots.constants["FILTERED"] = filtered ? 1 : 0;
-  const AssembledShader everywhere = assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", slots);
+  const AssembledShader everywhere = assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", slots);
   middles_ = Program(everywhere, assembleShader(library, "sim/render/glsl/pixel_middle.frag.glsl", slots));
   find_ = Program(everywhere, assembleShader(library, "sim/render/glsl/pixel_bends.frag.glsl", slots));
   slots.generated["spread"] = spreadText(colours);

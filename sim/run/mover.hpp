@@ -3,7 +3,7 @@
 #include <functional>
 #include <optional>
 
-#include "sim/model/world.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 

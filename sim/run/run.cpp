@@ -7,12 +7,12 @@
 #include "sim/camera/probe.hpp"
 #include "sim/frame/file_owner.hpp"
 #include "sim/gl/timing.hpp"
-#include "sim/model/world.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/plan_origin.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/run/camera_line.hpp"
 #include "sim/run/spectral_renderer.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 

@@ -6,7 +6,7 @@
 
 #include "sim/camera/audit.hpp"
 #include "sim/frame/frame.hpp"
-#include "sim/model/world.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 

@@ -6,10 +6,10 @@
 #include <map>
 
 #include "sim/gl/timing.hpp"
-#include "sim/model/world.hpp"
 #include "sim/run/accuracy_dial.hpp"
 #include "sim/run/bare_timer.hpp"
 #include "sim/run/camera_line.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

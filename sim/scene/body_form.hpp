@@ -4,7 +4,7 @@
 
 namespace pitviper {
 
-/// Body axes, centred on the origin. Values as in sim/render/glsl/volume.frag.glsl.
+/// Body axes, centred on the origin. Values as in sim/render/geometry/glsl/hit_medium.frag.glsl.
 struct BodyForm {
   enum class Kind { Mesh = 0, Ellipsoid = 1, Cone = 2 };
   Kind kind = Kind::Mesh;

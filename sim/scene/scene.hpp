@@ -22,7 +22,7 @@ namespace pitviper {
 /// A part of a mesh as it is in a scenario.
 struct Surface {
   std::uint32_t meshPart = 0;
-  int material = 0;  ///< index into Simulation::materials
+  int material = 0;             ///< index into Simulation::materials
   double temperature_K = 0.0;   ///< where it changes over time that of the scenario's first frame; of a texture its mean
   int temperatureTexture = -1;  ///< index into Simulation::textures (K), or -1
   TimeCourse temperature;       ///< [K] over time; empty: temperature_K always
@@ -64,7 +64,7 @@ struct PointLight {
   Mount mount;
   glm::dvec3 offset_m{0.0};  ///< from what the mount carries, in its axes: of a lamp of several points
   int lamp = -1;             ///< index of the lamp that it is a further point of, whose name and commands it has; -1: its own
-  TimeCourse level;  ///< factor over time, usually 0 outside; empty: 1 always
+  TimeCourse level;          ///< factor over time, usually 0 outside; empty: 1 always
   Lifetime lifetime;
   int store = -1;  ///< index into Simulation::stores: it shines as what is ejected of that does; -1: as above
   bool presentAt(double time_s) const { return lifetime.has(time_s) && mount.motion.presentAt(time_s); }
@@ -100,15 +100,15 @@ struct CameraChange {
   std::optional<glm::dvec3> position;     ///< in the local frame or in its carrier's
   std::optional<glm::dquat> orientation;  ///< the same; it looks along its x axis
   std::optional<double> focalLength_m, exposure_s;
-  std::optional<double> gain;  ///< factor of its detector's
+  std::optional<double> gain;                                      ///< factor of its detector's
   std::map<std::string, double> channelExposures_s, channelGains;  ///< of channels that have their own
-  std::vector<Pointing> pointings;  ///< the newest, oldest first, of one on a gimbal
-  std::optional<Pose> pose;         ///< in the local frame, of what points it: goes before position, orientation and mount
+  std::vector<Pointing> pointings;                                 ///< the newest, oldest first, of one on a gimbal
+  std::optional<Pose> pose;                                        ///< in the local frame, of what points it: goes before position, orientation and mount
 };
 
-class FieldStates;    // sim/model/field_states.hpp
-struct Ejected;       // sim/model/store.hpp
-struct ThrottleSteps; // sim/model/command.hpp
+class FieldStates;     // sim/world/field_states.hpp
+struct Ejected;        // sim/model/store.hpp
+struct ThrottleSteps;  // sim/model/command.hpp
 
 /// Everything that changes, at one time: poses in the local frame.
 struct WorldState {
@@ -122,11 +122,11 @@ struct WorldState {
   std::vector<double> lightLevels;                  ///< of a light that is not there 0
   std::vector<char> absent;                         ///< per entity: neither seen nor in the way of anything; none: all are there
   bool isThere(std::size_t entity) const { return entity >= absent.size() || !absent[entity]; }
-  std::map<std::string, CameraChange> cameras;  ///< by name, of those that commands have changed
-  std::map<int, glm::dvec3> velocities;         ///< of entities that commands move, they or what carries them [m/s]
+  std::map<std::string, CameraChange> cameras;                    ///< by name, of those that commands have changed
+  std::map<int, glm::dvec3> velocities;                           ///< of entities that commands move, they or what carries them [m/s]
   std::map<int, std::shared_ptr<const ThrottleSteps>> throttles;  ///< by field, that commands have set
   std::map<int, std::shared_ptr<const Ejected>> ejected;          ///< by store
-  std::shared_ptr<const FieldStates> fields;        ///< of media that vary through their bodies; null: none
+  std::shared_ptr<const FieldStates> fields;                      ///< of media that vary through their bodies; null: none
 };
 
 /// Pose of a child given in its parent's body frame.

@@ -2,9 +2,9 @@
 
 #include <cmath>
 
-#include "sim/model/world.hpp"
 #include "sim/parameters/print.hpp"
 #include "sim/stream/command_models.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {
@@ -85,8 +85,7 @@ void CigiWorld::of(const CigiEntityPose& p, std::vector<Command>& commands, cons
   if (p.state != CigiEntityState::Active) return refuse("entity " + std::to_string(p.entity) + " is to be gone, and every body of the scenario stays in it");
   const LocalFrame& frame = simulation_.frame;
   const glm::dvec3 position = p.attached ? p.position : frame.toLocal(p.geodetic);
-  const glm::dquat orientation =
-      p.attached ? p.orientation : glm::normalize(glm::inverse(glm::quat_cast(frame.ecefFromLocal())) * p.orientation);
+  const glm::dquat orientation = p.attached ? p.orientation : glm::normalize(glm::inverse(glm::quat_cast(frame.ecefFromLocal())) * p.orientation);
   const auto rate = rates_.find(e);
   const CigiRate goesOn = rate == rates_.end() ? CigiRate{} : rate->second;
   const glm::dquat axes = axesOf(goesOn, parent < 0, orientation);
@@ -177,8 +176,10 @@ void CigiWorld::of(const CigiViewDefinition& d, std::vector<Command>& commands, 
 void CigiWorld::of(const CigiSensor& s, std::vector<Command>& commands, const Refuse& refuse) {
   constexpr double kNominal = 0.5, kDecades = 2.0;
   for (int c : cameras(s.view, 0, refuse))
-    worded({{"command", "gain"}, {"camera", simulation_.cameras[static_cast<std::size_t>(c)].name},
-            {"factor", number(s.automaticGain ? 1.0 : std::pow(10.0, kDecades * (s.gain - kNominal)))}}, commands, refuse);
+    worded({{"command", "gain"},
+            {"camera", simulation_.cameras[static_cast<std::size_t>(c)].name},
+            {"factor", number(s.automaticGain ? 1.0 : std::pow(10.0, kDecades * (s.gain - kNominal)))}},
+           commands, refuse);
 }
 
 void CigiWorld::of(const CigiComponent& c, std::vector<Command>& commands, const Refuse& refuse) {

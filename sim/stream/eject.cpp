@@ -1,6 +1,6 @@
 // Ejects a flare that its scenario declares with `time: on_command`.
-#include "sim/model/world.hpp"
 #include "sim/stream/command_models.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 

@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/model/world.hpp"
 #include "sim/scene/placement.hpp"
 #include "sim/stream/command_models.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 namespace {

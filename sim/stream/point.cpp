@@ -1,9 +1,9 @@
 // Demands a direction of a camera's gimbal.
 #include <cmath>
 
-#include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/stream/command_models.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper {
 

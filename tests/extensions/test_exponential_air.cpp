@@ -9,7 +9,7 @@
 #include "sim/parameters/read_file.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
-#include "sim/render/air_on_gpu.hpp"
+#include "sim/render/assembly/air_on_gpu.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 

@@ -5,9 +5,9 @@
 #include <cstring>
 
 #include "scenarios/reader/scenario_reader.hpp"
-#include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/stream/command_models.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 

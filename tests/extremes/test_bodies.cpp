@@ -25,7 +25,7 @@ Grid evaluate(const std::string& uses, const std::string& expression, int width,
   const ShaderText text[] = {{"test/body.glsl", source}};
   ShaderLibrary library = shaderLibrary();
   library.add(text);
-  Program program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", {}), assembleShader(library, "test/body.glsl", {}));
+  Program program(assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", {}), assembleShader(library, "test/body.glsl", {}));
   RenderTarget target(width, height, {PixelFormat::Rgba32f}, false);
   drawFullScreen(target, program, {{"xFrom", xFrom}, {"xRatio", xRatio}, {"yFrom", yFrom}, {"yRatio", yRatio}});
   Readback readback;

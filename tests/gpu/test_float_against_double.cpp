@@ -6,10 +6,10 @@
 #include <random>
 
 #include "scenarios/commands/commands.hpp"
+#include "sim/camera/small_bodies.hpp"
 #include "sim/gl/context.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
-#include "sim/camera/small_bodies.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -126,7 +126,7 @@ TEST(Shaders, CompilerMessagesNameTheFile) {
   library.add(broken);
   const auto fragment = assembleShader(library, "test/a.glsl", {});
   try {
-    Program(assembleShader(shaderLibrary(), "sim/render/glsl/full_screen.vert.glsl", {}), fragment);
+    Program(assembleShader(shaderLibrary(), "sim/render/geometry/glsl/full_screen.vert.glsl", {}), fragment);
     FAIL() << "it compiled";
   } catch (const GlError& e) {
     EXPECT_NE(std::string(e.what()).find("test/b.glsl:2"), std::string::npos) << e.what();
@@ -143,7 +143,7 @@ TEST(SharedBodies, PlanckAndExponentials) {
        "c = vec4(x, oneMinusExp(x), decay(x), planckRadiance(0.3 + 0.1 * (gl_FragCoord.x - 0.5), t)); }\n"}};
   ShaderLibrary library = shaderLibrary();
   library.add(text);
-  Program program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", {}), assembleShader(library, "test/bodies.glsl", {}));
+  Program program(assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", {}), assembleShader(library, "test/bodies.glsl", {}));
   const int width = 300, height = 22;
   RenderTarget target(width, height, {PixelFormat::Rgba32f}, false);
   drawFullScreen(target, program, {{"base", 1e-12f}, {"ratio", 1.15f}});

@@ -6,9 +6,9 @@
 #include <filesystem>
 #include <fstream>
 
-#include "sim/model/field_lines.hpp"
-#include "sim/model/field_states.hpp"
 #include "sim/parameters/module_on_demand.hpp"
+#include "sim/world/field_lines.hpp"
+#include "sim/world/field_states.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -11,7 +11,7 @@
 #include "sim/plan/planner.hpp"
 #include "sim/render/buffered_pass.hpp"
 #include "sim/render/direct_pass.hpp"
-#include "sim/render/shading_program.hpp"
+#include "sim/render/surface/shading_program.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {

@@ -14,8 +14,8 @@
 namespace pitviper::test {
 namespace {
 
-// Rationale: what sim/render/glsl/volume_field.frag.glsl gives to and takes from its slot, without the rest of it: a pixel is a line through the puffs, in
-// three steps. Expected: amounts, and what they weigh, within 2e-5 of the greatest: places up to 30 m away have steps of 2e-6 m, a millionth of the least
+// Rationale: what sim/render/media/glsl/volume_field.frag.glsl gives to and takes from its slot, without the rest of it: a pixel is a line through the puffs,
+// in three steps. Expected: amounts, and what they weigh, within 2e-5 of the greatest: places up to 30 m away have steps of 2e-6 m, a millionth of the least
 // radius, and near an edge an amount goes with the root of what is left.
 TEST(PuffsOnTheGpu, AreThoseInDouble) {
   needContext();
@@ -74,7 +74,7 @@ void main() {
 )"}};
   ShaderLibrary library = shaderLibrary();
   library.add(text);
-  Program program(assembleShader(library, "sim/render/glsl/full_screen.vert.glsl", {}),
+  Program program(assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", {}),
                   assembleShader(library, "test/puffs.glsl", {{{"field", kPuffsShader}}, {}, {}, {}}));
   Buffer texels;
   texels.upload(state.texels->texel);

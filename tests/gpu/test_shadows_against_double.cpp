@@ -10,7 +10,7 @@
 #include "sim/radiometry/constants.hpp"
 #include "sim/render/direct_pass.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
-#include "sim/render/shadow_demand.hpp"
+#include "sim/render/shadow/shadow_demand.hpp"
 #include "tests/support/compare.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -3,11 +3,11 @@
 
 #include <cmath>
 
-#include "sim/model/field_states.hpp"
-#include "sim/model/sunlit_air.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
+#include "sim/radiance/sunlit_air.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/world/field_states.hpp"
 #include "tests/support/air_radiance.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"

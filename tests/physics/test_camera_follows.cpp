@@ -10,12 +10,12 @@
 #include "scenarios/commands/commands.hpp"
 #include "sensors/gimbal/gimbal_choice.hpp"
 #include "sim/frame/frame_number.hpp"
-#include "sim/model/world.hpp"
 #include "sim/plan/sight_rays.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/run/run.hpp"
 #include "sim/run/stream_loop.hpp"
 #include "sim/stream/command_models.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 

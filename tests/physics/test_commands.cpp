@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "scenarios/commands/commands.hpp"
-#include "sim/model/world.hpp"
 #include "sim/stream/command_models.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 

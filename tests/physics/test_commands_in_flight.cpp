@@ -8,9 +8,9 @@
 #include "materials/fields/flares.hpp"
 #include "materials/fields/jets.hpp"
 #include "scenarios/commands/commands.hpp"
-#include "sim/model/field_states.hpp"
-#include "sim/model/world.hpp"
 #include "sim/stream/command_models.hpp"
+#include "sim/world/field_states.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -262,15 +262,14 @@ TEST(CommandsInFlight, PlansAreMadeForFlaresThatMayBeEjected) {
 TEST(CommandsInFlight, MistakesAreNamed) {
   const std::string things =
       jet(kStraight) + flare("on_command") + "plumes: [{name: ex, on: jet, engine: turbofan_military}, {name: solid, on: jet, engine: double_base_motor}]\n";
-  const std::pair<const char*, const char*> cases[] = {
-      {"{command: eject, at: 0 s, flare: g}", "there is no flare"},
-      {"{command: throttle, at: 0 s, plume: eh, value: 1}", "there is no plume"},
-      {"{command: throttle, at: 0 s, plume: ex, value: 1.5}", "value"},
-      {"{command: throttle, at: 0 s, plume: f, value: 1}", "there is no plume of an engine or nozzle"},
-      {"{command: throttle, at: 0 s, plume: solid, value: 0.5}", "there is no plume of an engine or nozzle"},
-      {"{command: speed, at: 0 s, entity: jte, value: 100 m/s}", "there is no entity"},
-      {"{command: speed, at: 0 s, entity: jet, value: -1 m/s}", "value"},
-      {"{command: speed, at: 0 s, entity: still, value: 1 m/s}", "has no route"}};
+  const std::pair<const char*, const char*> cases[] = {{"{command: eject, at: 0 s, flare: g}", "there is no flare"},
+                                                       {"{command: throttle, at: 0 s, plume: eh, value: 1}", "there is no plume"},
+                                                       {"{command: throttle, at: 0 s, plume: ex, value: 1.5}", "value"},
+                                                       {"{command: throttle, at: 0 s, plume: f, value: 1}", "there is no plume of an engine or nozzle"},
+                                                       {"{command: throttle, at: 0 s, plume: solid, value: 0.5}", "there is no plume of an engine or nozzle"},
+                                                       {"{command: speed, at: 0 s, entity: jte, value: 100 m/s}", "there is no entity"},
+                                                       {"{command: speed, at: 0 s, entity: jet, value: -1 m/s}", "value"},
+                                                       {"{command: speed, at: 0 s, entity: still, value: 1 m/s}", "has no route"}};
   const auto told = [](const std::string& text) -> std::string {
     try {
       scene(text);

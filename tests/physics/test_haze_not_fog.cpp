@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "sim/model/haze_not_fog.hpp"
+#include "sim/world/haze_not_fog.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -7,10 +7,10 @@
 #include <sstream>
 
 #include "scenarios/reader/scenario_reader.hpp"
-#include "sim/model/light_legs.hpp"
-#include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/quadrature.hpp"
+#include "sim/world/light_legs.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 

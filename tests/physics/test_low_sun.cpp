@@ -6,10 +6,10 @@
 #include <random>
 
 #include "atmosphere/layered.hpp"
-#include "sim/model/sun_legs.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/quadrature.hpp"
+#include "sim/world/sun_legs.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "atmosphere/layered_grid.hpp"
-#include "sim/model/node_air.hpp"
 #include "sim/plan/plan.hpp"
+#include "sim/radiance/node_air.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "tests/support/air_radiance.hpp"
 #include "tests/support/figures.hpp"

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <tuple>
 
-#include "sim/model/photon_walk.hpp"
+#include "sim/plan/photon_walk.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"

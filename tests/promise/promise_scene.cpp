@@ -10,7 +10,7 @@
 
 #include "scenarios/commands/accuracy_error.hpp"
 #include "scenarios/commands/accuracy_renderings.hpp"
-#include "sim/model/world.hpp"
+#include "sim/world/world.hpp"
 #include "tests/promise/random_dice.hpp"
 #include "tests/support/scene_builder.hpp"
 

@@ -3,7 +3,7 @@
 #include <span>
 #include <vector>
 
-#include "sim/model/sunlit_air.hpp"
+#include "sim/radiance/sunlit_air.hpp"
 
 namespace pitviper::test {
 

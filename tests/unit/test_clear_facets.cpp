@@ -5,10 +5,10 @@
 #include <random>
 
 #include "scenarios/assets/make_aircraft.hpp"
-#include "sim/model/clear_facets.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/scene/primitives.hpp"
 #include "sim/scene/triangle_tree.hpp"
+#include "sim/world/clear_facets.hpp"
 #include "tests/support/figures.hpp"
 
 namespace pitviper::test {

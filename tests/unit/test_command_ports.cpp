@@ -12,11 +12,11 @@
 #include <random>
 #include <thread>
 
-#include "sim/model/field_states.hpp"
-#include "sim/model/world.hpp"
 #include "sim/stream/cigi_world.hpp"
 #include "sim/stream/command_models.hpp"
 #include "sim/stream/command_port.hpp"
+#include "sim/world/field_states.hpp"
+#include "sim/world/world.hpp"
 
 namespace pitviper::test {
 namespace {

@@ -6,11 +6,11 @@
 #include <set>
 
 #include "scenarios/reader/builder.hpp"
-#include "sim/model/clear_facets.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/scene/content_cache.hpp"
 #include "sim/scene/laws_digest.hpp"
 #include "sim/scene/primitives.hpp"
+#include "sim/world/clear_facets.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace pitviper::test {
@@ -146,8 +146,8 @@ TEST(LawsDigest, IsOfAllSourcesThatTablesComeFrom) {
   const std::set<std::string> none{"import", "import_vdb", "gimbal", "library",
                                    "substances"};  // readers of meshes, which have caches of their own; a mount; data, which is content
   std::set<std::string> files;
-  for (const char* folder :
-       {"sim/radiometry", "sim/parameters", "sim/scene", "sim/flight", "sim/model", "sim/radiance", "sim/plan", "atmosphere", "materials", "sensors"})
+  for (const char* folder : {"sim/radiometry", "sim/parameters", "sim/scene", "sim/flight", "sim/model", "sim/world", "sim/radiance", "sim/plan", "atmosphere",
+                             "materials", "sensors"})
     for (auto at = fs::recursive_directory_iterator(root / folder); at != fs::recursive_directory_iterator(); ++at) {
       if (at->is_directory() && none.contains(at->path().filename().string())) at.disable_recursion_pending();
       const std::string kind = at->path().extension().string();

@@ -1,7 +1,7 @@
 // Responses that go on where a scene has no data: what is cut, what is refused, and what is said of it.
 #include <gtest/gtest.h>
 
-#include "sim/model/coverage.hpp"
+#include "sim/world/coverage.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper {

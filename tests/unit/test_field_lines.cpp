@@ -1,4 +1,4 @@
-// Lines through a pixel (sim/model/field_lines.hpp) as a rule of integration: what they stand for, and what they make of profiles whose means are known.
+// Lines through a pixel (sim/world/field_lines.hpp) as a rule of integration: what they stand for, and what they make of profiles whose means are known.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "sim/model/field_lines.hpp"
+#include "sim/world/field_lines.hpp"
 #include "tests/support/figures.hpp"
 
 namespace pitviper::test {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/model/glint.hpp"
 #include "sim/plan/sight_rays.hpp"
+#include "sim/world/glint.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {

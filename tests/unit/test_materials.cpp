@@ -7,7 +7,7 @@
 #include "materials/energy.hpp"
 #include "materials/reflection.hpp"
 #include "sim/radiometry/constants.hpp"
-#include "sim/render/tables.hpp"
+#include "sim/render/assembly/tables.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 

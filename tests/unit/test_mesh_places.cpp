@@ -7,11 +7,11 @@
 #include <glm/gtc/quaternion.hpp>
 #include <random>
 
-#include "sim/model/world.hpp"
 #include "sim/parameters/module_on_demand.hpp"
 #include "sim/scene/mesh_cache.hpp"
 #include "sim/scene/mesh_tools.hpp"
 #include "sim/scene/primitives.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/mesh_import.hpp"
 #include "tests/support/scene_builder.hpp"

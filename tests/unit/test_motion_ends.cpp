@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/scene/trajectory.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {

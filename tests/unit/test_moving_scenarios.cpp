@@ -7,9 +7,9 @@
 
 #include "sim/flight/recovery_temperature.hpp"
 #include "sim/flight/standard_atmosphere.hpp"
-#include "sim/model/world.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/scene/gravity.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 #include "tests/support/temporary_folder.hpp"

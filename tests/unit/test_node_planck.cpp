@@ -1,7 +1,7 @@
 // Black bodies at nodes in vectors: Planck's law one by one, and its rise by differences of it.
 #include <gtest/gtest.h>
 
-#include "sim/model/node_planck.hpp"
+#include "sim/radiance/node_planck.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "tests/support/figures.hpp"
 

@@ -6,7 +6,7 @@
 #include "materials/fields/smoke.hpp"
 #include "materials/fields/smoke_types.hpp"
 #include "sim/flight/standard_atmosphere.hpp"
-#include "sim/model/world.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "sim/model/world.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/model/ground.hpp"
-#include "sim/model/ray_hits.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/world/ground.hpp"
+#include "sim/world/ray_hits.hpp"
 
 namespace pitviper {
 

@@ -1,7 +1,7 @@
 #pragma once
-// What is true of the surface that a place of a film sees, in double precision: as sim/render/glsl/truth_layers.glsl has it.
-#include "sim/model/view.hpp"
+// What is true of the surface that a place of a film sees, in double precision: as sim/render/assembly/glsl/truth_layers.glsl has it.
 #include "sim/radiance/radiance.hpp"
+#include "sim/world/view.hpp"
 
 namespace pitviper {
 

@@ -7,8 +7,8 @@
 #include <set>
 
 #include "sim/radiance/node_sum.hpp"
+#include "sim/render/geometry/raster_tracer.hpp"
 #include "sim/render/line_drawer.hpp"
-#include "sim/render/raster_tracer.hpp"
 #include "sim/render/reference/reference_pixel.hpp"
 
 namespace pitviper {

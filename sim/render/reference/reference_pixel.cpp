@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sim/model/field_states.hpp"
-#include "sim/model/glint.hpp"
-#include "sim/model/ground.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/world/field_states.hpp"
+#include "sim/world/glint.hpp"
+#include "sim/world/ground.hpp"
 
 namespace pitviper {
 namespace {

@@ -3,12 +3,12 @@
 // table between is that of black bodies of air (NodeSpectra). For the reference mode, audits and tests.
 #include <vector>
 
-#include "sim/model/field_lines.hpp"
-#include "sim/model/view.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
 #include "sim/radiance/shadow_rays.hpp"
-#include "sim/render/raster_tracer.hpp"
+#include "sim/render/geometry/raster_tracer.hpp"
+#include "sim/world/field_lines.hpp"
+#include "sim/world/view.hpp"
 
 namespace pitviper {
 

@@ -1,0 +1,163 @@
+#include "sim/radiance/node_air.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/radiance/node_planck.hpp"
+#include "sim/radiometry/exponentials.hpp"
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Temperatures of air anywhere [K] and entries over their inverse.
+constexpr double kColdest_K = 140.0, kWarmest_K = 400.0;
+constexpr Eigen::Index kTemperatures = 256;
+
+/// Of nodes; most absorbers scatter nothing.
+struct Coefficients {
+  Eigen::MatrixXd of;                   ///< [node][absorber]
+  std::vector<Eigen::Index> absorbers;  ///< whose are not all zero
+
+  void findAbsorbers() {
+    for (Eigen::Index k = 0; k < of.cols(); ++k)
+      if (!of.col(k).isZero(0.0)) absorbers.push_back(k);
+  }
+};
+
+/// Of each station, sum over absorbers of coefficient x amount, in their order: a node's sum is the same to the last bit whichever nodes stand beside it, which
+/// a product of matrices does not promise.
+template <class Into>
+void weigh(const Coefficients& coefficients, const std::vector<AirAmounts>& amounts, Into&& into) {
+  for (std::size_t s = 0; s < amounts.size(); ++s) {
+    auto sum = into.col(static_cast<Eigen::Index>(s));
+    sum.setZero();
+    for (const Eigen::Index k : coefficients.absorbers)
+      if (const double amount = amounts[s].amount[static_cast<std::size_t>(k)]; amount != 0.0) sum += amount * coefficients.of.col(k).array();
+  }
+}
+
+/// exp(-x) of each.
+void leave(const Eigen::ArrayXd& x, Eigen::ArrayXd& left) {
+  left = -x;
+  exponentials(left.data(), static_cast<int>(left.size()));
+}
+
+Eigen::Map<Eigen::ArrayXXd> sized(std::vector<double>& all, Eigen::Index nodes, Eigen::Index stations) {
+  all.assign(static_cast<size_t>(nodes * stations), 0.0);
+  return {all.data(), nodes, stations};
+}
+
+}  // namespace
+
+struct NodeAir::Tables {
+  std::span<const SpectralNode> nodes;
+  Coefficients extinction, molecules, haze;
+  Eigen::ArrayXd source;
+  Eigen::ArrayXXd logPlanck;  ///< [node], over the inverse of the temperature
+
+  void planck(double temperature_K, Eigen::ArrayXd& into) const {
+    if (!(temperature_K > 0.0)) {
+      into.setZero(source.size());
+      return;
+    }
+    const double t = (1.0 / temperature_K - 1.0 / kWarmest_K) / (1.0 / kColdest_K - 1.0 / kWarmest_K) * (kTemperatures - 1);
+    if (!(t >= 0.0 && t <= kTemperatures - 1)) {
+      into.resize(source.size());
+      for (Eigen::Index i = 0; i < into.size(); ++i) into[i] = nodes[static_cast<size_t>(i)].planck(temperature_K);
+      return;
+    }
+    const Eigen::Index k = std::min(static_cast<Eigen::Index>(t), kTemperatures - 2);
+    const double f = t - static_cast<double>(k);
+    into = (1.0 - f) * logPlanck.col(k) + f * logPlanck.col(k + 1);
+    exponentials(into.data(), static_cast<int>(into.size()));
+  }
+};
+
+NodeAir::NodeAir(std::span<const SpectralNode> all) {
+  const auto nodes = static_cast<Eigen::Index>(all.size());
+  Tables t;
+  t.nodes = all;
+  for (Coefficients* c : {&t.extinction, &t.molecules, &t.haze}) c->of.resize(nodes, kMostAirAmounts);
+  t.source.resize(nodes);
+  t.logPlanck.resize(nodes, kTemperatures);
+  const auto row = [](const auto& coefficients) { return Eigen::Map<const Eigen::RowVectorXd>(coefficients.data(), kMostAirAmounts); };
+  for (Eigen::Index i = 0; i < nodes; ++i) {
+    const SpectralNode& n = all[static_cast<size_t>(i)];
+    t.extinction.of.row(i) = row(n.air.extinction), t.molecules.of.row(i) = row(n.air.molecules), t.haze.of.row(i) = row(n.air.haze);
+    t.source[i] = n.air.source;
+  }
+  for (Coefficients* c : {&t.extinction, &t.molecules, &t.haze}) c->findAbsorbers();
+  const NodePlanck planck(all);
+  std::vector<double> black(all.size());
+  for (Eigen::Index k = 0; k < kTemperatures; ++k) {
+    planck.at(1.0 / (1.0 / kWarmest_K + (1.0 / kColdest_K - 1.0 / kWarmest_K) * static_cast<double>(k) / (kTemperatures - 1)), black);
+    for (Eigen::Index i = 0; i < nodes; ++i) t.logPlanck(i, k) = std::log(std::max(black[static_cast<size_t>(i)], 1e-300));
+  }
+  tables_ = std::make_shared<const Tables>(std::move(t));
+}
+
+std::vector<double> NodeAir::planck(double temperature_K) const {
+  Eigen::ArrayXd all;
+  tables_->planck(temperature_K, all);
+  return {all.begin(), all.end()};
+}
+
+std::vector<double> lostOf(std::span<const double> x) {
+  const Eigen::ArrayXd from = Eigen::Map<const Eigen::ArrayXd>(x.data(), static_cast<Eigen::Index>(x.size()));
+  Eigen::ArrayXd left;
+  leave(from, left);
+  std::vector<double> all(x.size());
+  for (size_t i = 0; i < all.size(); ++i) all[i] = physics::lostOf(x[i], left[static_cast<Eigen::Index>(i)]);
+  return all;
+}
+
+// Step by step by the law of a segment. Of sunlight scattered once molecules and haze have in common the mean of lit exp(-both) over a step, `both` the depth
+// from the eye to a place and on to the sun. Where one end of a step sees no sun, the other's depth holds for it.
+NodeRadiance NodeAir::along(const SunlitAir& air) const {
+  const Tables& t = *tables_;
+  const auto stations = static_cast<Eigen::Index>(air.stations.size()), nodes = t.source.size();
+  NodeRadiance out;
+  auto depth = sized(out.depth, nodes, stations), thermal = sized(out.thermal, nodes, stations);
+  weigh(t.extinction, air.powered, depth);
+  Eigen::ArrayXd seen, before, source, d = depth.col(0), left, share;  // with room of their own for all steps
+  leave(d, seen);
+  t.planck(air.stations[0].temperature_K, before);
+  before += t.source;
+  for (Eigen::Index s = 1; s < stations; ++s) {
+    d = (depth.col(s) - depth.col(s - 1)).max(0.0);
+    leave(d, left);
+    t.planck(air.stations[static_cast<size_t>(s)].temperature_K, source);
+    source += t.source;
+    for (Eigen::Index i = 0; i < nodes; ++i)
+      thermal(i, s) = thermal(i, s - 1) + seen[i] * physics::segmentRadiance(before[i], source[i], d[i], left[i], physics::lostOf(d[i], left[i]));
+    seen *= left;
+    before.swap(source);
+  }
+  if (air.lit.empty()) return out;
+  Eigen::ArrayXXd small(nodes, stations), large(nodes, stations), both(nodes, stations);
+  Eigen::ArrayXd nearest, reaching;
+  share.resize(nodes);
+  weigh(t.molecules, air.powered, small);
+  weigh(t.haze, air.powered, large);
+  weigh(t.extinction, air.both, both);
+  auto molecules = sized(out.molecules, nodes, stations), haze = sized(out.haze, nodes, stations);
+  for (Eigen::Index s = 1; s < stations; ++s) {
+    molecules.col(s) = molecules.col(s - 1);
+    haze.col(s) = haze.col(s - 1);
+    const double here = air.lit[static_cast<size_t>(s - 1)], there = air.lit[static_cast<size_t>(s)], sun = 0.5 * (here + there);
+    if (!(sun > 0.0)) continue;
+    const auto near = both.col(here > 0.0 ? s - 1 : s), far = both.col(there > 0.0 ? s : s - 1);
+    d = (far - near).abs();
+    leave(d, left);
+    nearest = near.min(far);
+    leave(nearest, reaching);
+    for (Eigen::Index i = 0; i < nodes; ++i) share[i] = sun * reaching[i] * physics::meanDecayOf(d[i], left[i]);
+    molecules.col(s) += (small.col(s) - small.col(s - 1)).max(0.0) * share;
+    haze.col(s) += (large.col(s) - large.col(s - 1)).max(0.0) * share;
+  }
+  return out;
+}
+
+}  // namespace pitviper

@@ -1,5 +1,0 @@
-// Transmittance that is the same at all view angles and places.
-//@use sim/render/glsl/materials.glsl
-layout(binding = 4) uniform samplerBuffer transmittances;
-Real transmittance(int i) { return texelFetch(transmittances, int(materialTexel(draw_.table.y, 3).y) + i).x; }
-Real transmittanceLost(int i) { return 0.0; }

@@ -1,0 +1,209 @@
+#include "sim/render/media/seen_through.hpp"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+
+#include "sim/gl/timing.hpp"
+#include "sim/render/assembly/node_loops.hpp"
+#include "sim/render/geometry/transparent_draws.hpp"
+#include "sim/render/surface/surface_slots.hpp"
+
+namespace pitviper {
+namespace {
+
+using Kind = HitLists::Kind;
+
+/// Entries that one draw takes: as sim/render/media/glsl/listed_place.glsl has places for them.
+constexpr std::size_t kEntries = 1024 * 1024;
+constexpr int kListSide = 1024;
+/// What lets through and what it adds, of all lines that are worked out at a time [bytes].
+constexpr std::size_t kMostBytes = std::size_t{192} << 20;
+constexpr std::size_t kMostLines = 262144, kFewestLines = 4096;
+constexpr std::size_t kGroup = 64;  // as in sim/render/media/glsl/seen_walk.comp.glsl
+/// llvmpipe ends all loops of an invocation after 65535 rounds in all, without a word; a line passes each of its steps in four at most.
+constexpr std::size_t kMostRounds = 60000, kOfStep = 4;
+
+}  // namespace
+
+SeenThrough::SeenThrough(const Simulation& simulation, const Plan& plan, const RenderTables& tables, std::shared_ptr<const GpuScene> scene,
+                         const ShaderLibrary& library, const ShaderSlots& slots, int targets)
+    : simulation_(simulation), tables_(tables), scene_(std::move(scene)), targets_(targets), buffers_(tables.layer) {
+  const std::string folder = "sim/render/media/glsl/", geometry = "sim/render/geometry/glsl/";
+  ShaderSlots base = slots;
+  for (const char* none : {"outputs", "integrate"}) base.generated[none] = "";
+  base.files["truth"] = "sim/render/assembly/glsl/truth_none.glsl";
+  base.files["ground"] = geometry + (simulation.ground ? "ground_hides.glsl" : "ground_none.glsl");
+  base.files["ground_end"] = geometry + (simulation.ground ? "ground_end.glsl" : "ground_endless.glsl");
+  base.constants["TARGETS"] = targets;
+  const bool written = base.constants.at("WRITTEN_OUT") != 0;
+  base.generated["targets"] = std::string("uniform int firstNode;\nint fourOf(int target) { return min(") + (written ? "" : "firstNode / 4 + ") + "target, " +
+                              std::to_string((plan.nodeCount() - 1) / 4) + "); }\n";
+  const auto ofLists = [&](const char* fragments, const ShaderSlots& own) {
+    return Program(assembleShader(library, folder + "listed.vert.glsl", own), assembleShader(library, folder + fragments, own));
+  };
+  std::vector<Kind> kinds;
+  if (const SurfaceTerms& t = plan.terms.layer; t.any) {
+    kinds.push_back(Kind::Pane);
+    ShaderSlots own = base;
+    addSurfaceSlots(tables.layer, t, plan, own);
+    own.files["surface"] = surfaceShader(tables.layer.general    ? "surface_general"
+                                         : tables.layer.lit      ? "surface_simple"
+                                         : t.emits || t.reflects ? "surface_unlit"
+                                                                 : "surface_filter");
+    own.files["transmission"] = surfaceShader(tables.layer.general ? "transmission_general" : "transmission_plain");
+    const int nodes = written ? plan.nodeCount() : 0;
+    own.generated["nodes"] = nodesText("through", targets, nodes, "throughAt(", false) + nodesText("own", targets, nodes, "ownAt(", false);
+    pane_ = ofLists("seen_pane.frag.glsl", own);
+  }
+  if (plan.terms.media) {
+    for (const Entity& e : simulation.entities)
+      if (simulation.mediumOf(e)) kinds.push_back(e.form.kind == BodyForm::Kind::Mesh ? Kind::Border : Kind::Medium);
+    segment_ = ofLists("seen_segment.frag.glsl", base);
+    media_.upload(tables.media);
+  }
+  if (plan.terms.fields) {
+    kinds.push_back(Kind::Field);
+    fields_ = std::make_unique<FieldDraws>(simulation, plan, library, base);
+  }
+  hits_ = std::make_unique<HitLists>(library, base, kinds);
+  lines_ = std::make_unique<OrderedLines>(library, base, static_cast<int>(tables.draws.size()));
+  walk_ = Program(assembleShader(library, folder + "seen_walk.comp.glsl", base));
+  entries_ = RenderTarget(kListSide, kListSide, {}, false);
+}
+
+std::vector<NamedProgram> SeenThrough::programs() const {
+  std::vector<NamedProgram> all;
+  hits_->addPrograms(all);
+  all.push_back(lines_->program());
+  for (const auto& [name, program] : {std::pair{"transparent surfaces", &pane_}, {"media", &segment_}, {"lines through what is transparent", &walk_}})
+    if (!program->text().empty()) all.push_back({name, program->text()});
+  if (fields_) fields_->addPrograms(all);
+  return all;
+}
+
+void SeenThrough::updateTemperatures() {
+  buffers_.update(tables_.layer);
+  media_.upload(tables_.media);
+}
+
+void SeenThrough::place(const View& view, const WorldState& state, const std::vector<char>& drawn) {
+  draws_ = transparentIn(tables_.draws, simulation_, view, state, drawn);
+  if (fields_) fields_->place(view, state);
+}
+
+void SeenThrough::findHits(const Over& over) {
+  if (const TimedPart part("lines of fields"); fields_) fields_->look(over.view);
+  const TimedPart part("hits");
+  hits_->find(over.visibility, over.covered, [&] {
+    for (size_t d : draws_) (tables_.draws[d].kind == DrawKind::Layer ? drawPane : drawMedium)(*hits_, *scene_, simulation_, tables_.draws[d], d);
+    for (size_t f = 0; fields_ && f < fields_->count(); ++f) {
+      if (!fields_->shows(f)) continue;
+      const Program& program = hits_->use(Kind::Field);
+      glUniform1i(program.uniform("drawIndex"), static_cast<int>(tables_.draws.size() + f));
+      fields_->setTiles(f, program);
+      const glm::ivec4 rect = glm::max(fields_->rectOf(f), glm::ivec4(0));
+      glEnable(GL_SCISSOR_TEST);
+      glScissor(rect.x, rect.y, rect.z, rect.w);
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+      glDisable(GL_SCISSOR_TEST);
+    }
+  });
+}
+
+/// As many lines as there is memory for what they leave, from the first on.
+void SeenThrough::order(std::size_t first, std::size_t count) {
+  const TimedPart part("order");
+  const std::size_t each = 2 * static_cast<std::size_t>(targets_) * sizeof(glm::vec4);
+  for (;; count = std::max(count / 2, kFewestLines)) {
+    lists_ = lines_->order(*hits_, first, count, fields_ ? fields_->entries() : std::vector<std::size_t>{}, [&](const Program& program) {
+      if (fields_) fields_->setLines(program);
+    });
+    ordered_ = {first, count};
+    if (lists_.passages() * each <= kMostBytes || count <= kFewestLines) break;
+  }
+  passages_.reserve(std::max<std::size_t>(lists_.passages(), 1) * each);
+}
+
+void SeenThrough::shade(const Program& program, std::size_t first, std::size_t count, std::size_t firstPassage, int firstNode) {
+  glUniform1i(program.uniform("firstNode"), firstNode);
+  glUniform1i(program.uniform("firstPassage"), static_cast<GLint>(firstPassage));
+  for (std::size_t done = 0; done < count; done += kEntries) {
+    const std::size_t now = std::min(count - done, kEntries);
+    glUniform1i(program.uniform("listFirst"), static_cast<GLint>(first + done));
+    glUniform1i(program.uniform("listCount"), static_cast<GLint>(now));
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>((now >> 8) + ((now & 255) + 15) / 16));
+  }
+}
+
+void SeenThrough::shadePassages(const Over& over) {
+  passages_.bindImage(0);
+  entries_.bind();
+  over.visibility.colour(0).bind(0);
+  glEnable(GL_PROGRAM_POINT_SIZE);
+  if (lists_.panes > 0) {
+    buffers_.bind();
+    lines_->bindPanes(18);
+    pane_.use();
+    shade(pane_, 0, lists_.panes, 0, over.firstNode);
+  }
+  if (lists_.segments > 0) {
+    media_.bindTexture(5, 4);
+    lines_->bindWords(17);
+    lines_->bindSegments(18);
+    segment_.use();
+    shade(segment_, 0, lists_.segments, lists_.panes, over.firstNode);
+  }
+  for (size_t f = 0; f < lists_.fieldEntries.size(); ++f) {
+    if (lists_.fieldEntries[f] == 0) continue;
+    const Program& program = fields_->use(f);
+    lines_->bindFieldEntries(18);
+    lines_->bindWords(22);
+    glUniform1i(program.uniform("drawIndex"), static_cast<int>(tables_.draws.size() + f));
+    shade(program, lists_.fieldFirst[f], lists_.fieldEntries[f], lists_.panes + lists_.segments, over.firstNode);
+  }
+  glDisable(GL_PROGRAM_POINT_SIZE);
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
+  const TimedPart part("walk");
+  walk_.use();
+  lines_->bindSteps(18, 17);
+  hits_->bindLines(19);
+  passages_.bindTexture(22, 4);
+  if (fields_) fields_->setLines(walk_);
+  glUniform1i(walk_.uniform("firstLine"), static_cast<GLint>(first));
+  glUniform1i(walk_.uniform("lineCount"), static_cast<GLint>(count));
+  glUniform3i(walk_.uniform("firstPassages"), 0, static_cast<GLint>(lists_.panes), static_cast<GLint>(lists_.panes + lists_.segments));
+  sums_.reserve(count * static_cast<std::size_t>(targets_) * sizeof(glm::vec4));
+  sums_.bindStorage(4);
+  const std::size_t atOnce = std::max<std::size_t>(kMostRounds / (kOfStep * lists_.mostSteps + kOfStep), 2) - 1;  // and the share beside all fields
+  glUniform1i(walk_.uniform("atOnce"), static_cast<GLint>(atOnce));
+  for (int t = 0; t < targets_; ++t) {
+    glBindImageTexture(0, over.spectrum.colour(static_cast<std::size_t>(t)).name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+    glUniform1i(walk_.uniform("four"), t);
+    for (std::size_t l = 0; l == 0 || (fields_ && l < fields_->mostLines()); l += atOnce) {
+      glUniform1i(walk_.uniform("firstOfPixel"), static_cast<GLint>(l));
+      glDispatchCompute(static_cast<GLuint>((count + kGroup - 1) / kGroup), 1, 1);
+      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+    }
+  }
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+void SeenThrough::run(const Over& over) {
+  if (over.firstNode == 0) {
+    findHits(over);
+    ordered_ = {0, 0};
+  }
+  const std::size_t lines = hits_->lineCount();
+  for (std::size_t first = 0; first < lines; first += ordered_.second) {
+    // Of one lot only, later batches of nodes find it as the first one left it.
+    if (ordered_ != std::pair(std::size_t{0}, lines)) order(first, std::min(lines - first, kMostLines));
+    shadePassages(over);
+    walk(over, first, ordered_.second);
+  }
+}
+
+}  // namespace pitviper
