@@ -121,6 +121,7 @@ void FieldDraws::listTiles(const View& view, Body& body) const {
         tile.range = tile.texel.empty() ? range : glm::dvec2(std::min(tile.range.x, range.x), std::max(tile.range.y, range.y));
         if (const auto texel = static_cast<std::uint32_t>(e.texel); tile.texel.empty() || tile.texel.back() != texel) tile.texel.push_back(texel);
         tile.lines.parts.push_back(part);
+        tile.lines.apart_px = std::min({tile.lines.apart_px, part.apart_px.x, part.apart_px.y});
         tile.steps = std::max(tile.steps, steps);
       }
   }
@@ -143,6 +144,24 @@ const FieldDraws::Tile* FieldDraws::Body::tileAt(int x, int y) const {
   return t < listed.size() && !listed[t].texel.empty() ? &listed[t] : nullptr;
 }
 
+/// Lines that a pixel may have, each way.
+int FieldDraws::mostAt(int x, int y) const {
+  double most = kReferenceLines;
+  for (const Body& body : bodies_)
+    if (const Tile* tile = body.tileAt(x, y)) {
+      const double listed = static_cast<double>(tile->texel.size()), work = listed + tile->steps * (kOfStep + listed);
+      most = std::min(most, std::max(std::floor(std::sqrt(kMostWork / work)), 1.0));
+    }
+  return static_cast<int>(most);
+}
+
+LinesApart FieldDraws::apartAt(int x, int y, bool zoomed) const {
+  double coarser = INFINITY;
+  for (const Body& body : bodies_)
+    if (body.tileAt(x, y)) coarser = std::min(coarser, body.coarser);
+  return zoomed ? LinesApart{kOfMany * coarser, 1} : LinesApart{coarser, 2};
+}
+
 /// Of every pixel the lines through all fields that it may show, so that what is in each other is met by the same ones.
 void FieldDraws::listLines(const View& view) {
   entries_.assign(bodies_.size(), 0);
@@ -158,22 +177,19 @@ void FieldDraws::listLines(const View& view) {
   std::vector<std::uint32_t> words(static_cast<size_t>(part_.z) * static_cast<size_t>(part_.w), 0);
   std::vector<size_t> here;
   std::vector<const FieldLines*> lists;
+  PixelLines lines;
   const auto add = [&](int x, int y) {
     std::uint32_t& at = words[static_cast<size_t>(y - low.y) * static_cast<size_t>(part_.z) + static_cast<size_t>(x - low.x)];
     if (at != 0) return;
     here.clear(), lists.clear();
-    double coarser = INFINITY;
-    int most = kReferenceLines;
-    for (size_t f = 0; f < bodies_.size(); ++f) {
-      const Tile* tile = bodies_[f].tileAt(x, y);
-      if (!tile) continue;
-      here.push_back(f);
-      lists.push_back(&tile->lines);
-      coarser = std::min(coarser, bodies_[f].coarser);
-      const double listed = static_cast<double>(tile->texel.size()), work = listed + tile->steps * (kOfStep + listed);
-      most = std::min(most, std::max(static_cast<int>(std::sqrt(kMostWork / work)), 1));
-    }
-    const PixelLines lines = pixelLines(lists, x, y, most, view.zoomed ? LinesApart{kOfMany * coarser, 1} : LinesApart{coarser, 2});
+    double finest = 1.0;
+    for (size_t f = 0; f < bodies_.size(); ++f)
+      if (const Tile* tile = bodies_[f].tileAt(x, y)) {
+        here.push_back(f), lists.push_back(&tile->lines);
+        finest = std::min(finest, tile->lines.apart_px);
+      }
+    if (finest < 1.0) lines = pixelLines(lists, x, y, mostAt(x, y), apartAt(x, y, view.zoomed));
+    else lines.outside = 0.0, lines.within.assign(1, {glm::dvec2(x, y) + 0.5, 1.0});
     at = static_cast<std::uint32_t>(words.size());
     const auto count = static_cast<std::uint32_t>(lines.within.size());
     words.insert(words.end(), {count, bitsOf(lines.outside)});

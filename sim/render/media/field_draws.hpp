@@ -68,6 +68,8 @@ class FieldDraws {
     const Tile* tileAt(int x, int y) const;
   };
   void listTiles(const View& view, Body& body) const;
+  int mostAt(int x, int y) const;
+  LinesApart apartAt(int x, int y, bool zoomed) const;
   void listLines(const View& view);
 
   std::shared_ptr<const FieldSampling> sampling_;
