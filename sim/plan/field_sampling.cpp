@@ -25,10 +25,13 @@ constexpr int kMany = 128;
 constexpr int kTimes = 8;
 constexpr std::size_t kLines = 32, kLinesOfKind = 4;
 constexpr std::size_t kEyes = 3;
-/// Distances between lines through a pixel, the farthest tried first; pixels that are looked at of all fields together, and of one field at least and at most;
-/// tries to find them; the most lines each way in one; and steps of such a line.
-constexpr std::array kApart{6.0, 4.0, 3.0, 2.2, 1.6, 1.0};
-constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kTried = 2000, kAcross = 14, kSteps = 8;
+/// Distances between lines through a pixel, the farthest tried first; pixels that are looked at of all fields together, and of one field at least and at most,
+/// of so many times as many; tries to find them; the most lines each way in one; and steps of such a line.
+constexpr std::array kApart{6.0, 4.0, 3.0, 2.2, 1.6, 1.0, 0.7, 0.5, 0.35};
+constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kCandidates = 6, kTried = 2000, kAcross = 14, kSteps = 8;
+/// What lines are held against has so many times as many, found by bringing these closer step by step, down to a distance.
+constexpr std::size_t kMoreLines = 2;
+constexpr double kCloser = 0.7, kClosest = 0.2;
 /// The least that a line counts as where an error is relative to it, of the brightest line of the field: as on the film (filmFloors()).
 constexpr double kDimmest = 1e-3;
 /// Steps of elements that were not there when they were looked for; steps taken for such as never were.
@@ -184,28 +187,57 @@ double coarserFor(FieldLooks& looks, const View& view, int pixels, double asked,
     }
     return sum;
   };
+  // Places that are finer than a pixel: those between whose halves there is most, and some others.
+  struct Place {
+    int x, y;
+    std::vector<double> a, b;
+    double change;
+  };
+  std::vector<Place> places;
   std::vector<double> brightest;
-  int looked = 0;
-  for (int tried = 0; looked < pixels && tried < kTried; ++tried) {
+  for (int tried = 0; static_cast<int>(places.size()) < kCandidates * pixels && tried < kTried; ++tried) {
     const FieldLines::Part& part = lines.parts[dice.below(lines.parts.size())];
     const glm::dvec2 at = part.low + (part.high - part.low) * glm::dvec2(dice.unit(), dice.unit());
-    const int x = std::clamp(static_cast<int>(at.x), 0, view.width - 1), y = std::clamp(static_cast<int>(at.y), 0, view.height - 1);
+    Place place{std::clamp(static_cast<int>(at.x), 0, view.width - 1), std::clamp(static_cast<int>(at.y), 0, view.height - 1), {}, {}, 0.0};
+    if (pixelLines(std::array{&lines}, place.x, place.y, kAcross).within.size() < 2) continue;
+    const double across = places.size() % 2 == 0 ? 0.25 : -0.25;
+    LineOfSight middle = through(place.x + 0.5, place.y + 0.5), one = through(place.x + 0.5 - across, place.y + 0.25),
+                other = through(place.x + 0.5 + across, place.y + 0.75);
+    const std::vector<double> behind = looks.behind(middle);
+    place.a = looks.before(behind, one, kSteps), place.b = looks.before(behind, other, kSteps);
+    brightest.resize(place.a.size(), 0.0);
+    for (std::size_t s = 0; s < brightest.size(); ++s) brightest[s] = std::max({brightest[s], place.a[s], place.b[s]});
+    places.push_back(std::move(place));
+  }
+  const auto off = [&](const std::vector<double>& a, const std::vector<double>& b) {
+    double worst = 0.0;
+    for (std::size_t s = 0; s < a.size(); ++s) worst = std::max(worst, std::abs(a[s] - b[s]) / std::max({b[s], kDimmest * brightest[s], 1e-300}));
+    return worst;
+  };
+  for (Place& p : places) p.change = std::max(off(p.a, p.b), off(p.b, p.a));
+  const auto most = std::min<std::size_t>(static_cast<std::size_t>(pixels), places.size());
+  std::partial_sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(most / 2), places.end(),
+                    [](const Place& a, const Place& b) { return a.change > b.change; });
+  for (std::size_t k = 0; k < most; ++k) {
+    const int x = places[k].x, y = places[k].y;
     const auto linesOf = [&](double coarser) { return pixelLines(std::array{&lines}, x, y, kAcross, {coarser, 2}); };
-    const PixelLines fine = linesOf(1.0);
-    if (fine.within.size() < 2) continue;
+    PixelLines fine = linesOf(1.0);
     LineOfSight middle = through(x + 0.5, y + 0.5);
-    const std::vector<double> behind = looks.behind(middle), want = mean(fine, behind);
-    brightest.resize(want.size(), 0.0);
-    for (std::size_t s = 0; s < want.size(); ++s) brightest[s] = std::max(brightest[s], want[s]);
+    const std::vector<double> behind = looks.behind(middle);
+    std::vector<double> want = mean(fine, behind);
+    double wanted = 1.0;
     for (const double coarser : kApart) {
       if (already > 0.0 && coarser > already) continue;
       already = coarser;
-      const std::vector<double> got = mean(linesOf(coarser), behind);
-      double worst = 0.0;
-      for (std::size_t s = 0; s < got.size(); ++s) worst = std::max(worst, std::abs(got[s] - want[s]) / std::max({want[s], kDimmest * brightest[s], 1e-300}));
-      if (worst <= budget::kFields.of(asked)) break;
+      const PixelLines own = linesOf(coarser);
+      // Against lines that are at least so many more.
+      while (fine.within.size() < kMoreLines * own.within.size() && fine.within.size() < kAcross * kAcross && wanted > kClosest) {
+        wanted *= kCloser;
+        fine = linesOf(wanted);
+        want = mean(fine, behind);
+      }
+      if (off(mean(own, behind), want) <= budget::kFields.of(asked)) break;
     }
-    ++looked;
   }
   return already;
 }
@@ -234,7 +266,8 @@ FieldSampling::FieldSampling(const Simulation& sim, const Plan& whole, int most)
       FieldLooks looks(sim, plan, state, f, sum);
       needs[f].steps = stepsFor(looks, eyes, asked, dice);
       for (std::size_t c = 0; c < std::min(sim.cameras.size(), kEyes); ++c)
-        needs[f].coarser = coarserFor(looks, cameraView(sim.cameras[c], state, std::max(sim.cameras[c].samples, 1)), pixels, asked, dice, needs[f].coarser);
+        needs[f].coarser = coarserFor(looks, cameraView(sim.cameras[c], state, sim.cameras[c].sharesShading ? 1 : sim.cameras[c].samples), pixels, asked, dice,
+                                      needs[f].coarser);
     }
   }
 }

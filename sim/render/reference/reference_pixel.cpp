@@ -176,7 +176,7 @@ ReferencePixel ReferenceShader::shade(const LineOfSight& line, NodeSum& sum) con
 ReferencePixel ReferenceShader::shadeOver(LineOfSight line, int x, int y, NodeSum& sum) const {
   std::vector<const FieldLines*> fields;
   for (const FieldLines& f : fields_) fields.push_back(&f);
-  const PixelLines lines = pixelLines(fields, x, y, kReferenceLines);
+  const PixelLines lines = pixelLines(fields, x, y, kReferenceLines, kReferenceApart);
   if (lines.within.size() == 1 && lines.outside == 0.0) return shade(line, sum);
   ReferencePixel whole;
   const auto add = [&](double share) {

@@ -122,8 +122,10 @@ vec4 meanOf(vec4 x, vec4 decayed) {
   return mix((1.0 - decayed) / max(x, vec4(0.1)), series, lessThan(x, vec4(0.125)));
 }
 
-// What the line meets.
+// What the line meets, before what the pixel's middle sees: a line beside it may pass the horizon of a plane, or what stands on it.
 void prepareLine(vec2 place) {
+  prepareRay(vec2(pixel_) + 0.5);
+  float end = endOfRay(field_, pixel_);
   prepareRay(place);
   d_ = inBody(field_, ray_);
   q_ = pointOnPlane(field_);
@@ -143,7 +145,7 @@ void prepareLine(vec2 place) {
     else if (e < 64) met_.y |= 1u << uint(e - 32);
   }
   enter_ = max(enter_, -planeOf(field_));  // the camera
-  leave_ = min(leave_, endOfRay(field_, pixel_));
+  leave_ = min(leave_, end);
   steps_ = leave_ > enter_ && first_ >= 0 ? cuts_ : 0;
   if (steps_ > 0) fieldLine(first_, steps_);
   cosScatter_ = dot(ray_, view.sun.xyz) / rayLength_;
