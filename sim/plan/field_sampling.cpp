@@ -172,10 +172,10 @@ StepsByKind stepsFor(FieldLooks& looks, const std::vector<glm::dvec3>& eyes, dou
   return steps;
 }
 
-/// The farthest apart that lines may lie in pixels of this view, or as far as said already.
-double coarserFor(FieldLooks& looks, const View& view, int pixels, double asked, Dice& dice, double already) {
+/// The farthest apart that lines may lie in pixels of this view, through each kind of elements, or as far as said already.
+void coarserFor(FieldLooks& looks, const View& view, int pixels, double asked, Dice& dice, ApartByKind& already) {
   const FieldLines lines = fieldLines(view, looks.field());
-  if (lines.isEmpty() || lines.parts.empty()) return already;
+  if (lines.parts.empty()) return;
   const auto through = [&](double x, double y) { return LineOfSight{view.position, glm::normalize(view.localFromCamera * view.ray(x, y)), {}, 0.0}; };
   const auto mean = [&](const PixelLines& pixel, const std::vector<double>& behind) {
     std::vector<double> sum;
@@ -218,28 +218,42 @@ double coarserFor(FieldLooks& looks, const View& view, int pixels, double asked,
   const auto most = std::min<std::size_t>(static_cast<std::size_t>(pixels), places.size());
   std::partial_sort(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(most / 2), places.end(),
                     [](const Place& a, const Place& b) { return a.change > b.change; });
-  for (std::size_t k = 0; k < most; ++k) {
-    const int x = places[k].x, y = places[k].y;
-    const auto linesOf = [&](double coarser) { return pixelLines(std::array{&lines}, x, y, kAcross, {coarser, 2}); };
+  for (double& a : already)
+    if (a == 0.0 && most > 0) a = kApart.front();
+  for (std::size_t p = 0; p < most; ++p) {
+    const int x = places[p].x, y = places[p].y;
+    FieldLines here;
+    for (const FieldLines::Part& part : lines.parts)
+      if (part.high.x > x && part.high.y > y && part.low.x < x + 1.0 && part.low.y < y + 1.0) here.parts.push_back(part);
+    const auto kindOf = [&](const FieldLines::Part& part) { return static_cast<std::size_t>(looks.field().elements[part.element].kind); };
+    const auto linesOf = [&](double coarser) {
+      for (FieldLines::Part& part : here.parts) part.coarser = std::min(already[kindOf(part)], coarser);
+      return pixelLines(std::array{static_cast<const FieldLines*>(&here)}, x, y, kAcross);
+    };
+    // What is wider than a pixel wants no lines of its own.
+    const auto wants = [](const FieldLines::Part& part) { return std::min(part.apart_px.x, part.apart_px.y) < 1.0; };
+    double farthest = 0.0, wanted = 1.0;
+    for (const FieldLines::Part& part : here.parts)
+      if (wants(part)) farthest = std::max(farthest, already[kindOf(part)]);
     PixelLines fine = linesOf(1.0);
     LineOfSight middle = through(x + 0.5, y + 0.5);
     const std::vector<double> behind = looks.behind(middle);
     std::vector<double> want = mean(fine, behind);
-    double wanted = 1.0;
     for (const double coarser : kApart) {
-      if (already > 0.0 && coarser > already) continue;
-      already = coarser;
+      if (coarser > farthest) continue;
       const PixelLines own = linesOf(coarser);
+      for (const FieldLines::Part& part : here.parts)
+        if (wants(part)) already[kindOf(part)] = std::min(already[kindOf(part)], coarser);
       // Against lines that are at least so many more.
       while (fine.within.size() < kMoreLines * own.within.size() && fine.within.size() < kAcross * kAcross && wanted > kClosest) {
         wanted *= kCloser;
         fine = linesOf(wanted);
         want = mean(fine, behind);
       }
+      if (fine.within.size() <= own.within.size()) break;  // nothing is left to tell more by
       if (off(mean(own, behind), want) <= budget::kFields.of(asked)) break;
     }
   }
-  return already;
 }
 
 }  // namespace
@@ -266,8 +280,7 @@ FieldSampling::FieldSampling(const Simulation& sim, const Plan& whole, int most)
       FieldLooks looks(sim, plan, state, f, sum);
       needs[f].steps = stepsFor(looks, eyes, asked, dice);
       for (std::size_t c = 0; c < std::min(sim.cameras.size(), kEyes); ++c)
-        needs[f].coarser = coarserFor(looks, cameraView(sim.cameras[c], state, sim.cameras[c].sharesShading ? 1 : sim.cameras[c].samples), pixels, asked, dice,
-                                      needs[f].coarser);
+        coarserFor(looks, cameraView(sim.cameras[c], state, sim.cameras[c].sharesShading ? 1 : sim.cameras[c].samples), pixels, asked, dice, needs[f].coarser);
     }
   }
 }
@@ -334,16 +347,19 @@ StepsByKind FieldSampling::steps(std::size_t field, double time_s) const {
   return steps;
 }
 
-double FieldSampling::coarser(std::size_t field, double time_s) const {
+ApartByKind FieldSampling::coarser(std::size_t field, double time_s) const {
   const auto [last, next] = around(field, time_s);
-  double least = INFINITY;
+  ApartByKind least;
+  least.fill(INFINITY);
   const auto take = [&least](const Needs& n) {
-    if (n.coarser > 0.0) least = std::min(least, n.coarser);
+    for (std::size_t k = 0; k < least.size(); ++k)
+      if (n.coarser[k] > 0.0) least[k] = std::min(least[k], n.coarser[k]);
   };
   take(*last), take(*next);
   for (const auto& of : of_)
-    if (!std::isfinite(least)) take(of[field]);
-  return std::isfinite(least) ? least : 1.0;
+    if (!std::isfinite(least.front())) take(of[field]);
+  if (!std::isfinite(least.front())) least.fill(1.0);
+  return least;
 }
 
 }  // namespace pitviper

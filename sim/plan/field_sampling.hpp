@@ -9,6 +9,7 @@
 
 namespace pitviper {
 
+using ApartByKind = std::array<double, kFieldKinds>;
 using StepsByKind = std::array<int, kFieldKinds>;  ///< of a kind of elements; 0: nobody would notice them
 
 /// The least of both with which no channel's radiance on some lines and in some pixels, from the scenario's cameras and probes, is off by more than a third of
@@ -25,13 +26,13 @@ class FieldSampling {
   /// Of a field: what the times before and after that were looked at need. Seen along its axis a jet needs three times the steps that it needs from the side.
   StepsByKind steps(std::size_t field, double time_s) const;
   /// How much farther apart than pixelLines() has them for the reference lines may lie: the thicker and the more uneven a field, the less.
-  double coarser(std::size_t field, double time_s) const;
+  ApartByKind coarser(std::size_t field, double time_s) const;
 
  private:
   FieldSampling() = default;
   struct Needs {
     StepsByKind steps{};
-    double coarser = 0.0;  ///< 0: nothing was there to be looked at
+    ApartByKind coarser{};  ///< 0: nothing was there to be looked at
   };
   std::pair<const Needs*, const Needs*> around(std::size_t field, double time_s) const;
   std::vector<double> time_s_;          ///< rising

@@ -144,20 +144,21 @@ class PixelCells {
   void add(const glm::dvec2& low, const glm::dvec2& high, std::span<const FieldLines::Part> parts) {
     if (isFull()) return;
     std::vector<FieldLines::Part> here;
-    glm::dvec2 from(INFINITY), to(-INFINITY), finest(INFINITY), coarsest(0.0);
+    glm::dvec2 from(INFINITY), to(-INFINITY), finest(INFINITY), least(INFINITY), most(0.0);
     double filled = 0.0;
     for (const FieldLines::Part& p : parts) {
-      const FieldLines::Part cut{glm::max(p.low, low), glm::min(p.high, high), p.apart_px, p.element};
+      const FieldLines::Part cut{glm::max(p.low, low), glm::min(p.high, high), p.apart_px, p.element, p.coarser};
       if (!(cut.high.x > cut.low.x && cut.high.y > cut.low.y)) continue;
       here.push_back(cut);
       from = glm::min(from, cut.low), to = glm::max(to, cut.high);
-      finest = glm::min(finest, p.apart_px), coarsest = glm::max(coarsest, p.apart_px);
+      finest = glm::min(finest, p.apart_px);
+      least = glm::min(least, p.coarser * p.apart_px), most = glm::max(most, p.coarser * p.apart_px);
       filled += (cut.high.x - cut.low.x) * (cut.high.y - cut.low.y);
     }
     if (here.empty()) return;
-    const glm::dvec2 size = to - from, lines = size / (apart_.coarser * finest), wanted = size / finest;
+    const glm::dvec2 size = to - from, lines = size / (apart_.coarser * least), wanted = size / finest;
     const int across = lines.x >= lines.y ? 0 : 1;
-    if (lines[across] > 6.0 && (coarsest.x * coarsest.y > kCoarser * finest.x * finest.y || filled < kFilled * size.x * size.y)) {
+    if (lines[across] > 6.0 && (most.x * most.y > kCoarser * least.x * least.y || filled < kFilled * size.x * size.y)) {
       glm::dvec2 end = to, begin = from;
       end[across] = begin[across] = 0.5 * (from[across] + to[across]);
       add(from, end, here);

@@ -16,6 +16,7 @@ struct FieldLines {
     glm::dvec2 low{0.0}, high{0.0};
     glm::dvec2 apart_px{1.0};  ///< across the film and up: less where it is fine that way
     std::size_t element = 0;   ///< of the field
+    double coarser = 1.0;      ///< lines may lie so many times farther apart
   };
   std::vector<Part> parts = {};  ///< of its elements that show, each with its own: nothing shows outside all of them
   bool isEmpty() const { return !(high.x > low.x && high.y > low.y); }

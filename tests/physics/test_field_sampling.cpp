@@ -44,8 +44,11 @@ TEST(FieldSampling, FewNodesAskForTheSteps) {
           if (every_[k] > 0 && some[k] > 0) worst = std::max(worst, std::abs(std::log(static_cast<double>(some[k]) / every_[k])));
           most = std::max(most, every_[k]);
         }
-        EXPECT_LE(few.coarser(f, time_s), 1.5 * all.coarser(f, time_s)) << f << ": a neighbour in the list of distances";
-        EXPECT_GE(few.coarser(f, time_s), all.coarser(f, time_s) / 2.1) << f << ": two of them";
+        const ApartByKind own = few.coarser(f, time_s), apart = all.coarser(f, time_s);
+        for (std::size_t k = 0; k < own.size(); ++k) {
+          EXPECT_LE(own[k], 1.7 * apart[k]) << f << " " << k << ": a neighbour in the list of distances";
+          EXPECT_GE(own[k], apart[k] / 2.3) << f << " " << k << ": two of them";
+        }
       }
   }
   EXPECT_GT(most, 8) << "there is something to choose";

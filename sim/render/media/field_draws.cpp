@@ -121,6 +121,7 @@ void FieldDraws::listTiles(const View& view, Body& body) const {
         tile.range = tile.texel.empty() ? range : glm::dvec2(std::min(tile.range.x, range.x), std::max(tile.range.y, range.y));
         if (const auto texel = static_cast<std::uint32_t>(e.texel); tile.texel.empty() || tile.texel.back() != texel) tile.texel.push_back(texel);
         tile.lines.parts.push_back(part);
+        tile.lines.parts.back().coarser = body.coarser[static_cast<size_t>(e.kind)];
         tile.lines.apart_px = std::min({tile.lines.apart_px, part.apart_px.x, part.apart_px.y});
         tile.steps = std::max(tile.steps, steps);
       }
@@ -155,13 +156,6 @@ int FieldDraws::mostAt(int x, int y) const {
   return static_cast<int>(most);
 }
 
-LinesApart FieldDraws::apartAt(int x, int y, bool zoomed) const {
-  double coarser = INFINITY;
-  for (const Body& body : bodies_)
-    if (body.tileAt(x, y)) coarser = std::min(coarser, body.coarser);
-  return zoomed ? LinesApart{kOfMany * coarser, 1} : LinesApart{coarser, 2};
-}
-
 /// Of every pixel the lines through all fields that it may show, so that what is in each other is met by the same ones.
 void FieldDraws::listLines(const View& view) {
   entries_.assign(bodies_.size(), 0);
@@ -188,7 +182,7 @@ void FieldDraws::listLines(const View& view) {
         here.push_back(f), lists.push_back(&tile->lines);
         finest = std::min(finest, tile->lines.apart_px);
       }
-    if (finest < 1.0) lines = pixelLines(lists, x, y, mostAt(x, y), apartAt(x, y, view.zoomed));
+    if (finest < 1.0) lines = pixelLines(lists, x, y, mostAt(x, y), view.zoomed ? LinesApart{kOfMany, 1} : LinesApart{});
     else lines.outside = 0.0, lines.within.assign(1, {glm::dvec2(x, y) + 0.5, 1.0});
     at = static_cast<std::uint32_t>(words.size());
     const auto count = static_cast<std::uint32_t>(lines.within.size());

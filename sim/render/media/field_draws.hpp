@@ -64,12 +64,11 @@ class FieldDraws {
     glm::vec2 range{0.0f};
     glm::ivec4 grid{0};  ///< first pixel, tiles across, pixels a side
     std::vector<Tile> listed;
-    double coarser = 1.0;  ///< lines of pictures, than of the reference
+    ApartByKind coarser{};  ///< lines of pictures, than of the reference
     const Tile* tileAt(int x, int y) const;
   };
   void listTiles(const View& view, Body& body) const;
   int mostAt(int x, int y) const;
-  LinesApart apartAt(int x, int y, bool zoomed) const;
   void listLines(const View& view);
 
   std::shared_ptr<const FieldSampling> sampling_;
