@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <mutex>
+#include <span>
 
 #include "sim/model/field_drift.hpp"
 #include "sim/model/scene_fingerprint.hpp"
+#include "sim/parameters/on_threads.hpp"
 #include "sim/plan/budget.hpp"
 #include "sim/plan/plan_cache.hpp"
 #include "sim/plan/sight_rays.hpp"
@@ -14,6 +16,7 @@
 #include "sim/scene/content_cache.hpp"
 #include "sim/world/field_lines.hpp"
 #include "sim/world/field_states.hpp"
+#include "sim/world/ground.hpp"
 #include "sim/world/world.hpp"
 
 namespace pitviper {
@@ -28,7 +31,7 @@ constexpr std::size_t kEyes = 3;
 /// Distances between lines through a pixel, the farthest tried first; pixels that are looked at of all fields together, and of one field at least and at most,
 /// of so many times as many; tries to find them; the most lines each way in one; and steps of such a line.
 constexpr std::array kApart{6.0, 4.0, 3.0, 2.2, 1.6, 1.0, 0.7, 0.5, 0.35};
-constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kCandidates = 6, kTried = 2000, kAcross = 14, kSteps = 8;
+constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kCandidates = 6, kTried = 2000, kAcross = 28, kSteps = 8;
 /// What lines are held against has so many times as many, found by bringing these closer step by step, down to a distance.
 constexpr std::size_t kMoreLines = 2;
 constexpr double kCloser = 0.7, kClosest = 0.2;
@@ -42,27 +45,47 @@ constexpr int kAirPlaces = 8;
 /// Nodes of each block of a plan that tell how finely to look.
 constexpr int kNodes = 24;
 
+/// Where its dice begin.
+constexpr std::uint64_t kDice = 11;
+
 constexpr const char* kWhat = "fields";
 
-/// A plan with at most so many nodes of each block, spread evenly over how much fields absorb at them, which is what steps depend on; each has the weights of
-/// those beside it.
+/// A plan with at most so many nodes of each block: its nodes in the order of what fields absorb at them, which is what steps depend on, in as many groups; of
+/// each group that which absorbs nearest to its mean, with the weights of all: what is thin sends as much as with every node.
 Plan fewNodes(const Simulation& sim, const Plan& plan, int most) {
-  std::vector<std::size_t> order;
-  const auto absorbed = [&](std::size_t node) {
-    double sum = 0.0;
-    for (const FieldBody& f : sim.fields)
-      for (const FieldGas& g : f.gases) sum += plan.nodes[node].absorption_per_m[static_cast<std::size_t>(g.levels.front().material)];
-    return sum;
+  struct Node {
+    std::size_t index;
+    double absorbed = 0.0, weight = 0.0;
   };
-  for (std::size_t i = 0; i < plan.nodes.size(); ++i) order.push_back(i);
-  for (const NodeBlock& b : plan.blocks)
-    std::stable_sort(order.begin() + b.first, order.begin() + b.first + b.count, [&](std::size_t i, std::size_t j) { return absorbed(i) < absorbed(j); });
-  Plan sorted = plan;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    sorted.nodes[i] = plan.nodes[order[i]];
-    for (std::size_t s = 0; s < plan.weight.size(); ++s) sorted.weight[s][i] = plan.weight[s][order[i]];
+  std::vector<Node> order;
+  for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
+    Node& n = order.emplace_back(Node{i});
+    for (const FieldBody& f : sim.fields)
+      for (const FieldGas& g : f.gases) n.absorbed += plan.nodes[i].absorption_per_m[static_cast<std::size_t>(g.levels.front().material)];
+    for (const auto& w : plan.weight) n.weight += w[i];
   }
-  return someWavelengths(sorted, most);
+  Plan few = plan;
+  few.nodes.clear(), few.blocks.clear();
+  for (auto& w : few.weight) w.clear();
+  for (const NodeBlock& b : plan.blocks) {
+    const std::span block(order.data() + b.first, static_cast<std::size_t>(b.count));
+    std::ranges::stable_sort(block, {}, &Node::absorbed);
+    const auto count = std::min(block.size(), static_cast<std::size_t>(most));
+    few.blocks.push_back({few.nodeCount(), static_cast<int>(count), b.slots, b.lit});
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::span group = block.subspan(k * block.size() / count, (k + 1) * block.size() / count - k * block.size() / count);
+      double weight = 0.0, mean = 0.0;
+      for (const Node& n : group) weight += n.weight, mean += n.weight * n.absorbed;
+      if (weight > 0.0) mean /= weight;
+      const Node& chosen = *std::ranges::min_element(group, {}, [mean](const Node& n) { return std::abs(n.absorbed - mean); });
+      few.nodes.push_back(plan.nodes[chosen.index]);
+      for (std::size_t s = 0; s < plan.weight.size(); ++s) {
+        double& sum = few.weight[s].emplace_back(0.0);
+        for (const Node& n : group) sum += plan.weight[s][n.index];
+      }
+    }
+  }
+  return few;
 }
 
 /// Radiance of lines through one field at a time, in the plan's slots.
@@ -80,30 +103,34 @@ class FieldLooks {
   }
   const FieldState& field() const { return field_; }
   std::vector<double> along(LineOfSight& sight, int steps) {
-    tell(scene_, sight, steps);
+    cut(sight, steps);
+    radianceAlong(scene_, sight, sum_);
     return slotsOf(sum_.radiance());
   }
   /// Per node, without the field.
   std::vector<double> behind(LineOfSight& sight) {
-    tell(scene_, sight, 0);
+    cut(sight, 0);
+    radianceAlong(scene_, sight, sum_);
     return {sum_.radiance().begin(), sum_.radiance().end()};
   }
   /// Of the field in clear air before what is behind it, per node: air is even over a pixel.
   std::vector<double> before(const std::vector<double>& behind, LineOfSight& sight, int steps) {
-    tell(airless_, sight, steps);
+    cut(sight, steps);
+    const auto ground = groundHit(scene_.simulation, sight.origin, sight.direction);
+    lightOfWay(airless_, sight, ground ? ground->distance : physics::kFar, sum_);
     std::vector<double> seen = sum_.transmittance();
     for (std::size_t i = 0; i < seen.size(); ++i) seen[i] = sum_.radiance()[i] + seen[i] * behind[i];
     return slotsOf(seen);
   }
 
  private:
-  void tell(const RadianceScene& scene, LineOfSight& sight, int steps) {
+  /// Its steps on a line, of which nothing is told yet.
+  void cut(LineOfSight& sight, int steps) {
     field_.along({sight.origin, sight.direction, 0.0, physics::kFar}, steps, cut_);
     setDrifts(cut_);
     sight.hits.slabs.clear();
     for (const FieldStep& s : cut_) sight.hits.slabs.push_back({index_, s});
     sum_.begin();
-    radianceAlong(scene, sight, sum_);
   }
   std::vector<double> slotsOf(std::span<const double> radiance) const {
     std::vector<double> slots(plan_.weight.size(), 0.0);
@@ -194,17 +221,16 @@ void coarserFor(FieldLooks& looks, const View& view, int pixels, double asked, D
     double change;
   };
   std::vector<Place> places;
-  std::vector<double> brightest;
+  std::vector<double> brightest, behindAny;  // to find these one sky does for all
   for (int tried = 0; static_cast<int>(places.size()) < kCandidates * pixels && tried < kTried; ++tried) {
     const FieldLines::Part& part = lines.parts[dice.below(lines.parts.size())];
     const glm::dvec2 at = part.low + (part.high - part.low) * glm::dvec2(dice.unit(), dice.unit());
     Place place{std::clamp(static_cast<int>(at.x), 0, view.width - 1), std::clamp(static_cast<int>(at.y), 0, view.height - 1), {}, {}, 0.0};
     if (pixelLines(std::array{&lines}, place.x, place.y, kAcross).within.size() < 2) continue;
     const double across = places.size() % 2 == 0 ? 0.25 : -0.25;
-    LineOfSight middle = through(place.x + 0.5, place.y + 0.5), one = through(place.x + 0.5 - across, place.y + 0.25),
-                other = through(place.x + 0.5 + across, place.y + 0.75);
-    const std::vector<double> behind = looks.behind(middle);
-    place.a = looks.before(behind, one, kSteps), place.b = looks.before(behind, other, kSteps);
+    LineOfSight one = through(place.x + 0.5 - across, place.y + 0.25), other = through(place.x + 0.5 + across, place.y + 0.75);
+    if (behindAny.empty()) behindAny = looks.behind(one);
+    place.a = looks.before(behindAny, one, kSteps), place.b = looks.before(behindAny, other, kSteps);
     brightest.resize(place.a.size(), 0.0);
     for (std::size_t s = 0; s < brightest.size(); ++s) brightest[s] = std::max({brightest[s], place.a[s], place.b[s]});
     places.push_back(std::move(place));
@@ -258,31 +284,44 @@ void coarserFor(FieldLooks& looks, const View& view, int pixels, double asked, D
 
 }  // namespace
 
+FieldSampling::Needs FieldSampling::needsOf(const Simulation& sim, const Plan& plan, const WorldState& state, std::size_t f, int pixels, double asked,
+                                            NodeSum& sum, Dice& dice) {
+  Needs needs;
+  needs.steps.fill(kNotSeen);
+  if (!fieldOf(state, f)) return needs;
+  std::vector<glm::dvec3> eyes;
+  for (const Camera& c : sim.cameras) eyes.push_back(cameraAt(c, state).pose.position);
+  for (const Probe& p : sim.probes) eyes.push_back(p.position);
+  eyes.resize(std::min(eyes.size(), kEyes));
+  FieldLooks looks(sim, plan, state, f, sum);
+  needs.steps = stepsFor(looks, eyes, asked, dice);
+  for (std::size_t c = 0; c < std::min(sim.cameras.size(), kEyes); ++c)
+    coarserFor(looks, cameraView(sim.cameras[c], state, sim.cameras[c].sharesShading ? 1 : sim.cameras[c].samples), pixels, asked, dice, needs.coarser);
+  return needs;
+}
+
 FieldSampling::FieldSampling(const Simulation& sim, const Plan& whole, int most) {
   const double asked = whole.accuracy > 0.0 ? whole.accuracy : kUsualAccuracy;
   const Plan plan = fewNodes(sim, whole, most);
   const NodeSpectra spectra(sim, plan.nodes, 0);
-  NodeSum sum(spectra);
-  Dice dice(11);
   const int pixels = std::clamp(kPixels / std::max(static_cast<int>(sim.fields.size()), 1), kFewestPixels, kMostPixels);
   const int times = sim.fields.empty() ? 0 : std::clamp(sim.time.frames, 1, kTimes);
+  std::vector<WorldState> states;
   for (int t = 0; t < times; ++t) {
     time_s_.push_back(sim.time.at(times > 1 ? t * (sim.time.frames - 1) / (times - 1) : 0));
-    std::vector<Needs>& needs = of_.emplace_back(sim.fields.size());
-    const WorldState state = withEjected(sim, time_s_.back(), t);
-    std::vector<glm::dvec3> eyes;
-    for (const Camera& c : sim.cameras) eyes.push_back(cameraAt(c, state).pose.position);
-    for (const Probe& p : sim.probes) eyes.push_back(p.position);
-    eyes.resize(std::min(eyes.size(), kEyes));
-    for (std::size_t f = 0; f < sim.fields.size(); ++f) {
-      needs[f].steps.fill(kNotSeen);
-      if (!fieldOf(state, f)) continue;
-      FieldLooks looks(sim, plan, state, f, sum);
-      needs[f].steps = stepsFor(looks, eyes, asked, dice);
-      for (std::size_t c = 0; c < std::min(sim.cameras.size(), kEyes); ++c)
-        coarserFor(looks, cameraView(sim.cameras[c], state, sim.cameras[c].sharesShading ? 1 : sim.cameras[c].samples), pixels, asked, dice, needs[f].coarser);
-    }
+    states.push_back(withEjected(sim, time_s_.back(), t));
+    of_.emplace_back(sim.fields.size());
   }
+  const std::size_t all = states.size() * sim.fields.size();
+  onAllThreads(all, [&](const auto& next) {
+    NodeSum sum(spectra);
+    for (std::size_t k = next(); k < all; k = next()) {
+      const std::size_t t = k / sim.fields.size(), f = k % sim.fields.size();
+      // Dice of its own: what is looked at of one is the same whatever else there is, and whenever that came.
+      Dice dice(kDice + k);
+      of_[t][f] = needsOf(sim, plan, states[t], f, pixels, asked, sum, dice);
+    }
+  });
 }
 
 std::string FieldSampling::bytes() const {

@@ -9,6 +9,10 @@
 
 namespace pitviper {
 
+class Dice;
+class NodeSum;
+struct WorldState;
+
 using ApartByKind = std::array<double, kFieldKinds>;
 using StepsByKind = std::array<int, kFieldKinds>;  ///< of a kind of elements; 0: nobody would notice them
 
@@ -34,6 +38,9 @@ class FieldSampling {
     StepsByKind steps{};
     ApartByKind coarser{};  ///< 0: nothing was there to be looked at
   };
+  /// Of a field at a time.
+  static Needs needsOf(const Simulation& simulation, const Plan& plan, const WorldState& state, std::size_t field, int pixels, double asked, NodeSum& sum,
+                       Dice& dice);
   std::pair<const Needs*, const Needs*> around(std::size_t field, double time_s) const;
   std::vector<double> time_s_;          ///< rising
   std::vector<std::vector<Needs>> of_;  ///< [time][field]

@@ -23,8 +23,10 @@ class Teller {
     if (sim_.sun) cosScatter_ = glm::dot(line.direction, sim_.sun->toSun);
   }
 
-  /// Tells the line as far as its end, where something solid may be met. `shining`: with what air and media send; else only what they let through.
-  void run(bool shining, const Hit* solid = nullptr) {
+  /// What is told of a line: what the way lets through; besides what it sends; or all, with what is at its end, where something solid may be met.
+  enum class Told { Through, Way, All };
+  void run(Told told, const Hit* solid = nullptr) {
+    const bool shining = told != Told::Through;
     dark_ = !shining;
     sink_.restart();
     std::vector<const Hit*> panes;
@@ -39,7 +41,7 @@ class Teller {
         pane(*panes[next]);
       }
     }
-    if (!shining) return;
+    if (told != Told::All) return;
     const std::array behind{Factor::background()};
     if (solid) surface(*solid, places.back());
     else if (!sim_.background.isZero()) sink_.term({TermKind::Background, 1.0, behind, nullptr});
@@ -239,10 +241,16 @@ const char* nameOf(TermKind kind) {
 void radianceAlong(const RadianceScene& scene, const LineOfSight& line, TermSink& sink) {
   const std::optional<Hit> ground = line.hits.solid.entity >= 0 ? std::nullopt : groundHit(scene.simulation, line.origin, line.direction);
   const Hit* solid = ground ? &*ground : line.hits.solid.entity >= 0 ? &line.hits.solid : nullptr;
-  Teller(scene, line, solid ? solid->distance : physics::kFar, sink).run(true, solid);
+  Teller(scene, line, solid ? solid->distance : physics::kFar, sink).run(Teller::Told::All, solid);
 }
 
-void wayAlong(const RadianceScene& scene, const LineOfSight& line, double range_m, TermSink& sink) { Teller(scene, line, range_m, sink).run(false); }
+void wayAlong(const RadianceScene& scene, const LineOfSight& line, double range_m, TermSink& sink) {
+  Teller(scene, line, range_m, sink).run(Teller::Told::Through);
+}
+
+void lightOfWay(const RadianceScene& scene, const LineOfSight& line, double range_m, TermSink& sink) {
+  Teller(scene, line, range_m, sink).run(Teller::Told::Way);
+}
 
 void lampAlong(const RadianceScene& scene, const LineOfSight& line, std::size_t light, double pixel_sr, TermSink& sink) {
   const glm::dvec3 way = scene.state.lights[light] - line.origin;

@@ -111,6 +111,8 @@ void radianceAlong(const RadianceScene& scene, const LineOfSight& line, TermSink
 
 /// The air, media and panes of a line as far as a range: what they let through.
 void wayAlong(const RadianceScene& scene, const LineOfSight& line, double range_m, TermSink& sink);
+/// The same with what air, media and panes on the way send.
+void lightOfWay(const RadianceScene& scene, const LineOfSight& line, double range_m, TermSink& sink);
 
 /// A light itself, seen at its distance through all that lies before it: one term, of an intensity of 1 / solid angle [sr] of a pixel.
 void lampAlong(const RadianceScene& scene, const LineOfSight& line, std::size_t light, double pixel_sr, TermSink& sink);

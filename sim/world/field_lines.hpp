@@ -44,6 +44,6 @@ PixelLines pixelLines(std::span<const FieldLines* const> fields, int x, int y, i
 /// Of the reference: three of Gauss and Legendre hold where what a pixel has changes by a factor of a hundred, as soot's light in the violet does at a jet's
 /// edge.
 constexpr int kReferenceLines = 128;
-constexpr LinesApart kReferenceApart{0.7, 3};
+constexpr LinesApart kReferenceApart{0.5, 3};
 
 }  // namespace pitviper

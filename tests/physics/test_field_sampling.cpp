@@ -46,8 +46,8 @@ TEST(FieldSampling, FewNodesAskForTheSteps) {
         }
         const ApartByKind own = few.coarser(f, time_s), apart = all.coarser(f, time_s);
         for (std::size_t k = 0; k < own.size(); ++k) {
-          EXPECT_LE(own[k], 1.7 * apart[k]) << f << " " << k << ": a neighbour in the list of distances";
-          EXPECT_GE(own[k], apart[k] / 2.3) << f << " " << k << ": two of them";
+          EXPECT_LE(own[k], 1.5 * apart[k]) << f << " " << k << ": a neighbour in the list of distances";
+          EXPECT_GE(own[k], apart[k] / 2.1) << f << " " << k << ": two of them";
         }
       }
   }

@@ -21,6 +21,8 @@ constexpr double kOfMany = 2.0;
 /// Elements that the lines of a pixel look up in all, and as many more of each step: at a nozzle more lines would cost a frame more than its picture gains (a
 /// duel of two jets a half).
 constexpr double kMostWork = 30000.0, kOfStep = 3.0;
+/// Pixels finer than lines through their middles that may have so much; where there are fewer, each may have more.
+constexpr double kFullPixels = 1024.0;
 
 std::uint32_t bitsOf(double v) { return std::bit_cast<std::uint32_t>(static_cast<float>(v)); }
 
@@ -151,7 +153,7 @@ int FieldDraws::mostAt(int x, int y) const {
   for (const Body& body : bodies_)
     if (const Tile* tile = body.tileAt(x, y)) {
       const double listed = static_cast<double>(tile->texel.size()), work = listed + tile->steps * (kOfStep + listed);
-      most = std::min(most, std::max(std::floor(std::sqrt(kMostWork / work)), 1.0));
+      most = std::min(most, std::max(std::floor(std::sqrt(mostWork_ / work)), 1.0));
     }
   return static_cast<int>(most);
 }
@@ -168,6 +170,11 @@ void FieldDraws::listLines(const View& view) {
   }
   low = glm::max(low, glm::ivec2(0)), high = glm::min(high, glm::ivec2(view.width, view.height));
   part_ = {low, glm::max(high - low, glm::ivec2(0))};
+  double fine = 0.0;  // pixels
+  for (const Body& body : bodies_)
+    for (const Tile& tile : body.listed)
+      if (tile.lines.apart_px < 1.0) fine += body.grid.w * body.grid.w;
+  mostWork_ = kMostWork * std::max(kFullPixels / std::max(fine, 1.0), 1.0);
   std::vector<std::uint32_t> words(static_cast<size_t>(part_.z) * static_cast<size_t>(part_.w), 0);
   std::vector<size_t> here;
   std::vector<const FieldLines*> lists;

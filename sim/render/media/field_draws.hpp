@@ -75,7 +75,8 @@ class FieldDraws {
   std::map<std::string, Program> programs_;
   std::deque<Body> bodies_;
   Buffer lines_;
-  glm::ivec4 part_{0};  ///< of the film that has lines
+  double mostWork_ = 0.0;  ///< of a pixel's lines
+  glm::ivec4 part_{0};     ///< of the film that has lines
   std::vector<std::size_t> entries_;
   std::size_t mostLines_ = 0;
 };
