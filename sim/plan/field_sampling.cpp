@@ -29,9 +29,10 @@ constexpr int kTimes = 8;
 constexpr std::size_t kLines = 32, kLinesOfKind = 4;
 constexpr std::size_t kEyes = 3;
 /// Distances between lines through a pixel, the farthest tried first; pixels that are looked at of all fields together, and of one field at least and at most,
-/// of so many times as many; tries to find them; the most lines each way in one; and steps of such a line.
+/// of so many times as many; tries to find them; the most lines each way in one, and in what they
+/// are held against; and steps of such a line.
 constexpr std::array kApart{6.0, 4.0, 3.0, 2.2, 1.6, 1.0, 0.7, 0.5, 0.35};
-constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kCandidates = 6, kTried = 2000, kAcross = 28, kSteps = 8;
+constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kCandidates = 6, kTried = 2000, kAcross = 28, kMoreAcross = 40, kSteps = 8;
 /// What lines are held against has so many times as many, found by bringing these closer step by step, down to a distance.
 constexpr std::size_t kMoreLines = 2;
 constexpr double kCloser = 0.7, kClosest = 0.2;
@@ -252,28 +253,28 @@ void coarserFor(FieldLooks& looks, const View& view, int pixels, double asked, D
     for (const FieldLines::Part& part : lines.parts)
       if (part.high.x > x && part.high.y > y && part.low.x < x + 1.0 && part.low.y < y + 1.0) here.parts.push_back(part);
     const auto kindOf = [&](const FieldLines::Part& part) { return static_cast<std::size_t>(looks.field().elements[part.element].kind); };
-    const auto linesOf = [&](double coarser) {
+    const auto linesOf = [&](double coarser, int atMost) {
       for (FieldLines::Part& part : here.parts) part.coarser = std::min(already[kindOf(part)], coarser);
-      return pixelLines(std::array{static_cast<const FieldLines*>(&here)}, x, y, kAcross);
+      return pixelLines(std::array{static_cast<const FieldLines*>(&here)}, x, y, atMost);
     };
     // What is wider than a pixel wants no lines of its own.
     const auto wants = [](const FieldLines::Part& part) { return std::min(part.apart_px.x, part.apart_px.y) < 1.0; };
     double farthest = 0.0, wanted = 1.0;
     for (const FieldLines::Part& part : here.parts)
       if (wants(part)) farthest = std::max(farthest, already[kindOf(part)]);
-    PixelLines fine = linesOf(1.0);
+    PixelLines fine = linesOf(1.0, kMoreAcross);
     LineOfSight middle = through(x + 0.5, y + 0.5);
     const std::vector<double> behind = looks.behind(middle);
     std::vector<double> want = mean(fine, behind);
     for (const double coarser : kApart) {
       if (coarser > farthest) continue;
-      const PixelLines own = linesOf(coarser);
+      const PixelLines own = linesOf(coarser, kAcross);
       for (const FieldLines::Part& part : here.parts)
         if (wants(part)) already[kindOf(part)] = std::min(already[kindOf(part)], coarser);
       // Against lines that are at least so many more.
-      while (fine.within.size() < kMoreLines * own.within.size() && fine.within.size() < kAcross * kAcross && wanted > kClosest) {
+      while (fine.within.size() < kMoreLines * own.within.size() && fine.within.size() < kMoreAcross * kMoreAcross && wanted > kClosest) {
         wanted *= kCloser;
-        fine = linesOf(wanted);
+        fine = linesOf(wanted, kMoreAcross);
         want = mean(fine, behind);
       }
       if (fine.within.size() <= own.within.size()) break;  // nothing is left to tell more by

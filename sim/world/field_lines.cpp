@@ -134,8 +134,9 @@ constexpr Points kPoints[3] = {{1, {0.5, 0.0, 0.0}, {1.0, 0.0, 0.0}},
                                {3, {0.112701665379258311, 0.5, 0.887298334620741689}, {5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0}}};
 /// Of a pixel's cells: parts so much coarser than its finest, or so much of it empty, is worth halving it.
 constexpr double kCoarser = 1.5, kFilled = 0.7;
-/// Lines of a pixel with too many of them lie so many times farther apart at most.
-constexpr double kCoarsest = 1e3;
+/// Lines of a pixel with too many of them lie so many times farther apart at most, found in such steps, the last of them in thirds of it: as many lines as may
+/// be, since a limit of 784 would else be met by 324.
+constexpr double kCoarsest = 1e3, kStep = 1.4;
 
 /// A pixel's cells: halved until what is in each is about alike; given up where that takes more lines than `most`.
 class PixelCells {
@@ -226,13 +227,22 @@ PixelLines pixelLines(std::span<const FieldLines* const> fields, int x, int y, i
     lines.within.push_back({corner + 0.5, 1.0});
     return lines;
   }
-  for (LinesApart now = apart;; now.coarser *= 1.4) {
-    PixelCells cells(now, static_cast<double>(most) * most);
+  const auto cellsOf = [&](double coarser) {
+    PixelCells cells({coarser, apart.atLeast}, static_cast<double>(most) * most);
     cells.add(corner, corner + 1.0, parts);
-    if (cells.isFull() && now.coarser <= kCoarsest) continue;
-    if (cells.isFull()) cells.addWhole(corner, corner + 1.0, most);
+    return cells;
+  };
+  double coarser = apart.coarser;
+  PixelCells cells = cellsOf(coarser);
+  if (!cells.isFull()) return cells.all();
+  while (cells.isFull() && coarser <= kCoarsest) cells = cellsOf(coarser *= kStep);
+  if (cells.isFull()) {
+    cells.addWhole(corner, corner + 1.0, most);
     return cells.all();
   }
+  for (const double back : {2.0 / 3.0, 1.0 / 3.0})
+    if (PixelCells more = cellsOf(coarser * std::pow(kStep, -back)); !more.isFull()) return more.all();
+  return cells.all();
 }
 
 }  // namespace pitviper

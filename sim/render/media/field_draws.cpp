@@ -21,7 +21,8 @@ constexpr double kOfMany = 2.0;
 /// Elements that the lines of a pixel look up in all, and as many more of each step: at a nozzle more lines would cost a frame more than its picture gains (a
 /// duel of two jets a half).
 constexpr double kMostWork = 30000.0, kOfStep = 3.0;
-/// Pixels finer than lines through their middles that may have so much; where there are fewer, each may have more.
+/// Pixels finer than lines through their middles that may have so much. Where there are fewer, each may have more, by the square: few of those that stand in
+/// tiles with something fine want many lines, and a flare far off is one pixel that wants thousands.
 constexpr double kFullPixels = 1024.0;
 
 std::uint32_t bitsOf(double v) { return std::bit_cast<std::uint32_t>(static_cast<float>(v)); }
@@ -161,7 +162,6 @@ int FieldDraws::mostAt(int x, int y) const {
 /// Of every pixel the lines through all fields that it may show, so that what is in each other is met by the same ones.
 void FieldDraws::listLines(const View& view) {
   entries_.assign(bodies_.size(), 0);
-  mostLines_ = 0;
   glm::ivec2 low(view.width, view.height), high(0);
   for (size_t f = 0; f < bodies_.size(); ++f) {
     if (!shows(f)) continue;
@@ -174,7 +174,8 @@ void FieldDraws::listLines(const View& view) {
   for (const Body& body : bodies_)
     for (const Tile& tile : body.listed)
       if (tile.lines.apart_px < 1.0) fine += body.grid.w * body.grid.w;
-  mostWork_ = kMostWork * std::max(kFullPixels / std::max(fine, 1.0), 1.0);
+  const double few = std::max(kFullPixels / std::max(fine, 1.0), 1.0);
+  mostWork_ = kMostWork * few * few;
   std::vector<std::uint32_t> words(static_cast<size_t>(part_.z) * static_cast<size_t>(part_.w), 0);
   std::vector<size_t> here;
   std::vector<const FieldLines*> lists;
@@ -196,7 +197,6 @@ void FieldDraws::listLines(const View& view) {
     words.insert(words.end(), {count, bitsOf(lines.outside)});
     for (const FilmLine& line : lines.within) words.insert(words.end(), {bitsOf(line.at.x), bitsOf(line.at.y), bitsOf(line.share)});
     for (size_t f : here) entries_[f] += count;
-    mostLines_ = std::max<size_t>(mostLines_, count);
   };
   for (const Body& body : bodies_)
     for (size_t t = 0; t < body.listed.size(); ++t) {

@@ -37,8 +37,6 @@ class FieldDraws {
   void setLines(const Program& program) const;
   /// Lines of all pixels that may meet each.
   const std::vector<std::size_t>& entries() const { return entries_; }
-  /// Of one pixel at most.
-  std::size_t mostLines() const { return mostLines_; }
   /// The program of a field in use, its buffers and uniforms set, but those of its list.
   const Program& use(std::size_t field) const;
   void addPrograms(std::vector<NamedProgram>& all) const;
@@ -78,7 +76,6 @@ class FieldDraws {
   double mostWork_ = 0.0;  ///< of a pixel's lines
   glm::ivec4 part_{0};     ///< of the film that has lines
   std::vector<std::size_t> entries_;
-  std::size_t mostLines_ = 0;
 };
 
 }  // namespace pitviper

@@ -12,7 +12,7 @@ namespace pitviper {
 namespace {
 
 /// As in sim/render/media/glsl/hit_order.comp.glsl.
-enum Total : std::size_t { kEvents, kSteps, kPanes, kSegments, kWords, kFieldPassages, kMostEvents, kMostSteps, kMostWords, kTotals };
+enum Total : std::size_t { kEvents, kSteps, kPanes, kSegments, kWords, kFieldPassages, kGoes, kMostEvents, kMostSteps, kMostWords, kTotals };
 constexpr std::size_t kGroup = 64;
 /// llvmpipe ends all loops of an invocation after 65535 rounds in all, without a word: Shell's method takes so many events in 50000, and as many things in each
 /// other as have so many words are gone through four times.
@@ -33,7 +33,8 @@ OrderedLines::Lists OrderedLines::order(const HitLists& hits, std::size_t first,
   stepRoom_ = std::max(stepRoom_, roomFor(2 * count));
   listRoom_ = std::max(listRoom_, roomFor(count));
   wordRoom_ = std::max(wordRoom_, roomFor(2 * count));
-  lineSteps_.reserve(hits.lineCount() * sizeof(glm::uvec2));
+  lineSteps_.reserve(hits.lineCount() * sizeof(glm::uvec4));
+  goes_.reserve((count + all) * sizeof(glm::uvec2));  // one, or as many as lines through a field, and one beside them
   for (;;) {
     events_.reserve(eventRoom_ * sizeof(glm::uvec4));
     steps_.reserve(stepRoom_ * sizeof(std::uint32_t));
@@ -52,6 +53,7 @@ OrderedLines::Lists OrderedLines::order(const HitLists& hits, std::size_t first,
     panes_.bindStorage(12);
     segments_.bindStorage(13);
     words_.bindStorage(14);
+    goes_.bindStorage(15);
     program_.use();
     set(program_);
     glUniform1i(program_.uniform("filmWidth"), hits.filmWidth());
@@ -79,7 +81,7 @@ OrderedLines::Lists OrderedLines::order(const HitLists& hits, std::size_t first,
       throw GlError("a line of sight crosses " + std::to_string(totals[kMostEvents]) + " borders of what is seen through, " +
                     std::to_string(totals[kMostWords]) + " times in several at once; without a GPU " + std::to_string(kMostEventsOfLine) + " and " +
                     std::to_string(kMostWordsOfLine) + " are worked through; use fewer or simpler transparent bodies, or a GPU");
-    lists.mostSteps = totals[kMostSteps];
+    lists.goes = totals[kGoes];
     lists.panes = totals[kPanes];
     lists.segments = totals[kSegments];
     lists.fieldPassages = totals[kFieldPassages];
@@ -88,9 +90,10 @@ OrderedLines::Lists OrderedLines::order(const HitLists& hits, std::size_t first,
   }
 }
 
-void OrderedLines::bindSteps(unsigned steps, unsigned ofLines) const {
+void OrderedLines::bindSteps(unsigned steps, unsigned ofLines, unsigned goes) const {
   steps_.bindTexture(steps, 1, true);
-  lineSteps_.bindTexture(ofLines, 1, true);
+  lineSteps_.bindTexture(ofLines, 4, true);
+  goes_.bindTexture(goes, 1, true);
 }
 
 }  // namespace pitviper

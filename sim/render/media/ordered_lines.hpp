@@ -17,7 +17,7 @@ class OrderedLines {
   /// Entries of each list, and of each field's in the list of all fields; passages of fields.
   struct Lists {
     std::size_t panes = 0, segments = 0, fieldPassages = 0;
-    std::size_t mostSteps = 0;  ///< of a line
+    std::size_t goes = 0;  ///< a pixel's, or each of a pixel's lines through fields and beside them
     std::vector<std::size_t> fieldEntries, fieldFirst;
     std::size_t passages() const { return panes + segments + fieldPassages; }
   };
@@ -31,14 +31,14 @@ class OrderedLines {
   void bindSegments(unsigned unit) const { segments_.bindTexture(unit, 4, true); }
   void bindFieldEntries(unsigned unit) const { fieldEntries_.bindTexture(unit, 4, true); }
   void bindWords(unsigned unit) const { words_.bindTexture(unit, 1, true); }
-  void bindSteps(unsigned steps, unsigned ofLines) const;
+  void bindSteps(unsigned steps, unsigned ofLines, unsigned goes) const;
   NamedProgram program() const { return {"order of hits", program_.text()}; }
 
  private:
   Program program_;
   int firstField_;
   std::size_t eventRoom_ = 0, stepRoom_ = 0, listRoom_ = 0, wordRoom_ = 0;
-  Buffer totals_, events_, lineSteps_, steps_, panes_, segments_, words_, fieldEntries_;
+  Buffer totals_, events_, lineSteps_, steps_, panes_, segments_, words_, fieldEntries_, goes_;
 };
 
 }  // namespace pitviper

@@ -21,8 +21,7 @@ constexpr int kListSide = 1024;
 constexpr std::size_t kMostBytes = std::size_t{192} << 20;
 constexpr std::size_t kMostLines = 262144, kFewestLines = 4096;
 constexpr std::size_t kGroup = 64;  // as in sim/render/media/glsl/seen_walk.comp.glsl
-/// llvmpipe ends all loops of an invocation after 65535 rounds in all, without a word; a line passes each of its steps in four at most.
-constexpr std::size_t kMostRounds = 60000, kOfStep = 4;
+constexpr std::size_t kMostGoes = kGroup * 65535;  // of a dispatch, by the standard
 
 }  // namespace
 
@@ -169,25 +168,25 @@ void SeenThrough::shadePassages(const Over& over) {
 void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
   const TimedPart part("walk");
   walk_.use();
-  lines_->bindSteps(18, 17);
+  lines_->bindSteps(18, 17, 20);
   hits_->bindLines(19);
   passages_.bindTexture(22, 4);
   if (fields_) fields_->setLines(walk_);
-  glUniform1i(walk_.uniform("firstLine"), static_cast<GLint>(first));
-  glUniform1i(walk_.uniform("lineCount"), static_cast<GLint>(count));
   glUniform3i(walk_.uniform("firstPassages"), 0, static_cast<GLint>(lists_.panes), static_cast<GLint>(lists_.panes + lists_.segments));
-  sums_.reserve(count * static_cast<std::size_t>(targets_) * sizeof(glm::vec4));
+  sums_.reserve(std::max<std::size_t>(lists_.goes, 1) * sizeof(glm::vec4));
   sums_.bindStorage(4);
-  const std::size_t atOnce = std::max<std::size_t>(kMostRounds / (kOfStep * lists_.mostSteps + kOfStep), 2) - 1;  // and the share beside all fields
-  glUniform1i(walk_.uniform("atOnce"), static_cast<GLint>(atOnce));
+  const auto dispatch = [&](bool adding, std::size_t from, std::size_t many) {
+    glUniform1i(walk_.uniform("adding"), adding);
+    glUniform1i(walk_.uniform("first"), static_cast<GLint>(from));
+    glUniform1i(walk_.uniform("count"), static_cast<GLint>(many));
+    glDispatchCompute(static_cast<GLuint>((many + kGroup - 1) / kGroup), 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
+  };
   for (int t = 0; t < targets_; ++t) {
     glBindImageTexture(0, over.spectrum.colour(static_cast<std::size_t>(t)).name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
     glUniform1i(walk_.uniform("four"), t);
-    for (std::size_t l = 0; l == 0 || (fields_ && l < fields_->mostLines()); l += atOnce) {
-      glUniform1i(walk_.uniform("firstOfPixel"), static_cast<GLint>(l));
-      glDispatchCompute(static_cast<GLuint>((count + kGroup - 1) / kGroup), 1, 1);
-      glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
-    }
+    for (std::size_t g = 0; g < lists_.goes; g += kMostGoes) dispatch(false, g, std::min(lists_.goes - g, kMostGoes));
+    if (lists_.goes > count) dispatch(true, first, count);
   }
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }

@@ -13,19 +13,20 @@ layout(std430, binding = 3) writeonly buffer FieldEntries { uvec4 fieldEntries[]
 layout(std430, binding = 6) buffer Links { uvec4 links[]; };
 layout(std430, binding = 8) buffer Totals { uint totals[]; };   // as numbered below; from kTotals on of each field entries, and where these begin
 layout(std430, binding = 9) buffer Events { uvec4 events[]; };  // 2 (1 + hit), + 1: it ends there; its place
-layout(std430, binding = 10) writeonly buffer LineSteps { uvec2 lineSteps[]; };  // first, number
+layout(std430, binding = 10) writeonly buffer LineSteps { uvec4 lineSteps[]; };  // first, number; first go, number
 // kind << 30, 1 << 29: of one group with the next; number in its list, or a field's passage
 layout(std430, binding = 11) writeonly buffer Steps { uint steps[]; };
 layout(std430, binding = 12) writeonly buffer Panes { uvec4 panes[]; };        // pixel, draw, triangle
 layout(std430, binding = 13) writeonly buffer Segments { uvec4 segments[]; };  // pixel, its words; depth of its near end, its length
 layout(std430, binding = 14) buffer Words { uint words[]; };  // of a segment: number of media, their rows; of a field on a line: number of slabs, near ends
+layout(std430, binding = 15) writeonly buffer Goes { uvec2 goes[]; };  // line; of a field's lines which, 0: beside them, all ones: the pixel as one
 uniform int filmWidth;
 uniform int firstLine;
 uniform int lineCount;
 uniform int firstField;  // draw of the first
 uniform ivec4 room;      // events, steps, panes or segments, words
-const int kEvents = 0, kSteps = 1, kPanes = 2, kSegments = 3, kWords = 4, kFieldPassages = 5;
-const int kMostEvents = 6, kMostSteps = 7, kMostWords = 8, kTotals = 9;  // of a line
+const int kEvents = 0, kSteps = 1, kPanes = 2, kSegments = 3, kWords = 4, kFieldPassages = 5, kGoes = 6;
+const int kMostEvents = 7, kMostSteps = 8, kMostWords = 9, kTotals = 10;  // of a line
 const int kPieces = 16;
 const uint kCamera = 0xffffffffu;
 
@@ -174,7 +175,11 @@ void main() {
   for (uint h = head; h != 0u; h = links[h - 1u].x)
     if (kindOf(hitAt(h)) == kField) wordCount += 1u + links[h - 1u].w;
   uint word = wordCount > 0u ? atomicAdd(totals[kWords], wordCount) : 0u;
-  lineSteps[line] = uvec2(step - stepCount, stepCount);
+  bool fields = false;
+  for (uint h = head; h != 0u; h = links[h - 1u].x) fields = fields || (kindOf(hitAt(h)) == kField && links[h - 1u].w > 0u);
+  uint beside = fields && leftByLines(lineOf) > 0.0 ? 1u : 0u, goCount = fields ? uint(through) + beside : 1u, go = atomicAdd(totals[kGoes], goCount);
+  lineSteps[line] = uvec4(step - stepCount, stepCount, go, goCount);
+  for (uint g = 0u; g < goCount; ++g) goes[go + g] = uvec2(line, fields ? g + 1u - beside : 0xffffffffu);
   atomicMax(totals[kMostSteps], stepCount);
   atomicMax(totals[kMostWords], wordCount);
   bool fits = step <= uint(room.y) && pane + paneCount <= uint(room.z) && segment + segmentCount <= uint(room.z) && word + wordCount <= uint(room.w);

@@ -1,21 +1,20 @@
 // What a line shows beyond all that is seen through, taken through its steps, far to near: L <- through L + own. A group is things in the same piece of the
 // line, where their depths a add up to A: what each adds alone, S (1 - exp(-a)), it adds there by E(A) / E(a), E(x) = (1 - exp(-x)) / x: exact where they are
-// even on the piece. Where fields show, a pixel is the sum of its lines, some of them at a time: llvmpipe ends all loops of an invocation after 65535 rounds in
-// all (LP_MAX_TGSI_LOOP_ITERATIONS), without a word.
+// even on the piece. Where fields show a pixel is the sum of several goes, one for each of its lines through them; these are added up when all are told.
 layout(local_size_x = 64) in;
 //@constants
 //@use sim/render/media/glsl/field_lines.glsl
 layout(binding = 17) uniform usamplerBuffer lineSteps;
 layout(binding = 18) uniform usamplerBuffer steps;
 layout(binding = 19) uniform usamplerBuffer lines;
+layout(binding = 20) uniform usamplerBuffer goes;
 layout(binding = 22) uniform samplerBuffer passages;  // as listed_entry.glsl leaves them
-uniform int firstLine;
-uniform int lineCount;
+uniform int first;  // go, or line where goes are added up
+uniform int count;
+uniform bool adding;
 uniform ivec3 firstPassages;  // of panes, segments, fields
-uniform int firstOfPixel;     // of its lines
-uniform int atOnce;           // so many of them
-layout(std430, binding = 4) buffer Sums { vec4 sums[]; };
-uniform int four;  // nodes that are passed: of one target
+layout(std430, binding = 4) buffer Sums { vec4 sums[]; };  // of goes that share a pixel
+uniform int four;                                          // nodes that are passed: of one target
 layout(rgba32f, binding = 0) uniform image2D spectrum;
 
 const uint kJoined = 1u << 29;
@@ -59,29 +58,25 @@ vec4 seen(vec4 behind, int l) {
   return behind;
 }
 
-// Lines from firstOfPixel on are added; what is not all of them yet waits in `sums`.
-vec4 ofPixel(vec4 behind, int lines, int count, vec4 sum) {
-  if (count == 0) return seen(behind, -1);
-  float left = leftByLines(lines);
-  if (firstOfPixel == 0) sum = left > 0.0 ? left * seen(behind, -1) : vec4(0.0);
-  for (int l = firstOfPixel; l < min(count, firstOfPixel + atOnce); ++l) sum += shareOfLine(lines, l) * seen(behind, l);
-  return sum;
-}
-
 void main() {
-  if (gl_GlobalInvocationID.x >= uint(lineCount)) return;
-  int line = firstLine + int(gl_GlobalInvocationID.x);
-  uint pixel = texelFetch(lines, line).x;
+  if (gl_GlobalInvocationID.x >= uint(count)) return;
+  int number = first + int(gl_GlobalInvocationID.x);
+  uvec2 go = adding ? uvec2(uint(number), 0u) : uvec2(texelFetch(goes, 2 * number).x, texelFetch(goes, 2 * number + 1).x);
+  uint pixel = texelFetch(lines, int(go.x)).x;
   ivec2 at = ivec2(pixel & 0xffffu, pixel >> 16);
-  first_ = int(texelFetch(lineSteps, 2 * line).x);
-  end_ = first_ + int(texelFetch(lineSteps, 2 * line + 1).x);
-  bool fields = false;
-  for (int s = first_; s < end_; ++s) fields = fields || stepAt(s) >> 30 == 2u;
-  int through = linesOf(at), count = fields ? countOfLines(through) : 0;
-  if (firstOfPixel > 0 && firstOfPixel >= count) return;
-  bool last = firstOfPixel + atOnce >= count;
-  int own = TARGETS * int(gl_GlobalInvocationID.x) + four;
-  vec4 sum = ofPixel(imageLoad(spectrum, at), through, count, firstOfPixel > 0 ? sums[own] : vec4(0.0));
-  if (last) imageStore(spectrum, at, sum);
-  else sums[own] = sum;
+  uvec4 of = texelFetch(lineSteps, int(go.x));
+  if (adding) {
+    if (of.w < 2u) return;
+    vec4 sum = vec4(0.0);
+    for (uint g = 0u; g < of.w; ++g) sum += sums[of.z + g];
+    imageStore(spectrum, at, sum);
+    return;
+  }
+  first_ = int(of.x);
+  end_ = first_ + int(of.y);
+  int l = go.y == 0xffffffffu ? -1 : int(go.y) - 1, through = linesOf(at);
+  float share = go.y == 0xffffffffu ? 1.0 : l < 0 ? leftByLines(through) : shareOfLine(through, l);
+  vec4 own = share * seen(imageLoad(spectrum, at), l);
+  if (of.w < 2u) imageStore(spectrum, at, own);
+  else sums[number] = own;
 }
