@@ -35,6 +35,11 @@ void fillSamplerSlots() {
   GLint most = 0;
   glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &most);
   if (most < kInFragments) return;
+  GLuint nearest = 0;
+  glCreateSamplers(1, &nearest);
+  glSamplerParameteri(nearest, GL_TEXTURE_MIN_FILTER, GL_NEAREST_MIPMAP_NEAREST);
+  glSamplerParameteri(nearest, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  for (unsigned k = 0; k < kInFragments; ++k) glBindSampler(k, nearest);
   const Program program(vertex, fragment);
   const VertexArray none = makeVertexArray();
   const Texture2D texture(1, 1, PixelFormat::R32f);

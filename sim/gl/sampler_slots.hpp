@@ -4,10 +4,11 @@
 
 namespace pitviper {
 
-/// Of textures read by texelFetch only: nearest, no mip levels. All of a context's are alike, or slots differ by what was drawn before.
+/// Of textures read by texelFetch only: nearest, no mip levels.
 void setNearest(unsigned texture);
 
-/// Draws once with such a texture in all slots of the current context.
+/// Binds one sampler to all units of the current context, for what is read by texelFetch only, and draws once with it in all slots. It is of the nearest level: so
+/// Mesa has it for textures of whole numbers whatever is asked for (st_convert_sampler()), and all must be alike.
 void fillSamplerSlots();
 
 }  // namespace pitviper

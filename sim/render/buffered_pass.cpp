@@ -117,11 +117,9 @@ void BufferedPass::onTemperatures() {
 void BufferedPass::leaveOut(RenderTarget& visibility) {
   if (!drawsOver()) return;
   pixelClasses().cover(visibility);
-  covered_ = true;
 }
 
 void BufferedPass::place(const View& view, const WorldState& state, const std::vector<char>& drawn, std::vector<GpuDraw>& draws) {
-  covered_ = false;
   if (!transparent_) return;
   transparent_->place(view, state, drawn);
   transparent_->addDraws(draws);
@@ -166,8 +164,7 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
         integrate(batches_[b], *before_, spectrum, b > 0);
       }
       const TimedPart part("transparent");
-      transparent_->run(
-          {.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode, .view = view(), .covered = covered_ && !isOfWholePixels()});
+      transparent_->run({.spectrum = spectrum, .visibility = visibility, .firstNode = batches_[b].firstNode, .view = view()});
       bindBuffers();
       visibility.colour(0).bind(0);
     }

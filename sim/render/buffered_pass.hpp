@@ -35,7 +35,6 @@ class BufferedPass final : public ScenePass {
   ClassPrograms shade_;
   ShadingProgram truth_;
   std::unique_ptr<SeenThrough> transparent_;  ///< null: nothing in the scenario is
-  bool covered_ = false;                      ///< the depth of what is seen is that of what is drawn over
   int targets_ = 0;                           ///< RGBA targets of the spectral image
   std::deque<RenderTarget> spectra_;
   std::optional<RenderTarget> before_;  ///< channels of whole pixels

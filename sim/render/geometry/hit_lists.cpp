@@ -29,10 +29,9 @@ HitLists::HitLists(const ShaderLibrary& library, const ShaderSlots& slots, const
       programs_[kind] = Program(assembleShader(library, folder + rowOf(kind).vertices, slots), assembleShader(library, folder + rowOf(kind).fragments, slots));
 }
 
-void HitLists::find(const RenderTarget& visibility, bool covered, const std::function<void()>& draw) {
+void HitLists::find(const RenderTarget& visibility, const std::function<void()>& draw) {
   const auto pixels = static_cast<std::size_t>(visibility.width()) * static_cast<std::size_t>(visibility.height());
   visibility_ = &visibility;
-  covered_ = covered;
   const auto sized = [&](const RenderTarget& t) { return t.width() == visibility.width() && t.height() == visibility.height(); };
   auto target = std::find_if(targets_.begin(), targets_.end(), sized);
   if (target == targets_.end()) target = targets_.emplace(targets_.end(), visibility.width(), visibility.height(), std::vector<PixelFormat>{}, false);
@@ -78,8 +77,8 @@ const Program& HitLists::use(Kind kind) const {
   visibility_->colour(0).bind(0);
   glUniform1i(program.uniform("filmWidth"), visibility_->width());
   glUniform1i(program.uniform("hitRoom"), static_cast<GLint>(room_));
-  if (kind == Kind::Pane || covered_) glEnable(GL_DEPTH_TEST);
-  else glDisable(GL_DEPTH_TEST);
+  // In one state always: of a program's states llvmpipe finds only the first in its cache.
+  glEnable(GL_DEPTH_TEST);
   if (kind == Kind::Pane) {
     glDepthFunc(GL_GEQUAL);
     glDepthRange(0.0, 1.0);

@@ -17,9 +17,9 @@ class HitLists {
   /// `slots`: ground and ground_end. A program of each kind that is asked for.
   HitLists(const ShaderLibrary& library, const ShaderSlots& slots, const std::vector<Kind>& kinds);
 
-  /// Finds the hits of a picture, whose solid scene `visibility` has and which must last while they are asked for. `covered`: what has the nearest depth of all
-  /// is left out. `draw`: draws what there is, each after use() of its kind; called again where there was not enough room. Draws, view, meshes are bound.
-  void find(const RenderTarget& visibility, bool covered, const std::function<void()>& draw);
+  /// Finds the hits of a picture, whose solid scene `visibility` has and which must last while they are asked for; what has the nearest depth of all is left out.
+  /// `draw`: draws what there is, each after use() of its kind; called again where there was not enough room. Draws, view, meshes are bound.
+  void find(const RenderTarget& visibility, const std::function<void()>& draw);
   /// The program of a kind in use, for one to be drawn: its uniforms but those of the lists are the caller's.
   const Program& use(Kind kind) const;
   /// Pixels that have any.
@@ -35,7 +35,6 @@ class HitLists {
  private:
   std::map<Kind, Program> programs_;
   const RenderTarget* visibility_ = nullptr;
-  bool covered_ = false;
   std::size_t lines_ = 0, found_ = 0, room_ = 0;
   Buffer heads_, hits_, links_, lineList_, totals_;
   std::vector<RenderTarget> targets_;  ///< without colours, by size

@@ -54,7 +54,7 @@ SeenTriangle RasterTracer::triangleOf(std::uint32_t draw, std::uint32_t triangle
 
 void RasterTracer::addPanes(const RenderTarget& visibility, const View& view, const WorldState& state, const std::vector<char>& drawn, SeenLines& seen) {
   const std::vector<std::size_t> inView = transparentIn(items_, simulation_, view, state, drawn);
-  hits_->find(visibility, false, [&] {
+  hits_->find(visibility, [&] {
     for (std::size_t d : inView)
       if (items_[d].kind == DrawKind::Layer) drawPane(*hits_, *scene_, simulation_, items_[d], d);
       else if (isMeshed(items_[d])) drawMedium(*hits_, *scene_, simulation_, items_[d], d);

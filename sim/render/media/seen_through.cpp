@@ -94,7 +94,7 @@ void SeenThrough::place(const View& view, const WorldState& state, const std::ve
 void SeenThrough::findHits(const Over& over) {
   if (const TimedPart part("lines of fields"); fields_) fields_->look(over.view);
   const TimedPart part("hits");
-  hits_->find(over.visibility, over.covered, [&] {
+  hits_->find(over.visibility, [&] {
     for (size_t d : draws_) (tables_.draws[d].kind == DrawKind::Layer ? drawPane : drawMedium)(*hits_, *scene_, simulation_, tables_.draws[d], d);
     for (size_t f = 0; fields_ && f < fields_->count(); ++f) {
       if (!fields_->shows(f)) continue;

@@ -35,10 +35,9 @@ class SeenThrough {
   /// A spectral image of the solid scene, of nodes from the first on.
   struct Over {
     RenderTarget& spectrum;
-    const RenderTarget& visibility;  ///< identity and depth of the solid scene
+    const RenderTarget& visibility;  ///< identity and depth of the solid scene; what has the nearest depth of all is left out
     int firstNode = 0;
-    const View& view;      ///< that it is a picture of
-    bool covered = false;  ///< what has the nearest depth of all is left out
+    const View& view;  ///< that it is a picture of
   };
   /// Draws, view, lights and nodes are bound; changes the bound textures of buffers and the blend, cull and depth state's settings. Of a picture's batches of
   /// nodes the first one comes first.
