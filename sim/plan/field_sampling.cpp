@@ -265,7 +265,7 @@ void coarserFor(FieldLooks& looks, const View& view, int pixels, double asked, D
     PixelLines fine = linesOf(1.0, kMoreAcross);
     LineOfSight middle = through(x + 0.5, y + 0.5);
     const std::vector<double> behind = looks.behind(middle);
-    std::vector<double> want = mean(fine, behind);
+    std::vector<double> want;  // as soon as it is asked for
     for (const double coarser : kApart) {
       if (coarser > farthest) continue;
       const PixelLines own = linesOf(coarser, kAcross);
@@ -275,9 +275,10 @@ void coarserFor(FieldLooks& looks, const View& view, int pixels, double asked, D
       while (fine.within.size() < kMoreLines * own.within.size() && fine.within.size() < kMoreAcross * kMoreAcross && wanted > kClosest) {
         wanted *= kCloser;
         fine = linesOf(wanted, kMoreAcross);
-        want = mean(fine, behind);
+        want.clear();
       }
       if (fine.within.size() <= own.within.size()) break;  // nothing is left to tell more by
+      if (want.empty()) want = mean(fine, behind);
       if (off(mean(own, behind), want) <= budget::kFields.of(asked)) break;
     }
   }
