@@ -186,6 +186,8 @@ ScenePass::Targets& ScenePass::targetsFor(int width, int height) {
   std::vector<PixelFormat> colours(static_cast<size_t>(plan_.groupCount() + (truth_ ? 3 : 0)), PixelFormat::Rgba32f);
   targets_.emplace_back(std::pair(width, height),
                         Targets{RenderTarget(width, height, {PixelFormat::Rg32ui}, true), RenderTarget(width, height, colours, false)});
+  // From the start, as what draws later shares one: llvmpipe would make what is drawn before that again.
+  targets_.back().second.shading.shareDepth(targets_.back().second.visibility);
   return targets_.back().second;
 }
 
