@@ -16,7 +16,7 @@ namespace {
 constexpr int kTile_px = 4, kMostTilesAcross = 128;
 /// A field whose depth is less than this part of the way to it has one stretch of air across it: as kEven of its shader.
 constexpr double kEven = 0.1;
-/// Many samples of a zoomed view are one pixel's: lines through each may lie farther apart.
+/// Many pixels of a zoomed view are one of the film's: lines through each may lie farther apart.
 constexpr double kOfMany = 2.0;
 /// Elements that the lines of a pixel look up in all, and as many more of each step: at a nozzle more lines would cost a frame more than its picture gains (a
 /// duel of two jets a half).
@@ -148,13 +148,13 @@ const FieldDraws::Tile* FieldDraws::Body::tileAt(int x, int y) const {
   return t < listed.size() && !listed[t].texel.empty() ? &listed[t] : nullptr;
 }
 
-/// Lines that a pixel may have, each way.
+/// Lines that a pixel may have, each way; those of a zoomed view's share what one of the film may, and have one at least.
 int FieldDraws::mostAt(int x, int y) const {
   double most = kReferenceLines;
   for (const Body& body : bodies_)
     if (const Tile* tile = body.tileAt(x, y)) {
       const double listed = static_cast<double>(tile->texel.size()), work = listed + tile->steps * (kOfStep + listed);
-      most = std::min(most, std::max(std::floor(std::sqrt(mostWork_ / work)), 1.0));
+      most = std::min(most, std::max(std::floor(std::sqrt(mostWork_ / (work * shared_))), 1.0));
     }
   return static_cast<int>(most);
 }
@@ -176,6 +176,7 @@ void FieldDraws::listLines(const View& view) {
       if (tile.lines.apart_px < 1.0) fine += body.grid.w * body.grid.w;
   const double few = std::max(kFullPixels / std::max(fine, 1.0), 1.0);
   mostWork_ = kMostWork * few * few;
+  shared_ = view.zoomed ? std::max(view.pixelTan2 / (view.tanPerPixelX * view.tanPerPixelY), 1.0) : 1.0;
   std::vector<std::uint32_t> words(static_cast<size_t>(part_.z) * static_cast<size_t>(part_.w), 0);
   std::vector<size_t> here;
   std::vector<const FieldLines*> lists;

@@ -73,7 +73,8 @@ class FieldDraws {
   std::map<std::string, Program> programs_;
   std::deque<Body> bodies_;
   Buffer lines_;
-  double mostWork_ = 0.0;  ///< of a pixel's lines
+  double mostWork_ = 0.0;  ///< of the lines of a pixel
+  double shared_ = 1.0;    ///< by so many pixels of a zoomed view
   glm::ivec4 part_{0};     ///< of the film that has lines
   std::vector<std::size_t> entries_;
 };
