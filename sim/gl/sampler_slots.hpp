@@ -7,8 +7,8 @@ namespace pitviper {
 /// Of textures read by texelFetch only: nearest, no mip levels.
 void setNearest(unsigned texture);
 
-/// Binds one sampler to all units of the current context, for what is read by texelFetch only, and draws once with it in all slots. It is of the nearest level: so
-/// Mesa has it for textures of whole numbers whatever is asked for (st_convert_sampler()), and all must be alike.
+/// Binds one sampler to all units of the current context, for what is read by texelFetch only, and draws once with it in all slots. It is of the nearest level,
+/// as Mesa has it for textures of whole numbers whatever is asked for (st_convert_sampler()): all must be alike.
 void fillSamplerSlots();
 
 }  // namespace pitviper

@@ -36,8 +36,6 @@ constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kCandidates = 
 /// What lines are held against has so many times as many, found by bringing these closer step by step, down to a distance.
 constexpr std::size_t kMoreLines = 2;
 constexpr double kCloser = 0.7, kClosest = 0.2;
-/// Lines told of one field at one time after which no more than the fewest pixels are looked at: such with hundreds each.
-constexpr std::size_t kEnoughLines = 40000;
 /// The least that a line counts as where an error is relative to it, of the brightest line of the field: as on the film (filmFloors()).
 constexpr double kDimmest = 1e-3;
 /// Steps of elements that were not there when they were looked for; steps taken for such as never were.
@@ -207,10 +205,8 @@ void coarserFor(FieldLooks& looks, const View& view, int pixels, double asked, D
   const FieldLines lines = fieldLines(view, looks.field());
   if (lines.parts.empty()) return;
   const auto through = [&](double x, double y) { return LineOfSight{view.position, glm::normalize(view.localFromCamera * view.ray(x, y)), {}, 0.0}; };
-  std::size_t told = 0;
   const auto mean = [&](const PixelLines& pixel, const std::vector<double>& behind) {
     std::vector<double> sum;
-    told += pixel.within.size();
     for (const FilmLine& l : pixel.within) {
       LineOfSight sight = through(l.at.x, l.at.y);
       const auto own = looks.before(behind, sight, kSteps);
@@ -251,7 +247,7 @@ void coarserFor(FieldLooks& looks, const View& view, int pixels, double asked, D
                     [](const Place& a, const Place& b) { return a.change > b.change; });
   for (double& a : already)
     if (a == 0.0 && most > 0) a = kApart.front();
-  for (std::size_t p = 0; p < most && (p < kFewestPixels || told < kEnoughLines); ++p) {
+  for (std::size_t p = 0; p < most; ++p) {
     const int x = places[p].x, y = places[p].y;
     FieldLines here;
     for (const FieldLines::Part& part : lines.parts)

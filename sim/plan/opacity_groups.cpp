@@ -20,7 +20,7 @@ using Eigen::VectorXd;
 constexpr double kLeastShare = 1e-6;
 
 /// Part of each wavelength that is spread evenly over all groups before a fit: a share of 0 could not move. Neither is always the better.
-constexpr double kSpreads[] = {0.1, 0.01};
+constexpr double kLittleSpread = 0.01, kSpreads[] = {0.1, kLittleSpread};
 
 /// Products in a fit at most, before the oldest are forgotten, of those at first.
 constexpr size_t kKeptProducts = 4;
@@ -97,6 +97,37 @@ GroupState stateOf(const ProductSet& set, const std::vector<SpectralGroup>& grou
   return state;
 }
 
+/// Divides in two the group whose wavelengths' logarithms of extinction vary most, by what these matter, until there are so many, or all are alike.
+GroupState divided(const ProductSet& set, GroupState state, Eigen::Index count) {
+  // What each wavelength matters: its part of the sources, and a little where none shines.
+  VectorXd matters = 1e-6 * set.weight / set.weight.sum();
+  for (Eigen::Index s = 0; s < set.weighted.cols(); ++s)
+    if (const double sum = set.weighted.col(s).cwiseAbs().sum(); sum > 0.0) matters += set.weighted.col(s).cwiseAbs() / sum;
+  Eigen::MatrixXd opacity(set.fineCount(), set.columnCount());
+  for (Eigen::Index k = 0; k < opacity.cols(); ++k)
+    opacity.col(k) = (set.extinction.col(k).array() + 1e-3 * std::max(set.extinction.col(k).mean(), 1e-300)).log();
+  while (state.share.rows() < count) {
+    const Eigen::MatrixXd parts = state.share * matters.asDiagonal();  // [group, fine]
+    const VectorXd sums = parts.rowwise().sum();
+    const Eigen::MatrixXd mean = (parts * opacity).array().colwise() / sums.array().max(1e-300);
+    const Eigen::MatrixXd spread = parts * opacity.cwiseAbs2() - (mean.cwiseAbs2().array().colwise() * sums.array()).matrix();
+    Eigen::Index g = 0, k = 0;
+    if (opacity.cols() == 0 || !(spread.maxCoeff(&g, &k) > 0.0)) break;
+    const Eigen::Index more = state.share.rows();
+    state.share.conservativeResize(more + 1, Eigen::NoChange);
+    state.extinction.conservativeResize(more + 1, Eigen::NoChange);
+    state.share.row(more).setZero();
+    for (Eigen::Index i = 0; i < state.share.cols(); ++i)
+      if (opacity(i, k) > mean(g, k)) std::swap(state.share(more, i), state.share(g, i));
+    for (const Eigen::Index row : {g, more}) {
+      const VectorXd weight = state.share.row(row).transpose().cwiseProduct(set.weight);
+      if (weight.sum() > 0.0) state.extinction.row(row) = weight.transpose() * set.extinction / weight.sum();
+      else state.extinction.row(row) = state.extinction.row(g);
+    }
+  }
+  return state;
+}
+
 /// Products with a start, for fits of several counts.
 class Fitter {
  public:
@@ -140,11 +171,14 @@ class Fitter {
     double least = errorFigures(all_.errors(all_.moments(state))).first;
     const int firstRounds = std::max(rounds / 3, 1);
     std::vector<GroupState> begins;
+    const auto spreadOut = [](GroupState s, double part) {
+      s.share = (1.0 - part) * s.share.array() + part / static_cast<double>(s.share.rows());
+      return s;
+    };
     if (from_.share.rows() == count) begins.push_back(from_);
-    for (double spread : kSpreads) {
-      begins.push_back(state);
-      begins.back().share = (1.0 - spread) * state.share.array() + spread / static_cast<double>(state.share.rows());
-    }
+    if (from_.share.rows() > 0 && from_.share.rows() < count)
+      if (GroupState more = divided(all_, from_, count); more.share.rows() == count) begins.push_back(spreadOut(std::move(more), kLittleSpread));
+    for (double spread : kSpreads) begins.push_back(spreadOut(state, spread));
     double leastBegun = INFINITY;
     for (GroupState& trial : begins) {
       if (std::min(least, leastBegun) <= goal) break;
@@ -175,6 +209,7 @@ class Fitter {
       if (goal > 0.0 && least > goal && gain * passes < least - goal) break;
       before = {least, before[0]};
     }
+    if (least > goal && least < leastFound_) leastFound_ = least, from_ = best;  // more groups begin with it
     return finish(best, count);
   }
 
@@ -211,7 +246,8 @@ class Fitter {
   FitEffort effort_;
   std::function<bool()> expired_;
   const ProductSet& all_;
-  GroupState from_;  ///< found elsewhere; tried first where it has as many groups
+  GroupState from_;  ///< found elsewhere, or the best that was not enough; tried first where it has as many groups, divided where it has fewer
+  double leastFound_ = INFINITY;
   std::vector<int> working_;
   ProductSet set_;
   GroupStart start_;
@@ -244,7 +280,7 @@ GroupFit fitToTolerance(const ProductSet& products, double tolerance, int mostGr
     } else {
       tooFew = n;
       if (best.groups.empty() || (enough > most && fit.maximum < best.maximum)) best = std::move(fit);
-      n = enough <= most ? (tooFew + enough) / 2 : std::min(std::max(n + 1, n * 3 / 2), most);
+      n = enough <= most ? (tooFew + enough) / 2 : std::min(std::max(n + 1, fewest > 1 ? n * 5 / 4 : n * 3 / 2), most);
       if (n <= tooFew) break;
     }
   }

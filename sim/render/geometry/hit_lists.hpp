@@ -17,8 +17,8 @@ class HitLists {
   /// `slots`: ground and ground_end. A program of each kind that is asked for.
   HitLists(const ShaderLibrary& library, const ShaderSlots& slots, const std::vector<Kind>& kinds);
 
-  /// Finds the hits of a picture, whose solid scene `visibility` has and which must last while they are asked for; what has the nearest depth of all is left out.
-  /// `draw`: draws what there is, each after use() of its kind; called again where there was not enough room. Draws, view, meshes are bound.
+  /// Finds the hits of a picture, whose solid scene `visibility` has and which must last while they are asked for; what has the nearest depth of all is left
+  /// out. `draw`: draws what there is, each after use() of its kind; called again where there was not enough room. Draws, view, meshes are bound.
   void find(const RenderTarget& visibility, const std::function<void()>& draw);
   /// The program of a kind in use, for one to be drawn: its uniforms but those of the lists are the caller's.
   const Program& use(Kind kind) const;
