@@ -29,8 +29,7 @@ constexpr int kTimes = 8;
 constexpr std::size_t kLines = 32, kLinesOfKind = 4;
 constexpr std::size_t kEyes = 3;
 /// Distances between lines through a pixel, the farthest tried first; pixels that are looked at of all fields together, and of one field at least and at most,
-/// of so many times as many; tries to find them; the most lines each way in one, and in what they
-/// are held against; and steps of such a line.
+/// of so many times as many; tries to find them; the most lines each way in one, and in what they are held against; and steps of such a line.
 constexpr std::array kApart{6.0, 4.0, 3.0, 2.2, 1.6, 1.0, 0.7, 0.5, 0.35};
 constexpr int kPixels = 96, kFewestPixels = 16, kMostPixels = 48, kCandidates = 6, kTried = 2000, kAcross = 28, kMoreAcross = 40, kSteps = 8;
 /// What lines are held against has so many times as many, found by bringing these closer step by step, down to a distance.
