@@ -56,6 +56,7 @@ NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralN
   extinction_ = rowsOf(nodes, used, &AirNode::extinction);
   molecules_ = rowsOf(nodes, used, &AirNode::molecules);
   haze_ = rowsOf(nodes, used, &AirNode::haze);
+  for (const SpectralNode& n : nodes) airSource_.push_back(n.air.source);
   for (size_t m = 0; !nodes.empty() && m < nodes.front().absorption_per_m.size(); ++m)
     for (const SpectralNode& n : nodes) absorption_per_m_.push_back(n.absorption_per_m[m]);
   const auto table = [&](std::shared_ptr<const PlanckTable> NodeSpectra::*of, double first, double last, double step) {
@@ -95,7 +96,7 @@ std::vector<double> NodeSpectra::of(const Factor& factor) const {
   return all;
 }
 
-NodeSum::NodeSum(const NodeSpectra& spectra) : spectra_(spectra), count_(spectra.nodes().size()) {
+NodeSum::NodeSum(const NodeSpectra& spectra) : spectra_(spectra), count_(spectra.nodes().size()), none_(count_, 0.0), all_(count_, 1.0) {
   for (At* at : {&near_, &far_})
     for (auto* v : {&at->depth, &at->passed, &at->black, &at->sunDepth, &at->sunPassed}) v->assign(count_, 0.0);
   for (auto* v : {&turned_, &turnedByHaze_}) v->assign(count_, 0.0);
@@ -189,83 +190,93 @@ const std::vector<double>& NodeSum::turnedBy(const MediumInside& m, double cosSc
 }
 
 /// What the media of a segment send per node [W/(m2 sr um)]: their own, and sunlight scattered once, through air and through what lies before the sun.
-std::vector<std::vector<double>> NodeSum::sourcesOf(const Segment& s) {
-  std::vector<std::vector<double>> all;
-  if (s.dark) return std::vector<std::vector<double>>(s.media.size(), std::vector<double>(count_, 0.0));
-  std::vector<double> black, sunAir, shade;  // the first of one temperature: the gases of a field share it
-  double blackOf_K = -1.0;
-  for (const MediumInside& m : s.media) {
-    const NodeSpectra::MediumRows* rows = spectra_.mediumRows(m.material);
-    if (m.lasting || (!rows && (m.medium->albedo || m.medium->radiance))) {
-      all.push_back(values(m.source()));
-    } else {
-      if (m.temperature_K != blackOf_K) {
-        black.resize(count_);
-        spectra_.planck(m.temperature_K, black);
-        blackOf_K = m.temperature_K;
-      }
-      all.push_back(black);
-      for (size_t i = 0; rows && i < count_; ++i) all.back()[i] = rows->thermal[i] * black[i] + m.gain * rows->radiance[i] + rows->around[i];
-    }
-    if (!(m.sun > 0.0)) continue;
-    if (s.sunAir && sunAir.empty()) {
-      std::vector<double> near(count_);
-      sunAir.resize(count_);
-      weigh(spectra_.extinction(), *s.sunAir, sunAir);
-      weigh(spectra_.extinction(), s.near.powered, near);
-      for (size_t i = 0; i < count_; ++i) near[i] = std::max(sunAir[i] - near[i], 0.0);
-      passedOf(near, sunAir);
-    }
-    const std::vector<double>& turned = turnedBy(m, s.cosScatter);
-    shade.resize(count_);
-    const double* perLength = spectra_.absorption_per_m(m.material).data();
-    for (size_t i = 0; i < count_; ++i) shade[i] = -m.sunAmount * perLength[i];
-    exponentials(shade.data(), static_cast<int>(count_));
-    for (size_t i = 0; i < count_; ++i) all.back()[i] += m.sun * turned[i] * (s.sunAir ? sunAir[i] : 1.0) * shade[i];
-  }
-  return all;
-}
-
-/// How much more black bodies send at a segment's far end than at its near end, of what its media send: empty where none changes. No end sends less than
-/// nothing.
-std::vector<std::vector<double>> NodeSum::driftsOf(const Segment& s, const std::vector<std::vector<double>>& sources) {
-  if (s.dark || std::all_of(s.media.begin(), s.media.end(), [](const MediumInside& m) { return m.drift_perK == 0.0; })) return {};
-  std::vector<std::vector<double>> all(s.media.size(), std::vector<double>(count_, 0.0));
-  std::vector<double> far(count_), near(count_);  // of one temperature: the gases of a field share it
-  const MediumInside* of = nullptr;
+void NodeSum::tellSources(const Segment& s) {
+  if (sources_.size() < s.media.size()) sources_.resize(s.media.size());
+  double blackOf_K = -1.0;  // the gases of a field share a temperature, and the way to the sun
+  bool sunAirKnown = false;
   for (size_t k = 0; k < s.media.size(); ++k) {
     const MediumInside& m = s.media[k];
+    std::vector<double>& own = sources_[k];
+    if (s.dark) {
+      own.assign(count_, 0.0);
+      continue;
+    }
+    const NodeSpectra::MediumRows* rows = spectra_.mediumRows(m.material);
+    if (m.lasting || (!rows && (m.medium->albedo || m.medium->radiance))) {
+      own = values(m.source());
+    } else {
+      if (m.temperature_K != blackOf_K) {
+        black_.resize(count_);
+        spectra_.planck(m.temperature_K, black_);
+        blackOf_K = m.temperature_K;
+      }
+      own = black_;
+      for (size_t i = 0; rows && i < count_; ++i) own[i] = rows->thermal[i] * black_[i] + m.gain * rows->radiance[i] + rows->around[i];
+    }
+    if (!(m.sun > 0.0)) continue;
+    if (s.sunAir && !sunAirKnown) {
+      shade_.resize(count_);
+      sunAir_.resize(count_);
+      weigh(spectra_.extinction(), *s.sunAir, sunAir_);
+      weigh(spectra_.extinction(), s.near.powered, shade_);
+      for (size_t i = 0; i < count_; ++i) shade_[i] = std::max(sunAir_[i] - shade_[i], 0.0);
+      passedOf(shade_, sunAir_);
+      sunAirKnown = true;
+    }
+    const std::vector<double>& turned = turnedBy(m, s.cosScatter);
+    shade_.resize(count_);
+    const double* perLength = spectra_.absorption_per_m(m.material).data();
+    for (size_t i = 0; i < count_; ++i) shade_[i] = -m.sunAmount * perLength[i];
+    exponentials(shade_.data(), static_cast<int>(count_));
+    for (size_t i = 0; i < count_; ++i) own[i] += m.sun * turned[i] * (s.sunAir ? sunAir_[i] : 1.0) * shade_[i];
+  }
+}
+
+/// How much more black bodies send at a segment's far end than at its near end, of what its media send; whether any changes. No end sends less than nothing.
+bool NodeSum::tellDrifts(const Segment& s) {
+  if (s.dark || std::all_of(s.media.begin(), s.media.end(), [](const MediumInside& m) { return m.drift_perK == 0.0; })) return false;
+  if (drifts_.size() < s.media.size()) drifts_.resize(s.media.size());
+  const MediumInside* of = nullptr;  // whose temperatures are told: the gases of a field share them
+  for (size_t k = 0; k < s.media.size(); ++k) {
+    const MediumInside& m = s.media[k];
+    drifts_[k].assign(count_, 0.0);
     if (m.drift_perK == 0.0) continue;
     if (!of || of->temperature_K != m.temperature_K || of->drift_perK != m.drift_perK) {
-      spectra_.planck(1.0 / (1.0 / m.temperature_K + 0.5 * m.drift_perK), far);
-      spectra_.planck(1.0 / (1.0 / m.temperature_K - 0.5 * m.drift_perK), near);
+      black_.resize(count_);
+      change_.resize(count_);
+      spectra_.planck(1.0 / (1.0 / m.temperature_K + 0.5 * m.drift_perK), change_);
+      spectra_.planck(1.0 / (1.0 / m.temperature_K - 0.5 * m.drift_perK), black_);
+      for (size_t i = 0; i < count_; ++i) change_[i] -= black_[i];
       of = &m;
     }
     const NodeSpectra::MediumRows* rows = spectra_.mediumRows(m.material);
-    for (size_t i = 0; i < count_; ++i) all[k][i] = std::clamp((rows ? rows->thermal[i] : 1.0) * (far[i] - near[i]), -2.0 * sources[k][i], 2.0 * sources[k][i]);
+    const std::vector<double>& sent = sources_[k];
+    for (size_t i = 0; i < count_; ++i) drifts_[k][i] = std::clamp((rows ? rows->thermal[i] : 1.0) * change_[i], -2.0 * sent[i], 2.0 * sent[i]);
   }
-  return all;
+  return true;
 }
 
 /// What a segment's media take and send, per node.
-void NodeSum::gather(const Segment& s, const std::vector<std::vector<double>>& sources, const std::vector<std::vector<double>>& drifts) {
+void NodeSum::gather(const Segment& s) {
+  tellSources(s);
+  const bool drifts = tellDrifts(s);
   for (auto* v : {&own_.depth, &own_.emitted, &own_.drifting, &own_.watched, &own_.driftingOfWatched, &own_.otherDepth}) v->assign(count_, 0.0);
   bool isOfField = false;
   const auto add = [&](const std::vector<double>& depth, const std::vector<double>& sent, std::vector<double>& into) {
     for (size_t i = 0; i < count_; ++i) into[i] += depth[i] * sent[i];
   };
-  std::vector<double> depth(count_);
+  each_.resize(count_);  // depth of one medium
   for (size_t m = 0; m < s.media.size(); ++m) {
     const MediumInside& of = s.media[m];
     const double* perLength = spectra_.absorption_per_m(of.material).data();
-    for (size_t i = 0; i < count_; ++i) own_.depth[i] += depth[i] = perLength[i] * of.length_m;
-    add(depth, sources[m], own_.emitted);
-    if (!drifts.empty()) add(depth, drifts[m], own_.drifting);
+    for (size_t i = 0; i < count_; ++i) own_.depth[i] += each_[i] = perLength[i] * of.length_m;
+    add(each_, sources_[m], own_.emitted);
+    if (drifts) add(each_, drifts_[m], own_.drifting);
     if (!watchesOne() || of.entity != watched_ || of.field != watchedField_) continue;
     isOfField |= watchedField_ >= 0;
-    for (size_t i = 0; i < count_; ++i) own_.otherDepth[i] -= depth[i];
-    add(depth, sources[m], own_.watched);
-    if (!drifts.empty()) add(depth, drifts[m], own_.driftingOfWatched);
+    for (size_t i = 0; i < count_; ++i) own_.otherDepth[i] -= each_[i];
+    add(each_, sources_[m], own_.watched);
+    if (drifts) add(each_, drifts_[m], own_.driftingOfWatched);
   }
   passedOf(own_.depth, own_.passed);
   if (isOfField && !isParted_) without_ = {radiance_, mediaDepth_, mediaPassed_}, isParted_ = true;
@@ -277,7 +288,6 @@ void NodeSum::gather(const Segment& s, const std::vector<std::vector<double>>& s
 // The law of a segment (segment.glsl) with J = (x S + y B) / (x + y): S of the media, of depth x, told in the middle with what it changes by in a field; B of
 // the air, of depth y, told at both ends.
 void NodeSum::segment(const Segment& s) {
-  const auto nodes = spectra_.nodes();
   // Where one end sees no sun, the other's way to it holds for the segment.
   const double sun = s.sunlit && !s.dark ? 0.5 * (s.near.sun + s.far.sun) : 0.0;
   const bool sunlit = sun > 0.0;
@@ -297,45 +307,41 @@ void NodeSum::segment(const Segment& s) {
     weigh(spectra_.haze(), passed, turnedByHaze_);
     for (size_t i = 0; i < count_; ++i) turned_[i] = rayleigh * std::max(turned_[i], 0.0) + phase[i] * std::max(turnedByHaze_[i], 0.0);
   }
-  const bool media = !s.media.empty() && takes({TermKind::Media}), air = s.air && takes({TermKind::AirEmission}),
+  const bool inMedia = !s.media.empty(), media = inMedia && takes({TermKind::Media}), air = s.air && takes({TermKind::AirEmission}),
              turned = sunlit && takes({TermKind::ScatteredSun});
-  const auto sources = sourcesOf(s), drifts = driftsOf(s, sources);
-  const bool inMedia = !s.media.empty();
-  if (inMedia) gather(s, sources, drifts);
-  for (size_t i = 0; i < count_; ++i) {
-    const double y = s.air ? std::max(far_.depth[i] - near_.depth[i], 0.0) : 0.0;
-    // Media of depth x on the stretch, of which `passed` is the exponential, behind such as let `beforePassed` through.
-    const auto tell = [&](double x, double passed, double before, double beforePassed, double emitted, double drifting, const auto& add, double ofWatched,
-                          double driftingOfWatched) {
-      const double d = x + y;
-      if (s.dark || (s.air ? near_.depth[i] : 0.0) + before > kOpaque || !(d > 0.0)) return;
-      const double reaching = panes_[i] * beforePassed, seen = reaching * (s.air ? near_.passed[i] : 1.0);
-      const double left = (s.air ? far_.passed[i] / near_.passed[i] : 1.0) * passed, lost = physics::lostOf(d, left);
-      const auto sent = [&](double even, double change) { return seen / d * physics::driftingRadiance(even, change, d, left, lost); };
-      if (ofWatched > 0.0) ofEntity_[i] += sent(ofWatched, driftingOfWatched);
-      if (media && x > 0.0) add(TermKind::Media, sent(emitted, drifting));
-      if (air && y > 0.0) {
-        const double near = near_.black[i] + nodes[i].air.source, far = far_.black[i] + nodes[i].air.source;
-        add(TermKind::AirEmission, seen * (y / d) * physics::segmentRadiance(near, far, d, left, lost));
-      }
-      if (!turned) return;
-      const double mean = physics::meanPassed(near_.sunDepth[i], far_.sunDepth[i] + x, near_.sunPassed[i], far_.sunPassed[i] * passed);
-      add(TermKind::ScatteredSun, sun * reaching * mean * (*irradiance)[i] * turned_[i]);
-    };
-    const double x = inMedia ? own_.depth[i] : 0.0, passed = inMedia ? own_.passed[i] : 1.0;
-    tell(
-        x, passed, mediaDepth_[i], mediaPassed_[i], inMedia ? own_.emitted[i] : 0.0, inMedia ? own_.drifting[i] : 0.0,
-        [&](TermKind kind, double radiance) { send(kind, i, radiance); }, inMedia && watchesOne() ? own_.watched[i] : 0.0,
-        inMedia ? own_.driftingOfWatched[i] : 0.0);
-    mediaDepth_[i] += x;
-    mediaPassed_[i] *= passed;
-    if (!isParted_) continue;
-    const double other = inMedia ? own_.otherDepth[i] : 0.0, otherPassed = inMedia ? own_.otherPassed[i] : 1.0;
-    tell(
-        other, otherPassed, without_.depth[i], without_.passed[i], inMedia ? own_.emitted[i] - own_.watched[i] : 0.0,
-        inMedia ? own_.drifting[i] - own_.driftingOfWatched[i] : 0.0, [&](TermKind, double radiance) { without_.radiance[i] += radiance; }, 0.0, 0.0);
-    without_.depth[i] += other;
-    without_.passed[i] *= otherPassed;
+  if (inMedia) gather(s);
+  const double *none = none_.data(), *all = all_.data();
+  SegmentAt at{none, none, all, all, none, all, mediaDepth_.data(), mediaPassed_.data(), panes_.data(), kOpaque};
+  if (s.air) at.nearDepth = near_.depth.data(), at.farDepth = far_.depth.data(), at.nearPassed = near_.passed.data(), at.farPassed = far_.passed.data();
+  if (inMedia) at.depth = own_.depth.data(), at.passed = own_.passed.data();
+  const auto tell = [&](const std::vector<double>& emitted, const std::vector<double>& drifting, const auto& into) {
+    law_.set(at, count_);
+    if (media) into(TermKind::Media, [&](double* sum) { law_.addMedia(emitted.data(), drifting.data(), sum); });
+    if (air) into(TermKind::AirEmission, [&](double* sum) { law_.addAir(near_.black.data(), far_.black.data(), spectra_.airSource().data(), sum); });
+    if (turned)
+      into(TermKind::ScatteredSun, [&](double* sum) {
+        law_.addSun(sun, {near_.sunDepth.data(), far_.sunDepth.data(), near_.sunPassed.data(), far_.sunPassed.data(), irradiance->data(), turned_.data()}, sum);
+      });
+  };
+  const auto pass = [&](std::vector<double>& depth, std::vector<double>& passed) {
+    for (size_t i = 0; inMedia && i < count_; ++i) depth[i] += at.depth[i], passed[i] *= at.passed[i];
+  };
+  if (!s.dark) {
+    tell(own_.emitted, own_.drifting, [&](TermKind kind, const auto& add) {
+      add(radiance_.data());
+      if (keepsParts_) add(parts_[static_cast<size_t>(kind)].data());
+    });
+    if (inMedia && watchesOne()) law_.addMedia(own_.watched.data(), own_.driftingOfWatched.data(), ofEntity_.data());
+  }
+  pass(mediaDepth_, mediaPassed_);
+  if (isParted_) {
+    if (inMedia) at.depth = own_.otherDepth.data(), at.passed = own_.otherPassed.data();
+    at.before = without_.depth.data(), at.beforePassed = without_.passed.data();
+    each_.resize(count_), change_.resize(count_);
+    for (size_t i = 0; inMedia && i < count_; ++i)
+      each_[i] = own_.emitted[i] - own_.watched[i], change_[i] = own_.drifting[i] - own_.driftingOfWatched[i];
+    if (!s.dark) tell(each_, change_, [&](TermKind, const auto& add) { add(without_.radiance.data()); });
+    pass(without_.depth, without_.passed);
   }
   if (s.air) std::swap(near_, far_);
   here_ = &s.far;

@@ -9,6 +9,7 @@
 
 #include "sim/model/spectral_node.hpp"
 #include "sim/radiance/radiance.hpp"
+#include "sim/radiance/segment_law.hpp"
 
 namespace pitviper {
 
@@ -36,6 +37,8 @@ class NodeSpectra {
   const AirRows& extinction() const { return extinction_; }
   const AirRows& molecules() const { return molecules_; }
   const AirRows& haze() const { return haze_; }
+  /// What air sends besides its black body: AirNode::source.
+  const std::vector<double>& airSource() const { return airSource_; }
   /// Of a material's medium, per node.
   std::span<const double> absorption_per_m(int material) const {
     return std::span(absorption_per_m_).subspan(static_cast<size_t>(material) * nodes_.size(), nodes_.size());
@@ -54,6 +57,7 @@ class NodeSpectra {
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
   AirRows extinction_, molecules_, haze_;
+  std::vector<double> airSource_;
   std::vector<double> absorption_per_m_;
   std::shared_ptr<const NodeSurroundings> surroundings_;  ///< null: a uniform dome's
   std::shared_ptr<const PlanckTable> ofAir_, ofGas_;      ///< null: none is asked for
@@ -111,15 +115,17 @@ class NodeSum final : public TermSink {
     std::vector<double> depth, passed, black, sunDepth, sunPassed;
   };
   void place(const AirPlace& at, const AirAmounts* both, At& out);
-  std::vector<std::vector<double>> sourcesOf(const Segment& segment);
-  void gather(const Segment& segment, const std::vector<std::vector<double>>& sources, const std::vector<std::vector<double>>& drifts);
-  std::vector<std::vector<double>> driftsOf(const Segment& segment, const std::vector<std::vector<double>>& sources);
+  void tellSources(const Segment& segment);
+  bool tellDrifts(const Segment& segment);
+  void gather(const Segment& segment);
   /// The phase function of haze per node, kept as lines of one sun mostly ask for the same angle again.
   const std::vector<double>& hazePhase(double cosScatter);
   const std::vector<double>& turnedBy(const MediumInside& medium, double cosScatter);
 
   const NodeSpectra& spectra_;
   size_t count_;
+  std::vector<double> none_, all_;  ///< zeros and ones
+  SegmentLaw law_;
   bool keepsParts_ = false;
   int watched_ = -1, watchedField_ = -1;
   bool watchesOne() const { return watched_ >= 0 || watchedField_ >= 0; }
@@ -140,6 +146,8 @@ class NodeSum final : public TermSink {
   } without_;  ///< the line without the field that is watched: as radiance_, mediaDepth_ and mediaPassed_ from where it begins
   bool isParted_ = false;
   At near_, far_;
+  std::vector<std::vector<double>> sources_, drifts_;    ///< of each medium of the segment being told
+  std::vector<double> black_, change_, sunAir_, shade_, each_;  ///< as they are told; of one medium
   std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_, termDepth_, termPassed_;
   double hazePhaseOf_ = 2.0;                     ///< cosine that hazePhase_ is for
   double turnedAt_ = 2.0;                        ///< cosine that turnedOf_ is for

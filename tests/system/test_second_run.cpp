@@ -52,7 +52,8 @@ std::string ball(const std::string& name, const std::string& place) {
   return "{name: " + name + ", shape: {model: sphere, radius: 1 m, segments: 48}, material: m, temperature: 320 K, position: " + place + "}";
 }
 
-/// A ball that fills pixels and one of a few subpixels (pictures of several kinds), a film of a power of two and not; light from a sky.
+/// A ball that fills pixels and one of a few subpixels (pictures of several kinds), a film of a power of two and not; light from a sky; a jet before and beside
+/// what is small.
 const std::array kScenes = {
     std::pair{
         "near",
@@ -67,7 +68,12 @@ const std::array kScenes = {
     std::pair{"shadow",
               kWorld + "entities: [" + ball("b", "[0 m, 30 m, 20 m]") + ", " + ball("d", "[0.2 m, 27 m, 23 m]") + "]\n" +
                   "cameras: [{name: c, film: {width: 40, height: 64}, field_of_view: 9 deg, aperture: 20 mm, position: [0 m, 0 m, 20 m], look_at: b, " +
-                  kChannels}};
+                  kChannels},
+    std::pair{"jet", kWorld + "entities: [" + ball("far", "[1 m, 2 km, 61 m]") + "]\n" +
+                         "plumes: [{name: p, nozzles: [[0 m, 1990 m, 60 m]], direction: [1, 0, 0], engine: turboshaft, length: 4 m}]\n" +
+                         "cameras: [{name: c, film: {width: 48, height: 40}, samples: auto, field_of_view: 1 deg, aperture: 20 mm, position: [0 m, 0 m, 20 m], "
+                         "look_at: far, " +
+                         kChannels}};
 
 TEST_F(SecondRun, CompilesNothingAndIsTheSame) {
   for (const auto& [name, text] : kScenes) {

@@ -168,7 +168,7 @@ void SeenThrough::shadePassages(const Over& over) {
 void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
   const TimedPart part("walk");
   walk_.use();
-  lines_->bindSteps(18, 17, 20);
+  lines_->bindSteps(18, 17, 23);  // 20 and 21 are the air's, for the lines after these
   hits_->bindLines(19);
   passages_.bindTexture(22, 4);
   if (fields_) fields_->setLines(walk_);

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 layout(binding = 17) uniform usamplerBuffer lineSteps;
 layout(binding = 18) uniform usamplerBuffer steps;
 layout(binding = 19) uniform usamplerBuffer lines;
-layout(binding = 20) uniform usamplerBuffer goes;
+layout(binding = 23) uniform usamplerBuffer goes;
 layout(binding = 22) uniform samplerBuffer passages;  // as listed_entry.glsl leaves them
 uniform int first;  // go, or line where goes are added up
 uniform int count;
