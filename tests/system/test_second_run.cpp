@@ -52,7 +52,7 @@ std::string ball(const std::string& name, const std::string& place) {
   return "{name: " + name + ", shape: {model: sphere, radius: 1 m, segments: 48}, material: m, temperature: 320 K, position: " + place + "}";
 }
 
-/// A ball that fills pixels and one of a few subpixels (pictures of several kinds), a film of a power of two and not; light from a sky; a jet before and beside
+/// A ball that fills pixels and one of a few subpixels (pictures of several kinds), a film of a power of two and not; light from a sky; a jet before
 /// what is small.
 const std::array kScenes = {
     std::pair{
@@ -70,7 +70,7 @@ const std::array kScenes = {
                   "cameras: [{name: c, film: {width: 40, height: 64}, field_of_view: 9 deg, aperture: 20 mm, position: [0 m, 0 m, 20 m], look_at: b, " +
                   kChannels},
     std::pair{"jet", kWorld + "entities: [" + ball("far", "[1 m, 2 km, 61 m]") + "]\n" +
-                         "plumes: [{name: p, nozzles: [[0 m, 1990 m, 60 m]], direction: [1, 0, 0], engine: turboshaft, length: 4 m}]\n" +
+                         "plumes: [{name: p, nozzles: [[-12 m, 1990 m, 61 m]], direction: [1, 0, 0], engine: turboshaft, length: 30 m}]\n" +
                          "cameras: [{name: c, film: {width: 48, height: 40}, samples: auto, field_of_view: 1 deg, aperture: 20 mm, position: [0 m, 0 m, 20 m], "
                          "look_at: far, " +
                          kChannels}};
