@@ -2,13 +2,12 @@
 
 #include <algorithm>
 
-#include "sim/gl/context.hpp"
 #include "sim/plan/budget.hpp"
 
 namespace pitviper {
 namespace {
 
-constexpr int kBinding = 4;
+constexpr int kUnit = 24;
 
 }  // namespace
 
@@ -24,15 +23,14 @@ CoefficientsOnGpu::CoefficientsOnGpu(const Plan& plan, int vectors, const std::o
     for (const auto& [depth, k] : depths)
       if ((left -= depth) >= 0.0) numbers_[from + k] = 0.0f;
   }
-  checkUniformSize(numbers_.size() * sizeof(float), "the air's coefficients");
   block_.upload(numbers_);
 }
 
 void CoefficientsOnGpu::addSlots(ShaderSlots& slots) const {
   slots.constants["AIR_VECTORS"] = vectors_;
-  slots.generated["air_extinction"] = planNumbers("airExtinction", numbers_, kBinding, slots.constants["WRITTEN_OUT"] != 0);
+  slots.generated["air_extinction"] = planNumbers("airExtinction", kUnit);
 }
 
-void CoefficientsOnGpu::bind() const { block_.bindUniform(kBinding); }
+void CoefficientsOnGpu::bind() const { block_.bindTexture(kUnit, 4); }
 
 }  // namespace pitviper

@@ -170,7 +170,7 @@ AirPath airToLight(AirPath camera, float height, float sinElevation, float dista
 Real airDepth(int i, AirPath p) {
   Real depth = 0.0;
 //@each v AIR_VECTORS
-  depth += dot(airExtinction[i * AIR_VECTORS + {v}], p.u{v});
+  depth += dot(airExtinction(i * AIR_VECTORS + {v}), p.u{v});
 //@end
   return depth;
 }

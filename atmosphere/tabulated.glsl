@@ -50,7 +50,7 @@ AirPath airToLight(AirPath camera, float height, float sinElevation, float dista
 Real airDepth(int i, AirPath p) {
   Real depth = 0.0;
 //@each v AIR_VECTORS
-  depth += dot(airExtinction[i * AIR_VECTORS + {v}], p.u{v});
+  depth += dot(airExtinction(i * AIR_VECTORS + {v}), p.u{v});
 //@end
   return depth;
 }
@@ -58,7 +58,7 @@ Real airDepth(int i, AirPath p) {
 Real pathDepth(int i, AirPath near, AirPath far) {
   Real depth = 0.0;
 //@each v AIR_VECTORS
-  depth += dot(airExtinction[i * AIR_VECTORS + {v}], far.beyond{v});
+  depth += dot(airExtinction(i * AIR_VECTORS + {v}), far.beyond{v});
 //@end
   return depth;
 }

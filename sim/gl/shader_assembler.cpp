@@ -1,8 +1,5 @@
 #include "sim/gl/shader_assembler.hpp"
 
-#include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <regex>
 #include <set>
 #include <stdexcept>
@@ -114,21 +111,9 @@ class Assembler {
 
 }  // namespace
 
-std::string planNumbers(const std::string& name, std::span<const float> numbers, int binding, bool writtenOut) {
-  constexpr size_t kMostConstants = 256;
-  const size_t count = numbers.size() / 4;
-  const std::string declared = "vec4 " + name + "[" + std::to_string(count) + "]";
-  if (count == 0) return "";
-  const bool finite = std::all_of(numbers.begin(), numbers.end(), [](float x) { return std::isfinite(x); });  // what is not has no literal
-  if (count > kMostConstants || !finite || !writtenOut)
-    return "layout(std140, binding = " + std::to_string(binding) + ") uniform " + name + "Block { " + declared + "; };\n";
-  std::string text = "const " + declared + " = vec4[](\n";
-  for (size_t i = 0; i < 4 * count; ++i) {
-    char digits[32];
-    const auto end = std::to_chars(digits, digits + sizeof digits, numbers[i], std::chars_format::scientific).ptr;
-    text += (i % 4 == 0 ? "  vec4(" : ", ") + std::string(digits, end) + (i % 4 == 3 ? i + 1 < 4 * count ? "),\n" : "));\n" : "");
-  }
-  return text;
+std::string planNumbers(const std::string& name, int unit) {
+  return "layout(binding = " + std::to_string(unit) + ") uniform samplerBuffer " + name + "Numbers;\nvec4 " + name + "(int i) { return texelFetch(" + name +
+         "Numbers, i); }\n";
 }
 
 AssembledShader assembleShader(const ShaderLibrary& library, const std::string& mainPath, const ShaderSlots& slots) {

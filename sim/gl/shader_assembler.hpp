@@ -42,10 +42,9 @@ struct ShaderSlots {
   std::vector<std::string> extensions;           ///< GLSL extensions the program requires
 };
 
-/// Declares the array of vec4 `name`, numbers that are a plan's own, four to an entry: as constants where each is read by a number that is written out (from
-/// a buffer they cost drivers without a GPU five times as much; but an array that a loop goes through these copy for every pixel), or else, or where they
-/// are many, as a uniform block at `binding` that holds them.
-std::string planNumbers(const std::string& name, std::span<const float> numbers, int binding, bool writtenOut);
+/// Declares `name`(i), numbers that are a plan's own, four to an entry, in a buffer bound as a texture to `unit`. They are not in the text, so that plans alike but
+/// for their numbers share a program: as constants they would cost a frame 2 to 5 % less without a GPU, and each change of a scenario seconds of compiling.
+std::string planNumbers(const std::string& name, int unit);
 
 AssembledShader assembleShader(const ShaderLibrary& library, const std::string& mainPath, const ShaderSlots& slots);
 

@@ -1,14 +1,18 @@
 #include "sim/render/direct_pass.hpp"
 
-#include "sim/gl/context.hpp"
 #include "sim/render/buffered_pass.hpp"
 
 namespace pitviper {
+namespace {
+
+/// Unit of its weights.
+constexpr int kWeights = 25;
+
+}  // namespace
 
 DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const ShaderLibrary& library, std::shared_ptr<const GpuScene> scene, bool truth,
                        double apertureArea_m2, bool classes)
     : ScenePass(simulation, plan, library, std::move(scene), truth, apertureArea_m2, Shading::Direct, classes) {
-  checkUniformSize(tables().weights.size() * sizeof(float), "the channels' spectral weights");
   ShaderSlots slots = shadingSlots(tables().writtenOut);
   slots.files["truth"] = truth ? "sim/render/assembly/glsl/truth_layers.glsl" : "sim/render/assembly/glsl/truth_none.glsl";
   slots.generated["targets"] = tables().targetsText;
@@ -19,7 +23,7 @@ DirectPass::DirectPass(const Simulation& simulation, const Plan& plan, const Sha
     integral.insert(integral.rfind('}'), own);
   }
   slots.generated["integrate"] = integral;
-  slots.generated["weights"] = planNumbers("weights", tables().weights, 2, tables().writtenOut);
+  slots.generated["weights"] = planNumbers("weights", kWeights);
   auto targets = channelTargets();
   if (truth)
     for (const auto& name : truthTargets()) targets.push_back(name);
@@ -34,12 +38,12 @@ std::vector<NamedProgram> DirectPass::programs() const {
 }
 
 void DirectPass::shade(RenderTarget& into, const RenderTarget&) {
-  weights_.bindUniform(2);
+  weights_.bindTexture(kWeights, 4);
   programs_.run(into, pixelClasses(), classesInView());
 }
 
 void DirectPass::shadeTile(RenderTarget& into, const glm::ivec4& part, const std::set<std::size_t>& classes) {
-  weights_.bindUniform(2);
+  weights_.bindTexture(kWeights, 4);
   programs_.run(into, pixelClasses(), classes, part);
 }
 

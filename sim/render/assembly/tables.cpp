@@ -118,6 +118,36 @@ std::vector<Loop> integrationLoops(const Plan& plan) {
 /// compile (2 s for 288).
 constexpr int kMostWrittenOut = 128;
 
+/// Each weight that is not 0 by itself, four to an entry.
+void writeOut(const Plan& plan, const auto& weightOf, const auto& call, std::ostream& text, std::vector<float>& weights) {
+  for (const Loop& loop : loopsOf(plan, true))
+    for (int node = loop.first; node < loop.first + loop.count; ++node) {
+      text << call(loop) << node << ");\n";
+      for (int g : loop.groups)
+        for (int k = 0; k < 4; ++k) {
+          const float w = weightOf(g, k, node);
+          if (w == 0.0f) continue;
+          const size_t at = weights.size();
+          if (at % 4 == 0) text << "  vec4 w" << at / 4 << " = weights(" << at / 4 << ");\n";
+          text << "  channels" << g << "[" << k << "] += w" << at / 4 << "[" << at % 4 << "] * radiance;\n";
+          weights.push_back(w);
+        }
+    }
+  weights.resize((weights.size() + 3) / 4 * 4);
+}
+
+void writeLoops(const Plan& plan, const auto& weightOf, const auto& call, std::ostream& text, std::vector<float>& weights) {
+  for (const Loop& loop : integrationLoops(plan)) {
+    text << "  for (int i = 0; i < " << loop.count << "; ++i) {\n" << call(loop) << loop.first << " + i);\n";
+    for (size_t k = 0; k < loop.groups.size(); ++k)
+      text << "  channels" << loop.groups[k] << " += weights(" << weights.size() / 4 << " + i * " << loop.groups.size() << " + " << k << ") * radiance;\n";
+    text << "  }\n";
+    for (int node = loop.first; node < loop.first + loop.count; ++node)
+      for (int g : loop.groups)
+        for (int k = 0; k < 4; ++k) weights.push_back(weightOf(g, k, node));
+  }
+}
+
 void writeIntegral(RenderTables& t, const Plan& plan) {
   std::ostringstream targets, text;
   targets << "void clearTargets() {\n";
@@ -126,23 +156,13 @@ void writeIntegral(RenderTables& t, const Plan& plan) {
   text << "void integrate() {\n  Real radiance;\n";
   t.writtenOut = plan.nodeCount() * (1 + (plan.terms.lights ? plan.lightCount * t.solid.vectors : 0)) <= kMostWrittenOut &&
                  (!plan.terms.lights || plan.lightCount <= kFewLights || plan.nodeCount() <= kMostLoopsWrittenOut);
-  const bool written = t.writtenOut;
-  size_t at = 0;
-  for (const Loop& loop : written ? loopsOf(plan, true) : integrationLoops(plan)) {
-    const std::string i = written ? "{i}" : "i";
-    text << (written ? "//@each i " + std::to_string(loop.count) : "  for (int i = 0; i < " + std::to_string(loop.count) + "; ++i) {") << "\n"
-         << "  radiance = nodeRadiance" << (loop.lit && plan.terms.lights ? "" : "Unlit") << "(" << loop.first << " + " << i << ");\n";
-    for (size_t k = 0; k < loop.groups.size(); ++k)
-      text << "  channels" << loop.groups[k] << " += weights[" << at << " + " << i << " * " << loop.groups.size() << " + " << k << "] * radiance;\n";
-    text << (written ? "//@end\n" : "  }\n");
-    for (int n = 0; n < loop.count; ++n)
-      for (int g : loop.groups)
-        for (int k = 0; k < 4; ++k) {
-          const size_t slot = static_cast<size_t>(4 * g + k);
-          t.weights.push_back(slot < plan.weight.size() ? static_cast<float>(plan.weight[slot][static_cast<size_t>(loop.first + n)]) : 0.0f);
-        }
-    at += static_cast<size_t>(loop.count) * loop.groups.size();
-  }
+  const auto weightOf = [&plan](int group, int k, int node) {
+    const size_t slot = static_cast<size_t>(4 * group + k);
+    return slot < plan.weight.size() ? static_cast<float>(plan.weight[slot][static_cast<size_t>(node)]) : 0.0f;
+  };
+  const auto call = [&plan](const Loop& loop) { return std::string("  radiance = nodeRadiance") + (loop.lit && plan.terms.lights ? "(" : "Unlit("); };
+  if (t.writtenOut) writeOut(plan, weightOf, call, text, t.weights);
+  else writeLoops(plan, weightOf, call, text, t.weights);
   text << "}\n";
   t.targetsText = targets.str();
   t.integrateText = text.str();
