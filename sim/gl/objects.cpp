@@ -299,6 +299,12 @@ void RenderTarget::bind() const {
   glViewport(0, 0, width_, height_);
 }
 
+UnseenDraws::UnseenDraws() {
+  glEnable(GL_SCISSOR_TEST);
+  glScissor(0, 0, 0, 0);
+}
+UnseenDraws::~UnseenDraws() { glDisable(GL_SCISSOR_TEST); }
+
 DepthLayers::DepthLayers(int size, int count) : size_(size), count_(count) {
   GLuint n = 0;
   glCreateTextures(GL_TEXTURE_2D_ARRAY, 1, &n);

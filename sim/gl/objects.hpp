@@ -159,6 +159,15 @@ class RenderTarget {
   unsigned sharedDepth_ = 0;
 };
 
+/// While it lives nothing that is drawn reaches a pixel, but a driver that compiles what is left of a program when it first draws does so.
+class UnseenDraws {
+ public:
+  UnseenDraws();
+  ~UnseenDraws();
+  UnseenDraws(const UnseenDraws&) = delete;
+  UnseenDraws& operator=(const UnseenDraws&) = delete;
+};
+
 /// Square depth textures of one size, single precision, drawn one at a time and read together.
 class DepthLayers {
  public:

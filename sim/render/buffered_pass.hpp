@@ -37,6 +37,7 @@ class BufferedPass final : public ScenePass {
   std::unique_ptr<SeenThrough> transparent_;  ///< null: nothing in the scenario is
   int targets_ = 0;                           ///< RGBA targets of the spectral image
   std::deque<RenderTarget> spectra_;
+  bool warm_ = false, covers_ = false;  ///< what is transparent has drawn; pixels have been left out
   std::optional<RenderTarget> before_;  ///< channels of whole pixels
 };
 

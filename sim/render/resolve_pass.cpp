@@ -44,7 +44,7 @@ const RenderTarget& ResolvePass::run(const RenderTarget& subpixels, const View& 
     subpixels.colour(i).bind(kSubpixels + static_cast<unsigned>(i));
     (shared ? shared->shaded : subpixels).colour(i).bind(kPixels + static_cast<unsigned>(i));
   }
-  if (shared) shared->bends.bind(kBends);
+  (shared ? shared->bends : none_).bind(kBends);  // llvmpipe would compile again for another kind of texture, or none
   pixels_->bind();
   program_.use();
   glUniform1i(program_.uniform("isShared"), shared != nullptr);

@@ -23,6 +23,7 @@ class ResolvePass {
   std::size_t colours_;
   Program program_;
   std::optional<RenderTarget> pixels_;
+  Texture2D none_{3, 3, PixelFormat::R32f};  ///< in the place of SharedPixels::bends
 };
 
 }  // namespace pitviper

@@ -67,7 +67,7 @@ void SharedShading::findBends(const RenderTarget& subpixels, const RenderTarget&
   smoothness.bind(kSmoothness);
   for (int g = 0; g < groups_; ++g) {
     shaded.colour(static_cast<std::size_t>(g)).bind(kColours + static_cast<unsigned>(g));
-    if (before) before->colour(static_cast<std::size_t>(g)).bind(kBefore + static_cast<unsigned>(g));
+    (before ? *before : shaded).colour(static_cast<std::size_t>(g)).bind(kBefore + static_cast<unsigned>(g));
   }
   find_.use();
   glUniform1f(find_.uniform("threshold"), static_cast<float>(threshold_));

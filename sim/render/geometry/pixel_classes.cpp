@@ -7,7 +7,7 @@
 namespace pitviper {
 namespace {
 
-constexpr unsigned kClasses = 18;
+constexpr unsigned kClasses = 18, kBends = 19;
 
 }  // namespace
 
@@ -21,7 +21,7 @@ PixelClasses::PixelClasses(const ShaderLibrary& library, const ShaderSlots& slot
 
 void PixelClasses::find(const RenderTarget& visibility, const Texture2D* bends, int grouped) {
   begin(visibility);
-  if (bends) bends->bind(19);
+  if (bends) bends->bind(kBends);
   glUniform1i(program_.uniform("grouped"), bends ? grouped : 0);
   drawPart(glm::ivec4(0));
   end();
@@ -73,6 +73,7 @@ void PixelClasses::begin(const RenderTarget& visibility, bool withLight) {
   glDisable(GL_BLEND);
   const Program& program = withLight ? withLight_ : program_;
   program.use();
+  none_.bind(kBends);  // llvmpipe would compile again for another kind of texture, or none
   glUniform1i(program.uniform("grouped"), 0);
 }
 

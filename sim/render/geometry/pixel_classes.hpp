@@ -39,6 +39,7 @@ class PixelClasses {
  private:
   void begin(const RenderTarget& visibility, bool withLight);
   Program program_, withLight_, cover_;  // two of one text: llvmpipe finds only the first of a program's states in its cache
+  Texture2D none_{3, 3, PixelFormat::R32f};  ///< in the place of bends
   std::deque<RenderTarget> targets_;
   const RenderTarget *found_ = nullptr, *light_ = nullptr;
 };

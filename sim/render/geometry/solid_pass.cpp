@@ -120,6 +120,25 @@ void SolidPass::drawHidden(const std::vector<Candidate>& dense) {
   }
 }
 
+void SolidPass::warmUp(RenderTarget& target) {
+  const auto solid = std::find_if(items_.begin(), items_.end(), [](const DrawItem& item) { return item.kind == DrawKind::Solid; });
+  if (solid == items_.end()) return;
+  clear(target);
+  glEnable(GL_CLIP_DISTANCE0);
+  glEnable(GL_DEPTH_CLAMP);
+  const UnseenDraws unseen;
+  Candidate c;
+  c.first = scene_.firstTriangle(solid->entity), c.triangles = 1;
+  drawOne(programs_->single, c);
+  instances_.reserve(sizeof(std::uint32_t));
+  instances_.bindStorage(7);
+  programs_->instanced.use();
+  drawTriangles(c, c.first, 1, 2);
+  c.entity = solid->entity, c.boxBefore = true;
+  drawHidden({c});
+  finish();
+}
+
 void SolidPass::clear(RenderTarget& target) {
   target_ = &target;
   glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
@@ -139,12 +158,16 @@ void SolidPass::drawPart(const glm::ivec4& part, const std::vector<Candidate>& c
   glEnable(GL_DEPTH_TEST);
   glEnable(GL_CLIP_DISTANCE0);
   glEnable(GL_DEPTH_CLAMP);
-  for (const Candidate& c : candidates) drawOne(programs_->ofPart, c);
+  for (const Candidate& c : candidates) drawOne(programs_->single, c);
+  finish();
+  target_->setPart(glm::ivec4(0));
+}
+
+void SolidPass::finish() {
   glDisable(GL_CLIP_DISTANCE0);
   glDisable(GL_DEPTH_CLAMP);
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
-  target_->setPart(glm::ivec4(0));
 }
 
 void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& state, const std::vector<char>& drawn) {
@@ -173,7 +196,7 @@ void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& stat
   }
 
   glEnable(GL_CLIP_DISTANCE0);
-  if (v.onlyEntity >= 0) glEnable(GL_DEPTH_CLAMP);
+  glEnable(GL_DEPTH_CLAMP);  // what is before the camera's near plane is cut off by a distance; in one state always, for which llvmpipe compiles once
   int firstInstance = 0;
   for (const auto& group : groups) {
     if (group.size() == 1) {
@@ -191,10 +214,7 @@ void SolidPass::draw(RenderTarget& target, const View& v, const WorldState& stat
     drawOne(programs_->single, dense[0]);
     drawHidden({dense.begin() + 1, dense.end()});
   }
-  glDisable(GL_CLIP_DISTANCE0);
-  glDisable(GL_DEPTH_CLAMP);
-  glDisable(GL_DEPTH_TEST);
-  glDisable(GL_CULL_FACE);
+  finish();
 }
 
 }  // namespace pitviper

@@ -15,6 +15,9 @@ class SolidPass {
   /// Clears the target and fills it. Draws, view and meshes are bound.
   void draw(RenderTarget& target, const View& view, const WorldState& state, const std::vector<char>& drawn);
 
+  /// Clears the target, and has all programs compiled.
+  void warmUp(RenderTarget& target);
+
   /// Something that may show.
   struct Candidate {
     std::uint32_t draw = 0, first = 0, triangles = 0;
@@ -33,6 +36,7 @@ class SolidPass {
   void drawOne(const Program& program, const Candidate& c) const;
   void drawTriangles(const Candidate& shape, std::uint32_t first, std::uint32_t count, std::size_t instances) const;
   void cutOff(Candidate& c, const View& view, const Pose& pose, const MeshPart& part) const;
+  static void finish();
   void drawHidden(const std::vector<Candidate>& dense);
 
   const Simulation& simulation_;

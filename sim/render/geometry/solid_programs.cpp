@@ -15,7 +15,6 @@ Program visibilityProgram(const ShaderLibrary& library, bool instances) {
 
 SolidPrograms::SolidPrograms(const ShaderLibrary& library)
     : single(visibilityProgram(library, false)),
-      ofPart(visibilityProgram(library, false)),
       instanced(visibilityProgram(library, true)),
       box(assembleShader(library, "sim/render/geometry/glsl/box.vert.glsl", {}), assembleShader(library, "sim/render/geometry/glsl/nothing.frag.glsl", {})) {}
 

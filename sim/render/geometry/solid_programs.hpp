@@ -6,7 +6,7 @@ namespace pitviper {
 
 struct SolidPrograms {
   explicit SolidPrograms(const ShaderLibrary& library);
-  Program single, ofPart, instanced, box;  // two of one text: llvmpipe finds only the first of a program's states in its cache
+  Program single, instanced, box;
 };
 
 }  // namespace pitviper

@@ -228,9 +228,16 @@ void FieldDraws::setLines(const Program& program) const {
   glUniform4i(program.uniform("linesPart"), part_.x, part_.y, part_.z, part_.w);
 }
 
-const Program& FieldDraws::use(size_t field) const {
+void FieldDraws::reserve() {
+  for (Body& body : bodies_)
+    for (Buffer* each : {&body.spectra, &body.texels, &body.tiles}) each->reserve(sizeof(glm::vec4));
+  lines_.reserve(sizeof(std::uint32_t));
+  entries_.assign(bodies_.size(), 0);
+}
+
+const Program& FieldDraws::use(size_t field, bool even) const {
   const Body& body = bodies_[field];
-  const Program& program = body.range.y > 0.0f ? *body.far : *body.near;
+  const Program& program = even ? *body.far : *body.near;
   program.use();
   setTiles(field, program);
   setLines(program);

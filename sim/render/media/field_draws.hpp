@@ -37,8 +37,12 @@ class FieldDraws {
   void setLines(const Program& program) const;
   /// Lines of all pixels that may meet each.
   const std::vector<std::size_t>& entries() const { return entries_; }
-  /// The program of a field in use, its buffers and uniforms set, but those of its list.
-  const Program& use(std::size_t field) const;
+  /// Whether air across it is nearly even, so that its program for that serves.
+  bool isEven(std::size_t field) const { return bodies_[field].range.y > 0.0f; }
+  /// A program of a field in use, its buffers and uniforms set, but those of its list.
+  const Program& use(std::size_t field, bool even) const;
+  /// Buffers for what use() sets, of fields that are not there yet, too.
+  void reserve();
   void addPrograms(std::vector<NamedProgram>& all) const;
 
  private:

@@ -63,7 +63,7 @@ OrderedLines::Lists OrderedLines::order(const HitLists& hits, std::size_t first,
     glUniform4i(program_.uniform("room"), static_cast<GLint>(eventRoom_), static_cast<GLint>(stepRoom_), static_cast<GLint>(listRoom_),
                 static_cast<GLint>(wordRoom_));
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
-    glDispatchCompute(static_cast<GLuint>((count + kGroup - 1) / kGroup), 1, 1);
+    glDispatchCompute(static_cast<GLuint>(std::max<std::size_t>((count + kGroup - 1) / kGroup, 1)), 1, 1);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
     totals_.read(totals.data(), totals.size() * sizeof(std::uint32_t));
     const auto needs = [&](std::size_t& room, std::size_t needed) {

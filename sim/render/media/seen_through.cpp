@@ -127,40 +127,43 @@ void SeenThrough::order(std::size_t first, std::size_t count) {
 void SeenThrough::shade(const Program& program, std::size_t first, std::size_t count, std::size_t firstPassage, int firstNode) {
   glUniform1i(program.uniform("firstNode"), firstNode);
   glUniform1i(program.uniform("firstPassage"), static_cast<GLint>(firstPassage));
-  for (std::size_t done = 0; done < count; done += kEntries) {
+  std::size_t done = 0;
+  do {
     const std::size_t now = std::min(count - done, kEntries);
     glUniform1i(program.uniform("listFirst"), static_cast<GLint>(first + done));
     glUniform1i(program.uniform("listCount"), static_cast<GLint>(now));
-    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>((now >> 8) + ((now & 255) + 15) / 16));
-  }
+    glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(std::max<std::size_t>((now >> 8) + ((now & 255) + 15) / 16, 1)));
+    done += now;
+  } while (done < count);
 }
 
-void SeenThrough::shadePassages(const Over& over) {
+void SeenThrough::shadePassages(const Over& over, bool all) {
   passages_.bindImage(0);
   entries_.bind();
   over.visibility.colour(0).bind(0);
   glEnable(GL_PROGRAM_POINT_SIZE);
-  if (lists_.panes > 0) {
+  if (lists_.panes > 0 || (all && !pane_.text().empty())) {
     buffers_.bind();
     lines_->bindPanes(18);
     pane_.use();
     shade(pane_, 0, lists_.panes, 0, over.firstNode);
   }
-  if (lists_.segments > 0) {
+  if (lists_.segments > 0 || (all && !segment_.text().empty())) {
     media_.bindTexture(5, 4);
     lines_->bindWords(17);
     lines_->bindSegments(18);
     segment_.use();
     shade(segment_, 0, lists_.segments, lists_.panes, over.firstNode);
   }
-  for (size_t f = 0; f < lists_.fieldEntries.size(); ++f) {
-    if (lists_.fieldEntries[f] == 0) continue;
-    const Program& program = fields_->use(f);
-    lines_->bindFieldEntries(18);
-    lines_->bindWords(22);
-    glUniform1i(program.uniform("drawIndex"), static_cast<int>(tables_.draws.size() + f));
-    shade(program, lists_.fieldFirst[f], lists_.fieldEntries[f], lists_.panes + lists_.segments, over.firstNode);
-  }
+  for (size_t f = 0; f < lists_.fieldEntries.size(); ++f)
+    for (const bool even : {false, true}) {
+      if (!all && (lists_.fieldEntries[f] == 0 || fields_->isEven(f) != even)) continue;
+      const Program& program = fields_->use(f, even);
+      lines_->bindFieldEntries(18);
+      lines_->bindWords(22);
+      glUniform1i(program.uniform("drawIndex"), static_cast<int>(tables_.draws.size() + f));
+      shade(program, lists_.fieldFirst[f], lists_.fieldEntries[f], lists_.panes + lists_.segments, over.firstNode);
+    }
   glDisable(GL_PROGRAM_POINT_SIZE);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
@@ -179,16 +182,34 @@ void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
     glUniform1i(walk_.uniform("adding"), adding);
     glUniform1i(walk_.uniform("first"), static_cast<GLint>(from));
     glUniform1i(walk_.uniform("count"), static_cast<GLint>(many));
-    glDispatchCompute(static_cast<GLuint>((many + kGroup - 1) / kGroup), 1, 1);
+    glDispatchCompute(static_cast<GLuint>(std::max<std::size_t>((many + kGroup - 1) / kGroup, 1)), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   };
   for (int t = 0; t < targets_; ++t) {
     glBindImageTexture(0, over.spectrum.colour(static_cast<std::size_t>(t)).name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
     glUniform1i(walk_.uniform("four"), t);
-    for (std::size_t g = 0; g < lists_.goes; g += kMostGoes) dispatch(false, g, std::min(lists_.goes - g, kMostGoes));
+    for (std::size_t g = 0; g == 0 || g < lists_.goes; g += kMostGoes) dispatch(false, g, std::min(lists_.goes - g, kMostGoes));
     if (lists_.goes > count) dispatch(true, first, count);
   }
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+void SeenThrough::warmUp(const Over& over) {
+  const UnseenDraws unseen;
+  if (fields_) fields_->reserve();
+  hits_->find(over.visibility, [&] {
+    for (size_t d = 0; d < tables_.draws.size(); ++d)
+      if (tables_.draws[d].kind == DrawKind::Layer) drawPane(*hits_, *scene_, simulation_, tables_.draws[d], d);
+      else if (tables_.draws[d].kind == DrawKind::Medium) drawMedium(*hits_, *scene_, simulation_, tables_.draws[d], d);
+    for (size_t f = 0; fields_ && f < fields_->count(); ++f) {
+      fields_->setTiles(f, hits_->use(Kind::Field));
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+    }
+  });
+  order(0, 0);
+  shadePassages(over, true);
+  walk(over, 0, 0);
+  ordered_ = {0, 0};
 }
 
 void SeenThrough::run(const Over& over) {
@@ -200,7 +221,7 @@ void SeenThrough::run(const Over& over) {
   for (std::size_t first = 0; first < lines; first += ordered_.second) {
     // Of one lot only, later batches of nodes find it as the first one left it.
     if (ordered_ != std::pair(std::size_t{0}, lines)) order(first, std::min(lines - first, kMostLines));
-    shadePassages(over);
+    shadePassages(over, false);
     walk(over, first, ordered_.second);
   }
 }

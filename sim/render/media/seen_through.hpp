@@ -42,6 +42,8 @@ class SeenThrough {
   /// Draws, view, lights and nodes are bound; changes the bound textures of buffers and the blend, cull and depth state's settings. Of a picture's batches of
   /// nodes the first one comes first.
   void run(const Over& over);
+  /// Has all programs compiled, for things that come into view later.
+  void warmUp(const Over& over);
   /// Those that the scenario's transparent things need: to find and order them, of surfaces, media and fields, and to walk along lines.
   std::vector<NamedProgram> programs() const;
 
@@ -50,7 +52,7 @@ class SeenThrough {
   void findHits(const Over& over);
   void order(std::size_t first, std::size_t count);
   void shade(const Program& program, std::size_t first, std::size_t count, std::size_t firstPassage, int firstNode);
-  void shadePassages(const Over& over);
+  void shadePassages(const Over& over, bool all);
   void walk(const Over& over, std::size_t first, std::size_t count);
 
   const Simulation& simulation_;
