@@ -25,12 +25,13 @@ struct Features {
   bool visible = true;  ///< a channel in the visible beside the long-wave one
   std::string sampling = ", spectral: {samples: 4}";
   std::string accuracy;
+  std::string atmosphere = "hazy_us76", ball = "300 K", lampArea = "0.01 m2", elevation = "40 deg", lens = "20 deg";
 };
 
 std::string textOf(const Features& f) {
   std::string s = f.accuracy;
-  if (f.air) s += "atmosphere: hazy_us76\n";
-  if (f.sun) s += "sun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\n";
+  if (f.air) s += "atmosphere: " + f.atmosphere + "\n";
+  if (f.sun) s += "sun: {azimuth: 200 deg, elevation: " + f.elevation + ", temperature: 5772 K}\n";
   if (f.ambient) s += "ambient: {temperature: 260 K}\n";
   if (!f.shadows) s += "render: {shadows: false}\n";
   s += "materials:\n";
@@ -44,21 +45,22 @@ std::string textOf(const Features& f) {
     s += std::string("  pane: {transmission: {transmittance: 0.7}") + (f.paneReflects ? ", components: [{reflection: lambertian, reflectance: 0.1}]" : "") +
          "}\n";
   s += "  gas: {absorption: 0.01 /m}\n";
-  if (f.lamp) s += "lights: [{name: lamp, intensity: {blackbody: 2500 K, area: 0.01 m2}, position: [20 m, 180 m, 40 m]}]\n";
+  if (f.lamp) s += "lights: [{name: lamp, intensity: {blackbody: 2500 K, area: " + f.lampArea + "}, position: [20 m, 180 m, 40 m]}]\n";
   s += "entities:\n";
   auto body = [&](const std::string& name, const std::string& shape, const std::string& material, const std::string& temperature, const std::string& at) {
     s += "- {name: " + name + ", shape: {" + shape + "}, material: " + material + ", temperature: " + temperature + ", position: [" + at + "]}\n";
   };
   body("ground", "model: box, length: 200 m, width: 200 m, height: 1 m", "plain", f.temperatureTexture ? "{rows: [[280 K, 300 K]]}" : "290 K",
        "0 m, 200 m, 0 m");
-  body("ball", "model: sphere, radius: 5 m", "plain", "300 K", "0 m, 200 m, 20 m");
+  body("ball", "model: sphere, radius: 5 m", "plain", f.ball, "0 m, 200 m, 20 m");
   if (f.angular) body("tabulated", "model: sphere, radius: 5 m", "angular", "300 K", "12 m, 200 m, 20 m");
   if (f.phong) body("glossy", "model: sphere, radius: 5 m", "shiny", "300 K", "-12 m, 200 m, 20 m");
   if (f.pane) body("window", "model: plate, width: 8 m, height: 8 m", "pane", "290 K", "0 m, 150 m, 20 m");
   if (f.plume) body("plume", "model: cone, radius: 2 m, length: 10 m", "gas", "600 K", "5 m, 170 m, 20 m");
   if (f.secondPlume) body("puff", "model: sphere, radius: 3 m", "gas", "500 K", "6 m, 170 m, 20 m");
   if (f.meshedSmoke) body("smoke", "model: box, length: 4 m, width: 4 m, height: 4 m", "gas", "310 K", "-6 m, 170 m, 20 m");
-  s += "cameras: [{name: c, film: {width: 16, height: 16}, field_of_view: 20 deg, aperture: 10 mm, position: [0 m, 0 m, 30 m], look_at: ball" + f.sampling;
+  s += "cameras: [{name: c, film: {width: 16, height: 16}, field_of_view: " + f.lens +
+       ", aperture: 10 mm, position: [0 m, 0 m, 30 m], look_at: ball" + f.sampling;
   if (f.truth) s += ", truth: [range, temperature, solid_angles]";
   s += ",\n  channels: [{name: lw, response: {band: [8 um, 12 um]}}" + std::string(f.visible ? ", {name: vis, response: {band: [0.5 um, 0.7 um]}}" : "") +
        "]}]\n";
@@ -115,6 +117,19 @@ std::set<std::string> readsOf(const std::string& text) {
   std::set<std::string> names;
   for (std::sregex_iterator m(text.begin(), text.end(), declared), end; m != end; ++m) names.insert((*m)[2].matched ? (*m)[2].str() : (*m)[1].str());
   return names;
+}
+
+// Rationale: a change of a number compiles nothing, for no program has it in its text; found where a text is another.
+TEST(OnlyRequired, NumbersAreInBuffers) {
+  for (const Features& f : {Features{}, opaque()}) {
+    Features other = f;
+    other.atmosphere = "{library: hazy_us76, visibility: 9 km}";
+    other.ball = "317 K", other.lampArea = "0.02 m2", other.elevation = "31 deg", other.lens = "17 deg";
+    const Built one(f), two(other);
+    ASSERT_EQ(one.programs.size(), two.programs.size());
+    EXPECT_NE(one.plan.fingerprint, two.plan.fingerprint) << "they are two plans";
+    for (size_t i = 0; i < one.programs.size(); ++i) EXPECT_TRUE(one.programs[i].text == two.programs[i].text) << one.programs[i].name;
+  }
 }
 
 TEST(OnlyRequired, Air) {

@@ -17,9 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 
 struct SecondRun : testing::Test {
-  std::string run(const std::string& scenario, const std::string& out, const std::string& cache, const std::string& with = "") const {
+  std::string run(const std::string& scenario, const std::string& out, const std::string& cache, const std::string& with = "",
+                  const std::string& frames = "0:0") const {
     const std::string line = "cd " + folder.path().string() + " && " + with + " XDG_CACHE_HOME=" + cache + " PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " " +
-                             PITVIPER_PROGRAM + " run " + scenario + " --frames 0:0 --overwrite --out " + out + " 2>&1";
+                             PITVIPER_PROGRAM + " run " + scenario + " --frames " + frames + " --overwrite --out " + out + " 2>&1";
     FILE* pipe = popen(line.c_str(), "r");
     std::array<char, 4096> buffer{};
     std::string output;
@@ -91,6 +92,31 @@ TEST_F(SecondRun, CompilesNothingAndIsTheSame) {
     run(scenario, "poisoned", "$PWD/" + cache, "PITVIPER_POISON=1");
     EXPECT_EQ(frame("poisoned"), frame("first")) << "nothing is read that was not written";
   }
+}
+
+std::string flying(const std::string& what, const std::string& from, const std::string& to) {
+  return "{" + what + ", motion: [{time: 0 s, position: " + from + "}, {time: 5 s, position: " + to + "}]}";
+}
+
+/// At first a ball alone; then another flies in with its shadow, one that stays small, gas, and there is a jet.
+const std::string kComesLater =
+    kWorld + "time: {frames: 6, rate: 1 Hz}\nentities: [" + ball("b", "[-2 m, 30 m, 20 m]") + ", " +
+    flying("name: near, shape: {model: sphere, radius: 1 m, segments: 48}, material: m, temperature: 320 K", "[-30 m, 27 m, 21 m]", "[20 m, 27 m, 21 m]") +
+    ", " +
+    flying("name: small, shape: {model: sphere, radius: 0.1 m}, material: m, temperature: 350 K", "[-60 m, 200 m, 24 m]", "[40 m, 200 m, 24 m]") + ", " +
+    flying("name: gas, shape: {model: sphere, radius: 0.5 m}, material: afterburner_plume, temperature: 900 K", "[-20 m, 25 m, 20 m]", "[15 m, 25 m, 20 m]") +
+    "]\nplumes: [{name: p, nozzles: [[0 m, 60 m, 20 m]], direction: [0, -1, 0], engine: turboshaft, length: 10 m, begin: 2.5 s}]\n" +
+    "cameras: [{name: c, film: {width: 48, height: 40}, samples: auto, field_of_view: 12 deg, aperture: 20 mm, position: [0 m, 0 m, 20 m], "
+    "look_at: [0 m, 30 m, 20 m], " +
+    kChannels;
+
+TEST_F(SecondRun, LaterFramesCompileNothing) {
+  folder.put("later.yaml", kComesLater);
+  run("later.yaml", "first", "$PWD/one");
+  run("later.yaml", "all", "$PWD/all", "", "0:5");
+  ASSERT_GT(entries("one"), 0u);
+  bound("programs that frames after the first compile, of things that come into view", static_cast<double>(entries("all") - entries("one")), 0.0,
+        "none: the first picture has had all of them compiled");
 }
 
 TEST_F(SecondRun, IsTheSameWhateverIsWrongWithTheCache) {

@@ -50,14 +50,5 @@ TEST(ShaderAssembler, RefusesWhatDoesNotEndOrCount) {
   EXPECT_THROW(linesOf("//@slot nothing\n", {}), std::logic_error);
 }
 
-// Shortest decimals that give the same float back; many numbers go into a block.
-TEST(ShaderAssembler, NumbersOfAPlan) {
-  const std::vector<float> few{1.0f, 0.1f, -3.0e-30f, 16777216.0f};
-  EXPECT_EQ(planNumbers("w", few, 2, true), "const vec4 w[1] = vec4[](\n  vec4(1e+00, 1e-01, -3e-30, 1.6777216e+07));\n");
-  EXPECT_EQ(planNumbers("w", std::vector<float>(4 * 300, 0.0f), 2, true), "layout(std140, binding = 2) uniform wBlock { vec4 w[300]; };\n");
-  EXPECT_EQ(planNumbers("w", few, 2, false), "layout(std140, binding = 2) uniform wBlock { vec4 w[1]; };\n");
-  EXPECT_EQ(planNumbers("w", {}, 2, true), "");
-}
-
 }  // namespace
 }  // namespace pitviper::test

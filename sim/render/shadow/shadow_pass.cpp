@@ -99,6 +99,19 @@ ShadowPass::Map& ShadowPass::mapOf(std::size_t caster, std::size_t light, const 
   return map;
 }
 
+/// Has its program compiled, for maps that later pictures ask for.
+void ShadowPass::warmUp() {
+  const UnseenDraws unseen;
+  Map map;
+  map.layer = 0;
+  map.light = {true, glm::dvec3(0.0, 0.0, 1.0), 0.0};
+  for (size_t c = 0; c < boxes_.size() && !map.projection; ++c) {
+    if (trees_->of(c).triangles < kDense) continue;
+    map.projection = fitShadowMap({trees_->of(c).low, trees_->of(c).high}, map.light, kTexels);
+    if (map.projection) draw(c, map);
+  }
+}
+
 void ShadowPass::draw(std::size_t caster, const Map& map) {
   const Entity& entity = simulation_.entities[caster];
   layers_.bindForDrawing(map.layer);
@@ -214,6 +227,8 @@ bool ShadowPass::isNearLine(std::size_t caster, std::size_t receiver, std::size_
 }
 
 void ShadowPass::setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters, const ShadowDemand* demand) {
+  if (!warm_ && simulation_.time.frames > 1) warmUp();
+  warm_ = true;
   const auto lights = static_cast<size_t>(lightCount_);
   std::vector<GpuShadow> shadows;
   ranges_.assign(state.entities.size() * lights, {});

@@ -59,6 +59,7 @@ class ShadowPass {
   bool raysCostLess(std::size_t caster, std::size_t receiver, std::size_t light, const WorldState& state, const ShadowDemand* demand) const;
   LightPlace lightFor(std::size_t caster, std::size_t light, const WorldState& state) const;
   Map& mapOf(std::size_t caster, std::size_t light, const LightPlace& place);
+  void warmUp();
   void draw(std::size_t caster, const Map& map);
   /// Where one body's axes lie in another's.
   struct Relative {
@@ -82,6 +83,7 @@ class ShadowPass {
   std::shared_ptr<const ShadowTrees> trees_;
   int lightCount_;
   Program program_;
+  bool warm_ = false;
   DepthLayers layers_;  ///< as many as have been asked for so far
   int mostLayers_ = 0;
   std::map<std::pair<std::size_t, std::size_t>, Map> maps_;
