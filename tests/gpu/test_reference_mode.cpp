@@ -161,8 +161,8 @@ TEST(ReferenceMode, DrawsOnTheGpuWhatIsSeenAlone) {
     const ReferenceDrawer drawer(sim, plan, shaderLibrary(), gpu, truth, 1.0);
     return programsSoFar().programs - before;
   };
-  figure("programs of a first reference without truth", static_cast<double>(programsOf(false)), 5.0, 0.0,
-         "what each subpixel sees: of a picture, of a part of one, of many bodies at once, behind boxes; which panes it meets");
+  figure("programs of a first reference without truth", static_cast<double>(programsOf(false)), 4.0, 0.0,
+         "what each subpixel sees: of a picture or a part of one, of many bodies at once, behind boxes; which panes it meets");
   figure("programs of a further one", static_cast<double>(programsOf(false)), 1.0, 0.0, "those of solids are the scene's");
   figure("programs of one with truth", static_cast<double>(programsOf(true)), 1.0, 0.0, "the same");
 }
