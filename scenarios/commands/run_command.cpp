@@ -92,6 +92,7 @@ int run(RunWish& w) {
   Simulation sim = w.draw.read();
   const auto [first, last] = framesWanted(w.frames, sim);
   const RunRange range{first, last};
+  sim.alone = first == last;
   HistoryWish& history = w.history;
   history.settle(sim, w.reports);
   PictureWish& pictures = w.draw.pictures;

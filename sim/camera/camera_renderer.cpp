@@ -148,7 +148,7 @@ double CameraRenderer::zoomedLinesOn(std::size_t entity) const {
 /// A driver compiles what is left of a program when it is first used: of a moving scene no later frame, in which something transparent comes into view or
 /// leaves it, is to wait for that.
 void CameraRenderer::warmUp(const ShadowDemand& demand, const std::vector<char>& drawn) {
-  if (!direct_ || !buffered_ || warm_ || simulation_.time.frames < 2) return;
+  if (!direct_ || !buffered_ || warm_ || !simulation_.drawsMore()) return;
   warm_ = true;
   const TimedPart part("preparing");
   ScenePass& other = drawer_ == buffered_.get() ? static_cast<ScenePass&>(*direct_) : *buffered_;

@@ -140,8 +140,8 @@ void addTo(Fingerprint& f, const Material& m) {
 }
 
 void addTo(Fingerprint& f, const Simulation& sim) {
-  const auto& [name, file, sha256, content, seed, mode, shadows, audit, frame, time, limits, wind_m_s, textures, materials, entities, lights, fields, sun,
-               ambient, surroundings, background, ground, air, cameras, probes, commands, stores, sinks] = sim;
+  const auto& [name, file, sha256, content, seed, mode, shadows, alone, audit, frame, time, limits, wind_m_s, textures, materials, entities, lights, fields,
+               sun, ambient, surroundings, background, ground, air, cameras, probes, commands, stores, sinks] = sim;
   f.add(static_cast<double>(seed)).add(static_cast<int>(mode)).add(shadows);
   const auto& [latitude_rad, longitude_rad, height_m] = frame.origin();
   f.add(latitude_rad).add(longitude_rad).add(height_m);

@@ -154,6 +154,7 @@ struct Simulation {
   long long seed = 0;
   RenderMode mode = RenderMode::Auto;
   bool shadows = true;  ///< opaque bodies cast them
+  bool alone = false;   ///< only one frame of it is wanted
   double audit = -1.0;  ///< pixels a frame that are worked out by the reference; below 0: as many as cost a twentieth of the time
   LocalFrame frame;
   TimeAxis time;
@@ -176,6 +177,8 @@ struct Simulation {
   std::vector<Store> stores;      ///< what commands may eject
   std::vector<SinkChoice> sinks;  ///< of its frames; none: files of all of them
 
+  /// More than one picture of a camera: what comes into view later is compiled with the first.
+  bool drawsMore() const { return time.frames > 1 && !alone; }
   const Material& materialOf(const Surface& s) const { return *materials[static_cast<size_t>(s.material)]; }
   const Medium* mediumOf(const Entity& e) const {  ///< what fills it, or null
     return e.surfaces.empty() || !materialOf(e.surfaces.front()).medium ? nullptr : &*materialOf(e.surfaces.front()).medium;

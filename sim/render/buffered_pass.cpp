@@ -116,7 +116,7 @@ void BufferedPass::onTemperatures() {
 
 void BufferedPass::leaveOut(RenderTarget& visibility) {
   if (drawsOver()) return pixelClasses().cover(visibility);
-  if (!transparent_ || covers_ || !isMoving()) return;
+  if (!transparent_ || covers_ || !drawsMore()) return;
   covers_ = true;
   const UnseenDraws unseen;
   pixelClasses().cover(visibility);
@@ -160,7 +160,7 @@ void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
       for (size_t t = 0; t < spectrum.colourCount(); ++t) glClearBufferfv(GL_COLOR, static_cast<GLint>(t), zero);
     }
     shade_.run(spectrum, pixelClasses(), classesInView(), [&](const ShadingProgram& p) { glUniform1i(p.uniform("firstNode"), batches_[b].firstNode); });
-    if (transparent_ && !warm_ && isMoving()) {  // something transparent may come into view
+    if (transparent_ && !warm_ && drawsMore()) {  // something transparent may come into view
       warm_ = true;
       transparent_->warmUp({.spectrum = spectrum, .visibility = visibility, .firstNode = 0, .view = view()});
       bindBuffers();

@@ -218,7 +218,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   }
   {
     const TimedPart part("visibility");
-    if (!warm_ && isMoving()) solids_.warmUp(current_->visibility);
+    if (!warm_ && drawsMore()) solids_.warmUp(current_->visibility);
     solids_.draw(current_->visibility, v, state, drawn);
   }
   const TimedPart part("shading");

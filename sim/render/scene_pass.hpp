@@ -73,8 +73,7 @@ class ScenePass : public LineDrawer {
   virtual void leaveOut(RenderTarget&) {}
 
   const Plan& plan() const { return plan_; }
-  /// Whether there will be more than one picture.
-  bool isMoving() const { return simulation_.time.frames > 1; }
+  bool drawsMore() const { return simulation_.drawsMore(); }
   const AirOnGpu* air() const { return air_.get(); }
   bool hasTruth() const { return truth_; }
   /// Classes of what is solid.

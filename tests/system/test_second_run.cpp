@@ -112,7 +112,7 @@ const std::string kComesLater =
 
 TEST_F(SecondRun, LaterFramesCompileNothing) {
   folder.put("later.yaml", kComesLater);
-  run("later.yaml", "first", "$PWD/one");
+  run("later.yaml", "first", "$PWD/one", "", "0:1");
   run("later.yaml", "all", "$PWD/all", "", "0:5");
   ASSERT_GT(entries("one"), 0u);
   bound("programs that frames after the first compile, of things that come into view", static_cast<double>(entries("all") - entries("one")), 0.0,

@@ -227,7 +227,7 @@ bool ShadowPass::isNearLine(std::size_t caster, std::size_t receiver, std::size_
 }
 
 void ShadowPass::setState(const WorldState& state, const std::function<bool(std::size_t, std::size_t)>& matters, const ShadowDemand* demand) {
-  if (!warm_ && simulation_.time.frames > 1) warmUp();
+  if (!warm_ && simulation_.drawsMore()) warmUp();
   warm_ = true;
   const auto lights = static_cast<size_t>(lightCount_);
   std::vector<GpuShadow> shadows;
