@@ -268,8 +268,8 @@ void ScenePass::findClassesIn(const View& v, const WorldState& state, const std:
 /// Pixels of several subpixels, each once; which of them need more. Null where each subpixel is shaded by itself.
 std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   if (v.grouped < 2 || v.onlyEntity >= 0 || !sharesShading()) return {};
-  const bool isFirst = !shared_;  // of it everything is drawn: no later picture is to wait for a compiler
-  if (isFirst)
+  const bool warms = !shared_ && drawsMore();  // everything is drawn once: no later picture is to wait for a compiler
+  if (!shared_)
     shared_.emplace(library_, plan_.groupCount(), current_->shading.colourCount(), budget::kBends.of(plan_.accuracy > 0.0 ? plan_.accuracy : kUsualAccuracy),
                     plan_.textureAccuracy > 0.0);
   View whole = v;
@@ -293,7 +293,7 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_.smoothness(), averaged ? *before : pixels.shading, averaged ? nullptr : before,
                      v.grouped);
   if (v.subpixels != v.grouped) shared_->spread(pixels.shading, current_->shading, v.grouped, glm::ivec4(0));
-  else if (v.kept.z > 0 || isFirst) shared_->spread(pixels.shading, current_->shading, v.grouped, v.kept);
+  else if (v.kept.z > 0 || warms) shared_->spread(pixels.shading, current_->shading, v.grouped, v.kept);
   wholePixels_ = false;
   view_.bindUniform(0);
   return SharedPixels{pixels.shading, shared_->bends()};
