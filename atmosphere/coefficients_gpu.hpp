@@ -10,7 +10,7 @@ namespace pitviper {
 class CoefficientsOnGpu {
  public:
   /// `vectors`: of four absorbers each. `most`: amounts, raised to their powers, that no way through the air exceeds; coefficients that together add less to a
-  /// depth of these than budget::kThinAbsorbers are 0, which a compiler leaves out; empty: none is.
+  /// depth of these than budget::kThinAbsorbers are 0; empty: none is.
   CoefficientsOnGpu(const Plan& plan, int vectors, const std::optional<AirAmounts>& most = {});
   void addSlots(ShaderSlots& slots) const;
   void bind() const;
