@@ -23,21 +23,10 @@ std::pair<long long, long long> keyOf(double across, double sine) {
   return {std::llround(across * kFine), std::llround(sine * kFine)};
 }
 
-/// More than any way through the air holds: three times one along the ground to space, to their powers.
-AirAmounts longestWay(const Simulation& simulation) {
-  AirAmounts most = simulation.air->amounts({SunLegs::kBottom_m, 0.0, simulation.frame.earthRadius_m()}, physics::kFar);
-  for (double& a : most.amount) a *= 3.0;
-  return simulation.air->powered(most);
-}
-
 }  // namespace
 
 LayeredOnGpu::LayeredOnGpu(const Simulation& simulation, const Plan& plan, bool perChannel)
-    : simulation_(simulation),
-      plan_(plan),
-      perChannel_(perChannel),
-      rows_(simulation, plan, perChannel),
-      coefficients_(plan, rows_.vectors(), longestWay(simulation)) {
+    : simulation_(simulation), plan_(plan), perChannel_(perChannel), rows_(simulation, plan, perChannel), coefficients_(plan, rows_.vectors()) {
   if (plan.lightCount > 0 || (plan.terms.fields && plan.sunLegs))
     addHeights(heights_);  // ways on to them; fields scatter the sun's light where nothing else does
 }

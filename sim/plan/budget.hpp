@@ -39,8 +39,6 @@ inline constexpr Account kTerms{"terms left out", 0.05, Adds::InFull,
                                 "of each term: one that is nowhere more is dropped, and one that turns out more is learnt"};
 inline constexpr Account kLampShadows{"shadows of lamps", 0.02, Adds::InFull, "looked for only where all lamps together are more than that of a pixel"};
 inline constexpr Account kLamps{"lamps", 0.01, Adds::InFull, "left out where all of them together add less"};
-inline constexpr Account kThinAbsorbers{"thin absorbers", 0.002, Adds::InFull,
-                                        "left out of a program, by the depth that they have together on the longest path"};
 
 // Within what wavelengths have.
 inline constexpr Account kFitted{"groups, on lines they are fitted to", 0.33, Adds::Within, "as products; the rest is for lines that were not drawn"};
@@ -73,9 +71,9 @@ inline constexpr Account kBends{
 inline constexpr Account kMotion{"motion within an exposure", 1.0, Adds::Apart, "of the contrast at an edge that moves"};
 inline constexpr Account kTruthPlaces{"truth between its places", 0.04, Adds::Apart, "of a body's contrast in truth's table, which the frame is held against"};
 
-inline constexpr std::array kAccounts{kFields,     kSurroundings, kTables,   kTerms,       kLampShadows, kLamps,      kThinAbsorbers, kFitted,
-                                      kUnseen,     kBesideFields, kHeld,     kLearnt,      kAirPlaces,   kTableSteps, kSunSteps,      kProbeTables,
-                                      kTablesAnew, kFaintFields,  kOutlines, kBrightParts, kBends,       kMotion,     kTruthPlaces};
+inline constexpr std::array kAccounts{kFields,       kSurroundings, kTables,      kTerms,     kLampShadows, kLamps,      kFitted,      kUnseen,
+                                      kBesideFields, kHeld,         kLearnt,      kAirPlaces, kTableSteps,  kSunSteps,   kProbeTables, kTablesAnew,
+                                      kFaintFields,  kOutlines,     kBrightParts, kBends,     kMotion,      kTruthPlaces};
 
 }  // namespace budget
 }  // namespace pitviper

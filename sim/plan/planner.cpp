@@ -100,11 +100,10 @@ struct LastLook {
     plan.lines = kLast;
     plan.parts.resize(floor.size());
     const double lamps = sim.lights.empty() ? 0.0 : (budget::kLamps.share + (plan.terms.shadows ? budget::kLampShadows.share : 0.0)) * plan.accuracy;
-    const double thin = plan.terms.air ? budget::kThinAbsorbers.of(plan.accuracy) : 0.0;
     for (size_t s : slots)
       plan.parts[s] = {kMargin * last.figures[s].largest,
                        plan.parts[s].tables,
-                       last.figures[s].dropped + lamps + thin,
+                       last.figures[s].dropped + lamps,
                        kPrecision,
                        plan.surroundingsLoss.empty() ? 0.0 : plan.surroundingsLoss[s],
                        sim.fields.empty() ? 0.0 : budget::kFields.of(plan.accuracy),
