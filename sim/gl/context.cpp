@@ -59,7 +59,7 @@ std::vector<EGLDeviceEXT> devices() {
 
 EGLDisplay openDevice(EGLDeviceEXT device) { return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr); }
 
-EGLContext makeContext(EGLDisplay display) {
+EGLContext makeContext(EGLDisplay display, EGLContext shared = EGL_NO_CONTEXT) {
   EGLint major = 0, minor = 0;
   if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor)) return EGL_NO_CONTEXT;
   if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
@@ -69,7 +69,7 @@ EGLContext makeContext(EGLDisplay display) {
   if (!eglChooseConfig(display, configWanted, &config, 1, &configs) || configs < 1) config = nullptr;
   const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
                            EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-  EGLContext context = eglCreateContext(display, config, EGL_NO_CONTEXT, wanted);
+  EGLContext context = eglCreateContext(display, config, shared, wanted);
   if (context == EGL_NO_CONTEXT) return context;
   if (!eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
     eglDestroyContext(display, context);
@@ -112,13 +112,27 @@ bool isSoftware() {
   return is;
 }
 
-GlContext::GlContext(std::string device) {
+SharedContext SharedContext::ofCurrent() { return {eglGetCurrentDisplay(), eglGetCurrentContext()}; }
+
+void GlContext::begin() {
   ++gContexts;
+  displayBefore_ = eglGetCurrentDisplay();
+  before_ = eglGetCurrentContext();
+}
+
+GlContext::GlContext(const SharedContext& shared) : display_(shared.display) {
+  begin();
+  context_ = makeContext(shared.display, shared.context);
+  if (!context_) throw GlError("the driver has no further context that shares objects with one");
+  limits_ = currentLimits();
+  if (limits_.software) fillSamplerSlots();
+}
+
+GlContext::GlContext(std::string device) {
+  begin();
   if (const char* wish = std::getenv("PITVIPER_GL"); wish && *wish && device == "auto") device = wish;
   prepareDriverCache();
   checkEgl();
-  displayBefore_ = eglGetCurrentDisplay();
-  before_ = eglGetCurrentContext();
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
   auto tryDisplay = [&](EGLDisplay candidate) {

@@ -20,12 +20,20 @@ struct GlLimits {
   int uniformBlock = 0;    ///< bytes
 };
 
+/// Whose objects a further context of the same process shares: textures, buffers and programs.
+struct SharedContext {
+  void* display = nullptr;
+  void* context = nullptr;
+  static SharedContext ofCurrent();
+};
+
 /// Current on the thread that made it, until destroyed; then the one that was before is again. Not copyable.
 class GlContext {
  public:
   /// `device`: "auto" takes the first hardware EGL device and falls back on surfaceless; "surfaceless"; or "device:N".
   /// The environment variable PITVIPER_GL overrides "auto". Throws GlError.
   explicit GlContext(std::string device = "auto");
+  explicit GlContext(const SharedContext& shared);
   ~GlContext();
   GlContext(const GlContext&) = delete;
   GlContext& operator=(const GlContext&) = delete;
@@ -33,6 +41,7 @@ class GlContext {
   const GlLimits& limits() const { return limits_; }
 
  private:
+  void begin();
   void* display_ = nullptr;
   void* context_ = nullptr;
   void* displayBefore_ = nullptr;

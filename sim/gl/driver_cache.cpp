@@ -68,6 +68,8 @@ std::string takeRoomForDriverCache() {
          "), so it goes without, and compiles them anew in each run; free 2 MB there, or set XDG_CACHE_HOME to a folder with room";
 }
 
+bool driverKeepsPrograms() { return !mesaFolder().empty(); }
+
 void tellOfDriverBy(TellOfDriver tell) { gTell = tell; }
 
 void prepareDriverCache() {

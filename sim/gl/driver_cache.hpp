@@ -9,6 +9,9 @@ namespace pitviper {
 /// environment variables), and what there is to say of that is returned; empty: nothing.
 std::string takeRoomForDriverCache();
 
+/// Whether what one context has had compiled another one of this process finds again, as far as the driver's environment says.
+bool driverKeepsPrograms();
+
 /// Gets such a line, once a process; nobody without.
 using TellOfDriver = void (*)(const char* line);
 void tellOfDriverBy(TellOfDriver tell);

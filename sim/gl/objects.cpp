@@ -21,6 +21,12 @@ void deleteFramebuffer(unsigned n) { glDeleteFramebuffers(1, &n); }
 void deleteVertexArray(unsigned n) { glDeleteVertexArrays(1, &n); }
 void deleteQuery(unsigned n) { glDeleteQueries(1, &n); }
 
+Framebuffer makeFramebuffer() {
+  GLuint n = 0;
+  glCreateFramebuffers(1, &n);
+  return Framebuffer(n);
+}
+
 VertexArray makeVertexArray() {
   GLuint n = 0;
   glCreateVertexArrays(1, &n);
@@ -74,38 +80,47 @@ bool isPoisoned() {
 
 ProgramCount programsSoFar() { return {gPrograms, gLines}; }
 
-Program::Program(const AssembledShader& vertex, const AssembledShader& fragment) {
-  const TimedPart part(kProgramsPart);
-  const GLuint vs = compile(GL_VERTEX_SHADER, vertex);
-  link({vs, compile(GL_FRAGMENT_SHADER, fragment)}, fragment);
+Program::Program(AssembledShader vertex, AssembledShader fragment) : text_(fragment.source) {
+  stages_.emplace_back(GL_VERTEX_SHADER, std::move(vertex));
+  stages_.emplace_back(GL_FRAGMENT_SHADER, std::move(fragment));
 }
 
-Program::Program(const AssembledShader& compute) {
-  const TimedPart part(kProgramsPart);
-  link({compile(GL_COMPUTE_SHADER, compute)}, compute);
-}
+Program::Program(AssembledShader compute) : text_(compute.source) { stages_.emplace_back(GL_COMPUTE_SHADER, std::move(compute)); }
 
-void Program::link(std::initializer_list<unsigned> stages, const AssembledShader& lines) {
-  ++gPrograms;
-  name_ = GlName<deleteProgram>(glCreateProgram());
-  text_ = lines.source;
-  for (unsigned stage : stages) glAttachShader(name_, stage);
-  glLinkProgram(name_);
+void Program::make() const {
+  if (isMade() || stages_.empty()) return;
+  const TimedPart part(kProgramsPart);
+  std::vector<GLuint> compiled;
+  for (const auto& [stage, shader] : stages_) compiled.push_back(compile(stage, shader));
+  GlName<deleteProgram> made(glCreateProgram());
+  for (GLuint stage : compiled) glAttachShader(made, stage);
+  glLinkProgram(made);
   // A driver keeps what it made of a text as long as that is attached.
-  for (unsigned stage : stages) {
-    glDetachShader(name_, stage);
+  for (GLuint stage : compiled) {
+    glDetachShader(made, stage);
     glDeleteShader(stage);
   }
   GLint ok = 0;
-  glGetProgramiv(name_, GL_LINK_STATUS, &ok);
-  if (ok) return;
-  char log[4096] = "";
-  glGetProgramInfoLog(name_, sizeof log, nullptr, log);
-  throw GlError("shader program does not link:\n" + lines.mapLog(log));
+  glGetProgramiv(made, GL_LINK_STATUS, &ok);
+  if (!ok) {
+    char log[4096] = "";
+    glGetProgramInfoLog(made, sizeof log, nullptr, log);
+    throw GlError("shader program does not link:\n" + stages_.back().second.mapLog(log));
+  }
+  ++gPrograms;
+  name_ = std::move(made);
+  stages_.clear();
 }
 
-void Program::use() const { glUseProgram(name_); }
-int Program::uniform(const char* name) const { return glGetUniformLocation(name_, name); }
+void Program::use() const {
+  make();
+  glUseProgram(name_);
+}
+
+int Program::uniform(const char* name) const {
+  make();
+  return glGetUniformLocation(name_, name);
+}
 
 void Buffer::upload(const void* data, std::size_t bytes) {
   if (!isSoftware()) {

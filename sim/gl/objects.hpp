@@ -43,6 +43,8 @@ void deleteQuery(unsigned);
 
 using VertexArray = GlName<deleteVertexArray>;
 VertexArray makeVertexArray();
+using Framebuffer = GlName<deleteFramebuffer>;
+Framebuffer makeFramebuffer();
 
 /// What this process has had compiled and linked so far: programs, and lines of the texts of all their stages.
 struct ProgramCount {
@@ -53,20 +55,22 @@ ProgramCount programsSoFar();
 /// Part of the time (sim/gl/timing.hpp) in which programs are compiled and linked.
 inline constexpr const char* kProgramsPart = "programs";
 
-/// A linked program. Compile and link errors are GlError with file:line of the project's shader files.
+/// A program, compiled and linked when it is first used; errors are GlError with file:line of the project's shader files.
 class Program {
  public:
   Program() = default;
-  Program(const AssembledShader& vertex, const AssembledShader& fragment);
-  explicit Program(const AssembledShader& compute);
+  Program(AssembledShader vertex, AssembledShader fragment);
+  explicit Program(AssembledShader compute);
   void use() const;
   int uniform(const char* name) const;
+  bool isMade() const { return name_ != 0u; }
   /// Source of its fragment or compute stage; empty where there is no program.
   const std::string& text() const { return text_; }
 
  private:
-  void link(std::initializer_list<unsigned> stages, const AssembledShader& lines);
-  GlName<deleteProgram> name_;
+  void make() const;
+  mutable GlName<deleteProgram> name_;
+  mutable std::vector<std::pair<unsigned, AssembledShader>> stages_;  ///< until it is made
   std::string text_;
 };
 

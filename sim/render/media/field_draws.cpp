@@ -26,6 +26,8 @@ constexpr double kMostWork = 30000.0, kOfStep = 3.0;
 constexpr double kFullPixels = 1024.0;
 
 std::uint32_t bitsOf(double v) { return std::bit_cast<std::uint32_t>(static_cast<float>(v)); }
+/// Units of tiles and of lines.
+constexpr unsigned kTiles = 19, kLines = 16;
 
 }  // namespace
 
@@ -219,12 +221,12 @@ glm::ivec4 FieldDraws::rectOf(size_t field) const {
 
 void FieldDraws::setTiles(size_t field, const Program& program) const {
   const Body& body = bodies_[field];
-  body.tiles.bindTexture(19, 1, true);
+  body.tiles.bindTexture(kTiles, 1, true);
   glUniform4i(program.uniform("tileGrid"), body.grid.x, body.grid.y, body.grid.z, body.grid.w);
 }
 
 void FieldDraws::setLines(const Program& program) const {
-  lines_.bindTexture(16, 1, true);
+  lines_.bindTexture(kLines, 1, true);
   glUniform4i(program.uniform("linesPart"), part_.x, part_.y, part_.z, part_.w);
 }
 
@@ -235,19 +237,27 @@ void FieldDraws::reserve() {
   entries_.assign(bodies_.size(), 0);
 }
 
-const Program& FieldDraws::use(size_t field, bool even) const {
+const Program& FieldDraws::program(size_t field, bool even) const {
   const Body& body = bodies_[field];
-  const Program& program = even ? *body.far : *body.near;
-  program.use();
-  setTiles(field, program);
-  setLines(program);
+  return even ? *body.far : *body.near;
+}
+
+void FieldDraws::bind(size_t field) const {
+  const Body& body = bodies_[field];
+  body.tiles.bindTexture(kTiles, 1, true);
+  lines_.bindTexture(kLines, 1, true);
   body.spectra.bindTexture(5, 4);
   body.texels.bindTexture(17, 4);
+}
+
+void FieldDraws::setUniforms(size_t field, const Program& program) const {
+  const Body& body = bodies_[field];
+  setTiles(field, program);
+  setLines(program);
   glUniform2f(program.uniform("fieldRange"), body.range.x, body.range.y);
   glUniform4fv(program.uniform("gasLevels"), static_cast<GLsizei>(body.tables.temperatures.size()), &body.tables.temperatures[0].x);
   glUniform4f(program.uniform("planckRange"), body.tables.firstInverse_K, body.tables.entriesPerInverse, static_cast<float>(body.tables.blackAt),
               static_cast<float>(body.tables.blackEntries - 1));
-  return program;
 }
 
 void FieldDraws::addPrograms(std::vector<NamedProgram>& all) const {

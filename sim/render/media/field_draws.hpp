@@ -39,9 +39,13 @@ class FieldDraws {
   const std::vector<std::size_t>& entries() const { return entries_; }
   /// Whether air across it is nearly even, so that its program for that serves.
   bool isEven(std::size_t field) const { return bodies_[field].range.y > 0.0f; }
-  /// A program of a field in use, its buffers and uniforms set, but those of its list.
-  const Program& use(std::size_t field, bool even) const;
-  /// Buffers for what use() sets, of fields that are not there yet, too.
+  /// That program, or the one for any.
+  const Program& program(std::size_t field, bool even) const;
+  /// A field's buffers, but those of its list.
+  void bind(std::size_t field) const;
+  /// The same of its uniforms; the program is in use.
+  void setUniforms(std::size_t field, const Program& program) const;
+  /// Buffers for what bind() binds, of fields that are not there yet, too.
   void reserve();
   void addPrograms(std::vector<NamedProgram>& all) const;
 

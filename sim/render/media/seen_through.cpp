@@ -124,17 +124,41 @@ void SeenThrough::order(std::size_t first, std::size_t count) {
   passages_.reserve(std::max<std::size_t>(lists_.passages(), 1) * each);
 }
 
-void SeenThrough::shade(const Program& program, std::size_t first, std::size_t count, std::size_t firstPassage, int firstNode) {
+void SeenThrough::shade(const List& list, int firstNode) {
+  const Program& program = list.program;
   glUniform1i(program.uniform("firstNode"), firstNode);
-  glUniform1i(program.uniform("firstPassage"), static_cast<GLint>(firstPassage));
+  glUniform1i(program.uniform("firstPassage"), static_cast<GLint>(list.firstPassage));
   std::size_t done = 0;
   do {
-    const std::size_t now = std::min(count - done, kEntries);
-    glUniform1i(program.uniform("listFirst"), static_cast<GLint>(first + done));
+    const std::size_t now = std::min(list.count - done, kEntries);
+    glUniform1i(program.uniform("listFirst"), static_cast<GLint>(list.first + done));
     glUniform1i(program.uniform("listCount"), static_cast<GLint>(now));
     glDrawArrays(GL_POINTS, 0, static_cast<GLsizei>(std::max<std::size_t>((now >> 8) + ((now & 255) + 15) / 16, 1)));
     done += now;
-  } while (done < count);
+  } while (done < list.count);
+}
+
+/// What is bound and which program, for each list. `all`: of those without entries, too.
+void SeenThrough::forLists(bool all, const std::function<void(const List&)>& visit) {
+  if (lists_.panes > 0 || (all && !pane_.text().empty())) {
+    buffers_.bind();
+    lines_->bindPanes(18);
+    visit({pane_, 0, lists_.panes, 0});
+  }
+  if (lists_.segments > 0 || (all && !segment_.text().empty())) {
+    media_.bindTexture(5, 4);
+    lines_->bindWords(17);
+    lines_->bindSegments(18);
+    visit({segment_, 0, lists_.segments, lists_.panes});
+  }
+  for (size_t f = 0; f < lists_.fieldEntries.size(); ++f)
+    for (const bool even : {false, true}) {
+      if (!all && (lists_.fieldEntries[f] == 0 || fields_->isEven(f) != even)) continue;
+      fields_->bind(f);
+      lines_->bindFieldEntries(18);
+      lines_->bindWords(22);
+      visit({fields_->program(f, even), lists_.fieldFirst[f], lists_.fieldEntries[f], lists_.panes + lists_.segments, f});
+    }
 }
 
 void SeenThrough::shadePassages(const Over& over, bool all) {
@@ -142,28 +166,17 @@ void SeenThrough::shadePassages(const Over& over, bool all) {
   entries_.bind();
   over.visibility.colour(0).bind(0);
   glEnable(GL_PROGRAM_POINT_SIZE);
-  if (lists_.panes > 0 || (all && !pane_.text().empty())) {
-    buffers_.bind();
-    lines_->bindPanes(18);
-    pane_.use();
-    shade(pane_, 0, lists_.panes, 0, over.firstNode);
-  }
-  if (lists_.segments > 0 || (all && !segment_.text().empty())) {
-    media_.bindTexture(5, 4);
-    lines_->bindWords(17);
-    lines_->bindSegments(18);
-    segment_.use();
-    shade(segment_, 0, lists_.segments, lists_.panes, over.firstNode);
-  }
-  for (size_t f = 0; f < lists_.fieldEntries.size(); ++f)
-    for (const bool even : {false, true}) {
-      if (!all && (lists_.fieldEntries[f] == 0 || fields_->isEven(f) != even)) continue;
-      const Program& program = fields_->use(f, even);
-      lines_->bindFieldEntries(18);
-      lines_->bindWords(22);
-      glUniform1i(program.uniform("drawIndex"), static_cast<int>(tables_.draws.size() + f));
-      shade(program, lists_.fieldFirst[f], lists_.fieldEntries[f], lists_.panes + lists_.segments, over.firstNode);
+  FirstDraws first;
+  forLists(all, [&](const List& list) { first.add(list.program, GL_POINTS); });
+  first.make();
+  forLists(all, [&](const List& list) {
+    list.program.use();
+    if (list.field) {
+      fields_->setUniforms(*list.field, list.program);
+      glUniform1i(list.program.uniform("drawIndex"), static_cast<int>(tables_.draws.size() + *list.field));
     }
+    shade(list, over.firstNode);
+  });
   glDisable(GL_PROGRAM_POINT_SIZE);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }

@@ -1,7 +1,9 @@
 #pragma once
 // The ordered pass of buffered mode: what of transparent surfaces, bodies of emitting media and fields a line meets, each node by its own transmittance, from
 // far to near over the spectral image of the solid scene. Source: Duvenhage 2006 section 5.3.2; PHYSICS section 2.
+#include <functional>
 #include <memory>
+#include <optional>
 
 #include "sim/render/assembly/surface_buffers.hpp"
 #include "sim/render/geometry/gpu_scene.hpp"
@@ -51,7 +53,14 @@ class SeenThrough {
   bool noFields() const { return !fields_ || fields_->isEmpty(); }
   void findHits(const Over& over);
   void order(std::size_t first, std::size_t count);
-  void shade(const Program& program, std::size_t first, std::size_t count, std::size_t firstPassage, int firstNode);
+  /// Entries of one list, which one program works out.
+  struct List {
+    const Program& program;
+    std::size_t first, count, firstPassage;
+    std::optional<std::size_t> field = {};
+  };
+  void forLists(bool all, const std::function<void(const List&)>& visit);
+  void shade(const List& list, int firstNode);
   void shadePassages(const Over& over, bool all);
   void walk(const Over& over, std::size_t first, std::size_t count);
 

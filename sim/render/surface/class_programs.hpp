@@ -23,6 +23,7 @@ class ClassPrograms {
   void addTo(std::vector<NamedProgram>& all) const;
 
  private:
+  void make(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes) const;
   std::vector<ShadingProgram> programs_;  ///< of each class
 };
 

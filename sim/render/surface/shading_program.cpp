@@ -44,17 +44,28 @@ ShadingProgram::ShadingProgram(const ShaderLibrary& library, ShaderSlots slots, 
   program_ = fragments ? Program(assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", slots), shading) : Program(shading);
 }
 
+void ShadingProgram::bind(RenderTarget& into, const ChosenPixels& chosen, const glm::ivec4& part) const {
+  into.select(firstColour_, colours_);
+  into.shareDepth(chosen.classes);
+  into.bind();
+  into.setPart(part);
+  glEnable(GL_DEPTH_TEST);
+  glDepthMask(GL_FALSE);
+  glDepthFunc(chosen.below ? GL_GREATER : GL_EQUAL);
+}
+
+void ShadingProgram::addTo(FirstDraws& draws, RenderTarget& into, const ChosenPixels& chosen) const {
+  if (program_.isMade() || stage_ != ShadingStage::Fragment) return;
+  bind(into, chosen, glm::ivec4(0));
+  draws.add(program_, GL_TRIANGLES);
+  glDisable(GL_DEPTH_TEST);
+}
+
 void ShadingProgram::run(RenderTarget& into, const ChosenPixels& chosen, const glm::ivec4& part) const {
   program_.use();
   glUniform1f(program_.uniform("classDepth"), chosen.depth);
   if (stage_ == ShadingStage::Fragment) {
-    into.select(firstColour_, colours_);
-    into.shareDepth(chosen.classes);
-    into.bind();
-    into.setPart(part);
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_FALSE);
-    glDepthFunc(chosen.below ? GL_GREATER : GL_EQUAL);
+    bind(into, chosen, part);
     glDrawArrays(GL_TRIANGLES, 0, 3);
     glDisable(GL_DEPTH_TEST);
     into.setPart(glm::ivec4(0));

@@ -1,6 +1,6 @@
 #pragma once
 // Spectral shading of every pixel of a picture, as full-screen fragments or as compute, from the same bodies.
-#include "sim/gl/objects.hpp"
+#include "sim/gl/first_draws.hpp"
 #include "sim/render/geometry/pixel_classes.hpp"
 
 namespace pitviper {
@@ -23,10 +23,13 @@ class ShadingProgram {
   /// Uniforms may be set between use() and run().
   void use() const { program_.use(); }
   int uniform(const char* name) const { return program_.uniform(name); }
+  /// Adds it to what is made together, as run() will draw it: buffers and textures are bound.
+  void addTo(FirstDraws& draws, RenderTarget& into, const ChosenPixels& chosen) const;
   /// Buffers and textures are bound; binds and selects its colours of the target, whose depth becomes the classes'. `part`: corner and size; of size 0: all.
   void run(RenderTarget& into, const ChosenPixels& chosen, const glm::ivec4& part = glm::ivec4(0)) const;
 
  private:
+  void bind(RenderTarget& into, const ChosenPixels& chosen, const glm::ivec4& part) const;
   ShadingStage stage_ = ShadingStage::Fragment;
   std::size_t firstColour_ = 0, colours_ = 0;
   Program program_;
