@@ -34,6 +34,26 @@ std::vector<double> lookedAt_um(const Simulation& sim) {
 
 NodeSurroundings::~NodeSurroundings() = default;
 
+namespace {
+
+/// Real discrete Fourier transform of values evenly around: [azimuth, frequency], and of how much each frequency is of a value.
+struct Waves {
+  explicit Waves(Eigen::Index round) : cosines(round, round / 2 + 1), sines(round, round / 2 + 1), part(round / 2 + 1) {
+    for (Eigen::Index w = 0; w < count(); ++w) {
+      part[w] = (w == 0 || 2 * w == round ? 1.0 : 2.0) / static_cast<double>(round);
+      for (Eigen::Index a = 0; a < round; ++a) {
+        const double angle = 2.0 * kPi * static_cast<double>(w * a % round) / static_cast<double>(round);
+        cosines(a, w) = std::cos(angle), sines(a, w) = std::sin(angle);
+      }
+    }
+  }
+  Eigen::Index count() const { return part.size(); }
+  Eigen::MatrixXd cosines, sines;
+  Eigen::VectorXd part;
+};
+
+}  // namespace
+
 NodeSurroundings::NodeSurroundings(const Simulation& simulation, std::span<const SpectralNode> nodes, int degree, const NodeSurroundings* parts)
     : simulation_(simulation), nodes_(nodes), degree_(degree), parts_(parts), usual_um_(lookedAt_um(simulation)) {}
 
@@ -52,26 +72,34 @@ Eigen::MatrixXd NodeSurroundings::Patterns::tellRest(const Surroundings& around,
     realHarmonics(finer.direction(static_cast<size_t>(g)), kMostHarmonicOrder, y);
     left.col(g) = -lost * Eigen::Map<const Eigen::VectorXd>(y.data(), used);
   }
-  // Patterns' azimuths by rings; for each turn between what is read and what is told.
-  Eigen::MatrixXd from(patterns * round, rings);
+  // What is told at an azimuth is read at all others by how far they are turned: of each frequency around, a product of rings read by rings told.
+  const Waves waves(round);
+  const Eigen::Index count = waves.count();
+  Eigen::MatrixXd from(patterns * rings, round);
   for (Eigen::Index p = 0; p < patterns; ++p)
-    for (Eigen::Index g = 0; g < entries; ++g) from(p * round + g % round, g / round) = pattern(p, g);
+    for (Eigen::Index g = 0; g < entries; ++g) from(p + patterns * (g / round), g % round) = pattern(p, g);
+  const Eigen::MatrixXd fromCos = from * waves.cosines, fromSin = from * waves.sines;  // [pattern, ring read; frequency]
   using Strides = Eigen::Stride<Eigen::Dynamic, Eigen::Dynamic>;
+  const auto at = [](const Eigen::MatrixXd& all, Eigen::Index wave, Eigen::Index rows, Eigen::Index columns) {
+    return Eigen::Map<const Eigen::MatrixXd>(all.data() + wave * rows * columns, rows, columns);
+  };
   for (Eigen::Index phase = 0; phase < phases; ++phase) {
-    Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(patterns * round, told);
-    for (Eigen::Index turn = 0; turn < round; ++turn) {
-      const Eigen::MatrixXd shares = Eigen::Map<const Eigen::MatrixXd, 0, Strides>(blur.shares.data() + phase * entries + turn, rings, told,
-                                                                                   Strides(phases * entries, round));  // [ring read, ring told]
-      if (shares.isZero(0.0)) continue;
-      const Eigen::MatrixXd all = from * shares;
-      for (Eigen::Index p = 0; p < patterns; ++p) {
-        sum.middleRows(p * round, round - turn) += all.middleRows(p * round + turn, round - turn);
-        sum.middleRows(p * round + round - turn, turn) += all.middleRows(p * round, turn);
-      }
+    Eigen::MatrixXd shares(rings * told, round);  // [ring read, ring told; turn]
+    for (Eigen::Index turn = 0; turn < round; ++turn)
+      Eigen::Map<Eigen::MatrixXd>(shares.col(turn).data(), rings, told) = Eigen::Map<const Eigen::MatrixXd, 0, Strides>(
+          blur.shares.data() + phase * entries + turn, rings, told, Strides(phases * entries, round));
+    const Eigen::MatrixXd sharesCos = shares * waves.cosines, sharesSin = shares * waves.sines;
+    Eigen::MatrixXd real(patterns * told, count), imaginary(patterns * told, count);
+    for (Eigen::Index w = 0; w < count; ++w) {
+      const auto xc = at(fromCos, w, patterns, rings), xs = at(fromSin, w, patterns, rings), sc = at(sharesCos, w, rings, told),
+                 ss = at(sharesSin, w, rings, told);
+      Eigen::Map<Eigen::MatrixXd>(real.col(w).data(), patterns, told) = xc * sc + xs * ss;
+      Eigen::Map<Eigen::MatrixXd>(imaginary.col(w).data(), patterns, told) = xc * ss - xs * sc;
     }
+    const Eigen::MatrixXd sum = (real * waves.part.asDiagonal()) * waves.cosines.transpose() - (imaginary * waves.part.asDiagonal()) * waves.sines.transpose();
     for (Eigen::Index p = 0; p < patterns; ++p)
       for (Eigen::Index r = 0; r < told; ++r)
-        for (Eigen::Index a = 0; a < round; ++a) left(p, (r * round + a) * phases + phase) += sum(p * round + a, r);
+        for (Eigen::Index a = 0; a < round; ++a) left(p, (r * round + a) * phases + phase) += sum(p + patterns * r, a);
   }
   return left;
 }

@@ -246,8 +246,8 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
 /// A pass over the film costs something where a class has no pixels, too.
 void ScenePass::findClassesIn(const View& v, const WorldState& state, const std::vector<char>& drawn) {
   classesInView_ = {0};
-  // Of the first picture all: a driver compiles what is left of a program when it is first used, and no later frame is to wait for that.
-  for (size_t c = 1; !warm_ && c < surfaceClasses_.size(); ++c) classesInView_.insert(c);
+  // Of the first picture of several all: a driver compiles what is left of a program when it is first used, and no later frame is to wait for that.
+  for (size_t c = 1; !warm_ && drawsMore() && c < surfaceClasses_.size(); ++c) classesInView_.insert(c);
   warm_ = true;
   for (const DrawItem& d : tables_.draws) {
     const auto add = [&](const LightNeeds& needs) {
