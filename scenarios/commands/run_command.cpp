@@ -30,7 +30,7 @@ struct RunWish {
   DrawWish draw;
   std::string frames;
   HistoryWish history;
-  bool times = false, reports = false;
+  bool times = false, reports = false, drafts = false;
 };
 
 /// Probe readings as CSV, one file a probe.
@@ -91,7 +91,7 @@ void learn(const RunReport& report, Simulation& sim, int start, Notes& notes) {
 int run(RunWish& w) {
   Simulation sim = w.draw.read();
   const auto [first, last] = framesWanted(w.frames, sim);
-  const RunRange range{first, last};
+  const RunRange range{first, last, w.drafts};
   sim.alone = first == last;
   HistoryWish& history = w.history;
   history.settle(sim, w.reports);
@@ -173,6 +173,7 @@ int run(RunWish& w) {
       if (history.mustDraw && !told->whyNoPicture.empty()) notes.say("no picture of the trajectories: " + told->whyNoPicture);
     }
     progress.finish();
+    if (!report.whyDrafts.empty()) notes.say("all frames are drafts: " + report.whyDrafts);
     auto count = [](size_t n, const char* what) { return std::to_string(n) + " " + what + (n == 1 ? "" : "s"); };
     std::string done;
     if (!sim.cameras.empty()) done = count(static_cast<size_t>(frames), "frame") + " of " + count(sim.cameras.size(), "camera");
@@ -204,6 +205,10 @@ CommandLine runCommand() {
                    into(w->reports)},
                   {"--no-history", "", "without history.csv and encounters.csv, which are written where something moves", into(w->history.none)},
                   {"--trajectories", "", "also trajectories.png, what was flown (needs VTK; with --report too)", into(w->history.mustDraw)},
+                  {"--draft", "",
+                   "a picture soon: frames are drawn by a draft's few groups (20 %; each says so, with the error to expect) while plans are made beside, and as "
+                   "asked from the frame on at which they are there; one frame alone by a draft, unless its plan is known",
+                   into(w->drafts)},
                   {"--timing", "",
                    "says at the end how long planning, tables, programs and the first frame took, and where the time of frames after it went: visibility, "
                    "shadows, air, shading, readback, files; drawing then waits for each part, which makes it somewhat slower",

@@ -22,6 +22,8 @@ void RunTotal::add(const Frame& f) {
       ++full.frames;
       full.most = std::max(full.most, static_cast<double>(tally.full) / (static_cast<double>(f.width) * f.height));
     }
+  const bool isDraft = std::any_of(f.attributes.begin(), f.attributes.end(), [](const Attribute& a) { return a.name == "pitviper.draft"; });
+  seen.drafts += isDraft;
   for (const Attribute& a : f.attributes) {
     if (a.name == "pitviper.mode") seen.mode = std::get<std::string>(a.value);
     if (a.name == "pitviper.accuracy") seen.accuracy = std::get<double>(a.value);
@@ -30,6 +32,8 @@ void RunTotal::add(const Frame& f) {
     if (a.name == "pitviper.exposure_error") seen.partError = std::max(seen.partError, std::get<double>(a.value));
     if (a.name == "pitviper.exposure_streak_error") seen.streakError = std::max(seen.streakError, std::get<double>(a.value));
     if (!a.name.starts_with(kError)) continue;
+    if (isDraft) seen.draftError = std::max(seen.draftError, std::get<double>(a.value));
+    if (isDraft) continue;
     double& error = seen.error[a.name.substr(kError.size())];
     error = std::max(error, std::get<double>(a.value));
   }
@@ -43,11 +47,14 @@ std::string RunTotal::expected() const {
   std::string text;
   for (const auto& [camera, seen] : cameras_) {
     text += "  " + camera + ": " + seen.mode;
-    if (seen.accuracy > 0.0) text += " to " + print("%.3g %%", 100.0 * seen.accuracy);
+    if (seen.drafts < seen.frames && seen.accuracy > 0.0) text += " to " + print("%.3g %%", 100.0 * seen.accuracy);
     std::string errors;
     for (const auto& [channel, error] : seen.error) errors += (errors.empty() ? "" : ", ") + channel + " " + print("%.2g %%", 100.0 * error);
     if (!errors.empty()) text += "; expected error at most " + errors;
-    else if (seen.mode == "sampled") text += "; no accuracy asked for, no error expected";
+    else if (seen.drafts < seen.frames && seen.mode == "sampled") text += "; no accuracy asked for, no error expected";
+    if (seen.drafts > 0)
+      text += "; " + std::to_string(seen.drafts) + " of " + std::to_string(seen.frames) + " frames by a draft, expected error at most " +
+              print("%.2g %%", 100.0 * seen.draftError);
     if (seen.parts > 1)
       text += "; exposures in up to " + std::to_string(seen.parts) + " parts (" + print("%.3g pixels", seen.motion_px) + " of motion; " +
               print("%.2g %%", 100.0 * seen.partError) + " of an edge's contrast at most" +

@@ -20,10 +20,11 @@ class RunTotal {
   struct Seen {
     std::string mode;
     double accuracy = 0.0;
-    int parts = 1;                ///< of an exposure, the most
+    int parts = 1;  ///< of an exposure, the most
     double motion_px = 0.0, partError = 0.0, streakError = 0.0;
     std::map<std::string, double> error;  ///< by channel, the largest
-    int frames = 0;
+    int frames = 0, drafts = 0;
+    double draftError = 0.0;  ///< the largest of any channel
     struct Full {
       int frames = 0;
       double most = 0.0;  ///< share of a frame's pixels

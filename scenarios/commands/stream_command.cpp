@@ -48,7 +48,7 @@ struct StreamOptions {
   std::optional<int> frames, priority;
   double stale_s = 1.0;
   std::vector<int> cores;
-  bool endless = false, holds = false, history = false;
+  bool endless = false, holds = false, history = false, drafts = false;
   std::string sharedMemory, gige, projectorTable, commands, cigi;
   std::vector<std::string> gstreamer, projectors;
 };
@@ -75,6 +75,7 @@ StreamWish wishOf(const StreamOptions& o, const Simulation& sim) {
   if (o.endless || (wish.clock == StreamClock::Lockstep && !o.frames && !o.duration_s)) wish.ticks = 0;
   if (o.delay_s) wish.delay_ns = std::llround(1e9 * *o.delay_s);
   wish.holds = o.holds;
+  wish.drafts = o.drafts;
   if (o.priority) wish.thread.fifoPriority = *o.priority;
   wish.thread.cores = o.cores;
   return wish;
@@ -297,6 +298,10 @@ CommandLine streamCommand() {
            {"--frames", "N", "in place of the scenario's 'time.frames'", number(w->frames, {1, kMostTicks, "", false, "no number of frames"})},
            {"--duration", "'T s'", "the same, as time", number(w->duration_s, {0.0, 1e8, "s"})},
            {"--endless", "", "until it is told to end", into(w->endless)},
+           {"--draft", "",
+            "begin at once, by a draft's few groups (20 %; each frame says so, with the error to expect), and go over between two ticks to what was asked for, "
+            "which is made beside: which tick that is differs from one stream to the next",
+            into(w->drafts)},
            {"--delay", "'D ms'", "a frame is due so long after its tick began (default: a period)", number(w->delay_s, {1e-6, 10.0, "s"})},
            {"--hold", "", "and leaves then, not before: constant delay", into(w->holds)},
            {"--late", "WHAT", "becomes of what is not there when it is due",

@@ -115,6 +115,7 @@ std::string streamSummary(const StreamResult& result) {
     for (const auto& [kind, count] : result.commands) text += (text.back() == ':' ? " " : ", ") + std::to_string(count) + " " + kind;
     text += "\n";
   }
+  if (r.drafts > 0) text += "  " + std::to_string(r.drafts) + " ticks by drafts" + (r.whyDrafts.empty() ? "" : ", as " + r.whyDrafts) + "\n";
   if (!r.refused.empty()) text += "  the system did not give the drawing thread " + r.refused + "\n";
   const std::uint64_t behind = [&] {
     std::uint64_t n = 0;
@@ -160,6 +161,8 @@ std::string streamJson(const StreamResult& result) {
   }
   j["commands"] = result.commands;
   j["resident_memory_kB"] = {{"early", r.memoryBefore_kB}, {"end", r.memoryAfter_kB}};
+  if (r.drafts > 0) j["ticks_by_drafts"] = r.drafts;
+  if (!r.whyDrafts.empty()) j["why_drafts"] = r.whyDrafts;
   if (!r.refused.empty()) j["refused_by_the_system"] = r.refused;
   return j.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -43,6 +43,7 @@ struct CameraImage {
   double accuracy = 0.0;                         ///< from the plan, and so its error per slot
   std::vector<double> predictedError;            ///< empty where nothing was measured
   std::string plan;                              ///< its fingerprint
+  bool isDraft = false;                          ///< by that of a draft, while the one asked for is made
   std::vector<Ball> parts;                       ///< bright ones that had views of their own
   std::vector<FilmPoint> points;                 ///< besides `slots`: of a camera with pointsApart
   int exposureParts = 1;                         ///< times that it is a mean of

@@ -67,6 +67,7 @@ void addMode(Frame& frame, const SpectralSampling& sampling) {
 /// What was asked of the plan, if anything was, and what it expects: of a channel's quantities the worst.
 void addAccuracy(Frame& frame, const Camera& camera, const CameraImage& image) {
   if (image.accuracy > 0.0) frame.attributes.push_back({"pitviper.accuracy", image.accuracy});
+  if (image.isDraft) frame.attributes.push_back({"pitviper.draft", std::string("by a plan of few groups; the one asked for is being made")});
   std::map<std::string, double> errorOf;
   for (size_t o = 0; o < camera.outputs.size() && !image.predictedError.empty(); ++o) {
     double& error = errorOf[camera.outputs[o].channel];

@@ -164,9 +164,29 @@ GlContext::GlContext(std::string device) {
 }
 
 GlContext::~GlContext() {
+  if (eglGetCurrentContext() == context_) release();
+  eglDestroyContext(display_, context_);
+}
+
+void GlContext::release() {
   if (before_) eglMakeCurrent(displayBefore_, EGL_NO_SURFACE, EGL_NO_SURFACE, before_);
   else eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
-  eglDestroyContext(display_, context_);
+  before_ = nullptr;
+}
+
+UsedContext::UsedContext(const GlContext* context) : isUsed_(context != nullptr) {
+  if (!isUsed_) return;
+  display_ = context->display_;
+  displayBefore_ = eglGetCurrentDisplay();
+  before_ = eglGetCurrentContext();
+  eglBindAPI(EGL_OPENGL_API);
+  if (!eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context->context_)) throw GlError("a context of another thread cannot be used here");
+}
+
+UsedContext::~UsedContext() {
+  if (!isUsed_) return;
+  if (before_) eglMakeCurrent(displayBefore_, EGL_NO_SURFACE, EGL_NO_SURFACE, before_);
+  else eglMakeCurrent(display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
 void checkUniformSize(std::size_t bytes, const char* what) {

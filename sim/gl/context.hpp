@@ -39,14 +39,30 @@ class GlContext {
   GlContext& operator=(const GlContext&) = delete;
 
   const GlLimits& limits() const { return limits_; }
+  /// Current on no thread from here on; any may use it. Called on the thread it is current on.
+  void release();
 
  private:
+  friend class UsedContext;
   void begin();
   void* display_ = nullptr;
   void* context_ = nullptr;
   void* displayBefore_ = nullptr;
   void* before_ = nullptr;
   GlLimits limits_;
+};
+
+/// A context that was released, current on this thread while this lives; then the one that was before is again. Null: nothing changes.
+class UsedContext {
+ public:
+  explicit UsedContext(const GlContext* context);
+  ~UsedContext();
+  UsedContext(const UsedContext&) = delete;
+  UsedContext& operator=(const UsedContext&) = delete;
+
+ private:
+  bool isUsed_;
+  void *display_ = nullptr, *before_ = nullptr, *displayBefore_ = nullptr;
 };
 
 /// Of the current context.

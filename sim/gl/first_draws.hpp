@@ -20,8 +20,8 @@ class FirstDraws {
   FirstDraws(const FirstDraws&) = delete;
   FirstDraws& operator=(const FirstDraws&) = delete;
 
-  /// A program, unless it is made or added, with the targets, textures, images and tests of the current context; the program may be of any state. It must outlive make().
-  /// `primitive`: GL_TRIANGLES or GL_POINTS.
+  /// A program, unless it is made or added, with the targets, textures, images and tests of the current context; the program may be of any state. It must
+  /// outlive make(). `primitive`: GL_TRIANGLES or GL_POINTS.
   void add(const Program& program, unsigned primitive);
   /// Throws GlError for a program that this thread cannot make. The state of the context is afterwards what it was.
   void make();

@@ -15,8 +15,8 @@ namespace {
 /// Numbers of places tried, which are held against all that the air's model has, and lines looked at, of the film and of the extremes.
 constexpr int kTried[] = {5, 9, 18, 36, 72};
 constexpr size_t kLooked = 20;
-/// Frames in which filmFloors() looks for how dark the film gets, and its lines in all of them and, at least, in each.
-constexpr int kFloorFrames = 24, kFloorLines = 240, kFewestLines = 12;
+/// Lines of each frame in which filmFloors() looks for how dark the film gets, at least.
+constexpr int kFewestLines = 12;
 
 /// Whether a node of the plan leaves a kind of terms out.
 bool isDropped(const Plan& plan, const Terms& all, TermKind kind, const NodeBlock& block) {
@@ -87,9 +87,9 @@ RadianceScene sceneOf(const Simulation& sim, const Plan& fine, const ShadowCaste
   return scene;
 }
 
-std::vector<double> filmFloors(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays) {
+std::vector<double> filmFloors(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays, const PlanEffort& effort) {
   const Plan& plan = fine.plan;
-  const int all = sim.time.frames, looked = std::min(all, kFloorFrames), each = std::max(kFloorLines / looked, kFewestLines);
+  const int all = sim.time.frames, looked = std::min(all, effort.floorFrames), each = std::max(effort.floor / looked, kFewestLines);
   std::vector<SightRay> lines;
   for (int k = 0; k < looked; ++k) {
     const int frame = k == 0 ? 0 : k == looked - 1 ? all - 1 : std::min(static_cast<int>((k + rays.dice().unit()) * all / looked), all - 1);

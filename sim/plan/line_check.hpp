@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sim/plan/plan.hpp"
+#include "sim/plan/plan_effort.hpp"
 #include "sim/plan/sight_rays.hpp"
 #include "sim/radiance/node_sum.hpp"
 #include "sim/radiance/shadow_rays.hpp"
@@ -31,7 +32,7 @@ constexpr int kUsualPlaces = 24;
 
 /// The least that a line counts as where an error is relative to it, per slot: 1e-3 of a high percentile of what the film sees in the darkest of its frames,
 /// but at least kDarkest.
-std::vector<double> filmFloors(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays);
+std::vector<double> filmFloors(const Simulation& simulation, const NodesOfPlan& fine, SightRays& rays, const PlanEffort& effort = kUsualEffort);
 
 /// The fewest places at which the air of a line may be looked at for every channel to keep budget::kAirPlaces, found on some lines of the film and of the
 /// extremes: short waves see the air bend where long ones don't.

@@ -8,14 +8,13 @@
 #include "sim/parameters/on_threads.hpp"
 #include "sim/plan/budget.hpp"
 #include "sim/plan/kernel_family.hpp"
+#include "sim/plan/plan_effort.hpp"
 
 namespace pitviper {
 namespace {
 
-/// Lines of sight of the first fit, besides the extremes; of each check; and the most checks until one is passed.
-constexpr int kFirst = 600, kCheck = 360, kChecks = 6;
-/// Lines, besides the extremes, on which fits are held against the equation after that, and how often a fit learns from them.
-constexpr int kSecond = 400, kLearn = 4;
+/// The most checks until one is passed, and how often a fit learns from lines that it is held against.
+constexpr int kChecks = 6, kLearn = 4;
 /// Where the products do not show what a line is off by, all products are fitted closer: by what is allowed over what was found, and a little more, but at most
 /// to half.
 constexpr double kTightened = 0.9, kLeastPart = 0.5;
@@ -60,9 +59,9 @@ void forAll(const std::vector<size_t>& fits, const std::function<void(size_t)>& 
 }
 
 /// Lines that no fit has seen.
-std::vector<SightRay> secondLines(SightRays& rays) {
+std::vector<SightRay> secondLines(SightRays& rays, int count) {
   std::vector<SightRay> lines;
-  for (int n = 0; n < kSecond; ++n) lines.push_back(n % 4 != 0 ? rays.fromFilm() : rays.ofCombination());
+  for (int n = 0; n < count; ++n) lines.push_back(n % 4 != 0 ? rays.fromFilm() : rays.ofCombination());
   return lines;
 }
 
@@ -115,7 +114,7 @@ PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& pla
       slots_(kernelFamilies(slots)),
       sights_(simulation, plan_, rays, shortestOf(slots), airPlaces, mostOf(slots_)),
       extremes_(extremes),
-      second_(simulation, fine, secondLines(rays), lastPlaces, floor) {
+      second_(simulation, fine, secondLines(rays, effortOf(plan.accuracy).second), lastPlaces, floor) {
   std::vector<size_t> all;
   for (const auto& family : slots_) {
     all.push_back(fits_.size());
@@ -123,7 +122,7 @@ PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& pla
     for (size_t s : family) kernels.push_back(&slots[s]->kernel);
     fits_.push_back(std::make_unique<ChannelFit>(simulation, kernels, plan.accuracy));
   }
-  sights_.begin(kFirst, eye.camera ? eye.camera->learnt : std::vector<FilmPlace>());
+  sights_.begin(effortOf(plan.accuracy).first, eye.camera ? eye.camera->learnt : std::vector<FilmPlace>());
   tell_(0.1);
   forAll(all, [&](size_t f) {
     std::vector<double> floors;
@@ -173,7 +172,7 @@ void PlanFits::hold(const std::vector<size_t>& fits) {
   for (int attempt = 0;; ++attempt) {
     for (int n = 0; n < kChecks && !open.empty(); ++n) {
       tell_(0.5 + 0.5 * (attempt + static_cast<double>(n) / kChecks) / (kLearn + 1));
-      sights_.draw(kCheck);
+      sights_.draw(effortOf(plan_.accuracy).check);
       forAll(open, [&](size_t f) { fits_[f]->check(sights_); });
       std::erase_if(open, [&](size_t f) { return fits_[f]->holds(); });
     }

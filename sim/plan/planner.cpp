@@ -8,6 +8,7 @@
 #include "sim/plan/line_check.hpp"
 #include "sim/plan/measured_outputs.hpp"
 #include "sim/plan/plan_cache.hpp"
+#include "sim/plan/plan_effort.hpp"
 #include "sim/plan/plan_fits.hpp"
 #include "sim/plan/plan_origin.hpp"
 #include "sim/plan/surroundings_choice.hpp"
@@ -15,17 +16,6 @@
 namespace pitviper {
 namespace {
 
-/// So many lines of sight, drawn as the film draws them and seen by no fit, measure what a plan is off by: with 95 % certainty at most 3 of n pixels are off by
-/// more than the worst of n lines.
-constexpr int kLast = 1000;
-/// As many again of small bodies, which the film draws in views of their own.
-constexpr int kLastSmall = 300;
-/// The largest error on these lines times this is predicted, as a film has many more pixels. Of 235 cells of random scenes (seeds 6001 to 6099) two were off by
-/// more than a margin of 2 or of 1.5 had predicted, one with 2.5.
-constexpr double kMargin = 2.0;
-/// Floors, harmonics and places of air are chosen on so many wavelengths of each channel: with 8 or 400 floors and losses are the same within 3 % in scenes
-/// from the visible to 14 um.
-constexpr int kLookedAt = 16;
 /// A plan that is off by more than was asked learns the lines that showed it and is measured on as many new ones: at most so many times.
 constexpr int kAgain = 2;
 /// Single precision on the GPU over a whole pixel: 2.8e-6 of a formula and 1e-5 of tables (tests/gpu/test_float_against_double.cpp), 5e-5 found in random
@@ -80,6 +70,7 @@ struct LastLook {
   /// these slots alone.
   CheckedLines tell(unsigned long long seed, const std::vector<size_t>& slots, Plan& plan) const {
     rays.reseed(seed);
+    const PlanEffort& effort = effortOf(plan.accuracy);
     CheckedLines last;
     const Plan some = ofSlots(plan, slots), fineSome = ofSlots(fine.plan, slots);
     const NodesOfPlan planned(sim, some, &fine), exact(sim, fineSome, &fine);
@@ -91,17 +82,17 @@ struct LastLook {
       for (size_t k = 0; k < slots.size(); ++k) figures[slots[k]] = std::move(own[k]);
       last.add(lines, figures);
     };
-    look(rays.overFilm(kLast));
+    look(rays.overFilm(effort.last));
     // Small bodies, glints and lamps lie in pixels, but seldom in their middles.
-    look(rays.ofSmallBodies(kLastSmall));
+    look(rays.ofSmallBodies(effort.lastSmall));
     const NodesOfPlan all(sim, plan, &fine);
     const std::vector<LineFigures> extreme = extremes.check(all);
     last.addSome(extremes.lines(), extreme, [](const SightRay& r) { return r.glints || r.lamp >= 0; });
-    plan.lines = kLast;
+    plan.lines = effort.last;
     plan.parts.resize(floor.size());
     const double lamps = sim.lights.empty() ? 0.0 : (budget::kLamps.share + (plan.terms.shadows ? budget::kLampShadows.share : 0.0)) * plan.accuracy;
     for (size_t s : slots)
-      plan.parts[s] = {kMargin * last.figures[s].largest,
+      plan.parts[s] = {effort.margin * last.figures[s].largest,
                        plan.parts[s].tables,
                        last.figures[s].dropped + lamps,
                        kPrecision,
@@ -181,7 +172,7 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
       const bool isOld = attempt > 0 && std::find(changed.begin(), changed.end(), s) != changed.end();
       const double left = (isOld ? 1.0 - budget::kTablesAnew.share : 1.0) * plan.accuracy - std::min(p.tables, budget::kTables.of(plan.accuracy)) -
                           std::min(p.surroundings, budget::kSurroundings.of(plan.accuracy)) - p.dropped - p.precision - p.fields;
-      allowed.push_back(std::max(left, 0.0) / kMargin);
+      allowed.push_back(std::max(left, 0.0) / effortOf(plan.accuracy).margin);
       if (p.wavelengths > left) missed.push_back(s);
     }
     from = 0.75, to = 0.9;
@@ -227,9 +218,10 @@ Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutp
     fine.terms = withSurroundings(all, all.surroundings != 0 ? Terms::kWhole : 0);
     const auto seed = static_cast<unsigned long long>(sim.seed);
     SightRays rays(sim, eye, seed ^ kSurroundingsSeed);
-    const Plan some = someWavelengths(fine, kLookedAt);
+    const PlanEffort& effort = effortOf(plan.accuracy);
+    const Plan some = someWavelengths(fine, effort.lookedAt);
     const NodesOfPlan whole(sim, some);
-    const std::vector<double> floor = filmFloors(sim, whole, rays);
+    const std::vector<double> floor = filmFloors(sim, whole, rays, effort);
     chooseSurroundings(sim, whole, rays, floor, plan);
     fine.terms = withSurroundings(fine.terms, plan.terms.surroundings != 0 ? plan.surroundings : 0);
     rays.reseed(seed);
@@ -272,6 +264,14 @@ std::vector<ChannelOutput> joined(std::vector<ChannelOutput> all, const std::vec
 Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress, Foretold error) {
   const auto [drawn, measured] = plannedOutputs(sim, eye);
   return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), progress, error), 0, drawn.size()), eye);
+}
+
+bool isPlanKnown(const Simulation& sim, const Camera& camera) {
+  const Eye eye{&camera, nullptr};
+  const auto [drawn, measured] = plannedOutputs(sim, eye);
+  Plan plan = makePlan(sim, joined(drawn, measured), camera.spectral, camera.where);
+  plan.accuracy = camera.spectral.accuracy;
+  return readCachedPlan(planKey(sim, eye, true), plan);
 }
 
 Plan measuredPlanFor(const Simulation& sim, const Camera& camera) {

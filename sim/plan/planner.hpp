@@ -16,6 +16,8 @@ enum class Foretold { IfChosen, Always };
 /// random within it, their error on others found (Plan::predictedError). Without: makePlan(), with tables for a usual accuracy. Throws what makePlan() throws.
 /// `progress` is told how much is done, on the calling thread; of a plan at hand only that it is made.
 Plan planFor(const Simulation& simulation, const Eye& eye, const PlanProgress& progress = {}, Foretold error = Foretold::IfChosen);
+/// Whether that of a camera, which asks for an accuracy, need not be made but is found again.
+bool isPlanKnown(const Simulation& simulation, const Camera& camera);
 
 /// The same for what the truth of a camera's targets is measured in (measuredOutputs()); where that goes, of the same groups as the picture: no work besides.
 Plan measuredPlanFor(const Simulation& simulation, const Camera& camera);

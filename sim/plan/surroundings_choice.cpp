@@ -5,15 +5,13 @@
 
 #include "sim/parameters/on_threads.hpp"
 #include "sim/plan/budget.hpp"
+#include "sim/plan/plan_effort.hpp"
 
 namespace pitviper {
 namespace {
 
 /// Where no degree keeps its account, the lowest is taken whose loss is at most this many times the least.
 constexpr double kNoWorse = 1.1;
-/// So many lines of the film, and half as many of small bodies and of all combinations of things: a canopy may be few pixels.
-constexpr int kLines = 240;
-
 /// A line's radiance, and apart from that each term of ambient light by direction, to be told in another way.
 class AroundSink final : public TermSink {
  public:
@@ -84,9 +82,11 @@ Tried tell(const Simulation& sim, const NodesOfPlan& fine, const std::vector<Aro
 
 void chooseSurroundings(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays, const std::vector<double>& floor, Plan& plan) {
   if (plan.terms.surroundings == 0) return;
-  std::vector<SightRay> lines = rays.overFilm(kLines);
-  for (SightRay& ray : rays.ofSmallBodies(kLines / 2)) lines.push_back(std::move(ray));
-  for (int n = 0; n < kLines / 2; ++n) lines.push_back(rays.ofCombination());
+  const int count = effortOf(plan.accuracy).around;
+  // Half as many of small bodies and of all combinations of things: a canopy may be few pixels.
+  std::vector<SightRay> lines = rays.overFilm(count);
+  for (SightRay& ray : rays.ofSmallBodies(count / 2)) lines.push_back(std::move(ray));
+  for (int n = 0; n < count / 2; ++n) lines.push_back(rays.ofCombination());
   std::vector<AroundSink::Told> told(lines.size());
   const ShadowCaster shadows(sim);
   onAllThreads(lines.size(), [&](const auto& next) {

@@ -8,38 +8,22 @@
 
 namespace pitviper {
 
-Camera withAccuracy(const Camera& camera, double accuracy) {
-  Camera other = camera;
-  const bool asked = camera.spectral.accuracy > 0.0 && !camera.spectral.reference;
-  if (!asked) return other;
-  other.spectral.accuracy = accuracy;
-  other.outlineAccuracy = camera.outlineAccuracy > 0.0 ? accuracy : 0.0;
-  other.textureAccuracy = camera.textureAccuracy > 0.0 ? accuracy : 0.0;
-  return other;
-}
-
-std::vector<double> rungsOf(const Camera& camera) {
-  const SpectralSampling& s = camera.spectral;
-  std::vector<double> all{s.accuracy};
-  if (!(s.accuracy > 0.0) || s.reference) return all;
-  while (all.back() < s.atMost * (1.0 - 1e-9)) all.push_back(std::min(2.0 * all.back(), s.atMost));
-  return all;
-}
-
 CameraLine::CameraLine(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
-                       const std::function<void(double)>& planning, bool allRungs)
-    : simulation_(simulation), camera_(camera) {
-  const std::vector<double> accuracies = rungsOf(camera);
-  for (std::size_t k = 0; k < (allRungs ? accuracies.size() : 1); ++k) {
-    auto drawn = std::make_unique<Camera>(drawnCamera(k == 0 ? camera : withAccuracy(camera, accuracies[k])));
-    if (k > 0) drawn->plan.clear();  // one that was given is of the accuracy asked for
-    auto renderer = std::make_unique<CameraRenderer>(simulation, *drawn, cameraPlan(simulation, *drawn, planning), library, scene);
-    rungs_.push_back({std::move(drawn), std::move(renderer)});
-  }
-  auditor_ = std::make_unique<Auditor>(simulation, *rungs_[0].drawn, rungs_[0].renderer->plan(), library, scene);
+                       const std::function<void(double)>& planning, bool allRungs, bool isDraft)
+    : simulation_(simulation), camera_(camera), isDraft_(isDraft) {
+  std::vector<double> accuracies = rungsOf(camera);
+  if (!allRungs) accuracies.resize(1);
+  if (isDraft) accuracies = {kDraft};
+  drawing_ = std::make_unique<CameraDrawing>(simulation, camera, library, scene, accuracies, planning);
   if (camera.hasStages()) chain_ = std::make_unique<SensorChain>(camera, library);
   if (camera.truth.targets || camera.truth.terms) truth_ = std::make_unique<TruthMeter>(simulation, camera);
   if (camera.follower) pointer_ = std::make_unique<CameraPointer>(simulation, camera);
+}
+
+void CameraLine::takeOver(std::unique_ptr<CameraDrawing> drawing) {
+  drawing_ = std::move(drawing);
+  rung_ = 0;
+  isDraft_ = false;
 }
 
 void CameraLine::warmUp(int first) {
@@ -60,7 +44,7 @@ void CameraLine::warmUp(int first) {
 
 void CameraLine::prepare(const StateAt& stateAt, double time_s) {
   const std::size_t before = rung_;
-  for (rung_ = 0; rung_ < rungs_.size(); ++rung_) {
+  for (rung_ = 0; rung_ < rungs(); ++rung_) {
     begin(stateAt, time_s);
     finish();
   }
@@ -76,14 +60,16 @@ void CameraLine::begin(const StateAt& stateAt, double time_s, std::optional<int>
   }
   time_s_ = time_s;
   parts_ = exposureParts(simulation_, camera_, stateAt_, time_s);
+  const UsedContext used(drawing_->context());
   if (parts_.times_s.size() == 1) renderer().begin(stateAt_(parts_.times_s[0]));
 }
 
 CameraImage CameraLine::finish(std::optional<int> audited, bool isFirst) {
   const auto look = [&](const WorldState& then, CameraImage& drawn) {
     const TimedPart part("audit");
-    auditor_->look(then, *audited, drawn, isFirst);
+    auditor().look(then, *audited, drawn, isFirst);
   };
+  const UsedContext used(drawing_->context());
   CameraImage image;
   if (parts_.times_s.size() > 1) {
     image = renderParts(renderer(), parts_, stateAt_, audited ? look : std::function<void(const WorldState&, CameraImage&)>());
@@ -92,6 +78,7 @@ CameraImage CameraLine::finish(std::optional<int> audited, bool isFirst) {
     if (audited) look(stateAt_(parts_.times_s[0]), image);
   }
   if (isPointed_) image.pointing = pointer_->pointing();
+  image.isDraft = isDraft_;
   return image;
 }
 

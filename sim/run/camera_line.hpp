@@ -4,25 +4,23 @@
 #include <optional>
 #include <vector>
 
-#include "sim/camera/audit.hpp"
 #include "sim/camera/camera_pointer.hpp"
 #include "sim/camera/exposure_parts.hpp"
 #include "sim/camera/sensor_chain.hpp"
 #include "sim/frame/frame.hpp"
 #include "sim/frame/truth_table.hpp"
+#include "sim/run/camera_drawing.hpp"
 
 namespace pitviper {
 
-/// A camera drawn to another accuracy.
-Camera withAccuracy(const Camera& camera, double accuracy);
-/// What a stream of a camera may be drawn to: the accuracy asked for, then twice that and so on up to SpectralSampling::atMost. One at least.
-std::vector<double> rungsOf(const Camera& camera);
-
 class CameraLine {
  public:
-  /// The first three must outlive it. `planning`: told while plans are made. `allRungs`: not only the first of rungsOf(). Needs a current GlContext.
+  /// As CameraDrawing, of the thread's context. `allRungs`: not only the first of rungsOf(). `isDraft`: by a draft alone, until takeOver().
   CameraLine(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
-             const std::function<void(double share)>& planning, bool allRungs = false);
+             const std::function<void(double share)>& planning, bool allRungs = false, bool isDraft = false);
+  /// What draws from here on; no picture may be begun.
+  void takeOver(std::unique_ptr<CameraDrawing> drawing);
+  bool isDraft() const { return isDraft_; }
 
   /// Detectors that remember see so many frames before the first, which nobody gets; a follower that looks at its own pictures all from the scenario's first
   /// on.
@@ -44,30 +42,26 @@ class CameraLine {
   bool looksAtItsPictures() const { return pointer_ && pointer_->looks(); }
   /// Lines of the record of what points it, since they were asked for last; none without.
   std::string takePoses() { return pointer_ ? pointer_->takeRecord() : std::string(); }
-  Auditor& auditor() { return *auditor_; }
-  CameraRenderer& renderer() { return *rungs_[rung_].renderer; }
-  std::size_t rungs() const { return rungs_.size(); }
+  Auditor& auditor() { return drawing_->auditor(); }
+  CameraRenderer& renderer() { return drawing_->renderer(rung_); }
+  std::size_t rungs() const { return drawing_->rungs(); }
   std::size_t rung() const { return rung_; }
   void setRung(std::size_t rung) { rung_ = rung; }
-  double accuracyOf(std::size_t rung) const { return rungs_[rung].drawn->spectral.accuracy; }
+  double accuracyOf(std::size_t rung) const { return drawing_->accuracyOf(rung); }
 
  private:
   /// What the sensor makes of a picture, with what its follower finds in that.
   Frame seen(const CameraImage& image, const WorldState& state, int number, std::vector<TargetRow> targets, std::vector<FrameLayer> terms);
-  struct Rung {
-    std::unique_ptr<Camera> drawn;  ///< which the renderer looks at
-    std::unique_ptr<CameraRenderer> renderer;
-  };
   const Simulation& simulation_;
   const Camera& camera_;
-  std::vector<Rung> rungs_;
+  std::unique_ptr<CameraDrawing> drawing_;
   std::size_t rung_ = 0;
-  std::unique_ptr<SensorChain> chain_;  ///< null for a camera without stages
-  std::unique_ptr<Auditor> auditor_;
-  std::unique_ptr<TruthMeter> truth_;  ///< null for a camera that asks for none of it
+  bool isDraft_;
+  std::unique_ptr<SensorChain> chain_;      ///< null for a camera without stages
+  std::unique_ptr<TruthMeter> truth_;       ///< null for a camera that asks for none of it
   std::unique_ptr<CameraPointer> pointer_;  ///< null for a camera that its mount alone points
   bool isPointed_ = false;                  ///< the picture that was begun
-  StateAt stateAt_;                    ///< of the picture that was begun
+  StateAt stateAt_;                         ///< of the picture that was begun
   ExposureParts parts_;
   double time_s_ = 0.0;
 };

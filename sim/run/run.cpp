@@ -11,6 +11,7 @@
 #include "sim/plan/plan_origin.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/run/camera_line.hpp"
+#include "sim/run/drawings_beside.hpp"
 #include "sim/run/spectral_renderer.hpp"
 #include "sim/world/world.hpp"
 
@@ -21,12 +22,16 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
   std::optional<TimedPart> once(kPreparingPart);
   auto scene = std::make_shared<const GpuScene>(sim);
   std::vector<std::unique_ptr<CameraLine>> lines;
+  std::vector<size_t> drafts;
+  for (size_t c = 0; range.drafts && c < sim.cameras.size(); ++c)
+    if (hasDraft(sim, sim.cameras[c])) drafts.push_back(c);
   std::vector<std::unique_ptr<SpectralRenderer>> spectral;  // null for a camera without a spectral image
   for (const auto& camera : sim.cameras) {
     const auto planning = [&](double share) {
       if (progress.planning) progress.planning(camera, share);
     };
-    lines.push_back(std::make_unique<CameraLine>(sim, camera, library, scene, planning));
+    lines.push_back(
+        std::make_unique<CameraLine>(sim, camera, library, scene, planning, false, std::find(drafts.begin(), drafts.end(), lines.size()) != drafts.end()));
     if (progress.picture) lines.back()->renderer().setProgress(progress.picture);
     spectral.push_back(camera.spectralImage ? std::make_unique<SpectralRenderer>(sim, camera, library, scene) : nullptr);
   }
@@ -48,11 +53,21 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
   once.emplace(kFirstFramePart);
   for (const auto& line : lines) line->warmUp(range.first);
   const StateAt stateAt = [&sim](double t) { return advance(sim, t); };
+  RunReport report;
+  std::optional<DrawingsBeside> beside;
+  if (!drafts.empty() && range.last > range.first) beside.emplace(sim, library, drafts, false, sim.time.at(range.first));  // of one frame a draft is all
   for (int number = range.first; number <= range.last && !(stopsAtBroken && isBroken()); ++number) {
     const WorldState state = stateAt(sim.time.at(number));
+    if (beside && beside->isReady()) {
+      for (auto& made : beside->take()) lines[made.camera]->takeOver(std::move(made.drawing));
+      report.whyDrafts = beside->why();
+      beside.reset();
+    }
+    report.drafts += std::any_of(lines.begin(), lines.end(), [](const auto& l) { return l->isDraft(); });
     for (size_t c = 0; c < lines.size(); ++c) {
       lines[c]->begin(stateAt, state.time_s, number);
-      const CameraImage image = lines[c]->finish(number, number == range.first);
+      const bool audits = !lines[c]->isDraft();
+      const CameraImage image = lines[c]->finish(audits ? std::optional(number) : std::nullopt, audits && number == range.first + report.drafts);
       Frame drawn = lines[c]->frame(image, state, number);
       if (progress.drawn)
         progress.drawn(lines[c]->camera(), drawn, state, image.pointing ? image.pointing->followed.pose : cameraAt(lines[c]->camera(), state).pose);
@@ -63,14 +78,13 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
     once.reset();
   }
   wait();
-  RunReport report;
   for (const auto& line : lines) {
     const std::string& name = line->camera().name;
     const Auditor& auditor = line->auditor();
     if (!auditor.broken().empty()) report.broken[name] = auditor.broken();
     if (auditor.tally().pixels > 0) report.audits[name] = auditor.tally();
     if (line->camera().follower) report.poses[name] = line->camera().follower->recordHeader + line->takePoses();
-    if (!line->camera().spectral.reference) {
+    if (!line->camera().spectral.reference && !line->isDraft()) {
       PlanOrigin origin = originOf(sim, drawnCamera(line->camera()));
       origin.samples = line->camera().samples;  // of a pixel of its own, not of a stage's cell
       report.plans[name] = tableMark(sim) + originLine(origin) + writePlanned(line->renderer().plan());

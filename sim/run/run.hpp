@@ -12,6 +12,8 @@ namespace pitviper {
 
 struct RunRange {
   int first = 0, last = 0;  ///< frame numbers, both included
+  bool drafts =
+      false;  ///< frames are drawn by drafts (kDraft) while plans are made beside, of all cameras, and by those from the frame on at which they are there
 };
 
 /// Called for every frame, as of Sink::take().
@@ -36,7 +38,9 @@ struct RunReport {
   std::map<std::string, std::vector<FilmPlace>> broken;  ///< where it was more than was asked
   std::map<std::string, AuditTally> audits;
   std::map<std::string, std::string> poses;  ///< of each camera with a follower the record: from the scenario's first frame on
-  std::map<std::string, std::string> plans;  ///< text of each camera's plan (Camera::plan); none in reference mode
+  std::map<std::string, std::string> plans;  ///< text of each camera's plan (Camera::plan); none in reference mode, or of a draft
+  int drafts = 0;                            ///< frames of each camera that were drawn by one
+  std::string whyDrafts;                     ///< why all were, where the driver could not make what was asked for
 };
 
 /// Parts of a run's time (sim/gl/timing.hpp) that no later frame takes: what comes before the first frame, and that frame, in which programs are compiled

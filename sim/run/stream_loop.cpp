@@ -9,6 +9,7 @@
 #include "sim/run/accuracy_dial.hpp"
 #include "sim/run/bare_timer.hpp"
 #include "sim/run/camera_line.hpp"
+#include "sim/run/drawings_beside.hpp"
 #include "sim/world/world.hpp"
 
 namespace pitviper {
@@ -101,15 +102,19 @@ class StreamLoop {
     period_ns_ = nanoseconds(sim.time.step_s);
     delay_ns_ = wish.delay_ns > 0 ? wish.delay_ns : period_ns_;
     const auto scene = std::make_shared<const GpuScene>(sim);
+    std::vector<std::size_t> drafts;
+    for (std::size_t c = 0; wish.drafts && c < sim.cameras.size(); ++c)
+      if (hasDraft(sim, sim.cameras[c])) drafts.push_back(c);
     for (const Camera& camera : sim.cameras)
       lines_.push_back(std::make_unique<CameraLine>(
           sim, camera, library, scene,
           [&](double share) {
             if (progress.planning) progress.planning(camera, share);
           },
-          realTime()));
+          realTime(), std::find(drafts.begin(), drafts.end(), lines_.size()) != drafts.end()));
     prepare();
     for (const auto& line : lines_) line->warmUp(wish.firstFrame);
+    if (!drafts.empty()) beside_.emplace(sim, library, drafts, realTime(), timeOf(0));
   }
 
   StreamReport run() {
@@ -182,8 +187,21 @@ class StreamLoop {
         work_ns.push_back(static_cast<double>(least));
       }
       line->setRung(0);
-      dials_.emplace_back(std::move(work_ns), period_ns_ / static_cast<std::int64_t>(lines_.size()));
+      dials_.push_back(dialOf(std::move(work_ns)));
     }
+  }
+
+  AccuracyDial dialOf(std::vector<double> work_ns) const { return {std::move(work_ns), period_ns_ / static_cast<std::int64_t>(lines_.size())}; }
+
+  /// Where what was asked for has been made beside, it draws from here on; no picture is begun.
+  void goOver() {
+    if (!beside_ || !beside_->isReady()) return;
+    for (DrawingsBeside::Made& made : beside_->take()) {
+      lines_[made.camera]->takeOver(std::move(made.drawing));
+      if (realTime()) dials_[made.camera] = dialOf(std::move(made.work_ns));
+    }
+    report_.whyDrafts = beside_->why();
+    beside_.reset();
   }
 
   /// Whether the tick after this camera's last has begun, or another camera of this tick is to come.
@@ -301,6 +319,10 @@ class StreamLoop {
   bool isOver() const { return wish_.ticks > 0 && ticks_ >= wish_.ticks; }
 
   void begin(Job& job) {
+    if (job.camera == 0) {
+      goOver();
+      report_.drafts += std::any_of(lines_.begin(), lines_.end(), [](const auto& l) { return l->isDraft(); });
+    }
     CameraLine& line = *lines_[job.camera];
     if (realTime()) line.setRung(job.rung = dials_[job.camera].rung());
     job.begun_ns = monotonic_ns();
@@ -384,6 +406,7 @@ class StreamLoop {
   FramePacer pacer_;
   std::vector<std::unique_ptr<CameraLine>> lines_;
   std::vector<AccuracyDial> dials_;
+  std::optional<DrawingsBeside> beside_;
   std::multimap<double, LiveCommand> waiting_;  ///< by their times
   std::int64_t period_ns_ = 0, delay_ns_ = 0, first_ns_ = 0, outside_ns_ = 0, lastMade_ns_ = 0, lastCommand_ns_ = -1, stepped_ns_ = 0, drawn_ns_ = 0;
   std::uint64_t ticks_ = 0, hostFrame_ = 0;

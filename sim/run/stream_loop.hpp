@@ -28,7 +28,8 @@ struct StreamWish {
   std::int64_t delay_ns = 0;  ///< of real time: a frame is due so long after its tick began; 0: a period
   bool holds = false;         ///< and leaves then, not before: its delay is constant
   LatePolicy late = LatePolicy::Send;
-  ThreadWish thread;  ///< of the one that draws
+  ThreadWish thread;    ///< of the one that draws
+  bool drafts = false;  ///< begins with drafts (kDraft) while plans are made beside, and goes over between two ticks
   std::function<void(const Camera& camera, const std::string& lines)> poses;  ///< takes each tick's lines of the record of what points a camera; or empty
   /// A clock from outside in real time's place: waits for a tick, and says when it began; none where it has stopped. Its period is about the scenario's.
   std::function<std::optional<std::int64_t>(std::uint64_t tick)> outsideClock;
@@ -51,6 +52,8 @@ struct StreamReport {
   std::vector<RungUse> rungs;  ///< of cameras with more than one
   std::uint64_t turns = 0;     ///< of the dial
   std::string refused;         ///< of the thread's wishes
+  std::uint64_t drafts = 0;    ///< ticks of which a camera was drawn by a draft
+  std::string whyDrafts;       ///< why all were, where the driver could not make what was asked for
   double seconds = 0.0;
   std::int64_t memoryBefore_kB = 0, memoryAfter_kB = 0;  ///< resident: after a tenth of the ticks, or 100; at the end
   std::uint64_t unaccounted() const;                     ///< ticks of cameras that became nothing: never, or the program is wrong

@@ -1,5 +1,6 @@
 // A second run of the same scenario compiles no program, draws the same bytes, and does so whatever is wrong with the cache.
 #include <gtest/gtest.h>
+#include <sched.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -7,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <thread>
 
 #include "tests/support/figures.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -117,6 +119,20 @@ TEST_F(SecondRun, LaterFramesCompileNothing) {
   ASSERT_GT(entries("one"), 0u);
   bound("programs that frames after the first compile, of things that come into view", static_cast<double>(entries("all") - entries("one")), 0.0,
         "none: the first picture has had all of them compiled");
+}
+
+/// Threads compile programs in the state that they will be drawn in: in another one the picture would have them compiled again.
+TEST_F(SecondRun, ThreadsCompileWhatOneDoes) {
+  cpu_set_t all;
+  if (std::thread::hardware_concurrency() < 2 || sched_getaffinity(0, sizeof all, &all) != 0) GTEST_SKIP() << "one core";
+  int one = 0;
+  while (!CPU_ISSET(one, &all)) ++one;
+  folder.put("later.yaml", kComesLater);
+  run("later.yaml", "one", "$PWD/one", "taskset -c " + std::to_string(one) + " env");
+  run("later.yaml", "all", "$PWD/all");
+  ASSERT_GT(entries("one"), 0u);
+  figure("programs that a run compiles on all cores", static_cast<double>(entries("all")), static_cast<double>(entries("one")), 0.0, "the same on one");
+  EXPECT_EQ(frame("all"), frame("one"));
 }
 
 TEST_F(SecondRun, IsTheSameWhateverIsWrongWithTheCache) {
