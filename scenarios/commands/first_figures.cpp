@@ -31,6 +31,7 @@ const std::vector<FigureName>& firstFigureNames() {
       {"frame_most", Frame, "the longest [ms]"},
       {"frame_most_at", Count, "which of them that is, from 1 for the second picture"},
       {"frame_work", Work, "processor seconds of one of them: median"},
+      {"frame_own", Frame, "the processor's own time of one of them, without drawing: median [ms]"},
       {"frames", Count, "so many of them"},
       {"groups", Count, "wavelengths or groups of them, all cameras together"},
       {"programs_made", Count, "programs, up to the first picture"},

@@ -195,30 +195,31 @@ int run(RunWish& w) {
 
 CommandLine runCommand() {
   const auto w = std::make_shared<RunWish>();
-  return {{"run", "SCENARIO.yaml", "render a scenario to calibrated EXR frames"},
-          "Renders the scenario's frames: one EXR per camera and frame in FOLDER, named <camera>_<frame>.exr, with a float layer <channel>.<quantity> per "
-          "output, truth.* layers and a grey picture for programs that know nothing of layers; other formats by 'sinks: [{sink: files, format: tiff}]'; probes "
-          "write <probe>.csv; a camera with 'spectral_image:' also writes <camera>_<frame>_spectral.exr for pitviper integrate.",
-          joined({{"--out", "FOLDER", "where to write (default 'out'); created if missing", into(w->draw.out)},
-                  {"--frames", "A:B", "frames A to B only, both included (or one: A); counted from 0: --frames 0:9 draws ten", into(w->frames)},
-                  {"--report", "", "also report.html: scenario, plans, sensors, sheet, what its layers and targets do over time, notes; all in one file",
-                   into(w->reports)},
-                  {"--no-history", "", "without history.csv and encounters.csv, which are written where something moves", into(w->history.none)},
-                  {"--trajectories", "", "also trajectories.png, what was flown (needs VTK; with --report too)", into(w->history.mustDraw)},
-                  {"--draft", "",
-                   "a picture soon: frames are drawn by a draft's few groups (20 %; each says so, with the error to expect) while plans are made beside, and as "
-                   "asked from the frame on at which they are there; one frame alone by a draft, unless its plan is known",
-                   into(w->drafts)},
-                  {"--timing", "",
-                   "says at the end how long planning, tables, programs and the first frame took, and where the time of frames after it went: visibility, "
-                   "shadows, air, shading, readback, files; drawing then waits for each part, which makes it somewhat slower",
-                   into(w->times)}},
-                 drawOptions(w->draw)),
-          [w](const Arguments& words) { return w->draw.scenario.file = words[0], run(*w); },
-          "Files of the same names are replaced where they are of the same scenario (its text, what it extends and includes, --set); another's is refused "
-          "before anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"
-          "On a terminal a bar shows how far it is; elsewhere lines come on stderr, the first after 3 s, each next after as long again as all before.\n"
-          "The last lines sum up: frames, time, frames a second, and for each camera what its plan expects to be off by at most."};
+  return {
+      {"run", "SCENARIO.yaml", "render a scenario to calibrated EXR frames"},
+      "Renders the scenario's frames: one EXR per camera and frame in FOLDER, named <camera>_<frame>.exr, with a float layer <channel>.<quantity> per "
+      "output, truth.* layers and a grey picture for programs that know nothing of layers; other formats by 'sinks: [{sink: files, format: tiff}]'; probes "
+      "write <probe>.csv; a camera with 'spectral_image:' also writes <camera>_<frame>_spectral.exr for pitviper integrate.",
+      joined({{"--out", "FOLDER", "where to write (default 'out'); created if missing", into(w->draw.out)},
+              {"--frames", "A:B", "frames A to B only, both included (or one: A); counted from 0: --frames 0:9 draws ten", into(w->frames)},
+              {"--report", "", "also report.html: scenario, plans, sensors, sheet, what its layers and targets do over time, notes; all in one file",
+               into(w->reports)},
+              {"--no-history", "", "without history.csv and encounters.csv, which are written where something moves", into(w->history.none)},
+              {"--trajectories", "", "also trajectories.png, what was flown (needs VTK; with --report too)", into(w->history.mustDraw)},
+              {"--draft", "",
+               "a picture soon: frames are drawn by a draft's few groups (20 %; each says so, with the error to expect) while plans are made beside, and as "
+               "asked from the frame on at which they are there; one frame alone by a draft, unless its plan is known",
+               into(w->drafts)},
+              {"--timing", "",
+               "says at the end how long planning, tables, programs and the first frame took, and where the time of frames after it went: visibility, "
+               "shadows, air, shading, readback, files; drawing then waits for each part, which makes it somewhat slower",
+               into(w->times)}},
+             drawOptions(w->draw)),
+      [w](const Arguments& words) { return w->draw.scenario.file = words[0], run(*w); },
+      "Files of the same names are replaced where they are of the same scenario (its text, what it extends and includes, --set); another's is refused "
+      "before anything is drawn. Other files in FOLDER are left as they are. Any number of runs of one scenario may write one FOLDER at once.\n"
+      "On a terminal a bar shows how far it is; elsewhere lines come on stderr, the first after 3 s, each next after as long again as all before.\n"
+      "The last lines sum up: frames, time, frames a second, and for each camera what its plan expects to be off by at most."};
 }
 
 }  // namespace pitviper

@@ -148,9 +148,17 @@ double CameraRenderer::zoomedLinesOn(std::size_t entity) const {
 /// A driver compiles what is left of a program when it is first used: of a moving scene no later frame, in which something transparent comes into view or
 /// leaves it, is to wait for that.
 void CameraRenderer::warmUp(const ShadowDemand& demand, const std::vector<char>& drawn) {
-  if (!direct_ || !buffered_ || warm_ || !simulation_.drawsMore()) return;
+  if (reference_ || warm_ || !simulation_.drawsMore()) return;
   warm_ = true;
   const TimedPart part("preparing");
+  FirstDraws first;
+  for (ScenePass* pass : {static_cast<ScenePass*>(direct_.get()), static_cast<ScenePass*>(buffered_.get())}) {
+    if (!pass) continue;
+    pass->setState(state_, &demand);
+    pass->rehearse(view_, state_, drawn, first);
+  }
+  first.make();
+  if (!direct_ || !buffered_) return;
   ScenePass& other = drawer_ == buffered_.get() ? static_cast<ScenePass&>(*direct_) : *buffered_;
   other.setState(state_, &demand);
   other.draw(view_, state_, drawn);

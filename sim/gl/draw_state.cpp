@@ -83,7 +83,8 @@ void DrawState::applyElsewhere(unsigned framebuffer) const {
 }
 
 void DrawState::applyRest() const {
-  for (const auto& [unit, name] : textures_) glBindTextureUnit(unit, name);
+  for (const auto& [unit, name] : textures_)
+    if (glIsTexture(name)) glBindTextureUnit(unit, name);  // a buffer that has grown since has another
   for (const Image& i : images_)
     glBindImageTexture(i.unit, static_cast<GLuint>(i.texture), 0, GL_FALSE, 0, static_cast<GLenum>(i.access), static_cast<GLenum>(i.format));
   for (const auto& [test, on] : tests_) set(test, on);

@@ -152,6 +152,11 @@ void BufferedPass::integrate(const Batch& batch, RenderTarget& into, const Rende
 
 void BufferedPass::shade(RenderTarget& into, const RenderTarget& visibility) {
   RenderTarget& spectrum = spectrumFor(visibility);
+  if (rehearsal()) {
+    shade_.addTo(*rehearsal(), spectrum, pixelClasses(), classesInView());
+    if (transparent_) transparent_->warmUp({.spectrum = spectrum, .visibility = visibility, .firstNode = 0, .view = view()}, rehearsal());
+    return;
+  }
   const size_t groups = static_cast<size_t>(plan().groupCount());
   for (size_t b = 0; b < batches_.size(); ++b) {
     if (isPartial()) {  // what a zoomed view leaves out must not keep the last picture's spectrum

@@ -39,7 +39,8 @@ std::vector<NamedProgram> DirectPass::programs() const {
 
 void DirectPass::shade(RenderTarget& into, const RenderTarget&) {
   weights_.bindTexture(kWeights, 4);
-  programs_.run(into, pixelClasses(), classesInView());
+  if (rehearsal()) programs_.addTo(*rehearsal(), into, pixelClasses(), classesInView());
+  else programs_.run(into, pixelClasses(), classesInView());
 }
 
 void DirectPass::shadeTile(RenderTarget& into, const glm::ivec4& part, const std::set<std::size_t>& classes) {

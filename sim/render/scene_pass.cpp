@@ -203,6 +203,12 @@ void ScenePass::bindBuffers() const {
   if (shadows_) shadows_->bind();
 }
 
+void ScenePass::rehearse(const View& v, const WorldState& state, const std::vector<char>& drawn, FirstDraws& first) {
+  rehearsal_ = &first;
+  draw(v, state, drawn);
+  rehearsal_ = nullptr;
+}
+
 void ScenePass::draw(const View& v, const WorldState& state, const std::vector<char>& drawn) {
   current_ = &targetsFor(v.width, v.height);
   if (const TimedPart part("air"); air_) air_->update(v, state);
@@ -223,7 +229,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   }
   const TimedPart part("shading");
   findClassesIn(v, state, drawn);
-  const auto shared = shadeTogether(v);
+  const auto shared = rehearsal_ ? std::optional<SharedPixels>() : shadeTogether(v);
   pixelClasses_.find(current_->visibility, shared ? &shared->bends : nullptr, v.grouped);
   if (shared) leaveOut(current_->visibility);
   current_->visibility.colour(0).bind(0);
@@ -231,6 +237,7 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   if (partial_) clearShading();
   shadedView_ = v;
   shade(current_->shading, current_->visibility);
+  if (rehearsal_) return checkGl("rehearsing a frame");
   drawn_ = v;
   resolved_ = truthOf_ = nullptr;
   if (v.subpixels > 1) {
@@ -248,7 +255,7 @@ void ScenePass::findClassesIn(const View& v, const WorldState& state, const std:
   classesInView_ = {0};
   // Of the first picture of several all: a driver compiles what is left of a program when it is first used, and no later frame is to wait for that.
   for (size_t c = 1; !warm_ && drawsMore() && c < surfaceClasses_.size(); ++c) classesInView_.insert(c);
-  warm_ = true;
+  warm_ = warm_ || !rehearsal_;
   for (const DrawItem& d : tables_.draws) {
     const auto add = [&](const LightNeeds& needs) {
       if (needs.sunAlone) classesInView_.insert(static_cast<size_t>(d.surfaceClass));

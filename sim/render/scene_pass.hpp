@@ -42,6 +42,9 @@ class ScenePass : public LineDrawer {
   virtual std::vector<NamedProgram> programs() const;
   const RenderTables& tables() const { return tables_; }
 
+  /// As draw(), for a moving scene's first picture: shades nothing, but adds what shades it, and all that may come into view, to what is made together.
+  void rehearse(const View& view, const WorldState& state, const std::vector<char>& drawn, FirstDraws& first);
+
  protected:
   /// Direct: in the shader, so that air is integrated over the channels beforehand; buffered: after it.
   enum class Shading { Direct, Buffered };
@@ -80,6 +83,8 @@ class ScenePass : public LineDrawer {
   const std::vector<SurfaceClass>& surfaceClasses() const { return surfaceClasses_; }
   /// Those that the current view may show.
   const std::set<std::size_t>& classesInView() const { return classesInView_; }
+  /// Null: it draws.
+  FirstDraws* rehearsal() const { return rehearsal_; }
   /// Of the picture's pixels, found before shade().
   const PixelClasses& pixelClasses() const { return pixelClasses_; }
   /// Slots and structural constants of this plan's shading programs, without targets, truth and integral.
@@ -138,6 +143,7 @@ class ScenePass : public LineDrawer {
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;
   bool partial_ = false, warm_ = false;
+  FirstDraws* rehearsal_ = nullptr;
   bool wholePixels_ = false;  ///< pixels are shaded, not their subpixels
   View shadedView_;
   std::optional<ResolvePass> resolve_;      ///< made when first needed

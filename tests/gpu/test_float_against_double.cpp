@@ -126,7 +126,7 @@ TEST(Shaders, CompilerMessagesNameTheFile) {
   library.add(broken);
   const auto fragment = assembleShader(library, "test/a.glsl", {});
   try {
-    Program(assembleShader(shaderLibrary(), "sim/render/geometry/glsl/full_screen.vert.glsl", {}), fragment);
+    Program(assembleShader(shaderLibrary(), "sim/render/geometry/glsl/full_screen.vert.glsl", {}), fragment).use();
     FAIL() << "it compiled";
   } catch (const GlError& e) {
     EXPECT_NE(std::string(e.what()).find("test/b.glsl:2"), std::string::npos) << e.what();

@@ -157,14 +157,18 @@ TEST(ReferenceMode, DrawsOnTheGpuWhatIsSeenAlone) {
   ASSERT_TRUE(plan.terms.shadows);
   const auto gpu = std::make_shared<const GpuScene>(sim);
   const auto programsOf = [&](bool truth) {
+    Camera own = camera;
+    own.truth.range = truth;
     const long before = programsSoFar().programs;
-    const ReferenceDrawer drawer(sim, plan, shaderLibrary(), gpu, truth, 1.0);
-    return programsSoFar().programs - before;
+    CameraRenderer renderer(sim, own, plan, shaderLibrary(), gpu);
+    renderer.setWanted({0});
+    renderer.render(advance(sim, 0.0));
+    return static_cast<double>(programsSoFar().programs - before);
   };
-  figure("programs of a first reference without truth", static_cast<double>(programsOf(false)), 4.0, 0.0,
-         "what each subpixel sees: of a picture or a part of one, of many bodies at once, behind boxes; which panes it meets");
-  figure("programs of a further one", static_cast<double>(programsOf(false)), 1.0, 0.0, "those of solids are the scene's");
-  figure("programs of one with truth", static_cast<double>(programsOf(true)), 1.0, 0.0, "the same");
+  bound("programs of a first reference without truth", programsOf(false), 4.0,
+        "what each subpixel sees: of a picture or a part of one, of many bodies at once, behind boxes; which panes it meets");
+  bound("programs of a further one", programsOf(false), 1.0, "those of solids are the scene's");
+  bound("programs of one with truth", programsOf(true), 1.0, "the same");
 }
 
 }  // namespace

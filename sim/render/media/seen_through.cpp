@@ -161,13 +161,17 @@ void SeenThrough::forLists(bool all, const std::function<void(const List&)>& vis
     }
 }
 
-void SeenThrough::shadePassages(const Over& over, bool all) {
+void SeenThrough::addLists(const Over& over, bool all, FirstDraws& first) {
   passages_.bindImage(0);
   entries_.bind();
   over.visibility.colour(0).bind(0);
   glEnable(GL_PROGRAM_POINT_SIZE);
-  FirstDraws first;
   forLists(all, [&](const List& list) { first.add(list.program, GL_POINTS); });
+}
+
+void SeenThrough::shadePassages(const Over& over, bool all) {
+  FirstDraws first;
+  addLists(over, all, first);
   first.make();
   forLists(all, [&](const List& list) {
     list.program.use();
@@ -207,7 +211,7 @@ void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
-void SeenThrough::warmUp(const Over& over) {
+void SeenThrough::warmUp(const Over& over, FirstDraws* first) {
   const UnseenDraws unseen;
   if (fields_) fields_->reserve();
   hits_->find(over.visibility, [&] {
@@ -220,8 +224,13 @@ void SeenThrough::warmUp(const Over& over) {
     }
   });
   order(0, 0);
-  shadePassages(over, true);
-  walk(over, 0, 0);
+  if (first) {
+    addLists(over, true, *first);
+    glDisable(GL_PROGRAM_POINT_SIZE);
+  } else {
+    shadePassages(over, true);
+    walk(over, 0, 0);
+  }
   ordered_ = {0, 0};
 }
 

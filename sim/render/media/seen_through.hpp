@@ -44,8 +44,8 @@ class SeenThrough {
   /// Draws, view, lights and nodes are bound; changes the bound textures of buffers and the blend, cull and depth state's settings. Of a picture's batches of
   /// nodes the first one comes first.
   void run(const Over& over);
-  /// Has all programs compiled, for things that come into view later.
-  void warmUp(const Over& over);
+  /// Has all programs compiled, for things that come into view later; those that work out entries of lists are only added to `first`, if given.
+  void warmUp(const Over& over, FirstDraws* first = nullptr);
   /// Those that the scenario's transparent things need: to find and order them, of surfaces, media and fields, and to walk along lines.
   std::vector<NamedProgram> programs() const;
 
@@ -61,6 +61,7 @@ class SeenThrough {
   };
   void forLists(bool all, const std::function<void(const List&)>& visit);
   void shade(const List& list, int firstNode);
+  void addLists(const Over& over, bool all, FirstDraws& first);
   void shadePassages(const Over& over, bool all);
   void walk(const Over& over, std::size_t first, std::size_t count);
 

@@ -13,7 +13,7 @@ ClassPrograms::ClassPrograms(const ShaderLibrary& library, const ShaderSlots& sl
 
 void ClassPrograms::run(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes,
                         const std::function<void(const ShadingProgram&)>& set) const {
-  make(into, pixels, classes);
+  makeThose(into, pixels, classes);
   for (std::size_t c : classes) {
     programs_[c].use();
     if (set) set(programs_[c]);
@@ -22,13 +22,17 @@ void ClassPrograms::run(RenderTarget& into, const PixelClasses& pixels, const st
 }
 
 void ClassPrograms::run(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes, const glm::ivec4& part) const {
-  make(into, pixels, classes);
+  makeThose(into, pixels, classes);
   for (std::size_t c : classes) programs_[c].run(into, pixels.only(c), part);
 }
 
-void ClassPrograms::make(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes) const {
-  FirstDraws first;
+void ClassPrograms::addTo(FirstDraws& first, RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes) const {
   for (std::size_t c : classes) programs_[c].addTo(first, into, pixels.only(c));
+}
+
+void ClassPrograms::makeThose(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes) const {
+  FirstDraws first;
+  addTo(first, into, pixels, classes);
   first.make();
 }
 

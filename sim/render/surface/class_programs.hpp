@@ -18,12 +18,14 @@ class ClassPrograms {
   /// Of some classes. `set`: sets uniforms of each.
   void run(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes,
            const std::function<void(const ShadingProgram&)>& set = {}) const;
+  /// Adds those that run() would draw to what is made together.
+  void addTo(FirstDraws& first, RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes) const;
   /// Over a part of the picture (corner, size).
   void run(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes, const glm::ivec4& part) const;
   void addTo(std::vector<NamedProgram>& all) const;
 
  private:
-  void make(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes) const;
+  void makeThose(RenderTarget& into, const PixelClasses& pixels, const std::set<std::size_t>& classes) const;
   std::vector<ShadingProgram> programs_;  ///< of each class
 };
 
