@@ -3,6 +3,8 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <mutex>
 #include <thread>
 
@@ -14,6 +16,8 @@
 namespace pitviper {
 namespace {
 
+/// A program that takes longer than this is being compiled; one that the driver finds in its cache takes a tenth of it. Until then nobody helps.
+constexpr std::chrono::milliseconds kFound{25};
 /// Threads beside this one, each of which takes some tens of megabytes while it compiles.
 constexpr unsigned kMostBeside = 7;
 
@@ -27,15 +31,25 @@ class Shares {
     number = begin_++;
     return true;
   }
+  /// Of the one, which has made what it took before.
   bool takeLast(std::size_t& number) {
     const std::scoped_lock lock(mutex_);
+    progress_.notify_all();
     if (begin_ >= end_) return false;
     number = --end_;
     return true;
   }
+  /// Whether the one is at one for so long; else none is left.
+  bool takesLong() {
+    std::unique_lock lock(mutex_);
+    for (std::size_t seen = end_; begin_ < end_; seen = end_)
+      if (!progress_.wait_for(lock, kFound, [&] { return end_ != seen || begin_ >= end_; })) return true;
+    return false;
+  }
 
  private:
   std::mutex mutex_;
+  std::condition_variable progress_;
   std::size_t begin_ = 0, end_;
 };
 
@@ -64,6 +78,7 @@ void FirstDraws::make() {
   const SharedContext shared = SharedContext::ofCurrent();
   const auto besides = [&] {
     try {
+      if (!shares.takesLong()) return;
       const GlContext context(shared);
       const VertexArray none = makeVertexArray();
       glBindVertexArray(none);

@@ -11,8 +11,9 @@ namespace pitviper {
 class DrawState;
 
 /// Makes some programs, each by a draw that reaches no pixel, in the state that it was added in. This thread and others, with contexts that share objects with
-/// the current one, take one after the other; what the others compile this one's driver then finds in its cache on the disk. Nothing is made where the driver
-/// has no such cache or draws by itself, or for less than two programs: a program is made at its first use in any case.
+/// the current one, take one after the other; what the others compile this one's driver then finds in its cache on the disk. They begin where something is
+/// compiled at all. Nothing is made where the driver has no such cache or draws by itself, or for less than two programs: a program is made at its first use in
+/// any case.
 class FirstDraws {
  public:
   FirstDraws();

@@ -4,9 +4,12 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/model/scene_fingerprint.hpp"
+#include "sim/parameters/fingerprint.hpp"
 #include "sim/parameters/on_threads.hpp"
 #include "sim/radiance/node_surroundings.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/scene/content_cache.hpp"
 
 namespace pitviper {
 namespace {
@@ -131,17 +134,53 @@ std::vector<std::vector<double>> ofNodes(const Plan& plan, const Of& of) {
   return all;
 }
 
+/// Columns that take so many values of components to work out are kept between runs: a tenth of a second of a film's.
+constexpr std::size_t kWorthKeeping = 200000;
+/// Of what meansOver() and columnAt() make of a material; to be raised where either changes.
+constexpr int kColumnsAre = 1;
+
+/// The means of columns, by node.
+std::vector<std::vector<double>> columnMeans(const Material& m, const MaterialAxes& axes, std::size_t table, const Plan& plan) {
+  const AxisPair& own = axes.table[table];
+  const auto along = static_cast<std::size_t>(own[0].count), cells = along * static_cast<std::size_t>(own[1].count), parts = m.reflections.size();
+  const auto make = [&] {
+    return ofNodes(plan, [&](const SpectralNode& n) {
+      return meansOver(n, cells, parts, [&](std::size_t k, double w, std::size_t cell) {
+        if (axes.tableOf[k] != table) return 0.0;
+        return columnAt(*m.reflections[k], w, own[0].at(static_cast<int>(cell % along)), own[1].at(static_cast<int>(cell / along)), own);
+      });
+    });
+  };
+  std::size_t wavelengths = 0;
+  for (const SpectralNode& n : plan.nodes) wavelengths += n.members.size();
+  if (wavelengths * cells * parts < kWorthKeeping) return make();
+  constexpr const char* kWhat = "columns";
+  const ContentKey key = contentKeyOf([&](Fingerprint& f) {
+    f.add(kColumnsAre).add(static_cast<int>(table));
+    for (const AngleAxis& a : own) f.add(static_cast<int>(a.angle)).add(a.count).add(a.last_rad);
+    for (std::size_t t : axes.tableOf) f.add(static_cast<int>(t));
+    addTo(f, m);
+    for (const SpectralNode& n : plan.nodes) f.all(n.members);
+  });
+  if (const auto kept = readCachedTable(kWhat, key)) {
+    TableReader in(*kept);
+    std::vector<std::vector<double>> all(plan.nodes.size());
+    for (auto& each : all) each = in.all<double>();
+    if (in.isWhole() && std::all_of(all.begin(), all.end(), [&](const auto& each) { return each.size() == cells * parts; })) return all;
+  }
+  const std::vector<std::vector<double>> all = make();
+  TableWriter out;
+  for (const auto& each : all) out.all(each);
+  writeCachedTable(kWhat, key, out.bytes());
+  return all;
+}
+
 /// By angle 2, angle 1 and node.
 void appendColumns(SurfaceTables& t, const Material& m, const MaterialAxes& axes, std::size_t table, const Plan& plan) {
   if (!t.lit) return;
+  const auto means = columnMeans(m, axes, table, plan);
   const AxisPair& own = axes.table[table];
-  const auto along = static_cast<std::size_t>(own[0].count), cells = along * static_cast<std::size_t>(own[1].count);
-  const auto means = ofNodes(plan, [&](const SpectralNode& n) {
-    return meansOver(n, cells, m.reflections.size(), [&](std::size_t k, double w, std::size_t cell) {
-      if (axes.tableOf[k] != table) return 0.0;
-      return columnAt(*m.reflections[k], w, own[0].at(static_cast<int>(cell % along)), own[1].at(static_cast<int>(cell / along)), own);
-    });
-  });
+  const auto cells = static_cast<std::size_t>(own[0].count) * static_cast<std::size_t>(own[1].count);
   for (std::size_t cell = 0; cell < cells; ++cell)
     for (const auto& mean : means) appendComponents(t.columns, t, m, 0.0, [&](std::size_t k) { return mean[cell * m.reflections.size() + k]; });
 }
