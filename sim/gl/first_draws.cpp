@@ -16,8 +16,8 @@
 namespace pitviper {
 namespace {
 
-/// A program that takes longer than this is being compiled; one that the driver finds in its cache takes a tenth of it. Until then nobody helps.
-constexpr std::chrono::milliseconds kFound{25};
+/// A program that takes longer than this is being compiled; one that the driver finds in its cache takes a tenth to half of it. Until then nobody helps.
+constexpr std::chrono::milliseconds kFound{80};
 /// Threads beside this one, each of which takes some tens of megabytes while it compiles.
 constexpr unsigned kMostBeside = 7;
 
