@@ -22,27 +22,26 @@ void restore(void(GLAPIENTRY*& function)(Values...), void (*before)()) {
   function = reinterpret_cast<void(GLAPIENTRY*)(Values...)>(before);
 }
 
+/// `act(function, its place)`.
+void forAll(const auto& act) {
+  act(epoxy_glDrawArrays, 0);
+  act(epoxy_glDrawElements, 1);
+  act(epoxy_glDrawElementsInstanced, 2);
+  act(epoxy_glDispatchCompute, 3);
+  act(epoxy_glClearBufferfv, 4);
+  act(epoxy_glClearBufferuiv, 5);
+  act(epoxy_glReadPixels, 6);
+}
+
 }  // namespace
 
 Undrawn::Undrawn() {
   glFinish();
-  silence(epoxy_glDrawArrays, before_[0]);
-  silence(epoxy_glDrawElements, before_[1]);
-  silence(epoxy_glDrawElementsInstanced, before_[2]);
-  silence(epoxy_glDispatchCompute, before_[3]);
-  silence(epoxy_glClearBufferfv, before_[4]);
-  silence(epoxy_glClearBufferuiv, before_[5]);
-  silence(epoxy_glReadPixels, before_[6]);
+  forAll([this](auto& function, std::size_t k) { silence(function, before_[k]); });
 }
 
 Undrawn::~Undrawn() {
-  restore(epoxy_glDrawArrays, before_[0]);
-  restore(epoxy_glDrawElements, before_[1]);
-  restore(epoxy_glDrawElementsInstanced, before_[2]);
-  restore(epoxy_glDispatchCompute, before_[3]);
-  restore(epoxy_glClearBufferfv, before_[4]);
-  restore(epoxy_glClearBufferuiv, before_[5]);
-  restore(epoxy_glReadPixels, before_[6]);
+  forAll([this](auto& function, std::size_t k) { restore(function, before_[k]); });
 }
 
 }  // namespace pitviper
