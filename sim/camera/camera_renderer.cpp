@@ -92,11 +92,8 @@ int CameraRenderer::viewsOfPicture() const {
 }
 
 void CameraRenderer::begin(const WorldState& state) {
-  if (scattered_.valid()) scattered_.wait();  // of a picture that nobody finished
   state_ = state;
-  // Five lines of sight take as long as a thirtieth of a small picture: while this thread hands triangles over. Fields work out their states as they are asked.
-  const bool aside = scattering_.looks() && simulation_.fields.empty();
-  if (aside) scattered_ = std::async(std::launch::async, [this] { return scattering_.at(state_); });
+  scattering_.begin(state);
   view_ = cameraView(camera_, state, camera_.samples);
   view_.wanted = wanted_;
   view_.grouped = camera_.sharesShading ? camera_.samples : 1;
@@ -223,7 +220,7 @@ CameraImage CameraRenderer::finish() {
   resolved.exposures_s = cameraAt(camera_, state_).exposures_s;
   resolved.exposure_s = longestExposure_s(camera_, resolved.exposures_s);
   resolved.averagedFringes = fringes_;
-  resolved.scatteredAgain = scattered_.valid() ? scattered_.get() : scattering_.at(state_);
+  resolved.scatteredAgain = scattering_.finish();
   resolved.accuracy = plan_.accuracy;
   resolved.predictedError = plan_.predictedError;
   resolved.plan = plan_.fingerprint;

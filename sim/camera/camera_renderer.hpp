@@ -1,11 +1,11 @@
 #pragma once
 // Draws one camera of a simulation at a time: everything between a world state and an image of integrals.
 #include <functional>
-#include <future>
 #include <memory>
 
 #include "sim/camera/hot_parts.hpp"
 #include "sim/camera/overlay.hpp"
+#include "sim/camera/scattering_by_second.hpp"
 #include "sim/camera/subpixels.hpp"
 #include "sim/camera/visible_lights.hpp"
 #include "sim/render/buffered_pass.hpp"
@@ -64,7 +64,7 @@ class CameraRenderer {
   const Camera& camera_;
   Plan plan_;
   std::vector<AveragedFringes> fringes_;
-  ScatteringCheck scattering_;
+  ScatteringBySecond scattering_;
   WaysToLights ways_;
   FilmWeights filmWeights_;
   std::vector<int> lines_;               ///< across each small body
@@ -85,8 +85,7 @@ class CameraRenderer {
   std::vector<char> small_, present_;
   std::shared_ptr<const std::vector<char>> wanted_;  ///< one flag per subpixel, row 0 at the bottom; null: all
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles_;
-  double focalLength_m_ = 0.0;                          ///< that these are of
-  std::future<std::vector<ScatteredAgain>> scattered_;  ///< of the picture that was begun; its destructor waits, so nothing it uses goes first
+  double focalLength_m_ = 0.0;  ///< that these are of
 };
 
 }  // namespace pitviper

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <tuple>
 
+#include "sim/camera/camera_renderer.hpp"
 #include "sim/plan/photon_walk.hpp"
 #include "sim/plan/planner.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -12,6 +13,7 @@
 #include "sim/radiometry/quadrature.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
@@ -280,6 +282,40 @@ TEST(ScatteredAgain, IsToldWhereItIsMoreThanAskedForAndNowhereElse) {
   EXPECT_EQ(told("{library: hazy_us76, visibility: 1 km}", 60.0, in(plate, "[8 um, 12 um]").c_str()), 1.0);
   EXPECT_EQ(told("hazy_us76", -25.0, in(sky, "[0.5 um, 0.6 um]").c_str()), 1.0);
   EXPECT_EQ(told("clear_us76", 60.0, in(plate, "[0.6 um, 0.7 um]").c_str(), "accuracy: 10 %\n"), 1.0);
+}
+
+TEST(ScatteredAgain, IsThatOfTheSecondWhicheverPicturesAreDrawn) {
+  // A camera that climbs by 500 m a second through haze and looks at the sky.
+  const Simulation sim = scene(
+      "time: {rate: 4 Hz, frames: 16}\natmosphere: hazy_us76\nsun: {azimuth: 90 deg, elevation: 40 deg, temperature: 5772 K}\n"
+      "cameras: [{name: c, film: {width: 3, height: 3}, field_of_view: 0.5 deg, aperture: 5 mm, "
+      "motion: [{time: 0 s, position: [0 m, 0 m, 10 m], heading: 30 deg, pitch: 30 deg}, "
+      "{time: 4 s, position: [0 m, 0 m, 2010 m], heading: 30 deg, pitch: 30 deg}], "
+      "channels: [{name: n, response: {band: [0.5 um, 0.6 um]}}]}]\n");
+  const Camera& camera = sim.cameras.front();
+  const Plan plan = cameraPlan(sim, camera);
+  const ScatteringCheck check(sim, camera, plan);
+  const auto factor = [](const std::vector<ScatteredAgain>& all) { return all.empty() ? 1.0 : all.front().factor; };
+  ScatteringBySecond all(sim, camera, plan);
+  double last = 0.0;
+  for (int number = 0; number < 16; ++number) {
+    const double time_s = sim.time.at(number);
+    ScatteringBySecond alone(sim, camera, plan);
+    all.begin(advance(sim, time_s));
+    alone.begin(advance(sim, time_s));
+    const double found = factor(all.finish());
+    EXPECT_EQ(found, factor(alone.finish()));
+    EXPECT_EQ(found, factor(check.at(advance(sim, std::floor(time_s)))));
+    EXPECT_EQ(found != last, number % 4 == 0);
+    last = found;
+  }
+  // Where a command has put it elsewhere, from there.
+  WorldState moved = advance(sim, 2.6);
+  moved.cameras["c"].position = glm::dvec3(0.0, 0.0, 9000.0);
+  ScatteringBySecond there(sim, camera, plan);
+  there.begin(moved);
+  EXPECT_EQ(factor(there.finish()), factor(check.at(moved)));
+  EXPECT_NE(factor(there.finish()), factor(check.at(advance(sim, 2.0))));
 }
 
 }  // namespace
