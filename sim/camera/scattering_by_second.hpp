@@ -1,6 +1,6 @@
 #pragma once
-// What is said of light scattered more than once, as it is when the second of a scenario's time begins that a picture lies in: it changes as slowly as the sun's
-// height and the camera's, and following photons for every picture took up to a sixth of the processor's time.
+// What is said of light scattered more than once, as it is when the second of a scenario's time begins in which a picture lies: it changes as slowly as the
+// sun's height and the camera's, and following photons for every picture took up to a fifth of the processor's time.
 #include <future>
 
 #include "sim/plan/scattered_again.hpp"
