@@ -193,7 +193,7 @@ void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
   passages_.bindTexture(22, 4);
   if (fields_) fields_->setLines(walk_);
   glUniform3i(walk_.uniform("firstPassages"), 0, static_cast<GLint>(lists_.panes), static_cast<GLint>(lists_.panes + lists_.segments));
-  sums_.reserve(std::max<std::size_t>(lists_.goes, 1) * sizeof(glm::vec4));
+  sums_.reserve(std::max<std::size_t>(lists_.goes, 1) * static_cast<std::size_t>(targets_) * sizeof(glm::vec4));
   sums_.bindStorage(4);
   const auto dispatch = [&](bool adding, std::size_t from, std::size_t many) {
     glUniform1i(walk_.uniform("adding"), adding);
@@ -202,12 +202,10 @@ void SeenThrough::walk(const Over& over, std::size_t first, std::size_t count) {
     glDispatchCompute(static_cast<GLuint>(std::max<std::size_t>((many + kGroup - 1) / kGroup, 1)), 1, 1);
     glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_SHADER_IMAGE_ACCESS_BARRIER_BIT);
   };
-  for (int t = 0; t < targets_; ++t) {
-    glBindImageTexture(0, over.spectrum.colour(static_cast<std::size_t>(t)).name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
-    glUniform1i(walk_.uniform("four"), t);
-    for (std::size_t g = 0; g == 0 || g < lists_.goes; g += kMostGoes) dispatch(false, g, std::min(lists_.goes - g, kMostGoes));
-    if (lists_.goes > count) dispatch(true, first, count);
-  }
+  for (int t = 0; t < targets_; ++t)
+    glBindImageTexture(static_cast<GLuint>(t), over.spectrum.colour(static_cast<std::size_t>(t)).name(), 0, GL_FALSE, 0, GL_READ_WRITE, GL_RGBA32F);
+  for (size_t g = 0; g == 0 || g < lists_.goes; g += kMostGoes) dispatch(false, g, std::min(lists_.goes - g, kMostGoes));
+  if (lists_.goes > count) dispatch(true, first, count);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 

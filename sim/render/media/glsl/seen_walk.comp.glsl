@@ -13,12 +13,17 @@ uniform int first;  // go, or line where goes are added up
 uniform int count;
 uniform bool adding;
 uniform ivec3 firstPassages;  // of panes, segments, fields
-layout(std430, binding = 4) buffer Sums { vec4 sums[]; };  // of goes that share a pixel
-uniform int four;                                          // nodes that are passed: of one target
-layout(rgba32f, binding = 0) uniform image2D spectrum;
+layout(std430, binding = 4) buffer Sums { vec4 sums[]; };  // of goes that share a pixel, target by target
+//@each t TARGETS
+layout(rgba32f, binding = {t}) uniform image2D spectrum{t};
+//@end
 
 const uint kJoined = 1u << 29;
 int first_, end_;  // steps of the line
+//@each t TARGETS
+vec4 behind{t}_;                 // what is seen so far
+vec4 through{t}_, added{t}_;     // of the group so far; the second: S A, summed
+//@end
 
 uint stepAt(int s) { return texelFetch(steps, s).x; }
 
@@ -34,28 +39,31 @@ vec4 meanOf(vec4 through) {
   return mix(lost / -log(clamp(through, vec4(1.0e-30), vec4(0.999))), series, lessThan(lost, vec4(0.05)));
 }
 
-vec4 seen(vec4 behind, int l) {
+// One loop: a second within it would run in every turn of the first where a driver has no branches. All targets at once: what a passage has for them lies
+// together, and memory is what this waits for.
+void walk(int l) {
+//@each t TARGETS
+  through{t}_ = vec4(1.0);
+  added{t}_ = vec4(0.0);
+//@end
+  bool alone = true;
   for (int s = first_; s < end_; ++s) {
-    int at = passageOf(stepAt(s), l);
-    if ((stepAt(s) & kJoined) == 0u) {
-      if (at >= 0) behind = texelFetch(passages, at + 2 * four) * behind + texelFetch(passages, at + 2 * four + 1);
-      continue;
+    uint step = stepAt(s);
+    int at = passageOf(step, l);
+    bool more = (step & kJoined) != 0u;
+    alone = alone && !more;
+//@each t TARGETS
+    {
+      vec4 one = at >= 0 ? texelFetch(passages, at + 2 * {t}) : vec4(1.0), own = at >= 0 ? texelFetch(passages, at + 2 * {t} + 1) : vec4(0.0);
+      through{t}_ *= one;
+      added{t}_ += own / meanOf(one);
+      behind{t}_ = more ? behind{t}_ : through{t}_ * behind{t}_ + (alone ? own : added{t}_ * meanOf(through{t}_));
+      through{t}_ = more ? through{t}_ : vec4(1.0);
+      added{t}_ = more ? added{t}_ : vec4(0.0);
     }
-    int last = s;
-    vec4 through = vec4(1.0), own = vec4(0.0);
-    for (bool more = true; more; ++last) {
-      more = (stepAt(last) & kJoined) != 0u;
-      at = passageOf(stepAt(last), l);
-      if (at >= 0) through *= texelFetch(passages, at + 2 * four);
-    }
-    for (int k = s; k < last; ++k) {
-      at = passageOf(stepAt(k), l);
-      if (at >= 0) own += texelFetch(passages, at + 2 * four + 1) / meanOf(texelFetch(passages, at + 2 * four));
-    }
-    behind = through * behind + own * meanOf(through);
-    s = last - 1;
+//@end
+    alone = !more;
   }
-  return behind;
 }
 
 void main() {
@@ -67,16 +75,29 @@ void main() {
   uvec4 of = texelFetch(lineSteps, int(go.x));
   if (adding) {
     if (of.w < 2u) return;
-    vec4 sum = vec4(0.0);
-    for (uint g = 0u; g < of.w; ++g) sum += sums[of.z + g];
-    imageStore(spectrum, at, sum);
+//@each t TARGETS
+    behind{t}_ = vec4(0.0);
+//@end
+    for (uint g = 0u; g < of.w; ++g) {
+//@each t TARGETS
+      behind{t}_ += sums[(of.z + g) * uint(TARGETS) + {t}u];
+//@end
+    }
+//@each t TARGETS
+    imageStore(spectrum{t}, at, behind{t}_);
+//@end
     return;
   }
   first_ = int(of.x);
   end_ = first_ + int(of.y);
   int l = go.y == 0xffffffffu ? -1 : int(go.y) - 1, through = linesOf(at);
   float share = go.y == 0xffffffffu ? 1.0 : l < 0 ? leftByLines(through) : shareOfLine(through, l);
-  vec4 own = share * seen(imageLoad(spectrum, at), l);
-  if (of.w < 2u) imageStore(spectrum, at, own);
-  else sums[number] = own;
+//@each t TARGETS
+  behind{t}_ = imageLoad(spectrum{t}, at);
+//@end
+  walk(l);
+//@each t TARGETS
+  if (of.w < 2u) imageStore(spectrum{t}, at, share * behind{t}_);
+  else sums[number * TARGETS + {t}] = share * behind{t}_;
+//@end
 }
