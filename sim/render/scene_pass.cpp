@@ -230,7 +230,8 @@ void ScenePass::draw(const View& v, const WorldState& state, const std::vector<c
   const TimedPart part("shading");
   findClassesIn(v, state, drawn);
   const auto shared = rehearsal_ ? std::optional<SharedPixels>() : shadeTogether(v);
-  pixelClasses_.find(current_->visibility, shared ? &shared->bends : nullptr, v.grouped);
+  if (shared) pixelClasses_.findAgain(current_->visibility, shared->bends, v.grouped);
+  else pixelClasses_.find(current_->visibility);
   if (shared) leaveOut(current_->visibility);
   current_->visibility.colour(0).bind(0);
   partial_ = v.onlyEntity >= 0;
@@ -278,13 +279,13 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   const bool warms = !shared_ && drawsMore();  // everything is drawn once: no later picture is to wait for a compiler
   if (!shared_)
     shared_.emplace(library_, plan_.groupCount(), current_->shading.colourCount(), budget::kBends.of(plan_.accuracy > 0.0 ? plan_.accuracy : kUsualAccuracy),
-                    plan_.textureAccuracy > 0.0);
+                    plan_.textureAccuracy > 0.0, v.grouped, plan_.terms.layer.any || plan_.terms.media || plan_.terms.fields);
   View whole = v;
   whole.width /= v.grouped, whole.height /= v.grouped;
   whole.tanPerPixelX *= v.grouped, whole.tanPerPixelY *= v.grouped;
   whole.axisX /= v.grouped, whole.axisY /= v.grouped;
   Targets& pixels = targetsFor(whole.width, whole.height);
-  shared_->findMiddles(current_->visibility, pixels.visibility, v.grouped);
+  shared_->findMiddles(current_->visibility, pixels.visibility);
   const GpuView data = viewData(simulation_, whole, apertureArea_m2_);
   pixelView_.upload(&data, sizeof data);
   wholePixels_ = true;
@@ -297,10 +298,9 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   // What is averaged already bends as little as what is behind it.
   const RenderTarget* before = withoutTransparent();
   const bool averaged = before && transparentIsAveraged();
-  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_.smoothness(), averaged ? *before : pixels.shading, averaged ? nullptr : before,
-                     v.grouped);
-  if (v.subpixels != v.grouped) shared_->spread(pixels.shading, current_->shading, v.grouped, glm::ivec4(0));
-  else if (v.kept.z > 0 || warms) shared_->spread(pixels.shading, current_->shading, v.grouped, v.kept);
+  shared_->findBends(current_->visibility, pixels.visibility, pixelClasses_.smoothness(), averaged ? *before : pixels.shading, averaged ? nullptr : before);
+  if (v.subpixels != v.grouped) shared_->spread(pixels.shading, current_->shading, glm::ivec4(0));
+  else if (v.kept.z > 0 || warms) shared_->spread(pixels.shading, current_->shading, v.kept);
   wholePixels_ = false;
   view_.bindUniform(0);
   return SharedPixels{pixels.shading, shared_->bends()};

@@ -10,17 +10,16 @@ namespace pitviper {
 class SharedShading {
  public:
   /// `groups`: channel groups of four; the target's colours beyond, truth, don't count. `threshold`: the share; `filtered`: textures are read over whole
-  /// pixels.
-  SharedShading(const ShaderLibrary& library, int groups, std::size_t colours, double threshold, bool filtered);
-  /// Of a picture of grouped x grouped subpixels a pixel: what they see, and its depth.
-  void findMiddles(const RenderTarget& subpixels, RenderTarget& pixels, int grouped);
+  /// pixels. `grouped`: subpixels across a pixel. `drawnOver`: something transparent may be.
+  SharedShading(const ShaderLibrary& library, int groups, std::size_t colours, double threshold, bool filtered, int grouped, bool drawnOver);
+  /// What pixels of a picture see, and its depth.
+  void findMiddles(const RenderTarget& subpixels, RenderTarget& pixels);
   /// Which of the shaded pixels are not enough. `before`: the same without what transparent things add to it; null where there are none.
-  void findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const Texture2D& smoothness, const RenderTarget& shaded, const RenderTarget* before,
-                 int grouped);
-  /// 1 for these, as findBends() left it.
+  void findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const Texture2D& smoothness, const RenderTarget& shaded, const RenderTarget* before);
+  /// 0 for those that are, 1 + what these need for the others, as findBends() left it.
   const Texture2D& bends() const { return bends_->colour(0); }
   /// Gives subpixels what their pixels have; of a part (corner, size), or of all.
-  void spread(const RenderTarget& shaded, RenderTarget& into, int grouped, const glm::ivec4& part) const;
+  void spread(const RenderTarget& shaded, RenderTarget& into, const glm::ivec4& part) const;
 
  private:
   int groups_;

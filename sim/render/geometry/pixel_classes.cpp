@@ -16,19 +16,27 @@ PixelClasses::PixelClasses(const ShaderLibrary& library, const ShaderSlots& slot
                assembleShader(library, "sim/render/geometry/glsl/classes.frag.glsl", slots)),
       withLight_(assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", slots),
                  assembleShader(library, "sim/render/geometry/glsl/classes.frag.glsl", slots)),
+      again_(assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", slots),
+             assembleShader(library, "sim/render/geometry/glsl/classes_again.frag.glsl", slots)),
       cover_(assembleShader(library, "sim/render/geometry/glsl/full_screen.vert.glsl", slots),
              assembleShader(library, "sim/render/geometry/glsl/cover.frag.glsl", slots)) {}
 
-void PixelClasses::find(const RenderTarget& visibility, const Texture2D* bends, int grouped) {
+void PixelClasses::find(const RenderTarget& visibility) {
   begin(visibility);
-  if (bends) bends->bind(kBends);
-  glUniform1i(program_.uniform("grouped"), bends ? grouped : 0);
+  drawPart(glm::ivec4(0));
+  end();
+}
+
+void PixelClasses::findAgain(const RenderTarget& visibility, const Texture2D& bends, int grouped) {
+  begin(visibility, again_, false);
+  bends.bind(kBends);
+  glUniform1i(again_.uniform("grouped"), grouped);
   drawPart(glm::ivec4(0));
   end();
 }
 
 void PixelClasses::findWithLight(const RenderTarget& visibility) {
-  begin(visibility, true);
+  begin(visibility, withLight_, true);
   light_ = found_;
   drawPart(glm::ivec4(0));
   end();
@@ -58,23 +66,20 @@ void PixelClasses::cover(RenderTarget& visibility) const {
   glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-void PixelClasses::begin(const RenderTarget& visibility, bool withLight) {
+void PixelClasses::begin(const RenderTarget& visibility, const Program& program, bool withLight) {
   found_ = nullptr;
   for (const RenderTarget& t : targets_)
     if (t.width() == visibility.width() && t.height() == visibility.height() && (t.colourCount() > 0) == withLight) found_ = &t;
   if (!found_)
     found_ = &targets_.emplace_back(visibility.width(), visibility.height(),
-                                    withLight ? std::vector<PixelFormat>{PixelFormat::Rg32f} : std::vector<PixelFormat>{}, true);
+                                    withLight ? std::vector<PixelFormat>{PixelFormat::Rgba32f} : std::vector<PixelFormat>{}, true);
   found_->bind();
   visibility.colour(0).bind(0);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_ALWAYS);
   glDepthMask(GL_TRUE);
   glDisable(GL_BLEND);
-  const Program& program = withLight ? withLight_ : program_;
   program.use();
-  none_.bind(kBends);  // llvmpipe would compile again for another kind of texture, or none
-  glUniform1i(program.uniform("grouped"), 0);
 }
 
 }  // namespace pitviper

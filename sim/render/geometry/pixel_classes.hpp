@@ -18,14 +18,16 @@ class PixelClasses {
  public:
   /// `slots`: those of shading.
   PixelClasses(const ShaderLibrary& library, const ShaderSlots& slots);
-  /// Of what was drawn last. Buffers and the view are bound. `bends`: of pixels of grouped x grouped subpixels those that have 0 are left out.
-  void find(const RenderTarget& visibility, const Texture2D* bends = nullptr, int grouped = 0);
+  /// Of what was drawn last. Buffers and the view are bound.
+  void find(const RenderTarget& visibility);
+  /// Of pixels of grouped x grouped subpixels, those of which SharedShading::bends() has 0 are left out.
+  void findAgain(const RenderTarget& visibility, const Texture2D& bends, int grouped);
   /// The same, and what their light depends on: smoothness().
   void findWithLight(const RenderTarget& visibility);
   /// As the last findWithLight() left it: (light, 1 / depth [1/m]) where a pixel's radiance is smooth where these are, but for its textures; else (-1, 0).
   const Texture2D& smoothness() const { return light_->colour(0); }
   /// The same part by part (corner, size), with views of their own.
-  void begin(const RenderTarget& visibility) { begin(visibility, false); }
+  void begin(const RenderTarget& visibility) { begin(visibility, program_, false); }
   void drawPart(const glm::ivec4& part) const;
   void end() const;
   /// Gives what was left out the nearest depth of all in `visibility`, so that nothing is drawn over it.
@@ -37,9 +39,8 @@ class PixelClasses {
   static float depthOf(std::size_t surfaceClass) { return surfaceClass == 0 ? 15.0f / 16.0f : static_cast<float>(surfaceClass) / 16.0f; }
 
  private:
-  void begin(const RenderTarget& visibility, bool withLight);
-  Program program_, withLight_, cover_;  // two of one text: llvmpipe finds only the first of a program's states in its cache
-  Texture2D none_{3, 3, PixelFormat::R32f};  ///< in the place of bends
+  void begin(const RenderTarget& visibility, const Program& program, bool withLight);
+  Program program_, withLight_, again_, cover_;  // two of one text: llvmpipe finds only the first of a program's states in its cache
   std::deque<RenderTarget> targets_;
   const RenderTarget *found_ = nullptr, *light_ = nullptr;
 };

@@ -1,7 +1,8 @@
 //@constants
-// 1 where a pixel shaded once is not enough: its subpixels see different parts, or its radiance bends, in some channel, by more than a share of the
-// brightest around (or, where textures are read over whole pixels, its light does): across an edge of light or shade by as much as there is between its sides,
-// in what is smooth hardly at all.
+// 0 where a pixel shaded once is enough; else 1 + what its subpixels need (class_depth.glsl). It is not enough where its subpixels see different parts, or its
+// radiance bends, in some channel, by more than a share of the brightest around (or, where textures are read over whole pixels, its light does): across an edge
+// of light or shade by as much as there is between its sides, in what is smooth hardly at all. Subpixels need all lights where they see different parts, else
+// what their pixel or any around it needs: an edge of a shadow or of a lamp's reach lies between the middles of pixels.
 layout(location = 0) out float bends;
 layout(binding = 0) uniform usampler2D visibility;  // of pixels
 layout(binding = 18) uniform usampler2D subpixels;
@@ -12,7 +13,7 @@ layout(binding = 22 + {g}) uniform sampler2D pixels{g};
 layout(binding = 26 + {g}) uniform sampler2D before{g};
 //@end
 layout(binding = 17) uniform sampler2D smoothness;  // see classes.frag.glsl
-uniform int grouped;
+const int kEveryLight = 2;
 uniform ivec2 last;  // pixel of the picture
 uniform float threshold;
 uniform bool drawnOver;  // something transparent is, what was there before in these
@@ -45,34 +46,39 @@ bool changeBendsIn(sampler2D pixels, sampler2D before, ivec2 p) {
 // A ridge before what lies behind it is a step in 1 / depth; a smaller one, within one part, is taken for the slope of the ground.
 const float kRidge = 0.03;
 
-bool lightBends(ivec2 p) {
-  vec2 here = texelFetch(smoothness, p, 0).xy;
-  bool bends = here.x < 0.0;
+bool lightBends_;
+float needed_;
+
+void lookAround(ivec2 p) {
+  vec3 here = texelFetch(smoothness, p, 0).xyz;
+  lightBends_ = here.x < 0.0;
+  needed_ = here.z;
   for (int k = 0; k < 4; ++k) {
     ivec2 step = ivec2(k == 0 ? 0 : 1, k == 0 ? 1 : k - 2);
-    vec2 a = texelFetch(smoothness, clamp(p - step, ivec2(0), last), 0).xy, b = texelFetch(smoothness, clamp(p + step, ivec2(0), last), 0).xy;
-    vec2 most = max(here, max(a, b)), bend = abs(a + b - 2.0 * here);
-    bends = bends || min(a.x, b.x) < 0.0 || bend.x > threshold * most.x || bend.y > kRidge * most.y;
+    vec3 a = texelFetch(smoothness, clamp(p - step, ivec2(0), last), 0).xyz, b = texelFetch(smoothness, clamp(p + step, ivec2(0), last), 0).xyz;
+    vec2 most = max(here.xy, max(a.xy, b.xy)), bend = abs(a.xy + b.xy - 2.0 * here.xy);
+    lightBends_ = lightBends_ || min(a.x, b.x) < 0.0 || bend.x > threshold * most.x || bend.y > kRidge * most.y;
+    needed_ = max(needed_, max(a.z, b.z));
   }
-  return bends;
 }
 
 void main() {
   ivec2 p = ivec2(gl_FragCoord.xy);
   uint draw = texelFetch(visibility, p, 0).x;
   bool same = true;
-  for (int y = 0; y < grouped; ++y)
-    for (int x = 0; x < grouped; ++x) same = same && texelFetch(subpixels, grouped * p + ivec2(x, y), 0).x == draw;
+  for (int y = 0; y < GROUPED; ++y)
+    for (int x = 0; x < GROUPED; ++x) same = same && texelFetch(subpixels, GROUPED * p + ivec2(x, y), 0).x == draw;
   bool smoothly = true;
 //@each g GROUPS
   smoothly = smoothly && !bendsIn(pixels{g}, p);
 //@end
   bool evenly = true;
-  if (drawnOver) {
+  if (DRAWN_OVER == 1 && drawnOver) {
 //@each g GROUPS
     evenly = evenly && !changeBendsIn(pixels{g}, before{g}, p);
 //@end
   }
-  bool enough = same && (smoothly || (FILTERED == 1 && evenly && !lightBends(p)));
-  bends = enough ? 0.0 : 1.0;
+  lookAround(p);
+  bool enough = same && (smoothly || (FILTERED == 1 && evenly && !lightBends_));
+  bends = enough ? 0.0 : 1.0 + (same ? needed_ : float(kEveryLight));
 }

@@ -1,2 +1,3 @@
+//@constants
 // Subpixels get what their pixel has.
 //@slot spread
