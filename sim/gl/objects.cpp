@@ -171,9 +171,6 @@ void Buffer::makeReadable(std::size_t bytes) {
 
 void Buffer::bindStorage(unsigned index) const { glBindBufferBase(GL_SHADER_STORAGE_BUFFER, index, name_); }
 void Buffer::bindUniform(unsigned index) const { glBindBufferBase(GL_UNIFORM_BUFFER, index, name_); }
-void Buffer::bindUniformPart(unsigned index, std::size_t first, std::size_t bytes) const {
-  glBindBufferRange(GL_UNIFORM_BUFFER, index, name_, static_cast<GLintptr>(first), static_cast<GLsizeiptr>(bytes));
-}
 void Buffer::bindTexture(unsigned unit, int perTexel, bool whole) const {
   if (texture_ == 0u) {
     GLint limit = 0;

@@ -86,8 +86,6 @@ class Buffer {
   void uploadPart(std::size_t first, const void* data, std::size_t bytes);
   void bindStorage(unsigned index) const;
   void bindUniform(unsigned index) const;
-  /// A part of it [bytes], which begins at a multiple of 256.
-  void bindUniformPart(unsigned index, std::size_t first, std::size_t bytes) const;
   void bindElements() const;
   /// Of the bound vertex array, for each vertex: attribute 0, three floats, and 1, a whole number behind them.
   void bindVertices() const;

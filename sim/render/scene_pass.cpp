@@ -4,7 +4,6 @@
 
 #include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "sim/gl/context.hpp"
 #include "sim/gl/timing.hpp"
@@ -15,8 +14,6 @@
 namespace pitviper {
 namespace {
 
-/// Alignment of parts of buffers that every driver takes [bytes].
-constexpr std::size_t kAligned = 256;
 /// Places for many lights, at least: with so many Mesa keeps the loop over those that shine; written out (up to 32), one would cost as much as all.
 constexpr int kLightPlaces = 33;
 /// Tiles are drawn in pictures of so many pixels a side at most, or of one tile.
@@ -198,7 +195,7 @@ void ScenePass::bindBuffers() const {
   lights_.bindTexture(9, 4);
   if (air_) air_->bind();
   if (around_) around_->bind();
-  (wholePixels_ ? pixelView_ : view_).bindUniform(0);
+  (wholePixels_ ? pixelView_ : view_).bindTexture(kViewUnit, 4);
   nodes_.bindUniform(1);
   if (shadows_) shadows_->bind();
 }
@@ -289,7 +286,7 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   const GpuView data = viewData(simulation_, whole, apertureArea_m2_);
   pixelView_.upload(&data, sizeof data);
   wholePixels_ = true;
-  pixelView_.bindUniform(0);
+  pixelView_.bindTexture(kViewUnit, 4);
   pixelClasses_.findWithLight(pixels.visibility);
   pixels.visibility.colour(0).bind(0);
   partial_ = false;
@@ -302,7 +299,7 @@ std::optional<SharedPixels> ScenePass::shadeTogether(const View& v) {
   if (v.subpixels != v.grouped) shared_->spread(pixels.shading, current_->shading, glm::ivec4(0));
   else if (v.kept.z > 0 || warms) shared_->spread(pixels.shading, current_->shading, v.kept);
   wholePixels_ = false;
-  view_.bindUniform(0);
+  view_.bindTexture(kViewUnit, 4);
   return SharedPixels{pixels.shading, shared_->bends()};
 }
 
@@ -344,7 +341,7 @@ std::vector<ScenePass::Tile> ScenePass::tilesOf(std::span<const View> views, con
   current_ = &targetsFor(across * size, rows * size);
   std::vector<Tile> tiles;
   std::vector<GpuDraw> draws;
-  std::vector<unsigned char> blocks(views.size() * kAligned);
+  if (tileViews_.size() < views.size()) tileViews_.resize(views.size());
   for (size_t i = 0; i < views.size(); ++i) {
     Tile t;
     t.view = &views[i];
@@ -360,15 +357,14 @@ std::vector<ScenePass::Tile> ScenePass::tilesOf(std::span<const View> views, con
     for (std::uint32_t d : t.draws) draws.push_back(drawOf(d, views[i], state));
     GpuView block = viewData(simulation_, views[i], apertureArea_m2_, {t.part.x, t.part.y});
     block.depth.z = static_cast<float>(t.firstDraw);
-    std::memcpy(&blocks[i * kAligned], &block, sizeof block);
+    tileViews_[i].upload(&block, sizeof block);
     tiles.push_back(std::move(t));
   }
-  tileViews_.upload(blocks);
   tileDraws_.upload(draws);
   return tiles;
 }
 
-void ScenePass::bindTile(size_t i) const { tileViews_.bindUniformPart(0, i * kAligned, sizeof(GpuView)); }
+void ScenePass::bindTile(size_t i) const { tileViews_[i].bindTexture(kViewUnit, 4); }
 
 void ScenePass::drawTilePicture(const std::vector<Tile>& tiles, const WorldState& state) {
   bindBuffers();

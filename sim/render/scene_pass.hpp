@@ -139,7 +139,8 @@ class ScenePass : public LineDrawer {
   std::shared_ptr<SurroundingsBuffer> around_;  ///< where ambient light has directions
   std::unique_ptr<AirOnGpu> air_;               ///< null: none
   std::shared_ptr<ShadowPass> shadows_;         ///< where the plan has them
-  Buffer nodes_, draws_, lights_, view_, pixelView_, tileViews_, tileDraws_;
+  Buffer nodes_, draws_, lights_, view_, pixelView_, tileDraws_;
+  std::vector<Buffer> tileViews_;
   std::deque<std::pair<std::pair<int, int>, Targets>> targets_;  // references stay valid
   Targets* current_ = nullptr;
   bool partial_ = false, warm_ = false;

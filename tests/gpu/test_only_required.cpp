@@ -381,7 +381,7 @@ TEST(OnlyRequired, BarestProgram) {
   f.air = f.sun = f.lamp = f.ambient = f.truth = f.temperatureTexture = f.modifier = f.angular = f.phong = f.reflection = f.visible = false;
   const Built bare(f);
   EXPECT_EQ(bare.kinds(), std::set<std::string>{"shading"});
-  std::set<std::string> least{"visibility", "ViewBlock", "NodeBlock", "rows", "draws", "vertices", "indices", "weightsNumbers"};
+  std::set<std::string> least{"visibility", "viewTexels", "NodeBlock", "rows", "draws", "vertices", "indices", "weightsNumbers"};
   if (chooseShadingStage() == ShadingStage::Compute) least.insert({"classes", "image0"});  // what a fragment has from depth and targets
   EXPECT_EQ(readsOf(bare.programs.back().text), least);
   std::set<std::string> all;

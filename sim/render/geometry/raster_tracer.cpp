@@ -36,7 +36,7 @@ SeenLines RasterTracer::see(const View& v, const WorldState& state, const std::v
   view_.upload(&view, sizeof view);
   scene_->bind();
   draws_.bindTexture(8, 4, true);
-  view_.bindUniform(0);
+  view_.bindTexture(kViewUnit, 4);
   solids_.draw(*target, v, state, drawn);
   readback_.start(*target, 0, target);
   const auto identity = readback_.wait().identity;

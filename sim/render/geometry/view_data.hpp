@@ -18,7 +18,10 @@ struct GpuDraw {
 };
 static_assert(sizeof(GpuDraw) == 96);
 
-/// Mirrors ViewBlock of sim/render/assembly/glsl/view_block.glsl (std140).
+/// Texture unit of the buffer that has it.
+constexpr unsigned kViewUnit = 29;
+
+/// Mirrors View of sim/render/assembly/glsl/view_block.glsl.
 struct GpuView {
   glm::vec4 pixel, film, depth, up, earth, sun, aperture, east, north;
 };
