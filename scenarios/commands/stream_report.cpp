@@ -57,6 +57,14 @@ std::string bareTimerText(const StreamReport& r) {
                percent(r.bareTimerLate, r.bareTimer.count()));
 }
 
+/// How often each was why a frame was late.
+std::string causesOf(const StreamReport& r, const char* between) {
+  std::string text;
+  for (std::size_t c = 0; c < kLateCauses; ++c)
+    if (r.causes[c] > 0) text += (text.empty() ? "" : between) + std::to_string(r.causes[c]) + " " + nameOf(static_cast<LateCause>(c));
+  return text;
+}
+
 std::string countsOf(const SinkCounts& s) {
   std::string text = s.sink + ": " + std::to_string(s.passedOn) + " passed on, " + std::to_string(s.skipped) + " skipped";
   for (const auto& [what, count] : s.others)
@@ -108,6 +116,7 @@ std::string streamSummary(const StreamResult& result) {
   text += "  unaccounted for: " + std::to_string(result.unaccounted()) + "\n";
   text += alignedTable(timesOf(r));
   if (r.bareTimer.count() > 0) text += "  " + bareTimerText(r) + "\n";
+  if (const std::string causes = causesOf(r, ", "); !causes.empty()) text += "  not there when due, by cause: " + causes + "\n";
   for (const RungUse& u : r.rungs) text += "  " + u.camera + ": " + std::to_string(u.frames) + print(" frames to %.3g %%\n", 100.0 * u.accuracy);
   for (const SinkCounts& s : result.sinks) text += "  " + countsOf(s) + "\n";
   if (!result.commands.empty()) {
@@ -148,6 +157,7 @@ std::string streamJson(const StreamResult& result) {
                               {"delay", jsonOf(a.delay)},
                               {"drawing", jsonOf(a.drawing)},
                               {"frame_there_to_sent", jsonOf(a.handing)}};
+  for (std::size_t c = 0; r.period_ns > 0 && c < kLateCauses; ++c) j["not_there_when_due_by_cause"][nameOf(static_cast<LateCause>(c))] = r.causes[c];
   if (r.start.count() > 0) j["tick_begins_late"] = jsonOf(r.start);
   if (r.answer.count() > 0) j["step_to_frames_out_less_drawing"] = jsonOf(r.answer);
   if (r.bareTimer.count() > 0) j["bare_timer_late"] = jsonOf(r.bareTimer), j["bare_timer_late"]["late_by_more_than_a_tenth"] = r.bareTimerLate;

@@ -131,7 +131,12 @@ void ScenePass::setState(const WorldState& state, const ShadowDemand* demand) {
 
 GpuDraw ScenePass::drawOf(std::size_t draw, const View& view, const WorldState& state) const {
   GpuDraw data = drawData(simulation_, tables_.draws[draw], view, state);
-  if (around_) data.fine.w = around_->slotOf(tables_.draws[draw].entity);
+  const DrawItem& item = tables_.draws[draw];
+  if (around_) data.fine.w = around_->slotOf(item.entity);
+  // Which of its classes are drawn: class_depth.glsl.
+  const LightNeeds needs = item.entity >= 0 ? lightNeeds_[static_cast<size_t>(item.entity)] : LightNeeds{};
+  const bool apart = item.unshadowed != item.everyLight;
+  data.fine.z += 2.0f * static_cast<float>((needs.sunAlone ? 1 : 0) + (needs.lamps && apart ? 2 : 0) + (needs.shadows || (needs.lamps && !apart) ? 4 : 0));
   return data;
 }
 

@@ -15,7 +15,8 @@ class SharedShading {
   /// What pixels of a picture see, and its depth.
   void findMiddles(const RenderTarget& subpixels, RenderTarget& pixels);
   /// Which of the shaded pixels are not enough. `before`: the same without what transparent things add to it; null where there are none.
-  void findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const Texture2D& smoothness, const RenderTarget& shaded, const RenderTarget* before);
+  void findBends(const RenderTarget& subpixels, const RenderTarget& pixels, const Texture2D& smoothness, const RenderTarget& shaded,
+                 const RenderTarget* before);
   /// 0 for those that are, 1 + what these need for the others, as findBends() left it.
   const Texture2D& bends() const { return bends_->colour(0); }
   /// Gives subpixels what their pixels have; of a part (corner, size), or of all.

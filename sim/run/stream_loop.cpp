@@ -151,6 +151,7 @@ class StreamLoop {
           report_.rungs.push_back({lines_[c]->camera().name, lines_[c]->accuracyOf(r), dials_[c].frames()[r]});
         report_.turns += dials_[c].turns();
       }
+    report_.causes = causes_.counts();
     report_.seconds = 1e-9 * static_cast<double>(monotonic_ns() - start);
     report_.memoryAfter_kB = residentMemory_kB();
     return std::move(report_);
@@ -348,10 +349,15 @@ class StreamLoop {
       const std::int64_t work = made - std::max(job.begun_ns, lastMade_ns_);
       dials_[job.camera].look(job.rung, work, made > tick.due_ns, made);
     }
+    if (realTime()) {
+      const LateCause* late = causes_.look({tick.begins_ns, job.begun_ns, tick.due_ns, made, handing_ns_, beside_.has_value(), watch_.read()});
+      if (late) frame->attributes.push_back({"pitviper.stream.late_cause", nameOf(*late)});
+    }
     lastMade_ns_ = made;
     drawn_ns_ += made - job.begun_ns;
     const bool isLast = job.camera + 1 == lines_.size();
     pacer_.put({job.camera, tick.number, frame, tick.begins_ns, tick.due_ns, job.begun_ns, made, tick.done, isLast});
+    handing_ns_ = monotonic_ns() - made;
     if (!isLast) return;
     if (tick.done->ticket) report_.answer.add(monotonic_ns() - stepped_ns_ - drawn_ns_);
     constexpr std::uint64_t kSettled = 100;
@@ -406,9 +412,12 @@ class StreamLoop {
   FramePacer pacer_;
   std::vector<std::unique_ptr<CameraLine>> lines_;
   std::vector<AccuracyDial> dials_;
+  ProcessWatch watch_;
+  LateCauses causes_;
   std::optional<DrawingsBeside> beside_;
   std::multimap<double, LiveCommand> waiting_;  ///< by their times
-  std::int64_t period_ns_ = 0, delay_ns_ = 0, first_ns_ = 0, outside_ns_ = 0, lastMade_ns_ = 0, lastCommand_ns_ = -1, stepped_ns_ = 0, drawn_ns_ = 0;
+  std::int64_t period_ns_ = 0, delay_ns_ = 0, first_ns_ = 0, outside_ns_ = 0, lastMade_ns_ = 0, lastCommand_ns_ = -1, stepped_ns_ = 0, drawn_ns_ = 0,
+               handing_ns_ = 0;
   std::uint64_t ticks_ = 0, hostFrame_ = 0;
   std::optional<Step> step_;
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sim/run/frame_pacer.hpp"
+#include "sim/run/late_cause.hpp"
 #include "sim/run/run.hpp"
 #include "sim/stream/clock/wall_clock.hpp"
 #include "sim/stream/command_inbox.hpp"
@@ -52,6 +53,7 @@ struct StreamReport {
   std::vector<RungUse> rungs;  ///< of cameras with more than one
   std::uint64_t turns = 0;     ///< of the dial
   std::string refused;         ///< of the thread's wishes
+  std::array<std::uint64_t, kLateCauses> causes{};  ///< of frames that were not there when they were due
   std::uint64_t drafts = 0;    ///< ticks of which a camera was drawn by a draft
   std::string whyDrafts;       ///< why all were, where the driver could not make what was asked for
   double seconds = 0.0;

@@ -1,4 +1,4 @@
-// What every program knows of the view. Not a block of uniforms: lavapipe 22.3 writes beyond its stack where it finds a use for one of their values as a constant.
+// What every program knows of the view. Not a block of uniforms: lavapipe 22.3 writes beyond its stack where it takes one of their values for a constant.
 layout(binding = 29) uniform samplerBuffer viewTexels;
 struct View {
   vec4 pixel;     // tangent per pixel x, y; film position of the axis (pixels from the lower left)

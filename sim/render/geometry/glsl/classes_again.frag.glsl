@@ -10,5 +10,5 @@ uniform int grouped;
 void main() {
   uint draw = drawSeen(texelFetch(visibility, ivec2(gl_FragCoord.xy), 0).x);
   int need = int(texelFetch(bends, ivec2(gl_FragCoord.xy) / grouped, 0).x) - 1;
-  gl_FragDepth = need < 0 ? 1.0 : depthOfClass(classesOf(draw), need);
+  gl_FragDepth = need < 0 ? 1.0 : depthOfClass(classesOf(draw), needOf(draw, need));
 }
