@@ -135,7 +135,8 @@ void GroupStep::solveDirectly(double rootDamping, double extinctionDamping) {
     if (normal_.size() == 0) {
       normal_ = normalOfExtinctions_ = MatrixXd::Zero(rows, rows);
       normal_.selfadjointView<Eigen::Lower>().rankUpdate(byRoots_.transpose());
-      normalOfExtinctions_.selfadjointView<Eigen::Lower>().rankUpdate(slopes_.extinction.transpose());
+      // Where nothing is absorbed there are none: Eigen 3.4 divides by their number where there are 48 products or more.
+      if (extinctions > 0) normalOfExtinctions_.selfadjointView<Eigen::Lower>().rankUpdate(slopes_.extinction.transpose());
     }
     MatrixXd normal = normal_ / rootDamping + normalOfExtinctions_ / extinctionDamping;
     normal.diagonal().array() += 1.0;

@@ -96,5 +96,23 @@ TEST(GroupStep, IsTheDampedLeastSquaresOverAllShares) {
   }
 }
 
+TEST(GroupStep, WithoutAbsorbers) {
+  // More unknowns than products, and more than 48 of these: Eigen would divide by the number of absorbers.
+  Numbers random(12);
+  SpectralProblem p = problem(random, 60);
+  p.extinction.clear();
+  for (auto& path : p.paths) path.clear();
+  const ProductSet set(p);
+  GroupState state{Eigen::MatrixXd(30, kFine), Eigen::MatrixXd(30, 0)};
+  for (Eigen::Index i = 0; i < state.share.size(); ++i) state.share.data()[i] = random(0.1, 1.0);
+  state.share.array().rowwise() /= state.share.colwise().sum().array();
+  const GroupMoments at = set.moments(state);
+  const Eigen::VectorXd errors = set.errors(at);
+  GroupStep step(set, state, at, errors, Eigen::VectorXd::Ones(set.size()), Eigen::VectorXd());
+  step.solve(kDamping, kRootStep);
+  const double before = errors.squaredNorm(), after = set.errors(set.moments(step.moved(1.0))).squaredNorm();
+  EXPECT_LT(after, before);
+}
+
 }  // namespace
 }  // namespace pitviper::test
