@@ -44,6 +44,7 @@ const std::vector<ScatteredAgain>& ScatteringBySecond::finish() {
   if (asked_.valid() && asked_s_ == second_s_ && found_s_ != second_s_) {
     found_ = asked_.get();
     found_s_ = second_s_;
+    asked_s_.reset();  // it would be asked for anew
   }
   if (std::exchange(isFirst_, false) || !follows_) return found_;
   lookAt(second_s_ + 1.0);

@@ -22,7 +22,7 @@ std::string nameOf(LateCause cause);
 
 /// What this process has used so far.
 struct ProcessUse {
-  std::int64_t waited_ns = 0;  ///< of the thread that waited most for a processor
+  std::int64_t waited_ns = 0;  ///< of the thread that waited most for a processor, but for those that give way
   std::uint64_t majorFaults = 0, minorFaults = 0;
   std::uint64_t programs = 0;  ///< made
 };
