@@ -190,13 +190,19 @@ vec4 airPart(AirPath p, int azimuth, int part, int four) {
              mix(texelFetch(airRadiance, high), texelFetch(airRadiance, high + step), p.mixed.y), p.mixed.x);
 }
 
-// Emission less that of air of one temperature, and sunlight scattered by molecules and haze, each with its phase function [1/sr].
+// Henyey and Greenstein's phase function [1/sr] over 1 / (4 pi).
+vec4 airHazePhase(vec4 g, float c) {
+  vec4 chord = 1.0 + g * g - 2.0 * g * c;
+  return (1.0 - g * g) * inversesqrt(chord) / chord;
+}
+
+// Emission less that of air of one temperature, and sunlight scattered by molecules, by haze and by haze again, each with its phase function [1/sr].
 vec4 airValue(AirPath p, int four) {
   vec4 sum = airPart(p, 0, 0, four);
   if (AIR_PARTS > 1) {
     float c = dot(ray_, view.sun.xyz) / rayLength_;
-    vec4 g = air.asymmetry[four], chord = 1.0 + g * g - 2.0 * g * c;
-    vec4 molecules = airPart(p, 0, 1, four), haze = airPart(p, 0, 2, four);
+    vec4 g = air.asymmetry[four];
+    vec4 molecules = airPart(p, 0, 1, four), haze = airPart(p, 0, 2, four), again = AIR_PARTS > 3 ? airPart(p, 0, AIR_PARTS - 1, four) : vec4(0.0);
     if (AIR_AZIMUTHS > 1) {
       // The sun's height over far air depends on the azimuth it is seen under.
       float across = (c - sinElevation_ * dot(view.up.xyz, view.sun.xyz)) * inversesqrt(max(1.0 - sinElevation_ * sinElevation_, 1.0e-8));
@@ -204,8 +210,10 @@ vec4 airValue(AirPath p, int four) {
       int a = min(int(z), int(air.more.x) - 2);
       molecules = mix(airPart(p, a, 1, four), airPart(p, a + 1, 1, four), z - float(a));
       haze = mix(airPart(p, a, 2, four), airPart(p, a + 1, 2, four), z - float(a));
+      if (AIR_PARTS > 3) again = mix(airPart(p, a, AIR_PARTS - 1, four), airPart(p, a + 1, AIR_PARTS - 1, four), z - float(a));
     }
-    sum += 0.0596831037 * (1.0 + c * c) * molecules + 0.0795774715 * (1.0 - g * g) * inversesqrt(chord) / chord * haze;
+    sum += 0.0596831037 * (1.0 + c * c) * molecules + 0.0795774715 * airHazePhase(g, c) * haze;
+    if (AIR_PARTS > 3) sum += 0.0795774715 * airHazePhase(g * g, c) * again;
   }
   return sum;
 }

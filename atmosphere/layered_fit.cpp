@@ -72,6 +72,7 @@ class Reader {
       seen.air[s] += part(0);
       if (parts > 1)
         seen.air[s] += physics::rayleighPhase(cosScatter_) * part(1) + physics::henyeyGreensteinPhase(cosScatter_, rows_.asymmetries()[s]) * part(2);
+      if (parts > 3) seen.air[s] += hazeAgainPhase(cosScatter_, rows_.asymmetries()[s]) * part(3);
     }
     return seen;
   }
@@ -225,7 +226,7 @@ class LineLoss {
 
 AirTableSize affordable(AirTableSize size, const Simulation& simulation, const Plan& plan) {
   const bool perNode = simulation.hasTransparent() || simulation.mode == RenderMode::Buffered;
-  const double each = (plan.terms.scatteredSun ? 3.0 : 1.0) * (perNode ? plan.nodeCount() : 4 * plan.groupCount());
+  const double each = (plan.terms.scatteredSun ? 4.0 : 1.0) * (perNode ? plan.nodeCount() : 4 * plan.groupCount());
   while (each * size.elevations * (size.ranges + 1) * size.azimuths > kMostValues && size.elevations > kLeast.elevations) {
     int& most = size.azimuths > 5 ? size.azimuths : size.ranges > 97 && size.ranges > size.elevations ? size.ranges : size.elevations;
     most = (most - 1) / 2 + 1;
@@ -336,7 +337,7 @@ std::pair<AirTableSize, AirTableLoss> AirTableFit::within(double accuracy) const
   for (int tries = 1; tries < kTries; ++tries) {
     AirTableSize next{finer(size.elevations, largestOf(loss.elevations), share, kMost.elevations),
                       finer(size.ranges, largestOf(loss.ranges), share, kMost.ranges),
-                      finer(size.azimuths, largestOf(loss.azimuths), share, kMost.azimuths),
+                      finer(size.azimuths, largestOf(loss.azimuths), budget::kAzimuthSteps.of(accuracy), kMost.azimuths),
                       size.over,
                       size.across,
                       size.near_m,

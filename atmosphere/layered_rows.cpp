@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "sim/radiance/diffuse_light.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -17,10 +18,13 @@ double logOf(double v) { return std::log(std::max(v, kNothing)); }
 }  // namespace
 
 AirRows::AirRows(const Simulation& simulation, const Plan& plan, bool perChannel)
-    : simulation_(simulation), plan_(plan), perChannel_(perChannel), air_(plan.nodes) {
+    : simulation_(simulation),
+      plan_(plan),
+      perChannel_(perChannel),
+      air_(plan.nodes, plan.terms.streams > 0 ? DiffuseLight::of(columnOf(simulation), plan.terms.streams) : nullptr, true) {
   vectors_ = (static_cast<int>(simulation.air->exponents().size()) + 3) / 4;
   values_ = perChannel ? 4 * plan.groupCount() : (plan.nodeCount() + 3) / 4 * 4;
-  parts_ = plan.terms.scatteredSun ? 3 : 1;
+  parts_ = plan.terms.scatteredSun ? plan.terms.streams > 0 ? 4 : 3 : 1;
   for (const SpectralNode& n : plan.nodes) sunIrradiance_.push_back(plan.terms.scatteredSun ? n.mean(simulation.sun->irradiance) : 0.0);
   asymmetry_ = asymmetriesOf();
 }
@@ -82,7 +86,7 @@ namespace {
 
 /// The same with the sky on the horizon as what is seen in space.
 void endOn(NodeRadiance& line, const NodeRadiance& horizon, size_t nodes) {
-  for (auto part : {&NodeRadiance::thermal, &NodeRadiance::molecules, &NodeRadiance::haze})
+  for (auto part : {&NodeRadiance::thermal, &NodeRadiance::molecules, &NodeRadiance::haze, &NodeRadiance::again})
     if (!(line.*part).empty())
       std::copy((horizon.*part).end() - static_cast<std::ptrdiff_t>(nodes), (horizon.*part).end(), (line.*part).end() - static_cast<std::ptrdiff_t>(nodes));
 }
@@ -131,7 +135,11 @@ void AirRows::writeRadiance(const NodeRadiance& sent, double cosScatter, AirRow&
   const size_t nodes = plan_.nodes.size(), columns = sent.thermal.size() / nodes, parts = static_cast<size_t>(parts_), values = static_cast<size_t>(values_);
   row.radiance.assign(columns * parts * values, 0.0f);
   for (size_t part = 0; part < parts; ++part) {
-    const auto& own = part == 0 ? sent.thermal : part == 1 ? sent.molecules : sent.haze;
+    const auto& own = part == 0 ? sent.thermal : part == 1 ? sent.molecules : part == 2 ? sent.haze : sent.again;
+    if (own.empty()) continue;  // the sun is far below the horizon
+    const auto phaseOf = [&](double asymmetry) {
+      return part == 2 ? physics::henyeyGreensteinPhase(cosScatter, asymmetry) : hazeAgainPhase(cosScatter, asymmetry);
+    };
     for (size_t i = 0; i < nodes; ++i) {
       const double strength = part == 0 ? 1.0 : sunIrradiance_[i];
       const auto add = [&](size_t value, double weight) {
@@ -141,9 +149,7 @@ void AirRows::writeRadiance(const NodeRadiance& sent, double cosScatter, AirRow&
       for (size_t slot = 0; perChannel_ && slot < plan_.weight.size(); ++slot) {
         if (plan_.weight[slot][i] == 0.0) continue;
         // The shader has one asymmetry per channel: on the row's own azimuth each node keeps its own.
-        const double turned =
-            part < 2 ? 1.0
-                     : physics::henyeyGreensteinPhase(cosScatter, plan_.nodes[i].air.asymmetry) / physics::henyeyGreensteinPhase(cosScatter, asymmetry_[slot]);
+        const double turned = part < 2 ? 1.0 : phaseOf(plan_.nodes[i].air.asymmetry) / phaseOf(asymmetry_[slot]);
         add(slot, strength * plan_.weight[slot][i] * turned);
       }
     }

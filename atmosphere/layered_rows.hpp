@@ -18,8 +18,9 @@ struct AirLine {
 
 /// Entries by range.
 struct AirRow {
-  std::vector<float> amounts;   ///< [range][4 x vectors]: ln of the mean per km; at the first the density there, to space of all
-  std::vector<float> radiance;  ///< [range][part][value]: emission less that of air of one temperature; scattered by molecules and by haze for phases of 1/sr
+  std::vector<float> amounts;  ///< [range][4 x vectors]: ln of the mean per km; at the first the density there, to space of all
+  std::vector<float>
+      radiance;  ///< [range][part][value]: emission less that of air of one temperature; scattered by molecules, by haze, and by haze again for phases of 1/sr
 };
 
 class AirRows {

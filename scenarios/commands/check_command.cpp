@@ -66,7 +66,6 @@ int check(const CheckWish& w) {
                 w.plans ? (", " + count(static_cast<size_t>(plan.nodeCount()), "wavelength", "wavelengths")).c_str() : "");
     if (c.follower) std::printf("    %s\n", c.follower->words.c_str());
     std::printf("%s%s", sensorText(c, sim.time.step_s).c_str(), geometryText(sim, drawn, plan).c_str());
-    for (const ScatteredAgain& s : ScatteringCheck(sim, c, plan).at(advance(sim, sim.time.at(0)))) sayScatteredAgain(c.name, s, notes);
     if (!c.spectralImage) continue;
     const auto passes = spectralPasses(c);
     for (const auto& pass : passes) makeTables(sim, makePlan(sim, pass.outputs, pass.spectral, pass.where));

@@ -64,6 +64,7 @@ std::string accountsText(const Plan& plan, const std::vector<std::string>& names
   row(budget::kTables.name, most(budget::kTables), &PredictedParts::tables);
   row(budget::kTerms.name, most(budget::kTerms) + " each", &PredictedParts::dropped);
   if (!plan.surroundingsLoss.empty()) row(budget::kSurroundings.name, most(budget::kSurroundings), &PredictedParts::surroundings);
+  if (plan.streams > 0) row(budget::kStreams.name, most(budget::kStreams), &PredictedParts::streams);
   if (plan.parts.front().fields > 0.0) row(budget::kFields.name, most(budget::kFields), &PredictedParts::fields);
   row("precision", "", &PredictedParts::precision);
   row("beside it, at the extremes", "", &PredictedParts::extremes);
@@ -126,6 +127,7 @@ std::string planText(const PlannedEye& eye) {
     for (int s : b.slots)
       if (!b.lit && plan.terms.lights) dark += (dark.empty() ? "" : ", ") + names[static_cast<size_t>(s)];
   if (!dark.empty()) out += "  no reflected light of sun or lamps in " + dark + "\n";
+  if (plan.terms.streams > 0) out += print("  light scattered again     by %d streams\n", plan.streams);
   if (plan.accuracy > 0.0) out += "  shadows                   " + std::string(plan.terms.shadows ? " kept\n" : " none\n");
 
   size_t widest = 16;

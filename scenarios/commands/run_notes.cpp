@@ -108,39 +108,6 @@ void noteScenario(const Simulation& sim, Notes& notes) {
   noteFringes(sim, notes);
 }
 
-void sayScatteredAgain(const std::string& camera, const ScatteredAgain& s, Notes& notes) {
-  // Three figures, and no exponent.
-  const auto times = [](double f) {
-    if (f < 100.0) return print("%.3g", f);
-    const double step = std::pow(10.0, std::floor(std::log10(f)) - 1.0);
-    return print("%.0f", std::round(f / step) * step);
-  };
-  const std::string off =
-      s.error > 0.4 ? "a guess where the sun is so low, or so little comes through" : print("chance %.0f %%", std::max(100.0 * s.error, 1.0));
-  notes.say(
-      print("camera %s, channel %s: light that the air scatters more than once is left out; with it pixels would be about %s times as bright (%s to %s over "
-            "the film), by photons followed through level air over the ground below, shadows of bodies left out (%s)",
-            camera.c_str(), s.channel.c_str(), times(s.factor).c_str(), times(s.least).c_str(), times(s.most).c_str(), off.c_str()));
-}
-
-/// Once per camera and channel.
-void FrameNotes::scattering(const Frame& f) {
-  const std::string begin = "pitviper.scattered_again.";
-  const auto value = [&f](const std::string& name) {
-    for (const auto& a : f.attributes)
-      if (a.name == name) return std::get<double>(a.value);
-    return 1.0;
-  };
-  for (const auto& a : f.attributes) {
-    if (a.name.rfind(begin, 0) != 0 || !told_.insert(f.camera + "/" + a.name).second) continue;
-    const std::string channel = a.name.substr(begin.size());
-    sayScatteredAgain(f.camera,
-                      {channel, std::get<double>(a.value), value("pitviper.scattered_again_least." + channel),
-                       value("pitviper.scattered_again_most." + channel), value("pitviper.scattered_again_chance." + channel)},
-                      notes_);
-  }
-}
-
 /// Once a run: what the plan was not made for.
 void FrameNotes::limits(const Frame& f) {
   for (const auto& a : f.attributes)
@@ -174,7 +141,6 @@ void FrameNotes::saturation(const Frame& f) {
 void FrameNotes::look(const Frame& frame) {
   saturation(frame);
   limits(frame);
-  scattering(frame);
 }
 
 }  // namespace pitviper

@@ -6,7 +6,6 @@
 
 #include "sim/frame/frame.hpp"
 #include "sim/model/simulation.hpp"
-#include "sim/plan/scattered_again.hpp"
 
 namespace pitviper {
 
@@ -30,7 +29,6 @@ void noteFringes(const Simulation& simulation, Notes& notes);
 void noteNear(const Simulation& simulation, double time_s, Notes& notes);
 /// What is to be said of a scenario before it is drawn: what meshes had that was mended, responses that end where the scene has no data, fog and fringes.
 void noteScenario(const Simulation& simulation, Notes& notes);
-void sayScatteredAgain(const std::string& camera, const ScatteredAgain& scattered, Notes& notes);
 
 /// What frames say of themselves, each thing once.
 class FrameNotes {
@@ -39,7 +37,6 @@ class FrameNotes {
   void look(const Frame& frame);
 
  private:
-  void scattering(const Frame& frame);
   void limits(const Frame& frame);
   void saturation(const Frame& frame);
   Notes& notes_;

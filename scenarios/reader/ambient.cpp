@@ -164,10 +164,10 @@ void Builder::readAmbient(const Record& scenario) {
     throw UserError(r.where("from"), "ambient light from the sky needs layered air", "a library air or a table under 'atmosphere'",
                     "add 'atmosphere: hazy_us76', or give a temperature or radiance");
   try {
-    simulation_.ambient = meanSky(simulation_.air, simulation_.sun, simulation_.background, 0.0, simulation_.frame.earthRadius_m());
-    simulation_.surroundings =
-        skyAndGround(simulation_.air, simulation_.sun, simulation_.background, simulation_.materials[static_cast<size_t>(simulation_.ground->material)],
-                     simulation_.ground->temperature_K, simulation_.frame.earthRadius_m());
+    const auto& ground = simulation_.materials[static_cast<size_t>(simulation_.ground->material)];
+    const double ground_K = simulation_.ground->temperature_K, radius_m = simulation_.frame.earthRadius_m();
+    simulation_.ambient = meanSky(simulation_.air, simulation_.sun, simulation_.background, ground, ground_K, 0.0, radius_m);
+    simulation_.surroundings = skyAndGround(simulation_.air, simulation_.sun, simulation_.background, ground, ground_K, radius_m);
   } catch (const OutsideSpectrum& e) {
     throw UserError(r.where("from"), std::string("the sky needs the sun and the background wherever the air has data: ") + e.what(),
                     "spectra from 0.4 to 14.2 um", "extend the table, or declare 'outside: hold' or 'outside: zero' if that is true");

@@ -227,8 +227,8 @@ const ParameterTable& ambient() {
       "other.",
       {within(number("temperature", "K", "black dome"), 0, kHottest_K), spectrum("radiance", "W/(m2 sr um)", "radiance"),
        choice("from", {"sky"},
-              "layered air: its sky by elevation and azimuth and the ground below, as seen at each body's height: emission of the air, sunlight it scatters "
-              "once, the background; the ground in the sun and under the mean sky, seen through the air"),
+              "layered air: its sky by elevation and azimuth and the ground below, as seen at each body's height: emission of the air, sunlight it "
+              "scatters, the background; the ground in the sun and under the mean sky, seen through the air"),
        list("gradient", "light by elevation alone, linear between entries, held beyond the first and the last", 1, 64),
        map("map", "a picture of all directions")}};
   return t;

@@ -85,7 +85,10 @@ void Auditor::look(const WorldState& state, int frame, CameraImage& image, bool 
   if (count == 0) return;
   if (!reference_) {
     giveBackFreedMemory();  // of the compiler's, for the first picture
-    reference_ = std::make_unique<CameraRenderer>(simulation_, camera_, cameraPlan(simulation_, camera_), library_, scene_);
+    Plan plan = cameraPlan(simulation_, camera_);
+    // What fewer streams lose is known; more would be worked out for every wavelength anew.
+    if (plan.terms.streams > 0) plan.streams = plan.terms.streams = std::max(planned_.streams, kUsualStreams);
+    reference_ = std::make_unique<CameraRenderer>(simulation_, camera_, std::move(plan), library_, scene_);
   }
   std::vector<int> pixels = pixelsOf(count, frame, 1);
   const int doubt = doubtful(state, frame);

@@ -7,7 +7,6 @@
 #include "sim/camera/camera_pointer.hpp"
 #include "sim/camera/hot_parts.hpp"
 #include "sim/plan/averaged_fringes.hpp"
-#include "sim/plan/scattered_again.hpp"
 #include "sim/render/reference/pixel_truth.hpp"
 #include "sim/scene/camera.hpp"
 #include "sim/scene/scene.hpp"
@@ -34,19 +33,18 @@ struct CameraImage {
   int width = 0, height = 0;
   std::vector<std::vector<double>> slots;  ///< [slot][pixel], kernel unit x W/(m2 sr)
   std::shared_ptr<const Pinhole::SolidAngles> solidAngles;
-  ChannelValues exposures_s;                     ///< of the camera at its time
-  double exposure_s = 0.0;                       ///< the longest of them
-  std::vector<TruthPixel> truth;                 ///< per pixel, or empty
-  std::vector<int> slotOfOutput;                 ///< from the plan
-  std::vector<AveragedFringes> averagedFringes;  ///< of materials, the same in every picture
-  std::vector<ScatteredAgain> scatteredAgain;    ///< channels in which light scattered more than once would matter
-  double accuracy = 0.0;                         ///< from the plan, and so its error per slot
-  std::vector<double> predictedError;            ///< empty where nothing was measured
-  std::string plan;                              ///< its fingerprint
-  bool isDraft = false;                          ///< by that of a draft, while the one asked for is made
-  std::vector<Ball> parts;                       ///< bright ones that had views of their own
-  std::vector<FilmPoint> points;                 ///< besides `slots`: of a camera with pointsApart
-  int exposureParts = 1;                         ///< times that it is a mean of
+  ChannelValues exposures_s;                                               ///< of the camera at its time
+  double exposure_s = 0.0;                                                 ///< the longest of them
+  std::vector<TruthPixel> truth;                                           ///< per pixel, or empty
+  std::vector<int> slotOfOutput;                                           ///< from the plan
+  std::vector<AveragedFringes> averagedFringes;                            ///< of materials, the same in every picture
+  double accuracy = 0.0;                                                   ///< from the plan, and so its error per slot
+  std::vector<double> predictedError;                                      ///< empty where nothing was measured
+  std::string plan;                                                        ///< its fingerprint
+  bool isDraft = false;                                                    ///< by that of a draft, while the one asked for is made
+  std::vector<Ball> parts;                                                 ///< bright ones that had views of their own
+  std::vector<FilmPoint> points;                                           ///< besides `slots`: of a camera with pointsApart
+  int exposureParts = 1;                                                   ///< times that it is a mean of
   double exposureMotion_px = 0.0, exposureError = 0.0, streakError = 0.0;  ///< as of ExposureParts
   std::vector<SlotAudit> audit;                                            ///< per slot; empty: not audited
   std::optional<CameraPointing> pointing;                                  ///< of a camera with a follower

@@ -39,7 +39,6 @@ CameraRenderer::CameraRenderer(const Simulation& simulation, const Camera& camer
       camera_(camera),
       plan_(std::move(plan)),
       fringes_(averagedFringes(simulation, camera.outputs)),
-      scattering_(simulation, camera, plan_),
       ways_(simulation, plan_),
       lines_(zoomedLines(simulation, camera.zoomedSamples, camera.outlineAccuracy)),
       areas_m2_(facingAreas(simulation)),
@@ -93,7 +92,6 @@ int CameraRenderer::viewsOfPicture() const {
 
 void CameraRenderer::begin(const WorldState& state) {
   state_ = state;
-  scattering_.begin(state);
   view_ = cameraView(camera_, state, camera_.samples);
   view_.wanted = wanted_;
   view_.grouped = camera_.sharesShading ? camera_.samples : 1;
@@ -220,7 +218,6 @@ CameraImage CameraRenderer::finish() {
   resolved.exposures_s = cameraAt(camera_, state_).exposures_s;
   resolved.exposure_s = longestExposure_s(camera_, resolved.exposures_s);
   resolved.averagedFringes = fringes_;
-  resolved.scatteredAgain = scattering_.finish();
   resolved.accuracy = plan_.accuracy;
   resolved.predictedError = plan_.predictedError;
   resolved.plan = plan_.fingerprint;

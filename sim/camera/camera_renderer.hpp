@@ -5,7 +5,6 @@
 
 #include "sim/camera/hot_parts.hpp"
 #include "sim/camera/overlay.hpp"
-#include "sim/camera/scattering_by_second.hpp"
 #include "sim/camera/subpixels.hpp"
 #include "sim/camera/visible_lights.hpp"
 #include "sim/render/buffered_pass.hpp"
@@ -64,7 +63,6 @@ class CameraRenderer {
   const Camera& camera_;
   Plan plan_;
   std::vector<AveragedFringes> fringes_;
-  ScatteringBySecond scattering_;
   WaysToLights ways_;
   FilmWeights filmWeights_;
   std::vector<int> lines_;               ///< across each small body

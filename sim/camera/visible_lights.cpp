@@ -35,7 +35,7 @@ std::vector<double> WaysToLights::from(const WorldState& state, const std::vecto
   // The sun's direction is to the part of it that stands above the horizon.
   if (distance_m < physics::kFar && hiddenByGround(simulation_, line.hits, place, direction, distance_m)) return {};
   if (line.hits.layers.empty() && line.hits.stretches.empty()) return std::vector<double>(plan_.nodes.size(), 1.0);
-  if (!spectra_) spectra_ = std::make_unique<const NodeSpectra>(simulation_, plan_.nodes, plan_.terms.surroundings);
+  if (!spectra_) spectra_ = std::make_unique<const NodeSpectra>(simulation_, plan_.nodes, terms_);
   NodeSum sum(*spectra_);
   sum.begin();
   wayAlong({simulation_, terms_, nullptr, state, {}}, line, distance_m, sum);

@@ -26,11 +26,7 @@ std::uint64_t mixed(std::uint64_t x) {
 }
 
 WholePixels::WholePixels(const Simulation& simulation, const Camera& camera, const Plan& plan, std::uint64_t seed)
-    : simulation_(simulation),
-      camera_(camera),
-      plan_(plan),
-      seed_(seed),
-      spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms.surroundings)) {}
+    : simulation_(simulation), camera_(camera), plan_(plan), seed_(seed), spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms)) {}
 
 std::optional<WholePixel> WholePixels::look(const WorldState& state, int pixel) const {
   const View view = cameraView(camera_, state, 1);

@@ -318,12 +318,6 @@ Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& 
   addAxis(frame, camera);
   addAccuracy(frame, camera, image);
   addAudit(frame, camera, image);
-  for (const ScatteredAgain& s : image.scatteredAgain) {
-    frame.attributes.push_back({"pitviper.scattered_again." + s.channel, s.factor});
-    frame.attributes.push_back({"pitviper.scattered_again_least." + s.channel, s.least});
-    frame.attributes.push_back({"pitviper.scattered_again_most." + s.channel, s.most});
-    frame.attributes.push_back({"pitviper.scattered_again_chance." + s.channel, s.error});
-  }
   if (const std::string words = hazeNotFog(sim); !words.empty()) frame.attributes.push_back({"pitviper.haze_not_fog", words});
   for (const AveragedFringes& f : image.averagedFringes) {
     const std::string key = "pitviper.averaged_fringes." + f.channel;

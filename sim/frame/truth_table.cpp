@@ -47,7 +47,7 @@ TruthMeter::TruthMeter(const Simulation& simulation, const Camera& camera)
       lines_(std::clamp(kLinesAtOnePercent * std::pow(0.01 / asked_, 2.0 / 3.0), 48.0, 256.0)),
       present_(simulation.entities.size(), 1),
       plan_(measuredPlanFor(simulation, drawnCamera(camera))),
-      spectra_(std::make_shared<const NodeSpectra>(simulation, plan_.nodes, plan_.terms.surroundings)) {
+      spectra_(std::make_shared<const NodeSpectra>(simulation, plan_.nodes, plan_.terms)) {
   if (camera.mount.carrier >= 0) present_[static_cast<std::size_t>(camera.mount.carrier)] = 0;
   for (std::size_t o = 0; o < measured_.size(); ++o)
     if (isRadiance(measured_[o])) radianceOf_.push_back(o);
@@ -323,7 +323,8 @@ std::vector<TargetRow> TruthMeter::targets(const WorldState& state, const StateA
 std::vector<FrameLayer> TruthMeter::terms(const WorldState& state) const {
   const View film = cameraView(camera_, state, 1);
   const ReferenceShader shader(simulation_, plan_, film, state, present_, spectra_);
-  constexpr const char* kNames[kTermKinds] = {"emission", "ambient", "sun", "lamps", "air_emission", "scattered_sun", "background", "media", "lamps_in_view"};
+  constexpr const char* kNames[kTermKinds] = {"emission",      "ambient",    "sun",   "lamps",         "air_emission",
+                                              "scattered_sun", "background", "media", "lamps_in_view", "scattered_again"};
   const std::size_t lamps = simulation_.lights.size(), parts = kTermKinds + lamps,
                     pixels = static_cast<std::size_t>(film.width) * static_cast<std::size_t>(film.height);
   std::vector<std::vector<float>> layers(radianceOf_.size() * parts, std::vector<float>(pixels, 0.0f));
@@ -371,6 +372,8 @@ std::vector<FrameLayer> TruthMeter::terms(const WorldState& state) const {
         return t.air;
       case TermKind::ScatteredSun:
         return t.scatteredSun;
+      case TermKind::ScatteredAgain:
+        return t.streams > 0;
       case TermKind::Media:
         return t.media;
       case TermKind::LampsInView:

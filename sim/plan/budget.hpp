@@ -33,6 +33,8 @@ inline constexpr Account kFields{
     "taken whole where there are fields, for their steps and the lines through their pixels are chosen by it and not measured after"};
 inline constexpr Account kSurroundings{"light from all around", 0.4, Adds::InFull,
                                        "by fewer harmonics; it changes evenly over surfaces, so that the loss on some lines needs no margin on others"};
+inline constexpr Account kStreams{"light scattered again", 0.15, Adds::InFull,
+                                  "by fewer streams, of the largest share that it has of any line; few lines have as much"};
 inline constexpr Account kTables{"tables", 0.3, Adds::InFull,
                                  "up to this wavelengths make room for what tables of air were found to lose; finer groups help these no further"};
 inline constexpr Account kTerms{"terms left out", 0.05, Adds::InFull,
@@ -52,7 +54,8 @@ inline constexpr Account kAirPlaces{"places of air, for the fit", 0.4, Adds::Wit
                                     "the last lines, which the prediction is of, look at the air at no fewer than usual"};
 
 // Within what tables have.
-inline constexpr Account kTableSteps{"steps of a table of air", 0.05, Adds::Within, "each of elevations, ranges, azimuths and what views share"};
+inline constexpr Account kTableSteps{"steps of a table of air", 0.05, Adds::Within, "each of elevations, ranges and what views share"};
+inline constexpr Account kAzimuthSteps{"azimuths of a table of air", 0.1, Adds::Within, "each costs all rows anew; light scattered again changes with them"};
 inline constexpr Account kSunSteps{"steps of the sun's elevation", 0.03, Adds::Within, "between two of them tables are the same"};
 inline constexpr Account kProbeTables{"tables of a probe", 0.2, Adds::Within, "a guess: they are of the usual size, all around, and not measured"};
 inline constexpr Account kTablesAnew{"tables made anew", 0.02, Adds::Within, "kept back until groups are final, as tables then may lose a little more"};
@@ -71,9 +74,9 @@ inline constexpr Account kBends{
 inline constexpr Account kMotion{"motion within an exposure", 1.0, Adds::Apart, "of the contrast at an edge that moves"};
 inline constexpr Account kTruthPlaces{"truth between its places", 0.04, Adds::Apart, "of a body's contrast in truth's table, which the frame is held against"};
 
-inline constexpr std::array kAccounts{kFields,       kSurroundings, kTables,      kTerms,     kLampShadows, kLamps,      kFitted,      kUnseen,
-                                      kBesideFields, kHeld,         kLearnt,      kAirPlaces, kTableSteps,  kSunSteps,   kProbeTables, kTablesAnew,
-                                      kFaintFields,  kOutlines,     kBrightParts, kBends,     kMotion,      kTruthPlaces};
+inline constexpr std::array kAccounts{kFields,      kSurroundings, kStreams,     kTables,   kTerms,       kLampShadows, kLamps,        kFitted,
+                                      kUnseen,      kBesideFields, kHeld,        kLearnt,   kAirPlaces,   kTableSteps,  kAzimuthSteps, kSunSteps,
+                                      kProbeTables, kTablesAnew,   kFaintFields, kOutlines, kBrightParts, kBends,       kMotion,       kTruthPlaces};
 
 }  // namespace budget
 }  // namespace pitviper

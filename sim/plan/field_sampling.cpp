@@ -304,7 +304,7 @@ FieldSampling::Needs FieldSampling::needsOf(const Simulation& sim, const Plan& p
 FieldSampling::FieldSampling(const Simulation& sim, const Plan& whole, int most) {
   const double asked = whole.accuracy > 0.0 ? whole.accuracy : kUsualAccuracy;
   const Plan plan = fewNodes(sim, whole, most);
-  const NodeSpectra spectra(sim, plan.nodes, 0);
+  const NodeSpectra spectra(sim, plan.nodes, withSurroundings(plan.terms, 0));
   const int pixels = std::clamp(kPixels / std::max(static_cast<int>(sim.fields.size()), 1), kFewestPixels, kMostPixels);
   const int times = sim.fields.empty() ? 0 : std::clamp(sim.time.frames, 1, kTimes);
   std::vector<WorldState> states;

@@ -25,6 +25,8 @@ bool isDropped(const Plan& plan, const Terms& all, TermKind kind, const NodeBloc
       return all.ambient && !plan.terms.ambient;
     case TermKind::ScatteredSun:
       return all.scatteredSun && !plan.terms.scatteredSun;
+    case TermKind::ScatteredAgain:
+      return all.streams > 0 && plan.terms.streams == 0;
     case TermKind::Sun:
     case TermKind::Lights:
       return all.lights && (!plan.terms.lights || !block.lit);
@@ -230,7 +232,7 @@ Plan ofSlots(const Plan& plan, const std::vector<size_t>& slots) {
     of.clear();
     for (size_t s : slots) of.push_back(all[s]);
   };
-  pick(some.predictedError), pick(some.parts), pick(some.fineCount), pick(some.surroundingsLoss);
+  pick(some.predictedError), pick(some.parts), pick(some.fineCount), pick(some.surroundingsLoss), pick(some.streamsLoss);
   for (TermShare& term : some.shares) pick(term.share);
   return some;
 }

@@ -22,7 +22,7 @@ struct LineFigures {
 /// A plan with the spectra that lines have in common at its nodes. All must outlive it. `parts`: all wavelengths that it is made of, or null.
 struct NodesOfPlan {
   NodesOfPlan(const Simulation& simulation, const Plan& of, const NodesOfPlan* parts = nullptr)
-      : plan(of), spectra(simulation, of.nodes, of.terms.surroundings, parts ? &parts->spectra : nullptr) {}
+      : plan(of), spectra(simulation, of.nodes, of.terms, parts ? &parts->spectra : nullptr) {}
   const Plan& plan;
   NodeSpectra spectra;
 };

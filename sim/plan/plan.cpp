@@ -65,6 +65,7 @@ Plan makePlan(const Simulation& sim, const std::vector<ChannelOutput>& outputs, 
   Plan plan;
   plan.terms = termsOf(sim);
   if (plan.terms.surroundings != 0 && !sampling.reference) plan.terms = withSurroundings(plan.terms, plan.surroundings);
+  if (plan.terms.streams > 0) plan.streams = plan.terms.streams = sampling.reference ? kFinestStreams : plan.streams;
   plan.lightCount = static_cast<int>(sim.lights.size()) + (sim.sun ? 1 : 0);
 
   if (plan.terms.air && sim.air->traits().scattersSun && sim.sun)

@@ -38,9 +38,10 @@ struct PredictedParts {
   double dropped = 0.0;       ///< terms left out
   double precision = 0.0;     ///< single precision
   double surroundings = 0.0;  ///< ambient light by so many harmonics
+  double streams = 0.0;       ///< light scattered again by so many streams
   double fields = 0.0;        ///< steps through plumes and clouds, and lines through pixels of them, at most
   double extremes = 0.0;      ///< of wavelengths, largest on the lines at the extremes; not in the sum
-  double sum() const { return wavelengths + tables + dropped + precision + surroundings + fields; }
+  double sum() const { return wavelengths + tables + dropped + precision + surroundings + streams + fields; }
 };
 
 /// Entries of the tables that the GPU reads air from; 0: none.
@@ -84,6 +85,8 @@ struct Plan {
   Terms terms;
   int surroundings = kMostHarmonicOrder;   ///< ambient light by direction, as Terms::surroundings has it
   std::vector<double> surroundingsLoss;    ///< [slot]: what that loses on the lines it was chosen on; empty: nobody has looked
+  int streams = kUsualStreams;             ///< of light scattered again, as Terms::streams
+  std::vector<double> streamsLoss;         ///< [slot]: what that loses; empty: nobody has looked
   int lightCount = 0;                      ///< point lights and, last, the sun
   std::shared_ptr<const SunLegs> sunLegs;  ///< layered air in sunlight
 

@@ -12,7 +12,7 @@
 namespace pitviper {
 namespace {
 
-constexpr const char* kFormat = "pitviper plan 4";
+constexpr const char* kFormat = "pitviper plan 5";
 
 constexpr const char* kTable = "plan";
 
@@ -70,7 +70,7 @@ class Reader {
   bool ok_ = true;
 };
 
-constexpr size_t kMostNodes = 4096, kMostMembers = 100000, kMostEntries = 1025;
+constexpr size_t kMostNodes = 4096, kMostMembers = 100000, kMostEntries = 1025, kMostStreams = 128;
 
 }  // namespace
 
@@ -93,11 +93,14 @@ std::string writePlanned(const Plan& plan) {
   w.put(plan.weight.size());
   for (const auto& row : plan.weight) w.all(row);
   w.all(plan.predictedError);
-  for (const PredictedParts& p : plan.parts) w.all(std::array{p.wavelengths, p.tables, p.dropped, p.precision, p.surroundings, p.fields, p.extremes});
+  for (const PredictedParts& p : plan.parts)
+    w.all(std::array{p.wavelengths, p.tables, p.dropped, p.precision, p.surroundings, p.streams, p.fields, p.extremes});
   for (int n : {plan.air.elevations, plan.air.ranges, plan.air.azimuths}) w.put(static_cast<size_t>(n));
   w.put(plan.air.over), w.put(plan.air.across), w.put(plan.air.near_m), w.put(plan.air.same), w.put(plan.air.sunDepth);
   w.put(static_cast<size_t>(plan.lines)), w.put(static_cast<size_t>(plan.surroundings));
   w.all(plan.surroundingsLoss);
+  w.put(static_cast<size_t>(plan.streams));
+  w.all(plan.streamsLoss);
   w.all(plan.fineCount);
   w.put(plan.shares.size());
   for (const TermShare& s : plan.shares) w.all(s.share);
@@ -135,15 +138,17 @@ bool readPlanned(const std::string& text, Plan& into) {
   plan.predictedError = r.all(kMostSlots);
   plan.parts.clear();
   for (size_t k = 0; k < plan.predictedError.size(); ++k) {
-    const auto p = r.all(7);
-    if (p.size() != 7) return false;
-    plan.parts.push_back({p[0], p[1], p[2], p[3], p[4], p[5], p[6]});
+    const auto p = r.all(8);
+    if (p.size() != 8) return false;
+    plan.parts.push_back({p[0], p[1], p[2], p[3], p[4], p[5], p[6], p[7]});
   }
   for (int* n : {&plan.air.elevations, &plan.air.ranges, &plan.air.azimuths}) *n = static_cast<int>(r.count(kMostEntries));
   plan.air.over = r.number(), plan.air.across = r.number(), plan.air.near_m = r.number(), plan.air.same = r.number(), plan.air.sunDepth = r.number();
   plan.lines = static_cast<int>(r.count(kMostMembers));
   plan.surroundings = static_cast<int>(r.count(kMostHarmonicOrder));
   plan.surroundingsLoss = r.all(kMostSlots);
+  plan.streams = static_cast<int>(r.count(kMostStreams));
+  plan.streamsLoss = r.all(kMostSlots);
   plan.fineCount.clear();
   for (double n : r.all(kMostSlots)) plan.fineCount.push_back(static_cast<int>(n));
   plan.shares.assign(r.count(kTermKinds), {});

@@ -11,6 +11,7 @@
 #include "sim/plan/plan_effort.hpp"
 #include "sim/plan/plan_fits.hpp"
 #include "sim/plan/plan_origin.hpp"
+#include "sim/plan/streams_choice.hpp"
 #include "sim/plan/surroundings_choice.hpp"
 
 namespace pitviper {
@@ -21,6 +22,8 @@ constexpr int kAgain = 2;
 /// Single precision on the GPU over a whole pixel: 2.8e-6 of a formula and 1e-5 of tables (tests/gpu/test_float_against_double.cpp), 5e-5 found in random
 /// scenes.
 constexpr double kPrecision = 6e-5;
+/// Streams by which lines are told before it is known how many the scene takes.
+constexpr int kSketchStreams = 8;
 /// Added to the seed, so that the last lines are neither those of the fit nor those of the measurement before.
 constexpr unsigned long long kLastSeed = 0x9e3779b97f4a7c15u, kNextSeed = 0xd1b54a32d192ed03u, kSurroundingsSeed = 0x8cb92ba72f3d8dd7u;
 
@@ -39,6 +42,7 @@ void dropTerms(Plan& plan, bool keepLights) {
   };
   for (int k = 0; k < kTermKinds; ++k) anywhere(static_cast<TermKind>(k));
   plan.terms.scatteredSun = plan.terms.scatteredSun && anywhere(TermKind::ScatteredSun);
+  plan.terms.streams = plan.terms.streams > 0 && anywhere(TermKind::ScatteredAgain) ? plan.streams : 0;
   plan.terms.ambient = plan.terms.ambient && anywhere(TermKind::Ambient);
   if (plan.terms.surroundings != 0) plan.terms = withSurroundings(plan.terms, plan.terms.ambient ? plan.surroundings : 0);
   for (NodeBlock& b : plan.blocks) {
@@ -97,6 +101,7 @@ struct LastLook {
                        last.figures[s].dropped + lamps,
                        kPrecision,
                        plan.surroundingsLoss.empty() ? 0.0 : plan.surroundingsLoss[s],
+                       plan.streamsLoss.empty() ? 0.0 : plan.streamsLoss[s],
                        sim.fields.empty() ? 0.0 : budget::kFields.of(plan.accuracy),
                        extreme[s].largest};
     return last;
@@ -127,8 +132,8 @@ std::vector<size_t> allOf(const Plan& plan) {
 /// Whether two plans leave the same terms out.
 bool dropAlike(const Plan& a, const Plan& b) {
   const auto same = [](const auto& x, const auto& y, auto is) { return std::equal(x.begin(), x.end(), y.begin(), y.end(), is); };
-  return a.terms.ambient == b.terms.ambient && a.terms.scatteredSun == b.terms.scatteredSun && a.terms.lights == b.terms.lights &&
-         same(a.shares, b.shares, [](const TermShare& x, const TermShare& y) { return x.kept == y.kept; }) &&
+  return a.terms.ambient == b.terms.ambient && a.terms.scatteredSun == b.terms.scatteredSun && a.terms.streams == b.terms.streams &&
+         a.terms.lights == b.terms.lights && same(a.shares, b.shares, [](const TermShare& x, const TermShare& y) { return x.kept == y.kept; }) &&
          same(a.blocks, b.blocks, [](const NodeBlock& x, const NodeBlock& y) { return x.lit == y.lit; });
 }
 
@@ -145,6 +150,7 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
   const int lastPlaces = std::max(airPlaces, kUsualPlaces);
   // Fits and what they are held against tell light from all around alike.
   plan.terms = withSurroundings(plan.terms, fine.plan.terms.surroundings);
+  plan.terms.streams = fine.plan.terms.streams;
   const Terms all = plan.terms;
   const int lights = plan.lightCount;
   HeldLines extremes(sim, fine, rays.extremes(), lastPlaces, floor);
@@ -171,7 +177,8 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
       // The groups of this slot have changed since tables were made.
       const bool isOld = attempt > 0 && std::find(changed.begin(), changed.end(), s) != changed.end();
       const double left = (isOld ? 1.0 - budget::kTablesAnew.share : 1.0) * plan.accuracy - std::min(p.tables, budget::kTables.of(plan.accuracy)) -
-                          std::min(p.surroundings, budget::kSurroundings.of(plan.accuracy)) - p.dropped - p.precision - p.fields;
+                          std::min(p.surroundings, budget::kSurroundings.of(plan.accuracy)) - std::min(p.streams, budget::kStreams.of(plan.accuracy)) -
+                          p.dropped - p.precision - p.fields;
       allowed.push_back(std::max(left, 0.0) / effortOf(plan.accuracy).margin);
       if (p.wavelengths > left) missed.push_back(s);
     }
@@ -219,9 +226,12 @@ Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutp
     const auto seed = static_cast<unsigned long long>(sim.seed);
     SightRays rays(sim, eye, seed ^ kSurroundingsSeed);
     const PlanEffort& effort = effortOf(plan.accuracy);
+    if (fine.terms.streams > 0) fine.terms.streams = kSketchStreams;
     const Plan some = someWavelengths(fine, effort.lookedAt);
     const NodesOfPlan whole(sim, some);
     const std::vector<double> floor = filmFloors(sim, whole, rays, effort);
+    chooseStreams(sim, fine, rays, floor, plan);
+    fine.terms.streams = fine.terms.streams > 0 ? plan.streams : 0;
     chooseSurroundings(sim, whole, rays, floor, plan);
     fine.terms = withSurroundings(fine.terms, plan.terms.surroundings != 0 ? plan.surroundings : 0);
     rays.reseed(seed);
@@ -249,6 +259,7 @@ Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutp
 }
 
 Plan finished(Plan plan, const Eye& eye) {
+  if (plan.terms.streams > 0) plan.terms.streams = plan.streams;
   if (plan.accuracy > 0.0) dropTerms(plan, keepsLights(eye));
   plan.fingerprint = planFingerprint(plan);
   return plan;

@@ -16,7 +16,7 @@ struct GroupState {
 
 /// Where the products have been brought to with a state. Groups are filled up (paddedGroups()) with such as have no weight.
 struct GroupMoments {
-  int groups = 0;                ///< without those
+  int groups = 0;                 ///< without those
   Eigen::MatrixXd source;         ///< [group, source]: sum of weight x share x spectrum
   Eigen::VectorXd weight;         ///< [group]
   Eigen::MatrixXd transmittance;  ///< [group, path]

@@ -17,6 +17,8 @@ constexpr double kStep_K = 4.0, kFineStep_K = 1.0, kShort_um = 3.0;
 constexpr double kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
 /// Temperatures of hot gases are rounded to steps of this ratio: what is fitted to one holds for its neighbours.
 constexpr double kHotStep = 0.02;
+/// Parts of a way through air that light scattered again is told of, and what of a part is not worth telling.
+constexpr double kAgainParts = 4.0, kLittle = 1e-3;
 /// Directions of light from all around are rounded: steps in half a turn.
 constexpr double kElevationSteps = 12.0, kAzimuthSteps = 4.0;
 
@@ -42,8 +44,8 @@ std::vector<ProductTerm> merged(std::vector<ProductTerm> terms) {
 
 }  // namespace
 
-ProductSink::ProductSink(const Simulation& simulation, SightBook& book, double shortest_um)
-    : sim_(simulation), book_(book), step_K_(shortest_um < kShort_um ? kFineStep_K : kStep_K) {
+ProductSink::ProductSink(const Simulation& simulation, SightBook& book, double shortest_um, std::shared_ptr<DiffuseOnGrids> diffuse)
+    : sim_(simulation), book_(book), diffuse_(std::move(diffuse)), step_K_(shortest_um < kShort_um ? kFineStep_K : kStep_K) {
   if (!sim_.air || !sim_.air->traits().any) return;
   const AirNode node = sim_.air->node(std::clamp(1.0, sim_.air->validLow_um(), sim_.air->validHigh_um()));
   for (size_t k = 0; k < kMostAirAmounts; ++k)
@@ -51,12 +53,13 @@ ProductSink::ProductSink(const Simulation& simulation, SightBook& book, double s
 }
 
 void ProductSink::begin(bool fromFilm) {
+  restart();
   sight_ = {};
   sight_.fromFilm = fromFilm;
-  restart();
 }
 
 void ProductSink::restart() {
+  tellAgain();
   here_ = {};
   media_m_.clear();
   inside_m_.clear();
@@ -65,6 +68,7 @@ void ProductSink::restart() {
 }
 
 Sight ProductSink::finish() {
+  tellAgain();
   sight_.terms = merged(std::move(sight_.terms));
   return std::move(sight_);
 }
@@ -142,7 +146,10 @@ void ProductSink::term(const Term& t) {
   else addFactor(term, t.factors);
 }
 
-void ProductSink::pane(const Factor& transmittance, double modifier) { panes_.push_back({book_.spectrum(stepped(transmittance), sim_), modifier}); }
+void ProductSink::pane(const Factor& transmittance, double modifier) {
+  tellAgain();
+  panes_.push_back({book_.spectrum(stepped(transmittance), sim_), modifier});
+}
 
 void ProductSink::segment(const Segment& s) {
   inside_m_.clear();
@@ -151,6 +158,7 @@ void ProductSink::segment(const Segment& s) {
   if (!s.dark) {
     emission(s);
     if (s.sunlit && s.near.sun + s.far.sun > 0.0) scattered(s);
+    if (s.air && diffuse_) scatteredAgain(s);
   }
   if (!inside_m_.empty()) {
     media_m_.resize(inside_m_.size(), 0.0);
@@ -270,6 +278,54 @@ void ProductSink::scattered(const Segment& s) {
       add(t);
     }
   }
+}
+
+/// Light scattered again between two places.
+void ProductSink::scatteredAgain(const Segment& s) {
+  Again own;
+  for (size_t k = 0; k < kMostAirAmounts; ++k) own.middle.amount[k] = 0.5 * (s.near.powered.amount[k] + s.far.powered.amount[k]);
+  for (size_t k : scatterers_) own.weight += own.passed.amount[k] = std::max(s.far.powered.amount[k] - s.near.powered.amount[k], 0.0);
+  own.place = {0.5 * (s.near.height_m + s.far.height_m), 0.5 * (s.near.sine + s.far.sine), s.sunlit ? s.cosAzimuth : 0.0,
+               0.5 * (s.near.temperature_K + s.far.temperature_K)};
+  if (own.weight > 0.0) again_.push_back(own);
+  if (!s.media.empty()) tellAgain();
+}
+
+/// As seen from the middle of each of a few parts that scatter about alike.
+void ProductSink::tellAgain() {
+  double all = 0.0;
+  for (const Again& a : again_) all += a.weight;
+  Again part;
+  const auto tell = [&] {
+    if (!(part.weight > 0.0)) return;
+    for (double& m : part.middle.amount) m /= part.weight;
+    DiffuseOnGrids::Place& mean = part.place;
+    for (double* v : {&mean.height_m, &mean.sine, &mean.cosAzimuth, &mean.temperature_K}) *v /= part.weight;
+    const DiffuseOnGrids::Place place = DiffuseOnGrids::stepped(mean, step_K_);
+    const std::string where = "again " + std::to_string(place.height_m) + " " + std::to_string(place.sine) + " " + std::to_string(place.cosAzimuth) + " " +
+                              std::to_string(place.temperature_K) + " ";
+    const int path = pathOf(part.middle, 0.5);
+    for (size_t k : scatterers_) {
+      if (!(part.passed.amount[k] > kLittle * part.weight)) continue;
+      ProductTerm t;
+      t.tag = static_cast<int>(TermKind::ScatteredAgain);
+      t.spectrum[0] = book_.spectrum(where + std::to_string(k), [all_ = diffuse_, place, k](const FineGrid& g, size_t i) { return all_->at(g, i, place, k); });
+      t.count = 1;
+      t.path = path, t.coefficient = part.passed.amount[k];
+      add(t);
+    }
+    part = {};
+  };
+  for (const Again& a : again_) {
+    part.weight += a.weight;
+    part.passed += a.passed;
+    for (size_t k = 0; k < kMostAirAmounts; ++k) part.middle.amount[k] += a.weight * a.middle.amount[k];
+    part.place.height_m += a.weight * a.place.height_m, part.place.sine += a.weight * a.place.sine;
+    part.place.cosAzimuth += a.weight * a.place.cosAzimuth, part.place.temperature_K += a.weight * a.place.temperature_K;
+    if (part.weight >= all / kAgainParts) tell();
+  }
+  tell();
+  again_.clear();
 }
 
 }  // namespace pitviper

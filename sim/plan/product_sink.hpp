@@ -3,7 +3,7 @@
 //
 // Simpler than the equation, alike for every wavelength, in four things: the air's emission between two places is that of one black body at steps of 4 K;
 // textured temperatures are mixtures of two such; view angles go in steps of 5 degrees; what media and air send on the same stretch each pass half
-// of the other. Errors are measured on sums (line_check.hpp), which take none of these liberties.
+// of the other; light scattered again is that of few heights and directions. Errors are measured on sums (line_check.hpp), which take none of these liberties.
 #include "sim/plan/sights.hpp"
 
 namespace pitviper {
@@ -11,7 +11,7 @@ namespace pitviper {
 class ProductSink final : public TermSink {
  public:
   /// All must outlive it. `shortest_um`: the shortest wavelength at which a channel sees thermal light.
-  ProductSink(const Simulation& simulation, SightBook& book, double shortest_um);
+  ProductSink(const Simulation& simulation, SightBook& book, double shortest_um, std::shared_ptr<DiffuseOnGrids> diffuse = nullptr);
   /// A new line begins.
   void begin(bool fromFilm);
   /// What was told since.
@@ -31,9 +31,12 @@ class ProductSink final : public TermSink {
   void emissionOfMedia(const Segment& segment);
   double strengthOf(int material);
   void scattered(const Segment& segment);
+  void scatteredAgain(const Segment& segment);
+  void tellAgain();
 
   const Simulation& sim_;
   SightBook& book_;
+  std::shared_ptr<DiffuseOnGrids> diffuse_;
   double step_K_;  ///< between temperatures of black bodies
   Sight sight_;
   std::map<int, double> strength_;    ///< of materials
@@ -42,6 +45,13 @@ class ProductSink final : public TermSink {
   std::vector<double> media_m_;       ///< on the way so far, by material; empty: none
   std::vector<double> inside_m_;      ///< of the segment being told
   int herePath_ = -1, sunPath_ = -1;  ///< as far as the place reached, and with the way on to the sun; -1: not written down yet
+  /// Light scattered again on segments told since the last pane or medium: together they are told as few.
+  struct Again {
+    AirAmounts middle, passed;
+    DiffuseOnGrids::Place place;
+    double weight = 0.0;  ///< of what scatters
+  };
+  std::vector<Again> again_;
   struct Pane {
     int transmittance;
     double modifier;

@@ -100,6 +100,7 @@ int SightBook::both(int a, int b) {
 
 Sights::Sights(const Simulation& simulation, const Plan& plan, SightRays& rays, double shortest_um, int airPlaces, size_t kernels)
     : simulation_(simulation), plan_(plan), rays_(rays), shortest_um_(shortest_um), airPlaces_(airPlaces) {
+  if (plan.terms.streams > 0) diffuse_ = std::make_shared<DiffuseOnGrids>(simulation, plan.terms.streams);
   for (size_t k = 0; k + 1 < kernels; ++k)
     ratios_.push_back(book_.spectrum("kernel " + std::to_string(k + 1), [k](const FineGrid& g, size_t i) { return k < g.ratio.size() ? g.ratio[k][i] : 0.0; }));
 }
@@ -112,7 +113,7 @@ void Sights::add(const SightRay& ray, bool inFull) {
     const double shade = rays_.dice().unit();
     return shade < 0.25 ? 0.0 : shade < 0.5 ? rays_.dice().unit() : 1.0;
   };
-  ProductSink sink(simulation_, book_, shortest_um_);
+  ProductSink sink(simulation_, book_, shortest_um_, diffuse_);
   sink.begin(ray.fromFilm);
   LineOfSight line = ray.line;
   if (!inFull) line.hits.slabs = inParts(line.hits.slabs);

@@ -9,6 +9,7 @@
 #include "sim/plan/opacity_groups.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/plan/sight_rays.hpp"
+#include "sim/radiance/diffuse_light.hpp"
 
 namespace pitviper {
 
@@ -53,6 +54,28 @@ struct SightBook {
   std::map<std::string, int> named_;
 };
 
+/// What is turned into a line of light scattered again, on the grids of channels. May be shared between threads.
+class DiffuseOnGrids {
+ public:
+  /// The simulation must outlive it.
+  DiffuseOnGrids(const Simulation& simulation, int streams);
+  struct Place {
+    double height_m = 0.0, sine = 0.0, cosAzimuth = 0.0, temperature_K = 0.0;  ///< of a line and of the air there
+    auto operator<=>(const Place&) const = default;
+  };
+  /// The nearest of few places.
+  static Place stepped(Place place, double step_K);
+  /// By an absorber of the air, per unit of its amount, at the i-th wavelength of a grid, which must outlive it [W/(m2 sr um)].
+  double at(const FineGrid& grid, size_t i, const Place& place, size_t absorber);
+
+ private:
+  struct OnGrid;
+  const Simulation& simulation_;
+  std::shared_ptr<const DiffuseLight> light_;
+  std::mutex busy_;
+  std::map<const FineGrid*, std::shared_ptr<OnGrid>> grids_;
+};
+
 class Sights {
  public:
   /// All must outlive it. `plan`: what makePlan() says of terms. `shortest_um`: the shortest wavelength that any channel sees thermal light at; `airPlaces`:
@@ -85,6 +108,7 @@ class Sights {
   std::vector<int> ratios_;  ///< spectra of the book: of each further kernel
   double shortest_um_;
   int airPlaces_;
+  std::shared_ptr<DiffuseOnGrids> diffuse_;  ///< null: light is scattered once
 };
 
 /// Parts of a line's way through a field at most: what a fit learns of a line along which more change is the same.

@@ -55,7 +55,7 @@ struct Tried {
 
 /// What ambient light by a degree is off by.
 Tried tell(const Simulation& sim, const NodesOfPlan& fine, const std::vector<AroundSink::Told>& lines, const std::vector<double>& floor, int degree) {
-  const NodeSpectra spectra(sim, fine.plan.nodes, degree, &fine.spectra);
+  const NodeSpectra spectra(sim, fine.plan.nodes, withSurroundings(fine.plan.terms, degree), &fine.spectra);
   std::vector<std::vector<double>> off(lines.size());
   onAllThreads(lines.size(), [&](const auto& next) {
     std::vector<double> radiance(fine.plan.nodes.size());

@@ -138,6 +138,7 @@ AirPlaces::AirPlaces(const RadianceScene& scene, const LineOfSight& line, std::v
   std::vector<double> at;
   for (size_t i : seen) at.push_back(ranges[i]);
   const SunlitAir air(path, ray, path.stationsAt(ray, at), sunlit_ ? scene.sunLegs : nullptr, sun);
+  cosAzimuth_ = air.cosAzimuth;
   places_.reserve(ranges.size()), amounts_.reserve(ranges.size());
   for (size_t i = 0, k = 0; i < ranges.size(); ++i) {
     if (k + 1 < seen.size() && i >= seen[k + 1]) ++k;
@@ -145,7 +146,8 @@ AirPlaces::AirPlaces(const RadianceScene& scene, const LineOfSight& line, std::v
     const double share = next == k ? 0.0 : (ranges[i] - at[k]) / (at[next] - at[k]);
     const AirStation &near = air.stations[k], &far = air.stations[next];
     places_.push_back({ranges[i], near.temperature_K + share * (far.temperature_K - near.temperature_K), mixed(air.powered[k], air.powered[next], share),
-                       sunlit_ ? mixed(air.both[k], air.both[next], share) : AirAmounts{}, sunlit_ ? air.lit[k] + share * (air.lit[next] - air.lit[k]) : 0.0});
+                       sunlit_ ? mixed(air.both[k], air.both[next], share) : AirAmounts{}, sunlit_ ? air.lit[k] + share * (air.lit[next] - air.lit[k]) : 0.0,
+                       near.height_m + share * (far.height_m - near.height_m), air.sine[k] + share * (air.sine[next] - air.sine[k])});
     amounts_.push_back(mixed(near.amounts, far.amounts, share));
   }
 }

@@ -13,6 +13,7 @@ class AirPlaces {
   const std::vector<AirPlace>& places() const { return places_; }
   bool sunlit() const { return sunlit_; }
   double cosScatter() const { return cosScatter_; }
+  double cosAzimuth() const { return cosAzimuth_; }
   /// From the eye to a place, not raised to their powers.
   const AirAmounts& amounts(const AirPlace& place) const { return amounts_[static_cast<size_t>(&place - places_.data())]; }
 
@@ -20,7 +21,7 @@ class AirPlaces {
   std::vector<AirPlace> places_;
   std::vector<AirAmounts> amounts_;
   bool sunlit_ = false;
-  double cosScatter_ = 0.0;
+  double cosScatter_ = 0.0, cosAzimuth_ = 0.0;
 };
 
 }  // namespace pitviper

@@ -3,7 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "sim/radiance/diffuse_light.hpp"
 #include "sim/radiance/node_planck.hpp"
 #include "sim/radiometry/exponentials.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -56,6 +58,7 @@ struct NodeAir::Tables {
   Coefficients extinction, molecules, haze;
   Eigen::ArrayXd source;
   Eigen::ArrayXXd logPlanck;  ///< [node], over the inverse of the temperature
+  std::optional<NodeDiffuse> diffuse;
 
   void planck(double temperature_K, Eigen::ArrayXd& into) const {
     if (!(temperature_K > 0.0)) {
@@ -75,7 +78,7 @@ struct NodeAir::Tables {
   }
 };
 
-NodeAir::NodeAir(std::span<const SpectralNode> all) {
+NodeAir::NodeAir(std::span<const SpectralNode> all, std::shared_ptr<const DiffuseLight> diffuse, bool kept) {
   const auto nodes = static_cast<Eigen::Index>(all.size());
   Tables t;
   t.nodes = all;
@@ -95,6 +98,7 @@ NodeAir::NodeAir(std::span<const SpectralNode> all) {
     planck.at(1.0 / (1.0 / kWarmest_K + (1.0 / kColdest_K - 1.0 / kWarmest_K) * static_cast<double>(k) / (kTemperatures - 1)), black);
     for (Eigen::Index i = 0; i < nodes; ++i) t.logPlanck(i, k) = std::log(std::max(black[static_cast<size_t>(i)], 1e-300));
   }
+  if (diffuse) t.diffuse.emplace(std::move(diffuse), all, kept ? NodeDiffuse::Nodes::Kept : NodeDiffuse::Nodes::Apart);
   tables_ = std::make_shared<const Tables>(std::move(t));
 }
 
@@ -113,49 +117,105 @@ std::vector<double> lostOf(std::span<const double> x) {
   return all;
 }
 
+/// What is turned into a line at one station, and into a step between two of them.
+struct NodeAir::Again {
+  TurnedLight near, far;
+  DiffuseMemory memory;
+  Eigen::ArrayXXd small, large;  ///< depths of scattering by molecules and by haze, by station
+  Eigen::ArrayXd bySmall, byLarge;
+
+  Again(const Tables& t, const SunlitAir& air, bool sunlit, Eigen::Index nodes)
+      : small(nodes, std::ssize(air.stations)), large(nodes, std::ssize(air.stations)) {
+    weigh(t.molecules, air.powered, small);
+    weigh(t.haze, air.powered, large);
+    if (t.diffuse) at(t, air, 0, sunlit, near);
+  }
+  void at(const Tables& t, const SunlitAir& air, Eigen::Index s, bool sunlit, TurnedLight& out) {
+    const auto k = static_cast<size_t>(s);
+    t.diffuse->at(air.stations[k].height_m, air.sine[k], air.cosAzimuth, sunlit, memory, out);
+  }
+  /// Shares of a step's depth that scatter.
+  void step(Eigen::Index s, const Eigen::ArrayXd& d) {
+    bySmall = (d > 0.0).select((small.col(s) - small.col(s - 1)).max(0.0) / d.max(1e-300), 0.0);
+    byLarge = (d > 0.0).select((large.col(s) - large.col(s - 1)).max(0.0) / d.max(1e-300), 0.0);
+  }
+};
+
 // Step by step by the law of a segment. Of sunlight scattered once molecules and haze have in common the mean of lit exp(-both) over a step, `both` the depth
 // from the eye to a place and on to the sun. Where one end of a step sees no sun, the other's depth holds for it.
 NodeRadiance NodeAir::along(const SunlitAir& air) const {
   const Tables& t = *tables_;
   const auto stations = static_cast<Eigen::Index>(air.stations.size()), nodes = t.source.size();
+  const bool sunlit = !air.lit.empty();
   NodeRadiance out;
   auto depth = sized(out.depth, nodes, stations), thermal = sized(out.thermal, nodes, stations);
   weigh(t.extinction, air.powered, depth);
-  Eigen::ArrayXd seen, before, source, d = depth.col(0), left, share;  // with room of their own for all steps
+  std::optional<Again> again;
+  if (t.diffuse || sunlit) again.emplace(t, air, sunlit, nodes);
+  const bool turns = t.diffuse && sunlit && t.diffuse->sunlit();
+  if (sunlit) sized(out.molecules, nodes, stations), sized(out.haze, nodes, stations);
+  if (turns) sized(out.again, nodes, stations);
+  Eigen::Map<Eigen::ArrayXXd> molecules(out.molecules.data(), sunlit ? nodes : 0, sunlit ? stations : 0),
+      haze(out.haze.data(), sunlit ? nodes : 0, sunlit ? stations : 0), byHaze(out.again.data(), turns ? nodes : 0, turns ? stations : 0);
+  const double perPhase = 1.0 / physics::rayleighPhase(air.cosScatter);
+  Eigen::ArrayXd hazePhase(turns ? nodes : 0);
+  for (Eigen::Index i = 0; i < hazePhase.size(); ++i) hazePhase[i] = hazeAgainPhase(air.cosScatter, t.nodes[static_cast<size_t>(i)].air.asymmetry);
+  Eigen::ArrayXd seen, before, source, d = depth.col(0), left, lost(nodes), share, from, to;  // with room of their own for all steps
   leave(d, seen);
   t.planck(air.stations[0].temperature_K, before);
   before += t.source;
+  const auto send = [&](const Eigen::ArrayXd& near, const Eigen::ArrayXd& far, double scale, auto&& into) {
+    for (Eigen::Index i = 0; i < nodes; ++i) into[i] += scale * seen[i] * physics::segmentRadiance(near[i], far[i], d[i], left[i], lost[i]);
+  };
   for (Eigen::Index s = 1; s < stations; ++s) {
     d = (depth.col(s) - depth.col(s - 1)).max(0.0);
     leave(d, left);
+    for (Eigen::Index i = 0; i < nodes; ++i) lost[i] = physics::lostOf(d[i], left[i]);
     t.planck(air.stations[static_cast<size_t>(s)].temperature_K, source);
     source += t.source;
-    for (Eigen::Index i = 0; i < nodes; ++i)
-      thermal(i, s) = thermal(i, s - 1) + seen[i] * physics::segmentRadiance(before[i], source[i], d[i], left[i], physics::lostOf(d[i], left[i]));
+    thermal.col(s) = thermal.col(s - 1);
+    if (!t.diffuse) {
+      send(before, source, 1.0, thermal.col(s));
+    } else {
+      again->step(s, d);
+      again->at(t, air, s, turns, again->far);
+      const auto of = [](const std::vector<double>& v) { return Eigen::Map<const Eigen::ArrayXd>(v.data(), std::ssize(v)); };
+      const TurnedLight &near = again->near, &far = again->far;
+      from = before + again->bySmall * (of(near.thermalByMolecules) - before) + again->byLarge * (of(near.thermalByHaze) - before);
+      to = source + again->bySmall * (of(far.thermalByMolecules) - source) + again->byLarge * (of(far.thermalByHaze) - source);
+      send(from, to, 1.0, thermal.col(s));
+      if (turns) {
+        molecules.col(s) = molecules.col(s - 1);
+        from = again->bySmall * of(near.solarByMolecules), to = again->bySmall * of(far.solarByMolecules);
+        send(from, to, perPhase, molecules.col(s));
+        byHaze.col(s) = byHaze.col(s - 1);
+        from = again->byLarge * of(near.solarByHaze) / hazePhase, to = again->byLarge * of(far.solarByHaze) / hazePhase;
+        send(from, to, 1.0, byHaze.col(s));
+      }
+      std::swap(again->near, again->far);
+    }
     seen *= left;
     before.swap(source);
   }
-  if (air.lit.empty()) return out;
-  Eigen::ArrayXXd small(nodes, stations), large(nodes, stations), both(nodes, stations);
-  Eigen::ArrayXd nearest, reaching;
+  if (!sunlit) return out;
+  Eigen::ArrayXXd both(nodes, stations);
+  Eigen::ArrayXd nearest, reaching, once = Eigen::ArrayXd::Zero(nodes);
   share.resize(nodes);
-  weigh(t.molecules, air.powered, small);
-  weigh(t.haze, air.powered, large);
   weigh(t.extinction, air.both, both);
-  auto molecules = sized(out.molecules, nodes, stations), haze = sized(out.haze, nodes, stations);
   for (Eigen::Index s = 1; s < stations; ++s) {
-    molecules.col(s) = molecules.col(s - 1);
     haze.col(s) = haze.col(s - 1);
     const double here = air.lit[static_cast<size_t>(s - 1)], there = air.lit[static_cast<size_t>(s)], sun = 0.5 * (here + there);
-    if (!(sun > 0.0)) continue;
-    const auto near = both.col(here > 0.0 ? s - 1 : s), far = both.col(there > 0.0 ? s : s - 1);
-    d = (far - near).abs();
-    leave(d, left);
-    nearest = near.min(far);
-    leave(nearest, reaching);
-    for (Eigen::Index i = 0; i < nodes; ++i) share[i] = sun * reaching[i] * physics::meanDecayOf(d[i], left[i]);
-    molecules.col(s) += (small.col(s) - small.col(s - 1)).max(0.0) * share;
-    haze.col(s) += (large.col(s) - large.col(s - 1)).max(0.0) * share;
+    if (sun > 0.0) {
+      const auto near = both.col(here > 0.0 ? s - 1 : s), far = both.col(there > 0.0 ? s : s - 1);
+      d = (far - near).abs();
+      leave(d, left);
+      nearest = near.min(far);
+      leave(nearest, reaching);
+      for (Eigen::Index i = 0; i < nodes; ++i) share[i] = sun * reaching[i] * physics::meanDecayOf(d[i], left[i]);
+      once += (again->small.col(s) - again->small.col(s - 1)).max(0.0) * share;
+      haze.col(s) += (again->large.col(s) - again->large.col(s - 1)).max(0.0) * share;
+    }
+    molecules.col(s) += once;
   }
   return out;
 }

@@ -6,25 +6,35 @@
 
 #include "sim/model/spectral_node.hpp"
 #include "sim/radiance/sunlit_air.hpp"
+#include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 
-/// [station x nodes + node], as far as each station [W/(m2 sr um)]. `thermal`: emission of all extinction (as AirLight::emitted) and AirNode::source.
+class DiffuseLight;
+
+/// [station x nodes + node], as far as each station [W/(m2 sr um)]. `thermal`: emission of all extinction (as AirLight::emitted) and AirNode::source, and what
+/// diffuse light of thermal sources adds or takes. Diffuse sunlight that molecules turn is with theirs, over their phase function at the
+/// line's own angle.
 struct NodeRadiance {
   std::vector<double> depth, thermal;
   std::vector<double> molecules, haze;  ///< for phase functions and irradiance of 1; empty: no sun
+  std::vector<double> again;            ///< diffuse sunlight that haze turns, for hazeAgainPhase() and irradiance of 1; empty: none
 };
+
+/// About how sunlight is spread that haze has turned twice: moments of both are multiplied. Sunlight turned more often over this changes evenly.
+inline double hazeAgainPhase(double cosScatter, double asymmetry) { return physics::henyeyGreensteinPhase(cosScatter, asymmetry * asymmetry); }
 
 class NodeAir {
  public:
-  /// The nodes must outlive it.
-  explicit NodeAir(std::span<const SpectralNode> nodes);
+  /// The nodes must outlive it. `diffuse`: null: light is scattered once; `kept`: as NodeDiffuse has it.
+  explicit NodeAir(std::span<const SpectralNode> nodes, std::shared_ptr<const DiffuseLight> diffuse = nullptr, bool kept = false);
   NodeRadiance along(const SunlitAir& air) const;
   /// Radiance of a black body at every node [W/(m2 sr um)]; 0 at 0 K.
   std::vector<double> planck(double temperature_K) const;
 
  private:
   struct Tables;
+  struct Again;
   std::shared_ptr<const Tables> tables_;
 };
 

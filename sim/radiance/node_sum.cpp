@@ -48,15 +48,18 @@ void weigh(const NodeSpectra::AirRows& rows, const AirAmounts& amounts, std::vec
 
 }  // namespace
 
-NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, int surroundings, const NodeSpectra* parts)
+NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, const Terms& terms, const NodeSpectra* parts)
     : simulation_(simulation), nodes_(nodes) {
   if (simulation.surroundings)
-    surroundings_ = std::make_shared<const NodeSurroundings>(simulation, nodes, surroundings, parts ? parts->surroundings_.get() : nullptr);
+    surroundings_ = std::make_shared<const NodeSurroundings>(simulation, nodes, terms.surroundings, parts ? parts->surroundings_.get() : nullptr);
   const size_t used = simulation.air ? simulation.air->exponents().size() : 0;
   extinction_ = rowsOf(nodes, used, &AirNode::extinction);
   molecules_ = rowsOf(nodes, used, &AirNode::molecules);
   haze_ = rowsOf(nodes, used, &AirNode::haze);
   for (const SpectralNode& n : nodes) airSource_.push_back(n.air.source);
+  if (terms.air && terms.streams > 0)
+    if (auto light = DiffuseLight::of(columnOf(simulation), terms.streams))
+      diffuse_.emplace(std::move(light), nodes, parts ? NodeDiffuse::Nodes::Together : NodeDiffuse::Nodes::Kept);
   for (size_t m = 0; !nodes.empty() && m < nodes.front().absorption_per_m.size(); ++m)
     for (const SpectralNode& n : nodes) absorption_per_m_.push_back(n.absorption_per_m[m]);
   const auto table = [&](std::shared_ptr<const PlanckTable> NodeSpectra::*of, double first, double last, double step) {
@@ -104,6 +107,7 @@ NodeSum::NodeSum(const NodeSpectra& spectra) : spectra_(spectra), count_(spectra
 
 void NodeSum::begin() {
   radiance_.assign(count_, 0.0);
+  for (DiffuseMemory::Edge& e : memory_.edges) e.sine = 2.0;  // a line's figures are the same whichever was told before
   if (watchesOne()) ofEntity_.assign(count_, 0.0);
   isParted_ = false;
   if (keepsParts_) {
@@ -159,7 +163,7 @@ void NodeSum::pane(const Factor& transmittance, double modifier) {
 }
 
 /// `both`: amounts with the way on to the sun, or null where nobody asks.
-void NodeSum::place(const AirPlace& at, const AirAmounts* both, At& out) {
+void NodeSum::place(const AirPlace& at, const Segment& of, const AirAmounts* both, At& out) {
   weigh(spectra_.extinction(), at.powered, out.depth);
   passedOf(out.depth, out.passed);
   if (both) {
@@ -168,6 +172,28 @@ void NodeSum::place(const AirPlace& at, const AirAmounts* both, At& out) {
   }
   if (at.temperature_K > 0.0) spectra_.planck(at.temperature_K, out.black);
   else std::fill(out.black.begin(), out.black.end(), 0.0);
+  if (spectra_.diffuse() && !of.dark) spectra_.diffuse()->at(at.height_m, at.sine, of.cosAzimuth, of.sunlit, memory_, out.light);
+}
+
+/// What is turned into a segment of light that came there by more than one way: of thermal light, what it differs by from that of air of one temperature.
+void NodeSum::turnAgain(const Segment& s) {
+  AirAmounts passed;
+  for (size_t k = 0; k < kMostAirAmounts; ++k) passed.amount[k] = s.far.powered.amount[k] - s.near.powered.amount[k];
+  const bool sun = s.sunlit && spectra_.diffuse()->sunlit();
+  const double* irradiance = sun ? values(Factor::sun()).data() : none_.data();
+  againNear_.resize(count_), againFar_.resize(count_);
+  weigh(spectra_.molecules(), passed, againNear_);
+  weigh(spectra_.haze(), passed, againFar_);
+  for (size_t i = 0; i < count_; ++i) {
+    const double depth = far_.depth[i] - near_.depth[i], each = depth > 0.0 ? 1.0 / depth : 0.0;
+    const double small = each * std::max(againNear_[i], 0.0), large = each * std::max(againFar_[i], 0.0);
+    const auto source = [&](const At& at) {
+      const TurnedLight& l = at.light;
+      const double thermal = small * (l.thermalByMolecules[i] - at.black[i]) + large * (l.thermalByHaze[i] - at.black[i]);
+      return sun ? thermal + irradiance[i] * (small * l.solarByMolecules[i] + large * l.solarByHaze[i]) : thermal;
+    };
+    againNear_[i] = source(near_), againFar_[i] = source(far_);
+  }
 }
 
 const std::vector<double>& NodeSum::hazePhase(double cosScatter) {
@@ -293,8 +319,8 @@ void NodeSum::segment(const Segment& s) {
   const bool sunlit = sun > 0.0;
   if (s.air) {
     const AirAmounts &nearBoth = s.near.sun > 0.0 ? s.near.both : s.far.both, &farBoth = s.far.sun > 0.0 ? s.far.both : s.near.both;
-    if (here_ != &s.near || (sunlit && sunKnownAt_ != &s.near)) place(s.near, sunlit ? &nearBoth : nullptr, near_);
-    place(s.far, sunlit ? &farBoth : nullptr, far_);
+    if (here_ != &s.near || (sunlit && sunKnownAt_ != &s.near)) place(s.near, s, sunlit ? &nearBoth : nullptr, near_);
+    place(s.far, s, sunlit ? &farBoth : nullptr, far_);
   }
   const std::vector<double>* irradiance = sunlit ? &values(Factor::sun()) : nullptr;
   // Per node, what the segment turns towards the eye.
@@ -308,7 +334,8 @@ void NodeSum::segment(const Segment& s) {
     for (size_t i = 0; i < count_; ++i) turned_[i] = rayleigh * std::max(turned_[i], 0.0) + phase[i] * std::max(turnedByHaze_[i], 0.0);
   }
   const bool inMedia = !s.media.empty(), media = inMedia && takes({TermKind::Media}), air = s.air && takes({TermKind::AirEmission}),
-             turned = sunlit && takes({TermKind::ScatteredSun});
+             turned = sunlit && takes({TermKind::ScatteredSun}), again = s.air && !s.dark && spectra_.diffuse() && takes({TermKind::ScatteredAgain});
+  if (again) turnAgain(s);
   if (inMedia) gather(s);
   const double *none = none_.data(), *all = all_.data();
   SegmentAt at{none, none, all, all, none, all, mediaDepth_.data(), mediaPassed_.data(), panes_.data(), kOpaque};
@@ -318,6 +345,7 @@ void NodeSum::segment(const Segment& s) {
     law_.set(at, count_);
     if (media) into(TermKind::Media, [&](double* sum) { law_.addMedia(emitted.data(), drifting.data(), sum); });
     if (air) into(TermKind::AirEmission, [&](double* sum) { law_.addAir(near_.black.data(), far_.black.data(), spectra_.airSource().data(), sum); });
+    if (again) into(TermKind::ScatteredAgain, [&](double* sum) { law_.addAir(againNear_.data(), againFar_.data(), none_.data(), sum); });
     if (turned)
       into(TermKind::ScatteredSun, [&](double* sum) {
         law_.addSun(sun, {near_.sunDepth.data(), far_.sunDepth.data(), near_.sunPassed.data(), far_.sunPassed.data(), irradiance->data(), turned_.data()}, sum);
@@ -338,8 +366,7 @@ void NodeSum::segment(const Segment& s) {
     if (inMedia) at.depth = own_.otherDepth.data(), at.passed = own_.otherPassed.data();
     at.before = without_.depth.data(), at.beforePassed = without_.passed.data();
     each_.resize(count_), change_.resize(count_);
-    for (size_t i = 0; inMedia && i < count_; ++i)
-      each_[i] = own_.emitted[i] - own_.watched[i], change_[i] = own_.drifting[i] - own_.driftingOfWatched[i];
+    for (size_t i = 0; inMedia && i < count_; ++i) each_[i] = own_.emitted[i] - own_.watched[i], change_[i] = own_.drifting[i] - own_.driftingOfWatched[i];
     if (!s.dark) tell(each_, change_, [&](TermKind, const auto& add) { add(without_.radiance.data()); });
     pass(without_.depth, without_.passed);
   }

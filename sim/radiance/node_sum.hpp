@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/model/spectral_node.hpp"
+#include "sim/radiance/diffuse_light.hpp"
 #include "sim/radiance/radiance.hpp"
 #include "sim/radiance/segment_law.hpp"
 
@@ -19,9 +20,11 @@ class PlanckTable;
 /// What lines have in common at some nodes; may be shared between threads.
 class NodeSpectra {
  public:
-  /// All must outlive it. `surroundings`: as Terms::surroundings. `parts`: spectra at the single wavelengths that these nodes are groups of, whose values are
-  /// averaged; null: none are known.
-  NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, int surroundings = Terms::kWhole, const NodeSpectra* parts = nullptr);
+  /// All but the terms must outlive it; of these, how light from all around and light scattered again are told. `parts`: spectra at the single wavelengths
+  /// that these nodes are groups of, whose values are averaged; null: none are known.
+  NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes, const Terms& terms, const NodeSpectra* parts = nullptr);
+  /// Everything, in full.
+  NodeSpectra(const Simulation& simulation, std::span<const SpectralNode> nodes) : NodeSpectra(simulation, nodes, termsOf(simulation)) {}
   const Simulation& simulation() const { return simulation_; }
   std::span<const SpectralNode> nodes() const { return nodes_; }
   /// Black body of a temperature per node, in place: of the air's, and of gas where there are fields, by tables (tests/unit/test_node_sum.cpp has their error).
@@ -37,6 +40,8 @@ class NodeSpectra {
   const AirRows& extinction() const { return extinction_; }
   const AirRows& molecules() const { return molecules_; }
   const AirRows& haze() const { return haze_; }
+  /// Null: light is scattered once.
+  const NodeDiffuse* diffuse() const { return diffuse_ ? &*diffuse_ : nullptr; }
   /// What air sends besides its black body: AirNode::source.
   const std::vector<double>& airSource() const { return airSource_; }
   /// Of a material's medium, per node.
@@ -58,6 +63,7 @@ class NodeSpectra {
   std::span<const SpectralNode> nodes_;
   AirRows extinction_, molecules_, haze_;
   std::vector<double> airSource_;
+  std::optional<NodeDiffuse> diffuse_;
   std::vector<double> absorption_per_m_;
   std::shared_ptr<const NodeSurroundings> surroundings_;  ///< null: a uniform dome's
   std::shared_ptr<const PlanckTable> ofAir_, ofGas_;      ///< null: none is asked for
@@ -113,8 +119,10 @@ class NodeSum final : public TermSink {
   /// sun.
   struct At {
     std::vector<double> depth, passed, black, sunDepth, sunPassed;
+    TurnedLight light;
   };
-  void place(const AirPlace& at, const AirAmounts* both, At& out);
+  void place(const AirPlace& at, const Segment& of, const AirAmounts* both, At& out);
+  void turnAgain(const Segment& segment);
   void tellSources(const Segment& segment);
   bool tellDrifts(const Segment& segment);
   void gather(const Segment& segment);
@@ -146,9 +154,11 @@ class NodeSum final : public TermSink {
   } without_;  ///< the line without the field that is watched: as radiance_, mediaDepth_ and mediaPassed_ from where it begins
   bool isParted_ = false;
   At near_, far_;
-  std::vector<std::vector<double>> sources_, drifts_;    ///< of each medium of the segment being told
+  DiffuseMemory memory_;
+  std::vector<std::vector<double>> sources_, drifts_;           ///< of each medium of the segment being told
   std::vector<double> black_, change_, sunAir_, shade_, each_;  ///< as they are told; of one medium
   std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_, termDepth_, termPassed_;
+  std::vector<double> againNear_, againFar_;     ///< source of light scattered again at both ends of the segment being told
   double hazePhaseOf_ = 2.0;                     ///< cosine that hazePhase_ is for
   double turnedAt_ = 2.0;                        ///< cosine that turnedOf_ is for
   std::map<int, std::vector<double>> turnedOf_;  ///< of each material

@@ -86,8 +86,8 @@ Eigen::MatrixXd NodeSurroundings::Patterns::tellRest(const Surroundings& around,
   for (Eigen::Index phase = 0; phase < phases; ++phase) {
     Eigen::MatrixXd shares(rings * told, round);  // [ring read, ring told; turn]
     for (Eigen::Index turn = 0; turn < round; ++turn)
-      Eigen::Map<Eigen::MatrixXd>(shares.col(turn).data(), rings, told) = Eigen::Map<const Eigen::MatrixXd, 0, Strides>(
-          blur.shares.data() + phase * entries + turn, rings, told, Strides(phases * entries, round));
+      Eigen::Map<Eigen::MatrixXd>(shares.col(turn).data(), rings, told) =
+          Eigen::Map<const Eigen::MatrixXd, 0, Strides>(blur.shares.data() + phase * entries + turn, rings, told, Strides(phases * entries, round));
     const Eigen::MatrixXd sharesCos = shares * waves.cosines, sharesSin = shares * waves.sines;
     Eigen::MatrixXd real(patterns * told, count), imaginary(patterns * told, count);
     for (Eigen::Index w = 0; w < count; ++w) {

@@ -89,7 +89,8 @@ class Teller {
     const bool scatters = addFields(middle, far.range_m - near.range_m);
     AirAmounts toSun;
     if (scatters && scene_.terms.air) toSun = sim_.air->powered(air_.amounts(near) + airToSun(middle, far.range_m - near.range_m));
-    sink_.segment({near, far, inside_, scene_.terms.air, air_.sunlit(), cosScatter_, dark_, scatters && scene_.terms.air ? &toSun : nullptr});
+    sink_.segment(
+        {near, far, inside_, scene_.terms.air, air_.sunlit(), cosScatter_, air_.cosAzimuth(), dark_, scatters && scene_.terms.air ? &toSun : nullptr});
   }
 
   /// From a place on the line to the sun: linear between places that stand close together (kSunHigher_m, kSunFurther_m).
@@ -234,7 +235,7 @@ class Teller {
 const char* nameOf(TermKind kind) {
   constexpr const char* kNames[kTermKinds] = {"emission of surfaces", "reflected ambient light", "reflected sunlight", "reflected light of lamps",
                                               "emission of the air",  "scattered sunlight",      "background",         "media",
-                                              "lamps in view"};
+                                              "lamps in view",        "light scattered again"};
   return kNames[static_cast<int>(kind)];
 }
 

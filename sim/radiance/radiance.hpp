@@ -18,8 +18,8 @@
 
 namespace pitviper {
 
-enum class TermKind { Emission, Ambient, Sun, Lights, AirEmission, ScatteredSun, Background, Media, LampsInView };
-constexpr int kTermKinds = 9;
+enum class TermKind { Emission, Ambient, Sun, Lights, AirEmission, ScatteredSun, Background, Media, LampsInView, ScatteredAgain };
+constexpr int kTermKinds = 10;
 const char* nameOf(TermKind kind);
 
 /// What a part of a line's radiance is.
@@ -47,6 +47,8 @@ struct AirPlace {
   AirAmounts powered;          ///< raised to their powers
   AirAmounts both;             ///< with the way on to the sun, where there is one
   double sun = 0.0;            ///< share of its disc that reaches it
+  double height_m = 0.0;
+  double sine = 0.0;  ///< of the line's elevation there
 };
 
 /// A body of gas or smoke on a stretch of the line, or one gas of a field at one temperature.
@@ -70,6 +72,7 @@ struct Segment {
   std::span<const MediumInside> media;
   bool air = false, sunlit = false;    ///< whether there is air, and sunlight for it to scatter
   double cosScatter = 0.0;             ///< between the line and the direction to the sun
+  double cosAzimuth = 0.0;             ///< of the line's azimuth to the sun's
   bool dark = false;                   ///< only what it lets through is asked for
   const AirAmounts* sunAir = nullptr;  ///< from the eye to `near` and on to the sun, powered, where media scatter its light; null: no air
 };

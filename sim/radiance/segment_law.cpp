@@ -6,8 +6,8 @@
 namespace pitviper {
 namespace {
 
-PITVIPER_WIDE void weights(const SegmentAt at, int count, double* __restrict air, double* __restrict lost, double* __restrict growth,
-                           double* __restrict reach, double* __restrict each) {
+PITVIPER_WIDE void weights(const SegmentAt at, int count, double* __restrict air, double* __restrict lost, double* __restrict growth, double* __restrict reach,
+                           double* __restrict each) {
   for (int i = 0; i < count; ++i) {
     air[i] = physics::max(at.farDepth[i] - at.nearDepth[i], 0.0);
     const double d = air[i] + at.depth[i];

@@ -5,16 +5,22 @@
 
 #include "sim/model/scene_fingerprint.hpp"
 #include "sim/model/surroundings.hpp"
+#include "sim/radiance/diffuse_light.hpp"
 #include "sim/radiance/node_air.hpp"
 #include "sim/radiance/sunlit_air.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/quadrature.hpp"
+#include "sim/scene/content_cache.hpp"
 
 namespace pitviper {
 namespace {
 
 constexpr int kElevations = 6, kAzimuths = 6;
+/// Of light scattered again: as it falls on surfaces; and of the mean sky, at all wavelengths that the air has.
+constexpr int kStreams = 8, kMeanStreams = 4;
+/// Kind of table in the cache.
+constexpr const char* kMeanSky = "mean-sky";
 /// Places on a line of sight: closer together near its beginning, where most of what is seen lies.
 constexpr double kRanges_m[] = {0.0, 50.0, 200.0, 600.0, 1500.0, 3e3, 5e3, 8e3, 12e3, 18e3, 28e3, 50e3, 100e3, physics::kFar};
 /// Of a line that ends at the ground, parts of its length.
@@ -36,8 +42,8 @@ using WeightedLines = std::vector<std::pair<Sightline, double>>;
 /// all are worked out in vectors.
 class SkyAt {
  public:
-  SkyAt(const Atmosphere& air, std::span<const double> um, const Sun* sun, const Spectrum& background)
-      : count_(um.size()), nodes_(nodesAt(air, um)), air_(nodes_) {
+  SkyAt(const Atmosphere& air, std::span<const double> um, const Sun* sun, const Spectrum& background, std::shared_ptr<const DiffuseLight> diffuse)
+      : count_(um.size()), nodes_(nodesAt(air, um)), air_(nodes_, std::move(diffuse)) {
     for (double w : um) {
       irradiance_.push_back(sun ? sun->irradiance(w) : 0.0);
       behind_.push_back(background(w));
@@ -60,6 +66,7 @@ class SkyAt {
       if (!all.molecules.empty())
         radiance +=
             irradiance_[i] * (rayleigh * all.molecules[last + i] + physics::henyeyGreensteinPhase(line.cosScatter, node(i).asymmetry) * all.haze[last + i]);
+      if (!all.again.empty()) radiance += irradiance_[i] * hazeAgainPhase(line.cosScatter, node(i).asymmetry) * all.again[last + i];
       sent.radiance.push_back(radiance);
       sent.depth.push_back(all.depth[last + i]);
     }
@@ -105,10 +112,11 @@ class SkyAround final : public Surroundings {
         earthRadius_m_(earthRadius_m),
         lines_(grids().size()) {
     if (sunlit) legs_ = SunLegs::of(air_, sun_->toSun.z, earthRadius_m_);
+    diffuse_ = DiffuseLight::of({air_, sunlit ? sun_ : std::nullopt, background_, ground_, ground_K_, earthRadius_m_}, kStreams);
   }
 
   std::vector<std::vector<double>> radiance(std::span<const double> um, std::size_t height) const override {
-    const SkyAt sky(*air_, um, legs_ ? &*sun_ : nullptr, background_);
+    const SkyAt sky(*air_, um, legs_ ? &*sun_ : nullptr, background_, diffuse_);
     const DirectionGrid& grid = grids()[height];
     const std::vector<double> falls = groundIrradiance(um, sky);
     const int half = grid.azimuths / 2;
@@ -212,6 +220,7 @@ class SkyAround final : public Surroundings {
   std::shared_ptr<const Material> ground_;
   double ground_K_, earthRadius_m_;
   std::shared_ptr<const SunLegs> legs_;
+  std::shared_ptr<const DiffuseLight> diffuse_;
   mutable std::mutex busy_;
   mutable std::vector<std::vector<Line>> lines_;
   mutable std::map<double, double> falls_;
@@ -245,14 +254,26 @@ const WeightedLines& SkyAround::skyLines() const {
 
 }  // namespace
 
-Spectrum meanSky(const std::shared_ptr<const Atmosphere>& of, const std::optional<Sun>& sun, const Spectrum& background, double height_m,
-                 double earthRadius_m) {
-  const auto legs = sun ? SunLegs::of(of, sun->toSun.z, earthRadius_m) : nullptr;
-  const auto lines = linesOfMean(*of, sun, legs.get(), height_m, earthRadius_m);
+Spectrum meanSky(const std::shared_ptr<const Atmosphere>& of, const std::optional<Sun>& sun, const Spectrum& background,
+                 const std::shared_ptr<const Material>& ground, double ground_K, double height_m, double earthRadius_m) {
   Spectrum::Table table;
   table.name = "the sky of the air";
   table.wavelength_um = of->knots_um();
-  table.value = SkyAt(*of, table.wavelength_um, sun ? &*sun : nullptr, background).meanOf(lines);
+  const auto diffuse = DiffuseLight::of({of, sun, background, ground, ground_K, earthRadius_m}, kMeanStreams);
+  const ContentKey key = diffuse ? contentKey("mean sky", diffuse->key()) : ContentKey{};
+  if (const auto kept = diffuse ? readCachedTable(kMeanSky, key) : std::nullopt) {
+    TableReader in(*kept);
+    table.value = in.all<double>();
+    if (!in.isWhole() || table.value.size() != table.wavelength_um.size()) table.value.clear();
+  }
+  if (table.value.empty()) {
+    const auto legs = sun ? SunLegs::of(of, sun->toSun.z, earthRadius_m) : nullptr;
+    table.value =
+        SkyAt(*of, table.wavelength_um, sun ? &*sun : nullptr, background, diffuse).meanOf(linesOfMean(*of, sun, legs.get(), height_m, earthRadius_m));
+    TableWriter out;
+    out.all(table.value);
+    if (diffuse) writeCachedTable(kMeanSky, key, out.bytes());
+  }
   Spectrum sky(std::move(table));
   sky.setProvenance("mean of the sky of this scenario's air");
   return sky;

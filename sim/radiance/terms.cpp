@@ -22,6 +22,7 @@ Terms termsOf(const Simulation& sim) {
   Terms t;
   t.air = sim.air && sim.air->traits().any;
   t.scatteredSun = t.air && sim.air->traits().scattersSun && sim.sun.has_value();
+  t.streams = t.air && sim.air->traits().scattersSun ? kUsualStreams : 0;
   t.lights = !sim.lights.empty() || sim.sun;
   t.ambient = sim.ambient && !sim.ambient->isZero();
   t.shadows = canHaveShadows(sim);

@@ -147,7 +147,7 @@ TEST(OnlyRequired, Sun) {
   Features less;
   less.sun = false;
   const Built with(Features{}), without(less);
-  expectGone(with, without, {"const int LIGHTS = 2;", "const int SUN = 1;", "const int AIR_PARTS = 3;"});
+  expectGone(with, without, {"const int LIGHTS = 2;", "const int SUN = 1;", "const int AIR_PARTS = 4;"});
   EXPECT_TRUE(without.holds("const int LIGHTS = 1;") && without.holds("const int SUN = 0;") && without.holds("const int AIR_PARTS = 1;"));
 }
 
@@ -410,7 +410,7 @@ TEST(OnlyRequired, WhatNoChannelWouldNotice) {
   EXPECT_TRUE(both.plan.terms.lights && both.plan.terms.shadows && both.plan.terms.scatteredSun);
   EXPECT_FALSE(longWave.plan.terms.lights || longWave.plan.terms.shadows || longWave.plan.terms.scatteredSun);
   EXPECT_EQ(longWave.plan.lightCount, 0);
-  expectGone(both, longWave, {"lightAt", "nodeLight", "shareSeen", "shadowMaps", "const int AIR_PARTS = 3;", "Vec3 reflectionColumns("});
+  expectGone(both, longWave, {"lightAt", "nodeLight", "shareSeen", "shadowMaps", "const int AIR_PARTS = 4;", "Vec3 reflectionColumns("});
   EXPECT_EQ(both.count("shadow maps"), 1);
   EXPECT_EQ(longWave.count("shadow maps"), 0);
   // With both channels the sun is looked for in the visible one's loop alone.

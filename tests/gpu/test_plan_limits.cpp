@@ -46,15 +46,14 @@ std::string ball(const Sight& sight, const std::string& limits) {
 
 /// The largest error of a plan's wavelengths, in double precision, over both channels, in the middle of the ball: moved, heated, under a lamp turned up.
 /// What every wavelength gives does not depend on the plan: the first that is asked about leaves it to the next.
-double worstError(const Simulation& sim, const Plan& plan, const Sight& sight, const std::vector<double>& temperatures_K,
-                  std::vector<ReferencePixel>& every) {
+double worstError(const Simulation& sim, const Plan& plan, const Sight& sight, const std::vector<double>& temperatures_K, std::vector<ReferencePixel>& every) {
   const Camera& camera = sim.cameras[0];
   SpectralSampling all = camera.spectral;
   all.reference = true;
   Plan fine = makePlan(sim, camera.outputs, all, camera.where);
   fine.textureAccuracy = plan.textureAccuracy;
   const std::vector<char> present(1, 1);
-  const auto spectraOf = [&](const Plan& of) { return std::make_shared<const NodeSpectra>(sim, of.nodes, of.terms.surroundings); };
+  const auto spectraOf = [&](const Plan& of) { return std::make_shared<const NodeSpectra>(sim, of.nodes, of.terms); };
   const auto few = spectraOf(plan), all_um = spectraOf(fine);
   double worst = 0.0;
   size_t number = 0;

@@ -37,9 +37,10 @@ Seen lookAlong(const Simulation& sim, double um, double height_m, const glm::dve
   const WorldState state = advance(sim, 0.0);
   const LineOfSight line{{0.0, 0.0, height_m}, glm::normalize(direction), {}, 0.0};
   const std::vector<SpectralNode> nodes{node};
-  const NodeSpectra spectra(sim, nodes);
+  Terms terms = termsOf(sim);
+  terms.streams = 0;  // sunlight scattered once and emission alone: their places are asked for
+  const NodeSpectra spectra(sim, nodes, terms);
   NodeSum sum(spectra);
-  const Terms terms = termsOf(sim);
   sum.begin();
   radianceAlong({sim, terms, legs.get(), state, {}, 0}, line, sum);
 

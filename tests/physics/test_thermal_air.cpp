@@ -4,7 +4,10 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sim/plan/line_check.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/world/view.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -80,11 +83,21 @@ constexpr LowtranPath kPaths[] = {
     {3, 60, 0, true, {0.052574, 0.23377, 1.8367}},      {5, 0, 0, true, {0.032174, 0.15408, 1.1785}},      {10, 0, 0, true, {0.030167, 0.11308, 1.1544}},
     {10, 60, 0, true, {0.046886, 0.1359, 1.8208}}};
 
+/// From its lower end.
+struct Way {
+  double range_m;
+  glm::dvec3 along;
+};
+Way wayOf(const LowtranPath& p) {
+  const double earth_m = LocalFrame().earthRadius_m(), sine = std::cos(p.zenith_deg * kPi / 180.0), h = 1e3 * p.height_km, b = earth_m * sine;
+  return {p.range_km > 0.0 ? 1e3 * p.range_km : h * (2.0 * earth_m + h) / (b + std::sqrt(b * b + h * (2.0 * earth_m + h))),
+          {0.0, std::sqrt(1.0 - sine * sine), sine}};
+}
+
 /// A cold black ball at the end of the path, larger than the pixel.
 std::string before(const LowtranPath& p, const std::string& accuracy) {
-  const double earth_m = LocalFrame().earthRadius_m(), sine = std::cos(p.zenith_deg * kPi / 180.0), h = 1e3 * p.height_km, b = earth_m * sine;
-  const double range = p.range_km > 0.0 ? 1e3 * p.range_km : h * (2.0 * earth_m + h) / (b + std::sqrt(b * b + h * (2.0 * earth_m + h)));
-  const glm::dvec3 along(0.0, std::sqrt(1.0 - sine * sine), sine), upper = range * along;
+  const auto [range, along] = wayOf(p);
+  const glm::dvec3 upper = range * along;
   const double radius = 0.01 * range;
   const glm::dvec3 eye = p.down ? upper : glm::dvec3(0.0), ball = p.down ? -radius * along : upper + radius * along;
   const auto place = [](const glm::dvec3& v) { return print("[%.9g m, %.9g m, %.9g m]", v.x, v.y, v.z); };
@@ -97,6 +110,30 @@ std::string before(const LowtranPath& p, const std::string& accuracy) {
          "radiance_per_um}\n";
 }
 
+/// Of a path, per channel [W/(m2 sr um)], by every wavelength: with light scattered again, or as LOWTRAN has it, which takes all that scatters
+/// for black.
+std::vector<double> toldOf(const Simulation& sim, const LowtranPath& p, int streams) {
+  SpectralSampling fine;
+  fine.reference = true;
+  const Camera& camera = sim.cameras.front();
+  Plan plan = makePlan(sim, camera.outputs, fine, {});
+  plan.terms.streams = streams;
+  const NodeSpectra spectra(sim, plan.nodes, plan.terms);
+  const WorldState state = advance(sim, 0.0);
+  const auto [range, along] = wayOf(p);
+  const LineOfSight line{p.down ? range * along : glm::dvec3(0.0), p.down ? -along : along, {}, 0.0};
+  NodeSum sum(spectra);
+  sum.begin();
+  lightOfWay({sim, plan.terms, nullptr, state, {}}, line, range, sum);
+  std::vector<double> all;
+  for (int slot : plan.slotOfOutput) {
+    double whole = 0.0;
+    for (double w : plan.weight[static_cast<size_t>(slot)]) whole += w;
+    all.push_back(slotsOf(plan, sum.radiance())[static_cast<size_t>(slot)] / whole);
+  }
+  return all;
+}
+
 TEST(ThermalAir, PathsAreLowtrans) {
   const char* bands[] = {"3.5-4.1 um", "3-5 um", "8-12 um"};
   for (const char* accuracy : {"0.3 %", "reference"}) {
@@ -105,10 +142,14 @@ TEST(ThermalAir, PathsAreLowtrans) {
     const size_t step = std::string(accuracy) == "reference" ? 1 : 2;
     for (size_t i = 0; i < std::size(kPaths); i += step) {
       const LowtranPath& p = kPaths[i];
-      const Frame frame = renderFrame(scene(before(p, accuracy)));
+      const Simulation sim = scene(before(p, accuracy));
+      const Frame frame = renderFrame(sim);
+      const std::vector<double> once = toldOf(sim, p, 0), whole = toldOf(sim, p, kFinestStreams);
       for (size_t c = 0; c < 3; ++c) {
         double& worst = (p.range_km > 0.0 ? level : slant)[c];
-        const double off = static_cast<double>(frame.layers[c].pixels[0]) / p.mean[c] - 1.0;
+        const double off = once[c] / p.mean[c] - 1.0;
+        // Of 3-5 um plans at 0.3 % say that they may be off by 1.7 %.
+        EXPECT_NEAR(static_cast<double>(frame.layers[c].pixels[0]) / whole[c], 1.0, 0.017) << bands[c] << " path " << i;
         if (std::abs(off) > std::abs(worst)) worst = off;
       }
     }

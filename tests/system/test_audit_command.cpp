@@ -120,7 +120,7 @@ TEST_F(AuditCommand, APlanOfAnythingElseIsRefused) {
     }
   // The reference takes a plan of its own scenario alone, too.
   EXPECT_EQ(run("run s.yaml --out d --set accuracy=reference --set entities.wall.temperature='306 K' --plan a/c.plan").code, 2);
-  folder_.put("c.plan", "pitviper plan 4 1 1\nnonsense\n");
+  folder_.put("c.plan", "pitviper plan 5 1 1\nnonsense\n");
   EXPECT_NE(run("run s.yaml --out d --plan c.plan").output.find("c.plan: not a plan, or not one that says what it was made for"), std::string::npos);
   folder_.put("c.plan", bytes("a/c.plan").substr(0, bytes("a/c.plan").size() / 2));
   EXPECT_NE(run("run s.yaml --out d --plan c.plan").output.find("c.plan: a damaged plan"), std::string::npos);

@@ -75,7 +75,8 @@ std::string rowOf(const std::string& text, std::string_view name) {
 
 TEST(Budget, APlanTellsEachAccountBesideWhatItLost) {
   for (const double accuracy : {0.005, 0.01, 0.05, 0.2}) {
-    const PredictedParts parts{0.31 * accuracy, 0.1 * accuracy, 0.032 * accuracy, 6e-5, 0.2 * accuracy, budget::kFields.of(accuracy), 0.4 * accuracy};
+    const PredictedParts parts{0.31 * accuracy, 0.1 * accuracy, 0.032 * accuracy, 6e-5, 0.2 * accuracy, 0.004 * accuracy, budget::kFields.of(accuracy),
+                               0.4 * accuracy};
     const std::string text = textOf(accuracy, parts);
     const auto has = [&](std::string_view name, const std::string& most, double lost) {
       char own[64];
@@ -90,14 +91,20 @@ TEST(Budget, APlanTellsEachAccountBesideWhatItLost) {
     has("tables", tables, parts.tables);
     has("terms left out", " each ", parts.dropped);
     has("light from all around", "", parts.surroundings);
+    has("light scattered again", "", parts.streams);
     has("steps through plumes and clouds", "", parts.fields);
     has("precision", "", parts.precision);
     EXPECT_EQ(text.find("MORE THAN ASKED FOR"), std::string::npos) << text;
   }
   // All accounts at their most leave nothing.
   const double accuracy = 0.01;
-  const PredictedParts most{0.0,  budget::kTables.of(accuracy),       budget::kTerms.of(accuracy),
-                            6e-5, budget::kSurroundings.of(accuracy), budget::kFields.of(accuracy)};
+  const PredictedParts most{0.0,
+                            budget::kTables.of(accuracy),
+                            budget::kTerms.of(accuracy),
+                            6e-5,
+                            budget::kSurroundings.of(accuracy),
+                            budget::kStreams.of(accuracy),
+                            budget::kFields.of(accuracy)};
   EXPECT_NE(textOf(accuracy, most).find("MORE THAN ASKED FOR"), std::string::npos);
 }
 

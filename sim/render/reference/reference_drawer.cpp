@@ -17,7 +17,7 @@ ReferenceDrawer::ReferenceDrawer(const Simulation& simulation, const Plan& plan,
       plan_(plan),
       truth_(truth),
       apertureArea_m2_(apertureArea_m2),
-      spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms.surroundings)),
+      spectra_(std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms)),
       tracer_(simulation, library, std::move(scene)) {}
 
 void ReferenceDrawer::beginPicture(int views) {

@@ -26,7 +26,7 @@ ReferenceShader::ReferenceShader(const Simulation& simulation, const Plan& plan,
       drawn_(drawn),
       transparent_(simulation.hasTransparent()),
       shadows_(simulation),
-      spectra_(spectra ? std::move(spectra) : std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms.surroundings)) {
+      spectra_(spectra ? std::move(spectra) : std::make_shared<const NodeSpectra>(simulation, plan.nodes, plan.terms)) {
   for (size_t f = 0; f < simulation.fields.size(); ++f)
     if (const FieldState* field = fieldOf(state, f))
       if (const FieldLines lines = fieldLines(view, *field); !lines.isEmpty()) fields_.push_back(lines);

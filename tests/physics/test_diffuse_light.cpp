@@ -1,4 +1,6 @@
-// What is said of light scattered more than once: photons' ways against closed forms, and the factor against daylight and published skies.
+// Light that the air scatters any number of times: pictures against photons followed through layers made anew, and photons against closed forms.
+//
+// Rationale: pictures, planner and reference take it from the same moments (sim/radiance/diffuse_light.hpp); photons know nothing of these.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -6,14 +8,15 @@
 #include <tuple>
 
 #include "sim/camera/camera_renderer.hpp"
-#include "sim/plan/photon_walk.hpp"
 #include "sim/plan/planner.hpp"
+#include "sim/radiance/node_sum.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/quadrature.hpp"
-#include "tests/support/figures.hpp"
-#include "tests/support/print.hpp"
 #include "sim/world/world.hpp"
+#include "tests/support/figures.hpp"
+#include "tests/support/photon_walk.hpp"
+#include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
@@ -142,67 +145,6 @@ TEST(PhotonWalk, IsWhatPhotonsDoForwards) {
   bound("the same without loss against Eddington's closed form, relative", eddington, 0.06, "two streams; sun at 0.64 for 0.667");
 }
 
-double again(const Frame& frame, const std::string& channel) {
-  for (const auto& a : frame.attributes)
-    if (a.name == "pitviper.scattered_again." + channel) return std::get<double>(a.value);
-  return 1.0;
-}
-
-std::string fogScene(double visibility_km) {
-  return "atmosphere: {library: hazy_us76, visibility: " + print("%g", visibility_km) +
-         " km}\nsun: {azimuth: 90 deg, elevation: 40 deg, irradiance: solar_e490}\nambient: {from: sky}\nentities:\n"
-         "  - {name: white, shape: {model: plate, width: 3 m, height: 3 m}, material: white_lambertian, temperature: 288 K, position: [0 m, 0 m, 10 m], "
-         "heading: 90 deg}\n"
-         "  - {name: ground, shape: {model: plate, width: 30 km, height: 30 km}, heading: 180 deg, pitch: 90 deg, material: green_grass, temperature: 288 K}\n"
-         "cameras: [{name: w, film: {width: 9, height: 9}, field_of_view: 1 deg, aperture: 50 mm, position: [100 m, 0 m, 10 m], look_at: white,\n"
-         "  channels: [{name: vis, response: {band: [0.5 um, 0.6 um]}}, {name: lw, response: {band: [10 um, 10.1 um]}}]}]\n";
-}
-
-TEST(ScatteredAgain, FogIsDaylightAfterAll) {
-  // A white plate 100 m off in the sun. Haze of 5 km takes little from daylight, what it scatters comes from elsewhere; haze of 1 km, six optical
-  // depths of albedo 0.94, swallows most (a fifth comes through), where the picture has a thousandth.
-  double daylight = 0.0, most = 1.0, least = 1.0, fog = 0.0, before = 1.0;
-  for (double v : {50.0, 23.0, 5.0, 2.0, 1.0}) {
-    const Frame frame = renderFrame(scene(fogScene(v)));
-    const double once = at(frame.layers[0], frame, 4, 4), factor = again(frame, "vis");
-    std::printf("visibility %g km: %.3g W/(m2 sr), times %.3g = %.3g\n", v, once, factor, once * factor);
-    if (v == 50.0) daylight = once;
-    if (v >= 5.0) most = std::max(most, once * factor / daylight), least = std::min(least, once * factor / daylight);
-    else fog = std::max(fog, daylight / (once * factor));
-    EXPECT_GE(factor, before * 0.99) << v;
-    before = factor;
-    EXPECT_EQ(again(frame, "lw"), 1.0);  // the sun does not light it
-  }
-  bound("white plate in haze of 5 to 50 km, with the factor stated, over daylight", most, 2.0, "a wall in haze sees half of its light from the grass's side");
-  bound("daylight over the same", 1.0 / least, 2.5, "the same");
-  bound("daylight over the same, haze of 1 and 2 km", fog, 14.0,
-        "its own absorption, 6 optical depths of albedo 0.94; a wall faces half of what is left, and hardly any from the grass");
-  EXPECT_GT(before, 100.0);
-}
-
-TEST(ScatteredAgain, HazySkies) {
-  // Horizon of a hazy sky away from the sun at 0.55 um, over black ground: published skies have 100 W/(m2 sr um) over land; scattered once 15.
-  const auto sky = [](const char* air, double pitch) {
-    return renderFrame(scene(
-        std::string("atmosphere: ") + air +
-        "\nsun: {azimuth: 210 deg, elevation: 40 deg, temperature: 5772 K}\ncameras: [{name: e, film: {width: 3, height: 3}, field_of_view: 0.2 deg, "
-        "aperture: 5 "
-        "mm, position: [0 m, 0 m, 10 m], heading: 30 deg, pitch: " +
-        print("%g", pitch) +
-        " deg, channels: [{name: g, response: {band: [0.545 um, 0.555 um]}, output: radiance_per_um}, {name: lw, response: {band: [10 um, 10.1 um]}}]}]\n"));
-  };
-  for (double pitch : {0.3, 10.0, 30.0, 89.9}) {
-    const Frame frame = sky("hazy_us76", pitch);
-    const double once = at(frame.layers[0], frame, 1, 1), factor = again(frame, "g");
-    std::printf("hazy sky at %g deg: %.3g, times %.3g = %.3g W/(m2 sr um)\n", pitch, once, factor, once * factor);
-    if (pitch == 0.3) {
-      EXPECT_GT(once * factor, 40.0);
-      EXPECT_LT(once * factor, 200.0);
-    }
-    EXPECT_EQ(again(frame, "lw"), 1.0);
-  }
-}
-
 /// The air of a scene in even layers, for its sun, as a walk has it: none of the check's own columns and lines.
 PhotonWalk layersOf(const Simulation& sim, double um) {
   constexpr int kLayers = 240;
@@ -228,9 +170,74 @@ PhotonWalk layersOf(const Simulation& sim, double um) {
   return PhotonWalk(air);
 }
 
-TEST(ScatteredAgain, IsWhatWalksAlongTheWholeLineFind) {
+/// Radiance along lines of a scene, in double precision, at single wavelengths, by so many streams.
+class Lines {
+ public:
+  Lines(const Simulation& sim, const std::vector<double>& um, int streams) : sim_(sim), terms_(termsOf(sim)), state_(advance(sim, 0.0)) {
+    for (double w : um) nodes_.push_back(nodeAt(sim, w));
+    terms_.streams = streams;
+    spectra_.emplace(sim, nodes_, terms_);
+    legs_ = SunLegs::of(sim.air, sim.sun->toSun.z, sim.frame.earthRadius_m());
+  }
+  std::vector<double> along(const glm::dvec3& origin, const glm::dvec3& direction) const {
+    NodeSum sum(*spectra_);
+    sum.begin();
+    LineOfSight line{origin, direction, castRay(sim_, state_, origin, direction, 0.1), 0.0};
+    radianceAlong({sim_, terms_, legs_.get(), state_, {}}, line, sum);
+    return {sum.radiance().begin(), sum.radiance().end()};
+  }
+
+ private:
+  const Simulation& sim_;
+  Terms terms_;
+  WorldState state_;
+  std::vector<SpectralNode> nodes_;
+  std::optional<NodeSpectra> spectra_;
+  std::shared_ptr<const SunLegs> legs_;
+};
+
+std::string airScene(const std::string& air, double sunElevation_deg, const std::string& ground = "") {
+  return "atmosphere: " + air + "\nsun: {azimuth: 0 deg, elevation: " + print("%g", sunElevation_deg) + " deg, temperature: 5772 K}\n" + ground +
+         "cameras: [{name: e, film: {width: 3, height: 3}, field_of_view: 0.1 deg, aperture: 5 mm, position: [0 m, 0 m, 10 m], heading: 0 deg, pitch: 10 deg, "
+         "channels: [{name: b, response: {band: [0.449 um, 0.451 um]}, output: radiance_per_um}]}]\n";
+}
+
+/// By heading from the sun and elevation.
+glm::dvec3 towards(double heading_deg, double elevation_deg) {
+  const double a = heading_deg * kPi / 180.0, e = elevation_deg * kPi / 180.0;
+  return {std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e)};
+}
+
+// What streams lose of a line's radiance: against twice as many as are ever chosen, in clear air and haze, upwards, level and downwards, of the sun and
+// thermal.
+TEST(DiffuseLight, StreamsLose) {
+  const std::vector<double> um{0.42, 0.55, 0.9, 1.6, 4.0, 10.0};
+  const std::vector<int> all{8, 12, 16};
+  std::vector<double> worst(all.size(), 0.0);
+  for (const char* air : {"clear_us76", "hazy_us76", "{library: hazy_mls, visibility: 5 km}", "{library: hazy_us76, visibility: 1 km}"})
+    for (double sun : {3.0, 15.0, 60.0}) {
+      const Simulation sim = scene(airScene(air, sun, "ground: {material: dry_grass}\n"));
+      const Lines exact(sim, um, 32);
+      std::vector<Lines> some;
+      for (int n : all) some.emplace_back(sim, um, n);
+      for (double height : {2.0, 1000.0, 9000.0})
+        for (double heading : {0.0, 40.0, 120.0, 180.0})
+          for (double pitch : {-80.0, -20.0, -3.0, 0.5, 10.0, 40.0, 85.0}) {
+            const std::vector<double> right = exact.along({0, 0, height}, towards(heading, pitch));
+            for (size_t n = 0; n < all.size(); ++n) {
+              const std::vector<double> found = some[n].along({0, 0, height}, towards(heading, pitch));
+              for (size_t i = 0; i < um.size(); ++i) worst[n] = std::max(worst[n], std::abs(found[i] / right[i] - 1.0));
+            }
+          }
+    }
+  const double most[] = {0.01, 0.004, 0.002};
+  for (size_t n = 0; n < all.size(); ++n)
+    bound(print("what %d streams lose of a line's radiance", all[n]), worst[n], most[n], "32 streams; a sun 3 to 60 degrees up, visibilities from 1 to 100 km");
+}
+
+TEST(DiffuseLight, IsWhatWalksAlongTheWholeLineFind) {
   // Photons followed from the camera on, through layers made anew: light scattered once is the picture's own, and all of it over that the factor.
-  double worst = 0.0, once = 0.0;
+  double worst = 0.0;
   for (const char* air : {"clear_us76", "hazy_us76", "{library: hazy_mls, visibility: 5 km}"})
     for (double pitch : {10.0, 35.0, 89.0}) {
       const Simulation sim = scene(std::string("atmosphere: ") + air +
@@ -239,83 +246,17 @@ TEST(ScatteredAgain, IsWhatWalksAlongTheWholeLineFind) {
                                    " deg, channels: [{name: b, response: {band: [0.449 um, 0.451 um]}, output: radiance_per_um}, "
                                    "{name: r, response: {band: [0.649 um, 0.651 um]}, output: radiance_per_um}]}]\n");
       const Frame frame = renderFrame(sim);
-      for (const auto& [um, channel, number] : {std::tuple{0.45, "b", size_t{0}}, {0.65, "r", size_t{1}}}) {
+      for (const auto& [um, number] : {std::pair{0.45, size_t{0}}, {0.65, size_t{1}}}) {
         const PhotonWalk walk = layersOf(sim, um);
         const double up = pitch * kPi / 180.0, height = 10.0;
         const glm::dvec3 direction(std::cos(up), 0.0, std::sin(up));
         const double above = sim.air->opticalDepth(sim.air->node(um), sim.air->amounts({height, 1.0, sim.frame.earthRadius_m()}, physics::kFar));
-        WalkDice dice(11);
-        double first = 0.0, rest = 0.0;
-        constexpr int kWays = 30000;
-        for (int k = 0; k < kWays; ++k) {
-          const auto found = walk.from(above, direction, dice);
-          first += found.once / kWays, rest += found.again / kWays;
-        }
-        const double drawn = at(frame.layers[number], frame, 1, 1), sun = sim.sun->irradiance(um);
-        once = std::max(once, std::abs(first * sun / drawn - 1.0));
-        worst = std::max(worst, std::abs(again(frame, channel) / (1.0 + rest / first) - 1.0));
+        const double found = radianceOf(walk, above, direction, 60000) * sim.sun->irradiance(um), drawn = at(frame.layers[number], frame, 1, 1);
+        std::printf("%s at %g deg, %g um: drawn %.4g, photons %.4g, %+.2f %%\n", air, pitch, um, drawn, found, 100.0 * (drawn / found - 1.0));
+        worst = std::max(worst, std::abs(drawn / found - 1.0));
       }
     }
-  bound("light scattered once along 18 lines of sight through layers made anew, against the picture, relative", once, 0.05, "level layers; photons 1 %");
-  bound("the factor stated against all that such photons find, relative", worst, 0.12, "400 ways each at two wavelengths: 5 % by chance");
-}
-
-TEST(ScatteredAgain, IsToldWhereItIsMoreThanAskedForAndNowhereElse) {
-  const auto told = [](const char* air, double sun, const char* camera, const char* head = "", const char* ambient = "{from: sky}") {
-    const Frame frame = renderFrame(
-        scene(std::string(head) + "atmosphere: " + air + print("\nsun: {azimuth: 90 deg, elevation: %g deg, temperature: 5772 K}\nambient: ", sun) + ambient +
-              "\nentities: [{name: p, shape: {model: plate, width: 3 m, height: 3 m}, material: white_lambertian, temperature: 288 K, heading: 90 deg, "
-              "position: [0 m, 0 m, 10 "
-              "m]}]\ncameras: [{name: c, film: {width: 3, height: 3}, field_of_view: 0.5 deg, aperture: 5 mm, position: [50 m, 0 m, 10 m], " +
-              camera + "}]\n"));
-    return again(frame, "n");
-  };
-  const std::string plate = "look_at: p, channels: [{name: n, response: {band: ",
-                    sky = "heading: 30 deg, pitch: 60 deg, channels: [{name: n, response: {band: ";
-  const auto in = [](const std::string& what, const char* band) { return what + band + "}}]"; };
-  // A clear visible sky, its optical depth of scattering a tenth.
-  EXPECT_GT(told("clear_us76", 60.0, in(sky, "[0.5 um, 0.6 um]").c_str()), 1.08);
-  EXPECT_GT(told("clear_us76", 60.0, in(sky, "[0.4 um, 0.5 um]").c_str()), 1.2);
-  // Within what is asked for, at night, in thermal bands, without a sun to speak of: nothing.
-  EXPECT_EQ(told("clear_us76", 60.0, in(plate, "[1.5 um, 1.7 um]").c_str()), 1.0);
-  EXPECT_EQ(told("clear_us76", 60.0, in(plate, "[8 um, 12 um]").c_str()), 1.0);
-  EXPECT_EQ(told("{library: hazy_us76, visibility: 1 km}", 60.0, in(plate, "[8 um, 12 um]").c_str()), 1.0);
-  EXPECT_EQ(told("hazy_us76", -25.0, in(sky, "[0.5 um, 0.6 um]").c_str()), 1.0);
-  EXPECT_EQ(told("clear_us76", 60.0, in(plate, "[0.6 um, 0.7 um]").c_str(), "accuracy: 10 %\n"), 1.0);
-}
-
-TEST(ScatteredAgain, IsThatOfTheSecondWhicheverPicturesAreDrawn) {
-  // A camera that climbs by 500 m a second through haze and looks at the sky.
-  const Simulation sim = scene(
-      "time: {rate: 4 Hz, frames: 16}\natmosphere: hazy_us76\nsun: {azimuth: 90 deg, elevation: 40 deg, temperature: 5772 K}\n"
-      "cameras: [{name: c, film: {width: 3, height: 3}, field_of_view: 0.5 deg, aperture: 5 mm, "
-      "motion: [{time: 0 s, position: [0 m, 0 m, 10 m], heading: 30 deg, pitch: 30 deg}, "
-      "{time: 4 s, position: [0 m, 0 m, 2010 m], heading: 30 deg, pitch: 30 deg}], "
-      "channels: [{name: n, response: {band: [0.5 um, 0.6 um]}}]}]\n");
-  const Camera& camera = sim.cameras.front();
-  const Plan plan = cameraPlan(sim, camera);
-  const ScatteringCheck check(sim, camera, plan);
-  const auto factor = [](const std::vector<ScatteredAgain>& all) { return all.empty() ? 1.0 : all.front().factor; };
-  ScatteringBySecond all(sim, camera, plan);
-  double last = 0.0;
-  for (int number = 0; number < 16; ++number) {
-    const double time_s = sim.time.at(number);
-    ScatteringBySecond alone(sim, camera, plan);
-    all.begin(advance(sim, time_s));
-    alone.begin(advance(sim, time_s));
-    const double found = factor(all.finish());
-    EXPECT_EQ(found, factor(alone.finish()));
-    EXPECT_EQ(found, factor(check.at(advance(sim, std::floor(time_s)))));
-    EXPECT_EQ(found != last, number % 4 == 0);
-    last = found;
-  }
-  // Where a command has put it elsewhere, from there.
-  WorldState moved = advance(sim, 2.6);
-  moved.cameras["c"].position = glm::dvec3(0.0, 0.0, 9000.0);
-  ScatteringBySecond there(sim, camera, plan);
-  there.begin(moved);
-  EXPECT_EQ(factor(there.finish()), factor(check.at(moved)));
-  EXPECT_NE(factor(there.finish()), factor(check.at(advance(sim, 2.0))));
+  bound("skies along 18 lines of sight against photons through layers made anew, relative", worst, 0.04, "level layers at 10 degrees 2 %; photons 1 %");
 }
 
 }  // namespace

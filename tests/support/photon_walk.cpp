@@ -1,4 +1,4 @@
-#include "sim/plan/photon_walk.hpp"
+#include "tests/support/photon_walk.hpp"
 
 #include <algorithm>
 #include <cmath>

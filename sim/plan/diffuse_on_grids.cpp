@@ -1,0 +1,60 @@
+#include <cmath>
+
+#include "sim/plan/sights.hpp"
+#include "sim/radiometry/physics.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Steps between places: of the root of the height, of the sine of an elevation, of the cosine of an azimuth.
+constexpr double kHeightRoot = 20.0, kSineStep = 0.25, kAzimuthStep = 0.5;
+
+double nearest(double value, double step) { return step * std::round(value / step); }
+
+}  // namespace
+
+struct DiffuseOnGrids::OnGrid {
+  std::vector<SpectralNode> nodes;
+  std::unique_ptr<NodeDiffuse> light;
+  std::vector<double> irradiance;
+  std::map<Place, TurnedLight> turned;
+  std::mutex busy;
+};
+
+DiffuseOnGrids::DiffuseOnGrids(const Simulation& simulation, int streams) : simulation_(simulation), light_(DiffuseLight::of(columnOf(simulation), streams)) {}
+
+DiffuseOnGrids::Place DiffuseOnGrids::stepped(Place p, double step_K) {
+  const double root = nearest(std::sqrt(std::max(p.height_m, 0.0)), kHeightRoot);
+  return {root * root, nearest(p.sine, kSineStep), nearest(p.cosAzimuth, kAzimuthStep), nearest(p.temperature_K, step_K)};
+}
+
+double DiffuseOnGrids::at(const FineGrid& grid, size_t i, const Place& place, size_t absorber) {
+  std::shared_ptr<OnGrid> own;
+  {
+    const std::scoped_lock lock(busy_);
+    auto& kept = grids_[&grid];
+    if (!kept) kept = std::make_shared<OnGrid>();
+    own = kept;
+  }
+  const std::scoped_lock lock(own->busy);
+  if (!own->light) {
+    for (size_t k = 0; k < grid.wavelength_um.size(); ++k) {
+      own->nodes.emplace_back();
+      own->nodes.back().members = {{grid.wavelength_um[k], 1.0}};
+      own->nodes.back().air = grid.air[k];
+      own->irradiance.push_back(simulation_.sun ? simulation_.sun->irradiance(grid.wavelength_um[k]) : 0.0);
+    }
+    own->light = std::make_unique<NodeDiffuse>(light_, own->nodes, NodeDiffuse::Nodes::Together);
+  }
+  const auto [at, isNew] = own->turned.try_emplace(place);
+  TurnedLight& t = at->second;
+  DiffuseMemory memory;
+  if (isNew) own->light->at(place.height_m, place.sine, place.cosAzimuth, true, memory, t);
+  const AirNode& air = grid.air[i];
+  const double black = place.temperature_K > 0.0 ? physics::planckRadiance(grid.wavelength_um[i], place.temperature_K) : 0.0;
+  const double sun = light_->sunlit() ? own->irradiance[i] : 0.0;
+  return air.molecules[absorber] * (t.thermalByMolecules[i] - black + (sun > 0.0 ? sun * t.solarByMolecules[i] : 0.0)) +
+         air.haze[absorber] * (t.thermalByHaze[i] - black + (sun > 0.0 ? sun * t.solarByHaze[i] : 0.0));
+}
+
+}  // namespace pitviper

@@ -1,0 +1,333 @@
+#include "sim/radiance/diffuse_light.hpp"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "sim/model/scene_fingerprint.hpp"
+#include "sim/parameters/on_threads.hpp"
+#include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
+#include "sim/radiometry/wide_loops.hpp"
+#include "sim/scene/content_cache.hpp"
+
+namespace pitviper {
+namespace {
+
+/// Edges of layers [m], where air is clear.
+constexpr double kHeights_m[] = {0.0, 100.0, 250.0, 500.0, 750.0, 1000.0, 1250.0, 1500.0, 1750.0, 2000.0, 2500.0, 3e3,  3.5e3, 4e3,
+                                 5e3, 6e3,   7e3,   8.5e3, 10e3,  12e3,   15e3,   18e3,   22e3,   27e3,   34e3,   45e3, 70e3};
+/// A layer scatters no more than this of light straight through, where air scatters most: between its edges light is linear in height.
+constexpr double kDeepest = 0.12;
+/// The sun is no longer seen by any air.
+constexpr double kNight = -0.35;
+/// First thin layer, as Streams::thin: 8e-5 of the flattest stream.
+constexpr double kThin = 0.03;
+/// Of the phase function.
+constexpr int kPhaseMoments = 40;
+/// Moments that add less than this part of a mean radiance are left out.
+constexpr double kFaint = 1e-4;
+/// Sines and cosines of directions that are one to the light at an edge.
+constexpr double kSameDirection = 0.003;
+/// Kind of table in the cache.
+constexpr const char* kTable = "diffuse";
+/// Part of each node's norm that its patterns may leave out.
+constexpr double kLeftOut = 2e-4;
+
+double sumOver(const std::array<double, kMostAirAmounts>& c, const AirAmounts& powered) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < c.size(); ++k) sum += c[k] * powered.amount[k];
+  return sum;
+}
+
+double scattered(const AirNode& n, const AirAmounts& above, const AirAmounts& below) {
+  double sum = 0.0;
+  for (std::size_t k = 0; k < kMostAirAmounts; ++k) sum += (n.molecules[k] + n.haze[k]) * std::max(below.amount[k] - above.amount[k], 0.0);
+  return sum;
+}
+
+PITVIPER_WIDE void addTimes(const double* row, double factor, int count, double* __restrict into) {
+  for (int i = 0; i < count; ++i) into[i] += factor * row[i];
+}
+
+/// By how many directions light is told of so many streams: what streams lose falls to a tenth.
+FineDirections directionsFor(int streams) {
+  if (streams <= 4) return {8, 10, 8};
+  if (streams <= 8) return {14, 16, 12};
+  if (streams <= 12) return {16, 20, 12};
+  return {24, 24, 16};
+}
+
+}  // namespace
+
+AirColumn columnOf(const Simulation& sim) {
+  AirColumn c{sim.air, sim.sun, sim.background, nullptr, 0.0, sim.frame.earthRadius_m()};
+  if (sim.ground) c.ground = sim.materials[static_cast<std::size_t>(sim.ground->material)], c.ground_K = sim.ground->temperature_K;
+  return c;
+}
+
+std::shared_ptr<const DiffuseLight> DiffuseLight::of(const AirColumn& column, int streams) {
+  if (!column.air || !column.air->traits().scattersSun || streams < 2) return nullptr;
+  Fingerprint f;
+  f.add(streams).add(column.ground_K).add(column.earthRadius_m).add(column.ground ? 1.0 : 0.0).add(column.sun ? 1.0 : 0.0);
+  column.air->addTo(f);
+  if (column.sun) f.add(column.sun->toSun), addTo(f, column.sun->irradiance);
+  addTo(f, column.background);
+  if (column.ground) addTo(f, *column.ground);
+  static std::mutex mutex;
+  static std::map<std::string, std::weak_ptr<const DiffuseLight>> all;
+  const std::scoped_lock lock(mutex);
+  std::erase_if(all, [](const auto& kept) { return kept.second.expired(); });
+  auto& kept = all[f.bytes()];
+  if (auto known = kept.lock()) return known;
+  std::shared_ptr<DiffuseLight> made(new DiffuseLight(column, streams));
+  made->key_ = contentKey(f.bytes());
+  kept = made;
+  return made;
+}
+
+DiffuseLight::DiffuseLight(const AirColumn& column, int streams) : column_(column), streams_(streams), fine_(directionsFor(streams)) {
+  const Atmosphere& air = *column_.air;
+  if (column_.sun && column_.sun->toSun.z > kNight) legs_ = SunLegs::of(column_.air, column_.sun->toSun.z, column_.earthRadius_m);
+  shape_ = {fine_.degree, legs_ ? fine_.azimuths : 1};
+  const auto aboveAt = [&](double h) { return air.powered(air.amounts({h, 1.0, column_.earthRadius_m}, physics::kFar)); };
+  const AirNode node = air.node(std::max(air.validLow_um(), 0.45));
+  for (std::size_t k = 0; k < std::size(kHeights_m); ++k) {
+    const double low = kHeights_m[k], high = k + 1 < std::size(kHeights_m) ? kHeights_m[k + 1] : air.top_m();
+    if (!(low < air.top_m())) break;
+    const double depth = scattered(node, aboveAt(high), aboveAt(low));
+    const int parts = std::clamp(static_cast<int>(std::ceil(depth / kDeepest)), 1, 64);
+    for (int p = 0; p < parts; ++p) heights_m_.push_back(low + (std::min(high, air.top_m()) - low) * p / parts);
+  }
+  heights_m_.push_back(air.top_m());
+  for (double h : heights_m_) {
+    above_.push_back(aboveAt(h));
+    temperature_K_.push_back(air.stationsAt({h, 1.0, column_.earthRadius_m}, std::array{0.0}).front().temperature_K);
+    if (!legs_) continue;
+    const RisenSun risen = risenSun(h, column_.sun->toSun.z, column_.earthRadius_m);
+    risen_.push_back(risen.share);
+    toSun_.push_back(risen.share > 0.0 ? air.powered(legs_->at(h, risen.sinElevation)) : AirAmounts{});
+  }
+}
+
+const DiffuseLight::Moments& DiffuseLight::at(double wavelength_um) const {
+  {
+    const std::scoped_lock lock(busy_);
+    if (const auto known = kept_.find(wavelength_um); known != kept_.end()) return known->second;
+  }
+  Moments own = made(wavelength_um);
+  const std::scoped_lock lock(busy_);
+  return kept_.try_emplace(wavelength_um, std::move(own)).first->second;
+}
+
+DiffuseLight::Moments DiffuseLight::made(double um) const {
+  PlaneLayers layers;
+  const AirNode n = column_.air->node(um);
+  const std::size_t count = heights_m_.size();
+  std::vector<double> black;
+  for (double t : temperature_K_) black.push_back(t > 0.0 ? physics::planckRadiance(um, t) : 0.0);
+  for (std::size_t k = count - 1; k-- > 0;) {
+    const auto part = [&](const std::array<double, kMostAirAmounts>& c) { return std::max(sumOver(c, above_[k]) - sumOver(c, above_[k + 1]), 0.0); };
+    const double all = part(n.extinction), molecules = part(n.molecules), haze = part(n.haze), both = molecules + haze;
+    PlaneLayer layer{all, all > 0.0 ? std::min(both / all, 1.0) : 0.0, {}, black[k + 1], black[k]};
+    double power = 1.0;
+    for (int l = 0; both > 0.0 && l < kPhaseMoments; ++l, power *= n.asymmetry)
+      layer.moments.push_back((molecules * (l == 0 ? 1.0 : l == 2 ? 0.1 : 0.0) + haze * power) / both);
+    layers.layers.push_back(std::move(layer));
+  }
+  if (legs_) {
+    layers.sunSine = column_.sun->toSun.z;
+    layers.irradiance = 1.0;
+    for (std::size_t k = count; k-- > 0;) layers.sunDepth.push_back(risen_[k] > 0.0 ? Atmosphere::depthOf(n, toSun_[k]) - std::log(risen_[k]) : INFINITY);
+  }
+  if (column_.ground) {
+    layers.groundAlbedo = column_.ground->reflections.empty() ? 0.0 : std::clamp(column_.ground->reflectance(um, 0.0), 0.0, 1.0);
+    layers.groundEmission = column_.ground->emissivity(um, 0.0) * physics::planckRadiance(um, column_.ground_K);
+  }
+  layers.spaceRadiance = column_.background(um);
+  const LayerLight light = finer(layers, lightIn(layers, {streams_, legs_ ? streams_ : 1, kThin}), fine_);
+  // From the ground up.
+  Moments out;
+  for (std::size_t k = 0; k < kMostAirAmounts; ++k) out.molecules += n.molecules[k], out.haze += n.haze[k];
+  out.asymmetry = n.asymmetry;
+  out.irradiance = legs_ ? column_.sun->irradiance(um) : 0.0;
+  for (std::size_t k = count; k-- > 0;) {
+    const auto solar = light.solarAt(k), thermal = light.thermalAt(k);
+    if (legs_) out.solar.insert(out.solar.end(), solar.begin(), solar.end());
+    out.thermal.insert(out.thermal.end(), thermal.begin(), thermal.end());
+  }
+  return out;
+}
+
+NodeDiffuse::NodeDiffuse(std::shared_ptr<const DiffuseLight> light, std::span<const SpectralNode> nodes, Nodes told)
+    : light_(std::move(light)), nodes_(nodes.size()), told_(told) {
+  if (told != Nodes::Kept || nodes.empty()) {
+    make(nodes);
+    return;
+  }
+  Fingerprint f;
+  f.add(static_cast<double>(light_->key()[0] >> 11)).add(static_cast<double>(light_->key()[1] >> 11));
+  for (const SpectralNode& n : nodes) f.all(n.members);
+  const ContentKey key = contentKey(f.bytes(), light_->key());
+  if (read(key)) return;
+  make(nodes);
+  write(key);
+}
+
+bool NodeDiffuse::read(const ContentKey& key) {
+  const auto text = readCachedTable(kTable, key);
+  if (!text) return false;
+  TableReader in(*text);
+  bool fits = true;
+  for (Part* p : parts()) {
+    p->moments = in.all<int>(), p->pattern = in.all<double>(), p->share = in.all<double>();
+    p->patterns = p->share.size() / nodes_;
+    fits &= p->share.size() == p->patterns * nodes_ && p->pattern.size() == p->patterns * p->moments.size() * light_->heights_m().size() &&
+            std::all_of(p->moments.begin(), p->moments.end(), [&](int m) { return m >= 0 && m < light_->shape().moments(); });
+  }
+  return fits && in.isWhole();
+}
+
+void NodeDiffuse::write(const ContentKey& key) const {
+  TableWriter out;
+  for (const Part* p : {&thermalByMolecules_, &thermalByHaze_, &solarByMolecules_, &solarByHaze_}) out.all(p->moments), out.all(p->pattern), out.all(p->share);
+  writeCachedTable(kTable, key, out.bytes());
+}
+
+void NodeDiffuse::make(std::span<const SpectralNode> nodes) {
+  std::vector<double> um;
+  for (const SpectralNode& n : nodes)
+    for (const auto& m : n.members) um.push_back(m.wavelength_um);
+  onAllThreads(um.size(), [&](const auto& next) {
+    for (std::size_t i = next(); i < um.size(); i = next()) light_->at(um[i]);
+  });
+  thermalByMolecules_ = partOf(nodes, false, false);
+  thermalByHaze_ = partOf(nodes, false, true);
+  if (!light_->sunlit()) return;
+  solarByMolecules_ = partOf(nodes, true, false);
+  solarByHaze_ = partOf(nodes, true, true);
+}
+
+NodeDiffuse::Part NodeDiffuse::partOf(std::span<const SpectralNode> nodes, bool solar, bool haze) const {
+  const LayerLight::Shape shape = light_->shape();
+  const std::size_t heights = light_->heights_m().size(), each = static_cast<std::size_t>(solar ? shape.moments() : shape.streams);
+  std::vector<std::size_t> moments;
+  std::vector<int> degrees;
+  for (int m = 0; m < (solar ? shape.azimuths : 1); ++m)
+    for (int l = m; l < shape.streams; ++l)
+      if (haze || l == 0 || l == 2) moments.push_back(static_cast<std::size_t>(shape.at(l, m))), degrees.push_back(l);
+  // [moment][height][node], means over the members of each node by what they scatter, and of sunlight by what there is of it.
+  std::vector<double> all(moments.size() * heights * nodes_, 0.0);
+  for (std::size_t i = 0; i < nodes_; ++i) {
+    double sum = 0.0, light = 0.0;
+    for (const auto& m : nodes[i].members) {
+      const DiffuseLight::Moments& own = light_->at(m.wavelength_um);
+      const double scatters = m.share * (haze ? own.haze : own.molecules);
+      sum += scatters, light += m.share * own.irradiance;
+    }
+    for (const auto& m : nodes[i].members) {
+      const DiffuseLight::Moments& own = light_->at(m.wavelength_um);
+      double part = sum > 0.0 ? m.share * (haze ? own.haze : own.molecules) / sum : m.share;
+      if (solar) part *= light > 0.0 ? own.irradiance / light : 0.0;
+      const std::vector<double>& of = solar ? own.solar : own.thermal;
+      for (std::size_t k = 0; k < moments.size(); ++k) {
+        const double weight = part * (haze ? std::pow(own.asymmetry, degrees[k]) : degrees[k] == 0 ? 1.0 : 0.1);
+        for (std::size_t h = 0; h < heights; ++h) all[(k * heights + h) * nodes_ + i] += weight * of[h * each + moments[k]];
+      }
+    }
+  }
+  Part part;
+  std::vector<std::size_t> kept;
+  for (std::size_t k = 0; k < moments.size(); ++k) {
+    bool matters = k == 0 || told_ == Nodes::Apart;
+    for (std::size_t n = 0; n < heights * nodes_ && !matters; ++n)
+      matters = (2.0 * degrees[k] + 1.0) * std::abs(all[k * heights * nodes_ + n]) > kFaint * std::abs(all[n]);
+    if (matters) kept.push_back(k), part.moments.push_back(static_cast<int>(moments[k]));
+  }
+  if (told_ == Nodes::Apart) {
+    for (std::size_t h = 0; h < heights; ++h)
+      for (std::size_t k = 0; k < kept.size(); ++k) {
+        const auto from = all.begin() + static_cast<std::ptrdiff_t>((k * heights + h) * nodes_);
+        part.share.insert(part.share.end(), from, from + static_cast<std::ptrdiff_t>(nodes_));
+      }
+    return part;
+  }
+  // Of each node one column; the one that is told worst becomes a pattern, until none is told badly (Gram and Schmidt with pivots).
+  const std::size_t size = heights * kept.size();
+  Eigen::MatrixXd light(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(nodes_));
+  for (std::size_t h = 0; h < heights; ++h)
+    for (std::size_t j = 0; j < kept.size(); ++j)
+      for (std::size_t i = 0; i < nodes_; ++i)
+        light(static_cast<Eigen::Index>(h * kept.size() + j), static_cast<Eigen::Index>(i)) = all[(kept[j] * heights + h) * nodes_ + i];
+  Eigen::MatrixXd left = light;
+  for (Eigen::Index i = 0; i < left.cols(); ++i)
+    if (const double norm = left.col(i).norm(); norm > 0.0) left.col(i) /= norm;
+  std::vector<Eigen::VectorXd> patterns;
+  while (static_cast<Eigen::Index>(patterns.size()) < std::min(left.rows(), left.cols())) {
+    Eigen::Index worst = 0;
+    const double most = left.colwise().norm().maxCoeff(&worst);
+    if (most <= kLeftOut) break;
+    patterns.emplace_back(left.col(worst) / most);
+    const Eigen::RowVectorXd along = patterns.back().transpose() * left;
+    left.noalias() -= patterns.back() * along;
+  }
+  part.patterns = patterns.size();
+  for (std::size_t n = 0; n < size; ++n)
+    for (const Eigen::VectorXd& p : patterns) part.pattern.push_back(p[static_cast<Eigen::Index>(n)]);
+  for (const Eigen::VectorXd& p : patterns) {
+    const Eigen::RowVectorXd shares = p.transpose() * light;
+    part.share.insert(part.share.end(), shares.begin(), shares.end());
+  }
+  return part;
+}
+
+void NodeDiffuse::tellEdge(std::size_t edge, double sine, double cosAzimuth, bool sunlit, DiffuseMemory::Edge& into) const {
+  if (std::abs(into.sine - sine) <= kSameDirection && std::abs(into.cosAzimuth - cosAzimuth) <= kSameDirection && into.sunlit >= sunlit) return;
+  into.sine = sine, into.cosAzimuth = cosAzimuth, into.sunlit = sunlit;
+  std::vector<double> turned(static_cast<std::size_t>(light_->shape().moments()));
+  // Light goes the other way than the line.
+  turnedTo(-sine, cosAzimuth, light_->shape(), turned);
+  const std::array<const Part*, 4> all{&thermalByMolecules_, &thermalByHaze_, &solarByMolecules_, &solarByHaze_};
+  for (std::size_t n = 0; n < (sunlit ? 4 : 2); ++n) {
+    const Part& part = *all[n];
+    if (told_ == Nodes::Apart) {
+      into.of[n].assign(nodes_, 0.0);
+      for (std::size_t k = 0; k < part.moments.size(); ++k)
+        addTimes(part.share.data() + (edge * part.moments.size() + k) * nodes_, turned[static_cast<std::size_t>(part.moments[k])], static_cast<int>(nodes_),
+                 into.of[n].data());
+      continue;
+    }
+    into.of[n].assign(part.patterns, 0.0);
+    for (std::size_t k = 0; k < part.moments.size(); ++k)
+      addTimes(part.pattern.data() + (edge * part.moments.size() + k) * part.patterns, turned[static_cast<std::size_t>(part.moments[k])],
+               static_cast<int>(part.patterns), into.of[n].data());
+  }
+}
+
+void NodeDiffuse::at(double height_m, double sine, double cosAzimuth, bool sunlit, DiffuseMemory& memory, TurnedLight& out) const {
+  const std::vector<double>& heights = light_->heights_m();
+  const auto above = static_cast<std::size_t>(
+      std::clamp<std::ptrdiff_t>(std::upper_bound(heights.begin(), heights.end(), height_m) - heights.begin(), 1, std::ssize(heights) - 1));
+  const double low = heights[above - 1], high = heights[above];
+  const double share = std::clamp((height_m - low) / (high - low), 0.0, 1.0);
+  sunlit = sunlit && light_->sunlit();
+  memory.edges.resize(heights.size());
+  for (std::size_t edge : {above - 1, above}) tellEdge(edge, sine, cosAzimuth, sunlit, memory.edges[edge]);
+  const DiffuseMemory::Edge &below = memory.edges[above - 1], &over = memory.edges[above];
+  const auto sum = [&](const Part& part, std::size_t n, std::vector<double>& into) {
+    into.assign(nodes_, 0.0);
+    if (told_ == Nodes::Apart) {
+      addTimes(below.of[n].data(), 1.0 - share, static_cast<int>(nodes_), into.data());
+      addTimes(over.of[n].data(), share, static_cast<int>(nodes_), into.data());
+    }
+    for (std::size_t p = 0; p < part.patterns; ++p)
+      addTimes(part.share.data() + p * nodes_, (1.0 - share) * below.of[n][p] + share * over.of[n][p], static_cast<int>(nodes_), into.data());
+  };
+  sum(thermalByMolecules_, 0, out.thermalByMolecules);
+  sum(thermalByHaze_, 1, out.thermalByHaze);
+  if (!sunlit) return;
+  sum(solarByMolecules_, 2, out.solarByMolecules);
+  sum(solarByHaze_, 3, out.solarByHaze);
+}
+
+}  // namespace pitviper
