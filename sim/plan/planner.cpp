@@ -22,6 +22,8 @@ constexpr int kAgain = 2;
 /// Single precision on the GPU over a whole pixel: 2.8e-6 of a formula and 1e-5 of tables (tests/gpu/test_float_against_double.cpp), 5e-5 found in random
 /// scenes.
 constexpr double kPrecision = 6e-5;
+/// Beyond this the air's own light is a hundred times what it scatters of the sun's.
+constexpr double kSunlit_um = 6.0;
 /// Streams by which lines are told before it is known how many the scene takes.
 constexpr int kSketchStreams = 8;
 /// Added to the seed, so that the last lines are neither those of the fit nor those of the measurement before.
@@ -41,8 +43,13 @@ void dropTerms(Plan& plan, bool keepLights) {
     return plan.shares[static_cast<size_t>(kind)].kept = kept;
   };
   for (int k = 0; k < kTermKinds; ++k) anywhere(static_cast<TermKind>(k));
-  plan.terms.scatteredSun = plan.terms.scatteredSun && anywhere(TermKind::ScatteredSun);
   plan.terms.streams = plan.terms.streams > 0 && anywhere(TermKind::ScatteredAgain) ? plan.streams : 0;
+  // In fog under a low sun all sunlight that is seen was scattered more than once.
+  const bool isSunlitAgain = plan.terms.streams > 0 && std::any_of(plan.nodes.begin(), plan.nodes.end(), [](const SpectralNode& n) {
+                               return std::any_of(n.members.begin(), n.members.end(), [](const auto& m) { return m.wavelength_um < kSunlit_um; });
+                             });
+  const bool isSunlit = anywhere(TermKind::ScatteredSun);
+  plan.terms.scatteredSun = plan.terms.scatteredSun && (isSunlit || isSunlitAgain);
   plan.terms.ambient = plan.terms.ambient && anywhere(TermKind::Ambient);
   if (plan.terms.surroundings != 0) plan.terms = withSurroundings(plan.terms, plan.terms.ambient ? plan.surroundings : 0);
   for (NodeBlock& b : plan.blocks) {
