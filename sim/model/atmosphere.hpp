@@ -116,7 +116,7 @@ struct AirLight {
   /// Law: the source of air is (1 - w) B + w <L>, w the albedo, <L> the mean of the radiance around weighted by the phase function. Here <L> = B:
   /// what is scattered out of a line is scattered in again as from surroundings of the air's own temperature.
   /// Source: LOWTRAN 7 without multiple scattering (Kneizys et al. 1988, AFGL-TR-88-0177). Valid: exact in a world of one temperature (Kirchhoff) and
-  /// for what only absorbs; where much is scattered under a cold sky the air comes out too bright, by at most the scattered share.
+  /// for what only absorbs; what it differs by under a cold sky is light scattered again (sim/radiance/diffuse_light.hpp).
   void emitted(std::span<const double> source, std::span<double> radiance) const;
 };
 

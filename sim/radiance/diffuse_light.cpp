@@ -166,7 +166,6 @@ NodeDiffuse::NodeDiffuse(std::shared_ptr<const DiffuseLight> light, std::span<co
     return;
   }
   Fingerprint f;
-  f.add(static_cast<double>(light_->key()[0] >> 11)).add(static_cast<double>(light_->key()[1] >> 11));
   for (const SpectralNode& n : nodes) f.all(n.members);
   const ContentKey key = contentKey(f.bytes(), light_->key());
   if (read(key)) return;
