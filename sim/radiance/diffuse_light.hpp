@@ -3,7 +3,8 @@
 //
 // Law: per optical depth of scattering, what is turned into a line is sum of chi_l (2 l + 1) / (4 pi) cos(m phi) Lambda_lm(mu) M_lm(height) with the
 //   moments M of level layers over level ground (adding_doubling.hpp), under a sun whose way to each height is that through spheres (pseudo-spherical).
-//   The source of air is then (1 - w) B + w <L> in full: thermal light too is scattered in from a sky that is colder, and ground that is warmer or colder, than the air.
+//   The source of air is then (1 - w) B + w <L> in full: thermal light too is scattered in from a sky that is colder, and from
+//   ground that is warmer or colder, than the air.
 // Source: Dahlback and Stamnes 1991, Planet. Space Sci. 39, 671 (the sun's way); Chandrasekhar 1960 (the formal solution along the line itself).
 // Valid: air that does not end sideways, ground of one kind, evenly sending (Lambert). Optical depths of bands are those of the column from space down.
 #include <map>
