@@ -106,23 +106,30 @@ LayeredOnGpu::Rows& LayeredOnGpu::rowsOf(const AirGrid& grid) {
 /// Those that it has not yet.
 void LayeredOnGpu::fill(Rows& rows, const AirGrid& grid) {
   const double radius = simulation_.frame.earthRadius_m(), horizon = grid.horizon(radius), lowest = grid.lowestHorizon(radius);
-  std::vector<std::pair<AirLine, AirRow*>> missing;
-  for (int a = 0; a < grid.azimuths; ++a)
-    for (int e = 0; e < grid.elevations; ++e) {
+  // By elevation: lines that differ in azimuth alone have most in common.
+  std::vector<std::vector<std::pair<AirLine, AirRow*>>> missing;
+  for (int e = 0; e < grid.elevations; ++e) {
+    std::vector<std::pair<AirLine, AirRow*>> own;
+    for (int a = 0; a < grid.azimuths; ++a) {
       AirLine line{grid.sineAt(e), grid.acrossAt(a), false};
       const auto [at, fresh] = rows.at.try_emplace(keyOf(line.across, line.sine));
       at->second.used = true;
       if (!fresh) continue;
       line.reachesSpace = !simulation_.ground || grid.sineAt(e + 1) >= lowest - kRoom;
       line.meetsHorizon = simulation_.ground && line.sine < horizon && grid.sineAt(e + 1) >= horizon;
-      missing.emplace_back(line, &at->second.row);
+      own.emplace_back(line, &at->second.row);
     }
+    if (!own.empty()) missing.push_back(std::move(own));
+  }
   if (missing.empty()) return;
   rows_.begin(grid);
   rows.black = rows_.black();
   std::atomic<size_t> next{0};
   auto work = [&] {
-    for (size_t n = next++; n < missing.size(); n = next++) *missing[n].second = rows_.at(missing[n].first);
+    for (size_t n = next++; n < missing.size(); n = next++) {
+      SameElevation known;
+      for (const auto& [line, row] : missing[n]) *row = rows_.at(line, &known);
+    }
   };
   std::vector<std::future<void>> others;
   for (unsigned t = 1; t < std::thread::hardware_concurrency(); ++t) others.push_back(std::async(std::launch::async, work));

@@ -68,10 +68,10 @@ double AirRows::cosScatterOf(const AirLine& line) const {
   return line.sine * grid_.places.sunSine + std::sqrt(std::max(1.0 - line.sine * line.sine, 0.0)) * line.across;
 }
 
-AirRow AirRows::at(const AirLine& line) const {
+AirRow AirRows::at(const AirLine& line, SameElevation* known) const {
   std::vector<double> places = stationsOf(line);
   if (!line.reachesSpace) places.erase(places.begin() + grid_.places.ranges, places.end() - 1);
-  AirRow row = at(line, places);
+  AirRow row = at(line, places, known);
   // The places between the scene and space have no entries.
   const auto keep = [&](std::vector<float>& all, size_t each) {
     const auto ranges = static_cast<std::ptrdiff_t>(static_cast<size_t>(grid_.places.ranges) * each);
@@ -93,7 +93,7 @@ void endOn(NodeRadiance& line, const NodeRadiance& horizon, size_t nodes) {
 
 }  // namespace
 
-AirRow AirRows::at(const AirLine& asked, std::span<const double> ranges) const {
+AirRow AirRows::at(const AirLine& asked, std::span<const double> ranges, SameElevation* known) const {
   const Atmosphere& path = *simulation_.air;
   const double height = grid_.places.height_m, radius = simulation_.frame.earthRadius_m();
   const auto lineAt = [&](double sine) {
@@ -103,10 +103,11 @@ AirRow AirRows::at(const AirLine& asked, std::span<const double> ranges) const {
     return SunlitAir(path, along, path.stationsAt(along, ranges), plan_.terms.scatteredSun ? plan_.sunLegs.get() : nullptr, sun);
   };
   const SunlitAir line = lineAt(asked.sine);
-  NodeRadiance sent = sentAlong(line);
+  NodeRadiance sent = sentAlong(line, known ? &known->sent : nullptr);
   // Below the horizon nothing is seen through the earth: between the last row there and the next the sky is mixed with that on the horizon.
   std::optional<SunlitAir> onHorizon;
-  if (asked.meetsHorizon && ranges.back() >= physics::kFar) endOn(sent, sentAlong(onHorizon.emplace(lineAt(grid_.horizon(radius)))), plan_.nodes.size());
+  if (asked.meetsHorizon && ranges.back() >= physics::kFar)
+    endOn(sent, sentAlong(onHorizon.emplace(lineAt(grid_.horizon(radius))), known ? &known->onHorizon : nullptr), plan_.nodes.size());
   AirRow row;
   row.amounts.reserve(ranges.size() * static_cast<size_t>(4 * vectors_));
   for (size_t r = 0; r < ranges.size(); ++r) {
@@ -123,8 +124,8 @@ AirRow AirRows::at(const AirLine& asked, std::span<const double> ranges) const {
 }
 
 /// Emission as what it differs from that of air of one temperature, which the shader works out by the pixel's own depth.
-NodeRadiance AirRows::sentAlong(const SunlitAir& line) const {
-  NodeRadiance sent = air_.along(line);
+NodeRadiance AirRows::sentAlong(const SunlitAir& line, SameWay* known) const {
+  NodeRadiance sent = air_.along(line, known);
   const std::vector<double> lost = lostOf(sent.depth);
   for (size_t at = 0; at < lost.size(); ++at) sent.thermal[at] -= black_[at % black_.size()] * lost[at];
   return sent;

@@ -16,6 +16,11 @@ struct AirLine {
   bool reachesSpace = true;   ///< false: nothing is asked of it beyond the grid's ranges, its last entry says nothing
 };
 
+/// Of lines of the same elevation one after the other, all but what depends on the azimuth.
+struct SameElevation {
+  SameWay sent, onHorizon;
+};
+
 /// Entries by range.
 struct AirRow {
   std::vector<float> amounts;  ///< [range][4 x vectors]: ln of the mean per km; at the first the density there, to space of all
@@ -30,9 +35,9 @@ class AirRows {
   /// Rows are of this grid from here on.
   void begin(const AirGrid& grid);
   /// An entry for each of the grid's ranges, space last. May be called from several threads at once, as may the others.
-  AirRow at(const AirLine& line) const;
+  AirRow at(const AirLine& line, SameElevation* known = nullptr) const;
   /// Of ranges rising from stationsOf().front() on [m].
-  AirRow at(const AirLine& line, std::span<const double> ranges_m) const;
+  AirRow at(const AirLine& line, std::span<const double> ranges_m, SameElevation* known = nullptr) const;
   /// The ranges that at(line) looks at [m]: from where the air begins, as far as space.
   std::vector<double> stationsOf(const AirLine& line) const { return grid_.rangesFrom(entryOf(line.sine)); }
   double cosScatterOf(const AirLine& line) const;
@@ -47,7 +52,7 @@ class AirRows {
   const std::vector<double>& asymmetries() const { return asymmetry_; }
 
  private:
-  NodeRadiance sentAlong(const SunlitAir& line) const;
+  NodeRadiance sentAlong(const SunlitAir& line, SameWay* known) const;
   void writeRadiance(const NodeRadiance& sent, double cosScatter, AirRow& row) const;
   double entryOf(double sine) const;
   std::vector<double> asymmetriesOf() const;

@@ -49,7 +49,7 @@ double DiffuseOnGrids::at(const FineGrid& grid, size_t i, const Place& place, si
   const auto [at, isNew] = own->turned.try_emplace(place);
   TurnedLight& t = at->second;
   DiffuseMemory memory;
-  if (isNew) own->light->at(place.height_m, place.sine, place.cosAzimuth, true, memory, t);
+  if (isNew) own->light->at(place.height_m, place.sine, place.cosAzimuth, {}, memory, t);
   const AirNode& air = grid.air[i];
   const double black = place.temperature_K > 0.0 ? physics::planckRadiance(grid.wavelength_um[i], place.temperature_K) : 0.0;
   const double sun = light_->sunlit() ? own->irradiance[i] : 0.0;

@@ -73,6 +73,14 @@ double shortestOf(const std::vector<const ChannelOutput*>& slots) {
   return shortest_um;
 }
 
+/// What of the accuracy light from all around and light scattered again leave to a slot.
+double leftOf(const Plan& plan, size_t slot) {
+  const auto lostBy = [&](const std::vector<double>& all, const Account& account) {
+    return all.empty() ? 0.0 : std::min(all[slot], account.of(plan.accuracy));
+  };
+  return plan.accuracy - lostBy(plan.surroundingsLoss, budget::kSurroundings) - lostBy(plan.streamsLoss, budget::kStreams);
+}
+
 size_t mostOf(const std::vector<std::vector<size_t>>& families) {
   size_t most = 0;
   for (const auto& f : families) most = std::max(most, f.size());
@@ -119,8 +127,9 @@ PlanFits::PlanFits(const Simulation& simulation, const Eye& eye, const Plan& pla
   for (const auto& family : slots_) {
     all.push_back(fits_.size());
     std::vector<const Spectrum*> kernels;
-    for (size_t s : family) kernels.push_back(&slots[s]->kernel);
-    fits_.push_back(std::make_unique<ChannelFit>(simulation, kernels, plan.accuracy));
+    double left = plan.accuracy;
+    for (size_t s : family) kernels.push_back(&slots[s]->kernel), left = std::min(left, leftOf(plan, s));
+    fits_.push_back(std::make_unique<ChannelFit>(simulation, kernels, left));
   }
   sights_.begin(effortOf(plan.accuracy).first, eye.camera ? eye.camera->learnt : std::vector<FilmPlace>());
   tell_(0.1);
@@ -167,8 +176,9 @@ void PlanFits::teach(const CheckedLines& checked, const std::vector<size_t>& fit
 void PlanFits::hold(const std::vector<size_t>& fits) {
   std::vector<size_t> open = fits;
   std::vector<double> before(fits_.size(), INFINITY);
-  const double held = budget::kHeld.share * (sim_.fields.empty() ? 1.0 : 1.0 - budget::kFields.share) * plan_.accuracy;
-  const std::vector<double> allowed(floor_.size(), held);
+  std::vector<double> allowed;
+  for (size_t s = 0; s < floor_.size(); ++s)
+    allowed.push_back(budget::kHeld.share * (sim_.fields.empty() ? 1.0 : 1.0 - budget::kFields.share) * leftOf(plan_, s));
   for (int attempt = 0;; ++attempt) {
     for (int n = 0; n < kChecks && !open.empty(); ++n) {
       tell_(0.5 + 0.5 * (attempt + static_cast<double>(n) / kChecks) / (kLearn + 1));
@@ -185,8 +195,9 @@ void PlanFits::hold(const std::vector<size_t>& fits) {
     open.clear();
     for (size_t f : fits) {
       double largest = 0.0;
-      for (size_t s : slots_[f]) largest = std::max(largest, seen.figures[s].largest);
-      if (largest <= held || before[f] == 0.0) continue;
+      bool isHeld = true;
+      for (size_t s : slots_[f]) largest = std::max(largest, seen.figures[s].largest), isHeld &= seen.figures[s].largest <= allowed[s];
+      if (isHeld || before[f] == 0.0) continue;
       if (largest > kHopeless * before[f]) {
         fits_[f]->goBack();
         before[f] = 0.0;

@@ -43,57 +43,86 @@ struct Beam {
   std::vector<double> at;     ///< irradiance on a plane that faces it
 };
 
+/// Directions of most light there is: known to the compiler.
+constexpr int kUsual = 4;
+/// Room for so many without asking for memory; more are rare, and slow.
+constexpr int kFew = 12;
+
 /// Products and inverses of small matrices, in loops whose length is known. Those inverted here are 1 - R R and the like of light that is sent to and fro, or 1
 /// and something positive: their diagonal leads, and no pivot needs to be looked for.
+template <int n>
+void multiply(const double* a, const double* b, double* out) {
+  for (int j = 0; j < n; ++j) {
+    double sum[n] = {};
+    for (int k = 0; k < n; ++k)
+      for (int i = 0; i < n; ++i) sum[i] += a[k * n + i] * b[j * n + k];
+    for (int i = 0; i < n; ++i) out[j * n + i] = sum[i];
+  }
+}
+/// Gauss and Jordan's way, in place.
+template <int n>
+void invert(double* a) {
+  for (int k = 0; k < n; ++k) {
+    const double pivot = 1.0 / a[k * n + k];
+    a[k * n + k] = 1.0;
+    for (int i = 0; i < n; ++i) a[k * n + i] *= pivot;
+    for (int j = 0; j < n; ++j) {
+      if (j == k) continue;
+      const double factor = a[j * n + k];
+      a[j * n + k] = 0.0;
+      for (int i = 0; i < n; ++i) a[j * n + i] -= factor * a[k * n + i];
+    }
+  }
+}
 template <class Square>
 Square times(const Square& a, const Square& b) {
-  if constexpr (Square::RowsAtCompileTime <= 4) {  // or unknown
-    return a * b;
-  } else {
-    constexpr int n = Square::RowsAtCompileTime;
-    Square out;
-    for (int j = 0; j < n; ++j) {
-      double sum[n] = {};
-      for (int k = 0; k < n; ++k)
-        for (int i = 0; i < n; ++i) sum[i] += a.data()[k * n + i] * b.data()[j * n + k];
-      for (int i = 0; i < n; ++i) out.data()[j * n + i] = sum[i];
-    }
+  Square out(a.rows(), a.cols());
+  if constexpr (Square::RowsAtCompileTime == kUsual) {
+    out.noalias() = a * b;
     return out;
   }
+  switch (a.rows()) {
+    case 6:
+      multiply<6>(a.data(), b.data(), out.data());
+      break;
+    case 8:
+      multiply<8>(a.data(), b.data(), out.data());
+      break;
+    case 12:
+      multiply<12>(a.data(), b.data(), out.data());
+      break;
+    default:
+      out.noalias() = a.lazyProduct(b);
+  }
+  return out;
 }
 template <class Square>
-Square inverseOf(const Square& of) {
-  if constexpr (Square::RowsAtCompileTime == Eigen::Dynamic) {
-    return of.partialPivLu().inverse();
-  } else if constexpr (Square::RowsAtCompileTime <= 4) {
-    return of.inverse();
-  } else {
-    constexpr int n = Square::RowsAtCompileTime;
-    Square out = of;  // Gauss and Jordan's way, in place
-    double* a = out.data();
-    for (int k = 0; k < n; ++k) {
-      const double pivot = 1.0 / a[k * n + k];
-      a[k * n + k] = 1.0;
-      for (int i = 0; i < n; ++i) a[k * n + i] *= pivot;
-      for (int j = 0; j < n; ++j) {
-        if (j == k) continue;
-        const double factor = a[j * n + k];
-        a[j * n + k] = 0.0;
-        for (int i = 0; i < n; ++i) a[j * n + i] -= factor * a[k * n + i];
-      }
-    }
-    return out;
+Square inverseOf(Square of) {
+  if constexpr (Square::RowsAtCompileTime == kUsual) return of.inverse();
+  switch (of.rows()) {
+    case 6:
+      invert<6>(of.data());
+      break;
+    case 8:
+      invert<8>(of.data());
+      break;
+    case 12:
+      invert<12>(of.data());
+      break;
+    default:
+      return Eigen::MatrixXd(of).partialPivLu().inverse();
   }
+  return of;
 }
 
-/// One azimuth term of all layers. N: number of directions, or Eigen::Dynamic.
-template <int N>
+/// One azimuth term of all layers. Count, Most: of directions, or Eigen::Dynamic.
+template <int Count, int Most>
 class Mode {
  public:
-  using Square = Eigen::Matrix<double, N, N>;
-  using Column = Eigen::Matrix<double, N, 1>;
-  using Row = Eigen::Matrix<double, 1, N>;
-  using Pair = Eigen::Matrix<double, N, 2>;  ///< of the sun, thermal
+  using Square = Eigen::Matrix<double, Count, Count, 0, Most, Most>;
+  using Column = Eigen::Matrix<double, Count, 1, 0, Most, 1>;
+  using Row = Eigen::Matrix<double, 1, Count, Eigen::RowMajor, 1, Most>;
+  using Pair = Eigen::Matrix<double, Count, 2, 0, Most, 2>;  ///< of the sun, thermal
 
   Mode(const PlaneLayers& layers, const std::vector<Scaled>& scaled, const Beam& beam, int m, const Streams& streams, std::span<const double> sines,
        std::span<const double> weights)
@@ -238,7 +267,7 @@ class Mode {
       return;
     }
     Column u = Column::Zero(count_);
-    if (above != below) u = (inverseSines() - parity(s, 1)).partialPivLu().solve(Column::Constant(count_, (below - above) / s.depth));
+    if (above != below) u = Eigen::MatrixXd(inverseSines() - parity(s, 1)).partialPivLu().solve(Eigen::VectorXd::Constant(count_, (below - above) / s.depth));
     const Column downAbove = Column::Constant(count_, above) - u, upBelow = Column::Constant(count_, below) + u;
     out.up.col(1) = Column::Constant(count_, above) + u - out.back * downAbove - out.through * upBelow;
     out.down.col(1) = Column::Constant(count_, below) - u - out.through * downAbove - out.back * upBelow;
@@ -271,14 +300,14 @@ class Mode {
   double thin_;
   Eigen::Index count_;
   Column sine_, weight_;
-  Eigen::Matrix<double, N, Eigen::Dynamic> lambda_;
+  Eigen::MatrixXd lambda_;
   std::vector<double> sun_;
   std::vector<Layer> own_;
   std::vector<Square> between_, below_;
   std::vector<Pair> fromBelow_;
 };
 
-template <int N>
+template <int Count, int Most>
 void runModes(const PlaneLayers& layers, const std::vector<Scaled>& scaled, const Beam& beam, const Streams& streams, std::span<const double> weights,
               LayerLight& out) {
   const int azimuths = layers.irradiance > 0.0 ? out.shape.azimuths : 1;
@@ -286,7 +315,7 @@ void runModes(const PlaneLayers& layers, const std::vector<Scaled>& scaled, cons
   // Terms fall as powers of the phase function's moments: after two that are faint beside the mean all are.
   int faint = 0;
   for (int m = 0; m < azimuths && faint < 2; ++m) {
-    Mode<N>(layers, scaled, beam, m, streams, out.sines, weights).run(out);
+    Mode<Count, Most>(layers, scaled, beam, m, streams, out.sines, weights).run(out);
     bool matters = m < 2;
     for (std::size_t k = 0; k < edges && !matters; ++k)
       for (int l = m; l < out.shape.streams && !matters; ++l)
@@ -354,25 +383,9 @@ LayerLight lightIn(const PlaneLayers& given, const Streams& streams) {
   for (auto* v : {&out.solarUp, &out.solarDown}) v->assign(edges * azimuths * directions, 0.0);
   for (auto* v : {&out.thermalUp, &out.thermalDown}) v->assign(edges * directions, 0.0);
   for (auto* v : {&out.fluxUp, &out.fluxDown}) v->assign(edges, 0.0);
-  switch (directions) {
-    case 2:
-      runModes<2>(given, layers, beam, streams, weights, out);
-      break;
-    case 4:
-      runModes<4>(given, layers, beam, streams, weights, out);
-      break;
-    case 6:
-      runModes<6>(given, layers, beam, streams, weights, out);
-      break;
-    case 8:
-      runModes<8>(given, layers, beam, streams, weights, out);
-      break;
-    case 12:
-      runModes<12>(given, layers, beam, streams, weights, out);
-      break;
-    default:
-      runModes<Eigen::Dynamic>(given, layers, beam, streams, weights, out);
-  }
+  if (directions == kUsual) runModes<kUsual, kUsual>(given, layers, beam, streams, weights, out);
+  else if (directions <= kFew) runModes<Eigen::Dynamic, kFew>(given, layers, beam, streams, weights, out);
+  else runModes<Eigen::Dynamic, Eigen::Dynamic>(given, layers, beam, streams, weights, out);
   // What goes on nearly as the sun does counts as the sun's within the layers; it is no less light that is turned and that falls.
   if (!(given.irradiance > 0.0)) return out;
   for (std::size_t k = 0; k < edges; ++k) (given.sunSine > 0.0 ? out.fluxDown : out.fluxUp)[k] += std::abs(given.sunSine) * (beam.at[k] - bare[k]);

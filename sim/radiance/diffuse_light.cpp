@@ -21,6 +21,8 @@ constexpr double kHeights_m[] = {0.0, 100.0, 250.0, 500.0, 750.0, 1000.0, 1250.0
 constexpr double kDeepest = 0.12;
 /// The sun is no longer seen by any air.
 constexpr double kNight = -0.35;
+/// What the sun would send evenly from all sides, as part of what a black body of the lowest air's temperature sends.
+constexpr double kUnseenSun = 0.005;
 /// First thin layer, as Streams::thin: 8e-5 of the flattest stream.
 constexpr double kThin = 0.03;
 /// Of the phase function.
@@ -50,12 +52,11 @@ PITVIPER_WIDE void addTimes(const double* row, double factor, int count, double*
   for (int i = 0; i < count; ++i) into[i] += factor * row[i];
 }
 
-/// By how many directions light is told of so many streams: what streams lose falls to a tenth.
+/// By how many directions light is told of so many streams, and how often: what streams lose falls to a tenth, then to half each time.
 FineDirections directionsFor(int streams) {
-  if (streams <= 4) return {8, 10, 8};
-  if (streams <= 8) return {14, 16, 12};
-  if (streams <= 12) return {16, 20, 12};
-  return {24, 24, 16};
+  if (streams <= 4) return {8, 10, 8, 2};
+  if (streams <= 8) return {16, 20, 12, 3};
+  return {24, 24, 16, 2};
 }
 
 }  // namespace
@@ -135,7 +136,10 @@ DiffuseLight::Moments DiffuseLight::made(double um) const {
       layer.moments.push_back((molecules * (l == 0 ? 1.0 : l == 2 ? 0.1 : 0.0) + haze * power) / both);
     layers.layers.push_back(std::move(layer));
   }
-  if (legs_) {
+  // Where air's own light is more than a hundred times the sun's, nobody sees what it scatters of that more than once.
+  const double sun = legs_ ? column_.sun->irradiance(um) : 0.0;
+  const bool isSunlit = sun > kUnseenSun * 4.0 * kPi * black.front();
+  if (isSunlit) {
     layers.sunSine = column_.sun->toSun.z;
     layers.irradiance = 1.0;
     for (std::size_t k = count; k-- > 0;) layers.sunDepth.push_back(risen_[k] > 0.0 ? Atmosphere::depthOf(n, toSun_[k]) - std::log(risen_[k]) : INFINITY);
@@ -145,17 +149,18 @@ DiffuseLight::Moments DiffuseLight::made(double um) const {
     layers.groundEmission = column_.ground->emissivity(um, 0.0) * physics::planckRadiance(um, column_.ground_K);
   }
   layers.spaceRadiance = column_.background(um);
-  const LayerLight light = finer(layers, lightIn(layers, {streams_, legs_ ? streams_ : 1, kThin}), fine_);
+  const LayerLight light = finer(layers, lightIn(layers, {streams_, isSunlit ? streams_ : 1, kThin}), fine_);
   // From the ground up.
   Moments out;
   for (std::size_t k = 0; k < kMostAirAmounts; ++k) out.molecules += n.molecules[k], out.haze += n.haze[k];
   out.asymmetry = n.asymmetry;
-  out.irradiance = legs_ ? column_.sun->irradiance(um) : 0.0;
+  out.irradiance = sun;
   for (std::size_t k = count; k-- > 0;) {
     const auto solar = light.solarAt(k), thermal = light.thermalAt(k);
-    if (legs_) out.solar.insert(out.solar.end(), solar.begin(), solar.end());
+    if (isSunlit) out.solar.insert(out.solar.end(), solar.begin(), solar.end());
     out.thermal.insert(out.thermal.end(), thermal.begin(), thermal.end());
   }
+  if (legs_ && !isSunlit) out.solar.assign(count * static_cast<std::size_t>(shape_.moments()), 0.0);
   return out;
 }
 
@@ -215,103 +220,124 @@ NodeDiffuse::Part NodeDiffuse::partOf(std::span<const SpectralNode> nodes, bool 
   for (int m = 0; m < (solar ? shape.azimuths : 1); ++m)
     for (int l = m; l < shape.streams; ++l)
       if (haze || l == 0 || l == 2) moments.push_back(static_cast<std::size_t>(shape.at(l, m))), degrees.push_back(l);
-  // [moment][height][node], means over the members of each node by what they scatter, and of sunlight by what there is of it.
-  std::vector<double> all(moments.size() * heights * nodes_, 0.0);
+  // Of each node [height][moment]: means over its members by what they scatter, and of sunlight by what there is of it.
+  const std::size_t count = moments.size();
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(heights * count), static_cast<Eigen::Index>(nodes_));
+  std::vector<double> phase(static_cast<std::size_t>(shape.streams)), weight(count);
   for (std::size_t i = 0; i < nodes_; ++i) {
     double sum = 0.0, light = 0.0;
     for (const auto& m : nodes[i].members) {
       const DiffuseLight::Moments& own = light_->at(m.wavelength_um);
-      const double scatters = m.share * (haze ? own.haze : own.molecules);
-      sum += scatters, light += m.share * own.irradiance;
+      sum += m.share * (haze ? own.haze : own.molecules), light += m.share * own.irradiance;
     }
+    double* into = all.col(static_cast<Eigen::Index>(i)).data();
     for (const auto& m : nodes[i].members) {
       const DiffuseLight::Moments& own = light_->at(m.wavelength_um);
       double part = sum > 0.0 ? m.share * (haze ? own.haze : own.molecules) / sum : m.share;
       if (solar) part *= light > 0.0 ? own.irradiance / light : 0.0;
-      const std::vector<double>& of = solar ? own.solar : own.thermal;
-      for (std::size_t k = 0; k < moments.size(); ++k) {
-        const double weight = part * (haze ? std::pow(own.asymmetry, degrees[k]) : degrees[k] == 0 ? 1.0 : 0.1);
-        for (std::size_t h = 0; h < heights; ++h) all[(k * heights + h) * nodes_ + i] += weight * of[h * each + moments[k]];
-      }
+      if (part == 0.0) continue;
+      double power = 1.0;
+      for (std::size_t l = 0; l < phase.size(); ++l, power *= own.asymmetry) phase[l] = haze ? power : l == 0 ? 1.0 : 0.1;
+      for (std::size_t k = 0; k < count; ++k) weight[k] = part * phase[static_cast<std::size_t>(degrees[k])];
+      const double* of = (solar ? own.solar : own.thermal).data();
+      for (std::size_t h = 0; h < heights; ++h)
+        for (std::size_t k = 0; k < count; ++k) into[h * count + k] += weight[k] * of[h * each + moments[k]];
     }
   }
+  const auto at = [&](std::size_t h, std::size_t k) { return all.row(static_cast<Eigen::Index>(h * count + k)); };
   Part part;
   std::vector<std::size_t> kept;
-  for (std::size_t k = 0; k < moments.size(); ++k) {
+  for (std::size_t k = 0; k < count; ++k) {
     bool matters = k == 0 || told_ == Nodes::Apart;
-    for (std::size_t n = 0; n < heights * nodes_ && !matters; ++n)
-      matters = (2.0 * degrees[k] + 1.0) * std::abs(all[k * heights * nodes_ + n]) > kFaint * std::abs(all[n]);
+    for (std::size_t h = 0; h < heights && !matters; ++h) matters = ((2.0 * degrees[k] + 1.0) * at(h, k).array().abs() > kFaint * at(h, 0).array().abs()).any();
     if (matters) kept.push_back(k), part.moments.push_back(static_cast<int>(moments[k]));
   }
+  const auto size = static_cast<Eigen::Index>(heights * kept.size());
+  Eigen::MatrixXd light(size, all.cols());
+  for (std::size_t h = 0; h < heights; ++h)
+    for (std::size_t j = 0; j < kept.size(); ++j) light.row(static_cast<Eigen::Index>(h * kept.size() + j)) = at(h, kept[j]);
   if (told_ == Nodes::Apart) {
-    for (std::size_t h = 0; h < heights; ++h)
-      for (std::size_t k = 0; k < kept.size(); ++k) {
-        const auto from = all.begin() + static_cast<std::ptrdiff_t>((k * heights + h) * nodes_);
-        part.share.insert(part.share.end(), from, from + static_cast<std::ptrdiff_t>(nodes_));
-      }
+    part.share.resize(static_cast<std::size_t>(size) * nodes_);
+    Eigen::Map<Eigen::MatrixXd>(part.share.data(), light.cols(), size) = light.transpose();
     return part;
   }
-  // Of each node one column; the one that is told worst becomes a pattern, until none is told badly (Gram and Schmidt with pivots).
-  const std::size_t size = heights * kept.size();
-  Eigen::MatrixXd light(static_cast<Eigen::Index>(size), static_cast<Eigen::Index>(nodes_));
-  for (std::size_t h = 0; h < heights; ++h)
-    for (std::size_t j = 0; j < kept.size(); ++j)
-      for (std::size_t i = 0; i < nodes_; ++i)
-        light(static_cast<Eigen::Index>(h * kept.size() + j), static_cast<Eigen::Index>(i)) = all[(kept[j] * heights + h) * nodes_ + i];
-  Eigen::MatrixXd left = light;
-  for (Eigen::Index i = 0; i < left.cols(); ++i)
-    if (const double norm = left.col(i).norm(); norm > 0.0) left.col(i) /= norm;
+  // Of each node one column; the one that is told worst becomes a pattern, until none is told badly (Gram and Schmidt with pivots). What patterns leave of
+  // a column is followed by its square alone.
+  Eigen::RowVectorXd scale = light.colwise().norm();
+  for (double& s : scale) s = s > 0.0 ? 1.0 / s : 0.0;
+  Eigen::RowVectorXd left = (light.colwise().squaredNorm().array() * scale.array().square()).matrix();
   std::vector<Eigen::VectorXd> patterns;
-  while (static_cast<Eigen::Index>(patterns.size()) < std::min(left.rows(), left.cols())) {
+  while (static_cast<Eigen::Index>(patterns.size()) < std::min(size, light.cols())) {
     Eigen::Index worst = 0;
-    const double most = left.colwise().norm().maxCoeff(&worst);
-    if (most <= kLeftOut) break;
-    patterns.emplace_back(left.col(worst) / most);
-    const Eigen::RowVectorXd along = patterns.back().transpose() * left;
-    left.noalias() -= patterns.back() * along;
+    if (left.maxCoeff(&worst) <= kLeftOut * kLeftOut) break;
+    Eigen::VectorXd p = light.col(worst) * scale[worst];
+    for (int again = 0; again < 2; ++again)
+      for (const Eigen::VectorXd& q : patterns) p -= q * q.dot(p);
+    const double norm = p.norm();
+    left[worst] = 0.0;
+    if (!(norm > kLeftOut)) continue;
+    patterns.emplace_back(p / norm);
+    const Eigen::RowVectorXd shares = patterns.back().transpose() * light;
+    part.share.insert(part.share.end(), shares.begin(), shares.end());
+    left.array() = (left.array() - (shares.array() * scale.array()).square()).max(0.0);
   }
   part.patterns = patterns.size();
-  for (std::size_t n = 0; n < size; ++n)
-    for (const Eigen::VectorXd& p : patterns) part.pattern.push_back(p[static_cast<Eigen::Index>(n)]);
-  for (const Eigen::VectorXd& p : patterns) {
-    const Eigen::RowVectorXd shares = p.transpose() * light;
-    part.share.insert(part.share.end(), shares.begin(), shares.end());
-  }
+  part.pattern.resize(static_cast<std::size_t>(size) * part.patterns);
+  for (std::size_t n = 0; n < static_cast<std::size_t>(size); ++n)
+    for (std::size_t k = 0; k < part.patterns; ++k) part.pattern[n * part.patterns + k] = patterns[k][static_cast<Eigen::Index>(n)];
   return part;
 }
 
-void NodeDiffuse::tellEdge(std::size_t edge, double sine, double cosAzimuth, bool sunlit, DiffuseMemory::Edge& into) const {
-  if (std::abs(into.sine - sine) <= kSameDirection && std::abs(into.cosAzimuth - cosAzimuth) <= kSameDirection && into.sunlit >= sunlit) return;
-  into.sine = sine, into.cosAzimuth = cosAzimuth, into.sunlit = sunlit;
-  std::vector<double> turned(static_cast<std::size_t>(light_->shape().moments()));
-  // Light goes the other way than the line.
-  turnedTo(-sine, cosAzimuth, light_->shape(), turned);
+void NodeDiffuse::tellEdge(std::size_t edge, double sine, double cosAzimuth, Of of, DiffuseMemory::Edge& into) const {
+  const auto holds = [&](const DiffuseMemory::Terms& t, double room) { return std::abs(t.sine - sine) <= room && t.sun >= of.sun && t.thermal >= of.thermal; };
+  const bool isHere = into.here < into.told.size() && holds(into.told[into.here], kSameDirection);
+  if (isHere && std::abs(into.cosAzimuth - cosAzimuth) <= kSameDirection) return;
+  const LayerLight::Shape shape = light_->shape();
   const std::array<const Part*, 4> all{&thermalByMolecules_, &thermalByHaze_, &solarByMolecules_, &solarByHaze_};
-  for (std::size_t n = 0; n < (sunlit ? 4 : 2); ++n) {
-    const Part& part = *all[n];
-    if (told_ == Nodes::Apart) {
-      into.of[n].assign(nodes_, 0.0);
-      for (std::size_t k = 0; k < part.moments.size(); ++k)
-        addTimes(part.share.data() + (edge * part.moments.size() + k) * nodes_, turned[static_cast<std::size_t>(part.moments[k])], static_cast<int>(nodes_),
-                 into.of[n].data());
-      continue;
+  const auto widthOf = [&](const Part& part) { return told_ == Nodes::Apart ? nodes_ : part.patterns; };
+  if (!isHere) {
+    const auto known = std::find_if(into.told.begin(), into.told.end(), [&](const auto& t) { return holds(t, 0.0); });
+    into.here = static_cast<std::size_t>(known - into.told.begin());
+    if (known == into.told.end()) {
+      DiffuseMemory::Terms& terms = into.told.emplace_back();
+      terms.sine = sine, terms.sun = of.sun, terms.thermal = of.thermal;
+      std::vector<double> turned(static_cast<std::size_t>(shape.moments()));
+      // Light goes the other way than the line.
+      turnedTo(-sine, 1.0, shape, turned);
+      for (std::size_t n = of.thermal ? 0 : 2; n < (of.sun ? 4 : 2); ++n) {
+        const Part& part = *all[n];
+        const std::size_t width = widthOf(part);
+        const double* rows = (told_ == Nodes::Apart ? part.share : part.pattern).data() + edge * part.moments.size() * width;
+        terms.of[n].assign(width * static_cast<std::size_t>(n < 2 ? 1 : shape.azimuths), 0.0);
+        int m = 0;
+        for (std::size_t k = 0; k < part.moments.size(); ++k) {
+          while (n >= 2 && m + 1 < shape.azimuths && part.moments[k] >= shape.at(m + 1, m + 1)) ++m;
+          addTimes(rows + k * width, turned[static_cast<std::size_t>(part.moments[k])], static_cast<int>(width),
+                   terms.of[n].data() + static_cast<std::size_t>(m) * width);
+        }
+      }
     }
-    into.of[n].assign(part.patterns, 0.0);
-    for (std::size_t k = 0; k < part.moments.size(); ++k)
-      addTimes(part.pattern.data() + (edge * part.moments.size() + k) * part.patterns, turned[static_cast<std::size_t>(part.moments[k])],
-               static_cast<int>(part.patterns), into.of[n].data());
+  }
+  into.cosAzimuth = cosAzimuth;
+  const double azimuth = std::acos(std::clamp(cosAzimuth, -1.0, 1.0));
+  for (std::size_t n = of.thermal ? 0 : 2; n < (of.sun ? 4 : 2); ++n) {
+    const std::size_t width = widthOf(*all[n]);
+    into.of[n].assign(width, 0.0);
+    const std::vector<double>& terms = into.told[into.here].of[n];
+    for (std::size_t m = 0; m * width < terms.size(); ++m)
+      addTimes(terms.data() + m * width, std::cos(static_cast<double>(m) * azimuth), static_cast<int>(width), into.of[n].data());
   }
 }
 
-void NodeDiffuse::at(double height_m, double sine, double cosAzimuth, bool sunlit, DiffuseMemory& memory, TurnedLight& out) const {
+void NodeDiffuse::at(double height_m, double sine, double cosAzimuth, Of of, DiffuseMemory& memory, TurnedLight& out) const {
   const std::vector<double>& heights = light_->heights_m();
   const auto above = static_cast<std::size_t>(
       std::clamp<std::ptrdiff_t>(std::upper_bound(heights.begin(), heights.end(), height_m) - heights.begin(), 1, std::ssize(heights) - 1));
   const double low = heights[above - 1], high = heights[above];
   const double share = std::clamp((height_m - low) / (high - low), 0.0, 1.0);
-  sunlit = sunlit && light_->sunlit();
+  of.sun = of.sun && light_->sunlit();
   memory.edges.resize(heights.size());
-  for (std::size_t edge : {above - 1, above}) tellEdge(edge, sine, cosAzimuth, sunlit, memory.edges[edge]);
+  for (std::size_t edge : {above - 1, above}) tellEdge(edge, sine, cosAzimuth, of, memory.edges[edge]);
   const DiffuseMemory::Edge &below = memory.edges[above - 1], &over = memory.edges[above];
   const auto sum = [&](const Part& part, std::size_t n, std::vector<double>& into) {
     into.assign(nodes_, 0.0);
@@ -322,9 +348,8 @@ void NodeDiffuse::at(double height_m, double sine, double cosAzimuth, bool sunli
     for (std::size_t p = 0; p < part.patterns; ++p)
       addTimes(part.share.data() + p * nodes_, (1.0 - share) * below.of[n][p] + share * over.of[n][p], static_cast<int>(nodes_), into.data());
   };
-  sum(thermalByMolecules_, 0, out.thermalByMolecules);
-  sum(thermalByHaze_, 1, out.thermalByHaze);
-  if (!sunlit) return;
+  if (of.thermal) sum(thermalByMolecules_, 0, out.thermalByMolecules), sum(thermalByHaze_, 1, out.thermalByHaze);
+  if (!of.sun) return;
   sum(solarByMolecules_, 2, out.solarByMolecules);
   sum(solarByHaze_, 3, out.solarByHaze);
 }

@@ -71,12 +71,26 @@ class DiffuseLight {
 
 /// What light turned into a line is at the edges of layers: along a line directions hardly change. One for each thread.
 struct DiffuseMemory {
+  struct Terms {
+    double sine = 2.0;
+    bool thermal = false, sun = false;        ///< what is told
+    std::array<std::vector<double>, 4> of{};  ///< azimuth terms, each by pattern of each part, or by node
+  };
   struct Edge {
-    double sine = 2.0, cosAzimuth = 2.0;
-    bool sunlit = false;
-    std::array<std::vector<double>, 4> of{};  ///< by pattern of each part, or by node
+    std::vector<Terms> told{};
+    std::size_t here = SIZE_MAX;  ///< of these, that of the line
+    double cosAzimuth = 2.0;
+    std::array<std::vector<double>, 4> of{};
   };
   std::vector<Edge> edges{};
+  /// A line begins that goes through the same places as the one before, under another azimuth: what was told then is found again, in the same order.
+  void again() {
+    for (Edge& e : edges) e.here = SIZE_MAX;
+  }
+  /// Any line begins.
+  void forget() {
+    for (Edge& e : edges) e.told.clear(), e.here = SIZE_MAX;
+  }
 };
 
 /// What is turned into a line at a place, per optical depth of scattering by molecules or by haze, of each node [W/(m2 sr um)]; of the sun for an irradiance
@@ -94,13 +108,16 @@ class NodeDiffuse {
   enum class Nodes { Apart, Together, Kept };
   NodeDiffuse(std::shared_ptr<const DiffuseLight> light, std::span<const SpectralNode> nodes, Nodes told);
   bool sunlit() const { return light_->sunlit(); }
-  /// Where a line goes towards a sine of elevation, and its azimuth is so far from the sun's. `sunlit`: of the sun too, where it is there.
-  void at(double height_m, double sine, double cosAzimuth, bool sunlit, DiffuseMemory& memory, TurnedLight& out) const;
+  struct Of {
+    bool thermal = true, sun = true;  ///< the sun's where it is there
+  };
+  /// Where a line goes towards a sine of elevation, and its azimuth is so far from the sun's.
+  void at(double height_m, double sine, double cosAzimuth, Of of, DiffuseMemory& memory, TurnedLight& out) const;
 
  private:
   /// Moments of nodes, times what the phase function has of them, as sums of few patterns.
   struct Part {
-    std::vector<int> moments;     ///< of the light's shape, those that matter
+    std::vector<int> moments;     ///< of the light's shape, those that matter, by azimuth term
     std::size_t patterns = 0;     ///< 0: each node is told apart
     std::vector<double> pattern;  ///< [height][moment][pattern]
     std::vector<double> share;    ///< [pattern][node]; apart: [height][moment][node]
@@ -108,7 +125,7 @@ class NodeDiffuse {
   void make(std::span<const SpectralNode> nodes);
   bool read(const ContentKey& key);
   void write(const ContentKey& key) const;
-  void tellEdge(std::size_t edge, double sine, double cosAzimuth, bool sunlit, DiffuseMemory::Edge& into) const;
+  void tellEdge(std::size_t edge, double sine, double cosAzimuth, Of of, DiffuseMemory::Edge& into) const;
   std::array<Part*, 4> parts() { return {&thermalByMolecules_, &thermalByHaze_, &solarByMolecules_, &solarByHaze_}; }
   Part partOf(std::span<const SpectralNode> nodes, bool solar, bool haze) const;
   std::shared_ptr<const DiffuseLight> light_;

@@ -120,19 +120,19 @@ std::vector<double> lostOf(std::span<const double> x) {
 /// What is turned into a line at one station, and into a step between two of them.
 struct NodeAir::Again {
   TurnedLight near, far;
-  DiffuseMemory memory;
+  std::shared_ptr<DiffuseMemory> memory;
   Eigen::ArrayXXd small, large;  ///< depths of scattering by molecules and by haze, by station
   Eigen::ArrayXd bySmall, byLarge;
 
-  Again(const Tables& t, const SunlitAir& air, bool sunlit, Eigen::Index nodes)
-      : small(nodes, std::ssize(air.stations)), large(nodes, std::ssize(air.stations)) {
+  Again(const Tables& t, const SunlitAir& air, Eigen::Index nodes, std::shared_ptr<DiffuseMemory> known)
+      : memory(known ? std::move(known) : std::make_shared<DiffuseMemory>()), small(nodes, std::ssize(air.stations)), large(nodes, std::ssize(air.stations)) {
+    memory->again();
     weigh(t.molecules, air.powered, small);
     weigh(t.haze, air.powered, large);
-    if (t.diffuse) at(t, air, 0, sunlit, near);
   }
-  void at(const Tables& t, const SunlitAir& air, Eigen::Index s, bool sunlit, TurnedLight& out) {
+  void at(const Tables& t, const SunlitAir& air, Eigen::Index s, bool sunlit, bool thermal, TurnedLight& out) {
     const auto k = static_cast<size_t>(s);
-    t.diffuse->at(air.stations[k].height_m, air.sine[k], air.cosAzimuth, sunlit, memory, out);
+    t.diffuse->at(air.stations[k].height_m, air.sine[k], air.cosAzimuth, {thermal, sunlit}, *memory, out);
   }
   /// Shares of a step's depth that scatter.
   void step(Eigen::Index s, const Eigen::ArrayXd& d) {
@@ -143,16 +143,20 @@ struct NodeAir::Again {
 
 // Step by step by the law of a segment. Of sunlight scattered once molecules and haze have in common the mean of lit exp(-both) over a step, `both` the depth
 // from the eye to a place and on to the sun. Where one end of a step sees no sun, the other's depth holds for it.
-NodeRadiance NodeAir::along(const SunlitAir& air) const {
+NodeRadiance NodeAir::along(const SunlitAir& air, SameWay* way) const {
+  const bool isKnown = way && !way->depth.empty();
   const Tables& t = *tables_;
   const auto stations = static_cast<Eigen::Index>(air.stations.size()), nodes = t.source.size();
   const bool sunlit = !air.lit.empty();
   NodeRadiance out;
-  auto depth = sized(out.depth, nodes, stations), thermal = sized(out.thermal, nodes, stations);
-  weigh(t.extinction, air.powered, depth);
+  if (isKnown) out.depth = way->depth, out.thermal = way->thermal;
+  else sized(out.depth, nodes, stations), sized(out.thermal, nodes, stations);
+  Eigen::Map<Eigen::ArrayXXd> depth(out.depth.data(), nodes, stations), thermal(out.thermal.data(), nodes, stations);
+  if (!isKnown) weigh(t.extinction, air.powered, depth);
   std::optional<Again> again;
-  if (t.diffuse || sunlit) again.emplace(t, air, sunlit, nodes);
+  if (t.diffuse || sunlit) again.emplace(t, air, nodes, way ? way->turned : nullptr);
   const bool turns = t.diffuse && sunlit && t.diffuse->sunlit();
+  if (t.diffuse) again->at(t, air, 0, turns, !isKnown, again->near);
   if (sunlit) sized(out.molecules, nodes, stations), sized(out.haze, nodes, stations);
   if (turns) sized(out.again, nodes, stations);
   Eigen::Map<Eigen::ArrayXXd> molecules(out.molecules.data(), sunlit ? nodes : 0, sunlit ? stations : 0),
@@ -162,28 +166,31 @@ NodeRadiance NodeAir::along(const SunlitAir& air) const {
   for (Eigen::Index i = 0; i < hazePhase.size(); ++i) hazePhase[i] = hazeAgainPhase(air.cosScatter, t.nodes[static_cast<size_t>(i)].air.asymmetry);
   Eigen::ArrayXd seen, before, source, d = depth.col(0), left, lost(nodes), share, from, to;  // with room of their own for all steps
   leave(d, seen);
-  t.planck(air.stations[0].temperature_K, before);
-  before += t.source;
+  if (!isKnown) t.planck(air.stations[0].temperature_K, before), before += t.source;
   const auto send = [&](const Eigen::ArrayXd& near, const Eigen::ArrayXd& far, double scale, auto&& into) {
     for (Eigen::Index i = 0; i < nodes; ++i) into[i] += scale * seen[i] * physics::segmentRadiance(near[i], far[i], d[i], left[i], lost[i]);
   };
-  for (Eigen::Index s = 1; s < stations; ++s) {
+  for (Eigen::Index s = 1; s < stations && (turns || !isKnown); ++s) {
     d = (depth.col(s) - depth.col(s - 1)).max(0.0);
     leave(d, left);
     for (Eigen::Index i = 0; i < nodes; ++i) lost[i] = physics::lostOf(d[i], left[i]);
-    t.planck(air.stations[static_cast<size_t>(s)].temperature_K, source);
-    source += t.source;
-    thermal.col(s) = thermal.col(s - 1);
+    if (!isKnown) {
+      t.planck(air.stations[static_cast<size_t>(s)].temperature_K, source);
+      source += t.source;
+      thermal.col(s) = thermal.col(s - 1);
+    }
     if (!t.diffuse) {
       send(before, source, 1.0, thermal.col(s));
     } else {
       again->step(s, d);
-      again->at(t, air, s, turns, again->far);
+      again->at(t, air, s, turns, !isKnown, again->far);
       const auto of = [](const std::vector<double>& v) { return Eigen::Map<const Eigen::ArrayXd>(v.data(), std::ssize(v)); };
       const TurnedLight &near = again->near, &far = again->far;
-      from = before + again->bySmall * (of(near.thermalByMolecules) - before) + again->byLarge * (of(near.thermalByHaze) - before);
-      to = source + again->bySmall * (of(far.thermalByMolecules) - source) + again->byLarge * (of(far.thermalByHaze) - source);
-      send(from, to, 1.0, thermal.col(s));
+      if (!isKnown) {
+        from = before + again->bySmall * (of(near.thermalByMolecules) - before) + again->byLarge * (of(near.thermalByHaze) - before);
+        to = source + again->bySmall * (of(far.thermalByMolecules) - source) + again->byLarge * (of(far.thermalByHaze) - source);
+        send(from, to, 1.0, thermal.col(s));
+      }
       if (turns) {
         molecules.col(s) = molecules.col(s - 1);
         from = again->bySmall * of(near.solarByMolecules), to = again->bySmall * of(far.solarByMolecules);
@@ -197,6 +204,7 @@ NodeRadiance NodeAir::along(const SunlitAir& air) const {
     seen *= left;
     before.swap(source);
   }
+  if (way && !isKnown) *way = {out.depth, out.thermal, again ? again->memory : nullptr};
   if (!sunlit) return out;
   Eigen::ArrayXXd both(nodes, stations);
   Eigen::ArrayXd nearest, reaching, once = Eigen::ArrayXd::Zero(nodes);

@@ -11,6 +11,7 @@
 namespace pitviper {
 
 class DiffuseLight;
+struct DiffuseMemory;
 
 /// [station x nodes + node], as far as each station [W/(m2 sr um)]. `thermal`: emission of all extinction (as AirLight::emitted) and AirNode::source, and what
 /// diffuse light of thermal sources adds or takes. Diffuse sunlight that molecules turn is with theirs, over their phase function at the
@@ -24,11 +25,18 @@ struct NodeRadiance {
 /// About how sunlight is spread that haze has turned twice: moments of both are multiplied. Sunlight turned more often over this changes evenly.
 inline double hazeAgainPhase(double cosScatter, double asymmetry) { return physics::henyeyGreensteinPhase(cosScatter, asymmetry * asymmetry); }
 
+/// What lines have in common that differ in their azimuth alone.
+struct SameWay {
+  std::vector<double> depth, thermal;
+  std::shared_ptr<DiffuseMemory> turned;
+};
+
 class NodeAir {
  public:
   /// The nodes must outlive it. `diffuse`: null: light is scattered once; `kept`: as NodeDiffuse has it.
   explicit NodeAir(std::span<const SpectralNode> nodes, std::shared_ptr<const DiffuseLight> diffuse = nullptr, bool kept = false);
-  NodeRadiance along(const SunlitAir& air) const;
+  /// `way`: of lines one after the other through the same places that differ in their azimuth to the sun alone; empty at the first.
+  NodeRadiance along(const SunlitAir& air, SameWay* way = nullptr) const;
   /// Radiance of a black body at every node [W/(m2 sr um)]; 0 at 0 K.
   std::vector<double> planck(double temperature_K) const;
 

@@ -107,7 +107,7 @@ NodeSum::NodeSum(const NodeSpectra& spectra) : spectra_(spectra), count_(spectra
 
 void NodeSum::begin() {
   radiance_.assign(count_, 0.0);
-  for (DiffuseMemory::Edge& e : memory_.edges) e.sine = 2.0;  // a line's figures are the same whichever was told before
+  memory_.forget();  // a line's figures are the same whichever was told before
   if (watchesOne()) ofEntity_.assign(count_, 0.0);
   isParted_ = false;
   if (keepsParts_) {
@@ -172,7 +172,7 @@ void NodeSum::place(const AirPlace& at, const Segment& of, const AirAmounts* bot
   }
   if (at.temperature_K > 0.0) spectra_.planck(at.temperature_K, out.black);
   else std::fill(out.black.begin(), out.black.end(), 0.0);
-  if (spectra_.diffuse() && !of.dark) spectra_.diffuse()->at(at.height_m, at.sine, of.cosAzimuth, of.sunlit, memory_, out.light);
+  if (spectra_.diffuse() && !of.dark) spectra_.diffuse()->at(at.height_m, at.sine, of.cosAzimuth, {true, of.sunlit}, memory_, out.light);
 }
 
 /// What is turned into a segment of light that came there by more than one way: of thermal light, what it differs by from that of air of one temperature.

@@ -56,8 +56,8 @@ class SkyAt {
   struct Sent {
     std::vector<double> radiance, depth;  ///< by wavelength; depth: of what it takes from what lies behind
   };
-  Sent along(const Sightline& line) const {
-    const NodeRadiance all = air_.along(line.air);
+  Sent along(const Sightline& line, SameWay* way = nullptr) const {
+    const NodeRadiance all = air_.along(line.air, way);
     const std::size_t last = (line.air.stations.size() - 1) * nodes_.size();
     const double rayleigh = physics::rayleighPhase(line.cosScatter);
     Sent sent;
@@ -121,8 +121,12 @@ class SkyAround final : public Surroundings {
     const std::vector<double> falls = groundIrradiance(um, sky);
     const int half = grid.azimuths / 2;
     std::vector<std::vector<double>> own(um.size()), all(um.size());
-    for (const Line& line : linesAt(height)) {
-      const SkyAt::Sent sent = sky.along(line.sight);
+    SameWay same;
+    const std::vector<Line>& lines = linesAt(height);
+    for (std::size_t n = 0; n < lines.size(); ++n) {
+      const Line& line = lines[n];
+      if (n % static_cast<std::size_t>(half + 1) == 0) same = {};
+      const SkyAt::Sent sent = sky.along(line.sight, &same);
       for (std::size_t i = 0; i < um.size(); ++i) {
         double end = sky.behind(i);
         if (line.groundAngle_rad >= 0.0)

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
 
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -43,6 +45,25 @@ Crossing crossingOf(const PlaneLayers& layers, const ArrayXd& sine, const std::v
   return c;
 }
 
+/// Lambda_lm of the Gauss points of a hemisphere, [direction][l - m], to the highest degree there is. Kept.
+const MatrixXd& lambdaOf(int hemisphere, int m) {
+  constexpr int kMost = 64;
+  static std::mutex busy;
+  static std::map<std::pair<int, int>, MatrixXd> all;
+  const std::scoped_lock lock(busy);
+  const auto [at, isNew] = all.try_emplace({hemisphere, m});
+  if (!isNew) return at->second;
+  at->second.resize(hemisphere, kMost - m);
+  std::vector<double> row(static_cast<std::size_t>(kMost - m));
+  Index i = 0;
+  for (const QuadratureNode& n : gaussLegendre(hemisphere, 0.0, 1.0)) {
+    legendreTerms(n.x, m, kMost, row.data());
+    for (std::size_t l = 0; l < row.size(); ++l) at->second(i, static_cast<Index>(l)) = row[l];
+    ++i;
+  }
+  return at->second;
+}
+
 /// Radiance at the edges, [direction][edge]: of sources at both edges of each layer.
 struct Swept {
   MatrixXd down, up;
@@ -55,11 +76,11 @@ LayerLight finer(const PlaneLayers& layers, const LayerLight& coarse, const Fine
   const bool sunlit = layers.irradiance > 0.0;
   out.shape = {fine.degree, sunlit ? std::clamp(fine.azimuths, 1, fine.degree) : 1};
   const auto layerCount = std::ssize(layers.layers), edges = layerCount + 1;
-  const int degrees = std::max(coarse.shape.streams, fine.degree);
   ArrayXd sine(fine.hemisphere), weight(fine.hemisphere);
   Index at = 0;
   for (const QuadratureNode& n : gaussLegendre(fine.hemisphere, 0.0, 1.0)) sine[at] = n.x, weight[at++] = n.weight;
   const auto moments = static_cast<std::size_t>(out.shape.moments());
+  const int most = std::max({kSunDegree, coarse.shape.streams, fine.degree});
   out.solar.assign(static_cast<std::size_t>(edges) * moments, 0.0);
   out.thermal.assign(static_cast<std::size_t>(edges) * static_cast<std::size_t>(fine.degree), 0.0);
   const auto chi = [&](Index k, int l) {
@@ -94,40 +115,37 @@ LayerLight finer(const PlaneLayers& layers, const LayerLight& coarse, const Fine
     }
     return s;
   };
+  // Azimuth terms go their ways apart.
   for (int m = 0; m < out.shape.azimuths; ++m) {
-    const int most = std::max(kSunDegree, degrees);
     // Of each direction, and of the sun's light.
-    MatrixXd lambda(fine.hemisphere, most - m);
-    std::vector<double> row(static_cast<std::size_t>(most - m)), ofSun(row.size());
-    for (Index i = 0; i < fine.hemisphere; ++i) {
-      legendreTerms(sine[i], m, most, row.data());
-      for (std::size_t l = 0; l < row.size(); ++l) lambda(i, static_cast<Index>(l)) = row[l];
+    const MatrixXd& lambda = lambdaOf(fine.hemisphere, m);
+    const MatrixXd weighed = (2.0 * kPi * weight).matrix().asDiagonal() * lambda.leftCols(std::max(fine.degree - m, 0));
+    MatrixXd sun[2];
+    if (sunlit) {
+      std::vector<double> ofSun(static_cast<std::size_t>(most - m));
+      legendreTerms(-layers.sunSine, m, most, ofSun.data());
+      MatrixXd part[2];
+      for (MatrixXd& p : part) p = MatrixXd::Zero(most - m, layerCount);
+      for (Index k = 0; k < layerCount; ++k)
+        for (int l = m; l < most; ++l) part[(l - m) % 2](l - m, k) = (m == 0 ? 1.0 : 2.0) * chi(k, l) * ofSun[static_cast<std::size_t>(l - m)];
+      for (int odd : {0, 1}) sun[odd].noalias() = lambda.leftCols(most - m) * part[odd];
     }
-    legendreTerms(-layers.sunSine, m, most, ofSun.data());
-    const auto tell = [&](bool solar) {
-      const int used = std::max(coarse.shape.streams - m, 0);
+    const auto tell = [&](bool solar, const LayerLight& from) {
+      const int used = m < from.shape.azimuths || !solar ? std::max(from.shape.streams - m, 0) : 0;
       // Coefficients of each degree at the upper and lower edge of each layer, of even and of odd l + m.
       MatrixXd part[2];
       for (MatrixXd& p : part) p = MatrixXd::Zero(used, 2 * layerCount);
-      for (int l = m; l < coarse.shape.streams && m < coarse.shape.azimuths; ++l)
+      for (int l = m; l < m + used; ++l)
         for (Index k = 0; k < layerCount; ++k) {
           const double turns = chi(k, l);
           if (turns == 0.0) continue;
           for (Index side = 0; side < 2; ++side) {
             const auto edge = static_cast<std::size_t>(k + side);
-            const double light =
-                solar ? coarse.solarAt(edge)[static_cast<std::size_t>(coarse.shape.at(l, m))] : coarse.thermalAt(edge)[static_cast<std::size_t>(l)];
+            const double light = solar ? from.solarAt(edge)[static_cast<std::size_t>(from.shape.at(l, m))] : from.thermalAt(edge)[static_cast<std::size_t>(l)];
             part[(l - m) % 2](l - m, side * layerCount + k) = turns * light;
           }
         }
       MatrixXd even = lambda.leftCols(used) * part[0], odd = lambda.leftCols(used) * part[1];
-      MatrixXd sun[2];
-      if (solar) {
-        for (MatrixXd& p : part) p = MatrixXd::Zero(most - m, layerCount);
-        for (Index k = 0; k < layerCount; ++k)
-          for (int l = m; l < most; ++l) part[(l - m) % 2](l - m, k) = (m == 0 ? 1.0 : 2.0) * chi(k, l) * ofSun[static_cast<std::size_t>(l - m)];
-        for (int odd_ : {0, 1}) sun[odd_] = lambda * part[odd_];
-      }
       if (!solar)
         for (Index k = 0; k < layerCount; ++k) {
           const PlaneLayer& own = layers.layers[static_cast<std::size_t>(k)];
@@ -135,9 +153,7 @@ LayerLight finer(const PlaneLayers& layers, const LayerLight& coarse, const Fine
         }
       const Swept swept =
           solar ? sweep(even, odd, sun, 0.0, 0.0, groundSun, m == 0) : sweep(even, odd, nullptr, layers.spaceRadiance, layers.groundEmission, 0.0, true);
-      const MatrixXd sums = swept.up + swept.down, differences = swept.up - swept.down;
-      const MatrixXd weighed = (2.0 * kPi * weight).matrix().asDiagonal() * lambda.leftCols(std::max(fine.degree - m, 0));
-      const MatrixXd ofSums = weighed.transpose() * sums, ofDifferences = weighed.transpose() * differences;  // [l][edge]
+      const MatrixXd ofSums = weighed.transpose() * (swept.up + swept.down), ofDifferences = weighed.transpose() * (swept.up - swept.down);  // [l][edge]
       for (int l = m; l < fine.degree; ++l)
         for (Index e = 0; e < edges; ++e) {
           const double value = (l - m) % 2 == 0 ? ofSums(l - m, e) : ofDifferences(l - m, e);
@@ -145,8 +161,10 @@ LayerLight finer(const PlaneLayers& layers, const LayerLight& coarse, const Fine
           else out.thermal[static_cast<std::size_t>(e * fine.degree + l)] = value;
         }
     };
-    if (sunlit) tell(true);
-    if (m == 0) tell(false);
+    for (int pass = 0; pass < fine.passes; ++pass) {
+      if (sunlit) tell(true, pass == 0 ? coarse : out);
+      if (m == 0) tell(false, pass == 0 ? coarse : out);
+    }
   }
   return out;
 }

@@ -15,6 +15,7 @@ struct FineDirections {
   int hemisphere = 16;  ///< Gauss points of each
   int degree = 16;      ///< moments l below this are told
   int azimuths = 12;
+  int passes = 1;  ///< each takes the moments of the one before
 };
 
 /// `coarse`: lightIn() of the same layers. The layers' moments: as many as are known, l below 40 are used. Moments alone are told.
