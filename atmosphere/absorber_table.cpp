@@ -19,8 +19,10 @@ namespace {
 // Extinction of the haze at 0.55 um [1/km] at a meteorological visibility.
 double hazeExtinction_per_km(double visibility_km) { return 3.912 / visibility_km - 0.0116; }
 
-// Dense fog to the clearest air; below 0.5 km haze grows to droplets of other spectra than the table's.
-constexpr double kLeastVisibility_km = 0.5, kMostVisibility_km = 300.0;
+// Densest fog to the clearest air.
+constexpr double kLeastVisibility_km = 0.02, kMostVisibility_km = 300.0;
+/// Up to which most of a table's haze lies.
+constexpr double kHazeTop_m = 2000.0;
 
 struct Word {
   std::string_view text;
@@ -69,7 +71,7 @@ class AbsorberTableReader {
     if (table_.absorbers_.empty()) fail(1, "no amounts", "lines 'amount <name> <exponent> <kind>'");
     if (table_.levels_.size() < 2) fail(1, "fewer than two levels");
     if (table_.bins_.size() < 2) fail(1, "fewer than two bins");
-    finishLevels();
+    table_.finishLevels();
     table_.scale_.fill(1.0);
     return std::move(table_);
   }
@@ -113,18 +115,22 @@ class AbsorberTableReader {
       table_.visibility_km_ = number(1, kLeastVisibility_km, kMostVisibility_km, "visibility [km]");
     } else if (key == "amount") {
       readAmount();
+    } else if (key == "reference") {
+      readReference();
+    } else if (key == "carbon_dioxide") {
+      readCarbonDioxide();
     } else if (key == "level") {
       readLevel();
     } else if (key == "bin") {
       readBin();
     } else {
-      fail(words_[0].column, "unknown word '" + std::string(key) + "'", "title, source, visibility_km, amount, level or bin");
+      fail(words_[0].column, "unknown word '" + std::string(key) + "'", "title, source, visibility_km, amount, reference, carbon_dioxide, level or bin");
     }
   }
 
   void readAmount() {
     if (!table_.levels_.empty() || !table_.bins_.empty()) fail(words_[0].column, "an amount after levels or bins");
-    expectWords(4);
+    if (words_.size() < 5) expectWords(4);
     if (table_.absorbers_.size() == kMostAbsorbers) fail(words_[0].column, "more than " + std::to_string(kMostAbsorbers) + " amounts");
     Absorber absorber{std::string(words_[1].text), number(2, 0.1, 1.0, "exponent"), AbsorberKind::Gas};
     for (const Absorber& other : table_.absorbers_)
@@ -134,7 +140,36 @@ class AbsorberTableReader {
     const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const auto& k) { return k.first == words_[3].text; });
     if (kind == kinds.end()) fail(words_[3].column, "kind '" + std::string(words_[3].text) + "'", "gas, scattering, aerosol or haze");
     absorber.kind = kind->second;
+    if (words_.size() > 4) {
+      static constexpr std::array<std::pair<std::string_view, AbsorberLaw>, 6> laws = {{{"water", AbsorberLaw::Water},
+                                                                                        {"ozone", AbsorberLaw::Ozone},
+                                                                                        {"air", AbsorberLaw::Air},
+                                                                                        {"self", AbsorberLaw::Self},
+                                                                                        {"foreign", AbsorberLaw::Foreign},
+                                                                                        {"pair", AbsorberLaw::Pair}}};
+      const auto law = std::find_if(laws.begin(), laws.end(), [&](const auto& l) { return l.first == words_[4].text; });
+      if (law == laws.end()) fail(words_[4].column, "law '" + std::string(words_[4].text) + "'", "water, ozone, air, self, foreign or pair");
+      absorber.law = law->second;
+      const bool hasPowers = law->second <= AbsorberLaw::Air;
+      expectWords(hasPowers ? 7 : 5);
+      if (hasPowers) absorber.byPressure = number(5, -5.0, 5.0, "power of the pressure"), absorber.byTemperature = number(6, -5.0, 5.0, "power of 1/T");
+    }
     table_.absorbers_.push_back(std::move(absorber));
+  }
+
+  void readReference() {
+    expectWords(6);
+    table_.reference_ = AbsorberTable::Reference{100.0 * number(1, 1.0, 2000.0, "pressure [hPa]"), number(2, 100.0, 400.0, "temperature [K]"),
+                                                 1e-6 * number(3, 1.0, 1e5, "water [ppmv]"), 1e-6 * number(4, 1e-4, 100.0, "ozone [ppmv]"),
+                                                 1e-6 * number(5, 1.0, 1e5, "carbon dioxide [ppmv]")};
+  }
+
+  void readCarbonDioxide() {
+    expectWords(4);
+    const auto own = std::find_if(table_.absorbers_.begin(), table_.absorbers_.end(), [&](const Absorber& a) { return a.name == words_[1].text; });
+    if (own == table_.absorbers_.end()) fail(words_[1].column, "no amount '" + std::string(words_[1].text) + "'", "the name of an amount above");
+    const double low = number(2, 0.0, 1e5, "wavenumber [1/cm]"), high = number(3, low, 1e5, "wavenumber [1/cm]");
+    table_.carbonDioxide_.push_back({static_cast<size_t>(own - table_.absorbers_.begin()), low, high});
   }
 
   void readLevel() {
@@ -164,17 +199,6 @@ class AbsorberTableReader {
     table_.bins_.push_back(bin);
   }
 
-  void finishLevels() {
-    table_.steepest_.assign(table_.levels_.size(), 0.0);
-    for (size_t i = 0; i + 1 < table_.levels_.size(); ++i)
-      for (size_t k = 0; k < table_.absorbers_.size(); ++k) {
-        const double here = table_.levels_[i].density[k], next = table_.levels_[i + 1].density[k];
-        const double log = here > 0.0 && next > 0.0 ? std::log(next / here) : std::numeric_limits<double>::quiet_NaN();
-        table_.levels_[i].logRatio[k] = log;
-        table_.steepest_[i] = std::fmax(table_.steepest_[i], std::abs(log));
-      }
-  }
-
   std::string name_;
   int line_ = 0;
   bool begun_ = false;
@@ -195,6 +219,129 @@ void AbsorberTable::setVisibility(double visibility_km) {
       scale_[k] = hazeExtinction_per_km(std::clamp(visibility_km, kLeastVisibility_km, kMostVisibility_km)) / hazeExtinction_per_km(visibility_km_);
     if (absorbers_[k].kind == AbsorberKind::Aerosol) scale_[k] = 1.0;
   }
+}
+
+void AbsorberTable::finishLevels() {
+  steepest_.assign(levels_.size(), 0.0);
+  for (size_t i = 0; i + 1 < levels_.size(); ++i)
+    for (size_t k = 0; k < absorbers_.size(); ++k) {
+      const double here = levels_[i].density[k], next = levels_[i + 1].density[k];
+      const double log = here > 0.0 && next > 0.0 ? std::log(next / here) : std::numeric_limits<double>::quiet_NaN();
+      levels_[i].logRatio[k] = log;
+      steepest_[i] = std::fmax(steepest_[i], std::abs(log));
+    }
+}
+
+namespace {
+
+/// Of an absorber's law, up to a factor: densities in mole fractions x pressure over temperature.
+double lawOf(const Absorber& a, const AirLevel& l) {
+  constexpr double kSelf = 4.4, kSelf_K = 296.0;
+  const double air = l.pressure_Pa / l.temperature_K, water = l.water * air;
+  const double powers = std::pow(l.pressure_Pa, a.byPressure) * std::pow(l.temperature_K, -a.byTemperature);
+  switch (a.law) {
+    case AbsorberLaw::Water:
+      return water * powers;
+    case AbsorberLaw::Ozone:
+      return l.ozone * air * powers;
+    case AbsorberLaw::Air:
+      return air * powers;
+    case AbsorberLaw::Self:
+      return water * water * std::exp(kSelf * (kSelf_K / l.temperature_K - 1.0));
+    case AbsorberLaw::Foreign:
+      return water * (air - water);
+    case AbsorberLaw::Pair:
+      return air * air;
+    case AbsorberLaw::None:
+      break;
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+void AbsorberTable::setProfile(const AirProfile& profile, const Location& where) {
+  const auto isGas = [](const Absorber& a) { return a.kind == AbsorberKind::Gas || a.kind == AbsorberKind::Scattering; };
+  if (!reference_ || std::any_of(absorbers_.begin(), absorbers_.end(), [&](const Absorber& a) { return isGas(a) && a.law == AbsorberLaw::None; }))
+    throw UserError(where, "an air table whose amounts do not say how they follow from pressure and temperature", "a table with laws and a reference",
+                    "leave this key out, or take the table of a library air");
+  std::vector<double> heights;
+  for (const Level& l : levels_) heights.push_back(l.altitude_m);
+  for (const AirLevel& l : profile.levels())
+    if (l.altitude_m < heights.back()) heights.push_back(l.altitude_m);
+  std::sort(heights.begin(), heights.end());
+  const AirLevel usual{0.0, reference_->pressure_Pa, reference_->temperature_K, reference_->water, reference_->ozone};
+  std::vector<Level> levels;
+  for (double h : heights) {
+    if (!levels.empty() && h < levels.back().altitude_m + 1.0) continue;
+    Level own;
+    own.altitude_m = h;
+    AirLevel air = profile.at(h);
+    // Below the first and above the last row pressure goes on by its weight.
+    air.pressure_Pa *= std::exp((profile.at(h).altitude_m - h) * 9.80665 / (287.05 * air.temperature_K));
+    own.temperature_K = air.temperature_K;
+    const size_t i = intervalAt(h);
+    AbsorberAmounts here;
+    addDensities(i, partOf(i, h), 1.0, here);
+    for (size_t k = 0; k < absorbers_.size(); ++k)
+      own.density[k] = isGas(absorbers_[k]) ? lawOf(absorbers_[k], air) / lawOf(absorbers_[k], usual) : scale_[k] > 0.0 ? here.amount_km[k] / scale_[k] : 0.0;
+    levels.push_back(own);
+  }
+  levels_ = std::move(levels);
+  finishLevels();
+}
+
+void AbsorberTable::setCarbonDioxide(double fraction, const Location& where) {
+  if (!reference_ || carbonDioxide_.empty())
+    throw UserError(where, "an air table that does not say what in it is carbon dioxide", "a table with 'carbon_dioxide'",
+                    "leave this key out, or take the table of a library air");
+  for (const Range& r : carbonDioxide_) {
+    const double more = std::pow(fraction / reference_->carbonDioxide, absorbers_[r.absorber].exponent);
+    for (Bin& b : bins_)
+      if (b.wavenumber_per_cm >= r.low_per_cm && b.wavenumber_per_cm < r.high_per_cm) b.coefficient[r.absorber] *= more;
+  }
+  reference_->carbonDioxide = fraction;
+}
+
+void AbsorberTable::setHaze(const AerosolOptics& optics) {
+  haze_ = optics;
+  for (Bin& b : bins_) {
+    const double own = hazeExtinction_per_km(visibility_km_) * optics.at(1e4 / b.wavenumber_per_cm).extinction;
+    for (size_t k = 0; k < absorbers_.size(); ++k)
+      if (absorbers_[k].kind == AbsorberKind::Haze) b.coefficient[k] = own;
+  }
+}
+
+void AbsorberTable::setHazeTop(double height_m) {
+  // What the table has of haze at a height comes to lie as much lower or higher as its top is.
+  const double stretched = height_m / kHazeTop_m;
+  std::vector<double> heights, old;
+  for (const Level& l : levels_) heights.push_back(l.altitude_m), old.push_back(l.altitude_m);
+  for (double h : old)
+    if (h > 0.0 && h <= 1.6 * kHazeTop_m && h * stretched < old.back()) heights.push_back(h * stretched);
+  std::sort(heights.begin(), heights.end());
+  std::vector<Level> levels;
+  for (double h : heights) {
+    if (!levels.empty() && h < levels.back().altitude_m + 1.0) continue;
+    Level own;
+    own.altitude_m = h;
+    own.temperature_K = this->temperature_K(h);
+    const auto densitiesAt = [&](double at) {
+      const size_t i = intervalAt(at);
+      AbsorberAmounts here;
+      addDensities(i, partOf(i, at), 1.0, here);
+      return here;
+    };
+    const AbsorberAmounts here = densitiesAt(h), there = densitiesAt(h / stretched);
+    for (size_t k = 0; k < absorbers_.size(); ++k) {
+      const bool isHaze = absorbers_[k].kind == AbsorberKind::Haze;
+      const double amount = isHaze ? h / stretched < old.back() ? there.amount_km[k] : 0.0 : here.amount_km[k];
+      own.density[k] = scale_[k] > 0.0 ? amount / scale_[k] : 0.0;
+    }
+    levels.push_back(own);
+  }
+  levels_ = std::move(levels);
+  finishLevels();
 }
 
 void AbsorberTable::setTemperature(double temperature_K) {
@@ -245,10 +392,18 @@ std::array<double, kMostAbsorbers> AbsorberTable::coefficients(double wavelength
 void AbsorberTable::addTo(Fingerprint& f) const {
   f.add(visibility_km_).all(levels_).all(bins_);
   for (double s : scale_) f.add(s);
+  f.add(haze_.has_value());
+  if (haze_) f.all(haze_->wavelength_um).all(haze_->extinction).all(haze_->albedo).all(haze_->asymmetry);
   for (const Absorber& a : absorbers_) f.add(a.exponent).add(static_cast<int>(a.kind));
 }
 
-double AbsorberTable::hazeAlbedo(double wavelength_um) const {
+std::optional<double> AbsorberTable::hazeAsymmetry(double wavelength_um) const {
+  return haze_ ? std::optional(haze_->at(wavelength_um).asymmetry) : std::nullopt;
+}
+
+double AbsorberTable::hazeAlbedo(double wavelength_um) const { return haze_ ? haze_->at(wavelength_um).albedo : aerosolAlbedo(wavelength_um); }
+
+double AbsorberTable::aerosolAlbedo(double wavelength_um) const {
   const auto [i, f] = binAt(wavelength_um);
   return bins_[i].albedo * (1.0 - f) + bins_[i + 1].albedo * f;
 }

@@ -19,6 +19,8 @@
 #include <string_view>
 #include <vector>
 
+#include "atmosphere/aerosol_types.hpp"
+#include "atmosphere/air_profile.hpp"
 #include "sim/parameters/fingerprint.hpp"
 
 namespace pitviper {
@@ -37,11 +39,15 @@ struct AbsorberAmounts {
 };
 
 enum class AbsorberKind { Gas, Scattering, Aerosol, Haze };
+/// How a gas's density follows from pressure, temperature and mixing ratios: the words of the format.
+enum class AbsorberLaw { None, Water, Ozone, Air, Self, Foreign, Pair };
 
 struct Absorber {
   std::string name;
   double exponent = 1.0;
   AbsorberKind kind = AbsorberKind::Gas;
+  AbsorberLaw law = AbsorberLaw::None;
+  double byPressure = 0.0, byTemperature = 0.0;  ///< density x p^x T^-y
 };
 
 /// A place on a path, with all that lies between its beginning and there.
@@ -74,6 +80,13 @@ class AbsorberTable {
   /// Source: Koschmieder's law less Rayleigh scattering, as LOWTRAN does. The haze keeps its profile: below 10 km of visibility LOWTRAN's
   /// own falls off less in the first kilometre, so that slant paths out of such haze are too clear here.
   void setVisibility(double visibility_km);
+  /// Of another climate or day: temperature and gases; aerosols stay where they are. Errors: UserError at `where` for a table whose amounts have no laws.
+  void setProfile(const AirProfile& profile, const Location& where);
+  /// Carbon dioxide by volume. The same.
+  void setCarbonDioxide(double fraction, const Location& where);
+  /// Another aerosol in place of the haze, at the same visibility, and up to which height [m] instead of the table's 2 km: densities are stretched.
+  void setHaze(const AerosolOptics& optics);
+  void setHazeTop(double height_m);
   /// The same temperature everywhere; densities stay as they are.
   void setTemperature(double temperature_K);
   /// No aerosol at all; setVisibility() brings it back.
@@ -114,8 +127,11 @@ class AbsorberTable {
   double pathRadiance(double wavelength_um, std::span<const PathStation> stations) const;
   double pathRadiance(double wavelength_um, double height_m, double sinElevation, double range_m, double earthRadius_m) const;
 
-  /// Single-scattering albedo of the haze, for scattered light.
+  /// Of the haze, for scattered light: albedo of single scattering, and what setHaze() gave of asymmetry.
   double hazeAlbedo(double wavelength_um) const;
+  std::optional<double> hazeAsymmetry(double wavelength_um) const;
+  /// Of the aerosol above.
+  double aerosolAlbedo(double wavelength_um) const;
   /// Densities relative to sea level (the haze scaled to the visibility) and temperature at a height.
   AbsorberAmounts densities(double height_m) const;
   double temperature_K(double height_m) const;
@@ -133,6 +149,14 @@ class AbsorberTable {
     double wavenumber_per_cm = 0.0;
     double albedo = 0.0;
     std::array<double, kMostAbsorbers> coefficient{};
+  };
+  /// Of the air in which densities of gases are 1.
+  struct Reference {
+    double pressure_Pa = 0.0, temperature_K = 0.0, water = 0.0, ozone = 0.0, carbonDioxide = 0.0;  ///< mole fractions
+  };
+  struct Range {
+    size_t absorber = 0;
+    double low_per_cm = 0.0, high_per_cm = 0.0;
   };
   friend class AbsorberTableReader;
 
@@ -154,6 +178,10 @@ class AbsorberTable {
   std::string title_, source_;
   double visibility_km_ = 23.0;                 ///< for which the coefficients stand
   std::array<double, kMostAbsorbers> scale_{};  ///< of each absorber's density: 1, or as the visibility asks
+  void finishLevels();
+  std::optional<Reference> reference_;
+  std::vector<Range> carbonDioxide_;  ///< where an absorber is that
+  std::optional<AerosolOptics> haze_;
   std::vector<Absorber> absorbers_;
   std::vector<Level> levels_;
   std::vector<double> steepest_;  ///< of each interval: the largest logarithm of the next level's density over this one's

@@ -28,6 +28,8 @@ class Layered final : public Atmosphere, public HasHaze {
  public:
   explicit Layered(AbsorberTable table) : table_(std::move(table)) {
     for (const Absorber& a : table_.absorbers()) exponents_.push_back(a.exponent);
+    const AbsorberAmounts above = table_.amounts(0.0, 1.0, INFINITY, 6371e3);
+    for (size_t k = 0; k < exponents_.size(); ++k) column_[k] = above.amount_km[k];
   }
   AirTraits traits() const override { return {.variesAlongWay = true, .scattersSun = true, .liesOnGround = true, .isBanded = true}; }
   std::unique_ptr<AirOnGpu> onGpu(const Simulation& simulation, const Plan& plan, bool perChannel) const override {
@@ -41,12 +43,18 @@ class Layered final : public Atmosphere, public HasHaze {
     const auto c = table_.coefficients(w);
     std::copy(c.begin(), c.end(), n.extinction.begin());
     const auto absorbers = table_.absorbers();
-    const double albedo = table_.hazeAlbedo(w);
+    // Of haze and the aerosol above it the mean, by what a column of the air has of them.
+    const double albedo = table_.hazeAlbedo(w), above = table_.aerosolAlbedo(w), asymmetryAbove = asymmetry_(w);
+    const double asymmetry = table_.hazeAsymmetry(w).value_or(asymmetryAbove);
+    double turned = 0.0, scattered = 0.0;
     for (size_t k = 0; k < absorbers.size(); ++k) {
       if (absorbers[k].kind == AbsorberKind::Scattering) n.molecules[k] = c[k];
-      if (absorbers[k].kind == AbsorberKind::Haze || absorbers[k].kind == AbsorberKind::Aerosol) n.haze[k] = albedo * c[k];
+      const bool isHaze = absorbers[k].kind == AbsorberKind::Haze;
+      if (!isHaze && absorbers[k].kind != AbsorberKind::Aerosol) continue;
+      n.haze[k] = (isHaze ? albedo : above) * c[k];
+      turned += column_[k] * n.haze[k] * (isHaze ? asymmetry : asymmetryAbove), scattered += column_[k] * n.haze[k];
     }
-    n.asymmetry = asymmetry_(w);
+    n.asymmetry = scattered > 0.0 && asymmetry != asymmetryAbove ? turned / scattered : asymmetryAbove;
     return n;
   }
   double top_m() const override { return table_.top_m(); }
@@ -92,6 +100,7 @@ class Layered final : public Atmosphere, public HasHaze {
  private:
   AbsorberTable table_;
   std::vector<double> exponents_;
+  std::array<double, kMostAbsorbers> column_{};  ///< amounts from the ground straight up
   Spectrum asymmetry_ = ruralAsymmetry();
 };
 
@@ -103,30 +112,87 @@ namespace {
 
 /// What the absorbers were fitted over is far within.
 constexpr double kColdest_K = 100.0, kWarmest_K = 500.0;
+/// Clearer air than this is haze or fog, thicker is fog alone: haze would grow to droplets of other spectra.
+constexpr double kThickestHaze_m = 500.0;
+/// Humidity by which aerosols of a table without a profile go: Shettle and Fenn's usual one.
+constexpr double kUsualHumidity = 0.7, kUsualWind_m_s = 10.0;
+
+std::vector<std::string> climates() {
+  return {"tropical", "midlatitude_summer", "midlatitude_winter", "subarctic_summer", "subarctic_winter", "us_standard_1976"};
+}
+
+/// The profile that keys ask for; none: the table's own.
+std::optional<AirProfile> profileOf(const Record& r, const std::filesystem::path& folder, const std::filesystem::path& library) {
+  const bool isChanged = r.given("surface_temperature") || r.given("surface_pressure") || r.given("humidity");
+  if (!r.given("climate") && !r.given("sounding") && !isChanged) return std::nullopt;
+  const std::string climate = r.given("climate") ? r.text("climate") : "us_standard_1976";
+  AirProfile profile = AirProfile::read(library / "climates" / (climate + ".csv"), r.given("climate") ? r.where("climate") : r.where());
+  if (r.given("sounding")) profile = AirProfile::read(folder / r.text("sounding"), r.where("sounding"), &profile);
+  AirAtGround ground;
+  if (r.given("surface_temperature")) ground.temperature_K = r.number("surface_temperature");
+  if (r.given("surface_pressure")) ground.pressure_Pa = r.number("surface_pressure");
+  if (r.given("humidity")) ground.humidity = r.number("humidity");
+  profile.setGround(ground);
+  return profile;
+}
 
 }  // namespace
 
-AbsorberTable readAirTable(const Record& r, const std::filesystem::path& folder) {
+AbsorberTable readAirTable(const Record& r, const std::filesystem::path& folder, const std::filesystem::path& library) {
   const std::filesystem::path file = folder / r.text("table");
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored))
     throw UserError(r.where("table"), "there is no file '" + file.string() + "'", "an air table, its path relative to this file", "check the path");
   AbsorberTable table = AbsorberTable::read(file);
+  const std::string aerosol = r.given("aerosol") ? r.text("aerosol") : "table";
+  const bool isNamed = aerosol != "table" && aerosol != "none";
+  const auto needs = [&](const char* key, bool holds, const std::string& what) {
+    if (r.given(key) && !holds) throw UserError(r.where(key), std::string("'") + key + "' has no say here", what, std::string("remove '") + key + "'");
+  };
+  needs("wind", isNamed && goesByWind(aerosol), "'aerosol: desert' beside it");
+  needs("haze_top", aerosol != "none", "an aerosol");
+  if (r.given("visibility") && r.number("visibility") < kThickestHaze_m && !isFog(aerosol))
+    throw UserError(r.where("visibility"), "'visibility' is " + std::to_string(static_cast<int>(r.number("visibility"))) + " m, and the aerosol is no fog",
+                    "at least 500 m, or a fog", "add 'aerosol: radiation_fog' or 'advection_fog'");
+  const std::optional<AirProfile> profile = profileOf(r, folder, library);
+  if (profile) table.setProfile(*profile, r.where());
+  if (r.given("co2")) table.setCarbonDioxide(r.number("co2"), r.where("co2"));
+  if (isNamed)
+    table.setHaze(
+        aerosolOf(aerosol, profile ? profile->humidity() : kUsualHumidity, r.given("wind") ? r.number("wind") : kUsualWind_m_s, library, r.where("aerosol")));
+  if (r.given("haze_top")) table.setHazeTop(r.number("haze_top"));
   if (r.given("visibility")) table.setVisibility(1e-3 * r.number("visibility"));
-  if (r.given("aerosol")) r.text("aerosol") == "none" ? table.removeAerosol() : table.restoreAerosol();
+  if (r.given("aerosol")) aerosol == "none" ? table.removeAerosol() : table.restoreAerosol();
   if (r.given("temperature")) table.setTemperature(r.number("temperature"));
   return table;
 }
 
+static std::vector<std::string> aerosols() {
+  std::vector<std::string> all{"none", "table"};
+  all.insert(all.end(), aerosolTypes().begin(), aerosolTypes().end());
+  return all;
+}
+
 AirModel layeredModel() {
-  return {"layered",
-          "Air with structure: absorbers and temperature by height, as a library air has them or a table.",
-          {"table"},
-          {required(text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air")),
-           within(number("visibility", "m", "meteorological visibility of the haze"), 500, 3e5),
-           choice("aerosol", {"none", "table"}, "without aerosol, or with the table's"),
-           within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
-          [](const AirRecord& air) { return makeLayeredAir(readAirTable(air.record, air.folder)); }};
+  return {
+      "layered",
+      "Air with structure: absorbers and temperature by height, as a library air has them or a table.",
+      {"table"},
+      {required(text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air")),
+       choice("climate", climates(), "temperature and gases by height, in place of the table's"),
+       text("sounding", "the same as a radiosonde has them: CSV beside the scenario, its columns in ../atmosphere/README.md; above its last row as `climate`"),
+       within(number("surface_temperature", "K", "of the lowest air: it changes by as much there, and less and less up to 11 km; relative humidity stays"), 180,
+              340),
+       within(number("surface_pressure", "Pa", "of the lowest air: pressure above in proportion"), 3e4, 1.1e5),
+       within(number("humidity", "", "relative, of the lowest air: below 11 km in proportion"), 0.0, 1.0),
+       within(number("co2", "", "carbon dioxide by volume, in place of the table's 330e-6; annual means: 369e-6 in 2000, 389e-6 in 2010, 412e-6 in 2020"), 1e-6,
+              0.05),
+       within(number("visibility", "m", "meteorological visibility of the haze; below 500 m of fogs alone"), 20, 3e5),
+       choice("aerosol", aerosols(), "without aerosol, with the table's, or another near the ground, by the humidity there"),
+       within(number("wind", "m/s", "with `aerosol: desert`; 10 m/s unless given"), 0, 30),
+       within(number("haze_top", "m", "height up to which most of the aerosol near the ground lies; 2 km unless given"), 10, 10e3),
+       within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
+      [](const AirRecord& air) { return makeLayeredAir(readAirTable(air.record, air.folder, air.library)); }};
 }
 
 }  // namespace pitviper

@@ -10,7 +10,7 @@
 namespace pitviper {
 
 /// What a record of the table of layered air says. Errors: UserError.
-AbsorberTable readAirTable(const Record& record, const std::filesystem::path& folder);
+AbsorberTable readAirTable(const Record& record, const std::filesystem::path& folder, const std::filesystem::path& library);
 
 std::shared_ptr<const Atmosphere> makeLayeredAir(AbsorberTable table);
 

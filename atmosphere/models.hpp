@@ -15,7 +15,8 @@ namespace pitviper {
 
 /// An air as a scenario or the library has it: a record of the model's table, its spectra read.
 struct AirRecord : ModelRecord {
-  std::filesystem::path folder;  ///< that the files it names are relative to
+  std::filesystem::path folder;   ///< that the files it names are relative to
+  std::filesystem::path library;  ///< atmosphere/library: climates and aerosols by name
 };
 
 struct AirModel {
@@ -47,7 +48,8 @@ std::vector<AirMark> marksOf(const Value& air);
 
 /// The air that keys describe; none where `model` says so. `spectrum`: reads a spectrum's value as its parameter says. Errors: UserError, also where the keys
 /// are of several models, of none, or one of them is of another model.
-std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder, const SpectrumOf& spectrum);
+std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder, const std::filesystem::path& library,
+                                          const SpectrumOf& spectrum);
 
 AirModel homogeneousModel();
 AirModel layeredModel();

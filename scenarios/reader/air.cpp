@@ -52,7 +52,7 @@ void refuseMissingTable(const Value& air, const std::filesystem::path& base, con
   for (const std::string& name : names) {
     const Value tree = loadYaml(library / (name + ".yaml"), word->where);
     const Value* table = tree.find("table");
-    if (table && std::filesystem::path(table->text).stem() == std::filesystem::path(word->text).stem()) same.push_back(name);
+    if (table && !tree.find("climate") && std::filesystem::path(table->text).stem() == std::filesystem::path(word->text).stem()) same.push_back(name);
   }
   if (!same.empty()) fix = "write 'library: " + same.back() + "' in its place" + (same.size() > 1 ? ", or one of " + listed(same) : "");
   throw UserError(word->where, "there is no file '" + (base / word->text).string() + "'",
@@ -91,7 +91,7 @@ void Builder::readAtmosphere(const Record& scenario) {
                       "'model: " + own.front().model->name + "', or none", "remove 'model'");
   }
   simulation_.air =
-      makeAir(air, base_, [this](const Value& v, const Parameter& p) { return bounded(spectra_, v, p.unit, p.key + " of the air", p.minimum, p.maximum); });
+      makeAir(air, base_, libraries_.atmosphere, [this](const Value& v, const Parameter& p) { return bounded(spectra_, v, p.unit, p.key + " of the air", p.minimum, p.maximum); });
 }
 
 }  // namespace pitviper

@@ -44,7 +44,7 @@ AbsorberTable libraryAirTable(const std::string& name, const Libraries& librarie
     keys.keyPlaces.push_back(tree.keyPlaces[k]);
   }
   const ParameterTable table = airTable(layeredModel());
-  return readAirTable(Record(keys, table), libraries.atmosphere);
+  return readAirTable(Record(keys, table), libraries.atmosphere, libraries.atmosphere);
 }
 
 }  // namespace pitviper

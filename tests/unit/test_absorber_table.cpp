@@ -30,7 +30,11 @@ const AbsorberTable& standardAir() {
 }
 
 const AbsorberTable& summerAir() {
-  static const AbsorberTable table = AbsorberTable::read(fs::path(PITVIPER_SOURCE_DIR) / "atmosphere/library/mls_rural.air");
+  static const AbsorberTable table = [] {
+    AbsorberTable t = standardAir();
+    t.setProfile(AirProfile::read(fs::path(PITVIPER_SOURCE_DIR) / "atmosphere/library/climates/midlatitude_summer.csv", {}), {});
+    return t;
+  }();
   return table;
 }
 
@@ -478,6 +482,10 @@ TEST(AbsorberTable, BrokenFilesSayWhere) {
       {"pitviper-air 1\namount a 0.5\n", "f.air:2:10: 'amount' with 2 values; expected 3"},
       {"pitviper-air 1\namount a 1.5 gas\n", "f.air:2:10: exponent is '1.5'; expected a number from 0.1 to 1"},
       {"pitviper-air 1\namount a 0.5 smoke\n", "f.air:2:14: kind 'smoke'"},
+      {"pitviper-air 1\namount a 0.5 gas steam\n", "f.air:2:18: law 'steam'"},
+      {"pitviper-air 1\namount a 0.5 gas water 1\n", "f.air:2:24: 'amount' with 5 values; expected 6"},
+      {head + "reference 1013 288 7745 0.03\n", "f.air:3:25: 'reference' with 4 values; expected 5"},
+      {head + "carbon_dioxide b 700 900\n", "f.air:3:16: no amount 'b'"},
       {head + "amount a 1 gas\n", "f.air:3:8: amount 'a' twice"},
       {head + "level 0 300 nan\n", "f.air:3:13: density of a is 'nan'"},
       {head + "level 0 300 -1\n", "f.air:3:13: density of a is '-1'"},

@@ -76,7 +76,6 @@ TEST(ForeignTables, UnitsOfOtherDimensionsAreConvertedNotRenamed) {
 TEST(ForeignTables, TablesOfTheLibraryAreNamedAsItsAirs) {
   for (const auto& [table, words] : {std::pair<std::string, std::string>{"us76_rural", "write 'library: hazy_us76'"},
                                      {"us76_rural.air", "write 'library: hazy_us76'"},
-                                     {"mls_rural.air", "write 'library: hazy_mls'"},
                                      {"desert.air", "check the path"}}) {
     const std::string said = refusal("atmosphere: {table: " + table + "}\n" + kBody + "}]\n" + kCamera + "{band: [4 um, 5 um]}}]}]\n");
     EXPECT_NE(said.find(words), std::string::npos) << said;
