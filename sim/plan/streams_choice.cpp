@@ -11,7 +11,7 @@ namespace pitviper {
 namespace {
 
 /// Streams that are tried, and those they are held against: tests/physics/test_diffuse_light.cpp has what these lose.
-constexpr int kTried[] = {8}, kExact = kFinestStreams;
+constexpr int kTried[] = {8, 12}, kExact = kFinestStreams;
 /// Wavelengths of each channel that lines are told by: light scattered again changes evenly with wavelength.
 constexpr int kWavelengths = 2;
 /// What is found on some lines and wavelengths, times this, is the loss predicted.

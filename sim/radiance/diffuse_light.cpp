@@ -19,6 +19,8 @@ constexpr double kHeights_m[] = {0.0, 100.0, 250.0, 500.0, 750.0, 1000.0, 1250.0
                                  5e3, 6e3,   7e3,   8.5e3, 10e3,  12e3,   15e3,   18e3,   22e3,   27e3,   34e3,   45e3, 70e3};
 /// A layer scatters no more than this of light straight through, where air scatters most: between its edges light is linear in height.
 constexpr double kDeepest = 0.12;
+/// Deep within, where light changes slowly: as part of what lies between there and the nearer end.
+constexpr double kDeeper = 0.15;
 /// The sun is no longer seen by any air.
 constexpr double kNight = -0.35;
 /// What the sun would send evenly from all sides, as part of what a black body of the lowest air's temperature sends.
@@ -56,7 +58,7 @@ PITVIPER_WIDE void addTimes(const double* row, double factor, int count, double*
 FineDirections directionsFor(int streams) {
   if (streams <= 4) return {8, 10, 8, 2};
   if (streams <= 8) return {16, 20, 12, 3};
-  return {24, 24, 16, 2};
+  return {24, 24, 16, 3};
 }
 
 }  // namespace
@@ -93,12 +95,19 @@ DiffuseLight::DiffuseLight(const AirColumn& column, int streams) : column_(colum
   shape_ = {fine_.degree, legs_ ? fine_.azimuths : 1};
   const auto aboveAt = [&](double h) { return air.powered(air.amounts({h, 1.0, column_.earthRadius_m}, physics::kFar)); };
   const AirNode node = air.node(std::max(air.validLow_um(), 0.45));
+  const double whole = scattered(node, {}, aboveAt(0.0));
   for (std::size_t k = 0; k < std::size(kHeights_m); ++k) {
-    const double low = kHeights_m[k], high = k + 1 < std::size(kHeights_m) ? kHeights_m[k + 1] : air.top_m();
+    const double low = kHeights_m[k], high = std::min(k + 1 < std::size(kHeights_m) ? kHeights_m[k + 1] : air.top_m(), air.top_m());
     if (!(low < air.top_m())) break;
-    const double depth = scattered(node, aboveAt(high), aboveAt(low));
-    const int parts = std::clamp(static_cast<int>(std::ceil(depth / kDeepest)), 1, 64);
-    for (int p = 0; p < parts; ++p) heights_m_.push_back(low + (std::min(high, air.top_m()) - low) * p / parts);
+    const double under = scattered(node, {}, aboveAt(low)), over = scattered(node, {}, aboveAt(high));
+    // Steps from the lower edge on, wider the deeper within.
+    const auto step = [&](double depth) { return std::max(kDeepest, kDeeper * std::min(depth, whole - depth)); };
+    const double depth = under - over;
+    for (double at = 0.0; at < 1.0 - 1e-9;) {
+      heights_m_.push_back(low + (high - low) * at);
+      const double own = depth > 0.0 ? step(under - at * depth) / depth : 1.0, left = std::ceil((1.0 - at) / own - 1e-9);
+      at += (1.0 - at) / std::max(left, 1.0);
+    }
   }
   heights_m_.push_back(air.top_m());
   for (double h : heights_m_) {

@@ -139,8 +139,21 @@ class Composer {
         layered_ = true;
         out << "atmosphere: {library: " << dice_.of(kAirs);
         if (dice_.chance(0.5)) out << ", visibility: " << dice_.byFactor(0.5, 100.0) << " km";
-        return out << "}\n";
+        return out << otherAir() << "}\n";
     }
+  }
+
+  /// Climates, weather at the ground, aerosols.
+  std::string otherAir() {
+    constexpr const char* kClimates[] = {"tropical", "midlatitude_winter", "subarctic_summer", "subarctic_winter"};
+    constexpr const char* kAerosols[] = {"rural", "urban", "maritime", "tropospheric", "desert", "advection_fog", "radiation_fog"};
+    Text out;
+    if (more_.chance(0.3)) out << ", climate: " << more_.of(kClimates);
+    if (more_.chance(0.15)) out << ", surface_temperature: " << more_.between(240.0, 310.0) << " K";
+    if (more_.chance(0.15)) out << ", humidity: " << more_.between(0.0, 1.0);
+    if (more_.chance(0.15)) out << ", co2: " << more_.between(300e-6, 800e-6);
+    if (more_.chance(0.3)) out << ", aerosol: " << more_.of(kAerosols);
+    return out;
   }
 
   std::string lightFromAbove() {
