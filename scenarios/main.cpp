@@ -16,7 +16,7 @@ using namespace pitviper;
 std::vector<CommandLine> commands() {
   return {runCommand(),        checkCommand(),      planCommand(),     auditCommand(),         infoCommand(),          integrateCommand(),  streamCommand(),
           selfTestCommand(),   measureCommand(),    benchCommand(),    scenarioBenchCommand(), accuracyBenchCommand(), firstBenchCommand(), onceBenchCommand(),
-          guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    keysCommand()};
+          guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    skyCommand(),           keysCommand()};
 }
 
 void printHelp() {

@@ -15,6 +15,7 @@ CommandLine planCommand();
 CommandLine atmosphereCommand();
 CommandLine materialCommand();
 CommandLine measureCommand();
+CommandLine skyCommand();
 CommandLine keysCommand();
 CommandLine streamCommand();
 CommandLine selfTestCommand();

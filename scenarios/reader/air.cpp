@@ -90,8 +90,8 @@ void Builder::readAtmosphere(const Record& scenario) {
       throw UserError(r.where("model"), "library air '" + r.text("library") + "' is " + own.front().model->name + ", and 'model' says " + asked,
                       "'model: " + own.front().model->name + "', or none", "remove 'model'");
   }
-  simulation_.air =
-      makeAir(air, base_, libraries_.atmosphere, [this](const Value& v, const Parameter& p) { return bounded(spectra_, v, p.unit, p.key + " of the air", p.minimum, p.maximum); });
+  simulation_.air = makeAir(air, base_, libraries_.atmosphere,
+                            [this](const Value& v, const Parameter& p) { return bounded(spectra_, v, p.unit, p.key + " of the air", p.minimum, p.maximum); });
 }
 
 }  // namespace pitviper

@@ -6,7 +6,8 @@ namespace {
 namespace fs = std::filesystem;
 
 bool namesFile(const std::string& key, const Value& item) {
-  return (key == "file" || key == "table" || key == "tape7" || key == "csv" || key == "sounding") && item.kind == Value::Kind::Scalar && fs::path(item.text).is_relative();
+  return (key == "file" || key == "table" || key == "tape7" || key == "csv" || key == "sounding") && item.kind == Value::Kind::Scalar &&
+         fs::path(item.text).is_relative();
 }
 
 /// From one folder to another, or the other as it is where no way is known.

@@ -11,6 +11,7 @@
 #include "sim/parameters/units.hpp"
 #include "sim/plan/budget.hpp"
 #include "sim/radiance/sky.hpp"
+#include "sim/sky/sky_places.hpp"
 
 namespace pitviper {
 namespace {
@@ -196,6 +197,53 @@ void Builder::readGround(const Record& scenario) {
   simulation_.ground = ground;
 }
 
+namespace {
+
+glm::dvec3 directionTo(double azimuth_rad, double elevation_rad) {
+  return {std::cos(elevation_rad) * std::sin(azimuth_rad), std::cos(elevation_rad) * std::cos(azimuth_rad), std::sin(elevation_rad)};
+}
+
+/// Beyond its bands the moon's reflectance is held.
+Spectrum shareOf(const MoonLook& moon) {
+  constexpr double kFrom_um = 0.34, kTo_um = 2.4;
+  constexpr int kSteps = 600;
+  Spectrum::Table t{{}, {}, Outside::Hold, "moonlight over sunlight"};
+  for (int i = 0; i <= kSteps; ++i) {
+    t.wavelength_um.push_back(kFrom_um * std::pow(kTo_um / kFrom_um, i / double(kSteps)));
+    t.value.push_back(moonlightShare(moon, t.wavelength_um.back()));
+  }
+  return Spectrum(std::move(t));
+}
+
+/// Where sun or moon stand, and how much of the sun's light at 1 au they send.
+void placeByDate(const Record& scenario, const Record& own, bool isMoon, Sun& sun) {
+  const Value* time = scenario.find("time");
+  const Value* date = time ? time->find("date") : nullptr;
+  if (!date || !scenario.given("origin"))
+    throw UserError(own.where(),
+                    std::string(isMoon ? "the moon" : "the sun") + " has no azimuth and elevation, and the scenario no " + (date ? "origin" : "date"),
+                    "azimuth and elevation, or 'time: {date: 2026-06-21T12:00:00Z}' and 'origin'",
+                    date ? "add 'origin: {latitude: 48 deg, longitude: 11 deg}'" : "add a date to 'time'");
+  std::string problem;
+  std::optional<Instant> when = parseInstant(date->text, problem);
+  if (!when) throw UserError(date->where, "'" + date->text + "' is no date that the sky is known of", problem, "correct it, or give azimuth and elevation");
+  const Record start(*time, tables::time()), origin(scenario.value("origin"), tables::origin());
+  when->fraction += start.number("start") / 86400.0;
+  const GroundPlace where{origin.number("latitude"), origin.number("longitude"), origin.number("height")};
+  if (!isMoon) {
+    const SkyPlace place = sunPlace(*when, where);
+    sun.toSun = directionTo(place.azimuth_rad, place.elevation_rad);
+    const double near = 149597870700.0 / place.distance_m;
+    sun.irradiance = sun.irradiance * Spectrum(near * near);
+    return;
+  }
+  const MoonLook moon = moonLook(*when, where);
+  sun.toSun = directionTo(moon.place.azimuth_rad, moon.place.elevation_rad);
+  sun.irradiance = sun.irradiance * shareOf(moon);
+}
+
+}  // namespace
+
 void Builder::readSun(const Record& scenario) {
   if (!scenario.given("sun")) return;
   const Record r(scenario.value("sun"), tables::sun());
@@ -203,10 +251,19 @@ void Builder::readSun(const Record& scenario) {
     throw UserError(r.where(), r.given("irradiance") ? "the sun has an irradiance and a temperature" : "the sun has neither irradiance nor temperature",
                     "one of the two", r.given("irradiance") ? "remove one" : "add 'temperature: 5772 K'");
   Sun sun;
-  const double a = r.number("azimuth"), e = r.number("elevation");
-  sun.toSun = {std::cos(e) * std::sin(a), std::cos(e) * std::cos(a), std::sin(e)};
   sun.irradiance = r.given("temperature") ? Spectrum(Spectrum::BlackBody{r.number("temperature"), r.number("solid_angle")})
                                           : bounded(spectra_, r.value("irradiance"), "W/(m2 um)", "sun irradiance", 0.0, INFINITY);
+  if (r.given("azimuth") != r.given("elevation"))
+    throw UserError(r.where(), std::string("the sun has no ") + (r.given("azimuth") ? "elevation" : "azimuth"), "both, or neither and 'time: {date}'",
+                    std::string("add '") + (r.given("azimuth") ? "elevation" : "azimuth") + "'");
+  const bool isMoon = r.text("body") == "moon";
+  if (r.given("azimuth")) {
+    if (isMoon)
+      throw UserError(r.where("body"), "a moon at an azimuth and elevation", "one by date: its phase is in its light", "remove 'azimuth' and 'elevation'");
+    sun.toSun = directionTo(r.number("azimuth"), r.number("elevation"));
+  } else {
+    placeByDate(scenario, r, isMoon, sun);
+  }
   simulation_.sun = std::move(sun);
 }
 

@@ -4,13 +4,13 @@
 #include "materials/angle_tables.hpp"
 #include "materials/models.hpp"
 #include "materials/reflection.hpp"
-#include "sensors/gimbal/gimbal_choice.hpp"
-#include "sensors/quantity.hpp"
-#include "sensors/stages.hpp"
 #include "scenarios/reader/flares.hpp"
 #include "scenarios/reader/flights.hpp"
 #include "scenarios/reader/plumes.hpp"
 #include "scenarios/reader/smokes.hpp"
+#include "sensors/gimbal/gimbal_choice.hpp"
+#include "sensors/quantity.hpp"
+#include "sensors/stages.hpp"
 #include "sim/parameters/spectrum_value.hpp"
 #include "sim/parameters/time_course.hpp"
 #include "sim/scene/placement.hpp"
@@ -208,13 +208,19 @@ const ParameterTable& ground() {
 }
 
 const ParameterTable& sun() {
-  static const ParameterTable t{"sun",
-                                "A directional light: irradiance, or a black body's temperature and solid angle.",
-                                {required(within(number("azimuth", "rad", "clockwise from north"), -2 * kHalfTurn, 2 * kHalfTurn)),
-                                 required(within(number("elevation", "rad", "above the horizon"), -kHalfTurn / 2, kHalfTurn / 2)),
-                                 spectrum("irradiance", "W/(m2 um)", "on a plane facing the sun, above the air (at the scene where the air has no top)"),
-                                 within(number("temperature", "K", "black body sun; 5772 K with the default solid angle gives 1361 W/m2"), 1, kHottest_K),
-                                 withDefault(within(above(number("solid_angle", "sr", "of the black body sun"), 0), 0, 2 * kHalfTurn), "6.7943e-5 sr")}};
+  static const ParameterTable t{
+      "sun",
+      "A directional light: irradiance, or a black body's temperature and solid angle. Where it stands: azimuth and elevation, or by the "
+      "scenario's `time: {date}` and `origin`, at frame 0 and for all of the scenario.",
+      {within(number("azimuth", "rad", "clockwise from north"), -2 * kHalfTurn, 2 * kHalfTurn),
+       within(number("elevation", "rad", "above the horizon"), -kHalfTurn / 2, kHalfTurn / 2),
+       withDefault(choice("body", {"sun", "moon"},
+                          "moon, by date: what it sends of the sun's light by its phase (ROLO); `irradiance` and `temperature` are the "
+                          "sun's at 1 au for both"),
+                   "sun"),
+       spectrum("irradiance", "W/(m2 um)", "on a plane facing the sun, above the air (at the scene where the air has no top); by date: at 1 au"),
+       within(number("temperature", "K", "black body sun; 5772 K with the default solid angle gives 1361 W/m2"), 1, kHottest_K),
+       withDefault(within(above(number("solid_angle", "sr", "of the black body sun"), 0), 0, 2 * kHalfTurn), "6.7943e-5 sr")}};
   return t;
 }
 
@@ -317,11 +323,11 @@ const ParameterTable& texture() {
       "A grey PNG (8 or 16 bit, read linearly), a layer of an OpenEXR file, or inline rows, bottom row last, stretched over u and v from 0 to 1; bilinear "
       "between pixel centres. "
       "Where an accuracy is asked for it is read over what a pixel covers of it, and a temperature gives the mean of what that sends.",
-      {text("file", "PNG or EXR file; an EXR's values are in the texture's unit (K, um, or 1). Its display window counts: what its data window leaves out "
+      {text("file",
+            "PNG or EXR file; an EXR's values are in the texture's unit (K, um, or 1). Its display window counts: what its data window leaves out "
             "is 0 of a share (a modifier), and refused of anything else"),
-       text("layer", "of an EXR file with several"),
-       list("rows", "rows of numbers from top to bottom", 1, 4096), any("minimum", "of a PNG file: value of black (a quantity in the texture's unit)"),
-       any("maximum", "of a PNG file: value of white"),
+       text("layer", "of an EXR file with several"), list("rows", "rows of numbers from top to bottom", 1, 4096),
+       any("minimum", "of a PNG file: value of black (a quantity in the texture's unit)"), any("maximum", "of a PNG file: value of white"),
        withDefault(choice("edges", {"hold", "repeat"}, "beyond its edges; repeat where it goes round a sphere or cylinder (u runs round, v from end to end)"),
                    "hold")}};
   return t;

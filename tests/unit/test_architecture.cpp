@@ -13,6 +13,7 @@
 namespace {
 
 const std::vector<std::string> kOrder = {"sim/radiometry",
+                                         "sim/sky",
                                          "sim/parameters",
                                          "sim/image",
                                          "sim/gl",

@@ -106,9 +106,10 @@ TEST(Options, AreToldWithTheirLimitsAndDefaults) {
 
 // Every command of the program: one row for each name, nothing untold, no line that a terminal would break.
 TEST(Options, OfEveryCommandAreWhole) {
-  for (const CommandLine& c : {runCommand(), checkCommand(), planCommand(), auditCommand(), infoCommand(), integrateCommand(), streamCommand(),
-                               selfTestCommand(), measureCommand(), benchCommand(), scenarioBenchCommand(), accuracyBenchCommand(), firstBenchCommand(),
-                               onceBenchCommand(), guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(), keysCommand()}) {
+  for (const CommandLine& c :
+       {runCommand(),        checkCommand(),      planCommand(),     auditCommand(),         infoCommand(),          integrateCommand(),  streamCommand(),
+        selfTestCommand(),   measureCommand(),    benchCommand(),    scenarioBenchCommand(), accuracyBenchCommand(), firstBenchCommand(), onceBenchCommand(),
+        guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    skyCommand(),           keysCommand()}) {
     std::set<std::string> names;
     for (const Option& o : c.options) {
       EXPECT_FALSE(o.help.empty()) << c.name << o.name;
