@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <complex>
 
 #include "atmosphere/layered_fit.hpp"
 #include "atmosphere/layered_gpu.hpp"
 #include "atmosphere/models.hpp"
 #include "atmosphere/scattered_sun.hpp"
+#include "sim/radiometry/mie.hpp"
 #include "sim/radiometry/spectrum.hpp"
 #include "sim/world/haze_not_fog.hpp"
 
@@ -114,11 +116,57 @@ namespace {
 constexpr double kColdest_K = 100.0, kWarmest_K = 500.0;
 /// Clearer air than this is haze or fog, thicker is fog alone: haze would grow to droplets of other spectra.
 constexpr double kThickestHaze_m = 500.0;
+/// An aerosol of one's own.
+constexpr const char* kParticles = "particles";
 /// Humidity by which aerosols of a table without a profile go: Shettle and Fenn's usual one.
 constexpr double kUsualHumidity = 0.7, kUsualWind_m_s = 10.0;
 
 std::vector<std::string> climates() {
   return {"tropical", "midlatitude_summer", "midlatitude_winter", "subarctic_summer", "subarctic_winter", "us_standard_1976"};
+}
+
+/// Spheres of one substance in a log-normal distribution of sizes.
+AerosolOptics particlesOf(const AirRecord& air) {
+  constexpr double kFrom_um = 0.25, kTo_um = 16.0;
+  constexpr int kSteps = 120;
+  const Record& r = air.record;
+  if (!r.given("particle_radius") || !r.given("particle_n"))
+    throw UserError(r.where("aerosol"), "particles of no radius or refractive index", "'particle_radius' and 'particle_n'",
+                    "add 'particle_radius: 0.1 um' and 'particle_n: 1.5'");
+  const SizeDistribution sizes({LogNormalMode{1e6 * r.number("particle_radius"), std::log(r.number("particle_deviation")), 1.0}});
+  const auto indexAt = [&](double um) {
+    return std::complex<double>(air.spectrum("particle_n")(um), r.given("particle_k") ? air.spectrum("particle_k")(um) : 0.0);
+  };
+  std::vector<double> um{0.55};
+  for (int i = 0; i <= kSteps; ++i) um.push_back(kFrom_um * std::pow(kTo_um / kFrom_um, i / double(kSteps)));
+  for (const char* key : {"particle_n", "particle_k"})
+    if (r.given(key))
+      for (double w : air.spectrum(key).knots())
+        if (w > kFrom_um && w < kTo_um) um.push_back(w);
+  std::sort(um.begin(), um.end());
+  um.erase(std::unique(um.begin(), um.end(), [](double a, double b) { return b - a < 1e-6 * a; }), um.end());
+  // What the indices are not known of is not known of the air either: its values there are those of the nearest.
+  const auto known = [&](double w) {
+    try {
+      indexAt(w);
+    } catch (const OutsideSpectrum&) {
+      return false;
+    }
+    return true;
+  };
+  std::erase_if(um, [&](double w) { return !known(w); });
+  if (um.empty() || um.front() > 0.55 || um.back() < 0.55)
+    throw UserError(r.where("particle_n"), "a refractive index that is not known at 0.55 um, where the visibility is", "values from 0.55 um on, or a constant",
+                    "extend the table");
+  AerosolOptics out;
+  double usual = 1.0;
+  for (double w : um) {
+    const ParticleOptics own = opticsOf(sizes, indexAt(w), w, 2);
+    out.wavelength_um.push_back(w), out.extinction.push_back(own.extinction_um2), out.albedo.push_back(own.albedo), out.asymmetry.push_back(own.asymmetry);
+  }
+  usual = out.at(0.55).extinction;
+  for (double& e : out.extinction) e /= usual;
+  return out;
 }
 
 /// The profile that keys ask for; none: the table's own.
@@ -138,8 +186,9 @@ std::optional<AirProfile> profileOf(const Record& r, const std::filesystem::path
 
 }  // namespace
 
-AbsorberTable readAirTable(const Record& r, const std::filesystem::path& folder, const std::filesystem::path& library) {
-  const std::filesystem::path file = folder / r.text("table");
+AbsorberTable readAirTable(const AirRecord& air) {
+  const Record& r = air.record;
+  const std::filesystem::path file = air.folder / r.text("table");
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored))
     throw UserError(r.where("table"), "there is no file '" + file.string() + "'", "an air table, its path relative to this file", "check the path");
@@ -149,17 +198,20 @@ AbsorberTable readAirTable(const Record& r, const std::filesystem::path& folder,
   const auto needs = [&](const char* key, bool holds, const std::string& what) {
     if (r.given(key) && !holds) throw UserError(r.where(key), std::string("'") + key + "' has no say here", what, std::string("remove '") + key + "'");
   };
+  for (const char* key : {"particle_radius", "particle_deviation", "particle_n", "particle_k"})
+    needs(key, aerosol == kParticles, "'aerosol: particles' beside it");
   needs("wind", isNamed && goesByWind(aerosol), "'aerosol: desert' beside it");
   needs("haze_top", aerosol != "none", "an aerosol");
-  if (r.given("visibility") && r.number("visibility") < kThickestHaze_m && !isFog(aerosol))
+  if (r.given("visibility") && r.number("visibility") < kThickestHaze_m && !isFog(aerosol) && aerosol != kParticles)
     throw UserError(r.where("visibility"), "'visibility' is " + std::to_string(static_cast<int>(r.number("visibility"))) + " m, and the aerosol is no fog",
                     "at least 500 m, or a fog", "add 'aerosol: radiation_fog' or 'advection_fog'");
-  const std::optional<AirProfile> profile = profileOf(r, folder, library);
+  const std::optional<AirProfile> profile = profileOf(r, air.folder, air.library);
   if (profile) table.setProfile(*profile, r.where());
   if (r.given("co2")) table.setCarbonDioxide(r.number("co2"), r.where("co2"));
-  if (isNamed)
-    table.setHaze(
-        aerosolOf(aerosol, profile ? profile->humidity() : kUsualHumidity, r.given("wind") ? r.number("wind") : kUsualWind_m_s, library, r.where("aerosol")));
+  if (aerosol == kParticles) table.setHaze(particlesOf(air));
+  else if (isNamed)
+    table.setHaze(aerosolOf(aerosol, profile ? profile->humidity() : kUsualHumidity, r.given("wind") ? r.number("wind") : kUsualWind_m_s, air.library,
+                            r.where("aerosol")));
   if (r.given("haze_top")) table.setHazeTop(r.number("haze_top"));
   if (r.given("visibility")) table.setVisibility(1e-3 * r.number("visibility"));
   if (r.given("aerosol")) aerosol == "none" ? table.removeAerosol() : table.restoreAerosol();
@@ -170,6 +222,7 @@ AbsorberTable readAirTable(const Record& r, const std::filesystem::path& folder,
 static std::vector<std::string> aerosols() {
   std::vector<std::string> all{"none", "table"};
   all.insert(all.end(), aerosolTypes().begin(), aerosolTypes().end());
+  all.push_back(kParticles);
   return all;
 }
 
@@ -190,9 +243,13 @@ AirModel layeredModel() {
        within(number("visibility", "m", "meteorological visibility of the haze; below 500 m of fogs alone"), 20, 3e5),
        choice("aerosol", aerosols(), "without aerosol, with the table's, or another near the ground, by the humidity there"),
        within(number("wind", "m/s", "with `aerosol: desert`; 10 m/s unless given"), 0, 30),
+       within(number("particle_radius", "m", "with `aerosol: particles`: median radius by number of spheres in a log-normal distribution"), 1e-9, 5e-5),
+       withDefault(within(number("particle_deviation", "", "with it: geometric standard deviation of the radius"), 1.02, 4.0), "2"),
+       within(spectrum("particle_n", "", "with it: refractive index; known at 0.55 um, where the visibility is"), 0.01, 20.0),
+       within(spectrum("particle_k", "", "with it: extinction index; 0 unless given"), 0.0, 20.0),
        within(number("haze_top", "m", "height up to which most of the aerosol near the ground lies; 2 km unless given"), 10, 10e3),
        within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
-      [](const AirRecord& air) { return makeLayeredAir(readAirTable(air.record, air.folder, air.library)); }};
+      [](const AirRecord& air) { return makeLayeredAir(readAirTable(air)); }};
 }
 
 }  // namespace pitviper

@@ -44,7 +44,9 @@ AbsorberTable libraryAirTable(const std::string& name, const Libraries& librarie
     keys.keyPlaces.push_back(tree.keyPlaces[k]);
   }
   const ParameterTable table = airTable(layeredModel());
-  return readAirTable(Record(keys, table), libraries.atmosphere, libraries.atmosphere);
+  const Record record(keys, table);
+  const std::map<std::string, Spectrum> none;
+  return readAirTable({{record, none}, libraries.atmosphere, libraries.atmosphere});
 }
 
 }  // namespace pitviper

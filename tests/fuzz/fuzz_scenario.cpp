@@ -291,6 +291,7 @@ Libraries copyLibraries(const fs::path& root, const fs::path& folder) {
       if (entry.path().extension() == ".yaml" || entry.path().extension() == ".air") fs::copy_file(entry.path(), copy / entry.path().filename());
   }
   fs::copy(root / "materials/library/gases", copies.materials / "gases", fs::copy_options::recursive);
+  for (const char* tables : {"climates", "aerosols"}) fs::copy(root / "atmosphere/library" / tables, copies.atmosphere / tables, fs::copy_options::recursive);
   return copies;
 }
 

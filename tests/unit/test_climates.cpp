@@ -5,7 +5,9 @@
 #include <fstream>
 
 #include "atmosphere/absorber_table.hpp"
+#include "sim/world/haze_not_fog.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -154,6 +156,25 @@ TEST(Aerosols, HazeLiesAsHighAsItsTop) {
     EXPECT_NEAR(column(low).amount_km[k] / column(before).amount_km[k], 1.0, 1e-3) << k;
   }
   EXPECT_NEAR(low.densities(0.0).amount_km[haze], before.densities(0.0).amount_km[haze], 1e-12);
+}
+
+// Particles of one's own, through a scenario's keys: spheres far smaller than light scatter as its fourth power, and absorb as its first.
+TEST(Aerosols, SmallParticlesOfOnesOwnFollowRayleigh) {
+  const auto hazeOf = [](const std::string& k) {
+    return scene("atmosphere: {library: hazy_us76, aerosol: particles, particle_radius: 4 nm, particle_deviation: 1.1, particle_n: 1.5, particle_k: " + k +
+                 ", visibility: 20 km}\nprobes: [{name: p, position: [0 m, 0 m, 1 m], channels: [{name: a, response: {band: [0.5 um, 0.6 um]}, output: "
+                 "irradiance}]}]\n");
+  };
+  const Simulation clear = hazeOf("0"), dark = hazeOf("0.5");
+  const auto& white = dynamic_cast<const HasHaze&>(*clear.air);
+  const auto& black = dynamic_cast<const HasHaze&>(*dark.air);
+  figure("extinction of clear 4 nm spheres, 0.5 um over 1.0 um", white.hazePer_km(0.5) / white.hazePer_km(1.0), 16.0, 0.01,
+         "Rayleigh; x is 0.06, and steps of 3.5 %");
+  figure("extinction of dark 4 nm spheres, 0.5 um over 1.0 um", black.hazePer_km(0.5) / black.hazePer_km(1.0), 2.0, 0.01,
+         "absorption as the wavelength; scattering adds 1e-3");
+  figure("extinction at 0.55 um at 20 km of visibility [1/km]", white.hazePer_km(0.55), 3.912 / 20.0 - 0.0116, 5e-3, "Koschmieder less Rayleigh");
+  EXPECT_NEAR(white.hazeAbsorbs(0.7), 0.0, 1e-6);
+  EXPECT_GT(black.hazeAbsorbs(0.7), 0.99);
 }
 
 class Sounding : public ::testing::Test {
