@@ -247,7 +247,7 @@ AirModel layeredModel() {
        withDefault(within(number("particle_deviation", "", "with it: geometric standard deviation of the radius"), 1.02, 4.0), "2"),
        within(spectrum("particle_n", "", "with it: refractive index; known at 0.55 um, where the visibility is"), 0.01, 20.0),
        within(spectrum("particle_k", "", "with it: extinction index; 0 unless given"), 0.0, 20.0),
-       within(number("haze_top", "m", "height up to which most of the aerosol near the ground lies; 2 km unless given"), 10, 10e3),
+       within(number("haze_top", "m", "height up to which most of the aerosol near the ground lies; 2 km unless given"), 50, 10e3),
        within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
       [](const AirRecord& air) { return makeLayeredAir(readAirTable(air)); }};
 }

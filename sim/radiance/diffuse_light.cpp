@@ -21,8 +21,6 @@ constexpr double kHeights_m[] = {0.0, 100.0, 250.0, 500.0, 750.0, 1000.0, 1250.0
 constexpr double kDeepest = 0.12;
 /// Deep within, where light changes slowly: as part of what lies between there and the nearer end.
 constexpr double kDeeper = 0.15;
-/// The sun is no longer seen by any air.
-constexpr double kNight = -0.35;
 /// What the sun would send evenly from all sides, as part of what a black body of the lowest air's temperature sends.
 constexpr double kUnseenSun = 0.005;
 /// First thin layer, as Streams::thin: 8e-5 of the flattest stream.

@@ -27,8 +27,6 @@ constexpr double kRanges_m[] = {0.0, 50.0, 200.0, 600.0, 1500.0, 3e3, 5e3, 8e3, 
 constexpr double kParts[] = {0.0, 0.02, 0.06, 0.13, 0.22, 0.32, 0.43, 0.55, 0.67, 0.79, 0.9, 1.0};
 /// Between the heights at which the sky is known it is linear.
 constexpr double kHeights_m[] = {0.0, 100.0, 500.0, 1500.0, 3e3, 5e3, 8e3, 12e3, 18e3, 27e3, 40e3, 60e3};
-/// The sun is no longer seen by any air.
-constexpr double kNight = -0.35;
 
 /// Air on a line, and how it turns sunlight.
 struct Sightline {

@@ -15,6 +15,9 @@ struct RisenSun {
 };
 RisenSun risenSun(double height_m, double sinElevation, double earthRadius_m);
 
+/// Sine of the sun's elevation below which no air sees it any more.
+constexpr double kNight = -0.35;
+
 class SunLegs {
  public:
   /// For sun elevations around one: sines from 0.02 below it to 0.025 above (130 km around the origin, and a disc on the horizon), more of a high
