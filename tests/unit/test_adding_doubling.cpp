@@ -14,6 +14,7 @@
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/quadrature.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/garcia_siewert.hpp"
 
 namespace pitviper {
 namespace {
@@ -92,6 +93,42 @@ TEST(AddingDoubling, MoleculesAreSweigarts) {
 TEST(AddingDoubling, ForwardPeaksAreVanDeHulsts) {
   expectAll({{"3a", 1.0, 1.0, 1.0, kPi, 0, {0, 1.73849}, {2.47374e-1, 0}, {}, {}}, {"3b", 8.0, 1.0, 1.0, kPi, 0, {0, 1.54958}, {1.59096, 0}, {}, {}}},
             henyeyGreenstein(0.75, 33), {});
+}
+
+// Source: as above, test problems 4 and 5: Garcia and Siewert 1985, Transp. Theory Stat. Phys. 14, 437, tables 12 to 16, 19 and 20, by their moments.
+TEST(AddingDoubling, HazeAndCloudAreGarciaAndSiewerts) {
+  struct Case {
+    const char* name;
+    bool isCloud;
+    double albedo, sine;
+    std::vector<double> depth, down, up;  ///< from the top; down: without the sun
+  };
+  const auto momentsOf = [](const std::vector<double>& printed) {
+    std::vector<double> all{1.0};
+    for (std::size_t l = 1; l <= printed.size(); ++l) all.push_back(printed[l - 1] / (2.0 * static_cast<double>(l) + 1.0));
+    return all;
+  };
+  const std::vector<double> haze = momentsOf(test::kHazeL), cloud = momentsOf(test::kCloudC1);
+  double worst = 0.0;
+  for (const Case& c :
+       {Case{"4a", false, 1.0, 1.0, {0.0, 0.5, 1.0}, {0.0, 1.17401, 1.81264}, {1.73223e-1, 1.11113e-1, 0.0}},
+        Case{"4b", false, 0.9, 1.0, {0.0, 0.5, 1.0}, {0.0, 1.01517, 1.51554}, {1.23665e-1, 7.88690e-2, 0.0}},
+        Case{"4c", false, 0.9, 0.5, {0.0, 0.5, 1.0}, {0.0, 7.02764e-1, 8.03294e-1}, {2.25487e-1, 1.23848e-1, 0.0}},
+        Case{"5a", true, 1.0, 1.0, {0.0, 32.0, 64.0}, {0.0, 2.24768, 4.79851e-1}, {2.66174, 1.76783, 0.0}},
+        Case{
+            "5b", true, 0.9, 1.0, {0.0, 3.2, 12.8, 48.0, 64.0}, {NAN, 1.74767, 2.33975e-1, 6.38345e-5, NAN}, {NAN, 2.70485e-1, 3.74252e-2, 1.02904e-5, NAN}}}) {
+    PlaneLayers layers;
+    for (std::size_t k = 1; k < c.depth.size(); ++k) layers.layers.push_back({c.depth[k] - c.depth[k - 1], c.albedo, c.isCloud ? cloud : haze});
+    layers.sunSine = c.sine, layers.irradiance = kPi;
+    const LayerLight light = lightIn(layers, {c.isCloud ? 48 : 32, 1});
+    for (std::size_t e = 0; e < c.depth.size(); ++e)
+      for (const auto& [found, printed] : {std::pair{light.fluxDown[e], c.down[e]}, {light.fluxUp[e], c.up[e]}}) {
+        if (!(printed > 0.0)) continue;
+        worst = std::max(worst, std::abs(found / printed - 1.0));
+        EXPECT_NEAR(found / printed, 1.0, 1e-5) << c.name << " edge " << e << ": " << found;
+      }
+  }
+  std::printf("irradiance in haze L and cloud C.1 against Garcia and Siewert's, largest deviation %.1e\n", worst);
 }
 
 double bandRadiance(double temperature_K, double low_perCm, double high_perCm) {
