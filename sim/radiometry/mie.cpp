@@ -2,16 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <span>
 #include <stdexcept>
 #include <utility>
+
+#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kPi = std::numbers::pi;
 /// Smallest divisor of a ratio of Bessel functions: a zero hit exactly. Far below what rounding leaves of it.
 constexpr double kAlmostZero = 1e-30;
 /// Intervals that a smooth distribution begins with at least; spheres before and at which, and terms of them at which, doubling does not and does end.

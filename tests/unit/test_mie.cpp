@@ -10,11 +10,11 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <utility>
 
+#include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/mie.hpp"
 #include "tests/support/garcia_siewert.hpp"
 
@@ -22,7 +22,6 @@ namespace pitviper {
 namespace {
 
 using Complex = std::complex<double>;
-constexpr double kPi = std::numbers::pi;
 
 double off(double found, double expected) { return std::abs(found - expected) / std::abs(expected); }
 

@@ -11,12 +11,13 @@
 #include <fstream>
 #include <sstream>
 
+#include "sim/radiometry/constants.hpp"
 #include "sim/sky/sky_places.hpp"
 
 namespace pitviper {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846, kDegree = kPi / 180.0, kSecond = kDegree / 3600.0;
+constexpr double kDegree = kPi / 180.0, kSecond = kDegree / 3600.0;
 /// Geodetic place of earth's centre: places as seen from there are geocentric.
 const GroundPlace kCentre{0.0, 0.0, -6378137.0};
 
