@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <stdexcept>
 
 #include "atmosphere/layered_fit.hpp"
 #include "atmosphere/layered_gpu.hpp"
@@ -161,7 +162,16 @@ AerosolOptics particlesOf(const AirRecord& air) {
   AerosolOptics out;
   double usual = 1.0;
   for (double w : um) {
-    const ParticleOptics own = opticsOf(sizes, indexAt(w), w, 2);
+    const ParticleOptics own = [&] {
+      try {
+        return opticsOf(sizes, indexAt(w), w, 2);
+      } catch (const std::invalid_argument& e) {
+        throw UserError(r.where("particle_radius"), std::string("particles that Mie's theory does not tell: ") + e.what(),
+                        "sizes whose largest have at most 1e6 wavelengths around them, and n above 0", "make radius or deviation smaller");
+      }
+    }();
+    if (!(own.extinction_um2 > 0.0))
+      throw UserError(r.where("particle_n"), "particles that take nothing from light", "n other than 1, or k above 0", "correct the index");
     out.wavelength_um.push_back(w), out.extinction.push_back(own.extinction_um2), out.albedo.push_back(own.albedo), out.asymmetry.push_back(own.asymmetry);
   }
   usual = out.at(0.55).extinction;
@@ -227,29 +237,30 @@ static std::vector<std::string> aerosols() {
 }
 
 AirModel layeredModel() {
-  return {
-      "layered",
-      "Air with structure: absorbers and temperature by height, as a library air has them or a table.",
-      {"table"},
-      {required(text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air")),
-       choice("climate", climates(), "temperature and gases by height, in place of the table's"),
-       text("sounding", "the same as a radiosonde has them: CSV beside the scenario, its columns in ../atmosphere/README.md; above its last row as `climate`"),
-       within(number("surface_temperature", "K", "of the lowest air: it changes by as much there, and less and less up to 11 km; relative humidity stays"), 180,
-              340),
-       within(number("surface_pressure", "Pa", "of the lowest air: pressure above in proportion"), 3e4, 1.1e5),
-       within(number("humidity", "", "relative, of the lowest air: below 11 km in proportion"), 0.0, 1.0),
-       within(number("co2", "", "carbon dioxide by volume, in place of the table's 330e-6; annual means: 369e-6 in 2000, 389e-6 in 2010, 412e-6 in 2020"), 1e-6,
-              0.05),
-       within(number("visibility", "m", "meteorological visibility of the haze; below 500 m of fogs alone"), 20, 3e5),
-       choice("aerosol", aerosols(), "without aerosol, with the table's, or another near the ground, by the humidity there"),
-       within(number("wind", "m/s", "with `aerosol: desert`; 10 m/s unless given"), 0, 30),
-       within(number("particle_radius", "m", "with `aerosol: particles`: median radius by number of spheres in a log-normal distribution"), 1e-9, 5e-5),
-       withDefault(within(number("particle_deviation", "", "with it: geometric standard deviation of the radius"), 1.02, 4.0), "2"),
-       within(spectrum("particle_n", "", "with it: refractive index; known at 0.55 um, where the visibility is"), 0.01, 20.0),
-       within(spectrum("particle_k", "", "with it: extinction index; 0 unless given"), 0.0, 20.0),
-       within(number("haze_top", "m", "height up to which most of the aerosol near the ground lies; 2 km unless given"), 50, 10e3),
-       within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
-      [](const AirRecord& air) { return makeLayeredAir(readAirTable(air)); }};
+  return {"layered",
+          "Air with structure: absorbers and temperature by height, as a library air has them or a table.",
+          {"table"},
+          {required(text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air")),
+           choice("climate", climates(), "temperature and gases by height, in place of the table's"),
+           text("sounding",
+                "the same as a radiosonde has them: CSV beside the scenario, its columns under `Air by climate, weather and aerosol`; above its last row as "
+                "`climate`"),
+           within(number("surface_temperature", "K", "of the lowest air: it changes by as much there, and less and less up to 11 km; relative humidity stays"),
+                  180, 340),
+           within(number("surface_pressure", "Pa", "of the lowest air: pressure above in proportion"), 3e4, 1.1e5),
+           within(number("humidity", "", "relative, of the lowest air: below 11 km in proportion"), 0.0, 1.0),
+           within(number("co2", "", "carbon dioxide by volume, in place of the table's 330e-6; annual means: 369e-6 in 2000, 389e-6 in 2010, 412e-6 in 2020"),
+                  1e-6, 0.05),
+           within(number("visibility", "m", "meteorological visibility of the haze; below 500 m of fogs alone"), 20, 3e5),
+           choice("aerosol", aerosols(), "without aerosol, with the table's, or another near the ground, by the humidity there"),
+           within(number("wind", "m/s", "with `aerosol: desert`; 10 m/s unless given"), 0, 30),
+           within(number("particle_radius", "m", "with `aerosol: particles`: median radius by number of spheres in a log-normal distribution"), 1e-9, 5e-5),
+           withDefault(within(number("particle_deviation", "", "with it: geometric standard deviation of the radius"), 1.02, 4.0), "2"),
+           within(spectrum("particle_n", "", "with it: refractive index; known at 0.55 um, where the visibility is"), 0.01, 20.0),
+           within(spectrum("particle_k", "", "with it: extinction index; 0 unless given"), 0.0, 20.0),
+           within(number("haze_top", "m", "height up to which most of the aerosol near the ground lies; 2 km unless given"), 50, 10e3),
+           within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
+          [](const AirRecord& air) { return makeLayeredAir(readAirTable(air)); }};
 }
 
 }  // namespace pitviper
