@@ -234,7 +234,8 @@ void AbsorberTable::finishLevels() {
 
 namespace {
 
-/// Of an absorber's law, up to a factor: densities in mole fractions x pressure over temperature.
+/// Of an absorber's law, up to a factor: densities in mole fractions x pressure over temperature. Source: LOWTRAN's powers of pressure and temperature
+/// (Pierluissi and Maragoudakis 1986, AFGL-TR-86-0272) and its continua of water and nitrogen (Kneizys et al. 1988, AFGL-TR-88-0177).
 double lawOf(const Absorber& a, const AirLevel& l) {
   constexpr double kSelf = 4.4, kSelf_K = 296.0;
   const double air = l.pressure_Pa / l.temperature_K, water = l.water * air;
@@ -289,6 +290,11 @@ void AbsorberTable::setProfile(const AirProfile& profile, const Location& where)
   }
   levels_ = std::move(levels);
   finishLevels();
+}
+
+std::optional<double> AbsorberTable::referenceHumidity() const {
+  if (!reference_) return std::nullopt;
+  return reference_->water * reference_->pressure_Pa / AirProfile::saturation_Pa(reference_->temperature_K);
 }
 
 void AbsorberTable::setCarbonDioxide(double fraction, const Location& where) {

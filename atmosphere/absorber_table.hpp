@@ -9,7 +9,9 @@
 // Because a band does not decay exponentially, parts of a path do not multiply: add their amounts, then take the exponential. So a light's leg
 // and the camera's leg of reflected light are amounts(...) + amounts(...).
 // The format of the files is at the head of each file, atmosphere/library/*.air.
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <istream>
 #include <limits>
@@ -67,8 +69,10 @@ class AbsorberTable {
   const std::string& title() const { return title_; }
   const std::string& source() const { return source_; }
   std::span<const Absorber> absorbers() const { return absorbers_; }
-  double validLow_um() const { return 1e4 / bins_.back().wavenumber_per_cm; }
-  double validHigh_um() const { return 1e4 / bins_.front().wavenumber_per_cm; }
+  double validLow_um() const { return std::max(1e4 / bins_.back().wavenumber_per_cm, haze_ ? haze_->knownLow_um : 0.0); }
+  double validHigh_um() const { return std::min(1e4 / bins_.front().wavenumber_per_cm, haze_ ? haze_->knownHigh_um : INFINITY); }
+  /// Relative humidity over water of the air in which densities of gases are 1; nothing where the table does not say.
+  std::optional<double> referenceHumidity() const;
   /// Where the coefficients bend, rising.
   std::vector<double> knots_um() const;
   /// Height above which there is nothing.

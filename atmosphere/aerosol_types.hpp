@@ -4,6 +4,7 @@
 // Law: between humidities ln of extinction, of what is absorbed and asymmetry are linear in ln(100 - humidity); between winds ln of both are linear in the
 //   wind; between wavelengths all are linear.
 // Source: as LOWTRAN 7 has them (Kneizys et al. 1988, AFGL-TR-88-0177).
+#include <cmath>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@ namespace pitviper {
 /// At rising wavelengths.
 struct AerosolOptics {
   std::vector<double> wavelength_um, extinction, albedo, asymmetry;  ///< extinction: over that at 0.55 um
+  double knownLow_um = 0.0, knownHigh_um = INFINITY;                 ///< beyond these nobody may ask
   struct At {
     double extinction = 0.0, albedo = 0.0, asymmetry = 0.0;
   };

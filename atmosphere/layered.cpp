@@ -119,7 +119,7 @@ constexpr double kColdest_K = 100.0, kWarmest_K = 500.0;
 constexpr double kThickestHaze_m = 500.0;
 /// An aerosol of one's own.
 constexpr const char* kParticles = "particles";
-/// Humidity by which aerosols of a table without a profile go: Shettle and Fenn's usual one.
+/// Humidity by which aerosols go where a table does not say its own: Shettle and Fenn's usual one.
 constexpr double kUsualHumidity = 0.7, kUsualWind_m_s = 10.0;
 
 std::vector<std::string> climates() {
@@ -146,7 +146,7 @@ AerosolOptics particlesOf(const AirRecord& air) {
         if (w > kFrom_um && w < kTo_um) um.push_back(w);
   std::sort(um.begin(), um.end());
   um.erase(std::unique(um.begin(), um.end(), [](double a, double b) { return b - a < 1e-6 * a; }), um.end());
-  // What the indices are not known of is not known of the air either: its values there are those of the nearest.
+  // What the indices are not known of is not known of the air either.
   const auto known = [&](double w) {
     try {
       indexAt(w);
@@ -160,7 +160,9 @@ AerosolOptics particlesOf(const AirRecord& air) {
     throw UserError(r.where("particle_n"), "a refractive index that is not known at 0.55 um, where the visibility is", "values from 0.55 um on, or a constant",
                     "extend the table");
   AerosolOptics out;
-  double usual = 1.0;
+  // Between two steps of the search the last known one is the end.
+  if (!known(kFrom_um)) out.knownLow_um = um.front();
+  if (!known(kTo_um)) out.knownHigh_um = um.back();
   for (double w : um) {
     const ParticleOptics own = [&] {
       try {
@@ -174,7 +176,7 @@ AerosolOptics particlesOf(const AirRecord& air) {
       throw UserError(r.where("particle_n"), "particles that take nothing from light", "n other than 1, or k above 0", "correct the index");
     out.wavelength_um.push_back(w), out.extinction.push_back(own.extinction_um2), out.albedo.push_back(own.albedo), out.asymmetry.push_back(own.asymmetry);
   }
-  usual = out.at(0.55).extinction;
+  const double usual = out.at(0.55).extinction;
   for (double& e : out.extinction) e /= usual;
   return out;
 }
@@ -220,8 +222,8 @@ AbsorberTable readAirTable(const AirRecord& air) {
   if (r.given("co2")) table.setCarbonDioxide(r.number("co2"), r.where("co2"));
   if (aerosol == kParticles) table.setHaze(particlesOf(air));
   else if (isNamed)
-    table.setHaze(aerosolOf(aerosol, profile ? profile->humidity() : kUsualHumidity, r.given("wind") ? r.number("wind") : kUsualWind_m_s, air.library,
-                            r.where("aerosol")));
+    table.setHaze(aerosolOf(aerosol, profile ? profile->humidity() : table.referenceHumidity().value_or(kUsualHumidity),
+                            r.given("wind") ? r.number("wind") : kUsualWind_m_s, air.library, r.where("aerosol")));
   if (r.given("haze_top")) table.setHazeTop(r.number("haze_top"));
   if (r.given("visibility")) table.setVisibility(1e-3 * r.number("visibility"));
   if (r.given("aerosol")) aerosol == "none" ? table.removeAerosol() : table.restoreAerosol();
@@ -237,30 +239,32 @@ static std::vector<std::string> aerosols() {
 }
 
 AirModel layeredModel() {
-  return {"layered",
-          "Air with structure: absorbers and temperature by height, as a library air has them or a table.",
-          {"table"},
-          {required(text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air")),
-           choice("climate", climates(), "temperature and gases by height, in place of the table's"),
-           text("sounding",
-                "the same as a radiosonde has them: CSV beside the scenario, its columns under `Air by climate, weather and aerosol`; above its last row as "
-                "`climate`"),
-           within(number("surface_temperature", "K", "of the lowest air: it changes by as much there, and less and less up to 11 km; relative humidity stays"),
-                  180, 340),
-           within(number("surface_pressure", "Pa", "of the lowest air: pressure above in proportion"), 3e4, 1.1e5),
-           within(number("humidity", "", "relative, of the lowest air: below 11 km in proportion"), 0.0, 1.0),
-           within(number("co2", "", "carbon dioxide by volume, in place of the table's 330e-6; annual means: 369e-6 in 2000, 389e-6 in 2010, 412e-6 in 2020"),
-                  1e-6, 0.05),
-           within(number("visibility", "m", "meteorological visibility of the haze; below 500 m of fogs alone"), 20, 3e5),
-           choice("aerosol", aerosols(), "without aerosol, with the table's, or another near the ground, by the humidity there"),
-           within(number("wind", "m/s", "with `aerosol: desert`; 10 m/s unless given"), 0, 30),
-           within(number("particle_radius", "m", "with `aerosol: particles`: median radius by number of spheres in a log-normal distribution"), 1e-9, 5e-5),
-           withDefault(within(number("particle_deviation", "", "with it: geometric standard deviation of the radius"), 1.02, 4.0), "2"),
-           within(spectrum("particle_n", "", "with it: refractive index; known at 0.55 um, where the visibility is"), 0.01, 20.0),
-           within(spectrum("particle_k", "", "with it: extinction index; 0 unless given"), 0.0, 20.0),
-           within(number("haze_top", "m", "height up to which most of the aerosol near the ground lies; 2 km unless given"), 50, 10e3),
-           within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
-          [](const AirRecord& air) { return makeLayeredAir(readAirTable(air)); }};
+  return {
+      "layered",
+      "Air with structure: absorbers and temperature by height, as a library air has them or a table.",
+      {"table"},
+      {required(text("table", "air table (.air) beside the scenario, its format at the head of atmosphere/library/us76_rural.air")),
+       choice("climate", climates(), "temperature and gases by height, in place of the table's"),
+       text("sounding",
+            "the same as a radiosonde has them: CSV beside the scenario, its columns under `Air by climate, weather and aerosol`; above its last row as "
+            "`climate`"),
+       within(number("surface_temperature", "K", "of the lowest air: it changes by as much there, and less and less up to 11 km; relative humidity stays"), 180,
+              340),
+       within(number("surface_pressure", "Pa", "of the lowest air: pressure above in proportion"), 3e4, 1.1e5),
+       within(number("humidity", "", "relative, of the lowest air: below 11 km in proportion"), 0.0, 1.0),
+       within(number("co2", "", "carbon dioxide by volume, in place of the table's 330e-6; annual means: 369e-6 in 2000, 389e-6 in 2010, 412e-6 in 2020"), 1e-6,
+              0.05),
+       within(number("visibility", "m", "meteorological visibility of the haze; below 500 m of fogs and particles alone"), 20, 3e5),
+       choice("aerosol", aerosols(), "without aerosol, with the table's, or another near the ground, by the humidity there; 23 km of visibility unless given"),
+       within(number("wind", "m/s", "with `aerosol: desert`; 10 m/s unless given"), 0, 30),
+       within(number("particle_radius", "m", "with `aerosol: particles`: median radius by number of spheres in a log-normal distribution"), 1e-9, 5e-5),
+       withDefault(within(number("particle_deviation", "", "with it: geometric standard deviation of the radius"), 1.02, 4.0), "2"),
+       within(spectrum("particle_n", "", "with it: refractive index; known at 0.55 um, where the visibility is; outside what it is known of the air is not"),
+              0.01, 20.0),
+       within(spectrum("particle_k", "", "with it: extinction index; 0 unless given"), 0.0, 20.0),
+       within(number("haze_top", "m", "height up to which most of the aerosol near the ground lies; 2 km unless given"), 50, 10e3),
+       within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
+      [](const AirRecord& air) { return makeLayeredAir(readAirTable(air)); }};
 }
 
 }  // namespace pitviper

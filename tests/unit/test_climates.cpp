@@ -177,6 +177,22 @@ TEST(Aerosols, SmallParticlesOfOnesOwnFollowRayleigh) {
   EXPECT_GT(black.hazeAbsorbs(0.7), 0.99);
 }
 
+// The table's own air has 46 % of humidity; and nobody may ask for light that an index is not known of.
+TEST(Aerosols, GoByTheTablesOwnHumidityAndEndWithTheirIndex) {
+  EXPECT_NEAR(table().referenceHumidity().value_or(0.0), climate("us_standard_1976").humidity(), 1e-9);
+  const auto airOf = [](const std::string& keys) {
+    return scene("atmosphere: {library: hazy_us76, " + keys +
+                 "}\nprobes: [{name: p, position: [0 m, 0 m, 1 m], channels: [{name: a, response: {band: [0.5 um, 0.6 um]}, output: irradiance}]}]\n");
+  };
+  const Simulation rural = airOf("aerosol: rural"), half = airOf(
+                                                        "aerosol: particles, particle_radius: 0.1 um, particle_n: {wavelength: um, unit: 1, values: "
+                                                        "[[0.4, 1.5], [0.7, 1.5]]}");
+  const auto& haze = dynamic_cast<const HasHaze&>(*rural.air);
+  EXPECT_NEAR(haze.hazeAbsorbs(11.5), 1.0 - aerosolOf("rural", 0.46, 0.0, kLibrary, {}).at(11.5).albedo, 2e-3);
+  EXPECT_NEAR(half.air->validHigh_um(), 0.7, 1e-6);
+  EXPECT_NEAR(half.air->validLow_um(), 0.4, 1e-6);
+}
+
 class Sounding : public ::testing::Test {
  protected:
   void SetUp() override {
