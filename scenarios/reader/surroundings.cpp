@@ -229,6 +229,8 @@ void placeByDate(const Record& scenario, const Record& own, bool isMoon, Sun& su
   if (!when) throw UserError(date->where, "'" + date->text + "' is no date that the sky is known of", problem, "correct it, or give azimuth and elevation");
   const Record start(*time, tables::time()), origin(scenario.value("origin"), tables::origin());
   when->fraction += start.number("start") / 86400.0;
+  if (!isCovered(*when))
+    throw UserError(start.where("start"), "frame 0 lies where earth and moon are not known", "from 1900-01-01 to 2100-01-01", "correct 'start' or 'date'");
   const GroundPlace where{origin.number("latitude"), origin.number("longitude"), origin.number("height")};
   if (!isMoon) {
     const SkyPlace place = sunPlace(*when, where);

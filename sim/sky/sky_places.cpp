@@ -245,6 +245,11 @@ std::string twoDigits(int n) { return (n < 10 ? "0" : "") + std::to_string(n); }
 
 }  // namespace
 
+bool isCovered(const Instant& when) {
+  const double whole = when.day + when.fraction;
+  return whole >= kFirstDay && whole <= kLastDay;
+}
+
 std::optional<Instant> parseInstant(std::string_view text, std::string& problem) {
   const auto refuse = [&](const std::string& why) -> std::optional<Instant> {
     problem = why;
@@ -306,9 +311,7 @@ std::optional<Instant> parseInstant(std::string_view text, std::string& problem)
                              static_cast<int>(static_cast<unsigned>(utc.day())), rest / 60, rest % 60, second, &instant.day, &instant.fraction);
   // 1: leap seconds to come are not known.
   if (state != 0 && state != 1) return refuse("seconds below 60: UTC has no leap second there");
-  const double whole = instant.day + instant.fraction;
-  if (whole < kFirstDay || whole > kLastDay)
-    return refuse("a date of 1900-01-01T00:00Z to 2100-01-01T00:00Z: where earth and moon are is known for these alone");
+  if (!isCovered(instant)) return refuse("a date of 1900-01-01T00:00Z to 2100-01-01T00:00Z: where earth and moon are is known for these alone");
   return instant;
 }
 

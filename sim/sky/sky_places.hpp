@@ -27,6 +27,9 @@ struct Instant {
 /// offset such as +02:00; without, it is UTC. Where it can't be read or lies outside 1900 to 2100: nothing, and `problem` says what was expected.
 std::optional<Instant> parseInstant(std::string_view text, std::string& problem);
 
+/// Whether earth and moon are known of it, as parseInstant() asks of what it reads.
+bool isCovered(const Instant& when);
+
 /// Geodetic, on WGS84. Longitude is positive to the east, height is above the ellipsoid.
 struct GroundPlace {
   double latitude_rad = 0.0, longitude_rad = 0.0, height_m = 0.0;

@@ -70,6 +70,7 @@ TEST(SunByDate, WhatIsMissingIsSaid) {
            {sunScene("", kGolden, "temperature: 5772 K"), "add a date to 'time'"},
            {sunScene(date, "", "temperature: 5772 K"), "add 'origin: {latitude: 48 deg, longitude: 11 deg}'"},
            {sunScene("date: 1850-06-21T12:00:00", kGolden, "temperature: 5772 K"), "1900-01-01T00:00Z to 2100-01-01T00:00Z"},
+           {sunScene("date: 2090-01-01T10:00:00, start: 1e9 s", kGolden, "temperature: 5772 K"), "correct 'start' or 'date'"},
            {sunScene(date, kGolden, "body: moon, azimuth: 10 deg, elevation: 10 deg, temperature: 5772 K"), "remove 'azimuth' and 'elevation'"}})
     EXPECT_NE(refusal(yaml).find(said), std::string::npos) << refusal(yaml);
 }
