@@ -21,8 +21,12 @@ double hazeExtinction_per_km(double visibility_km) { return 3.912 / visibility_k
 
 // Densest fog to the clearest air.
 constexpr double kLeastVisibility_km = 0.02, kMostVisibility_km = 300.0;
-/// Up to which most of a table's haze lies.
-constexpr double kHazeTop_m = 2000.0;
+/// Below this height aerosol stands on the ground.
+constexpr double kSqueezed_m = 6000.0;
+/// Over which a layer of particles begins and ends.
+constexpr double kLayerEdge_m = 1.0;
+/// Levels nearer to each other than this are one.
+constexpr double kSameLevel_m = 0.1;
 
 struct Word {
   std::string_view text;
@@ -232,6 +236,28 @@ void AbsorberTable::finishLevels() {
     }
 }
 
+std::array<double, kMostAbsorbers> AbsorberTable::tableDensities(double height_m) const {
+  std::array<double, kMostAbsorbers> all{};
+  if (height_m > top_m()) return all;
+  const size_t i = intervalAt(height_m);
+  AbsorberAmounts here;
+  addDensities(i, partOf(i, height_m), 1.0, here);
+  for (size_t k = 0; k < absorbers_.size(); ++k) all[k] = scale_[k] > 0.0 ? here.amount_km[k] / scale_[k] : 0.0;
+  return all;
+}
+
+void AbsorberTable::relevel(std::vector<double> heights, const std::function<Level(double)>& levelAt) {
+  std::sort(heights.begin(), heights.end());
+  std::vector<Level> levels;
+  for (double h : heights) {
+    if (!levels.empty() && h < levels.back().altitude_m + kSameLevel_m) continue;
+    levels.push_back(levelAt(h));
+    levels.back().altitude_m = h;
+  }
+  levels_ = std::move(levels);
+  finishLevels();
+}
+
 namespace {
 
 /// Of an absorber's law, up to a factor: densities in mole fractions x pressure over temperature. Source: LOWTRAN's powers of pressure and temperature
@@ -270,26 +296,17 @@ void AbsorberTable::setProfile(const AirProfile& profile, const Location& where)
   for (const Level& l : levels_) heights.push_back(l.altitude_m);
   for (const AirLevel& l : profile.levels())
     if (l.altitude_m < heights.back()) heights.push_back(l.altitude_m);
-  std::sort(heights.begin(), heights.end());
   const AirLevel usual{0.0, reference_->pressure_Pa, reference_->temperature_K, reference_->water, reference_->ozone};
-  std::vector<Level> levels;
-  for (double h : heights) {
-    if (!levels.empty() && h < levels.back().altitude_m + 1.0) continue;
+  relevel(std::move(heights), [&](double h) {
     Level own;
-    own.altitude_m = h;
     AirLevel air = profile.at(h);
     // Below the first and above the last row pressure goes on by its weight.
     air.pressure_Pa *= std::exp((profile.at(h).altitude_m - h) * 9.80665 / (287.05 * air.temperature_K));
     own.temperature_K = air.temperature_K;
-    const size_t i = intervalAt(h);
-    AbsorberAmounts here;
-    addDensities(i, partOf(i, h), 1.0, here);
-    for (size_t k = 0; k < absorbers_.size(); ++k)
-      own.density[k] = isGas(absorbers_[k]) ? lawOf(absorbers_[k], air) / lawOf(absorbers_[k], usual) : scale_[k] > 0.0 ? here.amount_km[k] / scale_[k] : 0.0;
-    levels.push_back(own);
-  }
-  levels_ = std::move(levels);
-  finishLevels();
+    const auto here = tableDensities(h);
+    for (size_t k = 0; k < absorbers_.size(); ++k) own.density[k] = isGas(absorbers_[k]) ? lawOf(absorbers_[k], air) / lawOf(absorbers_[k], usual) : here[k];
+    return own;
+  });
 }
 
 std::optional<double> AbsorberTable::referenceHumidity() const {
@@ -320,35 +337,83 @@ void AbsorberTable::setHaze(const AerosolOptics& optics) {
 
 void AbsorberTable::setHazeTop(double height_m) {
   // What the table has of haze at a height comes to lie as much lower or higher as its top is.
-  const double stretched = height_m / kHazeTop_m;
-  std::vector<double> heights, old;
-  for (const Level& l : levels_) heights.push_back(l.altitude_m), old.push_back(l.altitude_m);
-  for (double h : old)
-    if (h > 0.0 && h <= 1.6 * kHazeTop_m && h * stretched < old.back()) heights.push_back(h * stretched);
-  std::sort(heights.begin(), heights.end());
-  std::vector<Level> levels;
-  for (double h : heights) {
-    if (!levels.empty() && h < levels.back().altitude_m + 1.0) continue;
+  const double stretched = height_m / hazeTop_m_;
+  std::vector<double> heights = levels_m();
+  for (double h : levels_m())
+    if (h > 0.0 && h <= 1.6 * hazeTop_m_ && h * stretched < top_m()) heights.push_back(h * stretched);
+  relevel(std::move(heights), [&](double h) {
     Level own;
-    own.altitude_m = h;
     own.temperature_K = this->temperature_K(h);
-    const auto densitiesAt = [&](double at) {
-      const size_t i = intervalAt(at);
-      AbsorberAmounts here;
-      addDensities(i, partOf(i, at), 1.0, here);
-      return here;
-    };
-    const AbsorberAmounts here = densitiesAt(h), there = densitiesAt(h / stretched);
-    for (size_t k = 0; k < absorbers_.size(); ++k) {
-      const bool isHaze = absorbers_[k].kind == AbsorberKind::Haze;
-      const double amount = isHaze ? h / stretched < old.back() ? there.amount_km[k] : 0.0 : here.amount_km[k];
-      own.density[k] = scale_[k] > 0.0 ? amount / scale_[k] : 0.0;
-    }
-    levels.push_back(own);
-  }
-  levels_ = std::move(levels);
-  finishLevels();
+    own.density = tableDensities(h);
+    const auto there = tableDensities(h / stretched);
+    for (size_t k = 0; k < absorbers_.size(); ++k)
+      if (absorbers_[k].kind == AbsorberKind::Haze) own.density[k] = there[k];
+    return own;
+  });
+  hazeTop_m_ = height_m;
 }
+
+void AbsorberTable::setGround(double ground_m) {
+  const double squeezed = (kSqueezed_m - ground_m) / kSqueezed_m;
+  std::vector<double> heights{0.0};
+  for (double h : levels_m()) {
+    if (h > ground_m) heights.push_back(h - ground_m);
+    if (h <= kSqueezed_m) heights.push_back(h * squeezed);
+  }
+  // A height in two intervals of the old table is in one of the new.
+  std::erase_if(heights, [&](double h) { return h + ground_m > top_m(); });
+  relevel(std::move(heights), [&](double h) {
+    Level own;
+    own.temperature_K = this->temperature_K(h + ground_m);
+    own.density = tableDensities(h + ground_m);
+    const auto aerosol = tableDensities(h < kSqueezed_m * squeezed ? h / squeezed : h + ground_m);
+    for (size_t k = 0; k < absorbers_.size(); ++k)
+      if (absorbers_[k].kind == AbsorberKind::Haze || absorbers_[k].kind == AbsorberKind::Aerosol) own.density[k] = aerosol[k];
+    return own;
+  });
+  hazeTop_m_ *= squeezed;
+}
+
+void AbsorberTable::addLayer(const ParticleLayer& layer, const Location& where) {
+  const auto same = std::find_if(layers_.begin(), layers_.end(), [&](const Layer& l) {
+    return l.of.optics.extinction == layer.optics.extinction && l.of.optics.albedo == layer.optics.albedo && l.of.optics.asymmetry == layer.optics.asymmetry;
+  });
+  size_t own = same == layers_.end() ? absorbers_.size() : same->absorber;
+  if (own == absorbers_.size()) {
+    if (own == kMostAbsorbers)
+      throw UserError(where, "more kinds of clouds and rain than the air can hold beside its " + std::to_string(own - layers_.size()) + " amounts",
+                      "at most " + std::to_string(kMostAbsorbers - own + layers_.size()) + " of them that differ in kind or radius",
+                      "give layers the same radius, or take one out");
+    absorbers_.push_back({"layer " + std::to_string(own), 1.0, AbsorberKind::Layer});
+    scale_[own] = 1.0;
+    for (Bin& b : bins_) b.coefficient[own] = layer.optics.at(1e4 / b.wavenumber_per_cm).extinction;
+  }
+  layers_.push_back({own, layer});
+  std::vector<double> heights;
+  const double edges[] = {layer.low_m - 0.5 * kLayerEdge_m, layer.low_m + 0.5 * kLayerEdge_m, layer.high_m - 0.5 * kLayerEdge_m,
+                          layer.high_m + 0.5 * kLayerEdge_m};
+  // Its edges are levels themselves: what stands too near to one gives way.
+  for (double h : levels_m())
+    if (std::none_of(std::begin(edges), std::end(edges), [&](double e) { return std::abs(e - h) < kSameLevel_m; })) heights.push_back(h);
+  for (double e : edges)
+    if (e > heights.front()) heights.push_back(e);
+  relevel(std::move(heights), [&](double h) {
+    Level at;
+    at.temperature_K = this->temperature_K(h);
+    at.density = tableDensities(h);
+    at.density[own] = 0.0;
+    for (const Layer& l : layers_)
+      if (l.absorber == own) {
+        const double inside = std::min(h - l.of.low_m, l.of.high_m - h) / kLayerEdge_m + 0.5;
+        at.density[own] += l.of.perKm * (inside > 0.999 ? 1.0 : inside < 0.001 ? 0.0 : inside);
+      }
+    return at;
+  });
+}
+
+double AbsorberTable::validLow_um() const { return std::max(1e4 / bins_.back().wavenumber_per_cm, haze_ ? haze_->knownLow_um : 0.0); }
+
+double AbsorberTable::validHigh_um() const { return std::min(1e4 / bins_.front().wavenumber_per_cm, haze_ ? haze_->knownHigh_um : INFINITY); }
 
 void AbsorberTable::setTemperature(double temperature_K) {
   for (Level& level : levels_) level.temperature_K = temperature_K;
@@ -401,6 +466,10 @@ void AbsorberTable::addTo(Fingerprint& f) const {
   f.add(haze_.has_value());
   if (haze_) f.all(haze_->wavelength_um).all(haze_->extinction).all(haze_->albedo).all(haze_->asymmetry);
   for (const Absorber& a : absorbers_) f.add(a.exponent).add(static_cast<int>(a.kind));
+  for (const Layer& l : layers_) {
+    f.add(static_cast<int>(l.absorber)).add(l.of.low_m).add(l.of.high_m).add(l.of.perKm);
+    f.all(l.of.optics.wavelength_um).all(l.of.optics.extinction).all(l.of.optics.albedo).all(l.of.optics.asymmetry);
+  }
 }
 
 std::optional<double> AbsorberTable::hazeAsymmetry(double wavelength_um) const {

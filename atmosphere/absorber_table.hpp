@@ -13,6 +13,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <istream>
 #include <limits>
 #include <optional>
@@ -40,7 +41,7 @@ struct AbsorberAmounts {
   friend AbsorberAmounts operator+(AbsorberAmounts a, const AbsorberAmounts& b) { return a += b; }
 };
 
-enum class AbsorberKind { Gas, Scattering, Aerosol, Haze };
+enum class AbsorberKind { Gas, Scattering, Aerosol, Haze, Layer };
 /// How a gas's density follows from pressure, temperature and mixing ratios: the words of the format.
 enum class AbsorberLaw { None, Water, Ozone, Air, Self, Foreign, Pair };
 
@@ -50,6 +51,13 @@ struct Absorber {
   AbsorberKind kind = AbsorberKind::Gas;
   AbsorberLaw law = AbsorberLaw::None;
   double byPressure = 0.0, byTemperature = 0.0;  ///< density x p^x T^-y
+};
+
+/// A cloud, or what falls out of one: particles that lie evenly between two heights.
+struct ParticleLayer {
+  AerosolOptics optics;
+  double low_m = 0.0, high_m = 0.0;
+  double perKm = 0.0;  ///< extinction at 0.55 um
 };
 
 /// A place on a path, with all that lies between its beginning and there.
@@ -69,8 +77,8 @@ class AbsorberTable {
   const std::string& title() const { return title_; }
   const std::string& source() const { return source_; }
   std::span<const Absorber> absorbers() const { return absorbers_; }
-  double validLow_um() const { return std::max(1e4 / bins_.back().wavenumber_per_cm, haze_ ? haze_->knownLow_um : 0.0); }
-  double validHigh_um() const { return std::min(1e4 / bins_.front().wavenumber_per_cm, haze_ ? haze_->knownHigh_um : INFINITY); }
+  double validLow_um() const;
+  double validHigh_um() const;
   /// Relative humidity over water of the air in which densities of gases are 1; nothing where the table does not say.
   std::optional<double> referenceHumidity() const;
   /// Where the coefficients bend, rising.
@@ -91,6 +99,16 @@ class AbsorberTable {
   /// Another aerosol in place of the haze, at the same visibility, and up to which height [m] instead of the table's 2 km: densities are stretched.
   void setHaze(const AerosolOptics& optics);
   void setHazeTop(double height_m);
+  /// The ground stands so high above the sea: from here on heights are above it. Gases stay where they are; aerosol below 6 km is squeezed into what is left,
+  /// as LOWTRAN 7 does (Kneizys et al. 1988, GNDALT).
+  void setGround(double ground_m);
+  /// Further particles, above the ground as it is now; the last to be set. Errors: UserError at `where` for more amounts than a table may have.
+  void addLayer(const ParticleLayer& layer, const Location& where);
+  struct Layer {
+    std::size_t absorber = 0;
+    ParticleLayer of;
+  };
+  const std::vector<Layer>& layers() const { return layers_; }
   /// The same temperature everywhere; densities stay as they are.
   void setTemperature(double temperature_K);
   /// No aerosol at all; setVisibility() brings it back.
@@ -183,6 +201,12 @@ class AbsorberTable {
   double visibility_km_ = 23.0;                 ///< for which the coefficients stand
   std::array<double, kMostAbsorbers> scale_{};  ///< of each absorber's density: 1, or as the visibility asks
   void finishLevels();
+  /// Of the table, as if nothing were scaled.
+  std::array<double, kMostAbsorbers> tableDensities(double height_m) const;
+  /// Levels anew at some of these heights.
+  void relevel(std::vector<double> heights_m, const std::function<Level(double)>& levelAt);
+  double hazeTop_m_ = 2000.0;  ///< up to which most of the haze lies
+  std::vector<Layer> layers_;
   std::optional<Reference> reference_;
   std::vector<Range> carbonDioxide_;  ///< where an absorber is that
   std::optional<AerosolOptics> haze_;

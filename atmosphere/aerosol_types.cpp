@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "sim/parameters/csv_table.hpp"
 
@@ -11,7 +12,7 @@ namespace {
 /// What LOWTRAN has, and no droplet is larger beyond.
 constexpr double kDampest_percent = 99.0;
 
-/// One of a file's blocks: a humidity [%] or a wind [m/s].
+/// One of a file's blocks: a humidity [%], a wind [m/s] or a radius [um].
 struct Block {
   double by = 0.0;
   AerosolOptics optics;
@@ -19,7 +20,7 @@ struct Block {
 
 std::vector<Block> blocksOf(const CsvTable& t) {
   if (t.columns.size() != 5)
-    throw UserError({t.file, 1, 1, -1}, "not an aerosol", "humidity or wind, wavelength, extinction, albedo, asymmetry", "correct the header");
+    throw UserError({t.file, 1, 1, -1}, "not an aerosol", "humidity, wind or radius, wavelength, extinction, albedo, asymmetry", "correct the header");
   std::vector<Block> all;
   for (std::size_t row = 0; row < t.rows(); ++row) {
     if (all.empty() || all.back().by != t.at(row, 0)) all.emplace_back().by = t.at(row, 0);
@@ -71,24 +72,40 @@ const std::vector<std::string>& aerosolTypes() {
 bool isFog(const std::string& type) { return type.ends_with("_fog"); }
 bool goesByWind(const std::string& type) { return type == "desert"; }
 
-AerosolOptics aerosolOf(const std::string& type, double humidity, double wind_m_s, const std::filesystem::path& library, const Location& askedAt) {
-  const CsvTable t = readCsvTable(library / "aerosols" / (type + ".csv"),
+namespace {
+
+/// What the library has of a kind, between the blocks beside `asked`, over its extinction at 0.55 um. `scale`: what its law is even in.
+AerosolOptics betweenBlocks(const std::string& kind, double asked, const std::function<double(double)>& scale, bool logAsymmetry,
+                            const std::filesystem::path& library, const Location& askedAt) {
+  const CsvTable t = readCsvTable(library / "aerosols" / (kind + ".csv"),
                                   {.what = "an aerosol of the library", .mostBytes = 1u << 20, .fix = "check the library"}, 10000, askedAt);
   const std::vector<Block> all = blocksOf(t);
-  const bool byWind = goesByWind(type);
-  const double asked = byWind ? wind_m_s : std::min(100.0 * humidity, kDampest_percent);
   const auto over = std::upper_bound(all.begin(), all.end(), asked, [](double v, const Block& b) { return v < b.by; });
   AerosolOptics out;
   if (over == all.begin()) out = all.front().optics;
   else if (over == all.end()) out = all.back().optics;
   else {
     const Block &low = *(over - 1), &high = *over;
-    const auto scale = [&](double v) { return byWind ? v : std::log(100.0 - v); };
-    out = mixed(low.optics, high.optics, (scale(asked) - scale(low.by)) / (scale(high.by) - scale(low.by)), !byWind);
+    out = mixed(low.optics, high.optics, (scale(asked) - scale(low.by)) / (scale(high.by) - scale(low.by)), logAsymmetry);
   }
   const double usual = out.at(0.55).extinction;
   for (double& e : out.extinction) e /= usual;
   return out;
+}
+
+}  // namespace
+
+AerosolOptics aerosolOf(const std::string& type, double humidity, double wind_m_s, const std::filesystem::path& library, const Location& askedAt) {
+  if (goesByWind(type))
+    return betweenBlocks(
+        type, wind_m_s, [](double v) { return v; }, false, library, askedAt);
+  return betweenBlocks(
+      type, std::min(100.0 * humidity, kDampest_percent), [](double v) { return std::log(100.0 - v); }, true, library, askedAt);
+}
+
+AerosolOptics dropsOf(const std::string& kind, double radius_um, const std::filesystem::path& library, const Location& askedAt) {
+  return betweenBlocks(
+      kind, radius_um, [](double v) { return std::log(v); }, false, library, askedAt);
 }
 
 }  // namespace pitviper

@@ -157,6 +157,13 @@ AirLevel AirProfile::at(double altitude_m) const {
   return between(*(over - 1), *over, altitude_m);
 }
 
+void AirProfile::cutAt(double altitude_m) {
+  if (!(altitude_m > levels_.front().altitude_m)) return;
+  const AirLevel first = at(altitude_m);
+  std::erase_if(levels_, [&](const AirLevel& l) { return l.altitude_m <= altitude_m; });
+  levels_.insert(levels_.begin(), first);
+}
+
 double AirProfile::humidity() const {
   const AirLevel& l = levels_.front();
   return l.water * l.pressure_Pa / saturation_Pa(l.temperature_K);

@@ -33,6 +33,8 @@ class AirProfile {
   AirLevel at(double altitude_m) const;
   /// Relative humidity over water at the lowest level, 0 to 1.
   double humidity() const;
+  /// Nothing is below this height; the lowest level stands there. Heights stay above the sea.
+  void cutAt(double altitude_m);
   /// Temperature changes by as much at the ground and less and less up to 11 km, relative humidity below stays as it is or in proportion to the ground's
   /// (100 % at most), pressure follows by its weight.
   void setGround(const AirAtGround& ground);

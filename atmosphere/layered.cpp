@@ -5,6 +5,7 @@
 #include <complex>
 #include <stdexcept>
 
+#include "atmosphere/clouds.hpp"
 #include "atmosphere/layered_fit.hpp"
 #include "atmosphere/layered_gpu.hpp"
 #include "atmosphere/models.hpp"
@@ -33,6 +34,7 @@ class Layered final : public Atmosphere, public HasHaze {
     for (const Absorber& a : table_.absorbers()) exponents_.push_back(a.exponent);
     const AbsorberAmounts above = table_.amounts(0.0, 1.0, INFINITY, 6371e3);
     for (size_t k = 0; k < exponents_.size(); ++k) column_[k] = above.amount_km[k];
+    for (const AbsorberTable::Layer& l : table_.layers()) shells_.push_back({static_cast<int>(l.absorber), l.of.low_m, l.of.high_m, 1e-3 * l.of.perKm});
   }
   AirTraits traits() const override { return {.variesAlongWay = true, .scattersSun = true, .liesOnGround = true, .isBanded = true}; }
   std::unique_ptr<AirOnGpu> onGpu(const Simulation& simulation, const Plan& plan, bool perChannel) const override {
@@ -46,18 +48,31 @@ class Layered final : public Atmosphere, public HasHaze {
     const auto c = table_.coefficients(w);
     std::copy(c.begin(), c.end(), n.extinction.begin());
     const auto absorbers = table_.absorbers();
-    // Of haze and the aerosol above it the mean, by what a column of the air has of them.
+    // Haze and the aerosol above it are one kind of particles, their mean by what a column of the air has of them; each cloud is its own.
     const double albedo = table_.hazeAlbedo(w), above = table_.aerosolAlbedo(w), asymmetryAbove = asymmetry_(w);
     const double asymmetry = table_.hazeAsymmetry(w).value_or(asymmetryAbove);
     double turned = 0.0, scattered = 0.0;
+    const auto isHazy = [&](size_t k) { return absorbers[k].kind == AbsorberKind::Haze || absorbers[k].kind == AbsorberKind::Aerosol; };
     for (size_t k = 0; k < absorbers.size(); ++k) {
       if (absorbers[k].kind == AbsorberKind::Scattering) n.molecules[k] = c[k];
+      if (!isHazy(k)) continue;
       const bool isHaze = absorbers[k].kind == AbsorberKind::Haze;
-      if (!isHaze && absorbers[k].kind != AbsorberKind::Aerosol) continue;
       n.haze[k] = (isHaze ? albedo : above) * c[k];
       turned += column_[k] * n.haze[k] * (isHaze ? asymmetry : asymmetryAbove), scattered += column_[k] * n.haze[k];
     }
-    n.asymmetry = scattered > 0.0 && asymmetry != asymmetryAbove ? turned / scattered : asymmetryAbove;
+    n.meanAsymmetry = scattered > 0.0 && asymmetry != asymmetryAbove ? turned / scattered : asymmetryAbove;
+    for (size_t k = 0; k < absorbers.size(); ++k)
+      if (isHazy(k)) n.asymmetry[k] = n.meanAsymmetry;
+    if (shells_.empty()) return n;
+    turned = n.meanAsymmetry * scattered;
+    for (const AbsorberTable::Layer& l : table_.layers()) {
+      const size_t k = l.absorber;
+      const AerosolOptics::At own = l.of.optics.at(w);
+      n.haze[k] = own.albedo * c[k], n.asymmetry[k] = own.asymmetry;
+      const double column = l.of.perKm * 1e-3 * (l.of.high_m - l.of.low_m);
+      turned += column * n.haze[k] * own.asymmetry, scattered += column * n.haze[k];
+    }
+    if (scattered > 0.0) n.meanAsymmetry = turned / scattered;
     return n;
   }
   double top_m() const override { return table_.top_m(); }
@@ -80,6 +95,7 @@ class Layered final : public Atmosphere, public HasHaze {
     for (const PathStation& s : table_.stationsAt(ray.height_m, ray.sinElevation, ranges_m, ray.earthRadius_m)) all.push_back(stationOf(s));
     return all;
   }
+  std::span<const AirShell> shells() const override { return shells_; }
   AirAmounts densities(double height_m) const override {
     const AbsorberAmounts found = table_.densities(height_m);
     AirAmounts a;
@@ -103,6 +119,7 @@ class Layered final : public Atmosphere, public HasHaze {
  private:
   AbsorberTable table_;
   std::vector<double> exponents_;
+  std::vector<AirShell> shells_;
   std::array<double, kMostAbsorbers> column_{};  ///< amounts from the ground straight up
   Spectrum asymmetry_ = ruralAsymmetry();
 };
@@ -182,12 +199,14 @@ AerosolOptics particlesOf(const AirRecord& air) {
 }
 
 /// The profile that keys ask for; none: the table's own.
-std::optional<AirProfile> profileOf(const Record& r, const std::filesystem::path& folder, const std::filesystem::path& library) {
+std::optional<AirProfile> profileOf(const AirRecord& air) {
+  const Record& r = air.record;
   const bool isChanged = r.given("surface_temperature") || r.given("surface_pressure") || r.given("humidity");
   if (!r.given("climate") && !r.given("sounding") && !isChanged) return std::nullopt;
   const std::string climate = r.given("climate") ? r.text("climate") : "us_standard_1976";
-  AirProfile profile = AirProfile::read(library / "climates" / (climate + ".csv"), r.given("climate") ? r.where("climate") : r.where());
-  if (r.given("sounding")) profile = AirProfile::read(folder / r.text("sounding"), r.where("sounding"), &profile);
+  AirProfile profile = AirProfile::read(air.library / "climates" / (climate + ".csv"), r.given("climate") ? r.where("climate") : r.where());
+  if (r.given("sounding")) profile = AirProfile::read(air.folder / r.text("sounding"), r.where("sounding"), &profile);
+  profile.cutAt(air.ground_m);
   AirAtGround ground;
   if (r.given("surface_temperature")) ground.temperature_K = r.number("surface_temperature");
   if (r.given("surface_pressure")) ground.pressure_Pa = r.number("surface_pressure");
@@ -217,8 +236,9 @@ AbsorberTable readAirTable(const AirRecord& air) {
   if (r.given("visibility") && r.number("visibility") < kThickestHaze_m && !isFog(aerosol) && aerosol != kParticles)
     throw UserError(r.where("visibility"), "'visibility' is " + std::to_string(static_cast<int>(r.number("visibility"))) + " m, and the aerosol is no fog",
                     "at least 500 m, or a fog", "add 'aerosol: radiation_fog' or 'advection_fog'");
-  const std::optional<AirProfile> profile = profileOf(r, air.folder, air.library);
+  const std::optional<AirProfile> profile = profileOf(air);
   if (profile) table.setProfile(*profile, r.where());
+  if (air.ground_m != 0.0) table.setGround(air.ground_m);
   if (r.given("co2")) table.setCarbonDioxide(r.number("co2"), r.where("co2"));
   if (aerosol == kParticles) table.setHaze(particlesOf(air));
   else if (isNamed)
@@ -228,6 +248,7 @@ AbsorberTable readAirTable(const AirRecord& air) {
   if (r.given("visibility")) table.setVisibility(1e-3 * r.number("visibility"));
   if (r.given("aerosol")) aerosol == "none" ? table.removeAerosol() : table.restoreAerosol();
   if (r.given("temperature")) table.setTemperature(r.number("temperature"));
+  addClouds(air, table);
   return table;
 }
 
@@ -239,7 +260,7 @@ static std::vector<std::string> aerosols() {
 }
 
 AirModel layeredModel() {
-  return {
+  AirModel model{
       "layered",
       "Air with structure: absorbers and temperature by height, as a library air has them or a table.",
       {"table"},
@@ -265,6 +286,8 @@ AirModel layeredModel() {
        within(number("haze_top", "m", "height up to which most of the aerosol near the ground lies; 2 km unless given"), 50, 10e3),
        within(number("temperature", "K", "the same at every height, in place of the table's"), kColdest_K, kWarmest_K)},
       [](const AirRecord& air) { return makeLayeredAir(readAirTable(air)); }};
+  for (Parameter& p : cloudParameters()) model.parameters.push_back(std::move(p));
+  return model;
 }
 
 }  // namespace pitviper

@@ -1,4 +1,5 @@
 //@use sim/radiometry/glsl/exponential.glsl
+//@use sim/radiometry/glsl/shell.glsl
 // Layered air: -ln tau = sum of c_k W_k^a_k over the absorbers k, four to a vector. What a camera's way holds (logarithm of the mean density)
 // and sends beyond air of one temperature comes from a table by elevation and range, made in double precision for each view
 // (atmosphere/layered_gpu.hpp); ways on to lights and to the sun from tables by height. Amounts of both legs are added before the
@@ -11,6 +12,7 @@ layout(std140, binding = 3) uniform AirBlock {
   vec4 exponent[AIR_VECTORS];
   vec4 asymmetry[AIR_VALUES];  // of nodes, or of channels
   vec4 black[AIR_BLACKS];  // of nodes: radiance of a black body of the air's temperature at the camera
+  vec4 shells[max(AIR_SHELLS, 1)];  // from, to [m], amount per metre, which
 } air;
 //@slot air_extinction
 // [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density, column above][vector]
@@ -38,6 +40,23 @@ float airEntry() {
   return root <= 0.0 || b >= 0.0 ? kFar : -q2 / (sqrt(root) - b);
 }
 
+// What shells have on a way. Their exponent is 1.
+void addShells(inout AirPath p, float height, float sine, float range) {
+//@each s AIR_SHELLS
+  {
+    vec4 shell = air.shells[{s}];
+    float held = shell.z * lengthInShell(shell.x, shell.y, height, sine, range, view.earth.x);
+//@each v AIR_VECTORS
+    {
+      vec4 own = held * vec4(equal(vec4(shell.w), vec4(4 * {v}, 4 * {v} + 1, 4 * {v} + 2, 4 * {v} + 3)));
+      p.w{v} += own;
+      p.u{v} += own;
+    }
+//@end
+  }
+//@end
+}
+
 AirPath airFromCamera(float range) {
   AirPath p;
   bool space = range >= kFar;
@@ -58,6 +77,7 @@ AirPath airFromCamera(float range) {
     p.u{v} = length > 0.0 ? exp(l * air.exponent[{v}]) : vec4(0.0);
   }
 //@end
+  addShells(p, view.up.w, sinElevation_, range);
   return p;
 }
 
@@ -135,6 +155,7 @@ AirPath airToSun(AirPath camera, float height) {
   leg.w{v} += below * airLowest({v});
   p.w{v} += sine < 0.0 ? max(2.0 * half_.w{v} - leg.w{v}, vec4(0.0)) : leg.w{v};
 //@end
+  addShells(p, height, sine, kFar);
   return airRaised(p);
 }
 
@@ -164,6 +185,7 @@ AirPath airToLight(AirPath camera, float height, float sinElevation, float dista
     s0 = s1;
   }
 //@end
+  addShells(p, height, sinElevation, distance);
   return airRaised(p);
 }
 

@@ -39,11 +39,12 @@ struct Seen {
 /// Works out entries as the shader does in direct mode (atmosphere/layered.glsl), in double precision.
 class Reader {
  public:
-  Reader(const Simulation& simulation, const Plan& plan, const AirRows& rows, double cosScatter)
-      : plan_(plan), rows_(rows), powers_(simulation.air->exponents()), cosScatter_(cosScatter), black_(rows.black()) {}
+  /// `shells`: what the line has of them, in closed form.
+  Reader(const Simulation& simulation, const Plan& plan, const AirRows& rows, double cosScatter, const AirAmounts& shells)
+      : plan_(plan), rows_(rows), powers_(simulation.air->exponents()), cosScatter_(cosScatter), shells_(shells), black_(rows.black()) {}
   /// Of rows of two heights, mixed.
-  Reader(const Simulation& simulation, const Plan& plan, const AirRows& rows, const AirRows& others, double share, double cosScatter)
-      : Reader(simulation, plan, rows, cosScatter) {
+  Reader(const Simulation& simulation, const Plan& plan, const AirRows& rows, const AirRows& others, double share, double cosScatter, const AirAmounts& shells)
+      : Reader(simulation, plan, rows, cosScatter, shells) {
     for (size_t i = 0; i < black_.size(); ++i) black_[i] += share * (others.black()[i] - black_[i]);
   }
 
@@ -55,7 +56,8 @@ class Reader {
       return (1.0 - share) * static_cast<double>(x[i]) + share * static_cast<double>(y[j]);
     };
     std::array<double, kMostAirAmounts> u{};
-    for (size_t k = 0; k < powers_.size(); ++k) u[k] = std::exp((mixed(a.amounts, columnA * logs + k, b.amounts, columnB * logs + k) + logLength) * powers_[k]);
+    for (size_t k = 0; k < powers_.size(); ++k)
+      u[k] = std::exp((mixed(a.amounts, columnA * logs + k, b.amounts, columnB * logs + k) + logLength) * powers_[k]) + shells_.amount[k];
     Seen seen{std::vector<double>(slots, 0.0), std::vector<double>(slots, 0.0)};
     for (size_t i = 0; i < plan_.nodes.size(); ++i) {
       double depth = 0.0;
@@ -83,6 +85,7 @@ class Reader {
   const AirRows& rows_;
   std::span<const double> powers_;
   double cosScatter_;
+  AirAmounts shells_;
   std::vector<double> black_;
 };
 
@@ -128,7 +131,8 @@ class LineLoss {
         own_(own),
         radiance_(radiance),
         floor_(floor),
-        reader_(simulation, plan, own.rows, own.rows.cosScatterOf(own.line)),
+        shells_(shellsOf(simulation, own)),
+        reader_(simulation, plan, own.rows, own.rows.cosScatterOf(own.line), shells_),
         stations_(own.rows.stationsOf(own.line)),
         ranges_(upTo(stations_, {own.end_m})),
         right_(reader_.at(own.rows.at(own.line, ranges_), ranges_.size() - 1, own.length_m)) {}
@@ -144,9 +148,9 @@ class LineLoss {
     const auto here = rangesOf(right), low = rangesOf(below), high = rangesOf(above);
     const double cosScatter = right.cosScatterOf(own_.line);
     note(into,
-         Reader(simulation_, plan_, below, above, tables.share, cosScatter)
+         Reader(simulation_, plan_, below, above, tables.share, cosScatter, shells_)
              .between(below.at(own_.line, low), low.size() - 1, above.at(own_.line, high), high.size() - 1, own_.length_m, tables.share),
-         Reader(simulation_, plan_, right, cosScatter).at(right.at(own_.line, here), here.size() - 1, own_.length_m));
+         Reader(simulation_, plan_, right, cosScatter, shells_).at(right.at(own_.line, here), here.size() - 1, own_.length_m));
   }
 
   /// What is lost between two elevations, a half step below and above the line's own.
@@ -206,6 +210,11 @@ class LineLoss {
   }
 
  private:
+  static AirAmounts shellsOf(const Simulation& simulation, const TabledLine& own) {
+    AirAmounts all;
+    addShells(simulation.air->shells(), {own.grid.places.height_m, own.line.sine, simulation.frame.earthRadius_m()}, own.end_m, all);
+    return all;
+  }
   void note(std::vector<double>& into, const Seen& found, const Seen& than) const {
     for (size_t s = 0; s < floor_.size(); ++s) {
       const double behind = right_.passed[s] > kOpaque ? std::max(radiance_[s] - right_.air[s], 0.0) / right_.passed[s] : 0.0;
@@ -217,6 +226,7 @@ class LineLoss {
   const Plan& plan_;
   TabledLine own_;
   const std::vector<double>&radiance_, &floor_;
+  AirAmounts shells_;
   Reader reader_;
   std::vector<double> stations_, ranges_;
   Seen right_;

@@ -41,6 +41,7 @@ void LayeredOnGpu::addSlots(ShaderSlots& slots) const {
   slots.constants["AIR_PARTS"] = rows_.parts();
   slots.constants["AIR_VALUES"] = rows_.values() / 4;
   slots.constants["AIR_BLACKS"] = (plan_.nodeCount() + 3) / 4;
+  slots.constants["AIR_SHELLS"] = static_cast<int>(simulation_.air->shells().size());
 }
 
 void LayeredOnGpu::addHeights(std::vector<float>& out) const {
@@ -58,9 +59,11 @@ void LayeredOnGpu::addHeights(std::vector<float>& out) const {
   for (int h = last; h >= 0; --h) {
     const auto at = static_cast<size_t>(h);
     densities[at] = path.densities(heightOf(h));
+    dropShells(path.shells(), densities[at]);
     if (h == last) continue;
     const double low = heightOf(h), high = heightOf(h + 1);
-    const AirAmounts middle = path.densities(0.5 * (low + high));
+    AirAmounts middle = path.densities(0.5 * (low + high));
+    dropShells(path.shells(), middle);
     for (size_t k = 0; k < kMostAirAmounts; ++k)
       columns[at].amount[k] =
           columns[at + 1].amount[k] + (high - low) * 1e-3 / 6.0 * (densities[at].amount[k] + 4.0 * middle.amount[k] + densities[at + 1].amount[k]);
@@ -180,6 +183,8 @@ void LayeredOnGpu::upload(const Rows& below, const Rows& above) {
   for (size_t k = 0; k < absorbers; ++k) put({k < powers.size() ? powers[k] : 1.0});
   for (double g : rows_.asymmetries()) put({g});
   for (size_t i = 0; i < (plan_.nodes.size() + 3) / 4 * 4; ++i) put({i < black.size() ? black[i] : 0.0});
+  if (simulation_.air->shells().empty()) put({0.0, 0.0, 0.0, 0.0});
+  for (const AirShell& s : simulation_.air->shells()) put({s.low_m, s.high_m, s.per_m, static_cast<double>(s.amount)});
   block_.upload(block);
 }
 

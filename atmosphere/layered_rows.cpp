@@ -40,7 +40,7 @@ void AirRows::begin(const AirGrid& grid) {
 std::vector<double> AirRows::asymmetriesOf() const {
   std::vector<double> asymmetry(static_cast<size_t>(values_), 0.0);
   if (!perChannel_) {
-    for (size_t i = 0; i < plan_.nodes.size(); ++i) asymmetry[i] = plan_.nodes[i].air.asymmetry;
+    for (size_t i = 0; i < plan_.nodes.size(); ++i) asymmetry[i] = plan_.nodes[i].air.meanAsymmetry;
     return asymmetry;
   }
   for (size_t slot = 0; slot < plan_.weight.size(); ++slot) {
@@ -49,7 +49,7 @@ std::vector<double> AirRows::asymmetriesOf() const {
       double share = 0.0;
       for (double h : plan_.nodes[i].air.haze) share += h;
       share *= plan_.weight[slot][i] * sunIrradiance_[i];
-      sum += share * plan_.nodes[i].air.asymmetry;
+      sum += share * plan_.nodes[i].air.meanAsymmetry;
       total += share;
     }
     asymmetry[slot] = total > 0.0 ? sum / total : 0.0;
@@ -96,11 +96,12 @@ void endOn(NodeRadiance& line, const NodeRadiance& horizon, size_t nodes) {
 AirRow AirRows::at(const AirLine& asked, std::span<const double> ranges, SameElevation* known) const {
   const Atmosphere& path = *simulation_.air;
   const double height = grid_.places.height_m, radius = simulation_.frame.earthRadius_m();
+  const auto placesOf = [&](double sine) { return withShellPlaces(path.shells(), {height, sine, radius}, ranges); };
   const auto lineAt = [&](double sine) {
     RaySun sun;
     if (plan_.terms.scatteredSun) sun = {grid_.places.sunSine, cosScatterOf({sine, asked.across, false})};
     const AirRay along{height, sine, radius};
-    return SunlitAir(path, along, path.stationsAt(along, ranges), plan_.terms.scatteredSun ? plan_.sunLegs.get() : nullptr, sun);
+    return SunlitAir(path, along, path.stationsAt(along, placesOf(sine)), plan_.terms.scatteredSun ? plan_.sunLegs.get() : nullptr, sun);
   };
   const SunlitAir line = lineAt(asked.sine);
   NodeRadiance sent = sentAlong(line, known ? &known->sent : nullptr);
@@ -108,18 +109,23 @@ AirRow AirRows::at(const AirLine& asked, std::span<const double> ranges, SameEle
   std::optional<SunlitAir> onHorizon;
   if (asked.meetsHorizon && ranges.back() >= physics::kFar)
     endOn(sent, sentAlong(onHorizon.emplace(lineAt(grid_.horizon(radius))), known ? &known->onHorizon : nullptr), plan_.nodes.size());
+  // Which of the places looked at are those asked for.
+  std::vector<size_t> asked_;
+  const std::vector<double> places = placesOf(asked.sine);
+  for (double r : ranges) asked_.push_back(static_cast<size_t>(std::lower_bound(places.begin(), places.end(), r) - places.begin()));
   AirRow row;
   row.amounts.reserve(ranges.size() * static_cast<size_t>(4 * vectors_));
   for (size_t r = 0; r < ranges.size(); ++r) {
     const bool space = ranges[r] >= physics::kFar;
     const double length_km = r == 0 || space ? 1.0 : 1e-3 * (ranges[r] - ranges[0]);
-    const AirAmounts a = r == 0               ? path.densities(line.stations.empty() ? height : line.stations[0].height_m)
-                         : space && onHorizon ? onHorizon->stations.back().amounts
-                                              : line.stations[r].amounts;
+    AirAmounts a = r == 0               ? path.densities(line.stations.empty() ? height : line.stations[0].height_m)
+                   : space && onHorizon ? onHorizon->stations.back().amounts
+                                        : line.stations[asked_[r]].amounts;
+    dropShells(path.shells(), a);
     for (size_t k = 0; k < static_cast<size_t>(4 * vectors_); ++k) row.amounts.push_back(static_cast<float>(logOf(a.amount[k] / length_km)));
   }
   // Places of a lattice may lie beyond the sun's own azimuth, where angles have no cosine.
-  writeRadiance(sent, std::clamp(cosScatterOf(asked), -1.0, 1.0), row);
+  writeRadiance(sent, asked_, std::clamp(cosScatterOf(asked), -1.0, 1.0), row);
   return row;
 }
 
@@ -131,9 +137,9 @@ NodeRadiance AirRows::sentAlong(const SunlitAir& line, SameWay* known) const {
   return sent;
 }
 
-/// Radiance of nodes, or integrated over the channels.
-void AirRows::writeRadiance(const NodeRadiance& sent, double cosScatter, AirRow& row) const {
-  const size_t nodes = plan_.nodes.size(), columns = sent.thermal.size() / nodes, parts = static_cast<size_t>(parts_), values = static_cast<size_t>(values_);
+/// Radiance of nodes, or integrated over the channels, at some of the places looked at.
+void AirRows::writeRadiance(const NodeRadiance& sent, std::span<const size_t> asked, double cosScatter, AirRow& row) const {
+  const size_t nodes = plan_.nodes.size(), columns = asked.size(), parts = static_cast<size_t>(parts_), values = static_cast<size_t>(values_);
   row.radiance.assign(columns * parts * values, 0.0f);
   for (size_t part = 0; part < parts; ++part) {
     const auto& own = part == 0 ? sent.thermal : part == 1 ? sent.molecules : part == 2 ? sent.haze : sent.again;
@@ -144,13 +150,13 @@ void AirRows::writeRadiance(const NodeRadiance& sent, double cosScatter, AirRow&
     for (size_t i = 0; i < nodes; ++i) {
       const double strength = part == 0 ? 1.0 : sunIrradiance_[i];
       const auto add = [&](size_t value, double weight) {
-        for (size_t r = 0; r < columns; ++r) row.radiance[(r * parts + part) * values + value] += static_cast<float>(weight * own[r * nodes + i]);
+        for (size_t r = 0; r < columns; ++r) row.radiance[(r * parts + part) * values + value] += static_cast<float>(weight * own[asked[r] * nodes + i]);
       };
       if (!perChannel_) add(i, strength);
       for (size_t slot = 0; perChannel_ && slot < plan_.weight.size(); ++slot) {
         if (plan_.weight[slot][i] == 0.0) continue;
         // The shader has one asymmetry per channel: on the row's own azimuth each node keeps its own.
-        const double turned = part < 2 ? 1.0 : phaseOf(plan_.nodes[i].air.asymmetry) / phaseOf(asymmetry_[slot]);
+        const double turned = part < 2 ? 1.0 : phaseOf(plan_.nodes[i].air.meanAsymmetry) / phaseOf(asymmetry_[slot]);
         add(slot, strength * plan_.weight[slot][i] * turned);
       }
     }

@@ -53,7 +53,7 @@ class AirRows {
 
  private:
   NodeRadiance sentAlong(const SunlitAir& line, SameWay* known) const;
-  void writeRadiance(const NodeRadiance& sent, double cosScatter, AirRow& row) const;
+  void writeRadiance(const NodeRadiance& sent, std::span<const size_t> asked, double cosScatter, AirRow& row) const;
   double entryOf(double sine) const;
   std::vector<double> asymmetriesOf() const;
   const Simulation& simulation_;

@@ -87,7 +87,7 @@ std::vector<AirMark> marksOf(const Value& air) {
   return marks;
 }
 
-std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder, const std::filesystem::path& library,
+std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder, const std::filesystem::path& library, double ground_m,
                                           const SpectrumOf& spectrum) {
   const ParameterTable all = anyAirTable();
   const std::string asked = Record(air, all).text("model");
@@ -97,7 +97,7 @@ std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesyste
   const ParameterTable table = airTable(model);
   const Record record(air, table);
   const auto spectra = spectraOf(model.parameters, record, spectrum);
-  return model.make({{record, spectra}, folder, library});
+  return model.make({{record, spectra}, folder, library, ground_m});
 }
 
 }  // namespace pitviper

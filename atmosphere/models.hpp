@@ -17,6 +17,7 @@ namespace pitviper {
 struct AirRecord : ModelRecord {
   std::filesystem::path folder;   ///< that the files it names are relative to
   std::filesystem::path library;  ///< atmosphere/library: climates and aerosols by name
+  double ground_m = 0.0;          ///< height of the ground above the sea
 };
 
 struct AirModel {
@@ -48,7 +49,7 @@ std::vector<AirMark> marksOf(const Value& air);
 
 /// The air that keys describe; none where `model` says so. `spectrum`: reads a spectrum's value as its parameter says. Errors: UserError, also where the keys
 /// are of several models, of none, or one of them is of another model.
-std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder, const std::filesystem::path& library,
+std::shared_ptr<const Atmosphere> makeAir(const Value& air, const std::filesystem::path& folder, const std::filesystem::path& library, double ground_m,
                                           const SpectrumOf& spectrum);
 
 AirModel homogeneousModel();

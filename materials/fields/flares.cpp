@@ -167,7 +167,7 @@ std::shared_ptr<const FieldState> FlareCloud::at(const FieldWorld& world) const 
   const double speed = glm::length(throughAir), radius = radius_m_ * std::pow(level, 0.25) + o.spread_m_s * (world.time_s - o.lit_s);
   // Cross-section as at level 1 standing still, with the flame's area.
   const double crossSection_m2 = o.depth * radius_m_ * radius_m_ / kMiddle * std::sqrt(level), tail = speed * o.glow_s;
-  const double height_m = world.simulation ? world.simulation->frame.height(pose.position) : pose.position.z;
+  const double height_m = world.simulation ? world.simulation->frame.altitude(pose.position) : pose.position.z;
   Puff puff;
   puff.temperature_K = standardAir(height_m).temperature_K + o.airWarmer_K;
   puff.centre = pose.position;

@@ -67,7 +67,7 @@ SmokeParcel SmokeSource::parcel(const FieldWorld& world, double released_s) cons
   const Origin from = originOf(o, world, released_s);
   const glm::dvec3 throughAir = from.velocity - o.wind_m_s;
   const glm::dvec3 leaves = o.share * throughAir + from.orientation * o.blown_m_s;
-  const double height_m = world.simulation ? world.simulation->frame.height(from.place) : from.place.z;
+  const double height_m = world.simulation ? world.simulation->frame.altitude(from.place) : from.place.z;
   const double air_K = standardAir(height_m).temperature_K + o.airWarmer_K, hot_K = std::max(o.temperature_K, air_K);
 
   SmokeParcel p;

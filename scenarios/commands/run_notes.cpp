@@ -72,6 +72,17 @@ void noteFog(const Simulation& sim, Notes& said) {
   if (const std::string words = hazeNotFog(sim); !words.empty()) said.say(words);
 }
 
+/// Scenes that stand on high ground are easily left in the air above it.
+void noteGround(const Simulation& sim, Notes& said) {
+  constexpr double kLow_m = 30.0, kHigh_m = 5000.0;
+  const double origin_m = sim.frame.origin().height_m;
+  if (sim.ground && sim.frame.ground_m() == 0.0 && origin_m > kLow_m && origin_m <= kHigh_m)
+    said.say(
+        print("the ground, and the haze on it, lie at the height of the sea, %g m below the origin; for a scene that stands on it write 'ground: {height: %g "
+              "m}'",
+              origin_m, origin_m));
+}
+
 void noteFringes(const Simulation& sim, Notes& said) {
   const auto say = [&](const std::string& owner, const std::vector<ChannelOutput>& outputs) {
     for (const AveragedFringes& f : averagedFringes(sim, outputs)) said.say(owner + ", channel " + f.channel + ": " + wordsOf(f));
@@ -105,6 +116,7 @@ void noteScenario(const Simulation& sim, Notes& notes) {
   noteMeshes(sim, notes);
   noteCuts(sim, notes);
   noteFog(sim, notes);
+  noteGround(sim, notes);
   noteFringes(sim, notes);
 }
 

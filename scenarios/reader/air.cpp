@@ -90,7 +90,7 @@ void Builder::readAtmosphere(const Record& scenario) {
       throw UserError(r.where("model"), "library air '" + r.text("library") + "' is " + own.front().model->name + ", and 'model' says " + asked,
                       "'model: " + own.front().model->name + "', or none", "remove 'model'");
   }
-  simulation_.air = makeAir(air, base_, libraries_.atmosphere,
+  simulation_.air = makeAir(air, base_, libraries_.atmosphere, simulation_.frame.ground_m(),
                             [this](const Value& v, const Parameter& p) { return bounded(spectra_, v, p.unit, p.key + " of the air", p.minimum, p.maximum); });
 }
 

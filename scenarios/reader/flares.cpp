@@ -223,6 +223,7 @@ void Builder::readFlares(const Record& scenario) {
       }
       FlightWorld world;
       world.frame = simulation_.frame;
+      world.groundHeight_m = simulation_.frame.ground_m();
       world.coriolis = hasOrigin_;
       if (glm::length(simulation_.wind_m_s) > 0.0) world.wind = {{0.0, simulation_.wind_m_s}};
       const auto flyFrom = [type, world, from = side * position, push = r.number("speed") * (side * direction)](double at_s, const Pose& carriersPose,

@@ -40,7 +40,8 @@ void addFlightKeys(std::vector<Parameter>& p) {
           "5 ms"),
       within(above(number("duration", "s", "it flies at most; until the scenario's last frame and a second more unless given", &FlightTask::duration_s), 0.0),
              1e-3, 1e6),
-      within(number("ground", "m", "height above the ellipsoid at which it ends; 0 m unless given, none if it starts below that", &FlightWorld::groundHeight_m),
+      within(number("ground", "m", "height above the ellipsoid at which it ends; that of `ground` unless given, none if it starts below that",
+                    &FlightWorld::groundHeight_m),
              -1e4, 1e5)};
   p.insert(p.end(), own.begin(), own.end());
 }
@@ -310,6 +311,7 @@ FlightRecord flyAsked(const Simulation& sim, const FlightAsked& asked, const Mot
   world.frame = sim.frame;
   world.coriolis = asked.coriolis;
   if (glm::length(sim.wind_m_s) > 0.0) world.wind = {{0.0, sim.wind_m_s}};
+  world.groundHeight_m = sim.frame.ground_m();
   r.fill(world);
   task.stopAtGround = r.given("ground") || heightIn(world, task.launch.position) > world.groundHeight_m;
   FlightRecord record{model, Trajectory({TrajectoryPoint{}}), "", "", {}};

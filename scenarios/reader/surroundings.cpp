@@ -77,9 +77,13 @@ Spectrum Builder::bounded(const SpectrumReader& spectra, const Value& value, std
 }
 
 void Builder::readOrigin(const Record& scenario) {
-  if (!scenario.given("origin")) return;
-  const Record r(scenario.value("origin"), tables::origin());
-  simulation_.frame = LocalFrame({r.number("latitude"), r.number("longitude"), r.number("height")});
+  Geodetic origin;
+  if (scenario.given("origin")) {
+    const Record r(scenario.value("origin"), tables::origin());
+    origin = {r.number("latitude"), r.number("longitude"), r.number("height")};
+  }
+  const double ground_m = scenario.given("ground") ? Record(scenario.value("ground"), tables::ground()).number("height") : 0.0;
+  simulation_.frame = LocalFrame(origin, ground_m);
 }
 
 namespace {

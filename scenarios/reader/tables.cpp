@@ -1,5 +1,6 @@
 #include "scenarios/reader/tables.hpp"
 
+#include "atmosphere/clouds.hpp"
 #include "atmosphere/models.hpp"
 #include "materials/angle_tables.hpp"
 #include "materials/models.hpp"
@@ -200,10 +201,11 @@ const ParameterTable& background() {
 const ParameterTable& ground() {
   static const ParameterTable t{
       "ground",
-      "The sphere at height 0 that stands for the earth, where lines of sight end that meet no body and go down (beyond the edge of a terrain too). Lit by "
+      "The sphere at `height` that stands for the earth, where lines of sight end that meet no body and go down (beyond the edge of a terrain too). Lit by "
       "the sun and ambient light; bodies cast no shadows on it, lamps do not light it. With it, or under air with a top, the earth hides the sun.",
       {any("material", "a name, or a material written out, opaque and without textures; black unless given"),
-       within(number("temperature", "K", "that of the air at height 0 (homogeneous air: its own) unless given"), 0, kHottest_K)}};
+       within(number("temperature", "K", "that of the air there (homogeneous air: its own) unless given"), 0, kHottest_K),
+       withDefault(within(number("height", "m", "of the ground above the ellipsoid: layered air stands on it, its haze from there on"), -500, 5000), "0 m")}};
   return t;
 }
 
@@ -587,6 +589,7 @@ std::vector<ParameterTable> all() {
     for (const auto& model : registry.all()) every.push_back(tableOf(model));
   };
   addAll(airModels(), airTable);
+  every.push_back(cloudTable());
   for (const auto& t : {airLibrary(), background(), ground(), sun(), ambient(), gradientEntry(), environmentMap(), environmentLayer(), spectrumTable(),
                         material(), temperatureState()})
     every.push_back(t);

@@ -22,7 +22,7 @@ glm::dvec3 windAt(const std::vector<WindAt>& wind, double height_m) {
 }  // namespace
 
 double heightIn(const FlightWorld& world, const glm::dvec3& position) {
-  return world.uniform ? position.z + world.frame.origin().height_m : world.frame.height(position);
+  return world.uniform ? position.z + world.frame.origin().height_m : world.frame.altitude(position);
 }
 
 glm::dvec3 upIn(const FlightWorld& world, const glm::dvec3& position) { return world.uniform ? glm::dvec3(0.0, 0.0, 1.0) : world.frame.up(position); }

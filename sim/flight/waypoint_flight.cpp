@@ -45,7 +45,7 @@ std::string number(double value) { return print("%.3g", value); }
 class Map {
  public:
   Map(std::span<const FlightWaypoint> waypoints, const WaypointFlightOptions& options, const LocalFrame& frame)
-      : curved_(options.followEarth), earth_m_(frame.earthRadius_m()), centre_(0.0, 0.0, -earth_m_ - frame.origin().height_m) {
+      : curved_(options.followEarth), earth_m_(frame.earthRadius_m() - frame.ground_m()), centre_(0.0, 0.0, -earth_m_ - frame.origin().height_m) {
     double sum = 0.0;
     for (const FlightWaypoint& w : waypoints) sum += glm::length(w.position - centre_);
     sphere_m_ = sum / static_cast<double>(waypoints.size());

@@ -8,6 +8,57 @@
 
 namespace pitviper {
 
+void addShells(std::span<const AirShell> shells, const AirRay& ray, double range_m, AirAmounts& into) {
+  for (const AirShell& s : shells)
+    into.amount[static_cast<std::size_t>(s.amount)] +=
+        s.per_m * physics::lengthInShell(s.low_m, s.high_m, ray.height_m, ray.sinElevation, range_m, ray.earthRadius_m);
+}
+
+namespace {
+
+/// Amounts between an edge and places within, a unit of which is about an optical depth of 1 in the visible.
+constexpr double kWithin[] = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+
+}  // namespace
+
+std::vector<double> withShellPlaces(std::span<const AirShell> shells, const AirRay& ray, std::span<const double> ranges_m) {
+  std::vector<double> all(ranges_m.begin(), ranges_m.end());
+  if (shells.empty()) return all;
+  const double r0 = ray.earthRadius_m + ray.height_m, b = r0 * ray.sinElevation;
+  const auto meet = [&](double height_m) {
+    const double c = (height_m - ray.height_m) * (ray.earthRadius_m + height_m + r0), d = b * b + c;
+    if (!(d > 0.0)) return;
+    const double far = b >= 0.0 ? -b - std::sqrt(d) : -b + std::sqrt(d);
+    for (double range : {far, -c / far})
+      if (range > ranges_m.front() && range < ranges_m.back()) all.push_back(range);
+  };
+  for (const AirShell& s : shells) {
+    meet(s.low_m), meet(s.high_m);
+    for (double amount : kWithin)
+      if (const double in = amount / s.per_m; in < 0.5 * (s.high_m - s.low_m)) meet(s.low_m + in), meet(s.high_m - in);
+  }
+  std::sort(all.begin(), all.end());
+  all.erase(std::unique(all.begin(), all.end()), all.end());
+  return all;
+}
+
+void dropShells(std::span<const AirShell> shells, AirAmounts& from) {
+  for (const AirShell& s : shells) from.amount[static_cast<std::size_t>(s.amount)] = 0.0;
+}
+
+ParticleKinds particleKinds(std::span<const AirNode> nodes) {
+  ParticleKinds kinds;
+  for (std::size_t k = 0; k < kMostAirAmounts; ++k) {
+    if (std::all_of(nodes.begin(), nodes.end(), [&](const AirNode& n) { return n.haze[k] == 0.0; })) continue;
+    const auto own = std::find_if(kinds.begin(), kinds.end(), [&](const auto& kind) {
+      return std::all_of(nodes.begin(), nodes.end(), [&](const AirNode& n) { return n.asymmetry[k] == n.asymmetry[kind.front()]; });
+    });
+    if (own == kinds.end()) kinds.push_back({k});
+    else own->push_back(k);
+  }
+  return kinds;
+}
+
 AirAmounts Atmosphere::densities(double) const { return {}; }
 
 std::vector<AirStation> Atmosphere::stations(const AirRay& ray, double range_m) const { return {{}, {range_m, 0.0, 0.0, amounts(ray, range_m)}}; }

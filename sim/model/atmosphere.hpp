@@ -32,9 +32,14 @@ struct AirNode {
   std::array<double, kMostAirAmounts> extinction{};  ///< c_k: optical depth of one unit of each absorber
   std::array<double, kMostAirAmounts> molecules{};   ///< the part of it that molecules scatter ...
   std::array<double, kMostAirAmounts> haze{};        ///< ... and that particles scatter
-  double asymmetry = 0.0;                            ///< of the particles: mean cosine of the angle they turn light by
+  std::array<double, kMostAirAmounts> asymmetry{};   ///< of these particles: mean cosine of the angle they turn light by
+  double meanAsymmetry = 0.0;                        ///< of all particles: over its phase function tables have what they turn, which changes evenly
   double source = 0.0;                               ///< radiance the air tends to at great depth besides thermal emission of its stations [W/(m2 sr um)]
 };
+
+/// Absorbers whose particles turn light alike at all of these nodes, a kind each.
+using ParticleKinds = std::vector<std::vector<std::size_t>>;
+ParticleKinds particleKinds(std::span<const AirNode> nodes);
 
 /// A place on a path, with all that lies between its beginning and there.
 struct AirStation {
@@ -50,6 +55,19 @@ struct AirRay {
   double sinElevation = 0.0;  ///< of its direction, there
   double earthRadius_m = 0.0;
 };
+
+/// Particles that lie evenly between two heights, with edges: tables by height leave them out, and what is on a way is added in closed form.
+struct AirShell {
+  int amount = 0;  ///< whose index they have
+  double low_m = 0.0, high_m = 0.0;
+  double per_m = 0.0;  ///< of the amount
+};
+void addShells(std::span<const AirShell> shells, const AirRay& ray, double range_m, AirAmounts& into);
+/// Nothing of them.
+void dropShells(std::span<const AirShell> shells, AirAmounts& from);
+/// Rising ranges, and between the first and the last of them those where a ray meets edges of shells and, within, places that lie closer together towards
+/// edges, where light changes.
+std::vector<double> withShellPlaces(std::span<const AirShell> shells, const AirRay& ray, std::span<const double> ranges_m);
 
 /// What the kernel has to do for an air.
 struct AirTraits {
@@ -93,6 +111,7 @@ class Atmosphere {
   virtual std::vector<AirStation> stationsAt(const AirRay& ray, std::span<const double> ranges_m) const;
   /// Temperature at height 0 [K]; 0: it does not say.
   virtual double groundTemperature_K() const { return 0.0; }
+  virtual std::span<const AirShell> shells() const { return {}; }
   /// Amounts that 1000 m of the air at a height hold (of air that scatters sunlight).
   virtual AirAmounts densities(double height_m) const;
   virtual double validLow_um() const = 0;

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include "sim/plan/sights.hpp"
@@ -53,8 +54,12 @@ double DiffuseOnGrids::at(const FineGrid& grid, size_t i, const Place& place, si
   const AirNode& air = grid.air[i];
   const double black = place.temperature_K > 0.0 ? physics::planckRadiance(grid.wavelength_um[i], place.temperature_K) : 0.0;
   const double sun = light_->sunlit() ? own->irradiance[i] : 0.0;
-  return air.molecules[absorber] * (t.thermalByMolecules[i] - black + (sun > 0.0 ? sun * t.solarByMolecules[i] : 0.0)) +
-         air.haze[absorber] * (t.thermalByHaze[i] - black + (sun > 0.0 ? sun * t.solarByHaze[i] : 0.0));
+  const auto turned = [&](size_t kind) { return t.thermal[kind][i] - black + (sun > 0.0 ? sun * t.solar[kind][i] : 0.0); };
+  double sum = air.molecules[absorber] > 0.0 ? air.molecules[absorber] * turned(0) : 0.0;
+  const ParticleKinds& kinds = own->light->particles();
+  for (size_t k = 0; k < kinds.size(); ++k)
+    if (std::find(kinds[k].begin(), kinds[k].end(), absorber) != kinds[k].end()) sum += air.haze[absorber] * turned(k + 1);
+  return sum;
 }
 
 }  // namespace pitviper

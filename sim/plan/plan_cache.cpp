@@ -80,8 +80,8 @@ std::string writePlanned(const Plan& plan) {
   for (const SpectralNode& n : plan.nodes) {
     w.put(n.members.size());
     for (const auto& m : n.members) w.put(m.wavelength_um), w.put(m.share);
-    w.all(n.air.extinction), w.all(n.air.molecules), w.all(n.air.haze);
-    w.put(n.air.asymmetry), w.put(n.air.source);
+    w.all(n.air.extinction), w.all(n.air.molecules), w.all(n.air.haze), w.all(n.air.asymmetry);
+    w.put(n.air.meanAsymmetry), w.put(n.air.source);
     w.all(n.absorption_per_m);
   }
   w.put(plan.blocks.size());
@@ -122,8 +122,8 @@ bool readPlanned(const std::string& text, Plan& into) {
   for (SpectralNode& n : plan.nodes) {
     n.members.assign(r.count(kMostMembers), {});
     for (auto& m : n.members) m.wavelength_um = r.number(), m.share = r.number();
-    r.into(n.air.extinction), r.into(n.air.molecules), r.into(n.air.haze);
-    n.air.asymmetry = r.number(), n.air.source = r.number();
+    r.into(n.air.extinction), r.into(n.air.molecules), r.into(n.air.haze), r.into(n.air.asymmetry);
+    n.air.meanAsymmetry = r.number(), n.air.source = r.number();
     n.absorption_per_m = r.all(kMostMembers);
     if (!r.ok() || n.members.empty()) return false;
   }

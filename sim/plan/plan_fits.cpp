@@ -38,11 +38,14 @@ SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const Spectral
       node.air.molecules[k] += share * air.molecules[k];
       node.air.haze[k] += share * air.haze[k];
       node.air.extinction[k] += share * air.extinction[k];  // of what is not fitted
-      turned += share * air.haze[k] * air.asymmetry;
+      node.air.asymmetry[k] += share * air.haze[k] * air.asymmetry[k];
+      turned += share * air.haze[k] * air.meanAsymmetry;
       scattered += share * air.haze[k];
     }
   }
-  node.air.asymmetry = scattered > 0.0 ? turned / scattered : 0.0;
+  node.air.meanAsymmetry = scattered > 0.0 ? turned / scattered : 0.0;
+  for (size_t k = 0; k < kMostAirAmounts; ++k)
+    if (node.air.haze[k] > 0.0) node.air.asymmetry[k] /= node.air.haze[k];
   for (size_t a = 0; a < fit.absorbers().size(); ++a) {
     const auto k = static_cast<size_t>(fit.absorbers()[a]);
     if (k < kMostAirAmounts) node.air.extinction[k] = group.extinction[a];

@@ -19,6 +19,8 @@ constexpr double kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
 constexpr double kHotStep = 0.02;
 /// Parts of a way through air that light scattered again is told of, and what of a part is not worth telling.
 constexpr double kAgainParts = 4.0, kLittle = 1e-3;
+/// Behind so much nothing is seen.
+constexpr double kOpaque = 100.0;
 /// Directions of light from all around are rounded: steps in half a turn.
 constexpr double kElevationSteps = 12.0, kAzimuthSteps = 4.0;
 
@@ -47,9 +49,9 @@ std::vector<ProductTerm> merged(std::vector<ProductTerm> terms) {
 ProductSink::ProductSink(const Simulation& simulation, SightBook& book, double shortest_um, std::shared_ptr<DiffuseOnGrids> diffuse)
     : sim_(simulation), book_(book), diffuse_(std::move(diffuse)), step_K_(shortest_um < kShort_um ? kFineStep_K : kStep_K) {
   if (!sim_.air || !sim_.air->traits().any) return;
-  const AirNode node = sim_.air->node(std::clamp(1.0, sim_.air->validLow_um(), sim_.air->validHigh_um()));
+  scattered_ = sim_.air->node(std::clamp(1.0, sim_.air->validLow_um(), sim_.air->validHigh_um()));
   for (size_t k = 0; k < kMostAirAmounts; ++k)
-    if (node.molecules[k] + node.haze[k] > 0.0) scatterers_.push_back(k);
+    if (scattered_.molecules[k] + scattered_.haze[k] > 0.0) scatterers_.push_back(k);
 }
 
 void ProductSink::begin(bool fromFilm) {
@@ -268,7 +270,7 @@ void ProductSink::scattered(const Segment& s) {
     if (!(passed > 0.0)) continue;
     const int scatter = book_.spectrum("scatter " + std::to_string(k) + " " + std::to_string(cosine), [k, cosine](const FineGrid& g, size_t i) {
       const AirNode& n = g.air[i];
-      return n.molecules[k] * physics::rayleighPhase(cosine) + n.haze[k] * physics::henyeyGreensteinPhase(cosine, n.asymmetry);
+      return n.molecules[k] * physics::rayleighPhase(cosine) + n.haze[k] * physics::henyeyGreensteinPhase(cosine, n.asymmetry[k]);
     });
     for (int p = 0; p < 3; ++p) {
       ProductTerm t;
@@ -282,11 +284,21 @@ void ProductSink::scattered(const Segment& s) {
 
 /// Light scattered again between two places.
 void ProductSink::scatteredAgain(const Segment& s) {
+  // In a cloud what is seen is the near end: the place that stands for the segment is where exp(-depth) has its mean.
   Again own;
-  for (size_t k = 0; k < kMostAirAmounts; ++k) own.middle.amount[k] = 0.5 * (s.near.powered.amount[k] + s.far.powered.amount[k]);
-  for (size_t k : scatterers_) own.weight += own.passed.amount[k] = std::max(s.far.powered.amount[k] - s.near.powered.amount[k], 0.0);
-  own.place = {0.5 * (s.near.height_m + s.far.height_m), 0.5 * (s.near.sine + s.far.sine), s.sunlit ? s.cosAzimuth : 0.0,
-               0.5 * (s.near.temperature_K + s.far.temperature_K)};
+  double before = 0.0;
+  for (size_t k : scatterers_) {
+    const double each = scattered_.molecules[k] + scattered_.haze[k];
+    own.passed.amount[k] = std::max(s.far.powered.amount[k] - s.near.powered.amount[k], 0.0);
+    own.scatters += each * own.passed.amount[k], before += each * s.near.powered.amount[k];
+  }
+  const double mean = own.scatters > 0.0 ? -std::expm1(-own.scatters) / own.scatters : 1.0;
+  own.weight = own.scatters * mean * std::exp(-before);
+  const double at = own.scatters > 1e-6 ? -std::log(mean) / own.scatters : 0.5;
+  const auto between = [at](double near, double far) { return near + at * (far - near); };
+  for (size_t k = 0; k < kMostAirAmounts; ++k) own.middle.amount[k] = between(s.near.powered.amount[k], s.far.powered.amount[k]);
+  own.place = {between(s.near.height_m, s.far.height_m), between(s.near.sine, s.far.sine), s.sunlit ? s.cosAzimuth : 0.0,
+               between(s.near.temperature_K, s.far.temperature_K)};
   if (own.weight > 0.0) again_.push_back(own);
   if (!s.media.empty()) tellAgain();
 }
@@ -299,6 +311,10 @@ void ProductSink::tellAgain() {
   const auto tell = [&] {
     if (!(part.weight > 0.0)) return;
     for (double& m : part.middle.amount) m /= part.weight;
+    // Seen from its middle a part is as bright as its segments together.
+    double depth = 0.0;
+    for (size_t k : scatterers_) depth += (scattered_.molecules[k] + scattered_.haze[k]) * part.middle.amount[k];
+    const double seen = part.weight * std::exp(std::min(depth, kOpaque)) / part.scatters;
     DiffuseOnGrids::Place& mean = part.place;
     for (double* v : {&mean.height_m, &mean.sine, &mean.cosAzimuth, &mean.temperature_K}) *v /= part.weight;
     const DiffuseOnGrids::Place place = DiffuseOnGrids::stepped(mean, step_K_);
@@ -306,18 +322,18 @@ void ProductSink::tellAgain() {
                               std::to_string(place.temperature_K) + " ";
     const int path = pathOf(part.middle, 0.5);
     for (size_t k : scatterers_) {
-      if (!(part.passed.amount[k] > kLittle * part.weight)) continue;
+      if (!((scattered_.molecules[k] + scattered_.haze[k]) * part.passed.amount[k] > kLittle * part.scatters)) continue;
       ProductTerm t;
       t.tag = static_cast<int>(TermKind::ScatteredAgain);
       t.spectrum[0] = book_.spectrum(where + std::to_string(k), [all_ = diffuse_, place, k](const FineGrid& g, size_t i) { return all_->at(g, i, place, k); });
       t.count = 1;
-      t.path = path, t.coefficient = part.passed.amount[k];
+      t.path = path, t.coefficient = seen * part.passed.amount[k];
       add(t);
     }
     part = {};
   };
   for (const Again& a : again_) {
-    part.weight += a.weight;
+    part.weight += a.weight, part.scatters += a.scatters;
     part.passed += a.passed;
     for (size_t k = 0; k < kMostAirAmounts; ++k) part.middle.amount[k] += a.weight * a.middle.amount[k];
     part.place.height_m += a.weight * a.place.height_m, part.place.sine += a.weight * a.place.sine;

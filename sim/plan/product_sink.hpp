@@ -41,6 +41,7 @@ class ProductSink final : public TermSink {
   Sight sight_;
   std::map<int, double> strength_;    ///< of materials
   std::vector<size_t> scatterers_;    ///< absorbers of the air that scatter
+  AirNode scattered_;                 ///< what they scatter, at a wavelength that tells much from little
   AirAmounts here_;                   ///< from the eye to the place reached, raised to their powers
   std::vector<double> media_m_;       ///< on the way so far, by material; empty: none
   std::vector<double> inside_m_;      ///< of the segment being told
@@ -49,7 +50,8 @@ class ProductSink final : public TermSink {
   struct Again {
     AirAmounts middle, passed;
     DiffuseOnGrids::Place place;
-    double weight = 0.0;  ///< of what scatters
+    double weight = 0.0;    ///< of what it scatters, what is seen: exp(-depth) integrated over depth
+    double scatters = 0.0;  ///< depth of scattering
   };
   std::vector<Again> again_;
   struct Pane {

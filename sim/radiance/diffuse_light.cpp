@@ -17,6 +17,8 @@ namespace {
 /// Edges of layers [m], where air is clear.
 constexpr double kHeights_m[] = {0.0, 100.0, 250.0, 500.0, 750.0, 1000.0, 1250.0, 1500.0, 1750.0, 2000.0, 2500.0, 3e3,  3.5e3, 4e3,
                                  5e3, 6e3,   7e3,   8.5e3, 10e3,  12e3,   15e3,   18e3,   22e3,   27e3,   34e3,   45e3, 70e3};
+/// Edges nearer to each other than this are one.
+constexpr double kSameHeight_m = 0.6;
 /// A layer scatters no more than this of light straight through, where air scatters most: between its edges light is linear in height.
 constexpr double kDeepest = 0.12;
 /// Deep within, where light changes slowly: as part of what lies between there and the nearer end.
@@ -94,8 +96,12 @@ DiffuseLight::DiffuseLight(const AirColumn& column, int streams) : column_(colum
   const auto aboveAt = [&](double h) { return air.powered(air.amounts({h, 1.0, column_.earthRadius_m}, physics::kFar)); };
   const AirNode node = air.node(std::max(air.validLow_um(), 0.45));
   const double whole = scattered(node, {}, aboveAt(0.0));
-  for (std::size_t k = 0; k < std::size(kHeights_m); ++k) {
-    const double low = kHeights_m[k], high = std::min(k + 1 < std::size(kHeights_m) ? kHeights_m[k + 1] : air.top_m(), air.top_m());
+  std::vector<double> edges(std::begin(kHeights_m), std::end(kHeights_m));
+  for (const AirShell& s : air.shells()) edges.push_back(s.low_m), edges.push_back(s.high_m);
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end(), [](double a, double b) { return b - a < kSameHeight_m; }), edges.end());
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const double low = edges[k], high = std::min(k + 1 < edges.size() ? edges[k + 1] : air.top_m(), air.top_m());
     if (!(low < air.top_m())) break;
     const double under = scattered(node, {}, aboveAt(low)), over = scattered(node, {}, aboveAt(high));
     // Steps from the lower edge on, wider the deeper within.
@@ -136,11 +142,17 @@ DiffuseLight::Moments DiffuseLight::made(double um) const {
   for (double t : temperature_K_) black.push_back(t > 0.0 ? physics::planckRadiance(um, t) : 0.0);
   for (std::size_t k = count - 1; k-- > 0;) {
     const auto part = [&](const std::array<double, kMostAirAmounts>& c) { return std::max(sumOver(c, above_[k]) - sumOver(c, above_[k + 1]), 0.0); };
-    const double all = part(n.extinction), molecules = part(n.molecules), haze = part(n.haze), both = molecules + haze;
+    const double all = part(n.extinction), molecules = part(n.molecules), both = molecules + part(n.haze);
     PlaneLayer layer{all, all > 0.0 ? std::min(both / all, 1.0) : 0.0, {}, black[k + 1], black[k]};
-    double power = 1.0;
-    for (int l = 0; both > 0.0 && l < kPhaseMoments; ++l, power *= n.asymmetry)
-      layer.moments.push_back((molecules * (l == 0 ? 1.0 : l == 2 ? 0.1 : 0.0) + haze * power) / both);
+    if (both > 0.0) {
+      layer.moments.assign(kPhaseMoments, 0.0);
+      layer.moments[0] += molecules / both, layer.moments[2] += 0.1 * molecules / both;
+      for (std::size_t a = 0; a < kMostAirAmounts; ++a) {
+        double share = n.haze[a] * std::max(above_[k].amount[a] - above_[k + 1].amount[a], 0.0) / both;
+        if (share > 0.0)
+          for (double& m : layer.moments) m += share, share *= n.asymmetry[a];
+      }
+    }
     layers.layers.push_back(std::move(layer));
   }
   // Where air's own light is more than a hundred times the sun's, nobody sees what it scatters of that more than once.
@@ -159,8 +171,7 @@ DiffuseLight::Moments DiffuseLight::made(double um) const {
   const LayerLight light = finer(layers, lightIn(layers, {streams_, isSunlit ? streams_ : 1, kThin}), fine_);
   // From the ground up.
   Moments out;
-  for (std::size_t k = 0; k < kMostAirAmounts; ++k) out.molecules += n.molecules[k], out.haze += n.haze[k];
-  out.asymmetry = n.asymmetry;
+  out.air = n;
   out.irradiance = sun;
   for (std::size_t k = count; k-- > 0;) {
     const auto solar = light.solarAt(k), thermal = light.thermalAt(k);
@@ -173,6 +184,12 @@ DiffuseLight::Moments DiffuseLight::made(double um) const {
 
 NodeDiffuse::NodeDiffuse(std::shared_ptr<const DiffuseLight> light, std::span<const SpectralNode> nodes, Nodes told)
     : light_(std::move(light)), nodes_(nodes.size()), told_(told) {
+  std::vector<AirNode> air;
+  for (const SpectralNode& n : nodes)
+    for (const auto& m : n.members) air.push_back(light_->airAt(m.wavelength_um));
+  kinds_ = particleKinds(air);
+  each_ = 1 + kinds_.size();
+  parts_.resize(light_->sunlit() ? 2 * each_ : each_);
   if (told != Nodes::Kept || nodes.empty()) {
     make(nodes);
     return;
@@ -190,18 +207,18 @@ bool NodeDiffuse::read(const ContentKey& key) {
   if (!text) return false;
   TableReader in(*text);
   bool fits = true;
-  for (Part* p : parts()) {
-    p->moments = in.all<int>(), p->pattern = in.all<double>(), p->share = in.all<double>();
-    p->patterns = p->share.size() / nodes_;
-    fits &= p->share.size() == p->patterns * nodes_ && p->pattern.size() == p->patterns * p->moments.size() * light_->heights_m().size() &&
-            std::all_of(p->moments.begin(), p->moments.end(), [&](int m) { return m >= 0 && m < light_->shape().moments(); });
+  for (Part& p : parts_) {
+    p.moments = in.all<int>(), p.pattern = in.all<double>(), p.share = in.all<double>();
+    p.patterns = p.share.size() / nodes_;
+    fits &= p.share.size() == p.patterns * nodes_ && p.pattern.size() == p.patterns * p.moments.size() * light_->heights_m().size() &&
+            std::all_of(p.moments.begin(), p.moments.end(), [&](int m) { return m >= 0 && m < light_->shape().moments(); });
   }
   return fits && in.isWhole();
 }
 
 void NodeDiffuse::write(const ContentKey& key) const {
   TableWriter out;
-  for (const Part* p : {&thermalByMolecules_, &thermalByHaze_, &solarByMolecules_, &solarByHaze_}) out.all(p->moments), out.all(p->pattern), out.all(p->share);
+  for (const Part& p : parts_) out.all(p.moments), out.all(p.pattern), out.all(p.share);
   writeCachedTable(kTable, key, out.bytes());
 }
 
@@ -212,14 +229,22 @@ void NodeDiffuse::make(std::span<const SpectralNode> nodes) {
   onAllThreads(um.size(), [&](const auto& next) {
     for (std::size_t i = next(); i < um.size(); i = next()) light_->at(um[i]);
   });
-  thermalByMolecules_ = partOf(nodes, false, false);
-  thermalByHaze_ = partOf(nodes, false, true);
-  if (!light_->sunlit()) return;
-  solarByMolecules_ = partOf(nodes, true, false);
-  solarByHaze_ = partOf(nodes, true, true);
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    const std::size_t kind = p % each_;
+    parts_[p] = partOf(nodes, p >= each_, kind > 0 ? &kinds_[kind - 1] : nullptr);
+  }
 }
 
-NodeDiffuse::Part NodeDiffuse::partOf(std::span<const SpectralNode> nodes, bool solar, bool haze) const {
+NodeDiffuse::Part NodeDiffuse::partOf(std::span<const SpectralNode> nodes, bool solar, const std::vector<std::size_t>* kind) const {
+  const bool haze = kind != nullptr;
+  const auto scatteredBy = [&](const AirNode& air) {
+    double sum = 0.0;
+    if (!haze)
+      for (double m : air.molecules) sum += m;
+    else
+      for (std::size_t k : *kind) sum += air.haze[k];
+    return sum;
+  };
   const LayerLight::Shape shape = light_->shape();
   const std::size_t heights = light_->heights_m().size(), each = static_cast<std::size_t>(solar ? shape.moments() : shape.streams);
   std::vector<std::size_t> moments;
@@ -235,16 +260,17 @@ NodeDiffuse::Part NodeDiffuse::partOf(std::span<const SpectralNode> nodes, bool 
     double sum = 0.0, light = 0.0;
     for (const auto& m : nodes[i].members) {
       const DiffuseLight::Moments& own = light_->at(m.wavelength_um);
-      sum += m.share * (haze ? own.haze : own.molecules), light += m.share * own.irradiance;
+      sum += m.share * scatteredBy(own.air), light += m.share * own.irradiance;
     }
     double* into = all.col(static_cast<Eigen::Index>(i)).data();
     for (const auto& m : nodes[i].members) {
       const DiffuseLight::Moments& own = light_->at(m.wavelength_um);
-      double part = sum > 0.0 ? m.share * (haze ? own.haze : own.molecules) / sum : m.share;
+      double part = sum > 0.0 ? m.share * scatteredBy(own.air) / sum : m.share;
       if (solar) part *= light > 0.0 ? own.irradiance / light : 0.0;
       if (part == 0.0) continue;
       double power = 1.0;
-      for (std::size_t l = 0; l < phase.size(); ++l, power *= own.asymmetry) phase[l] = haze ? power : l == 0 ? 1.0 : 0.1;
+      const double asymmetry = haze ? own.air.asymmetry[kind->front()] : 0.0;
+      for (std::size_t l = 0; l < phase.size(); ++l, power *= asymmetry) phase[l] = haze ? power : l == 0 ? 1.0 : 0.1;
       for (std::size_t k = 0; k < count; ++k) weight[k] = part * phase[static_cast<std::size_t>(degrees[k])];
       const double* of = (solar ? own.solar : own.thermal).data();
       for (std::size_t h = 0; h < heights; ++h)
@@ -300,7 +326,8 @@ void NodeDiffuse::tellEdge(std::size_t edge, double sine, double cosAzimuth, Of 
   const bool isHere = into.here < into.told.size() && holds(into.told[into.here], kSameDirection);
   if (isHere && std::abs(into.cosAzimuth - cosAzimuth) <= kSameDirection) return;
   const LayerLight::Shape shape = light_->shape();
-  const std::array<const Part*, 4> all{&thermalByMolecules_, &thermalByHaze_, &solarByMolecules_, &solarByHaze_};
+  const std::size_t first = of.thermal ? 0 : each_, end = of.sun ? 2 * each_ : each_;
+  into.of.resize(2 * each_);
   const auto widthOf = [&](const Part& part) { return told_ == Nodes::Apart ? nodes_ : part.patterns; };
   if (!isHere) {
     const auto known = std::find_if(into.told.begin(), into.told.end(), [&](const auto& t) { return holds(t, 0.0); });
@@ -308,17 +335,18 @@ void NodeDiffuse::tellEdge(std::size_t edge, double sine, double cosAzimuth, Of 
     if (known == into.told.end()) {
       DiffuseMemory::Terms& terms = into.told.emplace_back();
       terms.sine = sine, terms.sun = of.sun, terms.thermal = of.thermal;
+      terms.of.resize(2 * each_);
       std::vector<double> turned(static_cast<std::size_t>(shape.moments()));
       // Light goes the other way than the line.
       turnedTo(-sine, 1.0, shape, turned);
-      for (std::size_t n = of.thermal ? 0 : 2; n < (of.sun ? 4 : 2); ++n) {
-        const Part& part = *all[n];
+      for (std::size_t n = first; n < end; ++n) {
+        const Part& part = parts_[n];
         const std::size_t width = widthOf(part);
         const double* rows = (told_ == Nodes::Apart ? part.share : part.pattern).data() + edge * part.moments.size() * width;
-        terms.of[n].assign(width * static_cast<std::size_t>(n < 2 ? 1 : shape.azimuths), 0.0);
+        terms.of[n].assign(width * static_cast<std::size_t>(n < each_ ? 1 : shape.azimuths), 0.0);
         int m = 0;
         for (std::size_t k = 0; k < part.moments.size(); ++k) {
-          while (n >= 2 && m + 1 < shape.azimuths && part.moments[k] >= shape.at(m + 1, m + 1)) ++m;
+          while (n >= each_ && m + 1 < shape.azimuths && part.moments[k] >= shape.at(m + 1, m + 1)) ++m;
           addTimes(rows + k * width, turned[static_cast<std::size_t>(part.moments[k])], static_cast<int>(width),
                    terms.of[n].data() + static_cast<std::size_t>(m) * width);
         }
@@ -327,8 +355,8 @@ void NodeDiffuse::tellEdge(std::size_t edge, double sine, double cosAzimuth, Of 
   }
   into.cosAzimuth = cosAzimuth;
   const double azimuth = std::acos(std::clamp(cosAzimuth, -1.0, 1.0));
-  for (std::size_t n = of.thermal ? 0 : 2; n < (of.sun ? 4 : 2); ++n) {
-    const std::size_t width = widthOf(*all[n]);
+  for (std::size_t n = first; n < end; ++n) {
+    const std::size_t width = widthOf(parts_[n]);
     into.of[n].assign(width, 0.0);
     const std::vector<double>& terms = into.told[into.here].of[n];
     for (std::size_t m = 0; m * width < terms.size(); ++m)
@@ -355,10 +383,11 @@ void NodeDiffuse::at(double height_m, double sine, double cosAzimuth, Of of, Dif
     for (std::size_t p = 0; p < part.patterns; ++p)
       addTimes(part.share.data() + p * nodes_, (1.0 - share) * below.of[n][p] + share * over.of[n][p], static_cast<int>(nodes_), into.data());
   };
-  if (of.thermal) sum(thermalByMolecules_, 0, out.thermalByMolecules), sum(thermalByHaze_, 1, out.thermalByHaze);
-  if (!of.sun) return;
-  sum(solarByMolecules_, 2, out.solarByMolecules);
-  sum(solarByHaze_, 3, out.solarByHaze);
+  out.thermal.resize(each_), out.solar.resize(each_);
+  for (std::size_t k = 0; k < each_; ++k) {
+    if (of.thermal) sum(parts_[k], k, out.thermal[k]);
+    if (of.sun) sum(parts_[each_ + k], each_ + k, out.solar[k]);
+  }
 }
 
 }  // namespace pitviper

@@ -44,11 +44,12 @@ class DiffuseLight {
   /// Of a wavelength, [height][moment]; of the sun for an irradiance of 1.
   struct Moments {
     std::vector<double> solar, thermal;
-    double molecules = 0.0, haze = 0.0, asymmetry = 0.0;  ///< what a unit of air scatters
-    double irradiance = 0.0;                              ///< of the sun; 0: there is none
+    AirNode air;
+    double irradiance = 0.0;  ///< of the sun; 0: there is none
   };
   /// Kept.
   const Moments& at(double wavelength_um) const;
+  AirNode airAt(double wavelength_um) const { return column_.air->node(wavelength_um); }
 
  private:
   DiffuseLight(const AirColumn& column, int streams);
@@ -73,14 +74,14 @@ class DiffuseLight {
 struct DiffuseMemory {
   struct Terms {
     double sine = 2.0;
-    bool thermal = false, sun = false;        ///< what is told
-    std::array<std::vector<double>, 4> of{};  ///< azimuth terms, each by pattern of each part, or by node
+    bool thermal = false, sun = false;      ///< what is told
+    std::vector<std::vector<double>> of{};  ///< azimuth terms, each by pattern of each part, or by node
   };
   struct Edge {
     std::vector<Terms> told{};
     std::size_t here = SIZE_MAX;  ///< of these, that of the line
     double cosAzimuth = 2.0;
-    std::array<std::vector<double>, 4> of{};
+    std::vector<std::vector<double>> of{};
   };
   std::vector<Edge> edges{};
   /// A line begins that goes through the same places as the one before, under another azimuth: what was told then is found again, in the same order.
@@ -93,10 +94,10 @@ struct DiffuseMemory {
   }
 };
 
-/// What is turned into a line at a place, per optical depth of scattering by molecules or by haze, of each node [W/(m2 sr um)]; of the sun for an irradiance
-/// of 1.
+/// What is turned into a line at a place, per optical depth of scattering by molecules (the first) or by a kind of particles, of each node [W/(m2 sr um)]; of
+/// the sun for an irradiance of 1.
 struct TurnedLight {
-  std::vector<double> thermalByMolecules, thermalByHaze, solarByMolecules, solarByHaze;
+  std::vector<std::vector<double>> thermal, solar;
 };
 
 /// The same at the nodes of a plan, of groups as the mean over their wavelengths by what each scatters: as the products that plans are fitted to. May be shared
@@ -108,6 +109,8 @@ class NodeDiffuse {
   enum class Nodes { Apart, Together, Kept };
   NodeDiffuse(std::shared_ptr<const DiffuseLight> light, std::span<const SpectralNode> nodes, Nodes told);
   bool sunlit() const { return light_->sunlit(); }
+  /// What TurnedLight tells after molecules.
+  const ParticleKinds& particles() const { return kinds_; }
   struct Of {
     bool thermal = true, sun = true;  ///< the sun's where it is there
   };
@@ -126,12 +129,14 @@ class NodeDiffuse {
   bool read(const ContentKey& key);
   void write(const ContentKey& key) const;
   void tellEdge(std::size_t edge, double sine, double cosAzimuth, Of of, DiffuseMemory::Edge& into) const;
-  std::array<Part*, 4> parts() { return {&thermalByMolecules_, &thermalByHaze_, &solarByMolecules_, &solarByHaze_}; }
-  Part partOf(std::span<const SpectralNode> nodes, bool solar, bool haze) const;
+  /// `kind`: null: of molecules.
+  Part partOf(std::span<const SpectralNode> nodes, bool solar, const std::vector<std::size_t>* kind) const;
   std::shared_ptr<const DiffuseLight> light_;
   std::size_t nodes_;
   Nodes told_;
-  Part thermalByMolecules_, thermalByHaze_, solarByMolecules_, solarByHaze_;
+  ParticleKinds kinds_;
+  std::size_t each_ = 1;     ///< molecules and kinds of particles
+  std::vector<Part> parts_;  ///< of thermal light by molecules, by each kind, then of the sun's
 };
 
 }  // namespace pitviper

@@ -56,6 +56,8 @@ Eigen::Map<Eigen::ArrayXXd> sized(std::vector<double>& all, Eigen::Index nodes, 
 struct NodeAir::Tables {
   std::span<const SpectralNode> nodes;
   Coefficients extinction, molecules, haze;
+  std::vector<Coefficients> scattered;  ///< by molecules and each kind of particles that `diffuse` tells of
+  std::vector<Eigen::Index> apart;      ///< absorbers of `haze` whose asymmetry is not the mean at some node
   Eigen::ArrayXd source;
   Eigen::ArrayXXd logPlanck;  ///< [node], over the inverse of the temperature
   std::optional<NodeDiffuse> diffuse;
@@ -92,13 +94,23 @@ NodeAir::NodeAir(std::span<const SpectralNode> all, std::shared_ptr<const Diffus
     t.source[i] = n.air.source;
   }
   for (Coefficients* c : {&t.extinction, &t.molecules, &t.haze}) c->findAbsorbers();
+  for (const Eigen::Index k : t.haze.absorbers)
+    if (std::any_of(all.begin(), all.end(), [&](const SpectralNode& n) { return n.air.asymmetry[static_cast<size_t>(k)] != n.air.meanAsymmetry; }))
+      t.apart.push_back(k);
   const NodePlanck planck(all);
   std::vector<double> black(all.size());
   for (Eigen::Index k = 0; k < kTemperatures; ++k) {
     planck.at(1.0 / (1.0 / kWarmest_K + (1.0 / kColdest_K - 1.0 / kWarmest_K) * static_cast<double>(k) / (kTemperatures - 1)), black);
     for (Eigen::Index i = 0; i < nodes; ++i) t.logPlanck(i, k) = std::log(std::max(black[static_cast<size_t>(i)], 1e-300));
   }
-  if (diffuse) t.diffuse.emplace(std::move(diffuse), all, kept ? NodeDiffuse::Nodes::Kept : NodeDiffuse::Nodes::Apart);
+  if (diffuse) {
+    t.diffuse.emplace(std::move(diffuse), all, kept ? NodeDiffuse::Nodes::Kept : NodeDiffuse::Nodes::Apart);
+    t.scattered.push_back(t.molecules);
+    for (const auto& kind : t.diffuse->particles()) {
+      t.scattered.push_back(t.haze);
+      t.scattered.back().absorbers.assign(kind.begin(), kind.end());
+    }
+  }
   tables_ = std::make_shared<const Tables>(std::move(t));
 }
 
@@ -121,14 +133,15 @@ std::vector<double> lostOf(std::span<const double> x) {
 struct NodeAir::Again {
   TurnedLight near, far;
   std::shared_ptr<DiffuseMemory> memory;
-  Eigen::ArrayXXd small, large;  ///< depths of scattering by molecules and by haze, by station
-  Eigen::ArrayXd bySmall, byLarge;
+  std::vector<Eigen::ArrayXXd> depths;  ///< of scattering by molecules and by each kind of particles, by station
+  std::vector<Eigen::ArrayXd> by;
 
   Again(const Tables& t, const SunlitAir& air, Eigen::Index nodes, std::shared_ptr<DiffuseMemory> known)
-      : memory(known ? std::move(known) : std::make_shared<DiffuseMemory>()), small(nodes, std::ssize(air.stations)), large(nodes, std::ssize(air.stations)) {
+      : memory(known ? std::move(known) : std::make_shared<DiffuseMemory>()),
+        depths(t.scattered.size(), Eigen::ArrayXXd(nodes, std::ssize(air.stations))),
+        by(t.scattered.size()) {
     memory->again();
-    weigh(t.molecules, air.powered, small);
-    weigh(t.haze, air.powered, large);
+    for (std::size_t k = 0; k < depths.size(); ++k) weigh(t.scattered[k], air.powered, depths[k]);
   }
   void at(const Tables& t, const SunlitAir& air, Eigen::Index s, bool sunlit, bool thermal, TurnedLight& out) {
     const auto k = static_cast<size_t>(s);
@@ -136,8 +149,7 @@ struct NodeAir::Again {
   }
   /// Shares of a step's depth that scatter.
   void step(Eigen::Index s, const Eigen::ArrayXd& d) {
-    bySmall = (d > 0.0).select((small.col(s) - small.col(s - 1)).max(0.0) / d.max(1e-300), 0.0);
-    byLarge = (d > 0.0).select((large.col(s) - large.col(s - 1)).max(0.0) / d.max(1e-300), 0.0);
+    for (std::size_t k = 0; k < by.size(); ++k) by[k] = (d > 0.0).select((depths[k].col(s) - depths[k].col(s - 1)).max(0.0) / d.max(1e-300), 0.0);
   }
 };
 
@@ -154,7 +166,7 @@ NodeRadiance NodeAir::along(const SunlitAir& air, SameWay* way) const {
   Eigen::Map<Eigen::ArrayXXd> depth(out.depth.data(), nodes, stations), thermal(out.thermal.data(), nodes, stations);
   if (!isKnown) weigh(t.extinction, air.powered, depth);
   std::optional<Again> again;
-  if (t.diffuse || sunlit) again.emplace(t, air, nodes, way ? way->turned : nullptr);
+  if (t.diffuse) again.emplace(t, air, nodes, way ? way->turned : nullptr);
   const bool turns = t.diffuse && sunlit && t.diffuse->sunlit();
   if (t.diffuse) again->at(t, air, 0, turns, !isKnown, again->near);
   if (sunlit) sized(out.molecules, nodes, stations), sized(out.haze, nodes, stations);
@@ -163,7 +175,7 @@ NodeRadiance NodeAir::along(const SunlitAir& air, SameWay* way) const {
       haze(out.haze.data(), sunlit ? nodes : 0, sunlit ? stations : 0), byHaze(out.again.data(), turns ? nodes : 0, turns ? stations : 0);
   const double perPhase = 1.0 / physics::rayleighPhase(air.cosScatter);
   Eigen::ArrayXd hazePhase(turns ? nodes : 0);
-  for (Eigen::Index i = 0; i < hazePhase.size(); ++i) hazePhase[i] = hazeAgainPhase(air.cosScatter, t.nodes[static_cast<size_t>(i)].air.asymmetry);
+  for (Eigen::Index i = 0; i < hazePhase.size(); ++i) hazePhase[i] = hazeAgainPhase(air.cosScatter, t.nodes[static_cast<size_t>(i)].air.meanAsymmetry);
   Eigen::ArrayXd seen, before, source, d = depth.col(0), left, lost(nodes), share, from, to;  // with room of their own for all steps
   leave(d, seen);
   if (!isKnown) t.planck(air.stations[0].temperature_K, before), before += t.source;
@@ -187,16 +199,21 @@ NodeRadiance NodeAir::along(const SunlitAir& air, SameWay* way) const {
       const auto of = [](const std::vector<double>& v) { return Eigen::Map<const Eigen::ArrayXd>(v.data(), std::ssize(v)); };
       const TurnedLight &near = again->near, &far = again->far;
       if (!isKnown) {
-        from = before + again->bySmall * (of(near.thermalByMolecules) - before) + again->byLarge * (of(near.thermalByHaze) - before);
-        to = source + again->bySmall * (of(far.thermalByMolecules) - source) + again->byLarge * (of(far.thermalByHaze) - source);
+        from = before, to = source;
+        for (std::size_t k = 0; k < again->by.size(); ++k) {
+          from += again->by[k] * (of(near.thermal[k]) - before);
+          to += again->by[k] * (of(far.thermal[k]) - source);
+        }
         send(from, to, 1.0, thermal.col(s));
       }
       if (turns) {
         molecules.col(s) = molecules.col(s - 1);
-        from = again->bySmall * of(near.solarByMolecules), to = again->bySmall * of(far.solarByMolecules);
+        from = again->by[0] * of(near.solar[0]), to = again->by[0] * of(far.solar[0]);
         send(from, to, perPhase, molecules.col(s));
         byHaze.col(s) = byHaze.col(s - 1);
-        from = again->byLarge * of(near.solarByHaze) / hazePhase, to = again->byLarge * of(far.solarByHaze) / hazePhase;
+        from.setZero(), to.setZero();
+        for (std::size_t k = 1; k < again->by.size(); ++k) from += again->by[k] * of(near.solar[k]), to += again->by[k] * of(far.solar[k]);
+        from /= hazePhase, to /= hazePhase;
         send(from, to, 1.0, byHaze.col(s));
       }
       std::swap(again->near, again->far);
@@ -210,6 +227,19 @@ NodeRadiance NodeAir::along(const SunlitAir& air, SameWay* way) const {
   Eigen::ArrayXd nearest, reaching, once = Eigen::ArrayXd::Zero(nodes);
   share.resize(nodes);
   weigh(t.extinction, air.both, both);
+  Eigen::ArrayXXd small(nodes, stations), large(nodes, stations);  // scattered by molecules and by particles
+  weigh(t.molecules, air.powered, small);
+  if (t.apart.empty()) {
+    weigh(t.haze, air.powered, large);
+  } else {
+    Coefficients turned = t.haze;
+    for (Eigen::Index i = 0; i < nodes; ++i) {
+      const AirNode& n = t.nodes[static_cast<size_t>(i)].air;
+      const double mean = physics::henyeyGreensteinPhase(air.cosScatter, n.meanAsymmetry);
+      for (const Eigen::Index k : t.apart) turned.of(i, k) *= physics::henyeyGreensteinPhase(air.cosScatter, n.asymmetry[static_cast<size_t>(k)]) / mean;
+    }
+    weigh(turned, air.powered, large);
+  }
   for (Eigen::Index s = 1; s < stations; ++s) {
     haze.col(s) = haze.col(s - 1);
     const double here = air.lit[static_cast<size_t>(s - 1)], there = air.lit[static_cast<size_t>(s)], sun = 0.5 * (here + there);
@@ -220,8 +250,8 @@ NodeRadiance NodeAir::along(const SunlitAir& air, SameWay* way) const {
       nearest = near.min(far);
       leave(nearest, reaching);
       for (Eigen::Index i = 0; i < nodes; ++i) share[i] = sun * reaching[i] * physics::meanDecayOf(d[i], left[i]);
-      once += (again->small.col(s) - again->small.col(s - 1)).max(0.0) * share;
-      haze.col(s) += (again->large.col(s) - again->large.col(s - 1)).max(0.0) * share;
+      once += (small.col(s) - small.col(s - 1)).max(0.0) * share;
+      haze.col(s) += (large.col(s) - large.col(s - 1)).max(0.0) * share;
     }
     molecules.col(s) += once;
   }

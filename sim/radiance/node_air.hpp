@@ -18,7 +18,7 @@ struct DiffuseMemory;
 /// line's own angle.
 struct NodeRadiance {
   std::vector<double> depth, thermal;
-  std::vector<double> molecules, haze;  ///< for phase functions and irradiance of 1; empty: no sun
+  std::vector<double> molecules, haze;  ///< over the phase functions of molecules and of AirNode::meanAsymmetry, irradiance of 1; empty: no sun
   std::vector<double> again;            ///< diffuse sunlight that haze turns, for hazeAgainPhase() and irradiance of 1; empty: none
 };
 

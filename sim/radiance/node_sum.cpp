@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "sim/radiance/node_surroundings.hpp"
 #include "sim/radiance/planck_table.hpp"
@@ -18,10 +19,12 @@ constexpr double kColdest_K = 140.0, kWarmest_K = 400.0, kAirStep_K = 1.0, kHott
 /// What lets less through than this sends nothing that anybody sees.
 constexpr double kOpaque = 45.0;
 
-NodeSpectra::AirRows rowsOf(std::span<const SpectralNode> nodes, size_t used, std::array<double, kMostAirAmounts> AirNode::*coefficient) {
+NodeSpectra::AirRows rowsOf(
+    std::span<const SpectralNode> nodes, size_t used, std::array<double, kMostAirAmounts> AirNode::*coefficient,
+    const std::function<bool(size_t)>& takes = [](size_t) { return true; }) {
   NodeSpectra::AirRows rows;
   for (size_t k = 0; k < used; ++k) {
-    if (std::all_of(nodes.begin(), nodes.end(), [&](const SpectralNode& n) { return (n.air.*coefficient)[k] == 0.0; })) continue;
+    if (!takes(k) || std::all_of(nodes.begin(), nodes.end(), [&](const SpectralNode& n) { return (n.air.*coefficient)[k] == 0.0; })) continue;
     rows.amounts.push_back(k);
     for (const SpectralNode& n : nodes) rows.coefficient.push_back((n.air.*coefficient)[k]);
   }
@@ -60,6 +63,11 @@ NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralN
   if (terms.air && terms.streams > 0)
     if (auto light = DiffuseLight::of(columnOf(simulation), terms.streams))
       diffuse_.emplace(std::move(light), nodes, parts ? NodeDiffuse::Nodes::Together : NodeDiffuse::Nodes::Kept);
+  if (diffuse_) {
+    scattered_.push_back(molecules_);
+    for (const auto& kind : diffuse_->particles())
+      scattered_.push_back(rowsOf(nodes, used, &AirNode::haze, [&](size_t k) { return std::find(kind.begin(), kind.end(), k) != kind.end(); }));
+  }
   for (size_t m = 0; !nodes.empty() && m < nodes.front().absorption_per_m.size(); ++m)
     for (const SpectralNode& n : nodes) absorption_per_m_.push_back(n.absorption_per_m[m]);
   const auto table = [&](std::shared_ptr<const PlanckTable> NodeSpectra::*of, double first, double last, double step) {
@@ -102,7 +110,7 @@ std::vector<double> NodeSpectra::of(const Factor& factor) const {
 NodeSum::NodeSum(const NodeSpectra& spectra) : spectra_(spectra), count_(spectra.nodes().size()), none_(count_, 0.0), all_(count_, 1.0) {
   for (At* at : {&near_, &far_})
     for (auto* v : {&at->depth, &at->passed, &at->black, &at->sunDepth, &at->sunPassed}) v->assign(count_, 0.0);
-  for (auto* v : {&turned_, &turnedByHaze_}) v->assign(count_, 0.0);
+  for (auto* v : {&turned_, &turnedByHaze_, &phase_}) v->assign(count_, 0.0);
 }
 
 void NodeSum::begin() {
@@ -181,27 +189,33 @@ void NodeSum::turnAgain(const Segment& s) {
   for (size_t k = 0; k < kMostAirAmounts; ++k) passed.amount[k] = s.far.powered.amount[k] - s.near.powered.amount[k];
   const bool sun = s.sunlit && spectra_.diffuse()->sunlit();
   const double* irradiance = sun ? values(Factor::sun()).data() : none_.data();
-  againNear_.resize(count_), againFar_.resize(count_);
-  weigh(spectra_.molecules(), passed, againNear_);
-  weigh(spectra_.haze(), passed, againFar_);
-  for (size_t i = 0; i < count_; ++i) {
-    const double depth = far_.depth[i] - near_.depth[i], each = depth > 0.0 ? 1.0 / depth : 0.0;
-    const double small = each * std::max(againNear_[i], 0.0), large = each * std::max(againFar_[i], 0.0);
-    const auto source = [&](const At& at) {
-      const TurnedLight& l = at.light;
-      const double thermal = small * (l.thermalByMolecules[i] - at.black[i]) + large * (l.thermalByHaze[i] - at.black[i]);
-      return sun ? thermal + irradiance[i] * (small * l.solarByMolecules[i] + large * l.solarByHaze[i]) : thermal;
-    };
-    againNear_[i] = source(near_), againFar_[i] = source(far_);
+  againNear_.assign(count_, 0.0), againFar_.assign(count_, 0.0), scatters_.resize(count_);
+  for (size_t kind = 0; kind < spectra_.scattered().size(); ++kind) {
+    weigh(spectra_.scattered()[kind], passed, scatters_);
+    for (size_t i = 0; i < count_; ++i) {
+      const double depth = far_.depth[i] - near_.depth[i], part = depth > 0.0 ? std::max(scatters_[i], 0.0) / depth : 0.0;
+      const auto source = [&](const At& at) {
+        const double thermal = at.light.thermal[kind][i] - at.black[i];
+        return part * (sun ? thermal + irradiance[i] * at.light.solar[kind][i] : thermal);
+      };
+      againNear_[i] += source(near_), againFar_[i] += source(far_);
+    }
   }
 }
 
-const std::vector<double>& NodeSum::hazePhase(double cosScatter) {
-  if (cosScatter == hazePhaseOf_) return hazePhase_;
-  hazePhaseOf_ = cosScatter;
-  hazePhase_.clear();
-  for (const SpectralNode& n : spectra_.nodes()) hazePhase_.push_back(physics::henyeyGreensteinPhase(cosScatter, n.air.asymmetry));
-  return hazePhase_;
+const NodeSpectra::AirRows& NodeSum::hazeTurned(double cosScatter) {
+  if (cosScatter == hazeTurnedAt_) return hazeTurned_;
+  hazeTurnedAt_ = cosScatter;
+  hazeTurned_ = spectra_.haze();
+  for (size_t k = 0; k < hazeTurned_.amounts.size(); ++k)
+    for (size_t i = 0; i < count_; ++i) {
+      // Mostly all particles of a node are of one asymmetry.
+      const AirNode& n = spectra_.nodes()[i].air;
+      const double g = n.asymmetry[hazeTurned_.amounts[k]], before = k > 0 ? n.asymmetry[hazeTurned_.amounts[k - 1]] : 2.0;
+      phase_[i] = g == before ? phase_[i] : physics::henyeyGreensteinPhase(cosScatter, g);
+      hazeTurned_.coefficient[k * count_ + i] *= phase_[i];
+    }
+  return hazeTurned_;
 }
 
 /// What a medium turns of sunlight, per extinction: kept for the line, whose angle is the same all along.
@@ -328,10 +342,9 @@ void NodeSum::segment(const Segment& s) {
     AirAmounts passed;
     for (size_t k = 0; k < kMostAirAmounts; ++k) passed.amount[k] = s.far.powered.amount[k] - s.near.powered.amount[k];
     const double rayleigh = physics::rayleighPhase(s.cosScatter);
-    const std::vector<double>& phase = hazePhase(s.cosScatter);
     weigh(spectra_.molecules(), passed, turned_);
-    weigh(spectra_.haze(), passed, turnedByHaze_);
-    for (size_t i = 0; i < count_; ++i) turned_[i] = rayleigh * std::max(turned_[i], 0.0) + phase[i] * std::max(turnedByHaze_[i], 0.0);
+    weigh(hazeTurned(s.cosScatter), passed, turnedByHaze_);
+    for (size_t i = 0; i < count_; ++i) turned_[i] = rayleigh * std::max(turned_[i], 0.0) + std::max(turnedByHaze_[i], 0.0);
   }
   const bool inMedia = !s.media.empty(), media = inMedia && takes({TermKind::Media}), air = s.air && takes({TermKind::AirEmission}),
              turned = sunlit && takes({TermKind::ScatteredSun}), again = s.air && !s.dark && spectra_.diffuse() && takes({TermKind::ScatteredAgain});

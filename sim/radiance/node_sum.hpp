@@ -40,6 +40,8 @@ class NodeSpectra {
   const AirRows& extinction() const { return extinction_; }
   const AirRows& molecules() const { return molecules_; }
   const AirRows& haze() const { return haze_; }
+  /// Of what diffuse() tells: by molecules and by each kind of particles.
+  const std::vector<AirRows>& scattered() const { return scattered_; }
   /// Null: light is scattered once.
   const NodeDiffuse* diffuse() const { return diffuse_ ? &*diffuse_ : nullptr; }
   /// What air sends besides its black body: AirNode::source.
@@ -62,6 +64,7 @@ class NodeSpectra {
   const Simulation& simulation_;
   std::span<const SpectralNode> nodes_;
   AirRows extinction_, molecules_, haze_;
+  std::vector<AirRows> scattered_;
   std::vector<double> airSource_;
   std::optional<NodeDiffuse> diffuse_;
   std::vector<double> absorption_per_m_;
@@ -126,8 +129,8 @@ class NodeSum final : public TermSink {
   void tellSources(const Segment& segment);
   bool tellDrifts(const Segment& segment);
   void gather(const Segment& segment);
-  /// The phase function of haze per node, kept as lines of one sun mostly ask for the same angle again.
-  const std::vector<double>& hazePhase(double cosScatter);
+  /// What particles scatter times their phase functions, kept as lines of one sun mostly ask for the same angle again.
+  const NodeSpectra::AirRows& hazeTurned(double cosScatter);
   const std::vector<double>& turnedBy(const MediumInside& medium, double cosScatter);
 
   const NodeSpectra& spectra_;
@@ -157,9 +160,11 @@ class NodeSum final : public TermSink {
   DiffuseMemory memory_;
   std::vector<std::vector<double>> sources_, drifts_;           ///< of each medium of the segment being told
   std::vector<double> black_, change_, sunAir_, shade_, each_;  ///< as they are told; of one medium
-  std::vector<double> scratch_, hazePhase_, turned_, turnedByHaze_, termDepth_, termPassed_;
-  std::vector<double> againNear_, againFar_;     ///< source of light scattered again at both ends of the segment being told
-  double hazePhaseOf_ = 2.0;                     ///< cosine that hazePhase_ is for
+  std::vector<double> scratch_, phase_, turned_, turnedByHaze_, termDepth_, termPassed_;
+  std::vector<double> againNear_, againFar_;  ///< source of light scattered again at both ends of the segment being told
+  std::vector<double> scatters_;              ///< part of its depth that a kind scatters
+  NodeSpectra::AirRows hazeTurned_;
+  double hazeTurnedAt_ = 2.0;                    ///< cosine that hazeTurned_ is for
   double turnedAt_ = 2.0;                        ///< cosine that turnedOf_ is for
   std::map<int, std::vector<double>> turnedOf_;  ///< of each material
   const AirPlace* sunKnownAt_ = nullptr;         ///< near_ has the way on to the sun from there

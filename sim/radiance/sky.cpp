@@ -63,8 +63,8 @@ class SkyAt {
       double radiance = all.thermal[last + i];
       if (!all.molecules.empty())
         radiance +=
-            irradiance_[i] * (rayleigh * all.molecules[last + i] + physics::henyeyGreensteinPhase(line.cosScatter, node(i).asymmetry) * all.haze[last + i]);
-      if (!all.again.empty()) radiance += irradiance_[i] * hazeAgainPhase(line.cosScatter, node(i).asymmetry) * all.again[last + i];
+            irradiance_[i] * (rayleigh * all.molecules[last + i] + physics::henyeyGreensteinPhase(line.cosScatter, node(i).meanAsymmetry) * all.haze[last + i]);
+      if (!all.again.empty()) radiance += irradiance_[i] * hazeAgainPhase(line.cosScatter, node(i).meanAsymmetry) * all.again[last + i];
       sent.radiance.push_back(radiance);
       sent.depth.push_back(all.depth[last + i]);
     }
@@ -96,6 +96,10 @@ class SkyAt {
   NodeAir air_;
   std::vector<double> irradiance_, behind_;
 };
+
+std::vector<AirStation> stationsOf(const Atmosphere& air, const AirRay& ray, std::span<const double> ranges_m) {
+  return air.stationsAt(ray, withShellPlaces(air.shells(), ray, ranges_m));
+}
 
 class SkyAround final : public Surroundings {
  public:
@@ -182,14 +186,14 @@ class SkyAround final : public Surroundings {
     if (legs_) seen = {sun_->toSun.z, glm::dot(direction, sun_->toSun)};
     const bool up = ring < grid.above;
     AirRay ray{height_m, direction.z, earthRadius_m_};
-    if (up) return {{SunlitAir(*air_, ray, air_->stationsAt(ray, kRanges_m), legs_.get(), seen), seen.cosScatter}, -1.0};
+    if (up) return {{SunlitAir(*air_, ray, stationsOf(*air_, ray, kRanges_m), legs_.get(), seen), seen.cosScatter}, -1.0};
     // At the horizon itself a line just touches.
     const double range =
         std::min(physics::groundRange(height_m, direction.z - 1e-9, earthRadius_m_), std::sqrt(height_m * (height_m + 2.0 * earthRadius_m_)) + 1.0);
     std::vector<double> ranges;
     for (double part : kParts) ranges.push_back(part * std::max(range, 1e-3));
     const double sine = std::clamp(-((earthRadius_m_ + height_m) * direction.z + range) / earthRadius_m_, 0.0, 1.0);
-    return {{SunlitAir(*air_, ray, air_->stationsAt(ray, ranges), legs_.get(), seen), seen.cosScatter}, std::acos(sine)};
+    return {{SunlitAir(*air_, ray, stationsOf(*air_, ray, ranges), legs_.get(), seen), seen.cosScatter}, std::acos(sine)};
   }
 
   /// On the ground, of the sun and of the mean sky [W/(m2 um)].
@@ -234,7 +238,7 @@ WeightedLines linesOfMean(const Atmosphere& air, const std::optional<Sun>& sun, 
   WeightedLines lines;
   for (const QuadratureNode& node : gaussLegendre(kElevations, 0.0, 1.0)) {
     const AirRay ray{height_m, node.x, earthRadius_m};
-    const auto stations = air.stationsAt(ray, kRanges_m);
+    const auto stations = stationsOf(air, ray, kRanges_m);
     const int azimuths = sun ? kAzimuths : 1;
     for (int a = 0; a < azimuths; ++a) {
       RaySun seen;

@@ -32,6 +32,7 @@ constexpr Real kFar = 1e30;
 #include "sim/radiometry/glsl/geometry.glsl"
 #include "sim/radiometry/glsl/ground.glsl"
 #include "sim/radiometry/glsl/segment.glsl"
+#include "sim/radiometry/glsl/shell.glsl"
 // After what it uses.
 #include "sim/radiometry/glsl/medium.glsl"
 #include "sim/radiometry/glsl/planck.glsl"

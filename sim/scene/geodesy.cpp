@@ -9,7 +9,7 @@ namespace {
 constexpr double kDegrees = 57.29577951308232;
 }
 
-LocalFrame::LocalFrame(const Geodetic& origin) : origin_(origin) {
+LocalFrame::LocalFrame(const Geodetic& origin, double ground_m) : origin_(origin), ground_m_(ground_m) {
   std::vector<double> m(9);
   GeographicLib::Geocentric::WGS84().Forward(origin.latitude_rad * kDegrees, origin.longitude_rad * kDegrees, origin.height_m, originEcef_.x, originEcef_.y,
                                              originEcef_.z, m);
@@ -19,7 +19,7 @@ LocalFrame::LocalFrame(const Geodetic& origin) : origin_(origin) {
   const double a = GeographicLib::Constants::WGS84_a(), f = GeographicLib::Constants::WGS84_f();
   const double e2 = f * (2.0 - f), s = std::sin(origin.latitude_rad);
   // sqrt(M N): Gaussian radius of the ellipsoid, a sqrt(1 - e^2) / (1 - e^2 sin^2).
-  earthRadius_m_ = a * std::sqrt(1.0 - e2) / (1.0 - e2 * s * s);
+  earthRadius_m_ = a * std::sqrt(1.0 - e2) / (1.0 - e2 * s * s) + ground_m;
 }
 
 glm::dvec3 LocalFrame::toLocal(const Geodetic& g) const {

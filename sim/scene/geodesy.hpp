@@ -14,26 +14,30 @@ struct Geodetic {
 /// East-north-up frame at an origin on the WGS 84 ellipsoid. Positions in metres, double precision.
 class LocalFrame {
  public:
-  explicit LocalFrame(const Geodetic& origin = {});
+  /// `ground_m`: height of the ground above the ellipsoid.
+  explicit LocalFrame(const Geodetic& origin = {}, double ground_m = 0.0);
   glm::dvec3 toLocal(const Geodetic& g) const;
   Geodetic toGeodetic(const glm::dvec3& local) const;
   glm::dvec3 toEcef(const glm::dvec3& local) const;
   /// Rotation that takes local directions to earth-centred, earth-fixed ones.
   const glm::dmat3& ecefFromLocal() const { return ecefFromLocal_; }
   const Geodetic& origin() const { return origin_; }
-  /// Radius of the sphere that stands for the earth in path lengths: the Gaussian radius of curvature at the origin [m]. It touches the
-  /// ellipsoid below the origin; 100 km away they differ by less than 3 m in height.
+  /// Radius of the sphere that stands for the earth in path lengths: the Gaussian radius of curvature at the origin, and the ground's height [m]. It touches
+  /// the ground below the origin; 100 km away they differ by less than 3 m in height.
   double earthRadius_m() const { return earthRadius_m_; }
   /// Height above that sphere [m], and the unit vector away from its centre.
   double height(const glm::dvec3& local) const { return glm::length(fromCentre(local)) - earthRadius_m_; }
+  double ground_m() const { return ground_m_; }
+  /// Height above the sea [m].
+  double altitude(const glm::dvec3& local) const { return height(local) + ground_m_; }
   glm::dvec3 up(const glm::dvec3& local) const { return glm::normalize(fromCentre(local)); }
 
  private:
-  glm::dvec3 fromCentre(const glm::dvec3& local) const { return local + glm::dvec3(0.0, 0.0, earthRadius_m_ + origin_.height_m); }
+  glm::dvec3 fromCentre(const glm::dvec3& local) const { return local + glm::dvec3(0.0, 0.0, earthRadius_m_ - ground_m_ + origin_.height_m); }
   Geodetic origin_;
   glm::dmat3 ecefFromLocal_{1.0};
   glm::dvec3 originEcef_{0.0};
-  double earthRadius_m_ = 6371000.0;
+  double earthRadius_m_ = 6371000.0, ground_m_ = 0.0;
 };
 
 }  // namespace pitviper

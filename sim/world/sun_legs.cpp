@@ -40,6 +40,7 @@ const AirAmounts* SunLegs::rowAt(int height) const {
   std::call_once(made_[static_cast<size_t>(height)], [&] {
     for (int e = 0; e < kElevations; ++e) {
       row[e] = path_->amounts({heightAt(height, top_m_), first_ + step_ * e, radius_m_}, physics::kFar);
+      dropShells(path_->shells(), row[e]);
       for (double& w : row[e].amount) w = std::sqrt(std::max(w, 0.0));
     }
   });
@@ -80,9 +81,11 @@ AirAmounts SunLegs::at(double height_m, double sine) const {
   const double lowest_m = height_m - (radius_m_ + height_m) * sine * sine / (1.0 + std::sqrt(std::max(1.0 - sine * sine, 0.0)));
   if (!has(height_m, std::abs(sine)) || (sine < 0.0 && !has(lowest_m, 0.0))) return path_->amounts({height_m, sine, radius_m_}, physics::kFar);
   AirAmounts a = upwards(height_m, std::abs(sine));
-  if (sine >= 0.0) return a;
-  const AirAmounts half = upwards(lowest_m, 0.0);
-  for (size_t k = 0; k < a.amount.size(); ++k) a.amount[k] = std::max(2.0 * half.amount[k] - a.amount[k], 0.0);
+  if (sine < 0.0) {
+    const AirAmounts half = upwards(lowest_m, 0.0);
+    for (size_t k = 0; k < a.amount.size(); ++k) a.amount[k] = std::max(2.0 * half.amount[k] - a.amount[k], 0.0);
+  }
+  addShells(path_->shells(), {height_m, sine, radius_m_}, physics::kFar, a);
   return a;
 }
 

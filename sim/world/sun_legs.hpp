@@ -29,9 +29,9 @@ class SunLegs {
   /// (visibilities from 10 km; tests/physics/test_low_sun.cpp).
   AirAmounts at(double height_m, double sinElevation) const;
 
-  /// The table, as the shader reads it too (atmosphere/layered.glsl): roots of the amounts above a height towards elevations from 0 on, cubic between
-  /// elevations, linear between heights: a column of what ends at a height falls to nothing as a square, and elsewhere a root bends less than the column.
-  /// A line that goes down first has twice what lies above its lowest point, less what lies behind it.
+  /// The table, without shells, as the shader reads it too (atmosphere/layered.glsl): roots of the amounts above a height towards elevations from 0 on, cubic
+  /// between elevations, linear between heights: a column of what ends at a height falls to nothing as a square, and elsewhere a root bends less than the
+  /// column. A line that goes down first has twice what lies above its lowest point, less what lies behind it.
   static constexpr int kHeights = 1024, kElevations = 14;
   /// The deepest open ground is 0.43 km below the sea.
   static constexpr double kBottom_m = -500.0;

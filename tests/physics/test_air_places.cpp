@@ -55,7 +55,7 @@ Seen lookAlong(const Simulation& sim, double um, double height_m, const glm::dve
   const AirRadiance found = airRadiance(node.air, air, source);
   const double irradiance = sim.sun->irradiance(um);
   return {sum.radiance()[0], found.thermal.back() + irradiance * (physics::rayleighPhase(sun.cosScatter) * found.molecules.back() +
-                                                                  physics::henyeyGreensteinPhase(sun.cosScatter, node.air.asymmetry) * found.haze.back())};
+                                                                  physics::henyeyGreensteinPhase(sun.cosScatter, node.air.meanAsymmetry) * found.haze.back())};
 }
 
 // Where a band is opaque all that is seen lies in the first metres, and its depth grows as a root of the range there.

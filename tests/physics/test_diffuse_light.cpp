@@ -165,7 +165,7 @@ PhotonWalk layersOf(const Simulation& sim, double um) {
     }
     small = s, large = l;
   }
-  air.asymmetry = node.asymmetry;
+  air.asymmetry = node.meanAsymmetry;
   air.toSun = {std::sqrt(1.0 - sine * sine), 0.0, sine};
   return PhotonWalk(air);
 }

@@ -58,7 +58,8 @@ double worstOff(const std::string& yaml) {
 }
 
 TEST(ThermalAir, AWorldOfOneTemperatureIsABlackBody) {
-  for (const char* haze : {"visibility: 0.5 km", "visibility: 2 km", "visibility: 100 km", "aerosol: radiation_fog, visibility: 0.1 km, haze_top: 300 m"}) {
+  for (const char* haze : {"visibility: 0.5 km", "visibility: 2 km", "visibility: 100 km", "aerosol: radiation_fog, visibility: 0.1 km, haze_top: 300 m",
+                           "visibility: 20 km, rain: 5 mm/h, clouds: [{type: stratus, base: 100 m, top: 400 m}, {type: cirrus, optical_depth: 2}]"}) {
     const std::string name = "isothermal world, " + std::string(haze) + ", off Planck's law, worst pixel";
     for (const char* accuracy : {"10 %", "0.1 %"})
       bound(name + ", at " + accuracy, worstOff(closedWorld(haze, accuracy, "direct", false)), 1e-4, "groups weigh every spectrum alike; single precision");

@@ -153,6 +153,18 @@ class Composer {
     if (more_.chance(0.15)) out << ", humidity: " << more_.between(0.0, 1.0);
     if (more_.chance(0.15)) out << ", co2: " << more_.between(300e-6, 800e-6);
     if (more_.chance(0.3)) out << ", aerosol: " << more_.of(kAerosols);
+    if (clouds_.chance(0.25)) out << clouds();
+    return out;
+  }
+
+  std::string clouds() {
+    constexpr const char* kTypes[] = {"stratus", "stratocumulus", "nimbostratus", "altostratus", "cirrus"};
+    Text out;
+    out << ", clouds: [{type: " << clouds_.of(kTypes) << ", optical_depth: " << clouds_.byFactor(0.1, 50.0);
+    if (clouds_.chance(0.4)) out << ", base: " << clouds_.byFactor(50.0, 6000.0) << " m";
+    if (clouds_.chance(0.3)) out << ", radius: " << clouds_.byFactor(3.0, 40.0) << " um";
+    out << "}]";
+    if (clouds_.chance(0.3)) out << ", rain: " << clouds_.byFactor(0.5, 50.0) << " mm/h";
     return out;
   }
 
@@ -611,6 +623,7 @@ class Composer {
   RandomDice dice_;
   RandomDice more_;   ///< of what came later: other scenes stay as they were
   RandomDice field_;  ///< of fields
+  RandomDice clouds_{draw_.seed, 5};
   /// Wavelengths of the reference in scenes with fields: each pixel of these is a hundred steps along up to some hundred lines.
   static constexpr int kWithFields = 40;
   enum class Kind { None, Plume, Smoke, Flare };

@@ -37,8 +37,8 @@ double PhotonWalk::sunAt(std::size_t layer, double depthAbove) const {
   return (1.0 - f) * air_.sunlight[layer] + f * air_.sunlight[layer + 1];
 }
 
-glm::dvec3 PhotonWalk::before(const glm::dvec3& direction, bool particles, WalkDice& dice) const {
-  const double u = unitOf(dice), azimuth = 2.0 * kPi * unitOf(dice), g = air_.asymmetry;
+glm::dvec3 PhotonWalk::before(const glm::dvec3& direction, bool particles, double g, WalkDice& dice) {
+  const double u = unitOf(dice), azimuth = 2.0 * kPi * unitOf(dice);
   double cosine = 2.0 * u - 1.0;
   if (!particles) {
     // 3/8 (1 + c^2) integrated: c^3 + 3 c = 8 u - 4.
@@ -83,12 +83,16 @@ PhotonWalk::Found PhotonWalk::from(double depthAbove, const glm::dvec3& towards,
     } else {
       depth = std::max(depth, 0.0);
       const std::size_t layer = layerOf(depth);
-      const double small = air_.molecules[layer], large = air_.haze[layer], cosine = glm::dot(d, air_.toSun);
-      const double sent =
-          weight * (small * physics::rayleighPhase(cosine) + large * physics::henyeyGreensteinPhase(cosine, air_.asymmetry)) * sunAt(layer, depth);
+      const double small = air_.molecules[layer], large = air_.haze[layer], cloud = air_.cloud.empty() ? 0.0 : air_.cloud[layer],
+                   bend = air_.cloud.empty() ? 0.0 : air_.cloudAsymmetry[layer];
+      const double cosine = glm::dot(d, air_.toSun), all = small + large + cloud;
+      const double sent = weight * sunAt(layer, depth) *
+                          (small * physics::rayleighPhase(cosine) + large * physics::henyeyGreensteinPhase(cosine, air_.asymmetry) +
+                           cloud * physics::henyeyGreensteinPhase(cosine, bend));
       (fresh ? found.once : found.again) += sent;
-      weight *= small + large;
-      d = before(d, unitOf(dice) * (small + large) >= small, dice);
+      weight *= all;
+      const double which = unitOf(dice) * all;
+      d = before(d, which >= small, which >= small + large ? bend : air_.asymmetry, dice);
     }
     fresh = false;
     if (weight >= kSlight) continue;

@@ -13,11 +13,13 @@ namespace pitviper {
 
 /// Air from the ground up.
 struct WalkAir {
-  std::vector<double> above;      ///< optical depth of all that lies above each edge of a layer, from the ground up: falling to 0
-  std::vector<double> molecules;  ///< of each layer, the part of its extinction that molecules scatter ...
-  std::vector<double> haze;       ///< ... and particles
-  std::vector<double> sunlight;   ///< at each edge: share of the sun's irradiance that comes straight there
-  double asymmetry = 0.0;         ///< of the particles (Henyey and Greenstein)
+  std::vector<double> above;             ///< optical depth of all that lies above each edge of a layer, from the ground up: falling to 0
+  std::vector<double> molecules;         ///< of each layer, the part of its extinction that molecules scatter ...
+  std::vector<double> haze;              ///< ... and particles
+  std::vector<double> cloud{};           ///< and those of a second kind; empty: there are none
+  std::vector<double> sunlight;          ///< at each edge: share of the sun's irradiance that comes straight there
+  std::vector<double> cloudAsymmetry{};  ///< of each layer
+  double asymmetry = 0.0;                ///< of the particles (Henyey and Greenstein)
   double groundAlbedo = 0.0;
   glm::dvec3 toSun{0.0, 0.0, 1.0};  ///< z up
 };
@@ -38,12 +40,13 @@ class PhotonWalk {
   };
   Found from(double depthAbove, const glm::dvec3& direction, WalkDice& dice) const;
   /// A direction that light seen from `direction` may have had before molecules or particles turned it.
-  glm::dvec3 before(const glm::dvec3& direction, bool particles, WalkDice& dice) const;
+  glm::dvec3 before(const glm::dvec3& direction, bool particles, WalkDice& dice) const { return before(direction, particles, air_.asymmetry, dice); }
 
   /// A direction over a plane, as often as light that comes evenly to its sides falls from there.
   static glm::dvec3 evenlySent(const glm::dvec3& normal, WalkDice& dice);
 
  private:
+  static glm::dvec3 before(const glm::dvec3& direction, bool particles, double asymmetry, WalkDice& dice);
   std::size_t layerOf(double depthAbove) const;
   double sunAt(std::size_t layer, double depthAbove) const;
   WalkAir air_;
