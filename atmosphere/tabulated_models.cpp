@@ -4,6 +4,7 @@
 #include "atmosphere/tabulated_path.hpp"
 #include "atmosphere/tabulated_tape7.hpp"
 #include "sim/parameters/print.hpp"
+#include "sim/radiometry/constants.hpp"
 #include "sim/scene/placement.hpp"
 
 namespace pitviper {
@@ -23,6 +24,13 @@ std::filesystem::path tableFile(const AirRecord& air, const char* key, const cha
                     "make it over fewer wavenumbers, or with larger steps");
   return file;
 }
+
+/// MODTRAN's air ends at 100 km.
+constexpr double kHighest_m = 1e5;
+
+Parameter rangeKey() { return above(within(number("range", "m", "of the only path of a file that does not say it"), 0, kFarthest_m), 0); }
+
+std::optional<double> given(const AirRecord& air, const char* key) { return air.record.given(key) ? std::optional(air.record.number(key)) : std::nullopt; }
 
 /// Far below the end of a float, 3.4e38.
 constexpr double kLargestRadiance = 1e30;
@@ -44,10 +52,12 @@ AirModel tape7Model() {
           "Air along level paths from MODTRAN runs: the same everywhere and without an end.",
           {"tape7"},
           {required(text("tape7", "file of MODTRAN runs along a horizontal or slant path, relative to the scenario; several ranges in one file are best")),
-           above(within(number("range", "m", "of the only path of a tape7 that does not say it"), 0, kFarthest_m), 0)},
+           rangeKey(), within(number("height", "m", "of the observer, where the file has runs at several"), -kHighest_m, kHighest_m),
+           within(number("elevation", "rad", "of the path, where the file has runs in several directions; 0 is level, which is taken where it is there"),
+                  -0.5 * kPi, 0.5 * kPi)},
           [](const AirRecord& air) {
             const auto runs = readTape7(tableFile(air, "tape7", "a tape7 of MODTRAN"));
-            return airOf(tabulatedAir(runs, air.record.given("range") ? std::optional(air.record.number("range")) : std::nullopt));
+            return airOf(tabulatedAir(runs, {given(air, "range"), given(air, "height"), given(air, "elevation")}));
           }};
 }
 

@@ -239,7 +239,7 @@ std::vector<Bad> badAir() {
        airScene("{tape7: air.tp7}").replace(airScene("{tape7: air.tp7}").find("4.9 um"), 6, "5.2 um"),
        {"the atmosphere has no data for channel 'mw'", "4.1 um to 5.2 um", "4 um to 5 um", "1923 to 2440 1/cm"},
        run(tape7With("    2000.0    2500.0", "@@    2000.0    2500.0"))},
-      {"Tape7WithoutARange", t7, {"the range of run 1 is not in its card 3", "give the range"}, run("@@" + tape7With("   2.00000", "   0.00000"))},
+      {"Tape7WithoutARange", t7, {"the range of run 1 is not in the file", "give the range"}, run("@@" + tape7With("   2.00000", "   0.00000"))},
       {"RangeIsNotTheFiles", airScene("{tape7: air.tp7, range: 3 km}"), {"the range given, 3 km, is not the 2 km of run 1"}, run("@@" + tape7())},
       {"AirTableWithNan",
        airScene("{table: bad.air}"),

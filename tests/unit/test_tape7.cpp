@@ -159,7 +159,7 @@ TEST(Tape7, Transmittance) {
   EXPECT_EQ(r.to_per_cm, 2500.0);
   EXPECT_EQ(r.step_per_cm, 500.0);
   EXPECT_EQ(r.resolution_per_cm, 20.0);
-  EXPECT_EQ(r.lineOf(1), 13);  // 5 um is the first row
+  EXPECT_EQ(r.placeOf(r.columns[0], 1).line, 13);  // 5 um is the first row
   EXPECT_DOUBLE_EQ(totalTransmittance(r)(4.5), 0.625);
 }
 
