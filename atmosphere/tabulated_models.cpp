@@ -1,5 +1,6 @@
 // Air that the user brings as a table: a tape7 of MODTRAN or comma-separated values.
 #include "atmosphere/models.hpp"
+#include "atmosphere/modtran_files.hpp"
 #include "atmosphere/tabulated_csv.hpp"
 #include "atmosphere/tabulated_path.hpp"
 #include "atmosphere/tabulated_tape7.hpp"
@@ -56,7 +57,7 @@ AirModel tape7Model() {
            within(number("elevation", "rad", "of the path, where the file has runs in several directions; 0 is level, which is taken where it is there"),
                   -0.5 * kPi, 0.5 * kPi)},
           [](const AirRecord& air) {
-            const auto runs = readTape7(tableFile(air, "tape7", "a tape7 of MODTRAN"));
+            const auto runs = readModtran(tableFile(air, "tape7", "a tape7 of MODTRAN"));
             return airOf(tabulatedAir(runs, {given(air, "range"), given(air, "height"), given(air, "elevation")}));
           }};
 }

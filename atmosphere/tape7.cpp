@@ -5,16 +5,12 @@
 #include "atmosphere/tape7_cards.hpp"
 #include "atmosphere/tape7_layout.hpp"
 #include "atmosphere/tape7_rows.hpp"
-#include "sim/parameters/read_file.hpp"
 
 namespace pitviper {
 namespace {
 
 using tape7::Field;
 using tape7::Line;
-
-/// A run of 5000 1/cm by 1 1/cm has 1 MB.
-constexpr std::uintmax_t kLargestFile = 64u << 20;
 
 bool isEnd(const Line& line) { return line.trimmed().rfind("-9999", 0) == 0; }
 
@@ -154,10 +150,6 @@ std::vector<Tape7Run> parseTape7(std::string_view text, const std::string& name)
     at = RunReader(lines, run).read(at);
   }
   return runs;
-}
-
-std::vector<Tape7Run> readTape7(const std::filesystem::path& path) {
-  return parseTape7(readWholeFile(path, {.what = "a tape7 of MODTRAN", .mostBytes = kLargestFile, .fix = "check its name"}), path.string());
 }
 
 }  // namespace pitviper

@@ -1,7 +1,6 @@
 #pragma once
 // Runs of MODTRAN: transmittance, radiance or solar irradiance along one line of sight, at the wavenumbers of a run; and the tape7 that holds them.
 // MODTRAN 6's other files (modtran_files.hpp) give the same runs.
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -73,10 +72,8 @@ struct Tape7Run {
   }
 };
 
-/// All runs of a file. Spectral densities are turned from wavenumber [W/(cm2 cm-1)] to wavelength [W/(m2 um)]: a factor of the squared
-/// wavenumber in cm-1. Errors: UserError with line and column for whatever is not a whole, undamaged tape7.
-std::vector<Tape7Run> readTape7(const std::filesystem::path& path);
-/// The same of a text; `name` is the file in messages.
+/// All runs of a tape7. Spectral densities are turned from wavenumber [W/(cm2 cm-1)] to wavelength [W/(m2 um)]: a factor of the squared
+/// wavenumber in cm-1. Errors: UserError with line and column for whatever is not a whole, undamaged tape7. `name`: the file in messages.
 std::vector<Tape7Run> parseTape7(std::string_view text, const std::string& name);
 
 }  // namespace pitviper

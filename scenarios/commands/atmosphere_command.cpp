@@ -3,6 +3,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "atmosphere/modtran_files.hpp"
 #include "atmosphere/tabulated_csv.hpp"
 #include "atmosphere/tabulated_tape7.hpp"
 #include "atmosphere/tape7.hpp"
@@ -78,7 +79,7 @@ void showTable(const TabulatedAir& air, const std::string& name, const std::opti
 }
 
 void showTape7(const std::filesystem::path& file, std::optional<double> range_m, const std::optional<std::filesystem::path>& out) {
-  const auto runs = readTape7(file);
+  const auto runs = readModtran(file);
   std::printf("%s: %zu run%s of MODTRAN\n", file.string().c_str(), runs.size(), runs.size() == 1 ? "" : "s");
   for (const auto& run : runs) std::printf("%s", describe(run).c_str());
   const std::string name = file.filename().string();

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "atmosphere/modtran_files.hpp"
 #include "atmosphere/tabulated_tape7.hpp"
 #include "atmosphere/tape7_spectra.hpp"
 #include "sim/parameters/error.hpp"
@@ -240,7 +241,7 @@ TEST(TabulatedTape7, SamplesAreAirOrRefused) {
   if (samples().empty()) GTEST_SKIP() << "no MODTRAN samples: set PITVIPER_TAPE7 to a folder that holds them";
   for (const char* name : {"tape7-01", "tape7-01b", "tape7-02b", "tape7-03"}) {
     SCOPED_TRACE(name);
-    const auto runs = readTape7(samples() / name);
+    const auto runs = readModtran(samples() / name);
     const TabulatedAir a = tabulatedAir(runs);
     const double range = *runs[0].geometry.range_km * 1e3;
     EXPECT_DOUBLE_EQ(a.longestRange_m(), range);
@@ -259,14 +260,14 @@ TEST(TabulatedTape7, SamplesAreAirOrRefused) {
   }
   for (const char* name : {"tape7-04", "tape7-05", "tape7.LWIRSun"}) {
     try {
-      tabulatedAir(readTape7(samples() / name));
+      tabulatedAir(readModtran(samples() / name));
       ADD_FAILURE() << name;
     } catch (const UserError& e) {
       EXPECT_NE(std::string(e.what()).find("no air along a range is known"), std::string::npos) << e.what();
     }
   }
-  EXPECT_FALSE(tabulatedSky(readTape7(samples() / "tape7-04")));
-  const auto sky = tabulatedSky(readTape7(samples() / "tape7.LWIRSun"));
+  EXPECT_FALSE(tabulatedSky(readModtran(samples() / "tape7-04")));
+  const auto sky = tabulatedSky(readModtran(samples() / "tape7.LWIRSun"));
   ASSERT_TRUE(sky);
   EXPECT_NEAR(sky->radiance(8.0, kPi / 2), 5.5406281250000005, 1e-9);  // sliced from the file by a script
 }
