@@ -18,7 +18,7 @@ const char* const kAgain = "give the file as MODTRAN wrote it, or its JSON or ta
 /// Its numbers are those of a float as text.
 constexpr double kResolution = 1e-6;
 /// More than MODTRAN writes before the names.
-constexpr int kMostHeader = 40;
+constexpr size_t kMostHeader = 40, kMostHeaderBytes = 1 << 16;
 
 using Cells = std::vector<csv::Cell>;
 
@@ -41,27 +41,9 @@ bool isNames(const Cells& cells, bool transmittance) {
   return whole && known >= 2;
 }
 
-class Lines {
- public:
-  explicit Lines(std::string_view text) : rest_(text) {}
-  bool next() {
-    if (rest_.empty()) return false;
-    const size_t end = rest_.find('\n');
-    line = rest_.substr(0, end);
-    rest_ = end == std::string_view::npos ? std::string_view() : rest_.substr(end + 1);
-    ++number;
-    return true;
-  }
-  std::string_view line;
-  int number = 0;
-
- private:
-  std::string_view rest_;
-};
-
 class Reader {
  public:
-  Reader(std::string_view text, const std::string& file) : lines_(text), file_(file) {}
+  Reader(std::string_view text, const std::string& file) : lines_(csv::linesOf(text)), file_(file) {}
 
   Tape7Run read() {
     run_.file = file_;
@@ -71,8 +53,8 @@ class Reader {
     run_.geometry.path = Tape7Path::Slant;
     readNames();
     bool ended = false;
-    while (lines_.next()) {
-      const Cells cells = csv::cellsOf(lines_.line);
+    while (next()) {
+      const Cells cells = csv::cellsOf(line_);
       const bool numbers = numberOf(cells.front()).has_value();
       if (!numbers || cells.size() < 2) {
         if (rows_.wavenumbers().empty()) checkUnits(cells);
@@ -91,18 +73,24 @@ class Reader {
 
  private:
   [[noreturn]] void fail(int column, const std::string& wrong, const std::string& expected, const std::string& fix) const {
-    throw UserError({file_, std::max(lines_.number, 1), column, -1}, wrong, expected, fix);
+    throw UserError({file_, std::max(number_, 1), column, -1}, wrong, expected, fix);
+  }
+
+  bool next() {
+    if (static_cast<size_t>(number_) >= lines_.size()) return false;
+    line_ = lines_[static_cast<size_t>(number_++)];
+    return true;
   }
 
   void readNames() {
     Cells names;
     bool transmittance = false, found = false;
-    while (!found && lines_.next()) {
-      names = csv::cellsOf(lines_.line);
+    while (!found && next()) {
+      names = csv::cellsOf(line_);
       transmittance = isNames(names, true);
       found = transmittance || isNames(names, false);
     }
-    run_.line = run_.bandLine = lines_.number;
+    run_.line = run_.bandLine = number_;
     for (size_t i = 1; i < names.size(); ++i) {
       const auto name = tape7Name(names[i].text, transmittance);
       if (!name && !names[i].text.empty() && names[i].text.size() < 2) fail(names[i].column, "a column without a name", "MODTRAN's names", kAgain);
@@ -128,18 +116,17 @@ class Reader {
     if (cells.size() != wanted && !(cells.size() == wanted + 1 && cells.back().text.empty()))
       fail(1, "a row of " + std::to_string(cells.size()) + " cells", std::to_string(wanted) + ", as line " + std::to_string(run_.bandLine) + " has names",
            fixOfCells(cells.size(), wanted));
-    if (run_.dataLine == 0) run_.dataLine = lines_.number;
-    if (lines_.number != run_.dataLine + static_cast<int>(rows_.wavenumbers().size()))
+    if (run_.dataLine == 0) run_.dataLine = number_;
+    if (number_ != run_.dataLine + static_cast<int>(rows_.wavenumbers().size()))
       fail(1, "a line between the rows above", "rows that follow one another", kAgain);
-    const Location line{file_, lines_.number, 1, -1};
-    rows_.begin(*numberOf(cells.front()), {file_, lines_.number, cells.front().column, -1}, tokenOf(cells.front().text));
+    rows_.begin(*numberOf(cells.front()), {file_, number_, cells.front().column, -1}, tokenOf(cells.front().text));
     for (size_t i = 1; i < wanted; ++i) {
       if (place_[i - 1] == kLeftOut) continue;
       Tape7Column& column = run_.columns[place_[i - 1]];
       const csv::Cell& cell = cells[i];
-      const Location at{file_, lines_.number, cell.column, -1};
+      const Location at{file_, number_, cell.column, -1};
       if (cell.text.empty()) {
-        rows_.addGap(column, lines_.number);
+        rows_.addGap(column, number_);
         continue;
       }
       const auto value = numberOf(cell);
@@ -150,7 +137,9 @@ class Reader {
 
   static constexpr size_t kLeftOut = static_cast<size_t>(-1);
 
-  Lines lines_;
+  csv::Lines lines_;
+  std::string_view line_;
+  int number_ = 0;  ///< of the line
   const std::string& file_;
   Tape7Run run_;
   std::vector<size_t> place_;  ///< of each cell behind the first: its column
@@ -160,10 +149,10 @@ class Reader {
 }  // namespace
 
 bool isModtranCsv(std::string_view text) {
-  Lines lines(text);
-  while (lines.next() && lines.number <= kMostHeader) {
-    if (lines.line.find(',') == std::string_view::npos) continue;
-    const Cells cells = csv::cellsOf(lines.line);
+  const auto lines = csv::linesOf(text.substr(0, kMostHeaderBytes));
+  for (size_t i = 0; i < std::min(lines.size(), kMostHeader); ++i) {
+    if (lines[i].find(',') == std::string_view::npos) continue;
+    const Cells cells = csv::cellsOf(lines[i]);
     if (isNames(cells, true) || isNames(cells, false)) return true;
   }
   return false;

@@ -27,7 +27,8 @@ std::vector<Tape7Run> parseModtran(std::string_view text, const std::string& nam
 }
 
 std::vector<Tape7Run> readModtran(const std::filesystem::path& path) {
-  return parseModtran(readWholeFile(path, {.what = "a tape7 of MODTRAN", .mostBytes = kLargestFile, .fix = "check its name"}), path.string());
+  return parseModtran(readWholeFile(path, {.what = "a tape7 of MODTRAN, or its JSON or CSV", .mostBytes = kLargestFile, .fix = "check its name"}),
+                      path.string());
 }
 
 }  // namespace pitviper

@@ -1,6 +1,7 @@
-// Air that the user brings as a table: a tape7 of MODTRAN or comma-separated values.
+// Air that the user brings as a table: runs of MODTRAN, comma-separated values, or columns of other programs.
 #include "atmosphere/models.hpp"
 #include "atmosphere/modtran_files.hpp"
+#include "atmosphere/tabulated_columns.hpp"
 #include "atmosphere/tabulated_csv.hpp"
 #include "atmosphere/tabulated_path.hpp"
 #include "atmosphere/tabulated_tape7.hpp"
@@ -52,12 +53,14 @@ AirModel tape7Model() {
   return {"tape7",
           "Air along level paths from MODTRAN runs: the same everywhere and without an end.",
           {"tape7"},
-          {required(text("tape7", "file of MODTRAN runs along a horizontal or slant path, relative to the scenario; several ranges in one file are best")),
+          {required(text("tape7",
+                         "file of MODTRAN runs along a horizontal or slant path, relative to the scenario: a tape7, or MODTRAN 6's JSON or CSV; several ranges "
+                         "in one file are best")),
            rangeKey(), within(number("height", "m", "of the observer, where the file has runs at several"), -kHighest_m, kHighest_m),
            within(number("elevation", "rad", "of the path, where the file has runs in several directions; 0 is level, which is taken where it is there"),
                   -0.5 * kPi, 0.5 * kPi)},
           [](const AirRecord& air) {
-            const auto runs = readModtran(tableFile(air, "tape7", "a tape7 of MODTRAN"));
+            const auto runs = readModtran(tableFile(air, "tape7", "a tape7 of MODTRAN, or its JSON or CSV"));
             return airOf(tabulatedAir(runs, {given(air, "range"), given(air, "height"), given(air, "elevation")}));
           }};
 }
@@ -69,6 +72,31 @@ AirModel csvModel() {
           {required(
               text("csv", "file of transmittance or extinction by wavelength and range, relative to the scenario; its columns: atmosphere/tabulated_csv.hpp"))},
           [](const AirRecord& air) { return airOf(readAirCsv(tableFile(air, "csv", "a CSV table of air"))); }};
+}
+
+AirModel columnsModel() {
+  return {"columns",
+          "Air along level paths from columns of numbers between blanks, as LBLRTM and libRadtran write them: the same everywhere and without an end.",
+          {"columns_file"},
+          {required(text("columns_file", "file of transmittance over one path, relative to the scenario; what it may hold: atmosphere/tabulated_columns.hpp")),
+           text("radiance_file", "file of path radiance over the same path and wavelengths, where it is apart"),
+           text("columns",
+                "what the columns hold, where LBLRTM's header or uvspec's input at the head of the file does not say it: as the header of a CSV file, "
+                "'wavenumber_1/cm, transmittance, -'"),
+           rangeKey()},
+          [](const AirRecord& air) {
+            const char* const what = "a file of columns";
+            ColumnsWanted wanted{.range_m = given(air, "range")};
+            if (air.record.given("columns")) {
+              const Value& columns = air.record.value("columns");
+              wanted.names = columns.text;
+              wanted.namesAt = columns.where;
+              wanted.namesAt.column += columns.quoted ? 1 : 0;
+            }
+            const auto file = tableFile(air, "columns_file", what);
+            const auto radiance = air.record.given("radiance_file") ? std::optional(tableFile(air, "radiance_file", what)) : std::nullopt;
+            return airOf(readAirColumns(file, wanted, radiance));
+          }};
 }
 
 }  // namespace pitviper
