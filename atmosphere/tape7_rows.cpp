@@ -40,7 +40,8 @@ void Rows::begin(double v, const Location& at, const std::string& found) {
 
 void Rows::add(Tape7Column& column, double written, const Location& at, const std::string& found) const {
   if (column.quantity == Tape7Quantity::Transmittance && !(written >= 0.0 && written <= kMostTransmittance))
-    throw UserError(at, "the transmittance " + column.name + " is " + found, "0 to 1", "give MODTRAN's own tape7: per cent, or columns shifted, are not read");
+    throw UserError(at, "the transmittance " + column.name + " is " + found, "0 to 1",
+                    "give the file as MODTRAN wrote it: per cent, or columns shifted, are not read");
   const double v = wavenumber_.back(), value = isPerWavenumber(column.quantity) ? written * v * v : written;
   if (!std::isfinite(value)) throw UserError(at, found + " for " + column.name + " is too large", "a radiance or irradiance", again_);
   column.value.push_back(value);
