@@ -5,9 +5,9 @@
 //   freq,total transmittance,path emission,path thermal scat,surface emission,path multiple scat,path single scat,ground reflect,direct reflect,
 //   total radiance,reference irradiance,irradiance at observer,- nat log path trans,directional emissivity,top-of-atmosphere irradiance,brightness temp
 // The names may be those of a tape7 or of MODTRAN's JSON as well. The file says nothing of its path: it is one run of unknown direction, whose range the user
-// gives. Wavenumbers only (XFLAG W), so W/(cm2 sr cm-1); that is checked by the brightness temperature. Refused: several cases in one file. Source: the order
-// of the columns and the lines around the rows as https://github.com/FangcaoXu/2_MODTRANData_Processing_Hyperspectral (Data_2_csv2matrix.R) reads them; names
-// as in modtran_names.hpp. No file of MODTRAN 6's was at hand.
+// gives. Wavenumbers only (XFLAG W), so W/(cm2 sr cm-1); that is checked by the brightness temperature. Refused: several cases in one file.
+// Source: the order of the columns and lines around the rows that are none as https://github.com/FangcaoXu/2_MODTRANData_Processing_Hyperspectral
+// (Data_2_csv2matrix.R) reads them; the names are those of the same spectra in MODTRAN 6's other outputs (modtran_names.hpp), so they are tried on no file.
 #include <string>
 #include <string_view>
 #include <vector>

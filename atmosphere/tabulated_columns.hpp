@@ -11,8 +11,9 @@
 //     other outputs are left out; without one of these two the file is refused. The atmosphere_file must end where the path ends.
 // Lines before the rows, empty ones and those beginning with '#' are left out. Wavelengths or wavenumbers rise. The path's length is given beside the file,
 // unless the names have it (transmittance_5km) or need none (extinction_1/km); one range is taken as exponential.
-// Source: LBLRTM's instructions, https://www2.atmos.umd.edu/~ytma/lblrtm/lblrtm_instructions.txt (records 12), and readers of its files
-// (header line, two columns, unit); libRadtran user's guide 2.0, output_user, output_quantity, output_process, source. No file of either was at hand.
+// Source: of LBLRTM others' readers of TAPE27 and TAPE28 (a header that ends in the line 0 WAVENUMBER RADIANCE, then two columns; W/(cm2 sr cm-1)), as in
+// TROPoe and pyLBLRTM; its words beside RADIANCE are taken by their beginnings (TRANS, OPTICAL), which none of these shows. Of libRadtran its user's guide 2.0:
+// output_user, output_quantity, output_process, source. No file of either program was at hand.
 #include <filesystem>
 #include <optional>
 #include <string>
