@@ -23,13 +23,15 @@ struct Kind {
   std::vector<Unit> units;  ///< none: a pure number
 };
 
-const std::vector<Unit> kRadiance = {{"W/(m2 sr um)", 1.0}, {"W/(cm2 sr um)", 1e4}, {"W/(cm2 sr cm-1)", 1.0, true}};
+const std::vector<Unit> kRadiance = {{"W/(m2 sr um)", 1.0},          {"W/(cm2 sr um)", 1e4},         {"W/(m2 sr nm)", 1e3},
+                                     {"W/(cm2 sr cm-1)", 1.0, true}, {"W/(m2 sr cm-1)", 1e-4, true}, {"mW/(m2 sr cm-1)", 1e-7, true}};
 
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all = {{"wavelength", Meaning::Wavelength, {{"um", 1.0}, {"nm", 1e-3}}},
                                         {"wavenumber", Meaning::Wavenumber, {{"1/cm", 1.0}, {"cm-1", 1.0}}},
                                         {"range", Meaning::Range, {{"km", 1.0}, {"m", 1e-3}}},
                                         {"transmittance", Meaning::Transmittance, {}},
+                                        {"optical_depth", Meaning::Transmittance, {}},
                                         {"extinction", Meaning::Extinction, {{"1/km", 1.0}, {"1/m", 1e3}}},
                                         {"path_radiance", Meaning::PathRadiance, kRadiance},
                                         {"source_radiance", Meaning::SourceRadiance, kRadiance}};
@@ -75,8 +77,9 @@ std::string unitsOf(const Kind& kind) {
 }
 
 Column columnOf(const Cell& cell, Location where) {
-  where.column = cell.column;
+  where.column += cell.column - 1;
   std::string name(cell.text), unit;
+  if (name == "-") return {Meaning::LeftOut, 1.0, false, false, {}, name, cell.column};
   const size_t bracket = name.find('[');
   const bool bracketed = bracket != std::string::npos && name.back() == ']';
   if (bracketed) {
@@ -88,7 +91,7 @@ Column columnOf(const Cell& cell, Location where) {
   for (const Kind& kind : kinds()) {
     const std::string_view base = kind.name;
     if (name.compare(0, base.size(), base) != 0 || (name.size() > base.size() && name[base.size()] != '_')) continue;
-    Column column{kind.meaning, 1.0, false, {}, std::string(cell.text), cell.column};
+    Column column{kind.meaning, 1.0, false, base == "optical_depth", {}, std::string(cell.text), cell.column};
     std::string_view rest = withoutUnderscores(std::string_view(name).substr(base.size()));
     if (kind.meaning == Meaning::Transmittance || kind.meaning == Meaning::PathRadiance) {
       column.range_km = takeRange(rest);
@@ -99,7 +102,7 @@ Column columnOf(const Cell& cell, Location where) {
     if (!bracketed) unit = rest;
     if ((bracketed && !rest.empty()) || (kind.units.empty() && !unit.empty() && unit != "1"))
       throw UserError(where, inQuotes(cell.text) + " is not understood behind '" + kind.name + "'",
-                      kind.units.empty() ? "transmittance, or transmittance_5km" : unitsOf(kind), "correct the name of the column");
+                      kind.units.empty() ? std::string(kind.name) + ", or " + kind.name + "_5km" : unitsOf(kind), "correct the name of the column");
     if (kind.units.empty()) return column;
     if (unit.empty()) throw UserError(where, inQuotes(cell.text) + " has no unit", unitsOf(kind), "write the unit behind the name");
     const auto found = std::find_if(kind.units.begin(), kind.units.end(), [&](const Unit& u) { return plain(u.name) == unit; });
@@ -109,7 +112,8 @@ Column columnOf(const Cell& cell, Location where) {
     return column;
   }
   throw UserError(where, "unknown column " + inQuotes(cell.text),
-                  "wavelength, wavenumber, range, transmittance, extinction, path_radiance or source_radiance, with units", "rename the column, or remove it");
+                  "wavelength, wavenumber, range, transmittance, optical_depth, extinction, path_radiance or source_radiance, with units",
+                  "rename the column, or remove it");
 }
 
 bool isKnown(const Cell& cell) {
@@ -133,30 +137,58 @@ std::vector<Cell> cellsOf(std::string_view line) {
   }
 }
 
-std::vector<Column> columnsOf(std::string_view header, const Location& line) {
+Lines linesOf(std::string_view text) {
+  Lines lines;
+  while (!text.empty()) {
+    const size_t end = text.find('\n');
+    std::string_view line = text.substr(0, end);
+    if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+    lines.push_back(line);
+    text = end == std::string_view::npos ? std::string_view() : text.substr(end + 1);
+  }
+  return lines;
+}
+
+std::vector<Cell> wordsOf(std::string_view line) {
+  std::vector<Cell> words;
+  for (size_t i = 0; i < line.size();) {
+    const size_t first = line.find_first_not_of(" \t\r", i);
+    if (first == std::string_view::npos) break;
+    const size_t end = std::min(line.find_first_of(" \t\r", first), line.size());
+    words.push_back({line.substr(first, end - first), static_cast<int>(first) + 1});
+    i = end;
+  }
+  return words;
+}
+
+std::vector<Column> namesOf(std::string_view header, const Location& where) {
   std::vector<Column> columns;
   const auto cells = cellsOf(header);
   // A file that is something else is not told of by its words.
   if (std::none_of(cells.begin(), cells.end(), isKnown))
-    throw UserError({line.file, line.line, 1, -1}, "no column of air has a name of those on this line",
-                    "a line with the names of columns: wavelength_um, range_km, transmittance", "see atmosphere/tabulated_csv.hpp");
-  refuseOtherSeparators(header, line);
+    throw UserError(where, "no column of air has a name of those on this line", "a line with the names of columns: wavelength_um, range_km, transmittance",
+                    "see atmosphere/tabulated_csv.hpp");
+  refuseOtherSeparators(header, where);
   for (const Cell& cell : cells) {
-    Column c = columnOf(cell, line);
+    Column c = columnOf(cell, where);
     for (const Column& other : columns)
-      if (other.meaning == c.meaning && (other.range_km.has_value() == c.range_km.has_value()) &&
+      if (other.meaning == c.meaning && c.meaning != Meaning::LeftOut && (other.range_km.has_value() == c.range_km.has_value()) &&
           std::abs(other.range_km.value_or(1.0) - c.range_km.value_or(1.0)) < 1e-9 * c.range_km.value_or(1.0))
-        throw UserError({line.file, line.line, cell.column, -1},
+        throw UserError({where.file, where.line, where.column + cell.column - 1, -1},
                         c.range_km ? "the range of " + inQuotes(cell.text) + " comes twice" : "the column " + inQuotes(cell.text) + " comes twice", "each once",
                         "remove one of the columns");
     columns.push_back(std::move(c));
   }
+  return columns;
+}
+
+void requireAir(const std::vector<Column>& columns, const Location& where) {
   const auto has = [&](Meaning m, bool withRange) {
     return std::find_if(columns.begin(), columns.end(), [&](const Column& c) { return c.meaning == m && c.range_km.has_value() == withRange; });
   };
   const auto none = columns.end();
-  const auto refuse = [&](std::vector<Column>::iterator at, const std::string& wrong, const std::string& expected, const std::string& fix) {
-    throw UserError({line.file, line.line, at == none ? 1 : at->column, -1}, wrong, expected, fix);
+  const auto refuse = [&](std::vector<Column>::const_iterator at, const std::string& wrong, const std::string& expected, const std::string& fix) {
+    throw UserError({where.file, where.line, where.column + (at == none ? 1 : at->column) - 1, -1}, wrong, expected, fix);
   };
   const auto range = has(Meaning::Range, false), tau = has(Meaning::Transmittance, false), wide = has(Meaning::Transmittance, true),
              extinction = has(Meaning::Extinction, false), path = has(Meaning::PathRadiance, false), widePath = has(Meaning::PathRadiance, true),
@@ -181,7 +213,6 @@ std::vector<Column> columnsOf(std::string_view header, const Location& line) {
     });
     if (!known) refuse(c, inQuotes(c->name) + " is for a range without a transmittance", "a range that has one", "add the transmittance of this range");
   }
-  return columns;
 }
 
 }  // namespace pitviper::csv

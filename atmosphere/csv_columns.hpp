@@ -14,20 +14,31 @@ struct Cell {
   int column = 1;         ///< of its first character, from 1
 };
 
+/// Between commas.
 std::vector<Cell> cellsOf(std::string_view line);
+/// Between blanks.
+std::vector<Cell> wordsOf(std::string_view line);
 
-enum class Meaning { Wavelength, Wavenumber, Range, Transmittance, Extinction, PathRadiance, SourceRadiance };
+/// The lines of a text, without what ends them.
+using Lines = std::vector<std::string_view>;
+Lines linesOf(std::string_view text);
+
+enum class Meaning { Wavelength, Wavenumber, Range, Transmittance, Extinction, PathRadiance, SourceRadiance, LeftOut };
 
 struct Column {
   Meaning meaning = Meaning::Wavelength;
   double scale = 1.0;              ///< to um, 1/cm, km, 1/km, W/(m2 sr um)
   bool perWavenumber = false;      ///< a radiance to be multiplied by the squared wavenumber as well
+  bool isDepth = false;            ///< a transmittance given as its optical depth
   std::optional<double> range_km;  ///< where the name has it
   std::string name;                ///< as written
   int column = 1;
 };
 
-/// Errors: UserError for unknown names, missing or unknown units, columns that come twice, and sets of columns that are no air.
-std::vector<Column> columnsOf(std::string_view header, const Location& line);
+/// Names between commas; '-' is a column to be left out. `where`: of the first character.
+/// Errors: UserError for unknown names, missing or unknown units, and columns that come twice.
+std::vector<Column> namesOf(std::string_view header, const Location& where);
+/// Errors: UserError for sets of columns that are no air.
+void requireAir(const std::vector<Column>& columns, const Location& where);
 
 }  // namespace pitviper::csv

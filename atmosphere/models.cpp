@@ -40,7 +40,7 @@ const AirModel& onlyMarkedModel(const Value& air) {
 }  // namespace
 
 Registry<AirModel>& airModels() {
-  static Registry<AirModel> all("air", {homogeneousModel(), layeredModel(), tape7Model(), csvModel()});
+  static Registry<AirModel> all("air", {homogeneousModel(), layeredModel(), tape7Model(), csvModel(), columnsModel()});
   return all;
 }
 

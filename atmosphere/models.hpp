@@ -56,5 +56,6 @@ AirModel homogeneousModel();
 AirModel layeredModel();
 AirModel tape7Model();
 AirModel csvModel();
+AirModel columnsModel();
 
 }  // namespace pitviper

@@ -1,9 +1,12 @@
-// Air that the user brings as a table: a tape7 of MODTRAN or comma-separated values.
+// Air that the user brings as a table: runs of MODTRAN, comma-separated values, or columns of other programs.
 #include "atmosphere/models.hpp"
+#include "atmosphere/modtran_files.hpp"
+#include "atmosphere/tabulated_columns.hpp"
 #include "atmosphere/tabulated_csv.hpp"
 #include "atmosphere/tabulated_path.hpp"
 #include "atmosphere/tabulated_tape7.hpp"
 #include "sim/parameters/print.hpp"
+#include "sim/radiometry/constants.hpp"
 #include "sim/scene/placement.hpp"
 
 namespace pitviper {
@@ -24,6 +27,13 @@ std::filesystem::path tableFile(const AirRecord& air, const char* key, const cha
   return file;
 }
 
+/// MODTRAN's air ends at 100 km.
+constexpr double kHighest_m = 1e5;
+
+Parameter rangeKey() { return above(within(number("range", "m", "of the only path of a file that does not say it"), 0, kFarthest_m), 0); }
+
+std::optional<double> given(const AirRecord& air, const char* key) { return air.record.given(key) ? std::optional(air.record.number(key)) : std::nullopt; }
+
 /// Far below the end of a float, 3.4e38.
 constexpr double kLargestRadiance = 1e30;
 
@@ -43,11 +53,15 @@ AirModel tape7Model() {
   return {"tape7",
           "Air along level paths from MODTRAN runs: the same everywhere and without an end.",
           {"tape7"},
-          {required(text("tape7", "file of MODTRAN runs along a horizontal or slant path, relative to the scenario; several ranges in one file are best")),
-           above(within(number("range", "m", "of the only path of a tape7 that does not say it"), 0, kFarthest_m), 0)},
+          {required(text("tape7",
+                         "file of MODTRAN runs along a horizontal or slant path, relative to the scenario: a tape7, or MODTRAN 6's JSON or CSV; several ranges "
+                         "in one file are best")),
+           rangeKey(), within(number("height", "m", "of the observer, where the file has runs at several"), -kHighest_m, kHighest_m),
+           within(number("elevation", "rad", "of the path, where the file has runs in several directions; 0 is level, which is taken where it is there"),
+                  -0.5 * kPi, 0.5 * kPi)},
           [](const AirRecord& air) {
-            const auto runs = readTape7(tableFile(air, "tape7", "a tape7 of MODTRAN"));
-            return airOf(tabulatedAir(runs, air.record.given("range") ? std::optional(air.record.number("range")) : std::nullopt));
+            const auto runs = readModtran(tableFile(air, "tape7", "a tape7 of MODTRAN, or its JSON or CSV"));
+            return airOf(tabulatedAir(runs, {given(air, "range"), given(air, "height"), given(air, "elevation")}));
           }};
 }
 
@@ -58,6 +72,31 @@ AirModel csvModel() {
           {required(
               text("csv", "file of transmittance or extinction by wavelength and range, relative to the scenario; its columns: atmosphere/tabulated_csv.hpp"))},
           [](const AirRecord& air) { return airOf(readAirCsv(tableFile(air, "csv", "a CSV table of air"))); }};
+}
+
+AirModel columnsModel() {
+  return {"columns",
+          "Air along level paths from columns of numbers between blanks, as LBLRTM and libRadtran write them: the same everywhere and without an end.",
+          {"columns_file"},
+          {required(text("columns_file", "file of transmittance over one path, relative to the scenario; what it may hold: atmosphere/tabulated_columns.hpp")),
+           text("radiance_file", "file of path radiance over the same path and wavelengths, where it is apart"),
+           text("columns",
+                "what the columns hold, where LBLRTM's header or uvspec's input at the head of the file does not say it: as the header of a CSV file, "
+                "'wavenumber_1/cm, transmittance, -'"),
+           rangeKey()},
+          [](const AirRecord& air) {
+            const char* const what = "a file of columns";
+            ColumnsWanted wanted{.range_m = given(air, "range")};
+            if (air.record.given("columns")) {
+              const Value& columns = air.record.value("columns");
+              wanted.names = columns.text;
+              wanted.namesAt = columns.where;
+              wanted.namesAt.column += columns.quoted ? 1 : 0;
+            }
+            const auto file = tableFile(air, "columns_file", what);
+            const auto radiance = air.record.given("radiance_file") ? std::optional(tableFile(air, "radiance_file", what)) : std::nullopt;
+            return airOf(readAirColumns(file, wanted, radiance));
+          }};
 }
 
 }  // namespace pitviper

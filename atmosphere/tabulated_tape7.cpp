@@ -32,7 +32,26 @@ std::string sayRun(const Tape7Run& run) { return "run " + std::to_string(run.num
 }
 
 bool radiates(const Tape7Run& run) { return run.kind == Tape7Kind::ThermalRadiance || run.kind == Tape7Kind::SolarRadiance; }
-bool isLevel(const Tape7Run& run) { return run.geometry.path != Tape7Path::ToSpace && run.kind != Tape7Kind::SolarIrradiance; }
+bool hasRange(const Tape7Run& run) { return run.geometry.path != Tape7Path::ToSpace && run.kind != Tape7Kind::SolarIrradiance; }
+bool isLevel(const Tape7Run& run) { return run.geometry.path == Tape7Path::Horizontal; }
+
+using Runs = std::vector<const Tape7Run*>;
+
+std::string sayHeight(const Tape7Run& run) { return run.geometry.h1_km ? briefNumber(*run.geometry.h1_km) + " km" : "not known"; }
+std::string sayDirection(const Tape7Run& run) {
+  if (isLevel(run)) return "level";
+  return run.geometry.zenith_deg ? briefNumber(90.0 - *run.geometry.zenith_deg) + " deg" : "not known";
+}
+
+/// What the runs have, each once.
+std::string sayAll(const Runs& runs, std::string (*say)(const Tape7Run&)) {
+  std::vector<std::string> words;
+  for (const Tape7Run* run : runs)
+    if (const std::string word = say(*run); std::find(words.begin(), words.end(), word) == words.end()) words.push_back(word);
+  std::string all;
+  for (const std::string& word : words) all += (all.empty() ? "" : ", ") + word;
+  return all;
+}
 
 void requireSameGrid(const Tape7Run& run, const Tape7Run& first) {
   const auto &a = run.wavelength_um, &b = first.wavelength_um;
@@ -41,14 +60,43 @@ void requireSameGrid(const Tape7Run& run, const Tape7Run& first) {
                   "run MODTRAN again with one band for all ranges");
 }
 
-void requireSameAir(const Tape7Run& run, const Tape7Run& first) {
+/// Card 3 has angles to 0.00001 degrees and heights to 0.01 m; who asks for them writes fewer digits.
+constexpr double kSameAngle_deg = 0.01, kSameHeight_km = 1e-3;
+
+bool hasHeight(const Tape7Run& run, double km) { return run.geometry.h1_km && std::abs(*run.geometry.h1_km - km) < kSameHeight_km; }
+bool hasElevation(const Tape7Run& run, double deg) {
+  if (isLevel(run)) return std::abs(deg) < kSameAngle_deg;
+  return run.geometry.zenith_deg && std::abs(90.0 - *run.geometry.zenith_deg - deg) < kSameAngle_deg;
+}
+
+/// Keeps those that the choice means.
+void keepChosen(Runs& runs, const PathChoice& choice) {
+  const auto keep = [&](const std::string& asked, std::string (*say)(const Tape7Run&), const auto& isMeant) {
+    Runs kept;
+    std::copy_if(runs.begin(), runs.end(), std::back_inserter(kept), [&](const Tape7Run* run) { return isMeant(*run); });
+    if (kept.empty()) refuse(*runs.front(), "no run has " + asked, "one of those in the file: " + sayAll(runs, say), "ask for one that is there");
+    runs = std::move(kept);
+  };
+  if (choice.height_m)
+    keep("a height of " + briefNumber(1e-3 * *choice.height_m) + " km", sayHeight,
+         [&](const Tape7Run& run) { return hasHeight(run, 1e-3 * *choice.height_m); });
+  if (choice.elevation_rad) {
+    const double deg = *choice.elevation_rad * 180.0 / kPi;
+    keep("an elevation of " + briefNumber(deg) + " deg", sayDirection, [&](const Tape7Run& run) { return hasElevation(run, deg); });
+  } else if (std::any_of(runs.begin(), runs.end(), [](const Tape7Run* run) { return isLevel(*run); })) {
+    std::erase_if(runs, [](const Tape7Run* run) { return !isLevel(*run); });
+  }
+}
+
+void requireSameAir(const Tape7Run& run, const Tape7Run& first, const Runs& all) {
   const auto same = [](std::optional<double> a, std::optional<double> b) { return std::abs(a.value_or(0.0) - b.value_or(0.0)) < 1e-6; };
   const Tape7Geometry &a = run.geometry, &b = first.geometry;
-  if (a.path == b.path && same(a.h1_km, b.h1_km) && (a.path == Tape7Path::Horizontal || same(a.zenith_deg, b.zenith_deg)) && run.model == first.model &&
-      run.haze == first.haze && same(run.visibility_km, first.visibility_km))
-    return;
-  refuse(run, sayRun(run) + " is along another path or in other air than " + sayRun(first), "one height, direction, model, haze and visibility",
-         "keep runs in one file that differ in range (and IEMSCT) alone");
+  const bool height = same(a.h1_km, b.h1_km), direction = isLevel(run) || same(a.zenith_deg, b.zenith_deg);
+  if (height && direction && run.model == first.model && run.haze == first.haze && same(run.visibility_km, first.visibility_km)) return;
+  std::string fix = "keep runs in one file that differ in range (and IEMSCT) alone";
+  if (!height) fix = "choose a height: " + sayAll(all, sayHeight);
+  else if (!direction) fix = "choose an elevation: " + sayAll(all, sayDirection);
+  refuse(run, sayRun(run) + " is along another path or in other air than " + sayRun(first), "one height, direction, model, haze and visibility", fix);
 }
 
 double rangeOf(const Tape7Run& run, std::optional<double> given_m) {
@@ -60,18 +108,18 @@ double rangeOf(const Tape7Run& run, std::optional<double> given_m) {
     return *own;
   }
   if (given_m && *given_m > 0.0) return 1e-3 * *given_m;
-  refuse(run, "the range of " + sayRun(run) + " is not in its card 3", "the length of the path", "give the range with the file");
+  refuse(run, "the range of " + sayRun(run) + " is not in the file", "the length of the path", "give the range with the file");
 }
 
-/// What a column's last digit is worth: 4 decimals of transmittance runs, 8 of the others.
-double resolutionOf(const Tape7Run& run) { return run.kind == Tape7Kind::Transmittance ? 1e-4 : 1e-8; }
+/// What a column's last digit is worth: in a tape7 4 decimals of transmittance runs, 8 of the others.
+double resolutionOf(const Tape7Run& run) { return run.resolution > 0.0 ? run.resolution : run.kind == Tape7Kind::Transmittance ? 1e-4 : 1e-8; }
 
 RangeDepth rowOf(const Tape7Run& run, double range_km, const Spectrum& transmittance, size_t i) {
   RangeDepth row{range_km, transmittance(run.wavelength_um[i]), 0.0};
   row.depth = row.transmittance > 0.0 ? -std::log(row.transmittance) : INFINITY;
   const Tape7Column* log = run.find(run.kind == Tape7Kind::Transmittance ? "-LOG_COMBIN" : "DEPTH");
   // Three decimals of a depth beat four of a transmittance below e^-2.3; both end at a depth of 99.99.
-  if (log && log->gapLine == 0 && row.transmittance < (run.kind == Tape7Kind::Transmittance ? 0.1 : 1e-6)) row.depth = log->value[i];
+  if (log && log->gapLine == 0 && row.transmittance < (resolutionOf(run) > 1e-5 ? 0.1 : 1e-6)) row.depth = log->value[i];
   if (!std::isfinite(row.depth)) row.depth = -std::log(0.5 * resolutionOf(run));
   return row;
 }
@@ -100,54 +148,62 @@ struct Leg {
   const Tape7Run* radiance = nullptr;
 };
 
-std::map<double, Leg> legsOf(std::span<const Tape7Run> runs, std::optional<double> range_m) {
-  std::vector<const Tape7Run*> level;
+using Legs = std::map<double, Leg>;
+
+/// `left`: how many runs along a range were left out.
+Legs legsOf(std::span<const Tape7Run> runs, const PathChoice& choice, size_t& left) {
+  Runs along;
   for (const Tape7Run& run : runs)
-    if (isLevel(run)) level.push_back(&run);
-  if (level.empty()) {
+    if (hasRange(run)) along.push_back(&run);
+  if (along.empty()) {
     const Tape7Run& run = runs.front();
     const bool sun = run.kind == Tape7Kind::SolarIrradiance;
     refuse(run, sayRun(run) + (sun ? " holds direct sunlight alone" : " is a path to space") + ", so no air along a range is known from it",
            "a horizontal or slant path (ITYPE 1 or 2) with IEMSCT 0, 1 or 2", "run MODTRAN with ITYPE = 1, IEMSCT = 1 and a RANGE");
   }
-  if (range_m && level.size() > 1)
-    refuse(*level[1], "a range is given for a file of " + std::to_string(level.size()) + " paths", "ranges in the file", "leave the range out");
-  std::map<double, Leg> legs;
-  for (const Tape7Run* run : level) {
-    requireSameGrid(*run, *level.front());
-    requireSameAir(*run, *level.front());
-    Leg& leg = legs[rangeOf(*run, range_m)];
+  const size_t all = along.size();
+  keepChosen(along, choice);
+  left = all - along.size();
+  if (choice.range_m && along.size() > 1)
+    refuse(*along[1], "a range is given for a file of " + std::to_string(along.size()) + " paths", "ranges in the file", "leave the range out");
+  Legs legs;
+  for (const Tape7Run* run : along) {
+    requireSameGrid(*run, *along.front());
+    requireSameAir(*run, *along.front(), along);
+    const double range = rangeOf(*run, choice.range_m);
+    Leg& leg = legs[range];
     const Tape7Run*& place = radiates(*run) ? leg.radiance : leg.transmittance;
     if (place)
-      refuse(*run,
-             "the range " + briefNumber(rangeOf(*run, range_m)) + " km comes twice, in runs " + std::to_string(place->number) + " and " +
-                 std::to_string(run->number),
+      refuse(*run, "the range " + briefNumber(range) + " km comes twice, in runs " + std::to_string(place->number) + " and " + std::to_string(run->number),
              "each range once", "remove one of the runs");
     place = run;
   }
   return legs;
 }
 
-std::string describeLegs(const std::map<double, Leg>& legs) {
+std::string describeLegs(const Legs& legs, size_t left) {
   const Tape7Run& run = legs.begin()->second.transmittance ? *legs.begin()->second.transmittance : *legs.begin()->second.radiance;
-  std::string text = run.geometry.path == Tape7Path::Horizontal ? "level air" : "air along a slant path, as if it were the same all along it";
+  std::string text = isLevel(run) ? "level air" : "air along a slant path, as if it were the same all along it";
   if (run.geometry.h1_km) text += ", " + briefNumber(*run.geometry.h1_km) + " km high";
   if (run.geometry.path == Tape7Path::Slant && run.geometry.zenith_deg) text += ", zenith angle " + briefNumber(*run.geometry.zenith_deg) + " deg";
   text += legs.size() == 1 ? ", from one range" : ", from " + std::to_string(legs.size()) + " ranges";
   for (auto leg = legs.begin(); leg != legs.end(); ++leg) text += (leg == legs.begin() ? " (" : ", ") + briefNumber(leg->first);
-  return text + " km)";
+  text += " km)";
+  if (left > 0) text += "; " + std::to_string(left) + (left == 1 ? " run" : " runs") + " of other heights or directions left out";
+  return text;
 }
 
-}  // namespace
-
-std::optional<TabulatedSky> tabulatedSky(std::span<const Tape7Run> runs) {
+/// From those that look up to space.
+std::optional<TabulatedSky> skyOf(const Runs& runs) {
   std::vector<const Tape7Run*> seen;
   std::vector<TabulatedSky::View> views;
-  for (const Tape7Run& run : runs) {
+  for (const Tape7Run* looking : runs) {
+    const Tape7Run& run = *looking;
     if (run.geometry.path != Tape7Path::ToSpace || !radiates(run)) continue;
     const auto& g = run.geometry;
     if (!g.zenith_deg)
-      refuse(run, "the zenith angle of " + sayRun(run) + " is not in its card 3", "the angle at which it looks up", "run MODTRAN with ANGLE on card 3");
+      refuse(run, "the zenith angle of " + sayRun(run) + " is not in the file", "the angle at which it looks up",
+             "run MODTRAN with ANGLE on card 3 (JSON: OBSZEN)");
     if (*g.zenith_deg > 90.0)
       refuse(run, sayRun(run) + " looks down, at a zenith angle of " + briefNumber(*g.zenith_deg) + " deg: it is no sky", "0 to 90 deg", "remove the run");
     const double elevation = (90.0 - *g.zenith_deg) * kPi / 180.0;
@@ -173,8 +229,17 @@ std::optional<TabulatedSky> tabulatedSky(std::span<const Tape7Run> runs) {
   return TabulatedSky(seen.front()->wavelength_um, std::move(views));
 }
 
-TabulatedAir tabulatedAir(std::span<const Tape7Run> runs, std::optional<double> range_m) {
-  const auto legs = legsOf(runs, range_m);
+}  // namespace
+
+std::optional<TabulatedSky> tabulatedSky(std::span<const Tape7Run> runs) {
+  Runs all;
+  for (const Tape7Run& run : runs) all.push_back(&run);
+  return skyOf(all);
+}
+
+TabulatedAir tabulatedAir(std::span<const Tape7Run> runs, const PathChoice& choice) {
+  size_t left = 0;
+  const Legs legs = legsOf(runs, choice, left);
   const auto source = [](const Leg& leg) { return leg.radiance ? leg.radiance : leg.transmittance; };
   const Leg& first = legs.begin()->second;
   const Tape7Run& run = *source(first);
@@ -186,14 +251,17 @@ TabulatedAir tabulatedAir(std::span<const Tape7Run> runs, std::optional<double> 
   data.wavelength_um = run.wavelength_um;
   data.shortest_m = 1e3 * legs.begin()->first;
   data.longest_m = 1e3 * legs.rbegin()->first;
-  data.sky = tabulatedSky(runs);
+  Runs below;
+  for (const Tape7Run& each : runs)
+    if (!choice.height_m || hasHeight(each, 1e-3 * *choice.height_m)) below.push_back(&each);
+  data.sky = skyOf(below);
   const bool components = legs.size() == 1 && first.transmittance && first.transmittance->find("H2O_TRANS");
   if (components) data.exponents.assign(kComponentPowers.begin(), kComponentPowers.end());
   else if (legs.size() == 1) data.exponents = {1.0};
   else data.exponents.assign(kFittedPowers.begin(), kFittedPowers.end());
-  data.description = describeLegs(legs) + (components         ? "; each gas by the power of its own bands of 20 1/cm, all else exponential"
-                                           : legs.size() == 1 ? "; exponential in range, which it is not in bands of lines: other ranges are worse"
-                                                              : "; powers of range fitted");
+  data.description = describeLegs(legs, left) + (components         ? "; each gas by the power of its own bands of 20 1/cm, all else exponential"
+                                                 : legs.size() == 1 ? "; exponential in range, which it is not in bands of lines: other ranges are worse"
+                                                                    : "; powers of range fitted");
 
   std::vector<std::pair<const Tape7Run*, Spectrum>> totals;
   std::vector<double> ranges;

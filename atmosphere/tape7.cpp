@@ -1,13 +1,10 @@
 #include "atmosphere/tape7.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 
 #include "atmosphere/tape7_cards.hpp"
 #include "atmosphere/tape7_layout.hpp"
-#include "sim/parameters/read_file.hpp"
-#include "sim/radiometry/spectrum.hpp"
+#include "atmosphere/tape7_rows.hpp"
 
 namespace pitviper {
 namespace {
@@ -15,15 +12,7 @@ namespace {
 using tape7::Field;
 using tape7::Line;
 
-// Four decimals round to within 0.00005; what is filtered over wavenumber may add a little. A per cent or a shifted column is far beyond.
-constexpr double kMostTransmittance = 1.001;
-/// A run of 5000 1/cm by 1 1/cm has 1 MB.
-constexpr std::uintmax_t kLargestFile = 64u << 20;
-
 bool isEnd(const Line& line) { return line.trimmed().rfind("-9999", 0) == 0; }
-
-/// W/(cm2 cm-1) to W/(m2 um), both also per sr: with nu = 1e4/lambda, 1e4 cm2/m2 times |dnu/dlambda| = nu^2/1e4 cm-1/um.
-bool isPerWavenumber(Tape7Quantity q) { return q == Tape7Quantity::Radiance || q == Tape7Quantity::Irradiance; }
 
 class RunReader {
  public:
@@ -59,6 +48,7 @@ class RunReader {
 
  private:
   static constexpr const char* kCopyAgain = "copy the whole file again, or run MODTRAN again";
+  static constexpr const char* kOwnTape7 = "give MODTRAN's own tape7, in wavenumbers, not one turned into wavelengths";
 
   void addRow(const Line& line) {
     if (line.trimmed().empty())
@@ -67,9 +57,8 @@ class RunReader {
     if (!v)
       throw UserError(line.at(1), "no wavenumber in columns 1-" + std::to_string(fields_[0].last), "a wavenumber in cm-1, or -9999. at the table's end",
                       kCopyAgain);
-    checkWavenumber(line, *v);
-    wavenumber_.push_back(*v);
-    for (size_t i = 1; i < fields_.size(); ++i) addValue(line, fields_[i], run_.columns[i - 1], *v);
+    beginRow(line, *v);
+    for (size_t i = 1; i < fields_.size(); ++i) addValue(line, fields_[i], run_.columns[i - 1]);
     checkGaps(line);  // last: a field that is wrong says more
   }
 
@@ -89,56 +78,38 @@ class RunReader {
     check(end + 1, static_cast<int>(line.text.size()));
   }
 
-  void checkWavenumber(const Line& line, double v) const {
-    const char* const fix = "give MODTRAN's own tape7, in wavenumbers, not one turned into wavelengths";
+  void beginRow(const Line& line, double v) {
     const std::string found = tape7::inQuotes(line.cut(1, fields_[0].last));
-    if (!wavenumber_.empty() && v == wavenumber_.back())
+    if (!rows_.wavenumbers().empty() && v == rows_.wavenumbers().back())
       throw UserError(line.at(1), "the wavenumber " + found + " does not rise: it stands twice, as with several lines of sight in one run, which are not read",
                       "rising wavenumbers in cm-1", tape7::kOneLineOfSight);
-    if (!wavenumber_.empty() && !(v > wavenumber_.back()))
-      throw UserError(line.at(1), "the wavenumber " + found + " does not rise", "rising wavenumbers in cm-1", fix);
+    rows_.begin(v, line.at(1), found);
     if (!tape7::inBand(run_, v))
       throw UserError(line.at(1), "the wavenumber " + found + " lies outside the band of the run's card 4, line " + std::to_string(run_.bandLine),
-                      "cm-1 from V1 to V2 of that card", fix);
-    if (v < 1e4 / kLongestWavelength_um || v > 1e4 / kShortestWavelength_um)
-      throw UserError(line.at(1), "the wavenumber " + found + " lies beyond the spectral axis", "10 to 100000 cm-1 (1000 to 0.1 um)",
-                      "run MODTRAN with V1 and V2 within it");
+                      "cm-1 from V1 to V2 of that card", kOwnTape7);
   }
 
-  void addValue(const Line& line, const Field& field, Tape7Column& column, double v) const {
-    const auto found = tape7::numberIn(line, field);
-    if (!found) {
-      if (&column == &run_.columns.front())
-        throw UserError(line.at(field.first),
-                        "no total transmittance (" + field.name + ") in columns " + std::to_string(field.first) + "-" + std::to_string(field.last), "a number",
-                        kCopyAgain);
-      if (column.gapLine == 0) column.gapLine = line.number;
-      column.value.push_back(std::numeric_limits<double>::quiet_NaN());
+  void addValue(const Line& line, const Field& field, Tape7Column& column) const {
+    if (const auto found = tape7::numberIn(line, field)) {
+      rows_.add(column, *found, line.at(field.first), tape7::inQuotes(line.cut(field.first, field.last)));
       return;
     }
-    if (field.quantity == Tape7Quantity::Transmittance && (*found < 0.0 || *found > kMostTransmittance))
-      throw UserError(line.at(field.first), "the transmittance " + field.name + " is " + tape7::inQuotes(line.cut(field.first, field.last)), "0 to 1",
-                      "give MODTRAN's own tape7: per cent, or columns shifted, are not read");
-    const double value = isPerWavenumber(field.quantity) ? *found * v * v : *found;
-    if (!std::isfinite(value))
-      throw UserError(line.at(field.first), tape7::inQuotes(line.cut(field.first, field.last)) + " for " + field.name + " is too large",
-                      "a radiance or irradiance", kCopyAgain);
-    column.value.push_back(value);
+    if (&column == &run_.columns.front())
+      throw UserError(line.at(field.first),
+                      "no total transmittance (" + field.name + ") in columns " + std::to_string(field.first) + "-" + std::to_string(field.last), "a number",
+                      kCopyAgain);
+    rows_.addGap(column, line.number);
   }
 
-  /// Leaves out what was not computed, and turns everything from rising wavenumber to rising wavelength.
   void finish(const Line& end) {
-    if (wavenumber_.empty()) throw UserError(end.at(1), "run " + std::to_string(run_.number) + " has no rows", "a row for each wavenumber", kCopyAgain);
-    std::erase_if(run_.columns, [](const Tape7Column& c) { return std::all_of(c.value.begin(), c.value.end(), [](double x) { return std::isnan(x); }); });
-    for (Tape7Column& c : run_.columns) std::reverse(c.value.begin(), c.value.end());
-    run_.wavelength_um.reserve(wavenumber_.size());
-    for (auto v = wavenumber_.rbegin(); v != wavenumber_.rend(); ++v) run_.wavelength_um.push_back(1e4 / *v);
+    if (rows_.wavenumbers().empty()) throw UserError(end.at(1), "run " + std::to_string(run_.number) + " has no rows", "a row for each wavenumber", kCopyAgain);
+    rows_.finish();
   }
 
   const std::vector<Line>& lines_;
   Tape7Run& run_;
   std::vector<Field> fields_;
-  std::vector<double> wavenumber_;
+  tape7::Rows rows_{run_, kOwnTape7, kCopyAgain};
 };
 
 }  // namespace
@@ -179,10 +150,6 @@ std::vector<Tape7Run> parseTape7(std::string_view text, const std::string& name)
     at = RunReader(lines, run).read(at);
   }
   return runs;
-}
-
-std::vector<Tape7Run> readTape7(const std::filesystem::path& path) {
-  return parseTape7(readWholeFile(path, {.what = "a tape7 of MODTRAN", .mostBytes = kLargestFile, .fix = "check its name"}), path.string());
 }
 
 }  // namespace pitviper

@@ -1,10 +1,12 @@
 #pragma once
-// MODTRAN's tape7: transmittance, radiance or solar irradiance along one line of sight, at the wavenumbers of a run.
-#include <filesystem>
+// Runs of MODTRAN: transmittance, radiance or solar irradiance along one line of sight, at the wavenumbers of a run; and the tape7 that holds them.
+// MODTRAN 6's other files (modtran_files.hpp) give the same runs.
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "sim/parameters/error.hpp"
 
 namespace pitviper {
 
@@ -36,6 +38,7 @@ struct Tape7Column {
   Tape7Quantity quantity = Tape7Quantity::Unknown;
   std::vector<double> value;  ///< rising in wavelength; NaN where the file is blank
   int firstColumn = 0;        ///< in the file, for messages
+  int line = 0;               ///< where all its values follow one another (JSON); 0: each has a line
   int gapLine = 0;            ///< first line in which it is blank; 0: none
 };
 
@@ -57,18 +60,20 @@ struct Tape7Run {
   Tape7Geometry geometry;
   double from_per_cm = 0.0, to_per_cm = 0.0, step_per_cm = 0.0, resolution_per_cm = 0.0;  ///< card 4: V1, V2, DV, FWHM; 0 where it is not in cm-1
 
+  double resolution = 0.0;  ///< what the last digit of a transmittance is worth; 0: a tape7's own, 1e-4 in transmittance runs, else 1e-8
+
   std::vector<double> wavelength_um;  ///< strictly rising
   std::vector<Tape7Column> columns;   ///< those the run computed; a column blank throughout is absent
 
   const Tape7Column* find(std::string_view name) const;
-  /// Line of a value's row in the file.
-  int lineOf(size_t i) const { return dataLine + static_cast<int>(wavelength_um.size() - 1 - i); }
+  /// Where a column's value stands in the file.
+  Location placeOf(const Tape7Column& column, size_t i) const {
+    return {file, column.line > 0 ? column.line : dataLine + static_cast<int>(wavelength_um.size() - 1 - i), column.firstColumn, -1};
+  }
 };
 
-/// All runs of a file. Spectral densities are turned from wavenumber [W/(cm2 cm-1)] to wavelength [W/(m2 um)]: a factor of the squared
-/// wavenumber in cm-1. Errors: UserError with line and column for whatever is not a whole, undamaged tape7.
-std::vector<Tape7Run> readTape7(const std::filesystem::path& path);
-/// The same of a text; `name` is the file in messages.
+/// All runs of a tape7. Spectral densities are turned from wavenumber [W/(cm2 cm-1)] to wavelength [W/(m2 um)]: a factor of the squared
+/// wavenumber in cm-1. Errors: UserError with line and column for whatever is not a whole, undamaged tape7. `name`: the file in messages.
 std::vector<Tape7Run> parseTape7(std::string_view text, const std::string& name);
 
 }  // namespace pitviper

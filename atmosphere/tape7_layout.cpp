@@ -1,7 +1,8 @@
 #include "atmosphere/tape7_layout.hpp"
 
 #include <algorithm>
-#include <map>
+
+#include "atmosphere/tape7_rows.hpp"
 
 namespace pitviper::tape7 {
 namespace {
@@ -20,17 +21,6 @@ std::vector<Word> wordsOf(std::string_view text) {
     words.back().last = static_cast<int>(i) + 1;
   }
   return words;
-}
-
-Tape7Quantity quantityOf(const std::string& name) {
-  using Q = Tape7Quantity;
-  static const std::map<std::string, Q> all = {
-      {"TOT_TRANS", Q::Transmittance}, {"PTH_THRML", Q::Radiance}, {"THRML_SCT", Q::Radiance}, {"SURF_EMIS", Q::Radiance}, {"SOL_SCAT", Q::Radiance},
-      {"SING_SCAT", Q::Radiance},      {"GRND_RFLT", Q::Radiance}, {"DRCT_RFLT", Q::Radiance}, {"TOTAL_RAD", Q::Radiance}, {"REF_SOL", Q::Irradiance},
-      {"SOL@OBS", Q::Irradiance},      {"DEPTH", Q::OpticalDepth}, {"DIR_EM", Q::Emissivity},  {"TOA_SUN", Q::Irradiance}, {"BBODY_T[K]", Q::Temperature},
-  };
-  const auto found = all.find(name);
-  return found == all.end() ? Q::Unknown : found->second;
 }
 
 [[noreturn]] void refuse(const Line& line, int column, const std::string& wrong, const std::string& expected) {
@@ -87,7 +77,7 @@ Layout radianceLayout(const Line& names) {
   int end = words[1].last - kTransmittanceWidth;
   layout.fields.push_back({1, end, "FREQ", Tape7Quantity::Unknown});
   for (size_t i = 1; i < words.size(); ++i) {
-    layout.fields.push_back({end + 1, words[i].last, words[i].text, quantityOf(words[i].text)});
+    layout.fields.push_back({end + 1, words[i].last, words[i].text, radianceQuantity(words[i].text)});
     end = words[i].last;
   }
   return layout;

@@ -53,7 +53,7 @@ void checkUnit(const Tape7Run& run, const Tape7Column& total) {
     if (!(kelvin > 1.0) || !(written > 0.0)) continue;  // dark, or blank here
     const double ratio = written / physics::planckRadiance(run.wavelength_um[i], kelvin);
     if (ratio < kSameUnit && ratio > 1.0 / kSameUnit) continue;
-    throw UserError({run.file, run.lineOf(i), total.firstColumn, -1},
+    throw UserError(run.placeOf(total, i),
                     "TOTAL_RAD is " + briefNumber(ratio) + " times what a black body of BBODY_T, " + briefNumber(kelvin) + " K, sends: its unit is another",
                     "W/(cm2 sr cm-1), as MODTRAN writes it", "give the file as MODTRAN wrote it, its radiances not converted");
   }
@@ -70,27 +70,39 @@ Spectrum totalTransmittance(const Tape7Run& run) {
 
 Spectrum pathRadiance(const Tape7Run& run) {
   const char* const what = "path radiance";
-  const bool sunny = run.kind == Tape7Kind::SolarRadiance;
-  std::vector<double> value = columnOf(run, "PTH_THRML", what, "1 or 2").value;
+  const bool sunny = run.kind == Tape7Kind::SolarRadiance, apart = run.find("THRML_EM") != nullptr;
+  if (!apart) columnOf(run, "PTH_THRML", what, "1 or 2");
   const Tape7Column& total = columnOf(run, "TOTAL_RAD", what, "1 or 2");
-  std::vector<double> sum(value.size(), 0.0);
+  std::vector<double> value(run.wavelength_um.size(), 0.0), surface(run.wavelength_um.size(), 0.0);
   const auto add = [&](const char* name, std::vector<double>& to) {
     const auto& more = columnOf(run, name, what, "1 or 2").value;
     std::transform(to.begin(), to.end(), more.begin(), to.begin(), std::plus<>());
   };
   checkUnit(run, total);
-  if (sunny) add("SOL_SCAT", value);
-  for (const char* surface : {"SURF_EMIS", "GRND_RFLT"})
-    if (run.find(surface)) add(surface, sum);
+  std::string parts;
+  const auto addAir = [&](const char* name) {
+    add(name, value);
+    parts += (parts.empty() ? "" : " + ") + std::string(name);
+  };
+  if (apart) {
+    // MODTRAN 6: what is emitted, and what is scattered once and often, apart from each other; what it did not compute is blank.
+    for (const char* name : {"THRML_EM", "THRML_SCT", "MULT_SCAT", "SING_SCAT"})
+      if (run.find(name)) addAir(name);
+  } else {
+    addAir("PTH_THRML");
+    if (sunny) addAir("SOL_SCAT");
+  }
+  for (const char* name : {"SURF_EMIS", "GRND_RFLT"})
+    if (run.find(name)) add(name, surface);
   for (size_t i = 0; i < value.size(); ++i) {
-    const Location where{run.file, run.lineOf(i), total.firstColumn, -1};
-    if (std::abs(value[i] + sum[i] - total.value[i]) > kSumsAgree * std::abs(total.value[i]))
-      throw UserError(where, "TOTAL_RAD is not the sum of its parts (" + briefNumber((value[i] + sum[i]) / total.value[i]) + " times it)",
-                      sunny ? "PTH_THRML + SOL_SCAT + SURF_EMIS + GRND_RFLT" : "PTH_THRML + SURF_EMIS + GRND_RFLT", "give the file as MODTRAN wrote it");
+    const Location where = run.placeOf(total, i);
+    if (std::abs(value[i] + surface[i] - total.value[i]) > kSumsAgree * std::abs(total.value[i]))
+      throw UserError(where, "TOTAL_RAD is not the sum of its parts (" + briefNumber((value[i] + surface[i]) / total.value[i]) + " times it)",
+                      parts + " + SURF_EMIS + GRND_RFLT", "give the file as MODTRAN wrote it");
     if (value[i] < 0.0)
       throw UserError(where, "the path radiance is below zero", "zero or more", "run MODTRAN again with more streams or without multiple scattering");
   }
-  return table(run, std::move(value), sunny ? "PTH_THRML + SOL_SCAT" : "PTH_THRML");
+  return table(run, std::move(value), parts);
 }
 
 Spectrum sunAtObserver(const Tape7Run& run) { return sun(run, "SOL_TR", "SOL@OBS", "sunlight at the observer"); }

@@ -1,13 +1,16 @@
 #include "scenarios/reader/move_files.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace pitviper {
 namespace {
 
 namespace fs = std::filesystem;
 
 bool namesFile(const std::string& key, const Value& item) {
-  return (key == "file" || key == "table" || key == "tape7" || key == "csv" || key == "sounding") && item.kind == Value::Kind::Scalar &&
-         fs::path(item.text).is_relative();
+  static constexpr const char* keys[] = {"file", "table", "tape7", "csv", "columns_file", "radiance_file", "sounding"};
+  return std::find(std::begin(keys), std::end(keys), key) != std::end(keys) && item.kind == Value::Kind::Scalar && fs::path(item.text).is_relative();
 }
 
 /// From one folder to another, or the other as it is where no way is known.

@@ -7,7 +7,7 @@
 
 namespace pitviper {
 
-/// Relative names of files under the keys `file`, `table`, `tape7` and `csv`, which are found from `folder`, are found from there as well where the tree is
+/// Relative names of files under keys such as `file`, `table`, `tape7` or `csv`, which are found from `folder`, are found from there as well where the tree is
 /// put elsewhere.
 void moveFiles(Value& value, const std::filesystem::path& folder);
 

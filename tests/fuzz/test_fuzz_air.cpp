@@ -1,5 +1,5 @@
-// Damaged tables of air (tape7, CSV, .air) under a scenario: each must be read, with finite numbers, or refused in one line with its place and fix.
-// PITVIPER_FUZZ_AIR sets their number (default 3000), PITVIPER_FUZZ_SEED the first seed.
+// Damaged tables of air (tape7, MODTRAN's JSON and CSV, columns, CSV, .air) under a scenario: each must be read, with finite numbers, or refused in one line
+// with its place and fix. PITVIPER_FUZZ_AIR sets their number (default 3000), PITVIPER_FUZZ_SEED the first seed.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -37,6 +37,12 @@ std::vector<Corpus> corpus() {
   const auto sent = [&](double um, double km) { return 0.5 * um * (1.0 - tau(um, km)); };
   return {{"tape7", test::tape7Text(2000, 2500, 100, one, tau, sent)},
           {"tape7", test::tape7Text(2000, 2500, 100, three, tau, sent)},
+          {"tape7", test::modtranJsonText(2000, 2500, 100, three, tau, sent)},
+          {"range: 2 km, tape7", test::modtranCsvText(2000, 2500, 100, 2.0, tau, sent)},
+          {"range: 2 km, columns_file", "0     WAVENUMBER      TRANSMISSION\n  2000.0  0.5\n  2250.0  0.6\n  2500.0  1.0E-03\n"},
+          {"range: 2 km, columns_file",
+           "# source solar kurudz\n# sza 30\n# output_quantity transmittance\n# output_user lambda zout edir\n 4000 0 4e-1\n 4500 0 0.2\n 5000 0 0.1\n"},
+          {"columns: \"wavelength_nm, optical_depth_2km, path_radiance_2km_W/(m2 sr nm)\", columns_file", "4000 0.4 1e-4\n4500 0.5 2e-4\n5000 0.6 3e-4\n"},
           {"csv", test::airCsvText(4.0, 5.0, 0.25, three, tau, sent)},
           {"csv", "wavenumber [1/cm], extinction [1/km], source_radiance [W/(cm2 sr cm-1)]\n2000,0.2,1e-7\n2250,0.1,5e-8\n2500,1.5,2e-8\n"},
           {"csv", "wavelength_nm,transmittance_1km,transmittance_500m\n4000,0.5,0.7\n4500,0.7,0.8\n5000,0,0.001\n"},

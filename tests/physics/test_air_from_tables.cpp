@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "atmosphere/modtran_files.hpp"
 #include "atmosphere/tape7_spectra.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -124,7 +125,7 @@ TEST(AirFromTables, TheRangeOfAProgramsOwnFile) {
   fs::path folder = fs::path(PITVIPER_SOURCE_DIR) / ".." / "shared" / "data" / "tape7";
   if (const char* given = std::getenv("PITVIPER_TAPE7")) folder = given;
   if (!fs::exists(folder / "tape7-02b")) GTEST_SKIP() << "no MODTRAN samples: set PITVIPER_TAPE7 to a folder that holds them";
-  const Tape7Run run = readTape7(folder / "tape7-02b").at(0);
+  const Tape7Run run = readModtran(folder / "tape7-02b").at(0);
   const Spectrum tau = totalTransmittance(run), radiance = pathRadiance(run);
   const double low = run.wavelength_um.front(), high = run.wavelength_um.back();
   const double range = *run.geometry.range_km;

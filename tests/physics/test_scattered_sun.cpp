@@ -7,6 +7,7 @@
 #include <numeric>
 #include <sstream>
 
+#include "atmosphere/modtran_files.hpp"
 #include "atmosphere/scattered_sun.hpp"
 #include "atmosphere/tape7.hpp"
 #include "atmosphere/tape7_spectra.hpp"
@@ -274,7 +275,7 @@ TEST(ScatteredSun, IsModtransInTheMidwave) {
   const SunlitView slant{2000.0, std::cos(degrees(30.0)), std::acos(sunNorth), sunSine}, overhead{0.0, std::cos(degrees(20.0)), 0.0, 1.0};
   const std::pair<const char*, SunlitPath> cases[] = {{"tape7-03", sky.path(slant, 9235.9)}, {"tape7-05", sky.pathToEnd(overhead)}};
   for (const auto& [name, path] : cases) {
-    const Tape7Run run = readTape7(folder / name).at(0);
+    const Tape7Run run = readModtran(folder / name).at(0);
     const Spectrum sun = sunAboveAir(run);
     double mine = 0.0, modtran = 0.0;
     for (size_t i = 0; i < run.wavelength_um.size(); ++i) {

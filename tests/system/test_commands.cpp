@@ -277,6 +277,44 @@ TEST_F(Commands, AirFromCommaSeparatedValues) {
   EXPECT_EQ(std::count(missing.output.begin(), missing.output.end(), '\n'), 1) << missing.output;
 }
 
+// Rationale: an air of others is the same whatever program wrote it. Expected: one table of transmittance for all; what is not said in a file is asked for.
+TEST_F(Commands, AirOfOtherPrograms) {
+  const auto put = [&](const char* name, const std::string& text) {
+    const std::string file = (folder_ / name).string();
+    std::ofstream(file) << text;
+    return file;
+  };
+  // Through 2 km 0.64 at 2000 1/cm and 0.25 at 2500 1/cm, sources of 1 W/(m2 sr um).
+  const std::string json =
+      put("cases.json",
+          R"({"MODTRAN": [{"MODTRANINPUT": {"RTOPTIONS": {"IEMSCT": "RT_THERMAL_ONLY"}, "GEOMETRY": {"ITYPE": 1, "HRANGE": 2.0}}, "MODTRANOUTPUT": {"SPECTRA":
+      {"RADIANCE": {"FREQ": [2000, 2500], "TOT_TRANS": [0.64, 0.25], "THRML_EM": [9e-8, 1.2e-7], "TOTAL_RAD": [9e-8, 1.2e-7]}}}}]})");
+  const std::string csv = put("case.csv", "MODTRAN 6\nfreq,total transmittance,path emission,total radiance\n2000,0.64,9e-8,9e-8\n2500,0.25,1.2e-7,1.2e-7\n");
+  const std::string tape28 = put("TAPE28", "1\n0    WAVENUMBER      TRANSMISSION\n  2000.0  6.4E-01\n  2500.0  2.5E-01\n"),
+                    tape27 = put("TAPE27", "1\n0    WAVENUMBER      RADIANCE\n  2000.0  9.0E-08\n  2500.0  1.2E-07\n");
+  const std::string uvspec = put("slab.out", "# output_quantity transmittance\n# output_user wavenumber edir\n 2000 0.64\n 2500 0.25\n");
+  const std::string bare = put("bare.dat", "2000 0.64 9e-4\n2500 0.25 1.2e-3\n");
+  for (const std::string& words : {json, csv + " --range 2", tape28 + " --range 2 --radiance " + tape27, uvspec + " --range 2",
+                                   bare + " --range 2 --columns 'wavenumber_1/cm, transmittance, path_radiance_W/(m2 sr cm-1)'"}) {
+    const Result r = pitviper("atmosphere " + words);
+    EXPECT_EQ(r.code, 0) << r.output;
+    EXPECT_NE(r.output.find("exponential in range"), std::string::npos) << r.output;
+    // The mean of 0.64 and 0.25 over 4 to 5 um.
+    EXPECT_NE(r.output.find("| 2 km | 0.4450 |"), std::string::npos) << words << "\n" << r.output;
+    EXPECT_EQ(r.output.find("no path radiance in it") == std::string::npos, words.find("slab") == std::string::npos) << r.output;
+  }
+  const std::pair<std::string, const char*> wrong[] = {{tape28, "TAPE28:2:1: the file does not say over which range its columns hold"},
+                                                       {tape28 + " --range 2 --height 1", "--height with"},
+                                                       {bare + " --columns 'wavenumber_1/cm, tau, -'", "--columns:1:18: unknown column 'tau'"},
+                                                       {json + " --range 3", "the range given, 3 km, is not the 2 km of run 1"},
+                                                       {json + " --height 1", "no run has a height of 1 km"}};
+  for (const auto& [words, message] : wrong) {
+    const Result r = pitviper("atmosphere " + words);
+    EXPECT_EQ(r.code, 2) << words;
+    EXPECT_NE(r.output.find(message), std::string::npos) << r.output;
+  }
+}
+
 // Expected: the library's structured air with its sky and the sun, in words and as a table.
 TEST_F(Commands, LibraryAirWithSkyAndSun) {
   const Result r = pitviper("atmosphere us76_rural --out " + (folder_ / "out").string());

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "atmosphere/modtran_files.hpp"
 #include "atmosphere/tabulated_tape7.hpp"
 #include "atmosphere/tape7_spectra.hpp"
 #include "sim/parameters/error.hpp"
@@ -59,11 +60,11 @@ std::string gases(Card c, const std::array<std::array<double, 6>, 2>& rows) {
   return text + " -9999.\n";
 }
 
-TabulatedAir air(const std::string& text, std::optional<double> range_m = {}) { return tabulatedAir(parseTape7(text, "t7"), range_m); }
+TabulatedAir air(const std::string& text, const PathChoice& choice = {}) { return tabulatedAir(parseTape7(text, "t7"), choice); }
 
-std::string refused(const std::string& text, std::optional<double> range_m = {}) {
+std::string refused(const std::string& text, const PathChoice& choice = {}) {
   try {
-    air(text, range_m);
+    air(text, choice);
   } catch (const UserError& e) {
     return e.what();
   }
@@ -136,6 +137,68 @@ TEST(TabulatedTape7, RunsToSpaceAreTheSky) {
   EXPECT_FALSE(tabulatedSky(parseTape7(thermal({}, {0.2, 0.3}, {0, 0}), "t7")));
 }
 
+// Level runs at two heights, slant ones in two directions and the sky in one file: one kind at a time makes the air, and it is said what was left out.
+TEST(TabulatedTape7, PathsAreChosenAndNeverMixed) {
+  const auto along = [](Card c, double perKm) {
+    const double tau = std::exp(-perKm * c.range_km);
+    return thermal(c, {tau, tau}, {1e-8 * (1 - tau), 1e-8 * (1 - tau)});
+  };
+  std::string text;
+  for (double range : {1.0, 4.0}) {
+    text += along({.h1_km = 0.0, .range_km = range}, 0.2) + along({.h1_km = 2.0, .range_km = range}, 0.1);
+    text += along({.itype = 2, .zenith_deg = 60, .range_km = range}, 0.15) + along({.itype = 2, .zenith_deg = 120, .range_km = range}, 0.3);
+  }
+  for (double height : {0.0, 2.0}) text += thermal({.itype = 3, .h1_km = height, .zenith_deg = 30, .range_km = 0}, {0.1, 0.2}, {4e-8, 2e-8});
+  const auto perKm = [&](const PathChoice& choice) { return air(text, choice).opticalDepth(4.5, 2500.0) / 2.5; };
+  const double deg = kPi / 180.0;
+  EXPECT_NEAR(perKm({.height_m = 0.0}), 0.2, 1e-6);  // eight decimals of transmittance
+  EXPECT_NEAR(perKm({.height_m = 2000.0}), 0.1, 1e-6);
+  EXPECT_NEAR(perKm({.height_m = 0.0, .elevation_rad = 0.0}), 0.2, 1e-6);
+  EXPECT_NEAR(perKm({.height_m = 0.0, .elevation_rad = 30 * deg}), 0.15, 1e-6);
+  EXPECT_NEAR(perKm({.height_m = 0.0, .elevation_rad = -30 * deg}), 0.3, 1e-6);
+  EXPECT_TRUE(air(text, {.height_m = 0.0}).sky());
+  EXPECT_NE(air(text, {.height_m = 0.0}).description().find("6 runs of other heights or directions left out"), std::string::npos);
+  const std::string heights = refused(text);
+  EXPECT_EQ(heights.rfind("t7:15:1: run 2 is along another path or in other air than run 1", 0), 0u) << heights;
+  EXPECT_NE(heights.find("fix: choose a height: 0 km, 2 km"), std::string::npos) << heights;
+  const std::string none = refused(text, {.height_m = 1000.0});
+  EXPECT_NE(none.find("t7:1:1: no run has a height of 1 km; expected one of those in the file: 0 km, 2 km"), std::string::npos) << none;
+  EXPECT_NE(refused(text, {.elevation_rad = 45 * deg}).find("no run has an elevation of 45 deg; expected one of those in the file: level, 30 deg, -30 deg"),
+            std::string::npos);
+  // Without level runs a direction must be chosen, where there are several.
+  const std::string slant = along({.itype = 2, .zenith_deg = 60}, 0.1) + along({.itype = 2, .zenith_deg = 70, .range_km = 2}, 0.1);
+  EXPECT_NE(refused(slant).find("fix: choose an elevation: 30 deg, 20 deg"), std::string::npos) << refused(slant);
+  EXPECT_NEAR(air(slant, {.elevation_rad = 20 * deg}).transmittance(4.5, 2000.0), std::exp(-0.2), 1e-8);
+  // One level run beside slant ones is the air.
+  EXPECT_NEAR(air(slant + along({.range_km = 3}, 0.4)).transmittance(4.5, 3000.0), std::exp(-1.2), 1e-8);
+}
+
+// MODTRAN 6 names what is emitted and what is scattered apart; TOTAL_RAD says that they are what the path sends.
+TEST(TabulatedTape7, Modtran6KeepsItsScatteringApart) {
+  const std::string names =
+      "    FREQ  TOT_TRANS   THRML_EM  THRML_SCT  SURF_EMIS  MULT_SCAT  SING_SCAT  GRND_RFLT  DRCT_RFLT  TOTAL_RAD  REF_SOL  SOL@OBS   DEPTH DIR_EM    "
+      "TOA_SUN BBODY_T[K]\n";
+  const auto row = [](double v, double total) {
+    return print("%8.2f%11.8f%11.4E%11.4E%11.4E%11.4E%11.4E%11.4E%11.4E%11.4E%9.2E%9.2E%8.3f%7.4f%11.4E%11.3f\n", v, 0.5, 2e-8, 1e-9, 5e-9, 3e-9, 4e-9, 7e-9,
+                 6e-9, total, 1e-6, 1e-6, 0.693, 1.0, 1e-6, 255.0);
+  };
+  const std::string head = cards({.iemsct = 2, .range_km = 2.0});
+  // 2 + 0.1 + 0.3 + 0.4 of 1e-8 W/(cm2 sr cm-1) from the air, 0.5 + 0.7 from the surface.
+  const auto runs = parseTape7(head + names + row(2000, 4e-8) + row(2500, 4e-8) + " -9999.\n", "t7");
+  EXPECT_EQ(runs[0].columns.size(), 15u);
+  for (const auto& c : runs[0].columns) EXPECT_NE(c.quantity, Tape7Quantity::Unknown) << c.name;
+  EXPECT_NEAR(pathRadiance(runs[0])(5.0), 2.8e-8 * 2000 * 2000, 1e-12);
+  EXPECT_NEAR(tabulatedAir(runs).pathRadiance(4.0, 2000.0), 2.8e-8 * 2500 * 2500, 1e-12);
+  try {
+    tabulatedAir(parseTape7(head + names + row(2000, 4e-8) + row(2500, 4.1e-8) + " -9999.\n", "t7"));
+    ADD_FAILURE();
+  } catch (const UserError& e) {
+    const std::string said = e.what();
+    EXPECT_EQ(said.rfind("t7:13:97: TOTAL_RAD is not the sum of its parts", 0), 0u) << said;
+    EXPECT_NE(said.find("expected THRML_EM + THRML_SCT + MULT_SCAT + SING_SCAT + SURF_EMIS + GRND_RFLT"), std::string::npos) << said;
+  }
+}
+
 TEST(TabulatedTape7, OpaqueAndClearBins) {
   const TabulatedAir a = air(thermal({.range_km = 2.0}, {0.0, 1.0}, {3e-8, 0.0}));
   EXPECT_LT(a.transmittance(5.0, 2000.0), 1e-8);
@@ -153,11 +216,11 @@ TEST(TabulatedTape7, MistakesAreNamed) {
   const std::array<double, 2> tau = {0.25, 0.64}, l = {3e-8, 1e-8};
   const std::string one = thermal({}, tau, l);
   starts(refused(thermal({.itype = 3}, tau, l)), "t7:1:1: run 1 is a path to space, so no air along a range is known");
-  starts(refused(thermal({.range_km = 0.0}, tau, l)), "t7:1:1: the range of run 1 is not in its card 3");
-  EXPECT_EQ(refused(thermal({.range_km = 0.0}, tau, l), 2000.0), "no error");
-  starts(refused(one, 2000.0), "t7:1:1: the range given, 2 km, is not the 1 km of run 1");
-  EXPECT_EQ(refused(one, 1000.0), "no error");
-  starts(refused(one + thermal({.range_km = 2}, tau, l), 1000.0), "t7:15:1: a range is given for a file of 2 paths");
+  starts(refused(thermal({.range_km = 0.0}, tau, l)), "t7:1:1: the range of run 1 is not in the file");
+  EXPECT_EQ(refused(thermal({.range_km = 0.0}, tau, l), {.range_m = 2000.0}), "no error");
+  starts(refused(one, {.range_m = 2000.0}), "t7:1:1: the range given, 2 km, is not the 1 km of run 1");
+  EXPECT_EQ(refused(one, {.range_m = 1000.0}), "no error");
+  starts(refused(one + thermal({.range_km = 2}, tau, l), {.range_m = 1000.0}), "t7:15:1: a range is given for a file of 2 paths");
   starts(refused(one + one), "t7:15:1: the range 1 km comes twice, in runs 1 and 2");
   starts(refused(one + thermal({.h1_km = 1.0, .range_km = 2}, tau, l)), "t7:15:1: run 2 is along another path or in other air than run 1");
   starts(refused(one + thermal({.range_km = 2, .haze = 0}, tau, l)), "t7:15:1: run 2 is along another path or in other air");
@@ -178,7 +241,7 @@ TEST(TabulatedTape7, SamplesAreAirOrRefused) {
   if (samples().empty()) GTEST_SKIP() << "no MODTRAN samples: set PITVIPER_TAPE7 to a folder that holds them";
   for (const char* name : {"tape7-01", "tape7-01b", "tape7-02b", "tape7-03"}) {
     SCOPED_TRACE(name);
-    const auto runs = readTape7(samples() / name);
+    const auto runs = readModtran(samples() / name);
     const TabulatedAir a = tabulatedAir(runs);
     const double range = *runs[0].geometry.range_km * 1e3;
     EXPECT_DOUBLE_EQ(a.longestRange_m(), range);
@@ -197,14 +260,14 @@ TEST(TabulatedTape7, SamplesAreAirOrRefused) {
   }
   for (const char* name : {"tape7-04", "tape7-05", "tape7.LWIRSun"}) {
     try {
-      tabulatedAir(readTape7(samples() / name));
+      tabulatedAir(readModtran(samples() / name));
       ADD_FAILURE() << name;
     } catch (const UserError& e) {
       EXPECT_NE(std::string(e.what()).find("no air along a range is known"), std::string::npos) << e.what();
     }
   }
-  EXPECT_FALSE(tabulatedSky(readTape7(samples() / "tape7-04")));
-  const auto sky = tabulatedSky(readTape7(samples() / "tape7.LWIRSun"));
+  EXPECT_FALSE(tabulatedSky(readModtran(samples() / "tape7-04")));
+  const auto sky = tabulatedSky(readModtran(samples() / "tape7.LWIRSun"));
   ASSERT_TRUE(sky);
   EXPECT_NEAR(sky->radiance(8.0, kPi / 2), 5.5406281250000005, 1e-9);  // sliced from the file by a script
 }

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <random>
 
+#include "atmosphere/modtran_files.hpp"
 #include "atmosphere/tape7.hpp"
 #include "atmosphere/tape7_spectra.hpp"
 #include "atmosphere/tape7_summary.hpp"
@@ -159,7 +160,7 @@ TEST(Tape7, Transmittance) {
   EXPECT_EQ(r.to_per_cm, 2500.0);
   EXPECT_EQ(r.step_per_cm, 500.0);
   EXPECT_EQ(r.resolution_per_cm, 20.0);
-  EXPECT_EQ(r.lineOf(1), 13);  // 5 um is the first row
+  EXPECT_EQ(r.placeOf(r.columns[0], 1).line, 13);  // 5 um is the first row
   EXPECT_DOUBLE_EQ(totalTransmittance(r)(4.5), 0.625);
 }
 
@@ -393,8 +394,8 @@ TEST(Tape7, SpectraRefuseWhatDoesNotAddUp) {
   } catch (const UserError& e) {
     EXPECT_EQ(std::string(e.what()).rfind("t7:12:117: SOL@OBS is blank here and not in other rows", 0), 0u) << e.what();
   }
-  EXPECT_THROW(readTape7("no such file"), UserError);
-  EXPECT_THROW(readTape7("/"), UserError);
+  EXPECT_THROW(readModtran("no such file"), UserError);
+  EXPECT_THROW(readModtran("/"), UserError);
 }
 
 // 2000 damaged texts: read, or refused in one line.
@@ -479,13 +480,13 @@ const Sample kSamples[] = {
     {"tape7.LWIRSun", Tape7Kind::SolarRadiance, 418, 15, 8.0, 1e4 / 833, 0.47392974537671995, 0.0, 100.0},
 };
 
-Tape7Run sample(const char* name) { return readTape7(samples() / name).at(0); }
+Tape7Run sample(const char* name) { return readModtran(samples() / name).at(0); }
 
 TEST(Tape7, Samples) {
   if (samples().empty()) GTEST_SKIP() << "no MODTRAN samples: set PITVIPER_TAPE7 to a folder that holds them";
   for (const Sample& s : kSamples) {
     SCOPED_TRACE(s.name);
-    const auto runs = readTape7(samples() / s.name);
+    const auto runs = readModtran(samples() / s.name);
     ASSERT_EQ(runs.size(), 1u);
     const Tape7Run& r = runs[0];
     EXPECT_EQ(r.kind, s.kind);
