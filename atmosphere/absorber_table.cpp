@@ -223,6 +223,7 @@ void AbsorberTable::setVisibility(double visibility_km) {
 
 void AbsorberTable::finishLevels() {
   steepest_.assign(levels_.size(), 0.0);
+  for (Level& l : levels_) l.optical_m = l.altitude_m;
   for (size_t i = 0; i + 1 < levels_.size(); ++i)
     for (size_t k = 0; k < absorbers_.size(); ++k) {
       const double here = levels_[i].density[k], next = levels_[i + 1].density[k];
