@@ -5,10 +5,12 @@
 #include <complex>
 #include <stdexcept>
 
+#include "atmosphere/bent_path.hpp"
 #include "atmosphere/layered_fit.hpp"
 #include "atmosphere/layered_gpu.hpp"
 #include "atmosphere/models.hpp"
 #include "atmosphere/scattered_sun.hpp"
+#include "sim/model/refracts.hpp"
 #include "sim/radiometry/mie.hpp"
 #include "sim/radiometry/spectrum.hpp"
 #include "sim/world/haze_not_fog.hpp"
@@ -17,6 +19,9 @@ namespace pitviper {
 namespace {
 
 static_assert(kMostAbsorbers <= kMostAirAmounts);
+
+/// n - 1 of standard air where the eye sees best; from 2 um on it is 1.6 % less.
+double refractivity() { return airRefractivity(0.574); }
 
 AirStation stationOf(const PathStation& s) {
   AirStation station;
@@ -27,7 +32,7 @@ AirStation stationOf(const PathStation& s) {
   return station;
 }
 
-class Layered final : public Atmosphere, public HasHaze {
+class Layered final : public Atmosphere, public HasHaze, public Refracts {
  public:
   explicit Layered(AbsorberTable table) : table_(std::move(table)) {
     for (const Absorber& a : table_.absorbers()) exponents_.push_back(a.exponent);
@@ -93,6 +98,14 @@ class Layered final : public Atmosphere, public HasHaze {
     for (size_t k = 0; k < table_.absorbers().size(); ++k)
       if (table_.absorbers()[k].kind == AbsorberKind::Haze) sum += c[k] * here.amount_km[k];
     return sum;
+  }
+  std::optional<double> refractionCoefficient(double height_m) const override { return table_.refractionCoefficient(refractivity(), height_m); }
+  double bending_rad(double height_m, double sinElevation, double earthRadius_m) const override {
+    return bendingFromSpace(table_, refractivity(), height_m, sinElevation, earthRadius_m);
+  }
+  std::shared_ptr<const Atmosphere> bent(double coefficient) const override {
+    AbsorberTable table = table_;
+    return table.setRefraction(refractivity(), coefficient) ? std::make_shared<Layered>(std::move(table)) : nullptr;
   }
   double hazeAbsorbs(double w) const override { return 1.0 - table_.hazeAlbedo(w); }
   double validLow_um() const override { return table_.validLow_um(); }
