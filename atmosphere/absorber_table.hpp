@@ -108,6 +108,10 @@ class AbsorberTable {
   bool setRefraction(double standard, double coefficient);
   /// n - 1 where the density of the scatterer is 1, from that of standard air (15 C, 1013.25 hPa); none: there is no scatterer.
   std::optional<double> refractivityPerDensity(double standard) const;
+  bool refracts() const { return refracts_; }
+  /// Heights as lines have them, which are straight over these, and back.
+  double opticalOf(double height_m) const;
+  double heightOf(double optical_m) const;
   /// Mean of -R dn/dh over the kilometre above a height; none: there is no scatterer.
   std::optional<double> refractionCoefficient(double standard, double height_m) const;
   /// Density of the scatterer relative to sea level; 0 where there is none.
@@ -187,9 +191,6 @@ class AbsorberTable {
   std::vector<PathStation> stationsOn(const Way& way, std::vector<double> cuts_m, int points) const;
   static std::vector<double> closerNearBy(const Way& way, int count, std::span<const double> alsoAt_m);
   size_t intervalAt(double height_m) const;
-  /// Heights as lines have them, and back.
-  double opticalOf(double height_m) const;
-  double heightOf(double optical_m) const;
   /// Length of path on a piece of a line within an interval, over that of the piece.
   double stretchOf(size_t interval) const;
   /// More levels, as the air is there.

@@ -107,6 +107,9 @@ class Layered final : public Atmosphere, public HasHaze, public Refracts {
     AbsorberTable table = table_;
     return table.setRefraction(refractivity(), coefficient) ? std::make_shared<Layered>(std::move(table)) : nullptr;
   }
+  bool bends() const override { return table_.refracts(); }
+  double straightened_m(double height_m) const override { return table_.opticalOf(height_m); }
+  double bentBack_m(double straightened_m) const override { return table_.heightOf(straightened_m); }
   double hazeAbsorbs(double w) const override { return 1.0 - table_.hazeAlbedo(w); }
   double validLow_um() const override { return table_.validLow_um(); }
   double validHigh_um() const override { return table_.validHigh_um(); }

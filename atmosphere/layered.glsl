@@ -13,7 +13,8 @@ layout(std140, binding = 3) uniform AirBlock {
   vec4 black[AIR_BLACKS];  // of nodes: radiance of a black body of the air's temperature at the camera
 } air;
 //@slot air_extinction
-// [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density, column above][vector]
+// [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density, column above][vector], then where lines bend
+// [finer height](height over which lines are straight, and back)
 layout(binding = 20) uniform samplerBuffer airAmounts;
 layout(binding = 21) uniform samplerBuffer airRadiance;  // [azimuth][elevation][range, space last][part][value]
 
@@ -122,13 +123,29 @@ AirLeg airUpwards(float height, float sine) {
   return leg;
 }
 
+// Between a height and that over which lines are straight.
+float airBent(float height, int what) {
+  int entry;
+  float m;
+  airHeight(height, entry, m);
+  int at = airHeights() + AIR_HEIGHTS * (AIR_SUNS + 2) * AIR_VECTORS + entry;
+  return mix(texelFetch(airAmounts, at)[what], texelFetch(airAmounts, at + 1)[what], m);
+}
+
+// The lowest point of a way that goes down first.
+float airLowestOn(float height, float sine) {
+  float h = AIR_BENDS > 0 ? airBent(height, 0) : height;
+  float lowest = h - (view.earth.x + h) * sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0)));
+  return AIR_BENDS > 0 ? airBent(lowest, 1) : lowest;
+}
+
 // A way that goes down first has twice what lies above its lowest point, less what lies behind it.
 AirPath airToSun(AirPath camera, float height) {
   AirPath p = camera;
   if (AIR_SUNS == 0) return p;
   float sine = sunElevation_;
   AirLeg leg = airUpwards(height, abs(sine)), half_ = leg;
-  if (sine < 0.0) half_ = airUpwards(height - (view.earth.x + height) * sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0))), 0.0);
+  if (sine < 0.0) half_ = airUpwards(airLowestOn(height, sine), 0.0);
   // Below the lowest entry: evenly dense, as CPU and columns have it, on a way as if the earth were flat; no flatter than 0.6 degrees, where it is not.
   float below = max(air.heights.x - height, 0.0) / max(sine, 0.01) * 1.0e-3;
 //@each v AIR_VECTORS

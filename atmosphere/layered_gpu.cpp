@@ -6,6 +6,7 @@
 #include <future>
 #include <thread>
 
+#include "sim/model/refracts.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -23,6 +24,12 @@ std::pair<long long, long long> keyOf(double across, double sine) {
   return {std::llround(across * kFine), std::llround(sine * kFine)};
 }
 
+/// Null where its lines are straight.
+const Refracts* bendOf(const Simulation& simulation) {
+  const auto* air = dynamic_cast<const Refracts*>(simulation.air.get());
+  return air && air->bends() ? air : nullptr;
+}
+
 }  // namespace
 
 LayeredOnGpu::LayeredOnGpu(const Simulation& simulation, const Plan& plan, bool perChannel)
@@ -38,6 +45,7 @@ void LayeredOnGpu::addSlots(ShaderSlots& slots) const {
   slots.constants["AIR_HEIGHTS"] = SunLegs::kHeights;
   slots.constants["AIR_SUNS"] = plan_.sunLegs ? SunLegs::kElevations : 0;
   slots.constants["AIR_PIECES"] = kPieces;
+  slots.constants["AIR_BENDS"] = bendOf(simulation_) ? 1 : 0;
   slots.constants["AIR_PARTS"] = rows_.parts();
   slots.constants["AIR_VALUES"] = rows_.values() / 4;
   slots.constants["AIR_BLACKS"] = (plan_.nodeCount() + 3) / 4;
@@ -70,6 +78,9 @@ void LayeredOnGpu::addHeights(std::vector<float>& out) const {
     put(densities[h]);
     put(columns[h]);
   }
+  if (const Refracts* bend = bendOf(simulation_))
+    for (int h = 0; h <= last; ++h)
+      for (double v : {bend->straightened_m(heightOf(h)), bend->bentBack_m(heightOf(h)), 0.0, 0.0}) out.push_back(static_cast<float>(v));
 }
 
 void LayeredOnGpu::begin() {

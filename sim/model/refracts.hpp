@@ -20,6 +20,10 @@ class Refracts {
   virtual double bending_rad(double height_m, double sinElevation, double earthRadius_m) const = 0;
   /// This air with lines that bend, for geometry over an earth of radius 1 / (1 - coefficient); null: it has ducts, in which light does not leave.
   virtual std::shared_ptr<const Atmosphere> bent(double coefficient) const = 0;
+  virtual bool bends() const = 0;
+  /// The height at which lines that bend are straight instead of a real one, and back [m].
+  virtual double straightened_m(double height_m) const = 0;
+  virtual double bentBack_m(double straightened_m) const = 0;
 };
 
 }  // namespace pitviper

@@ -6,7 +6,11 @@
 #include <sstream>
 
 #include "atmosphere/bent_path.hpp"
+#include "atmosphere/layered.hpp"
+#include "sim/model/refracts.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
+#include "sim/world/sun_legs.hpp"
 #include "tests/support/figures.hpp"
 
 namespace pitviper::test {
@@ -134,6 +138,25 @@ TEST(BentAir, StationsAgreeWithAmounts) {
     EXPECT_NEAR(places.back(), 3e4, 1e-6);
     EXPECT_LE(places.back(), 3e4);
   }
+}
+
+TEST(BentAir, SunsBelowTheLevelShineThroughWhatBends) {
+  const auto straight = makeLayeredAir(standardTable());
+  double worst = 0.0;
+  for (double k : {0.0, 0.163}) {
+    const auto air = dynamic_cast<const Refracts&>(*straight).bent(k);
+    ASSERT_TRUE(air);
+    const double radius = kEarth_m / (1.0 - k);
+    for (double h : {300.0, 1000.0, 10000.0, 15000.0})
+      for (double e : {-0.3, -0.6, -1.0, -2.0}) {
+        const double sine = sineOf(e);
+        if (h < (radius + h) * 0.6 * sine * sine) continue;  // the earth is in the way
+        const auto way = SunLegs(air, sine, radius).at(h, sine), exact = air->amounts({h, sine, radius}, physics::kFar);
+        for (size_t a = 0; a < standardTable().absorbers().size(); ++a)
+          if (exact.amount[a] > 1e-3) worst = std::max(worst, std::abs(way.amount[a] / exact.amount[a] - 1.0));
+      }
+  }
+  bound("tabulated ways to a sun below the level through air that bends, amounts, relative", worst, 0.005, "tables by height; straight ones alike");
 }
 
 TEST(BentAir, HighElevationsAreAsBefore) {
