@@ -270,7 +270,7 @@ void AbsorberTable::setProfile(const AirProfile& profile, const Location& where)
   std::vector<double> heights;
   for (const Level& l : levels_) heights.push_back(l.altitude_m);
   for (const AirLevel& l : profile.levels())
-    if (l.altitude_m < heights.back()) heights.push_back(l.altitude_m);
+    if (l.altitude_m < top_m()) heights.push_back(l.altitude_m);
   std::sort(heights.begin(), heights.end());
   const AirLevel usual{0.0, reference_->pressure_Pa, reference_->temperature_K, reference_->water, reference_->ozone};
   std::vector<Level> levels;
