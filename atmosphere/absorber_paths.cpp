@@ -1,4 +1,4 @@
-// Amounts on straight lines through layered air.
+// Amounts on lines through layered air. Rays are straight; where light bends they are so over levels that stand where refraction puts them (setRefraction()).
 #include <algorithm>
 #include <cmath>
 
@@ -52,16 +52,50 @@ const std::vector<QuadratureNode>& unitGauss(int points) {
 }  // namespace
 
 struct AbsorberTable::Way {
-  Ray ray;
-  double begin_m, end_m;  ///< what of it lies in the air; the end not after the beginning: nothing
+  Ray ray;                        ///< over optical heights
+  double begin_m, end_m;          ///< what of it lies in the air; the end not after the beginning: nothing
+  std::vector<double> crossed_m;  ///< where along the ray it meets levels
 
   Way(const AbsorberTable& table, double height_m, double sinElevation, double range_m, double earthRadius_m)
-      : ray(height_m, std::clamp(sinElevation, -1.0, 1.0), earthRadius_m) {
-    const auto within = ray.crossings(table.top_m());
+      : ray(table.opticalOf(height_m), std::clamp(sinElevation, -1.0, 1.0), earthRadius_m) {
+    for (const Level& level : table.levels_)
+      if (const auto at = ray.crossings(level.optical_m)) crossed_m.push_back(at->first), crossed_m.push_back(at->second);
+    if (table.refracts_) followPath(table);
+    const auto within = ray.crossings(table.levels_.back().optical_m);
     begin_m = within ? std::max(within->first, 0.0) : 0.0;
-    end_m = within ? std::min(within->second, range_m) : 0.0;
+    end_m = within ? std::min(within->second, onRay(range_m)) : 0.0;
   }
   bool isEmpty() const { return !(end_m > begin_m); }
+  /// Length of path up to a place on the ray, and back.
+  double onPath(double ray_m) const {
+    if (knots_.empty()) return ray_m;
+    const auto k = std::upper_bound(knots_.begin() + 1, knots_.end(), ray_m, [](double at, const Knot& n) { return at < n.ray_m; }) - 1;
+    return k->path_m + (ray_m - k->ray_m) * k->stretch;
+  }
+  double onRay(double path_m) const {
+    if (knots_.empty()) return path_m;
+    const auto k = std::upper_bound(knots_.begin() + 1, knots_.end(), path_m, [](double at, const Knot& n) { return at < n.path_m; }) - 1;
+    return k->ray_m + (path_m - k->path_m) / k->stretch;
+  }
+
+ private:
+  struct Knot {
+    double ray_m, path_m, stretch;  ///< behind it
+  };
+  std::vector<Knot> knots_;  ///< none: the path is the ray
+
+  void followPath(const AbsorberTable& table) {
+    std::vector<double> at = {0.0};
+    for (double s : crossed_m)
+      if (s > 0.0) at.push_back(s);
+    std::sort(at.begin(), at.end());
+    for (size_t i = 0; i < at.size(); ++i) {
+      const double middle = table.heightOf(ray.heightAt(i + 1 < at.size() ? 0.5 * (at[i] + at[i + 1]) : at[i] + 1.0));
+      const double path = knots_.empty() ? 0.0 : onPathOfLast(at[i]);
+      knots_.push_back({at[i], path, middle > table.top_m() ? table.stretchAbove_ : table.stretchOf(table.intervalAt(middle))});
+    }
+  }
+  double onPathOfLast(double ray_m) const { return knots_.back().path_m + (ray_m - knots_.back().ray_m) * knots_.back().stretch; }
 };
 
 size_t AbsorberTable::intervalAt(double height_m) const {
@@ -105,8 +139,7 @@ double AbsorberTable::temperature_K(double height_m) const {
 std::vector<double> AbsorberTable::placesOn(const Way& way, std::vector<double> cuts) const {
   const auto cut = [&](double s) { cuts.push_back(s); };
   cut(way.begin_m), cut(way.end_m), cut(way.ray.lowest_m());
-  for (const Level& level : levels_)
-    if (const auto at = way.ray.crossings(level.altitude_m)) cut(at->first), cut(at->second);
+  cuts.insert(cuts.end(), way.crossed_m.begin(), way.crossed_m.end());
   std::erase_if(cuts, [&](double s) { return !(s >= way.begin_m && s <= way.end_m); });
   std::sort(cuts.begin(), cuts.end());
   cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
@@ -115,29 +148,31 @@ std::vector<double> AbsorberTable::placesOn(const Way& way, std::vector<double> 
 
 std::vector<PathStation> AbsorberTable::stationsOn(const Way& way, std::vector<double> cuts, int points) const {
   cuts = placesOn(way, std::move(cuts));
-  const Ray& ray = way.ray;
-  double height = ray.heightAt(cuts.front());
+  const auto heightAt = [&](double s) { return heightOf(way.ray.heightAt(s)); };
+  double height = heightAt(cuts.front());
   std::vector<PathStation> stations = {PathStation{cuts.front(), temperature_K(height), {}, height}};
   stations.reserve(cuts.size());
   for (size_t i = 0; i + 1 < cuts.size(); ++i) {
-    const double length = cuts[i + 1] - cuts[i], middle = ray.heightAt(cuts[i] + 0.5 * length), before = height;
+    const double length = cuts[i + 1] - cuts[i], middle = heightAt(cuts[i] + 0.5 * length), before = height;
     const size_t interval = intervalAt(middle);
-    height = ray.heightAt(cuts[i + 1]);
+    const double path_km = 1e-3 * length * stretchOf(interval);
+    height = heightAt(cuts[i + 1]);
     PathStation& next = stations.emplace_back(PathStation{cuts[i + 1], temperature_K(height), stations.back().amounts, height});
     const double first = partOf(interval, before), last = partOf(interval, height), at = partOf(interval, middle), half = 0.5 * (last - first),
                  bend = 0.5 * (first + last) - at;
     if (steepest_[interval] * std::abs(half) <= kShortStretch && steepest_[interval] * std::abs(bend) <= kStraight) {
-      addDensities(interval, at, 1e-3 * length, next.amounts, half, bend);
+      addDensities(interval, at, path_km, next.amounts, half, bend);
       continue;
     }
     for (const QuadratureNode& node : unitGauss(points))
-      addDensities(interval, partOf(interval, ray.heightAt(cuts[i] + length * node.x)), 1e-3 * length * node.weight, next.amounts);
+      addDensities(interval, partOf(interval, heightAt(cuts[i] + length * node.x)), path_km * node.weight, next.amounts);
   }
   return stations;
 }
 
 std::vector<double> AbsorberTable::closerNearBy(const Way& way, int count, std::span<const double> alsoAt_m) {
-  std::vector<double> cuts(alsoAt_m.begin(), alsoAt_m.end());
+  std::vector<double> cuts;
+  for (double s : alsoAt_m) cuts.push_back(way.onRay(s));
   for (int i = 1; i < count; ++i) {
     const double f = static_cast<double>(i) / count;
     cuts.push_back(way.begin_m + (way.end_m - way.begin_m) * f * f);
@@ -149,24 +184,32 @@ std::vector<PathStation> AbsorberTable::stations(double height_m, double sinElev
                                                  std::span<const double> alsoAt_m) const {
   const Way way(*this, height_m, sinElevation, range_m, earthRadius_m);
   if (way.isEmpty()) return {PathStation{0.0, temperature_K(height_m), {}, height_m}};
-  return stationsOn(way, closerNearBy(way, count, alsoAt_m), kGaussPoints);
+  auto all = stationsOn(way, closerNearBy(way, count, alsoAt_m), kGaussPoints);
+  for (PathStation& s : all) s.range_m = way.onPath(s.range_m);
+  return all;
 }
 
 std::vector<double> AbsorberTable::placesAlong(double height_m, double sinElevation, double range_m, double earthRadius_m, int count) const {
   const Way way(*this, height_m, sinElevation, range_m, earthRadius_m);
-  return way.isEmpty() ? std::vector{0.0} : placesOn(way, closerNearBy(way, count, {}));
+  if (way.isEmpty()) return {0.0};
+  std::vector<double> places = placesOn(way, closerNearBy(way, count, {}));
+  for (double& s : places) s = std::min(way.onPath(s), range_m);
+  return places;
 }
 
 std::vector<PathStation> AbsorberTable::stationsAt(double height_m, double sinElevation, std::span<const double> ranges_m, double earthRadius_m) const {
   const Way way(*this, height_m, sinElevation, ranges_m.empty() ? 0.0 : ranges_m.back(), earthRadius_m);
   if (way.isEmpty()) return std::vector<PathStation>(ranges_m.size(), PathStation{0.0, temperature_K(height_m), {}, height_m});
-  const auto all = stationsOn(way, {ranges_m.begin(), ranges_m.end()}, 3);
+  std::vector<double> onRay;
+  for (double r : ranges_m) onRay.push_back(way.onRay(r));
+  const auto all = stationsOn(way, onRay, 3);
   std::vector<PathStation> stations;
   stations.reserve(ranges_m.size());
   size_t at = 0;
-  for (double r : ranges_m) {
-    while (at + 1 < all.size() && all[at + 1].range_m <= r) ++at;
+  for (size_t i = 0; i < ranges_m.size(); ++i) {
+    while (at + 1 < all.size() && all[at + 1].range_m <= onRay[i]) ++at;
     stations.push_back(all[at]);
+    stations.back().range_m = all[at].range_m == onRay[i] ? ranges_m[i] : way.onPath(all[at].range_m);
   }
   return stations;
 }

@@ -227,6 +227,7 @@ void AbsorberTable::setVisibility(double visibility_km) {
 
 void AbsorberTable::finishLevels() {
   steepest_.assign(levels_.size(), 0.0);
+  for (Level& l : levels_) l.optical_m = l.altitude_m;
   for (size_t i = 0; i + 1 < levels_.size(); ++i)
     for (size_t k = 0; k < absorbers_.size(); ++k) {
       const double here = levels_[i].density[k], next = levels_[i + 1].density[k];
@@ -295,7 +296,7 @@ void AbsorberTable::setProfile(const AirProfile& profile, const Location& where)
   std::vector<double> heights;
   for (const Level& l : levels_) heights.push_back(l.altitude_m);
   for (const AirLevel& l : profile.levels())
-    if (l.altitude_m < heights.back()) heights.push_back(l.altitude_m);
+    if (l.altitude_m < top_m()) heights.push_back(l.altitude_m);
   const AirLevel usual{0.0, reference_->pressure_Pa, reference_->temperature_K, reference_->water, reference_->ozone};
   relevel(std::move(heights), [&](double h) {
     Level own;

@@ -116,13 +116,32 @@ class AbsorberTable {
   /// What was removed is as the table has it; an aerosol that is there stays as it is.
   void restoreAerosol();
 
-  /// Amounts on the straight line from a height, with the sine of its elevation there, as far as a range (may be infinite) over a spherical
-  /// earth; the earth itself does not stop it. From either end the same to rounding.
+  /// Lines bend from here on, as light does in this air: elevations are apparent ones where a line begins, ranges lengths along it. `standard`: n - 1 of
+  /// standard air (airRefractivity()); `coefficient`: k by which the radius of the earth that lines are given is 1 / (1 - k) times the real one (LocalFrame).
+  /// Law: n(r) r cos e = constant (Bouguer). With x = n r it is x cos e = constant, a straight line, of which a piece dx holds dr / dx as much path: lines stay
+  ///   straight over levels that stand at their x. n - 1 goes with the density of air (the table's scatterer), x evenly between two levels, 1 km apart at most
+  ///   up to 20 km.
+  /// Valid: x rising with height (no ducts), else false and nothing has changed; so without a scatterer.
+  /// Of what lies towards space within 0.3 % of Bouguer's law integrated finely (bentPath(); tests/unit/test_bent_air.cpp).
+  bool setRefraction(double standard, double coefficient);
+  /// n - 1 where the density of the scatterer is 1, from that of standard air (15 C, 1013.25 hPa); none: there is no scatterer.
+  std::optional<double> refractivityPerDensity(double standard) const;
+  bool refracts() const { return refracts_; }
+  /// Heights as lines have them, which are straight over these, and back.
+  double opticalOf(double height_m) const;
+  double heightOf(double optical_m) const;
+  /// Mean of -R dn/dh over the kilometre above a height; none: there is no scatterer.
+  std::optional<double> refractionCoefficient(double standard, double height_m) const;
+  /// Density of the scatterer relative to sea level; 0 where there is none.
+  double airDensity(double height_m) const;
+
+  /// Amounts on the line from a height, with the sine of its elevation there, as far as a range (may be infinite) over a spherical
+  /// earth; the earth itself does not stop it. From either end the same to rounding. Straight unless setRefraction() says otherwise.
   /// Quadrature between each two neighbours of: the levels crossed, the lowest point of the line. By their middle and a series where densities change
   /// little, else kGaussPoints points of Gauss-Legendre.
   /// Relative error below 1e-6 of each amount against the same profiles integrated finely (tests/unit/test_absorber_table.cpp).
-  /// Refraction left out: between two given points it is of second order; of what lies towards space it is 0.4 % at a zenith angle of 80
-  /// degrees (LOWTRAN's bent path, same profiles), more below (tests/unit/test_bent_path.cpp).
+  /// What straight lines lack: between two given points it is of second order; of what lies towards space it is 0.4 % at a zenith angle of 80
+  /// degrees (LOWTRAN's bent path, same profiles), 8 % of the air on the horizon (tests/unit/test_bent_path.cpp).
   AbsorberAmounts amounts(double height_m, double sinElevation, double range_m, double earthRadius_m) const;
   static constexpr int kGaussPoints = 6;
 
@@ -163,6 +182,7 @@ class AbsorberTable {
  private:
   struct Level {
     double altitude_m = 0.0;
+    double optical_m = 0.0;  ///< where it stands for lines: at its altitude, or where refraction puts it
     double temperature_K = 0.0;
     std::array<double, kMostAbsorbers> density{};
     std::array<double, kMostAbsorbers> logRatio{};  ///< ln of the next level's density over this one's; NaN where one of them is 0
@@ -189,6 +209,10 @@ class AbsorberTable {
   std::vector<PathStation> stationsOn(const Way& way, std::vector<double> cuts_m, int points) const;
   static std::vector<double> closerNearBy(const Way& way, int count, std::span<const double> alsoAt_m);
   size_t intervalAt(double height_m) const;
+  /// Length of path on a piece of a line within an interval, over that of the piece.
+  double stretchOf(size_t interval) const;
+  /// More levels, as the air is there.
+  void addLevels(const std::vector<double>& heights_m);
   /// Where between an interval's levels a height lies: 0 to 1, beyond them for what is extrapolated.
   double partOf(size_t interval, double height_m) const;
   /// Densities at a place, or their mean over a short stretch around it: `half` how far either end is from it in parts of the interval, `bend` by how much the
@@ -214,6 +238,8 @@ class AbsorberTable {
   std::vector<Level> levels_;
   std::vector<double> steepest_;  ///< of each interval: the largest logarithm of the next level's density over this one's
   std::vector<Bin> bins_;
+  double stretchAbove_ = 1.0;  ///< stretchOf() above the top
+  bool refracts_ = false;
 };
 
 }  // namespace pitviper

@@ -5,11 +5,13 @@
 #include <complex>
 #include <stdexcept>
 
+#include "atmosphere/bent_path.hpp"
 #include "atmosphere/clouds.hpp"
 #include "atmosphere/layered_fit.hpp"
 #include "atmosphere/layered_gpu.hpp"
 #include "atmosphere/models.hpp"
 #include "atmosphere/scattered_sun.hpp"
+#include "sim/model/refracts.hpp"
 #include "sim/radiometry/mie.hpp"
 #include "sim/radiometry/spectrum.hpp"
 #include "sim/world/haze_not_fog.hpp"
@@ -18,6 +20,9 @@ namespace pitviper {
 namespace {
 
 static_assert(kMostAbsorbers <= kMostAirAmounts);
+
+/// n - 1 of standard air where the eye sees best; from 2 um on it is 1.6 % less.
+double refractivity() { return airRefractivity(0.574); }
 
 AirStation stationOf(const PathStation& s) {
   AirStation station;
@@ -28,7 +33,7 @@ AirStation stationOf(const PathStation& s) {
   return station;
 }
 
-class Layered final : public Atmosphere, public HasHaze {
+class Layered final : public Atmosphere, public HasHaze, public Refracts {
  public:
   explicit Layered(AbsorberTable table) : table_(std::move(table)) {
     for (const Absorber& a : table_.absorbers()) exponents_.push_back(a.exponent);
@@ -110,6 +115,17 @@ class Layered final : public Atmosphere, public HasHaze {
       if (table_.absorbers()[k].kind == AbsorberKind::Haze) sum += c[k] * here.amount_km[k];
     return sum;
   }
+  std::optional<double> refractionCoefficient(double height_m) const override { return table_.refractionCoefficient(refractivity(), height_m); }
+  double bending_rad(double height_m, double sinElevation, double earthRadius_m) const override {
+    return bendingFromSpace(table_, refractivity(), height_m, sinElevation, earthRadius_m);
+  }
+  std::shared_ptr<const Atmosphere> bent(double coefficient) const override {
+    AbsorberTable table = table_;
+    return table.setRefraction(refractivity(), coefficient) ? std::make_shared<Layered>(std::move(table)) : nullptr;
+  }
+  bool bends() const override { return table_.refracts(); }
+  double straightened_m(double height_m) const override { return table_.opticalOf(height_m); }
+  double bentBack_m(double straightened_m) const override { return table_.heightOf(straightened_m); }
   double hazeAbsorbs(double w) const override { return 1.0 - table_.hazeAlbedo(w); }
   double validLow_um() const override { return table_.validLow_um(); }
   double validHigh_um() const override { return table_.validHigh_um(); }

@@ -7,7 +7,7 @@
 layout(std140, binding = 3) uniform AirBlock {
   vec4 grid;       // root of the first elevation's sine, entries per unit of it; scale of ranges [m], entries per unit of ln(1 + range / scale)
   vec4 azimuth;    // first cosine of the azimuth to the sun times the sun's horizontal part, entries per unit of it; number of elevations, of ranges
-  vec4 more;       // number of azimuths
+  vec4 more;       // number of azimuths; by how much the height over which lines are straight is above that of the camera [m]
   vec4 heights;    // bottom [m], entries per root of a metre; sine of the first sun elevation, 1 / step to the next
   vec4 exponent[AIR_VECTORS];
   vec4 asymmetry[AIR_VALUES];  // of nodes, or of channels
@@ -15,7 +15,8 @@ layout(std140, binding = 3) uniform AirBlock {
   vec4 shells[max(AIR_SHELLS, 1)];  // from, to [m], amount per metre, which
 } air;
 //@slot air_extinction
-// [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density, column above][vector]
+// [elevation][range, space last][vector], then [height][sun elevations][vector], then [finer height][density, column above][vector], then where lines bend
+// [finer height](height over which lines are straight, and back)
 layout(binding = 20) uniform samplerBuffer airAmounts;
 layout(binding = 21) uniform samplerBuffer airRadiance;  // [azimuth][elevation][range, space last][part][value]
 
@@ -40,7 +41,7 @@ float airEntry() {
   return root <= 0.0 || b >= 0.0 ? kFar : -q2 / (sqrt(root) - b);
 }
 
-// What shells have on a way. Their exponent is 1.
+// What shells have on a way from a height over which lines are straight. Their exponent is 1.
 void addShells(inout AirPath p, float height, float sine, float range) {
 //@each s AIR_SHELLS
   {
@@ -77,7 +78,7 @@ AirPath airFromCamera(float range) {
     p.u{v} = length > 0.0 ? exp(l * air.exponent[{v}]) : vec4(0.0);
   }
 //@end
-  addShells(p, view.up.w, sinElevation_, range);
+  addShells(p, view.up.w + air.more.y, sinElevation_, range);
   return p;
 }
 
@@ -142,20 +143,36 @@ AirLeg airUpwards(float height, float sine) {
   return leg;
 }
 
+// Between a height and that over which lines are straight.
+float airBent(float height, int what) {
+  int entry;
+  float m;
+  airHeight(height, entry, m);
+  int at = airHeights() + AIR_HEIGHTS * (AIR_SUNS + 2) * AIR_VECTORS + entry;
+  return mix(texelFetch(airAmounts, at)[what], texelFetch(airAmounts, at + 1)[what], m);
+}
+
+// The lowest point of a way that goes down first.
+float airLowestOn(float height, float sine) {
+  float h = AIR_BENDS > 0 ? airBent(height, 0) : height;
+  float lowest = h - (view.earth.x + h) * sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0)));
+  return AIR_BENDS > 0 ? airBent(lowest, 1) : lowest;
+}
+
 // A way that goes down first has twice what lies above its lowest point, less what lies behind it.
 AirPath airToSun(AirPath camera, float height) {
   AirPath p = camera;
   if (AIR_SUNS == 0) return p;
   float sine = sunElevation_;
   AirLeg leg = airUpwards(height, abs(sine)), half_ = leg;
-  if (sine < 0.0) half_ = airUpwards(height - (view.earth.x + height) * sine * sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0))), 0.0);
+  if (sine < 0.0) half_ = airUpwards(airLowestOn(height, sine), 0.0);
   // Below the lowest entry: evenly dense, as CPU and columns have it, on a way as if the earth were flat; no flatter than 0.6 degrees, where it is not.
   float below = max(air.heights.x - height, 0.0) / max(sine, 0.01) * 1.0e-3;
 //@each v AIR_VECTORS
   leg.w{v} += below * airLowest({v});
   p.w{v} += sine < 0.0 ? max(2.0 * half_.w{v} - leg.w{v}, vec4(0.0)) : leg.w{v};
 //@end
-  addShells(p, height, sine, kFar);
+  if (AIR_SHELLS > 0) addShells(p, AIR_BENDS > 0 ? airBent(height, 0) : height, sine, kFar);
   return airRaised(p);
 }
 
@@ -185,7 +202,7 @@ AirPath airToLight(AirPath camera, float height, float sinElevation, float dista
     s0 = s1;
   }
 //@end
-  addShells(p, height, sinElevation, distance);
+  if (AIR_SHELLS > 0) addShells(p, AIR_BENDS > 0 ? airBent(height, 0) : height, sinElevation, distance);
   return airRaised(p);
 }
 

@@ -212,7 +212,7 @@ class LineLoss {
  private:
   static AirAmounts shellsOf(const Simulation& simulation, const TabledLine& own) {
     AirAmounts all;
-    addShells(simulation.air->shells(), {own.grid.places.height_m, own.line.sine, simulation.frame.earthRadius_m()}, own.end_m, all);
+    addShells(*simulation.air, {own.grid.places.height_m, own.line.sine, simulation.frame.earthRadius_m()}, own.end_m, all);
     return all;
   }
   void note(std::vector<double>& into, const Seen& found, const Seen& than) const {

@@ -6,6 +6,7 @@
 #include <future>
 #include <thread>
 
+#include "sim/model/refracts.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
@@ -23,6 +24,12 @@ std::pair<long long, long long> keyOf(double across, double sine) {
   return {std::llround(across * kFine), std::llround(sine * kFine)};
 }
 
+/// Null where its lines are straight.
+const Refracts* bendOf(const Simulation& simulation) {
+  const auto* air = dynamic_cast<const Refracts*>(simulation.air.get());
+  return air && air->bends() ? air : nullptr;
+}
+
 }  // namespace
 
 LayeredOnGpu::LayeredOnGpu(const Simulation& simulation, const Plan& plan, bool perChannel)
@@ -38,6 +45,7 @@ void LayeredOnGpu::addSlots(ShaderSlots& slots) const {
   slots.constants["AIR_HEIGHTS"] = SunLegs::kHeights;
   slots.constants["AIR_SUNS"] = plan_.sunLegs ? SunLegs::kElevations : 0;
   slots.constants["AIR_PIECES"] = kPieces;
+  slots.constants["AIR_BENDS"] = bendOf(simulation_) ? 1 : 0;
   slots.constants["AIR_PARTS"] = rows_.parts();
   slots.constants["AIR_VALUES"] = rows_.values() / 4;
   slots.constants["AIR_BLACKS"] = (plan_.nodeCount() + 3) / 4;
@@ -73,6 +81,9 @@ void LayeredOnGpu::addHeights(std::vector<float>& out) const {
     put(densities[h]);
     put(columns[h]);
   }
+  if (const Refracts* bend = bendOf(simulation_))
+    for (int h = 0; h <= last; ++h)
+      for (double v : {bend->straightened_m(heightOf(h)), bend->bentBack_m(heightOf(h)), 0.0, 0.0}) out.push_back(static_cast<float>(v));
 }
 
 void LayeredOnGpu::begin() {
@@ -175,7 +186,8 @@ void LayeredOnGpu::upload(const Rows& below, const Rows& above) {
   put({grid.first, 1.0 / grid.places.step, grid.places.scale_m, grid.entriesPerLog()});
   put({grid.firstAcross, grid.azimuths > 1 ? 1.0 / grid.places.stepAcross : 0.0, static_cast<double>(grid.elevations),
        static_cast<double>(grid.places.ranges)});
-  put({static_cast<double>(grid.azimuths), 0.0, 0.0, 0.0});
+  const Refracts* bend = bendOf(simulation_);
+  put({static_cast<double>(grid.azimuths), bend ? bend->straightened_m(grid.places.height_m) - grid.places.height_m : 0.0, 0.0, 0.0});
   put({SunLegs::kBottom_m, (SunLegs::kHeights - 1) / std::sqrt(simulation_.air->top_m() - SunLegs::kBottom_m), plan_.sunLegs ? plan_.sunLegs->firstSine() : 0.0,
        plan_.sunLegs ? 1.0 / plan_.sunLegs->step() : 0.0});
   const auto powers = simulation_.air->exponents();
@@ -184,7 +196,7 @@ void LayeredOnGpu::upload(const Rows& below, const Rows& above) {
   for (double g : rows_.asymmetries()) put({g});
   for (size_t i = 0; i < (plan_.nodes.size() + 3) / 4 * 4; ++i) put({i < black.size() ? black[i] : 0.0});
   if (simulation_.air->shells().empty()) put({0.0, 0.0, 0.0, 0.0});
-  for (const AirShell& s : simulation_.air->shells()) put({s.low_m, s.high_m, s.per_m, static_cast<double>(s.amount)});
+  for (const AirShell& s : straightShells(*simulation_.air)) put({s.low_m, s.high_m, s.per_m, static_cast<double>(s.amount)});
   block_.upload(block);
 }
 

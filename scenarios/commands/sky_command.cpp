@@ -5,10 +5,12 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/scenario_reader.hpp"
+#include "sim/flight/standard_atmosphere.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/parameters/print.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/sky/refraction.hpp"
 #include "sim/sky/sky_places.hpp"
 
 namespace pitviper {
@@ -22,7 +24,16 @@ struct SkyWish {
   std::optional<double> height_m;
 };
 
-std::string placeOf(const SkyPlace& p) { return print("azimuth %.3f deg, elevation %.3f deg", p.azimuth_rad / kDegree, p.elevation_rad / kDegree); }
+/// Where the standard atmosphere shows it.
+double apparent_rad(const SkyPlace& p, double height_m) {
+  const StandardAir air = standardAir(height_m);
+  return p.elevation_rad + refraction_rad(p.elevation_rad, air.pressure_Pa, air.temperature_K);
+}
+
+std::string placeOf(const SkyPlace& p, double height_m) {
+  return print("azimuth %.3f deg, elevation %.3f deg, with refraction %.3f deg", p.azimuth_rad / kDegree, p.elevation_rad / kDegree,
+               apparent_rad(p, height_m) / kDegree);
+}
 
 int showSky(const SkyWish& wish) {
   std::string problem;
@@ -34,28 +45,30 @@ int showSky(const SkyWish& wish) {
   const SkyPlace sun = sunPlace(*when, where);
   const MoonLook moon = moonLook(*when, where);
   const double near = 149597870700.0 / sun.distance_m;
-  std::printf("%s at %.4f, %.4f deg, %g m: %s. Places without refraction, azimuth clockwise from north.\n\n", wish.date.c_str(), *wish.latitude_deg,
-              *wish.longitude_deg, where.height_m, std::string(nameOf(twilightAt(sun.elevation_rad))).c_str());
-  std::printf("sun   %s; %.5f au, radius %.3f deg, %.2f %% of its irradiance at 1 au\n", placeOf(sun).c_str(), 1.0 / near, sun.angularRadius_rad / kDegree,
-              100.0 * near * near);
+  std::printf("%s at %.4f, %.4f deg, %g m: %s. Refraction is that of the standard atmosphere, azimuth clockwise from north.\n\n", wish.date.c_str(),
+              *wish.latitude_deg, *wish.longitude_deg, where.height_m, std::string(nameOf(twilightAt(sun.elevation_rad))).c_str());
+  std::printf("sun   %s; %.5f au, radius %.3f deg, %.2f %% of its irradiance at 1 au\n", placeOf(sun, where.height_m).c_str(), 1.0 / near,
+              sun.angularRadius_rad / kDegree, 100.0 * near * near);
   std::printf(
       "moon  %s; %.0f km, radius %.3f deg, phase angle %.2f deg, %.1f %% lit; of the sun's irradiance at 1 au %.3g at 0.55 um, %.3g at 1.06 um, %.3g at 2.2 "
       "um\n\n",
-      placeOf(moon.place).c_str(), 1e-3 * moon.place.distance_m, moon.place.angularRadius_rad / kDegree, moon.phaseAngle_rad / kDegree,
+      placeOf(moon.place, where.height_m).c_str(), 1e-3 * moon.place.distance_m, moon.place.angularRadius_rad / kDegree, moon.phaseAngle_rad / kDegree,
       100.0 * moon.litFraction, moonlightShare(moon, 0.55), moonlightShare(moon, 1.06), moonlightShare(moon, 2.2));
   const auto file = findLibraries().atmosphere / "bright_stars.csv";
   const auto stars = readStars(readWholeFile(file), problem);
   if (!stars) throw UserError({file.string(), 1, 1, -1}, "a damaged table of stars", problem, "take the one of this program's library");
   const std::vector<SkyPlace> places = starPlaces(*stars, *when, where);
-  std::printf("| star above the horizon | azimuth [deg] | elevation [deg] | V | 0.55 um [W/(m2 um)] | 1.25 um | 2.2 um |\n|---|---|---|---|---|---|---|\n");
+  std::printf(
+      "| star above the horizon | azimuth [deg] | elevation [deg] | with refraction [deg] | V | 0.55 um [W/(m2 um)] | 1.25 um | 2.2 um "
+      "|\n|---|---|---|---|---|---|---|---|\n");
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < stars->size(); ++i)
     if (places[i].elevation_rad > 0.0) order.push_back(i);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return (*stars)[a].magnitude < (*stars)[b].magnitude; });
   for (std::size_t i : order) {
     const Star& s = (*stars)[i];
-    std::printf("| %s | %.2f | %.2f | %.2f | %.3g | %.3g | %.3g |\n", s.name.c_str(), places[i].azimuth_rad / kDegree, places[i].elevation_rad / kDegree,
-                s.magnitude, starIrradiance(s, 0.55), starIrradiance(s, 1.25), starIrradiance(s, 2.2));
+    std::printf("| %s | %.2f | %.2f | %.2f | %.2f | %.3g | %.3g | %.3g |\n", s.name.c_str(), places[i].azimuth_rad / kDegree, places[i].elevation_rad / kDegree,
+                apparent_rad(places[i], where.height_m) / kDegree, s.magnitude, starIrradiance(s, 0.55), starIrradiance(s, 1.25), starIrradiance(s, 2.2));
   }
   return 0;
 }

@@ -37,6 +37,8 @@ class Builder {
   /// After everything that can be narrow in wavelength: air and materials.
   void readAccuracy(const Record& scenario);
   void readAtmosphere(const Record& scenario);
+  /// After origin and air, before everything that has a place.
+  void readRefraction(const Record& scenario);
   void readBackground(const Record& scenario);
   void readSun(const Record& scenario);
   void readMaterials(const Record& scenario);
@@ -166,6 +168,7 @@ class Builder {
   };
   std::vector<Recovery> recoveries_;
   std::map<std::string, std::pair<std::shared_ptr<const Mesh>, BodyForm>> shapes_;
+  std::function<double(double)> bending_;  ///< by how much air lifts what stands at a true elevation [rad]; none: not at all
 };
 
 }  // namespace pitviper

@@ -76,6 +76,7 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     b.readLimits(r);
     b.readAirMotion(r);
     b.readAtmosphere(r);
+    b.readRefraction(r);
     b.readBackground(r);
     b.readSun(r);
     b.readAccuracy(r);

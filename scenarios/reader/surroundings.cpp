@@ -220,7 +220,9 @@ Spectrum shareOf(const MoonLook& moon) {
 }
 
 /// Where sun or moon stand, and how much of the sun's light at 1 au they send.
-void placeByDate(const Record& scenario, const Record& own, bool isMoon, Sun& sun) {
+/// `bending`: by how much air lifts what stands at a true elevation; none: it does not.
+void placeByDate(const Record& scenario, const Record& own, bool isMoon, const std::function<double(double)>& bending, Sun& sun) {
+  const auto directionOf = [&](const SkyPlace& p) { return directionTo(p.azimuth_rad, p.elevation_rad + (bending ? bending(p.elevation_rad) : 0.0)); };
   const Value* time = scenario.find("time");
   const Value* date = time ? time->find("date") : nullptr;
   if (!date || !scenario.given("origin"))
@@ -238,13 +240,13 @@ void placeByDate(const Record& scenario, const Record& own, bool isMoon, Sun& su
   const GroundPlace where{origin.number("latitude"), origin.number("longitude"), origin.number("height")};
   if (!isMoon) {
     const SkyPlace place = sunPlace(*when, where);
-    sun.toSun = directionTo(place.azimuth_rad, place.elevation_rad);
+    sun.toSun = directionOf(place);
     const double near = 149597870700.0 / place.distance_m;
     sun.irradiance = sun.irradiance * Spectrum(near * near);
     return;
   }
   const MoonLook moon = moonLook(*when, where);
-  sun.toSun = directionTo(moon.place.azimuth_rad, moon.place.elevation_rad);
+  sun.toSun = directionOf(moon.place);
   sun.irradiance = sun.irradiance * shareOf(moon);
 }
 
@@ -268,7 +270,7 @@ void Builder::readSun(const Record& scenario) {
       throw UserError(r.where("body"), "a moon at an azimuth and elevation", "one by date: its phase is in its light", "remove 'azimuth' and 'elevation'");
     sun.toSun = directionTo(r.number("azimuth"), r.number("elevation"));
   } else {
-    placeByDate(scenario, r, isMoon, sun);
+    placeByDate(scenario, r, isMoon, bending_, sun);
   }
   simulation_.sun = std::move(sun);
 }

@@ -78,6 +78,8 @@ const ParameterTable& scenario() {
        map("parameters", "name: value, for `$name` anywhere else in this file and in those that it includes here"),
        withDefault(integer("seed", "seed of everything random", 0, 9007199254740991LL, &Simulation::seed), "1"),
        map("origin", "where the local east-north-up frame stands on the earth"),
+       any("refraction",
+           "how the air bends light: `none` (unless given), `standard`, by the air's own density or 0.163 where it does not say, or a map with `coefficient`"),
        map("time", "first frame, rate and number of frames"),
        map("limits", "what may come besides the scenario's own times, where poses and levels come live"),
        map("render", "how it is drawn"),
@@ -143,6 +145,19 @@ const ParameterTable& render() {
 
 const ParameterTable& origin() {
   static const ParameterTable t{"origin", "", geodeticParameters()};
+  return t;
+}
+
+const ParameterTable& refraction() {
+  static const ParameterTable t{
+      "refraction",
+      "With it lines of sight go over an earth of radius R / (1 - k), so that horizons lie farther and far things stand higher; lines in layered air follow "
+      "its "
+      "density, towards space too; sun and moon by date stand at their apparent places.",
+      {required(within(number("coefficient", "",
+                              "k = -R dn/dh near the ground: 0.13 over warm ground by day, 0.163 in the standard atmosphere, more at night "
+                              "and over cold water; 0: true radius, for eyes above some 10 km"),
+                       -2.0, 0.9))}};
   return t;
 }
 
@@ -584,7 +599,7 @@ const ParameterTable& probe() {
 }
 
 std::vector<ParameterTable> all() {
-  std::vector<ParameterTable> every{scenario(), entryOfList(), repeat(), render(), origin(), time(), limits(), accuracy(), commonAirTable()};
+  std::vector<ParameterTable> every{scenario(), entryOfList(), repeat(), render(), origin(), refraction(), time(), limits(), accuracy(), commonAirTable()};
   const auto addAll = [&every](const auto& registry, const auto& tableOf) {
     for (const auto& model : registry.all()) every.push_back(tableOf(model));
   };

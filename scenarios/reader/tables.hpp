@@ -13,6 +13,7 @@ const ParameterTable& entryOfList();
 const ParameterTable& repeat();
 const ParameterTable& render();
 const ParameterTable& origin();
+const ParameterTable& refraction();
 const ParameterTable& time();
 const ParameterTable& limits();
 const ParameterTable& accuracy();

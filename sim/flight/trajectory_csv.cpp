@@ -126,7 +126,7 @@ Header headerOf(std::string_view line, const Location& where) {
 class Rows {
  public:
   Rows(const Header& header, const LocalFrame& frame, const std::string& file)
-      : header_(header), frame_(frame), file_(file), origin_(frame.toEcef(glm::dvec3(0.0))), localFromEcef_(glm::transpose(frame.ecefFromLocal())) {}
+      : header_(header), frame_(frame), file_(file), localFromEcef_(glm::transpose(frame.ecefFromLocal())) {}
 
   void read(std::string_view line, int number) {
     const Location where{file_, number, 1, -1};
@@ -179,7 +179,7 @@ class Rows {
         place = {position(0) * kDegree, position(1) * kDegree, position(2)};
         return frame_.toLocal(place);
       default: {
-        const glm::dvec3 local = localFromEcef_ * (glm::dvec3(position(0), position(1), position(2)) - origin_);
+        const glm::dvec3 local = frame_.fromEcef({position(0), position(1), position(2)});
         place = frame_.toGeodetic(local);
         return local;
       }
@@ -206,7 +206,6 @@ class Rows {
   const Header& header_;
   const LocalFrame& frame_;
   std::string file_;
-  glm::dvec3 origin_;
   glm::dmat3 localFromEcef_;
   std::vector<Cell> cells_;
   std::vector<double> values_;

@@ -3,15 +3,40 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sim/model/refracts.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
 
 namespace pitviper {
 
-void addShells(std::span<const AirShell> shells, const AirRay& ray, double range_m, AirAmounts& into) {
-  for (const AirShell& s : shells)
+namespace {
+
+const Refracts* bendsOf(const Atmosphere& air) {
+  const auto* own = dynamic_cast<const Refracts*>(&air);
+  return own && own->bends() ? own : nullptr;
+}
+
+double straightened(const Refracts* bends, double height_m) { return bends ? bends->straightened_m(height_m) : height_m; }
+
+}  // namespace
+
+std::vector<AirShell> straightShells(const Atmosphere& air) {
+  std::vector<AirShell> all(air.shells().begin(), air.shells().end());
+  const Refracts* bends = all.empty() ? nullptr : bendsOf(air);
+  for (AirShell& s : all) {
+    const double thickness_m = s.high_m - s.low_m;
+    s.low_m = straightened(bends, s.low_m), s.high_m = straightened(bends, s.high_m);
+    s.per_m *= thickness_m / (s.high_m - s.low_m);
+  }
+  return all;
+}
+
+void addShells(const Atmosphere& air, const AirRay& ray, double range_m, AirAmounts& into) {
+  if (air.shells().empty()) return;
+  const double height_m = straightened(bendsOf(air), ray.height_m);
+  for (const AirShell& s : straightShells(air))
     into.amount[static_cast<std::size_t>(s.amount)] +=
-        s.per_m * physics::lengthInShell(s.low_m, s.high_m, ray.height_m, ray.sinElevation, range_m, ray.earthRadius_m);
+        s.per_m * physics::lengthInShell(s.low_m, s.high_m, height_m, ray.sinElevation, range_m, ray.earthRadius_m);
 }
 
 namespace {
@@ -21,18 +46,18 @@ constexpr double kWithin[] = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
 
 }  // namespace
 
-std::vector<double> withShellPlaces(std::span<const AirShell> shells, const AirRay& ray, std::span<const double> ranges_m) {
+std::vector<double> withShellPlaces(const Atmosphere& air, const AirRay& ray, std::span<const double> ranges_m) {
   std::vector<double> all(ranges_m.begin(), ranges_m.end());
-  if (shells.empty()) return all;
-  const double r0 = ray.earthRadius_m + ray.height_m, b = r0 * ray.sinElevation;
+  if (air.shells().empty()) return all;
+  const double h0 = straightened(bendsOf(air), ray.height_m), r0 = ray.earthRadius_m + h0, b = r0 * ray.sinElevation;
   const auto meet = [&](double height_m) {
-    const double c = (height_m - ray.height_m) * (ray.earthRadius_m + height_m + r0), d = b * b + c;
+    const double c = (height_m - h0) * (ray.earthRadius_m + height_m + r0), d = b * b + c;
     if (!(d > 0.0)) return;
     const double far = b >= 0.0 ? -b - std::sqrt(d) : -b + std::sqrt(d);
     for (double range : {far, -c / far})
       if (range > ranges_m.front() && range < ranges_m.back()) all.push_back(range);
   };
-  for (const AirShell& s : shells) {
+  for (const AirShell& s : straightShells(air)) {
     meet(s.low_m), meet(s.high_m);
     for (double amount : kWithin)
       if (const double in = amount / s.per_m; in < 0.5 * (s.high_m - s.low_m)) meet(s.low_m + in), meet(s.high_m - in);

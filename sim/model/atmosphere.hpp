@@ -56,18 +56,23 @@ struct AirRay {
   double earthRadius_m = 0.0;
 };
 
+class Atmosphere;
+
 /// Particles that lie evenly between two heights, with edges: tables by height leave them out, and what is on a way is added in closed form.
 struct AirShell {
   int amount = 0;  ///< whose index they have
   double low_m = 0.0, high_m = 0.0;
   double per_m = 0.0;  ///< of the amount
 };
-void addShells(std::span<const AirShell> shells, const AirRay& ray, double range_m, AirAmounts& into);
+/// Those of an air as its lines have them, which are straight over other heights where they bend (Refracts).
+std::vector<AirShell> straightShells(const Atmosphere& air);
+/// What a way holds of shells.
+void addShells(const Atmosphere& air, const AirRay& ray, double range_m, AirAmounts& into);
 /// Nothing of them.
 void dropShells(std::span<const AirShell> shells, AirAmounts& from);
 /// Rising ranges, and between the first and the last of them those where a ray meets edges of shells and, within, places that lie closer together towards
 /// edges, where light changes.
-std::vector<double> withShellPlaces(std::span<const AirShell> shells, const AirRay& ray, std::span<const double> ranges_m);
+std::vector<double> withShellPlaces(const Atmosphere& air, const AirRay& ray, std::span<const double> ranges_m);
 
 /// What the kernel has to do for an air.
 struct AirTraits {

@@ -144,8 +144,7 @@ void addTo(Fingerprint& f, const Simulation& sim) {
                sun, ambient, surroundings, background, ground, air, cameras, probes, commands, stores, sinks] = sim;
   f.add(static_cast<double>(seed)).add(static_cast<int>(mode)).add(shadows);
   const auto& [latitude_rad, longitude_rad, height_m] = frame.origin();
-  f.add(frame.ground_m());
-  f.add(latitude_rad).add(longitude_rad).add(height_m);
+  f.add(latitude_rad).add(longitude_rad).add(height_m).add(frame.ground_m()).add(frame.refraction());
   const auto& [start_s, step_s, frames, epoch_s] = time;
   f.add(start_s).add(step_s).add(frames);
   const auto& [nearest_m, farthest_m, coldest_K, hottest_K, lightLevel] = limits;

@@ -130,7 +130,7 @@ AirPlaces::AirPlaces(const RadianceScene& scene, const LineOfSight& line, std::v
     own = subdivided(std::move(own));
     if (scene.terms.scatteredSun && sim.sun) own = refinedAtDusk(ray, sun, own);
     if (scene.airPlaces > 0) own = thinned(path, ray, own, static_cast<size_t>(scene.airPlaces));
-    own = withShellPlaces(path.shells(), ray, own);
+    own = withShellPlaces(path, ray, own);
     mergeInto(ranges, own);
   }
   sunlit_ = scene.terms.scatteredSun;

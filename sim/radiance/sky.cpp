@@ -98,7 +98,7 @@ class SkyAt {
 };
 
 std::vector<AirStation> stationsOf(const Atmosphere& air, const AirRay& ray, std::span<const double> ranges_m) {
-  return air.stationsAt(ray, withShellPlaces(air.shells(), ray, ranges_m));
+  return air.stationsAt(ray, withShellPlaces(air, ray, ranges_m));
 }
 
 class SkyAround final : public Surroundings {

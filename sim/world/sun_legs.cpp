@@ -33,7 +33,10 @@ SunLegs::SunLegs(std::shared_ptr<const Atmosphere> path, double sinElevation, do
       radius_m_(earthRadius_m),
       top_m_(path_->top_m()),
       roots_(static_cast<size_t>(kElevations) * kHeights),
-      made_(kHeights) {}
+      made_(kHeights),
+      bends_(dynamic_cast<const Refracts*>(path_.get())) {
+  if (bends_ && !bends_->bends()) bends_ = nullptr;
+}
 
 const AirAmounts* SunLegs::rowAt(int height) const {
   AirAmounts* row = &roots_[static_cast<size_t>(height * kElevations)];
@@ -77,16 +80,21 @@ bool SunLegs::has(double height_m, double sine) const {
 }
 
 AirAmounts SunLegs::at(double height_m, double sine) const {
-  // The lowest point of a line that goes down first.
-  const double lowest_m = height_m - (radius_m_ + height_m) * sine * sine / (1.0 + std::sqrt(std::max(1.0 - sine * sine, 0.0)));
+  const double lowest_m = sine < 0.0 ? lowestOn(height_m, sine) : 0.0;
   if (!has(height_m, std::abs(sine)) || (sine < 0.0 && !has(lowest_m, 0.0))) return path_->amounts({height_m, sine, radius_m_}, physics::kFar);
   AirAmounts a = upwards(height_m, std::abs(sine));
   if (sine < 0.0) {
     const AirAmounts half = upwards(lowest_m, 0.0);
     for (size_t k = 0; k < a.amount.size(); ++k) a.amount[k] = std::max(2.0 * half.amount[k] - a.amount[k], 0.0);
   }
-  addShells(path_->shells(), {height_m, sine, radius_m_}, physics::kFar, a);
+  addShells(*path_, {height_m, sine, radius_m_}, physics::kFar, a);
   return a;
+}
+
+double SunLegs::lowestOn(double height_m, double sine) const {
+  const double h = bends_ ? bends_->straightened_m(height_m) : height_m;
+  const double lowest = h - (radius_m_ + h) * sine * sine / (1.0 + std::sqrt(std::max(1.0 - sine * sine, 0.0)));
+  return bends_ ? bends_->bentBack_m(lowest) : lowest;
 }
 
 AirAmounts SunLegs::upwards(double height_m, double sine) const {

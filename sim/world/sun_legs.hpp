@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sim/model/atmosphere.hpp"
+#include "sim/model/refracts.hpp"
 
 namespace pitviper {
 
@@ -47,12 +48,15 @@ class SunLegs {
  private:
   bool has(double height_m, double sine) const;
   AirAmounts upwards(double height_m, double sine) const;
+  /// Of a line that goes down first.
+  double lowestOn(double height_m, double sine) const;
   /// By elevation; made when first asked for.
   const AirAmounts* rowAt(int height) const;
   std::shared_ptr<const Atmosphere> path_;
   double step_, first_, radius_m_, top_m_;
   mutable std::vector<AirAmounts> roots_;  ///< [height][elevation]
   mutable std::vector<std::once_flag> made_;
+  const Refracts* bends_;  ///< of the path; null: its lines are straight
 };
 
 }  // namespace pitviper

@@ -64,7 +64,7 @@ TEST(Clouds, HoldWhatTheyAreAskedFor) {
          "Marshall and Palmer 1948: twice the area of drops");
   figure("visibility in snow of 1 mm/h [km]", 3.912 / (depth(white, level, 1000.0) - depth(clear, level, 1000.0)), 1.29, 0.02, "1.5 R/(rho v r)");
   AirAmounts shells;
-  addShells(cloudy.air->shells(), slant, physics::kFar, shells);
+  addShells(*cloudy.air, slant, physics::kFar, shells);
   const AirAmounts all = cloudy.air->amounts(slant, physics::kFar);
   double worst = 0.0;
   for (const AirShell& s : cloudy.air->shells()) {

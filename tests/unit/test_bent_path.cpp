@@ -7,8 +7,8 @@
 #include <fstream>
 #include <sstream>
 
+#include "atmosphere/bent_path.hpp"
 #include "sim/radiometry/constants.hpp"
-#include "tests/support/bent_path.hpp"
 #include "tests/support/figures.hpp"
 
 namespace pitviper::test {
@@ -52,7 +52,7 @@ TEST(BentPath, BendsAsAstronomersSay) {
     return bentPath(standardAir(), n, 0.0, std::sin(degrees(elevation_deg)), kEarth_m).bending_rad * 180.0 / kPi * 60.0;
   };
   // Laplace: N (1 - b) tan z - N (b - N/2) tan^3 z, b the height of even air over the earth's radius; whatever the profile. Next term: 7e-4 at 70 degrees.
-  const double N = n * 288.15 / standardAir().temperature_K(0.0);
+  const double N = *standardAir().refractivityPerDensity(n) * standardAir().airDensity(0.0);
   const AbsorberAmounts column = standardAir().amounts(0.0, 1.0, INFINITY, kEarth_m);
   size_t air = 0;
   while (standardAir().absorbers()[air].kind != AbsorberKind::Scattering) ++air;

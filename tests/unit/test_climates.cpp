@@ -246,6 +246,14 @@ TEST_F(Sounding, FineOnesAreThinnedOut) {
     EXPECT_NEAR(p.at(h).temperature_K, 288.0 - 0.0065 * h + (h > 800.0 && h < 1200.0 ? 3.0 : 0.0), 0.25) << h;
 }
 
+// Rows between the levels that a table has of its own.
+TEST_F(Sounding, AllItsRowsAreInTheAir) {
+  AbsorberTable table = AbsorberTable::read(fs::path(PITVIPER_SOURCE_DIR) / "atmosphere/library/us76_rural.air");
+  table.setProfile(read("altitude [m], pressure [hPa], temperature [K], humidity [%]\n0, 1013, 288, 60\n50, 1007, 291, 50\n1000, 900, 284, 40\n"), {});
+  EXPECT_NEAR(table.temperature_K(50.0), 291.0, 1e-9);
+  EXPECT_NEAR(table.airDensity(50.0) / table.airDensity(0.0), 1007.0 / 1013.0 * 288.0 / 291.0, 1e-9);
+}
+
 TEST_F(Sounding, DamagedOnesSayWhere) {
   const std::string head = "altitude [m], pressure [hPa], temperature [K], humidity [%]\n";
   for (const auto& [text, said] : std::initializer_list<std::pair<std::string, std::string>>{

@@ -1,5 +1,5 @@
 #pragma once
-// Paths bent by refraction, for what lies towards space near the horizon: the sun's leg, the sky, limb paths. What straight ones are off by is measured by it.
+// Paths bent by refraction, integrated finely: apparent places of what stands in the sky, and what AbsorberTable's own lines are held against.
 //
 // Law: n(r) r cos e = constant (Bouguer) through spherical shells; ds = dr / sin e.   n - 1 = N(lambda) rho(h) / rho(0).
 //   N refractivity at sea level; rho the density of air, from the table's scatterer; e elevation; r distance from the earth's centre.
@@ -11,7 +11,7 @@
 
 #include "atmosphere/absorber_table.hpp"
 
-namespace pitviper::test {
+namespace pitviper {
 
 /// n - 1 of dry air at 15 C and 1013.25 hPa, vacuum wavelength from 0.2 um.
 double airRefractivity(double wavelength_um);
@@ -30,4 +30,8 @@ struct BentPath {
 BentPath bentPath(const AbsorberTable& air, double refractivity, double height_m, double sinElevation, double earthRadius_m, double endHeight_m = INFINITY,
                   int count = 32);
 
-}  // namespace pitviper::test
+/// By how much light from space is turned on its way to a height, where it comes from an apparent elevation; below the lowest that the ground leaves free, what
+/// it is there. Errors as bentPath().
+double bendingFromSpace(const AbsorberTable& air, double refractivity, double height_m, double sinElevation, double earthRadius_m);
+
+}  // namespace pitviper

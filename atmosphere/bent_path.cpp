@@ -1,4 +1,4 @@
-#include "tests/support/bent_path.hpp"
+#include "atmosphere/bent_path.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,11 +7,8 @@
 
 #include "sim/radiometry/quadrature.hpp"
 
-namespace pitviper::test {
+namespace pitviper {
 namespace {
-
-// Of Edlen's formula.
-constexpr double kEdlenTemperature_K = 288.15;
 
 // Below the deepest open ground no perigee is looked for.
 constexpr double kLowest_m = -1000.0;
@@ -26,13 +23,9 @@ class Bender {
  public:
   Bender(const AbsorberTable& air, double refractivity, double height_m, double sinElevation, double radius_m)
       : air_(air), radius_m_(radius_m), height_m_(height_m) {
-    const auto absorbers = air.absorbers();
-    const auto found = std::find_if(absorbers.begin(), absorbers.end(), [](const Absorber& a) { return a.kind == AbsorberKind::Scattering; });
-    if (found == absorbers.end()) throw std::invalid_argument("bent paths need an air table with a scatterer: its density bends");
-    scatterer_ = static_cast<size_t>(found - absorbers.begin());
-    const double seaLevel = air.densities(0.0).amount_km[scatterer_];
-    // The sea level of this air has 1013 hPa like Edlen's, and a temperature of its own.
-    perDensity_ = seaLevel > 0.0 ? refractivity * kEdlenTemperature_K / air.temperature_K(0.0) / seaLevel : 0.0;
+    const auto perDensity = air.refractivityPerDensity(refractivity);
+    if (!perDensity) throw std::invalid_argument("bent paths need an air table with a scatterer: its density bends");
+    perDensity_ = *perDensity;
     start_ = index(height_m) * (radius_m + height_m);
     // Where it begins, n r - constant = n r (1 - cos e), without the difference of large numbers.
     const double cosine = std::sqrt(std::max(1.0 - sinElevation * sinElevation, 0.0));
@@ -40,7 +33,7 @@ class Bender {
     constant_ = start_ * cosine;
   }
 
-  double index(double height_m) const { return 1.0 + perDensity_ * air_.densities(height_m).amount_km[scatterer_]; }
+  double index(double height_m) const { return 1.0 + perDensity_ * air_.airDensity(height_m); }
 
   // n r less the constant: 0 at a perigee.
   double above(double height_m) const {
@@ -98,7 +91,6 @@ class Bender {
 
  private:
   const AbsorberTable& air_;
-  size_t scatterer_ = 0;
   double radius_m_, height_m_, perDensity_ = 0.0, start_ = 0.0, constant_ = 0.0, aboveAtStart_ = 0.0;
 };
 
@@ -148,4 +140,15 @@ BentPath bentPath(const AbsorberTable& air, double refractivity, double height_m
   return path;
 }
 
-}  // namespace pitviper::test
+double bendingFromSpace(const AbsorberTable& air, double refractivity, double height_m, double sinElevation, double earthRadius_m) {
+  double lowest = 0.0;
+  if (const auto perDensity = air.refractivityPerDensity(refractivity); perDensity && height_m > 0.0) {
+    const auto nr = [&](double h) { return (1.0 + *perDensity * air.airDensity(h)) * (earthRadius_m + h); };
+    const double cosine = std::min(nr(0.0) / nr(height_m), 1.0);
+    // A little above: what just grazes the ground must not end there by rounding.
+    lowest = -std::sqrt(1.0 - cosine * cosine) * (1.0 - 1e-4);
+  }
+  return bentPath(air, refractivity, height_m, std::max(sinElevation, lowest), earthRadius_m, INFINITY, 1).bending_rad;
+}
+
+}  // namespace pitviper
