@@ -86,7 +86,8 @@ AirModel columnsModel() {
            rangeKey()},
           [](const AirRecord& air) {
             const char* const what = "a file of columns";
-            ColumnsWanted wanted{.range_m = given(air, "range")};
+            ColumnsWanted wanted;
+            wanted.range_m = given(air, "range");
             if (air.record.given("columns")) {
               const Value& columns = air.record.value("columns");
               wanted.names = columns.text;
