@@ -19,6 +19,10 @@ constexpr double kSameTemperature_K = 0.2, kSameWater = 0.02, kSamePressure = 1e
 constexpr std::size_t kMostRows = 20000;
 /// Sane values: what a row may hold.
 constexpr double kLowest_m = -500.0, kHighest_m = 200e3, kColdest_K = 100.0, kWarmest_K = 400.0;
+/// Of water over that of saturated air, and of what is warmer than this: ice decides in colder air.
+constexpr double kMostSaturated = 1.1, kColdWater_K = 258.0;
+/// Rows so far apart are held to the weight of the air between them, which moisture and a lapse that bends change by less.
+constexpr double kThickRow_m = 300.0, kWeightRoom = 0.15, kEvenAir_m = 30e3;
 /// Gas constant of dry air over gravity [m/K].
 constexpr double kScale_m_K = 287.05 / 9.80665;
 
@@ -62,7 +66,9 @@ double valueOf(const CsvTable& t, std::size_t row, std::size_t column, Column wh
     if (c.unit == "1") return v;
     throw UserError(c.where, "unit '" + c.unit + "' of " + c.name, "ppmv or 1 (of volume)", "convert the column");
   }
-  const auto converted = convert({v, c.unit}, kQuantities[what].unit);
+  // As soundings are written.
+  const std::string unit = c.unit == "C" || c.unit == "deg C" ? "degC" : c.unit == "mb" || c.unit == "mbar" ? "hPa" : c.unit;
+  const auto converted = convert({v, unit}, kQuantities[what].unit);
   if (!converted) throw UserError(c.where, "unit '" + c.unit + "' of " + c.name, "a unit of " + std::string(kQuantities[what].unit), "convert the column");
   return *converted;
 }
@@ -135,12 +141,24 @@ AirProfile AirProfile::read(const std::filesystem::path& file, const Location& a
     if (!(l.water >= 0.0 && l.water <= 0.2)) refuse(print("water of %g ppmv", 1e6 * l.water), "0 to 200000 ppmv", "correct the row");
     if (columns.at[Ozone]) l.ozone = value(Ozone);
     else if (above) l.ozone = above->at(l.altitude_m).ozone;
+    // What warm and cold air holds over water; a tenth more is found in clouds.
+    if (columns.at[Water] && l.temperature_K > kColdWater_K && l.water * l.pressure_Pa > kMostSaturated * saturation_Pa(l.temperature_K))
+      refuse(print("water of %g ppmv in air of %g K that holds %.4g", 1e6 * l.water, l.temperature_K, 1e6 * saturation_Pa(l.temperature_K) / l.pressure_Pa),
+             "at most what saturates it", "correct the row or the column's unit");
+    if (!all.empty() && l.altitude_m - all.back().altitude_m > kThickRow_m && l.altitude_m < kEvenAir_m) {
+      const AirLevel& under = all.back();
+      const double thick_m = kScale_m_K * 0.5 * (under.temperature_K + l.temperature_K) * std::log(under.pressure_Pa / l.pressure_Pa);
+      if (std::abs(thick_m / (l.altitude_m - under.altitude_m) - 1.0) > kWeightRoom)
+        refuse(print("%g hPa %g m above %g hPa", 0.01 * l.pressure_Pa, l.altitude_m - under.altitude_m, 0.01 * under.pressure_Pa),
+               print("by the weight of that air %.0f m between them", thick_m), "check the units of altitude and pressure; take a damaged row out");
+    }
     if (!(l.ozone >= 0.0 && l.ozone <= 1e-3)) refuse(print("ozone of %g ppmv", 1e6 * l.ozone), "0 to 1000 ppmv", "correct the row");
     all.push_back(l);
   }
   if (all.size() < 2) throw UserError({t.file, 1, 1, -1}, "fewer than two rows", "a row for each height", "add rows");
   AirProfile profile;
   profile.levels_ = thinned(all);
+  profile.soundedTo_m_ = all.back().altitude_m;
   if (!above) return profile;
   // What lies above goes on from the pressure that is there.
   const AirLevel top = profile.levels_.back();

@@ -24,11 +24,14 @@ struct AirAtGround {
 
 class AirProfile {
  public:
-  /// Errors: UserError for rows that do not rise, have holes, humidity over 100 %, dew above the temperature, pressure that does not fall.
+  /// Errors: UserError for rows that do not rise, have holes, humidity over 100 %, dew above the temperature, pressure that does not fall
+  /// as the weight of its air says (hypsometric equation, to 15 %), more water than air of that temperature holds.
   /// `above`: goes on where the file ends, and has the ozone that the file lacks.
   static AirProfile read(const std::filesystem::path& file, const Location& askedAt, const AirProfile* above = nullptr);
 
   const std::vector<AirLevel>& levels() const { return levels_; }  ///< rising
+  /// The altitude of the file's last row.
+  double soundedTo_m() const { return soundedTo_m_; }
   /// Held below the first and above the last.
   AirLevel at(double altitude_m) const;
   /// Relative humidity over water at the lowest level, 0 to 1.
@@ -44,6 +47,7 @@ class AirProfile {
 
  private:
   std::vector<AirLevel> levels_;
+  double soundedTo_m_ = 0.0;
 };
 
 }  // namespace pitviper

@@ -12,6 +12,7 @@
 #include "atmosphere/models.hpp"
 #include "atmosphere/scattered_sun.hpp"
 #include "sim/model/refracts.hpp"
+#include "sim/parameters/print.hpp"
 #include "sim/radiometry/mie.hpp"
 #include "sim/radiometry/spectrum.hpp"
 #include "sim/world/haze_not_fog.hpp"
@@ -150,6 +151,8 @@ namespace {
 constexpr double kColdest_K = 100.0, kWarmest_K = 500.0;
 /// Clearer air than this is haze or fog, thicker is fog alone: haze would grow to droplets of other spectra.
 constexpr double kThickestHaze_m = 500.0;
+/// A sounding begins no higher above the ground; drier air than this has no humidity that could be scaled.
+constexpr double kHighestFirst_m = 1000.0, kDry = 0.005;
 /// An aerosol of one's own.
 constexpr const char* kParticles = "particles";
 /// Humidity by which aerosols go where a table does not say its own: Shettle and Fenn's usual one.
@@ -221,12 +224,26 @@ std::optional<AirProfile> profileOf(const AirRecord& air) {
   if (!r.given("climate") && !r.given("sounding") && !isChanged) return std::nullopt;
   const std::string climate = r.given("climate") ? r.text("climate") : "us_standard_1976";
   AirProfile profile = AirProfile::read(air.library / "climates" / (climate + ".csv"), r.given("climate") ? r.where("climate") : r.where());
-  if (r.given("sounding")) profile = AirProfile::read(air.folder / r.text("sounding"), r.where("sounding"), &profile);
+  if (r.given("sounding")) {
+    profile = AirProfile::read(air.folder / r.text("sounding"), r.where("sounding"), &profile);
+    const double first_m = profile.levels().front().altitude_m, above_m = first_m - air.ground_m;
+    if (above_m > kHighestFirst_m || profile.soundedTo_m() <= air.ground_m)
+      throw UserError(r.where("sounding"),
+                      above_m > kHighestFirst_m ? print("a sounding that begins %g m above the ground", above_m)
+                                                : print("a sounding that ends at %g m, below the ground at %g m", profile.soundedTo_m(), air.ground_m),
+                      "altitudes above the sea, from the ground on", "check the altitudes and their unit, and 'ground: {height}'");
+  }
   profile.cutAt(air.ground_m);
   AirAtGround ground;
   if (r.given("surface_temperature")) ground.temperature_K = r.number("surface_temperature");
   if (r.given("surface_pressure")) ground.pressure_Pa = r.number("surface_pressure");
-  if (r.given("humidity")) ground.humidity = r.number("humidity");
+  if (r.given("humidity")) {
+    ground.humidity = r.number("humidity");
+    if (profile.humidity() < kDry && *ground.humidity > kDry)
+      throw UserError(r.where("humidity"),
+                      print("'humidity' scales that of the air by height, and the lowest air of this profile has %.2g", profile.humidity()),
+                      "a profile with water in its lowest air", "correct the sounding's first row, or remove 'humidity'");
+  }
   profile.setGround(ground);
   return profile;
 }
@@ -248,7 +265,8 @@ AbsorberTable readAirTable(const AirRecord& air) {
   for (const char* key : {"particle_radius", "particle_deviation", "particle_n", "particle_k"})
     needs(key, aerosol == kParticles, "'aerosol: particles' beside it");
   needs("wind", isNamed && goesByWind(aerosol), "'aerosol: desert' beside it");
-  needs("haze_top", aerosol != "none", "an aerosol");
+  for (const char* key : {"haze_top", "visibility"}) needs(key, aerosol != "none", "an aerosol");
+  needs("temperature", !r.given("surface_temperature") && !r.given("sounding"), "a temperature that is the same everywhere, or one by height");
   if (r.given("visibility") && r.number("visibility") < kThickestHaze_m && !isFog(aerosol) && aerosol != kParticles)
     throw UserError(r.where("visibility"), "'visibility' is " + std::to_string(static_cast<int>(r.number("visibility"))) + " m, and the aerosol is no fog",
                     "at least 500 m, or a fog", "add 'aerosol: radiation_fog' or 'advection_fog'");

@@ -9,7 +9,10 @@
 #include "sim/plan/averaged_fringes.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/plan/sampling_check.hpp"
+#include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/physics.hpp"
 #include "sim/world/haze_not_fog.hpp"
+#include "sim/world/sun_legs.hpp"
 #include "sim/world/world.hpp"
 
 namespace pitviper {
@@ -83,6 +86,16 @@ void noteGround(const Simulation& sim, Notes& said) {
               origin_m, origin_m));
 }
 
+/// A light that does not rise is easily taken for one that is missing.
+void noteSun(const Simulation& sim, Notes& said) {
+  constexpr double kDisc_deg = 0.3;
+  if (!sim.sun) return;
+  const double elevation_deg = std::asin(std::clamp(sim.sun->toSun.z, -1.0, 1.0)) * 180.0 / kPi;
+  if (elevation_deg < -kDisc_deg && (sim.ground || (sim.air && sim.air->top_m() < physics::kFar)))
+    said.say(print("the sun (or the moon that stands for it) is %.1f degrees below the horizon of the origin: %s", -elevation_deg,
+                   sim.sun->toSun.z < kNight ? "it lights nothing" : "it lights high air alone"));
+}
+
 void noteFringes(const Simulation& sim, Notes& said) {
   const auto say = [&](const std::string& owner, const std::vector<ChannelOutput>& outputs) {
     for (const AveragedFringes& f : averagedFringes(sim, outputs)) said.say(owner + ", channel " + f.channel + ": " + wordsOf(f));
@@ -117,6 +130,7 @@ void noteScenario(const Simulation& sim, Notes& notes) {
   noteCuts(sim, notes);
   noteFog(sim, notes);
   noteGround(sim, notes);
+  noteSun(sim, notes);
   noteFringes(sim, notes);
 }
 

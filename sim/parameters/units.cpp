@@ -67,6 +67,7 @@ const std::map<std::string, Unit, std::less<>>& namedUnits() {
     m["mV"] = base({{V, 1}}, 1e-3);
     m["uV"] = base({{V, 1}}, 1e-6);
     m["count"] = base({{COUNT, 1}});
+    m["ppm"] = base({}, 1e-6);
     m["photon"] = base({{COUNT, 1}});
     m["electron"] = base({{COUNT, 1}});
     m["lm"] = base({{LM, 1}});
