@@ -47,8 +47,8 @@ TEST(Refraction, OfTheStandardAtmosphereIsBennetts) {
 }
 
 TEST(Refraction, HorizonAndDip) {
-  const LocalFrame straight({50.0 * kDegree, 8.0 * kDegree, 0.0}), day({50.0 * kDegree, 8.0 * kDegree, 0.0}, 0.13),
-      standard({50.0 * kDegree, 8.0 * kDegree, 0.0}, 0.163);
+  const LocalFrame straight({50.0 * kDegree, 8.0 * kDegree, 0.0}), day({50.0 * kDegree, 8.0 * kDegree, 0.0}, 0.0, 0.13),
+      standard({50.0 * kDegree, 8.0 * kDegree, 0.0}, 0.0, 0.163);
   EXPECT_NEAR(day.refraction(), 0.13, 1e-12);
   EXPECT_EQ(straight.refraction(), 0.0);
   const auto horizon_km = [](const LocalFrame& f, double h) {
