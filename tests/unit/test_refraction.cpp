@@ -69,7 +69,7 @@ TEST(Refraction, HorizonAndDip) {
 TEST(Refraction, FarThingsStandHigher) {
   const Geodetic origin{50.0 * kDegree, 8.0 * kDegree, 0.0};
   constexpr double k = 0.13;
-  const LocalFrame straight(origin), bent(origin, k);
+  const LocalFrame straight(origin), bent(origin, 0.0, k);
   for (double d_deg : {0.1, 0.3, 0.6}) {
     const Geodetic ship{50.0 * kDegree, (8.0 + d_deg) * kDegree, 0.0};
     const glm::dvec3 at = bent.toLocal(ship), before = straight.toLocal(ship);
