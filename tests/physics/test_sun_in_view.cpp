@@ -21,13 +21,20 @@ std::string sunScene(double elevation_deg, double field_deg, int pixels, const s
          " deg, channels: [{name: v, response: {band: [0.8 um, 0.9 um]}, output: radiance}]}]\n";
 }
 
-/// On a plane that faces it [W/m2], of pixels that all have about the same solid angle.
+/// On a plane that faces the camera [W/m2]: radiance times the integral of cos^4 over the tangents of each pixel.
 double irradianceIn(const Simulation& sim, const Frame& frame) {
   const Pinhole& p = sim.cameras[0].pinhole;
+  constexpr int kAcross = 20;
   double sum = 0.0;
-  for (float v : frame.layers[0].pixels) sum += static_cast<double>(v);
-  const double side = p.pitch_m / p.focalLength_m;
-  return sum * side * side;
+  for (int y = 0; y < p.height; ++y)
+    for (int x = 0; x < p.width; ++x) {
+      double projected = 0.0;
+      for (int j = 0; j < kAcross; ++j)
+        for (int i = 0; i < kAcross; ++i)
+          projected += std::pow(1.0 + std::pow(p.tanX(x + (i + 0.5) / kAcross), 2) + std::pow(p.tanY(y + (j + 0.5) / kAcross), 2), -2.0);
+      sum += at(frame.layers[0], frame, x, y) * projected * p.pitchX_m * p.pitchY_m / std::pow(p.focalLength_m * kAcross, 2);
+    }
+  return sum;
 }
 
 TEST(SunInView, HasTheIrradianceThatLightsSurfaces) {
