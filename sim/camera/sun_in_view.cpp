@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sim/radiometry/constants.hpp"
 #include "sim/radiometry/physics.hpp"
@@ -9,8 +10,11 @@
 namespace pitviper {
 namespace {
 
-/// Directions on the rim by which its place on the film is bounded; lines across a subpixel that it fills in part; and across one that holds much of it.
-constexpr int kRim = 32, kAcross = 8, kAcrossSmall = 32;
+/// Directions on the rim by which its place on the film is bounded; lines across a subpixel that it fills in part, and wholly.
+constexpr int kRim = 32, kAcross = 8, kAcrossWhole = 2;
+/// Spread over fewer subpixels than these across it is told by directions of its own, so many.
+constexpr double kFew = 16.0, kGoldenAngle = 2.399963229728653;
+constexpr int kOverDisc = 1024;
 /// Elevations over which air towards it is told, from its lower to its upper rim.
 constexpr int kElevations = 17;
 
@@ -67,28 +71,51 @@ void addSunInView(Subpixels& image, const WaysToLights& ways, const Simulation& 
   if (!(high.x > low.x && high.y > low.y)) return;
   const DiscRadiance disc(sim, plan, v.position);
   const double height_m = sim.frame.height(v.position), inside = std::cos(radius);
-  const bool isSmall = high.x - low.x < 4.0 || high.y - low.y < 4.0;
+  const auto axisOf = [&](const glm::dvec3& d) { return -(glm::transpose(v.localFromCamera) * d).z; };
+  const auto isUp = [&](const glm::dvec3& d) {
+    return !sim.ground || !(physics::groundRange(height_m, glm::dot(d, up), sim.frame.earthRadius_m()) < physics::kFar);
+  };
+  /// Directions of it in a subpixel that the earth leaves free, and what share of the subpixel is of it if all of them are.
+  struct Piece {
+    int lines = 0;
+    glm::dvec3 sum{0.0};
+  };
+  const auto add = [&](size_t subpixel, const Piece& part, double eachFills) {
+    const glm::dvec3 middle = glm::normalize(part.sum);
+    const auto way = ways.from(state, present, v.position, middle, physics::kFar, v.near_m / axisOf(middle));
+    if (!way.empty()) disc.add(glm::dot(middle, up), way, part.lines * eachFills, image, subpixel);
+  };
+  if (high.x - low.x < kFew || high.y - low.y < kFew) {
+    // All over the disc evenly: its flux is whole however wide pixels are.
+    std::map<std::pair<int, int>, Piece> parts;
+    for (int k = 0; k < kOverDisc; ++k) {
+      const double r = radius * std::sqrt((k + 0.5) / kOverDisc), a = kGoldenAngle * k;
+      const glm::dvec3 d = glm::normalize(toSun + r * (std::cos(a) * side + std::sin(a) * other));
+      const glm::dvec2 at = filmPosition(v, glm::transpose(v.localFromCamera) * d);
+      if (!(at.x >= 0.0 && at.y >= 0.0 && at.x < v.width && at.y < v.height) || !isUp(d)) continue;
+      Piece& part = parts[{static_cast<int>(at.x), static_cast<int>(at.y)}];
+      ++part.lines, part.sum += d;
+    }
+    for (const auto& [at, part] : parts)
+      if (const size_t subpixel = image.index(at.first, at.second); !v.wanted || (*v.wanted)[subpixel])
+        add(subpixel, part, kPi * radius * radius * axisOf(toSun) / (kOverDisc * image.projectedSolidAngle_sr(at.first, at.second)));
+    return;
+  }
   const auto towards = [&](double x, double y) { return glm::normalize(v.localFromCamera * v.ray(x, y)); };
   const auto isIn = [&](const glm::dvec3& d) { return glm::dot(d, toSun) >= inside; };
   for (int y = static_cast<int>(low.y); y < static_cast<int>(std::ceil(high.y)); ++y)
     for (int x = static_cast<int>(low.x); x < static_cast<int>(std::ceil(high.x)); ++x) {
       const size_t at = image.index(x, y);
       if (v.wanted && !(*v.wanted)[at]) continue;
-      const bool isWhole = !isSmall && isIn(towards(x, y)) && isIn(towards(x + 1.0, y)) && isIn(towards(x, y + 1.0)) && isIn(towards(x + 1.0, y + 1.0));
-      const int across = isWhole ? 2 : isSmall ? kAcrossSmall : kAcross;
-      int lit = 0;
-      glm::dvec3 sum(0.0);
+      const bool isWhole = isIn(towards(x, y)) && isIn(towards(x + 1.0, y)) && isIn(towards(x, y + 1.0)) && isIn(towards(x + 1.0, y + 1.0));
+      const int across = isWhole ? kAcrossWhole : kAcross;
+      Piece part;
       for (int j = 0; j < across; ++j)
         for (int i = 0; i < across; ++i) {
           const glm::dvec3 d = towards(x + (i + 0.5) / across, y + (j + 0.5) / across);
-          if (!isIn(d) || (sim.ground && physics::groundRange(height_m, glm::dot(d, up), sim.frame.earthRadius_m()) < physics::kFar)) continue;
-          ++lit, sum += d;
+          if (isIn(d) && isUp(d)) ++part.lines, part.sum += d;
         }
-      if (lit == 0) continue;
-      const glm::dvec3 middle = glm::normalize(sum);
-      const double axis = -(glm::transpose(v.localFromCamera) * middle).z;
-      const auto way = ways.from(state, present, v.position, middle, physics::kFar, v.near_m / axis);
-      if (!way.empty()) disc.add(glm::dot(middle, up), way, lit / static_cast<double>(across * across), image, at);
+      if (part.lines > 0) add(at, part, 1.0 / (across * across));
     }
 }
 
