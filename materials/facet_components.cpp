@@ -32,9 +32,9 @@ class Facets final : public PartOfFace {
  public:
   explicit Facets(const std::shared_ptr<const FacetOptics>& optics) : PartOfFace(facetLobe(optics->spec().slopes, optics->spec().roughness), optics) {}
   std::array<AngleAxis, 2> axes() const override { return {AngleAxis{Angle::Difference, optics_->facetAngles(), kQuarter}, AngleAxis{}}; }
-  double column(double w, double angle, double) const override { return byAngle(optics_->at(w).facet, angle); }
+  double column(double w, double angle, double) const override { return optics_->spec().share * byAngle(optics_->at(w).facet, angle); }
   double lobeAt(const glm::dvec3& l, const glm::dvec3& v) const override { return facetLobeAt(optics_->spec().slopes, optics_->spec().roughness, l, v); }
-  double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w).hemispherical, angle); }
+  double hemispherical(double w, double angle) const override { return optics_->spec().share * byAngle(optics_->at(w).hemispherical, angle); }
   double angleError() const override { return optics_->angleError(); }
 };
 
@@ -56,9 +56,9 @@ class Beneath final : public PartOfFace {
       return (1.0 - f) * views[kEach * j] + f * views[kEach * (j + 1)];
     };
     const auto both = [&](const std::vector<double>& views) { return at(views, in) * at(views, out); };
-    return row.again * both(optics_->lost()) + (row.scattered > 0.0 ? row.scattered * both(row.through) : 0.0);
+    return optics_->spec().share * ((row.again > 0.0 ? row.again * both(row.returned) : 0.0) + (row.scattered > 0.0 ? row.scattered * both(row.through) : 0.0));
   }
-  double hemispherical(double w, double angle) const override { return byAngle(optics_->at(w).beneath, angle); }
+  double hemispherical(double w, double angle) const override { return optics_->spec().share * byAngle(optics_->at(w).beneath, angle); }
 };
 
 class Pane final : public ViewModel {

@@ -166,9 +166,7 @@ FacetRow FacetOptics::rowAt(double w) const {
   const auto n = spec_.beneath(w);
   const Stack stack = stackAt(w);
   const FringeMean fringes(stack.layers, w);
-  const auto powerAt = [&](double sine) {
-    return fringes.of(stack.layers, [&](const auto& layers) { return filmPower(layers, stack.last, w, sine); });
-  };
+  const auto powerAt = [&](double sine) { return fringes.of(stack.layers, [&](const auto& layers) { return filmPower(layers, stack.last, w, sine); }); };
   // What a facet lets in of what it does not reflect, at the views.
   std::vector<double> passed(kViews, 0.0);
   const int perView = (facetAngles_ - 1) % (kViews - 1) == 0 ? (facetAngles_ - 1) / (kViews - 1) : 0;
@@ -180,25 +178,28 @@ FacetRow FacetOptics::rowAt(double w) const {
   }
   const bool goesIn = spec_.pigment || spec_.paneThickness_um;
   for (int v = 0; goesIn && v < kViews; ++v)
-    if (perView == 0 || v == kViews - 1)
-      passed[static_cast<size_t>(v)] = inside(powerAt(std::sin(std::min(angleAt(v, kViews), kQuarter - 1e-6))));
-  std::vector<double> atViews;
+    if (perView == 0 || v == kViews - 1) passed[static_cast<size_t>(v)] = inside(powerAt(std::sin(std::min(angleAt(v, kViews), kQuarter - 1e-6))));
   for (int v = 0; v < kViews; ++v) {
     const double sent = (*share_)[static_cast<size_t>(v)].of(row.facet);
     // Smooth faces lose at grazing views alone, less than is worth a component: counted as if their lobe sent it on.
     row.hemispherical.push_back(mostLost_ > kWorthBeneath || lost_[static_cast<size_t>(v)] >= 1.0 ? sent : sent / (1.0 - lost_[static_cast<size_t>(v)]));
-    atViews.push_back(byAngle(row.facet, angleAt(v, kViews)));
   }
-  // What facets send on to other facets: as much as they lose, reflected once more at least. Source: Kulla and Conty, SIGGRAPH courses 2017.
-  double again = 0.0;
+  // What facets send on to other facets, reflected once more: two of them share the turn of one, so each meets light halfway between that one's angle and
+  // grazing. (A face of reflectance exp(-c x elevation), as water's is where it grazes, returns as much by two as by one.) Held against rays traced over
+  // seas (tests/physics/test_sea_emissivity.cpp). As a lobe it is a product of both directions: Kulla and Conty, SIGGRAPH courses 2017.
   if (mostLost_ > kWorthBeneath) {
-    const double mean = cosineMean(atViews), kept = 1.0 - mostLost_;
-    again = mean * mean * kept / (1.0 - mean * mostLost_);
-    row.again = again / (kPi * mostLost_);
+    std::vector<double> twice;
+    for (int j = 0; j < facetAngles_; ++j) {
+      const double each = byAngle(row.facet, 0.5 * (kQuarter + angleAt(j, facetAngles_)));
+      twice.push_back(each * each);
+    }
+    for (size_t k = 0; k < lost_.size(); ++k) row.returned.push_back(lost_[k] < 1.0 ? lost_[k] * (*share_)[k].of(twice) / (1.0 - lost_[k]) : lost_[k]);
+    const double mean = cosineMean(row.returned);
+    row.again = mean > 0.0 ? 1.0 / (kPi * mean) : 0.0;
   }
   for (int v = 0; v < kViews; ++v) {
     const auto k = static_cast<size_t>(v);
-    row.beneath.push_back(again * lost_[k]);
+    row.beneath.push_back(row.returned.empty() ? 0.0 : row.returned[k]);
     row.through.push_back(passed[k] * std::max(0.0, 1.0 - row.hemispherical[k] - row.beneath[k]));
   }
   if (spec_.paneThickness_um) row.transmitted = row.through;
@@ -287,7 +288,8 @@ void FacetOptics::addTo(Fingerprint& f) const {
       .add(static_cast<int>(spec_.slopes))
       .add(spec_.pigmentApparent)
       .add(spec_.paneThickness_um.value_or(-1.0))
-      .add(spec_.pigment.has_value());
+      .add(spec_.pigment.has_value())
+      .add(spec_.share);
   if (spec_.pigment) pitviper::addTo(f, *spec_.pigment);
 }
 

@@ -34,6 +34,7 @@ struct FacetSpec {
   bool pigmentApparent = false;            ///< the albedo is that of what comes out per what goes in, inner reflections and all
   std::optional<double> paneThickness_um;  ///< light goes through to another face
   std::vector<FilmSpec> back;              ///< on that face, from the pane outwards
+  double share = 1.0;                      ///< of the face that is facets; the rest is components of its own
 };
 
 /// Everything at one wavelength: by equally spaced angles from 0 to 90 degrees.
@@ -43,7 +44,8 @@ struct FacetRow {
   std::vector<double> beneath;        ///< of what they lose among themselves and of what scatters beneath, by view angle
   std::vector<double> through;        ///< what gets past the facets, by view angle; where nothing is absorbed, all that does not come back
   std::vector<double> transmitted;    ///< through a pane, by view angle
-  double again = 0.0;                 ///< f of light that several facets return = again x lost(in) lost(out) [1/sr]
+  std::vector<double> returned;       ///< by way of several facets, by view angle; empty: hardly anything
+  double again = 0.0;                 ///< f of light that several facets return = again x returned(in) returned(out) [1/sr]
   double scattered = 0.0;             ///< f of what scatters beneath = scattered x through(in) through(out) [1/sr]
 };
 

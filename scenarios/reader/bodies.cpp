@@ -13,6 +13,7 @@
 #include "sim/scene/mesh_tools.hpp"
 #include "sim/scene/placement.hpp"
 #include "sim/scene/primitives.hpp"
+#include "sim/scene/sea_surface.hpp"
 
 namespace pitviper {
 
@@ -89,6 +90,18 @@ const std::map<std::string, ShapeModel>& shapeModels() {
       {"jet", {{}, {}, [](const Record&) { return makeJet(); }}},
       {"missile", {{}, {}, [](const Record&) { return makeMissile(); }}},
       {"terrain", {{"size"}, {"relief", "columns", "terrain_seed", "height_map"}}},
+      {"sea",
+       {{"size", "wind"},
+        {"wind_to", "points", "sea_seed", "time"},
+        [](const Record& r) {
+          SeaPatch sea;
+          sea.size_m = r.number("size");
+          if (!(sea.size_m >= 0.01 && sea.size_m <= 1e5))
+            throw UserError(r.where("size"), "'size' of a sea is " + r.value("size").text.substr(0, 40), "0.01 m to 100 km",
+                            "make it smaller and put `ground` beyond");
+          r.fill(sea);
+          return makeSea(sea).mesh;
+        }}},
       {"ground", {{}, {"extent", "tile"}}},
       {"mesh", {{"file", "unit"}, {"forward", "up"}}}};
   return all;
@@ -150,6 +163,8 @@ std::shared_ptr<const Mesh> Builder::readShape(const Value& value, BodyForm& for
   const std::string model = r.text("model");
   const ShapeModel& shape = shapeModels().at(model);
   refuseForeignKeys(r, model, shape);
+  if (const auto points = r.integer("points"); model == "sea" && (points & (points - 1)) != 0)
+    throw UserError(r.where("points"), "'points' is " + std::to_string(points), "a power of two, 4 to 2048", "write 'points: 256'");
   form = formOf(r, model);
   auto mesh = std::make_shared<Mesh>();
   if (shape.make) *mesh = shape.make(r);

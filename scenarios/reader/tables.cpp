@@ -16,6 +16,7 @@
 #include "sim/parameters/time_course.hpp"
 #include "sim/scene/placement.hpp"
 #include "sim/scene/primitives.hpp"
+#include "sim/scene/sea_surface.hpp"
 #include "sim/stream/command_models.hpp"
 #include "sim/stream/sink_models.hpp"
 
@@ -409,7 +410,7 @@ const ParameterTable& shape() {
   static const ParameterTable t{
       "shape",
       "",
-      {required(choice("model", {"plate", "box", "disc", "sphere", "ellipsoid", "cylinder", "cone", "terrain", "ground", "jet", "missile", "mesh"},
+      {required(choice("model", {"plate", "box", "disc", "sphere", "ellipsoid", "cylinder", "cone", "terrain", "sea", "ground", "jet", "missile", "mesh"},
                        "kind; body axes x forward, y left, z up; see the table of shapes")),
        within(number("width", "m", "plate, box, ellipsoid: along y"), 1e-6, 1e7),
        within(number("height", "m", "plate, box, ellipsoid: along z"), 1e-6, 1e7),
@@ -419,11 +420,21 @@ const ParameterTable& shape() {
        withDefault(integer("segments", "disc, sphere, ellipsoid, cylinder, cone: around", 8, 2048), "64"),
        withDefault(boolean("capped", "cylinder, cone"), "true"),
        withDefault(choice("fit", {"inscribed", "equal_area"}, "sphere: vertices on it, or the same projected area"), "equal_area"),
-       within(number("size", "m", "terrain: side of the square", &TerrainShape::size_m), 1e-3, 1e6),
+       within(number("size", "m", "terrain, sea (at most 100 km): side of the square", &TerrainShape::size_m), 1e-3, 1e6),
        within(number("relief", "m", "terrain: height range", &TerrainShape::relief_m), 0, 1e4),
        withDefault(integer("columns", "terrain: cells along a side", 1, 1024, &TerrainShape::columns), "128"),
        withDefault(integer("terrain_seed", "terrain", 0, 1000000000, &TerrainShape::seed), "1"),
        map("height_map", "terrain: a texture of heights instead of noise"),
+       within(number("wind", "m/s", "sea: 10 m above it", &SeaPatch::wind_m_s), 0, 40),
+       within(number("wind_to", "rad", "sea: where the wind blows to, from x towards y; along x unless given", &SeaPatch::windTo_rad), -2 * kHalfTurn,
+              2 * kHalfTurn),
+       withDefault(integer("points",
+                           "sea: along a side, a power of two; waves from twice their distance on are drawn, shorter ones are the material's "
+                           "(`reflection: sea` with `step`: that distance)",
+                           4, 2048, &SeaPatch::points),
+                   "256"),
+       withDefault(integer("sea_seed", "sea", 0, 1000000000, &SeaPatch::seed), "1"),
+       within(number("time", "s", "sea: at which its waves stand; 0 s unless given", &SeaPatch::time_s), -1e6, 1e6),
        within(number("extent", "m", "ground: how far it reaches from its position; 400 km unless given, the horizon from 12.5 km up"), 1, 1e6),
        within(number("tile", "m",
                      "ground: length over which u and v grow by 1 (a texture with `edges: repeat` begins anew); unless given they go from 0 to 1 "

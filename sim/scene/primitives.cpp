@@ -69,8 +69,9 @@ void addCap(Mesh& mesh, double radius_m, double x_m, int segments, double facing
 
 /// Hash of (seed, octave, lattice point): the SplitMix64 finaliser (Steele, Lea, Flood 2014) over the counters.
 std::uint64_t latticeHash(std::uint64_t seed, int octave, long long i, long long j) {
-  std::uint64_t h = seed;
-  for (const std::uint64_t counter : {static_cast<std::uint64_t>(octave), static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)}) {
+  std::uint64_t h = 0;
+  // The seed by itself: added to the octave, neighbouring seeds would have octaves in common.
+  for (const std::uint64_t counter : {seed, static_cast<std::uint64_t>(octave), static_cast<std::uint64_t>(i), static_cast<std::uint64_t>(j)}) {
     h += counter + 0x9e3779b97f4a7c15u;
     h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
     h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
