@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "sim/camera/camera_renderer.hpp"
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
@@ -82,6 +83,29 @@ TEST(SeaEmissivity, DrawnSlopesAreLeftOut) {
   EXPECT_LT(emissivity(*calm, 4.0, 85.0), emissivity(*fine, 4.0, 85.0));
   EXPECT_LT(emissivity(*fine, 4.0, 85.0), emissivity(*coarse, 4.0, 85.0));
   EXPECT_LT(emissivity(*coarse, 4.0, 85.0), emissivity(*far, 4.0, 85.0));
+}
+
+// Waves drawn one by one, with facets of the rest, and facets alone: from above the same on the whole.
+TEST(SeaEmissivity, DrawnWavesAreTheSameSea) {
+  const auto meanOf = [](const std::string& surface) {
+    const Frame frame =
+        renderFrame(scene("atmosphere: none\nambient: {temperature: 220 K}\naccuracy: reference\n" + surface +
+                          "cameras: [{name: e, film: {width: 60, height: 40}, field_of_view: 40 deg, aperture: 5 mm, position: [-60 m, 0 m, 100 m], "
+                          "heading: 90 deg, pitch: -60 deg, samples: 3, channels: [{name: v, response: {band: [10.9 um, 11.1 um]}, output: radiance}]}]\n"));
+    double sum = 0.0, squares = 0.0;
+    for (float v : frame.layers[0].pixels) sum += static_cast<double>(v), squares += static_cast<double>(v) * static_cast<double>(v);
+    const double count = static_cast<double>(frame.layers[0].pixels.size()), mean = sum / count;
+    return std::pair(mean, std::sqrt(std::max(squares / count - mean * mean, 0.0)) / mean);
+  };
+  const std::string body =
+                        "entities: [{name: s, shape: {model: sea, size: 400 m, wind: 10 m/s, points: 256}, material: {description: x, source: x, components: "
+                        "[{reflection: sea, wind: 10 m/s, foam: 0, step: 1.5625 m}]}, temperature: 290 K}]\n",
+                    even = "ground: {material: {description: x, source: x, components: [{reflection: sea, wind: 10 m/s, foam: 0}]}, temperature: 290 K}\n";
+  const auto [drawn, clutter] = meanOf(body);
+  const auto [facets, none] = meanOf(even);
+  figure("mean radiance of a drawn sea from above [W/(m2 sr)]", drawn, facets, 3e-3, "facets alone, of the same slopes");
+  std::printf("clutter of drawn waves %.2g of the mean, of facets %.2g\n", clutter, none);
+  EXPECT_GT(clutter, 1.2 * none);
 }
 
 }  // namespace
