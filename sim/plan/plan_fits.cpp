@@ -23,6 +23,14 @@ constexpr double kHopeless = 0.9;
 /// At shorter wavelengths the air and the textures of usual scenes send no thermal light to speak of.
 constexpr double kThermal_um = 1.2;
 
+/// Of a cloud's extinction in a group, over its mean.
+constexpr double kLeastShare = 0.25, kMostShare = 4.0;
+
+bool isShell(const Simulation& sim, size_t amount) {
+  const auto shells = sim.air ? sim.air->shells() : std::span<const AirShell>();
+  return std::any_of(shells.begin(), shells.end(), [&](const AirShell& s) { return static_cast<size_t>(s.amount) == amount; });
+}
+
 /// A group of a channel's fine wavelengths as a node of the scene.
 SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const SpectralGroup& group) {
   const FineGrid& grid = fit.grid();
@@ -48,8 +56,12 @@ SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const Spectral
     if (node.air.haze[k] > 0.0) node.air.asymmetry[k] /= node.air.haze[k];
   for (size_t a = 0; a < fit.absorbers().size(); ++a) {
     const auto k = static_cast<size_t>(fit.absorbers()[a]);
-    if (k < kMostAirAmounts) node.air.extinction[k] = group.extinction[a];
-    else node.absorption_per_m[k - kMostAirAmounts] = group.extinction[a];
+    if (k < kMostAirAmounts) {
+      // Of a cloud that nothing is seen through a fit may say anything of its extinction; what it sends goes by its albedo.
+      const double mean = node.air.extinction[k];
+      if (isShell(sim, k) && mean > 0.0) node.air.haze[k] *= std::clamp(group.extinction[a] / mean, kLeastShare, kMostShare);
+      node.air.extinction[k] = group.extinction[a];
+    } else node.absorption_per_m[k - kMostAirAmounts] = group.extinction[a];
   }
   return node;
 }

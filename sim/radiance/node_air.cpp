@@ -173,9 +173,10 @@ NodeRadiance NodeAir::along(const SunlitAir& air, SameWay* way) const {
   if (turns) sized(out.again, nodes, stations);
   Eigen::Map<Eigen::ArrayXXd> molecules(out.molecules.data(), sunlit ? nodes : 0, sunlit ? stations : 0),
       haze(out.haze.data(), sunlit ? nodes : 0, sunlit ? stations : 0), byHaze(out.again.data(), turns ? nodes : 0, turns ? stations : 0);
-  const double perPhase = 1.0 / physics::rayleighPhase(air.cosScatter);
+  // Rows of tables may lie beyond the sun's own azimuth, where angles have no cosine.
+  const double cosScatter = std::clamp(air.cosScatter, -1.0, 1.0), perPhase = 1.0 / physics::rayleighPhase(cosScatter);
   Eigen::ArrayXd hazePhase(turns ? nodes : 0);
-  for (Eigen::Index i = 0; i < hazePhase.size(); ++i) hazePhase[i] = hazeAgainPhase(air.cosScatter, t.nodes[static_cast<size_t>(i)].air.meanAsymmetry);
+  for (Eigen::Index i = 0; i < hazePhase.size(); ++i) hazePhase[i] = hazeAgainPhase(cosScatter, t.nodes[static_cast<size_t>(i)].air.meanAsymmetry);
   Eigen::ArrayXd seen, before, source, d = depth.col(0), left, lost(nodes), share, from, to;  // with room of their own for all steps
   leave(d, seen);
   if (!isKnown) t.planck(air.stations[0].temperature_K, before), before += t.source;
@@ -235,8 +236,8 @@ NodeRadiance NodeAir::along(const SunlitAir& air, SameWay* way) const {
     Coefficients turned = t.haze;
     for (Eigen::Index i = 0; i < nodes; ++i) {
       const AirNode& n = t.nodes[static_cast<size_t>(i)].air;
-      const double mean = physics::henyeyGreensteinPhase(air.cosScatter, n.meanAsymmetry);
-      for (const Eigen::Index k : t.apart) turned.of(i, k) *= physics::henyeyGreensteinPhase(air.cosScatter, n.asymmetry[static_cast<size_t>(k)]) / mean;
+      const double mean = physics::henyeyGreensteinPhase(cosScatter, n.meanAsymmetry);
+      for (const Eigen::Index k : t.apart) turned.of(i, k) *= physics::henyeyGreensteinPhase(cosScatter, n.asymmetry[static_cast<size_t>(k)]) / mean;
     }
     weigh(turned, air.powered, large);
   }

@@ -233,7 +233,7 @@ std::vector<Bad> badAir() {
       {"CloudUpsideDown",
        airScene("{library: hazy_us76, clouds: [{type: stratus, base: 900 m, top: @@700 m}]}"),
        {"a cloud from 900 m to 700 m", "raise the top or lower the base"}},
-      {"CloudOfAnotherName", airScene("{library: hazy_us76, clouds: [{type: @@stratos}]}"), {"did you mean 'stratus'"}},
+      {"CloudOfAnotherName", airScene("{library: hazy_us76, clouds: [{type: @@stratos}]}"), {"write 'stratus'"}},
       {"FiveKindsOfClouds",
        airScene("{library: hazy_us76, clouds: [{type: stratus, radius: 5 um}, {type: stratus, radius: 6 um}, {type: stratus, radius: 7 um}, {type: stratus, "
                 "radius: 8 um}, @@{type: stratus, radius: 9 um}]}"),
