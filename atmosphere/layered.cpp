@@ -265,7 +265,7 @@ AbsorberTable readAirTable(const AirRecord& air) {
   for (const char* key : {"particle_radius", "particle_deviation", "particle_n", "particle_k"})
     needs(key, aerosol == kParticles, "'aerosol: particles' beside it");
   needs("wind", isNamed && goesByWind(aerosol), "'aerosol: desert' beside it");
-  for (const char* key : {"haze_top", "visibility"}) needs(key, aerosol != "none", "an aerosol");
+  needs("haze_top", aerosol != "none", "an aerosol");
   needs("temperature", !r.given("surface_temperature") && !r.given("sounding"), "a temperature that is the same everywhere, or one by height");
   if (r.given("visibility") && r.number("visibility") < kThickestHaze_m && !isFog(aerosol) && aerosol != kParticles)
     throw UserError(r.where("visibility"), "'visibility' is " + std::to_string(static_cast<int>(r.number("visibility"))) + " m, and the aerosol is no fog",

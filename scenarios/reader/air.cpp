@@ -80,6 +80,9 @@ void Builder::readAtmosphere(const Record& scenario) {
   const ParameterTable all = anyAirTable();
   const Record r(air, all);
   const bool none = r.text("model") == "none";
+  // Of a library air the visibility stands there whether its haze is taken or not.
+  if (const Value* aerosol = air.find("aerosol"); aerosol && aerosol->text == "none" && air.find("visibility"))
+    throw UserError(air.find("visibility")->where, "'visibility' has no say here: there is no aerosol", "an aerosol", "remove 'visibility' or 'aerosol: none'");
   refuseMissingTable(air, base_, libraries_.atmosphere);
   if (r.given("library") && !none) {
     if (const auto own = marksOf(air); !own.empty())

@@ -8,7 +8,8 @@
 // In azimuth I = sum of I_m cos(m phi); over mu by Gauss points of each hemisphere; forward peaks beyond the last moment are taken as not scattered (delta-M).
 // Source: van de Hulst 1980, Multiple Light Scattering, chapter 4; Wiscombe 1976, J. Quant. Spectrosc. Radiat. Transfer 16, 637 (first thin layer: diamond);
 //   Wiscombe 1977, J. Atmos. Sci. 34, 1408 (delta-M); Stamnes, Tsay, Wiscombe and Jayaweera 1988, Appl. Opt. 27, 2502 (azimuth, double Gauss).
-// Valid: layers that do not end sideways. Scalar: without polarisation, by which skies of molecules differ up to 11 % sent back and 17 % let through (Natraj, Li and Yung 2009, depth 1).
+// Valid: layers that do not end sideways. Scalar: without polarisation, by which skies of molecules differ up to 11 % sent back and 17 % let through (depth 1;
+//   Natraj, Li and Yung 2009).
 // Errors: against published tables and closed forms in tests/unit/test_adding_doubling.cpp; the same tests say what streams and azimuths lose.
 #include <span>
 #include <vector>

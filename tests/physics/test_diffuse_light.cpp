@@ -253,14 +253,15 @@ TEST(DiffuseLight, IsWhatWalksAlongTheWholeLineFind) {
     for (double pitch : {10.0, 35.0, 89.0}) {
       const Simulation sim = scene(std::string("atmosphere: ") + air +
                                    "\nsun: {azimuth: 0 deg, elevation: 35 deg, temperature: 5772 K}\ncameras: [{name: e, film: {width: 3, height: 3}, " +
-                                   "field_of_view: 0.1 deg, aperture: 5 mm, position: [0 m, 0 m, 10 m], heading: 0 deg, pitch: " + print("%g", pitch) +
+                                   "field_of_view: 0.1 deg, aperture: 5 mm, position: [0 m, 0 m, 10 m], heading: 3 deg, pitch: " + print("%g", pitch) +
                                    " deg, channels: [{name: b, response: {band: [0.449 um, 0.451 um]}, output: radiance_per_um}, "
                                    "{name: r, response: {band: [0.649 um, 0.651 um]}, output: radiance_per_um}]}]\n");
       const Frame frame = renderFrame(sim);
       for (const auto& [um, number] : {std::pair{0.45, size_t{0}}, {0.65, size_t{1}}}) {
         const PhotonWalk walk = layersOf(sim, um);
-        const double up = pitch * kPi / 180.0, height = 10.0;
-        const glm::dvec3 direction(std::cos(up), 0.0, std::sin(up));
+        // Beside the sun's disc.
+        const double up = pitch * kPi / 180.0, aside = 3.0 * kPi / 180.0, height = 10.0;
+        const glm::dvec3 direction(std::cos(up) * std::cos(aside), std::cos(up) * std::sin(aside), std::sin(up));
         const double above = sim.air->opticalDepth(sim.air->node(um), sim.air->amounts({height, 1.0, sim.frame.earthRadius_m()}, physics::kFar));
         const double found = radianceOf(walk, above, direction, 60000) * sim.sun->irradiance(um), drawn = at(frame.layers[number], frame, 1, 1);
         std::printf("%s at %g deg, %g um: drawn %.4g, photons %.4g, %+.2f %%\n", air, pitch, um, drawn, found, 100.0 * (drawn / found - 1.0));
