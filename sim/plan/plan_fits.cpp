@@ -37,23 +37,34 @@ SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const Spectral
   SpectralNode node;
   node.absorption_per_m.assign(sim.materials.size(), 0.0);
   double turned = 0.0, scattered = 0.0;
+  const bool hasClouds = sim.air && !sim.air->shells().empty();
+  std::vector<AirNode> members;
   // What is scattered is averaged, not fitted: which absorber a fit puts extinction on is of no matter to transmittance, but would be here.
   for (const auto& [index, share] : group.members) {
     const AirNode& air = grid.air[static_cast<size_t>(index)];
     node.members.push_back({grid.wavelength_um[static_cast<size_t>(index)], share});
+    if (hasClouds) members.push_back(air);
     node.air.source += share * air.source;
     for (size_t k = 0; k < kMostAirAmounts; ++k) {
       node.air.molecules[k] += share * air.molecules[k];
       node.air.haze[k] += share * air.haze[k];
       node.air.extinction[k] += share * air.extinction[k];  // of what is not fitted
-      node.air.asymmetry[k] += share * air.haze[k] * air.asymmetry[k];
       turned += share * air.haze[k] * air.meanAsymmetry;
       scattered += share * air.haze[k];
     }
   }
   node.air.meanAsymmetry = scattered > 0.0 ? turned / scattered : 0.0;
-  for (size_t k = 0; k < kMostAirAmounts; ++k)
-    if (node.air.haze[k] > 0.0) node.air.asymmetry[k] /= node.air.haze[k];
+  node.air.asymmetry.fill(node.air.meanAsymmetry);
+  // Absorbers of a kind keep one asymmetry in common; without clouds there is one kind.
+  for (const auto& kind : hasClouds ? particleKinds(members) : ParticleKinds()) {
+    double byKind = 0.0, ofKind = 0.0;
+    for (const auto& [index, share] : group.members)
+      for (size_t k : kind) {
+        const AirNode& air = grid.air[static_cast<size_t>(index)];
+        byKind += share * air.haze[k] * air.asymmetry[k], ofKind += share * air.haze[k];
+      }
+    for (size_t k : kind) node.air.asymmetry[k] = ofKind > 0.0 ? byKind / ofKind : node.air.meanAsymmetry;
+  }
   for (size_t a = 0; a < fit.absorbers().size(); ++a) {
     const auto k = static_cast<size_t>(fit.absorbers()[a]);
     if (k < kMostAirAmounts) {

@@ -228,18 +228,21 @@ NodeRadiance NodeAir::along(const SunlitAir& air, SameWay* way) const {
   Eigen::ArrayXd nearest, reaching, once = Eigen::ArrayXd::Zero(nodes);
   share.resize(nodes);
   weigh(t.extinction, air.both, both);
-  Eigen::ArrayXXd small(nodes, stations), large(nodes, stations);  // scattered by molecules and by particles
-  weigh(t.molecules, air.powered, small);
-  if (t.apart.empty()) {
-    weigh(t.haze, air.powered, large);
-  } else {
+  // Scattered by molecules and by particles: known where light scattered again is told and particles are alike.
+  const bool isTold = again && again->depths.size() == 2 && t.apart.empty();
+  Eigen::ArrayXXd ownSmall, ownLarge;
+  const Eigen::ArrayXXd &small = isTold ? again->depths[0] : ownSmall, &large = isTold ? again->depths[1] : ownLarge;
+  if (!isTold) ownSmall.resize(nodes, stations), weigh(t.molecules, air.powered, ownSmall), ownLarge.resize(nodes, stations);
+  if (!isTold && t.apart.empty()) {
+    weigh(t.haze, air.powered, ownLarge);
+  } else if (!isTold) {
     Coefficients turned = t.haze;
     for (Eigen::Index i = 0; i < nodes; ++i) {
       const AirNode& n = t.nodes[static_cast<size_t>(i)].air;
       const double mean = physics::henyeyGreensteinPhase(cosScatter, n.meanAsymmetry);
       for (const Eigen::Index k : t.apart) turned.of(i, k) *= physics::henyeyGreensteinPhase(cosScatter, n.asymmetry[static_cast<size_t>(k)]) / mean;
     }
-    weigh(turned, air.powered, large);
+    weigh(turned, air.powered, ownLarge);
   }
   for (Eigen::Index s = 1; s < stations; ++s) {
     haze.col(s) = haze.col(s - 1);
