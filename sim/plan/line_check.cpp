@@ -164,8 +164,8 @@ int airPlacesFor(const Simulation& sim, const NodesOfPlan& fine, SightRays& rays
   return kTried[std::size(kTried) - 1];
 }
 
-HeldLines::HeldLines(const Simulation& simulation, const NodesOfPlan& fine, std::vector<SightRay> lines, int places, const std::vector<double>& floor)
-    : sim_(simulation), fine_(fine), lines_(std::move(lines)), places_(places), floor_(floor) {}
+HeldLines::HeldLines(const Simulation& simulation, const NodesOfPlan& fine, std::vector<SightRay> lines, int places, std::vector<double> floor)
+    : sim_(simulation), fine_(fine), lines_(std::move(lines)), places_(places), floor_(std::move(floor)) {}
 
 std::vector<LineFigures> HeldLines::check(const NodesOfPlan& of) {
   const Plan &fine = fine_.plan, &plan = of.plan;

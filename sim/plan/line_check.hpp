@@ -42,9 +42,9 @@ int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRay
 /// them or by node.
 class HeldLines {
  public:
-  /// All but the lines must outlive it. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: filmFloors(). `places`: at which the air is
+  /// Simulation and `fine` must outlive it. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: filmFloors(). `places`: at which the air is
   /// looked at, alike on both sides, so that only wavelengths differ.
-  HeldLines(const Simulation& simulation, const NodesOfPlan& fine, std::vector<SightRay> lines, int places, const std::vector<double>& floor);
+  HeldLines(const Simulation& simulation, const NodesOfPlan& fine, std::vector<SightRay> lines, int places, std::vector<double> floor);
   const std::vector<SightRay>& lines() const { return lines_; }
   /// One per slot.
   std::vector<LineFigures> check(const NodesOfPlan& plan);
@@ -54,7 +54,7 @@ class HeldLines {
   const NodesOfPlan& fine_;
   std::vector<SightRay> lines_;
   int places_;
-  const std::vector<double>& floor_;
+  std::vector<double> floor_;
   std::vector<std::vector<double>> exact_;  ///< [line][slot]; empty: not told yet
 };
 

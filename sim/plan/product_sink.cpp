@@ -18,7 +18,7 @@ constexpr double kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
 /// Temperatures of hot gases are rounded to steps of this ratio: what is fitted to one holds for its neighbours.
 constexpr double kHotStep = 0.02;
 /// Parts of a way through air that light scattered again is told of, and what of a part is not worth telling.
-constexpr double kAgainParts = 4.0, kLittle = 1e-3;
+constexpr double kAgainParts = 8.0, kLittle = 1e-3;
 /// Behind so much nothing is seen.
 constexpr double kOpaque = 100.0;
 /// Directions of light from all around are rounded: steps in half a turn.
