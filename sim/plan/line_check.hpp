@@ -42,8 +42,8 @@ int airPlacesFor(const Simulation& simulation, const NodesOfPlan& fine, SightRay
 /// them or by node.
 class HeldLines {
  public:
-  /// Simulation and `fine` must outlive it. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: filmFloors(). `places`: at which the air is
-  /// looked at, alike on both sides, so that only wavelengths differ.
+  /// Simulation and `fine` must outlive it. `fine`: makePlan() with reference sampling, of the same outputs. `floor`: filmFloors(). `places`: at which the air
+  /// is looked at, alike on both sides, so that only wavelengths differ.
   HeldLines(const Simulation& simulation, const NodesOfPlan& fine, std::vector<SightRay> lines, int places, std::vector<double> floor);
   const std::vector<SightRay>& lines() const { return lines_; }
   /// One per slot.
