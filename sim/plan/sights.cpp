@@ -56,6 +56,11 @@ std::vector<Slab> inParts(const std::vector<Slab>& all) {
       m.gain += share * (s.gain - m.gain);
       m.sun += share * (s.sun - m.sun);
       m.sunAmount += share * (s.sunAmount - m.sunAmount);
+      if (m.cloud && s.cloud) {
+        const auto mix = [share](auto& mean, const auto& other) { mean += share * (other - mean); };
+        mix(m.cloud->depth, s.cloud->depth), mix(m.cloud->sun, s.cloud->sun), mix(m.cloud->sunSlope, s.cloud->sunSlope);
+        mix(m.cloud->around, s.cloud->around), mix(m.cloud->aroundSlope, s.cloud->aroundSlope), mix(m.cloud->across, s.cloud->across);
+      }
     }
   }
   return some;

@@ -1,0 +1,63 @@
+#include "sim/radiance/cloud_lights.hpp"
+
+#include "sim/model/surroundings.hpp"
+#include "sim/radiometry/constants.hpp"
+
+namespace pitviper {
+
+CloudLights::CloudLights(const Simulation& simulation, const FieldBody& field)
+    : simulation_(simulation), drops_(*field.source->droplets()), material_(field.gases.front().levels.front().material) {
+  if (!simulation.surroundings) return;
+  const DirectionGrid& grid = simulation.surroundings->grids().front();
+  shares_.assign(grid.size(), glm::dvec2(0.0));
+  glm::dvec2 all(0.0);
+  for (const DirectionGrid::Sample& s : grid.samples(2)) {
+    const int side = s.direction.z >= 0.0 ? 0 : 1;
+    all[side] += s.solidAngle;
+    for (std::size_t k = 0; k < s.reading.at.size(); ++k) shares_[s.reading.at[k]][side] += s.solidAngle * s.reading.weight[k];
+  }
+  for (glm::dvec2& s : shares_) s /= all;
+}
+
+glm::dvec2 CloudLights::around(double wavelength_um) const {
+  if (!simulation_.surroundings) return glm::dvec2(simulation_.ambient ? (*simulation_.ambient)(wavelength_um) : 0.0);
+  const Surroundings::Place place = simulation_.surroundings->placeAt(drops_.height_m);
+  const auto mean = [&](std::size_t height) {
+    const std::vector<float>& radiance = simulation_.surroundings->light(wavelength_um, height).radiance;
+    glm::dvec2 sum(0.0);
+    for (std::size_t k = 0; k < shares_.size(); ++k) sum += static_cast<double>(radiance[k]) * shares_[k];
+    return sum;
+  };
+  const glm::dvec2 low = mean(place.height);
+  return place.share > 0.0 ? low + place.share * (mean(place.height + 1) - low) : low;
+}
+
+CloudLight CloudLights::at(double wavelength_um) const {
+  const glm::dvec2 both = around(wavelength_um);
+  const Medium& medium = *simulation_.materials[static_cast<std::size_t>(material_)]->medium;
+  return {physics::cloudOptics(medium.absorption_per_m(wavelength_um), drops_.albedo(wavelength_um), drops_.asymmetry(wavelength_um)),
+          simulation_.sun ? simulation_.sun->irradiance(wavelength_um) : 0.0, both.x, both.y};
+}
+
+std::vector<CloudLight> CloudLights::of(std::span<const SpectralNode> nodes) const {
+  if (simulation_.surroundings) {
+    std::vector<double> all;
+    for (const SpectralNode& n : nodes)
+      for (const SpectralNode::Member& m : n.members) all.push_back(m.wavelength_um);
+    std::sort(all.begin(), all.end());
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    const Surroundings::Place place = simulation_.surroundings->placeAt(drops_.height_m);
+    simulation_.surroundings->prepare(all, place.height);
+    if (place.share > 0.0) simulation_.surroundings->prepare(all, place.height + 1);
+  }
+  std::vector<CloudLight> lights;
+  lights.reserve(nodes.size());
+  for (const SpectralNode& n : nodes) {
+    const glm::dvec2 both = n.mean([&](double w) { return around(w); });
+    lights.push_back({physics::cloudOptics(n.absorption_per_m[static_cast<std::size_t>(material_)], n.mean(drops_.albedo), n.mean(drops_.asymmetry)),
+                      simulation_.sun ? n.mean([&](double w) { return simulation_.sun->irradiance(w); }) : 0.0, both.x, both.y});
+  }
+  return lights;
+}
+
+}  // namespace pitviper
