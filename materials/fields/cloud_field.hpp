@@ -5,6 +5,7 @@
 
 #include "materials/fields/cumulus.hpp"
 #include "sim/model/field.hpp"
+#include "sim/model/medium.hpp"
 
 namespace pitviper {
 

@@ -1,7 +1,8 @@
 #include "sim/radiance/cloud_lights.hpp"
 
+#include <algorithm>
+
 #include "sim/model/surroundings.hpp"
-#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 
@@ -32,24 +33,27 @@ glm::dvec2 CloudLights::around(double wavelength_um) const {
   return place.share > 0.0 ? low + place.share * (mean(place.height + 1) - low) : low;
 }
 
-CloudLight CloudLights::at(double wavelength_um) const {
-  const glm::dvec2 both = around(wavelength_um);
+CloudLight CloudLights::at(double wavelength_um, bool withAround) const {
+  const glm::dvec2 both = withAround ? around(wavelength_um) : glm::dvec2(0.0);
   const Medium& medium = *simulation_.materials[static_cast<std::size_t>(material_)]->medium;
   return {physics::cloudOptics(medium.absorption_per_m(wavelength_um), drops_.albedo(wavelength_um), drops_.asymmetry(wavelength_um)),
           simulation_.sun ? simulation_.sun->irradiance(wavelength_um) : 0.0, both.x, both.y};
 }
 
+void CloudLights::prepare(std::vector<double> wavelengths_um) const {
+  if (!simulation_.surroundings) return;
+  std::sort(wavelengths_um.begin(), wavelengths_um.end());
+  wavelengths_um.erase(std::unique(wavelengths_um.begin(), wavelengths_um.end()), wavelengths_um.end());
+  const Surroundings::Place place = simulation_.surroundings->placeAt(drops_.height_m);
+  simulation_.surroundings->prepare(wavelengths_um, place.height);
+  if (place.share > 0.0) simulation_.surroundings->prepare(wavelengths_um, place.height + 1);
+}
+
 std::vector<CloudLight> CloudLights::of(std::span<const SpectralNode> nodes) const {
-  if (simulation_.surroundings) {
-    std::vector<double> all;
-    for (const SpectralNode& n : nodes)
-      for (const SpectralNode::Member& m : n.members) all.push_back(m.wavelength_um);
-    std::sort(all.begin(), all.end());
-    all.erase(std::unique(all.begin(), all.end()), all.end());
-    const Surroundings::Place place = simulation_.surroundings->placeAt(drops_.height_m);
-    simulation_.surroundings->prepare(all, place.height);
-    if (place.share > 0.0) simulation_.surroundings->prepare(all, place.height + 1);
-  }
+  std::vector<double> all;
+  for (const SpectralNode& n : nodes)
+    for (const SpectralNode::Member& m : n.members) all.push_back(m.wavelength_um);
+  prepare(std::move(all));
   std::vector<CloudLight> lights;
   lights.reserve(nodes.size());
   for (const SpectralNode& n : nodes) {

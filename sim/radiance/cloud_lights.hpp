@@ -20,7 +20,10 @@ class CloudLights {
  public:
   /// Of a field that has droplets(). Both must outlive it.
   CloudLights(const Simulation& simulation, const FieldBody& field);
-  CloudLight at(double wavelength_um) const;
+  /// `around`: with sky and ground, else these are 0.
+  CloudLight at(double wavelength_um, bool around = true) const;
+  /// What at() needs of the surroundings; of many wavelengths that costs less than one by one.
+  void prepare(std::vector<double> wavelengths_um) const;
   /// Each averaged by itself, as pictures have it.
   std::vector<CloudLight> of(std::span<const SpectralNode> nodes) const;
 
