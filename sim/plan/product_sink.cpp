@@ -19,8 +19,6 @@ constexpr double kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
 constexpr double kHotStep = 0.02;
 /// Parts of a way through air that light scattered again is told of, and what of a part is not worth telling.
 constexpr double kAgainParts = 4.0, kLittle = 1e-3;
-/// How far light reaches into drops is rounded: steps of the exponents and of the share of the sky.
-constexpr double kDropStep = 0.25;
 /// Behind so much nothing is seen.
 constexpr double kOpaque = 100.0;
 /// Directions of light from all around are rounded: steps in half a turn.
@@ -209,42 +207,22 @@ double ProductSink::strengthOf(int material) {
   return at->second = knots.empty() ? absorption(std::clamp(middle, absorption.validLow(), absorption.validHigh())) : sum / static_cast<double>(knots.size());
 }
 
-/// What drops send per scaled depth, as products: sunlight scattered again is linear, not exponential, in its four numbers; sunlight scattered once has the
-/// phase function of the drops themselves; no light flows. How far sky and ground reach goes in steps.
-std::vector<ProductSink::DropProduct> ProductSink::drops(const MediumInside& m, double cosine, double temperature_K) {
-  using Of = DropProduct::Of;
-  auto& lights = lights_[m.field];
+/// What drops send per scaled depth: of an irradiance of the sun, and the rest. Of each part of a line it is a spectrum of its own.
+std::array<int, 2> ProductSink::drops(const MediumInside& m, double cosine) {
+  auto& lights = book_.drops[m.field];
   if (!lights) lights = std::make_shared<const CloudLights>(sim_, sim_.fields[static_cast<size_t>(m.field)]);
-  const std::string name = "drops of " + std::to_string(m.field) + " ";
-  const physics::CloudStep& c = *m.cloud;
-  std::vector<DropProduct> all;
-  const auto put = [&](const std::string& called, double coefficient, Of of, auto f) {
-    const int spectrum = book_.spectrum(name + called, [l = lights, f, around = of == Of::Around](const FineGrid& g, size_t i) {
-      if (around && i == 0) l->prepare(g.wavelength_um);
-      return f(l->at(g.wavelength_um[i], around), g.wavelength_um[i]);
-    });
-    all.push_back({spectrum, coefficient, of});
+  const std::string name = "drops " + std::to_string(book_.spectra.size()) + " ";
+  const auto sent = [l = lights, step = *m.cloud, cosine, temperature_K = m.temperature_K](double w, bool sun) {
+    const CloudLight light = l->at(w, !sun);
+    const double black = sun ? 0.0 : physics::planckRadiance(w, temperature_K);
+    const auto both = physics::cloudSource(step, light.optics, light.above, light.below, black, cosine);
+    return sun ? light.sun * both.x : both.y;
   };
-  const auto stepped = [](double v) { return kDropStep * std::round(v / kDropStep); };
-  if (sim_.sun) {
-    for (int k = 0; k < 4; ++k)
-      put("sun " + std::to_string(k), std::exp(c.sun[k]), Of::Sun,
-          [k](const CloudLight& l, double) { return l.sun * l.optics.scaledAlbedo * l.optics.scaledAlbedo * l.optics.weight[k]; });
-    put("once " + std::to_string(cosine), 1.0, Of::Beam, [cosine](const CloudLight& l, double) {
-      return l.sun * l.optics.albedo / physics::cloudScale(l.optics.albedo, l.optics.asymmetry) * physics::henyeyGreensteinPhase(cosine, l.optics.asymmetry);
-    });
-  }
-  const double sky = stepped(c.around.y), ground = stepped(c.around.z), share = stepped(c.around.x);
-  put("above " + std::to_string(sky), c.around.x, Of::Around,
-      [sky](const CloudLight& l, double) { return l.above * l.optics.scaledAlbedo / std::cosh(sky * l.optics.coordinate); });
-  put("below " + std::to_string(ground), 1.0 - c.around.x, Of::Around,
-      [ground](const CloudLight& l, double) { return l.below * l.optics.scaledAlbedo / std::cosh(ground * l.optics.coordinate); });
-  put("own " + std::to_string(temperature_K) + " " + std::to_string(share) + " " + std::to_string(sky) + " " + std::to_string(ground), 1.0, Of::Around,
-      [=](const CloudLight& l, double w) {
-        const double reaches = share / std::cosh(sky * l.optics.coordinate) + (1.0 - share) / std::cosh(ground * l.optics.coordinate);
-        return physics::planckRadiance(w, temperature_K) * (1.0 - l.optics.scaledAlbedo * reaches);
-      });
-  return all;
+  return {book_.spectrum(name + "sun", [sent](const FineGrid& g, size_t i) { return sent(g.wavelength_um[i], true); }),
+          book_.spectrum(name + "rest", [sent, l = lights](const FineGrid& g, size_t i) {
+            if (i == 0) l->prepare(g.wavelength_um);
+            return sent(g.wavelength_um[i], false);
+          })};
 }
 
 void ProductSink::emissionOfMedia(const Segment& s) {
@@ -259,7 +237,7 @@ void ProductSink::emissionOfMedia(const Segment& s) {
       ProductTerm t;
       t.tag = static_cast<int>(TermKind::Media);
       t.spectrum[0] = spectrum, t.path = path, t.coefficient = sign * share;
-      if (share != 0.0) add(t);
+      if (share > 0.0) add(t);
     }
   };
   const int near = pathOf(middle, 0.0), far = pathOf(middle, 1.0);
@@ -276,14 +254,10 @@ void ProductSink::emissionOfMedia(const Segment& s) {
     }
     const double stepped_K = step_K_ * std::max(std::round(m.temperature_K / step_K_), 1.0);
     if (m.cloud) {
+      const auto [sun, rest] = drops(m, s.cosScatter);
       const AirAmounts& way = s.sunAir ? *s.sunAir : middle;
-      const std::pair before{m.material, m.cloud->depth.x};
-      const std::array<std::pair<int, int>, 2> sun{{{pathOf(way, 0.0), pathOf(way, 1.0)}, {pathOf(way, 0.0, before), pathOf(way, 1.0, before)}}};
-      for (const DropProduct& p : drops(m, kCosineStep * std::round(s.cosScatter / kCosineStep), stepped_K)) {
-        const double part = share * p.coefficient;
-        if (p.of == DropProduct::Of::Around) addSource(p.spectrum, part, near, far);
-        else if (m.sun > 0.0) addSource(p.spectrum, m.sun * part, sun[p.of == DropProduct::Of::Beam].first, sun[p.of == DropProduct::Of::Beam].second);
-      }
+      addSource(rest, share, near, far);
+      if (m.sun > 0.0) addSource(sun, share * m.sun, pathOf(way, 0.0), pathOf(way, 1.0));
       continue;
     }
     addSource(book_.spectrum(Factor::medium(*m.medium, stepped_K, 0.0), sim_), share, near, far);

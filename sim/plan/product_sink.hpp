@@ -3,10 +3,9 @@
 //
 // Simpler than the equation, alike for every wavelength, in four things: the air's emission between two places is that of one black body at steps of 4 K;
 // textured temperatures are mixtures of two such; view angles go in steps of 5 degrees; what media and air send on the same stretch each pass half
-// of the other; light scattered again is that of few heights and directions, and that in clouds of few depths. Errors are measured on sums (line_check.hpp),
+// of the other; light scattered again is that of few heights and directions. Errors are measured on sums (line_check.hpp),
 // which take none of these liberties.
 #include "sim/plan/sights.hpp"
-#include "sim/radiance/cloud_lights.hpp"
 
 namespace pitviper {
 
@@ -32,13 +31,7 @@ class ProductSink final : public TermSink {
   void emission(const Segment& segment);
   void emissionOfMedia(const Segment& segment);
   double strengthOf(int material);
-  struct DropProduct {
-    enum class Of { Sun, Beam, Around };  ///< sunlight, what of it comes straight, all that does not come from the sun
-    int spectrum;
-    double coefficient;
-    Of of;
-  };
-  std::vector<DropProduct> drops(const MediumInside& medium, double cosine, double temperature_K);
+  std::array<int, 2> drops(const MediumInside& medium, double cosine);
   void scattered(const Segment& segment);
   void scatteredAgain(const Segment& segment);
   void tellAgain();
@@ -48,14 +41,13 @@ class ProductSink final : public TermSink {
   std::shared_ptr<DiffuseOnGrids> diffuse_;
   double step_K_;  ///< between temperatures of black bodies
   Sight sight_;
-  std::map<int, double> strength_;                            ///< of materials
-  std::map<int, std::shared_ptr<const CloudLights>> lights_;  ///< of fields with drops
-  std::vector<size_t> scatterers_;                            ///< absorbers of the air that scatter
-  AirNode scattered_;                                         ///< what they scatter, at a wavelength that tells much from little
-  AirAmounts here_;                                           ///< from the eye to the place reached, raised to their powers
-  std::vector<double> media_m_;                               ///< on the way so far, by material; empty: none
-  std::vector<double> inside_m_;                              ///< of the segment being told
-  int herePath_ = -1, sunPath_ = -1;                          ///< as far as the place reached, and with the way on to the sun; -1: not written down yet
+  std::map<int, double> strength_;    ///< of materials
+  std::vector<size_t> scatterers_;    ///< absorbers of the air that scatter
+  AirNode scattered_;                 ///< what they scatter, at a wavelength that tells much from little
+  AirAmounts here_;                   ///< from the eye to the place reached, raised to their powers
+  std::vector<double> media_m_;       ///< on the way so far, by material; empty: none
+  std::vector<double> inside_m_;      ///< of the segment being told
+  int herePath_ = -1, sunPath_ = -1;  ///< as far as the place reached, and with the way on to the sun; -1: not written down yet
   /// Light scattered again on segments told since the last pane or medium: together they are told as few.
   struct Again {
     AirAmounts middle, passed;

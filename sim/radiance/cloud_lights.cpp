@@ -22,6 +22,10 @@ CloudLights::CloudLights(const Simulation& simulation, const FieldBody& field)
 
 glm::dvec2 CloudLights::around(double wavelength_um) const {
   if (!simulation_.surroundings) return glm::dvec2(simulation_.ambient ? (*simulation_.ambient)(wavelength_um) : 0.0);
+  {
+    const std::lock_guard lock(busy_);
+    if (const auto known = around_.find(wavelength_um); known != around_.end()) return known->second;
+  }
   const Surroundings::Place place = simulation_.surroundings->placeAt(drops_.height_m);
   const auto mean = [&](std::size_t height) {
     const std::vector<float>& radiance = simulation_.surroundings->light(wavelength_um, height).radiance;
@@ -29,8 +33,10 @@ glm::dvec2 CloudLights::around(double wavelength_um) const {
     for (std::size_t k = 0; k < shares_.size(); ++k) sum += static_cast<double>(radiance[k]) * shares_[k];
     return sum;
   };
-  const glm::dvec2 low = mean(place.height);
-  return place.share > 0.0 ? low + place.share * (mean(place.height + 1) - low) : low;
+  glm::dvec2 both = mean(place.height);
+  if (place.share > 0.0) both += place.share * (mean(place.height + 1) - both);
+  const std::lock_guard lock(busy_);
+  return around_.try_emplace(wavelength_um, both).first->second;
 }
 
 CloudLight CloudLights::at(double wavelength_um, bool withAround) const {

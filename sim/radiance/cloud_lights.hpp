@@ -1,5 +1,7 @@
 #pragma once
 // What shines on the drops of a field (Droplets), and their optics, at wavelengths and nodes.
+#include <map>
+#include <mutex>
 #include <span>
 #include <vector>
 
@@ -16,6 +18,7 @@ struct CloudLight {
   double above = 0.0, below = 0.0;  ///< [W/(m2 sr um)]
 };
 
+/// Safe to ask from several threads.
 class CloudLights {
  public:
   /// Of a field that has droplets(). Both must outlive it.
@@ -32,7 +35,9 @@ class CloudLights {
   const Simulation& simulation_;
   const Droplets& drops_;
   int material_;
-  std::vector<glm::dvec2> shares_;  ///< of each direction of the surroundings, of what is above and below
+  mutable std::mutex busy_;
+  mutable std::map<double, glm::dvec2> around_;  ///< kept
+  std::vector<glm::dvec2> shares_;               ///< of each direction of the surroundings, of what is above and below
 };
 
 }  // namespace pitviper
