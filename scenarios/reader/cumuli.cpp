@@ -106,16 +106,20 @@ void Builder::readCumuli(const Record& scenario) {
       if (field.clouds.empty())
         throw UserError(f.where("cover"), "so little cover that no cloud stands in it", "more of it", "raise 'cover', or narrow the clouds");
     } else {
-      const double depth_m = r.given("depth") ? entry.depth_m : std::min(kAspect * entry.width_m, kDeepest_m);
-      field.shapes.push_back({entry.width_m, depth_m, entry.roughness, static_cast<std::uint32_t>(entry.seed)});
+      const double deep_m = r.given("depth") ? entry.depth_m : std::min(kAspect * entry.width_m, kDeepest_m);
+      field.shapes.push_back({entry.width_m, deep_m, entry.roughness, static_cast<std::uint32_t>(entry.seed)});
       field.clouds.push_back({0, {0.0, 0.0}});
     }
 
-    const std::string radius = briefNumber(1e6 * entry.radius_m);
+    // Sky and ground are those of one height for all clouds of an entry: they share a gas, and what shines on it goes with it.
+    double depth_m = 0.0;
+    for (const CumulusShapeOptions& shape : field.shapes) depth_m += shape.depth_m / static_cast<double>(field.shapes.size());
+    const double middle_m = simulation_.frame.height(*base + glm::dvec3(0.0, 0.0, 0.5 * depth_m));
     const AerosolOptics drops = dropsOf("water_drops", 1e6 * entry.radius_m, libraries_.atmosphere, r.where(r.given("radius") ? "radius" : "name"));
     const DropOptics optics{drops.wavelength_um, drops.extinction, drops.albedo, drops.asymmetry};
-    const int material =
-        fieldMaterial("drops of " + radius + " um", "water drops by Mie (atmosphere/library/aerosols/water_drops.csv)", [&] { return cloudGas(optics); });
+    const int material = fieldMaterial("drops of " + briefNumber(1e6 * entry.radius_m) + " um at " + briefNumber(middle_m) + " m",
+                                       "water drops by Mie (atmosphere/library/aerosols/water_drops.csv)", [&] { return cloudGas(optics); });
+    const Droplets droplets = dropletsOf(optics, middle_m);
     double widest_m = 0.0;
     for (const CumulusShapeOptions& s : field.shapes) widest_m = std::max(widest_m, s.width_m);
     std::vector<std::shared_ptr<const CloudBody>> bodies;
@@ -135,12 +139,11 @@ void Builder::readCumuli(const Record& scenario) {
         throw UserError(r.where(), "more clouds than a scenario may hold",
                         std::to_string(kMostClouds) + " clouds of " + briefNumber(kMostNodes) + " nodes in all", "lower 'resolution', 'most' or 'cover'");
       const glm::dvec3 at = *base + glm::dvec3(c.at, 0.0);
-      const double middle_m = simulation_.frame.height(at + glm::dvec3(0.0, 0.0, 0.5 * field.shapes[shape].depth_m));
       FieldBody body;
       body.name = r.text("name") + (r.given("field") ? " " + std::to_string(k + 1) : "");
       body.where = r.where();
       body.gases = {{"drops", {{300.0, material}}}};
-      body.source = std::make_shared<CloudSource>(bodies[shape], at, dropletsOf(optics, middle_m));
+      body.source = std::make_shared<CloudSource>(bodies[shape], at, droplets);
       simulation_.fields.push_back(std::move(body));
     }
   }

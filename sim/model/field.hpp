@@ -114,7 +114,8 @@ struct FieldWorld {
 };
 
 /// What a field of drops scatters many times. Its gas's absorption is c e (sim/radiometry/glsl/cloud.glsl), for which its amount is an optical depth at 0.55
-/// um; its albedo and asymmetry are the scaled ones, so that who knows of no drops sees an even medium of the same light.
+/// um; its albedo and asymmetry are the scaled ones, so that who knows of no drops sees an even medium of the same light. Fields of one gas have the same
+/// droplets.
 struct Droplets {
   Spectrum albedo, asymmetry;  ///< of single scattering, not scaled
   double height_m = 0.0;       ///< LocalFrame::height of its middle: sky and ground are those of there
