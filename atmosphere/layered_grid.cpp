@@ -5,6 +5,7 @@
 
 #include "sim/plan/budget.hpp"
 #include "sim/radiometry/physics.hpp"
+#include "sim/world/field_states.hpp"
 
 namespace pitviper {
 namespace {
@@ -108,6 +109,11 @@ double farthestIn(const Simulation& simulation, const View& view, const WorldSta
     farthest = std::max(farthest, glm::length(state.entities[e].position + state.entities[e].orientation * glm::dvec3(entity.boundingCentre) - view.position) +
                                       static_cast<double>(entity.boundingRadius_m));
   }
+  for (size_t f = 0; f < simulation.fields.size(); ++f)
+    if (const FieldState* field = fieldOf(state, f)) {
+      const glm::dvec3 centre = field->origin + field->localFromField * (0.5 * (field->low + field->high));
+      farthest = std::max(farthest, glm::length(centre - view.position) + 0.5 * glm::length(field->high - field->low));
+    }
   for (const auto& light : state.lights) farthest = std::max(farthest, glm::length(light - view.position));
   const double radius = simulation.frame.earthRadius_m(), above = std::max(simulation.frame.height(view.position), 0.0);
   if (simulation.ground) farthest = std::max(farthest, std::sqrt(above * (2.0 * radius + above)));  // the ground as far as the horizon
