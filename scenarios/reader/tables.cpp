@@ -5,10 +5,10 @@
 #include "materials/angle_tables.hpp"
 #include "materials/models.hpp"
 #include "materials/reflection.hpp"
+#include "scenarios/reader/cumuli.hpp"
 #include "scenarios/reader/flares.hpp"
 #include "scenarios/reader/flights.hpp"
 #include "scenarios/reader/plumes.hpp"
-#include "scenarios/reader/cumuli.hpp"
 #include "scenarios/reader/smokes.hpp"
 #include "sensors/gimbal/gimbal_choice.hpp"
 #include "sensors/quantity.hpp"
@@ -619,7 +619,8 @@ std::vector<ParameterTable> all() {
                         camera(),          cameraPreset(), film(),       channel(),   spectral(),        spectralImage(), sensor(), probe()})
     every.push_back(t);
   for (const auto& t : gimbalTables()) every.push_back(t);
-  for (const auto& t : {plume(), plumeNozzle(), plumeSpecies(), plumeGrid(), plumeArrays(), smoke(), flare(), flareDirection(), flareSequence(), cumulus(), cumulusFieldTable()})
+  for (const auto& t : {plume(), plumeNozzle(), plumeSpecies(), plumeGrid(), plumeArrays(), smoke(), flare(), flareDirection(), flareSequence(), cumulus(),
+                        cumulusFieldTable()})
     every.push_back(t);
   addAll(stageModels(), stageTable);
   addAll(commandModels(), commandTable);

@@ -74,16 +74,28 @@ Vec4 cloudAt(int more) {
 }
 
 // Extinction alone.
-Real cloudThere(int at, Real t) { return cloudCell(at, t) ? cloudAt(0).x : 0.0; }
+Real cloudThere(int at, Real t) {
+  if (!cloudCell(at, t)) return 0.0;
+  int n = cloudNode_;
+  Real a = fieldTexel(n).x;
+  Real b = fieldTexel(n + cloudY_).x;
+  Real c = fieldTexel(n + cloudZ_).x;
+  Real e = fieldTexel(n + cloudY_ + cloudZ_).x;
+  a += cloudPart_.x * (fieldTexel(n + 3).x - a);
+  b += cloudPart_.x * (fieldTexel(n + cloudY_ + 3).x - b);
+  c += cloudPart_.x * (fieldTexel(n + cloudZ_ + 3).x - c);
+  e += cloudPart_.x * (fieldTexel(n + cloudY_ + cloudZ_ + 3).x - e);
+  Real low = a + cloudPart_.y * (b - a);
+  return low + cloudPart_.z * (c + cloudPart_.y * (e - c) - low);
+}
 
 // A line is cut where equal parts of it have been seen: of a fifth by its length, of the rest by what is lost on the way in light of few scatterings.
 void fieldLine(int at, int steps) {
   Vec4 scale = fieldTexel(at + 1);
   cloudRate_ = d_ * Vec3(scale.x, scale.y, scale.z) / perT_;
-  Real each = (leave_ - enter_) / 64.0;
+  Real each = (leave_ - enter_) / 32.0;
   cloudDepth_[0] = 0.0;
-  for (int k = 0; k < 32; ++k)
-    cloudDepth_[k + 1] = cloudDepth_[k] + each * perT_ * (cloudThere(at, enter_ + (2.0 * Real(k) + 0.5) * each) + cloudThere(at, enter_ + (2.0 * Real(k) + 1.5) * each));
+  for (int k = 0; k < 32; ++k) cloudDepth_[k + 1] = cloudDepth_[k] + each * perT_ * cloudThere(at, enter_ + (Real(k) + 0.5) * each);
   Real all = max(1.0 - exp(-min(0.4 * cloudDepth_[32], kExpLimit)), 1.0e-12);
   for (int k = 0; k < 33; ++k) cloudSeen_[k] = 0.2 * Real(k) / 32.0 + 0.8 * (1.0 - exp(-min(0.4 * cloudDepth_[k], kExpLimit))) / all;
 }

@@ -3,8 +3,8 @@
 //   f = g^2, c = 1 - w f, w' = w (1 - f)/c, g' = g/(1 + g): delta scaling; w albedo, g asymmetry of single scattering, e extinction over that at 0.55 um
 //   J = w' exp(sum l_i ln S_i) scattered sunlight [1/sr per irradiance of 1], l_i Lagrange's weights of x(w) = sqrt((1 - w)/(1 - 0.6 w g)) at cloudAlbedos();
 //   Js = U/cosh(aU y), Jg = (1 - U)/cosh(aG y) light of an even sky and ground of 1, y = x(w)/x(0.8); 1 - Js - Jg that of drops of a radiance of 1.
-//   Sunlight turned once:  K = b HG(G, cos)/(1 + 0.314 u), b = exp(-c e tauSun), u = w f e (tauSun + tauEye), G = g^(1 + 0.455 u): what is turned forward on its
-//     way widens and thins the phase function.
+//   Sunlight turned once:  K = b HG(G, cos)/(1 + 0.314 u), b = exp(-c e tauSun), u = w f e (tauSun + tauEye), G = g^(1 + 0.455 u): what is turned forward on
+//     its way widens and thins the phase function.
 //   Light turned again goes towards the eye by J + 3 g' H; H flux along the line / 4 pi: D dJ/dtau, D = 1/(3 c (1 - w' g')), and of sunlight what the beam
 //     drives along the lit face, 1.07 w'g'/(1 - w'g') b/(4 pi)(nn + s (cos - nn)), s = min(0.223 + 0.928 c e tauSun, 4); nn = (n.line)(n.sun), n of grad J.
 //   Source per depth of extinction e: w E (K + (1 - f)(J + 3 g' H)) + w sum L_k (1 - f)(J_k + 3 g' H_k) + (1 - w) B; the line sees it through exp(-c depth).
