@@ -52,6 +52,7 @@ class Builder {
   void readPlumes(const Record& scenario);
   void readSmokes(const Record& scenario);
   void readFlares(const Record& scenario);
+  void readCumuli(const Record& scenario);
   void readCameras(const Record& scenario);
   void readProbes(const Record& scenario);
   /// After everything that they can change.
@@ -132,6 +133,9 @@ class Builder {
   int smokeMaterial(const std::string& name, const Location& where);
   /// How much warmer the air is than the standard atmosphere's.
   double airWarmer_K() const;
+  // cumuli.cpp
+  /// Of the air at a place, else of the standard atmosphere.
+  double airAt_K(const glm::dvec3& place) const;
   // sensor_reader.cpp
   SpectralBins readSpectralBins(const Record& r, const Pinhole& pinhole);
 

@@ -87,6 +87,7 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     b.readPlumes(r);
     b.readSmokes(r);
     b.readFlares(r);
+    b.readCumuli(r);
     if (sim.mode == RenderMode::Direct && sim.hasTransparent())
       throw UserError(Record(r.value("render"), tables::render()).where("mode"), "direct mode cannot draw what is seen through something transparent",
                       "'auto' or 'buffered' in a scenario with a transmission or a medium", "write 'mode: auto'");

@@ -5,6 +5,7 @@
 #include "materials/angle_tables.hpp"
 #include "materials/models.hpp"
 #include "materials/reflection.hpp"
+#include "scenarios/reader/cumuli.hpp"
 #include "scenarios/reader/flares.hpp"
 #include "scenarios/reader/flights.hpp"
 #include "scenarios/reader/plumes.hpp"
@@ -105,6 +106,7 @@ const ParameterTable& scenario() {
        list("plumes", "exhaust of engines, motors and nozzles", 0, 256),
        list("smokes", "trails of smoke, let out by bodies or at places", 0, 256),
        list("flares", "decoys that entities eject: a light, a burning cloud, smoke", 0, 256),
+       list("clouds", "cumulus clouds, lit by sun, sky and ground", 0, 64),
        list("cameras", "sensors", 0, 64),
        list("probes", "irradiance meters", 0, 256),
        list("commands", "changes from a time on: bodies moved, cameras turned, temperatures, lights", 0, 4096),
@@ -628,7 +630,8 @@ std::vector<ParameterTable> all() {
                         camera(),          cameraPreset(), film(),       channel(),   spectral(),        spectralImage(), sensor(), probe()})
     every.push_back(t);
   for (const auto& t : gimbalTables()) every.push_back(t);
-  for (const auto& t : {plume(), plumeNozzle(), plumeSpecies(), plumeGrid(), plumeArrays(), smoke(), flare(), flareDirection(), flareSequence()})
+  for (const auto& t : {plume(), plumeNozzle(), plumeSpecies(), plumeGrid(), plumeArrays(), smoke(), flare(), flareDirection(), flareSequence(), cumulus(),
+                        cumulusFieldTable()})
     every.push_back(t);
   addAll(stageModels(), stageTable);
   addAll(commandModels(), commandTable);

@@ -12,6 +12,8 @@
 
 #include "sim/parameters/error.hpp"
 #include "sim/parameters/fingerprint.hpp"
+#include "sim/radiometry/physics.hpp"
+#include "sim/radiometry/spectrum.hpp"
 #include "sim/scene/motion.hpp"
 
 namespace pitviper {
@@ -54,10 +56,11 @@ struct FieldStep {
   double enter_m = 0.0, leave_m = 0.0;      ///< along the line
   std::array<double, kMostGases> amount{};  ///< of each gas: the integral of its density along the stretch
   double temperature_K = 0.0;
-  double drift_perK = 0.0;  ///< 1 / temperature at its far end, less that at its near end: setDrifts()
-  double gain = 1.0;        ///< factor of Medium::radiance
-  double sun = 0.0;         ///< share of the sun's disc that nothing solid hides from it
-  double sunAmount = 0.0;   ///< of the first gas between it and the sun, in the field itself
+  double drift_perK = 0.0;                    ///< 1 / temperature at its far end, less that at its near end: setDrifts()
+  double gain = 1.0;                          ///< factor of Medium::radiance
+  double sun = 0.0;                           ///< share of the sun's disc that nothing solid hides from it
+  double sunAmount = 0.0;                     ///< of the first gas between it and the sun, in the field itself
+  std::optional<physics::CloudStep> cloud{};  ///< of fields with drops: the light within
 };
 
 /// Part of a field as the GPU finds it: what bounds it, in field axes, and where its numbers begin among the texels.
@@ -110,6 +113,14 @@ struct FieldWorld {
   std::function<std::shared_ptr<const Ejected>(int store)> ejected = {};
 };
 
+/// What a field of drops scatters many times. Its gas's absorption is c e (sim/radiometry/glsl/cloud.glsl), for which its amount is an optical depth at 0.55
+/// um; its albedo and asymmetry are the scaled ones, so that who knows of no drops sees an even medium of the same light. Fields of one gas have the same
+/// droplets.
+struct Droplets {
+  Spectrum albedo, asymmetry;  ///< of single scattering, not scaled
+  double height_m = 0.0;       ///< LocalFrame::height of its middle: sky and ground are those of there
+};
+
 /// Where a field comes from.
 class FieldSource {
  public:
@@ -127,6 +138,8 @@ class FieldSource {
   virtual std::string target() const { return {}; }
   /// Whether there is a throttle that a command may set.
   virtual bool hasThrottle() const { return false; }
+  /// Null: what it scatters it scatters once. Else its steps have FieldStep::cloud, and its shader a function cloudStep().
+  virtual const Droplets* droplets() const { return nullptr; }
 };
 
 struct FieldBody {

@@ -207,6 +207,24 @@ double ProductSink::strengthOf(int material) {
   return at->second = knots.empty() ? absorption(std::clamp(middle, absorption.validLow(), absorption.validHigh())) : sum / static_cast<double>(knots.size());
 }
 
+/// What drops send per scaled depth: of an irradiance of the sun, and the rest. Of each part of a line it is a spectrum of its own.
+std::array<int, 2> ProductSink::drops(const MediumInside& m, double cosine) {
+  auto& lights = book_.drops[m.field];
+  if (!lights) lights = std::make_shared<const CloudLights>(sim_, sim_.fields[static_cast<size_t>(m.field)]);
+  const std::string name = "drops " + std::to_string(book_.spectra.size()) + " ";
+  const auto sent = [l = lights, step = *m.cloud, cosine, temperature_K = m.temperature_K](double w, bool sun) {
+    const CloudLight light = l->at(w, !sun);
+    const double black = sun ? 0.0 : physics::planckRadiance(w, temperature_K);
+    const auto both = physics::cloudSource(step, light.optics, light.above, light.below, black, cosine);
+    return sun ? light.sun * both.x : both.y;
+  };
+  return {book_.spectrum(name + "sun", [sent](const FineGrid& g, size_t i) { return sent(g.wavelength_um[i], true); }),
+          book_.spectrum(name + "rest", [sent, l = lights](const FineGrid& g, size_t i) {
+            if (i == 0) l->prepare(g.wavelength_um);
+            return sent(g.wavelength_um[i], false);
+          })};
+}
+
 void ProductSink::emissionOfMedia(const Segment& s) {
   AirAmounts middle;
   for (size_t k = 0; k < kMostAirAmounts; ++k) middle.amount[k] = 0.5 * (s.near.powered.amount[k] + s.far.powered.amount[k]);
@@ -235,6 +253,13 @@ void ProductSink::emissionOfMedia(const Segment& s) {
       continue;
     }
     const double stepped_K = step_K_ * std::max(std::round(m.temperature_K / step_K_), 1.0);
+    if (m.cloud) {
+      const auto [sun, rest] = drops(m, s.cosScatter);
+      const AirAmounts& way = s.sunAir ? *s.sunAir : middle;
+      addSource(rest, share, near, far);
+      if (m.sun > 0.0) addSource(sun, share * m.sun, pathOf(way, 0.0), pathOf(way, 1.0));
+      continue;
+    }
     addSource(book_.spectrum(Factor::medium(*m.medium, stepped_K, 0.0), sim_), share, near, far);
     if (m.medium->radiance && m.gain > 0.0)
       addSource(book_.spectrum("radiance " + std::to_string(m.material),

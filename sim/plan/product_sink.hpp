@@ -3,7 +3,8 @@
 //
 // Simpler than the equation, alike for every wavelength, in four things: the air's emission between two places is that of one black body at steps of 4 K;
 // textured temperatures are mixtures of two such; view angles go in steps of 5 degrees; what media and air send on the same stretch each pass half
-// of the other; light scattered again is that of few heights and directions. Errors are measured on sums (line_check.hpp), which take none of these liberties.
+// of the other; light scattered again is that of few heights and directions. Errors are measured on sums (line_check.hpp),
+// which take none of these liberties.
 #include "sim/plan/sights.hpp"
 
 namespace pitviper {
@@ -30,6 +31,7 @@ class ProductSink final : public TermSink {
   void emission(const Segment& segment);
   void emissionOfMedia(const Segment& segment);
   double strengthOf(int material);
+  std::array<int, 2> drops(const MediumInside& medium, double cosine);
   void scattered(const Segment& segment);
   void scatteredAgain(const Segment& segment);
   void tellAgain();

@@ -13,13 +13,16 @@ namespace {
 constexpr double kNegligible = 1e-4;
 /// No amount at all: tables of ways to the sun have 1e-30 where there is nothing.
 constexpr double kNone = 1e-20;
+/// Of the extinction of drops at 0.55 um, what a line of sight sees of it at most wavelengths: scaled, 0.25 to 1.
+constexpr double kDropsSeen = 0.4;
 }  // namespace
 
 std::vector<Slab> inParts(const std::vector<Slab>& all) {
   std::vector<Slab> some;
   for (std::size_t from = 0, to = 0; from < all.size(); from = to) {
     while (to < all.size() && all[to].field == all[from].field) ++to;
-    if (to - from <= kFieldParts) {
+    const std::size_t most = all[from].step.cloud ? kDropParts : kFieldParts;
+    if (to - from <= most) {
       some.insert(some.end(), all.begin() + static_cast<std::ptrdiff_t>(from), all.begin() + static_cast<std::ptrdiff_t>(to));
       continue;
     }
@@ -32,13 +35,14 @@ std::vector<Slab> inParts(const std::vector<Slab>& all) {
       part.push_back(0.0);
       for (std::size_t g = 0; g < whole.size(); ++g)
         if (whole[g] > 0.0) part.back() += all[k].step.amount[g] / whole[g];
+      if (all[k].step.cloud) part.back() *= std::exp(-kDropsSeen * all[k].step.cloud->depth.y);
       sum += part.back();
     }
     double before = 0.0, weight = 0.0;
     int last = -1;
     for (std::size_t k = from; k < to; ++k) {
       const double own = part[k - from];
-      const int place = std::min(static_cast<int>(static_cast<double>(kFieldParts) * (before + 0.5 * own) / sum), static_cast<int>(kFieldParts) - 1);
+      const int place = std::min(static_cast<int>(static_cast<double>(most) * (before + 0.5 * own) / sum), static_cast<int>(most) - 1);
       before += own;
       const FieldStep& s = all[k].step;
       if (place != last) {
@@ -56,6 +60,11 @@ std::vector<Slab> inParts(const std::vector<Slab>& all) {
       m.gain += share * (s.gain - m.gain);
       m.sun += share * (s.sun - m.sun);
       m.sunAmount += share * (s.sunAmount - m.sunAmount);
+      if (m.cloud && s.cloud) {
+        const auto mix = [share](auto& mean, const auto& other) { mean += share * (other - mean); };
+        mix(m.cloud->depth, s.cloud->depth), mix(m.cloud->sun, s.cloud->sun), mix(m.cloud->sunSlope, s.cloud->sunSlope);
+        mix(m.cloud->around, s.cloud->around), mix(m.cloud->aroundSlope, s.cloud->aroundSlope), mix(m.cloud->across, s.cloud->across);
+      }
     }
   }
   return some;

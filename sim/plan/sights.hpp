@@ -9,6 +9,7 @@
 #include "sim/plan/opacity_groups.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/plan/sight_rays.hpp"
+#include "sim/radiance/cloud_lights.hpp"
 #include "sim/radiance/diffuse_light.hpp"
 
 namespace pitviper {
@@ -45,6 +46,7 @@ struct SightBook {
   std::vector<GridSpectrum> spectra;
   std::vector<SightPath> paths;
   std::vector<Sight> sights;
+  std::map<int, std::shared_ptr<const CloudLights>> drops;  ///< of fields that have them, as lines meet them
   int spectrum(const Factor& factor, const Simulation& simulation);
   int spectrum(const std::string& name, GridSpectrum f);  ///< the same name is the same spectrum
   int both(int a, int b);                                 ///< their product
@@ -113,8 +115,11 @@ class Sights {
 
 /// Parts of a line's way through a field at most: what a fit learns of a line along which more change is the same.
 constexpr std::size_t kFieldParts = 8;
+/// Of drops, each of whose parts has spectra of its own.
+constexpr std::size_t kDropParts = 4;
 
-/// Neighbouring steps of a field as one, of about as much of all gases each; amounts add up, temperatures are means by amount.
+/// Neighbouring steps of a field as one, of about as much of all gases each, of drops of as much that is seen; amounts add up, temperatures are means by
+/// amount.
 std::vector<Slab> inParts(const std::vector<Slab>& all);
 
 FineGrid fineGridOf(const Simulation& simulation, std::span<const Spectrum* const> kernels);

@@ -91,6 +91,7 @@ NodeSpectra::NodeSpectra(const Simulation& simulation, std::span<const SpectralN
           rows.sunlight.push_back(m.albedo && simulation.sun ? n.mean([&](double w) { return m.albedoAt(w) * simulation.sun->irradiance(w); }) : 0.0);
           rows.asymmetry.push_back(m.asymmetry ? n.mean(*m.asymmetry) : 0.0);
         }
+        if (field.source->droplets()) rows.drops = CloudLights(simulation, field).of(nodes);
       }
 }
 
@@ -242,6 +243,7 @@ void NodeSum::tellSources(const Segment& s) {
       continue;
     }
     const NodeSpectra::MediumRows* rows = spectra_.mediumRows(m.material);
+    const bool drops = m.cloud && rows && !rows->drops.empty();
     if (m.lasting || (!rows && (m.medium->albedo || m.medium->radiance))) {
       own = values(m.source());
     } else {
@@ -251,10 +253,9 @@ void NodeSum::tellSources(const Segment& s) {
         blackOf_K = m.temperature_K;
       }
       own = black_;
-      for (size_t i = 0; rows && i < count_; ++i) own[i] = rows->thermal[i] * black_[i] + m.gain * rows->radiance[i] + rows->around[i];
+      for (size_t i = 0; rows && !drops && i < count_; ++i) own[i] = rows->thermal[i] * black_[i] + m.gain * rows->radiance[i] + rows->around[i];
     }
-    if (!(m.sun > 0.0)) continue;
-    if (s.sunAir && !sunAirKnown) {
+    if (m.sun > 0.0 && s.sunAir && !sunAirKnown) {
       shade_.resize(count_);
       sunAir_.resize(count_);
       weigh(spectra_.extinction(), *s.sunAir, sunAir_);
@@ -263,6 +264,15 @@ void NodeSum::tellSources(const Segment& s) {
       passedOf(shade_, sunAir_);
       sunAirKnown = true;
     }
+    if (drops) {
+      for (size_t i = 0; i < count_; ++i) {
+        const CloudLight& light = rows->drops[i];
+        const auto sent = physics::cloudSource(*m.cloud, light.optics, light.above, light.below, black_[i], s.cosScatter);
+        own[i] = sent.y + (m.sun > 0.0 ? m.sun * light.sun * sent.x * (s.sunAir ? sunAir_[i] : 1.0) : 0.0);
+      }
+      continue;
+    }
+    if (!(m.sun > 0.0)) continue;
     const std::vector<double>& turned = turnedBy(m, s.cosScatter);
     shade_.resize(count_);
     const double* perLength = spectra_.absorption_per_m(m.material).data();

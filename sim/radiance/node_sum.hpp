@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sim/model/spectral_node.hpp"
+#include "sim/radiance/cloud_lights.hpp"
 #include "sim/radiance/diffuse_light.hpp"
 #include "sim/radiance/radiance.hpp"
 #include "sim/radiance/segment_law.hpp"
@@ -54,6 +55,7 @@ class NodeSpectra {
   /// sunlight that it scatters, asymmetry. Each averaged by itself, as pictures have it. Null of all other materials.
   struct MediumRows {
     std::vector<double> thermal, radiance, around, sunlight, asymmetry;
+    std::vector<CloudLight> drops;  ///< of a field that has them; empty
   };
   const MediumRows* mediumRows(int material) const {
     const auto at = mediumRows_.find(material);

@@ -122,8 +122,8 @@ class Teller {
           const Medium& medium = *sim_.materials[static_cast<size_t>(material)]->medium;
           const double sun = medium.albedo && sim_.sun ? s.sun : 0.0;
           scatters |= sun > 0.0;
-          inside_.push_back(
-              {&medium, -1, material, s.temperature_K, share * part * s.amount[g], false, s.gain, sun, s.sunAmount, share * s.drift_perK, slab.field});
+          inside_.push_back({&medium, -1, material, s.temperature_K, share * part * s.amount[g], false, s.gain, sun, s.sunAmount, share * s.drift_perK,
+                             slab.field, s.cloud ? &*s.cloud : nullptr});
         });
       }
     }

@@ -56,13 +56,14 @@ struct MediumInside {
   const Medium* medium = nullptr;
   int entity = -1, material = 0;
   double temperature_K = 0.0;
-  double length_m = 0.0;    ///< of a field: amount
-  bool lasting = true;      ///< other lines meet it at this temperature
-  double gain = 1.0;        ///< factor of Medium::radiance
-  double sun = 0.0;         ///< share of the sun that reaches it, not counting what the air and this medium take
-  double sunAmount = 0.0;   ///< of the same medium on the way to the sun
-  double drift_perK = 0.0;  ///< 1 / temperature at the segment's far end, less that at its near end
-  int field = -1;           ///< index into Simulation::fields; -1: a body's
+  double length_m = 0.0;                      ///< of a field: amount
+  bool lasting = true;                        ///< other lines meet it at this temperature
+  double gain = 1.0;                          ///< factor of Medium::radiance
+  double sun = 0.0;                           ///< share of the sun that reaches it, not counting what the air and this medium take
+  double sunAmount = 0.0;                     ///< of the same medium on the way to the sun
+  double drift_perK = 0.0;                    ///< 1 / temperature at the segment's far end, less that at its near end
+  int field = -1;                             ///< index into Simulation::fields; -1: a body's
+  const physics::CloudStep* cloud = nullptr;  ///< of drops
   Factor source() const { return Factor::medium(*medium, temperature_K, gain, lasting); }
 };
 

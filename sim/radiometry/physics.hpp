@@ -27,6 +27,7 @@ constexpr Real kFar = 1e30;
 #define PHYSICS inline
 #include "sim/radiometry/glsl/arc_tangent.glsl"
 #include "sim/radiometry/glsl/chord.glsl"
+#include "sim/radiometry/glsl/cloud.glsl"
 #include "sim/radiometry/glsl/exponential.glsl"
 #include "sim/radiometry/glsl/footprint.glsl"
 #include "sim/radiometry/glsl/geometry.glsl"

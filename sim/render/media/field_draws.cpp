@@ -41,10 +41,11 @@ FieldDraws::FieldDraws(const Simulation& simulation, const Plan& plan, const Sha
     own.constants["LEVEL_FOURS"] = body.tables.levelFours;
     own.constants["FOURS"] = body.tables.fours;
     own.constants["SCATTERS"] = body.tables.scatters ? 1 : 0;
+    own.constants["DROPS"] = body.tables.drops ? 1 : 0;
     for (const bool even : {false, true}) {
       own.constants["EVEN"] = even ? 1 : 0;
       std::string key = field.source->shader() + (even ? " far" : " near");
-      for (const char* name : {"MIXTURES", "LEVEL_FOURS", "SCATTERS"}) key += " " + std::to_string(own.constants[name]);
+      for (const char* name : {"MIXTURES", "LEVEL_FOURS", "SCATTERS", "DROPS"}) key += " " + std::to_string(own.constants[name]);
       auto [at, isNew] = programs_.try_emplace(key);
       if (isNew)
         at->second = Program(assembleShader(library, "sim/render/media/glsl/listed.vert.glsl", own),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "sim/radiance/cloud_lights.hpp"
 #include "sim/radiance/node_planck.hpp"
 #include "sim/radiometry/constants.hpp"
 
@@ -78,6 +79,23 @@ FieldTables::FieldTables(const Simulation& sim, const Plan& plan, const FieldBod
     put(4, [&](double w) { return m.asymmetry ? (*m.asymmetry)(w) : 0.0; });
     for (int four = 0; four < fours; ++four)
       for (const auto& row : rows) texels.push_back(row[static_cast<size_t>(four)]);
+  }
+  if (field.source->droplets()) {
+    drops = true;
+    texels[0].w = static_cast<float>(texels.size());
+    std::vector<std::array<float, kCloudRows>> rows;
+    for (const CloudLight& l : CloudLights(sim, field).of(plan.nodes)) {
+      const physics::CloudOptics& o = l.optics;
+      std::array<float, kCloudRows>& row = rows.emplace_back();
+      const std::array<double, kCloudRows> of{o.albedo, o.asymmetry, l.sun, l.above, l.below, o.weight.x, o.weight.y, o.weight.z, o.weight.w, o.coordinate};
+      std::transform(of.begin(), of.end(), row.begin(), [](double v) { return static_cast<float>(v); });
+    }
+    const std::array<float, kCloudRows> none{};
+    for (std::size_t four = 0; four < static_cast<std::size_t>(fours); ++four)
+      for (std::size_t k = 0; k < kCloudRows; ++k) {
+        const auto at = [&](std::size_t i) { return (4 * four + i < rows.size() ? rows[4 * four + i] : none)[k]; };
+        texels.emplace_back(at(0), at(1), at(2), at(3));
+      }
   }
   const glm::dvec2 range = field.source->temperatures_K();
   const double coldest = std::max(range.x, 1.0), hottest = std::max(range.y, coldest * (1.0 + 1e-6));

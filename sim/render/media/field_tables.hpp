@@ -9,8 +9,11 @@ namespace pitviper {
 
 /// Texels: of each mixture one (first texel of its levels, their number, first texel of what else it has); of each mixture 4 `levelFours` temperatures [K]; the
 /// levels' absorption per amount, rows of `fours`; of each mixture and four nodes five (thermal share, own radiance, ambient light scattered, sunlight
-/// scattered for a phase function of 1, asymmetry), where any has more than absorption; `kBlackEntries` rows of Planck radiance, evenly over 1 / T. A mixture:
-/// gases that a field's shader adds up as one, by FieldState::share.
+/// scattered for a phase function of 1, asymmetry), where any has more than absorption; of a field with drops, for each four nodes, `kCloudRows`;
+/// `kBlackEntries` rows of Planck radiance, evenly over 1 / T. A mixture: gases that a field's shader adds up as one, by FieldState::share. Of drops: albedo,
+/// asymmetry, irradiance of the sun, radiance of sky and ground, four weights and a coordinate (physics::CloudOptics).
+constexpr std::size_t kCloudRows = 10;
+
 class FieldTables {
  public:
   FieldTables(const Simulation& simulation, const Plan& plan, const FieldBody& field);
@@ -21,6 +24,7 @@ class FieldTables {
   std::vector<glm::vec4> temperatures;  ///< of each mixture `levelFours`, ended by some far above any
   int mixtures = 0, levelFours = 1, fours = 0, blackAt = 0, blackEntries = 0;
   bool scatters = false;  ///< some gas has more than absorption
+  bool drops = false;     ///< it has drops: the first texel's w says where their rows begin
   float firstInverse_K = 0.0f, entriesPerInverse = 1.0f;
 
  private:

@@ -61,6 +61,11 @@ void addTemperature(float weight, float temperature) {
 }
 //@slot field
 
+// Drops scatter many times: what their field says of the step gathered last, and of that at hand.
+//@each d DROPS
+CloudStep nextDrops_, drops_;
+//@end
+
 //@slot targets
 //@slot path
 Draw field_;
@@ -171,6 +176,9 @@ void gatherStep(float from, float to) {
   nextLow_ = amountLow_;
   nextHigh_ = amountHigh_;
   next_ = weight_ > 0.0 ? vec4(weight_ / heat_, vec3(gained_, lit_, shade_) / weight_) : vec4(0.0);
+//@each d DROPS
+  nextDrops_ = cloudStep();
+//@end
   if (fieldMixes && weight_ > 0.0) {
     vec3 m = moments_ / weight_;
     nextTwo_ = twoTemperatures(heat_ / weight_, m.y - m.x * m.x, m.z - 3.0 * m.y * m.x + 2.0 * m.x * m.x * m.x);
@@ -255,6 +263,20 @@ Matter matterAt(int four) {
       m.emitted += own * black;
       m.drifting += own * drift;
     }
+  }
+//@end
+  // Of drops it is another law: all of their light, by the numbers of their place.
+//@each d DROPS
+  int row = int(texelFetch(fieldSpectra, 0).w) + 10 * four;
+  vec4 albedo = texelFetch(fieldSpectra, row), asymmetry = texelFetch(fieldSpectra, row + 1), irradiance = texelFetch(fieldSpectra, row + 2);
+  vec4 above = texelFetch(fieldSpectra, row + 3), below = texelFetch(fieldSpectra, row + 4), coordinate = texelFetch(fieldSpectra, row + 9);
+  vec4 first = texelFetch(fieldSpectra, row + 5), second = texelFetch(fieldSpectra, row + 6), third = texelFetch(fieldSpectra, row + 7),
+       fourth = texelFetch(fieldSpectra, row + 8), extinction = max(m.depth / max(amount0_, 1.0e-30), vec4(1.0e-6));
+  for (int j = 0; j < 4; ++j) {
+    CloudOptics optics = cloudOpticsBy(extinction[j], albedo[j], asymmetry[j], vec4(first[j], second[j], third[j], fourth[j]), coordinate[j]);
+    vec2 sent = cloudSource(drops_, optics, above[j], below[j], black[j], cosScatter_);
+    m.emitted[j] = m.depth[j] * sent.y;
+    m.turned[j] = m.depth[j] * sun_ * irradiance[j] * sent.x;
   }
 //@end
   return m;
@@ -357,6 +379,9 @@ void main() {
   while (k < steps_) {
     vec4 amountsLow = nextLow_, amountsHigh = nextHigh_, state = next_;
     vec3 two = nextTwo_;
+//@each d DROPS
+    drops_ = nextDrops_;
+//@end
     bool ends = slab + 1 < slabs_ && from <= slabEnd;
     if (from <= stepEnd) {
       ++k;

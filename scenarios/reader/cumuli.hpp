@@ -1,0 +1,7 @@
+#pragma once
+#include "sim/parameters/table.hpp"
+
+namespace pitviper::tables {
+const ParameterTable& cumulus();
+const ParameterTable& cumulusFieldTable();
+}  // namespace pitviper::tables

@@ -1,0 +1,111 @@
+// Cumulus clouds: noise, shapes, the cover of a field, and what a scenario may ask for.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "materials/fields/cloud_field.hpp"
+#include "materials/fields/cloud_light.hpp"
+#include "sim/parameters/error.hpp"
+#include "tests/support/figures.hpp"
+#include "tests/support/scene_builder.hpp"
+
+namespace pitviper::test {
+namespace {
+
+TEST(Cumulus, NoiseIsTheSameEverywhere) {
+  // Of integers alone: its values at nodes are those of a hash, the mean over many 0, the variance that of even numbers from -1 to 1, 1/3.
+  double sum = 0.0, square = 0.0;
+  constexpr int kSide = 40;
+  for (int i = 0; i < kSide; ++i)
+    for (int j = 0; j < kSide; ++j)
+      for (int k = 0; k < kSide; ++k) {
+        const double v = valueNoise({i - 20.0, j - 20.0, k - 20.0}, 7);
+        sum += v, square += v * v;
+      }
+  const double count = kSide * kSide * kSide;
+  figure("mean of noise", 1.0 + sum / count, 1.0, 0.01, "four standard errors of 64 000 even numbers");
+  figure("variance of noise", square / count, 1.0 / 3.0, 0.015, "even numbers from -1 to 1");
+  EXPECT_EQ(valueNoise({0.5, 0.25, 3.0}, 7), valueNoise({0.5, 0.25, 3.0}, 7));
+  EXPECT_NE(valueNoise({0.5, 0.25, 3.0}, 7), valueNoise({0.5, 0.25, 3.0}, 8));
+  // No steps between cells.
+  figure("noise across a node", 1.0 + valueNoise({2.0 - 1e-9, 0.4, 0.6}, 3) - valueNoise({2.0 + 1e-9, 0.4, 0.6}, 3), 1.0, 1e-7, "its neighbour");
+}
+
+TEST(Cumulus, StandsOnItsBaseWithinItsGrid) {
+  const CumulusShapeOptions o{1000.0, 700.0, 0.6, 5};
+  const DensityGrid grid = cumulusGrid(o, 32, 25.0);
+  double largest = 0.0;
+  for (int j = 0; j < grid.nodes.y; ++j)
+    for (int i = 0; i < grid.nodes.x; ++i) {
+      double column = 0.0;
+      for (int k = 0; k < grid.nodes.z; ++k) column += grid.value[grid.index(i, j, k)] * grid.spacing.z;
+      largest = std::max(largest, column);
+      EXPECT_EQ(grid.value[grid.index(i, j, 0)], 0.0f);
+    }
+  figure("largest optical depth of a cloud", largest, 25.0, 1e-5, "as asked; single precision");
+  EXPECT_EQ(CumulusShape(o).extinction({0.0, 0.0, -1.0}), 0.0);
+  EXPECT_EQ(CumulusShape(o).extinction({5000.0, 0.0, 100.0}), 0.0);
+}
+
+// In the middle of a cloud that turns nothing away, light of the sky and of the ground add up to 1, half of each by symmetry about the middle of a slab.
+TEST(Cumulus, LightOfSkyAndGroundIsWhole) {
+  DensityGrid slab({9, 9, 17}, {-4e4, -4e4, 0.0}, {1e4, 1e4, 50.0});
+  for (int k = 1; k < 16; ++k)
+    for (int n = 0; n < 81; ++n) slab.value[slab.index(n % 9, n / 9, k)] = 0.02f;
+  const auto texels = cloudNumbers(slab, {0.0, 0.0, 1.0}, true);
+  const std::size_t middle = kCloudTexels * slab.index(4, 4, 8);
+  figure("light of the sky in the middle of a slab", texels[middle].z, 0.5, 2e-3, "symmetry");
+  figure("optical depth to the sun above the middle of a slab", texels[middle].y, 0.02 * 50.0 * 7.5, 0.01, "sum over nodes");
+}
+
+TEST(Cumulus, FieldsCoverWhatIsAsked) {
+  for (const double cover : {0.1, 0.25, 0.4}) {
+    CumulusFieldOptions o;
+    o.cover = cover, o.side_m = 8000.0, o.most = 128, o.seed = 4;
+    const CumulusField f = cumulusField(o), again = cumulusField(o);
+    figure("cover of " + std::to_string(f.clouds.size()) + " clouds", f.cover, cover, 0.1, "as asked; the last cloud is whole");
+    ASSERT_EQ(f.clouds.size(), again.clouds.size());
+    for (std::size_t k = 0; k < f.clouds.size(); ++k) {
+      EXPECT_EQ(f.clouds[k].at, again.clouds[k].at);
+      for (std::size_t n = 0; n < k; ++n)
+        EXPECT_GT(glm::length(f.clouds[k].at - f.clouds[n].at),
+                  0.5 * (f.shapes[static_cast<std::size_t>(f.clouds[k].shape)].width_m + f.shapes[static_cast<std::size_t>(f.clouds[n].shape)].width_m) - 1e-9);
+    }
+  }
+  CumulusFieldOptions few;
+  few.most = 3;
+  EXPECT_EQ(cumulusField(few).clouds.size(), 3u);
+}
+
+TEST(Cumulus, MistakesAreToldWithTheirPlace) {
+  const std::string camera =
+      "cameras:\n  - {name: c, film: {width: 4, height: 4}, field_of_view: 8 deg, aperture: 10 mm, position: [0 m, 0 m, 0 m], heading: 0 deg, pitch: 0 deg, "
+      "channels: [{name: mw, response: {band: [4 um, 5 um]}}]}\n";
+  for (const auto& [text, told] : std::vector<std::pair<std::string, std::string>>{
+           {"{name: a}", "a cloud nowhere"},
+           {"{name: a, position: [0 m, 1 km, 1 km], width: 10 m}", "width"},
+           {"{name: a, position: [0 m, 1 km, 1 km], radius: 10 m}", "radius"},
+           {"{name: a, position: [0 m, 1 km, 1 km], seed: -1}", "seed"},
+           {"{name: a, position: [0 m, 1 km, 1 km], field: {side: 3 km}}", "cover"},
+           {"{name: a, position: [0 m, 1 km, 1 km], width: 1 km, field: {cover: 0.3}}", "'width' of a field"},
+           {"{name: a, position: [0 m, 1 km, 1 km], field: {cover: 0.3, narrowest: 2 km, widest: 1 km}}", "widest is narrower"},
+           {"{name: a, position: [0 m, 1 km, 1 km], field: {cover: 0.3, side: 1 km}}", "wider than the square"},
+           {"{name: a, position: [0 m, 1 km, 1 km], field: {cover: 0.01, side: 3 km, narrowest: 1 km}}", "so little cover"},
+           {"{name: a, position: [0 m, 1 km, 1 km], resolution: 128, width: 500 m, depth: 6000 m}", "more clouds than"},
+           {"{name: a, position: [0 m, 1 km, 1 km], cover: 0.3}", "unknown key 'cover'"}}) {
+    try {
+      scene("clouds: [" + text + "]\n" + camera);
+      ADD_FAILURE() << text;
+    } catch (const UserError& e) {
+      EXPECT_NE(std::string(e.what()).find(told), std::string::npos) << text << ": " << e.what();
+      EXPECT_NE(std::string(e.what()).find("test.yaml:1:"), std::string::npos) << e.what();
+    }
+  }
+  const Simulation sim =
+      scene("clouds: [{name: a, position: [0 m, 1 km, 1 km]}, {name: b, position: [0 m, 9 km, 1 km], field: {cover: 0.1, side: 4 km}}]\n" + camera);
+  EXPECT_GT(sim.fields.size(), 2u);
+  EXPECT_TRUE(sim.fields.back().source->droplets());
+}
+
+}  // namespace
+}  // namespace pitviper::test
