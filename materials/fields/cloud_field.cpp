@@ -1,12 +1,7 @@
 #include "materials/fields/cloud_field.hpp"
 
-#include <stdexcept>
-
-#include "materials/fields/cloud_light.hpp"
 #include "sim/model/scene_fingerprint.hpp"
-#include "sim/model/simulation.hpp"
 #include "sim/radiometry/physics.hpp"
-#include "sim/scene/content_cache.hpp"
 
 namespace pitviper {
 namespace physics {
@@ -32,9 +27,6 @@ class CloudLine {
 
 namespace {
 
-constexpr const char* kWhat = "clouds";
-/// Texels before the nodes: as its shader has them.
-constexpr std::size_t kHead = 5;
 /// Lines through a pixel may lie so many nodes apart: neighbours differ little, as what is finer than a node is not there.
 constexpr double kNodesApart = 2.0;
 
@@ -98,55 +90,19 @@ glm::dvec2 CloudBody::temperatures_K() const {
   return {std::min(top_K, options_.base_K), std::max(top_K, options_.base_K)};
 }
 
-std::shared_ptr<const FieldTexels> CloudBody::texels(const Simulation& simulation) const {
-  std::call_once(once_, [&] { texels_ = make(simulation); });
-  return texels_;
+const DensityGrid& CloudBody::density() const {
+  if (!given_.value.empty()) return given_;
+  std::call_once(once_, [&] { density_ = cumulusGrid(options_.shape, options_.across, options_.mostDepth); });
+  return density_;
 }
 
-std::shared_ptr<const FieldTexels> CloudBody::make(const Simulation& simulation) const {
-  const bool lit = simulation.sun && simulation.sun->toSun.z > 0.0;
-  const glm::dvec3 toSun = lit ? simulation.sun->toSun : glm::dvec3(0.0, 0.0, 1.0);
-  Fingerprint f;
-  addTo(f);
-  f.add(toSun).add(lit);
-  const ContentKey key = contentKey(f.bytes());
-  std::vector<glm::vec4> nodes;
-  if (const auto kept = readCachedTable(kWhat, key)) {
-    TableReader in(*kept);
-    nodes = in.all<glm::vec4>();
-    if (!in.isWhole()) nodes.clear();
-  }
-  const glm::ivec3 n = frame_.nodes;
-  if (nodes.size() != kCloudTexels * static_cast<std::size_t>(n.x) * static_cast<std::size_t>(n.y) * static_cast<std::size_t>(n.z)) {
-    nodes = cloudNumbers(given_.value.empty() ? cumulusGrid(options_.shape, options_.across, options_.mostDepth) : given_, toSun, lit);
-    TableWriter out;
-    out.all(nodes);
-    writeCachedTable(kWhat, key, out.bytes());
-  }
-  auto all = std::make_shared<FieldTexels>();
-  auto& t = all->texel;
-  t.reserve(kHead + nodes.size());
-  t.emplace_back(frame_.first, n.x);
-  t.emplace_back(1.0 / frame_.spacing, n.y);
-  t.emplace_back(frame_.last(), n.z);
-  t.emplace_back(toSun, lit ? 1.0 : 0.0);
-  t.emplace_back(options_.base_K, options_.lapse_K_m, 0.0, 0.0);
-  t.insert(t.end(), nodes.begin(), nodes.end());
-  return all;
-}
-
-CloudSource::CloudSource(std::shared_ptr<const CloudBody> body, const glm::dvec3& base, Droplets drops)
-    : body_(std::move(body)), base_(base), drops_(std::move(drops)) {
-  if (!body_) throw std::invalid_argument("cloud: none");
-}
-
-std::shared_ptr<const FieldState> CloudSource::at(const FieldWorld& world) const {
-  return std::make_shared<CloudState>(body_->frame(), base_, body_->texels(*world.simulation));
+std::shared_ptr<const FieldState> CloudSource::at(const FieldWorld&) const {
+  return std::make_shared<CloudState>(clouds_->body(cloud_).frame(), clouds_->base(cloud_), clouds_->texels(cloud_));
 }
 
 void CloudSource::addTo(Fingerprint& f) const {
-  body_->addTo(f);
-  f.add(base_).add(drops_.height_m);
+  clouds_->body(cloud_).addTo(f);
+  f.add(clouds_->base(cloud_)).add(drops_.height_m);
   for (const Spectrum* s : {&drops_.albedo, &drops_.asymmetry}) pitviper::addTo(f, *s);
 }
 

@@ -191,7 +191,7 @@ std::vector<float> meanIntensity(const DensityGrid& grid, const std::vector<floa
 
 }  // namespace
 
-std::vector<glm::vec4> cloudNumbers(const DensityGrid& extinction, const glm::dvec3& toSun, bool lit) {
+std::vector<glm::vec4> cloudNumbers(const DensityGrid& extinction, const glm::dvec3& toSun, bool lit, const std::vector<float>& before) {
   const std::size_t count = extinction.value.size();
   DensityGrid tauSun(extinction.nodes, extinction.first, extinction.spacing);
   const auto planes = static_cast<std::size_t>(extinction.nodes.z);
@@ -202,6 +202,7 @@ std::vector<glm::vec4> cloudNumbers(const DensityGrid& extinction, const glm::dv
           for (int i = 0; i < extinction.nodes.x; ++i)
             tauSun.value[extinction.index(i, j, k)] = static_cast<float>(extinction.along(extinction.place(i, j, k), toSun, 1.0));
     });
+  for (std::size_t n = 0; lit && n < before.size(); ++n) tauSun.value[n] += before[n];
   // Each by itself: nothing depends on how many threads there are.
   const glm::dvec4 albedos = physics::cloudAlbedos();
   std::array<std::vector<float>, 4> sun;

@@ -18,7 +18,8 @@ namespace pitviper {
 /// that falls with absorption | mean intensity of scattered sunlight for an irradiance of 1 and a scaled albedo of 1 at four albedos [1/sr] | how the ground's
 /// light falls, gradient of the second of these [1/(sr m)].
 constexpr int kCloudTexels = 3;
-/// `toSun`: unit, in the grid's axes; `lit`: there is a sun. On all threads; the same on any number of them.
-std::vector<glm::vec4> cloudNumbers(const DensityGrid& extinction, const glm::dvec3& toSun, bool lit);
+/// `toSun`: unit, in the grid's axes; `lit`: there is a sun; `before`: at each node, the optical depth of what else stands before it (empty: nothing). On all
+/// threads; the same on any number of them.
+std::vector<glm::vec4> cloudNumbers(const DensityGrid& extinction, const glm::dvec3& toSun, bool lit, const std::vector<float>& before = {});
 
 }  // namespace pitviper

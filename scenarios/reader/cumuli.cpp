@@ -77,7 +77,7 @@ double Builder::airAt_K(const glm::dvec3& place) const {
 void Builder::readCumuli(const Record& scenario) {
   if (!scenario.given("clouds")) return;
   constexpr double kLapse_K_m = 0.0065, kAspect = 0.7, kDeepest_m = 2000.0;
-  std::size_t clouds = 0;
+  const auto clouds = std::make_shared<CloudSet>(simulation_.sun ? std::optional(simulation_.sun->toSun) : std::nullopt, simulation_.shadows);
   double nodes = 0.0;
   for (const Value& v : scenario.value("clouds").items) {
     const Record r(v, tables::cumulus());
@@ -135,18 +135,19 @@ void Builder::readCumuli(const Record& scenario) {
       const auto shape = static_cast<std::size_t>(c.shape);
       const glm::ivec3 n = bodies[shape]->frame().nodes;
       nodes += static_cast<double>(n.x) * n.y * n.z;
-      if (++clouds > kMostClouds || nodes > kMostNodes)
+      if (clouds->size() >= kMostClouds || nodes > kMostNodes)
         throw UserError(r.where(), "more clouds than a scenario may hold",
                         std::to_string(kMostClouds) + " clouds of " + briefNumber(kMostNodes) + " nodes in all", "lower 'resolution', 'most' or 'cover'");
-      const glm::dvec3 at = *base + glm::dvec3(c.at, 0.0);
       FieldBody body;
       body.name = r.text("name") + (r.given("field") ? " " + std::to_string(k + 1) : "");
       body.where = r.where();
       body.gases = {{"drops", {{300.0, material}}}};
-      body.source = std::make_shared<CloudSource>(bodies[shape], at, droplets);
+      body.source = std::make_shared<CloudSource>(clouds, clouds->add(bodies[shape], *base + glm::dvec3(c.at, 0.0)), droplets);
       simulation_.fields.push_back(std::move(body));
+      clouds->material = material;
     }
   }
+  if (simulation_.shadows && simulation_.sun && simulation_.sun->toSun.z > 0.0) simulation_.sunShade = clouds;
 }
 
 }  // namespace pitviper

@@ -16,6 +16,7 @@
 #include "sim/model/sink.hpp"
 #include "sim/model/stage.hpp"
 #include "sim/model/store.hpp"
+#include "sim/model/sun_shade.hpp"
 #include "sim/model/surroundings.hpp"
 #include "sim/radiometry/physics.hpp"
 #include "sim/radiometry/spectral_rule.hpp"
@@ -75,25 +76,25 @@ struct Camera {
   double exposure_s = 0.0;
   TimeCourse focalLengthOverTime_m, exposureOverTime_s;  ///< empty: as above; else above is what holds at the first frame
   double near_m = 0.1;
-  int samples = 1;               ///< n: n x n subpixels
-  bool motionBlur = false;       ///< what moves while it exposes is drawn at several times of it
-  int exposureParts = 0;         ///< so many; 0: by the accuracy (sim/camera/exposure_parts.hpp)
-  bool pointsApart = false;      ///< what is smaller than a subpixel is not drawn but told as points: stages take them
-  int binning = 1;               ///< so many by so many of the detector's own pixels are read as one of `pinhole`
+  int samples = 1;                   ///< n: n x n subpixels
+  bool motionBlur = false;           ///< what moves while it exposes is drawn at several times of it
+  int exposureParts = 0;             ///< so many; 0: by the accuracy (sim/camera/exposure_parts.hpp)
+  bool pointsApart = false;          ///< what is smaller than a subpixel is not drawn but told as points: stages take them
+  int binning = 1;                   ///< so many by so many of the detector's own pixels are read as one of `pinhole`
   std::optional<glm::ivec4> window;  ///< of the film that is read out: left, top, width, height [pixels]
-  bool sharesShading = false;    ///< those of a pixel are shaded as one where neighbouring pixels are alike
-  double smallBody_px = 16.0;    ///< bodies smaller than this are drawn by their own zoomed view
-  int zoomedSamples = 256;       ///< at most so many across it, unless it has more subpixels; a medium, which fades towards its silhouette, half as many
-  double outlineAccuracy = 0.0;  ///< to which the areas of small bodies are asked for, by fewer; 0: zoomedSamples
-  double textureAccuracy = 0.0;  ///< as Plan::textureAccuracy; the same for the reference that the camera is held against
+  bool sharesShading = false;        ///< those of a pixel are shaded as one where neighbouring pixels are alike
+  double smallBody_px = 16.0;        ///< bodies smaller than this are drawn by their own zoomed view
+  int zoomedSamples = 256;           ///< at most so many across it, unless it has more subpixels; a medium, which fades towards its silhouette, half as many
+  double outlineAccuracy = 0.0;      ///< to which the areas of small bodies are asked for, by fewer; 0: zoomedSamples
+  double textureAccuracy = 0.0;      ///< as Plan::textureAccuracy; the same for the reference that the camera is held against
   SpectralSampling spectral;
   std::vector<FilmPlace> learnt;  ///< lines of sight that its plan must hold for besides those it draws: where an audit found more than was asked
   std::string plan;               ///< text of a plan to draw with, as written by another run; empty: one is made
   std::string planFile;           ///< where it came from, for messages
   std::vector<ChannelOutput> outputs;
-  std::vector<StageChoice> stages;            ///< of its sensor, after the spectral integral
+  std::vector<StageChoice> stages;                ///< of its sensor, after the spectral integral
   std::map<std::string, OwnChannel> ownChannels;  ///< by name, of those that have an exposure or stages of their own
-  std::optional<SpectralBins> spectralImage;  ///< written beside the frame
+  std::optional<SpectralBins> spectralImage;      ///< written beside the frame
   TruthLayers truth;
   std::optional<FollowerChoice> follower;  ///< what points it, besides its mount; none: its mount
 
@@ -166,10 +167,11 @@ struct Simulation {
   std::vector<PointLight> lights;
   std::vector<FieldBody> fields;  ///< jets, smoke, clouds
   std::optional<Sun> sun;
-  std::optional<Spectrum> ambient;  ///< radiance of a uniform dome, or the surroundings' mean [W/(m2 sr um)]
+  std::shared_ptr<const SunShade> sunShade;          ///< by clouds of drops; null: none
+  std::optional<Spectrum> ambient;                   ///< radiance of a uniform dome, or the surroundings' mean [W/(m2 sr um)]
   std::shared_ptr<const Surroundings> surroundings;  ///< of ambient light by direction; null: a uniform dome's
-  Spectrum background;              ///< radiance behind everything [W/(m2 sr um)]
-  std::optional<Surface> ground;    ///< of the earth's sphere, where lines of sight end that meet no body and go down
+  Spectrum background;                               ///< radiance behind everything [W/(m2 sr um)]
+  std::optional<Surface> ground;                     ///< of the earth's sphere, where lines of sight end that meet no body and go down
   std::shared_ptr<const Atmosphere> air;
   std::vector<Camera> cameras;
   std::vector<Probe> probes;

@@ -14,6 +14,8 @@ namespace {
 /// Temperatures of the air and of textures are rounded to these steps; to the finer ones where a channel sees less than kShort_um, as a step there changes the
 /// shape of spectra.
 constexpr double kStep_K = 4.0, kFineStep_K = 1.0, kShort_um = 3.0;
+/// Optical depths of clouds before the sun are rounded to these steps.
+constexpr double kShadeStep = 0.5;
 constexpr double kAngleStep_rad = kPi / 36.0, kCosineStep = 0.1;
 /// Temperatures of hot gases are rounded to steps of this ratio: what is fitted to one holds for its neighbours.
 constexpr double kHotStep = 0.02;
@@ -26,7 +28,8 @@ constexpr double kElevationSteps = 12.0, kAzimuthSteps = 4.0;
 
 /// A factor with its angles rounded to their steps.
 Factor stepped(Factor f) {
-  if (f.kind != Factor::Kind::Planck && f.kind != Factor::Kind::Emission && f.kind != Factor::Kind::Medium)
+  if (f.kind == Factor::Kind::SunShade) f.x = kShadeStep * std::round(f.x / kShadeStep);
+  else if (f.kind != Factor::Kind::Planck && f.kind != Factor::Kind::Emission && f.kind != Factor::Kind::Medium)
     f.x = kAngleStep_rad * std::round(f.x / kAngleStep_rad), f.y = kAngleStep_rad * std::round(f.y / kAngleStep_rad);
   return f;
 }

@@ -75,6 +75,8 @@ double valueOf(const Simulation& sim, const Factor& f, double w) {
     }
     case Factor::Kind::MediumSun:
       return static_cast<const Medium*>(f.of)->scattered(w, f.x) * sim.sun->irradiance(w);
+    case Factor::Kind::SunShade:
+      return std::exp(-f.x * static_cast<const Medium*>(f.of)->absorption_per_m(w));
   }
   return 0.0;
 }

@@ -27,8 +27,9 @@ struct Factor {
     Reflected,  ///< of a reflection component: what it sends of the surroundings' light to a view; a NodeSpectra has it
     Around,     ///< irradiance / pi from the surroundings on a plane whose normal has elevation x and azimuth y, at their height of number z
     Background,
-    Medium,    ///< source radiance of a medium at x [K], y times its own; light that it scatters from all around
-    MediumSun  ///< sunlight that a medium turns towards the eye, x the cosine of the angle [W/(m2 sr um)]
+    Medium,     ///< source radiance of a medium at x [K], y times its own; light that it scatters from all around
+    MediumSun,  ///< sunlight that a medium turns towards the eye, x the cosine of the angle [W/(m2 sr um)]
+    SunShade    ///< what clouds of drops (`of`: their medium) of an optical depth x at 0.55 um let through of the sun
   };
   Kind kind = Kind::Background;
   const void* of = nullptr;
@@ -65,6 +66,9 @@ struct Factor {
   static Factor background() { return {Kind::Background}; }
   static Factor medium(const Medium& m, double temperature_K, double gain = 1.0, bool lasting = true) {
     return {Kind::Medium, &m, temperature_K, gain, lasting};
+  }
+  static Factor sunShade(const Simulation& simulation, double depth) {
+    return {Kind::SunShade, &*simulation.materials[static_cast<std::size_t>(simulation.sunShade->material)]->medium, depth, 0.0, false};
   }
   static Factor mediumSun(const Medium& m, double cosScatter) { return {Kind::MediumSun, &m, cosScatter, 0.0, false}; }
 };

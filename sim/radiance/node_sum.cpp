@@ -104,6 +104,11 @@ std::vector<double> NodeSpectra::of(const Factor& factor) const {
   if (factor.kind == Factor::Kind::Reflected) return surroundings_->reflected(*static_cast<const ReflectionComponent*>(factor.of), *factor.seen);
   std::vector<double> all;
   all.reserve(nodes_.size());
+  if (factor.kind == Factor::Kind::SunShade) {
+    const auto material = static_cast<size_t>(simulation_.sunShade->material);
+    for (const SpectralNode& n : nodes_) all.push_back(std::exp(-factor.x * n.absorption_per_m[material]));
+    return all;
+  }
   for (const SpectralNode& n : nodes_) all.push_back(n.mean([&](double w) { return valueOf(simulation_, factor, w); }));
   return all;
 }

@@ -204,11 +204,15 @@ class Teller {
       const glm::dvec3 light = inNormalFrame(hit.normal, leg.toLight);
       AirAmounts both;
       if (scene_.terms.air) both = sim_.air->powered(air_.amounts(place) + leg.air);
+      const double shade = sun && sim_.sunShade ? sim_.sunShade->grid().at(hit.point) : 0.0;
       for (size_t k = 0; k < m.reflections.size(); ++k) {
         const ReflectionComponent& r = *m.reflections[k];
-        add(sun ? TermKind::Sun : TermKind::Lights, modifiers[k] * strength * r.lobeAt(light, view),
-            {Factor::column(r, light, view), sun ? Factor::sun() : Factor::light(sim_.lights[l])}, scene_.terms.air ? &both : nullptr,
-            sun ? -1 : static_cast<int>(lampOf(sim_, l)));
+        const double coefficient = modifiers[k] * strength * r.lobeAt(light, view);
+        const AirAmounts* const air = scene_.terms.air ? &both : nullptr;
+        const Factor column = Factor::column(r, light, view);
+        if (shade > 0.0) add(TermKind::Sun, coefficient, {column, Factor::sun(), Factor::sunShade(sim_, shade)}, air);
+        else if (sun) add(TermKind::Sun, coefficient, {column, Factor::sun()}, air);
+        else add(TermKind::Lights, coefficient, {column, Factor::light(sim_.lights[l])}, air, static_cast<int>(lampOf(sim_, l)));
       }
     }
   }

@@ -39,9 +39,15 @@ ScenePass::ScenePass(const Simulation& simulation, const Plan& plan, const Shade
       solids_(simulation, tables_.draws, *scene_, library),
       relevance_(simulation, plan, tables_) {
   if (plan.terms.air) air_ = simulation.air->onGpu(simulation, plan, shading == Shading::Direct);
+  if (isShaded()) {
+    const SunShadeGrid& grid = simulation.sunShade->grid();
+    std::vector<float> all{static_cast<float>(grid.nodes.x), static_cast<float>(grid.nodes.y), static_cast<float>(grid.nodes.z)};
+    all.insert(all.end(), grid.depth.begin(), grid.depth.end());
+    sunShade_.upload(all);
+  }
   if (tables_.around) around_ = std::make_shared<SurroundingsBuffer>(simulation, *tables_.around);
   if (plan.terms.shadows) shadows_ = std::make_shared<ShadowPass>(simulation, plan, scene_, library);
-  checkUniformSize((tables_.node.size() + tables_.ambient.size() + plan.nodes.size() * static_cast<size_t>(lightGroups(plan)) * 4) * sizeof(float),
+  checkUniformSize((tables_.node.size() + tables_.ambient.size() + plan.nodes.size() * static_cast<size_t>(lightGroups(simulation, plan)) * 4) * sizeof(float),
                    "the spectral nodes");
 }
 
@@ -65,6 +71,8 @@ void ScenePass::addLightSlots(ShaderSlots& slots) const {
   slots.constants["LIGHTS"] = plan_.lightCount;
   slots.constants["FEW_LIGHTS"] = kFewLights;
   slots.constants["SUN"] = simulation_.sun && plan_.lightCount > 0 ? 1 : 0;
+  slots.constants["SUN_SHADED"] = isShaded() ? 1 : 0;
+  slots.files["sun_shade"] = surfaceShader(isShaded() ? "sun_shade_clouds" : "sun_shade_none");
   slots.constants["SUN_SETS"] = simulation_.overEarth() ? 1 : 0;
   patterns_.addSlots(slots);
 }
@@ -82,7 +90,7 @@ ShaderSlots ScenePass::shadingSlots(bool writtenOut) const {
   slots.constants["NODE_TEXELS"] = (plan_.nodeCount() + 3) / 4;
   slots.constants["GROUPS"] = plan_.groupCount();
   addLightSlots(slots);
-  slots.constants["LIGHT_GROUPS"] = lightGroups(plan_);
+  slots.constants["LIGHT_GROUPS"] = lightGroups(simulation_, plan_);
   slots.constants["LIGHT_PLACES"] = std::max(plan_.lightCount, kLightPlaces);
   slots.constants["GROUND"] = tables_.ground;
   slots.constants["SURFACES"] = 1;
@@ -200,6 +208,7 @@ void ScenePass::bindBuffers() const {
   lights_.bindTexture(9, 4);
   if (air_) air_->bind();
   if (around_) around_->bind();
+  if (isShaded()) sunShade_.bindTexture(28, 1);
   (wholePixels_ ? pixelView_ : view_).bindTexture(kViewUnit, 4);
   nodes_.bindUniform(1);
   if (shadows_) shadows_->bind();

@@ -91,6 +91,7 @@ class ScenePass : public LineDrawer {
   /// `writtenOut`: nodes are named by numbers, none by a loop.
   ShaderSlots shadingSlots(bool writtenOut) const;
   void addLightSlots(ShaderSlots& slots) const;
+  bool isShaded() const { return simulation_.sunShade && plan_.lightCount > 0; }
   /// Of what finds pixels' classes.
   ShaderSlots classSlots(bool classes) const;
   /// Names of the channel targets, and of the truth targets, in order.
@@ -136,6 +137,7 @@ class ScenePass : public LineDrawer {
   SurfaceBuffers solid_;
   SolidPass solids_;
   LightRelevance relevance_;
+  Buffer sunShade_;                             ///< where clouds of drops stand before the sun
   std::shared_ptr<SurroundingsBuffer> around_;  ///< where ambient light has directions
   std::unique_ptr<AirOnGpu> air_;               ///< null: none
   std::shared_ptr<ShadowPass> shadows_;         ///< where the plan has them

@@ -5,6 +5,12 @@
 #include "sim/world/world.hpp"
 
 namespace pitviper {
+namespace {
+
+/// At which clouds dim what shines on fields, whose share of the sun has no wavelength.
+constexpr double kShade_um = 0.55;
+
+}  // namespace
 
 FieldStates::FieldStates(const Simulation& simulation, const WorldState& state) : simulation_(simulation), world_(state), places_(simulation.fields.size()) {
   world_.fields.reset();
@@ -44,7 +50,10 @@ double FieldStates::sunAt(const glm::dvec3& place) const {
   const SunHere sun = sunHere(simulation_, place);
   if (!(sun.share > 0.0) || !simulation_.shadows) return sun.share;
   const RayHits hits = castRay(simulation_, world_, place, sun.toSun, 0.0, nullptr, false, 0);
-  return hits.solid.entity >= 0 ? 0.0 : sun.share;
+  if (hits.solid.entity >= 0) return 0.0;
+  if (!simulation_.sunShade) return sun.share;
+  const Medium& drops = *simulation_.materials[static_cast<std::size_t>(simulation_.sunShade->material)]->medium;
+  return sun.share * std::exp(-simulation_.sunShade->grid().at(place) * drops.absorption_per_m(kShade_um));
 }
 
 }  // namespace pitviper

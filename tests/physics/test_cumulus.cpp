@@ -35,7 +35,11 @@ Simulation cloudScene(const DensityGrid& grid, double albedo, double sun, double
   FieldBody body;
   body.name = "cloud";
   body.gases = {{"drops", {{300.0, static_cast<int>(sim.materials.size()) - 1}}}};
-  body.source = std::make_shared<CloudSource>(std::make_shared<const CloudBody>(grid, drops_K, 0.0), glm::dvec3(0.0), dropletsOf(grey, 0.0));
+  const auto clouds = std::make_shared<CloudSet>(sim.sun->toSun, true);
+  clouds->material = static_cast<int>(sim.materials.size()) - 1;
+  body.source =
+      std::make_shared<CloudSource>(clouds, clouds->add(std::make_shared<const CloudBody>(grid, drops_K, 0.0), glm::dvec3(0.0)), dropletsOf(grey, 0.0));
+  sim.sunShade = clouds;
   sim.fields.push_back(std::move(body));
   return sim;
 }
@@ -148,6 +152,60 @@ TEST(Cumulus, OnTheGpuIsTheReferences) {
     const Worst worst = compare(scene(cloudPicture(position, degrees)), 3);
     EXPECT_GT(worst.covered, 40);
     figure("cloud at " + std::string(position) + " on the GPU, worst pixel [ratio]", 1.0 + worst.error, 1.0, 0.02, "the reference");
+  }
+}
+
+std::string shadedGround(const std::string& more) {
+  return "sun: {azimuth: 120 deg, elevation: 40 deg, irradiance: solar_e490}\nground: {material: sand, temperature: 200 K}\naccuracy: 1 %\n" + more +
+         "clouds:\n  - {name: one, position: [0 m, 3000 m, 900 m], width: 900 m, depth: 600 m, optical_depth: 15, resolution: 24}\n"
+         "cameras:\n  - name: c\n    film: {width: 32, height: 24}\n    field_of_view: 40 deg\n    aperture: 10 mm\n    position: [-600 m, 2400 m, 700 m]\n"
+         "    look_at: [-870 m, 3500 m, 0 m]\n"
+         "    channels: [{name: vis, response: {band: [0.6 um, 0.7 um]}}, {name: mw, response: {band: [3.5 um, 4.1 um]}}]\n";
+}
+
+// Rationale: what of the sun reaches the ground under a cloud. Expected: exp(-c e depth) of what does without it, depth the integral along the line to the sun,
+// c e what Mie's drops take without what they turn straight on: to 2 % of the sunlight, the nodes of the shade (tests/unit/test_cumulus.cpp).
+TEST(Cumulus, ShadesTheGround) {
+  const Simulation sim = scene(shadedGround(""));
+  Simulation bare = sim;
+  bare.sunShade = nullptr;
+  const auto& drops = *sim.materials[static_cast<std::size_t>(sim.sunShade->material)]->medium;
+  const CumulusShapeOptions shape{900.0, 600.0, 0.5, 1};
+  const DensityGrid grid = cumulusGrid(shape, 24, 15.0);
+  double worst = 0.0, darkest = 1.0;
+  for (const double wavelength_um : {0.65, 3.9}) {
+    SpectralNode node;
+    node.members = {{wavelength_um, 1.0}};
+    for (const auto& m : sim.materials) node.absorption_per_m.push_back(m->medium ? m->medium->absorption_per_m(wavelength_um) : 0.0);
+    const auto radiance = [&](const Simulation& s, const glm::dvec3& at) {
+      const WorldState state = advance(s, 0.0);
+      const NodeSpectra spectra(s, {&node, 1});
+      NodeSum sum(spectra);
+      const Terms terms = termsOf(s);
+      sum.begin();
+      radianceAlong({s, terms, nullptr, state, {}, 0}, {at + glm::dvec3(0.0, 0.0, 20.0), {0.0, 0.0, -1.0}, {}}, sum);
+      return sum.radiance()[0];
+    };
+    for (int k = 0; k < 40; ++k) {
+      const glm::dvec3 at(-1300.0 + 20.0 * k, 3500.0 + 13.0 * (k % 9), 0.0);
+      const double depth = grid.along(at - glm::dvec3(0.0, 3000.0, 900.0), sim.sun->toSun, 0.25),
+                   passes = std::exp(-depth * drops.absorption_per_m(wavelength_um));
+      const double found = radiance(sim, at) / radiance(bare, at);
+      worst = std::max(worst, std::abs(found - passes)), darkest = std::min(darkest, passes);
+    }
+  }
+  EXPECT_LT(darkest, 0.1);
+  figure("sunlight on the ground under a cloud, worst difference of 40 places", 1.0 + worst, 1.0, 0.02, "exp(-depth)");
+}
+
+// Expected: within the accuracy in each pixel, and a shadow in the picture.
+TEST(Cumulus, ShadeOnTheGpuIsTheReferences) {
+  needContext();
+  for (const std::string more :
+       {"", "lights: [{name: lamp, intensity: {blackbody: 2500 K, area: 1 m2}, position: [-870 m, 3500 m, 20 m], visible: false}]\n"}) {
+    const Worst worst = compare(scene(shadedGround(more)), 3);
+    EXPECT_GT(worst.covered, 100);
+    figure("ground under a cloud on the GPU, worst pixel [ratio]", 1.0 + worst.error, 1.0, 0.01, "the reference");
   }
 }
 

@@ -58,6 +58,65 @@ TEST(Cumulus, LightOfSkyAndGroundIsWhole) {
   figure("optical depth to the sun above the middle of a slab", texels[middle].y, 0.02 * 50.0 * 7.5, 0.01, "sum over nodes");
 }
 
+// Three clouds, one behind another as the sun sees them; places on the ground, among them and above.
+TEST(Cumulus, ShadeIsWhatStandsBeforeTheSun) {
+  for (const double elevation : {0.2, 0.7, 1.5}) {
+    const glm::dvec3 toSun(std::cos(elevation) * 0.6, std::cos(elevation) * 0.8, std::sin(elevation));
+    CloudSet clouds(toSun, true);
+    for (const std::uint32_t seed : {1u, 2u, 3u})
+      clouds.add(std::make_shared<const CloudBody>(CloudBodyOptions{{900.0, 600.0, 0.4, seed}, 24, 20.0}), {500.0 * seed, 700.0 * seed, 1000.0 + 50.0 * seed});
+    const SunShadeGrid& grid = clouds.grid();
+    double square = 0.0, most = 0.0;
+    int shaded = 0;
+    for (int k = 0; k < 4000; ++k) {
+      const auto part = [k](double step) { return std::fmod(k * step, 1.0); };
+      // About the clouds, then down towards the ground along the sun's line.
+      glm::dvec3 p(4000.0 * part(0.7548776662) - 1000.0, 4500.0 * part(0.5698402910) - 1000.0, 1000.0 + 800.0 * part(0.3819660113));
+      if (k % 2 == 0) p -= (p.z - 5.0) / toSun.z * toSun;
+      double depth = 0.0;
+      for (std::size_t c = 0; c < clouds.size(); ++c) depth += clouds.body(c).density().along(p - clouds.base(c), toSun, 0.25);
+      square += std::pow(grid.at(p) - depth, 2), most = std::max(most, depth);
+      shaded += depth > 0.5;
+    }
+    EXPECT_GT(shaded, 300);
+    figure("shade of clouds under a sun of " + std::to_string(elevation) + " rad, rms over the largest", 1.0 + std::sqrt(square / 4000.0) / most, 1.0, 0.03,
+           "the integral; nodes as far apart as the clouds' own");
+    EXPECT_EQ(grid.at({2000.0, 2000.0, 9000.0}), 0.0);
+  }
+}
+
+// Behind an even depth the beam is weaker by exp(-c depth) everywhere, and with it all that comes of it: the equation is linear.
+TEST(Cumulus, IsDimmedByWhatStandsBeforeIt) {
+  const DensityGrid grid = cumulusGrid({700.0, 500.0, 0.4, 3}, 16, 12.0);
+  const glm::dvec3 toSun(0.6, 0.0, 0.8);
+  const auto alone = cloudNumbers(grid, toSun, true), behind = cloudNumbers(grid, toSun, true, std::vector<float>(grid.value.size(), 3.0f));
+  const glm::dvec4 albedos = physics::cloudAlbedos();
+  const std::size_t n = kCloudTexels * grid.index(8, 8, grid.nodes.z / 2);
+  for (int i = 0; i < 4; ++i)
+    figure("sunlight in a cloud behind a depth of 3, albedo " + std::to_string(albedos[i]), behind[n + 1][i] / alone[n + 1][i],
+           std::exp(-3.0 * physics::cloudScale(albedos[i], 0.85)), 1e-3, "linearity; the iteration's residual");
+  figure("depth to the sun", behind[n].y - alone[n].y, 3.0, 1e-5, "as told");
+}
+
+// Of two clouds in line the farther is lit through the nearer, the nearer as if alone; of two side by side both.
+TEST(Cumulus, CloudsShadeEachOther) {
+  const glm::dvec3 toSun(0.6, 0.0, 0.8);
+  const auto body = std::make_shared<const CloudBody>(CloudBodyOptions{{700.0, 500.0, 0.4, 3}, 16, 12.0});
+  const auto sunlight = [&](const CloudSet& set, std::size_t cloud) {
+    double sum = 0.0;
+    const auto& texels = set.texels(cloud)->texel;
+    for (std::size_t n = 5; n < texels.size(); n += kCloudTexels) sum += static_cast<double>(texels[n].x) * static_cast<double>(texels[n + 1].x);
+    return sum;
+  };
+  CloudSet inLine(toSun, true), apart(toSun, true), without(toSun, false);
+  for (CloudSet* set : {&inLine, &without}) set->add(body, {0.0, 0.0, 1000.0}), set->add(body, glm::dvec3(0.0, 0.0, 1000.0) + 1500.0 * toSun);
+  apart.add(body, {0.0, 0.0, 1000.0}), apart.add(body, {0.0, 3000.0, 1000.0});
+  EXPECT_LT(sunlight(inLine, 0), 0.5 * sunlight(inLine, 1));
+  EXPECT_EQ(sunlight(inLine, 1), sunlight(apart, 0));
+  EXPECT_EQ(apart.texels(0), apart.texels(1));
+  EXPECT_EQ(sunlight(without, 0), sunlight(inLine, 1));
+}
+
 TEST(Cumulus, FieldsCoverWhatIsAsked) {
   for (const double cover : {0.1, 0.25, 0.4}) {
     CumulusFieldOptions o;

@@ -170,10 +170,10 @@ void writeIntegral(RenderTables& t, const Plan& plan) {
 
 }  // namespace
 
-int lightGroups(const Plan& plan) { return (plan.lightCount + 3) / 4; }
+int lightGroups(const Simulation& sim, const Plan& plan) { return plan.lightCount == 0 ? 0 : (plan.lightCount + (sim.sunShade ? 1 : 0) + 3) / 4; }
 
 std::vector<float> lightTable(const Simulation& sim, const Plan& plan, const WorldState& state) {
-  const size_t groups = static_cast<size_t>(lightGroups(plan));
+  const size_t groups = static_cast<size_t>(lightGroups(sim, plan));
   std::vector<float> table(plan.nodes.size() * groups * 4, 0.0f);
   if (plan.lightCount == 0) return table;
   for (size_t i = 0; i < plan.nodes.size(); ++i) {
@@ -181,6 +181,8 @@ std::vector<float> lightTable(const Simulation& sim, const Plan& plan, const Wor
     for (size_t l = 0; l < sim.lights.size(); ++l)
       table[i * groups * 4 + l] = static_cast<float>(state.lightLevels[l] > 0.0 ? state.lightLevels[l] * n.mean(sim.lights[l].intensity) : 0.0);
     if (sim.sun) table[i * groups * 4 + sim.lights.size()] = static_cast<float>(n.mean(sim.sun->irradiance));
+    if (sim.sunShade)
+      table[i * groups * 4 + static_cast<size_t>(plan.lightCount)] = static_cast<float>(n.absorption_per_m[static_cast<size_t>(sim.sunShade->material)]);
   }
   return table;
 }

@@ -85,7 +85,7 @@ struct RenderTables {
 
 /// Light intensities at the nodes, vec4 per group of four lights: changes with the lights' levels.
 std::vector<float> lightTable(const Simulation& simulation, const Plan& plan, const WorldState& state);
-int lightGroups(const Plan& plan);
+int lightGroups(const Simulation& simulation, const Plan& plan);
 /// Up to so many lights each have registers of their own; of more, bodies list those that matter.
 constexpr int kFewLights = 4;
 

@@ -7,7 +7,7 @@ namespace pitviper {
 
 GpuView viewData(const Simulation& simulation, const View& v, double apertureArea_m2, glm::ivec2 corner) {
   const glm::dmat3 cameraFromLocal = glm::transpose(v.localFromCamera);
-  GpuView g;
+  GpuView g{};
   g.pixel = {v.tanPerPixelX, v.tanPerPixelY, v.axisX + corner.x, v.axisY + corner.y};
   const double halfX = 0.5 * v.width, halfY = 0.5 * v.height;
   g.film = {1.0 / (halfX * v.tanPerPixelX), 1.0 / (halfY * v.tanPerPixelY), v.axisX / halfX - 1.0, v.axisY / halfY - 1.0};
@@ -18,6 +18,10 @@ GpuView viewData(const Simulation& simulation, const View& v, double apertureAre
   g.aperture = {apertureArea_m2, v.pixelTan2, 0.0, 0.0};
   g.east = glm::vec4(cameraFromLocal * glm::dvec3(1, 0, 0), 0.0);
   g.north = glm::vec4(cameraFromLocal * glm::dvec3(0, 1, 0), 0.0);
+  if (simulation.sunShade) {
+    const SunShadeGrid& grid = simulation.sunShade->grid();
+    for (std::size_t k = 0; k < 3; ++k) g.shade[k] = glm::vec4(cameraFromLocal * grid.axis[k], glm::dot(grid.axis[k], v.position - grid.origin));
+  }
   return g;
 }
 

@@ -24,8 +24,9 @@ constexpr unsigned kViewUnit = 29;
 /// Mirrors View of sim/render/assembly/glsl/view_block.glsl.
 struct GpuView {
   glm::vec4 pixel, film, depth, up, earth, sun, aperture, east, north;
+  glm::vec4 shade[3];  ///< for sim/render/surface/glsl/sun_shade_clouds.glsl: axes of SunShadeGrid in the camera frame, the camera's place on them
 };
-static_assert(sizeof(GpuView) == 144);
+static_assert(sizeof(GpuView) == 192);
 
 /// `corner`: where the view's lower left stands in the picture [pixels].
 GpuView viewData(const Simulation& simulation, const View& view, double apertureArea_m2, glm::ivec2 corner = {0, 0});

@@ -23,7 +23,7 @@ bool sunMayBeHidden(int entry, vec3 normal, float range) {
   wholeSun_ = SUN_SETS == 0 || sunShare(sunAboveHorizon(height, dot(up, view.sun.xyz), view.earth.x)) >= 1.0;
   bool may = wholeSun_ ? mayBeHidden(listed, toSun) : listed.z > 0.0;
   float towards = dot(normal, toSun) * inversesqrt(max(dot(normal, normal), 1.0e-30));
-  sunlit_ = !may && wholeSun_ && towards >= kSunlit;
+  sunlit_ = SUN_SHADED == 0 && !may && wholeSun_ && towards >= kSunlit;
   lightAndDepth_.x = towards > 0.0 ? towards : -1.0;  // turned away: nothing to tell one side from the other by
   return may;
 }

@@ -6,6 +6,7 @@ Vec3 reflectionColumns(int i, int l, int v);
 Vec3 lobes(Vec3 toLight, int v);
 bool wholeSun_;  // it is the sun, and all of it above the point's horizon
 //@slot shadow
+//@slot sun_shade
 
 // What the point sees of a light.
 struct LightHere {

@@ -17,6 +17,7 @@ Vec3 toLight(int l) {
 }
 
 void prepareLights() {
+  prepareSunShade();
   lightCos_ = 0.0;
   lightDistance2_ = 1.0;
   int row = lightRow(draw_);
@@ -39,7 +40,7 @@ Real reflectedLight(int i) {
 //@each v COMPONENT_VECTORS
   own += dot(reflectionColumns(i, {l}, {v}), lightFactor{l}_{v});
 //@end
-  sum += own * nodes.nodeLight[i * LIGHT_GROUPS + {l} / 4][{l} % 4] * pathTransmittance(i, lightAir{l}_);
+  sum += own * nodes.nodeLight[i * LIGHT_GROUPS + {l} / 4][{l} % 4] * pathTransmittance(i, lightAir{l}_) * ({l} >= LIGHTS - SUN ? sunShade(i) : 1.0);
 //@end
   return sum;
 }

@@ -10,6 +10,7 @@ int shining_;
 Vec3 toLight(int l) { return toLight_[l]; }
 
 void prepareLights() {
+  prepareSunShade();
   lightCos_ = 0.0;
   lightDistance2_ = 1.0;
   shining_ = 0;
@@ -38,7 +39,8 @@ Real reflectedLight(int i) {
   Real sum = 0.0;
   for (int l = 0; l < shining_; ++l) {
     int number = lightNumber_[l];
-    sum += reflectedOf(i, l) * nodes.nodeLight[i * LIGHT_GROUPS + number / 4][number % 4] * pathTransmittance(i, lightAir_[l]);
+    Real shade = number >= LIGHTS - SUN ? sunShade(i) : 1.0;
+    sum += shade * reflectedOf(i, l) * nodes.nodeLight[i * LIGHT_GROUPS + number / 4][number % 4] * pathTransmittance(i, lightAir_[l]);
   }
   return sum;
 }

@@ -9,6 +9,7 @@ Vec3 toLight_;
 Vec3 toLight(int l) { return toLight_; }
 
 void prepareLights() {
+  prepareSunShade();
   int row = lightRow(draw_), last = LIGHTS > FEW_LIGHTS ? int(lightTexel(row).x) - 1 : LIGHTS - 1;
   lightCos_ = 0.0;
   lightDistance2_ = 1.0;
@@ -30,5 +31,5 @@ Real reflectedLight(int i) {
 //@each v COMPONENT_VECTORS
   own += dot(reflectionColumns(i, LIGHTS - 1, {v}), lightFactor_{v});
 //@end
-  return own * nodes.nodeLight[i * LIGHT_GROUPS + (LIGHTS - 1) / 4][(LIGHTS - 1) % 4] * pathTransmittance(i, lightAir_);
+  return own * nodes.nodeLight[i * LIGHT_GROUPS + (LIGHTS - 1) / 4][(LIGHTS - 1) % 4] * pathTransmittance(i, lightAir_) * sunShade(i);
 }
