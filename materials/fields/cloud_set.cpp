@@ -13,7 +13,8 @@ namespace {
 constexpr const char *kLight = "clouds", *kShade = "cloud_shade";
 /// An optical depth of other clouds before the sun below which a cloud is lit as if it stood alone: of what it sends by sunlight 1.3 %.
 constexpr double kLittle = 0.05;
-/// Nodes of the shade: as close together as those of the finest cloud, and so many at most.
+/// Nodes of the shade: twice as close together as those of the finest cloud, and so many at most.
+constexpr double kCloser = 0.5;
 constexpr double kMostShade = 4e6;
 constexpr int kMostLevels = 25;
 
@@ -142,7 +143,7 @@ SunShadeGrid CloudSet::makeGrid() const {
   f.add(toSun);
   for (const Cloud& c : clouds_) {
     const DensityGrid& frame = c.body->frame();
-    apart = std::min({apart, frame.spacing.x, frame.spacing.y}), up = std::min(up, frame.spacing.z);
+    apart = std::min({apart, kCloser * frame.spacing.x, kCloser * frame.spacing.y}), up = std::min(up, frame.spacing.z);
     for (int corner = 0; corner < 8; ++corner) {
       const glm::dvec3 p = c.base + glm::mix(frame.first, frame.last(), glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
       const glm::dvec3 at(glm::dot(p, across), glm::dot(p, upwards), p.z);

@@ -82,7 +82,8 @@ class Composer {
   std::string compose() {
     placeEye();
     if (draw_.fields) kind_ = static_cast<Kind>(field_.weighted({0.65, 0.2, 0.08, 0.07}));
-    if (kind_ != Kind::None) draw_.mostWavelengths = std::min(draw_.mostWavelengths, kWithFields), frames_ = std::min(frames_, 2);
+    heap_ = draw_.fields && kind_ == Kind::None && heaps_.chance(0.15);
+    if (kind_ != Kind::None || heap_) draw_.mostWavelengths = std::min(draw_.mostWavelengths, kWithFields), frames_ = std::min(frames_, 2);
     const std::string air = atmosphere(), light = lightFromAbove(), ground = ground_ ? groundPlate() : "", bodies = cluster(), things = row(),
                       lamps = lampsNearby(), field = fields(), eye = camera();
     Text all;
@@ -93,6 +94,7 @@ class Composer {
     all << "entities:\n" << ground << bodies << things;
     if (!lamps.empty()) all << "lights:\n" << lamps;
     all << field;
+    if (heap_) all << cumulus();
     return all << eye;
   }
 
@@ -565,6 +567,20 @@ class Composer {
     return out << "}\n";
   }
 
+  /// A cloud in view or between the sun and what is in it.
+  std::string cumulus() {
+    const double distance_m = std::max(range_m_ * heaps_.between(0.3, 3.0), 500.0), across_m = acrossFilm_m(distance_m),
+                 width_m = std::clamp(across_m * heaps_.byFactor(0.1, 2.0), 50.0, 6000.0);
+    const Place on = along(distance_m), at{on.x + across_m * heaps_.between(-0.4, 0.4), on.y + 0.5 * width_m,
+                                           std::max(on.z + across_m * heaps_.between(-0.4, 0.4), ground_ ? 30.0 : -1e9)};
+    Text out;
+    out << "clouds:\n  - {name: heap, position: " << at << ", width: " << width_m << " m, seed: " << heaps_.below(1000)
+        << ", resolution: 16, roughness: " << heaps_.unit();
+    if (heaps_.chance(0.7)) out << ", optical_depth: " << heaps_.byFactor(0.5, 100.0);
+    if (heaps_.chance(0.3)) out << ", radius: " << heaps_.byFactor(3.0, 30.0) << " um";
+    return out << "}\n";
+  }
+
   std::string flare() {
     constexpr const char* kTypes[] = {"mtv", "spectrally_matched", "pyrophoric"};
     // They are 0.2 m across, drawn out to some metres, and fly 30 m in a second.
@@ -624,6 +640,8 @@ class Composer {
   RandomDice more_;   ///< of what came later: other scenes stay as they were
   RandomDice field_;  ///< of fields
   RandomDice clouds_{draw_.seed, 5};
+  RandomDice heaps_{draw_.seed, 6};  ///< of cumulus clouds
+  bool heap_ = false;
   /// Wavelengths of the reference in scenes with fields: each pixel of these is a hundred steps along up to some hundred lines.
   static constexpr int kWithFields = 40;
   enum class Kind { None, Plume, Smoke, Flare };

@@ -213,7 +213,8 @@ TEST(RandomScenario, IsTheSameForTheSameSeedAndHasAllKinds) {
                            "fog_oil",
                            "flares",
                            "pyrophoric",
-                           "sequence"})
+                           "sequence",
+                           "clouds:\n  - {name: heap"})
     EXPECT_NE(all.find(word), std::string::npos) << word;
 }
 

@@ -78,9 +78,9 @@ TEST(Cumulus, ShadeIsWhatStandsBeforeTheSun) {
       square += std::pow(grid.at(p) - depth, 2), most = std::max(most, depth);
       shaded += depth > 0.5;
     }
-    EXPECT_GT(shaded, 300);
-    figure("shade of clouds under a sun of " + std::to_string(elevation) + " rad, rms over the largest", 1.0 + std::sqrt(square / 4000.0) / most, 1.0, 0.03,
-           "the integral; nodes as far apart as the clouds' own");
+    EXPECT_GT(shaded, 200);
+    figure("shade of clouds under a sun of " + std::to_string(elevation) + " rad, rms over the largest", 1.0 + std::sqrt(square / 4000.0) / most, 1.0, 0.003,
+           "the integral; nodes half as far apart as the clouds' own");
     EXPECT_EQ(grid.at({2000.0, 2000.0, 9000.0}), 0.0);
   }
 }
