@@ -174,6 +174,31 @@ TEST(Cumulus, IsUnseenInAnEnclosure) {
   }
 }
 
+// Expected: a picture from within and beside it has no cloud: 1e-4, tables of Planck's law and single precision.
+TEST(Cumulus, IsUnseenInAnEnclosureOnTheGpu) {
+  needContext();
+  const DensityGrid grid = cumulusGrid({800.0, 500.0, 0.5, 7}, 16, 12.0);
+  for (const double albedo : {0.999, 0.4}) {
+    Simulation sim = cloudScene(grid, albedo, 0.0, 0.0, 285.0);
+    sim.ambient = sim.background = Spectrum(Spectrum::BlackBody{285.0, 1.0});
+    sim.sun = {}, sim.sunShade = nullptr;
+    Simulation bare = sim;
+    bare.fields.clear();
+    double worst = 0.0;
+    for (const glm::dvec3& eye : {glm::dvec3(0.0, 0.0, 200.0), glm::dvec3(0.0, -3000.0, 200.0)}) {
+      for (Simulation* s : {&sim, &bare}) {
+        Pose pose = s->cameras.front().mount.motion.fixed();
+        pose.position = eye;
+        s->cameras.front().mount.motion = Motion(pose);
+      }
+      const Frame with = renderFrame(sim), without = renderFrame(bare);
+      for (int n = 0; n < 16; ++n)
+        worst = std::max(worst, std::abs(at(with.layers[0], with, n % 4, n / 4) / at(without.layers[0], without, n % 4, n / 4) - 1.0));
+    }
+    figure("cloud in an enclosure in a picture, albedo " + std::to_string(albedo) + " [ratio]", 1.0 + worst, 1.0, 1e-4, "a black body");
+  }
+}
+
 std::string cloudPicture(const std::string& position, int degrees) {
   return "atmosphere: hazy_us76\nsun: {azimuth: 120 deg, elevation: 40 deg, irradiance: solar_e490}\nambient: {from: sky}\n"
          "ground: {material: sand, temperature: 295 K}\naccuracy: 2 %\n"
