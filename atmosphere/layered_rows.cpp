@@ -96,7 +96,7 @@ void endOn(NodeRadiance& line, const NodeRadiance& horizon, size_t nodes) {
 AirRow AirRows::at(const AirLine& asked, std::span<const double> ranges, SameElevation* known) const {
   const Atmosphere& path = *simulation_.air;
   const double height = grid_.places.height_m, radius = simulation_.frame.earthRadius_m();
-  const auto placesOf = [&](double sine) { return withShellPlaces(path, {height, sine, radius}, ranges); };
+  const auto placesOf = [&](double sine) { return withShellPlaces(path, {height, sine, radius}, ranges, Within::Tables); };
   const auto lineAt = [&](double sine) {
     RaySun sun;
     if (plan_.terms.scatteredSun) sun = {grid_.places.sunSine, cosScatterOf({sine, asked.across, false})};

@@ -41,12 +41,13 @@ void addShells(const Atmosphere& air, const AirRay& ray, double range_m, AirAmou
 
 namespace {
 
-/// Amounts between an edge and places within, a unit of which is about an optical depth of 1 in the visible.
-constexpr double kWithin[] = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0};
+/// Amounts between an edge and places within, a unit of which is about an optical depth of 1 in the visible; of tables, whose neighbours must lose the same.
+constexpr double kWithin[] = {0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0},
+                 kWithinTables[] = {0.03, 0.06, 0.1, 0.15, 0.21, 0.3, 0.4, 0.5, 0.7, 1.0, 1.4, 2.0, 2.8, 4.0, 5.6, 8.0, 11.0, 16.0, 22.0, 32.0};
 
 }  // namespace
 
-std::vector<double> withShellPlaces(const Atmosphere& air, const AirRay& ray, std::span<const double> ranges_m) {
+std::vector<double> withShellPlaces(const Atmosphere& air, const AirRay& ray, std::span<const double> ranges_m, Within within) {
   std::vector<double> all(ranges_m.begin(), ranges_m.end());
   if (air.shells().empty()) return all;
   const double h0 = straightened(bendsOf(air), ray.height_m), r0 = ray.earthRadius_m + h0, b = r0 * ray.sinElevation;
@@ -59,7 +60,7 @@ std::vector<double> withShellPlaces(const Atmosphere& air, const AirRay& ray, st
   };
   for (const AirShell& s : straightShells(air)) {
     meet(s.low_m), meet(s.high_m);
-    for (double amount : kWithin)
+    for (double amount : within == Within::Tables ? std::span<const double>(kWithinTables) : std::span<const double>(kWithin))
       if (const double in = amount / s.per_m; in < 0.5 * (s.high_m - s.low_m)) meet(s.low_m + in), meet(s.high_m - in);
   }
   std::sort(all.begin(), all.end());

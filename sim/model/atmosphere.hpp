@@ -72,7 +72,8 @@ void addShells(const Atmosphere& air, const AirRay& ray, double range_m, AirAmou
 void dropShells(std::span<const AirShell> shells, AirAmounts& from);
 /// Rising ranges, and between the first and the last of them those where a ray meets edges of shells and, within, places that lie closer together towards
 /// edges, where light changes.
-std::vector<double> withShellPlaces(const Atmosphere& air, const AirRay& ray, std::span<const double> ranges_m);
+enum class Within { Lines, Tables };  ///< how close together: for tables a ratio of 1.4 of amounts, else 2
+std::vector<double> withShellPlaces(const Atmosphere& air, const AirRay& ray, std::span<const double> ranges_m, Within within = Within::Lines);
 
 /// What the kernel has to do for an air.
 struct AirTraits {

@@ -9,6 +9,8 @@ namespace {
 
 /// Steps between places: of the root of the height, of the sine of an elevation, of the cosine of an azimuth.
 constexpr double kHeightRoot = 20.0, kSineStep = 0.25, kAzimuthStep = 0.5;
+/// Of the amount between a place in a cloud and the nearer edge: the least, and the ratio of one to the next; about an optical depth in the visible.
+constexpr double kLeastWithin = 0.1, kNextWithin = 2.0;
 
 double nearest(double value, double step) { return step * std::round(value / step); }
 
@@ -22,11 +24,33 @@ struct DiffuseOnGrids::OnGrid {
   std::mutex busy;
 };
 
-DiffuseOnGrids::DiffuseOnGrids(const Simulation& simulation, int streams) : simulation_(simulation), light_(DiffuseLight::of(columnOf(simulation), streams)) {}
+DiffuseOnGrids::DiffuseOnGrids(const Simulation& simulation, int streams) : simulation_(simulation), light_(DiffuseLight::of(columnOf(simulation), streams)) {
+  const Atmosphere& air = *simulation.air;
+  const AirNode node = air.node(std::clamp(1.0, air.validLow_um(), air.validHigh_um()));
+  for (const AirShell& s : air.shells())
+    if (node.haze[static_cast<size_t>(s.amount)] > 0.0) clouds_.push_back(s);
+}
 
-DiffuseOnGrids::Place DiffuseOnGrids::stepped(Place p, double step_K) {
+int DiffuseOnGrids::cloudAt(double height_m) const {
+  for (size_t c = 0; c < clouds_.size(); ++c)
+    if (height_m >= clouds_[c].low_m && height_m <= clouds_[c].high_m) return static_cast<int>(c);
+  return -1;
+}
+
+DiffuseOnGrids::Place DiffuseOnGrids::stepped(Place p, double step_K) const {
   const double root = nearest(std::sqrt(std::max(p.height_m, 0.0)), kHeightRoot);
-  return {root * root, nearest(p.sine, kSineStep), nearest(p.cosAzimuth, kAzimuthStep), nearest(p.temperature_K, step_K)};
+  double height_m = root * root;
+  if (const int in = cloudAt(p.height_m); in >= 0) {
+    const AirShell& c = clouds_[static_cast<size_t>(in)];
+    const double half = 0.5 * (c.high_m - c.low_m), above = p.height_m - c.low_m, amount = c.per_m * std::min(above, 2.0 * half - above);
+    const double steps = std::max(std::round(std::log(std::max(amount, 1e-3) / kLeastWithin) / std::log(kNextWithin)), 0.0);
+    const double within = std::min(kLeastWithin * std::pow(kNextWithin, steps) / c.per_m, half);
+    height_m = above < half ? c.low_m + within : c.high_m - within;
+  } else if (const int met = cloudAt(height_m); met >= 0) {
+    const AirShell& c = clouds_[static_cast<size_t>(met)];
+    height_m = p.height_m < c.low_m ? c.low_m - 1.0 : c.high_m + 1.0;
+  }
+  return {height_m, nearest(p.sine, kSineStep), nearest(p.cosAzimuth, kAzimuthStep), nearest(p.temperature_K, step_K)};
 }
 
 double DiffuseOnGrids::at(const FineGrid& grid, size_t i, const Place& place, size_t absorber) {

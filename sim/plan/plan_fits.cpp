@@ -1,6 +1,7 @@
 #include "sim/plan/plan_fits.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <set>
@@ -23,20 +24,15 @@ constexpr double kHopeless = 0.9;
 /// At shorter wavelengths the air and the textures of usual scenes send no thermal light to speak of.
 constexpr double kThermal_um = 1.2;
 
-/// Of a cloud's extinction in a group, over its mean.
-constexpr double kLeastShare = 0.25, kMostShare = 4.0;
-
-bool isShell(const Simulation& sim, size_t amount) {
-  const auto shells = sim.air ? sim.air->shells() : std::span<const AirShell>();
-  return std::any_of(shells.begin(), shells.end(), [&](const AirShell& s) { return static_cast<size_t>(s.amount) == amount; });
-}
+double cloudAmount(const Simulation& sim, size_t absorber) { return sim.air ? shellAmount(*sim.air, absorber) : 0.0; }
 
 /// A group of a channel's fine wavelengths as a node of the scene.
 SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const SpectralGroup& group) {
   const FineGrid& grid = fit.grid();
   SpectralNode node;
   node.absorption_per_m.assign(sim.materials.size(), 0.0);
-  double turned = 0.0, scattered = 0.0;
+  double turnedBy = 0.0, scattered = 0.0;
+  std::array<double, kMostAirAmounts> turned{};  ///< on a way straight through clouds
   const bool hasClouds = sim.air && !sim.air->shells().empty();
   std::vector<AirNode> members;
   // What is scattered is averaged, not fitted: which absorber a fit puts extinction on is of no matter to transmittance, but would be here.
@@ -49,11 +45,12 @@ SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const Spectral
       node.air.molecules[k] += share * air.molecules[k];
       node.air.haze[k] += share * air.haze[k];
       node.air.extinction[k] += share * air.extinction[k];  // of what is not fitted
-      turned += share * air.haze[k] * air.meanAsymmetry;
+      turnedBy += share * air.haze[k] * air.meanAsymmetry;
+      if (hasClouds) turned[k] += share * turnedThrough(*sim.air, air, k);
       scattered += share * air.haze[k];
     }
   }
-  node.air.meanAsymmetry = scattered > 0.0 ? turned / scattered : 0.0;
+  node.air.meanAsymmetry = scattered > 0.0 ? turnedBy / scattered : 0.0;
   node.air.asymmetry.fill(node.air.meanAsymmetry);
   // Absorbers of a kind keep one asymmetry in common; without clouds there is one kind.
   for (const auto& kind : hasClouds ? particleKinds(members) : ParticleKinds()) {
@@ -68,9 +65,9 @@ SpectralNode nodeOf(const Simulation& sim, const ChannelFit& fit, const Spectral
   for (size_t a = 0; a < fit.absorbers().size(); ++a) {
     const auto k = static_cast<size_t>(fit.absorbers()[a]);
     if (k < kMostAirAmounts) {
-      // Of a cloud that nothing is seen through a fit may say anything of its extinction; what it sends goes by its albedo.
-      const double mean = node.air.extinction[k];
-      if (isShell(sim, k) && mean > 0.0) node.air.haze[k] *= std::clamp(group.extinction[a] / mean, kLeastShare, kMostShare);
+      // Of a cloud that nothing is seen through a fit may say anything of its extinction; what it sends goes by what it turns.
+      if (const double depth = cloudAmount(sim, k) * group.extinction[a]; depth > 0.0)
+        node.air.haze[k] = std::min(turned[k] * depth / physics::oneMinusExp(depth), group.extinction[a]);
       node.air.extinction[k] = group.extinction[a];
     } else node.absorption_per_m[k - kMostAirAmounts] = group.extinction[a];
   }

@@ -345,7 +345,7 @@ void ProductSink::tellAgain() {
     const double seen = part.weight * std::exp(std::min(depth, kOpaque)) / part.scatters;
     DiffuseOnGrids::Place& mean = part.place;
     for (double* v : {&mean.height_m, &mean.sine, &mean.cosAzimuth, &mean.temperature_K}) *v /= part.weight;
-    const DiffuseOnGrids::Place place = DiffuseOnGrids::stepped(mean, step_K_);
+    const DiffuseOnGrids::Place place = diffuse_->stepped(mean, step_K_);
     const std::string where = "again " + std::to_string(place.height_m) + " " + std::to_string(place.sine) + " " + std::to_string(place.cosAzimuth) + " " +
                               std::to_string(place.temperature_K) + " ";
     const int path = pathOf(part.middle, 0.5);
@@ -360,7 +360,9 @@ void ProductSink::tellAgain() {
     }
     part = {};
   };
+  int cloud = -1;
   for (const Again& a : again_) {
+    if (const int own = diffuse_->cloudAt(a.place.height_m); own != cloud) tell(), cloud = own;
     part.weight += a.weight, part.scatters += a.scatters;
     part.passed += a.passed;
     for (size_t k = 0; k < kMostAirAmounts; ++k) part.middle.amount[k] += a.weight * a.middle.amount[k];

@@ -65,8 +65,10 @@ class DiffuseOnGrids {
     double height_m = 0.0, sine = 0.0, cosAzimuth = 0.0, temperature_K = 0.0;  ///< of a line and of the air there
     auto operator<=>(const Place&) const = default;
   };
-  /// The nearest of few places.
-  static Place stepped(Place place, double step_K);
+  /// The nearest of few places; in clouds closer together towards their edges, where light changes, and never on the other side of one.
+  Place stepped(Place place, double step_K) const;
+  /// The number of the cloud that a height lies in; -1: none.
+  int cloudAt(double height_m) const;
   /// By an absorber of the air, per unit of its amount, at the i-th wavelength of a grid, which must outlive it [W/(m2 sr um)].
   double at(const FineGrid& grid, size_t i, const Place& place, size_t absorber);
 
@@ -74,6 +76,7 @@ class DiffuseOnGrids {
   struct OnGrid;
   const Simulation& simulation_;
   std::shared_ptr<const DiffuseLight> light_;
+  std::vector<AirShell> clouds_;  ///< shells of what scatters
   std::mutex busy_;
   std::map<const FineGrid*, std::shared_ptr<OnGrid>> grids_;
 };

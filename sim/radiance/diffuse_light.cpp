@@ -202,6 +202,18 @@ NodeDiffuse::NodeDiffuse(std::shared_ptr<const DiffuseLight> light, std::span<co
   write(key);
 }
 
+double shellAmount(const Atmosphere& air, std::size_t absorber) {
+  double sum = 0.0;
+  for (const AirShell& s : air.shells())
+    if (static_cast<std::size_t>(s.amount) == absorber) sum += s.per_m * (s.high_m - s.low_m);
+  return sum;
+}
+
+double turnedThrough(const Atmosphere& air, const AirNode& node, std::size_t absorber) {
+  const double depth = node.extinction[absorber] * shellAmount(air, absorber);
+  return node.haze[absorber] * (depth > 0.0 ? physics::oneMinusExp(depth) / depth : 1.0);
+}
+
 bool NodeDiffuse::read(const ContentKey& key) {
   const auto text = readCachedTable(kTable, key);
   if (!text) return false;
@@ -242,7 +254,7 @@ NodeDiffuse::Part NodeDiffuse::partOf(std::span<const SpectralNode> nodes, bool 
     if (!haze)
       for (double m : air.molecules) sum += m;
     else
-      for (std::size_t k : *kind) sum += air.haze[k];
+      for (std::size_t k : *kind) sum += turnedThrough(light_->air(), air, k);
     return sum;
   };
   const LayerLight::Shape shape = light_->shape();
@@ -276,6 +288,11 @@ NodeDiffuse::Part NodeDiffuse::partOf(std::span<const SpectralNode> nodes, bool 
       for (std::size_t h = 0; h < heights; ++h)
         for (std::size_t k = 0; k < count; ++k) into[h * count + k] += weight[k] * of[h * each + moments[k]];
     }
+    // Lines tell what scattering makes of a black body of the mean radiance: what of thermal light goes with what scatters is told by its difference from that.
+    for (std::size_t h = 0; !solar && sum > 0.0 && nodes[i].members.size() > 1 && h < heights; ++h)
+      if (const double kelvin = light_->temperatures_K()[h]; kelvin > 0.0)
+        for (const auto& m : nodes[i].members)
+          into[h * count] += m.share * (1.0 - scatteredBy(light_->at(m.wavelength_um).air) / sum) * physics::planckRadiance(m.wavelength_um, kelvin);
   }
   const auto at = [&](std::size_t h, std::size_t k) { return all.row(static_cast<Eigen::Index>(h * count + k)); };
   Part part;

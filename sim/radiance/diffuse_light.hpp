@@ -39,6 +39,7 @@ class DiffuseLight {
   const std::vector<double>& heights_m() const { return heights_m_; }  ///< rising
   LayerLight::Shape shape() const { return shape_; }
   bool sunlit() const { return legs_ != nullptr; }
+  const std::vector<double>& temperatures_K() const { return temperature_K_; }  ///< of the air at each height
   /// Of all that it depends on.
   const ContentKey& key() const { return key_; }
   /// Of a wavelength, [height][moment]; of the sun for an irradiance of 1.
@@ -50,6 +51,7 @@ class DiffuseLight {
   /// Kept.
   const Moments& at(double wavelength_um) const;
   AirNode airAt(double wavelength_um) const { return column_.air->node(wavelength_um); }
+  const Atmosphere& air() const { return *column_.air; }
 
  private:
   DiffuseLight(const AirColumn& column, int streams);
@@ -69,6 +71,12 @@ class DiffuseLight {
   mutable std::mutex busy_;
   mutable std::map<double, Moments> kept_;
 };
+
+/// What there is of a cloud's absorber straight up through all of its shells; 0: it is no cloud's.
+double shellAmount(const Atmosphere& air, std::size_t absorber);
+/// What an absorber's particles turn of light per unit of its amount; of a cloud the mean over a way straight through it, which sees the less of it the more it
+/// takes: haze (1 - exp(-depth)) / depth.
+double turnedThrough(const Atmosphere& air, const AirNode& node, std::size_t absorber);
 
 /// What light turned into a line is at the edges of layers: along a line directions hardly change. One for each thread.
 struct DiffuseMemory {
