@@ -41,6 +41,7 @@ class Builder {
   void readRefraction(const Record& scenario);
   void readBackground(const Record& scenario);
   void readSun(const Record& scenario);
+  void readStars(const Record& scenario);
   void readMaterials(const Record& scenario);
   /// After materials and air.
   void readGround(const Record& scenario);

@@ -79,6 +79,7 @@ Simulation readScenarioText(const std::string& text, const std::string& fileName
     b.readRefraction(r);
     b.readBackground(r);
     b.readSun(r);
+    b.readStars(r);
     b.readAccuracy(r);
     b.readMaterials(r);
     b.readGround(r);

@@ -8,6 +8,7 @@
 #include "scenarios/reader/tables.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
 #include "sim/parameters/print.hpp"
+#include "sim/parameters/read_file.hpp"
 #include "sim/parameters/units.hpp"
 #include "sim/plan/budget.hpp"
 #include "sim/radiance/sky.hpp"
@@ -219,16 +220,13 @@ Spectrum shareOf(const MoonLook& moon) {
   return Spectrum(std::move(t));
 }
 
-/// Where sun or moon stand, and how much of the sun's light at 1 au they send.
-/// `bending`: by how much air lifts what stands at a true elevation; none: it does not.
-void placeByDate(const Record& scenario, const Record& own, bool isMoon, const std::function<double(double)>& bending, Sun& sun) {
-  const auto directionOf = [&](const SkyPlace& p) { return directionTo(p.azimuth_rad, p.elevation_rad + (bending ? bending(p.elevation_rad) : 0.0)); };
+/// When and where the sky is looked at: frame 0, the origin. `what`: whose place that is, for messages.
+std::pair<Instant, GroundPlace> skyOf(const Record& scenario, const Location& asks, const std::string& what) {
   const Value* time = scenario.find("time");
   const Value* date = time ? time->find("date") : nullptr;
   if (!date || !scenario.given("origin"))
-    throw UserError(own.where(),
-                    std::string(isMoon ? "the moon" : "the sun") + " has no azimuth and elevation, and the scenario no " + (date ? "origin" : "date"),
-                    "azimuth and elevation, or 'time: {date: 2026-06-21T12:00:00Z}' and 'origin'",
+    throw UserError(asks, what + ", and the scenario no " + (date ? "origin" : "date"),
+                    "azimuth and elevation of sun or moon, or 'time: {date: 2026-06-21T12:00:00Z}' and 'origin'",
                     date ? "add 'origin: {latitude: 48 deg, longitude: 11 deg}'" : "add a date to 'time'");
   std::string problem;
   std::optional<Instant> when = parseInstant(date->text, problem);
@@ -237,20 +235,50 @@ void placeByDate(const Record& scenario, const Record& own, bool isMoon, const s
   when->fraction += start.number("start") / 86400.0;
   if (!isCovered(*when))
     throw UserError(start.where("start"), "frame 0 lies where earth and moon are not known", "from 1900-01-01 to 2100-01-01", "correct 'start' or 'date'");
-  const GroundPlace where{origin.number("latitude"), origin.number("longitude"), origin.number("height")};
+  return {*when, {origin.number("latitude"), origin.number("longitude"), origin.number("height")}};
+}
+
+/// Where sun or moon stand, and how much of the sun's light at 1 au they send.
+/// `bending`: by how much air lifts what stands at a true elevation; none: it does not.
+void placeByDate(const Record& scenario, const Record& own, bool isMoon, const std::function<double(double)>& bending, Sun& sun) {
+  const auto directionOf = [&](const SkyPlace& p) { return directionTo(p.azimuth_rad, p.elevation_rad + (bending ? bending(p.elevation_rad) : 0.0)); };
+  const auto [when, where] = skyOf(scenario, own.where(), std::string(isMoon ? "the moon" : "the sun") + " has no azimuth and elevation");
   if (!isMoon) {
-    const SkyPlace place = sunPlace(*when, where);
+    const SkyPlace place = sunPlace(when, where);
     sun.toSun = directionOf(place);
     const double near = 149597870700.0 / place.distance_m;
     sun.irradiance = sun.irradiance * Spectrum(near * near);
     return;
   }
-  const MoonLook moon = moonLook(*when, where);
+  const MoonLook moon = moonLook(when, where);
   sun.toSun = directionOf(moon.place);
   sun.irradiance = sun.irradiance * shareOf(moon);
 }
 
 }  // namespace
+
+void Builder::readStars(const Record& scenario) {
+  // Lower than any horizon that a camera may see them over.
+  constexpr double kLowest_rad = -0.2, kFrom_um = 0.3, kTo_um = 14.0;
+  constexpr int kSteps = 160;
+  if (!scenario.given("stars") || !scenario.boolean("stars")) return;
+  const auto [when, where] = skyOf(scenario, scenario.where("stars"), "stars have no places");
+  const auto file = libraries_.atmosphere / "bright_stars.csv";
+  std::string problem;
+  const auto stars = pitviper::readStars(readWholeFile(file), problem);
+  if (!stars) throw UserError({file.string(), 1, 1, -1}, "a damaged table of stars", problem, "take the one of this program's library");
+  const std::vector<SkyPlace> places = starPlaces(*stars, when, where);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const double elevation_rad = places[i].elevation_rad + (bending_ ? bending_(places[i].elevation_rad) : 0.0);
+    if (elevation_rad < kLowest_rad) continue;
+    Spectrum::Table t{{}, {}, Outside::Hold, "star " + (*stars)[i].name};
+    for (int k = 0; k <= kSteps; ++k) {
+      t.wavelength_um.push_back(kFrom_um * std::pow(kTo_um / kFrom_um, k / double(kSteps)));
+      t.value.push_back(starIrradiance((*stars)[i], t.wavelength_um.back()));
+    }
+    simulation_.stars.push_back({(*stars)[i].name, directionTo(places[i].azimuth_rad, elevation_rad), Spectrum(std::move(t))});
+  }
+}
 
 void Builder::readSun(const Record& scenario) {
   if (!scenario.given("sun")) return;

@@ -99,6 +99,7 @@ const ParameterTable& scenario() {
        map("background", "what is behind everything (0 K unless given), seen through the air"),
        map("ground", "the earth's surface where bodies end: under layered air it is always there, black unless this says otherwise"),
        map("sun", "direction and irradiance"),
+       boolean("stars", "the brightest stars, V to 2.5, by `time: {date}` and `origin` at frame 0, where cameras see them"),
        map("ambient", "what lights all surfaces from all around"),
        map("materials", "name: material; library materials need not be listed"),
        list("lights", "spectral point lights", 0, 1024),

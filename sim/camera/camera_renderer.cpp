@@ -1,6 +1,7 @@
 #include "sim/camera/camera_renderer.hpp"
 
 #include "sim/camera/small_bodies.hpp"
+#include "sim/camera/stars_in_view.hpp"
 #include "sim/camera/sun_in_view.hpp"
 #include "sim/camera/visible_lights.hpp"
 #include "sim/camera/zoomed_lines.hpp"
@@ -210,7 +211,7 @@ CameraImage CameraRenderer::finish() {
   {
     const TimedPart part("lamps in view");
     addVisibleLights(image, ways_, simulation_, plan_, lampsInView(), present_);
-    if (!only_) addSunInView(image, ways_, simulation_, plan_, state_, present_);
+    if (!only_) addSunInView(image, ways_, simulation_, plan_, state_, present_), addStarsInView(image, ways_, simulation_, plan_, state_, present_);
   }
   const TimedPart part("resolve");
   if (reference_) reference_->endPicture();

@@ -141,7 +141,7 @@ void addTo(Fingerprint& f, const Material& m) {
 
 void addTo(Fingerprint& f, const Simulation& sim) {
   const auto& [name, file, sha256, content, seed, mode, shadows, alone, audit, frame, time, limits, wind_m_s, textures, materials, entities, lights, fields,
-               sun, sunShade, ambient, surroundings, background, ground, air, cameras, probes, commands, stores, sinks] = sim;
+               sun, stars, sunShade, ambient, surroundings, background, ground, air, cameras, probes, commands, stores, sinks] = sim;
   f.add(static_cast<double>(seed)).add(static_cast<int>(mode)).add(shadows);
   const auto& [latitude_rad, longitude_rad, height_m] = frame.origin();
   f.add(latitude_rad).add(longitude_rad).add(height_m).add(frame.ground_m()).add(frame.refraction());
@@ -165,6 +165,11 @@ void addTo(Fingerprint& f, const Simulation& sim) {
     source->addTo(f);
   }
   addTo(f, sun);
+  f.add(static_cast<double>(stars.size()));
+  for (const auto& [star, direction, irradiance] : stars) {
+    f.add(direction);
+    addTo(f, irradiance);
+  }
   f.add(sunShade != nullptr);  // it is that of the fields
   addTo(f, ambient);
   f.add(surroundings != nullptr);

@@ -147,6 +147,13 @@ struct Limits {
 /// which a further pass integrates. Auto: buffered where something transparent is in view.
 enum class RenderMode { Auto, Direct, Buffered };
 
+/// A point of light in the sky.
+struct SkyStar {
+  std::string name;
+  glm::dvec3 direction{0.0, 0.0, 1.0};  ///< unit, local frame, towards it
+  Spectrum irradiance;                  ///< above the air, on a plane that faces it [W/(m2 um)]
+};
+
 struct Simulation {
   std::string name;
   std::string file;
@@ -167,6 +174,7 @@ struct Simulation {
   std::vector<PointLight> lights;
   std::vector<FieldBody> fields;  ///< jets, smoke, clouds
   std::optional<Sun> sun;
+  std::vector<SkyStar> stars;                ///< in view of cameras; they light nothing
   std::shared_ptr<const SunShade> sunShade;          ///< by clouds of drops; null: none
   std::optional<Spectrum> ambient;                   ///< radiance of a uniform dome, or the surroundings' mean [W/(m2 sr um)]
   std::shared_ptr<const Surroundings> surroundings;  ///< of ambient light by direction; null: a uniform dome's
