@@ -26,8 +26,6 @@ constexpr double kNear = 0.3;
 constexpr double kOpaque = 1e-9;
 /// Steps of heights and suns become no smaller than this part of the usual ones.
 constexpr double kSame = 1.0 / 1024.0;
-/// What one azimuth loses says nothing of what several do: with them first.
-constexpr int kFewAzimuths = 5;
 /// Sizes tried.
 constexpr int kTries = 6;
 /// How much finer than a table's ranges the air is looked at to tell what is lost by adding it up over these.
@@ -349,7 +347,7 @@ std::pair<AirTableSize, AirTableLoss> AirTableFit::within(double accuracy) const
   for (int tries = 1; tries < kTries; ++tries) {
     AirTableSize next{finer(size.elevations, largestOf(loss.elevations), share, kMost.elevations),
                       finer(size.ranges, largestOf(loss.ranges), share, kMost.ranges),
-                      finer(size.azimuths, largestOf(loss.azimuths), budget::kAzimuthSteps.of(accuracy), size.azimuths == 1 ? kFewAzimuths : kMost.azimuths),
+                      finer(size.azimuths, largestOf(loss.azimuths), budget::kAzimuthSteps.of(accuracy), kMost.azimuths),
                       size.over,
                       size.across,
                       size.near_m,
