@@ -10,6 +10,8 @@ void addStarsInView(Subpixels& image, const WaysToLights& ways, const Simulation
   const glm::dvec3 up = sim.frame.up(v.position);
   const double height_m = sim.frame.height(v.position);
   const bool isAbove = plan.terms.air && sim.air->top_m() < physics::kFar;
+  // Of the wavelengths themselves: what a group says of the air was chosen without stars. Made for the first that is seen.
+  std::vector<std::vector<AirNode>> airs;
   for (const SkyStar& star : sim.stars) {
     const glm::dvec3 p = glm::transpose(v.localFromCamera) * star.direction;
     if (!(-p.z > 1e-3)) continue;
@@ -23,10 +25,17 @@ void addStarsInView(Subpixels& image, const WaysToLights& ways, const Simulation
     const auto way = ways.from(state, present, v.position, star.direction, physics::kFar, v.near_m / -p.z);
     if (way.empty()) continue;
     const AirAmounts air = isAbove ? sim.air->amounts({height_m, sine, sim.frame.earthRadius_m()}, physics::kFar) : AirAmounts{};
+    for (std::size_t i = 0; isAbove && airs.size() < plan.nodes.size(); ++i) {
+      auto& own = airs.emplace_back();
+      for (const SpectralNode::Member& m : plan.nodes[i].members) own.push_back(sim.air->node(m.wavelength_um));
+    }
     std::vector<double> sums(image.slotCount(), 0.0);
     for (std::size_t i = 0; i < plan.nodes.size(); ++i) {
       const SpectralNode& n = plan.nodes[i];
-      const double seen = way[i] * n.mean(star.irradiance) * (isAbove ? sim.air->transmittance(n.air, air) : 1.0);
+      double seen = 0.0;
+      for (std::size_t m = 0; m < n.members.size(); ++m)
+        seen += n.members[m].share * star.irradiance(n.members[m].wavelength_um) * (isAbove ? sim.air->transmittance(airs[i][m], air) : 1.0);
+      seen *= way[i];
       for (std::size_t s = 0; s < sums.size(); ++s) sums[s] += plan.weight[s][i] * seen;
     }
     for (std::size_t s = 0; s < sums.size(); ++s) {
