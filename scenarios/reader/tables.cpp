@@ -136,14 +136,16 @@ const ParameterTable& repeat() {
 }
 
 const ParameterTable& render() {
-  static const ParameterTable t{"render",
-                                "Pictures are the same in either mode, to rounding.",
-                                {withDefault(choice("mode", {{"auto", RenderMode::Auto}, {"direct", RenderMode::Direct}, {"buffered", RenderMode::Buffered}},
-                                                    "direct: shading integrates straight into the channels; buffered: through a spectral image, as "
-                                                    "transparent things need it; auto: buffered only in frames with something transparent in view",
-                                                    &Simulation::mode),
-                                             "auto"),
-                                 withDefault(boolean("shadows", "opaque surfaces cast shadows of the sun and of point lights", &Simulation::shadows), "true")}};
+  static const ParameterTable t{
+      "render",
+      "Pictures are the same in either mode, to rounding.",
+      {withDefault(choice("mode", {{"auto", RenderMode::Auto}, {"direct", RenderMode::Direct}, {"buffered", RenderMode::Buffered}},
+                          "direct: shading integrates straight into the channels; buffered: through a spectral image, as "
+                          "transparent things need it; auto: buffered only in frames with something transparent in view",
+                          &Simulation::mode),
+                   "auto"),
+       withDefault(boolean("shadows", "opaque surfaces cast shadows of the sun and of point lights, cumulus clouds of the sun", &Simulation::shadows),
+                   "true")}};
   return t;
 }
 

@@ -211,7 +211,10 @@ CameraImage CameraRenderer::finish() {
   {
     const TimedPart part("lamps in view");
     addVisibleLights(image, ways_, simulation_, plan_, lampsInView(), present_);
-    if (!only_) addSunInView(image, ways_, simulation_, plan_, state_, present_), addStarsInView(image, ways_, simulation_, plan_, state_, present_);
+    if (!only_) {
+      addSunInView(image, ways_, simulation_, plan_, state_, present_);
+      addStarsInView(image, ways_, simulation_, plan_, state_, present_);
+    }
   }
   const TimedPart part("resolve");
   if (reference_) reference_->endPicture();

@@ -70,9 +70,10 @@ std::vector<AirShell> straightShells(const Atmosphere& air);
 void addShells(const Atmosphere& air, const AirRay& ray, double range_m, AirAmounts& into);
 /// Nothing of them.
 void dropShells(std::span<const AirShell> shells, AirAmounts& from);
+/// How close together places within shells lie: for tables, whose rows must lose the same as their neighbours, a ratio of 1.4 of amounts, else 2.
+enum class Within { Lines, Tables };
 /// Rising ranges, and between the first and the last of them those where a ray meets edges of shells and, within, places that lie closer together towards
 /// edges, where light changes.
-enum class Within { Lines, Tables };  ///< how close together: for tables a ratio of 1.4 of amounts, else 2
 std::vector<double> withShellPlaces(const Atmosphere& air, const AirRay& ray, std::span<const double> ranges_m, Within within = Within::Lines);
 
 /// What the kernel has to do for an air.

@@ -7,13 +7,14 @@
 
 namespace pitviper {
 
+/// Of drops, per four nodes.
+constexpr std::size_t kCloudRows = 10;
+
 /// Texels: of each mixture one (first texel of its levels, their number, first texel of what else it has); of each mixture 4 `levelFours` temperatures [K]; the
 /// levels' absorption per amount, rows of `fours`; of each mixture and four nodes five (thermal share, own radiance, ambient light scattered, sunlight
 /// scattered for a phase function of 1, asymmetry), where any has more than absorption; of a field with drops, for each four nodes, `kCloudRows`;
 /// `kBlackEntries` rows of Planck radiance, evenly over 1 / T. A mixture: gases that a field's shader adds up as one, by FieldState::share. Of drops: albedo,
 /// asymmetry, irradiance of the sun, radiance of sky and ground, four weights and a coordinate (physics::CloudOptics).
-constexpr std::size_t kCloudRows = 10;
-
 class FieldTables {
  public:
   FieldTables(const Simulation& simulation, const Plan& plan, const FieldBody& field);
