@@ -1,6 +1,5 @@
 #include "sim/run/bare_timer.hpp"
 
-
 #include "sim/stream/clock/wall_clock.hpp"
 
 namespace pitviper {

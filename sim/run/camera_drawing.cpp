@@ -42,6 +42,14 @@ CameraDrawing::CameraDrawing(const Simulation& simulation, const Camera& camera,
   auditor_ = std::make_unique<Auditor>(simulation, *rungs_[0].drawn, rungs_[0].renderer->plan(), library, scene);
 }
 
+CameraDrawing::CameraDrawing(const Simulation& simulation, const Camera& camera, Plan plan, const ShaderLibrary& library,
+                             const std::shared_ptr<const GpuScene>& scene) {
+  auto drawn = std::make_unique<Camera>(drawnCamera(camera));
+  auto renderer = std::make_unique<CameraRenderer>(simulation, *drawn, std::move(plan), library, scene);
+  rungs_.push_back({std::move(drawn), std::move(renderer)});
+  auditor_ = std::make_unique<Auditor>(simulation, *rungs_[0].drawn, rungs_[0].renderer->plan(), library, scene);
+}
+
 CameraDrawing::~CameraDrawing() {
   const UsedContext used(own_.get());
   auditor_.reset();

@@ -29,6 +29,8 @@ class CameraDrawing {
   /// thread's that draws, or `own`, which goes after it.
   CameraDrawing(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
                 const std::vector<double>& accuracies, const std::function<void(double share)>& planning, std::shared_ptr<const GlContext> own = {});
+  /// To the accuracy of a plan at hand, which is one of this camera in a scene of the same materials, lights, bodies and air by number.
+  CameraDrawing(const Simulation& simulation, const Camera& camera, Plan plan, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene);
   ~CameraDrawing();
   CameraDrawing(const CameraDrawing&) = delete;
   CameraDrawing& operator=(const CameraDrawing&) = delete;

@@ -15,9 +15,23 @@ CameraLine::CameraLine(const Simulation& simulation, const Camera& camera, const
   if (!allRungs) accuracies.resize(1);
   if (isDraft) accuracies = {kDraft};
   drawing_ = std::make_unique<CameraDrawing>(simulation, camera, library, scene, accuracies, planning);
-  if (camera.hasStages()) chain_ = std::make_unique<SensorChain>(camera, library);
-  if (camera.truth.targets || camera.truth.terms) truth_ = std::make_unique<TruthMeter>(simulation, camera);
-  if (camera.follower) pointer_ = std::make_unique<CameraPointer>(simulation, camera);
+  makeSensor(library);
+}
+
+CameraLine::CameraLine(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::unique_ptr<CameraDrawing> drawing, bool isDraft)
+    : simulation_(simulation), camera_(camera), drawing_(std::move(drawing)), isDraft_(isDraft) {
+  makeSensor(library);
+}
+
+void CameraLine::makeSensor(const ShaderLibrary& library) {
+  if (camera_.hasStages()) chain_ = std::make_unique<SensorChain>(camera_, library);
+  if (camera_.truth.targets || camera_.truth.terms) truth_ = std::make_unique<TruthMeter>(simulation_, camera_);
+  if (camera_.follower) pointer_ = std::make_unique<CameraPointer>(simulation_, camera_);
+}
+
+void CameraLine::startAgain(int first, const ShaderLibrary& library) {
+  makeSensor(library);
+  warmUp(first);
 }
 
 void CameraLine::takeOver(std::unique_ptr<CameraDrawing> drawing) {

@@ -18,6 +18,8 @@ class CameraLine {
   /// As CameraDrawing, of the thread's context. `allRungs`: not only the first of rungsOf(). `isDraft`: by a draft alone, until takeOver().
   CameraLine(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, const std::shared_ptr<const GpuScene>& scene,
              const std::function<void(double share)>& planning, bool allRungs = false, bool isDraft = false);
+  /// By a drawing at hand, of the thread's context or its own.
+  CameraLine(const Simulation& simulation, const Camera& camera, const ShaderLibrary& library, std::unique_ptr<CameraDrawing> drawing, bool isDraft);
   /// What draws from here on; no picture may be begun.
   void takeOver(std::unique_ptr<CameraDrawing> drawing);
   bool isDraft() const { return isDraft_; }
@@ -25,6 +27,8 @@ class CameraLine {
   /// Detectors that remember see so many frames before the first, which nobody gets; a follower that looks at its own pictures all from the scenario's first
   /// on.
   void warmUp(int first);
+  /// As if `first` were the first frame: what detectors and followers remember is forgotten.
+  void startAgain(int first, const ShaderLibrary& library);
   /// Every rung draws a picture that nobody gets: the first frame waits for no compiler.
   void prepare(const StateAt& stateAt, double time_s);
 
@@ -50,6 +54,7 @@ class CameraLine {
   double accuracyOf(std::size_t rung) const { return drawing_->accuracyOf(rung); }
 
  private:
+  void makeSensor(const ShaderLibrary& library);
   /// What the sensor makes of a picture, with what its follower finds in that.
   Frame seen(const CameraImage& image, const WorldState& state, int number, std::vector<TargetRow> targets, std::vector<FrameLayer> terms);
   const Simulation& simulation_;

@@ -22,8 +22,8 @@ struct Ended {};
 
 }  // namespace
 
-DrawingsBeside::DrawingsBeside(const Simulation& simulation, const ShaderLibrary& library, std::vector<std::size_t> cameras, bool allRungs, double time_s)
-    : simulation_(simulation), library_(library), cameras_(std::move(cameras)), allRungs_(allRungs), time_s_(time_s), thread_([this] {
+DrawingsBeside::DrawingsBeside(const Simulation& simulation, const ShaderLibrary& library, std::vector<std::size_t> cameras, Which which, double time_s)
+    : simulation_(simulation), library_(library), cameras_(std::move(cameras)), which_(which), time_s_(time_s), thread_([this] {
         setpriority(PRIO_PROCESS, static_cast<id_t>(syscall(SYS_gettid)), kGivesWay);
         try {
           make();
@@ -41,7 +41,8 @@ DrawingsBeside::DrawingsBeside(const Simulation& simulation, const ShaderLibrary
 DrawingsBeside::~DrawingsBeside() { ends_ = true; }
 
 void DrawingsBeside::make() {
-  const auto look = [this](double) {
+  const auto look = [this](double share) {
+    share_ = share;
     if (ends_) throw Ended();
   };
   const auto context = std::make_shared<GlContext>();
@@ -60,14 +61,15 @@ void DrawingsBeside::make() {
   for (const std::size_t number : cameras_) {
     const Camera& camera = simulation_.cameras[number];
     std::vector<double> accuracies = rungsOf(camera);
-    if (!allRungs_) accuracies.resize(1);
+    if (which_ != Which::AllRungs) accuracies.resize(1);
+    if (which_ == Which::Draft) accuracies = {kDraft};
     made_.push_back({number, std::make_unique<CameraDrawing>(simulation_, camera, library_, scene, accuracies, look, context), {}});
     Made& made = made_.back();
     const ExposureParts parts = exposureParts(simulation_, camera, stateAt, time_s_);
     for (std::size_t rung = 0; rung < made.drawing->rungs(); ++rung) {
       double least_ns = INFINITY;
       for (int k = 0; k <= kTries; ++k) {  // the first has programs compiled
-        look(0.0);
+        look(1.0);
         const auto from = std::chrono::steady_clock::now();
         if (parts.times_s.size() > 1) renderParts(made.drawing->renderer(rung), parts, stateAt, {});
         else made.drawing->renderer(rung).render(stateAt(parts.times_s[0]));

@@ -55,7 +55,8 @@ RunReport runFrames(const Simulation& sim, const ShaderLibrary& library, const R
   const StateAt stateAt = [&sim](double t) { return advance(sim, t); };
   RunReport report;
   std::optional<DrawingsBeside> beside;
-  if (!drafts.empty() && range.last > range.first) beside.emplace(sim, library, drafts, false, sim.time.at(range.first));  // of one frame a draft is all
+  if (!drafts.empty() && range.last > range.first)
+    beside.emplace(sim, library, drafts, DrawingsBeside::Which::First, sim.time.at(range.first));  // of one frame a draft is all
   for (int number = range.first; number <= range.last && !(stopsAtBroken && isBroken()); ++number) {
     const WorldState state = stateAt(sim.time.at(number));
     if (beside && beside->isReady()) {

@@ -114,7 +114,7 @@ class StreamLoop {
           realTime(), std::find(drafts.begin(), drafts.end(), lines_.size()) != drafts.end()));
     prepare();
     for (const auto& line : lines_) line->warmUp(wish.firstFrame);
-    if (!drafts.empty()) beside_.emplace(sim, library, drafts, realTime(), timeOf(0));
+    if (!drafts.empty()) beside_.emplace(sim, library, drafts, realTime() ? DrawingsBeside::Which::AllRungs : DrawingsBeside::Which::First, timeOf(0));
   }
 
   StreamReport run() {

@@ -77,7 +77,7 @@ TEST(Drafts, SayWhatTheyAreOffByAndGiveWay) {
     bound("largest error" + of, errors.back(), draft.predictedError[s] + exact.predictedError[s], "what it and the picture it is held against predict");
     EXPECT_LE(draft.predictedError[s], kDraft);
   }
-  DrawingsBeside beside(sim, shaderLibrary(), {0}, false, 0.0);
+  DrawingsBeside beside(sim, shaderLibrary(), {0}, DrawingsBeside::Which::First, 0.0);
   for (int k = 0; k < 5; ++k) drawn(line, sim, 0.1 * k);  // drafts are drawn meanwhile
   waitFor(beside);
   auto made = beside.take();
@@ -102,7 +102,7 @@ TEST(Drafts, GoOnWhereTheDriverRefuses) {
   const char* before = std::getenv("PITVIPER_GL");
   const std::string kept = before ? before : "";
   setenv("PITVIPER_GL", "device:999", 1);
-  DrawingsBeside beside(sim, shaderLibrary(), {0}, false, 0.0);
+  DrawingsBeside beside(sim, shaderLibrary(), {0}, DrawingsBeside::Which::First, 0.0);
   waitFor(beside);
   before ? setenv("PITVIPER_GL", kept.c_str(), 1) : unsetenv("PITVIPER_GL");
   EXPECT_TRUE(beside.take().empty());
@@ -116,7 +116,7 @@ TEST(Drafts, EndWhileWhatWasAskedForIsBeingMade) {
   sim.cameras[0].spectral.accuracy = 0.0125;  // a plan that no cache has
   const auto gpu = std::make_shared<const GpuScene>(sim);
   CameraLine line(sim, sim.cameras[0], shaderLibrary(), gpu, {}, false, true);
-  { const DrawingsBeside beside(sim, shaderLibrary(), {0}, true, 0.0); }
+  { const DrawingsBeside beside(sim, shaderLibrary(), {0}, DrawingsBeside::Which::AllRungs, 0.0); }
   EXPECT_TRUE(drawn(line, sim, 0.0).isDraft);
 }
 
