@@ -8,6 +8,8 @@ namespace {
 
 /// Of a reference, which is never drawn live.
 constexpr double kInPlaceOfReference = 0.01;
+/// From where on what is as warm as the air is seen to glow at all.
+constexpr double kGlow_um = 2.5;
 /// Wavelengths of a sketch's channels.
 constexpr int kSketchSamples = 3;
 
@@ -16,15 +18,20 @@ std::shared_ptr<ViewedScene> copyOf(const ViewedScene& scene) { return std::make
 }  // namespace
 
 ViewedScenePointer readScene(const ScenarioWish& wish) {
-  auto scene = std::make_shared<ViewedScene>(ViewedScene{wish.read(), std::make_shared<const int>(0)});
+  auto scene = std::make_shared<ViewedScene>(ViewedScene{wish.read(), {}, std::make_shared<const int>(0)});
   for (Camera& c : scene->simulation.cameras) {
     c.truth.range = c.truth.entity = c.truth.temperature = true;
     c.truth.targets = c.truth.terms = false;
     c.spectralImage.reset();
+    for (const ChannelOutput& o : c.outputs)
+      if (o.unit == "W/(m2 sr)" && !o.perEtendue && !o.perExposure && !o.detected && o.bandHigh_um > kGlow_um)
+        scene->temperatures[temperatureKey(c.name, o.layer())] = std::make_shared<const BandTemperature>(o.kernel * o.scale, o.bandLow_um, o.bandHigh_um);
     if (c.spectral.reference) c.spectral = {}, c.spectral.accuracy = kInPlaceOfReference;
   }
   return scene;
 }
+
+std::string temperatureKey(const std::string& camera, const std::string& layer) { return camera + "/" + layer; }
 
 ViewedScenePointer withAccuracy(const ViewedScene& scene, double accuracy) {
   auto other = copyOf(scene);

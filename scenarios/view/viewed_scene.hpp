@@ -1,22 +1,27 @@
 #pragma once
 // A scenario as a window has it: read once, never changed; what is edited makes another.
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "scenarios/commands/scenario_wish.hpp"
+#include "sim/model/band_temperature.hpp"
 #include "sim/model/simulation.hpp"
 
 namespace pitviper {
 
 struct ViewedScene {
   Simulation simulation;
-  std::shared_ptr<const int> geometry;  ///< scenes with the same have the same bodies, meshes and textures
+  std::map<std::string, std::shared_ptr<const BandTemperature>> temperatures;  ///< of radiances in bands where bodies glow: by temperatureKey()
+  std::shared_ptr<const int> geometry;                                         ///< scenes with the same have the same bodies, meshes and textures
 };
 using ViewedScenePointer = std::shared_ptr<const ViewedScene>;
 
 /// Reads a scenario; its cameras have layers of range, entity and temperature besides their own, which cost a plan nothing. Errors: UserError.
 ViewedScenePointer readScene(const ScenarioWish& wish);
+std::string temperatureKey(const std::string& camera, const std::string& layer);
+
 /// With every camera asked for another accuracy.
 ViewedScenePointer withAccuracy(const ViewedScene& scene, double accuracy);
 /// With a material of it as another: by its place among the simulation's.

@@ -31,6 +31,16 @@ const ColourMap& blackHot() {
   return map;
 }
 
+// A curve in OKLab whose lightness grows evenly from 0.16 to 0.96 from blue over grey to yellow: people without cones for long or medium waves see the same
+// order. After the design of cividis (J. Nunez, C. Anderton, R. Renslow, PLoS ONE 13(7), 2018); the values are our own.
+const ColourMap& blueYellow() {
+  static const ColourMap map({{0, 5, 53},      {0, 15, 59},     {5, 25, 66},     {14, 34, 72},    {24, 43, 78},    {35, 52, 84},    {45, 61, 90},
+                              {56, 70, 96},    {67, 79, 101},   {79, 88, 106},   {90, 98, 111},   {103, 107, 115}, {116, 116, 116}, {128, 127, 112},
+                              {140, 138, 111}, {152, 148, 111}, {164, 159, 110}, {175, 169, 110}, {187, 180, 109}, {200, 191, 109}, {212, 202, 109},
+                              {224, 213, 108}, {237, 224, 107}, {249, 235, 106}, {255, 246, 156}});
+  return map;
+}
+
 std::uint8_t mix(std::uint8_t a, std::uint8_t b, float t) {
   const float low = a, high = b;
   return static_cast<std::uint8_t>(std::lround(low + (high - low) * t));
@@ -51,9 +61,10 @@ const ColourMap& colourMap(std::string_view name) {
   if (name == "thermal") return thermal();
   if (name == "white_hot") return grey();
   if (name == "black_hot") return blackHot();
+  if (name == "blue_yellow") return blueYellow();
   throw std::invalid_argument("no colour map is named '" + std::string(name) + "'");
 }
 
-std::vector<std::string> colourMapNames() { return {"thermal", "white_hot", "black_hot"}; }
+std::vector<std::string> colourMapNames() { return {"thermal", "white_hot", "black_hot", "blue_yellow"}; }
 
 }  // namespace pitviper

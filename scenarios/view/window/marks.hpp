@@ -1,0 +1,27 @@
+#pragma once
+// What a window's frame shows, by name: where to click, and what is written there, for scripts.
+#include <functional>
+#include <map>
+#include <string>
+
+#include "imgui.h"
+
+namespace pitviper {
+
+struct Marks {
+  struct Place {
+    ImVec2 low, high;
+  };
+  std::map<std::string, Place> places;       ///< of this frame
+  std::map<std::string, std::string> texts;  ///< the same
+  /// Where on the screen a pixel of a picture, or a value of a plot, is.
+  std::map<std::string, std::function<ImVec2(double x, double y)>> surfaces;
+
+  void clear() { places.clear(), texts.clear(), surfaces.clear(); }
+  void put(const std::string& name, ImVec2 low, ImVec2 high) { places[name] = {low, high}; }
+  /// The widget that was made last.
+  void item(const std::string& name) { put(name, ImGui::GetItemRectMin(), ImGui::GetItemRectMax()); }
+  void text(const std::string& name, const std::string& value) { texts[name] = value; }
+};
+
+}  // namespace pitviper

@@ -1,0 +1,593 @@
+#include "scenarios/view/window/viewer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "scenarios/commands/commands.hpp"
+#include "scenarios/view/window/style.hpp"
+#include "scenarios/view/window/widgets.hpp"
+#include "sim/frame/frame_picture.hpp"
+#include "sim/image/colour_map.hpp"
+#include "sim/image/png.hpp"
+#include "sim/parameters/print.hpp"
+
+namespace pitviper {
+namespace {
+
+/// How often saved files are looked for.
+constexpr double kFileLook_s = 0.25;
+/// The longest that a frame of the window waits for something to happen.
+constexpr double kIdle_s = 1.0 / 60.0;
+constexpr double kMessage_s = 6.0;
+
+const std::vector<std::pair<std::string, double>>& speeds() {
+  static const std::vector<std::pair<std::string, double>> all{{"each frame", 0.0}, {"x 0.1", 0.1}, {"x 0.25", 0.25}, {"x 1", 1.0}, {"x 4", 4.0}};
+  return all;
+}
+
+/// What the picture is, and how far off.
+std::string tierText(const ShownPicture& p) {
+  const std::string most = p.error >= 0.0 ? print("at most %.2g %% expected", 100.0 * p.error) : "error unknown";
+  switch (p.tier) {
+    case Tier::Sketch:
+      return "SKETCH: bodies in the sun without air, lamps and smoke; error unknown";
+    case Tier::Draft:
+      return "DRAFT: " + most;
+    case Tier::Edited:
+      return "EDITED: by the plan before; whether it holds is being found";
+    case Tier::Asked:
+      return p.accuracy > 0.0 ? print("AS ASKED (%.3g %%): ", 100.0 * p.accuracy) + most : "AS SAMPLED: no accuracy is asked for";
+  }
+  return "";
+}
+
+constexpr const char* kHelp[] = {"space",
+                                 "play, pause",
+                                 "left, right",
+                                 "a frame back, on (shift: ten)",
+                                 "home, end",
+                                 "first, last frame",
+                                 "alt + arrows",
+                                 "the probe, a pixel (shift: ten)",
+                                 "1 ... 9",
+                                 "a layer shown or not",
+                                 "C",
+                                 "next camera",
+                                 "G",
+                                 "linear, logarithmic, histogram",
+                                 "T",
+                                 "radiance as apparent temperature",
+                                 "M",
+                                 "colours",
+                                 "O",
+                                 "outlines;  B  boxes;  X  track gate",
+                                 "P, R, L, F",
+                                 "probe, region, line profile, fly",
+                                 "W A S D Q E",
+                                 "flying; shift: faster",
+                                 "V",
+                                 "the sensor's own view again",
+                                 "ctrl + Z, Y",
+                                 "undo, redo in the curves",
+                                 "ctrl + S",
+                                 "write what was changed into the scenario",
+                                 "F1",
+                                 "this list",
+                                 "F5",
+                                 "read the scenario again",
+                                 "F12",
+                                 "screenshot",
+                                 "tab, enter",
+                                 "through all buttons"};
+
+}  // namespace
+
+void ViewState::say(const std::string& text) {
+  message = text;
+  messageUntil_s = ImGui::GetTime() + kMessage_s;
+}
+
+const BandTemperature* ViewState::temperatureOf(const std::string& layer) const {
+  if (!hasScene()) return nullptr;
+  const auto found = scene->temperatures.find(temperatureKey(cameraShown().name, layer));
+  return found == scene->temperatures.end() ? nullptr : found->second.get();
+}
+
+Viewer::Viewer(GlfwWindow& window, const ViewWish& wish)
+    : window_(window), maker_(std::make_unique<PictureMaker>(shaderLibrary())), loader_([] {
+        return [](const ScenarioWish& file, const NewestWork<ScenarioWish, Loaded>::Stale&) {
+          auto loaded = std::make_shared<Loaded>();
+          loaded->file = file.file;
+          try {
+            loaded->scene = readScene(file);
+            if (loaded->scene->simulation.cameras.empty())
+              throw UserError({file.file, 0, 0, -1}, "a scenario without cameras", "one to look through", "add 'cameras:'");
+          } catch (const UserError& e) {
+            loaded->scene.reset();
+            loaded->problem = e.what();
+          }
+          return std::shared_ptr<const Loaded>(std::move(loaded));
+        };
+      }) {
+  state_.wish = wish;
+  state_.accuracy = 0.0;
+  panels_.push_back(makeProbePanel());
+  panels_.push_back(makeScenePanel());
+  if (!wish.scenario.file.empty()) open(wish.scenario.file);
+}
+
+Viewer::~Viewer() = default;
+
+void Viewer::open(const std::string& file) {
+  if (file != state_.wish.scenario.file) state_.hands = {}, state_.time_s = NAN, keepsCamera_ = false;
+  state_.wish.scenario.file = file;
+  stamps_.clear();
+  window_.setTitle(file + " - pitviper");
+  loader_.want(state_.wish.scenario);
+}
+
+void Viewer::takeLoaded() {
+  const std::shared_ptr<const Loaded> newest = loader_.newest();
+  if (!newest || newest == loaded_) return;
+  loaded_ = newest;
+  state_.problem = loaded_->problem;
+  if (!loaded_->scene) return;
+  const std::string before = state_.hasScene() && keepsCamera_ ? state_.cameraShown().name : state_.wish.camera;
+  state_.asRead = state_.scene = loaded_->scene;
+  const auto& cameras = state_.scene->simulation.cameras;
+  state_.camera = 0;
+  for (std::size_t c = 0; c < cameras.size(); ++c)
+    if (cameras[c].name == before) state_.camera = c;
+  if (!before.empty() && cameras[state_.camera].name != before) state_.say("there is no camera '" + before + "' here");
+  const TimeAxis& time = state_.scene->simulation.time;
+  if (!keepsCamera_) state_.time_s = state_.wish.time_s >= 0.0 ? state_.wish.time_s : time.start_s;
+  if (!std::isfinite(state_.time_s)) state_.time_s = time.start_s;
+  keepsCamera_ = true;
+  chooseLayers();
+}
+
+/// All channels of the camera, one quantity of each; what was chosen before stays where it can.
+void Viewer::chooseLayers() {
+  const Camera& camera = state_.cameraShown();
+  std::vector<std::string> all, kept;
+  for (const ChannelOutput& o : camera.outputs) all.push_back(o.layer());
+  for (const std::string& name : state_.shown)
+    if (std::find(all.begin(), all.end(), name) != all.end()) kept.push_back(name);
+  if (kept.empty()) {
+    std::vector<std::string> channels;
+    for (const ChannelOutput& o : camera.outputs)
+      if (!o.asMark && std::find(channels.begin(), channels.end(), o.channel) == channels.end() && kept.size() < 4)
+        channels.push_back(o.channel), kept.push_back(o.layer());
+  }
+  state_.shown = kept;
+  const auto has = [&](const std::string& name) { return std::find(all.begin(), all.end(), name) != all.end(); };
+  const bool eye = has("X.tristimulus") && has("Y.tristimulus") && has("Z.tristimulus");
+  if (eye) state_.three = {"X.tristimulus", "Y.tristimulus", "Z.tristimulus"}, state_.composite = true;
+  else state_.three.assign(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(3, kept.size())));
+  while (!state_.three.empty() && state_.three.size() < 3) state_.three.push_back(state_.three.back());
+  if (!eye && kept.size() < 2) state_.composite = false;
+}
+
+/// A scenario that was saved, or anything written in YAML beside it, is read again.
+void Viewer::watchFile(double now_s) {
+  if (now_s < nextLook_s_ || state_.wish.scenario.file.empty()) return;
+  nextLook_s_ = now_s + kFileLook_s;
+  const std::filesystem::path file = state_.wish.scenario.file;
+  std::map<std::filesystem::path, std::filesystem::file_time_type> now;
+  std::error_code failed;
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : std::filesystem::path(".");
+  for (const auto& entry : std::filesystem::directory_iterator(folder, failed)) {
+    std::error_code gone;
+    if (entry.path().extension() != file.extension()) continue;
+    const auto stamp = entry.last_write_time(gone);
+    if (!gone) now[entry.path()] = stamp;
+  }
+  if (!stamps_.empty() && now != stamps_ && !loader_.isBusy()) loader_.want(state_.wish.scenario);
+  if (stamps_.empty() || !loader_.isBusy()) stamps_ = std::move(now);
+}
+
+/// The drawing thread is asked for what is to be seen now.
+void Viewer::ask() {
+  if (!state_.hasScene()) return;
+  if (askedFrom_ != state_.scene || askedAccuracy_ != state_.accuracy) {
+    askedScene_ = state_.accuracy > 0.0 ? withAccuracy(*state_.scene, state_.accuracy) : state_.scene;
+    askedFrom_ = state_.scene;
+    askedAccuracy_ = state_.accuracy;
+  }
+  maker_->want({askedScene_, state_.camera, state_.time_s, state_.hands, true});
+  state_.status = maker_->status();
+  state_.isDone = maker_->isDone();
+  if (const auto newest = maker_->newest(); newest && newest->wish.scene == askedScene_ && newest->wish.camera == state_.camera) state_.picture = newest;
+  else if (!state_.picture || state_.picture->wish.camera != state_.camera || state_.picture->wish.scene->geometry != askedScene_->geometry)
+    state_.picture.reset();
+}
+
+void Viewer::step(int frames) {
+  if (!state_.hasScene()) return;
+  const TimeAxis& time = state_.scene->simulation.time;
+  int frame = static_cast<int>(std::lround((state_.time_s - time.start_s) / time.step_s)) + frames;
+  if (state_.loops && state_.isPlaying) frame = ((frame % time.frames) + time.frames) % time.frames;
+  state_.time_s = time.at(std::clamp(frame, 0, time.frames - 1));
+}
+
+void Viewer::tick(double seconds) {
+  if (!state_.hasScene() || !state_.isPlaying) return;
+  const TimeAxis& time = state_.scene->simulation.time;
+  if (state_.speed <= 0.0) {
+    if (state_.isDone || (state_.picture && state_.picture->wish.time_s == state_.time_s)) step(1);
+    return;
+  }
+  static double owed_s = 0.0;
+  owed_s += state_.speed * seconds;
+  const int frames = static_cast<int>(owed_s / time.step_s);
+  owed_s -= frames * time.step_s;
+  if (frames > 0) step(frames);
+  if (!state_.loops && state_.time_s >= time.at(time.frames - 1)) state_.isPlaying = false;
+}
+
+bool Viewer::isReached(const std::string& what, const Location& where) const {
+  const auto at = [this](Tier least) { return state_.picture && static_cast<int>(state_.picture->tier) >= static_cast<int>(least); };
+  if (what == "done")
+    return (state_.isDone && state_.picture && !loader_.isBusy()) || (!state_.problem.empty() && !loader_.isBusy()) || !state_.status.error.empty();
+  if (what == "picture") return state_.picture != nullptr;
+  if (what == "sketch") return at(Tier::Sketch);
+  if (what == "draft") return at(Tier::Draft);
+  for (const auto& panel : panels_)
+    if (const auto reached = panel->isReached(what, state_)) return *reached;
+  throw UserError(where, "nothing is waited for by '" + what + "'", "done, picture, sketch, draft, probe, sphere, dial, or a time", "see pitviper view --help");
+}
+
+void Viewer::writePicture(const std::string& file) const {
+  if (!state_.picture) throw std::runtime_error("view: there is no picture to be written");
+  Frame shown = state_.picture->frame;
+  std::erase_if(shown.layers, [&](const FrameLayer& l) { return std::find(state_.shown.begin(), state_.shown.end(), l.name) == state_.shown.end(); });
+  PictureStyle style;
+  style.ownScale = true;
+  style.palette = state_.look.map;
+  for (const auto& [layer, look] : state_.look.layers)
+    if (look.ends && !look.asTemperature) style.ranges[layer] = *look.ends;
+  writePreviewFile(file, shown, style);
+}
+
+void Viewer::keys() {
+  const ImGuiIO& io = ImGui::GetIO();
+  const auto pressed = [](int key) { return ImGui::IsKeyPressed(key, true); };
+  const auto letter = [&](char c) { return ImGui::IsKeyPressed(c, false); };
+  const auto named = [](ImGuiKey key) { return ImGui::GetKeyIndex(key); };
+  constexpr int kF1 = 290;  // GLFW's codes
+  if (pressed(kF1)) showsHelp_ = !showsHelp_;
+  if (pressed(kF1 + 4)) loader_.want(state_.wish.scenario);
+  if (pressed(kF1 + 11)) {
+    window_.keepPixels(true);
+    shoots_ = true;
+  }
+  if (io.WantTextInput) return;
+  if (io.KeyCtrl) {
+    for (char c : {'Z', 'Y', 'S'})
+      if (letter(c))
+        for (auto& panel : panels_)
+          if (panel->controlKey(c, io.KeyShift, state_)) break;
+    return;
+  }
+  const int many = io.KeyShift ? 10 : 1;
+  if (io.KeyAlt) {
+    if (state_.pixel && state_.picture) {
+      glm::ivec2 p = *state_.pixel;
+      if (pressed(named(ImGuiKey_LeftArrow))) p.x -= many;
+      if (pressed(named(ImGuiKey_RightArrow))) p.x += many;
+      if (pressed(named(ImGuiKey_UpArrow))) p.y -= many;
+      if (pressed(named(ImGuiKey_DownArrow))) p.y += many;
+      state_.pixel = glm::ivec2(std::clamp(p.x, 0, state_.picture->frame.width - 1), std::clamp(p.y, 0, state_.picture->frame.height - 1));
+    }
+    return;
+  }
+  if (letter(' ') && !ImGui::IsAnyItemActive()) state_.isPlaying = !state_.isPlaying;
+  if (!ImGui::IsAnyItemActive()) {
+    if (pressed(named(ImGuiKey_LeftArrow))) step(-many);
+    if (pressed(named(ImGuiKey_RightArrow))) step(many);
+  }
+  if (state_.hasScene() && pressed(named(ImGuiKey_Home))) state_.time_s = state_.scene->simulation.time.start_s;
+  if (state_.hasScene() && pressed(named(ImGuiKey_End))) state_.time_s = state_.scene->simulation.time.at(state_.scene->simulation.time.frames - 1);
+  if (letter('P')) state_.tool = Tool::Probe;
+  if (letter('R')) state_.tool = Tool::Region;
+  if (letter('L')) state_.tool = Tool::Profile;
+  if (letter('F')) state_.tool = Tool::Fly;
+  if (letter('O')) state_.overlays.outlines = !state_.overlays.outlines;
+  if (letter('B')) state_.overlays.boxes = !state_.overlays.boxes;
+  if (letter('X')) state_.overlays.gate = !state_.overlays.gate;
+  if (letter('V') && state_.hasScene()) state_.hands.flown.erase(state_.cameraShown().name);
+  if (letter('C') && state_.hasScene()) {
+    state_.camera = (state_.camera + 1) % state_.scene->simulation.cameras.size();
+    chooseLayers();
+  }
+  if (letter('M')) {
+    std::vector<std::string> names = colourMapNames();
+    names.insert(names.begin(), "auto");
+    const auto at = std::find(names.begin(), names.end(), state_.look.map);
+    state_.look.map = at == names.end() || at + 1 == names.end() ? names.front() : *(at + 1);
+  }
+  for (const std::string& layer : state_.shown) {
+    if (letter('G')) state_.look.layers[layer].kind = static_cast<ScaleKind>((static_cast<int>(state_.look.layers[layer].kind) + 1) % 3);
+    if (letter('T')) state_.look.layers[layer].asTemperature = !state_.look.layers[layer].asTemperature;
+  }
+  if (state_.picture)
+    for (int k = 0; k < 9; ++k)
+      if (letter(static_cast<char>('1' + k)) && k < static_cast<int>(state_.picture->frame.layers.size())) {
+        const std::string& name = state_.picture->frame.layers[static_cast<std::size_t>(k)].name;
+        const auto at = std::find(state_.shown.begin(), state_.shown.end(), name);
+        if (at == state_.shown.end()) state_.shown.push_back(name);
+        else state_.shown.erase(at);
+      }
+}
+
+void Viewer::topBar() {
+  const float text = ImGui::GetTextLineHeight();
+  if (state_.hasScene()) {
+    std::vector<std::string> names;
+    for (const Camera& c : state_.scene->simulation.cameras) names.push_back(c.name);
+    if (const int c = choose(state_.marks, "camera", state_.cameraShown().name, names, 9.0f * text); c >= 0) {
+      state_.camera = static_cast<std::size_t>(c);
+      chooseLayers();
+    }
+    ImGui::SameLine();
+  }
+  if (button(state_.marks, "layers", "layers...")) ImGui::OpenPopup("layers_popup");
+  if (ImGui::BeginPopup("layers_popup")) {
+    if (state_.picture)
+      for (const FrameLayer& l : state_.picture->frame.layers) {
+        const auto at = std::find(state_.shown.begin(), state_.shown.end(), l.name);
+        bool on = at != state_.shown.end();
+        if (check(state_.marks, "layer:" + l.name, l.name + "  [" + l.unit + "]", on)) {
+          if (on) state_.shown.push_back(l.name);
+          else state_.shown.erase(at);
+        }
+      }
+    ImGui::Separator();
+    check(state_.marks, "composite", "three as red, green, blue", state_.composite);
+    if (state_.composite && state_.picture && state_.three.size() == 3) {
+      std::vector<std::string> names;
+      for (const FrameLayer& l : state_.picture->frame.layers) names.push_back(l.name);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const char* of[] = {"red", "green", "blue"};
+        if (const int c = choose(state_.marks, of[k], state_.three[k], names, 12.0f * text); c >= 0) state_.three[k] = names[static_cast<std::size_t>(c)];
+        ImGui::SameLine();
+        ImGui::TextDisabled("%s", of[k]);
+      }
+    }
+    ImGui::EndPopup();
+  }
+  ImGui::SameLine();
+  lookBar();
+  ImGui::SameLine();
+  const auto tool = [&](const char* name, Tool t, const char* tip) {
+    bool on = state_.tool == t;
+    if (toggle(state_.marks, name, name, on, tip)) state_.tool = t;
+    ImGui::SameLine();
+  };
+  ImGui::TextDisabled("|");
+  ImGui::SameLine();
+  tool("probe", Tool::Probe, "click a pixel (P)");
+  tool("region", Tool::Region, "drag a box (R)");
+  tool("profile", Tool::Profile, "drag a line (L)");
+  tool("fly", Tool::Fly, "drag turns, W A S D Q E move (F); V: the sensor's own view");
+  ImGui::TextDisabled("|");
+  ImGui::SameLine();
+  toggle(state_.marks, "outlines", "outlines", state_.overlays.outlines);
+  ImGui::SameLine();
+  toggle(state_.marks, "boxes", "boxes", state_.overlays.boxes, "name and range of each body");
+  ImGui::SameLine();
+  toggle(state_.marks, "gate", "gate", state_.overlays.gate, "around what the camera looks at");
+}
+
+void Viewer::lookBar() {
+  const float text = ImGui::GetTextLineHeight();
+  if (button(state_.marks, "scales", "scales...")) ImGui::OpenPopup("scales_popup");
+  ImGui::SameLine();
+  std::vector<std::string> maps = colourMapNames();
+  maps.insert(maps.begin(), "auto");
+  if (const int m = choose(state_.marks, "colours", state_.look.map, maps, 8.0f * text); m >= 0) state_.look.map = maps[static_cast<std::size_t>(m)];
+  if (!ImGui::BeginPopup("scales_popup")) return;
+  for (const std::string& layer : state_.shown) {
+    LayerLook& look = state_.look.layers[layer];
+    ImGui::TextUnformatted(layer.c_str());
+    if (const int k = choose(state_.marks, "scale:" + layer, nameOf(look.kind), {"linear", "logarithmic", "histogram"}, 8.0f * text); k >= 0)
+      look.kind = static_cast<ScaleKind>(k);
+    ImGui::SameLine();
+    if (state_.temperatureOf(layer) && check(state_.marks, "temperature:" + layer, "apparent temperature", look.asTemperature)) look.ends.reset();
+    bool own = !look.ends;
+    if (check(state_.marks, "own:" + layer, "ends of each picture's own", own)) {
+      look.ends.reset();
+      if (!own && state_.picture)
+        if (const FrameLayer* l = layerNamed(state_.picture->frame, layer))
+          look.ends = DisplayScale::endsOf(layerPicture(state_.picture->frame, *l, state_.look, state_.temperatureOf(layer)).values);
+    }
+    if (look.ends) {
+      ImGui::SetNextItemWidth(8.0f * text);
+      ImGui::InputDouble(("##low" + layer).c_str(), &look.ends->first, 0.0, 0.0, "%.5g");
+      state_.marks.item("low:" + layer);
+      ImGui::SameLine();
+      ImGui::SetNextItemWidth(8.0f * text);
+      ImGui::InputDouble(("##high" + layer).c_str(), &look.ends->second, 0.0, 0.0, "%.5g");
+      state_.marks.item("high:" + layer);
+    }
+    ImGui::Separator();
+  }
+  ImGui::EndPopup();
+}
+
+void Viewer::timeline(float height) {
+  ImGui::BeginChild("timeline", ImVec2(0.0f, height), false, ImGuiWindowFlags_NoScrollbar);
+  if (state_.hasScene()) {
+    const TimeAxis& time = state_.scene->simulation.time;
+    const float text = ImGui::GetTextLineHeight();
+    if (button(state_.marks, "play", state_.isPlaying ? "\u2016" : "\u25b6", "space")) state_.isPlaying = !state_.isPlaying;
+    ImGui::SameLine();
+    if (button(state_.marks, "back", "\u25c0", "left")) step(-1);
+    ImGui::SameLine();
+    if (button(state_.marks, "on", "\u25b8", "right")) step(1);
+    ImGui::SameLine();
+    toggle(state_.marks, "loop", "loop", state_.loops);
+    ImGui::SameLine();
+    std::vector<std::string> names;
+    std::string now = print("x %g", state_.speed);
+    for (const auto& [name, speed] : speeds()) {
+      names.push_back(name);
+      if (speed == state_.speed) now = name;
+    }
+    if (const int s = choose(state_.marks, "speed", now, names, 7.0f * text); s >= 0) state_.speed = speeds()[static_cast<std::size_t>(s)].second;
+    ImGui::SameLine();
+    int frame = static_cast<int>(std::lround((state_.time_s - time.start_s) / time.step_s));
+    ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x, 4.0f * text));
+    if (ImGui::SliderInt("##time", &frame, 0, std::max(time.frames - 1, 1), print("frame %%d of %d,  t = %.3f s", time.frames, state_.time_s).c_str()))
+      state_.time_s = time.at(std::clamp(frame, 0, time.frames - 1));
+    state_.marks.item("time");
+    state_.marks.text("time", print("%.6g", state_.time_s));
+    state_.marks.text("frame", std::to_string(frame));
+  }
+  ImGui::EndChild();
+}
+
+void Viewer::statusLine() {
+  std::string line;
+  if (state_.picture) {
+    const ShownPicture& p = *state_.picture;
+    line = tierText(p);
+    const ImVec4 colour = p.tier == Tier::Asked ? ImVec4(0.43f, 0.82f, 0.59f, 1.0f) : ImVec4(0.94f, 0.69f, 0.25f, 1.0f);
+    ImGui::TextColored(colour, "%s", line.c_str());
+    state_.marks.text("tier", nameOf(p.tier));
+    state_.marks.text("status", line);
+    state_.marks.text("expected_error", print("%.6g", p.error));
+    state_.marks.text("groups", std::to_string(p.groups));
+    state_.marks.text("draw_ms", print("%.3g", p.draw_ms));
+    ImGui::SameLine();
+    ImGui::TextDisabled("%d groups of wavelengths, %.0f ms a picture", p.groups, p.draw_ms);
+  }
+  if (!state_.status.doing.empty()) {
+    ImGui::SameLine();
+    const std::string doing = state_.status.share > 0.0
+                                  ? print("%s: %.0f %%, %.0f s so far", state_.status.doing.c_str(), 100.0 * state_.status.share, state_.status.since_s)
+                                  : print("%s, %.0f s so far", state_.status.doing.c_str(), state_.status.since_s);
+    ImGui::TextUnformatted(doing.c_str());
+  }
+  if (ImGui::GetTime() < state_.messageUntil_s) {
+    ImGui::SameLine();
+    ImGui::TextUnformatted(state_.message.c_str());
+  }
+  state_.marks.text("message", state_.message);
+  state_.marks.text("window_s", print("%.1f", state_.window_s));
+  state_.marks.text("pictures_s", print("%.1f", state_.pictures_s));
+}
+
+/// What is wrong with the file that was saved; the last good scene stays behind it.
+void Viewer::problemWindow() {
+  const std::string problem = !state_.problem.empty() ? state_.problem : state_.status.error;
+  state_.marks.text("problem", problem);
+  if (problem.empty()) return;
+  const float text = ImGui::GetTextLineHeight();
+  ImGui::SetNextWindowPos(ImVec2(2.0f * text, 6.0f * text), ImGuiCond_Appearing);
+  ImGui::SetNextWindowSize(ImVec2(48.0f * text, 0.0f));
+  ImGui::Begin(state_.problem.empty() ? "No picture" : "The scenario cannot be read; the last good one is shown", nullptr, ImGuiWindowFlags_NoCollapse);
+  ImGui::PushTextWrapPos(0.0f);
+  const std::size_t place = problem.find(": ");
+  ImGui::TextColored(ImVec4(1.0f, 0.43f, 0.35f, 1.0f), "%s", problem.substr(0, place).c_str());
+  if (ImGui::IsItemHovered()) ImGui::SetTooltip("a click copies the place");
+  state_.marks.item("problem_place");
+  if (ImGui::IsItemClicked()) {
+    ImGui::SetClipboardText(problem.substr(0, place).c_str());
+    state_.say("copied: " + problem.substr(0, place));
+  }
+  if (place != problem.npos) ImGui::TextUnformatted(problem.substr(place + 2).c_str());
+  ImGui::PopTextWrapPos();
+  ImGui::End();
+}
+
+void Viewer::helpWindow() {
+  if (!showsHelp_) return;
+  const float text = ImGui::GetTextLineHeight();
+  ImGui::SetNextWindowSize(ImVec2(34.0f * text, 0.0f));
+  ImGui::Begin("Keys", &showsHelp_, ImGuiWindowFlags_NoCollapse);
+  for (std::size_t k = 0; k + 1 < std::size(kHelp); k += 2) {
+    ImGui::TextColored(ImVec4(0.94f, 0.69f, 0.25f, 1.0f), "%s", kHelp[k]);
+    ImGui::SameLine(11.0f * text);
+    ImGui::TextUnformatted(kHelp[k + 1]);
+  }
+  ImGui::End();
+}
+
+void Viewer::frame(double now_s) {
+  state_.marks.clear();
+  const ImVec2 size = ImGui::GetIO().DisplaySize;
+  const float text = ImGui::GetTextLineHeight();
+  const float bottom = 4.4f * text, side = std::min(std::max(0.34f * size.x, 26.0f * text), 0.6f * size.x);
+  ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
+  ImGui::SetNextWindowSize(size);
+  ImGui::Begin("pitviper", nullptr,
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
+  topBar();
+  const float middle = std::max(ImGui::GetContentRegionAvail().y - bottom, 1.0f);
+  pictures_.draw(state_, ImVec2(std::max(ImGui::GetContentRegionAvail().x - side, 1.0f), middle));
+  ImGui::SameLine();
+  ImGui::BeginChild("side", ImVec2(0.0f, middle));
+  if (ImGui::BeginTabBar("panels")) {
+    for (std::size_t k = 0; k < panels_.size(); ++k) {
+      Panel& panel = *panels_[k];
+      const bool open = ImGui::BeginTabItem(panel.title().c_str(), nullptr, wantedPanel_ == static_cast<int>(k) ? ImGuiTabItemFlags_SetSelected : 0);
+      state_.marks.item("tab:" + panel.name());
+      if (!open) continue;
+      ImGui::BeginChild(panel.name().c_str(), ImVec2(0.0f, 0.0f));
+      panel.draw(state_);
+      ImGui::EndChild();
+      ImGui::EndTabItem();
+    }
+    wantedPanel_ = -1;
+    ImGui::EndTabBar();
+  }
+  ImGui::EndChild();
+  timeline(1.9f * text);
+  statusLine();
+  ImGui::End();
+  for (auto& panel : panels_) panel->look(state_);
+  problemWindow();
+  helpWindow();
+  keys();
+  (void)now_s;
+}
+
+void Viewer::run() {
+  std::optional<ScriptRunner> script;
+  if (!state_.wish.script.empty())
+    script.emplace(readScript(state_.wish.script), window_, state_.marks,
+                   ScriptRunner::Hooks{[this](const std::string& file) { open(file); },
+                                       [this](const std::string& what, const Location& where) { return isReached(what, where); },
+                                       [this](const std::string& file) { writePicture(file); }});
+  const auto start = std::chrono::steady_clock::now();
+  double last_s = 0.0;
+  while (!window_.isClosed()) {
+    if (script && !script->step(now_s_)) return;
+    window_.beginFrame(script ? 0.0 : kIdle_s);
+    now_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    takeLoaded();
+    watchFile(now_s_);
+    tick(now_s_ - last_s);
+    ask();
+    frame(now_s_);
+    window_.endFrame();
+    if (std::exchange(shoots_, false)) {
+      const std::string file = "pitviper_view.png";
+      writePng(file, window_.pixels());
+      window_.keepPixels(false);
+      state_.say("written: " + file);
+    }
+    last_s = now_s_;
+    ++countedFrames_;
+    if (now_s_ - countedFrom_s_ >= 1.0) {
+      const std::uint64_t pictures = state_.picture ? state_.picture->number : 0;
+      state_.pictures_s = static_cast<double>(pictures - std::min(countedPicture_, pictures)) / (now_s_ - countedFrom_s_);
+      state_.window_s = countedFrames_ / (now_s_ - countedFrom_s_);
+      countedPicture_ = pictures, countedFrames_ = 0, countedFrom_s_ = now_s_;
+    }
+  }
+}
+
+}  // namespace pitviper
